@@ -1,0 +1,234 @@
+//! What can be wrong with a mesh or a model, said with the file, the tag and the cure.
+
+use std::fmt;
+
+/// Where in a mesh file something was found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Place {
+    /// A line of the text, counted from 1.
+    Line(usize),
+    /// An offset in bytes: the binary parts of a file have no lines.
+    Byte(usize),
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Line(line) => write!(f, "line {line}"),
+            Self::Byte(offset) => write!(f, "byte {offset}"),
+        }
+    }
+}
+
+/// A mesh that cannot be read or used. `source_name` is the file's path (or what the caller named the mesh).
+#[derive(Debug, thiserror::Error)]
+pub enum MeshError {
+    /// The file cannot be read.
+    #[error("{source_name}: cannot read the mesh: {source}")]
+    Io {
+        /// The mesh.
+        source_name: String,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// The file is not a MSH file of version 4.1.
+    #[error("{source_name}: not a MSH 4.1 file: found {found}; write it with `gmsh -3 -order 2 -format msh41`, or convert it with `meshio convert`")]
+    Version {
+        /// The mesh.
+        source_name: String,
+        /// The version, or the beginning of the file.
+        found: String,
+    },
+    /// The text or bytes do not follow the format.
+    #[error("{source_name}, {place}: in {section}: expected {expected}, found {found}")]
+    Syntax {
+        /// The mesh.
+        source_name: String,
+        /// Line or byte.
+        place: Place,
+        /// The section of the file, such as `$Nodes`.
+        section: String,
+        /// What the format asks for.
+        expected: String,
+        /// What stands there.
+        found: String,
+    },
+    /// A required section is not there.
+    #[error("{source_name}: there is no {section} section; mesh the volume and save it with `gmsh -3 -order 2 -format msh41`")]
+    MissingSection {
+        /// The mesh.
+        source_name: String,
+        /// Name of the section.
+        section: &'static str,
+    },
+    /// Volume elements of another kind than tet10.
+    #[error("{source_name}: element {element} is {found}, not a ten-node tetrahedron; {cure}")]
+    ElementType {
+        /// The mesh.
+        source_name: String,
+        /// Tag of the first such element.
+        element: u64,
+        /// What it is.
+        found: String,
+        /// What to do.
+        cure: &'static str,
+    },
+    /// The file has no volume elements.
+    #[error("{source_name}: there are no tetrahedra; mesh the volume with `gmsh -3 -order 2`, and put the volume into a physical group if there are any")]
+    NoElements {
+        /// The mesh.
+        source_name: String,
+    },
+    /// An element refers to a node that is not there.
+    #[error("{source_name}: element {element} uses node {node}, which is not in the mesh; save the mesh again with all its nodes")]
+    UnknownNode {
+        /// The mesh.
+        source_name: String,
+        /// Tag of the element.
+        element: u64,
+        /// Tag of the node.
+        node: u64,
+    },
+    /// A tag is given twice.
+    #[error("{source_name}: {kind} tag {tag} is given twice; renumber the mesh (gmsh: `RenumberMeshNodes; RenumberMeshElements;`)")]
+    DuplicateTag {
+        /// The mesh.
+        source_name: String,
+        /// "node" or "element".
+        kind: &'static str,
+        /// The tag.
+        tag: u64,
+    },
+    /// A coordinate is not a finite number.
+    #[error("{source_name}: node {node} is at {position:?}; every coordinate must be a finite number")]
+    NotFinite {
+        /// The mesh.
+        source_name: String,
+        /// Tag of the node.
+        node: u64,
+        /// Its position.
+        position: [f64; 3],
+    },
+    /// An element is turned inside out, or has no volume.
+    #[error("{source_name}: element {element} is {what}: its Jacobian determinant falls to {jacobian:e} (a good element of its size has about {expected:e}); improve the mesh there (gmsh: -optimize_ho, a smaller size, or straight edges with Mesh.SecondOrderLinear = 1)")]
+    Jacobian {
+        /// The mesh.
+        source_name: String,
+        /// Tag of the element.
+        element: u64,
+        /// "inverted" or "degenerate".
+        what: &'static str,
+        /// Smallest determinant of the Jacobian over nodes and integration points.
+        jacobian: f64,
+        /// That of a regular tetrahedron with the same longest edge.
+        expected: f64,
+    },
+    /// Nodes that belong to no tetrahedron.
+    #[error("{source_name}: {count} node(s) belong to no tetrahedron, the first of them {tags:?}; remove the points from the geometry, or save the volume alone (gmsh: a physical volume, and Mesh.SaveAll = 0)")]
+    OrphanNodes {
+        /// The mesh.
+        source_name: String,
+        /// How many.
+        count: usize,
+        /// Tags of the first few.
+        tags: Vec<u64>,
+    },
+    /// The body is in several pieces.
+    #[error("{source_name}: the mesh falls into {} pieces that share no node, of {sizes:?} elements, one with element {examples:?} each; join them (gmsh: `Coherence;` or BooleanFragments before meshing) or mesh one body", sizes.len())]
+    Pieces {
+        /// The mesh.
+        source_name: String,
+        /// Elements in each piece, largest first.
+        sizes: Vec<usize>,
+        /// Tag of an element of each piece.
+        examples: Vec<u64>,
+    },
+    /// Parts of a mesh that do not fit together, given by a program instead of a file.
+    #[error("{source_name}: expected {expected} {what}, found {found}")]
+    Lengths {
+        /// The mesh.
+        source_name: String,
+        /// Which array.
+        what: &'static str,
+        /// Its length should be.
+        expected: usize,
+        /// Its length is.
+        found: usize,
+    },
+}
+
+/// A model that cannot be assembled.
+#[derive(Debug, thiserror::Error)]
+pub enum AssemblyError {
+    /// A material constant outside its range.
+    #[error("material of {group}: {quantity} is {found}; expected {expected}")]
+    MaterialConstant {
+        /// The physical group, or "the whole mesh".
+        group: String,
+        /// Which constant.
+        quantity: &'static str,
+        /// Its value.
+        found: f64,
+        /// Its range.
+        expected: &'static str,
+    },
+    /// A material names a physical group that the mesh does not have.
+    #[error("{source_name}: there is no physical volume named \"{group}\"; the mesh has {present:?}")]
+    MissingGroup {
+        /// The mesh.
+        source_name: String,
+        /// The name looked for.
+        group: String,
+        /// The names there are.
+        present: Vec<String>,
+    },
+    /// An element that no material covers.
+    #[error("{source_name}: element {element} has no material: {}", match group {
+        Some(name) => format!("give one to its physical group \"{name}\""),
+        None => "it is in no named physical volume; name one in the geometry, or use one material for the whole mesh".to_owned(),
+    })]
+    NoMaterial {
+        /// The mesh.
+        source_name: String,
+        /// Tag of the element.
+        element: u64,
+        /// Its physical group, where it has one.
+        group: Option<String>,
+    },
+    /// A point mass that is not a positive number.
+    #[error("the point mass at {at:?} is {found}; expected a positive number")]
+    PointMass {
+        /// Where.
+        at: [f64; 3],
+        /// The mass.
+        found: f64,
+    },
+    /// A point that lies outside the body.
+    #[error("{source_name}: the point {at:?} is not on the body: the nearest node is {node} at {position:?}, {distance:.6} away; use a point of the body")]
+    OffBody {
+        /// The mesh.
+        source_name: String,
+        /// The point.
+        at: [f64; 3],
+        /// Tag of the nearest node.
+        node: u64,
+        /// Its position.
+        position: [f64; 3],
+        /// Its distance.
+        distance: f64,
+    },
+    /// Too few nodes near a point to carry what is spread over them.
+    #[error("{source_name}: the {count} node(s) within {radius} of {at:?} cannot carry a mass spread about that point (the nearest node is {distance:.6} away); use a larger spread")]
+    Spread {
+        /// The mesh.
+        source_name: String,
+        /// The point.
+        at: [f64; 3],
+        /// The radius asked for.
+        radius: f64,
+        /// Nodes found within it.
+        count: usize,
+        /// Distance of the nearest node of all.
+        distance: f64,
+    },
+}

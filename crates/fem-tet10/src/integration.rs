@@ -1,0 +1,119 @@
+//! Integration points of the elements: gradients of the shape functions in space, and weights.
+
+use nalgebra::Matrix3;
+use rayon::prelude::*;
+
+use crate::error::MeshError;
+use crate::mesh::Mesh;
+use crate::quadrature::{self, Point};
+use crate::shape::{EDGES, NODES, shape_gradients};
+
+/// A mid-edge node this close to the middle of its edge, as a fraction of the edge, makes no curved element.
+const STRAIGHT: f64 = 1e-9;
+/// A determinant this small against that of a regular element of the same size is taken for zero.
+const DEGENERATE: f64 = 1e-13;
+
+/// One integration point in space.
+pub(crate) struct IntegrationPoint {
+    /// ∂N_a/∂x for the ten nodes, per length.
+    pub gradients: [[f64; 3]; 10],
+    /// Weight × determinant of the Jacobian: the volume that the point stands for.
+    pub volume: f64,
+}
+
+/// The rules that all elements share, with the gradients of the shape functions at their points.
+pub(crate) struct Rules {
+    straight: Vec<(Point, [[f64; 3]; 10])>,
+    curved: Vec<(Point, [[f64; 3]; 10])>,
+}
+
+impl Rules {
+    pub(crate) fn new() -> Self {
+        let with_gradients =
+            |rule: Vec<Point>| rule.into_iter().map(|p| { let dn = shape_gradients(p.at); (p, dn) }).collect();
+        Self { straight: with_gradients(quadrature::degree_2()), curved: with_gradients(quadrature::degree_5()) }
+    }
+
+    /// Integration points of an element: four where it is straight (K is then exact), fourteen where it is curved.
+    pub(crate) fn points(&self, positions: &[[f64; 3]; 10]) -> Vec<IntegrationPoint> {
+        let rule = if is_straight(positions) { &self.straight } else { &self.curved };
+        rule.iter()
+            .map(|(point, dn)| {
+                let jacobian = jacobian(positions, dn);
+                // ∂N/∂x = J⁻ᵀ ∂N/∂ξ; a mesh that has been checked has no singular Jacobian at these points.
+                let inverse = jacobian.try_inverse().unwrap_or_else(Matrix3::zeros);
+                let gradients = dn.map(|d| {
+                    let g = inverse.transpose() * nalgebra::Vector3::from(d);
+                    [g.x, g.y, g.z]
+                });
+                IntegrationPoint { gradients, volume: point.weight * jacobian.determinant() }
+            })
+            .collect()
+    }
+}
+
+/// Whether all mid-edge nodes lie in the middle of their edges.
+pub(crate) fn is_straight(positions: &[[f64; 3]; 10]) -> bool {
+    EDGES.into_iter().enumerate().all(|(edge, [a, b])| {
+        let (mut off, mut length) = (0.0, 0.0);
+        for axis in 0..3 {
+            let (xa, xb) = (positions[a][axis], positions[b][axis]);
+            off += (positions[4 + edge][axis] - 0.5 * (xa + xb)).powi(2);
+            length += (xb - xa).powi(2);
+        }
+        off <= STRAIGHT * STRAIGHT * length
+    })
+}
+
+/// J_ij = ∂x_i/∂ξ_j.
+pub(crate) fn jacobian(positions: &[[f64; 3]; 10], dn: &[[f64; 3]; 10]) -> Matrix3<f64> {
+    let mut jacobian = Matrix3::zeros();
+    for (x, d) in positions.iter().zip(dn) {
+        for i in 0..3 {
+            for j in 0..3 {
+                jacobian[(i, j)] += x[i] * d[j];
+            }
+        }
+    }
+    jacobian
+}
+
+/// Refuses elements that are inverted or have no volume at a node or at an integration point.
+pub(crate) fn check_jacobians(mesh: &Mesh) -> Result<(), MeshError> {
+    let at_nodes = NODES.map(shape_gradients);
+    let inside: Vec<_> = quadrature::degree_5().iter().map(|p| shape_gradients(p.at)).collect();
+    let bad = (0..mesh.elements().len()).into_par_iter().find_map_first(|e| {
+        let positions = mesh.element_positions(e);
+        let regular = regular_determinant(&positions);
+        let smallest = if is_straight(&positions) {
+            jacobian(&positions, &at_nodes[0]).determinant()
+        } else {
+            at_nodes
+                .iter()
+                .chain(&inside)
+                .map(|dn| jacobian(&positions, dn).determinant())
+                .fold(f64::INFINITY, f64::min)
+        };
+        (smallest <= DEGENERATE * regular).then_some((e, smallest, regular))
+    });
+    match bad {
+        None => Ok(()),
+        Some((e, jacobian, expected)) => Err(MeshError::Jacobian {
+            source_name: mesh.source().to_owned(),
+            element: mesh.element_tags()[e],
+            what: if jacobian < -DEGENERATE * expected { "inverted" } else { "degenerate" },
+            jacobian,
+            expected,
+        }),
+    }
+}
+
+/// Determinant of the Jacobian of a regular tetrahedron with the longest edge of this one: h³/√2.
+fn regular_determinant(positions: &[[f64; 3]; 10]) -> f64 {
+    let longest = EDGES
+        .into_iter()
+        .map(|[a, b]| (0..3).map(|axis| (positions[a][axis] - positions[b][axis]).powi(2)).sum::<f64>())
+        .fold(0.0, f64::max)
+        .sqrt();
+    longest.powi(3) / 2.0_f64.sqrt()
+}

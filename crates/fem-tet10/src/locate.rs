@@ -1,0 +1,89 @@
+//! From a point in space to the nodes of the body that carry it.
+
+use nalgebra::Vector3;
+
+use crate::error::AssemblyError;
+use crate::integration::jacobian;
+use crate::mesh::Mesh;
+use crate::shape::{barycentric, shape_functions, shape_gradients};
+
+/// Within this fraction of the mesh's diagonal, a point is at a node.
+const AT_NODE: f64 = 1e-7;
+/// How far outside of an element, in its barycentric coordinates, a point still belongs to it.
+const OUTSIDE: f64 = 1e-6;
+
+/// A point of the body: `u(point) = Σ weights_i u(nodes_i)`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Location {
+    /// Node indices.
+    pub nodes: Vec<u32>,
+    /// Their weights; they sum to one.
+    pub weights: Vec<f64>,
+}
+
+impl Mesh {
+    /// The node at `point`, or the ten nodes of the element that contains it with their shape functions.
+    ///
+    /// # Errors
+    /// [`AssemblyError::OffBody`] with the nearest node and its distance.
+    pub fn locate(&self, point: [f64; 3]) -> Result<Location, AssemblyError> {
+        let (nearest, distance) = self.nearest_node(point);
+        if distance <= AT_NODE * self.diagonal() {
+            return Ok(Location { nodes: vec![nearest as u32], weights: vec![1.0] });
+        }
+        (0..self.elements().len())
+            .find_map(|e| {
+                let positions = self.element_positions(e);
+                let at = reference_coordinates(&positions, point)?;
+                let inside = barycentric(at).into_iter().all(|l| l >= -OUTSIDE);
+                inside.then(|| Location {
+                    nodes: self.elements()[e].to_vec(),
+                    weights: shape_functions(at).to_vec(),
+                })
+            })
+            .ok_or_else(|| AssemblyError::OffBody {
+                source_name: self.source().to_owned(),
+                at: point,
+                node: self.node_tags()[nearest],
+                position: self.positions()[nearest],
+                distance,
+            })
+    }
+
+    /// Index and distance of the node nearest to a point.
+    pub(crate) fn nearest_node(&self, point: [f64; 3]) -> (usize, f64) {
+        let squared = |x: &[f64; 3]| (0..3).map(|axis| (x[axis] - point[axis]).powi(2)).sum::<f64>();
+        let (node, d2) = self
+            .positions()
+            .iter()
+            .map(squared)
+            .enumerate()
+            .fold((0, f64::INFINITY), |best, found| if found.1 < best.1 { found } else { best });
+        (node, d2.sqrt())
+    }
+}
+
+/// The (ξ, η, ζ) at which an element's map reaches `point`, by Newton's method; `None` where the point is far from it.
+fn reference_coordinates(positions: &[[f64; 3]; 10], point: [f64; 3]) -> Option<[f64; 3]> {
+    for axis in 0..3 {
+        let (low, high) =
+            positions.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x[axis]), h.max(x[axis])));
+        // Curved faces may bulge beyond the nodes' box.
+        let margin = 0.25 * (high - low);
+        if point[axis] < low - margin || point[axis] > high + margin {
+            return None;
+        }
+    }
+    let mut at = Vector3::repeat(0.25);
+    for _ in 0..20 {
+        let n = shape_functions(at.into());
+        let mapped: Vector3<f64> = positions.iter().zip(n).map(|(x, n)| Vector3::from(*x) * n).sum();
+        let jacobian = jacobian(positions, &shape_gradients(at.into()));
+        let step = jacobian.lu().solve(&(Vector3::from(point) - mapped))?;
+        at += step;
+        if step.amax() < 1e-13 {
+            break;
+        }
+    }
+    at.iter().all(|c| c.is_finite()).then(|| at.into())
+}

@@ -1,0 +1,226 @@
+//! A mesh of ten-node tetrahedra that is fit to compute with: checked when it is made.
+
+use std::collections::HashMap;
+
+use crate::error::MeshError;
+use crate::integration;
+
+/// The raw parts of a mesh, from a file or from a program; [`Mesh::new`] checks them.
+#[derive(Debug, Clone, Default)]
+pub struct MeshParts {
+    /// What to call the mesh in messages: the file's path.
+    pub source: String,
+    /// Tags of the nodes, in the file's numbering.
+    pub node_tags: Vec<u64>,
+    /// Positions of the nodes (n×3).
+    pub positions: Vec<[f64; 3]>,
+    /// Tags of the elements, in the file's numbering.
+    pub element_tags: Vec<u64>,
+    /// Node *tags* of each element, in gmsh's order: corners, then mid-edges 01 12 02 03 23 13.
+    pub elements: Vec<[u64; 10]>,
+    /// Names of the volume physical groups.
+    pub groups: Vec<String>,
+    /// For each element, the index of its group, where it has one.
+    pub element_groups: Vec<Option<usize>>,
+}
+
+/// A mesh of ten-node tetrahedra in one piece, every node in use and every element the right way round.
+#[derive(Debug, Clone)]
+pub struct Mesh {
+    source: String,
+    node_tags: Vec<u64>,
+    positions: Vec<[f64; 3]>,
+    element_tags: Vec<u64>,
+    elements: Vec<[u32; 10]>,
+    groups: Vec<String>,
+    element_groups: Vec<Option<usize>>,
+}
+
+impl Mesh {
+    /// Checks the parts and makes a mesh of them.
+    ///
+    /// # Errors
+    /// Lengths that do not agree, tags given twice or unknown, coordinates that are not finite, inverted or
+    /// degenerate elements, nodes of no element, several pieces.
+    pub fn new(parts: MeshParts) -> Result<Self, MeshError> {
+        let MeshParts { source, node_tags, positions, element_tags, elements, groups, element_groups } = parts;
+        let lengths = [
+            ("node tags", positions.len(), node_tags.len()),
+            ("element tags", elements.len(), element_tags.len()),
+            ("element groups", elements.len(), element_groups.len()),
+        ];
+        for (what, expected, found) in lengths {
+            if expected != found {
+                return Err(MeshError::Lengths { source_name: source, what, expected, found });
+            }
+        }
+        if elements.is_empty() {
+            return Err(MeshError::NoElements { source_name: source });
+        }
+        if let Some((&node, &position)) =
+            node_tags.iter().zip(&positions).find(|(_, x)| x.iter().any(|c| !c.is_finite()))
+        {
+            return Err(MeshError::NotFinite { source_name: source, node, position });
+        }
+        let elements = resolve_tags(&source, &node_tags, &element_tags, &elements)?;
+        let mesh = Self { source, node_tags, positions, element_tags, elements, groups, element_groups };
+        mesh.refuse_orphans()?;
+        integration::check_jacobians(&mesh)?;
+        mesh.refuse_pieces()?;
+        Ok(mesh)
+    }
+
+    /// What the mesh is called in messages: its file.
+    pub fn source(&self) -> &str {
+        &self.source
+    }
+
+    /// Positions of the nodes (n×3).
+    pub fn positions(&self) -> &[[f64; 3]] {
+        &self.positions
+    }
+
+    /// Tags of the nodes in the file's numbering.
+    pub fn node_tags(&self) -> &[u64] {
+        &self.node_tags
+    }
+
+    /// Node indices of each element, in gmsh's order: corners, then mid-edges 01 12 02 03 23 13.
+    pub fn elements(&self) -> &[[u32; 10]] {
+        &self.elements
+    }
+
+    /// Tags of the elements in the file's numbering.
+    pub fn element_tags(&self) -> &[u64] {
+        &self.element_tags
+    }
+
+    /// Names of the volume physical groups.
+    pub fn groups(&self) -> &[String] {
+        &self.groups
+    }
+
+    /// Index of the group of an element, where it has one.
+    pub fn element_group(&self, element: usize) -> Option<usize> {
+        self.element_groups[element]
+    }
+
+    /// Positions of the ten nodes of an element.
+    pub(crate) fn element_positions(&self, element: usize) -> [[f64; 3]; 10] {
+        self.elements[element].map(|node| self.positions[node as usize])
+    }
+
+    /// Length of the diagonal of the box around the mesh.
+    pub fn diagonal(&self) -> f64 {
+        (0..3)
+            .map(|axis| {
+                let (low, high) = self
+                    .positions
+                    .iter()
+                    .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x[axis]), h.max(x[axis])));
+                (high - low).powi(2)
+            })
+            .sum::<f64>()
+            .sqrt()
+    }
+
+    fn refuse_orphans(&self) -> Result<(), MeshError> {
+        let mut used = vec![false; self.positions.len()];
+        for node in self.elements.iter().flatten() {
+            used[*node as usize] = true;
+        }
+        let orphans = || used.iter().zip(&self.node_tags).filter(|(used, _)| !**used).map(|(_, tag)| *tag);
+        match orphans().count() {
+            0 => Ok(()),
+            count => Err(MeshError::OrphanNodes {
+                source_name: self.source.clone(),
+                count,
+                tags: orphans().take(5).collect(),
+            }),
+        }
+    }
+
+    fn refuse_pieces(&self) -> Result<(), MeshError> {
+        let mut sets = DisjointSets::new(self.positions.len());
+        for nodes in &self.elements {
+            for node in &nodes[1..] {
+                sets.join(nodes[0] as usize, *node as usize);
+            }
+        }
+        // Root of a piece -> (number of elements, index of the first).
+        let mut pieces: HashMap<usize, (usize, usize)> = HashMap::new();
+        for (e, nodes) in self.elements.iter().enumerate() {
+            pieces.entry(sets.root(nodes[0] as usize)).or_insert((0, e)).0 += 1;
+        }
+        if pieces.len() == 1 {
+            return Ok(());
+        }
+        let mut pieces: Vec<_> = pieces.into_values().collect();
+        pieces.sort_by_key(|(size, first)| (std::cmp::Reverse(*size), *first));
+        Err(MeshError::Pieces {
+            source_name: self.source.clone(),
+            sizes: pieces.iter().map(|(size, _)| *size).collect(),
+            examples: pieces.iter().map(|(_, first)| self.element_tags[*first]).collect(),
+        })
+    }
+}
+
+/// Turns node tags into indices.
+fn resolve_tags(
+    source: &str,
+    node_tags: &[u64],
+    element_tags: &[u64],
+    elements: &[[u64; 10]],
+) -> Result<Vec<[u32; 10]>, MeshError> {
+    let duplicate = |kind, tag| MeshError::DuplicateTag { source_name: source.to_owned(), kind, tag };
+    let mut index_of: HashMap<u64, u32> = HashMap::with_capacity(node_tags.len());
+    for (index, tag) in node_tags.iter().enumerate() {
+        if index_of.insert(*tag, index as u32).is_some() {
+            return Err(duplicate("node", *tag));
+        }
+    }
+    let mut sorted = element_tags.to_vec();
+    sorted.sort_unstable();
+    if let Some(pair) = sorted.windows(2).find(|pair| pair[0] == pair[1]) {
+        return Err(duplicate("element", pair[0]));
+    }
+    elements
+        .iter()
+        .zip(element_tags)
+        .map(|(nodes, element)| {
+            let mut indices = [0; 10];
+            for (index, node) in indices.iter_mut().zip(nodes) {
+                *index = *index_of.get(node).ok_or_else(|| MeshError::UnknownNode {
+                    source_name: source.to_owned(),
+                    element: *element,
+                    node: *node,
+                })?;
+            }
+            Ok(indices)
+        })
+        .collect()
+}
+
+/// Union–find with path halving.
+struct DisjointSets {
+    parent: Vec<usize>,
+}
+
+impl DisjointSets {
+    fn new(len: usize) -> Self {
+        Self { parent: (0..len).collect() }
+    }
+
+    fn root(&mut self, mut i: usize) -> usize {
+        while self.parent[i] != i {
+            self.parent[i] = self.parent[self.parent[i]];
+            i = self.parent[i];
+        }
+        i
+    }
+
+    fn join(&mut self, a: usize, b: usize) {
+        let (a, b) = (self.root(a), self.root(b));
+        self.parent[a.max(b)] = a.min(b);
+    }
+}

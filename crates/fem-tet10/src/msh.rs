@@ -1,0 +1,213 @@
+//! Reader of gmsh's MSH 4.1, ASCII and binary.
+//!
+//! Both forms carry the same numbers in the same order, so one parser asks a [`Source`] for the next number
+//! and the source knows how it is written. No count in a file is trusted: memory grows with what is read.
+
+mod source;
+
+use std::collections::HashMap;
+use std::path::Path;
+
+use crate::error::MeshError;
+use crate::mesh::{Mesh, MeshParts};
+use source::Source;
+
+/// Nodes of gmsh's element types by number; 0 where there is no such type.
+const NODES_OF_TYPE: [usize; 32] = [
+    0, 2, 3, 4, 4, 8, 6, 5, 3, 6, 9, 10, 27, 18, 14, 1, 8, 20, 15, 13, 9, 10, 12, 15, 15, 21, 4, 5, 6, 20, 35, 56,
+];
+const TET4: i32 = 4;
+const TET10: i32 = 11;
+
+const REMESH: &str = "mesh with -order 2 (or `Mesh.ElementOrder = 2;`)";
+const TETRAHEDRA_ONLY: &str = "mesh with tetrahedra (gmsh: no Recombine, no Transfinite Volume with Recombine) and -order 2";
+
+/// Reads a MSH 4.1 file and checks the mesh.
+///
+/// # Errors
+/// See [`MeshError`]: unreadable file, wrong format, wrong elements, and all that [`Mesh::new`] refuses.
+pub fn read_msh(path: impl AsRef<Path>) -> Result<Mesh, MeshError> {
+    let source_name = path.as_ref().display().to_string();
+    let bytes =
+        std::fs::read(path).map_err(|source| MeshError::Io { source_name: source_name.clone(), source })?;
+    parse_msh(&bytes, &source_name)
+}
+
+/// Reads a mesh from the contents of a MSH 4.1 file; `source_name` is what messages call it.
+///
+/// # Errors
+/// As [`read_msh`].
+pub fn parse_msh(bytes: &[u8], source_name: &str) -> Result<Mesh, MeshError> {
+    Mesh::new(parse_parts(bytes, source_name)?)
+}
+
+fn parse_parts(bytes: &[u8], source_name: &str) -> Result<MeshParts, MeshError> {
+    let mut source = Source::open(bytes, source_name)?;
+    let mut parts = MeshParts { source: source_name.to_owned(), ..MeshParts::default() };
+    let mut names = HashMap::new();
+    let mut volume_groups = HashMap::new();
+    let (mut nodes_seen, mut elements_seen) = (false, false);
+    while let Some(section) = source.next_section()? {
+        match section.as_str() {
+            "$PhysicalNames" => names = physical_names(&mut source)?,
+            "$Entities" => volume_groups = entities(&mut source)?,
+            "$Nodes" => {
+                nodes(&mut source, &mut parts)?;
+                nodes_seen = true;
+            }
+            "$Elements" => {
+                elements(&mut source, &mut parts, &volume_groups, &names)?;
+                elements_seen = true;
+            }
+            _ => {
+                source.skip_section();
+                continue;
+            }
+        }
+        source.end_section()?;
+    }
+    let missing = |section| MeshError::MissingSection { source_name: source_name.to_owned(), section };
+    if !nodes_seen {
+        return Err(missing("$Nodes"));
+    }
+    if !elements_seen {
+        return Err(missing("$Elements"));
+    }
+    Ok(parts)
+}
+
+/// Names of the three-dimensional physical groups by number. Always text, in binary files too.
+fn physical_names(source: &mut Source) -> Result<HashMap<i32, String>, MeshError> {
+    let count: u64 = source.text_number("the number of names")?;
+    let mut names = HashMap::new();
+    for _ in 0..count {
+        let dimension: i32 = source.text_number("a dimension")?;
+        let tag: i32 = source.text_number("the number of a physical group")?;
+        let name = source.quoted()?;
+        if dimension == 3 {
+            names.insert(tag, name);
+        }
+    }
+    Ok(names)
+}
+
+/// The first physical group of each volume entity that has one.
+fn entities(source: &mut Source) -> Result<HashMap<i32, i32>, MeshError> {
+    let mut counts = [0; 4];
+    for count in &mut counts {
+        *count = source.size("a number of entities")?;
+    }
+    let mut volume_groups = HashMap::new();
+    for (dimension, count) in counts.into_iter().enumerate() {
+        for _ in 0..count {
+            let tag = source.int("an entity's tag")?;
+            let coordinates = if dimension == 0 { 3 } else { 6 };
+            for _ in 0..coordinates {
+                source.real("a coordinate of an entity")?;
+            }
+            for nth in 0..source.size("a number of physical groups")? {
+                let group = source.int("the number of a physical group")?;
+                if dimension == 3 && nth == 0 {
+                    volume_groups.insert(tag, group.abs());
+                }
+            }
+            if dimension > 0 {
+                for _ in 0..source.size("a number of bounding entities")? {
+                    source.int("a bounding entity")?;
+                }
+            }
+        }
+    }
+    Ok(volume_groups)
+}
+
+fn nodes(source: &mut Source, parts: &mut MeshParts) -> Result<(), MeshError> {
+    let blocks = source.size("the number of node blocks")?;
+    for _ in 0..3 {
+        source.size("number, smallest and largest tag of the nodes")?;
+    }
+    for _ in 0..blocks {
+        let dimension = source.int("an entity's dimension")?;
+        source.int("an entity's tag")?;
+        let parametric = source.int("0 or 1 for parametric nodes")?;
+        let count = source.size("the number of nodes of a block")?;
+        for _ in 0..count {
+            parts.node_tags.push(source.size("a node's tag")?);
+        }
+        let parameters = if parametric == 0 { 0 } else { dimension.clamp(0, 3) };
+        for _ in 0..count {
+            let mut position = [0.0; 3];
+            for coordinate in &mut position {
+                *coordinate = source.real("a node's coordinate")?;
+            }
+            parts.positions.push(position);
+            for _ in 0..parameters {
+                source.real("a node's parameter")?;
+            }
+        }
+    }
+    Ok(())
+}
+
+fn elements(
+    source: &mut Source,
+    parts: &mut MeshParts,
+    volume_groups: &HashMap<i32, i32>,
+    names: &HashMap<i32, String>,
+) -> Result<(), MeshError> {
+    let blocks = source.size("the number of element blocks")?;
+    for _ in 0..3 {
+        source.size("number, smallest and largest tag of the elements")?;
+    }
+    for _ in 0..blocks {
+        let dimension = source.int("an entity's dimension")?;
+        let entity = source.int("an entity's tag")?;
+        let kind = source.int("an element type")?;
+        let count = source.size("the number of elements of a block")?;
+        let nodes = usize::try_from(kind).ok().and_then(|k| NODES_OF_TYPE.get(k)).copied().unwrap_or(0);
+        if nodes == 0 {
+            return Err(source.error("an element type of gmsh (1 to 31)", &kind.to_string()));
+        }
+        if dimension == 3 && kind != TET10 && count > 0 {
+            let element = source.size("an element's tag")?;
+            let (found, cure) = match kind {
+                TET4 => ("a four-node tetrahedron".to_owned(), REMESH),
+                29..=31 => (format!("a tetrahedron of order {} or more", kind - 26), REMESH),
+                _ => (format!("of gmsh type {kind} ({nodes} nodes)"), TETRAHEDRA_ONLY),
+            };
+            return Err(MeshError::ElementType { source_name: parts.source.clone(), element, found, cure });
+        }
+        let group = (kind == TET10).then(|| group_index(parts, volume_groups, names, entity)).flatten();
+        for _ in 0..count {
+            let tag = source.size("an element's tag")?;
+            let mut element = [0; 10];
+            for nth in 0..nodes {
+                let node = source.size("a node of an element")?;
+                if kind == TET10 {
+                    element[nth] = node;
+                }
+            }
+            if kind == TET10 {
+                parts.element_tags.push(tag);
+                parts.elements.push(element);
+                parts.element_groups.push(group);
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Index into `parts.groups` of the group that a volume entity belongs to. A group without a name goes by its number.
+fn group_index(
+    parts: &mut MeshParts,
+    volume_groups: &HashMap<i32, i32>,
+    names: &HashMap<i32, String>,
+    entity: i32,
+) -> Option<usize> {
+    let group = volume_groups.get(&entity)?;
+    let name = names.get(group).cloned().unwrap_or_else(|| group.to_string());
+    Some(parts.groups.iter().position(|known| *known == name).unwrap_or_else(|| {
+        parts.groups.push(name);
+        parts.groups.len() - 1
+    }))
+}

@@ -1,0 +1,74 @@
+//! Point masses, and what carries them.
+
+use nalgebra::{Matrix4, SymmetricEigen, Vector4};
+
+use crate::error::AssemblyError;
+use crate::locate::Location;
+use crate::mesh::Mesh;
+
+/// A mass at a point of the body.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PointMass {
+    /// Where, in the mesh's frame.
+    pub at: [f64; 3],
+    /// How much.
+    pub mass: f64,
+    /// Where given, the radius within which all nodes carry the mass together. A mass on one node has a local
+    /// compliance that grows without limit as the mesh is refined; spread over a fixed radius it has not.
+    pub spread: Option<f64>,
+}
+
+impl PointMass {
+    /// Nodes and weights w that carry the mass: it moves with `Σ w_i u_i`, so that the mass matrix gains
+    /// `m w wᵀ ⊗ I₃`.
+    ///
+    /// As the weights reproduce linear fields (`Σ w_i = 1`, `Σ w_i X_i = at`), the mass, its first and its second
+    /// moments are exactly those of the mass at the point.
+    ///
+    /// # Errors
+    /// A mass that is not positive, a point off the body, too few nodes within the radius.
+    pub(crate) fn location(&self, mesh: &Mesh) -> Result<Location, AssemblyError> {
+        if !(self.mass > 0.0 && self.mass.is_finite()) {
+            return Err(AssemblyError::PointMass { at: self.at, found: self.mass });
+        }
+        match self.spread {
+            None => mesh.locate(self.at),
+            Some(radius) => spread(mesh, self.at, radius),
+        }
+    }
+}
+
+/// The affine field that fits the displacements of all nodes within `radius` best (least squares), taken at `at`.
+fn spread(mesh: &Mesh, at: [f64; 3], radius: f64) -> Result<Location, AssemblyError> {
+    // Offsets in units of the radius, so that the fit is well scaled in any unit of length.
+    let offset = |x: &[f64; 3]| Vector4::new(1.0, (x[0] - at[0]) / radius, (x[1] - at[1]) / radius, (x[2] - at[2]) / radius);
+    let within: Vec<(u32, Vector4<f64>)> = (0..)
+        .zip(mesh.positions())
+        .map(|(node, x)| (node, offset(x)))
+        .filter(|(_, z)| z.fixed_rows::<3>(1).norm() <= 1.0)
+        .collect();
+    let refuse = || AssemblyError::Spread {
+        source_name: mesh.source().to_owned(),
+        at,
+        radius,
+        count: within.len(),
+        distance: mesh.nearest_node(at).1,
+    };
+    let normal: Matrix4<f64> = within.iter().map(|(_, z)| z * z.transpose()).sum();
+    // Nodes in a plane or on a line determine the fit there if the point is in it too: a pseudo-inverse serves all.
+    let eigen = SymmetricEigen::new(normal);
+    let largest = eigen.eigenvalues.max();
+    let mut coefficients = Vector4::zeros();
+    for (value, vector) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
+        if *value > 1e-10 * largest {
+            coefficients += vector * (vector.x / value);
+        }
+    }
+    let weights: Vec<f64> = within.iter().map(|(_, z)| z.dot(&coefficients)).collect();
+    let moments: Vector4<f64> = within.iter().zip(&weights).map(|((_, z), w)| z * *w).sum();
+    // Written so that NaN, from no node at all, is refused too.
+    if !((moments - Vector4::x()).amax() < 1e-9) {
+        return Err(refuse());
+    }
+    Ok(Location { nodes: within.into_iter().map(|(node, _)| node).collect(), weights })
+}

@@ -1,0 +1,1 @@
+//! Flexible-body dynamics: from a finite-element mesh to the motion of the body.

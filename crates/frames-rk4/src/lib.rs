@@ -1,0 +1,1 @@
+//! Motion of a flexible body in a sequence of reconfigured inertial frames.

@@ -1,0 +1,132 @@
+//! Why modes could not be found.
+
+/// What can be wrong with the matrices, or with what is asked of them.
+#[derive(Debug, thiserror::Error)]
+pub enum ModalError {
+    /// Matrices and positions of different sizes.
+    #[error("{what} has {found} rows or columns; expected {expected}, three for each of the nodes")]
+    Size {
+        /// "stiffness" or "mass".
+        what: &'static str,
+        /// Three times the number of positions.
+        expected: usize,
+        /// Rows or columns of the matrix.
+        found: usize,
+    },
+    /// An entry or a position that is NaN or infinite.
+    #[error("{what} holds {value} (at column or node {index}); every number must be finite")]
+    NotFinite {
+        /// "stiffness", "mass" or "positions".
+        what: &'static str,
+        /// Column or node.
+        index: usize,
+        /// The number.
+        value: f64,
+    },
+    /// The mass matrix does not act alike on the three axes.
+    #[error(
+        "the mass matrix couples degrees of freedom {row} and {column} ({value:e}) unlike those of the other axes; expected a mass for each pair of nodes times the 3x3 identity, as solid elements have it"
+    )]
+    AnisotropicMass {
+        /// Row.
+        row: usize,
+        /// Column.
+        column: usize,
+        /// The entry.
+        value: f64,
+    },
+    /// The body has no mass, or none to resist a rotation.
+    #[error(
+        "the body has mass {mass:e} and inertia {inertia:?} about its centre of mass, which is no rigid body: all three moments must be positive"
+    )]
+    NoInertia {
+        /// Total mass.
+        mass: f64,
+        /// Diagonal of the inertia.
+        inertia: [f64; 3],
+    },
+    /// A rigid motion that K resists.
+    #[error(
+        "the body is not free: rigid {motion} meets a stiffness of {relative:e} of K's own (expected below {limit:e}); remove the supports from K"
+    )]
+    NotFree {
+        /// "translation along x", …
+        motion: &'static str,
+        /// ‖K r‖ against ‖|K| |r|‖.
+        relative: f64,
+        /// What rounding explains.
+        limit: f64,
+    },
+    /// More modes asked for than there are.
+    #[error(
+        "{requested} flexible modes asked for; the mesh has only {available} (three for each node, less the six rigid ones)"
+    )]
+    TooManyModes {
+        /// Asked for.
+        requested: usize,
+        /// There are.
+        available: usize,
+    },
+    /// Modes without energy beside the rigid ones.
+    #[error(
+        "the body is a mechanism: besides the 6 rigid modes {count} mode(s) have no stiffness (the first has {eigenvalue:e} of the shift {shift:e}); the node with index {node} at {position:?} moves most. Are parts joined at a single node or edge only? Join them by faces"
+    )]
+    Mechanism {
+        /// How many.
+        count: usize,
+        /// Eigenvalue of the first.
+        eigenvalue: f64,
+        /// The scale of the others.
+        shift: f64,
+        /// Node index that moves most.
+        node: usize,
+        /// Its position.
+        position: [f64; 3],
+    },
+    /// K + sM is not positive definite.
+    #[error(
+        "the stiffness matrix is not positive semi-definite (pivot {pivot} of K + {shift:e} M): a material constant or an element must be wrong"
+    )]
+    Indefinite {
+        /// Position of the pivot in the elimination.
+        pivot: usize,
+        /// The shift s.
+        shift: f64,
+    },
+    /// METIS failed.
+    #[error("the fill-reducing ordering failed (METIS status {status})")]
+    Ordering {
+        /// METIS's own code.
+        status: i32,
+    },
+    /// No memory for the factor, or an index too large.
+    #[error("the factorisation of {size} unknowns failed: {reason}; use a coarser mesh or a machine with more memory")]
+    Factorization {
+        /// Unknowns.
+        size: usize,
+        /// faer's reason.
+        reason: String,
+    },
+    /// The search did not end.
+    #[error(
+        "only {converged} of {requested} modes converged within {steps} block steps (residual {residual:e}, wanted {tolerance:e})"
+    )]
+    NotConverged {
+        /// Modes that converged.
+        converged: usize,
+        /// Modes asked for.
+        requested: usize,
+        /// Block steps taken.
+        steps: usize,
+        /// Worst residual of the modes asked for.
+        residual: f64,
+        /// Residual asked for.
+        tolerance: f64,
+    },
+    /// A dense eigenvalue problem failed.
+    #[error("a dense eigenvalue problem of size {size} did not converge")]
+    DenseEigen {
+        /// Its size.
+        size: usize,
+    },
+}

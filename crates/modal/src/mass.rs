@@ -1,0 +1,92 @@
+//! The mass matrix as a matrix over nodes: `M = M_s ⊗ I₃`.
+
+use faer::sparse::SparseColMatRef;
+use faer::{Mat, MatRef};
+use rayon::prelude::*;
+
+use crate::error::ModalError;
+use crate::products::nodal_product;
+
+/// An entry that differs from those of the other axes by more than this, relative to the diagonals, is no rounding.
+const ISOTROPY: f64 = 1e-12;
+
+/// The scalar mass matrix over nodes, of which the mass matrix is three copies, one for each axis.
+///
+/// That is what solid elements and point masses give; it is a ninth of the stored entries of M.
+#[derive(Debug, Clone)]
+pub struct NodalMass {
+    start: Vec<usize>,
+    nodes: Vec<u32>,
+    values: Vec<f64>,
+}
+
+impl NodalMass {
+    /// Takes `M_s` out of M (3n×3n, both triangles stored).
+    ///
+    /// # Errors
+    /// [`ModalError::AnisotropicMass`] where M is not `M_s ⊗ I₃`.
+    pub fn new(mass: SparseColMatRef<'_, usize, f64>) -> Result<Self, ModalError> {
+        let n = mass.ncols() / 3;
+        let entry = |row: usize, column: usize| mass.get(row, column).copied().unwrap_or(0.0);
+        let diagonal: Vec<f64> = (0..n).map(|node| entry(3 * node, 3 * node)).collect();
+        let columns: Vec<Vec<(u32, f64)>> = (0..n)
+            .into_par_iter()
+            .map(|node| {
+                let mut column: Vec<(u32, f64)> = Vec::new();
+                for axis in 0..3 {
+                    let j = 3 * node + axis;
+                    let mut found = 0;
+                    for (i, value) in mass.row_idx_of_col(j).zip(mass.val_of_col(j)) {
+                        let scale = (diagonal[i / 3] * diagonal[node]).abs().sqrt();
+                        let refuse = || ModalError::AnisotropicMass { row: i, column: j, value: *value };
+                        if i % 3 != axis {
+                            if value.abs() > ISOTROPY * scale {
+                                return Err(refuse());
+                            }
+                        } else if axis == 0 {
+                            if *value != 0.0 {
+                                column.push(((i / 3) as u32, *value));
+                            }
+                        } else if *value != 0.0 {
+                            match column.get(found) {
+                                Some((row, first))
+                                    if *row as usize == i / 3 && (value - first).abs() <= ISOTROPY * scale => {}
+                                _ => return Err(refuse()),
+                            }
+                            found += 1;
+                        }
+                    }
+                    if axis > 0 && found != column.len() {
+                        let (row, value) = column[found];
+                        return Err(ModalError::AnisotropicMass { row: 3 * row as usize, column: 3 * node, value });
+                    }
+                }
+                Ok(column)
+            })
+            .collect::<Result<_, _>>()?;
+        let mut start = Vec::with_capacity(n + 1);
+        start.push(0);
+        let (mut nodes, mut values) = (Vec::new(), Vec::new());
+        for column in columns {
+            nodes.extend(column.iter().map(|(row, _)| *row));
+            values.extend(column.iter().map(|(_, value)| *value));
+            start.push(nodes.len());
+        }
+        Ok(Self { start, nodes, values })
+    }
+
+    /// M·X for X with 3n rows.
+    pub(crate) fn product(&self, x: MatRef<'_, f64>) -> Mat<f64> {
+        nodal_product(&self.start, &self.nodes, &self.values, x)
+    }
+
+    /// Sums over the columns: the mass that each node stands for (n).
+    pub(crate) fn row_sums(&self) -> Vec<f64> {
+        self.start.windows(2).map(|range| self.values[range[0]..range[1]].iter().sum()).collect()
+    }
+
+    /// Number of nodes n.
+    pub(crate) fn node_count(&self) -> usize {
+        self.start.len() - 1
+    }
+}

@@ -1,0 +1,161 @@
+//! The reduced body: every constant that the motion needs, none of them of the mesh's size.
+//!
+//! With `X` the node positions about the centre of mass, `Ψ = [Ψ_R, Ψ_f]` the rigid and flexible shapes, and
+//! `(I⊗A)` a 3×3 matrix A acting on each node's vector:
+//!
+//! | here | theory | definition |
+//! |---|---|---|
+//! | [`rotation_products`](ReducedBody::rotation_products) | E_ab | `Ψᵀ M (I⊗e_a e_bᵀ) Ψ`, so `Ψᵀ M (I⊗R) Ψ = Σ R_ab E_ab` |
+//! | [`inertia_first`](ReducedBody::inertia_first) | c_ij | `Ψ_fᵀ M (I⊗[e_i×]ᵀ[e_j×]) X`, symmetrised in ij |
+//! | [`inertia_second`](ReducedBody::inertia_second) | N_ij | `Ψ_fᵀ M (I⊗[e_i×]ᵀ[e_j×]) Ψ_f`, symmetrised in ij |
+//! | [`gyroscopic`](ReducedBody::gyroscopic) | G_i | `Ψ_fᵀ M (I⊗[e_i×]) Ψ_f`, skew |
+
+use faer::sparse::SparseColMatRef;
+use faer::{Mat, MatRef};
+use nalgebra::{Matrix3, Vector3};
+
+use crate::error::ModalError;
+use crate::mass::NodalMass;
+use crate::solve::Modes;
+
+/// The six pairs ij of a symmetric 3×3 matrix, in the order of [`ReducedBody::inertia_first`].
+pub(crate) const PAIRS: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1)];
+
+/// A free elastic body in modal coordinates. Axes are those of the mesh, the origin is the centre of mass.
+#[derive(Debug, Clone)]
+pub struct ReducedBody {
+    /// Total mass m.
+    pub mass: f64,
+    /// Centre of mass in the mesh's frame.
+    pub center_of_mass: Vector3<f64>,
+    /// Inertia J₀ of the undeformed body about its centre of mass.
+    pub inertia: Matrix3<f64>,
+    /// B (3×3): the angular velocity of rigid modal velocities y is `B y[3..6]`.
+    pub rotation_basis: Matrix3<f64>,
+    /// Circular natural frequencies of the flexible modes, rad per time (nf).
+    pub circular_frequencies: Vec<f64>,
+    /// E_ab (3×3 matrices of 6+nf × 6+nf).
+    pub rotation_products: [[Mat<f64>; 3]; 3],
+    /// E^X_ab = `Ψᵀ M (e_a e_bᵀ) X` (3×3 vectors of 6+nf).
+    pub position_products: [[Vec<f64>; 3]; 3],
+    /// c_ij for ij = 11, 22, 33, 23, 13, 12 (6 vectors of nf).
+    pub inertia_first: [Vec<f64>; 6],
+    /// N_ij in the same order (6 matrices of nf×nf).
+    pub inertia_second: [Mat<f64>; 6],
+    /// G_i (3 matrices of nf×nf).
+    pub gyroscopic: [Mat<f64>; 3],
+}
+
+/// A material point of the body: where it is, and how the modes move it.
+#[derive(Debug, Clone)]
+pub struct BodyPoint {
+    /// Undeformed position X from the centre of mass, body axes.
+    pub position_body: Vector3<f64>,
+    /// Rows of the flexible shapes at the point (3×nf): `u = Φ q`.
+    pub shapes: Mat<f64>,
+}
+
+impl ReducedBody {
+    /// Reduces the body with mass matrix `mass` and nodes `positions` to its `modes`.
+    ///
+    /// # Errors
+    /// [`ModalError::AnisotropicMass`] where M is not a nodal mass on each axis.
+    pub fn new(
+        modes: &Modes,
+        mass: SparseColMatRef<'_, usize, f64>,
+        positions: &[[f64; 3]],
+    ) -> Result<Self, ModalError> {
+        let nodal = NodalMass::new(mass)?;
+        let rigid = &modes.rigid;
+        let n = nodal.node_count();
+        let nf = modes.shapes.ncols();
+        // Ψ and X side by side: all constants are products of their rows on one axis with M_s times those on another.
+        let columns = 6 + nf + 1;
+        let mut all = Mat::zeros(3 * n, columns);
+        all.as_mut().subcols_mut(0, 6).copy_from(&rigid.shapes);
+        all.as_mut().subcols_mut(6, nf).copy_from(&modes.shapes);
+        for (node, x) in positions.iter().enumerate() {
+            let offset = Vector3::from(*x) - rigid.center_of_mass;
+            for axis in 0..3 {
+                all[(3 * node + axis, columns - 1)] = offset[axis];
+            }
+        }
+        let m_all = nodal.product(all.as_ref());
+        let on_axis = |matrix: &Mat<f64>, axis: usize| Mat::from_fn(n, columns, |i, j| matrix[(3 * i + axis, j)]);
+        let rows: [Mat<f64>; 3] = std::array::from_fn(|axis| on_axis(&all, axis));
+        let m_rows: [Mat<f64>; 3] = std::array::from_fn(|axis| on_axis(&m_all, axis));
+        let products: [[Mat<f64>; 3]; 3] =
+            std::array::from_fn(|a| std::array::from_fn(|b| rows[a].transpose() * &m_rows[b]));
+
+        let modal = 6 + nf;
+        let rotation_products =
+            std::array::from_fn(|a| std::array::from_fn(|b| products[a][b].get(..modal, ..modal).to_owned()));
+        let position_products = std::array::from_fn(|a| {
+            std::array::from_fn(|b| (0..modal).map(|k| products[a][b][(k, modal)]).collect::<Vec<f64>>())
+        });
+        let flexible = |a: usize, b: usize| products[a][b].submatrix(6, 6, nf, nf);
+        let flexible_x = |a: usize, b: usize, k: usize| products[a][b][(6 + k, modal)];
+        // [e_i×]ᵀ[e_j×] = δ_ij I − e_j e_iᵀ
+        let inertia_first = PAIRS.map(|(i, j)| {
+            (0..nf)
+                .map(|k| {
+                    let trace: f64 = if i == j { (0..3).map(|a| flexible_x(a, a, k)).sum() } else { 0.0 };
+                    trace - 0.5 * (flexible_x(i, j, k) + flexible_x(j, i, k))
+                })
+                .collect()
+        });
+        let inertia_second = PAIRS.map(|(i, j)| {
+            let (ij, ji) = (flexible(i, j), flexible(j, i));
+            Mat::from_fn(nf, nf, |k, l| {
+                let trace: f64 = if i == j { (0..3).map(|a| flexible(a, a)[(k, l)]).sum() } else { 0.0 };
+                trace - 0.5 * (ij[(k, l)] + ji[(k, l)])
+            })
+        });
+        // [e_1×] = e_3 e_2ᵀ − e_2 e_3ᵀ and cyclic.
+        let gyroscopic = [(2, 1), (0, 2), (1, 0)].map(|(a, b)| {
+            let (ab, ba) = (flexible(a, b), flexible(b, a));
+            Mat::from_fn(nf, nf, |k, l| ab[(k, l)] - ba[(k, l)])
+        });
+        Ok(Self {
+            mass: rigid.mass,
+            center_of_mass: rigid.center_of_mass,
+            inertia: rigid.inertia,
+            rotation_basis: rigid.rotation_basis,
+            circular_frequencies: modes.eigenvalues.iter().map(|lambda| lambda.sqrt()).collect(),
+            rotation_products,
+            position_products,
+            inertia_first,
+            inertia_second,
+            gyroscopic,
+        })
+    }
+
+    /// Number of flexible modes nf.
+    pub fn flexible(&self) -> usize {
+        self.circular_frequencies.len()
+    }
+
+    /// Rows of the rigid shapes at a point X from the centre of mass (3×6): `[I/√m, −[X×] B]`.
+    pub fn rigid_shapes(&self, position_body: &Vector3<f64>) -> nalgebra::Matrix3x6<f64> {
+        let mut shapes = nalgebra::Matrix3x6::zeros();
+        let translation = Matrix3::identity() / self.mass.sqrt();
+        shapes.fixed_view_mut::<3, 3>(0, 0).copy_from(&translation);
+        shapes.fixed_view_mut::<3, 3>(0, 3).copy_from(&(-position_body.cross_matrix() * self.rotation_basis));
+        shapes
+    }
+}
+
+impl BodyPoint {
+    /// The point that moves as `Σ weights_i u(nodes_i)`, where the weights sum to one.
+    pub fn new(modes: &Modes, positions: &[[f64; 3]], nodes: &[u32], weights: &[f64]) -> Self {
+        let carried = || nodes.iter().map(|node| *node as usize).zip(weights);
+        let position: Vector3<f64> = carried().map(|(node, w)| Vector3::from(positions[node]) * *w).sum();
+        let shapes: MatRef<'_, f64> = modes.shapes.as_ref();
+        Self {
+            position_body: position - modes.rigid.center_of_mass,
+            shapes: Mat::from_fn(3, shapes.ncols(), |axis, k| {
+                carried().map(|(node, w)| shapes[(3 * node + axis, k)] * w).sum()
+            }),
+        }
+    }
+}

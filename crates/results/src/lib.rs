@@ -1,0 +1,39 @@
+//! Results of a run: streamed HDF5 files, their reader, and figures.
+//!
+//! * [`Writer`] appends one [`Sample`] per output step to an HDF5 file while the run goes on;
+//!   [`Results`] reads such a file back, finished or not. [`mod@layout`] is the list of all columns,
+//!   shared by both.
+//! * [`LineChart`], [`ShapeGrid`] and [`Animation`] draw figures as SVG, PNG and GIF.
+//! * [`boundary_triangles`] and [`sharp_edges`] turn a mesh into what the figures draw.
+//!
+//! The crate knows plain data only: no mesh, no mode, no scheme.
+
+mod animation;
+mod chart;
+mod error;
+mod font;
+pub mod layout;
+mod metadata;
+mod picture;
+mod reader;
+mod render;
+mod sample;
+mod shapes;
+mod surface;
+mod ticks;
+mod view;
+mod writer;
+
+#[cfg(test)]
+mod test_body;
+
+pub use animation::{Animation, Frame};
+pub use chart::{LineChart, Scale, Series, Stroke};
+pub use error::{FigureError, FileError};
+pub use metadata::{BodyProperties, Metadata, Units};
+pub use reader::{PointHistory, Results, Table};
+pub use sample::{PointSample, Sample};
+pub use shapes::{Panel, ShapeGrid};
+pub use surface::{boundary_triangles, sharp_edges};
+pub use view::View;
+pub use writer::Writer;

@@ -1,0 +1,48 @@
+//! What a results file says about the run as a whole.
+
+/// Labels of the units; any consistent set.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Units {
+    /// For instance "mm".
+    pub length: String,
+    /// For instance "Mg".
+    pub mass: String,
+    /// For instance "s".
+    pub time: String,
+}
+
+/// Rigid-body and modal properties of the body, in its undeformed state.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BodyProperties {
+    /// Total mass.
+    pub mass: f64,
+    /// Centre of mass in the mesh's coordinates.
+    pub center_of_mass: [f64; 3],
+    /// Inertia about the centre of mass, body axes, row by row.
+    pub inertia: [[f64; 3]; 3],
+    /// Natural frequencies of the flexible modes, in cycles per unit of time (Hz if that is s).
+    pub frequencies: Vec<f64>,
+    /// Damping ratios of the flexible modes, as many as frequencies.
+    pub damping_ratios: Vec<f64>,
+}
+
+/// Everything in a results file that does not change with time.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Metadata {
+    /// Title of the scene.
+    pub title: String,
+    /// Labels of the units.
+    pub units: Units,
+    /// Name of the time-integration scheme.
+    pub scheme: String,
+    /// Its step.
+    pub step: f64,
+    /// Version of the program that made the run.
+    pub program_version: String,
+    /// The scene file, word for word.
+    pub scene_text: String,
+    /// The body.
+    pub body: BodyProperties,
+    /// Names of the points whose motion is stored, in the order of [`Sample::points`](crate::Sample::points).
+    pub point_names: Vec<String>,
+}

@@ -1,0 +1,281 @@
+//! Reads a results file back, finished or not.
+
+use crate::layout::Quantity;
+use crate::{BodyProperties, FileError, Metadata, Units};
+use hdf5::iteration::{IndexType, IterationOrder};
+use hdf5::types::VarLenUnicode;
+use ndarray::s;
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// A results file in memory; rows are output times.
+///
+/// Frames and units are those of [`mod@crate::layout`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct Results {
+    /// What the file says of the run as a whole; the points in the order in which they were given.
+    pub metadata: Metadata,
+    /// Whether the run came to its end.
+    pub complete: bool,
+    /// Time (T).
+    pub time: Vec<f64>,
+    /// Unit quaternions w x y z, body to global.
+    pub attitude: Vec<[f64; 4]>,
+    /// Position of the centre of mass, global.
+    pub position: Vec<[f64; 3]>,
+    /// Velocity of the centre of mass, global.
+    pub velocity: Vec<[f64; 3]>,
+    /// Angular velocity, body axes.
+    pub angular_velocity: Vec<[f64; 3]>,
+    /// Angular acceleration, body axes.
+    pub angular_acceleration: Vec<[f64; 3]>,
+    /// Coordinates of the flexible modes (T×nf).
+    pub modal_displacement: Table,
+    /// Their rates (T×nf).
+    pub modal_velocity: Table,
+    /// Kinetic energy.
+    pub kinetic_energy: Vec<f64>,
+    /// Strain energy.
+    pub strain_energy: Vec<f64>,
+    /// Linear momentum, global.
+    pub linear_momentum: Vec<[f64; 3]>,
+    /// Angular momentum about the centre of mass, global.
+    pub angular_momentum: Vec<[f64; 3]>,
+    /// The points by name.
+    pub points: BTreeMap<String, PointHistory>,
+}
+
+/// Motion of one point, global components.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct PointHistory {
+    /// Displacement from the place at t = 0 in the undeformed body.
+    pub displacement: Vec<[f64; 3]>,
+    /// Velocity.
+    pub velocity: Vec<[f64; 3]>,
+    /// Acceleration.
+    pub acceleration: Vec<[f64; 3]>,
+    /// Part of the acceleration that belongs to the rigid motion.
+    pub rigid_acceleration: Vec<[f64; 3]>,
+}
+
+/// A T×n table, row by row.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Table {
+    rows: usize,
+    width: usize,
+    values: Vec<f64>,
+}
+
+impl Table {
+    /// Number of rows, T.
+    pub fn rows(&self) -> usize {
+        self.rows
+    }
+
+    /// Values per row, n.
+    pub fn width(&self) -> usize {
+        self.width
+    }
+
+    /// Row `i`, if there is one.
+    pub fn row(&self, i: usize) -> Option<&[f64]> {
+        (i < self.rows).then(|| &self.values[i * self.width..(i + 1) * self.width])
+    }
+
+    /// The history of column `k`, if there is one.
+    pub fn column(&self, k: usize) -> Option<impl Iterator<Item = f64>> {
+        (k < self.width).then(|| self.values.iter().skip(k).step_by(self.width).copied())
+    }
+}
+
+impl Results {
+    /// Reads the whole file. Of an unfinished one, the rows that every dataset has.
+    ///
+    /// # Errors
+    /// [`FileError::Hdf5`] if it is no readable HDF5 file, [`FileError::MissingDataset`],
+    /// [`FileError::MissingAttribute`] or [`FileError::WrongShape`] if it departs from the contract.
+    pub fn open(path: impl AsRef<Path>) -> Result<Self, FileError> {
+        let path = path.as_ref();
+        let file = hdf5::File::open(path).map_err(|source| FileError::Hdf5 {
+            path: path.to_path_buf(),
+            action: "open the file".into(),
+            source,
+        })?;
+        let source = Source { path, file: &file };
+
+        let metadata = source.metadata()?;
+        let modes = metadata.body.frequencies.len();
+        let names = &metadata.point_names;
+        let mut rows = usize::MAX;
+        for quantity in Quantity::all(names.len()) {
+            rows = rows.min(source.rows_of(&quantity.path(names), quantity.width(modes))?);
+        }
+        let column = |quantity: Quantity| source.column(&quantity.path(names), quantity.width(modes), rows);
+        let table = |quantity| Ok(Table { rows, width: modes, values: column(quantity)? });
+
+        let mut points = BTreeMap::new();
+        for (i, name) in names.iter().enumerate() {
+            let history = PointHistory {
+                displacement: vectors(column(Quantity::Point(i, 0))?),
+                velocity: vectors(column(Quantity::Point(i, 1))?),
+                acceleration: vectors(column(Quantity::Point(i, 2))?),
+                rigid_acceleration: vectors(column(Quantity::Point(i, 3))?),
+            };
+            points.insert(name.clone(), history);
+        }
+        Ok(Self {
+            complete: source.attribute::<i64>("complete")? == 1,
+            time: column(Quantity::Time)?,
+            attitude: vectors(column(Quantity::Attitude)?),
+            position: vectors(column(Quantity::Position)?),
+            velocity: vectors(column(Quantity::Velocity)?),
+            angular_velocity: vectors(column(Quantity::AngularVelocity)?),
+            angular_acceleration: vectors(column(Quantity::AngularAcceleration)?),
+            modal_displacement: table(Quantity::ModalDisplacement)?,
+            modal_velocity: table(Quantity::ModalVelocity)?,
+            kinetic_energy: column(Quantity::KineticEnergy)?,
+            strain_energy: column(Quantity::StrainEnergy)?,
+            linear_momentum: vectors(column(Quantity::LinearMomentum)?),
+            angular_momentum: vectors(column(Quantity::AngularMomentum)?),
+            points,
+            metadata,
+        })
+    }
+}
+
+/// Groups row-by-row values into rows of `N`.
+fn vectors<const N: usize>(values: Vec<f64>) -> Vec<[f64; N]> {
+    values.as_chunks().0.to_vec()
+}
+
+struct Source<'a> {
+    path: &'a Path,
+    file: &'a hdf5::File,
+}
+
+impl Source<'_> {
+    fn metadata(&self) -> Result<Metadata, FileError> {
+        let frequencies = self.vector("body/frequencies", None)?;
+        let modes = frequencies.len();
+        let inertia = self.fixed("body/inertia", &[3, 3])?;
+        let center_of_mass = self.fixed("body/center_of_mass", &[3])?;
+        let body = BodyProperties {
+            mass: self.fixed("body/mass", &[])?[0],
+            center_of_mass: [center_of_mass[0], center_of_mass[1], center_of_mass[2]],
+            inertia: [0, 3, 6].map(|i| [inertia[i], inertia[i + 1], inertia[i + 2]]),
+            damping_ratios: self.vector("body/damping_ratios", Some(modes))?,
+            frequencies,
+        };
+        Ok(Metadata {
+            title: self.text("title")?,
+            units: Units {
+                length: self.text("units_length")?,
+                mass: self.text("units_mass")?,
+                time: self.text("units_time")?,
+            },
+            scheme: self.text("scheme")?,
+            step: self.attribute("step")?,
+            program_version: self.text("program_version")?,
+            scene_text: self.text("scene")?,
+            body,
+            point_names: self.point_names()?,
+        })
+    }
+
+    fn point_names(&self) -> Result<Vec<String>, FileError> {
+        if !self.file.link_exists("points") {
+            return Err(self.missing("points"));
+        }
+        let group = self.file.group("points").map_err(self.failed("open the group points"))?;
+        group
+            .member_names_by(IndexType::CreationOrder, IterationOrder::Increasing)
+            .or_else(|_| group.member_names()) // a file from elsewhere need not keep the order
+            .map_err(self.failed("list the points"))
+    }
+
+    fn dataset(&self, name: &str) -> Result<hdf5::Dataset, FileError> {
+        // `link_exists` wants every group on the way to be there.
+        let mut end = 0;
+        for part in name.split('/') {
+            end += part.len();
+            if !self.file.link_exists(&name[..end]) {
+                return Err(self.missing(name));
+            }
+            end += 1;
+        }
+        self.file.dataset(name).map_err(self.failed(format!("open dataset {name}")))
+    }
+
+    fn read(&self, name: &str, dataset: &hdf5::Dataset) -> Result<Vec<f64>, FileError> {
+        dataset.read_raw::<f64>().map_err(self.failed(format!("read dataset {name}")))
+    }
+
+    /// A dataset of known shape, row by row.
+    fn fixed(&self, name: &str, shape: &[usize]) -> Result<Vec<f64>, FileError> {
+        let dataset = self.dataset(name)?;
+        if dataset.shape() != shape {
+            return Err(self.wrong_shape(name, format!("{shape:?}"), &dataset));
+        }
+        self.read(name, &dataset)
+    }
+
+    /// A one-dimensional dataset, of known length or not.
+    fn vector(&self, name: &str, length: Option<usize>) -> Result<Vec<f64>, FileError> {
+        let dataset = self.dataset(name)?;
+        match (dataset.shape()[..].try_into(), length) {
+            (Ok([_]), None) => self.read(name, &dataset),
+            (Ok([found]), Some(length)) if found == length => self.read(name, &dataset),
+            (_, None) => Err(self.wrong_shape(name, "[nf]".into(), &dataset)),
+            (_, Some(length)) => Err(self.wrong_shape(name, format!("[{length}]"), &dataset)),
+        }
+    }
+
+    fn rows_of(&self, name: &str, width: Option<usize>) -> Result<usize, FileError> {
+        let dataset = self.dataset(name)?;
+        match (&dataset.shape()[..], width) {
+            ([rows], None) => Ok(*rows),
+            ([rows, found], Some(width)) if *found == width => Ok(*rows),
+            (_, None) => Err(self.wrong_shape(name, "[T]".into(), &dataset)),
+            (_, Some(width)) => Err(self.wrong_shape(name, format!("[T, {width}]"), &dataset)),
+        }
+    }
+
+    /// The first `rows` rows, row by row.
+    fn column(&self, name: &str, width: Option<usize>, rows: usize) -> Result<Vec<f64>, FileError> {
+        let dataset = self.dataset(name)?;
+        match width {
+            None => dataset.read_slice_1d(s![..rows]).map(|values| values.into_raw_vec_and_offset().0),
+            Some(_) => dataset.read_slice_2d(s![..rows, ..]).map(|values| values.into_raw_vec_and_offset().0),
+        }
+        .map_err(self.failed(format!("read dataset {name}")))
+    }
+
+    fn attribute<T: hdf5::H5Type>(&self, name: &str) -> Result<T, FileError> {
+        let names = self.file.attr_names().map_err(self.failed("list the attributes"))?;
+        if !names.iter().any(|found| found == name) {
+            return Err(FileError::MissingAttribute { path: self.path.to_path_buf(), attribute: name.into() });
+        }
+        self.file
+            .attr(name)
+            .and_then(|attribute| attribute.read_scalar())
+            .map_err(self.failed(format!("read the attribute {name}")))
+    }
+
+    fn text(&self, name: &str) -> Result<String, FileError> {
+        Ok(self.attribute::<VarLenUnicode>(name)?.as_str().to_owned())
+    }
+
+    fn missing(&self, dataset: &str) -> FileError {
+        FileError::MissingDataset { path: self.path.to_path_buf(), dataset: dataset.into() }
+    }
+
+    fn wrong_shape(&self, name: &str, expected: String, dataset: &hdf5::Dataset) -> FileError {
+        let found = dataset.shape();
+        FileError::WrongShape { path: self.path.to_path_buf(), dataset: name.into(), expected, found }
+    }
+
+    fn failed(&self, action: impl Into<String>) -> impl FnOnce(hdf5::Error) -> FileError {
+        let (path, action) = (self.path.to_path_buf(), action.into());
+        move |source| FileError::Hdf5 { path, action, source }
+    }
+}

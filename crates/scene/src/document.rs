@@ -1,0 +1,136 @@
+//! A TOML document in which every value knows its key path and its place in the text.
+
+use std::ops::Range;
+use std::path::Path;
+
+use toml::Spanned;
+use toml::de::{DeString, DeTable, DeValue};
+
+use crate::error::{Place, SceneError};
+
+/// A parsed TOML text.
+pub(crate) struct Document<'t> {
+    path: &'t Path,
+    text: &'t str,
+    root: Spanned<DeValue<'t>>,
+}
+
+/// A value of a document.
+#[derive(Clone)]
+pub(crate) struct Node<'d> {
+    document: &'d Document<'d>,
+    /// Path of keys from the root, e.g. `loads[0].history.start`; empty for the root.
+    pub path: String,
+    /// The last key; `None` for the root and for entries of a list.
+    pub key: Option<&'d Spanned<DeString<'d>>>,
+    pub value: &'d Spanned<DeValue<'d>>,
+}
+
+impl<'t> Document<'t> {
+    /// Parses `text`; `path` serves for messages only.
+    pub fn parse(text: &'t str, path: &'t Path) -> Result<Self, SceneError> {
+        match DeTable::parse(text) {
+            Ok(table) => {
+                // What the root lacks is missed at the end of the text.
+                let end = text.trim_end().len();
+                let root = Spanned::new(end..end, DeValue::Table(table.into_inner()));
+                Ok(Self { path, text, root })
+            }
+            Err(error) => {
+                let at = Place::new(path, text, error.span().unwrap_or(0..0), String::new());
+                Err(SceneError::Syntax { at: at.into(), message: error.message().to_owned() })
+            }
+        }
+    }
+
+    pub fn root(&self) -> Node<'_> {
+        Node { document: self, path: String::new(), key: None, value: &self.root }
+    }
+
+    /// The value with the given key path, or where it is absent the innermost table or list
+    /// around it.
+    pub fn nearest(&self, path: &str) -> Node<'_> {
+        let mut node = self.root();
+        loop {
+            let leads_there = |child: &Node| {
+                path.strip_prefix(&child.path).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
+            };
+            match node.children().find(leads_there) {
+                Some(child) => node = child,
+                None => return node,
+            }
+        }
+    }
+
+    /// The place of the value with the given key path, or of what is around it.
+    pub fn place(&self, path: &str) -> Place {
+        Place::new(self.path, self.text, self.nearest(path).value.span(), path.to_owned())
+    }
+
+    /// The text in `range`; empty if it is not a range of this text.
+    pub fn slice(&self, range: Range<usize>) -> &'t str {
+        self.text.get(range).unwrap_or_default()
+    }
+}
+
+impl<'d> Node<'d> {
+    /// The entries of a table or a list, in the order of the text; nothing for other values.
+    pub fn children(&self) -> Box<dyn Iterator<Item = Node<'d>> + 'd> {
+        let (document, path) = (self.document, self.path.clone());
+        match self.value.get_ref() {
+            DeValue::Table(table) => {
+                let mut entries: Vec<_> = table.iter().collect();
+                entries.sort_by_key(|(key, _)| key.span().start);
+                Box::new(entries.into_iter().map(move |(key, value)| Node {
+                    document,
+                    path: join(&path, key.get_ref()),
+                    key: Some(key),
+                    value,
+                }))
+            }
+            DeValue::Array(list) => Box::new(list.iter().enumerate().map(move |(i, value)| Node {
+                document,
+                path: format!("{path}[{i}]"),
+                key: None,
+                value,
+            })),
+            _ => Box::new(std::iter::empty()),
+        }
+    }
+
+    /// The last key without quotes; empty for the root and for entries of a list.
+    pub fn name(&self) -> &'d str {
+        self.key.map_or("", |key| key.get_ref())
+    }
+
+    /// The value as it is written in the text.
+    pub fn written(&self) -> &'d str {
+        self.document.slice(self.value.span())
+    }
+
+    pub fn place(&self) -> Place {
+        self.place_of(self.value.span(), self.path.clone())
+    }
+
+    pub fn place_of_key(&self) -> Place {
+        let span = self.key.map_or_else(|| self.value.span(), Spanned::span);
+        self.place_of(span, self.path.clone())
+    }
+
+    /// The place of a key that this table lacks.
+    pub fn place_of_missing(&self, key: &str) -> Place {
+        self.place_of(self.value.span(), join(&self.path, key))
+    }
+
+    fn place_of(&self, span: Range<usize>, path: String) -> Place {
+        Place::new(self.document.path, self.document.text, span, path)
+    }
+}
+
+/// The path of `key` in the table at `path`; a key that TOML wants in quotes gets them.
+pub(crate) fn join(path: &str, key: &str) -> String {
+    let bare = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
+    let is_bare = !key.is_empty() && key.chars().all(bare);
+    let key = if is_bare { key.to_owned() } else { format!("{key:?}") };
+    if path.is_empty() { key } else { format!("{path}.{key}") }
+}

@@ -1,0 +1,148 @@
+//! From the scene file to a [`Scene`].
+
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::Path;
+
+use serde::Deserialize;
+
+use crate::check::Check;
+use crate::document::Document;
+use crate::error::{Place, SceneError};
+use crate::load::Load;
+use crate::scene::{Body, Frame, Initial, Material, Modes, Output, PointMass, Scene, Time, Units};
+
+/// The longest scene file that is read, in bytes (16 MiB).
+const LONGEST: u64 = 16 << 20;
+
+/// The sections of the file as they stand there.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Sections {
+    title: String,
+    units: Units,
+    body: BodySection,
+    modes: Modes,
+    frame: Option<Frame>,
+    #[serde(default)]
+    initial: Initial,
+    #[serde(default)]
+    loads: Vec<Load>,
+    time: Time,
+    #[serde(default)]
+    output: Output,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct BodySection {
+    mesh: String,
+    material: Option<Material>,
+    materials: Option<BTreeMap<String, Material>>,
+    #[serde(default)]
+    point_masses: Vec<PointMass>,
+}
+
+impl Scene {
+    /// Reads and checks a scene file.
+    ///
+    /// # Errors
+    /// [`SceneError`] if the file cannot be read, is longer than 16 MiB, is not TOML in UTF-8, or
+    /// breaks a rule of the scene file.
+    pub fn read(path: impl AsRef<Path>) -> Result<Self, SceneError> {
+        let path = path.as_ref();
+        let mut bytes = Vec::new();
+        File::open(path)
+            .and_then(|file| file.take(LONGEST + 1).read_to_end(&mut bytes))
+            .map_err(|cause| unreadable(path, cause))?;
+        if bytes.len() as u64 > LONGEST {
+            return Err(SceneError::TooLarge { path: path.to_owned(), limit: LONGEST });
+        }
+        let text = std::str::from_utf8(&bytes).map_err(|error| {
+            let (good, bad) = bytes.split_at(error.valid_up_to());
+            SceneError::NotUtf8 {
+                path: path.to_owned(),
+                line: 1 + good.iter().filter(|&&byte| byte == b'\n').count(),
+                byte: bad.first().copied().unwrap_or_default(),
+            }
+        })?;
+        Self::parse(text, path)
+    }
+
+    /// Checks the text of a scene file. `path` is where the text comes from: it is named in
+    /// messages, and the mesh is relative to its folder. Nothing is read.
+    ///
+    /// # Errors
+    /// [`SceneError`] if the text is not TOML or breaks a rule of the scene file.
+    pub fn parse(text: &str, path: impl AsRef<Path>) -> Result<Self, SceneError> {
+        let path = path.as_ref();
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let document = Document::parse(text, path)?;
+        let Sections { title, units, body, modes, frame, initial, mut loads, time, output } =
+            crate::deserialize::from_document(&document)?;
+
+        let check = Check(&document);
+        check.label("title", &title)?;
+        check.units(&units)?;
+        let mesh = check.mesh(&body.mesh)?;
+        let materials = check.materials(body.material, body.materials)?;
+        check.point_masses(&body.point_masses)?;
+        check.modes(&modes)?;
+        check.frame(frame.as_ref())?;
+        check.initial(&initial, &modes)?;
+        check.loads(&mut loads)?;
+        check.time(&time)?;
+        check.output(&output)?;
+
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let body = Body { mesh: folder.join(mesh), materials, point_masses: body.point_masses };
+        Ok(Self {
+            title,
+            units,
+            body,
+            modes,
+            frame,
+            initial,
+            loads,
+            time,
+            output,
+            path: path.to_owned(),
+            source: text.to_owned(),
+        })
+    }
+
+    /// The place in the scene file of the value with a key path such as
+    /// `body.point_masses[2].at` or `output.points.P1` (a name with other characters than
+    /// letters, digits, `-` and `_` in quotes); where the file lacks the key, the place of what
+    /// would be around it.
+    pub fn place(&self, key: &str) -> Place {
+        match Document::parse(&self.source, &self.path) {
+            Ok(document) => document.place(key),
+            Err(_) => Place::new(&self.path, &self.source, 0..0, key.to_owned()),
+        }
+    }
+
+    /// The refusal of the value with the key path `key`, for rules that need more than the file,
+    /// e.g. a point too far from the mesh. Its message is
+    /// `file:line:column: key: found …, expected …`, the line, and the cure.
+    pub fn refuse(
+        &self,
+        key: &str,
+        found: impl Into<String>,
+        expected: impl Into<String>,
+        cure: impl Into<String>,
+    ) -> SceneError {
+        self.place(key).refuse(found, expected, cure)
+    }
+}
+
+fn unreadable(path: &Path, cause: io::Error) -> SceneError {
+    let cure = match cause.kind() {
+        io::ErrorKind::NotFound => "check its name; it is relative to the folder you are in",
+        io::ErrorKind::PermissionDenied => "get permission to read it",
+        io::ErrorKind::IsADirectory => "this is a folder; name the scene file in it",
+        _ => "check that it is an ordinary file",
+    };
+    SceneError::Unreadable { path: path.to_owned(), cause, cure }
+}

@@ -1,0 +1,40 @@
+//! The scene file: read, checked, and turned into a body and its motion.
+//!
+//! A scene is a TOML file that says everything about one run: the body (mesh, materials, point
+//! masses), the modes kept, the loads, the time step and what is written out.
+//! [`Scene::read`] gives it as plain data that obeys every rule which needs no mesh; whatever
+//! breaks a rule is refused by a [`SceneError`] that shows file, line, key, what was found, what
+//! was expected and the cure:
+//!
+//! ```text
+//! plate.toml:34:1: `time.stpe`: unknown key `stpe`; did you mean `step`?
+//!    |
+//! 34 | stpe = 1e-4
+//!    | ^^^^
+//!    = rename it to `step` (possible here: `end`, `step`, `scheme`)
+//! ```
+//!
+//! A rule that needs the mesh is checked later and refused the same way by [`Scene::refuse`].
+//!
+//! One file of this crate per idea:
+//! `document` is the TOML tree in which every value knows its key path and its place;
+//! `deserialize` lets serde fill structs from that tree;
+//! `scene` and `load` are those structs, and so the list of all keys;
+//! `check` has the rules on their values.
+//! A new kind of load, history or scheme is a new variant in `load` or `scene` and its rules in
+//! `check`.
+
+mod check;
+mod deserialize;
+mod document;
+mod error;
+mod example;
+mod file;
+mod load;
+mod scene;
+mod shape;
+mod suggest;
+
+pub use error::{Place, SceneError};
+pub use load::{Force, History, Load, LoadFrame};
+pub use scene::{Body, Frame, Initial, Material, Materials, Modes, Output, PointMass, Scene, Scheme, Time, Units};

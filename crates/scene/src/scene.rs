@@ -1,0 +1,176 @@
+//! What a scene says, as plain data.
+//!
+//! All quantities are in one consistent set of units of the user's choice (mm, Mg, s, N, MPa or
+//! m, kg, s, N, Pa, …); nothing is converted. Positions are in the axes of the mesh, which are
+//! the body axes; at t = 0 the body axes are the global ones.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use serde::Deserialize;
+
+use crate::load::Load;
+
+/// A scene that obeys every rule which needs no mesh: all numbers are finite and in range.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scene {
+    /// What the run is about, for headings.
+    pub title: String,
+    /// Labels of the units, for axes and tables.
+    pub units: Units,
+    /// The flexible body.
+    pub body: Body,
+    /// The modes kept and their damping.
+    pub modes: Modes,
+    /// The reference points of the floating frame; `None` leaves the choice to the program.
+    pub frame: Option<Frame>,
+    /// The state at t = 0.
+    pub initial: Initial,
+    /// Any number of loads, in the order of the file.
+    pub loads: Vec<Load>,
+    /// How far and how to step.
+    pub time: Time,
+    /// What is written out.
+    pub output: Output,
+    /// The scene file, as it was named to [`Scene::read`] or [`Scene::parse`].
+    pub path: PathBuf,
+    /// The text of the scene file, for the results file and for the places of later errors.
+    pub source: String,
+}
+
+/// Labels of the units. The program never converts: they are shown, not used.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Units {
+    /// Label of the unit of length, e.g. `mm`.
+    pub length: String,
+    /// Label of the unit of mass, e.g. `Mg`.
+    pub mass: String,
+    /// Label of the unit of time, e.g. `s`.
+    pub time: String,
+}
+
+/// The flexible body.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Body {
+    /// The mesh file, already resolved against the folder of the scene file.
+    pub mesh: PathBuf,
+    /// What the elements are made of.
+    pub materials: Materials,
+    /// Masses added at points; default none.
+    pub point_masses: Vec<PointMass>,
+}
+
+/// What the elements are made of: the scene has exactly one of the two keys.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Materials {
+    /// Key `material`: one material for the whole mesh.
+    Whole(Material),
+    /// Key `materials`: by the name of the physical group in the mesh; at least one.
+    ByGroup(BTreeMap<String, Material>),
+}
+
+/// A linear elastic, isotropic material.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Material {
+    /// Young's modulus E > 0, force per area.
+    pub young_modulus: f64,
+    /// Poisson's ratio, −1 < ν < 0.5.
+    pub poisson_ratio: f64,
+    /// Density > 0, mass per volume.
+    pub density: f64,
+}
+
+/// A mass without extent, added to the mesh.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PointMass {
+    /// Position, length, mesh axes.
+    pub at: [f64; 3],
+    /// Mass > 0.
+    pub mass: f64,
+    /// Radius > 0, length, of the ball whose nodes share the mass; `None` puts it on the node
+    /// at `at`.
+    pub spread: Option<f64>,
+}
+
+/// The modes kept and their damping.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Modes {
+    /// Number of flexible modes, the lowest first; 0 is a rigid body.
+    pub flexible: usize,
+    /// Damping ratio ζ ≥ 0 of every flexible mode (1 is critical); default 0. Rigid modes are
+    /// never damped.
+    #[serde(default)]
+    pub damping_ratio: f64,
+}
+
+/// The paper's reference points: three points of the body that are not on one line.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Frame {
+    /// Point R, length, mesh axes.
+    #[serde(rename = "R")]
+    pub r: [f64; 3],
+    /// Point P, length, mesh axes.
+    #[serde(rename = "P")]
+    pub p: [f64; 3],
+    /// Point Q, length, mesh axes.
+    #[serde(rename = "Q")]
+    pub q: [f64; 3],
+}
+
+/// The state at t = 0, where the body axes are the global ones. Every key is optional; default 0.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Initial {
+    /// Velocity of the centre of mass, length per time, global.
+    pub velocity: [f64; 3],
+    /// Angular velocity, radians per time, body axes.
+    pub angular_velocity: [f64; 3],
+    /// Modal displacements of the flexible modes (mass-normalised), lowest mode first. At most
+    /// `modes.flexible` entries; those not given are 0.
+    pub modal_displacement: Vec<f64>,
+    /// Modal velocities, as [`Initial::modal_displacement`].
+    pub modal_velocity: Vec<f64>,
+}
+
+/// How far and how to step; 0 < step ≤ end.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Time {
+    /// Time at the end of the run, which starts at 0.
+    pub end: f64,
+    /// Length of a time step.
+    pub step: f64,
+    /// The way from one step to the next.
+    pub scheme: Scheme,
+}
+
+/// The way from one step to the next.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Scheme {
+    /// The scheme of the paper, Eqs. 36–40.
+    Paper,
+}
+
+/// What is written out.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Output {
+    /// Every how many steps a state is written, ≥ 1; default 1.
+    pub every: usize,
+    /// Points whose motion is written: name, and position (length, mesh axes); default none.
+    /// A name is not empty, `.` or `..` and has no `/` and no control character, since it names
+    /// a group of the results file.
+    pub points: BTreeMap<String, [f64; 3]>,
+}
+
+impl Default for Output {
+    fn default() -> Self {
+        Self { every: 1, points: BTreeMap::new() }
+    }
+}

@@ -1,0 +1,53 @@
+//! The nearest right name for a misspelt one.
+
+/// The name in `known` that `found` most likely means: a few letters away, or one the beginning
+/// of the other.
+pub(crate) fn nearest<'a>(found: &str, known: &[&'a str]) -> Option<&'a str> {
+    const LONGEST_NAME: usize = 64;
+    if found.len() > LONGEST_NAME {
+        return None;
+    }
+    let found = found.to_lowercase();
+    let distance = |name: &str| strsim::damerau_levenshtein(&found, &name.to_lowercase());
+    let near = known.iter().copied().min_by_key(|name| distance(name))?;
+    if distance(near) <= 1 + found.chars().count() / 4 && distance(near) < near.len() {
+        return Some(near);
+    }
+    let begins = |name: &&str| found.len() >= 3 && (name.starts_with(&found) || found.starts_with(*name));
+    known.iter().copied().find(begins)
+}
+
+/// The names in backquotes, separated by commas.
+pub(crate) fn list(names: &[&str]) -> String {
+    names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_misspelt_name_finds_the_right_one() {
+        let known = ["end", "step", "scheme", "damping_ratio", "half-sine", "R", "P"];
+        for (found, meant) in [
+            ("stpe", "step"),
+            ("Step", "step"),
+            ("schema", "scheme"),
+            ("damping", "damping_ratio"),
+            ("dampingratio", "damping_ratio"),
+            ("half_sine", "half-sine"),
+            ("r", "R"),
+        ] {
+            assert_eq!(nearest(found, &known), Some(meant), "{found}");
+        }
+    }
+
+    #[test]
+    fn an_unrelated_name_finds_none() {
+        let known = ["end", "step", "scheme", "R"];
+        for found in ["gravity", "x", "", "quadrature", &"step".repeat(1000)] {
+            assert_eq!(nearest(found, &known), None, "{found}");
+        }
+        assert_eq!(nearest("step", &[]), None);
+    }
+}

@@ -1,0 +1,188 @@
+//! What the files say is what the scene holds; what cannot be read says why.
+
+use std::path::Path;
+
+use scene::{Force, History, Load, LoadFrame, Material, Materials, Scene, SceneError, Scheme};
+
+const EXAMPLE: &str = include_str!("../src/example.toml");
+
+#[test]
+fn the_whole_example() {
+    let scene = Scene::parse(EXAMPLE, "examples/plate.toml").unwrap();
+    assert_eq!(scene.title, "Free plate, 50 N corner pulse");
+    let units = &scene.units;
+    assert_eq!([&units.length, &units.mass, &units.time], ["mm", "Mg", "s"]);
+    assert_eq!(scene.body.mesh, Path::new("examples/../meshes/plate.msh"));
+    let aluminium = Material { young_modulus: 70000.0, poisson_ratio: 0.33, density: 2.7e-9 };
+    assert_eq!(scene.body.materials, Materials::Whole(aluminium));
+    assert_eq!(scene.body.point_masses.len(), 1);
+    let point_mass = scene.body.point_masses[0];
+    assert_eq!((point_mass.at, point_mass.mass), ([-500.0, -25.0, 0.0], 0.001));
+    assert_eq!(point_mass.spread, None);
+    assert_eq!((scene.modes.flexible, scene.modes.damping_ratio), (10, 0.05));
+    let frame = scene.frame.unwrap();
+    assert_eq!(frame.r, [-500.0, -25.0, 0.0]);
+    assert_eq!(frame.p, [500.0, -25.0, 0.0]);
+    assert_eq!(frame.q, [500.0, 25.0, 0.0]);
+    assert_eq!(scene.initial, Default::default());
+    let [Load::Force(Force { at, direction, amplitude, frame, history })] = &scene.loads[..] else {
+        panic!("not one force: {:?}", scene.loads)
+    };
+    assert_eq!((*at, *amplitude, *frame), ([-500.0, 0.0, 10.0], 50.0, LoadFrame::Global));
+    assert!((direction[0] - 0.5f64.sqrt()).abs() < 1e-15 && direction[0] == direction[2]);
+    assert_eq!(direction[1], 0.0);
+    assert_eq!(*history, History::HalfSine { start: 0.0, duration: 0.02 });
+    assert_eq!((scene.time.end, scene.time.step), (0.5, 1e-4));
+    assert_eq!(scene.time.scheme, Scheme::Paper);
+    assert_eq!(scene.output.every, 1);
+    assert_eq!(scene.output.points.len(), 1);
+    assert_eq!(scene.output.points["P1"], [-500.0, -25.0, 0.0]);
+    assert_eq!(scene.source, EXAMPLE);
+    assert_eq!(scene.path, Path::new("examples/plate.toml"));
+}
+
+/// A scene of the required keys alone, with `more` at its end.
+fn least(more: &str) -> String {
+    format!(
+        "title = ''\nunits = {{ length = 'm', mass = 'kg', time = 's' }}\n\
+         body.mesh = 'a.msh'\n\
+         body.materials = {{ core = {{ young_modulus = 1, poisson_ratio = 0, density = 1 }} }}\n\
+         modes.flexible = 0\n[time]\nend = 1\nstep = 1\nscheme = {{ kind = 'paper' }}\n{more}"
+    )
+}
+
+#[test]
+fn defaults_and_whole_numbers() {
+    let scene = Scene::parse(&least(""), "a.toml").unwrap();
+    assert_eq!(scene.body.mesh, Path::new("a.msh"));
+    let Materials::ByGroup(groups) = &scene.body.materials else { panic!("not by group") };
+    let unit = Material { young_modulus: 1.0, poisson_ratio: 0.0, density: 1.0 };
+    assert_eq!(groups.iter().collect::<Vec<_>>(), [(&"core".to_owned(), &unit)]);
+    assert!(scene.body.point_masses.is_empty() && scene.loads.is_empty());
+    assert_eq!((scene.modes.flexible, scene.modes.damping_ratio), (0, 0.0));
+    assert_eq!(scene.frame, None);
+    assert_eq!(scene.initial.velocity, [0.0; 3]);
+    assert_eq!(scene.initial.angular_velocity, [0.0; 3]);
+    assert!(scene.initial.modal_displacement.is_empty());
+    assert_eq!((scene.output.every, scene.output.points.len()), (1, 0));
+    assert_eq!((scene.time.end, scene.time.step), (1.0, 1.0));
+    assert_eq!(scene.time.scheme, Scheme::Paper);
+}
+
+#[test]
+fn numbers_in_every_writing() {
+    for (written, value) in [
+        ("2_000", 2000.0),
+        ("+3", 3.0),
+        ("0x10", 16.0),
+        ("2_000.5", 2000.5),
+        ("-1E3", -1000.0),
+        ("1000000000000000000000000", 1e24),
+    ] {
+        let text = least(&format!("[initial]\nvelocity = [0, {written}, 0]"));
+        assert_eq!(Scene::parse(&text, "").unwrap().initial.velocity, [0.0, value, 0.0]);
+    }
+}
+
+#[test]
+fn every_optional_key() {
+    let text = least(
+        "[initial]\nangular_velocity = [1, 2, 3]\n[[loads]]\nkind = 'force'\nat = [0, 0, 0]\n\
+         direction = [0, -3e200, 4e200]\namplitude = -2\n\
+         history = { kind = 'half-sine', duration = 3, start = -1 }\n[output]\nevery = 5\n",
+    )
+    .replace("flexible = 0", "flexible = 2\nmodes.damping_ratio = 1.5")
+    .replace("modes.flexible", "body.point_masses = [{ at = [1, 2, 3], mass = 4, spread = 5 }]\nmodes.flexible");
+    let scene = Scene::parse(&text, "/a/b.toml").unwrap();
+    assert_eq!(scene.body.mesh, Path::new("/a/a.msh"));
+    assert_eq!(scene.body.point_masses[0].spread, Some(5.0));
+    assert_eq!((scene.modes.flexible, scene.modes.damping_ratio), (2, 1.5));
+    assert_eq!(scene.initial.velocity, [0.0; 3]);
+    assert_eq!(scene.initial.angular_velocity, [1.0, 2.0, 3.0]);
+    let Load::Force(force) = &scene.loads[0];
+    for (found, wanted) in force.direction.iter().zip([0.0, -0.6, 0.8]) {
+        assert!((found - wanted).abs() < 1e-15, "{:?}", force.direction);
+    }
+    assert_eq!((force.amplitude, force.frame), (-2.0, LoadFrame::Global));
+    assert_eq!(force.history, History::HalfSine { start: -1.0, duration: 3.0 });
+    assert_eq!(scene.output.every, 5);
+
+    let absolute = text.replace("'a.msh'", "'/meshes/a.msh'");
+    let scene = Scene::parse(&absolute, "/a/b.toml").unwrap();
+    assert_eq!(scene.body.mesh, Path::new("/meshes/a.msh"));
+}
+
+#[test]
+fn later_checks_name_the_place() {
+    let scene = Scene::parse(EXAMPLE, "plate.toml").unwrap();
+    for (key, start) in [
+        ("body.mesh", "\"../meshes"),
+        ("body.material", "{ young"),
+        ("body.point_masses[0]", "{ at"),
+        ("body.point_masses[0].at", "[-500.0, -25.0, 0.0], mass"),
+        ("loads[0]", "[[loads]]"),
+        ("loads[0].at", "[-500.0, 0.0, 10.0]"),
+        ("frame.Q", "[500.0, 25.0"),
+        ("output.points.P1", "[-500.0, -25.0, 0.0] }\n"),
+        ("output.points.P2", "{ P1"),
+        ("body.point_masses[7].at", "[ { at"),
+    ] {
+        let place = scene.place(key);
+        let at = EXAMPLE.rfind(start).unwrap();
+        let line = 1 + EXAMPLE[..at].matches('\n').count();
+        let column = 1 + at - EXAMPLE[..at].rfind('\n').unwrap() - 1;
+        assert_eq!((place.line, place.column, place.key.as_str()), (line, column, key));
+        assert_eq!(place.to_string(), format!("plate.toml:{line}:{column}: `{key}`"));
+    }
+    let error = scene.refuse("loads[0].at", "12 mm to the mesh", "at most 1 mm", "move it");
+    assert_eq!(
+        error.to_string(),
+        "plate.toml:26:6: `loads[0].at`: found 12 mm to the mesh, expected at most 1 mm\n   \
+            |\n\
+         26 | at = [-500.0, 0.0, 10.0]\n   \
+            |      ^^^^^^^^^^^^^^^^^^^\n   \
+            = move it"
+    );
+}
+
+#[test]
+fn files() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("plate.toml");
+    std::fs::write(&path, EXAMPLE).unwrap();
+    assert_eq!(Scene::read(&path).unwrap(), Scene::parse(EXAMPLE, &path).unwrap());
+
+    std::fs::write(&path, EXAMPLE.replace('\n', "\r\n")).unwrap();
+    assert_eq!(Scene::read(&path).unwrap().time.step, 1e-4);
+
+    std::fs::write(&path, format!("\u{feff}{EXAMPLE}")).unwrap();
+    assert_eq!(Scene::read(&path).unwrap().source, EXAMPLE);
+
+    let refusal = |path: &Path| {
+        let error = Scene::read(path).unwrap_err();
+        assert!(error.to_string().starts_with(&path.display().to_string()), "{error}");
+        (error.to_string(), error)
+    };
+    let (message, error) = refusal(&folder.path().join("palte.toml"));
+    assert!(matches!(error, SceneError::Unreadable { .. }) && error.place().is_none());
+    assert!(message.contains("cannot be read") && message.contains("check its name"), "{message}");
+
+    let (message, error) = refusal(folder.path());
+    assert!(matches!(error, SceneError::Unreadable { .. }));
+    assert!(message.contains("this is a folder"), "{message}");
+
+    std::fs::write(&path, b"title = 'a'\n# caf\xe9\n").unwrap();
+    let (message, error) = refusal(&path);
+    assert!(matches!(error, SceneError::NotUtf8 { line: 2, byte: 0xe9, .. }));
+    assert!(message.contains("plate.toml:2: ") && message.contains("encoding UTF-8"), "{message}");
+
+    let limit = 16 << 20;
+    let mut long = EXAMPLE.to_owned() + "#";
+    long.push_str(&"x".repeat(limit - long.len()));
+    std::fs::write(&path, &long).unwrap();
+    Scene::read(&path).unwrap();
+    std::fs::write(&path, long + "x").unwrap();
+    let (message, error) = refusal(&path);
+    assert!(matches!(error, SceneError::TooLarge { limit: 16_777_216, .. }));
+    assert!(message.contains("longer than 16777216 bytes"), "{message}");
+}

@@ -1,0 +1,547 @@
+//! Every refusal names file, line, column and key, says what was found and expected, and the cure.
+
+use scene::{Scene, SceneError};
+
+const EXAMPLE: &str = include_str!("../src/example.toml");
+
+/// The error of the example after `from` has been replaced by `to`.
+fn refusal(from: &str, to: &str) -> (String, SceneError) {
+    assert_eq!(EXAMPLE.matches(from).count(), 1, "{from:?} is not unique in the example");
+    let text = EXAMPLE.replace(from, to);
+    match Scene::parse(&text, "dir/plate.toml") {
+        Ok(_) => panic!("{to:?} was accepted"),
+        Err(error) => (text, error),
+    }
+}
+
+/// Asserts that `to` in place of `from` is refused at the text `mark`, for `key`, with `words`.
+#[track_caller]
+fn refused(from: &str, to: &str, mark: &str, key: &str, words: &[&str]) {
+    let (text, error) = refusal(from, to);
+    let message = error.to_string();
+    let place = error.place().unwrap_or_else(|| panic!("no place in {message}"));
+
+    let start = text.find(mark).unwrap_or_else(|| panic!("no {mark:?} in the text"));
+    let line = 1 + text[..start].matches('\n').count();
+    let column = 1 + start - text[..start].rfind('\n').map_or(0, |newline| newline + 1);
+    assert_eq!((place.line, place.column, place.key.as_str()), (line, column, key), "{message}");
+
+    let head = match key {
+        "" => format!("dir/plate.toml:{line}:{column}: "),
+        key => format!("dir/plate.toml:{line}:{column}: `{key}`: "),
+    };
+    assert!(message.starts_with(&head), "no {head:?} in {message}");
+    let source_line = text.lines().nth(line - 1).unwrap();
+    let shown: String = source_line.chars().take(60).collect();
+    assert!(message.contains(&format!("\n{line} | {}", shown.trim_end())), "{message}");
+    let caret_line = message.lines().nth(3).unwrap();
+    let caret = caret_line.find('^').unwrap() - caret_line.find('|').unwrap() - 1;
+    assert_eq!(caret, column, "{message}");
+    assert!(message.contains("\n   = ") || message.contains("\n  = "), "no cure in {message}");
+    for word in words {
+        assert!(message.contains(word), "no {word:?} in {message}");
+    }
+}
+
+#[test]
+fn misspelt_keys() {
+    for (from, to, mark, key, near, others) in [
+        ("step = 1e-4", "stpe = 1e-4", "stpe", "time.stpe", "step", "`end`, `step`, `scheme`"),
+        ("[time]", "[tiem]", "tiem]", "tiem", "time", "`loads`, `time`, `output`"),
+        ("title =", "Title =", "Title", "Title", "title", "`title`, `units`"),
+        ("length =", "lenght =", "lenght", "units.lenght", "length", "`length`, `mass`, `time`"),
+        ("mesh =", "mehs =", "mehs", "body.mehs", "mesh", "`material`, `materials`"),
+        ("density =", "densty =", "densty", "body.material.densty", "density", "`poisson_ratio`"),
+        ("mass = 0.001", "mas = 1", "mas = 1", "body.point_masses[0].mas", "mass", "`spread`"),
+        ("damping_ratio", "damping", "damping", "modes.damping", "damping_ratio", "`flexible`"),
+        ("R = ", "r = ", "r = [", "frame.r", "R", "`R`, `P`, `Q`"),
+        (
+            "velocity = [0.0, 0.0, 0.0]\nangular",
+            "velosity = [0.0, 0.0, 0.0]\nangular",
+            "velosity",
+            "initial.velosity",
+            "velocity",
+            "`modal_velocity`",
+        ),
+        ("amplitude", "amplitud", "amplitud", "loads[0].amplitud", "amplitude", "`kind`, `at`"),
+        ("duration", "durration", "durration", "loads[0].history.durration", "duration", "`start`"),
+        ("every", "evry", "evry", "output.evry", "every", "`every`, `points`"),
+    ] {
+        let cure = format!("rename it to `{near}`");
+        let meant = format!("did you mean `{near}`?");
+        refused(from, to, mark, key, &["unknown key", &meant, &cure, others]);
+    }
+}
+
+#[test]
+fn keys_like_no_other() {
+    let words = ["unknown key `gravity`\n", "possible here: `end`, `step`, `scheme`"];
+    refused("scheme = ", "gravity = 9.81\nscheme = ", "gravity", "time.gravity", &words);
+    let words = ["unknown key `g r`", "possible here: `length`, `mass`, `time`"];
+    refused("units = {", "units = { \"g r\" = 1,", "\"g r\"", "units.\"g r\"", &words);
+    let words = ["unknown key `tolerance`", "possible here: `kind`"];
+    let scheme = "{ kind = \"paper\", tolerance = 1e-6 }";
+    refused("\"paper\"", scheme, "tolerance", "time.scheme.tolerance", &words);
+}
+
+#[test]
+fn misspelt_names() {
+    for (from, to, mark, key, near, known) in [
+        ("\"force\"", "\"forse\"", "\"forse\"", "loads[0].kind", "force", "`force`"),
+        ("\"global\"", "\"globl\"", "\"globl\"", "loads[0].frame", "global", "`global`"),
+        ("\"half-sine\"", "\"half_sine\"", "\"half_sine\"", "loads[0].history.kind", "half-sine", "`half-sine`"),
+        ("\"paper\"", "\"papr\"", "\"papr\"", "time.scheme", "paper", "`paper`"),
+    ] {
+        let meant = format!("did you mean `{near}`?");
+        let cure = format!("rename it to `{near}` (possible here: {known}");
+        refused(from, to, mark, key, &["unknown value", &meant, &cure]);
+    }
+    refused("\"paper\"", "\"rk45\"", "\"rk45\"", "time.scheme", &["unknown value `rk45`\n", "possible here: `paper`"]);
+}
+
+#[test]
+fn missing_sections() {
+    for (section, next) in [("body", "modes"), ("modes", "frame"), ("time", "output")] {
+        let start = EXAMPLE.find(&format!("[{section}]")).unwrap();
+        let end = EXAMPLE.find(&format!("[{next}]")).unwrap();
+        let (text, error) = refusal(&EXAMPLE[start..end], "");
+        let place = error.place().unwrap();
+        assert_eq!((place.line, place.key.as_str()), (text.lines().count(), section));
+        let message = error.to_string();
+        assert!(message.contains(&format!("`{section}` is missing")), "{message}");
+        assert!(message.contains(&format!("add it, for example:\n     [{section}]\n")), "{message}");
+    }
+    let (_, error) = refusal("units =", "# units =");
+    assert!(error.to_string().ends_with("units = { length = \"mm\", mass = \"Mg\", time = \"s\" }"));
+
+    for text in ["", "\n\n", "# nothing"] {
+        let message = Scene::parse(text, "plate.toml").unwrap_err().to_string();
+        assert!(message.starts_with("plate.toml:1:"), "{message}");
+        assert!(message.contains("`title`: `title` is missing"), "{message}");
+    }
+}
+
+#[test]
+fn missing_keys() {
+    for (from, mark, key, example) in [
+        ("length = \"mm\", ", "{ mass", "units.length", "length = \"mm\""),
+        ("mesh = \"../meshes/plate.msh\"  ", "[body]", "body.mesh", "mesh = \"../meshes/plate.msh\""),
+        ("poisson_ratio = 0.33, ", "{ young", "body.material.poisson_ratio", "poisson_ratio = 0.33"),
+        ("at = [-500.0, -25.0, 0.0], ", "{ mass = 0.001", "body.point_masses[0].at", "at = ["),
+        (", mass = 0.001", "{ at", "body.point_masses[0].mass", "mass = 0.001"),
+        ("flexible = 10", "[modes]", "modes.flexible", "flexible = 10"),
+        ("Q = [500.0, 25.0, 0.0]", "[frame]", "frame.Q", "Q = [500.0, 25.0, 0.0]"),
+        ("kind = \"force\"", "[[loads]]", "loads[0].kind", "kind = \"force\""),
+        ("direction = [1.0, 0.0, 1.0] ", "[[loads]]", "loads[0].direction", "direction = ["),
+        ("amplitude = 50.0", "[[loads]]", "loads[0].amplitude", "amplitude = 50.0"),
+        ("history = {", "[[loads]]", "loads[0].history", "history = { kind"),
+        ("kind = \"half-sine\", ", "{ start", "loads[0].history.kind", "kind = \"half-sine\""),
+        (", duration = 0.02", "{ kind", "loads[0].history.duration", "duration = 0.02"),
+        ("end = 0.5", "[time]", "time.end", "end = 0.5"),
+        ("step = 1e-4", "[time]", "time.step", "step = 1e-4"),
+        ("scheme = \"paper\"", "[time]", "time.scheme", "scheme = \"paper\""),
+    ] {
+        let name = key.rsplit('.').next().unwrap();
+        let missing = format!("`{name}` is missing\n");
+        let to = if from == "history = {" { "#" } else { "" };
+        refused(from, to, mark, key, &[&missing, "add it, for example:\n", example]);
+    }
+}
+
+#[test]
+fn neither_or_both_materials() {
+    let material = "material = { young_modulus = 70000.0, poisson_ratio = 0.33, density = 2.7e-9 }";
+    refused(material, "", "[body]", "body.material", &["`material` is missing", material]);
+    let both = material.to_owned() + "\nmaterials = { core = {young_modulus=1, poisson_ratio=0, density=1} }";
+    refused(
+        material,
+        &both,
+        "{ core",
+        "body.materials",
+        &["found both `material` and `materials`, expected exactly one", "keep `material` for"],
+    );
+    refused(
+        material,
+        "materials = {}",
+        "{}",
+        "body.materials",
+        &["found {}, expected a material for each physical group", "add `group_name = {"],
+    );
+}
+
+#[test]
+fn wrong_types() {
+    for (from, to, mark, key, found, expected, cure) in [
+        (
+            "step = 1e-4",
+            "step = '1e-4'",
+            "'1e-4'",
+            "time.step",
+            "the string '1e-4'",
+            "a finite number",
+            "remove the quotes",
+        ),
+        (
+            "step = 1e-4",
+            "step = \"short\"",
+            "\"short\"",
+            "time.step",
+            "the string \"short\"",
+            "a finite number",
+            "write it like this: `step = 1e-4`",
+        ),
+        (
+            "step = 1e-4",
+            "step = true",
+            "true",
+            "time.step",
+            "the boolean true",
+            "a finite number",
+            "write it like this: `step = 1e-4`",
+        ),
+        (
+            "step = 1e-4",
+            "step = 2020-01-01",
+            "2020",
+            "time.step",
+            "the date 2020-01-01",
+            "a finite number",
+            "write it like this: `step = 1e-4`",
+        ),
+        (
+            "step = 1e-4",
+            "step = [1e-4]",
+            "[1e-4]",
+            "time.step",
+            "a list of 1 entry",
+            "a finite number",
+            "write it like this: `step = 1e-4`",
+        ),
+        (
+            "step = 1e-4",
+            "step = { a = 1 }",
+            "{ a = 1",
+            "time.step",
+            "a table",
+            "a finite number",
+            "write it like this: `step = 1e-4`",
+        ),
+        (
+            "flexible = 10",
+            "flexible = 10.0",
+            "10.0",
+            "modes.flexible",
+            "the number 10.0",
+            "a whole number, 0 or more",
+            "write it like this: `flexible = 10`",
+        ),
+        (
+            "flexible = 10",
+            "flexible = -1",
+            "-1\n",
+            "modes.flexible",
+            "the number -1",
+            "a whole number, 0 or more",
+            "write it like this: `flexible = 10`",
+        ),
+        (
+            "flexible = 10",
+            "flexible = \"10\"",
+            "\"10\"",
+            "modes.flexible",
+            "the string \"10\"",
+            "a whole number, 0 or more",
+            "remove the quotes",
+        ),
+        (
+            "every = 1",
+            "every = 1.5",
+            "1.5",
+            "output.every",
+            "the number 1.5",
+            "a whole number, 0 or more",
+            "write it like this: `every = 1`",
+        ),
+        ("length = \"mm\"", "length = 1", "1,", "units.length", "the number 1", "a string", "put it in quotes"),
+        (
+            "title = \"Free plate, 50 N corner pulse\"",
+            "title = []",
+            "[]",
+            "title",
+            "a list of 0 entries",
+            "a string",
+            "write it like this: `title = \"Free",
+        ),
+        (
+            "scheme = \"paper\"",
+            "scheme = 1",
+            "1\n\n[output]",
+            "time.scheme",
+            "the number 1",
+            "a string",
+            "put it in quotes",
+        ),
+        (
+            "kind = \"force\"",
+            "kind = ['force']",
+            "['force']",
+            "loads[0].kind",
+            "a list of 1 entry",
+            "a string",
+            "write it like this: `kind = \"force\"`",
+        ),
+        (
+            "direction = [1.0, 0.0, 1.0]",
+            "direction = [1.0, 1.0]",
+            "[1.0, 1.0]",
+            "loads[0].direction",
+            "a list of 2 entries",
+            "a list of 3 numbers",
+            "write it like this: `direction = [1.0,",
+        ),
+        (
+            "direction = [1.0, 0.0, 1.0]",
+            "direction = \"x\"",
+            "\"x\"",
+            "loads[0].direction",
+            "the string \"x\"",
+            "a list of 3 numbers",
+            "write it like this: `direction = [1.0,",
+        ),
+        (
+            "direction = [1.0, 0.0, 1.0]",
+            "direction = [1, '0', 1]",
+            "'0'",
+            "loads[0].direction[1]",
+            "the string '0'",
+            "a finite number",
+            "remove the quotes",
+        ),
+        (
+            "modal_displacement = []",
+            "modal_displacement = 0",
+            "0  ",
+            "initial.modal_displacement",
+            "the number 0",
+            "a list",
+            "write it like this: `modal_displacement = []`",
+        ),
+        (
+            "[time]",
+            "[[time]]",
+            "[[time]]",
+            "time",
+            "a list of 1 entry",
+            "a table",
+            "write it like this:\n     [time]\n     end = 0.5",
+        ),
+        (
+            "[[loads]]",
+            "[loads]",
+            "[loads]",
+            "loads",
+            "a table",
+            "a list",
+            "write it like this:\n     [[loads]]\n     kind = \"force\"",
+        ),
+        (
+            "{ P1 = [-500.0, -25.0, 0.0] }",
+            "[[-500.0, -25.0, 0.0]]",
+            "[[-500.0, -25.0",
+            "output.points",
+            "a list of 1 entry",
+            "a table",
+            "write it like this: `points = { P1 = [",
+        ),
+        (
+            "material = {",
+            "material = 'steel' #",
+            "'steel'",
+            "body.material",
+            "the string 'steel'",
+            "a table",
+            "write it like this: `material = { young_modulus",
+        ),
+        (
+            "mass = 0.001",
+            "mass = 1, spread = 'big'",
+            "'big'",
+            "body.point_masses[0].spread",
+            "the string 'big'",
+            "a finite number",
+            "write a finite number",
+        ),
+        (
+            "history = {",
+            "history = \"half-sine\" #",
+            "\"half-sine\" #",
+            "loads[0].history",
+            "the string \"half-sine\"",
+            "a table",
+            "write it like this: `history = { kind = \"half-sine\", start",
+        ),
+    ] {
+        let headline = format!("found {found}, expected {expected}");
+        refused(from, to, mark, key, &[&headline, cure]);
+    }
+}
+
+#[test]
+fn numbers_that_are_not_finite() {
+    for bad in ["nan", "+nan", "inf", "-inf", "1e999", "-1e999"] {
+        for (from, name, key) in [
+            ("young_modulus = 70000.0", "young_modulus", "body.material.young_modulus"),
+            ("step = 1e-4", "step", "time.step"),
+            ("amplitude = 50.0", "amplitude", "loads[0].amplitude"),
+            ("start = 0.0", "start", "loads[0].history.start"),
+            ("damping_ratio = 0.05", "damping_ratio", "modes.damping_ratio"),
+            ("mass = 0.001", "mass", "body.point_masses[0].mass"),
+        ] {
+            let headline = format!("found the number {bad}, expected a finite number");
+            let cure = format!("write it like this: `{from}`");
+            refused(from, &format!("{name} = {bad}"), bad, key, &[&headline, &cure]);
+        }
+        let list = format!("modal_displacement = [0, {bad}]");
+        refused("modal_displacement = []", &list, bad, "initial.modal_displacement[1]", &[bad]);
+        let point = format!("R = [0, 0, {bad}]");
+        refused("R = [-500.0, -25.0, 0.0]", &point, bad, "frame.R[2]", &["a finite number"]);
+    }
+}
+
+#[test]
+fn numbers_out_of_range() {
+    let positive = "expected a number greater than 0";
+    for (from, to, key, expected, cure) in [
+        ("young_modulus = 70000.0", "0", "body.material.young_modulus", positive, "force per area"),
+        ("young_modulus = 70000.0", "-7e4", "body.material.young_modulus", positive, "N/mm²"),
+        ("density = 2.7e-9", "0.0", "body.material.density", positive, "mass per volume"),
+        ("density = 2.7e-9", "-2.7e-9", "body.material.density", positive, "mass per volume"),
+        ("poisson_ratio = 0.33", "0.5", "body.material.poisson_ratio", "between -1 and 0.5", "0.49"),
+        ("poisson_ratio = 0.33", "-1", "body.material.poisson_ratio", "between -1 and 0.5", "0.33"),
+        ("mass = 0.001", "0.0", "body.point_masses[0].mass", positive, "remove the point mass"),
+        ("mass = 0.001", "-0.001", "body.point_masses[0].mass", positive, "unit of mass"),
+        ("damping_ratio = 0.05", "-0.05", "modes.damping_ratio", "of 0 or more", "e.g. 0.05"),
+        ("end = 0.5", "0", "time.end", positive, "at least one step"),
+        ("end = 0.5", "-0.5", "time.end", positive, "at least one step"),
+        ("step = 1e-4", "0", "time.step", positive, "`step = 1e-4`"),
+        ("step = 1e-4", "-1e-4", "time.step", positive, "`step = 1e-4`"),
+        ("step = 1e-4", "0.6", "time.step", "at most the end of the run, 0.5", "step shorter"),
+        ("step = 1e-4", "1e-30", "time.step", "not lost in rounding", "step longer"),
+        ("every = 1", "0", "output.every", "a whole number, 1 or more", "10 for every tenth"),
+        ("duration = 0.02", "0", "loads[0].history.duration", positive, "length of the pulse"),
+        ("duration = 0.02", "-1", "loads[0].history.duration", positive, "length of the pulse"),
+        (
+            "direction = [1.0, 0.0, 1.0]",
+            "[0, 0.0, -0.0]",
+            "loads[0].direction",
+            "a vector that is not zero",
+            "its length does not matter",
+        ),
+    ] {
+        let name = from.split(' ').next().unwrap();
+        let to_line = format!("{name} = {to}");
+        let (text, error) = refusal(from, &to_line);
+        let value_starts = text.find(&to_line).unwrap() + name.len() + 3;
+        let found = format!("found {to}, expected ");
+        refused(from, &to_line, &text[value_starts..], key, &[&found, expected, cure]);
+        assert!(matches!(error, SceneError::Invalid { .. }));
+    }
+    let spread = "mass = 0.001, spread = 0.0";
+    refused("mass = 0.001", spread, "0.0 }", "body.point_masses[0].spread", &[positive, "one node"]);
+}
+
+#[test]
+fn values_in_groups_and_later_entries_are_named() {
+    let material = "material = { young_modulus = 70000.0, poisson_ratio = 0.33, density = 2.7e-9 }";
+    let groups = "[body.materials.\"sand wich\"]\nyoung_modulus = 1\npoisson_ratio = 0.7\ndensity = 1\n";
+    let masses = "point_masses = [ { at = [-500.0, -25.0, 0.0], mass = 0.001 } ]";
+    let text = EXAMPLE.replace(material, "").replace("[modes]", &format!("{groups}[modes]"));
+    let error = Scene::parse(&text, "p.toml").unwrap_err();
+    assert_eq!(error.place().unwrap().key, "body.materials.\"sand wich\".poisson_ratio");
+    assert!(error.to_string().contains("|                 ^^^\n"), "{error}");
+
+    let two = "point_masses = [\n  { at = [0, 0, 0], mass = 1 },\n  { at = [0, 0, 0], mass = -1 },\n]";
+    refused(masses, two, "-1 }", "body.point_masses[1].mass", &["found -1, expected"]);
+
+    let load = "[[loads]]\nkind = \"force\"\nat = [0, 0, 0]\ndirection = [0, 0, 0]\namplitude = 1\n\
+                history = { kind = \"half-sine\", duration = 1 }\n\n[time]";
+    refused("[time]", load, "[0, 0, 0]\namp", "loads[1].direction", &["not zero"]);
+}
+
+#[test]
+fn too_many_initial_values() {
+    for name in ["modal_displacement", "modal_velocity"] {
+        let list = format!("{name} = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11]");
+        refused(
+            &format!("{name} = []"),
+            &list,
+            "[1, 2",
+            &format!("initial.{name}"),
+            &["found 11 entries, expected at most 10", "set `flexible = 11` in [modes]"],
+        );
+    }
+}
+
+#[test]
+fn reference_points_on_a_line() {
+    let q = "Q = [500.0, 25.0, 0.0]";
+    for (to, mark, key, found) in [
+        ("Q = [-500, -25, 0]", "[-500, -25", "frame.Q", "the same point for R and Q"),
+        ("Q = [500, -25, 0]", "[500, -25", "frame.Q", "the same point for P and Q"),
+        ("Q = [0.0, -25, 0]", "[frame]", "frame", "on one line (the smallest sine of an angle is 0.0e0)"),
+        ("Q = [900.0, -24.9995, 0]", "[frame]", "frame", "the smallest sine of an angle is 3.6e-7"),
+        ("Q = [500.0, -25.0005, 0]", "[frame]", "frame", "the smallest sine of an angle is 5.0e-7"),
+    ] {
+        refused(q, to, mark, key, &[found, "choose three points", "or remove [frame]"]);
+    }
+    let p = "P = [500.0, -25.0, 0.0]";
+    refused(p, "P = [-500, -25, 0]", "[-500, -25,", "frame.P", &["the same point for R and P"]);
+    // A triangle just over the limit, and huge and tiny ones, are accepted.
+    for (r, p, q) in [
+        ("[0, 0, 0]", "[1, 0, 0]", "[0.5, 1e-6, 0]"),
+        ("[-1e300, 0, 0]", "[1e300, 0, 0]", "[0, 1e300, 0]"),
+        ("[0, 0, 0]", "[1e-300, 0, 0]", "[0, 0, 1e-300]"),
+    ] {
+        let text = EXAMPLE.replace("R = [-500.0, -25.0, 0.0]", &format!("R = {r}"));
+        let text = text.replace("P = [500.0, -25.0, 0.0]", &format!("P = {p}"));
+        Scene::parse(&text.replace("Q = [500.0, 25.0, 0.0]", &format!("Q = {q}")), "").unwrap();
+    }
+}
+
+#[test]
+fn names_and_texts() {
+    for name in ["", ".", "..", "a/b", "/", "a\\u0000", "a\\nb"] {
+        let points = format!("points = {{ \"{name}\" = [0, 0, 0] }}");
+        let shown = format!("\"{}\"", name.replace("\\u0000", "\\0"));
+        refused(
+            "points = { P1 = [-500.0, -25.0, 0.0] }",
+            &points,
+            &format!("\"{name}\" = [0, 0, 0]"),
+            &format!("output.points.{shown}"),
+            &["found the name \"", "without `/`", "rename the point, e.g. `P1`"],
+        );
+    }
+    refused("\"mm\"", "\"m\\u0000m\"", "\"m\\u0000m\"", "units.length", &["found \"m\\u0000m\"", "control"]);
+    refused("\"Free plate, 50 N corner pulse\"", "\"\"\"a\nb\"\"\"", "\"\"\"a", "title", &["on one line"]);
+    refused("\"../meshes/plate.msh\"", "\"\"", "\"\"", "body.mesh", &["found \"\"", "the name of a mesh file"]);
+}
+
+#[test]
+fn text_that_is_not_toml() {
+    for (from, to, mark, words) in [
+        ("step = 1e-4", "step = 1e-4\nstep = 2", "step = 2", "duplicate key"),
+        ("step = 1e-4", "step 1e-4", "1e-4", "expected"),
+        ("step = 1e-4", "step = ", "\nscheme", ""),
+        ("scheme = \"paper\"", "scheme = paper", "paper\n\n[output]", "quoted"),
+        ("[time]", "[time", "\nend", "expected `]`"),
+    ] {
+        let (text, error) = refusal(from, to);
+        let message = error.to_string();
+        let line = 1 + text[..text.find(mark).unwrap()].matches('\n').count();
+        assert_eq!(error.place().unwrap().line, line, "{message}");
+        assert!(matches!(error, SceneError::Syntax { .. }), "{message}");
+        for word in ["this is not TOML: ", words, "^", "   = "] {
+            assert!(message.contains(word), "no {word:?} in {message}");
+        }
+    }
+}
