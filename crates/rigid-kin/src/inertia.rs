@@ -6,10 +6,14 @@ use nalgebra::{Matrix3, Vector3};
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum InertiaError {
     /// Some entry is NaN or infinite.
-    #[error("the inertia tensor has entries that are not finite: {matrix}; give nine finite numbers")]
+    #[error("entry ({row}, {column}) of the inertia tensor (counted from 1) is {value}; give nine finite numbers")]
     NotFinite {
-        /// The matrix given.
-        matrix: Matrix3<f64>,
+        /// Row of the entry, from 1.
+        row: usize,
+        /// Column of the entry, from 1.
+        column: usize,
+        /// The entry found.
+        value: f64,
     },
     /// The matrix differs from its transpose.
     #[error(
@@ -18,9 +22,9 @@ pub enum InertiaError {
          same sign"
     )]
     NotSymmetric {
-        /// Row of the worst entry, from 1.
+        /// Row of the entry, from 1.
         row: usize,
-        /// Column of the worst entry, from 1.
+        /// Column of the entry, from 1.
         column: usize,
         /// Difference of the two entries.
         difference: f64,
@@ -62,8 +66,9 @@ impl Inertia {
     /// [`InertiaError`] if it is not finite, not symmetric (to 1e-10 of its largest entry), not
     /// positive definite, or has a principal moment above the sum of the others (by 1e-9 of it).
     pub fn new(matrix: Matrix3<f64>) -> Result<Self, InertiaError> {
-        if !matrix.iter().all(|entry| entry.is_finite()) {
-            return Err(InertiaError::NotFinite { matrix });
+        if let Some(index) = matrix.iter().position(|entry| !entry.is_finite()) {
+            let (row, column) = (index % 3 + 1, index / 3 + 1);
+            return Err(InertiaError::NotFinite { row, column, value: matrix[index] });
         }
         for (row, column) in [(0, 1), (0, 2), (1, 2)] {
             let difference = matrix[(row, column)] - matrix[(column, row)];
@@ -156,30 +161,21 @@ mod tests {
         let diagonal = |a, b, c| Matrix3::from_diagonal(&Vector3::new(a, b, c));
         let mut skewed = diagonal(1.0, 1.0, 1.0);
         skewed[(2, 1)] = 1e-3;
-        assert_eq!(
-            Inertia::new(skewed),
-            Err(InertiaError::NotSymmetric { row: 2, column: 3, difference: -1e-3 })
-        );
+        assert_eq!(Inertia::new(skewed), Err(InertiaError::NotSymmetric { row: 2, column: 3, difference: -1e-3 }));
         assert_eq!(
             Inertia::new(diagonal(1.0, 0.0, 1.0)),
             Err(InertiaError::NotPositiveDefinite { moments: [0.0, 1.0, 1.0] })
         );
-        assert!(matches!(
-            Inertia::new(Matrix3::zeros()),
-            Err(InertiaError::NotPositiveDefinite { .. })
-        ));
-        assert!(matches!(
-            Inertia::new(diagonal(-1.0, -2.0, -3.0)),
-            Err(InertiaError::NotPositiveDefinite { .. })
-        ));
+        assert!(matches!(Inertia::new(Matrix3::zeros()), Err(InertiaError::NotPositiveDefinite { .. })));
+        assert!(matches!(Inertia::new(diagonal(-1.0, -2.0, -3.0)), Err(InertiaError::NotPositiveDefinite { .. })));
         assert_eq!(
             Inertia::new(diagonal(1.0, 3.0, 1.0)),
             Err(InertiaError::BreaksTriangleInequality { moments: [1.0, 1.0, 3.0] })
         );
-        assert!(matches!(
-            Inertia::new(Matrix3::repeat(f64::NAN)),
-            Err(InertiaError::NotFinite { .. })
-        ));
+        let mut infinite = Matrix3::identity();
+        infinite[(1, 2)] = f64::INFINITY;
+        assert_eq!(Inertia::new(infinite), Err(InertiaError::NotFinite { row: 2, column: 3, value: f64::INFINITY }));
+        assert!(Inertia::new(Matrix3::repeat(f64::NAN)).is_err());
         // A lamina meets the inequality with equality, to rounding.
         assert!(Inertia::new(diagonal(0.1, 0.2, 0.1 + 0.2)).is_ok());
     }

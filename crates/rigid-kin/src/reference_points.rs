@@ -88,12 +88,12 @@ impl ReferencePoints {
     /// # Not Euler's equation
     /// A linear modal model gives a = α_modal×p, without the centripetal part. Then h returns
     /// `α_modal − (ω2ω3, −ω1ω3, ω1ω2)`, in the axes e1, e3×e1, e3 (x along RP, z normal to the
-    /// plane of the points): that is Euler's equation of a flat lamina in this plane with
-    /// principal axes along these, whatever the body is. It is right in plane motion, close for a thin
-    /// plate, wrong otherwise: a sphere that spins freely gets an angular acceleration. The
-    /// components in the plane depend on the plane only; the normal one, ω1ω2, depends on the
-    /// direction of RP too, and on Q not at all. [`euler_angular_acceleration`] is right for any
-    /// body.
+    /// plane of the points), whatever the body is. The two components in the plane are Euler's
+    /// for every flat lamina in this plane; the normal one is Euler's for a lamina with its mass
+    /// on the line RP alone, where `(I2−I1)/(I1+I2) = 1`. It depends on the direction of RP, and
+    /// on Q not at all. So h is right in plane motion, close for a long thin plate with RP along
+    /// it, and wrong otherwise: a sphere that spins freely gets an angular acceleration.
+    /// [`euler_angular_acceleration`] is right for any body.
     pub fn angular_acceleration(
         &self,
         v_p: &Vector3<f64>,
@@ -123,11 +123,7 @@ pub fn relative_velocity_rate(
 ///
 /// `alpha_modal` is the angular acceleration of the rigid modes of the linear model, J⁻¹ times
 /// the moment about the centre of mass; `omega` is ω in body components.
-pub fn euler_angular_acceleration(
-    alpha_modal: &Vector3<f64>,
-    inertia: &Inertia,
-    omega: &Vector3<f64>,
-) -> Vector3<f64> {
+pub fn euler_angular_acceleration(alpha_modal: &Vector3<f64>, inertia: &Inertia, omega: &Vector3<f64>) -> Vector3<f64> {
     alpha_modal - inertia.inverse() * omega.cross(&(inertia.matrix() * omega))
 }
 
@@ -204,10 +200,15 @@ mod tests {
             let expected = alpha - plane * Vector3::new(w.y * w.z, -w.x * w.z, w.x * w.y);
             assert!((found - expected).norm() < 3e-14, "{:e}", (found - expected).norm());
 
-            // Euler's equation of a lamina with principal axes e1 (along RP), e3×e1, e3 whose
-            // second moments differ so much that (I1−I2)/I3 = −1: mass on the line RP alone.
-            let rod = Inertia::new(plane * Matrix3::from_diagonal(&Vector3::new(1e-13, 1.0, 1.0)) * plane.transpose());
-            assert!(rod.is_ok());
+            let none = Vector3::zeros();
+            let lamina = |a, b| Inertia::new(Matrix3::from_diagonal(&Vector3::new(a, b, a + b))).unwrap();
+            let found = plane.transpose() * (found - alpha);
+            // Measured: 5e-8, since 1e-9 beside 1 keeps seven digits.
+            let line = euler_angular_acceleration(&none, &lamina(1e-9, 1.0), &w);
+            assert!((found - line).norm() < 5e-7, "{:e}", (found - line).norm());
+            let plate = euler_angular_acceleration(&none, &lamina(0.3, 1.0), &w);
+            assert!((found - plate).xy().norm() < 3e-14, "{:e}", (found - plate).norm());
+            assert!((found.z * 0.7 / 1.3 - plate.z).abs() < 3e-14);
         }
     }
 
