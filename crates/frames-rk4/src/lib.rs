@@ -1,1 +1,39 @@
-//! Motion of a flexible body in a sequence of reconfigured inertial frames.
+//! Motion of a flexible body in a sequence of inertial frames that travel with its rigid motion, after X. Liu.
+//!
+//! One step of [`PaperScheme`] is Eqs. (36) to (40) of the paper: the linear modal model
+//!
+//! ```text
+//! η̇ = H η + {0, f_q},   η = {q, q̇}                                    (35)
+//! ```
+//!
+//! is integrated in the inertial frame that coincides with the body now; the rigid part of the displacement goes to
+//! the frame; everything else is turned into the frame that the rigid part has reached and projected back onto the
+//! modes. The turn followed by the projection is `Σ R_ab E_ab` on the modal coordinates, so a step costs the same on
+//! any mesh. See `docs/method.md` for each equation beside its function.
+//!
+//! | paper | here |
+//! |---|---|
+//! | (17)–(22) rotation of the frame | [`rigid_kin::transformation_matrix`], [`rigid_kin::f_inverse`] |
+//! | (28)–(31) modal expansion and its inverse, with the turn T | [`ModalRotation`] |
+//! | (32)–(35) modal equations | [`ModalModel`] |
+//! | (36), (37) ω by g and α by h | [`rigid_kin::ReferencePoints`] |
+//! | k1 … k4, (38)–(40) | [`PaperScheme`] |
+#![forbid(unsafe_code)]
+
+mod error;
+mod initial;
+mod load;
+mod modal_rotation;
+mod model;
+mod motion;
+mod paper;
+mod state;
+
+pub use error::{SetupError, StepError};
+pub use initial::Initial;
+pub use load::{DeadForce, History};
+pub use modal_rotation::ModalRotation;
+pub use model::ModalModel;
+pub use motion::{BodyMotion, PointMotion, PointShapes};
+pub use paper::PaperScheme;
+pub use state::State;

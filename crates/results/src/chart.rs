@@ -29,6 +29,7 @@ pub(crate) const TITLE_EM: f64 = 14.0;
 pub(crate) const LABEL_EM: f64 = 13.0;
 pub(crate) const TICK_EM: f64 = 11.5;
 const LEGEND_ROW: f64 = 19.0;
+const LEGEND_GAP: f64 = 5.0;
 const LEGEND_LINE: f64 = 30.0;
 const TICK_LENGTH: f64 = 4.0;
 const SOLID_WIDTH: f64 = 1.5;
@@ -37,6 +38,9 @@ const DASHED_WIDTH: f64 = 2.5;
 const DASH: [f64; 2] = [8.0, 6.0];
 /// Coordinates per pixel.
 const FINENESS: u32 = 4;
+/// Series with no more points than this show each as a dot.
+const FEW_POINTS: usize = 24;
+const DOT_RADIUS: f64 = 3.0;
 /// Series with more points than this are thinned.
 const MANY_POINTS: usize = 3000;
 /// Columns per pixel, each of which keeps the highest and the lowest point of a thinned series.
@@ -74,7 +78,8 @@ pub struct Series {
     pub stroke: Stroke,
 }
 
-/// A chart of lines over two axes. Colours are chosen by the order of the series.
+/// A chart of lines over two axes. Colours are chosen by the order of the series; a series of a few
+/// points shows each of them as a dot.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LineChart {
     /// Title; may be empty.
@@ -141,8 +146,8 @@ impl LineChart {
     fn picture(&self) -> Result<Picture, FigureError> {
         self.check()?;
         let points = || self.series.iter().flat_map(|series| &series.points);
-        let mut x = Axis::new(self.x_scale, points().map(|p| p.0), 0.0, 8);
-        let mut y = Axis::new(self.y_scale, points().map(|p| p.1), 0.05, 7);
+        let mut x = Axis::new(self.x_scale, points().map(|p| p.0), 0.0, 7);
+        let mut y = Axis::new(self.y_scale, points().map(|p| p.1), 0.05, 6);
 
         let legend = self.legend_rows()?;
         let mut widest = 0.0_f64;
@@ -152,6 +157,7 @@ impl LineChart {
         let top = MARGIN
             + if self.title.is_empty() { 0.0 } else { 1.6 * TITLE_EM }
             + LEGEND_ROW * legend.len() as f64
+            + if legend.is_empty() && self.title.is_empty() { 0.0 } else { LEGEND_GAP }
             + if y.ticks.note.is_empty() { 0.0 } else { 1.3 * TICK_EM };
         (x.start, x.end) = (MARGIN + 1.9 * LABEL_EM + widest + 8.0, WIDTH - 1.8 * MARGIN);
         (y.start, y.end) = (HEIGHT - MARGIN - 3.6 * LABEL_EM, top);
@@ -170,6 +176,9 @@ impl LineChart {
         for stroke in [Stroke::Solid, Stroke::Dashed] {
             for (i, series) in self.series.iter().enumerate().filter(|(_, series)| series.stroke == stroke) {
                 let places: Vec<Place> = series.points.iter().map(|p| [x.pixel(p.0), y.pixel(p.1)]).collect();
+                if places.len() <= FEW_POINTS {
+                    places.iter().for_each(|place| draw_dot(&mut picture, *place, colour(i)));
+                }
                 draw_stroke(&mut picture, thinned(places), colour(i), stroke);
             }
         }
@@ -265,6 +274,12 @@ fn draw_grid(picture: &mut Picture, x: &Axis, y: &Axis) {
     for (at, colour) in lines(y) {
         picture.line(vec![[x.start, at], [x.end, at]], colour, 0.75);
     }
+}
+
+fn draw_dot(picture: &mut Picture, [x, y]: Place, colour: RGBColor) {
+    let corner = |i: u32| (f64::from(i) * std::f64::consts::TAU / 24.0).sin_cos();
+    let circle = (0..24).map(corner).map(|(sin, cos)| [x + DOT_RADIUS * cos, y + DOT_RADIUS * sin]);
+    picture.area(circle.collect(), colour);
 }
 
 fn draw_stroke(picture: &mut Picture, places: Vec<Place>, colour: RGBColor, stroke: Stroke) {

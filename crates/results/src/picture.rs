@@ -5,10 +5,10 @@
 //! keeps the fine coordinates, a bitmap is averaged down, which smooths all its edges.
 
 use crate::{FigureError, font};
-use plotters::backend::{BitMapBackend, DrawingBackend, DrawingErrorKind, SVGBackend};
+use plotters::backend::{BitMapBackend, DrawingBackend, SVGBackend};
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{Color, FontTransform, RGBColor, ShapeStyle};
-use std::error::Error;
+use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
 /// A place in the picture: pixels to the right, pixels down.
@@ -26,11 +26,29 @@ pub(crate) enum Anchor {
 
 #[derive(Debug)]
 enum Item {
-    Line { places: Vec<Place>, colour: RGBColor, width: f64 },
-    Area { places: Vec<Place>, colour: RGBColor },
-    Text { place: Place, text: String, em: f64, anchor: Anchor, colour: RGBColor },
+    Line {
+        places: Vec<Place>,
+        colour: RGBColor,
+        width: f64,
+    },
+    Area {
+        places: Vec<Place>,
+        colour: RGBColor,
+    },
+    Text {
+        place: Place,
+        text: String,
+        em: f64,
+        anchor: Anchor,
+        colour: RGBColor,
+    },
     /// RGB bytes, row by row, at the picture's fine resolution.
-    Bitmap { place: Place, width: u32, height: u32, rgb: Vec<u8> },
+    Bitmap {
+        place: Place,
+        width: u32,
+        height: u32,
+        rgb: Vec<u8>,
+    },
 }
 
 #[derive(Debug)]
@@ -55,8 +73,11 @@ impl Picture {
         self.items.push(Item::Area { places, colour });
     }
 
-    pub(crate) fn text(&mut self, place: Place, text: impl Into<String>, em: f64, anchor: Anchor, colour: RGBColor) {
-        self.items.push(Item::Text { place, text: text.into(), em, anchor, colour });
+    pub(crate) fn text(&mut self, place: Place, text: &str, em: f64, anchor: Anchor, colour: RGBColor) {
+        if text.is_empty() {
+            return;
+        }
+        self.items.push(Item::Text { place, text: text.to_owned(), em, anchor, colour });
     }
 
     /// `width` and `height` in fine units.
@@ -80,6 +101,7 @@ impl Picture {
         let rgb = self.rgb(dots)?;
         let mut backend = BitMapBackend::new(&png, size);
         backend.blit_bitmap((0, 0), size, &rgb).and_then(|()| backend.present()).map_err(write_error(&png))?;
+        drop(backend);
         Ok([svg, png])
     }
 
@@ -93,10 +115,7 @@ impl Picture {
 
         let (fine_width, fine_height) = self.fine_size();
         let fine = format!("width=\"{fine_width}\" height=\"{fine_height}\" viewBox");
-        let shown = format!(
-            "width=\"{}\" height=\"{}\" stroke-linejoin=\"round\" viewBox",
-            self.width, self.height
-        );
+        let shown = format!("width=\"{}\" height=\"{}\" stroke-linejoin=\"round\" viewBox", self.width, self.height);
         // The drawing library leaves the word "image" out of the type of an embedded bitmap.
         Ok(document.replacen(&fine, &shown, 1).replace("\"data:png;", "\"data:image/png;"))
     }
@@ -131,13 +150,15 @@ impl Picture {
                     let mut path: Vec<_> = places.iter().map(fine).collect();
                     path.dedup();
                     match target {
-                        Target::Svg => backend.draw_path(path, &style),
+                        Target::Svg => backend.draw_path(path, &style).map_err(draw_error),
                         Target::Bitmap => draw_thick_path(backend, &path, &style),
                     }
                 }
-                Item::Area { places, colour } => backend.fill_polygon(places.iter().map(fine), colour),
+                Item::Area { places, colour } => {
+                    backend.fill_polygon(places.iter().map(fine), colour).map_err(draw_error)
+                }
                 Item::Bitmap { place, width, height, rgb } => {
-                    backend.blit_bitmap(fine(place), (*width, *height), rgb)
+                    backend.blit_bitmap(fine(place), (*width, *height), rgb).map_err(draw_error)
                 }
                 Item::Text { place, text, em, anchor, colour } => {
                     // Where each writer has its reference height, seen from the base line, and how
@@ -161,10 +182,9 @@ impl Picture {
                         style = style.transform(FontTransform::Rotate270);
                     }
                     let style = style.color(colour).pos(Pos::new(horizontal, vertical));
-                    backend.draw_text(text, &style, (unit(x), unit(y)))
+                    backend.draw_text(text, &style, (unit(x), unit(y))).map_err(draw_error)
                 }
-            }
-            .map_err(draw_error)?;
+            }?;
         }
         Ok(())
     }
@@ -181,13 +201,13 @@ fn draw_thick_path<DB: DrawingBackend>(
     backend: &mut DB,
     path: &[(i32, i32)],
     style: &ShapeStyle,
-) -> Result<(), DrawingErrorKind<DB::ErrorType>> {
+) -> Result<(), FigureError> {
     for segment in path.windows(2) {
-        backend.draw_line(segment[0], segment[1], style)?;
+        backend.draw_line(segment[0], segment[1], style).map_err(draw_error)?;
     }
     let joints = path.get(1..path.len().saturating_sub(1)).unwrap_or_default();
     for &joint in joints {
-        backend.draw_circle(joint, style.stroke_width / 2, &style.color, true)?;
+        backend.draw_circle(joint, style.stroke_width / 2, &style.color, true).map_err(draw_error)?;
     }
     Ok(())
 }
@@ -216,11 +236,11 @@ fn averaged(rgb: &[u8], width: usize, n: usize) -> Vec<u8> {
     means
 }
 
-fn draw_error<E: Error + Send + Sync>(error: DrawingErrorKind<E>) -> FigureError {
+fn draw_error(error: impl Display) -> FigureError {
     FigureError::Draw { reason: error.to_string() }
 }
 
-pub(crate) fn write_error<E: Error + Send + Sync>(path: &Path) -> impl FnOnce(DrawingErrorKind<E>) -> FigureError {
+pub(crate) fn write_error<E: Display>(path: &Path) -> impl FnOnce(E) -> FigureError {
     let path = path.to_path_buf();
     move |error| FigureError::Write { path, reason: error.to_string() }
 }

@@ -2,8 +2,8 @@
 
 use crate::layout::Quantity;
 use crate::{BodyProperties, FileError, Metadata, Units};
-use hdf5::iteration::{IndexType, IterationOrder};
 use hdf5::types::VarLenUnicode;
+use hdf5::{IndexType, IterationOrder};
 use ndarray::s;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -222,9 +222,9 @@ impl Source<'_> {
     /// A one-dimensional dataset, of known length or not.
     fn vector(&self, name: &str, length: Option<usize>) -> Result<Vec<f64>, FileError> {
         let dataset = self.dataset(name)?;
-        match (dataset.shape()[..].try_into(), length) {
-            (Ok([_]), None) => self.read(name, &dataset),
-            (Ok([found]), Some(length)) if found == length => self.read(name, &dataset),
+        match (&dataset.shape()[..], length) {
+            ([_], None) => self.read(name, &dataset),
+            ([found], Some(length)) if *found == length => self.read(name, &dataset),
             (_, None) => Err(self.wrong_shape(name, "[nf]".into(), &dataset)),
             (_, Some(length)) => Err(self.wrong_shape(name, format!("[{length}]"), &dataset)),
         }

@@ -27,12 +27,16 @@ pub(crate) fn linear_range(min: f64, max: f64, margin: f64) -> (f64, f64) {
 
 /// Round numbers (1, 2, 5 times a power of ten apart), about `count` of them.
 pub(crate) fn linear(min: f64, max: f64, count: usize) -> Ticks {
-    let (step, step_digits) = round_step((max - min) / count.max(1) as f64);
+    let step = round_step((max - min) / count.max(1) as f64);
+    // The tolerance catches steps that were rounded to just below a power of ten.
+    let step_digits = magnitude(step * (1.0 + 1e-9));
     let (first, last) = ((min / step).ceil() as i64, (max / step).floor() as i64);
     let largest = min.abs().max(max.abs());
 
     // Many digits in front of those that change are said once, in the note.
-    let offset = if step < 1e-5 * largest { (first + last) / 2 } else { 0 };
+    let trailing_zeros = |i: &i64| (1..).take_while(|&k| i % 10_i64.pow(k) == 0).take(18).count();
+    let roundest = (first..=last).max_by_key(trailing_zeros);
+    let offset = roundest.filter(|_| step < 1e-5 * largest).unwrap_or(0);
     let shown = if offset == 0 { largest } else { (last - offset).max(offset - first) as f64 * step };
     let magnitude = magnitude(shown);
     let exponent = if (-3..=4).contains(&magnitude) { 0 } else { 3 * magnitude.div_euclid(3) };
@@ -75,16 +79,12 @@ pub(crate) fn logarithmic((low, high): (i32, i32), count: usize) -> Ticks {
     }
 }
 
-/// The next round number at or above `step`, and the power of ten of its last digit.
-fn round_step(step: f64) -> (f64, i32) {
-    let digits = magnitude(step);
-    let unit = 10_f64.powi(digits);
-    match step / unit {
-        ratio if ratio <= 1.0 => (unit, digits),
-        ratio if ratio <= 2.0 => (2.0 * unit, digits),
-        ratio if ratio <= 5.0 => (5.0 * unit, digits),
-        _ => (10.0 * unit, digits + 1),
-    }
+/// The nearest, by ratio, of 1, 2, 5 times a power of ten to a positive number.
+pub(crate) fn round_step(step: f64) -> f64 {
+    let unit = 10_f64.powi(magnitude(step));
+    let bounds = [(1.0, 2_f64.sqrt()), (2.0, 10_f64.sqrt()), (5.0, 50_f64.sqrt())];
+    let factor = bounds.into_iter().find(|(_, bound)| step <= bound * unit);
+    factor.map_or(10.0, |(factor, _)| factor) * unit
 }
 
 /// The power of ten of a number's first digit.
@@ -152,18 +152,18 @@ mod tests {
     #[test]
     fn a_small_change_of_a_large_number_is_counted_from_a_note() {
         let ticks = linear(0.00935 - 1e-12, 0.00935 + 1e-12, 4);
-        assert_eq!(ticks.note, "×10⁻¹⁵ + 0.00935");
-        assert_eq!(labels(&ticks), ["−1000", "−500", "0", "500", "1000"]);
+        assert_eq!(ticks.note, "×10⁻¹² + 0.00935");
+        assert_eq!(labels(&ticks), ["−1.0", "−0.5", "0.0", "0.5", "1.0"]);
         let ticks = linear(-250.002, -250.0, 4);
-        assert!(ticks.note.starts_with("×10") && ticks.note.contains("− 250.001"), "{}", ticks.note);
+        assert_eq!((ticks.note.as_str(), labels(&ticks)[0]), ("− 250", "−0.0020"));
     }
 
     #[test]
     fn what_does_not_vary_stands_in_the_middle() {
         assert_eq!(linear_range(0.0, 0.0, 0.05), (-1.0, 1.0));
         assert_eq!(linear_range(-4.0, -4.0, 0.05), (-6.0, -2.0));
-        let third = 0.1 + 0.2;
-        assert_eq!(linear_range(0.3, third, 0.0), (0.15, third + 0.15));
+        let (low, high) = linear_range(0.3, 0.1 + 0.2, 0.0);
+        assert!((low - 0.15).abs() < 1e-15 && (high - 0.45).abs() < 1e-15);
         assert_eq!(linear_range(0.0, 10.0, 0.1), (-1.0, 11.0));
     }
 

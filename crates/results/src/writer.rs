@@ -2,7 +2,7 @@
 
 use crate::layout::Quantity;
 use crate::{FileError, Metadata, Sample, Units};
-use hdf5::plist::common::LinkCreationOrder;
+use hdf5::plist::group_create::LinkCreationOrder;
 use hdf5::types::VarLenUnicode;
 use ndarray::{ArrayView1, ArrayView2, aview0, aview1, s};
 use std::path::{Path, PathBuf};
@@ -266,8 +266,20 @@ fn write_body(path: &Path, file: &hdf5::File, metadata: &Metadata) -> Result<(),
         ("mass", aview0(&body.mass).into_dyn(), mass, "none", "total mass"),
         ("center_of_mass", aview1(&body.center_of_mass).into_dyn(), length, "mesh", "centre of mass"),
         ("inertia", inertia.into_dyn(), &inertia_unit, "body", "undeformed inertia about the centre of mass"),
-        ("frequencies", aview1(&body.frequencies).into_dyn(), &frequency_unit, "none", "of the flexible modes"),
-        ("damping_ratios", aview1(&body.damping_ratios).into_dyn(), &"1".into(), "none", "of the flexible modes"),
+        (
+            "frequencies",
+            aview1(&body.frequencies).into_dyn(),
+            &frequency_unit,
+            "none",
+            "natural frequencies of the flexible modes",
+        ),
+        (
+            "damping_ratios",
+            aview1(&body.damping_ratios).into_dyn(),
+            &"1".into(),
+            "none",
+            "damping ratios of the flexible modes",
+        ),
     ] {
         let name = format!("body/{name}");
         let dataset = file
@@ -280,13 +292,7 @@ fn write_body(path: &Path, file: &hdf5::File, metadata: &Metadata) -> Result<(),
     Ok(())
 }
 
-fn describe(
-    path: &Path,
-    dataset: &hdf5::Dataset,
-    unit: &str,
-    frame: &str,
-    description: &str,
-) -> Result<(), FileError> {
+fn describe(path: &Path, dataset: &hdf5::Dataset, unit: &str, frame: &str, description: &str) -> Result<(), FileError> {
     write_text(path, dataset, "unit", unit)?;
     write_text(path, dataset, "frame", frame)?;
     write_text(path, dataset, "description", description)
@@ -294,9 +300,8 @@ fn describe(
 
 /// A variable-length UTF-8 string, which h5py reads as `str`.
 fn write_text(path: &Path, owner: &hdf5::Location, name: &str, text: &str) -> Result<(), FileError> {
-    let value: VarLenUnicode = text
-        .parse()
-        .map_err(|_| FileError::NulInText { path: path.to_path_buf(), attribute: name.into() })?;
+    let value: VarLenUnicode =
+        text.parse().map_err(|_| FileError::NulInText { path: path.to_path_buf(), attribute: name.into() })?;
     owner
         .new_attr::<VarLenUnicode>()
         .create(name)

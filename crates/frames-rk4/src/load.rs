@@ -1,0 +1,56 @@
+//! Forces on points of the body, and how they go with time.
+
+use nalgebra::Vector3;
+
+use crate::motion::PointShapes;
+
+/// The course of a load in time, as a factor of its amplitude.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum History {
+    /// `sin(π (t − start) / duration)` within the duration, zero before and after.
+    HalfSine {
+        /// Beginning.
+        start: f64,
+        /// Length.
+        duration: f64,
+    },
+}
+
+impl History {
+    /// The factor at a time.
+    pub fn at(&self, time: f64) -> f64 {
+        match *self {
+            Self::HalfSine { start, duration } => {
+                let phase = (time - start) / duration;
+                if (0.0..=1.0).contains(&phase) { (std::f64::consts::PI * phase).sin() } else { 0.0 }
+            }
+        }
+    }
+}
+
+/// A force that keeps its global direction, at a point of the body.
+#[derive(Debug, Clone)]
+pub struct DeadForce {
+    /// Where it acts.
+    pub point: PointShapes,
+    /// Direction times amplitude, global components.
+    pub force_global: Vector3<f64>,
+    /// Its course in time.
+    pub history: History,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_half_sine_rises_falls_and_ends() {
+        let pulse = History::HalfSine { start: 1.0, duration: 0.5 };
+        assert_eq!(pulse.at(0.999), 0.0);
+        assert_eq!(pulse.at(1.0), 0.0);
+        assert!((pulse.at(1.25) - 1.0).abs() < 1e-15);
+        assert!((pulse.at(1.125) - 0.5_f64.sqrt()).abs() < 1e-15);
+        assert!(pulse.at(1.5).abs() < 1e-15);
+        assert_eq!(pulse.at(1.51), 0.0);
+    }
+}

@@ -1,0 +1,162 @@
+//! The linear modal model, Eqs. (32) to (35).
+
+use modal::ReducedBody;
+use nalgebra::{Matrix3, Vector3};
+
+use crate::error::SetupError;
+use crate::load::DeadForce;
+
+/// Modal stiffness, damping and loads of mass-normalised modes: `q̈ = f_q − Λ q − D q̇`.
+///
+/// The first six coordinates are the rigid modes: no stiffness, and never damped.
+#[derive(Debug, Clone)]
+pub struct ModalModel {
+    /// λ_k = ω_k² (6+nf).
+    stiffness: Vec<f64>,
+    /// 2 ζ_k ω_k (6+nf).
+    damping: Vec<f64>,
+    forces: Vec<ModalForce>,
+}
+
+/// A load with its rows of the mode shapes.
+#[derive(Debug, Clone)]
+struct ModalForce {
+    load: DeadForce,
+    /// Force in global components at the beginning and at the end of the step.
+    ends: [Vector3<f64>; 2],
+}
+
+/// Which of a step's loads a stage sees.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum LoadTime {
+    Start,
+    /// The mean of both ends, as the paper has it at k2 and k3.
+    Mean,
+    End,
+}
+
+impl ModalModel {
+    /// The model of a body with one damping ratio for each flexible mode.
+    ///
+    /// # Errors
+    /// [`SetupError`] for a list of the wrong length, and numbers that are negative or not finite.
+    pub fn new(body: &ReducedBody, damping_ratios: &[f64], loads: Vec<DeadForce>) -> Result<Self, SetupError> {
+        let expected = body.flexible();
+        if damping_ratios.len() != expected {
+            return Err(SetupError::Length {
+                what: "the list of damping ratios",
+                expected,
+                found: damping_ratios.len(),
+            });
+        }
+        if let Some(found) = damping_ratios.iter().copied().find(|zeta| !(*zeta >= 0.0 && zeta.is_finite())) {
+            return Err(SetupError::Value { what: "a damping ratio", found, expected: "zero or more" });
+        }
+        for load in &loads {
+            if let Some(found) = load.force_global.iter().copied().find(|f| !f.is_finite()) {
+                return Err(SetupError::Value { what: "a force", found, expected: "a finite number" });
+            }
+        }
+        let rigid = || std::iter::repeat_n(0.0, 6);
+        let omega = &body.circular_frequencies;
+        Ok(Self {
+            stiffness: rigid().chain(omega.iter().map(|w| w * w)).collect(),
+            damping: rigid().chain(omega.iter().zip(damping_ratios).map(|(w, zeta)| 2.0 * zeta * w)).collect(),
+            forces: loads.into_iter().map(|load| ModalForce { load, ends: [Vector3::zeros(); 2] }).collect(),
+        })
+    }
+
+    /// Takes the loads at the two ends of a step.
+    pub(crate) fn set_step(&mut self, start: f64, end: f64) {
+        for force in &mut self.forces {
+            force.ends = [start, end].map(|t| force.load.force_global * force.load.history.at(t));
+        }
+    }
+
+    /// q̈ of (35) in a frame with the transformation matrix `global_to_body`.
+    pub(crate) fn acceleration(
+        &self,
+        displacement: &[f64],
+        velocity: &[f64],
+        when: LoadTime,
+        global_to_body: &Matrix3<f64>,
+        acceleration: &mut [f64],
+    ) {
+        let damped = displacement.iter().zip(velocity).zip(self.stiffness.iter().zip(&self.damping));
+        for (a, ((q, v), (lambda, d))) in acceleration.iter_mut().zip(damped) {
+            *a = -lambda * q - d * v;
+        }
+        for force in &self.forces {
+            let [start, end] = &force.ends;
+            let force_global = match when {
+                LoadTime::Start => *start,
+                LoadTime::Mean => 0.5 * (start + end),
+                LoadTime::End => *end,
+            };
+            force.load.point.add_modal_force(&(global_to_body * force_global), acceleration);
+        }
+    }
+
+    /// Refuses a step at which classical RK4 amplifies a mode: |R(z)| > 1 for an eigenvalue z/step of H.
+    pub(crate) fn check_step(&self, step: f64) -> Result<(), SetupError> {
+        if !(step > 0.0 && step.is_finite()) {
+            return Err(SetupError::Value { what: "the step", found: step, expected: "a positive number" });
+        }
+        let limits = self.stiffness.iter().zip(&self.damping).skip(6).map(|(lambda, d)| stable_step(*lambda, *d));
+        let (mode, limit) =
+            limits.enumerate().fold((0, f64::INFINITY), |best, next| if next.1 < best.1 { next } else { best });
+        if step <= limit {
+            return Ok(());
+        }
+        let frequency = self.stiffness[6 + mode].sqrt() / std::f64::consts::TAU;
+        Err(SetupError::StepBeyondLimit { step, limit, mode: mode + 1, frequency })
+    }
+}
+
+/// Largest step for which RK4 does not amplify `q̈ + d q̇ + λ q = 0`; 2.83/ω without damping.
+fn stable_step(lambda: f64, damping: f64) -> f64 {
+    let omega = lambda.sqrt();
+    let stable = |step: f64| amplification(lambda * step * step, damping * step) <= 1.0 + 1e-12;
+    // The stability region meets each ray once: bisect between a step well inside and one well outside.
+    let (mut inside, mut outside) = (0.0, 4.0 / (omega + damping).max(f64::MIN_POSITIVE) * 2.0);
+    for _ in 0..60 {
+        let middle = 0.5 * (inside + outside);
+        if stable(middle) { inside = middle } else { outside = middle }
+    }
+    inside
+}
+
+/// max |R(z)|, R(z) = 1 + z + z²/2 + z³/6 + z⁴/24, over the roots of z² + d z + λ = 0.
+fn amplification(lambda: f64, damping: f64) -> f64 {
+    let discriminant = 0.25 * damping * damping - lambda;
+    let r = |re: f64, im: f64| {
+        let (mut sum, mut term) = ((1.0, 0.0), (1.0, 0.0));
+        for k in 1..=4 {
+            let k = f64::from(k);
+            term = ((term.0 * re - term.1 * im) / k, (term.0 * im + term.1 * re) / k);
+            sum = (sum.0 + term.0, sum.1 + term.1);
+        }
+        f64::hypot(sum.0, sum.1)
+    };
+    if discriminant < 0.0 {
+        r(-0.5 * damping, (-discriminant).sqrt())
+    } else {
+        let root = discriminant.sqrt();
+        r(-0.5 * damping - root, 0.0).max(r(-0.5 * damping + root, 0.0))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rk4_is_stable_to_two_root_two_over_omega_and_to_2_785_on_the_negative_axis() {
+        for omega in [1e-3, 1.0, 3659.0] {
+            assert!((stable_step(omega * omega, 0.0) * omega - 8.0_f64.sqrt()).abs() < 1e-6);
+        }
+        // Strong damping: the fast root is near -d, and the real stability interval of RK4 ends at -2.7853.
+        let damping = 1e4;
+        assert!((stable_step(1.0, damping) * damping - 2.7853).abs() < 1e-3);
+    }
+}

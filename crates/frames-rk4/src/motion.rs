@@ -1,0 +1,153 @@
+//! What the state says about the body: its motion as a whole, and that of its points.
+
+use modal::{BodyPoint, ReducedBody};
+use nalgebra::{Matrix3, Vector3};
+use rigid_kin::{Inertia, InertiaError, euler_angular_acceleration};
+
+use crate::state::{State, rotation, translation};
+
+/// A point with its rows of all mode shapes, rigid and flexible.
+#[derive(Debug, Clone)]
+pub struct PointShapes {
+    position_body: Vector3<f64>,
+    /// Column k is the displacement of the point in mode k (6+nf columns).
+    columns: Vec<Vector3<f64>>,
+}
+
+/// Motion of a point, global components.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PointMotion {
+    /// Displacement from where the point was in the undeformed body at the beginning.
+    pub displacement: Vector3<f64>,
+    /// Velocity.
+    pub velocity: Vector3<f64>,
+    /// Acceleration.
+    pub acceleration: Vector3<f64>,
+    /// Acceleration of the embedded rigid motion at the point: `a + α×X + ω×(ω×X)`.
+    pub rigid_acceleration: Vector3<f64>,
+}
+
+impl PointShapes {
+    /// The rows of a point's shapes in the modes of `body`.
+    pub fn new(body: &ReducedBody, point: &BodyPoint) -> Self {
+        let rigid = body.rigid_shapes(&point.position_body);
+        let columns = (0..6)
+            .map(|k| rigid.column(k).into())
+            .chain(point.shapes.col_iter().map(|c| Vector3::new(c[0], c[1], c[2])))
+            .collect();
+        Self { position_body: point.position_body, columns }
+    }
+
+    /// X: undeformed position from the centre of mass, body axes.
+    pub fn position_body(&self) -> Vector3<f64> {
+        self.position_body
+    }
+
+    /// Modal expansion at the point, (28): Σ_k Ψ_k c_k.
+    pub(crate) fn expand(&self, coordinates: &[f64]) -> Vector3<f64> {
+        self.columns.iter().zip(coordinates).map(|(shape, c)| shape * *c).sum()
+    }
+
+    /// Adds `f_q = Ψᵀ F` of a force at the point, body components.
+    pub(crate) fn add_modal_force(&self, force_body: &Vector3<f64>, modal_force: &mut [f64]) {
+        for (f, shape) in modal_force.iter_mut().zip(&self.columns) {
+            *f += shape.dot(force_body);
+        }
+    }
+}
+
+/// Reads the motion of a body off its states.
+#[derive(Debug, Clone)]
+pub struct BodyMotion {
+    mass: f64,
+    center_of_mass: Vector3<f64>,
+    inertia: Inertia,
+    rotation_basis: Matrix3<f64>,
+    /// Ψᵀ M (I⊗[e_i×]) Ψ, column by column (3 × (6+nf)²).
+    cross_products: [Vec<f64>; 3],
+    stiffness: Vec<f64>,
+}
+
+impl BodyMotion {
+    /// Prepares the constants.
+    ///
+    /// # Errors
+    /// An inertia that no rigid body has.
+    pub fn new(body: &ReducedBody) -> Result<Self, InertiaError> {
+        let size = 6 + body.flexible();
+        // [e_1×] = e_3 e_2ᵀ − e_2 e_3ᵀ and cyclic.
+        let cross_products = [(2, 1), (0, 2), (1, 0)].map(|(a, b)| {
+            let (ab, ba) = (&body.rotation_products[a][b], &body.rotation_products[b][a]);
+            (0..size).flat_map(|j| (0..size).map(move |i| ab[(i, j)] - ba[(i, j)])).collect()
+        });
+        Ok(Self {
+            mass: body.mass,
+            center_of_mass: body.center_of_mass,
+            inertia: Inertia::new(body.inertia)?,
+            rotation_basis: body.rotation_basis,
+            cross_products,
+            stiffness: body.circular_frequencies.iter().map(|omega| omega * omega).collect(),
+        })
+    }
+
+    /// Position of the centre of mass, global components.
+    pub fn position_global(&self, state: &State) -> Vector3<f64> {
+        state.origin_global + state.attitude.to_global(&translation(&state.modal_displacement)) / self.mass.sqrt()
+    }
+
+    /// Velocity of the centre of mass, global components.
+    pub fn velocity_global(&self, state: &State) -> Vector3<f64> {
+        state.attitude.to_global(&translation(&state.modal_velocity)) / self.mass.sqrt()
+    }
+
+    /// Angular acceleration by Euler's equation, `α_modal − J₀⁻¹(ω×J₀ω)`, body components. It is right for any body,
+    /// where h of Eq. (37) is so for plane motion and nearly so for thin plates.
+    pub fn euler_alpha_body(&self, state: &State) -> Vector3<f64> {
+        let alpha_modal = self.rotation_basis * rotation(&state.modal_acceleration);
+        euler_angular_acceleration(&alpha_modal, &self.inertia, &state.omega_body)
+    }
+
+    /// Kinetic energy ½ q̇ᵀ q̇ (the modes are mass-normalised).
+    pub fn kinetic_energy(&self, state: &State) -> f64 {
+        0.5 * state.modal_velocity.iter().map(|y| y * y).sum::<f64>()
+    }
+
+    /// Strain energy ½ qᵀ Λ q.
+    pub fn strain_energy(&self, state: &State) -> f64 {
+        let flexible = &state.modal_displacement[6..];
+        0.5 * flexible.iter().zip(&self.stiffness).map(|(q, lambda)| lambda * q * q).sum::<f64>()
+    }
+
+    /// Linear momentum, global components.
+    pub fn linear_momentum_global(&self, state: &State) -> Vector3<f64> {
+        self.velocity_global(state) * self.mass
+    }
+
+    /// Angular momentum about the centre of mass, global components: `∫ρ (X + u)×v dV` less that of the centre.
+    pub fn angular_momentum_global(&self, state: &State) -> Vector3<f64> {
+        let (q, y) = (&state.modal_displacement, &state.modal_velocity);
+        // ∫ρ X×v: the rotation modes are B_ik [e_i×]X, so Bᵀ H = y[3..6].
+        let undeformed = self.inertia.matrix() * self.rotation_basis * rotation(y);
+        let deformed = Vector3::from_fn(|i, _| {
+            let columns = self.cross_products[i].chunks_exact(q.len()).zip(y);
+            -columns.map(|(column, y)| y * column.iter().zip(q).map(|(g, q)| g * q).sum::<f64>()).sum::<f64>()
+        });
+        let of_center = translation(q).cross(&translation(y));
+        state.attitude.to_global(&(undeformed + deformed - of_center))
+    }
+
+    /// Motion of a point.
+    pub fn point(&self, state: &State, point: &PointShapes) -> PointMotion {
+        let global = |v_body: Vector3<f64>| state.attitude.to_global(&v_body);
+        let x = point.position_body;
+        let (omega, alpha) = (state.omega_body, state.alpha_body);
+        let of_origin = translation(&state.modal_acceleration) / self.mass.sqrt();
+        PointMotion {
+            displacement: (state.origin_global - self.center_of_mass)
+                + (global(x + point.expand(&state.modal_displacement)) - x),
+            velocity: global(point.expand(&state.modal_velocity)),
+            acceleration: global(point.expand(&state.modal_acceleration)),
+            rigid_acceleration: global(of_origin + alpha.cross(&x) + omega.cross(&omega.cross(&x))),
+        }
+    }
+}

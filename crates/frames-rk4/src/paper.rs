@@ -1,0 +1,298 @@
+//! The paper's scheme, Eqs. (36) to (40), in modal space.
+//!
+//! It does what the paper says, its properties included (first order; spin that grows or fades at the relative rate
+//! ω²Δt/2; stable to Δt·ω_max = 2.83). Two things the paper leaves open are settled as `docs/method.md` tells:
+//! each step's rotation vector starts at zero, since (22) is singular after one turn, and a stage takes the loads'
+//! components in the stage's own frame.
+
+use modal::ReducedBody;
+use nalgebra::{Matrix3, Vector3};
+use rigid_kin::{BeyondFullTurn, ReferencePoints, f_inverse, relative_velocity_rate, transformation_matrix};
+
+use crate::error::{SetupError, StepError};
+use crate::initial::Initial;
+use crate::modal_rotation::ModalRotation;
+use crate::model::{LoadTime, ModalModel};
+use crate::state::{State, translation};
+
+/// Steps a flexible body by the paper's scheme.
+///
+/// As an iterator it yields the state after each step, without end; [`PaperScheme::step`] does the same without
+/// allocating.
+#[derive(Debug, Clone)]
+pub struct PaperScheme {
+    model: ModalModel,
+    rotation: ModalRotation,
+    kinematics: ReferenceKinematics,
+    step: f64,
+    steps_done: u64,
+    mass: f64,
+    state: State,
+    scratch: Scratch,
+    failed: bool,
+}
+
+/// Relative motion of P and Q in the rigid modes.
+#[derive(Debug, Clone)]
+struct ReferenceKinematics {
+    points: ReferencePoints,
+    rotation_basis: Matrix3<f64>,
+    /// P − R and Q − R.
+    arms: [Vector3<f64>; 2],
+}
+
+/// Velocities of P and Q relative to R, body components.
+type Relative = [Vector3<f64>; 2];
+
+/// One stage's increments: Δη, ΔM and Δv.
+#[derive(Debug, Clone)]
+struct Increment {
+    displacement: Vec<f64>,
+    velocity: Vec<f64>,
+    rotation_vector: Vector3<f64>,
+    relative_velocity: Relative,
+}
+
+#[derive(Debug, Clone)]
+struct Scratch {
+    stage: Increment,
+    total: Increment,
+    /// What T is applied to.
+    unrotated: Vec<f64>,
+    next_displacement: Vec<f64>,
+    next_velocity: Vec<f64>,
+    acceleration: Vec<f64>,
+}
+
+impl PaperScheme {
+    /// A motion of `body` from `initial` in steps of `step`. `reference_points` are R, P, Q from the centre of mass,
+    /// body axes.
+    ///
+    /// # Errors
+    /// [`SetupError`]: lists of wrong length, numbers that are not finite, a step beyond the stability limit.
+    pub fn new(
+        body: &ReducedBody,
+        model: ModalModel,
+        reference_points: [Vector3<f64>; 3],
+        initial: &Initial,
+        step: f64,
+    ) -> Result<Self, SetupError> {
+        model.check_step(step)?;
+        let [r, p, q] = reference_points;
+        let kinematics = ReferenceKinematics {
+            points: ReferencePoints::new(&r, &p, &q)?,
+            rotation_basis: body.rotation_basis,
+            arms: [p - r, q - r],
+        };
+        let (modal_displacement, modal_velocity) = initial.modal_state(body)?;
+        let size = modal_displacement.len();
+        let zeros = || vec![0.0; size];
+        let increment = || Increment {
+            displacement: zeros(),
+            velocity: zeros(),
+            rotation_vector: Vector3::zeros(),
+            relative_velocity: [Vector3::zeros(); 2],
+        };
+        let mut scheme = Self {
+            model,
+            rotation: ModalRotation::new(body),
+            kinematics,
+            step,
+            steps_done: 0,
+            mass: body.mass,
+            state: State {
+                time: 0.0,
+                attitude: rigid_kin::Attitude::identity(),
+                origin_global: body.center_of_mass,
+                modal_displacement,
+                modal_velocity,
+                modal_acceleration: zeros(),
+                omega_body: Vector3::zeros(),
+                alpha_body: Vector3::zeros(),
+            },
+            scratch: Scratch {
+                stage: increment(),
+                total: increment(),
+                unrotated: zeros(),
+                next_displacement: zeros(),
+                next_velocity: zeros(),
+                acceleration: zeros(),
+            },
+            failed: false,
+        };
+        scheme.complete_state();
+        Ok(scheme)
+    }
+
+    /// The state that has been reached.
+    pub fn state(&self) -> &State {
+        &self.state
+    }
+
+    /// Does one step, k1 to k4 and (38) to (40).
+    ///
+    /// # Errors
+    /// [`StepError`]; the state stays that before the step.
+    pub fn step(&mut self) -> Result<&State, StepError> {
+        let Self { model, rotation, kinematics, state, scratch, .. } = self;
+        let (h, time) = (self.step, state.time);
+        let global_to_body = state.attitude.global_to_body();
+        let relative_velocity = kinematics.relative(&state.modal_velocity);
+        let turn_error = |BeyondFullTurn { angle }| {
+            if angle.is_finite() {
+                StepError::TurnTooLarge { time, step: h, angle }
+            } else {
+                StepError::NotFinite { time, what: "the angular velocity" }
+            }
+        };
+        scratch.total.clear();
+
+        // k1: in the frame of the step's start, where θ = 0 and f⁻¹ is the identity.
+        let Scratch { stage, total, unrotated, next_displacement, next_velocity, acceleration } = scratch;
+        stage.set_modal(h, &state.modal_velocity, &state.modal_acceleration);
+        stage.relative_velocity =
+            kinematics.relative_velocity_change(h, &state.modal_acceleration, &relative_velocity, &state.omega_body);
+        stage.rotation_vector = h * state.omega_body;
+        total.add(1.0 / 6.0, stage);
+
+        for (fraction, weight, when) in [
+            (0.5, 1.0 / 3.0, LoadTime::Mean), // k2
+            (0.5, 1.0 / 3.0, LoadTime::Mean), // k3
+            (1.0, 1.0 / 6.0, LoadTime::End),  // k4
+        ] {
+            let v: Relative = std::array::from_fn(|i| relative_velocity[i] + fraction * stage.relative_velocity[i]);
+            let omega = kinematics.points.angular_velocity(&v[0], &v[1]);
+            let theta = fraction * stage.rotation_vector;
+            let turn = transformation_matrix(&theta);
+            rotation.set(&turn);
+            advance(rotation, state, fraction, stage, unrotated, next_displacement, next_velocity);
+            model.acceleration(next_displacement, next_velocity, when, &(turn * global_to_body), acceleration);
+
+            stage.set_modal(h, next_velocity, acceleration);
+            stage.relative_velocity = kinematics.relative_velocity_change(h, acceleration, &v, &omega);
+            stage.rotation_vector = h * f_inverse(&theta, &omega).map_err(turn_error)?;
+            total.add(weight, stage);
+        }
+
+        let theta = total.rotation_vector; // (38), (39) are the weights above
+        if !(theta.norm() < std::f64::consts::TAU) {
+            return Err(turn_error(BeyondFullTurn { angle: theta.norm() }));
+        }
+        rotation.set(&transformation_matrix(&theta));
+        advance(rotation, state, 1.0, total, unrotated, next_displacement, next_velocity); // (40)
+        if !next_displacement.iter().chain(next_velocity.iter()).all(|x| x.is_finite()) {
+            return Err(StepError::NotFinite { time, what: "a modal coordinate" });
+        }
+
+        // The rigid displacement that (40) takes out is where the frame goes.
+        let moved_body = translation(&total.displacement) / self.mass.sqrt();
+        state.origin_global += state.attitude.to_global(&moved_body);
+        state.attitude = state.attitude.advanced_by(&theta);
+        std::mem::swap(&mut state.modal_displacement, next_displacement);
+        std::mem::swap(&mut state.modal_velocity, next_velocity);
+        self.steps_done += 1;
+        state.time = self.steps_done as f64 * h;
+        self.complete_state();
+        Ok(&self.state)
+    }
+
+    /// Accelerations (35), ω (36) and α (37) of the state's displacements and velocities.
+    fn complete_state(&mut self) {
+        let Self { model, kinematics, state, .. } = self;
+        model.set_step(state.time, (self.steps_done + 1) as f64 * self.step);
+        let global_to_body = state.attitude.global_to_body();
+        model.acceleration(
+            &state.modal_displacement,
+            &state.modal_velocity,
+            LoadTime::Start,
+            &global_to_body,
+            &mut state.modal_acceleration,
+        );
+        let [v_p, v_q] = kinematics.relative(&state.modal_velocity);
+        let [a_p, a_q] = kinematics.relative(&state.modal_acceleration);
+        state.omega_body = kinematics.points.angular_velocity(&v_p, &v_q);
+        state.alpha_body = kinematics.points.angular_acceleration(&v_p, &v_q, &a_p, &a_q, &state.omega_body);
+    }
+}
+
+impl Iterator for PaperScheme {
+    type Item = Result<State, StepError>;
+
+    /// The state after the next step; `None` after an error.
+    fn next(&mut self) -> Option<Self::Item> {
+        if self.failed {
+            return None;
+        }
+        let result = self.step().cloned();
+        self.failed = result.is_err();
+        Some(result)
+    }
+}
+
+impl ReferenceKinematics {
+    /// Velocities (or accelerations) of P and Q relative to R in the rigid modes: `(B y) × arm`.
+    fn relative(&self, modal: &[f64]) -> Relative {
+        let rate = self.rotation_basis * crate::state::rotation(modal);
+        self.arms.map(|arm| rate.cross(&arm))
+    }
+
+    /// Δv of (15) and (16) over a step of length h.
+    fn relative_velocity_change(
+        &self,
+        h: f64,
+        modal_acceleration: &[f64],
+        velocity: &Relative,
+        omega: &Vector3<f64>,
+    ) -> Relative {
+        let acceleration = self.relative(modal_acceleration);
+        std::array::from_fn(|i| h * relative_velocity_rate(&acceleration[i], &velocity[i], omega))
+    }
+}
+
+impl Increment {
+    fn clear(&mut self) {
+        self.displacement.fill(0.0);
+        self.velocity.fill(0.0);
+        self.rotation_vector = Vector3::zeros();
+    }
+
+    /// Δη = Δt η̇
+    fn set_modal(&mut self, h: f64, velocity: &[f64], acceleration: &[f64]) {
+        for (increment, rate) in [(&mut self.displacement, velocity), (&mut self.velocity, acceleration)] {
+            for (d, r) in increment.iter_mut().zip(rate) {
+                *d = h * r;
+            }
+        }
+    }
+
+    fn add(&mut self, weight: f64, stage: &Self) {
+        for (sum, part) in [(&mut self.displacement, &stage.displacement), (&mut self.velocity, &stage.velocity)] {
+            for (s, p) in sum.iter_mut().zip(part) {
+                *s += weight * p;
+            }
+        }
+        self.rotation_vector += weight * stage.rotation_vector;
+    }
+}
+
+/// `T({x, ẋ}_n + fraction·Ψ Δη − {fraction·Ψ_R Δq_R, 0})` and its inverse modal expansion: the rigid displacements of
+/// the increment stay with the frame.
+fn advance(
+    rotation: &ModalRotation,
+    state: &State,
+    fraction: f64,
+    increment: &Increment,
+    unrotated: &mut [f64],
+    displacement: &mut [f64],
+    velocity: &mut [f64],
+) {
+    for (x, (q, dq)) in unrotated.iter_mut().zip(state.modal_displacement.iter().zip(&increment.displacement)) {
+        *x = q + fraction * dq;
+    }
+    unrotated[..6].copy_from_slice(&state.modal_displacement[..6]);
+    rotation.apply(unrotated, displacement);
+    for (x, (y, dy)) in unrotated.iter_mut().zip(state.modal_velocity.iter().zip(&increment.velocity)) {
+        *x = y + fraction * dy;
+    }
+    rotation.apply(unrotated, velocity);
+}

@@ -1,0 +1,38 @@
+//! The state of a motion in the frame of the moment.
+
+use nalgebra::Vector3;
+use rigid_kin::Attitude;
+
+/// State at one time, in the inertial frame that coincides with the (dummy) rigid body then.
+///
+/// Modal lists have 6+nf entries: three translations, three rotations, then the flexible modes. They are components
+/// in this frame, of motion relative to global space (η of Eq. 33), not to the body.
+#[derive(Debug, Clone, PartialEq)]
+pub struct State {
+    /// Time.
+    pub time: f64,
+    /// Attitude of the frame.
+    pub attitude: Attitude,
+    /// Where the frame's origin is, global components; at the beginning it is the centre of mass.
+    pub origin_global: Vector3<f64>,
+    /// Modal displacements q. The rigid ones are the remainder that the frame has not taken.
+    pub modal_displacement: Vec<f64>,
+    /// Modal velocities q̇.
+    pub modal_velocity: Vec<f64>,
+    /// Modal accelerations q̈.
+    pub modal_acceleration: Vec<f64>,
+    /// Angular velocity of the dummy rigid body by g, Eq. (36), body components.
+    pub omega_body: Vector3<f64>,
+    /// Its angular acceleration by h, Eq. (37), body components. See [`rigid_kin::ReferencePoints`] for its limits.
+    pub alpha_body: Vector3<f64>,
+}
+
+/// The three translations of a modal list.
+pub(crate) fn translation(modal: &[f64]) -> Vector3<f64> {
+    Vector3::new(modal[0], modal[1], modal[2])
+}
+
+/// The three rotations of a modal list.
+pub(crate) fn rotation(modal: &[f64]) -> Vector3<f64> {
+    Vector3::new(modal[3], modal[4], modal[5])
+}

@@ -1,0 +1,228 @@
+//! A moving body as an animated GIF.
+
+use crate::FigureError;
+use crate::chart::{INK, LABEL_EM, TITLE_EM};
+use crate::picture::{Anchor, Picture, write_error};
+use crate::render::{Canvas, Grades, check_indices, check_points, surface_colours};
+use crate::shapes::EDGE;
+use crate::ticks;
+use crate::view::{View, Window};
+use plotters::backend::{BitMapBackend, DrawingBackend};
+use plotters::style::RGBColor;
+use std::collections::HashMap;
+use std::path::Path;
+
+const WIDTH: u32 = 720;
+const HEIGHT: u32 = 400;
+const MARGIN: f64 = 14.0;
+const FINENESS: u32 = 2;
+/// Few enough that all frames share one palette of a GIF's 256 colours.
+const GRADES: Grades = Grades { values: 28, lights: 5 };
+const GROUND: RGBColor = RGBColor(214, 214, 214);
+const TRACE: RGBColor = RGBColor(213, 94, 0);
+const WHITE: RGBColor = RGBColor(255, 255, 255);
+
+/// The body at one moment.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Frame {
+    /// Places of the points.
+    pub points: Vec<[f64; 3]>,
+    /// A value per point, shown as colour.
+    pub values: Vec<f64>,
+    /// What is written in the frame, for instance "t = 0.120 s".
+    pub caption: String,
+}
+
+/// A moving body, seen by a viewer at rest; the picture holds the whole of the motion.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Animation<'a> {
+    /// Title in every frame; may be empty.
+    pub title: String,
+    /// The surface, by indices of points.
+    pub triangles: &'a [[u32; 3]],
+    /// Edges drawn as lines, by indices of points.
+    pub edges: &'a [[u32; 2]],
+    /// The frames in the order of time.
+    pub frames: &'a [Frame],
+    /// How long each is shown, in milliseconds (in steps of ten).
+    pub frame_milliseconds: u32,
+    /// From where the body is seen.
+    pub view: View,
+    /// Whether a grid is drawn in a plane of constant z below the body.
+    pub ground: bool,
+    /// Index of a point whose path so far is drawn.
+    pub traced_point: Option<usize>,
+}
+
+impl Animation<'_> {
+    /// Writes a GIF of 720×400 dots that starts again at its end. Colours run from the smallest value
+    /// of all frames to the largest.
+    ///
+    /// # Errors
+    /// [`FigureError::Empty`] without frames, [`FigureError::WrongLength`],
+    /// [`FigureError::NoSuchPoint`], [`FigureError::NotFinite`], [`FigureError::Write`].
+    pub fn save_gif(&self, path: impl AsRef<Path>) -> Result<(), FigureError> {
+        let path = path.as_ref();
+        self.check()?;
+        let stage = self.stage();
+        let mut palette = Palette::new();
+        let size = (WIDTH, HEIGHT);
+        let mut gif = BitMapBackend::gif(path, size, self.frame_milliseconds).map_err(write_error(path))?;
+        for last in 0..self.frames.len() {
+            let rgb = palette.applied(self.picture(&stage, last).rgb(1)?);
+            gif.blit_bitmap((0, 0), size, &rgb).and_then(|()| gif.present()).map_err(write_error(path))?;
+        }
+        Ok(())
+    }
+
+    fn check(&self) -> Result<(), FigureError> {
+        let figure = self.title.as_str();
+        let Some(first) = self.frames.first() else {
+            return Err(FigureError::Empty { figure: figure.into(), what: "frame" });
+        };
+        let count = first.points.len();
+        check_indices(figure, "a triangle", self.triangles, count)?;
+        check_indices(figure, "an edge", self.edges, count)?;
+        if let Some(index) = self.traced_point.filter(|&index| index >= count) {
+            return Err(FigureError::NoSuchPoint { figure: figure.into(), what: "the trace", index, count });
+        }
+        for (i, frame) in self.frames.iter().enumerate() {
+            check_points(figure, &format!("frame {i}"), count, &frame.points, &frame.values)?;
+        }
+        Ok(())
+    }
+
+    /// What stays the same in all frames.
+    fn stage(&self) -> Stage {
+        let ground = if self.ground { self.ground_lines() } else { Vec::new() };
+        let points = self.frames.iter().flat_map(|frame| &frame.points);
+        let all = points.chain(ground.iter().flatten()).map(|point| self.view.see(point));
+        let window = Window::around(all);
+        let top = self.body_top();
+        let room = [f64::from(WIDTH) - 2.0 * MARGIN, f64::from(HEIGHT) - top - MARGIN];
+        let fit = |axis: usize| room[axis] / window.size()[axis];
+        let scale = Some(fit(0).min(fit(1))).filter(|scale| scale.is_finite()).unwrap_or(1.0);
+
+        let values = self.frames.iter().flat_map(|frame| &frame.values);
+        let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &v| (l.min(v), h.max(v)));
+        Stage { ground, scale, centre: window.centre(), values: ticks::linear_range(low, high, 0.0) }
+    }
+
+    fn body_top(&self) -> f64 {
+        MARGIN + if self.title.is_empty() { 0.0 } else { 1.6 * TITLE_EM } + 1.6 * LABEL_EM
+    }
+
+    /// Lines a round distance apart in the plane of the lowest point, a little below it.
+    fn ground_lines(&self) -> Vec<[[f64; 3]; 2]> {
+        let points = || self.frames.iter().flat_map(|frame| &frame.points);
+        let range = |axis: usize| {
+            points().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), p| (l.min(p[axis]), h.max(p[axis])))
+        };
+        let (x, y, z) = (range(0), range(1), range(2));
+        let largest = (x.1 - x.0).max(y.1 - y.0);
+        if largest <= 0.0 {
+            return Vec::new();
+        }
+        let step = ticks::round_step(largest / 10.0);
+        let level = z.0 - 0.02 * largest;
+        let whole = |(low, high): (f64, f64)| ((low / step).floor() as i64, (high / step).ceil() as i64);
+        let ((x0, x1), (y0, y1)) = (whole(x), whole(y));
+        let place = |i: i64, j: i64| [i as f64 * step, j as f64 * step, level];
+        let along_y = (x0..=x1).map(|i| [place(i, y0), place(i, y1)]);
+        along_y.chain((y0..=y1).map(|j| [place(x0, j), place(x1, j)])).collect()
+    }
+
+    fn picture(&self, stage: &Stage, last: usize) -> Picture {
+        let frame = &self.frames[last];
+        let fineness = f64::from(FINENESS);
+        let top = self.body_top().floor();
+        let size = [WIDTH * FINENESS, (HEIGHT - top as u32) * FINENESS];
+        let mut canvas = Canvas::new(size, stage.scale * fineness, stage.centre, GRADES);
+        for line in &stage.ground {
+            let [from, to] = line.map(|point| self.view.see(&point));
+            canvas.line(&from, &to, fineness, GROUND);
+        }
+        let (low, high) = stage.values;
+        let values: Vec<f64> = frame.values.iter().map(|value| (value - low) / (high - low)).collect();
+        let points: Vec<_> = frame.points.iter().map(|point| self.view.see(point)).collect();
+        canvas.surface(self.triangles, &points, &values);
+        for edge in self.edges {
+            let [from, to] = edge.map(|i| points[i as usize]);
+            canvas.line(&from, &to, 0.9 * fineness, EDGE);
+        }
+        if let Some(point) = self.traced_point {
+            let path: Vec<_> = self.frames[..=last].iter().map(|frame| self.view.see(&frame.points[point])).collect();
+            for pair in path.windows(2) {
+                canvas.line(&pair[0], &pair[1], 1.6 * fineness, TRACE);
+            }
+        }
+
+        let mut picture = Picture::new(WIDTH, HEIGHT, FINENESS);
+        picture.bitmap([0.0, top], size[0], size[1], canvas.into_rgb());
+        let mut baseline = MARGIN + TITLE_EM;
+        if !self.title.is_empty() {
+            picture.text([MARGIN, baseline], &self.title, TITLE_EM, Anchor::Left, INK);
+            baseline += 1.5 * TITLE_EM;
+        }
+        picture.text([MARGIN, baseline], &frame.caption, LABEL_EM, Anchor::Left, INK);
+        picture
+    }
+}
+
+struct Stage {
+    ground: Vec<[[f64; 3]; 2]>,
+    scale: f64,
+    centre: [f64; 2],
+    /// Smallest and largest value of all frames.
+    values: (f64, f64),
+}
+
+/// At most 256 colours for all frames: a palette made anew for each would flicker.
+struct Palette {
+    colours: Vec<[u8; 3]>,
+    /// The nearest of them to the colours met so far.
+    nearest: HashMap<[u8; 3], [u8; 3]>,
+}
+
+impl Palette {
+    fn new() -> Self {
+        let mut colours = surface_colours(GRADES);
+        let rgb = |RGBColor(r, g, b): RGBColor| [r, g, b];
+        let mixed = |a: [u8; 3], b: [u8; 3], part: f64| {
+            [0, 1, 2].map(|i| (f64::from(a[i]) * (1.0 - part) + f64::from(b[i]) * part).round() as u8)
+        };
+        let bright = colours[colours.len() - GRADES.values..].to_vec();
+        // Smoothed edges: of the body against white and against its lines, of lines and texts against white.
+        colours.extend(bright.iter().map(|&colour| mixed(colour, rgb(WHITE), 0.5)));
+        colours.extend(bright.iter().map(|&colour| mixed(colour, rgb(EDGE), 0.5)));
+        colours.extend((0..=16).map(|i| mixed(rgb(INK), rgb(WHITE), f64::from(i) / 16.0)));
+        colours.extend((0..4).map(|i| mixed(rgb(TRACE), rgb(WHITE), f64::from(i) / 4.0)));
+        colours.push(rgb(GROUND));
+        Self { colours, nearest: HashMap::new() }
+    }
+
+    fn applied(&mut self, mut rgb: Vec<u8>) -> Vec<u8> {
+        let square = |a: u8, b: u8| u32::from(a.abs_diff(b)).pow(2);
+        for dot in rgb.as_chunks_mut::<3>().0 {
+            *dot = *self.nearest.entry(*dot).or_insert_with_key(|dot| {
+                let distance = |c: &&[u8; 3]| square(c[0], dot[0]) + square(c[1], dot[1]) + square(c[2], dot[2]);
+                self.colours.iter().min_by_key(distance).copied().unwrap_or(*dot)
+            });
+        }
+        rgb
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_palette_fits_a_gif_and_keeps_its_own_colours() {
+        let mut palette = Palette::new();
+        assert!(palette.colours.len() <= 256, "{}", palette.colours.len());
+        let own = palette.colours.concat();
+        assert_eq!(palette.applied(own.clone()), own);
+        assert_eq!(palette.applied(vec![255, 254, 255]), [255, 255, 255]);
+    }
+}

@@ -1,0 +1,293 @@
+//! Figures of every kind. They are left in the folder `flexframe-figures` of the system's folder for
+//! temporary files, to be looked at.
+
+#[path = "../src/test_body.rs"]
+mod test_body;
+
+use results::*;
+use std::f64::consts::PI;
+use std::path::{Path, PathBuf};
+use test_body::Block;
+
+fn folder() -> PathBuf {
+    let folder = std::env::temp_dir().join("flexframe-figures");
+    std::fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+fn series(label: &str, stroke: Stroke, points: impl IntoIterator<Item = (f64, f64)>) -> Series {
+    Series { label: label.into(), points: points.into_iter().collect(), stroke }
+}
+
+fn chart(title: &str, series: Vec<Series>) -> LineChart {
+    LineChart {
+        title: title.into(),
+        x_label: "Time t (s)".into(),
+        y_label: "Angular velocity ω₂ (rad/s)".into(),
+        x_scale: Scale::Linear,
+        y_scale: Scale::Linear,
+        series,
+    }
+}
+
+fn size_of(path: &Path) -> u64 {
+    std::fs::metadata(path).unwrap().len()
+}
+
+fn times(n: usize) -> impl Iterator<Item = f64> {
+    (0..n).map(move |i| 0.5 * i as f64 / (n - 1) as f64)
+}
+
+#[test]
+fn coinciding_series_are_both_drawn() {
+    let response = |t: f64| -0.4 * (1.0 - (-8.0 * t).exp()) + 0.05 * (2.0 * PI * 24.5 * t).sin() * (-6.0 * t).exp();
+    let rigid = |t: f64| -0.4 * (1.0 - (-8.0 * t).exp());
+    let chart = chart(
+        "Angular velocity of the plate about axis 2",
+        vec![
+            series("flexible plate", Stroke::Solid, times(5001).map(|t| (t, response(t)))),
+            series("flexible plate, reference", Stroke::Dashed, times(5001).map(|t| (t, response(t)))),
+            series("rigid plate", Stroke::Solid, times(50).map(|t| (t, rigid(t)))),
+        ],
+    );
+    let [svg, _] = chart.save(folder().join("coinciding")).unwrap();
+    let text = std::fs::read_to_string(&svg).unwrap();
+    let first = |colour: &str| text.find(&format!("stroke=\"{colour}\"")).unwrap();
+    // The dashes of the second colour come after, and so above, all solid lines.
+    assert!(first("#D55E00") > first("#0072B2") && text.rfind("#009E73").unwrap() > text.rfind("#0072B2").unwrap());
+}
+
+#[test]
+fn a_long_history_keeps_its_peak_and_a_small_file() {
+    let n = 200_000;
+    let spike = 123_457;
+    let value = |i: usize| if i == spike { 3.0 } else { (i as f64 * 0.37).sin() };
+    let points = (0..n).map(|i| (i as f64 * 1e-4, value(i)));
+    let mut chart = chart("", vec![series("", Stroke::Solid, points)]);
+    chart.y_label = "Acceleration of P1 (mm/s²)".into();
+    let [svg, _] = chart.save(folder().join("long")).unwrap();
+    assert!(size_of(&svg) < 100_000, "{}", size_of(&svg));
+
+    // The spike is alone at the top: 3 on an axis from −1.2 to 3.2, whose frame is the tallest path.
+    let text = std::fs::read_to_string(&svg).unwrap();
+    let places: Vec<(i64, i64)> = text
+        .lines()
+        .filter(|line| line.contains("#0072B2"))
+        .flat_map(|line| line.split("points=\"").nth(1).unwrap().split('"').next().unwrap().split_whitespace())
+        .map(|place| place.split_once(',').unwrap())
+        .map(|(x, y)| (x.parse().unwrap(), y.parse().unwrap()))
+        .collect();
+    let top = places.iter().map(|place| place.1).min().unwrap();
+    let below: i64 = places.iter().filter(|place| place.0 < 1000).map(|place| place.1).min().unwrap();
+    let bottom = places.iter().map(|place| place.1).max().unwrap();
+    let measured = (bottom - top) as f64 / (bottom - below) as f64;
+    assert!((measured - 4.0 / 2.0).abs() < 0.01, "{measured}");
+}
+
+#[test]
+fn constant_tiny_and_many_series_have_axes() {
+    let zero =
+        chart("Linear momentum, undisturbed", vec![series("all zero", Stroke::Solid, times(10).map(|t| (t, 0.0)))]);
+    zero.save(folder().join("zero")).unwrap();
+    let single = chart("One point", vec![series("", Stroke::Solid, [(2.0, 5.0)])]);
+    single.save(folder().join("single")).unwrap();
+
+    let drift = |t: f64| 1e-13 * (40.0 * t).sin() - 4e-13 * t;
+    let mut tiny = chart("Energy error", vec![series("exponential", Stroke::Solid, times(800).map(|t| (t, drift(t))))]);
+    tiny.y_label = "Energy − E₀ (Mg mm²/s²)".into();
+    tiny.save(folder().join("tiny")).unwrap();
+    let mut offset =
+        chart("Kinetic energy", vec![series("", Stroke::Solid, times(800).map(|t| (t, 467.5 + 1e5 * drift(t))))]);
+    offset.y_label = "E (Mg mm²/s²)".into();
+    offset.save(folder().join("offset")).unwrap();
+
+    let wave = |k: usize| {
+        let stroke = if k.is_multiple_of(2) { Stroke::Solid } else { Stroke::Dashed };
+        let points = times(300).map(move |t| (t, 1e5 * (20.0 * t + k as f64).sin() * (1.0 + k as f64)));
+        series(&format!("modal coordinate q{k}"), stroke, points)
+    };
+    chart("Nine series", (0..9).map(wave).collect()).save(folder().join("many")).unwrap();
+}
+
+#[test]
+fn logarithmic_axes_show_orders_as_slopes() {
+    let ladder = || (0..8).map(|i| 5e-3 / 2_f64.powi(i));
+    let scheme = |label, order: i32, constant: f64, stroke| {
+        series(label, stroke, ladder().map(move |step| (step, constant * step.powi(order))))
+    };
+    let chart = LineChart {
+        title: "Error in attitude after 1 s".into(),
+        x_label: "Step Δt (s)".into(),
+        y_label: "Error (rad)".into(),
+        x_scale: Scale::Log,
+        y_scale: Scale::Log,
+        series: vec![
+            scheme("paper, Δt¹", 1, 14.0, Stroke::Solid),
+            scheme("strang, Δt²", 2, 50.0, Stroke::Solid),
+            scheme("exponential, Δt⁴", 4, 3e7, Stroke::Dashed),
+        ],
+    };
+    chart.save(folder().join("logarithmic")).unwrap();
+
+    let mut negative = chart.clone();
+    negative.series[1].points[3].1 = 0.0;
+    match negative.save(folder().join("never")) {
+        Err(FigureError::NotPositive { series, index, value, .. }) => {
+            assert_eq!((series.as_str(), index, value), ("strang, Δt²", 3, 0.0));
+        }
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn charts_refuse_what_cannot_be_drawn() {
+    let empty = chart("nothing", vec![series("a", Stroke::Solid, [])]);
+    assert!(matches!(empty.save(folder().join("never")), Err(FigureError::Empty { what: "point", .. })));
+    let nan = chart("nan", vec![series("a", Stroke::Solid, [(0.0, 1.0), (1.0, f64::NAN)])]);
+    assert!(matches!(nan.save(folder().join("never")), Err(FigureError::NotFinite { index: 1, .. })));
+    let chart = chart("fine", vec![series("a", Stroke::Solid, [(0.0, 1.0)])]);
+    match chart.save(folder().join("no such folder").join("chart")) {
+        Err(FigureError::Write { path, .. }) => assert!(path.ends_with("no such folder/chart.svg")),
+        other => panic!("{other:?}"),
+    }
+}
+
+/// Bending and torsion shapes like those of a free plate, with the size of the displacement.
+fn mode(block: &Block, k: usize, amplitude: f64) -> (Vec<[f64; 3]>, Vec<f64>) {
+    let displaced = |p: &[f64; 3]| {
+        let s = p[0] / 1000.0;
+        let n = (k / 2 + 2) as f64;
+        let displacement = if k.is_multiple_of(2) {
+            let slope = -(n * PI * s).sin() * n * PI / 1000.0;
+            [-p[2] * slope * amplitude, 0.0, amplitude * (n * PI * s).cos()]
+        } else {
+            let twist = amplitude / 25.0 * ((n - 1.0) * PI * s).sin();
+            [0.0, -p[2] * twist, p[1] * twist]
+        };
+        let size = displacement.iter().map(|u| u * u).sum::<f64>().sqrt();
+        ([0, 1, 2].map(|i| p[i] + displacement[i]), size)
+    };
+    block.points.iter().map(displaced).unzip()
+}
+
+fn grid<'a>(block: &'a Block, triangles: &'a [[u32; 3]], edges: &'a [[u32; 2]], amplitude: f64) -> ShapeGrid<'a> {
+    let panel = |k: usize| {
+        let (points, values) = mode(block, k, amplitude);
+        Panel { title: format!("Mode {}: {:.2} Hz", k + 7, 24.53 * (k as f64 + 1.0).powi(2)), points, values }
+    };
+    ShapeGrid {
+        title: "Flexible modes of the free plate".into(),
+        value_label: "Size of the modal displacement (mm)".into(),
+        triangles,
+        edges,
+        undeformed: &block.points,
+        panels: (0..10).map(panel).collect(),
+        columns: 2,
+        view: View::default(),
+    }
+}
+
+#[test]
+fn mode_shapes_fill_their_panels() {
+    let block = Block::new([1000.0, 50.0, 10.0], [100, 5, 1]);
+    let triangles = boundary_triangles(&block.tetrahedra);
+    let edges = sharp_edges(&block.points, &triangles);
+    assert_eq!(triangles.len(), 2 * 4 * 2 * (500 + 100 + 5));
+    let figure = grid(&block, &triangles, &edges, 60.0);
+    let [svg, png] = figure.save(folder().join("modes")).unwrap();
+    assert!(size_of(&svg) < 2_000_000 && size_of(&png) < 1_000_000, "{} {}", size_of(&svg), size_of(&png));
+
+    let cube = Block::new([100.0, 80.0, 60.0], [4, 4, 4]);
+    let triangles = boundary_triangles(&cube.tetrahedra);
+    let edges = sharp_edges(&cube.points, &triangles);
+    let mut figure = grid(&cube, &triangles, &edges, 0.0);
+    figure.panels.truncate(3);
+    figure.columns = 3;
+    figure.value_label = "nothing moves".into();
+    figure.save(folder().join("blocks")).unwrap();
+}
+
+#[test]
+fn shapes_refuse_what_does_not_fit_together() {
+    let block = Block::new([4.0, 2.0, 1.0], [2, 1, 1]);
+    let triangles = boundary_triangles(&block.tetrahedra);
+    let good = grid(&block, &triangles, &[], 0.1);
+    let save = |figure: ShapeGrid| figure.save(folder().join("never")).unwrap_err();
+
+    assert!(matches!(save(ShapeGrid { columns: 0, ..good.clone() }), FigureError::Empty { .. }));
+    assert!(matches!(save(ShapeGrid { panels: vec![], ..good.clone() }), FigureError::Empty { .. }));
+    let far = [[0, 1, 999]];
+    assert!(matches!(
+        save(ShapeGrid { triangles: &far, ..good.clone() }),
+        FigureError::NoSuchPoint { what: "a triangle", index: 999, .. }
+    ));
+    let mut short = good.clone();
+    short.panels[4].values.pop();
+    assert!(matches!(save(short), FigureError::WrongLength { .. }));
+    let mut nan = good;
+    nan.panels[2].points[5][1] = f64::NAN;
+    assert!(matches!(save(nan), FigureError::NotFinite { index: 5, .. }));
+}
+
+#[test]
+fn a_tumbling_plate_is_a_small_animation() {
+    let block = Block::new([1000.0, 50.0, 10.0], [100, 5, 1]);
+    let triangles = boundary_triangles(&block.tetrahedra);
+    let edges = sharp_edges(&block.points, &triangles);
+    let frames: Vec<Frame> = (0..60)
+        .map(|i| {
+            let time = i as f64 / 60.0;
+            let (points, values) = mode(&block, 0, 40.0 * (2.0 * PI * 3.0 * time).sin());
+            let (sin, cos) = (2.0 * PI * time).sin_cos();
+            let place = |p: &[f64; 3]| [cos * p[0] + sin * p[2] + 300.0 * time, p[1], cos * p[2] - sin * p[0]];
+            Frame { points: points.iter().map(place).collect(), values, caption: format!("t = {time:.3} s") }
+        })
+        .collect();
+    let animation = Animation {
+        title: "Free plate, 50 N corner pulse".into(),
+        triangles: &triangles,
+        edges: &edges,
+        frames: &frames,
+        frame_milliseconds: 50,
+        view: View::default(),
+        ground: true,
+        traced_point: Some(0),
+    };
+    let path = folder().join("tumbling.gif");
+    animation.save_gif(&path).unwrap();
+    assert!(size_of(&path) < 1_500_000, "{}", size_of(&path));
+
+    let refused = Animation { traced_point: Some(block.points.len()), ..animation.clone() };
+    assert!(matches!(refused.save_gif(&path), Err(FigureError::NoSuchPoint { what: "the trace", .. })));
+    let refused = Animation { frames: &[], ..animation };
+    assert!(matches!(refused.save_gif(&path), Err(FigureError::Empty { what: "frame", .. })));
+}
+
+#[test]
+fn a_body_without_extent_is_drawn() {
+    let points = vec![[7.0, 8.0, 9.0]; 3];
+    let panel = Panel { title: "a point".into(), points: points.clone(), values: vec![1.0; 3] };
+    let figure = ShapeGrid {
+        title: String::new(),
+        value_label: "x".into(),
+        triangles: &[[0, 1, 2]],
+        edges: &[[0, 1]],
+        undeformed: &[],
+        panels: vec![panel],
+        columns: 4,
+        view: View::default(),
+    };
+    figure.save(folder().join("point")).unwrap();
+    let frames = vec![Frame { points, values: vec![0.0; 3], caption: String::new() }; 2];
+    let animation = Animation {
+        title: String::new(),
+        triangles: &[[0, 1, 2]],
+        edges: &[[0, 1]],
+        frames: &frames,
+        frame_milliseconds: 20,
+        view: View::default(),
+        ground: true,
+        traced_point: Some(2),
+    };
+    animation.save_gif(folder().join("point.gif")).unwrap();
+}
