@@ -3,6 +3,8 @@
 //! Each column of nodes gathers from the elements around its node, always in the same order. So no two threads
 //! write to one place, and the sums do not depend on how many threads there are.
 
+use std::collections::HashMap;
+
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMat};
 use rayon::prelude::*;
 
@@ -120,15 +122,19 @@ impl Incidence {
 
 /// For each node, the nodes it is coupled to (itself too), sorted.
 fn neighbours(mesh: &Mesh, incidence: &Incidence, carried: &[(f64, Location)]) -> Vec<Vec<u32>> {
-    (0..mesh.positions().len())
+    let mut carriers: HashMap<u32, Vec<&Location>> = HashMap::new();
+    for (_, location) in carried {
+        for node in &location.nodes {
+            carriers.entry(*node).or_default().push(location);
+        }
+    }
+    (0..mesh.positions().len() as u32)
         .into_par_iter()
         .map(|node| {
             let mut rows: Vec<u32> =
-                incidence.of(node).iter().flat_map(|(e, _)| mesh.elements()[*e as usize]).collect();
-            for (_, location) in carried {
-                if location.nodes.contains(&(node as u32)) {
-                    rows.extend(&location.nodes);
-                }
+                incidence.of(node as usize).iter().flat_map(|(e, _)| mesh.elements()[*e as usize]).collect();
+            for location in carriers.get(&node).into_iter().flatten() {
+                rows.extend(&location.nodes);
             }
             rows.sort_unstable();
             rows.dedup();
@@ -224,7 +230,7 @@ fn add_point_mass(
         let start = pattern.col_ptr()[3 * *column_node as usize];
         let column = &mut mass[start..start + 9 * rows.len()];
         for (row_node, w_row) in location.nodes.iter().zip(&location.weights) {
-            add_scalar(column, rows.len(), place_of(rows, *row_node), m * w_row * w_column);
+            add_scalar(column, rows.len(), place_of(rows, *row_node), m * (w_row * w_column));
         }
     }
 }

@@ -32,7 +32,9 @@ pub enum MeshError {
         source: std::io::Error,
     },
     /// The file is not a MSH file of version 4.1.
-    #[error("{source_name}: not a MSH 4.1 file: found {found}; write it with `gmsh -3 -order 2 -format msh41`, or convert it with `meshio convert`")]
+    #[error(
+        "{source_name}: not a MSH 4.1 file: found {found}; write it with `gmsh -3 -order 2 -format msh41`, or convert it with `meshio convert`"
+    )]
     Version {
         /// The mesh.
         source_name: String,
@@ -54,7 +56,9 @@ pub enum MeshError {
         found: String,
     },
     /// A required section is not there.
-    #[error("{source_name}: there is no {section} section; mesh the volume and save it with `gmsh -3 -order 2 -format msh41`")]
+    #[error(
+        "{source_name}: there is no {section} section; mesh the volume and save it with `gmsh -3 -order 2 -format msh41`"
+    )]
     MissingSection {
         /// The mesh.
         source_name: String,
@@ -74,13 +78,17 @@ pub enum MeshError {
         cure: &'static str,
     },
     /// The file has no volume elements.
-    #[error("{source_name}: there are no tetrahedra; mesh the volume with `gmsh -3 -order 2`, and put the volume into a physical group if there are any")]
+    #[error(
+        "{source_name}: there are no tetrahedra; mesh the volume with `gmsh -3 -order 2`, and put the volume into a physical group if there are any"
+    )]
     NoElements {
         /// The mesh.
         source_name: String,
     },
     /// An element refers to a node that is not there.
-    #[error("{source_name}: element {element} uses node {node}, which is not in the mesh; save the mesh again with all its nodes")]
+    #[error(
+        "{source_name}: element {element} uses node {node}, which is not in the mesh; save the mesh again with all its nodes"
+    )]
     UnknownNode {
         /// The mesh.
         source_name: String,
@@ -90,7 +98,9 @@ pub enum MeshError {
         node: u64,
     },
     /// A tag is given twice.
-    #[error("{source_name}: {kind} tag {tag} is given twice; renumber the mesh (gmsh: `RenumberMeshNodes; RenumberMeshElements;`)")]
+    #[error(
+        "{source_name}: {kind} tag {tag} is given twice; renumber the mesh (gmsh: `RenumberMeshNodes; RenumberMeshElements;`)"
+    )]
     DuplicateTag {
         /// The mesh.
         source_name: String,
@@ -109,8 +119,24 @@ pub enum MeshError {
         /// Its position.
         position: [f64; 3],
     },
+    /// An element is in a group that is not in the list, in a mesh given by a program.
+    #[error(
+        "{source_name}: element {element} is in group number {group} (counted from 0), but there are {count} groups; give the group's name"
+    )]
+    UnknownGroup {
+        /// The mesh.
+        source_name: String,
+        /// Tag of the element.
+        element: u64,
+        /// The index that is too large.
+        group: usize,
+        /// Length of the list of groups.
+        count: usize,
+    },
     /// An element is turned inside out, or has no volume.
-    #[error("{source_name}: element {element} is {what}: its Jacobian determinant falls to {jacobian:e} (a good element of its size has about {expected:e}); improve the mesh there (gmsh: -optimize_ho, a smaller size, or straight edges with Mesh.SecondOrderLinear = 1)")]
+    #[error(
+        "{source_name}: element {element} is {what}: its Jacobian determinant falls to {jacobian:e} (a good element of its size has about {expected:e}); improve the mesh there (gmsh: -optimize_ho, a smaller size, or straight edges with Mesh.SecondOrderLinear = 1)"
+    )]
     Jacobian {
         /// The mesh.
         source_name: String,
@@ -124,7 +150,9 @@ pub enum MeshError {
         expected: f64,
     },
     /// Nodes that belong to no tetrahedron.
-    #[error("{source_name}: {count} node(s) belong to no tetrahedron, the first of them {tags:?}; remove the points from the geometry, or save the volume alone (gmsh: a physical volume, and Mesh.SaveAll = 0)")]
+    #[error(
+        "{source_name}: {count} node(s) belong to no tetrahedron, the first of them {tags:?}; remove the points from the geometry, or save the volume alone (gmsh: a physical volume, and Mesh.SaveAll = 0)"
+    )]
     OrphanNodes {
         /// The mesh.
         source_name: String,
@@ -203,8 +231,20 @@ pub enum AssemblyError {
         /// The mass.
         found: f64,
     },
+    /// A radius to spread a point mass over that is not a positive number.
+    #[error(
+        "the spread of the point mass at {at:?} is {found}; expected a positive radius (leave it out to put the mass on the point itself)"
+    )]
+    SpreadRadius {
+        /// Where.
+        at: [f64; 3],
+        /// The radius.
+        found: f64,
+    },
     /// A point that lies outside the body.
-    #[error("{source_name}: the point {at:?} is not on the body: the nearest node is {node} at {position:?}, {distance:.6} away; use a point of the body")]
+    #[error(
+        "{source_name}: the point {at:?} is not on the body: the nearest node is {node} at {position:?}, {distance:.6} away; use a point of the body"
+    )]
     OffBody {
         /// The mesh.
         source_name: String,
@@ -218,7 +258,9 @@ pub enum AssemblyError {
         distance: f64,
     },
     /// Too few nodes near a point to carry what is spread over them.
-    #[error("{source_name}: the {count} node(s) within {radius} of {at:?} cannot carry a mass spread about that point (the nearest node is {distance:.6} away); use a larger spread")]
+    #[error(
+        "{source_name}: the {count} node(s) within {radius} of {at:?} cannot carry a mass spread about that point (the nearest node is {distance:.6} away); use a larger spread"
+    )]
     Spread {
         /// The mesh.
         source_name: String,

@@ -1,6 +1,6 @@
 //! Integration points of the elements: gradients of the shape functions in space, and weights.
 
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 
 use crate::error::MeshError;
@@ -10,8 +10,9 @@ use crate::shape::{EDGES, NODES, shape_gradients};
 
 /// A mid-edge node this close to the middle of its edge, as a fraction of the edge, makes no curved element.
 const STRAIGHT: f64 = 1e-9;
-/// A determinant this small against that of a regular element of the same size is taken for zero.
-const DEGENERATE: f64 = 1e-13;
+/// A determinant this small against that of a regular element of the same size is taken for zero: what is left of
+/// a flat element is rounding, about 1e-16 × (distance from the origin / size of the element).
+const DEGENERATE: f64 = 1e-10;
 
 /// One integration point in space.
 pub(crate) struct IntegrationPoint {
@@ -29,8 +30,14 @@ pub(crate) struct Rules {
 
 impl Rules {
     pub(crate) fn new() -> Self {
-        let with_gradients =
-            |rule: Vec<Point>| rule.into_iter().map(|p| { let dn = shape_gradients(p.at); (p, dn) }).collect();
+        let with_gradients = |rule: Vec<Point>| {
+            rule.into_iter()
+                .map(|p| {
+                    let dn = shape_gradients(p.at);
+                    (p, dn)
+                })
+                .collect()
+        };
         Self { straight: with_gradients(quadrature::degree_2()), curved: with_gradients(quadrature::degree_5()) }
     }
 
@@ -43,7 +50,7 @@ impl Rules {
                 // ∂N/∂x = J⁻ᵀ ∂N/∂ξ; a mesh that has been checked has no singular Jacobian at these points.
                 let inverse = jacobian.try_inverse().unwrap_or_else(Matrix3::zeros);
                 let gradients = dn.map(|d| {
-                    let g = inverse.transpose() * nalgebra::Vector3::from(d);
+                    let g = inverse.transpose() * Vector3::from(d);
                     [g.x, g.y, g.z]
                 });
                 IntegrationPoint { gradients, volume: point.weight * jacobian.determinant() }
@@ -55,13 +62,9 @@ impl Rules {
 /// Whether all mid-edge nodes lie in the middle of their edges.
 pub(crate) fn is_straight(positions: &[[f64; 3]; 10]) -> bool {
     EDGES.into_iter().enumerate().all(|(edge, [a, b])| {
-        let (mut off, mut length) = (0.0, 0.0);
-        for axis in 0..3 {
-            let (xa, xb) = (positions[a][axis], positions[b][axis]);
-            off += (positions[4 + edge][axis] - 0.5 * (xa + xb)).powi(2);
-            length += (xb - xa).powi(2);
-        }
-        off <= STRAIGHT * STRAIGHT * length
+        let (a, b) = (Vector3::from(positions[a]), Vector3::from(positions[b]));
+        let off = Vector3::from(positions[4 + edge]) - 0.5 * (a + b);
+        off.norm() <= STRAIGHT * (b - a).norm()
     })
 }
 
@@ -92,9 +95,11 @@ pub(crate) fn check_jacobians(mesh: &Mesh) -> Result<(), MeshError> {
                 .iter()
                 .chain(&inside)
                 .map(|dn| jacobian(&positions, dn).determinant())
-                .fold(f64::INFINITY, f64::min)
+                // NaN, from coordinates near the end of the range, is kept, where `f64::min` would drop it.
+                .fold(f64::INFINITY, |least, det| if least.is_nan() || least <= det { least } else { det })
         };
-        (smallest <= DEGENERATE * regular).then_some((e, smallest, regular))
+        let good = smallest > DEGENERATE * regular;
+        (!good).then_some((e, smallest, regular))
     });
     match bad {
         None => Ok(()),
@@ -112,8 +117,7 @@ pub(crate) fn check_jacobians(mesh: &Mesh) -> Result<(), MeshError> {
 fn regular_determinant(positions: &[[f64; 3]; 10]) -> f64 {
     let longest = EDGES
         .into_iter()
-        .map(|[a, b]| (0..3).map(|axis| (positions[a][axis] - positions[b][axis]).powi(2)).sum::<f64>())
-        .fold(0.0, f64::max)
-        .sqrt();
+        .map(|[a, b]| (Vector3::from(positions[a]) - Vector3::from(positions[b])).norm())
+        .fold(0.0, f64::max);
     longest.powi(3) / 2.0_f64.sqrt()
 }

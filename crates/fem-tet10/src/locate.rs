@@ -9,6 +9,8 @@ use crate::shape::{barycentric, shape_functions, shape_gradients};
 
 /// Within this fraction of the mesh's diagonal, a point is at a node.
 const AT_NODE: f64 = 1e-7;
+/// Newton's method has converged once its step, in reference coordinates, is below this.
+const CONVERGED: f64 = 1e-9;
 /// How far outside of an element, in its barycentric coordinates, a point still belongs to it.
 const OUTSIDE: f64 = 1e-6;
 
@@ -36,10 +38,7 @@ impl Mesh {
                 let positions = self.element_positions(e);
                 let at = reference_coordinates(&positions, point)?;
                 let inside = barycentric(at).into_iter().all(|l| l >= -OUTSIDE);
-                inside.then(|| Location {
-                    nodes: self.elements()[e].to_vec(),
-                    weights: shape_functions(at).to_vec(),
-                })
+                inside.then(|| Location { nodes: self.elements()[e].to_vec(), weights: shape_functions(at).to_vec() })
             })
             .ok_or_else(|| AssemblyError::OffBody {
                 source_name: self.source().to_owned(),
@@ -68,22 +67,25 @@ fn reference_coordinates(positions: &[[f64; 3]; 10], point: [f64; 3]) -> Option<
     for axis in 0..3 {
         let (low, high) =
             positions.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x[axis]), h.max(x[axis])));
-        // Curved faces may bulge beyond the nodes' box.
-        let margin = 0.25 * (high - low);
+        // A curved element bulges beyond its nodes' box by half of it at most.
+        let margin = 0.5 * (high - low);
         if point[axis] < low - margin || point[axis] > high + margin {
             return None;
         }
     }
     let mut at = Vector3::repeat(0.25);
+    let mut last_step = f64::INFINITY;
     for _ in 0..20 {
         let n = shape_functions(at.into());
         let mapped: Vector3<f64> = positions.iter().zip(n).map(|(x, n)| Vector3::from(*x) * n).sum();
         let jacobian = jacobian(positions, &shape_gradients(at.into()));
         let step = jacobian.lu().solve(&(Vector3::from(point) - mapped))?;
         at += step;
-        if step.amax() < 1e-13 {
+        last_step = step.amax();
+        // Rounding may keep the steps of an element far from the origin above this; then all twenty are made.
+        if last_step < 1e-13 {
             break;
         }
     }
-    at.iter().all(|c| c.is_finite()).then(|| at.into())
+    (last_step < CONVERGED && at.iter().all(|c| c.is_finite())).then(|| at.into())
 }

@@ -40,8 +40,8 @@ impl Mesh {
     /// Checks the parts and makes a mesh of them.
     ///
     /// # Errors
-    /// Lengths that do not agree, tags given twice or unknown, coordinates that are not finite, inverted or
-    /// degenerate elements, nodes of no element, several pieces.
+    /// Lengths that do not agree, tags given twice or unknown, coordinates that are not finite, groups that
+    /// are not in the list, inverted or degenerate elements, nodes of no element, several pieces.
     pub fn new(parts: MeshParts) -> Result<Self, MeshError> {
         let MeshParts { source, node_tags, positions, element_tags, elements, groups, element_groups } = parts;
         let lengths = [
@@ -61,6 +61,13 @@ impl Mesh {
             node_tags.iter().zip(&positions).find(|(_, x)| x.iter().any(|c| !c.is_finite()))
         {
             return Err(MeshError::NotFinite { source_name: source, node, position });
+        }
+        if let Some((group, &element)) = element_groups
+            .iter()
+            .zip(&element_tags)
+            .find_map(|(group, element)| Some(((*group)?, element)).filter(|(group, _)| *group >= groups.len()))
+        {
+            return Err(MeshError::UnknownGroup { source_name: source, element, group, count: groups.len() });
         }
         let elements = resolve_tags(&source, &node_tags, &element_tags, &elements)?;
         let mesh = Self { source, node_tags, positions, element_tags, elements, groups, element_groups };
@@ -102,7 +109,7 @@ impl Mesh {
 
     /// Index of the group of an element, where it has one.
     pub fn element_group(&self, element: usize) -> Option<usize> {
-        self.element_groups[element]
+        self.element_groups.get(element).copied().flatten()
     }
 
     /// Positions of the ten nodes of an element.

@@ -12,15 +12,17 @@ use crate::error::MeshError;
 use crate::mesh::{Mesh, MeshParts};
 use source::Source;
 
-/// Nodes of gmsh's element types by number; 0 where there is no such type.
-const NODES_OF_TYPE: [usize; 32] = [
-    0, 2, 3, 4, 4, 8, 6, 5, 3, 6, 9, 10, 27, 18, 14, 1, 8, 20, 15, 13, 9, 10, 12, 15, 15, 21, 4, 5, 6, 20, 35, 56,
-];
+/// Nodes of gmsh's element types by number, to fifth order; there is no type 0.
+const NODES_OF_TYPE: [usize; 32] =
+    [0, 2, 3, 4, 4, 8, 6, 5, 3, 6, 9, 10, 27, 18, 14, 1, 8, 20, 15, 13, 9, 10, 12, 15, 15, 21, 4, 5, 6, 20, 35, 56];
+/// The largest number of an element type that gmsh uses.
+const LAST_TYPE: i32 = 140;
 const TET4: i32 = 4;
 const TET10: i32 = 11;
 
 const REMESH: &str = "mesh with -order 2 (or `Mesh.ElementOrder = 2;`)";
-const TETRAHEDRA_ONLY: &str = "mesh with tetrahedra (gmsh: no Recombine, no Transfinite Volume with Recombine) and -order 2";
+const TETRAHEDRA_ONLY: &str =
+    "mesh with tetrahedra (gmsh: no Recombine, no Transfinite Volume with Recombine) and -order 2";
 
 /// Reads a MSH 4.1 file and checks the mesh.
 ///
@@ -28,8 +30,7 @@ const TETRAHEDRA_ONLY: &str = "mesh with tetrahedra (gmsh: no Recombine, no Tran
 /// See [`MeshError`]: unreadable file, wrong format, wrong elements, and all that [`Mesh::new`] refuses.
 pub fn read_msh(path: impl AsRef<Path>) -> Result<Mesh, MeshError> {
     let source_name = path.as_ref().display().to_string();
-    let bytes =
-        std::fs::read(path).map_err(|source| MeshError::Io { source_name: source_name.clone(), source })?;
+    let bytes = std::fs::read(path).map_err(|source| MeshError::Io { source_name: source_name.clone(), source })?;
     parse_msh(&bytes, &source_name)
 }
 
@@ -60,7 +61,7 @@ fn parse_parts(bytes: &[u8], source_name: &str) -> Result<MeshParts, MeshError> 
                 elements_seen = true;
             }
             _ => {
-                source.skip_section();
+                source.skip_section()?;
                 continue;
             }
         }
@@ -77,12 +78,12 @@ fn parse_parts(bytes: &[u8], source_name: &str) -> Result<MeshParts, MeshError> 
 }
 
 /// Names of the three-dimensional physical groups by number. Always text, in binary files too.
-fn physical_names(source: &mut Source) -> Result<HashMap<i32, String>, MeshError> {
+fn physical_names(source: &mut Source) -> Result<HashMap<u32, String>, MeshError> {
     let count: u64 = source.text_number("the number of names")?;
     let mut names = HashMap::new();
     for _ in 0..count {
         let dimension: i32 = source.text_number("a dimension")?;
-        let tag: i32 = source.text_number("the number of a physical group")?;
+        let tag: u32 = source.text_number("the number of a physical group")?;
         let name = source.quoted()?;
         if dimension == 3 {
             names.insert(tag, name);
@@ -92,7 +93,7 @@ fn physical_names(source: &mut Source) -> Result<HashMap<i32, String>, MeshError
 }
 
 /// The first physical group of each volume entity that has one.
-fn entities(source: &mut Source) -> Result<HashMap<i32, i32>, MeshError> {
+fn entities(source: &mut Source) -> Result<HashMap<i32, u32>, MeshError> {
     let mut counts = [0; 4];
     for count in &mut counts {
         *count = source.size("a number of entities")?;
@@ -108,7 +109,7 @@ fn entities(source: &mut Source) -> Result<HashMap<i32, i32>, MeshError> {
             for nth in 0..source.size("a number of physical groups")? {
                 let group = source.int("the number of a physical group")?;
                 if dimension == 3 && nth == 0 {
-                    volume_groups.insert(tag, group.abs());
+                    volume_groups.insert(tag, group.unsigned_abs());
                 }
             }
             if dimension > 0 {
@@ -152,8 +153,8 @@ fn nodes(source: &mut Source, parts: &mut MeshParts) -> Result<(), MeshError> {
 fn elements(
     source: &mut Source,
     parts: &mut MeshParts,
-    volume_groups: &HashMap<i32, i32>,
-    names: &HashMap<i32, String>,
+    volume_groups: &HashMap<i32, u32>,
+    names: &HashMap<u32, String>,
 ) -> Result<(), MeshError> {
     let blocks = source.size("the number of element blocks")?;
     for _ in 0..3 {
@@ -164,34 +165,35 @@ fn elements(
         let entity = source.int("an entity's tag")?;
         let kind = source.int("an element type")?;
         let count = source.size("the number of elements of a block")?;
-        let nodes = usize::try_from(kind).ok().and_then(|k| NODES_OF_TYPE.get(k)).copied().unwrap_or(0);
-        if nodes == 0 {
-            return Err(source.error("an element type of gmsh (1 to 31)", &kind.to_string()));
+        if !(1..=LAST_TYPE).contains(&kind) {
+            return Err(source.error("an element type of gmsh (1 to 140)", &kind.to_string()));
         }
-        if dimension == 3 && kind != TET10 && count > 0 {
+        let nodes = NODES_OF_TYPE.get(kind as usize).copied();
+        if (dimension == 3 && kind != TET10 || nodes.is_none()) && count > 0 {
             let element = source.size("an element's tag")?;
             let (found, cure) = match kind {
                 TET4 => ("a four-node tetrahedron".to_owned(), REMESH),
-                29..=31 => (format!("a tetrahedron of order {} or more", kind - 26), REMESH),
-                _ => (format!("of gmsh type {kind} ({nodes} nodes)"), TETRAHEDRA_ONLY),
+                29..=31 => (format!("a tetrahedron of order {}", kind - 26), REMESH),
+                _ => (format!("of gmsh's element type {kind}"), TETRAHEDRA_ONLY),
             };
             return Err(MeshError::ElementType { source_name: parts.source.clone(), element, found, cure });
         }
         let group = (kind == TET10).then(|| group_index(parts, volume_groups, names, entity)).flatten();
         for _ in 0..count {
             let tag = source.size("an element's tag")?;
-            let mut element = [0; 10];
-            for nth in 0..nodes {
-                let node = source.size("a node of an element")?;
-                if kind == TET10 {
-                    element[nth] = node;
+            if kind != TET10 {
+                for _ in 0..nodes.unwrap_or(0) {
+                    source.size("a node of an element")?;
                 }
+                continue;
             }
-            if kind == TET10 {
-                parts.element_tags.push(tag);
-                parts.elements.push(element);
-                parts.element_groups.push(group);
+            let mut element = [0; 10];
+            for node in &mut element {
+                *node = source.size("a node of an element")?;
             }
+            parts.element_tags.push(tag);
+            parts.elements.push(element);
+            parts.element_groups.push(group);
         }
     }
     Ok(())
@@ -200,8 +202,8 @@ fn elements(
 /// Index into `parts.groups` of the group that a volume entity belongs to. A group without a name goes by its number.
 fn group_index(
     parts: &mut MeshParts,
-    volume_groups: &HashMap<i32, i32>,
-    names: &HashMap<i32, String>,
+    volume_groups: &HashMap<i32, u32>,
+    names: &HashMap<u32, String>,
     entity: i32,
 ) -> Option<usize> {
     let group = volume_groups.get(&entity)?;

@@ -1,6 +1,6 @@
 //! Point masses, and what carries them.
 
-use nalgebra::{Matrix4, SymmetricEigen, Vector4};
+use nalgebra::{Matrix4, SymmetricEigen, Vector3, Vector4};
 
 use crate::error::AssemblyError;
 use crate::locate::Location;
@@ -26,27 +26,31 @@ impl PointMass {
     /// moments are exactly those of the mass at the point.
     ///
     /// # Errors
-    /// A mass that is not positive, a point off the body, too few nodes within the radius.
+    /// A mass or a radius that is not positive, a point off the body, too few nodes within the radius.
     pub(crate) fn location(&self, mesh: &Mesh) -> Result<Location, AssemblyError> {
         if !(self.mass > 0.0 && self.mass.is_finite()) {
             return Err(AssemblyError::PointMass { at: self.at, found: self.mass });
         }
         match self.spread {
             None => mesh.locate(self.at),
-            Some(radius) => spread(mesh, self.at, radius),
+            Some(radius) if radius > 0.0 && radius.is_finite() => spread(mesh, self.at, radius),
+            Some(radius) => Err(AssemblyError::SpreadRadius { at: self.at, found: radius }),
         }
     }
 }
 
 /// The affine field that fits the displacements of all nodes within `radius` best (least squares), taken at `at`.
 fn spread(mesh: &Mesh, at: [f64; 3], radius: f64) -> Result<Location, AssemblyError> {
-    // Offsets in units of the radius, so that the fit is well scaled in any unit of length.
-    let offset = |x: &[f64; 3]| Vector4::new(1.0, (x[0] - at[0]) / radius, (x[1] - at[1]) / radius, (x[2] - at[2]) / radius);
-    let within: Vec<(u32, Vector4<f64>)> = (0..)
+    let near: Vec<(u32, Vector3<f64>)> = (0..)
         .zip(mesh.positions())
-        .map(|(node, x)| (node, offset(x)))
-        .filter(|(_, z)| z.fixed_rows::<3>(1).norm() <= 1.0)
+        .map(|(node, x)| (node, Vector3::from(*x) - Vector3::from(at)))
+        .filter(|(_, offset)| offset.norm() <= radius)
         .collect();
+    // Offsets in units of the farthest, so that the fit is well scaled in any unit of length, whatever the radius.
+    let farthest = near.iter().map(|(_, offset)| offset.norm()).fold(0.0, f64::max);
+    let scale = if farthest > 0.0 { farthest } else { 1.0 };
+    let within: Vec<(u32, Vector4<f64>)> =
+        near.into_iter().map(|(node, offset)| (node, (offset / scale).insert_row(0, 1.0))).collect();
     let refuse = || AssemblyError::Spread {
         source_name: mesh.source().to_owned(),
         at,
@@ -66,9 +70,10 @@ fn spread(mesh: &Mesh, at: [f64; 3], radius: f64) -> Result<Location, AssemblyEr
     }
     let weights: Vec<f64> = within.iter().map(|(_, z)| z.dot(&coefficients)).collect();
     let moments: Vector4<f64> = within.iter().zip(&weights).map(|((_, z), w)| z * *w).sum();
-    // Written so that NaN, from no node at all, is refused too.
-    if !((moments - Vector4::x()).amax() < 1e-9) {
-        return Err(refuse());
+    // Written so that NaN is refused too.
+    if (moments - Vector4::x()).iter().all(|off| off.abs() < 1e-9) {
+        Ok(Location { nodes: within.into_iter().map(|(node, _)| node).collect(), weights })
+    } else {
+        Err(refuse())
     }
-    Ok(Location { nodes: within.into_iter().map(|(node, _)| node).collect(), weights })
 }

@@ -26,16 +26,12 @@ pub(crate) fn degree_5() -> Vec<Point> {
 
 /// The four points with barycentric coordinates (a, a, a, b) in any order.
 fn vertex_orbit(a: f64, b: f64, weight: f64) -> Vec<Point> {
-    [[a, a, a], [b, a, a], [a, b, a], [a, a, b]]
-        .map(|at| Point { at, weight })
-        .into()
+    [[a, a, a], [b, a, a], [a, b, a], [a, a, b]].map(|at| Point { at, weight }).into()
 }
 
 /// The six points with barycentric coordinates (a, a, b, b) in any order.
 fn edge_orbit(a: f64, b: f64, weight: f64) -> Vec<Point> {
-    [[a, a, b], [a, b, a], [b, a, a], [b, b, a], [b, a, b], [a, b, b]]
-        .map(|at| Point { at, weight })
-        .into()
+    [[a, a, b], [a, b, a], [b, a, a], [b, b, a], [b, a, b], [a, b, b]].map(|at| Point { at, weight }).into()
 }
 
 #[cfg(test)]

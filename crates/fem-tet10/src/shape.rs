@@ -7,12 +7,7 @@
 pub(crate) const EDGES: [[usize; 2]; 6] = [[0, 1], [1, 2], [0, 2], [0, 3], [2, 3], [1, 3]];
 
 /// Gradients of `L₀ … L₃` with respect to (ξ, η, ζ).
-const BARYCENTRIC_GRADIENTS: [[f64; 3]; 4] = [
-    [-1.0, -1.0, -1.0],
-    [1.0, 0.0, 0.0],
-    [0.0, 1.0, 0.0],
-    [0.0, 0.0, 1.0],
-];
+const BARYCENTRIC_GRADIENTS: [[f64; 3]; 4] = [[-1.0, -1.0, -1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
 /// Reference coordinates (ξ, η, ζ) of the ten nodes.
 pub(crate) const NODES: [[f64; 3]; 10] = [

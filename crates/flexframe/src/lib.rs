@@ -1,1 +1,29 @@
-//! Flexible-body dynamics: from a finite-element mesh to the motion of the body.
+//! **flexframe**: flexible-body dynamics, from a finite-element mesh to the motion of the body.
+//!
+//! This crate is the program and a façade: it re-exports the crates it is made of, and [`run`] does what
+//! `flexframe run` does.
+//!
+//! ```no_run
+//! use flexframe::scene::{Model, Scene};
+//!
+//! let scene = Scene::read("examples/plate.toml")?;
+//! let model = Model::build(&scene, |_progress| ())?;
+//! println!("{:?} Hz", model.modes.natural_frequencies());
+//! let (steps, step) = scene.steps();
+//! for state in model.start(&scene, step)?.take(steps as usize) {
+//!     let state = state?;
+//!     println!("{} {:?}", state.time, state.omega_body);
+//! }
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+#![forbid(unsafe_code)]
+
+pub use {fem_tet10, frames_rk4, modal, results, rigid_kin, scene};
+
+pub mod animation;
+pub mod figures;
+pub mod modes;
+pub mod paper;
+pub mod report;
+pub mod run;
+pub mod surface;

@@ -1,2 +1,10 @@
 //! The command line.
-fn main() {}
+
+mod cli;
+mod progress;
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    cli::main()
+}

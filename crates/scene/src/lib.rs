@@ -16,6 +16,9 @@
 //!
 //! A rule that needs the mesh is checked later and refused the same way by [`Scene::refuse`].
 //!
+//! [`Model::build`] makes the mesh, the modes and the reduced body of a scene, and [`Model::start`]
+//! the motion.
+//!
 //! One file of this crate per idea:
 //! `document` is the TOML tree in which every value knows its key path and its place;
 //! `deserialize` lets serde fill structs from that tree;
@@ -24,6 +27,7 @@
 //! A new kind of load, history or scheme is a new variant in `load` or `scene` and its rules in
 //! `check`.
 
+mod build;
 mod check;
 mod deserialize;
 mod document;
@@ -35,6 +39,7 @@ mod scene;
 mod shape;
 mod suggest;
 
+pub use build::{BuildError, BuildProgress, BuildTimes, Model};
 pub use error::{Place, SceneError};
 pub use load::{Force, History, Load, LoadFrame};
 pub use scene::{Body, Frame, Initial, Material, Materials, Modes, Output, PointMass, Scene, Scheme, Time, Units};

@@ -4,6 +4,9 @@ use std::str::FromStr;
 
 use crate::error::{MeshError, Place};
 
+/// So many bytes of a file are quoted in a message at most; no name of a section is longer.
+const LONGEST_QUOTE: usize = 40;
+
 /// A cursor over a MSH file.
 pub(super) struct Source<'a> {
     bytes: &'a [u8],
@@ -18,16 +21,20 @@ impl<'a> Source<'a> {
     pub(super) fn open(bytes: &'a [u8], name: &'a str) -> Result<Self, MeshError> {
         let mut source = Self { bytes, at: 0, binary: false, section: String::new(), name };
         let version_error = |found: String| MeshError::Version { source_name: name.to_owned(), found };
-        let beginning = || String::from_utf8_lossy(&bytes[..bytes.len().min(24)]).into_owned();
-        match source.next_section()? {
-            Some(section) if section == "$MeshFormat" => {}
-            _ => return Err(version_error(format!("a file that begins with {:?}", beginning()))),
+        match source.next_section() {
+            Ok(Some(section)) if section == "$MeshFormat" => {}
+            _ => return Err(version_error(format!("a file that begins with {:?}", readable(bytes)))),
         }
-        let version = source.word().to_owned();
-        if version != "4.1" {
-            return Err(version_error(format!("version {version}")));
+        let version = source.peek_word();
+        if version != b"4.1" {
+            return Err(version_error(format!("version {}", readable(version))));
         }
-        let binary = source.text_number::<u8>("0 (ASCII) or 1 (binary)")? == 1;
+        source.at += version.len();
+        let binary = match source.text_number::<u8>("0 (ASCII) or 1 (binary)")? {
+            0 => false,
+            1 => true,
+            other => return Err(source.error("0 (ASCII) or 1 (binary)", &other.to_string())),
+        };
         let size: usize = source.text_number("the size of a number, 8")?;
         if size != 8 {
             return Err(source.error("numbers of 8 bytes", &size.to_string()));
@@ -43,18 +50,19 @@ impl<'a> Source<'a> {
         Ok(source)
     }
 
-    /// Goes to the next line that begins with `$`; `None` at the end of the file.
+    /// Goes to the next section; `None` at the end of the file.
     pub(super) fn next_section(&mut self) -> Result<Option<String>, MeshError> {
-        let word = self.word();
+        let word = self.peek_word();
         if word.is_empty() {
             return Ok(None);
         }
-        if !word.starts_with('$') {
-            let found = word.to_owned();
-            return Err(self.error("a section that begins with $", &found));
+        let is_section = word.starts_with(b"$") && !word.starts_with(b"$End");
+        if !is_section || word.len() > LONGEST_QUOTE || !word.iter().all(u8::is_ascii_graphic) {
+            self.section = "the file".to_owned();
+            return Err(self.error("a section that begins with $", &readable(word)));
         }
-        let word = word.to_owned();
-        self.section = word.clone();
+        self.at += word.len();
+        self.section = readable(word);
         // A section of a binary file begins right after the newline.
         if self.bytes.get(self.at) == Some(&b'\r') {
             self.at += 1;
@@ -62,26 +70,34 @@ impl<'a> Source<'a> {
         if self.bytes.get(self.at) == Some(&b'\n') {
             self.at += 1;
         }
-        Ok(Some(word))
+        Ok(Some(self.section.clone()))
     }
 
     /// The word that closes the section must come next.
     pub(super) fn end_section(&mut self) -> Result<(), MeshError> {
         let expected = self.section.replacen('$', "$End", 1);
-        let word = self.word();
-        if word == expected {
-            return Ok(());
+        let word = self.peek_word();
+        if word != expected.as_bytes() {
+            return Err(self.error(&expected, &readable(word)));
         }
-        let found = word.to_owned();
-        Err(self.error(&expected, &found))
+        self.at += word.len();
+        Ok(())
     }
 
-    /// Passes over a section that is not needed, to behind its closing word (or the end of the file).
-    pub(super) fn skip_section(&mut self) {
+    /// Passes over a section that is not needed, to behind its closing word.
+    pub(super) fn skip_section(&mut self) -> Result<(), MeshError> {
         let end = self.section.replacen('$', "$End", 1);
         let rest = &self.bytes[self.at..];
-        let found = rest.windows(end.len()).position(|window| window == end.as_bytes());
-        self.at += found.map_or(rest.len(), |offset| offset + end.len());
+        match rest.windows(end.len()).position(|window| window == end.as_bytes()) {
+            Some(offset) => {
+                self.at += offset + end.len();
+                Ok(())
+            }
+            None => {
+                self.at = self.bytes.len();
+                Err(self.error(&end, ""))
+            }
+        }
     }
 
     /// An integer of 4 bytes.
@@ -101,30 +117,28 @@ impl<'a> Source<'a> {
 
     /// A number written as text, also in a binary file.
     pub(super) fn text_number<T: FromStr>(&mut self, what: &str) -> Result<T, MeshError> {
-        let start = self.at;
-        let word = self.word();
-        if let Ok(number) = word.parse() {
-            return Ok(number);
+        let word = self.peek_word();
+        match std::str::from_utf8(word).ok().and_then(|word| word.parse().ok()) {
+            Some(number) => {
+                self.at += word.len();
+                Ok(number)
+            }
+            None => Err(self.error(what, &readable(word))),
         }
-        let found = word.to_owned();
-        // Point at the word itself, not behind it.
-        self.at = start + self.bytes[start..].iter().take_while(|b| b.is_ascii_whitespace()).count();
-        Err(self.error(what, &found))
     }
 
     /// A text in double quotes.
     pub(super) fn quoted(&mut self) -> Result<String, MeshError> {
         self.skip_whitespace();
         let rest = &self.bytes[self.at..];
-        let text = rest
-            .strip_prefix(b"\"")
-            .and_then(|inner| inner.iter().position(|b| *b == b'"').map(|end| &inner[..end]));
+        let text =
+            rest.strip_prefix(b"\"").and_then(|inner| inner.iter().position(|b| *b == b'"').map(|end| &inner[..end]));
         match text {
             Some(text) => {
                 self.at += text.len() + 2;
                 Ok(String::from_utf8_lossy(text).into_owned())
             }
-            None => Err(self.error("a name in double quotes", &String::from_utf8_lossy(&rest[..rest.len().min(24)]))),
+            None => Err(self.error("a name in double quotes", &readable(rest))),
         }
     }
 
@@ -135,7 +149,7 @@ impl<'a> Source<'a> {
         } else {
             Place::Line(1 + self.bytes[..self.at.min(self.bytes.len())].iter().filter(|b| **b == b'\n').count())
         };
-        let found = if found.is_empty() { "the end of the file".to_owned() } else { format!("\"{found}\"") };
+        let found = if found.is_empty() { "the end of the file".to_owned() } else { format!("{found:?}") };
         MeshError::Syntax {
             source_name: self.name.to_owned(),
             place,
@@ -149,13 +163,12 @@ impl<'a> Source<'a> {
         self.at += self.bytes[self.at..].iter().take_while(|b| b.is_ascii_whitespace()).count();
     }
 
-    /// The next word of the text; empty at the end of the file. At most 64 bytes, so that a message stays readable.
-    fn word(&mut self) -> &'a str {
+    /// The word at the cursor, which comes to stand in front of it; empty at the end of the file.
+    fn peek_word(&mut self) -> &'a [u8] {
         self.skip_whitespace();
         let rest = &self.bytes[self.at..];
-        let length = rest.iter().take(64).take_while(|b| !b.is_ascii_whitespace()).count();
-        self.at += length;
-        std::str::from_utf8(&rest[..length]).unwrap_or("(bytes that are no text)")
+        let length = rest.iter().take_while(|b| !b.is_ascii_whitespace()).count();
+        &rest[..length]
     }
 
     fn raw<const N: usize>(&mut self, what: &str) -> Result<[u8; N], MeshError> {
@@ -167,4 +180,9 @@ impl<'a> Source<'a> {
             None => Err(self.error(what, "")),
         }
     }
+}
+
+/// The beginning of some bytes, short enough for a message.
+fn readable(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(&bytes[..bytes.len().min(LONGEST_QUOTE)]).into_owned()
 }

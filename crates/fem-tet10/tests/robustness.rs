@@ -1,0 +1,105 @@
+//! Spoiled files: never a panic, never much more memory than the file itself.
+//!
+//! A program of its own, with one test, since it counts what the whole program allocates.
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+
+use fem_tet10::parse_msh;
+
+/// The system's allocator, with the bytes held now and at most.
+struct Counting;
+
+static HELD: AtomicUsize = AtomicUsize::new(0);
+static MOST: AtomicUsize = AtomicUsize::new(0);
+
+// SAFETY: every call is passed on to the system's allocator unchanged.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        let held = HELD.fetch_add(layout.size(), Relaxed) + layout.size();
+        MOST.fetch_max(held, Relaxed);
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        HELD.fetch_sub(layout.size(), Relaxed);
+        unsafe { System.dealloc(pointer, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+fn data(name: &str) -> Vec<u8> {
+    std::fs::read(PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(name)).unwrap()
+}
+
+/// Parses, and gives whether the mesh was accepted and the most memory held meanwhile.
+fn parse(bytes: &[u8]) -> (bool, usize) {
+    let before = HELD.load(Relaxed);
+    MOST.store(before, Relaxed);
+    let accepted = match parse_msh(bytes, "spoiled.msh") {
+        Ok(mesh) => mesh.positions().iter().flatten().all(|c| c.is_finite()),
+        Err(error) => {
+            assert!(error.to_string().len() < 2000, "{error}");
+            false
+        }
+    };
+    (accepted, MOST.load(Relaxed) - before)
+}
+
+/// Knuth's MMIX linear congruential generator.
+fn next(state: &mut u64) -> u8 {
+    *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+    (*state >> 56) as u8
+}
+
+#[test]
+fn spoiled_files_cost_an_error_and_no_more() {
+    let mut worst = 0.0_f64;
+    for name in ["cube.msh", "cube_binary.msh"] {
+        let good = data(name);
+        assert!(parse(&good).0, "the pool of threads is up, and the file good");
+        // Any byte at all, a digit, a sign, and the ends of the range, at every position.
+        for seed in 1..=3_u64 {
+            let mut state = seed;
+            for position in 0..good.len() {
+                for replacement in
+                    [next(&mut state), b'0' + next(&mut state) % 10, [0xff, b'-', 0x00][seed as usize - 1]]
+                {
+                    let mut spoiled = good.clone();
+                    spoiled[position] = replacement;
+                    worst = worst.max(parse(&spoiled).1 as f64 / good.len() as f64);
+                }
+            }
+        }
+        // Numbers that claim very much, in the place of every word or of every eight bytes.
+        for position in 0..good.len().saturating_sub(8) {
+            for claim in [1_000_000_000_000, u64::MAX, 1 << 63, i64::MIN as u64 >> 32] {
+                let mut spoiled = good.clone();
+                if name == "cube.msh" {
+                    if !good[position].is_ascii_whitespace() {
+                        continue;
+                    }
+                    let rest = &good[position + 1..];
+                    let end = rest.iter().position(|b| b.is_ascii_whitespace()).unwrap_or(rest.len());
+                    spoiled.splice(position + 1..position + 1 + end, claim.to_string().into_bytes());
+                } else {
+                    spoiled[position..position + 8].copy_from_slice(&claim.to_le_bytes());
+                }
+                worst = worst.max(parse(&spoiled).1 as f64 / good.len() as f64);
+            }
+        }
+        // Parts taken out, and parts twice.
+        for seed in 0..2000_u64 {
+            let mut state = seed;
+            let mut cut = || usize::from(next(&mut state)) * good.len() / 256;
+            let (a, b) = (cut(), cut());
+            let spoiled = [&good[..a], &good[b..]].concat();
+            worst = worst.max(parse(&spoiled).1 as f64 / good.len() as f64);
+        }
+    }
+    // Measured: 3.0.
+    assert!(worst < 5.0, "{worst:.1} bytes were held for a byte of the file");
+}

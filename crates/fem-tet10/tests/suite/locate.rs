@@ -1,0 +1,97 @@
+//! Points of the body are found again.
+
+use fem_tet10::{Mesh, shape_functions};
+
+use crate::fixtures::{Random, data_mesh, single, workspace_mesh};
+
+/// Places a point inside an element and finds it: largest error of `field` interpolated by the location.
+fn worst_error(mesh: &Mesh, count: usize, field: impl Fn([f64; 3]) -> f64) -> f64 {
+    let mut random = Random(5);
+    (0..count)
+        .map(|_| {
+            let nodes = mesh.elements()[random.index(mesh.elements().len())];
+            let n = shape_functions(random.inside_tetrahedron());
+            let point =
+                [0, 1, 2].map(|axis| nodes.iter().zip(n).map(|(a, n)| mesh.positions()[*a as usize][axis] * n).sum());
+            let location = mesh.locate(point).unwrap();
+            assert!((location.weights.iter().sum::<f64>() - 1.0).abs() < 1e-12);
+            let found: f64 = location
+                .nodes
+                .iter()
+                .zip(&location.weights)
+                .map(|(a, w)| w * field(mesh.positions()[*a as usize]))
+                .sum();
+            (found - field(point)).abs()
+        })
+        .fold(0.0, |m, e| if m >= e { m } else { e })
+}
+
+#[test]
+fn straight_elements_reproduce_quadratic_fields() {
+    // Scaled by the sides, so that all terms are of order one.
+    let worst = worst_error(&workspace_mesh("plate.msh"), 300, |[x, y, z]| {
+        let (x, y, z) = (x / 500.0, y / 25.0, z / 10.0);
+        1.0 + x - y + 2.0 * z + x * x - 3.0 * x * y + y * y + 0.5 * y * z - z * z
+    });
+    // Measured: 6.2e-15.
+    assert!(worst < 1e-12, "{worst:e}");
+}
+
+#[test]
+fn curved_elements_reproduce_linear_fields() {
+    for mesh in [workspace_mesh("ring.msh"), data_mesh("quarter.msh")] {
+        let size = mesh.diagonal();
+        let worst = worst_error(&mesh, 300, |[x, y, z]| (1.0 + x - 2.0 * y + 3.0 * z) / size);
+        // Measured: 6.7e-16.
+        assert!(worst < 1e-13, "{worst:e}");
+    }
+}
+
+#[test]
+fn what_is_found_in_strongly_curved_elements_is_where_it_was_asked_for() {
+    let mut random = Random(17);
+    let (mut accepted, mut elements) = (0, 0);
+    while elements < 300 {
+        let mut parts = single([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
+        parts.positions[4..].iter_mut().flatten().for_each(|c| *c += 0.5 * (random.unit() - 0.5));
+        let Ok(mesh) = Mesh::new(parts) else { continue };
+        elements += 1;
+        for _ in 0..200 {
+            let point = [0; 3].map(|_| 1.6 * random.unit() - 0.3);
+            let Ok(location) = mesh.locate(point) else { continue };
+            accepted += 1;
+            for axis in 0..3 {
+                let nodes = location.nodes.iter().zip(&location.weights);
+                let found: f64 = nodes.map(|(a, w)| w * mesh.positions()[*a as usize][axis]).sum();
+                assert!((found - point[axis]).abs() < 1e-8, "{point:?} was found at {found} along {axis}");
+            }
+        }
+    }
+    assert!(accepted > 1000, "{accepted}");
+}
+
+#[test]
+fn a_node_is_found_as_itself() {
+    let mesh = workspace_mesh("plate.msh");
+    for node in (0..mesh.positions().len()).step_by(97) {
+        // A millionth of a millimetre is no distance on a metre of plate.
+        let [x, y, z] = mesh.positions()[node];
+        let location = mesh.locate([x + 1e-6, y, z]).unwrap();
+        assert_eq!((location.nodes, location.weights), (vec![node as u32], vec![1.0]));
+    }
+}
+
+#[test]
+fn points_outside_are_not_on_the_body() {
+    let mesh = workspace_mesh("plate.msh");
+    for point in [[501.0, 0.0, 5.0], [0.0, 25.01, 5.0], [7.0, 3.0, -0.01], [7.0, 3.0, 10.01]] {
+        let message = mesh.locate(point).unwrap_err().to_string();
+        assert!(message.contains("is not on the body"), "{message}");
+    }
+    // In the hole of the ring, and in its notch.
+    let ring = workspace_mesh("ring.msh");
+    for point in [[0.0, 0.0, 10.0], [90.0, 0.0, 15.0], [0.0, 79.0, 10.0]] {
+        assert!(ring.locate(point).is_err(), "{point:?}");
+    }
+    assert!(ring.locate([90.0, 0.0, 5.0]).is_ok());
+}

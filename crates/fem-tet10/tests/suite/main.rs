@@ -1,0 +1,12 @@
+//! What a user of the crate sees, on meshes that gmsh wrote. One program, so that it is linked once.
+
+mod curved;
+mod fixtures;
+mod locate;
+mod mass;
+mod point_masses;
+mod reader;
+mod refused_files;
+mod refused_meshes;
+mod refused_models;
+mod stiffness;

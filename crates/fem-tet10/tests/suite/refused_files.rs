@@ -1,0 +1,200 @@
+//! Files that are refused, and what is said about them.
+
+use fem_tet10::{MeshError, Place, parse_msh, read_msh};
+
+use crate::fixtures::data;
+
+fn text(name: &str) -> String {
+    std::fs::read_to_string(data(name)).unwrap()
+}
+
+/// The refusal of a text; it must name the mesh.
+#[track_caller]
+fn refusal(contents: impl AsRef<[u8]>) -> (MeshError, String) {
+    let error = parse_msh(contents.as_ref(), "body.msh").unwrap_err();
+    let message = error.to_string();
+    assert!(message.starts_with("body.msh"), "{message}");
+    (error, message)
+}
+
+#[track_caller]
+fn assert_says(message: &str, parts: &[&str]) {
+    for part in parts {
+        assert!(message.contains(part), "\"{part}\" is missing in: {message}");
+    }
+}
+
+#[test]
+fn other_elements_are_named_with_the_cure() {
+    let cases: [(&str, &[&str]); 4] = [
+        ("cube_order_1.msh", &["element 1 is a four-node tetrahedron", "mesh with -order 2"]),
+        ("cube_order_3.msh", &["element 1 is a tetrahedron of order 3", "mesh with -order 2"]),
+        ("cube_hexahedra.msh", &["element 1 is of gmsh's element type 12", "mesh with tetrahedra", "-order 2"]),
+        ("cube_hexahedra_order_3.msh", &["element 1 is of gmsh's element type 92", "mesh with tetrahedra", "-order 2"]),
+    ];
+    for (name, says) in cases {
+        let error = read_msh(data(name)).unwrap_err();
+        assert!(matches!(error, MeshError::ElementType { element: 1, .. }), "{error:?}");
+        assert_says(&error.to_string(), says);
+        assert_says(&error.to_string(), &[name]);
+    }
+}
+
+#[test]
+fn other_versions_are_named_with_the_cure() {
+    let error = read_msh(data("cube_msh22.msh")).unwrap_err();
+    assert!(matches!(error, MeshError::Version { .. }), "{error:?}");
+    assert_says(&error.to_string(), &["cube_msh22.msh", "version 2.2", "-format msh41", "meshio convert"]);
+}
+
+#[test]
+fn what_is_no_mesh_is_called_so() {
+    for contents in
+        ["", "\n\n", "solid cube\nfacet normal 0 0 1\n", "*NODE\n1, 0, 0, 0\n", "$Nodes\n0 0 0 0\n$EndNodes\n"]
+    {
+        let (error, message) = refusal(contents);
+        assert!(matches!(error, MeshError::Version { .. }), "{error:?}");
+        assert_says(&message, &["not a MSH 4.1 file", "-format msh41"]);
+    }
+    let (_, message) = refusal([0xff, 0xd8, 0xff, 0xe0, 0x00]);
+    assert_says(&message, &["not a MSH 4.1 file"]);
+    let (_, message) = refusal("solid cube\nfacet normal 0 0 1\n");
+    assert_says(&message, &["begins with", "solid cube"]);
+}
+
+#[test]
+fn a_file_that_is_not_there_is_named() {
+    let error = read_msh("no/such.msh").unwrap_err();
+    assert!(matches!(error, MeshError::Io { .. }), "{error:?}");
+    assert_says(&error.to_string(), &["no/such.msh", "cannot read"]);
+}
+
+#[test]
+fn numbers_of_another_size_or_order_of_bytes_are_refused() {
+    let (_, message) = refusal(text("cube.msh").replace("4.1 0 8", "4.1 0 4"));
+    assert_says(&message, &["line 2", "numbers of 8 bytes", "\"4\""]);
+    let (_, message) = refusal(text("cube.msh").replace("4.1 0 8", "4.1 2 8"));
+    assert_says(&message, &["line 2", "0 (ASCII) or 1 (binary)", "\"2\""]);
+    let mut swapped = std::fs::read(data("cube_binary.msh")).unwrap();
+    let one = "$MeshFormat\n4.1 1 8\n".len();
+    swapped[one..one + 4].reverse();
+    let (_, message) = refusal(swapped);
+    assert_says(&message, &["little-endian"]);
+}
+
+#[test]
+fn a_file_cut_off_anywhere_is_refused() {
+    for name in ["cube.msh", "cube_binary.msh", "quarter_everything_binary.msh"] {
+        let whole = std::fs::read(data(name)).unwrap();
+        let whole = whole.trim_ascii_end();
+        assert!(parse_msh(whole, name).is_ok());
+        for length in 0..whole.len() {
+            // A section that starts at the cut is not noticed: the rest may have been all there was.
+            match parse_msh(&whole[..length], name) {
+                Err(MeshError::Syntax { .. } | MeshError::Version { .. } | MeshError::MissingSection { .. }) => {}
+                Ok(_) => {
+                    assert!(whole[length..].starts_with(b"\n$Periodic") || whole[length..].starts_with(b"$Periodic"))
+                }
+                Err(other) => panic!("{name} cut at {length}: {other}"),
+            }
+        }
+    }
+}
+
+#[test]
+fn the_place_of_a_cut_is_told() {
+    let whole = text("cube.msh");
+    let cut = whole.find("$Elements").unwrap() + "$Elements\n1 24".len();
+    let lines = whole[..cut].lines().count();
+    let (error, message) = refusal(&whole[..cut]);
+    assert!(matches!(error, MeshError::Syntax { place: Place::Line(l), .. } if l == lines), "{message}");
+    assert_says(&message, &["$Elements", "the end of the file"]);
+
+    let whole = std::fs::read(data("cube_binary.msh")).unwrap();
+    let (error, message) = refusal(&whole[..1000]);
+    assert!(matches!(error, MeshError::Syntax { place: Place::Byte(b), .. } if (992..=1000).contains(&b)), "{message}");
+    assert_says(&message, &["the end of the file"]);
+}
+
+#[test]
+fn a_missing_section_is_named() {
+    let whole = text("cube.msh");
+    let elements = whole.find("$Elements").unwrap();
+    let (error, message) = refusal(&whole[..elements]);
+    assert!(matches!(error, MeshError::MissingSection { section: "$Elements", .. }), "{error:?}");
+    assert_says(&message, &["there is no $Elements section", "gmsh -3"]);
+    let (_, message) = refusal("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n");
+    assert_says(&message, &["there is no $Nodes section"]);
+}
+
+/// Puts a word that is no number at the end of each line in turn: the line is told, or the one where it is noticed.
+#[test]
+fn the_line_of_an_error_is_right() {
+    let whole = text("cube.msh");
+    for ends in ["\n", "\r\n"] {
+        let lines: Vec<&str> = whole.lines().collect();
+        let mut noticed = 0;
+        for number in 1..=lines.len() {
+            let words: Vec<&str> = lines[number - 1].split_whitespace().collect();
+            if words[0].starts_with('$') || words.last().unwrap().ends_with('"') {
+                continue;
+            }
+            let mut spoiled: Vec<String> = lines.iter().map(|line| (*line).to_owned()).collect();
+            spoiled[number - 1] = [&words[..words.len() - 1], &["1x2"]].concat().join(" ");
+            let (error, message) = refusal(spoiled.join(ends));
+            if number == 2 {
+                continue; // the size of a number, checked above
+            }
+            assert!(
+                matches!(error, MeshError::Syntax { place: Place::Line(l), .. } if l == number),
+                "{number}: {message}"
+            );
+            assert_says(&message, &["expected", "\"1x2\"", &format!("line {number}:")]);
+            noticed += 1;
+        }
+        assert!(noticed > 100, "{noticed} lines were spoiled");
+    }
+}
+
+#[test]
+fn more_numbers_than_announced_are_noticed_where_they_start() {
+    let whole = text("cube.msh");
+    let line = whole[..whole.find("$EndNodes").unwrap()].lines().count() + 1;
+    let (_, message) = refusal(whole.replace("$EndNodes", "7 7 7\n$EndNodes"));
+    assert_says(&message, &[&format!("line {line}:"), "$EndNodes", "\"7\""]);
+}
+
+#[test]
+fn sections_out_of_place_are_refused() {
+    let (_, message) = refusal(text("cube.msh") + "$EndElements\n");
+    assert_says(&message, &["a section that begins with $", "$EndElements"]);
+    let (_, message) = refusal(text("cube.msh") + "$Periodic\n1\n");
+    assert_says(&message, &["$Periodic", "$EndPeriodic", "the end of the file"]);
+    let (_, message) = refusal(text("cube.msh") + "junk");
+    assert_says(&message, &["a section that begins with $", "junk"]);
+}
+
+#[test]
+fn a_group_number_at_the_end_of_the_range_is_no_trouble() {
+    let whole = text("cube.msh");
+    let volume = whole.lines().find(|line| line.ends_with("1 1 6 1 2 3 4 5 6 ")).unwrap();
+    let spoiled = volume.replace("1 1 6 1 2 3 4 5 6", "1 -2147483648 6 1 2 3 4 5 6");
+    let mesh = parse_msh(whole.replace(volume, &spoiled).as_bytes(), "body.msh").unwrap();
+    assert_eq!(mesh.groups(), ["2147483648"]);
+}
+
+#[test]
+fn an_element_type_that_gmsh_does_not_have_is_refused() {
+    for kind in ["0", "-4", "141", "2147483647"] {
+        let (_, message) = refusal(text("cube.msh").replace("\n3 1 11 24\n", &format!("\n3 1 {kind} 24\n")));
+        assert_says(&message, &["an element type of gmsh", kind]);
+    }
+}
+
+#[test]
+fn a_message_does_not_quote_the_whole_file() {
+    let (_, message) = refusal(format!("$MeshFormat\n{}", "9".repeat(100_000)));
+    assert!(message.len() < 300, "{} characters", message.len());
+    let (_, message) = refusal(text("cube.msh").replace("$EndNodes", &"x".repeat(100_000)));
+    assert!(message.len() < 300, "{} characters", message.len());
+}

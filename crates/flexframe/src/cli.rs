@@ -1,0 +1,160 @@
+//! Arguments, and what is printed.
+
+use std::error::Error;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use clap::{Args, Parser, Subcommand};
+use flexframe::animation::{AnimationSettings, animate};
+use flexframe::{figures, modes, paper, run};
+use scene::Scene;
+use serde::Serialize;
+
+use crate::progress::Bar;
+
+/// Flexible-body dynamics: how an elastic body moves that flies, tumbles and spins while it vibrates.
+///
+/// A scene (a TOML file, see docs/scene.md) names a gmsh mesh of second-order tetrahedra, its material, the modes to
+/// keep, the loads, and the time. Start with `flexframe run examples/plate.toml`.
+#[derive(Debug, Parser)]
+#[command(version, max_term_width = 100)]
+struct Cli {
+    /// Threads for meshes and modes; all cores if not given. The results are the same for any number.
+    #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    threads: Option<u16>,
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Run a scene and write its motion to an HDF5 file.
+    Run {
+        #[command(flatten)]
+        scene: SceneArgs,
+        /// Folder for the results; it is made if it is not there [default: out/<name of the scene file>].
+        #[arg(short, long, value_name = "DIR")]
+        output: Option<PathBuf>,
+    },
+    /// Find natural frequencies and mode shapes of a scene's body.
+    Modes {
+        #[command(flatten)]
+        scene: SceneArgs,
+        /// Number of flexible modes, instead of the scene's.
+        #[arg(short = 'n', long, value_name = "N")]
+        flexible: Option<usize>,
+        /// Folder for a picture of the mode shapes (SVG and PNG); none if not given.
+        #[arg(short, long, value_name = "DIR")]
+        output: Option<PathBuf>,
+    },
+    /// Run the paper's plate and set it beside the paper: every figure, and a report.
+    Paper {
+        #[command(flatten)]
+        scene: SceneArgs,
+        /// Folder for results, figures and report.md [default: out/<name of the scene file>].
+        #[arg(short, long, value_name = "DIR")]
+        output: Option<PathBuf>,
+    },
+    /// Run a scene and draw it as an animated GIF.
+    Animate {
+        /// The scene file.
+        #[arg(value_name = "SCENE")]
+        scene: PathBuf,
+        /// The GIF to write.
+        #[arg(short, long, value_name = "FILE")]
+        output: PathBuf,
+        /// Number of frames.
+        #[arg(long, default_value_t = 60, value_parser = clap::value_parser!(u64).range(2..))]
+        frames: u64,
+        /// Factor on the deformation that is drawn.
+        #[arg(long, default_value_t = 1.0)]
+        magnify: f64,
+    },
+}
+
+#[derive(Debug, Args)]
+struct SceneArgs {
+    /// The scene file.
+    #[arg(value_name = "SCENE")]
+    scene: PathBuf,
+    /// Print the summary as JSON, for scripts.
+    #[arg(long)]
+    json: bool,
+}
+
+pub fn main() -> ExitCode {
+    match execute(Cli::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn execute(cli: Cli) -> Result<(), Box<dyn Error>> {
+    if let Some(threads) = cli.threads {
+        rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build_global()?;
+    }
+    let mut bar = Bar::new();
+    match cli.command {
+        Command::Run { scene: SceneArgs { scene, json }, output } => {
+            let scene = Scene::read(scene)?;
+            let (_, report) = run::run(&scene, &folder(&scene, output), |p| bar.run(p))?;
+            drop(bar);
+            print(&report, json)
+        }
+        Command::Modes { scene: SceneArgs { scene, json }, flexible, output } => {
+            let mut scene = Scene::read(scene)?;
+            scene.modes.flexible = flexible.unwrap_or(scene.modes.flexible);
+            let (model, report) = modes::modes(&scene, |p| bar.build(p))?;
+            drop(bar);
+            let pictures = match output {
+                Some(folder) => {
+                    std::fs::create_dir_all(&folder)
+                        .map_err(|source| run::RunError::Folder { folder: folder.clone(), source })?;
+                    figures::mode_shapes(&scene, &model, &folder.join("modes"))?.to_vec()
+                }
+                None => Vec::new(),
+            };
+            print(&report, json)?;
+            if !json {
+                list(&pictures);
+            }
+            Ok(())
+        }
+        Command::Paper { scene: SceneArgs { scene, json }, output } => {
+            let scene = Scene::read(scene)?;
+            let report = paper::reproduce(&scene, &folder(&scene, output), |p| bar.run(p))?;
+            drop(bar);
+            print(&report, json)
+        }
+        Command::Animate { scene, output, frames, magnify } => {
+            let scene = Scene::read(scene)?;
+            animate(&scene, &output, AnimationSettings { frames, magnification: magnify }, |p| bar.run(p))?;
+            drop(bar);
+            list(&[output]);
+            Ok(())
+        }
+    }
+}
+
+/// The folder asked for, or one named after the scene.
+fn folder(scene: &Scene, output: Option<PathBuf>) -> PathBuf {
+    output.unwrap_or_else(|| Path::new("out").join(scene.path.file_stem().unwrap_or("scene".as_ref())))
+}
+
+fn print<R: Serialize + std::fmt::Display>(report: &R, json: bool) -> Result<(), Box<dyn Error>> {
+    if json {
+        println!("{}", serde_json::to_string_pretty(report)?);
+    } else {
+        println!("{report}");
+    }
+    Ok(())
+}
+
+fn list(files: &[PathBuf]) {
+    for file in files {
+        println!("  wrote    {}", file.display());
+    }
+}

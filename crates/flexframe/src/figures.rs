@@ -1,0 +1,59 @@
+//! Pictures of any scene: the shapes of its modes.
+
+use std::path::{Path, PathBuf};
+
+use nalgebra::Vector3;
+use results::{FigureError, Panel, ShapeGrid, View};
+use scene::{Model, Scene};
+
+use crate::modes::frequency_unit;
+use crate::surface::Surface;
+
+/// Largest displacement drawn, as a fraction of the body's size.
+const DRAWN: f64 = 0.08;
+/// More modes than this do not fit a page.
+const MOST_PANELS: usize = 20;
+
+/// Draws the flexible mode shapes, numbered after the six rigid ones, to `<stem>.svg` and `<stem>.png`.
+///
+/// # Errors
+/// [`FigureError`], also where there are no flexible modes to draw.
+pub fn mode_shapes(scene: &Scene, model: &Model, stem: &Path) -> Result<[PathBuf; 2], FigureError> {
+    let surface = Surface::new(model);
+    let unit = frequency_unit(&scene.units.time);
+    let panels = model
+        .modes
+        .natural_frequencies()
+        .iter()
+        .take(MOST_PANELS)
+        .enumerate()
+        .map(|(k, frequency)| {
+            let mut q = vec![0.0; k + 1];
+            q[k] = 1.0;
+            let shape = surface.displacements(model, &q);
+            let largest = shape.iter().map(Vector3::norm).fold(0.0, f64::max);
+            let scale = DRAWN * model.mesh.diagonal() / largest;
+            Panel {
+                title: format!("Mode {}: {frequency:.4} {unit}", k + 7),
+                points: surface
+                    .points
+                    .iter()
+                    .zip(&shape)
+                    .map(|(x, u)| (Vector3::from(*x) + u * scale).into())
+                    .collect(),
+                values: shape.iter().map(|u| u.norm() / largest).collect(),
+            }
+        })
+        .collect();
+    ShapeGrid {
+        title: format!("{}: mode shapes", scene.title),
+        value_label: "displacement / largest of the mode".to_owned(),
+        triangles: &surface.triangles,
+        edges: &surface.edges,
+        undeformed: &surface.points,
+        panels,
+        columns: 2,
+        view: View::default(),
+    }
+    .save(stem)
+}

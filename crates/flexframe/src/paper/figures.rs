@@ -1,0 +1,103 @@
+//! Figs. 3 to 13 of the paper.
+
+use std::path::{Path, PathBuf};
+
+use results::{FigureError, LineChart, Results, Scale, Series, Stroke};
+use scene::{Model, Scene};
+
+use super::WATCHED_POINT;
+use super::rigid_plate::RigidHistories;
+use crate::figures::mode_shapes;
+
+/// Draws all figures into `folder` and returns their files.
+pub(super) fn draw(
+    scene: &Scene,
+    model: &Model,
+    results: &Results,
+    rigid: &RigidHistories,
+    folder: &Path,
+) -> Result<Vec<PathBuf>, FigureError> {
+    let units = &scene.units;
+    let (length, time) = (&units.length, &units.time);
+    let x_label = format!("time, {time}");
+    let acceleration = format!("{length}/{time}²");
+    let history = |rows: &[[f64; 3]], axis: usize| -> Vec<(f64, f64)> {
+        results.time.iter().copied().zip(rows.iter().map(|row| row[axis])).collect()
+    };
+    let solid = |label: &str, points| Series { label: label.to_owned(), points, stroke: Stroke::Solid };
+    let dashed = |label: &str, points| Series { label: label.to_owned(), points, stroke: Stroke::Dashed };
+    let (alpha, omega) = (&results.angular_acceleration, &results.angular_velocity);
+    let point = results.points.get(WATCHED_POINT).cloned().unwrap_or_default();
+    let force = |axis: usize| -> Vec<(f64, f64)> {
+        let total = |t: f64| model.loads().iter().map(|load| load.force_global[axis] * load.history.at(t)).sum();
+        results.time.iter().map(|t| (*t, total(*t))).collect()
+    };
+    let beside_rigid = |rows: &[[f64; 3]], theirs: &[[f64; 3]], axis: usize, label: &str| {
+        vec![solid(label, history(rows, axis)), dashed("rigid plate", history(theirs, axis))]
+    };
+
+    let mut files = mode_shapes(scene, model, &folder.join("fig03_mode_shapes"))?.to_vec();
+    let mut chart = |name: &str, title: &str, y_label: String, series: Vec<Series>| -> Result<(), FigureError> {
+        let chart = LineChart {
+            title: title.to_owned(),
+            x_label: x_label.clone(),
+            y_label,
+            x_scale: Scale::Linear,
+            y_scale: Scale::Linear,
+            series,
+        };
+        files.extend(chart.save(folder.join(name))?);
+        Ok(())
+    };
+    chart(
+        "fig04_force",
+        "Force at the end of the plate (this project's choice)",
+        format!("force, {} {length}/{time}²", units.mass),
+        vec![solid("u₁", force(0)), dashed("u₃", force(2))],
+    )?;
+    chart(
+        "fig05_angular_acceleration_13",
+        "Flexible plate: angular acceleration about X₁′ and X₃′",
+        format!("angular acceleration, rad/{time}²"),
+        vec![solid("α₁", history(alpha, 0)), dashed("α₃", history(alpha, 2))],
+    )?;
+    chart(
+        "fig06_angular_velocity_13",
+        "Flexible plate: angular velocity about X₁′ and X₃′",
+        format!("angular velocity, rad/{time}"),
+        vec![solid("ω₁", history(omega, 0)), dashed("ω₃", history(omega, 2))],
+    )?;
+    chart(
+        "fig07_displacement_2",
+        "Displacement in X₂",
+        format!("displacement, {length}"),
+        results.points.iter().map(|(name, p)| solid(name, history(&p.displacement, 1))).collect(),
+    )?;
+    chart(
+        "fig08_angular_acceleration_2",
+        "Angular acceleration about X₂′",
+        format!("angular acceleration, rad/{time}²"),
+        beside_rigid(alpha, &rigid.alpha_body, 1, "flexible plate"),
+    )?;
+    chart(
+        "fig09_angular_velocity_2",
+        "Angular velocity about X₂′",
+        format!("angular velocity, rad/{time}"),
+        beside_rigid(omega, &rigid.omega_body, 1, "flexible plate"),
+    )?;
+    let accelerations = [
+        ("fig10_rigid_acceleration_1", "embedded rigid motion", &point.rigid_acceleration, 0, "X₁"),
+        ("fig11_rigid_acceleration_3", "embedded rigid motion", &point.rigid_acceleration, 2, "X₃"),
+        ("fig12_acceleration_1", "flexible plate", &point.acceleration, 0, "X₁"),
+        ("fig13_acceleration_3", "flexible plate", &point.acceleration, 2, "X₃"),
+    ];
+    for (name, label, rows, axis, direction) in accelerations {
+        chart(
+            name,
+            &format!("Acceleration of {WATCHED_POINT} in {direction}"),
+            format!("acceleration, {acceleration}"),
+            beside_rigid(rows, &rigid.acceleration_global, axis, label),
+        )?;
+    }
+    Ok(files)
+}

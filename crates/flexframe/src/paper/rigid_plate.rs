@@ -1,0 +1,59 @@
+//! The rigid plate that the paper compares with: same mass, inertia and load.
+
+use nalgebra::Vector3;
+use results::Results;
+use rigid_kin::{Attitude, RigidBody, RigidState, Wrench};
+use scene::Model;
+
+use super::{PaperError, WATCHED_POINT};
+
+/// Histories of the rigid plate at the times of the results.
+pub(super) struct RigidHistories {
+    /// Angular velocity, body axes.
+    pub omega_body: Vec<[f64; 3]>,
+    /// Angular acceleration, body axes.
+    pub alpha_body: Vec<[f64; 3]>,
+    /// Acceleration of the watched point, global.
+    pub acceleration_global: Vec<[f64; 3]>,
+}
+
+/// Integrates the rigid plate under the scene's loads, in the steps of the results.
+pub(super) fn histories(model: &Model, results: &Results) -> Result<RigidHistories, PaperError> {
+    let body = RigidBody::new(model.body.mass, model.body.inertia)?;
+    let watched = model.points.iter().find(|(name, _)| name == WATCHED_POINT);
+    let arm = watched.map_or_else(Vector3::zeros, |(_, point)| point.position_body());
+    let wrench = |time: f64, attitude: &Attitude| {
+        model.loads().iter().fold(Wrench::zero(), |sum, load| {
+            let force = load.force_global * load.history.at(time);
+            let one = Wrench::dead_force(attitude, &load.point.position_body(), &force);
+            Wrench { force_global: sum.force_global + one.force_global, moment_body: sum.moment_body + one.moment_body }
+        })
+    };
+    let row = |i: usize| -> RigidState {
+        RigidState {
+            attitude: Attitude::identity(),
+            omega_body: Vector3::from(results.angular_velocity[i]),
+            position_global: Vector3::from(results.position[i]),
+            velocity_global: Vector3::from(results.velocity[i]),
+        }
+    };
+    let mut histories =
+        RigidHistories { omega_body: Vec::new(), alpha_body: Vec::new(), acceleration_global: Vec::new() };
+    let mut state = row(0);
+    for (i, time) in results.time.iter().copied().enumerate() {
+        if i > 0 {
+            let before = results.time[i - 1];
+            state = body.step(&state, before, time - before, wrench)?;
+        }
+        let load = wrench(time, &state.attitude);
+        let omega = state.omega_body;
+        let alpha = body.angular_acceleration_body(&omega, &load.moment_body);
+        let of_point = alpha.cross(&arm) + omega.cross(&omega.cross(&arm));
+        histories.omega_body.push(omega.into());
+        histories.alpha_body.push(alpha.into());
+        histories
+            .acceleration_global
+            .push((load.force_global / body.mass() + state.attitude.to_global(&of_point)).into());
+    }
+    Ok(histories)
+}

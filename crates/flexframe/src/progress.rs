@@ -1,0 +1,75 @@
+//! A progress bar for work that takes longer than a second.
+
+use std::time::{Duration, Instant};
+
+use flexframe::run::RunProgress;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use modal::Progress;
+use scene::BuildProgress;
+
+/// Work shorter than this needs no bar.
+const PATIENCE: Duration = Duration::from_secs(1);
+
+/// Shows how far the work is, on the terminal if there is one.
+pub struct Bar {
+    started: Instant,
+    phase: &'static str,
+    bar: ProgressBar,
+}
+
+impl Bar {
+    pub fn new() -> Self {
+        Self { started: Instant::now(), phase: "", bar: ProgressBar::hidden() }
+    }
+
+    pub fn build(&mut self, progress: BuildProgress) {
+        match progress {
+            BuildProgress::Mesh => self.show("reading the mesh", None),
+            BuildProgress::Assembly => self.show("assembling", None),
+            BuildProgress::Modes(Progress::Factorizing) => self.show("factoring K + sM", None),
+            BuildProgress::Modes(Progress::Lanczos { converged, requested }) => {
+                self.show("finding modes", Some((converged as u64, requested as u64)));
+            }
+        }
+    }
+
+    pub fn run(&mut self, progress: RunProgress) {
+        match progress {
+            RunProgress::Build(progress) => self.build(progress),
+            RunProgress::Steps { done, total } => self.show("stepping", Some((done, total))),
+        }
+    }
+
+    fn show(&mut self, phase: &'static str, done: Option<(u64, u64)>) {
+        if phase != self.phase {
+            self.bar.finish_and_clear();
+            self.phase = phase;
+            self.bar = match done {
+                Some((_, total)) => ProgressBar::with_draw_target(Some(total), ProgressDrawTarget::hidden())
+                    .with_style(style("{msg} {wide_bar} {pos}/{len}, {eta} left")),
+                None => ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden())
+                    .with_style(style("{spinner} {msg}, {elapsed}")),
+            }
+            .with_message(phase);
+        }
+        if self.bar.is_hidden() && self.started.elapsed() > PATIENCE {
+            self.bar.set_draw_target(ProgressDrawTarget::stderr_with_hz(10));
+            if done.is_none() {
+                self.bar.enable_steady_tick(Duration::from_millis(200));
+            }
+        }
+        if let Some((done, _)) = done {
+            self.bar.set_position(done);
+        }
+    }
+}
+
+impl Drop for Bar {
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+fn style(template: &str) -> ProgressStyle {
+    ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar())
+}

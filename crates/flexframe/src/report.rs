@@ -1,0 +1,129 @@
+//! What a command has to say when it is done, for people and for scripts.
+
+use std::fmt::{self, Write};
+use std::time::Duration;
+
+use scene::{Model, Scene};
+use serde::Serialize;
+
+/// Times of the phases, seconds, in the order in which they were passed.
+#[derive(Debug, Clone, Default, Serialize)]
+#[serde(transparent)]
+pub struct Times(Vec<(&'static str, f64)>);
+
+impl Times {
+    /// The phases of a model's making.
+    pub fn of_model(model: &Model) -> Self {
+        let (build, solve) = (&model.times, &model.modes.stats);
+        let mut times = Self::default();
+        times.add("mesh", build.mesh);
+        times.add("assembly", build.assembly);
+        times.add("rigid modes", solve.preparation_time);
+        times.add("ordering", solve.ordering_time);
+        times.add("factor", solve.factor_time);
+        times.add("Lanczos", solve.lanczos_time);
+        times.add("Ritz", solve.ritz_time);
+        times.add("reduction", build.reduction);
+        times
+    }
+
+    /// Appends a phase.
+    pub fn add(&mut self, phase: &'static str, time: Duration) {
+        self.0.push((phase, time.as_secs_f64()));
+    }
+
+    /// Sum of all phases, seconds.
+    pub fn total(&self) -> f64 {
+        self.0.iter().map(|(_, seconds)| seconds).sum()
+    }
+}
+
+impl fmt::Display for Times {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut line = String::new();
+        for (phase, seconds) in &self.0 {
+            write!(line, "{phase} {seconds:.3}, ")?;
+        }
+        write!(f, "{line}together {:.2} s", self.total())
+    }
+}
+
+/// Size of the finite-element model.
+#[derive(Debug, Clone, Serialize)]
+pub struct MeshReport {
+    /// The mesh file.
+    pub file: String,
+    /// Nodes.
+    pub nodes: usize,
+    /// Elements.
+    pub elements: usize,
+    /// Degrees of freedom.
+    pub unknowns: usize,
+    /// Bytes of the mass and stiffness matrices.
+    pub matrix_bytes: usize,
+    /// Entries of the factor of K + sM.
+    pub factor_entries: usize,
+}
+
+/// Mass properties and modes.
+#[derive(Debug, Clone, Serialize)]
+pub struct BodyReport {
+    /// Total mass.
+    pub mass: f64,
+    /// Centre of mass, mesh axes.
+    pub center_of_mass: [f64; 3],
+    /// Inertia about the centre of mass, body axes, row by row.
+    pub inertia: [[f64; 3]; 3],
+    /// Natural frequencies of the flexible modes, cycles per time.
+    pub natural_frequencies: Vec<f64>,
+    /// Damping ratios.
+    pub damping_ratios: Vec<f64>,
+    /// Lanczos residual of each mode, in the shifted scale.
+    pub residuals: Vec<f64>,
+    /// ‖Kφ − λMφ‖/‖Kφ‖ of each mode.
+    pub force_residuals: Vec<f64>,
+}
+
+impl MeshReport {
+    /// Of a scene's model.
+    pub fn new(scene: &Scene, model: &Model) -> Self {
+        Self {
+            file: scene.body.mesh.display().to_string(),
+            nodes: model.mesh.positions().len(),
+            elements: model.mesh.elements().len(),
+            unknowns: 3 * model.mesh.positions().len(),
+            matrix_bytes: model.matrix_bytes,
+            factor_entries: model.modes.stats.factor_entries,
+        }
+    }
+}
+
+impl fmt::Display for MeshReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "{} nodes, {} elements, {} unknowns (matrices {:.0} MB, factor {:.0} MB)",
+            self.nodes,
+            self.elements,
+            self.unknowns,
+            self.matrix_bytes as f64 / 1e6,
+            8e-6 * self.factor_entries as f64
+        )
+    }
+}
+
+impl BodyReport {
+    /// Of a model.
+    pub fn new(model: &Model) -> Self {
+        let inertia = model.body.inertia;
+        Self {
+            mass: model.body.mass,
+            center_of_mass: model.body.center_of_mass.into(),
+            inertia: std::array::from_fn(|i| std::array::from_fn(|j| inertia[(i, j)])),
+            natural_frequencies: model.modes.natural_frequencies(),
+            damping_ratios: model.damping_ratios().to_vec(),
+            residuals: model.modes.residuals.clone(),
+            force_residuals: model.modes.force_residuals.clone(),
+        }
+    }
+}

@@ -1,0 +1,61 @@
+//! The surface of a body, for pictures: boundary triangles over their own list of points.
+
+use nalgebra::Vector3;
+use results::{boundary_triangles, sharp_edges};
+use rigid_kin::Attitude;
+use scene::Model;
+
+/// Surface of the undeformed body, and how the modes move its points.
+#[derive(Debug, Clone)]
+pub struct Surface {
+    /// Triangles, by indices of points.
+    pub triangles: Vec<[u32; 3]>,
+    /// Sharp edges, by indices of points.
+    pub edges: Vec<[u32; 2]>,
+    /// Undeformed points, mesh axes.
+    pub points: Vec<[f64; 3]>,
+    /// Indices of the points among the nodes of the mesh.
+    nodes: Vec<u32>,
+}
+
+impl Surface {
+    /// The surface of a model's mesh.
+    pub fn new(model: &Model) -> Self {
+        let on_mesh = boundary_triangles(model.mesh.elements());
+        let mut nodes: Vec<u32> = on_mesh.iter().flatten().copied().collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        let place = |node: u32| nodes.partition_point(|n| *n < node) as u32;
+        let triangles: Vec<[u32; 3]> = on_mesh.iter().map(|t| t.map(place)).collect();
+        let points: Vec<[f64; 3]> = nodes.iter().map(|n| model.mesh.positions()[*n as usize]).collect();
+        Self { edges: sharp_edges(&points, &triangles), triangles, points, nodes }
+    }
+
+    /// Displacements of the points in the flexible modal coordinates `q`, body axes.
+    pub fn displacements(&self, model: &Model, q: &[f64]) -> Vec<Vector3<f64>> {
+        let shapes = &model.modes.shapes;
+        self.nodes
+            .iter()
+            .map(|node| {
+                let row = 3 * *node as usize;
+                q.iter().enumerate().map(|(k, q)| Vector3::from_fn(|axis, _| shapes[(row + axis, k)]) * *q).sum()
+            })
+            .collect()
+    }
+
+    /// Where the points are in space when the centre of mass is at `position_global`, displaced by `displacements`.
+    pub fn placed(
+        &self,
+        model: &Model,
+        position_global: &Vector3<f64>,
+        attitude: &Attitude,
+        displacements: &[Vector3<f64>],
+    ) -> Vec<[f64; 3]> {
+        let center = model.body.center_of_mass;
+        self.points
+            .iter()
+            .zip(displacements)
+            .map(|(x, u)| (position_global + attitude.to_global(&(Vector3::from(*x) - center + u))).into())
+            .collect()
+    }
+}

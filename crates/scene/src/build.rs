@@ -1,0 +1,293 @@
+//! From a scene to a body that can move.
+
+use std::time::{Duration, Instant};
+
+use fem_tet10::{AssemblyError, Location, Matrices, Mesh, MeshError, assemble, read_msh};
+use frames_rk4::{DeadForce, Initial, ModalModel, PaperScheme, PointShapes, SetupError};
+use modal::{BodyPoint, ModalError, Modes, ReducedBody};
+use nalgebra::Vector3;
+
+use crate::error::SceneError;
+use crate::load::{History, Load};
+use crate::scene::{self, Scene};
+
+/// A scene that cannot be built.
+#[derive(Debug, thiserror::Error)]
+pub enum BuildError {
+    /// Something in the scene does not fit the mesh.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// The mesh cannot be used.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+    /// The matrices cannot be assembled.
+    #[error(transparent)]
+    Assembly(#[from] AssemblyError),
+    /// The modes cannot be found.
+    #[error(transparent)]
+    Modal(#[from] ModalError),
+}
+
+/// How far the building of a model has come.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum BuildProgress {
+    /// The mesh is being read.
+    Mesh,
+    /// Mass and stiffness are being assembled.
+    Assembly,
+    /// The modes are being searched.
+    Modes(modal::Progress),
+}
+
+/// Where the time went. That of the modes is in [`modal::SolveStats`].
+#[derive(Debug, Clone, Copy, Default)]
+pub struct BuildTimes {
+    /// Reading and checking the mesh.
+    pub mesh: Duration,
+    /// Assembling mass and stiffness.
+    pub assembly: Duration,
+    /// Finding the modes.
+    pub modes: Duration,
+    /// Making the reduced body and its points.
+    pub reduction: Duration,
+}
+
+/// The body of a scene in modal coordinates, with its mesh, its points and its loads.
+#[derive(Debug)]
+pub struct Model {
+    /// The mesh.
+    pub mesh: Mesh,
+    /// Bytes that the mass and stiffness matrices took.
+    pub matrix_bytes: usize,
+    /// Rigid and flexible modes on the mesh.
+    pub modes: Modes,
+    /// The reduced body.
+    pub body: ReducedBody,
+    /// The points whose motion is written out, by name.
+    pub points: Vec<(String, PointShapes)>,
+    /// R, P, Q from the centre of mass, body axes.
+    pub reference_points: [Vector3<f64>; 3],
+    /// Where the time went.
+    pub times: BuildTimes,
+    loads: Vec<DeadForce>,
+    damping_ratios: Vec<f64>,
+}
+
+impl Model {
+    /// Reads the mesh of a scene, finds its modes and reduces the body. `progress` hears what is being done.
+    ///
+    /// # Errors
+    /// [`BuildError`]: what the mesh, the materials or the modes refuse, with the place in the scene file where
+    /// there is one.
+    pub fn build(scene: &Scene, mut progress: impl FnMut(BuildProgress)) -> Result<Self, BuildError> {
+        let mut times = BuildTimes::default();
+        progress(BuildProgress::Mesh);
+        let mesh = timed(&mut times.mesh, || read_mesh(scene))?;
+        progress(BuildProgress::Assembly);
+        let matrices = timed(&mut times.assembly, || matrices(scene, &mesh))?;
+        let modes = timed(&mut times.modes, || {
+            modal::solve(matrices.stiffness(), matrices.mass(), mesh.positions(), scene.modes.flexible, |p| {
+                progress(BuildProgress::Modes(p));
+            })
+            .map_err(|error| too_many_modes(scene, error))
+        })?;
+        let started = Instant::now();
+        let body = ReducedBody::new(&modes, matrices.mass(), mesh.positions())?;
+        let point = |key: String, at: [f64; 3]| -> Result<PointShapes, SceneError> {
+            let Location { nodes, weights } = mesh.locate(at).map_err(|error| refuse(scene, &key, error))?;
+            Ok(PointShapes::new(&body, &BodyPoint::new(&modes, mesh.positions(), &nodes, &weights)))
+        };
+        let points = scene
+            .output
+            .points
+            .iter()
+            .map(|(name, at)| Ok((name.clone(), point(format!("output.points.{name}"), *at)?)))
+            .collect::<Result<_, SceneError>>()?;
+        let loads = scene
+            .loads
+            .iter()
+            .enumerate()
+            .map(|(i, Load::Force(force))| {
+                let History::HalfSine { start, duration } = force.history;
+                Ok(DeadForce {
+                    point: point(format!("loads[{i}].at"), force.at)?,
+                    force_global: Vector3::from(force.direction) * force.amplitude,
+                    history: frames_rk4::History::HalfSine { start, duration },
+                })
+            })
+            .collect::<Result<_, SceneError>>()?;
+        let reference_points = match scene.frame {
+            Some(scene::Frame { r, p, q }) => [r, p, q],
+            None => well_spread(mesh.positions(), &body.center_of_mass),
+        }
+        .map(|x| Vector3::from(x) - body.center_of_mass);
+        times.reduction = started.elapsed();
+        Ok(Self {
+            matrix_bytes: matrices.bytes(),
+            damping_ratios: vec![scene.modes.damping_ratio; body.flexible()],
+            mesh,
+            modes,
+            body,
+            points,
+            reference_points,
+            times,
+            loads,
+        })
+    }
+
+    /// Damping ratio of each flexible mode.
+    pub fn damping_ratios(&self) -> &[f64] {
+        &self.damping_ratios
+    }
+
+    /// The loads, at their points of the body.
+    pub fn loads(&self) -> &[DeadForce] {
+        &self.loads
+    }
+
+    /// The motion of a scene from its beginning in steps of `step`.
+    ///
+    /// # Errors
+    /// [`SetupError`], e.g. a step beyond the stability limit.
+    pub fn start(&self, scene: &Scene, step: f64) -> Result<PaperScheme, SetupError> {
+        let model = ModalModel::new(&self.body, &self.damping_ratios, self.loads.clone())?;
+        let padded = |list: &[f64]| (0..self.body.flexible()).map(|k| list.get(k).copied().unwrap_or(0.0)).collect();
+        let initial = Initial {
+            velocity: scene.initial.velocity.into(),
+            omega: scene.initial.angular_velocity.into(),
+            modal_displacement: padded(&scene.initial.modal_displacement),
+            modal_velocity: padded(&scene.initial.modal_velocity),
+        };
+        PaperScheme::new(&self.body, model, self.reference_points, &initial, step)
+    }
+}
+
+impl Scene {
+    /// Number of steps and their length: the longest step not above the one asked for that ends at the end.
+    pub fn steps(&self) -> (u64, f64) {
+        // A step that divides the end but for rounding is left as it is.
+        let count = (self.time.end / self.time.step * (1.0 - 1e-12)).ceil().max(1.0);
+        (count as u64, self.time.end / count)
+    }
+
+    /// The materials in the words of fem-tet10.
+    fn materials(&self) -> fem_tet10::Materials {
+        let material = |m: &scene::Material| fem_tet10::Material {
+            young_modulus: m.young_modulus,
+            poisson_ratio: m.poisson_ratio,
+            density: m.density,
+        };
+        match &self.body.materials {
+            scene::Materials::Whole(m) => fem_tet10::Materials::Uniform(material(m)),
+            scene::Materials::ByGroup(groups) => {
+                fem_tet10::Materials::ByGroup(groups.iter().map(|(name, m)| (name.clone(), material(m))).collect())
+            }
+        }
+    }
+
+    fn point_masses(&self) -> Vec<fem_tet10::PointMass> {
+        let point_mass = |p: &scene::PointMass| fem_tet10::PointMass { at: p.at, mass: p.mass, spread: p.spread };
+        self.body.point_masses.iter().map(point_mass).collect()
+    }
+
+    /// Mass properties with each element's mass at its centroid, as the paper prints them.
+    ///
+    /// # Errors
+    /// As [`Model::build`], for materials and point masses.
+    pub fn centroid_lumped_inertia(&self, mesh: &Mesh) -> Result<fem_tet10::LumpedInertia, BuildError> {
+        Ok(fem_tet10::centroid_lumped_inertia(mesh, &self.materials(), &self.point_masses())?)
+    }
+}
+
+fn timed<T>(time: &mut Duration, work: impl FnOnce() -> T) -> T {
+    let started = Instant::now();
+    let result = work();
+    *time = started.elapsed();
+    result
+}
+
+fn read_mesh(scene: &Scene) -> Result<Mesh, BuildError> {
+    read_msh(&scene.body.mesh).map_err(|error| match error {
+        MeshError::Io { source_name, source } => scene
+            .refuse(
+                "body.mesh",
+                format!("a mesh that cannot be read: {source_name}: {source}"),
+                "a MSH 4.1 file, its path relative to the folder of the scene file",
+                "correct the path, or make the mesh: gmsh -3 -order 2 -format msh41 BODY.geo",
+            )
+            .into(),
+        other => other.into(),
+    })
+}
+
+fn matrices(scene: &Scene, mesh: &Mesh) -> Result<Matrices, BuildError> {
+    assemble(mesh, &scene.materials(), &scene.point_masses()).map_err(|error| {
+        let at = match &error {
+            AssemblyError::OffBody { at, .. } | AssemblyError::Spread { at, .. } => *at,
+            AssemblyError::MissingGroup { group, .. } => {
+                let key = format!("body.materials.{group}");
+                return refuse(scene, &key, error).into();
+            }
+            _ => return error.into(),
+        };
+        match scene.body.point_masses.iter().position(|p| p.at == at) {
+            Some(i) => refuse(scene, &format!("body.point_masses[{i}].at"), error).into(),
+            None => error.into(),
+        }
+    })
+}
+
+/// An assembly error at its place in the scene file.
+fn refuse(scene: &Scene, key: &str, error: AssemblyError) -> SceneError {
+    let message = error.to_string();
+    match error {
+        AssemblyError::OffBody { source_name, node, position, distance, .. } => scene.refuse(
+            key,
+            format!("a point that is not on the body: the nearest node of {source_name} is {distance:.6} away"),
+            "a point of the body",
+            format!("use a point of the body; node {node} is at {position:?}"),
+        ),
+        AssemblyError::Spread { radius, count, distance, .. } => scene.refuse(
+            key,
+            format!("{count} node(s) within {radius}, the nearest {distance:.6} away"),
+            "nodes all around the point that can carry the mass",
+            "use a larger spread, or leave it out for a point of the body",
+        ),
+        AssemblyError::MissingGroup { group, present, .. } => scene.refuse(
+            key,
+            format!("the physical volume \"{group}\", which the mesh has not"),
+            format!("one of {present:?}"),
+            "rename it, or name the volume in the geometry and mesh again",
+        ),
+        _ => scene.refuse(key, message, "something that fits the mesh", "correct it"),
+    }
+}
+
+fn too_many_modes(scene: &Scene, error: ModalError) -> BuildError {
+    match error {
+        ModalError::TooManyModes { requested, available } => scene
+            .refuse(
+                "modes.flexible",
+                requested.to_string(),
+                format!("at most {available}: three modes for each node of the mesh, less the six rigid ones"),
+                "ask for fewer modes, or use a finer mesh",
+            )
+            .into(),
+        other => other.into(),
+    }
+}
+
+/// Three nodes that lie far from each other: R farthest from the centre of mass, P farthest from R, Q farthest from
+/// the line RP.
+fn well_spread(positions: &[[f64; 3]], center_of_mass: &Vector3<f64>) -> [[f64; 3]; 3] {
+    let farthest = |distance: &dyn Fn(&Vector3<f64>) -> f64| {
+        positions.iter().map(|x| Vector3::from(*x)).fold((Vector3::zeros(), f64::NEG_INFINITY), |best, x| {
+            let d = distance(&x);
+            if d > best.1 { (x, d) } else { best }
+        })
+    };
+    let (r, _) = farthest(&|x| (x - center_of_mass).norm());
+    let (p, _) = farthest(&|x| (x - r).norm());
+    let (q, _) = farthest(&|x| (x - r).cross(&(p - r)).norm());
+    [r.into(), p.into(), q.into()]
+}
