@@ -5,7 +5,7 @@ use std::fmt;
 use scene::{BuildError, BuildProgress, Model, Scene};
 use serde::Serialize;
 
-use crate::report::{BodyReport, MeshReport, Times};
+use crate::report::{BodyReport, MeshReport, Times, quantity};
 
 /// What `flexframe modes` says.
 #[derive(Debug, Clone, Serialize)]
@@ -47,7 +47,7 @@ impl fmt::Display for ModesReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{}", self.title)?;
         writeln!(f, "  mesh   {}", self.mesh)?;
-        writeln!(f, "  mass   {}", self.body.mass)?;
+        writeln!(f, "  mass   {}", quantity(self.body.mass))?;
         writeln!(f, "\n  mode  frequency, {:<6}  damping  residual", self.frequency_unit)?;
         let modes = self.body.natural_frequencies.iter().zip(&self.body.damping_ratios).zip(&self.body.residuals);
         for (k, ((frequency, damping), residual)) in modes.enumerate() {

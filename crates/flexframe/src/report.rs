@@ -48,6 +48,20 @@ impl fmt::Display for Times {
     }
 }
 
+/// A quantity for people to read: seven digits, with a power of ten where it is very large or small.
+pub(crate) fn quantity(value: f64) -> String {
+    let magnitude = value.abs();
+    if magnitude == 0.0 {
+        return "0".to_owned();
+    }
+    if !(1e-4..1e7).contains(&magnitude) {
+        return format!("{value:.6e}");
+    }
+    let decimals = (6 - magnitude.log10().floor() as i32).max(0) as usize;
+    let fixed = format!("{value:.decimals$}");
+    if fixed.contains('.') { fixed.trim_end_matches('0').trim_end_matches('.').to_owned() } else { fixed }
+}
+
 /// Size of the finite-element model.
 #[derive(Debug, Clone, Serialize)]
 pub struct MeshReport {
@@ -125,5 +139,21 @@ impl BodyReport {
             residuals: model.modes.residuals.clone(),
             force_residuals: model.modes.force_residuals.clone(),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::quantity;
+
+    #[test]
+    fn quantities_have_seven_digits_and_no_rounding_dust() {
+        assert_eq!(quantity(0.009349999999998967), "0.00935");
+        assert_eq!(quantity(33.909140001), "33.90914");
+        assert_eq!(quantity(-2112.7112499), "-2112.711");
+        assert_eq!(quantity(1e-12), "1.000000e-12");
+        assert_eq!(quantity(2.5e9), "2.500000e9");
+        assert_eq!(quantity(0.0), "0");
+        assert_eq!(quantity(1000.0), "1000");
     }
 }

@@ -11,7 +11,7 @@ use scene::{BuildError, BuildProgress, Model, Scene};
 use serde::Serialize;
 
 use crate::modes::frequency_unit;
-use crate::report::{BodyReport, MeshReport, Times};
+use crate::report::{BodyReport, MeshReport, Times, quantity};
 
 /// A run that could not be done.
 #[derive(Debug, thiserror::Error)]
@@ -261,7 +261,7 @@ impl fmt::Display for RunReport {
         let frequencies = &self.body.natural_frequencies;
         writeln!(f, "{}", self.title)?;
         writeln!(f, "  mesh     {}", self.mesh)?;
-        write!(f, "  body     {} {mass}, ", self.body.mass)?;
+        write!(f, "  body     {} {mass}, ", quantity(self.body.mass))?;
         match (frequencies.first(), frequencies.last()) {
             (Some(first), Some(last)) => writeln!(
                 f,
@@ -276,17 +276,17 @@ impl fmt::Display for RunReport {
             "  motion   scheme {}, {} steps of {:e} {time}, {:.0} steps per second",
             self.scheme, self.steps, self.step, self.steps_per_second
         )?;
-        let [x, y, z] = self.moved;
+        let [x, y, z] = self.moved.map(quantity);
         writeln!(
             f,
-            "  end      turned by {:.6} rad, centre of mass moved by ({x:.6}, {y:.6}, {z:.6}) {length}",
-            self.turned
+            "  end      turned by {} rad, centre of mass moved by ({x}, {y}, {z}) {length}",
+            quantity(self.turned)
         )?;
-        let energy = format!("{mass} {length}²/{time}²");
         writeln!(
             f,
-            "  energy   {:.6e} at the end, largest strain energy {:.6e} {energy}",
-            self.final_energy, self.peak_strain_energy
+            "  energy   {} at the end, largest strain energy {}, {mass} {length}²/{time}²",
+            quantity(self.final_energy),
+            quantity(self.peak_strain_energy)
         )?;
         writeln!(f, "  time     {}", self.times)?;
         write!(f, "  results  {} ({} rows)", self.results.display(), self.rows)

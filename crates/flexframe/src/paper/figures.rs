@@ -71,7 +71,15 @@ pub(super) fn draw(
         "fig07_displacement_2",
         "Displacement in X₂",
         format!("displacement, {length}"),
-        results.points.iter().map(|(name, p)| solid(name, history(&p.displacement, 1))).collect(),
+        results
+            .points
+            .iter()
+            .enumerate()
+            .map(|(i, (name, p))| {
+                let points = history(&p.displacement, 1);
+                if i % 2 == 0 { solid(name, points) } else { dashed(name, points) }
+            })
+            .collect(),
     )?;
     chart(
         "fig08_angular_acceleration_2",
