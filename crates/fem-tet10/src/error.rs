@@ -119,15 +119,39 @@ pub enum MeshError {
         /// Its position.
         position: [f64; 3],
     },
-    /// An element is in a group that is not in the list, in a mesh given by a program.
+    /// Two physical volumes would go by one name: the number of one that has no name is the name of the other.
     #[error(
-        "{source_name}: element {element} is in group number {group} (counted from 0), but there are {count} groups; give the group's name"
+        "{source_name}: physical volume {name} has no name and would go by its number, but another one is named \"{name}\"; name the first (gmsh: `Physical Volume(\"...\", {name})`), or rename the other"
     )]
-    UnknownGroup {
+    AmbiguousGroup {
+        /// The mesh.
+        source_name: String,
+        /// Number of the one, name of the other.
+        name: String,
+    },
+    /// An element is in a region that is not in the list, in a mesh given by a program.
+    #[error(
+        "{source_name}: element {element} is in region number {region} (counted from 0), but there are {count} regions; list the region, with its groups"
+    )]
+    UnknownRegion {
         /// The mesh.
         source_name: String,
         /// Tag of the element.
         element: u64,
+        /// The index that is too large.
+        region: usize,
+        /// Length of the list of regions.
+        count: usize,
+    },
+    /// A region is in a group that is not in the list, in a mesh given by a program.
+    #[error(
+        "{source_name}: region number {region} is in group number {group} (both counted from 0), but there are {count} groups; give the group's name"
+    )]
+    UnknownGroup {
+        /// The mesh.
+        source_name: String,
+        /// Index of the region.
+        region: usize,
         /// The index that is too large.
         group: usize,
         /// Length of the list of groups.
@@ -211,17 +235,30 @@ pub enum AssemblyError {
         present: Vec<String>,
     },
     /// An element that no material covers.
-    #[error("{source_name}: element {element} has no material: {}", match group {
-        Some(name) => format!("give one to its physical group \"{name}\""),
-        None => "it is in no named physical volume; name one in the geometry, or use one material for the whole mesh".to_owned(),
+    #[error("{source_name}: element {element} has no material: {}", match groups.as_slice() {
+        [] => "it is in no named physical volume; name one in the geometry, or use one material for the whole mesh".to_owned(),
+        [name] => format!("give one to its physical group \"{name}\""),
+        several => format!("give one to one of its physical groups {several:?}"),
     })]
     NoMaterial {
         /// The mesh.
         source_name: String,
         /// Tag of the element.
         element: u64,
-        /// Its physical group, where it has one.
-        group: Option<String>,
+        /// Names of its physical groups.
+        groups: Vec<String>,
+    },
+    /// An element that two groups give different materials.
+    #[error(
+        "{source_name}: element {element} is in both physical volumes {groups:?}, which are given different materials; give both the same one, leave one of them out, or make physical volumes that do not overlap"
+    )]
+    TwoMaterials {
+        /// The mesh.
+        source_name: String,
+        /// Tag of the element.
+        element: u64,
+        /// Names of the two groups.
+        groups: [String; 2],
     },
     /// A point mass that is not a positive number.
     #[error("the point mass at {at:?} is {found}; expected a positive number")]
@@ -241,7 +278,7 @@ pub enum AssemblyError {
         /// The radius.
         found: f64,
     },
-    /// A point that lies outside the body.
+    /// A point that lies outside the body, by more than [`Mesh::locate`](crate::Mesh::locate) allows.
     #[error(
         "{source_name}: the point {at:?} is not on the body: the nearest node is {node} at {position:?}, {distance:.6} away; use a point of the body"
     )]
@@ -272,5 +309,21 @@ pub enum AssemblyError {
         count: usize,
         /// Distance of the nearest node of all.
         distance: f64,
+    },
+    /// So many nodes near a point that a mass spread over them would fill the matrices.
+    #[error(
+        "{source_name}: {count} nodes lie within {radius} of {at:?}, but a point mass is spread over {limit} at most, as each of them is coupled to all the others; use a smaller spread"
+    )]
+    SpreadTooWide {
+        /// The mesh.
+        source_name: String,
+        /// The point.
+        at: [f64; 3],
+        /// The radius asked for.
+        radius: f64,
+        /// Nodes found within it.
+        count: usize,
+        /// Nodes allowed.
+        limit: usize,
     },
 }

@@ -11,8 +11,10 @@ use crate::shape::{barycentric, shape_functions, shape_gradients};
 const AT_NODE: f64 = 1e-7;
 /// Newton's method has converged once its step, in reference coordinates, is below this.
 const CONVERGED: f64 = 1e-9;
-/// How far outside of an element, in its barycentric coordinates, a point still belongs to it.
-const OUTSIDE: f64 = 1e-6;
+/// How far outside of an element, in its barycentric coordinates, a point is still inside but for rounding.
+const ROUNDING: f64 = 1e-6;
+/// How far outside of an element, in its barycentric coordinates, a point may be that lies in none.
+const OUTSIDE: f64 = 1e-3;
 
 /// A point of the body: `u(point) = Σ weights_i u(nodes_i)`.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,27 +28,43 @@ pub struct Location {
 impl Mesh {
     /// The node at `point`, or the ten nodes of the element that contains it with their shape functions.
     ///
+    /// Quadratic elements follow a curved surface only so far, and points on the true surface may lie just outside
+    /// of them. So a point in no element is given to the one that it is least outside of, by up to a thousandth of
+    /// the element's height (1e-3 in its barycentric coordinates), whose shape functions are then extrapolated:
+    /// the weights still sum to one and reproduce linear fields exactly at `point`.
+    ///
     /// # Errors
-    /// [`AssemblyError::OffBody`] with the nearest node and its distance.
+    /// [`AssemblyError::OffBody`] with the nearest node and its distance, for a point farther outside.
     pub fn locate(&self, point: [f64; 3]) -> Result<Location, AssemblyError> {
         let (nearest, distance) = self.nearest_node(point);
         if distance <= AT_NODE * self.diagonal() {
             return Ok(Location { nodes: vec![nearest as u32], weights: vec![1.0] });
         }
-        (0..self.elements().len())
-            .find_map(|e| {
-                let positions = self.element_positions(e);
-                let at = reference_coordinates(&positions, point)?;
-                let inside = barycentric(at).into_iter().all(|l| l >= -OUTSIDE);
-                inside.then(|| Location { nodes: self.elements()[e].to_vec(), weights: shape_functions(at).to_vec() })
-            })
-            .ok_or_else(|| AssemblyError::OffBody {
+        // The element found so far whose smallest barycentric coordinate at the point is largest.
+        let mut smallest = f64::NEG_INFINITY;
+        let mut found = None;
+        for e in 0..self.elements().len() {
+            let Some(at) = reference_coordinates(&self.element_positions(e), point) else { continue };
+            let here = barycentric(at).into_iter().fold(f64::INFINITY, f64::min);
+            if here > smallest {
+                (smallest, found) = (here, Some((e, at)));
+            }
+            if smallest >= -ROUNDING {
+                break;
+            }
+        }
+        match found {
+            Some((e, at)) if smallest >= -OUTSIDE => {
+                Ok(Location { nodes: self.elements()[e].to_vec(), weights: shape_functions(at).to_vec() })
+            }
+            _ => Err(AssemblyError::OffBody {
                 source_name: self.source().to_owned(),
                 at: point,
                 node: self.node_tags()[nearest],
                 position: self.positions()[nearest],
                 distance,
-            })
+            }),
+        }
     }
 
     /// Index and distance of the node nearest to a point.

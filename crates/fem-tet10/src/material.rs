@@ -49,7 +49,8 @@ impl Material {
 pub enum Materials {
     /// One material for the whole mesh.
     Uniform(Material),
-    /// A material for each volume physical group, by the group's name.
+    /// A material for each volume physical group, by the group's name. Groups may overlap where their materials are
+    /// equal, and a group may be left out where others cover it.
     ByGroup(BTreeMap<String, Material>),
 }
 
@@ -57,7 +58,8 @@ impl Materials {
     /// The material of each element of `mesh`.
     ///
     /// # Errors
-    /// A constant outside its range, a named group that the mesh does not have, an element without a material.
+    /// A constant outside its range, a named group that the mesh does not have, an element without a material or
+    /// with two different ones.
     pub(crate) fn of_elements(&self, mesh: &Mesh) -> Result<Vec<Material>, AssemblyError> {
         match self {
             Self::Uniform(material) => {
@@ -79,12 +81,22 @@ impl Materials {
                     mesh.groups().iter().map(|name| by_name.get(name).copied()).collect();
                 (0..mesh.elements().len())
                     .map(|e| {
-                        let group = mesh.element_group(e);
-                        group.and_then(|g| of_group[g]).ok_or_else(|| AssemblyError::NoMaterial {
+                        let groups = mesh.element_groups(e);
+                        let name = |group: &usize| mesh.groups()[*group].clone();
+                        let mut given = groups.iter().filter_map(|g| Some((g, of_group[*g]?)));
+                        let (first, material) = given.next().ok_or_else(|| AssemblyError::NoMaterial {
                             source_name: mesh.source().to_owned(),
                             element: mesh.element_tags()[e],
-                            group: group.map(|g| mesh.groups()[g].clone()),
-                        })
+                            groups: groups.iter().map(name).collect(),
+                        })?;
+                        match given.find(|(_, other)| *other != material) {
+                            None => Ok(material),
+                            Some((second, _)) => Err(AssemblyError::TwoMaterials {
+                                source_name: mesh.source().to_owned(),
+                                element: mesh.element_tags()[e],
+                                groups: [name(first), name(second)],
+                            }),
+                        }
                     })
                     .collect()
             }

@@ -20,8 +20,10 @@ pub struct MeshParts {
     pub elements: Vec<[u64; 10]>,
     /// Names of the volume physical groups.
     pub groups: Vec<String>,
-    /// For each element, the index of its group, where it has one.
-    pub element_groups: Vec<Option<usize>>,
+    /// The regions of the body (gmsh's volume entities): for each, the indices of the groups it is in.
+    pub regions: Vec<Vec<usize>>,
+    /// For each element, the index of its region.
+    pub element_regions: Vec<usize>,
 }
 
 /// A mesh of ten-node tetrahedra in one piece, every node in use and every element the right way round.
@@ -33,21 +35,23 @@ pub struct Mesh {
     element_tags: Vec<u64>,
     elements: Vec<[u32; 10]>,
     groups: Vec<String>,
-    element_groups: Vec<Option<usize>>,
+    regions: Vec<Vec<usize>>,
+    element_regions: Vec<usize>,
 }
 
 impl Mesh {
     /// Checks the parts and makes a mesh of them.
     ///
     /// # Errors
-    /// Lengths that do not agree, tags given twice or unknown, coordinates that are not finite, groups that
-    /// are not in the list, inverted or degenerate elements, nodes of no element, several pieces.
+    /// Lengths that do not agree, tags given twice or unknown, coordinates that are not finite, regions and groups
+    /// that are not in their lists, inverted or degenerate elements, nodes of no element, several pieces.
     pub fn new(parts: MeshParts) -> Result<Self, MeshError> {
-        let MeshParts { source, node_tags, positions, element_tags, elements, groups, element_groups } = parts;
+        let MeshParts { source, node_tags, positions, element_tags, elements, groups, regions, element_regions } =
+            parts;
         let lengths = [
             ("node tags", positions.len(), node_tags.len()),
             ("element tags", elements.len(), element_tags.len()),
-            ("element groups", elements.len(), element_groups.len()),
+            ("element regions", elements.len(), element_regions.len()),
         ];
         for (what, expected, found) in lengths {
             if expected != found {
@@ -62,15 +66,19 @@ impl Mesh {
         {
             return Err(MeshError::NotFinite { source_name: source, node, position });
         }
-        if let Some((group, &element)) = element_groups
-            .iter()
-            .zip(&element_tags)
-            .find_map(|(group, element)| Some(((*group)?, element)).filter(|(group, _)| *group >= groups.len()))
+        if let Some((&region, &element)) =
+            element_regions.iter().zip(&element_tags).find(|(region, _)| **region >= regions.len())
         {
-            return Err(MeshError::UnknownGroup { source_name: source, element, group, count: groups.len() });
+            return Err(MeshError::UnknownRegion { source_name: source, element, region, count: regions.len() });
+        }
+        if let Some((region, group)) = (0..)
+            .zip(&regions)
+            .find_map(|(region, in_groups)| Some((region, *in_groups.iter().find(|group| **group >= groups.len())?)))
+        {
+            return Err(MeshError::UnknownGroup { source_name: source, region, group, count: groups.len() });
         }
         let elements = resolve_tags(&source, &node_tags, &element_tags, &elements)?;
-        let mesh = Self { source, node_tags, positions, element_tags, elements, groups, element_groups };
+        let mesh = Self { source, node_tags, positions, element_tags, elements, groups, regions, element_regions };
         mesh.refuse_orphans()?;
         integration::check_jacobians(&mesh)?;
         mesh.refuse_pieces()?;
@@ -107,9 +115,9 @@ impl Mesh {
         &self.groups
     }
 
-    /// Index of the group of an element, where it has one.
-    pub fn element_group(&self, element: usize) -> Option<usize> {
-        self.element_groups.get(element).copied().flatten()
+    /// Indices of the groups that an element is in: none, one or several.
+    pub fn element_groups(&self, element: usize) -> &[usize] {
+        self.element_regions.get(element).map_or(&[], |region| &self.regions[*region])
     }
 
     /// Positions of the ten nodes of an element.

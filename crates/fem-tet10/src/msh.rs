@@ -3,13 +3,14 @@
 //! Both forms carry the same numbers in the same order, so one parser asks a [`Source`] for the next number
 //! and the source knows how it is written. No count in a file is trusted: memory grows with what is read.
 
+mod groups;
 mod source;
 
-use std::collections::HashMap;
 use std::path::Path;
 
 use crate::error::MeshError;
 use crate::mesh::{Mesh, MeshParts};
+use groups::PhysicalGroups;
 use source::Source;
 
 /// Nodes of gmsh's element types by number, to fifth order; there is no type 0.
@@ -45,19 +46,20 @@ pub fn parse_msh(bytes: &[u8], source_name: &str) -> Result<Mesh, MeshError> {
 fn parse_parts(bytes: &[u8], source_name: &str) -> Result<MeshParts, MeshError> {
     let mut source = Source::open(bytes, source_name)?;
     let mut parts = MeshParts { source: source_name.to_owned(), ..MeshParts::default() };
-    let mut names = HashMap::new();
-    let mut volume_groups = HashMap::new();
+    let mut groups = PhysicalGroups::default();
+    let mut volumes = Vec::new();
     let (mut nodes_seen, mut elements_seen) = (false, false);
     while let Some(section) = source.next_section()? {
         match section.as_str() {
-            "$PhysicalNames" => names = physical_names(&mut source)?,
-            "$Entities" => volume_groups = entities(&mut source)?,
+            "$PhysicalNames" => groups.read_names(&mut source)?,
+            "$Entities" => groups.read_entities(&mut source)?,
+            "$PartitionedEntities" => groups.read_partitioned_entities(&mut source)?,
             "$Nodes" => {
                 nodes(&mut source, &mut parts)?;
                 nodes_seen = true;
             }
             "$Elements" => {
-                elements(&mut source, &mut parts, &volume_groups, &names)?;
+                elements(&mut source, &mut parts, &mut volumes)?;
                 elements_seen = true;
             }
             _ => {
@@ -74,52 +76,8 @@ fn parse_parts(bytes: &[u8], source_name: &str) -> Result<MeshParts, MeshError> 
     if !elements_seen {
         return Err(missing("$Elements"));
     }
+    groups.name_regions(&mut parts, &volumes)?;
     Ok(parts)
-}
-
-/// Names of the three-dimensional physical groups by number. Always text, in binary files too.
-fn physical_names(source: &mut Source) -> Result<HashMap<u32, String>, MeshError> {
-    let count: u64 = source.text_number("the number of names")?;
-    let mut names = HashMap::new();
-    for _ in 0..count {
-        let dimension: i32 = source.text_number("a dimension")?;
-        let tag: u32 = source.text_number("the number of a physical group")?;
-        let name = source.quoted()?;
-        if dimension == 3 {
-            names.insert(tag, name);
-        }
-    }
-    Ok(names)
-}
-
-/// The first physical group of each volume entity that has one.
-fn entities(source: &mut Source) -> Result<HashMap<i32, u32>, MeshError> {
-    let mut counts = [0; 4];
-    for count in &mut counts {
-        *count = source.size("a number of entities")?;
-    }
-    let mut volume_groups = HashMap::new();
-    for (dimension, count) in counts.into_iter().enumerate() {
-        for _ in 0..count {
-            let tag = source.int("an entity's tag")?;
-            let coordinates = if dimension == 0 { 3 } else { 6 };
-            for _ in 0..coordinates {
-                source.real("a coordinate of an entity")?;
-            }
-            for nth in 0..source.size("a number of physical groups")? {
-                let group = source.int("the number of a physical group")?;
-                if dimension == 3 && nth == 0 {
-                    volume_groups.insert(tag, group.unsigned_abs());
-                }
-            }
-            if dimension > 0 {
-                for _ in 0..source.size("a number of bounding entities")? {
-                    source.int("a bounding entity")?;
-                }
-            }
-        }
-    }
-    Ok(volume_groups)
 }
 
 fn nodes(source: &mut Source, parts: &mut MeshParts) -> Result<(), MeshError> {
@@ -150,12 +108,8 @@ fn nodes(source: &mut Source, parts: &mut MeshParts) -> Result<(), MeshError> {
     Ok(())
 }
 
-fn elements(
-    source: &mut Source,
-    parts: &mut MeshParts,
-    volume_groups: &HashMap<i32, u32>,
-    names: &HashMap<u32, String>,
-) -> Result<(), MeshError> {
+/// Reads the tetrahedra. Each volume entity that has some is a region; `volumes` gets their tags.
+fn elements(source: &mut Source, parts: &mut MeshParts, volumes: &mut Vec<i32>) -> Result<(), MeshError> {
     let blocks = source.size("the number of element blocks")?;
     for _ in 0..3 {
         source.size("number, smallest and largest tag of the elements")?;
@@ -178,7 +132,10 @@ fn elements(
             };
             return Err(MeshError::ElementType { source_name: parts.source.clone(), element, found, cure });
         }
-        let group = (kind == TET10).then(|| group_index(parts, volume_groups, names, entity)).flatten();
+        let region = volumes.iter().position(|volume| *volume == entity).unwrap_or(volumes.len());
+        if region == volumes.len() && kind == TET10 {
+            volumes.push(entity);
+        }
         for _ in 0..count {
             let tag = source.size("an element's tag")?;
             if kind != TET10 {
@@ -193,23 +150,8 @@ fn elements(
             }
             parts.element_tags.push(tag);
             parts.elements.push(element);
-            parts.element_groups.push(group);
+            parts.element_regions.push(region);
         }
     }
     Ok(())
-}
-
-/// Index into `parts.groups` of the group that a volume entity belongs to. A group without a name goes by its number.
-fn group_index(
-    parts: &mut MeshParts,
-    volume_groups: &HashMap<i32, u32>,
-    names: &HashMap<u32, String>,
-    entity: i32,
-) -> Option<usize> {
-    let group = volume_groups.get(&entity)?;
-    let name = names.get(group).cloned().unwrap_or_else(|| group.to_string());
-    Some(parts.groups.iter().position(|known| *known == name).unwrap_or_else(|| {
-        parts.groups.push(name);
-        parts.groups.len() - 1
-    }))
 }

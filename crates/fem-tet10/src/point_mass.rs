@@ -6,6 +6,9 @@ use crate::error::AssemblyError;
 use crate::locate::Location;
 use crate::mesh::Mesh;
 
+/// So many nodes carry one mass at most. k nodes couple each to each, with 9k² entries in the pattern: 54 MB for 500.
+const MOST_CARRIERS: usize = 500;
+
 /// A mass at a point of the body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PointMass {
@@ -15,6 +18,7 @@ pub struct PointMass {
     pub mass: f64,
     /// Where given, the radius within which all nodes carry the mass together. A mass on one node has a local
     /// compliance that grows without limit as the mesh is refined; spread over a fixed radius it has not.
+    /// At most 500 nodes carry one mass, since each of them is coupled to all the others.
     pub spread: Option<f64>,
 }
 
@@ -26,7 +30,7 @@ impl PointMass {
     /// moments are exactly those of the mass at the point.
     ///
     /// # Errors
-    /// A mass or a radius that is not positive, a point off the body, too few nodes within the radius.
+    /// A mass or a radius that is not positive, a point off the body, too few or too many nodes within the radius.
     pub(crate) fn location(&self, mesh: &Mesh) -> Result<Location, AssemblyError> {
         if !(self.mass > 0.0 && self.mass.is_finite()) {
             return Err(AssemblyError::PointMass { at: self.at, found: self.mass });
@@ -46,6 +50,15 @@ fn spread(mesh: &Mesh, at: [f64; 3], radius: f64) -> Result<Location, AssemblyEr
         .map(|(node, x)| (node, Vector3::from(*x) - Vector3::from(at)))
         .filter(|(_, offset)| offset.norm() <= radius)
         .collect();
+    if near.len() > MOST_CARRIERS {
+        return Err(AssemblyError::SpreadTooWide {
+            source_name: mesh.source().to_owned(),
+            at,
+            radius,
+            count: near.len(),
+            limit: MOST_CARRIERS,
+        });
+    }
     // Offsets in units of the farthest, so that the fit is well scaled in any unit of length, whatever the radius.
     let farthest = near.iter().map(|(_, offset)| offset.norm()).fold(0.0, f64::max);
     let scale = if farthest > 0.0 { farthest } else { 1.0 };

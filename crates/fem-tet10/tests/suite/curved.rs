@@ -49,7 +49,8 @@ fn ball(refinements: usize) -> Mesh {
         node_tags: (1..=positions.len() as u64).collect(),
         positions,
         element_tags: (1..=elements.len() as u64).collect(),
-        element_groups: vec![None; elements.len()],
+        regions: vec![vec![]],
+        element_regions: vec![0; elements.len()],
         elements,
         groups: vec![],
     })

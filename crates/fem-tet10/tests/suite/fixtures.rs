@@ -50,7 +50,8 @@ pub fn parts(mesh: &Mesh) -> MeshParts {
         element_tags: mesh.element_tags().to_vec(),
         elements: mesh.elements().iter().map(|nodes| nodes.map(|node| tags[node as usize])).collect(),
         groups: mesh.groups().to_vec(),
-        element_groups: (0..mesh.elements().len()).map(|e| mesh.element_group(e)).collect(),
+        regions: (0..mesh.elements().len()).map(|e| mesh.element_groups(e).to_vec()).collect(),
+        element_regions: (0..mesh.elements().len()).collect(),
     }
 }
 
@@ -66,7 +67,8 @@ pub fn single(corners: [[f64; 3]; 4]) -> MeshParts {
         element_tags: vec![5],
         elements: vec![[1, 2, 3, 4, 5, 6, 7, 8, 9, 10]],
         groups: vec![],
-        element_groups: vec![None],
+        regions: vec![vec![]],
+        element_regions: vec![0],
     }
 }
 

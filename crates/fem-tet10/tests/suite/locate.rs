@@ -84,7 +84,8 @@ fn a_node_is_found_as_itself() {
 #[test]
 fn points_outside_are_not_on_the_body() {
     let mesh = workspace_mesh("plate.msh");
-    for point in [[501.0, 0.0, 5.0], [0.0, 25.01, 5.0], [7.0, 3.0, -0.01], [7.0, 3.0, 10.01]] {
+    // No element is higher than 14, so this is beyond a thousandth.
+    for point in [[501.0, 0.0, 5.0], [0.0, 25.02, 5.0], [7.0, 3.0, -0.02], [7.0, 3.0, 10.02]] {
         let message = mesh.locate(point).unwrap_err().to_string();
         assert!(message.contains("is not on the body"), "{message}");
     }
@@ -94,4 +95,86 @@ fn points_outside_are_not_on_the_body() {
         assert!(ring.locate(point).is_err(), "{point:?}");
     }
     assert!(ring.locate([90.0, 0.0, 5.0]).is_ok());
+}
+
+/// Barycentric coordinates of a location in an element, from its weights: `L_a = Σ_i N_i L_a(node i)`.
+fn barycentric(weights: &[f64]) -> [f64; 4] {
+    let edges = [[0, 1], [1, 2], [0, 2], [0, 3], [2, 3], [1, 3]];
+    let mut l = [weights[0], weights[1], weights[2], weights[3]];
+    for (edge, weight) in edges.into_iter().zip(&weights[4..]) {
+        edge.into_iter().for_each(|corner| l[corner] += 0.5 * weight);
+    }
+    l
+}
+
+#[test]
+fn points_of_the_true_curved_surface_are_found() {
+    let mesh = workspace_mesh("ring.msh");
+    let size = mesh.diagonal();
+    let linear = |[x, y, z]: [f64; 3]| (1.0 + x - 2.0 * y + 3.0 * z) / size;
+    let mut random = Random(29);
+    // Inside, where the surface is hollow, the elements reach beyond it.
+    for (radius, outside_all) in [(100.0, 300..500), (80.0, 0..1)] {
+        let (mut points, mut outside, mut worst, mut lowest) = (0, 0, 0.0_f64, 0.0_f64);
+        while points < 1000 {
+            let (angle, z) = (std::f64::consts::TAU * random.unit(), 20.0 * random.unit());
+            let point = [radius * angle.cos(), radius * angle.sin(), z];
+            if point[0] > 0.0 && point[1].abs() < 10.0 && z > 10.0 {
+                continue; // in the notch
+            }
+            points += 1;
+            let location = mesh.locate(point).unwrap();
+            assert!((location.weights.iter().sum::<f64>() - 1.0).abs() < 1e-12);
+            let found: f64 = location
+                .nodes
+                .iter()
+                .zip(&location.weights)
+                .map(|(a, w)| w * linear(mesh.positions()[*a as usize]))
+                .sum();
+            worst = worst.max((found - linear(point)).abs());
+            let least = barycentric(&location.weights).into_iter().fold(f64::INFINITY, f64::min);
+            lowest = lowest.min(least);
+            outside += usize::from(least < -1e-6);
+        }
+        // Measured: 396 outside, by 3.6e-6 at most, and none; 6.7e-16.
+        assert!(outside_all.contains(&outside), "radius {radius}: {outside} points are outside of all elements");
+        assert!(lowest >= -1e-3, "radius {radius}: {lowest:e}");
+        assert!(worst < 1e-13, "radius {radius}: {worst:e}");
+    }
+}
+
+#[test]
+fn a_point_just_outside_is_extrapolated_to_a_thousandth() {
+    let mesh = Mesh::new(single([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])).unwrap();
+    for point in [[0.3, 0.4, -0.9e-3], [-0.9e-3, 0.2, 0.3], [0.4, 0.3, 0.3009]] {
+        let location = mesh.locate(point).unwrap();
+        assert_eq!(location.nodes, (0..10).collect::<Vec<u32>>());
+        // The reference element is this one, so the shape functions at the point itself are the answer.
+        for (found, exact) in location.weights.iter().zip(shape_functions(point)) {
+            assert!((found - exact).abs() < 1e-14, "{found} {exact}");
+        }
+    }
+    for point in [[0.3, 0.4, -1.1e-3], [-1.1e-3, 0.2, 0.3], [0.4, 0.3, 0.3011]] {
+        assert!(mesh.locate(point).is_err(), "{point:?}");
+    }
+}
+
+#[test]
+fn a_point_outside_is_given_to_the_element_it_is_least_outside_of() {
+    // Two elements on either side of x = 0, their lower faces in one plane.
+    let mut parts = single([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
+    parts.node_tags.extend(11..=14);
+    parts.positions.extend([[-1.0, 0.0, 0.0], [-0.5, 0.0, 0.0], [-0.5, 0.5, 0.0], [-0.5, 0.0, 0.5]]);
+    parts.elements.push([1, 3, 11, 4, 7, 13, 12, 8, 14, 9]);
+    parts.element_tags.push(6);
+    parts.element_regions.push(0);
+    let mut turned = parts.clone();
+    turned.elements.reverse();
+    for mesh in [Mesh::new(parts).unwrap(), Mesh::new(turned).unwrap()] {
+        for x in [8e-4, -8e-4] {
+            // 2e-4 below the element on the point's side, 8e-4 beside the other one.
+            let location = mesh.locate([x, 0.3, -2e-4]).unwrap();
+            assert!(location.nodes.iter().any(|n| mesh.positions()[*n as usize] == [x.signum(), 0.0, 0.0]), "{x}");
+        }
+    }
 }

@@ -59,6 +59,14 @@ fn inside_a_curved_element() {
 }
 
 #[test]
+fn on_a_curved_surface_just_outside_of_the_elements() {
+    for angle in [0.7_f64, 1.9, 3.3, 5.0] {
+        let at = [100.0 * angle.cos(), 100.0 * angle.sin(), 7.0];
+        assert_moments(&workspace_mesh("ring.msh"), PointMass { at, mass: 2.0, spread: None }, 1e-12);
+    }
+}
+
+#[test]
 fn spread_on_a_corner_an_edge_a_face_and_inside() {
     let plate = workspace_mesh("plate.msh");
     assert_moments(&plate, PointMass { at: [-500.0, -25.0, 0.0], mass: 0.001, spread: Some(20.0) }, 1e-10);

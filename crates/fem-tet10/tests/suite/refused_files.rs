@@ -84,7 +84,7 @@ fn numbers_of_another_size_or_order_of_bytes_are_refused() {
 
 #[test]
 fn a_file_cut_off_anywhere_is_refused() {
-    for name in ["cube.msh", "cube_binary.msh", "quarter_everything_binary.msh"] {
+    for name in ["cube.msh", "cube_binary.msh", "quarter_everything_binary.msh", "overlapping_groups_partitioned.msh"] {
         let whole = std::fs::read(data(name)).unwrap();
         let whole = whole.trim_ascii_end();
         assert!(parse_msh(whole, name).is_ok());
@@ -181,6 +181,19 @@ fn a_group_number_at_the_end_of_the_range_is_no_trouble() {
     let spoiled = volume.replace("1 1 6 1 2 3 4 5 6", "1 -2147483648 6 1 2 3 4 5 6");
     let mesh = parse_msh(whole.replace(volume, &spoiled).as_bytes(), "body.msh").unwrap();
     assert_eq!(mesh.groups(), ["2147483648"]);
+}
+
+#[test]
+fn a_group_named_as_another_is_numbered_is_refused() {
+    // Both ways round: the unnamed group 7 comes first in the tip's volume, or after it in the block's.
+    for name in ["all", "tip"] {
+        let whole = text("overlapping_groups.msh");
+        let spoiled = whole.replace(&format!("\"{name}\""), "\"7\"");
+        assert_ne!(spoiled, whole);
+        let (error, message) = refusal(spoiled);
+        assert!(matches!(&error, MeshError::AmbiguousGroup { name, .. } if name == "7"), "{error:?}");
+        assert_says(&message, &["physical volume 7 has no name", "named \"7\"", "name the first", "rename the other"]);
+    }
 }
 
 #[test]

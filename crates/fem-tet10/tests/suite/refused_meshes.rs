@@ -130,7 +130,7 @@ fn pieces_are_counted_and_their_sizes_told() {
                 }
                 m.elements.push(own);
                 m.element_tags.push(tag);
-                m.element_groups.push(None);
+                m.element_regions.push(0);
             }
         },
         &["pieces that share no node", "element [1, 501", "Coherence", "BooleanFragments"],
@@ -179,7 +179,7 @@ fn a_mesh_without_tetrahedra_is_refused() {
         |m| {
             m.elements.clear();
             m.element_tags.clear();
-            m.element_groups.clear();
+            m.element_regions.clear();
         },
         &["there are no tetrahedra", "gmsh -3 -order 2"],
     );
@@ -189,6 +189,7 @@ fn a_mesh_without_tetrahedra_is_refused() {
 fn parts_that_do_not_fit_together_are_refused() {
     refusal(|m| _ = m.node_tags.pop(), &["node tags, found"]);
     refusal(|m| _ = m.element_tags.pop(), &["expected 24 element tags, found 23"]);
-    refusal(|m| _ = m.element_groups.pop(), &["expected 24 element groups, found 23"]);
-    refusal(|m| m.element_groups[5] = Some(1), &["element 6 is in group number 1", "there are 1 groups"]);
+    refusal(|m| _ = m.element_regions.pop(), &["expected 24 element regions, found 23"]);
+    refusal(|m| m.element_regions[5] = 24, &["element 6 is in region number 24", "there are 24 regions"]);
+    refusal(|m| m.regions[5] = vec![0, 1], &["region number 5 is in group number 1", "there are 1 groups"]);
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use fem_tet10::{AssemblyError, Material, Materials, PointMass, assemble, centroid_lumped_inertia};
 
-use crate::fixtures::{ALUMINIUM, aluminium, data_mesh};
+use crate::fixtures::{ALUMINIUM, aluminium, data_mesh, workspace_mesh};
 
 /// The refusal, which must say all of `says`; the lumped mass properties must refuse the same.
 #[track_caller]
@@ -64,13 +64,37 @@ fn an_element_without_material_is_told_with_its_group() {
     let AssemblyError::NoMaterial { element, .. } = error else { panic!("{error:?}") };
     let mesh = data_mesh("two_materials.msh");
     let index = mesh.element_tags().iter().position(|tag| *tag == element).unwrap();
-    assert_eq!(mesh.element_group(index), Some(1));
+    assert_eq!(mesh.element_groups(index), [1]);
+    let message = assemble(&data_mesh("overlapping_groups.msh"), &by_group(&[("7", ALUMINIUM)]), &[]).unwrap_err();
+    assert!(message.to_string().contains("one of its physical groups [\"all\", \"tip\"]"), "{message}");
+}
+
+#[test]
+fn different_materials_for_one_element_are_told_with_both_groups() {
+    let other = Material { density: 7.85e-9, ..ALUMINIUM };
+    for name in ["overlapping_groups.msh", "overlapping_groups_partitioned.msh"] {
+        let mesh = data_mesh(name);
+        let materials = by_group(&[("all", ALUMINIUM), ("tip", other)]);
+        let error = assemble(&mesh, &materials, &[]).unwrap_err();
+        let message = error.to_string();
+        for part in [name, "both physical volumes", "\"all\"", "\"tip\"", "different materials", "do not overlap"] {
+            assert!(message.contains(part), "\"{part}\" is missing in: {message}");
+        }
+        assert_eq!(centroid_lumped_inertia(&mesh, &materials, &[]).unwrap_err().to_string(), message);
+        let AssemblyError::TwoMaterials { element, mut groups, .. } = error else { panic!("{error:?}") };
+        groups.sort_unstable();
+        assert_eq!(groups, ["all", "tip"]);
+        // The first element of the tip, which alone is in both.
+        let index = mesh.element_tags().iter().position(|tag| *tag == element).unwrap();
+        let at_tip = |e: &usize| mesh.elements()[*e].iter().all(|n| mesh.positions()[*n as usize][0] > 19.9);
+        assert_eq!((0..mesh.elements().len()).find(at_tip), Some(index));
+    }
 }
 
 #[test]
 fn an_element_in_no_group_is_told_so() {
     let mut parts = crate::fixtures::parts(&data_mesh("two_materials.msh"));
-    parts.element_groups[11] = None;
+    parts.regions[11].clear();
     let tag = parts.element_tags[11];
     let mesh = fem_tet10::Mesh::new(parts).unwrap();
     let message = assemble(&mesh, &by_group(&[("block", ALUMINIUM), ("tip", ALUMINIUM)]), &[]).unwrap_err().to_string();
@@ -117,6 +141,30 @@ fn a_spread_that_cannot_carry_the_mass_is_refused() {
     let beside = PointMass { at: [0.1, 0.0, 0.0], mass: 1.0, spread: Some(0.2) };
     let error = refusal(&aluminium(), &[beside], &["the 1 node(s) within 0.2", "0.100000 away", "use a larger spread"]);
     assert!(matches!(error, AssemblyError::Spread { count: 1, .. }));
+}
+
+#[test]
+fn a_spread_over_more_nodes_than_can_be_coupled_is_refused() {
+    let mesh = workspace_mesh("plate.msh");
+    let at = [3.1, 4.7, 2.3];
+    let mut distances: Vec<f64> =
+        mesh.positions().iter().map(|x| (nalgebra::Vector3::from(*x) - nalgebra::Vector3::from(at)).norm()).collect();
+    distances.sort_by(f64::total_cmp);
+    assert!(distances[500] - distances[499] > 1e-6, "no radius has 500 nodes within it exactly");
+    let spread = |radius| assemble(&mesh, &aluminium(), &[PointMass { at, mass: 1.0, spread: Some(radius) }]);
+    let entries = |matrices: &fem_tet10::Matrices| matrices.mass().symbolic().row_idx().len();
+    let bare = entries(&assemble(&mesh, &aluminium(), &[]).unwrap());
+    let added = entries(&spread(distances[499]).unwrap()) - bare;
+    assert!((1_500_000..=9 * 500 * 500).contains(&added), "{added} entries more");
+    let radius = distances[500];
+    let error = spread(radius).unwrap_err();
+    let message = error.to_string();
+    let says = format!("501 nodes lie within {radius} of [3.1, 4.7, 2.3]");
+    for part in ["plate.msh", &says, "over 500 at most", "use a smaller spread"] {
+        assert!(message.contains(part), "\"{part}\" is missing in: {message}");
+    }
+    assert!(matches!(error, AssemblyError::SpreadTooWide { count: 501, limit: 500, .. }), "{error:?}");
+    assert!(matches!(spread(1e6), Err(AssemblyError::SpreadTooWide { count: 9437, .. })));
 }
 
 #[test]
