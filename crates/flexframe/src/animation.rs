@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use frames_rk4::BodyMotion;
+use frames_rk4::Reached;
 use nalgebra::Vector3;
 use results::{Animation, FigureError, Frame, View};
 use scene::{Model, Scene};
@@ -41,28 +41,25 @@ pub fn animate(
     mut progress: impl FnMut(RunProgress),
 ) -> Result<(), AnimationError> {
     let model = Model::build(scene, |p| progress(RunProgress::Build(p))).map_err(RunError::from)?;
-    let (steps, step) = scene.steps();
-    let mut scheme =
-        model.start(scene, step).map_err(|source| RunError::Setup { scene: scene.path.clone(), source })?;
-    let motion = BodyMotion::new(&model.body).map_err(RunError::from)?;
+    let mut simulation = model.start(scene).map_err(|source| RunError::Setup { scene: scene.path.clone(), source })?;
     let surface = Surface::new(&model);
     let last = settings.frames.max(2) - 1;
+    let mut now = simulation.observation();
     let mut frames = Vec::new();
-    let mut done = 0;
     for frame in 0..=last {
-        while done < steps * frame / last {
-            scheme.step().map_err(|source| RunError::Step { results: PathBuf::from("no file"), source })?;
-            done += 1;
-        }
-        let state = scheme.state();
-        let u = surface.displacements(&model, &state.modal_displacement[6..]);
+        // The first step at or after the frame's time.
+        let due = scene.time.end * (frame as f64 / last as f64) * (1.0 - 1e-12);
+        let failed = |source| RunError::Step { results: PathBuf::from("no file"), source };
+        while simulation.time() < due && simulation.advance(1).map_err(failed)? != Reached::End {}
+        simulation.observe(&mut now).map_err(failed)?;
+        let u = surface.displacements(&model, &now.modal_displacement);
         let drawn: Vec<Vector3<f64>> = u.iter().map(|u| u * settings.magnification).collect();
         frames.push(Frame {
-            points: surface.placed(&model, &motion.position_global(state), &state.attitude, &drawn),
+            points: surface.placed(&model, &now.position_global, &now.attitude, &drawn),
             values: u.iter().map(Vector3::norm).collect(),
-            caption: format!("t = {:.3} {}", state.time, scene.units.time),
+            caption: format!("t = {:.3} {}", now.time, scene.units.time),
         });
-        progress(RunProgress::Steps { done, total: steps });
+        progress(RunProgress::Motion(simulation.time() / simulation.end()));
     }
     Animation {
         title: scene.title.clone(),

@@ -9,10 +9,9 @@
 //! let scene = Scene::read("examples/plate.toml")?;
 //! let model = Model::build(&scene, |_progress| ())?;
 //! println!("{:?} Hz", model.modes.natural_frequencies());
-//! let (steps, step) = scene.steps();
-//! for state in model.start(&scene, step)?.take(steps as usize) {
-//!     let state = state?;
-//!     println!("{} {:?}", state.time, state.omega_body);
+//! for now in model.start(&scene)? {
+//!     let now = now?;
+//!     println!("{} {:?} {}", now.time, now.omega_body, now.energy());
 //! }
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```

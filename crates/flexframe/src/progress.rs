@@ -36,7 +36,7 @@ impl Bar {
     pub fn run(&mut self, progress: RunProgress) {
         match progress {
             RunProgress::Build(progress) => self.build(progress),
-            RunProgress::Steps { done, total } => self.show("stepping", Some((done, total))),
+            RunProgress::Motion(part) => self.show("stepping", Some(((10_000.0 * part) as u64, 10_000))),
         }
     }
 
@@ -46,7 +46,7 @@ impl Bar {
             self.phase = phase;
             self.bar = match done {
                 Some((_, total)) => ProgressBar::with_draw_target(Some(total), ProgressDrawTarget::hidden())
-                    .with_style(style("{msg} {wide_bar} {pos}/{len}, {eta} left")),
+                    .with_style(style("{msg} {wide_bar} {percent} %, {eta} left")),
                 None => ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden())
                     .with_style(style("{spinner} {msg}, {elapsed}")),
             }

@@ -2,12 +2,13 @@
 
 use std::fmt;
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
-use frames_rk4::{BodyMotion, PaperScheme, SetupError, State, StepError};
+use frames_rk4::{Observation, Reached, SetupError, Simulation, StepError};
+use nalgebra::Vector3;
 use results::{BodyProperties, FileError, Metadata, PointSample, Sample, Units, Writer};
-use rigid_kin::{Attitude, InertiaError};
-use scene::{BuildError, BuildProgress, Model, Scene};
+use rigid_kin::Attitude;
+use scene::{BuildError, BuildProgress, Model, Scene, Stepping};
 use serde::Serialize;
 
 use crate::modes::frequency_unit;
@@ -27,9 +28,6 @@ pub enum RunError {
         /// Why.
         source: SetupError,
     },
-    /// The inertia is none of a rigid body.
-    #[error(transparent)]
-    Inertia(#[from] InertiaError),
     /// A step failed. The states before it are in the results file.
     #[error("{source} (the states before it are in {results})", results = results.display())]
     Step {
@@ -56,13 +54,8 @@ pub enum RunError {
 pub enum RunProgress {
     /// The model is being built.
     Build(BuildProgress),
-    /// Steps done, of all.
-    Steps {
-        /// Done.
-        done: u64,
-        /// All.
-        total: u64,
-    },
+    /// Part of the time that has been passed, 0 to 1.
+    Motion(f64),
 }
 
 /// What `flexframe run` says at its end.
@@ -76,12 +69,20 @@ pub struct RunReport {
     pub results: PathBuf,
     /// Rows in it.
     pub rows: u64,
+    /// Formulation.
+    pub formulation: String,
     /// Scheme.
     pub scheme: String,
-    /// Length of a step.
-    pub step: f64,
+    /// Tolerance, under step control.
+    pub tolerance: Option<f64>,
     /// Steps taken.
     pub steps: u64,
+    /// Steps that step control tried in vain.
+    pub rejected_steps: u64,
+    /// Lengths of the shortest and the longest step.
+    pub step_lengths: [f64; 2],
+    /// Evaluations of the rates.
+    pub evaluations: u64,
     /// Steps per second of computing, writing included.
     pub steps_per_second: f64,
     /// The finite-element model.
@@ -96,8 +97,22 @@ pub struct RunReport {
     pub peak_strain_energy: f64,
     /// Kinetic plus strain energy of the last row.
     pub final_energy: f64,
+    /// How far the balances are from closed.
+    pub balances: Balances,
     /// Where the time went, seconds.
     pub times: Times,
+}
+
+/// Largest changes, over the rows, of what should be constants of the motion, relative to the largest value of the
+/// quantity itself.
+#[derive(Debug, Clone, Copy, Default, Serialize)]
+pub struct Balances {
+    /// Energy − work of the loads + dissipation.
+    pub energy: f64,
+    /// Linear momentum less the impulse of the loads.
+    pub linear_momentum: f64,
+    /// Angular momentum about the centre of mass less the angular impulse of the loads.
+    pub angular_momentum: f64,
 }
 
 /// Runs a scene and writes its results to `<folder>/<name of the scene file>.h5`. `progress` hears how far it is, at
@@ -114,69 +129,67 @@ pub fn run(
     let mut times = Times::of_model(&model);
 
     let started = Instant::now();
-    let (steps, step) = scene.steps();
-    let mut scheme =
-        model.start(scene, step).map_err(|source| RunError::Setup { scene: scene.path.clone(), source })?;
+    let mut simulation = model.start(scene).map_err(|source| RunError::Setup { scene: scene.path.clone(), source })?;
     std::fs::create_dir_all(folder).map_err(|source| RunError::Folder { folder: folder.to_owned(), source })?;
     let path = results_path(scene, folder);
-    let metadata = metadata(scene, &model, step);
-    let mut recorder = Recorder::new(&model, Writer::create(&path, &metadata)?)?;
-    recorder.record(scheme.state())?;
-    advance(scene, &mut scheme, steps, &mut recorder, &path, &mut progress)?;
-    let last = scheme.state();
-    let report = |times: Times, time: Duration| RunReport {
+    let metadata = metadata(scene, &model);
+    let mut recorder = Recorder::new(&model, simulation.observation(), Writer::create(&path, &metadata)?);
+    let failed = |source| RunError::Step { results: path.clone(), source };
+    recorder.record(&mut simulation).map_err(|error| error.unless_file(failed))?;
+    loop {
+        match simulation.advance(STEPS_PER_REPORT).map_err(failed)? {
+            Reached::Row => recorder.record(&mut simulation).map_err(|error| error.unless_file(failed))?,
+            Reached::Between => {}
+            Reached::End => break,
+        }
+        progress(RunProgress::Motion(simulation.time() / simulation.end()));
+    }
+    let time = started.elapsed();
+    let stats = simulation.stats();
+    let last = &recorder.observation;
+    let mut report = RunReport {
         title: scene.title.clone(),
         units: [&scene.units.length, &scene.units.mass, &scene.units.time].map(Clone::clone),
-        results: path.clone(),
         rows: recorder.rows,
-        scheme: metadata.scheme.clone(),
-        step,
-        steps,
-        steps_per_second: steps as f64 / time.as_secs_f64(),
+        formulation: metadata.formulation,
+        scheme: metadata.scheme,
+        tolerance: metadata.tolerance,
+        steps: stats.accepted,
+        rejected_steps: stats.rejected,
+        step_lengths: [stats.shortest, stats.longest],
+        evaluations: stats.evaluations,
+        steps_per_second: stats.accepted as f64 / time.as_secs_f64(),
         mesh: MeshReport::new(scene, &model),
         body: BodyReport::new(&model),
         turned: Attitude::identity().angle_to(&last.attitude),
-        moved: (recorder.motion.position_global(last) - model.body.center_of_mass).into(),
+        moved: (last.position_global - model.body.center_of_mass).into(),
         peak_strain_energy: recorder.peak_strain_energy,
-        final_energy: recorder.motion.kinetic_energy(last) + recorder.motion.strain_energy(last),
-        times,
+        final_energy: last.energy(),
+        balances: recorder.monitor.balances(),
+        results: path,
+        times: Times::default(),
     };
-    let time = started.elapsed();
-    times.add("motion", time);
-    let report = report(times, time);
     recorder.writer.finish()?;
+    times.add("motion", started.elapsed());
+    report.times = times;
     Ok((model, report))
 }
+
+/// Steps between two reports of progress, where no row comes first.
+const STEPS_PER_REPORT: u64 = 4096;
 
 /// The results file of a scene in a folder.
 pub fn results_path(scene: &Scene, folder: &Path) -> PathBuf {
     folder.join(scene.path.file_stem().unwrap_or("results".as_ref())).with_extension("h5")
 }
 
-/// Does all steps and records every so many of them, and the last.
-fn advance(
-    scene: &Scene,
-    scheme: &mut PaperScheme,
-    steps: u64,
-    recorder: &mut Recorder,
-    path: &Path,
-    progress: &mut impl FnMut(RunProgress),
-) -> Result<(), RunError> {
-    const STEPS_PER_REPORT: u64 = 2048;
-    for done in 1..=steps {
-        let state = scheme.step().map_err(|source| RunError::Step { results: path.to_owned(), source })?;
-        if done % scene.output.every as u64 == 0 || done == steps {
-            recorder.record(state)?;
-        }
-        if done % STEPS_PER_REPORT == 0 || done == steps {
-            progress(RunProgress::Steps { done, total: steps });
-        }
-    }
-    Ok(())
-}
-
-fn metadata(scene: &Scene, model: &Model, step: f64) -> Metadata {
+fn metadata(scene: &Scene, model: &Model) -> Metadata {
     let body = BodyReport::new(model);
+    let method = scene::method(scene.time.method);
+    let (step, tolerance) = match scene.time.stepping {
+        Stepping::Step(step) => (Some(step), None),
+        Stepping::Tolerance(tolerance) => (None, Some(tolerance)),
+    };
     Metadata {
         title: scene.title.clone(),
         units: Units {
@@ -184,8 +197,10 @@ fn metadata(scene: &Scene, model: &Model, step: f64) -> Metadata {
             mass: scene.units.mass.clone(),
             time: scene.units.time.clone(),
         },
-        scheme: "paper".to_owned(),
+        formulation: method.formulation().to_owned(),
+        scheme: method.scheme().to_owned(),
         step,
+        tolerance,
         program_version: env!("CARGO_PKG_VERSION").to_owned(),
         scene_text: scene.source.clone(),
         body: BodyProperties {
@@ -199,59 +214,130 @@ fn metadata(scene: &Scene, model: &Model, step: f64) -> Metadata {
     }
 }
 
-/// Turns states into rows of the results file.
-struct Recorder<'a> {
-    model: &'a Model,
-    motion: BodyMotion,
+/// Turns observations into rows of the results file.
+struct Recorder {
+    observation: Observation,
     writer: Writer,
     points: Vec<PointSample>,
     rows: u64,
     peak_strain_energy: f64,
+    monitor: Monitor,
 }
 
-impl<'a> Recorder<'a> {
-    fn new(model: &'a Model, writer: Writer) -> Result<Self, RunError> {
-        Ok(Self {
-            model,
-            motion: BodyMotion::new(&model.body)?,
-            writer,
-            points: Vec::with_capacity(model.points.len()),
-            rows: 0,
-            peak_strain_energy: 0.0,
-        })
+/// Why a row could not be recorded.
+enum RecordError {
+    Step(StepError),
+    File(FileError),
+}
+
+impl RecordError {
+    fn unless_file(self, step: impl FnOnce(StepError) -> RunError) -> RunError {
+        match self {
+            Self::Step(error) => step(error),
+            Self::File(error) => error.into(),
+        }
+    }
+}
+
+impl Recorder {
+    fn new(model: &Model, observation: Observation, writer: Writer) -> Self {
+        let points = Vec::with_capacity(model.points.len());
+        let monitor = Monitor::default();
+        Self { observation, writer, points, rows: 0, peak_strain_energy: 0.0, monitor }
     }
 
-    fn record(&mut self, state: &State) -> Result<(), RunError> {
-        let motion = &self.motion;
+    /// Writes the row of the time that `simulation` has reached.
+    fn record(&mut self, simulation: &mut Simulation) -> Result<(), RecordError> {
+        simulation.observe(&mut self.observation).map_err(RecordError::Step)?;
+        let now = &self.observation;
         self.points.clear();
-        self.points.extend(self.model.points.iter().map(|(_, point)| {
-            let point = motion.point(state, point);
-            PointSample {
-                displacement: point.displacement.into(),
-                velocity: point.velocity.into(),
-                acceleration: point.acceleration.into(),
-                rigid_acceleration: point.rigid_acceleration.into(),
-            }
+        self.points.extend(now.points.iter().map(|point| PointSample {
+            displacement: point.displacement.into(),
+            velocity: point.velocity.into(),
+            acceleration: point.acceleration.into(),
+            rigid_acceleration: point.rigid_acceleration.into(),
         }));
-        let strain_energy = motion.strain_energy(state);
-        self.peak_strain_energy = self.peak_strain_energy.max(strain_energy);
-        self.writer.push(&Sample {
-            time: state.time,
-            attitude: state.attitude.wxyz(),
-            position: motion.position_global(state).into(),
-            velocity: motion.velocity_global(state).into(),
-            angular_velocity: state.omega_body.into(),
-            angular_acceleration: state.alpha_body.into(),
-            modal_displacement: &state.modal_displacement[6..],
-            modal_velocity: &state.modal_velocity[6..],
-            kinetic_energy: motion.kinetic_energy(state),
-            strain_energy,
-            linear_momentum: motion.linear_momentum_global(state).into(),
-            angular_momentum: motion.angular_momentum_global(state).into(),
-            points: &self.points,
-        })?;
+        self.peak_strain_energy = self.peak_strain_energy.max(now.strain_energy);
+        self.monitor.watch(now);
+        self.writer
+            .push(&Sample {
+                time: now.time,
+                attitude: now.attitude.wxyz(),
+                position: now.position_global.into(),
+                velocity: now.velocity_global.into(),
+                angular_velocity: now.omega_body.into(),
+                angular_acceleration: now.alpha_body.into(),
+                modal_displacement: &now.modal_displacement,
+                modal_velocity: &now.modal_velocity,
+                kinetic_energy: now.kinetic_energy,
+                strain_energy: now.strain_energy,
+                work: now.work.work,
+                dissipation: now.work.dissipation,
+                energy_balance: now.energy_balance(),
+                linear_momentum: now.linear_momentum_global.into(),
+                angular_momentum: now.angular_momentum_global.into(),
+                linear_balance: now.linear_balance_global().into(),
+                angular_balance: now.angular_balance_global().into(),
+                points: &self.points,
+            })
+            .map_err(RecordError::File)?;
         self.rows += 1;
         Ok(())
+    }
+}
+
+/// Watches the constants of the motion.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Monitor {
+    start: Option<(f64, Vector3<f64>, Vector3<f64>)>,
+    changes: Balances,
+    scales: Balances,
+}
+
+impl Monitor {
+    /// Takes one more observation into account.
+    pub(crate) fn watch(&mut self, now: &Observation) {
+        let balance = (now.energy_balance(), now.linear_balance_global(), now.angular_balance_global());
+        let start = self.start.get_or_insert(balance);
+        let grow = |largest: &mut f64, value: f64| *largest = largest.max(value.abs());
+        grow(&mut self.changes.energy, balance.0 - start.0);
+        grow(&mut self.changes.linear_momentum, (balance.1 - start.1).norm());
+        grow(&mut self.changes.angular_momentum, (balance.2 - start.2).norm());
+        grow(&mut self.scales.energy, now.energy());
+        grow(&mut self.scales.linear_momentum, now.linear_momentum_global.norm());
+        grow(&mut self.scales.angular_momentum, now.angular_momentum_global.norm());
+    }
+
+    /// Largest changes so far, relative to the largest values.
+    pub(crate) fn balances(&self) -> Balances {
+        let relative = |change: f64, scale: f64| if change > 0.0 { change / scale } else { 0.0 };
+        Balances {
+            energy: relative(self.changes.energy, self.scales.energy),
+            linear_momentum: relative(self.changes.linear_momentum, self.scales.linear_momentum),
+            angular_momentum: relative(self.changes.angular_momentum, self.scales.angular_momentum),
+        }
+    }
+}
+
+impl RunReport {
+    /// Method and steps, such as "conservative form, scheme exponential, 5000 steps of 1e-4 s".
+    pub(crate) fn steps_in_words(&self) -> String {
+        let time = &self.units[2];
+        let form = match self.formulation.as_str() {
+            "paper" => "paper's",
+            _ => "conservative",
+        };
+        let [shortest, longest] = self.step_lengths;
+        let lengths = if longest - shortest <= 1e-9 * longest {
+            format!("of {longest:.6e} {time}")
+        } else {
+            format!("from {shortest:.3e} to {longest:.3e} {time}")
+        };
+        let control = match self.tolerance {
+            Some(tolerance) => format!(" ({} rejected, tolerance {tolerance:e})", self.rejected_steps),
+            None => String::new(),
+        };
+        format!("{form} form, scheme {}, {} steps{control} {lengths}", self.scheme, self.steps)
     }
 }
 
@@ -271,11 +357,7 @@ impl fmt::Display for RunReport {
             )?,
             _ => writeln!(f, "rigid")?,
         }
-        writeln!(
-            f,
-            "  motion   scheme {}, {} steps of {:e} {time}, {:.0} steps per second",
-            self.scheme, self.steps, self.step, self.steps_per_second
-        )?;
+        writeln!(f, "  motion   {}, {:.0} steps per second", self.steps_in_words(), self.steps_per_second)?;
         let [x, y, z] = self.moved.map(quantity);
         writeln!(
             f,
@@ -287,6 +369,12 @@ impl fmt::Display for RunReport {
             "  energy   {} at the end, largest strain energy {}, {mass} {length}²/{time}²",
             quantity(self.final_energy),
             quantity(self.peak_strain_energy)
+        )?;
+        let Balances { energy, linear_momentum, angular_momentum } = self.balances;
+        writeln!(
+            f,
+            "  balance  energy closed to {energy:.1e}, linear momentum to {linear_momentum:.1e}, angular momentum to \
+             {angular_momentum:.1e}"
         )?;
         writeln!(f, "  time     {}", self.times)?;
         write!(f, "  results  {} ({} rows)", self.results.display(), self.rows)

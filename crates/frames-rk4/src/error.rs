@@ -37,6 +37,28 @@ pub enum SetupError {
         /// Its natural frequency.
         frequency: f64,
     },
+    /// A step that the spin is too fast for.
+    #[error(
+        "a step of {step:e} is too long for a spin of {spin:.6} rad per time: the stages follow the Coriolis terms up to a step of {limit:e}; take a smaller step"
+    )]
+    StepBeyondSpin {
+        /// The step.
+        step: f64,
+        /// Longest step.
+        limit: f64,
+        /// |ω| at the beginning.
+        spin: f64,
+    },
+    /// A tolerance for a method that does not estimate its error.
+    #[error(
+        "scheme {scheme} of formulation {formulation} has no error estimate for a tolerance; give a step, or take the scheme exponential or rkmk4 of the conservative formulation"
+    )]
+    NoErrorEstimate {
+        /// Its formulation.
+        formulation: &'static str,
+        /// Its scheme.
+        scheme: &'static str,
+    },
     /// The reference points lie on a line.
     #[error(transparent)]
     CollinearPoints(#[from] rigid_kin::CollinearPoints),
@@ -58,6 +80,18 @@ pub enum StepError {
         /// Angle of the turn.
         angle: f64,
     },
+    /// No step is short enough for the tolerance.
+    #[error(
+        "at time {time}: even a step of {step:e} does not keep the error below the tolerance {tolerance:e}; allow a larger tolerance"
+    )]
+    Tolerance {
+        /// Start of the step.
+        time: f64,
+        /// The shortest step tried.
+        step: f64,
+        /// The tolerance.
+        tolerance: f64,
+    },
     /// A NaN or an overflow.
     #[error(
         "at time {time}: {what} is no longer a finite number; the motion has blown up: take a smaller step, and check loads and initial velocities"
@@ -68,4 +102,26 @@ pub enum StepError {
         /// Which quantity.
         what: &'static str,
     },
+}
+
+/// Why rates cannot be evaluated, before it is known in which step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum RateError {
+    /// The rotation vector left the domain of f⁻¹.
+    Turn(rigid_kin::BeyondFullTurn),
+    /// The inertia of the deformed body has no inverse.
+    Inertia,
+}
+
+impl RateError {
+    /// The error of the step that began at `time`.
+    pub(crate) fn in_step(self, time: f64, step: f64) -> StepError {
+        match self {
+            Self::Turn(rigid_kin::BeyondFullTurn { angle }) if angle.is_finite() => {
+                StepError::TurnTooLarge { time, step, angle }
+            }
+            Self::Turn(_) => StepError::NotFinite { time, what: "the angular velocity" },
+            Self::Inertia => StepError::NotFinite { time, what: "the inverse of the deformed inertia" },
+        }
+    }
 }

@@ -29,23 +29,28 @@ impl Initial {
         }
     }
 
-    /// Modal displacements and modal velocities (6+nf each) in the inertial frame that coincides with the body.
-    ///
-    /// The velocity of a particle is `V + ω×(X + u) + Ψ_f q̇`, so `y = y_rigid + G(ω) q + q̇`: (31) of that field.
-    pub(crate) fn modal_state(&self, body: &ReducedBody) -> Result<(Vec<f64>, Vec<f64>), SetupError> {
-        let expected = body.flexible();
+    /// Refuses lists of the wrong length and numbers that are not finite.
+    pub(crate) fn check(&self, flexible: usize) -> Result<(), SetupError> {
         for (what, list) in [
             ("the list of initial modal displacements", &self.modal_displacement),
             ("the list of initial modal velocities", &self.modal_velocity),
         ] {
-            if list.len() != expected {
-                return Err(SetupError::Length { what, expected, found: list.len() });
+            if list.len() != flexible {
+                return Err(SetupError::Length { what, expected: flexible, found: list.len() });
             }
         }
         let numbers = self.velocity.iter().chain(self.omega.iter()).chain(&self.modal_displacement);
-        if let Some(found) = numbers.chain(&self.modal_velocity).copied().find(|x| !x.is_finite()) {
-            return Err(SetupError::Value { what: "an initial value", found, expected: "a finite number" });
+        match numbers.chain(&self.modal_velocity).copied().find(|x| !x.is_finite()) {
+            Some(found) => Err(SetupError::Value { what: "an initial value", found, expected: "a finite number" }),
+            None => Ok(()),
         }
+    }
+
+    /// Modal displacements and modal velocities (6+nf each) in the inertial frame that coincides with the body.
+    ///
+    /// The velocity of a particle is `V + ω×(X + u) + Ψ_f q̇`, so `y = y_rigid + G(ω) q + q̇`: (31) of that field.
+    pub(crate) fn modal_state(&self, body: &ReducedBody) -> Result<(Vec<f64>, Vec<f64>), SetupError> {
+        self.check(body.flexible())?;
         // ω = B y: y = B⁻¹ ω = Bᵀ J₀ ω, since B Bᵀ = J₀⁻¹.
         let rotation = body.rotation_basis.transpose() * body.inertia * self.omega;
         let translation = self.velocity * body.mass.sqrt();

@@ -20,20 +20,36 @@
 //! | k1 … k4, (38)–(40) | [`PaperScheme`] |
 #![forbid(unsafe_code)]
 
+mod conservative;
+mod conservative_motion;
 mod error;
+mod exponential;
 mod initial;
 mod load;
 mod modal_rotation;
 mod model;
 mod motion;
+mod observation;
 mod paper;
+mod paper_limit;
+mod phi;
+mod plan;
+mod simulation;
 mod state;
+mod work;
 
+pub use conservative::{ConservativeBody, ConservativeState};
+pub use conservative_motion::{ConservativeMotion, ConservativeScheme};
 pub use error::{SetupError, StepError};
 pub use initial::Initial;
 pub use load::{DeadForce, History};
 pub use modal_rotation::ModalRotation;
 pub use model::ModalModel;
 pub use motion::{BodyMotion, PointMotion, PointShapes};
+pub use observation::Observation;
 pub use paper::PaperScheme;
+pub use paper_limit::PaperLimit;
+pub use plan::{Rows, StepControl};
+pub use simulation::{Method, Reached, Setup, Simulation, Stats};
 pub use state::State;
+pub use work::Work;

@@ -26,6 +26,13 @@ impl History {
             }
         }
     }
+
+    /// Times at which the factor or one of its rates jumps. A step must not reach across one.
+    pub fn corners(&self) -> [f64; 2] {
+        match *self {
+            Self::HalfSine { start, duration } => [start, start + duration],
+        }
+    }
 }
 
 /// A force that keeps its global direction, at a point of the body.

@@ -5,6 +5,8 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::error::SetupError;
 use crate::load::DeadForce;
+use crate::state::translation;
+use crate::work::Work;
 
 /// Modal stiffness, damping and loads of mass-normalised modes: `q̈ = f_q − Λ q − D q̇`.
 ///
@@ -15,24 +17,7 @@ pub struct ModalModel {
     stiffness: Vec<f64>,
     /// 2 ζ_k ω_k (6+nf).
     damping: Vec<f64>,
-    forces: Vec<ModalForce>,
-}
-
-/// A load with its rows of the mode shapes.
-#[derive(Debug, Clone)]
-struct ModalForce {
-    load: DeadForce,
-    /// Force in global components at the beginning and at the end of the step.
-    ends: [Vector3<f64>; 2],
-}
-
-/// Which of a step's loads a stage sees.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum LoadTime {
-    Start,
-    /// The mean of both ends, as the paper has it at k2 and k3.
-    Mean,
-    End,
+    loads: Vec<DeadForce>,
 }
 
 impl ModalModel {
@@ -41,44 +26,35 @@ impl ModalModel {
     /// # Errors
     /// [`SetupError`] for a list of the wrong length, and numbers that are negative or not finite.
     pub fn new(body: &ReducedBody, damping_ratios: &[f64], loads: Vec<DeadForce>) -> Result<Self, SetupError> {
-        let expected = body.flexible();
-        if damping_ratios.len() != expected {
-            return Err(SetupError::Length {
-                what: "the list of damping ratios",
-                expected,
-                found: damping_ratios.len(),
-            });
-        }
-        if let Some(found) = damping_ratios.iter().copied().find(|zeta| !(*zeta >= 0.0 && zeta.is_finite())) {
-            return Err(SetupError::Value { what: "a damping ratio", found, expected: "zero or more" });
-        }
-        for load in &loads {
-            if let Some(found) = load.force_global.iter().copied().find(|f| !f.is_finite()) {
-                return Err(SetupError::Value { what: "a force", found, expected: "a finite number" });
-            }
-        }
+        check_damping(damping_ratios, body.flexible())?;
+        check_loads(&loads)?;
         let rigid = || std::iter::repeat_n(0.0, 6);
         let omega = &body.circular_frequencies;
         Ok(Self {
             stiffness: rigid().chain(omega.iter().map(|w| w * w)).collect(),
             damping: rigid().chain(omega.iter().zip(damping_ratios).map(|(w, zeta)| 2.0 * zeta * w)).collect(),
-            forces: loads.into_iter().map(|load| ModalForce { load, ends: [Vector3::zeros(); 2] }).collect(),
+            loads,
         })
     }
 
-    /// Takes the loads at the two ends of a step.
-    pub(crate) fn set_step(&mut self, start: f64, end: f64) {
-        for force in &mut self.forces {
-            force.ends = [start, end].map(|t| force.load.force_global * force.load.history.at(t));
+    /// The loads.
+    pub fn loads(&self) -> &[DeadForce] {
+        &self.loads
+    }
+
+    /// The forces at a time, global components, one for each load.
+    pub(crate) fn forces_at(&self, time: f64, forces_global: &mut [Vector3<f64>]) {
+        for (force, load) in forces_global.iter_mut().zip(&self.loads) {
+            *force = load.force_global * load.history.at(time);
         }
     }
 
-    /// q̈ of (35) in a frame with the transformation matrix `global_to_body`.
+    /// q̈ of (35) under `forces_global`, in a frame with the transformation matrix `global_to_body`.
     pub(crate) fn acceleration(
         &self,
         displacement: &[f64],
         velocity: &[f64],
-        when: LoadTime,
+        forces_global: &[Vector3<f64>],
         global_to_body: &Matrix3<f64>,
         acceleration: &mut [f64],
     ) {
@@ -86,15 +62,37 @@ impl ModalModel {
         for (a, ((q, v), (lambda, d))) in acceleration.iter_mut().zip(damped) {
             *a = -lambda * q - d * v;
         }
-        for force in &self.forces {
-            let [start, end] = &force.ends;
-            let force_global = match when {
-                LoadTime::Start => *start,
-                LoadTime::Mean => 0.5 * (start + end),
-                LoadTime::End => *end,
-            };
-            force.load.point.add_modal_force(&(global_to_body * force_global), acceleration);
+        for (force_global, load) in forces_global.iter().zip(&self.loads) {
+            load.point.add_modal_force(&(global_to_body * force_global), acceleration);
         }
+    }
+
+    /// Rates of the loads' work, of the dissipation, and of the angular impulse about the centre of mass.
+    pub(crate) fn power(
+        &self,
+        displacement: &[f64],
+        velocity: &[f64],
+        forces_global: &[Vector3<f64>],
+        global_to_body: &Matrix3<f64>,
+        root_mass: f64,
+    ) -> Work {
+        let mut power =
+            Work { dissipation: velocity.iter().zip(&self.damping).map(|(y, d)| d * y * y).sum(), ..Work::default() };
+        let center = translation(displacement) / root_mass;
+        for (force_global, load) in forces_global.iter().zip(&self.loads) {
+            let force_body = global_to_body * force_global;
+            let arm = load.point.position_body() + load.point.expand(displacement) - center;
+            power.impulse_global += force_global;
+            power.work += force_body.dot(&load.point.expand(velocity));
+            power.angular_impulse_global += global_to_body.tr_mul(&arm.cross(&force_body));
+        }
+        power
+    }
+
+    /// Largest stable step of RK4, and the flexible mode (from 0) that sets it.
+    pub(crate) fn stable_step(&self) -> (usize, f64) {
+        let limits = self.stiffness.iter().zip(&self.damping).skip(6).map(|(lambda, d)| stable_step(*lambda, *d));
+        limits.enumerate().fold((0, f64::INFINITY), |best, next| if next.1 < best.1 { next } else { best })
     }
 
     /// Refuses a step at which classical RK4 amplifies a mode: |R(z)| > 1 for an eigenvalue z/step of H.
@@ -102,14 +100,32 @@ impl ModalModel {
         if !(step > 0.0 && step.is_finite()) {
             return Err(SetupError::Value { what: "the step", found: step, expected: "a positive number" });
         }
-        let limits = self.stiffness.iter().zip(&self.damping).skip(6).map(|(lambda, d)| stable_step(*lambda, *d));
-        let (mode, limit) =
-            limits.enumerate().fold((0, f64::INFINITY), |best, next| if next.1 < best.1 { next } else { best });
+        let (mode, limit) = self.stable_step();
         if step <= limit {
             return Ok(());
         }
         let frequency = self.stiffness[6 + mode].sqrt() / std::f64::consts::TAU;
         Err(SetupError::StepBeyondLimit { step, limit, mode: mode + 1, frequency })
+    }
+}
+
+/// Refuses damping ratios that are not one number of zero or more for each mode.
+pub(crate) fn check_damping(damping_ratios: &[f64], flexible: usize) -> Result<(), SetupError> {
+    if damping_ratios.len() != flexible {
+        let found = damping_ratios.len();
+        return Err(SetupError::Length { what: "the list of damping ratios", expected: flexible, found });
+    }
+    match damping_ratios.iter().copied().find(|zeta| !(*zeta >= 0.0 && zeta.is_finite())) {
+        Some(found) => Err(SetupError::Value { what: "a damping ratio", found, expected: "zero or more" }),
+        None => Ok(()),
+    }
+}
+
+/// Refuses forces that are not finite.
+pub(crate) fn check_loads(loads: &[DeadForce]) -> Result<(), SetupError> {
+    match loads.iter().flat_map(|load| load.force_global.iter()).find(|f| !f.is_finite()) {
+        Some(found) => Err(SetupError::Value { what: "a force", found: *found, expected: "a finite number" }),
+        None => Ok(()),
     }
 }
 

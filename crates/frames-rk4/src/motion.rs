@@ -4,7 +4,9 @@ use modal::{BodyPoint, ReducedBody};
 use nalgebra::{Matrix3, Vector3};
 use rigid_kin::{Inertia, InertiaError, euler_angular_acceleration};
 
+use crate::observation::Observation;
 use crate::state::{State, rotation, translation};
+use crate::work::Work;
 
 /// A point with its rows of all mode shapes, rigid and flexible.
 #[derive(Debug, Clone)]
@@ -43,9 +45,36 @@ impl PointShapes {
         self.position_body
     }
 
+    /// The point with the rows of the first `flexible` flexible modes only.
+    pub fn truncated(&self, flexible: usize) -> Self {
+        let kept = self.columns.len().min(6 + flexible);
+        Self { position_body: self.position_body, columns: self.columns[..kept].to_vec() }
+    }
+
     /// Modal expansion at the point, (28): Σ_k Ψ_k c_k.
     pub(crate) fn expand(&self, coordinates: &[f64]) -> Vector3<f64> {
         self.columns.iter().zip(coordinates).map(|(shape, c)| shape * *c).sum()
+    }
+
+    /// Φ q of the flexible modes: displacement of the point in the body frame.
+    pub(crate) fn deformation(&self, flexible: &[f64]) -> Vector3<f64> {
+        self.columns[6..].iter().zip(flexible).map(|(shape, c)| shape * *c).sum()
+    }
+
+    /// Adds `Φᵀ F` of a force at the point, body components, and returns its power `F·Φ velocity`.
+    pub(crate) fn add_flexible_force(
+        &self,
+        force_body: &Vector3<f64>,
+        velocity: &[f64],
+        modal_force: &mut [f64],
+    ) -> f64 {
+        let mut power = 0.0;
+        for ((f, v), shape) in modal_force.iter_mut().zip(velocity).zip(&self.columns[6..]) {
+            let component = shape.dot(force_body);
+            *f += component;
+            power += component * v;
+        }
+        power
     }
 
     /// Adds `f_q = Ψᵀ F` of a force at the point, body components.
@@ -88,6 +117,41 @@ impl BodyMotion {
             cross_products,
             stiffness: body.circular_frequencies.iter().map(|omega| omega * omega).collect(),
         })
+    }
+
+    /// √m, by which translations are scaled.
+    pub(crate) fn root_mass(&self) -> f64 {
+        self.mass.sqrt()
+    }
+
+    /// Angular rate of the rotation modes: `B y[3..6]`.
+    pub(crate) fn angular_rate(&self, rotation: &Vector3<f64>) -> Vector3<f64> {
+        self.rotation_basis * rotation
+    }
+
+    /// Fills `out` with the motion at a state, and that of `points`.
+    pub(crate) fn observe(&self, state: &State, work: &Work, points: &[PointShapes], out: &mut Observation) {
+        out.time = state.time;
+        out.attitude = state.attitude;
+        out.position_global = self.position_global(state);
+        out.velocity_global = self.velocity_global(state);
+        out.omega_body = state.omega_body;
+        out.alpha_body = state.alpha_body;
+        for (list, all) in [
+            (&mut out.modal_displacement, &state.modal_displacement),
+            (&mut out.modal_velocity, &state.modal_velocity),
+            (&mut out.modal_acceleration, &state.modal_acceleration),
+        ] {
+            list.clear();
+            list.extend_from_slice(&all[6..]);
+        }
+        out.kinetic_energy = self.kinetic_energy(state);
+        out.strain_energy = self.strain_energy(state);
+        out.work = *work;
+        out.linear_momentum_global = self.linear_momentum_global(state);
+        out.angular_momentum_global = self.angular_momentum_global(state);
+        out.points.clear();
+        out.points.extend(points.iter().map(|point| self.point(state, point)));
     }
 
     /// Position of the centre of mass, global components.

@@ -9,11 +9,14 @@ use modal::ReducedBody;
 use nalgebra::{Matrix3, Vector3};
 use rigid_kin::{BeyondFullTurn, ReferencePoints, f_inverse, relative_velocity_rate, transformation_matrix};
 
-use crate::error::{SetupError, StepError};
+use crate::error::{RateError, SetupError, StepError};
 use crate::initial::Initial;
 use crate::modal_rotation::ModalRotation;
-use crate::model::{LoadTime, ModalModel};
+use crate::model::ModalModel;
+use crate::motion::{BodyMotion, PointShapes};
+use crate::observation::Observation;
 use crate::state::{State, translation};
+use crate::work::Work;
 
 /// Steps a flexible body by the paper's scheme.
 ///
@@ -24,10 +27,13 @@ pub struct PaperScheme {
     model: ModalModel,
     rotation: ModalRotation,
     kinematics: ReferenceKinematics,
+    motion: BodyMotion,
     step: f64,
     steps_done: u64,
-    mass: f64,
     state: State,
+    work: Work,
+    power: Work,
+    forces: StepForces,
     scratch: Scratch,
     failed: bool,
 }
@@ -51,6 +57,14 @@ struct Increment {
     velocity: Vec<f64>,
     rotation_vector: Vector3<f64>,
     relative_velocity: Relative,
+}
+
+/// Forces of the loads at the start and the end of a step, and their mean, global components.
+#[derive(Debug, Clone)]
+struct StepForces {
+    start: Vec<Vector3<f64>>,
+    mean: Vec<Vector3<f64>>,
+    end: Vec<Vector3<f64>>,
 }
 
 #[derive(Debug, Clone)]
@@ -84,9 +98,9 @@ impl PaperScheme {
             rotation_basis: body.rotation_basis,
             arms: [p - r, q - r],
         };
-        let (modal_displacement, modal_velocity) = initial.modal_state(body)?;
-        let size = modal_displacement.len();
-        let zeros = || vec![0.0; size];
+        let state = State::begin(body, initial)?;
+        let zeros = || vec![0.0; state.modal_displacement.len()];
+        let forces = || vec![Vector3::zeros(); model.loads().len()];
         let increment = || Increment {
             displacement: zeros(),
             velocity: zeros(),
@@ -94,22 +108,14 @@ impl PaperScheme {
             relative_velocity: [Vector3::zeros(); 2],
         };
         let mut scheme = Self {
-            model,
             rotation: ModalRotation::new(body),
             kinematics,
+            motion: BodyMotion::new(body)?,
             step,
             steps_done: 0,
-            mass: body.mass,
-            state: State {
-                time: 0.0,
-                attitude: rigid_kin::Attitude::identity(),
-                origin_global: body.center_of_mass,
-                modal_displacement,
-                modal_velocity,
-                modal_acceleration: zeros(),
-                omega_body: Vector3::zeros(),
-                alpha_body: Vector3::zeros(),
-            },
+            work: Work::default(),
+            power: Work::default(),
+            forces: StepForces { start: forces(), mean: forces(), end: forces() },
             scratch: Scratch {
                 stage: increment(),
                 total: increment(),
@@ -119,6 +125,8 @@ impl PaperScheme {
                 acceleration: zeros(),
             },
             failed: false,
+            state,
+            model,
         };
         scheme.complete_state();
         Ok(scheme)
@@ -129,22 +137,39 @@ impl PaperScheme {
         &self.state
     }
 
-    /// Does one step, k1 to k4 and (38) to (40).
+    /// Fills `out` with the motion at the state, and that of `points`.
+    pub fn observe(&self, points: &[PointShapes], out: &mut Observation) {
+        self.motion.observe(&self.state, &self.work, points, out);
+    }
+
+    /// Evaluations of (35) so far: four for each step.
+    pub fn evaluations(&self) -> u64 {
+        4 * self.steps_done
+    }
+
+    /// Does one step of the length given at the beginning, k1 to k4 and (38) to (40).
     ///
     /// # Errors
     /// [`StepError`]; the state stays that before the step.
     pub fn step(&mut self) -> Result<&State, StepError> {
-        let Self { model, rotation, kinematics, state, scratch, .. } = self;
-        let (h, time) = (self.step, state.time);
+        self.take_step(self.step, (self.steps_done + 1) as f64 * self.step)?;
+        Ok(&self.state)
+    }
+
+    /// Does one step of length `h` that ends at time `end`.
+    ///
+    /// # Errors
+    /// [`StepError`]; the state stays that before the step.
+    pub fn take_step(&mut self, h: f64, end: f64) -> Result<(), StepError> {
+        let Self { model, rotation, kinematics, state, scratch, forces, .. } = self;
+        let time = state.time;
+        model.forces_at(end, &mut forces.end);
+        for (mean, (start, end)) in forces.mean.iter_mut().zip(forces.start.iter().zip(&forces.end)) {
+            *mean = 0.5 * (start + end);
+        }
         let global_to_body = state.attitude.global_to_body();
         let relative_velocity = kinematics.relative(&state.modal_velocity);
-        let turn_error = |BeyondFullTurn { angle }| {
-            if angle.is_finite() {
-                StepError::TurnTooLarge { time, step: h, angle }
-            } else {
-                StepError::NotFinite { time, what: "the angular velocity" }
-            }
-        };
+        let turn_error = |error: BeyondFullTurn| RateError::Turn(error).in_step(time, h);
         scratch.total.clear();
 
         // k1: in the frame of the step's start, where θ = 0 and f⁻¹ is the identity.
@@ -155,10 +180,10 @@ impl PaperScheme {
         stage.rotation_vector = h * state.omega_body;
         total.add(1.0 / 6.0, stage);
 
-        for (fraction, weight, when) in [
-            (0.5, 1.0 / 3.0, LoadTime::Mean), // k2
-            (0.5, 1.0 / 3.0, LoadTime::Mean), // k3
-            (1.0, 1.0 / 6.0, LoadTime::End),  // k4
+        for (fraction, weight, forces) in [
+            (0.5, 1.0 / 3.0, &forces.mean), // k2
+            (0.5, 1.0 / 3.0, &forces.mean), // k3
+            (1.0, 1.0 / 6.0, &forces.end),  // k4
         ] {
             let v: Relative = std::array::from_fn(|i| relative_velocity[i] + fraction * stage.relative_velocity[i]);
             let omega = kinematics.points.angular_velocity(&v[0], &v[1]);
@@ -166,7 +191,7 @@ impl PaperScheme {
             let turn = transformation_matrix(&theta);
             rotation.set(&turn);
             advance(rotation, state, fraction, stage, unrotated, next_displacement, next_velocity);
-            model.acceleration(next_displacement, next_velocity, when, &(turn * global_to_body), acceleration);
+            model.acceleration(next_displacement, next_velocity, forces, &(turn * global_to_body), acceleration);
 
             stage.set_modal(h, next_velocity, acceleration);
             stage.relative_velocity = kinematics.relative_velocity_change(h, acceleration, &v, &omega);
@@ -185,29 +210,28 @@ impl PaperScheme {
         }
 
         // The rigid displacement that (40) takes out is where the frame goes.
-        let moved_body = translation(&total.displacement) / self.mass.sqrt();
+        let moved_body = translation(&total.displacement) / self.motion.root_mass();
         state.origin_global += state.attitude.to_global(&moved_body);
         state.attitude = state.attitude.advanced_by(&theta);
         std::mem::swap(&mut state.modal_displacement, next_displacement);
         std::mem::swap(&mut state.modal_velocity, next_velocity);
         self.steps_done += 1;
-        state.time = self.steps_done as f64 * h;
+        state.time = end;
+        self.work.add(0.5 * h, &self.power);
         self.complete_state();
-        Ok(&self.state)
+        // By the trapezoidal rule: far closer than a first-order scheme closes its balances.
+        self.work.add(0.5 * h, &self.power);
+        Ok(())
     }
 
-    /// Accelerations (35), ω (36) and α (37) of the state's displacements and velocities.
+    /// Accelerations (35), ω (36) and α (37) of the state's displacements and velocities, and the power of the loads.
     fn complete_state(&mut self) {
-        let Self { model, kinematics, state, .. } = self;
-        model.set_step(state.time, (self.steps_done + 1) as f64 * self.step);
+        let Self { model, kinematics, state, forces, .. } = self;
+        model.forces_at(state.time, &mut forces.start);
         let global_to_body = state.attitude.global_to_body();
-        model.acceleration(
-            &state.modal_displacement,
-            &state.modal_velocity,
-            LoadTime::Start,
-            &global_to_body,
-            &mut state.modal_acceleration,
-        );
+        let (q, y) = (&state.modal_displacement, &state.modal_velocity);
+        model.acceleration(q, y, &forces.start, &global_to_body, &mut state.modal_acceleration);
+        self.power = model.power(q, y, &forces.start, &global_to_body, self.motion.root_mass());
         let [v_p, v_q] = kinematics.relative(&state.modal_velocity);
         let [a_p, a_q] = kinematics.relative(&state.modal_acceleration);
         state.omega_body = kinematics.points.angular_velocity(&v_p, &v_q);

@@ -1,7 +1,11 @@
 //! The state of a motion in the frame of the moment.
 
+use modal::ReducedBody;
 use nalgebra::Vector3;
 use rigid_kin::Attitude;
+
+use crate::error::SetupError;
+use crate::initial::Initial;
 
 /// State at one time, in the inertial frame that coincides with the (dummy) rigid body then.
 ///
@@ -25,6 +29,23 @@ pub struct State {
     pub omega_body: Vector3<f64>,
     /// Its angular acceleration by h, Eq. (37), body components. See [`rigid_kin::ReferencePoints`] for its limits.
     pub alpha_body: Vector3<f64>,
+}
+
+impl State {
+    /// The state at the beginning, its rates still to be found.
+    pub(crate) fn begin(body: &ReducedBody, initial: &Initial) -> Result<Self, SetupError> {
+        let (modal_displacement, modal_velocity) = initial.modal_state(body)?;
+        Ok(Self {
+            time: 0.0,
+            attitude: Attitude::identity(),
+            origin_global: body.center_of_mass,
+            modal_acceleration: vec![0.0; modal_velocity.len()],
+            modal_displacement,
+            modal_velocity,
+            omega_body: Vector3::zeros(),
+            alpha_body: Vector3::zeros(),
+        })
+    }
 }
 
 /// The three translations of a modal list.

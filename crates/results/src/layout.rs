@@ -10,14 +10,16 @@
 //! | `angular_velocity`, `angular_acceleration` | T×3 | body |
 //! | `modal/displacement`, `modal/velocity` | T×nf | |
 //! | `energy/kinetic`, `energy/strain` | T | |
+//! | `energy/work` (of the loads), `energy/dissipation`, `energy/balance` | T | |
 //! | `momentum/linear`, `momentum/angular` (about the centre of mass) | T×3 | global |
+//! | `momentum/linear_balance`, `momentum/angular_balance` (less the impulse of the loads) | T×3 | global |
 //! | `points/<name>/displacement`, `velocity`, `acceleration`, `rigid_acceleration` | T×3 | global |
 //! | `body/mass`, `center_of_mass`, `inertia` | 1, 3, 3×3 | body |
 //! | `body/frequencies`, `body/damping_ratios` | nf | |
 //!
 //! Every dataset has the attributes `unit`, `frame` and `description`. The root has `title`, `scene`
-//! (the scene file's text), `scheme`, `step`, `program_version`, `units_length`, `units_mass`,
-//! `units_time` and `complete` (0 while the run goes on, 1 at its end).
+//! (the scene file's text), `formulation`, `scheme`, `step` or `tolerance`, `program_version`,
+//! `units_length`, `units_mass`, `units_time` and `complete` (0 while the run goes on, 1 at its end).
 
 use crate::{Sample, Units};
 use std::slice::from_ref;
@@ -38,8 +40,13 @@ pub(crate) enum Quantity {
     ModalVelocity,
     KineticEnergy,
     StrainEnergy,
+    Work,
+    Dissipation,
+    EnergyBalance,
     LinearMomentum,
     AngularMomentum,
+    LinearBalance,
+    AngularBalance,
     /// Index of the point, index into [`POINT_QUANTITIES`].
     Point(usize, usize),
 }
@@ -60,8 +67,13 @@ impl Quantity {
             ModalVelocity,
             KineticEnergy,
             StrainEnergy,
+            Work,
+            Dissipation,
+            EnergyBalance,
             LinearMomentum,
             AngularMomentum,
+            LinearBalance,
+            AngularBalance,
         ]
         .into_iter()
         .chain((0..points).flat_map(|i| (0..POINT_QUANTITIES.len()).map(move |k| Point(i, k))))
@@ -80,8 +92,13 @@ impl Quantity {
             ModalVelocity => "modal/velocity".into(),
             KineticEnergy => "energy/kinetic".into(),
             StrainEnergy => "energy/strain".into(),
+            Work => "energy/work".into(),
+            Dissipation => "energy/dissipation".into(),
+            EnergyBalance => "energy/balance".into(),
             LinearMomentum => "momentum/linear".into(),
             AngularMomentum => "momentum/angular".into(),
+            LinearBalance => "momentum/linear_balance".into(),
+            AngularBalance => "momentum/angular_balance".into(),
             Point(i, k) => format!("points/{}/{}", point_names[i], POINT_QUANTITIES[k]),
         }
     }
@@ -89,7 +106,7 @@ impl Quantity {
     /// Values per row; `None` for a plain column (shape T instead of T×width).
     pub(crate) fn width(self, modes: usize) -> Option<usize> {
         match self {
-            Time | KineticEnergy | StrainEnergy => None,
+            Time | KineticEnergy | StrainEnergy | Work | Dissipation | EnergyBalance => None,
             Attitude => Some(4),
             ModalDisplacement | ModalVelocity => Some(modes),
             _ => Some(3),
@@ -108,16 +125,19 @@ impl Quantity {
             AngularAcceleration => format!("rad/{time}^2"),
             ModalDisplacement => format!("{length} {mass}^(1/2)"),
             ModalVelocity => format!("{length} {mass}^(1/2)/{time}"),
-            KineticEnergy | StrainEnergy => format!("{mass} {length}^2/{time}^2"),
-            LinearMomentum => format!("{mass} {length}/{time}"),
-            AngularMomentum => format!("{mass} {length}^2/{time}"),
+            KineticEnergy | StrainEnergy | Work | Dissipation | EnergyBalance => {
+                format!("{mass} {length}^2/{time}^2")
+            }
+            LinearMomentum | LinearBalance => format!("{mass} {length}/{time}"),
+            AngularMomentum | AngularBalance => format!("{mass} {length}^2/{time}"),
         }
     }
 
     /// The frame of the components.
     pub(crate) fn frame(self) -> &'static str {
         match self {
-            Time | ModalDisplacement | ModalVelocity | KineticEnergy | StrainEnergy => "none",
+            Time | ModalDisplacement | ModalVelocity => "none",
+            KineticEnergy | StrainEnergy | Work | Dissipation | EnergyBalance => "none",
             Attitude => "body to global",
             AngularVelocity | AngularAcceleration => "body",
             _ => "global",
@@ -137,8 +157,16 @@ impl Quantity {
             ModalVelocity => "rates of the modal coordinates",
             KineticEnergy => "kinetic energy",
             StrainEnergy => "strain energy",
+            Work => "work of the loads since t = 0",
+            Dissipation => "energy that damping has taken since t = 0",
+            EnergyBalance => "kinetic + strain energy - work + dissipation: constant in exact motion",
             LinearMomentum => "linear momentum",
             AngularMomentum => "angular momentum about the centre of mass",
+            LinearBalance => "linear momentum less the impulse of the loads: constant in exact motion",
+            AngularBalance => {
+                "angular momentum less the angular impulse of the loads, both about the centre of mass: \
+                 constant in exact motion"
+            }
             Point(_, 0) => "displacement of the point from its place at t = 0 in the undeformed body",
             Point(_, 1) => "velocity of the point",
             Point(_, 2) => "acceleration of the point",
@@ -159,8 +187,13 @@ impl Quantity {
             ModalVelocity => sample.modal_velocity,
             KineticEnergy => from_ref(&sample.kinetic_energy),
             StrainEnergy => from_ref(&sample.strain_energy),
+            Work => from_ref(&sample.work),
+            Dissipation => from_ref(&sample.dissipation),
+            EnergyBalance => from_ref(&sample.energy_balance),
             LinearMomentum => &sample.linear_momentum,
             AngularMomentum => &sample.angular_momentum,
+            LinearBalance => &sample.linear_balance,
+            AngularBalance => &sample.angular_balance,
             Point(i, 0) => &sample.points[i].displacement,
             Point(i, 1) => &sample.points[i].velocity,
             Point(i, 2) => &sample.points[i].acceleration,

@@ -33,10 +33,14 @@ pub struct Metadata {
     pub title: String,
     /// Labels of the units.
     pub units: Units,
+    /// Name of the formulation of the equations of motion.
+    pub formulation: String,
     /// Name of the time-integration scheme.
     pub scheme: String,
-    /// Its step.
-    pub step: f64,
+    /// Length of its steps, where they have one.
+    pub step: Option<f64>,
+    /// Relative error allowed in a step, where that sets its length.
+    pub tolerance: Option<f64>,
     /// Version of the program that made the run.
     pub program_version: String,
     /// The scene file, word for word.

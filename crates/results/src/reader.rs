@@ -37,10 +37,21 @@ pub struct Results {
     pub kinetic_energy: Vec<f64>,
     /// Strain energy.
     pub strain_energy: Vec<f64>,
+    /// Work of the loads since t = 0.
+    pub work: Vec<f64>,
+    /// Energy that damping has taken since t = 0.
+    pub dissipation: Vec<f64>,
+    /// Kinetic + strain energy − work + dissipation.
+    pub energy_balance: Vec<f64>,
     /// Linear momentum, global.
     pub linear_momentum: Vec<[f64; 3]>,
     /// Angular momentum about the centre of mass, global.
     pub angular_momentum: Vec<[f64; 3]>,
+    /// Linear momentum less the impulse of the loads since t = 0, global.
+    pub linear_balance: Vec<[f64; 3]>,
+    /// Angular momentum less the angular impulse of the loads since t = 0, both about the centre of
+    /// mass, global.
+    pub angular_balance: Vec<[f64; 3]>,
     /// The points by name.
     pub points: BTreeMap<String, PointHistory>,
 }
@@ -135,8 +146,13 @@ impl Results {
             modal_velocity: table(Quantity::ModalVelocity)?,
             kinetic_energy: column(Quantity::KineticEnergy)?,
             strain_energy: column(Quantity::StrainEnergy)?,
+            work: column(Quantity::Work)?,
+            dissipation: column(Quantity::Dissipation)?,
+            energy_balance: column(Quantity::EnergyBalance)?,
             linear_momentum: vectors(column(Quantity::LinearMomentum)?),
             angular_momentum: vectors(column(Quantity::AngularMomentum)?),
+            linear_balance: vectors(column(Quantity::LinearBalance)?),
+            angular_balance: vectors(column(Quantity::AngularBalance)?),
             points,
             metadata,
         })
@@ -173,8 +189,10 @@ impl Source<'_> {
                 mass: self.text("units_mass")?,
                 time: self.text("units_time")?,
             },
+            formulation: self.text("formulation")?,
             scheme: self.text("scheme")?,
-            step: self.attribute("step")?,
+            step: self.attribute_if_given("step")?,
+            tolerance: self.attribute_if_given("tolerance")?,
             program_version: self.text("program_version")?,
             scene_text: self.text("scene")?,
             body,
@@ -251,13 +269,19 @@ impl Source<'_> {
     }
 
     fn attribute<T: hdf5::H5Type>(&self, name: &str) -> Result<T, FileError> {
+        self.attribute_if_given(name)?
+            .ok_or_else(|| FileError::MissingAttribute { path: self.path.to_path_buf(), attribute: name.into() })
+    }
+
+    fn attribute_if_given<T: hdf5::H5Type>(&self, name: &str) -> Result<Option<T>, FileError> {
         let names = self.file.attr_names().map_err(self.failed("list the attributes"))?;
         if !names.iter().any(|found| found == name) {
-            return Err(FileError::MissingAttribute { path: self.path.to_path_buf(), attribute: name.into() });
+            return Ok(None);
         }
         self.file
             .attr(name)
             .and_then(|attribute| attribute.read_scalar())
+            .map(Some)
             .map_err(self.failed(format!("read the attribute {name}")))
     }
 

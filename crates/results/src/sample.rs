@@ -36,10 +36,21 @@ pub struct Sample<'a> {
     pub kinetic_energy: f64,
     /// Strain energy.
     pub strain_energy: f64,
+    /// Work of the loads since t = 0.
+    pub work: f64,
+    /// Energy that damping has taken since t = 0.
+    pub dissipation: f64,
+    /// Kinetic + strain energy − work + dissipation: constant in exact motion.
+    pub energy_balance: f64,
     /// Linear momentum, global.
     pub linear_momentum: [f64; 3],
     /// Angular momentum about the centre of mass, global.
     pub angular_momentum: [f64; 3],
+    /// Linear momentum less the impulse of the loads since t = 0, global: constant in exact motion.
+    pub linear_balance: [f64; 3],
+    /// Angular momentum less the angular impulse of the loads since t = 0, both about the centre of
+    /// mass, global: constant in exact motion.
+    pub angular_balance: [f64; 3],
     /// The points, in the order of [`Metadata::point_names`](crate::Metadata::point_names).
     pub points: &'a [PointSample],
 }

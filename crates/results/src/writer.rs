@@ -237,6 +237,7 @@ fn write_root_attributes(path: &Path, file: &hdf5::File, metadata: &Metadata) ->
     let texts = [
         ("title", &metadata.title),
         ("scene", &metadata.scene_text),
+        ("formulation", &metadata.formulation),
         ("scheme", &metadata.scheme),
         ("program_version", &metadata.program_version),
         ("units_length", &metadata.units.length),
@@ -246,10 +247,13 @@ fn write_root_attributes(path: &Path, file: &hdf5::File, metadata: &Metadata) ->
     for (name, text) in texts {
         write_text(path, file, name, text)?;
     }
-    file.new_attr::<f64>()
-        .create("step")
-        .and_then(|step| step.write_scalar(&metadata.step))
-        .map_err(hdf5_error(path, "write the attribute step"))?;
+    for (name, number) in [("step", metadata.step), ("tolerance", metadata.tolerance)] {
+        let Some(number) = number else { continue };
+        file.new_attr::<f64>()
+            .create(name)
+            .and_then(|attribute| attribute.write_scalar(&number))
+            .map_err(hdf5_error(path, format!("write the attribute {name}")))?;
+    }
     file.new_attr::<i64>()
         .create("complete")
         .and_then(|complete| complete.write_scalar(&0_i64))

@@ -1,125 +1,10 @@
-//! Writing results, reading them back, and what survives when a run does not reach its end.
+//! Writing results and reading them back.
+
+mod rows;
 
 use hdf5::types::{FloatSize, IntSize, TypeDescriptor, VarLenUnicode};
 use results::*;
-use std::path::{Path, PathBuf};
-use std::process::Command;
-use std::time::Duration;
-
-fn metadata(modes: usize, point_names: &[&str]) -> Metadata {
-    Metadata {
-        title: "Freie Platte, 50 N ½-sine".into(),
-        units: Units { length: "mm".into(), mass: "Mg".into(), time: "s".into() },
-        scheme: "paper".into(),
-        step: 1e-4,
-        program_version: "0.1.0".into(),
-        scene_text: "title = \"ω₂\"\n".repeat(10_000), // more than an attribute of fixed length can hold
-        body: BodyProperties {
-            mass: 0.00935,
-            center_of_mass: [0.1, -0.2, 0.3],
-            inertia: [[5.5, 0.1, 0.2], [0.1, 2112.7, 0.3], [0.2, 0.3, 2117.8]],
-            frequencies: (0..modes).map(|k| 24.5 + 60.0 * k as f64).collect(),
-            damping_ratios: vec![0.05; modes],
-        },
-        point_names: point_names.iter().map(|name| name.to_string()).collect(),
-    }
-}
-
-/// Distinct numbers for every row, so that nothing can be swapped unseen.
-struct Row {
-    time: f64,
-    modal: [Vec<f64>; 2],
-    points: Vec<PointSample>,
-}
-
-impl Row {
-    fn new(i: usize, modes: usize, points: usize) -> Self {
-        let time = i as f64 * 1e-4;
-        let vector = |k: f64| [time + k, time - k, time * k];
-        let point = |p: usize| {
-            let p = 100.0 * p as f64;
-            PointSample {
-                displacement: vector(p + 10.0),
-                velocity: vector(p + 11.0),
-                acceleration: vector(p + 12.0),
-                rigid_acceleration: vector(p + 13.0),
-            }
-        };
-        Self {
-            time,
-            modal: [1.0, -3.0].map(|factor| (0..modes).map(|k| factor * (time + k as f64)).collect()),
-            points: (0..points).map(point).collect(),
-        }
-    }
-
-    fn sample(&self) -> Sample<'_> {
-        let vector = |k: f64| [self.time + k, self.time - k, self.time * k];
-        Sample {
-            time: self.time,
-            attitude: [self.time, 0.1, 0.2, 0.3],
-            position: vector(1.0),
-            velocity: vector(2.0),
-            angular_velocity: vector(3.0),
-            angular_acceleration: vector(4.0),
-            modal_displacement: &self.modal[0],
-            modal_velocity: &self.modal[1],
-            kinetic_energy: self.time + 5.0,
-            strain_energy: self.time + 6.0,
-            linear_momentum: vector(7.0),
-            angular_momentum: vector(8.0),
-            points: &self.points,
-        }
-    }
-}
-
-fn write(path: &Path, rows: usize, metadata: &Metadata) -> Writer {
-    let mut writer = Writer::create(path, metadata).unwrap();
-    for i in 0..rows {
-        writer.push(&Row::new(i, metadata.body.frequencies.len(), metadata.point_names.len()).sample()).unwrap();
-    }
-    writer
-}
-
-/// The first `rows` rows are those that [`write`] wrote, in every column.
-fn assert_rows(results: &Results, rows: usize) {
-    let names = results.metadata.point_names.clone();
-    assert_eq!(results.time.len(), rows);
-    for i in 0..rows {
-        let row = Row::new(i, results.modal_displacement.width(), names.len());
-        let found_points: Vec<_> = names
-            .iter()
-            .map(|name| &results.points[name])
-            .map(|point| PointSample {
-                displacement: point.displacement[i],
-                velocity: point.velocity[i],
-                acceleration: point.acceleration[i],
-                rigid_acceleration: point.rigid_acceleration[i],
-            })
-            .collect();
-        let found = Sample {
-            time: results.time[i],
-            attitude: results.attitude[i],
-            position: results.position[i],
-            velocity: results.velocity[i],
-            angular_velocity: results.angular_velocity[i],
-            angular_acceleration: results.angular_acceleration[i],
-            modal_displacement: results.modal_displacement.row(i).unwrap(),
-            modal_velocity: results.modal_velocity.row(i).unwrap(),
-            kinetic_energy: results.kinetic_energy[i],
-            strain_energy: results.strain_energy[i],
-            linear_momentum: results.linear_momentum[i],
-            angular_momentum: results.angular_momentum[i],
-            points: &found_points,
-        };
-        assert_eq!(found, row.sample());
-    }
-}
-
-fn folder() -> (tempfile::TempDir, PathBuf) {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("run.h5");
-    (folder, path)
-}
+use rows::{Row, assert_rows, folder, metadata, write};
 
 #[test]
 fn what_is_written_is_read_bit_for_bit() {
@@ -137,6 +22,19 @@ fn what_is_written_is_read_bit_for_bit() {
     let column: Vec<f64> = results.modal_velocity.column(2).unwrap().collect();
     assert_eq!((column.len(), column[7]), (1300, -3.0 * (7.0 * 1e-4 + 2.0)));
     assert!(results.modal_velocity.column(3).is_none() && results.modal_velocity.row(1300).is_none());
+}
+
+#[test]
+fn a_run_has_a_step_or_a_tolerance() {
+    let (_folder, path) = folder();
+    for (step, tolerance) in [(Some(2e-5), None), (None, Some(1e-8))] {
+        let metadata = Metadata { step, tolerance, ..metadata(1, &[]) };
+        write(&path, 3, &metadata).finish().unwrap();
+        assert_eq!(Results::open(&path).unwrap().metadata, metadata);
+        let attributes = hdf5::File::open(&path).unwrap().attr_names().unwrap();
+        let has = |name: &str| attributes.iter().any(|found| found == name);
+        assert_eq!((has("step"), has("tolerance")), (step.is_some(), tolerance.is_some()));
+    }
 }
 
 #[test]
@@ -158,36 +56,6 @@ fn a_dropped_writer_leaves_its_rows_and_no_mark_of_completeness() {
     let results = Results::open(&path).unwrap();
     assert!(!results.complete);
     assert_rows(&results, 700);
-}
-
-/// Not a test of its own: the process that [`a_killed_run_can_be_read_up_to_its_last_flush`] kills.
-#[test]
-#[ignore = "run by another test"]
-fn child_that_is_killed() {
-    let Some(path) = std::env::var_os("RESULTS_TEST_CHILD") else { return };
-    let mut writer = write(Path::new(&path), 700, &metadata(2, &["P1"]));
-    std::thread::sleep(Duration::from_millis(1100));
-    // This row is late enough for a flush, the next hundred are not.
-    for i in 700..801 {
-        writer.push(&Row::new(i, 2, 1).sample()).unwrap();
-    }
-    std::process::abort();
-}
-
-#[test]
-fn a_killed_run_can_be_read_up_to_its_last_flush() {
-    let (_folder, path) = folder();
-    let status = Command::new(std::env::current_exe().unwrap())
-        .args(["--exact", "child_that_is_killed", "--ignored"])
-        .env("RESULTS_TEST_CHILD", &path)
-        .output()
-        .unwrap()
-        .status;
-    assert!(!status.success(), "the child was to abort");
-    let results = Results::open(&path).unwrap();
-    assert!(!results.complete);
-    assert!(results.time.len() >= 701, "{}", results.time.len());
-    assert_rows(&results, results.time.len());
 }
 
 #[test]
@@ -293,7 +161,7 @@ fn names_types_and_shapes_are_those_of_the_contract() {
     let (_folder, path) = folder();
     write(&path, 5, &metadata(4, &["P1"])).finish().unwrap();
     let file = hdf5::File::open(&path).unwrap();
-    let shapes: [(&str, &[usize]); 21] = [
+    let shapes: [(&str, &[usize]); 26] = [
         ("time", &[5]),
         ("attitude", &[5, 4]),
         ("position", &[5, 3]),
@@ -304,8 +172,13 @@ fn names_types_and_shapes_are_those_of_the_contract() {
         ("modal/velocity", &[5, 4]),
         ("energy/kinetic", &[5]),
         ("energy/strain", &[5]),
+        ("energy/work", &[5]),
+        ("energy/dissipation", &[5]),
+        ("energy/balance", &[5]),
         ("momentum/linear", &[5, 3]),
         ("momentum/angular", &[5, 3]),
+        ("momentum/linear_balance", &[5, 3]),
+        ("momentum/angular_balance", &[5, 3]),
         ("points/P1/displacement", &[5, 3]),
         ("points/P1/velocity", &[5, 3]),
         ("points/P1/acceleration", &[5, 3]),
@@ -325,7 +198,8 @@ fn names_types_and_shapes_are_those_of_the_contract() {
             assert!(!text.is_empty(), "{name}: {attribute}");
         }
     }
-    let texts = ["units_length", "units_mass", "units_time", "scheme", "program_version", "title", "scene"];
+    let texts =
+        ["units_length", "units_mass", "units_time", "formulation", "scheme", "program_version", "title", "scene"];
     for name in texts {
         let attribute = file.attr(name).unwrap();
         assert_eq!(attribute.dtype().unwrap().to_descriptor().unwrap(), TypeDescriptor::VarLenUnicode);
@@ -334,6 +208,17 @@ fn names_types_and_shapes_are_those_of_the_contract() {
     let descriptor = |name: &str| file.attr(name).unwrap().dtype().unwrap().to_descriptor().unwrap();
     assert_eq!(descriptor("step"), TypeDescriptor::Float(FloatSize::U8));
     assert_eq!(descriptor("complete"), TypeDescriptor::Integer(IntSize::U8));
-    let unit: VarLenUnicode = file.dataset("energy/strain").unwrap().attr("unit").unwrap().read_scalar().unwrap();
-    assert_eq!(unit.as_str(), "Mg mm^2/s^2");
+    for (name, unit, frame) in [
+        ("energy/strain", "Mg mm^2/s^2", "none"),
+        ("energy/work", "Mg mm^2/s^2", "none"),
+        ("energy/dissipation", "Mg mm^2/s^2", "none"),
+        ("energy/balance", "Mg mm^2/s^2", "none"),
+        ("momentum/linear_balance", "Mg mm/s", "global"),
+        ("momentum/angular_balance", "Mg mm^2/s", "global"),
+    ] {
+        let text = |attribute: &str| -> VarLenUnicode {
+            file.dataset(name).unwrap().attr(attribute).unwrap().read_scalar().unwrap()
+        };
+        assert_eq!((text("unit").as_str(), text("frame").as_str()), (unit, frame), "{name}");
+    }
 }

@@ -18,8 +18,13 @@ with h5py.File(sys.argv[1], "r") as file:
         "modal/velocity": (rows, modes),
         "energy/kinetic": (rows,),
         "energy/strain": (rows,),
+        "energy/work": (rows,),
+        "energy/dissipation": (rows,),
+        "energy/balance": (rows,),
         "momentum/linear": (rows, 3),
         "momentum/angular": (rows, 3),
+        "momentum/linear_balance": (rows, 3),
+        "momentum/angular_balance": (rows, 3),
         "body/mass": (),
         "body/center_of_mass": (3,),
         "body/inertia": (3, 3),
@@ -34,9 +39,15 @@ with h5py.File(sys.argv[1], "r") as file:
         assert data.shape == shape, (name, data.shape, shape)
         assert data.dtype == np.float64, (name, data.dtype)
         assert np.isfinite(data[()]).all(), name
-    for name in ("units_length", "units_mass", "units_time", "scheme", "program_version", "title", "scene"):
+    texts = ("units_length", "units_mass", "units_time", "formulation", "scheme", "program_version", "title", "scene")
+    for name in texts:
         assert isinstance(file.attrs[name], str), name
-    assert file.attrs["step"] > 0 and file.attrs["complete"] == 1
+    lengths = [name for name in ("step", "tolerance") if name in file.attrs]
+    assert len(lengths) == 1 and file.attrs[lengths[0]] > 0, lengths
+    assert file.attrs["complete"] == 1
+    energy = {name: file[f"energy/{name}"][:] for name in ("kinetic", "strain", "work", "dissipation", "balance")}
+    balance = energy["kinetic"] + energy["strain"] - energy["work"] + energy["dissipation"]
+    assert np.allclose(energy["balance"], balance, rtol=1e-12, atol=1e-12 * np.abs(balance).max())
     quaternion = file["attitude"][:]
     assert np.abs(np.linalg.norm(quaternion, axis=1) - 1).max() < 1e-14
     print(f"{sys.argv[1]}: {rows} rows, {modes} modes, {len(shapes)} data sets as promised")

@@ -3,7 +3,9 @@
 use std::time::{Duration, Instant};
 
 use fem_tet10::{AssemblyError, Location, Matrices, Mesh, MeshError, assemble, read_msh};
-use frames_rk4::{DeadForce, Initial, ModalModel, PaperScheme, PointShapes, SetupError};
+use frames_rk4::{
+    ConservativeScheme, DeadForce, Initial, PointShapes, Rows, Setup, SetupError, Simulation, StepControl,
+};
 use modal::{BodyPoint, ModalError, Modes, ReducedBody};
 use nalgebra::Vector3;
 
@@ -135,6 +137,26 @@ impl Model {
         })
     }
 
+    /// The same body with its first `flexible` modes only.
+    pub fn truncated(&self, flexible: usize) -> Self {
+        let flexible = flexible.min(self.body.flexible());
+        let mut modes = self.modes.clone();
+        modes.eigenvalues.truncate(flexible);
+        modes.residuals.truncate(flexible);
+        modes.force_residuals.truncate(flexible);
+        modes.shapes = self.modes.shapes.get(.., ..flexible).to_owned();
+        let truncated = |load: &DeadForce| DeadForce { point: load.point.truncated(flexible), ..load.clone() };
+        Self {
+            mesh: self.mesh.clone(),
+            modes,
+            body: self.body.truncated(flexible),
+            points: self.points.iter().map(|(name, point)| (name.clone(), point.truncated(flexible))).collect(),
+            loads: self.loads.iter().map(truncated).collect(),
+            damping_ratios: self.damping_ratios[..flexible].to_vec(),
+            ..*self
+        }
+    }
+
     /// Damping ratio of each flexible mode.
     pub fn damping_ratios(&self) -> &[f64] {
         &self.damping_ratios
@@ -145,12 +167,33 @@ impl Model {
         &self.loads
     }
 
-    /// The motion of a scene from its beginning in steps of `step`.
+    /// The motion of a scene from its beginning.
     ///
     /// # Errors
     /// [`SetupError`], e.g. a step beyond the stability limit.
-    pub fn start(&self, scene: &Scene, step: f64) -> Result<PaperScheme, SetupError> {
-        let model = ModalModel::new(&self.body, &self.damping_ratios, self.loads.clone())?;
+    pub fn start(&self, scene: &Scene) -> Result<Simulation, SetupError> {
+        let control = match scene.time.stepping {
+            scene::Stepping::Step(step) => StepControl::Fixed(step),
+            scene::Stepping::Tolerance(tolerance) => StepControl::Tolerance(tolerance),
+        };
+        let rows = match scene.output.rows {
+            scene::Rows::EverySteps(steps) => Rows::EverySteps(steps),
+            scene::Rows::Interval(interval) => Rows::Interval(interval),
+        };
+        self.start_with(scene, method(scene.time.method), control, rows)
+    }
+
+    /// The motion of a scene by another method, in other steps or with other rows than its own.
+    ///
+    /// # Errors
+    /// As [`Model::start`].
+    pub fn start_with(
+        &self,
+        scene: &Scene,
+        method: frames_rk4::Method,
+        control: StepControl,
+        rows: Rows,
+    ) -> Result<Simulation, SetupError> {
         let padded = |list: &[f64]| (0..self.body.flexible()).map(|k| list.get(k).copied().unwrap_or(0.0)).collect();
         let initial = Initial {
             velocity: scene.initial.velocity.into(),
@@ -158,18 +201,35 @@ impl Model {
             modal_displacement: padded(&scene.initial.modal_displacement),
             modal_velocity: padded(&scene.initial.modal_velocity),
         };
-        PaperScheme::new(&self.body, model, self.reference_points, &initial, step)
+        let points: Vec<PointShapes> = self.points.iter().map(|(_, point)| point.clone()).collect();
+        Simulation::new(&Setup {
+            body: &self.body,
+            damping_ratios: &self.damping_ratios,
+            loads: &self.loads,
+            reference_points: self.reference_points,
+            initial: &initial,
+            method,
+            control,
+            end: scene.time.end,
+            rows,
+            points: &points,
+        })
+    }
+}
+
+/// The method that a scene names.
+pub fn method(method: scene::Method) -> frames_rk4::Method {
+    use frames_rk4::Method;
+    match method {
+        scene::Method::Paper => Method::Paper,
+        scene::Method::PaperRkmk4 => Method::PaperRkmk4,
+        scene::Method::Rkmk4 => Method::Conservative(ConservativeScheme::Rkmk4),
+        scene::Method::Exponential => Method::Conservative(ConservativeScheme::Exponential),
+        scene::Method::Strang => Method::Conservative(ConservativeScheme::Strang),
     }
 }
 
 impl Scene {
-    /// Number of steps and their length: the longest step not above the one asked for that ends at the end.
-    pub fn steps(&self) -> (u64, f64) {
-        // A step that divides the end but for rounding is left as it is.
-        let count = (self.time.end / self.time.step * (1.0 - 1e-12)).ceil().max(1.0);
-        (count as u64, self.time.end / count)
-    }
-
     /// The materials in the words of fem-tet10.
     fn materials(&self) -> fem_tet10::Materials {
         let material = |m: &scene::Material| fem_tet10::Material {

@@ -50,7 +50,7 @@ mod tests {
             ("loads[7].history.duration", "duration = 0.02"),
             ("body.point_masses[2].mass", "mass = 0.001"),
             ("body.materials.core.density", "density = 2.7e-9"),
-            ("time", "[time]\nend = 0.5\nstep = 1e-4\nscheme = \"paper\""),
+            ("time", "[time]\nend = 0.5\nstep = 1e-4\nformulation = \"conservative\"\nscheme = \"exponential\""),
             ("modes", "[modes]\nflexible = 10\ndamping_ratio = 0.05"),
         ] {
             assert_eq!(example(path).as_deref(), Some(lines), "{path}");

@@ -1,48 +1,17 @@
 //! From the scene file to a [`Scene`].
 
-use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
-use serde::Deserialize;
-
 use crate::check::Check;
 use crate::document::Document;
 use crate::error::{Place, SceneError};
-use crate::load::Load;
-use crate::scene::{Body, Frame, Initial, Material, Modes, Output, PointMass, Scene, Time, Units};
+use crate::scene::{Body, Scene};
+use crate::section::Sections;
 
 /// The longest scene file that is read, in bytes (16 MiB).
 const LONGEST: u64 = 16 << 20;
-
-/// The sections of the file as they stand there.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Sections {
-    title: String,
-    units: Units,
-    body: BodySection,
-    modes: Modes,
-    frame: Option<Frame>,
-    #[serde(default)]
-    initial: Initial,
-    #[serde(default)]
-    loads: Vec<Load>,
-    time: Time,
-    #[serde(default)]
-    output: Output,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct BodySection {
-    mesh: String,
-    material: Option<Material>,
-    materials: Option<BTreeMap<String, Material>>,
-    #[serde(default)]
-    point_masses: Vec<PointMass>,
-}
 
 impl Scene {
     /// Reads and checks a scene file.
@@ -92,8 +61,8 @@ impl Scene {
         check.frame(frame.as_ref())?;
         check.initial(&initial, &modes)?;
         check.loads(&mut loads)?;
-        check.time(&time)?;
-        check.output(&output)?;
+        let time = check.time(&time)?;
+        let output = check.output(output, &time)?;
 
         let folder = path.parent().unwrap_or(Path::new(""));
         let body = Body { mesh: folder.join(mesh), materials, point_masses: body.point_masses };

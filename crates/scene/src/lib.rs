@@ -11,7 +11,7 @@
 //!    |
 //! 34 | stpe = 1e-4
 //!    | ^^^^
-//!    = rename it to `step` (possible here: `end`, `step`, `scheme`)
+//!    = rename it to `step` (possible here: `end`, `step`, `tolerance`, `formulation`, `scheme`)
 //! ```
 //!
 //! A rule that needs the mesh is checked later and refused the same way by [`Scene::refuse`].
@@ -22,10 +22,10 @@
 //! One file of this crate per idea:
 //! `document` is the TOML tree in which every value knows its key path and its place;
 //! `deserialize` lets serde fill structs from that tree;
-//! `scene` and `load` are those structs, and so the list of all keys;
+//! `section`, `scene` and `load` are those structs, and so the list of all keys;
 //! `check` has the rules on their values.
-//! A new kind of load, history or scheme is a new variant in `load` or `scene` and its rules in
-//! `check`.
+//! A new kind of load or history is a new variant in `load`, a new scheme one in `section` and
+//! `scene`; its rules are in `check`.
 
 mod build;
 mod check;
@@ -36,10 +36,13 @@ mod example;
 mod file;
 mod load;
 mod scene;
+mod section;
 mod shape;
 mod suggest;
 
-pub use build::{BuildError, BuildProgress, BuildTimes, Model};
+pub use build::{BuildError, BuildProgress, BuildTimes, Model, method};
 pub use error::{Place, SceneError};
 pub use load::{Force, History, Load, LoadFrame};
-pub use scene::{Body, Frame, Initial, Material, Materials, Modes, Output, PointMass, Scene, Scheme, Time, Units};
+pub use scene::{
+    Body, Frame, Initial, Material, Materials, Method, Modes, Output, PointMass, Rows, Scene, Stepping, Time, Units,
+};

@@ -137,40 +137,60 @@ pub struct Initial {
     pub modal_velocity: Vec<f64>,
 }
 
-/// How far and how to step; 0 < step ≤ end.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
+/// How far and how to step.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Time {
-    /// Time at the end of the run, which starts at 0.
+    /// Time > 0 at the end of the run, which starts at 0.
     pub end: f64,
-    /// Length of a time step.
-    pub step: f64,
-    /// The way from one step to the next.
-    pub scheme: Scheme,
+    /// What sets the length of a step.
+    pub stepping: Stepping,
+    /// The equations of motion and the way from one step to the next.
+    pub method: Method,
 }
 
-/// The way from one step to the next.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Scheme {
-    /// The scheme of the paper, Eqs. 36–40.
+/// What sets the length of a step: the scene has exactly one of the two keys.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Stepping {
+    /// Key `step`: steps of at most this length, 0 < step ≤ end.
+    Step(f64),
+    /// Key `tolerance`: the relative error allowed in a step, 0 < tolerance < 1. Only with
+    /// [`Method::Rkmk4`] and [`Method::Exponential`].
+    Tolerance(f64),
+}
+
+/// The equations of motion and the way from one step to the next: keys `formulation` and `scheme`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Method {
+    /// Formulation and scheme of the paper, Eqs. 36–40.
     Paper,
+    /// Formulation of the paper, in the limit of short steps, by the scheme `rkmk4`.
+    PaperRkmk4,
+    /// Conservative formulation, scheme `rkmk4`: Runge–Kutta–Munthe-Kaas of fourth order.
+    Rkmk4,
+    /// Conservative formulation, scheme `exponential`: Krogstad's ETD-RK4. The default.
+    Exponential,
+    /// Conservative formulation, scheme `strang`: a splitting of second order.
+    Strang,
 }
 
 /// What is written out.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields, default)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Output {
-    /// Every how many steps a state is written, ≥ 1; default 1.
-    pub every: usize,
+    /// When a state is written, besides the first and the last.
+    pub rows: Rows,
     /// Points whose motion is written: name, and position (length, mesh axes); default none.
     /// A name is not empty, `.` or `..` and has no `/` and no control character, since it names
     /// a group of the results file.
     pub points: BTreeMap<String, [f64; 3]>,
 }
 
-impl Default for Output {
-    fn default() -> Self {
-        Self { every: 1, points: BTreeMap::new() }
-    }
+/// When a state is written: the scene has at most one of the two keys.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Rows {
+    /// Key `every`: after every so many steps, ≥ 1. Only with [`Stepping::Step`], where 1 is the
+    /// default.
+    EverySteps(u64),
+    /// Key `interval`: at the multiples of this time, 0 < interval ≤ end. With
+    /// [`Stepping::Tolerance`] the default is a 500th of the end.
+    Interval(f64),
 }

@@ -21,8 +21,8 @@ fn read(text: &str) -> Result<Scene, String> {
 fn cut_anywhere() {
     for end in 0..EXAMPLE.len() {
         let cut = read(&EXAMPLE[..end]);
-        // The last required key is the scheme.
-        if end < EXAMPLE.find("\"paper\"").unwrap() + "\"paper\"".len() {
+        // The last required key is the step.
+        if end < EXAMPLE.find("step = 1e-4").unwrap() + "step = 1e-4".len() {
             assert!(cut.is_err(), "accepted when cut at {end}");
         }
         let _ = read(&EXAMPLE[end..]);

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use scene::{Force, History, Load, LoadFrame, Material, Materials, Scene, SceneError, Scheme};
+use scene::{Force, History, Load, LoadFrame, Material, Materials, Method, Rows, Scene, SceneError, Stepping};
 
 const EXAMPLE: &str = include_str!("../src/example.toml");
 
@@ -32,9 +32,9 @@ fn the_whole_example() {
     assert!((direction[0] - 0.5f64.sqrt()).abs() < 1e-15 && direction[0] == direction[2]);
     assert_eq!(direction[1], 0.0);
     assert_eq!(*history, History::HalfSine { start: 0.0, duration: 0.02 });
-    assert_eq!((scene.time.end, scene.time.step), (0.5, 1e-4));
-    assert_eq!(scene.time.scheme, Scheme::Paper);
-    assert_eq!(scene.output.every, 1);
+    assert_eq!((scene.time.end, scene.time.stepping), (0.5, Stepping::Step(1e-4)));
+    assert_eq!(scene.time.method, Method::Exponential);
+    assert_eq!(scene.output.rows, Rows::EverySteps(1));
     assert_eq!(scene.output.points.len(), 1);
     assert_eq!(scene.output.points["P1"], [-500.0, -25.0, 0.0]);
     assert_eq!(scene.source, EXAMPLE);
@@ -47,7 +47,7 @@ fn least(more: &str) -> String {
         "title = ''\nunits = {{ length = 'm', mass = 'kg', time = 's' }}\n\
          body.mesh = 'a.msh'\n\
          body.materials = {{ core = {{ young_modulus = 1, poisson_ratio = 0, density = 1 }} }}\n\
-         modes.flexible = 0\n[time]\nend = 1\nstep = 1\nscheme = {{ kind = 'paper' }}\n{more}"
+         modes.flexible = 0\n[time]\nend = 1\nstep = 1\n{more}"
     )
 }
 
@@ -64,9 +64,49 @@ fn defaults_and_whole_numbers() {
     assert_eq!(scene.initial.velocity, [0.0; 3]);
     assert_eq!(scene.initial.angular_velocity, [0.0; 3]);
     assert!(scene.initial.modal_displacement.is_empty());
-    assert_eq!((scene.output.every, scene.output.points.len()), (1, 0));
-    assert_eq!((scene.time.end, scene.time.step), (1.0, 1.0));
-    assert_eq!(scene.time.scheme, Scheme::Paper);
+    assert_eq!((scene.output.rows, scene.output.points.len()), (Rows::EverySteps(1), 0));
+    assert_eq!((scene.time.end, scene.time.stepping), (1.0, Stepping::Step(1.0)));
+    assert_eq!(scene.time.method, Method::Exponential);
+}
+
+#[test]
+fn formulation_and_scheme_name_a_method() {
+    for (keys, method) in [
+        ("", Method::Exponential),
+        ("formulation = 'conservative'", Method::Exponential),
+        ("scheme = 'exponential'", Method::Exponential),
+        ("scheme = { kind = 'exponential' }", Method::Exponential),
+        ("formulation = 'conservative'\nscheme = 'exponential'", Method::Exponential),
+        ("scheme = 'rkmk4'", Method::Rkmk4),
+        ("formulation = 'conservative'\nscheme = 'rkmk4'", Method::Rkmk4),
+        ("scheme = 'strang'", Method::Strang),
+        ("formulation = 'conservative'\nscheme = 'strang'", Method::Strang),
+        ("scheme = 'paper'", Method::Paper),
+        ("formulation = 'paper'", Method::Paper),
+        ("formulation = 'paper'\nscheme = 'paper'", Method::Paper),
+        ("formulation = 'paper'\nscheme = 'rkmk4'", Method::PaperRkmk4),
+    ] {
+        let scene = Scene::parse(&least(keys), "a.toml").unwrap_or_else(|error| panic!("{keys}: {error}"));
+        assert_eq!(scene.time.method, method, "{keys}");
+    }
+}
+
+#[test]
+fn steps_or_a_tolerance_and_the_rows() {
+    let tolerance = "end = 1\ntolerance = 1e-8";
+    for (time, output, stepping, rows) in [
+        ("end = 1\nstep = 0.5", "", Stepping::Step(0.5), Rows::EverySteps(1)),
+        ("end = 1\nstep = 0.5", "every = 7", Stepping::Step(0.5), Rows::EverySteps(7)),
+        ("end = 1\nstep = 0.5", "interval = 0.25", Stepping::Step(0.5), Rows::Interval(0.25)),
+        ("end = 1\nstep = 0.5\nscheme = 'paper'", "interval = 1", Stepping::Step(0.5), Rows::Interval(1.0)),
+        (tolerance, "", Stepping::Tolerance(1e-8), Rows::Interval(0.002)),
+        ("end = 1\nscheme = 'rkmk4'\ntolerance = 0.5", "", Stepping::Tolerance(0.5), Rows::Interval(0.002)),
+        (tolerance, "interval = 1", Stepping::Tolerance(1e-8), Rows::Interval(1.0)),
+    ] {
+        let text = least(&format!("[output]\n{output}\n")).replace("end = 1\nstep = 1", time);
+        let scene = Scene::parse(&text, "a.toml").unwrap_or_else(|error| panic!("{text}: {error}"));
+        assert_eq!((scene.time.stepping, scene.output.rows), (stepping, rows), "{text}");
+    }
 }
 
 #[test]
@@ -105,7 +145,7 @@ fn every_optional_key() {
     }
     assert_eq!((force.amplitude, force.frame), (-2.0, LoadFrame::Global));
     assert_eq!(force.history, History::HalfSine { start: -1.0, duration: 3.0 });
-    assert_eq!(scene.output.every, 5);
+    assert_eq!(scene.output.rows, Rows::EverySteps(5));
 
     let absolute = text.replace("'a.msh'", "'/meshes/a.msh'");
     let scene = Scene::parse(&absolute, "/a/b.toml").unwrap();
@@ -153,7 +193,7 @@ fn files() {
     assert_eq!(Scene::read(&path).unwrap(), Scene::parse(EXAMPLE, &path).unwrap());
 
     std::fs::write(&path, EXAMPLE.replace('\n', "\r\n")).unwrap();
-    assert_eq!(Scene::read(&path).unwrap().time.step, 1e-4);
+    assert_eq!(Scene::read(&path).unwrap().time.stepping, Stepping::Step(1e-4));
 
     std::fs::write(&path, format!("\u{feff}{EXAMPLE}")).unwrap();
     assert_eq!(Scene::read(&path).unwrap().source, EXAMPLE);

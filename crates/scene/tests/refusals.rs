@@ -46,7 +46,7 @@ fn refused(from: &str, to: &str, mark: &str, key: &str, words: &[&str]) {
 #[test]
 fn misspelt_keys() {
     for (from, to, mark, key, near, others) in [
-        ("step = 1e-4", "stpe = 1e-4", "stpe", "time.stpe", "step", "`end`, `step`, `scheme`"),
+        ("step = 1e-4", "stpe = 1e-4", "stpe", "time.stpe", "step", "`end`, `step`, `tolerance`"),
         ("[time]", "[tiem]", "tiem]", "tiem", "time", "`loads`, `time`, `output`"),
         ("title =", "Title =", "Title", "Title", "title", "`title`, `units`"),
         ("length =", "lenght =", "lenght", "units.lenght", "length", "`length`, `mass`, `time`"),
@@ -65,7 +65,7 @@ fn misspelt_keys() {
         ),
         ("amplitude", "amplitud", "amplitud", "loads[0].amplitud", "amplitude", "`kind`, `at`"),
         ("duration", "durration", "durration", "loads[0].history.durration", "duration", "`start`"),
-        ("every", "evry", "evry", "output.evry", "every", "`every`, `points`"),
+        ("every", "evry", "evry", "output.evry", "every", "`every`, `interval`, `points`"),
     ] {
         let cure = format!("rename it to `{near}`");
         let meant = format!("did you mean `{near}`?");
@@ -75,13 +75,13 @@ fn misspelt_keys() {
 
 #[test]
 fn keys_like_no_other() {
-    let words = ["unknown key `gravity`\n", "possible here: `end`, `step`, `scheme`"];
+    let words = ["unknown key `gravity`\n", "possible here: `end`, `step`, `tolerance`, `formulation`, `scheme`"];
     refused("scheme = ", "gravity = 9.81\nscheme = ", "gravity", "time.gravity", &words);
     let words = ["unknown key `g r`", "possible here: `length`, `mass`, `time`"];
     refused("units = {", "units = { \"g r\" = 1,", "\"g r\"", "units.\"g r\"", &words);
     let words = ["unknown key `tolerance`", "possible here: `kind`"];
-    let scheme = "{ kind = \"paper\", tolerance = 1e-6 }";
-    refused("\"paper\"", scheme, "tolerance", "time.scheme.tolerance", &words);
+    let scheme = "{ kind = \"strang\", tolerance = 1e-6 }";
+    refused("\"exponential\"", scheme, "tolerance", "time.scheme.tolerance", &words);
 }
 
 #[test]
@@ -90,13 +90,30 @@ fn misspelt_names() {
         ("\"force\"", "\"forse\"", "\"forse\"", "loads[0].kind", "force", "`force`"),
         ("\"global\"", "\"globl\"", "\"globl\"", "loads[0].frame", "global", "`global`"),
         ("\"half-sine\"", "\"half_sine\"", "\"half_sine\"", "loads[0].history.kind", "half-sine", "`half-sine`"),
-        ("\"paper\"", "\"papr\"", "\"papr\"", "time.scheme", "paper", "`paper`"),
+        (
+            "\"exponential\"",
+            "\"papr\"",
+            "\"papr\"",
+            "time.scheme",
+            "paper",
+            "`paper`, `rkmk4`, `exponential`, `strang`",
+        ),
+        ("\"exponential\"", "\"rkmk\"", "\"rkmk\"", "time.scheme", "rkmk4", "`paper`, `rkmk4`"),
+        (
+            "\"conservative\"",
+            "\"conservativ\"",
+            "\"conservativ\"",
+            "time.formulation",
+            "conservative",
+            "`conservative`, `paper`",
+        ),
     ] {
         let meant = format!("did you mean `{near}`?");
         let cure = format!("rename it to `{near}` (possible here: {known}");
         refused(from, to, mark, key, &["unknown value", &meant, &cure]);
     }
-    refused("\"paper\"", "\"rk45\"", "\"rk45\"", "time.scheme", &["unknown value `rk45`\n", "possible here: `paper`"]);
+    let words = ["unknown value `rk45`\n", "possible here: `paper`, `rkmk4`"];
+    refused("\"exponential\"", "\"rk45\"", "\"rk45\"", "time.scheme", &words);
 }
 
 #[test]
@@ -138,8 +155,6 @@ fn missing_keys() {
         ("kind = \"half-sine\", ", "{ start", "loads[0].history.kind", "kind = \"half-sine\""),
         (", duration = 0.02", "{ kind", "loads[0].history.duration", "duration = 0.02"),
         ("end = 0.5", "[time]", "time.end", "end = 0.5"),
-        ("step = 1e-4", "[time]", "time.step", "step = 1e-4"),
-        ("scheme = \"paper\"", "[time]", "time.scheme", "scheme = \"paper\""),
     ] {
         let name = key.rsplit('.').next().unwrap();
         let missing = format!("`{name}` is missing\n");
@@ -167,6 +182,85 @@ fn neither_or_both_materials() {
         "body.materials",
         &["found {}, expected a material for each physical group", "add `group_name = {"],
     );
+}
+
+#[test]
+fn neither_or_both_of_step_and_tolerance() {
+    let cures = ["expected exactly one of them", "e.g. `step = 1e-4`", "e.g. `tolerance = 1e-8`"];
+    let words = |found| [&[found], &cures[..]].concat();
+    refused("step = 1e-4", "", "[time]", "time.step", &words("found neither `step` nor `tolerance`"));
+    let both = "step = 1e-4\ntolerance = 1e-7";
+    refused("step = 1e-4", both, "1e-7", "time.tolerance", &words("found both `step` and `tolerance`"));
+}
+
+/// The `[time]` of the example.
+const TIME: &str = "step = 1e-4\nformulation = \"conservative\"                              # or \"paper\"\n\
+                    scheme = \"exponential\"";
+
+#[test]
+fn formulation_and_scheme_that_do_not_go_together() {
+    refused(
+        "\"exponential\"",
+        "\"paper\"",
+        "\"conservative\"",
+        "time.formulation",
+        &[
+            "found the conservative formulation with the scheme `paper`, expected the formulation `paper`",
+            "= remove `formulation`, or set `scheme = \"exponential\"`",
+        ],
+    );
+    for scheme in ["\"exponential\"", "\"strang\""] {
+        let found = format!("found {scheme} with the formulation `paper`, expected `paper` or `rkmk4`");
+        refused(
+            TIME,
+            &format!("step = 1e-4\nformulation = \"paper\"\nscheme = {scheme}"),
+            scheme,
+            "time.scheme",
+            &[&found, "need the conservative form", "set `scheme = \"rkmk4\"`, or `formulation = \"conservative\"`"],
+        );
+    }
+}
+
+#[test]
+fn a_tolerance_without_an_error_estimate() {
+    for (method, found) in [
+        ("scheme = \"strang\"", "found a tolerance with the scheme `strang`"),
+        ("scheme = \"paper\"", "found a tolerance with the paper's formulation"),
+        ("formulation = \"paper\"", "found a tolerance with the paper's formulation"),
+        ("formulation = \"paper\"\nscheme = \"rkmk4\"", "found a tolerance with the paper's formulation"),
+    ] {
+        refused(
+            TIME,
+            &format!("tolerance = 1e-7\n{method}"),
+            "1e-7",
+            "time.tolerance",
+            &[
+                found,
+                "expected `step`, since only `exponential` and `rkmk4` on the conservative form estimate the error",
+                "give `step`, e.g. `step = 1e-4`, or set `scheme = \"exponential\"` and `formulation = \"conservative\"`",
+            ],
+        );
+    }
+    for bad in ["0", "-1e-8", "1", "1.0", "2"] {
+        refused(
+            "step = 1e-4",
+            &format!("tolerance = {bad}"),
+            &format!("{bad}\nformulation"),
+            "time.tolerance",
+            &[&format!("found {bad}, expected a number between 0 and 1, both excluded"), "e.g. `tolerance = 1e-8`"],
+        );
+    }
+}
+
+#[test]
+fn rows_after_steps_or_at_times() {
+    let both = "every = 1\ninterval = 0.01";
+    let words = ["found both `every` and `interval`, expected at most one of them", "keep `every`"];
+    refused("every = 1", both, "0.01", "output.interval", &words);
+
+    // The example has `every = 1`.
+    let words = ["`every` with a tolerance", "expected `interval`", "not equally long", "e.g. `interval = 1e-3`"];
+    refused("step = 1e-4", "tolerance = 1e-8", "1\npoints", "output.every", &words);
 }
 
 #[test]
@@ -273,13 +367,40 @@ fn wrong_types() {
             "write it like this: `title = \"Free",
         ),
         (
-            "scheme = \"paper\"",
+            "scheme = \"exponential\"",
             "scheme = 1",
             "1\n\n[output]",
             "time.scheme",
             "the number 1",
             "a string",
             "put it in quotes",
+        ),
+        (
+            "formulation = \"conservative\"",
+            "formulation = []",
+            "[]                              # or",
+            "time.formulation",
+            "a list of 0 entries",
+            "a string",
+            "write it like this: `formulation = \"conservative\"`",
+        ),
+        (
+            "step = 1e-4",
+            "tolerance = \"1e-8\"",
+            "\"1e-8\"",
+            "time.tolerance",
+            "the string \"1e-8\"",
+            "a finite number",
+            "remove the quotes",
+        ),
+        (
+            "every = 1",
+            "interval = []",
+            "[]\npoints",
+            "output.interval",
+            "a list of 0 entries",
+            "a finite number",
+            "write a finite number",
         ),
         (
             "kind = \"force\"",
@@ -428,6 +549,10 @@ fn numbers_out_of_range() {
         ("step = 1e-4", "0.6", "time.step", "at most the end of the run, 0.5", "step shorter"),
         ("step = 1e-4", "1e-30", "time.step", "not lost in rounding", "step longer"),
         ("every = 1", "0", "output.every", "a whole number, 1 or more", "10 for every tenth"),
+        ("every = 1", "0", "output.interval", positive, "`interval = 1e-3`"),
+        ("every = 1", "-0.1", "output.interval", positive, "`interval = 1e-3`"),
+        ("every = 1", "0.6", "output.interval", "at most the end of the run, 0.5", "interval shorter"),
+        ("every = 1", "1e-30", "output.interval", "not lost in rounding", "interval longer"),
         ("duration = 0.02", "0", "loads[0].history.duration", positive, "length of the pulse"),
         ("duration = 0.02", "-1", "loads[0].history.duration", positive, "length of the pulse"),
         (
@@ -438,7 +563,7 @@ fn numbers_out_of_range() {
             "its length does not matter",
         ),
     ] {
-        let name = from.split(' ').next().unwrap();
+        let name = key.rsplit('.').next().unwrap();
         let to_line = format!("{name} = {to}");
         let (text, error) = refusal(from, &to_line);
         let value_starts = text.find(&to_line).unwrap() + name.len() + 3;
@@ -531,8 +656,8 @@ fn text_that_is_not_toml() {
     for (from, to, mark, words) in [
         ("step = 1e-4", "step = 1e-4\nstep = 2", "step = 2", "duplicate key"),
         ("step = 1e-4", "step 1e-4", "1e-4", "expected"),
-        ("step = 1e-4", "step = ", "\nscheme", ""),
-        ("scheme = \"paper\"", "scheme = paper", "paper\n\n[output]", "quoted"),
+        ("step = 1e-4", "step = ", "\nformulation", ""),
+        ("scheme = \"exponential\"", "scheme = exponential", "exponential\n\n[output]", "quoted"),
         ("[time]", "[time", "\nend", "expected `]`"),
     ] {
         let (text, error) = refusal(from, to);

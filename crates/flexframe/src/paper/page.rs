@@ -36,11 +36,7 @@ fn write_page(out: &mut String, scene: &Scene, run: &RunReport, c: &Comparison) 
         run.mesh.nodes, run.mesh.elements
     )?;
     writeln!(out, "* **The history of its force** (Fig. 4 is only a picture). {}", force_in_words(scene))?;
-    writeln!(
-        out,
-        "* **The length of its run.** Here {} {time} in {} steps of {:e} {time}.",
-        scene.time.end, run.steps, run.step
-    )?;
+    writeln!(out, "* **The length of its run.** Here {} {time}: {}.", scene.time.end, run.steps_in_words())?;
     writeln!(
         out,
         "* **Damping** is 5 % \"for all the modes\" in the paper; rigid modes have no frequency to take a share of, so \

@@ -1,0 +1,234 @@
+//! `flexframe cost`: what accuracy costs, measured on the user's own scene.
+//!
+//! Every method runs at a ladder of steps or tolerances. Each run is compared with a [`reference`] at up to 100 equally
+//! spaced times and timed several times; [`modes`](self::modes) shows what the modes left out would change.
+
+mod answer;
+mod case;
+mod files;
+mod ladder;
+mod machine;
+mod modes;
+mod page;
+mod reference;
+mod run;
+mod table;
+
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use fem_tet10::read_msh;
+use frames_rk4::{ConservativeScheme, Method, StepControl};
+use results::FigureError;
+use scene::{BuildError, BuildProgress, Model, Scene, Stepping};
+use serde::Serialize;
+
+pub use answer::{Answer, Setting};
+pub use ladder::{Line, Measured, Outcome, Row};
+pub use machine::Machine;
+pub use modes::ModesRow;
+pub use page::accuracy_page;
+pub use reference::ReferenceReport;
+pub use run::{Errors, RunFailure};
+
+use answer::refine;
+use case::Case;
+use ladder::{Judge, climb};
+use reference::{Reference, converge};
+
+/// A price list that could not be made.
+#[derive(Debug, thiserror::Error)]
+pub enum CostError {
+    /// The scene cannot be built.
+    #[error(transparent)]
+    Build(#[from] BuildError),
+    /// No run of the reference came to its end.
+    #[error(
+        "{scene}: no reference can be made: even {steps} steps of the exponential scheme fail: {failure}; make the run \
+         shorter, or give more time with --patience",
+        scene = scene.display()
+    )]
+    Reference {
+        /// The scene file.
+        scene: PathBuf,
+        /// Steps of the last try.
+        steps: u64,
+        /// Why it failed.
+        failure: RunFailure,
+    },
+    /// The diagram cannot be drawn.
+    #[error(transparent)]
+    Figure(#[from] FigureError),
+    /// A file cannot be written.
+    #[error("{}: cannot be written: {source}", path.display())]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+}
+
+/// How far a price list has come.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum CostProgress {
+    /// The model is being built.
+    Build(BuildProgress),
+    /// Runs are being measured.
+    Measuring {
+        /// Parts of the list that are done.
+        done: u64,
+        /// Parts of the list.
+        total: u64,
+    },
+}
+
+/// What a price list is asked for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CostSettings {
+    /// The ladders end before runs that would take longer. The reference may take twenty times as long, and each run is
+    /// repeated for a tenth of this at least.
+    pub patience: Duration,
+    /// An error for which the cheapest setting is wanted.
+    pub target: Option<f64>,
+}
+
+impl Default for CostSettings {
+    fn default() -> Self {
+        Self { patience: Duration::from_secs(1), target: None }
+    }
+}
+
+/// The price list of a scene.
+#[derive(Debug, Clone, Serialize)]
+pub struct CostReport {
+    /// Title of the scene.
+    pub title: String,
+    /// The scene file.
+    pub scene: PathBuf,
+    /// Label of the unit of time.
+    pub time_unit: String,
+    /// Where it was measured.
+    pub machine: Machine,
+    /// Flexible modes kept.
+    pub flexible: usize,
+    /// Their highest frequency, cycles per time; none for a rigid body.
+    pub highest_frequency: Option<f64>,
+    /// |ω| at the beginning.
+    pub initial_spin: f64,
+    /// End of the run.
+    pub end: f64,
+    /// Points whose velocity and acceleration are compared.
+    pub points: usize,
+    /// What all errors are measured against.
+    pub reference: ReferenceReport,
+    /// The limit of the paper's formulation for short steps; its errors are those to the reference.
+    pub paper_limit: Option<ReferenceReport>,
+    /// The ladders.
+    pub lines: Vec<Line>,
+    /// The same motion with fewer and with more modes, fewest first.
+    pub modes: Vec<ModesRow>,
+    /// The answer to the target.
+    pub answer: Option<Answer>,
+    /// Files written.
+    pub files: Vec<PathBuf>,
+}
+
+/// Measures what accuracy costs on a scene, and writes `cost.csv`, `work_precision.svg` and `.png` to `folder`.
+///
+/// # Errors
+/// [`CostError`]. A run that fails is a row that says so.
+pub fn price_list(
+    scene: &Scene,
+    folder: &Path,
+    settings: CostSettings,
+    mut progress: impl FnMut(CostProgress),
+) -> Result<CostReport, CostError> {
+    let counts = modes::counts(scene.modes.flexible, most_modes(scene));
+    let flexible = scene.modes.flexible;
+    let most = counts.last().map_or(flexible, |most| *most);
+    let mut richest = scene.clone();
+    richest.modes.flexible = most;
+    let richest = Model::build(&richest, |p| progress(CostProgress::Build(p)))?;
+    let model = richest.truncated(flexible);
+    let case = Case::new(scene, &model);
+
+    let ladders: Vec<(Method, bool)> = Method::ALL
+        .into_iter()
+        .flat_map(|method| [(method, false), (method, true)])
+        .filter(|(method, controlled)| !controlled || method.estimates_error())
+        .collect();
+    let total = ladders.len() as u64 + 3;
+    let mut done = 0;
+    let mut step = |parts: u64| {
+        done += parts;
+        progress(CostProgress::Measuring { done, total });
+    };
+    step(0);
+    let patience = settings.patience;
+    let exponential = Method::Conservative(ConservativeScheme::Exponential);
+    let reference = converge(&case, exponential, 20 * patience, 0.0)
+        .map_err(|(steps, failure)| CostError::Reference { scene: scene.path.clone(), steps, failure })?;
+    step(1);
+    // The paper's formulation has a limit of its own, to which its schemes converge.
+    let paper_limit = converge(&case, Method::PaperRkmk4, 5 * patience, 0.0).ok();
+    step(1);
+    let judge = Judge { reference: &reference, paper_limit: paper_limit.as_ref(), patience };
+    let own = own_setting(scene);
+    let mut lines = Vec::new();
+    for (method, controlled) in ladders {
+        lines.push(climb(&case, &judge, method, controlled, own));
+        step(1);
+    }
+    if let Some(target) = settings.target {
+        refine(&case, &judge, &mut lines, target);
+    }
+    ladder::mark_front(&mut lines);
+    let modes = modes::compare(scene, &richest, &counts, patience);
+    step(1);
+
+    let mut report = CostReport {
+        title: scene.title.clone(),
+        scene: scene.path.clone(),
+        time_unit: scene.units.time.clone(),
+        machine: Machine::this(),
+        flexible,
+        highest_frequency: model.modes.natural_frequencies().last().copied(),
+        initial_spin: nalgebra::Vector3::from(scene.initial.angular_velocity).norm(),
+        end: scene.time.end,
+        points: model.points.len(),
+        reference: reference.report(),
+        paper_limit: paper_limit.as_ref().map(|limit| limit.report_against(&reference, case.scales())),
+        answer: settings.target.map(|target| Answer::new(target, scene, &lines, &modes, flexible)),
+        lines,
+        modes,
+        files: Vec::new(),
+    };
+    report.files = files::write(&report, folder)?;
+    Ok(report)
+}
+
+/// Method and control that the scene asks for itself.
+fn own_setting(scene: &Scene) -> (Method, StepControl) {
+    let control = match scene.time.stepping {
+        Stepping::Step(step) => StepControl::Fixed(step),
+        Stepping::Tolerance(tolerance) => StepControl::Tolerance(tolerance),
+    };
+    (scene::method(scene.time.method), control)
+}
+
+/// Flexible modes of the scene's mesh. A mesh that cannot be read is refused where the model is built.
+fn most_modes(scene: &Scene) -> usize {
+    read_msh(&scene.body.mesh).map_or(usize::MAX, |mesh| (3 * mesh.positions().len()).saturating_sub(6))
+}
+
+impl Reference {
+    fn report(&self) -> ReferenceReport {
+        ReferenceReport { step: self.step, steps: self.steps, own_error: self.error, errors: None }
+    }
+
+    fn report_against(&self, other: &Self, scales: &run::Scales) -> ReferenceReport {
+        let errors = Errors::between(&self.trajectory, &other.trajectory, scales);
+        ReferenceReport { errors: Some(errors), ..self.report() }
+    }
+}

@@ -1,0 +1,171 @@
+//! The cheapest setting that reaches a target.
+
+use std::fmt;
+
+use frames_rk4::StepControl;
+use scene::{Rows, Scene};
+use serde::Serialize;
+
+use super::case::Case;
+use super::ladder::{Judge, Line, Row, settings_between};
+use super::modes::ModesRow;
+
+/// A rung between two others cannot be faster than the finer of them by more than this.
+const MOST_GAIN: f64 = 2.7;
+
+/// Step or tolerance, as in the scene.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Setting {
+    /// Length of a step.
+    Step(f64),
+    /// Tolerance of step control.
+    Tolerance(f64),
+}
+
+impl Setting {
+    /// The number.
+    pub fn value(self) -> f64 {
+        match self {
+            Self::Step(value) | Self::Tolerance(value) => value,
+        }
+    }
+
+    pub(super) fn control(self) -> StepControl {
+        match self {
+            Self::Step(step) => StepControl::Fixed(step),
+            Self::Tolerance(tolerance) => StepControl::Tolerance(tolerance),
+        }
+    }
+}
+
+impl From<StepControl> for Setting {
+    fn from(control: StepControl) -> Self {
+        match control {
+            StepControl::Fixed(step) => Self::Step(step),
+            StepControl::Tolerance(tolerance) => Self::Tolerance(tolerance),
+        }
+    }
+}
+
+/// The line of the scene file.
+impl fmt::Display for Setting {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Step(step) => write!(f, "step = {step:e}"),
+            Self::Tolerance(tolerance) => write!(f, "tolerance = {tolerance:e}"),
+        }
+    }
+}
+
+/// The cheapest way to a target.
+#[derive(Debug, Clone, Serialize)]
+pub struct Answer {
+    /// The error asked for.
+    pub target: f64,
+    /// Lines for the section [time] of the scene; none where nothing reaches the target.
+    pub lines: Vec<String>,
+    /// The run; none where nothing reaches the target.
+    pub run: Option<Row>,
+    /// The smallest error that is known of.
+    pub smallest_error: f64,
+    /// Whether the scene's `every` has to give way to an `interval`.
+    pub needs_interval: bool,
+    /// What the modes left out change, if that is more than the target.
+    pub modes: Option<String>,
+}
+
+/// Looks between the rungs for cheaper settings that still reach the target, and adds them to the lines.
+pub(super) fn refine(case: &Case<'_>, judge: &Judge<'_>, lines: &mut [Line], target: f64) {
+    let fastest = lines.iter().filter_map(|line| Some(first_reaching(line, target)?.1)).fold(f64::INFINITY, f64::min);
+    for line in lines {
+        let Some((reaches, seconds)) = first_reaching(line, target) else { continue };
+        if reaches == 0 || seconds > MOST_GAIN * fastest {
+            continue;
+        }
+        let (coarse, fine) = (line.rows[reaches - 1].setting, line.rows[reaches].setting);
+        let mut between = settings_between(case, coarse, fine);
+        while !between.is_empty() {
+            let finer = between.split_off(between.len() / 2);
+            let control = finer[0];
+            let row = Row::new(control, judge.measure(case, line.method, control), false);
+            let good = row.measured().is_some_and(|measured| measured.error <= target);
+            line.insert(row);
+            if !good {
+                between = finer[1..].to_vec();
+            }
+        }
+    }
+}
+
+/// The longest step of a line that reaches the target, and its time.
+fn first_reaching(line: &Line, target: f64) -> Option<(usize, f64)> {
+    line.rows
+        .iter()
+        .enumerate()
+        .find_map(|(i, row)| row.measured().filter(|m| m.error <= target).map(|m| (i, m.seconds)))
+}
+
+impl Answer {
+    pub(super) fn new(target: f64, scene: &Scene, lines: &[Line], modes: &[ModesRow], flexible: usize) -> Self {
+        let runs = || {
+            lines.iter().flat_map(|line| line.rows.iter().filter_map(move |row| Some((line, row, row.measured()?))))
+        };
+        let best = runs()
+            .filter(|(_, _, measured)| measured.error <= target)
+            .min_by(|a, b| a.2.seconds.total_cmp(&b.2.seconds))
+            .map(|(line, row, _)| (line, row));
+        let time_lines = |line: &Line, row: &Row| {
+            vec![
+                format!("formulation = \"{}\"", line.formulation),
+                format!("scheme = \"{}\"", line.scheme),
+                row.setting.to_string(),
+            ]
+        };
+        Self {
+            target,
+            lines: best.map_or_else(Vec::new, |(line, row)| time_lines(line, row)),
+            run: best.map(|(_, row)| row.clone()),
+            smallest_error: runs().map(|(_, _, measured)| measured.error).fold(f64::INFINITY, f64::min),
+            needs_interval: matches!(scene.output.rows, Rows::EverySteps(_))
+                && best.is_some_and(|(_, row)| matches!(row.setting, Setting::Tolerance(_))),
+            modes: super::modes::warning(modes, flexible, target),
+        }
+    }
+}
+
+impl fmt::Display for Answer {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.run.as_ref().and_then(Row::measured) {
+            Some(run) => {
+                write!(
+                    f,
+                    "{} is within {:.1e} of the reference (target {:e}): {} steps, {} evaluations, {:.3} ms",
+                    self.lines.join(", "),
+                    run.error,
+                    self.target,
+                    run.steps,
+                    run.evaluations,
+                    1e3 * run.seconds
+                )?;
+                write!(f, "\n\n  [time]")?;
+                for line in &self.lines {
+                    write!(f, "\n  {line}")?;
+                }
+                if self.needs_interval {
+                    write!(f, "\n\nwith `interval` instead of `every` under [output]")?;
+                }
+            }
+            None => write!(
+                f,
+                "no setting that was tried is known to be within {:e} of the reference; the closest is within {:.1e} \
+                 (more time for shorter steps and a finer reference: --patience)",
+                self.target, self.smallest_error
+            )?,
+        }
+        if let Some(modes) = &self.modes {
+            write!(f, "\n\n{modes}")?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,125 @@
+//! The price list as a table for programs, and as a diagram.
+
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+use results::{FigureError, LineChart, Scale, Series, Stroke};
+
+use super::ladder::{Line, Outcome};
+use super::{CostError, CostReport, Setting};
+
+/// The names of the columns of `cost.csv`.
+const COLUMNS: [&str; 22] = [
+    "formulation",
+    "scheme",
+    "step",
+    "tolerance",
+    "error",
+    "at_reference",
+    "attitude",
+    "modal",
+    "velocity",
+    "acceleration",
+    "step_error",
+    "energy",
+    "angular_momentum",
+    "spin",
+    "steps",
+    "rejected",
+    "evaluations",
+    "seconds",
+    "spread",
+    "repeats",
+    "on_front",
+    "failure",
+];
+/// Runs further off than this are not drawn.
+const DRAWN: f64 = 1.0;
+
+/// Writes `cost.csv`, `work_precision.svg` and `work_precision.png`.
+pub(super) fn write(report: &CostReport, folder: &Path) -> Result<Vec<PathBuf>, CostError> {
+    std::fs::create_dir_all(folder).map_err(|source| CostError::Write { path: folder.to_owned(), source })?;
+    let path = folder.join("cost.csv");
+    std::fs::write(&path, csv(report)).map_err(|source| CostError::Write { path: path.clone(), source })?;
+    let mut files = vec![path];
+    files.extend(draw(report, &folder.join("work_precision"))?);
+    Ok(files)
+}
+
+fn csv(report: &CostReport) -> String {
+    let mut csv = COLUMNS.join(",") + "\n";
+    for line in &report.lines {
+        for row in &line.rows {
+            // Writing to a String cannot fail.
+            let _ = write!(csv, "{},{}", line.formulation, line.scheme);
+            let _ = match row.setting {
+                Setting::Step(step) => write!(csv, ",{step:e},"),
+                Setting::Tolerance(tolerance) => write!(csv, ",,{tolerance:e}"),
+            };
+            let _ = match &row.outcome {
+                Outcome::Ran(m) => {
+                    let e = &m.errors;
+                    let number = |value: Option<f64>| value.map_or_else(String::new, |value| format!("{value:e}"));
+                    writeln!(
+                        csv,
+                        ",{:e},{},{:e},{},{},{},{},{:e},{:e},{},{},{},{},{:e},{:.3},{},{},",
+                        m.error,
+                        m.at_reference,
+                        e.attitude,
+                        number(e.modal),
+                        number(e.velocity),
+                        number(e.acceleration),
+                        number(m.step_error),
+                        m.energy,
+                        m.angular_momentum,
+                        number(m.spin),
+                        m.steps,
+                        m.rejected,
+                        m.evaluations,
+                        m.seconds,
+                        m.spread,
+                        m.repeats,
+                        row.on_front,
+                    )
+                }
+                Outcome::Failed(failure) => {
+                    let empty = ",".repeat(COLUMNS.len() - 5);
+                    writeln!(csv, "{empty},\"{}\"", failure.replace('"', "\"\""))
+                }
+            };
+        }
+    }
+    csv
+}
+
+/// Draws time against error, a line a scheme, to `<stem>.svg` and `<stem>.png`; nothing where there is nothing to draw.
+pub(super) fn draw(report: &CostReport, stem: &Path) -> Result<Vec<PathBuf>, FigureError> {
+    let series: Vec<Series> = report.lines.iter().map(series).filter(|series| !series.points.is_empty()).collect();
+    if series.is_empty() {
+        return Ok(Vec::new());
+    }
+    let chart = LineChart {
+        title: format!("{}: what accuracy costs", report.title),
+        x_label: "largest error against the reference".to_owned(),
+        y_label: "time of the run, s".to_owned(),
+        x_scale: Scale::Log,
+        y_scale: Scale::Log,
+        series,
+    };
+    Ok(chart.save(stem)?.to_vec())
+}
+
+fn series(line: &Line) -> Series {
+    let slope = line.measured_order.map_or_else(String::new, |order| format!(": error ~ step^{order:.2}"));
+    Series {
+        label: format!("{}{slope}", line.name()),
+        points: line
+            .rows
+            .iter()
+            .filter_map(|row| row.measured())
+            .filter(|measured| measured.error > 0.0 && measured.error <= DRAWN)
+            .map(|measured| (measured.error, measured.seconds))
+            .collect(),
+        stroke: if line.controlled { Stroke::Dashed } else { Stroke::Solid },
+    }
+}

@@ -1,0 +1,382 @@
+//! The ladders: each method with shorter and shorter steps, or smaller and smaller tolerances.
+
+use std::time::Duration;
+
+use frames_rk4::{Method, StepControl};
+use serde::Serialize;
+
+use super::answer::Setting;
+use super::case::Case;
+use super::reference::Reference;
+use super::run::{Errors, RunFailure, Timing, Trajectory};
+
+/// Errors below this multiple of the reference's own are not told apart.
+const RANKED_ABOVE: f64 = 3.0;
+/// Fraction of a limit of the modes at which the ladder begins.
+const BELOW_LIMIT: f64 = 0.9;
+/// The ladders begin with so many steps at least.
+const FEWEST_STEPS: f64 = 10.0;
+/// Tolerances are 10^−k for these k.
+const TOLERANCES: std::ops::RangeInclusive<i32> = 3..=10;
+/// Errors above this are too coarse for an order to show.
+const COARSE: f64 = 1e-2;
+
+/// The runs of a method.
+#[derive(Debug, Clone, Serialize)]
+pub struct Line {
+    /// Formulation, as in the scene.
+    pub formulation: &'static str,
+    /// Scheme, as in the scene.
+    pub scheme: &'static str,
+    /// Whether tolerances are given instead of steps.
+    pub controlled: bool,
+    /// The order that the scheme has.
+    pub order: u32,
+    /// The order that was measured: the slope of the error against the step, where errors come from the steps.
+    pub measured_order: Option<f64>,
+    /// The runs, longest step or largest tolerance first.
+    pub rows: Vec<Row>,
+    #[serde(skip)]
+    pub(super) method: Method,
+}
+
+/// A run of a ladder.
+#[derive(Debug, Clone, Serialize)]
+pub struct Row {
+    /// What was asked for.
+    pub setting: Setting,
+    /// Whether the scene asks for it itself.
+    pub of_scene: bool,
+    /// Whether no other run is both closer and faster.
+    pub on_front: bool,
+    /// What came of it.
+    pub outcome: Outcome,
+}
+
+/// What came of a run.
+#[derive(Debug, Clone, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Outcome {
+    /// It came to its end.
+    Ran(Measured),
+    /// It failed, and why.
+    Failed(String),
+}
+
+/// A run that came to its end.
+#[derive(Debug, Clone, Serialize)]
+pub struct Measured {
+    /// The largest of the errors against the reference, or, if that is larger, three times the reference's own error.
+    pub error: f64,
+    /// Whether the error is so small that the reference cannot tell it.
+    pub at_reference: bool,
+    /// Errors against the reference.
+    pub errors: Errors,
+    /// Largest error against the limit of its own formulation.
+    pub step_error: Option<f64>,
+    /// Change of energy − work + dissipation, relative to the largest energy.
+    pub energy: f64,
+    /// Change of angular momentum less angular impulse, relative to the largest angular momentum.
+    pub angular_momentum: f64,
+    /// |ω| at the end over that of the reference, less one; none where the reference does not spin.
+    pub spin: Option<f64>,
+    /// Steps taken.
+    pub steps: u64,
+    /// Steps tried in vain.
+    pub rejected: u64,
+    /// Evaluations of the rates.
+    pub evaluations: u64,
+    /// Shortest time of the loop, seconds.
+    pub seconds: f64,
+    /// Longest time over shortest.
+    pub spread: f64,
+    /// How often it was timed.
+    pub repeats: u32,
+}
+
+impl Row {
+    /// The measurement, if the run came to its end.
+    pub fn measured(&self) -> Option<&Measured> {
+        match &self.outcome {
+            Outcome::Ran(measured) => Some(measured),
+            Outcome::Failed(_) => None,
+        }
+    }
+}
+
+/// Measures runs.
+pub(super) struct Judge<'a> {
+    pub reference: &'a Reference,
+    pub paper_limit: Option<&'a Reference>,
+    pub patience: Duration,
+}
+
+impl Judge<'_> {
+    /// The limit to which a method converges with short steps.
+    fn limit(&self, method: Method) -> Option<&Reference> {
+        match method {
+            Method::Paper | Method::PaperRkmk4 => self.paper_limit,
+            Method::Conservative(_) => Some(self.reference),
+        }
+    }
+
+    /// Runs the motion once for its errors, warming up, and then again and again for the time.
+    pub(super) fn measure(&self, case: &Case<'_>, method: Method, control: StepControl) -> Outcome {
+        match self.try_measure(case, method, control) {
+            Ok(measured) => Outcome::Ran(measured),
+            Err(failure) => Outcome::Failed(failure.to_string()),
+        }
+    }
+
+    fn try_measure(&self, case: &Case<'_>, method: Method, control: StepControl) -> Result<Measured, RunFailure> {
+        let simulation = case.begin(method, control)?;
+        let run = Trajectory::follow(simulation.clone())?;
+        let timing = Timing::of(&simulation, self.patience / 10)?;
+        let errors = Errors::between(&run, &self.reference.trajectory, case.scales());
+        let least = RANKED_ABOVE * self.reference.error.largest();
+        let step_error =
+            self.limit(method).map(|limit| Errors::between(&run, &limit.trajectory, case.scales()).largest());
+        let spin = self.reference.trajectory.final_spin();
+        Ok(Measured {
+            error: errors.largest().max(least),
+            at_reference: errors.largest() <= least,
+            errors,
+            step_error,
+            energy: run.balances.energy,
+            angular_momentum: run.balances.angular_momentum,
+            spin: (spin > 0.0).then(|| run.final_spin() / spin - 1.0),
+            steps: run.stats.accepted,
+            rejected: run.stats.rejected,
+            evaluations: run.stats.evaluations,
+            seconds: timing.shortest.as_secs_f64(),
+            spread: timing.longest.as_secs_f64() / timing.shortest.as_secs_f64(),
+            repeats: timing.repeats,
+        })
+    }
+
+    /// Whether shorter steps cannot bring a run closer to the reference, as far as can be told.
+    fn is_at_the_end(&self, method: Method, measured: &Measured) -> bool {
+        let own = self.limit(method).map_or(0.0, |limit| RANKED_ABOVE * limit.error.largest());
+        measured.at_reference || measured.step_error.is_some_and(|error| error <= own.max(1e-2 * measured.error))
+    }
+}
+
+/// Runs a method with shorter and shorter steps (or smaller tolerances), until that no longer helps, or a run would
+/// take longer than the patience. `own` is what the scene asks for.
+pub(super) fn climb(
+    case: &Case<'_>,
+    judge: &Judge<'_>,
+    method: Method,
+    controlled: bool,
+    own: (Method, StepControl),
+) -> Line {
+    let mut line = Line {
+        formulation: method.formulation(),
+        scheme: method.scheme(),
+        controlled,
+        order: method.order(),
+        measured_order: None,
+        rows: Vec::new(),
+        method,
+    };
+    // What a rung costs, in terms of the one before.
+    let mut before: Option<(f64, f64)> = None;
+    for (control, work) in rungs(case, method, controlled) {
+        if let Some((work_before, seconds)) = before
+            && seconds * work / work_before > judge.patience.as_secs_f64()
+        {
+            break;
+        }
+        let row = Row::new(control, judge.measure(case, method, control), own == (method, control));
+        before = row.measured().map(|measured| (work, measured.seconds)).or(before);
+        let ends = row.measured().is_some_and(|measured| judge.is_at_the_end(method, measured));
+        line.rows.push(row);
+        if ends {
+            break;
+        }
+    }
+    let (own_method, own_control) = own;
+    let is_ours = own_method == method && controlled == matches!(own_control, StepControl::Tolerance(_));
+    if is_ours && !line.rows.iter().any(|row| row.of_scene) {
+        let outcome = judge.measure(case, method, own_control);
+        line.insert(Row::new(own_control, outcome, true));
+    }
+    if !controlled {
+        let own_error = judge.limit(method).map_or(f64::INFINITY, |limit| limit.error.largest());
+        line.measured_order = fitted_order(&line.rows, 10.0 * own_error);
+    }
+    line
+}
+
+impl Row {
+    pub(super) fn new(control: StepControl, outcome: Outcome, of_scene: bool) -> Self {
+        Self { setting: control.into(), of_scene, on_front: false, outcome }
+    }
+}
+
+impl Line {
+    /// Puts a row where its step belongs.
+    pub(super) fn insert(&mut self, row: Row) {
+        let place = self.rows.partition_point(|other| other.setting.value() > row.setting.value());
+        self.rows.insert(place, row);
+    }
+
+    /// The scheme, for tables and legends.
+    pub fn name(&self) -> String {
+        let formulation = match (self.formulation, self.scheme) {
+            ("paper", "rkmk4") => "paper's form, ",
+            _ => "",
+        };
+        let control = if self.controlled { ", step control" } else { "" };
+        format!("{formulation}{}{control}", self.scheme)
+    }
+}
+
+/// The rungs of a ladder, and the work of each relative to the first.
+fn rungs(case: &Case<'_>, method: Method, controlled: bool) -> Vec<(StepControl, f64)> {
+    if controlled {
+        // The estimate goes with the fourth power of the step.
+        return TOLERANCES.map(|k| (StepControl::Tolerance(10_f64.powi(-k)), 10_f64.powf(f64::from(k) / 4.0))).collect();
+    }
+    let end = case.end();
+    let longest = case.longest_step(method);
+    let factor = if method.limited_by_modes() && longest < end { BELOW_LIMIT } else { 1.0 };
+    let fewest = (end / (factor * longest)).max(FEWEST_STEPS) * (1.0 - 1e-12);
+    let first = step_counts().find(|count| *count as f64 >= fewest);
+    let others = step_counts().filter(|count| is_one_two_five(*count) && Some(*count) > first);
+    first
+        .into_iter()
+        .chain(others)
+        .map(|count| (StepControl::Fixed(end / count as f64), count as f64))
+        .collect()
+}
+
+/// Numbers of steps with which the times of comparison are met and whose steps have few digits: 1, 1.25, 1.6, … 8 times
+/// a power of ten.
+fn step_counts() -> impl Iterator<Item = u64> {
+    (0..10_u32)
+        .flat_map(|decade| [100, 125, 160, 200, 250, 320, 400, 500, 625, 800].map(|c| c * 10_u64.pow(decade)))
+        .filter(|hundredfold| hundredfold % 100 == 0)
+        .map(|hundredfold| hundredfold / 100)
+        .filter(|count| if *count < 100 { 100 % count == 0 } else { count % 100 == 0 })
+}
+
+fn is_one_two_five(count: u64) -> bool {
+    let mut leading = count;
+    while leading.is_multiple_of(10) {
+        leading /= 10;
+    }
+    matches!(leading, 1 | 2 | 5)
+}
+
+/// The settings between a rung and a finer one, coarsest first.
+pub(super) fn settings_between(case: &Case<'_>, coarse: Setting, fine: Setting) -> Vec<StepControl> {
+    match (coarse, fine) {
+        (Setting::Step(coarse), Setting::Step(fine)) => step_counts()
+            .map(|count| case.end() / count as f64)
+            .filter(|step| *step < coarse * (1.0 - 1e-9) && *step > fine * (1.0 + 1e-9))
+            .map(StepControl::Fixed)
+            .collect(),
+        (Setting::Tolerance(coarse), Setting::Tolerance(fine)) => [0.5, 0.2]
+            .map(|part| part * coarse)
+            .into_iter()
+            .filter(|tolerance| *tolerance > fine * (1.0 + 1e-9))
+            .map(StepControl::Tolerance)
+            .collect(),
+        _ => Vec::new(),
+    }
+}
+
+/// Slope of ln(error) against ln(step), by least squares, over errors that come from the steps.
+fn fitted_order(rows: &[Row], above: f64) -> Option<f64> {
+    let points: Vec<(f64, f64)> = rows
+        .iter()
+        .filter_map(|row| {
+            let error = row.measured()?.step_error?;
+            (error > above && error < COARSE).then(|| (row.setting.value().ln(), error.ln()))
+        })
+        .collect();
+    if points.len() < 2 {
+        return None;
+    }
+    let count = points.len() as f64;
+    let mean = |part: fn(&(f64, f64)) -> f64| points.iter().map(part).sum::<f64>() / count;
+    let (x, y) = (mean(|p| p.0), mean(|p| p.1));
+    let covariance: f64 = points.iter().map(|p| (p.0 - x) * (p.1 - y)).sum();
+    let variance: f64 = points.iter().map(|p| (p.0 - x) * (p.0 - x)).sum();
+    Some(covariance / variance)
+}
+
+/// Marks the runs for which no other is both closer and faster.
+pub(super) fn mark_front(lines: &mut [Line]) {
+    let cost = |row: &Row| row.measured().map(|measured| (measured.error, measured.seconds));
+    let all: Vec<(f64, f64)> = lines.iter().flat_map(|line| &line.rows).filter_map(cost).collect();
+    for row in lines.iter_mut().flat_map(|line| &mut line.rows) {
+        row.on_front = cost(row).is_some_and(|(error, seconds)| {
+            !all.iter().any(|(e, s)| *e <= error && *s <= seconds && (*e < error || *s < seconds))
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(step: f64, error: f64, seconds: f64) -> Row {
+        let measured = Measured {
+            error,
+            at_reference: false,
+            errors: Errors { attitude: error, ..Errors::default() },
+            step_error: Some(error),
+            energy: 0.0,
+            angular_momentum: 0.0,
+            spin: None,
+            steps: 1,
+            rejected: 0,
+            evaluations: 4,
+            seconds,
+            spread: 1.0,
+            repeats: 3,
+        };
+        Row::new(StepControl::Fixed(step), Outcome::Ran(measured), false)
+    }
+
+    #[test]
+    fn counts_of_steps_meet_the_times_of_comparison() {
+        let counts: Vec<u64> = step_counts().take_while(|count| *count <= 2000).collect();
+        assert_eq!(counts, [1, 2, 4, 5, 10, 20, 25, 50, 100, 200, 400, 500, 800, 1000, 1600, 2000]);
+        assert!([1, 2, 5, 10, 500, 2000].into_iter().all(is_one_two_five));
+        assert!([4, 25, 800, 1250].into_iter().all(|count| !is_one_two_five(count)));
+    }
+
+    #[test]
+    fn the_front_is_what_no_other_run_beats() {
+        let rows = vec![row(4.0, 1e-2, 1.0), row(2.0, 1e-3, 3.0), row(1.0, 1e-3, 2.0), row(0.5, 1e-4, 2.0)];
+        let failed = Row::new(StepControl::Fixed(8.0), Outcome::Failed("blown up".to_owned()), false);
+        let line = |rows| Line {
+            formulation: "conservative",
+            scheme: "strang",
+            controlled: false,
+            order: 2,
+            measured_order: None,
+            rows,
+            method: Method::ALL[4],
+        };
+        let mut lines = vec![line(rows), line(vec![failed])];
+        mark_front(&mut lines);
+        let marks: Vec<bool> = lines.iter().flat_map(|line| &line.rows).map(|row| row.on_front).collect();
+        assert_eq!(marks, [true, false, false, true, false]);
+    }
+
+    #[test]
+    fn the_order_is_the_slope_of_the_errors_between_coarse_and_reference() {
+        let fourth = |step: f64| row(step, 3.0 * step.powi(4), 1.0);
+        let mut rows: Vec<Row> = [0.2, 0.1, 0.05, 0.02].map(fourth).into();
+        // Errors that do not come from the step are left out.
+        rows.insert(0, row(1.0, 0.5, 1.0));
+        rows.push(row(0.01, 2e-9, 1.0));
+        let order = fitted_order(&rows, 1e-8).unwrap();
+        assert!((order - 4.0).abs() < 1e-9, "{order}");
+        assert_eq!(fitted_order(&rows[..2], 1e-8), None);
+    }
+}

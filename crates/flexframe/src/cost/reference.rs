@@ -1,0 +1,85 @@
+//! The reference: a run so fine that a finer one says the same.
+
+use std::time::{Duration, Instant};
+
+use frames_rk4::{Method, StepControl};
+use serde::Serialize;
+
+use super::case::Case;
+use super::run::{Errors, RunFailure, Trajectory};
+
+/// Steps of the first run.
+const FIRST: u64 = 100;
+/// No run takes more steps than this.
+const MOST: u64 = FIRST << 24;
+/// Differences above this still come from the steps, even where they do not fall; below, from rounding.
+const ROUNDING: f64 = 1e-8;
+
+/// A run and how far it is from the limit of short steps.
+pub(super) struct Reference {
+    pub trajectory: Trajectory,
+    pub step: f64,
+    pub steps: u64,
+    /// Estimate of its own error.
+    pub error: Errors,
+}
+
+/// What the errors are measured against.
+#[derive(Debug, Clone, Serialize)]
+pub struct ReferenceReport {
+    /// Length of a step.
+    pub step: f64,
+    /// Steps.
+    pub steps: u64,
+    /// Estimate of its own error.
+    pub own_error: Errors,
+    /// Its error against another reference.
+    pub errors: Option<Errors>,
+}
+
+/// Runs a fourth-order method with ever shorter steps, each half as long as those before, until the error is below
+/// `goal`, or rounding hides what halving changes, or the next run would go beyond the `budget`. Of two runs that are d
+/// apart, the finer is d/15 from the limit, if d has fallen as it does for fourth order; else d is taken.
+///
+/// # Errors
+/// Steps of the last try and its failure, where none came to its end.
+pub(super) fn converge(
+    case: &Case<'_>,
+    method: Method,
+    budget: Duration,
+    goal: f64,
+) -> Result<Reference, (u64, RunFailure)> {
+    let started = Instant::now();
+    let mut steps = FIRST;
+    let coarse = loop {
+        match follow(case, method, steps) {
+            Ok(run) => break run,
+            Err(failure) if started.elapsed() > budget || steps >= MOST => return Err((steps, failure)),
+            Err(_) => steps *= 2,
+        }
+    };
+    let reference = |trajectory, steps, error| Reference { trajectory, step: case.end() / steps as f64, steps, error };
+    // A second run is made whatever it takes, since without it nothing is known of the error.
+    steps *= 2;
+    let finer = follow(case, method, steps).map_err(|failure| (steps, failure))?;
+    let mut difference = Errors::between(&coarse, &finer, case.scales());
+    let mut best = reference(finer, steps, difference);
+    while best.error.largest() > goal && steps < MOST && started.elapsed() + 2 * best.trajectory.time <= budget {
+        steps *= 2;
+        let Ok(finer) = follow(case, method, steps) else { break };
+        let before = difference.largest();
+        difference = Errors::between(&best.trajectory, &finer, case.scales());
+        let now = difference.largest();
+        if now < ROUNDING && now > before / 2.0 {
+            break;
+        }
+        let factor = if now < before / 8.0 { 1.0 / 15.0 } else { 1.0 };
+        best = reference(finer, steps, difference.scaled(factor));
+    }
+    Ok(best)
+}
+
+fn follow(case: &Case<'_>, method: Method, steps: u64) -> Result<Trajectory, RunFailure> {
+    let simulation = case.begin(method, StepControl::Fixed(case.end() / steps as f64))?;
+    Ok(Trajectory::follow(simulation)?)
+}

@@ -1,0 +1,188 @@
+//! One run, observed at the times of comparison, and the errors of one run against another.
+
+use std::time::{Duration, Instant};
+
+use frames_rk4::{Observation, PointMotion, Reached, SetupError, Simulation, Stats, StepError};
+use nalgebra::Vector3;
+use scene::Model;
+use serde::Serialize;
+
+use crate::run::{Balances, Monitor};
+
+/// Motion smaller than this fraction of the body is rounding.
+const STILL: f64 = 1e-12;
+
+/// Why a run did not come to its end.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum RunFailure {
+    /// It could not start.
+    #[error(transparent)]
+    Setup(#[from] SetupError),
+    /// A step failed.
+    #[error(transparent)]
+    Step(#[from] StepError),
+}
+
+/// A run, observed at equally spaced times.
+#[derive(Debug, Clone)]
+pub(super) struct Trajectory {
+    /// At the beginning and after each interval.
+    pub observations: Vec<Observation>,
+    pub stats: Stats,
+    pub balances: Balances,
+    /// How long it took, observations included.
+    pub time: Duration,
+}
+
+impl Trajectory {
+    /// Runs a simulation to its end.
+    pub(super) fn follow(mut simulation: Simulation) -> Result<Self, StepError> {
+        let started = Instant::now();
+        let mut observations = Vec::new();
+        let mut monitor = Monitor::default();
+        let mut observe = |simulation: &mut Simulation| -> Result<(), StepError> {
+            let mut now = simulation.observation();
+            simulation.observe(&mut now)?;
+            monitor.watch(&now);
+            observations.push(now);
+            Ok(())
+        };
+        observe(&mut simulation)?;
+        loop {
+            match simulation.advance(u64::MAX)? {
+                Reached::Row => observe(&mut simulation)?,
+                Reached::Between => {}
+                Reached::End => break,
+            }
+        }
+        let balances = monitor.balances();
+        Ok(Self { observations, stats: simulation.stats(), balances, time: started.elapsed() })
+    }
+
+    /// |ω| at the end.
+    pub(super) fn final_spin(&self) -> f64 {
+        self.observations.last().map_or(0.0, |last| last.omega_body.norm())
+    }
+}
+
+/// Time that the loop of a run takes, without the observations.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Timing {
+    /// The shortest.
+    pub shortest: Duration,
+    /// The longest.
+    pub longest: Duration,
+    pub repeats: u32,
+}
+
+impl Timing {
+    /// Runs the simulation from its beginning at least three times, and so often that it takes `at_least` in all.
+    pub(super) fn of(simulation: &Simulation, at_least: Duration) -> Result<Self, StepError> {
+        let mut timing = Self { shortest: Duration::MAX, longest: Duration::ZERO, repeats: 0 };
+        let mut sum = Duration::ZERO;
+        while timing.repeats < 3 || (sum < at_least && timing.repeats < 1000) {
+            let mut simulation = simulation.clone();
+            let started = Instant::now();
+            while simulation.advance(u64::MAX)? != Reached::End {}
+            let time = started.elapsed();
+            timing.shortest = timing.shortest.min(time);
+            timing.longest = timing.longest.max(time);
+            timing.repeats += 1;
+            sum += time;
+        }
+        Ok(timing)
+    }
+}
+
+/// Sizes of the quantities that are compared; an error is relative to the largest value in the reference, unless that
+/// is below this.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Scales {
+    modal: f64,
+    velocity: f64,
+    acceleration: f64,
+}
+
+impl Scales {
+    /// What a body of this size and mass could as well not do at all.
+    pub(super) fn of_body(model: &Model, end: f64) -> Self {
+        let length = STILL * model.mesh.diagonal();
+        let modal = length * model.body.mass.sqrt();
+        Self { modal, velocity: length / end, acceleration: length / (end * end) }
+    }
+}
+
+/// Largest errors of a run over the times of comparison.
+#[derive(Debug, Clone, Copy, Default, Serialize)]
+pub struct Errors {
+    /// Angle to the reference's attitude, rad.
+    pub attitude: f64,
+    /// Modal coordinates, relative to the largest of the reference; none where nothing vibrates.
+    pub modal: Option<f64>,
+    /// Velocity of the points, relative to the largest of the reference; none without points or where they rest.
+    pub velocity: Option<f64>,
+    /// Acceleration of the points, likewise.
+    pub acceleration: Option<f64>,
+}
+
+impl Errors {
+    /// Errors of `run` against `reference`, at the times that both have. Modes that only one of them has are left out.
+    pub(super) fn between(run: &Trajectory, reference: &Trajectory, scales: &Scales) -> Self {
+        let (ours, theirs) = (&run.observations, &reference.observations);
+        let stride = |list: &[Observation], other: &[Observation]| {
+            (list.len().saturating_sub(1) / other.len().saturating_sub(1).max(1)).max(1)
+        };
+        let pairs = || {
+            let theirs = theirs.iter().step_by(stride(theirs, ours));
+            ours.iter().step_by(stride(ours, &reference.observations)).zip(theirs)
+        };
+        let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
+        let relative = |error: f64, peak: f64, still: f64| (peak > still).then(|| error / peak);
+
+        let modal_peak = largest(&mut theirs.iter().flat_map(|o| &o.modal_displacement).map(|q| q.abs()));
+        let modal = largest(&mut pairs().flat_map(|(a, b)| {
+            a.modal_displacement.iter().zip(&b.modal_displacement).map(|(a, b)| (a - b).abs())
+        }));
+        let of_points = |part: fn(&PointMotion) -> Vector3<f64>, still: f64| {
+            let peak = largest(&mut theirs.iter().flat_map(|o| &o.points).map(|p| part(p).norm()));
+            let error = largest(
+                &mut pairs().flat_map(|(a, b)| a.points.iter().zip(&b.points).map(|(a, b)| (part(a) - part(b)).norm())),
+            );
+            relative(error, peak, still)
+        };
+        Self {
+            attitude: largest(&mut pairs().map(|(a, b)| a.attitude.angle_to(&b.attitude))),
+            modal: relative(modal, modal_peak, scales.modal),
+            velocity: of_points(|p| p.velocity, scales.velocity),
+            acceleration: of_points(|p| p.acceleration, scales.acceleration),
+        }
+    }
+
+    /// The largest of them: the error of a run.
+    pub fn largest(&self) -> f64 {
+        [self.modal, self.velocity, self.acceleration].into_iter().flatten().fold(self.attitude, f64::max)
+    }
+
+    /// Name and value of each.
+    pub(super) fn named(&self) -> impl Iterator<Item = (&'static str, f64)> {
+        [
+            ("attitude", Some(self.attitude)),
+            ("modal coordinates", self.modal),
+            ("velocity of the points", self.velocity),
+            ("acceleration of the points", self.acceleration),
+        ]
+        .into_iter()
+        .filter_map(|(name, value)| Some((name, value?)))
+    }
+
+    /// All of them times a factor.
+    pub(super) fn scaled(&self, factor: f64) -> Self {
+        let scaled = |value: Option<f64>| value.map(|value| factor * value);
+        Self {
+            attitude: factor * self.attitude,
+            modal: scaled(self.modal),
+            velocity: scaled(self.velocity),
+            acceleration: scaled(self.acceleration),
+        }
+    }
+}

@@ -1,0 +1,179 @@
+//! The price list for people.
+
+use std::fmt;
+
+use super::ladder::{Line, Outcome, Row};
+use super::{CostReport, Setting};
+use crate::modes::frequency_unit;
+
+impl fmt::Display for CostReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let time = &self.time_unit;
+        writeln!(f, "{}", self.title)?;
+        write!(f, "  scene      {} flexible modes", self.flexible)?;
+        if let Some(highest) = self.highest_frequency {
+            write!(f, " to {highest:.2} {}", frequency_unit(time))?;
+        }
+        writeln!(f, ", {} {time}, {} points", self.end, self.points)?;
+        writeln!(f, "  machine    {}", self.machine)?;
+        let reference = &self.reference;
+        let parts: Vec<String> =
+            reference.own_error.named().map(|(name, error)| format!("{name} {error:.1e}")).collect();
+        writeln!(
+            f,
+            "  reference  conservative, exponential, {} steps of {:.3e} {time}; its own error: {}",
+            reference.steps,
+            reference.step,
+            parts.join(", ")
+        )?;
+        if let Some(errors) = self.paper_limit.as_ref().and_then(|limit| limit.errors) {
+            writeln!(
+                f,
+                "  paper      however short its steps, the paper's formulation stays {:.1e} from the reference",
+                errors.largest()
+            )?;
+        }
+        writeln!(
+            f,
+            "\n     {:<17} {:>9}  {:>9} {:>9} {:>9} {:>9}  {:>9} {:>9}  {:>8} {:>9}  {:>10} {:>6}",
+            "", "error", "attitude", "modal", "velocity", "accel.", "energy", "ang.mom.", "steps", "evals", "time", "spread"
+        )?;
+        for line in &self.lines {
+            writeln!(f, "  {}", heading(line))?;
+            for row in &line.rows {
+                writeln!(f, "{}", RowText(row))?;
+            }
+        }
+        writeln!(
+            f,
+            "  * nothing tried is both closer and faster    < the scene's own setting    ≤ the reference cannot tell\n  \
+             error: largest of attitude (rad), modal coordinates, velocity and acceleration of the points (of their \
+             peaks)"
+        )?;
+        self.write_modes(f)?;
+        if let Some(answer) = &self.answer {
+            writeln!(f, "\n{answer}")?;
+        }
+        write!(f, "\n  wrote     ")?;
+        self.files.iter().try_for_each(|file| write!(f, " {}", file.display()))
+    }
+}
+
+impl CostReport {
+    fn write_modes(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (Some(first), Some(most)) = (self.modes.first(), self.modes.last()) else { return Ok(()) };
+        writeln!(
+            f,
+            "\n  modes   to, {:<6} {:>9}  {:>9} {:>9} {:>9} {:>9}  {:>9}",
+            frequency_unit(&self.time_unit),
+            "error",
+            "attitude",
+            "modal",
+            "velocity",
+            "accel.",
+            "time/step"
+        )?;
+        for row in &self.modes {
+            write!(f, "  {:>5}  {:>9.2}  ", row.flexible, row.highest_frequency)?;
+            match row.errors {
+                Some(e) => write!(
+                    f,
+                    "{:>9.1e}  {:>9.1e} {} {} {}",
+                    e.largest(),
+                    e.attitude,
+                    optional(e.modal),
+                    optional(e.velocity),
+                    optional(e.acceleration)
+                )?,
+                None => write!(f, "{:>50}", "what the others are compared with")?,
+            }
+            writeln!(f, "  {:>6.2} µs", 1e6 * row.seconds_per_step)?;
+        }
+        writeln!(
+            f,
+            "  the same motion with {} to {} modes; the steps leave an error of {:.0e}",
+            first.flexible, most.flexible, most.step_error
+        )
+    }
+}
+
+fn heading(line: &Line) -> String {
+    let form = if line.scheme == "paper" { "" } else { &format!("{} formulation, ", line.formulation) };
+    let control = if line.controlled { ", step control" } else { "" };
+    let measured = line.measured_order.map_or_else(String::new, |order| format!(", measured {order:.2}"));
+    format!("{form}scheme {}{control}: order {}{measured}", line.scheme, line.order)
+}
+
+fn optional(value: Option<f64>) -> String {
+    value.map_or_else(|| format!("{:>9}", "-"), |value| format!("{value:>9.1e}"))
+}
+
+/// A time with three digits.
+pub(super) fn duration(seconds: f64) -> String {
+    let (value, unit) = match seconds {
+        s if s < 1e-3 => (1e6 * s, "µs"),
+        s if s < 1.0 => (1e3 * s, "ms"),
+        s => (s, "s"),
+    };
+    let decimals = if value < 10.0 { 2 } else { usize::from(value < 100.0) };
+    format!("{value:.decimals$} {unit}")
+}
+
+/// A step or a tolerance with the digits that it needs.
+pub(super) fn setting(setting: Setting) -> String {
+    match setting {
+        Setting::Step(step) => format!("step {}", digits(step)),
+        Setting::Tolerance(tolerance) => format!("tol. {}", digits(tolerance)),
+    }
+}
+
+fn digits(value: f64) -> String {
+    let (all, short) = (format!("{value:e}"), format!("{value:.5e}"));
+    if all.len() <= short.len() { all } else { short }
+}
+
+struct RowText<'a>(&'a Row);
+
+impl fmt::Display for RowText<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self(row) = self;
+        let mark = |set: bool, sign: char| if set { sign } else { ' ' };
+        write!(f, "  {}{} {:<17}", mark(row.on_front, '*'), mark(row.of_scene, '<'), setting(row.setting))?;
+        match &row.outcome {
+            Outcome::Ran(m) => {
+                let error = format!("{}{:.1e}", if m.at_reference { "≤" } else { "" }, m.error);
+                let e = &m.errors;
+                write!(
+                    f,
+                    " {error:>9}  {:>9.1e} {} {} {}  {:>9.1e} {:>9.1e}  {:>8} {:>9}  {:>10} {:>6.2}",
+                    e.attitude,
+                    optional(e.modal),
+                    optional(e.velocity),
+                    optional(e.acceleration),
+                    m.energy,
+                    m.angular_momentum,
+                    m.steps,
+                    m.evaluations,
+                    duration(m.seconds),
+                    m.spread
+                )
+            }
+            Outcome::Failed(failure) => write!(f, " failed: {failure}"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_have_three_digits_and_settings_those_they_need() {
+        assert_eq!(duration(1.234e-4), "123 µs");
+        assert_eq!(duration(0.01234), "12.3 ms");
+        assert_eq!(duration(1.234), "1.23 s");
+        assert_eq!(setting(Setting::Step(2.5e-4)), "step 2.5e-4");
+        assert_eq!(setting(Setting::Step(0.37 / 700.0)), "step 5.28571e-4");
+        assert_eq!(setting(Setting::Tolerance(1e-8)), "tol. 1e-8");
+    }
+}

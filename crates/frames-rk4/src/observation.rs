@@ -1,0 +1,86 @@
+//! What is known of the motion at one time, whichever scheme made it.
+
+use nalgebra::Vector3;
+use rigid_kin::Attitude;
+
+use crate::motion::PointMotion;
+use crate::work::Work;
+
+/// The motion at one time. Lists have one entry for each flexible mode, or for each point that was asked for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Observation {
+    /// Time.
+    pub time: f64,
+    /// Attitude of the body frame.
+    pub attitude: Attitude,
+    /// Position of the centre of mass, global components.
+    pub position_global: Vector3<f64>,
+    /// Velocity of the centre of mass, global components.
+    pub velocity_global: Vector3<f64>,
+    /// Angular velocity of the body frame, body components.
+    pub omega_body: Vector3<f64>,
+    /// Angular acceleration of the body frame, body components.
+    pub alpha_body: Vector3<f64>,
+    /// Flexible modal displacements.
+    pub modal_displacement: Vec<f64>,
+    /// Flexible modal velocities.
+    pub modal_velocity: Vec<f64>,
+    /// Flexible modal accelerations.
+    pub modal_acceleration: Vec<f64>,
+    /// Kinetic energy.
+    pub kinetic_energy: f64,
+    /// Strain energy.
+    pub strain_energy: f64,
+    /// What loads and damping have done since the beginning.
+    pub work: Work,
+    /// Linear momentum, global components.
+    pub linear_momentum_global: Vector3<f64>,
+    /// Angular momentum about the centre of mass, global components.
+    pub angular_momentum_global: Vector3<f64>,
+    /// Motion of the points, in the order in which they were asked for.
+    pub points: Vec<PointMotion>,
+}
+
+impl Observation {
+    /// Room for `flexible` modes and `points` points.
+    pub fn new(flexible: usize, points: usize) -> Self {
+        let list = || Vec::with_capacity(flexible);
+        Self {
+            time: 0.0,
+            attitude: Attitude::identity(),
+            position_global: Vector3::zeros(),
+            velocity_global: Vector3::zeros(),
+            omega_body: Vector3::zeros(),
+            alpha_body: Vector3::zeros(),
+            modal_displacement: list(),
+            modal_velocity: list(),
+            modal_acceleration: list(),
+            kinetic_energy: 0.0,
+            strain_energy: 0.0,
+            work: Work::default(),
+            linear_momentum_global: Vector3::zeros(),
+            angular_momentum_global: Vector3::zeros(),
+            points: Vec::with_capacity(points),
+        }
+    }
+
+    /// Kinetic + strain energy.
+    pub fn energy(&self) -> f64 {
+        self.kinetic_energy + self.strain_energy
+    }
+
+    /// Kinetic + strain energy − work of the loads + dissipation: a constant of the motion.
+    pub fn energy_balance(&self) -> f64 {
+        self.energy() - self.work.work + self.work.dissipation
+    }
+
+    /// Linear momentum less the impulse of the loads: a constant of the motion.
+    pub fn linear_balance_global(&self) -> Vector3<f64> {
+        self.linear_momentum_global - self.work.impulse_global
+    }
+
+    /// Angular momentum less the angular impulse of the loads: a constant of the motion.
+    pub fn angular_balance_global(&self) -> Vector3<f64> {
+        self.angular_momentum_global - self.work.angular_impulse_global
+    }
+}

@@ -1,0 +1,237 @@
+//! Which steps lead through a run: they end exactly at output times and at the corners of load histories.
+
+/// How long the steps are.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum StepControl {
+    /// Steps of at most this length; between two stops all are equally long.
+    Fixed(f64),
+    /// As long as the estimated error of a step stays below this.
+    Tolerance(f64),
+}
+
+/// When the motion is observed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Rows {
+    /// At the beginning, after every so many steps, and at the end.
+    EverySteps(u64),
+    /// At the beginning, at every multiple of this time, and at the end.
+    Interval(f64),
+}
+
+/// A stretch of time without a corner or an output time inside.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Segment {
+    pub start: f64,
+    pub end: f64,
+    /// `end − start`; segments that are equally long but for rounding have the very same length, so that what belongs
+    /// to a step's length need not be computed again.
+    pub length: f64,
+    /// Whether the end is an output time.
+    pub row: bool,
+}
+
+/// The segments of a run.
+#[derive(Debug, Clone)]
+pub(crate) struct Plan {
+    end: f64,
+    /// Corners within the run, sorted.
+    corners: Vec<f64>,
+    interval: Option<f64>,
+    /// Output times passed.
+    outputs: u64,
+    reached: f64,
+    last_length: f64,
+}
+
+impl Plan {
+    pub(crate) fn new(end: f64, corners: impl Iterator<Item = f64>, rows: Rows) -> Self {
+        let mut corners: Vec<f64> = corners.filter(|t| *t > 0.0 && *t < end).collect();
+        corners.sort_by(f64::total_cmp);
+        let interval = match rows {
+            Rows::Interval(interval) => Some(interval),
+            Rows::EverySteps(_) => None,
+        };
+        Self { end, corners, interval, outputs: 0, reached: 0.0, last_length: 0.0 }
+    }
+
+    /// The next segment; `None` at the end.
+    pub(crate) fn next_segment(&mut self) -> Option<Segment> {
+        // Times closer than rounding makes them are one.
+        let same = 1e-13 * self.end;
+        if self.reached >= self.end {
+            return None;
+        }
+        let output = self.interval.map_or(f64::INFINITY, |interval| (self.outputs + 1) as f64 * interval);
+        let corner = self.corners.iter().copied().find(|t| *t > self.reached + same).unwrap_or(f64::INFINITY);
+        let mut stop = corner.min(output).min(self.end);
+        let row = (output - stop).abs() <= same || (self.end - stop).abs() <= same;
+        if (output - stop).abs() <= same {
+            self.outputs += 1;
+            stop = output.min(self.end);
+        }
+        if (self.end - stop).abs() <= same {
+            stop = self.end;
+        }
+        let mut length = stop - self.reached;
+        if (length - self.last_length).abs() <= 8.0 * f64::EPSILON * self.end {
+            length = self.last_length;
+        }
+        self.last_length = length;
+        let segment = Segment { start: self.reached, end: stop, length, row };
+        self.reached = stop;
+        Some(segment)
+    }
+}
+
+/// Equal steps through a segment.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct EqualSteps {
+    segment: Segment,
+    count: u64,
+    done: u64,
+}
+
+impl EqualSteps {
+    /// The fewest steps of at most `step`.
+    pub(crate) fn new(segment: Segment, step: f64) -> Self {
+        // A step that divides the segment but for rounding is left as it is.
+        let count = (segment.length / step * (1.0 - 1e-12)).ceil().max(1.0) as u64;
+        Self { segment, count, done: 0 }
+    }
+
+    /// Whether all steps have been handed out.
+    pub(crate) fn is_done(&self) -> bool {
+        self.done == self.count
+    }
+
+    /// Length and end of the next step; `None` at the segment's end.
+    pub(crate) fn next_step(&mut self) -> Option<(f64, f64)> {
+        if self.is_done() {
+            return None;
+        }
+        self.done += 1;
+        let h = self.segment.length / self.count as f64;
+        let end = if self.done == self.count { self.segment.end } else { self.segment.start + self.done as f64 * h };
+        Some((h, end))
+    }
+}
+
+/// Steps through a segment whose lengths are its length over a power of two, so that they end exactly at its end and
+/// few different lengths occur.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct HalvedSteps {
+    segment: Segment,
+    /// Steps are `length / 2^level` long.
+    level: u32,
+    /// Steps of this length that have been done.
+    done: u64,
+}
+
+/// A step shorter than the segment over 2 to this power makes no progress.
+const DEEPEST: u32 = 40;
+
+impl HalvedSteps {
+    /// Through `segment`, beginning with the longest step not above `step`.
+    pub(crate) fn new(segment: Segment, step: f64) -> Self {
+        let level = (segment.length / step * (1.0 - 1e-9)).log2().ceil().clamp(0.0, f64::from(DEEPEST)) as u32;
+        Self { segment, level, done: 0 }
+    }
+
+    /// Length and end of the next step; `None` at the segment's end.
+    pub(crate) fn next_step(&self) -> Option<(f64, f64)> {
+        let count = 1u64 << self.level;
+        if self.done == count {
+            return None;
+        }
+        let h = self.length();
+        let done = self.done + 1;
+        let end = if done == count { self.segment.end } else { self.segment.start + done as f64 * h };
+        Some((h, end))
+    }
+
+    /// Length of the steps of the moment.
+    pub(crate) fn length(&self) -> f64 {
+        self.segment.length / (1u64 << self.level) as f64
+    }
+
+    /// The step was taken; with an `error` (as a fraction of the tolerance) small enough, the next is twice as long.
+    pub(crate) fn accept(&mut self, error: f64) {
+        self.done += 1;
+        // The estimate goes with the fourth power of the step; half of the tolerance is kept in hand.
+        if error * 16.0 < 0.5 && self.level > 0 && self.done.is_multiple_of(2) {
+            self.level -= 1;
+            self.done /= 2;
+        }
+    }
+
+    /// The step was not taken: shorter ones from here. `false` where they are as short as can be.
+    pub(crate) fn reject(&mut self, error: f64) -> bool {
+        let halvings = if error.is_finite() { (error / 0.8).log2() / 4.0 } else { 2.0 };
+        let halvings = halvings.ceil().clamp(1.0, 6.0) as u32;
+        if self.level + halvings > DEEPEST {
+            return false;
+        }
+        self.level += halvings;
+        self.done <<= halvings;
+        true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn segments_end_at_corners_and_output_times_and_equal_ones_have_equal_lengths() {
+        let mut plan = Plan::new(0.5, [0.02013, 0.0, 0.1, 0.7].into_iter(), Rows::Interval(0.1));
+        let mut ends = Vec::new();
+        let mut lengths = Vec::new();
+        while let Some(segment) = plan.next_segment() {
+            ends.push((segment.end, segment.row));
+            lengths.push(segment.length);
+        }
+        assert_eq!(ends, [(0.02013, false), (0.1, true), (0.2, true), (3.0 * 0.1, true), (0.4, true), (0.5, true)]);
+        assert!(lengths[3].to_bits() == lengths[4].to_bits() && lengths[4].to_bits() == lengths[5].to_bits());
+    }
+
+    #[test]
+    fn a_step_that_divides_the_end_is_kept_and_another_is_shortened() {
+        let whole = Segment { start: 0.0, end: 0.5, length: 0.5, row: true };
+        for (step, count) in [(1e-4, 5000), (0.3, 2), (0.5, 1), (2.0, 1), (0.1, 5)] {
+            let mut steps = EqualSteps::new(whole, step);
+            let mut taken = Vec::new();
+            while let Some((h, end)) = steps.next_step() {
+                assert!(h <= step * (1.0 + 1e-11));
+                taken.push(end);
+            }
+            assert_eq!(taken.len(), count);
+            assert_eq!(taken.last(), Some(&0.5));
+        }
+    }
+
+    #[test]
+    fn halved_steps_land_on_the_end_whatever_is_accepted_and_rejected() {
+        let segment = Segment { start: 1.0, end: 1.3, length: 1.3 - 1.0, row: true };
+        let mut steps = HalvedSteps::new(segment, 0.11);
+        let mut time = 1.0;
+        let mut tries = 0;
+        while let Some((h, end)) = steps.next_step() {
+            tries += 1;
+            let error = if tries % 3 == 0 { 5.0 } else { 1e-3 };
+            if error > 1.0 {
+                assert!(steps.reject(error));
+            } else {
+                assert!((end - time - h).abs() < 1e-15);
+                time = end;
+                steps.accept(error);
+            }
+        }
+        assert_eq!(time, 1.3);
+    }
+
+    #[test]
+    fn steps_cannot_shrink_for_ever() {
+        let mut steps = HalvedSteps::new(Segment { start: 0.0, end: 1.0, length: 1.0, row: true }, 1.0);
+        assert!((0..100).any(|_| !steps.reject(f64::NAN)));
+    }
+}

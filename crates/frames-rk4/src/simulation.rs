@@ -1,0 +1,409 @@
+//! A run: a body, a method, the steps that lead through it, and the times at which it is observed.
+
+use modal::ReducedBody;
+use nalgebra::Vector3;
+
+use crate::conservative::ConservativeBody;
+use crate::conservative_motion::{ConservativeMotion, ConservativeScheme};
+use crate::error::{SetupError, StepError};
+use crate::initial::Initial;
+use crate::load::DeadForce;
+use crate::model::ModalModel;
+use crate::motion::PointShapes;
+use crate::observation::Observation;
+use crate::paper::PaperScheme;
+use crate::paper_limit::PaperLimit;
+use crate::plan::{EqualSteps, HalvedSteps, Plan, Rows, StepControl};
+
+/// Formulation and scheme.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Method {
+    /// The paper's scheme, literally.
+    Paper,
+    /// The limit of the paper's scheme, by RKMK4.
+    PaperRkmk4,
+    /// The conservative form.
+    Conservative(ConservativeScheme),
+}
+
+impl Method {
+    /// All of them.
+    pub const ALL: [Self; 5] = [
+        Self::Paper,
+        Self::PaperRkmk4,
+        Self::Conservative(ConservativeScheme::Rkmk4),
+        Self::Conservative(ConservativeScheme::Exponential),
+        Self::Conservative(ConservativeScheme::Strang),
+    ];
+
+    /// The name of its formulation in a scene: "paper" or "conservative".
+    pub fn formulation(self) -> &'static str {
+        match self {
+            Self::Paper | Self::PaperRkmk4 => "paper",
+            Self::Conservative(_) => "conservative",
+        }
+    }
+
+    /// The name of its scheme in a scene.
+    pub fn scheme(self) -> &'static str {
+        match self {
+            Self::Paper => "paper",
+            Self::PaperRkmk4 | Self::Conservative(ConservativeScheme::Rkmk4) => "rkmk4",
+            Self::Conservative(ConservativeScheme::Exponential) => "exponential",
+            Self::Conservative(ConservativeScheme::Strang) => "strang",
+        }
+    }
+
+    /// Order of convergence.
+    pub fn order(self) -> u32 {
+        match self {
+            Self::Paper => 1,
+            Self::Conservative(ConservativeScheme::Strang) => 2,
+            _ => 4,
+        }
+    }
+
+    /// Evaluations of the rates that a step takes.
+    pub fn evaluations_per_step(self) -> u32 {
+        4
+    }
+
+    /// Whether the step is limited by the highest mode, at about 2.83/ω_max; otherwise by the spin.
+    pub fn limited_by_modes(self) -> bool {
+        !matches!(self, Self::Conservative(ConservativeScheme::Exponential | ConservativeScheme::Strang))
+    }
+
+    /// Whether it estimates the error of a step.
+    pub fn estimates_error(self) -> bool {
+        matches!(self, Self::Conservative(ConservativeScheme::Exponential | ConservativeScheme::Rkmk4))
+    }
+}
+
+/// Everything that a run needs.
+#[derive(Debug, Clone)]
+pub struct Setup<'a> {
+    /// The body.
+    pub body: &'a ReducedBody,
+    /// One damping ratio for each flexible mode.
+    pub damping_ratios: &'a [f64],
+    /// The loads.
+    pub loads: &'a [DeadForce],
+    /// R, P, Q of the paper's scheme, from the centre of mass, body axes.
+    pub reference_points: [Vector3<f64>; 3],
+    /// How it begins.
+    pub initial: &'a Initial,
+    /// How it is stepped.
+    pub method: Method,
+    /// How long the steps are.
+    pub control: StepControl,
+    /// When it ends.
+    pub end: f64,
+    /// When it is observed.
+    pub rows: Rows,
+    /// Points whose motion is observed.
+    pub points: &'a [PointShapes],
+}
+
+/// What a run has cost.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stats {
+    /// Steps taken.
+    pub accepted: u64,
+    /// Steps tried in vain.
+    pub rejected: u64,
+    /// Evaluations of the rates.
+    pub evaluations: u64,
+    /// Length of the shortest step taken.
+    pub shortest: f64,
+    /// Length of the longest step taken.
+    pub longest: f64,
+}
+
+/// Where [`Simulation::advance`] has come to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Reached {
+    /// A time at which the motion is to be observed.
+    Row,
+    /// Nothing yet, after as many steps as were allowed.
+    Between,
+    /// The end; the row there has been reached before.
+    End,
+}
+
+/// A run in progress. As an iterator it yields the observations after the first.
+#[derive(Debug, Clone)]
+pub struct Simulation {
+    engine: Engine,
+    plan: Plan,
+    walk: Walk,
+    rows: Rows,
+    end: f64,
+    steps_since_row: u64,
+    points: Vec<PointShapes>,
+    stats: Stats,
+    failed: bool,
+}
+
+#[derive(Debug, Clone)]
+enum Engine {
+    Paper(Box<PaperScheme>),
+    PaperLimit(Box<PaperLimit>),
+    Conservative(Box<ConservativeMotion>),
+}
+
+/// The way through the segment of the moment.
+#[derive(Debug, Clone)]
+enum Walk {
+    Equal { step: f64, steps: Option<(EqualSteps, bool)> },
+    Halved { tolerance: f64, longest_try: f64, steps: Option<(HalvedSteps, bool)> },
+}
+
+impl Simulation {
+    /// Begins a run.
+    ///
+    /// # Errors
+    /// [`SetupError`]: lists of the wrong length, numbers out of range, a step beyond the limit of the method, a
+    /// tolerance for a method without an error estimate.
+    pub fn new(setup: &Setup) -> Result<Self, SetupError> {
+        let Setup { body, damping_ratios, loads, initial, method, .. } = *setup;
+        let positive = |what, value: f64| {
+            if value > 0.0 && value.is_finite() {
+                Ok(())
+            } else {
+                Err(SetupError::Value { what, found: value, expected: "a positive number" })
+            }
+        };
+        positive("the end", setup.end)?;
+        match setup.rows {
+            Rows::EverySteps(0) => {
+                return Err(SetupError::Value {
+                    what: "the number of steps for a row",
+                    found: 0.0,
+                    expected: "1 or more",
+                });
+            }
+            Rows::EverySteps(_) => {}
+            Rows::Interval(interval) => positive("the interval of the rows", interval)?,
+        }
+        let walk = match setup.control {
+            StepControl::Fixed(step) => {
+                check_step(setup, step)?;
+                Walk::Equal { step, steps: None }
+            }
+            StepControl::Tolerance(tolerance) => {
+                positive("the tolerance", tolerance)?;
+                if !method.estimates_error() {
+                    return Err(SetupError::NoErrorEstimate {
+                        formulation: method.formulation(),
+                        scheme: method.scheme(),
+                    });
+                }
+                Walk::Halved { tolerance, longest_try: f64::INFINITY, steps: None }
+            }
+        };
+        let model = || ModalModel::new(body, damping_ratios, loads.to_vec());
+        let engine = match method {
+            Method::Paper => {
+                // Its own step only matters for its iterator; here the plan gives the steps.
+                let step = model()?.stable_step().1.min(setup.end);
+                Engine::Paper(Box::new(PaperScheme::new(body, model()?, setup.reference_points, initial, step)?))
+            }
+            Method::PaperRkmk4 => Engine::PaperLimit(Box::new(PaperLimit::new(body, model()?, initial)?)),
+            Method::Conservative(scheme) => {
+                let body = ConservativeBody::new(body, damping_ratios, loads.to_vec())?;
+                Engine::Conservative(Box::new(ConservativeMotion::new(body, scheme, initial)?))
+            }
+        };
+        let corners = loads.iter().flat_map(|load| load.history.corners());
+        Ok(Self {
+            engine,
+            plan: Plan::new(setup.end, corners, setup.rows),
+            walk,
+            rows: setup.rows,
+            end: setup.end,
+            steps_since_row: 0,
+            points: setup.points.to_vec(),
+            stats: Stats { accepted: 0, rejected: 0, evaluations: 0, shortest: f64::INFINITY, longest: 0.0 },
+            failed: false,
+        })
+    }
+
+    /// Time that has been reached.
+    pub fn time(&self) -> f64 {
+        match &self.engine {
+            Engine::Paper(scheme) => scheme.state().time,
+            Engine::PaperLimit(limit) => limit.state().time,
+            Engine::Conservative(motion) => motion.state().time,
+        }
+    }
+
+    /// Time at which the run ends.
+    pub fn end(&self) -> f64 {
+        self.end
+    }
+
+    /// Room for an observation.
+    pub fn observation(&self) -> Observation {
+        let flexible = match &self.engine {
+            Engine::Paper(scheme) => scheme.state().modal_displacement.len() - 6,
+            Engine::PaperLimit(limit) => limit.state().modal_displacement.len() - 6,
+            Engine::Conservative(motion) => motion.state().modal_displacement.len(),
+        };
+        Observation::new(flexible, self.points.len())
+    }
+
+    /// Fills `out` with the motion at the time that has been reached.
+    ///
+    /// # Errors
+    /// [`StepError`] where the inertia of the deformed body is singular.
+    pub fn observe(&mut self, out: &mut Observation) -> Result<(), StepError> {
+        match &mut self.engine {
+            Engine::Paper(scheme) => scheme.observe(&self.points, out),
+            Engine::PaperLimit(limit) => limit.observe(&self.points, out),
+            Engine::Conservative(motion) => motion.observe(&self.points, out)?,
+        }
+        Ok(())
+    }
+
+    /// What the run has cost so far.
+    pub fn stats(&self) -> Stats {
+        let evaluations = match &self.engine {
+            Engine::Paper(scheme) => scheme.evaluations(),
+            Engine::PaperLimit(limit) => limit.evaluations(),
+            Engine::Conservative(motion) => motion.evaluations(),
+        };
+        Stats { evaluations, ..self.stats }
+    }
+
+    /// Goes on to the next row, or as far as `most_steps` tries lead. Allocates nothing once each length of step has
+    /// occurred.
+    ///
+    /// # Errors
+    /// [`StepError`]; the motion stays where it was before the step that failed.
+    pub fn advance(&mut self, most_steps: u64) -> Result<Reached, StepError> {
+        for _ in 0..most_steps {
+            match self.next_step() {
+                None => return Ok(Reached::End),
+                Some((h, end, row_at_end)) => {
+                    if !self.try_step(h, end)? {
+                        continue;
+                    }
+                    self.stats.accepted += 1;
+                    self.stats.shortest = self.stats.shortest.min(h);
+                    self.stats.longest = self.stats.longest.max(h);
+                    self.steps_since_row += 1;
+                    let at_row = match self.rows {
+                        Rows::EverySteps(steps) => self.steps_since_row >= steps || end >= self.end,
+                        Rows::Interval(_) => row_at_end && self.segment_is_done(),
+                    };
+                    if at_row {
+                        self.steps_since_row = 0;
+                        return Ok(Reached::Row);
+                    }
+                }
+            }
+        }
+        Ok(Reached::Between)
+    }
+
+    /// Length and end of the next step, and whether its segment ends at an output time; `None` at the end.
+    fn next_step(&mut self) -> Option<(f64, f64, bool)> {
+        loop {
+            let next = match &mut self.walk {
+                Walk::Equal { steps: Some((steps, row)), .. } => steps.next_step().map(|(h, end)| (h, end, *row)),
+                Walk::Halved { steps: Some((steps, row)), .. } => steps.next_step().map(|(h, end)| (h, end, *row)),
+                _ => None,
+            };
+            if next.is_some() {
+                return next;
+            }
+            let segment = self.plan.next_segment()?;
+            match &mut self.walk {
+                Walk::Equal { step, steps } => *steps = Some((EqualSteps::new(segment, *step), segment.row)),
+                Walk::Halved { longest_try, steps, .. } => {
+                    *steps = Some((HalvedSteps::new(segment, *longest_try), segment.row));
+                }
+            }
+        }
+    }
+
+    fn segment_is_done(&self) -> bool {
+        match &self.walk {
+            Walk::Equal { steps: Some((steps, _)), .. } => steps.is_done(),
+            Walk::Halved { steps: Some((steps, _)), .. } => steps.next_step().is_none(),
+            _ => true,
+        }
+    }
+
+    /// Does a step; under step control, `false` where it was rejected.
+    fn try_step(&mut self, h: f64, end: f64) -> Result<bool, StepError> {
+        let time = self.time();
+        match (&mut self.engine, &mut self.walk) {
+            (Engine::Conservative(motion), Walk::Halved { tolerance, longest_try, steps: Some((steps, _)) }) => {
+                let error = match motion.controlled_step(h, end, *tolerance) {
+                    Ok(estimate) => estimate / *tolerance,
+                    // A step so long that it cannot even be tried.
+                    Err(_) => f64::INFINITY,
+                };
+                if error <= 1.0 {
+                    steps.accept(error);
+                    // A step that only the segment's end made short says nothing about the next segment.
+                    *longest_try = longest_try.max(steps.length());
+                    return Ok(true);
+                }
+                self.stats.rejected += 1;
+                if steps.reject(error) {
+                    *longest_try = steps.length();
+                    Ok(false)
+                } else {
+                    Err(StepError::Tolerance { time, step: h, tolerance: *tolerance })
+                }
+            }
+            (Engine::Conservative(motion), _) => motion.step(h, end).map(|()| true),
+            (Engine::Paper(scheme), _) => scheme.take_step(h, end).map(|()| true),
+            (Engine::PaperLimit(limit), _) => limit.step(h, end).map(|()| true),
+        }
+    }
+}
+
+impl Iterator for Simulation {
+    type Item = Result<Observation, StepError>;
+
+    /// The observation at the next row; `None` at the end and after an error.
+    fn next(&mut self) -> Option<Self::Item> {
+        if self.failed {
+            return None;
+        }
+        loop {
+            match self.advance(u64::MAX) {
+                Ok(Reached::Between) => {}
+                Ok(Reached::End) => return None,
+                Ok(Reached::Row) => {
+                    let mut out = self.observation();
+                    let result = self.observe(&mut out).map(|()| out);
+                    self.failed = result.is_err();
+                    return Some(result);
+                }
+                Err(error) => {
+                    self.failed = true;
+                    return Some(Err(error));
+                }
+            }
+        }
+    }
+}
+
+/// Refuses a step beyond the limit of the method: that of the highest mode for Runge–Kutta, that of the spin else.
+fn check_step(setup: &Setup, step: f64) -> Result<(), SetupError> {
+    let model = ModalModel::new(setup.body, setup.damping_ratios, setup.loads.to_vec())?;
+    if setup.method.limited_by_modes() {
+        return model.check_step(step);
+    }
+    if !(step > 0.0 && step.is_finite()) {
+        return Err(SetupError::Value { what: "the step", found: step, expected: "a positive number" });
+    }
+    // Coriolis terms turn the modes with up to twice the spin, which the stages of RK4 follow to 2.83 in the step.
+    let spin = setup.initial.omega.norm();
+    let limit = 8.0_f64.sqrt() / (2.0 * spin);
+    if step <= limit { Ok(()) } else { Err(SetupError::StepBeyondSpin { step, limit, spin }) }
+}
