@@ -36,7 +36,7 @@ picture: build
 
 # Time `flexframe modes` against SciPy's eigsh with CHOLMOD on three meshes (some minutes; Python packages).
 bench-modes: build
-    benches/modes/run
+    crates/modal/benches/peer/run
 
 # Read a results file with h5py, as a user would (Python packages).
 h5py: build

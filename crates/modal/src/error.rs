@@ -23,6 +23,22 @@ pub enum ModalError {
         /// The number.
         value: f64,
     },
+    /// A matrix that is not its own transpose.
+    #[error(
+        "the {what} matrix is not symmetric: entry ({row}, {column}) is {value:e}, its mirror image {mirrored:e}; store both triangles"
+    )]
+    NotSymmetric {
+        /// "stiffness", "mass", or the pattern that they make together.
+        what: &'static str,
+        /// Row.
+        row: usize,
+        /// Column.
+        column: usize,
+        /// The entry.
+        value: f64,
+        /// The entry at (column, row); zero where none is stored.
+        mirrored: f64,
+    },
     /// The mass matrix does not act alike on the three axes.
     #[error(
         "the mass matrix couples degrees of freedom {row} and {column} ({value:e}) unlike those of the other axes; expected a mass for each pair of nodes times the 3x3 identity, as solid elements have it"
@@ -47,19 +63,19 @@ pub enum ModalError {
     },
     /// A rigid motion that K resists.
     #[error(
-        "the body is not free: rigid {motion} meets a stiffness of {relative:e} of K's own (expected below {limit:e}); remove the supports from K"
+        "the body is not free: rigid {motion} meets a stiffness of {relative:e} of K's diagonal (expected below {limit:e}); remove the supports from K"
     )]
     NotFree {
         /// "translation along x", …
         motion: &'static str,
-        /// ‖K r‖ against ‖|K| |r|‖.
+        /// ‖K r‖ against ‖D r‖, D the diagonal of K.
         relative: f64,
         /// What rounding explains.
         limit: f64,
     },
     /// More modes asked for than there are.
     #[error(
-        "{requested} flexible modes asked for; the mesh has only {available} (three for each node, less the six rigid ones)"
+        "{requested} flexible modes asked for; the mesh has only {available} (three for each node that has mass, less the six rigid ones)"
     )]
     TooManyModes {
         /// Asked for.

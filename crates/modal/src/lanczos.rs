@@ -3,18 +3,27 @@
 //! The whole basis V is kept and every new block is made M-orthogonal to it twice, so T = Vᵀ M (K + sM)⁻¹ M V is
 //! known to rounding and no ghost eigenvalue appears.
 
-use faer::{Mat, MatRef, Side};
+use faer::{Accum, Mat, MatRef};
 
+use crate::dense::symmetric_eigen;
 use crate::error::ModalError;
 use crate::mass::NodalMass;
+use crate::products::Packed;
 use crate::shifted::Shifted;
+use crate::tall;
 
+/// Rigid modes.
+const FIXED: usize = 6;
 /// Vectors solved for at a time.
 const BLOCK: usize = 8;
 /// ‖(K + sM)⁻¹Mφ − μφ‖_M / μ of a pair that is accepted.
 const TOLERANCE: f64 = 1e-10;
 /// Directions of a new block below this, relative to the block before orthogonalisation, are rounding.
 const DEPENDENT: f64 = 1e-13;
+/// The most that one round stretches a direction is the inverse of this; its Gram matrix is blind below.
+const STRETCH: f64 = 1e-7;
+/// Rounds of orthogonalisation: two as a rule, a third where directions had to be stretched.
+const MAX_ROUNDS: usize = 4;
 /// More block steps than this (each mode wanted adds its share) mean that something is wrong.
 const SPARE_STEPS: usize = 60;
 
@@ -27,7 +36,7 @@ pub(crate) struct LanczosPairs {
     pub basis_size: usize,
 }
 
-/// The `count` pairs with the largest μ that are M-orthogonal to `rigid` (N×6, M-orthonormal).
+/// The `count` pairs with the largest μ, of `available`, that are M-orthogonal to `rigid` (N×6, M-orthonormal).
 ///
 /// `report` is called after each step with the number of pairs that have converged.
 pub(crate) fn largest_pairs(
@@ -35,31 +44,26 @@ pub(crate) fn largest_pairs(
     mass: &NodalMass,
     rigid: MatRef<'_, f64>,
     count: usize,
+    available: usize,
     mut report: impl FnMut(usize),
 ) -> Result<LanczosPairs, ModalError> {
     let n = rigid.nrows();
-    let available = n - rigid.ncols();
-    let m_rigid = mass.product(rigid);
     let max_steps = SPARE_STEPS + 2 * count.div_ceil(BLOCK);
-    let room = || {
-        let mut vectors = Mat::with_capacity(n, available.min(4 * count + 4 * BLOCK));
-        vectors.resize_with(n, 0, |_, _| 0.0);
-        vectors
-    };
-    let mut basis = Basis { rigid, m_rigid, vectors: room(), m_vectors: room() };
+    let mut scratch = operator.solve_scratch(BLOCK)?;
+    let mut basis = Basis::new(mass, rigid, available.min(4 * count + 4 * BLOCK));
     // Projection of the operator; row and column blocks grow with the basis.
     let mut projected: Mat<f64> = Mat::zeros(0, 0);
-    let mut block_solves = 0;
 
     let mut seed = 1;
-    let mut last = basis.extend(mass, random_block(n, BLOCK.min(available), &mut seed), 0.0)?.columns;
-    for step in 1..=max_steps {
-        let size = basis.vectors.ncols();
-        let mut w = basis.m_vectors.get(.., size - last..).to_owned();
-        operator.solve_in_place(w.as_mut())?;
-        block_solves += 1;
-        let scale = block_norm(mass, &w);
-        let extension = basis.extend(mass, w, scale)?;
+    let mut w = random_block(n, BLOCK.min(available), &mut seed);
+    let mut last = basis.extend(&mut w)?.columns;
+    let (mut converged, mut residual) = (0, f64::INFINITY);
+    for block_solves in 1..=max_steps {
+        let size = basis.size();
+        w.resize_with(n, last, |_, _| 0.0);
+        w.copy_from(basis.m_vectors.subcols(FIXED + size - last, last));
+        operator.solve_in_place(w.as_mut(), &mut scratch);
+        let extension = basis.extend(&mut w)?;
         // Columns of T for the block that the operator was applied to.
         let mut grown = Mat::zeros(size, size);
         grown.as_mut().submatrix_mut(0, 0, projected.nrows(), projected.ncols()).copy_from(&projected);
@@ -72,58 +76,46 @@ pub(crate) fn largest_pairs(
         }
         projected = grown;
 
-        let eigen = projected.self_adjoint_eigen(Side::Lower).map_err(|_| ModalError::DenseEigen { size })?;
+        let (eigenvalues, eigenvectors) = symmetric_eigen(&projected)?;
         let exhausted = size >= available;
-        // faer sorts upwards; the wanted ones are the last.
+        // The wanted ones are the last.
         let wanted: Vec<usize> = (0..size).rev().take(count).collect();
-        let mu: Vec<f64> = wanted.iter().map(|i| eigen.S().column_vector()[*i]).collect();
+        let mu: Vec<f64> = wanted.iter().map(|i| eigenvalues[*i]).collect();
         let residuals: Vec<f64> = wanted
             .iter()
             .zip(&mu)
             .map(|(i, mu)| {
-                let tail = eigen.U().submatrix(from, *i, last, 1);
+                let tail = eigenvectors.submatrix(from, *i, last, 1);
                 (&extension.coupling * tail).norm_l2() / mu.abs()
             })
             .collect();
-        let converged = residuals.iter().take_while(|r| **r < TOLERANCE).count();
+        converged = residuals.iter().take_while(|r| **r < TOLERANCE).count();
+        residual = residuals.iter().copied().fold(0.0, f64::max);
         report(converged);
         if wanted.len() == count && (converged == count || exhausted) {
-            let coefficients = Mat::from_fn(size, count, |i, j| eigen.U()[(i, wanted[j])]);
-            let vectors = basis.vectors.get(.., ..size) * &coefficients;
+            let coefficients = Mat::from_fn(size, count, |i, j| eigenvectors[(i, wanted[j])]);
+            let vectors = tall::product(basis.vectors.subcols(FIXED, size), coefficients.as_ref());
             return Ok(LanczosPairs { vectors, residuals, block_solves, basis_size: size });
         }
         last = extension.columns;
         if last == 0 {
             // The basis spans an invariant subspace: go on from elsewhere, uncoupled from it.
-            let fresh = random_block(n, BLOCK.min(available - size), &mut seed);
-            last = basis.extend(mass, fresh, 0.0)?.columns;
-        }
-        if step == max_steps {
-            let residual = residuals.iter().copied().fold(0.0, f64::max);
-            return Err(ModalError::NotConverged {
-                converged,
-                requested: count,
-                steps: step,
-                residual,
-                tolerance: TOLERANCE,
-            });
+            w = random_block(n, BLOCK.min(available - size), &mut seed);
+            last = basis.extend(&mut w)?.columns;
         }
     }
-    Err(ModalError::NotConverged {
-        converged: 0,
-        requested: count,
-        steps: max_steps,
-        residual: f64::INFINITY,
-        tolerance: TOLERANCE,
-    })
+    Err(ModalError::NotConverged { converged, requested: count, steps: max_steps, residual, tolerance: TOLERANCE })
 }
 
-/// An M-orthonormal basis beside the rigid modes.
+/// An M-orthonormal basis. Its first [`FIXED`] vectors are the rigid modes, which the search stays away from.
 struct Basis<'a> {
-    rigid: MatRef<'a, f64>,
-    m_rigid: Mat<f64>,
+    mass: &'a NodalMass,
     vectors: Mat<f64>,
     m_vectors: Mat<f64>,
+    // Scratch of a block's size, used again for each block.
+    m_w: Mat<f64>,
+    spare: Mat<f64>,
+    packed: Vec<Packed>,
 }
 
 /// What a new block looks like in the basis: `W = V·coefficients + Q·coupling`.
@@ -134,65 +126,108 @@ struct Extension {
     columns: usize,
 }
 
-impl Basis<'_> {
-    /// Makes `w` M-orthogonal to the basis and to the rigid modes, M-orthonormalises it and appends it.
-    /// Directions smaller than [`DEPENDENT`]·`scale` are dropped.
-    fn extend(&mut self, mass: &NodalMass, mut w: Mat<f64>, scale: f64) -> Result<Extension, ModalError> {
-        let width = w.ncols();
-        let mut coefficients = Mat::zeros(self.vectors.ncols(), width);
-        for _pass in 0..2 {
-            w -= self.rigid * (self.m_rigid.transpose() * &w);
-            let h = self.m_vectors.transpose() * &w;
-            w -= &self.vectors * &h;
-            coefficients += h;
+impl<'a> Basis<'a> {
+    fn new(mass: &'a NodalMass, rigid: MatRef<'_, f64>, room: usize) -> Self {
+        let with_room = |columns: MatRef<'_, f64>| {
+            let mut matrix = Mat::with_capacity(columns.nrows(), FIXED + room);
+            append(&mut matrix, columns);
+            matrix
+        };
+        Self {
+            mass,
+            vectors: with_room(rigid),
+            m_vectors: with_room(mass.product(rigid).as_ref()),
+            m_w: Mat::new(),
+            spare: Mat::new(),
+            packed: Vec::new(),
         }
-        // SVQB, twice: the second pass repairs what the first loses where the block is nearly dependent.
-        let (transform, inverse) = orthonormalizer(&w, &mass.product(w.as_ref()), scale)?;
-        w = &w * transform;
-        let mut coupling = inverse;
-        if w.ncols() > 0 {
-            w -= self.rigid * (self.m_rigid.transpose() * &w);
-            w -= &self.vectors * (self.m_vectors.transpose() * &w);
-            let m_w = mass.product(w.as_ref());
-            let (transform, inverse) = orthonormalizer(&w, &m_w, 0.0)?;
-            w = &w * &transform;
-            append(&mut self.m_vectors, &(m_w * transform));
-            append(&mut self.vectors, &w);
-            coupling = inverse * coupling;
+    }
+
+    /// Vectors beside the rigid modes.
+    fn size(&self) -> usize {
+        self.vectors.ncols() - FIXED
+    }
+
+    /// Makes `w` M-orthogonal to the basis and M-orthonormal, and appends it; `w` is used up.
+    /// Directions smaller than [`DEPENDENT`] times the block are dropped.
+    fn extend(&mut self, w: &mut Mat<f64>) -> Result<Extension, ModalError> {
+        let size = self.size();
+        let mut coefficients = Mat::zeros(FIXED + size, w.ncols());
+        let mut coupling = Mat::identity(w.ncols(), w.ncols());
+        for round in 0..MAX_ROUNDS {
+            let h = tall::inner(self.m_vectors.as_ref(), w.as_ref());
+            tall::multiply(w.as_mut(), Accum::Add, self.vectors.as_ref(), h.as_ref(), -1.0);
+            self.m_w.resize_with(w.nrows(), w.ncols(), |_, _| 0.0);
+            self.mass.product_into(w.as_ref(), self.m_w.as_mut(), &mut self.packed);
+            let gram = tall::inner(w.as_ref(), self.m_w.as_ref());
+            let svqb = if round == 0 { Svqb::first(&gram, &h)? } else { Svqb::again(&gram)? };
+            coefficients += h * &coupling;
+            coupling = svqb.inverse * coupling;
+            times(w, &svqb.transform, &mut self.spare);
+            if round > 0 && svqb.well_conditioned {
+                times(&mut self.m_w, &svqb.transform, &mut self.spare);
+                break;
+            }
         }
-        Ok(Extension { coefficients, coupling, columns: w.ncols() })
+        append(&mut self.vectors, w.as_ref());
+        append(&mut self.m_vectors, self.m_w.as_ref());
+        Ok(Extension { coefficients: coefficients.subrows(FIXED, size).to_owned(), coupling, columns: w.ncols() })
     }
 }
 
-/// `(S, S⁺)` such that W·S is M-orthonormal and W = (W·S)·S⁺ up to what is dropped.
-fn orthonormalizer(w: &Mat<f64>, m_w: &Mat<f64>, scale: f64) -> Result<(Mat<f64>, Mat<f64>), ModalError> {
-    let gram = w.transpose() * m_w;
-    let size = gram.nrows();
-    let norms: Vec<f64> = (0..size).map(|i| gram[(i, i)].max(0.0).sqrt()).collect();
-    let unit = |i: usize| if norms[i] > 0.0 { 1.0 / norms[i] } else { 0.0 };
-    let scaled = Mat::from_fn(size, size, |i, j| 0.5 * (gram[(i, j)] + gram[(j, i)]) * unit(i) * unit(j));
-    let eigen = scaled.self_adjoint_eigen(Side::Lower).map_err(|_| ModalError::DenseEigen { size })?;
-    let value = |k: usize| eigen.S().column_vector()[k];
-    // A direction counts while its length against the block's is above rounding.
-    let length = |k: usize| {
-        value(k).max(0.0).sqrt() * (0..size).map(|i| (eigen.U()[(i, k)] * norms[i]).powi(2)).sum::<f64>().sqrt()
-    };
-    let kept: Vec<usize> = (0..size).filter(|k| value(*k) > 1e-14 && length(*k) > DEPENDENT * scale).collect();
-    let transform = Mat::from_fn(size, kept.len(), |i, j| unit(i) * eigen.U()[(i, kept[j])] / value(kept[j]).sqrt());
-    let inverse = Mat::from_fn(kept.len(), size, |i, j| value(kept[i]).sqrt() * eigen.U()[(j, kept[i])] * norms[j]);
-    Ok((transform, inverse))
+/// Replaces `block` by `block·transform`.
+fn times(block: &mut Mat<f64>, transform: &Mat<f64>, spare: &mut Mat<f64>) {
+    spare.resize_with(block.nrows(), transform.ncols(), |_, _| 0.0);
+    tall::multiply(spare.as_mut(), Accum::Replace, block.as_ref(), transform.as_ref(), 1.0);
+    std::mem::swap(block, spare);
 }
 
-/// Largest M-norm of the columns.
-fn block_norm(mass: &NodalMass, w: &Mat<f64>) -> f64 {
-    let m_w = mass.product(w.as_ref());
-    (0..w.ncols()).map(|j| (w.col(j).transpose() * m_w.col(j)).max(0.0).sqrt()).fold(0.0, f64::max)
+/// Orthonormalisation of a block from its Gram matrix WᵀMW: W·transform is closer to orthonormal than W, and
+/// W = (W·transform)·inverse up to what is dropped.
+struct Svqb {
+    transform: Mat<f64>,
+    inverse: Mat<f64>,
+    /// The block was so far from dependent that W·transform is orthonormal to rounding.
+    well_conditioned: bool,
+}
+
+impl Svqb {
+    /// For a block out of which the `coefficients` were taken. Nothing counts that is rounding of what was taken out.
+    ///
+    /// The Gram matrix does not see directions below 1e-8 of the block. They are not dropped, which would lose
+    /// eigenvectors, but stretched as far as is safe: the next round sees them.
+    fn first(gram: &Mat<f64>, coefficients: &Mat<f64>) -> Result<Self, ModalError> {
+        let norms: Vec<f64> = (0..gram.nrows()).map(|i| gram[(i, i)].max(0.0).sqrt()).collect();
+        let before = (0..norms.len()).map(|j| norms[j].hypot(coefficients.col(j).norm_l2())).fold(0.0, f64::max);
+        Self::new(gram, &norms, |_, length| length > DEPENDENT * before)
+    }
+
+    /// For a block that [`first`](Self::first) has scaled: what is still small is rounding.
+    fn again(gram: &Mat<f64>) -> Result<Self, ModalError> {
+        Self::new(gram, &vec![1.0; gram.nrows()], |value, _| value > DEPENDENT)
+    }
+
+    /// `norms` scale the columns; `keep` is asked with each eigenvalue of the scaled Gram matrix and its length in W.
+    fn new(gram: &Mat<f64>, norms: &[f64], keep: impl Fn(f64, f64) -> bool) -> Result<Self, ModalError> {
+        let size = gram.nrows();
+        let unit = |i: usize| if norms[i] > 0.0 { 1.0 / norms[i] } else { 0.0 };
+        let scaled = Mat::from_fn(size, size, |i, j| 0.5 * (gram[(i, j)] + gram[(j, i)]) * unit(i) * unit(j));
+        let (values, u) = symmetric_eigen(&scaled)?;
+        let root = |k: usize| values[k].max(STRETCH * STRETCH).sqrt();
+        let length = |k: usize| root(k) * (0..size).map(|i| (u[(i, k)] * norms[i]).powi(2)).sum::<f64>().sqrt();
+        let kept: Vec<usize> = (0..size).filter(|k| keep(values[*k], length(*k))).collect();
+        Ok(Self {
+            transform: Mat::from_fn(size, kept.len(), |i, j| unit(i) * u[(i, kept[j])] / root(kept[j])),
+            inverse: Mat::from_fn(kept.len(), size, |i, j| root(kept[i]) * u[(j, kept[i])] * norms[j]),
+            well_conditioned: kept.iter().all(|k| values[*k] > 0.5),
+        })
+    }
 }
 
 /// Puts `right` beside the columns of `left`.
-fn append(left: &mut Mat<f64>, right: &Mat<f64>) {
+fn append(left: &mut Mat<f64>, right: MatRef<'_, f64>) {
     let columns = left.ncols();
-    left.resize_with(left.nrows(), columns + right.ncols(), |i, j| right[(i, j - columns)]);
+    left.resize_with(right.nrows(), columns + right.ncols(), |i, j| right[(i, j - columns)]);
 }
 
 /// Numbers in (−1, 1) from a 64-bit linear congruential generator: the same on every run and machine.

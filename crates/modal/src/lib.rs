@@ -11,6 +11,7 @@
 //!
 //! [`ReducedBody`] holds the constants that the motion of the body needs, with nothing of the mesh's size.
 
+mod dense;
 mod error;
 mod lanczos;
 mod mass;
@@ -21,6 +22,8 @@ mod rigid;
 mod shifted;
 mod solve;
 mod start;
+mod symmetry;
+mod tall;
 
 pub use error::ModalError;
 pub use mass::NodalMass;

@@ -1,11 +1,12 @@
 //! The mass matrix as a matrix over nodes: `M = M_s ⊗ I₃`.
 
 use faer::sparse::SparseColMatRef;
-use faer::{Mat, MatRef};
+use faer::{Mat, MatMut, MatRef};
 use rayon::prelude::*;
 
 use crate::error::ModalError;
-use crate::products::nodal_product;
+use crate::products::{Packed, nodal_product};
+use crate::symmetry::check_symmetric;
 
 /// An entry that differs from those of the other axes by more than this, relative to the diagonals, is no rounding.
 const ISOTROPY: f64 = 1e-12;
@@ -24,7 +25,7 @@ impl NodalMass {
     /// Takes `M_s` out of M (3n×3n, both triangles stored).
     ///
     /// # Errors
-    /// [`ModalError::AnisotropicMass`] where M is not `M_s ⊗ I₃`.
+    /// [`ModalError::AnisotropicMass`] where M is not `M_s ⊗ I₃`, [`ModalError::NotSymmetric`] where M_s is not symmetric.
     pub fn new(mass: SparseColMatRef<'_, usize, f64>) -> Result<Self, ModalError> {
         let n = mass.ncols() / 3;
         let entry = |row: usize, column: usize| mass.get(row, column).copied().unwrap_or(0.0);
@@ -72,17 +73,30 @@ impl NodalMass {
             values.extend(column.iter().map(|(_, value)| *value));
             start.push(nodes.len());
         }
+        check_symmetric("mass", 3, &start, |entry| nodes[entry] as usize, |entry| values[entry])?;
         Ok(Self { start, nodes, values })
     }
 
     /// M·X for X with 3n rows.
     pub(crate) fn product(&self, x: MatRef<'_, f64>) -> Mat<f64> {
-        nodal_product(&self.start, &self.nodes, &self.values, x)
+        let mut y = Mat::zeros(x.nrows(), x.ncols());
+        self.product_into(x, y.as_mut(), &mut Vec::new());
+        y
+    }
+
+    /// Y = M·X for X with 3n rows; `packed` is scratch that can be used again.
+    pub(crate) fn product_into(&self, x: MatRef<'_, f64>, y: MatMut<'_, f64>, packed: &mut Vec<Packed>) {
+        nodal_product(&self.start, &self.nodes, &self.values, x, y, packed);
     }
 
     /// Sums over the columns: the mass that each node stands for (n).
     pub(crate) fn row_sums(&self) -> Vec<f64> {
         self.start.windows(2).map(|range| self.values[range[0]..range[1]].iter().sum()).collect()
+    }
+
+    /// Number of nodes that have a mass at all.
+    pub(crate) fn massive_count(&self) -> usize {
+        self.start.windows(2).filter(|range| range[0] < range[1]).count()
     }
 
     /// Number of nodes n.

@@ -2,10 +2,13 @@
 //!
 //! The three degrees of freedom of a node stay together, so the graph to order is a ninth of the matrix.
 
+use std::sync::{Mutex, PoisonError};
+
 use faer::perm::Perm;
 use faer::sparse::SymbolicSparseColMatRef;
 
 use crate::error::ModalError;
+use crate::symmetry::check_symmetric;
 
 /// A fill-reducing ordering of the degrees of freedom of a matrix with 3×3 blocks.
 pub(crate) fn nested_dissection(pattern: SymbolicSparseColMatRef<'_, usize>) -> Result<Perm<usize>, ModalError> {
@@ -24,6 +27,19 @@ pub(crate) fn nested_dissection(pattern: SymbolicSparseColMatRef<'_, usize>) -> 
         neighbours.extend(of_node.into_iter().filter(|other| *other as usize != node));
         start.push(neighbours.len() as metis_sys::idx_t);
     }
+    if neighbours.len() > metis_sys::idx_t::MAX as usize {
+        let reason = "the graph of the nodes is too large for METIS".to_owned();
+        return Err(ModalError::Factorization { size: 3 * n, reason });
+    }
+    // METIS takes it for granted; zeros that are stored on one side only would break it.
+    let offsets: Vec<usize> = start.iter().map(|s| *s as usize).collect();
+    check_symmetric(
+        "stored pattern of the shifted stiffness",
+        3,
+        &offsets,
+        |entry| neighbours[entry] as usize,
+        |_| 0.0,
+    )?;
     let (mut order, mut place) = (vec![0; n], vec![0; n]);
     dissect(&mut start, &mut neighbours, &mut order, &mut place)?;
 
@@ -32,6 +48,10 @@ pub(crate) fn nested_dissection(pattern: SymbolicSparseColMatRef<'_, usize>) -> 
     };
     Ok(Perm::new_checked(expand(order), expand(place), 3 * n))
 }
+
+/// METIS has one random number generator for the whole process: two calls at a time would race for it, and the
+/// ordering, with it the last digits of the modes, would differ from run to run.
+static METIS: Mutex<()> = Mutex::new(());
 
 /// METIS_NodeND: `order[new] = old`, `place[old] = new`.
 fn dissect(
@@ -48,9 +68,12 @@ fn dissect(
         return Ok(());
     }
     let mut n = order.len() as metis_sys::idx_t;
-    // SAFETY: METIS has no other interface than C. The arrays are a valid compressed graph of n nodes
-    // (start has n + 1 entries, the last of them neighbours.len(), every neighbour is below n), the two results
-    // have room for n numbers, and null pointers stand for "no weights" and "default options" as its manual says.
+    // A poisoned lock is as good: METIS seeds its generator anew in every call.
+    let _one_at_a_time = METIS.lock().unwrap_or_else(PoisonError::into_inner);
+    // SAFETY: METIS has no other interface than C. The arrays are a valid compressed graph of n nodes (start has n + 1
+    // entries, the last of them neighbours.len(), every neighbour is below n and has the node for a neighbour), the two
+    // results have room for n numbers, null pointers stand for "no weights" and "default options" as its manual says,
+    // and the lock keeps a second call out.
     #[allow(unsafe_code)]
     let status = unsafe {
         metis_sys::METIS_NodeND(

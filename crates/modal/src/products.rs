@@ -3,93 +3,98 @@
 //! The block is repacked so that the numbers of a row lie side by side: the matrix is then read once for
 //! [`WIDTH`] vectors and each of its entries meets one contiguous run.
 
+use faer::reborrow::ReborrowMut;
 use faer::sparse::SparseColMatRef;
 use faer::{Mat, MatMut, MatRef};
 use rayon::prelude::*;
 
 /// Vectors handled in one pass over the matrix.
-const WIDTH: usize = 8;
-/// Rows that one task computes.
-const ROWS_PER_TASK: usize = 512;
+pub(crate) const WIDTH: usize = 8;
+/// Nodes that one task computes.
+const NODES_PER_TASK: usize = 128;
 
-/// A·X for a symmetric A with both triangles stored.
+/// One row of a packed block.
+pub(crate) type Packed = [f64; WIDTH];
+
+/// A·X for a symmetric A (3n×3n) with both triangles stored.
 pub(crate) fn symmetric_product(a: SparseColMatRef<'_, usize, f64>, x: MatRef<'_, f64>) -> Mat<f64> {
     let (col_ptr, row_idx, values) = (a.symbolic().col_ptr(), a.symbolic().row_idx(), a.val());
-    blocked(x, 1, |row, packed| {
-        // Column `row` of a symmetric matrix is its row.
-        let mut sum = [0.0; WIDTH];
-        for entry in col_ptr[row]..col_ptr[row + 1] {
-            let value = values[entry];
-            for (s, x) in sum.iter_mut().zip(&packed[row_idx[entry]]) {
-                *s += value * x;
-            }
-        }
-        [sum; 1]
-    })
-}
-
-/// (A ⊗ I₃)·X for a symmetric matrix A over nodes, in compressed rows.
-pub(crate) fn nodal_product(start: &[usize], nodes: &[u32], values: &[f64], x: MatRef<'_, f64>) -> Mat<f64> {
-    blocked(x, 3, |node, packed| {
-        let mut sum = [[0.0; WIDTH]; 3];
-        for entry in start[node]..start[node + 1] {
-            let value = values[entry];
-            let rows = &packed[3 * nodes[entry] as usize..];
-            for (s, x) in sum.iter_mut().zip(rows) {
-                for (s, x) in s.iter_mut().zip(x) {
-                    *s += value * x;
-                }
-            }
-        }
-        sum
-    })
-}
-
-/// Applies `row_sums`, which gives `D` rows of the product at a time, to each run of [`WIDTH`] columns of `x`.
-fn blocked<const D: usize>(
-    x: MatRef<'_, f64>,
-    rows_at_once: usize,
-    row_sums: impl Fn(usize, &[[f64; WIDTH]]) -> [[f64; WIDTH]; D] + Sync,
-) -> Mat<f64> {
-    debug_assert_eq!(rows_at_once, D);
     let mut y = Mat::zeros(x.nrows(), x.ncols());
-    let mut packed = vec![[0.0; WIDTH]; x.nrows()];
-    let mut product = vec![[0.0; WIDTH]; x.nrows()];
-    for first in (0..x.ncols()).step_by(WIDTH) {
-        let width = WIDTH.min(x.ncols() - first);
-        let columns = x.subcols(first, width);
-        pack(columns, &mut packed);
-        product.par_chunks_mut(D * ROWS_PER_TASK).enumerate().for_each(|(task, rows)| {
-            for (i, rows) in rows.chunks_exact_mut(D).enumerate() {
-                rows.copy_from_slice(&row_sums(task * ROWS_PER_TASK + i, &packed));
+    blocked(x, y.as_mut(), &mut Vec::new(), |node, packed| {
+        std::array::from_fn(|axis| {
+            // A column of a symmetric matrix is its row.
+            let column = 3 * node + axis;
+            let mut sum = [0.0; WIDTH];
+            for entry in col_ptr[column]..col_ptr[column + 1] {
+                add_scaled(&mut sum, values[entry], &packed[row_idx[entry]]);
             }
-        });
-        unpack(&product, y.as_mut().subcols_mut(first, width));
-    }
+            sum
+        })
+    });
     y
 }
 
-fn pack(columns: MatRef<'_, f64>, packed: &mut [[f64; WIDTH]]) {
-    for c in 0..WIDTH {
-        if c < columns.ncols() {
-            for (packed, x) in packed.iter_mut().zip(columns.col(c).iter()) {
-                packed[c] = *x;
+/// Y = (A ⊗ I₃)·X for a symmetric matrix A over nodes, in compressed rows. `packed` is scratch.
+pub(crate) fn nodal_product(
+    start: &[usize],
+    nodes: &[u32],
+    values: &[f64],
+    x: MatRef<'_, f64>,
+    y: MatMut<'_, f64>,
+    packed: &mut Vec<Packed>,
+) {
+    blocked(x, y, packed, |node, packed| {
+        let mut sums = [[0.0; WIDTH]; 3];
+        for entry in start[node]..start[node + 1] {
+            let rows = &packed[3 * nodes[entry] as usize..];
+            for (sum, x) in sums.iter_mut().zip(rows) {
+                add_scaled(sum, values[entry], x);
             }
-        } else {
-            packed.iter_mut().for_each(|packed| packed[c] = 0.0);
         }
+        sums
+    });
+}
+
+fn add_scaled(sum: &mut Packed, value: f64, x: &Packed) {
+    for (s, x) in sum.iter_mut().zip(x) {
+        *s += value * x;
     }
 }
 
-fn unpack(product: &[[f64; WIDTH]], mut columns: MatMut<'_, f64>) {
-    for c in 0..columns.ncols() {
-        for (product, y) in product.iter().zip(columns.rb_mut().col_mut(c).iter_mut()) {
-            *y = product[c];
-        }
+/// Applies `node_sums`, which gives the three rows of a node in the product, to each run of [`WIDTH`] columns of `x`.
+fn blocked(
+    x: MatRef<'_, f64>,
+    mut y: MatMut<'_, f64>,
+    packed: &mut Vec<Packed>,
+    node_sums: impl Fn(usize, &[Packed]) -> [Packed; 3] + Sync,
+) {
+    packed.resize(x.nrows(), [0.0; WIDTH]);
+    for first in (0..x.ncols()).step_by(WIDTH) {
+        let width = WIDTH.min(x.ncols() - first);
+        let columns = x.subcols(first, width);
+        packed.par_chunks_mut(3 * NODES_PER_TASK).enumerate().for_each(|(task, rows)| {
+            let columns = columns.subrows(3 * NODES_PER_TASK * task, rows.len());
+            for (c, column) in columns.col_iter().enumerate() {
+                for (row, value) in rows.iter_mut().zip(column.iter()) {
+                    row[c] = *value;
+                }
+            }
+        });
+        y.rb_mut().subcols_mut(first, width).par_row_chunks_mut(3 * NODES_PER_TASK).enumerate().for_each(
+            |(task, mut rows)| {
+                let mut sums = [[0.0; WIDTH]; 3 * NODES_PER_TASK];
+                for (i, sums) in sums[..rows.nrows()].chunks_exact_mut(3).enumerate() {
+                    sums.copy_from_slice(&node_sums(NODES_PER_TASK * task + i, packed));
+                }
+                for (c, column) in rows.rb_mut().col_iter_mut().enumerate() {
+                    for (value, sums) in column.iter_mut().zip(&sums) {
+                        *value = sums[c];
+                    }
+                }
+            },
+        );
     }
 }
-
-use faer::reborrow::ReborrowMut;
 
 #[cfg(test)]
 mod tests {
@@ -112,7 +117,8 @@ mod tests {
             let expected = a3.to_dense() * &x;
             let general = symmetric_product(a3.as_ref(), x.as_ref());
             let indices: Vec<u32> = a.row_idx().iter().map(|i| *i as u32).collect();
-            let nodal = nodal_product(a.col_ptr(), &indices, a.val(), x.as_ref());
+            let mut nodal = Mat::zeros(3 * nodes, columns);
+            nodal_product(a.col_ptr(), &indices, a.val(), x.as_ref(), nodal.as_mut(), &mut Vec::new());
             assert!((&general - &expected).norm_max() < 1e-13);
             assert!((&nodal - &expected).norm_max() < 1e-13);
         }

@@ -17,6 +17,7 @@ use nalgebra::{Matrix3, Vector3};
 use crate::error::ModalError;
 use crate::mass::NodalMass;
 use crate::solve::Modes;
+use crate::tall;
 
 /// The six pairs ij of a symmetric 3×3 matrix, in the order of [`ReducedBody::inertia_first`].
 pub(crate) const PAIRS: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1)];
@@ -85,11 +86,16 @@ impl ReducedBody {
         let rows: [Mat<f64>; 3] = std::array::from_fn(|axis| on_axis(&all, axis));
         let m_rows: [Mat<f64>; 3] = std::array::from_fn(|axis| on_axis(&m_all, axis));
         let products: [[Mat<f64>; 3]; 3] =
-            std::array::from_fn(|a| std::array::from_fn(|b| rows[a].transpose() * &m_rows[b]));
+            std::array::from_fn(|a| std::array::from_fn(|b| tall::inner(rows[a].as_ref(), m_rows[b].as_ref())));
 
         let modal = 6 + nf;
-        let rotation_products =
-            std::array::from_fn(|a| std::array::from_fn(|b| products[a][b].get(..modal, ..modal).to_owned()));
+        let rotation_products = std::array::from_fn(|a| {
+            std::array::from_fn(|b| {
+                let mut product = products[a][b].get(..modal, ..modal).to_owned();
+                set_translations(&mut product, a, b);
+                product
+            })
+        });
         let position_products = std::array::from_fn(|a| {
             std::array::from_fn(|b| (0..modal).map(|k| products[a][b][(k, modal)]).collect::<Vec<f64>>())
         });
@@ -135,6 +141,21 @@ impl ReducedBody {
         self.circular_frequencies.len()
     }
 
+    /// The same body with its first `flexible` modes only: every constant is a leading part of the one here.
+    pub fn truncated(&self, flexible: usize) -> Self {
+        let nf = flexible.min(self.flexible());
+        let leading = |matrix: &Mat<f64>, size: usize| matrix.get(..size, ..size).to_owned();
+        Self {
+            circular_frequencies: self.circular_frequencies[..nf].to_vec(),
+            rotation_products: self.rotation_products.each_ref().map(|r| r.each_ref().map(|m| leading(m, 6 + nf))),
+            position_products: self.position_products.each_ref().map(|r| r.each_ref().map(|v| v[..6 + nf].to_vec())),
+            inertia_first: self.inertia_first.each_ref().map(|v| v[..nf].to_vec()),
+            inertia_second: self.inertia_second.each_ref().map(|m| leading(m, nf)),
+            gyroscopic: self.gyroscopic.each_ref().map(|m| leading(m, nf)),
+            ..*self
+        }
+    }
+
     /// Rows of the rigid shapes at a point X from the centre of mass (3×6): `[I/√m, −[X×] B]`.
     pub fn rigid_shapes(&self, position_body: &Vector3<f64>) -> nalgebra::Matrix3x6<f64> {
         let mut shapes = nalgebra::Matrix3x6::zeros();
@@ -143,6 +164,19 @@ impl ReducedBody {
         shapes.fixed_view_mut::<3, 3>(0, 3).copy_from(&(-position_body.cross_matrix() * self.rotation_basis));
         shapes
     }
+}
+
+/// Rows and columns of E_ab that belong to translations, as the geometry has them: a translation couples to another one
+/// only, since all other modes leave the centre of mass where it is. With rounding left in them, a long motion would
+/// leak momentum.
+fn set_translations(product: &mut Mat<f64>, a: usize, b: usize) {
+    for i in 0..3 {
+        for j in 0..product.ncols() {
+            product[(i, j)] = 0.0;
+            product[(j, i)] = 0.0;
+        }
+    }
+    product[(a, b)] = 1.0;
 }
 
 impl BodyPoint {

@@ -1,14 +1,15 @@
 //! The six rigid modes of a free body, from its geometry alone.
 
+use faer::Mat;
 use faer::sparse::SparseColMatRef;
-use faer::{Mat, MatRef};
 use nalgebra::{Matrix3, Vector3};
 
 use crate::error::ModalError;
 use crate::mass::NodalMass;
 use crate::products::symmetric_product;
+use crate::tall;
 
-/// ‖K r‖ relative to ‖|K| |r|‖ that rounding in the assembly of K may leave.
+/// ‖K r‖ relative to ‖D r‖, D the diagonal of K, that rounding in the assembly of K may leave.
 const FREE: f64 = 1e-9;
 const MOTIONS: [&str; 6] = [
     "translation along x",
@@ -54,7 +55,7 @@ impl RigidModes {
 
         // M is the same for each axis: ∫ρ X_a X_b needs X_b on the axis a, so the three axes make three vectors.
         let on_axis = Mat::from_fn(3 * positions.len(), 3, |i, b| if i % 3 == 0 { offset(i / 3)[b] } else { 0.0 });
-        let second = on_axis.transpose() * mass.product(on_axis.as_ref());
+        let second = tall::inner(on_axis.as_ref(), mass.product(on_axis.as_ref()).as_ref());
         let second = Matrix3::from_fn(|a, b| 0.5 * (second[(a, b)] + second[(b, a)]));
         let inertia = Matrix3::identity() * second.trace() - second;
         let no_inertia = || ModalError::NoInertia { mass: total, inertia: inertia.diagonal().into() };
@@ -78,21 +79,14 @@ impl RigidModes {
     /// Checks that K resists none of the rigid motions.
     pub(crate) fn check_free(&self, stiffness: SparseColMatRef<'_, usize, f64>) -> Result<(), ModalError> {
         let forces = symmetric_product(stiffness, self.shapes.as_ref());
-        let scales = absolute_product(stiffness, self.shapes.as_ref());
+        let diagonal = |i: usize| stiffness.get(i, i).copied().unwrap_or(0.0);
+        let scales = Mat::from_fn(forces.nrows(), 6, |i, mode| diagonal(i) * self.shapes[(i, mode)]);
         for (mode, motion) in MOTIONS.into_iter().enumerate() {
             let relative = forces.col(mode).norm_l2() / scales.col(mode).norm_l2();
-            // Written so that NaN is refused too.
-            if !(relative < FREE) {
+            if relative.is_nan() || relative >= FREE {
                 return Err(ModalError::NotFree { motion, relative, limit: FREE });
             }
         }
         Ok(())
     }
-}
-
-/// |K| |X|: the size that the terms of K X have before they cancel.
-fn absolute_product(stiffness: SparseColMatRef<'_, usize, f64>, x: MatRef<'_, f64>) -> Mat<f64> {
-    let magnitudes: Vec<f64> = stiffness.val().iter().map(|k| k.abs()).collect();
-    let x = Mat::from_fn(x.nrows(), x.ncols(), |i, j| x[(i, j)].abs());
-    symmetric_product(SparseColMatRef::new(stiffness.symbolic(), &magnitudes), x.as_ref())
 }

@@ -68,22 +68,25 @@ impl Shifted {
         self.values.len()
     }
 
+    /// Scratch memory for [`solve_in_place`](Self::solve_in_place) with up to `columns` columns.
+    pub(crate) fn solve_scratch(&self, columns: usize) -> Result<MemBuffer, ModalError> {
+        MemBuffer::try_new(self.symbolic.solve_in_place_scratch::<f64>(columns, self.par))
+            .map_err(|_| failed(self.symbolic.ncols(), "no memory left"))
+    }
+
     /// Replaces `x` by (K + sM)⁻¹ x.
-    pub(crate) fn solve_in_place(&self, x: MatMut<'_, f64>) -> Result<(), ModalError> {
-        let mut memory = MemBuffer::try_new(self.symbolic.solve_in_place_scratch::<f64>(x.ncols(), self.par))
-            .map_err(|_| failed(x.nrows(), "no memory left"))?;
+    pub(crate) fn solve_in_place(&self, x: MatMut<'_, f64>, scratch: &mut MemBuffer) {
         LltRef::new(&self.symbolic, &self.values).solve_in_place_with_conj(
             Conj::No,
             x,
             self.par,
-            MemStack::new(&mut memory),
+            MemStack::new(scratch),
         );
-        Ok(())
     }
 }
 
 /// faer's parallelism on the rayon pool that the caller runs in.
-pub(crate) fn parallelism() -> Par {
+fn parallelism() -> Par {
     if rayon::current_num_threads() == 1 { Par::Seq } else { Par::rayon(0) }
 }
 

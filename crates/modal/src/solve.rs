@@ -6,6 +6,7 @@ use faer::reborrow::Reborrow;
 use faer::sparse::SparseColMatRef;
 use faer::{Mat, Side};
 
+use crate::dense::symmetric_eigen;
 use crate::error::ModalError;
 use crate::lanczos::largest_pairs;
 use crate::mass::NodalMass;
@@ -13,6 +14,8 @@ use crate::products::symmetric_product;
 use crate::rigid::RigidModes;
 use crate::shifted::Shifted;
 use crate::start::eigenvalue_estimate;
+use crate::symmetry::check_symmetric;
+use crate::tall;
 
 /// An eigenvalue below this fraction of the shift has no stiffness behind it.
 const ZERO_ENERGY: f64 = 1e-9;
@@ -99,11 +102,13 @@ pub fn solve(
     let started = Instant::now();
     check_input(stiffness, mass, positions)?;
     let unknowns = 3 * positions.len();
-    let available = unknowns.saturating_sub(6);
+    let (rows, values) = (stiffness.symbolic().row_idx(), stiffness.val());
+    check_symmetric("stiffness", 1, stiffness.symbolic().col_ptr(), |entry| rows[entry], |entry| values[entry])?;
+    let nodal_mass = NodalMass::new(mass)?;
+    let available = (3 * nodal_mass.massive_count()).saturating_sub(6);
     if flexible > available {
         return Err(ModalError::TooManyModes { requested: flexible, available });
     }
-    let nodal_mass = NodalMass::new(mass)?;
     let rigid = RigidModes::new(&nodal_mass, positions)?;
     rigid.check_free(stiffness)?;
     let mut stats = SolveStats { unknowns, ..SolveStats::default() };
@@ -123,7 +128,7 @@ pub fn solve(
     stats.factor_entries = operator.entries();
 
     let started = Instant::now();
-    let pairs = largest_pairs(&operator, &nodal_mass, rigid.shapes.as_ref(), flexible, |converged| {
+    let pairs = largest_pairs(&operator, &nodal_mass, rigid.shapes.as_ref(), flexible, available, |converged| {
         progress(Progress::Lanczos { converged, requested: flexible });
     })?;
     drop(operator);
@@ -132,7 +137,7 @@ pub fn solve(
     stats.lanczos_time = started.elapsed();
 
     let started = Instant::now();
-    let (eigenvalues, mut shapes, force_residuals) = rayleigh_ritz(stiffness, &nodal_mass, &pairs.vectors)?;
+    let RitzPairs { eigenvalues, mut shapes, force_residuals } = rayleigh_ritz(stiffness, &nodal_mass, &pairs.vectors)?;
     refuse_mechanism(&eigenvalues, &shapes, positions, stats.shift)?;
     fix_signs(&mut shapes);
     stats.ritz_time = started.elapsed();
@@ -162,31 +167,38 @@ fn check_input(
     }
 }
 
-/// Rayleigh–Ritz of (K, M) on the span of `vectors`: eigenvalues, M-orthonormal shapes, ‖Kφ − λMφ‖/‖Kφ‖.
+/// Eigenpairs by Rayleigh–Ritz.
+struct RitzPairs {
+    eigenvalues: Vec<f64>,
+    /// M-orthonormal.
+    shapes: Mat<f64>,
+    /// ‖Kφ − λMφ‖ / ‖Kφ‖.
+    force_residuals: Vec<f64>,
+}
+
+/// Rayleigh–Ritz of (K, M) on the span of `vectors`.
 fn rayleigh_ritz(
     stiffness: SparseColMatRef<'_, usize, f64>,
     mass: &NodalMass,
     vectors: &Mat<f64>,
-) -> Result<(Vec<f64>, Mat<f64>, Vec<f64>), ModalError> {
-    let failed = || ModalError::DenseEigen { size: vectors.ncols() };
+) -> Result<RitzPairs, ModalError> {
     let m_vectors = mass.product(vectors.as_ref());
     let k_vectors = symmetric_product(stiffness, vectors.as_ref());
-    let gram = vectors.transpose() * &m_vectors;
+    let gram = tall::inner(vectors.as_ref(), m_vectors.as_ref());
     // Cholesky of the Gram matrix turns the pencil into an ordinary problem: C = L⁻¹ (VᵀKV) L⁻ᵀ.
-    let factor = gram.llt(Side::Lower).map_err(|_| failed())?;
+    let factor = gram.llt(Side::Lower).map_err(|_| ModalError::DenseEigen { size: gram.nrows() })?;
     let mut whitening = Mat::identity(gram.nrows(), gram.nrows());
     faer::linalg::triangular_solve::solve_upper_triangular_in_place(
         factor.L().transpose(),
         whitening.as_mut(),
         faer::Par::Seq,
     );
-    let projected = whitening.transpose() * (vectors.transpose() * &k_vectors) * &whitening;
-    let eigen = projected.self_adjoint_eigen(Side::Lower).map_err(|_| failed())?;
-    let transform = &whitening * eigen.U();
-    let eigenvalues: Vec<f64> = eigen.S().column_vector().iter().copied().collect();
+    let projected = whitening.transpose() * tall::inner(vectors.as_ref(), k_vectors.as_ref()) * &whitening;
+    let (eigenvalues, vectors_of_projected) = symmetric_eigen(&projected)?;
+    let transform = &whitening * vectors_of_projected;
 
-    let k_shapes = &k_vectors * &transform;
-    let m_shapes = &m_vectors * &transform;
+    let k_shapes = tall::product(k_vectors.as_ref(), transform.as_ref());
+    let m_shapes = tall::product(m_vectors.as_ref(), transform.as_ref());
     let force_residuals = eigenvalues
         .iter()
         .enumerate()
@@ -194,7 +206,8 @@ fn rayleigh_ritz(
             (k_shapes.col(k) - m_shapes.col(k) * faer::Scale(*lambda)).norm_l2() / k_shapes.col(k).norm_l2()
         })
         .collect();
-    Ok((eigenvalues, vectors * &transform, force_residuals))
+    let shapes = tall::product(vectors.as_ref(), transform.as_ref());
+    Ok(RitzPairs { eigenvalues, shapes, force_residuals })
 }
 
 fn refuse_mechanism(

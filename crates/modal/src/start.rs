@@ -3,13 +3,15 @@
 //! Rayleigh–Ritz on these 30 fields, six of which are the rigid motions, bounds the first flexible eigenvalue from
 //! above (bending of a slender body is nearly quadratic). That gives the shift its scale, whatever the units.
 
+use faer::Mat;
 use faer::sparse::SparseColMatRef;
-use faer::{Mat, Side};
 
+use crate::dense::symmetric_eigen;
 use crate::error::ModalError;
 use crate::mass::NodalMass;
 use crate::products::symmetric_product;
 use crate::rigid::RigidModes;
+use crate::tall;
 
 /// Directions of the Gram matrix below this are taken for dependent.
 const DEPENDENT: f64 = 1e-10;
@@ -24,20 +26,18 @@ pub(crate) fn eigenvalue_estimate(
     let fields = polynomial_fields(positions, rigid);
     let k_fields = symmetric_product(stiffness, fields.as_ref());
     let m_fields = mass.product(fields.as_ref());
-    let stiffness = fields.transpose() * &k_fields;
-    let gram = fields.transpose() * &m_fields;
-    let coupling = rigid.shapes.transpose() * &m_fields;
+    let stiffness = tall::inner(fields.as_ref(), k_fields.as_ref());
+    let gram = tall::inner(fields.as_ref(), m_fields.as_ref());
+    let coupling = tall::inner(rigid.shapes.as_ref(), m_fields.as_ref());
 
     // Rigid parts are taken out of the Gram matrix; K has none of them to begin with.
     let gram = gram - coupling.transpose() * &coupling;
-    let eigen = gram.self_adjoint_eigen(Side::Lower).map_err(|_| ModalError::DenseEigen { size: gram.nrows() })?;
-    let values: Vec<f64> = eigen.S().column_vector().iter().copied().collect();
+    let (values, vectors) = symmetric_eigen(&gram)?;
     let largest = values.iter().copied().fold(0.0, f64::max);
     let kept: Vec<usize> = (0..values.len()).filter(|i| values[*i] > DEPENDENT * largest).collect();
-    let whitened = Mat::from_fn(gram.nrows(), kept.len(), |i, j| eigen.U()[(i, kept[j])] / values[kept[j]].sqrt());
+    let whitened = Mat::from_fn(gram.nrows(), kept.len(), |i, j| vectors[(i, kept[j])] / values[kept[j]].sqrt());
     let projected = whitened.transpose() * &stiffness * &whitened;
-    let ritz =
-        projected.self_adjoint_eigenvalues(Side::Lower).map_err(|_| ModalError::DenseEigen { size: kept.len() })?;
+    let (ritz, _) = symmetric_eigen(&projected)?;
     // A mechanism may hide among the polynomials with no energy at all; the scale is that of those with some.
     let scale = ritz.iter().copied().fold(0.0, f64::max);
     Ok(ritz.into_iter().filter(|value| *value > 1e-12 * scale).fold(scale, f64::min))

@@ -1,0 +1,11 @@
+//! Modes and reduced bodies of whole meshes.
+
+mod bodies;
+mod closed_forms;
+mod invariance;
+mod oracles;
+mod plate;
+mod reduced_body;
+mod refusals;
+mod repeatability;
+mod spectrum;

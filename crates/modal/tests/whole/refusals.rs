@@ -1,0 +1,169 @@
+//! What is refused, and in what words.
+
+use faer::sparse::{SparseColMat, SparseColMatRef, Triplet};
+use modal::{ModalError, Modes};
+
+use crate::bodies::{Body, CORNER, block, tetrahedra};
+
+type Sparse = SparseColMat<usize, f64>;
+
+/// The matrix with each entry replaced; `None` takes the entry out.
+fn changed(matrix: SparseColMatRef<'_, usize, f64>, change: impl Fn(usize, usize, f64) -> Option<f64>) -> Sparse {
+    let entries: Vec<_> = matrix
+        .triplet_iter()
+        .filter_map(|t| change(t.row, t.col, *t.val).map(|value| Triplet::new(t.row, t.col, value)))
+        .collect();
+    SparseColMat::try_new_from_triplets(matrix.nrows(), matrix.ncols(), &entries).unwrap()
+}
+
+fn small() -> Body {
+    block([10.0, 8.0, 6.0], [1, 1, 1])
+}
+
+fn message(result: Result<Modes, ModalError>, words: &[&str]) -> ModalError {
+    let error = result.unwrap_err();
+    let message = error.to_string();
+    assert!(words.iter().all(|word| message.contains(word)), "{message}");
+    error
+}
+
+/// Solves the small block with its stiffness changed.
+fn with_stiffness(change: impl Fn(usize, usize, f64) -> Option<f64>) -> Result<Modes, ModalError> {
+    let body = small();
+    modal::solve(changed(body.matrices.stiffness(), change).as_ref(), body.matrices.mass(), &body.positions, 3, |_| ())
+}
+
+/// Solves the small block with its mass changed.
+fn with_mass(change: impl Fn(usize, usize, f64) -> Option<f64>) -> Result<Modes, ModalError> {
+    let body = small();
+    modal::solve(body.matrices.stiffness(), changed(body.matrices.mass(), change).as_ref(), &body.positions, 3, |_| ())
+}
+
+#[test]
+fn a_grounded_body() {
+    let error = message(
+        with_stiffness(|i, j, k| Some(if i == 4 && j == 4 { 2.0 * k } else { k })),
+        &["not free", "translation along y", "remove the supports"],
+    );
+    assert!(matches!(error, ModalError::NotFree { .. }));
+}
+
+#[test]
+fn a_hinge_along_a_shared_edge() {
+    // The second tetrahedron shares the edge from (0, 0, 0) to (10, 0, 0) only.
+    let hinge = tetrahedra(&[CORNER, CORNER.map(|x| [x[0], -x[1], -x[2]])]);
+    assert_eq!(hinge.positions.len(), 17);
+    let error = message(hinge.try_modes(4), &["mechanism", "1 mode(s)", "moves most", "Join them by faces"]);
+    match error {
+        ModalError::Mechanism { count: 1, node, position, .. } => {
+            assert_eq!(position, hinge.positions[node]);
+            assert!(position[1] != 0.0 || position[2] != 0.0, "{position:?} is on the hinge");
+        }
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn tetrahedra_that_share_a_node() {
+    let joint = tetrahedra(&[
+        CORNER,
+        CORNER.map(|x| x.map(|c| -c)).into_iter().enumerate().fold(CORNER, |mut t, (i, x)| {
+            // Turned inside out by the reflection; two corners change places.
+            t[[0, 2, 1, 3][i]] = x;
+            t
+        }),
+    ]);
+    assert_eq!(joint.positions.len(), 19);
+    message(joint.try_modes(4), &["mechanism", "3 mode(s)"]);
+}
+
+#[test]
+fn a_negative_stiffness() {
+    let error = message(with_stiffness(|_, _, k| Some(-k)), &["not positive semi-definite", "material"]);
+    assert!(matches!(error, ModalError::Indefinite { .. }));
+}
+
+#[test]
+fn no_stiffness_at_all() {
+    message(with_stiffness(|_, _, _| Some(0.0)), &["not free"]);
+}
+
+#[test]
+fn one_triangle() {
+    message(with_stiffness(|i, j, k| (i >= j).then_some(k)), &["stiffness", "not symmetric", "both triangles"]);
+    message(with_stiffness(|i, j, k| (i <= j).then_some(k)), &["stiffness", "not symmetric", "both triangles"]);
+    message(with_mass(|i, j, m| (i >= j).then_some(m)), &["mass", "not symmetric", "both triangles"]);
+}
+
+#[test]
+fn masses_that_differ_between_axes() {
+    let error = message(with_mass(|i, _, m| Some(if i % 3 == 2 { 1.1 * m } else { m })), &["mass", "identity"]);
+    assert!(matches!(error, ModalError::AnisotropicMass { .. }));
+    let coupled = with_mass(|i, j, m| Some(if i / 3 == j / 3 && i != j { 1.0 } else { m }));
+    assert!(matches!(message(coupled, &["couples degrees of freedom"]), ModalError::AnisotropicMass { .. }));
+}
+
+#[test]
+fn bodies_that_are_none() {
+    let error = message(with_mass(|_, _, m| Some(-m)), &["mass", "all three moments"]);
+    assert!(matches!(error, ModalError::NoInertia { .. }));
+    // Mass at one place only.
+    let point = with_mass(|i, j, _| Some(if i == j && i < 3 { 1.0 } else { 0.0 }));
+    assert!(point.is_err());
+}
+
+#[test]
+fn more_modes_than_there_are() {
+    let one = tetrahedra(&[CORNER]);
+    let error = message(one.try_modes(25), &["25 flexible modes", "only 24"]);
+    assert!(matches!(error, ModalError::TooManyModes { requested: 25, available: 24 }));
+    // A node without mass gives none.
+    let k = one.matrices.stiffness();
+    let m = changed(one.matrices.mass(), |i, j, m| Some(if i / 3 == 9 || j / 3 == 9 { 0.0 } else { m }));
+    message(modal::solve(k, m.as_ref(), &one.positions, 22, |_| ()), &["only 21"]);
+    let all = modal::solve(k, m.as_ref(), &one.positions, 21, |_| ()).unwrap();
+    assert_eq!(all.eigenvalues.len(), 21);
+}
+
+#[test]
+fn sizes_that_do_not_agree() {
+    let body = small();
+    let (k, m) = (body.matrices.stiffness(), body.matrices.mass());
+    let fewer = &body.positions[1..];
+    let error = message(modal::solve(k, m, fewer, 3, |_| ()), &["stiffness has 81", "expected 78"]);
+    assert!(matches!(error, ModalError::Size { .. }));
+    let other = block([1.0; 3], [2, 1, 1]);
+    message(modal::solve(k, other.matrices.mass(), &body.positions, 3, |_| ()), &["mass has 135", "expected 81"]);
+    let none: Sparse = SparseColMat::try_new_from_triplets(0, 0, &[]).unwrap();
+    message(modal::solve(none.as_ref(), none.as_ref(), &[], 0, |_| ()), &["stiffness has 0"]);
+}
+
+#[test]
+fn numbers_that_are_none() {
+    message(with_stiffness(|i, _, k| Some(if i == 5 { f64::NAN } else { k })), &["stiffness", "NaN", "finite"]);
+    message(with_mass(|i, _, m| Some(if i == 5 { f64::INFINITY } else { m })), &["mass", "inf", "finite"]);
+    let body = small();
+    let mut positions = body.positions.clone();
+    positions[7][1] = f64::NAN;
+    let result = modal::solve(body.matrices.stiffness(), body.matrices.mass(), &positions, 3, |_| ());
+    let error = message(result, &["positions", "node 7"]);
+    assert!(matches!(error, ModalError::NotFinite { index: 7, .. }));
+}
+
+#[test]
+fn patterns_that_differ_are_no_reason_to_refuse() {
+    let body = small();
+    let (k, m) = (body.matrices.stiffness(), body.matrices.mass());
+    // M without the zeros that it stores to share K's pattern, and a lumped M.
+    let slim = changed(m, |i, j, m| (i % 3 == j % 3).then_some(m));
+    let (full, slim) = (body.modes(9), modal::solve(k, slim.as_ref(), &body.positions, 9, |_| ()).unwrap());
+    for (a, b) in full.eigenvalues.iter().zip(&slim.eigenvalues) {
+        assert!((a / b - 1.0).abs() < 1e-11);
+    }
+}
+
+#[test]
+fn no_flexible_modes_are_an_answer_too() {
+    let modes = small().modes(0);
+    assert_eq!((modes.eigenvalues.len(), modes.shapes.ncols(), modes.rigid.shapes.ncols()), (0, 0, 6));
+}

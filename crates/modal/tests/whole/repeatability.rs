@@ -1,0 +1,37 @@
+//! Signs are fixed, and runs agree bit for bit on any number of threads.
+
+use modal::Modes;
+
+use crate::bodies::{block, mesh_file};
+
+#[test]
+fn the_component_of_largest_magnitude_is_positive_and_the_first_node_breaks_ties() {
+    let modes = block([40.0, 6.0, 6.0], [6, 2, 2]).modes(14);
+    let mut ties = 0;
+    for shape in modes.shapes.col_iter() {
+        let largest = shape.norm_max();
+        let leading: Vec<f64> = shape.iter().copied().filter(|u| u.abs() > (1.0 - 1e-6) * largest).collect();
+        assert!(leading[0] > 0.0, "{leading:?}");
+        ties += usize::from(leading.iter().any(|u| *u < 0.0));
+    }
+    // A symmetric body has modes where the rule for ties is needed.
+    assert!(ties > 0);
+}
+
+fn assert_identical(a: &Modes, b: &Modes, what: &str) {
+    assert!(a.eigenvalues.iter().zip(&b.eigenvalues).all(|(a, b)| a.to_bits() == b.to_bits()), "{what}: eigenvalues");
+    for (a, b) in a.shapes.col_iter().zip(b.shapes.col_iter()) {
+        assert!(a.iter().zip(b.iter()).all(|(a, b)| a.to_bits() == b.to_bits()), "{what}: shapes");
+    }
+}
+
+#[test]
+fn runs_agree_bit_for_bit_on_one_and_two_threads() {
+    let plate = crate::bodies::Body::new(&mesh_file("plate.msh"), crate::bodies::STEEL);
+    let on = |threads: usize| {
+        rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap().install(|| plate.modes(10))
+    };
+    let one = on(1);
+    assert_identical(&one, &on(1), "one thread again");
+    assert_identical(&one, &on(2), "two threads");
+}
