@@ -75,8 +75,6 @@ pub struct ConservativeBody {
     /// Column by column, G_1 G_2 G_3 N_11 … N_12 one below another (9 nf × nf).
     stacked: Vec<f64>,
     loads: Vec<DeadForce>,
-    /// Square root of the energy that a unit impulse of each load gives the body at rest.
-    impulse_roots: Vec<f64>,
 }
 
 /// State at a time.
@@ -91,6 +89,17 @@ pub struct ConservativeState {
     pub modal_displacement: Vec<f64>,
     /// Modal momenta p = q̇ + S ω (nf).
     pub modal_momentum: Vec<f64>,
+}
+
+impl ConservativeState {
+    /// Takes over another state of the same body, without allocating.
+    pub(crate) fn copy_from(&mut self, other: &Self) {
+        self.time = other.time;
+        self.attitude = other.attitude;
+        self.slow = other.slow;
+        self.modal_displacement.copy_from_slice(&other.modal_displacement);
+        self.modal_momentum.copy_from_slice(&other.modal_momentum);
+    }
 }
 
 /// Rates without the linear part of the modes, and what was found on the way to them.
@@ -138,7 +147,7 @@ impl ConservativeBody {
     pub fn new(body: &ReducedBody, damping_ratios: &[f64], loads: Vec<DeadForce>) -> Result<Self, SetupError> {
         let nf = body.flexible();
         crate::model::check_damping(damping_ratios, nf)?;
-        crate::model::check_loads(&loads)?;
+        crate::model::check_loads(&loads, nf)?;
         let stacked = (0..nf)
             .flat_map(|j| {
                 body.gyroscopic.iter().chain(&body.inertia_second).flat_map(move |m| (0..nf).map(move |i| m[(i, j)]))
@@ -158,14 +167,6 @@ impl ConservativeBody {
             damping,
             first: body.inertia_first.clone(),
             stacked,
-            impulse_roots: loads
-                .iter()
-                .map(|load| {
-                    let mut impulse = vec![0.0; 6 + nf];
-                    load.point.add_modal_force(&load.force_global, &mut impulse);
-                    (0.5 * dot(&impulse, &impulse)).sqrt()
-                })
-                .collect(),
             loads,
         })
     }
@@ -324,26 +325,14 @@ impl ConservativeBody {
         kinetic + strain - 0.5 * get(&state.slow, part::MOMENTUM).norm_squared() / self.mass
     }
 
-    /// ½ P²/m + ½ π·J0⁻¹π of a difference of states.
-    pub(crate) fn rigid_energy(&self, difference: &Slow) -> f64 {
-        let (momentum, pi) = (get(difference, part::MOMENTUM), get(difference, part::PI));
-        0.5 * (momentum.norm_squared() / self.mass + pi.dot(&(self.inverse_inertia * pi)))
-    }
-
-    /// Bound on the square root of the energy of what four stages miss in the impulses of the loads over a step: per
-    /// load, the difference of Simpson's rule on the step and on its halves. The estimate from the stages is blind to
-    /// it, since all answers of third order share Simpson's weights.
-    pub(crate) fn impulse_error(&self, time: f64, h: f64) -> f64 {
-        self.loads
-            .iter()
-            .zip(&self.impulse_roots)
-            .map(|(load, root)| {
-                let [a, b, c, d, e] = [0.0, 0.25, 0.5, 0.75, 1.0].map(|part| load.history.at(time + part * h));
-                let whole = (a + 4.0 * c + e) * h / 6.0;
-                let halves = (a + 4.0 * b + 2.0 * c + 4.0 * d + e) * h / 12.0;
-                (whole - halves).abs() * root
-            })
-            .sum()
+    /// Energy that the difference of two states at one time would have: ½ P²/m + ½ π·J0⁻¹π + ½ Σ (ω_k² q² + p²).
+    pub(crate) fn energy_of_difference(&self, a: &ConservativeState, b: &ConservativeState) -> f64 {
+        let slow = a.slow - b.slow;
+        let (momentum, pi) = (get(&slow, part::MOMENTUM), get(&slow, part::PI));
+        let rigid = 0.5 * (momentum.norm_squared() / self.mass + pi.dot(&(self.inverse_inertia * pi)));
+        let q = a.modal_displacement.iter().zip(&b.modal_displacement);
+        let p = a.modal_momentum.iter().zip(&b.modal_momentum);
+        rigid + q.zip(p).enumerate().map(|(k, (q, p))| self.modal_energy(k, q.0 - q.1, p.0 - p.1)).sum::<f64>()
     }
 
     /// ½ (ω_k² q² + p²)

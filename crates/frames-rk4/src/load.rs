@@ -2,6 +2,7 @@
 
 use nalgebra::Vector3;
 
+use crate::error::SetupError;
 use crate::motion::PointShapes;
 
 /// The course of a load in time, as a factor of its amplitude.
@@ -25,6 +26,23 @@ impl History {
                 if (0.0..=1.0).contains(&phase) { (std::f64::consts::PI * phase).sin() } else { 0.0 }
             }
         }
+    }
+
+    /// Refuses times that are not finite, and a duration that is not positive.
+    pub(crate) fn check(&self) -> Result<(), SetupError> {
+        let Self::HalfSine { start, duration } = *self;
+        if !start.is_finite() {
+            return Err(SetupError::Value {
+                what: "the start of a half-sine",
+                found: start,
+                expected: "a finite number",
+            });
+        }
+        if !(duration > 0.0 && duration.is_finite()) {
+            let what = "the duration of a half-sine";
+            return Err(SetupError::Value { what, found: duration, expected: "a positive number" });
+        }
+        Ok(())
     }
 
     /// Times at which the factor or one of its rates jumps. A step must not reach across one.

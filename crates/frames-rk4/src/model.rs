@@ -27,7 +27,7 @@ impl ModalModel {
     /// [`SetupError`] for a list of the wrong length, and numbers that are negative or not finite.
     pub fn new(body: &ReducedBody, damping_ratios: &[f64], loads: Vec<DeadForce>) -> Result<Self, SetupError> {
         check_damping(damping_ratios, body.flexible())?;
-        check_loads(&loads)?;
+        check_loads(&loads, body.flexible())?;
         let rigid = || std::iter::repeat_n(0.0, 6);
         let omega = &body.circular_frequencies;
         Ok(Self {
@@ -89,6 +89,15 @@ impl ModalModel {
         power
     }
 
+    /// Refuses a body with another number of modes.
+    pub(crate) fn check_body(&self, body: &ReducedBody) -> Result<(), SetupError> {
+        let (expected, found) = (body.flexible(), self.stiffness.len() - 6);
+        if found == expected {
+            return Ok(());
+        }
+        Err(SetupError::Length { what: "the modal model", expected, found })
+    }
+
     /// Largest stable step of RK4, and the flexible mode (from 0) that sets it.
     pub(crate) fn stable_step(&self) -> (usize, f64) {
         let limits = self.stiffness.iter().zip(&self.damping).skip(6).map(|(lambda, d)| stable_step(*lambda, *d));
@@ -121,12 +130,19 @@ pub(crate) fn check_damping(damping_ratios: &[f64], flexible: usize) -> Result<(
     }
 }
 
-/// Refuses forces that are not finite.
-pub(crate) fn check_loads(loads: &[DeadForce]) -> Result<(), SetupError> {
-    match loads.iter().flat_map(|load| load.force_global.iter()).find(|f| !f.is_finite()) {
-        Some(found) => Err(SetupError::Value { what: "a force", found: *found, expected: "a finite number" }),
-        None => Ok(()),
+/// Refuses forces that are not finite, histories that are none, and points of another body.
+pub(crate) fn check_loads(loads: &[DeadForce], flexible: usize) -> Result<(), SetupError> {
+    for load in loads {
+        load.history.check()?;
+        if let Some(found) = load.force_global.iter().copied().find(|f| !f.is_finite()) {
+            return Err(SetupError::Value { what: "a force", found, expected: "a finite number" });
+        }
+        let found = load.point.flexible();
+        if found != flexible {
+            return Err(SetupError::Length { what: "the point of a load", expected: flexible, found });
+        }
     }
+    Ok(())
 }
 
 /// Largest step for which RK4 does not amplify `q̈ + d q̇ + λ q = 0`; 2.83/ω without damping.

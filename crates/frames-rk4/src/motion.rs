@@ -45,6 +45,11 @@ impl PointShapes {
         self.position_body
     }
 
+    /// Number of flexible modes.
+    pub(crate) fn flexible(&self) -> usize {
+        self.columns.len() - 6
+    }
+
     /// The point with the rows of the first `flexible` flexible modes only.
     pub fn truncated(&self, flexible: usize) -> Self {
         let kept = self.columns.len().min(6 + flexible);
@@ -165,7 +170,8 @@ impl BodyMotion {
     }
 
     /// Angular acceleration by Euler's equation, `α_modal − J₀⁻¹(ω×J₀ω)`, body components. It is right for any body,
-    /// where h of Eq. (37) is so for plane motion and nearly so for thin plates.
+    /// where h of Eq. (37) is so for plane motion about one of e1, e3, e3×e1 of its points, and nearly so for long thin
+    /// plates.
     pub fn euler_alpha_body(&self, state: &State) -> Vector3<f64> {
         let alpha_modal = self.rotation_basis * rotation(&state.modal_acceleration);
         euler_angular_acceleration(&alpha_modal, &self.inertia, &state.omega_body)

@@ -91,6 +91,7 @@ impl PaperScheme {
         initial: &Initial,
         step: f64,
     ) -> Result<Self, SetupError> {
+        model.check_body(body)?;
         model.check_step(step)?;
         let [r, p, q] = reference_points;
         let kinematics = ReferenceKinematics {
@@ -200,8 +201,9 @@ impl PaperScheme {
         }
 
         let theta = total.rotation_vector; // (38), (39) are the weights above
-        if !(theta.norm() < std::f64::consts::TAU) {
-            return Err(turn_error(BeyondFullTurn { angle: theta.norm() }));
+        let angle = theta.norm();
+        if angle.is_nan() || angle >= std::f64::consts::TAU {
+            return Err(turn_error(BeyondFullTurn { angle }));
         }
         rotation.set(&transformation_matrix(&theta));
         advance(rotation, state, 1.0, total, unrotated, next_displacement, next_velocity); // (40)

@@ -56,6 +56,7 @@ impl PaperLimit {
     /// # Errors
     /// [`SetupError`] for lists of the wrong length and numbers that are not finite.
     pub fn new(body: &ReducedBody, model: ModalModel, initial: &Initial) -> Result<Self, SetupError> {
+        model.check_body(body)?;
         let motion = BodyMotion::new(body)?;
         let state = State::begin(body, initial)?;
         let size = state.modal_displacement.len();

@@ -5,7 +5,7 @@
 pub enum StepControl {
     /// Steps of at most this length; between two stops all are equally long.
     Fixed(f64),
-    /// As long as the estimated error of a step stays below this.
+    /// As long as the estimated errors of all steps stay below this in sum: a step of length h may err by h/end of it.
     Tolerance(f64),
 }
 
@@ -157,7 +157,8 @@ impl HalvedSteps {
     /// The step was taken; with an `error` (as a fraction of the tolerance) small enough, the next is twice as long.
     pub(crate) fn accept(&mut self, error: f64) {
         self.done += 1;
-        // The estimate goes with the fourth power of the step; half of the tolerance is kept in hand.
+        // The estimate goes with the fifth power of the step and its share of the tolerance with the first; half of the
+        // share is kept in hand.
         if error * 16.0 < 0.5 && self.level > 0 && self.done.is_multiple_of(2) {
             self.level -= 1;
             self.done /= 2;

@@ -288,10 +288,12 @@ impl Simulation {
                     if !self.try_step(h, end)? {
                         continue;
                     }
-                    self.stats.accepted += 1;
-                    self.stats.shortest = self.stats.shortest.min(h);
-                    self.stats.longest = self.stats.longest.max(h);
-                    self.steps_since_row += 1;
+                    // Under step control, steps are tried in pairs.
+                    let (count, length) = if self.is_controlled() { (2, 0.5 * h) } else { (1, h) };
+                    self.stats.accepted += count;
+                    self.stats.shortest = self.stats.shortest.min(length);
+                    self.stats.longest = self.stats.longest.max(length);
+                    self.steps_since_row += count;
                     let at_row = match self.rows {
                         Rows::EverySteps(steps) => self.steps_since_row >= steps || end >= self.end,
                         Rows::Interval(_) => row_at_end && self.segment_is_done(),
@@ -327,6 +329,10 @@ impl Simulation {
         }
     }
 
+    fn is_controlled(&self) -> bool {
+        matches!(self.walk, Walk::Halved { .. })
+    }
+
     fn segment_is_done(&self) -> bool {
         match &self.walk {
             Walk::Equal { steps: Some((steps, _)), .. } => steps.is_done(),
@@ -340,8 +346,10 @@ impl Simulation {
         let time = self.time();
         match (&mut self.engine, &mut self.walk) {
             (Engine::Conservative(motion), Walk::Halved { tolerance, longest_try, steps: Some((steps, _)) }) => {
-                let error = match motion.controlled_step(h, end, *tolerance) {
-                    Ok(estimate) => estimate / *tolerance,
+                // Each step may take its share of the tolerance, so that the estimates of all steps sum to it.
+                let allowed = *tolerance * h / self.end;
+                let error = match motion.controlled_steps(0.5 * h, end, allowed) {
+                    Ok(estimate) => estimate / allowed,
                     // A step so long that it cannot even be tried.
                     Err(_) => f64::INFINITY,
                 };

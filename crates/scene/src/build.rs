@@ -301,12 +301,17 @@ fn matrices(scene: &Scene, mesh: &Mesh) -> Result<Matrices, BuildError> {
 fn refuse(scene: &Scene, key: &str, error: AssemblyError) -> SceneError {
     let message = error.to_string();
     match error {
-        AssemblyError::OffBody { source_name, node, position, distance, .. } => scene.refuse(
-            key,
-            format!("a point that is not on the body: the nearest node of {source_name} is {distance:.6} away"),
-            "a point of the body",
-            format!("use a point of the body; node {node} is at {position:?}"),
-        ),
+        AssemblyError::OffBody { source_name, node, position, distance, .. } => {
+            // A coordinate that is zero but for rounding is shown as zero.
+            let size = Vector3::from(position).norm();
+            let shown = position.map(|c| if c.abs() < 1e-9 * size { 0.0 } else { c });
+            scene.refuse(
+                key,
+                format!("a point that is not on the body: the nearest node of {source_name} is {distance:.6} away"),
+                "a point of the body",
+                format!("use a point of the body; its node {node} is at {shown:?}"),
+            )
+        }
         AssemblyError::Spread { radius, count, distance, .. } => scene.refuse(
             key,
             format!("{count} node(s) within {radius}, the nearest {distance:.6} away"),

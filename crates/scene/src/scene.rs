@@ -153,7 +153,7 @@ pub struct Time {
 pub enum Stepping {
     /// Key `step`: steps of at most this length, 0 < step ≤ end.
     Step(f64),
-    /// Key `tolerance`: the relative error allowed in a step, 0 < tolerance < 1. Only with
+    /// Key `tolerance`: what the estimated relative errors of all steps may sum to, 0 < tolerance < 1. Only with
     /// [`Method::Rkmk4`] and [`Method::Exponential`].
     Tolerance(f64),
 }

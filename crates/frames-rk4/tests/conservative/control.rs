@@ -1,0 +1,146 @@
+//! Step control, and where steps end.
+
+use frames_rk4::{History, Initial, Method, Observation, Reached, Rows, StepControl};
+use nalgebra::Vector3;
+
+use crate::common::{Specimen, plate};
+use crate::run::{EXPONENTIAL, Error, RKMK4, Run, STRANG, relative_3};
+
+/// Tumbling at 10 rad/s with vibration, under a pulse that begins and ends between the rows.
+fn tumbling(plate: &Specimen) -> Run<'_> {
+    let mut initial = Initial::at_rest(10);
+    initial.omega = Vector3::new(3.0, 8.0, 5.0);
+    initial.modal_velocity[..4].copy_from_slice(&[77.0, -54.0, 117.0, 37.0]);
+    let mut load = plate.half_sine([-500.0, 0.0, 10.0], [20.0, 10.0, 30.0], 0.1);
+    load.history = History::HalfSine { start: 0.031_41, duration: 0.073_217 };
+    Run { damping_ratio: 0.02, loads: vec![load], ..Run::free(plate, initial, 0.5) }
+}
+
+#[test]
+fn the_error_falls_with_the_tolerance() {
+    let run = tumbling(plate());
+    let reference: Observation = run.end(EXPONENTIAL, 1.25e-5);
+    // Error in the modal displacements over tolerance, from 1e-4 to 1e-10: exponential 49, 70, 38, 76, 49, 87, 63;
+    // rkmk4 6, 24, 16, 35, 37, 32, 25. Errors in attitude are smaller.
+    for method in [EXPONENTIAL, RKMK4] {
+        let mut before = f64::INFINITY;
+        for tolerance in [1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10] {
+            let mut simulation = run.start(method, StepControl::Tolerance(tolerance), Rows::Interval(0.1));
+            let last = simulation.by_ref().last().unwrap().unwrap();
+            let error = Error::between(&last, &reference);
+            let error = error.attitude.max(error.modal);
+            let stats = simulation.stats();
+            println!("{method:?} {tolerance:e}: {error:e} ratio {:.1} {stats:?}", error / tolerance);
+            assert!(error < 150.0 * tolerance, "{method:?} {tolerance:e}: {error:e}");
+            assert!(error < 0.5 * before, "{method:?} {tolerance:e}: {error:e} after {before:e}");
+            // Four evaluations a try, and the first; few tries in vain.
+            assert_eq!(stats.evaluations, 4 * (stats.accepted + stats.rejected) + 1);
+            assert!(stats.rejected > 0 && 10 * stats.rejected < stats.accepted, "{stats:?}");
+            before = error;
+        }
+    }
+}
+
+#[test]
+fn a_short_pulse_in_a_long_quiet_run_is_not_missed() {
+    let plate = plate();
+    let force = Vector3::new(20.0, 10.0, 30.0);
+    let (start, duration) = (5.000_3, 1e-3);
+    let mut load = plate.half_sine([-500.0, 0.0, 10.0], force.into(), 1.0);
+    load.history = History::HalfSine { start, duration };
+    let run = Run { damping_ratio: 0.05, loads: vec![load], ..Run::free(plate, Initial::at_rest(10), 10.0) };
+    let impulse = force * (2.0 * duration / std::f64::consts::PI);
+    let mut run_to = |tolerance: f64| {
+        let mut simulation = run.start(EXPONENTIAL, StepControl::Tolerance(tolerance), Rows::Interval(10.0));
+        (simulation.by_ref().last().unwrap().unwrap(), simulation.stats())
+    };
+    let ((coarse, stats), (fine, _)) = (run_to(1e-6), run_to(1e-10));
+    // Momentum 5.1e-7 and 2e-11; spin 6e-7; 35 steps.
+    let momentum = [&coarse, &fine].map(|row| relative_3(&row.linear_momentum_global, &impulse));
+    let spin = relative_3(&coarse.omega_body, &fine.omega_body);
+    println!("{momentum:?} {spin:e} {stats:?}");
+    assert!(momentum[0] < 1e-5 && momentum[1] < 1e-9, "{momentum:?}");
+    assert!(spin < 1e-5 && fine.omega_body.norm() > 1e-3, "{spin:e}");
+    assert!(stats.accepted < 100 && stats.longest == start, "{stats:?}");
+}
+
+/// Ends of all steps, and whether each is a row.
+fn ends(run: &Run, method: Method, control: StepControl, rows: Rows) -> Vec<(f64, bool)> {
+    let mut simulation = run.start(method, control, rows);
+    let mut ends = Vec::new();
+    loop {
+        let reached = simulation.advance(1).unwrap();
+        if reached == Reached::End {
+            return ends;
+        }
+        ends.push((simulation.time(), reached == Reached::Row));
+    }
+}
+
+#[test]
+fn steps_end_at_rows_and_at_corners_and_at_nothing_beyond_them() {
+    let run = tumbling(plate());
+    let multiples: Vec<f64> = (1..=7).map(|n| f64::from(n) * 0.07).chain([0.5]).collect();
+    let corners = [0.031_41, 0.031_41 + 0.073_217];
+    for (method, control) in [
+        (EXPONENTIAL, StepControl::Tolerance(1e-6)),
+        (RKMK4, StepControl::Tolerance(1e-5)),
+        (EXPONENTIAL, StepControl::Fixed(3e-3)),
+        (STRANG, StepControl::Fixed(7e-4)),
+        (RKMK4, StepControl::Fixed(1.1e-4)),
+        (Method::PaperRkmk4, StepControl::Fixed(1.1e-4)),
+        (Method::Paper, StepControl::Fixed(1.1e-4)),
+    ] {
+        let ends = ends(&run, method, control, Rows::Interval(0.07));
+        let rows: Vec<f64> = ends.iter().filter(|end| end.1).map(|end| end.0).collect();
+        assert_eq!(rows, multiples, "{method:?}");
+        assert!(ends.is_sorted_by(|a, b| a.0 < b.0));
+        for corner in corners {
+            assert!(ends.iter().any(|end| end.0 == corner), "{method:?} {corner}");
+        }
+        let lengths = ends.windows(2).map(|pair| pair[1].0 - pair[0].0);
+        if let StepControl::Fixed(step) = control {
+            assert!(lengths.fold(0.0, f64::max) < step * (1.0 + 1e-9), "{method:?}");
+            // As few as can be: none is shorter than half of what is allowed.
+            let least = (0.5 / step).ceil() as usize;
+            assert!((least..least + 10).contains(&ends.len()), "{method:?}: {}", ends.len());
+        }
+        // With a row after so many steps, the corners are met all the same.
+        let free: Vec<f64> =
+            self::ends(&run, method, control, Rows::EverySteps(1000)).iter().map(|end| end.0).collect();
+        assert!(corners.iter().all(|corner| free.contains(corner)) && free.last() == Some(&0.5), "{method:?}");
+    }
+}
+
+#[test]
+fn after_a_corner_the_steps_grow_back_to_the_interval() {
+    let plate = plate();
+    let mut load = plate.half_sine([-500.0, 0.0, 10.0], [1.0, 0.0, 1.0], 1.0);
+    load.history = History::HalfSine { start: 0.005_3, duration: 1e-3 };
+    let run = Run { damping_ratio: 0.05, loads: vec![load], ..Run::free(plate, Initial::at_rest(10), 0.2) };
+    let mut simulation = run.start(EXPONENTIAL, StepControl::Tolerance(1e-5), Rows::Interval(0.01));
+    let mut before = 0;
+    let mut steps_of_rows = Vec::new();
+    while let Some(row) = simulation.next() {
+        row.unwrap();
+        let accepted = simulation.stats().accepted;
+        steps_of_rows.push(accepted - before);
+        before = accepted;
+    }
+    // Measured: 17, 3, then one each.
+    assert!(steps_of_rows[0] > 5 && steps_of_rows[10..].iter().all(|steps| *steps == 1), "{steps_of_rows:?}");
+}
+
+#[test]
+fn fixed_steps_cost_four_evaluations_each() {
+    let run = tumbling(plate());
+    for method in Method::ALL {
+        let mut simulation = run.start(method, StepControl::Fixed(1e-4), Rows::Interval(0.1));
+        assert_eq!(simulation.by_ref().count(), 5);
+        let stats = simulation.stats();
+        assert_eq!(stats.evaluations, u64::from(method.evaluations_per_step()) * stats.accepted);
+        // The two corners cost a step each.
+        assert_eq!((stats.accepted, stats.rejected), (5002, 0));
+        assert!(stats.longest <= 1e-4 * (1.0 + 1e-9) && stats.shortest > 0.9e-4, "{stats:?}");
+    }
+}

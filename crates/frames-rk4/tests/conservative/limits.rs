@@ -1,0 +1,107 @@
+//! What is refused before the run, and what ends it.
+
+use frames_rk4::{Initial, Method, Rows, SetupError, StepControl, StepError};
+use nalgebra::Vector3;
+
+use crate::common::{Specimen, plate};
+use crate::run::{EXPONENTIAL, RKMK4, Run, STRANG};
+
+fn spinning(plate: &Specimen, spin: f64) -> Run<'_> {
+    Run::free(plate, plate.spinning(Vector3::new(0.0, 0.6 * spin, 0.8 * spin)), 1.0)
+}
+
+fn refusal(run: &Run, method: Method, control: StepControl) -> SetupError {
+    run.try_start(method, control, Rows::Interval(0.1)).map(|_| ()).unwrap_err()
+}
+
+#[test]
+fn a_step_beyond_the_limit_of_the_highest_mode() {
+    let run = spinning(plate(), 1.0);
+    let most = 8.0_f64.sqrt() / plate().body.circular_frequencies[9];
+    for method in [RKMK4, Method::PaperRkmk4, Method::Paper] {
+        assert!(method.limited_by_modes());
+        assert!(run.try_start(method, StepControl::Fixed(0.999 * most), Rows::Interval(0.1)).is_ok());
+        let error = refusal(&run, method, StepControl::Fixed(1.001 * most));
+        let SetupError::StepBeyondLimit { limit, mode, .. } = error else { panic!("{error}") };
+        assert!(mode == 10 && (limit / most - 1.0).abs() < 1e-9, "{error}");
+    }
+    for method in [EXPONENTIAL, STRANG] {
+        assert!(!method.limited_by_modes());
+        assert!(run.try_start(method, StepControl::Fixed(100.0 * most), Rows::Interval(0.1)).is_ok());
+    }
+}
+
+#[test]
+fn a_step_beyond_the_limit_of_the_spin() {
+    let run = spinning(plate(), 50.0);
+    let most = 2.0_f64.sqrt() / 50.0;
+    for method in [EXPONENTIAL, STRANG] {
+        assert!(run.try_start(method, StepControl::Fixed(0.999 * most), Rows::Interval(0.1)).is_ok());
+        let error = refusal(&run, method, StepControl::Fixed(1.001 * most));
+        let SetupError::StepBeyondSpin { limit, spin, .. } = error else { panic!("{error}") };
+        assert!((limit / most - 1.0).abs() < 1e-12 && (spin - 50.0).abs() < 1e-12, "{error}");
+    }
+}
+
+#[test]
+fn a_tolerance_for_a_scheme_without_an_estimate() {
+    let run = spinning(plate(), 1.0);
+    for method in [STRANG, Method::PaperRkmk4, Method::Paper] {
+        assert!(!method.estimates_error());
+        let error = refusal(&run, method, StepControl::Tolerance(1e-6));
+        let expected = SetupError::NoErrorEstimate { formulation: method.formulation(), scheme: method.scheme() };
+        assert_eq!(error, expected);
+    }
+}
+
+#[test]
+fn numbers_out_of_range() {
+    let run = spinning(plate(), 1.0);
+    for value in [0.0, -1e-4, f64::NAN, f64::INFINITY] {
+        for method in Method::ALL {
+            let error = refusal(&run, method, StepControl::Fixed(value));
+            assert!(matches!(error, SetupError::Value { what: "the step", .. }), "{method:?}: {error}");
+        }
+        let error = refusal(&run, EXPONENTIAL, StepControl::Tolerance(value));
+        assert!(matches!(error, SetupError::Value { what: "the tolerance", .. }), "{error}");
+        let error = refusal(&Run { end: value, ..run.clone() }, EXPONENTIAL, StepControl::Fixed(1e-4));
+        assert!(matches!(error, SetupError::Value { what: "the end", .. }), "{error}");
+        let rows = run.try_start(EXPONENTIAL, StepControl::Fixed(1e-4), Rows::Interval(value));
+        assert!(matches!(rows, Err(SetupError::Value { what: "the interval of the rows", .. })));
+    }
+    let rows = run.try_start(EXPONENTIAL, StepControl::Fixed(1e-4), Rows::EverySteps(0));
+    assert!(matches!(rows, Err(SetupError::Value { found: 0.0, .. })));
+    let nan = Run { initial: Initial { velocity: Vector3::new(f64::NAN, 0.0, 0.0), ..run.initial.clone() }, ..run };
+    for method in Method::ALL {
+        assert!(matches!(refusal(&nan, method, StepControl::Fixed(1e-4)), SetupError::Value { .. }));
+    }
+}
+
+/// A spin beyond the first bending frequency across the bending: without geometric stiffening the plate flies apart.
+#[test]
+fn a_motion_that_blows_up_ends_with_an_error_and_not_with_nan() {
+    let plate = plate();
+    let initial = Initial { omega: Vector3::new(0.01, 400.0, 0.0), ..Initial::at_rest(10) };
+    let run = Run::free(plate, initial, 20.0);
+    for (method, control) in
+        [(EXPONENTIAL, StepControl::Fixed(1e-3)), (STRANG, StepControl::Fixed(1e-3)), (RKMK4, StepControl::Fixed(5e-4))]
+    {
+        let mut simulation = run.start(method, control, Rows::Interval(0.01));
+        let mut error = None;
+        let mut last = 0.0;
+        for row in simulation.by_ref() {
+            match row {
+                Ok(row) => {
+                    assert!(row.kinetic_energy.is_finite() && row.modal_displacement.iter().all(|q| q.is_finite()));
+                    last = row.time;
+                }
+                Err(e) => error = Some(e),
+            }
+        }
+        println!("{method:?} {error:?} after {last}");
+        let (StepError::TurnTooLarge { time, .. } | StepError::NotFinite { time, .. }) = error.unwrap() else {
+            panic!("{error:?}")
+        };
+        assert!(time >= last && simulation.time() == time && simulation.next().is_none());
+    }
+}

@@ -1,0 +1,18 @@
+//! The conservative form and its schemes, the limit of the paper's scheme, and step control, through [`Simulation`].
+//!
+//! [`Simulation`]: frames_rk4::Simulation
+
+#[allow(dead_code)] // shared with the other test programs, which use all of it
+#[path = "../common/mod.rs"]
+mod common;
+
+mod balance;
+mod control;
+mod dalembert;
+mod limits;
+mod modes;
+mod order;
+mod pulse;
+mod rigid;
+mod run;
+mod table;
