@@ -91,7 +91,7 @@ impl ReferencePoints {
     /// plane of the points), whatever the body is. The two components in the plane are Euler's
     /// for every flat lamina in this plane; the normal one is Euler's for a lamina with its mass
     /// on the line RP alone, where `(I2−I1)/(I1+I2) = 1`. It depends on the direction of RP, and
-    /// on Q not at all. So h is right in plane motion, close for a long thin plate with RP along
+    /// on Q not at all. So h is right in plane motion about e1, e3 or e3×e1, close for a long thin plate with RP along
     /// it, and wrong otherwise: a sphere that spins freely gets an angular acceleration.
     /// [`euler_angular_acceleration`] is right for any body.
     pub fn angular_acceleration(
