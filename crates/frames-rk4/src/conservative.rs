@@ -23,8 +23,8 @@ use crate::motion::{PointMotion, PointShapes};
 use crate::observation::Observation;
 use crate::work::Work;
 
-/// ij of c_ij and N_ij in the order of the reduced body.
-const PAIRS: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1)];
+/// ij of c_ij and N_ij.
+const PAIRS: [(usize, usize); 6] = ReducedBody::PAIRS;
 
 /// What moves slowly, beside the modes: see [`part`].
 pub(crate) type Slow = SVector<f64, 20>;
@@ -328,11 +328,25 @@ impl ConservativeBody {
     /// Energy that the difference of two states at one time would have: ½ P²/m + ½ π·J0⁻¹π + ½ Σ (ω_k² q² + p²).
     pub(crate) fn energy_of_difference(&self, a: &ConservativeState, b: &ConservativeState) -> f64 {
         let slow = a.slow - b.slow;
-        let (momentum, pi) = (get(&slow, part::MOMENTUM), get(&slow, part::PI));
-        let rigid = 0.5 * (momentum.norm_squared() / self.mass + pi.dot(&(self.inverse_inertia * pi)));
+        let rigid = self.rigid_energy(&get(&slow, part::MOMENTUM), &get(&slow, part::PI));
         let q = a.modal_displacement.iter().zip(&b.modal_displacement);
         let p = a.modal_momentum.iter().zip(&b.modal_momentum);
         rigid + q.zip(p).enumerate().map(|(k, (q, p))| self.modal_energy(k, q.0 - q.1, p.0 - p.1)).sum::<f64>()
+    }
+
+    /// Energies that the impulses of the loads, one by one, would give the rigid body at rest: the scale of a motion
+    /// that begins without any.
+    pub(crate) fn energy_of_loads(&self) -> f64 {
+        let energy = |load: &DeadForce| {
+            let impulse = load.force_global * load.history.integral();
+            self.rigid_energy(&impulse, &load.point.position_body().cross(&impulse))
+        };
+        self.loads.iter().map(energy).sum()
+    }
+
+    /// ½ P²/m + ½ π·J0⁻¹π
+    fn rigid_energy(&self, momentum: &Vector3<f64>, pi: &Vector3<f64>) -> f64 {
+        0.5 * (momentum.norm_squared() / self.mass + pi.dot(&(self.inverse_inertia * pi)))
     }
 
     /// ½ (ω_k² q² + p²)

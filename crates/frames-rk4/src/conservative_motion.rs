@@ -44,7 +44,7 @@ pub struct ConservativeMotion {
     p: Vec<f64>,
     blocks: BlockStore,
     evaluations: u64,
-    /// Largest energy so far, that of the centre's motion left out.
+    /// Largest energy so far, that of the centre's motion left out; not less than what the loads are to give.
     energy_scale: f64,
 }
 
@@ -72,7 +72,7 @@ impl ConservativeMotion {
             p: vec![0.0; nf],
             blocks: BlockStore::default(),
             evaluations: 0,
-            energy_scale: 0.0,
+            energy_scale: body.energy_of_loads(),
             body,
         })
     }
@@ -106,7 +106,8 @@ impl ConservativeMotion {
     /// the fourth-order one does: such an estimate is blind to loads, and to modes faster than the step.
     ///
     /// The size of the error is the square root of its energy over the largest energy of the motion so far (about the
-    /// centre of mass), or the angle in the attitude, whichever is larger.
+    /// centre of mass; not less than what the impulses of the loads would give the rigid body), or the angle in the
+    /// attitude, whichever is larger.
     ///
     /// # Errors
     /// [`StepError`], where even the attempt fails; the state stays.

@@ -45,6 +45,13 @@ impl History {
         Ok(())
     }
 
+    /// Integral of the factor's magnitude over all time.
+    pub(crate) fn integral(&self) -> f64 {
+        match *self {
+            Self::HalfSine { duration, .. } => 2.0 * duration / std::f64::consts::PI,
+        }
+    }
+
     /// Times at which the factor or one of its rates jumps. A step must not reach across one.
     pub fn corners(&self) -> [f64; 2] {
         match *self {
@@ -67,6 +74,14 @@ pub struct DeadForce {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_integral_is_that_of_the_factor() {
+        let pulse = History::HalfSine { start: 1.0, duration: 0.5 };
+        let middles = (0..1000).map(|k| 1.0 + 0.5 * (f64::from(k) + 0.5) / 1000.0);
+        let sum = middles.map(|t| pulse.at(t)).sum::<f64>() * 0.5 / 1000.0;
+        assert!((pulse.integral() / sum - 1.0).abs() < 1e-6);
+    }
 
     #[test]
     fn a_half_sine_rises_falls_and_ends() {

@@ -346,8 +346,9 @@ impl Simulation {
         let time = self.time();
         match (&mut self.engine, &mut self.walk) {
             (Engine::Conservative(motion), Walk::Halved { tolerance, longest_try, steps: Some((steps, _)) }) => {
-                // Each step may take its share of the tolerance, so that the estimates of all steps sum to it.
-                let allowed = *tolerance * h / self.end;
+                // Each step may take its share of the tolerance, so that the estimates of all steps sum to it. Where the
+                // share is below rounding, a shorter step would be no better.
+                let allowed = (*tolerance * h / self.end).max(f64::EPSILON);
                 let error = match motion.controlled_steps(0.5 * h, end, allowed) {
                     Ok(estimate) => estimate / allowed,
                     // A step so long that it cannot even be tried.

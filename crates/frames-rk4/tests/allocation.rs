@@ -1,12 +1,12 @@
 //! A step allocates nothing.
 
-#[allow(dead_code)] // shared with the other tests, which use all of it
+#[allow(dead_code)] // shared with the other test programs, which use all of it
 mod common;
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
-use frames_rk4::Initial;
+use frames_rk4::{ConservativeScheme, Initial, Method, Rows, Setup, Simulation, StepControl};
 use nalgebra::Vector3;
 
 thread_local! {
@@ -30,16 +30,62 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
+fn spinning() -> Initial {
+    Initial { omega: Vector3::new(4.0, -6.0, 7.0), ..Initial::at_rest(10) }
+}
+
 #[test]
-fn a_step_allocates_nothing() {
+fn a_step_of_the_paper_s_scheme_allocates_nothing() {
     let ring = common::ring();
     let load = ring.half_sine([-100.0, 0.0, 0.0], [1.0, 2.0, 3.0], 1.0);
-    let initial = Initial { omega: Vector3::new(4.0, -6.0, 7.0), ..Initial::at_rest(10) };
-    let mut scheme = ring.scheme(0.05, vec![load], &initial, 5e-5);
+    let mut scheme = ring.scheme(0.05, vec![load], &spinning(), 5e-5);
     let before = COUNT.get();
     common::advance(&mut scheme, 1000);
     assert_eq!(COUNT.get(), before);
     // The counter counts: a copy of the state has lists.
     let copy = scheme.state().clone();
     assert!(COUNT.get() > before, "{}", copy.time);
+}
+
+/// A run of the ring under a load, with a point that is observed.
+fn simulation(method: Method, control: StepControl, end: f64) -> Simulation {
+    let ring = common::ring();
+    Simulation::new(&Setup {
+        body: &ring.body,
+        damping_ratios: &[0.0; 10],
+        loads: &[ring.half_sine([-100.0, 0.0, 0.0], [10.0, 20.0, 30.0], end)],
+        reference_points: ring.reference_points_body(),
+        initial: &spinning(),
+        method,
+        control,
+        end,
+        rows: Rows::EverySteps(10),
+        points: &[ring.point([0.0, -80.0, 20.0])],
+    })
+    .unwrap()
+}
+
+/// Allocations of 1000 steps with a row after each ten, after `warm` such rows.
+fn allocations(mut simulation: Simulation, warm: usize) -> u64 {
+    let mut out = simulation.observation();
+    let mut before = 0;
+    for row in 0..warm + 100 {
+        if row == warm {
+            before = COUNT.get();
+        }
+        assert_eq!(simulation.advance(u64::MAX).unwrap(), frames_rk4::Reached::Row);
+        simulation.observe(&mut out).unwrap();
+    }
+    COUNT.get() - before
+}
+
+#[test]
+fn steps_and_rows_of_a_run_allocate_nothing_once_the_step_is_known() {
+    for method in Method::ALL {
+        assert_eq!(allocations(simulation(method, StepControl::Fixed(5e-5), 1.0), 1), 0, "{method:?}");
+    }
+    for scheme in [ConservativeScheme::Exponential, ConservativeScheme::Rkmk4] {
+        let method = Method::Conservative(scheme);
+        assert_eq!(allocations(simulation(method, StepControl::Tolerance(1e-6), 1.0), 200), 0, "{method:?}");
+    }
 }

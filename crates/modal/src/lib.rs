@@ -4,7 +4,7 @@
 //! K φ = λ M φ,   ω = √λ,   φᵀ M φ = 1
 //! ```
 //!
-//! [`solve`] takes any symmetric sparse K and M with three degrees of freedom a node (`3·node + axis`) and the
+//! [`solve()`] takes any symmetric sparse K and M with three degrees of freedom a node (`3·node + axis`) and the
 //! positions of the nodes. K of a free body is singular: its six rigid modes are known from the geometry
 //! ([`RigidModes`]), checked against K, and kept out of the search, which works on `K + sM`, s > 0.
 //! Modes come out mass-normalised, the component of largest magnitude positive.

@@ -19,9 +19,6 @@ use crate::mass::NodalMass;
 use crate::solve::Modes;
 use crate::tall;
 
-/// The six pairs ij of a symmetric 3×3 matrix, in the order of [`ReducedBody::inertia_first`].
-pub(crate) const PAIRS: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1)];
-
 /// A free elastic body in modal coordinates. Axes are those of the mesh, the origin is the centre of mass.
 #[derive(Debug, Clone)]
 pub struct ReducedBody {
@@ -57,6 +54,9 @@ pub struct BodyPoint {
 }
 
 impl ReducedBody {
+    /// ij of [`ReducedBody::inertia_first`] and [`ReducedBody::inertia_second`], and of any symmetric 3×3 matrix.
+    pub const PAIRS: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1)];
+
     /// Reduces the body with mass matrix `mass` and nodes `positions` to its `modes`.
     ///
     /// # Errors
@@ -102,7 +102,7 @@ impl ReducedBody {
         let flexible = |a: usize, b: usize| products[a][b].submatrix(6, 6, nf, nf);
         let flexible_x = |a: usize, b: usize, k: usize| products[a][b][(6 + k, modal)];
         // [e_i×]ᵀ[e_j×] = δ_ij I − e_j e_iᵀ
-        let inertia_first = PAIRS.map(|(i, j)| {
+        let inertia_first = Self::PAIRS.map(|(i, j)| {
             (0..nf)
                 .map(|k| {
                     let trace: f64 = if i == j { (0..3).map(|a| flexible_x(a, a, k)).sum() } else { 0.0 };
@@ -110,7 +110,7 @@ impl ReducedBody {
                 })
                 .collect()
         });
-        let inertia_second = PAIRS.map(|(i, j)| {
+        let inertia_second = Self::PAIRS.map(|(i, j)| {
             let (ij, ji) = (flexible(i, j), flexible(j, i));
             Mat::from_fn(nf, nf, |k, l| {
                 let trace: f64 = if i == j { (0..3).map(|a| flexible(a, a)[(k, l)]).sum() } else { 0.0 };

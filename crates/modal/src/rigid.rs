@@ -79,8 +79,8 @@ impl RigidModes {
     /// Checks that K resists none of the rigid motions.
     pub(crate) fn check_free(&self, stiffness: SparseColMatRef<'_, usize, f64>) -> Result<(), ModalError> {
         let forces = symmetric_product(stiffness, self.shapes.as_ref());
-        let diagonal = |i: usize| stiffness.get(i, i).copied().unwrap_or(0.0);
-        let scales = Mat::from_fn(forces.nrows(), 6, |i, mode| diagonal(i) * self.shapes[(i, mode)]);
+        let diagonal: Vec<f64> = (0..forces.nrows()).map(|i| stiffness.get(i, i).copied().unwrap_or(0.0)).collect();
+        let scales = Mat::from_fn(forces.nrows(), 6, |i, mode| diagonal[i] * self.shapes[(i, mode)]);
         for (mode, motion) in MOTIONS.into_iter().enumerate() {
             let relative = forces.col(mode).norm_l2() / scales.col(mode).norm_l2();
             if relative.is_nan() || relative >= FREE {

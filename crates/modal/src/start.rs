@@ -1,15 +1,17 @@
 //! A first guess from the geometry: displacement fields that are polynomials of degree two.
 //!
-//! Rayleigh–Ritz on these 30 fields, six of which are the rigid motions, bounds the first flexible eigenvalue from
-//! above (bending of a slender body is nearly quadratic). That gives the shift its scale, whatever the units.
+//! Rayleigh–Ritz on the six linear and eighteen quadratic ones that strain the body bounds the first flexible eigenvalue
+//! from above (bending of a slender body is nearly quadratic). That gives the shift its scale, whatever the units.
 
 use faer::Mat;
 use faer::sparse::SparseColMatRef;
+use nalgebra::Vector3;
 
 use crate::dense::symmetric_eigen;
 use crate::error::ModalError;
 use crate::mass::NodalMass;
 use crate::products::symmetric_product;
+use crate::reduced::ReducedBody;
 use crate::rigid::RigidModes;
 use crate::tall;
 
@@ -32,6 +34,9 @@ pub(crate) fn eigenvalue_estimate(
 
     // Rigid parts are taken out of the Gram matrix; K has none of them to begin with.
     let gram = gram - coupling.transpose() * &coupling;
+    let unit = |i: usize| if gram[(i, i)] > 0.0 { 1.0 / gram[(i, i)].sqrt() } else { 0.0 };
+    let scaled = |matrix: &Mat<f64>| Mat::from_fn(FIELDS, FIELDS, |i, j| matrix[(i, j)] * unit(i) * unit(j));
+    let (stiffness, gram) = (scaled(&stiffness), scaled(&gram));
     let (values, vectors) = symmetric_eigen(&gram)?;
     let largest = values.iter().copied().fold(0.0, f64::max);
     let kept: Vec<usize> = (0..values.len()).filter(|i| values[*i] > DEPENDENT * largest).collect();
@@ -43,23 +48,21 @@ pub(crate) fn eigenvalue_estimate(
     Ok(ritz.into_iter().filter(|value| *value > 1e-12 * scale).fold(scale, f64::min))
 }
 
-/// The 30 fields `x^p y^q z^r e_k`, p + q + r ≤ 2 (3n×30), scaled so that each is one in the mean over the mass.
+/// Number of polynomial fields: three passes over K at eight vectors each.
+const FIELDS: usize = 24;
+
+/// The linear fields `x_a e_b + x_b e_a` and the quadratic ones `x_a x_b e_c` (3n×24).
 fn polynomial_fields(positions: &[[f64; 3]], rigid: &RigidModes) -> Mat<f64> {
-    // Lengths in units of the radii of gyration, so that a slender body gives well-scaled fields.
-    let inertia = rigid.inertia;
-    let half_trace = 0.5 * inertia.trace();
-    let radius: [f64; 3] = std::array::from_fn(|axis| ((half_trace - inertia[(axis, axis)]) / rigid.mass).sqrt());
-    let scaled = |node: usize, axis: usize| {
-        if radius[axis] > 0.0 { (positions[node][axis] - rigid.center_of_mass[axis]) / radius[axis] } else { 0.0 }
-    };
-    const POWERS: [[i32; 3]; 10] =
-        [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [2, 0, 0], [0, 2, 0], [0, 0, 2], [1, 1, 0], [0, 1, 1], [1, 0, 1]];
-    let weight = 1.0 / rigid.mass.sqrt();
-    Mat::from_fn(3 * positions.len(), 30, |i, field| {
-        if i % 3 != field % 3 {
-            return 0.0;
+    let mut fields = Mat::zeros(3 * positions.len(), FIELDS);
+    for (node, position) in positions.iter().enumerate() {
+        let x = Vector3::from(*position) - rigid.center_of_mass;
+        for (pair, (a, b)) in ReducedBody::PAIRS.into_iter().enumerate() {
+            fields[(3 * node + a, pair)] += x[b];
+            fields[(3 * node + b, pair)] += x[a];
+            for axis in 0..3 {
+                fields[(3 * node + axis, 6 + 3 * pair + axis)] = x[a] * x[b];
+            }
         }
-        let powers = POWERS[field / 3];
-        (0..3).map(|axis| scaled(i / 3, axis).powi(powers[axis])).product::<f64>() * weight
-    })
+    }
+    fields
 }

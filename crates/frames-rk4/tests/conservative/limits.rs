@@ -77,16 +77,14 @@ fn numbers_out_of_range() {
     }
 }
 
-/// A spin beyond the first bending frequency across the bending: without geometric stiffening the plate flies apart.
+/// A spin of 400 rad/s across a bending direction whose frequency is 154 rad/s, in steps far too long.
 #[test]
 fn a_motion_that_blows_up_ends_with_an_error_and_not_with_nan() {
     let plate = plate();
     let initial = Initial { omega: Vector3::new(0.01, 400.0, 0.0), ..Initial::at_rest(10) };
     let run = Run::free(plate, initial, 20.0);
-    for (method, control) in
-        [(EXPONENTIAL, StepControl::Fixed(1e-3)), (STRANG, StepControl::Fixed(1e-3)), (RKMK4, StepControl::Fixed(5e-4))]
-    {
-        let mut simulation = run.start(method, control, Rows::Interval(0.01));
+    for method in [EXPONENTIAL, STRANG] {
+        let mut simulation = run.start(method, StepControl::Fixed(1e-3), Rows::Interval(0.01));
         let mut error = None;
         let mut last = 0.0;
         for row in simulation.by_ref() {
@@ -98,7 +96,6 @@ fn a_motion_that_blows_up_ends_with_an_error_and_not_with_nan() {
                 Err(e) => error = Some(e),
             }
         }
-        println!("{method:?} {error:?} after {last}");
         let (StepError::TurnTooLarge { time, .. } | StepError::NotFinite { time, .. }) = error.unwrap() else {
             panic!("{error:?}")
         };

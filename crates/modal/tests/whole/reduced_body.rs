@@ -129,3 +129,25 @@ fn points_and_rigid_shapes_are_rows_of_the_modes() {
     let place = 0.25 * Vector3::from(case.body.positions[3]) + 0.75 * Vector3::from(case.body.positions[40]);
     assert!((middle.position_body + case.modes.rigid.center_of_mass - place).norm() < 1e-12);
 }
+
+#[test]
+fn a_truncated_body_is_the_body_of_the_truncated_modes() {
+    let case = case();
+    let mut modes = case.modes.clone();
+    modes.eigenvalues.truncate(3);
+    modes.shapes = case.modes.shapes.get(.., ..3).to_owned();
+    let expected = ReducedBody::new(&modes, case.body.matrices.mass(), &case.body.positions).unwrap();
+    let found = case.reduced.truncated(3);
+    assert_eq!(found.circular_frequencies, expected.circular_frequencies);
+    let close = |a: &Mat<f64>, b: &Mat<f64>| a.shape() == b.shape() && (a - b).norm_max() < 1e-11 * b.norm_max();
+    let pairs = found.rotation_products.iter().flatten().zip(expected.rotation_products.iter().flatten());
+    let matrices = found.inertia_second.iter().zip(&expected.inertia_second);
+    let gyroscopic = found.gyroscopic.iter().zip(&expected.gyroscopic);
+    assert!(pairs.chain(matrices).chain(gyroscopic).all(|(a, b)| close(a, b)));
+    let products = found.position_products.iter().flatten().zip(expected.position_products.iter().flatten());
+    for (a, b) in products.chain(found.inertia_first.iter().zip(&expected.inertia_first)) {
+        assert_eq!(a.len(), b.len());
+        assert!(a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-9));
+    }
+    assert_eq!(case.reduced.truncated(100).flexible(), NF);
+}
