@@ -34,6 +34,14 @@ mesh:
 picture: build
     {{flexframe}} animate examples/tumbling_plate.toml -o docs/tumbling_plate.gif --frames 80
 
+# What accuracy costs: docs/accuracy.md and its diagrams from real runs of three scenes (some minutes).
+accuracy: build
+    {{flexframe}} accuracy examples/accuracy/{pulse,tumbling,spin}.toml -o docs/accuracy.md
+
+# Steps a second of every scheme on one core.
+bench:
+    cargo bench --quiet --package frames-rk4 --bench steps
+
 # Time `flexframe modes` against SciPy's eigsh with CHOLMOD on three meshes (some minutes; Python packages).
 bench-modes: build
     crates/modal/benches/peer/run

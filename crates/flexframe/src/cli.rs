@@ -3,9 +3,11 @@
 use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::time::Duration;
 
 use clap::{Args, Parser, Subcommand};
 use flexframe::animation::{AnimationSettings, animate};
+use flexframe::cost::{self, CostSettings};
 use flexframe::{figures, modes, paper, run};
 use scene::Scene;
 use serde::Serialize;
@@ -54,6 +56,33 @@ enum Command {
         /// Folder for results, figures and report.md [default: out/<name of the scene file>].
         #[arg(short, long, value_name = "DIR")]
         output: Option<PathBuf>,
+    },
+    /// Find out what accuracy costs on a scene: every scheme at many steps, its error and its time.
+    Cost {
+        #[command(flatten)]
+        scene: SceneArgs,
+        /// Folder for cost.csv and the diagram [default: out/<name of the scene file>].
+        #[arg(short, long, value_name = "DIR")]
+        output: Option<PathBuf>,
+        /// Find the cheapest setting within this error, ready for the scene.
+        #[arg(long, value_name = "ERROR", value_parser = positive)]
+        target: Option<f64>,
+        /// Seconds that a run may take; the reference may take twenty times as long.
+        #[arg(long, value_name = "SECONDS", default_value_t = 1.0, value_parser = positive)]
+        patience: f64,
+    },
+    /// Write a page with the price lists of some scenes, for docs/.
+    #[command(hide = true)]
+    Accuracy {
+        /// The scene files.
+        #[arg(value_name = "SCENE", required = true)]
+        scenes: Vec<PathBuf>,
+        /// The page.
+        #[arg(short, long, value_name = "FILE")]
+        output: PathBuf,
+        /// Seconds that a run may take.
+        #[arg(long, value_name = "SECONDS", default_value_t = 1.0, value_parser = positive)]
+        patience: f64,
     },
     /// Run a scene and draw it as an animated GIF.
     Animate {
@@ -129,6 +158,23 @@ fn execute(cli: Cli) -> Result<(), Box<dyn Error>> {
             drop(bar);
             print(&report, json)
         }
+        Command::Cost { scene: SceneArgs { scene, json }, output, target, patience } => {
+            let scene = Scene::read(scene)?;
+            let patience = Duration::from_secs_f64(patience);
+            let settings = CostSettings { target, ..CostSettings::with_patience(patience) };
+            let report = cost::price_list(&scene, &folder(&scene, output), settings, |p| bar.cost(p))?;
+            drop(bar);
+            print(&report, json)
+        }
+        Command::Accuracy { scenes, output, patience } => {
+            let scenes = scenes.iter().map(Scene::read).collect::<Result<Vec<_>, _>>()?;
+            let patience = Duration::from_secs_f64(patience);
+            let lists = Path::new("out").join("accuracy");
+            let files = cost::accuracy_page(&scenes, &output, &lists, patience, |p| bar.cost(p))?;
+            drop(bar);
+            list(&files);
+            Ok(())
+        }
         Command::Animate { scene, output, frames, magnify } => {
             let scene = Scene::read(scene)?;
             animate(&scene, &output, AnimationSettings { frames, magnification: magnify }, |p| bar.run(p))?;
@@ -137,6 +183,12 @@ fn execute(cli: Cli) -> Result<(), Box<dyn Error>> {
             Ok(())
         }
     }
+}
+
+/// A number above zero.
+fn positive(text: &str) -> Result<f64, String> {
+    let number: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
+    if number > 0.0 && number.is_finite() { Ok(number) } else { Err("expected a positive number".to_owned()) }
 }
 
 /// The folder asked for, or one named after the scene.

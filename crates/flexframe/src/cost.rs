@@ -1,7 +1,8 @@
 //! `flexframe cost`: what accuracy costs, measured on the user's own scene.
 //!
-//! Every method runs at a ladder of steps or tolerances. Each run is compared with a [`reference`] at up to 100 equally
-//! spaced times and timed several times; [`modes`](self::modes) shows what the modes left out would change.
+//! Every method runs at a ladder of steps or tolerances. Each run is compared with a reference at up to 100 equally
+//! spaced times and timed several times. The modes are an axis of their own: the same motion with fewer and more of
+//! them shows what those left out would change.
 
 mod answer;
 mod case;
@@ -12,6 +13,7 @@ mod modes;
 mod page;
 mod reference;
 mod run;
+mod spin;
 mod table;
 
 use std::path::{Path, PathBuf};
@@ -34,7 +36,7 @@ pub use run::{Errors, RunFailure};
 use answer::refine;
 use case::Case;
 use ladder::{Judge, climb};
-use reference::{Reference, converge};
+use reference::{Budget, Reference, converge};
 
 /// A price list that could not be made.
 #[derive(Debug, thiserror::Error)]
@@ -86,16 +88,31 @@ pub enum CostProgress {
 /// What a price list is asked for.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CostSettings {
-    /// The ladders end before runs that would take longer. The reference may take twenty times as long, and each run is
-    /// repeated for a tenth of this at least.
+    /// The ladders end before runs that would take longer; the reference may take twenty times as long.
     pub patience: Duration,
+    /// The ladders end before runs with more steps than this; the reference may have four times as many.
+    pub most_steps: u64,
+    /// Each run is repeated until it has been timed for so long.
+    pub timed_for: Duration,
     /// An error for which the cheapest setting is wanted.
     pub target: Option<f64>,
 }
 
 impl Default for CostSettings {
     fn default() -> Self {
-        Self { patience: Duration::from_secs(1), target: None }
+        Self::with_patience(Duration::from_secs(1))
+    }
+}
+
+impl CostSettings {
+    /// Each run timed for a tenth of the patience.
+    pub fn with_patience(patience: Duration) -> Self {
+        Self { patience, most_steps: 1_000_000, timed_for: patience / 10, target: None }
+    }
+
+    /// Time and steps that a reference may take.
+    fn budget(&self, patience: u32) -> Budget {
+        Budget { time: patience * self.patience, steps: 4 * self.most_steps }
     }
 }
 
@@ -165,15 +182,14 @@ pub fn price_list(
         progress(CostProgress::Measuring { done, total });
     };
     step(0);
-    let patience = settings.patience;
     let exponential = Method::Conservative(ConservativeScheme::Exponential);
-    let reference = converge(&case, exponential, 20 * patience, 0.0)
+    let reference = converge(&case, exponential, settings.budget(20), 0.0)
         .map_err(|(steps, failure)| CostError::Reference { scene: scene.path.clone(), steps, failure })?;
     step(1);
     // The paper's formulation has a limit of its own, to which its schemes converge.
-    let paper_limit = converge(&case, Method::PaperRkmk4, 5 * patience, 0.0).ok();
+    let paper_limit = converge(&case, Method::PaperRkmk4, settings.budget(5), 0.0).ok();
     step(1);
-    let judge = Judge { reference: &reference, paper_limit: paper_limit.as_ref(), patience };
+    let judge = Judge { reference: &reference, paper_limit: paper_limit.as_ref(), settings };
     let own = own_setting(scene);
     let mut lines = Vec::new();
     for (method, controlled) in ladders {
@@ -184,7 +200,7 @@ pub fn price_list(
         refine(&case, &judge, &mut lines, target);
     }
     ladder::mark_front(&mut lines);
-    let modes = modes::compare(scene, &richest, &counts, patience);
+    let modes = modes::compare(scene, &richest, &counts, &settings);
     step(1);
 
     let mut report = CostReport {

@@ -2,6 +2,7 @@
 
 use std::time::{Duration, Instant};
 
+use flexframe::cost::CostProgress;
 use flexframe::run::RunProgress;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use modal::Progress;
@@ -37,6 +38,13 @@ impl Bar {
         match progress {
             RunProgress::Build(progress) => self.build(progress),
             RunProgress::Motion(part) => self.show("stepping", Some(((10_000.0 * part) as u64, 10_000))),
+        }
+    }
+
+    pub fn cost(&mut self, progress: CostProgress) {
+        match progress {
+            CostProgress::Build(progress) => self.build(progress),
+            CostProgress::Measuring { done, total } => self.show("measuring", Some((done, total))),
         }
     }
 

@@ -9,6 +9,7 @@ use serde::Serialize;
 use super::case::Case;
 use super::ladder::{Judge, Line, Row, settings_between};
 use super::modes::ModesRow;
+use super::table::duration;
 
 /// A rung between two others cannot be faster than the finer of them by more than this.
 const MOST_GAIN: f64 = 2.7;
@@ -28,13 +29,6 @@ impl Setting {
     pub fn value(self) -> f64 {
         match self {
             Self::Step(value) | Self::Tolerance(value) => value,
-        }
-    }
-
-    pub(super) fn control(self) -> StepControl {
-        match self {
-            Self::Step(step) => StepControl::Fixed(step),
-            Self::Tolerance(tolerance) => StepControl::Tolerance(tolerance),
         }
     }
 }
@@ -63,7 +57,7 @@ impl fmt::Display for Setting {
 pub struct Answer {
     /// The error asked for.
     pub target: f64,
-    /// Lines for the section [time] of the scene; none where nothing reaches the target.
+    /// Lines for the section `[time]` of the scene; none where nothing reaches the target.
     pub lines: Vec<String>,
     /// The run; none where nothing reaches the target.
     pub run: Option<Row>,
@@ -108,9 +102,8 @@ fn first_reaching(line: &Line, target: f64) -> Option<(usize, f64)> {
 
 impl Answer {
     pub(super) fn new(target: f64, scene: &Scene, lines: &[Line], modes: &[ModesRow], flexible: usize) -> Self {
-        let runs = || {
-            lines.iter().flat_map(|line| line.rows.iter().filter_map(move |row| Some((line, row, row.measured()?))))
-        };
+        let runs =
+            || lines.iter().flat_map(|line| line.rows.iter().filter_map(move |row| Some((line, row, row.measured()?))));
         let best = runs()
             .filter(|(_, _, measured)| measured.error <= target)
             .min_by(|a, b| a.2.seconds.total_cmp(&b.2.seconds))
@@ -140,13 +133,13 @@ impl fmt::Display for Answer {
             Some(run) => {
                 write!(
                     f,
-                    "{} is within {:.1e} of the reference (target {:e}): {} steps, {} evaluations, {:.3} ms",
+                    "{} is within {:.1e} of the reference (target {:e}): {} steps, {} evaluations, {}",
                     self.lines.join(", "),
                     run.error,
                     self.target,
                     run.steps,
                     run.evaluations,
-                    1e3 * run.seconds
+                    duration(run.seconds)
                 )?;
                 write!(f, "\n\n  [time]")?;
                 for line in &self.lines {

@@ -9,7 +9,7 @@ use super::ladder::{Line, Outcome};
 use super::{CostError, CostReport, Setting};
 
 /// The names of the columns of `cost.csv`.
-const COLUMNS: [&str; 22] = [
+const COLUMNS: [&str; 23] = [
     "formulation",
     "scheme",
     "step",
@@ -24,6 +24,7 @@ const COLUMNS: [&str; 22] = [
     "energy",
     "angular_momentum",
     "spin",
+    "step_spin",
     "steps",
     "rejected",
     "evaluations",
@@ -62,17 +63,18 @@ fn csv(report: &CostReport) -> String {
                     let number = |value: Option<f64>| value.map_or_else(String::new, |value| format!("{value:e}"));
                     writeln!(
                         csv,
-                        ",{:e},{},{:e},{},{},{},{},{:e},{:e},{},{},{},{},{:e},{:.3},{},{},",
+                        ",{:e},{},{:e},{},{},{},{},{:e},{:e},{},{},{},{},{},{:e},{:.3},{},{},",
                         m.error,
                         m.at_reference,
                         e.attitude,
                         number(e.modal),
                         number(e.velocity),
                         number(e.acceleration),
-                        number(m.step_error),
+                        number(m.step_errors.map(|errors| errors.largest())),
                         m.energy,
                         m.angular_momentum,
                         number(m.spin),
+                        number(m.step_spin),
                         m.steps,
                         m.rejected,
                         m.evaluations,

@@ -1,13 +1,12 @@
 //! The ladders: each method with shorter and shorter steps, or smaller and smaller tolerances.
 
-use std::time::Duration;
-
 use frames_rk4::{Method, StepControl};
 use serde::Serialize;
 
+use super::CostSettings;
 use super::answer::Setting;
 use super::case::Case;
-use super::reference::Reference;
+use super::reference::{ROUNDING, Reference};
 use super::run::{Errors, RunFailure, Timing, Trajectory};
 
 /// Errors below this multiple of the reference's own are not told apart.
@@ -18,8 +17,14 @@ const BELOW_LIMIT: f64 = 0.9;
 const FEWEST_STEPS: f64 = 10.0;
 /// Tolerances are 10^−k for these k.
 const TOLERANCES: std::ops::RangeInclusive<i32> = 3..=10;
+/// Steps whose error is this fraction of the formulation's need not be shorter.
+const OUTWEIGHED: f64 = 1e-3;
 /// Errors above this are too coarse for an order to show.
 const COARSE: f64 = 1e-2;
+/// Errors above this multiple of the reference's own are free of it.
+const FAR_ABOVE: f64 = 100.0;
+/// Errors below this may be rounding.
+const ROUNDED: f64 = 1e-11;
 
 /// The runs of a method.
 #[derive(Debug, Clone, Serialize)]
@@ -32,7 +37,8 @@ pub struct Line {
     pub controlled: bool,
     /// The order that the scheme has.
     pub order: u32,
-    /// The order that was measured: the slope of the error against the step, where errors come from the steps.
+    /// The order that was measured: the slope of the error against the step, where errors come from the steps; of the
+    /// quantity that converges most slowly.
     pub measured_order: Option<f64>,
     /// The runs, longest step or largest tolerance first.
     pub rows: Vec<Row>,
@@ -72,14 +78,16 @@ pub struct Measured {
     pub at_reference: bool,
     /// Errors against the reference.
     pub errors: Errors,
-    /// Largest error against the limit of its own formulation.
-    pub step_error: Option<f64>,
+    /// Errors against the limit of its own formulation: what the steps do.
+    pub step_errors: Option<Errors>,
     /// Change of energy − work + dissipation, relative to the largest energy.
     pub energy: f64,
     /// Change of angular momentum less angular impulse, relative to the largest angular momentum.
     pub angular_momentum: f64,
     /// |ω| at the end over that of the reference, less one; none where the reference does not spin.
     pub spin: Option<f64>,
+    /// The same against the limit of its own formulation: what the steps do to the spin.
+    pub step_spin: Option<f64>,
     /// Steps taken.
     pub steps: u64,
     /// Steps tried in vain.
@@ -108,7 +116,7 @@ impl Row {
 pub(super) struct Judge<'a> {
     pub reference: &'a Reference,
     pub paper_limit: Option<&'a Reference>,
-    pub patience: Duration,
+    pub settings: CostSettings,
 }
 
 impl Judge<'_> {
@@ -131,20 +139,23 @@ impl Judge<'_> {
     fn try_measure(&self, case: &Case<'_>, method: Method, control: StepControl) -> Result<Measured, RunFailure> {
         let simulation = case.begin(method, control)?;
         let run = Trajectory::follow(simulation.clone())?;
-        let timing = Timing::of(&simulation, self.patience / 10)?;
+        let timing = Timing::of(&simulation, self.settings.timed_for)?;
         let errors = Errors::between(&run, &self.reference.trajectory, case.scales());
         let least = RANKED_ABOVE * self.reference.error.largest();
-        let step_error =
-            self.limit(method).map(|limit| Errors::between(&run, &limit.trajectory, case.scales()).largest());
-        let spin = self.reference.trajectory.final_spin();
+        let limit = self.limit(method).map(|limit| &limit.trajectory);
+        let spin = |against: &Trajectory| {
+            let spin = against.final_spin();
+            (spin > 0.0).then(|| run.final_spin() / spin - 1.0)
+        };
         Ok(Measured {
             error: errors.largest().max(least),
             at_reference: errors.largest() <= least,
             errors,
-            step_error,
+            step_errors: limit.map(|limit| Errors::between(&run, limit, case.scales())),
             energy: run.balances.energy,
             angular_momentum: run.balances.angular_momentum,
-            spin: (spin > 0.0).then(|| run.final_spin() / spin - 1.0),
+            spin: spin(&self.reference.trajectory),
+            step_spin: limit.and_then(spin),
             steps: run.stats.accepted,
             rejected: run.stats.rejected,
             evaluations: run.stats.evaluations,
@@ -154,10 +165,13 @@ impl Judge<'_> {
         })
     }
 
-    /// Whether shorter steps cannot bring a run closer to the reference, as far as can be told.
-    fn is_at_the_end(&self, method: Method, measured: &Measured) -> bool {
+    /// Whether shorter steps cannot bring a run closer to the reference, as far as can be told: the reference cannot
+    /// tell, or the error is that of the formulation, or of rounding.
+    fn is_at_the_end(&self, method: Method, before: Option<&Measured>, now: &Measured) -> bool {
         let own = self.limit(method).map_or(0.0, |limit| RANKED_ABOVE * limit.error.largest());
-        measured.at_reference || measured.step_error.is_some_and(|error| error <= own.max(1e-2 * measured.error))
+        now.at_reference
+            || now.step_errors.is_some_and(|errors| errors.largest() <= own.max(OUTWEIGHED * now.error))
+            || before.is_some_and(|before| now.error < ROUNDING && now.error > before.error / 2.0)
     }
 }
 
@@ -179,18 +193,23 @@ pub(super) fn climb(
         rows: Vec::new(),
         method,
     };
-    // What a rung costs, in terms of the one before.
-    let mut before: Option<(f64, f64)> = None;
+    // The last run, and its work in terms of the first rung.
+    let mut before: Option<(f64, Measured)> = None;
     for (control, work) in rungs(case, method, controlled) {
-        if let Some((work_before, seconds)) = before
-            && seconds * work / work_before > judge.patience.as_secs_f64()
-        {
-            break;
+        if let Some((work_before, run)) = &before {
+            let more = work / work_before;
+            let (seconds, steps) = (more * run.seconds, more * run.steps as f64);
+            if seconds > judge.settings.patience.as_secs_f64() || steps > judge.settings.most_steps as f64 * 1.001 {
+                break;
+            }
         }
-        let row = Row::new(control, judge.measure(case, method, control), own == (method, control));
-        before = row.measured().map(|measured| (work, measured.seconds)).or(before);
-        let ends = row.measured().is_some_and(|measured| judge.is_at_the_end(method, measured));
+        let of_scene = own.0 == method && is_same(own.1.into(), control.into());
+        let row = Row::new(control, judge.measure(case, method, control), of_scene);
+        let measured = row.measured().cloned();
         line.rows.push(row);
+        let Some(measured) = measured else { continue };
+        let ends = judge.is_at_the_end(method, before.as_ref().map(|(_, run)| run), &measured);
+        before = Some((work, measured));
         if ends {
             break;
         }
@@ -201,9 +220,8 @@ pub(super) fn climb(
         let outcome = judge.measure(case, method, own_control);
         line.insert(Row::new(own_control, outcome, true));
     }
-    if !controlled {
-        let own_error = judge.limit(method).map_or(f64::INFINITY, |limit| limit.error.largest());
-        line.measured_order = fitted_order(&line.rows, 10.0 * own_error);
+    if !controlled && let Some(limit) = judge.limit(method) {
+        line.measured_order = slowest_order(&line.rows, &limit.error);
     }
     line
 }
@@ -236,7 +254,9 @@ impl Line {
 fn rungs(case: &Case<'_>, method: Method, controlled: bool) -> Vec<(StepControl, f64)> {
     if controlled {
         // The estimate goes with the fourth power of the step.
-        return TOLERANCES.map(|k| (StepControl::Tolerance(10_f64.powi(-k)), 10_f64.powf(f64::from(k) / 4.0))).collect();
+        return TOLERANCES
+            .map(|k| (StepControl::Tolerance(tidy(10_f64.powi(-k))), 10_f64.powf(f64::from(k) / 4.0)))
+            .collect();
     }
     let end = case.end();
     let longest = case.longest_step(method);
@@ -244,11 +264,18 @@ fn rungs(case: &Case<'_>, method: Method, controlled: bool) -> Vec<(StepControl,
     let fewest = (end / (factor * longest)).max(FEWEST_STEPS) * (1.0 - 1e-12);
     let first = step_counts().find(|count| *count as f64 >= fewest);
     let others = step_counts().filter(|count| is_one_two_five(*count) && Some(*count) > first);
-    first
-        .into_iter()
-        .chain(others)
-        .map(|count| (StepControl::Fixed(end / count as f64), count as f64))
-        .collect()
+    first.into_iter().chain(others).map(|count| (StepControl::Fixed(tidy(end / count as f64)), count as f64)).collect()
+}
+
+/// A number without the last digits that only rounding gave it.
+fn tidy(value: f64) -> f64 {
+    let tidy = format!("{value:.12e}").parse().unwrap_or(value);
+    if (tidy / value - 1.0).abs() < 1e-14 { tidy } else { value }
+}
+
+/// Whether two settings differ by rounding only.
+fn is_same(a: Setting, b: Setting) -> bool {
+    std::mem::discriminant(&a) == std::mem::discriminant(&b) && (a.value() / b.value() - 1.0).abs() < 1e-9
 }
 
 /// Numbers of steps with which the times of comparison are met and whose steps have few digits: 1, 1.25, 1.6, … 8 times
@@ -273,12 +300,12 @@ fn is_one_two_five(count: u64) -> bool {
 pub(super) fn settings_between(case: &Case<'_>, coarse: Setting, fine: Setting) -> Vec<StepControl> {
     match (coarse, fine) {
         (Setting::Step(coarse), Setting::Step(fine)) => step_counts()
-            .map(|count| case.end() / count as f64)
+            .map(|count| tidy(case.end() / count as f64))
             .filter(|step| *step < coarse * (1.0 - 1e-9) && *step > fine * (1.0 + 1e-9))
             .map(StepControl::Fixed)
             .collect(),
         (Setting::Tolerance(coarse), Setting::Tolerance(fine)) => [0.5, 0.2]
-            .map(|part| part * coarse)
+            .map(|part| tidy(part * coarse))
             .into_iter()
             .filter(|tolerance| *tolerance > fine * (1.0 + 1e-9))
             .map(StepControl::Tolerance)
@@ -287,24 +314,21 @@ pub(super) fn settings_between(case: &Case<'_>, coarse: Setting, fine: Setting) 
     }
 }
 
-/// Slope of ln(error) against ln(step), by least squares, over errors that come from the steps.
-fn fitted_order(rows: &[Row], above: f64) -> Option<f64> {
-    let points: Vec<(f64, f64)> = rows
-        .iter()
-        .filter_map(|row| {
-            let error = row.measured()?.step_error?;
+/// The smallest of the orders of all quantities: of each, the slope of ln(error) against ln(step) between the finest two
+/// runs whose errors come from the steps. `limit` is the error of what they are compared with.
+fn slowest_order(rows: &[Row], limit: &Errors) -> Option<f64> {
+    let quantities: [fn(&Errors) -> Option<f64>; 4] =
+        [|e| Some(e.attitude), |e| e.modal, |e| e.velocity, |e| e.acceleration];
+    let orders = quantities.into_iter().filter_map(|quantity| {
+        let above = ROUNDED.max(FAR_ABOVE * quantity(limit)?);
+        let mut points = rows.iter().rev().filter_map(|row| {
+            let error = quantity(&row.measured()?.step_errors?)?;
             (error > above && error < COARSE).then(|| (row.setting.value().ln(), error.ln()))
-        })
-        .collect();
-    if points.len() < 2 {
-        return None;
-    }
-    let count = points.len() as f64;
-    let mean = |part: fn(&(f64, f64)) -> f64| points.iter().map(part).sum::<f64>() / count;
-    let (x, y) = (mean(|p| p.0), mean(|p| p.1));
-    let covariance: f64 = points.iter().map(|p| (p.0 - x) * (p.1 - y)).sum();
-    let variance: f64 = points.iter().map(|p| (p.0 - x) * (p.0 - x)).sum();
-    Some(covariance / variance)
+        });
+        let (fine, coarse) = (points.next()?, points.next()?);
+        Some((coarse.1 - fine.1) / (coarse.0 - fine.0))
+    });
+    orders.min_by(f64::total_cmp)
 }
 
 /// Marks the runs for which no other is both closer and faster.
@@ -327,10 +351,11 @@ mod tests {
             error,
             at_reference: false,
             errors: Errors { attitude: error, ..Errors::default() },
-            step_error: Some(error),
+            step_errors: Some(Errors { attitude: error, ..Errors::default() }),
             energy: 0.0,
             angular_momentum: 0.0,
             spin: None,
+            step_spin: None,
             steps: 1,
             rejected: 0,
             evaluations: 4,
@@ -347,6 +372,15 @@ mod tests {
         assert_eq!(counts, [1, 2, 4, 5, 10, 20, 25, 50, 100, 200, 400, 500, 800, 1000, 1600, 2000]);
         assert!([1, 2, 5, 10, 500, 2000].into_iter().all(is_one_two_five));
         assert!([4, 25, 800, 1250].into_iter().all(|count| !is_one_two_five(count)));
+    }
+
+    #[test]
+    fn steps_have_no_digits_from_rounding() {
+        assert_eq!(format!("{:e}", tidy(0.3 / 1000.0)), "3e-4");
+        assert_eq!(format!("{:e}", tidy(0.2 * 1e-5)), "2e-6");
+        assert_eq!(tidy(0.37 / 700.0), 0.37 / 700.0);
+        assert!(is_same(Setting::Step(3e-4), Setting::Step(0.3 / 1000.0)));
+        assert!(!is_same(Setting::Step(1e-4), Setting::Tolerance(1e-4)));
     }
 
     #[test]
@@ -375,8 +409,9 @@ mod tests {
         // Errors that do not come from the step are left out.
         rows.insert(0, row(1.0, 0.5, 1.0));
         rows.push(row(0.01, 2e-9, 1.0));
-        let order = fitted_order(&rows, 1e-8).unwrap();
+        let limit = Errors { attitude: 1e-10, ..Errors::default() };
+        let order = slowest_order(&rows, &limit).unwrap();
         assert!((order - 4.0).abs() < 1e-9, "{order}");
-        assert_eq!(fitted_order(&rows[..2], 1e-8), None);
+        assert_eq!(slowest_order(&rows[..2], &limit), None);
     }
 }

@@ -1,11 +1,10 @@
 //! Modes as an axis of their own: what keeping fewer or more of them changes.
 
-use std::time::Duration;
-
 use frames_rk4::{ConservativeScheme, Method, StepControl};
 use scene::{Model, Scene};
 use serde::Serialize;
 
+use super::CostSettings;
 use super::case::Case;
 use super::reference::converge;
 use super::run::{Errors, Timing, Trajectory};
@@ -42,15 +41,17 @@ pub(super) fn counts(flexible: usize, most: usize) -> Vec<usize> {
 
 /// Runs the motion with the exponential scheme and each number of modes. `richest` has the most; empty where the motion
 /// with the most modes cannot be run.
-pub(super) fn compare(scene: &Scene, richest: &Model, counts: &[usize], patience: Duration) -> Vec<ModesRow> {
+pub(super) fn compare(scene: &Scene, richest: &Model, counts: &[usize], settings: &CostSettings) -> Vec<ModesRow> {
     let method = Method::Conservative(ConservativeScheme::Exponential);
-    let Ok(most) = converge(&Case::new(scene, richest), method, 5 * patience, CONVERGED) else { return Vec::new() };
+    let Ok(most) = converge(&Case::new(scene, richest), method, settings.budget(5), CONVERGED) else {
+        return Vec::new();
+    };
     let control = StepControl::Fixed(most.step);
     let row = |count: usize| -> Option<ModesRow> {
         let model = richest.truncated(count);
         let case = Case::new(scene, &model);
         let simulation = case.begin(method, control).ok()?;
-        let timing = Timing::of(&simulation, patience / 10).ok()?;
+        let timing = Timing::of(&simulation, settings.timed_for).ok()?;
         let run = Trajectory::follow(simulation).ok()?;
         let is_most = count == richest.body.flexible();
         Some(ModesRow {
@@ -67,9 +68,7 @@ pub(super) fn compare(scene: &Scene, richest: &Model, counts: &[usize], patience
 /// Says that more digits than a target's need more modes, if they do.
 pub(super) fn warning(rows: &[ModesRow], flexible: usize, target: f64) -> Option<String> {
     let most = rows.last()?.flexible;
-    let error = |count: usize| {
-        rows.iter().find(|row| row.flexible == count)?.errors.map(|errors| errors.largest())
-    };
+    let error = |count: usize| rows.iter().find(|row| row.flexible == count)?.errors.map(|errors| errors.largest());
     let here = error(flexible).filter(|error| *error > target)?;
     let better = error(2 * flexible)
         .map_or_else(String::new, |error| format!(" (with `flexible = {}` {error:.1e})", 2 * flexible));

@@ -10,10 +10,8 @@ use super::run::{Errors, RunFailure, Trajectory};
 
 /// Steps of the first run.
 const FIRST: u64 = 100;
-/// No run takes more steps than this.
-const MOST: u64 = FIRST << 24;
-/// Differences above this still come from the steps, even where they do not fall; below, from rounding.
-const ROUNDING: f64 = 1e-8;
+/// Errors above this still come from the steps, even where they do not fall; below, from rounding.
+pub(super) const ROUNDING: f64 = 1e-8;
 
 /// A run and how far it is from the limit of short steps.
 pub(super) struct Reference {
@@ -37,6 +35,15 @@ pub struct ReferenceReport {
     pub errors: Option<Errors>,
 }
 
+/// What may be spent on a reference.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Budget {
+    /// For all runs together.
+    pub time: Duration,
+    /// For one run.
+    pub steps: u64,
+}
+
 /// Runs a fourth-order method with ever shorter steps, each half as long as those before, until the error is below
 /// `goal`, or rounding hides what halving changes, or the next run would go beyond the `budget`. Of two runs that are d
 /// apart, the finer is d/15 from the limit, if d has fallen as it does for fourth order; else d is taken.
@@ -46,7 +53,7 @@ pub struct ReferenceReport {
 pub(super) fn converge(
     case: &Case<'_>,
     method: Method,
-    budget: Duration,
+    budget: Budget,
     goal: f64,
 ) -> Result<Reference, (u64, RunFailure)> {
     let started = Instant::now();
@@ -54,7 +61,9 @@ pub(super) fn converge(
     let coarse = loop {
         match follow(case, method, steps) {
             Ok(run) => break run,
-            Err(failure) if started.elapsed() > budget || steps >= MOST => return Err((steps, failure)),
+            Err(failure) if started.elapsed() > budget.time || 2 * steps > budget.steps => {
+                return Err((steps, failure));
+            }
             Err(_) => steps *= 2,
         }
     };
@@ -64,7 +73,10 @@ pub(super) fn converge(
     let finer = follow(case, method, steps).map_err(|failure| (steps, failure))?;
     let mut difference = Errors::between(&coarse, &finer, case.scales());
     let mut best = reference(finer, steps, difference);
-    while best.error.largest() > goal && steps < MOST && started.elapsed() + 2 * best.trajectory.time <= budget {
+    while best.error.largest() > goal
+        && 2 * steps <= budget.steps
+        && started.elapsed() + 2 * best.trajectory.time <= budget.time
+    {
         steps *= 2;
         let Ok(finer) = follow(case, method, steps) else { break };
         let before = difference.largest();

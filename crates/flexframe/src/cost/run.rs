@@ -140,9 +140,10 @@ impl Errors {
         let relative = |error: f64, peak: f64, still: f64| (peak > still).then(|| error / peak);
 
         let modal_peak = largest(&mut theirs.iter().flat_map(|o| &o.modal_displacement).map(|q| q.abs()));
-        let modal = largest(&mut pairs().flat_map(|(a, b)| {
-            a.modal_displacement.iter().zip(&b.modal_displacement).map(|(a, b)| (a - b).abs())
-        }));
+        let modal = largest(
+            &mut pairs()
+                .flat_map(|(a, b)| a.modal_displacement.iter().zip(&b.modal_displacement).map(|(a, b)| (a - b).abs())),
+        );
         let of_points = |part: fn(&PointMotion) -> Vector3<f64>, still: f64| {
             let peak = largest(&mut theirs.iter().flat_map(|o| &o.points).map(|p| part(p).norm()));
             let error = largest(

@@ -6,8 +6,20 @@ use super::ladder::{Line, Outcome, Row};
 use super::{CostReport, Setting};
 use crate::modes::frequency_unit;
 
+/// The answer to the target, or, without one, the whole list.
 impl fmt::Display for CostReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match &self.answer {
+            Some(answer) => writeln!(f, "{answer}")?,
+            None => self.write_list(f)?,
+        }
+        write!(f, "\n  wrote     ")?;
+        self.files.iter().try_for_each(|file| write!(f, " {}", file.display()))
+    }
+}
+
+impl CostReport {
+    fn write_list(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let time = &self.time_unit;
         writeln!(f, "{}", self.title)?;
         write!(f, "  scene      {} flexible modes", self.flexible)?;
@@ -36,7 +48,18 @@ impl fmt::Display for CostReport {
         writeln!(
             f,
             "\n     {:<17} {:>9}  {:>9} {:>9} {:>9} {:>9}  {:>9} {:>9}  {:>8} {:>9}  {:>10} {:>6}",
-            "", "error", "attitude", "modal", "velocity", "accel.", "energy", "ang.mom.", "steps", "evals", "time", "spread"
+            "",
+            "error",
+            "attitude",
+            "modal",
+            "velocity",
+            "accel.",
+            "energy",
+            "ang.mom.",
+            "steps",
+            "evals",
+            "time",
+            "spread"
         )?;
         for line in &self.lines {
             writeln!(f, "  {}", heading(line))?;
@@ -50,16 +73,9 @@ impl fmt::Display for CostReport {
              error: largest of attitude (rad), modal coordinates, velocity and acceleration of the points (of their \
              peaks)"
         )?;
-        self.write_modes(f)?;
-        if let Some(answer) = &self.answer {
-            writeln!(f, "\n{answer}")?;
-        }
-        write!(f, "\n  wrote     ")?;
-        self.files.iter().try_for_each(|file| write!(f, " {}", file.display()))
+        self.write_modes(f)
     }
-}
 
-impl CostReport {
     fn write_modes(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (Some(first), Some(most)) = (self.modes.first(), self.modes.last()) else { return Ok(()) };
         writeln!(

@@ -1,0 +1,305 @@
+//! The price list: complete, true to the orders of the schemes, and right about the cheapest setting.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use std::sync::OnceLock;
+use std::time::Duration;
+
+use flexframe::cost::{CostReport, CostSettings, Line, Measured, Outcome, Row, Setting, price_list};
+use frames_rk4::{ConservativeScheme, Method, Observation, Rows, StepControl};
+use scene::{Model, Scene};
+
+const TARGET: f64 = 1e-4;
+
+/// The ring, spinning and ringing, for a twentieth of a second.
+const SCENE: &str = r#"
+title = "Ring"
+units = { length = "mm", mass = "Mg", time = "s" }
+[body]
+mesh = "MESH"
+material = { young_modulus = 210000.0, poisson_ratio = 0.3, density = 7.85e-9 }
+[modes]
+flexible = 4
+damping_ratio = 0.01
+[initial]
+angular_velocity = [0.0, 5.0, 20.0]
+modal_velocity = [12.0, -5.0, 4.0, 2.0]
+[[loads]]
+kind = "force"
+at = [0.0, 100.0, 10.0]
+direction = [0.0, -1.0, 0.5]
+amplitude = 50.0
+history = { kind = "half-sine", start = 0.0031, duration = 0.02 }
+[time]
+end = 0.05
+TIME
+[output]
+interval = 5e-4
+points = { struck = [0.0, 100.0, 10.0] }
+"#;
+
+fn scene_text(time: &str) -> String {
+    let mesh = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../meshes/ring.msh");
+    SCENE.replace("MESH", mesh.to_str().unwrap()).replace("TIME", time)
+}
+
+fn scene(time: &str) -> Scene {
+    Scene::parse(&scene_text(time), "ring.toml").unwrap()
+}
+
+/// Bounded by steps, not by time, so that the rows are the same on any machine, however busy.
+fn settings(most_steps: u64, target: f64) -> CostSettings {
+    let timed_for = Duration::from_millis(1);
+    CostSettings { patience: Duration::from_secs(600), most_steps, timed_for, target: Some(target) }
+}
+
+/// The list with a target, and the CSV file, made once.
+fn list() -> &'static (CostReport, String) {
+    static LIST: OnceLock<(CostReport, String)> = OnceLock::new();
+    LIST.get_or_init(|| {
+        let folder = tempfile::tempdir().unwrap();
+        let settings = settings(40_000, TARGET);
+        let report = price_list(&scene("step = 3e-5"), folder.path(), settings, |_| ()).unwrap();
+        assert_eq!(report.files.len(), 3);
+        assert!(report.files.iter().all(|file| std::fs::metadata(file).unwrap().len() > 1000));
+        let csv = std::fs::read_to_string(folder.path().join("cost.csv")).unwrap();
+        (report, csv)
+    })
+}
+
+fn line(method: Method, controlled: bool) -> &'static Line {
+    let is_it = |line: &&Line| {
+        (line.formulation, line.scheme, line.controlled) == (method.formulation(), method.scheme(), controlled)
+    };
+    list().0.lines.iter().find(is_it).unwrap()
+}
+
+fn runs(line: &Line) -> Vec<(f64, &Measured)> {
+    line.rows.iter().filter_map(|row| Some((row.setting.value(), row.measured()?))).collect()
+}
+
+#[test]
+fn every_method_is_in_the_list_with_its_order() {
+    for method in Method::ALL {
+        let line = line(method, false);
+        assert_eq!(line.order, method.order());
+        let order = line.measured_order.unwrap_or_else(|| panic!("no order of {}", line.name()));
+        assert!((order - f64::from(line.order)).abs() < 0.3, "{}: {order}", line.name());
+        for (_, run) in runs(line) {
+            assert_eq!(run.evaluations, run.steps * u64::from(method.evaluations_per_step()));
+        }
+    }
+    let controlled = Method::ALL.into_iter().filter(|method| method.estimates_error());
+    assert_eq!(controlled.map(|method| line(method, true).rows.len()).filter(|rows| *rows > 2).count(), 2);
+}
+
+#[test]
+fn errors_fall_down_the_ladder() {
+    for line in &list().0.lines {
+        let errors: Vec<f64> = runs(line).iter().map(|(_, run)| run.step_errors.unwrap().largest()).collect();
+        let first = errors.iter().copied().find(|error| *error < 1e-2).unwrap();
+        let last = errors.last().unwrap();
+        assert!(last < &(0.05 * first), "{}: {errors:?}", line.name());
+        assert!(line.rows.is_sorted_by(|a, b| a.setting.value() > b.setting.value()));
+    }
+}
+
+#[test]
+fn the_reference_is_closer_than_all_that_is_ranked() {
+    let report = &list().0;
+    let own = report.reference.own_error.largest();
+    assert!(own > 0.0 && own < 1e-8, "{own:e}");
+    for (_, run) in report.lines.iter().flat_map(runs) {
+        assert!(run.error >= 3.0 * own);
+        assert_eq!(run.at_reference, run.errors.largest() <= 3.0 * own);
+    }
+    // A scheme that has no step in common with the reference comes to the same motion.
+    let closest = runs(line(Method::Conservative(ConservativeScheme::Rkmk4), false)).last().unwrap().1;
+    assert!(closest.errors.largest() < 1e-5, "{:?}", closest.errors);
+    // The paper's formulation comes to another one.
+    let limit = report.paper_limit.as_ref().unwrap();
+    assert!(limit.errors.unwrap().largest() > 100.0 * limit.own_error.largest());
+}
+
+#[test]
+fn nothing_on_the_front_is_beaten() {
+    let all: Vec<&Row> = list().0.lines.iter().flat_map(|line| &line.rows).collect();
+    let front: Vec<&Measured> = all.iter().filter(|row| row.on_front).map(|row| row.measured().unwrap()).collect();
+    assert!(front.len() > 2);
+    for run in all.iter().filter_map(|row| row.measured()) {
+        assert!(!front.iter().any(|best| run.error < best.error && run.seconds < best.seconds));
+    }
+    // The scene's own setting is marked, once.
+    let own: Vec<&&Row> = all.iter().filter(|row| row.of_scene).collect();
+    assert_eq!(own.len(), 1);
+    assert_eq!(own[0].setting, Setting::Step(3e-5));
+}
+
+#[test]
+fn the_answer_reaches_the_target_when_the_scene_is_run_with_it() {
+    let answer = list().0.answer.as_ref().unwrap();
+    let run = answer.run.as_ref().unwrap().measured().unwrap();
+    assert!(run.error <= TARGET);
+    let cheaper = |line: &Line| runs(line).iter().any(|(_, m)| m.error <= TARGET && m.seconds < run.seconds);
+    assert!(!list().0.lines.iter().any(cheaper));
+
+    let pasted = scene(&answer.lines.join("\n"));
+    let model = Model::build(&pasted, |_| ()).unwrap();
+    let all = |simulation: frames_rk4::Simulation| -> Vec<Observation> { simulation.map(Result::unwrap).collect() };
+    let found = all(model.start(&pasted).unwrap());
+    // Another scheme at a step that is short enough.
+    let rkmk4 = Method::Conservative(ConservativeScheme::Rkmk4);
+    let expected = all(model.start_with(&pasted, rkmk4, StepControl::Fixed(2.5e-6), Rows::Interval(5e-4)).unwrap());
+    assert_eq!((found.len(), expected.len()), (100, 100));
+    let worst = |values: &dyn Fn(&Observation, &Observation) -> (f64, f64)| {
+        let (mut error, mut peak) = (0.0_f64, 0.0_f64);
+        for (a, b) in found.iter().zip(&expected) {
+            assert!((a.time - b.time).abs() < 1e-12);
+            let (e, p) = values(a, b);
+            (error, peak) = (error.max(e), peak.max(p));
+        }
+        error / peak
+    };
+    let attitude = worst(&|a, b| (a.attitude.angle_to(&b.attitude), 1.0));
+    let modal = worst(&|a, b| {
+        let pairs = || a.modal_displacement.iter().zip(&b.modal_displacement);
+        (pairs().map(|(a, b)| (a - b).abs()).fold(0.0, f64::max), pairs().map(|(_, b)| b.abs()).fold(0.0, f64::max))
+    });
+    let acceleration = worst(&|a, b| {
+        let (a, b) = (a.points[0].acceleration, b.points[0].acceleration);
+        ((a - b).norm(), b.norm())
+    });
+    let reached = attitude.max(modal).max(acceleration);
+    assert!(reached <= 1.01 * TARGET, "{reached:e}");
+    // And it is the error that the list says, as far as it comes from these three.
+    let listed = run.errors.attitude.max(run.errors.modal.unwrap()).max(run.errors.acceleration.unwrap());
+    assert!((reached / listed - 1.0).abs() < 0.05, "{reached:e} {listed:e}");
+}
+
+#[test]
+fn a_target_beyond_reach_is_said_to_be() {
+    let folder = tempfile::tempdir().unwrap();
+    let report = price_list(&scene("step = 3e-5"), folder.path(), settings(1000, 1e-30), |_| ()).unwrap();
+    let answer = report.answer.unwrap();
+    assert!(answer.run.is_none() && answer.lines.is_empty() && answer.smallest_error > 1e-20);
+    assert!(answer.to_string().contains("no setting that was tried"), "{answer}");
+}
+
+#[test]
+fn modes_left_out_are_an_error_of_their_own() {
+    let modes = &list().0.modes;
+    let counts: Vec<usize> = modes.iter().map(|row| row.flexible).collect();
+    assert_eq!(counts, [2, 4, 8, 16]);
+    assert!(modes.is_sorted_by(|a, b| a.highest_frequency < b.highest_frequency));
+    assert!(modes[3].errors.is_none());
+    let error = |row: usize| modes[row].errors.unwrap().largest();
+    // The struck point's acceleration needs the higher modes; what is shown is theirs, not that of the steps.
+    assert!(error(0) > error(2) && error(2) > 100.0 * modes[0].step_error, "{modes:?}");
+    let words = list().0.answer.as_ref().unwrap().modes.as_ref().unwrap();
+    assert!(words.contains("with 4 of them") && words.contains("`flexible = 8`"), "{words}");
+}
+
+#[test]
+fn the_table_for_programs_is_well_formed() {
+    let (report, csv) = list();
+    let mut lines = csv.lines();
+    let header: Vec<&str> = lines.next().unwrap().split(',').collect();
+    let column = |name: &str| header.iter().position(|column| *column == name).unwrap();
+    let rows: Vec<&Row> = report.lines.iter().flat_map(|line| &line.rows).collect();
+    let records: Vec<Vec<String>> = lines.map(fields).collect();
+    assert_eq!(records.len(), rows.len());
+    for (record, row) in records.iter().zip(rows) {
+        assert_eq!(record.len(), header.len(), "{record:?}");
+        let number = |name: &str| record[column(name)].parse::<f64>().ok();
+        match row.setting {
+            Setting::Step(step) => assert_eq!((number("step"), number("tolerance")), (Some(step), None)),
+            Setting::Tolerance(tolerance) => {
+                assert_eq!((number("step"), number("tolerance")), (None, Some(tolerance)));
+            }
+        }
+        match &row.outcome {
+            Outcome::Ran(m) => {
+                assert_eq!(number("error"), Some(m.error));
+                assert_eq!(number("acceleration"), m.errors.acceleration);
+                assert_eq!(number("seconds"), Some(m.seconds));
+                assert_eq!(record[column("on_front")], row.on_front.to_string());
+                assert!(record[column("failure")].is_empty());
+            }
+            Outcome::Failed(failure) => assert_eq!(&record[column("failure")], failure),
+        }
+    }
+}
+
+/// The fields of a line of CSV.
+fn fields(line: &str) -> Vec<String> {
+    let (mut fields, mut quoted) = (vec![String::new()], false);
+    let mut characters = line.chars().peekable();
+    while let Some(c) = characters.next() {
+        match c {
+            '"' if quoted && characters.peek() == Some(&'"') => {
+                characters.next();
+                fields.last_mut().unwrap().push('"');
+            }
+            '"' => quoted = !quoted,
+            ',' if !quoted => fields.push(String::new()),
+            other => fields.last_mut().unwrap().push(other),
+        }
+    }
+    fields
+}
+
+fn flexframe(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_flexframe")).args(arguments).current_dir(folder).output().unwrap()
+}
+
+fn scene_file(folder: &Path) -> PathBuf {
+    let path = folder.join("ring.toml");
+    std::fs::write(&path, scene_text("step = 1e-4")).unwrap();
+    path
+}
+
+#[test]
+fn the_command_prints_the_list_or_the_answer() {
+    let folder = tempfile::tempdir().unwrap();
+    scene_file(folder.path());
+    let list = flexframe(folder.path(), &["cost", "ring.toml", "--patience", "0.005"]);
+    assert!(list.status.success(), "{}", String::from_utf8_lossy(&list.stderr));
+    let text = String::from_utf8(list.stdout).unwrap();
+    for words in ["reference  conservative, exponential", "scheme strang: order 2", "step control", "out/ring/cost.csv"]
+    {
+        assert!(text.contains(words), "{words} in {text}");
+    }
+    let arguments = ["cost", "ring.toml", "--patience", "0.02", "--target", "0.1", "-o", "here"];
+    let answer = flexframe(folder.path(), &arguments);
+    let text = String::from_utf8(answer.stdout).unwrap();
+    let first = text.lines().next().unwrap();
+    assert!(first.starts_with("formulation = \"conservative\", scheme = "), "{first}");
+    assert!(text.contains("[time]") && folder.path().join("here/work_precision.svg").exists());
+    let json = flexframe(folder.path(), &["cost", "ring.toml", "--patience", "0.002", "--json"]);
+    let value: serde_json::Value = serde_json::from_slice(&json.stdout).unwrap();
+    assert_eq!(value["lines"].as_array().unwrap().len(), 7);
+    assert!(value["lines"][0]["rows"][0]["outcome"]["ran"]["error"].as_f64().unwrap() > 0.0);
+    for wrong in ["0", "-1e-3", "NaN", "ten"] {
+        let refused = flexframe(folder.path(), &["cost", "ring.toml", &format!("--target={wrong}")]);
+        assert_eq!(refused.status.code(), Some(2), "{wrong}");
+    }
+}
+
+#[test]
+fn the_page_has_its_tables_and_its_pictures() {
+    let folder = tempfile::tempdir().unwrap();
+    scene_file(folder.path());
+    std::fs::create_dir(folder.path().join("docs")).unwrap();
+    let output = flexframe(folder.path(), &["accuracy", "ring.toml", "-o", "docs/accuracy.md", "--patience", "0.005"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let page = std::fs::read_to_string(folder.path().join("docs/accuracy.md")).unwrap();
+    for words in ["# What accuracy costs", "## Ring", "**The paper's scheme.**", "What the modes cost", "ω²Δt/2"] {
+        assert!(page.contains(words), "{words} in {page}");
+    }
+    assert!(folder.path().join("docs/accuracy/ring.svg").exists());
+    // Every table has as many cells in each row as in its head.
+    for table in page.split("\n\n").filter(|block| block.starts_with('|')) {
+        let cells: Vec<usize> = table.lines().map(|row| row.matches('|').count()).collect();
+        assert!(cells.windows(2).all(|pair| pair[0] == pair[1]), "{table}");
+    }
+}
