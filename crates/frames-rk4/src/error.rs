@@ -25,7 +25,7 @@ pub enum SetupError {
     },
     /// A step at which RK4 amplifies a mode.
     #[error(
-        "a step of {step:e} is beyond the stability limit {limit:e} that flexible mode {mode} ({frequency:.6} cycles per time) sets for RK4; take a smaller step or fewer modes"
+        "a step of {step:e} is beyond the stability limit {limit:.4e} that flexible mode {mode} ({frequency:.6} cycles per time) sets for RK4; take a smaller step or fewer modes"
     )]
     StepBeyondLimit {
         /// The step.
@@ -39,7 +39,7 @@ pub enum SetupError {
     },
     /// A step that the spin is too fast for.
     #[error(
-        "a step of {step:e} is too long for a spin of {spin:.6} rad per time: the stages follow the Coriolis terms up to a step of {limit:e}; take a smaller step"
+        "a step of {step:e} is too long for a spin of {spin:.6} rad per time, which this scheme follows up to a step of {limit:.3e}; take a smaller step"
     )]
     StepBeyondSpin {
         /// The step.
@@ -71,7 +71,7 @@ pub enum SetupError {
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum StepError {
     /// The body turns by more than a full turn within a step.
-    #[error("at time {time}: the body turns by {angle:.3} rad within a step of {step:e}; take a step of at most {:e}", step / angle)]
+    #[error("at time {time}: the body turns by {angle:.3} rad within a step of {step:.3e}; take a step of at most {:.1e}", step / angle)]
     TurnTooLarge {
         /// Start of the step.
         time: f64,
@@ -82,7 +82,7 @@ pub enum StepError {
     },
     /// No step is short enough for the tolerance.
     #[error(
-        "at time {time}: even a step of {step:e} does not keep the error below the tolerance {tolerance:e}; allow a larger tolerance"
+        "at time {time}: even a step of {step:.3e} does not keep the error below the tolerance {tolerance:e}; allow a larger tolerance"
     )]
     Tolerance {
         /// Start of the step.
