@@ -288,7 +288,7 @@ impl ConservativeBody {
             let global_to_body = transformation_matrix(&theta) * attitude.global_to_body();
             let mut moment = Vector3::zeros();
             for load in &self.loads {
-                let force_global = load.force_global * load.history.at(t);
+                let force_global = load.force_global * load.history.at(t, t);
                 let force_body = global_to_body * force_global;
                 let u = load.point.deformation(q);
                 moment += (load.point.position_body() + u).cross(&force_body);

@@ -45,7 +45,7 @@ impl ModalModel {
     /// The forces at a time, global components, one for each load.
     pub(crate) fn forces_at(&self, time: f64, forces_global: &mut [Vector3<f64>]) {
         for (force, load) in forces_global.iter_mut().zip(&self.loads) {
-            *force = load.force_global * load.history.at(time);
+            *force = load.force_global * load.history.at(time, time);
         }
     }
 

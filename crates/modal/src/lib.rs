@@ -22,6 +22,7 @@ mod rigid;
 mod shifted;
 mod solve;
 mod start;
+mod support;
 mod symmetry;
 mod tall;
 
@@ -30,3 +31,4 @@ pub use mass::NodalMass;
 pub use reduced::{BodyPoint, ReducedBody};
 pub use rigid::RigidModes;
 pub use solve::{Modes, Progress, SolveStats, solve};
+pub use support::{RigidMotion, Support};

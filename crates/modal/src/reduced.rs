@@ -9,6 +9,9 @@
 //! | [`inertia_first`](ReducedBody::inertia_first) | c_ij | `Ψ_fᵀ M (I⊗[e_i×]ᵀ[e_j×]) X`, symmetrised in ij |
 //! | [`inertia_second`](ReducedBody::inertia_second) | N_ij | `Ψ_fᵀ M (I⊗[e_i×]ᵀ[e_j×]) Ψ_f`, symmetrised in ij |
 //! | [`gyroscopic`](ReducedBody::gyroscopic) | G_i | `Ψ_fᵀ M (I⊗[e_i×]) Ψ_f`, skew |
+//! | [`translation_first`](ReducedBody::translation_first) | t_i | `Ψ_fᵀ M (1⊗e_i)`, zero for a free body |
+//! | [`rotation_first`](ReducedBody::rotation_first) | b_i | `Ψ_fᵀ M (I⊗[e_i×]) X`, zero for a free body |
+//! | [`stress_stiffness`](ReducedBody::stress_stiffness) | Ψ_fᵀ K_ij Ψ_f | of the stress that spinning causes |
 
 use faer::sparse::SparseColMatRef;
 use faer::{Mat, MatRef};
@@ -17,18 +20,28 @@ use nalgebra::{Matrix3, Vector3};
 use crate::error::ModalError;
 use crate::mass::NodalMass;
 use crate::solve::Modes;
+use crate::support::RigidMotion;
 use crate::tall;
 
-/// A free elastic body in modal coordinates. Axes are those of the mesh, the origin is the centre of mass.
+/// An elastic body in modal coordinates. Axes are those of the mesh. X is measured from the origin: the centre of mass
+/// of a free body, a fixed point of one that is held.
 #[derive(Debug, Clone)]
 pub struct ReducedBody {
     /// Total mass m.
     pub mass: f64,
     /// Centre of mass in the mesh's frame.
     pub center_of_mass: Vector3<f64>,
-    /// Inertia J₀ of the undeformed body about its centre of mass.
+    /// The rigid motions that it has.
+    pub motion: RigidMotion,
+    /// The origin, in the mesh's frame.
+    pub origin: Vector3<f64>,
+    /// Inertia J₀ of the undeformed body about the origin.
     pub inertia: Matrix3<f64>,
-    /// B (3×3): the angular velocity of rigid modal velocities y is `B y[3..6]`.
+    /// T (3×3): the velocity of the origin of rigid modal velocities y is `T y[..3]`. Columns of motions that the body
+    /// has not got are zero; I/√m of a free body.
+    pub translation_basis: Matrix3<f64>,
+    /// B (3×3): the angular velocity of rigid modal velocities y is `B y[3..6]`. Columns of motions that the body has
+    /// not got are zero.
     pub rotation_basis: Matrix3<f64>,
     /// Circular natural frequencies of the flexible modes, rad per time (nf).
     pub circular_frequencies: Vec<f64>,
@@ -42,12 +55,19 @@ pub struct ReducedBody {
     pub inertia_second: [Mat<f64>; 6],
     /// G_i (3 matrices of nf×nf).
     pub gyroscopic: [Mat<f64>; 3],
+    /// t_i (3 vectors of nf).
+    pub translation_first: [Vec<f64>; 3],
+    /// b_i (3 vectors of nf).
+    pub rotation_first: [Vec<f64>; 3],
+    /// Ψ_fᵀ K_ij Ψ_f for ij = 11, 22, 33, 23, 13, 12 (6 matrices of nf×nf): K_ij is the stress stiffness matrix of the
+    /// static answer to the centrifugal field of ω_iω_j. `None` where it has not been asked for.
+    pub stress_stiffness: Option<[Mat<f64>; 6]>,
 }
 
 /// A material point of the body: where it is, and how the modes move it.
 #[derive(Debug, Clone)]
 pub struct BodyPoint {
-    /// Undeformed position X from the centre of mass, body axes.
+    /// Undeformed position X from the origin, body axes.
     pub position_body: Vector3<f64>,
     /// Rows of the flexible shapes at the point (3×nf): `u = Φ q`.
     pub shapes: Mat<f64>,
@@ -70,15 +90,16 @@ impl ReducedBody {
         let rigid = &modes.rigid;
         let n = nodal.node_count();
         let nf = modes.shapes.ncols();
-        // Ψ and X side by side: all constants are products of their rows on one axis with M_s times those on another.
-        let columns = 6 + nf + 1;
+        // Ψ, X and 1 side by side: all constants are products of their rows on one axis with M_s times those on another.
+        let columns = 6 + nf + 2;
         let mut all = Mat::zeros(3 * n, columns);
         all.as_mut().subcols_mut(0, 6).copy_from(&rigid.shapes);
         all.as_mut().subcols_mut(6, nf).copy_from(&modes.shapes);
         for (node, x) in positions.iter().enumerate() {
             let offset = Vector3::from(*x) - rigid.center_of_mass;
             for axis in 0..3 {
-                all[(3 * node + axis, columns - 1)] = offset[axis];
+                all[(3 * node + axis, columns - 2)] = offset[axis];
+                all[(3 * node + axis, columns - 1)] = 1.0;
             }
         }
         let m_all = nodal.product(all.as_ref());
@@ -122,10 +143,16 @@ impl ReducedBody {
             let (ab, ba) = (flexible(a, b), flexible(b, a));
             Mat::from_fn(nf, nf, |k, l| ab[(k, l)] - ba[(k, l)])
         });
+        let translation_first = std::array::from_fn(|i| (0..nf).map(|k| products[i][i][(6 + k, modal + 1)]).collect());
+        let rotation_first =
+            [(2, 1), (0, 2), (1, 0)].map(|(a, b)| (0..nf).map(|k| flexible_x(a, b, k) - flexible_x(b, a, k)).collect());
         Ok(Self {
             mass: rigid.mass,
             center_of_mass: rigid.center_of_mass,
+            motion: RigidMotion::Free,
+            origin: rigid.center_of_mass,
             inertia: rigid.inertia,
+            translation_basis: Matrix3::identity() / rigid.mass.sqrt(),
             rotation_basis: rigid.rotation_basis,
             circular_frequencies: modes.eigenvalues.iter().map(|lambda| lambda.sqrt()).collect(),
             rotation_products,
@@ -133,6 +160,9 @@ impl ReducedBody {
             inertia_first,
             inertia_second,
             gyroscopic,
+            translation_first,
+            rotation_first,
+            stress_stiffness: None,
         })
     }
 
@@ -152,15 +182,17 @@ impl ReducedBody {
             inertia_first: self.inertia_first.each_ref().map(|v| v[..nf].to_vec()),
             inertia_second: self.inertia_second.each_ref().map(|m| leading(m, nf)),
             gyroscopic: self.gyroscopic.each_ref().map(|m| leading(m, nf)),
+            translation_first: self.translation_first.each_ref().map(|v| v[..nf].to_vec()),
+            rotation_first: self.rotation_first.each_ref().map(|v| v[..nf].to_vec()),
+            stress_stiffness: self.stress_stiffness.as_ref().map(|k| k.each_ref().map(|m| leading(m, nf))),
             ..*self
         }
     }
 
-    /// Rows of the rigid shapes at a point X from the centre of mass (3×6): `[I/√m, −[X×] B]`.
+    /// Rows of the rigid shapes at a point X from the origin (3×6): `[T, −[X×] B]`.
     pub fn rigid_shapes(&self, position_body: &Vector3<f64>) -> nalgebra::Matrix3x6<f64> {
         let mut shapes = nalgebra::Matrix3x6::zeros();
-        let translation = Matrix3::identity() / self.mass.sqrt();
-        shapes.fixed_view_mut::<3, 3>(0, 0).copy_from(&translation);
+        shapes.fixed_view_mut::<3, 3>(0, 0).copy_from(&self.translation_basis);
         shapes.fixed_view_mut::<3, 3>(0, 3).copy_from(&(-position_body.cross_matrix() * self.rotation_basis));
         shapes
     }

@@ -2,7 +2,7 @@
 
 use faer::Mat;
 use frames_rk4::{Initial, Rows, StepControl};
-use modal::ReducedBody;
+use modal::{ReducedBody, RigidMotion};
 use nalgebra::{Matrix3, Vector3};
 use rigid_kin::{Attitude, Inertia, TorqueFreeMotion};
 
@@ -15,7 +15,10 @@ fn body() -> ReducedBody {
     ReducedBody {
         mass: 1.0,
         center_of_mass: Vector3::zeros(),
+        motion: RigidMotion::Free,
+        origin: Vector3::zeros(),
         inertia,
+        translation_basis: Matrix3::identity(),
         rotation_basis: Matrix3::from_diagonal(&inertia.diagonal().map(|moment| moment.sqrt().recip())),
         circular_frequencies: vec![],
         rotation_products: std::array::from_fn(|_| std::array::from_fn(|_| Mat::zeros(6, 6))),
@@ -23,6 +26,9 @@ fn body() -> ReducedBody {
         inertia_first: std::array::from_fn(|_| vec![]),
         inertia_second: std::array::from_fn(|_| none()),
         gyroscopic: std::array::from_fn(|_| none()),
+        translation_first: std::array::from_fn(|_| vec![]),
+        rotation_first: std::array::from_fn(|_| vec![]),
+        stress_stiffness: None,
     }
 }
 

@@ -53,7 +53,7 @@ fn a_force_at_the_centre_of_mass_gives_the_sums_of_rk4() {
     let motion = BodyMotion::new(&plate.body).unwrap();
     let (mut position, mut velocity) = (center, Vector3::zeros());
     for n in 0..150 {
-        let [a, b] = [n, n + 1].map(|k| force * history.at(f64::from(k) * h) / plate.body.mass);
+        let [a, b] = [n, n + 1].map(|k| force * history.at(f64::from(k) * h, f64::from(k) * h) / plate.body.mass);
         position += h * velocity + h * h / 6.0 * (2.0 * a + b);
         velocity += 0.5 * h * (a + b);
         scheme.step().unwrap();
@@ -127,7 +127,7 @@ fn plane_motion_under_a_dead_force_tends_to_that_of_a_rigid_body() {
     let rigid = RigidBody::new(ring.body.mass, ring.body.inertia).unwrap();
     let motion = BodyMotion::new(&ring.body).unwrap();
     let wrench = |t: f64, attitude: &Attitude| {
-        Wrench::dead_force(attitude, &load.point.position_body(), &(FORCE * load.history.at(t)))
+        Wrench::dead_force(attitude, &load.point.position_body(), &(FORCE * load.history.at(t, t)))
     };
     let mut expected = RigidState {
         attitude: Attitude::identity(),
