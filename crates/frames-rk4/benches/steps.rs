@@ -9,7 +9,7 @@ mod common;
 
 use std::time::{Duration, Instant};
 
-use frames_rk4::{Initial, Method, Reached, Rows, Setup, Simulation, StepControl};
+use frames_rk4::{Initial, Method, Physics, Reached, Rows, Setup, Simulation, StepControl};
 use modal::ReducedBody;
 use nalgebra::Vector3;
 
@@ -54,6 +54,7 @@ fn measure(body: &ReducedBody, method: Method, control: StepControl) -> (f64, f6
         *rate = value;
     }
     let simulation = Simulation::new(&Setup {
+        physics: &Physics::default(),
         body,
         damping_ratios: &vec![0.0; body.flexible()],
         loads: &[],

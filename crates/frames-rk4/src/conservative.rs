@@ -1,30 +1,32 @@
-//! The conservative form: a free body in its mean-axis frame, with momenta for its state.
+//! The conservative form: a body in its mean-axis frame, with momenta for its state.
 //!
 //! ```text
 //! x = r + Aᵀ (X + Ψ_f q)
-//! J(q)_ij = J0_ij + 2 c_ij·q + qᵀ N_ij q          S(q) = [G_1 q, G_2 q, G_3 q]
+//! J(q)_ij = J0_ij + 2 c_ij·q + qᵀ N_ij q          S(q)_i = b_i + G_i q
 //! ω = (J − SᵀS)⁻¹ (π − Sᵀp),      q̇ = p − S ω
-//! π' = π × ω + Σ (X_k + u_k) × F_k(body),         P' = Σ F (global),   r' = P/m
+//! π' = π × ω + Σ (X_k + u_k) × F_k(body)
 //! p' = −Λq − D q̇ + Ψ_fᵀF + Σ_ij ω_i ω_j (c_ij + N_ij q) − Σ_i ω_i G_i q̇
+//! P' = Σ F (global),   r' = P/m
 //! energy = P²/2m + ½ π·ω + ½ p·q̇ + ½ q·Λq
 //! ```
 //!
 //! Hamiltonian without damping and loads: energy and `Aᵀπ` are constants of the motion for any number of modes.
 //! The part of q' and p' that is linear in the modes, `q' = p, p' = −Λq − Dp`, is left to the integrators.
+//!
+//! i and j count the axes that the body turns about: three, the one of a hinge, or none. Where something drives the
+//! body, ω is given, and the modes, which are those of the driven part held still, have a momentum b in its motion; b is
+//! zero otherwise. With stiffening, N_ij is `N_ij − Ψ_fᵀ K_ij Ψ_f`.
 
-use modal::ReducedBody;
+use faer::MatRef;
+use modal::{ReducedBody, RigidMotion};
 use nalgebra::{Matrix3, SVector, Vector3};
 use rigid_kin::{Attitude, f_inverse, transformation_matrix};
 
 use crate::error::{RateError, SetupError};
 use crate::initial::Initial;
-use crate::load::DeadForce;
-use crate::motion::{PointMotion, PointShapes};
-use crate::observation::Observation;
-use crate::work::Work;
-
-/// ij of c_ij and N_ij.
-const PAIRS: [(usize, usize); 6] = ReducedBody::PAIRS;
+use crate::load::{Acting, Load};
+use crate::motion::CenterOfMass;
+use crate::physics::{Drive, DrivenMotion, Effects, Physics};
 
 /// What moves slowly, beside the modes: see [`part`].
 pub(crate) type Slow = SVector<f64, 20>;
@@ -33,17 +35,17 @@ pub(crate) type Slow = SVector<f64, 20>;
 pub(crate) mod part {
     /// Rotation vector since the start of the step, body axes.
     pub const THETA: usize = 0;
-    /// Position of the centre of mass, global.
+    /// Position of the origin, global.
     pub const POSITION: usize = 3;
-    /// Linear momentum P, global.
+    /// Linear momentum P of the motion of the origin, global.
     pub const MOMENTUM: usize = 6;
-    /// Angular momentum π about the centre of mass, body axes.
+    /// Angular momentum π about the origin, one component for each axis of rotation.
     pub const PI: usize = 9;
-    /// Work of the loads.
+    /// Work of the loads, and of what drives the body.
     pub const WORK: usize = 12;
     /// Energy that damping has taken.
     pub const DISSIPATION: usize = 13;
-    /// Angular impulse of the loads about the centre of mass, global.
+    /// Angular impulse of the loads about the origin, global.
     pub const ANGULAR_IMPULSE: usize = 14;
     /// Impulse of the loads, global.
     pub const IMPULSE: usize = 17;
@@ -57,11 +59,32 @@ fn set(slow: &mut Slow, first: usize, value: &Vector3<f64>) {
     slow.fixed_rows_mut::<3>(first).copy_from(value);
 }
 
-/// A free body with its loads in the conservative form.
+/// How the origin moves.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Translation {
+    /// It does not.
+    None,
+    /// As the momentum takes it.
+    Free,
+    /// Along a direction, as the momentum takes it.
+    Along(Vector3<f64>),
+    /// Along a direction, as it is driven.
+    Driven(Vector3<f64>),
+}
+
+/// A body with its loads in the conservative form.
 #[derive(Debug, Clone)]
 pub struct ConservativeBody {
-    mass: f64,
-    center_of_mass: Vector3<f64>,
+    pub(crate) mass: f64,
+    pub(crate) origin: Vector3<f64>,
+    pub(crate) center: CenterOfMass,
+    pub(crate) translation: Translation,
+    /// Unit vectors that the body turns about: three, one or none.
+    pub(crate) axes: Vec<Vector3<f64>>,
+    /// Whether the turning is driven.
+    pub(crate) turn_driven: bool,
+    pub(crate) drive: Option<Drive>,
+    /// J₀ in the axes of rotation; 1 on the diagonal of axes that are missing.
     inertia: Matrix3<f64>,
     inverse_inertia: Matrix3<f64>,
     /// ω_k of the flexible modes.
@@ -70,11 +93,23 @@ pub struct ConservativeBody {
     /// 2 ζ_k ω_k.
     damping: Vec<f64>,
     damped: bool,
-    /// c_ij (6 × nf).
-    first: [Vec<f64>; 6],
-    /// Column by column, G_1 G_2 G_3 N_11 … N_12 one below another (9 nf × nf).
+    /// ij of the terms of the inertia that follow the deformation; empty where none does.
+    pub(crate) pairs: Vec<(usize, usize)>,
+    /// c_ij of these.
+    pub(crate) first: Vec<Vec<f64>>,
+    /// b_i of driven axes (nf each).
+    coupling: Vec<Vec<f64>>,
+    /// b of a driven translation (nf).
+    pub(crate) sliding: Vec<f64>,
+    /// Rows of S: nf for each axis, or none where it is zero.
+    pub(crate) s_rows: usize,
+    /// Rows of the G_i: as those of S, or none without Coriolis terms.
+    pub(crate) g_rows: usize,
+    /// Column by column, G_i and N_ij one below another.
     stacked: Vec<f64>,
-    loads: Vec<DeadForce>,
+    /// Stress stiffness of steady loads, column by column (nf × nf), or empty.
+    load_stiffness: Vec<f64>,
+    loads: Vec<Load>,
 }
 
 /// State at a time.
@@ -82,7 +117,7 @@ pub struct ConservativeBody {
 pub struct ConservativeState {
     /// Time.
     pub time: f64,
-    /// Attitude of the mean-axis frame.
+    /// Attitude of the body frame.
     pub attitude: Attitude,
     pub(crate) slow: Slow,
     /// Modal displacements q (nf).
@@ -110,63 +145,129 @@ pub(crate) struct Evaluation {
     pub displacement: Vec<f64>,
     /// p' + Λq + D p (nf).
     pub momentum: Vec<f64>,
-    /// G_i q and N_ij q (9 nf).
-    products: Vec<f64>,
-    /// G_i q̇ (3 nf).
-    gyroscopic: Vec<f64>,
+    /// S_i and N_ij q.
+    pub products: Vec<f64>,
+    /// G_i q̇.
+    pub gyroscopic: Vec<f64>,
     /// q̇ (nf).
-    velocity: Vec<f64>,
+    pub velocity: Vec<f64>,
+    /// K q of the stress stiffness of steady loads (nf).
+    stressed: Vec<f64>,
+    /// Angular velocity, one component for each axis.
+    pub spin: Vector3<f64>,
     pub omega_body: Vector3<f64>,
+    /// π of a driven turn or the P of a driven slide, along its axis.
+    pub driven_momentum: f64,
     /// J(q) and J − SᵀS.
-    inertia: Matrix3<f64>,
-    locked_inertia: Matrix3<f64>,
-}
-
-impl Evaluation {
-    pub(crate) fn new(flexible: usize) -> Self {
-        let zeros = |n: usize| vec![0.0; n];
-        Self {
-            slow: Slow::zeros(),
-            displacement: zeros(flexible),
-            momentum: zeros(flexible),
-            products: zeros(9 * flexible),
-            gyroscopic: zeros(3 * flexible),
-            velocity: zeros(flexible),
-            omega_body: Vector3::zeros(),
-            inertia: Matrix3::zeros(),
-            locked_inertia: Matrix3::zeros(),
-        }
-    }
+    pub inertia: Matrix3<f64>,
+    pub locked_inertia: Matrix3<f64>,
 }
 
 impl ConservativeBody {
-    /// A body with one damping ratio for each flexible mode, and dead forces at its points.
+    /// A body with one damping ratio for each flexible mode, and loads.
     ///
     /// # Errors
-    /// [`SetupError`] for a list of the wrong length, and numbers that are negative or not finite.
-    pub fn new(body: &ReducedBody, damping_ratios: &[f64], loads: Vec<DeadForce>) -> Result<Self, SetupError> {
+    /// [`SetupError`] for a list of the wrong length, numbers that are negative or not finite, and a drive of a body
+    /// that is not clamped.
+    pub fn new(
+        body: &ReducedBody,
+        damping_ratios: &[f64],
+        loads: Vec<Load>,
+        physics: &Physics,
+    ) -> Result<Self, SetupError> {
         let nf = body.flexible();
         crate::model::check_damping(damping_ratios, nf)?;
-        crate::model::check_loads(&loads, nf)?;
-        let stacked = (0..nf)
-            .flat_map(|j| {
-                body.gyroscopic.iter().chain(&body.inertia_second).flat_map(move |m| (0..nf).map(move |i| m[(i, j)]))
-            })
-            .collect();
+        loads.iter().try_for_each(|load| load.check(nf))?;
+        let Physics { effects, drive, load_stiffness } = physics;
+        let driven = match drive {
+            Some(drive) => {
+                drive.check()?;
+                if !matches!(body.motion, RigidMotion::Clamp { .. }) {
+                    return Err(SetupError::DriveOfFreeBody { motion: body.motion });
+                }
+                Some(drive.motion)
+            }
+            None => None,
+        };
+        let (translation, axes) = degrees_of_freedom(body, effects, driven);
+        let turn_driven = matches!(driven, Some(DrivenMotion::Turn { .. }));
         let damping: Vec<f64> =
             body.circular_frequencies.iter().zip(damping_ratios).map(|(omega, zeta)| 2.0 * zeta * omega).collect();
+        let inertia = along_axes(&axes, &body.inertia);
+
+        let pairs: Vec<(usize, usize)> = match axes.len() {
+            3 => ReducedBody::PAIRS.to_vec(),
+            1 => vec![(0, 0)],
+            _ => Vec::new(),
+        };
+        let pairs = if effects.deformed_inertia && nf > 0 { pairs } else { Vec::new() };
+        let g_rows = if effects.coriolis { axes.len() * nf } else { 0 };
+        let s_rows = if effects.coriolis || turn_driven { axes.len() * nf } else { 0 };
+        let stiffness = body.stress_stiffness.as_ref().filter(|_| effects.geometric_stiffening);
+        // Weights of the constants of PAIRS in those of a pair of axes.
+        let weights = |(i, j): (usize, usize)| {
+            ReducedBody::PAIRS.map(|(k, l)| {
+                let product = axes[i][k] * axes[j][l];
+                if k == l { product } else { product + axes[i][l] * axes[j][k] }
+            })
+        };
+        let gyroscopic = |axis: usize, i: usize, j: usize| {
+            axes[axis].iter().zip(&body.gyroscopic).map(|(a, g)| a * g[(i, j)]).sum::<f64>()
+        };
+        let second = |weights: &[f64; 6], i: usize, j: usize| {
+            let of = |matrices: &[faer::Mat<f64>; 6]| -> f64 {
+                matrices.iter().zip(weights).map(|(m, w)| w * m[(i, j)]).sum()
+            };
+            of(&body.inertia_second) - stiffness.map_or(0.0, of)
+        };
+        let mut stacked = Vec::with_capacity((g_rows + pairs.len() * nf) * nf);
+        let pair_weights: Vec<[f64; 6]> = pairs.iter().map(|pair| weights(*pair)).collect();
+        for j in 0..nf {
+            for axis in 0..g_rows.checked_div(nf).unwrap_or(0) {
+                stacked.extend((0..nf).map(|i| gyroscopic(axis, i, j)));
+            }
+            for weights in &pair_weights {
+                stacked.extend((0..nf).map(|i| second(weights, i, j)));
+            }
+        }
+        let first = pair_weights
+            .iter()
+            .map(|weights| {
+                (0..nf).map(|k| weights.iter().zip(&body.inertia_first).map(|(w, c)| w * c[k]).sum()).collect()
+            })
+            .collect();
+        let along = |unit: &Vector3<f64>, of: &[Vec<f64>; 3]| -> Vec<f64> {
+            (0..nf).map(|k| (0..3).map(|i| unit[i] * of[i][k]).sum()).collect()
+        };
         Ok(Self {
             mass: body.mass,
-            center_of_mass: body.center_of_mass,
-            inertia: body.inertia,
-            // B Bᵀ = J0⁻¹
-            inverse_inertia: body.rotation_basis * body.rotation_basis.transpose(),
+            origin: body.origin,
+            center: CenterOfMass::new(body),
+            inverse_inertia: inertia.try_inverse().unwrap_or_else(Matrix3::zeros),
+            inertia,
             circular_frequencies: body.circular_frequencies.clone(),
             damping_ratios: damping_ratios.to_vec(),
             damped: damping.iter().any(|d| *d > 0.0),
             damping,
-            first: body.inertia_first.clone(),
+            pairs,
+            first,
+            coupling: if turn_driven {
+                axes.iter().map(|axis| along(axis, &body.rotation_first)).collect()
+            } else {
+                Vec::new()
+            },
+            sliding: match translation {
+                Translation::Driven(direction) => along(&direction, &body.translation_first),
+                _ => Vec::new(),
+            },
+            translation,
+            axes,
+            turn_driven,
+            drive: drive.clone(),
+            s_rows,
+            g_rows,
             stacked,
+            load_stiffness: load_stiffness.as_ref().map_or_else(Vec::new, |k| columns(k.as_ref())),
             loads,
         })
     }
@@ -177,31 +278,75 @@ impl ConservativeBody {
     }
 
     /// The loads.
-    pub fn loads(&self) -> &[DeadForce] {
+    pub fn loads(&self) -> &[Load] {
         &self.loads
     }
 
-    /// The state at the beginning: π = J ω + Sᵀ q̇, p = q̇ + S ω.
+    /// Numbers in the matrices that an evaluation reads: what an effect that is off does not cost.
+    pub fn matrix_entries(&self) -> usize {
+        self.stacked.len() + self.load_stiffness.len()
+    }
+
+    pub(crate) fn evaluation(&self) -> Evaluation {
+        let nf = self.flexible();
+        let zeros = |n: usize| vec![0.0; n];
+        let mut products = zeros(self.s_rows + self.pairs.len() * nf);
+        for (s, b) in products.chunks_exact_mut(nf.max(1)).zip(&self.coupling) {
+            s.copy_from_slice(b);
+        }
+        Evaluation {
+            slow: Slow::zeros(),
+            displacement: zeros(nf),
+            momentum: zeros(nf),
+            products,
+            gyroscopic: zeros(self.g_rows),
+            velocity: zeros(nf),
+            stressed: zeros(if self.load_stiffness.is_empty() { 0 } else { nf }),
+            spin: Vector3::zeros(),
+            omega_body: Vector3::zeros(),
+            driven_momentum: 0.0,
+            inertia: self.inertia,
+            locked_inertia: self.inertia,
+        }
+    }
+
+    /// The state at the beginning: π = J ω + Sᵀ q̇, p = q̇ + S ω. Parts of the velocities that the body has not got are
+    /// left out; driven ones are as they are driven.
     ///
     /// # Errors
     /// [`SetupError`] for lists of the wrong length and numbers that are not finite.
     pub fn start(&self, initial: &Initial) -> Result<ConservativeState, SetupError> {
         initial.check(self.flexible())?;
-        let nf = self.flexible();
-        let mut evaluation = Evaluation::new(nf);
-        self.deform(&initial.modal_displacement, &mut evaluation);
-        let s = |i: usize| &evaluation.products[i * nf..(i + 1) * nf];
+        let mut e = self.evaluation();
+        self.deform(&initial.modal_displacement, &mut e);
+        let speed = self.drive.as_ref().map_or(0.0, |drive| drive.speed(0.0, 0.0));
+        let mut spin = Vector3::zeros();
+        for (w, axis) in spin.iter_mut().zip(&self.axes) {
+            *w = if self.turn_driven { speed } else { axis.dot(&initial.omega) };
+        }
         let mut momentum = initial.modal_velocity.clone();
-        for i in 0..3 {
-            for (p, s) in momentum.iter_mut().zip(s(i)) {
-                *p += s * initial.omega[i];
+        let mut pi: Vector3<f64> = e.inertia * spin;
+        for (i, s) in e.products[..self.s_rows].chunks_exact(self.flexible().max(1)).enumerate() {
+            pi[i] += dot(s, &initial.modal_velocity);
+            for (p, s) in momentum.iter_mut().zip(s) {
+                *p += s * spin[i];
             }
         }
-        let coupled = Vector3::from_fn(|i, _| dot(s(i), &initial.modal_velocity));
+        for (p, b) in momentum.iter_mut().zip(&self.sliding) {
+            *p += b * speed;
+        }
+        for k in self.axes.len()..3 {
+            pi[k] = 0.0;
+        }
         let mut slow = Slow::zeros();
-        set(&mut slow, part::POSITION, &self.center_of_mass);
-        set(&mut slow, part::MOMENTUM, &(initial.velocity * self.mass));
-        set(&mut slow, part::PI, &(evaluation.inertia * initial.omega + coupled));
+        set(&mut slow, part::POSITION, &self.origin);
+        let velocity = match self.translation {
+            Translation::Free => initial.velocity,
+            Translation::Along(direction) => direction * direction.dot(&initial.velocity),
+            Translation::None | Translation::Driven(_) => Vector3::zeros(),
+        };
+        set(&mut slow, part::MOMENTUM, &(velocity * self.mass));
+        set(&mut slow, part::PI, &pi);
         Ok(ConservativeState {
             time: 0.0,
             attitude: Attitude::identity(),
@@ -214,29 +359,57 @@ impl ConservativeBody {
     /// S(q), N_ij q and J(q).
     fn deform(&self, q: &[f64], e: &mut Evaluation) {
         let nf = q.len();
-        multiply(&self.stacked, 9 * nf, q, &mut e.products);
-        let (s, n_q) = e.products.split_at(3 * nf);
+        if self.stacked.is_empty() {
+            return;
+        }
+        let rows = self.g_rows + self.pairs.len() * nf;
+        multiply(&self.stacked, rows, q, &mut e.products[self.s_rows - self.g_rows..]);
+        if self.g_rows > 0 {
+            for (s, b) in e.products.chunks_exact_mut(nf).zip(&self.coupling) {
+                s.iter_mut().zip(b).for_each(|(s, b)| *s += b);
+            }
+        }
+        let (s, n_q) = e.products.split_at(self.s_rows);
         let mut inertia = self.inertia;
-        let mut locked = Matrix3::zeros();
-        for (pair, (i, j)) in PAIRS.into_iter().enumerate() {
+        for ((pair, (i, j)), first) in self.pairs.iter().enumerate().zip(&self.first) {
             let n_q = &n_q[pair * nf..(pair + 1) * nf];
-            let change: f64 = self.first[pair].iter().zip(n_q).zip(q).map(|((c, n), q)| (2.0 * c + n) * q).sum();
-            let s_s = dot(&s[i * nf..(i + 1) * nf], &s[j * nf..(j + 1) * nf]);
-            inertia[(i, j)] += change;
-            locked[(i, j)] = inertia[(i, j)] - s_s;
+            let change: f64 = first.iter().zip(n_q).zip(q).map(|((c, n), q)| (2.0 * c + n) * q).sum();
+            inertia[(*i, *j)] += change;
             if i != j {
-                inertia[(j, i)] += change;
-                locked[(j, i)] = locked[(i, j)];
+                inertia[(*j, *i)] += change;
             }
         }
         e.inertia = inertia;
-        e.locked_inertia = locked;
+        e.locked_inertia = inertia;
+        for (i, a) in s.chunks_exact(nf).enumerate() {
+            for (j, b) in s.chunks_exact(nf).enumerate().take(i + 1) {
+                let product = dot(a, b);
+                e.locked_inertia[(i, j)] -= product;
+                if i != j {
+                    e.locked_inertia[(j, i)] -= product;
+                }
+            }
+        }
     }
 
-    /// All rates at time `t`, with the rotation vector counted from `attitude`.
+    /// (J − SᵀS)⁻¹ x in the axes of rotation.
+    pub(crate) fn solve_locked(&self, e: &Evaluation, x: &Vector3<f64>) -> Result<Vector3<f64>, RateError> {
+        if self.stacked.is_empty() && self.s_rows == 0 {
+            return Ok(self.inverse_inertia * x);
+        }
+        let inverse = if self.axes.len() == 1 {
+            Matrix3::from_diagonal(&Vector3::new(1.0 / e.locked_inertia[(0, 0)], 1.0, 1.0))
+        } else {
+            e.locked_inertia.try_inverse().ok_or(RateError::Inertia)?
+        };
+        if inverse.iter().all(|x| x.is_finite()) { Ok(inverse * x) } else { Err(RateError::Inertia) }
+    }
+
+    /// All rates at time `t`, with the rotation vector counted from `attitude`. Loads and drives follow the laws that
+    /// hold at the time `inside`.
     pub(crate) fn evaluate(
         &self,
-        t: f64,
+        [t, inside]: [f64; 2],
         attitude: &Attitude,
         slow: &Slow,
         q: &[f64],
@@ -245,69 +418,153 @@ impl ConservativeBody {
     ) -> Result<(), RateError> {
         let nf = q.len();
         self.deform(q, e);
+        let speed = self.drive.as_ref().map_or(0.0, |drive| drive.speed(t, inside));
         let pi = get(slow, part::PI);
-        let s_p = Vector3::from_fn(|i, _| dot(&e.products[i * nf..(i + 1) * nf], p));
-        let inverse = e
-            .locked_inertia
-            .try_inverse()
-            .filter(|inverse| inverse.iter().all(|x| x.is_finite()))
-            .ok_or(RateError::Inertia)?;
-        let omega = inverse * (pi - s_p);
-        e.omega_body = omega;
+        if self.turn_driven {
+            e.spin = Vector3::new(speed, 0.0, 0.0);
+        } else if !self.axes.is_empty() {
+            let mut right = pi;
+            for (i, s) in e.products[..self.s_rows].chunks_exact(nf.max(1)).enumerate() {
+                right[i] -= dot(s, p);
+            }
+            e.spin = self.solve_locked(e, &right)?;
+        }
+        let w = e.spin;
+        e.omega_body = self.axes.iter().zip(w.iter()).map(|(axis, w)| axis * *w).sum();
 
-        let (s, n_q) = e.products.split_at(3 * nf);
-        for k in 0..nf {
-            let s_omega = s[k] * omega.x + s[nf + k] * omega.y + s[2 * nf + k] * omega.z;
-            e.displacement[k] = -s_omega;
-            e.velocity[k] = p[k] - s_omega;
-        }
-        multiply_top(&self.stacked, 9 * nf, &e.velocity, &mut e.gyroscopic);
-        let squares: [f64; 6] =
-            PAIRS.map(|(i, j)| if i == j { omega[i] * omega[j] } else { 2.0 * omega[i] * omega[j] });
-        for k in 0..nf {
-            let coriolis =
-                omega.x * e.gyroscopic[k] + omega.y * e.gyroscopic[nf + k] + omega.z * e.gyroscopic[2 * nf + k];
-            let centrifugal: f64 = (0..6).map(|pair| squares[pair] * (self.first[pair][k] + n_q[pair * nf + k])).sum();
-            e.momentum[k] = centrifugal - coriolis;
-        }
+        self.modal_rates(q, p, speed, e);
         let mut dissipation = 0.0;
         if self.damped {
             for k in 0..nf {
-                // −D q̇ = −D p + D S ω; the first term is in the linear part.
+                // −D q̇ = −D p + D (S ω); the first term is in the linear part.
                 e.momentum[k] -= self.damping[k] * e.displacement[k];
                 dissipation += self.damping[k] * e.velocity[k] * e.velocity[k];
             }
         }
 
-        let theta = get(slow, part::THETA);
         let momentum = get(slow, part::MOMENTUM);
-        let theta_rate = f_inverse(&theta, &omega).map_err(RateError::Turn)?;
-        let mut pi_rate = pi.cross(&omega);
-        let (mut force_rate, mut power, mut impulse_rate) = (Vector3::zeros(), 0.0, Vector3::zeros());
+        let velocity = match self.translation {
+            Translation::None => Vector3::zeros(),
+            Translation::Free | Translation::Along(_) => momentum / self.mass,
+            Translation::Driven(direction) => direction * speed,
+        };
+        let theta = get(slow, part::THETA);
+        let turning = !self.axes.is_empty();
+        let theta_rate =
+            if turning { f_inverse(&theta, &e.omega_body).map_err(RateError::Turn)? } else { Vector3::zeros() };
+        let mut pi_rate = if self.axes.len() == 3 { pi.cross(&w) } else { Vector3::zeros() };
+        let mut power = 0.0;
+        let (mut force, mut angular_impulse) = (Vector3::zeros(), Vector3::zeros());
         if !self.loads.is_empty() {
-            let global_to_body = transformation_matrix(&theta) * attitude.global_to_body();
+            let global_to_body = turning.then(|| transformation_matrix(&theta) * attitude.global_to_body());
             let mut moment = Vector3::zeros();
             for load in &self.loads {
-                let force_global = load.force_global * load.history.at(t, t);
-                let force_body = global_to_body * force_global;
-                let u = load.point.deformation(q);
-                moment += (load.point.position_body() + u).cross(&force_body);
-                power += load.point.add_flexible_force(&force_body, &e.velocity, &mut e.momentum);
-                force_rate += force_global;
+                let now = Acting { factor: load.history.at(t, inside), global_to_body: global_to_body.as_ref() };
+                let on = load.apply(now, q, &e.velocity, &mut e.momentum);
+                force += on.force_body;
+                moment += on.moment_body;
+                power += on.deforming_power;
             }
-            power += force_rate.dot(&momentum) / self.mass + moment.dot(&omega);
-            pi_rate += moment;
-            impulse_rate = global_to_body.tr_mul(&moment);
+            power += moment.dot(&e.omega_body);
+            let global = |v: Vector3<f64>| global_to_body.map_or(v, |a| a.tr_mul(&v));
+            force = global(force);
+            let mut left = Vector3::zeros();
+            for (i, axis) in self.axes.iter().enumerate() {
+                let component = axis.dot(&moment);
+                pi_rate[i] += component;
+                left += axis * component;
+            }
+            angular_impulse = global(left);
+            power += force.dot(&velocity);
+        }
+        let force_rate = match self.translation {
+            Translation::Free => force,
+            Translation::Along(direction) => direction * direction.dot(&force),
+            Translation::None | Translation::Driven(_) => Vector3::zeros(),
+        };
+        if let Some(drive) = &self.drive {
+            power += self.drive_power(speed, drive.acceleration(t, inside), q, p, &force, &pi_rate, e);
+            pi_rate = Vector3::zeros();
         }
         set(&mut e.slow, part::THETA, &theta_rate);
-        set(&mut e.slow, part::POSITION, &(momentum / self.mass));
+        set(&mut e.slow, part::POSITION, &velocity);
         set(&mut e.slow, part::MOMENTUM, &force_rate);
         set(&mut e.slow, part::PI, &pi_rate);
         e.slow[part::WORK] = power;
         e.slow[part::DISSIPATION] = dissipation;
-        set(&mut e.slow, part::ANGULAR_IMPULSE, &impulse_rate);
+        set(&mut e.slow, part::ANGULAR_IMPULSE, &angular_impulse);
         set(&mut e.slow, part::IMPULSE, &force_rate);
         Ok(())
+    }
+
+    /// q̇ and the rates of the modes by inertia and stress alone, at the spin of `e`.
+    fn modal_rates(&self, q: &[f64], p: &[f64], speed: f64, e: &mut Evaluation) {
+        let nf = q.len();
+        let w = e.spin;
+        let (s, n_q) = e.products.split_at(self.s_rows);
+        e.displacement.fill(0.0);
+        e.momentum.fill(0.0);
+        for (s, w) in s.chunks_exact(nf.max(1)).zip(w.iter()) {
+            e.displacement.iter_mut().zip(s).for_each(|(rate, s)| *rate -= s * w);
+        }
+        e.displacement.iter_mut().zip(&self.sliding).for_each(|(rate, b)| *rate -= b * speed);
+        for ((v, p), rate) in e.velocity.iter_mut().zip(p).zip(&e.displacement) {
+            *v = p + rate;
+        }
+        if self.g_rows > 0 {
+            multiply_top(&self.stacked, self.g_rows + self.pairs.len() * nf, &e.velocity, &mut e.gyroscopic);
+            for (g, w) in e.gyroscopic.chunks_exact(nf).zip(w.iter()) {
+                e.momentum.iter_mut().zip(g).for_each(|(rate, g)| *rate -= w * g);
+            }
+        }
+        for (((i, j), first), n_q) in self.pairs.iter().zip(&self.first).zip(n_q.chunks_exact(nf.max(1))) {
+            let square = if i == j { w[*i] * w[*j] } else { 2.0 * w[*i] * w[*j] };
+            for ((rate, c), n) in e.momentum.iter_mut().zip(first).zip(n_q) {
+                *rate += square * (c + n);
+            }
+        }
+        if !self.load_stiffness.is_empty() {
+            multiply(&self.load_stiffness, nf, q, &mut e.stressed);
+            e.momentum.iter_mut().zip(&e.stressed).for_each(|(rate, k_q)| *rate -= k_q);
+        }
+    }
+
+    /// Power of what drives the body, less that of the loads on it: with π = J ω + S·q̇ and P = m v + b·q̇ along the
+    /// driven axis, (π' − M) ω and (P' − F) v.
+    #[allow(clippy::too_many_arguments)]
+    fn drive_power(
+        &self,
+        speed: f64,
+        acceleration: f64,
+        q: &[f64],
+        p: &[f64],
+        force_global: &Vector3<f64>,
+        moment: &Vector3<f64>,
+        e: &mut Evaluation,
+    ) -> f64 {
+        let nf = q.len();
+        // p' of the whole equation.
+        let rate = |k: usize| {
+            let omega = self.circular_frequencies[k];
+            e.momentum[k] - omega * omega * q[k] - self.damping[k] * p[k]
+        };
+        if let Translation::Driven(direction) = self.translation {
+            let b = &self.sliding;
+            e.driven_momentum = self.mass * speed + dot(b, &e.velocity);
+            let changing: f64 = (0..nf).map(|k| b[k] * (rate(k) - b[k] * acceleration)).sum();
+            return (self.mass * acceleration + changing - direction.dot(force_global)) * speed;
+        }
+        let (s, n_q) = e.products.split_at(self.s_rows);
+        let s = &s[..nf];
+        e.driven_momentum = e.inertia[(0, 0)] * speed + dot(s, &e.velocity);
+        let inertia_rate: f64 = match self.first.first() {
+            Some(first) => (0..nf).map(|k| 2.0 * (first[k] + n_q[k]) * e.velocity[k]).sum(),
+            None => 0.0,
+        };
+        let g_v = |k: usize| e.gyroscopic.get(k).copied().unwrap_or(0.0);
+        // q̈ = p' − S' ω − S ω', and S'·q̇ = 0.
+        let changing: f64 = (0..nf).map(|k| s[k] * (rate(k) - g_v(k) * speed - s[k] * acceleration)).sum();
+        (inertia_rate * speed + e.inertia[(0, 0)] * acceleration + changing - moment[0]) * speed
     }
 
     /// Adds the linear part of the modes to an evaluation: q' += p, p' −= Λq + Dp.
@@ -319,7 +576,7 @@ impl ConservativeBody {
         }
     }
 
-    /// Energy of rotation, vibration and strain of a state whose rates are in `e`: all but that of the centre's motion.
+    /// Energy of rotation, vibration and strain of a state whose rates are in `e`: all but that of the origin's motion.
     pub(crate) fn internal_energy(&self, state: &ConservativeState, e: &Evaluation) -> f64 {
         let (kinetic, strain) = self.energies(state, e);
         kinetic + strain - 0.5 * get(&state.slow, part::MOMENTUM).norm_squared() / self.mass
@@ -334,14 +591,35 @@ impl ConservativeBody {
         rigid + q.zip(p).enumerate().map(|(k, (q, p))| self.modal_energy(k, q.0 - q.1, p.0 - p.1)).sum::<f64>()
     }
 
-    /// Energies that the impulses of the loads, one by one, would give the rigid body at rest: the scale of a motion
-    /// that begins without any.
-    pub(crate) fn energy_of_loads(&self) -> f64 {
-        let energy = |load: &DeadForce| {
-            let impulse = load.force_global * load.history.integral();
-            self.rigid_energy(&impulse, &load.point.position_body().cross(&impulse))
+    /// Energies that the loads, one by one, would give the body from rest within the longest period or until `end`: by
+    /// their impulse the rigid body, by their largest force the modes. The scale of a motion that begins without any.
+    pub(crate) fn energy_of_loads(&self, end: f64) -> f64 {
+        let lowest = self.circular_frequencies.iter().copied().fold(f64::INFINITY, f64::min);
+        let period = (std::f64::consts::TAU / lowest).min(end);
+        let nf = self.flexible();
+        let energy = |load: &Load| {
+            let largest = load.history.largest(end);
+            let impulse = load.history.magnitude_integral(end).min(largest * period);
+            let mut force = vec![0.0; nf];
+            let still = vec![0.0; nf];
+            let on = load.apply(Acting { factor: 1.0, global_to_body: None }, &still, &still, &mut force);
+            let moment =
+                Vector3::from_iterator((0..3).map(|i| self.axes.get(i).map_or(0.0, |a| a.dot(&on.moment_body))));
+            let pushed = match self.translation {
+                Translation::Free => on.force_body,
+                Translation::Along(direction) => direction * direction.dot(&on.force_body),
+                Translation::None | Translation::Driven(_) => Vector3::zeros(),
+            };
+            let strain: f64 =
+                force.iter().zip(&self.circular_frequencies).map(|(f, w)| 0.5 * (largest * f / w).powi(2)).sum();
+            self.rigid_energy(&(pushed * impulse), &(moment * impulse)) + strain
         };
-        self.loads.iter().map(energy).sum()
+        let driven = self.drive.as_ref().map_or(0.0, |drive| {
+            let speed = drive.amplitude * drive.history.largest(end);
+            let inertia = if self.turn_driven { self.inertia[(0, 0)] } else { self.mass };
+            0.5 * inertia * speed * speed
+        });
+        self.loads.iter().map(energy).sum::<f64>() + driven
     }
 
     /// ½ P²/m + ½ π·J0⁻¹π
@@ -356,101 +634,58 @@ impl ConservativeBody {
     }
 
     /// Energies of a state whose rates are in `e`: (kinetic, strain).
-    fn energies(&self, state: &ConservativeState, e: &Evaluation) -> (f64, f64) {
-        let momentum = get(&state.slow, part::MOMENTUM);
-        let kinetic = 0.5
-            * (momentum.norm_squared() / self.mass
-                + get(&state.slow, part::PI).dot(&e.omega_body)
-                + dot(&state.modal_momentum, &e.velocity));
-        let strain = state.modal_displacement.iter().enumerate().map(|(k, q)| self.modal_energy(k, *q, 0.0)).sum();
-        (kinetic, strain)
-    }
-
-    /// Reads the motion off a state. `e` is overwritten.
-    pub(crate) fn observe(
-        &self,
-        state: &ConservativeState,
-        points: &[PointShapes],
-        e: &mut Evaluation,
-        out: &mut Observation,
-    ) -> Result<(), RateError> {
-        let nf = self.flexible();
-        let (q, p) = (&state.modal_displacement, &state.modal_momentum);
-        self.evaluate(state.time, &state.attitude, &state.slow, q, p, e)?;
-        let (kinetic, strain) = self.energies(state, e);
-        self.add_linear(q, p, e);
-        let omega = e.omega_body;
-        let momentum = get(&state.slow, part::MOMENTUM);
-
-        // π = J ω + Sᵀq̇ and p = q̇ + S ω, differentiated: with S' = S(q̇) and S'ᵀq̇ = 0 (G is skew),
-        // (J − SᵀS) ω' = π' − J'ω − Sᵀ(p' − S'ω),  q̈ = p' − S'ω − S ω'.
-        let (s, n_q) = e.products.split_at(3 * nf);
-        let inertia_rate = symmetric(|pair| {
-            let n_q = &n_q[pair * nf..(pair + 1) * nf];
-            2.0 * self.first[pair].iter().zip(n_q).zip(&e.velocity).map(|((c, n), v)| (c + n) * v).sum::<f64>()
-        });
-        out.modal_acceleration.clear();
-        out.modal_acceleration.extend((0..nf).map(|k| {
-            let s_rate_omega: f64 = (0..3).map(|i| omega[i] * e.gyroscopic[i * nf + k]).sum();
-            e.momentum[k] - s_rate_omega
-        }));
-        let s_t = Vector3::from_fn(|i, _| dot(&s[i * nf..(i + 1) * nf], &out.modal_acceleration));
-        let right = get(&e.slow, part::PI) - inertia_rate * omega - s_t;
-        let alpha = e.locked_inertia.try_inverse().ok_or(RateError::Inertia)? * right;
-        for (k, a) in out.modal_acceleration.iter_mut().enumerate() {
-            *a -= (0..3).map(|i| alpha[i] * s[i * nf + k]).sum::<f64>();
-        }
-
-        out.time = state.time;
-        out.attitude = state.attitude;
-        out.position_global = get(&state.slow, part::POSITION);
-        out.velocity_global = momentum / self.mass;
-        out.omega_body = omega;
-        out.alpha_body = alpha;
-        out.modal_displacement.clone_from(q);
-        out.modal_velocity.clone_from(&e.velocity);
-        out.kinetic_energy = kinetic;
-        out.strain_energy = strain;
-        out.work = Work {
-            work: state.slow[part::WORK],
-            dissipation: state.slow[part::DISSIPATION],
-            impulse_global: get(&state.slow, part::IMPULSE),
-            angular_impulse_global: get(&state.slow, part::ANGULAR_IMPULSE),
-        };
-        out.linear_momentum_global = momentum;
-        out.angular_momentum_global = state.attitude.to_global(&get(&state.slow, part::PI));
-        let acceleration_of_center = get(&e.slow, part::MOMENTUM) / self.mass;
-        let moved = out.position_global - self.center_of_mass;
-        out.points.clear();
-        out.points.extend(points.iter().map(|point| {
-            let x = point.position_body();
-            let (u, v, a) =
-                (point.deformation(q), point.deformation(&e.velocity), point.deformation(&out.modal_acceleration));
-            let arm = x + u;
-            let global = |v_body: Vector3<f64>| state.attitude.to_global(&v_body);
-            PointMotion {
-                displacement: moved + (global(arm) - x),
-                velocity: out.velocity_global + global(omega.cross(&arm) + v),
-                acceleration: acceleration_of_center
-                    + global(alpha.cross(&arm) + omega.cross(&omega.cross(&arm)) + 2.0 * omega.cross(&v) + a),
-                rigid_acceleration: acceleration_of_center + global(alpha.cross(&x) + omega.cross(&omega.cross(&x))),
+    pub(crate) fn energies(&self, state: &ConservativeState, e: &Evaluation) -> (f64, f64) {
+        let q = &state.modal_displacement;
+        let moving = match (&self.drive, self.translation) {
+            (Some(_), Translation::Driven(direction)) => {
+                e.driven_momentum * direction.dot(&get(&e.slow, part::POSITION))
             }
-        }));
-        Ok(())
+            (Some(_), _) => e.driven_momentum * e.spin[0],
+            (None, _) => {
+                get(&state.slow, part::MOMENTUM).norm_squared() / self.mass + get(&state.slow, part::PI).dot(&e.spin)
+            }
+        };
+        let kinetic = 0.5 * (moving + dot(&state.modal_momentum, &e.velocity));
+        let strain: f64 = q.iter().enumerate().map(|(k, q)| self.modal_energy(k, *q, 0.0)).sum();
+        (kinetic, strain + 0.5 * dot(q, &e.stressed))
     }
 }
 
-/// A symmetric matrix from its six entries in the order of [`PAIRS`].
-fn symmetric(entry: impl Fn(usize) -> f64) -> Matrix3<f64> {
-    let mut matrix = Matrix3::zeros();
-    for (pair, (i, j)) in PAIRS.into_iter().enumerate() {
-        matrix[(i, j)] = entry(pair);
-        matrix[(j, i)] = matrix[(i, j)];
-    }
-    matrix
+/// How the origin moves, and what the body turns about.
+fn degrees_of_freedom(
+    body: &ReducedBody,
+    effects: &Effects,
+    driven: Option<DrivenMotion>,
+) -> (Translation, Vec<Vector3<f64>>) {
+    let (translation, axes) = match (driven, body.motion) {
+        (Some(DrivenMotion::Turn { axis }), _) => (Translation::None, vec![axis]),
+        (Some(DrivenMotion::Slide { direction }), _) => (Translation::Driven(direction), Vec::new()),
+        (None, RigidMotion::Free) => (Translation::Free, Vec::from([Vector3::x(), Vector3::y(), Vector3::z()])),
+        (None, RigidMotion::Pin { .. }) => (Translation::None, Vec::from([Vector3::x(), Vector3::y(), Vector3::z()])),
+        (None, RigidMotion::Hinge { axis, .. }) => (Translation::None, vec![axis]),
+        (None, RigidMotion::Slider { direction }) => (Translation::Along(direction), Vec::new()),
+        (None, RigidMotion::Clamp { .. }) => (Translation::None, Vec::new()),
+    };
+    (
+        if effects.translation { translation } else { Translation::None },
+        if effects.rotation { axes } else { Vec::new() },
+    )
 }
 
-fn dot(a: &[f64], b: &[f64]) -> f64 {
+/// A matrix in the axes of rotation, 1 on the diagonal of those that are missing.
+fn along_axes(axes: &[Vector3<f64>], matrix: &Matrix3<f64>) -> Matrix3<f64> {
+    Matrix3::from_fn(|i, j| match (axes.get(i), axes.get(j)) {
+        (Some(a), Some(b)) => a.dot(&(matrix * b)),
+        _ => f64::from(u8::from(i == j)),
+    })
+}
+
+/// The entries of a matrix, column by column.
+fn columns(matrix: MatRef<'_, f64>) -> Vec<f64> {
+    (0..matrix.ncols()).flat_map(|j| (0..matrix.nrows()).map(move |i| matrix[(i, j)])).collect()
+}
+
+pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 

@@ -56,7 +56,7 @@ impl ConservativeMotion {
     pub fn new(body: ConservativeBody, scheme: ConservativeScheme, initial: &Initial) -> Result<Self, SetupError> {
         let state = body.start(initial)?;
         let nf = body.flexible();
-        let evaluation = Evaluation::new(nf);
+        let evaluation = body.evaluation();
         Ok(Self {
             scheme,
             next: state.clone(),
@@ -72,9 +72,19 @@ impl ConservativeMotion {
             p: vec![0.0; nf],
             blocks: BlockStore::default(),
             evaluations: 0,
-            energy_scale: body.energy_of_loads(),
+            energy_scale: 0.0,
             body,
         })
+    }
+
+    /// Takes the loads until `end` into account in the scale of errors, for step control.
+    pub(crate) fn expect_loads_until(&mut self, end: f64) {
+        self.energy_scale = self.body.energy_of_loads(end);
+    }
+
+    /// A load or a drive may jump here: the rates at the end of the last step are not those of the next one's beginning.
+    pub(crate) fn pass_corner(&mut self) {
+        self.first_known = false;
     }
 
     /// The state that has been reached.
@@ -144,8 +154,15 @@ impl ConservativeMotion {
         self.step(h, time + h)?;
         self.attempt(h, end)?;
         let Self { body, next, coarse, ahead, .. } = self;
-        body.evaluate(end, &next.attitude, &next.slow, &next.modal_displacement, &next.modal_momentum, ahead)
-            .map_err(|error| error.in_step(time, h))?;
+        body.evaluate(
+            [end, time + 1.5 * h],
+            &next.attitude,
+            &next.slow,
+            &next.modal_displacement,
+            &next.modal_momentum,
+            ahead,
+        )
+        .map_err(|error| error.in_step(time, h))?;
         self.evaluations += 1;
         let scale = body.internal_energy(next, ahead).max(self.energy_scale);
         let energy = body.energy_of_difference(next, coarse);
@@ -189,7 +206,9 @@ impl ConservativeMotion {
     fn evaluate(&mut self, s: usize, t: f64, slow: &Slow, h: f64) -> Result<(), StepError> {
         let Self { body, state, stages, q, p, .. } = self;
         self.evaluations += 1;
-        body.evaluate(t, &state.attitude, slow, q, p, &mut stages[s]).map_err(|error| error.in_step(state.time, h))
+        let inside = state.time + 0.5 * h;
+        body.evaluate([t, inside], &state.attitude, slow, q, p, &mut stages[s])
+            .map_err(|error| error.in_step(state.time, h))
     }
 
     /// Evaluates the first stage at the start of the stages, unless the last step already has.

@@ -59,6 +59,18 @@ pub enum SetupError {
         /// Its scheme.
         scheme: &'static str,
     },
+    /// A drive of a body whose modes are not those of the driven part held still.
+    #[error("a drive needs the modes of a clamped body; this one has the rigid motions {motion:?}")]
+    DriveOfFreeBody {
+        /// Its rigid motions.
+        motion: modal::RigidMotion,
+    },
+    /// Something that the formulation of the paper has not got.
+    #[error("the formulation paper has no {what}; take the conservative one")]
+    NotInPaper {
+        /// What.
+        what: &'static str,
+    },
     /// The reference points lie on a line.
     #[error(transparent)]
     CollinearPoints(#[from] rigid_kin::CollinearPoints),

@@ -31,6 +31,20 @@ impl History {
         }
     }
 
+    /// The rate of the factor at a time, by the law that holds at the time `inside`.
+    pub fn rate(&self, time: f64, inside: f64) -> f64 {
+        match *self {
+            Self::HalfSine { start, duration } => {
+                if (start..=start + duration).contains(&inside) {
+                    let circular = std::f64::consts::PI / duration;
+                    circular * (circular * (time - start)).cos()
+                } else {
+                    0.0
+                }
+            }
+        }
+    }
+
     /// Refuses times that are not finite, and a duration that is not positive.
     pub(crate) fn check(&self) -> Result<(), SetupError> {
         let Self::HalfSine { start, duration } = *self;
@@ -48,11 +62,16 @@ impl History {
         Ok(())
     }
 
-    /// Integral of the factor's magnitude over all time.
-    pub(crate) fn integral(&self) -> f64 {
+    /// Integral of the factor's magnitude from 0 to `end`.
+    pub fn magnitude_integral(&self, _end: f64) -> f64 {
         match *self {
             Self::HalfSine { duration, .. } => 2.0 * duration / std::f64::consts::PI,
         }
+    }
+
+    /// Largest magnitude of the factor from 0 to `end`.
+    pub fn largest(&self, _end: f64) -> f64 {
+        1.0
     }
 
     /// Times at which the factor or one of its rates jumps. A step must not reach across one.
@@ -72,7 +91,7 @@ mod tests {
         let pulse = History::HalfSine { start: 1.0, duration: 0.5 };
         let middles = (0..1000).map(|k| 1.0 + 0.5 * (f64::from(k) + 0.5) / 1000.0);
         let sum = middles.map(|t| pulse.at(t, t)).sum::<f64>() * 0.5 / 1000.0;
-        assert!((pulse.integral() / sum - 1.0).abs() < 1e-6);
+        assert!((pulse.magnitude_integral(9.0) / sum - 1.0).abs() < 1e-6);
     }
 
     #[test]

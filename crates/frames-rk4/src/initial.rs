@@ -53,7 +53,7 @@ impl Initial {
         self.check(body.flexible())?;
         // ω = B y: y = B⁻¹ ω = Bᵀ J₀ ω, since B Bᵀ = J₀⁻¹.
         let rotation = body.rotation_basis.transpose() * body.inertia * self.omega;
-        let translation = self.velocity * body.mass.sqrt();
+        let translation = body.translation_basis.transpose() * self.velocity * body.mass;
         let displacement: Vec<f64> =
             std::iter::repeat_n(0.0, 6).chain(self.modal_displacement.iter().copied()).collect();
         let mut velocity: Vec<f64> =

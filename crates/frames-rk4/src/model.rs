@@ -4,8 +4,7 @@ use modal::ReducedBody;
 use nalgebra::{Matrix3, Vector3};
 
 use crate::error::SetupError;
-use crate::load::DeadForce;
-use crate::state::translation;
+use crate::load::{Acting, Load};
 use crate::work::Work;
 
 /// Modal stiffness, damping and loads of mass-normalised modes: `q̈ = f_q − Λ q − D q̇`.
@@ -17,7 +16,7 @@ pub struct ModalModel {
     stiffness: Vec<f64>,
     /// 2 ζ_k ω_k (6+nf).
     damping: Vec<f64>,
-    loads: Vec<DeadForce>,
+    loads: Vec<Load>,
 }
 
 impl ModalModel {
@@ -25,9 +24,9 @@ impl ModalModel {
     ///
     /// # Errors
     /// [`SetupError`] for a list of the wrong length, and numbers that are negative or not finite.
-    pub fn new(body: &ReducedBody, damping_ratios: &[f64], loads: Vec<DeadForce>) -> Result<Self, SetupError> {
+    pub fn new(body: &ReducedBody, damping_ratios: &[f64], loads: Vec<Load>) -> Result<Self, SetupError> {
         check_damping(damping_ratios, body.flexible())?;
-        check_loads(&loads, body.flexible())?;
+        loads.iter().try_for_each(|load| load.check(body.flexible()))?;
         let rigid = || std::iter::repeat_n(0.0, 6);
         let omega = &body.circular_frequencies;
         Ok(Self {
@@ -38,23 +37,23 @@ impl ModalModel {
     }
 
     /// The loads.
-    pub fn loads(&self) -> &[DeadForce] {
+    pub fn loads(&self) -> &[Load] {
         &self.loads
     }
 
-    /// The forces at a time, global components, one for each load.
-    pub(crate) fn forces_at(&self, time: f64, forces_global: &mut [Vector3<f64>]) {
-        for (force, load) in forces_global.iter_mut().zip(&self.loads) {
-            *force = load.force_global * load.history.at(time, time);
+    /// The factors of the loads at a time, by the laws that hold at the time `inside`.
+    pub(crate) fn factors_at(&self, time: f64, inside: f64, factors: &mut [f64]) {
+        for (factor, load) in factors.iter_mut().zip(&self.loads) {
+            *factor = load.history.at(time, inside);
         }
     }
 
-    /// q̈ of (35) under `forces_global`, in a frame with the transformation matrix `global_to_body`.
+    /// q̈ of (35) under loads with the given `factors`, in a frame with the transformation matrix `global_to_body`.
     pub(crate) fn acceleration(
         &self,
         displacement: &[f64],
         velocity: &[f64],
-        forces_global: &[Vector3<f64>],
+        factors: &[f64],
         global_to_body: &Matrix3<f64>,
         acceleration: &mut [f64],
     ) {
@@ -62,29 +61,28 @@ impl ModalModel {
         for (a, ((q, v), (lambda, d))) in acceleration.iter_mut().zip(damped) {
             *a = -lambda * q - d * v;
         }
-        for (force_global, load) in forces_global.iter().zip(&self.loads) {
-            load.point.add_modal_force(&(global_to_body * force_global), acceleration);
+        for (factor, load) in factors.iter().zip(&self.loads) {
+            load.add_modal_force(Acting { factor: *factor, global_to_body: Some(global_to_body) }, acceleration);
         }
     }
 
-    /// Rates of the loads' work, of the dissipation, and of the angular impulse about the centre of mass.
+    /// Rates of the loads' work, of the dissipation, and of the angular impulse about the `center` of mass.
     pub(crate) fn power(
         &self,
         displacement: &[f64],
         velocity: &[f64],
-        forces_global: &[Vector3<f64>],
+        factors: &[f64],
         global_to_body: &Matrix3<f64>,
-        root_mass: f64,
+        center: &Vector3<f64>,
     ) -> Work {
         let mut power =
             Work { dissipation: velocity.iter().zip(&self.damping).map(|(y, d)| d * y * y).sum(), ..Work::default() };
-        let center = translation(displacement) / root_mass;
-        for (force_global, load) in forces_global.iter().zip(&self.loads) {
-            let force_body = global_to_body * force_global;
-            let arm = load.point.position_body() + load.point.expand(displacement) - center;
-            power.impulse_global += force_global;
-            power.work += force_body.dot(&load.point.expand(velocity));
-            power.angular_impulse_global += global_to_body.tr_mul(&arm.cross(&force_body));
+        for (factor, load) in factors.iter().zip(&self.loads) {
+            let now = Acting { factor: *factor, global_to_body: Some(global_to_body) };
+            let on = load.on_modes(now, displacement, velocity, center);
+            power.impulse_global += global_to_body.tr_mul(&on.force_body);
+            power.work += on.deforming_power;
+            power.angular_impulse_global += global_to_body.tr_mul(&on.moment_body);
         }
         power
     }
@@ -128,21 +126,6 @@ pub(crate) fn check_damping(damping_ratios: &[f64], flexible: usize) -> Result<(
         Some(found) => Err(SetupError::Value { what: "a damping ratio", found, expected: "zero or more" }),
         None => Ok(()),
     }
-}
-
-/// Refuses forces that are not finite, histories that are none, and points of another body.
-pub(crate) fn check_loads(loads: &[DeadForce], flexible: usize) -> Result<(), SetupError> {
-    for load in loads {
-        load.history.check()?;
-        if let Some(found) = load.force_global.iter().copied().find(|f| !f.is_finite()) {
-            return Err(SetupError::Value { what: "a force", found, expected: "a finite number" });
-        }
-        let found = load.point.flexible();
-        if found != flexible {
-            return Err(SetupError::Length { what: "the point of a load", expected: flexible, found });
-        }
-    }
-    Ok(())
 }
 
 /// Largest step for which RK4 does not amplify `q̈ + d q̇ + λ q = 0`; 2.83/ω without damping.

@@ -1,6 +1,7 @@
 //! What the state says about the body: its motion as a whole, and that of its points.
 
-use modal::{BodyPoint, ReducedBody};
+use faer::MatRef;
+use modal::{BodyPoint, ReducedBody, RigidMotion};
 use nalgebra::{Matrix3, Vector3};
 use rigid_kin::{Inertia, InertiaError, euler_angular_acceleration};
 
@@ -40,7 +41,7 @@ impl PointShapes {
         Self { position_body: point.position_body, columns }
     }
 
-    /// X: undeformed position from the centre of mass, body axes.
+    /// X: undeformed position from the body's origin, body axes.
     pub fn position_body(&self) -> Vector3<f64> {
         self.position_body
     }
@@ -66,6 +67,11 @@ impl PointShapes {
         self.columns[6..].iter().zip(flexible).map(|(shape, c)| shape * *c).sum()
     }
 
+    /// Columns of all modes (6+nf).
+    pub(crate) fn columns(&self) -> &[Vector3<f64>] {
+        &self.columns
+    }
+
     /// Adds `Φᵀ F` of a force at the point, body components, and returns its power `F·Φ velocity`.
     pub(crate) fn add_flexible_force(
         &self,
@@ -73,29 +79,87 @@ impl PointShapes {
         velocity: &[f64],
         modal_force: &mut [f64],
     ) -> f64 {
-        let mut power = 0.0;
-        for ((f, v), shape) in modal_force.iter_mut().zip(velocity).zip(&self.columns[6..]) {
-            let component = shape.dot(force_body);
-            *f += component;
-            power += component * v;
-        }
-        power
+        project_with_power(&self.columns[6..], force_body, velocity, modal_force)
+    }
+}
+
+/// A place of the body with the small rotations that all modes, rigid and flexible, give it.
+#[derive(Debug, Clone)]
+pub struct RotationShapes {
+    /// Column k is the rotation vector of the place in mode k (6+nf columns).
+    columns: Vec<Vector3<f64>>,
+}
+
+impl RotationShapes {
+    /// `flexible` has the rotation vectors of the flexible modes (3×nf).
+    pub fn new(body: &ReducedBody, flexible: MatRef<'_, f64>) -> Self {
+        let rigid = (0..3).map(|_| Vector3::zeros()).chain((0..3).map(|i| body.rotation_basis.column(i).into()));
+        Self { columns: rigid.chain(flexible.col_iter().map(|c| Vector3::new(c[0], c[1], c[2]))).collect() }
     }
 
-    /// Adds `f_q = Ψᵀ F` of a force at the point, body components.
-    pub(crate) fn add_modal_force(&self, force_body: &Vector3<f64>, modal_force: &mut [f64]) {
-        for (f, shape) in modal_force.iter_mut().zip(&self.columns) {
-            *f += shape.dot(force_body);
-        }
+    /// Number of flexible modes.
+    pub(crate) fn flexible(&self) -> usize {
+        self.columns.len() - 6
     }
+
+    /// The place with the first `flexible` flexible modes only.
+    pub fn truncated(&self, flexible: usize) -> Self {
+        Self { columns: self.columns[..self.columns.len().min(6 + flexible)].to_vec() }
+    }
+
+    /// Columns of all modes (6+nf).
+    pub(crate) fn columns(&self) -> &[Vector3<f64>] {
+        &self.columns
+    }
+
+    /// Adds `Θᵀ M` of a couple, body components, and returns its power `M·Θ velocity`.
+    pub(crate) fn add_flexible_moment(
+        &self,
+        moment_body: &Vector3<f64>,
+        velocity: &[f64],
+        modal_force: &mut [f64],
+    ) -> f64 {
+        project_with_power(&self.columns[6..], moment_body, velocity, modal_force)
+    }
+}
+
+/// Adds the component of `vector` along each column.
+pub(crate) fn project(columns: &[Vector3<f64>], vector: &Vector3<f64>, out: &mut [f64]) {
+    for (f, shape) in out.iter_mut().zip(columns) {
+        *f += shape.dot(vector);
+    }
+}
+
+/// `vector·Σ columns_k velocity_k`
+pub(crate) fn power_of(columns: &[Vector3<f64>], vector: &Vector3<f64>, velocity: &[f64]) -> f64 {
+    columns.iter().zip(velocity).map(|(shape, v)| shape * *v).sum::<Vector3<f64>>().dot(vector)
+}
+
+/// [`project`], and [`power_of`] the same velocity.
+fn project_with_power(
+    columns: &[Vector3<f64>],
+    vector: &Vector3<f64>,
+    velocity: &[f64],
+    modal_force: &mut [f64],
+) -> f64 {
+    let mut power = 0.0;
+    for ((f, v), shape) in modal_force.iter_mut().zip(velocity).zip(columns) {
+        let component = shape.dot(vector);
+        *f += component;
+        power += component * v;
+    }
+    power
 }
 
 /// Reads the motion of a body off its states.
 #[derive(Debug, Clone)]
 pub struct BodyMotion {
     mass: f64,
-    center_of_mass: Vector3<f64>,
+    /// The origin at the beginning, global components.
+    origin: Vector3<f64>,
+    center: CenterOfMass,
     inertia: Inertia,
+    translation_basis: Matrix3<f64>,
     rotation_basis: Matrix3<f64>,
     /// Ψᵀ M (I⊗[e_i×]) Ψ, column by column (3 × (6+nf)²).
     cross_products: [Vec<f64>; 3],
@@ -116,17 +180,19 @@ impl BodyMotion {
         });
         Ok(Self {
             mass: body.mass,
-            center_of_mass: body.center_of_mass,
+            origin: body.origin,
+            center: CenterOfMass::new(body),
             inertia: Inertia::new(body.inertia)?,
+            translation_basis: body.translation_basis,
             rotation_basis: body.rotation_basis,
             cross_products,
             stiffness: body.circular_frequencies.iter().map(|omega| omega * omega).collect(),
         })
     }
 
-    /// √m, by which translations are scaled.
-    pub(crate) fn root_mass(&self) -> f64 {
-        self.mass.sqrt()
+    /// Displacement or velocity of the origin: `T y[..3]`.
+    pub(crate) fn of_origin(&self, modal: &[f64]) -> Vector3<f64> {
+        self.translation_basis * translation(modal)
     }
 
     /// Angular rate of the rotation modes: `B y[3..6]`.
@@ -161,12 +227,15 @@ impl BodyMotion {
 
     /// Position of the centre of mass, global components.
     pub fn position_global(&self, state: &State) -> Vector3<f64> {
-        state.origin_global + state.attitude.to_global(&translation(&state.modal_displacement)) / self.mass.sqrt()
+        let q = &state.modal_displacement;
+        state.origin_global + state.attitude.to_global(&(self.of_origin(q) + self.center.position_body(&q[6..])))
     }
 
     /// Velocity of the centre of mass, global components.
     pub fn velocity_global(&self, state: &State) -> Vector3<f64> {
-        state.attitude.to_global(&translation(&state.modal_velocity)) / self.mass.sqrt()
+        let y = &state.modal_velocity;
+        let turning = self.angular_rate(&rotation(y)).cross(&self.center.undeformed_body);
+        state.attitude.to_global(&(self.of_origin(y) + turning + self.center.deformation(&y[6..])))
     }
 
     /// Angular acceleration by Euler's equation, `α_modal − J₀⁻¹(ω×J₀ω)`, body components. It is right for any body,
@@ -202,7 +271,7 @@ impl BodyMotion {
             let columns = self.cross_products[i].chunks_exact(q.len()).zip(y);
             -columns.map(|(column, y)| y * column.iter().zip(q).map(|(g, q)| g * q).sum::<f64>()).sum::<f64>()
         });
-        let of_center = translation(q).cross(&translation(y));
+        let of_center = self.of_origin(q).cross(&self.of_origin(y)) * self.mass;
         state.attitude.to_global(&(undeformed + deformed - of_center))
     }
 
@@ -211,13 +280,44 @@ impl BodyMotion {
         let global = |v_body: Vector3<f64>| state.attitude.to_global(&v_body);
         let x = point.position_body;
         let (omega, alpha) = (state.omega_body, state.alpha_body);
-        let of_origin = translation(&state.modal_acceleration) / self.mass.sqrt();
+        let of_origin = self.of_origin(&state.modal_acceleration);
         PointMotion {
-            displacement: (state.origin_global - self.center_of_mass)
+            displacement: (state.origin_global - self.origin)
                 + (global(x + point.expand(&state.modal_displacement)) - x),
             velocity: global(point.expand(&state.modal_velocity)),
             acceleration: global(point.expand(&state.modal_acceleration)),
             rigid_acceleration: global(of_origin + alpha.cross(&x) + omega.cross(&omega.cross(&x))),
         }
+    }
+}
+
+/// Where the centre of mass of a body is, seen from its origin.
+#[derive(Debug, Clone)]
+pub(crate) struct CenterOfMass {
+    /// In the undeformed body.
+    pub undeformed_body: Vector3<f64>,
+    /// t_i/m: what each flexible mode adds (nf); empty for a free body, whose modes leave it where it is.
+    columns: Vec<Vector3<f64>>,
+}
+
+impl CenterOfMass {
+    pub(crate) fn new(body: &ReducedBody) -> Self {
+        let columns = match body.motion {
+            RigidMotion::Free => Vec::new(),
+            _ => (0..body.flexible())
+                .map(|k| Vector3::from_fn(|i, _| body.translation_first[i][k] / body.mass))
+                .collect(),
+        };
+        Self { undeformed_body: body.center_of_mass - body.origin, columns }
+    }
+
+    /// What flexible modal coordinates, or their rates, add.
+    pub(crate) fn deformation(&self, flexible: &[f64]) -> Vector3<f64> {
+        self.columns.iter().zip(flexible).map(|(column, q)| column * *q).sum()
+    }
+
+    /// Position from the origin, body components.
+    pub(crate) fn position_body(&self, flexible: &[f64]) -> Vector3<f64> {
+        self.undeformed_body + self.deformation(flexible)
     }
 }

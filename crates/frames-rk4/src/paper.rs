@@ -15,7 +15,7 @@ use crate::modal_rotation::ModalRotation;
 use crate::model::ModalModel;
 use crate::motion::{BodyMotion, PointShapes};
 use crate::observation::Observation;
-use crate::state::{State, translation};
+use crate::state::State;
 use crate::work::Work;
 
 /// Steps a flexible body by the paper's scheme.
@@ -59,12 +59,12 @@ struct Increment {
     relative_velocity: Relative,
 }
 
-/// Forces of the loads at the start and the end of a step, and their mean, global components.
+/// Factors of the loads at the start and the end of a step, and their mean.
 #[derive(Debug, Clone)]
 struct StepForces {
-    start: Vec<Vector3<f64>>,
-    mean: Vec<Vector3<f64>>,
-    end: Vec<Vector3<f64>>,
+    start: Vec<f64>,
+    mean: Vec<f64>,
+    end: Vec<f64>,
 }
 
 #[derive(Debug, Clone)]
@@ -101,7 +101,7 @@ impl PaperScheme {
         };
         let state = State::begin(body, initial)?;
         let zeros = || vec![0.0; state.modal_displacement.len()];
-        let forces = || vec![Vector3::zeros(); model.loads().len()];
+        let forces = || vec![0.0; model.loads().len()];
         let increment = || Increment {
             displacement: zeros(),
             velocity: zeros(),
@@ -129,7 +129,7 @@ impl PaperScheme {
             state,
             model,
         };
-        scheme.complete_state();
+        scheme.complete_state(0.0);
         Ok(scheme)
     }
 
@@ -162,9 +162,15 @@ impl PaperScheme {
     /// # Errors
     /// [`StepError`]; the state stays that before the step.
     pub fn take_step(&mut self, h: f64, end: f64) -> Result<(), StepError> {
+        let time = self.state.time;
+        let inside = time + 0.5 * h;
+        self.model.factors_at(time, inside, &mut self.forces.mean);
+        if self.forces.mean != self.forces.start {
+            // A load jumps here.
+            self.complete_state(inside);
+        }
         let Self { model, rotation, kinematics, state, scratch, forces, .. } = self;
-        let time = state.time;
-        model.forces_at(end, &mut forces.end);
+        model.factors_at(end, inside, &mut forces.end);
         for (mean, (start, end)) in forces.mean.iter_mut().zip(forces.start.iter().zip(&forces.end)) {
             *mean = 0.5 * (start + end);
         }
@@ -212,7 +218,7 @@ impl PaperScheme {
         }
 
         // The rigid displacement that (40) takes out is where the frame goes.
-        let moved_body = translation(&total.displacement) / self.motion.root_mass();
+        let moved_body = self.motion.of_origin(&total.displacement);
         state.origin_global += state.attitude.to_global(&moved_body);
         state.attitude = state.attitude.advanced_by(&theta);
         std::mem::swap(&mut state.modal_displacement, next_displacement);
@@ -220,20 +226,22 @@ impl PaperScheme {
         self.steps_done += 1;
         state.time = end;
         self.work.add(0.5 * h, &self.power);
-        self.complete_state();
+        self.complete_state(inside);
         // By the trapezoidal rule: far closer than a first-order scheme closes its balances.
         self.work.add(0.5 * h, &self.power);
         Ok(())
     }
 
     /// Accelerations (35), ω (36) and α (37) of the state's displacements and velocities, and the power of the loads.
-    fn complete_state(&mut self) {
+    /// Loads follow the laws that hold at the time `inside`.
+    fn complete_state(&mut self, inside: f64) {
         let Self { model, kinematics, state, forces, .. } = self;
-        model.forces_at(state.time, &mut forces.start);
+        model.factors_at(state.time, inside, &mut forces.start);
         let global_to_body = state.attitude.global_to_body();
         let (q, y) = (&state.modal_displacement, &state.modal_velocity);
         model.acceleration(q, y, &forces.start, &global_to_body, &mut state.modal_acceleration);
-        self.power = model.power(q, y, &forces.start, &global_to_body, self.motion.root_mass());
+        let center = self.motion.of_origin(q);
+        self.power = model.power(q, y, &forces.start, &global_to_body, &center);
         let [v_p, v_q] = kinematics.relative(&state.modal_velocity);
         let [a_p, a_q] = kinematics.relative(&state.modal_acceleration);
         state.omega_body = kinematics.points.angular_velocity(&v_p, &v_q);

@@ -19,7 +19,7 @@ use crate::initial::Initial;
 use crate::model::ModalModel;
 use crate::motion::BodyMotion;
 use crate::observation::Observation;
-use crate::state::{State, rotation, translation};
+use crate::state::{State, rotation};
 use crate::work::Work;
 
 /// Steps the limit of the paper's scheme by RKMK4.
@@ -32,7 +32,7 @@ pub struct PaperLimit {
     state: State,
     work: Work,
     stages: [Rates; 4],
-    forces_global: Vec<Vector3<f64>>,
+    factors: Vec<f64>,
     q: Vec<f64>,
     y: Vec<f64>,
     products: Vec<f64>,
@@ -78,7 +78,7 @@ impl PaperLimit {
             velocity: zeros(),
         };
         let mut limit = Self {
-            forces_global: vec![Vector3::zeros(); model.loads().len()],
+            factors: vec![0.0; model.loads().len()],
             model,
             motion,
             cross_products,
@@ -90,7 +90,7 @@ impl PaperLimit {
             products: vec![0.0; 3 * size],
             evaluations: 0,
         };
-        limit.complete_state();
+        limit.complete_state(0.0);
         Ok(limit)
     }
 
@@ -110,6 +110,7 @@ impl PaperLimit {
     /// [`StepError`]; the state stays that before the step.
     pub fn step(&mut self, h: f64, end: f64) -> Result<(), StepError> {
         let time = self.state.time;
+        let inside = time + 0.5 * h;
         for (s, fraction) in [0.0, 0.5, 0.5, 1.0].into_iter().enumerate() {
             let c = fraction * h;
             let mut theta = Vector3::zeros();
@@ -121,7 +122,7 @@ impl PaperLimit {
                 add(&mut self.q, c, &before.displacement);
                 add(&mut self.y, c, &before.velocity);
             }
-            self.evaluate(s, time + c, &theta).map_err(|error| error.in_step(time, h))?;
+            self.evaluate(s, time + c, inside, &theta).map_err(|error| error.in_step(time, h))?;
         }
         let Self { state, stages, q, y, work, .. } = self;
         q.copy_from_slice(&state.modal_displacement);
@@ -144,7 +145,7 @@ impl PaperLimit {
         state.time = end;
         std::mem::swap(&mut state.modal_displacement, q);
         std::mem::swap(&mut state.modal_velocity, y);
-        self.complete_state();
+        self.complete_state(inside);
         Ok(())
     }
 
@@ -154,33 +155,33 @@ impl PaperLimit {
     }
 
     /// Rates at the stage values q, y and the rotation vector since the step's start.
-    fn evaluate(&mut self, s: usize, t: f64, theta: &Vector3<f64>) -> Result<(), RateError> {
-        let Self { model, motion, cross_products, state, stages, q, y, products, forces_global, .. } = self;
+    fn evaluate(&mut self, s: usize, t: f64, inside: f64, theta: &Vector3<f64>) -> Result<(), RateError> {
+        let Self { model, motion, cross_products, state, stages, q, y, products, factors, .. } = self;
         let size = q.len();
         let rates = &mut stages[s];
         let global_to_body = transformation_matrix(theta) * state.attitude.global_to_body();
         let omega = motion.angular_rate(&rotation(y));
-        model.forces_at(t, forces_global);
-        model.acceleration(q, y, forces_global, &global_to_body, &mut rates.velocity);
-        rates.work = model.power(q, y, forces_global, &global_to_body, motion.root_mass());
+        model.factors_at(t, inside, factors);
+        model.acceleration(q, y, factors, &global_to_body, &mut rates.velocity);
+        rates.work = model.power(q, y, factors, &global_to_body, &motion.of_origin(q));
 
         add_cross(cross_products, size, &omega, q, products, |i, g| rates.displacement[i] = -g);
         add_cross(cross_products, size, &omega, y, products, |i, g| rates.velocity[i] -= g);
         add(&mut rates.displacement[6..], 1.0, &y[6..]);
         rates.rotation_vector = f_inverse(theta, &omega).map_err(RateError::Turn)?;
-        rates.origin = global_to_body.tr_mul(&translation(y)) / motion.root_mass();
+        rates.origin = global_to_body.tr_mul(&motion.of_origin(y));
         self.evaluations += 1;
         Ok(())
     }
 
     /// Accelerations, ω and α of the state: q̈ in the inertial frame that coincides with the body now, and α = ω' in
-    /// body axes, which is Euler's.
-    fn complete_state(&mut self) {
-        let Self { model, motion, state, forces_global, cross_products, products, .. } = self;
+    /// body axes, which is Euler's. Loads follow the laws that hold at the time `inside`.
+    fn complete_state(&mut self, inside: f64) {
+        let Self { model, motion, state, factors, cross_products, products, .. } = self;
         let global_to_body = state.attitude.global_to_body();
         let (q, y) = (&state.modal_displacement, &state.modal_velocity);
-        model.forces_at(state.time, forces_global);
-        model.acceleration(q, y, forces_global, &global_to_body, &mut state.modal_acceleration);
+        model.factors_at(state.time, inside, factors);
+        model.acceleration(q, y, factors, &global_to_body, &mut state.modal_acceleration);
         state.omega_body = motion.angular_rate(&rotation(y));
         let mut turned = Vector3::zeros();
         add_cross(cross_products, y.len(), &state.omega_body, y, products, |i, g| {

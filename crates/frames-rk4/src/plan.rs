@@ -28,14 +28,17 @@ pub(crate) struct Segment {
     pub length: f64,
     /// Whether the end is an output time.
     pub row: bool,
+    /// Whether the start is a corner.
+    pub after_corner: bool,
 }
 
 /// The segments of a run.
 #[derive(Debug, Clone)]
 pub(crate) struct Plan {
     end: f64,
-    /// Corners within the run, sorted.
+    /// Corners within the run, sorted, and how many of them have been passed.
     corners: Vec<f64>,
+    passed: usize,
     interval: Option<f64>,
     /// Output times passed.
     outputs: u64,
@@ -51,7 +54,7 @@ impl Plan {
             Rows::Interval(interval) => Some(interval),
             Rows::EverySteps(_) => None,
         };
-        Self { end, corners, interval, outputs: 0, reached: 0.0, last_length: 0.0 }
+        Self { end, corners, passed: 0, interval, outputs: 0, reached: 0.0, last_length: 0.0 }
     }
 
     /// The next segment; `None` at the end.
@@ -62,7 +65,12 @@ impl Plan {
             return None;
         }
         let output = self.interval.map_or(f64::INFINITY, |interval| (self.outputs + 1) as f64 * interval);
-        let corner = self.corners.iter().copied().find(|t| *t > self.reached + same).unwrap_or(f64::INFINITY);
+        let before = self.passed;
+        while self.corners.get(self.passed).is_some_and(|corner| *corner <= self.reached + same) {
+            self.passed += 1;
+        }
+        let after_corner = self.passed > before;
+        let corner = self.corners.get(self.passed).copied().unwrap_or(f64::INFINITY);
         let mut stop = corner.min(output).min(self.end);
         let row = (output - stop).abs() <= same || (self.end - stop).abs() <= same;
         if (output - stop).abs() <= same {
@@ -77,7 +85,7 @@ impl Plan {
             length = self.last_length;
         }
         self.last_length = length;
-        let segment = Segment { start: self.reached, end: stop, length, row };
+        let segment = Segment { start: self.reached, end: stop, length, row, after_corner };
         self.reached = stop;
         Some(segment)
     }
@@ -197,7 +205,7 @@ mod tests {
 
     #[test]
     fn a_step_that_divides_the_end_is_kept_and_another_is_shortened() {
-        let whole = Segment { start: 0.0, end: 0.5, length: 0.5, row: true };
+        let whole = Segment { start: 0.0, end: 0.5, length: 0.5, row: true, after_corner: false };
         for (step, count) in [(1e-4, 5000), (0.3, 2), (0.5, 1), (2.0, 1), (0.1, 5)] {
             let mut steps = EqualSteps::new(whole, step);
             let mut taken = Vec::new();
@@ -212,7 +220,7 @@ mod tests {
 
     #[test]
     fn halved_steps_land_on_the_end_whatever_is_accepted_and_rejected() {
-        let segment = Segment { start: 1.0, end: 1.3, length: 1.3 - 1.0, row: true };
+        let segment = Segment { start: 1.0, end: 1.3, length: 1.3 - 1.0, row: true, after_corner: false };
         let mut steps = HalvedSteps::new(segment, 0.11);
         let mut time = 1.0;
         let mut tries = 0;
@@ -232,7 +240,8 @@ mod tests {
 
     #[test]
     fn steps_cannot_shrink_for_ever() {
-        let mut steps = HalvedSteps::new(Segment { start: 0.0, end: 1.0, length: 1.0, row: true }, 1.0);
+        let mut steps =
+            HalvedSteps::new(Segment { start: 0.0, end: 1.0, length: 1.0, row: true, after_corner: false }, 1.0);
         assert!((0..100).any(|_| !steps.reject(f64::NAN)));
     }
 }

@@ -6,13 +6,15 @@ use nalgebra::Vector3;
 use crate::conservative::ConservativeBody;
 use crate::conservative_motion::{ConservativeMotion, ConservativeScheme};
 use crate::error::{SetupError, StepError};
+use crate::history::History;
 use crate::initial::Initial;
-use crate::load::DeadForce;
+use crate::load::Load;
 use crate::model::ModalModel;
 use crate::motion::PointShapes;
 use crate::observation::Observation;
 use crate::paper::PaperScheme;
 use crate::paper_limit::PaperLimit;
+use crate::physics::{DrivenMotion, Physics};
 use crate::plan::{EqualSteps, HalvedSteps, Plan, Rows, StepControl};
 
 /// Formulation and scheme.
@@ -99,8 +101,10 @@ pub struct Setup<'a> {
     /// One damping ratio for each flexible mode.
     pub damping_ratios: &'a [f64],
     /// The loads.
-    pub loads: &'a [DeadForce],
-    /// R, P, Q of the paper's scheme, from the centre of mass, body axes.
+    pub loads: &'a [Load],
+    /// Effects, drives and stress.
+    pub physics: &'a Physics,
+    /// R, P, Q of the paper's scheme, from the body's origin, body axes.
     pub reference_points: [Vector3<f64>; 3],
     /// How it begins.
     pub initial: &'a Initial,
@@ -213,6 +217,9 @@ impl Simulation {
                 Walk::Halved { tolerance, longest_try: f64::INFINITY, steps: None }
             }
         };
+        if !matches!(method, Method::Conservative(_)) {
+            refuse_beyond_paper(setup.physics)?;
+        }
         let model = || ModalModel::new(body, damping_ratios, loads.to_vec());
         let engine = match method {
             Method::Paper => {
@@ -222,11 +229,17 @@ impl Simulation {
             }
             Method::PaperRkmk4 => Engine::PaperLimit(Box::new(PaperLimit::new(body, model()?, initial)?)),
             Method::Conservative(scheme) => {
-                let body = ConservativeBody::new(body, damping_ratios, loads.to_vec())?;
-                Engine::Conservative(Box::new(ConservativeMotion::new(body, scheme, initial)?))
+                let body = ConservativeBody::new(body, damping_ratios, loads.to_vec(), setup.physics)?;
+                let mut motion = ConservativeMotion::new(body, scheme, initial)?;
+                if let StepControl::Tolerance(_) = setup.control {
+                    motion.expect_loads_until(setup.end);
+                }
+                Engine::Conservative(Box::new(motion))
             }
         };
-        let corners = loads.iter().flat_map(|load| load.history.corners());
+        let histories = loads.iter().map(|load| &load.history);
+        let corners =
+            histories.chain(setup.physics.drive.iter().map(|drive| &drive.history)).flat_map(History::corners);
         Ok(Self {
             engine,
             plan: Plan::new(setup.end, corners, setup.rows),
@@ -332,6 +345,9 @@ impl Simulation {
                 return next;
             }
             let segment = self.plan.next_segment()?;
+            if let (Engine::Conservative(motion), true) = (&mut self.engine, segment.after_corner) {
+                motion.pass_corner();
+            }
             match &mut self.walk {
                 Walk::Equal { step, steps } => *steps = Some((EqualSteps::new(segment, *step), segment.row)),
                 Walk::Halved { longest_try, steps, .. } => {
@@ -423,7 +439,23 @@ fn check_step(setup: &Setup, step: f64) -> Result<(), SetupError> {
     if !(step > 0.0 && step.is_finite()) {
         return Err(SetupError::Value { what: "the step", found: step, expected: "a positive number" });
     }
-    let spin = setup.initial.omega.norm();
+    let driven = setup.physics.drive.as_ref().map_or(0.0, |drive| match drive.motion {
+        DrivenMotion::Turn { .. } => (drive.amplitude * drive.history.largest(setup.end)).abs(),
+        DrivenMotion::Slide { .. } => 0.0,
+    });
+    let spin = setup.initial.omega.norm().max(driven);
     let limit = setup.method.longest_turn() / spin;
     if step <= limit { Ok(()) } else { Err(SetupError::StepBeyondSpin { step, limit, spin }) }
+}
+
+/// Refuses what the formulation of the paper has not got.
+fn refuse_beyond_paper(physics: &Physics) -> Result<(), SetupError> {
+    let what = if physics.drive.is_some() {
+        "driven motion"
+    } else if physics.load_stiffness.is_some() {
+        "geometric stiffening"
+    } else {
+        return Ok(());
+    };
+    Err(SetupError::NotInPaper { what })
 }

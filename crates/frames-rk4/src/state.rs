@@ -38,7 +38,7 @@ impl State {
         Ok(Self {
             time: 0.0,
             attitude: Attitude::identity(),
-            origin_global: body.center_of_mass,
+            origin_global: body.origin,
             modal_acceleration: vec![0.0; modal_velocity.len()],
             modal_displacement,
             modal_velocity,

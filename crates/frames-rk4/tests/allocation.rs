@@ -6,7 +6,7 @@ mod common;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
-use frames_rk4::{ConservativeScheme, Initial, Method, Rows, Setup, Simulation, StepControl};
+use frames_rk4::{ConservativeScheme, Initial, Method, Physics, Rows, Setup, Simulation, StepControl};
 use nalgebra::Vector3;
 
 thread_local! {
@@ -51,6 +51,7 @@ fn a_step_of_the_paper_s_scheme_allocates_nothing() {
 fn simulation(method: Method, control: StepControl, end: f64) -> Simulation {
     let ring = common::ring();
     Simulation::new(&Setup {
+        physics: &Physics::default(),
         body: &ring.body,
         damping_ratios: &[0.0; 10],
         loads: &[ring.half_sine([-100.0, 0.0, 0.0], [10.0, 20.0, 30.0], end)],

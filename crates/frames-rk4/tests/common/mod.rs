@@ -3,7 +3,7 @@
 use std::sync::OnceLock;
 
 use fem_tet10::{Material, Materials, Matrices, Mesh, PointMass, assemble, read_msh};
-use frames_rk4::{DeadForce, History, Initial, ModalModel, PaperScheme, PointShapes};
+use frames_rk4::{History, Initial, Load, ModalModel, PaperScheme, PointShapes};
 use modal::{BodyPoint, Modes, ReducedBody};
 use nalgebra::Vector3;
 
@@ -86,12 +86,12 @@ impl Specimen {
     }
 
     /// A dead half-sine that begins at zero.
-    pub fn half_sine(&self, at: [f64; 3], force_global: [f64; 3], duration: f64) -> DeadForce {
+    pub fn half_sine(&self, at: [f64; 3], force_global: [f64; 3], duration: f64) -> Load {
         let history = History::HalfSine { start: 0.0, duration };
-        DeadForce { point: self.point(at), force_global: force_global.into(), history }
+        Load::dead_force(self.point(at), force_global.into(), history)
     }
 
-    pub fn scheme(&self, damping_ratio: f64, loads: Vec<DeadForce>, initial: &Initial, step: f64) -> PaperScheme {
+    pub fn scheme(&self, damping_ratio: f64, loads: Vec<Load>, initial: &Initial, step: f64) -> PaperScheme {
         let ratios = vec![damping_ratio; self.body.flexible()];
         let model = ModalModel::new(&self.body, &ratios, loads).unwrap();
         PaperScheme::new(&self.body, model, self.reference_points_body(), initial, step).unwrap()

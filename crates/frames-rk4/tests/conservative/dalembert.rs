@@ -7,7 +7,7 @@
 
 use faer::sparse::SparseColMatRef;
 use frames_rk4::{
-    ConservativeBody, ConservativeMotion, ConservativeScheme, DeadForce, Initial, Observation, Rows, StepControl,
+    ConservativeBody, ConservativeMotion, ConservativeScheme, Initial, Load, Observation, Physics, Rows, StepControl,
 };
 use nalgebra::Vector3;
 
@@ -30,7 +30,7 @@ fn start() -> Initial {
 const PLACES: [([f64; 3], [f64; 3], f64); 2] =
     [([-100.0, 0.0, 0.0], [30.0, -50.0, 80.0], 0.1), ([95.0, 30.0, 20.0], [-40.0, 20.0, 10.0], 0.03)];
 
-fn loads(ring: &Specimen) -> Vec<DeadForce> {
+fn loads(ring: &Specimen) -> Vec<Load> {
     PLACES
         .map(|(at, force, duration)| ring.half_sine(ring.mesh.positions()[ring.nearest_node(at)], force, duration))
         .into()
@@ -135,7 +135,7 @@ fn accelerations_balance_all_forces_at_the_nodes() {
 #[test]
 fn modal_momenta_are_projections_of_the_velocities() {
     let ring = ring();
-    let body = ConservativeBody::new(&ring.body, &[0.0; 10], vec![]).unwrap();
+    let body = ConservativeBody::new(&ring.body, &[0.0; 10], vec![], &Physics::default()).unwrap();
     let motion = ConservativeMotion::new(body, ConservativeScheme::Exponential, &start()).unwrap();
     let u = field(ring, &start().modal_displacement);
     let v = field(ring, &start().modal_velocity);

@@ -1,7 +1,8 @@
 //! What is refused before the run, and what ends it.
 
 use frames_rk4::{
-    ConservativeBody, ConservativeMotion, ConservativeScheme, Initial, Method, Rows, SetupError, StepControl, StepError,
+    ConservativeBody, ConservativeMotion, ConservativeScheme, Initial, Method, Physics, Rows, SetupError, StepControl,
+    StepError,
 };
 use nalgebra::Vector3;
 
@@ -87,7 +88,7 @@ fn strang_blows_up_a_little_above_its_limit() {
     initial.modal_velocity[..4].copy_from_slice(&[77.0, -54.0, 117.0, 37.0]);
     let step = 2e-2;
     assert!(step * initial.omega.norm() < 1.2 * STRANG.longest_turn());
-    let body = ConservativeBody::new(&plate.body, &[0.0; 10], Vec::new()).unwrap();
+    let body = ConservativeBody::new(&plate.body, &[0.0; 10], Vec::new(), &Physics::default()).unwrap();
     let mut motion = ConservativeMotion::new(body, ConservativeScheme::Strang, &initial).unwrap();
     assert!((1..=50).any(|k| motion.step(step, f64::from(k) * step).is_err()));
 }

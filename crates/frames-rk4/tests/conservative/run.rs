@@ -1,7 +1,7 @@
 //! A run of a body, with what the tests vary, and how far its end is from that of another.
 
 use frames_rk4::{
-    ConservativeScheme, DeadForce, Initial, Method, Observation, PointShapes, Rows, Setup, SetupError, Simulation,
+    ConservativeScheme, Initial, Load, Method, Observation, Physics, PointShapes, Rows, Setup, SetupError, Simulation,
     StepControl,
 };
 use modal::ReducedBody;
@@ -18,7 +18,7 @@ pub struct Run<'a> {
     pub body: &'a ReducedBody,
     pub reference_points: [Vector3<f64>; 3],
     pub damping_ratio: f64,
-    pub loads: Vec<DeadForce>,
+    pub loads: Vec<Load>,
     pub initial: Initial,
     pub end: f64,
     pub points: Vec<PointShapes>,
@@ -50,6 +50,7 @@ impl<'a> Run<'a> {
             end: self.end,
             rows,
             points: &self.points,
+            physics: &Physics::default(),
         })
     }
 

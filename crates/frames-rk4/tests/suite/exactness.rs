@@ -1,6 +1,6 @@
 //! Motions that are known exactly.
 
-use frames_rk4::{BodyMotion, DeadForce, Initial};
+use frames_rk4::{BodyMotion, Initial, Load};
 use nalgebra::Vector3;
 use rigid_kin::{Attitude, RigidBody, RigidState, Wrench};
 
@@ -113,7 +113,7 @@ fn without_loads_linear_momentum_is_kept_to_rounding_and_the_path_leans() {
 const FORCE: Vector3<f64> = Vector3::new(2.0, 0.0, 5.0);
 
 /// A rigid ring that turns about the normal of its plane of symmetry, driven by a force in this plane.
-fn turning_in_plane(reference_points: [[f64; 3]; 3]) -> (Specimen, DeadForce, Initial) {
+fn turning_in_plane(reference_points: [[f64; 3]; 3]) -> (Specimen, Load, Initial) {
     let mut ring = ring().truncated(0);
     ring.reference_points = reference_points;
     let load = ring.half_sine([-100.0, 0.0, 0.0], FORCE.into(), 0.1);
@@ -126,9 +126,8 @@ fn plane_motion_under_a_dead_force_tends_to_that_of_a_rigid_body() {
     let (ring, load, initial) = turning_in_plane([[-100.0, 0.0, 0.0], [-100.0, 0.0, 20.0], [-80.0, 0.0, 0.0]]);
     let rigid = RigidBody::new(ring.body.mass, ring.body.inertia).unwrap();
     let motion = BodyMotion::new(&ring.body).unwrap();
-    let wrench = |t: f64, attitude: &Attitude| {
-        Wrench::dead_force(attitude, &load.point.position_body(), &(FORCE * load.history.at(t, t)))
-    };
+    let at = ring.point([-100.0, 0.0, 0.0]).position_body();
+    let wrench = |t: f64, attitude: &Attitude| Wrench::dead_force(attitude, &at, &(FORCE * load.history.at(t, t)));
     let mut expected = RigidState {
         attitude: Attitude::identity(),
         omega_body: initial.omega,

@@ -1,6 +1,6 @@
 //! The paper's scheme converges with first order to the limit equation, which is solved here on its own.
 
-use frames_rk4::{DeadForce, Initial, ModalModel, PaperLimit};
+use frames_rk4::{Initial, Load, ModalModel, PaperLimit};
 use nalgebra::{DVector, Matrix3, Vector3};
 
 use crate::common::{Specimen, advance, plate};
@@ -18,7 +18,7 @@ fn start() -> Initial {
     }
 }
 
-fn load(specimen: &Specimen) -> DeadForce {
+fn load(specimen: &Specimen) -> Load {
     specimen.half_sine([-500.0, 0.0, 10.0], [20.0, 10.0, 30.0], 0.5)
 }
 

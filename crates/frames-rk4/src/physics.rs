@@ -1,0 +1,95 @@
+//! What of the physics a motion is to have.
+
+use faer::Mat;
+use nalgebra::Vector3;
+
+use crate::error::SetupError;
+use crate::history::History;
+
+/// Effects of the conservative form. What is off is not computed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Effects {
+    /// The origin of the body moves.
+    pub translation: bool,
+    /// The body turns.
+    pub rotation: bool,
+    /// Inertia follows the deformation: c_ij and N_ij.
+    pub deformed_inertia: bool,
+    /// Coriolis terms, G_i.
+    pub coriolis: bool,
+    /// The stress of the spin stiffens the body: K_ij of [`modal::ReducedBody::stress_stiffness`], where it has any.
+    pub geometric_stiffening: bool,
+}
+
+impl Default for Effects {
+    /// All of them.
+    fn default() -> Self {
+        Self { translation: true, rotation: true, deformed_inertia: true, coriolis: true, geometric_stiffening: true }
+    }
+}
+
+/// A motion that something forces on the held part of a body. The body's own modes are those of the part held still
+/// ([`modal::RigidMotion::Clamp`]).
+#[derive(Debug, Clone)]
+pub struct Drive {
+    /// How it moves.
+    pub motion: DrivenMotion,
+    /// Angular velocity, or velocity, where the history is 1.
+    pub amplitude: f64,
+    /// Course of the speed.
+    pub history: History,
+}
+
+/// How a driven part moves.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum DrivenMotion {
+    /// Turning about an axis through the body's origin.
+    Turn {
+        /// Unit vector, the same in body and global axes.
+        axis: Vector3<f64>,
+    },
+    /// Sliding along a direction.
+    Slide {
+        /// Unit vector.
+        direction: Vector3<f64>,
+    },
+}
+
+impl Drive {
+    /// The speed at a time, by the law that holds at the time `inside`.
+    pub(crate) fn speed(&self, time: f64, inside: f64) -> f64 {
+        self.amplitude * self.history.at(time, inside)
+    }
+
+    /// The rate of the speed.
+    pub(crate) fn acceleration(&self, time: f64, inside: f64) -> f64 {
+        self.amplitude * self.history.rate(time, inside)
+    }
+
+    /// Refuses numbers that are not finite, and a direction that is no unit vector.
+    pub(crate) fn check(&self) -> Result<(), SetupError> {
+        self.history.check()?;
+        let (DrivenMotion::Turn { axis: unit } | DrivenMotion::Slide { direction: unit }) = self.motion;
+        let length = unit.norm();
+        if (length - 1.0).abs() > 1e-9 || length.is_nan() {
+            return Err(SetupError::Value { what: "the length of a drive's direction", found: length, expected: "1" });
+        }
+        if self.amplitude.is_finite() {
+            Ok(())
+        } else {
+            let (what, expected) = ("the speed of a drive", "a finite number");
+            Err(SetupError::Value { what, found: self.amplitude, expected })
+        }
+    }
+}
+
+/// What a motion in the conservative form is to have beside modes, damping and loads.
+#[derive(Debug, Clone, Default)]
+pub struct Physics {
+    /// Which effects are computed.
+    pub effects: Effects,
+    /// What drives the held part.
+    pub drive: Option<Drive>,
+    /// Stress stiffness Ψ_fᵀ K Ψ_f of loads that stay as they are (nf×nf).
+    pub load_stiffness: Option<Mat<f64>>,
+}
