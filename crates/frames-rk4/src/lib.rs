@@ -39,6 +39,7 @@ mod physics;
 mod plan;
 mod simulation;
 mod state;
+mod steady_spin;
 mod work;
 
 pub use conservative::{ConservativeBody, ConservativeState};
@@ -57,4 +58,5 @@ pub use physics::{Drive, DrivenMotion, Effects, Physics};
 pub use plan::{Rows, StepControl};
 pub use simulation::{Method, Reached, Setup, Simulation, Stats};
 pub use state::State;
+pub use steady_spin::{EigenError, SpinMode, SteadySpin};
 pub use work::Work;
