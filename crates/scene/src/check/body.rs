@@ -10,9 +10,12 @@ use crate::error::SceneError;
 use crate::scene::{Body, Material, Materials, MeshedBody, PointMass, RigidBody};
 use crate::section::{BodySection, RigidSection};
 
-/// Relative difference of entries of an inertia tensor that should be equal, and of principal moments from the
-/// triangle inequality, that is still taken for rounding.
-const ROUNDING: f64 = 1e-6;
+/// Relative difference of entries of an inertia tensor that should be equal, still taken for rounding.
+const ASYMMETRY: f64 = 1e-6;
+
+/// Relative excess of a principal moment over the sum of the others, still taken for rounding: that of a flat body
+/// is their sum, written with some digits.
+const EXCESS: f64 = 1e-3;
 
 impl Check<'_> {
     pub fn body(&self, section: BodySection) -> Result<Body, SceneError> {
@@ -43,7 +46,7 @@ impl Check<'_> {
         let key = "body.rigid.inertia";
         let given = Matrix3::from_fn(|i, j| inertia[i][j]);
         let asymmetry = (given - given.transpose()).amax();
-        if asymmetry > ROUNDING * given.amax() {
+        if asymmetry > ASYMMETRY * given.amax() {
             return Err(self.0.place(key).refuse(
                 format!("a matrix whose entries across the diagonal differ by up to {asymmetry:?}"),
                 "a symmetric matrix",
@@ -161,7 +164,7 @@ fn not_an_inertia(tensor: &Matrix3<f64>) -> Option<String> {
     let mut moments: [f64; 3] = (tensor / size).symmetric_eigenvalues().into();
     moments.sort_by(f64::total_cmp);
     let [least, middle, largest] = moments;
-    let possible = least > f64::EPSILON && largest <= (least + middle) * (1.0 + ROUNDING);
+    let possible = least > f64::EPSILON && largest <= (least + middle) * (1.0 + EXCESS);
     (!possible).then(|| {
         let [a, b, c] = moments.map(|moment| moment * size);
         format!("the principal moments {a:.6e}, {b:.6e}, {c:.6e}")

@@ -71,12 +71,14 @@ impl Check<'_> {
                         "remove the clamp, or give the body a mesh",
                     ));
                 }
+                self.at_with_radius(key)?;
                 match self.region(key, RegionKeys { at, radius, r#box, group }, body)? {
                     Some(region) => Ok(Constraint::Clamp { region }),
                     None => Err(self.no_region(key)),
                 }
             }
             ConstraintSection::Slider { mut direction, at, radius, r#box, group, motion } => {
+                self.at_with_radius(key)?;
                 let cure = "give the direction to slide along; its length does not matter";
                 self.normalise(&join(key, "direction"), &mut direction, cure)?;
                 let region = self.region(key, RegionKeys { at, radius, r#box, group }, body)?;
@@ -155,6 +157,16 @@ impl Check<'_> {
         };
         self.needs_mesh(&join(key, name), body)?;
         Ok(Some(region))
+    }
+
+    /// Refuses a point that is the centre of no ball.
+    fn at_with_radius(&self, key: &str) -> Result<(), SceneError> {
+        let at = join(key, "at");
+        if !self.has(&at) || self.has(&join(key, "radius")) {
+            return Ok(());
+        }
+        let cure = "add `radius` for the nodes within a ball around the point, or remove `at`";
+        Err(self.0.place(&at).refuse("`at` without `radius`", "both of them, or neither", cure))
     }
 
     fn radius(&self, key: &str, radius: f64) -> Result<(), SceneError> {

@@ -111,53 +111,48 @@ impl Check<'_> {
     }
 }
 
-/// The points of a CSV text: two columns of numbers, separated by a comma, the times rising; the first line may name
-/// the columns, and lines that begin with `#` are left out. A refusal names the line of the CSV file and the key of the scene.
+/// The points of a CSV text: two columns of numbers, separated by a comma, the times rising. The first line may name
+/// the columns; empty lines and those that begin with `#` are left out. A refusal names the line of the CSV file and
+/// the key of the scene.
 fn parse_table(text: &str, path: &Path, key: &str) -> Result<Vec<[f64; 2]>, SceneError> {
-    let refuse = |start: usize, found: String, expected: &str, cure: &str| {
-        let line = text.get(start..).and_then(|rest| rest.lines().next()).unwrap_or_default();
-        Place::new(path, text, start..start + line.len(), key.to_owned()).refuse(found, expected, cure)
-    };
-    let mut reader = csv::ReaderBuilder::new()
-        .has_headers(false)
-        .flexible(true)
-        .trim(csv::Trim::All)
-        .comment(Some(b'#'))
-        .from_reader(text.strip_prefix('\u{feff}').unwrap_or(text).as_bytes());
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let mut points: Vec<[f64; 2]> = Vec::new();
-    let mut first = true;
-    for record in reader.records() {
-        let record = record.map_err(|error| {
-            let start = error.position().map_or(0, |position| position.byte() as usize);
-            refuse(start, error.to_string(), PAIRS, "save the table as CSV in UTF-8")
-        })?;
-        let start = record.position().map_or(0, |position| position.byte() as usize);
-        let found = || shorten(text.get(start..).and_then(|rest| rest.lines().next()).unwrap_or_default());
-        let numbers: Vec<Option<f64>> = record.iter().map(|field| field.parse().ok()).collect();
-        let is_header = first && !numbers.is_empty() && numbers.iter().all(Option::is_none);
-        first = false;
-        match numbers[..] {
-            _ if is_header => {}
-            [Some(time), Some(value)] if time.is_finite() && value.is_finite() => {
-                if let Some(&[before, _]) = points.last().filter(|[before, _]| *before >= time) {
-                    let found = format!("the time {time:?} after {before:?}");
-                    return Err(refuse(
-                        start,
-                        found,
-                        "times that rise from line to line",
-                        "put the lines in order, each time once",
-                    ));
-                }
-                points.push([time, value]);
+    let mut is_first = true;
+    let mut start = 0;
+    // Numbers need no quotes, and a library for CSV loses the line where comments stand before it.
+    for written in text.split_inclusive('\n') {
+        let range = start..start + written.trim_end().len();
+        start += written.len();
+        let line = written.trim();
+        if line.is_empty() || line.starts_with('#') {
+            continue;
+        }
+        let refuse = |found: String, expected: &str, cure: &str| {
+            Err(Place::new(path, text, range, key.to_owned()).refuse(found, expected, cure))
+        };
+        let numbers: Vec<Option<f64>> = line.split(',').map(|field| field.trim().parse().ok()).collect();
+        let names_columns = is_first && numbers.iter().all(Option::is_none);
+        is_first = false;
+        match (&numbers[..], points.last()) {
+            _ if names_columns => {}
+            (&[Some(time), Some(_)], Some(&[before, _])) if time <= before => {
+                let expected = "times that rise from line to line";
+                return refuse(
+                    format!("the time {time:?} after {before:?}"),
+                    expected,
+                    "put the lines in order, each time once",
+                );
             }
+            (&[Some(time), Some(factor)], _) if time.is_finite() && factor.is_finite() => points.push([time, factor]),
             _ => {
                 let expected = "two finite numbers, time and factor, with a comma between them";
-                return Err(refuse(start, found(), expected, "correct the line; only the first may name the columns"));
+                return refuse(shorten(line), expected, "correct the line; only the first may name the columns");
             }
         }
     }
-    match points.is_empty() {
-        true => Err(refuse(0, "no points".to_owned(), PAIRS, "write a line `time,factor` for each point")),
-        false => Ok(points),
+    if points.is_empty() {
+        let place = Place::new(path, text, 0..text.len(), key.to_owned());
+        return Err(place.refuse("no points", PAIRS, "write a line `time,factor` for each point"));
     }
+    Ok(points)
 }
