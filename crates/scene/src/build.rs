@@ -6,7 +6,7 @@ use fem_tet10::{AssemblyError, Location, Matrices, Mesh, MeshError, assemble, re
 use frames_rk4::{
     ConservativeScheme, DeadForce, Initial, PointShapes, Rows, Setup, SetupError, Simulation, StepControl,
 };
-use modal::{BodyPoint, ModalError, Modes, ReducedBody};
+use modal::{BodyPoint, ModalError, Modes, ReducedBody, Solver, Support};
 use nalgebra::Vector3;
 
 use crate::error::SceneError;
@@ -88,10 +88,9 @@ impl Model {
         progress(BuildProgress::Assembly);
         let matrices = timed(&mut times.assembly, || matrices(scene, &mesh))?;
         let modes = timed(&mut times.modes, || {
-            modal::solve(matrices.stiffness(), matrices.mass(), mesh.positions(), scene.modes.flexible, |p| {
-                progress(BuildProgress::Modes(p));
-            })
-            .map_err(|error| too_many_modes(scene, error))
+            Solver::new(matrices.stiffness(), matrices.mass(), mesh.positions(), &Support::free())
+                .and_then(|solver| solver.modes(scene.modes.flexible, |p| progress(BuildProgress::Modes(p))))
+                .map_err(|error| too_many_modes(scene, error))
         })?;
         let started = Instant::now();
         let body = ReducedBody::new(&modes, matrices.mass(), mesh.positions())?;
