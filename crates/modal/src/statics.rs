@@ -158,7 +158,7 @@ impl<'a> Statics<'a> {
         let squared = dots(&residual, &self.precondition(&residual));
         for (k, (squared, scale)) in squared.iter().zip(&scale).enumerate() {
             let residual = (squared / scale).sqrt();
-            if *scale > 0.0 && !(residual < ACCEPTED) {
+            if *scale > 0.0 && (residual.is_nan() || residual >= ACCEPTED) {
                 let column = first + k;
                 return Err(ModalError::StaticNotConverged { column, iterations, residual, tolerance: ACCEPTED });
             }

@@ -155,8 +155,9 @@ impl RigidMotion {
             Self::Slider { direction } => Some(direction),
             Self::Free | Self::Pin { .. } | Self::Clamp { .. } => None,
         };
+        let off = direction.map_or(0.0, |d| (d.norm() - 1.0).abs());
         match direction {
-            Some(d) if !((d.norm() - 1.0).abs() < UNIT) => Err(ModalError::NotUnit { direction: (*d).into() }),
+            Some(d) if off.is_nan() || off >= UNIT => Err(ModalError::NotUnit { direction: (*d).into() }),
             _ => Ok(()),
         }
     }
