@@ -90,7 +90,7 @@ impl NodalMass {
     }
 
     /// Sums over the columns: the mass that each node stands for (n).
-    pub(crate) fn row_sums(&self) -> Vec<f64> {
+    pub fn row_sums(&self) -> Vec<f64> {
         self.start.windows(2).map(|range| self.values[range[0]..range[1]].iter().sum()).collect()
     }
 

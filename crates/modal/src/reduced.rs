@@ -1,7 +1,7 @@
 //! The reduced body: every constant that the motion needs, none of them of the mesh's size.
 //!
-//! With `X` the node positions from the origin (the centre of mass of a free body), `Ψ = [Ψ_R, Ψ_f]` the rigid and flexible shapes, and
-//! `(I⊗A)` a 3×3 matrix A acting on each node's vector:
+//! With `X` the node positions from the origin (the centre of mass of a free body), `Ψ = [Ψ_R, Ψ_f]` the rigid and
+//! flexible shapes, and `(I⊗A)` a 3×3 matrix A acting on each node's vector:
 //!
 //! | here | theory | definition |
 //! |---|---|---|
@@ -10,7 +10,7 @@
 //! | [`inertia_second`](ReducedBody::inertia_second) | N_ij | `Ψ_fᵀ M (I⊗[e_i×]ᵀ[e_j×]) Ψ_f`, symmetrised in ij |
 //! | [`gyroscopic`](ReducedBody::gyroscopic) | G_i | `Ψ_fᵀ M (I⊗[e_i×]) Ψ_f`, skew |
 //! | [`translation_first`](ReducedBody::translation_first) | t_i | `Ψ_fᵀ M (1⊗e_i)`, zero for a free body |
-//! | [`rotation_first`](ReducedBody::rotation_first) | b_i | `Ψ_fᵀ M (I⊗[e_i×]) X`, zero for a free body |
+//! | [`rotation_first`](ReducedBody::rotation_first) | b_i | `Ψ_fᵀ M (I⊗[e_i×]) X`, zero for a free or pinned body |
 //! | [`stress_stiffness`](ReducedBody::stress_stiffness) | Ψ_fᵀ K_ij Ψ_f | of the stress that spinning causes |
 
 use faer::sparse::SparseColMatRef;
@@ -146,12 +146,13 @@ impl ReducedBody {
             let (ab, ba) = (flexible(a, b), flexible(b, a));
             Mat::from_fn(nf, nf, |k, l| ab[(k, l)] - ba[(k, l)])
         });
-        // The modes of a free body are orthogonal to all rigid motions: what is left is rounding, and would leak momentum.
-        let unless_free = |value: f64| if is_free { 0.0 } else { value };
+        // The modes are orthogonal to the rigid motions that the body has: what is left is rounding, and would leak momentum.
+        let turns_freely = is_free || matches!(rigid.motion, RigidMotion::Pin { .. });
+        let unless = |is_zero: bool, value: f64| if is_zero { 0.0 } else { value };
         let translation_first =
-            std::array::from_fn(|i| (0..nf).map(|k| unless_free(products[i][i][(6 + k, modal + 1)])).collect());
+            std::array::from_fn(|i| (0..nf).map(|k| unless(is_free, products[i][i][(6 + k, modal + 1)])).collect());
         let rotation_first = [(2, 1), (0, 2), (1, 0)]
-            .map(|(a, b)| (0..nf).map(|k| unless_free(flexible_x(a, b, k) - flexible_x(b, a, k))).collect());
+            .map(|(a, b)| (0..nf).map(|k| unless(turns_freely, flexible_x(a, b, k) - flexible_x(b, a, k))).collect());
         Ok(Self {
             mass: rigid.mass,
             center_of_mass: rigid.center_of_mass,

@@ -19,6 +19,7 @@ use crate::symmetry::check_symmetric;
 
 /// An eigenvalue below this fraction of the shift has no stiffness behind it.
 const ZERO_ENERGY: f64 = 1e-9;
+
 /// Rigid and flexible modes of a body. All shapes are M-orthonormal together.
 #[derive(Debug, Clone)]
 pub struct Modes {
@@ -31,7 +32,8 @@ pub struct Modes {
     pub shapes: Mat<f64>,
     /// ‖(K + sM)⁻¹Mφ − μφ‖_M / μ for each natural mode, in the scale of the shifted problem, where rounding is small.
     pub residuals: Vec<f64>,
-    /// ‖Kφ − λMφ‖ / ‖Kφ‖ for each natural mode, without the reactions of a support. Rounding in K leaves up to 1e-6 of this in the lowest modes of fine meshes.
+    /// ‖Kφ − λMφ‖ / ‖Kφ‖ for each natural mode, without the reactions of a support. Rounding in K leaves up to 1e-6 of
+    /// this in the lowest modes of fine meshes.
     pub force_residuals: Vec<f64>,
     /// What was done, and where the time went.
     pub stats: SolveStats,

@@ -32,17 +32,14 @@ impl Solver<'_> {
     /// rigid modes.
     ///
     /// # Errors
-    /// [`ModalError::StaticNotConverged`], and what refuses the factor of K + sM.
+    /// [`ModalError::Size`], [`ModalError::NotFinite`], [`ModalError::StaticNotConverged`], and what refuses the factor
+    /// of K + sM.
     pub fn static_response(&self, forces: MatRef<'_, f64>) -> Result<Mat<f64>, ModalError> {
         let expected = self.rigid.shapes.nrows();
         if forces.nrows() != expected {
             return Err(ModalError::Size { what: "forces", expected, found: forces.nrows() });
         }
-        for (index, force) in forces.col_iter().enumerate() {
-            if let Some(value) = force.iter().copied().find(|value| !value.is_finite()) {
-                return Err(ModalError::NotFinite { what: "forces", index, value });
-            }
-        }
+        check_finite("forces", forces)?;
         let mut statics = Statics::new(self, self.factor()?)?;
         let mut answers = Mat::zeros(expected, forces.ncols());
         for first in (0..forces.ncols()).step_by(BLOCK) {
@@ -60,12 +57,13 @@ impl Solver<'_> {
     /// that add less than 1e-8 of themselves add nothing.
     ///
     /// # Errors
-    /// [`ModalError::Size`], [`ModalError::DenseEigen`].
+    /// [`ModalError::Size`], [`ModalError::NotFinite`], [`ModalError::DenseEigen`].
     pub fn with_static_shapes(&self, modes: Modes, answers: MatRef<'_, f64>) -> Result<Modes, ModalError> {
         let (expected, found) = (modes.shapes.nrows(), answers.nrows());
         if found != expected {
             return Err(ModalError::Size { what: "static answers", expected, found });
         }
+        check_finite("static answers", answers)?;
         let (rigid, flexible) = (6, modes.shapes.ncols());
         let mut basis = Mat::zeros(expected, rigid + flexible);
         basis.as_mut().subcols_mut(0, rigid).copy_from(&self.rigid.shapes);
@@ -98,6 +96,15 @@ impl Solver<'_> {
         modes.shapes.resize_with(expected, flexible + shapes.ncols(), |i, j| shapes[(i, j - flexible)]);
         Ok(modes)
     }
+}
+
+fn check_finite(what: &'static str, vectors: MatRef<'_, f64>) -> Result<(), ModalError> {
+    for (index, vector) in vectors.col_iter().enumerate() {
+        if let Some(value) = vector.iter().copied().find(|value| !value.is_finite()) {
+            return Err(ModalError::NotFinite { what, index, value });
+        }
+    }
+    Ok(())
 }
 
 /// What the iterations share.
@@ -137,7 +144,7 @@ impl<'a> Statics<'a> {
                 break;
             }
             iterations += 1;
-            for k in 0..squared.len() {
+            for k in (0..squared.len()).filter(|k| is_open(*k)) {
                 let direction = conditioned.col(k) + search.col(k) * Scale(squared[k] / before[k]);
                 search.col_mut(k).copy_from(direction);
             }

@@ -66,8 +66,9 @@ impl RigidMotion {
         }
     }
 
-    /// The point that stays where it is (of a clamp, the one that positions are to be measured from).
-    pub(crate) fn fixed_point(&self) -> Option<Vector3<f64>> {
+    /// The point that stays where it is (of a clamp, the one that positions are to be measured from): the origin of a
+    /// body with these motions. `None` where that is the centre of mass.
+    pub fn fixed_point(&self) -> Option<Vector3<f64>> {
         match self {
             Self::Free | Self::Slider { .. } => None,
             Self::Pin { point } | Self::Hinge { point, .. } | Self::Clamp { origin: point } => Some(*point),
