@@ -25,9 +25,8 @@ pub fn body(motion: RigidMotion, circular_frequencies: &[f64]) -> ReducedBody {
         std::array::from_fn(|i| (0..nf).map(|k| size * noise(seed + 10 * i + k)).collect())
     };
     let symmetric = |seed: usize| Mat::from_fn(nf, nf, |i, j| 0.3 * noise(seed + 7 * i.max(j) + 3 * i.min(j)));
-    let skew = |seed: usize| {
-        Mat::from_fn(nf, nf, |i, j| 0.3 * (noise(seed + 5 * i + 11 * j) - noise(seed + 5 * j + 11 * i)))
-    };
+    let skew =
+        |seed: usize| Mat::from_fn(nf, nf, |i, j| 0.3 * (noise(seed + 5 * i + 11 * j) - noise(seed + 5 * j + 11 * i)));
     let held = !matches!(motion, RigidMotion::Free);
     let clamped = matches!(motion, RigidMotion::Clamp { .. });
     ReducedBody {

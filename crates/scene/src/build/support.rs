@@ -22,7 +22,7 @@ pub(super) fn support(scene: &Scene, mesh: Option<&Mesh>) -> Result<(Support, Op
     };
     let driven = |drive: &constraint::Drive, motion: DrivenMotion| -> Result<Drive, BuildError> {
         let history = history(scene, "constraints[0].motion.history", &drive.history)?;
-        Ok(Drive { motion, amplitude: drive.amplitude, history })
+        Ok(Drive { motion, amplitude: drive.amplitude, history, span: scene.time.end })
     };
     let mean = || {
         let of = |node: &u32| mesh.map_or(Vector3::zeros(), |mesh| mesh.positions()[*node as usize].into());
