@@ -63,10 +63,10 @@ fn what_is_no_load() {
     for (lines, mark, key, words) in [
         ("kind = \"moment\"\ndirection = [0, 0, 1]\namplitude = 1", "[[loads", "at", "`at` is missing"),
         (
-            "kind = \"moment\"\nat = [0, 0, 0]\ndirection = [0, 0, 1]\namplitude = 1\nradius = -2",
-            "-2",
+            "kind = \"moment\"\nat = [0, 0, 0]\ndirection = [0, 0, 1]\namplitude = 1\nradius = -77",
+            "-77",
             "radius",
-            "found -2, expected a number greater than 0",
+            "found -77, expected a number greater than 0",
         ),
         ("kind = \"pressure\"\namplitude = 1", "[[loads", "group", "`group` is missing"),
         ("kind = \"pressure\"\ngroup = \"\"\namplitude = 1", "\"\"", "group", "a name that is not empty"),
