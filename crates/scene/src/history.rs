@@ -82,7 +82,7 @@ pub enum History {
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Table {
-    /// Pairs of time and factor, at least one, the times rising: those in the scene, or those read from the file.
+    /// Pairs of time and factor, at least two, the times rising: those in the scene, or those read from the file.
     #[serde(default)]
     pub points: Vec<[f64; 2]>,
     /// The CSV file that the points come from, already resolved against the folder of the scene file;

@@ -48,8 +48,8 @@ fn a_bad_line_is_named_in_the_table() {
         ("0;0\n1;1\n", 2, "1;1", "with a comma between them"),
         ("t,f\n0,0\n0,1\n", 3, "0,1", "found the time 0.0 after 0.0, expected times that rise"),
         ("# one\n# two\n\n1,0\n# three\n\n0.5,1\n", 7, "0.5,1", "found the time 0.5 after 1.0"),
-        ("", 1, "", "found no points"),
-        ("t,f\n", 1, "t,f", "found no points"),
+        ("", 1, "", "found 0 of the pairs of time and factor, expected at least two"),
+        ("t,f\n0,1\n", 1, "t,f", "found 1 of the pairs"),
     ] {
         let message = read(folder.path(), text.as_bytes()).unwrap_err().to_string();
         let head = format!("{}:{line}:1: `loads[0].history.file`: ", folder.path().join("pulse.csv").display());

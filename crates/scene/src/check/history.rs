@@ -85,7 +85,7 @@ impl Check<'_> {
             ));
         }
         let cure = "give times and factors, e.g. `points = [[0.0, 0.0], [0.1, 1.0]]`";
-        self.require(!table.points.is_empty(), &key, &format!("at least one of the {PAIRS}"), cure)?;
+        self.require(table.points.len() >= 2, &key, &format!("at least two {PAIRS}"), cure)?;
         let times: Vec<f64> = table.points.iter().map(|[time, _]| *time).collect();
         self.rising(&key, &times, |i| format!("[{i}][0]"), "times")
     }
@@ -150,9 +150,10 @@ fn parse_table(text: &str, path: &Path, key: &str) -> Result<Vec<[f64; 2]>, Scen
             }
         }
     }
-    if points.is_empty() {
+    if points.len() < 2 {
         let place = Place::new(path, text, 0..text.len(), key.to_owned());
-        return Err(place.refuse("no points", PAIRS, "write a line `time,factor` for each point"));
+        let found = format!("{} of the {PAIRS}", points.len());
+        return Err(place.refuse(found, "at least two", "write a line `time,factor` for each point"));
     }
     Ok(points)
 }

@@ -1,0 +1,104 @@
+//! Which effects are simulated.
+
+use scene::{Choice, Effects};
+
+const KEYS: [&str; 8] = [
+    "flexibility",
+    "damping",
+    "gravity",
+    "deformed_inertia",
+    "coriolis",
+    "geometric_stiffening",
+    "translation",
+    "rotation",
+];
+
+fn choices(effects: &Effects) -> [Choice; 8] {
+    let &Effects { flexibility, damping, gravity, deformed_inertia, coriolis, geometric_stiffening, .. } = effects;
+    let Effects { translation, rotation, .. } = *effects;
+    [flexibility, damping, gravity, deformed_inertia, coriolis, geometric_stiffening, translation, rotation]
+}
+
+/// Asserts that the keys of effects are refused beside other sections.
+#[track_caller]
+fn refused(others: &str, line: &str, words: &[&str]) {
+    let (name, value) = line.split_once(" = ").unwrap();
+    let new = format!("{others}\n[effects]\n{line} #");
+    crate::refused("[initial]", "[[loads]]", &new, &format!("{value} #"), &format!("effects.{name}"), words);
+}
+
+#[test]
+fn each_alone() {
+    const GRAVITY: &str = "[[loads]]\nkind = \"gravity\"\ndirection = [0, 0, -1]\namplitude = 9.81\n";
+    for (written, choice) in [("true", Choice::On), ("false", Choice::Off), ("\"auto\"", Choice::Auto)] {
+        for (i, key) in KEYS.iter().enumerate() {
+            let new = format!("[effects]\n{key} = {written}\n{GRAVITY}");
+            let effects = crate::with("[initial]", "[[loads]]", &new).effects;
+            let mut wanted = [Choice::Auto; 8];
+            wanted[i] = choice;
+            assert_eq!((choices(&effects), effects.tolerance), (wanted, 1e-3), "{key}");
+        }
+    }
+    assert_eq!(crate::with("[initial]", "[[loads]]", "[effects]\ntolerance = 0.01").effects.tolerance, 0.01);
+}
+
+#[test]
+fn values_and_keys() {
+    for value in ["0", "1", "-1e-3"] {
+        refused("", &format!("tolerance = {value}"), &["expected a number between 0 and 1, both excluded"]);
+    }
+    refused("", "rotation = \"aut\"", &["did you mean `auto`?"]);
+    refused("", "rotation = \"no\"", &["found the string \"no\", expected true, false or \"auto\""]);
+    refused("", "rotation = 1", &["found the number 1, expected true, false or \"auto\"", "`rotation = \"auto\"`"]);
+    let new = "[effects]\ncoriolys = true";
+    crate::refused("[initial]", "[[loads]]", new, "coriolys", "effects.coriolys", &["did you mean `coriolis`?"]);
+}
+
+#[test]
+fn what_there_is_nothing_to() {
+    for key in ["damping", "deformed_inertia", "coriolis", "geometric_stiffening"] {
+        let new = format!("[effects]\nflexibility = false\n{key} = true");
+        let words = format!("found `{key} = true` with `flexibility = false`, expected `false` or `\"auto\"`");
+        crate::refused("[initial]", "[[loads]]", &new, "true\n\n[[loads", &format!("effects.{key}"), &[&words]);
+    }
+    for key in ["flexibility", "damping", "deformed_inertia", "coriolis", "geometric_stiffening"] {
+        let new = format!("[modes]\nflexible = 0\n[effects]\n{key} = true");
+        let words = format!("found `{key} = true` with no flexible modes");
+        let key = format!("effects.{key}");
+        crate::refused("[modes]", "[[loads]]", &new, "true\n\n[[loads", &key, &[&words, "or keep flexible modes"]);
+    }
+    refused("", "gravity = true", &["with no load `kind = \"gravity\"`", "or add it to [[loads]]"]);
+    let held = |kind: &str| format!("[[constraints]]\n{kind}\n");
+    let pin = held("kind = \"pin\"\nat = [0, 0, 0]");
+    let hinge = held("kind = \"hinge\"\nat = [0, 0, 0]\naxis = [0, 0, 1]");
+    let clamp = held("kind = \"clamp\"\ngroup = \"a\"");
+    let slider = held("kind = \"slider\"\ndirection = [1, 0, 0]\ngroup = \"a\"");
+    for (constraint, key) in [
+        (&pin, "translation"),
+        (&hinge, "translation"),
+        (&clamp, "translation"),
+        (&clamp, "rotation"),
+        (&slider, "rotation"),
+    ] {
+        refused(constraint, &format!("{key} = true"), &["with a constraint that leaves none"]);
+    }
+    for (constraint, key) in [(&pin, "rotation"), (&hinge, "rotation"), (&slider, "translation")] {
+        crate::with("[initial]", "[[loads]]", &format!("{constraint}\n[effects]\n{key} = true"));
+    }
+}
+
+#[test]
+fn what_is_there_by_force() {
+    let motion = "motion = { amplitude = 1, history = \"constant\" }";
+    let hinge = format!("[[constraints]]\nkind = \"hinge\"\nat = [0, 0, 0]\naxis = [0, 0, 1]\nradius = 3\n{motion}\n");
+    let slider = format!("[[constraints]]\nkind = \"slider\"\ndirection = [1, 0, 0]\ngroup = \"a\"\n{motion}\n");
+    refused(&hinge, "rotation = false", &["found `rotation = false` with the `motion` of the constraint"]);
+    refused(&slider, "translation = false", &["found `translation = false` with the `motion` of the constraint"]);
+    let initial = |line: &str| format!("[initial]\n{line}\n");
+    let angular = initial("angular_velocity = [0, 0, 1]");
+    refused(&angular, "rotation = false", &["with an initial `angular_velocity`", "or remove an initial"]);
+    refused(&initial("velocity = [0, 0, 1]"), "translation = false", &["with an initial `velocity`"]);
+    for list in ["modal_displacement = [0, 1]", "modal_velocity = [1]"] {
+        refused(&initial(list), "flexibility = false", &["with an initial modal displacement or velocity"]);
+    }
+}
