@@ -119,13 +119,15 @@ pub enum MeshError {
         /// Its position.
         position: [f64; 3],
     },
-    /// Two physical volumes would go by one name: the number of one that has no name is the name of the other.
+    /// Two groups of one kind would go by one name: the number of one that has no name is the name of the other.
     #[error(
-        "{source_name}: physical volume {name} has no name and would go by its number, but another one is named \"{name}\"; name the first (gmsh: `Physical Volume(\"...\", {name})`), or rename the other"
+        "{source_name}: physical {kind} {name} has no name and would go by its number, but another one is named \"{name}\"; name the first (gmsh: `Physical ...(\"...\", {name})`), or rename the other"
     )]
     AmbiguousGroup {
         /// The mesh.
         source_name: String,
+        /// "point", "curve", "surface" or "volume".
+        kind: &'static str,
         /// Number of the one, name of the other.
         name: String,
     },
@@ -156,6 +158,70 @@ pub enum MeshError {
         group: usize,
         /// Length of the list of groups.
         count: usize,
+    },
+    /// An element of a physical surface that is no face of the body.
+    #[error(
+        "{source_name}: element {element} of the physical surface \"{group}\" is no face of a tetrahedron of the body; take surfaces of the meshed volume into the group, and mesh both at once with -order 2"
+    )]
+    NotAFace {
+        /// The mesh.
+        source_name: String,
+        /// Name of the physical surface.
+        group: String,
+        /// Tag of the element.
+        element: u64,
+    },
+    /// A pressure on a face inside the body.
+    #[error(
+        "{source_name}: element {element} of the physical surface \"{group}\" lies between two tetrahedra, where neither side is the outside, so that a pressure has no direction; take faces of the body's boundary only"
+    )]
+    InnerFace {
+        /// The mesh.
+        source_name: String,
+        /// Name of the physical surface.
+        group: String,
+        /// Tag of the element.
+        element: u64,
+    },
+    /// A physical group of points or curves has a node that is not there.
+    #[error(
+        "{source_name}: the physical {kind} \"{group}\" uses node {node}, which is not in the mesh; save the mesh again with all its nodes"
+    )]
+    UnknownGroupNode {
+        /// The mesh.
+        source_name: String,
+        /// "point" or "curve".
+        kind: &'static str,
+        /// Name of the group.
+        group: String,
+        /// Tag of the node.
+        node: u64,
+    },
+    /// A name that no physical group has.
+    #[error(
+        "{source_name}: there is no physical {kind} named \"{group}\"; the mesh has {present:?}; use one of these, or name it in the geometry and mesh again"
+    )]
+    NoGroup {
+        /// The mesh.
+        source_name: String,
+        /// "surface", or "group" where any dimension would do.
+        kind: &'static str,
+        /// The name looked for.
+        group: String,
+        /// The names there are.
+        present: Vec<String>,
+    },
+    /// A name that physical groups of several dimensions have.
+    #[error(
+        "{source_name}: \"{group}\" is the name of several physical groups, {kinds:?}; give each its own name in the geometry, and mesh again"
+    )]
+    SeveralGroups {
+        /// The mesh.
+        source_name: String,
+        /// The name.
+        group: String,
+        /// What has it: "point", "curve", "surface", "volume".
+        kinds: Vec<&'static str>,
     },
     /// An element is turned inside out, or has no volume.
     #[error(
@@ -325,6 +391,30 @@ pub enum AssemblyError {
         count: usize,
         /// Nodes allowed.
         limit: usize,
+    },
+    /// A radius to take a mean rotation over that is not a positive number.
+    #[error("the radius of the patch at {at:?} is {found}; expected a positive number")]
+    PatchRadius {
+        /// Centre of the patch.
+        at: [f64; 3],
+        /// The radius.
+        found: f64,
+    },
+    /// Too few nodes near a point to have a rotation, or all of them on a line.
+    #[error(
+        "{source_name}: the {count} node(s) within {radius} of {at:?} have no mean rotation, for which three are needed that are not on a line (the nearest node is {distance:.6} away); use a larger radius"
+    )]
+    Patch {
+        /// The mesh.
+        source_name: String,
+        /// Centre of the patch.
+        at: [f64; 3],
+        /// The radius asked for.
+        radius: f64,
+        /// Nodes found within it.
+        count: usize,
+        /// Distance of the nearest node of all.
+        distance: f64,
     },
     /// A matrix of displacement fields whose rows are not the degrees of freedom of the mesh.
     #[error("the {what} have {found} rows; expected {expected}, three for each node of the mesh")]

@@ -8,6 +8,8 @@
 //!   every node belongs to an element, no element is inverted, the body is in one piece.
 //! * [`Material`]s are given to physical groups by name, see [`Materials`].
 //! * [`PointMass`]es sit anywhere on the body; [`Mesh::locate`] turns a point into nodes and weights.
+//! * Physical groups of surfaces carry loads, see [`Mesh::surface_weights`] and [`Mesh::surface_pressure`]; groups of any
+//!   dimension, boxes, balls and lines pick nodes, see [`Mesh::group_nodes`]; [`Mesh::mean_rotation`] carries a moment.
 //! * [`assemble`] fills K and M in parallel into one sparsity pattern. Nothing of size N×N is ever dense.
 //! * [`reduced_geometric_stiffness`] gives the stress stiffness of displacement fields, reduced to a few shapes.
 //!
@@ -22,11 +24,14 @@ mod integration;
 mod locate;
 mod lumped;
 mod material;
+mod mean_rotation;
 mod mesh;
 mod msh;
 mod point_mass;
 mod quadrature;
+mod selection;
 mod shape;
+mod surface;
 
 pub use assembly::{Matrices, assemble};
 pub use error::{AssemblyError, MeshError, Place};
@@ -34,7 +39,8 @@ pub use geometric_stiffness::reduced_geometric_stiffness;
 pub use locate::Location;
 pub use lumped::{LumpedInertia, centroid_lumped_inertia};
 pub use material::{Material, Materials};
-pub use mesh::{Mesh, MeshParts};
+pub use mean_rotation::MeanRotation;
+pub use mesh::{Mesh, MeshParts, NodeGroup, SurfaceGroup};
 pub use msh::{parse_msh, read_msh};
 pub use point_mass::PointMass;
 pub use shape::{shape_functions, shape_gradients};

@@ -38,7 +38,7 @@ impl Mesh {
     pub fn locate(&self, point: [f64; 3]) -> Result<Location, AssemblyError> {
         let (nearest, distance) = self.nearest_node(point);
         if distance <= AT_NODE * self.diagonal() {
-            return Ok(Location { nodes: vec![nearest as u32], weights: vec![1.0] });
+            return Ok(Location { nodes: vec![nearest], weights: vec![1.0] });
         }
         // The element found so far whose smallest barycentric coordinate at the point is largest.
         let mut smallest = f64::NEG_INFINITY;
@@ -60,23 +60,11 @@ impl Mesh {
             _ => Err(AssemblyError::OffBody {
                 source_name: self.source().to_owned(),
                 at: point,
-                node: self.node_tags()[nearest],
-                position: self.positions()[nearest],
+                node: self.node_tags()[nearest as usize],
+                position: self.positions()[nearest as usize],
                 distance,
             }),
         }
-    }
-
-    /// Index and distance of the node nearest to a point.
-    pub(crate) fn nearest_node(&self, point: [f64; 3]) -> (usize, f64) {
-        let squared = |x: &[f64; 3]| (0..3).map(|axis| (x[axis] - point[axis]).powi(2)).sum::<f64>();
-        let (node, d2) = self
-            .positions()
-            .iter()
-            .map(squared)
-            .enumerate()
-            .fold((0, f64::INFINITY), |best, found| if found.1 < best.1 { found } else { best });
-        (node, d2.sqrt())
     }
 }
 

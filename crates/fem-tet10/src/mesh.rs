@@ -4,6 +4,10 @@ use std::collections::HashMap;
 
 use crate::error::MeshError;
 use crate::integration;
+use crate::surface::{self, Surface};
+
+/// What is grouped, by its dimension.
+pub(crate) const KINDS: [&str; 4] = ["point", "curve", "surface", "volume"];
 
 /// The raw parts of a mesh, from a file or from a program; [`Mesh::new`] checks them.
 #[derive(Debug, Clone, Default)]
@@ -24,6 +28,32 @@ pub struct MeshParts {
     pub regions: Vec<Vec<usize>>,
     /// For each element, the index of its region.
     pub element_regions: Vec<usize>,
+    /// The surface physical groups.
+    pub surfaces: Vec<SurfaceGroup>,
+    /// The physical groups of curves and points.
+    pub node_groups: Vec<NodeGroup>,
+}
+
+/// A physical group of surfaces, among the parts of a mesh.
+#[derive(Debug, Clone, Default)]
+pub struct SurfaceGroup {
+    /// Its name.
+    pub name: String,
+    /// Tags of its triangles, in the file's numbering.
+    pub triangle_tags: Vec<u64>,
+    /// Node *tags* of each triangle, in gmsh's order: corners, either way round, then mid-edges 01 12 20.
+    pub triangles: Vec<[u64; 6]>,
+}
+
+/// A physical group of curves or points, among the parts of a mesh.
+#[derive(Debug, Clone)]
+pub struct NodeGroup {
+    /// Its name.
+    pub name: String,
+    /// 0 for points, 1 for curves.
+    pub dimension: usize,
+    /// Tags of the nodes of its elements, in any order, each as often as it comes.
+    pub nodes: Vec<u64>,
 }
 
 /// A mesh of ten-node tetrahedra in one piece, every node in use and every element the right way round.
@@ -37,6 +67,9 @@ pub struct Mesh {
     groups: Vec<String>,
     regions: Vec<Vec<usize>>,
     element_regions: Vec<usize>,
+    surfaces: Vec<Surface>,
+    /// Kind, name and nodes, ascending, of the groups of points and curves.
+    node_groups: Vec<(&'static str, String, Vec<u32>)>,
 }
 
 impl Mesh {
@@ -44,16 +77,28 @@ impl Mesh {
     ///
     /// # Errors
     /// Lengths that do not agree, tags given twice or unknown, coordinates that are not finite, regions and groups
-    /// that are not in their lists, inverted or degenerate elements, nodes of no element, several pieces.
+    /// that are not in their lists, surfaces that are no faces of the body, inverted or degenerate elements, nodes of no
+    /// element, several pieces.
     pub fn new(parts: MeshParts) -> Result<Self, MeshError> {
-        let MeshParts { source, node_tags, positions, element_tags, elements, groups, regions, element_regions } =
-            parts;
+        let MeshParts {
+            source,
+            node_tags,
+            positions,
+            element_tags,
+            elements,
+            groups,
+            regions,
+            element_regions,
+            surfaces,
+            node_groups,
+        } = parts;
         let lengths = [
             ("node tags", positions.len(), node_tags.len()),
             ("element tags", elements.len(), element_tags.len()),
             ("element regions", elements.len(), element_regions.len()),
         ];
-        for (what, expected, found) in lengths {
+        let of_surfaces = surfaces.iter().map(|s| ("triangle tags", s.triangles.len(), s.triangle_tags.len()));
+        for (what, expected, found) in lengths.into_iter().chain(of_surfaces) {
             if expected != found {
                 return Err(MeshError::Lengths { source_name: source, what, expected, found });
             }
@@ -77,8 +122,22 @@ impl Mesh {
         {
             return Err(MeshError::UnknownGroup { source_name: source, region, group, count: groups.len() });
         }
-        let elements = resolve_tags(&source, &node_tags, &element_tags, &elements)?;
-        let mesh = Self { source, node_tags, positions, element_tags, elements, groups, regions, element_regions };
+        let index_of = index_nodes(&source, &node_tags)?;
+        let elements = resolve_tags(&source, &index_of, &element_tags, &elements)?;
+        let surfaces = surface::resolve(&source, &index_of, &elements, surfaces)?;
+        let node_groups = resolve_node_groups(&source, &index_of, node_groups)?;
+        let mesh = Self {
+            source,
+            node_tags,
+            positions,
+            element_tags,
+            elements,
+            groups,
+            regions,
+            element_regions,
+            surfaces,
+            node_groups,
+        };
         mesh.refuse_orphans()?;
         integration::check_jacobians(&mesh)?;
         mesh.refuse_pieces()?;
@@ -118,6 +177,16 @@ impl Mesh {
     /// Indices of the groups that an element is in: none, one or several.
     pub fn element_groups(&self, element: usize) -> &[usize] {
         self.element_regions.get(element).map_or(&[], |region| &self.regions[*region])
+    }
+
+    /// The surface physical groups.
+    pub(crate) fn surfaces(&self) -> &[Surface] {
+        &self.surfaces
+    }
+
+    /// Kind, name and nodes, ascending, of the physical groups of points and curves.
+    pub(crate) fn node_groups(&self) -> &[(&'static str, String, Vec<u32>)] {
+        &self.node_groups
     }
 
     /// Positions of the ten nodes of an element.
@@ -180,40 +249,75 @@ impl Mesh {
     }
 }
 
-/// Turns node tags into indices.
-fn resolve_tags(
-    source: &str,
-    node_tags: &[u64],
-    element_tags: &[u64],
-    elements: &[[u64; 10]],
-) -> Result<Vec<[u32; 10]>, MeshError> {
-    let duplicate = |kind, tag| MeshError::DuplicateTag { source_name: source.to_owned(), kind, tag };
+fn duplicate(source: &str, kind: &'static str, tag: u64) -> MeshError {
+    MeshError::DuplicateTag { source_name: source.to_owned(), kind, tag }
+}
+
+/// Index of a node by its tag.
+fn index_nodes(source: &str, node_tags: &[u64]) -> Result<HashMap<u64, u32>, MeshError> {
     let mut index_of: HashMap<u64, u32> = HashMap::with_capacity(node_tags.len());
     for (index, tag) in node_tags.iter().enumerate() {
         if index_of.insert(*tag, index as u32).is_some() {
-            return Err(duplicate("node", *tag));
+            return Err(duplicate(source, "node", *tag));
         }
     }
+    Ok(index_of)
+}
+
+/// The nodes of an element, by index.
+pub(crate) fn indices<const N: usize>(
+    source: &str,
+    index_of: &HashMap<u64, u32>,
+    element: u64,
+    nodes: &[u64; N],
+) -> Result<[u32; N], MeshError> {
+    let mut indices = [0; N];
+    for (index, node) in indices.iter_mut().zip(nodes) {
+        *index = *index_of.get(node).ok_or_else(|| MeshError::UnknownNode {
+            source_name: source.to_owned(),
+            element,
+            node: *node,
+        })?;
+    }
+    Ok(indices)
+}
+
+/// Turns node tags into indices.
+fn resolve_tags(
+    source: &str,
+    index_of: &HashMap<u64, u32>,
+    element_tags: &[u64],
+    elements: &[[u64; 10]],
+) -> Result<Vec<[u32; 10]>, MeshError> {
     let mut sorted = element_tags.to_vec();
     sorted.sort_unstable();
     if let Some(pair) = sorted.windows(2).find(|pair| pair[0] == pair[1]) {
-        return Err(duplicate("element", pair[0]));
+        return Err(duplicate(source, "element", pair[0]));
     }
-    elements
-        .iter()
-        .zip(element_tags)
-        .map(|(nodes, element)| {
-            let mut indices = [0; 10];
-            for (index, node) in indices.iter_mut().zip(nodes) {
-                *index = *index_of.get(node).ok_or_else(|| MeshError::UnknownNode {
-                    source_name: source.to_owned(),
-                    element: *element,
-                    node: *node,
-                })?;
-            }
-            Ok(indices)
-        })
-        .collect()
+    elements.iter().zip(element_tags).map(|(nodes, tag)| indices(source, index_of, *tag, nodes)).collect()
+}
+
+fn resolve_node_groups(
+    source: &str,
+    index_of: &HashMap<u64, u32>,
+    groups: Vec<NodeGroup>,
+) -> Result<Vec<(&'static str, String, Vec<u32>)>, MeshError> {
+    let resolve = |group: NodeGroup| {
+        let kind = KINDS[group.dimension.min(1)];
+        let index = |node: &u64| {
+            index_of.get(node).copied().ok_or_else(|| MeshError::UnknownGroupNode {
+                source_name: source.to_owned(),
+                kind,
+                group: group.name.clone(),
+                node: *node,
+            })
+        };
+        let mut nodes = group.nodes.iter().map(index).collect::<Result<Vec<u32>, _>>()?;
+        nodes.sort_unstable();
+        nodes.dedup();
+        Ok((kind, group.name, nodes))
+    };
+    groups.into_iter().map(resolve).collect()
 }
 
 /// Union–find with path halving.

@@ -19,11 +19,23 @@ const NODES_OF_TYPE: [usize; 32] =
 /// The largest number of an element type that gmsh uses.
 const LAST_TYPE: i32 = 140;
 const TET4: i32 = 4;
+const TRI6: i32 = 9;
 const TET10: i32 = 11;
 
 const REMESH: &str = "mesh with -order 2 (or `Mesh.ElementOrder = 2;`)";
 const TETRAHEDRA_ONLY: &str =
     "mesh with tetrahedra (gmsh: no Recombine, no Transfinite Volume with Recombine) and -order 2";
+
+/// Points, lines or triangles of one entity.
+struct Block {
+    dimension: usize,
+    entity: i32,
+    /// gmsh's element type.
+    kind: i32,
+    tags: Vec<u64>,
+    /// Tags of the nodes, element after element.
+    nodes: Vec<u64>,
+}
 
 /// Reads a MSH 4.1 file and checks the mesh.
 ///
@@ -47,7 +59,7 @@ fn parse_parts(bytes: &[u8], source_name: &str) -> Result<MeshParts, MeshError> 
     let mut source = Source::open(bytes, source_name)?;
     let mut parts = MeshParts { source: source_name.to_owned(), ..MeshParts::default() };
     let mut groups = PhysicalGroups::default();
-    let mut volumes = Vec::new();
+    let (mut volumes, mut blocks) = (Vec::new(), Vec::new());
     let (mut nodes_seen, mut elements_seen) = (false, false);
     while let Some(section) = source.next_section()? {
         match section.as_str() {
@@ -59,7 +71,7 @@ fn parse_parts(bytes: &[u8], source_name: &str) -> Result<MeshParts, MeshError> 
                 nodes_seen = true;
             }
             "$Elements" => {
-                elements(&mut source, &mut parts, &mut volumes)?;
+                elements(&mut source, &mut parts, &mut volumes, &mut blocks)?;
                 elements_seen = true;
             }
             _ => {
@@ -77,6 +89,7 @@ fn parse_parts(bytes: &[u8], source_name: &str) -> Result<MeshParts, MeshError> 
         return Err(missing("$Elements"));
     }
     groups.name_regions(&mut parts, &volumes)?;
+    groups.name_boundary(&mut parts, &blocks)?;
     Ok(parts)
 }
 
@@ -108,8 +121,14 @@ fn nodes(source: &mut Source, parts: &mut MeshParts) -> Result<(), MeshError> {
     Ok(())
 }
 
-/// Reads the tetrahedra. Each volume entity that has some is a region; `volumes` gets their tags.
-fn elements(source: &mut Source, parts: &mut MeshParts, volumes: &mut Vec<i32>) -> Result<(), MeshError> {
+/// Reads the elements. Each volume entity that has tetrahedra is a region; `volumes` gets their tags. What has fewer
+/// dimensions goes into `boundary`.
+fn elements(
+    source: &mut Source,
+    parts: &mut MeshParts,
+    volumes: &mut Vec<i32>,
+    boundary: &mut Vec<Block>,
+) -> Result<(), MeshError> {
     let blocks = source.size("the number of element blocks")?;
     for _ in 0..3 {
         source.size("number, smallest and largest tag of the elements")?;
@@ -136,14 +155,20 @@ fn elements(source: &mut Source, parts: &mut MeshParts, volumes: &mut Vec<i32>) 
         if region == volumes.len() && kind == TET10 {
             volumes.push(entity);
         }
+        if kind != TET10 {
+            let mut block =
+                Block { dimension: dimension.clamp(0, 3) as usize, entity, kind, tags: Vec::new(), nodes: Vec::new() };
+            for _ in 0..count {
+                block.tags.push(source.size("an element's tag")?);
+                for _ in 0..nodes.unwrap_or(0) {
+                    block.nodes.push(source.size("a node of an element")?);
+                }
+            }
+            boundary.push(block);
+            continue;
+        }
         for _ in 0..count {
             let tag = source.size("an element's tag")?;
-            if kind != TET10 {
-                for _ in 0..nodes.unwrap_or(0) {
-                    source.size("a node of an element")?;
-                }
-                continue;
-            }
             let mut element = [0; 10];
             for node in &mut element {
                 *node = source.size("a node of an element")?;

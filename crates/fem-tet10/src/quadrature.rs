@@ -1,4 +1,4 @@
-//! Quadrature on the reference tetrahedron (volume 1/6), with positive weights.
+//! Quadrature on the reference tetrahedron (volume 1/6) and triangle (area 1/2), with positive weights.
 
 /// A point of a quadrature rule: reference coordinates (ξ, η, ζ) and weight.
 pub(crate) struct Point {
@@ -22,6 +22,18 @@ pub(crate) fn degree_5() -> Vec<Point> {
     points.extend(vertex_orbit(a2, 1.0 - 3.0 * a2, w2));
     points.extend(edge_orbit(a3, 0.5 - a3, w3));
     points
+}
+
+/// Degree 6 on the triangle, twelve points (Dunavant 1985): barycentric coordinates and weights.
+pub(crate) fn triangle_degree_6() -> Vec<([f64; 3], f64)> {
+    let (a1, w1) = (0.249_286_745_170_910_42, 0.058_393_137_863_189_685);
+    let (a2, w2) = (0.063_089_014_491_502_23, 0.025_422_453_185_103_41);
+    let (a3, b3, w3) = (0.053_145_049_844_816_95, 0.310_352_451_033_784_4, 0.041_425_537_809_186_79);
+    let c3 = 1.0 - a3 - b3;
+    let corners = |a: f64| [[a, a, 1.0 - 2.0 * a], [a, 1.0 - 2.0 * a, a], [1.0 - 2.0 * a, a, a]];
+    let skew = [[a3, b3, c3], [b3, c3, a3], [c3, a3, b3], [b3, a3, c3], [a3, c3, b3], [c3, b3, a3]];
+    let orbits = corners(a1).map(|l| (l, w1)).into_iter().chain(corners(a2).map(|l| (l, w2)));
+    orbits.chain(skew.map(|l| (l, w3))).collect()
 }
 
 /// The four points with barycentric coordinates (a, a, a, b) in any order.
@@ -66,5 +78,23 @@ mod tests {
         assert!(worst_error(&degree_2(), 3) > 1e-3);
         assert!(worst_error(&degree_5(), 5) < 1e-13);
         assert!(worst_error(&degree_5(), 6) > 1e-3);
+    }
+
+    #[test]
+    fn the_triangle_is_exact_to_degree_six_and_no_further() {
+        // ∫ L₁ⁱ L₂ʲ over the reference triangle = i! j! / (i + j + 2)!
+        let factorial = |n: u32| (1..=n).map(f64::from).product::<f64>();
+        let worst = |degree: u32| {
+            (0..=degree)
+                .flat_map(|i| (0..=degree - i).map(move |j| (i, j)))
+                .map(|(i, j)| {
+                    let terms = triangle_degree_6().into_iter();
+                    let sum: f64 = terms.map(|(l, w)| w * l[1].powi(i as i32) * l[2].powi(j as i32)).sum();
+                    (sum * factorial(i + j + 2) / (factorial(i) * factorial(j)) - 1.0).abs()
+                })
+                .fold(0.0, f64::max)
+        };
+        assert!(worst(6) < 1e-13, "{:e}", worst(6));
+        assert!(worst(7) > 1e-5, "{:e}", worst(7));
     }
 }

@@ -1,19 +1,20 @@
-//! Physical groups: which volume entities are in which, and what they are called.
+//! Physical groups: which entities are in which, and what they are called.
 
 use std::borrow::Cow;
 use std::collections::HashMap;
 
 use super::source::Source;
+use super::{Block, TRI6};
 use crate::error::MeshError;
-use crate::mesh::MeshParts;
+use crate::mesh::{KINDS, MeshParts, NodeGroup, SurfaceGroup};
 
-/// The three-dimensional physical groups of a file.
+/// The physical groups of a file.
 #[derive(Default)]
 pub(super) struct PhysicalGroups {
-    /// Name of a group by its number. Not every group has one.
-    names: HashMap<u32, String>,
-    /// Numbers of the groups that a volume entity is in, by the entity's tag.
-    of_volume: HashMap<i32, Vec<u32>>,
+    /// Name of a group by its dimension and number. Not every group has one.
+    names: HashMap<(usize, u32), String>,
+    /// Numbers of the groups that an entity is in, by the entity's dimension and tag.
+    of_entity: HashMap<(usize, i32), Vec<u32>>,
 }
 
 impl PhysicalGroups {
@@ -21,12 +22,9 @@ impl PhysicalGroups {
     pub(super) fn read_names(&mut self, source: &mut Source) -> Result<(), MeshError> {
         let count: u64 = source.text_number("the number of names")?;
         for _ in 0..count {
-            let dimension: i32 = source.text_number("a dimension")?;
+            let dimension: usize = source.text_number("a dimension")?;
             let number: u32 = source.text_number("the number of a physical group")?;
-            let name = source.quoted()?;
-            if dimension == 3 {
-                self.names.insert(number, name);
-            }
+            self.names.insert((dimension, number), source.quoted()?);
         }
         Ok(())
     }
@@ -73,9 +71,7 @@ impl PhysicalGroups {
                 }
                 for _ in 0..source.size("a number of physical groups")? {
                     let number = source.int("the number of a physical group")?;
-                    if dimension == 3 {
-                        self.of_volume.entry(tag).or_default().push(number.unsigned_abs());
-                    }
+                    self.of_entity.entry((dimension, tag)).or_default().push(number.unsigned_abs());
                 }
                 if dimension > 0 {
                     for _ in 0..source.size("a number of bounding entities")? {
@@ -87,32 +83,84 @@ impl PhysicalGroups {
         Ok(())
     }
 
-    /// Fills groups and regions of `parts`; the regions are the given volume entities. A group without a name goes
-    /// by its number.
+    /// Fills groups and regions of `parts`; the regions are the given volume entities.
     pub(super) fn name_regions(&self, parts: &mut MeshParts, volumes: &[i32]) -> Result<(), MeshError> {
+        (parts.groups, parts.regions) = self.of_entities(3, volumes, &parts.source)?;
+        Ok(())
+    }
+
+    /// Fills the groups of surfaces, curves and points of `parts` with the elements of their entities.
+    pub(super) fn name_boundary(&self, parts: &mut MeshParts, blocks: &[Block]) -> Result<(), MeshError> {
+        for dimension in 0..=2 {
+            let blocks = || blocks.iter().filter(|block| block.dimension == dimension);
+            let entities: Vec<i32> = blocks().map(|block| block.entity).collect();
+            let (names, of_blocks) = self.of_entities(dimension, &entities, &parts.source)?;
+            if dimension < 2 {
+                let mut groups: Vec<_> =
+                    names.into_iter().map(|name| NodeGroup { name, dimension, nodes: Vec::new() }).collect();
+                for (block, indices) in blocks().zip(&of_blocks) {
+                    indices.iter().for_each(|group| groups[*group].nodes.extend(&block.nodes));
+                }
+                parts.node_groups.extend(groups);
+                continue;
+            }
+            let mut groups: Vec<_> =
+                names.into_iter().map(|name| SurfaceGroup { name, ..SurfaceGroup::default() }).collect();
+            for (block, indices) in blocks().zip(&of_blocks) {
+                for group in indices {
+                    let group = &mut groups[*group];
+                    if let (true, Some(element)) = (block.kind != TRI6, block.tags.first()) {
+                        return Err(MeshError::NotAFace {
+                            source_name: parts.source.clone(),
+                            group: group.name.clone(),
+                            element: *element,
+                        });
+                    }
+                    group.triangle_tags.extend(&block.tags);
+                    group.triangles.extend(block.nodes.chunks_exact(6).filter_map(|n| <[u64; 6]>::try_from(n).ok()));
+                }
+            }
+            parts.surfaces = groups;
+        }
+        Ok(())
+    }
+
+    /// Names of the groups that entities of one dimension are in, and for each entity the indices of its groups,
+    /// ascending. A group without a name goes by its number.
+    fn of_entities(
+        &self,
+        dimension: usize,
+        entities: &[i32],
+        source_name: &str,
+    ) -> Result<(Vec<String>, Vec<Vec<usize>>), MeshError> {
+        let mut names = Vec::new();
         // Name -> (index, whether it is a number for want of a name).
         let mut known: HashMap<Cow<str>, (usize, bool)> = HashMap::new();
-        for volume in volumes {
-            let mut region = Vec::new();
-            for number in self.of_volume.get(volume).into_iter().flatten() {
-                let (name, unnamed) = match self.names.get(number) {
+        let mut groups = Vec::new();
+        for entity in entities {
+            let mut of_entity = Vec::new();
+            for number in self.of_entity.get(&(dimension, *entity)).into_iter().flatten() {
+                let (name, unnamed) = match self.names.get(&(dimension, *number)) {
                     Some(name) => (Cow::from(name), false),
                     None => (Cow::from(number.to_string()), true),
                 };
                 let (index, known_unnamed) = *known.entry(name).or_insert_with_key(|name| {
-                    parts.groups.push(name.to_string());
-                    (parts.groups.len() - 1, unnamed)
+                    names.push(name.to_string());
+                    (names.len() - 1, unnamed)
                 });
                 if unnamed != known_unnamed {
-                    let name = parts.groups[index].clone();
-                    return Err(MeshError::AmbiguousGroup { source_name: parts.source.clone(), name });
+                    return Err(MeshError::AmbiguousGroup {
+                        source_name: source_name.to_owned(),
+                        kind: KINDS[dimension],
+                        name: names.swap_remove(index),
+                    });
                 }
-                region.push(index);
+                of_entity.push(index);
             }
-            region.sort_unstable();
-            region.dedup();
-            parts.regions.push(region);
+            of_entity.sort_unstable();
+            of_entity.dedup();
+            groups.push(of_entity);
         }
-        Ok(())
+        Ok((names, groups))
     }
 }

@@ -52,6 +52,7 @@ pub fn parts(mesh: &Mesh) -> MeshParts {
         groups: mesh.groups().to_vec(),
         regions: (0..mesh.elements().len()).map(|e| mesh.element_groups(e).to_vec()).collect(),
         element_regions: (0..mesh.elements().len()).collect(),
+        ..MeshParts::default()
     }
 }
 
@@ -69,6 +70,7 @@ pub fn single(corners: [[f64; 3]; 4]) -> MeshParts {
         groups: vec![],
         regions: vec![vec![]],
         element_regions: vec![0],
+        ..MeshParts::default()
     }
 }
 

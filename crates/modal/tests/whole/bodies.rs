@@ -52,6 +52,7 @@ pub fn mesh(positions: Vec<[f64; 3]>, elements: Vec<[u64; 10]>) -> Mesh {
         regions: vec![vec![]],
         element_regions: vec![0; elements.len()],
         elements,
+        ..MeshParts::default()
     })
     .unwrap()
 }
