@@ -126,6 +126,8 @@ fn range(columns: DMatrix<f64>, limit: f64) -> DMatrix<f64> {
         return DMatrix::zeros(columns.nrows(), 0);
     }
     let factors = columns.col_piv_qr();
-    let rank = factors.r().diagonal().iter().take_while(|pivot| pivot.abs() > limit).count();
+    let r = factors.r();
+    // R has fewer rows than columns where a single node is held.
+    let rank = (0..r.nrows()).take_while(|i| r[(*i, *i)].abs() > limit).count();
     factors.q().columns(0, rank).into_owned()
 }

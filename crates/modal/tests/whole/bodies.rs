@@ -22,6 +22,10 @@ impl Body {
     pub fn modes(&self, flexible: usize) -> Modes {
         self.try_modes(flexible).unwrap()
     }
+
+    pub fn held(&self, support: &Support) -> Solver<'_> {
+        Solver::new(self.matrices.stiffness(), self.matrices.mass(), &self.positions, support).unwrap()
+    }
 }
 
 /// Modes of a body that nothing holds.

@@ -2,6 +2,7 @@
 
 mod bodies;
 mod closed_forms;
+mod held;
 mod invariance;
 mod oracles;
 mod plate;
@@ -9,3 +10,4 @@ mod reduced_body;
 mod refusals;
 mod repeatability;
 mod spectrum;
+mod supports;

@@ -4,16 +4,21 @@ use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::linalg::SupernodalThreshold;
 use faer::sparse::linalg::cholesky::{CholeskySymbolicParams, SymmetricOrdering, factorize_symbolic_cholesky};
 use faer::sparse::{SparseColMat, SparseColMatRef};
-use faer::{Par, Side};
+use faer::{Mat, Par, Side};
 
 /// All eigenvalues of (K, M), smallest first, from the dense matrices.
 pub fn dense_eigenvalues(
     stiffness: SparseColMatRef<'_, usize, f64>,
     mass: SparseColMatRef<'_, usize, f64>,
 ) -> Vec<f64> {
-    let factor = mass.to_dense().llt(Side::Lower).unwrap();
-    let mut half = stiffness.to_dense();
-    let solve = |x: &mut faer::Mat<f64>| {
+    dense_eigenvalues_of(stiffness.to_dense(), mass.to_dense())
+}
+
+/// All eigenvalues of a dense (K, M), smallest first.
+pub fn dense_eigenvalues_of(stiffness: Mat<f64>, mass: Mat<f64>) -> Vec<f64> {
+    let factor = mass.llt(Side::Lower).unwrap();
+    let mut half = stiffness;
+    let solve = |x: &mut Mat<f64>| {
         faer::linalg::triangular_solve::solve_lower_triangular_in_place(factor.L(), x.as_mut(), Par::Seq);
     };
     solve(&mut half);
