@@ -6,6 +6,8 @@
 //!
 //! θ is that of the rigid motion that fits the displacements best, in the sum of squares over the nodes, all alike.
 
+use std::collections::BTreeSet;
+
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 
 use crate::error::AssemblyError;
@@ -27,16 +29,27 @@ pub struct MeanRotation {
 }
 
 impl Mesh {
-    /// The mean rotation of all nodes within `radius` of a point.
+    /// The mean rotation of all nodes within `radius` of a point; without a radius, of the elements around the node
+    /// nearest to a point of the body.
     ///
     /// # Errors
     /// [`AssemblyError::PatchRadius`] for a radius that is not positive, [`AssemblyError::Patch`] for a patch of fewer
-    /// than three nodes or of nodes on a line.
-    pub fn mean_rotation(&self, at: [f64; 3], radius: f64) -> Result<MeanRotation, AssemblyError> {
+    /// than three nodes or of nodes on a line; without a radius those of [`Self::locate`].
+    pub fn mean_rotation(&self, at: [f64; 3], radius: Option<f64>) -> Result<MeanRotation, AssemblyError> {
+        let Some(radius) = radius else {
+            self.locate(at)?;
+            let nearest = self.nearest_node(at).0;
+            let around = self.elements().iter().filter(|nodes| nodes.contains(&nearest));
+            let nodes: BTreeSet<u32> = around.flatten().copied().collect();
+            return self.mean_rotation_of(nodes.into_iter().collect(), at, 0.0);
+        };
         if !(radius > 0.0 && radius.is_finite()) {
             return Err(AssemblyError::PatchRadius { at, found: radius });
         }
-        let nodes = self.nodes_within(at, radius);
+        self.mean_rotation_of(self.nodes_within(at, radius), at, radius)
+    }
+
+    fn mean_rotation_of(&self, nodes: Vec<u32>, at: [f64; 3], radius: f64) -> Result<MeanRotation, AssemblyError> {
         let position = |node: &u32| Vector3::from(self.positions()[*node as usize]) - Vector3::from(at);
         let mean = nodes.iter().map(position).sum::<Vector3<f64>>() / nodes.len().max(1) as f64;
         let arms: Vec<Vector3<f64>> = nodes.iter().map(|node| position(node) - mean).collect();

@@ -19,7 +19,7 @@ const MOST_PANELS: usize = 20;
 /// # Errors
 /// [`FigureError`], also where there are no flexible modes to draw.
 pub fn mode_shapes(scene: &Scene, model: &Model, stem: &Path) -> Result<[PathBuf; 2], FigureError> {
-    let Some(Meshed { mesh, modes, .. }) = &model.meshed else { 
+    let Some(Meshed { mesh, modes, .. }) = &model.meshed else {
         return Err(FigureError::Empty { figure: scene.title.clone(), what: "a mesh" });
     };
     let surface = Surface::new(mesh);

@@ -12,7 +12,7 @@ use fem_tet10::{AssemblyError, Location, Matrices, Mesh, MeshError, assemble, re
 use frames_rk4::{
     ConservativeScheme, Initial, Load, Physics, PointShapes, Rows, Setup, SetupError, Simulation, StepControl,
 };
-use modal::{BodyPoint, ModalError, Modes, ReducedBody, RigidMotion, Solver, Support, centrifugal_fields};
+use modal::{BodyPoint, ModalError, Modes, ReducedBody, Solver, Support, centrifugal_fields};
 use nalgebra::{Matrix3, Vector3};
 
 use crate::effects::Choice;
@@ -108,11 +108,7 @@ impl Model {
         }
     }
 
-    fn meshed(
-        scene: &Scene,
-        meshed: &MeshedBody,
-        mut progress: impl FnMut(BuildProgress),
-    ) -> Result<Self, BuildError> {
+    fn meshed(scene: &Scene, meshed: &MeshedBody, mut progress: impl FnMut(BuildProgress)) -> Result<Self, BuildError> {
         let mut times = BuildTimes::default();
         progress(BuildProgress::Mesh);
         let mesh = timed(&mut times.mesh, || read_mesh(scene, meshed))?;
@@ -125,9 +121,7 @@ impl Model {
         };
         let solver = Solver::new(matrices.stiffness(), matrices.mass(), mesh.positions(), &support)?;
         let mut modes = timed(&mut times.modes, || {
-            solver
-                .modes(requested, |p| progress(BuildProgress::Modes(p)))
-                .map_err(|error| too_many_modes(scene, error))
+            solver.modes(requested, |p| progress(BuildProgress::Modes(p))).map_err(|error| too_many_modes(scene, error))
         })?;
         let loads = loads::on_mesh(scene, &mesh, &solver.nodal_mass().row_sums())?;
         progress(BuildProgress::Statics);
@@ -156,7 +150,8 @@ impl Model {
             let stiffness = reduced_geometric_stiffness(&mesh, &materials, answers.as_ref(), modes.shapes.as_ref())?;
             body.stress_stiffness = stiffness.try_into().ok();
         }
-        let steady: Vec<&MeshLoad> = loads.iter().filter(|load| physics::stiffens(scene, &body, drive.as_ref(), load)).collect();
+        let steady: Vec<&MeshLoad> =
+            loads.iter().filter(|load| physics::stiffens(scene, &body, drive.as_ref(), load)).collect();
         let load_stiffness = if steady.is_empty() {
             None
         } else {
@@ -199,8 +194,7 @@ impl Model {
         let about_center = Matrix3::from_fn(|i, j| rigid.inertia[i][j]);
         let origin = motion.fixed_point().unwrap_or(center);
         let arm = center - origin;
-        let inertia =
-            about_center + (Matrix3::identity() * arm.norm_squared() - arm * arm.transpose()) * rigid.mass;
+        let inertia = about_center + (Matrix3::identity() * arm.norm_squared() - arm * arm.transpose()) * rigid.mass;
         let body = ReducedBody::rigid(rigid.mass, center, inertia, motion)?;
         let point = |_: String, at: [f64; 3]| -> Result<PointShapes, SceneError> {
             let position_body = Vector3::from(at) - body.origin;
@@ -460,7 +454,9 @@ fn refuse(scene: &Scene, key: &str, error: AssemblyError) -> SceneError {
 
 /// A mesh error, such as a group that is not there, at its place in the scene file.
 fn refuse_mesh(scene: &Scene, key: &str, error: &MeshError) -> BuildError {
-    scene.refuse(key, error.to_string(), "something that the mesh has", "name it in the geometry, and mesh again").into()
+    scene
+        .refuse(key, error.to_string(), "something that the mesh has", "name it in the geometry, and mesh again")
+        .into()
 }
 
 fn too_many_modes(scene: &Scene, error: ModalError) -> BuildError {

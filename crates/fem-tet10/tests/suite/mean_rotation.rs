@@ -23,7 +23,7 @@ fn patches() -> Vec<(Mesh, MeanRotation)> {
     cases
         .map(|(name, at, radius)| {
             let mesh = workspace_mesh(name);
-            let patch = mesh.mean_rotation(at, radius).unwrap();
+            let patch = mesh.mean_rotation(at, Some(radius)).unwrap();
             assert_eq!(patch.nodes, mesh.nodes_within(at, radius));
             (mesh, patch)
         })
@@ -93,14 +93,14 @@ fn patches_without_a_rotation_are_refused() {
     let cube = data_mesh("cube.msh");
     // One node, none, and the three of an edge.
     for (at, radius, count) in [([0.0; 3], 1.0, 1), ([50.0, 0.0, 0.0], 1.0, 0), ([5.0, -9.0, -9.0], 13.7, 3)] {
-        let error = cube.mean_rotation(at, radius).unwrap_err();
+        let error = cube.mean_rotation(at, Some(radius)).unwrap_err();
         let AssemblyError::Patch { count: found, .. } = error else { panic!("{error:?}") };
         assert_eq!(found, count, "{:?}", cube.nodes_within(at, radius));
         assert!(error.to_string().contains("use a larger radius"), "{error}");
     }
     for radius in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        let error = cube.mean_rotation([0.0; 3], radius).unwrap_err();
+        let error = cube.mean_rotation([0.0; 3], Some(radius)).unwrap_err();
         assert!(matches!(error, AssemblyError::PatchRadius { .. }), "{error:?}");
     }
-    assert!(cube.mean_rotation([f64::NAN; 3], 1.0).is_err());
+    assert!(cube.mean_rotation([f64::NAN; 3], Some(1.0)).is_err());
 }

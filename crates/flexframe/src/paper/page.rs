@@ -28,12 +28,12 @@ fn write_page(out: &mut String, scene: &Scene, run: &RunReport, c: &Comparison) 
     writeln!(out, "```text\n{run}\n```\n")?;
 
     writeln!(out, "## What the paper does not give, and what was assumed\n")?;
+    let (nodes, elements) = run.mesh.as_ref().map_or((0, 0), |mesh| (mesh.nodes, mesh.elements));
     writeln!(
         out,
-        "* **Its mesh** (MATLAB's PDE toolbox). Here: gmsh, {} nodes and {} ten-node tetrahedra. Each point mass sits on \
+        "* **Its mesh** (MATLAB's PDE toolbox). Here: gmsh, {nodes} nodes and {elements} ten-node tetrahedra. Each point mass sits on \
          one node, and the compliance under it grows without limit as the mesh is refined: modes 8, 14 and 16 follow \
-         the mesh, the others hardly do.",
-        run.mesh.nodes, run.mesh.elements
+         the mesh, the others hardly do."
     )?;
     writeln!(out, "* **The history of its force** (Fig. 4 is only a picture). {}", force_in_words(scene))?;
     writeln!(out, "* **The length of its run.** Here {} {time}: {}.", scene.time.end, run.steps_in_words())?;

@@ -7,11 +7,7 @@ use crate::history;
 use crate::scene::Scene;
 
 /// A history; `key` is its place in the scene.
-pub(super) fn history(
-    scene: &Scene,
-    key: &str,
-    history: &history::History,
-) -> Result<frames_rk4::History, BuildError> {
+pub(super) fn history(scene: &Scene, key: &str, history: &history::History) -> Result<frames_rk4::History, BuildError> {
     use frames_rk4::History as To;
     use history::History as From;
     let refused = |error: SetupError| -> BuildError {
@@ -37,7 +33,11 @@ pub(super) fn history(
         }
         From::Product { factors } => {
             let factors = factors.iter().enumerate();
-            To::Product(factors.map(|(i, f)| self::history(scene, &format!("{key}.factors[{i}]"), f)).collect::<Result<_, _>>()?)
+            To::Product(
+                factors
+                    .map(|(i, f)| self::history(scene, &format!("{key}.factors[{i}]"), f))
+                    .collect::<Result<_, _>>()?,
+            )
         }
     };
     made.check_over(scene.time.end).map_err(refused)?;

@@ -17,8 +17,6 @@ pub(super) struct MeshLoad {
     pub history: frames_rk4::History,
     /// Whether it keeps its direction in the body.
     pub follows: bool,
-    /// Whether it is gravity.
-    pub gravity: bool,
 }
 
 /// Where a load acts, and how much.
@@ -76,8 +74,7 @@ pub(super) fn on_mesh(scene: &Scene, mesh: &Mesh, nodal_mass: &[f64]) -> Result<
                     spread(nodal_mass.to_vec(), nodes, acceleration(load))
                 }
             };
-            let (follows, gravity) = (follows(load), matches!(load, Load::Gravity(_)));
-            Ok(MeshLoad { place, history: history(scene, &key("history"), of(load))?, follows, gravity })
+            Ok(MeshLoad { place, history: history(scene, &key("history"), of(load))?, follows: follows(load) })
         })
         .collect()
 }
@@ -191,9 +188,7 @@ impl MeshLoad {
     pub(super) fn reduced(&self, body: &ReducedBody, modes: &Modes, mesh: &Mesh) -> frames_rk4::Load {
         let frame = if self.follows { LoadFrame::Body } else { LoadFrame::Global };
         let nf = body.flexible();
-        let shape = |node: u32, k: usize| {
-            Vector3::from_fn(|axis, _| modes.shapes[(3 * node as usize + axis, k)])
-        };
+        let shape = |node: u32, k: usize| Vector3::from_fn(|axis, _| modes.shapes[(3 * node as usize + axis, k)]);
         let action = match &self.place {
             Place::Force { nodes, weights, force } => {
                 let point = BodyPoint::new(modes, mesh.positions(), nodes, weights);
@@ -214,10 +209,7 @@ impl MeshLoad {
                 let acting = || nodes.iter().copied().zip(forces);
                 let force_body: Vector3<f64> = forces.iter().sum();
                 let moment_body: Vector3<f64> = acting().map(|(node, f)| position(node).cross(f)).sum();
-                let rigid = [
-                    body.translation_basis.tr_mul(&force_body),
-                    body.rotation_basis.tr_mul(&moment_body),
-                ];
+                let rigid = [body.translation_basis.tr_mul(&force_body), body.rotation_basis.tr_mul(&moment_body)];
                 let flexible = (0..nf).map(|k| acting().map(|(node, f)| shape(node, k).dot(f)).sum());
                 Action::Field(BodyField {
                     force_body,

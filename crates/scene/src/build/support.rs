@@ -1,7 +1,7 @@
 //! What holds the body of a scene: nodes of its mesh, the rigid motions left, and what drives it.
 
 use fem_tet10::Mesh;
-use frames_rk4::{DrivenMotion, Drive};
+use frames_rk4::{Drive, DrivenMotion};
 use modal::{RigidMotion, Support};
 use nalgebra::Vector3;
 
