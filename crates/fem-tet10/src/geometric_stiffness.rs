@@ -136,7 +136,7 @@ fn relative_displacements(fields: MatRef<'_, f64>, nodes: &[u32; 10]) -> Vec<f64
 /// `S_ij = ∫ ∇N_i · σ ∇N_j dV` over the element for its nodes 1 to 9, whose displacements against node 0 are `relative`.
 fn stress_matrix(points: &[IntegrationPoint], material: &Material, relative: &[f64]) -> [[f64; OTHERS]; OTHERS] {
     let (lambda, mu) = material.lame();
-    let mut stiffness = [[0.0; OTHERS]; OTHERS];
+    let mut lower = [[0.0; OTHERS]; OTHERS];
     for point in points {
         let gradients: [Vector3<f64>; OTHERS] = std::array::from_fn(|i| point.gradients[i + 1].into());
         let mut displacement_gradient = Matrix3::zeros();
@@ -148,14 +148,9 @@ fn stress_matrix(points: &[IntegrationPoint], material: &Material, relative: &[f
         for j in 0..OTHERS {
             let traction = stress * gradients[j] * point.volume;
             for i in 0..=j {
-                stiffness[j][i] += gradients[i].dot(&traction);
+                lower[j][i] += gradients[i].dot(&traction);
             }
         }
     }
-    for j in 0..OTHERS {
-        for i in 0..j {
-            stiffness[i][j] = stiffness[j][i];
-        }
-    }
-    stiffness
+    std::array::from_fn(|i| std::array::from_fn(|j| lower[i.max(j)][i.min(j)]))
 }

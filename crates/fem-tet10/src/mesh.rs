@@ -68,9 +68,11 @@ pub struct Mesh {
     regions: Vec<Vec<usize>>,
     element_regions: Vec<usize>,
     surfaces: Vec<Surface>,
-    /// Kind, name and nodes, ascending, of the groups of points and curves.
-    node_groups: Vec<(&'static str, String, Vec<u32>)>,
+    node_groups: Vec<NamedNodes>,
 }
+
+/// Kind, name and nodes, ascending, of a physical group of points or curves.
+type NamedNodes = (&'static str, String, Vec<u32>);
 
 impl Mesh {
     /// Checks the parts and makes a mesh of them.
@@ -184,8 +186,8 @@ impl Mesh {
         &self.surfaces
     }
 
-    /// Kind, name and nodes, ascending, of the physical groups of points and curves.
-    pub(crate) fn node_groups(&self) -> &[(&'static str, String, Vec<u32>)] {
+    /// The physical groups of points and curves.
+    pub(crate) fn node_groups(&self) -> &[NamedNodes] {
         &self.node_groups
     }
 
@@ -301,7 +303,7 @@ fn resolve_node_groups(
     source: &str,
     index_of: &HashMap<u64, u32>,
     groups: Vec<NodeGroup>,
-) -> Result<Vec<(&'static str, String, Vec<u32>)>, MeshError> {
+) -> Result<Vec<NamedNodes>, MeshError> {
     let resolve = |group: NodeGroup| {
         let kind = KINDS[group.dimension.min(1)];
         let index = |node: &u64| {

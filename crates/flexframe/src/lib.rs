@@ -8,7 +8,7 @@
 //!
 //! let scene = Scene::read("examples/plate.toml")?;
 //! let model = Model::build(&scene, |_progress| ())?;
-//! println!("{:?} Hz", model.modes.natural_frequencies());
+//! println!("{:?} Hz", model.natural_frequencies());
 //! for now in model.start(&scene)? {
 //!     let now = now?;
 //!     println!("{} {:?} {}", now.time, now.omega_body, now.energy());
