@@ -152,10 +152,6 @@ fn stress_matrix(points: &[IntegrationPoint], material: &Material, relative: &[f
             }
         }
     }
-    for j in 0..OTHERS {
-        for i in 0..j {
-            stiffness[i][j] = stiffness[j][i];
-        }
-    }
+    (0..OTHERS).flat_map(|j| (0..j).map(move |i| (i, j))).for_each(|(i, j)| stiffness[i][j] = stiffness[j][i]);
     stiffness
 }

@@ -68,8 +68,17 @@ pub struct Mesh {
     regions: Vec<Vec<usize>>,
     element_regions: Vec<usize>,
     surfaces: Vec<Surface>,
-    /// Kind, name and nodes, ascending, of the groups of points and curves.
-    node_groups: Vec<(&'static str, String, Vec<u32>)>,
+    node_sets: Vec<NodeSet>,
+}
+
+/// A physical group of curves or points.
+#[derive(Debug, Clone)]
+pub(crate) struct NodeSet {
+    /// "curve" or "point".
+    pub kind: &'static str,
+    pub name: String,
+    /// Node indices, ascending.
+    pub nodes: Vec<u32>,
 }
 
 impl Mesh {
@@ -125,7 +134,7 @@ impl Mesh {
         let index_of = index_nodes(&source, &node_tags)?;
         let elements = resolve_tags(&source, &index_of, &element_tags, &elements)?;
         let surfaces = surface::resolve(&source, &index_of, &elements, surfaces)?;
-        let node_groups = resolve_node_groups(&source, &index_of, node_groups)?;
+        let node_sets = resolve_node_groups(&source, &index_of, node_groups)?;
         let mesh = Self {
             source,
             node_tags,
@@ -136,7 +145,7 @@ impl Mesh {
             regions,
             element_regions,
             surfaces,
-            node_groups,
+            node_sets,
         };
         mesh.refuse_orphans()?;
         integration::check_jacobians(&mesh)?;
@@ -184,9 +193,9 @@ impl Mesh {
         &self.surfaces
     }
 
-    /// Kind, name and nodes, ascending, of the physical groups of points and curves.
-    pub(crate) fn node_groups(&self) -> &[(&'static str, String, Vec<u32>)] {
-        &self.node_groups
+    /// The physical groups of curves and points.
+    pub(crate) fn node_sets(&self) -> &[NodeSet] {
+        &self.node_sets
     }
 
     /// Positions of the ten nodes of an element.
@@ -301,7 +310,7 @@ fn resolve_node_groups(
     source: &str,
     index_of: &HashMap<u64, u32>,
     groups: Vec<NodeGroup>,
-) -> Result<Vec<(&'static str, String, Vec<u32>)>, MeshError> {
+) -> Result<Vec<NodeSet>, MeshError> {
     let resolve = |group: NodeGroup| {
         let kind = KINDS[group.dimension.min(1)];
         let index = |node: &u64| {
@@ -315,7 +324,7 @@ fn resolve_node_groups(
         let mut nodes = group.nodes.iter().map(index).collect::<Result<Vec<u32>, _>>()?;
         nodes.sort_unstable();
         nodes.dedup();
-        Ok((kind, group.name, nodes))
+        Ok(NodeSet { kind, name: group.name, nodes })
     };
     groups.into_iter().map(resolve).collect()
 }
