@@ -3,6 +3,7 @@
 mod bodies;
 mod closed_forms;
 mod held;
+mod held_bars;
 mod invariance;
 mod oracles;
 mod plate;
@@ -10,4 +11,6 @@ mod reduced_body;
 mod refusals;
 mod repeatability;
 mod spectrum;
+mod static_shapes;
+mod statics;
 mod supports;
