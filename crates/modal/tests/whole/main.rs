@@ -2,6 +2,7 @@
 
 mod bodies;
 mod closed_forms;
+mod fields;
 mod held;
 mod held_bars;
 mod invariance;
@@ -10,6 +11,7 @@ mod plate;
 mod reduced_body;
 mod refusals;
 mod repeatability;
+mod rigid_body;
 mod spectrum;
 mod static_shapes;
 mod statics;
