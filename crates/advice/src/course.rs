@@ -1,0 +1,197 @@
+//! A history in samples, and how far it swings an oscillator.
+
+use frames_rk4::History;
+use nalgebra::Complex;
+
+/// A history from 0 to the end of the run as straight lines between samples.
+#[derive(Debug, Clone)]
+pub(crate) struct Course {
+    pieces: Vec<Piece>,
+    /// ∫|h| and max |h|.
+    pub magnitude_integral: f64,
+    pub largest: f64,
+    /// Whether it has one value throughout.
+    pub constant: bool,
+    /// Whether the straight lines follow it.
+    resolved: bool,
+}
+
+/// Samples at equal distances between two corners.
+#[derive(Debug, Clone)]
+struct Piece {
+    step: f64,
+    samples: Vec<f64>,
+}
+
+/// Fewest and most intervals in a piece.
+const FEWEST: usize = 64;
+const MOST: usize = 1 << 15;
+/// Distance of the lines from the history, of its largest value.
+const CLOSE: f64 = 1e-3;
+
+impl Course {
+    pub(crate) fn new(history: &History, end: f64) -> Self {
+        let mut stops: Vec<f64> = history.corners().into_iter().filter(|t| *t > 0.0 && *t < end).collect();
+        stops.push(end);
+        stops.sort_by(f64::total_cmp);
+        let largest = history.largest(end);
+        let mut start = 0.0;
+        let mut resolved = true;
+        let mut pieces = Vec::with_capacity(stops.len());
+        for stop in stops {
+            if stop > start {
+                let (piece, follows) = Piece::new(history, start, stop, CLOSE * largest);
+                pieces.push(piece);
+                resolved &= follows;
+                start = stop;
+            }
+        }
+        let mut values = pieces.iter().flat_map(|piece| &piece.samples);
+        let first = values.next().copied().unwrap_or(0.0);
+        let constant = resolved && values.all(|h| *h == first);
+        Self { pieces, magnitude_integral: history.magnitude_integral(end), largest, constant, resolved }
+    }
+
+    /// The same course less its first value: what its rate adds up to.
+    pub(crate) fn risen(mut self) -> Self {
+        let first = self.pieces.first().and_then(|piece| piece.samples.first()).copied().unwrap_or(0.0);
+        let mut largest: f64 = 0.0;
+        for h in self.pieces.iter_mut().flat_map(|piece| &mut piece.samples) {
+            *h -= first;
+            largest = largest.max(h.abs());
+        }
+        if self.resolved {
+            self.largest = largest;
+        } else {
+            self.largest += first.abs();
+        }
+        let length: f64 = self.pieces.iter().map(|piece| piece.step * (piece.samples.len() - 1) as f64).sum();
+        self.magnitude_integral = (self.magnitude_integral + first.abs() * length).min(self.largest * length);
+        self
+    }
+
+    /// Bound of |z| on the way, where `z' = (−ζω + iω√(1−ζ²)) z + h` from rest: a unit force with this course moves a mass
+    /// of 1 on a spring ω² by z's imaginary part over ω√(1−ζ²). It is exact at the samples, whatever ω is to their
+    /// distance.
+    pub(crate) fn swing(&self, omega: f64, zeta: f64) -> f64 {
+        let zeta = zeta.min(0.999);
+        let decay = zeta * omega;
+        let forced = if decay > 0.0 { self.largest / decay } else { f64::INFINITY };
+        let most = self.magnitude_integral.min(forced);
+        if !self.resolved {
+            return most;
+        }
+        let lambda = Complex::new(-decay, omega * (1.0 - zeta * zeta).sqrt());
+        let mut z = Complex::new(0.0, 0.0);
+        let mut largest: f64 = 0.0;
+        for piece in &self.pieces {
+            let x = lambda * piece.step;
+            let turn = x.exp();
+            let (phi1, phi2) = phi(x, turn);
+            for pair in piece.samples.windows(2) {
+                let (a, b) = (pair[0], pair[1]);
+                // Between the samples: the particular solution and the circle about it, or what the force can do at all.
+                let slope = (b - a) / piece.step;
+                let high = a.abs().max(b.abs());
+                let circle = (z + a / lambda + slope / (lambda * lambda)).norm()
+                    + high / lambda.norm()
+                    + slope.abs() / lambda.norm_sqr();
+                largest = largest.max(circle.min(z.norm() + high * piece.step));
+                z = turn * z + (phi1 * a + phi2 * (b - a)) * piece.step;
+            }
+        }
+        largest.min(most)
+    }
+}
+
+impl Piece {
+    fn new(history: &History, start: f64, stop: f64, close: f64) -> (Self, bool) {
+        let inside = 0.5 * (start + stop);
+        let sampled = |n: usize| -> Vec<f64> {
+            (0..=n).map(|i| history.at(start + (stop - start) * i as f64 / n as f64, inside)).collect()
+        };
+        let mut n = FEWEST;
+        loop {
+            // Three points between the samples: one in the middle could fall on the waves of the history.
+            let samples = sampled(n);
+            let finer = sampled(4 * n);
+            let away = (0..4 * n).map(|i| {
+                let (k, part) = (i / 4, (i % 4) as f64 / 4.0);
+                (finer[i] - samples[k] * (1.0 - part) - samples[k + 1] * part).abs()
+            });
+            let follows = away.fold(0.0, f64::max) <= close;
+            if follows || n >= MOST {
+                return (Self { step: (stop - start) / n as f64, samples }, follows);
+            }
+            n *= 2;
+        }
+    }
+}
+
+/// φ₁ = (eˣ − 1)/x and φ₂ = (φ₁ − 1)/x.
+fn phi(x: Complex<f64>, exp: Complex<f64>) -> (Complex<f64>, Complex<f64>) {
+    if x.norm() < 0.05 {
+        let series = |first: f64| {
+            let mut term = Complex::new(1.0 / first, 0.0);
+            let mut sum = term;
+            for k in 1..8 {
+                term *= x / (first + f64::from(k));
+                sum += term;
+            }
+            sum
+        };
+        // 1/1! + x/2! + x²/3! …, and 1/2! + x/3! + …
+        (series(1.0), series(2.0))
+    } else {
+        let phi1 = (exp - 1.0) / x;
+        (phi1, (phi1 - 1.0) / x)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Largest |q| ω² of q̈ + 2ζω q̇ + ω² q = h by brute force.
+    fn dynamic_factor(history: &History, omega: f64, zeta: f64, end: f64) -> f64 {
+        let n = 200_000;
+        let h = end / f64::from(n);
+        let rate = |t: f64, q: f64, v: f64| (v, history.at(t, t) - omega * omega * q - 2.0 * zeta * omega * v);
+        let (mut q, mut v, mut largest) = (0.0, 0.0, 0.0_f64);
+        for i in 0..n {
+            let t = f64::from(i) * h;
+            let (a, b) = rate(t, q, v);
+            let (c, d) = rate(t + 0.5 * h, q + 0.5 * h * a, v + 0.5 * h * b);
+            q += h * c;
+            v += h * d;
+            largest = largest.max(q.abs());
+        }
+        largest * omega * omega
+    }
+
+    #[test]
+    fn the_swing_bounds_the_oscillator_closely() {
+        // Longest pulse of 30 periods down to one of a thousandth of a period; measured bound/actual: 1.00 to 1.91.
+        for (duration, omega, zeta) in
+            [(0.5, 400.0, 0.0), (0.02, 154.0, 0.0), (0.02, 154.0, 0.1), (0.02, 1000.0, 0.02), (1e-4, 60.0, 0.0)]
+        {
+            let pulse = History::HalfSine { start: 0.01, duration };
+            let bound = Course::new(&pulse, 0.7).swing(omega, zeta) * omega / (1.0_f64 - zeta * zeta).sqrt();
+            let actual = dynamic_factor(&pulse, omega, zeta, 0.7);
+            assert!(bound >= actual * (1.0 - 2e-3), "{duration} {omega} {zeta}: {bound} {actual}");
+            assert!(bound <= 2.0 * actual, "{duration} {omega} {zeta}: {bound} {actual}");
+        }
+    }
+
+    #[test]
+    fn a_short_pulse_swings_by_its_impulse_and_a_course_that_has_risen_starts_at_zero() {
+        let duration = 1e-4;
+        let pulse = History::HalfSine { start: 0.0, duration };
+        let swing = Course::new(&pulse, 1.0).swing(10.0, 0.0);
+        assert!((swing / (2.0 * duration / std::f64::consts::PI) - 1.0).abs() < 2e-3);
+        let late = History::HalfSine { start: -0.5, duration: 1.0 };
+        let risen = Course::new(&late, 0.25).risen();
+        assert!((risen.largest - (1.0 - 0.5_f64.sqrt())).abs() < 1e-12);
+        assert!(!risen.constant);
+    }
+}
