@@ -10,8 +10,9 @@ use modal::{BodyPoint, ModalError, Modes, ReducedBody};
 use nalgebra::Vector3;
 
 use crate::error::SceneError;
-use crate::load::{History, Load};
-use crate::scene::{self, Scene};
+use crate::history::History;
+use crate::load::{Load, LoadFrame};
+use crate::scene::{self, Body, MeshedBody, Scene};
 
 /// A scene that cannot be built.
 #[derive(Debug, thiserror::Error)]
@@ -84,11 +85,16 @@ impl Model {
     pub fn build(scene: &Scene, mut progress: impl FnMut(BuildProgress)) -> Result<Self, BuildError> {
         let mut times = BuildTimes::default();
         progress(BuildProgress::Mesh);
-        let mesh = timed(&mut times.mesh, || read_mesh(scene))?;
+        if scene.constraint.is_some() {
+            let cure = "remove it, or use a later version";
+            return Err(scene.refuse("constraints", "a constraint", "a free body in this version", cure).into());
+        }
+        let described = meshed(scene)?;
+        let mesh = timed(&mut times.mesh, || read_mesh(scene, described))?;
         progress(BuildProgress::Assembly);
-        let matrices = timed(&mut times.assembly, || matrices(scene, &mesh))?;
+        let matrices = timed(&mut times.assembly, || matrices(scene, described, &mesh))?;
         let modes = timed(&mut times.modes, || {
-            modal::solve(matrices.stiffness(), matrices.mass(), mesh.positions(), scene.modes.flexible, |p| {
+            modal::solve(matrices.stiffness(), matrices.mass(), mesh.positions(), scene.modes.flexible.most(), |p| {
                 progress(BuildProgress::Modes(p));
             })
             .map_err(|error| too_many_modes(scene, error))
@@ -109,8 +115,20 @@ impl Model {
             .loads
             .iter()
             .enumerate()
-            .map(|(i, Load::Force(force))| {
-                let History::HalfSine { start, duration } = force.history;
+            .map(|(i, load)| {
+                let not_yet = |key: &str, what: &str| {
+                    let key = format!("loads[{i}].{key}");
+                    let expected =
+                        "a force in global axes with a half-sine history, which is all this version simulates";
+                    scene.refuse(&key, what, expected, "change the load, or use a later version")
+                };
+                let Load::Force(force) = load else { return Err(not_yet("kind", "another load")) };
+                let History::HalfSine { start, duration } = force.history else {
+                    return Err(not_yet("history", "another history"));
+                };
+                if force.frame != LoadFrame::Global {
+                    return Err(not_yet("frame", "a follower force"));
+                }
                 Ok(DeadForce {
                     point: point(format!("loads[{i}].at"), force.at)?,
                     force_global: Vector3::from(force.direction) * force.amplitude,
@@ -126,7 +144,7 @@ impl Model {
         times.reduction = started.elapsed();
         Ok(Self {
             matrix_bytes: matrices.bytes(),
-            damping_ratios: vec![scene.modes.damping_ratio; body.flexible()],
+            damping_ratios: damping_ratios(scene, &modes),
             mesh,
             modes,
             body,
@@ -229,15 +247,15 @@ pub fn method(method: scene::Method) -> frames_rk4::Method {
     }
 }
 
-impl Scene {
+impl MeshedBody {
     /// The materials in the words of fem-tet10.
-    fn materials(&self) -> fem_tet10::Materials {
+    fn fem_materials(&self) -> fem_tet10::Materials {
         let material = |m: &scene::Material| fem_tet10::Material {
             young_modulus: m.young_modulus,
             poisson_ratio: m.poisson_ratio,
             density: m.density,
         };
-        match &self.body.materials {
+        match &self.materials {
             scene::Materials::Whole(m) => fem_tet10::Materials::Uniform(material(m)),
             scene::Materials::ByGroup(groups) => {
                 fem_tet10::Materials::ByGroup(groups.iter().map(|(name, m)| (name.clone(), material(m))).collect())
@@ -245,17 +263,20 @@ impl Scene {
         }
     }
 
-    fn point_masses(&self) -> Vec<fem_tet10::PointMass> {
+    fn fem_point_masses(&self) -> Vec<fem_tet10::PointMass> {
         let point_mass = |p: &scene::PointMass| fem_tet10::PointMass { at: p.at, mass: p.mass, spread: p.spread };
-        self.body.point_masses.iter().map(point_mass).collect()
+        self.point_masses.iter().map(point_mass).collect()
     }
+}
 
+impl Scene {
     /// Mass properties with each element's mass at its centroid, as the paper prints them.
     ///
     /// # Errors
     /// As [`Model::build`], for materials and point masses.
     pub fn centroid_lumped_inertia(&self, mesh: &Mesh) -> Result<fem_tet10::LumpedInertia, BuildError> {
-        Ok(fem_tet10::centroid_lumped_inertia(mesh, &self.materials(), &self.point_masses())?)
+        let body = meshed(self)?;
+        Ok(fem_tet10::centroid_lumped_inertia(mesh, &body.fem_materials(), &body.fem_point_masses())?)
     }
 }
 
@@ -266,8 +287,25 @@ fn timed<T>(time: &mut Duration, work: impl FnOnce() -> T) -> T {
     result
 }
 
-fn read_mesh(scene: &Scene) -> Result<Mesh, BuildError> {
-    read_msh(&scene.body.mesh).map_err(|error| match error {
+/// The body with a mesh.
+fn meshed(scene: &Scene) -> Result<&MeshedBody, SceneError> {
+    match &scene.body {
+        Body::Meshed(body) => Ok(body),
+        Body::Rigid(_) => {
+            let cure = "give a mesh and a material, or use a later version";
+            Err(scene.refuse("body.rigid", "a body without a mesh", "a mesh in this version", cure))
+        }
+    }
+}
+
+/// Damping ratio of each flexible mode.
+fn damping_ratios(scene: &Scene, modes: &Modes) -> Vec<f64> {
+    let ratio = |(mode, eigenvalue): (usize, &f64)| scene.modes.damping.ratio(mode, eigenvalue.sqrt());
+    modes.eigenvalues.iter().enumerate().map(ratio).collect()
+}
+
+fn read_mesh(scene: &Scene, body: &MeshedBody) -> Result<Mesh, BuildError> {
+    read_msh(&body.mesh).map_err(|error| match error {
         MeshError::Io { source_name, source } => scene
             .refuse(
                 "body.mesh",
@@ -280,8 +318,8 @@ fn read_mesh(scene: &Scene) -> Result<Mesh, BuildError> {
     })
 }
 
-fn matrices(scene: &Scene, mesh: &Mesh) -> Result<Matrices, BuildError> {
-    assemble(mesh, &scene.materials(), &scene.point_masses()).map_err(|error| {
+fn matrices(scene: &Scene, body: &MeshedBody, mesh: &Mesh) -> Result<Matrices, BuildError> {
+    assemble(mesh, &body.fem_materials(), &body.fem_point_masses()).map_err(|error| {
         let at = match &error {
             AssemblyError::OffBody { at, .. } | AssemblyError::Spread { at, .. } => *at,
             AssemblyError::MissingGroup { group, .. } => {
@@ -290,7 +328,7 @@ fn matrices(scene: &Scene, mesh: &Mesh) -> Result<Matrices, BuildError> {
             }
             _ => return error.into(),
         };
-        match scene.body.point_masses.iter().position(|p| p.at == at) {
+        match body.point_masses.iter().position(|p| p.at == at) {
             Some(i) => refuse(scene, &format!("body.point_masses[{i}].at"), error).into(),
             None => error.into(),
         }

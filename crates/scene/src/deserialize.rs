@@ -15,7 +15,7 @@ use toml::de::DeValue;
 
 use crate::document::{Document, Node};
 use crate::error::SceneError;
-use crate::shape::{Shape, wrong_shape};
+use crate::shape::{Shape, wrong_shape, wrong_type};
 
 /// The key that chooses the variant of an enum.
 const KIND: &str = "kind";
@@ -31,6 +31,12 @@ pub(crate) fn from_document<'de, T: Deserialize<'de>>(document: &'de Document<'d
 pub(crate) enum Fault {
     Placed(SceneError),
     MissingKey(&'static str),
+    /// A value of another type than this.
+    Type(String),
+    UnknownName {
+        found: String,
+        known: &'static [&'static str],
+    },
     Other(String),
 }
 
@@ -39,6 +45,8 @@ impl Fault {
         match self {
             Fault::Placed(error) => error,
             Fault::MissingKey(key) => missing_key(node, key),
+            Fault::Type(expected) => wrong_type(node, &expected),
+            Fault::UnknownName { found, known } => unknown_name(node, &found, known),
             Fault::Other(message) => {
                 node.place().refuse(message, "another value", "see the description of the scene file")
             }
@@ -54,6 +62,14 @@ impl de::Error for Fault {
     fn missing_field(field: &'static str) -> Self {
         Fault::MissingKey(field)
     }
+
+    fn invalid_type(_found: de::Unexpected, expected: &dyn de::Expected) -> Self {
+        Fault::Type(expected.to_string())
+    }
+
+    fn unknown_variant(found: &str, known: &'static [&'static str]) -> Self {
+        Fault::UnknownName { found: found.to_owned(), known }
+    }
 }
 
 impl fmt::Display for Fault {
@@ -61,6 +77,8 @@ impl fmt::Display for Fault {
         match self {
             Fault::Placed(error) => error.fmt(f),
             Fault::MissingKey(key) => write!(f, "`{key}` is missing"),
+            Fault::Type(expected) => write!(f, "expected {expected}"),
+            Fault::UnknownName { found, .. } => write!(f, "unknown value `{found}`"),
             Fault::Other(message) => f.write_str(message),
         }
     }
@@ -76,6 +94,10 @@ impl From<SceneError> for Fault {
 
 fn missing_key(table: &Node, key: &str) -> SceneError {
     SceneError::MissingKey { at: table.place_of_missing(key).into(), key: key.to_owned() }
+}
+
+fn unknown_name(node: &Node, found: &str, known: &[&'static str]) -> SceneError {
+    SceneError::UnknownName { at: node.place().into(), found: found.to_owned(), known: known.to_vec() }
 }
 
 fn refuse_unknown_keys(table: &Node, known: &[&'static str]) -> Result<(), SceneError> {
@@ -142,6 +164,7 @@ impl<'de> de::Deserializer<'de> for Node<'de> {
     fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Fault> {
         match self.value.get_ref() {
             DeValue::String(_) | DeValue::Datetime(_) => self.deserialize_str(visitor),
+            value @ DeValue::Integer(_) if count(value).is_some() => self.deserialize_u64(visitor),
             DeValue::Integer(_) | DeValue::Float(_) => self.deserialize_f64(visitor),
             DeValue::Boolean(boolean) => visitor.visit_bool(*boolean),
             DeValue::Array(_) => self.deserialize_seq(visitor),
@@ -217,11 +240,7 @@ impl<'de> de::Deserializer<'de> for Node<'de> {
             Some(name) if variants.contains(&name) => {
                 visitor.visit_enum(Variant { name: name.to_owned(), content: self })
             }
-            Some(name) => Err(Fault::Placed(SceneError::UnknownName {
-                at: chooser.place().into(),
-                found: name.to_owned(),
-                known: variants.to_vec(),
-            })),
+            Some(name) => Err(unknown_name(&chooser, name, variants).into()),
         }
     }
 

@@ -43,6 +43,11 @@ impl<'t> Document<'t> {
         }
     }
 
+    /// The folder of the scene file, which the paths in it are relative to.
+    pub fn folder(&self) -> &'t Path {
+        self.path.parent().unwrap_or(Path::new(""))
+    }
+
     pub fn root(&self) -> Node<'_> {
         Node { document: self, path: String::new(), key: None, value: &self.root }
     }

@@ -7,7 +7,7 @@ use std::path::Path;
 use crate::check::Check;
 use crate::document::Document;
 use crate::error::{Place, SceneError};
-use crate::scene::{Body, Scene};
+use crate::scene::Scene;
 use crate::section::Sections;
 
 /// The longest scene file that is read, in bytes (16 MiB).
@@ -40,7 +40,8 @@ impl Scene {
     }
 
     /// Checks the text of a scene file. `path` is where the text comes from: it is named in
-    /// messages, and the mesh is relative to its folder. Nothing is read.
+    /// messages, and the mesh and the tables of histories are relative to its folder. Of the
+    /// files that it names, the tables are read; the mesh is not.
     ///
     /// # Errors
     /// [`SceneError`] if the text is not TOML or breaks a rule of the scene file.
@@ -48,31 +49,31 @@ impl Scene {
         let path = path.as_ref();
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let document = Document::parse(text, path)?;
-        let Sections { title, units, body, modes, frame, initial, mut loads, time, output } =
+        let Sections { title, units, body, modes, effects, frame, initial, constraints, mut loads, time, output } =
             crate::deserialize::from_document(&document)?;
 
         let check = Check(&document);
         check.label("title", &title)?;
         check.units(&units)?;
-        let mesh = check.mesh(&body.mesh)?;
-        let materials = check.materials(body.material, body.materials)?;
-        check.point_masses(&body.point_masses)?;
-        check.modes(&modes)?;
+        let body = check.body(body)?;
+        let modes = check.modes(modes, &body)?;
         check.frame(frame.as_ref())?;
-        check.initial(&initial, &modes)?;
-        check.loads(&mut loads)?;
+        let constraint = check.constraints(constraints, &body)?;
+        check.initial(&initial, &modes, constraint.as_ref())?;
+        check.loads(&mut loads, &body, constraint.as_ref())?;
+        check.effects(&effects, &modes, &initial, constraint.as_ref(), &loads)?;
         let time = check.time(&time)?;
         let output = check.output(output, &time)?;
 
-        let folder = path.parent().unwrap_or(Path::new(""));
-        let body = Body { mesh: folder.join(mesh), materials, point_masses: body.point_masses };
         Ok(Self {
             title,
             units,
             body,
             modes,
+            effects,
             frame,
             initial,
+            constraint,
             loads,
             time,
             output,

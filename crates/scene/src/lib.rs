@@ -22,27 +22,37 @@
 //! One file of this crate per idea:
 //! `document` is the TOML tree in which every value knows its key path and its place;
 //! `deserialize` lets serde fill structs from that tree;
-//! `section`, `scene` and `load` are those structs, and so the list of all keys;
+//! `section`, `scene`, `modes`, `effects`, `constraint`, `load` and `history` are those structs, and so the list of
+//! all keys;
 //! `check` has the rules on their values.
-//! A new kind of load or history is a new variant in `load`, a new scheme one in `section` and
-//! `scene`; its rules are in `check`.
+//! A new kind of load is a new variant in `load`, of history in `history`, of constraint in `section` and
+//! `constraint`, a new scheme one in `section` and `scene`; its rules are in `check`.
 
 mod build;
 mod check;
+mod constraint;
 mod deserialize;
 mod document;
+mod effects;
 mod error;
 mod example;
 mod file;
+mod history;
 mod load;
+mod modes;
 mod scene;
 mod section;
 mod shape;
 mod suggest;
 
 pub use build::{BuildError, BuildProgress, BuildTimes, Model, method};
+pub use constraint::{Constraint, Drive, HingeLine, Region};
+pub use effects::{Choice, Effects};
 pub use error::{Place, SceneError};
-pub use load::{Force, History, Load, LoadFrame};
+pub use history::{History, Table};
+pub use load::{BaseAcceleration, Force, Gravity, Load, LoadFrame, Moment, Pressure, Traction};
+pub use modes::{Damping, Flexible, Modes, Rayleigh};
 pub use scene::{
-    Body, Frame, Initial, Material, Materials, Method, Modes, Output, PointMass, Rows, Scene, Stepping, Time, Units,
+    Body, Frame, Initial, Material, Materials, MeshedBody, Method, Output, PointMass, RigidBody, Rows, Scene, Stepping,
+    Time, Units,
 };

@@ -1,13 +1,28 @@
-//! The loads of a scene: what acts, where, and when.
+//! The loads of a scene: what acts, and where.
 
 use serde::Deserialize;
 
+use crate::history::History;
+
 /// One `[[loads]]` entry, chosen by its key `kind`.
+///
+/// Every `direction` is a unit vector (the file may give a vector of any length but 0); a negative amplitude acts
+/// against it. The amplitude is the load where its history is 1.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Load {
     /// `kind = "force"`: a force at a point.
     Force(Force),
+    /// `kind = "moment"`: a moment at a point.
+    Moment(Moment),
+    /// `kind = "pressure"`: a pressure on a surface.
+    Pressure(Pressure),
+    /// `kind = "traction"`: a force per area on a surface.
+    Traction(Traction),
+    /// `kind = "gravity"`: the same acceleration for all of the body.
+    Gravity(Gravity),
+    /// `kind = "base-acceleration"`: the acceleration of what holds the body.
+    BaseAcceleration(BaseAcceleration),
 }
 
 /// A force at a point of the body.
@@ -16,14 +31,90 @@ pub enum Load {
 pub struct Force {
     /// Where it acts, length, mesh axes.
     pub at: [f64; 3],
-    /// Unit vector of its direction, in the axes named by [`Force::frame`]. The file may give a
-    /// vector of any length but 0.
+    /// Unit vector of its direction, in the axes named by [`Force::frame`].
     pub direction: [f64; 3],
-    /// Force where the history is 1; a negative one acts against the direction.
+    /// Force.
     pub amplitude: f64,
     /// The axes that the direction is fixed in; default global.
     #[serde(default)]
     pub frame: LoadFrame,
+    /// Factor on the amplitude over time; default constant.
+    #[serde(default)]
+    pub history: History,
+}
+
+/// A moment at a point of the body.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Moment {
+    /// Where it acts, length, mesh axes.
+    pub at: [f64; 3],
+    /// Unit vector of its axis, right-handed, in the axes named by [`Moment::frame`].
+    pub direction: [f64; 3],
+    /// Moment.
+    pub amplitude: f64,
+    /// The axes that the direction is fixed in; default global.
+    #[serde(default)]
+    pub frame: LoadFrame,
+    /// Factor on the amplitude over time; default constant.
+    #[serde(default)]
+    pub history: History,
+    /// Radius > 0, length, of the ball whose nodes take the moment; `None` leaves it to what is at the point.
+    pub radius: Option<f64>,
+}
+
+/// A pressure on a surface: normal to it, against its outward normal where positive. It follows the body.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Pressure {
+    /// Name of the physical surface in the mesh.
+    pub group: String,
+    /// Force per area.
+    pub amplitude: f64,
+    /// Factor on the amplitude over time; default constant.
+    #[serde(default)]
+    pub history: History,
+}
+
+/// A force per area on a surface, in one direction.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Traction {
+    /// Name of the physical surface in the mesh.
+    pub group: String,
+    /// Unit vector of its direction, in the axes named by [`Traction::frame`].
+    pub direction: [f64; 3],
+    /// Force per area.
+    pub amplitude: f64,
+    /// The axes that the direction is fixed in; default global.
+    #[serde(default)]
+    pub frame: LoadFrame,
+    /// Factor on the amplitude over time; default constant.
+    #[serde(default)]
+    pub history: History,
+}
+
+/// Gravity: each mass m of the body has the weight m · amplitude · direction.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Gravity {
+    /// Unit vector of the direction in which things fall, global axes.
+    pub direction: [f64; 3],
+    /// Acceleration.
+    pub amplitude: f64,
+    /// Factor on the amplitude over time; default constant.
+    #[serde(default)]
+    pub history: History,
+}
+
+/// The acceleration of what holds the body; its motion is then seen from there.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BaseAcceleration {
+    /// Unit vector of its direction, global axes.
+    pub direction: [f64; 3],
+    /// Acceleration.
+    pub amplitude: f64,
     /// Factor on the amplitude over time.
     pub history: History,
 }
@@ -35,19 +126,6 @@ pub enum LoadFrame {
     /// Global axes: a dead load.
     #[default]
     Global,
-}
-
-/// A factor on a load over time, chosen by its key `kind`.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
-#[serde(rename_all = "kebab-case", deny_unknown_fields)]
-pub enum History {
-    /// `kind = "half-sine"`: sin(π (t − start) / duration) while start ≤ t ≤ start + duration,
-    /// otherwise 0.
-    HalfSine {
-        /// Time at which it begins; default 0. A negative one has begun before the run.
-        #[serde(default)]
-        start: f64,
-        /// Length > 0 of the pulse in time.
-        duration: f64,
-    },
+    /// Body axes: a follower load.
+    Body,
 }

@@ -9,7 +9,10 @@ use std::path::PathBuf;
 
 use serde::Deserialize;
 
+use crate::constraint::Constraint;
+use crate::effects::Effects;
 use crate::load::Load;
+use crate::modes::Modes;
 
 /// A scene that obeys every rule which needs no mesh: all numbers are finite and in range.
 #[derive(Clone, Debug, PartialEq)]
@@ -18,14 +21,18 @@ pub struct Scene {
     pub title: String,
     /// Labels of the units, for axes and tables.
     pub units: Units,
-    /// The flexible body.
+    /// The body.
     pub body: Body,
     /// The modes kept and their damping.
     pub modes: Modes,
+    /// Which effects are simulated.
+    pub effects: Effects,
     /// The reference points of the floating frame; `None` leaves the choice to the program.
     pub frame: Option<Frame>,
     /// The state at t = 0.
     pub initial: Initial,
+    /// What holds the body; `None` is a free one.
+    pub constraint: Option<Constraint>,
     /// Any number of loads, in the order of the file.
     pub loads: Vec<Load>,
     /// How far and how to step.
@@ -50,15 +57,36 @@ pub struct Units {
     pub time: String,
 }
 
-/// The flexible body.
+/// The body: the scene has exactly one of the two keys.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Body {
+pub enum Body {
+    /// Key `mesh`: a body that can deform.
+    Meshed(MeshedBody),
+    /// Key `rigid`: mass properties without a mesh.
+    Rigid(RigidBody),
+}
+
+/// A body of finite elements.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MeshedBody {
     /// The mesh file, already resolved against the folder of the scene file.
     pub mesh: PathBuf,
     /// What the elements are made of.
     pub materials: Materials,
     /// Masses added at points; default none.
     pub point_masses: Vec<PointMass>,
+}
+
+/// A rigid body without a mesh. Its axes are those of the scene's positions ("mesh axes" elsewhere).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RigidBody {
+    /// Mass > 0.
+    pub mass: f64,
+    /// Centre of mass, length, body axes.
+    pub center_of_mass: [f64; 3],
+    /// Inertia tensor about the centre of mass, mass · length², body axes: symmetric, its principal moments positive
+    /// and none above the sum of the others. The file may give it about another point.
+    pub inertia: [[f64; 3]; 3],
 }
 
 /// What the elements are made of: the scene has exactly one of the two keys.
@@ -95,18 +123,6 @@ pub struct PointMass {
     pub spread: Option<f64>,
 }
 
-/// The modes kept and their damping.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Modes {
-    /// Number of flexible modes, the lowest first; 0 is a rigid body.
-    pub flexible: usize,
-    /// Damping ratio ζ ≥ 0 of every flexible mode (1 is critical); default 0. Rigid modes are
-    /// never damped.
-    #[serde(default)]
-    pub damping_ratio: f64,
-}
-
 /// The paper's reference points: three points of the body that are not on one line.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -131,7 +147,7 @@ pub struct Initial {
     /// Angular velocity, radians per time, body axes.
     pub angular_velocity: [f64; 3],
     /// Modal displacements of the flexible modes (mass-normalised), lowest mode first. At most
-    /// `modes.flexible` entries; those not given are 0.
+    /// [`Flexible::most`](crate::Flexible::most) entries; those not given are 0.
     pub modal_displacement: Vec<f64>,
     /// Modal velocities, as [`Initial::modal_displacement`].
     pub modal_velocity: Vec<f64>,

@@ -41,13 +41,28 @@ pub(crate) fn wrong_shape(node: &Node, expected: Shape) -> SceneError {
         (Shape::Number, DeValue::String(text)) if text.parse::<f64>().is_ok() => "remove the quotes".to_owned(),
         (Shape::Count, DeValue::String(text)) if text.parse::<u64>().is_ok() => "remove the quotes".to_owned(),
         (Shape::Text, DeValue::Integer(_) | DeValue::Float(_) | DeValue::Boolean(_)) => "put it in quotes".to_owned(),
-        _ => match example(&node.path) {
-            Some(lines) if lines.contains('\n') => format!("write it like this:\n{lines}"),
-            Some(line) => format!("write it like this: `{line}`"),
-            None => format!("write {expected}"),
-        },
+        _ => like_the_example(node, &expected.to_string()),
     };
     node.place().refuse(describe(node), expected.to_string(), cure)
+}
+
+/// The refusal of a value that has none of the types `expected`.
+pub(crate) fn wrong_type(node: &Node, expected: &str) -> SceneError {
+    let cure = match node.value.get_ref() {
+        DeValue::String(text) if text.parse::<f64>().is_ok() || text.parse::<bool>().is_ok() => {
+            "remove the quotes".to_owned()
+        }
+        _ => like_the_example(node, expected),
+    };
+    node.place().refuse(describe(node), expected, cure)
+}
+
+fn like_the_example(node: &Node, expected: &str) -> String {
+    match example(&node.path) {
+        Some(lines) if lines.contains('\n') => format!("write it like this:\n{lines}"),
+        Some(line) => format!("write it like this: `{line}`"),
+        None => format!("write {expected}"),
+    }
 }
 
 fn describe(node: &Node) -> String {

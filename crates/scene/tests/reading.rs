@@ -2,7 +2,10 @@
 
 use std::path::Path;
 
-use scene::{Force, History, Load, LoadFrame, Material, Materials, Method, Rows, Scene, SceneError, Stepping};
+use scene::{
+    Body, Choice, Damping, Effects, Flexible, Force, History, Load, LoadFrame, Material, Materials, MeshedBody, Method,
+    Rows, Scene, SceneError, Stepping,
+};
 
 const EXAMPLE: &str = include_str!("../src/example.toml");
 
@@ -12,14 +15,14 @@ fn the_whole_example() {
     assert_eq!(scene.title, "Free plate, 50 N corner pulse");
     let units = &scene.units;
     assert_eq!([&units.length, &units.mass, &units.time], ["mm", "Mg", "s"]);
-    assert_eq!(scene.body.mesh, Path::new("examples/../meshes/plate.msh"));
+    assert_eq!(meshed(&scene).mesh, Path::new("examples/../meshes/plate.msh"));
     let aluminium = Material { young_modulus: 70000.0, poisson_ratio: 0.33, density: 2.7e-9 };
-    assert_eq!(scene.body.materials, Materials::Whole(aluminium));
-    assert_eq!(scene.body.point_masses.len(), 1);
-    let point_mass = scene.body.point_masses[0];
+    assert_eq!(meshed(&scene).materials, Materials::Whole(aluminium));
+    assert_eq!(meshed(&scene).point_masses.len(), 1);
+    let point_mass = meshed(&scene).point_masses[0];
     assert_eq!((point_mass.at, point_mass.mass), ([-500.0, -25.0, 0.0], 0.001));
     assert_eq!(point_mass.spread, None);
-    assert_eq!((scene.modes.flexible, scene.modes.damping_ratio), (10, 0.05));
+    assert_eq!((scene.modes.flexible, &scene.modes.damping), (Flexible::Count(10), &Damping::Uniform(0.05)));
     let frame = scene.frame.unwrap();
     assert_eq!(frame.r, [-500.0, -25.0, 0.0]);
     assert_eq!(frame.p, [500.0, -25.0, 0.0]);
@@ -41,6 +44,14 @@ fn the_whole_example() {
     assert_eq!(scene.path, Path::new("examples/plate.toml"));
 }
 
+/// The body of a scene with a mesh.
+fn meshed(scene: &Scene) -> &MeshedBody {
+    match &scene.body {
+        Body::Meshed(body) => body,
+        Body::Rigid(_) => panic!("a rigid body"),
+    }
+}
+
 /// A scene of the required keys alone, with `more` at its end.
 fn least(more: &str) -> String {
     format!(
@@ -54,12 +65,15 @@ fn least(more: &str) -> String {
 #[test]
 fn defaults_and_whole_numbers() {
     let scene = Scene::parse(&least(""), "a.toml").unwrap();
-    assert_eq!(scene.body.mesh, Path::new("a.msh"));
-    let Materials::ByGroup(groups) = &scene.body.materials else { panic!("not by group") };
+    assert_eq!(meshed(&scene).mesh, Path::new("a.msh"));
+    let Materials::ByGroup(groups) = &meshed(&scene).materials else { panic!("not by group") };
     let unit = Material { young_modulus: 1.0, poisson_ratio: 0.0, density: 1.0 };
     assert_eq!(groups.iter().collect::<Vec<_>>(), [(&"core".to_owned(), &unit)]);
-    assert!(scene.body.point_masses.is_empty() && scene.loads.is_empty());
-    assert_eq!((scene.modes.flexible, scene.modes.damping_ratio), (0, 0.0));
+    assert!(meshed(&scene).point_masses.is_empty() && scene.loads.is_empty());
+    assert_eq!((scene.modes.flexible, &scene.modes.damping), (Flexible::Count(0), &Damping::Uniform(0.0)));
+    assert_eq!(scene.modes.static_correction, Choice::Auto);
+    assert_eq!((scene.effects, &scene.constraint), (Effects::default(), &None));
+    assert_eq!((scene.effects.rotation, scene.effects.tolerance), (Choice::Auto, 1e-3));
     assert_eq!(scene.frame, None);
     assert_eq!(scene.initial.velocity, [0.0; 3]);
     assert_eq!(scene.initial.angular_velocity, [0.0; 3]);
@@ -134,12 +148,12 @@ fn every_optional_key() {
     .replace("flexible = 0", "flexible = 2\nmodes.damping_ratio = 1.5")
     .replace("modes.flexible", "body.point_masses = [{ at = [1, 2, 3], mass = 4, spread = 5 }]\nmodes.flexible");
     let scene = Scene::parse(&text, "/a/b.toml").unwrap();
-    assert_eq!(scene.body.mesh, Path::new("/a/a.msh"));
-    assert_eq!(scene.body.point_masses[0].spread, Some(5.0));
-    assert_eq!((scene.modes.flexible, scene.modes.damping_ratio), (2, 1.5));
+    assert_eq!(meshed(&scene).mesh, Path::new("/a/a.msh"));
+    assert_eq!(meshed(&scene).point_masses[0].spread, Some(5.0));
+    assert_eq!((scene.modes.flexible, &scene.modes.damping), (Flexible::Count(2), &Damping::Uniform(1.5)));
     assert_eq!(scene.initial.velocity, [0.0; 3]);
     assert_eq!(scene.initial.angular_velocity, [1.0, 2.0, 3.0]);
-    let Load::Force(force) = &scene.loads[0];
+    let Load::Force(force) = &scene.loads[0] else { panic!("not a force: {:?}", scene.loads) };
     for (found, wanted) in force.direction.iter().zip([0.0, -0.6, 0.8]) {
         assert!((found - wanted).abs() < 1e-15, "{:?}", force.direction);
     }
@@ -149,7 +163,7 @@ fn every_optional_key() {
 
     let absolute = text.replace("'a.msh'", "'/meshes/a.msh'");
     let scene = Scene::parse(&absolute, "/a/b.toml").unwrap();
-    assert_eq!(scene.body.mesh, Path::new("/meshes/a.msh"));
+    assert_eq!(meshed(&scene).mesh, Path::new("/meshes/a.msh"));
 }
 
 #[test]

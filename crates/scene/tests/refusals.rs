@@ -89,7 +89,14 @@ fn misspelt_names() {
     for (from, to, mark, key, near, known) in [
         ("\"force\"", "\"forse\"", "\"forse\"", "loads[0].kind", "force", "`force`"),
         ("\"global\"", "\"globl\"", "\"globl\"", "loads[0].frame", "global", "`global`"),
-        ("\"half-sine\"", "\"half_sine\"", "\"half_sine\"", "loads[0].history.kind", "half-sine", "`half-sine`"),
+        (
+            "\"half-sine\"",
+            "\"half_sine\"",
+            "\"half_sine\"",
+            "loads[0].history.kind",
+            "half-sine",
+            "`constant`, `step`, `ramp`, `half-sine`",
+        ),
         (
             "\"exponential\"",
             "\"papr\"",
@@ -151,15 +158,13 @@ fn missing_keys() {
         ("kind = \"force\"", "[[loads]]", "loads[0].kind", "kind = \"force\""),
         ("direction = [1.0, 0.0, 1.0] ", "[[loads]]", "loads[0].direction", "direction = ["),
         ("amplitude = 50.0", "[[loads]]", "loads[0].amplitude", "amplitude = 50.0"),
-        ("history = {", "[[loads]]", "loads[0].history", "history = { kind"),
         ("kind = \"half-sine\", ", "{ start", "loads[0].history.kind", "kind = \"half-sine\""),
         (", duration = 0.02", "{ kind", "loads[0].history.duration", "duration = 0.02"),
         ("end = 0.5", "[time]", "time.end", "end = 0.5"),
     ] {
         let name = key.rsplit('.').next().unwrap();
         let missing = format!("`{name}` is missing\n");
-        let to = if from == "history = {" { "#" } else { "" };
-        refused(from, to, mark, key, &[&missing, "add it, for example:\n", example]);
+        refused(from, "", mark, key, &[&missing, "add it, for example:\n", example]);
     }
 }
 

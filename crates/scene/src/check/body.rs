@@ -1,0 +1,172 @@
+//! The rules on `[body]`.
+
+use std::collections::BTreeMap;
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::Check;
+use crate::document::join;
+use crate::error::SceneError;
+use crate::scene::{Body, Material, Materials, MeshedBody, PointMass, RigidBody};
+use crate::section::{BodySection, RigidSection};
+
+/// Relative difference of entries of an inertia tensor that should be equal, still taken for rounding.
+const ASYMMETRY: f64 = 1e-6;
+
+/// Relative excess of a principal moment over the sum of the others, still taken for rounding: that of a flat body
+/// is their sum, written with some digits.
+const EXCESS: f64 = 1e-3;
+
+impl Check<'_> {
+    pub fn body(&self, section: BodySection) -> Result<Body, SceneError> {
+        let BodySection { mesh, material, materials, point_masses, rigid } = section;
+        let Some(rigid) = rigid else {
+            let Some(mesh) = mesh else { return Err(self.missing("body", "mesh")) };
+            let mesh = self.0.folder().join(self.mesh(&mesh)?);
+            let materials = self.materials(material, materials)?;
+            self.point_masses(&point_masses)?;
+            return Ok(Body::Meshed(MeshedBody { mesh, materials, point_masses }));
+        };
+        for key in ["mesh", "material", "materials", "point_masses"] {
+            if self.has(&join("body", key)) {
+                return Err(self.0.place(&join("body", key)).refuse(
+                    format!("both `rigid` and `{key}`"),
+                    "mass properties, or a mesh with its materials and point masses",
+                    "keep `rigid` for a rigid body without a mesh, or the mesh and what belongs to it",
+                ));
+            }
+        }
+        self.rigid(&rigid).map(Body::Rigid)
+    }
+
+    fn rigid(&self, section: &RigidSection) -> Result<RigidBody, SceneError> {
+        let &RigidSection { mass, center_of_mass, inertia, about } = section;
+        let cure = "give the mass of the body in your unit of mass";
+        self.positive("body.rigid.mass", mass, cure)?;
+        let key = "body.rigid.inertia";
+        let given = Matrix3::from_fn(|i, j| inertia[i][j]);
+        let asymmetry = (given - given.transpose()).amax();
+        if asymmetry > ASYMMETRY * given.amax() {
+            return Err(self.0.place(key).refuse(
+                format!("a matrix whose entries across the diagonal differ by up to {asymmetry:?}"),
+                "a symmetric matrix",
+                "give the inertia tensor [[Jxx, Jxy, Jxz], [Jxy, Jyy, Jyz], [Jxz, Jyz, Jzz]], with \
+                 Jxy = −∫ x y dm",
+            ));
+        }
+        let center = Vector3::from(center_of_mass);
+        let arm = about.map_or(center, Vector3::from) - center;
+        let transport = (Matrix3::identity() * arm.norm_squared() - arm * arm.transpose()) * mass;
+        let central = (given + given.transpose()) / 2.0 - transport;
+        if let Some(found) = not_an_inertia(&central) {
+            return Err(self.0.place(key).refuse(
+                format!("{found} about the centre of mass"),
+                "positive principal moments of inertia, none above the sum of the other two",
+                "correct the tensor, or set `about` to the point it is given for (default: the centre of mass)",
+            ));
+        }
+        let inertia = [0, 1, 2].map(|i| [0, 1, 2].map(|j| central[(i, j)]));
+        Ok(RigidBody { mass, center_of_mass, inertia })
+    }
+
+    fn mesh<'m>(&self, mesh: &'m str) -> Result<&'m str, SceneError> {
+        self.require(
+            !mesh.is_empty() && !mesh.contains('\0'),
+            "body.mesh",
+            "the name of a mesh file",
+            "name a gmsh mesh, relative to the folder of the scene file: `mesh = \"plate.msh\"`",
+        )?;
+        Ok(mesh)
+    }
+
+    fn materials(
+        &self,
+        whole: Option<Material>,
+        by_group: Option<BTreeMap<String, Material>>,
+    ) -> Result<Materials, SceneError> {
+        match (whole, by_group) {
+            (Some(_), Some(_)) => Err(self.0.place("body.materials").refuse(
+                "both `material` and `materials`",
+                "exactly one of them",
+                "keep `material` for the whole mesh, or `materials` by physical group",
+            )),
+            (None, None) => {
+                let at = self.0.place("body.material").into();
+                Err(SceneError::MissingKey { at, key: "material".to_owned() })
+            }
+            (Some(material), None) => {
+                self.material("body.material", &material)?;
+                Ok(Materials::Whole(material))
+            }
+            (None, Some(groups)) => {
+                self.require(
+                    !groups.is_empty(),
+                    "body.materials",
+                    "a material for each physical group of the mesh",
+                    "add `group_name = { young_modulus = …, poisson_ratio = …, density = … }`",
+                )?;
+                for (group, material) in &groups {
+                    self.material(&join("body.materials", group), material)?;
+                }
+                Ok(Materials::ByGroup(groups))
+            }
+        }
+    }
+
+    fn material(&self, key: &str, material: &Material) -> Result<(), SceneError> {
+        let &Material { young_modulus, poisson_ratio, density } = material;
+        self.positive(
+            &join(key, "young_modulus"),
+            young_modulus,
+            "give Young's modulus as force per area in your units, e.g. 70000 N/mm² for aluminium",
+        )?;
+        self.require(
+            poisson_ratio > -1.0 && poisson_ratio < 0.5,
+            &join(key, "poisson_ratio"),
+            "a number between -1 and 0.5, both excluded",
+            "give Poisson's ratio of the material, e.g. 0.33; for a nearly incompressible one \
+             less than 0.5, e.g. 0.49",
+        )?;
+        self.positive(
+            &join(key, "density"),
+            density,
+            "give the density as mass per volume in your units, e.g. 2.7e-9 Mg/mm³ for aluminium",
+        )
+    }
+
+    fn point_masses(&self, masses: &[PointMass]) -> Result<(), SceneError> {
+        for (i, point_mass) in masses.iter().enumerate() {
+            let key = format!("body.point_masses[{i}]");
+            self.positive(
+                &join(&key, "mass"),
+                point_mass.mass,
+                "give the mass in your unit of mass, or remove the point mass",
+            )?;
+            if let Some(radius) = point_mass.spread {
+                self.positive(
+                    &join(&key, "spread"),
+                    radius,
+                    "give a radius, or remove `spread` to put the mass on one node",
+                )?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// What speaks against the tensor as one of inertia.
+fn not_an_inertia(tensor: &Matrix3<f64>) -> Option<String> {
+    let size = tensor.amax();
+    if !(size > 0.0 && tensor.iter().all(|entry| entry.is_finite())) {
+        return Some(format!("a tensor with the largest entry {size:?}"));
+    }
+    // Scaled, so that the squares of its entries are finite.
+    let mut moments: [f64; 3] = (tensor / size).symmetric_eigenvalues().into();
+    moments.sort_by(f64::total_cmp);
+    let [least, middle, largest] = moments;
+    let possible = least > f64::EPSILON && largest <= (least + middle) * (1.0 + EXCESS);
+    (!possible).then(|| {
+        let [a, b, c] = moments.map(|moment| moment * size);
+        format!("the principal moments {a:.6e}, {b:.6e}, {c:.6e}")
+    })
+}

@@ -1,0 +1,190 @@
+//! The rules on `[[constraints]]`.
+
+use super::Check;
+use crate::constraint::{Constraint, Drive, HingeLine, Region};
+use crate::document::join;
+use crate::error::SceneError;
+use crate::scene::Body;
+use crate::section::ConstraintSection;
+
+/// The keys of a region, as the file gives them.
+struct RegionKeys {
+    at: Option<[f64; 3]>,
+    radius: Option<f64>,
+    r#box: Option<[[f64; 3]; 2]>,
+    group: Option<String>,
+}
+
+impl Check<'_> {
+    pub fn constraints(
+        &self,
+        mut sections: Vec<ConstraintSection>,
+        body: &Body,
+    ) -> Result<Option<Constraint>, SceneError> {
+        if sections.len() > 1 {
+            return Err(self.0.place("constraints[1]").refuse(
+                format!("{} constraints", sections.len()),
+                "at most one, since the rigid motion left is known in closed form for one only",
+                "keep one; a clamp, or a hinge's or slider's region, may hold several places as one physical group",
+            ));
+        }
+        sections.pop().map(|section| self.constraint("constraints[0]", section, body)).transpose()
+    }
+
+    fn constraint(&self, key: &str, section: ConstraintSection, body: &Body) -> Result<Constraint, SceneError> {
+        match section {
+            ConstraintSection::Pin { at, radius } => {
+                if let Some(radius) = radius {
+                    self.radius(key, radius)?;
+                    self.needs_mesh(&join(key, "radius"), body)?;
+                }
+                Ok(Constraint::Pin { at, radius })
+            }
+            ConstraintSection::Hinge { at, axis, points, radius, r#box, group, motion } => {
+                let line = self.line(key, at, axis, points)?;
+                let region = self.region(key, RegionKeys { at, radius: None, r#box, group }, body)?;
+                let balls = match (radius, line) {
+                    (None, _) => vec![],
+                    (Some(radius), HingeLine::Axis { at, .. }) => vec![Region::Ball { at, radius }],
+                    (Some(radius), HingeLine::Points(points)) => points.map(|at| Region::Ball { at, radius }).into(),
+                };
+                if let Some(radius) = radius {
+                    self.radius(key, radius)?;
+                    self.needs_mesh(&join(key, "radius"), body)?;
+                }
+                let shaft: Vec<Region> = balls.into_iter().chain(region).collect();
+                let motion = self.motion(key, motion)?;
+                if motion.is_some() && shaft.is_empty() && matches!(body, Body::Meshed(_)) {
+                    return Err(self.0.place(&join(key, "motion")).refuse(
+                        "a driven hinge without a shaft",
+                        "nodes beside the line that the drive can turn",
+                        "say where the rigid shaft holds the body: `radius`, `box` or `group`",
+                    ));
+                }
+                Ok(Constraint::Hinge { line, shaft, motion })
+            }
+            ConstraintSection::Clamp { at, radius, r#box, group } => {
+                if let Body::Rigid(_) = body {
+                    return Err(self.0.place(&join(key, "kind")).refuse(
+                        "a rigid body that is clamped",
+                        "a body that can move",
+                        "remove the clamp, or give the body a mesh",
+                    ));
+                }
+                self.at_with_radius(key)?;
+                match self.region(key, RegionKeys { at, radius, r#box, group }, body)? {
+                    Some(region) => Ok(Constraint::Clamp { region }),
+                    None => Err(self.no_region(key)),
+                }
+            }
+            ConstraintSection::Slider { mut direction, at, radius, r#box, group, motion } => {
+                self.at_with_radius(key)?;
+                let cure = "give the direction to slide along; its length does not matter";
+                self.normalise(&join(key, "direction"), &mut direction, cure)?;
+                let region = self.region(key, RegionKeys { at, radius, r#box, group }, body)?;
+                if region.is_none() && matches!(body, Body::Meshed(_)) {
+                    return Err(self.no_region(key));
+                }
+                let motion = self.motion(key, motion)?;
+                Ok(Constraint::Slider { direction, region, motion })
+            }
+        }
+    }
+
+    /// The line of a hinge, from `at` and `axis` or from `points`.
+    fn line(
+        &self,
+        key: &str,
+        at: Option<[f64; 3]>,
+        axis: Option<[f64; 3]>,
+        points: Option<[[f64; 3]; 2]>,
+    ) -> Result<HingeLine, SceneError> {
+        let cure = "give a point and the direction of the line, `at` and `axis`, or two points of it, `points`";
+        let Some(points) = points else {
+            return match (at, axis) {
+                (Some(at), Some(mut direction)) => {
+                    let cure = "give the direction of the line; its length does not matter";
+                    self.normalise(&join(key, "axis"), &mut direction, cure)?;
+                    Ok(HingeLine::Axis { at, direction })
+                }
+                (None, None) => {
+                    let found = "neither `at` and `axis` nor `points`";
+                    Err(self.0.place(key).refuse(found, "the line of the hinge", cure))
+                }
+                (Some(_), None) => Err(self.missing(key, "axis")),
+                (None, Some(_)) => Err(self.missing(key, "at")),
+            };
+        };
+        for name in ["at", "axis"] {
+            if self.has(&join(key, name)) {
+                let found = format!("both `{name}` and `points`");
+                return Err(self.0.place(&join(key, name)).refuse(found, "the line of the hinge once", cure));
+            }
+        }
+        let line = HingeLine::Points(points);
+        if line.direction() == [0.0; 3] {
+            let place = self.0.place(&join(key, "points"));
+            return Err(place.refuse("the same point twice", "two different points of the line", cure));
+        }
+        Ok(line)
+    }
+
+    fn region(&self, key: &str, keys: RegionKeys, body: &Body) -> Result<Option<Region>, SceneError> {
+        let cure = "keep one way to say which nodes are meant";
+        self.at_most_one(key, &["radius", "box", "group"], cure)?;
+        let (name, region) = match keys {
+            RegionKeys { r#box: Some([low, high]), .. } => {
+                let has_volume = low.iter().zip(&high).all(|(low, high)| low < high);
+                self.require(
+                    has_volume,
+                    &join(key, "box"),
+                    "a box whose first corner is below its second in each coordinate",
+                    "give the lowest and the highest coordinates, `box = [[x, y, z], [x, y, z]]`; \
+                     make a flat box thicker than rounding",
+                )?;
+                ("box", Region::Box { low, high })
+            }
+            RegionKeys { group: Some(group), .. } => {
+                self.group(&join(key, "group"), &group)?;
+                ("group", Region::Group(group))
+            }
+            RegionKeys { at, radius: Some(radius), .. } => {
+                let Some(at) = at else { return Err(self.missing(key, "at")) };
+                self.radius(key, radius)?;
+                ("radius", Region::Ball { at, radius })
+            }
+            _ => return Ok(None),
+        };
+        self.needs_mesh(&join(key, name), body)?;
+        Ok(Some(region))
+    }
+
+    /// Refuses a point that is the centre of no ball.
+    fn at_with_radius(&self, key: &str) -> Result<(), SceneError> {
+        let at = join(key, "at");
+        if !self.has(&at) || self.has(&join(key, "radius")) {
+            return Ok(());
+        }
+        let cure = "add `radius` for the nodes within a ball around the point, or remove `at`";
+        Err(self.0.place(&at).refuse("`at` without `radius`", "both of them, or neither", cure))
+    }
+
+    fn radius(&self, key: &str, radius: f64) -> Result<(), SceneError> {
+        self.positive(&join(key, "radius"), radius, "give the radius of the ball whose nodes are held")
+    }
+
+    fn motion(&self, key: &str, motion: Option<Drive>) -> Result<Option<Drive>, SceneError> {
+        let Some(mut drive) = motion else { return Ok(None) };
+        self.history(&join(&join(key, "motion"), "history"), &mut drive.history)?;
+        Ok(Some(drive))
+    }
+
+    fn no_region(&self, key: &str) -> SceneError {
+        self.0.place(key).refuse(
+            "none of `radius`, `box` and `group`",
+            "the part of the body that is held",
+            "add `at` and `radius` for the nodes within a ball, `box = [[x, y, z], [x, y, z]]` for those within a \
+             box, or `group` for a physical group of the mesh",
+        )
+    }
+}

@@ -1,0 +1,158 @@
+//! The rules on histories, and the tables that they name.
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+use super::Check;
+use crate::document::join;
+use crate::error::{Place, SceneError, shorten};
+use crate::history::{History, Table};
+
+/// The longest table file that is read, in bytes (16 MiB).
+const LONGEST: u64 = 16 << 20;
+
+/// What a table holds.
+const PAIRS: &str = "pairs of time and factor";
+
+impl Check<'_> {
+    /// Checks a history and reads the table files that it names.
+    pub(super) fn history(&self, key: &str, history: &mut History) -> Result<(), SceneError> {
+        match history {
+            History::Constant | History::Step { .. } => Ok(()),
+            History::Ramp { duration, .. } => {
+                self.duration(key, *duration, "give the time from 0 to 1, e.g. `duration = 0.02`")
+            }
+            History::HalfSine { duration, .. } => {
+                self.duration(key, *duration, "give the length of the pulse in time, e.g. `duration = 0.02`")
+            }
+            History::Sine { frequency, duration, .. } => {
+                let cure = "give the frequency in cycles per time, e.g. `frequency = 50.0`";
+                self.positive(&join(key, "frequency"), *frequency, cure)?;
+                match *duration {
+                    Some(duration) => {
+                        self.duration(key, duration, "give the length of the sine in time, or remove `duration`")
+                    }
+                    None => Ok(()),
+                }
+            }
+            History::Sweep { from, to, duration, .. } => {
+                for (name, frequency) in [("from", *from), ("to", *to)] {
+                    let cure = "give the frequency in cycles per time, e.g. `from = 10.0, to = 100.0`";
+                    self.require(frequency >= 0.0, &join(key, name), "a number of 0 or more", cure)?;
+                }
+                self.duration(key, *duration, "give the length of the sweep in time, e.g. `duration = 2.0`")
+            }
+            History::Table(table) => self.table(key, table),
+            History::Expression { formula, corners } => {
+                self.require(
+                    !formula.trim().is_empty(),
+                    &join(key, "formula"),
+                    "a formula in the time t",
+                    "give the factor as a formula, e.g. `formula = \"sin(2*pi*t)\"`",
+                )?;
+                self.rising(&join(key, "corners"), corners, |i| format!("[{i}]"), "times")
+            }
+            History::Product { factors } => {
+                let key = join(key, "factors");
+                let cure = "list the histories to multiply, e.g. `factors = [{ kind = \"sine\", frequency = 50.0 }, \
+                            { kind = \"ramp\", duration = 0.1 }]`";
+                self.require(!factors.is_empty(), &key, "at least one history", cure)?;
+                factors.iter_mut().enumerate().try_for_each(|(i, factor)| self.history(&format!("{key}[{i}]"), factor))
+            }
+        }
+    }
+
+    fn duration(&self, key: &str, duration: f64, cure: &str) -> Result<(), SceneError> {
+        self.positive(&join(key, "duration"), duration, cure)
+    }
+
+    fn table(&self, key: &str, table: &mut Table) -> Result<(), SceneError> {
+        let cure = "keep `points` for a table in the scene, or `file` for one in a CSV file";
+        self.at_most_one(key, &["points", "file"], cure)?;
+        if let Some(file) = &mut table.file {
+            let key = join(key, "file");
+            *file = self.0.folder().join(&file);
+            table.points = self.read_table(&key, file)?;
+            return Ok(());
+        }
+        let key = join(key, "points");
+        if !self.has(&key) {
+            return Err(self.0.place(&key).refuse(
+                "neither `points` nor `file`",
+                "exactly one of them",
+                "give the table, e.g. `points = [[0.0, 0.0], [0.1, 1.0]]`, or a CSV file, e.g. `file = \"pulse.csv\"`",
+            ));
+        }
+        let cure = "give times and factors, e.g. `points = [[0.0, 0.0], [0.1, 1.0]]`";
+        self.require(!table.points.is_empty(), &key, &format!("at least one of the {PAIRS}"), cure)?;
+        let times: Vec<f64> = table.points.iter().map(|[time, _]| *time).collect();
+        self.rising(&key, &times, |i| format!("[{i}][0]"), "times")
+    }
+
+    fn read_table(&self, key: &str, path: &Path) -> Result<Vec<[f64; 2]>, SceneError> {
+        let mut text = String::new();
+        let read = File::open(path).and_then(|file| file.take(LONGEST + 1).read_to_string(&mut text));
+        if let Err(cause) = read {
+            return Err(self.0.place(key).refuse(
+                format!("a table that cannot be read: {}: {cause}", path.display()),
+                "a CSV file, its path relative to the folder of the scene file",
+                "correct the path, or make the file; it is text in UTF-8",
+            ));
+        }
+        if text.len() as u64 > LONGEST {
+            return Err(self.0.place(key).refuse(
+                format!("a table longer than {LONGEST} bytes: {}", path.display()),
+                "a CSV file of at most that length",
+                "name a CSV file of two columns, with fewer points",
+            ));
+        }
+        parse_table(&text, path, key)
+    }
+}
+
+/// The points of a CSV text: two columns of numbers, separated by a comma, the times rising. The first line may name
+/// the columns; empty lines and those that begin with `#` are left out. A refusal names the line of the CSV file and
+/// the key of the scene.
+fn parse_table(text: &str, path: &Path, key: &str) -> Result<Vec<[f64; 2]>, SceneError> {
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let mut points: Vec<[f64; 2]> = Vec::new();
+    let mut is_first = true;
+    let mut start = 0;
+    // Numbers need no quotes, and a library for CSV loses the line where comments stand before it.
+    for written in text.split_inclusive('\n') {
+        let range = start..start + written.trim_end().len();
+        start += written.len();
+        let line = written.trim();
+        if line.is_empty() || line.starts_with('#') {
+            continue;
+        }
+        let refuse = |found: String, expected: &str, cure: &str| {
+            Err(Place::new(path, text, range, key.to_owned()).refuse(found, expected, cure))
+        };
+        let numbers: Vec<Option<f64>> = line.split(',').map(|field| field.trim().parse().ok()).collect();
+        let names_columns = is_first && numbers.iter().all(Option::is_none);
+        is_first = false;
+        match (&numbers[..], points.last()) {
+            _ if names_columns => {}
+            (&[Some(time), Some(_)], Some(&[before, _])) if time <= before => {
+                let expected = "times that rise from line to line";
+                return refuse(
+                    format!("the time {time:?} after {before:?}"),
+                    expected,
+                    "put the lines in order, each time once",
+                );
+            }
+            (&[Some(time), Some(factor)], _) if time.is_finite() && factor.is_finite() => points.push([time, factor]),
+            _ => {
+                let expected = "two finite numbers, time and factor, with a comma between them";
+                return refuse(shorten(line), expected, "correct the line; only the first may name the columns");
+            }
+        }
+    }
+    if points.is_empty() {
+        let place = Place::new(path, text, 0..text.len(), key.to_owned());
+        return Err(place.refuse("no points", PAIRS, "write a line `time,factor` for each point"));
+    }
+    Ok(points)
+}

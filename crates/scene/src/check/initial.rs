@@ -1,0 +1,65 @@
+//! The rules on `[initial]`.
+
+use nalgebra::Vector3;
+
+use super::Check;
+use crate::constraint::Constraint;
+use crate::error::SceneError;
+use crate::modes::Modes;
+use crate::scene::Initial;
+
+/// Sine of the angle between an initial velocity and the direction that is left, up to which it counts as rounding.
+const ALONG: f64 = 1e-6;
+
+impl Check<'_> {
+    pub fn initial(&self, initial: &Initial, modes: &Modes, constraint: Option<&Constraint>) -> Result<(), SceneError> {
+        for (key, list) in [
+            ("initial.modal_displacement", &initial.modal_displacement),
+            ("initial.modal_velocity", &initial.modal_velocity),
+        ] {
+            self.not_more_than_modes(key, list.len(), modes.flexible)?;
+        }
+        let Some(constraint) = constraint else { return Ok(()) };
+        // What the constraint leaves of the velocity and of the angular velocity.
+        let (velocity, angular_velocity) = match constraint {
+            Constraint::Pin { .. } => (Left::Nothing("it follows from the angular velocity about the pin"), Left::All),
+            Constraint::Hinge { motion: None, line, .. } => {
+                (Left::Nothing("it follows from the angular velocity about the hinge"), Left::Along(line.direction()))
+            }
+            Constraint::Slider { motion: None, direction, .. } => {
+                (Left::Along(*direction), Left::Nothing("a slider does not turn"))
+            }
+            Constraint::Clamp { .. } => (Left::Nothing("a clamped body stays"), Left::Nothing("a clamped body stays")),
+            Constraint::Hinge { .. } | Constraint::Slider { .. } => {
+                (Left::Nothing("`motion` gives it"), Left::Nothing("`motion` gives it"))
+            }
+        };
+        self.left("initial.velocity", initial.velocity, velocity)?;
+        self.left("initial.angular_velocity", initial.angular_velocity, angular_velocity)
+    }
+
+    fn left(&self, key: &str, value: [f64; 3], left: Left) -> Result<(), SceneError> {
+        let value = Vector3::from(value);
+        match left {
+            Left::All => Ok(()),
+            Left::Nothing(reason) => {
+                let cure = format!("remove it: {reason}");
+                self.require(value == Vector3::zeros(), key, "0 with this constraint", &cure)
+            }
+            Left::Along(direction) => {
+                let across = value.cross(&Vector3::from(direction)).norm();
+                let [x, y, z] = direction;
+                let expected = format!("a multiple of [{x:.6}, {y:.6}, {z:.6}], the motion that the constraint leaves");
+                self.require(across <= ALONG * value.norm(), key, &expected, "give the part along it")
+            }
+        }
+    }
+}
+
+/// What a constraint leaves of a velocity.
+enum Left {
+    All,
+    Along([f64; 3]),
+    /// Nothing, for this reason.
+    Nothing(&'static str),
+}

@@ -1,0 +1,73 @@
+//! The rules on `[[loads]]`.
+
+use super::Check;
+use crate::constraint::Constraint;
+use crate::document::join;
+use crate::error::SceneError;
+use crate::load::Load;
+use crate::scene::Body;
+
+impl Check<'_> {
+    /// Checks the loads, normalises their directions and reads their tables.
+    pub fn loads(&self, loads: &mut [Load], body: &Body, constraint: Option<&Constraint>) -> Result<(), SceneError> {
+        for (i, load) in loads.iter_mut().enumerate() {
+            let key = format!("loads[{i}]");
+            if let Load::Pressure(_) | Load::Traction(_) = load {
+                self.needs_mesh(&join(&key, "group"), body)?;
+            }
+            if let (Load::BaseAcceleration(_), None) = (&*load, constraint) {
+                return Err(self.0.place(&join(&key, "kind")).refuse(
+                    "the acceleration of the base of a free body",
+                    "a body that something holds",
+                    "add [[constraints]], or use `kind = \"gravity\"` for an acceleration of all of a free body",
+                ));
+            }
+            self.load(&key, load, body)?;
+        }
+        Ok(())
+    }
+
+    fn load(&self, key: &str, load: &mut Load, body: &Body) -> Result<(), SceneError> {
+        let (direction, group, history) = match load {
+            Load::Force(force) => (Some(&mut force.direction), None, &mut force.history),
+            Load::Moment(moment) => {
+                if let Some(radius) = moment.radius {
+                    let key = join(key, "radius");
+                    let cure = "give the radius of the ball whose nodes take the moment, or remove `radius`";
+                    self.positive(&key, radius, cure)?;
+                    self.needs_mesh(&key, body)?;
+                }
+                (Some(&mut moment.direction), None, &mut moment.history)
+            }
+            Load::Pressure(pressure) => (None, Some(&pressure.group), &mut pressure.history),
+            Load::Traction(traction) => (Some(&mut traction.direction), Some(&traction.group), &mut traction.history),
+            Load::Gravity(gravity) => (Some(&mut gravity.direction), None, &mut gravity.history),
+            Load::BaseAcceleration(base) => (Some(&mut base.direction), None, &mut base.history),
+        };
+        if let Some(direction) = direction {
+            let cure = "give the direction of the load; its length does not matter";
+            self.normalise(&join(key, "direction"), direction, cure)?;
+        }
+        if let Some(group) = group {
+            self.group(&join(key, "group"), group)?;
+        }
+        self.history(&join(key, "history"), history)
+    }
+
+    pub(super) fn group(&self, key: &str, group: &str) -> Result<(), SceneError> {
+        let cure = "give the name of a physical group of the mesh";
+        self.require(!group.is_empty(), key, "a name that is not empty", cure)
+    }
+
+    /// Refuses a key that speaks of nodes, on a body without a mesh.
+    pub(super) fn needs_mesh(&self, key: &str, body: &Body) -> Result<(), SceneError> {
+        match body {
+            Body::Meshed(_) => Ok(()),
+            Body::Rigid(_) => Err(self.0.place(key).refuse(
+                "a part of a mesh",
+                "none, since `rigid` in [body] has no mesh",
+                "use loads and constraints at points, or give `mesh` and `material` in [body] instead of `rigid`",
+            )),
+        }
+    }
+}

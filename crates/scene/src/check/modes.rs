@@ -1,0 +1,143 @@
+//! The rules on `[modes]`.
+
+use super::Check;
+use crate::effects::Choice;
+use crate::error::SceneError;
+use crate::modes::{Damping, Flexible, Modes, Rayleigh};
+use crate::scene::Body;
+use crate::section::{CountOrAuto, ModesSection, NumberOrList};
+
+/// The largest number of modes with `flexible = "auto"`, where the scene gives none.
+const DEFAULT_MOST: usize = 40;
+
+impl Check<'_> {
+    pub fn modes(&self, section: Option<ModesSection>, body: &Body) -> Result<Modes, SceneError> {
+        let is_rigid = matches!(body, Body::Rigid(_));
+        let Some(section) = section else {
+            return match is_rigid {
+                true => Ok(Modes {
+                    flexible: Flexible::Count(0),
+                    damping: Damping::Uniform(0.0),
+                    static_correction: Choice::Auto,
+                }),
+                false => Err(self.missing("", "modes")),
+            };
+        };
+        let flexible = self.flexible(section.flexible, section.most)?;
+        if is_rigid && flexible != Flexible::Count(0) {
+            return Err(self.0.place("modes.flexible").refuse(
+                "flexible modes of a rigid body",
+                "0, since `rigid` in [body] has no mesh that could deform",
+                "remove [modes], or give `mesh` and `material` in [body] instead of `rigid`",
+            ));
+        }
+        let static_correction = section.static_correction;
+        if static_correction == Choice::On && flexible == Flexible::Count(0) {
+            return Err(self.0.place("modes.static_correction").refuse(
+                "a static correction of a body without flexible modes",
+                "`false` or `\"auto\"`",
+                "remove it, or keep flexible modes",
+            ));
+        }
+        let damping = self.damping(section.damping_ratio, section.damping_table, section.rayleigh, flexible)?;
+        Ok(Modes { flexible, damping, static_correction })
+    }
+
+    fn flexible(&self, flexible: CountOrAuto, most: Option<usize>) -> Result<Flexible, SceneError> {
+        match (flexible, most) {
+            (CountOrAuto::Count(count), None) => Ok(Flexible::Count(count)),
+            (CountOrAuto::Count(count), Some(_)) => Err(self.0.place("modes.most").refuse(
+                format!("`most` with `flexible = {count}`"),
+                "`most` with `flexible = \"auto\"` only",
+                "remove `most`, or set `flexible = \"auto\"`",
+            )),
+            (CountOrAuto::Auto, most) => {
+                let most = most.unwrap_or(DEFAULT_MOST);
+                self.require(
+                    most >= 1,
+                    "modes.most",
+                    "a whole number, 1 or more",
+                    "give the largest number of modes, or set `flexible = 0` for none",
+                )?;
+                Ok(Flexible::Auto { most })
+            }
+        }
+    }
+
+    fn damping(
+        &self,
+        ratio: Option<NumberOrList>,
+        table: Option<Vec<[f64; 2]>>,
+        rayleigh: Option<Rayleigh>,
+        flexible: Flexible,
+    ) -> Result<Damping, SceneError> {
+        let cure = "keep one way to say how the modes are damped";
+        self.at_most_one("modes", &["damping_ratio", "damping_table", "rayleigh"], cure)?;
+        if let Some(points) = table {
+            self.damping_table("modes.damping_table", &points)?;
+            return Ok(Damping::Table(points));
+        }
+        if let Some(rayleigh) = rayleigh {
+            for (key, factor) in [("modes.rayleigh.alpha", rayleigh.alpha), ("modes.rayleigh.beta", rayleigh.beta)] {
+                let cure = "give the factor of the mass (alpha) or stiffness (beta) in C = αM + βK; \
+                            a negative one could feed energy in";
+                self.require(factor >= 0.0, key, "a number of 0 or more", cure)?;
+            }
+            return Ok(Damping::Rayleigh(rayleigh));
+        }
+        let key = "modes.damping_ratio";
+        match ratio {
+            None => Ok(Damping::Uniform(0.0)),
+            Some(NumberOrList::Number(ratio)) => {
+                self.damping_ratio(key, ratio)?;
+                Ok(Damping::Uniform(ratio))
+            }
+            Some(NumberOrList::List(ratios)) => {
+                let cure = "give a ratio for each mode, the lowest first; the last holds for the rest";
+                self.require(!ratios.is_empty(), key, "at least one damping ratio", cure)?;
+                for (i, &ratio) in ratios.iter().enumerate() {
+                    self.damping_ratio(&format!("{key}[{i}]"), ratio)?;
+                }
+                self.not_more_than_modes(key, ratios.len(), flexible)?;
+                Ok(Damping::List(ratios))
+            }
+        }
+    }
+
+    fn damping_ratio(&self, key: &str, ratio: f64) -> Result<(), SceneError> {
+        self.require(
+            ratio >= 0.0,
+            key,
+            "a number of 0 or more",
+            "give the fraction of critical damping, e.g. 0.05; a negative one would feed energy in",
+        )
+    }
+
+    fn damping_table(&self, key: &str, points: &[[f64; 2]]) -> Result<(), SceneError> {
+        let cure = "give pairs of frequency and damping ratio, e.g. `damping_table = [[10, 0.02], [100, 0.05]]`";
+        self.require(!points.is_empty(), key, "at least one pair of frequency and damping ratio", cure)?;
+        for (i, &[frequency, ratio]) in points.iter().enumerate() {
+            let cure = "give the frequency in cycles per time";
+            self.require(frequency >= 0.0, &format!("{key}[{i}][0]"), "a number of 0 or more", cure)?;
+            self.damping_ratio(&format!("{key}[{i}][1]"), ratio)?;
+        }
+        let frequencies: Vec<f64> = points.iter().map(|[frequency, _]| *frequency).collect();
+        self.rising(key, &frequencies, |i| format!("[{i}][0]"), "frequencies")
+    }
+
+    /// Refuses a list with more entries than there are flexible modes.
+    pub(super) fn not_more_than_modes(&self, key: &str, entries: usize, flexible: Flexible) -> Result<(), SceneError> {
+        if entries <= flexible.most() {
+            return Ok(());
+        }
+        let more = match flexible {
+            Flexible::Count(_) => format!("`flexible = {entries}`"),
+            Flexible::Auto { .. } => format!("`most = {entries}`"),
+        };
+        Err(self.0.place(key).refuse(
+            format!("{entries} entries"),
+            format!("at most {}, one for each flexible mode", flexible.most()),
+            format!("remove entries, or set {more} in [modes]"),
+        ))
+    }
+}

@@ -1,0 +1,80 @@
+//! Tables of histories in CSV files: what they hold, and how they are refused.
+
+use std::path::Path;
+
+use scene::{History, Load, Scene, SceneError, Table};
+
+const EXAMPLE: &str = include_str!("../src/example.toml");
+
+/// The example, its history a table from `pulse.csv` with these bytes.
+fn read(folder: &Path, table: &[u8]) -> Result<Scene, SceneError> {
+    std::fs::write(folder.join("pulse.csv"), table).unwrap();
+    let half_sine = "{ kind = \"half-sine\", start = 0.0, duration = 0.02 }";
+    let text = EXAMPLE.replace(half_sine, "{ kind = \"table\", file = \"pulse.csv\" }");
+    assert_ne!(text, EXAMPLE);
+    Scene::parse(&text, folder.join("scene.toml"))
+}
+
+#[test]
+fn two_columns_in_every_writing() {
+    let folder = tempfile::tempdir().unwrap();
+    let points = vec![[0.0, 0.0], [0.5, -1.5], [2.0, 300.0]];
+    for text in [
+        "0,0\n0.5,-1.5\n2,3e2\n",
+        "0,0\n0.5,-1.5\n2,3e2",
+        "time,force\r\n0,0\r\n0.5,-1.5\r\n2,3e2\r\n",
+        "\"time, s\" , \"force, N\"\n 0 , 0\n\n 0.5, -1.5\n2.0,\t+300 \n",
+        "# measured\n# t, f\n0,0\n# a remark\n0.5,-1.5\n2,300\n",
+        "\u{feff}t,f\n0,0\n0.5,-1.5\n2,300\n",
+    ] {
+        let scene = read(folder.path(), text.as_bytes()).unwrap_or_else(|error| panic!("{text:?}: {error}"));
+        let Load::Force(force) = &scene.loads[0] else { panic!("not a force") };
+        let file = Some(folder.path().join("pulse.csv"));
+        assert_eq!(force.history, History::Table(Table { points: points.clone(), file }), "{text:?}");
+    }
+}
+
+#[test]
+fn a_bad_line_is_named_in_the_table() {
+    let folder = tempfile::tempdir().unwrap();
+    for (text, line, excerpt, words) in [
+        ("0,0\n1\n", 2, "1", "found 1, expected two finite numbers"),
+        ("0,0\n1,2,3\n", 2, "1,2,3", "found 1,2,3, expected two finite numbers"),
+        ("0,0\n1,x\n", 2, "1,x", "only the first may name the columns"),
+        ("t,f\nt,f\n", 2, "t,f", "only the first may name the columns"),
+        ("t,1\n", 1, "t,1", "expected two finite numbers"),
+        ("0,nan\n", 1, "0,nan", "expected two finite numbers"),
+        ("0,0\n1,inf\n", 2, "1,inf", "expected two finite numbers"),
+        ("0;0\n1;1\n", 2, "1;1", "with a comma between them"),
+        ("t,f\n0,0\n0,1\n", 3, "0,1", "found the time 0.0 after 0.0, expected times that rise"),
+        ("# one\n# two\n\n1,0\n# three\n\n0.5,1\n", 7, "0.5,1", "found the time 0.5 after 1.0"),
+        ("", 1, "", "found no points"),
+        ("t,f\n", 1, "t,f", "found no points"),
+    ] {
+        let message = read(folder.path(), text.as_bytes()).unwrap_err().to_string();
+        let head = format!("{}:{line}:1: `loads[0].history.file`: ", folder.path().join("pulse.csv").display());
+        assert!(message.starts_with(&head), "{text:?}: no {head:?} in {message}");
+        assert!(message.contains(&format!("\n{line} | {excerpt}\n")), "{text:?}: {message}");
+        assert!(message.contains(words) && message.contains("\n  = "), "{text:?}: no {words:?} in {message}");
+    }
+}
+
+#[test]
+fn a_table_that_cannot_be_read_is_named_in_the_scene() {
+    let folder = tempfile::tempdir().unwrap();
+    let refusal = |table: &[u8], words: &str| {
+        let message = read(folder.path(), table).unwrap_err().to_string();
+        let head = format!("{}:30:", folder.path().join("scene.toml").display());
+        assert!(message.starts_with(&head) && message.contains(words), "no {words:?} in {message}");
+    };
+    refusal(b"0,0\n1,\xff\n", "found a table that cannot be read: ");
+    let long = "# a line\n".repeat((16 << 20) / 9 + 1);
+    refusal(long.as_bytes(), "found a table longer than 16777216 bytes");
+    let text = EXAMPLE.replace(
+        "{ kind = \"half-sine\", start = 0.0, duration = 0.02 }",
+        "{ kind = \"table\", file = \"nowhere.csv\" }",
+    );
+    let message = Scene::parse(&text, folder.path().join("scene.toml")).unwrap_err().to_string();
+    assert!(message.contains("nowhere.csv") && message.contains("`loads[0].history.file`"), "{message}");
+    assert!(message.contains("relative to the folder of the scene file"), "{message}");
+}
