@@ -326,4 +326,26 @@ pub enum AssemblyError {
         /// Nodes allowed.
         limit: usize,
     },
+    /// A matrix of displacement fields whose rows are not the degrees of freedom of the mesh.
+    #[error("the {what} have {found} rows; expected {expected}, three for each node of the mesh")]
+    FieldRows {
+        /// "displacements" or "shapes".
+        what: &'static str,
+        /// Three times the number of nodes.
+        expected: usize,
+        /// Rows there are.
+        found: usize,
+    },
+    /// A displacement that is not a number.
+    #[error("the {what} have {found} in row {row}, column {column}; every displacement must be a finite number")]
+    FieldNotFinite {
+        /// "displacements" or "shapes".
+        what: &'static str,
+        /// Row, counted from 0: 3·node + axis.
+        row: usize,
+        /// Column, counted from 0.
+        column: usize,
+        /// What stands there.
+        found: f64,
+    },
 }

@@ -43,20 +43,28 @@ impl Rules {
 
     /// Integration points of an element: four where it is straight (K is then exact), fourteen where it is curved.
     pub(crate) fn points(&self, positions: &[[f64; 3]; 10]) -> Vec<IntegrationPoint> {
-        let rule = if is_straight(positions) { &self.straight } else { &self.curved };
-        rule.iter()
-            .map(|(point, dn)| {
-                let jacobian = jacobian(positions, dn);
-                // ∂N/∂x = J⁻ᵀ ∂N/∂ξ; a mesh that has been checked has no singular Jacobian at these points.
-                let inverse = jacobian.try_inverse().unwrap_or_else(Matrix3::zeros);
-                let gradients = dn.map(|d| {
-                    let g = inverse.transpose() * Vector3::from(d);
-                    [g.x, g.y, g.z]
-                });
-                IntegrationPoint { gradients, volume: point.weight * jacobian.determinant() }
-            })
-            .collect()
+        in_space(if is_straight(positions) { &self.straight } else { &self.curved }, positions)
     }
+
+    /// Fourteen integration points whatever the element: exact to degree 5 where it is straight.
+    pub(crate) fn fine_points(&self, positions: &[[f64; 3]; 10]) -> Vec<IntegrationPoint> {
+        in_space(&self.curved, positions)
+    }
+}
+
+fn in_space(rule: &[(Point, [[f64; 3]; 10])], positions: &[[f64; 3]; 10]) -> Vec<IntegrationPoint> {
+    rule.iter()
+        .map(|(point, dn)| {
+            let jacobian = jacobian(positions, dn);
+            // ∂N/∂x = J⁻ᵀ ∂N/∂ξ; a mesh that has been checked has no singular Jacobian at these points.
+            let inverse = jacobian.try_inverse().unwrap_or_else(Matrix3::zeros);
+            let gradients = dn.map(|d| {
+                let g = inverse.transpose() * Vector3::from(d);
+                [g.x, g.y, g.z]
+            });
+            IntegrationPoint { gradients, volume: point.weight * jacobian.determinant() }
+        })
+        .collect()
 }
 
 /// Whether all mid-edge nodes lie in the middle of their edges.

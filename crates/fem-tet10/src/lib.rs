@@ -9,6 +9,7 @@
 //! * [`Material`]s are given to physical groups by name, see [`Materials`].
 //! * [`PointMass`]es sit anywhere on the body; [`Mesh::locate`] turns a point into nodes and weights.
 //! * [`assemble`] fills K and M in parallel into one sparsity pattern. Nothing of size N×N is ever dense.
+//! * [`reduced_geometric_stiffness`] gives the stress stiffness of displacement fields, reduced to a few shapes.
 //!
 //! Degrees of freedom are numbered `3·node + axis`. Any consistent set of units will do; the mesh's frame
 //! is the frame of every vector here.
@@ -16,6 +17,7 @@
 
 mod assembly;
 mod error;
+mod geometric_stiffness;
 mod integration;
 mod locate;
 mod lumped;
@@ -28,6 +30,7 @@ mod shape;
 
 pub use assembly::{Matrices, assemble};
 pub use error::{AssemblyError, MeshError, Place};
+pub use geometric_stiffness::reduced_geometric_stiffness;
 pub use locate::Location;
 pub use lumped::{LumpedInertia, centroid_lumped_inertia};
 pub use material::{Material, Materials};

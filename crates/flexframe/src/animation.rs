@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use frames_rk4::Reached;
 use nalgebra::Vector3;
 use results::{Animation, FigureError, Frame, View};
-use scene::{Model, Scene};
+use scene::{Meshed, Model, Scene};
 
 use crate::run::{RunError, RunProgress};
 use crate::surface::Surface;
@@ -25,6 +25,12 @@ pub enum AnimationError {
     /// The scene could not be run.
     #[error(transparent)]
     Run(#[from] RunError),
+    /// There is nothing to draw.
+    #[error("{}: a rigid body without a mesh has no surface to draw; give it a mesh and `flexible = 0`", scene.display())]
+    NoMesh {
+        /// The scene file.
+        scene: PathBuf,
+    },
     /// The picture could not be drawn.
     #[error(transparent)]
     Figure(#[from] FigureError),
@@ -42,7 +48,10 @@ pub fn animate(
 ) -> Result<(), AnimationError> {
     let model = Model::build(scene, |p| progress(RunProgress::Build(p))).map_err(RunError::from)?;
     let mut simulation = model.start(scene).map_err(|source| RunError::Setup { scene: scene.path.clone(), source })?;
-    let surface = Surface::new(&model);
+    let Some(Meshed { mesh, modes, .. }) = &model.meshed else {
+        return Err(AnimationError::NoMesh { scene: scene.path.clone() });
+    };
+    let surface = Surface::new(mesh);
     let last = settings.frames.max(2) - 1;
     let mut now = simulation.observation();
     let mut frames = Vec::new();
@@ -52,10 +61,10 @@ pub fn animate(
         let failed = |source| RunError::Step { results: PathBuf::from("no file"), source };
         while simulation.time() < due && simulation.advance(1).map_err(failed)? != Reached::End {}
         simulation.observe(&mut now).map_err(failed)?;
-        let u = surface.displacements(&model, &now.modal_displacement);
+        let u = surface.displacements(modes, &now.modal_displacement);
         let drawn: Vec<Vector3<f64>> = u.iter().map(|u| u * settings.magnification).collect();
         frames.push(Frame {
-            points: surface.placed(&model, &now.position_global, &now.attitude, &drawn),
+            points: surface.placed(&model, &now.origin_global, &now.attitude, &drawn),
             values: u.iter().map(Vector3::norm).collect(),
             caption: format!("t = {:.3} {}", now.time, scene.units.time),
         });

@@ -9,7 +9,7 @@ use clap::{Args, Parser, Subcommand};
 use flexframe::animation::{AnimationSettings, animate};
 use flexframe::cost::{self, CostSettings};
 use flexframe::{figures, modes, paper, run};
-use scene::Scene;
+use scene::{Flexible, Scene};
 use serde::Serialize;
 
 use crate::progress::Bar;
@@ -135,7 +135,9 @@ fn execute(cli: Cli) -> Result<(), Box<dyn Error>> {
         }
         Command::Modes { scene: SceneArgs { scene, json }, flexible, output } => {
             let mut scene = Scene::read(scene)?;
-            scene.modes.flexible = flexible.unwrap_or(scene.modes.flexible);
+            if let Some(count) = flexible {
+                scene.modes.flexible = Flexible::Count(count);
+            }
             let (model, report) = modes::modes(&scene, |p| bar.build(p))?;
             drop(bar);
             let pictures = match output {

@@ -22,7 +22,7 @@ use std::time::Duration;
 use fem_tet10::read_msh;
 use frames_rk4::{ConservativeScheme, Method, StepControl};
 use results::FigureError;
-use scene::{BuildError, BuildProgress, Model, Scene, Stepping};
+use scene::{Body, BuildError, BuildProgress, Choice, Flexible, Model, Scene, Stepping};
 use serde::Serialize;
 
 pub use answer::{Answer, Setting};
@@ -161,11 +161,13 @@ pub fn price_list(
     settings: CostSettings,
     mut progress: impl FnMut(CostProgress),
 ) -> Result<CostReport, CostError> {
-    let counts = modes::counts(scene.modes.flexible, most_modes(scene));
-    let flexible = scene.modes.flexible;
+    let flexible = scene.modes.flexible.most();
+    let counts = modes::counts(flexible, most_modes(scene));
     let most = counts.last().map_or(flexible, |most| *most);
     let mut richest = scene.clone();
-    richest.modes.flexible = most;
+    richest.modes.flexible = Flexible::Count(most);
+    // Static shapes stand behind the modes, and would be cut off with them.
+    richest.modes.static_correction = Choice::Off;
     let richest = Model::build(&richest, |p| progress(CostProgress::Build(p)))?;
     let model = richest.truncated(flexible);
     let case = Case::new(scene, &model);
@@ -209,7 +211,7 @@ pub fn price_list(
         time_unit: scene.units.time.clone(),
         machine: Machine::this(),
         flexible,
-        highest_frequency: model.modes.natural_frequencies().last().copied(),
+        highest_frequency: model.natural_frequencies().last().copied(),
         initial_spin: nalgebra::Vector3::from(scene.initial.angular_velocity).norm(),
         end: scene.time.end,
         points: model.points.len(),
@@ -235,7 +237,12 @@ fn own_setting(scene: &Scene) -> (Method, StepControl) {
 
 /// Flexible modes of the scene's mesh. A mesh that cannot be read is refused where the model is built.
 fn most_modes(scene: &Scene) -> usize {
-    read_msh(&scene.body.mesh).map_or(usize::MAX, |mesh| (3 * mesh.positions().len()).saturating_sub(6))
+    match &scene.body {
+        Body::Meshed(body) => {
+            read_msh(&body.mesh).map_or(usize::MAX, |mesh| (3 * mesh.positions().len()).saturating_sub(6))
+        }
+        Body::Rigid(_) => 0,
+    }
 }
 
 impl Reference {

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use nalgebra::Vector3;
 use results::{FigureError, Panel, ShapeGrid, View};
-use scene::{Model, Scene};
+use scene::{Meshed, Model, Scene};
 
 use crate::modes::frequency_unit;
 use crate::surface::Surface;
@@ -19,10 +19,13 @@ const MOST_PANELS: usize = 20;
 /// # Errors
 /// [`FigureError`], also where there are no flexible modes to draw.
 pub fn mode_shapes(scene: &Scene, model: &Model, stem: &Path) -> Result<[PathBuf; 2], FigureError> {
-    let surface = Surface::new(model);
+    let Some(Meshed { mesh, modes, .. }) = &model.meshed else { 
+        return Err(FigureError::Empty { figure: scene.title.clone(), what: "a mesh" });
+    };
+    let surface = Surface::new(mesh);
+    let first = model.body.motion.count() + 1;
     let unit = frequency_unit(&scene.units.time);
-    let panels = model
-        .modes
+    let panels = modes
         .natural_frequencies()
         .iter()
         .take(MOST_PANELS)
@@ -30,11 +33,11 @@ pub fn mode_shapes(scene: &Scene, model: &Model, stem: &Path) -> Result<[PathBuf
         .map(|(k, frequency)| {
             let mut q = vec![0.0; k + 1];
             q[k] = 1.0;
-            let shape = surface.displacements(model, &q);
+            let shape = surface.displacements(modes, &q);
             let largest = shape.iter().map(Vector3::norm).fold(0.0, f64::max);
-            let scale = DRAWN * model.mesh.diagonal() / largest;
+            let scale = DRAWN * mesh.diagonal() / largest;
             Panel {
-                title: format!("Mode {}: {frequency:.4} {unit}", k + 7),
+                title: format!("Mode {}: {frequency:.4} {unit}", k + first),
                 points: surface
                     .points
                     .iter()

@@ -15,7 +15,7 @@ pub struct ModesReport {
     /// Unit of frequencies, such as "1/s".
     pub frequency_unit: String,
     /// The finite-element model.
-    pub mesh: MeshReport,
+    pub mesh: Option<MeshReport>,
     /// Mass properties and modes.
     pub body: BodyReport,
     /// Where the time went, seconds.
@@ -31,7 +31,7 @@ pub fn modes(scene: &Scene, progress: impl FnMut(BuildProgress)) -> Result<(Mode
     let report = ModesReport {
         title: scene.title.clone(),
         frequency_unit: frequency_unit(&scene.units.time),
-        mesh: MeshReport::new(scene, &model),
+        mesh: MeshReport::new(&model),
         body: BodyReport::new(&model),
         times: Times::of_model(&model),
     };
@@ -46,12 +46,15 @@ pub(crate) fn frequency_unit(time: &str) -> String {
 impl fmt::Display for ModesReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{}", self.title)?;
-        writeln!(f, "  mesh   {}", self.mesh)?;
+        if let Some(mesh) = &self.mesh {
+            writeln!(f, "  mesh   {mesh}")?;
+        }
         writeln!(f, "  mass   {}", quantity(self.body.mass))?;
         writeln!(f, "\n  mode  frequency, {:<6}  damping  residual", self.frequency_unit)?;
-        let modes = self.body.natural_frequencies.iter().zip(&self.body.damping_ratios).zip(&self.body.residuals);
-        for (k, ((frequency, damping), residual)) in modes.enumerate() {
-            writeln!(f, "  {:>4}  {frequency:>17.6}  {damping:>7}  {residual:.0e}", k + 7)?;
+        let body = &self.body;
+        for (k, (frequency, damping)) in body.natural_frequencies.iter().zip(&body.damping_ratios).enumerate() {
+            let residual = body.residuals.get(k).map_or_else(|| "static shape".to_owned(), |r| format!("{r:.0e}"));
+            writeln!(f, "  {:>4}  {frequency:>17.6}  {damping:>7.4}  {residual}", k + 1 + body.rigid_modes)?;
         }
         write!(f, "\n  time   {}", self.times)
     }

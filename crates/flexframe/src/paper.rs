@@ -49,6 +49,12 @@ pub enum PaperError {
         /// The point.
         point: &'static str,
     },
+    /// Another body, or other loads, than the paper's.
+    #[error("{}: the paper has a free body with a mesh under dead half-sine forces; use `flexframe run` for others", scene.display())]
+    NotThePlate {
+        /// The scene file.
+        scene: PathBuf,
+    },
     /// The report cannot be written.
     #[error("{}: cannot write the report: {source}", path.display())]
     Report {
@@ -85,8 +91,10 @@ pub fn reproduce(scene: &Scene, folder: &Path, progress: impl FnMut(RunProgress)
     let (model, mut run) = run(scene, folder, progress)?;
     let started = Instant::now();
     let results = Results::open(&run.results)?;
-    let rigid = rigid_plate::histories(&model, &results)?;
-    let lumped = scene.centroid_lumped_inertia(&model.mesh)?;
+    let only_plates = || PaperError::NotThePlate { scene: scene.path.clone() };
+    let meshed = model.meshed.as_ref().ok_or_else(only_plates)?;
+    let rigid = rigid_plate::histories(&model, &results)?.ok_or_else(only_plates)?;
+    let lumped = scene.centroid_lumped_inertia(&meshed.mesh)?.ok_or_else(only_plates)?;
     let comparison = Comparison::new(&run, &results, &rigid, &lumped);
     let figures = figures::draw(scene, &model, &results, &rigid, folder)?;
     run.times.add("figures", started.elapsed());

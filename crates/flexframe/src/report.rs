@@ -3,7 +3,8 @@
 use std::fmt::{self, Write};
 use std::time::Duration;
 
-use scene::{Model, Scene};
+use nalgebra::Matrix3;
+use scene::{Meshed, Model};
 use serde::Serialize;
 
 /// Times of the phases, seconds, in the order in which they were passed.
@@ -14,8 +15,9 @@ pub struct Times(Vec<(&'static str, f64)>);
 impl Times {
     /// The phases of a model's making.
     pub fn of_model(model: &Model) -> Self {
-        let (build, solve) = (&model.times, &model.modes.stats);
+        let build = &model.times;
         let mut times = Self::default();
+        let Some(solve) = model.meshed.as_ref().map(|meshed| meshed.modes.stats) else { return times };
         times.add("mesh", build.mesh);
         times.add("assembly", build.assembly);
         times.add("rigid modes", solve.preparation_time);
@@ -23,6 +25,9 @@ impl Times {
         times.add("factor", solve.factor_time);
         times.add("Lanczos", solve.lanczos_time);
         times.add("Ritz", solve.ritz_time);
+        if !build.statics.is_zero() {
+            times.add("statics", build.statics);
+        }
         times.add("reduction", build.reduction);
         times
     }
@@ -88,7 +93,9 @@ pub struct BodyReport {
     pub center_of_mass: [f64; 3],
     /// Inertia about the centre of mass, body axes, row by row.
     pub inertia: [[f64; 3]; 3],
-    /// Natural frequencies of the flexible modes, cycles per time.
+    /// Rigid motions that the body has: six of a free one.
+    pub rigid_modes: usize,
+    /// Natural frequencies of the flexible modes, cycles per time; after them those of static shapes.
     pub natural_frequencies: Vec<f64>,
     /// Damping ratios.
     pub damping_ratios: Vec<f64>,
@@ -99,16 +106,17 @@ pub struct BodyReport {
 }
 
 impl MeshReport {
-    /// Of a scene's model.
-    pub fn new(scene: &Scene, model: &Model) -> Self {
-        Self {
-            file: scene.body.mesh.display().to_string(),
-            nodes: model.mesh.positions().len(),
-            elements: model.mesh.elements().len(),
-            unknowns: 3 * model.mesh.positions().len(),
-            matrix_bytes: model.matrix_bytes,
-            factor_entries: model.modes.stats.factor_entries,
-        }
+    /// Of a model; `None` for a rigid body without a mesh.
+    pub fn new(model: &Model) -> Option<Self> {
+        let Meshed { mesh, modes, matrix_bytes } = model.meshed.as_ref()?;
+        Some(Self {
+            file: mesh.source().to_owned(),
+            nodes: mesh.positions().len(),
+            elements: mesh.elements().len(),
+            unknowns: 3 * mesh.positions().len(),
+            matrix_bytes: *matrix_bytes,
+            factor_entries: modes.stats.factor_entries,
+        })
     }
 }
 
@@ -129,15 +137,19 @@ impl fmt::Display for MeshReport {
 impl BodyReport {
     /// Of a model.
     pub fn new(model: &Model) -> Self {
-        let inertia = model.body.inertia;
+        let body = &model.body;
+        let arm = body.center_of_mass - body.origin;
+        let inertia = body.inertia - (Matrix3::identity() * arm.norm_squared() - arm * arm.transpose()) * body.mass;
+        let modes = model.meshed.as_ref().map(|meshed| &meshed.modes);
         Self {
-            mass: model.body.mass,
-            center_of_mass: model.body.center_of_mass.into(),
+            mass: body.mass,
+            center_of_mass: body.center_of_mass.into(),
             inertia: std::array::from_fn(|i| std::array::from_fn(|j| inertia[(i, j)])),
-            natural_frequencies: model.modes.natural_frequencies(),
+            rigid_modes: body.motion.count(),
+            natural_frequencies: model.natural_frequencies(),
             damping_ratios: model.damping_ratios().to_vec(),
-            residuals: model.modes.residuals.clone(),
-            force_residuals: model.modes.force_residuals.clone(),
+            residuals: modes.map_or_else(Vec::new, |modes| modes.residuals.clone()),
+            force_residuals: modes.map_or_else(Vec::new, |modes| modes.force_residuals.clone()),
         }
     }
 }

@@ -86,7 +86,7 @@ pub struct RunReport {
     /// Steps per second of computing, writing included.
     pub steps_per_second: f64,
     /// The finite-element model.
-    pub mesh: MeshReport,
+    pub mesh: Option<MeshReport>,
     /// Mass properties and modes.
     pub body: BodyReport,
     /// Angle between first and last attitude, rad (0 to π).
@@ -159,7 +159,7 @@ pub fn run(
         step_lengths: [stats.shortest, stats.longest],
         evaluations: stats.evaluations,
         steps_per_second: stats.accepted as f64 / time.as_secs_f64(),
-        mesh: MeshReport::new(scene, &model),
+        mesh: MeshReport::new(&model),
         body: BodyReport::new(&model),
         turned: Attitude::identity().angle_to(&last.attitude),
         moved: (last.position_global - model.body.center_of_mass).into(),
@@ -346,7 +346,9 @@ impl fmt::Display for RunReport {
         let [length, mass, time] = &self.units;
         let frequencies = &self.body.natural_frequencies;
         writeln!(f, "{}", self.title)?;
-        writeln!(f, "  mesh     {}", self.mesh)?;
+        if let Some(mesh) = &self.mesh {
+            writeln!(f, "  mesh     {mesh}")?;
+        }
         write!(f, "  body     {} {mass}, ", quantity(self.body.mass))?;
         match (frequencies.first(), frequencies.last()) {
             (Some(first), Some(last)) => writeln!(

@@ -1,5 +1,7 @@
 //! The surface of a body, for pictures: boundary triangles over their own list of points.
 
+use fem_tet10::Mesh;
+use modal::Modes;
 use nalgebra::Vector3;
 use results::{boundary_triangles, sharp_edges};
 use rigid_kin::Attitude;
@@ -19,21 +21,21 @@ pub struct Surface {
 }
 
 impl Surface {
-    /// The surface of a model's mesh.
-    pub fn new(model: &Model) -> Self {
-        let on_mesh = boundary_triangles(model.mesh.elements());
+    /// The surface of a mesh.
+    pub fn new(mesh: &Mesh) -> Self {
+        let on_mesh = boundary_triangles(mesh.elements());
         let mut nodes: Vec<u32> = on_mesh.iter().flatten().copied().collect();
         nodes.sort_unstable();
         nodes.dedup();
         let place = |node: u32| nodes.partition_point(|n| *n < node) as u32;
         let triangles: Vec<[u32; 3]> = on_mesh.iter().map(|t| t.map(place)).collect();
-        let points: Vec<[f64; 3]> = nodes.iter().map(|n| model.mesh.positions()[*n as usize]).collect();
+        let points: Vec<[f64; 3]> = nodes.iter().map(|n| mesh.positions()[*n as usize]).collect();
         Self { edges: sharp_edges(&points, &triangles), triangles, points, nodes }
     }
 
     /// Displacements of the points in the flexible modal coordinates `q`, body axes.
-    pub fn displacements(&self, model: &Model, q: &[f64]) -> Vec<Vector3<f64>> {
-        let shapes = &model.modes.shapes;
+    pub fn displacements(&self, modes: &Modes, q: &[f64]) -> Vec<Vector3<f64>> {
+        let shapes = &modes.shapes;
         self.nodes
             .iter()
             .map(|node| {
@@ -43,19 +45,19 @@ impl Surface {
             .collect()
     }
 
-    /// Where the points are in space when the centre of mass is at `position_global`, displaced by `displacements`.
+    /// Where the points are in space when the body's origin is at `origin_global`, displaced by `displacements`.
     pub fn placed(
         &self,
         model: &Model,
-        position_global: &Vector3<f64>,
+        origin_global: &Vector3<f64>,
         attitude: &Attitude,
         displacements: &[Vector3<f64>],
     ) -> Vec<[f64; 3]> {
-        let center = model.body.center_of_mass;
+        let origin = model.body.origin;
         self.points
             .iter()
             .zip(displacements)
-            .map(|(x, u)| (position_global + attitude.to_global(&(Vector3::from(*x) - center + u))).into())
+            .map(|(x, u)| (origin_global + attitude.to_global(&(Vector3::from(*x) - origin + u))).into())
             .collect()
     }
 }

@@ -38,6 +38,7 @@ impl ConservativeBody {
         let center = self.center.position_body(q);
         out.time = state.time;
         out.attitude = state.attitude;
+        out.origin_global = position;
         out.position_global = position + global(center);
         out.velocity_global = velocity_of_origin + global(omega.cross(&center) + self.center.deformation(&e.velocity));
         out.omega_body = omega;

@@ -23,6 +23,53 @@ pub enum SetupError {
         /// Its range.
         expected: &'static str,
     },
+    /// A list that is too short or not as long as its partner.
+    #[error("{what} has {found} entries; expected {expected}")]
+    Entries {
+        /// Which list.
+        what: &'static str,
+        /// Its length.
+        found: usize,
+        /// The length it should have.
+        expected: String,
+    },
+    /// Times that do not rise.
+    #[error(
+        "{what}: time {found} of row {row} comes after {previous}; the times of a table rise from row to row (a jump is two tables, each multiplied by a step)"
+    )]
+    NotRising {
+        /// Which list.
+        what: &'static str,
+        /// The row, from 1.
+        row: usize,
+        /// Its time.
+        found: f64,
+        /// The time of the row before.
+        previous: f64,
+    },
+    /// A text that is no expression in t.
+    #[error(
+        "the expression \"{text}\" at character {position}: {problem}; an expression has t, numbers, pi and e, + - * / % ^ and parentheses, and functions like {functions}",
+        functions = crate::history::FUNCTIONS
+    )]
+    Expression {
+        /// The expression.
+        text: String,
+        /// Where, in characters from 1.
+        position: usize,
+        /// What is wrong there.
+        problem: String,
+    },
+    /// A history that is not a number at some time.
+    #[error(
+        "the history of a load is {found} at time {time}; an expression must be finite through the whole run: write it so that it is, or multiply it by what is zero there in a form without a division by zero"
+    )]
+    HistoryNotFinite {
+        /// The time.
+        time: f64,
+        /// The factor.
+        found: f64,
+    },
     /// A step at which RK4 amplifies a mode.
     #[error(
         "a step of {step:e} is beyond the stability limit {limit:.4e} that flexible mode {mode} ({frequency:.6} cycles per time) sets for RK4; take a smaller step or fewer modes"

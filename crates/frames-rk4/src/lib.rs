@@ -45,7 +45,7 @@ mod work;
 pub use conservative::{ConservativeBody, ConservativeState};
 pub use conservative_motion::{ConservativeMotion, ConservativeScheme};
 pub use error::{SetupError, StepError};
-pub use history::History;
+pub use history::{Expression, History, Table};
 pub use initial::Initial;
 pub use load::{Action, BodyField, Load, LoadFrame};
 pub use modal_rotation::ModalRotation;

@@ -204,6 +204,8 @@ impl BodyMotion {
     pub(crate) fn observe(&self, state: &State, work: &Work, points: &[PointShapes], out: &mut Observation) {
         out.time = state.time;
         out.attitude = state.attitude;
+        out.origin_global =
+            state.origin_global + state.attitude.to_global(&self.of_origin(&state.modal_displacement));
         out.position_global = self.position_global(state);
         out.velocity_global = self.velocity_global(state);
         out.omega_body = state.omega_body;

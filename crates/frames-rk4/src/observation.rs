@@ -13,6 +13,8 @@ pub struct Observation {
     pub time: f64,
     /// Attitude of the body frame.
     pub attitude: Attitude,
+    /// Position of the body's origin, global components: of a free body, that of its centre of mass.
+    pub origin_global: Vector3<f64>,
     /// Position of the centre of mass, global components.
     pub position_global: Vector3<f64>,
     /// Velocity of the centre of mass, global components.
@@ -48,6 +50,7 @@ impl Observation {
         Self {
             time: 0.0,
             attitude: Attitude::identity(),
+            origin_global: Vector3::zeros(),
             position_global: Vector3::zeros(),
             velocity_global: Vector3::zeros(),
             omega_body: Vector3::zeros(),

@@ -38,6 +38,8 @@ pub struct Drive {
     pub amplitude: f64,
     /// Course of the speed.
     pub history: History,
+    /// Length of the run, for the rate of a speed that a formula gives ([`History::rate`]).
+    pub span: f64,
 }
 
 /// How a driven part moves.
@@ -63,7 +65,7 @@ impl Drive {
 
     /// The rate of the speed.
     pub(crate) fn acceleration(&self, time: f64, inside: f64) -> f64 {
-        self.amplitude * self.history.rate(time, inside)
+        self.amplitude * self.history.rate(time, inside, self.span)
     }
 
     /// Refuses numbers that are not finite, and a direction that is no unit vector.
@@ -74,12 +76,15 @@ impl Drive {
         if (length - 1.0).abs() > 1e-9 || length.is_nan() {
             return Err(SetupError::Value { what: "the length of a drive's direction", found: length, expected: "1" });
         }
-        if self.amplitude.is_finite() {
-            Ok(())
-        } else {
+        if !self.amplitude.is_finite() {
             let (what, expected) = ("the speed of a drive", "a finite number");
-            Err(SetupError::Value { what, found: self.amplitude, expected })
+            return Err(SetupError::Value { what, found: self.amplitude, expected });
         }
+        if !(self.span > 0.0 && self.span.is_finite()) {
+            let (what, expected) = ("the length of a driven run", "a positive number");
+            return Err(SetupError::Value { what, found: self.span, expected });
+        }
+        Ok(())
     }
 }
 

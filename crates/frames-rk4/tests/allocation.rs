@@ -6,7 +6,9 @@ mod common;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
-use frames_rk4::{ConservativeScheme, Initial, Method, Physics, Rows, Setup, Simulation, StepControl};
+use frames_rk4::{
+    ConservativeScheme, Expression, History, Initial, Method, Physics, Rows, Setup, Simulation, StepControl, Table,
+};
 use nalgebra::Vector3;
 
 thread_local! {
@@ -89,4 +91,20 @@ fn steps_and_rows_of_a_run_allocate_nothing_once_the_step_is_known() {
         let method = Method::Conservative(scheme);
         assert_eq!(allocations(simulation(method, StepControl::Tolerance(1e-6), 1.0), 200), 0, "{method:?}");
     }
+}
+
+#[test]
+fn histories_allocate_nothing() {
+    let text = "min(exp(-t^2), 2)*max(sin(2*pi*t), cos(t), 0.5)*abs(t)^0.3 + hypot(atan2(t, 2), sqrt(t))";
+    let rows: Vec<f64> = (0..1000).map(f64::from).collect();
+    let history = History::Product(vec![
+        History::Sweep { from: 1.0, to: 9.0, start: 0.0, duration: 10.0 },
+        History::Table(Table::new(rows.clone(), rows.iter().map(|t| t.sin()).collect()).unwrap()),
+        History::Expression(Expression::new(text, vec![3.0]).unwrap()),
+        History::Ramp { start: 1.0, duration: 1.0 },
+    ]);
+    let before = COUNT.get();
+    let sum: f64 = (0..1000).map(|k| 0.01 * f64::from(k)).map(|t| history.at(t, t + 0.005)).sum();
+    assert_eq!(COUNT.get(), before);
+    assert!(sum.is_finite() && sum != 0.0);
 }

@@ -2,8 +2,10 @@
 
 use faer::diag::Diag;
 use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::cholesky::llt::factor::LltError;
 use faer::linalg::evd::{ComputeEigenvectors, self_adjoint_evd, self_adjoint_evd_scratch};
-use faer::{Mat, Par};
+use faer::linalg::triangular_solve::solve_upper_triangular_in_place;
+use faer::{Mat, Par, Side};
 
 use crate::error::ModalError;
 
@@ -32,6 +34,14 @@ pub(crate) fn symmetric_eigen(matrix: &Mat<f64>) -> Result<(Vec<f64>, Mat<f64>),
     )
     .map_err(failed)?;
     Ok((values.column_vector().iter().map(|value| scale * value).collect(), vectors))
+}
+
+/// L⁻ᵀ of a positive definite matrix L Lᵀ; the matrix turned by it on both sides is the identity.
+pub(crate) fn whitening(matrix: &Mat<f64>) -> Result<Mat<f64>, LltError> {
+    let factor = matrix.llt(Side::Lower)?;
+    let mut whitening = Mat::identity(matrix.nrows(), matrix.nrows());
+    solve_upper_triangular_in_place(factor.L().transpose(), whitening.as_mut(), Par::Seq);
+    Ok(whitening)
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ pub enum ModalError {
     /// Matrices and positions of different sizes.
     #[error("{what} has {found} rows or columns; expected {expected}, three for each of the nodes")]
     Size {
-        /// "stiffness" or "mass".
+        /// "stiffness", "mass" or "forces".
         what: &'static str,
         /// Three times the number of positions.
         expected: usize,
@@ -14,11 +14,11 @@ pub enum ModalError {
         found: usize,
     },
     /// An entry or a position that is NaN or infinite.
-    #[error("{what} holds {value} (at column or node {index}); every number must be finite")]
+    #[error("{what} holds {value} (at column, axis or node {index}); every number must be finite")]
     NotFinite {
-        /// "stiffness", "mass" or "positions".
+        /// "stiffness", "mass", "positions", …
         what: &'static str,
-        /// Column or node.
+        /// Column, node or axis.
         index: usize,
         /// The number.
         value: f64,
@@ -53,13 +53,39 @@ pub enum ModalError {
     },
     /// The body has no mass, or none to resist a rotation.
     #[error(
-        "the body has mass {mass:e} and inertia {inertia:?} about its centre of mass, which is no rigid body: all three moments must be positive"
+        "the body has mass {mass:e} and moments of inertia {inertia:?} about its origin, which is no rigid body: the mass and all three moments must be positive (of a hinge, that about its axis)"
     )]
     NoInertia {
         /// Total mass.
         mass: f64,
-        /// Diagonal of the inertia.
+        /// Diagonal of the inertia about the origin.
         inertia: [f64; 3],
+    },
+    /// A direction that is no unit vector.
+    #[error("the direction {direction:?} of the support is no unit vector; divide it by its length")]
+    NotUnit {
+        /// The direction.
+        direction: [f64; 3],
+    },
+    /// A held node that is not there.
+    #[error("the support holds node {node} (counted from 0); the mesh has {count} nodes")]
+    NoSuchNode {
+        /// Index of the node.
+        node: u32,
+        /// Nodes of the mesh.
+        count: usize,
+    },
+    /// Held nodes that leave more rigid motions than the support has.
+    #[error(
+        "the {held} held node(s) leave the body {left} rigid motions, the support only {expected}: hold more nodes (three that are not in line for a clamp or slider, two for a hinge, one for a pin), the only node of a pin at its point, two of a hinge on its axis"
+    )]
+    Underheld {
+        /// Held nodes.
+        held: usize,
+        /// Rigid motions that they leave.
+        left: usize,
+        /// Rigid motions of the support.
+        expected: usize,
     },
     /// A rigid motion that K resists.
     #[error(
@@ -75,7 +101,7 @@ pub enum ModalError {
     },
     /// More modes asked for than there are.
     #[error(
-        "{requested} flexible modes asked for; the mesh has only {available} (three for each node that has mass, less the six rigid ones)"
+        "{requested} flexible modes asked for; the mesh has only {available} (three for each node that is free and has mass, less the rigid ones)"
     )]
     TooManyModes {
         /// Asked for.
@@ -85,9 +111,11 @@ pub enum ModalError {
     },
     /// Modes without energy beside the rigid ones.
     #[error(
-        "the body is a mechanism: besides the 6 rigid modes {count} mode(s) have no stiffness (the first has {eigenvalue:e} of the shift {shift:e}); the node with index {node} at {position:?} moves most. Are parts joined at a single node or edge only? Join them by faces"
+        "the body is a mechanism: besides the {rigid} rigid mode(s) {count} mode(s) have no stiffness (the first has {eigenvalue:e} of the shift {shift:e}); the node with index {node} at {position:?} moves most. Are parts joined at a single node or edge only? Join them by faces"
     )]
     Mechanism {
+        /// Rigid modes that the support leaves.
+        rigid: usize,
         /// How many.
         count: usize,
         /// Eigenvalue of the first.
@@ -135,6 +163,20 @@ pub enum ModalError {
         /// Block steps taken.
         steps: usize,
         /// Worst residual of the modes asked for.
+        residual: f64,
+        /// Residual asked for.
+        tolerance: f64,
+    },
+    /// A static answer that is not one.
+    #[error(
+        "the static answer to force {column} has a residual of {residual:e} after {iterations} iterations (wanted {tolerance:e}): is a part of the body all but loose?"
+    )]
+    StaticNotConverged {
+        /// Column of the forces.
+        column: usize,
+        /// Iterations done.
+        iterations: usize,
+        /// Residual in the norm of (K + sM)⁻¹, relative to that of the force.
         residual: f64,
         /// Residual asked for.
         tolerance: f64,

@@ -12,7 +12,7 @@ use crate::products::Packed;
 use crate::shifted::Shifted;
 use crate::tall;
 
-/// Rigid modes.
+/// Columns of the rigid modes, zero for those that are missing.
 const FIXED: usize = 6;
 /// Vectors solved for at a time.
 const BLOCK: usize = 8;
@@ -36,7 +36,7 @@ pub(crate) struct LanczosPairs {
     pub basis_size: usize,
 }
 
-/// The `count` pairs with the largest μ, of `available`, that are M-orthogonal to `rigid` (N×6, M-orthonormal).
+/// The `count` pairs with the largest μ, of `available`, that are M-orthogonal to `rigid` (N×6, M-orthonormal or zero).
 ///
 /// `report` is called after each step with the number of pairs that have converged.
 pub(crate) fn largest_pairs(
@@ -56,6 +56,7 @@ pub(crate) fn largest_pairs(
 
     let mut seed = 1;
     let mut w = random_block(n, BLOCK.min(available), &mut seed);
+    operator.constraints.project(w.as_mut());
     let mut last = basis.extend(&mut w)?.columns;
     let (mut converged, mut residual) = (0, f64::INFINITY);
     for block_solves in 1..=max_steps {
@@ -101,6 +102,7 @@ pub(crate) fn largest_pairs(
         if last == 0 {
             // The basis spans an invariant subspace: go on from elsewhere, uncoupled from it.
             w = random_block(n, BLOCK.min(available - size), &mut seed);
+            operator.constraints.project(w.as_mut());
             last = basis.extend(&mut w)?.columns;
         }
     }

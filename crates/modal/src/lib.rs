@@ -1,34 +1,42 @@
-//! Vibration modes of a free body from its sparse matrices, and the reduced body made from them.
+//! Vibration modes and static answers of a body, free or held, from its sparse matrices, and the reduced body made
+//! from them.
 //!
 //! ```text
 //! K φ = λ M φ,   ω = √λ,   φᵀ M φ = 1
 //! ```
 //!
-//! [`solve()`] takes any symmetric sparse K and M with three degrees of freedom a node (`3·node + axis`) and the
-//! positions of the nodes. K of a free body is singular: its six rigid modes are known from the geometry
-//! ([`RigidModes`]), checked against K, and kept out of the search, which works on `K + sM`, s > 0.
+//! [`Solver`] takes any symmetric sparse K and M of the body without supports, with three degrees of freedom a node
+//! (`3·node + axis`), the positions of the nodes, and the [`Support`]. K has no stiffness against the rigid modes that
+//! the support leaves; they are known from the geometry ([`RigidModes`]), checked against K, and kept out of the search,
+//! which works on `K + sM`, s > 0, in the space of the displacements that the support allows.
 //! Modes come out mass-normalised, the component of largest magnitude positive.
 //!
 //! [`ReducedBody`] holds the constants that the motion of the body needs, with nothing of the mesh's size.
 
+mod constraints;
 mod dense;
 mod error;
+mod fields;
 mod lanczos;
 mod mass;
 mod ordering;
 mod products;
 mod reduced;
 mod rigid;
+mod rigid_body;
+mod ritz;
 mod shifted;
 mod solve;
 mod start;
+mod statics;
 mod support;
 mod symmetry;
 mod tall;
 
 pub use error::ModalError;
+pub use fields::{acceleration_fields, centrifugal_fields};
 pub use mass::NodalMass;
 pub use reduced::{BodyPoint, ReducedBody};
 pub use rigid::RigidModes;
-pub use solve::{Modes, Progress, SolveStats, solve};
+pub use solve::{Modes, Progress, SolveStats, Solver};
 pub use support::{RigidMotion, Support};

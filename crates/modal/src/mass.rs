@@ -90,13 +90,13 @@ impl NodalMass {
     }
 
     /// Sums over the columns: the mass that each node stands for (n).
-    pub(crate) fn row_sums(&self) -> Vec<f64> {
+    pub fn row_sums(&self) -> Vec<f64> {
         self.start.windows(2).map(|range| self.values[range[0]..range[1]].iter().sum()).collect()
     }
 
-    /// Number of nodes that have a mass at all.
-    pub(crate) fn massive_count(&self) -> usize {
-        self.start.windows(2).filter(|range| range[0] < range[1]).count()
+    /// Whether a node has a mass at all.
+    pub(crate) fn is_massive(&self, node: usize) -> bool {
+        self.start[node] < self.start[node + 1]
     }
 
     /// Number of nodes n.

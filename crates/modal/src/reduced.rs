@@ -1,7 +1,7 @@
 //! The reduced body: every constant that the motion needs, none of them of the mesh's size.
 //!
-//! With `X` the node positions about the centre of mass, `Ψ = [Ψ_R, Ψ_f]` the rigid and flexible shapes, and
-//! `(I⊗A)` a 3×3 matrix A acting on each node's vector:
+//! With `X` the node positions from the origin (the centre of mass of a free body), `Ψ = [Ψ_R, Ψ_f]` the rigid and
+//! flexible shapes, and `(I⊗A)` a 3×3 matrix A acting on each node's vector:
 //!
 //! | here | theory | definition |
 //! |---|---|---|
@@ -10,7 +10,7 @@
 //! | [`inertia_second`](ReducedBody::inertia_second) | N_ij | `Ψ_fᵀ M (I⊗[e_i×]ᵀ[e_j×]) Ψ_f`, symmetrised in ij |
 //! | [`gyroscopic`](ReducedBody::gyroscopic) | G_i | `Ψ_fᵀ M (I⊗[e_i×]) Ψ_f`, skew |
 //! | [`translation_first`](ReducedBody::translation_first) | t_i | `Ψ_fᵀ M (1⊗e_i)`, zero for a free body |
-//! | [`rotation_first`](ReducedBody::rotation_first) | b_i | `Ψ_fᵀ M (I⊗[e_i×]) X`, zero for a free body |
+//! | [`rotation_first`](ReducedBody::rotation_first) | b_i | `Ψ_fᵀ M (I⊗[e_i×]) X`, zero for a free or pinned body |
 //! | [`stress_stiffness`](ReducedBody::stress_stiffness) | Ψ_fᵀ K_ij Ψ_f | of the stress that spinning causes |
 
 use faer::sparse::SparseColMatRef;
@@ -96,7 +96,7 @@ impl ReducedBody {
         all.as_mut().subcols_mut(0, 6).copy_from(&rigid.shapes);
         all.as_mut().subcols_mut(6, nf).copy_from(&modes.shapes);
         for (node, x) in positions.iter().enumerate() {
-            let offset = Vector3::from(*x) - rigid.center_of_mass;
+            let offset = Vector3::from(*x) - rigid.origin;
             for axis in 0..3 {
                 all[(3 * node + axis, columns - 2)] = offset[axis];
                 all[(3 * node + axis, columns - 1)] = 1.0;
@@ -110,10 +110,13 @@ impl ReducedBody {
             std::array::from_fn(|a| std::array::from_fn(|b| tall::inner(rows[a].as_ref(), m_rows[b].as_ref())));
 
         let modal = 6 + nf;
+        let is_free = rigid.motion == RigidMotion::Free;
         let rotation_products = std::array::from_fn(|a| {
             std::array::from_fn(|b| {
                 let mut product = products[a][b].get(..modal, ..modal).to_owned();
-                set_translations(&mut product, a, b);
+                if is_free {
+                    set_translations(&mut product, a, b);
+                }
                 product
             })
         });
@@ -143,16 +146,20 @@ impl ReducedBody {
             let (ab, ba) = (flexible(a, b), flexible(b, a));
             Mat::from_fn(nf, nf, |k, l| ab[(k, l)] - ba[(k, l)])
         });
-        let translation_first = std::array::from_fn(|i| (0..nf).map(|k| products[i][i][(6 + k, modal + 1)]).collect());
-        let rotation_first =
-            [(2, 1), (0, 2), (1, 0)].map(|(a, b)| (0..nf).map(|k| flexible_x(a, b, k) - flexible_x(b, a, k)).collect());
+        // The modes are orthogonal to the rigid motions that the body has: what is left is rounding, and would leak momentum.
+        let turns_freely = is_free || matches!(rigid.motion, RigidMotion::Pin { .. });
+        let unless = |is_zero: bool, value: f64| if is_zero { 0.0 } else { value };
+        let translation_first =
+            std::array::from_fn(|i| (0..nf).map(|k| unless(is_free, products[i][i][(6 + k, modal + 1)])).collect());
+        let rotation_first = [(2, 1), (0, 2), (1, 0)]
+            .map(|(a, b)| (0..nf).map(|k| unless(turns_freely, flexible_x(a, b, k) - flexible_x(b, a, k))).collect());
         Ok(Self {
             mass: rigid.mass,
             center_of_mass: rigid.center_of_mass,
-            motion: RigidMotion::Free,
-            origin: rigid.center_of_mass,
+            motion: rigid.motion,
+            origin: rigid.origin,
             inertia: rigid.inertia,
-            translation_basis: Matrix3::identity() / rigid.mass.sqrt(),
+            translation_basis: rigid.translation_basis,
             rotation_basis: rigid.rotation_basis,
             circular_frequencies: modes.eigenvalues.iter().map(|lambda| lambda.sqrt()).collect(),
             rotation_products,
@@ -218,7 +225,7 @@ impl BodyPoint {
         let position: Vector3<f64> = carried().map(|(node, w)| Vector3::from(positions[node]) * *w).sum();
         let shapes: MatRef<'_, f64> = modes.shapes.as_ref();
         Self {
-            position_body: position - modes.rigid.center_of_mass,
+            position_body: position - modes.rigid.origin,
             shapes: Mat::from_fn(3, shapes.ncols(), |axis, k| {
                 carried().map(|(node, w)| shapes[(3 * node + axis, k)] * w).sum()
             }),

@@ -1,23 +1,40 @@
-//! K + sM, factored once: `L Lᵀ = P (K + sM) Pᵀ`.
+//! A = K + sM in the space that the support allows, factored once.
+//!
+//! The rows and columns of held nodes are taken out of A before it is factored, `L Lᵀ = P A_f Pᵀ`. The few unknowns
+//! that the held nodes have in common (motions C) are eliminated as a block: with `E = C − A_f⁻¹ A C`, which is
+//! A-orthogonal to all displacements of the other nodes, `x = A_f⁻¹ b + E (Eᵀ A E)⁻¹ Eᵀ b`.
 
 use std::time::{Duration, Instant};
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::LltError as PivotError;
+use faer::reborrow::{Reborrow, ReborrowMut};
 use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, LltRef, SymbolicCholesky, SymmetricOrdering, factorize_symbolic_cholesky,
 };
 use faer::sparse::{FaerError, SparseColMat, SparseColMatRef};
-use faer::{Conj, MatMut, Par, Side, Spec};
+use faer::{Accum, Conj, Mat, MatMut, Par, Side, Spec};
 
+use crate::constraints::Constraints;
+use crate::dense::whitening;
 use crate::error::ModalError;
 use crate::ordering::nested_dissection;
+use crate::products::symmetric_product;
+use crate::tall;
 
 /// The factor of K + sM.
 pub(crate) struct Shifted {
+    /// What the held nodes may do.
+    pub constraints: Constraints,
+    /// The shift s.
+    pub shift: f64,
     symbolic: SymbolicCholesky<usize>,
     values: Vec<f64>,
+    /// E, A-orthonormal.
+    extensions: Mat<f64>,
     par: Par,
+    /// Time that it took to choose the shift.
+    pub estimate_time: Duration,
     /// Time of the ordering and the symbolic factorisation.
     pub ordering_time: Duration,
     /// Time of the numeric factorisation.
@@ -30,11 +47,17 @@ impl Shifted {
         stiffness: SparseColMatRef<'_, usize, f64>,
         mass: SparseColMatRef<'_, usize, f64>,
         shift: f64,
+        constraints: &Constraints,
     ) -> Result<Self, ModalError> {
         let start = Instant::now();
         let par = parallelism();
         let size = stiffness.ncols();
-        let shifted = sum(stiffness, mass, shift).map_err(|reason| failed(size, reason))?;
+        let mut shifted = sum(stiffness, mass, shift).map_err(|reason| failed(size, reason))?;
+        let motions = constraints.motions();
+        let a_motions = symmetric_product(shifted.as_ref(), motions.as_ref());
+        if !constraints.is_empty() {
+            hold_out(&mut shifted, constraints);
+        }
         let ordering = nested_dissection(shifted.symbolic())?;
         let symbolic = factorize_symbolic_cholesky(
             shifted.symbolic(),
@@ -60,7 +83,37 @@ impl Shifted {
                 Spec::default(),
             )
             .map_err(|PivotError::NonPositivePivot { index }| ModalError::Indefinite { pivot: index, shift })?;
-        Ok(Self { symbolic, values, par, ordering_time, factor_time: start.elapsed() })
+        let extensions = Mat::zeros(size, 0);
+        let constraints = constraints.clone();
+        let estimate_time = Duration::ZERO;
+        let mut shifted = Self {
+            constraints,
+            shift,
+            symbolic,
+            values,
+            extensions,
+            par,
+            estimate_time,
+            ordering_time,
+            factor_time: start.elapsed(),
+        };
+        shifted.extend(motions, a_motions)?;
+        shifted.factor_time = start.elapsed();
+        Ok(shifted)
+    }
+
+    /// Takes in the motions C of the held nodes, with their forces A C.
+    fn extend(&mut self, motions: Mat<f64>, a_motions: Mat<f64>) -> Result<(), ModalError> {
+        if motions.ncols() == 0 {
+            return Ok(());
+        }
+        let mut answers = a_motions.clone();
+        self.solve_in_place(answers.as_mut(), &mut self.solve_scratch(motions.ncols())?);
+        let extensions = motions - answers;
+        let whitening = whitening(&tall::inner(extensions.as_ref(), a_motions.as_ref()))
+            .map_err(|_| ModalError::Indefinite { pivot: self.symbolic.ncols(), shift: self.shift })?;
+        self.extensions = tall::product(extensions.as_ref(), whitening.as_ref());
+        Ok(())
     }
 
     /// Stored entries of the factor.
@@ -74,14 +127,34 @@ impl Shifted {
             .map_err(|_| failed(self.symbolic.ncols(), "no memory left"))
     }
 
-    /// Replaces `x` by (K + sM)⁻¹ x.
-    pub(crate) fn solve_in_place(&self, x: MatMut<'_, f64>, scratch: &mut MemBuffer) {
+    /// Replaces forces `x` by the displacements (K + sM)⁻¹ x that the support allows.
+    pub(crate) fn solve_in_place(&self, mut x: MatMut<'_, f64>, scratch: &mut MemBuffer) {
+        let extends = self.extensions.ncols() > 0;
+        let motions = extends.then(|| tall::inner(self.extensions.as_ref(), x.rb()));
+        self.constraints.clear(x.rb_mut());
         LltRef::new(&self.symbolic, &self.values).solve_in_place_with_conj(
             Conj::No,
-            x,
+            x.rb_mut(),
             self.par,
             MemStack::new(scratch),
         );
+        if let Some(motions) = motions {
+            tall::multiply(x, Accum::Add, self.extensions.as_ref(), motions.as_ref(), 1.0);
+        }
+    }
+}
+
+/// Replaces rows and columns of held nodes by those of the identity.
+fn hold_out(matrix: &mut SparseColMat<usize, f64>, constraints: &Constraints) {
+    let (symbolic, values) = matrix.parts_mut();
+    for column in 0..symbolic.ncols() {
+        let column_is_held = constraints.holds(column / 3);
+        for entry in symbolic.col_range(column) {
+            let row = symbolic.row_idx()[entry];
+            if column_is_held || constraints.holds(row / 3) {
+                values[entry] = if row == column { 1.0 } else { 0.0 };
+            }
+        }
     }
 }
 

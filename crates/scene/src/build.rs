@@ -1,18 +1,24 @@
 //! From a scene to a body that can move.
 
+mod history;
+mod loads;
+mod physics;
+mod support;
+
 use std::time::{Duration, Instant};
 
-use fem_tet10::{AssemblyError, Location, Matrices, Mesh, MeshError, assemble, read_msh};
+use faer::Mat;
+use fem_tet10::{AssemblyError, Location, Matrices, Mesh, MeshError, assemble, read_msh, reduced_geometric_stiffness};
 use frames_rk4::{
-    ConservativeScheme, DeadForce, Initial, PointShapes, Rows, Setup, SetupError, Simulation, StepControl,
+    ConservativeScheme, Initial, Load, Physics, PointShapes, Rows, Setup, SetupError, Simulation, StepControl,
 };
-use modal::{BodyPoint, ModalError, Modes, ReducedBody};
-use nalgebra::Vector3;
+use modal::{BodyPoint, ModalError, Modes, ReducedBody, RigidMotion, Solver, Support, centrifugal_fields};
+use nalgebra::{Matrix3, Vector3};
 
+use crate::effects::Choice;
 use crate::error::SceneError;
-use crate::history::History;
-use crate::load::{Load, LoadFrame};
 use crate::scene::{self, Body, MeshedBody, Scene};
+use loads::MeshLoad;
 
 /// A scene that cannot be built.
 #[derive(Debug, thiserror::Error)]
@@ -40,6 +46,8 @@ pub enum BuildProgress {
     Assembly,
     /// The modes are being searched.
     Modes(modal::Progress),
+    /// Static answers to loads and to the centrifugal field are being computed.
+    Statics,
 }
 
 /// Where the time went. That of the modes is in [`modal::SolveStats`].
@@ -51,28 +59,39 @@ pub struct BuildTimes {
     pub assembly: Duration,
     /// Finding the modes.
     pub modes: Duration,
+    /// Static answers and the stress stiffness of the centrifugal field and of steady loads.
+    pub statics: Duration,
     /// Making the reduced body and its points.
     pub reduction: Duration,
 }
 
-/// The body of a scene in modal coordinates, with its mesh, its points and its loads.
-#[derive(Debug)]
-pub struct Model {
+/// The finite-element side of a body.
+#[derive(Debug, Clone)]
+pub struct Meshed {
     /// The mesh.
     pub mesh: Mesh,
     /// Bytes that the mass and stiffness matrices took.
     pub matrix_bytes: usize,
     /// Rigid and flexible modes on the mesh.
     pub modes: Modes,
+}
+
+/// The body of a scene in modal coordinates, with its mesh, its points and its loads.
+#[derive(Debug)]
+pub struct Model {
+    /// Mesh and modes; `None` for a rigid body without a mesh.
+    pub meshed: Option<Meshed>,
     /// The reduced body.
     pub body: ReducedBody,
+    /// What of the physics is computed.
+    pub physics: Physics,
     /// The points whose motion is written out, by name.
     pub points: Vec<(String, PointShapes)>,
-    /// R, P, Q from the centre of mass, body axes.
+    /// R, P, Q from the origin of the body, body axes.
     pub reference_points: [Vector3<f64>; 3],
     /// Where the time went.
     pub times: BuildTimes,
-    loads: Vec<DeadForce>,
+    loads: Vec<Load>,
     damping_ratios: Vec<f64>,
 }
 
@@ -82,94 +101,155 @@ impl Model {
     /// # Errors
     /// [`BuildError`]: what the mesh, the materials or the modes refuse, with the place in the scene file where
     /// there is one.
-    pub fn build(scene: &Scene, mut progress: impl FnMut(BuildProgress)) -> Result<Self, BuildError> {
+    pub fn build(scene: &Scene, progress: impl FnMut(BuildProgress)) -> Result<Self, BuildError> {
+        match &scene.body {
+            Body::Meshed(meshed) => Self::meshed(scene, meshed, progress),
+            Body::Rigid(rigid) => Self::rigid(scene, rigid),
+        }
+    }
+
+    fn meshed(
+        scene: &Scene,
+        meshed: &MeshedBody,
+        mut progress: impl FnMut(BuildProgress),
+    ) -> Result<Self, BuildError> {
         let mut times = BuildTimes::default();
         progress(BuildProgress::Mesh);
-        if scene.constraint.is_some() {
-            let cure = "remove it, or use a later version";
-            return Err(scene.refuse("constraints", "a constraint", "a free body in this version", cure).into());
-        }
-        let described = meshed(scene)?;
-        let mesh = timed(&mut times.mesh, || read_mesh(scene, described))?;
+        let mesh = timed(&mut times.mesh, || read_mesh(scene, meshed))?;
         progress(BuildProgress::Assembly);
-        let matrices = timed(&mut times.assembly, || matrices(scene, described, &mesh))?;
-        let modes = timed(&mut times.modes, || {
-            modal::solve(matrices.stiffness(), matrices.mass(), mesh.positions(), scene.modes.flexible.most(), |p| {
-                progress(BuildProgress::Modes(p));
-            })
-            .map_err(|error| too_many_modes(scene, error))
+        let matrices = timed(&mut times.assembly, || matrices(scene, meshed, &mesh))?;
+        let (support, drive) = support::support(scene, Some(&mesh))?;
+        let requested = match scene.effects.flexibility {
+            Choice::Off => 0,
+            Choice::On | Choice::Auto => scene.modes.flexible.most(),
+        };
+        let solver = Solver::new(matrices.stiffness(), matrices.mass(), mesh.positions(), &support)?;
+        let mut modes = timed(&mut times.modes, || {
+            solver
+                .modes(requested, |p| progress(BuildProgress::Modes(p)))
+                .map_err(|error| too_many_modes(scene, error))
         })?;
+        let loads = loads::on_mesh(scene, &mesh, &solver.nodal_mass().row_sums())?;
+        progress(BuildProgress::Statics);
+        let statics_started = Instant::now();
+        let materials = materials(meshed);
+        if scene.modes.static_correction == Choice::On && requested > 0 {
+            let mut fields = nodal_forces(&loads, mesh.positions().len());
+            if physics::may_spin(scene, &support, drive.as_ref()) {
+                let of_spin = centrifugal_fields(solver.nodal_mass(), mesh.positions(), &modes.rigid.origin);
+                fields = Mat::from_fn(fields.nrows(), fields.ncols() + of_spin.ncols(), |i, j| {
+                    if j < fields.ncols() { fields[(i, j)] } else { of_spin[(i, j - fields.ncols())] }
+                });
+            }
+            let answers = solver.static_response(fields.as_ref())?;
+            modes = solver.with_static_shapes(modes, answers.as_ref())?;
+        }
+        times.statics = statics_started.elapsed();
         let started = Instant::now();
-        let body = ReducedBody::new(&modes, matrices.mass(), mesh.positions())?;
+        let mut body = ReducedBody::new(&modes, matrices.mass(), mesh.positions())?;
+        times.reduction = started.elapsed();
+        let statics_started = Instant::now();
+        let stiffening = physics::stiffening(scene, &body, drive.as_ref(), &support);
+        if stiffening {
+            let fields = centrifugal_fields(solver.nodal_mass(), mesh.positions(), &body.origin);
+            let answers = solver.static_response(fields.as_ref())?;
+            let stiffness = reduced_geometric_stiffness(&mesh, &materials, answers.as_ref(), modes.shapes.as_ref())?;
+            body.stress_stiffness = stiffness.try_into().ok();
+        }
+        let steady: Vec<&MeshLoad> = loads.iter().filter(|load| physics::stiffens(scene, &body, drive.as_ref(), load)).collect();
+        let load_stiffness = if steady.is_empty() {
+            None
+        } else {
+            let mut field = Mat::zeros(3 * mesh.positions().len(), 1);
+            steady.iter().for_each(|load| load.add_nodal_forces(field.as_mut().col_mut(0)));
+            let answer = solver.static_response(field.as_ref())?;
+            reduced_geometric_stiffness(&mesh, &materials, answer.as_ref(), modes.shapes.as_ref())?.pop()
+        };
+        times.statics += statics_started.elapsed();
+
+        let started = Instant::now();
         let point = |key: String, at: [f64; 3]| -> Result<PointShapes, SceneError> {
             let Location { nodes, weights } = mesh.locate(at).map_err(|error| refuse(scene, &key, error))?;
             Ok(PointShapes::new(&body, &BodyPoint::new(&modes, mesh.positions(), &nodes, &weights)))
         };
-        let points = scene
-            .output
-            .points
-            .iter()
-            .map(|(name, at)| Ok((name.clone(), point(format!("output.points.{name}"), *at)?)))
-            .collect::<Result<_, SceneError>>()?;
-        let loads = scene
-            .loads
-            .iter()
-            .enumerate()
-            .map(|(i, load)| {
-                let not_yet = |key: &str, what: &str| {
-                    let key = format!("loads[{i}].{key}");
-                    let expected =
-                        "a force in global axes with a half-sine history, which is all this version simulates";
-                    scene.refuse(&key, what, expected, "change the load, or use a later version")
-                };
-                let Load::Force(force) = load else { return Err(not_yet("kind", "another load")) };
-                let History::HalfSine { start, duration } = force.history else {
-                    return Err(not_yet("history", "another history"));
-                };
-                if force.frame != LoadFrame::Global {
-                    return Err(not_yet("frame", "a follower force"));
-                }
-                Ok(DeadForce {
-                    point: point(format!("loads[{i}].at"), force.at)?,
-                    force_global: Vector3::from(force.direction) * force.amplitude,
-                    history: frames_rk4::History::HalfSine { start, duration },
-                })
-            })
-            .collect::<Result<_, SceneError>>()?;
+        let points = output_points(scene, point)?;
+        let reduced_loads = loads.iter().map(|load| load.reduced(&body, &modes, &mesh)).collect();
         let reference_points = match scene.frame {
             Some(scene::Frame { r, p, q }) => [r, p, q],
             None => well_spread(mesh.positions(), &body.center_of_mass),
         }
-        .map(|x| Vector3::from(x) - body.center_of_mass);
-        times.reduction = started.elapsed();
+        .map(|x| Vector3::from(x) - body.origin);
+        times.reduction += started.elapsed();
+        drop(solver);
         Ok(Self {
-            matrix_bytes: matrices.bytes(),
-            damping_ratios: damping_ratios(scene, &modes),
-            mesh,
-            modes,
+            physics: Physics { effects: physics::effects(scene, stiffening), drive, load_stiffness },
+            damping_ratios: damping_ratios(scene, &body),
+            meshed: Some(Meshed { matrix_bytes: matrices.bytes(), mesh, modes }),
             body,
             points,
             reference_points,
             times,
-            loads,
+            loads: reduced_loads,
         })
+    }
+
+    fn rigid(scene: &Scene, rigid: &scene::RigidBody) -> Result<Self, BuildError> {
+        let (Support { motion, .. }, drive) = support::support(scene, None)?;
+        let center = Vector3::from(rigid.center_of_mass);
+        let about_center = Matrix3::from_fn(|i, j| rigid.inertia[i][j]);
+        let origin = motion.fixed_point().unwrap_or(center);
+        let arm = center - origin;
+        let inertia =
+            about_center + (Matrix3::identity() * arm.norm_squared() - arm * arm.transpose()) * rigid.mass;
+        let body = ReducedBody::rigid(rigid.mass, center, inertia, motion)?;
+        let point = |_: String, at: [f64; 3]| -> Result<PointShapes, SceneError> {
+            let position_body = Vector3::from(at) - body.origin;
+            Ok(PointShapes::new(&body, &BodyPoint { position_body, shapes: Mat::zeros(3, 0) }))
+        };
+        let points = output_points(scene, point)?;
+        let reference_points = match scene.frame {
+            Some(scene::Frame { r, p, q }) => [r, p, q].map(|x| Vector3::from(x) - body.origin),
+            None => [Vector3::zeros(), Vector3::x(), Vector3::y()],
+        };
+        Ok(Self {
+            meshed: None,
+            physics: Physics { effects: physics::effects(scene, false), drive, load_stiffness: None },
+            points,
+            reference_points,
+            times: BuildTimes::default(),
+            loads: loads::on_rigid(scene, &body)?,
+            damping_ratios: Vec::new(),
+            body,
+        })
+    }
+
+    /// Frequencies of the flexible modes, cycles per time.
+    pub fn natural_frequencies(&self) -> Vec<f64> {
+        self.body.circular_frequencies.iter().map(|omega| omega / std::f64::consts::TAU).collect()
     }
 
     /// The same body with its first `flexible` modes only.
     pub fn truncated(&self, flexible: usize) -> Self {
         let flexible = flexible.min(self.body.flexible());
-        let mut modes = self.modes.clone();
-        modes.eigenvalues.truncate(flexible);
-        modes.residuals.truncate(flexible);
-        modes.force_residuals.truncate(flexible);
-        modes.shapes = self.modes.shapes.get(.., ..flexible).to_owned();
-        let truncated = |load: &DeadForce| DeadForce { point: load.point.truncated(flexible), ..load.clone() };
+        let meshed = self.meshed.as_ref().map(|meshed| {
+            let mut modes = meshed.modes.clone();
+            modes.eigenvalues.truncate(flexible);
+            modes.residuals.truncate(flexible);
+            modes.force_residuals.truncate(flexible);
+            modes.shapes = meshed.modes.shapes.get(.., ..flexible).to_owned();
+            Meshed { mesh: meshed.mesh.clone(), modes, ..*meshed }
+        });
+        let stiffness = self.physics.load_stiffness.as_ref();
+        let physics = Physics {
+            load_stiffness: stiffness.map(|k| k.get(..flexible, ..flexible).to_owned()),
+            ..self.physics.clone()
+        };
         Self {
-            mesh: self.mesh.clone(),
-            modes,
+            meshed,
+            physics,
             body: self.body.truncated(flexible),
             points: self.points.iter().map(|(name, point)| (name.clone(), point.truncated(flexible))).collect(),
-            loads: self.loads.iter().map(truncated).collect(),
+            loads: self.loads.iter().map(|load| load.truncated(flexible)).collect(),
             damping_ratios: self.damping_ratios[..flexible].to_vec(),
             ..*self
         }
@@ -181,7 +261,7 @@ impl Model {
     }
 
     /// The loads, at their points of the body.
-    pub fn loads(&self) -> &[DeadForce] {
+    pub fn loads(&self) -> &[Load] {
         &self.loads
     }
 
@@ -224,6 +304,7 @@ impl Model {
             body: &self.body,
             damping_ratios: &self.damping_ratios,
             loads: &self.loads,
+            physics: &self.physics,
             reference_points: self.reference_points,
             initial: &initial,
             method,
@@ -247,36 +328,64 @@ pub fn method(method: scene::Method) -> frames_rk4::Method {
     }
 }
 
-impl MeshedBody {
-    /// The materials in the words of fem-tet10.
-    fn fem_materials(&self) -> fem_tet10::Materials {
-        let material = |m: &scene::Material| fem_tet10::Material {
-            young_modulus: m.young_modulus,
-            poisson_ratio: m.poisson_ratio,
-            density: m.density,
-        };
-        match &self.materials {
-            scene::Materials::Whole(m) => fem_tet10::Materials::Uniform(material(m)),
-            scene::Materials::ByGroup(groups) => {
-                fem_tet10::Materials::ByGroup(groups.iter().map(|(name, m)| (name.clone(), material(m))).collect())
-            }
-        }
-    }
-
-    fn fem_point_masses(&self) -> Vec<fem_tet10::PointMass> {
-        let point_mass = |p: &scene::PointMass| fem_tet10::PointMass { at: p.at, mass: p.mass, spread: p.spread };
-        self.point_masses.iter().map(point_mass).collect()
-    }
-}
-
 impl Scene {
     /// Mass properties with each element's mass at its centroid, as the paper prints them.
     ///
     /// # Errors
     /// As [`Model::build`], for materials and point masses.
-    pub fn centroid_lumped_inertia(&self, mesh: &Mesh) -> Result<fem_tet10::LumpedInertia, BuildError> {
-        let body = meshed(self)?;
-        Ok(fem_tet10::centroid_lumped_inertia(mesh, &body.fem_materials(), &body.fem_point_masses())?)
+    pub fn centroid_lumped_inertia(&self, mesh: &Mesh) -> Result<Option<fem_tet10::LumpedInertia>, BuildError> {
+        match &self.body {
+            Body::Meshed(body) => {
+                Ok(Some(fem_tet10::centroid_lumped_inertia(mesh, &materials(body), &point_masses(body))?))
+            }
+            Body::Rigid(_) => Ok(None),
+        }
+    }
+}
+
+/// The materials in the words of fem-tet10.
+fn materials(body: &MeshedBody) -> fem_tet10::Materials {
+    let material = |m: &scene::Material| fem_tet10::Material {
+        young_modulus: m.young_modulus,
+        poisson_ratio: m.poisson_ratio,
+        density: m.density,
+    };
+    match &body.materials {
+        scene::Materials::Whole(m) => fem_tet10::Materials::Uniform(material(m)),
+        scene::Materials::ByGroup(groups) => {
+            fem_tet10::Materials::ByGroup(groups.iter().map(|(name, m)| (name.clone(), material(m))).collect())
+        }
+    }
+}
+
+fn point_masses(body: &MeshedBody) -> Vec<fem_tet10::PointMass> {
+    let point_mass = |p: &scene::PointMass| fem_tet10::PointMass { at: p.at, mass: p.mass, spread: p.spread };
+    body.point_masses.iter().map(point_mass).collect()
+}
+
+fn output_points(
+    scene: &Scene,
+    point: impl Fn(String, [f64; 3]) -> Result<PointShapes, SceneError>,
+) -> Result<Vec<(String, PointShapes)>, BuildError> {
+    let named = scene.output.points.iter();
+    named.map(|(name, at)| Ok((name.clone(), point(format!("output.points.{name}"), *at)?))).collect()
+}
+
+/// The forces of each load on the nodes, side by side (3n × loads).
+fn nodal_forces(loads: &[MeshLoad], nodes: usize) -> Mat<f64> {
+    let mut forces = Mat::zeros(3 * nodes, loads.len());
+    for (i, load) in loads.iter().enumerate() {
+        load.add_nodal_forces(forces.as_mut().col_mut(i));
+    }
+    forces
+}
+
+/// One damping ratio for each flexible mode.
+fn damping_ratios(scene: &Scene, body: &ReducedBody) -> Vec<f64> {
+    let frequencies = body.circular_frequencies.iter().enumerate();
+    match scene.effects.damping {
+        Choice::Off => vec![0.0; body.flexible()],
+        Choice::On | Choice::Auto => frequencies.map(|(k, omega)| scene.modes.damping.ratio(k, *omega)).collect(),
     }
 }
 
@@ -285,23 +394,6 @@ fn timed<T>(time: &mut Duration, work: impl FnOnce() -> T) -> T {
     let result = work();
     *time = started.elapsed();
     result
-}
-
-/// The body with a mesh.
-fn meshed(scene: &Scene) -> Result<&MeshedBody, SceneError> {
-    match &scene.body {
-        Body::Meshed(body) => Ok(body),
-        Body::Rigid(_) => {
-            let cure = "give a mesh and a material, or use a later version";
-            Err(scene.refuse("body.rigid", "a body without a mesh", "a mesh in this version", cure))
-        }
-    }
-}
-
-/// Damping ratio of each flexible mode.
-fn damping_ratios(scene: &Scene, modes: &Modes) -> Vec<f64> {
-    let ratio = |(mode, eigenvalue): (usize, &f64)| scene.modes.damping.ratio(mode, eigenvalue.sqrt());
-    modes.eigenvalues.iter().enumerate().map(ratio).collect()
 }
 
 fn read_mesh(scene: &Scene, body: &MeshedBody) -> Result<Mesh, BuildError> {
@@ -319,7 +411,7 @@ fn read_mesh(scene: &Scene, body: &MeshedBody) -> Result<Mesh, BuildError> {
 }
 
 fn matrices(scene: &Scene, body: &MeshedBody, mesh: &Mesh) -> Result<Matrices, BuildError> {
-    assemble(mesh, &body.fem_materials(), &body.fem_point_masses()).map_err(|error| {
+    assemble(mesh, &materials(body), &point_masses(body)).map_err(|error| {
         let at = match &error {
             AssemblyError::OffBody { at, .. } | AssemblyError::Spread { at, .. } => *at,
             AssemblyError::MissingGroup { group, .. } => {
@@ -364,6 +456,11 @@ fn refuse(scene: &Scene, key: &str, error: AssemblyError) -> SceneError {
         ),
         _ => scene.refuse(key, message, "something that fits the mesh", "correct it"),
     }
+}
+
+/// A mesh error, such as a group that is not there, at its place in the scene file.
+fn refuse_mesh(scene: &Scene, key: &str, error: &MeshError) -> BuildError {
+    scene.refuse(key, error.to_string(), "something that the mesh has", "name it in the geometry, and mesh again").into()
 }
 
 fn too_many_modes(scene: &Scene, error: ModalError) -> BuildError {

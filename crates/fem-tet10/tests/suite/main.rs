@@ -2,6 +2,7 @@
 
 mod curved;
 mod fixtures;
+mod geometric_stiffness;
 mod locate;
 mod mass;
 mod point_masses;

@@ -56,7 +56,7 @@ pub(super) fn compare(scene: &Scene, richest: &Model, counts: &[usize], settings
         let is_most = count == richest.body.flexible();
         Some(ModesRow {
             flexible: count,
-            highest_frequency: model.modes.natural_frequencies().last().copied().unwrap_or_default(),
+            highest_frequency: model.natural_frequencies().last().copied().unwrap_or_default(),
             errors: (!is_most).then(|| Errors::between(&run, &most.trajectory, case.scales())),
             step_error: most.error.largest(),
             seconds_per_step: timing.shortest.as_secs_f64() / run.stats.accepted as f64,

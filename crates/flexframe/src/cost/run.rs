@@ -106,7 +106,11 @@ pub(super) struct Scales {
 impl Scales {
     /// What a body of this size and mass could as well not do at all.
     pub(super) fn of_body(model: &Model, end: f64) -> Self {
-        let length = STILL * model.mesh.diagonal();
+        let size = match &model.meshed {
+            Some(meshed) => meshed.mesh.diagonal(),
+            None => (model.body.inertia.trace() / model.body.mass).sqrt(),
+        };
+        let length = STILL * size;
         let modal = length * model.body.mass.sqrt();
         Self { modal, velocity: length / end, acceleration: length / (end * end) }
     }

@@ -2,11 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
+use frames_rk4::Load;
 use results::{FigureError, LineChart, Results, Scale, Series, Stroke};
 use scene::{Model, Scene};
 
 use super::WATCHED_POINT;
-use super::rigid_plate::RigidHistories;
+use super::rigid_plate::{RigidHistories, dead_force};
 use crate::figures::mode_shapes;
 
 /// Draws all figures into `folder` and returns their files.
@@ -29,7 +30,8 @@ pub(super) fn draw(
     let (alpha, omega) = (&results.angular_acceleration, &results.angular_velocity);
     let point = results.points.get(WATCHED_POINT).cloned().unwrap_or_default();
     let force = |axis: usize| -> Vec<(f64, f64)> {
-        let total = |t: f64| model.loads().iter().map(|load| load.force_global[axis] * load.history.at(t)).sum();
+        let of = |load: &Load, t: f64| dead_force(load).map_or(0.0, |(_, f)| f[axis] * load.history.at(t, t));
+        let total = |t: f64| model.loads().iter().map(|load| of(load, t)).sum();
         results.time.iter().map(|t| (*t, total(*t))).collect()
     };
     let beside_rigid = |rows: &[[f64; 3]], theirs: &[[f64; 3]], axis: usize, label: &str| {

@@ -122,12 +122,13 @@ fn apart(histories: &Histories) -> String {
 }
 
 fn force_in_words(scene: &Scene) -> String {
-    let sentences = scene.loads.iter().map(|Load::Force(force)| {
-        let History::HalfSine { start, duration } = force.history;
-        format!(
+    let sentences = scene.loads.iter().filter_map(|load| {
+        let Load::Force(force) = load else { return None };
+        let History::HalfSine { start, duration } = force.history else { return None };
+        Some(format!(
             "Here: a half-sine pulse of {} (force) along {:.4?} at {:?}, from {start} for {duration} {}.",
             force.amplitude, force.direction, force.at, scene.units.time
-        )
+        ))
     });
     sentences.collect::<Vec<_>>().join(" ")
 }

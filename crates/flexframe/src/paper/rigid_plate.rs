@@ -1,5 +1,6 @@
 //! The rigid plate that the paper compares with: same mass, inertia and load.
 
+use frames_rk4::{Action, Load, LoadFrame};
 use nalgebra::Vector3;
 use results::Results;
 use rigid_kin::{Attitude, RigidBody, RigidState, Wrench};
@@ -17,15 +18,25 @@ pub(super) struct RigidHistories {
     pub acceleration_global: Vec<[f64; 3]>,
 }
 
-/// Integrates the rigid plate under the scene's loads, in the steps of the results.
-pub(super) fn histories(model: &Model, results: &Results) -> Result<RigidHistories, PaperError> {
+/// The dead force of a load, and where it acts; `None` for other loads.
+pub(super) fn dead_force(load: &Load) -> Option<(Vector3<f64>, Vector3<f64>)> {
+    match &load.action {
+        Action::Force { point, force, frame: LoadFrame::Global } => Some((point.position_body(), *force)),
+        _ => None,
+    }
+}
+
+/// Integrates the rigid plate under the scene's loads, in the steps of the results; `None` where there are other loads
+/// than dead forces.
+pub(super) fn histories(model: &Model, results: &Results) -> Result<Option<RigidHistories>, PaperError> {
+    let of = |load: &Load| dead_force(load).map(|(at, force)| (at, force, load.history.clone()));
+    let Some(forces) = model.loads().iter().map(of).collect::<Option<Vec<_>>>() else { return Ok(None) };
     let body = RigidBody::new(model.body.mass, model.body.inertia)?;
     let watched = model.points.iter().find(|(name, _)| name == WATCHED_POINT);
     let arm = watched.map_or_else(Vector3::zeros, |(_, point)| point.position_body());
     let wrench = |time: f64, attitude: &Attitude| {
-        model.loads().iter().fold(Wrench::zero(), |sum, load| {
-            let force = load.force_global * load.history.at(time);
-            let one = Wrench::dead_force(attitude, &load.point.position_body(), &force);
+        forces.iter().fold(Wrench::zero(), |sum, (at, force, history)| {
+            let one = Wrench::dead_force(attitude, at, &(force * history.at(time, time)));
             Wrench { force_global: sum.force_global + one.force_global, moment_body: sum.moment_body + one.moment_body }
         })
     };
@@ -55,5 +66,5 @@ pub(super) fn histories(model: &Model, results: &Results) -> Result<RigidHistori
             .acceleration_global
             .push((load.force_global / body.mass() + state.attitude.to_global(&of_point)).into());
     }
-    Ok(histories)
+    Ok(Some(histories))
 }

@@ -4,7 +4,7 @@ use std::sync::OnceLock;
 
 use fem_tet10::{Material, Materials, Matrices, Mesh, PointMass, assemble, read_msh};
 use frames_rk4::{History, Initial, Load, ModalModel, PaperScheme, PointShapes};
-use modal::{BodyPoint, Modes, ReducedBody};
+use modal::{BodyPoint, Modes, ReducedBody, Solver, Support};
 use nalgebra::Vector3;
 
 /// A body from its mesh to its modes.
@@ -52,7 +52,7 @@ impl Specimen {
         let material = Material { young_modulus: 70_000.0, poisson_ratio: 0.33, density: 2.7e-9 };
         let matrices = assemble(&mesh, &Materials::Uniform(material), masses).unwrap();
         let (k, m) = (matrices.stiffness(), matrices.mass());
-        let modes = modal::solve(k, m, mesh.positions(), flexible, |_| ()).unwrap();
+        let modes = Solver::new(k, m, mesh.positions(), &Support::free()).unwrap().modes(flexible, |_| ()).unwrap();
         let body = ReducedBody::new(&modes, m, mesh.positions()).unwrap();
         Self { mesh, matrices, modes, body, reference_points }
     }

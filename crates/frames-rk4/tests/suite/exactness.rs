@@ -48,7 +48,7 @@ fn a_force_at_the_centre_of_mass_gives_the_sums_of_rk4() {
     let center = plate.body.center_of_mass;
     let force = Vector3::new(3.0, -2.0, 5.0);
     let load = plate.half_sine(center.into(), force.into(), 0.1);
-    let (history, h) = (load.history, 1e-3);
+    let (history, h) = (load.history.clone(), 1e-3);
     let mut scheme = plate.scheme(0.0, vec![load], &Initial::at_rest(0), h);
     let motion = BodyMotion::new(&plate.body).unwrap();
     let (mut position, mut velocity) = (center, Vector3::zeros());

@@ -1,7 +1,8 @@
 //! Bodies that the tests work on.
 
+use faer::sparse::SparseColMatRef;
 use fem_tet10::{Material, Materials, Matrices, Mesh, MeshParts, assemble, read_msh};
-use modal::{ModalError, Modes};
+use modal::{ModalError, Modes, Solver, Support};
 
 pub struct Body {
     pub positions: Vec<[f64; 3]>,
@@ -15,12 +16,22 @@ impl Body {
     }
 
     pub fn try_modes(&self, flexible: usize) -> Result<Modes, ModalError> {
-        modal::solve(self.matrices.stiffness(), self.matrices.mass(), &self.positions, flexible, |_| ())
+        free_modes(self.matrices.stiffness(), self.matrices.mass(), &self.positions, flexible)
     }
 
     pub fn modes(&self, flexible: usize) -> Modes {
         self.try_modes(flexible).unwrap()
     }
+}
+
+/// Modes of a body that nothing holds.
+pub fn free_modes(
+    stiffness: SparseColMatRef<'_, usize, f64>,
+    mass: SparseColMatRef<'_, usize, f64>,
+    positions: &[[f64; 3]],
+    flexible: usize,
+) -> Result<Modes, ModalError> {
+    Solver::new(stiffness, mass, positions, &Support::free())?.modes(flexible, |_| ())
 }
 
 pub const STEEL: Material = Material { young_modulus: 2.1e5, poisson_ratio: 0.3, density: 7.85e-9 };

@@ -4,7 +4,7 @@ use faer::sparse::{SparseColMat, SparseColMatRef, Triplet};
 use fem_tet10::Material;
 use modal::Modes;
 
-use crate::bodies::{self, Body, STEEL, block, block_mesh};
+use crate::bodies::{self, Body, STEEL, block, block_mesh, free_modes};
 
 const SIZE: [f64; 3] = [37.0, 20.0, 11.0];
 const CELLS: [usize; 3] = [4, 3, 2];
@@ -59,7 +59,7 @@ fn the_numbering_of_the_nodes_changes_neither_frequencies_nor_shapes() {
         positions[place[i]] = *x;
     }
     let (k, m) = (moved(body.matrices.stiffness()), moved(body.matrices.mass()));
-    let shuffled = modal::solve(k.as_ref(), m.as_ref(), &positions, 12, |_| ()).unwrap();
+    let shuffled = free_modes(k.as_ref(), m.as_ref(), &positions, 12).unwrap();
     let modes = body.modes(12);
     assert_same_frequencies(&modes, &shuffled, 1e-10);
     for mode in 0..12 {

@@ -1,0 +1,161 @@
+//! Geometric (stress) stiffness, reduced to a few shapes.
+//!
+//! ```text
+//! σ = D ε(u)        K_σ = ∫ σ_ab ∂_a N_i ∂_b N_j dV ⊗ I₃        reduced: Ψᵀ K_σ Ψ
+//! ```
+//!
+//! K_σ of the whole body is never made. In an element it is a 10×10 matrix S for each axis alike, and as the rows of S
+//! sum to zero, only displacements *against the element's first node* count. With those, a translation of the element
+//! drops out exactly, and rounding is measured against the deformation and not against the motion.
+
+use faer::linalg::matmul::matmul;
+use faer::linalg::matmul::triangular::{self, BlockStructure};
+use faer::{Accum, Mat, MatMut, MatRef, Par};
+use nalgebra::{Matrix3, Vector3};
+use rayon::prelude::*;
+
+use crate::error::AssemblyError;
+use crate::integration::{IntegrationPoint, Rules};
+use crate::material::{Material, Materials};
+use crate::mesh::Mesh;
+
+/// The elements are cut into so many parts, whatever the number of threads, and the parts are summed in their order.
+const PARTS: usize = 64;
+/// Elements that are multiplied at once.
+const BLOCK: usize = 32;
+/// Nodes of an element besides its first.
+const OTHERS: usize = 9;
+
+/// For each displacement field (column of `displacements`, N×s with N = 3n, length) the matrix `Ψᵀ K_σ Ψ` (f×f), where
+/// Ψ is `shapes` (N×f, row `3·node + axis`) and K_σ the geometric stiffness, force per length, of the field's linear
+/// stress `σ = D ε(u)`. Symmetric to the last bit, and the same for any number of threads.
+///
+/// Exact on straight elements. On curved ones by the rule that [`assemble`](crate::assemble) has for them, so that
+/// `K_σ (θ × X) = θ × K u` holds at every node there too, for any small rotation θ.
+///
+/// It holds 64·s·f² numbers, and for each thread the products of 32 elements: no more for a larger mesh.
+///
+/// # Errors
+/// Materials that do not fit the mesh; a matrix whose rows are not the degrees of freedom, or with an entry that is not
+/// finite.
+pub fn reduced_geometric_stiffness(
+    mesh: &Mesh,
+    materials: &Materials,
+    displacements: MatRef<'_, f64>,
+    shapes: MatRef<'_, f64>,
+) -> Result<Vec<Mat<f64>>, AssemblyError> {
+    check_field(mesh, "displacements", displacements)?;
+    check_field(mesh, "shapes", shapes)?;
+    let materials = materials.of_elements(mesh)?;
+    let f = shapes.ncols();
+    let zeros = || vec![Mat::<f64>::zeros(f, f); displacements.ncols()];
+    let rules = Rules::new();
+    let elements: Vec<usize> = (0..mesh.elements().len()).collect();
+    let parts: Vec<Vec<Mat<f64>>> = elements
+        .par_chunks(elements.len().div_ceil(PARTS))
+        .map(|part| {
+            let mut sums = zeros();
+            for block in part.chunks(BLOCK) {
+                let relative: Vec<f64> =
+                    block.iter().flat_map(|e| relative_displacements(shapes, &mesh.elements()[*e])).collect();
+                let points: Vec<_> = block.iter().map(|e| rules.fine_points(&mesh.element_positions(*e))).collect();
+                let mut forces = vec![0.0; relative.len()];
+                for (sum, u) in sums.iter_mut().zip(displacements.col_iter()) {
+                    for (i, e) in block.iter().enumerate() {
+                        let u = relative_displacements(u.as_mat(), &mesh.elements()[*e]);
+                        let stiffness = stress_matrix(&points[i], &materials[*e], &u);
+                        let of_element = i * 3 * f * OTHERS..(i + 1) * 3 * f * OTHERS;
+                        matmul(
+                            MatMut::from_column_major_slice_mut(&mut forces[of_element.clone()], 3 * f, OTHERS),
+                            Accum::Replace,
+                            MatRef::from_column_major_slice(&relative[of_element], 3 * f, OTHERS),
+                            MatRef::from_column_major_slice(stiffness.as_flattened(), OTHERS, OTHERS),
+                            1.0,
+                            Par::Seq,
+                        );
+                    }
+                    let columns = 3 * OTHERS * block.len();
+                    triangular::matmul(
+                        sum.as_mut(),
+                        BlockStructure::TriangularLower,
+                        Accum::Add,
+                        MatRef::from_column_major_slice(&relative, f, columns),
+                        BlockStructure::Rectangular,
+                        MatRef::from_column_major_slice(&forces, f, columns).transpose(),
+                        BlockStructure::Rectangular,
+                        1.0,
+                        Par::Seq,
+                    );
+                }
+            }
+            sums
+        })
+        .collect();
+    let mut sums = zeros();
+    for part in parts {
+        for (sum, part) in sums.iter_mut().zip(part) {
+            *sum += part;
+        }
+    }
+    for sum in &mut sums {
+        for j in 0..f {
+            for i in 0..j {
+                sum[(i, j)] = sum[(j, i)];
+            }
+        }
+    }
+    Ok(sums)
+}
+
+fn check_field(mesh: &Mesh, what: &'static str, field: MatRef<'_, f64>) -> Result<(), AssemblyError> {
+    let expected = 3 * mesh.positions().len();
+    if field.nrows() != expected {
+        return Err(AssemblyError::FieldRows { what, expected, found: field.nrows() });
+    }
+    for (column, values) in field.col_iter().enumerate() {
+        if let Some((row, found)) = values.iter().enumerate().find(|(_, value)| !value.is_finite()) {
+            return Err(AssemblyError::FieldNotFinite { what, row, column, found: *found });
+        }
+    }
+    Ok(())
+}
+
+/// Displacements of the nodes 1 to 9 of an element against node 0: by node, then axis, then column of `fields`.
+fn relative_displacements(fields: MatRef<'_, f64>, nodes: &[u32; 10]) -> Vec<f64> {
+    let first = 3 * nodes[0] as usize;
+    let mut relative = Vec::with_capacity(3 * OTHERS * fields.ncols());
+    for node in &nodes[1..] {
+        for axis in 0..3 {
+            let row = 3 * *node as usize + axis;
+            relative.extend((0..fields.ncols()).map(|k| fields[(row, k)] - fields[(first + axis, k)]));
+        }
+    }
+    relative
+}
+
+/// `S_ij = ∫ ∇N_i · σ ∇N_j dV` over the element for its nodes 1 to 9, whose displacements against node 0 are `relative`.
+fn stress_matrix(points: &[IntegrationPoint], material: &Material, relative: &[f64]) -> [[f64; OTHERS]; OTHERS] {
+    let (lambda, mu) = material.lame();
+    let mut stiffness = [[0.0; OTHERS]; OTHERS];
+    for point in points {
+        let gradients: [Vector3<f64>; OTHERS] = std::array::from_fn(|i| point.gradients[i + 1].into());
+        let mut displacement_gradient = Matrix3::zeros();
+        for (u, gradient) in relative.chunks_exact(3).zip(&gradients) {
+            displacement_gradient += Vector3::new(u[0], u[1], u[2]) * gradient.transpose();
+        }
+        let strain = 0.5 * (displacement_gradient + displacement_gradient.transpose());
+        let stress = lambda * strain.trace() * Matrix3::identity() + 2.0 * mu * strain;
+        for j in 0..OTHERS {
+            let traction = stress * gradients[j] * point.volume;
+            for i in 0..=j {
+                stiffness[j][i] += gradients[i].dot(&traction);
+            }
+        }
+    }
+    for j in 0..OTHERS {
+        for i in 0..j {
+            stiffness[i][j] = stiffness[j][i];
+        }
+    }
+    stiffness
+}

@@ -1,0 +1,149 @@
+//! What is found by walking along a history: its size, its spectrum, and where it is no number.
+
+use std::f64::consts::TAU;
+
+use nalgebra::Complex;
+
+use super::History;
+use crate::error::SetupError;
+
+/// Panels a walk may have.
+const MOST_PANELS: f64 = 4e6;
+
+/// A short stretch between two corners.
+#[derive(Debug, Clone, Copy)]
+struct Panel {
+    middle: f64,
+    half: f64,
+    /// The factor at its beginning, middle and end.
+    values: [f64; 3],
+}
+
+impl History {
+    /// ∫₀^end |factor| dt, to about 1e-4 of itself. NaN if the factor is.
+    pub fn magnitude_integral(&self, end: f64) -> f64 {
+        let simpson = |sum: &mut f64, panel: Panel| {
+            let [a, b, c] = panel.values.map(f64::abs);
+            *sum += panel.half * (a + 4.0 * b + c) / 3.0;
+        };
+        self.refined(end, simpson, |coarse, fine| settled((fine - coarse).abs(), 1e-4 * fine))
+    }
+
+    /// Largest magnitude of the factor from 0 to the end, to about 1e-3 of itself. NaN if the factor is.
+    pub fn largest(&self, end: f64) -> f64 {
+        let largest = |most: &mut f64, panel: Panel| {
+            for value in panel.values {
+                if value.is_nan() || value.abs() > *most {
+                    *most = value.abs();
+                }
+            }
+        };
+        self.refined(end, largest, |coarse, fine| settled((fine - coarse).abs(), 1e-5 * fine))
+    }
+
+    /// |∫₀^end h e^(−2πi f t) dt|, the amplitude of the spectrum at a frequency in cycles per time, to about 1e-6 of
+    /// [`Self::magnitude_integral`]. NaN if the factor is.
+    ///
+    /// By Filon's rule: a parabola through three values of the factor, times the exponential, is integrated in closed
+    /// form. So only the factor needs to be resolved, and not the frequency.
+    pub fn amplitude_at(&self, frequency: f64, end: f64) -> f64 {
+        let omega = TAU * frequency;
+        let filon = |sum: &mut Complex<f64>, panel: Panel| {
+            let [a, b, c] = panel.values;
+            let [m0, m1, m2] = moments(omega * panel.half);
+            let real = b * m0 + 0.5 * (a - 2.0 * b + c) * m2;
+            let imaginary = -0.5 * (c - a) * m1;
+            *sum += Complex::from_polar(panel.half, -omega * panel.middle) * Complex::new(real, imaginary);
+        };
+        let scale = self.magnitude_integral(end);
+        self.refined(end, filon, |coarse, fine| settled((fine - coarse).norm(), 1e-7 * scale)).norm()
+    }
+
+    /// Refuses a history that is NaN or infinite somewhere from 0 to the end, as far as a fine sampling finds it.
+    pub fn check_over(&self, end: f64) -> Result<(), SetupError> {
+        let first = |found: &mut Option<(f64, f64)>, panel: Panel| {
+            let times = [panel.middle - panel.half, panel.middle, panel.middle + panel.half];
+            *found = found.or_else(|| times.into_iter().zip(panel.values).find(|(_, value)| !value.is_finite()));
+        };
+        match self.walk(end, 2.0, first) {
+            Some((time, found)) => Err(SetupError::HistoryNotFinite { time, found }),
+            None => Ok(()),
+        }
+    }
+
+    /// A quantity found by walks with finer and finer panels, until two agree.
+    fn refined<S: Copy + Default>(&self, end: f64, add: impl Fn(&mut S, Panel), agree: impl Fn(S, S) -> bool) -> S {
+        let mut coarse = self.walk(end, 1.0, &add);
+        let panels = |refinement: f64| self.panels(end, end, refinement) + self.corners().len() as f64 * refinement;
+        let mut refinement = 2.0;
+        loop {
+            let fine = self.walk(end, refinement, &add);
+            if agree(coarse, fine) || panels(2.0 * refinement) > MOST_PANELS {
+                return fine;
+            }
+            (coarse, refinement) = (fine, 2.0 * refinement);
+        }
+    }
+
+    /// Visits panels that cover 0 to the end and reach across no corner.
+    fn walk<S: Default>(&self, end: f64, refinement: f64, add: impl Fn(&mut S, Panel)) -> S {
+        let mut result = S::default();
+        if !(end > 0.0 && end.is_finite()) {
+            return result;
+        }
+        let corners = self.corners();
+        let stops = corners.iter().copied().filter(|t| *t > 0.0 && *t < end).chain([end]);
+        let mut start = 0.0;
+        for stop in stops {
+            let panels = self.panels(stop - start, end, refinement) as usize;
+            let (inside, half) = (0.5 * (start + stop), 0.5 * (stop - start) / panels as f64);
+            let at = |k: usize| self.at(if k == 2 * panels { stop } else { start + half * k as f64 }, inside);
+            let mut first = at(0);
+            for k in 0..panels {
+                let values = [first, at(2 * k + 1), at(2 * k + 2)];
+                add(&mut result, Panel { middle: start + half * (2 * k + 1) as f64, half, values });
+                first = values[2];
+            }
+            start = stop;
+        }
+        result
+    }
+
+    /// Number of panels for a stretch: sixteen a cycle, times a refinement.
+    fn panels(&self, length: f64, end: f64, refinement: f64) -> f64 {
+        ((16.0 * length * self.fastest(end)).ceil().max(1.0) * refinement).min(MOST_PANELS)
+    }
+
+    /// Highest frequency that the factor has by itself between corners. An expression does not tell its own: it is
+    /// taken to have less than a thousand cycles in all, and the refinement sees to the rest.
+    fn fastest(&self, end: f64) -> f64 {
+        match self {
+            Self::Constant | Self::Step { .. } | Self::Ramp { .. } | Self::Table(_) => 0.0,
+            Self::HalfSine { duration, .. } => 0.5 / duration,
+            Self::Sine { frequency, .. } => *frequency,
+            Self::Sweep { from, to, .. } => from.max(*to),
+            Self::Expression(_) => 1e3 / end,
+            Self::Product(factors) => factors.iter().map(|factor| factor.fastest(end)).sum(),
+        }
+    }
+}
+
+/// Whether a change is within a bound. One that is no number does not go away by refinement.
+fn settled(change: f64, bound: f64) -> bool {
+    change.is_nan() || change <= bound
+}
+
+/// `∫ cos θs ds`, `∫ s sin θs ds` and `∫ s² cos θs ds` from −1 to 1.
+fn moments(theta: f64) -> [f64; 3] {
+    let square = theta * theta;
+    if theta.abs() < 0.05 {
+        // The closed forms cancel. What is left out is below 1e-11.
+        return [
+            2.0 - square / 3.0 * (1.0 - square / 20.0),
+            2.0 * theta * (1.0 / 3.0 - square / 30.0 * (1.0 - square / 28.0)),
+            2.0 * (1.0 / 3.0 - square / 10.0 * (1.0 - square * 5.0 / 84.0)),
+        ];
+    }
+    let (sin, cos) = theta.sin_cos();
+    [2.0 * sin / theta, 2.0 * (sin / theta - cos) / theta, 2.0 * (sin + 2.0 * cos / theta - 2.0 * sin / square) / theta]
+}

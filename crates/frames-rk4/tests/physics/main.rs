@@ -1,0 +1,8 @@
+//! Held and driven bodies, loads of every kind and effects that are off, on a body of made-up constants: what the
+//! equations conserve they conserve for any.
+
+mod driven;
+mod effects;
+mod held;
+mod loads;
+mod sample;

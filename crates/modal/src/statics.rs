@@ -1,0 +1,208 @@
+//! Static answers, by conjugate gradients on K in the space that the support allows.
+//!
+//! ```text
+//! K u = f − M R Rᵀ f,   Rᵀ M u = 0
+//! ```
+//!
+//! R are the rigid modes that the support leaves: the force is balanced by the inertia of the motion that it causes
+//! (inertia relief). The factor of K + sM preconditions: the spectrum is λ/(λ + s), between about a half and one.
+
+use faer::dyn_stack::MemBuffer;
+use faer::{Accum, Mat, MatRef, Scale};
+
+use crate::error::ModalError;
+use crate::products::symmetric_product;
+use crate::ritz::{RitzPairs, rayleigh_ritz};
+use crate::shifted::Shifted;
+use crate::solve::{Modes, Solver};
+use crate::tall;
+
+/// Residual in the norm of (K + sM)⁻¹, relative to that of the force, at which the iteration ends.
+const TOLERANCE: f64 = 1e-13;
+/// The same of the answer in hand, evaluated anew: what rounding in K may leave on fine meshes of slender bodies.
+const ACCEPTED: f64 = 1e-7;
+const MAX_ITERATIONS: usize = 300;
+/// Forces answered together.
+const BLOCK: usize = 8;
+/// What a static answer adds to the modes must be more than this part of it.
+const DEPENDENT: f64 = 1e-8;
+
+impl Solver<'_> {
+    /// Static answers u (N×k) to the forces f (N×k), relative to the rigid motion that f causes: M-orthogonal to the
+    /// rigid modes.
+    ///
+    /// # Errors
+    /// [`ModalError::Size`], [`ModalError::NotFinite`], [`ModalError::StaticNotConverged`], and what refuses the factor
+    /// of K + sM.
+    pub fn static_response(&self, forces: MatRef<'_, f64>) -> Result<Mat<f64>, ModalError> {
+        let expected = self.rigid.shapes.nrows();
+        if forces.nrows() != expected {
+            return Err(ModalError::Size { what: "forces", expected, found: forces.nrows() });
+        }
+        check_finite("forces", forces)?;
+        let mut statics = Statics::new(self, self.factor()?)?;
+        let mut answers = Mat::zeros(expected, forces.ncols());
+        for first in (0..forces.ncols()).step_by(BLOCK) {
+            let width = BLOCK.min(forces.ncols() - first);
+            let block = statics.respond(forces.subcols(first, width), first)?;
+            answers.as_mut().subcols_mut(first, width).copy_from(&block);
+        }
+        Ok(answers)
+    }
+
+    /// The modes, with shapes appended that make them span the static `answers` (N×k, see
+    /// [`static_response`](Self::static_response)): a few modes then give the right static displacement.
+    ///
+    /// What the answers have beside the rigid modes and `modes` is made into Rayleigh–Ritz vectors of (K, M); answers
+    /// that add less than 1e-8 of themselves add nothing.
+    ///
+    /// # Errors
+    /// [`ModalError::Size`], [`ModalError::NotFinite`], [`ModalError::DenseEigen`].
+    pub fn with_static_shapes(&self, modes: Modes, answers: MatRef<'_, f64>) -> Result<Modes, ModalError> {
+        let (expected, found) = (modes.shapes.nrows(), answers.nrows());
+        if found != expected {
+            return Err(ModalError::Size { what: "static answers", expected, found });
+        }
+        check_finite("static answers", answers)?;
+        let (rigid, flexible) = (6, modes.shapes.ncols());
+        let mut basis = Mat::zeros(expected, rigid + flexible);
+        basis.as_mut().subcols_mut(0, rigid).copy_from(&self.rigid.shapes);
+        basis.as_mut().subcols_mut(rigid, flexible).copy_from(&modes.shapes);
+        let mut m_basis = self.nodal_mass.product(basis.as_ref());
+        for answer in 0..answers.ncols() {
+            let mut shape = answers.subcols(answer, 1).to_owned();
+            let mut m_shape = self.nodal_mass.product(shape.as_ref());
+            let norm =
+                |shape: &Mat<f64>, m_shape: &Mat<f64>| tall::inner(shape.as_ref(), m_shape.as_ref())[(0, 0)].sqrt();
+            let whole = norm(&shape, &m_shape);
+            for _ in 0..2 {
+                let parts = tall::inner(m_basis.as_ref(), shape.as_ref());
+                tall::multiply(shape.as_mut(), Accum::Add, basis.as_ref(), parts.as_ref(), -1.0);
+            }
+            m_shape = self.nodal_mass.product(shape.as_ref());
+            let rest = norm(&shape, &m_shape);
+            if rest > DEPENDENT * whole {
+                for (matrix, column) in [(&mut basis, shape), (&mut m_basis, m_shape)] {
+                    let columns = matrix.ncols();
+                    matrix.resize_with(expected, columns + 1, |i, _| column[(i, 0)] / rest);
+                }
+            }
+        }
+        let added = basis.subcols(rigid + flexible, basis.ncols() - rigid - flexible).to_owned();
+        let RitzPairs { eigenvalues, shapes, .. } =
+            rayleigh_ritz(self.stiffness, &self.nodal_mass, &self.constraints, &added)?;
+        let mut modes = modes;
+        modes.eigenvalues.extend(eigenvalues);
+        modes.shapes.resize_with(expected, flexible + shapes.ncols(), |i, j| shapes[(i, j - flexible)]);
+        Ok(modes)
+    }
+}
+
+fn check_finite(what: &'static str, vectors: MatRef<'_, f64>) -> Result<(), ModalError> {
+    for (index, vector) in vectors.col_iter().enumerate() {
+        if let Some(value) = vector.iter().copied().find(|value| !value.is_finite()) {
+            return Err(ModalError::NotFinite { what, index, value });
+        }
+    }
+    Ok(())
+}
+
+/// What the iterations share.
+struct Statics<'a> {
+    solver: &'a Solver<'a>,
+    factor: &'a Shifted,
+    /// M R, as far as the support lets it act.
+    m_rigid: Mat<f64>,
+    scratch: MemBuffer,
+}
+
+impl<'a> Statics<'a> {
+    fn new(solver: &'a Solver<'_>, factor: &'a Shifted) -> Result<Self, ModalError> {
+        let mut m_rigid = solver.nodal_mass.product(solver.rigid.shapes.as_ref());
+        solver.constraints.project(m_rigid.as_mut());
+        Ok(Self { solver, factor, m_rigid, scratch: factor.solve_scratch(BLOCK)? })
+    }
+
+    /// Answers to up to [`BLOCK`] forces, of which `first` is the number of the first.
+    fn respond(&mut self, forces: MatRef<'_, f64>, first: usize) -> Result<Mat<f64>, ModalError> {
+        let mut forces = forces.to_owned();
+        self.balance(&mut forces);
+        let mut residual = forces.clone();
+        let mut answer: Mat<f64> = Mat::zeros(forces.nrows(), forces.ncols());
+        let mut search: Mat<f64> = Mat::zeros(forces.nrows(), forces.ncols());
+        let mut before: Vec<f64> = vec![f64::INFINITY; forces.ncols()];
+        let mut scale: Vec<f64> = Vec::new();
+        let mut iterations = 0;
+        loop {
+            let conditioned = self.precondition(&residual);
+            let squared = dots(&residual, &conditioned);
+            if iterations == 0 {
+                scale.clone_from(&squared);
+            }
+            let is_open = |k: usize| squared[k] > TOLERANCE * TOLERANCE * scale[k];
+            if !(0..squared.len()).any(is_open) || iterations == MAX_ITERATIONS {
+                break;
+            }
+            iterations += 1;
+            for k in (0..squared.len()).filter(|k| is_open(*k)) {
+                let direction = conditioned.col(k) + search.col(k) * Scale(squared[k] / before[k]);
+                search.col_mut(k).copy_from(direction);
+            }
+            let stiff = self.stiff(&search);
+            let curvature = dots(&search, &stiff);
+            for k in (0..squared.len()).filter(|k| is_open(*k)) {
+                let step = Scale(squared[k] / curvature[k]);
+                let (moved, left) = (answer.col(k) + search.col(k) * step, residual.col(k) - stiff.col(k) * step);
+                answer.col_mut(k).copy_from(moved);
+                residual.col_mut(k).copy_from(left);
+            }
+            self.balance(&mut residual);
+            before = squared;
+        }
+        self.unmove(&mut answer);
+        let mut residual = forces - self.stiff(&answer);
+        self.balance(&mut residual);
+        let squared = dots(&residual, &self.precondition(&residual));
+        for (k, (squared, scale)) in squared.iter().zip(&scale).enumerate() {
+            let residual = (squared / scale).sqrt();
+            if *scale > 0.0 && (residual.is_nan() || residual >= ACCEPTED) {
+                let column = first + k;
+                return Err(ModalError::StaticNotConverged { column, iterations, residual, tolerance: ACCEPTED });
+            }
+        }
+        Ok(answer)
+    }
+
+    /// Takes out of forces what the support's reactions and the inertia of the rigid motion balance.
+    fn balance(&self, forces: &mut Mat<f64>) {
+        self.solver.constraints.project(forces.as_mut());
+        let resultant = tall::inner(self.solver.rigid.shapes.as_ref(), forces.as_ref());
+        tall::multiply(forces.as_mut(), Accum::Add, self.m_rigid.as_ref(), resultant.as_ref(), -1.0);
+    }
+
+    /// Takes the rigid modes out of displacements.
+    fn unmove(&self, displacements: &mut Mat<f64>) {
+        let parts = tall::inner(self.m_rigid.as_ref(), displacements.as_ref());
+        tall::multiply(displacements.as_mut(), Accum::Add, self.solver.rigid.shapes.as_ref(), parts.as_ref(), -1.0);
+    }
+
+    /// (K + sM)⁻¹ of forces.
+    fn precondition(&mut self, forces: &Mat<f64>) -> Mat<f64> {
+        let mut displacements = forces.clone();
+        self.factor.solve_in_place(displacements.as_mut(), &mut self.scratch);
+        self.unmove(&mut displacements);
+        displacements
+    }
+
+    /// K u, without reactions.
+    fn stiff(&self, displacements: &Mat<f64>) -> Mat<f64> {
+        let mut forces = symmetric_product(self.solver.stiffness, displacements.as_ref());
+        self.solver.constraints.project(forces.as_mut());
+        forces
+    }
+}
+
+/// Products of the columns with each other.
+fn dots(a: &Mat<f64>, b: &Mat<f64>) -> Vec<f64> {
+    a.col_iter().zip(b.col_iter()).map(|(a, b)| a.transpose() * b).collect()
+}

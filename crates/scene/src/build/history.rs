@@ -1,0 +1,45 @@
+//! Histories of a scene as functions of time.
+
+use frames_rk4::{Expression, SetupError, Table};
+
+use super::BuildError;
+use crate::history;
+use crate::scene::Scene;
+
+/// A history; `key` is its place in the scene.
+pub(super) fn history(
+    scene: &Scene,
+    key: &str,
+    history: &history::History,
+) -> Result<frames_rk4::History, BuildError> {
+    use frames_rk4::History as To;
+    use history::History as From;
+    let refused = |error: SetupError| -> BuildError {
+        scene.refuse(key, error.to_string(), "a history that can be evaluated", "correct it").into()
+    };
+    let made = match history {
+        From::Constant => To::Constant,
+        From::Step { at } => To::Step { at: *at },
+        From::Ramp { start, duration } => To::Ramp { start: *start, duration: *duration },
+        From::HalfSine { start, duration } => To::HalfSine { start: *start, duration: *duration },
+        From::Sine { frequency, phase, start, duration } => {
+            To::Sine { frequency: *frequency, phase: *phase, start: *start, duration: *duration }
+        }
+        From::Sweep { from, to, start, duration } => {
+            To::Sweep { from: *from, to: *to, start: *start, duration: *duration }
+        }
+        From::Table(table) => {
+            let (times, values) = table.points.iter().map(|[t, v]| (*t, *v)).unzip();
+            To::Table(Table::new(times, values).map_err(refused)?)
+        }
+        From::Expression { formula, corners } => {
+            To::Expression(Expression::new(formula, corners.clone()).map_err(refused)?)
+        }
+        From::Product { factors } => {
+            let factors = factors.iter().enumerate();
+            To::Product(factors.map(|(i, f)| self::history(scene, &format!("{key}.factors[{i}]"), f)).collect::<Result<_, _>>()?)
+        }
+    };
+    made.check_over(scene.time.end).map_err(refused)?;
+    Ok(made)
+}

@@ -1,0 +1,232 @@
+//! Loads of a scene: where they act on the mesh, and what that is in modal coordinates.
+
+use faer::Mat;
+use fem_tet10::{Location, MeanRotation, Mesh};
+use frames_rk4::{Action, BodyField, LoadFrame, PointShapes, RotationShapes};
+use modal::{BodyPoint, Modes, ReducedBody};
+use nalgebra::{Matrix3, Vector3};
+
+use super::history::history;
+use super::{BuildError, refuse, refuse_mesh};
+use crate::load::{self, Load};
+use crate::scene::Scene;
+
+/// A load on the nodes of the mesh.
+pub(super) struct MeshLoad {
+    place: Place,
+    pub history: frames_rk4::History,
+    /// Whether it keeps its direction in the body.
+    pub follows: bool,
+    /// Whether it is gravity.
+    pub gravity: bool,
+}
+
+/// Where a load acts, and how much.
+enum Place {
+    /// A force at the weighted mean of nodes; the weights sum to one.
+    Force { nodes: Vec<u32>, weights: Vec<f64>, force: Vector3<f64> },
+    /// A couple on the mean rotation of nodes.
+    Moment { patch: MeanRotation, moment: Vector3<f64> },
+    /// Forces on nodes that are fixed in the body.
+    Field { nodes: Vec<u32>, forces: Vec<Vector3<f64>> },
+}
+
+/// The loads of a scene on its mesh. `nodal_mass` is the mass that each node stands for.
+pub(super) fn on_mesh(scene: &Scene, mesh: &Mesh, nodal_mass: &[f64]) -> Result<Vec<MeshLoad>, BuildError> {
+    scene
+        .loads
+        .iter()
+        .enumerate()
+        .filter(|(_, load)| acts(scene, load))
+        .map(|(i, load)| {
+            let key = |name: &str| format!("loads[{i}].{name}");
+            let surface = |error| refuse_mesh(scene, &key("group"), &error);
+            let spread = |weights: Vec<f64>, nodes: Vec<u32>, of_unit: Vector3<f64>| {
+                let total: f64 = weights.iter().sum();
+                let weights = weights.into_iter().map(|w| w / total).collect();
+                Place::Force { nodes, weights, force: of_unit * total }
+            };
+            let place = match load {
+                Load::Force(load) => {
+                    let Location { nodes, weights } =
+                        mesh.locate(load.at).map_err(|error| refuse(scene, &key("at"), error))?;
+                    Place::Force {
+                        nodes: nodes.to_vec(),
+                        weights: weights.to_vec(),
+                        force: Vector3::from(load.direction) * load.amplitude,
+                    }
+                }
+                Load::Moment(load) => Place::Moment {
+                    patch: mesh
+                        .mean_rotation(load.at, load.radius)
+                        .map_err(|error| refuse(scene, &key("at"), error))?,
+                    moment: Vector3::from(load.direction) * load.amplitude,
+                },
+                Load::Traction(load) => {
+                    let (nodes, weights) = mesh.surface_weights(&load.group).map_err(surface)?;
+                    spread(weights, nodes, Vector3::from(load.direction) * load.amplitude)
+                }
+                Load::Pressure(load) => {
+                    let (nodes, forces) = mesh.surface_pressure(&load.group).map_err(surface)?;
+                    let forces = forces.into_iter().map(|f| Vector3::from(f) * load.amplitude).collect();
+                    Place::Field { nodes, forces }
+                }
+                Load::Gravity(_) | Load::BaseAcceleration(_) => {
+                    let nodes = (0..nodal_mass.len() as u32).collect();
+                    spread(nodal_mass.to_vec(), nodes, acceleration(load))
+                }
+            };
+            let (follows, gravity) = (follows(load), matches!(load, Load::Gravity(_)));
+            Ok(MeshLoad { place, history: history(scene, &key("history"), of(load))?, follows, gravity })
+        })
+        .collect()
+}
+
+/// The loads of a scene on a rigid body without a mesh.
+pub(super) fn on_rigid(scene: &Scene, body: &ReducedBody) -> Result<Vec<frames_rk4::Load>, BuildError> {
+    let acting = scene.loads.iter().enumerate().filter(|(_, load)| acts(scene, load));
+    acting
+        .map(|(i, load)| {
+            let at = |position: [f64; 3]| {
+                let position_body = Vector3::from(position) - body.origin;
+                PointShapes::new(body, &BodyPoint { position_body, shapes: Mat::zeros(3, 0) })
+            };
+            let action = match load {
+                Load::Force(load) => Action::Force {
+                    point: at(load.at),
+                    force: Vector3::from(load.direction) * load.amplitude,
+                    frame: frame(load.frame),
+                },
+                Load::Moment(load) => Action::Moment {
+                    rotation: RotationShapes::new(body, Mat::zeros(3, 0).as_ref()),
+                    moment: Vector3::from(load.direction) * load.amplitude,
+                    frame: frame(load.frame),
+                },
+                Load::Gravity(_) | Load::BaseAcceleration(_) => Action::Force {
+                    point: at(body.center_of_mass.into()),
+                    force: acceleration(load) * body.mass,
+                    frame: LoadFrame::Global,
+                },
+                Load::Pressure(_) | Load::Traction(_) => {
+                    return Err(scene
+                        .refuse(
+                            &format!("loads[{i}].group"),
+                            "a surface of a body without a mesh",
+                            "a load on a point",
+                            "give its resultant as a force and a moment, or give the body a mesh",
+                        )
+                        .into());
+                }
+            };
+            let history = history(scene, &format!("loads[{i}].history"), of(load))?;
+            Ok(frames_rk4::Load { action, history })
+        })
+        .collect()
+}
+
+/// Gravity can be left out.
+fn acts(scene: &Scene, load: &Load) -> bool {
+    !(matches!(load, Load::Gravity(_)) && scene.effects.gravity == crate::effects::Choice::Off)
+}
+
+fn of(load: &Load) -> &crate::history::History {
+    match load {
+        Load::Force(load) => &load.history,
+        Load::Moment(load) => &load.history,
+        Load::Pressure(load) => &load.history,
+        Load::Traction(load) => &load.history,
+        Load::Gravity(load) => &load.history,
+        Load::BaseAcceleration(load) => &load.history,
+    }
+}
+
+/// The acceleration that pulls at every mass: gravity, or against that of the base.
+fn acceleration(load: &Load) -> Vector3<f64> {
+    match load {
+        Load::Gravity(load) => Vector3::from(load.direction) * load.amplitude,
+        Load::BaseAcceleration(load) => -Vector3::from(load.direction) * load.amplitude,
+        _ => Vector3::zeros(),
+    }
+}
+
+fn follows(load: &Load) -> bool {
+    match load {
+        Load::Pressure(_) => true,
+        Load::Force(load::Force { frame, .. })
+        | Load::Moment(load::Moment { frame, .. })
+        | Load::Traction(load::Traction { frame, .. }) => *frame == load::LoadFrame::Body,
+        Load::Gravity(_) | Load::BaseAcceleration(_) => false,
+    }
+}
+
+fn frame(frame: load::LoadFrame) -> LoadFrame {
+    match frame {
+        load::LoadFrame::Global => LoadFrame::Global,
+        load::LoadFrame::Body => LoadFrame::Body,
+    }
+}
+
+impl MeshLoad {
+    /// The forces on the nodes of the undeformed body in its first attitude, where the history is 1 (3n).
+    pub(super) fn add_nodal_forces(&self, mut forces: faer::ColMut<'_, f64>) {
+        let mut add = |node: u32, force: &Vector3<f64>| {
+            for axis in 0..3 {
+                forces[3 * node as usize + axis] += force[axis];
+            }
+        };
+        match &self.place {
+            Place::Force { nodes, weights, force } => {
+                nodes.iter().zip(weights).for_each(|(node, w)| add(*node, &(force * *w)));
+            }
+            Place::Moment { patch, moment } => {
+                for (node, turned) in patch.nodes.iter().zip(&patch.rotation_per_displacement) {
+                    add(*node, &Matrix3::from(*turned).tr_mul(moment));
+                }
+            }
+            Place::Field { nodes, forces } => nodes.iter().zip(forces).for_each(|(node, f)| add(*node, f)),
+        }
+    }
+
+    /// The load on the modes of a body.
+    pub(super) fn reduced(&self, body: &ReducedBody, modes: &Modes, mesh: &Mesh) -> frames_rk4::Load {
+        let frame = if self.follows { LoadFrame::Body } else { LoadFrame::Global };
+        let nf = body.flexible();
+        let shape = |node: u32, k: usize| {
+            Vector3::from_fn(|axis, _| modes.shapes[(3 * node as usize + axis, k)])
+        };
+        let action = match &self.place {
+            Place::Force { nodes, weights, force } => {
+                let point = BodyPoint::new(modes, mesh.positions(), nodes, weights);
+                Action::Force { point: PointShapes::new(body, &point), force: *force, frame }
+            }
+            Place::Moment { patch, moment } => {
+                let turned: Vec<Vector3<f64>> = (0..nf)
+                    .map(|k| {
+                        let of = patch.nodes.iter().zip(&patch.rotation_per_displacement);
+                        of.map(|(node, a)| Matrix3::from(*a) * shape(*node, k)).sum()
+                    })
+                    .collect();
+                let turned = Mat::from_fn(3, nf, |axis, k| turned[k][axis]);
+                Action::Moment { rotation: RotationShapes::new(body, turned.as_ref()), moment: *moment, frame }
+            }
+            Place::Field { nodes, forces } => {
+                let position = |node: u32| Vector3::from(mesh.positions()[node as usize]) - body.origin;
+                let acting = || nodes.iter().copied().zip(forces);
+                let force_body: Vector3<f64> = forces.iter().sum();
+                let moment_body: Vector3<f64> = acting().map(|(node, f)| position(node).cross(f)).sum();
+                let rigid = [
+                    body.translation_basis.tr_mul(&force_body),
+                    body.rotation_basis.tr_mul(&moment_body),
+                ];
+                let flexible = (0..nf).map(|k| acting().map(|(node, f)| shape(node, k).dot(f)).sum());
+                Action::Field(BodyField {
+                    force_body,
+                    moment_body,
+                    modal: rigid.iter().flat_map(|v| v.iter().copied()).chain(flexible).collect(),
+                    lever: (0..nf).map(|k| acting().map(|(node, f)| shape(node, k).cross(f)).sum()).collect(),
+                })
+            }
+        };
+        frames_rk4::Load { action, history: self.history.clone() }
+    }
+}
