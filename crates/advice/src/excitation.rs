@@ -1,0 +1,164 @@
+//! What acts on the rigid motions and on each mode, in modal coordinates: with mass-normalised shapes, forces and motions
+//! of all of them are on one scale.
+
+use frames_rk4::{Action, DrivenMotion, Load, LoadFrame};
+use modal::ReducedBody;
+use nalgebra::{Matrix3, Matrix3xX, Vector3};
+
+use crate::case::Case;
+use crate::course::Course;
+
+/// A load: its largest forces on the translations, the rotations and each mode where its history is 1.
+#[derive(Debug, Clone)]
+pub(crate) struct Source {
+    pub translation: f64,
+    pub rotation: f64,
+    /// nf
+    pub modal: Vec<f64>,
+    pub course: Course,
+    /// Whether its direction turns in the body as the body turns.
+    pub dead: bool,
+    pub gravity: bool,
+}
+
+/// How the body turns, bounded above.
+#[derive(Debug, Clone)]
+pub(crate) struct Spin {
+    /// Largest |ω|.
+    pub largest: f64,
+    /// |ω| that is there without doubt: at the beginning, or driven.
+    pub certain: f64,
+    /// √(2 × energy of rotation): largest, and without doubt.
+    pub momentum: f64,
+    pub certain_momentum: f64,
+    /// Largest |ω̇|.
+    pub acceleration: f64,
+    /// Directions of ω that are possible: I, aaᵀ, or zero.
+    pub directions: Matrix3<f64>,
+    /// Largest angle turned.
+    pub turn: f64,
+    /// Whether ω is steady.
+    pub steady: bool,
+}
+
+impl Source {
+    /// Of a load on a body that may turn by `turn` rad.
+    fn new(load: &Load, end: f64, turn: f64, gravity: bool) -> Self {
+        let (columns, vector, frame): (Vec<Vector3<f64>>, Vector3<f64>, LoadFrame) = match &load.action {
+            Action::Force { point, force, frame } => (point.columns().to_vec(), *force, *frame),
+            Action::Moment { rotation, moment, frame } => (rotation.columns().to_vec(), *moment, *frame),
+            // A field is as it is in body axes: one number for each mode.
+            Action::Field(field) => {
+                (field.modal.iter().map(|f| Vector3::x() * *f).collect(), Vector3::x(), LoadFrame::Body)
+            }
+        };
+        let dead = frame == LoadFrame::Global && turn > 0.0;
+        let astray = if dead { turn.min(1.0) } else { 0.0 };
+        let largest = |rows: &[Vector3<f64>]| {
+            let rows = Matrix3xX::from_columns(rows);
+            let worst = (&rows * rows.transpose()).symmetric_eigenvalues().max().max(0.0).sqrt() * vector.norm();
+            ((rows.transpose() * vector).norm() + astray * worst).min(worst)
+        };
+        Self {
+            translation: largest(&columns[..3]),
+            rotation: largest(&columns[3..6]),
+            modal: columns[6..].iter().map(|column| largest(&[*column])).collect(),
+            course: Course::new(&load.history, end),
+            dead,
+            gravity,
+        }
+    }
+
+    /// Of all loads of a case.
+    pub(crate) fn all(case: &Case, turn: f64) -> Vec<Self> {
+        let of = |loads: &[Load], gravity| -> Vec<Self> {
+            loads.iter().map(|load| Self::new(load, case.end, turn, gravity)).collect()
+        };
+        let mut sources = of(case.loads, false);
+        sources.extend(of(case.gravity, true));
+        sources
+    }
+
+    pub(crate) fn impulse(&self) -> f64 {
+        self.course.magnitude_integral
+    }
+}
+
+/// A deformation of a tenth of the length adds as much to the arms of the loads; beyond it [`crate::Review`] warns.
+const ARMS: f64 = 1.1;
+
+impl Spin {
+    /// Bounds that hold for the body with its undeformed inertia, and the loads in the directions they may come to have.
+    pub(crate) fn new(case: &Case) -> (Self, Vec<Source>) {
+        let body = case.body;
+        if let Some(drive) = case.drive {
+            let course = Course::new(&drive.history, case.end);
+            let (axis, speed) = match drive.motion {
+                DrivenMotion::Turn { axis } => (axis, drive.amplitude.abs() * course.largest),
+                DrivenMotion::Slide { .. } => (Vector3::zeros(), 0.0),
+            };
+            let momentum = speed * axis.dot(&(body.inertia * axis)).max(0.0).sqrt();
+            let turn = drive.amplitude.abs() * course.magnitude_integral * axis.norm();
+            let acceleration = drive.amplitude.abs() * course.steepest() * axis.norm();
+            let spin = Self {
+                largest: speed,
+                certain: speed,
+                momentum,
+                certain_momentum: momentum,
+                acceleration,
+                directions: axis * axis.transpose(),
+                turn,
+                steady: acceleration == 0.0,
+            };
+            return (spin, Source::all(case, turn));
+        }
+        let basis = body.rotation_basis;
+        let initial = (basis.transpose() * body.inertia * case.initial.omega).norm();
+        let largest_of = |momentum: f64| basis.singular_values().max() * momentum;
+        let mut turn = f64::INFINITY;
+        let mut sources = Source::all(case, turn);
+        // A body that hardly turns meets the loads from where they come.
+        for _ in 0..3 {
+            let momentum = initial + ARMS * sources.iter().map(|s| s.rotation * s.impulse()).sum::<f64>();
+            turn = largest_of(momentum) * case.end;
+            sources = Source::all(case, turn);
+        }
+        let momentum = initial + ARMS * sources.iter().map(|s| s.rotation * s.impulse()).sum::<f64>();
+        let directions = directions(body);
+        let certain = (directions * case.initial.omega).norm();
+        let torque_free = sources.iter().all(|s| s.rotation * s.impulse() <= 1e-12 * initial);
+        let omega = case.initial.omega;
+        let about_principal =
+            (body.inertia * omega).cross(&omega).norm() <= 1e-9 * omega.dot(&(body.inertia * omega)).abs();
+        let steady = torque_free && (about_principal || body.motion.count() < 3);
+        let largest = if steady { certain } else { largest_of(momentum) };
+        let pushed: f64 = sources.iter().map(|s| s.rotation * s.course.largest).sum();
+        let tumbling = if steady || body.motion.count() < 3 { 0.0 } else { largest * largest };
+        let caused = sources.iter().map(|s| s.rotation * s.impulse()).fold(0.0, f64::max);
+        let spin = Self {
+            largest,
+            certain,
+            momentum,
+            certain_momentum: initial.max(0.1 * caused),
+            acceleration: largest_of(pushed) + tumbling,
+            directions: if steady && omega.norm() > 0.0 {
+                let axis = omega.normalize();
+                axis * axis.transpose()
+            } else {
+                directions
+            },
+            turn: largest * case.end,
+            steady,
+        };
+        (spin, sources)
+    }
+}
+
+/// Projection on the directions of ω that the rigid motions leave.
+fn directions(body: &ReducedBody) -> Matrix3<f64> {
+    match body.motion {
+        modal::RigidMotion::Free | modal::RigidMotion::Pin { .. } => Matrix3::identity(),
+        modal::RigidMotion::Hinge { axis, .. } => axis * axis.transpose(),
+        modal::RigidMotion::Slider { .. } | modal::RigidMotion::Clamp { .. } => Matrix3::zeros(),
+    }
+}
