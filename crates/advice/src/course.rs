@@ -9,6 +9,8 @@ pub(crate) struct Course {
     pieces: Vec<Piece>,
     /// ∫|h| and max |h|.
     pub magnitude_integral: f64,
+    /// max |∫₀ᵗ h|
+    pub net_integral: f64,
     pub largest: f64,
     /// Whether the straight lines follow it.
     resolved: bool,
@@ -44,7 +46,9 @@ impl Course {
                 start = stop;
             }
         }
-        Self { pieces, magnitude_integral: history.magnitude_integral(end), largest, resolved }
+        let magnitude_integral = history.magnitude_integral(end);
+        let net_integral = if resolved { net_integral(&pieces).min(magnitude_integral) } else { magnitude_integral };
+        Self { pieces, magnitude_integral, net_integral, largest, resolved }
     }
 
     /// The same course less its first value: what its rate adds up to.
@@ -139,6 +143,18 @@ impl Piece {
             n *= 2;
         }
     }
+}
+
+/// max |∫₀ᵗ h| of straight lines, to half an interval.
+fn net_integral(pieces: &[Piece]) -> f64 {
+    let (mut sum, mut largest): (f64, f64) = (0.0, 0.0);
+    for piece in pieces {
+        for pair in piece.samples.windows(2) {
+            sum += 0.5 * piece.step * (pair[0] + pair[1]);
+            largest = largest.max(sum.abs() + 0.5 * piece.step * pair[0].abs().min(pair[1].abs()));
+        }
+    }
+    largest
 }
 
 /// φ₁ = (eˣ − 1)/x and φ₂ = (φ₁ − 1)/x.

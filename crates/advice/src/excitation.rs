@@ -16,8 +16,9 @@ pub(crate) struct Source {
     /// nf
     pub modal: Vec<f64>,
     pub course: Course,
-    /// Whether its direction turns in the body as the body turns.
+    /// Whether its direction turns in the body as the body turns, and the angle that may turn it.
     pub dead: bool,
+    turn: f64,
     pub gravity: bool,
 }
 
@@ -43,7 +44,7 @@ pub(crate) struct Spin {
 
 impl Source {
     /// Of a load on a body that may turn by `turn` rad.
-    fn new(load: &Load, end: f64, turn: f64, gravity: bool) -> Self {
+    fn new(load: &Load, course: &Course, turn: f64, gravity: bool) -> Self {
         let (columns, vector, frame): (Vec<Vector3<f64>>, Vector3<f64>, LoadFrame) = match &load.action {
             Action::Force { point, force, frame } => (point.columns().to_vec(), *force, *frame),
             Action::Moment { rotation, moment, frame } => (rotation.columns().to_vec(), *moment, *frame),
@@ -63,34 +64,36 @@ impl Source {
             translation: largest(&columns[..3]),
             rotation: largest(&columns[3..6]),
             modal: columns[6..].iter().map(|column| largest(&[*column])).collect(),
-            course: Course::new(&load.history, end),
+            course: course.clone(),
             dead,
+            turn,
             gravity,
         }
     }
 
-    /// Of all loads of a case.
-    pub(crate) fn all(case: &Case, turn: f64) -> Vec<Self> {
-        let of = |loads: &[Load], gravity| -> Vec<Self> {
-            loads.iter().map(|load| Self::new(load, case.end, turn, gravity)).collect()
-        };
-        let mut sources = of(case.loads, false);
-        sources.extend(of(case.gravity, true));
-        sources
+    /// Of all loads of a case, whose courses are `courses`, on a body that may turn by `turn` rad.
+    fn all(case: &Case, courses: &[Course], turn: f64) -> Vec<Self> {
+        let loads = case.loads.iter().map(|load| (load, false)).chain(case.gravity.iter().map(|load| (load, true)));
+        loads.zip(courses).map(|((load, gravity), course)| Self::new(load, course, turn, gravity)).collect()
     }
 
+    /// Largest impulse where the force is 1; with a direction a(t) that turns, by parts: `|∫ h a| ≤ max|∫h| (1 + ∫|a'|)`.
     pub(crate) fn impulse(&self) -> f64 {
-        self.course.magnitude_integral
+        (self.course.net_integral * (1.0 + self.turn)).min(self.course.magnitude_integral)
     }
 }
 
 /// A deformation of a tenth of the length adds as much to the arms of the loads; beyond it [`crate::Review`] warns.
 const ARMS: f64 = 1.1;
+/// Angles that are tried before the loads are allowed all directions.
+const TRIES: usize = 20;
 
 impl Spin {
     /// Bounds that hold for the body with its undeformed inertia, and the loads in the directions they may come to have.
     pub(crate) fn new(case: &Case) -> (Self, Vec<Source>) {
         let body = case.body;
+        let histories = case.loads.iter().chain(case.gravity).map(|load| &load.history);
+        let courses: Vec<Course> = histories.map(|history| Course::new(history, case.end)).collect();
         if let Some(drive) = case.drive {
             let course = Course::new(&drive.history, case.end);
             let (axis, speed) = match drive.motion {
@@ -110,20 +113,31 @@ impl Spin {
                 turn,
                 steady: acceleration == 0.0,
             };
-            return (spin, Source::all(case, turn));
+            return (spin, Source::all(case, &courses, turn));
         }
         let basis = body.rotation_basis;
         let initial = (basis.transpose() * body.inertia * case.initial.omega).norm();
         let largest_of = |momentum: f64| basis.singular_values().max() * momentum;
-        let mut turn = f64::INFINITY;
-        let mut sources = Source::all(case, turn);
-        // A body that hardly turns meets the loads from where they come.
-        for _ in 0..3 {
+        let met = |turn: f64| {
+            let sources = Source::all(case, &courses, turn);
             let momentum = initial + ARMS * sources.iter().map(|s| s.rotation * s.impulse()).sum::<f64>();
-            turn = largest_of(momentum) * case.end;
-            sources = Source::all(case, turn);
+            (sources, momentum)
+        };
+        // As long as the body has turned by no more than `turn`, its spin is bounded; where that spin turns it no
+        // further to the end, it never gets there.
+        let mut turn = 0.0;
+        let (mut sources, mut momentum) = met(turn);
+        for _ in 0..TRIES {
+            let reached = largest_of(momentum) * case.end;
+            if reached <= turn {
+                break;
+            }
+            turn = 1.05 * reached;
+            (sources, momentum) = met(turn);
         }
-        let momentum = initial + ARMS * sources.iter().map(|s| s.rotation * s.impulse()).sum::<f64>();
+        if largest_of(momentum) * case.end > turn {
+            (sources, momentum) = met(f64::INFINITY);
+        }
         let directions = directions(body);
         let certain = (directions * case.initial.omega).norm();
         let torque_free = sources.iter().all(|s| s.rotation * s.impulse() <= 1e-12 * initial);
@@ -151,6 +165,13 @@ impl Spin {
             steady,
         };
         (spin, sources)
+    }
+}
+
+impl Spin {
+    /// Coriolis force 2Ω G q̇ and Euler force ω̇ G q of a unit of a mode at `omega`.
+    pub(crate) fn pull(&self, gyroscopic: f64, omega: f64) -> f64 {
+        gyroscopic * (2.0 * self.largest * omega + self.acceleration)
     }
 }
 

@@ -3,7 +3,7 @@
 use frames_rk4::DrivenMotion;
 
 use crate::case::Case;
-use crate::course::Course;
+use crate::course::{Course, Swing};
 use crate::excitation::{Source, Spin};
 use crate::tensor;
 
@@ -16,14 +16,13 @@ pub(crate) struct Response {
     pub acceleration: Vec<f64>,
     /// Part of `displacement` that gravity makes (nf).
     pub of_gravity: Vec<f64>,
-    /// |q| and |Λ^½ q| that there will be at some time.
+    /// |q| that there will be at some time.
     pub scale: f64,
-    pub strain_scale: f64,
     /// Forces on the modes whose course has been followed, for resonance with one mode of what another passes on:
     /// modal force, and |z| at each frequency.
     forced: Vec<(Vec<f64>, Vec<f64>)>,
     omega: Vec<f64>,
-    /// Longest time in which a small force builds up a mode, ½ of it over ω.
+    /// How long a mode remembers: min(T, 1/ζω).
     memory: Vec<f64>,
 }
 
@@ -42,14 +41,13 @@ impl Response {
             acceleration: (0..nf).map(|k| start[k] * omega[k] * omega[k]).collect(),
             of_gravity: vec![0.0; nf],
             scale: norm(&start),
-            strain_scale: norm(&product(&start, omega)),
             forced: Vec::new(),
             omega: omega.clone(),
             memory,
         };
         response.centrifugal(case, spin);
         for source in sources {
-            let z: Vec<_> = (0..nf).map(|k| swing(source, spin, omega[k], zeta[k])).collect();
+            let z: Vec<_> = (0..nf).map(|k| swing(source, spin, omega[k], zeta[k], response.memory[k])).collect();
             let q: Vec<f64> = (0..nf).map(|k| source.modal[k] * z[k].0 / omega[k]).collect();
             for k in 0..nf {
                 response.displacement[k] += q[k];
@@ -107,71 +105,84 @@ impl Response {
     /// Half of a bound that is sharp within two.
     fn certainly(&mut self, q: &[f64]) {
         self.scale = self.scale.max(0.5 * norm(q));
-        self.strain_scale = self.strain_scale.max(0.5 * norm(&product(q, &self.omega)));
+    }
+
+    /// Change of each mode by small forces that come from the others: `force(k, l)` on mode k for a unit of `amplitude`
+    /// of mode l. The force has the frequency of mode l, or that of a load which mode l passes on.
+    fn passed(&self, force: &impl Fn(usize, usize) -> f64, amplitude: &[f64]) -> Vec<f64> {
+        let nf = self.omega.len();
+        let mut change = vec![0.0; nf];
+        for k in 0..nf {
+            let (omega, ring) = (self.omega[k], self.memory[k] / self.omega[k]);
+            for l in (0..nf).filter(|l| *l != k) {
+                let apart = self.apart(k, l);
+                let own = amplitude[l] * ((1.0 + self.omega[l] / omega) / apart).max(2.0 / (omega * omega)).min(ring);
+                let unit = if self.displacement[l] > 0.0 { amplitude[l] / self.displacement[l] } else { 0.0 };
+                let loads: f64 = self.forced.iter().map(|(modal, z)| modal[l] / apart * z[k] / omega).sum();
+                change[k] += force(k, l) * (own + unit * loads.min(self.displacement[l] * ring));
+            }
+        }
+        change
+    }
+
+    /// |ω_k² − ω_l²|
+    fn apart(&self, k: usize, l: usize) -> f64 {
+        let (a, b) = (self.omega[k], self.omega[l]);
+        ((a - b) * (a + b)).abs().max(1e-9 * a * a)
+    }
+
+    /// Adds what the modes hand to each other by forces that are there in any case.
+    pub(crate) fn share_out(&mut self, force: impl Fn(usize, usize) -> f64) {
+        let change = self.passed(&force, &self.displacement);
+        let fastest = self.omega.iter().zip(&self.displacement).filter(|(_, q)| **q > 0.0);
+        let fastest = fastest.map(|(omega, _)| *omega).fold(0.0, f64::max);
+        for (k, change) in change.into_iter().enumerate() {
+            let omega = self.omega[k].max(fastest);
+            self.displacement[k] += change;
+            self.velocity[k] += change * omega;
+            self.acceleration[k] += change * omega * omega;
+        }
     }
 
     /// Relative change of the motion of the modes by small forces: `force(k, l)` on mode k for a unit of `amplitude` of
-    /// mode l, and `constant` ones.
-    ///
-    /// On itself, a mode's frequency changes and its phase runs away for as long as it rings. From another mode, the
-    /// force has that mode's frequency, or that of a load which it passes on.
+    /// mode l, and `constant` ones. On itself, a mode's frequency changes and its phase runs away for as long as it
+    /// rings.
     pub(crate) fn change(&self, force: impl Fn(usize, usize) -> f64, amplitude: &[f64], constant: &[f64]) -> f64 {
         let nf = self.omega.len();
-        let square = |k: usize| self.omega[k] * self.omega[k];
-        let mut change = vec![0.0; nf];
+        let mut change = self.passed(&force, amplitude);
         for k in 0..nf {
-            let ring = self.memory[k] / self.omega[k];
+            let square = self.omega[k] * self.omega[k];
             let mut shift = force(k, k);
             for l in (0..nf).filter(|l| *l != k) {
-                let apart = (square(k) - square(l)).abs();
-                let (there, back) = (force(k, l), force(l, k));
                 // Second order in general, first where two modes have one frequency.
-                shift += if there * back > apart * apart { (there * back).sqrt() } else { there * back / apart };
-                let passing = (2.0 / square(k)).max((1.0 + self.omega[l] / self.omega[k]) / apart);
-                change[k] += there * amplitude[l] * passing.min(ring);
-                let passed: f64 =
-                    self.forced.iter().map(|(modal, z)| (modal[l] / apart.max(1e-9 * square(k))) * z[k]).sum();
-                let unit = if self.displacement[l] > 0.0 { amplitude[l] / self.displacement[l] } else { 0.0 };
-                change[k] += there * unit * (passed / self.omega[k]).min(self.displacement[l] * ring);
+                let both = force(k, l) * force(l, k);
+                shift += (both / self.apart(k, l)).min(both.sqrt());
             }
-            if shift >= 0.5 * square(k) && self.displacement[k] > 0.0 {
+            if shift >= 0.5 * square && self.displacement[k] > 0.0 {
                 return 1.0;
             }
-            change[k] += self.displacement[k] * shift * (2.0 / square(k)).max(ring);
-            change[k] += constant[k] * 2.0 / square(k);
+            change[k] += self.displacement[k] * shift * (2.0 / square).max(self.memory[k] / self.omega[k]);
+            change[k] += constant[k] * 2.0 / square;
         }
         relative(norm(&change), self.scale)
     }
 
-    /// Share of each mode in the displacement and in the strain, whichever is larger (nf).
+    /// Share of each mode in the deformation (nf).
     pub(crate) fn shares(&self) -> Vec<f64> {
-        let of = |k: usize| {
-            let q = self.displacement[k];
-            relative(q, self.scale).max(relative(q * self.omega[k], self.strain_scale))
-        };
-        (0..self.omega.len()).map(of).collect()
+        self.displacement.iter().map(|q| relative(*q, self.scale)).collect()
     }
 }
 
-/// |z| and |z'| of a mode under a load; one whose direction turns in the body has the spin in its spectrum.
-fn swing(source: &Source, spin: &Spin, omega: f64, zeta: f64) -> (f64, f64) {
-    let at = |omega: f64| source.course.swing(omega, zeta);
-    let own = at(omega);
-    if !source.dead || spin.turn < 0.1 {
-        return (own.z, own.rate);
+/// |z| and |z'| of a mode under a load. With a direction a(t) that turns in the body, |a'| ≤ Ω, by parts:
+/// `|∫ e^{λ(t−s)} h a ds| ≤ sup|z| (1 + ∫|a'|)`, as far back as the mode remembers.
+fn swing(source: &Source, spin: &Spin, omega: f64, zeta: f64, memory: f64) -> (f64, f64) {
+    let Swing { z, rate } = source.course.swing(omega, zeta);
+    if !source.dead {
+        return (z, rate);
     }
-    if spin.largest >= 0.5 * omega || !spin.steady {
-        let decay = zeta * omega;
-        let forced = if decay > 0.0 { source.course.largest / decay } else { f64::INFINITY };
-        let most = source.course.magnitude_integral.min(forced);
-        // Below half the frequency no turning is in time with the mode: twice what the slowest side band does.
-        if spin.largest >= 0.5 * omega {
-            return (most, omega * most + source.course.largest);
-        }
-    }
-    let sides = [at(omega - spin.largest), at(omega + spin.largest)];
-    let sum = |of: fn(&crate::course::Swing) -> f64| sides.iter().map(of).fold(of(&own), f64::max);
-    (sum(|s| s.z), sum(|s| s.rate) + spin.largest * sum(|s| s.z))
+    let most = source.course.magnitude_integral.min(source.course.largest * memory);
+    let turning = 1.0 + spin.turn.min(spin.largest * memory);
+    ((z * turning).min(most), ((rate + spin.largest * z) * turning).min(omega * most + source.course.largest))
 }
 
 /// part/whole, at most 1; 1 where something is changed of nothing.
@@ -187,8 +198,4 @@ pub(crate) fn relative(part: f64, whole: f64) -> f64 {
 
 pub(crate) fn norm(x: &[f64]) -> f64 {
     x.iter().map(|x| x * x).sum::<f64>().sqrt()
-}
-
-fn product(a: &[f64], b: &[f64]) -> Vec<f64> {
-    a.iter().zip(b).map(|(a, b)| a * b).collect()
 }

@@ -105,7 +105,7 @@ pub struct Worth {
     pub circular_frequency: f64,
     /// Largest modal displacement, bounded above.
     pub displacement: f64,
-    /// Its share in the displacement or the strain of the body, whichever is larger.
+    /// Its share in the deformation, bounded above; at most 1.
     pub share: f64,
     /// Whether that reaches the tolerance.
     pub worth_keeping: bool,

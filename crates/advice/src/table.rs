@@ -64,7 +64,14 @@ pub fn screen(case: &Case, tolerance: f64) -> Result<Row, AdviceError> {
 pub fn advise(case: &Case, tolerance: f64) -> Result<Advice, AdviceError> {
     case.check(tolerance)?;
     let (spin, sources) = Spin::new(case);
-    let response = Response::new(case, &spin, &sources);
+    let mut response = Response::new(case, &spin, &sources);
+    let second = tensor::of_pairs(&case.body.inertia_second, &spin.directions);
+    let stiffness = case.body.stress_stiffness.as_ref().map(|k| tensor::of_pairs(k, &spin.directions));
+    let coupling = tensor::of_vectors(&case.body.gyroscopic, &spin.directions);
+    response.share_out(|k, l| {
+        let static_force = second[(k, l)] + stiffness.as_ref().map_or(0.0, |s| s[(k, l)]);
+        spin.largest.powi(2) * static_force + spin.pull(coupling[(k, l)], case.body.circular_frequencies[l])
+    });
     let shares = response.shares();
     let modes: Vec<Worth> = shares
         .iter()
@@ -77,15 +84,13 @@ pub fn advise(case: &Case, tolerance: f64) -> Result<Advice, AdviceError> {
         })
         .collect();
     let keep = modes.iter().rposition(|mode| mode.worth_keeping).map_or(0, |last| last + 1);
-    let second = tensor::of_pairs(&case.body.inertia_second, &spin.directions);
-    let stiffness = case.body.stress_stiffness.as_ref().map(|k| tensor::of_pairs(k, &spin.directions));
     let deflection = response.displacement.iter().zip(case.peaks).map(|(q, a)| q * a).sum::<f64>() / case.length;
     let estimates = [
         flexibility(&spin, &sources, &response, deflection),
         damping(case, &response),
         rigid::gravity(case, &sources, &response),
         deformed_inertia(case, &spin, &response, &second, stiffness.as_ref()),
-        coriolis(case, &spin, &response),
+        coriolis(case, &spin, &response, &coupling),
         stiffening(case, &spin, &response, stiffness.as_ref()),
         rigid::translation(case, &sources),
         rigid::rotation(case, &spin, &sources, &response),
@@ -195,13 +200,11 @@ fn deformed_inertia(
     Estimate { effect: Effect::DeformedInertia, value, influence, why }
 }
 
-fn coriolis(case: &Case, spin: &Spin, response: &Response) -> Estimate {
+fn coriolis(case: &Case, spin: &Spin, response: &Response, g: &Mat<f64>) -> Estimate {
     let body = case.body;
     let omega = &body.circular_frequencies;
-    let g = tensor::of_vectors(&body.gyroscopic, &spin.directions);
     let (q, v) = (&response.displacement, &response.velocity);
-    // 2Ω G q̇, and the Euler force ω̇ G q.
-    let force = |k: usize, l: usize| g[(k, l)] * (2.0 * spin.largest * omega[l] + spin.acceleration);
+    let force = |k: usize, l: usize| spin.pull(g[(k, l)], omega[l]);
     let amplitude: Vec<f64> = (0..q.len()).map(|k| q[k].max(v[k] / omega[k])).collect();
     let modes = response.change(force, &amplitude, &vec![0.0; q.len()]);
     let turning = tensor::of_vectors(&body.gyroscopic, &body.rotation_basis);

@@ -1,0 +1,136 @@
+//! Estimated influences against the real ones: an effect that is called negligible must be.
+
+use advice::{Case, Effect, advise};
+use frames_rk4::{Effects, History, Initial, Observation};
+
+use crate::plate::{CORNER, plate, run, spinning};
+
+/// What two runs may differ by where nothing differs.
+const ROUNDING: f64 = 1e-11;
+
+/// Largest relative difference of two motions: of the modal displacements, and of the attitude against the angle turned
+/// (up to 1 rad).
+fn difference(a: &[Observation], b: &[Observation]) -> f64 {
+    let norm = |x: &mut dyn Iterator<Item = f64>| x.map(|x| x * x).sum::<f64>().sqrt();
+    let turned = |a: &Observation, b: &Observation| {
+        let change = a.attitude.global_to_body() * b.attitude.global_to_body().transpose();
+        // Half the distance of the rotation from none: exact where the angle is small.
+        (change - nalgebra::Matrix3::identity()).norm() / 2.0_f64.sqrt()
+    };
+    let size = a.iter().map(|x| norm(&mut x.modal_displacement.iter().copied())).fold(0.0, f64::max);
+    let angle = a.iter().map(|x| turned(x, &a[0])).fold(0.0, f64::max).min(1.0);
+    let apart = a.iter().zip(b).map(|(x, y)| {
+        let mut change = x.modal_displacement.iter().zip(&y.modal_displacement).map(|(x, y)| x - y);
+        let modes = norm(&mut change) / size.max(1e-300);
+        let attitude = if angle > 1e-9 { (turned(x, y) - 1e-14).max(0.0) / angle } else { 0.0 };
+        modes.max(attitude)
+    });
+    apart.fold(0.0, |largest, x| if x.is_nan() { f64::INFINITY } else { largest.max(x) })
+}
+
+fn compare(name: &str, case: &Case) {
+    let advice = advise(case, 1e-3).unwrap();
+    let all = Effects::default();
+    let on = run(case, all);
+    for (effect, off) in [
+        (Effect::DeformedInertia, Effects { deformed_inertia: false, ..all }),
+        (Effect::Coriolis, Effects { coriolis: false, ..all }),
+        (Effect::GeometricStiffening, Effects { geometric_stiffening: false, ..all }),
+    ] {
+        let real = difference(&on, &run(case, off)).min(1.0);
+        let row = advice.row(effect).unwrap();
+        println!(
+            "{name} {}: value {:.2e} estimate {:.2e} real {real:.2e} {}",
+            effect.name(),
+            row.value,
+            row.influence,
+            row.why
+        );
+        assert!(row.influence >= real - ROUNDING, "{name} {}: {} {real}", effect.name(), row.influence);
+    }
+    let undamped = vec![0.0; case.body.flexible()];
+    let real = difference(&on, &run(&Case { damping_ratios: &undamped, ..*case }, all)).min(1.0);
+    let row = advice.row(Effect::Damping).unwrap();
+    println!("{name} damping: estimate {:.2e} real {real:.2e}", row.influence);
+    assert!(row.influence >= real - ROUNDING, "{name} damping: {} {real}", row.influence);
+    let largest = |k: usize| on.iter().map(|x| x.modal_displacement[k].abs()).fold(0.0, f64::max);
+    for (k, mode) in advice.modes.iter().enumerate() {
+        println!("{name} mode {k}: {:.3e} real {:.3e} share {:.1e}", mode.displacement, largest(k), mode.share);
+        assert!(mode.displacement >= largest(k) * 0.999, "{name} {k}");
+    }
+    let spin = on.iter().map(|x| x.omega_body.norm()).fold(0.0, f64::max);
+    println!("{name} spin {:.3e} real {spin:.3e}", advice.spin);
+    assert!(advice.spin >= 0.99 * spin, "{name}: {} {spin}", advice.spin);
+}
+
+fn pulse(size: f64) -> [frames_rk4::Load; 1] {
+    [plate().force(CORNER, [0.0, 0.0, size], History::HalfSine { start: 0.0, duration: 0.02 })]
+}
+
+#[test]
+fn estimates_are_above_what_an_effect_does_to_the_paper_s_pulse() {
+    for (name, size, end, zeta) in [("pulse", 10.0, 0.2, 0.0), ("weak", 1e-4, 0.1, 0.02), ("faint", 1e-6, 0.05, 0.0)] {
+        let (loads, zeta, initial) = (pulse(size), [zeta; 10], Initial::at_rest(10));
+        compare(name, &plate().case(&zeta, &loads, &initial, end));
+    }
+}
+
+#[test]
+fn estimates_are_above_what_an_effect_does_to_a_spinning_plate() {
+    let zeta = [0.0; 10];
+    for (name, omega, q) in [
+        ("transverse", [0.0, 10.0, 0.0], 1e-3),
+        ("tumbling", [3.0, 8.0, 5.0], 1e-2),
+        ("slow", [0.0, 0.0, 0.1], 1e-6),
+        ("slower", [0.0, 1e-3, 0.0], 1e-6),
+        ("along", [5.0, 0.0, 0.0], 1e-5),
+    ] {
+        let mut initial = spinning(omega);
+        initial.modal_displacement[0] = q;
+        initial.modal_displacement[2] = 0.3 * q;
+        compare(name, &plate().case(&zeta, &[], &initial, 0.3));
+    }
+}
+
+#[test]
+fn estimates_are_above_what_an_effect_does_in_resonance() {
+    let history = History::Sine {
+        frequency: plate().body.circular_frequencies[1] / std::f64::consts::TAU,
+        phase: 0.0,
+        start: 0.0,
+        duration: None,
+    };
+    for (name, zeta, size, omega) in
+        [("resonant", 0.01, 1e-3, [0.0, 2.0, 0.0]), ("resonant, free", 0.0, 1e-5, [0.0, 0.0, 0.01])]
+    {
+        let (loads, zeta, initial) =
+            ([plate().force(CORNER, [0.0, size, size], history.clone())], [zeta; 10], spinning(omega));
+        compare(name, &plate().case(&zeta, &loads, &initial, 0.3));
+    }
+}
+
+#[test]
+fn modes_that_are_not_worth_keeping_can_be_left_out() {
+    let (zeta, initial) = ([0.02; 10], Initial::at_rest(10));
+    for tolerance in [0.1, 0.02, 5e-3] {
+        let loads = [plate().force(CORNER, [0.0, 0.0, 0.01], History::HalfSine { start: 0.0, duration: 0.1 })];
+        let case = plate().case(&zeta, &loads, &initial, 0.3);
+        let advice = advise(&case, tolerance).unwrap();
+        let keep = advice.keep;
+        let (body, few) = (case.body.truncated(keep), [loads[0].truncated(keep)]);
+        let start = Initial::at_rest(keep);
+        let short = Case {
+            body: &body,
+            damping_ratios: &zeta[..keep],
+            loads: &few,
+            initial: &start,
+            peaks: &case.peaks[..keep],
+            ..case
+        };
+        let mut rows = run(&short, Effects::default());
+        rows.iter_mut().for_each(|row| row.modal_displacement.resize(10, 0.0));
+        let real = difference(&run(&case, Effects::default()), &rows);
+        println!("{tolerance}: {keep} modes, {real:.1e}");
+        assert!((1..10).contains(&keep) && real <= tolerance, "{tolerance}: {keep} modes, {real}");
+    }
+}
