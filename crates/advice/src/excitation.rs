@@ -145,7 +145,13 @@ impl Spin {
         let about_principal =
             (body.inertia * omega).cross(&omega).norm() <= 1e-9 * omega.dot(&(body.inertia * omega)).abs();
         let steady = torque_free && (about_principal || body.motion.count() < 3);
-        let largest = if steady { certain } else { largest_of(momentum) };
+        let largest = if steady {
+            certain
+        } else if torque_free && body.motion.count() >= 3 {
+            polhode(&body.inertia, &omega).min(largest_of(momentum))
+        } else {
+            largest_of(momentum)
+        };
         let pushed: f64 = sources.iter().map(|s| s.rotation * s.course.largest).sum();
         let tumbling = if steady || body.motion.count() < 3 { 0.0 } else { largest * largest };
         let caused = sources.iter().map(|s| s.rotation * s.impulse()).fold(0.0, f64::max);
@@ -173,6 +179,26 @@ impl Spin {
     pub(crate) fn pull(&self, gyroscopic: f64, omega: f64) -> f64 {
         gyroscopic * (2.0 * self.largest * omega + self.acceleration)
     }
+}
+
+/// What a small deformation may add to the spin of a body that tumbles freely.
+const DEFORMED: f64 = 1.05;
+
+/// Largest |ω| of a free rigid body that begins at `omega`: its squares x_i along the principal axes keep Σ J_i x_i and
+/// Σ J_i² x_i, so that the largest sum is at a corner, where one of them is zero.
+fn polhode(inertia: &Matrix3<f64>, omega: &Vector3<f64>) -> f64 {
+    let j = inertia.symmetric_eigenvalues();
+    let energy = omega.dot(&(inertia * omega));
+    let momentum = (inertia * omega).norm_squared();
+    let mut largest = omega.norm_squared();
+    for (a, b) in [(0, 1), (0, 2), (1, 2)] {
+        let x_b = (momentum - j[a] * energy) / (j[b] * (j[b] - j[a]));
+        let x_a = (energy - j[b] * x_b) / j[a];
+        if x_a >= 0.0 && x_b >= 0.0 {
+            largest = largest.max(x_a + x_b);
+        }
+    }
+    DEFORMED * largest.sqrt()
 }
 
 /// Projection on the directions of ω that the rigid motions leave.

@@ -21,7 +21,7 @@ pub enum Effect {
     Rotation,
     /// Static shapes beside the modes.
     StaticCorrection,
-    /// Large deflection, which no setting cures: "on" warns.
+    /// Large deflection, which no setting cures: "on" from 10 % of the length, and a warning.
     Deflection,
     /// Foreshortening, which no setting cures: "on" warns.
     Foreshortening,
@@ -92,7 +92,7 @@ pub struct Row {
     pub value: f64,
     /// Relative influence on the answer, bounded above; at most 1.
     pub influence: f64,
-    /// Whether that reaches the tolerance.
+    /// Whether that reaches the tolerance ([`Effect::Deflection`]: whether the deflection reaches 10 % of the length).
     pub on: bool,
     /// One sentence.
     pub why: String,

@@ -98,7 +98,7 @@ pub fn advise(case: &Case, tolerance: f64) -> Result<Advice, AdviceError> {
         Estimate {
             effect: Effect::Deflection,
             value: deflection,
-            influence: relative(deflection * tolerance / LINEAR, 1.0),
+            influence: relative(SHORTENING * deflection * deflection, 1.0),
             why: format!("At most {deflection:.1e} of the length; linear strain ends at 10 %."),
         },
         foreshortening(deflection),
@@ -126,7 +126,11 @@ pub(crate) struct Estimate {
 impl Estimate {
     fn row(self, tolerance: f64) -> Row {
         let Self { effect, value, influence, why } = self;
-        Row { effect, value, influence, on: influence >= tolerance || influence.is_nan(), why }
+        let on = match effect {
+            Effect::Deflection => value >= LINEAR,
+            _ => influence >= tolerance || influence.is_nan(),
+        };
+        Row { effect, value, influence, on, why }
     }
 }
 

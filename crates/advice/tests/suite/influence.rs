@@ -1,9 +1,9 @@
 //! Estimated influences against the real ones: an effect that is called negligible must be.
 
 use advice::{Case, Effect, advise};
-use frames_rk4::{Effects, History, Initial, Observation};
+use frames_rk4::{Drive, DrivenMotion, Effects, History, Initial, Observation};
 
-use crate::plate::{CORNER, plate, run, spinning};
+use crate::plate::{CORNER, clamped, plate, run, spinning};
 
 /// What two runs may differ by where nothing differs.
 const ROUNDING: f64 = 1e-11;
@@ -133,4 +133,29 @@ fn modes_that_are_not_worth_keeping_can_be_left_out() {
         println!("{tolerance}: {keep} modes, {real:.1e}");
         assert!((1..10).contains(&keep) && real <= tolerance, "{tolerance}: {keep} modes, {real}");
     }
+}
+
+#[test]
+fn estimates_are_above_what_an_effect_does_to_a_driven_plate() {
+    let (zeta, initial) = ([0.01; 10], Initial::at_rest(10));
+    // Seen from the middle of its clamped end, the plate is turned about its stiff and its weak direction.
+    for (name, axis, speed) in [
+        ("weak", nalgebra::Vector3::y(), 8.0),
+        ("stiff", nalgebra::Vector3::z(), 8.0),
+        ("gentle", nalgebra::Vector3::y(), 0.05),
+    ] {
+        let history = History::Ramp { start: 0.0, duration: 0.1 };
+        let drive = Drive { motion: DrivenMotion::Turn { axis }, amplitude: speed, history, span: 0.3 };
+        compare(name, &Case { drive: Some(&drive), ..clamped().case(&zeta, &[], &initial, 0.3) });
+    }
+}
+
+#[test]
+fn the_spin_of_a_tumbling_plate_is_bounded_closely() {
+    let (zeta, initial) = ([0.0; 10], spinning([3.0, 8.0, 5.0]));
+    let case = plate().case(&zeta, &[], &initial, 0.3);
+    let real = run(&case, Effects::default()).iter().map(|x| x.omega_body.norm()).fold(0.0, f64::max);
+    let bound = advise(&case, 1e-3).unwrap().spin;
+    println!("tumbling {bound} {real}");
+    assert!(bound >= real && bound < 1.1 * real, "{bound} {real}");
 }

@@ -8,7 +8,7 @@ use frames_rk4::{
     ConservativeScheme, Effects, History, Initial, Load, Method, Observation, Physics, PointShapes, Rows, Setup,
     Simulation, StepControl,
 };
-use modal::{BodyPoint, Modes, ReducedBody, Solver, Support, centrifugal_fields};
+use modal::{BodyPoint, Modes, ReducedBody, RigidMotion, Solver, Support, centrifugal_fields};
 use nalgebra::Vector3;
 
 pub struct Plate {
@@ -25,7 +25,22 @@ pub const CORNER: [f64; 3] = [500.0, 25.0, 10.0];
 
 pub fn plate() -> &'static Plate {
     static PLATE: OnceLock<Plate> = OnceLock::new();
+    PLATE.get_or_init(|| Plate::new(|_| Support::free()))
+}
+
+/// The same plate, clamped at one end.
+pub fn clamped() -> &'static Plate {
+    static PLATE: OnceLock<Plate> = OnceLock::new();
     PLATE.get_or_init(|| {
+        Plate::new(|positions| Support {
+            motion: RigidMotion::Clamp { origin: Vector3::new(-500.0, 0.0, 5.0) },
+            nodes: (0..).zip(positions).filter(|(_, x)| x[0] < -499.9).map(|(node, _)| node).collect(),
+        })
+    })
+}
+
+impl Plate {
+    fn new(support: impl Fn(&[[f64; 3]]) -> Support) -> Self {
         let corners = [-500.0, 500.0]
             .into_iter()
             .flat_map(|x| [-25.0, 25.0].map(|y| (x, y)))
@@ -35,7 +50,7 @@ pub fn plate() -> &'static Plate {
         let material = Materials::Uniform(Material { young_modulus: 70_000.0, poisson_ratio: 0.33, density: 2.7e-9 });
         let matrices = assemble(&mesh, &material, &masses).unwrap();
         let (k, m) = (matrices.stiffness(), matrices.mass());
-        let solver = Solver::new(k, m, mesh.positions(), &Support::free()).unwrap();
+        let solver = Solver::new(k, m, mesh.positions(), &support(mesh.positions())).unwrap();
         let modes = solver.modes(10, |_| ()).unwrap();
         let mut body = ReducedBody::new(&modes, m, mesh.positions()).unwrap();
         let fields = centrifugal_fields(solver.nodal_mass(), mesh.positions(), &body.origin);
@@ -55,10 +70,8 @@ pub fn plate() -> &'static Plate {
         let answer = solver.static_response(force.as_ref()).unwrap();
         let corner_compliance = (force.transpose() * &answer)[(0, 0)];
         Plate { peaks: (0..10).map(peak).collect(), length: 1001.3, corner_compliance, mesh, modes, body }
-    })
-}
+    }
 
-impl Plate {
     pub fn force(&self, at: [f64; 3], force: [f64; 3], history: History) -> Load {
         let place = self.mesh.locate(at).unwrap();
         let point = BodyPoint::new(&self.modes, self.mesh.positions(), &place.nodes, &place.weights);
