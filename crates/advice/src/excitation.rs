@@ -13,8 +13,9 @@ use crate::course::Course;
 pub(crate) struct Source {
     pub translation: f64,
     pub rotation: f64,
-    /// nf
+    /// nf; and as the load meets the body at the beginning.
     pub modal: Vec<f64>,
+    pub modal_at_start: Vec<f64>,
     pub course: Course,
     /// Whether its direction turns in the body as the body turns, and the angle that may turn it.
     pub dead: bool,
@@ -64,6 +65,7 @@ impl Source {
             translation: largest(&columns[..3]),
             rotation: largest(&columns[3..6]),
             modal: columns[6..].iter().map(|column| largest(&[*column])).collect(),
+            modal_at_start: columns[6..].iter().map(|column| column.dot(&vector).abs()).collect(),
             course: course.clone(),
             dead,
             turn,

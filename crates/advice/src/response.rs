@@ -48,16 +48,20 @@ impl Response {
         response.centrifugal(case, spin);
         for source in sources {
             let z: Vec<_> = (0..nf).map(|k| swing(source, spin, omega[k], zeta[k], response.memory[k])).collect();
-            let q: Vec<f64> = (0..nf).map(|k| source.modal[k] * z[k].0 / omega[k]).collect();
             for k in 0..nf {
-                response.displacement[k] += q[k];
+                let q = source.modal[k] * z[k].0 / omega[k];
+                response.displacement[k] += q;
                 response.velocity[k] += source.modal[k] * z[k].0;
                 response.acceleration[k] += source.modal[k] * z[k].1;
                 if source.gravity {
-                    response.of_gravity[k] += q[k];
+                    response.of_gravity[k] += q;
                 }
             }
-            response.certainly(&q);
+            // A direction that turns may take as much away as it may add.
+            let turning = |k: usize| turning(source, spin, response.memory[k]);
+            let straight = |k: usize| source.modal_at_start[k] * source.course.swing(omega[k], zeta[k]).z / omega[k];
+            let certain: Vec<f64> = (0..nf).map(|k| straight(k) / turning(k)).collect();
+            response.certainly(&certain, 0.5);
             response.forced.push((source.modal.clone(), z.iter().map(|z| z.0).collect()));
         }
         if let Some(drive) = case.drive {
@@ -77,7 +81,8 @@ impl Response {
                 response.velocity[k] += force[k] * z[k].rate;
                 response.acceleration[k] += 2.0 * force[k] * z[k].rate * omega[k];
             }
-            response.certainly(&q);
+            // The circle of z is wider than the swing of its real part.
+            response.certainly(&q, 0.25);
         }
         response
     }
@@ -94,17 +99,16 @@ impl Response {
             self.displacement[k] += gain * force / (omega * omega);
             self.velocity[k] += 0.5 * gain * force / omega;
             self.acceleration[k] += 0.5 * gain * force;
-            let w = if case.drive.is_some() { 0.0 } else { 1.0 };
             let entries = std::array::from_fn(|ij| case.body.inertia_first[ij][k]);
             let at_start = case.initial.omega.dot(&(tensor::symmetric(entries) * case.initial.omega));
-            steady[k] = if case.drive.is_some() { force } else { w * at_start.abs() } / (omega * omega);
+            steady[k] = if case.drive.is_some() { force } else { at_start.abs() } / (omega * omega);
         }
-        self.certainly(&steady);
+        self.certainly(&steady, 0.5);
     }
 
-    /// Half of a bound that is sharp within two.
-    fn certainly(&mut self, q: &[f64]) {
-        self.scale = self.scale.max(0.5 * norm(q));
+    /// A deflection of which there will be this part.
+    fn certainly(&mut self, q: &[f64], part: f64) {
+        self.scale = self.scale.max(part * norm(q));
     }
 
     /// Change of each mode by small forces that come from the others: `force(k, l)` on mode k for a unit of `amplitude`
@@ -181,8 +185,13 @@ fn swing(source: &Source, spin: &Spin, omega: f64, zeta: f64, memory: f64) -> (f
         return (z, rate);
     }
     let most = source.course.magnitude_integral.min(source.course.largest * memory);
-    let turning = 1.0 + spin.turn.min(spin.largest * memory);
+    let turning = turning(source, spin, memory);
     ((z * turning).min(most), ((rate + spin.largest * z) * turning).min(omega * most + source.course.largest))
+}
+
+/// 1 + ∫|a'| of the direction of a load, as far back as a mode remembers.
+fn turning(source: &Source, spin: &Spin, memory: f64) -> f64 {
+    if source.dead { 1.0 + spin.turn.min(spin.largest * memory) } else { 1.0 }
 }
 
 /// part/whole, at most 1; 1 where something is changed of nothing.
