@@ -67,6 +67,13 @@ fn pulse(size: f64) -> [frames_rk4::Load; 1] {
     [plate().force(CORNER, [0.0, 0.0, size], History::HalfSine { start: 0.0, duration: 0.02 })]
 }
 
+// Measured, estimate against real, where neither is 1:
+// pulse: inertia 5.6e-2 1.9e-4, Coriolis 1.4e-2 3.6e-4, stiffening 5.2e-2 1.0e-5;
+// weak: inertia 5.3e-8 4.8e-11, Coriolis 3.6e-8 3.4e-9; damping 0.67 0.25;
+// slow spin: inertia 7.53e-2 7.52e-2, Coriolis 3.0e-6 1.7e-6, stiffening 3.3e-4 1.6e-4;
+// along: inertia 0.175 0.167, Coriolis 5.3e-2 5.0e-3, stiffening 2.1e-4 8.1e-5;
+// gently driven: inertia 4.6e-4 3.8e-6, Coriolis 1.5e-5 2.1e-7, stiffening 2.5e-4 2.3e-5, damping 0.25 0.018.
+
 #[test]
 fn estimates_are_above_what_an_effect_does_to_the_paper_s_pulse() {
     for (name, size, end, zeta) in [("pulse", 10.0, 0.2, 0.0), ("weak", 1e-4, 0.1, 0.02), ("faint", 1e-6, 0.05, 0.0)] {
@@ -131,6 +138,7 @@ fn modes_that_are_not_worth_keeping_can_be_left_out() {
         rows.iter_mut().for_each(|row| row.modal_displacement.resize(10, 0.0));
         let real = difference(&run(&case, Effects::default()), &rows);
         println!("{tolerance}: {keep} modes, {real:.1e}");
+        // Measured: 2, 3 and 5 modes; 3.4e-2, 4.7e-3 and 1.5e-3.
         assert!((1..10).contains(&keep) && real <= tolerance, "{tolerance}: {keep} modes, {real}");
     }
 }
