@@ -20,6 +20,7 @@
 pub use {fem_tet10, frames_rk4, modal, results, rigid_kin, scene};
 
 pub mod animation;
+pub mod campbell;
 pub mod cost;
 pub mod figures;
 pub mod modes;

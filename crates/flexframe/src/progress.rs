@@ -2,6 +2,7 @@
 
 use std::time::{Duration, Instant};
 
+use flexframe::campbell::CampbellProgress;
 use flexframe::cost::CostProgress;
 use flexframe::run::RunProgress;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -39,6 +40,13 @@ impl Bar {
         match progress {
             RunProgress::Build(progress) => self.build(progress),
             RunProgress::Motion(part) => self.show("stepping", Some(((10_000.0 * part) as u64, 10_000))),
+        }
+    }
+
+    pub fn campbell(&mut self, progress: CampbellProgress) {
+        match progress {
+            CampbellProgress::Build(progress) => self.build(progress),
+            CampbellProgress::Speeds { done, total } => self.show("spinning", Some((done as u64, total as u64))),
         }
     }
 

@@ -19,6 +19,9 @@ pub(crate) const COLOURS: [RGBColor; 7] = [
 
 pub(crate) const INK: RGBColor = RGBColor(30, 30, 30);
 const GRID: RGBColor = RGBColor(222, 222, 222);
+const GUIDE: RGBColor = RGBColor(150, 150, 150);
+const GUIDE_INK: RGBColor = RGBColor(95, 95, 95);
+const PAPER: RGBColor = RGBColor(255, 255, 255);
 const FAINT_GRID: RGBColor = RGBColor(240, 240, 240);
 
 const WIDTH: f64 = 720.0;
@@ -33,6 +36,7 @@ const LEGEND_GAP: f64 = 5.0;
 const LEGEND_LINE: f64 = 30.0;
 const TICK_LENGTH: f64 = 4.0;
 const SOLID_WIDTH: f64 = 1.5;
+const GUIDE_WIDTH: f64 = 1.0;
 /// Wider than a solid line, so that either is seen where they coincide.
 const DASHED_WIDTH: f64 = 2.5;
 const DASH: [f64; 2] = [8.0, 6.0];
@@ -41,6 +45,7 @@ const FINENESS: u32 = 4;
 /// Series with no more points than this show each as a dot.
 const FEW_POINTS: usize = 24;
 const DOT_RADIUS: f64 = 3.0;
+const RING_RADIUS: f64 = 4.0;
 /// Series with more points than this are thinned.
 const MANY_POINTS: usize = 3000;
 /// Columns per pixel, each of which keeps the highest and the lowest point of a thinned series.
@@ -52,6 +57,8 @@ pub enum Scale {
     /// Evenly.
     #[default]
     Linear,
+    /// Evenly, from zero or from the lowest negative value.
+    FromZero,
     /// By decades; values must be positive.
     Log,
 }
@@ -65,17 +72,27 @@ pub enum Stroke {
     Solid,
     /// A dashed line.
     Dashed,
+    /// A thin grey line below the others, with its label at its end and not in the legend.
+    Guide,
+    /// A ring at each point and no line.
+    Rings,
 }
 
-/// One line of a chart.
+/// One line, or one set of rings, of a chart.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Series {
-    /// Its name in the legend; a chart whose labels are all empty has none.
+    /// Its name in the legend, or of a guide at its end; a chart whose labels are all empty has no legend.
     pub label: String,
-    /// The points (x, y), joined in this order.
+    /// The points (x, y); lines join them in this order.
     pub points: Vec<(f64, f64)>,
-    /// Solid or dashed.
+    /// How it is drawn.
     pub stroke: Stroke,
+}
+
+impl Series {
+    fn is_in_legend(&self) -> bool {
+        !self.label.is_empty() && self.stroke != Stroke::Guide
+    }
 }
 
 /// A chart of lines over two axes. Colours are chosen by the order of the series; a series of a few
@@ -109,7 +126,7 @@ struct Axis {
 impl Axis {
     fn pixel(&self, value: f64) -> f64 {
         let value = match self.scale {
-            Scale::Linear => value,
+            Scale::Linear | Scale::FromZero => value,
             Scale::Log => value.log10(),
         };
         let (min, max) = self.range;
@@ -121,6 +138,11 @@ impl Axis {
         let (range, ticks) = match scale {
             Scale::Linear => {
                 let (min, max) = ticks::linear_range(min, max, margin);
+                ((min, max), ticks::linear(min, max, ticks))
+            }
+            Scale::FromZero => {
+                let (_, max) = ticks::linear_range(min.min(0.0), max, margin);
+                let min = min.min(0.0);
                 ((min, max), ticks::linear(min, max, ticks))
             }
             Scale::Log => {
@@ -173,16 +195,22 @@ impl LineChart {
             baseline += LEGEND_ROW;
         }
         draw_grid(&mut picture, &x, &y);
-        for stroke in [Stroke::Solid, Stroke::Dashed] {
+        for stroke in [Stroke::Guide, Stroke::Solid, Stroke::Dashed] {
             for (i, series) in self.series.iter().enumerate().filter(|(_, series)| series.stroke == stroke) {
                 let places: Vec<Place> = series.points.iter().map(|p| [x.pixel(p.0), y.pixel(p.1)]).collect();
-                if places.len() <= FEW_POINTS {
-                    places.iter().for_each(|place| draw_dot(&mut picture, *place, colour(i)));
+                if stroke == Stroke::Guide {
+                    draw_guide_label(&mut picture, &places, &series.label, x.end);
+                } else if places.len() <= FEW_POINTS {
+                    places.iter().for_each(|place| draw_dot(&mut picture, *place, DOT_RADIUS, colour(i)));
                 }
                 draw_stroke(&mut picture, thinned(places), colour(i), stroke);
             }
         }
         self.draw_axes(&mut picture, &x, &y);
+        for series in self.series.iter().filter(|series| series.stroke == Stroke::Rings) {
+            let places = series.points.iter().map(|p| [x.pixel(p.0), y.pixel(p.1)]).collect();
+            draw_stroke(&mut picture, places, INK, Stroke::Rings);
+        }
         Ok(picture)
     }
 
@@ -211,7 +239,7 @@ impl LineChart {
         let room = WIDTH - 8.0 * MARGIN;
         let mut rows: Vec<Vec<(usize, f64)>> = Vec::new();
         let mut used = f64::INFINITY;
-        for (i, series) in self.series.iter().enumerate().filter(|(_, series)| !series.label.is_empty()) {
+        for (i, series) in self.series.iter().enumerate().filter(|(_, series)| series.is_in_legend()) {
             let width = LEGEND_LINE + 6.0 + font::width(&series.label, TICK_EM)? + 20.0;
             if used + width > room {
                 rows.push(Vec::new());
@@ -229,7 +257,10 @@ impl LineChart {
         let mut left = centre - 0.5 * (row.iter().map(|entry| entry.1).sum::<f64>() - 20.0);
         for &(i, width) in row {
             let height = baseline - 0.36 * TICK_EM;
-            let line = vec![[left, height], [left + LEGEND_LINE, height]];
+            let line = match self.series[i].stroke {
+                Stroke::Rings => vec![[left + 0.5 * LEGEND_LINE, height]],
+                _ => vec![[left, height], [left + LEGEND_LINE, height]],
+            };
             draw_stroke(picture, line, colour(i), self.series[i].stroke);
             picture.text([left + LEGEND_LINE + 6.0, baseline], &self.series[i].label, TICK_EM, Anchor::Left, INK);
             left += width;
@@ -276,15 +307,30 @@ fn draw_grid(picture: &mut Picture, x: &Axis, y: &Axis) {
     }
 }
 
-fn draw_dot(picture: &mut Picture, [x, y]: Place, colour: RGBColor) {
+fn draw_dot(picture: &mut Picture, [x, y]: Place, radius: f64, colour: RGBColor) {
     let corner = |i: u32| (f64::from(i) * std::f64::consts::TAU / 24.0).sin_cos();
-    let circle = (0..24).map(corner).map(|(sin, cos)| [x + DOT_RADIUS * cos, y + DOT_RADIUS * sin]);
+    let circle = (0..24).map(corner).map(|(sin, cos)| [x + radius * cos, y + radius * sin]);
     picture.area(circle.collect(), colour);
+}
+
+/// In the margin if the line ends there, else above its end.
+fn draw_guide_label(picture: &mut Picture, places: &[Place], label: &str, right: f64) {
+    let Some(&[x, y]) = places.last() else { return };
+    if x > right - 0.5 {
+        picture.text([x + 4.0, y + 0.36 * TICK_EM], label, TICK_EM, Anchor::Left, GUIDE_INK);
+    } else {
+        picture.text([x, y - 4.0], label, TICK_EM, Anchor::Centre, GUIDE_INK);
+    }
 }
 
 fn draw_stroke(picture: &mut Picture, places: Vec<Place>, colour: RGBColor, stroke: Stroke) {
     match stroke {
         Stroke::Solid => picture.line(places, colour, SOLID_WIDTH),
+        Stroke::Guide => picture.line(places, GUIDE, GUIDE_WIDTH),
+        Stroke::Rings => places.into_iter().for_each(|place| {
+            draw_dot(picture, place, RING_RADIUS, INK);
+            draw_dot(picture, place, RING_RADIUS - SOLID_WIDTH, PAPER);
+        }),
         Stroke::Dashed => {
             for dash in dashes(&places) {
                 picture.line(dash, colour, DASHED_WIDTH);

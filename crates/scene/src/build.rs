@@ -102,13 +102,31 @@ impl Model {
     /// [`BuildError`]: what the mesh, the materials or the modes refuse, with the place in the scene file where
     /// there is one.
     pub fn build(scene: &Scene, progress: impl FnMut(BuildProgress)) -> Result<Self, BuildError> {
+        Self::of(scene, false, progress)
+    }
+
+    /// As [`Model::build`], of a body that is held in a spin whatever moves or holds it in the scene: the stress of the
+    /// centrifugal field stiffens it unless `geometric_stiffening` or `deformed_inertia` is off.
+    ///
+    /// # Errors
+    /// As [`Model::build`].
+    pub fn build_spinning(scene: &Scene, progress: impl FnMut(BuildProgress)) -> Result<Self, BuildError> {
+        Self::of(scene, true, progress)
+    }
+
+    fn of(scene: &Scene, spinning: bool, progress: impl FnMut(BuildProgress)) -> Result<Self, BuildError> {
         match &scene.body {
-            Body::Meshed(meshed) => Self::meshed(scene, meshed, progress),
+            Body::Meshed(meshed) => Self::meshed(scene, meshed, spinning, progress),
             Body::Rigid(rigid) => Self::rigid(scene, rigid),
         }
     }
 
-    fn meshed(scene: &Scene, meshed: &MeshedBody, mut progress: impl FnMut(BuildProgress)) -> Result<Self, BuildError> {
+    fn meshed(
+        scene: &Scene,
+        meshed: &MeshedBody,
+        spinning: bool,
+        mut progress: impl FnMut(BuildProgress),
+    ) -> Result<Self, BuildError> {
         let mut times = BuildTimes::default();
         progress(BuildProgress::Mesh);
         let mesh = timed(&mut times.mesh, || read_mesh(scene, meshed))?;
@@ -129,7 +147,7 @@ impl Model {
         let materials = materials(meshed);
         if scene.modes.static_correction == Choice::On && requested > 0 {
             let mut fields = nodal_forces(&loads, mesh.positions().len());
-            if physics::may_spin(scene, &support, drive.as_ref()) {
+            if spinning || physics::may_spin(scene, &support, drive.as_ref()) {
                 let of_spin = centrifugal_fields(solver.nodal_mass(), mesh.positions(), &modes.rigid.origin);
                 fields = Mat::from_fn(fields.nrows(), fields.ncols() + of_spin.ncols(), |i, j| {
                     if j < fields.ncols() { fields[(i, j)] } else { of_spin[(i, j - fields.ncols())] }
@@ -143,7 +161,11 @@ impl Model {
         let mut body = ReducedBody::new(&modes, matrices.mass(), mesh.positions())?;
         times.reduction = started.elapsed();
         let statics_started = Instant::now();
-        let stiffening = physics::stiffening(scene, &body, drive.as_ref(), &support);
+        let stiffening = if spinning {
+            physics::stiffens_in_spin(scene, &body)
+        } else {
+            physics::stiffening(scene, &body, drive.as_ref(), &support)
+        };
         if stiffening {
             let fields = centrifugal_fields(solver.nodal_mass(), mesh.positions(), &body.origin);
             let answers = solver.static_response(fields.as_ref())?;

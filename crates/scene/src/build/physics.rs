@@ -25,14 +25,16 @@ fn turns(motion: RigidMotion, drive: Option<&Drive>) -> bool {
 /// Whether the stress of the centrifugal field is computed.
 pub(super) fn stiffening(scene: &Scene, body: &ReducedBody, drive: Option<&Drive>, support: &Support) -> bool {
     let of_paper = matches!(scene.time.method, Method::Paper | Method::PaperRkmk4);
+    stiffens_in_spin(scene, body)
+        && may_spin(scene, support, drive)
+        && (scene.effects.geometric_stiffening == Choice::On || !of_paper)
+}
+
+/// Whether the stress of the centrifugal field is computed of a body that spins.
+pub(super) fn stiffens_in_spin(scene: &Scene, body: &ReducedBody) -> bool {
     body.flexible() > 0
         && scene.effects.deformed_inertia != Choice::Off
-        && may_spin(scene, support, drive)
-        && match scene.effects.geometric_stiffening {
-            Choice::On => true,
-            Choice::Off => false,
-            Choice::Auto => !of_paper,
-        }
+        && scene.effects.geometric_stiffening != Choice::Off
 }
 
 /// Whether the stress of a load stiffens the body: one that stays as it is, seen from the body.
