@@ -186,7 +186,14 @@ fn execute(cli: Cli) -> Result<(), Box<dyn Error>> {
             }
             Ok(())
         }
-        Command::Campbell { scene: SceneArgs { scene, json }, axis: Direction(axis), speeds, orders, flexible, output } => {
+        Command::Campbell {
+            scene: SceneArgs { scene, json },
+            axis: Direction(axis),
+            speeds,
+            orders,
+            flexible,
+            output,
+        } => {
             let mut scene = Scene::read(scene)?;
             if let Some(count) = flexible {
                 scene.modes.flexible = Flexible::Count(count);

@@ -151,10 +151,8 @@ impl SteadySpin {
             let imaginary = -order * (g[(i, j)] - g[(j, i)]);
             c64::new(real, imaginary) / (omega[i] * omega[j])
         });
-        let inverse_squares =
-            scaled.self_adjoint_eigenvalues(Side::Lower).map_err(|_| EigenError { size: nf })?;
-        let mut speeds: Vec<f64> =
-            inverse_squares.into_iter().filter(|x| *x > 0.0).map(|x| x.sqrt().recip()).collect();
+        let inverse_squares = scaled.self_adjoint_eigenvalues(Side::Lower).map_err(|_| EigenError { size: nf })?;
+        let mut speeds: Vec<f64> = inverse_squares.into_iter().filter(|x| *x > 0.0).map(|x| x.sqrt().recip()).collect();
         speeds.sort_by(f64::total_cmp);
         Ok(speeds)
     }

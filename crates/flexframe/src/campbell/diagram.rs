@@ -41,7 +41,7 @@ pub(super) fn draw(report: &CampbellReport, orders: &[f64], stem: &Path) -> Resu
     if !points.is_empty() {
         series.push(Series { label: "critical speed".to_owned(), points, stroke: Stroke::Rings });
     }
-    let axis = report.axis.map(|x| format!("{}", (1e4 * x).round() / 1e4)).join(", ");
+    let axis = report.axis.map(|x| format!("{}", (1e4 * x).round() / 1e4).replace('-', "−")).join(", ");
     LineChart {
         title: format!("{}: natural frequencies in spin about ({axis})", report.title),
         x_label: format!("Spin speed Ω (rad/{})", report.time_unit),

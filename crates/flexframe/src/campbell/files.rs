@@ -45,8 +45,7 @@ fn branches(report: &CampbellReport) -> String {
 fn critical_speeds(report: &CampbellReport) -> String {
     let mut csv = "order,mode,speed,frequency\n".to_owned();
     for critical in &report.critical_speeds {
-        let _ =
-            writeln!(csv, "{},{},{:e},{:e}", critical.order, critical.mode, critical.speed, critical.frequency);
+        let _ = writeln!(csv, "{},{},{:e},{:e}", critical.order, critical.mode, critical.speed, critical.frequency);
     }
     csv
 }

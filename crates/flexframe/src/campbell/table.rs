@@ -46,8 +46,9 @@ impl CampbellReport {
         writeln!(f, "   frequency, {}", self.frequency_unit)?;
         let last = self.speeds.len() - 1;
         let stride = last.div_ceil(ROWS - 1).max(1);
-        let mut any_grows = false;
+        let (mut rows, mut any_grows) = (0, false);
         for (i, speed) in self.speeds.iter().enumerate().filter(|(i, _)| i % stride == 0 || *i == last) {
+            rows += 1;
             write!(f, "  {speed:>10.3}")?;
             if let Some(rpm) = self.rpm(*speed) {
                 write!(f, "{rpm:>10.1}")?;
@@ -60,17 +61,14 @@ impl CampbellReport {
             }
             writeln!(f)?;
         }
-        let mut notes = Vec::new();
         if any_grows {
-            notes.push("! the vibration grows".to_owned());
+            writeln!(f, "  ! the vibration grows")?;
         }
-        if stride > 1 {
-            notes.push(format!("every {stride}th of {} speeds", self.speeds.len()));
+        if rows < self.speeds.len() || shown.len() < self.branches.len() {
+            let (speeds, modes) = (self.speeds.len(), self.branches.len());
+            writeln!(f, "  {rows} of {speeds} speeds, {} of {modes} modes; campbell.csv has them all", shown.len())?;
         }
-        if shown.len() < self.branches.len() {
-            notes.push(format!("{} of {} modes", shown.len(), self.branches.len()));
-        }
-        if notes.is_empty() { Ok(()) } else { writeln!(f, "  {}", notes.join("; ")) }
+        Ok(())
     }
 
     fn write_critical_speeds(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -96,9 +94,8 @@ impl fmt::Display for SpinEffects {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let all =
             [("Coriolis", self.coriolis), ("softening", self.softening), ("geometric stiffening", self.stiffening)];
-        let named = |wanted: bool| -> Vec<&str> {
-            all.iter().filter(|(_, on)| *on == wanted).map(|(name, _)| *name).collect()
-        };
+        let named =
+            |wanted: bool| -> Vec<&str> { all.iter().filter(|(_, on)| *on == wanted).map(|(name, _)| *name).collect() };
         match (named(true).join(", "), named(false).join(", ")) {
             (on, off) if off.is_empty() => write!(f, "{on}"),
             (on, off) if on.is_empty() => write!(f, "none: {off} are off"),
