@@ -52,13 +52,13 @@ const MANY_POINTS: usize = 3000;
 const COLUMNS_PER_PIXEL: f64 = 2.0;
 
 /// How an axis maps values.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Scale {
     /// Evenly.
     #[default]
     Linear,
-    /// Evenly, from zero or from the lowest negative value.
-    FromZero,
+    /// Evenly, between two values, the lower one first: lines are cut off there, and points beyond are left out.
+    Window(f64, f64),
     /// By decades; values must be positive.
     Log,
 }
@@ -126,7 +126,7 @@ struct Axis {
 impl Axis {
     fn pixel(&self, value: f64) -> f64 {
         let value = match self.scale {
-            Scale::Linear | Scale::FromZero => value,
+            Scale::Linear | Scale::Window(..) => value,
             Scale::Log => value.log10(),
         };
         let (min, max) = self.range;
@@ -140,11 +140,7 @@ impl Axis {
                 let (min, max) = ticks::linear_range(min, max, margin);
                 ((min, max), ticks::linear(min, max, ticks))
             }
-            Scale::FromZero => {
-                let (_, max) = ticks::linear_range(min.min(0.0), max, margin);
-                let min = min.min(0.0);
-                ((min, max), ticks::linear(min, max, ticks))
-            }
+            Scale::Window(min, max) => ((min, max), ticks::linear(min, max, ticks)),
             Scale::Log => {
                 let (low, high) = ticks::decades(min, max);
                 ((f64::from(low), f64::from(high)), ticks::logarithmic((low, high), ticks))
@@ -195,23 +191,40 @@ impl LineChart {
             baseline += LEGEND_ROW;
         }
         draw_grid(&mut picture, &x, &y);
+        let is_visible = |p: &Place| between(p[0], x.start, x.end) && between(p[1], y.end, y.start);
         for stroke in [Stroke::Guide, Stroke::Solid, Stroke::Dashed] {
             for (i, series) in self.series.iter().enumerate().filter(|(_, series)| series.stroke == stroke) {
                 let places: Vec<Place> = series.points.iter().map(|p| [x.pixel(p.0), y.pixel(p.1)]).collect();
-                if stroke == Stroke::Guide {
-                    draw_guide_label(&mut picture, &places, &series.label, x.end);
-                } else if places.len() <= FEW_POINTS {
-                    places.iter().for_each(|place| draw_dot(&mut picture, *place, DOT_RADIUS, colour(i)));
+                if stroke != Stroke::Guide && places.len() <= FEW_POINTS {
+                    let dots = places.iter().filter(|place| is_visible(place));
+                    dots.for_each(|place| draw_dot(&mut picture, *place, DOT_RADIUS, colour(i)));
                 }
-                draw_stroke(&mut picture, thinned(places), colour(i), stroke);
+                for piece in self.visible(places, &x, &y) {
+                    if stroke == Stroke::Guide {
+                        draw_guide_label(&mut picture, &piece, &series.label, x.end);
+                    }
+                    draw_stroke(&mut picture, thinned(piece), colour(i), stroke);
+                }
             }
         }
         self.draw_axes(&mut picture, &x, &y);
         for series in self.series.iter().filter(|series| series.stroke == Stroke::Rings) {
-            let places = series.points.iter().map(|p| [x.pixel(p.0), y.pixel(p.1)]).collect();
-            draw_stroke(&mut picture, places, INK, Stroke::Rings);
+            let places = series.points.iter().map(|p| [x.pixel(p.0), y.pixel(p.1)]);
+            draw_stroke(&mut picture, places.filter(is_visible).collect(), INK, Stroke::Rings);
         }
         Ok(picture)
+    }
+
+    /// The parts of a path that its windows leave.
+    fn visible(&self, path: Vec<Place>, x: &Axis, y: &Axis) -> Vec<Vec<Place>> {
+        let mut pieces = vec![path];
+        for (i, axis) in [x, y].into_iter().enumerate().filter(|(_, axis)| matches!(axis.scale, Scale::Window(..))) {
+            for bound in [axis.start, axis.end] {
+                let sign = if bound == axis.start.min(axis.end) { 1.0 } else { -1.0 };
+                pieces = pieces.iter().flat_map(|piece| beyond(piece, i, bound, sign)).collect();
+            }
+        }
+        pieces
     }
 
     fn check(&self) -> Result<(), FigureError> {
@@ -313,13 +326,42 @@ fn draw_dot(picture: &mut Picture, [x, y]: Place, radius: f64, colour: RGBColor)
     picture.area(circle.collect(), colour);
 }
 
-/// In the margin if the line ends there, else above its end.
+fn between(value: f64, low: f64, high: f64) -> bool {
+    (low - 1e-6..=high + 1e-6).contains(&value)
+}
+
+/// The parts of a path whose coordinate `i` is not below `bound`, or for the sign −1 not above.
+fn beyond(path: &[Place], i: usize, bound: f64, sign: f64) -> Vec<Vec<Place>> {
+    let depth = |place: &Place| sign * (place[i] - bound);
+    let mut pieces = Vec::new();
+    let mut piece: Vec<Place> = path.first().copied().filter(|place| depth(place) >= 0.0).into_iter().collect();
+    for pair in path.windows(2) {
+        let (a, b) = (pair[0], pair[1]);
+        let (from, to) = (depth(&a), depth(&b));
+        if (from < 0.0) != (to < 0.0) {
+            let part = from / (from - to);
+            piece.push([a[0] + part * (b[0] - a[0]), a[1] + part * (b[1] - a[1])]);
+        }
+        if to >= 0.0 {
+            piece.push(b);
+        } else if !piece.is_empty() {
+            pieces.push(std::mem::take(&mut piece));
+        }
+    }
+    pieces.push(piece);
+    pieces.retain(|piece| !piece.is_empty());
+    pieces
+}
+
+/// In the margin if the line ends there, else to the left of its end.
 fn draw_guide_label(picture: &mut Picture, places: &[Place], label: &str, right: f64) {
-    let Some(&[x, y]) = places.last() else { return };
+    let &[.., [x0, y0], [x, y]] = places else { return };
     if x > right - 0.5 {
         picture.text([x + 4.0, y + 0.36 * TICK_EM], label, TICK_EM, Anchor::Left, GUIDE_INK);
     } else {
-        picture.text([x, y - 4.0], label, TICK_EM, Anchor::Centre, GUIDE_INK);
+        let below = 1.3 * TICK_EM;
+        let back = if y0 > y { (x - x0) / (y0 - y) * below } else { 0.0 };
+        picture.text([x - back - 3.0, y + below], label, TICK_EM, Anchor::Right, GUIDE_INK);
     }
 }
 
@@ -399,4 +441,20 @@ fn thinned(places: Vec<Place>) -> Vec<Place> {
         }
     }
     kept
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_path_is_cut_where_it_leaves_a_window() {
+        let path = [[0.0, 0.0], [1.0, 2.0], [2.0, 0.0], [3.0, 0.5], [4.0, 3.0]];
+        let below = beyond(&path, 1, 1.0, -1.0);
+        assert_eq!(below, [vec![[0.0, 0.0], [0.5, 1.0]], vec![[1.5, 1.0], [2.0, 0.0], [3.0, 0.5], [3.2, 1.0]]]);
+        let above = beyond(&path, 1, 1.0, 1.0);
+        assert_eq!(above, [vec![[0.5, 1.0], [1.0, 2.0], [1.5, 1.0]], vec![[3.2, 1.0], [4.0, 3.0]]]);
+        assert!(beyond(&path, 0, 5.0, 1.0).is_empty());
+        assert_eq!(beyond(&path, 0, -1.0, 1.0), [path.to_vec()]);
+    }
 }

@@ -11,8 +11,10 @@ use super::CampbellReport;
 const COLOURS: usize = 7;
 /// More branches than this cannot be told apart.
 const MOST_BRANCHES: usize = 2 * COLOURS;
-/// The diagram reaches this far above the highest order.
-const ROOM: f64 = 1.15;
+/// The diagram reaches this far above the highest order,
+const ABOVE_ORDERS: f64 = 1.15;
+/// but at most so far above the highest branch.
+const ABOVE_BRANCHES: f64 = 1.05;
 
 /// Draws `<stem>.svg` and `<stem>.png`. Branches far above every order are left out.
 pub(super) fn draw(report: &CampbellReport, orders: &[f64], stem: &Path) -> Result<[PathBuf; 2], FigureError> {
@@ -24,20 +26,19 @@ pub(super) fn draw(report: &CampbellReport, orders: &[f64], stem: &Path) -> Resu
         if series.len() == MOST_BRANCHES {
             break;
         }
-        let points: Vec<(f64, f64)> = report.speeds.iter().copied().zip(branch.frequency.iter().copied()).collect();
+        let points = report.speeds.iter().copied().zip(branch.frequency.iter().copied()).collect();
         series.push(Series {
             label: format!("mode {}", branch.mode),
-            points: below(&points, top),
+            points,
             stroke: if series.len() < COLOURS { Stroke::Solid } else { Stroke::Dashed },
         });
     }
     let start = report.speeds.first().copied().unwrap_or_default();
     for order in orders {
         let line = [(start, order * start / TAU), (end, order * end / TAU)];
-        series.push(Series { label: format!("{order}×"), points: below(&line, top), stroke: Stroke::Guide });
+        series.push(Series { label: format!("{order}×"), points: line.to_vec(), stroke: Stroke::Guide });
     }
-    let points: Vec<(f64, f64)> =
-        report.critical_speeds.iter().filter(|c| c.frequency <= top).map(|c| (c.speed, c.frequency)).collect();
+    let points: Vec<(f64, f64)> = report.critical_speeds.iter().map(|c| (c.speed, c.frequency)).collect();
     if !points.is_empty() {
         series.push(Series { label: "critical speed".to_owned(), points, stroke: Stroke::Rings });
     }
@@ -47,33 +48,16 @@ pub(super) fn draw(report: &CampbellReport, orders: &[f64], stem: &Path) -> Resu
         x_label: format!("Spin speed Ω (rad/{})", report.time_unit),
         y_label: format!("Frequency ({})", report.frequency_unit),
         x_scale: Scale::Linear,
-        y_scale: Scale::FromZero,
+        y_scale: Scale::Window(0.0, top),
         series,
     }
     .save(stem)
 }
 
-/// The highest frequency drawn: all orders, or if none reaches a branch the lowest branch, but not more than all branches.
+/// The highest frequency drawn: above all orders and the lowest branch, but not far above all branches.
 fn top(report: &CampbellReport, highest_order: f64) -> f64 {
     let most = |frequency: &[f64]| frequency.iter().copied().fold(0.0, f64::max);
     let lowest = report.branches.iter().map(|branch| most(&branch.frequency)).fold(f64::INFINITY, f64::min);
     let highest = report.branches.iter().map(|branch| most(&branch.frequency)).fold(0.0, f64::max);
-    (ROOM * highest_order.max(lowest)).min(highest)
-}
-
-/// The part of a path that is not above `top`: what is between its first and its last point there.
-fn below(points: &[(f64, f64)], top: f64) -> Vec<(f64, f64)> {
-    let mut kept = Vec::new();
-    for pair in points.windows(2) {
-        let [(x0, y0), (x1, y1)] = [pair[0], pair[1]];
-        let cut = (x0 + (top - y0) / (y1 - y0) * (x1 - x0), top);
-        match (y0 <= top, y1 <= top) {
-            (true, true) => kept.extend([pair[0], pair[1]]),
-            (true, false) => kept.extend([pair[0], cut]),
-            (false, true) => kept.extend([cut, pair[1]]),
-            (false, false) => {}
-        }
-    }
-    kept.dedup();
-    kept
+    (ABOVE_ORDERS * highest_order.max(lowest)).min(ABOVE_BRANCHES * highest)
 }

@@ -17,7 +17,11 @@ impl fmt::Display for CampbellReport {
         if let Some(mesh) = &self.mesh {
             writeln!(f, "  mesh     {mesh}")?;
         }
-        let vector = |v: &[f64; 3]| v.map(quantity).join(", ");
+        // A coordinate that is zero but for rounding is shown as zero.
+        let vector = |v: &[f64; 3]| {
+            let dust = 1e-9 * v.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+            v.map(|x| quantity(if x.abs() < dust { 0.0 } else { x })).join(", ")
+        };
         writeln!(f, "  spin     about ({}) through ({})", vector(&self.axis), vector(&self.origin))?;
         writeln!(f, "  effects  {}", self.effects)?;
         let time = &self.time_unit;

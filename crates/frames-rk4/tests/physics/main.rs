@@ -1,5 +1,5 @@
-//! Held and driven bodies, loads of every kind, effects that are off and steady spin, on a body of made-up constants: what the
-//! equations conserve they conserve for any.
+//! Held and driven bodies, loads of every kind, effects that are off and steady spin, on a body of made-up constants:
+//! what the equations conserve they conserve for any.
 
 mod driven;
 mod effects;
