@@ -55,7 +55,8 @@ enum Command {
     /// The body is held in a steady spin about an axis through its origin: its centre of mass, or a fixed point of a
     /// held one (of a clamp the mean of its nodes). Coriolis, softening and stiffening are on unless the scene's
     /// [effects] say false; loads are left out. Frequencies are those that the body sees: order n is a load that comes
-    /// by n times a turn. Branches are followed by their shapes.
+    /// by n times a turn. Branches are followed by their shapes and numbered by their order at the lowest speed: where
+    /// two frequencies meet they cross, or turn away from each other if the spin couples them.
     Campbell {
         #[command(flatten)]
         scene: SceneArgs,

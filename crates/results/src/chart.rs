@@ -37,6 +37,8 @@ const LEGEND_LINE: f64 = 30.0;
 const TICK_LENGTH: f64 = 4.0;
 const SOLID_WIDTH: f64 = 1.5;
 const GUIDE_WIDTH: f64 = 1.0;
+/// Between the end of a guide and its label.
+const GUIDE_GAP: f64 = 4.0;
 /// Wider than a solid line, so that either is seen where they coincide.
 const DASHED_WIDTH: f64 = 2.5;
 const DASH: [f64; 2] = [8.0, 6.0];
@@ -177,7 +179,11 @@ impl LineChart {
             + LEGEND_ROW * legend.len() as f64
             + if legend.is_empty() && self.title.is_empty() { 0.0 } else { LEGEND_GAP }
             + if y.ticks.note.is_empty() { 0.0 } else { 1.3 * TICK_EM };
-        (x.start, x.end) = (MARGIN + 1.9 * LABEL_EM + widest + 8.0, WIDTH - 1.8 * MARGIN);
+        let mut right = 1.8 * MARGIN;
+        for guide in self.series.iter().filter(|series| series.stroke == Stroke::Guide) {
+            right = right.max(GUIDE_GAP + font::width(&guide.label, TICK_EM)? + 0.5 * MARGIN);
+        }
+        (x.start, x.end) = (MARGIN + 1.9 * LABEL_EM + widest + 8.0, WIDTH - right);
         (y.start, y.end) = (HEIGHT - MARGIN - 3.6 * LABEL_EM, top);
 
         let mut picture = Picture::new(WIDTH as u32, HEIGHT as u32, FINENESS);
@@ -357,11 +363,11 @@ fn beyond(path: &[Place], i: usize, bound: f64, sign: f64) -> Vec<Vec<Place>> {
 fn draw_guide_label(picture: &mut Picture, places: &[Place], label: &str, right: f64) {
     let &[.., [x0, y0], [x, y]] = places else { return };
     if x > right - 0.5 {
-        picture.text([x + 4.0, y + 0.36 * TICK_EM], label, TICK_EM, Anchor::Left, GUIDE_INK);
+        picture.text([x + GUIDE_GAP, y + 0.36 * TICK_EM], label, TICK_EM, Anchor::Left, GUIDE_INK);
     } else {
         let below = 1.3 * TICK_EM;
         let back = if y0 > y { (x - x0) / (y0 - y) * below } else { 0.0 };
-        picture.text([x - back - 3.0, y + below], label, TICK_EM, Anchor::Right, GUIDE_INK);
+        picture.text([x - back - GUIDE_GAP, y + below], label, TICK_EM, Anchor::Right, GUIDE_INK);
     }
 }
 

@@ -12,7 +12,7 @@ fn round_spring(omega: f64) -> ReducedBody {
     let mut body = body(RigidMotion::Clamp { origin: Vector3::zeros() }, &[omega, omega]);
     body.inertia_second[2] = Mat::identity(2, 2);
     // qᵀ G q̇ = −e₃·(q × q̇)
-    body.gyroscopic[2] = Mat::from_fn(2, 2, |i, j| j as f64 * -1.0 + i as f64);
+    body.gyroscopic[2] = Mat::from_fn(2, 2, |i, j| i as f64 - j as f64);
     body
 }
 
