@@ -1,6 +1,7 @@
 //! Arguments, and what is printed.
 
 use std::error::Error;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
@@ -191,7 +192,7 @@ fn execute(cli: Cli) -> Result<(), Box<dyn Error>> {
             };
             print(&report, json)?;
             if !json {
-                list(&pictures);
+                list(&pictures)?;
             }
             Ok(())
         }
@@ -237,15 +238,13 @@ fn execute(cli: Cli) -> Result<(), Box<dyn Error>> {
             let lists = Path::new("out").join("accuracy");
             let files = cost::accuracy_page(&scenes, &output, &lists, patience, |p| bar.cost(p))?;
             drop(bar);
-            list(&files);
-            Ok(())
+            list(&files)
         }
         Command::Animate { scene, output, frames, magnify } => {
             let scene = Scene::read(scene)?;
             animate(&scene, &output, AnimationSettings { frames, magnification: magnify }, |p| bar.run(p))?;
             drop(bar);
-            list(&[output]);
-            Ok(())
+            list(&[output])
         }
     }
 }
@@ -298,16 +297,18 @@ fn folder(scene: &Scene, output: Option<PathBuf>) -> PathBuf {
 }
 
 fn print<R: Serialize + std::fmt::Display>(report: &R, json: bool) -> Result<(), Box<dyn Error>> {
-    if json {
-        println!("{}", serde_json::to_string_pretty(report)?);
-    } else {
-        println!("{report}");
-    }
-    Ok(())
+    let text = if json { serde_json::to_string_pretty(report)? } else { report.to_string() };
+    write_line(&text)
 }
 
-fn list(files: &[PathBuf]) {
-    for file in files {
-        println!("  wrote    {}", file.display());
+/// A line on the terminal; a reader such as `head` that has had enough is no error.
+fn write_line(line: &str) -> Result<(), Box<dyn Error>> {
+    match writeln!(std::io::stdout(), "{line}") {
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Err(error.into()),
+        _ => Ok(()),
     }
+}
+
+fn list(files: &[PathBuf]) -> Result<(), Box<dyn Error>> {
+    files.iter().try_for_each(|file| write_line(&format!("  wrote    {}", file.display())))
 }
