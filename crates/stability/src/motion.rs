@@ -1,0 +1,233 @@
+//! Motion: long, fast, slow, far away, and through the unstable axis.
+
+use std::f64::consts::TAU;
+
+use frames_rk4::{Initial, Method};
+use modal::ReducedBody;
+use nalgebra::Vector3;
+use rigid_kin::{Attitude, Inertia, TorqueFreeMotion};
+
+use crate::Expected::{Refused, Within};
+use crate::bodies::{CLUSTER, cluster, rigid, spinning, truss};
+use crate::trial::{Trial, worse};
+use crate::{Case, Extent, Outcome};
+
+const MOMENTS: [f64; 3] = [1.0, 2.0, 3.0];
+const GREW: &str = "energy";
+
+/// The cases.
+pub fn cases() -> Vec<Case> {
+    vec![
+        Case {
+            name: "10 000 turns at 100 rad/s, 0.1 rad a step",
+            why: "rotation vectors are singular at 2π, 4π …; rounding adds up over 628 000 steps",
+            body: None,
+            measure: "attitude (rad), angular velocity, ‖A Aᵀ − I‖, eight times a turn",
+            run: |method, extent| on(rigid(MOMENTS), |body| turns(body, method, extent)),
+            expected: [Within(1e-9), Within(1e-9), Within(1e-9), Refused(GREW), Within(1e-9)],
+        },
+        Case {
+            name: "tumbling through the unstable axis, 100 flips, rigid",
+            why: "each flip starts from an error that grows exponentially",
+            body: None,
+            measure: "attitude (rad) and angular velocity against the closed form",
+            run: |method, extent| on(rigid(MOMENTS), |body| flips(body, method, extent)),
+            expected: [Within(1e-4), Within(1e-4), Within(1e-4), Refused(GREW), Within(1e-4)],
+        },
+        Case {
+            name: "tumbling through the unstable axis, flexible",
+            why: "the flips shake the modes, which must give the energy back",
+            body: None,
+            measure: "drift of energy and angular momentum",
+            run: |method, extent| {
+                on(cluster(6).map(|e| e.body), |body| {
+                    let end = extent.pick(method, 100, 1500);
+                    Trial::free(body, spinning(body, tilted(body), 0.01), 0.01, end).drift(method)
+                })
+            },
+            expected: [Within(1e-7), Within(1e-5), Within(1e-4), Refused(GREW), Within(1e-2)],
+        },
+        Case {
+            name: "1e-8 rad/s from the separatrix",
+            why: "the closed form itself magnifies an error a hundred million times",
+            body: None,
+            measure: "attitude (rad) and angular velocity over a whole period",
+            run: |method, _| on(rigid(MOMENTS), |body| near_separatrix(body, method)),
+            expected: [Within(1e-2), Within(1e-2), Within(1e-2), Refused(GREW), Within(1e-2)],
+        },
+        Case {
+            name: "1e-12 rad a step",
+            why: "sines and cosines of tiny angles cancel",
+            body: None,
+            measure: "attitude and angular velocity, relative to the angle turned",
+            run: |method, _| on(rigid(MOMENTS), |body| tiny(body, method)),
+            expected: [Within(1e-12); 5],
+        },
+        Case {
+            name: "no motion at all",
+            why: "a zero angle has no axis",
+            body: None,
+            measure: "anything that moves",
+            run: |method, _| on(cluster(6).map(|e| e.body), |body| nothing(body, method)),
+            expected: [Within(0.0); 5],
+        },
+        Case {
+            name: "spin about each axis at 1e-6 and 1e6 rad/s, 100 turns",
+            why: "squares of spins over 24 orders of magnitude; the middle axis is unstable",
+            body: None,
+            measure: "attitude (rad) and angular velocity against the closed form",
+            run: |method, _| on(rigid(MOMENTS), |body| each_axis(body, method)),
+            expected: [Within(1e-9), Within(1e-9), Within(1e-9), Refused(GREW), Within(1e-9)],
+        },
+        Case {
+            name: "ten million steps of a vibrating, tumbling body",
+            why: "what drifts by 1e-10 a step is off by 1e-3",
+            body: None,
+            measure: "drift of energy and angular momentum",
+            run: |method, extent| {
+                on(cluster(3).map(|e| e.body), |body| {
+                    let end = 1e-3 * extent.pick(method, 100_000, 10_000_000);
+                    Trial::free(body, spinning(body, [1.0, 2.0, 1.5], 0.05), 1e-3, end).drift(method)
+                })
+            },
+            expected: [Within(1e-8), Within(1e-4), Within(1e-4), Refused(GREW), Within(1e-2)],
+        },
+        Case {
+            name: "a body 1e6 units away from the origin of its mesh",
+            why: "its shape is in the last six digits of its coordinates",
+            body: None,
+            measure: "attitude (rad) and modal coordinates against the same body at the origin",
+            run: |method, _| far_away(method),
+            expected: [Within(1e-6); 5],
+        },
+        Case {
+            name: "a body that moves at 1e6 units a second",
+            why: "the kinetic energy of the whole is 1e12 times that of the rest",
+            body: None,
+            measure: "attitude (rad) and modal coordinates against the same body at rest",
+            run: |method, _| on(cluster(6).map(|e| e.body), |body| fast(body, method)),
+            expected: [Within(1e-9), Within(1e-9), Within(1e-9), Within(1e-9), Within(1e-9)],
+        },
+    ]
+}
+
+/// A case with a body, or its refusal.
+pub(crate) fn on(body: Result<ReducedBody, String>, run: impl FnOnce(&ReducedBody) -> Outcome) -> Outcome {
+    match body {
+        Ok(body) => run(&body),
+        Err(refusal) => Outcome::Refused(refusal),
+    }
+}
+
+fn spin(omega: [f64; 3]) -> Initial {
+    Initial { omega: omega.into(), ..Initial::at_rest(0) }
+}
+
+fn turns(body: &ReducedBody, method: Method, extent: Extent) -> Outcome {
+    let turns = extent.pick(method, 200, 10_000);
+    let end = TAU / 100.0 * turns;
+    let trial = Trial::free(body, spin([0.0, 0.0, 100.0]), 1e-3, end);
+    Trial { rows: 8 * turns as u32, ..trial }.off_closed_form(method)
+}
+
+/// The closed form of a start close to the middle axis, and its period.
+fn period(body: &ReducedBody, omega: [f64; 3]) -> Option<f64> {
+    TorqueFreeMotion::new(&Inertia::new(body.inertia).ok()?, Attitude::identity(), omega.into()).ok()?.period()
+}
+
+fn flips(body: &ReducedBody, method: Method, extent: Extent) -> Outcome {
+    let omega = [0.01, 1.0, 0.01];
+    // Two flips in a period.
+    let Some(period) = period(body, omega) else { return Outcome::Ran(f64::NAN) };
+    Trial::free(body, spin(omega), 2e-3, period * extent.pick(method, 5, 50)).off_closed_form(method)
+}
+
+fn near_separatrix(body: &ReducedBody, method: Method) -> Outcome {
+    let omega = [1e-8, 1.0, 1e-8];
+    let Some(period) = period(body, omega) else { return Outcome::Ran(f64::NAN) };
+    Trial::free(body, spin(omega), 1e-3, period).off_closed_form(method)
+}
+
+/// A spin of 1 close to the middle axis of inertia.
+fn tilted(body: &ReducedBody) -> [f64; 3] {
+    let eigen = body.inertia.symmetric_eigen();
+    let (low, high) = (eigen.eigenvalues.imin(), eigen.eigenvalues.imax());
+    let axis = |k: usize| Vector3::from(eigen.eigenvectors.column(k));
+    (axis(3 - low - high) + (axis(low) + axis(high)) * 0.01).into()
+}
+
+fn tiny(body: &ReducedBody, method: Method) -> Outcome {
+    let omega = Vector3::new(2e-10, -3e-10, 9e-10);
+    let trial = Trial::free(body, spin(omega.into()), 1e-3, 1.0);
+    trial.largest(method, |_, row| {
+        if row.time == 0.0 {
+            return 0.0;
+        }
+        let turned = Attitude::identity().advanced_by(&(omega * row.time));
+        let attitude = row.attitude.angle_to(&turned) / (omega.norm() * row.time);
+        // ω itself changes by |ω|² t, a part in 1e9 of it … times the differences of the moments.
+        worse(attitude - omega.norm() * row.time, (row.omega_body - omega).norm() / omega.norm() - omega.norm())
+            .max(0.0)
+    })
+}
+
+fn nothing(body: &ReducedBody, method: Method) -> Outcome {
+    let trial = Trial::free(body, Initial::at_rest(body.flexible()), 1e-3, 1.0);
+    trial.largest(method, |_, row| {
+        let vibration = row.modal_displacement.iter().chain(&row.modal_velocity).map(|x| x.abs()).sum::<f64>();
+        row.attitude.angle_to(&Attitude::identity()) + row.energy() + vibration + row.omega_body.norm()
+    })
+}
+
+fn each_axis(body: &ReducedBody, method: Method) -> Outcome {
+    let mut largest = 0.0;
+    for axis in 0..3 {
+        for speed in [1e-6, 1e6] {
+            let mut omega = [0.0; 3];
+            omega[axis] = speed;
+            match Trial::free(body, spin(omega), 0.05 / speed, 100.0 * TAU / speed).off_closed_form(method) {
+                Outcome::Ran(error) => largest = worse(largest, error),
+                refused => return refused,
+            }
+        }
+    }
+    Outcome::Ran(largest)
+}
+
+/// The largest difference from the run of another body or start.
+fn against(trial: &Trial, other: &Trial, method: Method) -> Outcome {
+    let mut expected = Vec::new();
+    let mut scale = 0.0_f64;
+    let outcome = other.largest(method, |_, row| {
+        scale = row.modal_displacement.iter().fold(scale, |most, q| most.max(q.abs()));
+        expected.push((row.attitude, row.modal_displacement.clone()));
+        0.0
+    });
+    if let Outcome::Refused(_) = outcome {
+        return outcome;
+    }
+    let mut rows = expected.iter();
+    trial.largest(method, |_, row| {
+        let Some((attitude, modal)) = rows.next() else { return f64::NAN };
+        let vibration = row.modal_displacement.iter().zip(modal).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        worse(row.attitude.angle_to(attitude), vibration / scale)
+    })
+}
+
+fn far_away(method: Method) -> Outcome {
+    let moved = CLUSTER.map(|(at, mass)| (at.map(|x| x + 1e6), mass));
+    match (cluster(6), truss(&moved, 60.0, 6)) {
+        (Ok(here), Ok(there)) => {
+            let trial = |body| Trial::free(body, spinning(body, [1.0, 2.0, 1.5], 0.05), 5e-3, 10.0);
+            against(&trial(&there.body), &trial(&here.body), method)
+        }
+        (Err(refusal), _) | (_, Err(refusal)) => Outcome::Refused(refusal),
+    }
+}
+
+fn fast(body: &ReducedBody, method: Method) -> Outcome {
+    let still = spinning(body, [1.0, 2.0, 1.5], 0.05);
+    let moving = Initial { velocity: Vector3::new(6e5, -8e5, 1e3), ..still.clone() };
+    let trial = |initial| Trial::free(body, initial, 5e-3, 10.0);
+    against(&trial(moving), &trial(still), method)
+}

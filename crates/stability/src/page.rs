@@ -1,0 +1,87 @@
+//! `docs/stability.md`.
+
+use std::fmt::Write;
+use std::time::Instant;
+
+use crate::{Case, Expected, Extent, Outcome, SCHEMES, sections};
+
+/// The page, and the outcomes that are not what is asked for.
+pub fn page(extent: Extent, mut progress: impl FnMut(&str)) -> (String, Vec<String>) {
+    let mut page = String::from(
+        "# Hard cases\n\n\
+         Made by `just stability`, which runs every case with every scheme. A scheme either comes to its end with the \
+         error or drift given, or it is refused or stops at its first bad step, in its own words. In brackets: the \
+         bound that a test holds it to (the tests of `crates/stability` run the same cases, the longest of them \
+         shortened). Nothing ends in NaN, and nothing that is wrong ends in silence.\n",
+    );
+    let mut broken = Vec::new();
+    for (title, cases) in sections() {
+        let mut refusals: Vec<String> = Vec::new();
+        // Writing to a String cannot fail.
+        let _ = write!(page, "\n## {title}\n\n| case | measured |");
+        for method in SCHEMES {
+            let _ = write!(page, " {} |", name(method));
+        }
+        let _ = writeln!(page, "\n|---|---|{}", "---|".repeat(SCHEMES.len()));
+        for case in cases {
+            row(&mut page, &case, extent, &mut refusals, &mut broken, &mut progress);
+        }
+        for (number, refusal) in refusals.iter().enumerate() {
+            let _ = writeln!(page, "{}{title} {}: {refusal}", if number == 0 { "\n" } else { "  \n" }, number + 1);
+        }
+    }
+    (page, broken)
+}
+
+fn row(
+    page: &mut String,
+    case: &Case,
+    extent: Extent,
+    refusals: &mut Vec<String>,
+    broken: &mut Vec<String>,
+    progress: &mut impl FnMut(&str),
+) {
+    let Case { name: title, why, measure, .. } = case;
+    let _ = write!(page, "| **{title}**: {why} | {measure}");
+    let mut judge = |who: &str, outcome: &Outcome, expected: &Expected| {
+        if !expected.holds(outcome) {
+            broken.push(format!("{title}, {who}: {outcome:?} is not {expected}"));
+        }
+    };
+    if let Some(check) = &case.body {
+        let outcome = check.run();
+        judge("body", &outcome, &check.expected);
+        let _ = write!(page, "; {}: {}", check.what, cell(&outcome, &check.expected, refusals));
+    }
+    let _ = write!(page, " |");
+    for (method, expected) in SCHEMES.into_iter().zip(&case.expected) {
+        let begin = Instant::now();
+        let outcome = (case.run)(method, extent);
+        progress(&format!("{title}, {}: {outcome:?} in {:.1} s", name(method), begin.elapsed().as_secs_f64()));
+        judge(&name(method), &outcome, expected);
+        let _ = write!(page, " {} |", cell(&outcome, expected, refusals));
+    }
+    let _ = writeln!(page);
+}
+
+/// An outcome with its bound; words go below the table, each once.
+fn cell(outcome: &Outcome, expected: &Expected, refusals: &mut Vec<String>) -> String {
+    match outcome {
+        Outcome::Ran(0.0) => format!("0 ({expected})"),
+        Outcome::Ran(error) => format!("{error:.1e} ({expected})"),
+        Outcome::Refused(message) => {
+            let place = refusals.iter().position(|known| known == message).unwrap_or_else(|| {
+                refusals.push(message.clone());
+                refusals.len() - 1
+            });
+            format!("stops: {}", place + 1)
+        }
+    }
+}
+
+fn name(method: frames_rk4::Method) -> String {
+    match method.formulation() {
+        "paper" if method.scheme() == "rkmk4" => "paper rkmk4".to_owned(),
+        _ => method.scheme().to_owned(),
+    }
+}
