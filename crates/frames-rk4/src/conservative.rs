@@ -22,6 +22,7 @@ use modal::{ReducedBody, RigidMotion};
 use nalgebra::{Matrix3, SVector, Vector3};
 use rigid_kin::{Attitude, f_inverse, transformation_matrix};
 
+use crate::account::Reckoning;
 use crate::error::{RateError, SetupError};
 use crate::initial::Initial;
 use crate::load::{Acting, Load};
@@ -576,6 +577,18 @@ impl ConservativeBody {
         }
     }
 
+    /// The energies of a motion whose rates are in `e`; none of a driven body, to which a jump of its drive gives energy
+    /// at an instant.
+    pub(crate) fn reckon(&self, time: f64, slow: &Slow, q: &[f64], p: &[f64], e: &Evaluation) -> Option<Reckoning> {
+        if self.drive.is_some() {
+            return None;
+        }
+        let internal = 0.5 * (get(slow, part::PI).dot(&e.spin) + dot(p, &e.velocity)) + self.strain_energy(q, e);
+        let translation = 0.5 * get(slow, part::MOMENTUM).norm_squared() / self.mass;
+        let (work, dissipation) = (slow[part::WORK], slow[part::DISSIPATION]);
+        Some(Reckoning { time, internal, translation, work, dissipation })
+    }
+
     /// Energy of rotation, vibration and strain of a state whose rates are in `e`: all but that of the origin's motion.
     pub(crate) fn internal_energy(&self, state: &ConservativeState, e: &Evaluation) -> f64 {
         let (kinetic, strain) = self.energies(state, e);
@@ -646,8 +659,17 @@ impl ConservativeBody {
             }
         };
         let kinetic = 0.5 * (moving + dot(&state.modal_momentum, &e.velocity));
-        let strain: f64 = q.iter().enumerate().map(|(k, q)| self.modal_energy(k, *q, 0.0)).sum();
-        (kinetic, strain + 0.5 * dot(q, &e.stressed))
+        (kinetic, self.strain_energy(q, e))
+    }
+
+    /// ½ qᵀ(Λ + K)q
+    fn strain_energy(&self, q: &[f64], e: &Evaluation) -> f64 {
+        q.iter().enumerate().map(|(k, q)| self.modal_energy(k, *q, 0.0)).sum::<f64>() + 0.5 * dot(q, &e.stressed)
+    }
+
+    /// Largest of ω_k and 2 ζ_k ω_k.
+    pub(crate) fn fastest_rate(&self) -> f64 {
+        self.circular_frequencies.iter().chain(&self.damping).copied().fold(0.0, f64::max)
     }
 }
 

@@ -2,6 +2,7 @@
 
 use nalgebra::Vector2;
 
+use crate::account::Reckoning;
 use crate::conservative::{ConservativeBody, ConservativeState, Evaluation, Slow, get, part};
 use crate::error::{SetupError, StepError};
 use crate::exponential::{BlockStore, StepBlocks, apply};
@@ -46,6 +47,8 @@ pub struct ConservativeMotion {
     evaluations: u64,
     /// Largest energy so far, that of the centre's motion left out; not less than what the loads are to give.
     energy_scale: f64,
+    /// Energies at the start of the last step; none of a driven body, whose drive may jump.
+    reckoning: Option<Reckoning>,
 }
 
 impl ConservativeMotion {
@@ -73,6 +76,7 @@ impl ConservativeMotion {
             blocks: BlockStore::default(),
             evaluations: 0,
             energy_scale: 0.0,
+            reckoning: None,
             body,
         })
     }
@@ -90,6 +94,16 @@ impl ConservativeMotion {
     /// The state that has been reached.
     pub fn state(&self) -> &ConservativeState {
         &self.state
+    }
+
+    /// Energies at the start of the last step, as its first stage found them.
+    pub(crate) fn reckoning(&self) -> Option<&Reckoning> {
+        self.reckoning.as_ref()
+    }
+
+    /// Largest of ω_k and 2 ζ_k ω_k.
+    pub(crate) fn fastest_rate(&self) -> f64 {
+        self.body.fastest_rate()
     }
 
     /// Evaluations of the rates so far.
@@ -127,6 +141,8 @@ impl ConservativeMotion {
         match estimate {
             Ok(estimate) if estimate <= tolerance => {
                 self.energy_scale = self.body.internal_energy(&self.next, &self.ahead).max(self.energy_scale);
+                let ConservativeState { time, slow, modal_displacement, modal_momentum, .. } = &self.next;
+                self.reckoning = self.body.reckon(*time, slow, modal_displacement, modal_momentum, &self.ahead);
                 if self.scheme == ConservativeScheme::Rkmk4 {
                     let (q, p) = (&self.next.modal_displacement, &self.next.modal_momentum);
                     self.body.add_linear(q, p, &mut self.ahead);
@@ -177,9 +193,11 @@ impl ConservativeMotion {
     /// # Errors
     /// [`StepError`] where the inertia of the deformed body is singular.
     pub fn observe(&mut self, points: &[PointShapes], out: &mut Observation) -> Result<(), StepError> {
-        self.body
-            .observe(&self.state, points, &mut self.ahead, out)
-            .map_err(|error| error.in_step(self.state.time, 0.0))
+        let Self { body, state, ahead, .. } = self;
+        body.observe(state, points, ahead, out).map_err(|error| error.in_step(state.time, 0.0))?;
+        let (q, p) = (&state.modal_displacement, &state.modal_momentum);
+        self.reckoning = body.reckon(state.time, &state.slow, q, p, ahead);
+        Ok(())
     }
 
     /// Computes `next` from `state`.
@@ -194,12 +212,14 @@ impl ConservativeMotion {
         next.attitude = state.attitude.advanced_by(&theta);
         next.slow.fixed_rows_mut::<3>(part::THETA).fill(0.0);
         next.time = end;
-        let modes = next.modal_displacement.iter().chain(&next.modal_momentum);
-        if modes.chain(next.slow.iter()).all(|x| x.is_finite()) {
-            Ok(())
-        } else {
-            Err(StepError::NotFinite { time: state.time, what: "the state" })
+        let infinite = |what| Err(StepError::NotFinite { time: state.time, what });
+        if !next.slow.iter().all(|x| x.is_finite()) {
+            return infinite("a momentum, the position or the work");
         }
+        if !next.modal_displacement.iter().chain(&next.modal_momentum).all(|x| x.is_finite()) {
+            return infinite("a modal coordinate");
+        }
+        Ok(())
     }
 
     /// Evaluates stage `s` at the stage values `slow`, q, p and time `t`.
@@ -220,6 +240,8 @@ impl ConservativeMotion {
         self.p.copy_from_slice(&self.start_p);
         let slow = self.state.slow;
         self.evaluate(0, self.state.time, &slow, h)?;
+        let Self { body, state, stages, q, p, .. } = self;
+        self.reckoning = body.reckon(state.time, &slow, q, p, &stages[0]);
         if self.scheme == ConservativeScheme::Rkmk4 {
             self.body.add_linear(&self.q, &self.p, &mut self.stages[0]);
         }

@@ -139,6 +139,20 @@ pub enum StepError {
         /// Angle of the turn.
         angle: f64,
     },
+    /// An energy that nothing accounts for.
+    #[error(
+        "at time {time}: the energy is {energy:.6e}, where the start, the loads and the damping account for {accounted:.6e}; a step of {step:.3e} is too long for this motion or its scheme: take a smaller step, or the scheme exponential of the conservative formulation"
+    )]
+    Energy {
+        /// Time of the state.
+        time: f64,
+        /// Its energy, without that of the motion of the origin.
+        energy: f64,
+        /// What it should be.
+        accounted: f64,
+        /// Longest step so far.
+        step: f64,
+    },
     /// No step is short enough for the tolerance.
     #[error(
         "at time {time}: even a step of {step:.3e} does not keep the error below the tolerance {tolerance:e}; allow a larger tolerance"

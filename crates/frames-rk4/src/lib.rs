@@ -20,6 +20,7 @@
 //! | k1 … k4, (38)–(40) | [`PaperScheme`] |
 #![forbid(unsafe_code)]
 
+mod account;
 mod conservative;
 mod conservative_motion;
 mod conservative_observation;

@@ -96,6 +96,12 @@ impl ModalModel {
         Err(SetupError::Length { what: "the modal model", expected, found })
     }
 
+    /// Largest of ω_k and 2 ζ_k ω_k.
+    pub(crate) fn fastest_rate(&self) -> f64 {
+        let omega = self.stiffness.iter().map(|lambda| lambda.sqrt());
+        omega.chain(self.damping.iter().copied()).fold(0.0, f64::max)
+    }
+
     /// Largest stable step of RK4, and the flexible mode (from 0) that sets it.
     pub(crate) fn stable_step(&self) -> (usize, f64) {
         let limits = self.stiffness.iter().zip(&self.damping).skip(6).map(|(lambda, d)| stable_step(*lambda, *d));

@@ -5,6 +5,7 @@ use modal::{BodyPoint, ReducedBody, RigidMotion};
 use nalgebra::{Matrix3, Vector3};
 use rigid_kin::{Inertia, InertiaError, euler_angular_acceleration};
 
+use crate::account::Reckoning;
 use crate::observation::Observation;
 use crate::state::{State, rotation, translation};
 use crate::work::Work;
@@ -245,6 +246,19 @@ impl BodyMotion {
     pub fn euler_alpha_body(&self, state: &State) -> Vector3<f64> {
         let alpha_modal = self.rotation_basis * rotation(&state.modal_acceleration);
         euler_angular_acceleration(&alpha_modal, &self.inertia, &state.omega_body)
+    }
+
+    /// Energies of a state.
+    pub(crate) fn reckon(&self, state: &State, work: &Work) -> Reckoning {
+        let translation = 0.5 * translation(&state.modal_velocity).norm_squared();
+        let others = 0.5 * state.modal_velocity[3..].iter().map(|y| y * y).sum::<f64>();
+        Reckoning {
+            time: state.time,
+            internal: others + self.strain_energy(state),
+            translation,
+            work: work.work,
+            dissipation: work.dissipation,
+        }
     }
 
     /// Kinetic energy ½ q̇ᵀ q̇ (the modes are mass-normalised).

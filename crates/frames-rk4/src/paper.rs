@@ -9,6 +9,7 @@ use modal::ReducedBody;
 use nalgebra::{Matrix3, Vector3};
 use rigid_kin::{BeyondFullTurn, ReferencePoints, f_inverse, relative_velocity_rate, transformation_matrix};
 
+use crate::account::Reckoning;
 use crate::error::{RateError, SetupError, StepError};
 use crate::initial::Initial;
 use crate::modal_rotation::ModalRotation;
@@ -136,6 +137,16 @@ impl PaperScheme {
     /// The state that has been reached.
     pub fn state(&self) -> &State {
         &self.state
+    }
+
+    /// Energies of the state.
+    pub(crate) fn reckoning(&self) -> Reckoning {
+        self.motion.reckon(&self.state, &self.work)
+    }
+
+    /// Largest of ω_k and 2 ζ_k ω_k.
+    pub(crate) fn fastest_rate(&self) -> f64 {
+        self.model.fastest_rate()
     }
 
     /// Fills `out` with the motion at the state, and that of `points`.

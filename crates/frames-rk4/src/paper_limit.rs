@@ -14,6 +14,7 @@ use modal::ReducedBody;
 use nalgebra::Vector3;
 use rigid_kin::{f_inverse, transformation_matrix};
 
+use crate::account::Reckoning;
 use crate::error::{RateError, SetupError, StepError};
 use crate::initial::Initial;
 use crate::model::ModalModel;
@@ -147,6 +148,16 @@ impl PaperLimit {
         std::mem::swap(&mut state.modal_velocity, y);
         self.complete_state(inside);
         Ok(())
+    }
+
+    /// Energies of the state.
+    pub(crate) fn reckoning(&self) -> Reckoning {
+        self.motion.reckon(&self.state, &self.work)
+    }
+
+    /// Largest of ω_k and 2 ζ_k ω_k.
+    pub(crate) fn fastest_rate(&self) -> f64 {
+        self.model.fastest_rate()
     }
 
     /// Fills `out` with the motion at the state, and that of `points`.

@@ -3,6 +3,7 @@
 use modal::ReducedBody;
 use nalgebra::Vector3;
 
+use crate::account::EnergyAccount;
 use crate::conservative::ConservativeBody;
 use crate::conservative_motion::{ConservativeMotion, ConservativeScheme};
 use crate::error::{SetupError, StepError};
@@ -157,6 +158,9 @@ pub struct Simulation {
     steps_since_row: u64,
     points: Vec<PointShapes>,
     stats: Stats,
+    account: EnergyAccount,
+    /// Largest of ω_k and 2 ζ_k ω_k.
+    fastest_rate: f64,
     failed: bool,
 }
 
@@ -237,6 +241,11 @@ impl Simulation {
                 Engine::Conservative(Box::new(motion))
             }
         };
+        let fastest_rate = match &engine {
+            Engine::Paper(scheme) => scheme.fastest_rate(),
+            Engine::PaperLimit(limit) => limit.fastest_rate(),
+            Engine::Conservative(motion) => motion.fastest_rate(),
+        };
         let histories = loads.iter().map(|load| &load.history);
         let corners =
             histories.chain(setup.physics.drive.iter().map(|drive| &drive.history)).flat_map(History::corners);
@@ -249,6 +258,8 @@ impl Simulation {
             steps_since_row: 0,
             points: setup.points.to_vec(),
             stats: Stats { accepted: 0, rejected: 0, evaluations: 0, shortest: f64::INFINITY, longest: 0.0 },
+            account: EnergyAccount::default(),
+            fastest_rate,
             failed: false,
         })
     }
@@ -280,14 +291,29 @@ impl Simulation {
     /// Fills `out` with the motion at the time that has been reached.
     ///
     /// # Errors
-    /// [`StepError`] where the inertia of the deformed body is singular.
+    /// [`StepError`] where the inertia of the deformed body is singular, and where the energy is not what the start, the
+    /// loads and the damping account for.
     pub fn observe(&mut self, out: &mut Observation) -> Result<(), StepError> {
         match &mut self.engine {
             Engine::Paper(scheme) => scheme.observe(&self.points, out),
             Engine::PaperLimit(limit) => limit.observe(&self.points, out),
             Engine::Conservative(motion) => motion.observe(&self.points, out)?,
         }
-        Ok(())
+        self.check_energy()
+    }
+
+    /// Whether the energy, where it was last looked at, is what it should be. Of the conservative form that is the start
+    /// of the last step or the last observation, since it takes an evaluation of the rates.
+    fn check_energy(&mut self) -> Result<(), StepError> {
+        let Self { engine, account, fastest_rate, stats, .. } = self;
+        match engine {
+            Engine::Paper(scheme) => account.check(&scheme.reckoning(), *fastest_rate, stats.longest),
+            Engine::PaperLimit(limit) => account.check(&limit.reckoning(), *fastest_rate, stats.longest),
+            Engine::Conservative(motion) => match motion.reckoning() {
+                Some(now) => account.check(now, *fastest_rate, stats.longest),
+                None => Ok(()),
+            },
+        }
     }
 
     /// What the run has cost so far.
@@ -304,8 +330,11 @@ impl Simulation {
     /// occurred.
     ///
     /// # Errors
-    /// [`StepError`]; the motion stays where it was before the step that failed.
+    /// [`StepError`]; the motion stays where it was before the step that failed, or where its energy was found wrong.
     pub fn advance(&mut self, most_steps: u64) -> Result<Reached, StepError> {
+        if self.account.is_empty() {
+            self.check_energy()?;
+        }
         for _ in 0..most_steps {
             match self.next_step() {
                 None => return Ok(Reached::End),
@@ -318,6 +347,7 @@ impl Simulation {
                     self.stats.accepted += count;
                     self.stats.shortest = self.stats.shortest.min(length);
                     self.stats.longest = self.stats.longest.max(length);
+                    self.check_energy()?;
                     self.steps_since_row += count;
                     let at_row = match self.rows {
                         Rows::EverySteps(steps) => self.steps_since_row >= steps || end >= self.end,

@@ -95,11 +95,9 @@ impl<'a> Trial<'a> {
     /// The largest distance from the torque-free motion in closed form: of the attitude in rad, and of the angular
     /// velocity relative to its size.
     pub fn off_closed_form(&self, method: Method) -> Outcome {
-        let exact = Inertia::new(self.body.inertia)
-            .map_err(|e| e.to_string())
-            .and_then(|i| {
-                TorqueFreeMotion::new(&i, Attitude::identity(), self.initial.omega).map_err(|e| e.to_string())
-            });
+        let exact = Inertia::new(self.body.inertia).map_err(|e| e.to_string()).and_then(|i| {
+            TorqueFreeMotion::new(&i, Attitude::identity(), self.initial.omega).map_err(|e| e.to_string())
+        });
         let exact = match exact {
             Ok(exact) => exact,
             Err(refusal) => return Outcome::Refused(refusal),
