@@ -29,6 +29,8 @@ pub(crate) struct EnergyAccount {
     /// Largest sum of the work and the dissipation of one step: where a load sets in, they are no better known than that.
     largest_exchange: f64,
     last: Option<Reckoning>,
+    /// What the loads are good for: the scale of modes that follow them within a step, where no stage sees it.
+    of_loads: f64,
 }
 
 /// A step of this many radians of every mode, and with this much damping, lets the stages see the work and the
@@ -42,6 +44,11 @@ const OFF_UNRESOLVED: f64 = 4.0;
 const ROUNDING: f64 = 1e-9;
 
 impl EnergyAccount {
+    /// An empty account of loads that would, one by one, give the body this energy.
+    pub(crate) fn new(of_loads: f64) -> Self {
+        Self { of_loads, ..Self::default() }
+    }
+
     /// Whether nothing has been checked yet.
     pub(crate) fn is_empty(&self) -> bool {
         self.start.is_none()
@@ -70,7 +77,7 @@ impl EnergyAccount {
         let is_off = if rate * step <= RESOLVED {
             excess.abs() > OFF * self.scale + unknown
         } else {
-            excess > OFF_UNRESOLVED * self.scale + unknown
+            excess > OFF_UNRESOLVED * (self.scale + self.of_loads) + unknown
         };
         if is_off { Err(StepError::Energy { time, energy: internal, accounted, step }) } else { Ok(()) }
     }

@@ -151,6 +151,8 @@ pub enum Reached {
 #[derive(Debug, Clone)]
 pub struct Simulation {
     engine: Engine,
+    /// Of the loads and the drive.
+    histories: Vec<History>,
     plan: Plan,
     walk: Walk,
     rows: Rows,
@@ -241,24 +243,26 @@ impl Simulation {
                 Engine::Conservative(Box::new(motion))
             }
         };
-        let fastest_rate = match &engine {
-            Engine::Paper(scheme) => scheme.fastest_rate(),
-            Engine::PaperLimit(limit) => limit.fastest_rate(),
-            Engine::Conservative(motion) => motion.fastest_rate(),
+        let (fastest_rate, energy_of_loads) = match &engine {
+            Engine::Paper(scheme) => (scheme.fastest_rate(), 0.0),
+            Engine::PaperLimit(limit) => (limit.fastest_rate(), 0.0),
+            Engine::Conservative(motion) => (motion.fastest_rate(), motion.energy_of_loads(setup.end)),
         };
-        let histories = loads.iter().map(|load| &load.history);
-        let corners =
-            histories.chain(setup.physics.drive.iter().map(|drive| &drive.history)).flat_map(History::corners);
+        let of_loads = loads.iter().map(|load| &load.history);
+        let histories: Vec<History> =
+            of_loads.chain(setup.physics.drive.iter().map(|drive| &drive.history)).cloned().collect();
+        let corners = histories.iter().flat_map(History::corners);
         Ok(Self {
             engine,
             plan: Plan::new(setup.end, corners, setup.rows),
+            histories,
             walk,
             rows: setup.rows,
             end: setup.end,
             steps_since_row: 0,
             points: setup.points.to_vec(),
             stats: Stats { accepted: 0, rejected: 0, evaluations: 0, shortest: f64::INFINITY, longest: 0.0 },
-            account: EnergyAccount::default(),
+            account: EnergyAccount::new(energy_of_loads),
             fastest_rate,
             failed: false,
         })
@@ -379,7 +383,11 @@ impl Simulation {
                 motion.pass_corner();
             }
             match &mut self.walk {
-                Walk::Equal { step, steps } => *steps = Some((EqualSteps::new(segment, *step), segment.row)),
+                Walk::Equal { step, steps } => {
+                    let inside = segment.start + 0.5 * segment.length;
+                    let seen = self.histories.iter().map(|history| history.longest_step(inside));
+                    *steps = Some((EqualSteps::new(segment, seen.fold(*step, f64::min)), segment.row));
+                }
                 Walk::Halved { longest_try, steps, .. } => {
                     *steps = Some((HalvedSteps::new(segment, *longest_try), segment.row));
                 }
@@ -469,6 +477,9 @@ fn check_step(setup: &Setup, step: f64) -> Result<(), SetupError> {
     if !(step > 0.0 && step.is_finite()) {
         return Err(SetupError::Value { what: "the step", found: step, expected: "a positive number" });
     }
+    if setup.method == Method::Conservative(ConservativeScheme::Strang) && !setup.loads.is_empty() {
+        check_splitting(&setup.body.circular_frequencies, step)?;
+    }
     let driven = setup.physics.drive.as_ref().map_or(0.0, |drive| match drive.motion {
         DrivenMotion::Turn { .. } => (drive.amplitude * drive.history.largest(setup.end)).abs(),
         DrivenMotion::Slide { .. } => 0.0,
@@ -476,6 +487,18 @@ fn check_step(setup: &Setup, step: f64) -> Result<(), SetupError> {
     let spin = setup.initial.omega.norm().max(driven);
     let limit = setup.method.longest_turn() / spin;
     if step <= limit { Ok(()) } else { Err(SetupError::StepBeyondSpin { step, limit, spin }) }
+}
+
+/// Refuses a step in which a mode turns by more than a quarter: with x = ωh, splitting answers a static load with
+/// (x/2) cot(x/2) of the deflection, 0.79 at x = π/2, nothing at π, and without bound at 2π.
+fn check_splitting(circular_frequencies: &[f64], step: f64) -> Result<(), SetupError> {
+    let fastest = circular_frequencies.iter().copied().enumerate().fold((0, 0.0), |a, b| if b.1 > a.1 { b } else { a });
+    let limit = std::f64::consts::FRAC_PI_2 / fastest.1;
+    if step <= limit {
+        return Ok(());
+    }
+    let frequency = fastest.1 / std::f64::consts::TAU;
+    Err(SetupError::StepBeyondSplitting { step, limit, mode: fastest.0 + 1, frequency })
 }
 
 /// Refuses what the formulation of the paper has not got.

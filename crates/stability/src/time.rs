@@ -1,8 +1,215 @@
-//! To come.
+//! Time: steps too long, loads that jump, pulse and resonate, and loads on modes much faster than the step.
+//!
+//! A load on a single mode, without a resultant, leaves a body at rest in its place: the mode is then an oscillator
+//! `q̈ + 2ζω q̇ + ω² q = f(t)` with a closed form, for every scheme.
 
-use crate::Case;
+use std::f64::consts::TAU;
+
+use frames_rk4::{Action, BodyField, History, Initial, Load, LoadFrame, Method};
+use modal::ReducedBody;
+use nalgebra::Vector3;
+
+use crate::Expected::{Refused, Within};
+use crate::bodies::{Elastic, cluster, spinning};
+use crate::motion::on;
+use crate::trial::{Trial, worse};
+use crate::{Case, Outcome};
+
+/// Of a step beyond the limit of a mode.
+const MODES: &str = "beyond the stability limit";
 
 /// The cases.
 pub fn cases() -> Vec<Case> {
-    Vec::new()
+    vec![
+        Case {
+            name: "steps of ten times the limit 2.83/ω of the highest mode",
+            why: "Runge–Kutta makes 1e4 of every 1 in each step",
+            body: None,
+            measure: "free vibration against the closed form, relative",
+            run: |method, _| free_vibration(method),
+            expected: [Within(1e-9), Refused(MODES), Within(1e-9), Refused(MODES), Refused(MODES)],
+        },
+        Case {
+            name: "a spin of more than the scheme follows in a step",
+            why: "beyond 2π a rotation vector is another one",
+            body: None,
+            measure: "drift of energy and angular momentum",
+            run: |method, _| {
+                on(cluster(3).map(|e| e.body), |body| {
+                    Trial::free(body, spinning(body, [300.0, 400.0, 1e3], 0.01), 1e-2, 1.0).drift(method)
+                })
+            },
+            expected: [
+                Refused("too long for a spin"),
+                Refused("within a step"),
+                Refused("too long for a spin"),
+                Refused("within a step"),
+                Refused("within a step"),
+            ],
+        },
+        Case {
+            name: "a load that jumps in the middle of a step",
+            why: "a step across a jump is of first order",
+            body: None,
+            measure: "modal coordinate against the closed form, relative to its peak",
+            run: |method, _| {
+                let jump = 0.123_456;
+                oscillator(|_| (History::Step { at: jump }, Exact(step_response, jump)), 0.1, 20.0 * TAU, method)
+            },
+            expected: [Within(1e-9), Within(1e-4), Within(1e-3), Within(1e-4), Within(1e-4)],
+        },
+        Case {
+            name: "a pulse of 2e-6 s in steps of 2e-3 s",
+            why: "between the stages nothing can be seen of it",
+            body: None,
+            measure: "modal coordinate against the closed form, relative to its peak",
+            run: |method, _| {
+                let pulse = History::HalfSine { start: 0.05, duration: PULSE };
+                oscillator(|_| (pulse.clone(), Exact(pulse_response, 0.05)), 0.05, 20.0 * TAU, method)
+            },
+            expected: [Within(1e-4), Within(1e-4), Within(1e-3), Within(5e-2), Within(1e-4)],
+        },
+        Case {
+            name: "1000 cycles at a natural frequency without damping",
+            why: "the amplitude grows with every cycle, and so does every error of phase",
+            body: None,
+            measure: "modal coordinate against the closed form, relative to its peak",
+            run: |method, extent| {
+                let cycles = extent.pick(method, 100, 1000);
+                let load = |omega: f64| {
+                    let frequency = omega / TAU;
+                    (History::Sine { frequency, phase: 0.0, start: 0.0, duration: None }, Exact(resonance, 0.0))
+                };
+                oscillator(load, TAU / 100.0, cycles * TAU, method)
+            },
+            expected: [Within(1e-4), Within(1e-2), Within(1e-2), Within(1e-2), Within(1e-2)],
+        },
+        Case {
+            name: "a static load switched on, in steps of 0.2/ω",
+            why: "the answer must be K⁻¹f once the vibration has died",
+            body: None,
+            measure: "modal coordinates at the end, relative to K⁻¹f",
+            run: |method, _| settled(0.2, method),
+            expected: [Within(1e-9), Within(1e-9), Within(1e-2), Within(1e-9), Within(1e-9)],
+        },
+        Case {
+            name: "a static load switched on, in steps of 1000/ω",
+            why: "the vibration is over within a thousandth of a step",
+            body: None,
+            measure: "modal coordinates at the end, relative to K⁻¹f",
+            run: |method, _| settled(1000.0, method),
+            expected: [Within(1e-9), Refused(MODES), Refused("loses what a load does"), Refused(MODES), Refused(MODES)],
+        },
+        Case {
+            name: "a follower force on a point of a tumbling body, stiff in its modes",
+            why: "it feeds energy into the tumbling while the modes follow in a hundredth of its time",
+            body: None,
+            measure: "gap in the balances of energy and angular momentum",
+            run: |method, _| follower(method),
+            expected: [Within(1e-8), Within(1e-8), Within(1e-3), Refused("energy"), Refused("energy")],
+        },
+    ]
+}
+
+/// Length of the short pulse.
+const PULSE: f64 = 2e-6;
+
+/// q(t) of `q̈ + ω² q = f` for the load, from its beginning.
+#[derive(Clone, Copy)]
+struct Exact(fn(f64, f64) -> f64, f64);
+
+fn step_response(omega: f64, t: f64) -> f64 {
+    (1.0 - (omega * t).cos()) / (omega * omega)
+}
+
+/// After a half-sine of a duration that is nothing against the period: an impulse 2/π of its length, at its middle.
+fn pulse_response(omega: f64, t: f64) -> f64 {
+    2.0 / std::f64::consts::PI * PULSE / omega * (omega * (t - 0.5 * PULSE)).sin()
+}
+
+fn resonance(omega: f64, t: f64) -> f64 {
+    let angle = omega * t;
+    0.5 * (angle.sin() - angle * angle.cos()) / (omega * omega)
+}
+
+/// A unit force on one mode, fixed in the body, without force or moment on the whole.
+fn on_mode(body: &ReducedBody, mode: usize, history: History) -> Load {
+    let nf = body.flexible();
+    let mut modal = vec![0.0; 6 + nf];
+    modal[6 + mode] = 1.0;
+    let field = BodyField {
+        force_body: Vector3::zeros(),
+        moment_body: Vector3::zeros(),
+        modal,
+        lever: vec![Vector3::zeros(); nf],
+    };
+    Load { action: Action::Field(field), history }
+}
+
+/// The highest mode of the cluster, set free.
+fn free_vibration(method: Method) -> Outcome {
+    const AMPLITUDE: f64 = 1e-3;
+    on(cluster(6).map(|e| e.body), |body| {
+        let last = body.flexible() - 1;
+        let omega = body.circular_frequencies[last];
+        let step = 28.3 / omega;
+        let mut initial = Initial::at_rest(body.flexible());
+        initial.modal_displacement[last] = AMPLITUDE;
+        Trial::free(body, initial, step, 1000.0 * step)
+            .largest(method, |_, row| (row.modal_displacement[last] / AMPLITUDE - (omega * row.time).cos()).abs())
+    })
+}
+
+/// The softest mode of the cluster, at ω, under a load that is given by ω, in steps and to an end in parts of 1/ω.
+fn oscillator(load: impl Fn(f64) -> (History, Exact), step: f64, end: f64, method: Method) -> Outcome {
+    on(cluster(6).map(|e| e.body), |body| {
+        let omega = body.circular_frequencies[0];
+        let (history, Exact(response, begin)) = load(omega);
+        let loads = vec![on_mode(body, 0, history)];
+        let trial = Trial::free(body, Initial::at_rest(body.flexible()), step / omega, end / omega);
+        let (mut peak, mut most) = (0.0_f64, 0.0_f64);
+        let outcome = Trial { loads, rows: 997, ..trial }.largest(method, |_, row| {
+            // Not within a pulse.
+            let since = row.time - begin;
+            let expected = if since > PULSE { response(omega, since) } else { 0.0 };
+            peak = peak.max(expected.abs());
+            most = worse(most, (row.modal_displacement[0] - expected).abs());
+            0.0
+        });
+        match outcome {
+            Outcome::Ran(ran) => Outcome::Ran(worse(ran, most / peak)),
+            refused => refused,
+        }
+    })
+}
+
+/// All modes under a constant load from the beginning on, half damped, in steps of `turn`/ω of the highest one.
+fn settled(turn: f64, method: Method) -> Outcome {
+    on(cluster(6).map(|e| e.body), |body| {
+        let nf = body.flexible();
+        let omega = &body.circular_frequencies;
+        let step = turn / omega[nf - 1];
+        let trial = Trial::free(body, Initial::at_rest(nf), step, (200.0 / omega[0]).max(20.0 * step));
+        let loads = (0..nf).map(|k| on_mode(body, k, History::Constant)).collect();
+        Trial { loads, damping_ratios: vec![0.5; nf], rows: 4, ..trial }.largest(method, |first, row| {
+            if row.time < 0.99 * (200.0 / omega[0]) || row.time == first.time {
+                return 0.0;
+            }
+            row.modal_displacement.iter().zip(omega).map(|(q, w)| (q * w * w - 1.0).abs()).fold(0.0, f64::max)
+        })
+    })
+}
+
+fn follower(method: Method) -> Outcome {
+    match cluster(6) {
+        Ok(elastic) => {
+            let Elastic { body, .. } = &elastic;
+            let force = Vector3::new(0.1, 0.4, -0.2);
+            let action = Action::Force { point: elastic.point(0), force, frame: LoadFrame::Body };
+            let trial = Trial::free(body, spinning(body, [0.3, -0.2, 0.5], 0.0), 2e-3, 20.0);
+            let loads = vec![Load { action, history: History::Ramp { start: 0.0, duration: 1.0 } }];
+            Trial { loads, damping_ratios: vec![0.05; 6], ..trial }.drift(method)
+        }
+        Err(refusal) => Outcome::Refused(refusal),
+    }
 }
