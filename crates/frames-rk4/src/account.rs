@@ -43,6 +43,12 @@ const OFF_UNRESOLVED: f64 = 4.0;
 /// Rounding in the energy of the origin's motion.
 const ROUNDING: f64 = 1e-9;
 
+/// Whether steps are short enough for the stages to see work and dissipation; the `rate` is the largest of ω_k and
+/// 2 ζ_k ω_k.
+pub(crate) fn is_resolved(rate: f64, step: f64) -> bool {
+    rate * step <= RESOLVED
+}
+
 impl EnergyAccount {
     /// An empty account of loads that would, one by one, give the body this energy.
     pub(crate) fn new(of_loads: f64) -> Self {
@@ -74,7 +80,7 @@ impl EnergyAccount {
         let exchange = (now.work - last.work).abs() + (now.dissipation - last.dissipation).abs();
         self.largest_exchange = self.largest_exchange.max(exchange);
         let unknown = self.largest_exchange + rounding;
-        let is_off = if rate * step <= RESOLVED {
+        let is_off = if is_resolved(rate, step) {
             excess.abs() > OFF * self.scale + unknown
         } else {
             excess > OFF_UNRESOLVED * (self.scale + self.of_loads) + unknown

@@ -81,14 +81,10 @@ impl ConservativeMotion {
         })
     }
 
-    /// Energies that the loads, one by one, would give the body from rest.
-    pub(crate) fn energy_of_loads(&self, end: f64) -> f64 {
-        self.body.energy_of_loads(end)
-    }
-
-    /// Takes the loads until `end` into account in the scale of errors, for step control.
-    pub(crate) fn expect_loads_until(&mut self, end: f64) {
+    /// Takes the loads until `end` into account in the scale of errors, for step control, and returns that scale.
+    pub(crate) fn expect_loads_until(&mut self, end: f64) -> f64 {
         self.energy_scale = self.body.energy_of_loads(end);
+        self.energy_scale
     }
 
     /// A load or a drive may jump here: the rates at the end of the last step are not those of the next one's beginning.

@@ -3,7 +3,7 @@
 use modal::ReducedBody;
 use nalgebra::Vector3;
 
-use crate::account::EnergyAccount;
+use crate::account::{self, EnergyAccount};
 use crate::conservative::ConservativeBody;
 use crate::conservative_motion::{ConservativeMotion, ConservativeScheme};
 use crate::error::{SetupError, StepError};
@@ -227,6 +227,7 @@ impl Simulation {
             refuse_beyond_paper(setup.physics)?;
         }
         let model = || ModalModel::new(body, damping_ratios, loads.to_vec());
+        let mut energy_of_loads = 0.0;
         let engine = match method {
             Method::Paper => {
                 // Its own step only matters for its iterator; here the plan gives the steps.
@@ -237,16 +238,20 @@ impl Simulation {
             Method::Conservative(scheme) => {
                 let body = ConservativeBody::new(body, damping_ratios, loads.to_vec(), setup.physics)?;
                 let mut motion = ConservativeMotion::new(body, scheme, initial)?;
-                if let StepControl::Tolerance(_) = setup.control {
-                    motion.expect_loads_until(setup.end);
+                let resolved = match setup.control {
+                    StepControl::Fixed(step) => account::is_resolved(motion.fastest_rate(), step),
+                    StepControl::Tolerance(_) => false,
+                };
+                if !resolved {
+                    energy_of_loads = motion.expect_loads_until(setup.end);
                 }
                 Engine::Conservative(Box::new(motion))
             }
         };
-        let (fastest_rate, energy_of_loads) = match &engine {
-            Engine::Paper(scheme) => (scheme.fastest_rate(), 0.0),
-            Engine::PaperLimit(limit) => (limit.fastest_rate(), 0.0),
-            Engine::Conservative(motion) => (motion.fastest_rate(), motion.energy_of_loads(setup.end)),
+        let fastest_rate = match &engine {
+            Engine::Paper(scheme) => scheme.fastest_rate(),
+            Engine::PaperLimit(limit) => limit.fastest_rate(),
+            Engine::Conservative(motion) => motion.fastest_rate(),
         };
         let of_loads = loads.iter().map(|load| &load.history);
         let histories: Vec<History> =
@@ -489,11 +494,11 @@ fn check_step(setup: &Setup, step: f64) -> Result<(), SetupError> {
     if step <= limit { Ok(()) } else { Err(SetupError::StepBeyondSpin { step, limit, spin }) }
 }
 
-/// Refuses a step in which a mode turns by more than a quarter: with x = ωh, splitting answers a static load with
-/// (x/2) cot(x/2) of the deflection, 0.79 at x = π/2, nothing at π, and without bound at 2π.
+/// Refuses a step in which a mode turns by more than π: with x = ωh, splitting answers a static load with (x/2) cot(x/2)
+/// of the deflection, which has the wrong sign beyond π and no bound at 2π.
 fn check_splitting(circular_frequencies: &[f64], step: f64) -> Result<(), SetupError> {
     let fastest = circular_frequencies.iter().copied().enumerate().fold((0, 0.0), |a, b| if b.1 > a.1 { b } else { a });
-    let limit = std::f64::consts::FRAC_PI_2 / fastest.1;
+    let limit = std::f64::consts::PI / fastest.1;
     if step <= limit {
         return Ok(());
     }

@@ -1,8 +1,257 @@
-//! To come.
+//! Mesh and material: slivers, curved elements, extreme materials and units, one element, any numbering.
 
-use crate::Case;
+use std::collections::HashMap;
+
+use fem_tet10::{Material, Materials, Mesh, MeshParts, assemble};
+use frames_rk4::Method;
+
+use crate::Expected::Within;
+use crate::bodies::Elastic;
+use crate::motion::on;
+use crate::structure::tumble;
+use crate::{BodyCheck, Case, Expected, Outcome};
+
+const DRIFT: &str = "drift of energy and angular momentum";
+/// Of the tumbling of any well-made body.
+const TUMBLING: [Expected; 5] = [Within(1e-8), Within(1e-5), Within(1e-3), Within(0.1), Within(0.1)];
 
 /// The cases.
 pub fn cases() -> Vec<Case> {
-    Vec::new()
+    vec![
+        Case {
+            name: "slivers of aspect 1e4",
+            why: "stiffnesses across and along an element differ by 1e8 and more, and bending is their difference",
+            body: Some(BodyCheck {
+                what: "lowest frequency against a thin beam, relative",
+                figure: || against_beam([10.0, 0.1, 1e-4], [10, 1, 1]),
+                expected: Within(0.05),
+            }),
+            measure: DRIFT,
+            run: |method, _| moves(bar([10.0, 0.1, 1e-4], [10, 1, 1], METRES, 6), method),
+            expected: TUMBLING,
+        },
+        Case {
+            name: "a plate of 1000×50×0.1",
+            why: "10 000 times as long as thick",
+            body: Some(BodyCheck {
+                what: "lowest frequency against a thin beam, relative",
+                figure: || against_beam([1000.0, 50.0, 0.1], [40, 2, 1]),
+                expected: Within(0.05),
+            }),
+            measure: DRIFT,
+            run: |method, _| moves(bar([1000.0, 50.0, 0.1], [40, 2, 1], METRES, 6), method),
+            expected: TUMBLING,
+        },
+        Case {
+            name: "curved elements: a bar bent to a quarter of a ring",
+            why: "the mid-edge nodes leave the edges, and the integrands are no polynomials",
+            body: Some(BodyCheck {
+                what: "mass against the ring's, relative",
+                figure: || Ok(quarter_ring()?.body.mass / (QUARTER * 1.0 * 1.0) - 1.0).map(f64::abs),
+                expected: Within(1e-3),
+            }),
+            measure: DRIFT,
+            run: |method, _| moves(quarter_ring(), method),
+            expected: TUMBLING,
+        },
+        Case {
+            name: "ν = 0.4999",
+            why: "the volume can hardly change: an element that locks is too stiff",
+            body: Some(BodyCheck {
+                what: "lowest frequency against ν = 0.49 of the same shear modulus, relative",
+                figure: || {
+                    let lowest = |nu: f64| {
+                        let material = Material { young_modulus: 2.0 * (1.0 + nu), poisson_ratio: nu, density: 1.0 };
+                        Ok::<f64, String>(bar([1.0; 3], [3; 3], material, 1)?.body.circular_frequencies[0])
+                    };
+                    Ok((lowest(0.4999)? / lowest(0.49)? - 1.0).abs())
+                },
+                expected: Within(0.05),
+            }),
+            measure: DRIFT,
+            run: |method, _| moves(bar([1.0; 3], [2; 3], Material { poisson_ratio: 0.4999, ..METRES }, 10), method),
+            expected: TUMBLING,
+        },
+        Case {
+            name: "ν = −0.9",
+            why: "the bulk modulus is a nineteenth of the shear modulus: breathing is the softest motion",
+            body: None,
+            measure: DRIFT,
+            run: |method, _| moves(bar([1.0; 3], [2; 3], Material { poisson_ratio: -0.9, ..METRES }, 10), method),
+            expected: TUMBLING,
+        },
+        Case {
+            name: "a square plate",
+            why: "frequencies that repeat in the plate do so only nearly in its mesh",
+            body: None,
+            measure: DRIFT,
+            run: |method, _| moves(bar([1.0, 1.0, 0.05], [6, 6, 1], METRES, 8), method),
+            expected: TUMBLING,
+        },
+        Case {
+            name: "a bar in metres and in micrometres",
+            why: "lengths differ by 1e6, the entries of K by 1, those of M by 1, inertias by 1e12",
+            body: Some(BodyCheck {
+                what: "difference of the frequencies, relative",
+                figure: || difference(&bar(STEEL_BAR, [8, 2, 2], STEEL, 8)?, &micrometres()?),
+                expected: Within(1e-8),
+            }),
+            measure: DRIFT,
+            run: |method, _| moves(micrometres(), method),
+            expected: TUMBLING,
+        },
+        Case {
+            name: "one element with all of its 24 modes",
+            why: "the smallest mesh; nothing is left to truncate",
+            body: None,
+            measure: DRIFT,
+            run: |method, _| moves(one_element(), method),
+            expected: TUMBLING,
+        },
+        Case {
+            name: "nodes and elements numbered at random",
+            why: "bandwidth, pivots and the order of every sum change",
+            body: Some(BodyCheck {
+                what: "difference of the frequencies, relative",
+                figure: || difference(&bar(STEEL_BAR, [8, 2, 2], STEEL, 8)?, &shuffled()?),
+                expected: Within(1e-8),
+            }),
+            measure: DRIFT,
+            run: |method, _| moves(shuffled(), method),
+            expected: TUMBLING,
+        },
+    ]
+}
+
+const METRES: Material = Material { young_modulus: 1.0, poisson_ratio: 0.3, density: 1.0 };
+const STEEL: Material = Material { young_modulus: 2.1e11, poisson_ratio: 0.3, density: 7850.0 };
+const STEEL_BAR: [f64; 3] = [1.0, 0.05, 0.07];
+/// A quarter of the circle of radius 4.
+const QUARTER: f64 = 2.0 * std::f64::consts::PI;
+
+fn moves(elastic: Result<Elastic, String>, method: Method) -> Outcome {
+    on(elastic.map(|e| e.body), |body| tumble(body, method))
+}
+
+/// A box of tetrahedra with one corner at the origin: `cells` cells along its edges, six elements in each.
+fn box_mesh(size: [f64; 3], cells: [usize; 3]) -> MeshParts {
+    // Corner nodes have even places; the middle of an edge lies between.
+    let mut tags: HashMap<[usize; 3], u64> = HashMap::new();
+    let mut parts = MeshParts { source: "box".to_owned(), regions: vec![vec![]], ..MeshParts::default() };
+    let orders = [[0, 1, 2], [1, 2, 0], [2, 0, 1], [0, 2, 1], [2, 1, 0], [1, 0, 2]];
+    for cell in 0..cells.iter().product() {
+        let at = [cell % cells[0], cell / cells[0] % cells[1], cell / (cells[0] * cells[1])];
+        for (turn, order) in orders.iter().enumerate() {
+            // Along the three edges of the cell, in one of their orders, from its first corner to its last.
+            let mut corners = [at.map(|k| 2 * k); 4];
+            for (k, axis) in order.iter().enumerate() {
+                corners[k + 1..].iter_mut().for_each(|corner| corner[*axis] += 2);
+            }
+            // The odd orders are left-handed.
+            if turn >= 3 {
+                corners.swap(2, 3);
+            }
+            let edges = [[0, 1], [1, 2], [0, 2], [0, 3], [2, 3], [1, 3]];
+            let middles = edges.map(|[a, b]| [0, 1, 2].map(|axis| (corners[a][axis] + corners[b][axis]) / 2));
+            let mut nodes = [0; 10];
+            for (tag, place) in nodes.iter_mut().zip(corners.iter().chain(&middles)) {
+                *tag = *tags.entry(*place).or_insert_with(|| {
+                    let along = |axis: usize| size[axis] * place[axis] as f64 / (2 * cells[axis]) as f64;
+                    parts.positions.push([along(0), along(1), along(2)]);
+                    parts.positions.len() as u64
+                });
+            }
+            parts.elements.push(nodes);
+        }
+    }
+    numbered(parts)
+}
+
+/// Tags of the nodes and elements, one after the other.
+fn numbered(mut parts: MeshParts) -> MeshParts {
+    parts.node_tags = (1..=parts.positions.len() as u64).collect();
+    parts.element_tags = (1..=parts.elements.len() as u64).collect();
+    parts.element_regions = vec![0; parts.elements.len()];
+    parts
+}
+
+fn solve(parts: MeshParts, material: Material, flexible: usize) -> Result<Elastic, String> {
+    let mesh = Mesh::new(parts).map_err(|e| e.to_string())?;
+    let matrices = assemble(&mesh, &Materials::Uniform(material), &[]).map_err(|e| e.to_string())?;
+    Elastic::solve(matrices.stiffness(), matrices.mass(), mesh.positions().to_vec(), flexible)
+}
+
+fn bar(size: [f64; 3], cells: [usize; 3], material: Material, flexible: usize) -> Result<Elastic, String> {
+    solve(box_mesh(size, cells), material, flexible)
+}
+
+/// How far the lowest frequency is from that of a thin free beam of E = ρ = 1.
+fn against_beam(size: [f64; 3], cells: [usize; 3]) -> Result<f64, String> {
+    let found = bar(size, cells, METRES, 1)?.body.circular_frequencies[0];
+    let expected = 22.373_285 / (size[0] * size[0]) * size[2] / 12.0_f64.sqrt();
+    Ok((found / expected - 1.0).abs())
+}
+
+/// A bar of 1 × 1, its middle line a quarter of a circle of radius 4.
+fn quarter_ring() -> Result<Elastic, String> {
+    let mut parts = box_mesh([QUARTER, 1.0, 1.0], [4, 1, 1]);
+    for x in &mut parts.positions {
+        let (radius, angle) = (3.5 + x[1], x[0] / 4.0);
+        *x = [radius * angle.sin(), radius * angle.cos(), x[2]];
+    }
+    solve(parts, METRES, 8)
+}
+
+/// The steel bar in µm, kg and s.
+fn micrometres() -> Result<Elastic, String> {
+    let material = Material { young_modulus: STEEL.young_modulus * 1e-6, density: STEEL.density * 1e-18, ..STEEL };
+    bar(STEEL_BAR.map(|x| x * 1e6), [8, 2, 2], material, 8)
+}
+
+fn one_element() -> Result<Elastic, String> {
+    let corners = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let edges = [[0, 1], [1, 2], [0, 2], [0, 3], [2, 3], [1, 3]];
+    let middles = edges.map(|[a, b]: [usize; 2]| [0, 1, 2].map(|axis| 0.5 * (corners[a][axis] + corners[b][axis])));
+    let parts = MeshParts {
+        source: "one element".to_owned(),
+        positions: corners.into_iter().chain(middles).collect(),
+        elements: vec![[1, 2, 3, 4, 5, 6, 7, 8, 9, 10]],
+        regions: vec![vec![]],
+        ..MeshParts::default()
+    };
+    solve(numbered(parts), METRES, 24)
+}
+
+/// The steel bar with its nodes and elements in another order.
+fn shuffled() -> Result<Elastic, String> {
+    let mut parts = box_mesh(STEEL_BAR, [8, 2, 2]);
+    let places = permutation(parts.positions.len());
+    let mut positions = parts.positions.clone();
+    for (x, place) in parts.positions.iter().zip(&places) {
+        positions[*place] = *x;
+    }
+    parts.positions = positions;
+    for nodes in &mut parts.elements {
+        *nodes = nodes.map(|tag| places[tag as usize - 1] as u64 + 1);
+    }
+    let order = permutation(parts.elements.len());
+    parts.elements = order.iter().map(|k| parts.elements[*k]).collect();
+    solve(parts, STEEL, 8)
+}
+
+/// The numbers below `n` in an order that looks random: Fisher and Yates with Knuth's MMIX generator.
+fn permutation(n: usize) -> Vec<usize> {
+    let mut list: Vec<usize> = (0..n).collect();
+    let mut state = 1_u64;
+    for k in (1..n).rev() {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        list.swap(k, (state >> 33) as usize % (k + 1));
+    }
+    list
+}
+
+/// The largest relative difference of the frequencies of two bodies.
+fn difference(a: &Elastic, b: &Elastic) -> Result<f64, String> {
+    let pairs = a.body.circular_frequencies.iter().zip(&b.body.circular_frequencies);
+    Ok(pairs.map(|(a, b)| (a / b - 1.0).abs()).fold(0.0, f64::max))
 }
