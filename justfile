@@ -38,6 +38,10 @@ picture: build
 accuracy: build
     {{flexframe}} accuracy examples/accuracy/{pulse,tumbling,spin}.toml -o docs/accuracy.md
 
+# What hard cases come to with every scheme: docs/stability.md (some minutes); fails where a bound is broken.
+stability:
+    cargo run --release --quiet --package stability -- docs/stability.md
+
 # Steps a second of every scheme on one core.
 bench:
     cargo bench --quiet --package frames-rk4 --bench steps

@@ -88,3 +88,45 @@ impl EnergyAccount {
         if is_off { Err(StepError::Energy { time, energy: internal, accounted, step }) } else { Ok(()) }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn reckoning(time: f64, internal: f64, work: f64, dissipation: f64) -> Reckoning {
+        Reckoning { time, internal, translation: 0.0, work, dissipation }
+    }
+
+    #[test]
+    fn what_work_and_damping_account_for_passes_and_what_they_do_not_is_found() {
+        let mut account = EnergyAccount::default();
+        for (time, internal, work, dissipation) in [(0.0, 2.0, 0.0, 0.0), (1.0, 5.0, 4.0, 1.0), (2.0, 1.5, 1.0, 2.0)] {
+            account.check(&reckoning(time, internal, work, dissipation), 1.0, 0.1).unwrap();
+        }
+        // Half of the largest of start, work and dissipation, 4, and the work of a step, 5, may be missing.
+        assert!(account.check(&reckoning(3.0, 7.9, 1.0, 2.0), 1.0, 0.1).is_ok());
+        let error = account.check(&reckoning(3.0, 8.1, 1.0, 2.0), 1.0, 0.1).unwrap_err();
+        assert_eq!(error, StepError::Energy { time: 3.0, energy: 8.1, accounted: 1.0, step: 0.1 });
+        // Where steps do not see the modes, only much too much counts.
+        assert!(account.check(&reckoning(3.0, 8.1, 1.0, 2.0), 10.0, 0.1).is_ok());
+        assert!(account.check(&reckoning(3.0, 23.0, 1.0, 2.0), 10.0, 0.1).is_err());
+    }
+
+    #[test]
+    fn the_motion_of_the_origin_hides_nothing_but_its_own_rounding() {
+        let mut account = EnergyAccount::default();
+        let moving = |internal: f64| Reckoning { translation: 1e6, ..reckoning(1.0, internal, 0.0, 0.0) };
+        account.check(&moving(1.0), 1.0, 0.1).unwrap();
+        assert!(account.check(&moving(1.4), 1.0, 0.1).is_ok() && account.check(&moving(1.6), 1.0, 0.1).is_err());
+    }
+
+    #[test]
+    fn an_energy_that_is_no_number_is_found_before_a_coordinate_is_none() {
+        for energy in [f64::NAN, f64::INFINITY, 1e200 * 1e200] {
+            let mut account = EnergyAccount::default();
+            account.check(&reckoning(0.0, 1.0, 0.0, 0.0), 1.0, 0.1).unwrap();
+            let error = account.check(&reckoning(7.0, energy, 0.0, 0.0), 1.0, 0.1).unwrap_err();
+            assert_eq!(error, StepError::NotFinite { time: 7.0, what: "the energy" });
+        }
+    }
+}

@@ -111,7 +111,7 @@ pub enum ModalError {
     },
     /// Modes without energy beside the rigid ones.
     #[error(
-        "the body is a mechanism: besides the {rigid} rigid mode(s) {count} mode(s) have no stiffness (the first has {eigenvalue:e} of the shift {shift:e}); the node with index {node} at {position:?} moves most. Are parts joined at a single node or edge only? Join them by faces"
+        "the body is a mechanism: besides the {rigid} rigid mode(s) {count} mode(s) have no stiffness (the first has {eigenvalue:e} of the shift {shift:e}); the node with index {node} at {position:?} moves most. Are parts joined at a single node or edge only? Join them by faces. Is the body too thin for its length, so that rounding hides its bending stiffness? Take elements that are less flat, or a thicker body"
     )]
     Mechanism {
         /// Rigid modes that the support leaves.

@@ -10,9 +10,12 @@ pub fn page(extent: Extent, mut progress: impl FnMut(&str)) -> (String, Vec<Stri
     let mut page = String::from(
         "# Hard cases\n\n\
          Made by `just stability`, which runs every case with every scheme. A scheme either comes to its end with the \
-         error or drift given, or it is refused or stops at its first bad step, in its own words. In brackets: the \
-         bound that a test holds it to (the tests of `crates/stability` run the same cases, the longest of them \
-         shortened). Nothing ends in NaN, and nothing that is wrong ends in silence.\n",
+         error or drift given, or it is refused or stops at its first bad step, in its own words below the table. In \
+         brackets: the bound that a test holds it to (the tests of `crates/stability` run the same cases, the longest \
+         of them shortened; a refusal is held to its words). Errors and drifts are the largest of the whole run. \
+         Nothing ends in NaN. What stops a run that has gone wrong is an account of the energy: where the start, the \
+         loads and the damping do not account for half of it, the run ends with the time, the energy and a cure. The \
+         paper's scheme, of first order, can lose the attitude before it loses the energy; “≤ π: lost” says where.\n",
     );
     let mut broken = Vec::new();
     for (title, cases) in sections() {
