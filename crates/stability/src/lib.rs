@@ -38,7 +38,8 @@ impl Extent {
     /// The number for this extent. The paper's formulation always goes as far as the study does: it often stops there
     /// only.
     pub fn pick(self, method: Method, test: u32, study: u32) -> f64 {
-        f64::from(if self == Self::Study || method == Method::Paper { study } else { test })
+        let always = !matches!(method, Method::Conservative(_));
+        f64::from(if self == Self::Study || always { study } else { test })
     }
 }
 
