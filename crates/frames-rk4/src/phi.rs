@@ -16,7 +16,9 @@ pub(crate) type Phis = [Matrix2<f64>; 4];
 pub(crate) fn oscillator_phis(omega: f64, damping_ratio: f64, h: f64) -> Phis {
     let matrix = Matrix2::new(0.0, h, -h * omega * omega, -2.0 * h * damping_ratio * omega);
     let (mean, half_gap) = eigenvalues(omega, damping_ratio, h);
-    let (z1, z2) = (mean + half_gap, mean - half_gap);
+    let z2 = mean - half_gap;
+    // z₁z₂ = (ωh)²: beyond critical damping the sum would cancel.
+    let z1 = if half_gap.re > 0.0 { (omega * h).powi(2) / z2 } else { mean + half_gap };
     let (at_z1, at_z2) = (phis(z1), phis(z2));
     std::array::from_fn(|k| {
         let slope =
@@ -103,6 +105,19 @@ mod tests {
                     assert!(error < 2e-13, "zeta {zeta}, h {h}, phi_{k}: {error:e}");
                 }
             }
+        }
+    }
+
+    #[test]
+    fn the_slow_solution_of_a_strongly_damped_mode_keeps_its_rate() {
+        // From rest, q = (f e^{−sωt} − s e^{−fωt})/(f − s), with f, s = ζ ± √(ζ² − 1).
+        for (zeta, omega_h) in [(5.0, 30.0), (1e3, 1e2), (1e6, 1e3), (1e6, 1e6)] {
+            let fast: f64 = zeta + (zeta * zeta - 1.0_f64).sqrt();
+            let expected = fast * (-omega_h / fast).exp() / (fast - fast.recip());
+            let phi = oscillator_phis(2.0, zeta, 0.5 * omega_h);
+            // 1e-7 off at 1e6 if z₁ is a sum.
+            let error = (phi[0][(0, 0)] / expected - 1.0).abs();
+            assert!(error < 1e-14, "zeta {zeta}: {error:e}");
         }
     }
 

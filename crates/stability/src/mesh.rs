@@ -82,7 +82,7 @@ pub fn cases() -> Vec<Case> {
         },
         Case {
             name: "ν = −0.9",
-            why: "the bulk modulus is a nineteenth of the shear modulus: breathing is the softest motion",
+            why: "the bulk modulus is a forty-second of the shear modulus: the body would rather change its size than its shape",
             body: None,
             measure: DRIFT,
             run: |method, _| moves(bar([1.0; 3], [2; 3], Material { poisson_ratio: -0.9, ..METRES }, 10), method),

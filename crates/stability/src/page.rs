@@ -30,7 +30,7 @@ pub fn page(extent: Extent, mut progress: impl FnMut(&str)) -> (String, Vec<Stri
             row(&mut page, &case, extent, &mut refusals, &mut broken, &mut progress);
         }
         for (number, refusal) in refusals.iter().enumerate() {
-            let _ = writeln!(page, "{}{title} {}: {refusal}", if number == 0 { "\n" } else { "  \n" }, number + 1);
+            let _ = writeln!(page, "\n{title} {}: {refusal}", number + 1);
         }
     }
     (page, broken)

@@ -64,7 +64,7 @@ pub fn cases() -> Vec<Case> {
         },
         Case {
             name: "damping of 100 % and 500 %, steps of 100/ω",
-            why: "the fast solution is gone 1e400 times over within a step, the slow one is not",
+            why: "at 500 % the fast solution is down to 1e-430 after a step of the highest mode, the slow one to 5e-5",
             body: None,
             measure: "modal coordinates against the closed form, relative to the start",
             run: |method, _| damped([1.0, 5.0, 1.0, 5.0, 1.0, 5.0], 100.0, method),

@@ -23,7 +23,7 @@ pub fn cases() -> Vec<Case> {
     vec![
         Case {
             name: "steps of ten times the limit 2.83/ω of the highest mode",
-            why: "Runge–Kutta makes 1e4 of every 1 in each step",
+            why: "each step of Runge–Kutta would make more than 1e4 of every 1",
             body: None,
             measure: "free vibration against the closed form, relative",
             run: |method, _| free_vibration(method),
@@ -82,7 +82,7 @@ pub fn cases() -> Vec<Case> {
                 };
                 oscillator(load, TAU / 100.0, cycles * TAU, method)
             },
-            expected: [Within(1e-4), Within(1e-2), Within(1e-2), Within(1e-2), Within(1e-2)],
+            expected: [Within(1e-6), Within(1e-2), Within(1e-2), Within(1e-2), Within(1e-2)],
         },
         Case {
             name: "a static load switched on, in steps of 0.2/ω",
@@ -102,11 +102,11 @@ pub fn cases() -> Vec<Case> {
         },
         Case {
             name: "a follower force on a point of a tumbling body, stiff in its modes",
-            why: "it feeds energy into the tumbling while the modes follow in a hundredth of its time",
+            why: "it feeds energy into the tumbling without end, while the modes swing hundreds of times in a turn",
             body: None,
             measure: "gap in the balances of energy and angular momentum",
             run: |method, _| follower(method),
-            expected: [Within(1e-8), Within(1e-8), Within(1e-3), Refused("energy"), Refused("energy")],
+            expected: [Within(1e-9), Within(1e-7), Within(1e-2), Within(0.5), Within(1e-2)],
         },
     ]
 }
@@ -205,11 +205,12 @@ fn settled(turn: f64, method: Method) -> Outcome {
 
 fn follower(method: Method) -> Outcome {
     match cluster(6) {
-        Ok(elastic) => {
+        Ok(mut elastic) => {
+            elastic.body.circular_frequencies.iter_mut().for_each(|omega| *omega *= 50.0);
             let Elastic { body, .. } = &elastic;
             let force = Vector3::new(0.1, 0.4, -0.2);
             let action = Action::Force { point: elastic.point(0), force, frame: LoadFrame::Body };
-            let trial = Trial::free(body, spinning(body, [0.3, -0.2, 0.5], 0.0), 2e-3, 20.0);
+            let trial = Trial::free(body, spinning(body, [0.3, -0.2, 0.5], 0.0), 1e-3, 20.0);
             let loads = vec![Load { action, history: History::Ramp { start: 0.0, duration: 1.0 } }];
             Trial { loads, damping_ratios: vec![0.05; 6], ..trial }.drift(method)
         }
