@@ -41,6 +41,8 @@ impl Advice {
 const SCREEN: f64 = 10.0;
 /// Deflection over length at which linear strain ends.
 pub(crate) const LINEAR: f64 = 0.1;
+/// How far what the modes leave out of a static answer may count above its share in the work of the load.
+const SWING: f64 = 4.0;
 /// ½∫w'² of the first bending mode of a free bar with a deflection of one at its ends, over one length.
 const SHORTENING: f64 = 6.2;
 
@@ -280,7 +282,8 @@ fn static_correction(case: &Case, spin: &Spin, sources: &[Source], response: &Re
             relative(left, response.scale + left)
         }
     };
-    let influence = value.max(stretch);
+    // What is left out may swing about its static answer, and is measured over the whole body.
+    let influence = relative(SWING * value, 1.0).max(stretch);
     let why = if influence == 0.0 {
         "The modes carry the whole static answer.".into()
     } else if stretch > value {

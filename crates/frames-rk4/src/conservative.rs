@@ -666,9 +666,10 @@ fn degrees_of_freedom(
         (None, RigidMotion::Slider { direction }) => (Translation::Along(direction), Vec::new()),
         (None, RigidMotion::Clamp { .. }) => (Translation::None, Vec::new()),
     };
+    let is_driven = driven.is_some();
     (
-        if effects.translation { translation } else { Translation::None },
-        if effects.rotation { axes } else { Vec::new() },
+        if effects.translation || is_driven { translation } else { Translation::None },
+        if effects.rotation || is_driven { axes } else { Vec::new() },
     )
 }
 

@@ -96,3 +96,18 @@ fn a_driven_slide_is_a_base_acceleration() {
         assert!((a - b).abs() < 1e-9, "{a} {b}");
     }
 }
+
+#[test]
+fn what_is_driven_moves_whatever_is_off() {
+    let body = clamped();
+    for motion in motions() {
+        let mut run = Run::new(&body, 1.0);
+        run.physics.drive = Some(drive(motion));
+        let [_, expected] = run.ends(EXPONENTIAL, 1e-2);
+        run.physics.effects.translation = false;
+        run.physics.effects.rotation = false;
+        let [_, last] = run.ends(EXPONENTIAL, 1e-2);
+        assert_eq!(last.modal_displacement, expected.modal_displacement);
+        assert_eq!(last.position_global, expected.position_global);
+    }
+}
