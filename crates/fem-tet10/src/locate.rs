@@ -1,11 +1,11 @@
 //! From a point in space to the nodes of the body that carry it.
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 use crate::error::AssemblyError;
 use crate::integration::jacobian;
 use crate::mesh::Mesh;
-use crate::shape::{barycentric, shape_functions, shape_gradients};
+use crate::shape::{EDGES, barycentric, shape_functions, shape_gradients};
 
 /// Within this fraction of the mesh's diagonal, a point is at a node.
 const AT_NODE: f64 = 1e-7;
@@ -13,8 +13,11 @@ const AT_NODE: f64 = 1e-7;
 const CONVERGED: f64 = 1e-9;
 /// How far outside of an element, in its barycentric coordinates, a point is still inside but for rounding.
 const ROUNDING: f64 = 1e-6;
-/// How far outside of an element, in its barycentric coordinates, a point may be that lies in none.
+/// How far outside of a straight element, in its barycentric coordinates, a point may be that lies in none.
 const OUTSIDE: f64 = 1e-3;
+/// The same for a curved element, as a fraction of its bulge, if that is more: a quadratic face misses the surface that
+/// its nodes are on by far less than it bulges (at eight elements round a cylinder by 0.07 of it at most).
+const OUTSIDE_OF_BULGE: f64 = 0.1;
 
 /// A point of the body: `u(point) = Σ weights_i u(nodes_i)`.
 #[derive(Debug, Clone, PartialEq)]
@@ -30,8 +33,9 @@ impl Mesh {
     ///
     /// Quadratic elements follow a curved surface only so far, and points on the true surface may lie just outside
     /// of them. So a point in no element is given to the one that it is least outside of, by up to a thousandth of
-    /// the element's height (1e-3 in its barycentric coordinates), whose shape functions are then extrapolated:
-    /// the weights still sum to one and reproduce linear fields exactly at `point`.
+    /// the element's height (1e-3 in its barycentric coordinates), or a tenth of what the element's edges bulge if that
+    /// is more. Its shape functions are then extrapolated: the weights still sum to one and reproduce linear fields
+    /// exactly at `point`.
     ///
     /// # Errors
     /// [`AssemblyError::OffBody`] with the nearest node and its distance, for a point farther outside.
@@ -54,7 +58,7 @@ impl Mesh {
             }
         }
         match found {
-            Some((e, at)) if smallest >= -OUTSIDE => {
+            Some((e, at)) if smallest >= -OUTSIDE.max(OUTSIDE_OF_BULGE * bulge(&self.element_positions(e))) => {
                 Ok(Location { nodes: self.elements()[e].to_vec(), weights: shape_functions(at).to_vec() })
             }
             _ => Err(AssemblyError::OffBody {
@@ -66,6 +70,20 @@ impl Mesh {
             }),
         }
     }
+}
+
+/// How far mid-edge nodes are off the middles of their edges at most, in the barycentric coordinates of the corners.
+fn bulge(positions: &[[f64; 3]; 10]) -> f64 {
+    let corners: [Vector3<f64>; 4] = std::array::from_fn(|a| positions[a].into());
+    let edges = Matrix3::from_columns(&[corners[1] - corners[0], corners[2] - corners[0], corners[3] - corners[0]]);
+    // The corners of a very curved element may be in a plane; it then has no such coordinates, and no bulge.
+    let Some(inverse) = edges.try_inverse() else { return 0.0 };
+    let offsets = EDGES.into_iter().zip(&positions[4..]).map(|([a, b], x)| {
+        let off = inverse * (Vector3::from(*x) - 0.5 * (corners[a] + corners[b]));
+        off.amax().max(off.sum().abs())
+    });
+    // Nor is anything but nearly flat corners behind one beyond their whole height.
+    offsets.fold(0.0, f64::max).min(1.0)
 }
 
 /// The (ξ, η, ζ) at which an element's map reaches `point`, by Newton's method; `None` where the point is far from it.

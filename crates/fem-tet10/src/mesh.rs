@@ -68,11 +68,18 @@ pub struct Mesh {
     regions: Vec<Vec<usize>>,
     element_regions: Vec<usize>,
     surfaces: Vec<Surface>,
-    node_groups: Vec<NamedNodes>,
+    node_sets: Vec<NodeSet>,
 }
 
-/// Kind, name and nodes, ascending, of a physical group of points or curves.
-type NamedNodes = (&'static str, String, Vec<u32>);
+/// A physical group of curves or points.
+#[derive(Debug, Clone)]
+pub(crate) struct NodeSet {
+    /// "curve" or "point".
+    pub kind: &'static str,
+    pub name: String,
+    /// Node indices, ascending.
+    pub nodes: Vec<u32>,
+}
 
 impl Mesh {
     /// Checks the parts and makes a mesh of them.
@@ -127,7 +134,7 @@ impl Mesh {
         let index_of = index_nodes(&source, &node_tags)?;
         let elements = resolve_tags(&source, &index_of, &element_tags, &elements)?;
         let surfaces = surface::resolve(&source, &index_of, &elements, surfaces)?;
-        let node_groups = resolve_node_groups(&source, &index_of, node_groups)?;
+        let node_sets = resolve_node_groups(&source, &index_of, node_groups)?;
         let mesh = Self {
             source,
             node_tags,
@@ -138,7 +145,7 @@ impl Mesh {
             regions,
             element_regions,
             surfaces,
-            node_groups,
+            node_sets,
         };
         mesh.refuse_orphans()?;
         integration::check_jacobians(&mesh)?;
@@ -186,9 +193,9 @@ impl Mesh {
         &self.surfaces
     }
 
-    /// The physical groups of points and curves.
-    pub(crate) fn node_groups(&self) -> &[NamedNodes] {
-        &self.node_groups
+    /// The physical groups of curves and points.
+    pub(crate) fn node_sets(&self) -> &[NodeSet] {
+        &self.node_sets
     }
 
     /// Positions of the ten nodes of an element.
@@ -303,7 +310,7 @@ fn resolve_node_groups(
     source: &str,
     index_of: &HashMap<u64, u32>,
     groups: Vec<NodeGroup>,
-) -> Result<Vec<NamedNodes>, MeshError> {
+) -> Result<Vec<NodeSet>, MeshError> {
     let resolve = |group: NodeGroup| {
         let kind = KINDS[group.dimension.min(1)];
         let index = |node: &u64| {
@@ -317,7 +324,7 @@ fn resolve_node_groups(
         let mut nodes = group.nodes.iter().map(index).collect::<Result<Vec<u32>, _>>()?;
         nodes.sort_unstable();
         nodes.dedup();
-        Ok((kind, group.name, nodes))
+        Ok(NodeSet { kind, name: group.name, nodes })
     };
     groups.into_iter().map(resolve).collect()
 }

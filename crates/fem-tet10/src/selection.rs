@@ -19,8 +19,8 @@ impl Mesh {
         }
         let surfaces = self.surfaces().iter().filter(|surface| surface.name == name);
         found.extend(surfaces.map(|surface| (of_surface, surface.nodes())));
-        let groups = self.node_groups().iter().filter(|(_, group, _)| group == name);
-        found.extend(groups.map(|(kind, _, nodes)| (*kind, nodes.clone())));
+        let sets = self.node_sets().iter().filter(|set| set.name == name);
+        found.extend(sets.map(|set| (set.kind, set.nodes.clone())));
         let source_name = || self.source().to_owned();
         match found.pop() {
             Some((_, nodes)) if found.is_empty() => Ok(nodes),
@@ -30,7 +30,7 @@ impl Mesh {
                 kinds: found.into_iter().map(|(kind, _)| kind).chain([kind]).collect(),
             }),
             None => {
-                let lower = self.node_groups().iter().map(|(_, name, _)| name.as_str());
+                let lower = self.node_sets().iter().map(|set| set.name.as_str());
                 let all = self.groups().iter().map(String::as_str).chain(self.surface_groups()).chain(lower);
                 Err(MeshError::NoGroup {
                     source_name: source_name(),

@@ -58,7 +58,7 @@ fn next(state: &mut u64) -> u8 {
 #[test]
 fn spoiled_files_cost_an_error_and_no_more() {
     let mut worst = 0.0_f64;
-    for name in ["cube.msh", "cube_binary.msh", "overlapping_groups_partitioned.msh"] {
+    for name in ["cube_groups.msh", "cube_groups_binary.msh", "overlapping_groups_partitioned.msh"] {
         let good = data(name);
         assert!(parse(&good).0, "the pool of threads is up, and the file good");
         // Any byte at all, a digit, a sign, and the ends of the range, at every position.
@@ -78,7 +78,7 @@ fn spoiled_files_cost_an_error_and_no_more() {
         for position in 0..good.len().saturating_sub(8) {
             for claim in [1_000_000_000_000, u64::MAX, 1 << 63, i64::MIN as u64 >> 32] {
                 let mut spoiled = good.clone();
-                if name != "cube_binary.msh" {
+                if name != "cube_groups_binary.msh" {
                     if !good[position].is_ascii_whitespace() {
                         continue;
                     }
@@ -100,6 +100,6 @@ fn spoiled_files_cost_an_error_and_no_more() {
             worst = worst.max(parse(&spoiled).1 as f64 / good.len() as f64);
         }
     }
-    // Measured: 3.0.
+    // Measured: 3.6.
     assert!(worst < 5.0, "{worst:.1} bytes were held for a byte of the file");
 }

@@ -67,8 +67,8 @@ impl PointShapes {
         self.columns[6..].iter().zip(flexible).map(|(shape, c)| shape * *c).sum()
     }
 
-    /// Columns of all modes (6+nf).
-    pub(crate) fn columns(&self) -> &[Vector3<f64>] {
+    /// Columns of all modes, rigid and flexible (6+nf).
+    pub fn columns(&self) -> &[Vector3<f64>] {
         &self.columns
     }
 
@@ -107,8 +107,8 @@ impl RotationShapes {
         Self { columns: self.columns[..self.columns.len().min(6 + flexible)].to_vec() }
     }
 
-    /// Columns of all modes (6+nf).
-    pub(crate) fn columns(&self) -> &[Vector3<f64>] {
+    /// Columns of all modes, rigid and flexible (6+nf).
+    pub fn columns(&self) -> &[Vector3<f64>] {
         &self.columns
     }
 

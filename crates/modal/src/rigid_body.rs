@@ -41,18 +41,15 @@ impl ReducedBody {
         let (translation_basis, rotation_basis) = motion.bases(mass, &inertia)?;
         let origin = motion.fixed_point().unwrap_or(center_of_mass);
 
-        // The shape of mode k is (T_k, B_k×) times (1, X): all constants are of ∫ρ (1, X)ᵀ(1, X).
-        let first = mass * (center_of_mass - origin);
+        // The shape of mode k is T_k + B_k × X. Where there is any T, the origin is the centre of mass and ∫ρX is zero.
         let second = Matrix3::identity() * (0.5 * inertia.trace()) - inertia;
         let constant = |k: usize| if k < 3 { translation_basis.column(k).into() } else { Vector3::zeros() };
         let linear = |k: usize| {
             if k < 3 { Matrix3::zeros() } else { rotation_basis.column(k - 3).into_owned().cross_matrix() }
         };
-        let with_position: [Matrix3<f64>; 6] =
-            std::array::from_fn(|k| constant(k) * first.transpose() + linear(k) * second);
+        let with_position: [Matrix3<f64>; 6] = std::array::from_fn(|k| linear(k) * second);
         let with_shape = |k: usize, l: usize| -> Matrix3<f64> {
-            let mean = mass * constant(k) + linear(k) * first;
-            mean * constant(l).transpose() + with_position[k] * linear(l).transpose()
+            mass * constant(k) * constant(l).transpose() + with_position[k] * linear(l).transpose()
         };
         Ok(Self {
             mass,

@@ -442,6 +442,12 @@ fn refuse(scene: &Scene, key: &str, error: AssemblyError) -> SceneError {
             "nodes all around the point that can carry the mass",
             "use a larger spread, or leave it out for a point of the body",
         ),
+        AssemblyError::Patch { radius, count, distance, .. } => scene.refuse(
+            key,
+            format!("{count} node(s) within {radius}, the nearest {distance:.6} away"),
+            "three nodes or more, not on a line, that can take the moment",
+            "use a larger radius, or leave it out for a point of the body",
+        ),
         AssemblyError::MissingGroup { group, present, .. } => scene.refuse(
             key,
             format!("the physical volume \"{group}\", which the mesh has not"),

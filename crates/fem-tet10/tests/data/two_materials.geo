@@ -1,4 +1,4 @@
-// A block with a tip of another material, sharing its nodes: two groups by name (and a surface group to pass over).
+// A block with a tip of another material, sharing its nodes: two groups by name, and a plane surface group.
 //   gmsh -3 two_materials.geo -o two_materials.msh
 //   gmsh -3 two_materials.geo -bin -o two_materials_binary.msh
 SetFactory("OpenCASCADE");

@@ -38,8 +38,7 @@ fn a_rigid_motion_has_its_rotation() {
         let found = rotation(&patch, |node| shift + turn.cross(&position(&mesh, node)));
         worst = worst.max((found - turn).norm());
     }
-    // Measured: .
-    eprintln!("{worst:e}");
+    // Measured: 1.1e-15.
     assert!(worst < 1e-12, "{worst:e}");
 }
 
@@ -56,7 +55,7 @@ fn a_moment_becomes_forces_without_resultant_and_with_its_moment() {
             worst_moment = worst_moment.max((found - moment).norm());
         }
     }
-    eprintln!("{worst_force:e} {worst_moment:e}");
+    // Measured: 6.8e-17 and 1.8e-15.
     assert!(worst_force < 1e-13 && worst_moment < 1e-12, "{worst_force:e} {worst_moment:e}");
 }
 

@@ -177,3 +177,16 @@ fn numbers_longer_than_usual_are_one_number() {
     assert_ne!(long, text);
     assert_same(&parse_msh(long.as_bytes(), "long.msh").unwrap(), &data_mesh("cube.msh"));
 }
+
+#[test]
+fn groups_of_fewer_dimensions_leave_the_body_as_it_is() {
+    let plain = data_mesh("cube.msh");
+    for name in ["cube_groups.msh", "cube_groups_binary.msh"] {
+        let mesh = data_mesh(name);
+        assert_eq!(mesh.surface_groups().collect::<Vec<_>>(), ["foot"], "{name}");
+        let found: Vec<_> = geometry(&mesh).into_values().map(|x| format!("{x:?}")).collect();
+        let expected: Vec<_> = geometry(&plain).into_values().map(|x| format!("{x:?}")).collect();
+        assert_eq!(found, expected, "{name}");
+    }
+    assert_eq!(plain.surface_groups().count(), 0);
+}

@@ -51,6 +51,7 @@ fn modes_are_m_orthonormal_and_in_balance_without_reactions() {
             let force = t.transpose() * force;
             let residual = (&force - (t.transpose() * inertia) * faer::Scale(*lambda)).norm_l2() / force.norm_l2();
             // 2.3e-9 at most.
+            assert!(modes.force_residuals[mode] < 1e-7, "{:?}: {:e}", support.motion, modes.force_residuals[mode]);
             assert!(residual < 1e-7, "{:?}: mode {mode} leaves {residual:e}", support.motion);
         }
     }

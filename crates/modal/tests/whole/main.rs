@@ -2,12 +2,17 @@
 
 mod bodies;
 mod closed_forms;
+mod fields;
 mod held;
+mod held_bars;
 mod invariance;
 mod oracles;
 mod plate;
 mod reduced_body;
 mod refusals;
 mod repeatability;
+mod rigid_body;
 mod spectrum;
+mod static_shapes;
+mod statics;
 mod supports;

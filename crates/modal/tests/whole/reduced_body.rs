@@ -1,10 +1,11 @@
 //! The constants of the reduced body against their definitions, evaluated node by node in physical space.
 
 use faer::Mat;
-use modal::{BodyPoint, Modes, ReducedBody};
+use modal::{BodyPoint, Modes, ReducedBody, RigidMotion, Support};
 use nalgebra::{Matrix3, Vector3};
 
-use crate::bodies::{Body, block};
+use crate::bodies::Body;
+use crate::supports;
 
 const NF: usize = 7;
 /// The order in which pairs ij are stored.
@@ -16,19 +17,23 @@ struct Case {
     reduced: ReducedBody,
     /// Ψ, rigid modes first.
     psi: Mat<f64>,
-    /// X from the centre of mass.
+    /// X from the origin.
     x: Mat<f64>,
 }
 
 fn case() -> Case {
-    let body = block([30.0, 14.0, 9.0], [3, 2, 1]);
-    let modes = body.modes(NF);
+    held_case(&Support::free())
+}
+
+fn held_case(support: &Support) -> Case {
+    let body = supports::body();
+    let modes = body.held(support).modes(NF, |_| ()).unwrap();
     let reduced = ReducedBody::new(&modes, body.matrices.mass(), &body.positions).unwrap();
     let psi = Mat::from_fn(modes.shapes.nrows(), 6 + NF, |i, j| {
         if j < 6 { modes.rigid.shapes[(i, j)] } else { modes.shapes[(i, j - 6)] }
     });
-    let center = modes.rigid.center_of_mass;
-    let x = Mat::from_fn(3 * body.positions.len(), 1, |i, _| body.positions[i / 3][i % 3] - center[i % 3]);
+    let origin = support.motion.fixed_point().unwrap_or(modes.rigid.center_of_mass);
+    let x = Mat::from_fn(3 * body.positions.len(), 1, |i, _| body.positions[i / 3][i % 3] - origin[i % 3]);
     Case { body, modes, reduced, psi, x }
 }
 
@@ -61,22 +66,32 @@ fn column(values: &[f64]) -> Mat<f64> {
 
 #[test]
 fn constants_equal_their_definitions() {
-    let case = case();
+    for (support, _) in supports::supports(&supports::body().positions) {
+        assert_definitions(&held_case(&support));
+    }
+}
+
+fn assert_definitions(case: &Case) {
     let flexible = case.modes.shapes.clone();
+    let ones = |axis: usize| Mat::from_fn(case.x.nrows(), 1, |i, _| f64::from(i % 3 == axis));
     for a in 0..3 {
         for b in 0..3 {
             let dyad = unit(a) * unit(b).transpose();
-            assert_close(&case.reduced.rotation_products[a][b], &product(&case, &case.psi, dyad, &case.psi), "E");
-            let expected = product(&case, &case.psi, dyad, &case.x);
+            assert_close(&case.reduced.rotation_products[a][b], &product(case, &case.psi, dyad, &case.psi), "E");
+            let expected = product(case, &case.psi, dyad, &case.x);
             assert_close(&column(&case.reduced.position_products[a][b]), &expected, "E^X");
         }
-        let expected = product(&case, &flexible, unit(a).cross_matrix(), &flexible);
+        let expected = product(case, &flexible, unit(a).cross_matrix(), &flexible);
         assert_close(&case.reduced.gyroscopic[a], &expected, "G");
+        let expected = product(case, &flexible, Matrix3::identity(), &ones(a));
+        assert_close(&column(&case.reduced.translation_first[a]), &expected, "t");
+        let expected = product(case, &flexible, unit(a).cross_matrix(), &case.x);
+        assert_close(&column(&case.reduced.rotation_first[a]), &expected, "b");
     }
     for (p, (i, j)) in PAIRS.into_iter().enumerate() {
         let a = double_cross(i, j);
-        assert_close(&column(&case.reduced.inertia_first[p]), &product(&case, &flexible, a, &case.x), "c");
-        assert_close(&case.reduced.inertia_second[p], &product(&case, &flexible, a, &flexible), "N");
+        assert_close(&column(&case.reduced.inertia_first[p]), &product(case, &flexible, a, &case.x), "c");
+        assert_close(&case.reduced.inertia_second[p], &product(case, &flexible, a, &flexible), "N");
     }
 }
 
@@ -94,6 +109,37 @@ fn symmetries_hold() {
     }
     let product = rotation_basis * rotation_basis.transpose() * inertia;
     assert!((product - Matrix3::identity()).norm() < 1e-12);
+}
+
+#[test]
+fn first_moments_are_those_of_the_motions_that_the_support_prevents() {
+    for (support, _) in supports::supports(&supports::body().positions) {
+        let Case { reduced, .. } = held_case(&support);
+        let largest = |moments: &[Vec<f64>; 3]| moments.iter().flatten().fold(0.0, |m: f64, v| m.max(v.abs()));
+        let (translation, rotation) = (largest(&reduced.translation_first), largest(&reduced.rotation_first));
+        let mass = reduced.mass.sqrt();
+        let inertia = reduced.inertia.norm().sqrt();
+        let along = |moments: &[Vec<f64>; 3], direction: Vector3<f64>| -> f64 {
+            let of = |k: usize| (0..3).map(|i| direction[i] * moments[i][k]).sum::<f64>();
+            (0..NF).map(|k| of(k).abs()).fold(0.0, f64::max)
+        };
+        match support.motion {
+            RigidMotion::Free => assert_eq!((translation, rotation), (0.0, 0.0)),
+            RigidMotion::Pin { .. } => {
+                assert_eq!(rotation, 0.0);
+                assert!(translation > 0.1 * mass);
+            }
+            RigidMotion::Hinge { axis, .. } => {
+                assert!(along(&reduced.rotation_first, axis) < 1e-12 * inertia);
+                assert!(translation > 0.1 * mass && rotation > 0.1 * inertia);
+            }
+            RigidMotion::Slider { direction } => {
+                assert!(along(&reduced.translation_first, direction) < 1e-12 * mass);
+                assert!(translation > 0.1 * mass && rotation > 0.1 * inertia);
+            }
+            RigidMotion::Clamp { .. } => assert!(translation > 0.1 * mass && rotation > 0.1 * inertia),
+        }
+    }
 }
 
 #[test]

@@ -1,7 +1,8 @@
 //! What is refused, and in what words.
 
 use faer::sparse::{SparseColMat, SparseColMatRef, Triplet};
-use modal::{ModalError, Modes};
+use modal::{ModalError, Modes, RigidMotion, Solver, Support};
+use nalgebra::Vector3;
 
 use crate::bodies::{Body, CORNER, block, free_modes, tetrahedra};
 
@@ -166,4 +167,69 @@ fn patterns_that_differ_are_no_reason_to_refuse() {
 fn no_flexible_modes_are_an_answer_too() {
     let modes = small().modes(0);
     assert_eq!((modes.eigenvalues.len(), modes.shapes.ncols(), modes.rigid.shapes.ncols()), (0, 0, 6));
+}
+
+/// What a support of the small block is refused for.
+fn with_support(motion: RigidMotion, nodes: &[u32]) -> Option<ModalError> {
+    let Body { positions, matrices } = small();
+    let support = Support { motion, nodes: nodes.to_vec() };
+    Solver::new(matrices.stiffness(), matrices.mass(), &positions, &support).err()
+}
+
+#[test]
+fn a_support_that_holds_too_little() {
+    // The block has 3×3×3 nodes: 0, 1, 2 are in line along x, 3 is beside 0, 26 is opposite.
+    let at = |node: usize| Vector3::from(small().positions[node]);
+    let (pin, clamp) = (RigidMotion::Pin { point: at(0) }, RigidMotion::Clamp { origin: at(0) });
+    let (hinge, slider) =
+        (RigidMotion::Hinge { point: at(0), axis: Vector3::x() }, RigidMotion::Slider { direction: Vector3::x() });
+    let cases: [(RigidMotion, &[u32], usize); 10] = [
+        (pin, &[], 6),
+        // A node beside the point of a pin moves about it: only the distance is kept.
+        (pin, &[26], 5),
+        (hinge, &[], 6),
+        (hinge, &[1], 3),
+        (hinge, &[1, 1], 3),
+        // Beside its own rotation the body can turn about the line through both nodes.
+        (hinge, &[0, 3], 2),
+        (clamp, &[0, 1, 2], 1),
+        (clamp, &[0, 26], 1),
+        (slider, &[0, 1, 2], 2),
+        (slider, &[], 6),
+    ];
+    for (motion, nodes, rigid) in cases {
+        match with_support(motion, nodes) {
+            Some(error @ ModalError::Underheld { held, left, expected }) => {
+                assert_eq!((left, expected), (rigid, motion.count()), "{motion:?} {nodes:?}: {error}");
+                assert!(held <= nodes.len() && error.to_string().contains("hold more nodes"));
+            }
+            other => panic!("{motion:?} {nodes:?}: {other:?}"),
+        }
+    }
+    let enough: [(RigidMotion, &[u32]); 6] = [
+        (pin, &[0]),
+        (pin, &[0, 26]),
+        (hinge, &[0, 2]),
+        (hinge, &[0, 1, 3]),
+        (clamp, &[0, 1, 3]),
+        (slider, &[3, 1, 0]),
+    ];
+    for (motion, nodes) in enough {
+        assert!(with_support(motion, nodes).is_none(), "{motion:?} {nodes:?}");
+    }
+}
+
+#[test]
+fn a_support_that_is_not_there() {
+    let clamp = RigidMotion::Clamp { origin: Vector3::zeros() };
+    let error = with_support(clamp, &[0, 1, 27]).unwrap();
+    assert!(matches!(error, ModalError::NoSuchNode { node: 27, count: 27 }), "{error}");
+    let error = with_support(RigidMotion::Pin { point: Vector3::new(0.0, f64::NAN, 0.0) }, &[0]).unwrap();
+    assert!(matches!(error, ModalError::NotFinite { what: "the support's point", index: 1, .. }), "{error}");
+    for axis in [Vector3::new(1.0, 1.0, 0.0), Vector3::zeros(), Vector3::new(f64::NAN, 0.0, 0.0)] {
+        for motion in [RigidMotion::Hinge { point: Vector3::zeros(), axis }, RigidMotion::Slider { direction: axis }] {
+            let error = with_support(motion, &[0, 1, 3]).unwrap();
+            assert!(matches!(error, ModalError::NotUnit { .. }), "{error}");
+        }
+    }
 }

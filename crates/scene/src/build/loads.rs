@@ -4,7 +4,7 @@ use faer::Mat;
 use fem_tet10::{Location, MeanRotation, Mesh};
 use frames_rk4::{Action, BodyField, LoadFrame, PointShapes, RotationShapes};
 use modal::{BodyPoint, Modes, ReducedBody};
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Vector3;
 
 use super::history::history;
 use super::{BuildError, refuse, refuse_mesh};
@@ -55,9 +55,9 @@ pub(super) fn on_mesh(scene: &Scene, mesh: &Mesh, nodal_mass: &[f64]) -> Result<
                     }
                 }
                 Load::Moment(load) => Place::Moment {
-                    patch: mesh
-                        .mean_rotation(load.at, load.radius)
-                        .map_err(|error| refuse(scene, &key("at"), error))?,
+                    patch: mesh.mean_rotation(load.at, load.radius).map_err(|error| {
+                        refuse(scene, &key(if load.radius.is_some() { "radius" } else { "at" }), error)
+                    })?,
                     moment: Vector3::from(load.direction) * load.amplitude,
                 },
                 Load::Traction(load) => {
@@ -66,7 +66,7 @@ pub(super) fn on_mesh(scene: &Scene, mesh: &Mesh, nodal_mass: &[f64]) -> Result<
                 }
                 Load::Pressure(load) => {
                     let (nodes, forces) = mesh.surface_pressure(&load.group).map_err(surface)?;
-                    let forces = forces.into_iter().map(|f| Vector3::from(f) * load.amplitude).collect();
+                    let forces = forces.into_iter().map(|f| f * load.amplitude).collect();
                     Place::Field { nodes, forces }
                 }
                 Load::Gravity(_) | Load::BaseAcceleration(_) => {
@@ -177,7 +177,7 @@ impl MeshLoad {
             }
             Place::Moment { patch, moment } => {
                 for (node, turned) in patch.nodes.iter().zip(&patch.rotation_per_displacement) {
-                    add(*node, &Matrix3::from(*turned).tr_mul(moment));
+                    add(*node, &turned.tr_mul(moment));
                 }
             }
             Place::Field { nodes, forces } => nodes.iter().zip(forces).for_each(|(node, f)| add(*node, f)),
@@ -198,7 +198,7 @@ impl MeshLoad {
                 let turned: Vec<Vector3<f64>> = (0..nf)
                     .map(|k| {
                         let of = patch.nodes.iter().zip(&patch.rotation_per_displacement);
-                        of.map(|(node, a)| Matrix3::from(*a) * shape(*node, k)).sum()
+                        of.map(|(node, a)| a * shape(*node, k)).sum()
                     })
                     .collect();
                 let turned = Mat::from_fn(3, nf, |axis, k| turned[k][axis]);

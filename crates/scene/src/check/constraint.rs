@@ -134,13 +134,13 @@ impl Check<'_> {
         self.at_most_one(key, &["radius", "box", "group"], cure)?;
         let (name, region) = match keys {
             RegionKeys { r#box: Some([low, high]), .. } => {
-                let has_volume = low.iter().zip(&high).all(|(low, high)| low < high);
+                let ordered = low.iter().zip(&high).all(|(low, high)| low <= high);
                 self.require(
-                    has_volume,
+                    ordered,
                     &join(key, "box"),
-                    "a box whose first corner is below its second in each coordinate",
+                    "a box whose first corner is not above its second in any coordinate",
                     "give the lowest and the highest coordinates, `box = [[x, y, z], [x, y, z]]`; \
-                     make a flat box thicker than rounding",
+                     a flat box holds the nodes in its plane",
                 )?;
                 ("box", Region::Box { low, high })
             }

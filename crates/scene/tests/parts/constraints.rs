@@ -87,7 +87,7 @@ fn what_is_no_hinge() {
         ("radius = 1\ngroup = \"a\"", "\"a\"", ".group", "both `radius` and `group`, expected at most one"),
         ("box = [[0, 0, 0], [1, 1, 1]]\ngroup = \"a\"", "\"a\"", ".group", "both `box` and `group`"),
         ("group = \"\"", "\"\"", ".group", "expected a name that is not empty"),
-        ("box = [[0, 0, 0], [1, 0, 1]]", "[[0, 0, 0], [1", ".box", "whose first corner is below its second"),
+        ("box = [[0, 0, 0], [1, -1, 1]]", "[[0, 0, 0], [1", ".box", "whose first corner is not above its second"),
         ("motion = { amplitude = 1, history = 'constant' }", "{ amp", ".motion", "a driven hinge without a shaft"),
         ("radius = 1\nmotion = { amplitude = 1 }", "{ amp", ".motion.history", "`history` is missing"),
         ("radius = 1\nmotion = { history = 'constant' }", "{ his", ".motion.amplitude", "`amplitude` is missing"),
@@ -124,7 +124,7 @@ fn a_clamp_and_a_slider() {
             ("at = [9, 2, 3]", "[9", ".at", "found `at` without `radius`, expected both of them, or neither"),
             ("at = [9, 2, 3]\ngroup = \"a\"", "[9", ".at", "found `at` without `radius`"),
             ("at = [9, 2, 3]\nradius = 0", "0\n\n[[loads", ".radius", "found 0, expected a number greater than 0"),
-            ("box = [[0, 0, 0], [1, -1, 1]]", "[[0, 0, 0], [1", ".box", "is below its second in each coordinate"),
+            ("box = [[0, 0, 0], [1, -1, 1]]", "[[0, 0, 0], [1", ".box", "is not above its second in any coordinate"),
         ] {
             refused(&format!("{kind}{lines}"), mark, key, &[words]);
         }

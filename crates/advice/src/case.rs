@@ -1,0 +1,115 @@
+//! What is known before a run.
+
+use frames_rk4::{Drive, Initial, Load, Method};
+use modal::ReducedBody;
+
+/// A run before it is made. Units are any consistent set, angles rad.
+#[derive(Debug, Clone, Copy)]
+pub struct Case<'a> {
+    /// The body, with all modes that there are to choose from; [`ReducedBody::stress_stiffness`] where it is known.
+    pub body: &'a ReducedBody,
+    /// One damping ratio for each mode (nf).
+    pub damping_ratios: &'a [f64],
+    /// The loads but gravity.
+    pub loads: &'a [Load],
+    /// The loads of gravity.
+    pub gravity: &'a [Load],
+    /// What drives the held part.
+    pub drive: Option<&'a Drive>,
+    /// How it begins (nf modal coordinates).
+    pub initial: &'a Initial,
+    /// When it ends.
+    pub end: f64,
+    /// Method and length of step, where the step is fixed.
+    pub step: Option<(Method, f64)>,
+    /// Largest distance of two points of the body.
+    pub length: f64,
+    /// Largest displacement of a node in each mode (nf).
+    pub peaks: &'a [f64],
+    /// `f·u` of each load where its history is 1, and its whole static answer u
+    /// (`modal::Solver::static_response`): first those of `loads`, then of `gravity`. Empty where not known.
+    pub static_compliances: &'a [f64],
+}
+
+/// A case that no advice can be given on.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum AdviceError {
+    /// A list of the wrong length.
+    #[error("{what} has {found} entries where {expected} are needed; give one for each")]
+    Length {
+        /// Which list.
+        what: &'static str,
+        /// Its length.
+        found: usize,
+        /// The length it should have.
+        expected: usize,
+    },
+    /// A number out of range.
+    #[error("{what} is {found}; give {expected}")]
+    Value {
+        /// Which number.
+        what: &'static str,
+        /// What it is.
+        found: f64,
+        /// What it should be.
+        expected: &'static str,
+    },
+    /// An eigenvalue problem without an answer.
+    #[error(transparent)]
+    Eigen(#[from] frames_rk4::EigenError),
+}
+
+impl Case<'_> {
+    /// Refuses lists of the wrong length and numbers that are not finite or not positive.
+    pub(crate) fn check(&self, tolerance: f64) -> Result<(), AdviceError> {
+        let nf = self.body.flexible();
+        let mut lists = vec![
+            ("the list of damping ratios", self.damping_ratios.len(), nf),
+            ("the list of largest displacements", self.peaks.len(), nf),
+            ("the list of initial modal displacements", self.initial.modal_displacement.len(), nf),
+            ("the list of initial modal velocities", self.initial.modal_velocity.len(), nf),
+        ];
+        if !self.static_compliances.is_empty() {
+            let loads = self.loads.len() + self.gravity.len();
+            lists.push(("the list of static compliances", self.static_compliances.len(), loads));
+        }
+        for (what, found, expected) in lists {
+            if found != expected {
+                return Err(AdviceError::Length { what, found, expected });
+            }
+        }
+        let mut positive =
+            vec![("the end", self.end), ("the length of the body", self.length), ("the tolerance", tolerance)];
+        positive.extend(self.step.map(|(_, step)| ("the step", step)));
+        positive.extend(self.body.circular_frequencies.iter().map(|omega| ("a circular frequency", *omega)));
+        for (what, found) in positive {
+            if !(found > 0.0 && found.is_finite()) {
+                return Err(AdviceError::Value { what, found, expected: "a positive number" });
+            }
+        }
+        let initial = self.initial;
+        let finite = [
+            ("a damping ratio", self.damping_ratios),
+            ("a largest displacement", self.peaks),
+            ("a static compliance", self.static_compliances),
+            ("an initial velocity", initial.velocity.as_slice()),
+            ("an initial angular velocity", initial.omega.as_slice()),
+            ("an initial modal displacement", &initial.modal_displacement),
+            ("an initial modal velocity", &initial.modal_velocity),
+        ];
+        for (what, list) in finite {
+            if let Some(found) = list.iter().copied().find(|x| !x.is_finite()) {
+                return Err(AdviceError::Value { what, found, expected: "a finite number" });
+            }
+        }
+        for history in
+            self.loads.iter().chain(self.gravity).map(|load| &load.history).chain(self.drive.map(|d| &d.history))
+        {
+            let found = history.largest(self.end);
+            if !found.is_finite() {
+                return Err(AdviceError::Value { what: "a history", found, expected: "one that is finite to the end" });
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,213 @@
+//! What acts on the rigid motions and on each mode, in modal coordinates: with mass-normalised shapes, forces and motions
+//! of all of them are on one scale.
+
+use frames_rk4::{Action, DrivenMotion, Load, LoadFrame};
+use modal::ReducedBody;
+use nalgebra::{Matrix3, Matrix3xX, Vector3};
+
+use crate::case::Case;
+use crate::course::Course;
+
+/// A load: its largest forces on the translations, the rotations and each mode where its history is 1.
+#[derive(Debug, Clone)]
+pub(crate) struct Source {
+    pub translation: f64,
+    pub rotation: f64,
+    /// nf; and as the load meets the body at the beginning.
+    pub modal: Vec<f64>,
+    pub modal_at_start: Vec<f64>,
+    pub course: Course,
+    /// Whether its direction turns in the body as the body turns, and the angle that may turn it.
+    pub dead: bool,
+    turn: f64,
+    pub gravity: bool,
+}
+
+/// How the body turns, bounded above.
+#[derive(Debug, Clone)]
+pub(crate) struct Spin {
+    /// Largest |ω|.
+    pub largest: f64,
+    /// |ω| that is there without doubt: at the beginning, or driven.
+    pub certain: f64,
+    /// √(2 × energy of rotation): largest, and without doubt.
+    pub momentum: f64,
+    pub certain_momentum: f64,
+    /// Largest |ω̇|.
+    pub acceleration: f64,
+    /// Directions of ω that are possible: I, aaᵀ, or zero.
+    pub directions: Matrix3<f64>,
+    /// Largest angle turned.
+    pub turn: f64,
+    /// Whether ω is steady.
+    pub steady: bool,
+}
+
+impl Source {
+    /// Of a load on a body that may turn by `turn` rad.
+    fn new(load: &Load, course: &Course, turn: f64, gravity: bool) -> Self {
+        let (columns, vector, frame): (Vec<Vector3<f64>>, Vector3<f64>, LoadFrame) = match &load.action {
+            Action::Force { point, force, frame } => (point.columns().to_vec(), *force, *frame),
+            Action::Moment { rotation, moment, frame } => (rotation.columns().to_vec(), *moment, *frame),
+            // A field is as it is in body axes: one number for each mode.
+            Action::Field(field) => {
+                (field.modal.iter().map(|f| Vector3::x() * *f).collect(), Vector3::x(), LoadFrame::Body)
+            }
+        };
+        let dead = frame == LoadFrame::Global && turn > 0.0;
+        let astray = if dead { turn.min(1.0) } else { 0.0 };
+        let largest = |rows: &[Vector3<f64>]| {
+            let rows = Matrix3xX::from_columns(rows);
+            let worst = (&rows * rows.transpose()).symmetric_eigenvalues().max().max(0.0).sqrt() * vector.norm();
+            ((rows.transpose() * vector).norm() + astray * worst).min(worst)
+        };
+        Self {
+            translation: largest(&columns[..3]),
+            rotation: largest(&columns[3..6]),
+            modal: columns[6..].iter().map(|column| largest(&[*column])).collect(),
+            modal_at_start: columns[6..].iter().map(|column| column.dot(&vector).abs()).collect(),
+            course: course.clone(),
+            dead,
+            turn,
+            gravity,
+        }
+    }
+
+    /// Of all loads of a case, whose courses are `courses`, on a body that may turn by `turn` rad.
+    fn all(case: &Case, courses: &[Course], turn: f64) -> Vec<Self> {
+        let loads = case.loads.iter().map(|load| (load, false)).chain(case.gravity.iter().map(|load| (load, true)));
+        loads.zip(courses).map(|((load, gravity), course)| Self::new(load, course, turn, gravity)).collect()
+    }
+
+    /// Largest impulse where the force is 1; with a direction a(t) that turns, by parts: `|∫ h a| ≤ max|∫h| (1 + ∫|a'|)`.
+    pub(crate) fn impulse(&self) -> f64 {
+        (self.course.net_integral * (1.0 + self.turn)).min(self.course.magnitude_integral)
+    }
+}
+
+/// A deformation of a tenth of the length adds as much to the arms of the loads; beyond it [`crate::Review`] warns.
+const ARMS: f64 = 1.1;
+/// Angles that are tried before the loads are allowed all directions.
+const TRIES: usize = 20;
+
+impl Spin {
+    /// Bounds that hold for the body with its undeformed inertia, and the loads in the directions they may come to have.
+    pub(crate) fn new(case: &Case) -> (Self, Vec<Source>) {
+        let body = case.body;
+        let histories = case.loads.iter().chain(case.gravity).map(|load| &load.history);
+        let courses: Vec<Course> = histories.map(|history| Course::new(history, case.end)).collect();
+        if let Some(drive) = case.drive {
+            let course = Course::new(&drive.history, case.end);
+            let (axis, speed) = match drive.motion {
+                DrivenMotion::Turn { axis } => (axis, drive.amplitude.abs() * course.largest),
+                DrivenMotion::Slide { .. } => (Vector3::zeros(), 0.0),
+            };
+            let momentum = speed * axis.dot(&(body.inertia * axis)).max(0.0).sqrt();
+            let turn = drive.amplitude.abs() * course.magnitude_integral * axis.norm();
+            let acceleration = drive.amplitude.abs() * course.steepest() * axis.norm();
+            let spin = Self {
+                largest: speed,
+                certain: speed,
+                momentum,
+                certain_momentum: momentum,
+                acceleration,
+                directions: axis * axis.transpose(),
+                turn,
+                steady: acceleration == 0.0,
+            };
+            return (spin, Source::all(case, &courses, turn));
+        }
+        let basis = body.rotation_basis;
+        let initial = (basis.transpose() * body.inertia * case.initial.omega).norm();
+        let largest_of = |momentum: f64| basis.singular_values().max() * momentum;
+        let met = |turn: f64| {
+            let sources = Source::all(case, &courses, turn);
+            let momentum = initial + ARMS * sources.iter().map(|s| s.rotation * s.impulse()).sum::<f64>();
+            (sources, momentum)
+        };
+        // As long as the body has turned by no more than `turn`, its spin is bounded; where that spin turns it no
+        // further to the end, it never gets there.
+        let mut turn = 0.0;
+        let (mut sources, mut momentum) = met(turn);
+        for _ in 0..TRIES {
+            let reached = largest_of(momentum) * case.end;
+            if reached <= turn {
+                break;
+            }
+            turn = 1.05 * reached;
+            (sources, momentum) = met(turn);
+        }
+        if largest_of(momentum) * case.end > turn {
+            (sources, momentum) = met(f64::INFINITY);
+        }
+        let directions = directions(body);
+        let certain = (directions * case.initial.omega).norm();
+        let torque_free = sources.iter().all(|s| s.rotation * s.impulse() <= 1e-12 * initial);
+        let omega = case.initial.omega;
+        let about_principal =
+            (body.inertia * omega).cross(&omega).norm() <= 1e-9 * omega.dot(&(body.inertia * omega)).abs();
+        let steady = torque_free && (about_principal || body.motion.count() < 3);
+        let largest = if steady {
+            certain
+        } else if torque_free && body.motion.count() >= 3 {
+            polhode(&body.inertia, &omega).min(largest_of(momentum))
+        } else {
+            largest_of(momentum)
+        };
+        let pushed: f64 = sources.iter().map(|s| s.rotation * s.course.largest).sum();
+        let tumbling = if steady || body.motion.count() < 3 { 0.0 } else { largest * largest };
+        let caused = sources.iter().map(|s| s.rotation * s.impulse()).fold(0.0, f64::max);
+        let spin = Self {
+            largest,
+            certain,
+            momentum,
+            certain_momentum: initial.max(0.1 * caused),
+            acceleration: largest_of(pushed) + tumbling,
+            directions: if steady && omega.norm() > 0.0 {
+                let axis = omega.normalize();
+                axis * axis.transpose()
+            } else {
+                directions
+            },
+            turn: largest * case.end,
+            steady,
+        };
+        (spin, sources)
+    }
+}
+
+impl Spin {
+    /// Coriolis force 2Ω G q̇ and Euler force ω̇ G q of a unit of a mode at `omega`.
+    pub(crate) fn pull(&self, gyroscopic: f64, omega: f64) -> f64 {
+        gyroscopic * (2.0 * self.largest * omega + self.acceleration)
+    }
+}
+
+/// What a small deformation may add to the spin of a body that tumbles freely.
+const DEFORMED: f64 = 1.05;
+
+/// Largest |ω| of a free rigid body that begins at `omega`: its squares x_i along the principal axes keep Σ J_i x_i and
+/// Σ J_i² x_i, so that the largest sum is at a corner, where one of them is zero.
+fn polhode(inertia: &Matrix3<f64>, omega: &Vector3<f64>) -> f64 {
+    let j = inertia.symmetric_eigenvalues();
+    let energy = omega.dot(&(inertia * omega));
+    let momentum = (inertia * omega).norm_squared();
+    let mut largest = omega.norm_squared();
+    for (a, b) in [(0, 1), (0, 2), (1, 2)] {
+        let x_b = (momentum - j[a] * energy) / (j[b] * (j[b] - j[a]));
+        let x_a = (energy - j[b] * x_b) / j[a];
+        if x_a >= 0.0 && x_b >= 0.0 {
+            largest = largest.max(x_a + x_b);
+        }
+    }
+    DEFORMED * largest.sqrt()
+}
+
+/// Projection on the directions of ω that the rigid motions leave.
+fn directions(body: &ReducedBody) -> Matrix3<f64> {
+    match body.motion {
+        modal::RigidMotion::Free | modal::RigidMotion::Pin { .. } => Matrix3::identity(),
+        modal::RigidMotion::Hinge { axis, .. } => axis * axis.transpose(),
+        modal::RigidMotion::Slider { .. } | modal::RigidMotion::Clamp { .. } => Matrix3::zeros(),
+    }
+}

@@ -1,0 +1,73 @@
+//! Which effects a motion calls for: estimated before it is computed, and checked on what happened.
+//!
+//! The answer is the motion of the modes and the attitude. An influence is relative to the largest deformation, or to the
+//! angle turned (up to 1 rad), and it is an upper bound as long as it is small: what is called negligible is. It takes
+//! into account that a small change of a frequency adds up for as long as a mode rings.
+//!
+//! The order of calls:
+//!
+//! 1. [`limits`] refuses what is known to be wrong (again when the stiffness is known).
+//! 2. [`screen`] tells, from the modes alone, whether [`modal::ReducedBody::stress_stiffness`] may matter. If its row is
+//!    on, compute that.
+//! 3. [`advise`] gives the table: a [`Row`] for each [`Effect`], and what each mode is worth. Nothing stiffens where
+//!    `deformed_inertia` is off: the stiffness is counted as part of it too.
+//! 4. [`Review`] watches the run and names what has broken, and when.
+//!
+//! ```
+//! use advice::{Case, Effect, Review, advise, limits, screen};
+//! use fem_tet10::{Material, Materials, assemble, read_msh};
+//! use frames_rk4::{Effects, Initial};
+//! use modal::{ReducedBody, Solver, Support};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let mesh = read_msh(concat!(env!("CARGO_MANIFEST_DIR"), "/../../meshes/ring.msh"))?;
+//! let steel = Material { young_modulus: 210e3, poisson_ratio: 0.3, density: 7.8e-9 };
+//! let matrices = assemble(&mesh, &Materials::Uniform(steel), &[])?;
+//! let solver = Solver::new(matrices.stiffness(), matrices.mass(), mesh.positions(), &Support::free())?;
+//! let modes = solver.modes(4, |_| ())?;
+//! let body = ReducedBody::new(&modes, matrices.mass(), mesh.positions())?;
+//! let initial = Initial { omega: [0.0, 0.0, 1.0].into(), ..Initial::at_rest(4) };
+//! let case = Case {
+//!     body: &body,
+//!     damping_ratios: &[0.01; 4],
+//!     loads: &[],
+//!     gravity: &[],
+//!     drive: None,
+//!     initial: &initial,
+//!     end: 1.0,
+//!     step: None,
+//!     length: 200.0,
+//!     peaks: &[100.0; 4], // the largest of each column of `modes.shapes`
+//!     static_compliances: &[],
+//! };
+//! let effects = Effects::default();
+//! assert_eq!(limits(&case, &effects)?, None);
+//! if screen(&case, 1e-3)?.on {
+//!     // compute body.stress_stiffness
+//! }
+//! let advice = advise(&case, 1e-3)?;
+//! assert!(advice.is_on(Effect::Rotation) && !advice.is_on(Effect::Translation));
+//! let review = Review::new(case, effects, &advice);
+//! // for each observation of the run: review.observe(&observation)?;
+//! assert!(review.broken().is_empty());
+//! # Ok(())
+//! # }
+//! ```
+#![forbid(unsafe_code)]
+
+mod case;
+mod course;
+mod excitation;
+mod limits;
+mod response;
+mod review;
+mod rigid;
+mod row;
+mod table;
+mod tensor;
+
+pub use case::{AdviceError, Case};
+pub use limits::{Refusal, SOFTENED, limits};
+pub use review::{Broken, Review};
+pub use row::{Effect, Row, Worth};
+pub use table::{Advice, advise, screen};

@@ -1,0 +1,126 @@
+//! After, or during, the run: whether what was assumed has held.
+
+use frames_rk4::{Effects, Observation};
+
+use crate::case::{AdviceError, Case};
+use crate::limits::{Refusal, refusal};
+use crate::table::{Advice, LINEAR};
+
+/// An assumption that has broken.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum Broken {
+    /// The spin rose above what the estimates allow for.
+    #[error(
+        "at time {time:.6} the spin was {found:.4}, above the {assumed:.4} that the estimates allow for; turn all effects on"
+    )]
+    Spin {
+        /// When it was so for the first time.
+        time: f64,
+        /// The largest |ω| there was.
+        found: f64,
+        /// The largest that was assumed.
+        assumed: f64,
+    },
+    /// The deflection rose above what the estimates allow for.
+    #[error(
+        "at time {time:.6} the deflection was {found:.4} of the length, above the {assumed:.4} that the estimates allow for; turn all effects on"
+    )]
+    Deflection {
+        /// When it was so for the first time.
+        time: f64,
+        /// The largest there was.
+        found: f64,
+        /// The largest that was assumed.
+        assumed: f64,
+    },
+    /// The strain is not linear.
+    #[error(
+        "at time {time:.6} the deflection passed 10 % of the length, up to {found:.4}: linear strain ends there; trust the answer to some per cent only"
+    )]
+    Linear {
+        /// When it was so for the first time.
+        time: f64,
+        /// The largest there was.
+        found: f64,
+    },
+    /// A spin was reached at which the model is known to be wrong.
+    #[error("at time {time:.6}: {refusal}")]
+    Limit {
+        /// When it was so for the first time.
+        time: f64,
+        /// The reason.
+        refusal: Refusal,
+    },
+}
+
+/// Watches a run.
+#[derive(Debug, Clone)]
+pub struct Review<'a> {
+    case: Case<'a>,
+    effects: Effects,
+    spin: f64,
+    deflection: f64,
+    broken: Vec<Broken>,
+}
+
+/// What rounding and the change of inertia by a small deformation may add to a bound.
+const MARGIN: f64 = 1.01;
+
+impl<'a> Review<'a> {
+    /// Of a run with these effects that `advice` was given on. The case has the modes that are simulated.
+    pub fn new(case: Case<'a>, effects: Effects, advice: &Advice) -> Self {
+        Self { case, effects, spin: advice.spin, deflection: advice.deflection, broken: Vec::new() }
+    }
+
+    /// Looks at the motion at a time; times rise.
+    ///
+    /// # Errors
+    /// An eigenvalue problem without an answer; a list of modal displacements of another length.
+    pub fn observe(&mut self, observation: &Observation) -> Result<(), AdviceError> {
+        let (q, peaks) = (&observation.modal_displacement, self.case.peaks);
+        if q.len() != peaks.len() {
+            let what = "the list of modal displacements";
+            return Err(AdviceError::Length { what, found: q.len(), expected: peaks.len() });
+        }
+        let time = observation.time;
+        let deflection = q.iter().zip(peaks).map(|(q, a)| (q * a).abs()).sum::<f64>() / self.case.length;
+        let speed = observation.omega_body.norm();
+        if speed > MARGIN * self.spin {
+            self.note(Broken::Spin { time, found: speed, assumed: self.spin });
+        }
+        if deflection > MARGIN * self.deflection {
+            self.note(Broken::Deflection { time, found: deflection, assumed: self.deflection });
+        }
+        if deflection > LINEAR {
+            self.note(Broken::Linear { time, found: deflection });
+        }
+        let known = self.broken.iter().any(|broken| matches!(broken, Broken::Limit { .. }));
+        if !known && speed > 0.0 {
+            let axis = observation.omega_body / speed;
+            if let Some(refusal) = refusal(&self.case, &axis, speed, &self.effects)? {
+                self.broken.push(Broken::Limit { time, refusal });
+            }
+        }
+        Ok(())
+    }
+
+    /// What has broken so far: each assumption once, with the first time and the worst.
+    pub fn broken(&self) -> &[Broken] {
+        &self.broken
+    }
+
+    fn note(&mut self, new: Broken) {
+        for old in &mut self.broken {
+            match (old, &new) {
+                (Broken::Spin { found, .. }, Broken::Spin { found: now, .. })
+                | (Broken::Deflection { found, .. }, Broken::Deflection { found: now, .. })
+                | (Broken::Linear { found, .. }, Broken::Linear { found: now, .. }) => {
+                    *found = found.max(*now);
+                    return;
+                }
+                _ => {}
+            }
+        }
+        self.broken.push(new);
+    }
+}

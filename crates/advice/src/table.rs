@@ -1,0 +1,328 @@
+//! The table: a row an effect.
+
+use faer::Mat;
+
+use crate::case::{AdviceError, Case};
+use crate::excitation::{Source, Spin};
+use crate::response::{Response, norm, relative};
+use crate::row::{Effect, Row, Worth};
+use crate::{rigid, tensor};
+
+/// What to expect of a run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Advice {
+    /// A row for each effect, in the order of [`Effect::ALL`].
+    pub rows: Vec<Row>,
+    /// What each mode is worth (nf).
+    pub modes: Vec<Worth>,
+    /// How many of the modes to keep: all up to the last that is worth it.
+    pub keep: usize,
+    /// Whether the last mode there was to choose from is still worth keeping: then more should be computed.
+    pub more_modes: bool,
+    /// Largest |ω| that the estimates allow for.
+    pub spin: f64,
+    /// Largest displacement by deformation, over the length of the body, that is to be expected at most.
+    pub deflection: f64,
+}
+
+impl Advice {
+    /// The row of an effect.
+    pub fn row(&self, effect: Effect) -> Option<&Row> {
+        self.rows.iter().find(|row| row.effect == effect)
+    }
+
+    /// Whether an effect is on.
+    pub fn is_on(&self, effect: Effect) -> bool {
+        self.row(effect).is_some_and(|row| row.on)
+    }
+}
+
+/// How far the stiffening that [`screen`] allows for is above the bending of a bar whose mass is at its ends (π²/8).
+const SCREEN: f64 = 10.0;
+/// Deflection over length at which linear strain ends.
+pub(crate) const LINEAR: f64 = 0.1;
+/// ½∫w'² of the first bending mode of a free bar with a deflection of one at its ends, over one length.
+const SHORTENING: f64 = 6.2;
+
+/// Before anything dear: whether K_ij may matter, by the spin that there is and that the loads may cause. `value` bounds
+/// `Ω² K_kk/ω_k²` by `10 m a_k² (Ω/ω_k)² (ω_k/ω_1)`, a_k the largest displacement in mode k: a tension of the order
+/// `m Ω² L` along a bar that is bent into waves. Needs no [`modal::ReducedBody::stress_stiffness`].
+///
+/// # Errors
+/// [`AdviceError`]: lists of the wrong length and numbers out of range.
+pub fn screen(case: &Case, tolerance: f64) -> Result<Row, AdviceError> {
+    case.check(tolerance)?;
+    let (spin, sources) = Spin::new(case);
+    let response = Response::new(case, &spin, &sources);
+    Ok(stiffening(case, &spin, &response, None).row(tolerance))
+}
+
+/// The table, with the stiffness by spin if the body has it, and by [`screen`] if not.
+///
+/// # Errors
+/// [`AdviceError`]: lists of the wrong length and numbers out of range.
+pub fn advise(case: &Case, tolerance: f64) -> Result<Advice, AdviceError> {
+    case.check(tolerance)?;
+    let (spin, sources) = Spin::new(case);
+    let mut response = Response::new(case, &spin, &sources);
+    let second = tensor::of_pairs(&case.body.inertia_second, &spin.directions);
+    let stiffness = case.body.stress_stiffness.as_ref().map(|k| tensor::of_pairs(k, &spin.directions));
+    let coupling = tensor::of_vectors(&case.body.gyroscopic, &spin.directions);
+    response.share_out(|k, l| {
+        let static_force = second[(k, l)] + stiffness.as_ref().map_or(0.0, |s| s[(k, l)]);
+        spin.largest.powi(2) * static_force + spin.pull(coupling[(k, l)], case.body.circular_frequencies[l])
+    });
+    let shares = response.shares();
+    let modes: Vec<Worth> = shares
+        .iter()
+        .enumerate()
+        .map(|(k, share)| Worth {
+            circular_frequency: case.body.circular_frequencies[k],
+            displacement: response.displacement[k],
+            share: *share,
+            worth_keeping: *share >= tolerance,
+        })
+        .collect();
+    let keep = modes.iter().rposition(|mode| mode.worth_keeping).map_or(0, |last| last + 1);
+    let deflection = response.displacement.iter().zip(case.peaks).map(|(q, a)| q * a).sum::<f64>() / case.length;
+    let estimates = [
+        flexibility(&spin, &sources, &response, deflection),
+        damping(case, &response),
+        rigid::gravity(case, &sources, &response),
+        deformed_inertia(case, &spin, &response, &second, stiffness.as_ref()),
+        coriolis(case, &spin, &response, &coupling),
+        stiffening(case, &spin, &response, stiffness.as_ref()),
+        rigid::translation(case, &sources),
+        rigid::rotation(case, &spin, &sources, &response),
+        static_correction(case, &spin, &sources, keep),
+        Estimate {
+            effect: Effect::Deflection,
+            value: deflection,
+            influence: relative(SHORTENING * deflection * deflection, 1.0),
+            why: format!("At most {deflection:.1e} of the length; linear strain ends at 10 %."),
+        },
+        foreshortening(deflection),
+        step(case, &spin, &shares),
+    ];
+    let rows = estimates.into_iter().map(|estimate| estimate.row(tolerance)).collect();
+    Ok(Advice {
+        rows,
+        modes,
+        keep,
+        more_modes: keep > 0 && keep == case.body.flexible(),
+        spin: spin.largest,
+        deflection,
+    })
+}
+
+/// A row but for the decision.
+pub(crate) struct Estimate {
+    pub effect: Effect,
+    pub value: f64,
+    pub influence: f64,
+    pub why: String,
+}
+
+impl Estimate {
+    fn row(self, tolerance: f64) -> Row {
+        let Self { effect, value, influence, why } = self;
+        let on = match effect {
+            Effect::Deflection => value >= LINEAR,
+            _ => influence >= tolerance || influence.is_nan(),
+        };
+        Row { effect, value, influence, on, why }
+    }
+}
+
+fn flexibility(spin: &Spin, sources: &[Source], response: &Response, deflection: f64) -> Estimate {
+    let flexible = norm(&response.acceleration);
+    let pushed = sources.iter().map(|s| s.course.largest * s.translation.hypot(s.rotation)).fold(0.0, f64::max);
+    let rigid = pushed.max(spin.certain * spin.certain_momentum);
+    let (value, influence, why) = if flexible == 0.0 {
+        (0.0, 0.0, "Nothing moves the modes.".into())
+    } else if rigid == 0.0 {
+        (f64::INFINITY, 1.0, "The body can do nothing but deform.".into())
+    } else {
+        let ratio = flexible / rigid;
+        let (influence, share) = (relative(ratio.max(deflection), 1.0), 100.0 * deflection);
+        (
+            ratio,
+            influence,
+            format!(
+                "Vibration accelerates up to {ratio:.1e} of what the rigid motion does, and bends by {share:.1e} % of the length."
+            ),
+        )
+    };
+    Estimate { effect: Effect::Flexibility, value, influence, why }
+}
+
+fn damping(case: &Case, response: &Response) -> Estimate {
+    let lost = |k: usize| {
+        let x = case.damping_ratios[k] * case.body.circular_frequencies[k] * case.end;
+        response.displacement[k] * (-(-x).exp_m1() + 2.0 * case.damping_ratios[k]).min(1.0)
+    };
+    let lost: Vec<f64> = (0..case.body.flexible()).map(lost).collect();
+    let influence = relative(norm(&lost), response.scale);
+    let largest = |of: &dyn Fn(usize) -> f64| (0..case.body.flexible()).map(of).fold(0.0, f64::max);
+    let value = largest(&|k| case.damping_ratios[k] * case.body.circular_frequencies[k] * case.end);
+    let why = if influence == 0.0 {
+        "No mode that moves is damped.".into()
+    } else {
+        format!("Vibration decays by up to e^-{value:.1e} in the run.")
+    };
+    Estimate { effect: Effect::Damping, value, influence, why }
+}
+
+fn deformed_inertia(
+    case: &Case,
+    spin: &Spin,
+    response: &Response,
+    second: &Mat<f64>,
+    stiffness: Option<&Mat<f64>>,
+) -> Estimate {
+    let body = case.body;
+    let q = &response.displacement;
+    let first: f64 =
+        tensor::of_modes(&body.inertia_first, &body.rotation_basis).iter().zip(q).map(|(c, q)| 2.0 * c * q).sum();
+    let pairs = tensor::of_pairs(&body.inertia_second, &body.rotation_basis);
+    let value = first + double_sum(&pairs, q, q);
+    let attitude = rigid::attitude_change(case, spin, value * spin.momentum, response.scale);
+    let square = spin.largest * spin.largest;
+    let centrifugal: Vec<f64> =
+        tensor::of_modes(&body.inertia_first, &spin.directions).iter().map(|c| c * square).collect();
+    // The stiffness is part of the same terms.
+    let force = |k, l| square * (second[(k, l)] + stiffness.map_or(0.0, |s: &Mat<f64>| s[(k, l)]));
+    let modes = response.change(force, q, &centrifugal);
+    let why = if spin.largest == 0.0 {
+        "The body does not turn.".into()
+    } else {
+        format!(
+            "Deformation changes the inertia by up to {value:.1e}: {attitude:.1e} of the rotation, and the centrifugal field {modes:.1e} of the vibration."
+        )
+    };
+    let influence = if spin.largest == 0.0 { 0.0 } else { attitude.max(modes) };
+    Estimate { effect: Effect::DeformedInertia, value, influence, why }
+}
+
+fn coriolis(case: &Case, spin: &Spin, response: &Response, g: &Mat<f64>) -> Estimate {
+    let body = case.body;
+    let omega = &body.circular_frequencies;
+    let (q, v) = (&response.displacement, &response.velocity);
+    let force = |k: usize, l: usize| spin.pull(g[(k, l)], omega[l]);
+    let amplitude: Vec<f64> = (0..q.len()).map(|k| q[k].max(v[k] / omega[k])).collect();
+    let modes = response.change(force, &amplitude, &vec![0.0; q.len()]);
+    let turning = tensor::of_vectors(&body.gyroscopic, &body.rotation_basis);
+    let attitude = rigid::attitude_change(case, spin, double_sum(&turning, q, v), response.scale);
+    let pair = |k: usize, l: usize| 2.0 * spin.largest * g[(k, l)] / omega[k].max(omega[l]);
+    let value = (0..q.len()).flat_map(|k| (0..k).map(move |l| (k, l))).map(|(k, l)| pair(k, l)).fold(0.0, f64::max);
+    let influence = if modes.is_nan() { 1.0 } else { modes.max(attitude) };
+    let why = if influence == 0.0 {
+        "No two modes that move are coupled by turning.".into()
+    } else {
+        format!(
+            "Turning couples modes by up to {value:.1e}: {modes:.1e} of the vibration, and what it returns {attitude:.1e} of the rotation."
+        )
+    };
+    Estimate { effect: Effect::Coriolis, value, influence, why }
+}
+
+fn stiffening(case: &Case, spin: &Spin, response: &Response, stiffness: Option<&Mat<f64>>) -> Estimate {
+    let omega = &case.body.circular_frequencies;
+    let square = spin.largest * spin.largest;
+    let bound = |k: usize| {
+        let lowest = omega.iter().copied().fold(f64::INFINITY, f64::min);
+        SCREEN * case.body.mass * case.peaks[k] * case.peaks[k] * omega[k] / lowest
+    };
+    let force = |k: usize, l: usize| match stiffness {
+        Some(matrix) => square * matrix[(k, l)],
+        None => square * (bound(k) * bound(l)).sqrt(),
+    };
+    let ratio = |k: usize| force(k, k) / (omega[k] * omega[k]);
+    let stiffest = (0..omega.len()).max_by(|k, l| ratio(*k).total_cmp(&ratio(*l)));
+    let value = stiffest.map_or(0.0, ratio);
+    let influence =
+        if square == 0.0 { 0.0 } else { response.change(force, &response.displacement, &vec![0.0; omega.len()]) };
+    let why = match (stiffest, stiffness) {
+        _ if square == 0.0 => "The body does not turn.".into(),
+        (Some(k), Some(_)) => {
+            let shift = 100.0 * ((1.0 + value).sqrt() - 1.0);
+            format!("The stress of the spin moves the frequency of mode {} by up to {shift:.2} %.", k + 1)
+        }
+        (Some(k), None) => {
+            format!("The stress of the spin might move mode {}; its stiffness has not been computed.", k + 1)
+        }
+        (None, _) => "There are no modes.".into(),
+    };
+    Estimate { effect: Effect::GeometricStiffening, value, influence, why }
+}
+
+fn static_correction(case: &Case, spin: &Spin, sources: &[Source], keep: usize) -> Estimate {
+    let omega = &case.body.circular_frequencies;
+    let compliance = |source: &Source, modes: usize| -> f64 {
+        (0..modes).map(|k| (source.modal_at_start[k] / omega[k]).powi(2)).sum()
+    };
+    let left = |(i, source): (usize, &Source)| match case.static_compliances.get(i) {
+        // The loads as they are at the beginning: a field that turns in the body has no one compliance.
+        Some(whole) if *whole > 0.0 => relative((whole - compliance(source, keep)).max(0.0), *whole),
+        Some(_) => 0.0,
+        None if source.course.largest == 0.0 => 0.0,
+        None => 1.0,
+    };
+    let value = sources.iter().enumerate().map(left).fold(0.0, f64::max);
+    let known = case.static_compliances.len() == sources.len();
+    // Of the centrifugal field, the whole static answer is in no list.
+    let spun = spin.largest > 0.0 && case.body.inertia_first.iter().flatten().any(|c| *c != 0.0);
+    let influence = if spun { 1.0 } else { value };
+    let why = if influence == 0.0 {
+        "The modes carry the whole static answer.".into()
+    } else if spun {
+        "The centrifugal field stretches the body in ways that a few modes do not carry.".into()
+    } else if known {
+        format!(
+            "The modes that are kept leave out {:.1} % of the static deflection where the loads act.",
+            100.0 * value
+        )
+    } else {
+        "The whole static answer to the loads is not known.".into()
+    };
+    Estimate { effect: Effect::StaticCorrection, value, influence, why }
+}
+
+fn foreshortening(deflection: f64) -> Estimate {
+    let value = SHORTENING * deflection * deflection;
+    Estimate {
+        effect: Effect::Foreshortening,
+        value,
+        influence: relative(value, 1.0),
+        why: format!(
+            "A bar bent that far is shorter by up to {value:.1e} of its length, which linear modes do not show."
+        ),
+    }
+}
+
+fn step(case: &Case, spin: &Spin, shares: &[f64]) -> Estimate {
+    let effect = Effect::Step;
+    let Some((method, step)) = case.step else {
+        return Estimate { effect, value: 0.0, influence: 0.0, why: "The step follows from the tolerance.".into() };
+    };
+    let omega = &case.body.circular_frequencies;
+    let highest = omega.iter().copied().fold(0.0, f64::max);
+    let value = step * if method.limited_by_modes() { highest } else { spin.largest };
+    // Phase error of RK4: x⁵/120 a step.
+    let order = i32::try_from(method.order()).unwrap_or(1);
+    let late = |rate: f64| (rate * step).powi(order) * rate * case.end / if order == 4 { 120.0 } else { 2.0 };
+    let modes = match method.limited_by_modes() {
+        true => {
+            omega.iter().zip(shares).map(|(w, share)| share.min(1.0) * (w * step).powi(4) * w * case.end / 120.0).sum()
+        }
+        false => 0.0,
+    };
+    let influence = relative(modes.max(late(spin.largest)), 1.0);
+    let why = format!("Steps of {step:.1e} put the motion late by up to {influence:.1e} rad at the end.");
+    Estimate { effect, value, influence, why }
+}
+
+/// Σ m_kl x_k y_l
+fn double_sum(matrix: &Mat<f64>, x: &[f64], y: &[f64]) -> f64 {
+    x.iter().enumerate().map(|(k, x)| x * y.iter().enumerate().map(|(l, y)| matrix[(k, l)] * y).sum::<f64>()).sum()
+}

@@ -1,0 +1,124 @@
+//! The plate of the paper, solved once, with the stiffness that spinning gives it.
+
+use std::sync::OnceLock;
+
+use advice::Case;
+use fem_tet10::{Material, Materials, Mesh, PointMass, assemble, read_msh, reduced_geometric_stiffness};
+use frames_rk4::{
+    ConservativeScheme, Effects, History, Initial, Load, Method, Observation, Physics, PointShapes, Rows, Setup,
+    Simulation, StepControl,
+};
+use modal::{BodyPoint, Modes, ReducedBody, RigidMotion, Solver, Support, centrifugal_fields};
+use nalgebra::Vector3;
+
+pub struct Plate {
+    mesh: Mesh,
+    modes: Modes,
+    pub body: ReducedBody,
+    pub peaks: Vec<f64>,
+    pub length: f64,
+    /// Static answer to a unit force along z at the corner, in its own direction.
+    pub corner_compliance: f64,
+}
+
+pub const CORNER: [f64; 3] = [500.0, 25.0, 10.0];
+
+pub fn plate() -> &'static Plate {
+    static PLATE: OnceLock<Plate> = OnceLock::new();
+    PLATE.get_or_init(|| Plate::new(|_| Support::free()))
+}
+
+/// The same plate, clamped at one end.
+pub fn clamped() -> &'static Plate {
+    static PLATE: OnceLock<Plate> = OnceLock::new();
+    PLATE.get_or_init(|| {
+        Plate::new(|positions| Support {
+            motion: RigidMotion::Clamp { origin: Vector3::new(-500.0, 0.0, 5.0) },
+            nodes: (0..).zip(positions).filter(|(_, x)| x[0] < -499.9).map(|(node, _)| node).collect(),
+        })
+    })
+}
+
+impl Plate {
+    fn new(support: impl Fn(&[[f64; 3]]) -> Support) -> Self {
+        let corners = [-500.0, 500.0]
+            .into_iter()
+            .flat_map(|x| [-25.0, 25.0].map(|y| (x, y)))
+            .flat_map(|(x, y)| [0.0, 10.0].map(|z| [x, y, z]));
+        let masses: Vec<PointMass> = corners.map(|at| PointMass { at, mass: 0.001, spread: None }).collect();
+        let mesh = read_msh(format!("{}/../../meshes/plate.msh", env!("CARGO_MANIFEST_DIR"))).unwrap();
+        let material = Materials::Uniform(Material { young_modulus: 70_000.0, poisson_ratio: 0.33, density: 2.7e-9 });
+        let matrices = assemble(&mesh, &material, &masses).unwrap();
+        let (k, m) = (matrices.stiffness(), matrices.mass());
+        let solver = Solver::new(k, m, mesh.positions(), &support(mesh.positions())).unwrap();
+        let modes = solver.modes(10, |_| ()).unwrap();
+        let mut body = ReducedBody::new(&modes, m, mesh.positions()).unwrap();
+        let fields = centrifugal_fields(solver.nodal_mass(), mesh.positions(), &body.origin);
+        let answers = solver.static_response(fields.as_ref()).unwrap();
+        let reduced = reduced_geometric_stiffness(&mesh, &material, answers.as_ref(), modes.shapes.as_ref()).unwrap();
+        body.stress_stiffness = Some(reduced.try_into().unwrap());
+        let nodes = mesh.positions().len();
+        let peak = |k: usize| {
+            let at = |node: usize| Vector3::from_fn(|axis, _| modes.shapes[(3 * node + axis, k)]).norm();
+            (0..nodes).map(at).fold(0.0, f64::max)
+        };
+        let place = mesh.locate(CORNER).unwrap();
+        let mut force = faer::Mat::zeros(3 * nodes, 1);
+        for (node, weight) in place.nodes.iter().zip(&place.weights) {
+            force[(3 * *node as usize + 2, 0)] = *weight;
+        }
+        let answer = solver.static_response(force.as_ref()).unwrap();
+        let corner_compliance = (force.transpose() * &answer)[(0, 0)];
+        Plate { peaks: (0..10).map(peak).collect(), length: 1001.3, corner_compliance, mesh, modes, body }
+    }
+
+    pub fn force(&self, at: [f64; 3], force: [f64; 3], history: History) -> Load {
+        let place = self.mesh.locate(at).unwrap();
+        let point = BodyPoint::new(&self.modes, self.mesh.positions(), &place.nodes, &place.weights);
+        Load::dead_force(PointShapes::new(&self.body, &point), force.into(), history)
+    }
+
+    pub fn case<'a>(&'a self, damping: &'a [f64], loads: &'a [Load], initial: &'a Initial, end: f64) -> Case<'a> {
+        Case {
+            body: &self.body,
+            damping_ratios: damping,
+            loads,
+            gravity: &[],
+            drive: None,
+            initial,
+            end,
+            step: None,
+            length: self.length,
+            peaks: &self.peaks,
+            static_compliances: &[],
+        }
+    }
+}
+
+pub fn spinning(omega: [f64; 3]) -> Initial {
+    Initial { omega: omega.into(), ..Initial::at_rest(10) }
+}
+
+/// 200 rows of the motion.
+pub fn run(case: &Case, effects: Effects) -> Vec<Observation> {
+    let loads = [case.loads, case.gravity].concat();
+    let physics = Physics { effects, drive: case.drive.cloned(), load_stiffness: None };
+    let mut simulation = Simulation::new(&Setup {
+        body: case.body,
+        damping_ratios: case.damping_ratios,
+        loads: &loads,
+        physics: &physics,
+        reference_points: [Vector3::x(), Vector3::y(), Vector3::z()],
+        initial: case.initial,
+        method: Method::Conservative(ConservativeScheme::Exponential),
+        control: StepControl::Fixed(1e-4),
+        end: case.end,
+        rows: Rows::Interval(case.end / 200.0),
+        points: &[],
+    })
+    .unwrap();
+    let mut first = simulation.observation();
+    simulation.observe(&mut first).unwrap();
+    let rest = simulation.map(Result::unwrap);
+    std::iter::once(first).chain(rest).collect()
+}
