@@ -29,6 +29,9 @@ pub struct Case<'a> {
     /// `f·u` of each load where its history is 1, and its whole static answer u
     /// (`modal::Solver::static_response`): first those of `loads`, then of `gravity`. Empty where not known.
     pub static_compliances: &'a [f64],
+    /// `√(uᵀMu − Σ(Φ_kᵀMu)²)` of the static answer u to the centrifugal field of each pair of spins, in the order of
+    /// [`ReducedBody::PAIRS`]: what the modes leave out of it (6). Empty where not known.
+    pub centrifugal_remainders: &'a [f64],
 }
 
 /// A case that no advice can be given on.
@@ -73,6 +76,9 @@ impl Case<'_> {
             let loads = self.loads.len() + self.gravity.len();
             lists.push(("the list of static compliances", self.static_compliances.len(), loads));
         }
+        if !self.centrifugal_remainders.is_empty() {
+            lists.push(("the list of centrifugal remainders", self.centrifugal_remainders.len(), 6));
+        }
         for (what, found, expected) in lists {
             if found != expected {
                 return Err(AdviceError::Length { what, found, expected });
@@ -92,6 +98,7 @@ impl Case<'_> {
             ("a damping ratio", self.damping_ratios),
             ("a largest displacement", self.peaks),
             ("a static compliance", self.static_compliances),
+            ("a centrifugal remainder", self.centrifugal_remainders),
             ("an initial velocity", initial.velocity.as_slice()),
             ("an initial angular velocity", initial.omega.as_slice()),
             ("an initial modal displacement", &initial.modal_displacement),

@@ -39,6 +39,7 @@
 //!     length: 200.0,
 //!     peaks: &[100.0; 4], // the largest of each column of `modes.shapes`
 //!     static_compliances: &[],
+//!     centrifugal_remainders: &[],
 //! };
 //! let effects = Effects::default();
 //! assert_eq!(limits(&case, &effects)?, None);

@@ -1,9 +1,10 @@
 //! After, or during, the run: whether what was assumed has held.
 
 use frames_rk4::{Effects, Observation};
+use nalgebra::Vector3;
 
 use crate::case::{AdviceError, Case};
-use crate::limits::{Refusal, refusal};
+use crate::limits::{Refusal, SOFTENED, refusal};
 use crate::table::{Advice, LINEAR};
 
 /// An assumption that has broken.
@@ -60,6 +61,8 @@ pub struct Review<'a> {
     effects: Effects,
     spin: f64,
     deflection: f64,
+    /// The last |ω| whose limit was looked up, and its direction.
+    looked_up: (f64, Vector3<f64>),
     broken: Vec<Broken>,
 }
 
@@ -69,7 +72,14 @@ const MARGIN: f64 = 1.01;
 impl<'a> Review<'a> {
     /// Of a run with these effects that `advice` was given on. The case has the modes that are simulated.
     pub fn new(case: Case<'a>, effects: Effects, advice: &Advice) -> Self {
-        Self { case, effects, spin: advice.spin, deflection: advice.deflection, broken: Vec::new() }
+        Self {
+            case,
+            effects,
+            spin: advice.spin,
+            deflection: advice.deflection,
+            looked_up: (0.0, Vector3::zeros()),
+            broken: Vec::new(),
+        }
     }
 
     /// Looks at the motion at a time; times rise.
@@ -94,9 +104,9 @@ impl<'a> Review<'a> {
         if deflection > LINEAR {
             self.note(Broken::Linear { time, found: deflection });
         }
-        let known = self.broken.iter().any(|broken| matches!(broken, Broken::Limit { .. }));
-        if !known && speed > 0.0 {
+        if speed >= SOFTENED * self.lowest() && !self.is_known(&observation.omega_body, speed) {
             let axis = observation.omega_body / speed;
+            self.looked_up = (speed, axis);
             if let Some(refusal) = refusal(&self.case, &axis, speed, &self.effects)? {
                 self.broken.push(Broken::Limit { time, refusal });
             }
@@ -107,6 +117,19 @@ impl<'a> Review<'a> {
     /// What has broken so far: each assumption once, with the first time and the worst.
     pub fn broken(&self) -> &[Broken] {
         &self.broken
+    }
+
+    /// Lowest natural frequency, rad per time. The centrifugal force takes at most Ω² from the stiffness of a mode, so
+    /// that below it nothing can be lost.
+    fn lowest(&self) -> f64 {
+        self.case.body.circular_frequencies.iter().copied().fold(f64::INFINITY, f64::min)
+    }
+
+    /// Whether a limit has broken, or was looked up for about this spin: it costs an eigenvalue problem.
+    fn is_known(&self, omega_body: &Vector3<f64>, speed: f64) -> bool {
+        let (fastest, axis) = &self.looked_up;
+        self.broken.iter().any(|broken| matches!(broken, Broken::Limit { .. }))
+            || speed < 1.02 * fastest && omega_body.dot(axis).abs() > 0.999 * speed
     }
 
     fn note(&mut self, new: Broken) {

@@ -94,7 +94,7 @@ pub fn advise(case: &Case, tolerance: f64) -> Result<Advice, AdviceError> {
         stiffening(case, &spin, &response, stiffness.as_ref()),
         rigid::translation(case, &sources),
         rigid::rotation(case, &spin, &sources, &response),
-        static_correction(case, &spin, &sources, keep),
+        static_correction(case, &spin, &sources, &response, keep),
         Estimate {
             effect: Effect::Deflection,
             value: deflection,
@@ -256,7 +256,7 @@ fn stiffening(case: &Case, spin: &Spin, response: &Response, stiffness: Option<&
     Estimate { effect: Effect::GeometricStiffening, value, influence, why }
 }
 
-fn static_correction(case: &Case, spin: &Spin, sources: &[Source], keep: usize) -> Estimate {
+fn static_correction(case: &Case, spin: &Spin, sources: &[Source], response: &Response, keep: usize) -> Estimate {
     let omega = &case.body.circular_frequencies;
     let compliance = |source: &Source, modes: usize| -> f64 {
         (0..modes).map(|k| (source.modal_at_start[k] / omega[k]).powi(2)).sum()
@@ -270,13 +270,23 @@ fn static_correction(case: &Case, spin: &Spin, sources: &[Source], keep: usize) 
     };
     let value = sources.iter().enumerate().map(left).fold(0.0, f64::max);
     let known = case.static_compliances.len() == sources.len();
-    // Of the centrifugal field, the whole static answer is in no list.
-    let spun = spin.largest > 0.0 && case.body.inertia_first.iter().flatten().any(|c| *c != 0.0);
-    let influence = if spun { 1.0 } else { value };
+    let spins = spin.largest > 0.0 && case.body.inertia_first.iter().flatten().any(|c| *c != 0.0);
+    let stretch = match case.centrifugal_remainders {
+        _ if !spins => 0.0,
+        [] => 1.0,
+        // |ω_i ω_j| is at most Ω².
+        all => {
+            let left: f64 = all.iter().map(|r| spin.largest * spin.largest * r).sum();
+            relative(left, response.scale + left)
+        }
+    };
+    let influence = value.max(stretch);
     let why = if influence == 0.0 {
         "The modes carry the whole static answer.".into()
-    } else if spun {
-        "The centrifugal field stretches the body in ways that a few modes do not carry.".into()
+    } else if stretch > value {
+        format!(
+            "The centrifugal field stretches the body by {stretch:.1e} of its deformation in ways that the modes do not carry."
+        )
     } else if known {
         format!(
             "The modes that are kept leave out {:.1} % of the static deflection where the loads act.",

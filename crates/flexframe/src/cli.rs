@@ -8,7 +8,7 @@ use std::time::Duration;
 use clap::{Args, Parser, Subcommand};
 use flexframe::animation::{AnimationSettings, animate};
 use flexframe::cost::{self, CostSettings};
-use flexframe::{figures, modes, paper, run};
+use flexframe::{advise, figures, modes, paper, run};
 use scene::{Flexible, Scene};
 use serde::Serialize;
 
@@ -48,6 +48,14 @@ enum Command {
         /// Folder for a picture of the mode shapes (SVG and PNG); none if not given.
         #[arg(short, long, value_name = "DIR")]
         output: Option<PathBuf>,
+    },
+    /// Say which effects a scene calls for, and why.
+    Advise {
+        #[command(flatten)]
+        scene: SceneArgs,
+        /// Run the scene with each effect switched, and show the real influence beside the estimate.
+        #[arg(long)]
+        verify: bool,
     },
     /// Run the paper's plate and set it beside the paper: every figure, and a report.
     Paper {
@@ -153,6 +161,11 @@ fn execute(cli: Cli) -> Result<(), Box<dyn Error>> {
                 list(&pictures);
             }
             Ok(())
+        }
+        Command::Advise { scene: SceneArgs { scene, json }, verify } => {
+            let report = advise::advise(&Scene::read(scene)?, verify, |p| bar.advise(p))?;
+            drop(bar);
+            print(&report, json)
         }
         Command::Paper { scene: SceneArgs { scene, json }, output } => {
             let scene = Scene::read(scene)?;

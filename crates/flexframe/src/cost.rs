@@ -31,7 +31,9 @@ pub use machine::Machine;
 pub use modes::ModesRow;
 pub use page::accuracy_page;
 pub use reference::ReferenceReport;
-pub use run::{Errors, RunFailure};
+pub use run::Errors;
+
+pub use crate::run::RunFailure;
 
 use answer::refine;
 use case::Case;

@@ -17,10 +17,12 @@
 //! ```
 #![forbid(unsafe_code)]
 
-pub use {fem_tet10, frames_rk4, modal, results, rigid_kin, scene};
+pub use {advice, fem_tet10, frames_rk4, modal, results, rigid_kin, scene};
 
+pub mod advise;
 pub mod animation;
 pub mod cost;
+mod effects;
 pub mod figures;
 pub mod modes;
 pub mod paper;

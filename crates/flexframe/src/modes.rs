@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use scene::{BuildError, BuildProgress, Model, Scene};
+use scene::{BuildError, BuildProgress, Choice, Flexible, Model, Scene};
 use serde::Serialize;
 
 use crate::report::{BodyReport, MeshReport, Times, quantity};
@@ -27,7 +27,13 @@ pub struct ModesReport {
 /// # Errors
 /// [`BuildError`].
 pub fn modes(scene: &Scene, progress: impl FnMut(BuildProgress)) -> Result<(Model, ModesReport), BuildError> {
-    let model = Model::build(scene, progress)?;
+    // The modes as they are, whatever a motion of the scene would call for.
+    let mut scene = scene.clone();
+    scene.modes.flexible = Flexible::Count(scene.modes.flexible.most());
+    scene.modes.static_correction = Choice::Off;
+    scene.effects.damping = Choice::On;
+    scene.effects.geometric_stiffening = Choice::Off;
+    let model = Model::build(&scene, progress)?;
     let report = ModesReport {
         title: scene.title.clone(),
         frequency_unit: frequency_unit(&scene.units.time),

@@ -2,6 +2,7 @@
 
 use std::time::{Duration, Instant};
 
+use flexframe::advise::AdviseProgress;
 use flexframe::cost::CostProgress;
 use flexframe::run::RunProgress;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -39,6 +40,13 @@ impl Bar {
         match progress {
             RunProgress::Build(progress) => self.build(progress),
             RunProgress::Motion(part) => self.show("stepping", Some(((10_000.0 * part) as u64, 10_000))),
+        }
+    }
+
+    pub fn advise(&mut self, progress: AdviseProgress) {
+        match progress {
+            AdviseProgress::Build(progress) => self.build(progress),
+            AdviseProgress::Verifying { done, total } => self.show("verifying", Some((done, total))),
         }
     }
 

@@ -135,6 +135,11 @@ impl fmt::Display for MeshReport {
 }
 
 impl BodyReport {
+    /// How many static shapes follow the natural modes.
+    pub fn static_shapes(&self) -> usize {
+        self.natural_frequencies.len() - self.residuals.len().min(self.natural_frequencies.len())
+    }
+
     /// Of a model.
     pub fn new(model: &Model) -> Self {
         let body = &model.body;

@@ -4,13 +4,15 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use frames_rk4::{Observation, Reached, SetupError, Simulation, StepError};
+use advice::{AdviceError, Review};
+use frames_rk4::{Observation, Reached, Simulation, StepError};
 use nalgebra::Vector3;
 use results::{BodyProperties, FileError, Metadata, PointSample, Sample, Units, Writer};
 use rigid_kin::Attitude;
-use scene::{BuildError, BuildProgress, Model, Scene, Stepping};
+use scene::{BuildError, BuildProgress, Model, Scene, StartError, Stepping};
 use serde::Serialize;
 
+use crate::effects;
 use crate::modes::frequency_unit;
 use crate::report::{BodyReport, MeshReport, Times, quantity};
 
@@ -26,7 +28,7 @@ pub enum RunError {
         /// The scene file.
         scene: PathBuf,
         /// Why.
-        source: SetupError,
+        source: StartError,
     },
     /// A step failed. The states before it are in the results file.
     #[error("{source} (the states before it are in {results})", results = results.display())]
@@ -39,6 +41,14 @@ pub enum RunError {
     /// The results file cannot be written.
     #[error(transparent)]
     File(#[from] FileError),
+    /// The scene cannot be run to compare other runs with.
+    #[error("{}: the scene itself does not run, so that there is nothing to verify against: {failure}", scene.display())]
+    Verify {
+        /// The scene file.
+        scene: PathBuf,
+        /// Why.
+        failure: RunFailure,
+    },
     /// The output folder cannot be made.
     #[error("{}: cannot make the output folder: {source}", folder.display())]
     Folder {
@@ -47,6 +57,17 @@ pub enum RunError {
         /// Why.
         source: std::io::Error,
     },
+}
+
+/// Why a run did not come to its end.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum RunFailure {
+    /// It could not start.
+    #[error(transparent)]
+    Start(#[from] StartError),
+    /// A step failed.
+    #[error(transparent)]
+    Step(#[from] StepError),
 }
 
 /// How far a run has come.
@@ -99,6 +120,10 @@ pub struct RunReport {
     pub final_energy: f64,
     /// How far the balances are from closed.
     pub balances: Balances,
+    /// The effects of this body and whether each was computed; none of the paper's formulation, which has its own.
+    pub effects: Vec<(&'static str, bool)>,
+    /// Assumptions that did not hold.
+    pub warnings: Vec<String>,
     /// Where the time went, seconds.
     pub times: Times,
 }
@@ -133,7 +158,10 @@ pub fn run(
     std::fs::create_dir_all(folder).map_err(|source| RunError::Folder { folder: folder.to_owned(), source })?;
     let path = results_path(scene, folder);
     let metadata = metadata(scene, &model);
-    let mut recorder = Recorder::new(&model, simulation.observation(), Writer::create(&path, &metadata)?);
+    let initial = model.initial(scene);
+    let review = Review::new(model.case(scene, &initial), model.physics.effects, &model.advice);
+    let writer = Writer::create(&path, &metadata)?;
+    let mut recorder = Recorder::new(&model, simulation.observation(), writer, review);
     let failed = |source| RunError::Step { results: path.clone(), source };
     recorder.record(&mut simulation).map_err(|error| error.unless_file(failed))?;
     loop {
@@ -166,6 +194,8 @@ pub fn run(
         peak_strain_energy: recorder.peak_strain_energy,
         final_energy: last.energy(),
         balances: recorder.monitor.balances(),
+        effects: effects::computed(scene, &model),
+        warnings: recorder.review.broken().iter().map(ToString::to_string).collect(),
         results: path,
         times: Times::default(),
     };
@@ -215,9 +245,10 @@ fn metadata(scene: &Scene, model: &Model) -> Metadata {
 }
 
 /// Turns observations into rows of the results file.
-struct Recorder {
+struct Recorder<'a> {
     observation: Observation,
     writer: Writer,
+    review: Review<'a>,
     points: Vec<PointSample>,
     rows: u64,
     peak_strain_energy: f64,
@@ -228,6 +259,7 @@ struct Recorder {
 enum RecordError {
     Step(StepError),
     File(FileError),
+    Review(AdviceError),
 }
 
 impl RecordError {
@@ -235,15 +267,16 @@ impl RecordError {
         match self {
             Self::Step(error) => step(error),
             Self::File(error) => error.into(),
+            Self::Review(error) => BuildError::from(error).into(),
         }
     }
 }
 
-impl Recorder {
-    fn new(model: &Model, observation: Observation, writer: Writer) -> Self {
+impl<'a> Recorder<'a> {
+    fn new(model: &Model, observation: Observation, writer: Writer, review: Review<'a>) -> Self {
         let points = Vec::with_capacity(model.points.len());
         let monitor = Monitor::default();
-        Self { observation, writer, points, rows: 0, peak_strain_energy: 0.0, monitor }
+        Self { observation, writer, review, points, rows: 0, peak_strain_energy: 0.0, monitor }
     }
 
     /// Writes the row of the time that `simulation` has reached.
@@ -259,6 +292,7 @@ impl Recorder {
         }));
         self.peak_strain_energy = self.peak_strain_energy.max(now.strain_energy);
         self.monitor.watch(now);
+        self.review.observe(now).map_err(RecordError::Review)?;
         self.writer
             .push(&Sample {
                 time: now.time,
@@ -351,13 +385,18 @@ impl fmt::Display for RunReport {
         }
         write!(f, "  body     {} {mass}, ", quantity(self.body.mass))?;
         match (frequencies.first(), frequencies.last()) {
-            (Some(first), Some(last)) => writeln!(
-                f,
-                "{} flexible modes from {first:.4} to {last:.4} {}",
-                frequencies.len(),
-                frequency_unit(time)
-            )?,
+            (Some(first), Some(last)) => {
+                let shapes = match self.body.static_shapes() {
+                    0 => String::new(),
+                    count => format!(" and {count} static shapes"),
+                };
+                let modes = frequencies.len() - self.body.static_shapes();
+                writeln!(f, "{modes} flexible modes{shapes} from {first:.4} to {last:.4} {}", frequency_unit(time))?;
+            }
             _ => writeln!(f, "rigid")?,
+        }
+        if !self.effects.is_empty() {
+            writeln!(f, "  effects  {}", effects::in_words(&self.effects))?;
         }
         writeln!(f, "  motion   {}, {:.0} steps per second", self.steps_in_words(), self.steps_per_second)?;
         let [x, y, z] = self.moved.map(quantity);
@@ -379,6 +418,10 @@ impl fmt::Display for RunReport {
              {angular_momentum:.1e}"
         )?;
         writeln!(f, "  time     {}", self.times)?;
-        write!(f, "  results  {} ({} rows)", self.results.display(), self.rows)
+        write!(f, "  results  {} ({} rows)", self.results.display(), self.rows)?;
+        for warning in &self.warnings {
+            write!(f, "\n  warning  {warning}")?;
+        }
+        Ok(())
     }
 }

@@ -78,7 +78,7 @@ impl NodalMass {
     }
 
     /// M·X for X with 3n rows.
-    pub(crate) fn product(&self, x: MatRef<'_, f64>) -> Mat<f64> {
+    pub fn product(&self, x: MatRef<'_, f64>) -> Mat<f64> {
         let mut y = Mat::zeros(x.nrows(), x.ncols());
         self.product_into(x, y.as_mut(), &mut Vec::new());
         y

@@ -2,23 +2,24 @@
 
 mod history;
 mod loads;
+mod meshed;
 mod physics;
+mod rigid;
 mod support;
 
 use std::time::{Duration, Instant};
 
-use faer::Mat;
-use fem_tet10::{AssemblyError, Location, Matrices, Mesh, MeshError, assemble, read_msh, reduced_geometric_stiffness};
+use advice::{Advice, AdviceError, Case, Refusal};
+use fem_tet10::{AssemblyError, Matrices, Mesh, MeshError, assemble, read_msh};
 use frames_rk4::{
     ConservativeScheme, Initial, Load, Physics, PointShapes, Rows, Setup, SetupError, Simulation, StepControl,
 };
-use modal::{BodyPoint, ModalError, Modes, ReducedBody, Solver, Support, centrifugal_fields};
-use nalgebra::{Matrix3, Vector3};
+use modal::{ModalError, Modes, ReducedBody};
+use nalgebra::Vector3;
 
 use crate::effects::Choice;
 use crate::error::SceneError;
 use crate::scene::{self, Body, MeshedBody, Scene};
-use loads::MeshLoad;
 
 /// A scene that cannot be built.
 #[derive(Debug, thiserror::Error)]
@@ -35,6 +36,9 @@ pub enum BuildError {
     /// The modes cannot be found.
     #[error(transparent)]
     Modal(#[from] ModalError),
+    /// No advice can be given on it.
+    #[error(transparent)]
+    Advice(#[from] AdviceError),
 }
 
 /// How far the building of a model has come.
@@ -89,10 +93,24 @@ pub struct Model {
     pub points: Vec<(String, PointShapes)>,
     /// R, P, Q from the origin of the body, body axes.
     pub reference_points: [Vector3<f64>; 3],
+    /// Which effects the scene calls for, and why.
+    pub advice: Advice,
+    /// Why the model is known to be wrong, if it is: it does not start. Set it to `None` to see what it does.
+    pub refusal: Option<Refusal>,
     /// Where the time went.
     pub times: BuildTimes,
     loads: Vec<Load>,
     damping_ratios: Vec<f64>,
+    size: Size,
+}
+
+/// The size of a body and of its modes.
+#[derive(Debug, Clone)]
+struct Size {
+    /// Largest distance of two points of the body.
+    length: f64,
+    /// Largest displacement of a node in each mode (nf).
+    peaks: Vec<f64>,
 }
 
 impl Model {
@@ -103,118 +121,9 @@ impl Model {
     /// there is one.
     pub fn build(scene: &Scene, progress: impl FnMut(BuildProgress)) -> Result<Self, BuildError> {
         match &scene.body {
-            Body::Meshed(meshed) => Self::meshed(scene, meshed, progress),
-            Body::Rigid(rigid) => Self::rigid(scene, rigid),
+            Body::Meshed(body) => meshed::build(scene, body, progress),
+            Body::Rigid(body) => rigid::build(scene, body),
         }
-    }
-
-    fn meshed(scene: &Scene, meshed: &MeshedBody, mut progress: impl FnMut(BuildProgress)) -> Result<Self, BuildError> {
-        let mut times = BuildTimes::default();
-        progress(BuildProgress::Mesh);
-        let mesh = timed(&mut times.mesh, || read_mesh(scene, meshed))?;
-        progress(BuildProgress::Assembly);
-        let matrices = timed(&mut times.assembly, || matrices(scene, meshed, &mesh))?;
-        let (support, drive) = support::support(scene, Some(&mesh))?;
-        let requested = match scene.effects.flexibility {
-            Choice::Off => 0,
-            Choice::On | Choice::Auto => scene.modes.flexible.most(),
-        };
-        let solver = Solver::new(matrices.stiffness(), matrices.mass(), mesh.positions(), &support)?;
-        let mut modes = timed(&mut times.modes, || {
-            solver.modes(requested, |p| progress(BuildProgress::Modes(p))).map_err(|error| too_many_modes(scene, error))
-        })?;
-        let loads = loads::on_mesh(scene, &mesh, &solver.nodal_mass().row_sums())?;
-        progress(BuildProgress::Statics);
-        let statics_started = Instant::now();
-        let materials = materials(meshed);
-        if scene.modes.static_correction == Choice::On && requested > 0 {
-            let mut fields = nodal_forces(&loads, mesh.positions().len());
-            if physics::may_spin(scene, &support, drive.as_ref()) {
-                let of_spin = centrifugal_fields(solver.nodal_mass(), mesh.positions(), &modes.rigid.origin);
-                fields = Mat::from_fn(fields.nrows(), fields.ncols() + of_spin.ncols(), |i, j| {
-                    if j < fields.ncols() { fields[(i, j)] } else { of_spin[(i, j - fields.ncols())] }
-                });
-            }
-            let answers = solver.static_response(fields.as_ref())?;
-            modes = solver.with_static_shapes(modes, answers.as_ref())?;
-        }
-        times.statics = statics_started.elapsed();
-        let started = Instant::now();
-        let mut body = ReducedBody::new(&modes, matrices.mass(), mesh.positions())?;
-        times.reduction = started.elapsed();
-        let statics_started = Instant::now();
-        let stiffening = physics::stiffening(scene, &body, drive.as_ref(), &support);
-        if stiffening {
-            let fields = centrifugal_fields(solver.nodal_mass(), mesh.positions(), &body.origin);
-            let answers = solver.static_response(fields.as_ref())?;
-            let stiffness = reduced_geometric_stiffness(&mesh, &materials, answers.as_ref(), modes.shapes.as_ref())?;
-            body.stress_stiffness = stiffness.try_into().ok();
-        }
-        let steady: Vec<&MeshLoad> =
-            loads.iter().filter(|load| physics::stiffens(scene, &body, drive.as_ref(), load)).collect();
-        let load_stiffness = if steady.is_empty() {
-            None
-        } else {
-            let mut field = Mat::zeros(3 * mesh.positions().len(), 1);
-            steady.iter().for_each(|load| load.add_nodal_forces(field.as_mut().col_mut(0)));
-            let answer = solver.static_response(field.as_ref())?;
-            reduced_geometric_stiffness(&mesh, &materials, answer.as_ref(), modes.shapes.as_ref())?.pop()
-        };
-        times.statics += statics_started.elapsed();
-
-        let started = Instant::now();
-        let point = |key: String, at: [f64; 3]| -> Result<PointShapes, SceneError> {
-            let Location { nodes, weights } = mesh.locate(at).map_err(|error| refuse(scene, &key, error))?;
-            Ok(PointShapes::new(&body, &BodyPoint::new(&modes, mesh.positions(), &nodes, &weights)))
-        };
-        let points = output_points(scene, point)?;
-        let reduced_loads = loads.iter().map(|load| load.reduced(&body, &modes, &mesh)).collect();
-        let reference_points = match scene.frame {
-            Some(scene::Frame { r, p, q }) => [r, p, q],
-            None => well_spread(mesh.positions(), &body.center_of_mass),
-        }
-        .map(|x| Vector3::from(x) - body.origin);
-        times.reduction += started.elapsed();
-        drop(solver);
-        Ok(Self {
-            physics: Physics { effects: physics::effects(scene, stiffening), drive, load_stiffness },
-            damping_ratios: damping_ratios(scene, &body),
-            meshed: Some(Meshed { matrix_bytes: matrices.bytes(), mesh, modes }),
-            body,
-            points,
-            reference_points,
-            times,
-            loads: reduced_loads,
-        })
-    }
-
-    fn rigid(scene: &Scene, rigid: &scene::RigidBody) -> Result<Self, BuildError> {
-        let (Support { motion, .. }, drive) = support::support(scene, None)?;
-        let center = Vector3::from(rigid.center_of_mass);
-        let about_center = Matrix3::from_fn(|i, j| rigid.inertia[i][j]);
-        let origin = motion.fixed_point().unwrap_or(center);
-        let arm = center - origin;
-        let inertia = about_center + (Matrix3::identity() * arm.norm_squared() - arm * arm.transpose()) * rigid.mass;
-        let body = ReducedBody::rigid(rigid.mass, center, inertia, motion)?;
-        let point = |_: String, at: [f64; 3]| -> Result<PointShapes, SceneError> {
-            let position_body = Vector3::from(at) - body.origin;
-            Ok(PointShapes::new(&body, &BodyPoint { position_body, shapes: Mat::zeros(3, 0) }))
-        };
-        let points = output_points(scene, point)?;
-        let reference_points = match scene.frame {
-            Some(scene::Frame { r, p, q }) => [r, p, q].map(|x| Vector3::from(x) - body.origin),
-            None => [Vector3::zeros(), Vector3::x(), Vector3::y()],
-        };
-        Ok(Self {
-            meshed: None,
-            physics: Physics { effects: physics::effects(scene, false), drive, load_stiffness: None },
-            points,
-            reference_points,
-            times: BuildTimes::default(),
-            loads: loads::on_rigid(scene, &body)?,
-            damping_ratios: Vec::new(),
-            body,
-        })
     }
 
     /// Frequencies of the flexible modes, cycles per time.
@@ -225,13 +134,10 @@ impl Model {
     /// The same body with its first `flexible` modes only.
     pub fn truncated(&self, flexible: usize) -> Self {
         let flexible = flexible.min(self.body.flexible());
-        let meshed = self.meshed.as_ref().map(|meshed| {
-            let mut modes = meshed.modes.clone();
-            modes.eigenvalues.truncate(flexible);
-            modes.residuals.truncate(flexible);
-            modes.force_residuals.truncate(flexible);
-            modes.shapes = meshed.modes.shapes.get(.., ..flexible).to_owned();
-            Meshed { mesh: meshed.mesh.clone(), modes, ..*meshed }
+        let meshed = self.meshed.as_ref().map(|meshed| Meshed {
+            mesh: meshed.mesh.clone(),
+            modes: truncated_modes(&meshed.modes, flexible),
+            ..*meshed
         });
         let stiffness = self.physics.load_stiffness.as_ref();
         let physics = Physics {
@@ -245,6 +151,8 @@ impl Model {
             points: self.points.iter().map(|(name, point)| (name.clone(), point.truncated(flexible))).collect(),
             loads: self.loads.iter().map(|load| load.truncated(flexible)).collect(),
             damping_ratios: self.damping_ratios[..flexible].to_vec(),
+            size: Size { peaks: self.size.peaks[..flexible].to_vec(), ..self.size },
+            advice: self.advice.clone(),
             ..*self
         }
     }
@@ -259,11 +167,45 @@ impl Model {
         &self.loads
     }
 
+    /// How many static shapes follow the natural modes.
+    pub fn static_shapes(&self) -> usize {
+        self.meshed.as_ref().map_or(0, |meshed| meshed.modes.eigenvalues.len() - meshed.modes.natural())
+    }
+
+    /// Largest displacement by deformation over the length of the body, bounded above by the sum over the modes.
+    pub fn deflection(&self, modal_displacement: &[f64]) -> f64 {
+        modal_displacement.iter().zip(&self.size.peaks).map(|(q, peak)| (q * peak).abs()).sum::<f64>()
+            / self.size.length
+    }
+
+    /// The state that a scene begins with, its lists padded with zeros.
+    pub fn initial(&self, scene: &Scene) -> Initial {
+        initial(scene, self.body.flexible())
+    }
+
+    /// The run as [`advice`] sees it, which begins with `initial`.
+    pub fn case<'a>(&'a self, scene: &Scene, initial: &'a Initial) -> Case<'a> {
+        Case {
+            body: &self.body,
+            damping_ratios: &self.damping_ratios,
+            loads: &self.loads,
+            gravity: &[],
+            drive: self.physics.drive.as_ref(),
+            initial,
+            end: scene.time.end,
+            step: step(scene),
+            length: self.size.length,
+            peaks: &self.size.peaks,
+            static_compliances: &[],
+            centrifugal_remainders: &[],
+        }
+    }
+
     /// The motion of a scene from its beginning.
     ///
     /// # Errors
-    /// [`SetupError`], e.g. a step beyond the stability limit.
-    pub fn start(&self, scene: &Scene) -> Result<Simulation, SetupError> {
+    /// [`StartError`], e.g. a step beyond the stability limit.
+    pub fn start(&self, scene: &Scene) -> Result<Simulation, StartError> {
         let control = match scene.time.stepping {
             scene::Stepping::Step(step) => StepControl::Fixed(step),
             scene::Stepping::Tolerance(tolerance) => StepControl::Tolerance(tolerance),
@@ -285,16 +227,13 @@ impl Model {
         method: frames_rk4::Method,
         control: StepControl,
         rows: Rows,
-    ) -> Result<Simulation, SetupError> {
-        let padded = |list: &[f64]| (0..self.body.flexible()).map(|k| list.get(k).copied().unwrap_or(0.0)).collect();
-        let initial = Initial {
-            velocity: scene.initial.velocity.into(),
-            omega: scene.initial.angular_velocity.into(),
-            modal_displacement: padded(&scene.initial.modal_displacement),
-            modal_velocity: padded(&scene.initial.modal_velocity),
-        };
+    ) -> Result<Simulation, StartError> {
+        if let Some(refusal) = self.refusal {
+            return Err(refusal.into());
+        }
+        let initial = self.initial(scene);
         let points: Vec<PointShapes> = self.points.iter().map(|(_, point)| point.clone()).collect();
-        Simulation::new(&Setup {
+        let simulation = Simulation::new(&Setup {
             body: &self.body,
             damping_ratios: &self.damping_ratios,
             loads: &self.loads,
@@ -306,7 +245,37 @@ impl Model {
             end: scene.time.end,
             rows,
             points: &points,
-        })
+        })?;
+        Ok(simulation)
+    }
+}
+
+/// A motion that cannot start.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum StartError {
+    /// The integrator refuses it.
+    #[error(transparent)]
+    Setup(#[from] SetupError),
+    /// The model is known to be wrong.
+    #[error(transparent)]
+    Refused(#[from] Refusal),
+}
+
+fn initial(scene: &Scene, flexible: usize) -> Initial {
+    let padded = |list: &[f64]| (0..flexible).map(|k| list.get(k).copied().unwrap_or(0.0)).collect();
+    Initial {
+        velocity: scene.initial.velocity.into(),
+        omega: scene.initial.angular_velocity.into(),
+        modal_displacement: padded(&scene.initial.modal_displacement),
+        modal_velocity: padded(&scene.initial.modal_velocity),
+    }
+}
+
+/// Method and length of the step, where it is fixed.
+fn step(scene: &Scene) -> Option<(frames_rk4::Method, f64)> {
+    match scene.time.stepping {
+        scene::Stepping::Step(step) => Some((method(scene.time.method), step)),
+        scene::Stepping::Tolerance(_) => None,
     }
 }
 
@@ -365,13 +334,14 @@ fn output_points(
     named.map(|(name, at)| Ok((name.clone(), point(format!("output.points.{name}"), *at)?))).collect()
 }
 
-/// The forces of each load on the nodes, side by side (3n × loads).
-fn nodal_forces(loads: &[MeshLoad], nodes: usize) -> Mat<f64> {
-    let mut forces = Mat::zeros(3 * nodes, loads.len());
-    for (i, load) in loads.iter().enumerate() {
-        load.add_nodal_forces(forces.as_mut().col_mut(i));
-    }
-    forces
+/// The first of some modes.
+fn truncated_modes(modes: &Modes, flexible: usize) -> Modes {
+    let mut modes = modes.clone();
+    modes.eigenvalues.truncate(flexible);
+    modes.residuals.truncate(flexible);
+    modes.force_residuals.truncate(flexible);
+    modes.shapes = modes.shapes.get(.., ..flexible).to_owned();
+    modes
 }
 
 /// One damping ratio for each flexible mode.

@@ -45,7 +45,7 @@ mod section;
 mod shape;
 mod suggest;
 
-pub use build::{BuildError, BuildProgress, BuildTimes, Meshed, Model, method};
+pub use build::{BuildError, BuildProgress, BuildTimes, Meshed, Model, StartError, method};
 pub use constraint::{Constraint, Drive, HingeLine, Region};
 pub use effects::{Choice, Effects};
 pub use error::{Place, SceneError};

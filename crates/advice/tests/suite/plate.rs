@@ -91,6 +91,7 @@ impl Plate {
             length: self.length,
             peaks: &self.peaks,
             static_compliances: &[],
+            centrifugal_remainders: &[],
         }
     }
 }

@@ -1,7 +1,7 @@
 //! A scene with its model, ready to be run in any way.
 
 use frames_rk4::{Method, Rows, SetupError, Simulation, StepControl};
-use scene::{Model, Scene};
+use scene::{Model, Scene, StartError};
 
 use super::run::Scales;
 
@@ -30,7 +30,7 @@ impl<'a> Case<'a> {
     }
 
     /// The motion from its beginning, with rows at the times of comparison.
-    pub(super) fn begin(&self, method: Method, control: StepControl) -> Result<Simulation, SetupError> {
+    pub(super) fn begin(&self, method: Method, control: StepControl) -> Result<Simulation, StartError> {
         let interval = self.end() / self.intervals(control) as f64;
         self.model.start_with(self.scene, method, control, Rows::Interval(interval))
     }
@@ -50,7 +50,9 @@ impl<'a> Case<'a> {
     /// The longest fixed step that the method allows, at most the whole run.
     pub(super) fn longest_step(&self, method: Method) -> f64 {
         match self.begin(method, StepControl::Fixed(self.end())) {
-            Err(SetupError::StepBeyondLimit { limit, .. } | SetupError::StepBeyondSpin { limit, .. }) => limit,
+            Err(StartError::Setup(
+                SetupError::StepBeyondLimit { limit, .. } | SetupError::StepBeyondSpin { limit, .. },
+            )) => limit,
             _ => self.end(),
         }
     }

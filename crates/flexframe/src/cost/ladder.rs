@@ -7,7 +7,8 @@ use super::CostSettings;
 use super::answer::Setting;
 use super::case::Case;
 use super::reference::{ROUNDING, Reference};
-use super::run::{Errors, RunFailure, Timing, Trajectory};
+use super::run::{Errors, Timing, Trajectory};
+use crate::run::RunFailure;
 
 /// Errors below this multiple of the reference's own are not told apart.
 const RANKED_ABOVE: f64 = 3.0;

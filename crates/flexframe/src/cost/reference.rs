@@ -6,7 +6,8 @@ use frames_rk4::{Method, StepControl};
 use serde::Serialize;
 
 use super::case::Case;
-use super::run::{Errors, RunFailure, Trajectory};
+use super::run::{Errors, Trajectory};
+use crate::run::RunFailure;
 
 /// Steps of the first run.
 const FIRST: u64 = 100;

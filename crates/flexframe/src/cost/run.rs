@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use frames_rk4::{Observation, PointMotion, Reached, SetupError, Simulation, Stats, StepError};
+use frames_rk4::{Observation, PointMotion, Reached, Simulation, Stats, StepError};
 use nalgebra::Vector3;
 use scene::Model;
 use serde::Serialize;
@@ -11,17 +11,6 @@ use crate::run::{Balances, Monitor};
 
 /// Motion smaller than this fraction of the body is rounding.
 const STILL: f64 = 1e-12;
-
-/// Why a run did not come to its end.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum RunFailure {
-    /// It could not start.
-    #[error(transparent)]
-    Setup(#[from] SetupError),
-    /// A step failed.
-    #[error(transparent)]
-    Step(#[from] StepError),
-}
 
 /// A run, observed at equally spaced times.
 #[derive(Debug, Clone)]

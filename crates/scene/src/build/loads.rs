@@ -8,6 +8,7 @@ use nalgebra::Vector3;
 
 use super::history::history;
 use super::{BuildError, refuse, refuse_mesh};
+use crate::effects::Choice;
 use crate::load::{self, Load};
 use crate::scene::Scene;
 
@@ -31,11 +32,7 @@ enum Place {
 
 /// The loads of a scene on its mesh. `nodal_mass` is the mass that each node stands for.
 pub(super) fn on_mesh(scene: &Scene, mesh: &Mesh, nodal_mass: &[f64]) -> Result<Vec<MeshLoad>, BuildError> {
-    scene
-        .loads
-        .iter()
-        .enumerate()
-        .filter(|(_, load)| acts(scene, load))
+    acting(scene)
         .map(|(i, load)| {
             let key = |name: &str| format!("loads[{i}].{name}");
             let surface = |error| refuse_mesh(scene, &key("group"), &error);
@@ -81,8 +78,7 @@ pub(super) fn on_mesh(scene: &Scene, mesh: &Mesh, nodal_mass: &[f64]) -> Result<
 
 /// The loads of a scene on a rigid body without a mesh.
 pub(super) fn on_rigid(scene: &Scene, body: &ReducedBody) -> Result<Vec<frames_rk4::Load>, BuildError> {
-    let acting = scene.loads.iter().enumerate().filter(|(_, load)| acts(scene, load));
-    acting
+    acting(scene)
         .map(|(i, load)| {
             let at = |position: [f64; 3]| {
                 let position_body = Vector3::from(position) - body.origin;
@@ -121,9 +117,21 @@ pub(super) fn on_rigid(scene: &Scene, body: &ReducedBody) -> Result<Vec<frames_r
         .collect()
 }
 
-/// Gravity can be left out.
-fn acts(scene: &Scene, load: &Load) -> bool {
-    !(matches!(load, Load::Gravity(_)) && scene.effects.gravity == crate::effects::Choice::Off)
+/// The loads that may act, with their numbers in the scene; gravity last.
+fn acting(scene: &Scene) -> impl Iterator<Item = (usize, &Load)> {
+    let numbered = || scene.loads.iter().enumerate();
+    let with_gravity = scene.effects.gravity != Choice::Off;
+    let others = numbered().filter(|(_, load)| !is_gravity(load));
+    others.chain(numbered().filter(move |(_, load)| with_gravity && is_gravity(load)))
+}
+
+fn is_gravity(load: &Load) -> bool {
+    matches!(load, Load::Gravity(_))
+}
+
+/// How many of the loads that may act are gravity.
+pub(super) fn count_gravity(scene: &Scene) -> usize {
+    acting(scene).filter(|(_, load)| is_gravity(load)).count()
 }
 
 fn of(load: &Load) -> &crate::history::History {

@@ -1,16 +1,17 @@
 //! Which effects a scene gets.
 
+use advice::{Advice, Effect};
 use frames_rk4::{Drive, DrivenMotion, Effects};
-use modal::{ReducedBody, RigidMotion, Support};
+use modal::RigidMotion;
 
 use super::loads::MeshLoad;
 use crate::effects::Choice;
 use crate::scene::{Method, Scene};
 
 /// Whether anything may set the body spinning.
-pub(super) fn may_spin(scene: &Scene, support: &Support, drive: Option<&Drive>) -> bool {
+pub(super) fn may_spin(scene: &Scene, motion: RigidMotion, drive: Option<&Drive>) -> bool {
     let set_off = drive.is_some() || scene.initial.angular_velocity != [0.0; 3] || !scene.loads.is_empty();
-    scene.effects.rotation != Choice::Off && turns(support.motion, drive) && set_off
+    scene.effects.rotation != Choice::Off && turns(motion, drive) && set_off
 }
 
 /// Whether a body can turn.
@@ -22,38 +23,35 @@ fn turns(motion: RigidMotion, drive: Option<&Drive>) -> bool {
     }
 }
 
-/// Whether the stress of the centrifugal field is computed.
-pub(super) fn stiffening(scene: &Scene, body: &ReducedBody, drive: Option<&Drive>, support: &Support) -> bool {
-    let of_paper = matches!(scene.time.method, Method::Paper | Method::PaperRkmk4);
-    body.flexible() > 0
-        && scene.effects.deformed_inertia != Choice::Off
-        && may_spin(scene, support, drive)
-        && match scene.effects.geometric_stiffening {
-            Choice::On => true,
-            Choice::Off => false,
-            Choice::Auto => !of_paper,
-        }
+/// Whether the method is one of the paper's limit, which has the effects that it has.
+pub(super) fn of_paper(scene: &Scene) -> bool {
+    matches!(scene.time.method, Method::Paper | Method::PaperRkmk4)
 }
 
 /// Whether the stress of a load stiffens the body: one that stays as it is, seen from the body.
-pub(super) fn stiffens(scene: &Scene, body: &ReducedBody, drive: Option<&Drive>, load: &MeshLoad) -> bool {
-    let turns = turns(body.motion, drive) && scene.effects.rotation != Choice::Off;
-    let of_paper = matches!(scene.time.method, Method::Paper | Method::PaperRkmk4);
-    body.flexible() > 0
-        && !of_paper
-        && scene.effects.geometric_stiffening != Choice::Off
+pub(super) fn stiffens(scene: &Scene, motion: RigidMotion, drive: Option<&Drive>, load: &MeshLoad) -> bool {
+    let turns = turns(motion, drive) && scene.effects.rotation != Choice::Off;
+    scene.effects.geometric_stiffening != Choice::Off
+        && !of_paper(scene)
         && matches!(load.history, frames_rk4::History::Constant)
         && (load.follows || !turns)
 }
 
-/// The effects of the equations of motion.
-pub(super) fn effects(scene: &Scene, stiffening: bool) -> Effects {
-    let on = |choice: Choice| choice != Choice::Off;
+/// The effects of the equations of motion: what the scene leaves open is as advised.
+pub(super) fn effects(scene: &Scene, advice: &Advice, stiffening: bool) -> Effects {
+    let paper = of_paper(scene);
+    let resolve = |choice: Choice, effect: Effect| match choice {
+        Choice::On => true,
+        Choice::Off => false,
+        Choice::Auto => paper || advice.is_on(effect),
+    };
+    let chosen = &scene.effects;
+    let deformed_inertia = resolve(chosen.deformed_inertia, Effect::DeformedInertia);
     Effects {
-        translation: on(scene.effects.translation),
-        rotation: on(scene.effects.rotation),
-        deformed_inertia: on(scene.effects.deformed_inertia),
-        coriolis: on(scene.effects.coriolis),
-        geometric_stiffening: stiffening,
+        translation: resolve(chosen.translation, Effect::Translation),
+        rotation: resolve(chosen.rotation, Effect::Rotation),
+        deformed_inertia,
+        coriolis: resolve(chosen.coriolis, Effect::Coriolis),
+        geometric_stiffening: stiffening && deformed_inertia,
     }
 }

@@ -1,0 +1,208 @@
+//! `flexframe advise`: which effects a scene calls for, and why.
+
+mod verify;
+
+use std::fmt;
+
+use advice::Effect;
+use scene::{BuildProgress, Method, Model, Scene};
+use serde::Serialize;
+
+use crate::effects::{TOGGLED, is_on};
+use crate::modes::frequency_unit;
+use crate::run::RunError;
+
+/// What `flexframe advise` says.
+#[derive(Debug, Clone, Serialize)]
+pub struct AdviseReport {
+    /// Title of the scene.
+    pub title: String,
+    /// Unit of frequencies, such as "1/s".
+    pub frequency_unit: String,
+    /// Relative influence from which an effect is on.
+    pub tolerance: f64,
+    /// Whether the scene's scheme is one of the paper's formulation, which has the effects that it has.
+    pub of_paper: bool,
+    /// A row for each effect.
+    pub rows: Vec<EffectRow>,
+    /// What each natural mode is worth.
+    pub modes: Vec<ModeRow>,
+    /// How many of the modes are worth keeping: all up to the last that is.
+    pub keep: usize,
+    /// Whether the last mode is still worth keeping, so that more may be.
+    pub more_modes: bool,
+    /// Why the model is known to be wrong, if it is.
+    pub refusal: Option<String>,
+}
+
+/// What is to be said of an effect.
+#[derive(Debug, Clone, Serialize)]
+pub struct EffectRow {
+    /// Its name in the scene.
+    pub effect: &'static str,
+    /// The number that governs it.
+    pub formula: &'static str,
+    /// That number in this scene.
+    pub value: f64,
+    /// Estimated relative influence on the answer, an upper bound.
+    pub influence: f64,
+    /// Whether that reaches the tolerance; of deflection, foreshortening and step whether they may matter.
+    pub advised: bool,
+    /// Whether a run of the scene has it; `None` where there is nothing to switch.
+    pub on: Option<bool>,
+    /// Why.
+    pub why: String,
+    /// The influence found by running the scene with the effect switched.
+    pub real: Option<Real>,
+}
+
+/// What switching an effect does.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Real {
+    /// Relative difference of the motions.
+    Difference(f64),
+    /// One of the runs fails, with the reason.
+    Fails(String),
+}
+
+/// What a mode is worth.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct ModeRow {
+    /// Cycles per time.
+    pub frequency: f64,
+    /// Estimated largest share in the deformation, an upper bound.
+    pub share: f64,
+    /// Whether that reaches the tolerance.
+    pub worth_keeping: bool,
+}
+
+/// How far the advice has come.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum AdviseProgress {
+    /// A model is being built.
+    Build(BuildProgress),
+    /// Runs with an effect switched, done of all.
+    Verifying {
+        /// Done.
+        done: u64,
+        /// All.
+        total: u64,
+    },
+}
+
+/// Tells which effects a scene calls for; with `verify`, also runs it with each effect switched.
+///
+/// # Errors
+/// [`RunError`] of the scene as it is. A run with an effect switched that fails is a row that says so.
+pub fn advise(scene: &Scene, verify: bool, mut progress: impl FnMut(AdviseProgress)) -> Result<AdviseReport, RunError> {
+    let of_paper = matches!(scene.time.method, Method::Paper | Method::PaperRkmk4);
+    let mut scene = scene.clone();
+    if of_paper {
+        scene.time.method = Method::Exponential;
+    }
+    let scene = &scene;
+    let model = Model::build(scene, |p| progress(AdviseProgress::Build(p)))?;
+    let rows = model.advice.rows.iter().map(|row| EffectRow {
+        effect: row.effect.name(),
+        formula: row.effect.formula(),
+        value: row.value,
+        influence: row.influence,
+        advised: row.on,
+        on: is_on(scene, &model, row.effect),
+        why: row.why.clone(),
+        real: None,
+    });
+    let mut report = AdviseReport {
+        title: scene.title.clone(),
+        frequency_unit: frequency_unit(&scene.units.time),
+        tolerance: scene.effects.tolerance,
+        of_paper,
+        rows: rows.collect(),
+        modes: (model.advice.modes.iter())
+            .map(|mode| ModeRow {
+                frequency: mode.circular_frequency / std::f64::consts::TAU,
+                share: mode.share,
+                worth_keeping: mode.worth_keeping,
+            })
+            .collect(),
+        keep: model.advice.keep,
+        more_modes: model.advice.more_modes,
+        refusal: model.refusal.map(|refusal| refusal.to_string()),
+    };
+    if verify {
+        let switched: Vec<Effect> =
+            TOGGLED.into_iter().filter(|effect| is_on(scene, &model, *effect).is_some()).collect();
+        let total = switched.len() as u64 + 1;
+        progress(AdviseProgress::Verifying { done: 0, total });
+        let base = verify::Base::new(scene, &model)?;
+        for (i, effect) in switched.into_iter().enumerate() {
+            progress(AdviseProgress::Verifying { done: i as u64 + 1, total });
+            let real = base.influence(effect);
+            if let Some(row) = report.rows.iter_mut().find(|row| row.effect == effect.name()) {
+                row.real = Some(real);
+            }
+        }
+    }
+    Ok(report)
+}
+
+impl EffectRow {
+    /// "on", "off", or of what cannot be switched "may matter" or "fine".
+    fn verdict(&self) -> &'static str {
+        match (self.on, self.advised) {
+            (Some(true), _) => "on",
+            (Some(false), _) => "off",
+            (None, _) if TOGGLED.iter().any(|effect| effect.name() == self.effect) => "-",
+            (None, true) => "may matter",
+            (None, false) => "fine",
+        }
+    }
+}
+
+impl fmt::Display for AdviseReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "{}", self.title)?;
+        if self.of_paper {
+            writeln!(f, "  The paper's formulation has the effects that it has; this is for the conservative form.")?;
+        }
+        let verified = self.rows.iter().any(|row| row.real.is_some());
+        let real = if verified { "      real" } else { "" };
+        writeln!(f, "\n  {:<21} {:<29} {:>9} {:>10}{real}  verdict", "effect", "number", "value", "influence")?;
+        for row in &self.rows {
+            write!(f, "  {:<21} {:<29} {:>9.1e} {:>10.1e}", row.effect, row.formula, row.value, row.influence)?;
+            if verified {
+                match &row.real {
+                    Some(Real::Difference(real)) => write!(f, " {real:>9.1e}")?,
+                    Some(Real::Fails(_)) => write!(f, " {:>9}", "fails")?,
+                    None => write!(f, " {:>9}", "")?,
+                }
+            }
+            writeln!(f, "  {}", row.verdict())?;
+        }
+        writeln!(
+            f,
+            "\n  Influences are upper bounds, relative to the largest deformation or the angle turned; an effect"
+        )?;
+        writeln!(f, "  is on from {:.0e} (effects.tolerance), or as the scene says.\n", self.tolerance)?;
+        for row in &self.rows {
+            writeln!(f, "  {:<21} {}", row.effect, row.why)?;
+            if let Some(Real::Fails(reason)) = &row.real {
+                writeln!(f, "  {:<21} Switched: {reason}", "")?;
+            }
+        }
+        if !self.modes.is_empty() {
+            writeln!(f, "\n  mode  frequency, {:<6}     share  worth keeping", self.frequency_unit)?;
+            for (k, mode) in self.modes.iter().enumerate() {
+                let worth = if mode.worth_keeping { "yes" } else { "no" };
+                writeln!(f, "  {:>4}  {:>17.6}  {:>8.1e}  {worth}", k + 1, mode.frequency, mode.share)?;
+            }
+            let more = if self.more_modes { "; there may be more, raise modes.flexible or modes.most" } else { "" };
+            write!(f, "\n  {} of {} modes are worth keeping{more}.", self.keep, self.modes.len())?;
+        }
+        if let Some(refusal) = &self.refusal {
+            write!(f, "\n\n  This model is refused: {refusal}.")?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,113 @@
+//! What an effect really does: the scene run with it switched.
+
+use advice::Effect;
+use frames_rk4::{Observation, Rows, StepControl};
+use nalgebra::{Matrix3, Vector3};
+use scene::{Choice, Flexible, Model, Scene, Stepping};
+
+use super::Real;
+use crate::effects::is_on;
+use crate::run::{RunError, RunFailure};
+
+/// Times at which motions are compared.
+const COMPARED: f64 = 500.0;
+
+/// The scene as it is.
+pub(super) struct Base<'a> {
+    scene: &'a Scene,
+    model: &'a Model,
+    motion: Vec<Observation>,
+}
+
+impl<'a> Base<'a> {
+    pub(super) fn new(scene: &'a Scene, model: &'a Model) -> Result<Self, RunError> {
+        let motion = follow(scene, model).map_err(|failure| RunError::Verify { scene: scene.path.clone(), failure })?;
+        Ok(Self { scene, model, motion })
+    }
+
+    /// The difference that switching an effect makes.
+    pub(super) fn influence(&self, effect: Effect) -> Real {
+        let Some(on) = is_on(self.scene, self.model, effect) else { return Real::Difference(0.0) };
+        let switched = self.switched(effect, !on);
+        let model = match Model::build(&switched, |_| ()) {
+            Ok(model) => model,
+            Err(error) => return Real::Fails(error.to_string()),
+        };
+        match follow(&switched, &model) {
+            Ok(motion) => Real::Difference(self.difference(&motion, effect)),
+            Err(failure) => Real::Fails(failure.to_string()),
+        }
+    }
+
+    /// The scene with all effects as they were resolved, but for one.
+    fn switched(&self, effect: Effect, on: bool) -> Scene {
+        let mut scene = self.scene.clone();
+        let natural = self.model.body.flexible() - self.model.static_shapes();
+        let most = scene.modes.flexible.most();
+        let count = if effect == Effect::Flexibility && on { most } else { natural };
+        scene.modes.flexible = Flexible::Count(count);
+        let choose = |of: Effect| {
+            let now = is_on(self.scene, self.model, of).unwrap_or(false);
+            if (of == effect && on) || (of != effect && now) { Choice::On } else { Choice::Off }
+        };
+        scene.effects.flexibility = choose(Effect::Flexibility);
+        scene.effects.damping = choose(Effect::Damping);
+        scene.effects.gravity = choose(Effect::Gravity);
+        scene.effects.deformed_inertia = choose(Effect::DeformedInertia);
+        scene.effects.coriolis = choose(Effect::Coriolis);
+        scene.effects.geometric_stiffening = choose(Effect::GeometricStiffening);
+        scene.effects.translation = choose(Effect::Translation);
+        scene.effects.rotation = choose(Effect::Rotation);
+        scene.modes.static_correction = choose(Effect::StaticCorrection);
+        scene
+    }
+
+    /// Largest relative difference of the motions: of the modal displacements (flexibility: the deflection over the
+    /// length), of the attitude against the angle turned (up to 1 rad), and of the way of the centre of mass.
+    fn difference(&self, other: &[Observation], effect: Effect) -> f64 {
+        let (a, b) = (&self.motion, other);
+        let norm = |q: &[f64]| q.iter().map(|q| q * q).sum::<f64>().sqrt();
+        let largest = |of: &dyn Fn(&Observation) -> f64| a.iter().chain(b).map(of).fold(0.0, f64::max);
+        let turned = |x: &Observation, y: &Observation| {
+            let change = x.attitude.global_to_body() * y.attitude.global_to_body().transpose();
+            (change - Matrix3::identity()).norm() / 2.0_f64.sqrt()
+        };
+        let way = |x: &Observation| (x.position_global - a[0].position_global).norm();
+        let deformation = largest(&|x| norm(&x.modal_displacement));
+        let angle = largest(&|x| turned(x, &a[0])).min(1.0);
+        let travelled = largest(&way);
+        let relative = |part: f64, whole: f64| if part > 1e-12 * whole { part / whole } else { 0.0 };
+        let apart = a.iter().zip(b).map(|(x, y)| {
+            let bent = if effect == Effect::Flexibility {
+                0.0
+            } else {
+                let count = x.modal_displacement.len().max(y.modal_displacement.len());
+                let at = |o: &Observation, k: usize| o.modal_displacement.get(k).copied().unwrap_or(0.0);
+                relative(norm(&(0..count).map(|k| at(x, k) - at(y, k)).collect::<Vec<_>>()), deformation)
+            };
+            let moved: Vector3<f64> = x.position_global - y.position_global;
+            bent.max(if angle > 1e-9 { relative(turned(x, y), angle) } else { 0.0 })
+                .max(relative(moved.norm(), travelled))
+        });
+        let apart = apart.fold(0.0, |most: f64, x| if x.is_nan() { f64::INFINITY } else { most.max(x) });
+        if effect == Effect::Flexibility {
+            apart.max(largest(&|x| self.model.deflection(&x.modal_displacement)))
+        } else {
+            apart
+        }
+    }
+}
+
+fn follow(scene: &Scene, model: &Model) -> Result<Vec<Observation>, RunFailure> {
+    let control = match scene.time.stepping {
+        Stepping::Step(step) => StepControl::Fixed(step),
+        Stepping::Tolerance(tolerance) => StepControl::Tolerance(tolerance),
+    };
+    let interval = match control {
+        StepControl::Fixed(step) => (scene.time.end / step / COMPARED).ceil() * step,
+        StepControl::Tolerance(_) => scene.time.end / COMPARED,
+    };
+    let method = scene::method(scene.time.method);
+    let simulation = model.start_with(scene, method, control, Rows::Interval(interval))?;
+    Ok(simulation.collect::<Result<Vec<_>, _>>()?)
+}

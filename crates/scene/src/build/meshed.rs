@@ -1,0 +1,298 @@
+//! A body with a mesh: its modes, and the effects that its scene calls for.
+
+use std::time::Instant;
+
+use advice::{Advice, Case, Effect, advise, limits, screen};
+use faer::{Mat, MatRef};
+use fem_tet10::{Location, Matrices, Mesh, reduced_geometric_stiffness};
+use frames_rk4::{Drive, Initial, Load, Physics, PointShapes};
+use modal::{BodyPoint, Modes, ReducedBody, Solver, Support, centrifugal_fields};
+use nalgebra::Vector3;
+
+use super::loads::{self, MeshLoad};
+use super::support::support;
+use super::{
+    BuildError, BuildProgress, BuildTimes, Meshed, Model, Size, damping_ratios, initial, materials, matrices,
+    output_points, physics, read_mesh, refuse, step, timed, too_many_modes, truncated_modes, well_spread,
+};
+use crate::effects::Choice;
+use crate::error::SceneError;
+use crate::modes::Flexible;
+use crate::scene::{Frame, MeshedBody, Method, Scene};
+
+pub(super) fn build(
+    scene: &Scene,
+    body: &MeshedBody,
+    mut progress: impl FnMut(BuildProgress),
+) -> Result<Model, BuildError> {
+    let mut times = BuildTimes::default();
+    progress(BuildProgress::Mesh);
+    let mesh = timed(&mut times.mesh, || read_mesh(scene, body))?;
+    progress(BuildProgress::Assembly);
+    let matrices = timed(&mut times.assembly, || matrices(scene, body, &mesh))?;
+    let (support, drive) = support(scene, Some(&mesh))?;
+    let requested = match scene.effects.flexibility {
+        Choice::Off => 0,
+        Choice::On | Choice::Auto => scene.modes.flexible.most(),
+    };
+    let solver = Solver::new(matrices.stiffness(), matrices.mass(), mesh.positions(), &support)?;
+    let modes = timed(&mut times.modes, || {
+        solver.modes(requested, |p| progress(BuildProgress::Modes(p))).map_err(|error| too_many_modes(scene, error))
+    })?;
+    let loads = loads::on_mesh(scene, &mesh, &solver.nodal_mass().row_sums())?;
+    progress(BuildProgress::Statics);
+    let parts =
+        Parts { scene, body, mesh: &mesh, matrices: &matrices, solver: &solver, support: &support, loads, drive };
+    let Reduced { modes, body, physics, mut loads, size, damping_ratios, advice } = parts.reduce(modes, &mut times)?;
+
+    let started = Instant::now();
+    let point = |key: String, at: [f64; 3]| -> Result<PointShapes, SceneError> {
+        let Location { nodes, weights } = mesh.locate(at).map_err(|error| refuse(scene, &key, error))?;
+        Ok(PointShapes::new(&body, &BodyPoint::new(&modes, mesh.positions(), &nodes, &weights)))
+    };
+    let points = output_points(scene, point)?;
+    if scene.effects.gravity == Choice::Auto && !advice.is_on(Effect::Gravity) {
+        loads.truncate(loads.len() - loads::count_gravity(scene));
+    }
+    let reference_points = match scene.frame {
+        Some(Frame { r, p, q }) => [r, p, q],
+        None => well_spread(mesh.positions(), &body.center_of_mass),
+    }
+    .map(|x| Vector3::from(x) - body.origin);
+    times.reduction += started.elapsed();
+    drop(parts);
+    drop(solver);
+    let mut model = Model {
+        meshed: Some(Meshed { matrix_bytes: matrices.bytes(), mesh, modes }),
+        body,
+        physics,
+        points,
+        reference_points,
+        advice,
+        refusal: None,
+        times,
+        loads,
+        damping_ratios,
+        size,
+    };
+    let initial = model.initial(scene);
+    model.refusal = limits(&model.case(scene, &initial), &model.physics.effects)?;
+    Ok(model)
+}
+
+/// What the reduced body is made from.
+struct Parts<'a> {
+    scene: &'a Scene,
+    body: &'a MeshedBody,
+    mesh: &'a Mesh,
+    matrices: &'a Matrices,
+    solver: &'a Solver<'a>,
+    support: &'a Support,
+    /// Those that may act, gravity last.
+    loads: Vec<MeshLoad>,
+    drive: Option<Drive>,
+}
+
+/// The body with the effects that its scene calls for.
+struct Reduced {
+    modes: Modes,
+    body: ReducedBody,
+    physics: Physics,
+    loads: Vec<Load>,
+    size: Size,
+    damping_ratios: Vec<f64>,
+    advice: Advice,
+}
+
+/// A body in the coordinates of some modes.
+struct Draft {
+    body: ReducedBody,
+    loads: Vec<Load>,
+    size: Size,
+    damping_ratios: Vec<f64>,
+    initial: Initial,
+}
+
+/// Static answers, side by side; none where nothing asks for them.
+struct Statics {
+    /// To the loads (3n × loads), and the work f·u of each.
+    of_loads: Option<(Mat<f64>, Vec<f64>)>,
+    /// To the centrifugal field of each pair of spins (3n × 6), and what the modes leave out of each.
+    of_spin: Option<(Mat<f64>, Vec<f64>)>,
+}
+
+impl Parts<'_> {
+    /// Decides what the scene leaves open, and makes the body that has it. What turns out not to be called for is not
+    /// computed, but for what tells so.
+    fn reduce(&self, mut modes: Modes, times: &mut BuildTimes) -> Result<Reduced, BuildError> {
+        let scene = self.scene;
+        let tolerance = scene.effects.tolerance;
+        let mut draft = timed(&mut times.reduction, || self.draft(&modes))?;
+
+        let started = Instant::now();
+        let stiffening = self.may_stiffen(&draft)?;
+        let correction = match scene.modes.static_correction {
+            _ if draft.body.flexible() == 0 => Choice::Off,
+            // The shapes are stiff, which only this scheme does not mind.
+            Choice::Auto if scene.time.method != Method::Exponential => Choice::Off,
+            choice => choice,
+        };
+        let statics = self.statics(&modes, &draft.body, stiffening, correction)?;
+        if stiffening {
+            draft.body.stress_stiffness = self.stress_stiffness(&statics, &modes)?;
+        }
+        let advice = advise(&self.case(&draft, Some(&statics)), tolerance)?;
+        let keep = match (scene.modes.flexible, scene.effects.flexibility) {
+            (Flexible::Auto { .. }, Choice::On) => advice.keep.max(1).min(draft.body.flexible()),
+            (Flexible::Auto { .. }, Choice::Auto) => advice.keep,
+            _ => draft.body.flexible(),
+        };
+        let corrects = keep > 0
+            && match correction {
+                Choice::On => true,
+                Choice::Off => false,
+                Choice::Auto => advice.is_on(Effect::StaticCorrection),
+            };
+        let stiffening = stiffening
+            && keep > 0
+            && (scene.effects.geometric_stiffening == Choice::On || advice.is_on(Effect::GeometricStiffening));
+        if keep < draft.body.flexible() || corrects {
+            modes = truncated_modes(&modes, keep);
+            if corrects {
+                let answers = [statics.of_loads.as_ref(), statics.of_spin.as_ref()];
+                for (answers, _) in answers.into_iter().flatten() {
+                    modes = self.solver.with_static_shapes(modes, answers.as_ref())?;
+                }
+            }
+            draft = self.draft(&modes)?;
+            if stiffening {
+                draft.body.stress_stiffness = self.stress_stiffness(&statics, &modes)?;
+            }
+        }
+        let effects = physics::effects(scene, &advice, stiffening);
+        if !effects.geometric_stiffening {
+            draft.body.stress_stiffness = None;
+        }
+        let load_stiffness = self.load_stiffness(&modes)?;
+        times.statics += started.elapsed();
+
+        let Draft { body, loads, size, mut damping_ratios, .. } = draft;
+        if scene.effects.damping == Choice::Auto && !physics::of_paper(scene) && !advice.is_on(Effect::Damping) {
+            damping_ratios.fill(0.0);
+        }
+        let physics = Physics { effects, drive: self.drive.clone(), load_stiffness };
+        Ok(Reduced { modes, body, physics, loads, size, damping_ratios, advice })
+    }
+
+    fn draft(&self, modes: &Modes) -> Result<Draft, BuildError> {
+        let body = ReducedBody::new(modes, self.matrices.mass(), self.mesh.positions())?;
+        let peak = |shape: faer::ColRef<'_, f64>| {
+            let at = |node: usize| Vector3::from_fn(|axis, _| shape[3 * node + axis]).norm();
+            (0..shape.nrows() / 3).map(at).fold(0.0, f64::max)
+        };
+        Ok(Draft {
+            loads: self.loads.iter().map(|load| load.reduced(&body, modes, self.mesh)).collect(),
+            size: Size { length: self.mesh.diagonal(), peaks: modes.shapes.as_ref().col_iter().map(peak).collect() },
+            damping_ratios: damping_ratios(self.scene, &body),
+            initial: initial(self.scene, body.flexible()),
+            body,
+        })
+    }
+
+    fn case<'a>(&'a self, draft: &'a Draft, statics: Option<&'a Statics>) -> Case<'a> {
+        let (loads, gravity) = draft.loads.split_at(draft.loads.len() - loads::count_gravity(self.scene));
+        let list = |answers: Option<&'a (Mat<f64>, Vec<f64>)>| answers.map_or(&[][..], |(_, list)| list);
+        Case {
+            body: &draft.body,
+            damping_ratios: &draft.damping_ratios,
+            loads,
+            gravity,
+            drive: self.drive.as_ref(),
+            initial: &draft.initial,
+            end: self.scene.time.end,
+            step: step(self.scene),
+            length: draft.size.length,
+            peaks: &draft.size.peaks,
+            static_compliances: list(statics.and_then(|s| s.of_loads.as_ref())),
+            centrifugal_remainders: list(statics.and_then(|s| s.of_spin.as_ref())),
+        }
+    }
+
+    /// Whether the stress of the spin may matter, and is to be computed.
+    fn may_stiffen(&self, draft: &Draft) -> Result<bool, BuildError> {
+        let scene = self.scene;
+        let possible = draft.body.flexible() > 0
+            && scene.effects.deformed_inertia != Choice::Off
+            && physics::may_spin(scene, self.support.motion, self.drive.as_ref());
+        Ok(possible
+            && match scene.effects.geometric_stiffening {
+                Choice::On => true,
+                Choice::Off => false,
+                Choice::Auto => {
+                    !physics::of_paper(scene) && screen(&self.case(draft, None), scene.effects.tolerance)?.on
+                }
+            })
+    }
+
+    fn statics(
+        &self,
+        modes: &Modes,
+        body: &ReducedBody,
+        stiffening: bool,
+        correction: Choice,
+    ) -> Result<Statics, BuildError> {
+        let of_loads = if correction == Choice::Off || self.loads.is_empty() {
+            None
+        } else {
+            let mut forces = Mat::zeros(3 * self.mesh.positions().len(), self.loads.len());
+            for (i, load) in self.loads.iter().enumerate() {
+                load.add_nodal_forces(forces.as_mut().col_mut(i));
+            }
+            let answers = self.solver.static_response(forces.as_ref())?;
+            let work = forces.col_iter().zip(answers.col_iter()).map(|(f, u)| f.transpose() * u).collect();
+            Some((answers, work))
+        };
+        let spins = physics::may_spin(self.scene, self.support.motion, self.drive.as_ref());
+        let of_spin = if stiffening || correction == Choice::On && spins {
+            let fields = centrifugal_fields(self.solver.nodal_mass(), self.mesh.positions(), &body.origin);
+            let answers = self.solver.static_response(fields.as_ref())?;
+            let remainders = self.remainders(modes, answers.as_ref());
+            Some((answers, remainders))
+        } else {
+            None
+        };
+        Ok(Statics { of_loads, of_spin })
+    }
+
+    /// √(uᵀMu − Σ(Φ_kᵀMu)²) of each answer u.
+    fn remainders(&self, modes: &Modes, answers: MatRef<'_, f64>) -> Vec<f64> {
+        let momenta = self.solver.nodal_mass().product(answers);
+        let of = |(u, mu): (faer::ColRef<'_, f64>, faer::ColRef<'_, f64>)| {
+            let carried: f64 = modes.shapes.as_ref().col_iter().map(|shape| (shape.transpose() * mu).powi(2)).sum();
+            (u.transpose() * mu - carried).max(0.0).sqrt()
+        };
+        answers.col_iter().zip(momenta.as_ref().col_iter()).map(of).collect()
+    }
+
+    /// K_ij of each pair of spins in the modes.
+    fn stress_stiffness(&self, statics: &Statics, modes: &Modes) -> Result<Option<[Mat<f64>; 6]>, BuildError> {
+        let Some((answers, _)) = &statics.of_spin else { return Ok(None) };
+        let shapes = modes.shapes.as_ref();
+        let stiffness = reduced_geometric_stiffness(self.mesh, &materials(self.body), answers.as_ref(), shapes)?;
+        Ok(stiffness.try_into().ok())
+    }
+
+    /// Stress stiffness of the loads that stay as they are, in the modes.
+    fn load_stiffness(&self, modes: &Modes) -> Result<Option<Mat<f64>>, BuildError> {
+        let steady = |load: &&MeshLoad| physics::stiffens(self.scene, self.support.motion, self.drive.as_ref(), load);
+        let mut steady = self.loads.iter().filter(steady).peekable();
+        if modes.shapes.ncols() == 0 || steady.peek().is_none() {
+            return Ok(None);
+        }
+        let mut force = Mat::zeros(3 * self.mesh.positions().len(), 1);
+        steady.for_each(|load| load.add_nodal_forces(force.as_mut().col_mut(0)));
+        let answer = self.solver.static_response(force.as_ref())?;
+        let shapes = modes.shapes.as_ref();
+        Ok(reduced_geometric_stiffness(self.mesh, &materials(self.body), answer.as_ref(), shapes)?.pop())
+    }
+}

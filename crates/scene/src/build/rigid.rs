@@ -1,0 +1,75 @@
+//! A rigid body without a mesh.
+
+use advice::{Case, Effect, advise};
+use faer::Mat;
+use frames_rk4::{Physics, PointShapes};
+use modal::{BodyPoint, ReducedBody, Support};
+use nalgebra::{Matrix3, Vector3};
+
+use super::support::support;
+use super::{BuildError, BuildTimes, Model, Size, initial, loads, output_points, physics, step};
+use crate::effects::Choice;
+use crate::error::SceneError;
+use crate::scene::{Frame, RigidBody, Scene};
+
+pub(super) fn build(scene: &Scene, rigid: &RigidBody) -> Result<Model, BuildError> {
+    let (Support { motion, .. }, drive) = support(scene, None)?;
+    let center = Vector3::from(rigid.center_of_mass);
+    let about_center = Matrix3::from_fn(|i, j| rigid.inertia[i][j]);
+    let arm = center - motion.fixed_point().unwrap_or(center);
+    let inertia = about_center + (Matrix3::identity() * arm.norm_squared() - arm * arm.transpose()) * rigid.mass;
+    let body = ReducedBody::rigid(rigid.mass, center, inertia, motion)?;
+    let point = |_: String, at: [f64; 3]| -> Result<PointShapes, SceneError> {
+        let position_body = Vector3::from(at) - body.origin;
+        Ok(PointShapes::new(&body, &BodyPoint { position_body, shapes: Mat::zeros(3, 0) }))
+    };
+    let points = output_points(scene, point)?;
+    let reference_points = match scene.frame {
+        Some(Frame { r, p, q }) => [r, p, q].map(|x| Vector3::from(x) - body.origin),
+        None => [Vector3::zeros(), Vector3::x(), Vector3::y()],
+    };
+    let mut loads = loads::on_rigid(scene, &body)?;
+    let without_gravity = loads.len() - loads::count_gravity(scene);
+    // The radius of gyration stands for the size.
+    let size = Size { length: (rigid.inertia_trace() / rigid.mass).sqrt(), peaks: Vec::new() };
+    let initial = initial(scene, 0);
+    let advice = advise(
+        &Case {
+            body: &body,
+            damping_ratios: &[],
+            loads: &loads[..without_gravity],
+            gravity: &loads[without_gravity..],
+            drive: drive.as_ref(),
+            initial: &initial,
+            end: scene.time.end,
+            step: step(scene),
+            length: size.length,
+            peaks: &[],
+            static_compliances: &[],
+            centrifugal_remainders: &[],
+        },
+        scene.effects.tolerance,
+    )?;
+    if scene.effects.gravity == Choice::Auto && !advice.is_on(Effect::Gravity) {
+        loads.truncate(without_gravity);
+    }
+    Ok(Model {
+        meshed: None,
+        physics: Physics { effects: physics::effects(scene, &advice, false), drive, load_stiffness: None },
+        points,
+        reference_points,
+        advice,
+        refusal: None,
+        times: BuildTimes::default(),
+        loads,
+        damping_ratios: Vec::new(),
+        size,
+        body,
+    })
+}
+
+impl RigidBody {
+    fn inertia_trace(&self) -> f64 {
+        (0..3).map(|i| self.inertia[i][i]).sum()
+    }
+}
