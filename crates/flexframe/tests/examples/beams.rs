@@ -18,7 +18,8 @@ const FREE: [f64; 3] = [4.730040745, 7.853204624, 10.99560784];
 /// Frequencies of a beam, cycles per time, bending in two planes.
 fn beam(planes: [[f64; 3]; 2]) -> Vec<f64> {
     let wave = (STEEL.young_modulus / STEEL.density / 12.0).sqrt() * SIDE / (LENGTH * LENGTH);
-    let mut found: Vec<f64> = planes.as_flattened().iter().map(|beta| beta * beta * wave / std::f64::consts::TAU).collect();
+    let mut found: Vec<f64> =
+        planes.as_flattened().iter().map(|beta| beta * beta * wave / std::f64::consts::TAU).collect();
     found.sort_by(f64::total_cmp);
     found
 }

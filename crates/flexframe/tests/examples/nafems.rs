@@ -13,7 +13,9 @@ fn fv12_free_thin_plate() {
     let scene = scene("nafems_fv12");
     let found = build(&scene).natural_frequencies();
     println!("FV12 {found:.4?}");
-    for (found, quoted) in found.iter().zip([[1.622; 2], [2.360; 2], [2.922; 2], [4.19, 4.23], [4.19, 4.23], [7.36, 7.42]]) {
+    for (found, quoted) in
+        found.iter().zip([[1.622; 2], [2.360; 2], [2.922; 2], [4.19, 4.23], [4.19, 4.23], [7.36, 7.42]])
+    {
         assert!((0.98 * quoted[0]..1.02 * quoted[1]).contains(found), "{found} {quoted:?}");
     }
 }
@@ -30,12 +32,14 @@ fn fv52_simply_supported_thick_plate() {
     let free: Vec<usize> =
         (0..3 * mesh.positions().len()).filter(|i| i % 3 != 2 || !held(mesh.positions()[i / 3])).collect();
     assert_eq!(3 * mesh.positions().len() - free.len(), 4 * 16);
-    let eigenvalues = smallest(matrices.stiffness(), matrices.mass(), &free, 10, (std::f64::consts::TAU * 40.0).powi(2));
+    let eigenvalues =
+        smallest(matrices.stiffness(), matrices.mass(), &free, 10, (std::f64::consts::TAU * 40.0).powi(2));
     assert!(eigenvalues[..3].iter().all(|lambda| lambda.abs() < 1e-6 * eigenvalues[3]), "{eigenvalues:?}");
     let found: Vec<f64> = eigenvalues[3..].iter().map(|lambda| lambda.sqrt() / std::f64::consts::TAU).collect();
     println!("FV52 {found:.3?}");
     // What quadratic solids give elsewhere. The quoted 45.897 Hz of the first mode is that of a plate held at its middle.
-    let quoted = [[44.6, 44.8], [108.5, 110.5], [108.5, 110.5], [165.8, 169.1], [193.7, 193.9], [202.9, 207.0], [202.9, 207.0]];
+    let quoted =
+        [[44.6, 44.8], [108.5, 110.5], [108.5, 110.5], [165.8, 169.1], [193.7, 193.9], [202.9, 207.0], [202.9, 207.0]];
     for (found, quoted) in found.iter().zip(quoted) {
         assert!((0.98 * quoted[0]..1.02 * quoted[1]).contains(found), "{found} {quoted:?}");
     }
@@ -52,19 +56,23 @@ fn smallest(
     let mut place = vec![usize::MAX; stiffness.nrows()];
     free.iter().enumerate().for_each(|(i, row)| place[*row] = i);
     let kept = |matrix: SparseColMatRef<'_, usize, f64>, scale: f64| -> Vec<Triplet<usize, usize, f64>> {
-        let entries = matrix.triplet_iter().map(|entry| Triplet::new(place[entry.row], place[entry.col], scale * entry.val));
+        let entries =
+            matrix.triplet_iter().map(|entry| Triplet::new(place[entry.row], place[entry.col], scale * entry.val));
         entries.filter(|entry| entry.row != usize::MAX && entry.col != usize::MAX).collect()
     };
-    let matrix = |entries: Vec<_>| SparseColMat::<usize, f64>::try_new_from_triplets(free.len(), free.len(), &entries).unwrap();
+    let matrix =
+        |entries: Vec<_>| SparseColMat::<usize, f64>::try_new_from_triplets(free.len(), free.len(), &entries).unwrap();
     let m = matrix(kept(mass, 1.0));
     let shifted = matrix([kept(stiffness, 1.0), kept(mass, shift)].concat());
     let factor = shifted.sp_cholesky(Side::Lower).unwrap();
     let columns = 2 * count;
-    let mut x = Mat::from_fn(free.len(), columns, |i, j| ((1 + i + 7919 * j) as f64 * 12.9898).sin() * 43758.5453 % 1.0);
+    let mut x =
+        Mat::from_fn(free.len(), columns, |i, j| ((1 + i + 7919 * j) as f64 * 12.9898).sin() * 43758.5453 % 1.0);
     let mut eigenvalues = vec![f64::INFINITY; columns];
     for _ in 0..100 {
         let y = factor.solve(&m * &x);
-        let small = |product: Mat<f64>| DMatrix::from_fn(columns, columns, |i, j| 0.5 * (product[(i, j)] + product[(j, i)]));
+        let small =
+            |product: Mat<f64>| DMatrix::from_fn(columns, columns, |i, j| 0.5 * (product[(i, j)] + product[(j, i)]));
         let (a, b) = (small(y.transpose() * (&shifted * &y)), small(y.transpose() * (&m * &y)));
         let inverse = b.cholesky().unwrap().l().try_inverse().unwrap();
         let eigen = (&inverse * a * inverse.transpose()).symmetric_eigen();

@@ -27,7 +27,8 @@ fn measured_period(rows: &[Observation], axis: Vector3<f64>, down: Vector3<f64>)
         .filter(|pair| angle(&pair[0]) < 0.0 && angle(&pair[1]) >= 0.0 && angle(&pair[1]) < 1.0)
         .map(|pair| {
             let h = pair[1].time - pair[0].time;
-            let ([a, b], [da, db]) = ([0, 1].map(|i| angle(&pair[i])), [0, 1].map(|i| h * pair[i].omega_body.dot(&axis)));
+            let ([a, b], [da, db]) =
+                ([0, 1].map(|i| angle(&pair[i])), [0, 1].map(|i| h * pair[i].omega_body.dot(&axis)));
             let cubic = |s: f64| a + s * (da + s * (3.0 * (b - a) - 2.0 * da - db + s * (2.0 * (a - b) + da + db)));
             let (mut low, mut high) = (0.0, 1.0);
             for _ in 0..60 {
