@@ -18,9 +18,9 @@ fn a_stiffened_plate_keeps_its_energy_and_momenta_for_ten_seconds() {
         let change = row.angular_momentum_global - first.angular_momentum_global;
         momentum = momentum.max(change.norm() / first.angular_momentum_global.norm());
     }
-    println!("tip {deflection}, energy {energy:e}, angular momentum {momentum:e}");
     assert!((deflection - 2.0).abs() < 0.02, "{deflection}");
     assert_eq!(rows.last().unwrap().time, 10.0);
+    // Measured: 5.6e-11 and 3.0e-12.
     assert!(energy < 1e-9 && momentum < 1e-9, "{energy:e} {momentum:e}");
 }
 
@@ -47,6 +47,6 @@ fn first_frequency(stiffening: Choice) -> f64 {
 #[test]
 fn without_stiffening_the_first_mode_is_three_percent_low() {
     let (with, without) = (first_frequency(Choice::On), first_frequency(Choice::Off));
-    println!("first frequency {with} with, {without} without stiffening: {:.3} %", 100.0 * (without / with - 1.0));
+    // Measured: 25.265 and 24.490 Hz, 3.07 %.
     assert!((without / with - 1.0 + 0.032).abs() < 0.003, "{without} {with}");
 }

@@ -12,10 +12,10 @@ use crate::{build, repository, scene};
 fn fv12_free_thin_plate() {
     let scene = scene("nafems_fv12");
     let found = build(&scene).natural_frequencies();
-    println!("FV12 {found:.4?}");
     for (found, quoted) in
         found.iter().zip([[1.622; 2], [2.360; 2], [2.922; 2], [4.19, 4.23], [4.19, 4.23], [7.36, 7.42]])
     {
+        // Measured: 1.6246, 2.3620, 2.9268, 4.2056, 4.2496, 7.3889 Hz on 24 × 24 × 1 bricks of six tetrahedra.
         assert!((0.98 * quoted[0]..1.02 * quoted[1]).contains(found), "{found} {quoted:?}");
     }
 }
@@ -36,8 +36,8 @@ fn fv52_simply_supported_thick_plate() {
         smallest(matrices.stiffness(), matrices.mass(), &free, 10, (std::f64::consts::TAU * 40.0).powi(2));
     assert!(eigenvalues[..3].iter().all(|lambda| lambda.abs() < 1e-6 * eigenvalues[3]), "{eigenvalues:?}");
     let found: Vec<f64> = eigenvalues[3..].iter().map(|lambda| lambda.sqrt() / std::f64::consts::TAU).collect();
-    println!("FV52 {found:.3?}");
-    // What quadratic solids give elsewhere. The quoted 45.897 Hz of the first mode is that of a plate held at its middle.
+    // What quadratic solids give elsewhere: below the target of 45.897 Hz in the first mode.
+    // Measured: 44.610, 108.343, 108.942, 165.816, 193.638, 206.137, 206.172 Hz on 8 × 8 × 1 bricks of six tetrahedra.
     let quoted =
         [[44.6, 44.8], [108.5, 110.5], [108.5, 110.5], [165.8, 169.1], [193.7, 193.9], [202.9, 207.0], [202.9, 207.0]];
     for (found, quoted) in found.iter().zip(quoted) {

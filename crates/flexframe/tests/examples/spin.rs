@@ -38,7 +38,6 @@ fn first_mode(name: &str) -> (f64, f64) {
         off = off.max((row.modal_displacement[0] - expected).abs());
         largest = largest.max(expected.abs());
     }
-    println!("{name}: {mean} {square} {} {off_axis} {}", off / largest, largest / 0.05);
     (square, off / largest)
 }
 
@@ -72,6 +71,7 @@ fn about_axis_2_it_is_stable_at_150_and_not_at_160() {
     // Measured: a mean spin of 149.44, σ = 37.7 rad/s, off by 0.7 %.
     let (square, off) = first_mode("plate_axis_2_at_150");
     assert!(square > FIRST - 150.0 * 150.0 && off < 0.02, "{square} {off}");
+    // Measured: a mean spin of 159.32, growth by 40.4/s, off by 0.3 %; in 0.06 s it grows by 5.7.
     let (square, off) = first_mode("plate_axis_2_at_160");
     assert!(square < 0.8 * (FIRST - 160.0 * 160.0) && off < 0.02, "{square} {off}");
 }

@@ -41,17 +41,16 @@ fn the_heavy_top_nutates_as_the_elliptic_functions_say_and_keeps_its_energy() {
     let [u1, u3] = [-root, root].map(|root: f64| (a * a + root) / (2.0 * beta));
     let (quarter, sn) = elliptic((u0 - u1) / (u3 - u1));
     let rate = 0.5 * (beta * (u3 - u1)).sqrt();
-    let (mut drift, mut off, mut lowest) = (0.0_f64, 0.0_f64, 1.0_f64);
+    let (mut drift, mut off) = (0.0_f64, 0.0_f64);
     for row in &rows {
         let u = row.attitude.to_global(&Vector3::z()).dot(&up);
         let expected = u1 + (u0 - u1) * sn(quarter + rate * row.time).powi(2);
         off = off.max((u - expected).abs());
-        lowest = lowest.min(u);
         drift = drift.max((energy(row) / energy(&rows[0]) - 1.0).abs());
         assert!((row.omega_body.z / 50.0 - 1.0).abs() < 1e-12);
     }
     assert_eq!(rows.last().unwrap().time, 10.0);
-    println!("energy {drift:e}, nutation {off:e} of {:e} between {u0} and {lowest} ({u1})", u0 - u1);
+    // Measured: 6.5e-14 of the energy, 3.2e-7 of the nutation.
     assert!(drift < 1e-9, "{drift:e}");
     assert!(off < 1e-6 * (u0 - u1), "{off:e}");
 }
