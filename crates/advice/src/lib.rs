@@ -6,7 +6,7 @@
 //!
 //! The order of calls:
 //!
-//! 1. [`limits`] refuses what is known to be wrong (again when the stiffness is known).
+//! 1. [`limits()`] refuses what is known to be wrong (again when the stiffness is known).
 //! 2. [`screen`] tells, from the modes alone, whether [`modal::ReducedBody::stress_stiffness`] may matter. If its row is
 //!    on, compute that.
 //! 3. [`advise`] gives the table: a [`Row`] for each [`Effect`], and what each mode is worth. Nothing stiffens where

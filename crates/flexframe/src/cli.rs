@@ -1,12 +1,14 @@
 //! Arguments, and what is printed.
 
 use std::error::Error;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
 
 use clap::{Args, Parser, Subcommand};
 use flexframe::animation::{AnimationSettings, animate};
+use flexframe::campbell::{CampbellSettings, Speeds, campbell};
 use flexframe::cost::{self, CostSettings};
 use flexframe::{advise, figures, modes, paper, run};
 use scene::{Flexible, Scene};
@@ -56,6 +58,38 @@ enum Command {
         /// Run the scene with each effect switched, and show the real influence beside the estimate.
         #[arg(long)]
         verify: bool,
+    },
+    /// Find natural frequencies against spin speed: table, CSV and Campbell diagram, with critical speeds.
+    ///
+    /// The body is held in a steady spin about an axis through its origin: its centre of mass, or a fixed point of a
+    /// held one (of a clamp the mean of its nodes). Coriolis, softening and stiffening are on unless the scene's
+    /// [effects] say false; loads are left out. Frequencies are those that the body sees: order n is a load that comes
+    /// by n times a turn. Branches are followed by their shapes and numbered by their order at the lowest speed: where
+    /// two frequencies meet they cross, or turn away from each other if the spin couples them.
+    Campbell {
+        #[command(flatten)]
+        scene: SceneArgs,
+        /// Spin axis in the axes of the mesh: x, y, z, or three numbers such as 0,0.6,0.8.
+        #[arg(long, value_name = "AXIS", value_parser = axis, allow_hyphen_values = true)]
+        axis: Direction,
+        /// Spin speeds in radians per time: from start to end, both included, count in all.
+        #[arg(long, value_name = "START:END:COUNT", value_parser = speeds, allow_hyphen_values = true)]
+        speeds: Speeds,
+        /// Engine orders, times a turn.
+        #[arg(
+            long,
+            value_name = "N,N,…",
+            value_delimiter = ',',
+            default_values_t = [1.0, 2.0, 3.0, 4.0],
+            value_parser = positive
+        )]
+        orders: Vec<f64>,
+        /// Number of flexible modes, instead of the scene's.
+        #[arg(short = 'n', long, value_name = "N")]
+        flexible: Option<usize>,
+        /// Folder for campbell.csv, critical_speeds.csv and the diagram [default: out/<name of the scene file>].
+        #[arg(short, long, value_name = "DIR")]
+        output: Option<PathBuf>,
     },
     /// Run the paper's plate and set it beside the paper: every figure, and a report.
     Paper {
@@ -158,12 +192,29 @@ fn execute(cli: Cli) -> Result<(), Box<dyn Error>> {
             };
             print(&report, json)?;
             if !json {
-                list(&pictures);
+                list(&pictures)?;
             }
             Ok(())
         }
         Command::Advise { scene: SceneArgs { scene, json }, verify } => {
             let report = advise::advise(&Scene::read(scene)?, verify, |p| bar.advise(p))?;
+            drop(bar);
+            print(&report, json)
+        }
+        Command::Campbell {
+            scene: SceneArgs { scene, json },
+            axis: Direction(axis),
+            speeds,
+            orders,
+            flexible,
+            output,
+        } => {
+            let mut scene = Scene::read(scene)?;
+            if let Some(count) = flexible {
+                scene.modes.flexible = Flexible::Count(count);
+            }
+            let settings = CampbellSettings { axis, speeds, orders };
+            let report = campbell(&scene, &folder(&scene, output), &settings, |p| bar.campbell(p))?;
             drop(bar);
             print(&report, json)
         }
@@ -187,15 +238,13 @@ fn execute(cli: Cli) -> Result<(), Box<dyn Error>> {
             let lists = Path::new("out").join("accuracy");
             let files = cost::accuracy_page(&scenes, &output, &lists, patience, |p| bar.cost(p))?;
             drop(bar);
-            list(&files);
-            Ok(())
+            list(&files)
         }
         Command::Animate { scene, output, frames, magnify } => {
             let scene = Scene::read(scene)?;
             animate(&scene, &output, AnimationSettings { frames, magnification: magnify }, |p| bar.run(p))?;
             drop(bar);
-            list(&[output]);
-            Ok(())
+            list(&[output])
         }
     }
 }
@@ -206,22 +255,60 @@ fn positive(text: &str) -> Result<f64, String> {
     if number > 0.0 && number.is_finite() { Ok(number) } else { Err("expected a positive number".to_owned()) }
 }
 
+/// A direction in the axes of the mesh.
+#[derive(Debug, Clone, Copy)]
+struct Direction([f64; 3]);
+
+/// An axis by its name, or by three numbers.
+fn axis(text: &str) -> Result<Direction, String> {
+    let named = match text {
+        "x" => Some([1.0, 0.0, 0.0]),
+        "y" => Some([0.0, 1.0, 0.0]),
+        "z" => Some([0.0, 0.0, 1.0]),
+        _ => None,
+    };
+    let numbers = || {
+        let parts = text.split(|c: char| c == ',' || c.is_whitespace()).filter(|part| !part.is_empty());
+        let numbers: Vec<f64> = parts.map(str::parse).collect::<Result<_, _>>().ok()?;
+        <[f64; 3]>::try_from(numbers).ok().filter(|v| v.iter().all(|x| x.is_finite()) && *v != [0.0; 3])
+    };
+    named
+        .or_else(numbers)
+        .map(Direction)
+        .ok_or_else(|| "expected x, y, z, or three numbers that are not all zero, such as 0,0.6,0.8".to_owned())
+}
+
+/// Speeds as start:end:count.
+fn speeds(text: &str) -> Result<Speeds, String> {
+    let parts: Vec<&str> = text.split(':').collect();
+    let speeds = match parts[..] {
+        [start, end, count] => match (start.parse(), end.parse(), count.parse()) {
+            (Ok(start), Ok(end), Ok(count)) => Some(Speeds { start, end, count }),
+            _ => None,
+        },
+        _ => None,
+    };
+    speeds.ok_or_else(|| "expected start:end:count, such as 0:200:50".to_owned())
+}
+
 /// The folder asked for, or one named after the scene.
 fn folder(scene: &Scene, output: Option<PathBuf>) -> PathBuf {
     output.unwrap_or_else(|| Path::new("out").join(scene.path.file_stem().unwrap_or("scene".as_ref())))
 }
 
 fn print<R: Serialize + std::fmt::Display>(report: &R, json: bool) -> Result<(), Box<dyn Error>> {
-    if json {
-        println!("{}", serde_json::to_string_pretty(report)?);
-    } else {
-        println!("{report}");
-    }
-    Ok(())
+    let text = if json { serde_json::to_string_pretty(report)? } else { report.to_string() };
+    write_line(&text)
 }
 
-fn list(files: &[PathBuf]) {
-    for file in files {
-        println!("  wrote    {}", file.display());
+/// A line on the terminal; a reader such as `head` that has had enough is no error.
+fn write_line(line: &str) -> Result<(), Box<dyn Error>> {
+    match writeln!(std::io::stdout(), "{line}") {
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Err(error.into()),
+        _ => Ok(()),
     }
+}
+
+fn list(files: &[PathBuf]) -> Result<(), Box<dyn Error>> {
+    files.iter().try_for_each(|file| write_line(&format!("  wrote    {}", file.display())))
 }

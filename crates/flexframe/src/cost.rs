@@ -163,7 +163,8 @@ pub fn price_list(
     settings: CostSettings,
     mut progress: impl FnMut(CostProgress),
 ) -> Result<CostReport, CostError> {
-    let flexible = scene.modes.flexible.most();
+    let model = Model::build(scene, |p| progress(CostProgress::Build(p)))?;
+    let flexible = model.body.flexible() - model.static_shapes();
     let counts = modes::counts(flexible, most_modes(scene));
     let most = counts.last().map_or(flexible, |most| *most);
     let mut richest = scene.clone();
@@ -171,7 +172,6 @@ pub fn price_list(
     // Static shapes stand behind the modes, and would be cut off with them.
     richest.modes.static_correction = Choice::Off;
     let richest = Model::build(&richest, |p| progress(CostProgress::Build(p)))?;
-    let model = richest.truncated(flexible);
     let case = Case::new(scene, &model);
 
     let ladders: Vec<(Method, bool)> = Method::ALL

@@ -21,6 +21,7 @@ pub use {advice, fem_tet10, frames_rk4, modal, results, rigid_kin, scene};
 
 pub mod advise;
 pub mod animation;
+pub mod campbell;
 pub mod cost;
 mod effects;
 pub mod figures;

@@ -3,6 +3,7 @@
 use std::time::{Duration, Instant};
 
 use flexframe::advise::AdviseProgress;
+use flexframe::campbell::CampbellProgress;
 use flexframe::cost::CostProgress;
 use flexframe::run::RunProgress;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -47,6 +48,13 @@ impl Bar {
         match progress {
             AdviseProgress::Build(progress) => self.build(progress),
             AdviseProgress::Verifying { done, total } => self.show("verifying", Some((done, total))),
+        }
+    }
+
+    pub fn campbell(&mut self, progress: CampbellProgress) {
+        match progress {
+            CampbellProgress::Build(progress) => self.build(progress),
+            CampbellProgress::Speeds { done, total } => self.show("spinning", Some((done as u64, total as u64))),
         }
     }
 

@@ -21,6 +21,7 @@ material = { young_modulus = 210000.0, poisson_ratio = 0.3, density = 7.85e-9 }
 [modes]
 flexible = 4
 damping_ratio = 0.01
+static_correction = false
 [initial]
 angular_velocity = [0.0, 5.0, 20.0]
 modal_velocity = [12.0, -5.0, 4.0, 2.0]

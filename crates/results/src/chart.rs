@@ -19,6 +19,9 @@ pub(crate) const COLOURS: [RGBColor; 7] = [
 
 pub(crate) const INK: RGBColor = RGBColor(30, 30, 30);
 const GRID: RGBColor = RGBColor(222, 222, 222);
+const GUIDE: RGBColor = RGBColor(150, 150, 150);
+const GUIDE_INK: RGBColor = RGBColor(95, 95, 95);
+const PAPER: RGBColor = RGBColor(255, 255, 255);
 const FAINT_GRID: RGBColor = RGBColor(240, 240, 240);
 
 const WIDTH: f64 = 720.0;
@@ -33,6 +36,9 @@ const LEGEND_GAP: f64 = 5.0;
 const LEGEND_LINE: f64 = 30.0;
 const TICK_LENGTH: f64 = 4.0;
 const SOLID_WIDTH: f64 = 1.5;
+const GUIDE_WIDTH: f64 = 1.0;
+/// Between the end of a guide and its label.
+const GUIDE_GAP: f64 = 4.0;
 /// Wider than a solid line, so that either is seen where they coincide.
 const DASHED_WIDTH: f64 = 2.5;
 const DASH: [f64; 2] = [8.0, 6.0];
@@ -41,17 +47,20 @@ const FINENESS: u32 = 4;
 /// Series with no more points than this show each as a dot.
 const FEW_POINTS: usize = 24;
 const DOT_RADIUS: f64 = 3.0;
+const RING_RADIUS: f64 = 4.0;
 /// Series with more points than this are thinned.
 const MANY_POINTS: usize = 3000;
 /// Columns per pixel, each of which keeps the highest and the lowest point of a thinned series.
 const COLUMNS_PER_PIXEL: f64 = 2.0;
 
 /// How an axis maps values.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Scale {
     /// Evenly.
     #[default]
     Linear,
+    /// Evenly, between two values, the lower one first: lines are cut off there, and points beyond are left out.
+    Window(f64, f64),
     /// By decades; values must be positive.
     Log,
 }
@@ -65,17 +74,27 @@ pub enum Stroke {
     Solid,
     /// A dashed line.
     Dashed,
+    /// A thin grey line below the others, with its label at its end and not in the legend.
+    Guide,
+    /// A ring at each point and no line.
+    Rings,
 }
 
-/// One line of a chart.
+/// One line, or one set of rings, of a chart.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Series {
-    /// Its name in the legend; a chart whose labels are all empty has none.
+    /// Its name in the legend, or of a guide at its end; a chart whose labels are all empty has no legend.
     pub label: String,
-    /// The points (x, y), joined in this order.
+    /// The points (x, y); lines join them in this order.
     pub points: Vec<(f64, f64)>,
-    /// Solid or dashed.
+    /// How it is drawn.
     pub stroke: Stroke,
+}
+
+impl Series {
+    fn is_in_legend(&self) -> bool {
+        !self.label.is_empty() && self.stroke != Stroke::Guide
+    }
 }
 
 /// A chart of lines over two axes. Colours are chosen by the order of the series; a series of a few
@@ -109,7 +128,7 @@ struct Axis {
 impl Axis {
     fn pixel(&self, value: f64) -> f64 {
         let value = match self.scale {
-            Scale::Linear => value,
+            Scale::Linear | Scale::Window(..) => value,
             Scale::Log => value.log10(),
         };
         let (min, max) = self.range;
@@ -123,6 +142,7 @@ impl Axis {
                 let (min, max) = ticks::linear_range(min, max, margin);
                 ((min, max), ticks::linear(min, max, ticks))
             }
+            Scale::Window(min, max) => ((min, max), ticks::linear(min, max, ticks)),
             Scale::Log => {
                 let (low, high) = ticks::decades(min, max);
                 ((f64::from(low), f64::from(high)), ticks::logarithmic((low, high), ticks))
@@ -159,7 +179,11 @@ impl LineChart {
             + LEGEND_ROW * legend.len() as f64
             + if legend.is_empty() && self.title.is_empty() { 0.0 } else { LEGEND_GAP }
             + if y.ticks.note.is_empty() { 0.0 } else { 1.3 * TICK_EM };
-        (x.start, x.end) = (MARGIN + 1.9 * LABEL_EM + widest + 8.0, WIDTH - 1.8 * MARGIN);
+        let mut right = 1.8 * MARGIN;
+        for guide in self.series.iter().filter(|series| series.stroke == Stroke::Guide) {
+            right = right.max(GUIDE_GAP + font::width(&guide.label, TICK_EM)? + 0.5 * MARGIN);
+        }
+        (x.start, x.end) = (MARGIN + 1.9 * LABEL_EM + widest + 8.0, WIDTH - right);
         (y.start, y.end) = (HEIGHT - MARGIN - 3.6 * LABEL_EM, top);
 
         let mut picture = Picture::new(WIDTH as u32, HEIGHT as u32, FINENESS);
@@ -173,17 +197,40 @@ impl LineChart {
             baseline += LEGEND_ROW;
         }
         draw_grid(&mut picture, &x, &y);
-        for stroke in [Stroke::Solid, Stroke::Dashed] {
+        let is_visible = |p: &Place| between(p[0], x.start, x.end) && between(p[1], y.end, y.start);
+        for stroke in [Stroke::Guide, Stroke::Solid, Stroke::Dashed] {
             for (i, series) in self.series.iter().enumerate().filter(|(_, series)| series.stroke == stroke) {
                 let places: Vec<Place> = series.points.iter().map(|p| [x.pixel(p.0), y.pixel(p.1)]).collect();
-                if places.len() <= FEW_POINTS {
-                    places.iter().for_each(|place| draw_dot(&mut picture, *place, colour(i)));
+                if stroke != Stroke::Guide && places.len() <= FEW_POINTS {
+                    let dots = places.iter().filter(|place| is_visible(place));
+                    dots.for_each(|place| draw_dot(&mut picture, *place, DOT_RADIUS, colour(i)));
                 }
-                draw_stroke(&mut picture, thinned(places), colour(i), stroke);
+                for piece in self.visible(places, &x, &y) {
+                    if stroke == Stroke::Guide {
+                        draw_guide_label(&mut picture, &piece, &series.label, x.end);
+                    }
+                    draw_stroke(&mut picture, thinned(piece), colour(i), stroke);
+                }
             }
         }
         self.draw_axes(&mut picture, &x, &y);
+        for series in self.series.iter().filter(|series| series.stroke == Stroke::Rings) {
+            let places = series.points.iter().map(|p| [x.pixel(p.0), y.pixel(p.1)]);
+            draw_stroke(&mut picture, places.filter(is_visible).collect(), INK, Stroke::Rings);
+        }
         Ok(picture)
+    }
+
+    /// The parts of a path that its windows leave.
+    fn visible(&self, path: Vec<Place>, x: &Axis, y: &Axis) -> Vec<Vec<Place>> {
+        let mut pieces = vec![path];
+        for (i, axis) in [x, y].into_iter().enumerate().filter(|(_, axis)| matches!(axis.scale, Scale::Window(..))) {
+            for bound in [axis.start, axis.end] {
+                let sign = if bound == axis.start.min(axis.end) { 1.0 } else { -1.0 };
+                pieces = pieces.iter().flat_map(|piece| beyond(piece, i, bound, sign)).collect();
+            }
+        }
+        pieces
     }
 
     fn check(&self) -> Result<(), FigureError> {
@@ -211,7 +258,7 @@ impl LineChart {
         let room = WIDTH - 8.0 * MARGIN;
         let mut rows: Vec<Vec<(usize, f64)>> = Vec::new();
         let mut used = f64::INFINITY;
-        for (i, series) in self.series.iter().enumerate().filter(|(_, series)| !series.label.is_empty()) {
+        for (i, series) in self.series.iter().enumerate().filter(|(_, series)| series.is_in_legend()) {
             let width = LEGEND_LINE + 6.0 + font::width(&series.label, TICK_EM)? + 20.0;
             if used + width > room {
                 rows.push(Vec::new());
@@ -229,7 +276,10 @@ impl LineChart {
         let mut left = centre - 0.5 * (row.iter().map(|entry| entry.1).sum::<f64>() - 20.0);
         for &(i, width) in row {
             let height = baseline - 0.36 * TICK_EM;
-            let line = vec![[left, height], [left + LEGEND_LINE, height]];
+            let line = match self.series[i].stroke {
+                Stroke::Rings => vec![[left + 0.5 * LEGEND_LINE, height]],
+                _ => vec![[left, height], [left + LEGEND_LINE, height]],
+            };
             draw_stroke(picture, line, colour(i), self.series[i].stroke);
             picture.text([left + LEGEND_LINE + 6.0, baseline], &self.series[i].label, TICK_EM, Anchor::Left, INK);
             left += width;
@@ -276,15 +326,59 @@ fn draw_grid(picture: &mut Picture, x: &Axis, y: &Axis) {
     }
 }
 
-fn draw_dot(picture: &mut Picture, [x, y]: Place, colour: RGBColor) {
+fn draw_dot(picture: &mut Picture, [x, y]: Place, radius: f64, colour: RGBColor) {
     let corner = |i: u32| (f64::from(i) * std::f64::consts::TAU / 24.0).sin_cos();
-    let circle = (0..24).map(corner).map(|(sin, cos)| [x + DOT_RADIUS * cos, y + DOT_RADIUS * sin]);
+    let circle = (0..24).map(corner).map(|(sin, cos)| [x + radius * cos, y + radius * sin]);
     picture.area(circle.collect(), colour);
+}
+
+fn between(value: f64, low: f64, high: f64) -> bool {
+    (low - 1e-6..=high + 1e-6).contains(&value)
+}
+
+/// The parts of a path whose coordinate `i` is not below `bound`, or for the sign −1 not above.
+fn beyond(path: &[Place], i: usize, bound: f64, sign: f64) -> Vec<Vec<Place>> {
+    let depth = |place: &Place| sign * (place[i] - bound);
+    let mut pieces = Vec::new();
+    let mut piece: Vec<Place> = path.first().copied().filter(|place| depth(place) >= 0.0).into_iter().collect();
+    for pair in path.windows(2) {
+        let (a, b) = (pair[0], pair[1]);
+        let (from, to) = (depth(&a), depth(&b));
+        if (from < 0.0) != (to < 0.0) {
+            let part = from / (from - to);
+            piece.push([a[0] + part * (b[0] - a[0]), a[1] + part * (b[1] - a[1])]);
+        }
+        if to >= 0.0 {
+            piece.push(b);
+        } else if !piece.is_empty() {
+            pieces.push(std::mem::take(&mut piece));
+        }
+    }
+    pieces.push(piece);
+    pieces.retain(|piece| !piece.is_empty());
+    pieces
+}
+
+/// In the margin if the line ends there, else to the left of its end.
+fn draw_guide_label(picture: &mut Picture, places: &[Place], label: &str, right: f64) {
+    let &[.., [x0, y0], [x, y]] = places else { return };
+    if x > right - 0.5 {
+        picture.text([x + GUIDE_GAP, y + 0.36 * TICK_EM], label, TICK_EM, Anchor::Left, GUIDE_INK);
+    } else {
+        let below = 1.3 * TICK_EM;
+        let back = if y0 > y { (x - x0) / (y0 - y) * below } else { 0.0 };
+        picture.text([x - back - GUIDE_GAP, y + below], label, TICK_EM, Anchor::Right, GUIDE_INK);
+    }
 }
 
 fn draw_stroke(picture: &mut Picture, places: Vec<Place>, colour: RGBColor, stroke: Stroke) {
     match stroke {
         Stroke::Solid => picture.line(places, colour, SOLID_WIDTH),
+        Stroke::Guide => picture.line(places, GUIDE, GUIDE_WIDTH),
+        Stroke::Rings => places.into_iter().for_each(|place| {
+            draw_dot(picture, place, RING_RADIUS, INK);
+            draw_dot(picture, place, RING_RADIUS - SOLID_WIDTH, PAPER);
+        }),
         Stroke::Dashed => {
             for dash in dashes(&places) {
                 picture.line(dash, colour, DASHED_WIDTH);
@@ -353,4 +447,20 @@ fn thinned(places: Vec<Place>) -> Vec<Place> {
         }
     }
     kept
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_path_is_cut_where_it_leaves_a_window() {
+        let path = [[0.0, 0.0], [1.0, 2.0], [2.0, 0.0], [3.0, 0.5], [4.0, 3.0]];
+        let below = beyond(&path, 1, 1.0, -1.0);
+        assert_eq!(below, [vec![[0.0, 0.0], [0.5, 1.0]], vec![[1.5, 1.0], [2.0, 0.0], [3.0, 0.5], [3.2, 1.0]]]);
+        let above = beyond(&path, 1, 1.0, 1.0);
+        assert_eq!(above, [vec![[0.5, 1.0], [1.0, 2.0], [1.5, 1.0]], vec![[3.2, 1.0], [4.0, 3.0]]]);
+        assert!(beyond(&path, 0, 5.0, 1.0).is_empty());
+        assert_eq!(beyond(&path, 0, -1.0, 1.0), [path.to_vec()]);
+    }
 }

@@ -291,3 +291,30 @@ fn a_body_without_extent_is_drawn() {
     };
     animation.save_gif(folder().join("point.gif")).unwrap();
 }
+
+#[test]
+fn guides_are_labelled_at_their_ends_and_rings_lie_within_the_window() {
+    let wave = |t: f64| 5.0 + 4.0 * (20.0 * t).sin();
+    let chart = LineChart {
+        y_scale: Scale::Window(0.0, 7.0),
+        ..chart(
+            "Guides, rings and a window",
+            vec![
+                series("wave", Stroke::Solid, times(200).map(|t| (t, wave(t)))),
+                series("to the right", Stroke::Guide, [(0.0, 0.0), (0.5, 5.0)]),
+                series("to the top", Stroke::Guide, [(0.0, 0.0), (0.5, 20.0)]),
+                series("meetings", Stroke::Rings, [(0.1, 2.0), (0.2, 6.9), (0.3, 7.5)]),
+            ],
+        )
+    };
+    let [svg, _] = chart.save(folder().join("window")).unwrap();
+    let text = std::fs::read_to_string(&svg).unwrap();
+    for label in ["wave", "meetings", "to the right", "to the top"] {
+        assert_eq!(text.matches(&format!("\n{label}\n")).count(), 1, "{label}");
+    }
+    // The wave leaves the window and comes back: pieces of 0.5 × 20/π half waves. And its line of the legend.
+    let strokes = text.lines().filter(|line| line.contains("polyline") && line.contains("#0072B2")).count();
+    assert_eq!(strokes, 3 + 1);
+    // Rings within the window and that of the legend, each an area and a hole; the one above 7 is not there.
+    assert_eq!(text.lines().filter(|line| line.contains("polygon") && line.contains("#FFFFFF")).count(), 3);
+}

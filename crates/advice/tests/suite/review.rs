@@ -12,15 +12,18 @@ fn what_was_assumed_holds_and_what_was_not_is_named_with_its_time() {
     let loads = [plate().force(CORNER, [0.0, 0.0, 1.0], History::HalfSine { start: 0.1, duration: 0.02 })];
     let pushed = plate().case(&zeta, &loads, &calm, 0.3);
     let rows = run(&pushed, Effects::default());
-    let review = |case, advice: &advice::Advice, rows: &[frames_rk4::Observation]| {
-        let mut review = Review::new(case, Effects::default(), advice);
+    let review = |effects, case, advice: &advice::Advice, rows: &[frames_rk4::Observation]| {
+        let mut review = Review::new(case, effects, advice);
         rows.iter().for_each(|row| review.observe(row).unwrap());
         review.broken().to_vec()
     };
-    assert_eq!(review(pushed, &advise(&pushed, 1e-3).unwrap(), &rows), []);
+    let without = Effects { coriolis: false, ..Effects::default() };
+    assert_eq!(review(without, pushed, &advise(&pushed, 1e-3).unwrap(), &rows), []);
     // Advice on the same body without the load: both the spin and the deflection break at the pulse.
     let unpushed = plate().case(&zeta, &[], &calm, 0.3);
-    let broken = review(pushed, &advise(&unpushed, 1e-3).unwrap(), &rows);
+    let broken = review(without, pushed, &advise(&unpushed, 1e-3).unwrap(), &rows);
+    // With all effects on, nothing rests on the estimates.
+    assert_eq!(review(Effects::default(), pushed, &advise(&unpushed, 1e-3).unwrap(), &rows), []);
     let spin =
         broken.iter().find_map(|b| if let Broken::Spin { time, found, .. } = b { Some((*time, *found)) } else { None });
     let (time, found) = spin.unwrap();

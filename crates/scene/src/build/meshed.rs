@@ -221,17 +221,18 @@ impl Parts<'_> {
     /// Whether the stress of the spin may matter, and is to be computed.
     fn may_stiffen(&self, draft: &Draft) -> Result<bool, BuildError> {
         let scene = self.scene;
-        let possible = draft.body.flexible() > 0
-            && scene.effects.deformed_inertia != Choice::Off
-            && physics::may_spin(scene, self.support.motion, self.drive.as_ref());
-        Ok(possible
-            && match scene.effects.geometric_stiffening {
-                Choice::On => true,
-                Choice::Off => false,
-                Choice::Auto => {
-                    !physics::of_paper(scene) && screen(&self.case(draft, None), scene.effects.tolerance)?.on
-                }
-            })
+        if draft.body.flexible() == 0 || scene.effects.deformed_inertia == Choice::Off {
+            return Ok(false);
+        }
+        Ok(match scene.effects.geometric_stiffening {
+            Choice::On => true,
+            Choice::Off => false,
+            Choice::Auto => {
+                !physics::of_paper(scene)
+                    && physics::may_spin(scene, self.support.motion, self.drive.as_ref())
+                    && screen(&self.case(draft, None), scene.effects.tolerance)?.on
+            }
+        })
     }
 
     fn statics(

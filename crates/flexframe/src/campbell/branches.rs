@@ -1,0 +1,104 @@
+//! Vibrations followed from speed to speed by their shapes.
+
+use std::f64::consts::TAU;
+
+use frames_rk4::{EigenError, SpinMode, SteadySpin};
+
+use super::Branch;
+
+/// |⟨a, b⟩|² of two shapes that are taken for the same without a closer look. Above ½ only one can be.
+const ALIKE: f64 = 0.6;
+/// How often a step between two speeds is halved where shapes change too much to be told apart. Shapes of equal
+/// frequencies stay ambiguous however short it is.
+const HALVINGS: u32 = 5;
+
+/// The vibrations at each speed, each always at the same place of the list.
+pub(super) struct Branches {
+    /// Rising, radians per time.
+    pub speeds: Vec<f64>,
+    modes: Vec<Vec<SpinMode>>,
+}
+
+impl Branches {
+    /// Follows all vibrations down from the highest speed: at rest a symmetric body has equal frequencies, whose shapes
+    /// are any mixture. The places are in the order of the frequencies at the lowest speed.
+    pub fn follow(spin: &SteadySpin, speeds: Vec<f64>, mut done: impl FnMut(usize)) -> Result<Self, EigenError> {
+        let mut modes: Vec<Vec<SpinMode>> = Vec::with_capacity(speeds.len());
+        for (i, &speed) in speeds.iter().enumerate().rev() {
+            let here = match modes.last() {
+                Some(above) => continued(spin, above, speeds[i + 1], speed, HALVINGS)?,
+                None => spin.modes(speed)?,
+            };
+            modes.push(here);
+            done(modes.len());
+        }
+        modes.reverse();
+        let mut order: Vec<usize> = (0..modes[0].len()).collect();
+        order.sort_by(|&a, &b| modes[0][a].circular_frequency.total_cmp(&modes[0][b].circular_frequency));
+        let modes = modes.into_iter().map(|here| order.iter().map(|&k| here[k].clone()).collect()).collect();
+        Ok(Self { speeds, modes })
+    }
+
+    /// The vibrations at a speed between the others, at the same places.
+    pub fn at(&self, spin: &SteadySpin, speed: f64) -> Result<Vec<SpinMode>, EigenError> {
+        let above = self.speeds.partition_point(|s| *s < speed).min(self.speeds.len() - 1);
+        continued(spin, &self.modes[above], self.speeds[above], speed, HALVINGS)
+    }
+
+    /// The lines of the diagram.
+    pub fn lines(&self, first_mode: usize) -> Vec<Branch> {
+        let of = |k: usize, value: fn(&SpinMode) -> f64| self.modes.iter().map(|here| value(&here[k])).collect();
+        (0..self.modes[0].len())
+            .map(|k| Branch {
+                mode: first_mode + k,
+                frequency: of(k, |mode| mode.circular_frequency / TAU),
+                growth: of(k, |mode| mode.growth),
+                whirl: of(k, |mode| mode.whirl),
+            })
+            .collect()
+    }
+}
+
+/// The vibrations at the speed `to`, each at the place of the one at the speed `from` that it continues.
+fn continued(
+    spin: &SteadySpin,
+    modes: &[SpinMode],
+    from: f64,
+    to: f64,
+    halvings: u32,
+) -> Result<Vec<SpinMode>, EigenError> {
+    let (matched, least_alike) = matched(modes, spin.modes(to)?);
+    if least_alike >= ALIKE || halvings == 0 || from == to {
+        return Ok(matched);
+    }
+    let middle = 0.5 * (from + to);
+    let halfway = continued(spin, modes, from, middle, halvings - 1)?;
+    continued(spin, &halfway, middle, to, halvings - 1)
+}
+
+/// Puts the vibrations `next` where those of `modes` are that they are most alike, and says how alike the worst pair is.
+fn matched(modes: &[SpinMode], next: Vec<SpinMode>) -> (Vec<SpinMode>, f64) {
+    let mut pairs: Vec<(f64, usize, usize)> = Vec::with_capacity(modes.len() * next.len());
+    for (i, a) in modes.iter().enumerate() {
+        pairs.extend(next.iter().enumerate().map(|(j, b)| (alike(a, b), i, j)));
+    }
+    pairs.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let mut places = vec![None; modes.len()];
+    let mut taken = vec![false; next.len()];
+    let mut least_alike = 1.0;
+    for (alike, i, j) in pairs {
+        if places[i].is_none() && !taken[j] {
+            (places[i], taken[j], least_alike) = (Some(j), true, alike);
+        }
+    }
+    (places.into_iter().flatten().map(|j| next[j].clone()).collect(), least_alike)
+}
+
+/// |⟨a, b⟩|²: 1 for the same shape, whatever its phase.
+fn alike(a: &SpinMode, b: &SpinMode) -> f64 {
+    let (re, im) = a.state.iter().zip(&b.state).fold((0.0, 0.0), |(re, im), (x, y)| {
+        let product = x.conj() * y;
+        (re + product.re, im + product.im)
+    });
+    re * re + im * im
+}

@@ -1,0 +1,109 @@
+//! The branches and the critical speeds for people.
+
+use std::f64::consts::TAU;
+use std::fmt;
+
+use super::{CampbellReport, Critical, SpinEffects};
+use crate::report::quantity;
+
+/// More speeds than this are thinned: the file has them all.
+const ROWS: usize = 26;
+/// More modes than this do not fit a line.
+const COLUMNS: usize = 10;
+
+impl fmt::Display for CampbellReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "{}", self.title)?;
+        if let Some(mesh) = &self.mesh {
+            writeln!(f, "  mesh     {mesh}")?;
+        }
+        // A coordinate that is zero but for rounding is shown as zero.
+        let vector = |v: &[f64; 3]| {
+            let dust = 1e-9 * v.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+            v.map(|x| quantity(if x.abs() < dust { 0.0 } else { x })).join(", ")
+        };
+        writeln!(f, "  spin     about ({}) through ({})", vector(&self.axis), vector(&self.origin))?;
+        writeln!(f, "  effects  {}", self.effects)?;
+        let time = &self.time_unit;
+        match self.stable_below {
+            Some(speed) => writeln!(f, "  stable   below {} rad/{time}", quantity(speed))?,
+            None => writeln!(f, "  stable   no frequency falls to zero at any speed")?,
+        }
+        self.write_branches(f)?;
+        self.write_critical_speeds(f)?;
+        write!(f, "\n  wrote     ")?;
+        self.files.iter().try_for_each(|file| write!(f, " {}", file.display()))
+    }
+}
+
+impl CampbellReport {
+    /// Turns a minute, where time is in seconds.
+    fn rpm(&self, speed: f64) -> Option<f64> {
+        (self.time_unit == "s").then_some(60.0 * speed / TAU)
+    }
+
+    fn write_branches(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let shown = &self.branches[..self.branches.len().min(COLUMNS)];
+        let rpm = if self.rpm(0.0).is_some() { "       rpm" } else { "" };
+        write!(f, "\n  {:>10}{rpm}  ", format!("rad/{}", self.time_unit))?;
+        shown.iter().try_for_each(|branch| write!(f, "{:>10}", format!("mode {}", branch.mode)))?;
+        writeln!(f, "   frequency, {}", self.frequency_unit)?;
+        let last = self.speeds.len() - 1;
+        let stride = last.div_ceil(ROWS - 1).max(1);
+        let (mut rows, mut any_grows) = (0, false);
+        for (i, speed) in self.speeds.iter().enumerate().filter(|(i, _)| i % stride == 0 || *i == last) {
+            rows += 1;
+            write!(f, "  {speed:>10.3}")?;
+            if let Some(rpm) = self.rpm(*speed) {
+                write!(f, "{rpm:>10.1}")?;
+            }
+            write!(f, "  ")?;
+            for branch in shown {
+                let grows = branch.growth[i] > 0.0;
+                any_grows |= grows;
+                write!(f, "{:>9.3}{}", branch.frequency[i], if grows { '!' } else { ' ' })?;
+            }
+            writeln!(f)?;
+        }
+        if any_grows {
+            writeln!(f, "  ! the vibration grows")?;
+        }
+        if rows < self.speeds.len() || shown.len() < self.branches.len() {
+            let (speeds, modes) = (self.speeds.len(), self.branches.len());
+            writeln!(f, "  {rows} of {speeds} speeds, {} of {modes} modes; campbell.csv has them all", shown.len())?;
+        }
+        Ok(())
+    }
+
+    fn write_critical_speeds(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.critical_speeds.is_empty() {
+            return writeln!(f, "\n  no critical speed in this range");
+        }
+        let rpm = if self.rpm(0.0).is_some() { "       rpm" } else { "" };
+        let unit = format!("rad/{}", self.time_unit);
+        writeln!(f, "\n  critical speeds\n  order  mode  {unit:>10}{rpm}  frequency, {}", self.frequency_unit)?;
+        for &Critical { order, mode, speed, frequency } in &self.critical_speeds {
+            write!(f, "  {:>5}  {mode:>4}  {speed:>10.3}", format!("{order}x"))?;
+            if let Some(rpm) = self.rpm(speed) {
+                write!(f, "{rpm:>10.1}")?;
+            }
+            let zero = if order == 0.0 { "   the frequency is zero: a limit of stability" } else { "" };
+            writeln!(f, "  {frequency:>9.3}{zero}")?;
+        }
+        Ok(())
+    }
+}
+
+impl fmt::Display for SpinEffects {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let all =
+            [("Coriolis", self.coriolis), ("softening", self.softening), ("geometric stiffening", self.stiffening)];
+        let named =
+            |wanted: bool| -> Vec<&str> { all.iter().filter(|(_, on)| *on == wanted).map(|(name, _)| *name).collect() };
+        match (named(true).join(", "), named(false).join(", ")) {
+            (on, off) if off.is_empty() => write!(f, "{on}"),
+            (on, off) if on.is_empty() => write!(f, "none: {off} are off"),
+            (on, off) => write!(f, "{on}; off: {off}"),
+        }
+    }
+}
