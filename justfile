@@ -38,9 +38,10 @@ picture: build
 accuracy: build
     {{flexframe}} accuracy examples/accuracy/{pulse,tumbling,spin}.toml -o docs/accuracy.md
 
-# Steps a second of every scheme on one core.
+# Steps a second of every scheme on one core, and what each effect costs per step and in set-up.
 bench:
     cargo bench --quiet --package frames-rk4 --bench steps
+    cargo bench --quiet --package flexframe --bench effects
 
 # Time `flexframe modes` against SciPy's eigsh with CHOLMOD on three meshes (some minutes; Python packages).
 bench-modes: build
