@@ -43,6 +43,8 @@ const SCREEN: f64 = 10.0;
 pub(crate) const LINEAR: f64 = 0.1;
 /// How far what the modes leave out of a static answer may count above its share in the work of the load.
 const SWING: f64 = 4.0;
+/// The same of the centrifugal field, with what the Euler force of a spin that changes adds.
+const SPUN: f64 = 10.0;
 /// ½∫w'² of the first bending mode of a free bar with a deflection of one at its ends, over one length.
 const SHORTENING: f64 = 6.2;
 
@@ -278,7 +280,7 @@ fn static_correction(case: &Case, spin: &Spin, sources: &[Source], response: &Re
         [] => 1.0,
         // |ω_i ω_j| is at most Ω².
         all => {
-            let left: f64 = all.iter().map(|r| spin.largest * spin.largest * r).sum();
+            let left: f64 = SPUN * all.iter().map(|r| spin.largest * spin.largest * r).sum::<f64>();
             relative(left, response.scale + left)
         }
     };
