@@ -95,7 +95,7 @@ pub struct Model {
     pub reference_points: [Vector3<f64>; 3],
     /// Which effects the scene calls for, and why.
     pub advice: Advice,
-    /// Why the model is known to be wrong, if it is: it does not start. Set it to `None` to see what it does.
+    /// Why the model is known to be wrong, if it is: it does not start unless the scene says `refuse = false`.
     pub refusal: Option<Refusal>,
     /// Where the time went.
     pub times: BuildTimes,
@@ -228,7 +228,7 @@ impl Model {
         control: StepControl,
         rows: Rows,
     ) -> Result<Simulation, StartError> {
-        if let Some(refusal) = self.refusal {
+        if let Some(refusal) = self.refusal.filter(|_| scene.effects.refuse) {
             return Err(refusal.into());
         }
         let initial = self.initial(scene);

@@ -40,6 +40,7 @@ fn each_alone() {
         }
     }
     assert_eq!(crate::with("[initial]", "[[loads]]", "[effects]\ntolerance = 0.01").effects.tolerance, 0.01);
+    assert!(!crate::with("[initial]", "[[loads]]", "[effects]\nrefuse = false").effects.refuse);
 }
 
 #[test]
