@@ -16,7 +16,7 @@ pub enum Refusal {
     /// K + Ω²(K_σ − N) is not definite.
     #[error(
         "the body spins at {spin:.4} rad per time, beyond the {critical:.4} at which K + Ω²(K_σ − N) loses definiteness: \
-         it would bend without limit; spin it slower{}, or see what it does with refuse off", if *.stiffening { "" } else { ", or turn geometric_stiffening on" }
+         it would bend without limit; spin it slower{} (`refuse = false` in [effects] runs it all the same)", if *.stiffening { "" } else { ", or turn geometric_stiffening on" }
     )]
     Unstable {
         /// |ω|.
@@ -29,7 +29,7 @@ pub enum Refusal {
     /// The centrifugal force softens the body, and nothing stiffens it.
     #[error(
         "the body spins at {spin:.4} rad per time, {:.0} % of the {critical:.4} at which centrifugal softening takes all \
-         stiffness, and geometric_stiffening is off: turn it on, or deformed_inertia off, or see what it does with refuse off", 100.0 * .spin / .critical
+         stiffness, and geometric_stiffening is off: turn it on, or deformed_inertia off (`refuse = false` in [effects] runs it all the same)", 100.0 * .spin / .critical
     )]
     Softened {
         /// |ω|.
