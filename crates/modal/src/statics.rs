@@ -27,6 +27,8 @@ const MAX_ITERATIONS: usize = 300;
 const BLOCK: usize = 8;
 /// What a static answer adds to the modes must be more than this part of it.
 const DEPENDENT: f64 = 1e-8;
+/// What inertia and reactions leave of a force that they balance, such as gravity on a free body, by rounding.
+const BALANCED: f64 = 1e-11;
 
 impl Solver<'_> {
     /// Static answers u (N×k) to the forces f (N×k), relative to the rigid motion that f causes: M-orthogonal to the
@@ -126,8 +128,14 @@ impl<'a> Statics<'a> {
 
     /// Answers to up to [`BLOCK`] forces, of which `first` is the number of the first.
     fn respond(&mut self, forces: MatRef<'_, f64>, first: usize) -> Result<Mat<f64>, ModalError> {
+        let whole: Vec<f64> = forces.col_iter().map(|force| force.norm_l2()).collect();
         let mut forces = forces.to_owned();
         self.balance(&mut forces);
+        for (mut force, whole) in forces.as_mut().col_iter_mut().zip(whole) {
+            if force.norm_l2() <= BALANCED * whole {
+                force.fill(0.0);
+            }
+        }
         let mut residual = forces.clone();
         let mut answer: Mat<f64> = Mat::zeros(forces.nrows(), forces.ncols());
         let mut search: Mat<f64> = Mat::zeros(forces.nrows(), forces.ncols());
