@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use advice::{Advice, Case, Effect, advise, limits, screen};
+use advice::{Advice, Case, Effect, advise, buckling, limits, screen};
 use faer::{Mat, MatRef};
 use fem_tet10::{Location, Matrices, Mesh, reduced_geometric_stiffness};
 use frames_rk4::{Drive, Initial, Load, Physics, PointShapes};
@@ -76,7 +76,13 @@ pub(super) fn build(
         size,
     };
     let initial = model.initial(scene);
-    model.refusal = limits(&model.case(scene, &initial), &model.physics.effects)?;
+    model.refusal = match &model.physics.load_stiffness {
+        Some(load_stiffness) => buckling(&model.body, load_stiffness)?,
+        None => None,
+    };
+    if model.refusal.is_none() {
+        model.refusal = limits(&model.case(scene, &initial), &model.physics.effects)?;
+    }
     Ok(model)
 }
 

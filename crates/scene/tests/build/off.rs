@@ -2,10 +2,10 @@
 
 use std::time::Duration;
 
-use advice::Effect;
+use advice::{Effect, Refusal};
 use frames_rk4::ConservativeBody;
 
-use crate::{BuildProgress, CLAMPED, Model, Scene, bar, build};
+use crate::{BENDING, BREADTH, BuildProgress, CLAMPED, LENGTH, Model, Scene, YOUNG, bar, build};
 
 const TIME: &str = "end = 1e-3\nstep = 1e-5";
 const SPIN: &str = "[initial]\nangular_velocity = [0.0, 0.0, 300.0]\n";
@@ -62,6 +62,25 @@ fn the_stress_of_steady_loads_counts_where_it_matters() {
     assert!(pulled.advice.is_on(Effect::GeometricStiffening));
     assert!(built("geometric_stiffening = true", weight).physics.load_stiffness.is_some());
     assert!(built("geometric_stiffening = false", pull).physics.load_stiffness.is_none());
+}
+
+/// Euler's load of a column that is clamped at one end, π² E I/4 L², presses on its tip.
+#[test]
+fn a_load_that_buckles_the_body_is_refused() {
+    let euler = (std::f64::consts::PI / LENGTH).powi(2) * YOUNG * BENDING / 4.0;
+    let pressed = |part: f64| {
+        let traction = part * euler / (BREADTH * BREADTH);
+        let load = format!(
+            "[[loads]]\nkind = \"traction\"\ngroup = \"tip\"\ndirection = [-1.0, 0.0, 0.0]\namplitude = {traction}"
+        );
+        build(&effects("", &format!("{CLAMPED}{load}"))).refusal
+    };
+    assert_eq!(pressed(0.97), None);
+    // The solid is a little stiffer than the beam. Measured: 1.0449 for 1.05.
+    let Some(Refusal::Buckled { factor }) = pressed(1.05) else { panic!("not refused") };
+    assert!((factor / 1.05 - 1.0).abs() < 0.03, "{factor}");
+    // A pull does not.
+    assert_eq!(pressed(-3.0), None);
 }
 
 #[test]
