@@ -307,7 +307,7 @@ impl Simulation {
     /// [`StepError`]; the motion stays where it was before the step that failed.
     pub fn advance(&mut self, most_steps: u64) -> Result<Reached, StepError> {
         for _ in 0..most_steps {
-            match self.next_step() {
+            match self.next_step()? {
                 None => return Ok(Reached::End),
                 Some((h, end, row_at_end)) => {
                     if !self.try_step(h, end)? {
@@ -334,7 +334,7 @@ impl Simulation {
     }
 
     /// Length and end of the next step, and whether its segment ends at an output time; `None` at the end.
-    fn next_step(&mut self) -> Option<(f64, f64, bool)> {
+    fn next_step(&mut self) -> Result<Option<(f64, f64, bool)>, StepError> {
         loop {
             let next = match &mut self.walk {
                 Walk::Equal { steps: Some((steps, row)), .. } => steps.next_step().map(|(h, end)| (h, end, *row)),
@@ -342,11 +342,11 @@ impl Simulation {
                 _ => None,
             };
             if next.is_some() {
-                return next;
+                return Ok(next);
             }
-            let segment = self.plan.next_segment()?;
+            let Some(segment) = self.plan.next_segment() else { return Ok(None) };
             if let (Engine::Conservative(motion), true) = (&mut self.engine, segment.after_corner) {
-                motion.pass_corner();
+                motion.pass_corner()?;
             }
             match &mut self.walk {
                 Walk::Equal { step, steps } => *steps = Some((EqualSteps::new(segment, *step), segment.row)),

@@ -96,3 +96,15 @@ fn a_driven_slide_is_a_base_acceleration() {
         assert!((a - b).abs() < 1e-9, "{a} {b}");
     }
 }
+
+#[test]
+fn a_jump_of_the_driven_speed_does_its_work_at_once() {
+    for motion in motions() {
+        let body = clamped();
+        let mut run = Run::new(&body, 3.0);
+        run.physics.drive = Some(Drive { history: History::Step { at: 1.25 }, ..drive(motion) });
+        let gaps = [0.02, 0.01].map(|step| run.energy_gap(EXPONENTIAL, step));
+        // Measured: 2.3e-9 (turn), 7.6e-9 (slide), and 15 times as much at twice the step.
+        assert!(gaps[1] < 1e-6 && gaps[0] > 8.0 * gaps[1], "{motion:?}: {gaps:?}");
+    }
+}

@@ -183,6 +183,8 @@ impl Parts<'_> {
                 }
             }
             draft = self.draft(&modes)?;
+            // What the static shapes carry is to be expected, too.
+            advice.deflection = advise(&self.case(&draft, None), tolerance)?.deflection;
             if stiffening {
                 draft.body.stress_stiffness = self.stress_stiffness(&statics, &modes)?;
             }

@@ -77,3 +77,10 @@ fn static_shapes_come_where_a_load_needs_them() {
     let falls = "[[loads]]\nkind = \"gravity\"\ndirection = [0.0, 0.0, -1.0]\namplitude = 9810.0";
     assert_eq!(shapes("flexible = 3", falls), 0);
 }
+
+#[test]
+fn what_nothing_moves_is_not_kept() {
+    let falls = "[[loads]]\nkind = \"gravity\"\ndirection = [0.0, 0.0, -1.0]\namplitude = 9810.0";
+    assert_eq!(build(&bar("flexible = \"auto\"", falls, "end = 0.02\nstep = 1e-4")).body.flexible(), 0);
+    assert_eq!(build(&bar("flexible = \"auto\"", CLAMPED, "end = 0.02\nstep = 1e-4")).body.flexible(), 0);
+}

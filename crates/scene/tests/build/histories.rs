@@ -123,7 +123,7 @@ fn a_table_that_is_missing_or_wrong_is_named_with_its_line() {
 #[test]
 fn a_formula_that_is_none_or_has_no_value_is_refused_at_its_place() {
     let folder = tempfile::tempdir().unwrap();
-    for (formula, words) in [("2*x", "x"), ("sin(t", "sin(t"), ("1/t", "time 0"), ("sqrt(0.5-t)", "finite")] {
+    for (formula, words) in [("2*x", "x"), ("sin(t", "sin(t"), ("1/t", "at time 0"), ("sqrt(0.5-t)", "finite")] {
         let message = message(&format!("{{ kind = \"expression\", formula = \"{formula}\" }}"), folder.path());
         assert!(
             message.contains("stone.toml:13:") && message.contains("history") && message.contains(words),

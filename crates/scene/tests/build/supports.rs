@@ -62,7 +62,8 @@ fn a_part_of_the_body_that_is_not_there_is_refused_with_a_cure() {
         ("kind = \"pin\"\nat = [0.0, 0.0, 0.0]\nradius = 0.1", "constraints[0].radius"),
         ("kind = \"hinge\"\nat = [0.0, 0.0, 1.3]\naxis = [0.0, 1.0, 0.0]", "constraints[0].axis"),
         ("kind = \"hinge\"\npoints = [[0.0, -5.0, 0.0], [0.0, 5.0, 0.1]]", "constraints[0].points"),
-        ("kind = \"clamp\"\ngroup = \"roof\"", "root"),
+        ("kind = \"clamp\"\ngroup = \"roof\"", "one of"),
+        ("kind = \"clamp\"\ngroup = \"bar\"", "holds every node"),
         ("kind = \"clamp\"\nbox = [[-9.0, -5.0, -5.0], [-1.0, 5.0, 5.0]]", "0 node(s)"),
     ] {
         let message = refusal(&held(constraint, "", TIME)).to_string();
