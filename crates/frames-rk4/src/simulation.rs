@@ -155,6 +155,8 @@ pub struct Simulation {
     rows: Rows,
     end: f64,
     steps_since_row: u64,
+    /// Whether the segment ends at a corner that has not been passed.
+    corner_ahead: bool,
     points: Vec<PointShapes>,
     stats: Stats,
     failed: bool,
@@ -247,6 +249,7 @@ impl Simulation {
             rows: setup.rows,
             end: setup.end,
             steps_since_row: 0,
+            corner_ahead: false,
             points: setup.points.to_vec(),
             stats: Stats { accepted: 0, rejected: 0, evaluations: 0, shortest: f64::INFINITY, longest: 0.0 },
             failed: false,
@@ -307,11 +310,17 @@ impl Simulation {
     /// [`StepError`]; the motion stays where it was before the step that failed.
     pub fn advance(&mut self, most_steps: u64) -> Result<Reached, StepError> {
         for _ in 0..most_steps {
-            match self.next_step()? {
+            match self.next_step() {
                 None => return Ok(Reached::End),
                 Some((h, end, row_at_end)) => {
                     if !self.try_step(h, end)? {
                         continue;
+                    }
+                    if self.corner_ahead && self.segment_is_done() {
+                        self.corner_ahead = false;
+                        if let Engine::Conservative(motion) = &mut self.engine {
+                            motion.pass_corner()?;
+                        }
                     }
                     // Under step control, steps are tried in pairs.
                     let (count, length) = if self.is_controlled() { (2, 0.5 * h) } else { (1, h) };
@@ -334,7 +343,7 @@ impl Simulation {
     }
 
     /// Length and end of the next step, and whether its segment ends at an output time; `None` at the end.
-    fn next_step(&mut self) -> Result<Option<(f64, f64, bool)>, StepError> {
+    fn next_step(&mut self) -> Option<(f64, f64, bool)> {
         loop {
             let next = match &mut self.walk {
                 Walk::Equal { steps: Some((steps, row)), .. } => steps.next_step().map(|(h, end)| (h, end, *row)),
@@ -342,12 +351,10 @@ impl Simulation {
                 _ => None,
             };
             if next.is_some() {
-                return Ok(next);
+                return next;
             }
-            let Some(segment) = self.plan.next_segment() else { return Ok(None) };
-            if let (Engine::Conservative(motion), true) = (&mut self.engine, segment.after_corner) {
-                motion.pass_corner()?;
-            }
+            let segment = self.plan.next_segment()?;
+            self.corner_ahead = segment.corner;
             match &mut self.walk {
                 Walk::Equal { step, steps } => *steps = Some((EqualSteps::new(segment, *step), segment.row)),
                 Walk::Halved { longest_try, steps, .. } => {

@@ -106,5 +106,11 @@ fn a_jump_of_the_driven_speed_does_its_work_at_once() {
         let gaps = [0.02, 0.01].map(|step| run.energy_gap(EXPONENTIAL, step));
         // Measured: 2.3e-9 (turn), 7.6e-9 (slide), and 15 times as much at twice the step.
         assert!(gaps[1] < 1e-6 && gaps[0] > 8.0 * gaps[1], "{motion:?}: {gaps:?}");
+        // The row of the jump itself has what it did.
+        let mut rows = run.start(EXPONENTIAL, StepControl::Fixed(1e-2), Rows::Interval(1.25));
+        let mut start = rows.observation();
+        rows.observe(&mut start).unwrap();
+        let jump = rows.next().unwrap().unwrap();
+        assert!((jump.energy_balance() - start.energy_balance()).abs() < 1e-6 * jump.energy(), "{motion:?}");
     }
 }
