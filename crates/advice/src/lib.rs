@@ -6,7 +6,8 @@
 //!
 //! The order of calls:
 //!
-//! 1. [`limits()`] refuses what is known to be wrong (again when the stiffness is known).
+//! 1. [`limits()`] refuses what is known to be wrong (again when the stiffness is known), and [`buckling`] what steady
+//!    loads bend without limit.
 //! 2. [`screen`] tells, from the modes alone, whether [`modal::ReducedBody::stress_stiffness`] may matter. If its row is
 //!    on, compute that.
 //! 3. [`advise`] gives the table: a [`Row`] for each [`Effect`], and what each mode is worth. Nothing stiffens where
@@ -68,7 +69,7 @@ mod table;
 mod tensor;
 
 pub use case::{AdviceError, Case};
-pub use limits::{Refusal, SOFTENED, limits};
+pub use limits::{Refusal, SOFTENED, buckling, limits};
 pub use review::{Broken, Review};
 pub use row::{Effect, Row, Worth};
 pub use table::{Advice, advise, screen};

@@ -15,7 +15,7 @@ pub struct Advice {
     pub rows: Vec<Row>,
     /// What each mode is worth (nf).
     pub modes: Vec<Worth>,
-    /// How many of the modes to keep: all up to the last that is worth it.
+    /// How many of the modes to keep: those after them have shares that sum to less than the tolerance.
     pub keep: usize,
     /// Whether the last mode there was to choose from is still worth keeping: then more should be computed.
     pub more_modes: bool,
@@ -87,7 +87,13 @@ pub fn advise(case: &Case, tolerance: f64) -> Result<Advice, AdviceError> {
             worth_keeping: *share >= tolerance,
         })
         .collect();
-    let keep = modes.iter().rposition(|mode| mode.worth_keeping).map_or(0, |last| last + 1);
+    // What is left out adds up.
+    let mut rest = 0.0;
+    let negligible = shares.iter().rev().take_while(|share| {
+        rest += **share;
+        rest < tolerance
+    });
+    let keep = shares.len() - negligible.count();
     let deflection = response.displacement.iter().zip(case.peaks).map(|(q, a)| q * a).sum::<f64>() / case.length;
     let estimates = [
         flexibility(&spin, &sources, &response, deflection),

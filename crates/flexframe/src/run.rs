@@ -195,7 +195,13 @@ pub fn run(
         final_energy: last.energy(),
         balances: recorder.monitor.balances(),
         effects: effects::computed(scene, &model),
-        warnings: recorder.review.broken().iter().map(ToString::to_string).collect(),
+        warnings: recorder
+            .review
+            .broken()
+            .iter()
+            .map(ToString::to_string)
+            .chain(open_balance(&recorder.monitor))
+            .collect(),
         results: path,
         times: Times::default(),
     };
@@ -203,6 +209,19 @@ pub fn run(
     times.add("motion", started.elapsed());
     report.times = times;
     Ok((model, report))
+}
+
+/// Energy balance from which on a run says that it is open.
+const OPEN: f64 = 1e-2;
+
+fn open_balance(monitor: &Monitor) -> Option<String> {
+    let open = monitor.balances().energy;
+    (open > OPEN).then(|| {
+        format!(
+            "the energy balance is open by {open:.1e}: the work on modes that are faster than the step is summed too \
+             coarsely, or the motion itself is; take shorter steps, or fewer modes, until it does not matter to the answer"
+        )
+    })
 }
 
 /// Steps between two reports of progress, where no row comes first.

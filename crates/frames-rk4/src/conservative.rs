@@ -567,6 +567,21 @@ impl ConservativeBody {
         (inertia_rate * speed + e.inertia[(0, 0)] * acceleration + changing - moment[0]) * speed
     }
 
+    /// What the drive does where its speed jumps at the state's time: its impulse times the mean of the speeds.
+    pub(crate) fn work_of_jump(&self, state: &ConservativeState, e: &mut Evaluation) -> Result<f64, RateError> {
+        let Some(drive) = &self.drive else { return Ok(0.0) };
+        // The corner itself is where it is but for rounding.
+        let aside = 1e-12 * drive.span;
+        let mut on_side = |inside: f64| -> Result<[f64; 2], RateError> {
+            let (q, p) = (&state.modal_displacement, &state.modal_momentum);
+            self.evaluate([state.time, inside], &state.attitude, &state.slow, q, p, e)?;
+            Ok([drive.speed(state.time, inside), e.driven_momentum])
+        };
+        let [before, held] = on_side(state.time - aside)?;
+        let [after, given] = on_side(state.time + aside)?;
+        Ok(0.5 * (before + after) * (given - held))
+    }
+
     /// Adds the linear part of the modes to an evaluation: q' += p, p' −= Λq + Dp.
     pub(crate) fn add_linear(&self, q: &[f64], p: &[f64], e: &mut Evaluation) {
         for k in 0..q.len() {

@@ -83,8 +83,15 @@ impl ConservativeMotion {
     }
 
     /// A load or a drive may jump here: the rates at the end of the last step are not those of the next one's beginning.
-    pub(crate) fn pass_corner(&mut self) {
+    ///
+    /// # Errors
+    /// [`StepError`] where the inertia of the deformed body is singular.
+    pub(crate) fn pass_corner(&mut self) -> Result<(), StepError> {
         self.first_known = false;
+        let Self { body, state, ahead, .. } = self;
+        let work = body.work_of_jump(state, ahead).map_err(|error| error.in_step(state.time, 0.0))?;
+        self.state.slow[part::WORK] += work;
+        Ok(())
     }
 
     /// The state that has been reached.

@@ -28,8 +28,8 @@ pub(crate) struct Segment {
     pub length: f64,
     /// Whether the end is an output time.
     pub row: bool,
-    /// Whether the start is a corner.
-    pub after_corner: bool,
+    /// Whether the end is a corner.
+    pub corner: bool,
 }
 
 /// The segments of a run.
@@ -65,11 +65,9 @@ impl Plan {
             return None;
         }
         let output = self.interval.map_or(f64::INFINITY, |interval| (self.outputs + 1) as f64 * interval);
-        let before = self.passed;
         while self.corners.get(self.passed).is_some_and(|corner| *corner <= self.reached + same) {
             self.passed += 1;
         }
-        let after_corner = self.passed > before;
         let corner = self.corners.get(self.passed).copied().unwrap_or(f64::INFINITY);
         let mut stop = corner.min(output).min(self.end);
         let row = (output - stop).abs() <= same || (self.end - stop).abs() <= same;
@@ -85,7 +83,7 @@ impl Plan {
             length = self.last_length;
         }
         self.last_length = length;
-        let segment = Segment { start: self.reached, end: stop, length, row, after_corner };
+        let segment = Segment { start: self.reached, end: stop, length, row, corner: (corner - stop).abs() <= same };
         self.reached = stop;
         Some(segment)
     }
@@ -205,7 +203,7 @@ mod tests {
 
     #[test]
     fn a_step_that_divides_the_end_is_kept_and_another_is_shortened() {
-        let whole = Segment { start: 0.0, end: 0.5, length: 0.5, row: true, after_corner: false };
+        let whole = Segment { start: 0.0, end: 0.5, length: 0.5, row: true, corner: false };
         for (step, count) in [(1e-4, 5000), (0.3, 2), (0.5, 1), (2.0, 1), (0.1, 5)] {
             let mut steps = EqualSteps::new(whole, step);
             let mut taken = Vec::new();
@@ -220,7 +218,7 @@ mod tests {
 
     #[test]
     fn halved_steps_land_on_the_end_whatever_is_accepted_and_rejected() {
-        let segment = Segment { start: 1.0, end: 1.3, length: 1.3 - 1.0, row: true, after_corner: false };
+        let segment = Segment { start: 1.0, end: 1.3, length: 1.3 - 1.0, row: true, corner: false };
         let mut steps = HalvedSteps::new(segment, 0.11);
         let mut time = 1.0;
         let mut tries = 0;
@@ -240,8 +238,7 @@ mod tests {
 
     #[test]
     fn steps_cannot_shrink_for_ever() {
-        let mut steps =
-            HalvedSteps::new(Segment { start: 0.0, end: 1.0, length: 1.0, row: true, after_corner: false }, 1.0);
+        let mut steps = HalvedSteps::new(Segment { start: 0.0, end: 1.0, length: 1.0, row: true, corner: false }, 1.0);
         assert!((0..100).any(|_| !steps.reject(f64::NAN)));
     }
 }

@@ -155,6 +155,8 @@ pub struct Simulation {
     rows: Rows,
     end: f64,
     steps_since_row: u64,
+    /// Whether the segment ends at a corner that has not been passed.
+    corner_ahead: bool,
     points: Vec<PointShapes>,
     stats: Stats,
     failed: bool,
@@ -247,6 +249,7 @@ impl Simulation {
             rows: setup.rows,
             end: setup.end,
             steps_since_row: 0,
+            corner_ahead: false,
             points: setup.points.to_vec(),
             stats: Stats { accepted: 0, rejected: 0, evaluations: 0, shortest: f64::INFINITY, longest: 0.0 },
             failed: false,
@@ -313,6 +316,12 @@ impl Simulation {
                     if !self.try_step(h, end)? {
                         continue;
                     }
+                    if self.corner_ahead && self.segment_is_done() {
+                        self.corner_ahead = false;
+                        if let Engine::Conservative(motion) = &mut self.engine {
+                            motion.pass_corner()?;
+                        }
+                    }
                     // Under step control, steps are tried in pairs.
                     let (count, length) = if self.is_controlled() { (2, 0.5 * h) } else { (1, h) };
                     self.stats.accepted += count;
@@ -345,9 +354,7 @@ impl Simulation {
                 return next;
             }
             let segment = self.plan.next_segment()?;
-            if let (Engine::Conservative(motion), true) = (&mut self.engine, segment.after_corner) {
-                motion.pass_corner();
-            }
+            self.corner_ahead = segment.corner;
             match &mut self.walk {
                 Walk::Equal { step, steps } => *steps = Some((EqualSteps::new(segment, *step), segment.row)),
                 Walk::Halved { longest_try, steps, .. } => {
