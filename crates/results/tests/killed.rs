@@ -4,22 +4,24 @@
 
 mod rows;
 
-use results::Results;
-use rows::{Row, assert_rows, folder, metadata, write};
+use results::{Expected, Results, Resumed, Writer, unfinished};
+use rows::{Row, assert_rows, folder, metadata};
 use std::path::Path;
 use std::process::Command;
-use std::time::Duration;
 
 /// Not a test of its own: the process that [`a_killed_run_can_be_read_up_to_its_last_flush`] kills.
 #[test]
 #[ignore = "run by another test"]
 fn child_that_is_killed() {
     let Some(path) = std::env::var_os("RESULTS_TEST_CHILD") else { return };
-    let mut writer = write(Path::new(&path), 700, &metadata(2, &["P1"]));
-    std::thread::sleep(Duration::from_millis(1100));
-    // This row is late enough for a flush, the next hundred are not.
-    for i in 700..801 {
+    let metadata = metadata(2, &["P1"]);
+    let expected = Expected { checkpoint: 1, ..Expected::default() };
+    let mut writer = Writer::create(Path::new(&path), &metadata, expected).unwrap();
+    for i in 0..801 {
         writer.push(&Row::new(i, 2, 1).sample()).unwrap();
+        if i == 700 {
+            writer.flush(&[4711]).unwrap();
+        }
     }
     std::process::abort();
 }
@@ -34,8 +36,11 @@ fn a_killed_run_can_be_read_up_to_its_last_flush() {
         .unwrap()
         .status;
     assert!(!status.success(), "the child was to abort");
-    let results = Results::open(&path).unwrap();
+    let results = Results::open(unfinished(&path)).unwrap();
     assert!(!results.complete);
     assert!(results.time.len() >= 701, "{}", results.time.len());
     assert_rows(&results, results.time.len());
+    let Resumed { results, checkpoint, .. } = Writer::resume(&path).unwrap();
+    assert_rows(&results, 701);
+    assert_eq!(checkpoint, Some(vec![4711]));
 }
