@@ -4,7 +4,16 @@ mod rows;
 
 use hdf5::types::{FloatSize, IntSize, TypeDescriptor, VarLenUnicode};
 use results::*;
-use rows::{Row, assert_rows, folder, metadata, write};
+use rows::{Row, assert_rows, folder, metadata};
+use std::path::Path;
+
+fn write(path: &Path, rows: usize, metadata: &Metadata) -> Writer {
+    let mut writer = Writer::create(path, metadata, Expected::default()).unwrap();
+    for i in 0..rows {
+        writer.push(&Row::new(i, metadata.body.frequencies.len(), metadata.point_names.len()).sample()).unwrap();
+    }
+    writer
+}
 
 #[test]
 fn what_is_written_is_read_bit_for_bit() {

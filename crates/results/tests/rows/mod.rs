@@ -1,7 +1,7 @@
 //! Rows that the tests write, and that they find again.
 
 use results::*;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 pub fn metadata(modes: usize, point_names: &[&str]) -> Metadata {
     Metadata {
@@ -77,15 +77,7 @@ impl Row {
     }
 }
 
-pub fn write(path: &Path, rows: usize, metadata: &Metadata) -> Writer {
-    let mut writer = Writer::create(path, metadata, Expected::default()).unwrap();
-    for i in 0..rows {
-        writer.push(&Row::new(i, metadata.body.frequencies.len(), metadata.point_names.len()).sample()).unwrap();
-    }
-    writer
-}
-
-/// The first `rows` rows are those that [`write`] wrote, in every column.
+/// The first `rows` rows are those of [`Row::new`], in every column.
 pub fn assert_rows(results: &Results, rows: usize) {
     let names = results.metadata.point_names.clone();
     assert_eq!(results.time.len(), rows);
