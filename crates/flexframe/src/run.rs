@@ -268,7 +268,7 @@ fn expected_rows(scene: &Scene) -> usize {
         (Rows::EverySteps(steps), Stepping::Step(step)) => steps as f64 * step,
         (Rows::EverySteps(_), Stepping::Tolerance(_)) => return 0,
     };
-    (scene.time.end / spacing * (1.0 - 1e-12)).ceil() as usize + 1
+    ((scene.time.end / spacing * (1.0 - 1e-12)).ceil() as usize).saturating_add(1)
 }
 
 /// Steps between two reports of progress, where no row comes first.

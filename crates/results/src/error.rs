@@ -1,6 +1,7 @@
 //! What can go wrong with a results file or a figure.
 
-use std::io;
+use std::fs::OpenOptions;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 /// An error of the HDF5 writer or reader.
@@ -182,6 +183,20 @@ impl FileError {
                 Some(errno) => Self::system(&path, action, &io::Error::from_raw_os_error(errno)),
                 None => Self::Hdf5 { path, action, source },
             }
+        }
+    }
+
+    /// The HDF5 library may lose the system's reason on its way. Where it could not write the temporary file `file`, the
+    /// system says it again to who tries the same.
+    pub(crate) fn with_reason_from_system(self, file: &Path) -> Self {
+        let Self::Hdf5 { path, action, source } = self else { return self };
+        let again = OpenOptions::new().append(true).open(file).and_then(|mut file| {
+            file.write_all(&[0; 1 << 16])?;
+            file.sync_data()
+        });
+        match again {
+            Err(error) => Self::system(&path, action, &error),
+            Ok(()) => Self::Hdf5 { path, action, source },
         }
     }
 

@@ -89,7 +89,8 @@ impl Writer {
         let checkpoint = vec![0; CHECKPOINT_FRAME + expected.checkpoint];
         let room = Room { rows, checkpoint: Some(checkpoint.len()), complete: false };
         let file = place.temporary()?;
-        let store = Store::create(&file, &place.part, metadata, room)?;
+        let store =
+            Store::create(&file, &place.part, metadata, room).map_err(|error| error.with_reason_from_system(&file))?;
         place.put_part(file, expected.overwrite)?;
         Ok(Self {
             place,
@@ -226,10 +227,13 @@ impl Writer {
         self.write_buffers()?;
         let room = Room { rows: self.rows_written, checkpoint: None, complete: true };
         let file = self.place.temporary()?;
-        let store = Store::create(&file, &self.place.path, &self.metadata, room)?;
-        store.copy_rows(&self.place.path, &self.store, self.rows_written)?;
-        store.flush(&self.place.path)?;
-        drop(store);
+        let path = &self.place.path;
+        Store::create(&file, path, &self.metadata, room)
+            .and_then(|store| {
+                store.copy_rows(path, &self.store, self.rows_written)?;
+                store.flush(path)
+            })
+            .map_err(|error| error.with_reason_from_system(&file))?;
         self.place.put_results(file)?;
         self.place.remove_part()
     }
@@ -259,10 +263,14 @@ impl Writer {
         let rows = rows.max(2 * self.store.rows());
         let room = Room { rows, checkpoint: Some(self.checkpoint.len()), complete: false };
         let file = self.place.temporary()?;
-        let store = Store::create(&file, part, &self.metadata, room)?;
-        store.copy_rows(part, &self.store, self.rows_written)?;
-        store.write_checkpoint(part, (self.serial % 2) as usize, &self.checkpoint)?;
-        store.flush(part)?;
+        let store = Store::create(&file, part, &self.metadata, room)
+            .and_then(|store| {
+                store.copy_rows(part, &self.store, self.rows_written)?;
+                store.write_checkpoint(part, (self.serial % 2) as usize, &self.checkpoint)?;
+                store.flush(part)?;
+                Ok(store)
+            })
+            .map_err(|error| error.with_reason_from_system(&file))?;
         self.place.put_part(file, true)?;
         self.store = store;
         Ok(())
