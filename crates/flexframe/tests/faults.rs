@@ -4,6 +4,7 @@
 
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
+use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use results::{Results, unfinished};
@@ -47,8 +48,8 @@ impl Scene {
     }
 
     /// Starts a run and comes back when its unfinished file is there.
-    fn start(&self, mut command: Command, name: &str) -> Child {
-        let child = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
+    fn start(&self, command: Command, name: &str) -> Child {
+        let child = spawn(command);
         let started = Instant::now();
         while !unfinished(self.results(name)).exists() {
             assert!(started.elapsed() < Duration::from_secs(60));
@@ -64,14 +65,27 @@ fn flexframe(arguments: &[&str]) -> Command {
     command
 }
 
-fn succeed(mut command: Command) {
-    let output = command.output().unwrap();
+/// A child inherits the files that its parent has open, with HDF5's locks: none is started while a file is open.
+static OPEN: Mutex<()> = Mutex::new(());
+
+fn spawn(mut command: Command) -> Child {
+    let _none_open = OPEN.lock().unwrap_or_else(PoisonError::into_inner);
+    command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
+}
+
+fn open(path: impl AsRef<Path>) -> Results {
+    let _open = OPEN.lock().unwrap_or_else(PoisonError::into_inner);
+    Results::open(path).unwrap()
+}
+
+fn succeed(command: Command) {
+    let output = spawn(command).wait_with_output().unwrap();
     assert!(output.status.success(), "{}", message(&output));
 }
 
 /// What is said on standard error by a command that is to fail.
-fn failure(mut command: Command) -> String {
-    let output = command.output().unwrap();
+fn failure(command: Command) -> String {
+    let output = spawn(command).wait_with_output().unwrap();
     assert_eq!(output.status.code(), Some(1), "{}", message(&output));
     assert!(output.stdout.is_empty());
     message(&output)
@@ -103,7 +117,7 @@ fn a_run_that_is_killed_again_and_again_ends_in_the_same_file() {
     let scene = Scene::new("3e-7");
     succeed(scene.run("whole"));
     let expected = std::fs::read(scene.results("whole")).unwrap();
-    let whole = Results::open(scene.results("whole")).unwrap();
+    let whole = open(scene.results("whole"));
     let kills: usize = std::env::var("FLEXFRAME_KILLS").map_or(6, |count| count.parse().unwrap());
     let part = unfinished(scene.results("killed"));
     let mut random = random();
@@ -111,7 +125,7 @@ fn a_run_that_is_killed_again_and_again_ends_in_the_same_file() {
     while done < kills {
         // From the start of the process, so that reading, building and taking up are hit too.
         let command = if part.exists() { scene.resume("killed") } else { scene.run("killed") };
-        let mut child = { command }.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
+        let mut child = spawn(command);
         std::thread::sleep(Duration::from_secs_f64(2.5 * random()));
         child.kill().unwrap();
         let output = child.wait_with_output().unwrap();
@@ -123,7 +137,7 @@ fn a_run_that_is_killed_again_and_again_ends_in_the_same_file() {
         assert_eq!(output.status.code(), None, "{}", message(&output));
         done += 1;
         if part.exists() {
-            let results = Results::open(&part).unwrap();
+            let results = open(&part);
             let rows = results.time.len();
             assert!(!results.complete);
             // Never less than before, and every row is that of the whole run.
@@ -153,12 +167,14 @@ fn control_c_stops_at_a_row_and_says_how_to_go_on() {
     for signal in ["-INT", "-TERM"] {
         let child = scene.start(scene.run(signal), signal);
         std::thread::sleep(Duration::from_millis(200));
-        assert!(Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap().success());
+        let mut kill = Command::new("kill");
+        kill.args([signal, &child.id().to_string()]);
+        succeed(kill);
         let output = child.wait_with_output().unwrap();
         assert_eq!(output.status.code(), Some(130), "{}", message(&output));
         assert_has(&message(&output), &["stopped at time", "flexframe resume", "long.part.h5"]);
         assert!(!scene.results(signal).exists());
-        assert!(Results::open(unfinished(scene.results(signal))).unwrap().time.len() > 1);
+        assert!(open(unfinished(scene.results(signal))).time.len() > 1);
         succeed(scene.resume(signal));
         assert!(std::fs::read(scene.results(signal)).unwrap() == std::fs::read(scene.results("whole")).unwrap());
     }

@@ -32,7 +32,7 @@ pub enum FileError {
     },
     /// Another process has the file open for writing.
     #[error(
-        "{path}: another run is writing this file; wait for it, stop it, or choose another folder",
+        "{path}: another run is writing this file, or another program has it open; wait for it, stop it, or choose another folder",
         path = .path.display()
     )]
     Busy {

@@ -1,6 +1,7 @@
 //! What survives when a run is killed.
 //!
-//! In a process apart from the other tests: a child inherits the files that its parent has open, with HDF5's locks.
+//! In a process apart from the other tests, and one after another: a child inherits the files that its parent has open,
+//! with HDF5's locks.
 
 mod rows;
 
@@ -8,6 +9,9 @@ use results::{Expected, Results, Resumed, Writer, unfinished};
 use rows::{Row, assert_rows, folder, metadata};
 use std::path::Path;
 use std::process::Command;
+use std::sync::Mutex;
+
+static ALONE: Mutex<()> = Mutex::new(());
 
 /// Not a test of its own: the process that [`a_killed_run_can_be_read_up_to_its_last_flush`] kills.
 #[test]
@@ -28,6 +32,7 @@ fn child_that_is_killed() {
 
 #[test]
 fn a_killed_run_can_be_read_up_to_its_last_flush() {
+    let _alone = ALONE.lock();
     let (_folder, path) = folder();
     let status = Command::new(std::env::current_exe().unwrap())
         .args(["--exact", "child_that_is_killed", "--ignored"])
@@ -77,6 +82,7 @@ const ROWS: usize = 20_000;
 /// `FLEXFRAME_KILLS` sets the number of kills.
 #[test]
 fn a_file_is_whole_whenever_its_writer_is_killed() {
+    let _alone = ALONE.lock();
     let (_folder, path) = folder();
     let kills: u32 = std::env::var("FLEXFRAME_KILLS").map_or(25, |count| count.parse().unwrap());
     let (mut done, mut random) = (0, std::process::id().wrapping_mul(2_654_435_761));
