@@ -10,7 +10,7 @@ default:
 
 # The paper's plate, from mesh to table and figures, into out/plate.
 plate: build
-    {{flexframe}} paper examples/plate.toml -o out/plate
+    {{flexframe}} paper examples/plate.toml -o out/plate --overwrite
 
 # Every test.
 test:
@@ -49,7 +49,7 @@ bench-modes: build
 
 # Read a results file with h5py, as a user would (Python packages).
 h5py: build
-    {{flexframe}} run examples/ring.toml -o out/ring
+    {{flexframe}} run examples/ring.toml -o out/ring --overwrite
     python3 -m venv --upgrade-deps .tools/h5py >/dev/null
     .tools/h5py/bin/pip install -q h5py
     .tools/h5py/bin/python crates/results/tests/read_with_h5py.py out/ring/ring.h5

@@ -22,6 +22,7 @@ use modal::{ReducedBody, RigidMotion};
 use nalgebra::{Matrix3, SVector, Vector3};
 use rigid_kin::{Attitude, f_inverse, transformation_matrix};
 
+use crate::checkpoint::Tape;
 use crate::error::{RateError, SetupError};
 use crate::initial::Initial;
 use crate::load::{Acting, Load};
@@ -134,6 +135,14 @@ impl ConservativeState {
         self.slow = other.slow;
         self.modal_displacement.copy_from_slice(&other.modal_displacement);
         self.modal_momentum.copy_from_slice(&other.modal_momentum);
+    }
+
+    pub(crate) fn pass(&mut self, tape: &mut Tape) {
+        tape.finite("the time", &mut self.time);
+        tape.attitude(&mut self.attitude);
+        tape.vector(&mut self.slow);
+        tape.numbers(&mut self.modal_displacement);
+        tape.numbers(&mut self.modal_momentum);
     }
 }
 

@@ -2,6 +2,7 @@
 
 use nalgebra::Vector2;
 
+use crate::checkpoint::Tape;
 use crate::conservative::{ConservativeBody, ConservativeState, Evaluation, Slow, get, part};
 use crate::error::{SetupError, StepError};
 use crate::exponential::{BlockStore, StepBlocks, apply};
@@ -102,6 +103,18 @@ impl ConservativeMotion {
     /// Evaluations of the rates so far.
     pub fn evaluations(&self) -> u64 {
         self.evaluations
+    }
+
+    pub(crate) fn pass(&mut self, tape: &mut Tape) {
+        self.state.pass(tape);
+        tape.flag(&mut self.first_known);
+        // Of a known evaluation the stages read the rates only.
+        let first = &mut self.stages[0];
+        tape.vector(&mut first.slow);
+        tape.numbers(&mut first.displacement);
+        tape.numbers(&mut first.momentum);
+        tape.count(&mut self.evaluations);
+        tape.number(&mut self.energy_scale);
     }
 
     /// Does one step of length `h` that ends at time `end` (= time + h but for rounding).

@@ -20,6 +20,7 @@
 //! | k1 … k4, (38)–(40) | [`PaperScheme`] |
 #![forbid(unsafe_code)]
 
+mod checkpoint;
 mod conservative;
 mod conservative_motion;
 mod conservative_observation;
@@ -42,6 +43,7 @@ mod state;
 mod steady_spin;
 mod work;
 
+pub use checkpoint::RestoreError;
 pub use conservative::{ConservativeBody, ConservativeState};
 pub use conservative_motion::{ConservativeMotion, ConservativeScheme};
 pub use error::{SetupError, StepError};

@@ -1,5 +1,7 @@
 //! Which steps lead through a run: they end exactly at output times and at the corners of load histories.
 
+use crate::checkpoint::Tape;
+
 /// How long the steps are.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum StepControl {
@@ -32,6 +34,19 @@ pub(crate) struct Segment {
     pub corner: bool,
 }
 
+impl Segment {
+    /// Of no length, to be set.
+    const BLANK: Self = Self { start: 0.0, end: 0.0, length: 0.0, row: false, after_corner: false };
+
+    fn pass(&mut self, tape: &mut Tape) {
+        for time in [&mut self.start, &mut self.end, &mut self.length] {
+            tape.finite("a segment of the run", time);
+        }
+        tape.flag(&mut self.row);
+        tape.flag(&mut self.after_corner);
+    }
+}
+
 /// The segments of a run.
 #[derive(Debug, Clone)]
 pub(crate) struct Plan {
@@ -55,6 +70,16 @@ impl Plan {
             Rows::EverySteps(_) => None,
         };
         Self { end, corners, passed: 0, interval, outputs: 0, reached: 0.0, last_length: 0.0 }
+    }
+
+    pub(crate) fn pass(&mut self, tape: &mut Tape) {
+        let mut passed = self.passed as u64;
+        tape.count(&mut passed);
+        tape.expect("the number of corners passed", passed <= self.corners.len() as u64);
+        self.passed = passed as usize;
+        tape.count(&mut self.outputs);
+        tape.finite("the end of the segment", &mut self.reached);
+        tape.finite("the length of the segment", &mut self.last_length);
     }
 
     /// The next segment; `None` at the end.
@@ -105,6 +130,16 @@ impl EqualSteps {
         Self { segment, count, done: 0 }
     }
 
+    /// To be set.
+    pub(crate) const BLANK: Self = Self { segment: Segment::BLANK, count: 1, done: 1 };
+
+    pub(crate) fn pass(&mut self, tape: &mut Tape) {
+        self.segment.pass(tape);
+        tape.count(&mut self.count);
+        tape.count(&mut self.done);
+        tape.expect("the number of steps done", self.done <= self.count);
+    }
+
     /// Whether all steps have been handed out.
     pub(crate) fn is_done(&self) -> bool {
         self.done == self.count
@@ -141,6 +176,19 @@ impl HalvedSteps {
     pub(crate) fn new(segment: Segment, step: f64) -> Self {
         let level = (segment.length / step * (1.0 - 1e-9)).log2().ceil().clamp(0.0, f64::from(DEEPEST)) as u32;
         Self { segment, level, done: 0 }
+    }
+
+    /// To be set.
+    pub(crate) const BLANK: Self = Self { segment: Segment::BLANK, level: 0, done: 1 };
+
+    pub(crate) fn pass(&mut self, tape: &mut Tape) {
+        self.segment.pass(tape);
+        let mut level = u64::from(self.level);
+        tape.count(&mut level);
+        tape.expect("the halvings of the step", level <= u64::from(DEEPEST));
+        self.level = level.min(u64::from(DEEPEST)) as u32;
+        tape.count(&mut self.done);
+        tape.expect("the number of steps done", self.done <= 1 << self.level);
     }
 
     /// Length and end of the next step; `None` at the segment's end.

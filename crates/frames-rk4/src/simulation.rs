@@ -3,6 +3,7 @@
 use modal::ReducedBody;
 use nalgebra::Vector3;
 
+use crate::checkpoint::{RestoreError, Tape};
 use crate::conservative::ConservativeBody;
 use crate::conservative_motion::{ConservativeMotion, ConservativeScheme};
 use crate::error::{SetupError, StepError};
@@ -293,6 +294,46 @@ impl Simulation {
         Ok(())
     }
 
+    /// Notes the state that has been reached in `out`, instead of what it held.
+    pub fn checkpoint(&mut self, out: &mut Vec<u64>) {
+        out.clear();
+        self.pass(&mut Tape::Note(out));
+    }
+
+    /// Takes up the state of a [`Self::checkpoint`] of a run with the same setup: what follows is what would have
+    /// followed there, bit for bit.
+    ///
+    /// # Errors
+    /// [`RestoreError`] for a checkpoint of another run.
+    pub fn restored(mut self, checkpoint: &[u64]) -> Result<Self, RestoreError> {
+        let mut tape = Tape::set(checkpoint);
+        self.pass(&mut tape);
+        tape.finish()?;
+        Ok(self)
+    }
+
+    fn pass(&mut self, tape: &mut Tape) {
+        match &mut self.engine {
+            Engine::Paper(scheme) => scheme.pass(tape),
+            Engine::PaperLimit(limit) => limit.pass(tape),
+            Engine::Conservative(motion) => motion.pass(tape),
+        }
+        self.plan.pass(tape);
+        match &mut self.walk {
+            Walk::Equal { steps, .. } => pass_steps(steps, EqualSteps::BLANK, EqualSteps::pass, tape),
+            Walk::Halved { longest_try, steps, .. } => {
+                tape.number(longest_try);
+                pass_steps(steps, HalvedSteps::BLANK, HalvedSteps::pass, tape);
+            }
+        }
+        tape.count(&mut self.steps_since_row);
+        let Stats { accepted, rejected, evaluations: _, shortest, longest } = &mut self.stats;
+        tape.count(accepted);
+        tape.count(rejected);
+        tape.number(shortest);
+        tape.number(longest);
+    }
+
     /// What the run has cost so far.
     pub fn stats(&self) -> Stats {
         let evaluations = match &self.engine {
@@ -434,6 +475,19 @@ impl Iterator for Simulation {
                 }
             }
         }
+    }
+}
+
+/// Passes over the steps through a segment, which there are none of before the first.
+fn pass_steps<S>(steps: &mut Option<(S, bool)>, blank: S, pass: fn(&mut S, &mut Tape), tape: &mut Tape) {
+    let mut there = steps.is_some();
+    tape.flag(&mut there);
+    // Passed even where there are none, so that every checkpoint of a run has the same length.
+    let (inner, row) = steps.get_or_insert((blank, false));
+    pass(inner, tape);
+    tape.flag(row);
+    if !there {
+        *steps = None;
     }
 }
 
