@@ -36,14 +36,14 @@ pub(crate) struct Segment {
 
 impl Segment {
     /// Of no length, to be set.
-    const BLANK: Self = Self { start: 0.0, end: 0.0, length: 0.0, row: false, after_corner: false };
+    const BLANK: Self = Self { start: 0.0, end: 0.0, length: 0.0, row: false, corner: false };
 
     fn pass(&mut self, tape: &mut Tape) {
         for time in [&mut self.start, &mut self.end, &mut self.length] {
             tape.finite("a segment of the run", time);
         }
         tape.flag(&mut self.row);
-        tape.flag(&mut self.after_corner);
+        tape.flag(&mut self.corner);
     }
 }
 

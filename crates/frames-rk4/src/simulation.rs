@@ -327,6 +327,7 @@ impl Simulation {
             }
         }
         tape.count(&mut self.steps_since_row);
+        tape.flag(&mut self.corner_ahead);
         let Stats { accepted, rejected, evaluations: _, shortest, longest } = &mut self.stats;
         tape.count(accepted);
         tape.count(rejected);
