@@ -8,6 +8,9 @@
 //!
 //! The crate knows plain data only: no mesh, no mode, no scheme.
 
+#![forbid(unsafe_code)]
+#![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable))]
+
 mod animation;
 mod chart;
 mod error;
