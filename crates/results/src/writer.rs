@@ -53,7 +53,11 @@ impl Writer {
         let modes = metadata.body.frequencies.len();
         check_length(path, "body/damping_ratios", modes, metadata.body.damping_ratios.len())?;
 
-        let file = hdf5::File::create(path).map_err(hdf5_error(path, "create the file"))?;
+        // The format of HDF5 1.8 has checksums on all that is not numbers: damage is noticed before it is believed.
+        let file = hdf5::File::with_options()
+            .with_fapl(|access| access.libver_v18())
+            .create(path)
+            .map_err(hdf5_error(path, "create the file"))?;
         write_root_attributes(path, &file, metadata)?;
         write_body(path, &file, metadata)?;
         create_point_groups(&file, &metadata.point_names).map_err(hdf5_error(path, "create the points"))?;
