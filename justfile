@@ -53,3 +53,27 @@ h5py: build
     python3 -m venv --upgrade-deps .tools/h5py >/dev/null
     .tools/h5py/bin/pip install -q h5py
     .tools/h5py/bin/python crates/results/tests/read_with_h5py.py out/ring/ring.h5
+
+# Fuzz every reader for so many seconds each (libFuzzer; wants a nightly compiler).
+fuzz seconds="600":
+    test -x .tools/bin/cargo-fuzz || cargo install --quiet --locked --root .tools cargo-fuzz
+    mkdir -p fuzz/corpus/{mesh,scene,table,expression,results}
+    cd fuzz && export RUSTUP_TOOLCHAIN=nightly && \
+    cargo run --quiet --release --bin results-seeds corpus/results && \
+    fuzz() { ../.tools/bin/cargo-fuzz run --fuzz-dir . "$1" "corpus/$1" "${@:2}" -- -max_total_time={{seconds}} \
+        -max_len=65536 -timeout=10 -rss_limit_mb=2048 -malloc_limit_mb=512 -print_final_stats=1; } && \
+    fuzz mesh ../crates/fem-tet10/tests/data && \
+    fuzz scene ../examples ../crates/scene/src && \
+    fuzz table seeds/table && \
+    fuzz expression seeds/expression && \
+    fuzz results
+
+# Licences, bans and sources of all dependencies (deny.toml).
+deny:
+    test -x .tools/bin/cargo-deny || cargo install --quiet --locked --root .tools cargo-deny
+    .tools/bin/cargo-deny check licenses bans sources
+
+# Known holes in dependencies; fetches a database.
+advisories:
+    test -x .tools/bin/cargo-deny || cargo install --quiet --locked --root .tools cargo-deny
+    .tools/bin/cargo-deny check advisories

@@ -19,6 +19,7 @@
 //! | (36), (37) ω by g and α by h | [`rigid_kin::ReferencePoints`] |
 //! | k1 … k4, (38)–(40) | [`PaperScheme`] |
 #![forbid(unsafe_code)]
+#![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable))]
 
 mod checkpoint;
 mod conservative;

@@ -153,6 +153,28 @@ pub enum FileError {
         /// The attribute that was looked for.
         attribute: String,
     },
+    /// A text is not in UTF-8.
+    #[error("{path}: the attribute `{attribute}` is not text in UTF-8; is the file damaged?", path = .path.display())]
+    NotUtf8 {
+        /// The results file.
+        path: PathBuf,
+        /// The attribute.
+        attribute: String,
+    },
+    /// The histories claim more numbers than the file can hold.
+    #[error(
+        "{path}: the datasets claim {claimed} bytes of numbers, more than the {length} bytes of the file; it is damaged, \
+         or was compressed (h5repack without a filter undoes that)",
+        path = .path.display()
+    )]
+    ClaimsTooMuch {
+        /// The results file.
+        path: PathBuf,
+        /// Bytes that the shapes of the datasets come to.
+        claimed: u128,
+        /// Bytes of the file.
+        length: u64,
+    },
     /// A dataset has a shape other than the contract's.
     #[error("{path}: {dataset} has the shape {found:?} where {expected} is expected", path = .path.display())]
     WrongShape {

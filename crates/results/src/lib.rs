@@ -8,6 +8,9 @@
 //!
 //! The crate knows plain data only: no mesh, no mode, no scheme.
 
+#![deny(unsafe_code)] // not `forbid`, since a macro of ndarray allows it within itself
+#![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable))]
+
 mod animation;
 mod chart;
 mod error;

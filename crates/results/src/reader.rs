@@ -104,11 +104,12 @@ impl Results {
     ///
     /// # Errors
     /// [`FileError::Hdf5`] if it is no readable HDF5 file, [`FileError::MissingDataset`],
-    /// [`FileError::MissingAttribute`] or [`FileError::WrongShape`] if it departs from the contract.
+    /// [`FileError::MissingAttribute`], [`FileError::NotUtf8`] or [`FileError::WrongShape`] if it departs from the
+    /// contract, [`FileError::ClaimsTooMuch`] if its shapes come to more than the file holds.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, FileError> {
         let path = path.as_ref();
         let file = hdf5::File::open(path).map_err(FileError::hdf5(path, "open the file"))?;
-        let source = Source { path, file: &file };
+        let source = Source { path, file: &file, length: file.size() };
 
         let metadata = source.metadata()?;
         let complete = source.attribute::<i64>("complete")? == 1;
@@ -119,6 +120,8 @@ impl Results {
         for quantity in &quantities {
             rows = rows.min(source.rows_of(&quantity.path(names), quantity.width(modes))?);
         }
+        let width: usize = quantities.iter().map(|quantity| quantity.width(modes).unwrap_or(1)).sum();
+        source.refuse_if_claimed(rows as u128 * width as u128)?;
         let mut columns = Vec::with_capacity(quantities.len());
         for quantity in &quantities {
             columns.push(source.column(&quantity.path(names), quantity.width(modes), rows)?);
@@ -263,6 +266,8 @@ fn vectors<const N: usize>(values: Vec<f64>) -> Vec<[f64; N]> {
 struct Source<'a> {
     path: &'a Path,
     file: &'a hdf5::File,
+    /// Bytes of the file.
+    length: u64,
 }
 
 impl Source<'_> {
@@ -321,7 +326,17 @@ impl Source<'_> {
         self.file.dataset(name).map_err(self.failed(format!("open dataset {name}")))
     }
 
+    /// Refuses to make room for more numbers than the file has bytes for: a shape is only a claim.
+    fn refuse_if_claimed(&self, numbers: u128) -> Result<(), FileError> {
+        let claimed = numbers.saturating_mul(size_of::<f64>() as u128);
+        if claimed <= u128::from(self.length) {
+            return Ok(());
+        }
+        Err(FileError::ClaimsTooMuch { path: self.path.to_path_buf(), claimed, length: self.length })
+    }
+
     fn read(&self, name: &str, dataset: &hdf5::Dataset) -> Result<Vec<f64>, FileError> {
+        self.refuse_if_claimed(dataset.shape().iter().fold(1, |size, n| size.saturating_mul(*n as u128)))?;
         dataset.read_raw::<f64>().map_err(self.failed(format!("read dataset {name}")))
     }
 
@@ -383,7 +398,10 @@ impl Source<'_> {
     }
 
     fn text(&self, name: &str) -> Result<String, FileError> {
-        Ok(self.attribute::<VarLenUnicode>(name)?.as_str().to_owned())
+        // The bytes are the file's: `as_str` would take them for UTF-8 unseen.
+        let text = self.attribute::<VarLenUnicode>(name)?;
+        String::from_utf8(text.as_bytes().to_vec())
+            .map_err(|_| FileError::NotUtf8 { path: self.path.to_path_buf(), attribute: name.into() })
     }
 
     fn missing(&self, dataset: &str) -> FileError {
