@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use results::{BodyProperties, Metadata, PointSample, Sample, Units, Writer};
+use results::{BodyProperties, Expected, Metadata, PointSample, Sample, Units, Writer};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let folder = PathBuf::from(std::env::args_os().nth(1).ok_or("name a folder")?);
@@ -19,6 +19,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             tolerance: None,
             program_version: "0".into(),
             scene_text: "title = \"a seed\"".into(),
+            scene_file: "fuzz.toml".into(),
             body: BodyProperties {
                 mass: 1.0,
                 center_of_mass: [0.0; 3],
@@ -28,7 +29,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             },
             point_names: (0..points).map(|i| format!("P{i}")).collect(),
         };
-        let mut writer = Writer::create(folder.join(name).with_extension("h5"), &metadata)?;
+        let mut writer = Writer::create(folder.join(name).with_extension("h5"), &metadata, Expected::default())?;
         let modal = vec![0.5; modes];
         let point = || PointSample {
             displacement: [1.0; 3],

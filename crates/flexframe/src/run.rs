@@ -30,7 +30,7 @@ pub enum RunError {
         /// The scene file.
         scene: PathBuf,
         /// Why.
-        source: StartError,
+        source: Box<StartError>,
     },
     /// A step failed. The states before it are in the unfinished file.
     #[error("{source} (the states before it are in {results})", results = results.display())]
@@ -49,7 +49,7 @@ pub enum RunError {
         /// The scene file.
         scene: PathBuf,
         /// Why.
-        failure: RunFailure,
+        failure: Box<RunFailure>,
     },
     /// The run was asked to stop. The states up to there are in the unfinished file.
     #[error("stopped at time {time}; go on with: flexframe resume {}", part.display())]
@@ -258,7 +258,7 @@ pub fn resume(
 }
 
 fn start(scene: &Scene, model: &Model) -> Result<Simulation, RunError> {
-    model.start(scene).map_err(|source| RunError::Setup { scene: scene.path.clone(), source })
+    model.start(scene).map_err(|source| RunError::Setup { scene: scene.path.clone(), source: Box::new(source) })
 }
 
 /// Rows that a run will have, but for corners of loads between them; 0 where its steps are not known.

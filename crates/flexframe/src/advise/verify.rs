@@ -30,7 +30,7 @@ impl<'a> Base<'a> {
         // Settled as the others are, so that nothing but the switch is between them.
         let settled = base.settled(None);
         base.motion = follow(&settled, &Model::build(&settled, |_| ())?)
-            .map_err(|failure| RunError::Verify { scene: scene.path.clone(), failure })?;
+            .map_err(|failure| RunError::Verify { scene: scene.path.clone(), failure: Box::new(failure) })?;
         Ok(base)
     }
 
