@@ -10,7 +10,7 @@ default:
 
 # The paper's plate, from mesh to table and figures, into out/plate.
 plate: build
-    {{flexframe}} paper examples/plate.toml -o out/plate
+    {{flexframe}} paper examples/plate.toml -o out/plate --overwrite
 
 # Every test.
 test:
@@ -42,9 +42,10 @@ accuracy: build
 stability:
     cargo run --release --quiet --package stability -- docs/stability.md
 
-# Steps a second of every scheme on one core.
+# Steps a second of every scheme on one core, and what each effect costs per step and in set-up.
 bench:
     cargo bench --quiet --package frames-rk4 --bench steps
+    cargo bench --quiet --package flexframe --bench effects
 
 # Time `flexframe modes` against SciPy's eigsh with CHOLMOD on three meshes (some minutes; Python packages).
 bench-modes: build
@@ -52,7 +53,31 @@ bench-modes: build
 
 # Read a results file with h5py, as a user would (Python packages).
 h5py: build
-    {{flexframe}} run examples/ring.toml -o out/ring
+    {{flexframe}} run examples/ring.toml -o out/ring --overwrite
     python3 -m venv --upgrade-deps .tools/h5py >/dev/null
     .tools/h5py/bin/pip install -q h5py
     .tools/h5py/bin/python crates/results/tests/read_with_h5py.py out/ring/ring.h5
+
+# Fuzz every reader for so many seconds each (libFuzzer; wants a nightly compiler).
+fuzz seconds="600":
+    test -x .tools/bin/cargo-fuzz || cargo install --quiet --locked --root .tools cargo-fuzz
+    mkdir -p fuzz/corpus/{mesh,scene,table,expression,results}
+    cd fuzz && export RUSTUP_TOOLCHAIN=nightly && \
+    cargo run --quiet --release --bin results-seeds corpus/results && \
+    fuzz() { ../.tools/bin/cargo-fuzz run --fuzz-dir . "$1" "corpus/$1" "${@:2}" -- -max_total_time={{seconds}} \
+        -max_len=65536 -timeout=10 -rss_limit_mb=2048 -malloc_limit_mb=512 -print_final_stats=1; } && \
+    fuzz mesh ../crates/fem-tet10/tests/data && \
+    fuzz scene ../examples ../crates/scene/src && \
+    fuzz table seeds/table && \
+    fuzz expression seeds/expression && \
+    fuzz results
+
+# Licences, bans and sources of all dependencies (deny.toml).
+deny:
+    test -x .tools/bin/cargo-deny || cargo install --quiet --locked --root .tools cargo-deny
+    .tools/bin/cargo-deny check licenses bans sources
+
+# Known holes in dependencies; fetches a database.
+advisories:
+    test -x .tools/bin/cargo-deny || cargo install --quiet --locked --root .tools cargo-deny
+    .tools/bin/cargo-deny check advisories

@@ -43,9 +43,13 @@ pub(crate) struct Spin {
     pub steady: bool,
 }
 
+/// Displacement of a point in a mode, of the largest there is, that is rounding: gravity neither turns a free body nor
+/// moves its modes.
+const ROUNDING: f64 = 1e-10;
+
 impl Source {
-    /// Of a load on a body that may turn by `turn` rad.
-    fn new(load: &Load, course: &Course, turn: f64, gravity: bool) -> Self {
+    /// Of a load on the body of `case` that may turn by `turn` rad.
+    fn new(load: &Load, course: &Course, turn: f64, gravity: bool, case: &Case) -> Self {
         let (columns, vector, frame): (Vec<Vector3<f64>>, Vector3<f64>, LoadFrame) = match &load.action {
             Action::Force { point, force, frame } => (point.columns().to_vec(), *force, *frame),
             Action::Moment { rotation, moment, frame } => (rotation.columns().to_vec(), *moment, *frame),
@@ -61,11 +65,21 @@ impl Source {
             let worst = (&rows * rows.transpose()).symmetric_eigenvalues().max().max(0.0).sqrt() * vector.norm();
             ((rows.transpose() * vector).norm() + astray * worst).min(worst)
         };
+        let is_field = matches!(load.action, Action::Field(_));
+        let turning = &columns[3..6];
+        let arm = case.body.rotation_basis.norm() * case.length;
+        let is_rounding = !is_field && turning.iter().all(|column| column.norm() <= ROUNDING * arm);
+        let moved = |of: &dyn Fn(&Vector3<f64>) -> f64| -> Vec<f64> {
+            let modes = columns[6..].iter().zip(case.peaks);
+            modes
+                .map(|(shape, peak)| if !is_field && shape.norm() <= ROUNDING * peak { 0.0 } else { of(shape) })
+                .collect()
+        };
         Self {
             translation: largest(&columns[..3]),
-            rotation: largest(&columns[3..6]),
-            modal: columns[6..].iter().map(|column| largest(&[*column])).collect(),
-            modal_at_start: columns[6..].iter().map(|column| column.dot(&vector).abs()).collect(),
+            rotation: if is_rounding { 0.0 } else { largest(turning) },
+            modal: moved(&|shape| largest(&[*shape])),
+            modal_at_start: moved(&|shape| shape.dot(&vector).abs()),
             course: course.clone(),
             dead,
             turn,
@@ -76,7 +90,7 @@ impl Source {
     /// Of all loads of a case, whose courses are `courses`, on a body that may turn by `turn` rad.
     fn all(case: &Case, courses: &[Course], turn: f64) -> Vec<Self> {
         let loads = case.loads.iter().map(|load| (load, false)).chain(case.gravity.iter().map(|load| (load, true)));
-        loads.zip(courses).map(|((load, gravity), course)| Self::new(load, course, turn, gravity)).collect()
+        loads.zip(courses).map(|((load, gravity), course)| Self::new(load, course, turn, gravity, case)).collect()
     }
 
     /// Largest impulse where the force is 1; with a direction a(t) that turns, by parts: `|∫ h a| ≤ max|∫h| (1 + ∫|a'|)`.

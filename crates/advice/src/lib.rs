@@ -6,7 +6,8 @@
 //!
 //! The order of calls:
 //!
-//! 1. [`limits()`] refuses what is known to be wrong (again when the stiffness is known).
+//! 1. [`limits()`] refuses what is known to be wrong (again when the stiffness is known), and [`buckling`] what steady
+//!    loads bend without limit.
 //! 2. [`screen`] tells, from the modes alone, whether [`modal::ReducedBody::stress_stiffness`] may matter. If its row is
 //!    on, compute that.
 //! 3. [`advise`] gives the table: a [`Row`] for each [`Effect`], and what each mode is worth. Nothing stiffens where
@@ -55,6 +56,7 @@
 //! # }
 //! ```
 #![forbid(unsafe_code)]
+#![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable))]
 
 mod case;
 mod course;
@@ -68,7 +70,7 @@ mod table;
 mod tensor;
 
 pub use case::{AdviceError, Case};
-pub use limits::{Refusal, SOFTENED, limits};
+pub use limits::{Refusal, SOFTENED, buckling, limits};
 pub use review::{Broken, Review};
 pub use row::{Effect, Row, Worth};
 pub use table::{Advice, advise, screen};

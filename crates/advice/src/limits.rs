@@ -1,6 +1,8 @@
 //! Models that are known to be wrong.
 
-use frames_rk4::{DrivenMotion, Effects, SteadySpin};
+use faer::{Mat, Side};
+use frames_rk4::{DrivenMotion, Effects, EigenError, SteadySpin};
+use modal::ReducedBody;
 use nalgebra::Vector3;
 
 use crate::case::{AdviceError, Case};
@@ -16,7 +18,7 @@ pub enum Refusal {
     /// K + Ω²(K_σ − N) is not definite.
     #[error(
         "the body spins at {spin:.4} rad per time, beyond the {critical:.4} at which K + Ω²(K_σ − N) loses definiteness: \
-         it would bend without limit; spin it slower{}", if *.stiffening { "" } else { ", or turn geometric_stiffening on" }
+         it would bend without limit; spin it slower{} (`refuse = false` in [effects] runs it all the same)", if *.stiffening { "" } else { ", or turn geometric_stiffening on" }
     )]
     Unstable {
         /// |ω|.
@@ -29,7 +31,7 @@ pub enum Refusal {
     /// The centrifugal force softens the body, and nothing stiffens it.
     #[error(
         "the body spins at {spin:.4} rad per time, {:.0} % of the {critical:.4} at which centrifugal softening takes all \
-         stiffness, and geometric_stiffening is off: turn it on, or deformed_inertia off", 100.0 * .spin / .critical
+         stiffness, and geometric_stiffening is off: turn it on, or deformed_inertia off (`refuse = false` in [effects] runs it all the same)", 100.0 * .spin / .critical
     )]
     Softened {
         /// |ω|.
@@ -37,6 +39,28 @@ pub enum Refusal {
         /// The speed at which no stiffness is left.
         critical: f64,
     },
+    /// K + K_σ of the steady loads is not definite.
+    #[error(
+        "the steady loads are {factor:.4} times those at which the body buckles, where K + K_σ loses definiteness: it \
+         would bend without limit; make them smaller, or hold the body at more places"
+    )]
+    Buckled {
+        /// The loads over those at which it buckles.
+        factor: f64,
+    },
+}
+
+/// The refusal of a body with the stress stiffness K_σ of its steady loads (nf×nf), if any.
+///
+/// # Errors
+/// [`AdviceError::Eigen`] for numbers that are not finite.
+pub fn buckling(body: &ReducedBody, load_stiffness: &Mat<f64>) -> Result<Option<Refusal>, AdviceError> {
+    let omega = &body.circular_frequencies;
+    let nf = omega.len();
+    let scaled = Mat::from_fn(nf, nf, |i, j| load_stiffness[(i, j)] / (omega[i] * omega[j]));
+    let eigenvalues = scaled.self_adjoint_eigenvalues(Side::Lower).map_err(|_| EigenError { size: nf })?;
+    let factor = -eigenvalues.iter().copied().fold(0.0, f64::min);
+    Ok((factor >= 1.0).then_some(Refusal::Buckled { factor }))
 }
 
 /// The spin that there is without doubt: at the beginning, or driven. `None` where the body does not turn.

@@ -24,7 +24,7 @@ pub enum Broken {
     },
     /// The deflection rose above what the estimates allow for.
     #[error(
-        "at time {time:.6} the deflection was {found:.4} of the length, above the {assumed:.4} that the estimates allow for; turn all effects on"
+        "at time {time:.6} the deflection was {found:.3e} of the length, above the {assumed:.3e} that the estimates allow for; turn all effects on"
     )]
     Deflection {
         /// When it was so for the first time.
@@ -36,7 +36,7 @@ pub enum Broken {
     },
     /// The strain is not linear.
     #[error(
-        "at time {time:.6} the deflection passed 10 % of the length, up to {found:.4}: linear strain ends there; trust the answer to some per cent only"
+        "at time {time:.6} the deflection passed 10 % of the length, up to {found:.3e}: linear strain ends there; trust the answer to some per cent only"
     )]
     Linear {
         /// When it was so for the first time.

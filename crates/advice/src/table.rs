@@ -15,7 +15,7 @@ pub struct Advice {
     pub rows: Vec<Row>,
     /// What each mode is worth (nf).
     pub modes: Vec<Worth>,
-    /// How many of the modes to keep: all up to the last that is worth it.
+    /// How many of the modes to keep: those after them have shares that sum to less than the tolerance.
     pub keep: usize,
     /// Whether the last mode there was to choose from is still worth keeping: then more should be computed.
     pub more_modes: bool,
@@ -41,6 +41,10 @@ impl Advice {
 const SCREEN: f64 = 10.0;
 /// Deflection over length at which linear strain ends.
 pub(crate) const LINEAR: f64 = 0.1;
+/// How far what the modes leave out of a static answer may count above its share in the work of the load.
+const SWING: f64 = 4.0;
+/// The same of the centrifugal field, with what the Euler force of a spin that changes adds.
+const SPUN: f64 = 10.0;
 /// ½∫w'² of the first bending mode of a free bar with a deflection of one at its ends, over one length.
 const SHORTENING: f64 = 6.2;
 
@@ -83,7 +87,13 @@ pub fn advise(case: &Case, tolerance: f64) -> Result<Advice, AdviceError> {
             worth_keeping: *share >= tolerance,
         })
         .collect();
-    let keep = modes.iter().rposition(|mode| mode.worth_keeping).map_or(0, |last| last + 1);
+    // What is left out adds up.
+    let mut rest = 0.0;
+    let negligible = shares.iter().rev().take_while(|share| {
+        rest += **share;
+        rest < tolerance
+    });
+    let keep = shares.len() - negligible.count();
     let deflection = response.displacement.iter().zip(case.peaks).map(|(q, a)| q * a).sum::<f64>() / case.length;
     let estimates = [
         flexibility(&spin, &sources, &response, deflection),
@@ -276,11 +286,12 @@ fn static_correction(case: &Case, spin: &Spin, sources: &[Source], response: &Re
         [] => 1.0,
         // |ω_i ω_j| is at most Ω².
         all => {
-            let left: f64 = all.iter().map(|r| spin.largest * spin.largest * r).sum();
+            let left: f64 = SPUN * all.iter().map(|r| spin.largest * spin.largest * r).sum::<f64>();
             relative(left, response.scale + left)
         }
     };
-    let influence = value.max(stretch);
+    // What is left out may swing about its static answer, and is measured over the whole body.
+    let influence = relative(SWING * value, 1.0).max(stretch);
     let why = if influence == 0.0 {
         "The modes carry the whole static answer.".into()
     } else if stretch > value {

@@ -119,6 +119,20 @@ pub enum MeshError {
         /// Its position.
         position: [f64; 3],
     },
+    /// Groups overlap so much that their lists would be far longer than the file.
+    #[error(
+        "{source_name}: the {kind} entity {entity} is in {groups} physical groups, and the lists of all groups together would be many times as long as the file; put each entity into a few groups"
+    )]
+    TooManyGroups {
+        /// The mesh.
+        source_name: String,
+        /// "point", "curve" or "surface".
+        kind: &'static str,
+        /// Tag of the entity that is in most of them.
+        entity: i32,
+        /// How many it is in.
+        groups: usize,
+    },
     /// Two groups of one kind would go by one name: the number of one that has no name is the name of the other.
     #[error(
         "{source_name}: physical {kind} {name} has no name and would go by its number, but another one is named \"{name}\"; name the first (gmsh: `Physical ...(\"...\", {name})`), or rename the other"
@@ -252,7 +266,7 @@ pub enum MeshError {
         tags: Vec<u64>,
     },
     /// The body is in several pieces.
-    #[error("{source_name}: the mesh falls into {} pieces that share no node, of {sizes:?} elements, one with element {examples:?} each; join them (gmsh: `Coherence;` or BooleanFragments before meshing) or mesh one body", sizes.len())]
+    #[error("{source_name}: the mesh falls into {} pieces that share no node, of {} elements, one with element {} each; join them (gmsh: `Coherence;` or BooleanFragments before meshing) or mesh one body", sizes.len(), first_few(sizes), first_few(examples))]
     Pieces {
         /// The mesh.
         source_name: String,
@@ -273,6 +287,15 @@ pub enum MeshError {
         /// Its length is.
         found: usize,
     },
+}
+
+/// The beginning of a list, for a message.
+fn first_few<T: std::fmt::Debug>(list: &[T]) -> String {
+    const FEW: usize = 10;
+    match list.get(..FEW) {
+        Some(few) if list.len() > FEW => format!("{few:?} and {} more", list.len() - FEW),
+        _ => format!("{list:?}"),
+    }
 }
 
 /// A model that cannot be assembled.

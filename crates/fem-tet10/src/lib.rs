@@ -16,6 +16,7 @@
 //! Degrees of freedom are numbered `3·node + axis`. Any consistent set of units will do; the mesh's frame
 //! is the frame of every vector here.
 #![forbid(unsafe_code)]
+#![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable))]
 
 mod assembly;
 mod error;

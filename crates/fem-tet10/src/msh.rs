@@ -6,6 +6,7 @@
 mod groups;
 mod source;
 
+use std::collections::HashMap;
 use std::path::Path;
 
 use crate::error::MeshError;
@@ -89,7 +90,7 @@ fn parse_parts(bytes: &[u8], source_name: &str) -> Result<MeshParts, MeshError> 
         return Err(missing("$Elements"));
     }
     groups.name_regions(&mut parts, &volumes)?;
-    groups.name_boundary(&mut parts, &blocks)?;
+    groups.name_boundary(&mut parts, &blocks, bytes.len())?;
     Ok(parts)
 }
 
@@ -130,6 +131,7 @@ fn elements(
     boundary: &mut Vec<Block>,
 ) -> Result<(), MeshError> {
     let blocks = source.size("the number of element blocks")?;
+    let mut region_of: HashMap<i32, usize> = HashMap::new();
     for _ in 0..3 {
         source.size("number, smallest and largest tag of the elements")?;
     }
@@ -151,10 +153,6 @@ fn elements(
             };
             return Err(MeshError::ElementType { source_name: parts.source.clone(), element, found, cure });
         }
-        let region = volumes.iter().position(|volume| *volume == entity).unwrap_or(volumes.len());
-        if region == volumes.len() && kind == TET10 {
-            volumes.push(entity);
-        }
         if kind != TET10 {
             let mut block =
                 Block { dimension: dimension.clamp(0, 3) as usize, entity, kind, tags: Vec::new(), nodes: Vec::new() };
@@ -164,9 +162,15 @@ fn elements(
                     block.nodes.push(source.size("a node of an element")?);
                 }
             }
-            boundary.push(block);
+            if count > 0 {
+                boundary.push(block);
+            }
             continue;
         }
+        let region = *region_of.entry(entity).or_insert_with(|| {
+            volumes.push(entity);
+            volumes.len() - 1
+        });
         for _ in 0..count {
             let tag = source.size("an element's tag")?;
             let mut element = [0; 10];

@@ -27,7 +27,7 @@ pub struct AdviseReport {
     pub rows: Vec<EffectRow>,
     /// What each natural mode is worth.
     pub modes: Vec<ModeRow>,
-    /// How many of the modes are worth keeping: all up to the last that is.
+    /// How many of the modes are worth keeping: the shares of those after them sum to less than the tolerance.
     pub keep: usize,
     /// Whether the last mode is still worth keeping, so that more may be.
     pub more_modes: bool,

@@ -47,7 +47,8 @@ pub fn animate(
     mut progress: impl FnMut(RunProgress),
 ) -> Result<(), AnimationError> {
     let model = Model::build(scene, |p| progress(RunProgress::Build(p))).map_err(RunError::from)?;
-    let mut simulation = model.start(scene).map_err(|source| RunError::Setup { scene: scene.path.clone(), source })?;
+    let mut simulation =
+        model.start(scene).map_err(|source| RunError::Setup { scene: scene.path.clone(), source: Box::new(source) })?;
     let Some(Meshed { mesh, modes, .. }) = &model.meshed else {
         return Err(AnimationError::NoMesh { scene: scene.path.clone() });
     };

@@ -4,15 +4,21 @@ use std::error::Error;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use clap::{Args, Parser, Subcommand};
 use flexframe::animation::{AnimationSettings, animate};
 use flexframe::campbell::{CampbellSettings, Speeds, campbell};
 use flexframe::cost::{self, CostSettings};
+use flexframe::paper::PaperError;
+use flexframe::run::{RunError, RunProgress, RunSettings};
 use flexframe::{advise, figures, modes, paper, run};
 use scene::{Flexible, Scene};
 use serde::Serialize;
+use signal_hook::consts::{SIGINT, SIGTERM};
+use signal_hook::flag;
 
 use crate::progress::Bar;
 
@@ -39,6 +45,17 @@ enum Command {
         /// Folder for the results; it is made if it is not there [default: out/<name of the scene file>].
         #[arg(short, long, value_name = "DIR")]
         output: Option<PathBuf>,
+        #[command(flatten)]
+        files: FileArgs,
+    },
+    /// Go on with a run that was cut off: the results are the same as if it had not been, bit for bit.
+    Resume {
+        /// The unfinished file, such as out/plate/plate.part.h5, or the results file that it would have become.
+        #[arg(value_name = "FILE")]
+        file: PathBuf,
+        /// Print the summary as JSON, for scripts.
+        #[arg(long)]
+        json: bool,
     },
     /// Find natural frequencies and mode shapes of a scene's body.
     Modes {
@@ -98,6 +115,8 @@ enum Command {
         /// Folder for results, figures and report.md [default: out/<name of the scene file>].
         #[arg(short, long, value_name = "DIR")]
         output: Option<PathBuf>,
+        #[command(flatten)]
+        files: FileArgs,
     },
     /// Find out what accuracy costs on a scene: every scheme at many steps, its error and its time.
     Cost {
@@ -153,12 +172,59 @@ struct SceneArgs {
     json: bool,
 }
 
+#[derive(Debug, Args)]
+struct FileArgs {
+    /// Throw an unfinished run of the same name away. (A complete one is always replaced, once the new one is complete.)
+    #[arg(long)]
+    overwrite: bool,
+}
+
+/// As a shell has it of a program that ctrl-C has ended.
+const STOPPED: u8 = 130;
+
 pub fn main() -> ExitCode {
     match execute(Cli::parse()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("error: {error}");
-            ExitCode::FAILURE
+            match (error.downcast_ref(), error.downcast_ref()) {
+                (Some(RunError::Stopped { .. }), _) | (_, Some(PaperError::Run(RunError::Stopped { .. }))) => {
+                    ExitCode::from(STOPPED)
+                }
+                _ => ExitCode::FAILURE,
+            }
+        }
+    }
+}
+
+/// What ctrl-C, and a request to terminate, do: before the motion begins there is nothing to lose, and they end the
+/// program at once; then the first stops the run at its next row, and the second ends the program at once.
+struct Signals {
+    at_once: Arc<AtomicBool>,
+    stop: Arc<AtomicBool>,
+}
+
+impl Signals {
+    fn listen() -> std::io::Result<Self> {
+        let (at_once, stop) = (Arc::new(AtomicBool::new(true)), Arc::<AtomicBool>::default());
+        for signal in [SIGINT, SIGTERM] {
+            // In this order, so that the second signal finds what the first has set.
+            flag::register_conditional_shutdown(signal, STOPPED.into(), at_once.clone())?;
+            flag::register(signal, at_once.clone())?;
+            flag::register(signal, stop.clone())?;
+        }
+        Ok(Self { at_once, stop })
+    }
+
+    fn settings(&self, overwrite: bool) -> RunSettings {
+        RunSettings { overwrite, stop: self.stop.clone() }
+    }
+
+    fn heard(&self, progress: RunProgress) {
+        match progress {
+            RunProgress::Motion(0.0) => self.at_once.store(false, Ordering::Relaxed),
+            RunProgress::Motion(1.0) => self.at_once.store(true, Ordering::Relaxed),
+            _ => {}
         }
     }
 }
@@ -169,9 +235,23 @@ fn execute(cli: Cli) -> Result<(), Box<dyn Error>> {
     }
     let mut bar = Bar::new();
     match cli.command {
-        Command::Run { scene: SceneArgs { scene, json }, output } => {
+        Command::Run { scene: SceneArgs { scene, json }, output, files } => {
             let scene = Scene::read(scene)?;
-            let (_, report) = run::run(&scene, &folder(&scene, output), |p| bar.run(p))?;
+            let signals = Signals::listen()?;
+            let settings = signals.settings(files.overwrite);
+            let (_, report) = run::run(&scene, &folder(&scene, output), &settings, |p| {
+                signals.heard(p);
+                bar.run(p);
+            })?;
+            drop(bar);
+            print(&report, json)
+        }
+        Command::Resume { file, json } => {
+            let signals = Signals::listen()?;
+            let (_, _, report) = run::resume(&file, &signals.settings(false), |p| {
+                signals.heard(p);
+                bar.run(p);
+            })?;
             drop(bar);
             print(&report, json)
         }
@@ -218,9 +298,14 @@ fn execute(cli: Cli) -> Result<(), Box<dyn Error>> {
             drop(bar);
             print(&report, json)
         }
-        Command::Paper { scene: SceneArgs { scene, json }, output } => {
+        Command::Paper { scene: SceneArgs { scene, json }, output, files } => {
             let scene = Scene::read(scene)?;
-            let report = paper::reproduce(&scene, &folder(&scene, output), |p| bar.run(p))?;
+            let signals = Signals::listen()?;
+            let settings = signals.settings(files.overwrite);
+            let report = paper::reproduce(&scene, &folder(&scene, output), &settings, |p| {
+                signals.heard(p);
+                bar.run(p);
+            })?;
             drop(bar);
             print(&report, json)
         }

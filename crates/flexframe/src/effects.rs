@@ -1,6 +1,7 @@
 //! Which effects a run has.
 
 use advice::Effect;
+use frames_rk4::DrivenMotion;
 use scene::{Load, Method, Model, Scene};
 
 /// The effects that can be on or off in a run of the conservative form, and whether they are; none for the paper's
@@ -45,11 +46,18 @@ pub(crate) fn is_on(scene: &Scene, model: &Model, effect: Effect) -> Option<bool
         Effect::DeformedInertia => of_modes(effects.deformed_inertia),
         Effect::Coriolis => of_modes(effects.coriolis),
         Effect::GeometricStiffening => of_modes(effects.geometric_stiffening || model.physics.load_stiffness.is_some()),
-        Effect::Translation => Some(effects.translation),
-        Effect::Rotation => Some(effects.rotation),
+        // What is driven cannot be switched.
+        Effect::Translation => {
+            (!drives(model, |m| matches!(m, DrivenMotion::Slide { .. }))).then_some(effects.translation)
+        }
+        Effect::Rotation => (!drives(model, |m| matches!(m, DrivenMotion::Turn { .. }))).then_some(effects.rotation),
         Effect::StaticCorrection => of_modes(model.static_shapes() > 0),
         Effect::Deflection | Effect::Foreshortening | Effect::Step => None,
     }
+}
+
+fn drives(model: &Model, is: impl Fn(&DrivenMotion) -> bool) -> bool {
+    model.physics.drive.as_ref().is_some_and(|drive| is(&drive.motion))
 }
 
 /// "flexibility, damping; without coriolis".

@@ -14,7 +14,7 @@ use rigid_kin::{RigidBodyError, StepError};
 use scene::{BuildError, Scene};
 use serde::Serialize;
 
-use crate::run::{RunError, RunProgress, RunReport, run};
+use crate::run::{RunError, RunProgress, RunReport, RunSettings, run};
 use comparison::Comparison;
 
 /// The point whose accelerations Figs. 10 to 13 show.
@@ -84,11 +84,16 @@ pub struct PaperReport {
 ///
 /// # Errors
 /// [`PaperError`].
-pub fn reproduce(scene: &Scene, folder: &Path, progress: impl FnMut(RunProgress)) -> Result<PaperReport, PaperError> {
+pub fn reproduce(
+    scene: &Scene,
+    folder: &Path,
+    settings: &RunSettings,
+    progress: impl FnMut(RunProgress),
+) -> Result<PaperReport, PaperError> {
     if !scene.output.points.contains_key(WATCHED_POINT) {
         return Err(PaperError::MissingPoint { scene: scene.path.clone(), point: WATCHED_POINT });
     }
-    let (model, mut run) = run(scene, folder, progress)?;
+    let (model, mut run) = run(scene, folder, settings, progress)?;
     let started = Instant::now();
     let results = Results::open(&run.results)?;
     let only_plates = || PaperError::NotThePlate { scene: scene.path.clone() };

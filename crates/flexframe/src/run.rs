@@ -2,14 +2,16 @@
 
 use std::fmt;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-use advice::{AdviceError, Review};
-use frames_rk4::{Observation, Reached, Simulation, StepError};
+use advice::Review;
+use frames_rk4::{Initial, Observation, Reached, RestoreError, Simulation, StepError};
 use nalgebra::Vector3;
-use results::{BodyProperties, FileError, Metadata, PointSample, Sample, Units, Writer};
+use results::{BodyProperties, Expected, FileError, Metadata, PointSample, Results, Resumed, Sample, Units, Writer};
 use rigid_kin::Attitude;
-use scene::{BuildError, BuildProgress, Model, Scene, StartError, Stepping};
+use scene::{BuildError, BuildProgress, Model, Rows, Scene, SceneError, StartError, Stepping};
 use serde::Serialize;
 
 use crate::effects;
@@ -28,12 +30,12 @@ pub enum RunError {
         /// The scene file.
         scene: PathBuf,
         /// Why.
-        source: StartError,
+        source: Box<StartError>,
     },
-    /// A step failed. The states before it are in the results file.
+    /// A step failed. The states before it are in the unfinished file.
     #[error("{source} (the states before it are in {results})", results = results.display())]
     Step {
-        /// The results file.
+        /// The unfinished file.
         results: PathBuf,
         /// Why.
         source: StepError,
@@ -47,7 +49,37 @@ pub enum RunError {
         /// The scene file.
         scene: PathBuf,
         /// Why.
-        failure: RunFailure,
+        failure: Box<RunFailure>,
+    },
+    /// The run was asked to stop. The states up to there are in the unfinished file.
+    #[error("stopped at time {time}; go on with: flexframe resume {}", part.display())]
+    Stopped {
+        /// The unfinished file.
+        part: PathBuf,
+        /// The time of the last row.
+        time: f64,
+    },
+    /// The scene in an unfinished file is none.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// The checkpoint of an unfinished file is none of this scene.
+    #[error("{}: {source}", part.display())]
+    Restore {
+        /// The unfinished file.
+        part: PathBuf,
+        /// Why.
+        source: RestoreError,
+    },
+    /// What is computed now is not what was computed then, to the last bit.
+    #[error(
+        "{}: {what} is no longer what it was when the run began (a changed mesh or table, another version of flexframe, or another machine); a run goes on bit for bit or not at all: run the scene again with --overwrite",
+        part.display()
+    )]
+    Changed {
+        /// The unfinished file.
+        part: PathBuf,
+        /// What has changed.
+        what: &'static str,
     },
     /// The output folder cannot be made.
     #[error("{}: cannot make the output folder: {source}", folder.display())]
@@ -140,69 +172,116 @@ pub struct Balances {
     pub angular_momentum: f64,
 }
 
-/// Runs a scene and writes its results to `<folder>/<name of the scene file>.h5`. `progress` hears how far it is, at
-/// every phase and every few thousand steps.
+/// How a run treats files, and how it is stopped.
+#[derive(Debug, Clone, Default)]
+pub struct RunSettings {
+    /// Throws an unfinished run away that is in the way.
+    pub overwrite: bool,
+    /// Set from elsewhere, stops the run at its next row.
+    pub stop: Arc<AtomicBool>,
+}
+
+/// Runs a scene and writes its results to `<folder>/<name of the scene file>.h5`; until the end they are in an
+/// unfinished file beside it ([`results::unfinished`]). `progress` hears how far it is, at every phase and every few
+/// thousand steps.
 ///
 /// # Errors
-/// [`RunError`]. When a step fails, the file keeps the rows before it and says that it is not complete.
+/// [`RunError`]. When a step fails, the unfinished file keeps the rows before it.
 pub fn run(
     scene: &Scene,
     folder: &Path,
+    settings: &RunSettings,
     mut progress: impl FnMut(RunProgress),
 ) -> Result<(Model, RunReport), RunError> {
-    let model = Model::build(scene, |p| progress(RunProgress::Build(p)))?;
-    let mut times = Times::of_model(&model);
-
-    let started = Instant::now();
-    let mut simulation = model.start(scene).map_err(|source| RunError::Setup { scene: scene.path.clone(), source })?;
     std::fs::create_dir_all(folder).map_err(|source| RunError::Folder { folder: folder.to_owned(), source })?;
     let path = results_path(scene, folder);
-    let metadata = metadata(scene, &model);
+    Writer::check(&path, settings.overwrite)?;
+    let model = Model::build(scene, |p| progress(RunProgress::Build(p)))?;
+
+    let started = Instant::now();
+    let mut simulation = start(scene, &model)?;
+    let mut checkpoint = Vec::new();
+    simulation.checkpoint(&mut checkpoint);
+    let expected = Expected { rows: expected_rows(scene), checkpoint: checkpoint.len(), overwrite: settings.overwrite };
+    let writer = Writer::create(&path, &metadata(scene, &model), expected)?;
+    progress(RunProgress::Motion(0.0));
     let initial = model.initial(scene);
-    let review = Review::new(model.case(scene, &initial), model.physics.effects, &model.advice);
-    let writer = Writer::create(&path, &metadata)?;
-    let mut recorder = Recorder::new(&model, simulation.observation(), writer, review);
-    let failed = |source| RunError::Step { results: path.clone(), source };
-    recorder.record(&mut simulation).map_err(|error| error.unless_file(failed))?;
-    loop {
-        match simulation.advance(STEPS_PER_REPORT).map_err(failed)? {
-            Reached::Row => recorder.record(&mut simulation).map_err(|error| error.unless_file(failed))?,
-            Reached::Between => {}
-            Reached::End => break,
-        }
-        progress(RunProgress::Motion(simulation.time() / simulation.end()));
-    }
-    let time = started.elapsed();
-    let stats = simulation.stats();
-    let last = &recorder.observation;
-    let mut report = RunReport {
-        title: scene.title.clone(),
-        units: [&scene.units.length, &scene.units.mass, &scene.units.time].map(Clone::clone),
-        rows: recorder.rows,
-        formulation: metadata.formulation,
-        scheme: metadata.scheme,
-        tolerance: metadata.tolerance,
-        steps: stats.accepted,
-        rejected_steps: stats.rejected,
-        step_lengths: [stats.shortest, stats.longest],
-        evaluations: stats.evaluations,
-        steps_per_second: stats.accepted as f64 / time.as_secs_f64(),
-        mesh: MeshReport::new(&model),
-        body: BodyReport::new(&model),
-        turned: Attitude::identity().angle_to(&last.attitude),
-        moved: (last.position_global - model.body.center_of_mass).into(),
-        peak_strain_energy: recorder.peak_strain_energy,
-        final_energy: last.energy(),
-        balances: recorder.monitor.balances(),
-        effects: effects::computed(scene, &model),
-        warnings: recorder.review.broken().iter().map(ToString::to_string).collect(),
-        results: path,
-        times: Times::default(),
-    };
-    recorder.writer.finish()?;
-    times.add("motion", started.elapsed());
-    report.times = times;
+    let mut recorder = Recorder::new(scene, &model, &initial, &simulation, writer);
+    recorder.begin(&mut simulation)?;
+    let report = recorder.follow(simulation, started, settings, progress)?;
     Ok((model, report))
+}
+
+/// Goes on with a run that was cut off, from the last checkpoint in its unfinished file (which may be given by the name
+/// of the results file, too): the finished file is the same as if the run had not been cut off, bit for bit. The scene
+/// is that of the file; its mesh and tables are looked for where they were.
+///
+/// # Errors
+/// [`RunError`].
+pub fn resume(
+    file: &Path,
+    settings: &RunSettings,
+    mut progress: impl FnMut(RunProgress),
+) -> Result<(Scene, Model, RunReport), RunError> {
+    let Resumed { writer, results, checkpoint } = Writer::resume(file)?;
+    let part = writer.unfinished().to_path_buf();
+    let scene = Scene::parse(&results.metadata.scene_text, &results.metadata.scene_file)?;
+    let model = Model::build(&scene, |p| progress(RunProgress::Build(p)))?;
+    let changed = |what| RunError::Changed { part: part.clone(), what };
+    let now = metadata(&scene, &model);
+    if now.program_version != results.metadata.program_version {
+        return Err(changed("the version of flexframe"));
+    }
+    if now.body != results.metadata.body {
+        return Err(changed("the body"));
+    }
+
+    let started = Instant::now();
+    let mut simulation = start(&scene, &model)?;
+    progress(RunProgress::Motion(0.0));
+    let initial = model.initial(&scene);
+    let report = match checkpoint {
+        Some(checkpoint) => {
+            simulation =
+                simulation.restored(&checkpoint).map_err(|source| RunError::Restore { part: part.clone(), source })?;
+            let mut recorder = Recorder::new(&scene, &model, &initial, &simulation, writer);
+            recorder.take_up(&mut simulation, &results)?;
+            recorder.follow(simulation, started, settings, progress)?
+        }
+        None => {
+            let mut recorder = Recorder::new(&scene, &model, &initial, &simulation, writer);
+            recorder.begin(&mut simulation)?;
+            recorder.follow(simulation, started, settings, progress)?
+        }
+    };
+    Ok((scene, model, report))
+}
+
+fn start(scene: &Scene, model: &Model) -> Result<Simulation, RunError> {
+    model.start(scene).map_err(|source| RunError::Setup { scene: scene.path.clone(), source: Box::new(source) })
+}
+
+/// Rows that a run will have, but for corners of loads between them; 0 where its steps are not known.
+fn expected_rows(scene: &Scene) -> usize {
+    let spacing = match (scene.output.rows, scene.time.stepping) {
+        (Rows::Interval(interval), _) => interval,
+        (Rows::EverySteps(steps), Stepping::Step(step)) => steps as f64 * step,
+        (Rows::EverySteps(_), Stepping::Tolerance(_)) => return 0,
+    };
+    ((scene.time.end / spacing * (1.0 - 1e-12)).ceil() as usize).saturating_add(1)
+}
+
+/// Energy balance from which on a run says that it is open.
+const OPEN: f64 = 1e-2;
+
+fn open_balance(monitor: &Monitor) -> Option<String> {
+    let open = monitor.balances().energy;
+    (open > OPEN).then(|| {
+        format!(
+            "the energy balance is open by {open:.1e}: the work on modes that are faster than the step is summed too \
+             coarsely, or the motion itself is; take shorter steps, or fewer modes, until it does not matter to the answer"
+        )
+    })
 }
 
 /// Steps between two reports of progress, where no row comes first.
@@ -233,6 +312,7 @@ fn metadata(scene: &Scene, model: &Model) -> Metadata {
         tolerance,
         program_version: env!("CARGO_PKG_VERSION").to_owned(),
         scene_text: scene.source.clone(),
+        scene_file: std::path::absolute(&scene.path).unwrap_or_else(|_| scene.path.clone()).display().to_string(),
         body: BodyProperties {
             mass: body.mass,
             center_of_mass: body.center_of_mass,
@@ -244,10 +324,13 @@ fn metadata(scene: &Scene, model: &Model) -> Metadata {
     }
 }
 
-/// Turns observations into rows of the results file.
+/// Follows a run, and turns its observations into rows of the results file.
 struct Recorder<'a> {
+    scene: &'a Scene,
+    model: &'a Model,
     observation: Observation,
     writer: Writer,
+    checkpoint: Vec<u64>,
     review: Review<'a>,
     points: Vec<PointSample>,
     rows: u64,
@@ -255,68 +338,176 @@ struct Recorder<'a> {
     monitor: Monitor,
 }
 
-/// Why a row could not be recorded.
-enum RecordError {
-    Step(StepError),
-    File(FileError),
-    Review(AdviceError),
-}
-
-impl RecordError {
-    fn unless_file(self, step: impl FnOnce(StepError) -> RunError) -> RunError {
-        match self {
-            Self::Step(error) => step(error),
-            Self::File(error) => error.into(),
-            Self::Review(error) => BuildError::from(error).into(),
+impl<'a> Recorder<'a> {
+    fn new(scene: &'a Scene, model: &'a Model, initial: &'a Initial, simulation: &Simulation, writer: Writer) -> Self {
+        Self {
+            scene,
+            model,
+            observation: simulation.observation(),
+            writer,
+            checkpoint: Vec::new(),
+            review: Review::new(model.case(scene, initial), model.physics.effects, &model.advice),
+            points: Vec::with_capacity(model.points.len()),
+            rows: 0,
+            peak_strain_energy: 0.0,
+            monitor: Monitor::default(),
         }
     }
-}
 
-impl<'a> Recorder<'a> {
-    fn new(model: &Model, observation: Observation, writer: Writer, review: Review<'a>) -> Self {
-        let points = Vec::with_capacity(model.points.len());
-        let monitor = Monitor::default();
-        Self { observation, writer, review, points, rows: 0, peak_strain_energy: 0.0, monitor }
+    /// The first row, and a first checkpoint.
+    fn begin(&mut self, simulation: &mut Simulation) -> Result<(), RunError> {
+        self.record(simulation)?;
+        self.flush(simulation)
     }
 
-    /// Writes the row of the time that `simulation` has reached.
-    fn record(&mut self, simulation: &mut Simulation) -> Result<(), RecordError> {
-        simulation.observe(&mut self.observation).map_err(RecordError::Step)?;
-        let now = &self.observation;
+    /// Takes the rows before a checkpoint into account, the last of which must be what the simulation is at.
+    fn take_up(&mut self, simulation: &mut Simulation, results: &Results) -> Result<(), RunError> {
+        let mut points = Vec::new();
+        let mut row = 0;
+        while let Some(sample) = results.sample(row, &mut points) {
+            self.observation.time = sample.time;
+            self.observation.omega_body = sample.angular_velocity.into();
+            self.observation.modal_displacement.clear();
+            self.observation.modal_displacement.extend_from_slice(sample.modal_displacement);
+            self.review.observe(&self.observation).map_err(BuildError::from)?;
+            self.monitor.watch_row(&sample);
+            self.peak_strain_energy = self.peak_strain_energy.max(sample.strain_energy);
+            row += 1;
+        }
+        self.rows = row as u64;
+        self.observe(simulation)?;
+        let now = sample(&self.observation, &self.points);
+        if row > 0 && results.sample(row - 1, &mut points) == Some(now) {
+            return Ok(());
+        }
+        Err(RunError::Changed { part: self.writer.unfinished().to_path_buf(), what: "the motion at the checkpoint" })
+    }
+
+    /// Goes on to the end.
+    fn follow(
+        mut self,
+        mut simulation: Simulation,
+        started: Instant,
+        settings: &RunSettings,
+        mut progress: impl FnMut(RunProgress),
+    ) -> Result<RunReport, RunError> {
+        let before = simulation.stats().accepted;
+        loop {
+            match simulation.advance(STEPS_PER_REPORT).map_err(|source| self.failed(source))? {
+                Reached::Row => {
+                    self.record(&mut simulation)?;
+                    let stop = settings.stop.load(Ordering::Relaxed) && simulation.time() < simulation.end();
+                    if stop || self.writer.flush_is_due() {
+                        self.flush(&mut simulation)?;
+                    }
+                    if stop {
+                        let part = self.writer.unfinished().to_path_buf();
+                        return Err(RunError::Stopped { part, time: simulation.time() });
+                    }
+                }
+                Reached::Between => {}
+                Reached::End => break,
+            }
+            progress(RunProgress::Motion(simulation.time() / simulation.end()));
+        }
+        // Should there be no room for the results file, they can still be had from here.
+        self.flush(&mut simulation)?;
+        let time = started.elapsed();
+        let stats = simulation.stats();
+        let method = scene::method(self.scene.time.method);
+        let Self { scene, model, .. } = self;
+        let last = &self.observation;
+        let mut report = RunReport {
+            title: scene.title.clone(),
+            units: [&scene.units.length, &scene.units.mass, &scene.units.time].map(Clone::clone),
+            rows: self.rows,
+            formulation: method.formulation().to_owned(),
+            scheme: method.scheme().to_owned(),
+            tolerance: match scene.time.stepping {
+                Stepping::Step(_) => None,
+                Stepping::Tolerance(tolerance) => Some(tolerance),
+            },
+            steps: stats.accepted,
+            rejected_steps: stats.rejected,
+            step_lengths: [stats.shortest, stats.longest],
+            evaluations: stats.evaluations,
+            steps_per_second: (stats.accepted - before) as f64 / time.as_secs_f64(),
+            mesh: MeshReport::new(model),
+            body: BodyReport::new(model),
+            turned: Attitude::identity().angle_to(&last.attitude),
+            moved: (last.position_global - model.body.center_of_mass).into(),
+            peak_strain_energy: self.peak_strain_energy,
+            final_energy: last.energy(),
+            balances: self.monitor.balances(),
+            effects: effects::computed(scene, model),
+            warnings: (self.review.broken().iter().map(ToString::to_string))
+                .chain(open_balance(&self.monitor))
+                .collect(),
+            results: self.writer.path().to_path_buf(),
+            times: Times::of_model(model),
+        };
+        self.writer.finish()?;
+        report.times.add("motion", started.elapsed());
+        Ok(report)
+    }
+
+    fn failed(&self, source: StepError) -> RunError {
+        RunError::Step { results: self.writer.unfinished().to_path_buf(), source }
+    }
+
+    /// Observes the time that `simulation` has reached.
+    fn observe(&mut self, simulation: &mut Simulation) -> Result<(), RunError> {
+        simulation.observe(&mut self.observation).map_err(|source| self.failed(source))?;
         self.points.clear();
-        self.points.extend(now.points.iter().map(|point| PointSample {
+        self.points.extend(self.observation.points.iter().map(|point| PointSample {
             displacement: point.displacement.into(),
             velocity: point.velocity.into(),
             acceleration: point.acceleration.into(),
             rigid_acceleration: point.rigid_acceleration.into(),
         }));
+        Ok(())
+    }
+
+    /// Writes the row of the time that `simulation` has reached.
+    fn record(&mut self, simulation: &mut Simulation) -> Result<(), RunError> {
+        self.observe(simulation)?;
+        let now = sample(&self.observation, &self.points);
         self.peak_strain_energy = self.peak_strain_energy.max(now.strain_energy);
-        self.monitor.watch(now);
-        self.review.observe(now).map_err(RecordError::Review)?;
-        self.writer
-            .push(&Sample {
-                time: now.time,
-                attitude: now.attitude.wxyz(),
-                position: now.position_global.into(),
-                velocity: now.velocity_global.into(),
-                angular_velocity: now.omega_body.into(),
-                angular_acceleration: now.alpha_body.into(),
-                modal_displacement: &now.modal_displacement,
-                modal_velocity: &now.modal_velocity,
-                kinetic_energy: now.kinetic_energy,
-                strain_energy: now.strain_energy,
-                work: now.work.work,
-                dissipation: now.work.dissipation,
-                energy_balance: now.energy_balance(),
-                linear_momentum: now.linear_momentum_global.into(),
-                angular_momentum: now.angular_momentum_global.into(),
-                linear_balance: now.linear_balance_global().into(),
-                angular_balance: now.angular_balance_global().into(),
-                points: &self.points,
-            })
-            .map_err(RecordError::File)?;
+        self.monitor.watch_row(&now);
+        self.review.observe(&self.observation).map_err(BuildError::from)?;
+        self.writer.push(&now)?;
         self.rows += 1;
         Ok(())
+    }
+
+    /// Hands the rows to the operating system, with the state after the last.
+    fn flush(&mut self, simulation: &mut Simulation) -> Result<(), RunError> {
+        simulation.checkpoint(&mut self.checkpoint);
+        Ok(self.writer.flush(&self.checkpoint)?)
+    }
+}
+
+/// An observation as a row.
+fn sample<'a>(now: &'a Observation, points: &'a [PointSample]) -> Sample<'a> {
+    Sample {
+        time: now.time,
+        attitude: now.attitude.wxyz(),
+        position: now.position_global.into(),
+        velocity: now.velocity_global.into(),
+        angular_velocity: now.omega_body.into(),
+        angular_acceleration: now.alpha_body.into(),
+        modal_displacement: &now.modal_displacement,
+        modal_velocity: &now.modal_velocity,
+        kinetic_energy: now.kinetic_energy,
+        strain_energy: now.strain_energy,
+        work: now.work.work,
+        dissipation: now.work.dissipation,
+        energy_balance: now.energy_balance(),
+        linear_momentum: now.linear_momentum_global.into(),
+        angular_momentum: now.angular_momentum_global.into(),
+        linear_balance: now.linear_balance_global().into(),
+        angular_balance: now.angular_balance_global().into(),
+        points,
     }
 }
 
@@ -331,15 +522,19 @@ pub(crate) struct Monitor {
 impl Monitor {
     /// Takes one more observation into account.
     pub(crate) fn watch(&mut self, now: &Observation) {
-        let balance = (now.energy_balance(), now.linear_balance_global(), now.angular_balance_global());
+        self.watch_row(&sample(now, &[]));
+    }
+
+    fn watch_row(&mut self, now: &Sample) {
+        let balance = (now.energy_balance, now.linear_balance.into(), now.angular_balance.into());
         let start = self.start.get_or_insert(balance);
         let grow = |largest: &mut f64, value: f64| *largest = largest.max(value.abs());
         grow(&mut self.changes.energy, balance.0 - start.0);
         grow(&mut self.changes.linear_momentum, (balance.1 - start.1).norm());
         grow(&mut self.changes.angular_momentum, (balance.2 - start.2).norm());
-        grow(&mut self.scales.energy, now.energy());
-        grow(&mut self.scales.linear_momentum, now.linear_momentum_global.norm());
-        grow(&mut self.scales.angular_momentum, now.angular_momentum_global.norm());
+        grow(&mut self.scales.energy, now.kinetic_energy + now.strain_energy);
+        grow(&mut self.scales.linear_momentum, Vector3::from(now.linear_momentum).norm());
+        grow(&mut self.scales.angular_momentum, Vector3::from(now.angular_momentum).norm());
     }
 
     /// Largest changes so far, relative to the largest values.

@@ -110,13 +110,17 @@ fn another_mesh_runs_and_its_file_holds_all_that_is_promised() {
 }
 
 #[test]
-fn a_motion_is_the_same_bit_for_bit_on_each_run() {
-    let run = || {
+fn a_results_file_is_the_same_byte_for_byte_on_each_run_and_for_any_number_of_threads() {
+    let run = |threads: &str| {
         let folder = tempfile::tempdir().unwrap();
-        json(&["run", "examples/ring.toml", "-o", folder.path().to_str().unwrap(), "--json"]);
-        Results::open(folder.path().join("ring.h5")).unwrap()
+        let out = folder.path().to_str().unwrap();
+        json(&["run", "examples/ring.toml", "-o", out, "--json", "--threads", threads]);
+        std::fs::read(folder.path().join("ring.h5")).unwrap()
     };
-    assert_eq!(run(), run());
+    let first = run("1");
+    for threads in ["1", "2", "3", "8"] {
+        assert!(run(threads) == first, "{threads}");
+    }
 }
 
 #[test]

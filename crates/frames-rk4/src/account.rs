@@ -3,6 +3,7 @@
 //! The start, the work of the loads and the dissipation account for the energy of every state. A scheme whose steps are
 //! too long breaks this long before a number overflows.
 
+use crate::checkpoint::Tape;
 use crate::error::StepError;
 
 /// The energy of a state, and what has been done to it since the start.
@@ -18,6 +19,21 @@ pub(crate) struct Reckoning {
     pub work: f64,
     /// Energy that damping has taken.
     pub dissipation: f64,
+}
+
+impl Reckoning {
+    const BLANK: Self = Self { time: 0.0, internal: 0.0, translation: 0.0, work: 0.0, dissipation: 0.0 };
+
+    /// One that there may be or not; the tape is as long in both cases.
+    pub(crate) fn pass(reckoning: &mut Option<Self>, tape: &mut Tape) {
+        let mut there = reckoning.is_some();
+        tape.flag(&mut there);
+        let mut now = reckoning.unwrap_or(Self::BLANK);
+        for number in [&mut now.time, &mut now.internal, &mut now.translation, &mut now.work, &mut now.dissipation] {
+            tape.number(number);
+        }
+        *reckoning = there.then_some(now);
+    }
 }
 
 /// The account of a run.
@@ -53,6 +69,13 @@ impl EnergyAccount {
     /// An empty account of loads that would, one by one, give the body this energy.
     pub(crate) fn new(of_loads: f64) -> Self {
         Self { of_loads, ..Self::default() }
+    }
+
+    pub(crate) fn pass(&mut self, tape: &mut Tape) {
+        Reckoning::pass(&mut self.start, tape);
+        tape.number(&mut self.scale);
+        tape.number(&mut self.largest_exchange);
+        Reckoning::pass(&mut self.last, tape);
     }
 
     /// Whether nothing has been checked yet.

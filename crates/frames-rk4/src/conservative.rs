@@ -23,6 +23,7 @@ use nalgebra::{Matrix3, SVector, Vector3};
 use rigid_kin::{Attitude, f_inverse, transformation_matrix};
 
 use crate::account::Reckoning;
+use crate::checkpoint::Tape;
 use crate::error::{RateError, SetupError};
 use crate::initial::Initial;
 use crate::load::{Acting, Load};
@@ -135,6 +136,14 @@ impl ConservativeState {
         self.slow = other.slow;
         self.modal_displacement.copy_from_slice(&other.modal_displacement);
         self.modal_momentum.copy_from_slice(&other.modal_momentum);
+    }
+
+    pub(crate) fn pass(&mut self, tape: &mut Tape) {
+        tape.finite("the time", &mut self.time);
+        tape.attitude(&mut self.attitude);
+        tape.vector(&mut self.slow);
+        tape.numbers(&mut self.modal_displacement);
+        tape.numbers(&mut self.modal_momentum);
     }
 }
 
@@ -568,6 +577,21 @@ impl ConservativeBody {
         (inertia_rate * speed + e.inertia[(0, 0)] * acceleration + changing - moment[0]) * speed
     }
 
+    /// What the drive does where its speed jumps at the state's time: its impulse times the mean of the speeds.
+    pub(crate) fn work_of_jump(&self, state: &ConservativeState, e: &mut Evaluation) -> Result<f64, RateError> {
+        let Some(drive) = &self.drive else { return Ok(0.0) };
+        // The corner itself is where it is but for rounding.
+        let aside = 1e-12 * drive.span;
+        let mut on_side = |inside: f64| -> Result<[f64; 2], RateError> {
+            let (q, p) = (&state.modal_displacement, &state.modal_momentum);
+            self.evaluate([state.time, inside], &state.attitude, &state.slow, q, p, e)?;
+            Ok([drive.speed(state.time, inside), e.driven_momentum])
+        };
+        let [before, held] = on_side(state.time - aside)?;
+        let [after, given] = on_side(state.time + aside)?;
+        Ok(0.5 * (before + after) * (given - held))
+    }
+
     /// Adds the linear part of the modes to an evaluation: q' += p, p' −= Λq + Dp.
     pub(crate) fn add_linear(&self, q: &[f64], p: &[f64], e: &mut Evaluation) {
         for k in 0..q.len() {
@@ -688,9 +712,10 @@ fn degrees_of_freedom(
         (None, RigidMotion::Slider { direction }) => (Translation::Along(direction), Vec::new()),
         (None, RigidMotion::Clamp { .. }) => (Translation::None, Vec::new()),
     };
+    let is_driven = driven.is_some();
     (
-        if effects.translation { translation } else { Translation::None },
-        if effects.rotation { axes } else { Vec::new() },
+        if effects.translation || is_driven { translation } else { Translation::None },
+        if effects.rotation || is_driven { axes } else { Vec::new() },
     )
 }
 

@@ -3,6 +3,7 @@
 use nalgebra::Vector2;
 
 use crate::account::Reckoning;
+use crate::checkpoint::Tape;
 use crate::conservative::{ConservativeBody, ConservativeState, Evaluation, Slow, get, part};
 use crate::error::{SetupError, StepError};
 use crate::exponential::{BlockStore, StepBlocks, apply};
@@ -88,8 +89,15 @@ impl ConservativeMotion {
     }
 
     /// A load or a drive may jump here: the rates at the end of the last step are not those of the next one's beginning.
-    pub(crate) fn pass_corner(&mut self) {
+    ///
+    /// # Errors
+    /// [`StepError`] where the inertia of the deformed body is singular.
+    pub(crate) fn pass_corner(&mut self) -> Result<(), StepError> {
         self.first_known = false;
+        let Self { body, state, ahead, .. } = self;
+        let work = body.work_of_jump(state, ahead).map_err(|error| error.in_step(state.time, 0.0))?;
+        self.state.slow[part::WORK] += work;
+        Ok(())
     }
 
     /// The state that has been reached.
@@ -110,6 +118,19 @@ impl ConservativeMotion {
     /// Evaluations of the rates so far.
     pub fn evaluations(&self) -> u64 {
         self.evaluations
+    }
+
+    pub(crate) fn pass(&mut self, tape: &mut Tape) {
+        self.state.pass(tape);
+        Reckoning::pass(&mut self.reckoning, tape);
+        tape.flag(&mut self.first_known);
+        // Of a known evaluation the stages read the rates only.
+        let first = &mut self.stages[0];
+        tape.vector(&mut first.slow);
+        tape.numbers(&mut first.displacement);
+        tape.numbers(&mut first.momentum);
+        tape.count(&mut self.evaluations);
+        tape.number(&mut self.energy_scale);
     }
 
     /// Does one step of length `h` that ends at time `end` (= time + h but for rounding).

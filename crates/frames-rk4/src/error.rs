@@ -60,6 +60,16 @@ pub enum SetupError {
         /// What is wrong there.
         problem: String,
     },
+    /// An expression that is too long.
+    #[error(
+        "an expression of {found} bytes is longer than {most}; write it shorter, as a product of several, or as a table"
+    )]
+    LongExpression {
+        /// Its bytes.
+        found: usize,
+        /// The most there may be.
+        most: usize,
+    },
     /// A history that is not a number at some time.
     #[error(
         "the history of a load is {found} at time {time}; an expression must be finite through the whole run: write it so that it is, or multiply it by what is zero there in a form without a division by zero"

@@ -58,7 +58,8 @@ impl Initial {
             std::iter::repeat_n(0.0, 6).chain(self.modal_displacement.iter().copied()).collect();
         let mut velocity: Vec<f64> =
             translation.iter().chain(rotation.iter()).chain(&self.modal_velocity).copied().collect();
-        let spin = self.omega.cross_matrix();
+        // As much of ω as the body has the rotations for.
+        let spin = (body.rotation_basis * rotation).cross_matrix();
         for (i, y) in velocity.iter_mut().enumerate() {
             for a in 0..3 {
                 for b in 0..3 {

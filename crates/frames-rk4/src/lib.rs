@@ -19,8 +19,10 @@
 //! | (36), (37) ω by g and α by h | [`rigid_kin::ReferencePoints`] |
 //! | k1 … k4, (38)–(40) | [`PaperScheme`] |
 #![forbid(unsafe_code)]
+#![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable))]
 
 mod account;
+mod checkpoint;
 mod conservative;
 mod conservative_motion;
 mod conservative_observation;
@@ -43,6 +45,7 @@ mod state;
 mod steady_spin;
 mod work;
 
+pub use checkpoint::RestoreError;
 pub use conservative::{ConservativeBody, ConservativeState};
 pub use conservative_motion::{ConservativeMotion, ConservativeScheme};
 pub use error::{SetupError, StepError};

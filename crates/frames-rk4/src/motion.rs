@@ -155,6 +155,7 @@ fn project_with_power(
 /// Reads the motion of a body off its states.
 #[derive(Debug, Clone)]
 pub struct BodyMotion {
+    motion: RigidMotion,
     mass: f64,
     /// The origin at the beginning, global components.
     origin: Vector3<f64>,
@@ -180,6 +181,7 @@ impl BodyMotion {
             (0..size).flat_map(|j| (0..size).map(move |i| ab[(i, j)] - ba[(i, j)])).collect()
         });
         Ok(Self {
+            motion: body.motion,
             mass: body.mass,
             origin: body.origin,
             center: CenterOfMass::new(body),
@@ -220,11 +222,27 @@ impl BodyMotion {
         }
         out.kinetic_energy = self.kinetic_energy(state);
         out.strain_energy = self.strain_energy(state);
+        self.observe_momenta(state, work, out);
+        out.points.clear();
+        out.points.extend(points.iter().map(|point| self.point(state, point)));
+    }
+
+    /// Momenta and what has been done to them. What holds a body gives it whatever its momenta need, so there only the
+    /// rotations that it has left are balanced.
+    fn observe_momenta(&self, state: &State, work: &Work, out: &mut Observation) {
         out.work = *work;
         out.linear_momentum_global = self.linear_momentum_global(state);
         out.angular_momentum_global = self.angular_momentum_global(state);
-        out.points.clear();
-        out.points.extend(points.iter().map(|point| self.point(state, point)));
+        if self.motion != RigidMotion::Free {
+            out.work.impulse_global = out.linear_momentum_global;
+        }
+        let left = match self.motion {
+            RigidMotion::Free | RigidMotion::Pin { .. } => return,
+            RigidMotion::Hinge { axis, .. } => axis * axis.transpose(),
+            RigidMotion::Slider { .. } | RigidMotion::Clamp { .. } => Matrix3::zeros(),
+        };
+        out.angular_momentum_global = left * out.angular_momentum_global;
+        out.work.angular_impulse_global = left * out.work.angular_impulse_global;
     }
 
     /// Position of the centre of mass, global components.
@@ -277,7 +295,8 @@ impl BodyMotion {
         self.velocity_global(state) * self.mass
     }
 
-    /// Angular momentum about the centre of mass, global components: `∫ρ (X + u)×v dV` less that of the centre.
+    /// Angular momentum about the centre of mass, or the fixed point of a body that is held, global components:
+    /// `∫ρ (X + u)×v dV` less that of the centre.
     pub fn angular_momentum_global(&self, state: &State) -> Vector3<f64> {
         let (q, y) = (&state.modal_displacement, &state.modal_velocity);
         // ∫ρ X×v: the rotation modes are B_ik [e_i×]X, so Bᵀ H = y[3..6].

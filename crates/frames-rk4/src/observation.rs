@@ -37,7 +37,7 @@ pub struct Observation {
     pub work: Work,
     /// Linear momentum, global components.
     pub linear_momentum_global: Vector3<f64>,
-    /// Angular momentum about the centre of mass, global components.
+    /// Angular momentum about the centre of mass, or the fixed point of a body that is held, global components.
     pub angular_momentum_global: Vector3<f64>,
     /// Motion of the points, in the order in which they were asked for.
     pub points: Vec<PointMotion>,

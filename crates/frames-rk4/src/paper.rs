@@ -10,6 +10,7 @@ use nalgebra::{Matrix3, Vector3};
 use rigid_kin::{BeyondFullTurn, ReferencePoints, f_inverse, relative_velocity_rate, transformation_matrix};
 
 use crate::account::Reckoning;
+use crate::checkpoint::Tape;
 use crate::error::{RateError, SetupError, StepError};
 use crate::initial::Initial;
 use crate::modal_rotation::ModalRotation;
@@ -166,6 +167,14 @@ impl PaperScheme {
     pub fn step(&mut self) -> Result<&State, StepError> {
         self.take_step(self.step, (self.steps_done + 1) as f64 * self.step)?;
         Ok(&self.state)
+    }
+
+    pub(crate) fn pass(&mut self, tape: &mut Tape) {
+        self.state.pass(tape);
+        self.work.pass(tape);
+        self.power.pass(tape);
+        tape.numbers(&mut self.forces.start);
+        tape.count(&mut self.steps_done);
     }
 
     /// Does one step of length `h` that ends at time `end`.

@@ -15,6 +15,7 @@ use nalgebra::Vector3;
 use rigid_kin::{f_inverse, transformation_matrix};
 
 use crate::account::Reckoning;
+use crate::checkpoint::Tape;
 use crate::error::{RateError, SetupError, StepError};
 use crate::initial::Initial;
 use crate::model::ModalModel;
@@ -103,6 +104,12 @@ impl PaperLimit {
     /// Evaluations of the rates so far.
     pub fn evaluations(&self) -> u64 {
         self.evaluations
+    }
+
+    pub(crate) fn pass(&mut self, tape: &mut Tape) {
+        self.state.pass(tape);
+        self.work.pass(tape);
+        tape.count(&mut self.evaluations);
     }
 
     /// Does one step of length `h` that ends at time `end`.

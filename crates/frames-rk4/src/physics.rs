@@ -9,9 +9,9 @@ use crate::history::History;
 /// Effects of the conservative form. What is off is not computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Effects {
-    /// The origin of the body moves.
+    /// The origin of the body moves; a slide that is driven does so in any case.
     pub translation: bool,
-    /// The body turns.
+    /// The body turns; a turn that is driven does so in any case.
     pub rotation: bool,
     /// Inertia follows the deformation: c_ij and N_ij.
     pub deformed_inertia: bool,

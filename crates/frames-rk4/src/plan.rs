@@ -1,5 +1,7 @@
 //! Which steps lead through a run: they end exactly at output times and at the corners of load histories.
 
+use crate::checkpoint::Tape;
+
 /// How long the steps are.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum StepControl {
@@ -28,8 +30,21 @@ pub(crate) struct Segment {
     pub length: f64,
     /// Whether the end is an output time.
     pub row: bool,
-    /// Whether the start is a corner.
-    pub after_corner: bool,
+    /// Whether the end is a corner.
+    pub corner: bool,
+}
+
+impl Segment {
+    /// Of no length, to be set.
+    const BLANK: Self = Self { start: 0.0, end: 0.0, length: 0.0, row: false, corner: false };
+
+    fn pass(&mut self, tape: &mut Tape) {
+        for time in [&mut self.start, &mut self.end, &mut self.length] {
+            tape.finite("a segment of the run", time);
+        }
+        tape.flag(&mut self.row);
+        tape.flag(&mut self.corner);
+    }
 }
 
 /// The segments of a run.
@@ -57,6 +72,16 @@ impl Plan {
         Self { end, corners, passed: 0, interval, outputs: 0, reached: 0.0, last_length: 0.0 }
     }
 
+    pub(crate) fn pass(&mut self, tape: &mut Tape) {
+        let mut passed = self.passed as u64;
+        tape.count(&mut passed);
+        tape.expect("the number of corners passed", passed <= self.corners.len() as u64);
+        self.passed = passed as usize;
+        tape.count(&mut self.outputs);
+        tape.finite("the end of the segment", &mut self.reached);
+        tape.finite("the length of the segment", &mut self.last_length);
+    }
+
     /// The next segment; `None` at the end.
     pub(crate) fn next_segment(&mut self) -> Option<Segment> {
         // Times closer than rounding makes them are one.
@@ -65,11 +90,9 @@ impl Plan {
             return None;
         }
         let output = self.interval.map_or(f64::INFINITY, |interval| (self.outputs + 1) as f64 * interval);
-        let before = self.passed;
         while self.corners.get(self.passed).is_some_and(|corner| *corner <= self.reached + same) {
             self.passed += 1;
         }
-        let after_corner = self.passed > before;
         let corner = self.corners.get(self.passed).copied().unwrap_or(f64::INFINITY);
         let mut stop = corner.min(output).min(self.end);
         let row = (output - stop).abs() <= same || (self.end - stop).abs() <= same;
@@ -85,7 +108,7 @@ impl Plan {
             length = self.last_length;
         }
         self.last_length = length;
-        let segment = Segment { start: self.reached, end: stop, length, row, after_corner };
+        let segment = Segment { start: self.reached, end: stop, length, row, corner: (corner - stop).abs() <= same };
         self.reached = stop;
         Some(segment)
     }
@@ -105,6 +128,16 @@ impl EqualSteps {
         // A step that divides the segment but for rounding is left as it is.
         let count = (segment.length / step * (1.0 - 1e-12)).ceil().max(1.0) as u64;
         Self { segment, count, done: 0 }
+    }
+
+    /// To be set.
+    pub(crate) const BLANK: Self = Self { segment: Segment::BLANK, count: 1, done: 1 };
+
+    pub(crate) fn pass(&mut self, tape: &mut Tape) {
+        self.segment.pass(tape);
+        tape.count(&mut self.count);
+        tape.count(&mut self.done);
+        tape.expect("the number of steps done", self.done <= self.count);
     }
 
     /// Whether all steps have been handed out.
@@ -143,6 +176,19 @@ impl HalvedSteps {
     pub(crate) fn new(segment: Segment, step: f64) -> Self {
         let level = (segment.length / step * (1.0 - 1e-9)).log2().ceil().clamp(0.0, f64::from(DEEPEST)) as u32;
         Self { segment, level, done: 0 }
+    }
+
+    /// To be set.
+    pub(crate) const BLANK: Self = Self { segment: Segment::BLANK, level: 0, done: 1 };
+
+    pub(crate) fn pass(&mut self, tape: &mut Tape) {
+        self.segment.pass(tape);
+        let mut level = u64::from(self.level);
+        tape.count(&mut level);
+        tape.expect("the halvings of the step", level <= u64::from(DEEPEST));
+        self.level = level.min(u64::from(DEEPEST)) as u32;
+        tape.count(&mut self.done);
+        tape.expect("the number of steps done", self.done <= 1 << self.level);
     }
 
     /// Length and end of the next step; `None` at the segment's end.
@@ -205,7 +251,7 @@ mod tests {
 
     #[test]
     fn a_step_that_divides_the_end_is_kept_and_another_is_shortened() {
-        let whole = Segment { start: 0.0, end: 0.5, length: 0.5, row: true, after_corner: false };
+        let whole = Segment { start: 0.0, end: 0.5, length: 0.5, row: true, corner: false };
         for (step, count) in [(1e-4, 5000), (0.3, 2), (0.5, 1), (2.0, 1), (0.1, 5)] {
             let mut steps = EqualSteps::new(whole, step);
             let mut taken = Vec::new();
@@ -220,7 +266,7 @@ mod tests {
 
     #[test]
     fn halved_steps_land_on_the_end_whatever_is_accepted_and_rejected() {
-        let segment = Segment { start: 1.0, end: 1.3, length: 1.3 - 1.0, row: true, after_corner: false };
+        let segment = Segment { start: 1.0, end: 1.3, length: 1.3 - 1.0, row: true, corner: false };
         let mut steps = HalvedSteps::new(segment, 0.11);
         let mut time = 1.0;
         let mut tries = 0;
@@ -240,8 +286,7 @@ mod tests {
 
     #[test]
     fn steps_cannot_shrink_for_ever() {
-        let mut steps =
-            HalvedSteps::new(Segment { start: 0.0, end: 1.0, length: 1.0, row: true, after_corner: false }, 1.0);
+        let mut steps = HalvedSteps::new(Segment { start: 0.0, end: 1.0, length: 1.0, row: true, corner: false }, 1.0);
         assert!((0..100).any(|_| !steps.reject(f64::NAN)));
     }
 }

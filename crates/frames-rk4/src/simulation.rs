@@ -4,6 +4,7 @@ use modal::ReducedBody;
 use nalgebra::Vector3;
 
 use crate::account::{self, EnergyAccount};
+use crate::checkpoint::{RestoreError, Tape};
 use crate::conservative::ConservativeBody;
 use crate::conservative_motion::{ConservativeMotion, ConservativeScheme};
 use crate::error::{SetupError, StepError};
@@ -158,6 +159,8 @@ pub struct Simulation {
     rows: Rows,
     end: f64,
     steps_since_row: u64,
+    /// Whether the segment ends at a corner that has not been passed.
+    corner_ahead: bool,
     points: Vec<PointShapes>,
     stats: Stats,
     account: EnergyAccount,
@@ -265,6 +268,7 @@ impl Simulation {
             rows: setup.rows,
             end: setup.end,
             steps_since_row: 0,
+            corner_ahead: false,
             points: setup.points.to_vec(),
             stats: Stats { accepted: 0, rejected: 0, evaluations: 0, shortest: f64::INFINITY, longest: 0.0 },
             account: EnergyAccount::new(energy_of_loads),
@@ -325,6 +329,48 @@ impl Simulation {
         }
     }
 
+    /// Notes the state that has been reached in `out`, instead of what it held.
+    pub fn checkpoint(&mut self, out: &mut Vec<u64>) {
+        out.clear();
+        self.pass(&mut Tape::Note(out));
+    }
+
+    /// Takes up the state of a [`Self::checkpoint`] of a run with the same setup: what follows is what would have
+    /// followed there, bit for bit.
+    ///
+    /// # Errors
+    /// [`RestoreError`] for a checkpoint of another run.
+    pub fn restored(mut self, checkpoint: &[u64]) -> Result<Self, RestoreError> {
+        let mut tape = Tape::set(checkpoint);
+        self.pass(&mut tape);
+        tape.finish()?;
+        Ok(self)
+    }
+
+    fn pass(&mut self, tape: &mut Tape) {
+        match &mut self.engine {
+            Engine::Paper(scheme) => scheme.pass(tape),
+            Engine::PaperLimit(limit) => limit.pass(tape),
+            Engine::Conservative(motion) => motion.pass(tape),
+        }
+        self.plan.pass(tape);
+        match &mut self.walk {
+            Walk::Equal { steps, .. } => pass_steps(steps, EqualSteps::BLANK, EqualSteps::pass, tape),
+            Walk::Halved { longest_try, steps, .. } => {
+                tape.number(longest_try);
+                pass_steps(steps, HalvedSteps::BLANK, HalvedSteps::pass, tape);
+            }
+        }
+        tape.count(&mut self.steps_since_row);
+        tape.flag(&mut self.corner_ahead);
+        self.account.pass(tape);
+        let Stats { accepted, rejected, evaluations: _, shortest, longest } = &mut self.stats;
+        tape.count(accepted);
+        tape.count(rejected);
+        tape.number(shortest);
+        tape.number(longest);
+    }
+
     /// What the run has cost so far.
     pub fn stats(&self) -> Stats {
         let evaluations = match &self.engine {
@@ -350,6 +396,12 @@ impl Simulation {
                 Some((h, end, row_at_end)) => {
                     if !self.try_step(h, end)? {
                         continue;
+                    }
+                    if self.corner_ahead && self.segment_is_done() {
+                        self.corner_ahead = false;
+                        if let Engine::Conservative(motion) = &mut self.engine {
+                            motion.pass_corner()?;
+                        }
                     }
                     // Under step control, steps are tried in pairs.
                     let (count, length) = if self.is_controlled() { (2, 0.5 * h) } else { (1, h) };
@@ -384,9 +436,7 @@ impl Simulation {
                 return next;
             }
             let segment = self.plan.next_segment()?;
-            if let (Engine::Conservative(motion), true) = (&mut self.engine, segment.after_corner) {
-                motion.pass_corner();
-            }
+            self.corner_ahead = segment.corner;
             match &mut self.walk {
                 Walk::Equal { step, steps } => {
                     let inside = segment.start + 0.5 * segment.length;
@@ -470,6 +520,19 @@ impl Iterator for Simulation {
                 }
             }
         }
+    }
+}
+
+/// Passes over the steps through a segment, which there are none of before the first.
+fn pass_steps<S>(steps: &mut Option<(S, bool)>, blank: S, pass: fn(&mut S, &mut Tape), tape: &mut Tape) {
+    let mut there = steps.is_some();
+    tape.flag(&mut there);
+    // Passed even where there are none, so that every checkpoint of a run has the same length.
+    let (inner, row) = steps.get_or_insert((blank, false));
+    pass(inner, tape);
+    tape.flag(row);
+    if !there {
+        *steps = None;
     }
 }
 

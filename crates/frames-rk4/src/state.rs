@@ -4,6 +4,7 @@ use modal::ReducedBody;
 use nalgebra::Vector3;
 use rigid_kin::Attitude;
 
+use crate::checkpoint::Tape;
 use crate::error::SetupError;
 use crate::initial::Initial;
 
@@ -45,6 +46,17 @@ impl State {
             omega_body: Vector3::zeros(),
             alpha_body: Vector3::zeros(),
         })
+    }
+
+    pub(crate) fn pass(&mut self, tape: &mut Tape) {
+        tape.finite("the time", &mut self.time);
+        tape.attitude(&mut self.attitude);
+        tape.vector(&mut self.origin_global);
+        tape.numbers(&mut self.modal_displacement);
+        tape.numbers(&mut self.modal_velocity);
+        tape.numbers(&mut self.modal_acceleration);
+        tape.vector(&mut self.omega_body);
+        tape.vector(&mut self.alpha_body);
     }
 }
 

@@ -2,6 +2,8 @@
 
 use nalgebra::Vector3;
 
+use crate::checkpoint::Tape;
+
 /// Sums since the beginning.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Work {
@@ -22,5 +24,11 @@ impl Work {
         self.dissipation += factor * other.dissipation;
         self.impulse_global += factor * other.impulse_global;
         self.angular_impulse_global += factor * other.angular_impulse_global;
+    }
+    pub(crate) fn pass(&mut self, tape: &mut Tape) {
+        tape.number(&mut self.work);
+        tape.number(&mut self.dissipation);
+        tape.vector(&mut self.impulse_global);
+        tape.vector(&mut self.angular_impulse_global);
     }
 }

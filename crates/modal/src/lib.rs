@@ -13,6 +13,9 @@
 //!
 //! [`ReducedBody`] holds the constants that the motion of the body needs, with nothing of the mesh's size.
 
+#![deny(unsafe_code)]
+#![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable))]
+
 mod constraints;
 mod dense;
 mod error;

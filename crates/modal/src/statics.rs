@@ -25,12 +25,15 @@ const ACCEPTED: f64 = 1e-5;
 const MAX_ITERATIONS: usize = 300;
 /// Forces answered together.
 const BLOCK: usize = 8;
+/// A force that the inertia of the rigid motion balances to this part of itself, such as gravity on a free body,
+/// strains nothing: the rest is rounding.
+const BALANCED: f64 = 1e-11;
 /// What a static answer adds to the modes must be more than this part of it.
 const DEPENDENT: f64 = 1e-8;
 
 impl Solver<'_> {
     /// Static answers u (N×k) to the forces f (N×k), relative to the rigid motion that f causes: M-orthogonal to the
-    /// rigid modes.
+    /// rigid modes. Zero for a force that gives every part of the body the same rigid acceleration.
     ///
     /// # Errors
     /// [`ModalError::Size`], [`ModalError::NotFinite`], [`ModalError::StaticNotConverged`], and what refuses the factor
@@ -126,8 +129,14 @@ impl<'a> Statics<'a> {
 
     /// Answers to up to [`BLOCK`] forces, of which `first` is the number of the first.
     fn respond(&mut self, forces: MatRef<'_, f64>, first: usize) -> Result<Mat<f64>, ModalError> {
-        let mut forces = forces.to_owned();
+        let applied = forces;
+        let mut forces = applied.to_owned();
         self.balance(&mut forces);
+        for (k, applied) in applied.col_iter().enumerate() {
+            if forces.col(k).norm_l2() <= BALANCED * applied.norm_l2() {
+                forces.col_mut(k).fill(0.0);
+            }
+        }
         let mut residual = forces.clone();
         let mut answer: Mat<f64> = Mat::zeros(forces.nrows(), forces.ncols());
         let mut search: Mat<f64> = Mat::zeros(forces.nrows(), forces.ncols());

@@ -1,6 +1,8 @@
 //! What can go wrong with a results file or a figure.
 
-use std::path::PathBuf;
+use std::fs::OpenOptions;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
 
 /// An error of the HDF5 writer or reader.
 #[derive(Debug, thiserror::Error)]
@@ -15,6 +17,76 @@ pub enum FileError {
         action: String,
         /// The library's own message.
         source: hdf5::Error,
+    },
+    /// The operating system refused an operation.
+    #[error("{path}: cannot {action}: {reason}; {cure}", path = .path.display())]
+    System {
+        /// The results file.
+        path: PathBuf,
+        /// What was being done.
+        action: String,
+        /// The system's own message.
+        reason: String,
+        /// What helps.
+        cure: &'static str,
+    },
+    /// Another process has the file open for writing.
+    #[error(
+        "{path}: another run is writing this file, or another program has it open; wait for it, stop it, or choose another folder",
+        path = .path.display()
+    )]
+    Busy {
+        /// The unfinished file.
+        path: PathBuf,
+    },
+    /// A run of the same name was cut off.
+    #[error(
+        "{path}: this is an unfinished run; go on with it (`flexframe resume {path}`), or throw it away with --overwrite",
+        path = .path.display()
+    )]
+    Unfinished {
+        /// The unfinished file.
+        path: PathBuf,
+    },
+    /// Something else is where the results would go.
+    #[error(
+        "{path}: what is there is no results file of flexframe; choose another folder, move it away, or replace it with --overwrite (a folder never)",
+        path = .path.display()
+    )]
+    NotResults {
+        /// Where the results would go.
+        path: PathBuf,
+    },
+    /// The run to be resumed has come to its end.
+    #[error("{path}: this run is complete; there is nothing to resume", path = .path.display())]
+    Complete {
+        /// The results file.
+        path: PathBuf,
+    },
+    /// There is no unfinished run.
+    #[error(
+        "{path}: there is no unfinished run: no {part}; check the name, or begin with `flexframe run`",
+        path = .path.display(),
+        part = .part.display()
+    )]
+    NothingToResume {
+        /// The results file.
+        path: PathBuf,
+        /// The unfinished file that is not there.
+        part: PathBuf,
+    },
+    /// The rows of an unfinished file do not reach up to its checkpoint.
+    #[error(
+        "{path}: there are {found} whole rows where the checkpoint comes after {expected}: the file is damaged; run the scene again with --overwrite",
+        path = .path.display()
+    )]
+    Checkpoint {
+        /// The unfinished file.
+        path: PathBuf,
+        /// Rows that the checkpoint asks for.
+        expected: usize,
+        /// Whole rows.
+        found: usize,
     },
     /// A point's name cannot be the name of an HDF5 group, or occurs twice.
     #[error(
@@ -81,6 +153,28 @@ pub enum FileError {
         /// The attribute that was looked for.
         attribute: String,
     },
+    /// A text is not in UTF-8.
+    #[error("{path}: the attribute `{attribute}` is not text in UTF-8; is the file damaged?", path = .path.display())]
+    NotUtf8 {
+        /// The results file.
+        path: PathBuf,
+        /// The attribute.
+        attribute: String,
+    },
+    /// The histories claim more numbers than the file can hold.
+    #[error(
+        "{path}: the datasets claim {claimed} bytes of numbers, more than the {length} bytes of the file; it is damaged, \
+         or was compressed (h5repack without a filter undoes that)",
+        path = .path.display()
+    )]
+    ClaimsTooMuch {
+        /// The results file.
+        path: PathBuf,
+        /// Bytes that the shapes of the datasets come to.
+        claimed: u128,
+        /// Bytes of the file.
+        length: u64,
+    },
     /// A dataset has a shape other than the contract's.
     #[error("{path}: {dataset} has the shape {found:?} where {expected} is expected", path = .path.display())]
     WrongShape {
@@ -93,6 +187,58 @@ pub enum FileError {
         /// The shape found.
         found: Vec<usize>,
     },
+}
+
+impl FileError {
+    /// What [`Result::map_err`] takes. Where the operating system has refused something, it says so in the library's
+    /// message.
+    pub(crate) fn hdf5(path: &Path, action: impl Into<String>) -> impl FnOnce(hdf5::Error) -> Self {
+        let (path, action) = (path.to_path_buf(), action.into());
+        move |source| {
+            let errno = source.stack().and_then(|stack| {
+                stack.iter().find_map(|frame| {
+                    let (_, rest) = frame.desc().split_once("errno = ")?;
+                    rest.split(|c: char| !c.is_ascii_digit()).next()?.parse().ok()
+                })
+            });
+            match errno {
+                Some(errno) => Self::system(&path, action, &io::Error::from_raw_os_error(errno)),
+                None => Self::Hdf5 { path, action, source },
+            }
+        }
+    }
+
+    /// The HDF5 library may lose the system's reason on its way. Where it could not write the temporary file `file`, the
+    /// system says it again to who tries the same.
+    pub(crate) fn with_reason_from_system(self, file: &Path) -> Self {
+        let Self::Hdf5 { path, action, source } = self else { return self };
+        let again = OpenOptions::new().append(true).open(file).and_then(|mut file| {
+            file.write_all(&[0; 1 << 16])?;
+            file.sync_data()
+        });
+        match again {
+            Err(error) => Self::system(&path, action, &error),
+            Ok(()) => Self::Hdf5 { path, action, source },
+        }
+    }
+
+    /// With what helps against the error.
+    pub(crate) fn system(path: &Path, action: impl Into<String>, error: &io::Error) -> Self {
+        use io::ErrorKind::*;
+        let cure = match error.kind() {
+            StorageFull | QuotaExceeded | FileTooLarge => {
+                "make room there; an unfinished run can then be taken up again with `flexframe resume`"
+            }
+            PermissionDenied | ReadOnlyFilesystem => "choose a folder that you may write to",
+            NotFound | NotADirectory => "check the name of the folder",
+            WouldBlock => "another process has the file open; wait for it or stop it",
+            _ => "check the file and its disk",
+        };
+        let reason = error.to_string();
+        // The name of a temporary file says nothing.
+        let reason = reason.split(" at path ").next().unwrap_or_default().to_owned();
+        Self::System { path: path.to_path_buf(), action: action.into(), reason, cure }
+    }
 }
 
 /// An error of a figure.

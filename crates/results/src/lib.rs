@@ -8,6 +8,9 @@
 //!
 //! The crate knows plain data only: no mesh, no mode, no scheme.
 
+#![deny(unsafe_code)] // not `forbid`, since a macro of ndarray allows it within itself
+#![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable))]
+
 mod animation;
 mod chart;
 mod error;
@@ -15,10 +18,12 @@ mod font;
 pub mod layout;
 mod metadata;
 mod picture;
+mod place;
 mod reader;
 mod render;
 mod sample;
 mod shapes;
+mod store;
 mod surface;
 mod ticks;
 mod view;
@@ -36,4 +41,4 @@ pub use sample::{PointSample, Sample};
 pub use shapes::{Panel, ShapeGrid};
 pub use surface::{boundary_triangles, sharp_edges};
 pub use view::View;
-pub use writer::Writer;
+pub use writer::{Expected, Resumed, Writer, unfinished};

@@ -45,6 +45,8 @@ pub struct Metadata {
     pub program_version: String,
     /// The scene file, word for word.
     pub scene_text: String,
+    /// Where the scene file was, so that the files that it names can be found again; empty if nowhere.
+    pub scene_file: String,
     /// The body.
     pub body: BodyProperties,
     /// Names of the points whose motion is stored, in the order of [`Sample::points`](crate::Sample::points).

@@ -1,7 +1,7 @@
 //! Reads a results file back, finished or not.
 
 use crate::layout::Quantity;
-use crate::{BodyProperties, FileError, Metadata, Units};
+use crate::{BodyProperties, FileError, Metadata, PointSample, Sample, Units};
 use hdf5::types::VarLenUnicode;
 use hdf5::{IndexType, IterationOrder};
 use ndarray::s;
@@ -104,58 +104,157 @@ impl Results {
     ///
     /// # Errors
     /// [`FileError::Hdf5`] if it is no readable HDF5 file, [`FileError::MissingDataset`],
-    /// [`FileError::MissingAttribute`] or [`FileError::WrongShape`] if it departs from the contract.
+    /// [`FileError::MissingAttribute`], [`FileError::NotUtf8`] or [`FileError::WrongShape`] if it departs from the
+    /// contract, [`FileError::ClaimsTooMuch`] if its shapes come to more than the file holds.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, FileError> {
         let path = path.as_ref();
-        let file = hdf5::File::open(path).map_err(|source| FileError::Hdf5 {
-            path: path.to_path_buf(),
-            action: "open the file".into(),
-            source,
-        })?;
-        let source = Source { path, file: &file };
+        let file = hdf5::File::open(path).map_err(FileError::hdf5(path, "open the file"))?;
+        let source = Source { path, file: &file, length: file.size() };
 
         let metadata = source.metadata()?;
+        let complete = source.attribute::<i64>("complete")? == 1;
         let modes = metadata.body.frequencies.len();
         let names = &metadata.point_names;
+        let quantities: Vec<Quantity> = Quantity::all(names.len()).collect();
         let mut rows = usize::MAX;
-        for quantity in Quantity::all(names.len()) {
+        for quantity in &quantities {
             rows = rows.min(source.rows_of(&quantity.path(names), quantity.width(modes))?);
         }
-        let column = |quantity: Quantity| source.column(&quantity.path(names), quantity.width(modes), rows);
-        let table = |quantity| Ok(Table { rows, width: modes, values: column(quantity)? });
+        let width: usize = quantities.iter().map(|quantity| quantity.width(modes).unwrap_or(1)).sum();
+        source.refuse_if_claimed(rows as u128 * width as u128)?;
+        let mut columns = Vec::with_capacity(quantities.len());
+        for quantity in &quantities {
+            columns.push(source.column(&quantity.path(names), quantity.width(modes), rows)?);
+        }
+        if !complete {
+            // What has not been written is NaN, which no run writes.
+            for (quantity, column) in quantities.iter().zip(&columns) {
+                let whole = column.iter().position(|value| value.is_nan()).unwrap_or(usize::MAX);
+                rows = rows.min(whole / quantity.width(modes).unwrap_or(1).max(1));
+            }
+        }
+        let mut column = |quantity: Quantity| {
+            let place = quantities.iter().position(|q| *q == quantity);
+            let mut values = place.map(|place| std::mem::take(&mut columns[place])).unwrap_or_default();
+            values.truncate(rows * quantity.width(modes).unwrap_or(1));
+            values
+        };
 
         let mut points = BTreeMap::new();
         for (i, name) in names.iter().enumerate() {
             let history = PointHistory {
-                displacement: vectors(column(Quantity::Point(i, 0))?),
-                velocity: vectors(column(Quantity::Point(i, 1))?),
-                acceleration: vectors(column(Quantity::Point(i, 2))?),
-                rigid_acceleration: vectors(column(Quantity::Point(i, 3))?),
+                displacement: vectors(column(Quantity::Point(i, 0))),
+                velocity: vectors(column(Quantity::Point(i, 1))),
+                acceleration: vectors(column(Quantity::Point(i, 2))),
+                rigid_acceleration: vectors(column(Quantity::Point(i, 3))),
             };
             points.insert(name.clone(), history);
         }
         Ok(Self {
-            complete: source.attribute::<i64>("complete")? == 1,
-            time: column(Quantity::Time)?,
-            attitude: vectors(column(Quantity::Attitude)?),
-            position: vectors(column(Quantity::Position)?),
-            velocity: vectors(column(Quantity::Velocity)?),
-            angular_velocity: vectors(column(Quantity::AngularVelocity)?),
-            angular_acceleration: vectors(column(Quantity::AngularAcceleration)?),
-            modal_displacement: table(Quantity::ModalDisplacement)?,
-            modal_velocity: table(Quantity::ModalVelocity)?,
-            kinetic_energy: column(Quantity::KineticEnergy)?,
-            strain_energy: column(Quantity::StrainEnergy)?,
-            work: column(Quantity::Work)?,
-            dissipation: column(Quantity::Dissipation)?,
-            energy_balance: column(Quantity::EnergyBalance)?,
-            linear_momentum: vectors(column(Quantity::LinearMomentum)?),
-            angular_momentum: vectors(column(Quantity::AngularMomentum)?),
-            linear_balance: vectors(column(Quantity::LinearBalance)?),
-            angular_balance: vectors(column(Quantity::AngularBalance)?),
+            complete,
+            time: column(Quantity::Time),
+            attitude: vectors(column(Quantity::Attitude)),
+            position: vectors(column(Quantity::Position)),
+            velocity: vectors(column(Quantity::Velocity)),
+            angular_velocity: vectors(column(Quantity::AngularVelocity)),
+            angular_acceleration: vectors(column(Quantity::AngularAcceleration)),
+            modal_displacement: Table { rows, width: modes, values: column(Quantity::ModalDisplacement) },
+            modal_velocity: Table { rows, width: modes, values: column(Quantity::ModalVelocity) },
+            kinetic_energy: column(Quantity::KineticEnergy),
+            strain_energy: column(Quantity::StrainEnergy),
+            work: column(Quantity::Work),
+            dissipation: column(Quantity::Dissipation),
+            energy_balance: column(Quantity::EnergyBalance),
+            linear_momentum: vectors(column(Quantity::LinearMomentum)),
+            angular_momentum: vectors(column(Quantity::AngularMomentum)),
+            linear_balance: vectors(column(Quantity::LinearBalance)),
+            angular_balance: vectors(column(Quantity::AngularBalance)),
             points,
             metadata,
         })
+    }
+    /// Row `row`, if there is one; `points` is the room for its points.
+    pub fn sample<'a>(&'a self, row: usize, points: &'a mut Vec<PointSample>) -> Option<Sample<'a>> {
+        points.clear();
+        for name in &self.metadata.point_names {
+            let point = self.points.get(name)?;
+            points.push(PointSample {
+                displacement: *point.displacement.get(row)?,
+                velocity: *point.velocity.get(row)?,
+                acceleration: *point.acceleration.get(row)?,
+                rigid_acceleration: *point.rigid_acceleration.get(row)?,
+            });
+        }
+        Some(Sample {
+            time: *self.time.get(row)?,
+            attitude: *self.attitude.get(row)?,
+            position: *self.position.get(row)?,
+            velocity: *self.velocity.get(row)?,
+            angular_velocity: *self.angular_velocity.get(row)?,
+            angular_acceleration: *self.angular_acceleration.get(row)?,
+            modal_displacement: self.modal_displacement.row(row)?,
+            modal_velocity: self.modal_velocity.row(row)?,
+            kinetic_energy: *self.kinetic_energy.get(row)?,
+            strain_energy: *self.strain_energy.get(row)?,
+            work: *self.work.get(row)?,
+            dissipation: *self.dissipation.get(row)?,
+            energy_balance: *self.energy_balance.get(row)?,
+            linear_momentum: *self.linear_momentum.get(row)?,
+            angular_momentum: *self.angular_momentum.get(row)?,
+            linear_balance: *self.linear_balance.get(row)?,
+            angular_balance: *self.angular_balance.get(row)?,
+            points,
+        })
+    }
+
+    /// Keeps the first `rows` rows only.
+    pub(crate) fn truncate(&mut self, rows: usize) {
+        let Self {
+            metadata: _,
+            complete: _,
+            time,
+            attitude,
+            position,
+            velocity,
+            angular_velocity,
+            angular_acceleration,
+            modal_displacement,
+            modal_velocity,
+            kinetic_energy,
+            strain_energy,
+            work,
+            dissipation,
+            energy_balance,
+            linear_momentum,
+            angular_momentum,
+            linear_balance,
+            angular_balance,
+            points,
+        } = self;
+        for column in [time, kinetic_energy, strain_energy, work, dissipation, energy_balance] {
+            column.truncate(rows);
+        }
+        let vectors = [
+            position,
+            velocity,
+            angular_velocity,
+            angular_acceleration,
+            linear_momentum,
+            angular_momentum,
+            linear_balance,
+            angular_balance,
+        ];
+        let of_points = points.values_mut().flat_map(|point| {
+            [&mut point.displacement, &mut point.velocity, &mut point.acceleration, &mut point.rigid_acceleration]
+        });
+        for column in vectors.into_iter().chain(of_points) {
+            column.truncate(rows);
+        }
+        attitude.truncate(rows);
+        for table in [modal_displacement, modal_velocity] {
+            table.rows = table.rows.min(rows);
+            table.values.truncate(table.rows * table.width);
+        }
     }
 }
 
@@ -167,6 +266,8 @@ fn vectors<const N: usize>(values: Vec<f64>) -> Vec<[f64; N]> {
 struct Source<'a> {
     path: &'a Path,
     file: &'a hdf5::File,
+    /// Bytes of the file.
+    length: u64,
 }
 
 impl Source<'_> {
@@ -195,6 +296,7 @@ impl Source<'_> {
             tolerance: self.attribute_if_given("tolerance")?,
             program_version: self.text("program_version")?,
             scene_text: self.text("scene")?,
+            scene_file: self.attribute_if_given::<VarLenUnicode>("scene_file")?.unwrap_or_default().as_str().to_owned(),
             body,
             point_names: self.point_names()?,
         })
@@ -224,7 +326,17 @@ impl Source<'_> {
         self.file.dataset(name).map_err(self.failed(format!("open dataset {name}")))
     }
 
+    /// Refuses to make room for more numbers than the file has bytes for: a shape is only a claim.
+    fn refuse_if_claimed(&self, numbers: u128) -> Result<(), FileError> {
+        let claimed = numbers.saturating_mul(size_of::<f64>() as u128);
+        if claimed <= u128::from(self.length) {
+            return Ok(());
+        }
+        Err(FileError::ClaimsTooMuch { path: self.path.to_path_buf(), claimed, length: self.length })
+    }
+
     fn read(&self, name: &str, dataset: &hdf5::Dataset) -> Result<Vec<f64>, FileError> {
+        self.refuse_if_claimed(dataset.shape().iter().fold(1, |size, n| size.saturating_mul(*n as u128)))?;
         dataset.read_raw::<f64>().map_err(self.failed(format!("read dataset {name}")))
     }
 
@@ -286,7 +398,10 @@ impl Source<'_> {
     }
 
     fn text(&self, name: &str) -> Result<String, FileError> {
-        Ok(self.attribute::<VarLenUnicode>(name)?.as_str().to_owned())
+        // The bytes are the file's: `as_str` would take them for UTF-8 unseen.
+        let text = self.attribute::<VarLenUnicode>(name)?;
+        String::from_utf8(text.as_bytes().to_vec())
+            .map_err(|_| FileError::NotUtf8 { path: self.path.to_path_buf(), attribute: name.into() })
     }
 
     fn missing(&self, dataset: &str) -> FileError {
@@ -299,7 +414,6 @@ impl Source<'_> {
     }
 
     fn failed(&self, action: impl Into<String>) -> impl FnOnce(hdf5::Error) -> FileError {
-        let (path, action) = (self.path.to_path_buf(), action.into());
-        move |source| FileError::Hdf5 { path, action, source }
+        FileError::hdf5(self.path, action)
     }
 }

@@ -1,202 +1,324 @@
 //! Streams samples into an HDF5 file while a run goes on.
 
 use crate::layout::Quantity;
-use crate::{FileError, Metadata, Sample, Units};
-use hdf5::plist::group_create::LinkCreationOrder;
-use hdf5::types::VarLenUnicode;
-use ndarray::{ArrayView1, ArrayView2, aview0, aview1, s};
+use crate::place::{Place, is_busy};
+use crate::reader::Results;
+use crate::store::{Room, Store};
+use crate::{FileError, Metadata, Sample};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-/// Rows that are gathered before they are appended; also the rows of an HDF5 chunk. A row at a time
-/// costs about nine times as much.
-const ROWS_PER_CHUNK: usize = 512;
+/// Rows that are gathered before they are written. A row at a time costs about nine times as much.
+const ROWS_PER_WRITE: usize = 512;
 
-/// A process killed without a flush leaves an unreadable file, so this is what can be lost.
+/// What the kill of a process can lose.
 const FLUSH_INTERVAL: Duration = Duration::from_secs(1);
+
+/// Room that is made at once for a run whose rows are expected to need more, in numbers (64 MiB).
+const FIRST_ROOM: usize = 8 << 20;
+
+/// What a [`Writer`] should know of the run before it begins.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Expected {
+    /// Rows, where they are known: the room for them is made at once. More are no error.
+    pub rows: usize,
+    /// Words of each checkpoint.
+    pub checkpoint: usize,
+    /// Whether an unfinished run of the same name, or a file that is none of results, may be thrown away.
+    pub overwrite: bool,
+}
 
 /// Appends [`Sample`]s to an HDF5 file whose names and shapes are those of [`mod@crate::layout`].
 ///
-/// The file can be read after [`Writer::finish`], after the writer was dropped without it, and after
-/// the process was killed (up to the last flush, about a second before); `complete` is 1 only after
-/// `finish`. While it is being written HDF5 keeps the file locked.
+/// While the run goes on, the rows are in an unfinished file beside the place of the results ([`unfinished`]), which is
+/// locked. It is a whole HDF5 file at any moment, whenever the process is killed, and holds the rows up to the last
+/// flush. [`Writer::finish`] writes the results file and puts it into its place in one go: what is there is always
+/// whole, and is as it was until then.
 #[derive(Debug)]
 pub struct Writer {
-    path: PathBuf,
-    file: hdf5::File,
-    point_names: Vec<String>,
-    modes: usize,
-    columns: Vec<Column>,
+    place: Place,
+    metadata: Metadata,
+    store: Store,
+    /// Values of the rows that have not been written, by column.
+    buffers: Vec<(Quantity, Vec<f64>)>,
     rows_written: usize,
     rows_buffered: usize,
+    /// The last checkpoint as it is in the file, and its number.
+    checkpoint: Vec<u64>,
+    serial: u64,
     last_flush: Instant,
 }
 
+/// The unfinished file of a results file: `run.part.h5` of `run.h5`.
+pub fn unfinished(path: impl AsRef<Path>) -> PathBuf {
+    Place::of(path.as_ref()).part
+}
+
+/// A run that can go on.
 #[derive(Debug)]
-struct Column {
-    quantity: Quantity,
-    width: Option<usize>,
-    dataset: hdf5::Dataset,
-    buffer: Vec<f64>,
+pub struct Resumed {
+    /// Goes on after the rows.
+    pub writer: Writer,
+    /// The rows up to the checkpoint.
+    pub results: Results,
+    /// The last checkpoint; of a run that was cut off before its first there is none, nor are there rows.
+    pub checkpoint: Option<Vec<u64>>,
 }
 
 impl Writer {
-    /// Creates the file (an old one of that name is overwritten) with the metadata and empty histories.
+    /// Begins the results file `path` with the metadata and empty histories.
     ///
     /// # Errors
     /// [`FileError::PointName`] for a name that is empty, ".", "..", contains "/" or NUL or occurs
     /// twice, [`FileError::WrongLength`] if there are not as many damping ratios as frequencies,
-    /// [`FileError::NulInText`], and [`FileError::Hdf5`] if the file cannot be created.
-    pub fn create(path: impl AsRef<Path>, metadata: &Metadata) -> Result<Self, FileError> {
-        let path = path.as_ref();
-        check_point_names(path, &metadata.point_names)?;
+    /// [`FileError::NulInText`]; [`FileError::Busy`] if another process writes it,
+    /// [`FileError::Unfinished`] and [`FileError::NotResults`] for what would be lost;
+    /// [`FileError::System`] and [`FileError::Hdf5`] if the file cannot be written.
+    pub fn create(path: impl AsRef<Path>, metadata: &Metadata, expected: Expected) -> Result<Self, FileError> {
+        let place = Place::of(path.as_ref());
+        check_point_names(&place.path, &metadata.point_names)?;
         let modes = metadata.body.frequencies.len();
-        check_length(path, "body/damping_ratios", modes, metadata.body.damping_ratios.len())?;
+        check_length(&place.path, "body/damping_ratios", modes, metadata.body.damping_ratios.len())?;
+        place.check(expected.overwrite)?;
 
-        let file = hdf5::File::create(path).map_err(hdf5_error(path, "create the file"))?;
-        write_root_attributes(path, &file, metadata)?;
-        write_body(path, &file, metadata)?;
-        create_point_groups(&file, &metadata.point_names).map_err(hdf5_error(path, "create the points"))?;
-        let columns = Quantity::all(metadata.point_names.len())
-            .map(|quantity| Column::create(path, &file, quantity, modes, metadata))
-            .collect::<Result<Vec<_>, _>>()?;
-        let mut writer = Self {
-            path: path.to_path_buf(),
-            file,
-            point_names: metadata.point_names.clone(),
-            modes,
-            columns,
+        let buffers: Vec<_> = Quantity::all(metadata.point_names.len())
+            .map(|quantity| (quantity, Vec::with_capacity(ROWS_PER_WRITE * quantity.width(modes).unwrap_or(1))))
+            .collect();
+        let numbers_per_row: usize = buffers.iter().map(|(quantity, _)| quantity.width(modes).unwrap_or(1)).sum();
+        let rows = expected.rows.min(FIRST_ROOM / numbers_per_row).max(ROWS_PER_WRITE);
+        let checkpoint = vec![0; CHECKPOINT_FRAME + expected.checkpoint];
+        let room = Room { rows, checkpoint: Some(checkpoint.len()), complete: false };
+        let file = place.temporary()?;
+        let store =
+            Store::create(&file, &place.part, metadata, room).map_err(|error| error.with_reason_from_system(&file))?;
+        place.put_part(file, expected.overwrite)?;
+        Ok(Self {
+            place,
+            metadata: metadata.clone(),
+            store,
+            buffers,
             rows_written: 0,
             rows_buffered: 0,
+            checkpoint,
+            serial: 0,
             last_flush: Instant::now(),
-        };
-        writer.flush()?;
-        Ok(writer)
+        })
     }
 
-    /// Adds a row. It reaches the file with the next chunk, flush, or at the end.
+    /// Whether [`Writer::create`] would begin, for those who have long work to do before.
+    ///
+    /// # Errors
+    /// [`FileError::Busy`], [`FileError::Unfinished`], [`FileError::NotResults`], and [`FileError::System`] if no file
+    /// can be made in the folder.
+    pub fn check(path: impl AsRef<Path>, overwrite: bool) -> Result<(), FileError> {
+        let place = Place::of(path.as_ref());
+        place.check(overwrite)?;
+        place.temporary().map(drop)
+    }
+
+    /// Opens an unfinished file, by its own name or that of the results file that it would become, to go on from its
+    /// last checkpoint. Rows after that are written anew.
+    ///
+    /// # Errors
+    /// [`FileError::Complete`] and [`FileError::NothingToResume`] if there is no unfinished file, [`FileError::Busy`]
+    /// if its run goes on, [`FileError::Checkpoint`] if it has fewer rows than its checkpoint says, and those of
+    /// [`Results::open`].
+    pub fn resume(path: impl AsRef<Path>) -> Result<Resumed, FileError> {
+        let place = Place::of(path.as_ref());
+        place.check_resumable()?;
+        let part = &place.part;
+        let mut results = Results::open(part)?;
+        let store = Store::open(part, &results.metadata)
+            .map_err(|error| if is_busy(part) { FileError::Busy { path: part.clone() } } else { error })?;
+        let last = store.read_checkpoints(part)?.into_iter().filter_map(Checkpoint::read).max_by_key(|c| c.serial);
+        let (rows, serial) = last.as_ref().map_or((0, 0), |last| (last.rows, last.serial));
+        if rows > results.time.len() {
+            return Err(FileError::Checkpoint { path: part.clone(), expected: rows, found: results.time.len() });
+        }
+        results.truncate(rows);
+        let (frame, state) = match last {
+            Some(last) => (Checkpoint::frame(last.serial, rows, &last.state), Some(last.state)),
+            None => (vec![0; store.checkpoint_words()], None),
+        };
+        let buffers =
+            Quantity::all(results.metadata.point_names.len()).map(|quantity| (quantity, Vec::new())).collect();
+        let writer = Self {
+            metadata: results.metadata.clone(),
+            place,
+            store,
+            buffers,
+            rows_written: rows,
+            rows_buffered: 0,
+            checkpoint: frame,
+            serial,
+            last_flush: Instant::now(),
+        };
+        Ok(Resumed { writer, results, checkpoint: state })
+    }
+
+    /// The unfinished file.
+    pub fn unfinished(&self) -> &Path {
+        &self.place.part
+    }
+
+    /// The results file.
+    pub fn path(&self) -> &Path {
+        &self.place.path
+    }
+
+    /// Adds a row. It reaches the file with the next block of rows, flush, or at the end.
     ///
     /// # Errors
     /// [`FileError::WrongLength`] and [`FileError::NotFinite`] leave the row out and everything before
-    /// it in; [`FileError::Hdf5`] if the file cannot be extended.
+    /// it in; [`FileError::System`] and [`FileError::Hdf5`] if the file cannot be written.
     pub fn push(&mut self, sample: &Sample) -> Result<(), FileError> {
-        check_length(&self.path, "points", self.point_names.len(), sample.points.len())?;
-        check_length(&self.path, "modal/displacement", self.modes, sample.modal_displacement.len())?;
-        check_length(&self.path, "modal/velocity", self.modes, sample.modal_velocity.len())?;
-        for column in &self.columns {
-            if let Some(&value) = column.quantity.of(sample).iter().find(|value| !value.is_finite()) {
+        let (path, modes) = (&self.place.part, self.metadata.body.frequencies.len());
+        check_length(path, "points", self.metadata.point_names.len(), sample.points.len())?;
+        check_length(path, "modal/displacement", modes, sample.modal_displacement.len())?;
+        check_length(path, "modal/velocity", modes, sample.modal_velocity.len())?;
+        for (quantity, _) in &self.buffers {
+            if let Some(&value) = quantity.of(sample).iter().find(|value| !value.is_finite()) {
                 return Err(FileError::NotFinite {
-                    path: self.path.clone(),
+                    path: path.clone(),
                     time: sample.time,
-                    quantity: column.quantity.path(&self.point_names),
+                    quantity: quantity.path(&self.metadata.point_names),
                     value,
                 });
             }
         }
-        for column in &mut self.columns {
-            column.buffer.extend_from_slice(column.quantity.of(sample));
+        for (quantity, buffer) in &mut self.buffers {
+            buffer.extend_from_slice(quantity.of(sample));
         }
         self.rows_buffered += 1;
+        if self.rows_buffered == ROWS_PER_WRITE { self.write_buffers() } else { Ok(()) }
+    }
 
-        if self.rows_buffered == ROWS_PER_CHUNK {
-            self.append_buffers()?;
-        }
-        if self.last_flush.elapsed() >= FLUSH_INTERVAL {
-            self.flush()?;
-        }
+    /// Whether the last flush is about a second ago.
+    pub fn flush_is_due(&self) -> bool {
+        self.last_flush.elapsed() >= FLUSH_INTERVAL
+    }
+
+    /// Hands all rows to the operating system, and then the state of the run after them.
+    ///
+    /// # Errors
+    /// [`FileError::WrongLength`] for a checkpoint of another length than expected; [`FileError::System`] and
+    /// [`FileError::Hdf5`] if the file cannot be written.
+    pub fn flush(&mut self, checkpoint: &[u64]) -> Result<(), FileError> {
+        let path = &self.place.part;
+        let expected = self.checkpoint.len().saturating_sub(CHECKPOINT_FRAME);
+        check_length(path, "the checkpoint", expected, checkpoint.len())?;
+        self.write_buffers()?;
+        let path = &self.place.part;
+        self.store.flush(path)?;
+        self.serial += 1;
+        self.checkpoint = Checkpoint::frame(self.serial, self.rows_written, checkpoint);
+        // In turns, so that one of the two is whole at any moment.
+        self.store.write_checkpoint(path, (self.serial % 2) as usize, &self.checkpoint)?;
+        self.store.flush(path)?;
+        self.last_flush = Instant::now();
         Ok(())
     }
 
-    /// Writes what is left, marks the file as complete and closes it.
+    /// Writes the results file, puts it into its place, where an older one is replaced, and removes the unfinished one.
     ///
     /// # Errors
-    /// [`FileError::Hdf5`] if the file cannot be written.
+    /// [`FileError::System`] and [`FileError::Hdf5`] if the file cannot be written; the unfinished file stays.
     pub fn finish(mut self) -> Result<(), FileError> {
-        self.append_buffers()?;
-        self.file
-            .attr("complete")
-            .and_then(|complete| complete.write_scalar(&1_i64))
-            .map_err(hdf5_error(&self.path, "mark the file as complete"))?;
-        self.flush()
+        self.write_buffers()?;
+        let room = Room { rows: self.rows_written, checkpoint: None, complete: true };
+        let file = self.place.temporary()?;
+        let path = &self.place.path;
+        Store::create(&file, path, &self.metadata, room)
+            .and_then(|store| {
+                store.copy_rows(path, &self.store, self.rows_written)?;
+                store.flush(path)
+            })
+            .map_err(|error| error.with_reason_from_system(&file))?;
+        self.place.put_results(file)?;
+        self.place.remove_part()
     }
 
-    fn flush(&mut self) -> Result<(), FileError> {
-        self.append_buffers()?;
-        self.last_flush = Instant::now();
-        self.file.flush().map_err(hdf5_error(&self.path, "flush the file"))
-    }
-
-    fn append_buffers(&mut self) -> Result<(), FileError> {
+    fn write_buffers(&mut self) -> Result<(), FileError> {
         if self.rows_buffered == 0 {
             return Ok(());
         }
         let rows = self.rows_written..self.rows_written + self.rows_buffered;
-        // Counted first: should an append fail, the rows are given up, and no later call repeats them.
-        self.rows_written = rows.end;
+        let room = if rows.end > self.store.rows() { self.grow(rows.end) } else { Ok(()) };
+        let outcome = room.and_then(|()| {
+            let values = self.buffers.iter().map(|(_, buffer)| buffer.as_slice());
+            self.store.write(&self.place.part, rows.clone(), values)
+        });
+        // Should it fail, the rows are given up, and no later call takes others for them.
+        self.buffers.iter_mut().for_each(|(_, buffer)| buffer.clear());
         self.rows_buffered = 0;
-        let mut outcome = Ok(());
-        for column in &mut self.columns {
-            if outcome.is_ok() {
-                outcome = column.append(rows.clone()).map_err(|source| FileError::Hdf5 {
-                    path: self.path.clone(),
-                    action: format!("append to {}", column.quantity.path(&self.point_names)),
-                    source,
-                });
-            }
-            column.buffer.clear();
+        if outcome.is_ok() {
+            self.rows_written = rows.end;
         }
         outcome
+    }
+
+    /// Goes over to a file with room for `rows` rows or more, by another one that takes the name.
+    fn grow(&mut self, rows: usize) -> Result<(), FileError> {
+        let part = &self.place.part;
+        let rows = rows.max(2 * self.store.rows());
+        let room = Room { rows, checkpoint: Some(self.checkpoint.len()), complete: false };
+        let file = self.place.temporary()?;
+        let store = Store::create(&file, part, &self.metadata, room)
+            .and_then(|store| {
+                store.copy_rows(part, &self.store, self.rows_written)?;
+                store.write_checkpoint(part, (self.serial % 2) as usize, &self.checkpoint)?;
+                store.flush(part)?;
+                Ok(store)
+            })
+            .map_err(|error| error.with_reason_from_system(&file))?;
+        self.place.put_part(file, true)?;
+        self.store = store;
+        Ok(())
     }
 }
 
 impl Drop for Writer {
     fn drop(&mut self) {
         // Best effort: there is nobody left to tell. After `finish` there is nothing to do.
-        let _ = self.flush();
+        let _ = self.write_buffers().and_then(|()| self.store.flush(&self.place.part));
     }
 }
 
-impl Column {
-    fn create(
-        path: &Path,
-        file: &hdf5::File,
-        quantity: Quantity,
-        modes: usize,
-        metadata: &Metadata,
-    ) -> Result<Self, FileError> {
-        let name = quantity.path(&metadata.point_names);
-        let width = quantity.width(modes);
-        let builder = file.new_dataset::<f64>();
-        let dataset = match width {
-            None => builder.chunk(ROWS_PER_CHUNK).shape(0..).create(name.as_str()),
-            // HDF5 wants no chunk of width 0, and no chunk wider than a fixed width.
-            Some(0) => builder.chunk((ROWS_PER_CHUNK, 1)).shape((0.., 0..)).create(name.as_str()),
-            Some(width) => builder.chunk((ROWS_PER_CHUNK, width)).shape((0.., width)).create(name.as_str()),
-        }
-        .map_err(hdf5_error(path, format!("create dataset {name}")))?;
-        describe(path, &dataset, &quantity.unit(&metadata.units), quantity.frame(), quantity.description())?;
-        let buffer = Vec::with_capacity(ROWS_PER_CHUNK * width.unwrap_or(1));
-        Ok(Self { quantity, width, dataset, buffer })
+/// Words of a checkpoint in the file beside those of the state: number, rows, and check sum.
+const CHECKPOINT_FRAME: usize = 3;
+
+/// A checkpoint as it is in the file.
+struct Checkpoint {
+    /// From 1.
+    serial: u64,
+    /// Rows before it.
+    rows: usize,
+    state: Vec<u64>,
+}
+
+impl Checkpoint {
+    fn frame(serial: u64, rows: usize, state: &[u64]) -> Vec<u64> {
+        let mut words = vec![serial, rows as u64];
+        words.extend_from_slice(state);
+        words.push(check_sum(&words));
+        words
     }
 
-    fn append(&self, rows: std::ops::Range<usize>) -> hdf5::Result<()> {
-        match self.width {
-            None => {
-                self.dataset.resize(rows.end)?;
-                self.dataset.write_slice(ArrayView1::from(&self.buffer), rows)
+    /// `None` if there is none, or only part of one.
+    fn read(words: Vec<u64>) -> Option<Self> {
+        let (sum, words) = words.split_last()?;
+        match words {
+            [serial, rows, state @ ..] if *serial > 0 && check_sum(words) == *sum => {
+                Some(Self { serial: *serial, rows: usize::try_from(*rows).ok()?, state: state.to_vec() })
             }
-            Some(width) => {
-                self.dataset.resize((rows.end, width))?;
-                let block = ArrayView2::from_shape((rows.len(), width), &self.buffer)?;
-                self.dataset.write_slice(block, s![rows, ..])
-            }
+            _ => None,
         }
     }
 }
 
-fn hdf5_error(path: &Path, action: impl Into<String>) -> impl FnOnce(hdf5::Error) -> FileError {
-    let (path, action) = (path.to_path_buf(), action.into());
-    move |source| FileError::Hdf5 { path, action, source }
+/// FNV-1a, a word at a time.
+fn check_sum(words: &[u64]) -> u64 {
+    words.iter().fold(0xcbf2_9ce4_8422_2325, |sum, word| (sum ^ word).wrapping_mul(0x0100_0000_01b3))
 }
 
 fn check_length(path: &Path, quantity: &str, expected: usize, found: usize) -> Result<(), FileError> {
@@ -219,96 +341,4 @@ fn check_point_names(path: &Path, names: &[String]) -> Result<(), FileError> {
         return Err(FileError::PointName { path: path.to_path_buf(), name: name.clone(), reason });
     }
     Ok(())
-}
-
-/// The groups keep the order in which they were made, so that the reader lists the points as given.
-fn create_point_groups(file: &hdf5::File, names: &[String]) -> hdf5::Result<()> {
-    let points = file
-        .create_group_builder()
-        .with_create_plist(|plist| plist.link_creation_order(LinkCreationOrder::Indexed))
-        .create("points")?;
-    for name in names {
-        points.create_group(name)?;
-    }
-    Ok(())
-}
-
-fn write_root_attributes(path: &Path, file: &hdf5::File, metadata: &Metadata) -> Result<(), FileError> {
-    let texts = [
-        ("title", &metadata.title),
-        ("scene", &metadata.scene_text),
-        ("formulation", &metadata.formulation),
-        ("scheme", &metadata.scheme),
-        ("program_version", &metadata.program_version),
-        ("units_length", &metadata.units.length),
-        ("units_mass", &metadata.units.mass),
-        ("units_time", &metadata.units.time),
-    ];
-    for (name, text) in texts {
-        write_text(path, file, name, text)?;
-    }
-    for (name, number) in [("step", metadata.step), ("tolerance", metadata.tolerance)] {
-        let Some(number) = number else { continue };
-        file.new_attr::<f64>()
-            .create(name)
-            .and_then(|attribute| attribute.write_scalar(&number))
-            .map_err(hdf5_error(path, format!("write the attribute {name}")))?;
-    }
-    file.new_attr::<i64>()
-        .create("complete")
-        .and_then(|complete| complete.write_scalar(&0_i64))
-        .map_err(hdf5_error(path, "write the attribute complete"))
-}
-
-fn write_body(path: &Path, file: &hdf5::File, metadata: &Metadata) -> Result<(), FileError> {
-    let body = &metadata.body;
-    let Units { length, mass, time } = &metadata.units;
-    let frequency_unit = if time == "s" { "Hz".into() } else { format!("1/{time}") };
-    let inertia_unit = format!("{mass} {length}^2");
-    let inertia = ArrayView2::from(&body.inertia);
-    for (name, values, unit, frame, description) in [
-        ("mass", aview0(&body.mass).into_dyn(), mass, "none", "total mass"),
-        ("center_of_mass", aview1(&body.center_of_mass).into_dyn(), length, "mesh", "centre of mass"),
-        ("inertia", inertia.into_dyn(), &inertia_unit, "body", "undeformed inertia about the centre of mass"),
-        (
-            "frequencies",
-            aview1(&body.frequencies).into_dyn(),
-            &frequency_unit,
-            "none",
-            "natural frequencies of the flexible modes",
-        ),
-        (
-            "damping_ratios",
-            aview1(&body.damping_ratios).into_dyn(),
-            &"1".into(),
-            "none",
-            "damping ratios of the flexible modes",
-        ),
-    ] {
-        let name = format!("body/{name}");
-        let dataset = file
-            .new_dataset_builder()
-            .with_data(values)
-            .create(name.as_str())
-            .map_err(hdf5_error(path, format!("write {name}")))?;
-        describe(path, &dataset, unit, frame, description)?;
-    }
-    Ok(())
-}
-
-fn describe(path: &Path, dataset: &hdf5::Dataset, unit: &str, frame: &str, description: &str) -> Result<(), FileError> {
-    write_text(path, dataset, "unit", unit)?;
-    write_text(path, dataset, "frame", frame)?;
-    write_text(path, dataset, "description", description)
-}
-
-/// A variable-length UTF-8 string, which h5py reads as `str`.
-fn write_text(path: &Path, owner: &hdf5::Location, name: &str, text: &str) -> Result<(), FileError> {
-    let value: VarLenUnicode =
-        text.parse().map_err(|_| FileError::NulInText { path: path.to_path_buf(), attribute: name.into() })?;
-    owner
-        .new_attr::<VarLenUnicode>()
-        .create(name)
-        .and_then(|attribute| attribute.write_scalar(&value))
-        .map_err(hdf5_error(path, format!("write the attribute {name}")))
 }

@@ -4,7 +4,16 @@ mod rows;
 
 use hdf5::types::{FloatSize, IntSize, TypeDescriptor, VarLenUnicode};
 use results::*;
-use rows::{Row, assert_rows, folder, metadata, write};
+use rows::{Row, assert_rows, folder, metadata};
+use std::path::Path;
+
+fn write(path: &Path, rows: usize, metadata: &Metadata) -> Writer {
+    let mut writer = Writer::create(path, metadata, Expected::default()).unwrap();
+    for i in 0..rows {
+        writer.push(&Row::new(i, metadata.body.frequencies.len(), metadata.point_names.len()).sample()).unwrap();
+    }
+    writer
+}
 
 #[test]
 fn what_is_written_is_read_bit_for_bit() {
@@ -50,10 +59,11 @@ fn a_rigid_body_without_points_is_a_file_too() {
 }
 
 #[test]
-fn a_dropped_writer_leaves_its_rows_and_no_mark_of_completeness() {
+fn a_dropped_writer_leaves_its_rows_in_an_unfinished_file_and_nothing_in_the_place_of_results() {
     let (_folder, path) = folder();
     drop(write(&path, 700, &metadata(2, &["P1"])));
-    let results = Results::open(&path).unwrap();
+    assert!(!path.exists());
+    let results = Results::open(unfinished(&path)).unwrap();
     assert!(!results.complete);
     assert_rows(&results, 700);
 }
@@ -97,22 +107,25 @@ fn wrong_lengths_and_names_are_refused() {
     assert_rows(&Results::open(&path).unwrap(), 2);
 
     for names in [[""].as_slice(), &["."], &[".."], &["a/b"], &["a\0"], &["a", "a"]] {
-        let error = Writer::create(&path, &metadata(1, names)).unwrap_err();
+        let error = Writer::create(&path, &metadata(1, names), Expected::default()).unwrap_err();
         assert!(matches!(error, FileError::PointName { .. }), "{names:?}: {error}");
     }
     let mut unequal = metadata(2, &[]);
     unequal.body.damping_ratios.pop();
-    assert!(matches!(Writer::create(&path, &unequal), Err(FileError::WrongLength { expected: 2, found: 1, .. })));
+    assert!(matches!(
+        Writer::create(&path, &unequal, Expected::default()),
+        Err(FileError::WrongLength { expected: 2, found: 1, .. })
+    ));
     let mut nul = metadata(2, &[]);
     nul.scene_text = "a\0b".into();
-    assert!(matches!(Writer::create(&path, &nul), Err(FileError::NulInText { .. })));
+    assert!(matches!(Writer::create(&path, &nul, Expected::default()), Err(FileError::NulInText { .. })));
 }
 
 #[test]
 fn errors_name_the_file_and_what_is_wrong_with_it() {
     let (folder, path) = folder();
     let nowhere = folder.path().join("no such folder").join("run.h5");
-    let error = Writer::create(&nowhere, &metadata(0, &[])).unwrap_err().to_string();
+    let error = Writer::create(&nowhere, &metadata(0, &[]), Expected::default()).unwrap_err().to_string();
     assert!(error.contains("no such folder") && error.contains("create the file"), "{error}");
     let error = Results::open(&nowhere).unwrap_err().to_string();
     assert!(error.contains("no such folder") && error.contains("open the file"), "{error}");
@@ -146,13 +159,120 @@ fn errors_name_the_file_and_what_is_wrong_with_it() {
 }
 
 #[test]
-fn an_unfinished_file_has_as_many_rows_as_its_shortest_column() {
+fn an_unfinished_file_has_the_rows_that_are_whole_in_every_column() {
     let (_folder, path) = folder();
     drop(write(&path, 10, &metadata(2, &["P1"])));
-    let file = hdf5::File::open_rw(&path).unwrap();
-    file.dataset("points/P1/velocity").unwrap().resize((7, 3)).unwrap();
+    let part = unfinished(&path);
+    let file = hdf5::File::open_rw(&part).unwrap();
+    let column = file.dataset("points/P1/velocity").unwrap();
+    assert_eq!(column.shape(), [512, 3]);
+    column.write_slice(&[f64::NAN], ndarray::s![7, 1..2]).unwrap();
+    drop(column);
     file.close().unwrap();
-    assert_rows(&Results::open(&path).unwrap(), 7);
+    assert_rows(&Results::open(&part).unwrap(), 7);
+}
+
+#[test]
+fn a_finished_file_is_the_same_byte_for_byte_whatever_way_led_to_it() {
+    let (_folder, path) = folder();
+    let metadata = metadata(3, &["P1"]);
+    let push = |writer: &mut Writer, rows: std::ops::Range<usize>| {
+        rows.for_each(|i| writer.push(&Row::new(i, 3, 1).sample()).unwrap());
+    };
+    let mut files = Vec::new();
+    for expected in [Expected::default(), Expected { rows: 3000, checkpoint: 5, overwrite: false }] {
+        let mut writer = Writer::create(&path, &metadata, expected).unwrap();
+        push(&mut writer, 0..2000);
+        writer.finish().unwrap();
+        assert!(!unfinished(&path).exists());
+        files.push(std::fs::read(&path).unwrap());
+        // The clock of HDF5 files has a second's resolution.
+        std::thread::sleep(std::time::Duration::from_millis(1100));
+    }
+    let mut writer = Writer::create(&path, &metadata, Expected { checkpoint: 2, ..Expected::default() }).unwrap();
+    push(&mut writer, 0..700);
+    writer.flush(&[7, 8]).unwrap();
+    push(&mut writer, 700..1500);
+    drop(writer);
+    let Resumed { mut writer, results, checkpoint } = Writer::resume(&path).unwrap();
+    assert_eq!(checkpoint, Some(vec![7, 8]));
+    assert_rows(&results, 700);
+    push(&mut writer, 700..2000);
+    writer.finish().unwrap();
+    files.push(std::fs::read(&path).unwrap());
+    assert!(files[0] == files[1] && files[1] == files[2]);
+    assert_rows(&Results::open(&path).unwrap(), 2000);
+}
+
+#[test]
+fn of_two_checkpoints_the_last_whole_one_counts() {
+    let (_folder, path) = folder();
+    let metadata = metadata(1, &[]);
+    let expected = Expected { checkpoint: 3, ..Expected::default() };
+    let mut writer = Writer::create(&path, &metadata, expected).unwrap();
+    for i in 0..40 {
+        writer.push(&Row::new(i, 1, 0).sample()).unwrap();
+        if i % 10 == 9 {
+            writer.flush(&[i as u64, 1, 2]).unwrap();
+        }
+    }
+    assert!(matches!(writer.flush(&[1, 2]), Err(FileError::WrongLength { expected: 3, found: 2, .. })));
+    drop(writer);
+    let resumed = || Writer::resume(&path).unwrap();
+    let rows_and_state = |resumed: Resumed| (resumed.results.time.len(), resumed.checkpoint);
+    assert_eq!(rows_and_state(resumed()), (40, Some(vec![39, 1, 2])));
+    // The fourth is in place 0; a torn one differs in a word.
+    let spoil = |place: usize, word: usize| {
+        let file = hdf5::File::open_rw(unfinished(&path)).unwrap();
+        file.dataset("checkpoint").unwrap().write_slice(&[77_u64], ndarray::s![place, word..word + 1]).unwrap();
+    };
+    spoil(0, 3);
+    assert_eq!(rows_and_state(resumed()), (30, Some(vec![29, 1, 2])));
+    // From there its successor is the fourth again.
+    let mut writer = resumed().writer;
+    writer.push(&Row::new(30, 1, 0).sample()).unwrap();
+    writer.flush(&[30, 1, 2]).unwrap();
+    drop(writer);
+    assert_eq!(rows_and_state(resumed()), (31, Some(vec![30, 1, 2])));
+    spoil(0, 0);
+    spoil(1, 5);
+    assert_eq!(rows_and_state(resumed()), (0, None));
+}
+
+#[test]
+fn nothing_is_overwritten_that_a_user_would_miss() {
+    let (folder, path) = folder();
+    let metadata = metadata(1, &[]);
+    let create = |overwrite| Writer::create(&path, &metadata, Expected { overwrite, ..Expected::default() });
+    assert!(matches!(Writer::resume(&path), Err(FileError::NothingToResume { .. })));
+    write(&path, 5, &metadata).finish().unwrap();
+    assert!(matches!(Writer::resume(&path), Err(FileError::Complete { .. })));
+    // A complete file stays until another one is complete.
+    drop(create(false).unwrap());
+    assert_rows(&Results::open(&path).unwrap(), 5);
+    // Which is not resumed, nor thrown away unasked.
+    let error = create(false).unwrap_err();
+    assert!(matches!(error, FileError::Unfinished { .. }));
+    assert!(error.to_string().contains("flexframe resume") && error.to_string().contains("--overwrite"), "{error}");
+    // Nor while it is written.
+    let writer = create(true).unwrap();
+    for overwrite in [false, true] {
+        assert!(matches!(create(overwrite), Err(FileError::Busy { .. })));
+    }
+    assert!(matches!(Writer::resume(unfinished(&path)), Err(FileError::Busy { .. })));
+    writer.finish().unwrap();
+    assert_rows(&Results::open(&path).unwrap(), 0);
+    // What is none of ours.
+    std::fs::write(&path, "a diary").unwrap();
+    assert!(matches!(create(false), Err(FileError::NotResults { .. })));
+    assert_eq!(std::fs::read(&path).unwrap(), b"a diary");
+    assert!(create(true).is_ok());
+    std::fs::remove_file(unfinished(&path)).unwrap();
+    std::fs::remove_file(&path).unwrap();
+    std::fs::create_dir(&path).unwrap();
+    assert!(matches!(create(true), Err(FileError::NotResults { .. })));
+    // And no temporary file is left.
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
 }
 
 /// What h5py builds numpy arrays and `str` from: IEEE doubles, and strings of variable length in UTF-8.
@@ -198,8 +318,17 @@ fn names_types_and_shapes_are_those_of_the_contract() {
             assert!(!text.is_empty(), "{name}: {attribute}");
         }
     }
-    let texts =
-        ["units_length", "units_mass", "units_time", "formulation", "scheme", "program_version", "title", "scene"];
+    let texts = [
+        "units_length",
+        "units_mass",
+        "units_time",
+        "formulation",
+        "scheme",
+        "program_version",
+        "title",
+        "scene",
+        "scene_file",
+    ];
     for name in texts {
         let attribute = file.attr(name).unwrap();
         assert_eq!(attribute.dtype().unwrap().to_descriptor().unwrap(), TypeDescriptor::VarLenUnicode);

@@ -1,31 +1,38 @@
 //! What survives when a run is killed.
 //!
-//! In a process apart from the other tests: a child inherits the files that its parent has open, with HDF5's locks.
+//! In a process apart from the other tests, and one after another: a child inherits the files that its parent has open,
+//! with HDF5's locks.
 
 mod rows;
 
-use results::Results;
-use rows::{Row, assert_rows, folder, metadata, write};
+use results::{Expected, Results, Resumed, Writer, unfinished};
+use rows::{Row, assert_rows, folder, metadata};
 use std::path::Path;
 use std::process::Command;
-use std::time::Duration;
+use std::sync::Mutex;
+
+static ALONE: Mutex<()> = Mutex::new(());
 
 /// Not a test of its own: the process that [`a_killed_run_can_be_read_up_to_its_last_flush`] kills.
 #[test]
 #[ignore = "run by another test"]
 fn child_that_is_killed() {
     let Some(path) = std::env::var_os("RESULTS_TEST_CHILD") else { return };
-    let mut writer = write(Path::new(&path), 700, &metadata(2, &["P1"]));
-    std::thread::sleep(Duration::from_millis(1100));
-    // This row is late enough for a flush, the next hundred are not.
-    for i in 700..801 {
+    let metadata = metadata(2, &["P1"]);
+    let expected = Expected { checkpoint: 1, ..Expected::default() };
+    let mut writer = Writer::create(Path::new(&path), &metadata, expected).unwrap();
+    for i in 0..801 {
         writer.push(&Row::new(i, 2, 1).sample()).unwrap();
+        if i == 700 {
+            writer.flush(&[4711]).unwrap();
+        }
     }
     std::process::abort();
 }
 
 #[test]
 fn a_killed_run_can_be_read_up_to_its_last_flush() {
+    let _alone = ALONE.lock();
     let (_folder, path) = folder();
     let status = Command::new(std::env::current_exe().unwrap())
         .args(["--exact", "child_that_is_killed", "--ignored"])
@@ -34,8 +41,74 @@ fn a_killed_run_can_be_read_up_to_its_last_flush() {
         .unwrap()
         .status;
     assert!(!status.success(), "the child was to abort");
-    let results = Results::open(&path).unwrap();
+    let results = Results::open(unfinished(&path)).unwrap();
     assert!(!results.complete);
     assert!(results.time.len() >= 701, "{}", results.time.len());
     assert_rows(&results, results.time.len());
+    let Resumed { results, checkpoint, .. } = Writer::resume(&path).unwrap();
+    assert_rows(&results, 701);
+    assert_eq!(checkpoint, Some(vec![4711]));
+}
+
+/// Not a test of its own: goes on from where it is with a flush at every row.
+#[test]
+#[ignore = "run by another test"]
+fn child_that_flushes_at_every_row() {
+    let Some(path) = std::env::var_os("RESULTS_TEST_CHILD") else { return };
+    let path = Path::new(&path);
+    let (mut writer, done) = if unfinished(path).exists() {
+        let Resumed { writer, results, checkpoint } = Writer::resume(path).unwrap();
+        let rows = results.time.len();
+        assert_eq!(checkpoint.map_or(0, |state| state[0]), rows as u64);
+        assert_rows(&results, rows);
+        (writer, rows)
+    } else {
+        let expected = Expected { checkpoint: STATE, ..Expected::default() };
+        (Writer::create(path, &metadata(2, &["P1"]), expected).unwrap(), 0)
+    };
+    for i in done..ROWS {
+        writer.push(&Row::new(i, 2, 1).sample()).unwrap();
+        writer.flush(&vec![i as u64 + 1; STATE]).unwrap();
+    }
+    writer.finish().unwrap();
+}
+
+/// More than a page of them.
+const STATE: usize = 1000;
+
+/// The file grows several times on the way.
+const ROWS: usize = 20_000;
+
+/// `FLEXFRAME_KILLS` sets the number of kills.
+#[test]
+fn a_file_is_whole_whenever_its_writer_is_killed() {
+    let _alone = ALONE.lock();
+    let (_folder, path) = folder();
+    let kills: u32 = std::env::var("FLEXFRAME_KILLS").map_or(25, |count| count.parse().unwrap());
+    let (mut done, mut random) = (0, std::process::id().wrapping_mul(2_654_435_761));
+    while done < kills {
+        let mut child = Command::new(std::env::current_exe().unwrap())
+            .args(["--exact", "child_that_flushes_at_every_row", "--ignored"])
+            .env("RESULTS_TEST_CHILD", &path)
+            .stdout(std::process::Stdio::null())
+            .spawn()
+            .unwrap();
+        random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        std::thread::sleep(std::time::Duration::from_micros(u64::from(random >> 15)));
+        child.kill().unwrap();
+        match child.wait().unwrap().code() {
+            None => done += 1,
+            // It came to its end before, without a complaint.
+            code => assert_eq!(code, Some(0)),
+        }
+        if unfinished(&path).exists() {
+            let results = Results::open(unfinished(&path)).unwrap();
+            assert_rows(&results, results.time.len());
+        }
+        if path.exists() {
+            let results = Results::open(&path).unwrap();
+            assert!(results.complete);
+            assert_rows(&results, ROWS);
+        }
+    }
 }

@@ -42,6 +42,20 @@ impl Attitude {
         }
     }
 
+    /// From what [`Self::wxyz`] gave, bit for bit.
+    ///
+    /// # Errors
+    /// [`NotAQuaternion`] if its length is not one to 1e-9.
+    pub fn from_unit_wxyz(wxyz: [f64; 4]) -> Result<Self, NotAQuaternion> {
+        let [w, x, y, z] = wxyz;
+        let quaternion = Quaternion::new(w, x, y, z);
+        if (quaternion.norm() - 1.0).abs() < 1e-9 {
+            Ok(Self { body_to_global: UnitQuaternion::new_unchecked(quaternion) })
+        } else {
+            Err(NotAQuaternion { wxyz })
+        }
+    }
+
     /// From the matrix A of (18), which takes global to body components.
     ///
     /// # Errors

@@ -63,6 +63,9 @@
 //! Units are any consistent set; angles are radians. Nothing here panics: what cannot be computed
 //! is refused by an error that says what was found and how to mend it.
 
+#![forbid(unsafe_code)]
+#![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable))]
+
 mod attitude;
 mod elliptic;
 mod inertia;

@@ -95,7 +95,7 @@ pub struct Model {
     pub reference_points: [Vector3<f64>; 3],
     /// Which effects the scene calls for, and why.
     pub advice: Advice,
-    /// Why the model is known to be wrong, if it is: it does not start. Set it to `None` to see what it does.
+    /// Why the model is known to be wrong, if it is: it does not start unless the scene says `refuse = false`.
     pub refusal: Option<Refusal>,
     /// Where the time went.
     pub times: BuildTimes,
@@ -228,7 +228,7 @@ impl Model {
         control: StepControl,
         rows: Rows,
     ) -> Result<Simulation, StartError> {
-        if let Some(refusal) = self.refusal {
+        if let Some(refusal) = self.refusal.filter(|_| scene.effects.refuse) {
             return Err(refusal.into());
         }
         let initial = self.initial(scene);
@@ -430,6 +430,11 @@ fn refuse(scene: &Scene, key: &str, error: AssemblyError) -> SceneError {
 
 /// A mesh error, such as a group that is not there, at its place in the scene file.
 fn refuse_mesh(scene: &Scene, key: &str, error: &MeshError) -> BuildError {
+    if let MeshError::NoGroup { kind, group, present, .. } = error {
+        let cure = "use one of these, or name it in the geometry and mesh again";
+        let found = format!("the physical {kind} \"{group}\", which the mesh has not");
+        return scene.refuse(key, found, format!("one of {present:?}"), cure).into();
+    }
     scene
         .refuse(key, error.to_string(), "something that the mesh has", "name it in the geometry, and mesh again")
         .into()
@@ -437,11 +442,19 @@ fn refuse_mesh(scene: &Scene, key: &str, error: &MeshError) -> BuildError {
 
 fn too_many_modes(scene: &Scene, error: ModalError) -> BuildError {
     match error {
+        ModalError::TooManyModes { available: 0, .. } => scene
+            .refuse(
+                "constraints[0]",
+                "a support that holds every node of the body",
+                "a part of the body that is free to deform",
+                "hold fewer nodes, or set `flexible = 0` in [modes]",
+            )
+            .into(),
         ModalError::TooManyModes { requested, available } => scene
             .refuse(
                 "modes.flexible",
                 requested.to_string(),
-                format!("at most {available}: three modes for each node of the mesh, less the six rigid ones"),
+                format!("at most {available}: three modes for each node that nothing holds, less the rigid ones"),
                 "ask for fewer modes, or use a finer mesh",
             )
             .into(),

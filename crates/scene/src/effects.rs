@@ -39,6 +39,8 @@ pub struct Effects {
     pub rotation: Choice,
     /// Relative influence on the answer, between 0 and 1, below which `"auto"` leaves an effect out; default 1e-3.
     pub tolerance: f64,
+    /// Whether a model that is known to be wrong is refused, which is the default.
+    pub refuse: bool,
 }
 
 impl Default for Effects {
@@ -54,6 +56,7 @@ impl Default for Effects {
             translation: auto,
             rotation: auto,
             tolerance: 1e-3,
+            refuse: true,
         }
     }
 }

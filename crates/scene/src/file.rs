@@ -63,6 +63,7 @@ impl Scene {
         check.loads(&mut loads, &body, constraint.as_ref())?;
         check.effects(&effects, &modes, &initial, constraint.as_ref(), &loads)?;
         let time = check.time(&time)?;
+        check.effects_of_paper(&effects, time.method)?;
         let output = check.output(output, &time)?;
 
         Ok(Self {

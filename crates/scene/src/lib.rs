@@ -28,6 +28,9 @@
 //! A new kind of load is a new variant in `load`, of history in `history`, of constraint in `section` and
 //! `constraint`, a new scheme one in `section` and `scene`; its rules are in `check`.
 
+#![forbid(unsafe_code)]
+#![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable))]
+
 mod build;
 mod check;
 mod constraint;

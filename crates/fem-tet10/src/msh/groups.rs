@@ -8,6 +8,10 @@ use super::{Block, TRI6};
 use crate::error::MeshError;
 use crate::mesh::{KINDS, MeshParts, NodeGroup, SurfaceGroup};
 
+/// Entries of groups for a byte of the file, at most: a small file that has much in many groups would fill the memory.
+/// Numbers of four digits may be in twenty groups at once.
+const MOST_ENTRIES: usize = 4;
+
 /// The physical groups of a file.
 #[derive(Default)]
 pub(super) struct PhysicalGroups {
@@ -89,8 +93,27 @@ impl PhysicalGroups {
         Ok(())
     }
 
-    /// Fills the groups of surfaces, curves and points of `parts` with the elements of their entities.
-    pub(super) fn name_boundary(&self, parts: &mut MeshParts, blocks: &[Block]) -> Result<(), MeshError> {
+    /// Fills the groups of surfaces, curves and points of `parts` with the elements of their entities; `length` is that
+    /// of the file.
+    pub(super) fn name_boundary(
+        &self,
+        parts: &mut MeshParts,
+        blocks: &[Block],
+        length: usize,
+    ) -> Result<(), MeshError> {
+        let groups = |block: &Block| self.of_entity.get(&(block.dimension, block.entity)).map_or(0, Vec::len);
+        let numbers = |block: &Block| 1 + block.tags.len() + block.nodes.len();
+        let entries = blocks.iter().fold(0, |sum: usize, b| sum.saturating_add(groups(b).saturating_mul(numbers(b))));
+        if let (true, Some(most)) =
+            (entries > length.saturating_mul(MOST_ENTRIES), blocks.iter().max_by_key(|block| groups(block)))
+        {
+            return Err(MeshError::TooManyGroups {
+                source_name: parts.source.clone(),
+                kind: KINDS[most.dimension.min(2)],
+                entity: most.entity,
+                groups: groups(most),
+            });
+        }
         for dimension in 0..=2 {
             let blocks = || blocks.iter().filter(|block| block.dimension == dimension);
             let entities: Vec<i32> = blocks().map(|block| block.entity).collect();

@@ -142,6 +142,53 @@ fn pieces_are_counted_and_their_sizes_told() {
 }
 
 #[test]
+fn nodes_doubled_where_two_parts_meet_are_pieces() {
+    // The elements of one half of the cube get nodes of their own, at the same places: as from two volumes that were
+    // meshed without `Coherence`.
+    let error = refusal(
+        |m| {
+            let doubled: Vec<usize> = (0..m.elements.len()).filter(|e| e % 2 == 1).collect();
+            for e in doubled {
+                for a in 0..10 {
+                    let (old, new) = (m.elements[e][a], m.elements[e][a] + 1000);
+                    if !m.node_tags.contains(&new) {
+                        let position = m.positions[node(m, old)];
+                        m.node_tags.push(new);
+                        m.positions.push(position);
+                    }
+                    m.elements[e][a] = new;
+                }
+            }
+            let used: std::collections::HashSet<u64> = m.elements.iter().flatten().copied().collect();
+            let kept: Vec<usize> = (0..m.node_tags.len()).filter(|n| used.contains(&m.node_tags[*n])).collect();
+            m.positions = kept.iter().map(|n| m.positions[*n]).collect();
+            m.node_tags = kept.iter().map(|n| m.node_tags[*n]).collect();
+            m.surfaces.clear();
+            m.node_groups.clear();
+        },
+        &["pieces that share no node", "Coherence"],
+    );
+    let MeshError::Pieces { sizes, .. } = error else { panic!("{error:?}") };
+    assert_eq!(sizes.iter().sum::<usize>(), 24);
+}
+
+#[test]
+fn a_thousand_pieces_are_no_long_message() {
+    let one = single([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
+    let mut many = MeshParts { source: "many".into(), regions: vec![vec![]], ..MeshParts::default() };
+    for k in 0..1000_u64 {
+        many.node_tags.extend(one.node_tags.iter().map(|tag| tag + 10 * k));
+        many.positions.extend(one.positions.iter().map(|[x, y, z]| [x + 2.0 * k as f64, *y, *z]));
+        many.elements.push(one.elements[0].map(|tag| tag + 10 * k));
+        many.element_tags.push(k + 1);
+        many.element_regions.push(0);
+    }
+    let message = Mesh::new(many).unwrap_err().to_string();
+    assert!(message.contains("falls into 1000 pieces") && message.contains("and 990 more"), "{message}");
+    assert!(message.len() < 500, "{message}");
+}
+
+#[test]
 fn unknown_nodes_and_tags_given_twice_are_told() {
     refusal(|m| m.elements[2][9] = 12_345, &["element 3 uses node 12345", "save the mesh again"]);
     refusal(|m| m.node_tags[4] = m.node_tags[9], &["node tag", "is given twice", "RenumberMeshNodes"]);

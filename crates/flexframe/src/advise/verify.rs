@@ -12,6 +12,11 @@ use crate::run::{RunError, RunFailure};
 /// Times at which motions are compared.
 const COMPARED: f64 = 500.0;
 
+/// An attitude that turns by less, rad, does not turn: what rounding may do.
+const LEAST_TURN: f64 = 1e-6;
+/// What the rounding of an attitude comes to, rad.
+const ROUNDING: f64 = 1e-14;
+
 /// The scene as it is.
 pub(super) struct Base<'a> {
     scene: &'a Scene,
@@ -21,14 +26,18 @@ pub(super) struct Base<'a> {
 
 impl<'a> Base<'a> {
     pub(super) fn new(scene: &'a Scene, model: &'a Model) -> Result<Self, RunError> {
-        let motion = follow(scene, model).map_err(|failure| RunError::Verify { scene: scene.path.clone(), failure })?;
-        Ok(Self { scene, model, motion })
+        let mut base = Self { scene, model, motion: Vec::new() };
+        // Settled as the others are, so that nothing but the switch is between them.
+        let settled = base.settled(None);
+        base.motion = follow(&settled, &Model::build(&settled, |_| ())?)
+            .map_err(|failure| RunError::Verify { scene: scene.path.clone(), failure: Box::new(failure) })?;
+        Ok(base)
     }
 
     /// The difference that switching an effect makes.
     pub(super) fn influence(&self, effect: Effect) -> Real {
         let Some(on) = is_on(self.scene, self.model, effect) else { return Real::Difference(0.0) };
-        let switched = self.switched(effect, !on);
+        let switched = self.settled(Some((effect, !on)));
         let model = match Model::build(&switched, |_| ()) {
             Ok(model) => model,
             Err(error) => return Real::Fails(error.to_string()),
@@ -39,16 +48,18 @@ impl<'a> Base<'a> {
         }
     }
 
-    /// The scene with all effects as they were resolved, but for one.
-    fn switched(&self, effect: Effect, on: bool) -> Scene {
+    /// The scene with all effects as they were resolved, but for one that is switched.
+    fn settled(&self, switched: Option<(Effect, bool)>) -> Scene {
         let mut scene = self.scene.clone();
         let natural = self.model.body.flexible() - self.model.static_shapes();
-        let most = scene.modes.flexible.most();
-        let count = if effect == Effect::Flexibility && on { most } else { natural };
+        let count = if switched == Some((Effect::Flexibility, true)) { scene.modes.flexible.most() } else { natural };
         scene.modes.flexible = Flexible::Count(count);
-        let choose = |of: Effect| {
-            let now = is_on(self.scene, self.model, of).unwrap_or(false);
-            if (of == effect && on) || (of != effect && now) { Choice::On } else { Choice::Off }
+        let choose = |effect: Effect| {
+            let on = match switched {
+                Some((of, on)) if of == effect => on,
+                _ => is_on(self.scene, self.model, effect).unwrap_or(false),
+            };
+            if on { Choice::On } else { Choice::Off }
         };
         scene.effects.flexibility = choose(Effect::Flexibility);
         scene.effects.damping = choose(Effect::Damping);
@@ -86,7 +97,7 @@ impl<'a> Base<'a> {
                 relative(norm(&(0..count).map(|k| at(x, k) - at(y, k)).collect::<Vec<_>>()), deformation)
             };
             let moved: Vector3<f64> = x.position_global - y.position_global;
-            bent.max(if angle > 1e-9 { relative(turned(x, y), angle) } else { 0.0 })
+            bent.max(if angle > LEAST_TURN { relative((turned(x, y) - ROUNDING).max(0.0), angle) } else { 0.0 })
                 .max(relative(moved.norm(), travelled))
         });
         let apart = apart.fold(0.0, |most: f64, x| if x.is_nan() { f64::INFINITY } else { most.max(x) });

@@ -11,6 +11,10 @@ use crate::error::SetupError;
 /// Functions of expressions, for messages.
 pub(crate) const FUNCTIONS: &str = "sin, cos, tan, asin, acos, atan, atan2, sinh, cosh, tanh, exp, ln, log2, log10, sqrt, cbrt, abs, sign, min, max, hypot, floor, ceil, round, trunc, fract";
 
+/// The longest formula, in bytes. It is read and evaluated by recursion, whose depth is at most this: with a hundred
+/// thousand parentheses the stack would overflow, which ends the program.
+const LONGEST: usize = 1000;
+
 /// A formula in t, one smooth law between the corners named with it.
 ///
 /// Operators are `+ - * / % ^` as in mathematics: `-t^2` is −(t²), and a power of a power needs parentheses. `2 t` is a
@@ -30,13 +34,16 @@ impl Expression {
     ///
     /// # Errors
     ///
-    /// A text that is no formula in t, with the place; a corner that is not finite.
+    /// A text that is no formula in t, with the place; one longer than 1000 bytes; a corner that is not finite.
     pub fn new(text: &str, mut corners: Vec<f64>) -> Result<Self, SetupError> {
         if let Some(found) = corners.iter().copied().find(|t| !t.is_finite()) {
             return Err(SetupError::Value { what: "a corner of an expression", found, expected: "a finite number" });
         }
         corners.sort_by(f64::total_cmp);
         corners.dedup();
+        if text.len() > LONGEST {
+            return Err(SetupError::LongExpression { found: text.len(), most: LONGEST });
+        }
         // The parser keeps slices of what it reads: a refused text must not be kept, so it is read twice.
         law(text)?;
         let text = kept(text);

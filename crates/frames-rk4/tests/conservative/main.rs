@@ -7,6 +7,7 @@
 mod common;
 
 mod balance;
+mod checkpoint;
 mod control;
 mod dalembert;
 mod limits;

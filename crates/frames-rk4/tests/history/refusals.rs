@@ -98,6 +98,73 @@ fn formulas_that_are_none_with_the_place() {
     assert!(matches!(Expression::new("t", vec![0.0, f64::NAN]), Err(SetupError::Value { .. })));
 }
 
+/// Formulas as deep as they may be, in a thread with little stack, and longer ones: read by recursion, these would
+/// overflow the stack, and the program would be gone without a word.
+#[test]
+fn deep_and_long_formulas() {
+    let formulas = |n: usize| {
+        [
+            "(".repeat(n),
+            "-".repeat(n - 1) + "t",
+            "(".repeat(n / 2 - 1) + "t" + &")".repeat(n / 2 - 1),
+            "sin(".repeat(n / 5 - 1) + "t" + &")".repeat(n / 5 - 1),
+            "t".to_owned() + &"+t".repeat(n / 2 - 1),
+            "t".to_owned() + &"*-t".repeat(n / 3 - 1),
+            format!("max(t{})", ",t".repeat(n / 2 - 4)),
+            "1".repeat(n),
+        ]
+    };
+    let all = move || {
+        for text in formulas(1000) {
+            match Expression::new(&text, vec![]) {
+                Ok(expression) => assert!(!History::Expression(expression).at(0.5, 0.5).is_nan(), "{text}"),
+                Err(error) => assert!(matches!(error, SetupError::Expression { .. }), "{error}"),
+            }
+        }
+    };
+    std::thread::Builder::new().stack_size(1 << 20).spawn(all).unwrap().join().unwrap();
+    for text in formulas(1020).into_iter().chain(formulas(100_000)) {
+        let error = Expression::new(&text, vec![]).unwrap_err();
+        assert!(matches!(error, SetupError::LongExpression { most: 1000, .. }), "{error}");
+        assert!(error.to_string().contains("longer than 1000; write it shorter"), "{error}");
+    }
+}
+
+/// Whatever the text, the answer is an error or a formula that can be evaluated.
+#[test]
+fn spoiled_formulas() {
+    const PIECES: [&str; 31] = [
+        "t", "(", ")", "+", "-", "*", "/", "%", "^", "!", ",", " ", ".", "1", "e", "pi", "1e", "_", "'", "sin", "max(",
+        "atan2(", "hypot(", "log(", "1e999", "0", "é", "\0", "\n", "9e-9", "min()",
+    ];
+    let (mut state, mut taken) = (1_u64, 0);
+    // Knuth's MMIX linear congruential generator.
+    let mut below = |n: usize| {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) as usize % n
+    };
+    let good = ["sin(2*pi*50*t)*exp(-t/0.02)", "-t^2 + (t^2)^3 - 2 t % 3!", "atan2(t,1)+hypot(t,2)*max(0,min(1,t))"];
+    for round in 0..20_000 {
+        let mut text = if round % 2 == 0 { String::new() } else { good[below(good.len())].to_owned() };
+        for _ in 0..1 + below(8) {
+            let at = (0..=text.len()).rev().find(|at| *at <= below(text.len() + 1) && text.is_char_boundary(*at));
+            text.insert_str(at.unwrap_or(0), PIECES[below(PIECES.len())]);
+        }
+        match Expression::new(&text, vec![0.5]) {
+            Ok(expression) => {
+                taken += 1;
+                let history = History::Expression(expression);
+                for time in [-1.0, 0.0, 0.5, 1e300] {
+                    let _ = (history.at(time, time), history.rate(time, time, 1.0));
+                }
+            }
+            Err(error) => assert!(error.to_string().len() < 1000, "{error}"),
+        }
+    }
+    // Measured: 1134 of 20 000.
+    assert!((100..19_900).contains(&taken), "{taken} taken");
+}
+
 #[test]
 fn an_expression_that_is_no_number_somewhere() {
     let cases = [("1/t", 0.0, f64::INFINITY), ("0/t", 0.0, f64::NAN), ("sqrt(0.5 - t)", 0.5, f64::NAN)];

@@ -96,3 +96,36 @@ fn a_driven_slide_is_a_base_acceleration() {
         assert!((a - b).abs() < 1e-9, "{a} {b}");
     }
 }
+
+#[test]
+fn what_is_driven_moves_whatever_is_off() {
+    let body = clamped();
+    for motion in motions() {
+        let mut run = Run::new(&body, 1.0);
+        run.physics.drive = Some(drive(motion));
+        let [_, expected] = run.ends(EXPONENTIAL, 1e-2);
+        run.physics.effects.translation = false;
+        run.physics.effects.rotation = false;
+        let [_, last] = run.ends(EXPONENTIAL, 1e-2);
+        assert_eq!(last.modal_displacement, expected.modal_displacement);
+        assert_eq!(last.position_global, expected.position_global);
+    }
+}
+
+#[test]
+fn a_jump_of_the_driven_speed_does_its_work_at_once() {
+    for motion in motions() {
+        let body = clamped();
+        let mut run = Run::new(&body, 3.0);
+        run.physics.drive = Some(Drive { history: History::Step { at: 1.25 }, ..drive(motion) });
+        let gaps = [0.02, 0.01].map(|step| run.energy_gap(EXPONENTIAL, step));
+        // Measured: 2.3e-9 (turn), 7.6e-9 (slide), and 15 times as much at twice the step.
+        assert!(gaps[1] < 1e-6 && gaps[0] > 8.0 * gaps[1], "{motion:?}: {gaps:?}");
+        // The row of the jump itself has what it did.
+        let mut rows = run.start(EXPONENTIAL, StepControl::Fixed(1e-2), Rows::Interval(1.25));
+        let mut start = rows.observation();
+        rows.observe(&mut start).unwrap();
+        let jump = rows.next().unwrap().unwrap();
+        assert!((jump.energy_balance() - start.energy_balance()).abs() < 1e-6 * jump.energy(), "{motion:?}");
+    }
+}

@@ -2,6 +2,7 @@
 
 use faer::Mat;
 use modal::{Modes, RigidMotion, Solver, Support};
+use nalgebra::Vector3;
 
 use crate::bodies::Body;
 use crate::statics::{Bar, work};
@@ -101,5 +102,22 @@ fn answers_that_add_nothing_are_left_out() {
         let same = solver.with_static_shapes(modes.clone(), nothing.as_ref()).unwrap();
         assert_eq!(same.eigenvalues, modes.eigenvalues);
         assert_eq!(same.shapes, modes.shapes);
+    }
+}
+
+/// Gravity on a body that is free to fall is balanced by the fall: no answer, and so no shape.
+#[test]
+fn what_falls_is_not_strained() {
+    let body = body();
+    let down = Vector3::y();
+    for (support, _) in supports(&body.positions) {
+        let solver = body.held(&support);
+        let nodal = solver.nodal_mass().row_sums();
+        let gravity = Mat::from_fn(3 * nodal.len(), 1, |i, _| nodal[i / 3] * down[i % 3]);
+        let answer = solver.static_response(gravity.as_ref()).unwrap();
+        let modes = solver.with_static_shapes(solver.modes(3, |_| ()).unwrap(), answer.as_ref()).unwrap();
+        let falls =
+            matches!(support.motion, RigidMotion::Free) || support.motion == RigidMotion::Slider { direction: down };
+        assert_eq!((answer.norm_max() == 0.0, modes.shapes.ncols()), (falls, 4 - usize::from(falls)), "{support:?}");
     }
 }

@@ -11,6 +11,11 @@ pub(super) fn history(scene: &Scene, key: &str, history: &history::History) -> R
     use frames_rk4::History as To;
     use history::History as From;
     let refused = |error: SetupError| -> BuildError {
+        if let SetupError::HistoryNotFinite { time, found } = error {
+            let found = format!("a factor of {found} at time {time:.9}");
+            let cure = "write it so that it has a value at all times, e.g. without a division by zero";
+            return scene.refuse(key, found, "finite numbers through the whole run", cure).into();
+        }
         scene.refuse(key, error.to_string(), "a history that can be evaluated", "correct it").into()
     };
     let made = match history {

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use advice::{Advice, Case, Effect, advise, limits, screen};
+use advice::{Advice, Case, Effect, advise, buckling, limits, screen};
 use faer::{Mat, MatRef};
 use fem_tet10::{Location, Matrices, Mesh, reduced_geometric_stiffness};
 use frames_rk4::{Drive, Initial, Load, Physics, PointShapes};
@@ -15,7 +15,7 @@ use super::{
     BuildError, BuildProgress, BuildTimes, Meshed, Model, Size, damping_ratios, initial, materials, matrices,
     output_points, physics, read_mesh, refuse, step, timed, too_many_modes, truncated_modes, well_spread,
 };
-use crate::effects::Choice;
+use crate::effects::{Choice, Effects};
 use crate::error::SceneError;
 use crate::modes::Flexible;
 use crate::scene::{Frame, MeshedBody, Method, Scene};
@@ -40,10 +40,10 @@ pub(super) fn build(
         solver.modes(requested, |p| progress(BuildProgress::Modes(p))).map_err(|error| too_many_modes(scene, error))
     })?;
     let loads = loads::on_mesh(scene, &mesh, &solver.nodal_mass().row_sums())?;
-    progress(BuildProgress::Statics);
     let parts =
         Parts { scene, body, mesh: &mesh, matrices: &matrices, solver: &solver, support: &support, loads, drive };
-    let Reduced { modes, body, physics, mut loads, size, damping_ratios, advice } = parts.reduce(modes, &mut times)?;
+    let Reduced { modes, body, physics, mut loads, size, damping_ratios, advice } =
+        parts.reduce(modes, &mut times, &mut progress)?;
 
     let started = Instant::now();
     let point = |key: String, at: [f64; 3]| -> Result<PointShapes, SceneError> {
@@ -76,7 +76,13 @@ pub(super) fn build(
         size,
     };
     let initial = model.initial(scene);
-    model.refusal = limits(&model.case(scene, &initial), &model.physics.effects)?;
+    model.refusal = match &model.physics.load_stiffness {
+        Some(load_stiffness) => buckling(&model.body, load_stiffness)?,
+        None => None,
+    };
+    if model.refusal.is_none() {
+        model.refusal = limits(&model.case(scene, &initial), &model.physics.effects)?;
+    }
     Ok(model)
 }
 
@@ -124,12 +130,16 @@ struct Statics {
 impl Parts<'_> {
     /// Decides what the scene leaves open, and makes the body that has it. What turns out not to be called for is not
     /// computed, but for what tells so.
-    fn reduce(&self, mut modes: Modes, times: &mut BuildTimes) -> Result<Reduced, BuildError> {
+    fn reduce(
+        &self,
+        mut modes: Modes,
+        times: &mut BuildTimes,
+        progress: &mut dyn FnMut(BuildProgress),
+    ) -> Result<Reduced, BuildError> {
         let scene = self.scene;
         let tolerance = scene.effects.tolerance;
         let mut draft = timed(&mut times.reduction, || self.draft(&modes))?;
 
-        let started = Instant::now();
         let stiffening = self.may_stiffen(&draft)?;
         let correction = match scene.modes.static_correction {
             _ if draft.body.flexible() == 0 => Choice::Off,
@@ -137,11 +147,19 @@ impl Parts<'_> {
             Choice::Auto if scene.time.method != Method::Exponential => Choice::Off,
             choice => choice,
         };
-        let statics = self.statics(&modes, &draft.body, stiffening, correction)?;
+        let of_loads = correction != Choice::Off && !self.loads.is_empty();
+        let spins = physics::may_spin(scene, self.support.motion, self.drive.as_ref());
+        let of_spin = stiffening || correction == Choice::On && spins;
+        let steady = self.steady_loads(&draft);
+        if of_loads || of_spin || !steady.is_empty() {
+            progress(BuildProgress::Statics);
+        }
+        let started = Instant::now();
+        let statics = self.statics(&modes, &draft.body, of_loads, of_spin)?;
         if stiffening {
             draft.body.stress_stiffness = self.stress_stiffness(&statics, &modes)?;
         }
-        let advice = advise(&self.case(&draft, Some(&statics)), tolerance)?;
+        let mut advice = advise(&self.case(&draft, Some(&statics)), tolerance)?;
         let keep = match (scene.modes.flexible, scene.effects.flexibility) {
             (Flexible::Auto { .. }, Choice::On) => advice.keep.max(1).min(draft.body.flexible()),
             (Flexible::Auto { .. }, Choice::Auto) => advice.keep,
@@ -165,6 +183,8 @@ impl Parts<'_> {
                 }
             }
             draft = self.draft(&modes)?;
+            // What the static shapes carry is to be expected, too.
+            advice.deflection = advise(&self.case(&draft, None), tolerance)?.deflection;
             if stiffening {
                 draft.body.stress_stiffness = self.stress_stiffness(&statics, &modes)?;
             }
@@ -173,8 +193,10 @@ impl Parts<'_> {
         if !effects.geometric_stiffening {
             draft.body.stress_stiffness = None;
         }
-        let load_stiffness = self.load_stiffness(&modes)?;
-        times.statics += started.elapsed();
+        let load_stiffness = self.load_stiffness(&steady, &modes, &draft, &mut advice)?;
+        if of_loads || of_spin || !steady.is_empty() {
+            times.statics = started.elapsed();
+        }
 
         let Draft { body, loads, size, mut damping_ratios, .. } = draft;
         if scene.effects.damping == Choice::Auto && !physics::of_paper(scene) && !advice.is_on(Effect::Damping) {
@@ -235,34 +257,23 @@ impl Parts<'_> {
         })
     }
 
-    fn statics(
-        &self,
-        modes: &Modes,
-        body: &ReducedBody,
-        stiffening: bool,
-        correction: Choice,
-    ) -> Result<Statics, BuildError> {
-        let of_loads = if correction == Choice::Off || self.loads.is_empty() {
-            None
-        } else {
+    fn statics(&self, modes: &Modes, body: &ReducedBody, of_loads: bool, of_spin: bool) -> Result<Statics, BuildError> {
+        let to_loads = || -> Result<_, BuildError> {
             let mut forces = Mat::zeros(3 * self.mesh.positions().len(), self.loads.len());
             for (i, load) in self.loads.iter().enumerate() {
                 load.add_nodal_forces(forces.as_mut().col_mut(i));
             }
             let answers = self.solver.static_response(forces.as_ref())?;
             let work = forces.col_iter().zip(answers.col_iter()).map(|(f, u)| f.transpose() * u).collect();
-            Some((answers, work))
+            Ok((answers, work))
         };
-        let spins = physics::may_spin(self.scene, self.support.motion, self.drive.as_ref());
-        let of_spin = if stiffening || correction == Choice::On && spins {
+        let to_spin = || -> Result<_, BuildError> {
             let fields = centrifugal_fields(self.solver.nodal_mass(), self.mesh.positions(), &body.origin);
             let answers = self.solver.static_response(fields.as_ref())?;
             let remainders = self.remainders(modes, answers.as_ref());
-            Some((answers, remainders))
-        } else {
-            None
+            Ok((answers, remainders))
         };
-        Ok(Statics { of_loads, of_spin })
+        Ok(Statics { of_loads: of_loads.then(to_loads).transpose()?, of_spin: of_spin.then(to_spin).transpose()? })
     }
 
     /// √(uᵀMu − Σ(Φ_kᵀMu)²) of each answer u.
@@ -283,17 +294,55 @@ impl Parts<'_> {
         Ok(stiffness.try_into().ok())
     }
 
-    /// Stress stiffness of the loads that stay as they are, in the modes.
-    fn load_stiffness(&self, modes: &Modes) -> Result<Option<Mat<f64>>, BuildError> {
+    /// The loads whose stress may stiffen the body: those that stay as they are.
+    fn steady_loads(&self, draft: &Draft) -> Vec<&MeshLoad> {
         let steady = |load: &&MeshLoad| physics::stiffens(self.scene, self.support.motion, self.drive.as_ref(), load);
-        let mut steady = self.loads.iter().filter(steady).peekable();
-        if modes.shapes.ncols() == 0 || steady.peek().is_none() {
+        self.loads.iter().filter(steady).filter(|_| draft.body.flexible() > 0).collect()
+    }
+
+    /// Stress stiffness of steady loads in the modes; none where it may be left out, which `advice` is told.
+    fn load_stiffness(
+        &self,
+        steady: &[&MeshLoad],
+        modes: &Modes,
+        draft: &Draft,
+        advice: &mut Advice,
+    ) -> Result<Option<Mat<f64>>, BuildError> {
+        if steady.is_empty() || modes.shapes.ncols() == 0 {
             return Ok(None);
         }
         let mut force = Mat::zeros(3 * self.mesh.positions().len(), 1);
-        steady.for_each(|load| load.add_nodal_forces(force.as_mut().col_mut(0)));
+        steady.iter().for_each(|load| load.add_nodal_forces(force.as_mut().col_mut(0)));
         let answer = self.solver.static_response(force.as_ref())?;
+        // Gravity stresses no body that falls.
+        if answer.norm_max() == 0.0 {
+            return Ok(None);
+        }
         let shapes = modes.shapes.as_ref();
-        Ok(reduced_geometric_stiffness(self.mesh, &materials(self.body), answer.as_ref(), shapes)?.pop())
+        let stiffness = reduced_geometric_stiffness(self.mesh, &materials(self.body), answer.as_ref(), shapes)?.pop();
+        let (value, influence) = stiffness.as_ref().map_or((0.0, 0.0), |k| steady_stiffening(k, draft, self.scene));
+        let Effects { geometric_stiffening: choice, tolerance, .. } = self.scene.effects;
+        let row = advice.rows.iter_mut().find(|row| row.effect == Effect::GeometricStiffening);
+        if let Some(row) = row.filter(|row| row.influence <= influence) {
+            let shift = 100.0 * 0.5 * value;
+            row.why = format!("The stress of steady loads moves the frequency of a mode by up to {shift:.2e} %.");
+            (row.value, row.influence, row.on) = (value, influence, influence >= tolerance);
+        }
+        Ok(stiffness.filter(|_| choice == Choice::On || influence >= tolerance))
     }
+}
+
+/// Largest |K_kl|/(ω_k ω_l), and its influence: the phase that a mode is out by in the end of the time that it rings.
+fn steady_stiffening(stiffness: &Mat<f64>, draft: &Draft, scene: &Scene) -> (f64, f64) {
+    let omega = &draft.body.circular_frequencies;
+    let (mut value, mut influence) = (0.0_f64, 0.0_f64);
+    for k in 0..omega.len() {
+        let rings = scene.time.end.min(1.0 / (draft.damping_ratios[k] * omega[k]));
+        for l in 0..omega.len() {
+            let ratio = stiffness[(k, l)].abs() / (omega[k] * omega[l]);
+            value = value.max(ratio);
+            influence = influence.max(ratio * (0.5 * omega[k].min(omega[l]) * rings).max(1.0));
+        }
+    }
+    (value, influence.min(1.0))
 }

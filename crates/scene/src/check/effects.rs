@@ -7,7 +7,7 @@ use crate::effects::{Choice, Effects};
 use crate::error::SceneError;
 use crate::load::Load;
 use crate::modes::{Flexible, Modes};
-use crate::scene::Initial;
+use crate::scene::{Initial, Method};
 
 impl Check<'_> {
     pub fn effects(
@@ -52,6 +52,26 @@ impl Check<'_> {
             "an initial `angular_velocity`",
         )?;
         self.not_off("translation", effects.translation, initial.velocity != [0.0; 3], "an initial `velocity`")
+    }
+
+    /// The paper's formulation has the effects that it has.
+    pub fn effects_of_paper(&self, effects: &Effects, method: Method) -> Result<(), SceneError> {
+        if !matches!(method, Method::Paper | Method::PaperRkmk4) {
+            return Ok(());
+        }
+        let paper = "the paper's formulation";
+        let stiffening = effects.geometric_stiffening;
+        self.not_on("geometric_stiffening", stiffening, true, paper, "set `formulation = \"conservative\"`")?;
+        let &Effects { deformed_inertia, coriolis, translation, rotation, .. } = effects;
+        for (name, choice) in [
+            ("deformed_inertia", deformed_inertia),
+            ("coriolis", coriolis),
+            ("translation", translation),
+            ("rotation", rotation),
+        ] {
+            self.not_off(name, choice, true, paper)?;
+        }
+        Ok(())
     }
 
     /// The effects that need a body that deforms.

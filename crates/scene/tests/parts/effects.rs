@@ -40,6 +40,7 @@ fn each_alone() {
         }
     }
     assert_eq!(crate::with("[initial]", "[[loads]]", "[effects]\ntolerance = 0.01").effects.tolerance, 0.01);
+    assert!(!crate::with("[initial]", "[[loads]]", "[effects]\nrefuse = false").effects.refuse);
 }
 
 #[test]
@@ -100,5 +101,22 @@ fn what_is_there_by_force() {
     refused(&initial("velocity = [0, 0, 1]"), "translation = false", &["with an initial `velocity`"]);
     for list in ["modal_displacement = [0, 1]", "modal_velocity = [1]"] {
         refused(&initial(list), "flexibility = false", &["with an initial modal displacement or velocity"]);
+    }
+}
+
+#[test]
+fn the_paper_s_formulation_has_the_effects_that_it_has() {
+    let of_paper = crate::common::EXAMPLE
+        .replace("formulation = \"conservative\"", "formulation = \"paper\"")
+        .replace("scheme = \"exponential\"", "scheme = \"paper\"");
+    let parse = |line: &str| {
+        scene::Scene::parse(&of_paper.replace("[initial]", &format!("[effects]\n{line}\n[initial]")), "dir/plate.toml")
+    };
+    for line in ["coriolis = false", "deformed_inertia = false", "rotation = false", "geometric_stiffening = true"] {
+        let message = parse(line).unwrap_err().to_string();
+        assert!(message.contains(&format!("`{line}` with the paper's formulation")), "{message}");
+    }
+    for line in ["coriolis = true", "geometric_stiffening = false", "damping = false", "flexibility = false"] {
+        assert!(parse(line).is_ok(), "{line}");
     }
 }

@@ -1,0 +1,77 @@
+//! `flexframe advise`: what it calls negligible is, on scenes of each kind.
+
+use flexframe::advise::{AdviseReport, Real, advise};
+use flexframe::scene::{Choice, Scene};
+
+fn example(name: &str) -> Scene {
+    Scene::read(format!("{}/../../examples/{name}.toml", env!("CARGO_MANIFEST_DIR"))).unwrap()
+}
+
+/// Advice on a scene, verified; nothing that is called negligible may turn out not to be.
+fn verified(scene: &Scene) -> AdviseReport {
+    let report = advise(scene, true, |_| ()).unwrap();
+    for row in &report.rows {
+        let name = format!("{}: {}", report.title, row.effect);
+        match &row.real {
+            Some(Real::Difference(real)) => {
+                assert!(row.advised || *real < report.tolerance, "{name}: estimated {}, real {real}", row.influence);
+            }
+            // Without stiffening a fast spin is refused.
+            Some(Real::Fails(why)) => {
+                assert!(row.effect == "geometric_stiffening" && why.contains("definiteness"), "{name}: {why}");
+            }
+            None => {}
+        }
+    }
+    report
+}
+
+fn real(report: &AdviseReport, effect: &str) -> f64 {
+    match report.rows.iter().find(|row| row.effect == effect).and_then(|row| row.real.clone()) {
+        Some(Real::Difference(real)) => real,
+        other => panic!("{effect}: {other:?}"),
+    }
+}
+
+#[test]
+fn of_a_free_body_that_spins_and_is_struck() {
+    let report = verified(&example("ring"));
+    assert!(real(&report, "coriolis") > 1e-3 && real(&report, "damping") > 0.1);
+    // What turns it is gone without rotation.
+    assert!(real(&report, "rotation") >= 1.0);
+}
+
+#[test]
+fn of_a_driven_body() {
+    let mut scene = example("wu_haug");
+    scene.time.end = 4.0;
+    let report = verified(&scene);
+    let rows = |effect: &str| report.rows.iter().find(|row| row.effect == effect).unwrap();
+    assert!(real(&report, "geometric_stiffening") > 1e-3 && rows("geometric_stiffening").on == Some(true));
+    // The drive cannot be switched.
+    assert!(rows("rotation").on.is_none() && rows("translation").on == Some(false));
+}
+
+#[test]
+fn of_a_held_body_under_gravity() {
+    let mut scene = example("bar/pendulum");
+    scene.time.end = 0.2;
+    scene.effects.flexibility = Choice::Auto;
+    assert!(real(&verified(&scene), "gravity") >= 1.0);
+}
+
+/// (Ω/ω₁)² is 0.4 %, but the plate's heavy tips put it under tension.
+#[test]
+fn the_plate_at_10_rad_s_is_stiffened_by_three_per_cent() {
+    let mut scene = example("accuracy/tumbling");
+    scene.initial.angular_velocity = [0.0, 10.0, 0.0];
+    scene.initial.modal_velocity = vec![1.0];
+    scene.effects.geometric_stiffening = Choice::Auto;
+    let report = advise(&scene, false, |_| ()).unwrap();
+    let row = report.rows.iter().find(|row| row.effect == "geometric_stiffening").unwrap();
+    let ratio = (10.0 / (std::f64::consts::TAU * report.modes[0].frequency)).powi(2);
+    let shift = (1.0 + row.value).sqrt() - 1.0;
+    // Measured: 0.42 % and 3.5 %.
+    assert!((ratio - 0.0042).abs() < 1e-4 && (0.03..0.04).contains(&shift), "{ratio} {shift}");
+    assert!(row.advised && row.on == Some(true), "{}", row.why);
+}

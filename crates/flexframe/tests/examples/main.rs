@@ -1,0 +1,35 @@
+//! Every scene of `examples/` that shows a number, run through the library, against that number.
+
+mod beams;
+mod effects;
+mod energy;
+mod nafems;
+mod pendulum;
+mod spin;
+mod top;
+
+use std::path::{Path, PathBuf};
+
+use flexframe::frames_rk4::Observation;
+use flexframe::scene::{Model, Scene};
+
+fn repository() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+/// The scene `examples/<name>.toml`.
+fn scene(name: &str) -> Scene {
+    Scene::read(repository().join("examples").join(name).with_extension("toml")).unwrap()
+}
+
+fn build(scene: &Scene) -> Model {
+    Model::build(scene, |_| ()).unwrap()
+}
+
+/// All rows of a scene's run, the first at t = 0.
+fn rows(model: &Model, scene: &Scene) -> Vec<Observation> {
+    let mut simulation = model.start(scene).unwrap();
+    let mut first = simulation.observation();
+    simulation.observe(&mut first).unwrap();
+    std::iter::once(first).chain(simulation.map(Result::unwrap)).collect()
+}

@@ -1,0 +1,266 @@
+//! What becomes of a run that is killed, stopped, crowded out or refused.
+//!
+//! `FLEXFRAME_KILLS` sets the number of kills.
+
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Output, Stdio};
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+use results::{Results, unfinished};
+use tempfile::TempDir;
+
+/// A scene that takes some seconds, and the folder that it is in.
+struct Scene {
+    folder: TempDir,
+    path: PathBuf,
+}
+
+impl Scene {
+    fn new(step: &str) -> Self {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").canonicalize().unwrap();
+        let text = std::fs::read_to_string(root.join("examples/ring.toml")).unwrap();
+        let text = text
+            .replace("../meshes", root.join("meshes").to_str().unwrap())
+            .replace("flexible = 6", "flexible = 2")
+            .replace("tolerance = 1e-6", &format!("step = {step}"));
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("long.toml");
+        std::fs::write(&path, text).unwrap();
+        Self { folder, path }
+    }
+
+    /// The results file in a folder of its own.
+    fn results(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name).join("long.h5")
+    }
+
+    fn run(&self, name: &str) -> Command {
+        let mut command = flexframe(&["run"]);
+        command.arg(&self.path).arg("-o").arg(self.folder.path().join(name));
+        command
+    }
+
+    fn resume(&self, name: &str) -> Command {
+        let mut command = flexframe(&["resume"]);
+        command.arg(self.results(name));
+        command
+    }
+
+    /// Starts a run and comes back when its unfinished file is there.
+    fn start(&self, command: Command, name: &str) -> Child {
+        let child = spawn(command);
+        let started = Instant::now();
+        while !unfinished(self.results(name)).exists() {
+            assert!(started.elapsed() < Duration::from_secs(60));
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        child
+    }
+}
+
+fn flexframe(arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_flexframe"));
+    command.args(arguments);
+    command
+}
+
+/// A child inherits the files that its parent has open, with HDF5's locks: none is started while a file is open.
+static OPEN: Mutex<()> = Mutex::new(());
+
+fn spawn(mut command: Command) -> Child {
+    let _none_open = OPEN.lock().unwrap_or_else(PoisonError::into_inner);
+    command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
+}
+
+fn open(path: impl AsRef<Path>) -> Results {
+    let _open = OPEN.lock().unwrap_or_else(PoisonError::into_inner);
+    Results::open(path).unwrap()
+}
+
+fn succeed(command: Command) {
+    let output = spawn(command).wait_with_output().unwrap();
+    assert!(output.status.success(), "{}", message(&output));
+}
+
+/// What is said on standard error by a command that is to fail.
+fn failure(command: Command) -> String {
+    let output = spawn(command).wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(1), "{}", message(&output));
+    assert!(output.stdout.is_empty());
+    message(&output)
+}
+
+fn message(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).unwrap()
+}
+
+fn assert_has(message: &str, words: &[&str]) {
+    for word in words {
+        assert!(message.contains(word), "{word} in: {message}");
+    }
+}
+
+/// Random numbers in 0 to 1, other ones on each run (SplitMix64).
+fn random() -> impl FnMut() -> f64 {
+    let mut state = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).unwrap().as_nanos() as u64;
+    move || {
+        state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let z = (state ^ (state >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+    }
+}
+
+#[test]
+fn a_run_that_is_killed_again_and_again_ends_in_the_same_file() {
+    let scene = Scene::new("3e-7");
+    succeed(scene.run("whole"));
+    let expected = std::fs::read(scene.results("whole")).unwrap();
+    let whole = open(scene.results("whole"));
+    let kills: usize = std::env::var("FLEXFRAME_KILLS").map_or(6, |count| count.parse().unwrap());
+    let part = unfinished(scene.results("killed"));
+    let mut random = random();
+    let (mut done, mut rounds, mut kept) = (0, 0, 0);
+    while done < kills {
+        // From the start of the process, so that reading, building and taking up are hit too.
+        let command = if part.exists() { scene.resume("killed") } else { scene.run("killed") };
+        let mut child = spawn(command);
+        std::thread::sleep(Duration::from_secs_f64(2.5 * random()));
+        child.kill().unwrap();
+        let output = child.wait_with_output().unwrap();
+        if output.status.success() {
+            assert!(std::fs::read(scene.results("killed")).unwrap() == expected);
+            rounds += 1;
+            continue;
+        }
+        assert_eq!(output.status.code(), None, "{}", message(&output));
+        done += 1;
+        if part.exists() {
+            let results = open(&part);
+            let rows = results.time.len();
+            assert!(!results.complete);
+            // Never less than before, and every row is that of the whole run.
+            assert!(rows >= kept || rounds > 0, "{rows} after {kept}");
+            kept = rows;
+            assert_eq!(results.time, whole.time[..rows]);
+            assert_eq!(results.attitude, whole.attitude[..rows]);
+            assert_eq!(results.angular_balance, whole.angular_balance[..rows]);
+            assert_eq!(results.points["struck"].acceleration, whole.points["struck"].acceleration[..rows]);
+        }
+        if scene.results("killed").exists() {
+            assert!(std::fs::read(scene.results("killed")).unwrap() == expected);
+        }
+    }
+    if part.exists() {
+        succeed(scene.resume("killed"));
+        assert!(std::fs::read(scene.results("killed")).unwrap() == expected);
+        assert!(!part.exists());
+    }
+    println!("{done} kills, {rounds} runs that came to their end between them");
+}
+
+#[test]
+fn control_c_stops_at_a_row_and_says_how_to_go_on() {
+    let scene = Scene::new("5e-7");
+    succeed(scene.run("whole"));
+    for signal in ["-INT", "-TERM"] {
+        let child = scene.start(scene.run(signal), signal);
+        std::thread::sleep(Duration::from_millis(200));
+        let mut kill = Command::new("kill");
+        kill.args([signal, &child.id().to_string()]);
+        succeed(kill);
+        let output = child.wait_with_output().unwrap();
+        assert_eq!(output.status.code(), Some(130), "{}", message(&output));
+        assert_has(&message(&output), &["stopped at time", "flexframe resume", "long.part.h5"]);
+        assert!(!scene.results(signal).exists());
+        assert!(open(unfinished(scene.results(signal))).time.len() > 1);
+        succeed(scene.resume(signal));
+        assert!(std::fs::read(scene.results(signal)).unwrap() == std::fs::read(scene.results("whole")).unwrap());
+    }
+    let again = scene.resume("-INT");
+    assert_has(&failure(again), &["complete", "nothing to resume"]);
+}
+
+#[test]
+fn what_is_there_is_not_lost_unasked() {
+    let scene = Scene::new("3e-7");
+    let first = scene.start(scene.run("out"), "out");
+    for command in [
+        scene.run("out"),
+        {
+            let mut c = scene.run("out");
+            c.arg("--overwrite");
+            c
+        },
+        scene.resume("out"),
+    ] {
+        assert_has(&failure(command), &["long.part.h5", "another run is writing this file"]);
+    }
+    let mut first = first;
+    first.kill().unwrap();
+    first.wait().unwrap();
+    assert_has(&failure(scene.run("out")), &["unfinished run", "flexframe resume", "--overwrite"]);
+    succeed(scene.resume("out"));
+    let whole = std::fs::read(scene.results("out")).unwrap();
+    // A complete file stays until the new one is complete.
+    let mut second = scene.start(scene.run("out"), "out");
+    assert!(std::fs::read(scene.results("out")).unwrap() == whole);
+    second.kill().unwrap();
+    second.wait().unwrap();
+    assert!(std::fs::read(scene.results("out")).unwrap() == whole);
+    // What is none of ours stays.
+    std::fs::create_dir(scene.folder.path().join("other")).unwrap();
+    std::fs::write(scene.results("other"), "a diary").unwrap();
+    assert_has(&failure(scene.run("other")), &["long.h5", "no results file of flexframe", "--overwrite"]);
+    assert_eq!(std::fs::read(scene.results("other")).unwrap(), b"a diary");
+    assert_has(&failure(scene.resume("nowhere")), &["no unfinished run", "long.part.h5"]);
+}
+
+#[test]
+fn a_run_goes_on_with_the_same_body_or_not_at_all() {
+    let scene = Scene::new("3e-7");
+    // Another copy of the mesh, which is changed while nobody looks.
+    let mesh = scene.folder.path().join("ring.msh");
+    let original = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../meshes/ring.msh").canonicalize().unwrap();
+    std::fs::copy(&original, &mesh).unwrap();
+    let text = std::fs::read_to_string(&scene.path).unwrap();
+    std::fs::write(&scene.path, text.replace(original.to_str().unwrap(), "ring.msh")).unwrap();
+    let mut child = scene.start(scene.run("out"), "out");
+    child.kill().unwrap();
+    child.wait().unwrap();
+    std::fs::copy(original.with_file_name("plate.msh"), &mesh).unwrap();
+    let words = failure(scene.resume("out"));
+    assert!(words.contains("no longer what it was") || words.contains("not on the body"), "{words}");
+    // The scene counts as it was, wherever the program is started.
+    std::fs::copy(&original, &mesh).unwrap();
+    std::fs::write(&scene.path, "nonsense").unwrap();
+    let mut resume = scene.resume("out");
+    resume.current_dir(std::env::temp_dir());
+    succeed(resume);
+}
+
+#[test]
+fn no_room_and_no_folder_are_said_plainly() {
+    let scene = Scene::new("2e-5");
+    // The shell's limit on the size of a file stands for a full disk; half of what the run needs.
+    let mut limited = Command::new("sh");
+    limited.args(["-c", "trap '' XFSZ; ulimit -f 1000; exec \"$@\"", "sh", env!("CARGO_BIN_EXE_flexframe"), "run"]);
+    limited.arg(&scene.path).arg("-o").arg(scene.folder.path().join("full"));
+    assert_has(&failure(limited), &["long.part.h5", "File too large", "make room"]);
+    // Nothing half-written is left.
+    assert_eq!(std::fs::read_dir(scene.folder.path().join("full")).unwrap().count(), 0);
+
+    std::fs::write(scene.folder.path().join("file"), "").unwrap();
+    assert_has(&failure(scene.run("file")), &["cannot make the output folder"]);
+
+    let locked = scene.folder.path().join("locked");
+    std::fs::create_dir(&locked).unwrap();
+    let mut permissions = std::fs::metadata(&locked).unwrap().permissions();
+    permissions.set_readonly(true);
+    std::fs::set_permissions(&locked, permissions).unwrap();
+    // The superuser writes everywhere.
+    if std::fs::write(locked.join("probe"), "").is_err() {
+        assert_has(&failure(scene.run("locked")), &["long.h5", "Permission denied", "choose a folder"]);
+    }
+}

@@ -1,0 +1,101 @@
+//! Where a results file and its unfinished forerunner are, and how they get there in one go.
+
+use crate::FileError;
+use std::fs::{File, TryLockError};
+use std::io;
+use std::path::{Path, PathBuf};
+use tempfile::TempPath;
+
+/// The ending of an unfinished file.
+const PART: &str = ".part.h5";
+
+/// A results file and its unfinished forerunner.
+#[derive(Debug, Clone)]
+pub(crate) struct Place {
+    pub path: PathBuf,
+    pub part: PathBuf,
+}
+
+impl Place {
+    /// By the name of either.
+    pub(crate) fn of(path: &Path) -> Self {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        match name.strip_suffix(PART) {
+            Some(stem) => Self { path: path.with_file_name(format!("{stem}.h5")), part: path.to_owned() },
+            None => {
+                let stem = name.strip_suffix(".h5").unwrap_or(&name);
+                Self { path: path.to_owned(), part: path.with_file_name(format!("{stem}{PART}")) }
+            }
+        }
+    }
+
+    /// Refuses to begin where something would be lost.
+    pub(crate) fn check(&self, overwrite: bool) -> Result<(), FileError> {
+        if self.part.exists() {
+            if is_busy(&self.part) {
+                return Err(FileError::Busy { path: self.part.clone() });
+            }
+            if !overwrite {
+                return Err(FileError::Unfinished { path: self.part.clone() });
+            }
+        }
+        if self.path.is_dir() || self.path.exists() && !overwrite && !is_results(&self.path) {
+            return Err(FileError::NotResults { path: self.path.clone() });
+        }
+        Ok(())
+    }
+
+    /// Refuses to go on where there is nothing to go on from.
+    pub(crate) fn check_resumable(&self) -> Result<(), FileError> {
+        if self.part.exists() {
+            return if is_busy(&self.part) { Err(FileError::Busy { path: self.part.clone() }) } else { Ok(()) };
+        }
+        if is_results(&self.path) {
+            return Err(FileError::Complete { path: self.path.clone() });
+        }
+        Err(FileError::NothingToResume { path: self.path.clone(), part: self.part.clone() })
+    }
+
+    /// A file of another name in the same folder, which is removed if it gets no other name.
+    pub(crate) fn temporary(&self) -> Result<TempPath, FileError> {
+        let folder = self.path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let mut builder = tempfile::Builder::new();
+        builder.prefix(".flexframe-").suffix(".h5");
+        #[cfg(unix)]
+        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666)); // less the user's mask
+        let file =
+            builder.tempfile_in(folder).map_err(|error| FileError::system(&self.path, "create the file", &error))?;
+        Ok(file.into_temp_path())
+    }
+
+    /// Makes a file the unfinished one; an older one is in the way unless it is to be replaced.
+    pub(crate) fn put_part(&self, file: TempPath, replace: bool) -> Result<(), FileError> {
+        let outcome = if replace { file.persist(&self.part) } else { file.persist_noclobber(&self.part) };
+        outcome.map_err(|failure| match failure.error.kind() {
+            // Another run was quicker.
+            io::ErrorKind::AlreadyExists => FileError::Busy { path: self.part.clone() },
+            _ => FileError::system(&self.part, "create the file", &failure.error),
+        })
+    }
+
+    /// Makes a file the results file, once it is safe on the disk.
+    pub(crate) fn put_results(&self, file: TempPath) -> Result<(), FileError> {
+        let failed = |error: &io::Error| FileError::system(&self.path, "write the file", error);
+        File::open(&file).and_then(|file| file.sync_all()).map_err(|error| failed(&error))?;
+        file.persist(&self.path).map_err(|failure| failed(&failure.error))
+    }
+
+    pub(crate) fn remove_part(&self) -> Result<(), FileError> {
+        std::fs::remove_file(&self.part).map_err(|error| FileError::system(&self.part, "remove the file", &error))
+    }
+}
+
+/// Whether another process writes the file: HDF5 locks what it has open.
+pub(crate) fn is_busy(path: &Path) -> bool {
+    File::open(path).is_ok_and(|file| matches!(file.try_lock(), Err(TryLockError::WouldBlock)))
+}
+
+/// Whether it is a file that a run may replace.
+fn is_results(path: &Path) -> bool {
+    hdf5::File::open(path).is_ok_and(|file| file.attr("complete").is_ok())
+}

@@ -1,0 +1,130 @@
+//! What is off is not computed.
+
+use std::time::Duration;
+
+use advice::{Effect, Refusal};
+use frames_rk4::ConservativeBody;
+
+use crate::{BENDING, BREADTH, BuildProgress, CLAMPED, LENGTH, Model, Scene, YOUNG, bar, build};
+
+const TIME: &str = "end = 1e-3\nstep = 1e-5";
+const SPIN: &str = "[initial]\nangular_velocity = [0.0, 0.0, 300.0]\n";
+
+/// Six modes and these effects.
+fn effects(which: &str, rest: &str) -> Scene {
+    bar("flexible = 6\nstatic_correction = false\ndamping_ratio = 0.01", &format!("[effects]\n{which}\n{rest}"), TIME)
+}
+
+/// All effects of a spin but one.
+fn without(off: &str) -> Model {
+    let all = ["deformed_inertia", "coriolis", "geometric_stiffening"];
+    let switched: Vec<String> = all.iter().map(|effect| format!("{effect} = {}", *effect != off)).collect();
+    build(&effects(&switched.join("\n"), SPIN))
+}
+
+/// The numbers that an evaluation of the rates goes through.
+fn entries(model: &Model) -> usize {
+    let loads = model.loads().to_vec();
+    ConservativeBody::new(&model.body, model.damping_ratios(), loads, &model.physics).unwrap().matrix_entries()
+}
+
+#[test]
+fn each_effect_that_is_off_leaves_its_matrices_out() {
+    let all = without("nothing");
+    assert!(all.body.stress_stiffness.is_some());
+    // Three G_i and six N_ij.
+    assert_eq!(entries(&all), 9 * 36);
+
+    let unstiffened = without("geometric_stiffening");
+    assert!(unstiffened.body.stress_stiffness.is_none() && unstiffened.physics.load_stiffness.is_none());
+    assert!(!unstiffened.physics.effects.geometric_stiffening);
+
+    assert_eq!(entries(&without("coriolis")), 6 * 36);
+    let stiff = without("deformed_inertia");
+    assert!(stiff.body.stress_stiffness.is_none());
+    assert_eq!(entries(&stiff), 3 * 36);
+    let pushed = "[[loads]]\nkind = \"force\"\nat = [200.0, 0.0, 0.0]\ndirection = [0.0, 0.0, 1.0]\namplitude = 9.0";
+    let straight = build(&effects("rotation = false", pushed));
+    assert!(straight.body.stress_stiffness.is_none());
+    assert_eq!(entries(&straight), 0);
+    assert_eq!(entries(&build(&effects("", CLAMPED))), 0);
+}
+
+/// The stress of a weight is nothing to a short bar; a strong pull is something.
+#[test]
+fn the_stress_of_steady_loads_counts_where_it_matters() {
+    let weight = "[[loads]]\nkind = \"gravity\"\ndirection = [1.0, 0.0, 0.0]\namplitude = 9810.0";
+    let pull = "[[loads]]\nkind = \"pressure\"\ngroup = \"tip\"\namplitude = -20.0";
+    let built = |on: &str, load: &str| build(&effects(on, &format!("{CLAMPED}{load}")));
+    assert!(built("", weight).physics.load_stiffness.is_none());
+    let pulled = built("", pull);
+    assert!(pulled.physics.load_stiffness.is_some() && entries(&pulled) == 36);
+    assert!(pulled.advice.is_on(Effect::GeometricStiffening));
+    assert!(built("geometric_stiffening = true", weight).physics.load_stiffness.is_some());
+    assert!(built("geometric_stiffening = false", pull).physics.load_stiffness.is_none());
+}
+
+/// Euler's load of a column that is clamped at one end, π² E I/4 L², presses on its tip.
+#[test]
+fn a_load_that_buckles_the_body_is_refused() {
+    let euler = (std::f64::consts::PI / LENGTH).powi(2) * YOUNG * BENDING / 4.0;
+    let pressed = |part: f64| {
+        let traction = part * euler / (BREADTH * BREADTH);
+        let load = format!(
+            "[[loads]]\nkind = \"traction\"\ngroup = \"tip\"\ndirection = [-1.0, 0.0, 0.0]\namplitude = {traction}"
+        );
+        build(&effects("", &format!("{CLAMPED}{load}"))).refusal
+    };
+    assert_eq!(pressed(0.97), None);
+    // The solid is a little stiffer than the beam. Measured: 1.0449 for 1.05.
+    let Some(Refusal::Buckled { factor }) = pressed(1.05) else { panic!("not refused") };
+    assert!((factor / 1.05 - 1.0).abs() < 0.03, "{factor}");
+    // A pull does not.
+    assert_eq!(pressed(-3.0), None);
+}
+
+#[test]
+fn a_body_that_does_not_deform_has_no_modes_and_asks_for_none() {
+    let mut asked = 0;
+    let scene = effects("flexibility = false", SPIN);
+    let model = Model::build(&scene, |progress| {
+        asked += usize::from(matches!(progress, BuildProgress::Modes(_)));
+    })
+    .unwrap();
+    assert_eq!((model.body.flexible(), model.damping_ratios().len(), entries(&model)), (0, 0, 0));
+    assert_eq!(asked, 0);
+    assert!(model.body.stress_stiffness.is_none() && model.physics.load_stiffness.is_none());
+}
+
+/// Without a spin, a load or a correction, nothing static is solved for.
+#[test]
+fn nothing_static_is_computed_where_nothing_asks_for_it() {
+    for (modes, rest) in [
+        ("flexible = 4", ""),
+        ("flexible = 4", CLAMPED),
+        (
+            "flexible = 4\nstatic_correction = false",
+            "[effects]\ngeometric_stiffening = false\n[initial]\nangular_velocity = [0.0, 0.0, 300.0]",
+        ),
+    ] {
+        let mut statics = 0;
+        let model = Model::build(&bar(modes, rest, TIME), |progress| {
+            statics += usize::from(progress == BuildProgress::Statics);
+        })
+        .unwrap();
+        assert_eq!(statics, 0, "{modes} {rest}");
+        assert_eq!(model.times.statics, Duration::ZERO);
+        assert!(model.body.stress_stiffness.is_none());
+    }
+    let mut statics = 0;
+    Model::build(&effects("", SPIN), |progress| statics += usize::from(progress == BuildProgress::Statics)).unwrap();
+    assert_eq!(statics, 1);
+}
+
+#[test]
+fn loads_of_gravity_that_are_off_are_not_there() {
+    let falls = "[[loads]]\nkind = \"gravity\"\ndirection = [0.0, 0.0, -1.0]\namplitude = 9810.0\n\
+                 [[loads]]\nkind = \"force\"\nat = [200.0, 0.0, 0.0]\ndirection = [0.0, 0.0, 1.0]\namplitude = 9.0";
+    assert_eq!(build(&effects("", &format!("{CLAMPED}{falls}"))).loads().len(), 2);
+    assert_eq!(build(&effects("gravity = false", &format!("{CLAMPED}{falls}"))).loads().len(), 1);
+}

@@ -1,0 +1,149 @@
+//! Every kind of support from a scene, and the paper's scheme on bodies that are held.
+
+use modal::RigidMotion;
+use nalgebra::Vector3;
+
+use crate::{Observation, Scene, bar, build, observations, refusal};
+
+const TIME: &str = "end = 0.02\nstep = 1e-5";
+
+const PINS: [&str; 2] = ["kind = \"pin\"\nat = [0.0, 0.0, 0.0]", "kind = \"pin\"\nat = [0.0, 0.0, 0.0]\nradius = 6.0"];
+const HINGES: [&str; 5] = [
+    "kind = \"hinge\"\npoints = [[0.0, -5.0, 0.0], [0.0, 5.0, 0.0]]",
+    "kind = \"hinge\"\nat = [0.0, 0.0, 0.0]\naxis = [0.0, 2.0, 0.0]",
+    "kind = \"hinge\"\nat = [0.0, 0.0, 0.0]\naxis = [0.0, 1.0, 0.0]\nradius = 6.0",
+    "kind = \"hinge\"\nat = [0.0, 0.0, 0.0]\naxis = [0.0, 1.0, 0.0]\nbox = [[0.0, -5.0, -5.0], [0.0, 5.0, 5.0]]",
+    "kind = \"hinge\"\nat = [0.0, 0.0, 0.0]\naxis = [0.0, 1.0, 0.0]\ngroup = \"root\"",
+];
+const CLAMPS: [&str; 3] = [
+    "kind = \"clamp\"\nat = [0.0, 0.0, 0.0]\nradius = 8.0",
+    "kind = \"clamp\"\nbox = [[0.0, -5.0, -5.0], [0.0, 5.0, 5.0]]",
+    "kind = \"clamp\"\ngroup = \"root\"",
+];
+const SLIDERS: [&str; 3] = [
+    "kind = \"slider\"\ndirection = [0.0, 0.0, 1.0]\nat = [0.0, 0.0, 0.0]\nradius = 8.0",
+    "kind = \"slider\"\ndirection = [0.0, 0.0, 1.0]\nbox = [[0.0, -5.0, -5.0], [0.0, 5.0, 5.0]]",
+    "kind = \"slider\"\ndirection = [0.0, 0.0, 1.0]\ngroup = \"root\"",
+];
+
+fn held(constraint: &str, rest: &str, time: &str) -> Scene {
+    bar("flexible = 4\nstatic_correction = false", &format!("{rest}\n[[constraints]]\n{constraint}"), time)
+}
+
+#[test]
+fn each_kind_leaves_its_rigid_motions() {
+    let count = |constraint: &str| build(&held(constraint, "", TIME)).body.motion;
+    assert_eq!(build(&bar("flexible = 4", "", TIME)).body.motion.count(), 6);
+    for pin in PINS {
+        assert_eq!(count(pin), RigidMotion::Pin { point: Vector3::zeros() });
+    }
+    for hinge in HINGES {
+        let RigidMotion::Hinge { point, axis } = count(hinge) else { panic!("{hinge}") };
+        assert_eq!((point.cross(&axis), axis), (Vector3::zeros(), Vector3::y()), "{hinge}");
+    }
+    for clamp in CLAMPS {
+        assert_eq!(count(clamp).count(), 0);
+    }
+    for slider in SLIDERS {
+        assert_eq!(count(slider), RigidMotion::Slider { direction: Vector3::z() });
+    }
+    for (kind, constraint) in [HINGES[4], SLIDERS[2]].into_iter().enumerate() {
+        let motion = "motion = { amplitude = 2.0, history = { kind = \"ramp\", duration = 0.01 } }";
+        let driven = build(&held(&format!("{constraint}\n{motion}"), "", TIME));
+        assert_eq!((kind, driven.body.motion.count()), (kind, 0));
+        assert!(driven.physics.drive.is_some());
+    }
+}
+
+#[test]
+fn a_part_of_the_body_that_is_not_there_is_refused_with_a_cure() {
+    for (constraint, words) in [
+        ("kind = \"pin\"\nat = [0.0, 0.0, 1.0]", "constraints[0].at"),
+        ("kind = \"pin\"\nat = [0.0, 0.0, 0.0]\nradius = 0.1", "constraints[0].radius"),
+        ("kind = \"hinge\"\nat = [0.0, 0.0, 1.3]\naxis = [0.0, 1.0, 0.0]", "constraints[0].axis"),
+        ("kind = \"hinge\"\npoints = [[0.0, -5.0, 0.0], [0.0, 5.0, 0.1]]", "constraints[0].points"),
+        ("kind = \"clamp\"\ngroup = \"roof\"", "one of"),
+        ("kind = \"clamp\"\ngroup = \"bar\"", "holds every node"),
+        ("kind = \"clamp\"\nbox = [[-9.0, -5.0, -5.0], [-1.0, 5.0, 5.0]]", "0 node(s)"),
+    ] {
+        let message = refusal(&held(constraint, "", TIME)).to_string();
+        assert!(message.contains("scene.toml:") && message.contains(words), "{message}");
+    }
+}
+
+/// Moving as the support lets it, vibrating, and pushed by a load that is there from the beginning.
+fn moving(constraint: &str) -> String {
+    let start = match constraint {
+        _ if PINS.contains(&constraint) => "angular_velocity = [20.0, 30.0, 10.0]",
+        _ if HINGES.contains(&constraint) => "angular_velocity = [0.0, 30.0, 0.0]",
+        _ if SLIDERS.contains(&constraint) => "velocity = [0.0, 0.0, 800.0]",
+        _ => "",
+    };
+    format!(
+        "[initial]\n{start}\nmodal_velocity = [0.5, 0.2]\n[effects]\ngeometric_stiffening = false\n[[loads]]\n\
+         kind = \"force\"\nat = [200.0, 0.0, 0.0]\ndirection = [0.0, 0.3, 1.0]\namplitude = 2.0"
+    )
+}
+
+/// The first and the last observation.
+fn ends(constraint: &str, step: f64, method: &str) -> [Observation; 2] {
+    let scene = held(constraint, &moving(constraint), &format!("end = 0.01\nstep = {step:e}\n{method}"));
+    let model = build(&scene);
+    let mut rows = observations(&scene, &model);
+    let last = rows.pop().unwrap();
+    [rows.swap_remove(0), last]
+}
+
+fn apart(a: &Observation, b: &Observation) -> (f64, f64) {
+    (a.attitude.angle_to(&b.attitude), (a.position_global - b.position_global).norm())
+}
+
+fn halved(coarse: f64, fine: f64) -> bool {
+    (coarse / fine - 2.0).abs() < 0.1
+}
+
+/// The paper's scheme has its rigid modes "determined by constraints": to first order it goes where its fourth-order
+/// limit does, and that is the conservative answer but for what the paper leaves out of deformed bodies that turn.
+#[test]
+fn the_scheme_of_the_paper_converges_on_held_bodies() {
+    for constraint in [PINS[0], PINS[1], HINGES[0], HINGES[4], CLAMPS[2], SLIDERS[2]] {
+        let [_, limit] = ends(constraint, 2e-6, "formulation = \"paper\"\nscheme = \"rkmk4\"");
+        let [first, right] = ends(constraint, 1e-5, "");
+        let [coarse, fine] = [1e-5, 5e-6].map(|step| {
+            let [start, found] = ends(constraint, step, "scheme = \"paper\"");
+            assert_eq!(apart(&start, &first), (0.0, 0.0));
+            let [linear, angular] = [
+                found.linear_balance_global() - start.linear_balance_global(),
+                found.angular_balance_global() - start.angular_balance_global(),
+            ];
+            // What holds the body balances the rest.
+            assert_eq!(linear.norm(), 0.0, "{constraint}");
+            (apart(&found, &limit), angular.norm() / found.angular_momentum_global.norm())
+        });
+        let ((turned_coarse, moved_coarse), balance_coarse) = coarse;
+        let ((turned_fine, moved_fine), balance_fine) = fine;
+        let turns = PINS.contains(&constraint) || HINGES.contains(&constraint);
+        if turns {
+            // Measured: 1e-5 to 2e-5 rad and 6e-4 mm off at 1e-5 s, 2.000 and 2.001 times as much as at half of that;
+            // angular momentum about what is held to 4e-5, 2.03 times as much.
+            assert!(halved(turned_coarse, turned_fine) && halved(moved_coarse, moved_fine), "{constraint}: {coarse:?}");
+            assert!(halved(balance_coarse, balance_fine) && balance_fine < 3e-5, "{constraint}: {balance_fine}");
+        } else {
+            // Without a turn it is classical RK4. Measured: 16 times as much at 1e-5 s.
+            assert!(turned_fine == 0.0 && moved_coarse / moved_fine > 15.0, "{constraint}: {coarse:?} {fine:?}");
+            assert!(balance_coarse.is_nan(), "a body that cannot turn has no angular momentum of its own");
+        }
+        let ((turned_off, moved_off), (turned, moved)) = (apart(&limit, &right), apart(&right, &first));
+        // Measured: 6e-6 of the turn and 2.4e-7 of the way where it turns, 1.3e-9 where it does not.
+        let bound = if turns { 2e-5 } else { 1e-8 };
+        assert!(turned_off <= bound * turned && moved_off < bound * moved, "{constraint}: {turned_off} {moved_off}");
+    }
+}
+
+#[test]
+fn driven_bodies_are_not_the_paper_s() {
+    let motion = "motion = { amplitude = 2.0, history = { kind = \"ramp\", duration = 0.01 } }";
+    let scene = held(&format!("{}\n{motion}", HINGES[4]), "", &format!("{TIME}\nscheme = \"paper\""));
+    let message = build(&scene).start(&scene).unwrap_err().to_string();
+    assert!(message.contains("driven motion") && message.contains("conservative"), "{message}");
+}
