@@ -96,7 +96,7 @@ pub enum AdviseProgress {
 /// # Errors
 /// [`RunError`] of the scene as it is. A run with an effect switched that fails is a row that says so.
 pub fn advise(scene: &Scene, verify: bool, mut progress: impl FnMut(AdviseProgress)) -> Result<AdviseReport, RunError> {
-    let of_paper = matches!(scene.time.method, Method::Paper | Method::PaperRkmk4);
+    let of_paper = scene.time.method.is_of_paper();
     let mut scene = scene.clone();
     if of_paper {
         scene.time.method = Method::Exponential;

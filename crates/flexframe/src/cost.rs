@@ -22,7 +22,7 @@ use std::time::Duration;
 use fem_tet10::read_msh;
 use frames_rk4::{ConservativeScheme, Method, StepControl};
 use results::FigureError;
-use scene::{Body, BuildError, BuildProgress, Choice, Flexible, Model, Scene, Stepping};
+use scene::{Body, BuildError, BuildProgress, Choice, Flexible, Model, Scene};
 use serde::Serialize;
 
 pub use answer::{Answer, Setting};
@@ -230,11 +230,7 @@ pub fn price_list(
 
 /// Method and control that the scene asks for itself.
 fn own_setting(scene: &Scene) -> (Method, StepControl) {
-    let control = match scene.time.stepping {
-        Stepping::Step(step) => StepControl::Fixed(step),
-        Stepping::Tolerance(tolerance) => StepControl::Tolerance(tolerance),
-    };
-    (scene::method(scene.time.method), control)
+    (scene::method(scene.time.method), scene::control(scene.time.stepping))
 }
 
 /// Flexible modes of the scene's mesh. A mesh that cannot be read is refused where the model is built.

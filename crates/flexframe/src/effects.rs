@@ -2,12 +2,12 @@
 
 use advice::Effect;
 use frames_rk4::DrivenMotion;
-use scene::{Load, Method, Model, Scene};
+use scene::{Load, Model, Scene};
 
 /// The effects that can be on or off in a run of the conservative form, and whether they are; none for the paper's
 /// formulation, which has its own.
 pub(crate) fn computed(scene: &Scene, model: &Model) -> Vec<(&'static str, bool)> {
-    if matches!(scene.time.method, Method::Paper | Method::PaperRkmk4) {
+    if scene.time.method.is_of_paper() {
         return Vec::new();
     }
     let scene_has = |effect| is_on(scene, model, effect).map(|on| (effect.name(), on));

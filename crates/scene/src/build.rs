@@ -206,15 +206,11 @@ impl Model {
     /// # Errors
     /// [`StartError`], e.g. a step beyond the stability limit.
     pub fn start(&self, scene: &Scene) -> Result<Simulation, StartError> {
-        let control = match scene.time.stepping {
-            scene::Stepping::Step(step) => StepControl::Fixed(step),
-            scene::Stepping::Tolerance(tolerance) => StepControl::Tolerance(tolerance),
-        };
         let rows = match scene.output.rows {
             scene::Rows::EverySteps(steps) => Rows::EverySteps(steps),
             scene::Rows::Interval(interval) => Rows::Interval(interval),
         };
-        self.start_with(scene, method(scene.time.method), control, rows)
+        self.start_with(scene, method(scene.time.method), control(scene.time.stepping), rows)
     }
 
     /// The motion of a scene by another method, in other steps or with other rows than its own.
@@ -276,6 +272,14 @@ fn step(scene: &Scene) -> Option<(frames_rk4::Method, f64)> {
     match scene.time.stepping {
         scene::Stepping::Step(step) => Some((method(scene.time.method), step)),
         scene::Stepping::Tolerance(_) => None,
+    }
+}
+
+/// The control of the step that a scene names.
+pub fn control(stepping: scene::Stepping) -> StepControl {
+    match stepping {
+        scene::Stepping::Step(step) => StepControl::Fixed(step),
+        scene::Stepping::Tolerance(tolerance) => StepControl::Tolerance(tolerance),
     }
 }
 

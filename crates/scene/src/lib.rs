@@ -48,7 +48,7 @@ mod section;
 mod shape;
 mod suggest;
 
-pub use build::{BuildError, BuildProgress, BuildTimes, Meshed, Model, StartError, method};
+pub use build::{BuildError, BuildProgress, BuildTimes, Meshed, Model, StartError, control, method};
 pub use constraint::{Constraint, Drive, HingeLine, Region};
 pub use effects::{Choice, Effects};
 pub use error::{Place, SceneError};

@@ -189,6 +189,13 @@ pub enum Method {
     Strang,
 }
 
+impl Method {
+    /// Whether the formulation is the paper's, which has the effects that it has.
+    pub fn is_of_paper(self) -> bool {
+        matches!(self, Self::Paper | Self::PaperRkmk4)
+    }
+}
+
 /// What is written out.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Output {

@@ -3,7 +3,7 @@
 use advice::Effect;
 use frames_rk4::{Observation, Rows, StepControl};
 use nalgebra::{Matrix3, Vector3};
-use scene::{Choice, Flexible, Model, Scene, Stepping};
+use scene::{Choice, Flexible, Model, Scene};
 
 use super::Real;
 use crate::effects::is_on;
@@ -110,10 +110,7 @@ impl<'a> Base<'a> {
 }
 
 fn follow(scene: &Scene, model: &Model) -> Result<Vec<Observation>, RunFailure> {
-    let control = match scene.time.stepping {
-        Stepping::Step(step) => StepControl::Fixed(step),
-        Stepping::Tolerance(tolerance) => StepControl::Tolerance(tolerance),
-    };
+    let control = scene::control(scene.time.stepping);
     let interval = match control {
         StepControl::Fixed(step) => (scene.time.end / step / COMPARED).ceil() * step,
         StepControl::Tolerance(_) => scene.time.end / COMPARED,

@@ -199,7 +199,7 @@ impl Parts<'_> {
         }
 
         let Draft { body, loads, size, mut damping_ratios, .. } = draft;
-        if scene.effects.damping == Choice::Auto && !physics::of_paper(scene) && !advice.is_on(Effect::Damping) {
+        if scene.effects.damping == Choice::Auto && !scene.time.method.is_of_paper() && !advice.is_on(Effect::Damping) {
             damping_ratios.fill(0.0);
         }
         let physics = Physics { effects, drive: self.drive.clone(), load_stiffness };
@@ -250,7 +250,7 @@ impl Parts<'_> {
             Choice::On => true,
             Choice::Off => false,
             Choice::Auto => {
-                !physics::of_paper(scene)
+                !scene.time.method.is_of_paper()
                     && physics::may_spin(scene, self.support.motion, self.drive.as_ref())
                     && screen(&self.case(draft, None), scene.effects.tolerance)?.on
             }

@@ -6,7 +6,7 @@ use modal::RigidMotion;
 
 use super::loads::MeshLoad;
 use crate::effects::Choice;
-use crate::scene::{Method, Scene};
+use crate::scene::Scene;
 
 /// Whether anything may set the body spinning.
 pub(super) fn may_spin(scene: &Scene, motion: RigidMotion, drive: Option<&Drive>) -> bool {
@@ -23,23 +23,18 @@ fn turns(motion: RigidMotion, drive: Option<&Drive>) -> bool {
     }
 }
 
-/// Whether the method is one of the paper's limit, which has the effects that it has.
-pub(super) fn of_paper(scene: &Scene) -> bool {
-    matches!(scene.time.method, Method::Paper | Method::PaperRkmk4)
-}
-
 /// Whether the stress of a load stiffens the body: one that stays as it is, seen from the body.
 pub(super) fn stiffens(scene: &Scene, motion: RigidMotion, drive: Option<&Drive>, load: &MeshLoad) -> bool {
     let turns = turns(motion, drive) && scene.effects.rotation != Choice::Off;
     scene.effects.geometric_stiffening != Choice::Off
-        && !of_paper(scene)
+        && !scene.time.method.is_of_paper()
         && matches!(load.history, frames_rk4::History::Constant)
         && (load.follows || !turns)
 }
 
 /// The effects of the equations of motion: what the scene leaves open is as advised.
 pub(super) fn effects(scene: &Scene, advice: &Advice, stiffening: bool) -> Effects {
-    let paper = of_paper(scene);
+    let paper = scene.time.method.is_of_paper();
     let resolve = |choice: Choice, effect: Effect| match choice {
         Choice::On => true,
         Choice::Off => false,

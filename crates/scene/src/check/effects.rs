@@ -56,7 +56,7 @@ impl Check<'_> {
 
     /// The paper's formulation has the effects that it has.
     pub fn effects_of_paper(&self, effects: &Effects, method: Method) -> Result<(), SceneError> {
-        if !matches!(method, Method::Paper | Method::PaperRkmk4) {
+        if !method.is_of_paper() {
             return Ok(());
         }
         let paper = "the paper's formulation";
