@@ -137,6 +137,28 @@ pub enum FileError {
         /// The value.
         value: f64,
     },
+    /// A file to be read that does not begin as results files do.
+    #[error(
+        "{path}: this is no results file of flexframe, or its beginning is damaged; check the name (a file that another \
+         program has written anew, such as h5repack, is not read)",
+        path = .path.display()
+    )]
+    NoSeal {
+        /// The file.
+        path: PathBuf,
+    },
+    /// A results file that is not what was written.
+    #[error(
+        "{path}: the file is damaged, or another program has changed it: {what}; take an unchanged copy, or run its scene \
+         again with --overwrite",
+        path = .path.display()
+    )]
+    Damaged {
+        /// The file.
+        path: PathBuf,
+        /// What was found, and what was expected.
+        what: String,
+    },
     /// A dataset or group of the contract is not in the file.
     #[error("{path}: there is no {dataset}; is it a results file of flexframe?", path = .path.display())]
     MissingDataset {

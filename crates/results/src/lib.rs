@@ -22,6 +22,7 @@ mod place;
 mod reader;
 mod render;
 mod sample;
+mod seal;
 mod shapes;
 mod store;
 mod surface;
@@ -29,6 +30,8 @@ mod ticks;
 mod view;
 mod writer;
 
+#[cfg(test)]
+extern crate self as results; // for what the tests share
 #[cfg(test)]
 mod test_body;
 

@@ -1,6 +1,6 @@
 //! Where a results file and its unfinished forerunner are, and how they get there in one go.
 
-use crate::FileError;
+use crate::{FileError, seal};
 use std::fs::{File, TryLockError};
 use std::io;
 use std::path::{Path, PathBuf};
@@ -39,7 +39,7 @@ impl Place {
                 return Err(FileError::Unfinished { path: self.part.clone() });
             }
         }
-        if self.path.is_dir() || self.path.exists() && !overwrite && !is_results(&self.path) {
+        if self.path.is_dir() || self.path.exists() && !overwrite && !seal::is_claimed(&self.path) {
             return Err(FileError::NotResults { path: self.path.clone() });
         }
         Ok(())
@@ -50,7 +50,7 @@ impl Place {
         if self.part.exists() {
             return if is_busy(&self.part) { Err(FileError::Busy { path: self.part.clone() }) } else { Ok(()) };
         }
-        if is_results(&self.path) {
+        if seal::is_claimed(&self.path) {
             return Err(FileError::Complete { path: self.path.clone() });
         }
         Err(FileError::NothingToResume { path: self.path.clone(), part: self.part.clone() })
@@ -93,9 +93,4 @@ impl Place {
 /// Whether another process writes the file: HDF5 locks what it has open.
 pub(crate) fn is_busy(path: &Path) -> bool {
     File::open(path).is_ok_and(|file| matches!(file.try_lock(), Err(TryLockError::WouldBlock)))
-}
-
-/// Whether it is a file that a run may replace.
-fn is_results(path: &Path) -> bool {
-    hdf5::File::open(path).is_ok_and(|file| file.attr("complete").is_ok())
 }

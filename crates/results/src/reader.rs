@@ -1,7 +1,7 @@
 //! Reads a results file back, finished or not.
 
 use crate::layout::Quantity;
-use crate::{BodyProperties, FileError, Metadata, PointSample, Sample, Units};
+use crate::{BodyProperties, FileError, Metadata, PointSample, Sample, Units, seal};
 use hdf5::types::VarLenUnicode;
 use hdf5::{IndexType, IterationOrder};
 use ndarray::s;
@@ -103,11 +103,13 @@ impl Results {
     /// Reads the whole file. Of an unfinished one, the rows that every dataset has.
     ///
     /// # Errors
-    /// [`FileError::Hdf5`] if it is no readable HDF5 file, [`FileError::MissingDataset`],
+    /// [`FileError::NoSeal`] and [`FileError::Damaged`] if it is not what a [`Writer`](crate::Writer) wrote;
+    /// [`FileError::System`] and [`FileError::Hdf5`] if it cannot be read, [`FileError::MissingDataset`],
     /// [`FileError::MissingAttribute`], [`FileError::NotUtf8`] or [`FileError::WrongShape`] if it departs from the
     /// contract, [`FileError::ClaimsTooMuch`] if its shapes come to more than the file holds.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, FileError> {
         let path = path.as_ref();
+        seal::check(path)?;
         let file = hdf5::File::open(path).map_err(FileError::hdf5(path, "open the file"))?;
         let source = Source { path, file: &file, length: file.size() };
 
@@ -127,9 +129,9 @@ impl Results {
             columns.push(source.column(&quantity.path(names), quantity.width(modes), rows)?);
         }
         if !complete {
-            // What has not been written is NaN, which no run writes.
+            // What has not been written is NaN; no run writes what is not finite.
             for (quantity, column) in quantities.iter().zip(&columns) {
-                let whole = column.iter().position(|value| value.is_nan()).unwrap_or(usize::MAX);
+                let whole = column.iter().position(|value| !value.is_finite()).unwrap_or(usize::MAX);
                 rows = rows.min(whole / quantity.width(modes).unwrap_or(1).max(1));
             }
         }
@@ -415,5 +417,71 @@ impl Source<'_> {
 
     fn failed(&self, action: impl Into<String>) -> impl FnOnce(hdf5::Error) -> FileError {
         FileError::hdf5(self.path, action)
+    }
+}
+
+#[cfg(test)]
+#[path = "../tests/rows/mod.rs"]
+#[allow(dead_code)] // no test needs all of it
+mod rows;
+
+/// Files that have a seal, but are not what a writer writes.
+#[cfg(test)]
+mod tests {
+    use super::rows::{Row, folder, metadata};
+    use super::*;
+    use crate::{Expected, Writer};
+
+    /// What the reader says of a file that another program has changed and sealed.
+    fn refusal(change: impl Fn(&hdf5::File)) -> FileError {
+        let (_folder, path) = folder();
+        let mut writer = Writer::create(&path, &metadata(2, &["P1"]), Expected::default()).unwrap();
+        (0..10).for_each(|i| writer.push(&Row::new(i, 2, 1).sample()).unwrap());
+        writer.finish().unwrap();
+        let file = hdf5::File::open_rw(&path).unwrap();
+        change(&file);
+        file.close().unwrap();
+        assert!(matches!(Results::open(&path), Err(FileError::Damaged { .. })));
+        seal::put(&path, &path, &[]).unwrap();
+        Results::open(&path).unwrap_err()
+    }
+
+    #[test]
+    fn errors_name_what_is_missing_or_of_another_shape() {
+        match refusal(|file| file.unlink("points/P1/velocity").unwrap()) {
+            FileError::MissingDataset { dataset, .. } => assert_eq!(dataset, "points/P1/velocity"),
+            other => panic!("{other}"),
+        }
+        match refusal(|file| file.unlink("body").unwrap()) {
+            FileError::MissingDataset { dataset, .. } => assert_eq!(dataset, "body/frequencies"),
+            other => panic!("{other}"),
+        }
+        match refusal(|file| file.delete_attr("scheme").unwrap()) {
+            FileError::MissingAttribute { attribute, .. } => assert_eq!(attribute, "scheme"),
+            other => panic!("{other}"),
+        }
+        match refusal(|file| {
+            file.unlink("attitude").unwrap();
+            file.new_dataset::<f64>().shape((10, 3)).create("attitude").unwrap();
+        }) {
+            FileError::WrongShape { dataset, expected, found, .. } => {
+                assert_eq!((dataset.as_str(), expected.as_str(), found), ("attitude", "[T, 4]", vec![10, 3]));
+            }
+            other => panic!("{other}"),
+        }
+    }
+
+    #[test]
+    fn a_shape_is_only_a_claim() {
+        let vast = 1_000_000_000_000_usize;
+        match refusal(|file| {
+            file.unlink("body/frequencies").unwrap();
+            file.new_dataset::<f64>().chunk(1000).shape(vast).create("body/frequencies").unwrap();
+        }) {
+            FileError::ClaimsTooMuch { claimed, length, .. } => {
+                assert!(claimed == 8 * vast as u128 && length < 100_000_000)
+            }
+            other => panic!("{other}"),
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! An HDF5 file with room for so many rows, laid out as [`mod@crate::layout`] says.
 
 use crate::layout::Quantity;
-use crate::{FileError, Metadata, Units};
+use crate::{FileError, Metadata, Units, seal};
 use hdf5::dataset::Layout;
 use hdf5::plist::dataset_create::{AllocTime, FillTime};
 use hdf5::plist::group_create::LinkCreationOrder;
@@ -12,6 +12,9 @@ use std::path::Path;
 
 /// Rows that are copied at a time.
 const ROWS_PER_COPY: usize = 8192;
+
+/// Bytes of HDF5's superblock that say whether a program has the file open for writing.
+const CONSISTENCY_FLAGS: Range<u64> = 20..24;
 
 /// What a store is to hold.
 #[derive(Debug, Clone, Copy)]
@@ -42,51 +45,64 @@ struct Column {
 }
 
 impl Store {
-    /// Makes the file at `place`; in messages it is called `path`.
-    pub(crate) fn create(place: &Path, path: &Path, metadata: &Metadata, room: Room) -> Result<Self, FileError> {
+    /// Makes the file at `place`; in messages it is called `path`. Gives the ranges of bytes that change from then on.
+    pub(crate) fn create(
+        place: &Path,
+        path: &Path,
+        metadata: &Metadata,
+        room: Room,
+    ) -> Result<Vec<Range<u64>>, FileError> {
+        let quantities: Vec<Quantity> = Quantity::all(metadata.point_names.len()).collect();
         let mut builder = hdf5::File::with_options();
-        // Without times of creation, so that equal runs give equal files.
-        builder.with_fcpl(|plist| plist.obj_track_times(false));
+        // Without times of creation, so that equal runs give equal files; the seal goes into the user block.
+        let user_block = seal::room(quantities.len() + 2);
+        builder.with_fcpl(|plist| plist.obj_track_times(false).userblock(user_block));
         // Numbers do not straddle the pages of the file, which may be written one by one.
         builder.with_fapl(|plist| plist.alignment(1, 8));
         let file = builder.create(place).map_err(FileError::hdf5(path, "create the file"))?;
         write_root_attributes(path, &file, metadata, room.complete)?;
         write_body(path, &file, metadata)?;
         create_point_groups(&file, &metadata.point_names).map_err(FileError::hdf5(path, "create the points"))?;
-        let columns = Quantity::all(metadata.point_names.len())
-            .map(|quantity| Column::create(path, &file, quantity, metadata, room.rows))
+        let mut datasets = quantities
+            .into_iter()
+            .map(|quantity| create_column(path, &file, quantity, metadata, room.rows))
             .collect::<Result<Vec<_>, _>>()?;
-        let checkpoint = room
-            .checkpoint
-            .map(|words| {
-                file.new_dataset::<u64>()
-                    .layout(Layout::Contiguous)
-                    .alloc_time(Some(AllocTime::Early))
-                    .obj_track_times(false)
-                    .shape((2, words))
-                    .create("checkpoint")
-                    .map_err(FileError::hdf5(path, "create dataset checkpoint"))
-            })
-            .transpose()?;
-        let store = Self { columns, checkpoint, rows: room.rows, file };
-        store.flush(path)?;
-        Ok(store)
+        if let Some(words) = room.checkpoint {
+            let checkpoint = file
+                .new_dataset::<u64>()
+                .layout(Layout::Contiguous)
+                .alloc_time(Some(AllocTime::Early))
+                .obj_track_times(false)
+                .shape((2, words))
+                .create("checkpoint")
+                .map_err(FileError::hdf5(path, "create dataset checkpoint"))?;
+            datasets.push(checkpoint);
+        }
+        // An empty dataset has no place.
+        let place_of = |dataset: &hdf5::Dataset| dataset.offset().map(|start| start..start + dataset.storage_size());
+        let mut changing: Vec<Range<u64>> = datasets.iter().filter_map(place_of).collect();
+        changing.push(user_block + CONSISTENCY_FLAGS.start..user_block + CONSISTENCY_FLAGS.end);
+        changing.sort_unstable_by_key(|range| range.start);
+        drop(datasets);
+        // HDF5 gives back what room it has left over when it closes the file: from then on its structure stays.
+        file.close().map_err(FileError::hdf5(path, "write the file"))?;
+        Ok(changing)
     }
 
-    /// Opens the file of a run that is to go on.
-    pub(crate) fn open(path: &Path, metadata: &Metadata) -> Result<Self, FileError> {
+    /// Opens the file at `place`, called `path` in messages, for writing.
+    pub(crate) fn open(place: &Path, path: &Path, metadata: &Metadata) -> Result<Self, FileError> {
         let modes = metadata.body.frequencies.len();
-        let file = hdf5::File::open_rw(path).map_err(FileError::hdf5(path, "open the file for writing"))?;
+        let file = hdf5::File::open_rw(place).map_err(FileError::hdf5(path, "open the file for writing"))?;
+        let dataset = |name: &str| file.dataset(name).map_err(FileError::hdf5(path, format!("open dataset {name}")));
         let mut rows = usize::MAX;
         let mut columns = Vec::new();
         for quantity in Quantity::all(metadata.point_names.len()) {
-            let name = quantity.path(&metadata.point_names);
-            let dataset = file.dataset(&name).map_err(FileError::hdf5(path, format!("open dataset {name}")))?;
+            let dataset = dataset(&quantity.path(&metadata.point_names))?;
             rows = rows.min(dataset.shape().first().copied().unwrap_or(0));
             columns.push(Column { width: quantity.width(modes), dataset });
         }
-        let checkpoint = file.dataset("checkpoint").map_err(FileError::hdf5(path, "open dataset checkpoint"))?;
-        Ok(Self { columns, checkpoint: Some(checkpoint), rows, file })
+        let checkpoint = file.link_exists("checkpoint").then(|| dataset("checkpoint")).transpose()?;
+        Ok(Self { columns, checkpoint, rows, file })
     }
 
     /// Rows that it has room for.
@@ -139,6 +155,13 @@ impl Store {
         Ok([first.to_vec(), second.to_vec()])
     }
 
+    /// Hands everything to the operating system, and is done.
+    pub(crate) fn close(self, path: &Path) -> Result<(), FileError> {
+        let Self { columns, checkpoint, rows: _, file } = self;
+        drop((columns, checkpoint));
+        file.close().map_err(FileError::hdf5(path, "write the file"))
+    }
+
     /// Hands everything to the operating system.
     pub(crate) fn flush(&self, path: &Path) -> Result<(), FileError> {
         self.file.flush().map_err(FileError::hdf5(path, "flush the file"))
@@ -146,31 +169,6 @@ impl Store {
 }
 
 impl Column {
-    fn create(
-        path: &Path,
-        file: &hdf5::File,
-        quantity: Quantity,
-        metadata: &Metadata,
-        rows: usize,
-    ) -> Result<Self, FileError> {
-        let name = quantity.path(&metadata.point_names);
-        let width = quantity.width(metadata.body.frequencies.len());
-        let builder = file
-            .new_dataset::<f64>()
-            .layout(Layout::Contiguous)
-            .alloc_time(Some(AllocTime::Early))
-            .fill_time(FillTime::Alloc)
-            .fill_value(f64::NAN)
-            .obj_track_times(false);
-        let dataset = match width {
-            None => builder.shape(rows).create(name.as_str()),
-            Some(width) => builder.shape((rows, width)).create(name.as_str()),
-        }
-        .map_err(FileError::hdf5(path, format!("make room for {name}")))?;
-        describe(path, &dataset, &quantity.unit(&metadata.units), quantity.frame(), quantity.description())?;
-        Ok(Self { width, dataset })
-    }
-
     fn write(&self, rows: Range<usize>, values: &[f64]) -> hdf5::Result<()> {
         match self.width {
             None => self.dataset.write_slice(ArrayView1::from(values), rows),
@@ -186,6 +184,31 @@ impl Column {
             Some(_) => self.dataset.read_slice_2d(s![rows, ..]).map(|values| values.into_raw_vec_and_offset().0),
         }
     }
+}
+
+/// Room for so many rows, NaN where nothing has been written.
+fn create_column(
+    path: &Path,
+    file: &hdf5::File,
+    quantity: Quantity,
+    metadata: &Metadata,
+    rows: usize,
+) -> Result<hdf5::Dataset, FileError> {
+    let name = quantity.path(&metadata.point_names);
+    let builder = file
+        .new_dataset::<f64>()
+        .layout(Layout::Contiguous)
+        .alloc_time(Some(AllocTime::Early))
+        .fill_time(FillTime::Alloc)
+        .fill_value(f64::NAN)
+        .obj_track_times(false);
+    let dataset = match quantity.width(metadata.body.frequencies.len()) {
+        None => builder.shape(rows).create(name.as_str()),
+        Some(width) => builder.shape((rows, width)).create(name.as_str()),
+    }
+    .map_err(FileError::hdf5(path, format!("make room for {name}")))?;
+    describe(path, &dataset, &quantity.unit(&metadata.units), quantity.frame(), quantity.description())?;
+    Ok(dataset)
 }
 
 /// The groups keep the order in which they were made, so that the reader lists the points as given.

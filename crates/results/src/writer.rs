@@ -4,9 +4,10 @@ use crate::layout::Quantity;
 use crate::place::{Place, is_busy};
 use crate::reader::Results;
 use crate::store::{Room, Store};
-use crate::{FileError, Metadata, Sample};
+use crate::{FileError, Metadata, Sample, seal};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
+use tempfile::TempPath;
 
 /// Rows that are gathered before they are written. A row at a time costs about nine times as much.
 const ROWS_PER_WRITE: usize = 512;
@@ -88,9 +89,7 @@ impl Writer {
         let rows = expected.rows.min(FIRST_ROOM / numbers_per_row).max(ROWS_PER_WRITE);
         let checkpoint = vec![0; CHECKPOINT_FRAME + expected.checkpoint];
         let room = Room { rows, checkpoint: Some(checkpoint.len()), complete: false };
-        let file = place.temporary()?;
-        let store =
-            Store::create(&file, &place.part, metadata, room).map_err(|error| error.with_reason_from_system(&file))?;
+        let (file, store) = make_room(&place, metadata, room)?;
         place.put_part(file, expected.overwrite)?;
         Ok(Self {
             place,
@@ -128,7 +127,7 @@ impl Writer {
         place.check_resumable()?;
         let part = &place.part;
         let mut results = Results::open(part)?;
-        let store = Store::open(part, &results.metadata)
+        let store = Store::open(part, part, &results.metadata)
             .map_err(|error| if is_busy(part) { FileError::Busy { path: part.clone() } } else { error })?;
         let last = store.read_checkpoints(part)?.into_iter().filter_map(Checkpoint::read).max_by_key(|c| c.serial);
         let (rows, serial) = last.as_ref().map_or((0, 0), |last| (last.rows, last.serial));
@@ -229,9 +228,11 @@ impl Writer {
         let file = self.place.temporary()?;
         let path = &self.place.path;
         Store::create(&file, path, &self.metadata, room)
-            .and_then(|store| {
+            .and_then(|_| {
+                let store = Store::open(&file, path, &self.metadata)?;
                 store.copy_rows(path, &self.store, self.rows_written)?;
-                store.flush(path)
+                store.close(path)?;
+                seal::put(&file, path, &[])
             })
             .map_err(|error| error.with_reason_from_system(&file))?;
         self.place.put_results(file)?;
@@ -262,19 +263,28 @@ impl Writer {
         let part = &self.place.part;
         let rows = rows.max(2 * self.store.rows());
         let room = Room { rows, checkpoint: Some(self.checkpoint.len()), complete: false };
-        let file = self.place.temporary()?;
-        let store = Store::create(&file, part, &self.metadata, room)
-            .and_then(|store| {
-                store.copy_rows(part, &self.store, self.rows_written)?;
-                store.write_checkpoint(part, (self.serial % 2) as usize, &self.checkpoint)?;
-                store.flush(part)?;
-                Ok(store)
-            })
+        let (file, store) = make_room(&self.place, &self.metadata, room)?;
+        store
+            .copy_rows(part, &self.store, self.rows_written)
+            .and_then(|()| store.write_checkpoint(part, (self.serial % 2) as usize, &self.checkpoint))
+            .and_then(|()| store.flush(part))
             .map_err(|error| error.with_reason_from_system(&file))?;
         self.place.put_part(file, true)?;
         self.store = store;
         Ok(())
     }
+}
+
+/// A sealed unfinished file that has no name yet, closed and opened again: HDF5 changes its structure no more.
+fn make_room(place: &Place, metadata: &Metadata, room: Room) -> Result<(TempPath, Store), FileError> {
+    let file = place.temporary()?;
+    let store = Store::create(&file, &place.part, metadata, room)
+        .and_then(|changing| {
+            seal::put(&file, &place.part, &changing)?;
+            Store::open(&file, &place.part, metadata)
+        })
+        .map_err(|error| error.with_reason_from_system(&file))?;
+    Ok((file, store))
 }
 
 impl Drop for Writer {
@@ -316,9 +326,10 @@ impl Checkpoint {
     }
 }
 
-/// FNV-1a, a word at a time.
 fn check_sum(words: &[u64]) -> u64 {
-    words.iter().fold(0xcbf2_9ce4_8422_2325, |sum, word| (sum ^ word).wrapping_mul(0x0100_0000_01b3))
+    let mut hasher = crc32fast::Hasher::new();
+    words.iter().for_each(|word| hasher.update(&word.to_le_bytes()));
+    hasher.finalize().into()
 }
 
 fn check_length(path: &Path, quantity: &str, expected: usize, found: usize) -> Result<(), FileError> {

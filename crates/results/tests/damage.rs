@@ -1,0 +1,180 @@
+//! Damaged files: each is refused before HDF5, a library of C, sees it, and none costs more memory than it has bytes.
+//!
+//! A program of its own, with one test, since it counts what the whole program allocates.
+
+mod rows;
+
+use results::*;
+use rows::{Row, assert_rows, folder, metadata};
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::fs::OpenOptions;
+use std::ops::Range;
+use std::os::unix::fs::FileExt;
+use std::path::Path;
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+
+/// The system's allocator, with the bytes held now and at most.
+struct Counting;
+
+static HELD: AtomicUsize = AtomicUsize::new(0);
+static MOST: AtomicUsize = AtomicUsize::new(0);
+
+/// Files refused.
+static REFUSED: AtomicUsize = AtomicUsize::new(0);
+
+// SAFETY: every call is passed on to the system's allocator unchanged.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        let held = HELD.fetch_add(layout.size(), Relaxed) + layout.size();
+        MOST.fetch_max(held, Relaxed);
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        HELD.fetch_sub(layout.size(), Relaxed);
+        unsafe { System.dealloc(pointer, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+const ROWS: usize = 30;
+
+/// A finished and an unfinished file, as bytes.
+fn files(path: &Path) -> [Vec<u8>; 2] {
+    let metadata = Metadata { scene_text: "title = \"ω₂\"".into(), ..metadata(2, &["P1"]) };
+    let begin = || {
+        let expected = Expected { checkpoint: 4, ..Expected::default() };
+        let mut writer = Writer::create(path, &metadata, expected).unwrap();
+        (0..ROWS).for_each(|i| writer.push(&Row::new(i, 2, 1).sample()).unwrap());
+        writer.flush(&[1, 2, 3, 4]).unwrap();
+        writer
+    };
+    begin().finish().unwrap();
+    drop(begin());
+    [path.to_owned(), unfinished(path)].map(|path| {
+        let bytes = std::fs::read(&path).unwrap();
+        std::fs::remove_file(path).unwrap();
+        bytes
+    })
+}
+
+fn word(bytes: &[u8], at: usize) -> usize {
+    u64::from_le_bytes(bytes[at..at + 8].try_into().unwrap()) as usize
+}
+
+/// The bytes that the head of a file leaves out of its sum.
+fn left_out(bytes: &[u8]) -> Vec<Range<usize>> {
+    (0..word(bytes, 40)).map(|i| word(bytes, 48 + 16 * i)..word(bytes, 56 + 16 * i)).collect()
+}
+
+/// What the reader says of a file, and the most memory that it held meanwhile.
+fn read(path: &Path) -> (Result<Results, FileError>, usize) {
+    let before = HELD.load(Relaxed);
+    MOST.store(before, Relaxed);
+    let outcome = Results::open(path);
+    (outcome, MOST.load(Relaxed) - before)
+}
+
+/// The reader must refuse the file, with no more in memory than a message and the ranges that its head claims.
+fn refuse(path: &Path, what: std::fmt::Arguments) {
+    let (outcome, memory) = read(path);
+    let Err(error) = outcome else { panic!("{what}: accepted") };
+    assert!(matches!(error, FileError::NoSeal { .. } | FileError::Damaged { .. }), "{what}: {error}");
+    assert!(error.to_string().len() < 500, "{error}");
+    let bytes = std::fs::metadata(path).unwrap().len() as usize;
+    assert!(memory < 2000 + bytes, "{what}: {memory} bytes of memory for {bytes}");
+    REFUSED.fetch_add(1, Relaxed);
+}
+
+/// Knuth's MMIX linear congruential generator.
+fn next(state: &mut u64) -> usize {
+    *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+    (*state >> 33) as usize
+}
+
+#[test]
+fn every_damage_is_found_before_hdf5_sees_the_file() {
+    let (folder, path) = folder();
+    let files = files(&path);
+    let place = folder.path().join("damaged.part.h5");
+    for bytes in &files {
+        std::fs::write(&place, bytes).unwrap();
+        let (results, memory) = read(&place);
+        assert_rows(&results.unwrap(), ROWS);
+        println!("{} bytes: {memory} bytes of memory", bytes.len());
+        assert!(memory < 3 * bytes.len()); // 1.7 times, 0.9 times
+        let numbers = left_out(bytes);
+        let file = OpenOptions::new().write(true).open(&place).unwrap();
+        for at in (0..bytes.len()).filter(|at| !numbers.iter().any(|range| range.contains(at))) {
+            for change in [1 << (at % 8), 0xff] {
+                file.write_at(&[bytes[at] ^ change], at as u64).unwrap();
+                refuse(&place, format_args!("byte {at} of {}, {change:#x}", bytes.len()));
+            }
+            file.write_at(&bytes[at..=at], at as u64).unwrap();
+        }
+        // A page that was lost, or is that of another place.
+        for start in (0..bytes.len() - 512).step_by(512) {
+            let here = start..start + 512;
+            for other in [&[0; 512][..], &bytes[..512], &bytes[bytes.len() - 512..]] {
+                let mut spoiled = bytes.clone();
+                spoiled[here.clone()].copy_from_slice(other);
+                numbers.iter().for_each(|range| spoiled[range.clone()].copy_from_slice(&bytes[range.clone()]));
+                if spoiled != *bytes {
+                    std::fs::write(&place, spoiled).unwrap();
+                    refuse(&place, format_args!("the page at {start} of {}", bytes.len()));
+                }
+            }
+        }
+        std::fs::write(&place, [bytes, &[0][..]].concat()).unwrap();
+        for length in (0..bytes.len()).rev().step_by(7) {
+            refuse(&place, format_args!("cut to {length} or more of {}", bytes.len()));
+            file.set_len(length as u64).unwrap();
+        }
+    }
+    let [_, part] = files;
+    for claim in [1, 28, 1 << 20, 1_000_000_000_000, u64::MAX >> 4, u64::MAX] {
+        for mut bytes in [part.clone(), part[..512].to_vec()] {
+            let length = bytes.len() as u64;
+            bytes[32..40].copy_from_slice(&length.to_le_bytes());
+            bytes[40..48].copy_from_slice(&claim.to_le_bytes());
+            std::fs::write(&place, bytes).unwrap();
+            refuse(&place, format_args!("{claim} ranges"));
+        }
+    }
+
+    println!("{} damaged files refused", REFUSED.load(Relaxed));
+
+    // What the sum leaves out is HDF5's flags and numbers. Any numbers are read, or end the rows; of the checkpoints the
+    // last whole one counts.
+    let left_out = left_out(&part);
+    let (flags, numbers) = left_out.split_first().unwrap();
+    for at in flags.clone() {
+        for byte in 0..=255 {
+            let mut bytes = part.clone();
+            bytes[at] = byte;
+            std::fs::write(&place, &bytes).unwrap();
+            match Results::open(&place) {
+                Ok(results) => assert_rows(&results, ROWS),
+                Err(error) => assert!(matches!(error, FileError::Hdf5 { .. }), "{error}"),
+            }
+        }
+    }
+    let mut state = 1;
+    for _ in 0..500 {
+        let mut bytes = part.clone();
+        for _ in 0..1 + next(&mut state) % 40 {
+            let range = &numbers[next(&mut state) % numbers.len()];
+            bytes[range.start + next(&mut state) % range.len()] = next(&mut state) as u8;
+        }
+        std::fs::write(&place, &bytes).unwrap();
+        let (results, memory) = read(&place);
+        assert!(memory < 3 * bytes.len());
+        assert!(results.unwrap().time.iter().all(|time| time.is_finite()));
+        match Writer::resume(&place) {
+            Ok(resumed) => assert!(resumed.results.time.len() <= ROWS),
+            Err(error) => assert!(matches!(error, FileError::Checkpoint { expected: ROWS, .. }), "{error}"),
+        }
+    }
+}
