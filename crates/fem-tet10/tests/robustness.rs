@@ -2,34 +2,13 @@
 //!
 //! A program of its own, with one test, since it counts what the whole program allocates.
 
-use std::alloc::{GlobalAlloc, Layout, System};
 use std::path::PathBuf;
-use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 use fem_tet10::parse_msh;
-
-/// The system's allocator, with the bytes held now and at most.
-struct Counting;
-
-static HELD: AtomicUsize = AtomicUsize::new(0);
-static MOST: AtomicUsize = AtomicUsize::new(0);
-
-// SAFETY: every call is passed on to the system's allocator unchanged.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        let held = HELD.fetch_add(layout.size(), Relaxed) + layout.size();
-        MOST.fetch_max(held, Relaxed);
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        HELD.fetch_sub(layout.size(), Relaxed);
-        unsafe { System.dealloc(pointer, layout) }
-    }
-}
+use peak_alloc::PeakAlloc;
 
 #[global_allocator]
-static ALLOCATOR: Counting = Counting;
+static MEMORY: PeakAlloc = PeakAlloc;
 
 fn data(name: &str) -> Vec<u8> {
     std::fs::read(PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(name)).unwrap()
@@ -37,8 +16,8 @@ fn data(name: &str) -> Vec<u8> {
 
 /// Parses, and gives whether the mesh was accepted and the most memory held meanwhile.
 fn parse(bytes: &[u8]) -> (bool, usize) {
-    let before = HELD.load(Relaxed);
-    MOST.store(before, Relaxed);
+    let before = MEMORY.current_usage();
+    MEMORY.reset_peak_usage();
     let accepted = match parse_msh(bytes, "spoiled.msh") {
         Ok(mesh) => mesh.positions().iter().flatten().all(|c| c.is_finite()),
         Err(error) => {
@@ -46,7 +25,7 @@ fn parse(bytes: &[u8]) -> (bool, usize) {
             false
         }
     };
-    (accepted, MOST.load(Relaxed) - before)
+    (accepted, MEMORY.peak_usage() - before)
 }
 
 /// Knuth's MMIX linear congruential generator.

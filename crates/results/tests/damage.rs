@@ -4,40 +4,20 @@
 
 mod rows;
 
+use peak_alloc::PeakAlloc;
 use results::*;
 use rows::{Row, assert_rows, folder, metadata};
-use std::alloc::{GlobalAlloc, Layout, System};
 use std::fs::OpenOptions;
 use std::ops::Range;
 use std::os::unix::fs::FileExt;
 use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
-/// The system's allocator, with the bytes held now and at most.
-struct Counting;
-
-static HELD: AtomicUsize = AtomicUsize::new(0);
-static MOST: AtomicUsize = AtomicUsize::new(0);
+#[global_allocator]
+static MEMORY: PeakAlloc = PeakAlloc;
 
 /// Files refused.
 static REFUSED: AtomicUsize = AtomicUsize::new(0);
-
-// SAFETY: every call is passed on to the system's allocator unchanged.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        let held = HELD.fetch_add(layout.size(), Relaxed) + layout.size();
-        MOST.fetch_max(held, Relaxed);
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        HELD.fetch_sub(layout.size(), Relaxed);
-        unsafe { System.dealloc(pointer, layout) }
-    }
-}
-
-#[global_allocator]
-static ALLOCATOR: Counting = Counting;
 
 const ROWS: usize = 30;
 
@@ -71,10 +51,10 @@ fn left_out(bytes: &[u8]) -> Vec<Range<usize>> {
 
 /// What the reader says of a file, and the most memory that it held meanwhile.
 fn read(path: &Path) -> (Result<Results, FileError>, usize) {
-    let before = HELD.load(Relaxed);
-    MOST.store(before, Relaxed);
+    let before = MEMORY.current_usage();
+    MEMORY.reset_peak_usage();
     let outcome = Results::open(path);
-    (outcome, MOST.load(Relaxed) - before)
+    (outcome, MEMORY.peak_usage() - before)
 }
 
 /// The reader must refuse the file, with no more in memory than a message and the ranges that its head claims.
