@@ -214,7 +214,6 @@ mod tests {
             assert!(bound >= actual * (1.0 - 2e-3), "{duration} {omega} {zeta}: {bound} {actual}");
             assert!(bound <= 2.0 * actual, "{duration} {omega} {zeta}: {bound} {actual}");
             let bound = swing.rate / damped;
-            println!("{duration} {omega} {zeta}: {bound} {acceleration}");
             assert!(bound >= acceleration * (1.0 - 2e-3), "{duration} {omega} {zeta}: {bound} {acceleration}");
             assert!(bound <= 2.0 * acceleration, "{duration} {omega} {zeta}: {bound} {acceleration}");
         }
@@ -238,7 +237,6 @@ mod tests {
         let course = Course::new(&sine, 1.0);
         let half = 1.0 / (std::f64::consts::PI * frequency);
         // Measured 0.9999 of it, and 20.000 of them in the magnitude.
-        println!("{} {}", course.net_integral / half, course.magnitude_integral / half);
         assert!((0.999..1.01).contains(&(course.net_integral / half)));
         assert!((course.magnitude_integral / half - 20.0).abs() < 0.02);
         assert!((course.steepest() / (std::f64::consts::TAU * frequency) - 1.0).abs() < 0.01);
