@@ -60,7 +60,7 @@ h5py: build
 
 # Fuzz every reader for so many seconds each (libFuzzer; wants a nightly compiler).
 fuzz seconds="600":
-    test -x .tools/bin/cargo-fuzz || cargo install --quiet --locked --root .tools cargo-fuzz
+    test -x .tools/bin/cargo-fuzz || cargo install --quiet --locked --root .tools cargo-fuzz@0.13.2
     mkdir -p fuzz/corpus/{mesh,scene,table,expression,results}
     cd fuzz && export RUSTUP_TOOLCHAIN=nightly && \
     cargo run --quiet --release --bin results-seeds corpus/results && \
@@ -74,10 +74,10 @@ fuzz seconds="600":
 
 # Licences, bans and sources of all dependencies (deny.toml).
 deny:
-    test -x .tools/bin/cargo-deny || cargo install --quiet --locked --root .tools cargo-deny
+    test -x .tools/bin/cargo-deny || cargo install --quiet --locked --root .tools cargo-deny@0.20.2
     .tools/bin/cargo-deny check licenses bans sources
 
 # Known holes in dependencies; fetches a database.
 advisories:
-    test -x .tools/bin/cargo-deny || cargo install --quiet --locked --root .tools cargo-deny
+    test -x .tools/bin/cargo-deny || cargo install --quiet --locked --root .tools cargo-deny@0.20.2
     .tools/bin/cargo-deny check advisories
