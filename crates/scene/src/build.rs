@@ -19,8 +19,8 @@ use nalgebra::Vector3;
 
 use crate::effects::Choice;
 use crate::error::{SceneError, shorten};
-use crate::suggest::one_of;
 use crate::scene::{self, Body, MeshedBody, Scene};
+use crate::suggest::one_of;
 
 /// A scene that cannot be built.
 #[derive(Debug, thiserror::Error)]

@@ -40,7 +40,8 @@ const STONE: &str = "[body.rigid]\nmass = 2.0\ncenter_of_mass = [1.0, 2.0, 3.0]\
 const CUBE: &str = "[body]\nmesh = \"../../fem-tet10/tests/data/cube_groups.msh\"\n\
                     material = { young_modulus = 7e4, poisson_ratio = 0.33, density = 2.7e-9 }\n\
                     point_masses = [{ at = [5.0, 5.0, 5.0], mass = 1e-7, spread = 20.0 }]\n";
-const PUSH: &str = "[[loads]]\nkind = \"force\"\nat = [10.0, 10.0, 10.0]\ndirection = [1.0, 2.0, 3.0]\namplitude = 4.0\n";
+const PUSH: &str =
+    "[[loads]]\nkind = \"force\"\nat = [10.0, 10.0, 10.0]\ndirection = [1.0, 2.0, 3.0]\namplitude = 4.0\n";
 
 /// Scenes that run, with every key that is a number and every kind of history.
 fn scenes() -> Vec<String> {
@@ -58,7 +59,8 @@ fn scenes() -> Vec<String> {
     let pushed = |history: &str| format!("{PUSH}history = {history}\n");
     let all: String = histories.into_iter().map(pushed).collect();
     let step = "[time]\nend = 0.01\nstep = 1e-4\n";
-    let tolerance = "[time]\nend = 0.01\ntolerance = 1e-4\n[output]\ninterval = 1e-3\npoints = { P = [10.0, 0.0, 0.0] }\n";
+    let tolerance =
+        "[time]\nend = 0.01\ntolerance = 1e-4\n[output]\ninterval = 1e-3\npoints = { P = [10.0, 0.0, 0.0] }\n";
     let start = "[initial]\nvelocity = [1.0, 2.0, 3.0]\nangular_velocity = [3.0, 2.0, 1.0]\n";
     let deformed = format!("{start}modal_displacement = [1e-4, 2e-4]\nmodal_velocity = [1e-2, 0.0]\n");
     let hinge = "[[constraints]]\nkind = \"hinge\"\nat = [0.0, 0.0, 0.0]\naxis = [0.0, 0.0, 1.0]\n";
@@ -74,10 +76,16 @@ fn scenes() -> Vec<String> {
             "{UNITS}{STONE}[[constraints]]\nkind = \"slider\"\ndirection = [0.0, 1.0, 2.0]\n{}{tolerance}",
             driven(histories[4])
         ),
-        free("flexible = 4\ndamping_ratio = [0.1, 0.2]", &format!("{}{}{step}", pushed(histories[3]), pushed(histories[5]))),
+        free(
+            "flexible = 4\ndamping_ratio = [0.1, 0.2]",
+            &format!("{}{}{step}", pushed(histories[3]), pushed(histories[5])),
+        ),
         free("flexible = \"auto\"\nmost = 4\ndamping_table = [[1e4, 0.1], [1e6, 0.2]]", &format!("{PUSH}{tolerance}")),
-        free("flexible = 3\nrayleigh = { alpha = 10.0, beta = 1e-7 }", &format!("{frame}{PUSH}{step}scheme = \"strang\"\n"))
-            .replace("step = 1e-4", "step = 1e-6"),
+        free(
+            "flexible = 3\nrayleigh = { alpha = 10.0, beta = 1e-7 }",
+            &format!("{frame}{PUSH}{step}scheme = \"strang\"\n"),
+        )
+        .replace("step = 1e-4", "step = 1e-6"),
         free(
             "flexible = 3",
             "[[loads]]\nkind = \"pressure\"\ngroup = \"foot\"\namplitude = 2.0\n\
@@ -93,7 +101,7 @@ fn scenes() -> Vec<String> {
             histories[4]
         ),
     ];
-    scenes.extend([histories[1], histories[5], histories[6]].map(|history| {
+    scenes.extend([histories[1], histories[5]].map(|history| {
         let hinge = format!("{hinge}radius = 12.0\n{}", driven(history));
         format!("{UNITS}{CUBE}[modes]\nflexible = 3\n{hinge}{tolerance}")
     }));
@@ -115,12 +123,32 @@ fn numbers(text: &str) -> Vec<std::ops::Range<usize>> {
 }
 
 const NASTY: [&str; 22] = [
-    "0.0", "-0.0", "-1.0", "1", "0.5", "1e-5", "1e-13", "1e-17", "1e-40", "1e-160", "1e-300", "5e-324", "1e5", "1e9", "1e20", "1e100", "1e160",
-    "-1e200", "1e300", "1.7e308", "18446744073709551615", "1000000000000",
+    "0.0",
+    "-0.0",
+    "-1.0",
+    "1",
+    "0.5",
+    "1e-5",
+    "1e-13",
+    "1e-17",
+    "1e-40",
+    "1e-160",
+    "1e-300",
+    "5e-324",
+    "1e5",
+    "1e9",
+    "1e20",
+    "1e100",
+    "1e160",
+    "-1e200",
+    "1e300",
+    "1.7e308",
+    "18446744073709551615",
+    "1000000000000",
 ];
 
 /// How a scene ended.
-#[derive(Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Ended {
     Unread,
     Unbuilt,
@@ -147,8 +175,7 @@ fn is_finite(now: &Observation) -> bool {
         now.linear_momentum_global,
         now.angular_momentum_global,
     ];
-    let points =
-        now.points.iter().flat_map(|p| [p.displacement, p.velocity, p.acceleration, p.rigid_acceleration]);
+    let points = now.points.iter().flat_map(|p| [p.displacement, p.velocity, p.acceleration, p.rigid_acceleration]);
     let lists = [&now.modal_displacement, &now.modal_velocity, &now.modal_acceleration];
     let scalars = [now.time, now.kinetic_energy, now.strain_energy, now.energy_balance()];
     vectors.into_iter().chain(points).all(|v| v.iter().all(|x| x.is_finite()))
@@ -195,37 +222,39 @@ fn below(state: &mut u64, end: usize) -> usize {
 
 #[test]
 fn bad_numbers_are_refused_or_move_with_finite_ones() {
-    let mut ended = [0; 5];
-    let mut worst = 0;
+    // SAFETY: the program has one test, and no other thread that reads the environment yet. The library of matrix
+    // products has a buffer of hundreds of megabytes for each thread, which it does not touch: one thread, one buffer.
+    unsafe { std::env::set_var("RAYON_NUM_THREADS", "1") };
     let scenes = scenes();
     for text in &scenes {
-        // The pool of threads is up after the first.
         assert_eq!(run(text), (Ended::Moved, String::new()), "{text}");
     }
+    let mut ended = [0; 5];
+    let mut measured = |text: &str| {
+        let before = HELD.load(Relaxed);
+        MOST.store(before, Relaxed);
+        ended[run(text).0 as usize] += 1;
+        let held = MOST.load(Relaxed) - before;
+        // Measured: 3.6 MB, for the formula of the first scene.
+        assert!(held < 8 << 20, "{held} bytes were held for {text}");
+    };
     let mut state = 1;
-    for (i, text) in scenes.iter().enumerate() {
-        let mut count = [0; 5];
-        let began = std::time::Instant::now();
-        for _ in 0..tries() {
+    for text in &scenes {
+        for _ in 0..60 {
             let mut spoiled = text.clone();
             for _ in 0..=below(&mut state, 2) {
                 let places = numbers(&spoiled);
                 let place = places[below(&mut state, places.len())].clone();
                 spoiled.replace_range(place, NASTY[below(&mut state, NASTY.len())]);
             }
-            let before = HELD.load(Relaxed);
-            MOST.store(before, Relaxed);
-            let b2 = std::time::Instant::now();
-            let (how, _) = match std::panic::catch_unwind(|| run(&spoiled)) { Ok(x) => x, Err(_) => { println!("PANIC {i} {spoiled}"); continue } };
-            if b2.elapsed().as_millis() > 150 { println!("SLOW {i} {:?} {}", b2.elapsed(), diff(text, &spoiled)); }
-            if MOST.load(Relaxed) - before > 16 << 20 { println!("LARGE {i} {} {}", MOST.load(Relaxed) - before, diff(text, &spoiled)); }
-            worst = worst.max(MOST.load(Relaxed) - before);
-            ended[how as usize] += 1;
-            count[how as usize] += 1;
+            measured(&spoiled);
         }
-        println!("{i} {count:?} {:?}", began.elapsed());
     }
-    println!("{ended:?} {worst}");
+    // These were found among many more: the first made the search for modes panic.
+    let heavy = scenes[10].replace("7e4", "1e100").replace("1e-7", "1000000000000");
+    let push = |number: &str| scenes[0].replacen("amplitude = 4.0", &format!("amplitude = {number}"), 1);
+    let fast = scenes[9].replace("to = 500.0", "to = 1e300");
+    [heavy, push("1.7e308"), fast].iter().for_each(|text| measured(text));
+    // No way to end is left untried. Measured: 297 unread, 92 unbuilt, 12 unstarted, 30 stopped, 292 moved.
+    assert!(ended.iter().all(|count| *count > 5), "{ended:?}");
 }
-fn tries() -> usize { std::env::var("TRIES").map_or(50, |t| t.parse().unwrap()) }
-fn diff(a: &str, b: &str) -> String { a.lines().zip(b.lines()).filter(|(a, b)| a != b).map(|(_, b)| b.to_owned()).collect::<Vec<_>>().join(" // ") }

@@ -20,7 +20,11 @@ impl Check<'_> {
                     the relative error allowed in a step, e.g. `tolerance = 1e-8`";
         let stepping = match (step, tolerance) {
             (Some(_), Some(_)) => {
-                return Err(self.document.place("time.tolerance").refuse("both `step` and `tolerance`", expected, cure));
+                return Err(self.document.place("time.tolerance").refuse(
+                    "both `step` and `tolerance`",
+                    expected,
+                    cure,
+                ));
             }
             (None, None) => {
                 return Err(self.document.place("time.step").refuse("neither `step` nor `tolerance`", expected, cure));
