@@ -99,7 +99,8 @@ fn damaged_scenes() {
         let more = held.saturating_sub(50 * spoiled.len());
         worst = worst.max(more);
     }
-    println!("damaged {worst}");
+    // Measured: 41 568.
+    assert!(worst < 64 << 10, "{worst} bytes more than 50 for a byte of the text");
 }
 
 /// A text with so many of something, for each thing that there may be many of, and what it is refused with ("" if it is
@@ -196,7 +197,7 @@ fn scenes_made_to_be_large() {
         match &of_whole.answer {
             Ok(_) => assert_eq!(says, "", "{what}"),
             Err(message) => {
-                assert!(says != "" && message.contains(says), "{what}: {message}");
+                assert!(!says.is_empty() && message.contains(says), "{what}: {message}");
             }
         }
         let multiple = of_whole.held as f64 / whole.len() as f64;
@@ -232,17 +233,16 @@ fn tables() {
         let (multiple, answer) = table(&of);
         match answer {
             Ok(_) => assert_eq!(says, "", "{what}"),
-            Err(message) => assert!(says != "" && message.contains(says), "{what}: {message}"),
+            Err(message) => assert!(!says.is_empty() && message.contains(says), "{what}: {message}"),
         }
         // Measured: 32.3 for commas, 4.9 for points.
         assert!(multiple < 40.0, "{what}: {multiple:.1} bytes were held for a byte of the table");
     }
     // One file in the place of very many.
-    table(&"0,0\n1,1\n".replace("\n", &format!("{}\n", " ".repeat(500_000))));
+    let _ = table(&"0,0\n1,1\n".replace("\n", &format!("{}\n", " ".repeat(500_000))));
     let many = scene(&format!("{{kind='product',factors=[{}]}}", "{kind='table',file='a.csv'},".repeat(1000)));
     let read = read(&many, &folder.path().join("a.toml"));
     assert!(read.answer.unwrap_err().contains("found more than 16777216 bytes of tables"));
-    // What the first thirty-three hold, and the next one's text. Measured: HELDM.
-    assert!(read.held < 20 << 20, "{} bytes were held", read.held);
-    println!("held {}", read.held);
+    // Measured: 2.8 MB, of which the text of a table is 1 MB.
+    assert!(read.held < 4 << 20, "{} bytes were held", read.held);
 }
