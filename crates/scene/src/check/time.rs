@@ -9,6 +9,9 @@ use crate::section::{Formulation, OutputSection, Scheme, TimeSection};
 /// Intervals between rows where the scene gives a tolerance and no interval.
 const DEFAULT_ROWS: f64 = 500.0;
 
+/// Shortest step and interval, over the end of the run: times closer than a tenth of this are one to the stepper.
+const LEAST_PART: f64 = 1e-12;
+
 impl Check<'_> {
     pub fn time(&self, section: &TimeSection) -> Result<Time, SceneError> {
         let &TimeSection { end, step, tolerance, formulation, scheme } = section;
@@ -97,7 +100,7 @@ impl Check<'_> {
             &format!("make the {name} shorter or the run longer"),
         )?;
         self.require(
-            end + length > end,
+            length >= LEAST_PART * end,
             key,
             &format!("a {name} that is not lost in rounding beside the end of the run, {end:?}"),
             &format!("make the {name} longer or the run shorter"),
