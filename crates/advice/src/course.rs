@@ -26,6 +26,8 @@ struct Piece {
 /// Fewest and most intervals in a piece.
 const FEWEST: usize = 64;
 const MOST: usize = 1 << 15;
+/// Most intervals in all pieces, but for one in each.
+const MOST_IN_ALL: usize = 1 << 22;
 /// Distance of the lines from the history, of its largest value.
 const CLOSE: f64 = 1e-3;
 
@@ -35,12 +37,13 @@ impl Course {
         stops.push(end);
         stops.sort_by(f64::total_cmp);
         let largest = history.largest(end);
+        let most = (MOST_IN_ALL / stops.len()).clamp(1, MOST);
         let mut start = 0.0;
         let mut resolved = true;
         let mut pieces = Vec::with_capacity(stops.len());
         for stop in stops {
             if stop > start {
-                let (piece, follows) = Piece::new(history, start, stop, CLOSE * largest);
+                let (piece, follows) = Piece::new(history, start, stop, CLOSE * largest, most);
                 pieces.push(piece);
                 resolved &= follows;
                 start = stop;
@@ -122,12 +125,12 @@ pub(crate) struct Swing {
 }
 
 impl Piece {
-    fn new(history: &History, start: f64, stop: f64, close: f64) -> (Self, bool) {
+    fn new(history: &History, start: f64, stop: f64, close: f64, most: usize) -> (Self, bool) {
         let inside = 0.5 * (start + stop);
         let sampled = |n: usize| -> Vec<f64> {
             (0..=n).map(|i| history.at(start + (stop - start) * i as f64 / n as f64, inside)).collect()
         };
-        let mut n = FEWEST;
+        let mut n = FEWEST.min(most);
         loop {
             // Three points between the samples: one in the middle could fall on the waves of the history.
             let samples = sampled(n);
@@ -137,7 +140,7 @@ impl Piece {
                 (finer[i] - samples[k] * (1.0 - part) - samples[k + 1] * part).abs()
             });
             let follows = away.fold(0.0, f64::max) <= close;
-            if follows || n >= MOST {
+            if follows || 2 * n > most {
                 return (Self { step: (stop - start) / n as f64, samples }, follows);
             }
             n *= 2;
@@ -228,6 +231,20 @@ mod tests {
         let late = History::HalfSine { start: -0.5, duration: 1.0 };
         let risen = Course::new(&late, 0.25).risen();
         assert!((risen.largest - (1.0 - 0.5_f64.sqrt())).abs() < 1e-12);
+    }
+
+    #[test]
+    fn very_many_corners_do_not_make_very_many_samples() {
+        for corners in [3000, 300_000] {
+            let times: Vec<f64> = (0..corners).map(f64::from).collect();
+            let values = (0..corners).map(|k| f64::from(k % 2)).collect();
+            let table = frames_rk4::Table::new(times, values).unwrap();
+            let course = Course::new(&History::Table(table), f64::from(corners));
+            let samples: usize = course.pieces.iter().map(|piece| piece.samples.len()).sum();
+            // The straight lines of a table are followed by however few. Measured: 195 000 and 4 200 000.
+            assert!(course.resolved && samples < MOST_IN_ALL + 2 * course.pieces.len(), "{samples}");
+            assert!((course.magnitude_integral / (0.5 * f64::from(corners)) - 1.0).abs() < 1e-3);
+        }
     }
 
     #[test]

@@ -135,11 +135,11 @@ impl History {
             Self::Table(table) => table.rate(time, inside),
             Self::Expression(expression) => expression.rate(time, inside, span),
             Self::Product(factors) => {
-                let term = |(k, factor): (usize, &Self)| {
-                    let others = factors.iter().enumerate().filter(|(other, _)| *other != k);
-                    factor.rate(time, inside, span) * others.map(|(_, f)| f.at(time, inside)).product::<f64>()
+                let times = |(value, rate): (f64, f64), factor: &Self| {
+                    let (by, by_rate) = (factor.at(time, inside), factor.rate(time, inside, span));
+                    (value * by, rate * by + value * by_rate)
                 };
-                factors.iter().enumerate().map(term).sum()
+                factors.iter().fold((1.0, 0.0), times).1
             }
         }
     }

@@ -3,34 +3,12 @@
 #[allow(dead_code)] // shared with the other test programs, which use all of it
 mod common;
 
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::Cell;
-
+use allocation_counter::measure;
 use frames_rk4::{
-    ConservativeScheme, Expression, History, Initial, Method, Physics, Rows, Setup, Simulation, StepControl, Table,
+    ConservativeScheme, Expression, History, Initial, Method, Physics, Reached, Rows, Setup, Simulation, StepControl,
+    Table,
 };
 use nalgebra::Vector3;
-
-thread_local! {
-    /// Allocations on this thread; the test harness has others.
-    static COUNT: Cell<u64> = const { Cell::new(0) };
-}
-
-struct Counting;
-
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        COUNT.with(|count| count.set(count.get() + 1));
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        unsafe { System.dealloc(pointer, layout) }
-    }
-}
-
-#[global_allocator]
-static ALLOCATOR: Counting = Counting;
 
 fn spinning() -> Initial {
     Initial { omega: Vector3::new(4.0, -6.0, 7.0), ..Initial::at_rest(10) }
@@ -41,12 +19,9 @@ fn a_step_of_the_paper_s_scheme_allocates_nothing() {
     let ring = common::ring();
     let load = ring.half_sine([-100.0, 0.0, 0.0], [1.0, 2.0, 3.0], 1.0);
     let mut scheme = ring.scheme(0.05, vec![load], &spinning(), 5e-5);
-    let before = COUNT.get();
-    common::advance(&mut scheme, 1000);
-    assert_eq!(COUNT.get(), before);
+    assert_eq!(measure(|| common::advance(&mut scheme, 1000)).count_total, 0);
     // The counter counts: a copy of the state has lists.
-    let copy = scheme.state().clone();
-    assert!(COUNT.get() > before, "{}", copy.time);
+    assert!(measure(|| drop(scheme.state().clone())).count_total > 0);
 }
 
 /// A run of the ring under a load, with a point that is observed.
@@ -71,15 +46,14 @@ fn simulation(method: Method, control: StepControl, end: f64) -> Simulation {
 /// Allocations of 1000 steps with a row after each ten, after `warm` such rows.
 fn allocations(mut simulation: Simulation, warm: usize) -> u64 {
     let mut out = simulation.observation();
-    let mut before = 0;
-    for row in 0..warm + 100 {
-        if row == warm {
-            before = COUNT.get();
+    let mut rows = |count| {
+        for _ in 0..count {
+            assert_eq!(simulation.advance(u64::MAX).unwrap(), Reached::Row);
+            simulation.observe(&mut out).unwrap();
         }
-        assert_eq!(simulation.advance(u64::MAX).unwrap(), frames_rk4::Reached::Row);
-        simulation.observe(&mut out).unwrap();
-    }
-    COUNT.get() - before
+    };
+    rows(warm);
+    measure(|| rows(100)).count_total
 }
 
 #[test]
@@ -103,8 +77,8 @@ fn histories_allocate_nothing() {
         History::Expression(Expression::new(text, vec![3.0]).unwrap()),
         History::Ramp { start: 1.0, duration: 1.0 },
     ]);
-    let before = COUNT.get();
-    let sum: f64 = (0..1000).map(|k| 0.01 * f64::from(k)).map(|t| history.at(t, t + 0.005)).sum();
-    assert_eq!(COUNT.get(), before);
+    let mut sum = 0.0;
+    let memory = measure(|| sum = (0..1000).map(|k| 0.01 * f64::from(k)).map(|t| history.at(t, t + 0.005)).sum());
+    assert_eq!(memory.count_total, 0);
     assert!(sum.is_finite() && sum != 0.0);
 }

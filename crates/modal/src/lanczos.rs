@@ -166,7 +166,8 @@ impl<'a> Basis<'a> {
             coefficients += h * &coupling;
             coupling = svqb.inverse * coupling;
             times(w, &svqb.transform, &mut self.spare);
-            if round > 0 && svqb.well_conditioned {
+            // The last round is as good as it gets; M·W has to be that of W in any case.
+            if round > 0 && svqb.well_conditioned || round + 1 == MAX_ROUNDS {
                 times(&mut self.m_w, &svqb.transform, &mut self.spare);
                 break;
             }

@@ -1,10 +1,7 @@
 //! Damaged files: each is refused before HDF5, a library of C, sees it, and none costs more memory than it has bytes.
-//!
-//! A program of its own, with one test, since it counts what the whole program allocates.
 
 mod rows;
 
-use peak_alloc::PeakAlloc;
 use results::*;
 use rows::{Row, assert_rows, folder, metadata};
 use std::fs::OpenOptions;
@@ -12,9 +9,6 @@ use std::ops::Range;
 use std::os::unix::fs::FileExt;
 use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
-
-#[global_allocator]
-static MEMORY: PeakAlloc = PeakAlloc;
 
 /// Files refused.
 static REFUSED: AtomicUsize = AtomicUsize::new(0);
@@ -51,10 +45,9 @@ fn left_out(bytes: &[u8]) -> Vec<Range<usize>> {
 
 /// What the reader says of a file, and the most memory that it held meanwhile.
 fn read(path: &Path) -> (Result<Results, FileError>, usize) {
-    let before = MEMORY.current_usage();
-    MEMORY.reset_peak_usage();
-    let outcome = Results::open(path);
-    (outcome, MEMORY.peak_usage() - before)
+    let mut outcome = None;
+    let memory = allocation_counter::measure(|| outcome = Some(Results::open(path)));
+    (outcome.unwrap(), memory.bytes_max as usize)
 }
 
 /// The reader must refuse the file, with no more in memory than a message and the ranges that its head claims.

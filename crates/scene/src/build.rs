@@ -18,8 +18,9 @@ use modal::{ModalError, Modes, ReducedBody};
 use nalgebra::Vector3;
 
 use crate::effects::Choice;
-use crate::error::SceneError;
+use crate::error::{SceneError, shorten};
 use crate::scene::{self, Body, MeshedBody, Scene};
+use crate::suggest::one_of;
 
 /// A scene that cannot be built.
 #[derive(Debug, thiserror::Error)]
@@ -369,7 +370,7 @@ fn read_mesh(scene: &Scene, body: &MeshedBody) -> Result<Mesh, BuildError> {
         MeshError::Io { source_name, source } => scene
             .refuse(
                 "body.mesh",
-                format!("a mesh that cannot be read: {source_name}: {source}"),
+                format!("a mesh that cannot be read: {}: {source}", shorten(&source_name)),
                 "a MSH 4.1 file, its path relative to the folder of the scene file",
                 "correct the path, or make the mesh: gmsh -3 -order 2 -format msh41 BODY.geo",
             )
@@ -424,8 +425,8 @@ fn refuse(scene: &Scene, key: &str, error: AssemblyError) -> SceneError {
         ),
         AssemblyError::MissingGroup { group, present, .. } => scene.refuse(
             key,
-            format!("the physical volume \"{group}\", which the mesh has not"),
-            format!("one of {present:?}"),
+            format!("the physical volume \"{}\", which the mesh has not", shorten(&group)),
+            one_of(&present),
             "rename it, or name the volume in the geometry and mesh again",
         ),
         _ => scene.refuse(key, message, "something that fits the mesh", "correct it"),
@@ -436,8 +437,8 @@ fn refuse(scene: &Scene, key: &str, error: AssemblyError) -> SceneError {
 fn refuse_mesh(scene: &Scene, key: &str, error: &MeshError) -> BuildError {
     if let MeshError::NoGroup { kind, group, present, .. } = error {
         let cure = "use one of these, or name it in the geometry and mesh again";
-        let found = format!("the physical {kind} \"{group}\", which the mesh has not");
-        return scene.refuse(key, found, format!("one of {present:?}"), cure).into();
+        let found = format!("the physical {kind} \"{}\", which the mesh has not", shorten(group));
+        return scene.refuse(key, found, one_of(present), cure).into();
     }
     scene
         .refuse(key, error.to_string(), "something that the mesh has", "name it in the geometry, and mesh again")

@@ -9,6 +9,8 @@ mod load;
 mod modes;
 mod time;
 
+use std::cell::Cell;
+
 use nalgebra::Vector3;
 
 use crate::document::{Document, join};
@@ -18,8 +20,21 @@ use crate::scene::{Frame, Units};
 /// Three points whose triangle has an angle with a smaller sine count as lying on one line.
 const LEAST_SINE: f64 = 1e-6;
 
+/// The most entries of a list of which each takes memory and work as the mesh does.
+const MOST_ENTRIES: usize = 1000;
+
 /// The rules, on the values of one document.
-pub(crate) struct Check<'d>(pub &'d Document<'d>);
+pub(crate) struct Check<'d> {
+    document: &'d Document<'d>,
+    /// Bytes that table files may still have: one file may be named many times.
+    table_bytes: Cell<u64>,
+}
+
+impl<'d> Check<'d> {
+    pub fn new(document: &'d Document<'d>) -> Self {
+        Self { document, table_bytes: Cell::new(history::LONGEST) }
+    }
+}
 
 impl Check<'_> {
     /// Refuses the value with the key path `key`, as it is written, unless `rule` holds.
@@ -27,7 +42,7 @@ impl Check<'_> {
         if rule {
             return Ok(());
         }
-        let node = self.0.nearest(key);
+        let node = self.document.nearest(key);
         Err(node.place().refuse(shorten(node.written()), expected, cure))
     }
 
@@ -37,25 +52,34 @@ impl Check<'_> {
 
     /// The refusal of a required key that is absent, as serde would give it.
     fn missing(&self, table: &str, key: &str) -> SceneError {
-        SceneError::MissingKey { at: self.0.place(&join(table, key)).into(), key: key.to_owned() }
+        SceneError::MissingKey { at: self.document.place(&join(table, key)).into(), key: key.to_owned() }
     }
 
     /// Whether the file has a value with this key path.
     fn has(&self, key: &str) -> bool {
-        self.0.nearest(key).path == key
+        self.document.nearest(key).path == key
     }
 
     /// Refuses the values at `table` if more than one of `keys` is there.
     fn at_most_one(&self, table: &str, keys: &[&str], cure: &str) -> Result<(), SceneError> {
         let mut found = keys.iter().filter(|key| self.has(&join(table, key)));
         match (found.next(), found.next()) {
-            (Some(first), Some(second)) => Err(self.0.place(&join(table, second)).refuse(
+            (Some(first), Some(second)) => Err(self.document.place(&join(table, second)).refuse(
                 format!("both `{first}` and `{second}`"),
                 "at most one of them",
                 cure,
             )),
             _ => Ok(()),
         }
+    }
+
+    /// Refuses a list that would take too much with a large mesh.
+    fn not_too_many(&self, key: &str, entries: usize, cure: &str) -> Result<(), SceneError> {
+        if entries <= MOST_ENTRIES {
+            return Ok(());
+        }
+        let expected = format!("at most {MOST_ENTRIES}");
+        Err(self.document.place(key).refuse(format!("{entries} entries"), expected, cure))
     }
 
     /// Makes a vector a unit one.
@@ -76,7 +100,7 @@ impl Check<'_> {
     ) -> Result<(), SceneError> {
         match numbers.windows(2).position(|pair| pair[0] >= pair[1]) {
             None => Ok(()),
-            Some(i) => Err(self.0.place(&format!("{key}{}", entry(i + 1))).refuse(
+            Some(i) => Err(self.document.place(&format!("{key}{}", entry(i + 1))).refuse(
                 format!("{:?} after {:?}", numbers[i + 1], numbers[i]),
                 format!("{what} that rise from entry to entry"),
                 "put the entries in order, each once",
@@ -109,14 +133,14 @@ impl Check<'_> {
         {
             if same {
                 let found = format!("the same point for {one} and {other}");
-                return Err(self.0.place(key).refuse(found, "three different points", cure));
+                return Err(self.document.place(key).refuse(found, "three different points", cure));
             }
         }
         let sine = least_sine(&r, &p, &q);
         if sine >= LEAST_SINE {
             return Ok(());
         }
-        Err(self.0.place("frame").refuse(
+        Err(self.document.place("frame").refuse(
             format!("R, P, Q on one line (the smallest sine of an angle is {sine:.1e})"),
             format!("a triangle with no sine below {LEAST_SINE:e}"),
             cure,

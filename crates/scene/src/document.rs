@@ -56,15 +56,10 @@ impl<'t> Document<'t> {
     /// around it.
     pub fn nearest(&self, path: &str) -> Node<'_> {
         let mut node = self.root();
-        loop {
-            let leads_there = |child: &Node| {
-                path.strip_prefix(&child.path).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
-            };
-            match node.children().find(leads_there) {
-                Some(child) => node = child,
-                None => return node,
-            }
+        while let Some(child) = node.child_towards(path) {
+            node = child;
         }
+        node
     }
 
     /// The place of the value with the given key path, or of what is around it.
@@ -93,14 +88,25 @@ impl<'d> Node<'d> {
                     value,
                 }))
             }
-            DeValue::Array(list) => Box::new(list.iter().enumerate().map(move |(i, value)| Node {
-                document,
-                path: format!("{path}[{i}]"),
-                key: None,
-                value,
-            })),
+            DeValue::Array(list) => {
+                Box::new(list.iter().enumerate().map(move |(i, value)| entry(document, &path, i, value)))
+            }
             _ => Box::new(std::iter::empty()),
         }
+    }
+
+    /// The child that is, or has within it, the value with the given key path.
+    fn child_towards(&self, path: &str) -> Option<Node<'d>> {
+        // A list may be long, and is not searched.
+        if let DeValue::Array(list) = self.value.get_ref() {
+            let (index, _) = path.strip_prefix(&self.path)?.strip_prefix('[')?.split_once(']')?;
+            let index = index.parse().ok()?;
+            return list.get(index).map(|value| entry(self.document, &self.path, index, value));
+        }
+        let leads_there = |child: &Node| {
+            path.strip_prefix(&child.path).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
+        };
+        self.children().find(leads_there)
     }
 
     /// The last key without quotes; empty for the root and for entries of a list.
@@ -130,6 +136,11 @@ impl<'d> Node<'d> {
     fn place_of(&self, span: Range<usize>, path: String) -> Place {
         Place::new(self.document.path, self.document.text, span, path)
     }
+}
+
+/// An entry of the list at `path`.
+fn entry<'d>(document: &'d Document<'d>, path: &str, index: usize, value: &'d Spanned<DeValue<'d>>) -> Node<'d> {
+    Node { document, path: format!("{path}[{index}]"), key: None, value }
 }
 
 /// The path of `key` in the table at `path`; a key that TOML wants in quotes gets them.

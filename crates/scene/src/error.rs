@@ -29,7 +29,8 @@ pub enum SceneError {
     /// The file is longer than a scene can be.
     #[error(
         "{}: the scene file is longer than {limit} bytes\n \
-         = name a scene file; the mesh goes into a file of its own, named by `body.mesh`",
+         = name a scene file; the mesh goes into a file of its own, named by `body.mesh`, and so does a long table of a \
+         history, named by `file`",
         .path.display()
     )]
     TooLarge {
@@ -103,7 +104,7 @@ pub enum SceneError {
 }
 
 impl SceneError {
-    /// Where in the scene file; `None` if it could not be read as text.
+    /// Where in the scene file; `None` if it could not be read as text, or is too long.
     pub fn place(&self) -> Option<&Place> {
         match self {
             Self::Unreadable { .. } | Self::TooLarge { .. } | Self::NotUtf8 { .. } => None,

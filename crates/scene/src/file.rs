@@ -10,14 +10,15 @@ use crate::error::{Place, SceneError};
 use crate::scene::Scene;
 use crate::section::Sections;
 
-/// The longest scene file that is read, in bytes (16 MiB).
-const LONGEST: u64 = 16 << 20;
+/// The longest scene that is read, in bytes (1 MiB): a text of nothing but tables within tables is 600 times as long in
+/// memory. Long tables of numbers have files of their own.
+const LONGEST: u64 = 1 << 20;
 
 impl Scene {
     /// Reads and checks a scene file.
     ///
     /// # Errors
-    /// [`SceneError`] if the file cannot be read, is longer than 16 MiB, is not TOML in UTF-8, or
+    /// [`SceneError`] if the file cannot be read, is longer than 1 MiB, is not TOML in UTF-8, or
     /// breaks a rule of the scene file.
     pub fn read(path: impl AsRef<Path>) -> Result<Self, SceneError> {
         let path = path.as_ref();
@@ -25,9 +26,7 @@ impl Scene {
         File::open(path)
             .and_then(|file| file.take(LONGEST + 1).read_to_end(&mut bytes))
             .map_err(|cause| unreadable(path, cause))?;
-        if bytes.len() as u64 > LONGEST {
-            return Err(SceneError::TooLarge { path: path.to_owned(), limit: LONGEST });
-        }
+        refuse_long(bytes.len(), path)?;
         let text = std::str::from_utf8(&bytes).map_err(|error| {
             let (good, bad) = bytes.split_at(error.valid_up_to());
             SceneError::NotUtf8 {
@@ -41,18 +40,19 @@ impl Scene {
 
     /// Checks the text of a scene file. `path` is where the text comes from: it is named in
     /// messages, and the mesh and the tables of histories are relative to its folder. Of the
-    /// files that it names, the tables are read; the mesh is not.
+    /// files that it names, the tables are read, up to 16 MiB in all; the mesh is not.
     ///
     /// # Errors
-    /// [`SceneError`] if the text is not TOML or breaks a rule of the scene file.
+    /// [`SceneError`] if the text is longer than 1 MiB, is not TOML, or breaks a rule of the scene file.
     pub fn parse(text: &str, path: impl AsRef<Path>) -> Result<Self, SceneError> {
         let path = path.as_ref();
+        refuse_long(text.len(), path)?;
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let document = Document::parse(text, path)?;
         let Sections { title, units, body, modes, effects, frame, initial, constraints, mut loads, time, output } =
             crate::deserialize::from_document(&document)?;
 
-        let check = Check(&document);
+        let check = Check::new(&document);
         check.label("title", &title)?;
         check.units(&units)?;
         let body = check.body(body)?;
@@ -106,6 +106,13 @@ impl Scene {
     ) -> SceneError {
         self.place(key).refuse(found, expected, cure)
     }
+}
+
+fn refuse_long(bytes: usize, path: &Path) -> Result<(), SceneError> {
+    if bytes as u64 <= LONGEST {
+        return Ok(());
+    }
+    Err(SceneError::TooLarge { path: path.to_owned(), limit: LONGEST })
 }
 
 fn unreadable(path: &Path, cause: io::Error) -> SceneError {

@@ -167,7 +167,7 @@ pub struct Time {
 /// What sets the length of a step: the scene has exactly one of the two keys.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Stepping {
-    /// Key `step`: steps of at most this length, 0 < step ≤ end.
+    /// Key `step`: steps of at most this length, 1e-12 end ≤ step ≤ end.
     Step(f64),
     /// Key `tolerance`: what the estimated relative errors of all steps may sum to, 0 < tolerance < 1. Only with
     /// [`Method::Rkmk4`] and [`Method::Exponential`].
@@ -213,7 +213,7 @@ pub enum Rows {
     /// Key `every`: after every so many steps, ≥ 1. Only with [`Stepping::Step`], where 1 is the
     /// default.
     EverySteps(u64),
-    /// Key `interval`: at the multiples of this time, 0 < interval ≤ end. With
+    /// Key `interval`: at the multiples of this time, 1e-12 end ≤ interval ≤ end. With
     /// [`Stepping::Tolerance`] the default is a 500th of the end.
     Interval(f64),
 }

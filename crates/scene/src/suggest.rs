@@ -1,4 +1,6 @@
-//! The nearest right name for a misspelt one.
+//! The right names for a misspelt one.
+
+use crate::error::shorten;
 
 /// The name in `known` that `found` most likely means: a few letters away, or one the beginning
 /// of the other.
@@ -20,6 +22,16 @@ pub(crate) fn nearest<'a>(found: &str, known: &[&'a str]) -> Option<&'a str> {
 /// The names in backquotes, separated by commas.
 pub(crate) fn list(names: &[&str]) -> String {
     names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
+}
+
+/// "one of" the names in quotes; of very many, the first.
+pub(crate) fn one_of(names: &[String]) -> String {
+    const SHOWN: usize = 20;
+    let first: Vec<String> = names.iter().take(SHOWN).map(|name| shorten(name)).collect();
+    match names.len().checked_sub(SHOWN) {
+        None | Some(0) => format!("one of {first:?}"),
+        Some(more) => format!("one of {first:?} and {more} others"),
+    }
 }
 
 #[cfg(test)]
@@ -49,5 +61,14 @@ mod tests {
             assert_eq!(nearest(found, &known), None, "{found}");
         }
         assert_eq!(nearest("step", &[]), None);
+    }
+
+    #[test]
+    fn of_many_names_the_first_are_shown_and_of_a_long_one_its_beginning() {
+        let names = |count: usize| (0..count).map(|i| format!("g{i}")).collect::<Vec<_>>();
+        assert_eq!(one_of(&names(2)), "one of [\"g0\", \"g1\"]");
+        assert!(one_of(&names(20)).ends_with("\"g19\"]"));
+        assert!(one_of(&names(10_000)).ends_with("\"g19\"] and 9980 others"));
+        assert!(one_of(&["x".repeat(10_000)]).chars().count() < 120);
     }
 }

@@ -230,13 +230,13 @@ fn files() {
     assert!(matches!(error, SceneError::NotUtf8 { line: 2, byte: 0xe9, .. }));
     assert!(message.contains("plate.toml:2: ") && message.contains("encoding UTF-8"), "{message}");
 
-    let limit = 16 << 20;
+    let limit = 1 << 20;
     let mut long = EXAMPLE.to_owned() + "#";
     long.push_str(&"x".repeat(limit - long.len()));
     std::fs::write(&path, &long).unwrap();
     Scene::read(&path).unwrap();
     std::fs::write(&path, long + "x").unwrap();
     let (message, error) = refusal(&path);
-    assert!(matches!(error, SceneError::TooLarge { limit: 16_777_216, .. }));
-    assert!(message.contains("longer than 16777216 bytes"), "{message}");
+    assert!(matches!(error, SceneError::TooLarge { limit: 1_048_576, .. }));
+    assert!(message.contains("longer than 1048576 bytes"), "{message}");
 }

@@ -69,7 +69,7 @@ fn a_table_that_cannot_be_read_is_named_in_the_scene() {
     };
     refusal(b"0,0\n1,\xff\n", "found a table that cannot be read: ");
     let long = "# a line\n".repeat((16 << 20) / 9 + 1);
-    refusal(long.as_bytes(), "found a table longer than 16777216 bytes");
+    refusal(long.as_bytes(), "found more than 16777216 bytes of tables");
     let text = EXAMPLE.replace(
         "{ kind = \"half-sine\", start = 0.0, duration = 0.02 }",
         "{ kind = \"table\", file = \"nowhere.csv\" }",

@@ -7,8 +7,8 @@ use nalgebra::Complex;
 use super::History;
 use crate::error::SetupError;
 
-/// Panels a walk may have.
-const MOST_PANELS: f64 = 4e6;
+/// Values that a walk may ask the factors of a product for at its panels.
+const MOST_PANELS: f64 = 1e6;
 
 /// A short stretch between two corners.
 #[derive(Debug, Clone, Copy)]
@@ -20,8 +20,12 @@ struct Panel {
 }
 
 impl History {
-    /// ∫₀^end |factor| dt, to about 1e-4 of itself. NaN if the factor is.
+    /// ∫₀^end |factor| dt, to about 1e-4 of itself; of one that is too fast to be walked along, the most it can be. NaN
+    /// if the factor is.
     pub fn magnitude_integral(&self, end: f64) -> f64 {
+        if self.is_too_fast(end) {
+            return self.bound(end) * end;
+        }
         let simpson = |sum: &mut f64, panel: Panel| {
             let [a, b, c] = panel.values.map(f64::abs);
             *sum += panel.half * (a + 4.0 * b + c) / 3.0;
@@ -29,8 +33,12 @@ impl History {
         self.refined(end, simpson, |coarse, fine| settled((fine - coarse).abs(), 1e-4 * fine))
     }
 
-    /// Largest magnitude of the factor from 0 to the end, to about 1e-3 of itself. NaN if the factor is.
+    /// Largest magnitude of the factor from 0 to the end, to about 1e-3 of itself; of one that is too fast to be walked
+    /// along, the most it can be. NaN if the factor is.
     pub fn largest(&self, end: f64) -> f64 {
+        if self.is_too_fast(end) {
+            return self.bound(end);
+        }
         let largest = |most: &mut f64, panel: Panel| {
             for value in panel.values {
                 if value.is_nan() || value.abs() > *most {
@@ -78,7 +86,7 @@ impl History {
         let mut refinement = 2.0;
         loop {
             let fine = self.walk(end, refinement, &add);
-            if agree(coarse, fine) || panels(2.0 * refinement) > MOST_PANELS {
+            if agree(coarse, fine) || panels(2.0 * refinement) > self.most_panels() {
                 return fine;
             }
             (coarse, refinement) = (fine, 2.0 * refinement);
@@ -109,9 +117,37 @@ impl History {
         result
     }
 
-    /// Number of panels for a stretch: sixteen a cycle, times a refinement.
+    /// Number of panels for a stretch: sixteen a cycle, times a refinement, but not more than its share of the most.
     fn panels(&self, length: f64, end: f64, refinement: f64) -> f64 {
-        ((16.0 * length * self.fastest(end)).ceil().max(1.0) * refinement).min(MOST_PANELS)
+        let share = (self.most_panels() * (length / end)).ceil();
+        ((16.0 * length * self.fastest(end)).ceil().max(1.0) * refinement).min(share).max(1.0)
+    }
+
+    /// Whether a walk would miss its cycles: it might step from one zero to another.
+    fn is_too_fast(&self, end: f64) -> bool {
+        16.0 * end * self.fastest(end) > self.most_panels()
+    }
+
+    /// Nothing that the magnitude of the factor exceeds.
+    fn bound(&self, end: f64) -> f64 {
+        match self {
+            Self::Product(factors) => factors.iter().map(|factor| factor.bound(end)).product(),
+            Self::Table(_) | Self::Expression(_) => self.largest(end),
+            _ => 1.0,
+        }
+    }
+
+    /// Panels a walk may have, but for one in each stretch.
+    fn most_panels(&self) -> f64 {
+        MOST_PANELS / self.factors() as f64
+    }
+
+    /// How many histories are multiplied in all.
+    fn factors(&self) -> usize {
+        match self {
+            Self::Product(factors) => factors.iter().map(Self::factors).sum(),
+            _ => 1,
+        }
     }
 
     /// Highest frequency that the factor has by itself between corners. An expression does not tell its own: it is

@@ -22,14 +22,14 @@ impl Check<'_> {
         let BodySection { mesh, material, materials, point_masses, rigid } = section;
         let Some(rigid) = rigid else {
             let Some(mesh) = mesh else { return Err(self.missing("body", "mesh")) };
-            let mesh = self.0.folder().join(self.mesh(&mesh)?);
+            let mesh = self.document.folder().join(self.mesh(&mesh)?);
             let materials = self.materials(material, materials)?;
             self.point_masses(&point_masses)?;
             return Ok(Body::Meshed(MeshedBody { mesh, materials, point_masses }));
         };
         for key in ["mesh", "material", "materials", "point_masses"] {
             if self.has(&join("body", key)) {
-                return Err(self.0.place(&join("body", key)).refuse(
+                return Err(self.document.place(&join("body", key)).refuse(
                     format!("both `rigid` and `{key}`"),
                     "mass properties, or a mesh with its materials and point masses",
                     "keep `rigid` for a rigid body without a mesh, or the mesh and what belongs to it",
@@ -47,7 +47,7 @@ impl Check<'_> {
         let given = Matrix3::from_fn(|i, j| inertia[i][j]);
         let asymmetry = (given - given.transpose()).amax();
         if asymmetry > ASYMMETRY * given.amax() {
-            return Err(self.0.place(key).refuse(
+            return Err(self.document.place(key).refuse(
                 format!("a matrix whose entries across the diagonal differ by up to {asymmetry:?}"),
                 "a symmetric matrix",
                 "give the inertia tensor [[Jxx, Jxy, Jxz], [Jxy, Jyy, Jyz], [Jxz, Jyz, Jzz]], with \
@@ -59,7 +59,7 @@ impl Check<'_> {
         let transport = (Matrix3::identity() * arm.norm_squared() - arm * arm.transpose()) * mass;
         let central = (given + given.transpose()) / 2.0 - transport;
         if let Some(found) = not_an_inertia(&central) {
-            return Err(self.0.place(key).refuse(
+            return Err(self.document.place(key).refuse(
                 format!("{found} about the centre of mass"),
                 "positive principal moments of inertia, none above the sum of the other two",
                 "correct the tensor, or set `about` to the point it is given for (default: the centre of mass)",
@@ -85,13 +85,13 @@ impl Check<'_> {
         by_group: Option<BTreeMap<String, Material>>,
     ) -> Result<Materials, SceneError> {
         match (whole, by_group) {
-            (Some(_), Some(_)) => Err(self.0.place("body.materials").refuse(
+            (Some(_), Some(_)) => Err(self.document.place("body.materials").refuse(
                 "both `material` and `materials`",
                 "exactly one of them",
                 "keep `material` for the whole mesh, or `materials` by physical group",
             )),
             (None, None) => {
-                let at = self.0.place("body.material").into();
+                let at = self.document.place("body.material").into();
                 Err(SceneError::MissingKey { at, key: "material".to_owned() })
             }
             (Some(material), None) => {
@@ -135,6 +135,8 @@ impl Check<'_> {
     }
 
     fn point_masses(&self, masses: &[PointMass]) -> Result<(), SceneError> {
+        let cure = "make masses that are many a part of the mesh, as a material with their density";
+        self.not_too_many("body.point_masses", masses.len(), cure)?;
         for (i, point_mass) in masses.iter().enumerate() {
             let key = format!("body.point_masses[{i}]");
             self.positive(

@@ -22,7 +22,7 @@ impl Check<'_> {
         body: &Body,
     ) -> Result<Option<Constraint>, SceneError> {
         if sections.len() > 1 {
-            return Err(self.0.place("constraints[1]").refuse(
+            return Err(self.document.place("constraints[1]").refuse(
                 format!("{} constraints", sections.len()),
                 "at most one, since the rigid motion left is known in closed form for one only",
                 "keep one; a clamp, or a hinge's or slider's region, may hold several places as one physical group",
@@ -55,7 +55,7 @@ impl Check<'_> {
                 let shaft: Vec<Region> = balls.into_iter().chain(region).collect();
                 let motion = self.motion(key, motion)?;
                 if motion.is_some() && shaft.is_empty() && matches!(body, Body::Meshed(_)) {
-                    return Err(self.0.place(&join(key, "motion")).refuse(
+                    return Err(self.document.place(&join(key, "motion")).refuse(
                         "a driven hinge without a shaft",
                         "nodes beside the line that the drive can turn",
                         "say where the rigid shaft holds the body: `radius`, `box` or `group`",
@@ -65,7 +65,7 @@ impl Check<'_> {
             }
             ConstraintSection::Clamp { at, radius, r#box, group } => {
                 if let Body::Rigid(_) = body {
-                    return Err(self.0.place(&join(key, "kind")).refuse(
+                    return Err(self.document.place(&join(key, "kind")).refuse(
                         "a rigid body that is clamped",
                         "a body that can move",
                         "remove the clamp, or give the body a mesh",
@@ -109,7 +109,7 @@ impl Check<'_> {
                 }
                 (None, None) => {
                     let found = "neither `at` and `axis` nor `points`";
-                    Err(self.0.place(key).refuse(found, "the line of the hinge", cure))
+                    Err(self.document.place(key).refuse(found, "the line of the hinge", cure))
                 }
                 (Some(_), None) => Err(self.missing(key, "axis")),
                 (None, Some(_)) => Err(self.missing(key, "at")),
@@ -118,12 +118,12 @@ impl Check<'_> {
         for name in ["at", "axis"] {
             if self.has(&join(key, name)) {
                 let found = format!("both `{name}` and `points`");
-                return Err(self.0.place(&join(key, name)).refuse(found, "the line of the hinge once", cure));
+                return Err(self.document.place(&join(key, name)).refuse(found, "the line of the hinge once", cure));
             }
         }
         let line = HingeLine::Points(points);
         if line.direction() == [0.0; 3] {
-            let place = self.0.place(&join(key, "points"));
+            let place = self.document.place(&join(key, "points"));
             return Err(place.refuse("the same point twice", "two different points of the line", cure));
         }
         Ok(line)
@@ -166,7 +166,7 @@ impl Check<'_> {
             return Ok(());
         }
         let cure = "add `radius` for the nodes within a ball around the point, or remove `at`";
-        Err(self.0.place(&at).refuse("`at` without `radius`", "both of them, or neither", cure))
+        Err(self.document.place(&at).refuse("`at` without `radius`", "both of them, or neither", cure))
     }
 
     fn radius(&self, key: &str, radius: f64) -> Result<(), SceneError> {
@@ -180,7 +180,7 @@ impl Check<'_> {
     }
 
     fn no_region(&self, key: &str) -> SceneError {
-        self.0.place(key).refuse(
+        self.document.place(key).refuse(
             "none of `radius`, `box` and `group`",
             "the part of the body that is held",
             "add `at` and `radius` for the nodes within a ball, `box = [[x, y, z], [x, y, z]]` for those within a \

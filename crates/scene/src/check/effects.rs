@@ -102,7 +102,7 @@ impl Check<'_> {
         if choice != Choice::On || !nothing {
             return Ok(());
         }
-        Err(self.0.place(&join("effects", name)).refuse(
+        Err(self.document.place(&join("effects", name)).refuse(
             format!("`{name} = true` with {found}"),
             "`false` or `\"auto\"`",
             format!("set `{name} = \"auto\"`, or {cure}"),
@@ -114,7 +114,7 @@ impl Check<'_> {
         if choice != Choice::Off || !demanded {
             return Ok(());
         }
-        Err(self.0.place(&join("effects", name)).refuse(
+        Err(self.document.place(&join("effects", name)).refuse(
             format!("`{name} = false` with {by}"),
             "`true` or `\"auto\"`",
             format!("set `{name} = \"auto\"`, or remove {by}"),

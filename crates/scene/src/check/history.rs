@@ -9,8 +9,8 @@ use crate::document::join;
 use crate::error::{Place, SceneError, shorten};
 use crate::history::{History, Table};
 
-/// The longest table file that is read, in bytes (16 MiB).
-const LONGEST: u64 = 16 << 20;
+/// The most that is read from the table files of a scene, in bytes (16 MiB).
+pub(super) const LONGEST: u64 = 16 << 20;
 
 /// What a table holds.
 const PAIRS: &str = "pairs of time and factor";
@@ -72,13 +72,13 @@ impl Check<'_> {
         self.at_most_one(key, &["points", "file"], cure)?;
         if let Some(file) = &mut table.file {
             let key = join(key, "file");
-            *file = self.0.folder().join(&file);
+            *file = self.document.folder().join(&file);
             table.points = self.read_table(&key, file)?;
             return Ok(());
         }
         let key = join(key, "points");
         if !self.has(&key) {
-            return Err(self.0.place(&key).refuse(
+            return Err(self.document.place(&key).refuse(
                 "neither `points` nor `file`",
                 "exactly one of them",
                 "give the table, e.g. `points = [[0.0, 0.0], [0.1, 1.0]]`, or a CSV file, e.g. `file = \"pulse.csv\"`",
@@ -92,20 +92,25 @@ impl Check<'_> {
 
     fn read_table(&self, key: &str, path: &Path) -> Result<Vec<[f64; 2]>, SceneError> {
         let mut text = String::new();
-        let read = File::open(path).and_then(|file| file.take(LONGEST + 1).read_to_string(&mut text));
+        let left = self.table_bytes.get();
+        let read = File::open(path).and_then(|file| file.take(left + 1).read_to_string(&mut text));
+        let shown = shorten(&path.to_string_lossy());
         if let Err(cause) = read {
-            return Err(self.0.place(key).refuse(
-                format!("a table that cannot be read: {}: {cause}", path.display()),
+            return Err(self.document.place(key).refuse(
+                format!("a table that cannot be read: {shown}: {cause}"),
                 "a CSV file, its path relative to the folder of the scene file",
                 "correct the path, or make the file; it is text in UTF-8",
             ));
         }
-        if text.len() as u64 > LONGEST {
-            return Err(self.0.place(key).refuse(
-                format!("a table longer than {LONGEST} bytes: {}", path.display()),
-                "a CSV file of at most that length",
-                "name a CSV file of two columns, with fewer points",
-            ));
+        match left.checked_sub(text.len() as u64) {
+            Some(left) => self.table_bytes.set(left),
+            None => {
+                return Err(self.document.place(key).refuse(
+                    format!("more than {LONGEST} bytes of tables, with {shown}"),
+                    "CSV files of at most that length in all",
+                    "name CSV files of two columns, with fewer points",
+                ));
+            }
         }
         parse_table(&text, path, key)
     }

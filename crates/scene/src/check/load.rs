@@ -10,13 +10,15 @@ use crate::scene::Body;
 impl Check<'_> {
     /// Checks the loads, normalises their directions and reads their tables.
     pub fn loads(&self, loads: &mut [Load], body: &Body, constraint: Option<&Constraint>) -> Result<(), SceneError> {
+        let cure = "put forces that go together into one traction or pressure on a physical surface";
+        self.not_too_many("loads", loads.len(), cure)?;
         for (i, load) in loads.iter_mut().enumerate() {
             let key = format!("loads[{i}]");
             if let Load::Pressure(_) | Load::Traction(_) = load {
                 self.needs_mesh(&join(&key, "group"), body)?;
             }
             if let (Load::BaseAcceleration(_), None) = (&*load, constraint) {
-                return Err(self.0.place(&join(&key, "kind")).refuse(
+                return Err(self.document.place(&join(&key, "kind")).refuse(
                     "the acceleration of the base of a free body",
                     "a body that something holds",
                     "add [[constraints]], or use `kind = \"gravity\"` for an acceleration of all of a free body",
@@ -63,7 +65,7 @@ impl Check<'_> {
     pub(super) fn needs_mesh(&self, key: &str, body: &Body) -> Result<(), SceneError> {
         match body {
             Body::Meshed(_) => Ok(()),
-            Body::Rigid(_) => Err(self.0.place(key).refuse(
+            Body::Rigid(_) => Err(self.document.place(key).refuse(
                 "a part of a mesh",
                 "none, since `rigid` in [body] has no mesh",
                 "use loads and constraints at points, or give `mesh` and `material` in [body] instead of `rigid`",

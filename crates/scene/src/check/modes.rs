@@ -25,7 +25,7 @@ impl Check<'_> {
         };
         let flexible = self.flexible(section.flexible, section.most)?;
         if is_rigid && flexible != Flexible::Count(0) {
-            return Err(self.0.place("modes.flexible").refuse(
+            return Err(self.document.place("modes.flexible").refuse(
                 "flexible modes of a rigid body",
                 "0, since `rigid` in [body] has no mesh that could deform",
                 "remove [modes], or give `mesh` and `material` in [body] instead of `rigid`",
@@ -33,7 +33,7 @@ impl Check<'_> {
         }
         let static_correction = section.static_correction;
         if static_correction == Choice::On && flexible == Flexible::Count(0) {
-            return Err(self.0.place("modes.static_correction").refuse(
+            return Err(self.document.place("modes.static_correction").refuse(
                 "a static correction of a body without flexible modes",
                 "`false` or `\"auto\"`",
                 "remove it, or keep flexible modes",
@@ -46,7 +46,7 @@ impl Check<'_> {
     fn flexible(&self, flexible: CountOrAuto, most: Option<usize>) -> Result<Flexible, SceneError> {
         match (flexible, most) {
             (CountOrAuto::Count(count), None) => Ok(Flexible::Count(count)),
-            (CountOrAuto::Count(count), Some(_)) => Err(self.0.place("modes.most").refuse(
+            (CountOrAuto::Count(count), Some(_)) => Err(self.document.place("modes.most").refuse(
                 format!("`most` with `flexible = {count}`"),
                 "`most` with `flexible = \"auto\"` only",
                 "remove `most`, or set `flexible = \"auto\"`",
@@ -134,7 +134,7 @@ impl Check<'_> {
             Flexible::Count(_) => format!("`flexible = {entries}`"),
             Flexible::Auto { .. } => format!("`most = {entries}`"),
         };
-        Err(self.0.place(key).refuse(
+        Err(self.document.place(key).refuse(
             format!("{entries} entries"),
             format!("at most {}, one for each flexible mode", flexible.most()),
             format!("remove entries, or set {more} in [modes]"),

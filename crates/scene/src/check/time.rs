@@ -9,6 +9,9 @@ use crate::section::{Formulation, OutputSection, Scheme, TimeSection};
 /// Intervals between rows where the scene gives a tolerance and no interval.
 const DEFAULT_ROWS: f64 = 500.0;
 
+/// Shortest step and interval, over the end of the run: times closer than a tenth of this are one to the stepper.
+const LEAST_PART: f64 = 1e-12;
+
 impl Check<'_> {
     pub fn time(&self, section: &TimeSection) -> Result<Time, SceneError> {
         let &TimeSection { end, step, tolerance, formulation, scheme } = section;
@@ -20,10 +23,14 @@ impl Check<'_> {
                     the relative error allowed in a step, e.g. `tolerance = 1e-8`";
         let stepping = match (step, tolerance) {
             (Some(_), Some(_)) => {
-                return Err(self.0.place("time.tolerance").refuse("both `step` and `tolerance`", expected, cure));
+                return Err(self.document.place("time.tolerance").refuse(
+                    "both `step` and `tolerance`",
+                    expected,
+                    cure,
+                ));
             }
             (None, None) => {
-                return Err(self.0.place("time.step").refuse("neither `step` nor `tolerance`", expected, cure));
+                return Err(self.document.place("time.step").refuse("neither `step` nor `tolerance`", expected, cure));
             }
             (Some(step), None) => {
                 self.positive("time.step", step, "give the length of a time step, e.g. `step = 1e-4`")?;
@@ -44,14 +51,14 @@ impl Check<'_> {
                 let found = "the conservative formulation with the scheme `paper`";
                 let expected = "the formulation `paper`, which that scheme belongs to";
                 let cure = "remove `formulation`, or set `scheme = \"exponential\"` for the conservative one";
-                Err(self.0.place("time.formulation").refuse(found, expected, cure))
+                Err(self.document.place("time.formulation").refuse(found, expected, cure))
             }
             (None | Some(Formulation::Paper), Some(Scheme::Paper)) | (Some(Formulation::Paper), None) => {
                 Ok(Method::Paper)
             }
             (Some(Formulation::Paper), Some(Scheme::Rkmk4)) => Ok(Method::PaperRkmk4),
             (Some(Formulation::Paper), Some(Scheme::Exponential | Scheme::Strang)) => {
-                let scheme = self.0.nearest("time.scheme");
+                let scheme = self.document.nearest("time.scheme");
                 let found = format!("{} with the formulation `paper`", shorten(scheme.written()));
                 let expected = "`paper` or `rkmk4`, since `exponential` and `strang` need the conservative form";
                 let cure = "set `scheme = \"rkmk4\"`, or `formulation = \"conservative\"`";
@@ -76,7 +83,7 @@ impl Check<'_> {
             Method::Paper | Method::PaperRkmk4 => "a tolerance with the paper's formulation",
             Method::Strang => "a tolerance with the scheme `strang`",
         };
-        Err(self.0.place("time.tolerance").refuse(
+        Err(self.document.place("time.tolerance").refuse(
             found,
             "`step`, since only `exponential` and `rkmk4` on the conservative form estimate the error of a step",
             "give `step`, e.g. `step = 1e-4`, or set `scheme = \"exponential\"` and \
@@ -93,7 +100,7 @@ impl Check<'_> {
             &format!("make the {name} shorter or the run longer"),
         )?;
         self.require(
-            end + length > end,
+            length >= LEAST_PART * end,
             key,
             &format!("a {name} that is not lost in rounding beside the end of the run, {end:?}"),
             &format!("make the {name} longer or the run shorter"),
@@ -104,14 +111,14 @@ impl Check<'_> {
         let OutputSection { every, interval, points } = section;
         let rows = match (every, interval, time.stepping) {
             (Some(_), Some(_), _) => {
-                return Err(self.0.place("output.interval").refuse(
+                return Err(self.document.place("output.interval").refuse(
                     "both `every` and `interval`",
                     "at most one of them",
                     "keep `every` for a row after so many steps, or `interval` for rows at its multiples",
                 ));
             }
             (Some(_), None, Stepping::Tolerance(_)) => {
-                return Err(self.0.place("output.every").refuse(
+                return Err(self.document.place("output.every").refuse(
                     "`every` with a tolerance",
                     "`interval`, since steps under a tolerance are not equally long",
                     "replace it by the time between two rows, e.g. `interval = 1e-3`",
@@ -135,10 +142,12 @@ impl Check<'_> {
             (None, None, Stepping::Step(_)) => Rows::EverySteps(1),
             (None, None, Stepping::Tolerance(_)) => Rows::Interval(time.end / DEFAULT_ROWS),
         };
+        let cure = "keep the points that you look at";
+        self.not_too_many("output.points", points.len(), cure)?;
         for name in points.keys() {
             let names_a_group = !matches!(name.as_str(), "" | "." | "..");
             if !names_a_group || name.contains(|c: char| c == '/' || c.is_control()) {
-                return Err(self.0.nearest(&join("output.points", name)).place_of_key().refuse(
+                return Err(self.document.nearest(&join("output.points", name)).place_of_key().refuse(
                     format!("the name {:?}", shorten(name)),
                     "a name that is not empty, `.` or `..`, without `/` and control characters",
                     "rename the point, e.g. `P1`: it names a group in the results file",
