@@ -6,6 +6,7 @@
 
 pub mod bodies;
 pub mod mesh;
+pub mod meshes;
 pub mod motion;
 pub mod page;
 pub mod structure;
