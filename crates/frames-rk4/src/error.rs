@@ -177,6 +177,18 @@ pub enum StepError {
         /// Longest step so far.
         step: f64,
     },
+    /// An attitude that may be any.
+    #[error(
+        "at time {time}: the attitude is lost: angular momentum that neither the start nor the loads account for has turned the body by {angle:.3} rad; a step of {step:.3e} is too long for this motion or its scheme: take a smaller step, or the scheme exponential of the conservative formulation"
+    )]
+    Attitude {
+        /// Time of the state.
+        time: f64,
+        /// Sum of the turns, rad.
+        angle: f64,
+        /// Longest step so far.
+        step: f64,
+    },
     /// No step is short enough for the tolerance.
     #[error(
         "at time {time}: even a step of {step:.3e} does not keep the error below the tolerance {tolerance:e}; allow a larger tolerance"

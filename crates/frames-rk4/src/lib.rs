@@ -22,6 +22,7 @@
 #![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable))]
 
 mod account;
+mod attitude_account;
 mod checkpoint;
 mod conservative;
 mod conservative_motion;

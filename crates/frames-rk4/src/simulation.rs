@@ -4,6 +4,7 @@ use modal::ReducedBody;
 use nalgebra::Vector3;
 
 use crate::account::{self, EnergyAccount};
+use crate::attitude_account::AttitudeAccount;
 use crate::checkpoint::{RestoreError, Tape};
 use crate::conservative::ConservativeBody;
 use crate::conservative_motion::{ConservativeMotion, ConservativeScheme};
@@ -164,10 +165,14 @@ pub struct Simulation {
     points: Vec<PointShapes>,
     stats: Stats,
     account: EnergyAccount,
+    attitude_account: AttitudeAccount,
     /// Largest of ω_k and 2 ζ_k ω_k.
     fastest_rate: f64,
     failed: bool,
 }
+
+/// The attitude is looked at after so many steps: often enough for a sum, and too seldom to cost anything.
+const STEPS_OF_ATTITUDE: u64 = 8;
 
 #[derive(Debug, Clone)]
 enum Engine {
@@ -272,6 +277,7 @@ impl Simulation {
             points: setup.points.to_vec(),
             stats: Stats { accepted: 0, rejected: 0, evaluations: 0, shortest: f64::INFINITY, longest: 0.0 },
             account: EnergyAccount::new(energy_of_loads),
+            attitude_account: AttitudeAccount::default(),
             fastest_rate,
             failed: false,
         })
@@ -329,6 +335,16 @@ impl Simulation {
         }
     }
 
+    /// Whether the attitude can be right. The conservative form keeps the angular momentum; that of the paper need not.
+    fn check_attitude(&mut self) -> Result<(), StepError> {
+        let Self { engine, attitude_account, stats, .. } = self;
+        match engine {
+            Engine::Paper(scheme) => scheme.check_attitude(attitude_account, stats.longest),
+            Engine::PaperLimit(limit) => limit.check_attitude(attitude_account, stats.longest),
+            Engine::Conservative(_) => Ok(()),
+        }
+    }
+
     /// Notes the state that has been reached in `out`, instead of what it held.
     pub fn checkpoint(&mut self, out: &mut Vec<u64>) {
         out.clear();
@@ -364,6 +380,7 @@ impl Simulation {
         tape.count(&mut self.steps_since_row);
         tape.flag(&mut self.corner_ahead);
         self.account.pass(tape);
+        self.attitude_account.pass(tape);
         let Stats { accepted, rejected, evaluations: _, shortest, longest } = &mut self.stats;
         tape.count(accepted);
         tape.count(rejected);
@@ -390,6 +407,9 @@ impl Simulation {
         if self.account.is_empty() {
             self.check_energy()?;
         }
+        if self.stats.accepted == 0 {
+            self.check_attitude()?;
+        }
         for _ in 0..most_steps {
             match self.next_step() {
                 None => return Ok(Reached::End),
@@ -409,6 +429,9 @@ impl Simulation {
                     self.stats.shortest = self.stats.shortest.min(length);
                     self.stats.longest = self.stats.longest.max(length);
                     self.check_energy()?;
+                    if self.stats.accepted.is_multiple_of(STEPS_OF_ATTITUDE) {
+                        self.check_attitude()?;
+                    }
                     self.steps_since_row += count;
                     let at_row = match self.rows {
                         Rows::EverySteps(steps) => self.steps_since_row >= steps || end >= self.end,

@@ -76,7 +76,6 @@ impl Expected {
 impl fmt::Display for Expected {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Within(trial::ANY) => write!(f, "≤ π: lost"),
             Self::Within(bound) => write!(f, "≤ {bound:.0e}"),
             Self::Refused(part) => write!(f, "refused: “{part}”"),
         }
