@@ -29,6 +29,7 @@ mod conservative_motion;
 mod conservative_observation;
 mod error;
 mod exponential;
+mod formula_steps;
 mod history;
 mod initial;
 mod load;

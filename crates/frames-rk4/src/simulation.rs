@@ -9,6 +9,7 @@ use crate::checkpoint::{RestoreError, Tape};
 use crate::conservative::ConservativeBody;
 use crate::conservative_motion::{ConservativeMotion, ConservativeScheme};
 use crate::error::{SetupError, StepError};
+use crate::formula_steps::FormulaSteps;
 use crate::history::History;
 use crate::initial::Initial;
 use crate::load::Load;
@@ -155,6 +156,8 @@ pub struct Simulation {
     engine: Engine,
     /// Of the loads and the drive.
     histories: Vec<History>,
+    /// Of fixed steps.
+    formula_steps: FormulaSteps,
     plan: Plan,
     walk: Walk,
     rows: Rows,
@@ -235,7 +238,12 @@ impl Simulation {
             refuse_beyond_paper(setup.physics)?;
         }
         let model = || ModalModel::new(body, damping_ratios, loads.to_vec());
+        let has_formula = loads.iter().any(|load| load.history.has_formula());
         let mut energy_of_loads = 0.0;
+        if has_formula && !matches!(method, Method::Conservative(_)) {
+            let body = ConservativeBody::new(body, damping_ratios, loads.to_vec(), setup.physics)?;
+            energy_of_loads = body.energy_of_loads(setup.end);
+        }
         let engine = match method {
             Method::Paper => {
                 // Its own step only matters for its iterator; here the plan gives the steps.
@@ -250,7 +258,7 @@ impl Simulation {
                     StepControl::Fixed(step) => account::is_resolved(motion.fastest_rate(), step),
                     StepControl::Tolerance(_) => false,
                 };
-                if !resolved {
+                if !resolved || has_formula {
                     energy_of_loads = motion.expect_loads_until(setup.end);
                 }
                 Engine::Conservative(Box::new(motion))
@@ -264,11 +272,16 @@ impl Simulation {
         let of_loads = loads.iter().map(|load| &load.history);
         let histories: Vec<History> =
             of_loads.chain(setup.physics.drive.iter().map(|drive| &drive.history)).cloned().collect();
-        let corners = histories.iter().flat_map(History::corners);
+        let formula_steps = match setup.control {
+            StepControl::Fixed(step) => FormulaSteps::new(&histories, setup.end, step)?,
+            StepControl::Tolerance(_) => FormulaSteps::default(),
+        };
+        let corners = histories.iter().flat_map(History::corners).chain(formula_steps.stops());
         Ok(Self {
             engine,
             plan: Plan::new(setup.end, corners, setup.rows),
             histories,
+            formula_steps,
             walk,
             rows: setup.rows,
             end: setup.end,
@@ -464,7 +477,8 @@ impl Simulation {
                 Walk::Equal { step, steps } => {
                     let inside = segment.start + 0.5 * segment.length;
                     let seen = self.histories.iter().map(|history| history.longest_step(inside));
-                    *steps = Some((EqualSteps::new(segment, seen.fold(*step, f64::min)), segment.row));
+                    let longest = seen.fold(*step, f64::min).min(self.formula_steps.longest_step(inside));
+                    *steps = Some((EqualSteps::new(segment, longest), segment.row));
                 }
                 Walk::Halved { longest_try, steps, .. } => {
                     *steps = Some((HalvedSteps::new(segment, *longest_try), segment.row));

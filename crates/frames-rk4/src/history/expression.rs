@@ -61,7 +61,7 @@ impl Expression {
     }
 
     /// The value at a time; at a corner the one on the side of `inside`.
-    pub(super) fn at(&self, time: f64, inside: f64) -> f64 {
+    pub(crate) fn at(&self, time: f64, inside: f64) -> f64 {
         if self.corners.is_empty() {
             return (self.law)(time);
         }
