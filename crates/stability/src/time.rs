@@ -94,7 +94,7 @@ pub fn cases() -> Vec<Case> {
         },
         Case {
             name: "a bell curve of 20 ms, in steps of 2 ms, from rest",
-            why: "before it is felt it grows by a factor of up to 1e23 a step, which no account of energy follows",
+            why: "before it is felt, the energy grows by a factor of up to 2e4 a step, which no account of the work follows",
             body: None,
             measure: "gap in the balance of energy afterwards, relative to the energy",
             run: |method, _| bell(method),

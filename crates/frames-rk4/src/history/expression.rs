@@ -19,7 +19,7 @@ const LONGEST: usize = 1000;
 ///
 /// Operators are `+ - * / % ^` as in mathematics: `-t^2` is −(t²), and a power of a power needs parentheses. `2 t` is a
 /// product. Constants are `pi` and `e`, angles are in radians. Kinks (as of `abs`, `min`, `max`) and jumps (as of
-/// `floor`, `sign`) are not looked for: where they matter, name their times as corners.
+/// `floor`, `sign`) are best named as corners: fixed steps then end there, instead of enclosing them in shorter steps.
 #[derive(Clone)]
 pub struct Expression {
     text: &'static str,
