@@ -38,9 +38,12 @@ picture: build
 accuracy: build
     {{flexframe}} accuracy examples/accuracy/{pulse,tumbling,spin}.toml -o docs/accuracy.md
 
-# What hard cases come to with every scheme: docs/stability.md (some minutes); fails where a bound is broken.
+# What hard cases come to with every scheme: docs/stability.md; then kills of many runs (some minutes). Fails where a
+# bound is broken or a row is lost.
 stability:
     cargo run --release --quiet --package stability -- docs/stability.md
+    FLEXFRAME_KILLS=200 cargo test --release --quiet --package results --test killed
+    FLEXFRAME_KILLS=40 cargo test --release --quiet --package flexframe --test faults
 
 # Steps a second of every scheme on one core, and what each effect costs per step and in set-up.
 bench:

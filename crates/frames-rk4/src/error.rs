@@ -80,6 +80,18 @@ pub enum SetupError {
         /// The factor.
         found: f64,
     },
+    /// A formula that changes within the shortest steps that are tried.
+    #[error(
+        "the expression \"{text}\" changes too fast for a step of {step:e}: even steps of {shortest:.3e} do not see it as it is; take a smaller step, write it as a sine or a sweep, or name the times between which it changes so fast as corners"
+    )]
+    FormulaTooFast {
+        /// The expression.
+        text: String,
+        /// The step.
+        step: f64,
+        /// The shortest that was tried.
+        shortest: f64,
+    },
     /// A step at which RK4 amplifies a mode.
     #[error(
         "a step of {step:e} is beyond the stability limit {limit:.4e} that flexible mode {mode} ({frequency:.6} cycles per time) sets for RK4; take a smaller step or fewer modes"
@@ -174,6 +186,18 @@ pub enum StepError {
         energy: f64,
         /// What it should be.
         accounted: f64,
+        /// Longest step so far.
+        step: f64,
+    },
+    /// An attitude that may be any.
+    #[error(
+        "at time {time}: the attitude is lost: angular momentum that neither the start nor the loads account for has turned the body by {angle:.3} rad; a step of {step:.3e} is too long for this motion or its scheme: take a smaller step, or the scheme exponential of the conservative formulation"
+    )]
+    Attitude {
+        /// Time of the state.
+        time: f64,
+        /// Sum of the turns, rad.
+        angle: f64,
         /// Longest step so far.
         step: f64,
     },

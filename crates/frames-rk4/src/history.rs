@@ -166,9 +166,18 @@ impl History {
         }
     }
 
+    /// Whether there is a formula in it.
+    pub(crate) fn has_formula(&self) -> bool {
+        match self {
+            Self::Expression(_) => true,
+            Self::Product(factors) => factors.iter().any(Self::has_formula),
+            _ => false,
+        }
+    }
+
     /// Longest step that sees the factor as it is in a stretch of time around `inside` that has no corner: a sixteenth
-    /// of a period of what swings, so that Simpson's rule errs by 1e-5 of it. Straight lines are seen by any step, and an
-    /// expression is not known.
+    /// of a period of what swings, so that Simpson's rule errs by 1e-5 of it. Straight lines are seen by any step; for
+    /// expressions see [`FormulaSteps`](crate::formula_steps::FormulaSteps).
     pub(crate) fn longest_step(&self, inside: f64) -> f64 {
         let of_period = |period: f64| period / 16.0;
         match self {

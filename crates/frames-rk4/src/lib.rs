@@ -22,12 +22,14 @@
 #![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable))]
 
 mod account;
+mod attitude_account;
 mod checkpoint;
 mod conservative;
 mod conservative_motion;
 mod conservative_observation;
 mod error;
 mod exponential;
+mod formula_steps;
 mod history;
 mod initial;
 mod load;

@@ -279,6 +279,18 @@ impl BodyMotion {
         }
     }
 
+    /// Angular momentum that the loads have not put in: less their impulse, global components.
+    pub(crate) fn angular_balance_global(&self, state: &State, work: &Work) -> Vector3<f64> {
+        self.angular_momentum_global(state) - work.angular_impulse_global
+    }
+
+    /// The spin of the undeformed body, in the motions that it has, with this angular momentum: B Bᵀ H in body axes.
+    /// Both in global components.
+    pub(crate) fn spin_of(&self, state: &State, angular_momentum_global: &Vector3<f64>) -> Vector3<f64> {
+        let basis = &self.rotation_basis;
+        state.attitude.to_global(&(basis * basis.tr_mul(&state.attitude.to_body(angular_momentum_global))))
+    }
+
     /// Kinetic energy ½ q̇ᵀ q̇ (the modes are mass-normalised).
     pub fn kinetic_energy(&self, state: &State) -> f64 {
         0.5 * state.modal_velocity.iter().map(|y| y * y).sum::<f64>()

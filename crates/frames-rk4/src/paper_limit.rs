@@ -15,6 +15,7 @@ use nalgebra::Vector3;
 use rigid_kin::{f_inverse, transformation_matrix};
 
 use crate::account::Reckoning;
+use crate::attitude_account::AttitudeAccount;
 use crate::checkpoint::Tape;
 use crate::error::{RateError, SetupError, StepError};
 use crate::initial::Initial;
@@ -160,6 +161,16 @@ impl PaperLimit {
     /// Energies of the state.
     pub(crate) fn reckoning(&self) -> Reckoning {
         self.motion.reckon(&self.state, &self.work)
+    }
+
+    /// Checks the angular momentum of the state.
+    ///
+    /// # Errors
+    /// [`StepError::Attitude`].
+    pub(crate) fn check_attitude(&self, account: &mut AttitudeAccount, step: f64) -> Result<(), StepError> {
+        let Self { motion, state, work, .. } = self;
+        let balance = motion.angular_balance_global(state, work);
+        account.check(state.time, balance, |momentum| motion.spin_of(state, momentum), step)
     }
 
     /// Largest of ω_k and 2 ζ_k ω_k.

@@ -4,10 +4,12 @@ use modal::ReducedBody;
 use nalgebra::Vector3;
 
 use crate::account::{self, EnergyAccount};
+use crate::attitude_account::AttitudeAccount;
 use crate::checkpoint::{RestoreError, Tape};
 use crate::conservative::ConservativeBody;
 use crate::conservative_motion::{ConservativeMotion, ConservativeScheme};
 use crate::error::{SetupError, StepError};
+use crate::formula_steps::FormulaSteps;
 use crate::history::History;
 use crate::initial::Initial;
 use crate::load::Load;
@@ -154,6 +156,8 @@ pub struct Simulation {
     engine: Engine,
     /// Of the loads and the drive.
     histories: Vec<History>,
+    /// Of fixed steps.
+    formula_steps: FormulaSteps,
     plan: Plan,
     walk: Walk,
     rows: Rows,
@@ -164,10 +168,14 @@ pub struct Simulation {
     points: Vec<PointShapes>,
     stats: Stats,
     account: EnergyAccount,
+    attitude_account: AttitudeAccount,
     /// Largest of ω_k and 2 ζ_k ω_k.
     fastest_rate: f64,
     failed: bool,
 }
+
+/// The attitude is looked at after so many steps: often enough for a sum, and too seldom to cost anything.
+const STEPS_OF_ATTITUDE: u64 = 8;
 
 #[derive(Debug, Clone)]
 enum Engine {
@@ -230,7 +238,12 @@ impl Simulation {
             refuse_beyond_paper(setup.physics)?;
         }
         let model = || ModalModel::new(body, damping_ratios, loads.to_vec());
+        let has_formula = loads.iter().any(|load| load.history.has_formula());
         let mut energy_of_loads = 0.0;
+        if has_formula && !matches!(method, Method::Conservative(_)) {
+            let body = ConservativeBody::new(body, damping_ratios, loads.to_vec(), setup.physics)?;
+            energy_of_loads = body.energy_of_loads(setup.end);
+        }
         let engine = match method {
             Method::Paper => {
                 // Its own step only matters for its iterator; here the plan gives the steps.
@@ -245,7 +258,7 @@ impl Simulation {
                     StepControl::Fixed(step) => account::is_resolved(motion.fastest_rate(), step),
                     StepControl::Tolerance(_) => false,
                 };
-                if !resolved {
+                if !resolved || has_formula {
                     energy_of_loads = motion.expect_loads_until(setup.end);
                 }
                 Engine::Conservative(Box::new(motion))
@@ -259,11 +272,16 @@ impl Simulation {
         let of_loads = loads.iter().map(|load| &load.history);
         let histories: Vec<History> =
             of_loads.chain(setup.physics.drive.iter().map(|drive| &drive.history)).cloned().collect();
-        let corners = histories.iter().flat_map(History::corners);
+        let formula_steps = match setup.control {
+            StepControl::Fixed(step) => FormulaSteps::new(&histories, setup.end, step)?,
+            StepControl::Tolerance(_) => FormulaSteps::default(),
+        };
+        let corners = histories.iter().flat_map(History::corners).chain(formula_steps.stops());
         Ok(Self {
             engine,
             plan: Plan::new(setup.end, corners, setup.rows),
             histories,
+            formula_steps,
             walk,
             rows: setup.rows,
             end: setup.end,
@@ -272,6 +290,7 @@ impl Simulation {
             points: setup.points.to_vec(),
             stats: Stats { accepted: 0, rejected: 0, evaluations: 0, shortest: f64::INFINITY, longest: 0.0 },
             account: EnergyAccount::new(energy_of_loads),
+            attitude_account: AttitudeAccount::default(),
             fastest_rate,
             failed: false,
         })
@@ -332,6 +351,16 @@ impl Simulation {
         }
     }
 
+    /// Whether the attitude can be right. The conservative form keeps the angular momentum; that of the paper need not.
+    fn check_attitude(&mut self) -> Result<(), StepError> {
+        let Self { engine, attitude_account, stats, .. } = self;
+        match engine {
+            Engine::Paper(scheme) => scheme.check_attitude(attitude_account, stats.longest),
+            Engine::PaperLimit(limit) => limit.check_attitude(attitude_account, stats.longest),
+            Engine::Conservative(_) => Ok(()),
+        }
+    }
+
     /// Notes the state that has been reached in `out`, instead of what it held.
     pub fn checkpoint(&mut self, out: &mut Vec<u64>) {
         out.clear();
@@ -367,6 +396,7 @@ impl Simulation {
         tape.count(&mut self.steps_since_row);
         tape.flag(&mut self.corner_ahead);
         self.account.pass(tape);
+        self.attitude_account.pass(tape);
         let Stats { accepted, rejected, evaluations: _, shortest, longest } = &mut self.stats;
         tape.count(accepted);
         tape.count(rejected);
@@ -393,6 +423,9 @@ impl Simulation {
         if self.account.is_empty() {
             self.check_energy()?;
         }
+        if self.stats.accepted == 0 {
+            self.check_attitude()?;
+        }
         for _ in 0..most_steps {
             match self.next_step() {
                 None => return Ok(Reached::End),
@@ -412,6 +445,9 @@ impl Simulation {
                     self.stats.shortest = self.stats.shortest.min(length);
                     self.stats.longest = self.stats.longest.max(length);
                     self.check_energy()?;
+                    if self.stats.accepted.is_multiple_of(STEPS_OF_ATTITUDE) {
+                        self.check_attitude()?;
+                    }
                     self.steps_since_row += count;
                     let at_row = match self.rows {
                         Rows::EverySteps(steps) => self.steps_since_row >= steps || end >= self.end,
@@ -444,7 +480,8 @@ impl Simulation {
                 Walk::Equal { step, steps } => {
                     let inside = segment.start + 0.5 * segment.length;
                     let seen = self.histories.iter().map(|history| history.longest_step(inside));
-                    *steps = Some((EqualSteps::new(segment, seen.fold(*step, f64::min)), segment.row));
+                    let longest = seen.fold(*step, f64::min).min(self.formula_steps.longest_step(inside));
+                    *steps = Some((EqualSteps::new(segment, longest), segment.row));
                 }
                 Walk::Halved { longest_try, steps, .. } => {
                     *steps = Some((HalvedSteps::new(segment, *longest_try), segment.row));

@@ -127,6 +127,18 @@ pub enum ModalError {
         /// Its position.
         position: [f64; 3],
     },
+    /// A lowest mode whose stiffness is not above the rounding in K.
+    #[error(
+        "rounding hides the stiffness of the body: the rounding of the entries of K may come to {rounding:e} where its lowest flexible mode has the eigenvalue {eigenvalue:e} (it may be up to {limit:e}). Is the body too thin for its length? Take elements that are less flat, or a thicker body"
+    )]
+    HiddenByRounding {
+        /// Lowest eigenvalue, (rad/time)².
+        eigenvalue: f64,
+        /// ε |φ|ᵀ|K||φ| of its mode.
+        rounding: f64,
+        /// Largest rounding with which the mode is taken for one.
+        limit: f64,
+    },
     /// K + sM is not positive definite.
     #[error(
         "the stiffness matrix is not positive semi-definite (pivot {pivot} of K + {shift:e} M): a material constant or an element must be wrong"

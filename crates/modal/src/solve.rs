@@ -3,8 +3,8 @@
 use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
-use faer::Mat;
 use faer::sparse::SparseColMatRef;
+use faer::{ColRef, Mat};
 
 use crate::constraints::Constraints;
 use crate::error::ModalError;
@@ -19,6 +19,11 @@ use crate::symmetry::check_symmetric;
 
 /// An eigenvalue below this fraction of the shift has no stiffness behind it.
 const ZERO_ENERGY: f64 = 1e-9;
+
+/// Largest ε |φ|ᵀ|K||φ| of the lowest mode relative to its eigenvalue. Rounding in the entries of K changes an eigenvalue
+/// by less than a tenth of this. At 2.2 an error of the lowest frequency of 6 % has been seen; where it is all rounding,
+/// 6 and more.
+const ROUNDING: f64 = 3.0;
 
 /// Rigid and flexible modes of a body. All shapes are M-orthonormal together.
 #[derive(Debug, Clone)]
@@ -194,6 +199,7 @@ impl<'a> Solver<'a> {
         let RitzPairs { eigenvalues, shapes, force_residuals } =
             rayleigh_ritz(self.stiffness, &self.nodal_mass, &self.constraints, &pairs.vectors)?;
         self.refuse_mechanism(&eigenvalues, &shapes, stats.shift)?;
+        self.refuse_hidden(eigenvalues[0], shapes.col(0))?;
         stats.ritz_time = started.elapsed();
         let (rigid, residuals) = (self.rigid.clone(), pairs.residuals);
         Ok(Modes { rigid, eigenvalues, shapes, residuals, force_residuals, stats })
@@ -229,6 +235,20 @@ impl<'a> Solver<'a> {
         let squared = |node: usize| (0..3).map(|axis| shapes[(3 * node + axis, 0)].powi(2)).sum::<f64>();
         let node = (0..positions.len()).max_by(|a, b| squared(*a).total_cmp(&squared(*b))).unwrap_or(0);
         Err(ModalError::Mechanism { rigid, count, eigenvalue: eigenvalues[0], shift, node, position: positions[node] })
+    }
+
+    /// Refuses a lowest mode that may be little more than rounding in K.
+    fn refuse_hidden(&self, eigenvalue: f64, shape: ColRef<'_, f64>) -> Result<(), ModalError> {
+        let k = self.stiffness;
+        let of_column = |j: usize| -> f64 {
+            let products = k.row_idx_of_col(j).zip(k.val_of_col(j)).map(|(i, value)| (shape[i] * value).abs());
+            products.sum::<f64>() * shape[j].abs()
+        };
+        let rounding = f64::EPSILON * (0..k.ncols()).map(of_column).sum::<f64>();
+        if rounding <= ROUNDING * eigenvalue {
+            return Ok(());
+        }
+        Err(ModalError::HiddenByRounding { eigenvalue, rounding, limit: ROUNDING * eigenvalue })
     }
 }
 

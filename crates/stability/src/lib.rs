@@ -6,6 +6,7 @@
 
 pub mod bodies;
 pub mod mesh;
+pub mod meshes;
 pub mod motion;
 pub mod page;
 pub mod structure;
@@ -75,7 +76,6 @@ impl Expected {
 impl fmt::Display for Expected {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Within(trial::ANY) => write!(f, "≤ π: lost"),
             Self::Within(bound) => write!(f, "≤ {bound:.0e}"),
             Self::Refused(part) => write!(f, "refused: “{part}”"),
         }

@@ -1,15 +1,15 @@
-//! Mesh and material: slivers, curved elements, extreme materials and units, one element, any numbering.
+//! Mesh and material: slivers, curved elements, extreme materials and units, one element, any numbering, symmetry, and
+//! meshes that are no body.
 
-use std::collections::HashMap;
-
-use fem_tet10::{Material, Materials, Mesh, MeshParts, assemble};
+use fem_tet10::{Material, Materials, Mesh, MeshParts, PointMass, assemble};
 use frames_rk4::Method;
 
 use crate::Expected::{Refused, Within};
 use crate::bodies::Elastic;
+use crate::meshes::{EDGES, ball, box_mesh, cells_of, cracked, numbered, opened};
 use crate::motion::on;
 use crate::structure::tumble;
-use crate::{BodyCheck, Case, Expected, Outcome};
+use crate::{BodyCheck, Case, Expected, Extent, Outcome};
 
 const DRIFT: &str = "drift of energy and angular momentum";
 /// Of the tumbling of any well-made body.
@@ -31,10 +31,18 @@ pub fn cases() -> Vec<Case> {
             expected: TUMBLING,
         },
         Case {
-            name: "a ribbon of slivers, 100 000 times as long as thick",
-            why: "its bending stiffness is less than the rounding in that of its elements",
+            name: "a ribbon of slivers, 20 000 times as long as thick",
+            why: "stiffnesses along and across differ by the square of that: rounding in K is as large as the bending stiffness (it puts the lowest frequency off by up to 6 % at 10 000 times, and from 13 000 times on by any factor)",
             body: None,
-            measure: DRIFT,
+            measure: "whether it is refused",
+            run: |method, _| moves(bar([10.0, 0.1, 5e-4], [10, 1, 1], METRES, 6), method),
+            expected: [Refused("rounding hides the stiffness"); 5],
+        },
+        Case {
+            name: "a ribbon of slivers, 100 000 times as long as thick",
+            why: "its bending stiffness is a thousandth of the rounding in that of its elements, and may come out negative",
+            body: None,
+            measure: "whether it is refused",
             run: |method, _| moves(bar([10.0, 0.1, 1e-4], [10, 1, 1], METRES, 6), method),
             expected: [Refused("too thin"); 5],
         },
@@ -91,7 +99,11 @@ pub fn cases() -> Vec<Case> {
         Case {
             name: "a square plate",
             why: "frequencies that repeat in the plate do so only nearly in its mesh",
-            body: None,
+            body: Some(BodyCheck {
+                what: "relative gap within the 4th and 5th and the 6th and 7th frequency, equal in a plate",
+                figure: || gap(&bar([1.0, 1.0, 0.05], [6, 6, 1], METRES, 8)?, &[3..5, 5..7]),
+                expected: Within(5e-2),
+            }),
             measure: DRIFT,
             run: |method, _| moves(bar([1.0, 1.0, 0.05], [6, 6, 1], METRES, 8), method),
             expected: TUMBLING,
@@ -128,6 +140,116 @@ pub fn cases() -> Vec<Case> {
             run: |method, _| moves(shuffled(), method),
             expected: TUMBLING,
         },
+        Case {
+            name: "a cube of elements",
+            why: "its frequencies repeat, but its mesh has not all of its symmetry",
+            body: Some(BodyCheck {
+                what: "relative gap within the groups of 2, 3, 3 and 2 lowest frequencies, equal in a cube",
+                figure: || gap(&bar([1.0; 3], [3; 3], METRES, 10)?, &[0..2, 2..5, 5..8, 8..10]),
+                expected: Within(2e-2),
+            }),
+            measure: DRIFT,
+            run: |method, _| moves(bar([1.0; 3], [3; 3], METRES, 10), method),
+            expected: TUMBLING,
+        },
+        Case {
+            name: "a ball of curved elements",
+            why: "the inertia of a sphere; frequencies that repeat five times in a ball do so only nearly in its mesh",
+            body: Some(BodyCheck {
+                what: "the five lowest frequencies against Lamb's k a = 2.50113 of torsion, relative",
+                figure: || {
+                    let lamb = 2.501_132_620_409_396 * shear_speed(METRES);
+                    let found = solve(ball(2), METRES, 10)?.body.circular_frequencies;
+                    Ok(found[..5].iter().map(|omega| (omega / lamb - 1.0).abs()).fold(0.0, f64::max))
+                },
+                expected: Within(5e-3),
+            }),
+            measure: DRIFT,
+            run: |method, _| moves(solve(ball(1), METRES, 10), method),
+            expected: TUMBLING,
+        },
+        Case {
+            name: "a point mass of 1e6 times the rest of a mesh",
+            why: "M spans twelve orders of magnitude, and the body swings about a point that hardly moves",
+            body: Some(BodyCheck {
+                what: "difference of the frequencies from those with a mass of 1e9 times the rest, relative",
+                figure: || difference(&loaded(1e6)?, &loaded(1e9)?),
+                expected: Within(1e-5),
+            }),
+            measure: DRIFT,
+            run: |method, _| moves(loaded(1e6), method),
+            expected: TUMBLING,
+        },
+        Case {
+            name: "a crack: nodes in one place along half of a section",
+            why: "what touches is not joined; nothing holds the faces of the crack together or apart",
+            body: Some(BodyCheck {
+                what: "difference of the frequencies from those with the crack opened by 1e-9, relative",
+                figure: || {
+                    difference(&solve(half_cracked(), STEEL, 8)?, &solve(opened(half_cracked(), 1e-9), STEEL, 8)?)
+                },
+                expected: Within(1e-6),
+            }),
+            measure: DRIFT,
+            run: |method, _| moves(solve(half_cracked(), STEEL, 8), method),
+            expected: TUMBLING,
+        },
+        refused("two pieces", "each has six rigid motions of its own", "pieces that share no node", |method, _| {
+            moves(solve(cells_of([3.0, 1.0, 1.0], [3, 1, 1], |[x, _, _]| x != 1), METRES, 6), method)
+        }),
+        refused(
+            "a crack right through: nodes in one place along a whole section",
+            "it looks like one body and is two",
+            "pieces that share no node",
+            |method, _| {
+                let parts = cracked(box_mesh([2.0, 1.0, 1.0], [2, 1, 1]), 1.0, |at| at[0] == 1.0);
+                moves(solve(parts, METRES, 6), method)
+            },
+        ),
+        refused(
+            "a mechanism: two cubes that share an edge",
+            "they turn against each other about it without strain",
+            "the body is a mechanism",
+            |method, _| moves(solve(cells_of([2.0, 2.0, 1.0], [2, 2, 1], |[x, y, _]| x == y), METRES, 6), method),
+        ),
+        refused(
+            "a mechanism: two cubes that share a node",
+            "they turn against each other about it in three ways",
+            "the body is a mechanism",
+            |method, _| moves(solve(cells_of([2.0; 3], [2; 3], |[x, y, z]| x == y && y == z), METRES, 6), method),
+        ),
+        refused(
+            "an element inside out",
+            "its volume and its mass are negative; its stiffness may pass for one",
+            "is inverted",
+            |method, _| {
+                let mut parts = box_mesh([1.0; 3], [2; 3]);
+                let [a, b, c, d, ab, bc, ac, ad, cd, bd] = parts.elements[7];
+                parts.elements[7] = [a, b, d, c, ab, bd, ad, ac, cd, bc];
+                moves(solve(parts, METRES, 6), method)
+            },
+        ),
+        refused(
+            "a mid-edge node drawn so far that its elements fold",
+            "corners and edges are in order, but within an element the volume is negative in places",
+            "is inverted",
+            |method, _| {
+                let mut parts = box_mesh([1.0; 3], [2; 3]);
+                let middle = parts.elements[0][4] as usize - 1;
+                parts.positions[middle][0] += 0.2;
+                moves(solve(parts, METRES, 6), method)
+            },
+        ),
+        refused(
+            "two nodes of one number",
+            "which of them an element means is not known",
+            "node tag 5 is given twice",
+            |method, _| {
+                let mut parts = box_mesh([1.0; 3], [2; 3]);
+                parts.node_tags[8] = 5;
+                moves(solve(parts, METRES, 6), method)
+            },
+        ),
     ]
 }
 
@@ -141,51 +263,13 @@ fn moves(elastic: Result<Elastic, String>, method: Method) -> Outcome {
     on(elastic.map(|e| e.body), |body| tumble(body, method))
 }
 
-/// A box of tetrahedra with one corner at the origin: `cells` cells along its edges, six elements in each.
-fn box_mesh(size: [f64; 3], cells: [usize; 3]) -> MeshParts {
-    // Corner nodes have even places; the middle of an edge lies between.
-    let mut tags: HashMap<[usize; 3], u64> = HashMap::new();
-    let mut parts = MeshParts { source: "box".to_owned(), regions: vec![vec![]], ..MeshParts::default() };
-    let orders = [[0, 1, 2], [1, 2, 0], [2, 0, 1], [0, 2, 1], [2, 1, 0], [1, 0, 2]];
-    for cell in 0..cells.iter().product() {
-        let at = [cell % cells[0], cell / cells[0] % cells[1], cell / (cells[0] * cells[1])];
-        for (turn, order) in orders.iter().enumerate() {
-            // Along the three edges of the cell, in one of their orders, from its first corner to its last.
-            let mut corners = [at.map(|k| 2 * k); 4];
-            for (k, axis) in order.iter().enumerate() {
-                corners[k + 1..].iter_mut().for_each(|corner| corner[*axis] += 2);
-            }
-            // The odd orders are left-handed.
-            if turn >= 3 {
-                corners.swap(2, 3);
-            }
-            let edges = [[0, 1], [1, 2], [0, 2], [0, 3], [2, 3], [1, 3]];
-            let middles = edges.map(|[a, b]| [0, 1, 2].map(|axis| (corners[a][axis] + corners[b][axis]) / 2));
-            let mut nodes = [0; 10];
-            for (tag, place) in nodes.iter_mut().zip(corners.iter().chain(&middles)) {
-                *tag = *tags.entry(*place).or_insert_with(|| {
-                    let along = |axis: usize| size[axis] * place[axis] as f64 / (2 * cells[axis]) as f64;
-                    parts.positions.push([along(0), along(1), along(2)]);
-                    parts.positions.len() as u64
-                });
-            }
-            parts.elements.push(nodes);
-        }
-    }
-    numbered(parts)
-}
-
-/// Tags of the nodes and elements, one after the other.
-fn numbered(mut parts: MeshParts) -> MeshParts {
-    parts.node_tags = (1..=parts.positions.len() as u64).collect();
-    parts.element_tags = (1..=parts.elements.len() as u64).collect();
-    parts.element_regions = vec![0; parts.elements.len()];
-    parts
-}
-
 fn solve(parts: MeshParts, material: Material, flexible: usize) -> Result<Elastic, String> {
+    solve_with(parts, material, &[], flexible)
+}
+
+fn solve_with(parts: MeshParts, material: Material, masses: &[PointMass], flexible: usize) -> Result<Elastic, String> {
     let mesh = Mesh::new(parts).map_err(|e| e.to_string())?;
-    let matrices = assemble(&mesh, &Materials::Uniform(material), &[]).map_err(|e| e.to_string())?;
+    let matrices = assemble(&mesh, &Materials::Uniform(material), masses).map_err(|e| e.to_string())?;
     Elastic::solve(matrices.stiffness(), matrices.mass(), mesh.positions().to_vec(), flexible)
 }
 
@@ -235,8 +319,7 @@ fn micrometres() -> Result<Elastic, String> {
 
 fn one_element() -> Result<Elastic, String> {
     let corners = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-    let edges = [[0, 1], [1, 2], [0, 2], [0, 3], [2, 3], [1, 3]];
-    let middles = edges.map(|[a, b]: [usize; 2]| [0, 1, 2].map(|axis| 0.5 * (corners[a][axis] + corners[b][axis])));
+    let middles = EDGES.map(|[a, b]: [usize; 2]| [0, 1, 2].map(|axis| 0.5 * (corners[a][axis] + corners[b][axis])));
     let parts = MeshParts {
         source: "one element".to_owned(),
         positions: corners.into_iter().chain(middles).collect(),
@@ -273,6 +356,34 @@ fn permutation(n: usize) -> Vec<usize> {
         list.swap(k, (state >> 33) as usize % (k + 1));
     }
     list
+}
+
+/// A mesh that is refused before anything can move.
+fn refused(name: &'static str, why: &'static str, words: &'static str, run: fn(Method, Extent) -> Outcome) -> Case {
+    Case { name, why, body: None, measure: "whether it is refused", run, expected: [Refused(words); 5] }
+}
+
+/// √(G/ρ)
+fn shear_speed(material: Material) -> f64 {
+    (material.young_modulus / (2.0 * (1.0 + material.poisson_ratio) * material.density)).sqrt()
+}
+
+/// The largest relative gap within groups of frequencies.
+fn gap(elastic: &Elastic, groups: &[std::ops::Range<usize>]) -> Result<f64, String> {
+    let frequencies = &elastic.body.circular_frequencies;
+    Ok(groups.iter().map(|group| frequencies[group.end - 1] / frequencies[group.start] - 1.0).fold(0.0, f64::max))
+}
+
+/// A cube with a mass at a corner, of so many times its own.
+fn loaded(times: f64) -> Result<Elastic, String> {
+    let mass = PointMass { at: [0.0; 3], mass: times, spread: Some(0.6) };
+    solve_with(box_mesh([1.0; 3], [2; 3]), METRES, &[mass], 6)
+}
+
+/// The steel bar, its section in the middle cracked from one side to its centre.
+fn half_cracked() -> MeshParts {
+    let [length, width, _] = STEEL_BAR;
+    cracked(box_mesh(STEEL_BAR, [8, 2, 2]), 0.5 * length, |[x, y, _]| x == 0.5 * length && y < 0.49 * width)
 }
 
 /// The largest relative difference of the frequencies of two bodies.

@@ -9,11 +9,11 @@ use rigid_kin::{Attitude, Inertia, TorqueFreeMotion, euler_angular_acceleration}
 
 use crate::Expected::{Refused, Within};
 use crate::bodies::{CLUSTER, cluster, rigid, spinning, truss};
-use crate::trial::{ANY, Trial, worse};
+use crate::trial::{Trial, worse};
 use crate::{Case, Extent, Outcome};
 
 const MOMENTS: [f64; 3] = [1.0, 2.0, 3.0];
-const GREW: &str = "energy";
+const LOST: &str = "the attitude is lost";
 
 /// The cases.
 pub fn cases() -> Vec<Case> {
@@ -24,7 +24,7 @@ pub fn cases() -> Vec<Case> {
             body: None,
             measure: "attitude (rad), angular velocity, ‖A Aᵀ − I‖, eight times a turn",
             run: |method, extent| on(rigid(MOMENTS), |body| turns(body, method, extent)),
-            expected: [Within(1e-9), Within(1e-9), Within(1e-9), Refused(GREW), Within(1e-9)],
+            expected: [Within(1e-9), Within(1e-9), Within(1e-9), Refused(LOST), Within(1e-9)],
         },
         Case {
             name: "tumbling through the unstable axis, 100 flips, rigid",
@@ -32,7 +32,7 @@ pub fn cases() -> Vec<Case> {
             body: None,
             measure: "attitude (rad) and angular velocity against the closed form",
             run: |method, extent| on(rigid(MOMENTS), |body| flips(body, method, extent)),
-            expected: [Within(1e-4), Within(1e-4), Within(1e-4), Refused(GREW), Within(1e-4)],
+            expected: [Within(1e-4), Within(1e-4), Within(1e-4), Refused(LOST), Within(1e-4)],
         },
         Case {
             name: "tumbling through the unstable axis, flexible",
@@ -45,7 +45,7 @@ pub fn cases() -> Vec<Case> {
                     Trial::free(body, spinning(body, tilted(body), 0.01), 0.01, end).drift(method)
                 })
             },
-            expected: [Within(1e-8), Within(1e-3), Within(1e-4), Refused(GREW), Refused(GREW)],
+            expected: [Within(1e-8), Within(1e-3), Within(1e-4), Refused(LOST), Refused(LOST)],
         },
         Case {
             name: "1e-8 rad/s from the separatrix, a whole period",
@@ -53,7 +53,7 @@ pub fn cases() -> Vec<Case> {
             body: None,
             measure: "drift of energy and angular momentum",
             run: |method, _| on(rigid(MOMENTS), |body| near_separatrix(body, method)),
-            expected: [Within(1e-11), Within(1e-11), Within(1e-11), Within(0.2), Within(1e-11)],
+            expected: [Within(1e-11), Within(1e-11), Within(1e-11), Refused(LOST), Within(1e-11)],
         },
         Case {
             name: "1e-5 rad/s from the separatrix, a whole period",
@@ -67,7 +67,7 @@ pub fn cases() -> Vec<Case> {
                     Trial::free(body, spin(omega), 1e-3, period).off_closed_form(method)
                 })
             },
-            expected: [Within(1e-3), Within(1e-3), Within(1e-3), Within(ANY), Within(1e-3)],
+            expected: [Within(1e-3), Within(1e-3), Within(1e-3), Refused(LOST), Within(1e-3)],
         },
         Case {
             name: "1e-12 rad a step",
@@ -91,7 +91,7 @@ pub fn cases() -> Vec<Case> {
             body: None,
             measure: "attitude (rad) and angular velocity against the closed form",
             run: |method, _| on(rigid(MOMENTS), |body| each_axis(body, method)),
-            expected: [Within(1e-9), Within(1e-9), Within(1e-9), Refused(GREW), Within(1e-9)],
+            expected: [Within(1e-9), Within(1e-9), Within(1e-9), Refused(LOST), Within(1e-9)],
         },
         Case {
             name: "ten million steps of a vibrating, tumbling body",
@@ -104,7 +104,7 @@ pub fn cases() -> Vec<Case> {
                     Trial::free(body, spinning(body, [1.0, 2.0, 1.5], 0.05), 1e-3, end).drift(method)
                 })
             },
-            expected: [Within(1e-8), Within(1e-6), Within(1e-5), Refused(GREW), Refused(GREW)],
+            expected: [Within(1e-8), Within(1e-6), Within(1e-5), Refused(LOST), Refused(LOST)],
         },
         Case {
             name: "a body 1e6 units away from the origin of its mesh",
@@ -236,7 +236,7 @@ fn far_away(method: Method) -> Outcome {
     let moved = CLUSTER.map(|(at, mass)| (at.map(|x| x + 1e6), mass));
     match (cluster(6), truss(&moved, 60.0, 6)) {
         (Ok(here), Ok(there)) => {
-            let trial = |body| Trial::free(body, spinning(body, [1.0, 2.0, 1.5], 0.05), 5e-3, 10.0);
+            let trial = |body| Trial::free(body, spinning(body, [1.0, 2.0, 1.5], 0.05), 5e-3, 5.0);
             against(&trial(&there.body), &trial(&here.body), method)
         }
         (Err(refusal), _) | (_, Err(refusal)) => Outcome::Refused(refusal),
@@ -246,6 +246,6 @@ fn far_away(method: Method) -> Outcome {
 fn fast(body: &ReducedBody, method: Method) -> Outcome {
     let still = spinning(body, [1.0, 2.0, 1.5], 0.05);
     let moving = Initial { velocity: Vector3::new(6e5, -8e5, 1e3), ..still.clone() };
-    let trial = |initial| Trial::free(body, initial, 5e-3, 10.0);
+    let trial = |initial| Trial::free(body, initial, 5e-3, 5.0);
     against(&trial(moving), &trial(still), method)
 }

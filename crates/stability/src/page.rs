@@ -15,7 +15,9 @@ pub fn page(extent: Extent, mut progress: impl FnMut(&str)) -> (String, Vec<Stri
          of them shortened; a refusal is held to its words). Errors and drifts are the largest of the whole run. \
          Nothing ends in NaN. What stops a run that has gone wrong is an account of the energy: where the start, the \
          loads and the damping do not account for half of it, the run ends with the time, the energy and a cure. The \
-         paper's scheme, of first order, can lose the attitude before it loses the energy; “≤ π: lost” says where.\n",
+         formulation of the paper does not keep the angular momentum, and so loses the attitude before the energy: its \
+         runs keep an account of the turns that momentum from nowhere makes, and end where these come to 1 rad. A body \
+         that is refused before it moves is refused by every scheme, in the same words.\n",
     );
     let mut broken = Vec::new();
     for (title, cases) in sections() {

@@ -110,9 +110,6 @@ impl<'a> Trial<'a> {
     }
 }
 
-/// A bound on an angle that any attitude keeps: nothing is promised.
-pub const ANY: f64 = std::f64::consts::PI;
-
 /// The larger of two errors; NaN where one of them is.
 pub fn worse(a: f64, b: f64) -> f64 {
     if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) }

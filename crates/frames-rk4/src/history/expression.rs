@@ -19,7 +19,7 @@ const LONGEST: usize = 1000;
 ///
 /// Operators are `+ - * / % ^` as in mathematics: `-t^2` is −(t²), and a power of a power needs parentheses. `2 t` is a
 /// product. Constants are `pi` and `e`, angles are in radians. Kinks (as of `abs`, `min`, `max`) and jumps (as of
-/// `floor`, `sign`) are not looked for: where they matter, name their times as corners.
+/// `floor`, `sign`) are best named as corners: fixed steps then end there, instead of enclosing them in shorter steps.
 #[derive(Clone)]
 pub struct Expression {
     text: &'static str,
@@ -61,7 +61,7 @@ impl Expression {
     }
 
     /// The value at a time; at a corner the one on the side of `inside`.
-    pub(super) fn at(&self, time: f64, inside: f64) -> f64 {
+    pub(crate) fn at(&self, time: f64, inside: f64) -> f64 {
         if self.corners.is_empty() {
             return (self.law)(time);
         }

@@ -79,6 +79,35 @@ fn tetrahedra_that_share_a_node() {
 }
 
 #[test]
+fn a_strip_so_thin_that_rounding_hides_its_stiffness() {
+    // Eigenvalues of bending go with the square of the thickness, and rounding not at all.
+    let lowest = |thickness: f64| {
+        let strip = block([10.0, 0.1, thickness], [20, 1, 1]);
+        strip.try_modes(1).map(|modes| modes.eigenvalues[0] / thickness.powi(2))
+    };
+    let expected = lowest(1e-2).unwrap();
+    let (mut found, mut hidden) = (0, 0);
+    for eighth in 20..34 {
+        let thickness = 10.0_f64.powf(-0.125 * f64::from(eighth));
+        match lowest(thickness) {
+            Ok(eigenvalue) => {
+                // 0.12 of the eigenvalue at 1e-3, below 0.02 at more
+                found += 1;
+                assert!((eigenvalue / expected - 1.0).abs() < 0.7, "{thickness:e}: {eigenvalue:e}, {expected:e}");
+            }
+            Err(ModalError::HiddenByRounding { eigenvalue, rounding, .. }) => {
+                hidden += 1;
+                assert!(rounding > 3.0 * eigenvalue, "{thickness:e}: {rounding:e} of {eigenvalue:e}");
+            }
+            Err(ModalError::Mechanism { .. } | ModalError::Indefinite { .. } | ModalError::NotConverged { .. }) => {}
+            Err(error) => panic!("{thickness:e}: {error}"),
+        }
+    }
+    // 5 and 3
+    assert!(found >= 3 && hidden >= 1, "{found} {hidden}");
+}
+
+#[test]
 fn a_negative_stiffness() {
     let error = message(with_stiffness(|_, _, k| Some(-k)), &["not positive semi-definite", "material"]);
     assert!(matches!(error, ModalError::Indefinite { .. }));
