@@ -94,6 +94,10 @@ fn stretches(expression: &Expression, end: f64, step: f64) -> Result<Vec<Stretch
         let length = stop - start;
         let limit = step.min(length) / f64::from(1_u32 << HALVINGS);
         let needed = search.longest_step([start, stop], limit);
+        if search.left_over > LEFT_OVER * magnitude {
+            let shortest = search.shortest;
+            return Err(SetupError::FormulaTooFast { text: expression.text().to_owned(), step, shortest });
+        }
         if needed >= step * (1.0 - 1e-9) || needed >= length {
             continue;
         }
@@ -104,10 +108,6 @@ fn stretches(expression: &Expression, end: f64, step: f64) -> Result<Vec<Stretch
             }
             _ => found.push(Stretch { start, end: stop, step: needed }),
         }
-    }
-    if search.left_over > LEFT_OVER * magnitude {
-        let shortest = search.shortest;
-        return Err(SetupError::FormulaTooFast { text: expression.text().to_owned(), step, shortest });
     }
     Ok(found)
 }
