@@ -239,7 +239,7 @@ pub enum MeshError {
     },
     /// An element is turned inside out, or has no volume.
     #[error(
-        "{source_name}: element {element} is {what}: its Jacobian determinant falls to {jacobian:e} (a good element of its size has about {expected:e}); improve the mesh there (gmsh: -optimize_ho, a smaller size, or straight edges with Mesh.SecondOrderLinear = 1)"
+        "{source_name}: element {element} is {what}: its Jacobian determinant falls to {jacobian:.3e} (a good element of its size has about {expected:.3e}); improve the mesh there (gmsh: -optimize_ho, a smaller size, or straight edges with Mesh.SecondOrderLinear = 1)"
     )]
     Jacobian {
         /// The mesh.

@@ -25,7 +25,7 @@ pub enum ModalError {
     },
     /// A matrix that is not its own transpose.
     #[error(
-        "the {what} matrix is not symmetric: entry ({row}, {column}) is {value:e}, its mirror image {mirrored:e}; store both triangles"
+        "the {what} matrix is not symmetric: entry ({row}, {column}) is {value:.3e}, its mirror image {mirrored:.3e}; store both triangles"
     )]
     NotSymmetric {
         /// "stiffness", "mass", or the pattern that they make together.
@@ -41,7 +41,7 @@ pub enum ModalError {
     },
     /// The mass matrix does not act alike on the three axes.
     #[error(
-        "the mass matrix couples degrees of freedom {row} and {column} ({value:e}) unlike those of the other axes; expected a mass for each pair of nodes times the 3x3 identity, as solid elements have it"
+        "the mass matrix couples degrees of freedom {row} and {column} ({value:.3e}) unlike those of the other axes; expected a mass for each pair of nodes times the 3x3 identity, as solid elements have it"
     )]
     AnisotropicMass {
         /// Row.
@@ -53,7 +53,7 @@ pub enum ModalError {
     },
     /// The body has no mass, or none to resist a rotation.
     #[error(
-        "the body has mass {mass:e} and moments of inertia {inertia:?} about its origin, which is no rigid body: the mass and all three moments must be positive (of a hinge, that about its axis)"
+        "the body has mass {mass:.3e} and moments of inertia {inertia:?} about its origin, which is no rigid body: the mass and all three moments must be positive (of a hinge, that about its axis)"
     )]
     NoInertia {
         /// Total mass.
@@ -89,7 +89,7 @@ pub enum ModalError {
     },
     /// A rigid motion that K resists.
     #[error(
-        "the body is not free: rigid {motion} meets a stiffness of {relative:e} of K's diagonal (expected below {limit:e}); remove the supports from K"
+        "the body is not free: rigid {motion} meets a stiffness of {relative:.3e} of K's diagonal (expected below {limit:.3e}); remove the supports from K"
     )]
     NotFree {
         /// "translation along x", …
@@ -111,7 +111,7 @@ pub enum ModalError {
     },
     /// Modes without energy beside the rigid ones.
     #[error(
-        "the body is a mechanism: besides the {rigid} rigid mode(s) {count} mode(s) have no stiffness (the first has {eigenvalue:e} of the shift {shift:e}); the node with index {node} at {position:?} moves most. Are parts joined at a single node or edge only? Join them by faces. Is the body too thin for its length, so that rounding hides its bending stiffness? Take elements that are less flat, or a thicker body"
+        "the body is a mechanism: besides the {rigid} rigid mode(s) {count} mode(s) have no stiffness (the first has {eigenvalue:.3e} of the shift {shift:.3e}); the node with index {node} at {position:?} moves most. Are parts joined at a single node or edge only? Join them by faces. Is the body too thin for its length, so that rounding hides its bending stiffness? Take elements that are less flat, or a thicker body"
     )]
     Mechanism {
         /// Rigid modes that the support leaves.
@@ -129,7 +129,7 @@ pub enum ModalError {
     },
     /// A lowest mode whose stiffness is not above the rounding in K.
     #[error(
-        "rounding hides the stiffness of the body: the rounding of the entries of K may come to {rounding:e} where its lowest flexible mode has the eigenvalue {eigenvalue:e} (it may be up to {limit:e}). Is the body too thin for its length? Take elements that are less flat, or a thicker body"
+        "rounding hides the stiffness of the body: the rounding of the entries of K may come to {rounding:.3e} where its lowest flexible mode has the eigenvalue {eigenvalue:.3e} (it may be up to {limit:.3e}). Is the body too thin for its length? Take elements that are less flat, or a thicker body"
     )]
     HiddenByRounding {
         /// Lowest eigenvalue, (rad/time)².
@@ -141,7 +141,7 @@ pub enum ModalError {
     },
     /// K + sM is not positive definite.
     #[error(
-        "the stiffness matrix is not positive semi-definite (pivot {pivot} of K + {shift:e} M): a material constant or an element must be wrong"
+        "the stiffness matrix is not positive semi-definite (pivot {pivot} of K + {shift:.3e} M): a material constant or an element must be wrong"
     )]
     Indefinite {
         /// Position of the pivot in the elimination.
@@ -165,7 +165,7 @@ pub enum ModalError {
     },
     /// The search did not end.
     #[error(
-        "only {converged} of {requested} modes converged within {steps} block steps (residual {residual:e}, wanted {tolerance:e})"
+        "only {converged} of {requested} modes converged within {steps} block steps (residual {residual:.3e}, wanted {tolerance:e})"
     )]
     NotConverged {
         /// Modes that converged.
@@ -181,7 +181,7 @@ pub enum ModalError {
     },
     /// A static answer that is not one.
     #[error(
-        "the static answer to force {column} has a residual of {residual:e} after {iterations} iterations (wanted {tolerance:e}): is a part of the body all but loose?"
+        "the static answer to force {column} has a residual of {residual:.3e} after {iterations} iterations (wanted {tolerance:e}): is a part of the body all but loose?"
     )]
     StaticNotConverged {
         /// Column of the forces.

@@ -14,7 +14,7 @@ const SMALLEST_RELATIVE_DISTANCE: f64 = 1e-9;
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error(
     "the reference points R {reference:?}, P {p:?}, Q {q:?} do not span a plane: the sine of the \
-     angle at R between P and Q is {sine:e}, and (5)-(12) need 1e-6 at least; choose three \
+     angle at R between P and Q is {sine:.3e}, and (5)-(12) need 1e-6 at least; choose three \
      distinct, well-spread points that are not on one line"
 )]
 pub struct CollinearPoints {
