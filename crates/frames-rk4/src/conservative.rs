@@ -631,8 +631,8 @@ impl ConservativeBody {
     /// Energies that the loads, one by one, would give the body from rest within the longest period or until `end`: by
     /// their impulse the rigid body, by their largest force the modes. The scale of a motion that begins without any.
     pub(crate) fn energy_of_loads(&self, end: f64) -> f64 {
-        let lowest = self.circular_frequencies.iter().copied().fold(f64::INFINITY, f64::min);
-        let period = (std::f64::consts::TAU / lowest).min(end);
+        let lowest = self.circular_frequencies.iter().copied().reduce(f64::min);
+        let period = lowest.map_or(end, |omega| (std::f64::consts::TAU / omega).min(end));
         let nf = self.flexible();
         let energy = |load: &Load| {
             let largest = load.history.largest(end);

@@ -82,12 +82,12 @@ pub enum SetupError {
     },
     /// A formula that changes within the shortest steps that are tried.
     #[error(
-        "the expression \"{text}\" changes too fast for a step of {step:e}: even steps of {shortest:.3e} do not see it as it is; take a smaller step, write it as a sine or a sweep, or name the times between which it changes so fast as corners"
+        "the expression \"{text}\" changes too fast: even steps of {shortest:.3e}, a thousandth of {step:e}, do not see it as it is; write it as a sine or a sweep, name the times between which it changes so fast as corners, or take a smaller step"
     )]
     FormulaTooFast {
         /// The expression.
         text: String,
-        /// The step.
+        /// The step of the run; under step control, the length of the stretches in which formulas are looked at.
         step: f64,
         /// The shortest that was tried.
         shortest: f64,

@@ -3,6 +3,9 @@
 //! Schemes of fourth order integrate a load by Simpson's rule, once for each step. Where that is not the integral by
 //! Gauss's rule, whose nodes no period divides alike, steps are halved until it is. What is narrower than the gaps
 //! between the samples, a quarter of a step, is seen only where corners name its place.
+//!
+//! Step control does not see either what swings so that all stages of a step fall on like phases. It has no step to begin
+//! with: the run is looked at in [`CELLS`] cells, and those over which the rules agree are joined again.
 
 use crate::error::SetupError;
 use crate::history::{Expression, History};
@@ -15,6 +18,8 @@ const LEFT_OVER: f64 = 1e-3;
 const HALVINGS: u32 = 10;
 /// Cells that the run is looked at in, at most; longer ones than steps need more halvings.
 const MOST_CELLS: f64 = 1e6;
+/// Cells that it is looked at in under step control.
+const CELLS: f64 = 4096.0;
 /// Places closer than so many cells are one.
 const APART: f64 = 4.0;
 
@@ -43,14 +48,17 @@ struct Stretch {
 }
 
 impl FormulaSteps {
-    /// Those of the formulas among `histories`, for a run until `end` in steps of `step`.
+    /// Those of the formulas among `histories`, for a run until `end` in steps of `step`, or under step control.
     ///
     /// # Errors
     /// [`SetupError::FormulaTooFast`].
-    pub(crate) fn new(histories: &[History], end: f64, step: f64) -> Result<Self, SetupError> {
+    pub(crate) fn new(histories: &[History], end: f64, step: Option<f64>) -> Result<Self, SetupError> {
         let mut expressions = Vec::new();
         histories.iter().for_each(|history| collect(history, &mut expressions));
-        let formulas = expressions.into_iter().map(|expression| stretches(expression, end, step));
+        let formulas = expressions.into_iter().map(|expression| match step {
+            Some(step) => of_fixed_steps(expression, end, step),
+            None => of_step_control(expression, end),
+        });
         Ok(Self { formulas: formulas.collect::<Result<_, _>>()? })
     }
 
@@ -77,27 +85,31 @@ fn collect<'a>(history: &'a History, out: &mut Vec<&'a Expression>) {
     }
 }
 
-fn stretches(expression: &Expression, end: f64, step: f64) -> Result<Vec<Stretch>, SetupError> {
+/// Times between which the formula has no corner.
+fn stops(expression: &Expression, end: f64) -> Vec<f64> {
     let corners = expression.corners().iter().copied().filter(|t| *t > 0.0 && *t < end);
-    let stops: Vec<f64> = [0.0].into_iter().chain(corners).chain([end]).collect();
-    // Cells between two corners, all of one length.
-    let cells = |from: f64, to: f64| {
-        let count = ((to - from) / step).ceil().min(MOST_CELLS * (to - from) / end).ceil().max(1.0);
-        (0..count as u64)
-            .map(move |k| [from + (to - from) * k as f64 / count, from + (to - from) * (k + 1) as f64 / count])
+    [0.0].into_iter().chain(corners).chain([end]).collect()
+}
+
+/// Cells of one length between two times.
+fn cells(from: f64, to: f64, count: f64) -> impl Iterator<Item = [f64; 2]> {
+    (0..count as u64).map(move |k| [from + (to - from) * k as f64 / count, from + (to - from) * (k + 1) as f64 / count])
+}
+
+fn of_fixed_steps(expression: &Expression, end: f64, step: f64) -> Result<Vec<Stretch>, SetupError> {
+    let stops = stops(expression, end);
+    let walk = || {
+        stops.windows(2).flat_map(|pair| {
+            let length = pair[1] - pair[0];
+            let count = (length / step).ceil().min(MOST_CELLS * length / end).ceil().max(1.0);
+            cells(pair[0], pair[1], count)
+        })
     };
-    let walk = || stops.windows(2).flat_map(|pair| cells(pair[0], pair[1]));
-    let magnitude: f64 = walk().map(|cell| rules(expression, cell).magnitude).sum();
-    let mut search = Search { expression, allowed: ACCURACY * magnitude / end, shortest: step, left_over: 0.0 };
+    let mut search = Search::new(expression, walk(), end, step);
     let mut found: Vec<Stretch> = Vec::new();
     for [start, stop] in walk() {
         let length = stop - start;
-        let limit = step.min(length) / f64::from(1_u32 << HALVINGS);
-        let needed = search.longest_step([start, stop], limit);
-        if search.left_over > LEFT_OVER * magnitude {
-            let shortest = search.shortest;
-            return Err(SetupError::FormulaTooFast { text: expression.text().to_owned(), step, shortest });
-        }
+        let needed = search.longest_step([start, stop], step.min(length))?;
         if needed >= step * (1.0 - 1e-9) || needed >= length {
             continue;
         }
@@ -110,6 +122,38 @@ fn stretches(expression: &Expression, end: f64, step: f64) -> Result<Vec<Stretch
         }
     }
     Ok(found)
+}
+
+fn of_step_control(expression: &Expression, end: f64) -> Result<Vec<Stretch>, SetupError> {
+    let stops = stops(expression, end);
+    let between = |pair: &[f64]| -> Vec<[f64; 2]> {
+        let count = (CELLS * (pair[1] - pair[0]) / end).ceil() as u64;
+        cells(pair[0], pair[1], count.next_power_of_two() as f64).collect()
+    };
+    let mut search = Search::new(expression, stops.windows(2).flat_map(between), end, end / CELLS);
+    let mut found: Vec<Stretch> = Vec::new();
+    for pair in stops.windows(2) {
+        let cells = between(pair);
+        let length = (pair[1] - pair[0]) / cells.len() as f64;
+        let steps = cells.iter().map(|cell| search.longest_step(*cell, length));
+        let mut steps = steps.collect::<Result<Vec<f64>, _>>()?;
+        search.join(&cells, &mut steps);
+        for ([start, stop], step) in cells.into_iter().zip(steps) {
+            match found.last_mut() {
+                Some(last) if is_same(step, last.step) || step.max(last.step) < 0.9 * length => {
+                    last.end = stop;
+                    last.step = last.step.min(step);
+                }
+                _ => found.push(Stretch { start, end: stop, step }),
+            }
+        }
+    }
+    Ok(found)
+}
+
+/// But for rounding.
+fn is_same(a: f64, b: f64) -> bool {
+    (a - b).abs() <= 1e-9 * b
 }
 
 /// Integrals over a cell.
@@ -131,30 +175,73 @@ fn rules(expression: &Expression, [start, end]: [f64; 2]) -> Rules {
 
 struct Search<'a> {
     expression: &'a Expression,
+    /// Integral of the formula's magnitude over the run.
+    magnitude: f64,
     /// Error of Simpson's rule, per time.
     allowed: f64,
-    /// Shortest step so far.
-    shortest: f64,
+    /// Length in which the run is looked at.
+    step: f64,
     /// Sum of the differences where steps are as short as they may be.
     left_over: f64,
 }
 
-impl Search<'_> {
-    /// Length of the steps that see the formula in a cell, not much below `limit`.
-    fn longest_step(&mut self, [start, end]: [f64; 2], limit: f64) -> f64 {
+impl<'a> Search<'a> {
+    fn new(expression: &'a Expression, walk: impl Iterator<Item = [f64; 2]>, end: f64, step: f64) -> Self {
+        let magnitude: f64 = walk.map(|cell| rules(expression, cell).magnitude).sum();
+        Self { expression, magnitude, allowed: ACCURACY * magnitude / end, step, left_over: 0.0 }
+    }
+
+    fn is_seen(&self, [start, end]: [f64; 2], difference: f64) -> bool {
+        // A value that is no number is none in the run too, which stops there.
+        difference.is_nan() || difference <= self.allowed * (end - start)
+    }
+
+    /// Length of the steps that see the formula in a cell, `longest` halved some times at most.
+    ///
+    /// # Errors
+    /// [`SetupError::FormulaTooFast`].
+    fn longest_step(&mut self, cell: [f64; 2], longest: f64) -> Result<f64, SetupError> {
+        let needed = self.halved(cell, longest / f64::from(1_u32 << HALVINGS));
+        if self.left_over <= LEFT_OVER * self.magnitude {
+            return Ok(needed);
+        }
+        Err(SetupError::FormulaTooFast { text: self.expression.text().to_owned(), step: self.step, shortest: needed })
+    }
+
+    fn halved(&mut self, [start, end]: [f64; 2], limit: f64) -> f64 {
         let length = end - start;
         let Rules { difference, .. } = rules(self.expression, [start, end]);
-        // A value that is no number is none in the run too, which stops there.
-        if difference.is_nan() || difference <= self.allowed * length {
+        if self.is_seen([start, end], difference) {
             return length;
         }
         if length < 1.5 * limit {
             self.left_over += difference;
-            self.shortest = self.shortest.min(length);
             return length;
         }
         let middle = 0.5 * (start + end);
-        self.longest_step([start, middle], limit).min(self.longest_step([middle, end], limit))
+        self.halved([start, middle], limit).min(self.halved([middle, end], limit))
+    }
+
+    /// Lengthens the steps of cells, a power of two of them, that are seen together.
+    fn join(&self, cells: &[[f64; 2]], steps: &mut [f64]) {
+        let length = cells[0][1] - cells[0][0];
+        let mut seen: Vec<bool> = steps.iter().map(|step| *step > 0.9 * length).collect();
+        let mut size = 1;
+        while seen.len() > 1 && seen.contains(&true) {
+            size *= 2;
+            let pairs = seen.chunks(2).zip(cells.chunks(size)).zip(steps.chunks_mut(size));
+            seen = pairs
+                .map(|((halves, cells), steps)| {
+                    let block = [cells[0][0], cells[size - 1][1]];
+                    let is_seen =
+                        halves[0] && halves[1] && self.is_seen(block, rules(self.expression, block).difference);
+                    if is_seen {
+                        steps.fill(block[1] - block[0]);
+                    }
+                    is_seen
+                })
+                .collect();
+        }
     }
 }
 
@@ -162,9 +249,13 @@ impl Search<'_> {
 mod tests {
     use super::*;
 
-    fn steps(text: &str, corners: &[f64], end: f64, step: f64) -> Result<FormulaSteps, SetupError> {
+    fn steps(text: &str, corners: &[f64], end: f64, step: impl Into<Option<f64>>) -> Result<FormulaSteps, SetupError> {
         let expression = Expression::new(text, corners.to_vec()).unwrap();
-        FormulaSteps::new(&[History::Product(vec![History::Constant, History::Expression(expression)])], end, step)
+        FormulaSteps::new(
+            &[History::Product(vec![History::Constant, History::Expression(expression)])],
+            end,
+            step.into(),
+        )
     }
 
     #[test]
@@ -202,6 +293,22 @@ mod tests {
         let found = steps("sign(t - 0.123)", &[], 1.0, 1e-2).unwrap();
         assert!(found.longest_step(0.123) < 2e-5 && found.longest_step(0.2) == f64::INFINITY);
         assert_eq!(steps("sign(t - 0.123)", &[0.123], 1.0, 1e-2).unwrap().stops().count(), 0);
+    }
+
+    #[test]
+    fn under_step_control_steps_are_as_long_as_the_formula_allows() {
+        let controlled = |text: &str, corners: &[f64]| steps(text, corners, 1.0, None).unwrap();
+        for omega in [10.0, 1e4] {
+            let period = std::f64::consts::TAU / omega;
+            let found = controlled(&format!("sin({omega}*t)"), &[]).longest_step(0.3);
+            assert!(found < period / 5.0 && found > period / 40.0, "{omega}: {found}");
+        }
+        assert_eq!(controlled("1 + t - t^3", &[]).longest_step(0.3), 1.0);
+        assert_eq!(controlled("sign(t - 0.3)", &[0.3]).longest_step(0.5), 0.7);
+        let bell = controlled("exp(-((t - 0.5)/1e-4)^2)", &[]);
+        assert!(bell.longest_step(0.5) < 1e-4 && bell.longest_step(0.2) > 0.1, "{:?}", bell.formulas);
+        assert!(bell.stops().count() < 60);
+        assert!(steps("sin(1e9*t)", &[], 1.0, None).is_err());
     }
 
     #[test]

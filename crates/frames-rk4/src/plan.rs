@@ -164,6 +164,8 @@ pub(crate) struct HalvedSteps {
     segment: Segment,
     /// Steps are `length / 2^level` long.
     level: u32,
+    /// That of the longest allowed.
+    lowest_level: u32,
     /// Steps of this length that have been done.
     done: u64,
 }
@@ -172,21 +174,25 @@ pub(crate) struct HalvedSteps {
 const DEEPEST: u32 = 40;
 
 impl HalvedSteps {
-    /// Through `segment`, beginning with the longest step not above `step`.
-    pub(crate) fn new(segment: Segment, step: f64) -> Self {
-        let level = (segment.length / step * (1.0 - 1e-9)).log2().ceil().clamp(0.0, f64::from(DEEPEST)) as u32;
-        Self { segment, level, done: 0 }
+    /// Through `segment` in steps not above `longest`, beginning with one not above `step`.
+    pub(crate) fn new(segment: Segment, step: f64, longest: f64) -> Self {
+        let level_of =
+            |step: f64| (segment.length / step * (1.0 - 1e-9)).log2().ceil().clamp(0.0, f64::from(DEEPEST)) as u32;
+        let lowest_level = level_of(longest);
+        Self { segment, level: level_of(step).max(lowest_level), lowest_level, done: 0 }
     }
 
     /// To be set.
-    pub(crate) const BLANK: Self = Self { segment: Segment::BLANK, level: 0, done: 1 };
+    pub(crate) const BLANK: Self = Self { segment: Segment::BLANK, level: 0, lowest_level: 0, done: 1 };
 
     pub(crate) fn pass(&mut self, tape: &mut Tape) {
         self.segment.pass(tape);
-        let mut level = u64::from(self.level);
-        tape.count(&mut level);
-        tape.expect("the halvings of the step", level <= u64::from(DEEPEST));
-        self.level = level.min(u64::from(DEEPEST)) as u32;
+        for level in [&mut self.level, &mut self.lowest_level] {
+            let mut count = u64::from(*level);
+            tape.count(&mut count);
+            tape.expect("the halvings of the step", count <= u64::from(DEEPEST));
+            *level = count.min(u64::from(DEEPEST)) as u32;
+        }
         tape.count(&mut self.done);
         tape.expect("the number of steps done", self.done <= 1 << self.level);
     }
@@ -213,7 +219,7 @@ impl HalvedSteps {
         self.done += 1;
         // The estimate goes with the fifth power of the step and its share of the tolerance with the first; half of the
         // share is kept in hand.
-        if error * 16.0 < 0.5 && self.level > 0 && self.done.is_multiple_of(2) {
+        if error * 16.0 < 0.5 && self.level > self.lowest_level && self.done.is_multiple_of(2) {
             self.level -= 1;
             self.done /= 2;
         }
@@ -267,7 +273,7 @@ mod tests {
     #[test]
     fn halved_steps_land_on_the_end_whatever_is_accepted_and_rejected() {
         let segment = Segment { start: 1.0, end: 1.3, length: 1.3 - 1.0, row: true, corner: false };
-        let mut steps = HalvedSteps::new(segment, 0.11);
+        let mut steps = HalvedSteps::new(segment, 0.11, f64::INFINITY);
         let mut time = 1.0;
         let mut tries = 0;
         while let Some((h, end)) = steps.next_step() {
@@ -286,7 +292,11 @@ mod tests {
 
     #[test]
     fn steps_cannot_shrink_for_ever() {
-        let mut steps = HalvedSteps::new(Segment { start: 0.0, end: 1.0, length: 1.0, row: true, corner: false }, 1.0);
+        let mut steps = HalvedSteps::new(
+            Segment { start: 0.0, end: 1.0, length: 1.0, row: true, corner: false },
+            1.0,
+            f64::INFINITY,
+        );
         assert!((0..100).any(|_| !steps.reject(f64::NAN)));
     }
 }

@@ -156,7 +156,6 @@ pub struct Simulation {
     engine: Engine,
     /// Of the loads and the drive.
     histories: Vec<History>,
-    /// Of fixed steps.
     formula_steps: FormulaSteps,
     plan: Plan,
     walk: Walk,
@@ -272,10 +271,11 @@ impl Simulation {
         let of_loads = loads.iter().map(|load| &load.history);
         let histories: Vec<History> =
             of_loads.chain(setup.physics.drive.iter().map(|drive| &drive.history)).cloned().collect();
-        let formula_steps = match setup.control {
-            StepControl::Fixed(step) => FormulaSteps::new(&histories, setup.end, step)?,
-            StepControl::Tolerance(_) => FormulaSteps::default(),
+        let step = match setup.control {
+            StepControl::Fixed(step) => Some(step),
+            StepControl::Tolerance(_) => None,
         };
+        let formula_steps = FormulaSteps::new(&histories, setup.end, step)?;
         let corners = histories.iter().flat_map(History::corners).chain(formula_steps.stops());
         Ok(Self {
             engine,
@@ -476,15 +476,16 @@ impl Simulation {
             }
             let segment = self.plan.next_segment()?;
             self.corner_ahead = segment.corner;
+            // Step control does not see what swings within a step either, where all its stages fall on like phases.
+            let inside = segment.start + 0.5 * segment.length;
+            let of_histories = self.histories.iter().map(|history| history.longest_step(inside));
+            let longest = of_histories.fold(self.formula_steps.longest_step(inside), f64::min);
             match &mut self.walk {
                 Walk::Equal { step, steps } => {
-                    let inside = segment.start + 0.5 * segment.length;
-                    let seen = self.histories.iter().map(|history| history.longest_step(inside));
-                    let longest = seen.fold(*step, f64::min).min(self.formula_steps.longest_step(inside));
-                    *steps = Some((EqualSteps::new(segment, longest), segment.row));
+                    *steps = Some((EqualSteps::new(segment, step.min(longest)), segment.row));
                 }
                 Walk::Halved { longest_try, steps, .. } => {
-                    *steps = Some((HalvedSteps::new(segment, *longest_try), segment.row));
+                    *steps = Some((HalvedSteps::new(segment, *longest_try, longest), segment.row));
                 }
             }
         }

@@ -1,6 +1,6 @@
 //! Step control, and where steps end.
 
-use frames_rk4::{History, Initial, Method, Observation, Reached, Rows, StepControl};
+use frames_rk4::{Expression, History, Initial, Method, Observation, Reached, Rows, StepControl};
 use nalgebra::Vector3;
 
 use crate::common::{Specimen, plate};
@@ -60,6 +60,36 @@ fn a_short_pulse_in_a_long_quiet_run_is_not_missed() {
     assert!(momentum[0] < 1e-6 && momentum[1] < 1e-10, "{momentum:?}");
     assert!(spin < 1e-6 && fine.omega_body.norm() > 1e-3, "{spin:e}");
     assert!(stats.accepted < 2000 && stats.longest == 0.5 * start, "{stats:?}");
+}
+
+#[test]
+fn a_load_that_swings_in_time_with_the_steps_is_not_missed() {
+    let rigid = plate().truncated(0);
+    let (end, frequency) = (0.1, 1000.0);
+    let omega = std::f64::consts::TAU * frequency;
+    let formula = |text: &str| History::Expression(Expression::new(text, Vec::new()).unwrap());
+    let sine = History::Sine { frequency, phase: 0.0, start: 0.0, duration: None };
+    let bell = formula("exp(-((t - 0.0437)/1e-5)^2)");
+    let bell_impulse = 1e-5 * std::f64::consts::PI.sqrt();
+    // ∫F dt and ∫∫F dt² of each. Without modes, nothing but the load sees that whole periods fall into a step.
+    for (history, [impulse, path], bound) in [
+        (sine, [0.0, end / omega], 1e-6),                            // 7.9e-8
+        (formula("sin(2000*pi*t)"), [0.0, end / omega], 1e-5),       // 3.3e-7
+        (bell, [bell_impulse, bell_impulse * (end - 0.0437)], 1e-8), // 8.2e-11
+    ] {
+        let mut load = rigid.half_sine([-500.0, 0.0, 10.0], [0.0, 0.0, 40.0], 1.0);
+        load.history = history;
+        let run = Run { loads: vec![load], ..Run::free(&rigid, Initial::at_rest(0), end) };
+        let mut simulation = run.start(EXPONENTIAL, StepControl::Tolerance(1e-6), Rows::Interval(0.01));
+        let last = simulation.by_ref().last().unwrap().unwrap();
+        let expected = [impulse, path].map(|integral| 40.0 * integral);
+        let start = rigid.body.center_of_mass.z;
+        let found = [last.linear_momentum_global.z, rigid.body.mass * (last.position_global.z - start)];
+        let scale = [40.0 * (path / end), 40.0 * path];
+        for k in 0..2 {
+            assert!((found[k] - expected[k]).abs() < bound * scale[k], "{found:?} {expected:?}");
+        }
+    }
 }
 
 /// Ends of all steps, and whether each is a row.
