@@ -14,6 +14,7 @@ pub fn write_results(path: &Path, modes: usize, points: usize, rows: u32, finish
         step: Some(1e-3),
         tolerance: None,
         program_version: "0".into(),
+        fingerprint: 0x89ab_cdef,
         scene_text: "title = \"a seed\"".into(),
         scene_file: "fuzz.toml".into(),
         body: BodyProperties {

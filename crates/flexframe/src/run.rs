@@ -56,7 +56,7 @@ pub enum RunError {
     Stopped {
         /// The unfinished file.
         part: PathBuf,
-        /// The time of the last row.
+        /// The time that was reached.
         time: f64,
     },
     /// The scene in an unfinished file is none.
@@ -177,7 +177,7 @@ pub struct Balances {
 pub struct RunSettings {
     /// Throws an unfinished run away that is in the way.
     pub overwrite: bool,
-    /// Set from elsewhere, stops the run at its next row.
+    /// Set from elsewhere, stops the run at its next row, or before where that is some thousand steps away.
     pub stop: Arc<AtomicBool>,
 }
 
@@ -203,7 +203,7 @@ pub fn run(
     let mut checkpoint = Vec::new();
     simulation.checkpoint(&mut checkpoint);
     let expected = Expected { rows: expected_rows(scene), checkpoint: checkpoint.len(), overwrite: settings.overwrite };
-    let writer = Writer::create(&path, &metadata(scene, &model), expected)?;
+    let writer = Writer::create(&path, &metadata(scene, &model, &simulation), expected)?;
     progress(RunProgress::Motion(0.0));
     let initial = model.initial(scene);
     let mut recorder = Recorder::new(scene, &model, &initial, &simulation, writer);
@@ -227,17 +227,20 @@ pub fn resume(
     let part = writer.unfinished().to_path_buf();
     let scene = Scene::parse(&results.metadata.scene_text, &results.metadata.scene_file)?;
     let model = Model::build(&scene, |p| progress(RunProgress::Build(p)))?;
+    let started = Instant::now();
+    let mut simulation = start(&scene, &model)?;
     let changed = |what| RunError::Changed { part: part.clone(), what };
-    let now = metadata(&scene, &model);
+    let now = metadata(&scene, &model, &simulation);
     if now.program_version != results.metadata.program_version {
         return Err(changed("the version of flexframe"));
     }
     if now.body != results.metadata.body {
         return Err(changed("the body"));
     }
+    if now.fingerprint != results.metadata.fingerprint {
+        return Err(changed("a load or its history"));
+    }
 
-    let started = Instant::now();
-    let mut simulation = start(&scene, &model)?;
     progress(RunProgress::Motion(0.0));
     let initial = model.initial(&scene);
     let report = match checkpoint {
@@ -292,7 +295,7 @@ pub fn results_path(scene: &Scene, folder: &Path) -> PathBuf {
     folder.join(scene.path.file_stem().unwrap_or("results".as_ref())).with_extension("h5")
 }
 
-fn metadata(scene: &Scene, model: &Model) -> Metadata {
+fn metadata(scene: &Scene, model: &Model, at_start: &Simulation) -> Metadata {
     let body = BodyReport::new(model);
     let method = scene::method(scene.time.method);
     let (step, tolerance) = match scene.time.stepping {
@@ -311,6 +314,7 @@ fn metadata(scene: &Scene, model: &Model) -> Metadata {
         step,
         tolerance,
         program_version: env!("CARGO_PKG_VERSION").to_owned(),
+        fingerprint: fingerprint(at_start),
         scene_text: scene.source.clone(),
         scene_file: std::path::absolute(&scene.path).unwrap_or_else(|_| scene.path.clone()).display().to_string(),
         body: BodyProperties {
@@ -322,6 +326,22 @@ fn metadata(scene: &Scene, model: &Model) -> Metadata {
         },
         point_names: model.points.iter().map(|(name, _)| name.clone()).collect(),
     }
+}
+
+/// CRC-32 of all that a simulation knows at its start. How it is written down may change from version to version, but no
+/// run goes on in another version anyway.
+fn fingerprint(at_start: &Simulation) -> u32 {
+    struct Sum(crc32fast::Hasher);
+    impl fmt::Write for Sum {
+        fn write_str(&mut self, text: &str) -> fmt::Result {
+            self.0.update(text.as_bytes());
+            Ok(())
+        }
+    }
+    let mut sum = Sum(crc32fast::Hasher::new());
+    // It cannot fail, since a sum takes everything.
+    let _ = fmt::write(&mut sum, format_args!("{at_start:?}"));
+    sum.0.finalize()
 }
 
 /// Follows a run, and turns its observations into rows of the results file.
@@ -404,6 +424,11 @@ impl<'a> Recorder<'a> {
                         let part = self.writer.unfinished().to_path_buf();
                         return Err(RunError::Stopped { part, time: simulation.time() });
                     }
+                }
+                // What has come since the last flush is computed again.
+                Reached::Between if settings.stop.load(Ordering::Relaxed) => {
+                    let part = self.writer.unfinished().to_path_buf();
+                    return Err(RunError::Stopped { part, time: simulation.time() });
                 }
                 Reached::Between => {}
                 Reached::End => break,

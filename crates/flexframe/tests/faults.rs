@@ -178,6 +178,17 @@ fn control_c_stops_at_a_row_and_says_how_to_go_on() {
         succeed(scene.resume(signal));
         assert!(std::fs::read(scene.results(signal)).unwrap() == std::fs::read(scene.results("whole")).unwrap());
     }
+    // A row that is far away is not waited for.
+    let text = std::fs::read_to_string(&scene.path).unwrap();
+    assert!(text.contains("interval = 1e-4"));
+    std::fs::write(&scene.path, text.replace("interval = 1e-4", "interval = 0.2").replace("5e-7", "1e-9")).unwrap();
+    let child = scene.start(scene.run("far"), "far");
+    let mut kill = Command::new("kill");
+    kill.args(["-INT", &child.id().to_string()]);
+    succeed(kill);
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(130), "{}", message(&output));
+    assert_eq!(open(unfinished(scene.results("far"))).time.len(), 1);
     let again = scene.resume("-INT");
     assert_has(&failure(again), &["complete", "nothing to resume"]);
 }
@@ -225,15 +236,25 @@ fn a_run_goes_on_with_the_same_body_or_not_at_all() {
     let original = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../meshes/ring.msh").canonicalize().unwrap();
     std::fs::copy(&original, &mesh).unwrap();
     let text = std::fs::read_to_string(&scene.path).unwrap();
+    let half_sine = "{ kind = \"half-sine\", duration = 0.002 }";
+    assert!(text.contains(half_sine));
+    let text = text.replace(half_sine, "{ kind = \"table\", file = \"pulse.csv\" }");
     std::fs::write(&scene.path, text.replace(original.to_str().unwrap(), "ring.msh")).unwrap();
+    let table = scene.folder.path().join("pulse.csv");
+    let pulse = "0,0\n0.001,1\n0.002,0\n0.15,0\n0.2,0.1\n";
+    std::fs::write(&table, pulse).unwrap();
     let mut child = scene.start(scene.run("out"), "out");
     child.kill().unwrap();
     child.wait().unwrap();
     std::fs::copy(original.with_file_name("plate.msh"), &mesh).unwrap();
     let words = failure(scene.resume("out"));
     assert!(words.contains("no longer what it was") || words.contains("not on the body"), "{words}");
-    // The scene counts as it was, wherever the program is started.
     std::fs::copy(&original, &mesh).unwrap();
+    // A table whose change is still to come.
+    std::fs::write(&table, pulse.replace("0.2,0.1", "0.2,0.2")).unwrap();
+    assert_has(&failure(scene.resume("out")), &["a load or its history", "no longer what it was"]);
+    std::fs::write(&table, pulse).unwrap();
+    // The scene counts as it was, wherever the program is started.
     std::fs::write(&scene.path, "nonsense").unwrap();
     let mut resume = scene.resume("out");
     resume.current_dir(std::env::temp_dir());

@@ -75,19 +75,6 @@ pub enum FileError {
         /// The unfinished file that is not there.
         part: PathBuf,
     },
-    /// The rows of an unfinished file do not reach up to its checkpoint.
-    #[error(
-        "{path}: there are {found} whole rows where the checkpoint comes after {expected}: the file is damaged; run the scene again with --overwrite",
-        path = .path.display()
-    )]
-    Checkpoint {
-        /// The unfinished file.
-        path: PathBuf,
-        /// Rows that the checkpoint asks for.
-        expected: usize,
-        /// Whole rows.
-        found: usize,
-    },
     /// A point's name cannot be the name of an HDF5 group, or occurs twice.
     #[error(
         "{path}: the output point \"{name}\" cannot be stored: {reason}; give it another name",

@@ -19,11 +19,12 @@
 //!
 //! Every dataset has the attributes `unit`, `frame` and `description`. The root has `title`, `scene`
 //! (the scene file's text), `scene_file` (where it was), `formulation`, `scheme`, `step` or `tolerance`,
-//! `program_version`, `units_length`, `units_mass`, `units_time` and `complete`: 1, or 0 in an unfinished file.
+//! `program_version`, `fingerprint`, `units_length`, `units_mass`, `units_time` and `complete`: 1, or 0 in an unfinished
+//! file.
 //!
 //! In an unfinished file, T is the number of rows that there is room for. Those that have not been written are NaN. It
 //! has the dataset `checkpoint` besides (2×words): two places for the state of the run, written in turns, each with
-//! its number, the rows before it, the words of the state, and a check sum.
+//! its number, the rows before it, their check sum, the words of the state, and a check sum of itself.
 
 use crate::{Sample, Units};
 use std::slice::from_ref;

@@ -13,6 +13,7 @@
 
 mod animation;
 mod chart;
+mod checkpoint;
 mod error;
 mod font;
 pub mod layout;

@@ -29,6 +29,10 @@ impl Place {
         }
     }
 
+    fn folder(&self) -> &Path {
+        self.path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
+    }
+
     /// Refuses to begin where something would be lost.
     pub(crate) fn check(&self, overwrite: bool) -> Result<(), FileError> {
         if self.part.exists() {
@@ -58,24 +62,33 @@ impl Place {
 
     /// A file of another name in the same folder, which is removed if it gets no other name.
     pub(crate) fn temporary(&self) -> Result<TempPath, FileError> {
-        let folder = self.path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
         let mut builder = tempfile::Builder::new();
         builder.prefix(".flexframe-").suffix(".h5");
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666)); // less the user's mask
-        let file =
-            builder.tempfile_in(folder).map_err(|error| FileError::system(&self.path, "create the file", &error))?;
+        let file = builder
+            .tempfile_in(self.folder())
+            .map_err(|error| FileError::system(&self.path, "create the file", &error))?;
         Ok(file.into_temp_path())
     }
 
     /// Makes a file the unfinished one; an older one is in the way unless it is to be replaced.
     pub(crate) fn put_part(&self, file: TempPath, replace: bool) -> Result<(), FileError> {
+        let _alone = lock(self.folder());
+        // Another run may have begun since it was looked at first.
+        if is_busy(&self.part) {
+            return Err(FileError::Busy { path: self.part.clone() });
+        }
         let outcome = if replace { file.persist(&self.part) } else { file.persist_noclobber(&self.part) };
         outcome.map_err(|failure| match failure.error.kind() {
-            // Another run was quicker.
-            io::ErrorKind::AlreadyExists => FileError::Busy { path: self.part.clone() },
+            io::ErrorKind::AlreadyExists => FileError::Unfinished { path: self.part.clone() },
             _ => FileError::system(&self.part, "create the file", &failure.error),
         })
+    }
+
+    /// Puts a file into the place of the unfinished one, which is the caller's own.
+    pub(crate) fn exchange_part(&self, file: TempPath) -> Result<(), FileError> {
+        file.persist(&self.part).map_err(|failure| FileError::system(&self.part, "create the file", &failure.error))
     }
 
     /// Makes a file the results file, once it is safe on the disk.
@@ -88,6 +101,13 @@ impl Place {
     pub(crate) fn remove_part(&self) -> Result<(), FileError> {
         std::fs::remove_file(&self.part).map_err(|error| FileError::system(&self.part, "remove the file", &error))
     }
+}
+
+/// Keeps other runs from putting a file into the folder until it is dropped. Where folders cannot be locked, nothing does.
+fn lock(folder: &Path) -> Option<File> {
+    let folder = File::open(folder).ok()?;
+    folder.lock().ok()?;
+    Some(folder)
 }
 
 /// Whether another process writes the file: HDF5 locks what it has open.

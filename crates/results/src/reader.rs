@@ -1,5 +1,6 @@
 //! Reads a results file back, finished or not.
 
+use crate::checkpoint::{Checkpoint, Sums};
 use crate::layout::Quantity;
 use crate::{BodyProperties, FileError, Metadata, PointSample, Sample, Units, seal};
 use hdf5::types::VarLenUnicode;
@@ -108,7 +109,11 @@ impl Results {
     /// [`FileError::MissingAttribute`], [`FileError::NotUtf8`] or [`FileError::WrongShape`] if it departs from the
     /// contract, [`FileError::ClaimsTooMuch`] if its shapes come to more than the file holds.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, FileError> {
-        let path = path.as_ref();
+        Ok(Self::open_with_checkpoint(path.as_ref())?.0)
+    }
+
+    /// With the last checkpoint of an unfinished file whose rows are as they were then, and their sums.
+    pub(crate) fn open_with_checkpoint(path: &Path) -> Result<(Self, Option<(Checkpoint, Sums)>), FileError> {
         seal::check(path)?;
         let file = hdf5::File::open(path).map_err(FileError::hdf5(path, "open the file"))?;
         let source = Source { path, file: &file, length: file.size() };
@@ -135,6 +140,22 @@ impl Results {
                 rows = rows.min(whole / quantity.width(modes).unwrap_or(1).max(1));
             }
         }
+        let checkpoints = if complete { Vec::new() } else { source.checkpoints()? };
+        let sums = |checkpoint: &Checkpoint| {
+            let mut sums = Sums::new(columns.len());
+            let widths = quantities.iter().map(|quantity| quantity.width(modes).unwrap_or(1));
+            sums.add(columns.iter().zip(widths).map(|(column, width)| &column[..checkpoint.rows * width]));
+            sums
+        };
+        let known = checkpoints.iter().map(|checkpoint| checkpoint.rows).max();
+        let checkpoint = checkpoints.into_iter().filter(|checkpoint| checkpoint.rows <= rows).find_map(|checkpoint| {
+            let sums = sums(&checkpoint);
+            (sums.total() == checkpoint.sum_of_rows).then_some((checkpoint, sums))
+        });
+        if let (Some(known), None) = (known, &checkpoint) {
+            let what = format!("its first {known} rows are not those that its checkpoint is for");
+            return Err(FileError::Damaged { path: path.to_path_buf(), what });
+        }
         let mut column = |quantity: Quantity| {
             let place = quantities.iter().position(|q| *q == quantity);
             let mut values = place.map(|place| std::mem::take(&mut columns[place])).unwrap_or_default();
@@ -152,7 +173,7 @@ impl Results {
             };
             points.insert(name.clone(), history);
         }
-        Ok(Self {
+        let results = Self {
             complete,
             time: column(Quantity::Time),
             attitude: vectors(column(Quantity::Attitude)),
@@ -173,8 +194,10 @@ impl Results {
             angular_balance: vectors(column(Quantity::AngularBalance)),
             points,
             metadata,
-        })
+        };
+        Ok((results, checkpoint))
     }
+
     /// Row `row`, if there is one; `points` is the room for its points.
     pub fn sample<'a>(&'a self, row: usize, points: &'a mut Vec<PointSample>) -> Option<Sample<'a>> {
         points.clear();
@@ -297,6 +320,7 @@ impl Source<'_> {
             step: self.attribute_if_given("step")?,
             tolerance: self.attribute_if_given("tolerance")?,
             program_version: self.text("program_version")?,
+            fingerprint: self.attribute::<i64>("fingerprint")? as u32,
             scene_text: self.text("scene")?,
             scene_file: self.attribute_if_given::<VarLenUnicode>("scene_file")?.unwrap_or_default().as_str().to_owned(),
             body,
@@ -313,6 +337,19 @@ impl Source<'_> {
             .member_names_by(IndexType::CreationOrder, IterationOrder::Increasing)
             .or_else(|_| group.member_names()) // a file from elsewhere need not keep the order
             .map_err(self.failed("list the points"))
+    }
+
+    /// Whole checkpoints, the last first.
+    fn checkpoints(&self) -> Result<Vec<Checkpoint>, FileError> {
+        let dataset = self.dataset("checkpoint")?;
+        let &[2, words] = &dataset.shape()[..] else {
+            return Err(self.wrong_shape("checkpoint", "[2, words]".into(), &dataset));
+        };
+        self.refuse_if_claimed(2 * words as u128)?;
+        let places = dataset.read_raw::<u64>().map_err(self.failed("read dataset checkpoint"))?;
+        let mut checkpoints: Vec<Checkpoint> = places.chunks(words.max(1)).filter_map(Checkpoint::read).collect();
+        checkpoints.sort_unstable_by_key(|checkpoint| std::cmp::Reverse(checkpoint.serial));
+        Ok(checkpoints)
     }
 
     fn dataset(&self, name: &str) -> Result<hdf5::Dataset, FileError> {

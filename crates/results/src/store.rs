@@ -147,14 +147,6 @@ impl Store {
         checkpoint.write_slice(words, s![place, ..]).map_err(FileError::hdf5(path, "write the checkpoint"))
     }
 
-    /// The two places for a checkpoint.
-    pub(crate) fn read_checkpoints(&self, path: &Path) -> Result<[Vec<u64>; 2], FileError> {
-        let Some(checkpoint) = &self.checkpoint else { return Ok([Vec::new(), Vec::new()]) };
-        let words = checkpoint.read_raw::<u64>().map_err(FileError::hdf5(path, "read the checkpoint"))?;
-        let (first, second) = words.split_at(words.len() / 2);
-        Ok([first.to_vec(), second.to_vec()])
-    }
-
     /// Hands everything to the operating system, and is done.
     pub(crate) fn close(self, path: &Path) -> Result<(), FileError> {
         let Self { columns, checkpoint, rows: _, file } = self;
@@ -245,10 +237,13 @@ fn write_root_attributes(path: &Path, file: &hdf5::File, metadata: &Metadata, co
             .and_then(|attribute| attribute.write_scalar(&number))
             .map_err(FileError::hdf5(path, format!("write the attribute {name}")))?;
     }
-    file.new_attr::<i64>()
-        .create("complete")
-        .and_then(|attribute| attribute.write_scalar(&i64::from(complete)))
-        .map_err(FileError::hdf5(path, "write the attribute complete"))
+    for (name, number) in [("fingerprint", metadata.fingerprint.into()), ("complete", i64::from(complete))] {
+        file.new_attr::<i64>()
+            .create(name)
+            .and_then(|attribute| attribute.write_scalar(&number))
+            .map_err(FileError::hdf5(path, format!("write the attribute {name}")))?;
+    }
+    Ok(())
 }
 
 fn write_body(path: &Path, file: &hdf5::File, metadata: &Metadata) -> Result<(), FileError> {

@@ -1,5 +1,6 @@
 //! Streams samples into an HDF5 file while a run goes on.
 
+use crate::checkpoint::{self, Checkpoint, Sums};
 use crate::layout::Quantity;
 use crate::place::{Place, is_busy};
 use crate::reader::Results;
@@ -42,6 +43,8 @@ pub struct Writer {
     store: Store,
     /// Values of the rows that have not been written, by column.
     buffers: Vec<(Quantity, Vec<f64>)>,
+    /// Of the rows that have been written.
+    sums: Sums,
     rows_written: usize,
     rows_buffered: usize,
     /// The last checkpoint as it is in the file, and its number.
@@ -87,7 +90,7 @@ impl Writer {
             .collect();
         let numbers_per_row: usize = buffers.iter().map(|(quantity, _)| quantity.width(modes).unwrap_or(1)).sum();
         let rows = expected.rows.min(FIRST_ROOM / numbers_per_row).max(ROWS_PER_WRITE);
-        let checkpoint = vec![0; CHECKPOINT_FRAME + expected.checkpoint];
+        let checkpoint = vec![0; checkpoint::FRAME + expected.checkpoint];
         let room = Room { rows, checkpoint: Some(checkpoint.len()), complete: false };
         let (file, store) = make_room(&place, metadata, room)?;
         place.put_part(file, expected.overwrite)?;
@@ -95,6 +98,7 @@ impl Writer {
             place,
             metadata: metadata.clone(),
             store,
+            sums: Sums::new(buffers.len()),
             buffers,
             rows_written: 0,
             rows_buffered: 0,
@@ -120,25 +124,22 @@ impl Writer {
     ///
     /// # Errors
     /// [`FileError::Complete`] and [`FileError::NothingToResume`] if there is no unfinished file, [`FileError::Busy`]
-    /// if its run goes on, [`FileError::Checkpoint`] if it has fewer rows than its checkpoint says, and those of
-    /// [`Results::open`].
+    /// if its run goes on, and those of [`Results::open`].
     pub fn resume(path: impl AsRef<Path>) -> Result<Resumed, FileError> {
         let place = Place::of(path.as_ref());
         place.check_resumable()?;
         let part = &place.part;
-        let mut results = Results::open(part)?;
+        let (mut results, last) = Results::open_with_checkpoint(part)?;
         let store = Store::open(part, part, &results.metadata)
             .map_err(|error| if is_busy(part) { FileError::Busy { path: part.clone() } } else { error })?;
-        let last = store.read_checkpoints(part)?.into_iter().filter_map(Checkpoint::read).max_by_key(|c| c.serial);
-        let (rows, serial) = last.as_ref().map_or((0, 0), |last| (last.rows, last.serial));
-        if rows > results.time.len() {
-            return Err(FileError::Checkpoint { path: part.clone(), expected: rows, found: results.time.len() });
-        }
-        results.truncate(rows);
-        let (frame, state) = match last {
-            Some(last) => (Checkpoint::frame(last.serial, rows, &last.state), Some(last.state)),
-            None => (vec![0; store.checkpoint_words()], None),
+        let (rows, serial, frame, state, sums) = match last {
+            Some((last, sums)) => (last.rows, last.serial, last.words(), Some(last.state), sums),
+            None => {
+                let columns = Quantity::all(results.metadata.point_names.len()).count();
+                (0, 0, vec![0; store.checkpoint_words()], None, Sums::new(columns))
+            }
         };
+        results.truncate(rows);
         let buffers =
             Quantity::all(results.metadata.point_names.len()).map(|quantity| (quantity, Vec::new())).collect();
         let writer = Self {
@@ -146,6 +147,7 @@ impl Writer {
             place,
             store,
             buffers,
+            sums,
             rows_written: rows,
             rows_buffered: 0,
             checkpoint: frame,
@@ -204,13 +206,14 @@ impl Writer {
     /// [`FileError::Hdf5`] if the file cannot be written.
     pub fn flush(&mut self, checkpoint: &[u64]) -> Result<(), FileError> {
         let path = &self.place.part;
-        let expected = self.checkpoint.len().saturating_sub(CHECKPOINT_FRAME);
+        let expected = self.checkpoint.len().saturating_sub(checkpoint::FRAME);
         check_length(path, "the checkpoint", expected, checkpoint.len())?;
         self.write_buffers()?;
         let path = &self.place.part;
         self.store.flush(path)?;
         self.serial += 1;
-        self.checkpoint = Checkpoint::frame(self.serial, self.rows_written, checkpoint);
+        let (rows, sum_of_rows) = (self.rows_written, self.sums.total());
+        self.checkpoint = Checkpoint { serial: self.serial, rows, sum_of_rows, state: checkpoint.to_vec() }.words();
         // In turns, so that one of the two is whole at any moment.
         self.store.write_checkpoint(path, (self.serial % 2) as usize, &self.checkpoint)?;
         self.store.flush(path)?;
@@ -246,8 +249,10 @@ impl Writer {
         let rows = self.rows_written..self.rows_written + self.rows_buffered;
         let room = if rows.end > self.store.rows() { self.grow(rows.end) } else { Ok(()) };
         let outcome = room.and_then(|()| {
-            let values = self.buffers.iter().map(|(_, buffer)| buffer.as_slice());
-            self.store.write(&self.place.part, rows.clone(), values)
+            let values = || self.buffers.iter().map(|(_, buffer)| buffer.as_slice());
+            self.store.write(&self.place.part, rows.clone(), values())?;
+            self.sums.add(values());
+            Ok(())
         });
         // Should it fail, the rows are given up, and no later call takes others for them.
         self.buffers.iter_mut().for_each(|(_, buffer)| buffer.clear());
@@ -269,7 +274,7 @@ impl Writer {
             .and_then(|()| store.write_checkpoint(part, (self.serial % 2) as usize, &self.checkpoint))
             .and_then(|()| store.flush(part))
             .map_err(|error| error.with_reason_from_system(&file))?;
-        self.place.put_part(file, true)?;
+        self.place.exchange_part(file)?;
         self.store = store;
         Ok(())
     }
@@ -292,44 +297,6 @@ impl Drop for Writer {
         // Best effort: there is nobody left to tell. After `finish` there is nothing to do.
         let _ = self.write_buffers().and_then(|()| self.store.flush(&self.place.part));
     }
-}
-
-/// Words of a checkpoint in the file beside those of the state: number, rows, and check sum.
-const CHECKPOINT_FRAME: usize = 3;
-
-/// A checkpoint as it is in the file.
-struct Checkpoint {
-    /// From 1.
-    serial: u64,
-    /// Rows before it.
-    rows: usize,
-    state: Vec<u64>,
-}
-
-impl Checkpoint {
-    fn frame(serial: u64, rows: usize, state: &[u64]) -> Vec<u64> {
-        let mut words = vec![serial, rows as u64];
-        words.extend_from_slice(state);
-        words.push(check_sum(&words));
-        words
-    }
-
-    /// `None` if there is none, or only part of one.
-    fn read(words: Vec<u64>) -> Option<Self> {
-        let (sum, words) = words.split_last()?;
-        match words {
-            [serial, rows, state @ ..] if *serial > 0 && check_sum(words) == *sum => {
-                Some(Self { serial: *serial, rows: usize::try_from(*rows).ok()?, state: state.to_vec() })
-            }
-            _ => None,
-        }
-    }
-}
-
-fn check_sum(words: &[u64]) -> u64 {
-    let mut hasher = crc32fast::Hasher::new();
-    words.iter().for_each(|word| hasher.update(&word.to_le_bytes()));
-    hasher.finalize().into()
 }
 
 fn check_length(path: &Path, quantity: &str, expected: usize, found: usize) -> Result<(), FileError> {

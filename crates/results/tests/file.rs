@@ -251,6 +251,36 @@ fn nothing_is_overwritten_that_a_user_would_miss() {
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
 }
 
+#[test]
+fn of_runs_that_begin_at_once_each_has_the_file_to_itself() {
+    let (_folder, path) = folder();
+    let metadata = metadata(1, &[]);
+    let (mut done, mut busy) = (0, 0);
+    for _ in 0..20 {
+        let outcomes: Vec<Result<(), FileError>> = std::thread::scope(|scope| {
+            let run = || {
+                let expected = Expected { overwrite: true, ..Expected::default() };
+                let mut writer = Writer::create(&path, &metadata, expected)?;
+                (0..5).for_each(|i| writer.push(&Row::new(i, 1, 0).sample()).unwrap());
+                writer.finish()
+            };
+            let threads: Vec<_> = (0..4).map(|_| scope.spawn(run)).collect();
+            threads.into_iter().map(|thread| thread.join().unwrap()).collect()
+        });
+        for outcome in outcomes {
+            match outcome {
+                Ok(()) => done += 1,
+                Err(error) => {
+                    assert!(matches!(error, FileError::Busy { .. }), "{error}");
+                    busy += 1;
+                }
+            }
+        }
+        assert_rows(&Results::open(&path).unwrap(), 5);
+    }
+    assert!(done >= 20 && done + busy == 80, "{done} {busy}");
+}
+
 /// What h5py builds numpy arrays and `str` from: IEEE doubles, and strings of variable length in UTF-8.
 #[test]
 fn names_types_and_shapes_are_those_of_the_contract() {
@@ -312,7 +342,9 @@ fn names_types_and_shapes_are_those_of_the_contract() {
     }
     let descriptor = |name: &str| file.attr(name).unwrap().dtype().unwrap().to_descriptor().unwrap();
     assert_eq!(descriptor("step"), TypeDescriptor::Float(FloatSize::U8));
-    assert_eq!(descriptor("complete"), TypeDescriptor::Integer(IntSize::U8));
+    for name in ["complete", "fingerprint"] {
+        assert_eq!(descriptor(name), TypeDescriptor::Integer(IntSize::U8));
+    }
     for (name, unit, frame) in [
         ("energy/strain", "Mg mm^2/s^2", "none"),
         ("energy/work", "Mg mm^2/s^2", "none"),
