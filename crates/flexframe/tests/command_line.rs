@@ -149,6 +149,54 @@ fn the_tumbling_plate_turns_and_swings() {
     assert!(peak > 1.0, "{peak}");
 }
 
+/// A scene that takes no time.
+const COIN: &str = r#"
+title = "Coin"
+[body.rigid]
+mass = 2.0
+center_of_mass = [0.0, 0.0, 0.0]
+inertia = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.8]]
+[initial]
+angular_velocity = [0.1, 0.0, 5.0]
+[time]
+end = 0.1
+step = 1e-2
+"#;
+
+/// Standard error of a command that is to be refused with the exit code given.
+fn refused(code: i32, arguments: &[&str]) -> String {
+    let output = flexframe(arguments);
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(code), "{message}");
+    assert!(output.stdout.is_empty());
+    message
+}
+
+#[track_caller]
+fn assert_says(message: &str, words: &[&str]) {
+    for word in words {
+        assert!(message.contains(word), "{word} in: {message}");
+    }
+}
+
+#[test]
+fn a_dot_in_the_name_of_a_scene_stays_in_those_of_its_results() {
+    let folder = tempfile::tempdir().unwrap();
+    let place = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let first = place("coin.h5");
+    for (scene, file) in [("coin.toml", "coin.h5"), ("coin.v2.toml", "coin.v2.h5")] {
+        std::fs::write(place(scene), COIN).unwrap();
+        let report = json(&["run", &place(scene), "-o", folder.path().to_str().unwrap(), "--json"]);
+        assert_eq!(report["results"], place(file));
+        assert!(Results::open(place(file)).unwrap().complete);
+    }
+    assert!(Results::open(first).unwrap().metadata.scene_file.ends_with("coin.toml"));
+    std::fs::write(place("coin.v2.part.h5"), "").unwrap();
+    let message = refused(1, &["run", &place("coin.v2.toml"), "-o", folder.path().to_str().unwrap()]);
+    assert_says(&message, &["coin.v2.part.h5"]);
+    assert_says(&refused(1, &["resume", &place("coin.v2.h5")]), &["coin.v2.part.h5"]);
+}
+
 #[test]
 fn what_is_wrong_is_said_with_file_line_key_and_cure() {
     let folder = tempfile::tempdir().unwrap();
