@@ -45,8 +45,8 @@ struct Block {
 /// See [`MeshError`]: unreadable file, wrong format, wrong elements, and all that [`Mesh::new`] refuses.
 pub fn read_msh(path: impl AsRef<Path>) -> Result<Mesh, MeshError> {
     let source_name = path.as_ref().display().to_string();
-    let bytes = read_ordinary(path.as_ref())
-        .map_err(|source| MeshError::Io { source_name: source_name.clone(), source })?;
+    let bytes =
+        read_ordinary(path.as_ref()).map_err(|source| MeshError::Io { source_name: source_name.clone(), source })?;
     parse_msh(&bytes, &source_name)
 }
 

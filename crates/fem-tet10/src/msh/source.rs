@@ -181,7 +181,14 @@ impl<'a> Source<'a> {
         if claimed == found as u64 {
             return Ok(());
         }
-        Err(MeshError::Total { source_name: self.name.to_owned(), place, section: self.section.clone(), what, claimed, found })
+        Err(MeshError::Total {
+            source_name: self.name.to_owned(),
+            place,
+            section: self.section.clone(),
+            what,
+            claimed,
+            found,
+        })
     }
 
     /// An error at the place that has been reached.
