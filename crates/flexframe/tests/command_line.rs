@@ -152,6 +152,7 @@ fn the_tumbling_plate_turns_and_swings() {
 /// A scene that takes no time.
 const COIN: &str = r#"
 title = "Coin"
+units = { length = "m", mass = "kg", time = "s" }
 [body.rigid]
 mass = 2.0
 center_of_mass = [0.0, 0.0, 0.0]
