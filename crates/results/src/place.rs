@@ -35,6 +35,9 @@ impl Place {
             if is_busy(&self.part) {
                 return Err(FileError::Busy { path: self.part.clone() });
             }
+            if self.part.is_dir() || !overwrite && !seal::is_claimed(&self.part) {
+                return Err(FileError::NotResults { path: self.part.clone() });
+            }
             if !overwrite {
                 return Err(FileError::Unfinished { path: self.part.clone() });
             }
