@@ -194,7 +194,9 @@ pub enum ModalError {
         tolerance: f64,
     },
     /// A dense eigenvalue problem failed.
-    #[error("a dense eigenvalue problem of size {size} did not converge")]
+    #[error(
+        "a dense eigenvalue problem of size {size} did not converge: are masses or stiffnesses of the body many powers of ten too small or too large in the units of the scene?"
+    )]
     DenseEigen {
         /// Its size.
         size: usize,
