@@ -53,7 +53,7 @@ pub enum ModalError {
     },
     /// The body has no mass, or none to resist a rotation.
     #[error(
-        "the body has mass {mass:.3e} and moments of inertia {inertia:?} about its origin, which is no rigid body: the mass and all three moments must be positive (of a hinge, that about its axis)"
+        "the body has mass {mass:.3e} and moments of inertia {inertia:?} about its origin, which is no rigid body: the mass and all three moments must be positive (of a hinge, that about its axis), and large enough to divide by: are they in the units of the mesh?"
     )]
     NoInertia {
         /// Total mass.
