@@ -262,6 +262,19 @@ fn nothing_is_overwritten_that_a_user_would_miss() {
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
 }
 
+/// To open a pipe is to wait for who writes into it.
+#[cfg(unix)]
+#[test]
+fn a_pipe_is_refused_without_being_opened() {
+    let (_folder, path) = folder();
+    for pipe in [path.clone(), unfinished(&path)] {
+        assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+        assert!(matches!(Writer::check(&path, false), Err(FileError::NotResults { path }) if path == pipe));
+        assert!(matches!(Writer::resume(&path), Err(FileError::NothingToResume { .. })));
+        std::fs::remove_file(pipe).unwrap();
+    }
+}
+
 /// What h5py builds numpy arrays and `str` from: IEEE doubles, and strings of variable length in UTF-8.
 #[test]
 fn names_types_and_shapes_are_those_of_the_contract() {
