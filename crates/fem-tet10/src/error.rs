@@ -55,6 +55,24 @@ pub enum MeshError {
         /// What stands there.
         found: String,
     },
+    /// The head of a section says that its blocks hold more or fewer than they do.
+    #[error(
+        "{source_name}, {place}: in {section}: found the number {claimed} for all {what}, expected {found}, as the blocks hold; the file has been edited or damaged: save the mesh again from gmsh"
+    )]
+    Total {
+        /// The mesh.
+        source_name: String,
+        /// Line or byte.
+        place: Place,
+        /// `$Nodes` or `$Elements`.
+        section: String,
+        /// "nodes" or "elements".
+        what: &'static str,
+        /// What the head says.
+        claimed: u64,
+        /// What the blocks hold.
+        found: usize,
+    },
     /// A required section is not there.
     #[error(
         "{source_name}: there is no {section} section; mesh the volume and save it with `gmsh -3 -order 2 -format msh41`"
@@ -108,6 +126,18 @@ pub enum MeshError {
         kind: &'static str,
         /// The tag.
         tag: u64,
+    },
+    /// Two elements have the same four corners.
+    #[error(
+        "{source_name}: elements {first} and {second} are the same tetrahedron, whose stiffness and mass would count twice; remove one of them (gmsh: `gmsh.model.mesh.removeDuplicateElements()`), or mesh the volume once"
+    )]
+    SameElement {
+        /// The mesh.
+        source_name: String,
+        /// Tag of the one that comes first.
+        first: u64,
+        /// Tag of the other.
+        second: u64,
     },
     /// A coordinate is not a finite number.
     #[error("{source_name}: node {node} is at {position:?}; every coordinate must be a finite number")]

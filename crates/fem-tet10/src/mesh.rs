@@ -85,7 +85,7 @@ impl Mesh {
     /// Checks the parts and makes a mesh of them.
     ///
     /// # Errors
-    /// Lengths that do not agree, tags given twice or unknown, coordinates that are not finite, regions and groups
+    /// Lengths that do not agree, tags given twice or unknown, elements with the same corners, coordinates that are not finite, regions and groups
     /// that are not in their lists, surfaces that are no faces of the body, inverted or degenerate elements, nodes of no
     /// element, several pieces.
     pub fn new(parts: MeshParts) -> Result<Self, MeshError> {
@@ -147,6 +147,7 @@ impl Mesh {
             surfaces,
             node_sets,
         };
+        mesh.refuse_same_elements()?;
         mesh.refuse_orphans()?;
         integration::check_jacobians(&mesh)?;
         mesh.refuse_pieces()?;
@@ -215,6 +216,23 @@ impl Mesh {
             })
             .sum::<f64>()
             .sqrt()
+    }
+
+    /// The Jacobians are looked at later: two elements with the same corners fill the same space.
+    fn refuse_same_elements(&self) -> Result<(), MeshError> {
+        let corners = |nodes: &[u32; 10]| {
+            let mut corners = [nodes[0], nodes[1], nodes[2], nodes[3]];
+            corners.sort_unstable();
+            corners
+        };
+        let mut sorted: Vec<_> = (0..).zip(&self.elements).map(|(e, nodes)| (corners(nodes), e)).collect();
+        sorted.sort_unstable();
+        let same = sorted.windows(2).find(|pair| pair[0].0 == pair[1].0);
+        let tag = |e: usize| self.element_tags[e];
+        same.map_or(Ok(()), |pair| {
+            let (first, second) = (tag(pair[0].1), tag(pair[1].1));
+            Err(MeshError::SameElement { source_name: self.source.clone(), first, second })
+        })
     }
 
     fn refuse_orphans(&self) -> Result<(), MeshError> {

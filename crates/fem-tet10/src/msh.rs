@@ -7,6 +7,7 @@ mod groups;
 mod source;
 
 use std::collections::HashMap;
+use std::io;
 use std::path::Path;
 
 use crate::error::MeshError;
@@ -44,8 +45,18 @@ struct Block {
 /// See [`MeshError`]: unreadable file, wrong format, wrong elements, and all that [`Mesh::new`] refuses.
 pub fn read_msh(path: impl AsRef<Path>) -> Result<Mesh, MeshError> {
     let source_name = path.as_ref().display().to_string();
-    let bytes = std::fs::read(path).map_err(|source| MeshError::Io { source_name: source_name.clone(), source })?;
+    let bytes =
+        read_ordinary(path.as_ref()).map_err(|source| MeshError::Io { source_name: source_name.clone(), source })?;
     parse_msh(&bytes, &source_name)
+}
+
+/// A device or a pipe might never end, or never begin.
+fn read_ordinary(path: &Path) -> io::Result<Vec<u8>> {
+    match std::fs::metadata(path)? {
+        found if found.is_file() => std::fs::read(path),
+        found if found.is_dir() => Err(io::Error::other("this is a folder; name the mesh file in it")),
+        _ => Err(io::Error::other("this is no ordinary file, but a device or a pipe; write the mesh into a file")),
+    }
 }
 
 /// Reads a mesh from the contents of a MSH 4.1 file; `source_name` is what messages call it.
@@ -95,10 +106,8 @@ fn parse_parts(bytes: &[u8], source_name: &str) -> Result<MeshParts, MeshError> 
 }
 
 fn nodes(source: &mut Source, parts: &mut MeshParts) -> Result<(), MeshError> {
-    let blocks = source.size("the number of node blocks")?;
-    for _ in 0..3 {
-        source.size("number, smallest and largest tag of the nodes")?;
-    }
+    let (blocks, total) = source.totals("nodes")?;
+    let before = parts.node_tags.len();
     for _ in 0..blocks {
         let dimension = source.int("an entity's dimension")?;
         source.int("an entity's tag")?;
@@ -119,7 +128,7 @@ fn nodes(source: &mut Source, parts: &mut MeshParts) -> Result<(), MeshError> {
             }
         }
     }
-    Ok(())
+    source.hold_to(total, parts.node_tags.len() - before)
 }
 
 /// Reads the elements. Each volume entity that has tetrahedra is a region; `volumes` gets their tags. What has fewer
@@ -130,11 +139,9 @@ fn elements(
     volumes: &mut Vec<i32>,
     boundary: &mut Vec<Block>,
 ) -> Result<(), MeshError> {
-    let blocks = source.size("the number of element blocks")?;
+    let (blocks, total) = source.totals("elements")?;
+    let mut found = 0;
     let mut region_of: HashMap<i32, usize> = HashMap::new();
-    for _ in 0..3 {
-        source.size("number, smallest and largest tag of the elements")?;
-    }
     for _ in 0..blocks {
         let dimension = source.int("an entity's dimension")?;
         let entity = source.int("an entity's tag")?;
@@ -162,7 +169,8 @@ fn elements(
                     block.nodes.push(source.size("a node of an element")?);
                 }
             }
-            if count > 0 {
+            found += block.tags.len();
+            if !block.tags.is_empty() {
                 boundary.push(block);
             }
             continue;
@@ -171,6 +179,7 @@ fn elements(
             volumes.push(entity);
             volumes.len() - 1
         });
+        let before = parts.element_tags.len();
         for _ in 0..count {
             let tag = source.size("an element's tag")?;
             let mut element = [0; 10];
@@ -181,6 +190,7 @@ fn elements(
             parts.elements.push(element);
             parts.element_regions.push(region);
         }
+        found += parts.element_tags.len() - before;
     }
-    Ok(())
+    source.hold_to(total, found)
 }

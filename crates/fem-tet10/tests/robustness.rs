@@ -85,20 +85,29 @@ fn made_to_be_large() {
     let groups = |count: usize| format!("{count}{}", repeated(count, &|k| format!(" {}", k + 1)));
     let surface = |count| format!("$Entities\n0 0 1 0\n1 0 0 0 0 0 0 {} 0\n$EndEntities\n", groups(count));
     let nodes = "$Nodes\n0 0 0 0\n$EndNodes\n";
-    let elements = |blocks: usize, all: &str| format!("$Elements\n{blocks} 0 0 0\n{all}$EndElements\n");
+    let elements =
+        |blocks: usize, count: usize, all: &str| format!("$Elements\n{blocks} {count} 0 0\n{all}$EndElements\n");
     let block = |count| format!("2 1 9 {count}\n{}", triangles(count));
     let n = 20_000;
     let cases = [
-        ("many groups of many triangles", surface(n) + nodes + &elements(1, &block(n)), "is in 20000 physical groups"),
+        (
+            "many groups of many triangles",
+            surface(n) + nodes + &elements(1, n, &block(n)),
+            "is in 20000 physical groups",
+        ),
         (
             "many groups of many blocks",
-            surface(n) + nodes + &elements(n, &repeated(n, &|_| block(1))),
+            surface(n) + nodes + &elements(n, n, &repeated(n, &|_| block(1))),
             "is in 20000 physical groups",
         ),
         // As many groups as are let through.
-        ("six groups of many triangles", surface(6) + nodes + &elements(1, &block(n)), "no tetrahedra"),
-        ("many blocks", nodes.to_owned() + &elements(n, &repeated(n, &|k| format!("2 {k} 15 1\n1 1\n"))), "no tetrah"),
-        ("many regions", nodes.to_owned() + &elements(n, &repeated(n, &|k| format!("3 {k} 11 0\n"))), "no tetrah"),
+        ("six groups of many triangles", surface(6) + nodes + &elements(1, n, &block(n)), "no tetrahedra"),
+        (
+            "many blocks",
+            nodes.to_owned() + &elements(n, n, &repeated(n, &|k| format!("2 {k} 15 1\n1 1\n"))),
+            "no tetrah",
+        ),
+        ("many regions", nodes.to_owned() + &elements(n, 0, &repeated(n, &|k| format!("3 {k} 11 0\n"))), "no tetrah"),
         (
             "many names",
             format!("$PhysicalNames\n{n}\n{}$EndPhysicalNames\n", repeated(n, &|k| format!("1 {k} \"\"\n"))),

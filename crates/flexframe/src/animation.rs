@@ -31,12 +31,18 @@ pub enum AnimationError {
         /// The scene file.
         scene: PathBuf,
     },
+    /// The name is not that of a GIF: it may be that of a file which is not to be replaced.
+    #[error("{}: the animation is a GIF; give its file a name that ends in .gif", path.display())]
+    NotGif {
+        /// Where it was to go.
+        path: PathBuf,
+    },
     /// The picture could not be drawn.
     #[error(transparent)]
     Figure(#[from] FigureError),
 }
 
-/// Runs a scene and draws it into a GIF at `path`; colours are the deformation.
+/// Runs a scene and draws it into a GIF at `path`, which ends in `.gif`; colours are the deformation.
 ///
 /// # Errors
 /// [`AnimationError`].
@@ -46,6 +52,9 @@ pub fn animate(
     settings: AnimationSettings,
     mut progress: impl FnMut(RunProgress),
 ) -> Result<(), AnimationError> {
+    if !path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("gif")) {
+        return Err(AnimationError::NotGif { path: path.to_owned() });
+    }
     let model = Model::build(scene, |p| progress(RunProgress::Build(p))).map_err(RunError::from)?;
     let mut simulation =
         model.start(scene).map_err(|source| RunError::Setup { scene: scene.path.clone(), source: Box::new(source) })?;

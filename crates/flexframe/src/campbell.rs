@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 use frames_rk4::{EigenError, SteadySpin};
 use nalgebra::Vector3;
 use results::FigureError;
-use scene::{BuildError, BuildProgress, Choice, Flexible, Model, Scene};
+use scene::{Body, BuildError, BuildProgress, Choice, Flexible, Model, Scene};
 use serde::Serialize;
 
 pub use critical::Critical;
@@ -43,7 +43,7 @@ pub enum CampbellError {
     /// The speeds are no range.
     #[error(
         "speeds {start}:{end}:{count}: expected start:end:count, radians per time, with 0 ≤ start < end and a count of 2 \
-         or more, e.g. 0:200:50"
+         to {MOST_SPEEDS}, e.g. 0:200:50"
     )]
     Speeds {
         /// The lowest.
@@ -86,6 +86,9 @@ pub enum CampbellProgress {
     },
 }
 
+/// Each speed takes an eigenvalue problem, and a row of a table.
+const MOST_SPEEDS: usize = 10_000;
+
 /// Equally spaced spin speeds, both ends included.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Speeds {
@@ -93,14 +96,14 @@ pub struct Speeds {
     pub start: f64,
     /// The highest, radians per time.
     pub end: f64,
-    /// How many, ≥ 2.
+    /// How many, 2 to 10 000.
     pub count: usize,
 }
 
 impl Speeds {
     fn values(&self) -> Result<Vec<f64>, CampbellError> {
         let &Self { start, end, count } = self;
-        if !(start >= 0.0 && end > start && end.is_finite() && count >= 2) {
+        if !(start >= 0.0 && end > start && end.is_finite() && (2..=MOST_SPEEDS).contains(&count)) {
             return Err(CampbellError::Speeds { start, end, count });
         }
         let last = (count - 1) as f64;
@@ -206,12 +209,15 @@ pub fn campbell(
     }
     let model = Model::build(&scene, |p| progress(CampbellProgress::Build(p)))?;
     if model.body.flexible() == 0 {
-        let refusal = scene.refuse(
-            "modes.flexible",
-            "a body without flexible modes, which has no natural frequencies",
-            "one mode or more",
-            "keep flexible modes of a body with a mesh",
-        );
+        let (key, cure) = match scene.body {
+            Body::Rigid(_) => ("body.rigid", "give the body a mesh, and `flexible` in [modes]"),
+            Body::Meshed(_) if scene.effects.flexibility == Choice::Off => {
+                ("effects.flexibility", "remove it, so that the body deforms")
+            }
+            Body::Meshed(_) => ("modes.flexible", "keep flexible modes"),
+        };
+        let found = "a body without flexible modes, which has no natural frequencies";
+        let refusal = scene.refuse(key, found, "one flexible mode or more", cure);
         return Err(BuildError::from(refusal).into());
     }
 

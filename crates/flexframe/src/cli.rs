@@ -10,12 +10,12 @@ use std::time::Duration;
 
 use clap::{Args, Parser, Subcommand};
 use flexframe::animation::{AnimationSettings, animate};
-use flexframe::campbell::{CampbellSettings, Speeds, campbell};
+use flexframe::campbell::{CampbellError, CampbellSettings, Speeds, campbell};
 use flexframe::cost::{self, CostSettings};
 use flexframe::paper::PaperError;
 use flexframe::run::{RunError, RunProgress, RunSettings};
 use flexframe::{advise, figures, modes, paper, run};
-use scene::{Flexible, Scene};
+use scene::{BuildError, Flexible, Scene, SceneError};
 use serde::Serialize;
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag;
@@ -30,7 +30,7 @@ use crate::progress::Bar;
 #[command(version, max_term_width = 100)]
 struct Cli {
     /// Threads for meshes and modes; all cores if not given. The results are the same for any number.
-    #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256))]
     threads: Option<u16>,
     #[command(subcommand)]
     command: Command,
@@ -129,8 +129,8 @@ enum Command {
         #[arg(long, value_name = "ERROR", value_parser = positive)]
         target: Option<f64>,
         /// Seconds that a run may take; the reference may take twenty times as long.
-        #[arg(long, value_name = "SECONDS", default_value_t = 1.0, value_parser = positive)]
-        patience: f64,
+        #[arg(long, value_name = "SECONDS", default_value = "1", value_parser = patience)]
+        patience: Duration,
     },
     /// Write a page with the price lists of some scenes, for docs/.
     #[command(hide = true)]
@@ -142,8 +142,8 @@ enum Command {
         #[arg(short, long, value_name = "FILE")]
         output: PathBuf,
         /// Seconds that a run may take.
-        #[arg(long, value_name = "SECONDS", default_value_t = 1.0, value_parser = positive)]
-        patience: f64,
+        #[arg(long, value_name = "SECONDS", default_value = "1", value_parser = patience)]
+        patience: Duration,
     },
     /// Run a scene and draw it as an animated GIF.
     Animate {
@@ -154,10 +154,10 @@ enum Command {
         #[arg(short, long, value_name = "FILE")]
         output: PathBuf,
         /// Number of frames.
-        #[arg(long, default_value_t = 60, value_parser = clap::value_parser!(u64).range(2..))]
+        #[arg(long, default_value_t = 60, value_parser = clap::value_parser!(u64).range(2..=10_000))]
         frames: u64,
         /// Factor on the deformation that is drawn.
-        #[arg(long, default_value_t = 1.0)]
+        #[arg(long, default_value_t = 1.0, value_parser = finite, allow_hyphen_values = true)]
         magnify: f64,
     },
 }
@@ -260,7 +260,8 @@ fn execute(cli: Cli) -> Result<(), Box<dyn Error>> {
             if let Some(count) = flexible {
                 scene.modes.flexible = Flexible::Count(count);
             }
-            let (model, report) = modes::modes(&scene, |p| bar.build(p))?;
+            let (model, report) =
+                modes::modes(&scene, |p| bar.build(p)).map_err(|error| of_option(error.into(), flexible))?;
             drop(bar);
             let pictures = match output {
                 Some(folder) => {
@@ -294,7 +295,8 @@ fn execute(cli: Cli) -> Result<(), Box<dyn Error>> {
                 scene.modes.flexible = Flexible::Count(count);
             }
             let settings = CampbellSettings { axis, speeds, orders };
-            let report = campbell(&scene, &folder(&scene, output), &settings, |p| bar.campbell(p))?;
+            let report = campbell(&scene, &folder(&scene, output), &settings, |p| bar.campbell(p))
+                .map_err(|error| of_option(error, flexible))?;
             drop(bar);
             print(&report, json)
         }
@@ -311,7 +313,6 @@ fn execute(cli: Cli) -> Result<(), Box<dyn Error>> {
         }
         Command::Cost { scene: SceneArgs { scene, json }, output, target, patience } => {
             let scene = Scene::read(scene)?;
-            let patience = Duration::from_secs_f64(patience);
             let settings = CostSettings { target, ..CostSettings::with_patience(patience) };
             let report = cost::price_list(&scene, &folder(&scene, output), settings, |p| bar.cost(p))?;
             drop(bar);
@@ -319,7 +320,6 @@ fn execute(cli: Cli) -> Result<(), Box<dyn Error>> {
         }
         Command::Accuracy { scenes, output, patience } => {
             let scenes = scenes.iter().map(Scene::read).collect::<Result<Vec<_>, _>>()?;
-            let patience = Duration::from_secs_f64(patience);
             let lists = Path::new("out").join("accuracy");
             let files = cost::accuracy_page(&scenes, &output, &lists, patience, |p| bar.cost(p))?;
             drop(bar);
@@ -334,10 +334,22 @@ fn execute(cli: Cli) -> Result<(), Box<dyn Error>> {
     }
 }
 
+/// A number that is none of NaN and infinity.
+fn finite(text: &str) -> Result<f64, String> {
+    text.parse().ok().filter(|number: &f64| number.is_finite()).ok_or_else(|| "expected a finite number".to_owned())
+}
+
 /// A number above zero.
 fn positive(text: &str) -> Result<f64, String> {
-    let number: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
-    if number > 0.0 && number.is_finite() { Ok(number) } else { Err("expected a positive number".to_owned()) }
+    finite(text).ok().filter(|number| *number > 0.0).ok_or_else(|| "expected a positive number".to_owned())
+}
+
+/// Seconds that are worth measuring, and that someone may wait for.
+fn patience(text: &str) -> Result<Duration, String> {
+    let seconds = finite(text).ok().filter(|seconds| (1e-3..=1e6).contains(seconds));
+    seconds
+        .and_then(|seconds| Duration::try_from_secs_f64(seconds).ok())
+        .ok_or_else(|| "expected a number of seconds from 0.001 to 1000000".to_owned())
 }
 
 /// A direction in the axes of the mesh.
@@ -374,6 +386,18 @@ fn speeds(text: &str) -> Result<Speeds, String> {
         _ => None,
     };
     speeds.ok_or_else(|| "expected start:end:count, such as 0:200:50".to_owned())
+}
+
+/// The refusal of a number of modes, at the option where that has replaced what the scene says.
+fn of_option(error: CampbellError, flexible: Option<usize>) -> Box<dyn Error> {
+    match (error, flexible) {
+        (CampbellError::Build(BuildError::Scene(SceneError::Invalid { at, found, expected, cure })), Some(_))
+            if at.key == "modes.flexible" =>
+        {
+            format!("--flexible: found {found}, expected {expected}\n = {cure}").into()
+        }
+        (error, _) => error.into(),
+    }
 }
 
 /// The folder asked for, or one named after the scene.

@@ -114,7 +114,7 @@ impl CostSettings {
 
     /// Time and steps that a reference may take.
     fn budget(&self, patience: u32) -> Budget {
-        Budget { time: patience * self.patience, steps: 4 * self.most_steps }
+        Budget { time: self.patience.saturating_mul(patience), steps: 4 * self.most_steps }
     }
 }
 

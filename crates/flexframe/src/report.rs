@@ -39,7 +39,8 @@ impl Times {
 
     /// Sum of all phases, seconds.
     pub fn total(&self) -> f64 {
-        self.0.iter().map(|(_, seconds)| seconds).sum()
+        // The sum of none is -0.
+        self.0.iter().fold(0.0, |sum, (_, seconds)| sum + seconds)
     }
 }
 

@@ -292,7 +292,9 @@ const STEPS_PER_REPORT: u64 = 4096;
 
 /// The results file of a scene in a folder.
 pub fn results_path(scene: &Scene, folder: &Path) -> PathBuf {
-    folder.join(scene.path.file_stem().unwrap_or("results".as_ref())).with_extension("h5")
+    let mut name = scene.path.file_stem().unwrap_or("results".as_ref()).to_owned();
+    name.push(".h5");
+    folder.join(name)
 }
 
 fn metadata(scene: &Scene, model: &Model, at_start: &Simulation) -> Metadata {

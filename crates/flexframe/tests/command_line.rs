@@ -149,6 +149,116 @@ fn the_tumbling_plate_turns_and_swings() {
     assert!(peak > 1.0, "{peak}");
 }
 
+/// A scene that takes no time.
+const COIN: &str = r#"
+title = "Coin"
+units = { length = "m", mass = "kg", time = "s" }
+[body.rigid]
+mass = 2.0
+center_of_mass = [0.0, 0.0, 0.0]
+inertia = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.8]]
+[initial]
+angular_velocity = [0.1, 0.0, 5.0]
+[time]
+end = 0.1
+step = 1e-2
+"#;
+
+/// Standard error of a command that is to be refused with the exit code given.
+fn refused(code: i32, arguments: &[&str]) -> String {
+    let output = flexframe(arguments);
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(code), "{message}");
+    assert!(output.stdout.is_empty());
+    message
+}
+
+#[track_caller]
+fn assert_says(message: &str, words: &[&str]) {
+    for word in words {
+        assert!(message.contains(word), "{word} in: {message}");
+    }
+}
+
+#[test]
+fn a_dot_in_the_name_of_a_scene_stays_in_those_of_its_results() {
+    let folder = tempfile::tempdir().unwrap();
+    let place = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let first = place("coin.h5");
+    for (scene, file) in [("coin.toml", "coin.h5"), ("coin.v2.toml", "coin.v2.h5")] {
+        std::fs::write(place(scene), COIN).unwrap();
+        let report = json(&["run", &place(scene), "-o", folder.path().to_str().unwrap(), "--json"]);
+        assert_eq!(report["results"], place(file));
+        assert!(Results::open(place(file)).unwrap().complete);
+    }
+    assert!(Results::open(first).unwrap().metadata.scene_file.ends_with("coin.toml"));
+    std::fs::write(place("coin.v2.part.h5"), "").unwrap();
+    let message = refused(1, &["run", &place("coin.v2.toml"), "-o", folder.path().to_str().unwrap()]);
+    assert_says(&message, &["coin.v2.part.h5"]);
+    assert_says(&refused(1, &["resume", &place("coin.v2.h5")]), &["coin.v2.part.h5"]);
+}
+
+#[test]
+fn an_animation_replaces_no_file_that_is_no_gif_and_says_what_keeps_it_from_being_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = std::fs::read_to_string(root().join("examples/ring.toml")).unwrap();
+    let text = text.replace("../meshes", root().join("meshes").to_str().unwrap());
+    let scene = folder.path().join("self.toml");
+    std::fs::write(&scene, &text).unwrap();
+    let scene = scene.to_str().unwrap();
+    for output in [scene, "scene", "scene.png"] {
+        assert_says(&refused(1, &["animate", scene, "-o", output]), &[output, "ends in .gif"]);
+    }
+    assert_eq!(std::fs::read_to_string(scene).unwrap(), text);
+    let nowhere = folder.path().join("no_folder/ring.GIF");
+    let message = refused(1, &["animate", scene, "-o", nowhere.to_str().unwrap(), "--frames", "2"]);
+    assert_says(&message, &["no_folder/ring.GIF", "cannot write the figure: No such file", "make its folder"]);
+    assert!(!message.contains("IOError"), "{message}");
+}
+
+#[test]
+fn arguments_beyond_all_bounds_are_refused() {
+    let cases: [(&[&str], &[&str]); 11] = [
+        (&["cost", "SCENE", "--patience", "1e20"], &["--patience", "from 0.001 to 1000000"]),
+        (&["cost", "SCENE", "--patience", "1e18"], &["--patience", "from 0.001 to 1000000"]),
+        (&["cost", "SCENE", "--patience", "1e-300"], &["--patience", "from 0.001 to 1000000"]),
+        (&["cost", "SCENE", "--patience", "nan"], &["--patience", "from 0.001 to 1000000"]),
+        (&["animate", "SCENE", "-o", "a.gif", "--frames", "100000000000"], &["--frames", "2..=10000"]),
+        (&["animate", "SCENE", "-o", "a.gif", "--magnify", "nan"], &["--magnify", "a finite number"]),
+        (&["animate", "SCENE", "-o", "a.gif", "--magnify", "-inf"], &["--magnify", "a finite number"]),
+        (&["run", "SCENE", "--threads", "65535"], &["--threads", "1..=256"]),
+        (&["run", "SCENE", "--threads", "0"], &["--threads", "1..=256"]),
+        (&["cost", "SCENE", "--target", "0"], &["--target", "a positive number"]),
+        (&["cost", "SCENE", "--target", "inf"], &["--target", "a positive number"]),
+    ];
+    for (arguments, says) in cases {
+        assert_says(&refused(2, arguments), says);
+    }
+    let ring = "examples/ring.toml";
+    let message = refused(1, &["campbell", ring, "--axis", "z", "--speeds", "0:100:1000000000000"]);
+    assert_says(&message, &["speeds 0:100:1000000000000", "a count of 2 to 10000"]);
+}
+
+#[test]
+fn a_refusal_is_where_the_fault_is() {
+    let folder = tempfile::tempdir().unwrap();
+    let coin = folder.path().join("coin.toml");
+    std::fs::write(&coin, COIN).unwrap();
+    let coin = coin.to_str().unwrap();
+    let message = refused(1, &["campbell", coin, "--axis", "z", "--speeds", "0:100:3"]);
+    assert_says(&message, &["coin.toml:4:", "`body.rigid`", "without flexible modes", "give the body a mesh"]);
+    let ring = "examples/ring.toml";
+    for command in
+        [&["modes", ring, "-n", "100000"][..], &["campbell", ring, "-n", "100000", "--axis", "z", "--speeds", "0:1:2"]]
+    {
+        let message = refused(1, command);
+        assert_says(&message, &["--flexible: found 100000, expected at most 6105", "ask for fewer modes"]);
+        assert!(!message.contains("ring.toml"), "{message}");
+    }
+    let rigid = flexframe(&["modes", coin]);
+    assert_says(&String::from_utf8(rigid.stdout).unwrap(), &["together 0.00 s"]);
+}
+
 #[test]
 fn what_is_wrong_is_said_with_file_line_key_and_cure() {
     let folder = tempfile::tempdir().unwrap();

@@ -53,7 +53,7 @@ pub enum ModalError {
     },
     /// The body has no mass, or none to resist a rotation.
     #[error(
-        "the body has mass {mass:.3e} and moments of inertia {inertia:?} about its origin, which is no rigid body: the mass and all three moments must be positive (of a hinge, that about its axis)"
+        "the body has mass {mass:.3e} and moments of inertia {inertia:?} about its origin, which is no rigid body: the mass and all three moments must be positive (of a hinge, that about its axis), and large enough to divide by: are they in the units of the mesh?"
     )]
     NoInertia {
         /// Total mass.
@@ -194,7 +194,9 @@ pub enum ModalError {
         tolerance: f64,
     },
     /// A dense eigenvalue problem failed.
-    #[error("a dense eigenvalue problem of size {size} did not converge")]
+    #[error(
+        "a dense eigenvalue problem of size {size} did not converge: are masses or stiffnesses of the body many powers of ten too small or too large in the units of the scene?"
+    )]
     DenseEigen {
         /// Its size.
         size: usize,

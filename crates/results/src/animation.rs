@@ -10,6 +10,7 @@ use crate::view::{View, Window};
 use plotters::backend::{BitMapBackend, DrawingBackend};
 use plotters::style::RGBColor;
 use std::collections::HashMap;
+use std::fs::File;
 use std::path::Path;
 
 const WIDTH: u32 = 720;
@@ -67,6 +68,8 @@ impl Animation<'_> {
         let stage = self.stage();
         let mut palette = Palette::new();
         let size = (WIDTH, HEIGHT);
+        // The drawing library keeps the system's reason for itself.
+        File::create(path).map_err(|error| FigureError::system(path, &error))?;
         let mut gif = BitMapBackend::gif(path, size, self.frame_milliseconds).map_err(write_error(path))?;
         for last in 0..self.frames.len() {
             let rgb = palette.applied(self.picture(&stage, last).rgb(1)?);

@@ -93,8 +93,7 @@ impl Picture {
             name.push(extension);
             PathBuf::from(name)
         });
-        std::fs::write(&svg, self.svg()?)
-            .map_err(|error| FigureError::Write { path: svg.clone(), reason: error.to_string() })?;
+        std::fs::write(&svg, self.svg()?).map_err(|error| FigureError::system(&svg, &error))?;
 
         let dots = 2;
         let size = (self.width * dots, self.height * dots);

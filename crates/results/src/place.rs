@@ -39,11 +39,14 @@ impl Place {
             if is_busy(&self.part) {
                 return Err(FileError::Busy { path: self.part.clone() });
             }
+            if self.part.is_dir() || !overwrite && !is_ours(&self.part) {
+                return Err(FileError::NotResults { path: self.part.clone() });
+            }
             if !overwrite {
                 return Err(FileError::Unfinished { path: self.part.clone() });
             }
         }
-        if self.path.is_dir() || self.path.exists() && !overwrite && !seal::is_claimed(&self.path) {
+        if self.path.is_dir() || self.path.exists() && !overwrite && !is_ours(&self.path) {
             return Err(FileError::NotResults { path: self.path.clone() });
         }
         Ok(())
@@ -51,10 +54,10 @@ impl Place {
 
     /// Refuses to go on where there is nothing to go on from.
     pub(crate) fn check_resumable(&self) -> Result<(), FileError> {
-        if self.part.exists() {
+        if self.part.is_file() {
             return if is_busy(&self.part) { Err(FileError::Busy { path: self.part.clone() }) } else { Ok(()) };
         }
-        if seal::is_claimed(&self.path) {
+        if is_ours(&self.path) {
             return Err(FileError::Complete { path: self.path.clone() });
         }
         Err(FileError::NothingToResume { path: self.path.clone(), part: self.part.clone() })
@@ -112,5 +115,10 @@ fn lock(folder: &Path) -> Option<File> {
 
 /// Whether another process writes the file: HDF5 locks what it has open.
 pub(crate) fn is_busy(path: &Path) -> bool {
-    File::open(path).is_ok_and(|file| matches!(file.try_lock(), Err(TryLockError::WouldBlock)))
+    path.is_file() && File::open(path).is_ok_and(|file| matches!(file.try_lock(), Err(TryLockError::WouldBlock)))
+}
+
+/// Whether something claims to be a file of ours. A pipe is not opened, which might never end.
+fn is_ours(path: &Path) -> bool {
+    path.is_file() && seal::is_claimed(path)
 }

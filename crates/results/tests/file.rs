@@ -247,6 +247,17 @@ fn nothing_is_overwritten_that_a_user_would_miss() {
     std::fs::remove_file(&path).unwrap();
     std::fs::create_dir(&path).unwrap();
     assert!(matches!(create(true), Err(FileError::NotResults { .. })));
+    std::fs::remove_dir(&path).unwrap();
+    // Nor by the name of an unfinished file.
+    let part = unfinished(&path);
+    std::fs::write(&part, "a diary").unwrap();
+    assert!(matches!(create(false), Err(FileError::NotResults { path }) if path == part));
+    assert_eq!(std::fs::read(&part).unwrap(), b"a diary");
+    std::fs::remove_file(&part).unwrap();
+    std::fs::create_dir(&part).unwrap();
+    for overwrite in [false, true] {
+        assert!(matches!(create(overwrite), Err(FileError::NotResults { path }) if path == part));
+    }
     // And no temporary file is left.
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
 }

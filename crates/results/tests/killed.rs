@@ -1,11 +1,11 @@
-//! What survives when a run is killed.
+//! What survives when a run is killed; and pipes.
 //!
 //! In a process apart from the other tests, and one after another: a child inherits the files that its parent has open,
 //! with HDF5's locks.
 
 mod rows;
 
-use results::{Expected, Results, Resumed, Writer, unfinished};
+use results::{Expected, FileError, Results, Resumed, Writer, unfinished};
 use rows::{Row, assert_rows, folder, metadata};
 use std::path::Path;
 use std::process::Command;
@@ -110,5 +110,19 @@ fn a_file_is_whole_whenever_its_writer_is_killed() {
             assert!(results.complete);
             assert_rows(&results, ROWS);
         }
+    }
+}
+
+/// To open a pipe is to wait for who writes into it.
+#[cfg(unix)]
+#[test]
+fn a_pipe_is_refused_without_being_opened() {
+    let _alone = ALONE.lock();
+    let (_folder, path) = folder();
+    for pipe in [path.clone(), unfinished(&path)] {
+        assert!(Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+        assert!(matches!(Writer::check(&path, false), Err(FileError::NotResults { path }) if path == pipe));
+        assert!(matches!(Writer::resume(&path), Err(FileError::NothingToResume { .. })));
+        std::fs::remove_file(pipe).unwrap();
     }
 }

@@ -7,6 +7,7 @@ mod physics;
 mod rigid;
 mod support;
 
+use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use advice::{Advice, AdviceError, Case, Refusal};
@@ -35,8 +36,13 @@ pub enum BuildError {
     #[error(transparent)]
     Assembly(#[from] AssemblyError),
     /// The modes cannot be found.
-    #[error(transparent)]
-    Modal(#[from] ModalError),
+    #[error("{}: {source}", scene.display())]
+    Modal {
+        /// The scene file.
+        scene: PathBuf,
+        /// Why.
+        source: ModalError,
+    },
     /// No advice can be given on it.
     #[error(transparent)]
     Advice(#[from] AdviceError),
@@ -463,8 +469,13 @@ fn too_many_modes(scene: &Scene, error: ModalError) -> BuildError {
                 "ask for fewer modes, or use a finer mesh",
             )
             .into(),
-        other => other.into(),
+        other => modal(scene)(other),
     }
+}
+
+/// What the modal analysis says knows no file.
+fn modal(scene: &Scene) -> impl Fn(ModalError) -> BuildError {
+    |source| BuildError::Modal { scene: scene.path.clone(), source }
 }
 
 /// Three nodes that lie far from each other: R farthest from the centre of mass, P farthest from R, Q farthest from

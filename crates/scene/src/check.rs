@@ -26,13 +26,15 @@ const MOST_ENTRIES: usize = 1000;
 /// The rules, on the values of one document.
 pub(crate) struct Check<'d> {
     document: &'d Document<'d>,
+    /// End of the run; a rule of its own says what it must be.
+    end: f64,
     /// Bytes that table files may still have: one file may be named many times.
     table_bytes: Cell<u64>,
 }
 
 impl<'d> Check<'d> {
-    pub fn new(document: &'d Document<'d>) -> Self {
-        Self { document, table_bytes: Cell::new(history::LONGEST) }
+    pub fn new(document: &'d Document<'d>, end: f64) -> Self {
+        Self { document, end, table_bytes: Cell::new(history::LONGEST) }
     }
 }
 

@@ -23,7 +23,7 @@ impl Scene {
     pub fn read(path: impl AsRef<Path>) -> Result<Self, SceneError> {
         let path = path.as_ref();
         let mut bytes = Vec::new();
-        File::open(path)
+        open_ordinary(path)
             .and_then(|file| file.take(LONGEST + 1).read_to_end(&mut bytes))
             .map_err(|cause| unreadable(path, cause))?;
         refuse_long(bytes.len(), path)?;
@@ -52,7 +52,7 @@ impl Scene {
         let Sections { title, units, body, modes, effects, frame, initial, constraints, mut loads, time, output } =
             crate::deserialize::from_document(&document)?;
 
-        let check = Check::new(&document);
+        let check = Check::new(&document, time.end);
         check.label("title", &title)?;
         check.units(&units)?;
         let body = check.body(body)?;
@@ -106,6 +106,18 @@ impl Scene {
     ) -> SceneError {
         self.place(key).refuse(found, expected, cure)
     }
+}
+
+/// A device or a pipe might never end, or never begin.
+pub(crate) fn open_ordinary(path: &Path) -> io::Result<File> {
+    let found = std::fs::metadata(path)?;
+    if found.is_dir() {
+        return Err(io::ErrorKind::IsADirectory.into());
+    }
+    if !found.is_file() {
+        return Err(io::Error::other("this is no ordinary file, but a device or a pipe"));
+    }
+    File::open(path)
 }
 
 fn refuse_long(bytes: usize, path: &Path) -> Result<(), SceneError> {

@@ -224,6 +224,12 @@ fn files() {
     let (message, error) = refusal(folder.path());
     assert!(matches!(error, SceneError::Unreadable { .. }));
     assert!(message.contains("this is a folder"), "{message}");
+    // Nor is anything opened that might never end.
+    #[cfg(unix)]
+    {
+        let (message, _) = refusal(Path::new("/dev/zero"));
+        assert!(message.contains("no ordinary file, but a device or a pipe"), "{message}");
+    }
 
     std::fs::write(&path, b"title = 'a'\n# caf\xe9\n").unwrap();
     let (message, error) = refusal(&path);

@@ -520,6 +520,7 @@ fn numbers_out_of_range() {
         ("every = 1", "-0.1", "output.interval", positive, "`interval = 1e-3`"),
         ("every = 1", "0.6", "output.interval", "at most the end of the run, 0.5", "interval shorter"),
         ("every = 1", "1e-13", "output.interval", "not lost in rounding", "interval longer"),
+        ("duration = 0.02", "4.9e-13", "loads[0].history.duration", "not lost in rounding beside", "duration longer"),
         ("duration = 0.02", "0", "loads[0].history.duration", positive, "length of the pulse"),
         ("duration = 0.02", "-1", "loads[0].history.duration", positive, "length of the pulse"),
         (
@@ -635,5 +636,22 @@ fn text_that_is_not_toml() {
         for word in ["this is not TOML: ", words, "^", "   = "] {
             assert!(message.contains(word), "no {word:?} in {message}");
         }
+    }
+}
+
+#[test]
+fn initial_values_whose_squares_overflow() {
+    for (key, written) in [
+        ("velocity", "[0.0, 1e308, 0.0]"),
+        ("angular_velocity", "[0.0, -1e308, 0.0]"),
+        ("modal_displacement", "[0.0, 1e141]"),
+        ("modal_velocity", "[0.0, 1e141]"),
+    ] {
+        let start = EXAMPLE.find("[initial]").unwrap();
+        let section = &EXAMPLE[start..start + EXAMPLE[start..].find("\n\n").unwrap()];
+        let mark = written.split(['[', ',', ']', ' ']).find(|number| number.contains("1e")).unwrap();
+        let words = [&format!("found {mark}, expected a number of at most 1e140"), "whose square is still a number"];
+        let key_path = format!("initial.{key}[1]");
+        refused(section, &format!("[initial]\n{key} = {written}"), mark, &key_path, &words);
     }
 }

@@ -48,6 +48,12 @@ fn a_bad_line_is_named_in_the_table() {
         ("0;0\n1;1\n", 2, "1;1", "with a comma between them"),
         ("t,f\n0,0\n0,1\n", 3, "0,1", "found the time 0.0 after 0.0, expected times that rise"),
         ("# one\n# two\n\n1,0\n# three\n\n0.5,1\n", 7, "0.5,1", "found the time 0.5 after 1.0"),
+        (
+            "0,0\n1,0\n1.0000000000004,1\n",
+            3,
+            "1.0000000000004,1",
+            "expected times whose distance is not lost in rounding",
+        ),
         ("", 1, "", "found 0 of the pairs of time and factor, expected at least two"),
         ("t,f\n0,1\n", 1, "t,f", "found 1 of the pairs"),
     ] {
@@ -70,11 +76,14 @@ fn a_table_that_cannot_be_read_is_named_in_the_scene() {
     refusal(b"0,0\n1,\xff\n", "found a table that cannot be read: ");
     let long = "# a line\n".repeat((16 << 20) / 9 + 1);
     refusal(long.as_bytes(), "found more than 16777216 bytes of tables");
-    let text = EXAMPLE.replace(
-        "{ kind = \"half-sine\", start = 0.0, duration = 0.02 }",
-        "{ kind = \"table\", file = \"nowhere.csv\" }",
-    );
-    let message = Scene::parse(&text, folder.path().join("scene.toml")).unwrap_err().to_string();
+    let named = |file: &str| {
+        let table = format!("{{ kind = \"table\", file = \"{file}\" }}");
+        let text = EXAMPLE.replace("{ kind = \"half-sine\", start = 0.0, duration = 0.02 }", &table);
+        Scene::parse(&text, folder.path().join("scene.toml")).unwrap_err().to_string()
+    };
+    #[cfg(unix)]
+    assert!(named("/dev/zero").contains("no ordinary file, but a device or a pipe"), "{}", named("/dev/zero"));
+    let message = named("nowhere.csv");
     assert!(message.contains("nowhere.csv") && message.contains("`loads[0].history.file`"), "{message}");
     assert!(message.contains("relative to the folder of the scene file"), "{message}");
 }

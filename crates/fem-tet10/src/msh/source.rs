@@ -7,6 +7,18 @@ use crate::error::{MeshError, Place};
 /// So many bytes of a file are quoted in a message at most; no name of a section is longer.
 const LONGEST_QUOTE: usize = 40;
 
+/// What some editors put in front of a text in UTF-8.
+const BYTE_ORDER_MARK: &[u8] = "\u{feff}".as_bytes();
+
+/// What the head of a section says that its blocks hold.
+pub(super) struct Total {
+    /// "nodes" or "elements".
+    what: &'static str,
+    claimed: u64,
+    /// Where it says so.
+    place: Place,
+}
+
 /// A cursor over a MSH file.
 pub(super) struct Source<'a> {
     bytes: &'a [u8],
@@ -19,7 +31,9 @@ pub(super) struct Source<'a> {
 impl<'a> Source<'a> {
     /// Reads the `$MeshFormat` section.
     pub(super) fn open(bytes: &'a [u8], name: &'a str) -> Result<Self, MeshError> {
-        let mut source = Self { bytes, at: 0, binary: false, section: String::new(), name };
+        // A byte order mark is no part of the text.
+        let at = if bytes.starts_with(BYTE_ORDER_MARK) { BYTE_ORDER_MARK.len() } else { 0 };
+        let mut source = Self { bytes, at, binary: false, section: String::new(), name };
         let version_error = |found: String| MeshError::Version { source_name: name.to_owned(), found };
         match source.next_section() {
             Ok(Some(section)) if section == "$MeshFormat" => {}
@@ -142,17 +156,47 @@ impl<'a> Source<'a> {
         }
     }
 
-    /// An error at the place that has been reached.
-    pub(super) fn error(&self, expected: &str, found: &str) -> MeshError {
-        let place = if self.binary {
+    /// The place that has been reached.
+    fn place(&self) -> Place {
+        if self.binary {
             Place::Byte(self.at)
         } else {
             Place::Line(1 + self.bytes[..self.at.min(self.bytes.len())].iter().filter(|b| **b == b'\n').count())
-        };
+        }
+    }
+
+    /// The head of `$Nodes` or `$Elements`: how many blocks there are, and how many of `what` in all of them.
+    pub(super) fn totals(&mut self, what: &'static str) -> Result<(u64, Total), MeshError> {
+        let blocks = self.size("the number of blocks")?;
+        let claimed = self.size("the number of nodes or elements in all blocks")?;
+        let total = Total { what, claimed, place: self.place() };
+        for _ in 0..2 {
+            self.size("the smallest and the largest tag")?;
+        }
+        Ok((blocks, total))
+    }
+
+    /// Refuses blocks that hold more or fewer than the head says.
+    pub(super) fn hold_to(&self, Total { what, claimed, place }: Total, found: usize) -> Result<(), MeshError> {
+        if claimed == found as u64 {
+            return Ok(());
+        }
+        Err(MeshError::Total {
+            source_name: self.name.to_owned(),
+            place,
+            section: self.section.clone(),
+            what,
+            claimed,
+            found,
+        })
+    }
+
+    /// An error at the place that has been reached.
+    pub(super) fn error(&self, expected: &str, found: &str) -> MeshError {
         let found = if found.is_empty() { "the end of the file".to_owned() } else { format!("{found:?}") };
         MeshError::Syntax {
             source_name: self.name.to_owned(),
-            place,
+            place: self.place(),
             section: self.section.clone(),
             expected: expected.to_owned(),
             found,

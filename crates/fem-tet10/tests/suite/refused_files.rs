@@ -164,6 +164,59 @@ fn more_numbers_than_announced_are_noticed_where_they_start() {
     assert_says(&message, &[&format!("line {line}:"), "$EndNodes", "\"7\""]);
 }
 
+/// The head of a section is `blocks total smallest largest`.
+#[test]
+fn a_total_that_the_blocks_do_not_hold_is_refused() {
+    let whole = text("cube.msh");
+    let binary = std::fs::read(data("cube_binary.msh")).unwrap();
+    for (section, what) in [("$Nodes\n", "nodes"), ("$Elements\n", "elements")] {
+        let head = whole.find(section).unwrap() + section.len();
+        let line = whole[..head].lines().count() + 1;
+        let (start, rest) = whole.split_at(head);
+        let words: Vec<&str> = rest.lines().next().unwrap().split_whitespace().collect();
+        let total: u64 = words[1].parse().unwrap();
+        let rest = &rest[rest.find('\n').unwrap()..];
+        let place =
+            binary.windows(section.len()).position(|bytes| bytes == section.as_bytes()).unwrap() + section.len() + 8;
+        let mut spoiled = binary.clone();
+        assert_eq!(spoiled[place..place + 8], total.to_le_bytes());
+        for claim in [0, total - 1, total + 1, 1_000_000_000_000] {
+            let says = [
+                format!("in {}", section.trim()),
+                format!("the number {claim} for all {what}"),
+                format!("expected {total}"),
+            ];
+            let says = says.each_ref().map(String::as_str);
+            let (error, message) = refusal(format!("{start}{} {claim} {} {}{rest}", words[0], words[2], words[3]));
+            assert!(matches!(error, MeshError::Total { place: Place::Line(l), .. } if l == line), "{message}");
+            assert_says(&message, &says);
+            assert_says(&message, &["save the mesh again"]);
+            spoiled[place..place + 8].copy_from_slice(&claim.to_le_bytes());
+            let (error, message) = refusal(&spoiled);
+            assert!(matches!(error, MeshError::Total { place: Place::Byte(b), .. } if b == place + 8), "{message}");
+            assert_says(&message, &says);
+        }
+    }
+}
+
+#[test]
+fn a_byte_order_mark_is_passed_over() {
+    let mesh = parse_msh(format!("\u{feff}{}", text("cube.msh")).as_bytes(), "marked.msh").unwrap();
+    assert_eq!(mesh.elements(), read_msh(data("cube.msh")).unwrap().elements());
+}
+
+#[test]
+fn what_is_no_ordinary_file_is_refused_before_it_is_opened() {
+    let says = |path: &std::path::Path| {
+        let error = read_msh(path).unwrap_err();
+        assert!(matches!(error, MeshError::Io { .. }), "{error:?}");
+        error.to_string()
+    };
+    assert_says(&says(&data("")), &["cannot read the mesh", "a folder", "name the mesh file in it"]);
+    #[cfg(unix)]
+    assert_says(&says("/dev/zero".as_ref()), &["/dev/zero", "no ordinary file", "write the mesh into a file"]);
+}
+
 #[test]
 fn sections_out_of_place_are_refused() {
     let (_, message) = refusal(text("cube.msh") + "$EndElements\n");

@@ -196,6 +196,22 @@ fn unknown_nodes_and_tags_given_twice_are_told() {
 }
 
 #[test]
+fn the_same_element_under_two_tags_is_refused_with_both() {
+    // As it is, and with its corners in another order.
+    for order in [[0, 1, 2, 3, 4, 5, 6, 7, 8, 9], [1, 2, 0, 3, 5, 6, 4, 9, 7, 8]] {
+        let error = refusal(
+            |m| {
+                m.elements.push(order.map(|a: usize| m.elements[7][a]));
+                m.element_tags.push(4711);
+                m.element_regions.push(m.element_regions[7]);
+            },
+            &["elements 8 and 4711 are the same tetrahedron", "count twice", "removeDuplicateElements"],
+        );
+        assert!(matches!(error, MeshError::SameElement { first: 8, second: 4711, .. }), "{error:?}");
+    }
+}
+
+#[test]
 fn coordinates_that_are_no_numbers_are_told() {
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         let error = refusal(|m| m.positions[3][1] = bad, &["finite number", "node "]);

@@ -48,7 +48,7 @@ pub fn accuracy_page(
     std::fs::create_dir_all(&pictures).map_err(written(&pictures))?;
     let mut files = Vec::new();
     for (_, report) in &reports {
-        let picture = pictures.join(name_of(&report.scene)).with_extension("svg");
+        let picture = pictures.join(format!("{}.svg", name_of(&report.scene)));
         if let Some(drawn) = report.files.iter().find(|file| file.extension() == Some("svg".as_ref())) {
             std::fs::copy(drawn, &picture).map_err(written(&picture))?;
             files.push(picture);

@@ -12,7 +12,7 @@ use nalgebra::Vector3;
 use super::loads::{self, MeshLoad};
 use super::support::support;
 use super::{
-    BuildError, BuildProgress, BuildTimes, Meshed, Model, Size, damping_ratios, initial, materials, matrices,
+    BuildError, BuildProgress, BuildTimes, Meshed, Model, Size, damping_ratios, initial, materials, matrices, modal,
     output_points, physics, read_mesh, refuse, step, timed, too_many_modes, truncated_modes, well_spread,
 };
 use crate::effects::{Choice, Effects};
@@ -35,7 +35,8 @@ pub(super) fn build(
         Choice::Off => 0,
         Choice::On | Choice::Auto => scene.modes.flexible.most(),
     };
-    let solver = Solver::new(matrices.stiffness(), matrices.mass(), mesh.positions(), &support)?;
+    let solver =
+        Solver::new(matrices.stiffness(), matrices.mass(), mesh.positions(), &support).map_err(modal(scene))?;
     let modes = timed(&mut times.modes, || {
         solver.modes(requested, |p| progress(BuildProgress::Modes(p))).map_err(|error| too_many_modes(scene, error))
     })?;
@@ -179,7 +180,7 @@ impl Parts<'_> {
             if corrects {
                 let answers = [statics.of_loads.as_ref(), statics.of_spin.as_ref()];
                 for (answers, _) in answers.into_iter().flatten() {
-                    modes = self.solver.with_static_shapes(modes, answers.as_ref())?;
+                    modes = self.solver.with_static_shapes(modes, answers.as_ref()).map_err(modal(scene))?;
                 }
             }
             draft = self.draft(&modes)?;
@@ -207,7 +208,7 @@ impl Parts<'_> {
     }
 
     fn draft(&self, modes: &Modes) -> Result<Draft, BuildError> {
-        let body = ReducedBody::new(modes, self.matrices.mass(), self.mesh.positions())?;
+        let body = ReducedBody::new(modes, self.matrices.mass(), self.mesh.positions()).map_err(modal(self.scene))?;
         let peak = |shape: faer::ColRef<'_, f64>| {
             let at = |node: usize| Vector3::from_fn(|axis, _| shape[3 * node + axis]).norm();
             (0..shape.nrows() / 3).map(at).fold(0.0, f64::max)
@@ -263,13 +264,13 @@ impl Parts<'_> {
             for (i, load) in self.loads.iter().enumerate() {
                 load.add_nodal_forces(forces.as_mut().col_mut(i));
             }
-            let answers = self.solver.static_response(forces.as_ref())?;
+            let answers = self.solver.static_response(forces.as_ref()).map_err(modal(self.scene))?;
             let work = forces.col_iter().zip(answers.col_iter()).map(|(f, u)| f.transpose() * u).collect();
             Ok((answers, work))
         };
         let to_spin = || -> Result<_, BuildError> {
             let fields = centrifugal_fields(self.solver.nodal_mass(), self.mesh.positions(), &body.origin);
-            let answers = self.solver.static_response(fields.as_ref())?;
+            let answers = self.solver.static_response(fields.as_ref()).map_err(modal(self.scene))?;
             let remainders = self.remainders(modes, answers.as_ref());
             Ok((answers, remainders))
         };
@@ -313,7 +314,7 @@ impl Parts<'_> {
         }
         let mut force = Mat::zeros(3 * self.mesh.positions().len(), 1);
         steady.iter().for_each(|load| load.add_nodal_forces(force.as_mut().col_mut(0)));
-        let answer = self.solver.static_response(force.as_ref())?;
+        let answer = self.solver.static_response(force.as_ref()).map_err(modal(self.scene))?;
         // Gravity stresses no body that falls.
         if answer.norm_max() == 0.0 {
             return Ok(None);

@@ -7,7 +7,7 @@ use modal::{BodyPoint, ReducedBody, Support};
 use nalgebra::{Matrix3, Vector3};
 
 use super::support::support;
-use super::{BuildError, BuildTimes, Model, Size, initial, loads, output_points, physics, step};
+use super::{BuildError, BuildTimes, Model, Size, initial, loads, modal, output_points, physics, step};
 use crate::effects::Choice;
 use crate::error::SceneError;
 use crate::scene::{Frame, RigidBody, Scene};
@@ -18,7 +18,7 @@ pub(super) fn build(scene: &Scene, rigid: &RigidBody) -> Result<Model, BuildErro
     let about_center = Matrix3::from_fn(|i, j| rigid.inertia[i][j]);
     let arm = center - motion.fixed_point().unwrap_or(center);
     let inertia = about_center + (Matrix3::identity() * arm.norm_squared() - arm * arm.transpose()) * rigid.mass;
-    let body = ReducedBody::rigid(rigid.mass, center, inertia, motion)?;
+    let body = ReducedBody::rigid(rigid.mass, center, inertia, motion).map_err(modal(scene))?;
     let point = |_: String, at: [f64; 3]| -> Result<PointShapes, SceneError> {
         let position_body = Vector3::from(at) - body.origin;
         Ok(PointShapes::new(&body, &BodyPoint { position_body, shapes: Mat::zeros(3, 0) }))

@@ -1,12 +1,12 @@
 //! The rules on histories, and the tables that they name.
 
-use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
 use super::Check;
 use crate::document::join;
 use crate::error::{Place, SceneError, shorten};
+use crate::file::open_ordinary;
 use crate::history::{History, Table};
 
 /// The most that is read from the table files of a scene, in bytes (16 MiB).
@@ -14,6 +14,9 @@ pub(super) const LONGEST: u64 = 16 << 20;
 
 /// What a table holds.
 const PAIRS: &str = "pairs of time and factor";
+
+/// What to do about times that are too close.
+const APART: &str = "move the times apart, or make the run shorter; for a jump use `kind = \"step\"`";
 
 impl Check<'_> {
     /// Checks a history and reads the table files that it names.
@@ -51,7 +54,9 @@ impl Check<'_> {
                     "a formula in the time t",
                     "give the factor as a formula, e.g. `formula = \"sin(2*pi*t)\"`",
                 )?;
-                self.rising(&join(key, "corners"), corners, |i| format!("[{i}]"), "times")
+                let key = join(key, "corners");
+                self.rising(&key, corners, |i| format!("[{i}]"), "times")?;
+                self.apart(&key, corners, |i| format!("[{i}]"))
             }
             History::Product { factors } => {
                 let key = join(key, "factors");
@@ -64,7 +69,25 @@ impl Check<'_> {
     }
 
     fn duration(&self, key: &str, duration: f64, cure: &str) -> Result<(), SceneError> {
-        self.positive(&join(key, "duration"), duration, cure)
+        let key = join(key, "duration");
+        self.positive(&key, duration, cure)?;
+        self.not_lost(&key, duration, "duration")
+    }
+
+    /// Refuses rising times that the stepper takes for one.
+    fn apart(&self, key: &str, times: &[f64], entry: impl Fn(usize) -> String) -> Result<(), SceneError> {
+        match times.windows(2).position(|pair| self.is_lost(pair[1] - pair[0])) {
+            None => Ok(()),
+            Some(i) => Err(self.document.place(&format!("{key}{}", entry(i + 1))).refuse(
+                format!("{:?} after {:?}", times[i + 1], times[i]),
+                self.times_apart(),
+                APART,
+            )),
+        }
+    }
+
+    fn times_apart(&self) -> String {
+        format!("times whose distance is not lost in rounding beside the end of the run, {:?}", self.end)
     }
 
     fn table(&self, key: &str, table: &mut Table) -> Result<(), SceneError> {
@@ -87,13 +110,14 @@ impl Check<'_> {
         let cure = "give times and factors, e.g. `points = [[0.0, 0.0], [0.1, 1.0]]`";
         self.require(table.points.len() >= 2, &key, &format!("at least two {PAIRS}"), cure)?;
         let times: Vec<f64> = table.points.iter().map(|[time, _]| *time).collect();
-        self.rising(&key, &times, |i| format!("[{i}][0]"), "times")
+        self.rising(&key, &times, |i| format!("[{i}][0]"), "times")?;
+        self.apart(&key, &times, |i| format!("[{i}][0]"))
     }
 
     fn read_table(&self, key: &str, path: &Path) -> Result<Vec<[f64; 2]>, SceneError> {
         let mut text = String::new();
         let left = self.table_bytes.get();
-        let read = File::open(path).and_then(|file| file.take(left + 1).read_to_string(&mut text));
+        let read = open_ordinary(path).and_then(|file| file.take(left + 1).read_to_string(&mut text));
         let shown = shorten(&path.to_string_lossy());
         if let Err(cause) = read {
             return Err(self.document.place(key).refuse(
@@ -112,53 +136,58 @@ impl Check<'_> {
                 ));
             }
         }
-        parse_table(&text, path, key)
+        self.parse_table(&text, path, key)
     }
-}
 
-/// The points of a CSV text: two columns of numbers, separated by a comma, the times rising. The first line may name
-/// the columns; empty lines and those that begin with `#` are left out. A refusal names the line of the CSV file and
-/// the key of the scene.
-fn parse_table(text: &str, path: &Path, key: &str) -> Result<Vec<[f64; 2]>, SceneError> {
-    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    let mut points: Vec<[f64; 2]> = Vec::new();
-    let mut is_first = true;
-    let mut start = 0;
-    // Numbers need no quotes, and a library for CSV loses the line where comments stand before it.
-    for written in text.split_inclusive('\n') {
-        let range = start..start + written.trim_end().len();
-        start += written.len();
-        let line = written.trim();
-        if line.is_empty() || line.starts_with('#') {
-            continue;
-        }
-        let refuse = |found: String, expected: &str, cure: &str| {
-            Err(Place::new(path, text, range, key.to_owned()).refuse(found, expected, cure))
-        };
-        let numbers: Vec<Option<f64>> = line.split(',').map(|field| field.trim().parse().ok()).collect();
-        let names_columns = is_first && numbers.iter().all(Option::is_none);
-        is_first = false;
-        match (&numbers[..], points.last()) {
-            _ if names_columns => {}
-            (&[Some(time), Some(_)], Some(&[before, _])) if time <= before => {
-                let expected = "times that rise from line to line";
-                return refuse(
-                    format!("the time {time:?} after {before:?}"),
-                    expected,
-                    "put the lines in order, each time once",
-                );
+    /// The points of a CSV text: two columns of numbers, separated by a comma, the times rising. The first line may name
+    /// the columns; empty lines and those that begin with `#` are left out. A refusal names the line of the CSV file and
+    /// the key of the scene.
+    fn parse_table(&self, text: &str, path: &Path, key: &str) -> Result<Vec<[f64; 2]>, SceneError> {
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let mut points: Vec<[f64; 2]> = Vec::new();
+        let mut is_first = true;
+        let mut start = 0;
+        // Numbers need no quotes, and a library for CSV loses the line where comments stand before it.
+        for written in text.split_inclusive('\n') {
+            let range = start..start + written.trim_end().len();
+            start += written.len();
+            let line = written.trim();
+            if line.is_empty() || line.starts_with('#') {
+                continue;
             }
-            (&[Some(time), Some(factor)], _) if time.is_finite() && factor.is_finite() => points.push([time, factor]),
-            _ => {
-                let expected = "two finite numbers, time and factor, with a comma between them";
-                return refuse(shorten(line), expected, "correct the line; only the first may name the columns");
+            let refuse = |found: String, expected: &str, cure: &str| {
+                Err(Place::new(path, text, range, key.to_owned()).refuse(found, expected, cure))
+            };
+            let numbers: Vec<Option<f64>> = line.split(',').map(|field| field.trim().parse().ok()).collect();
+            let names_columns = is_first && numbers.iter().all(Option::is_none);
+            is_first = false;
+            match (&numbers[..], points.last()) {
+                _ if names_columns => {}
+                (&[Some(time), Some(_)], Some(&[before, _])) if time <= before => {
+                    let expected = "times that rise from line to line";
+                    return refuse(
+                        format!("the time {time:?} after {before:?}"),
+                        expected,
+                        "put the lines in order, each time once",
+                    );
+                }
+                (&[Some(time), Some(_)], Some(&[before, _])) if self.is_lost(time - before) => {
+                    return refuse(format!("the time {time:?} after {before:?}"), &self.times_apart(), APART);
+                }
+                (&[Some(time), Some(factor)], _) if time.is_finite() && factor.is_finite() => {
+                    points.push([time, factor])
+                }
+                _ => {
+                    let expected = "two finite numbers, time and factor, with a comma between them";
+                    return refuse(shorten(line), expected, "correct the line; only the first may name the columns");
+                }
             }
         }
+        if points.len() < 2 {
+            let place = Place::new(path, text, 0..text.len(), key.to_owned());
+            let found = format!("{} of the {PAIRS}", points.len());
+            return Err(place.refuse(found, "at least two", "write a line `time,factor` for each point"));
+        }
+        Ok(points)
     }
-    if points.len() < 2 {
-        let place = Place::new(path, text, 0..text.len(), key.to_owned());
-        let found = format!("{} of the {PAIRS}", points.len());
-        return Err(place.refuse(found, "at least two", "write a line `time,factor` for each point"));
-    }
-    Ok(points)
 }

@@ -11,6 +11,9 @@ use crate::scene::Initial;
 /// Sine of the angle between an initial velocity and the direction that is left, up to which it counts as rounding.
 const ALONG: f64 = 1e-6;
 
+/// The squares of larger numbers, summed and multiplied by a mass, may overflow.
+const LARGEST: f64 = 1e140;
+
 impl Check<'_> {
     pub fn initial(&self, initial: &Initial, modes: &Modes, constraint: Option<&Constraint>) -> Result<(), SceneError> {
         for (key, list) in [
@@ -18,6 +21,18 @@ impl Check<'_> {
             ("initial.modal_velocity", &initial.modal_velocity),
         ] {
             self.not_more_than_modes(key, list.len(), modes.flexible)?;
+        }
+        for (key, list) in [
+            ("initial.velocity", &initial.velocity[..]),
+            ("initial.angular_velocity", &initial.angular_velocity),
+            ("initial.modal_displacement", &initial.modal_displacement),
+            ("initial.modal_velocity", &initial.modal_velocity),
+        ] {
+            if let Some(i) = list.iter().position(|value| value.abs() > LARGEST) {
+                let expected = format!("a number of at most {LARGEST:e}, whose square is still a number");
+                let cure = "give what the body can have, in the units of the scene";
+                self.require(false, &format!("{key}[{i}]"), &expected, cure)?;
+            }
         }
         let Some(constraint) = constraint else { return Ok(()) };
         // What the constraint leaves of the velocity and of the angular velocity.

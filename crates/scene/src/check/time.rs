@@ -9,7 +9,7 @@ use crate::section::{Formulation, OutputSection, Scheme, TimeSection};
 /// Intervals between rows where the scene gives a tolerance and no interval.
 const DEFAULT_ROWS: f64 = 500.0;
 
-/// Shortest step and interval, over the end of the run: times closer than a tenth of this are one to the stepper.
+/// Shortest step, interval, duration and distance of times, over the end of the run: times closer than a tenth of this are one to the stepper.
 const LEAST_PART: f64 = 1e-12;
 
 impl Check<'_> {
@@ -99,12 +99,21 @@ impl Check<'_> {
             &format!("at most the end of the run, {end:?}"),
             &format!("make the {name} shorter or the run longer"),
         )?;
+        self.not_lost(key, length, name)
+    }
+
+    /// Refuses a length of time that is lost in rounding beside the end of the run.
+    pub(super) fn not_lost(&self, key: &str, length: f64, name: &str) -> Result<(), SceneError> {
         self.require(
-            length >= LEAST_PART * end,
+            !self.is_lost(length),
             key,
-            &format!("a {name} that is not lost in rounding beside the end of the run, {end:?}"),
+            &format!("a {name} that is not lost in rounding beside the end of the run, {:?}", self.end),
             &format!("make the {name} longer or the run shorter"),
         )
+    }
+
+    pub(super) fn is_lost(&self, length: f64) -> bool {
+        length < LEAST_PART * self.end
     }
 
     pub fn output(&self, section: OutputSection, time: &Time) -> Result<Output, SceneError> {

@@ -12,7 +12,7 @@ use std::path::Path;
 
 use frames_rk4::{Observation, PointMotion};
 use nalgebra::Vector3;
-use scene::{BuildError, BuildProgress, Model, Scene};
+use scene::{Body, BuildError, BuildProgress, Material, Materials, Model, Scene};
 
 /// Length and breadth of the bar of `../data/bar.geo`, which lies on the x-axis from its origin.
 const LENGTH: f64 = 200.0;
@@ -124,4 +124,19 @@ fn near(found: Vector3<f64>, expected: Vector3<f64>, relative: f64) {
 fn close(found: f64, expected: f64, relative: f64) {
     let off = (found / expected - 1.0).abs();
     assert!(off < relative, "{found} is {off:e} off {expected}");
+}
+
+#[test]
+fn what_the_modal_analysis_refuses_names_the_scene_file() {
+    for (density, young_modulus, says) in
+        [(1e-310, YOUNG, "which is no rigid body"), (1e300, 1e300, "a dense eigenvalue problem")]
+    {
+        let mut scene = bar("flexible = 2", "", "end = 1e-3\nstep = 1e-5");
+        let Body::Meshed(body) = &mut scene.body else { panic!("no mesh") };
+        body.materials = Materials::Whole(Material { young_modulus, poisson_ratio: POISSON, density });
+        let error = refusal(&scene);
+        assert!(matches!(error, BuildError::Modal { .. }), "{error}");
+        let message = error.to_string();
+        assert!(message.starts_with(&format!("{}: ", scene.path.display())) && message.contains(says), "{message}");
+    }
 }

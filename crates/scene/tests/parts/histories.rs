@@ -51,6 +51,12 @@ fn every_kind() {
     ] {
         assert_eq!(history(&format!("history = {{ {keys} }}")), wanted, "{keys}");
     }
+    // As short as the stepper can tell, a part of 1e-12 of the end.
+    let duration = 6e-13;
+    assert_eq!(
+        history(&format!("history = {{ kind = 'ramp', duration = {duration} }}")),
+        History::Ramp { start, duration }
+    );
     assert_eq!(history("history = \"constant\""), History::Constant);
     assert_eq!(history(""), History::Constant);
 }
@@ -82,6 +88,26 @@ fn what_is_no_history() {
         ("kind = 'expression', formula = ' '", "' '", "formula", "expected a formula in the time t"),
         ("kind = 'expression'", "{ kind = 'expr", "formula", "formula = \"sin(2*pi*t)\""),
         ("kind = 'expression', formula = 't', corners = [2, 1]", "1] }", "corners[1]", "found 1.0 after 2.0"),
+        (
+            "kind = 'ramp', duration = 4e-13",
+            "4e-13",
+            "duration",
+            "a duration that is not lost in rounding beside the end",
+        ),
+        ("kind = 'sine', frequency = 1, duration = 4e-13", "4e-13", "duration", "make the duration longer"),
+        ("kind = 'sweep', from = 1, to = 2, duration = 4e-13", "4e-13", "duration", "end of the run, 0.5"),
+        (
+            "kind = 'table', points = [[0, 1], [0.1, 1], [0.1000000000004, 2]]",
+            "0.1000000000004, 2]",
+            "points[2][0]",
+            "found 0.1000000000004 after 0.1, expected times whose distance is not lost in rounding",
+        ),
+        (
+            "kind = 'expression', formula = 't', corners = [1e-3, 1.0000000004e-3]",
+            "1.0000000004e-3] }",
+            "corners[1]",
+            "for a jump use",
+        ),
         ("kind = 'product', factors = []", "[] }", "factors", "found [], expected at least one history"),
         ("kind = 'product'", "{ kind = 'prod", "factors", "`factors` is missing"),
         ("kind = 'product', factors = ['sine']", "'sine'", "factors[0]", "found the string 'sine', expected a table"),
