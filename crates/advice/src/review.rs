@@ -5,14 +5,16 @@ use nalgebra::Vector3;
 
 use crate::case::{AdviceError, Case};
 use crate::limits::{Refusal, SOFTENED, refusal};
-use crate::table::{Advice, LINEAR};
+use crate::response::{norm, relative};
+use crate::row::Effect;
+use crate::table::{Advice, LINEAR, held};
 
 /// An assumption that has broken.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum Broken {
     /// The spin rose above what the estimates allow for.
     #[error(
-        "at time {time:.6} the spin was {found:.4}, above the {assumed:.4} that the estimates allow for; turn all effects on"
+        "at time {time:.6} the spin was {found:.4}, above the {assumed:.4} that the estimates allow for: set {off} = true in [effects]"
     )]
     Spin {
         /// When it was so for the first time.
@@ -21,10 +23,12 @@ pub enum Broken {
         found: f64,
         /// The largest that was assumed.
         assumed: f64,
+        /// The effects that were left out.
+        off: String,
     },
     /// The deflection rose above what the estimates allow for.
     #[error(
-        "at time {time:.6} the deflection was {found:.3e} of the length, above the {assumed:.3e} that the estimates allow for; turn all effects on"
+        "at time {time:.6} the deflection was {found:.3e} of the length, above the {assumed:.3e} that the estimates allow for: set {off} = true in [effects]"
     )]
     Deflection {
         /// When it was so for the first time.
@@ -33,6 +37,8 @@ pub enum Broken {
         found: f64,
         /// The largest that was assumed.
         assumed: f64,
+        /// The effects that were left out.
+        off: String,
     },
     /// The strain is not linear.
     #[error(
@@ -43,6 +49,19 @@ pub enum Broken {
         time: f64,
         /// The largest there was.
         found: f64,
+    },
+    /// The modes do not carry what the spin does to the body.
+    #[error(
+        "at time {time:.6} the modes held only {held:.1e} of the static answer to the spin, and the answer lacks the rest, \
+         {influence:.1e} of the deformation: take static_correction = true with the scheme exponential, or more modes"
+    )]
+    Stretch {
+        /// When most was missing.
+        time: f64,
+        /// Part of the static answer that the modes held.
+        held: f64,
+        /// Part of the whole deformation that was missing.
+        influence: f64,
     },
     /// A spin was reached at which the model is known to be wrong.
     #[error("at time {time:.6}: {refusal}")]
@@ -63,11 +82,18 @@ pub struct Review<'a> {
     deflection: f64,
     /// The last |ω| whose limit was looked up, and its direction.
     looked_up: (f64, Vector3<f64>),
+    tolerance: f64,
+    /// The most that the modes left out of the static answer to the spin, when, and the part that they held.
+    left_out: (f64, f64, f64),
+    /// Largest √(qᵀq).
+    deformation: f64,
     broken: Vec<Broken>,
 }
 
 /// What rounding and the change of inertia by a small deformation may add to a bound.
 const MARGIN: f64 = 1.01;
+/// Deflection over length that is rounding.
+const ROUNDING: f64 = 1e-10;
 
 impl<'a> Review<'a> {
     /// Of a run with these effects that `advice` was given on. The case has the modes that are simulated.
@@ -78,6 +104,9 @@ impl<'a> Review<'a> {
             spin: advice.spin,
             deflection: advice.deflection,
             looked_up: (0.0, Vector3::zeros()),
+            tolerance: advice.tolerance,
+            left_out: (0.0, 0.0, 1.0),
+            deformation: 0.0,
             broken: Vec::new(),
         }
     }
@@ -96,10 +125,18 @@ impl<'a> Review<'a> {
         let deflection = q.iter().zip(peaks).map(|(q, a)| (q * a).abs()).sum::<f64>() / self.case.length;
         let speed = observation.omega_body.norm();
         if self.something_is_off() && speed > MARGIN * self.spin {
-            self.note(Broken::Spin { time, found: speed, assumed: self.spin });
+            self.note(Broken::Spin { time, found: speed, assumed: self.spin, off: self.off() });
         }
-        if self.something_is_off() && deflection > MARGIN * self.deflection {
-            self.note(Broken::Deflection { time, found: deflection, assumed: self.deflection });
+        if self.something_is_off() && deflection > MARGIN * self.deflection + ROUNDING {
+            self.note(Broken::Deflection { time, found: deflection, assumed: self.deflection, off: self.off() });
+        }
+        if self.effects.deformed_inertia && !self.case.centrifugal_remainders.is_empty() {
+            let omega = &observation.omega_body;
+            let (held, left) = held(&self.case, &(omega * omega.transpose()));
+            if left > self.left_out.0 {
+                self.left_out = (left, time, held);
+            }
+            self.deformation = self.deformation.max(norm(q));
         }
         if deflection > LINEAR {
             self.note(Broken::Linear { time, found: deflection });
@@ -115,13 +152,27 @@ impl<'a> Review<'a> {
     }
 
     /// What has broken so far: each assumption once, with the first time and the worst.
-    pub fn broken(&self) -> &[Broken] {
-        &self.broken
+    pub fn broken(&self) -> Vec<Broken> {
+        let (left, time, held) = self.left_out;
+        let influence = relative(left, self.deformation.hypot(left));
+        let stretch = (influence >= self.tolerance).then_some(Broken::Stretch { time, held, influence });
+        self.broken.iter().cloned().chain(stretch).collect()
     }
 
     /// Whether an effect of turning and bending was left out, for which the estimates had to hold.
     fn something_is_off(&self) -> bool {
         !(self.effects.deformed_inertia && self.effects.coriolis && self.effects.geometric_stiffening)
+    }
+
+    /// The names of those effects.
+    fn off(&self) -> String {
+        let Effects { deformed_inertia, coriolis, geometric_stiffening, .. } = self.effects;
+        let all = [
+            (deformed_inertia, Effect::DeformedInertia),
+            (coriolis, Effect::Coriolis),
+            (geometric_stiffening, Effect::GeometricStiffening),
+        ];
+        all.iter().filter(|(on, _)| !on).map(|(_, effect)| effect.name()).collect::<Vec<_>>().join(" = true, ")
     }
 
     /// Lowest natural frequency, rad per time. The centrifugal force takes at most Ω² from the stiffness of a mode, so

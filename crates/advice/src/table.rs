@@ -1,6 +1,8 @@
 //! The table: a row an effect.
 
 use faer::Mat;
+use modal::ReducedBody;
+use nalgebra::Matrix3;
 
 use crate::case::{AdviceError, Case};
 use crate::excitation::{Source, Spin};
@@ -23,12 +25,29 @@ pub struct Advice {
     pub spin: f64,
     /// Largest displacement by deformation, over the length of the body, that is to be expected at most.
     pub deflection: f64,
+    /// Influence of what the modes leave out of the static answer to the spin, bounded above; at most 1.
+    pub stretch: f64,
+    /// The tolerance.
+    pub tolerance: f64,
 }
 
 impl Advice {
     /// The row of an effect.
     pub fn row(&self, effect: Effect) -> Option<&Row> {
         self.rows.iter().find(|row| row.effect == effect)
+    }
+
+    /// Says in the row of static shapes that a run has not got them, if what the spin makes of them matters.
+    pub fn lack_stretch(&mut self) {
+        if self.stretch < self.tolerance {
+            return;
+        }
+        if let Some(row) = self.rows.iter_mut().find(|row| row.effect == Effect::StaticCorrection) {
+            row.why.push_str(
+                " The answer lacks what the spin stretches beyond the modes: take static_correction = true with the scheme \
+                 exponential, or more modes.",
+            );
+        }
     }
 
     /// Whether an effect is on.
@@ -94,17 +113,18 @@ pub fn advise(case: &Case, tolerance: f64) -> Result<Advice, AdviceError> {
         rest < tolerance
     });
     let keep = shares.len() - negligible.count();
+    let stretch = stretch(case, &spin, &response);
     let deflection = response.displacement.iter().zip(case.peaks).map(|(q, a)| q * a).sum::<f64>() / case.length;
     let estimates = [
         flexibility(&spin, &sources, &response, deflection),
         damping(case, &response),
         rigid::gravity(case, &sources, &response),
-        deformed_inertia(case, &spin, &response, &second, stiffness.as_ref()),
+        deformed_inertia(case, &spin, &response, &second, stiffness.as_ref(), stretch),
         coriolis(case, &spin, &response, &coupling),
         stiffening(case, &spin, &response, stiffness.as_ref()),
         rigid::translation(case, &sources),
         rigid::rotation(case, &spin, &sources, &response),
-        static_correction(case, &spin, &sources, &response, keep),
+        static_correction(case, &spin, &sources, keep, stretch),
         Estimate {
             effect: Effect::Deflection,
             value: deflection,
@@ -122,6 +142,8 @@ pub fn advise(case: &Case, tolerance: f64) -> Result<Advice, AdviceError> {
         more_modes: keep > 0 && keep == case.body.flexible(),
         spin: spin.largest,
         deflection,
+        stretch,
+        tolerance,
     })
 }
 
@@ -189,6 +211,7 @@ fn deformed_inertia(
     response: &Response,
     second: &Mat<f64>,
     stiffness: Option<&Mat<f64>>,
+    stretch: f64,
 ) -> Estimate {
     let body = case.body;
     let q = &response.displacement;
@@ -210,7 +233,9 @@ fn deformed_inertia(
             "Deformation changes the inertia by up to {value:.1e}: {attitude:.1e} of the rotation, and the centrifugal field {modes:.1e} of the vibration."
         )
     };
-    let influence = if spin.largest == 0.0 { 0.0 } else { attitude.max(modes) };
+    // The centrifugal field stretches in ways that the modes do not carry, too, where that is known.
+    let stretch = if case.centrifugal_remainders.is_empty() { 0.0 } else { stretch };
+    let influence = if spin.largest == 0.0 { 0.0 } else { attitude.max(modes).max(stretch) };
     Estimate { effect: Effect::DeformedInertia, value, influence, why }
 }
 
@@ -266,7 +291,55 @@ fn stiffening(case: &Case, spin: &Spin, response: &Response, stiffness: Option<&
     Estimate { effect: Effect::GeometricStiffening, value, influence, why }
 }
 
-fn static_correction(case: &Case, spin: &Spin, sources: &[Source], response: &Response, keep: usize) -> Estimate {
+/// Influence of what the modes leave out of the static answer to the spin; by [`left_out_at_most`] where it is not known.
+fn stretch(case: &Case, spin: &Spin, response: &Response) -> f64 {
+    if spin.largest == 0.0 || case.body.flexible() == 0 {
+        return 0.0;
+    }
+    let bounds;
+    let remainders = match case.centrifugal_remainders {
+        [] => {
+            bounds = left_out_at_most(case.body);
+            &bounds[..]
+        }
+        known => known,
+    };
+    // |ω_i ω_j| is at most Ω².
+    let left = SPUN * spin.largest * spin.largest * remainders.iter().sum::<f64>();
+    relative(left, response.scale + left)
+}
+
+/// Part of the static answer to a spin that the modes hold, and how much they leave out: √(uᵀMu) of the answer u.
+/// `squares` are ω_iω_j.
+pub(crate) fn held(case: &Case, squares: &Matrix3<f64>) -> (f64, f64) {
+    let times = |(i, j): (usize, usize)| if i == j { squares[(i, i)] } else { 2.0 * squares[(i, j)] };
+    let pairs = || ReducedBody::PAIRS.into_iter().map(times).enumerate();
+    let left: f64 = pairs().zip(case.centrifugal_remainders).map(|((_, times), r)| times.abs() * r).sum();
+    let answer = |k: usize, omega: &f64| {
+        pairs().map(|(pair, times)| times * case.body.inertia_first[pair][k]).sum::<f64>() / (omega * omega)
+    };
+    let carried: Vec<f64> = case.body.circular_frequencies.iter().enumerate().map(|(k, w)| answer(k, w)).collect();
+    let carried = norm(&carried);
+    (if left > 0.0 { carried / carried.hypot(left) } else { 1.0 }, left)
+}
+
+/// Bounds of what the modes leave out of the static answers to the centrifugal fields, as
+/// [`Case::centrifugal_remainders`]: the field −A_ij x has the norm tr(A S A), S = ∫ x xᵀ dm = ½ tr J − J, the modes
+/// have Σc_k² of it, and what is left meets frequencies above theirs.
+fn left_out_at_most(body: &ReducedBody) -> [f64; 6] {
+    let moments = Matrix3::identity() * (0.5 * body.inertia.trace()) - body.inertia;
+    let highest = body.circular_frequencies.iter().copied().fold(0.0, f64::max);
+    std::array::from_fn(|pair| {
+        let (i, j) = ReducedBody::PAIRS[pair];
+        let mut field: Matrix3<f64> = if i == j { Matrix3::identity() } else { Matrix3::zeros() };
+        field[(i, j)] -= 0.5;
+        field[(j, i)] -= 0.5;
+        let carried: f64 = body.inertia_first[pair].iter().map(|c| c * c).sum();
+        ((field * moments * field).trace() - carried).max(0.0).sqrt() / (highest * highest)
+    })
+}
+
+fn static_correction(case: &Case, spin: &Spin, sources: &[Source], keep: usize, stretch: f64) -> Estimate {
     let omega = &case.body.circular_frequencies;
     let compliance = |source: &Source, modes: usize| -> f64 {
         (0..modes).map(|k| (source.modal_at_start[k] / omega[k]).powi(2)).sum()
@@ -280,23 +353,19 @@ fn static_correction(case: &Case, spin: &Spin, sources: &[Source], response: &Re
     };
     let value = sources.iter().enumerate().map(left).fold(0.0, f64::max);
     let known = case.static_compliances.len() == sources.len();
-    let spins = spin.largest > 0.0 && case.body.inertia_first.iter().flatten().any(|c| *c != 0.0);
-    let stretch = match case.centrifugal_remainders {
-        _ if !spins => 0.0,
-        [] => 1.0,
-        // |ω_i ω_j| is at most Ω².
-        all => {
-            let left: f64 = SPUN * all.iter().map(|r| spin.largest * spin.largest * r).sum::<f64>();
-            relative(left, response.scale + left)
-        }
-    };
     // What is left out may swing about its static answer, and is measured over the whole body.
     let influence = relative(SWING * value, 1.0).max(stretch);
     let why = if influence == 0.0 {
         "The modes carry the whole static answer.".into()
-    } else if stretch > value {
+    } else if stretch > value && case.centrifugal_remainders.is_empty() && known {
         format!(
-            "The centrifugal field stretches the body by {stretch:.1e} of its deformation in ways that the modes do not carry."
+            "What the modes leave out of the static answer to the spin may come to {stretch:.1e} of the deformation."
+        )
+    } else if !case.centrifugal_remainders.is_empty() && stretch > if known { value } else { 0.0 } {
+        let squares = spin.directions * (spin.largest * spin.largest);
+        let held = held(case, &squares).0;
+        format!(
+            "The modes hold only {held:.1e} of the static answer to the spin; the rest comes to {stretch:.1e} of the deformation."
         )
     } else if known {
         format!(

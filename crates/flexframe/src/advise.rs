@@ -148,11 +148,13 @@ pub fn advise(scene: &Scene, verify: bool, mut progress: impl FnMut(AdviseProgre
 }
 
 impl EffectRow {
-    /// "on", "off", or of what cannot be switched "may matter" or "fine".
+    /// "on", "off" ("off, may matter" where the scene or its scheme leaves out what is called for), or of what cannot be
+    /// switched "may matter" or "fine".
     fn verdict(&self) -> &'static str {
         match (self.on, self.advised) {
             (Some(true), _) => "on",
-            (Some(false), _) => "off",
+            (Some(false), true) => "off, may matter",
+            (Some(false), false) => "off",
             (None, _) if TOGGLED.iter().any(|effect| effect.name() == self.effect) => "-",
             (None, true) => "may matter",
             (None, false) => "fine",

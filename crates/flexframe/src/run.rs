@@ -161,7 +161,7 @@ pub struct RunReport {
 }
 
 /// Largest changes, over the rows, of what should be constants of the motion, relative to the largest value of the
-/// quantity itself.
+/// quantity itself; of the energy, or to the sum of |work| + |dissipation| of all steps, if that is more.
 #[derive(Debug, Clone, Copy, Default, Serialize)]
 pub struct Balances {
     /// Energy − work of the loads + dissipation.
@@ -277,12 +277,16 @@ fn expected_rows(scene: &Scene) -> usize {
 /// Energy balance from which on a run says that it is open.
 const OPEN: f64 = 1e-2;
 
-fn open_balance(monitor: &Monitor) -> Option<String> {
+fn open_balance(monitor: &Monitor, flexible: usize) -> Option<String> {
     let open = monitor.balances().energy;
     (open > OPEN).then(|| {
+        let (work, cure) = match flexible {
+            0 => ("the work of the loads", "shorter steps"),
+            _ => ("the work on modes that are faster than the step", "shorter steps, or fewer modes,"),
+        };
         format!(
-            "the energy balance is open by {open:.1e}: the work on modes that are faster than the step is summed too \
-             coarsely, or the motion itself is; take shorter steps, or fewer modes, until it does not matter to the answer"
+            "the energy balance is open by {open:.1e} of the energy that there was or that came and went: {work} is summed \
+             too coarsely, or the motion itself is; take {cure} until it does not matter to the answer"
         )
     })
 }
@@ -442,6 +446,7 @@ impl<'a> Recorder<'a> {
         let time = started.elapsed();
         let stats = simulation.stats();
         let method = scene::method(self.scene.time.method);
+        self.monitor.exchanged(simulation.exchanged());
         let Self { scene, model, .. } = self;
         let last = &self.observation;
         let mut report = RunReport {
@@ -468,7 +473,7 @@ impl<'a> Recorder<'a> {
             balances: self.monitor.balances(),
             effects: effects::computed(scene, model),
             warnings: (self.review.broken().iter().map(ToString::to_string))
-                .chain(open_balance(&self.monitor))
+                .chain(open_balance(&self.monitor, model.body.flexible()))
                 .collect(),
             results: self.writer.path().to_path_buf(),
             times: Times::of_model(model),
@@ -562,6 +567,11 @@ impl Monitor {
         grow(&mut self.scales.energy, now.kinetic_energy + now.strain_energy);
         grow(&mut self.scales.linear_momentum, Vector3::from(now.linear_momentum).norm());
         grow(&mut self.scales.angular_momentum, Vector3::from(now.angular_momentum).norm());
+    }
+
+    /// Takes into account how much energy has come and gone between the rows: they may all fall where there is none.
+    fn exchanged(&mut self, energy: f64) {
+        self.scales.energy = self.scales.energy.max(energy);
     }
 
     /// Largest changes so far, relative to the largest values.

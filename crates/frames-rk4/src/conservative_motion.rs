@@ -110,6 +110,11 @@ impl ConservativeMotion {
         self.reckoning.as_ref()
     }
 
+    /// Work of the loads and dissipation.
+    pub(crate) fn done(&self) -> [f64; 2] {
+        [self.state.slow[part::WORK], self.state.slow[part::DISSIPATION]]
+    }
+
     /// Largest of ω_k and 2 ζ_k ω_k.
     pub(crate) fn fastest_rate(&self) -> f64 {
         self.body.fastest_rate()

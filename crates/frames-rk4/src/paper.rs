@@ -146,6 +146,11 @@ impl PaperScheme {
         self.motion.reckon(&self.state, &self.work)
     }
 
+    /// Work of the loads and dissipation.
+    pub(crate) fn done(&self) -> [f64; 2] {
+        [self.work.work, self.work.dissipation]
+    }
+
     /// Checks the angular momentum of the state.
     ///
     /// # Errors

@@ -163,6 +163,11 @@ impl PaperLimit {
         self.motion.reckon(&self.state, &self.work)
     }
 
+    /// Work of the loads and dissipation.
+    pub(crate) fn done(&self) -> [f64; 2] {
+        [self.work.work, self.work.dissipation]
+    }
+
     /// Checks the angular momentum of the state.
     ///
     /// # Errors

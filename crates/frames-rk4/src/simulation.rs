@@ -351,6 +351,20 @@ impl Simulation {
         }
     }
 
+    /// Work of the loads and dissipation since the beginning.
+    fn done(&self) -> [f64; 2] {
+        match &self.engine {
+            Engine::Paper(scheme) => scheme.done(),
+            Engine::PaperLimit(limit) => limit.done(),
+            Engine::Conservative(motion) => motion.done(),
+        }
+    }
+
+    /// Sum of |work of the loads| + |dissipation| of all steps so far: how much energy has come and gone.
+    pub fn exchanged(&self) -> f64 {
+        self.account.exchanged()
+    }
+
     /// Whether the attitude can be right. The conservative form keeps the angular momentum; that of the paper need not.
     fn check_attitude(&mut self) -> Result<(), StepError> {
         let Self { engine, attitude_account, stats, .. } = self;
@@ -444,6 +458,7 @@ impl Simulation {
                     self.stats.accepted += count;
                     self.stats.shortest = self.stats.shortest.min(length);
                     self.stats.longest = self.stats.longest.max(length);
+                    self.account.exchange(self.done());
                     self.check_energy()?;
                     if self.stats.accepted.is_multiple_of(STEPS_OF_ATTITUDE) {
                         self.check_attitude()?;

@@ -109,6 +109,8 @@ pub struct Model {
     loads: Vec<Load>,
     damping_ratios: Vec<f64>,
     size: Size,
+    /// What the modes leave out of the static answers to the spin (6), where that is to be watched.
+    left_out: Vec<f64>,
 }
 
 /// The size of a body and of its modes.
@@ -160,6 +162,7 @@ impl Model {
             damping_ratios: self.damping_ratios[..flexible].to_vec(),
             size: Size { peaks: self.size.peaks[..flexible].to_vec(), ..self.size },
             advice: self.advice.clone(),
+            left_out: self.left_out.clone(),
             ..*self
         }
     }
@@ -204,7 +207,7 @@ impl Model {
             length: self.size.length,
             peaks: &self.size.peaks,
             static_compliances: &[],
-            centrifugal_remainders: &[],
+            centrifugal_remainders: &self.left_out,
         }
     }
 

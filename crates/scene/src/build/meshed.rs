@@ -43,7 +43,7 @@ pub(super) fn build(
     let loads = loads::on_mesh(scene, &mesh, &solver.nodal_mass().row_sums())?;
     let parts =
         Parts { scene, body, mesh: &mesh, matrices: &matrices, solver: &solver, support: &support, loads, drive };
-    let Reduced { modes, body, physics, mut loads, size, damping_ratios, advice } =
+    let Reduced { modes, body, physics, mut loads, size, damping_ratios, advice, left_out } =
         parts.reduce(modes, &mut times, &mut progress)?;
 
     let started = Instant::now();
@@ -75,6 +75,7 @@ pub(super) fn build(
         loads,
         damping_ratios,
         size,
+        left_out,
     };
     let initial = model.initial(scene);
     model.refusal = match &model.physics.load_stiffness {
@@ -109,6 +110,7 @@ struct Reduced {
     size: Size,
     damping_ratios: Vec<f64>,
     advice: Advice,
+    left_out: Vec<f64>,
 }
 
 /// A body in the coordinates of some modes.
@@ -149,8 +151,7 @@ impl Parts<'_> {
             choice => choice,
         };
         let of_loads = correction != Choice::Off && !self.loads.is_empty();
-        let spins = physics::may_spin(scene, self.support.motion, self.drive.as_ref());
-        let of_spin = stiffening || correction == Choice::On && spins;
+        let of_spin = stiffening || self.may_stretch(&draft)?;
         let steady = self.steady_loads(&draft);
         if of_loads || of_spin || !steady.is_empty() {
             progress(BuildProgress::Statics);
@@ -172,6 +173,13 @@ impl Parts<'_> {
                 Choice::Off => false,
                 Choice::Auto => advice.is_on(Effect::StaticCorrection),
             };
+        let mut left_out = Vec::new();
+        if let Some((_, remainders)) = statics.of_spin.as_ref().filter(|_| !corrects && keep > 0) {
+            advice.lack_stretch();
+            if scene.modes.static_correction == Choice::Auto {
+                left_out.clone_from(remainders);
+            }
+        }
         let stiffening = stiffening
             && keep > 0
             && (scene.effects.geometric_stiffening == Choice::On || advice.is_on(Effect::GeometricStiffening));
@@ -204,7 +212,7 @@ impl Parts<'_> {
             damping_ratios.fill(0.0);
         }
         let physics = Physics { effects, drive: self.drive.clone(), load_stiffness };
-        Ok(Reduced { modes, body, physics, loads, size, damping_ratios, advice })
+        Ok(Reduced { modes, body, physics, loads, size, damping_ratios, advice, left_out })
     }
 
     fn draft(&self, modes: &Modes) -> Result<Draft, BuildError> {
@@ -256,6 +264,24 @@ impl Parts<'_> {
                     && screen(&self.case(draft, None), scene.effects.tolerance)?.on
             }
         })
+    }
+
+    /// Whether the modes may leave out something of the static answer to the spin that matters, and what is to be
+    /// computed: for static shapes, or to tell that they are missing.
+    fn may_stretch(&self, draft: &Draft) -> Result<bool, BuildError> {
+        let scene = self.scene;
+        let acts = draft.body.flexible() > 0
+            && scene.effects.deformed_inertia != Choice::Off
+            && physics::may_spin(scene, self.support.motion, self.drive.as_ref());
+        Ok(acts
+            && match scene.modes.static_correction {
+                Choice::On => true,
+                Choice::Off => false,
+                Choice::Auto => {
+                    let tolerance = scene.effects.tolerance;
+                    advise(&self.case(draft, None), tolerance)?.stretch >= tolerance
+                }
+            })
     }
 
     fn statics(&self, modes: &Modes, body: &ReducedBody, of_loads: bool, of_spin: bool) -> Result<Statics, BuildError> {

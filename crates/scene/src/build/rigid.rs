@@ -65,6 +65,7 @@ pub(super) fn build(scene: &Scene, rigid: &RigidBody) -> Result<Model, BuildErro
         damping_ratios: Vec::new(),
         size,
         body,
+        left_out: Vec::new(),
     })
 }
 
