@@ -1,5 +1,7 @@
 //! The ladders: each method with shorter and shorter steps, or smaller and smaller tolerances.
 
+use std::time::Instant;
+
 use frames_rk4::{Method, StepControl};
 use serde::Serialize;
 
@@ -205,10 +207,17 @@ pub(super) fn climb(
             }
         }
         let of_scene = own.0 == method && is_same(own.1.into(), control.into());
+        let started = Instant::now();
         let row = Row::new(control, judge.measure(case, method, control), of_scene);
         let measured = row.measured().cloned();
         line.rows.push(row);
-        let Some(measured) = measured else { continue };
+        let Some(measured) = measured else {
+            // A run that stops on its way does so at every step where its formulation is at fault.
+            if 2 * started.elapsed() > judge.settings.patience {
+                break;
+            }
+            continue;
+        };
         let ends = judge.is_at_the_end(method, before.as_ref().map(|(_, run)| run), &measured);
         before = Some((work, measured));
         if ends {
