@@ -6,6 +6,8 @@ use nalgebra::{Matrix3, Vector3};
 use rigid_kin::{Inertia, InertiaError, euler_angular_acceleration};
 
 use crate::account::Reckoning;
+use crate::attitude_account::AttitudeAccount;
+use crate::error::StepError;
 use crate::observation::Observation;
 use crate::state::{State, rotation, translation};
 use crate::work::Work;
@@ -279,14 +281,24 @@ impl BodyMotion {
         }
     }
 
-    /// Angular momentum that the loads have not put in: less their impulse, global components.
-    pub(crate) fn angular_balance_global(&self, state: &State, work: &Work) -> Vector3<f64> {
-        self.angular_momentum_global(state) - work.angular_impulse_global
+    /// Checks the angular momentum that the loads have not put in: less their impulse.
+    ///
+    /// # Errors
+    /// [`StepError::Attitude`].
+    pub(crate) fn check_attitude(
+        &self,
+        state: &State,
+        work: &Work,
+        account: &mut AttitudeAccount,
+        step: f64,
+    ) -> Result<(), StepError> {
+        let balance_global = self.angular_momentum_global(state) - work.angular_impulse_global;
+        account.check(state.time, balance_global, |momentum| self.spin_of(state, momentum), step)
     }
 
     /// The spin of the undeformed body, in the motions that it has, with this angular momentum: B Bᵀ H in body axes.
     /// Both in global components.
-    pub(crate) fn spin_of(&self, state: &State, angular_momentum_global: &Vector3<f64>) -> Vector3<f64> {
+    fn spin_of(&self, state: &State, angular_momentum_global: &Vector3<f64>) -> Vector3<f64> {
         let basis = &self.rotation_basis;
         state.attitude.to_global(&(basis * basis.tr_mul(&state.attitude.to_body(angular_momentum_global))))
     }

@@ -156,9 +156,7 @@ impl PaperScheme {
     /// # Errors
     /// [`StepError::Attitude`].
     pub(crate) fn check_attitude(&self, account: &mut AttitudeAccount, step: f64) -> Result<(), StepError> {
-        let Self { motion, state, work, .. } = self;
-        let balance = motion.angular_balance_global(state, work);
-        account.check(state.time, balance, |momentum| motion.spin_of(state, momentum), step)
+        self.motion.check_attitude(&self.state, &self.work, account, step)
     }
 
     /// Largest of ω_k and 2 ζ_k ω_k.
