@@ -27,7 +27,7 @@ fn main() {
     println!();
     for method in Method::ALL {
         let control = StepControl::Fixed(STEP);
-        print!("{:<28}", format!("{}, {}", method.formulation(), method.scheme()));
+        print!("{:<28}", format!("{}, {}", method.formulation, method.scheme));
         for body in &bodies {
             let (rate, evaluations) = measure(body, method, control);
             print!("{:>17}", format!("{rate:.0} ({evaluations:.1})"));
@@ -35,8 +35,8 @@ fn main() {
         println!();
     }
     println!("\nunder step control (tolerance 1e-6)");
-    for method in Method::ALL.into_iter().filter(|method| method.estimates_error()) {
-        print!("{:<28}", format!("{}, {}", method.formulation(), method.scheme()));
+    for method in Method::ALL.into_iter().filter(|method| method.estimates_error) {
+        print!("{:<28}", format!("{}, {}", method.formulation, method.scheme));
         for body in &bodies {
             let (rate, evaluations) = measure(body, method, StepControl::Tolerance(1e-6));
             print!("{:>17}", format!("{rate:.0} ({evaluations:.1})"));

@@ -81,6 +81,11 @@ impl EnergyAccount {
         Self { of_loads, ..Self::default() }
     }
 
+    /// What the loads are good for.
+    pub(crate) fn of_loads(&self) -> f64 {
+        self.of_loads
+    }
+
     pub(crate) fn pass(&mut self, tape: &mut Tape) {
         Reckoning::pass(&mut self.start, tape);
         tape.number(&mut self.scale);

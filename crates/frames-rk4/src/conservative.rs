@@ -24,10 +24,12 @@ use rigid_kin::{Attitude, f_inverse, transformation_matrix};
 
 use crate::account::Reckoning;
 use crate::checkpoint::Tape;
-use crate::error::{RateError, SetupError};
+use crate::error::{RateError, SetupError, StepError};
+use crate::history::History;
 use crate::initial::Initial;
-use crate::load::{Acting, Load};
+use crate::load::{Applied, Coordinates, Kinematics, SharedLoad};
 use crate::motion::CenterOfMass;
+use crate::state::MotionState;
 use crate::physics::{Drive, DrivenMotion, Effects, Physics};
 
 /// What moves slowly, beside the modes: see [`part`].
@@ -111,7 +113,7 @@ pub struct ConservativeBody {
     stacked: Vec<f64>,
     /// Stress stiffness of steady loads, column by column (nf × nf), or empty.
     load_stiffness: Vec<f64>,
-    loads: Vec<Load>,
+    loads: Vec<SharedLoad>,
 }
 
 /// State at a time.
@@ -138,6 +140,54 @@ impl ConservativeState {
         self.modal_momentum.copy_from_slice(&other.modal_momentum);
     }
 
+    /// Position of the body's origin, global components.
+    pub fn origin_global(&self) -> Vector3<f64> {
+        get(&self.slow, part::POSITION)
+    }
+
+    /// Linear momentum of the motion of the origin, global components: of a free body, that of the body.
+    pub fn linear_momentum_global(&self) -> Vector3<f64> {
+        get(&self.slow, part::MOMENTUM)
+    }
+
+    /// Angular momentum π about the origin, one component for each axis that the body turns about: the three body axes,
+    /// or the axis of a hinge first.
+    pub fn angular_momentum_body(&self) -> Vector3<f64> {
+        get(&self.slow, part::PI)
+    }
+
+    /// Puts the origin to another place, global components.
+    pub fn set_origin_global(&mut self, origin: &Vector3<f64>) {
+        set(&mut self.slow, part::POSITION, origin);
+    }
+
+    /// Gives it another linear momentum, global components.
+    pub fn set_linear_momentum_global(&mut self, momentum: &Vector3<f64>) {
+        set(&mut self.slow, part::MOMENTUM, momentum);
+    }
+
+    /// Gives it another angular momentum, in the axes of [`Self::angular_momentum_body`].
+    pub fn set_angular_momentum_body(&mut self, momentum: &Vector3<f64>) {
+        set(&mut self.slow, part::PI, momentum);
+    }
+
+    /// Refuses lists of the wrong length and numbers that are not finite.
+    pub(crate) fn check(&self, flexible: usize) -> Result<(), SetupError> {
+        for (what, list) in [
+            ("the list of modal displacements", &self.modal_displacement),
+            ("the list of modal momenta", &self.modal_momentum),
+        ] {
+            if list.len() != flexible {
+                return Err(SetupError::Length { what, expected: flexible, found: list.len() });
+            }
+        }
+        let numbers = std::iter::once(&self.time).chain(&self.slow).chain(&self.modal_displacement);
+        match numbers.chain(&self.modal_momentum).copied().find(|x| !x.is_finite()) {
+            Some(found) => Err(SetupError::Value { what: "a value of the state", found, expected: "a finite number" }),
+            None => Ok(()),
+        }
+    }
+
     pub(crate) fn pass(&mut self, tape: &mut Tape) {
         tape.finite("the time", &mut self.time);
         tape.attitude(&mut self.attitude);
@@ -145,6 +195,23 @@ impl ConservativeState {
         tape.numbers(&mut self.modal_displacement);
         tape.numbers(&mut self.modal_momentum);
     }
+}
+
+/// Rates of a [`ConservativeState`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct ConservativeRates {
+    /// Angular velocity of the body frame, body components: the attitude turns with it.
+    pub omega_body: Vector3<f64>,
+    /// Rate of the position of the origin, global components.
+    pub velocity_global: Vector3<f64>,
+    /// Rate of the linear momentum, global components.
+    pub force_global: Vector3<f64>,
+    /// Rate of the angular momentum π, one component for each axis that the body turns about.
+    pub moment_body: Vector3<f64>,
+    /// q̇ (nf).
+    pub modal_velocity: Vec<f64>,
+    /// p' (nf).
+    pub modal_force: Vec<f64>,
 }
 
 /// Rates without the linear part of the modes, and what was found on the way to them.
@@ -182,7 +249,7 @@ impl ConservativeBody {
     pub fn new(
         body: &ReducedBody,
         damping_ratios: &[f64],
-        loads: Vec<Load>,
+        loads: Vec<SharedLoad>,
         physics: &Physics,
     ) -> Result<Self, SetupError> {
         let nf = body.flexible();
@@ -288,7 +355,7 @@ impl ConservativeBody {
     }
 
     /// The loads.
-    pub fn loads(&self) -> &[Load] {
+    pub fn loads(&self) -> &[SharedLoad] {
         &self.loads
     }
 
@@ -352,17 +419,69 @@ impl ConservativeBody {
         set(&mut slow, part::POSITION, &self.origin);
         let velocity = match self.translation {
             Translation::Free => initial.velocity,
-            Translation::Along(direction) => direction * direction.dot(&initial.velocity),
+            Translation::Along(direction) => along(&initial.attitude.to_global(&direction), &initial.velocity),
             Translation::None | Translation::Driven(_) => Vector3::zeros(),
         };
         set(&mut slow, part::MOMENTUM, &(velocity * self.mass));
         set(&mut slow, part::PI, &pi);
         Ok(ConservativeState {
             time: 0.0,
-            attitude: Attitude::identity(),
+            attitude: initial.attitude,
             slow,
             modal_displacement: initial.modal_displacement.clone(),
             modal_momentum: momentum,
+        })
+    }
+
+    /// A state in quantities that every formulation has.
+    pub(crate) fn motion_state(&self, state: &ConservativeState) -> Result<MotionState, RateError> {
+        let mut e = self.evaluation();
+        let (q, p) = (&state.modal_displacement, &state.modal_momentum);
+        self.evaluate([state.time, state.time], &state.attitude, &state.slow, q, p, &mut e)?;
+        Ok(MotionState {
+            time: state.time,
+            attitude: state.attitude,
+            origin_global: state.origin_global(),
+            velocity_global: get(&e.slow, part::POSITION),
+            omega_body: e.omega_body,
+            modal_displacement: q.clone(),
+            modal_velocity: e.velocity,
+        })
+    }
+
+    /// The momenta of a motion. Work and impulses are counted from it anew.
+    pub(crate) fn state_of(&self, motion: &MotionState) -> Result<ConservativeState, SetupError> {
+        motion.check(self.flexible())?;
+        let initial = Initial {
+            attitude: motion.attitude,
+            velocity: motion.velocity_global,
+            omega: motion.omega_body,
+            modal_displacement: motion.modal_displacement.clone(),
+            modal_velocity: motion.modal_velocity.clone(),
+        };
+        let mut state = self.start(&initial)?;
+        state.time = motion.time;
+        state.set_origin_global(&motion.origin_global);
+        Ok(state)
+    }
+
+    /// Rates of a state, for an integrator of one's own. Laws with branches are taken as they are at `branch_time`.
+    ///
+    /// # Errors
+    /// [`StepError`] where the inertia of the deformed body is singular.
+    pub fn rates(&self, state: &ConservativeState, branch_time: f64) -> Result<ConservativeRates, StepError> {
+        let mut e = self.evaluation();
+        let (q, p) = (&state.modal_displacement, &state.modal_momentum);
+        self.evaluate([state.time, branch_time], &state.attitude, &state.slow, q, p, &mut e)
+            .map_err(|error| error.in_step(state.time, 0.0))?;
+        self.add_linear(q, p, &mut e);
+        Ok(ConservativeRates {
+            omega_body: e.omega_body,
+            velocity_global: get(&e.slow, part::POSITION),
+            force_global: get(&e.slow, part::MOMENTUM),
+            moment_body: get(&e.slow, part::PI),
+            modal_velocity: e.displacement,
+            modal_force: e.momentum,
         })
     }
 
@@ -456,7 +575,7 @@ impl ConservativeBody {
         let velocity = match self.translation {
             Translation::None => Vector3::zeros(),
             Translation::Free | Translation::Along(_) => momentum / self.mass,
-            Translation::Driven(direction) => direction * speed,
+            Translation::Driven(direction) => attitude.to_global(&direction) * speed,
         };
         let theta = get(slow, part::THETA);
         let turning = !self.axes.is_empty();
@@ -466,34 +585,42 @@ impl ConservativeBody {
         let mut power = 0.0;
         let (mut force, mut angular_impulse) = (Vector3::zeros(), Vector3::zeros());
         if !self.loads.is_empty() {
-            let global_to_body = turning.then(|| transformation_matrix(&theta) * attitude.global_to_body());
-            let mut moment = Vector3::zeros();
-            for load in &self.loads {
-                let now = Acting { factor: load.history.at(t, inside), global_to_body: global_to_body.as_ref() };
-                let on = load.apply(now, q, &e.velocity, &mut e.momentum);
-                force += on.force_body;
-                moment += on.moment_body;
-                power += on.deforming_power;
-            }
-            power += moment.dot(&e.omega_body);
-            let global = |v: Vector3<f64>| global_to_body.map_or(v, |a| a.tr_mul(&v));
-            force = global(force);
+            let first_attitude = attitude.global_to_body();
+            let body_from_global =
+                if turning { transformation_matrix(&theta) * first_attitude } else { first_attitude };
+            let coordinates = Coordinates { first: 6, displacement: q, velocity: &e.velocity };
+            let motion = Kinematics {
+                time: t,
+                branch_time: inside,
+                body_from_global: &body_from_global,
+                origin_global: get(slow, part::POSITION),
+                velocity_global: velocity,
+                omega_body: e.omega_body,
+                coordinates,
+                unit: false,
+            };
+            let mut applied = Applied::new(coordinates, Vector3::zeros(), &mut e.momentum);
+            self.loads.iter().for_each(|load| load.apply(&motion, &mut applied));
+            let moment = applied.moment_body;
+            power = applied.modal_power + moment.dot(&e.omega_body);
+            force = body_from_global.tr_mul(&applied.force_body);
             let mut left = Vector3::zeros();
             for (i, axis) in self.axes.iter().enumerate() {
                 let component = axis.dot(&moment);
                 pi_rate[i] += component;
                 left += axis * component;
             }
-            angular_impulse = global(left);
+            angular_impulse = body_from_global.tr_mul(&left);
             power += force.dot(&velocity);
         }
         let force_rate = match self.translation {
             Translation::Free => force,
-            Translation::Along(direction) => direction * direction.dot(&force),
+            Translation::Along(direction) => along(&attitude.to_global(&direction), &force),
             Translation::None | Translation::Driven(_) => Vector3::zeros(),
         };
         if let Some(drive) = &self.drive {
-            power += self.drive_power(speed, drive.acceleration(t, inside), q, p, &force, &pi_rate, e);
+            let force_body = attitude.to_body(&force);
+            power += self.drive_power(speed, drive.acceleration(t, inside), q, p, &force_body, &pi_rate, e);
             pi_rate = Vector3::zeros();
         }
         set(&mut e.slow, part::THETA, &theta_rate);
@@ -548,7 +675,7 @@ impl ConservativeBody {
         acceleration: f64,
         q: &[f64],
         p: &[f64],
-        force_global: &Vector3<f64>,
+        force_body: &Vector3<f64>,
         moment: &Vector3<f64>,
         e: &mut Evaluation,
     ) -> f64 {
@@ -562,7 +689,7 @@ impl ConservativeBody {
             let b = &self.sliding;
             e.driven_momentum = self.mass * speed + dot(b, &e.velocity);
             let changing: f64 = (0..nf).map(|k| b[k] * (rate(k) - b[k] * acceleration)).sum();
-            return (self.mass * acceleration + changing - direction.dot(force_global)) * speed;
+            return (self.mass * acceleration + changing - direction.dot(force_body)) * speed;
         }
         let (s, n_q) = e.products.split_at(self.s_rows);
         let s = &s[..nf];
@@ -628,23 +755,37 @@ impl ConservativeBody {
         rigid + q.zip(p).enumerate().map(|(k, (q, p))| self.modal_energy(k, q.0 - q.1, p.0 - p.1)).sum::<f64>()
     }
 
-    /// Energies that the loads, one by one, would give the body from rest within the longest period or until `end`: by
+    /// Reckoning that the loads, one by one, would give the body from rest within the longest period or until `end`: by
     /// their impulse the rigid body, by their largest force the modes. The scale of a motion that begins without any.
     pub(crate) fn energy_of_loads(&self, end: f64) -> f64 {
         let lowest = self.circular_frequencies.iter().copied().reduce(f64::min);
         let period = lowest.map_or(end, |omega| (std::f64::consts::TAU / omega).min(end));
-        let nf = self.flexible();
-        let energy = |load: &Load| {
-            let largest = load.history.largest(end);
-            let impulse = load.history.magnitude_integral(end).min(largest * period);
-            let mut force = vec![0.0; nf];
-            let still = vec![0.0; nf];
-            let on = load.apply(Acting { factor: 1.0, global_to_body: None }, &still, &still, &mut force);
+        let still = vec![0.0; self.flexible()];
+        let coordinates = Coordinates { first: 6, displacement: &still, velocity: &still };
+        // At rest, in the body's own axes: a dead load does as much in any attitude, but for how its modes see it.
+        let motion = Kinematics {
+            time: 0.0,
+            branch_time: 0.0,
+            body_from_global: &Matrix3::identity(),
+            origin_global: self.origin,
+            velocity_global: Vector3::zeros(),
+            omega_body: Vector3::zeros(),
+            coordinates,
+            unit: true,
+        };
+        // A load without a history is a law of the motion: from rest it has no scale of its own.
+        let energy = |(load, history): (&SharedLoad, &History)| {
+            let largest = history.largest(end);
+            let impulse = history.magnitude_integral(end).min(largest * period);
+            let mut force = still.clone();
+            let mut applied = Applied::new(coordinates, Vector3::zeros(), &mut force);
+            load.apply(&motion, &mut applied);
+            let Applied { force_body, moment_body, .. } = applied;
             let moment =
-                Vector3::from_iterator((0..3).map(|i| self.axes.get(i).map_or(0.0, |a| a.dot(&on.moment_body))));
+                Vector3::from_iterator((0..3).map(|i| self.axes.get(i).map_or(0.0, |axis| axis.dot(&moment_body))));
             let pushed = match self.translation {
-                Translation::Free => on.force_body,
-                Translation::Along(direction) => direction * direction.dot(&on.force_body),
+                Translation::Free => force_body,
+                Translation::Along(direction) => along(&direction, &force_body),
                 Translation::None | Translation::Driven(_) => Vector3::zeros(),
             };
             let strain: f64 =
@@ -656,7 +797,8 @@ impl ConservativeBody {
             let inertia = if self.turn_driven { self.inertia[(0, 0)] } else { self.mass };
             0.5 * inertia * speed * speed
         });
-        self.loads.iter().map(energy).sum::<f64>() + driven
+        let with_history = self.loads.iter().filter_map(|load| Some((load, load.history()?)));
+        with_history.map(energy).sum::<f64>() + driven
     }
 
     /// ½ P²/m + ½ π·J0⁻¹π
@@ -670,12 +812,12 @@ impl ConservativeBody {
         0.5 * (omega_q * omega_q + p * p)
     }
 
-    /// Energies of a state whose rates are in `e`: (kinetic, strain).
+    /// Reckoning of a state whose rates are in `e`: (kinetic, strain).
     pub(crate) fn energies(&self, state: &ConservativeState, e: &Evaluation) -> (f64, f64) {
         let q = &state.modal_displacement;
         let moving = match (&self.drive, self.translation) {
             (Some(_), Translation::Driven(direction)) => {
-                e.driven_momentum * direction.dot(&get(&e.slow, part::POSITION))
+                e.driven_momentum * state.attitude.to_global(&direction).dot(&get(&e.slow, part::POSITION))
             }
             (Some(_), _) => e.driven_momentum * e.spin[0],
             (None, _) => {
@@ -730,6 +872,11 @@ fn along_axes(axes: &[Vector3<f64>], matrix: &Matrix3<f64>) -> Matrix3<f64> {
 /// The entries of a matrix, column by column.
 fn columns(matrix: MatRef<'_, f64>) -> Vec<f64> {
     (0..matrix.ncols()).flat_map(|j| (0..matrix.nrows()).map(move |i| matrix[(i, j)])).collect()
+}
+
+/// The part of a vector along a unit vector.
+fn along(unit: &Vector3<f64>, vector: &Vector3<f64>) -> Vector3<f64> {
+    unit * unit.dot(vector)
 }
 
 pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {

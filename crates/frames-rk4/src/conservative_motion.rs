@@ -1,33 +1,37 @@
 //! Stepping the conservative form: RKMK4, exponential, and Strang splitting.
 
+use std::any::Any;
+
 use nalgebra::Vector2;
+use rigid_kin::Attitude;
 
 use crate::account::Reckoning;
 use crate::checkpoint::Tape;
 use crate::conservative::{ConservativeBody, ConservativeState, Evaluation, Slow, get, part};
 use crate::error::{SetupError, StepError};
-use crate::exponential::{BlockStore, StepBlocks, apply};
+use crate::exponential::{BlockStore, apply};
 use crate::initial::Initial;
 use crate::motion::PointShapes;
 use crate::observation::Observation;
+use crate::scheme::{Method, Scheme, StepLimit};
+use crate::simulation::Setup;
+use crate::state::MotionState;
 
 /// How the conservative form is stepped.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ConservativeScheme {
+pub(crate) enum Stepping {
     /// Classical Runge–Kutta on the rotation vector of the step (Munthe-Kaas); order 4, stable to 2.83/ω_max.
     Rkmk4,
     /// Krogstad's ETD-RK4: modes exactly, the rest by four stages; order 4, no limit from the modes.
     Exponential,
-    /// Half a step of the modes exactly, a whole one of the rest, half a step of the modes; order 2, no limit from
-    /// the modes, no secular drift.
-    Strang,
 }
 
 /// A conservative body in motion.
 #[derive(Debug, Clone)]
 pub struct ConservativeMotion {
     body: ConservativeBody,
-    scheme: ConservativeScheme,
+    scheme: Stepping,
+    initial_attitude: Attitude,
     state: ConservativeState,
     next: ConservativeState,
     /// Under step control, the state before the steps that are tried, and their end by one long step.
@@ -52,17 +56,140 @@ pub struct ConservativeMotion {
     reckoning: Option<Reckoning>,
 }
 
+/// Classical Runge–Kutta in the list of schemes.
+pub(crate) const RKMK4: Method = Method {
+    formulation: "conservative",
+    scheme: "rkmk4",
+    order: 4,
+    evaluations_per_step: 4,
+    limit: StepLimit::Modes,
+    estimates_error: true,
+    begin: |setup| begin(setup, Stepping::Rkmk4),
+};
+
+/// The exponential scheme in the list of schemes.
+///
+/// Coriolis terms turn the modes with up to twice the spin, which the stages of RK4 follow to 2.83 in the step.
+pub(crate) const EXPONENTIAL: Method = Method {
+    formulation: "conservative",
+    scheme: "exponential",
+    order: 4,
+    evaluations_per_step: 4,
+    limit: StepLimit::Turn(std::f64::consts::SQRT_2),
+    estimates_error: true,
+    begin: |setup| begin(setup, Stepping::Exponential),
+};
+
+fn begin(setup: &Setup, scheme: Stepping) -> Result<Box<dyn Scheme>, SetupError> {
+    let body = ConservativeBody::new(setup.body, setup.damping_ratios, setup.loads.to_vec(), setup.physics)?;
+    let mut motion = ConservativeMotion::new(body, scheme, setup.initial)?;
+    motion.energy_scale = setup.energy_of_loads()?;
+    Ok(Box::new(motion))
+}
+
+impl Scheme for ConservativeMotion {
+    fn time(&self) -> f64 {
+        self.state.time
+    }
+
+    fn step(&mut self, h: f64, end: f64) -> Result<(), StepError> {
+        self.attempt(h, end)?;
+        std::mem::swap(&mut self.state, &mut self.next);
+        self.first_known = false;
+        Ok(())
+    }
+
+    fn controlled_step(&mut self, h: f64, end: f64, tolerance: f64) -> Result<f64, StepError> {
+        self.controlled_steps(0.5 * h, end, tolerance)
+    }
+
+    /// The rates at the end of the last step are not those of the next one's beginning, and a drive that jumps does work.
+    fn pass_corner(&mut self) -> Result<(), StepError> {
+        self.first_known = false;
+        let Self { body, state, ahead, .. } = self;
+        let work = body.work_of_jump(state, ahead).map_err(|error| error.in_step(state.time, 0.0))?;
+        self.state.slow[part::WORK] += work;
+        Ok(())
+    }
+
+    fn observe(&mut self, points: &[PointShapes], out: &mut Observation) -> Result<(), StepError> {
+        let Self { body, initial_attitude, state, ahead, .. } = self;
+        body.observe(state, initial_attitude, points, ahead, out).map_err(|error| error.in_step(state.time, 0.0))?;
+        let (q, p) = (&state.modal_displacement, &state.modal_momentum);
+        self.reckoning = body.reckon(state.time, &state.slow, q, p, ahead);
+        Ok(())
+    }
+
+    fn state(&self) -> Result<MotionState, StepError> {
+        let Self { body, state, .. } = self;
+        body.motion_state(state).map_err(|error| error.in_step(state.time, 0.0))
+    }
+
+    fn set_state(&mut self, to: &MotionState) -> Result<(), SetupError> {
+        let set = self.body.state_of(to)?;
+        self.set_momentum_state(&set)
+    }
+
+    fn copy_state(&mut self, from: &dyn Scheme) {
+        let Some(from) = (from as &dyn Any).downcast_ref::<Self>() else { return };
+        self.state.copy_from(&from.state);
+        self.first_known = false;
+        self.evaluations = from.evaluations;
+        self.energy_scale = from.energy_scale;
+        self.reckoning = from.reckoning;
+    }
+
+    /// At the start of the last step, as its first stage found them; none of a driven body, whose drive may jump.
+    fn reckoning(&self) -> Option<Reckoning> {
+        self.reckoning
+    }
+
+    fn work_and_dissipation(&self) -> [f64; 2] {
+        [self.state.slow[part::WORK], self.state.slow[part::DISSIPATION]]
+    }
+
+    fn fastest_rate(&self) -> f64 {
+        self.body.fastest_rate()
+    }
+
+    fn evaluations(&self) -> u64 {
+        self.evaluations
+    }
+
+    fn flexible(&self) -> usize {
+        self.body.flexible()
+    }
+
+    fn pass(&mut self, tape: &mut Tape<'_>) {
+        self.state.pass(tape);
+        Reckoning::pass(&mut self.reckoning, tape);
+        tape.flag(&mut self.first_known);
+        // Of a known evaluation the stages read the rates only.
+        let first = &mut self.stages[0];
+        tape.vector(&mut first.slow);
+        tape.numbers(&mut first.displacement);
+        tape.numbers(&mut first.momentum);
+        tape.count(&mut self.evaluations);
+        tape.number(&mut self.energy_scale);
+    }
+
+    fn boxed_clone(&self) -> Box<dyn Scheme> {
+        Box::new(self.clone())
+    }
+}
+
 impl ConservativeMotion {
     /// A motion from `initial`.
     ///
     /// # Errors
     /// [`SetupError`] for lists of the wrong length and numbers that are not finite.
-    pub fn new(body: ConservativeBody, scheme: ConservativeScheme, initial: &Initial) -> Result<Self, SetupError> {
+    pub(crate) fn new(body: ConservativeBody, scheme: Stepping, initial: &Initial) -> Result<Self, SetupError> {
         let state = body.start(initial)?;
         let nf = body.flexible();
         let evaluation = body.evaluation();
         Ok(Self {
             scheme,
+            initial_attitude: initial.attitude,
             next: state.clone(),
             before: state.clone(),
             coarse: state.clone(),
@@ -82,71 +209,26 @@ impl ConservativeMotion {
         })
     }
 
-    /// Takes the loads until `end` into account in the scale of errors, for step control, and returns that scale.
-    pub(crate) fn expect_loads_until(&mut self, end: f64) -> f64 {
-        self.energy_scale = self.body.energy_of_loads(end);
-        self.energy_scale
-    }
-
-    /// A load or a drive may jump here: the rates at the end of the last step are not those of the next one's beginning.
-    ///
-    /// # Errors
-    /// [`StepError`] where the inertia of the deformed body is singular.
-    pub(crate) fn pass_corner(&mut self) -> Result<(), StepError> {
-        self.first_known = false;
-        let Self { body, state, ahead, .. } = self;
-        let work = body.work_of_jump(state, ahead).map_err(|error| error.in_step(state.time, 0.0))?;
-        self.state.slow[part::WORK] += work;
-        Ok(())
-    }
-
-    /// The state that has been reached.
-    pub fn state(&self) -> &ConservativeState {
+    /// The state that has been reached, with its momenta.
+    pub fn momentum_state(&self) -> &ConservativeState {
         &self.state
     }
 
-    /// Energies at the start of the last step, as its first stage found them.
-    pub(crate) fn reckoning(&self) -> Option<&Reckoning> {
-        self.reckoning.as_ref()
-    }
-
-    /// Work of the loads and dissipation.
-    pub(crate) fn done(&self) -> [f64; 2] {
-        [self.state.slow[part::WORK], self.state.slow[part::DISSIPATION]]
-    }
-
-    /// Largest of ω_k and 2 ζ_k ω_k.
-    pub(crate) fn fastest_rate(&self) -> f64 {
-        self.body.fastest_rate()
-    }
-
-    /// Evaluations of the rates so far.
-    pub fn evaluations(&self) -> u64 {
-        self.evaluations
-    }
-
-    pub(crate) fn pass(&mut self, tape: &mut Tape) {
-        self.state.pass(tape);
-        Reckoning::pass(&mut self.reckoning, tape);
-        tape.flag(&mut self.first_known);
-        // Of a known evaluation the stages read the rates only.
-        let first = &mut self.stages[0];
-        tape.vector(&mut first.slow);
-        tape.numbers(&mut first.displacement);
-        tape.numbers(&mut first.momentum);
-        tape.count(&mut self.evaluations);
-        tape.number(&mut self.energy_scale);
-    }
-
-    /// Does one step of length `h` that ends at time `end` (= time + h but for rounding).
+    /// Goes on from another state.
     ///
     /// # Errors
-    /// [`StepError`]; the state stays that before the step.
-    pub fn step(&mut self, h: f64, end: f64) -> Result<(), StepError> {
-        self.attempt(h, end)?;
-        std::mem::swap(&mut self.state, &mut self.next);
+    /// [`SetupError`] for lists of the wrong length and numbers that are not finite.
+    pub fn set_momentum_state(&mut self, to: &ConservativeState) -> Result<(), SetupError> {
+        to.check(self.body.flexible())?;
+        self.state.copy_from(to);
         self.first_known = false;
+        self.reckoning = None;
         Ok(())
+    }
+
+    /// The body and its loads.
+    pub fn body(&self) -> &ConservativeBody {
+        &self.body
     }
 
     /// Tries two steps of length `h`, estimates their error against one of twice the length, and takes them if the
@@ -170,7 +252,7 @@ impl ConservativeMotion {
                 self.energy_scale = self.body.internal_energy(&self.next, &self.ahead).max(self.energy_scale);
                 let ConservativeState { time, slow, modal_displacement, modal_momentum, .. } = &self.next;
                 self.reckoning = self.body.reckon(*time, slow, modal_displacement, modal_momentum, &self.ahead);
-                if self.scheme == ConservativeScheme::Rkmk4 {
+                if self.scheme == Stepping::Rkmk4 {
                     let (q, p) = (&self.next.modal_displacement, &self.next.modal_momentum);
                     self.body.add_linear(q, p, &mut self.ahead);
                 }
@@ -215,24 +297,11 @@ impl ConservativeMotion {
         Ok(if relative <= angle { angle } else { relative } / 15.0)
     }
 
-    /// Fills `out` with the motion at the state, and that of `points`.
-    ///
-    /// # Errors
-    /// [`StepError`] where the inertia of the deformed body is singular.
-    pub fn observe(&mut self, points: &[PointShapes], out: &mut Observation) -> Result<(), StepError> {
-        let Self { body, state, ahead, .. } = self;
-        body.observe(state, points, ahead, out).map_err(|error| error.in_step(state.time, 0.0))?;
-        let (q, p) = (&state.modal_displacement, &state.modal_momentum);
-        self.reckoning = body.reckon(state.time, &state.slow, q, p, ahead);
-        Ok(())
-    }
-
     /// Computes `next` from `state`.
     fn attempt(&mut self, h: f64, end: f64) -> Result<(), StepError> {
         match self.scheme {
-            ConservativeScheme::Rkmk4 => self.rkmk4(h)?,
-            ConservativeScheme::Exponential => self.exponential(h)?,
-            ConservativeScheme::Strang => self.strang(h)?,
+            Stepping::Rkmk4 => self.rkmk4(h)?,
+            Stepping::Exponential => self.exponential(h)?,
         }
         let Self { state, next, .. } = self;
         let theta = get(&next.slow, part::THETA);
@@ -269,7 +338,7 @@ impl ConservativeMotion {
         self.evaluate(0, self.state.time, &slow, h)?;
         let Self { body, state, stages, q, p, .. } = self;
         self.reckoning = body.reckon(state.time, &slow, q, p, &stages[0]);
-        if self.scheme == ConservativeScheme::Rkmk4 {
+        if self.scheme == Stepping::Rkmk4 {
             self.body.add_linear(&self.q, &self.p, &mut self.stages[0]);
         }
         Ok(())
@@ -349,27 +418,6 @@ impl ConservativeMotion {
             next.modal_momentum[k] = value.y;
         }
         Ok(())
-    }
-
-    fn strang(&mut self, h: f64) -> Result<(), StepError> {
-        self.start_from_state();
-        let Self { body, blocks, start_q, start_p, .. } = self;
-        let blocks_of_step = blocks.get(&body.circular_frequencies, &body.damping_ratios, h);
-        half_step(blocks_of_step, start_q, start_p);
-        self.evaluate_first(h)?;
-        self.runge_kutta(h, false)?;
-        let Self { body, blocks, next, .. } = self;
-        let blocks_of_step = blocks.get(&body.circular_frequencies, &body.damping_ratios, h);
-        half_step(blocks_of_step, &mut next.modal_displacement, &mut next.modal_momentum);
-        Ok(())
-    }
-}
-
-/// The modes alone, exactly, for half a step.
-fn half_step(blocks: &StepBlocks, q: &mut [f64], p: &mut [f64]) {
-    for (block, (q, p)) in blocks.modes.iter().zip(q.iter_mut().zip(p)) {
-        let value = apply(&block.half, *q, *p);
-        (*q, *p) = (value.x, value.y);
     }
 }
 

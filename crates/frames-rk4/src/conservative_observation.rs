@@ -14,6 +14,7 @@ impl ConservativeBody {
     pub(crate) fn observe(
         &self,
         state: &ConservativeState,
+        initial_attitude: &Attitude,
         points: &[PointShapes],
         e: &mut Evaluation,
         out: &mut Observation,
@@ -32,7 +33,7 @@ impl ConservativeBody {
         let acceleration_of_origin = match self.translation {
             Translation::None => Vector3::zeros(),
             Translation::Free | Translation::Along(_) => get(&e.slow, part::MOMENTUM) / self.mass,
-            Translation::Driven(direction) => direction * driven_acceleration,
+            Translation::Driven(direction) => global(direction) * driven_acceleration,
         };
         let position = get(&state.slow, part::POSITION);
         let center = self.center.position_body(q);
@@ -56,7 +57,7 @@ impl ConservativeBody {
                 (point.deformation(q), point.deformation(&e.velocity), point.deformation(&out.modal_acceleration));
             let arm = x + u;
             PointMotion {
-                displacement: moved + (displaced(&state.attitude, &x, &u)),
+                displacement: moved + (global(arm) - initial_attitude.to_global(&x)),
                 velocity: velocity_of_origin + global(omega.cross(&arm) + v),
                 acceleration: acceleration_of_origin
                     + global(alpha.cross(&arm) + omega.cross(&omega.cross(&arm)) + 2.0 * omega.cross(&v) + a),
@@ -133,9 +134,4 @@ impl ConservativeBody {
             }
         }
     }
-}
-
-/// Aᵀ (x + u) − x
-fn displaced(attitude: &Attitude, x: &Vector3<f64>, u: &Vector3<f64>) -> Vector3<f64> {
-    attitude.to_global(&(x + u)) - x
 }

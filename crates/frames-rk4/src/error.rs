@@ -106,20 +106,6 @@ pub enum SetupError {
         /// Its natural frequency.
         frequency: f64,
     },
-    /// A step that is too long for what loads do to a mode between the halves of Strang's splitting.
-    #[error(
-        "a step of {step:e} is too long for the scheme strang, which loses what a load does to flexible mode {mode} ({frequency:.6} cycles per time) beyond a step of {limit:.4e}; take a smaller step, fewer modes, or the scheme exponential"
-    )]
-    StepBeyondSplitting {
-        /// The step.
-        step: f64,
-        /// Longest step.
-        limit: f64,
-        /// Number of the fastest mode, from 1.
-        mode: usize,
-        /// Its natural frequency.
-        frequency: f64,
-    },
     /// A step that the spin is too fast for.
     #[error(
         "a step of {step:e} is too long for a spin of {spin:.6} rad per time, which this scheme follows up to a step of {limit:.3e}; take a smaller step"
@@ -212,6 +198,22 @@ pub enum StepError {
         step: f64,
         /// The tolerance.
         tolerance: f64,
+    },
+    /// Step control of a scheme that does not estimate its error.
+    #[error("at time {time}: this scheme does not estimate its error; give it a step instead of a tolerance")]
+    NoErrorEstimate {
+        /// Start of the step.
+        time: f64,
+    },
+    /// A time that is not inside the last step.
+    #[error("time {time} is not inside the last step, from {from} to {to}; ask for the steps to be kept before they are taken")]
+    OutsideLastStep {
+        /// The time asked for.
+        time: f64,
+        /// Start of the last step.
+        from: f64,
+        /// Its end.
+        to: f64,
     },
     /// A NaN or an overflow.
     #[error(

@@ -2,15 +2,18 @@
 
 use modal::ReducedBody;
 use nalgebra::Vector3;
+use rigid_kin::Attitude;
 
 use crate::error::SetupError;
 
-/// State at the beginning. The body axes are then the global ones.
+/// State at the beginning.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Initial {
+    /// Attitude of the body frame.
+    pub attitude: Attitude,
     /// Velocity of the frame's origin (the centre of mass), global components.
     pub velocity: Vector3<f64>,
-    /// Angular velocity of the body frame.
+    /// Angular velocity of the body frame, body components.
     pub omega: Vector3<f64>,
     /// Flexible modal displacements (nf).
     pub modal_displacement: Vec<f64>,
@@ -22,6 +25,7 @@ impl Initial {
     /// At rest and undeformed.
     pub fn at_rest(flexible: usize) -> Self {
         Self {
+            attitude: Attitude::identity(),
             velocity: Vector3::zeros(),
             omega: Vector3::zeros(),
             modal_displacement: vec![0.0; flexible],
@@ -53,7 +57,7 @@ impl Initial {
         self.check(body.flexible())?;
         // ω = B y: y = B⁻¹ ω = Bᵀ J₀ ω, since B Bᵀ = J₀⁻¹.
         let rotation = body.rotation_basis.transpose() * body.inertia * self.omega;
-        let translation = body.translation_basis.transpose() * self.velocity * body.mass;
+        let translation = body.translation_basis.transpose() * self.attitude.to_body(&self.velocity) * body.mass;
         let displacement: Vec<f64> =
             std::iter::repeat_n(0.0, 6).chain(self.modal_displacement.iter().copied()).collect();
         let mut velocity: Vec<f64> =

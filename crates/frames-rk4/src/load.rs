@@ -1,221 +1,254 @@
 //! What acts on the body.
+//!
+//! A load is anything that implements [`Load`]. The built-in ones are [`PointForce`], [`PointMoment`] and [`FieldLoad`],
+//! each in a file of its own; [`LoadFn`] makes one from a closure.
+
+mod closure;
+mod field;
+mod force;
+mod moment;
+
+use std::fmt;
+use std::sync::Arc;
 
 use nalgebra::{Matrix3, Vector3};
 
 use crate::error::SetupError;
 use crate::history::History;
-use crate::motion::{PointShapes, RotationShapes, power_of, project};
+use crate::motion::{PointShapes, RotationShapes};
+
+pub use closure::LoadFn;
+pub use field::{BodyField, FieldLoad};
+pub use force::PointForce;
+pub use moment::PointMoment;
+
+/// Something that acts on the body.
+///
+/// It sees the motion and adds forces and moments to what is applied. It is evaluated several times a step, so it must
+/// not allocate, and it must depend on nothing but the motion, or steps would not converge.
+pub trait Load: fmt::Debug + Send + Sync {
+    /// Adds what the load does to the body in this motion.
+    fn apply(&self, motion: &Kinematics, applied: &mut Applied);
+
+    /// Times at which the load or one of its rates jumps, rising. Steps end there.
+    fn corners(&self) -> Vec<f64> {
+        self.history().map_or_else(Vec::new, History::corners)
+    }
+
+    /// Longest step that sees the load as it is, in the stretch between two corners that has `branch_time` inside.
+    fn longest_step(&self, branch_time: f64) -> f64 {
+        self.history().map_or(f64::INFINITY, |history| history.longest_step(branch_time))
+    }
+
+    /// The factor over time, of a load that is one pattern of forces times a factor.
+    fn history(&self) -> Option<&History> {
+        None
+    }
+
+    /// The pattern of forces, of a load that is one pattern times its [`history`](Self::history). Estimates before a run
+    /// need it; a load without one is simulated all the same.
+    fn pattern(&self) -> Option<Pattern> {
+        None
+    }
+
+    /// Refuses numbers that are not finite, and shapes of another body than one with `flexible` modes.
+    ///
+    /// # Errors
+    /// [`SetupError`].
+    fn check(&self, flexible: usize) -> Result<(), SetupError> {
+        let _ = flexible;
+        Ok(())
+    }
+}
+
+/// A load that several runs may share.
+pub type SharedLoad = Arc<dyn Load>;
 
 /// The axes that the direction of a load is fixed in.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum LoadFrame {
     /// Global axes: a dead load.
+    #[default]
     Global,
     /// Body axes: a follower load.
     Body,
 }
 
-/// A load and its course in time.
+/// Modal forces of a load where its history is 1, as `columnsᵀ · vector`.
 #[derive(Debug, Clone)]
-pub struct Load {
-    /// What it does to the body where the history is 1.
-    pub action: Action,
-    /// The factor on it.
-    pub history: History,
+pub struct Pattern {
+    /// A 3-vector for each mode, rigid and flexible (6+nf), body axes.
+    pub columns: Vec<Vector3<f64>>,
+    /// The force or moment, in the axes of `frame`.
+    pub vector: Vector3<f64>,
+    /// The axes that it is fixed in.
+    pub frame: LoadFrame,
+    /// Whether the vector acts at one place. A field has one number for each mode instead, along x.
+    pub local: bool,
 }
 
-/// What a load does to the body.
-#[derive(Debug, Clone)]
-pub enum Action {
-    /// A force at a point. A load of one direction that is spread over the body, such as a traction or gravity, is its
-    /// resultant at the point that moves as the weighted mean of where it acts.
-    Force {
-        /// Where it acts.
-        point: PointShapes,
-        /// Force, components in the axes of `frame`.
-        force: Vector3<f64>,
-        /// Its axes.
-        frame: LoadFrame,
-    },
-    /// A couple.
-    Moment {
-        /// How the place where it acts is turned by the modes.
-        rotation: RotationShapes,
-        /// Couple, components in the axes of `frame`.
-        moment: Vector3<f64>,
-        /// Its axes.
-        frame: LoadFrame,
-    },
-    /// Forces on many nodes that are fixed in body axes, such as a pressure.
-    Field(BodyField),
+/// The motion of the body that a load sees.
+#[derive(Debug, Clone, Copy)]
+pub struct Kinematics<'a> {
+    /// Time.
+    pub time: f64,
+    /// The time at which the branch of a piecewise law is chosen. It is inside the step, so that both ends of a step see
+    /// the law that holds in it, and not what is beyond a jump there.
+    pub branch_time: f64,
+    /// A: takes global components to body components.
+    pub body_from_global: &'a Matrix3<f64>,
+    /// Position of the body's origin, global components.
+    pub origin_global: Vector3<f64>,
+    /// Velocity of the body's origin, global components.
+    pub velocity_global: Vector3<f64>,
+    /// Angular velocity of the body frame, body components.
+    pub omega_body: Vector3<f64>,
+    pub(crate) coordinates: Coordinates<'a>,
+    /// Whether histories are taken as 1.
+    pub(crate) unit: bool,
 }
 
-/// Forces f_i on nodes, body components, in modal coordinates.
-#[derive(Debug, Clone)]
-pub struct BodyField {
-    /// Σ f_i.
-    pub force_body: Vector3<f64>,
-    /// Σ X_i × f_i.
-    pub moment_body: Vector3<f64>,
-    /// Ψᵀ f, rigid and flexible modes (6+nf).
-    pub modal: Vec<f64>,
-    /// Σ Φ_k,i × f_i for each flexible mode: what a deformation adds to the moment (nf).
-    pub lever: Vec<Vector3<f64>>,
+/// Modal coordinates, of all modes or of the flexible ones alone.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Coordinates<'a> {
+    /// Number of the first mode: 0 where rigid modes are among them, 6 where they are not.
+    pub first: usize,
+    pub displacement: &'a [f64],
+    pub velocity: &'a [f64],
 }
 
-/// Force and moment about the origin that a load makes, body components, and its power on the deformation.
-pub(crate) struct Resultant {
-    pub force_body: Vector3<f64>,
-    pub moment_body: Vector3<f64>,
-    pub deforming_power: f64,
+impl Kinematics<'_> {
+    /// The value of a history now.
+    pub fn factor(&self, history: &History) -> f64 {
+        if self.unit { 1.0 } else { history.at(self.time, self.branch_time) }
+    }
+
+    /// Body components of a vector with these components in `frame`.
+    pub fn to_body(&self, vector: &Vector3<f64>, frame: LoadFrame) -> Vector3<f64> {
+        match frame {
+            LoadFrame::Global => self.body_from_global * vector,
+            LoadFrame::Body => *vector,
+        }
+    }
+
+    /// Position of a point, global components.
+    pub fn position_global(&self, point: &PointShapes) -> Vector3<f64> {
+        self.origin_global + self.body_from_global.tr_mul(&self.arm_body(point))
+    }
+
+    /// Velocity of a point, global components.
+    pub fn velocity_global(&self, point: &PointShapes) -> Vector3<f64> {
+        let Coordinates { first, velocity, .. } = self.coordinates;
+        let modal = sum(&point.columns()[first..], velocity);
+        let turning = if first > 0 { self.omega_body.cross(&self.arm_body(point)) } else { Vector3::zeros() };
+        let of_origin = if first > 0 { self.velocity_global } else { Vector3::zeros() };
+        of_origin + self.body_from_global.tr_mul(&(turning + modal))
+    }
+
+    /// Displacements of the flexible modes (nf).
+    pub fn modal_displacement(&self) -> &[f64] {
+        &self.coordinates.displacement[6 - self.coordinates.first..]
+    }
+
+    /// Velocities of the flexible modes (nf).
+    pub fn modal_velocity(&self) -> &[f64] {
+        &self.coordinates.velocity[6 - self.coordinates.first..]
+    }
+
+    /// From the origin to a point of the deformed body, body components.
+    fn arm_body(&self, point: &PointShapes) -> Vector3<f64> {
+        let Coordinates { first, displacement, .. } = self.coordinates;
+        point.position_body() + sum(&point.columns()[first..], displacement)
+    }
 }
 
-/// A load at a time: the factor on it, and the attitude of the body.
-#[derive(Clone, Copy)]
-pub(crate) struct Acting<'a> {
-    pub factor: f64,
-    /// `None` while the body axes are the global ones.
-    pub global_to_body: Option<&'a Matrix3<f64>>,
+/// Sum of what the loads do: their resultant, their modal forces and their power on the deformation.
+#[derive(Debug)]
+pub struct Applied<'a> {
+    coordinates: Coordinates<'a>,
+    /// The point that moments are about, from the body's origin.
+    center_body: Vector3<f64>,
+    /// What everything added is multiplied by.
+    pub(crate) weight: f64,
+    /// Force, body components.
+    pub(crate) force_body: Vector3<f64>,
+    /// Moment, body components.
+    pub(crate) moment_body: Vector3<f64>,
+    /// Power of the modal forces on the modal velocities.
+    pub(crate) modal_power: f64,
+    /// Ψᵀf is added here, of the modes of `coordinates`.
+    modal_force: &'a mut [f64],
 }
 
-impl Acting<'_> {
-    fn to_body(self, vector: &Vector3<f64>, frame: LoadFrame) -> Vector3<f64> {
-        match (frame, self.global_to_body) {
-            (LoadFrame::Global, Some(global_to_body)) => global_to_body * vector * self.factor,
-            _ => vector * self.factor,
+impl<'a> Applied<'a> {
+    /// Nothing yet; modal forces are added to `modal_force`.
+    pub(crate) fn new(coordinates: Coordinates<'a>, center_body: Vector3<f64>, modal_force: &'a mut [f64]) -> Self {
+        let zero = Vector3::zeros();
+        Self { coordinates, center_body, weight: 1.0, force_body: zero, moment_body: zero, modal_power: 0.0, modal_force }
+    }
+
+    /// Adds a force at a point, body components.
+    pub fn force(&mut self, point: &PointShapes, force_body: &Vector3<f64>) {
+        let force_body = force_body * self.weight;
+        let Coordinates { first, displacement, .. } = self.coordinates;
+        let columns = &point.columns()[first..];
+        let arm = point.position_body() + sum(columns, displacement) - self.center_body;
+        self.force_body += force_body;
+        self.moment_body += arm.cross(&force_body);
+        self.project(columns.iter().map(|shape| shape.dot(&force_body)));
+    }
+
+    /// Adds a moment, body components, at a place with these rotations in the modes.
+    pub fn moment(&mut self, place: &RotationShapes, moment_body: &Vector3<f64>) {
+        let moment_body = moment_body * self.weight;
+        self.moment_body += moment_body;
+        let columns = &place.columns()[self.coordinates.first..];
+        self.project(columns.iter().map(|rotation| rotation.dot(&moment_body)));
+    }
+
+    /// Adds forces on many nodes, `factor` times a field that is fixed in body axes.
+    pub fn field(&mut self, field: &BodyField, factor: f64) {
+        let factor = factor * self.weight;
+        let Coordinates { first, displacement, .. } = self.coordinates;
+        let force_body = field.force_body * factor;
+        let turned = sum(&field.lever, &displacement[6 - first..]);
+        self.force_body += force_body;
+        self.moment_body += (field.moment_body + turned) * factor - self.center_body.cross(&force_body);
+        self.project(field.modal[first..].iter().map(|f| f * factor));
+    }
+
+    /// Adds a modal force on one flexible mode, numbered from 0. It has no resultant.
+    pub fn modal_force(&mut self, flexible_mode: usize, force: f64) {
+        let k = flexible_mode + 6 - self.coordinates.first;
+        if let (Some(f), Some(v)) = (self.modal_force.get_mut(k), self.coordinates.velocity.get(k)) {
+            *f += force * self.weight;
+            self.modal_power += force * self.weight * v;
+        }
+    }
+
+    /// Adds the components of a force along the modes.
+    fn project(&mut self, components: impl Iterator<Item = f64>) {
+        let modes = self.modal_force.iter_mut().zip(self.coordinates.velocity);
+        for ((f, v), component) in modes.zip(components) {
+            *f += component;
+            self.modal_power += component * v;
         }
     }
 }
 
-impl Load {
-    /// A force at a point that keeps its global direction.
-    pub fn dead_force(point: PointShapes, force: Vector3<f64>, history: History) -> Self {
-        Self { action: Action::Force { point, force, frame: LoadFrame::Global }, history }
-    }
+/// Σ columns_k c_k
+fn sum(columns: &[Vector3<f64>], coordinates: &[f64]) -> Vector3<f64> {
+    columns.iter().zip(coordinates).map(|(column, c)| column * *c).sum()
+}
 
-    /// The load on the body with its first `flexible` flexible modes only.
-    pub fn truncated(&self, flexible: usize) -> Self {
-        let action = match &self.action {
-            Action::Force { point, force, frame } => {
-                Action::Force { point: point.truncated(flexible), force: *force, frame: *frame }
-            }
-            Action::Moment { rotation, moment, frame } => {
-                Action::Moment { rotation: rotation.truncated(flexible), moment: *moment, frame: *frame }
-            }
-            Action::Field(field) => Action::Field(BodyField {
-                modal: field.modal[..(6 + flexible).min(field.modal.len())].to_vec(),
-                lever: field.lever[..flexible.min(field.lever.len())].to_vec(),
-                ..*field
-            }),
-        };
-        Self { action, history: self.history.clone() }
+/// Refuses a force or moment that is not finite, and a place of a body with fewer modes than `flexible`.
+fn check_vector(what: &'static str, vector: &Vector3<f64>, modes: usize, flexible: usize) -> Result<(), SetupError> {
+    if let Some(found) = vector.iter().copied().find(|f| !f.is_finite()) {
+        return Err(SetupError::Value { what, found, expected: "a finite number" });
     }
-
-    /// Adds Φᵀf of the flexible modes to `modal_force`, and returns the resultant at the deformation q whose rate is
-    /// `velocity`.
-    pub(crate) fn apply(&self, now: Acting, q: &[f64], velocity: &[f64], modal_force: &mut [f64]) -> Resultant {
-        match &self.action {
-            Action::Force { point, force, frame } => {
-                let force_body = now.to_body(force, *frame);
-                let arm = point.position_body() + point.deformation(q);
-                Resultant {
-                    force_body,
-                    moment_body: arm.cross(&force_body),
-                    deforming_power: point.add_flexible_force(&force_body, velocity, modal_force),
-                }
-            }
-            Action::Moment { rotation, moment, frame } => {
-                let moment_body = now.to_body(moment, *frame);
-                Resultant {
-                    force_body: Vector3::zeros(),
-                    moment_body,
-                    deforming_power: rotation.add_flexible_moment(&moment_body, velocity, modal_force),
-                }
-            }
-            Action::Field(field) => {
-                let mut power = 0.0;
-                for ((f, v), unit) in modal_force.iter_mut().zip(velocity).zip(&field.modal[6..]) {
-                    *f += now.factor * unit;
-                    power += now.factor * unit * v;
-                }
-                let turned: Vector3<f64> = field.lever.iter().zip(q).map(|(lever, q)| lever * *q).sum();
-                Resultant {
-                    force_body: field.force_body * now.factor,
-                    moment_body: (field.moment_body + turned) * now.factor,
-                    deforming_power: power,
-                }
-            }
-        }
+    if modes < flexible {
+        return Err(SetupError::Length { what: "the point of a load", expected: flexible, found: modes });
     }
-
-    /// Adds f_q = Ψᵀ f of all modes (6+nf).
-    pub(crate) fn add_modal_force(&self, now: Acting, modal_force: &mut [f64]) {
-        match &self.action {
-            Action::Force { point, force, frame } => {
-                project(point.columns(), &now.to_body(force, *frame), modal_force);
-            }
-            Action::Moment { rotation, moment, frame } => {
-                project(rotation.columns(), &now.to_body(moment, *frame), modal_force);
-            }
-            Action::Field(field) => {
-                for (f, unit) in modal_force.iter_mut().zip(&field.modal) {
-                    *f += now.factor * unit;
-                }
-            }
-        }
-    }
-
-    /// Force and moment about `center`, body components, and the whole power, of modal displacements and velocities
-    /// (6+nf each) in an inertial frame.
-    pub(crate) fn on_modes(
-        &self,
-        now: Acting,
-        displacement: &[f64],
-        velocity: &[f64],
-        center: &Vector3<f64>,
-    ) -> Resultant {
-        match &self.action {
-            Action::Force { point, force, frame } => {
-                let force_body = now.to_body(force, *frame);
-                let arm = point.position_body() + point.expand(displacement) - center;
-                let deforming_power = power_of(point.columns(), &force_body, velocity);
-                Resultant { force_body, moment_body: arm.cross(&force_body), deforming_power }
-            }
-            Action::Moment { rotation, moment, frame } => {
-                let moment_body = now.to_body(moment, *frame);
-                let deforming_power = power_of(rotation.columns(), &moment_body, velocity);
-                Resultant { force_body: Vector3::zeros(), moment_body, deforming_power }
-            }
-            Action::Field(field) => {
-                let force_body = field.force_body * now.factor;
-                let turned: Vector3<f64> = field.lever.iter().zip(&displacement[6..]).map(|(l, q)| l * *q).sum();
-                Resultant {
-                    force_body,
-                    moment_body: (field.moment_body + turned) * now.factor - center.cross(&force_body),
-                    deforming_power: now.factor * field.modal.iter().zip(velocity).map(|(f, v)| f * v).sum::<f64>(),
-                }
-            }
-        }
-    }
-
-    /// Refuses numbers that are not finite, histories that are none, and places of another body.
-    pub(crate) fn check(&self, flexible: usize) -> Result<(), SetupError> {
-        self.history.check()?;
-        let length = |found: usize| {
-            if found == flexible {
-                Ok(())
-            } else {
-                Err(SetupError::Length { what: "the point of a load", expected: flexible, found })
-            }
-        };
-        let (vector, found) = match &self.action {
-            Action::Force { point, force, .. } => (force, point.flexible()),
-            Action::Moment { rotation, moment, .. } => (moment, rotation.flexible()),
-            Action::Field(field) => (&field.force_body, field.lever.len()),
-        };
-        if let Some(found) = vector.iter().copied().find(|f| !f.is_finite()) {
-            return Err(SetupError::Value { what: "a force", found, expected: "a finite number" });
-        }
-        length(found)
-    }
+    Ok(())
 }

@@ -4,8 +4,25 @@ use modal::ReducedBody;
 use nalgebra::{Matrix3, Vector3};
 
 use crate::error::SetupError;
-use crate::load::{Acting, Load};
+use crate::load::{Applied, Coordinates, Kinematics, SharedLoad};
 use crate::work::Work;
+
+/// A motion in an inertial frame, as the linear modal model sees it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct LinearMotion<'a> {
+    /// Of all modes (6+nf).
+    pub coordinates: Coordinates<'a>,
+    /// The time at which branches of piecewise laws are chosen.
+    pub branch_time: f64,
+    /// Transformation matrix of the frame.
+    pub body_from_global: &'a Matrix3<f64>,
+    /// Where the frame's origin is, global components.
+    pub origin_global: Vector3<f64>,
+    /// Angular velocity, body components.
+    pub omega_body: Vector3<f64>,
+    /// The point that moments are about: where the centre of mass is, body components.
+    pub center_body: Vector3<f64>,
+}
 
 /// Modal stiffness, damping and loads of mass-normalised modes: `q̈ = f_q − Λ q − D q̇`.
 ///
@@ -16,7 +33,7 @@ pub struct ModalModel {
     stiffness: Vec<f64>,
     /// 2 ζ_k ω_k (6+nf).
     damping: Vec<f64>,
-    loads: Vec<Load>,
+    loads: Vec<SharedLoad>,
 }
 
 impl ModalModel {
@@ -24,7 +41,7 @@ impl ModalModel {
     ///
     /// # Errors
     /// [`SetupError`] for a list of the wrong length, and numbers that are negative or not finite.
-    pub fn new(body: &ReducedBody, damping_ratios: &[f64], loads: Vec<Load>) -> Result<Self, SetupError> {
+    pub fn new(body: &ReducedBody, damping_ratios: &[f64], loads: Vec<SharedLoad>) -> Result<Self, SetupError> {
         check_damping(damping_ratios, body.flexible())?;
         loads.iter().try_for_each(|load| load.check(body.flexible()))?;
         let rigid = || std::iter::repeat_n(0.0, 6);
@@ -37,54 +54,35 @@ impl ModalModel {
     }
 
     /// The loads.
-    pub fn loads(&self) -> &[Load] {
+    pub fn loads(&self) -> &[SharedLoad] {
         &self.loads
     }
 
-    /// The factors of the loads at a time, by the laws that hold at the time `inside`.
-    pub(crate) fn factors_at(&self, time: f64, inside: f64, factors: &mut [f64]) {
-        for (factor, load) in factors.iter_mut().zip(&self.loads) {
-            *factor = load.history.at(time, inside);
-        }
-    }
-
-    /// q̈ of (35) under loads with the given `factors`, in a frame with the transformation matrix `global_to_body`.
-    pub(crate) fn acceleration(
-        &self,
-        displacement: &[f64],
-        velocity: &[f64],
-        factors: &[f64],
-        global_to_body: &Matrix3<f64>,
-        acceleration: &mut [f64],
-    ) {
-        let damped = displacement.iter().zip(velocity).zip(self.stiffness.iter().zip(&self.damping));
-        for (a, ((q, v), (lambda, d))) in acceleration.iter_mut().zip(damped) {
+    /// q̈ of (35) into `acceleration`, and the rates of the loads' work, of the dissipation and of the impulses. The loads
+    /// are the mean of those at the given `times`.
+    pub(crate) fn rates(&self, frame: &LinearMotion, times: &[f64], acceleration: &mut [f64]) -> Work {
+        let LinearMotion { coordinates, branch_time, body_from_global, origin_global, omega_body, center_body } = *frame;
+        let Coordinates { displacement, velocity, .. } = coordinates;
+        let mut dissipation = 0.0;
+        let modes = displacement.iter().zip(velocity).zip(self.stiffness.iter().zip(&self.damping));
+        for (a, ((q, v), (lambda, d))) in acceleration.iter_mut().zip(modes) {
             *a = -lambda * q - d * v;
+            dissipation += d * v * v;
         }
-        for (factor, load) in factors.iter().zip(&self.loads) {
-            load.add_modal_force(Acting { factor: *factor, global_to_body: Some(global_to_body) }, acceleration);
+        let mut applied = Applied::new(coordinates, center_body, acceleration);
+        applied.weight = 1.0 / times.len() as f64;
+        for time in times {
+            let (time, velocity_global, unit) = (*time, Vector3::zeros(), false);
+            let motion =
+                Kinematics { time, branch_time, body_from_global, origin_global, velocity_global, omega_body, coordinates, unit };
+            self.loads.iter().for_each(|load| load.apply(&motion, &mut applied));
         }
-    }
-
-    /// Rates of the loads' work, of the dissipation, and of the angular impulse about the `center` of mass.
-    pub(crate) fn power(
-        &self,
-        displacement: &[f64],
-        velocity: &[f64],
-        factors: &[f64],
-        global_to_body: &Matrix3<f64>,
-        center: &Vector3<f64>,
-    ) -> Work {
-        let mut power =
-            Work { dissipation: velocity.iter().zip(&self.damping).map(|(y, d)| d * y * y).sum(), ..Work::default() };
-        for (factor, load) in factors.iter().zip(&self.loads) {
-            let now = Acting { factor: *factor, global_to_body: Some(global_to_body) };
-            let on = load.on_modes(now, displacement, velocity, center);
-            power.impulse_global += global_to_body.tr_mul(&on.force_body);
-            power.work += on.deforming_power;
-            power.angular_impulse_global += global_to_body.tr_mul(&on.moment_body);
+        Work {
+            work: applied.modal_power,
+            dissipation,
+            impulse_global: body_from_global.tr_mul(&applied.force_body),
+            angular_impulse_global: body_from_global.tr_mul(&applied.moment_body),
         }
-        power
     }
 
     /// Refuses a body with another number of modes.

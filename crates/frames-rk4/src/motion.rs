@@ -3,13 +3,13 @@
 use faer::MatRef;
 use modal::{BodyPoint, ReducedBody, RigidMotion};
 use nalgebra::{Matrix3, Vector3};
-use rigid_kin::{Inertia, InertiaError, euler_angular_acceleration};
+use rigid_kin::{Attitude, Inertia, InertiaError, euler_angular_acceleration};
 
 use crate::account::Reckoning;
 use crate::attitude_account::AttitudeAccount;
-use crate::error::StepError;
+use crate::error::{SetupError, StepError};
 use crate::observation::Observation;
-use crate::state::{State, rotation, translation};
+use crate::state::{MotionState, State, rotation, translation};
 use crate::work::Work;
 
 /// A point with its rows of all mode shapes, rigid and flexible.
@@ -74,16 +74,6 @@ impl PointShapes {
     pub fn columns(&self) -> &[Vector3<f64>] {
         &self.columns
     }
-
-    /// Adds `Φᵀ F` of a force at the point, body components, and returns its power `F·Φ velocity`.
-    pub(crate) fn add_flexible_force(
-        &self,
-        force_body: &Vector3<f64>,
-        velocity: &[f64],
-        modal_force: &mut [f64],
-    ) -> f64 {
-        project_with_power(&self.columns[6..], force_body, velocity, modal_force)
-    }
 }
 
 /// A place of the body with the small rotations that all modes, rigid and flexible, give it.
@@ -114,44 +104,6 @@ impl RotationShapes {
     pub fn columns(&self) -> &[Vector3<f64>] {
         &self.columns
     }
-
-    /// Adds `Θᵀ M` of a couple, body components, and returns its power `M·Θ velocity`.
-    pub(crate) fn add_flexible_moment(
-        &self,
-        moment_body: &Vector3<f64>,
-        velocity: &[f64],
-        modal_force: &mut [f64],
-    ) -> f64 {
-        project_with_power(&self.columns[6..], moment_body, velocity, modal_force)
-    }
-}
-
-/// Adds the component of `vector` along each column.
-pub(crate) fn project(columns: &[Vector3<f64>], vector: &Vector3<f64>, out: &mut [f64]) {
-    for (f, shape) in out.iter_mut().zip(columns) {
-        *f += shape.dot(vector);
-    }
-}
-
-/// `vector·Σ columns_k velocity_k`
-pub(crate) fn power_of(columns: &[Vector3<f64>], vector: &Vector3<f64>, velocity: &[f64]) -> f64 {
-    columns.iter().zip(velocity).map(|(shape, v)| shape * *v).sum::<Vector3<f64>>().dot(vector)
-}
-
-/// [`project`], and [`power_of`] the same velocity.
-fn project_with_power(
-    columns: &[Vector3<f64>],
-    vector: &Vector3<f64>,
-    velocity: &[f64],
-    modal_force: &mut [f64],
-) -> f64 {
-    let mut power = 0.0;
-    for ((f, v), shape) in modal_force.iter_mut().zip(velocity).zip(columns) {
-        let component = shape.dot(vector);
-        *f += component;
-        power += component * v;
-    }
-    power
 }
 
 /// Reads the motion of a body off its states.
@@ -161,6 +113,8 @@ pub struct BodyMotion {
     mass: f64,
     /// The origin at the beginning, global components.
     origin: Vector3<f64>,
+    /// Attitude of the body frame at the beginning.
+    initial_attitude: Attitude,
     center: CenterOfMass,
     inertia: Inertia,
     translation_basis: Matrix3<f64>,
@@ -186,6 +140,7 @@ impl BodyMotion {
             motion: body.motion,
             mass: body.mass,
             origin: body.origin,
+            initial_attitude: Attitude::identity(),
             center: CenterOfMass::new(body),
             inertia: Inertia::new(body.inertia)?,
             translation_basis: body.translation_basis,
@@ -193,6 +148,12 @@ impl BodyMotion {
             cross_products,
             stiffness: body.circular_frequencies.iter().map(|omega| omega * omega).collect(),
         })
+    }
+
+    /// Of a body that begins in this attitude: displacements of points are counted from there.
+    #[must_use]
+    pub fn beginning_at(self, initial_attitude: Attitude) -> Self {
+        Self { initial_attitude, ..self }
     }
 
     /// Displacement or velocity of the origin: `T y[..3]`.
@@ -245,6 +206,64 @@ impl BodyMotion {
         };
         out.angular_momentum_global = left * out.angular_momentum_global;
         out.work.angular_impulse_global = left * out.work.angular_impulse_global;
+    }
+
+    /// A state in quantities that every formulation has. The small rotation that a state's rigid coordinates may hold
+    /// beside its attitude is not among them.
+    ///
+    /// The modal velocities of the state are those of an inertial frame, y = y_rigid + G(ω) q + q̇. With ω = B z,
+    /// `y_rotation = z + (G(B z) q)_rotation` gives z.
+    pub(crate) fn state(&self, state: &State) -> MotionState {
+        let (q, y) = (&state.modal_displacement, &state.modal_velocity);
+        let size = q.len();
+        // [e_i×]: G_i q of all modes.
+        let turned: [Vec<f64>; 3] = std::array::from_fn(|i| {
+            let mut product = vec![0.0; size];
+            crate::conservative::multiply(&self.cross_products[i], size, q, &mut product);
+            product
+        });
+        let of_spin = |omega: &Vector3<f64>, k: usize| (0..3).map(|i| omega[i] * turned[i][k]).sum::<f64>();
+        let coupled = Matrix3::from_fn(|row, k| {
+            f64::from(u8::from(row == k)) + of_spin(&self.rotation_basis.column(k).into(), 3 + row)
+        });
+        let z = coupled.lu().solve(&rotation(y)).unwrap_or_else(|| rotation(y));
+        let omega_body = self.angular_rate(&z);
+        let translating = Vector3::from_fn(|k, _| y[k] - of_spin(&omega_body, k));
+        MotionState {
+            time: state.time,
+            attitude: state.attitude,
+            origin_global: state.origin_global + state.attitude.to_global(&self.of_origin(q)),
+            velocity_global: state.attitude.to_global(&(self.translation_basis * translating)),
+            omega_body,
+            modal_displacement: q[6..].to_vec(),
+            modal_velocity: (6..size).map(|k| y[k] - of_spin(&omega_body, k)).collect(),
+        }
+    }
+
+    /// Puts `state` to another motion; its accelerations are left to be found.
+    ///
+    /// # Errors
+    /// [`SetupError`] for lists of the wrong length and numbers that are not finite.
+    pub(crate) fn set_state(&self, to: &MotionState, state: &mut State) -> Result<(), SetupError> {
+        to.check(state.modal_displacement.len() - 6)?;
+        // T⁻¹ = m Tᵀ and B⁻¹ = Bᵀ J₀, since T Tᵀ = I/m and B Bᵀ = J₀⁻¹.
+        let z = self.rotation_basis.tr_mul(&(self.inertia.matrix() * to.omega_body));
+        let translating = self.translation_basis.tr_mul(&state_velocity_body(to)) * self.mass;
+        let omega_body = self.angular_rate(&z);
+        (state.time, state.attitude, state.origin_global) = (to.time, to.attitude, to.origin_global);
+        state.modal_displacement[..6].fill(0.0);
+        state.modal_displacement[6..].copy_from_slice(&to.modal_displacement);
+        let size = state.modal_displacement.len();
+        let mut turned = vec![0.0; size];
+        let y = &mut state.modal_velocity;
+        for (k, y) in y.iter_mut().enumerate() {
+            *y = if k < 3 { translating[k] } else if k < 6 { z[k - 3] } else { to.modal_velocity[k - 6] };
+        }
+        for (i, products) in self.cross_products.iter().enumerate() {
+            crate::conservative::multiply(products, size, &state.modal_displacement, &mut turned);
+            y.iter_mut().zip(&turned).for_each(|(y, turned)| *y += omega_body[i] * turned);
+        }
+        Ok(())
     }
 
     /// Position of the centre of mass, global components.
@@ -341,12 +360,17 @@ impl BodyMotion {
         let of_origin = self.of_origin(&state.modal_acceleration);
         PointMotion {
             displacement: (state.origin_global - self.origin)
-                + (global(x + point.expand(&state.modal_displacement)) - x),
+                + (global(x + point.expand(&state.modal_displacement)) - self.initial_attitude.to_global(&x)),
             velocity: global(point.expand(&state.modal_velocity)),
             acceleration: global(point.expand(&state.modal_acceleration)),
             rigid_acceleration: global(of_origin + alpha.cross(&x) + omega.cross(&omega.cross(&x))),
         }
     }
+}
+
+/// Velocity of the origin, body components.
+fn state_velocity_body(state: &MotionState) -> Vector3<f64> {
+    state.attitude.to_body(&state.velocity_global)
 }
 
 /// Where the centre of mass of a body is, seen from its origin.

@@ -5,6 +5,8 @@
 //! each step's rotation vector starts at zero, since (22) is singular after one turn, and a stage takes the loads'
 //! components in the stage's own frame.
 
+use std::any::Any;
+
 use modal::ReducedBody;
 use nalgebra::{Matrix3, Vector3};
 use rigid_kin::{BeyondFullTurn, ReferencePoints, f_inverse, relative_velocity_rate, transformation_matrix};
@@ -15,30 +17,31 @@ use crate::checkpoint::Tape;
 use crate::error::{RateError, SetupError, StepError};
 use crate::initial::Initial;
 use crate::modal_rotation::ModalRotation;
-use crate::model::ModalModel;
+use crate::load::Coordinates;
+use crate::model::{LinearMotion, ModalModel};
 use crate::motion::{BodyMotion, PointShapes};
 use crate::observation::Observation;
-use crate::state::State;
+use crate::physics::Physics;
+use crate::scheme::{Method, Scheme, StepLimit};
+use crate::state::{MotionState, State};
 use crate::work::Work;
 
 /// Steps a flexible body by the paper's scheme.
-///
-/// As an iterator it yields the state after each step, without end; [`PaperScheme::step`] does the same without
-/// allocating.
 #[derive(Debug, Clone)]
 pub struct PaperScheme {
     model: ModalModel,
     rotation: ModalRotation,
     kinematics: ReferenceKinematics,
     motion: BodyMotion,
-    step: f64,
     steps_done: u64,
+    attitude_account: AttitudeAccount,
+    longest_step: f64,
     state: State,
     work: Work,
     power: Work,
-    forces: StepForces,
+    /// Whether a load may jump where the state is, so that its accelerations are to be found again.
+    at_corner: bool,
     scratch: Scratch,
-    failed: bool,
 }
 
 /// Relative motion of P and Q in the rigid modes.
@@ -62,14 +65,6 @@ struct Increment {
     relative_velocity: Relative,
 }
 
-/// Factors of the loads at the start and the end of a step, and their mean.
-#[derive(Debug, Clone)]
-struct StepForces {
-    start: Vec<f64>,
-    mean: Vec<f64>,
-    end: Vec<f64>,
-}
-
 #[derive(Debug, Clone)]
 struct Scratch {
     stage: Increment,
@@ -82,20 +77,17 @@ struct Scratch {
 }
 
 impl PaperScheme {
-    /// A motion of `body` from `initial` in steps of `step`. `reference_points` are R, P, Q from the centre of mass,
-    /// body axes.
+    /// A motion of `body` from `initial`. `reference_points` are R, P, Q from the centre of mass, body axes.
     ///
     /// # Errors
-    /// [`SetupError`]: lists of wrong length, numbers that are not finite, a step beyond the stability limit.
+    /// [`SetupError`]: lists of wrong length, numbers that are not finite, reference points on a line.
     pub fn new(
         body: &ReducedBody,
         model: ModalModel,
         reference_points: [Vector3<f64>; 3],
         initial: &Initial,
-        step: f64,
     ) -> Result<Self, SetupError> {
         model.check_body(body)?;
-        model.check_step(step)?;
         let [r, p, q] = reference_points;
         let kinematics = ReferenceKinematics {
             points: ReferencePoints::new(&r, &p, &q)?,
@@ -104,7 +96,6 @@ impl PaperScheme {
         };
         let state = State::begin(body, initial)?;
         let zeros = || vec![0.0; state.modal_displacement.len()];
-        let forces = || vec![0.0; model.loads().len()];
         let increment = || Increment {
             displacement: zeros(),
             velocity: zeros(),
@@ -114,12 +105,13 @@ impl PaperScheme {
         let mut scheme = Self {
             rotation: ModalRotation::new(body),
             kinematics,
-            motion: BodyMotion::new(body)?,
-            step,
+            motion: BodyMotion::new(body)?.beginning_at(initial.attitude),
             steps_done: 0,
+            attitude_account: AttitudeAccount::default(),
+            longest_step: 0.0,
             work: Work::default(),
             power: Work::default(),
-            forces: StepForces { start: forces(), mean: forces(), end: forces() },
+            at_corner: true,
             scratch: Scratch {
                 stage: increment(),
                 total: increment(),
@@ -128,7 +120,6 @@ impl PaperScheme {
                 next_velocity: zeros(),
                 acceleration: zeros(),
             },
-            failed: false,
             state,
             model,
         };
@@ -141,73 +132,15 @@ impl PaperScheme {
         &self.state
     }
 
-    /// Energies of the state.
-    pub(crate) fn reckoning(&self) -> Reckoning {
-        self.motion.reckon(&self.state, &self.work)
-    }
-
-    /// Work of the loads and dissipation.
-    pub(crate) fn done(&self) -> [f64; 2] {
-        [self.work.work, self.work.dissipation]
-    }
-
-    /// Checks the angular momentum of the state.
-    ///
-    /// # Errors
-    /// [`StepError::Attitude`].
-    pub(crate) fn check_attitude(&self, account: &mut AttitudeAccount, step: f64) -> Result<(), StepError> {
-        self.motion.check_attitude(&self.state, &self.work, account, step)
-    }
-
-    /// Largest of ω_k and 2 ζ_k ω_k.
-    pub(crate) fn fastest_rate(&self) -> f64 {
-        self.model.fastest_rate()
-    }
-
-    /// Fills `out` with the motion at the state, and that of `points`.
-    pub fn observe(&self, points: &[PointShapes], out: &mut Observation) {
-        self.motion.observe(&self.state, &self.work, points, out);
-    }
-
-    /// Evaluations of (35) so far: four for each step.
-    pub fn evaluations(&self) -> u64 {
-        4 * self.steps_done
-    }
-
-    /// Does one step of the length given at the beginning, k1 to k4 and (38) to (40).
-    ///
-    /// # Errors
-    /// [`StepError`]; the state stays that before the step.
-    pub fn step(&mut self) -> Result<&State, StepError> {
-        self.take_step(self.step, (self.steps_done + 1) as f64 * self.step)?;
-        Ok(&self.state)
-    }
-
-    pub(crate) fn pass(&mut self, tape: &mut Tape) {
-        self.state.pass(tape);
-        self.work.pass(tape);
-        self.power.pass(tape);
-        tape.numbers(&mut self.forces.start);
-        tape.count(&mut self.steps_done);
-    }
-
-    /// Does one step of length `h` that ends at time `end`.
-    ///
-    /// # Errors
-    /// [`StepError`]; the state stays that before the step.
-    pub fn take_step(&mut self, h: f64, end: f64) -> Result<(), StepError> {
+    /// Does one step, k1 to k4 and (38) to (40).
+    fn take_step(&mut self, h: f64, end: f64) -> Result<(), StepError> {
         let time = self.state.time;
         let inside = time + 0.5 * h;
-        self.model.factors_at(time, inside, &mut self.forces.mean);
-        if self.forces.mean != self.forces.start {
-            // A load jumps here.
+        if self.at_corner {
             self.complete_state(inside);
+            self.at_corner = false;
         }
-        let Self { model, rotation, kinematics, state, scratch, forces, .. } = self;
-        model.factors_at(end, inside, &mut forces.end);
-        for (mean, (start, end)) in forces.mean.iter_mut().zip(forces.start.iter().zip(&forces.end)) {
-            *mean = 0.5 * (start + end);
-        }
+        let Self { model, rotation, kinematics, motion, state, scratch, .. } = self;
         let global_to_body = state.attitude.global_to_body();
         let relative_velocity = kinematics.relative(&state.modal_velocity);
         let turn_error = |error: BeyondFullTurn| RateError::Turn(error).in_step(time, h);
@@ -221,18 +154,26 @@ impl PaperScheme {
         stage.rotation_vector = h * state.omega_body;
         total.add(1.0 / 6.0, stage);
 
-        for (fraction, weight, forces) in [
-            (0.5, 1.0 / 3.0, &forces.mean), // k2
-            (0.5, 1.0 / 3.0, &forces.mean), // k3
-            (1.0, 1.0 / 6.0, &forces.end),  // k4
-        ] {
+        // k2 and k3 take the mean of the loads at both ends of the step, k4 those at its end.
+        let (both_ends, at_end) = ([time, end], [end]);
+        for (fraction, weight, load_times) in
+            [(0.5, 1.0 / 3.0, &both_ends[..]), (0.5, 1.0 / 3.0, &both_ends), (1.0, 1.0 / 6.0, &at_end)]
+        {
             let v: Relative = std::array::from_fn(|i| relative_velocity[i] + fraction * stage.relative_velocity[i]);
             let omega = kinematics.points.angular_velocity(&v[0], &v[1]);
             let theta = fraction * stage.rotation_vector;
             let turn = transformation_matrix(&theta);
             rotation.set(&turn);
             advance(rotation, state, fraction, stage, unrotated, next_displacement, next_velocity);
-            model.acceleration(next_displacement, next_velocity, forces, &(turn * global_to_body), acceleration);
+            let linear = LinearMotion {
+                coordinates: Coordinates { first: 0, displacement: next_displacement, velocity: next_velocity },
+                branch_time: inside,
+                body_from_global: &(turn * global_to_body),
+                origin_global: state.origin_global,
+                omega_body: omega,
+                center_body: motion.of_origin(next_displacement),
+            };
+            model.rates(&linear, load_times, acceleration);
 
             stage.set_modal(h, next_velocity, acceleration);
             stage.relative_velocity = kinematics.relative_velocity_change(h, acceleration, &v, &omega);
@@ -269,31 +210,133 @@ impl PaperScheme {
     /// Accelerations (35), ω (36) and α (37) of the state's displacements and velocities, and the power of the loads.
     /// Loads follow the laws that hold at the time `inside`.
     fn complete_state(&mut self, inside: f64) {
-        let Self { model, kinematics, state, forces, .. } = self;
-        model.factors_at(state.time, inside, &mut forces.start);
+        let Self { model, kinematics, motion, state, .. } = self;
         let global_to_body = state.attitude.global_to_body();
-        let (q, y) = (&state.modal_displacement, &state.modal_velocity);
-        model.acceleration(q, y, &forces.start, &global_to_body, &mut state.modal_acceleration);
-        let center = self.motion.of_origin(q);
-        self.power = model.power(q, y, &forces.start, &global_to_body, &center);
         let [v_p, v_q] = kinematics.relative(&state.modal_velocity);
-        let [a_p, a_q] = kinematics.relative(&state.modal_acceleration);
         state.omega_body = kinematics.points.angular_velocity(&v_p, &v_q);
+        let linear = LinearMotion {
+            coordinates: Coordinates { first: 0, displacement: &state.modal_displacement, velocity: &state.modal_velocity },
+            branch_time: inside,
+            body_from_global: &global_to_body,
+            origin_global: state.origin_global,
+            omega_body: state.omega_body,
+            center_body: motion.of_origin(&state.modal_displacement),
+        };
+        self.power = model.rates(&linear, &[state.time], &mut state.modal_acceleration);
+        let [a_p, a_q] = kinematics.relative(&state.modal_acceleration);
         state.alpha_body = kinematics.points.angular_acceleration(&v_p, &v_q, &a_p, &a_q, &state.omega_body);
     }
 }
 
-impl Iterator for PaperScheme {
-    type Item = Result<State, StepError>;
+/// A state is looked at for its attitude after so many steps: often enough for a sum, and too seldom to cost anything.
+pub(crate) const STEPS_OF_ATTITUDE: u64 = 8;
 
-    /// The state after the next step; `None` after an error.
-    fn next(&mut self) -> Option<Self::Item> {
-        if self.failed {
-            return None;
+/// The paper's scheme in the list of schemes.
+pub(crate) const METHOD: Method = Method {
+    formulation: "paper",
+    scheme: "paper",
+    order: 1,
+    evaluations_per_step: 4,
+    limit: StepLimit::Modes,
+    estimates_error: false,
+    begin: |setup| {
+        refuse_beyond_paper(setup.physics)?;
+        let model = ModalModel::new(setup.body, setup.damping_ratios, setup.loads.to_vec())?;
+        Ok(Box::new(PaperScheme::new(setup.body, model, setup.reference_points, setup.initial)?))
+    },
+};
+
+/// Refuses what the formulation of the paper has not got.
+pub(crate) fn refuse_beyond_paper(physics: &Physics) -> Result<(), SetupError> {
+    let what = if physics.drive.is_some() {
+        "driven motion"
+    } else if physics.load_stiffness.is_some() {
+        "geometric stiffening"
+    } else {
+        return Ok(());
+    };
+    Err(SetupError::NotInPaper { what })
+}
+
+impl Scheme for PaperScheme {
+    fn time(&self) -> f64 {
+        self.state.time
+    }
+
+    fn step(&mut self, h: f64, end: f64) -> Result<(), StepError> {
+        let Self { motion, state, work, attitude_account, .. } = self;
+        if self.steps_done.is_multiple_of(STEPS_OF_ATTITUDE) {
+            motion.check_attitude(state, work, attitude_account, self.longest_step)?;
         }
-        let result = self.step().cloned();
-        self.failed = result.is_err();
-        Some(result)
+        self.take_step(h, end)?;
+        self.longest_step = self.longest_step.max(h);
+        Ok(())
+    }
+
+    fn pass_corner(&mut self) -> Result<(), StepError> {
+        self.at_corner = true;
+        Ok(())
+    }
+
+    fn observe(&mut self, points: &[PointShapes], out: &mut Observation) -> Result<(), StepError> {
+        self.motion.observe(&self.state, &self.work, points, out);
+        Ok(())
+    }
+
+    fn state(&self) -> Result<MotionState, StepError> {
+        Ok(self.motion.state(&self.state))
+    }
+
+    fn set_state(&mut self, state: &MotionState) -> Result<(), SetupError> {
+        self.motion.set_state(state, &mut self.state)?;
+        self.complete_state(state.time);
+        self.at_corner = true;
+        self.attitude_account = AttitudeAccount::default();
+        Ok(())
+    }
+
+    fn copy_state(&mut self, from: &dyn Scheme) {
+        let Some(from) = (from as &dyn Any).downcast_ref::<Self>() else { return };
+        self.state.copy_from(&from.state);
+        (self.work, self.power) = (from.work, from.power);
+        self.steps_done = from.steps_done;
+        self.attitude_account = from.attitude_account;
+        self.longest_step = from.longest_step;
+        self.at_corner = from.at_corner;
+    }
+
+    fn reckoning(&self) -> Option<Reckoning> {
+        Some(self.motion.reckon(&self.state, &self.work))
+    }
+
+    fn work_and_dissipation(&self) -> [f64; 2] {
+        [self.work.work, self.work.dissipation]
+    }
+
+    fn fastest_rate(&self) -> f64 {
+        self.model.fastest_rate()
+    }
+
+    fn evaluations(&self) -> u64 {
+        4 * self.steps_done
+    }
+
+    fn flexible(&self) -> usize {
+        self.state.modal_displacement.len() - 6
+    }
+
+    fn pass(&mut self, tape: &mut Tape<'_>) {
+        self.state.pass(tape);
+        self.work.pass(tape);
+        self.power.pass(tape);
+        tape.count(&mut self.steps_done);
+        tape.flag(&mut self.at_corner);
+        tape.number(&mut self.longest_step);
+        self.attitude_account.pass(tape);
+    }
+
+    fn boxed_clone(&self) -> Box<dyn Scheme> {
+        Box::new(self.clone())
     }
 }
 

@@ -10,6 +10,8 @@
 //!
 //! It has the limit of the paper's scheme for Δt → 0, and costs the same for a step.
 
+use std::any::Any;
+
 use modal::ReducedBody;
 use nalgebra::Vector3;
 use rigid_kin::{f_inverse, transformation_matrix};
@@ -19,10 +21,13 @@ use crate::attitude_account::AttitudeAccount;
 use crate::checkpoint::Tape;
 use crate::error::{RateError, SetupError, StepError};
 use crate::initial::Initial;
-use crate::model::ModalModel;
-use crate::motion::BodyMotion;
+use crate::load::Coordinates;
+use crate::model::{LinearMotion, ModalModel};
+use crate::motion::{BodyMotion, PointShapes};
 use crate::observation::Observation;
-use crate::state::{State, rotation};
+use crate::paper::{STEPS_OF_ATTITUDE, refuse_beyond_paper};
+use crate::scheme::{Method, Scheme, StepLimit};
+use crate::state::{MotionState, State, rotation};
 use crate::work::Work;
 
 /// Steps the limit of the paper's scheme by RKMK4.
@@ -35,11 +40,13 @@ pub struct PaperLimit {
     state: State,
     work: Work,
     stages: [Rates; 4],
-    factors: Vec<f64>,
     q: Vec<f64>,
     y: Vec<f64>,
     products: Vec<f64>,
     evaluations: u64,
+    steps_done: u64,
+    attitude_account: AttitudeAccount,
+    longest_step: f64,
 }
 
 #[derive(Debug, Clone)]
@@ -60,7 +67,7 @@ impl PaperLimit {
     /// [`SetupError`] for lists of the wrong length and numbers that are not finite.
     pub fn new(body: &ReducedBody, model: ModalModel, initial: &Initial) -> Result<Self, SetupError> {
         model.check_body(body)?;
-        let motion = BodyMotion::new(body)?;
+        let motion = BodyMotion::new(body)?.beginning_at(initial.attitude);
         let state = State::begin(body, initial)?;
         let size = state.modal_displacement.len();
         // [e_1×] = e_3 e_2ᵀ − e_2 e_3ᵀ and cyclic.
@@ -81,7 +88,6 @@ impl PaperLimit {
             velocity: zeros(),
         };
         let mut limit = Self {
-            factors: vec![0.0; model.loads().len()],
             model,
             motion,
             cross_products,
@@ -92,6 +98,9 @@ impl PaperLimit {
             y: zeros(),
             products: vec![0.0; 3 * size],
             evaluations: 0,
+            steps_done: 0,
+            attitude_account: AttitudeAccount::default(),
+            longest_step: 0.0,
         };
         limit.complete_state(0.0);
         Ok(limit)
@@ -102,22 +111,8 @@ impl PaperLimit {
         &self.state
     }
 
-    /// Evaluations of the rates so far.
-    pub fn evaluations(&self) -> u64 {
-        self.evaluations
-    }
-
-    pub(crate) fn pass(&mut self, tape: &mut Tape) {
-        self.state.pass(tape);
-        self.work.pass(tape);
-        tape.count(&mut self.evaluations);
-    }
-
-    /// Does one step of length `h` that ends at time `end`.
-    ///
-    /// # Errors
-    /// [`StepError`]; the state stays that before the step.
-    pub fn step(&mut self, h: f64, end: f64) -> Result<(), StepError> {
+    /// Does one step of classical Runge–Kutta.
+    fn take_step(&mut self, h: f64, end: f64) -> Result<(), StepError> {
         let time = self.state.time;
         let inside = time + 0.5 * h;
         for (s, fraction) in [0.0, 0.5, 0.5, 1.0].into_iter().enumerate() {
@@ -158,44 +153,22 @@ impl PaperLimit {
         Ok(())
     }
 
-    /// Energies of the state.
-    pub(crate) fn reckoning(&self) -> Reckoning {
-        self.motion.reckon(&self.state, &self.work)
-    }
-
-    /// Work of the loads and dissipation.
-    pub(crate) fn done(&self) -> [f64; 2] {
-        [self.work.work, self.work.dissipation]
-    }
-
-    /// Checks the angular momentum of the state.
-    ///
-    /// # Errors
-    /// [`StepError::Attitude`].
-    pub(crate) fn check_attitude(&self, account: &mut AttitudeAccount, step: f64) -> Result<(), StepError> {
-        self.motion.check_attitude(&self.state, &self.work, account, step)
-    }
-
-    /// Largest of ω_k and 2 ζ_k ω_k.
-    pub(crate) fn fastest_rate(&self) -> f64 {
-        self.model.fastest_rate()
-    }
-
-    /// Fills `out` with the motion at the state, and that of `points`.
-    pub fn observe(&self, points: &[crate::motion::PointShapes], out: &mut Observation) {
-        self.motion.observe(&self.state, &self.work, points, out);
-    }
-
     /// Rates at the stage values q, y and the rotation vector since the step's start.
     fn evaluate(&mut self, s: usize, t: f64, inside: f64, theta: &Vector3<f64>) -> Result<(), RateError> {
-        let Self { model, motion, cross_products, state, stages, q, y, products, factors, .. } = self;
+        let Self { model, motion, cross_products, state, stages, q, y, products, .. } = self;
         let size = q.len();
         let rates = &mut stages[s];
         let global_to_body = transformation_matrix(theta) * state.attitude.global_to_body();
         let omega = motion.angular_rate(&rotation(y));
-        model.factors_at(t, inside, factors);
-        model.acceleration(q, y, factors, &global_to_body, &mut rates.velocity);
-        rates.work = model.power(q, y, factors, &global_to_body, &motion.of_origin(q));
+        let linear = LinearMotion {
+            coordinates: Coordinates { first: 0, displacement: q, velocity: y },
+            branch_time: inside,
+            body_from_global: &global_to_body,
+            origin_global: state.origin_global,
+            omega_body: omega,
+            center_body: motion.of_origin(q),
+        };
+        rates.work = model.rates(&linear, &[t], &mut rates.velocity);
 
         add_cross(cross_products, size, &omega, q, products, |i, g| rates.displacement[i] = -g);
         add_cross(cross_products, size, &omega, y, products, |i, g| rates.velocity[i] -= g);
@@ -209,12 +182,19 @@ impl PaperLimit {
     /// Accelerations, ω and α of the state: q̈ in the inertial frame that coincides with the body now, and α = ω' in
     /// body axes, which is Euler's. Loads follow the laws that hold at the time `inside`.
     fn complete_state(&mut self, inside: f64) {
-        let Self { model, motion, state, factors, cross_products, products, .. } = self;
+        let Self { model, motion, state, cross_products, products, .. } = self;
         let global_to_body = state.attitude.global_to_body();
         let (q, y) = (&state.modal_displacement, &state.modal_velocity);
-        model.factors_at(state.time, inside, factors);
-        model.acceleration(q, y, factors, &global_to_body, &mut state.modal_acceleration);
         state.omega_body = motion.angular_rate(&rotation(y));
+        let linear = LinearMotion {
+            coordinates: Coordinates { first: 0, displacement: q, velocity: y },
+            branch_time: inside,
+            body_from_global: &global_to_body,
+            origin_global: state.origin_global,
+            omega_body: state.omega_body,
+            center_body: motion.of_origin(q),
+        };
+        model.rates(&linear, &[state.time], &mut state.modal_acceleration);
         let mut turned = Vector3::zeros();
         add_cross(cross_products, y.len(), &state.omega_body, y, products, |i, g| {
             if (3..6).contains(&i) {
@@ -222,6 +202,96 @@ impl PaperLimit {
             }
         });
         state.alpha_body = motion.angular_rate(&(rotation(&state.modal_acceleration) - turned));
+    }
+}
+
+/// The limit of the paper's scheme in the list of schemes.
+pub(crate) const METHOD: Method = Method {
+    formulation: "paper",
+    scheme: "rkmk4",
+    order: 4,
+    evaluations_per_step: 4,
+    limit: StepLimit::Modes,
+    estimates_error: false,
+    begin: |setup| {
+        refuse_beyond_paper(setup.physics)?;
+        let model = ModalModel::new(setup.body, setup.damping_ratios, setup.loads.to_vec())?;
+        Ok(Box::new(PaperLimit::new(setup.body, model, setup.initial)?))
+    },
+};
+
+impl Scheme for PaperLimit {
+    fn time(&self) -> f64 {
+        self.state.time
+    }
+
+    fn step(&mut self, h: f64, end: f64) -> Result<(), StepError> {
+        let Self { motion, state, work, attitude_account, .. } = self;
+        if self.steps_done.is_multiple_of(STEPS_OF_ATTITUDE) {
+            motion.check_attitude(state, work, attitude_account, self.longest_step)?;
+        }
+        self.take_step(h, end)?;
+        self.steps_done += 1;
+        self.longest_step = self.longest_step.max(h);
+        Ok(())
+    }
+
+    fn observe(&mut self, points: &[PointShapes], out: &mut Observation) -> Result<(), StepError> {
+        self.motion.observe(&self.state, &self.work, points, out);
+        Ok(())
+    }
+
+    fn state(&self) -> Result<MotionState, StepError> {
+        Ok(self.motion.state(&self.state))
+    }
+
+    fn set_state(&mut self, state: &MotionState) -> Result<(), SetupError> {
+        self.motion.set_state(state, &mut self.state)?;
+        self.complete_state(state.time);
+        self.attitude_account = AttitudeAccount::default();
+        Ok(())
+    }
+
+    fn copy_state(&mut self, from: &dyn Scheme) {
+        let Some(from) = (from as &dyn Any).downcast_ref::<Self>() else { return };
+        self.state.copy_from(&from.state);
+        self.work = from.work;
+        (self.evaluations, self.steps_done) = (from.evaluations, from.steps_done);
+        self.attitude_account = from.attitude_account;
+        self.longest_step = from.longest_step;
+    }
+
+    fn reckoning(&self) -> Option<Reckoning> {
+        Some(self.motion.reckon(&self.state, &self.work))
+    }
+
+    fn work_and_dissipation(&self) -> [f64; 2] {
+        [self.work.work, self.work.dissipation]
+    }
+
+    fn fastest_rate(&self) -> f64 {
+        self.model.fastest_rate()
+    }
+
+    fn evaluations(&self) -> u64 {
+        self.evaluations
+    }
+
+    fn flexible(&self) -> usize {
+        self.state.modal_displacement.len() - 6
+    }
+
+    fn pass(&mut self, tape: &mut Tape<'_>) {
+        self.state.pass(tape);
+        self.work.pass(tape);
+        tape.count(&mut self.evaluations);
+        tape.count(&mut self.steps_done);
+        tape.number(&mut self.longest_step);
+        self.attitude_account.pass(tape);
+    }
+
+    fn boxed_clone(&self) -> Box<dyn Scheme> {
+        Box::new(self.clone())
     }
 }
 

@@ -59,6 +59,8 @@ pub(crate) struct Plan {
     outputs: u64,
     reached: f64,
     last_length: f64,
+    /// A time to stop at.
+    stop: Option<f64>,
 }
 
 impl Plan {
@@ -69,7 +71,7 @@ impl Plan {
             Rows::Interval(interval) => Some(interval),
             Rows::EverySteps(_) => None,
         };
-        Self { end, corners, passed: 0, interval, outputs: 0, reached: 0.0, last_length: 0.0 }
+        Self { end, corners, passed: 0, interval, outputs: 0, reached: 0.0, last_length: 0.0, stop: None }
     }
 
     pub(crate) fn pass(&mut self, tape: &mut Tape) {
@@ -82,10 +84,32 @@ impl Plan {
         tape.finite("the length of the segment", &mut self.last_length);
     }
 
+    /// Sets or takes back a time to stop at.
+    pub(crate) fn set_stop(&mut self, time: Option<f64>) {
+        self.stop = time;
+    }
+
+    /// Whether a time is the stop time, or beyond it.
+    pub(crate) fn is_at_stop(&self, time: f64) -> bool {
+        self.stop.is_some_and(|stop| stop <= time + self.same())
+    }
+
+    /// The segments to come start at this time.
+    pub(crate) fn go_to(&mut self, time: f64) {
+        let same = self.same();
+        self.reached = time;
+        self.passed = self.corners.partition_point(|corner| *corner <= time + same);
+        self.outputs = self.interval.map_or(0, |interval| ((time + same) / interval).floor().max(0.0) as u64);
+    }
+
+    /// Times closer than rounding makes them are one.
+    fn same(&self) -> f64 {
+        1e-13 * self.end
+    }
+
     /// The next segment; `None` at the end.
     pub(crate) fn next_segment(&mut self) -> Option<Segment> {
-        // Times closer than rounding makes them are one.
-        let same = 1e-13 * self.end;
+        let same = self.same();
         if self.reached >= self.end {
             return None;
         }
@@ -102,6 +126,13 @@ impl Plan {
         }
         if (self.end - stop).abs() <= same {
             stop = self.end;
+        }
+        let mut row = row;
+        if let Some(asked) = self.stop.filter(|asked| *asked > self.reached + same && *asked < stop - same) {
+            if row && self.interval.is_some() && (output - stop).abs() <= same {
+                self.outputs -= 1;
+            }
+            (stop, row) = (asked, false);
         }
         let mut length = stop - self.reached;
         if (length - self.last_length).abs() <= 8.0 * f64::EPSILON * self.end {

@@ -1,101 +1,27 @@
 //! A run: a body, a method, the steps that lead through it, and the times at which it is observed.
 
+use std::fmt;
+use std::sync::{Arc, Mutex, PoisonError};
+
 use modal::ReducedBody;
 use nalgebra::Vector3;
 
 use crate::account::{self, EnergyAccount};
-use crate::attitude_account::AttitudeAccount;
 use crate::checkpoint::{RestoreError, Tape};
 use crate::conservative::ConservativeBody;
-use crate::conservative_motion::{ConservativeMotion, ConservativeScheme};
 use crate::error::{SetupError, StepError};
+use crate::events::{Event, Events, LastStep};
 use crate::formula_steps::FormulaSteps;
 use crate::history::History;
 use crate::initial::Initial;
-use crate::load::Load;
+use crate::load::SharedLoad;
 use crate::model::ModalModel;
 use crate::motion::PointShapes;
 use crate::observation::Observation;
-use crate::paper::PaperScheme;
-use crate::paper_limit::PaperLimit;
 use crate::physics::{DrivenMotion, Physics};
 use crate::plan::{EqualSteps, HalvedSteps, Plan, Rows, StepControl};
-
-/// Formulation and scheme.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Method {
-    /// The paper's scheme, literally.
-    Paper,
-    /// The limit of the paper's scheme, by RKMK4.
-    PaperRkmk4,
-    /// The conservative form.
-    Conservative(ConservativeScheme),
-}
-
-impl Method {
-    /// All of them.
-    pub const ALL: [Self; 5] = [
-        Self::Paper,
-        Self::PaperRkmk4,
-        Self::Conservative(ConservativeScheme::Rkmk4),
-        Self::Conservative(ConservativeScheme::Exponential),
-        Self::Conservative(ConservativeScheme::Strang),
-    ];
-
-    /// The name of its formulation in a scene: "paper" or "conservative".
-    pub fn formulation(self) -> &'static str {
-        match self {
-            Self::Paper | Self::PaperRkmk4 => "paper",
-            Self::Conservative(_) => "conservative",
-        }
-    }
-
-    /// The name of its scheme in a scene.
-    pub fn scheme(self) -> &'static str {
-        match self {
-            Self::Paper => "paper",
-            Self::PaperRkmk4 | Self::Conservative(ConservativeScheme::Rkmk4) => "rkmk4",
-            Self::Conservative(ConservativeScheme::Exponential) => "exponential",
-            Self::Conservative(ConservativeScheme::Strang) => "strang",
-        }
-    }
-
-    /// Order of convergence.
-    pub fn order(self) -> u32 {
-        match self {
-            Self::Paper => 1,
-            Self::Conservative(ConservativeScheme::Strang) => 2,
-            _ => 4,
-        }
-    }
-
-    /// Evaluations of the rates that a step takes.
-    pub fn evaluations_per_step(self) -> u32 {
-        4
-    }
-
-    /// Whether the step is limited by the highest mode, at about 2.83/ω_max; otherwise by the spin.
-    pub fn limited_by_modes(self) -> bool {
-        !matches!(self, Self::Conservative(ConservativeScheme::Exponential | ConservativeScheme::Strang))
-    }
-
-    /// Largest angle in rad that the body may turn through in a step of a method that the modes do not limit.
-    ///
-    /// Coriolis terms turn the modes with up to twice the spin, which the stages of RK4 follow to 2.83 in the step.
-    /// Splitting is weaker: its steps fall into resonance with the modes, and an undamped body has been seen to blow up
-    /// at 0.2.
-    pub fn longest_turn(self) -> f64 {
-        match self {
-            Self::Conservative(ConservativeScheme::Strang) => 2.0_f64.sqrt() / 8.0,
-            _ => 2.0_f64.sqrt(),
-        }
-    }
-
-    /// Whether it estimates the error of a step.
-    pub fn estimates_error(self) -> bool {
-        matches!(self, Self::Conservative(ConservativeScheme::Exponential | ConservativeScheme::Rkmk4))
-    }
-}
+use crate::scheme::{Method, Scheme, StepLimit};
+use crate::state::MotionState;
 
 /// Everything that a run needs.
 #[derive(Debug, Clone)]
@@ -105,7 +31,7 @@ pub struct Setup<'a> {
     /// One damping ratio for each flexible mode.
     pub damping_ratios: &'a [f64],
     /// The loads.
-    pub loads: &'a [Load],
+    pub loads: &'a [SharedLoad],
     /// Effects, drives and stress.
     pub physics: &'a Physics,
     /// R, P, Q of the paper's scheme, from the body's origin, body axes.
@@ -139,9 +65,43 @@ pub struct Stats {
     pub longest: f64,
 }
 
+/// Watches a run step by step, without owning its loop.
+pub trait Observer: Send {
+    /// Sees the motion at the end of a step.
+    fn step(&mut self, now: &Observation);
+}
+
+impl<F: FnMut(&Observation) + Send> Observer for F {
+    fn step(&mut self, now: &Observation) {
+        self(now);
+    }
+}
+
+/// Those of a run; its copies have the same ones.
+#[derive(Clone, Default)]
+struct Observers(Vec<Arc<Mutex<dyn Observer>>>);
+
+impl Observers {
+    fn show(&self, now: &Observation) {
+        // An observer that panicked in another thread still sees what comes.
+        self.0.iter().for_each(|observer| observer.lock().unwrap_or_else(PoisonError::into_inner).step(now));
+    }
+}
+
+impl fmt::Debug for Observers {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} observers", self.0.len())
+    }
+}
+
 /// Where [`Simulation::advance`] has come to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Reached {
+    /// An event, by its number in the order in which they were added.
+    Event(usize),
+    /// The stop time.
+    Stop,
     /// A time at which the motion is to be observed.
     Row,
     /// Nothing yet, after as many steps as were allowed.
@@ -153,9 +113,10 @@ pub enum Reached {
 /// A run in progress. As an iterator it yields the observations after the first.
 #[derive(Debug, Clone)]
 pub struct Simulation {
-    engine: Engine,
-    /// Of the loads and the drive.
-    histories: Vec<History>,
+    scheme: Box<dyn Scheme>,
+    loads: Vec<SharedLoad>,
+    /// Of the drive.
+    drive: Option<History>,
     formula_steps: FormulaSteps,
     plan: Plan,
     walk: Walk,
@@ -167,20 +128,13 @@ pub struct Simulation {
     points: Vec<PointShapes>,
     stats: Stats,
     account: EnergyAccount,
-    attitude_account: AttitudeAccount,
-    /// Largest of ω_k and 2 ζ_k ω_k.
-    fastest_rate: f64,
     failed: bool,
-}
-
-/// The attitude is looked at after so many steps: often enough for a sum, and too seldom to cost anything.
-const STEPS_OF_ATTITUDE: u64 = 8;
-
-#[derive(Debug, Clone)]
-enum Engine {
-    Paper(Box<PaperScheme>),
-    PaperLimit(Box<PaperLimit>),
-    Conservative(Box<ConservativeMotion>),
+    events: Events,
+    /// Kept where events or times between steps are asked for.
+    last_step: Option<LastStep>,
+    /// Where events look at the motion.
+    looked_at: Observation,
+    observers: Observers,
 }
 
 /// The way through the segment of the moment.
@@ -197,90 +151,38 @@ impl Simulation {
     /// [`SetupError`]: lists of the wrong length, numbers out of range, a step beyond the limit of the method, a
     /// tolerance for a method without an error estimate.
     pub fn new(setup: &Setup) -> Result<Self, SetupError> {
-        let Setup { body, damping_ratios, loads, initial, method, .. } = *setup;
-        let positive = |what, value: f64| {
-            if value > 0.0 && value.is_finite() {
-                Ok(())
-            } else {
-                Err(SetupError::Value { what, found: value, expected: "a positive number" })
-            }
-        };
-        positive("the end", setup.end)?;
-        match setup.rows {
-            Rows::EverySteps(0) => {
-                return Err(SetupError::Value {
-                    what: "the number of steps for a row",
-                    found: 0.0,
-                    expected: "1 or more",
-                });
-            }
-            Rows::EverySteps(_) => {}
-            Rows::Interval(interval) => positive("the interval of the rows", interval)?,
-        }
-        let walk = match setup.control {
-            StepControl::Fixed(step) => {
-                check_step(setup, step)?;
-                Walk::Equal { step, steps: None }
-            }
+        setup.check()?;
+        Self::with_scheme((setup.method.begin)(setup)?, setup)
+    }
+
+    /// Begins a run by a scheme of one's own; the method of the setup is left aside.
+    ///
+    /// # Errors
+    /// [`SetupError`]: numbers out of range.
+    pub fn with_scheme(scheme: Box<dyn Scheme>, setup: &Setup) -> Result<Self, SetupError> {
+        setup.check_times()?;
+        let (step, walk) = match setup.control {
+            StepControl::Fixed(step) => (Some(step), Walk::Equal { step, steps: None }),
             StepControl::Tolerance(tolerance) => {
-                positive("the tolerance", tolerance)?;
-                if !method.estimates_error() {
-                    return Err(SetupError::NoErrorEstimate {
-                        formulation: method.formulation(),
-                        scheme: method.scheme(),
-                    });
-                }
-                Walk::Halved { tolerance, longest_try: f64::INFINITY, steps: None }
+                (None, Walk::Halved { tolerance, longest_try: f64::INFINITY, steps: None })
             }
         };
-        if !matches!(method, Method::Conservative(_)) {
-            refuse_beyond_paper(setup.physics)?;
-        }
-        let model = || ModalModel::new(body, damping_ratios, loads.to_vec());
-        let has_formula = loads.iter().any(|load| load.history.has_formula());
-        let mut energy_of_loads = 0.0;
-        if has_formula && !matches!(method, Method::Conservative(_)) {
-            let body = ConservativeBody::new(body, damping_ratios, loads.to_vec(), setup.physics)?;
-            energy_of_loads = body.energy_of_loads(setup.end);
-        }
-        let engine = match method {
-            Method::Paper => {
-                // Its own step only matters for its iterator; here the plan gives the steps.
-                let step = model()?.stable_step().1.min(setup.end);
-                Engine::Paper(Box::new(PaperScheme::new(body, model()?, setup.reference_points, initial, step)?))
-            }
-            Method::PaperRkmk4 => Engine::PaperLimit(Box::new(PaperLimit::new(body, model()?, initial)?)),
-            Method::Conservative(scheme) => {
-                let body = ConservativeBody::new(body, damping_ratios, loads.to_vec(), setup.physics)?;
-                let mut motion = ConservativeMotion::new(body, scheme, initial)?;
-                let resolved = match setup.control {
-                    StepControl::Fixed(step) => account::is_resolved(motion.fastest_rate(), step),
-                    StepControl::Tolerance(_) => false,
-                };
-                if !resolved || has_formula {
-                    energy_of_loads = motion.expect_loads_until(setup.end);
-                }
-                Engine::Conservative(Box::new(motion))
-            }
-        };
-        let fastest_rate = match &engine {
-            Engine::Paper(scheme) => scheme.fastest_rate(),
-            Engine::PaperLimit(limit) => limit.fastest_rate(),
-            Engine::Conservative(motion) => motion.fastest_rate(),
-        };
-        let of_loads = loads.iter().map(|load| &load.history);
-        let histories: Vec<History> =
-            of_loads.chain(setup.physics.drive.iter().map(|drive| &drive.history)).cloned().collect();
-        let step = match setup.control {
-            StepControl::Fixed(step) => Some(step),
-            StepControl::Tolerance(_) => None,
-        };
+        let drive = setup.physics.drive.as_ref().map(|drive| drive.history.clone());
+        let of_loads = setup.loads.iter().filter_map(|load| load.history());
+        let histories: Vec<History> = of_loads.chain(&drive).cloned().collect();
         let formula_steps = FormulaSteps::new(&histories, setup.end, step)?;
-        let corners = histories.iter().flat_map(History::corners).chain(formula_steps.stops());
+        let of_loads = setup.loads.iter().flat_map(|load| load.corners());
+        let corners = of_loads.chain(drive.iter().flat_map(History::corners)).chain(formula_steps.stops());
+        let looked_at = Observation::new(scheme.flexible(), setup.points.len());
         Ok(Self {
-            engine,
+            scheme,
+            events: Events::default(),
+            last_step: None,
+            looked_at,
+            observers: Observers::default(),
             plan: Plan::new(setup.end, corners, setup.rows),
-            histories,
+            loads: setup.loads.to_vec(),
+            drive,
             formula_steps,
             walk,
             rows: setup.rows,
@@ -289,20 +191,125 @@ impl Simulation {
             corner_ahead: false,
             points: setup.points.to_vec(),
             stats: Stats { accepted: 0, rejected: 0, evaluations: 0, shortest: f64::INFINITY, longest: 0.0 },
-            account: EnergyAccount::new(energy_of_loads),
-            attitude_account: AttitudeAccount::default(),
-            fastest_rate,
+            account: EnergyAccount::new(setup.energy_of_loads()?),
             failed: false,
         })
     }
 
     /// Time that has been reached.
     pub fn time(&self) -> f64 {
-        match &self.engine {
-            Engine::Paper(scheme) => scheme.state().time,
-            Engine::PaperLimit(limit) => limit.state().time,
-            Engine::Conservative(motion) => motion.state().time,
+        self.scheme.time()
+    }
+
+    /// The state that has been reached.
+    ///
+    /// # Errors
+    /// [`StepError`] where the inertia of the deformed body is singular.
+    pub fn state(&self) -> Result<MotionState, StepError> {
+        self.scheme.state()
+    }
+
+    /// Goes on from another state, at its time. Work, impulses and balances are counted from there.
+    ///
+    /// # Errors
+    /// [`SetupError`] for lists of the wrong length and numbers that are not finite.
+    pub fn set_state(&mut self, state: &MotionState) -> Result<(), SetupError> {
+        self.scheme.set_state(state)?;
+        self.account = EnergyAccount::new(self.account.of_loads());
+        self.go_on_from_here();
+        Ok(())
+    }
+
+    /// What steps the body. A [`ConservativeMotion`](crate::ConservativeMotion) can be had from it by
+    /// `(simulation.scheme() as &dyn Any).downcast_ref()`.
+    pub fn scheme(&self) -> &dyn Scheme {
+        &*self.scheme
+    }
+
+    /// Ends a step at this time and stops there with [`Reached::Stop`], once. `None` takes it back.
+    pub fn set_stop_time(&mut self, time: Option<f64>) {
+        self.plan.set_stop(time);
+        self.go_on_from_here();
+    }
+
+    /// Stops with [`Reached::Event`] where the event's function passes through zero, to rounding on the far side. The
+    /// time is found by shorter steps, so it is as accurate as the scheme. Returns the event's number.
+    ///
+    /// # Errors
+    /// [`StepError`] where the motion cannot be observed.
+    pub fn add_event(&mut self, event: Event) -> Result<usize, StepError> {
+        self.keep_last_step();
+        self.scheme.observe(&self.points, &mut self.looked_at)?;
+        Ok(self.events.add(event, &self.looked_at))
+    }
+
+    /// An event by its number.
+    pub fn event(&self, number: usize) -> Option<&Event> {
+        self.events.get(number)
+    }
+
+    /// Shows every step's end to an observer.
+    pub fn watch(&mut self, observer: Arc<Mutex<dyn Observer>>) {
+        self.observers.0.push(observer);
+    }
+
+    /// Keeps the start of each step from now on, for [`Self::interpolate`].
+    pub fn keep_last_step(&mut self) {
+        if self.last_step.is_none() {
+            self.last_step = Some(LastStep::new(&*self.scheme, self.points.len()));
         }
+    }
+
+    /// Fills `out` with the motion at a time inside the last step, as accurately as the scheme steps. Needs
+    /// [`Self::keep_last_step`].
+    ///
+    /// # Errors
+    /// [`StepError::OutsideLastStep`], and what [`Self::observe`] finds.
+    pub fn interpolate(&mut self, time: f64, out: &mut Observation) -> Result<(), StepError> {
+        let now = self.time();
+        let [from, to] = self.last_step.as_ref().map_or([now, now], LastStep::span);
+        if time == now {
+            return self.scheme.observe(&self.points, out);
+        }
+        match &mut self.last_step {
+            Some(step) if (from..=to.max(now)).contains(&time) => {
+                out.clone_from(step.at(time, &self.points)?);
+                Ok(())
+            }
+            _ => Err(StepError::OutsideLastStep { time, from, to: now }),
+        }
+    }
+
+    /// The steps to come start at the time that has been reached, wherever the plan was.
+    fn go_on_from_here(&mut self) {
+        self.plan.go_to(self.scheme.time());
+        match &mut self.walk {
+            Walk::Equal { steps, .. } => *steps = None,
+            Walk::Halved { steps, .. } => *steps = None,
+        }
+        self.corner_ahead = false;
+    }
+
+    /// Shows the end of a step to the observers, and finds the first event in it.
+    fn look_at_step(&mut self) -> Result<Option<usize>, StepError> {
+        if self.events.is_empty() && self.observers.0.is_empty() {
+            return Ok(None);
+        }
+        self.scheme.observe(&self.points, &mut self.looked_at)?;
+        let Self { scheme, events, last_step, looked_at, points, .. } = self;
+        let mut passed = None;
+        if let Some(step) = last_step.as_mut().filter(|_| !events.is_empty()) {
+            passed = events.first_passed(step, looked_at, points)?;
+            if passed.is_some() {
+                scheme.copy_state(step.probe());
+                scheme.observe(points, looked_at)?;
+            }
+        }
+        self.observers.show(&self.looked_at);
+        if passed.is_some() {
+            self.go_on_from_here();
+        }
+        Ok(passed.map(|(number, _)| number))
     }
 
     /// Time at which the run ends.
@@ -312,12 +319,7 @@ impl Simulation {
 
     /// Room for an observation.
     pub fn observation(&self) -> Observation {
-        let flexible = match &self.engine {
-            Engine::Paper(scheme) => scheme.state().modal_displacement.len() - 6,
-            Engine::PaperLimit(limit) => limit.state().modal_displacement.len() - 6,
-            Engine::Conservative(motion) => motion.state().modal_displacement.len(),
-        };
-        Observation::new(flexible, self.points.len())
+        Observation::new(self.scheme.flexible(), self.points.len())
     }
 
     /// Fills `out` with the motion at the time that has been reached.
@@ -326,11 +328,7 @@ impl Simulation {
     /// [`StepError`] where the inertia of the deformed body is singular, where a quantity is not a finite number, and
     /// where the energy is not what the start, the loads and the damping account for.
     pub fn observe(&mut self, out: &mut Observation) -> Result<(), StepError> {
-        match &mut self.engine {
-            Engine::Paper(scheme) => scheme.observe(&self.points, out),
-            Engine::PaperLimit(limit) => limit.observe(&self.points, out),
-            Engine::Conservative(motion) => motion.observe(&self.points, out)?,
-        }
+        self.scheme.observe(&self.points, out)?;
         if let Some(what) = out.not_finite() {
             return Err(StepError::NotFinite { time: out.time, what });
         }
@@ -340,39 +338,13 @@ impl Simulation {
     /// Whether the energy, where it was last looked at, is what it should be. Of the conservative form that is the start
     /// of the last step or the last observation, since it takes an evaluation of the rates.
     fn check_energy(&mut self) -> Result<(), StepError> {
-        let Self { engine, account, fastest_rate, stats, .. } = self;
-        match engine {
-            Engine::Paper(scheme) => account.check(&scheme.reckoning(), *fastest_rate, stats.longest),
-            Engine::PaperLimit(limit) => account.check(&limit.reckoning(), *fastest_rate, stats.longest),
-            Engine::Conservative(motion) => match motion.reckoning() {
-                Some(now) => account.check(now, *fastest_rate, stats.longest),
-                None => Ok(()),
-            },
-        }
-    }
-
-    /// Work of the loads and dissipation since the beginning.
-    fn done(&self) -> [f64; 2] {
-        match &self.engine {
-            Engine::Paper(scheme) => scheme.done(),
-            Engine::PaperLimit(limit) => limit.done(),
-            Engine::Conservative(motion) => motion.done(),
-        }
+        let Some(now) = self.scheme.reckoning() else { return Ok(()) };
+        self.account.check(&now, self.scheme.fastest_rate(), self.stats.longest)
     }
 
     /// Sum of |work of the loads| + |dissipation| of all steps so far: how much energy has come and gone.
     pub fn exchanged(&self) -> f64 {
         self.account.exchanged()
-    }
-
-    /// Whether the attitude can be right. The conservative form keeps the angular momentum; that of the paper need not.
-    fn check_attitude(&mut self) -> Result<(), StepError> {
-        let Self { engine, attitude_account, stats, .. } = self;
-        match engine {
-            Engine::Paper(scheme) => scheme.check_attitude(attitude_account, stats.longest),
-            Engine::PaperLimit(limit) => limit.check_attitude(attitude_account, stats.longest),
-            Engine::Conservative(_) => Ok(()),
-        }
     }
 
     /// Notes the state that has been reached in `out`, instead of what it held.
@@ -394,11 +366,7 @@ impl Simulation {
     }
 
     fn pass(&mut self, tape: &mut Tape) {
-        match &mut self.engine {
-            Engine::Paper(scheme) => scheme.pass(tape),
-            Engine::PaperLimit(limit) => limit.pass(tape),
-            Engine::Conservative(motion) => motion.pass(tape),
-        }
+        self.scheme.pass(tape);
         self.plan.pass(tape);
         match &mut self.walk {
             Walk::Equal { steps, .. } => pass_steps(steps, EqualSteps::BLANK, EqualSteps::pass, tape),
@@ -410,7 +378,6 @@ impl Simulation {
         tape.count(&mut self.steps_since_row);
         tape.flag(&mut self.corner_ahead);
         self.account.pass(tape);
-        self.attitude_account.pass(tape);
         let Stats { accepted, rejected, evaluations: _, shortest, longest } = &mut self.stats;
         tape.count(accepted);
         tape.count(rejected);
@@ -420,12 +387,7 @@ impl Simulation {
 
     /// What the run has cost so far.
     pub fn stats(&self) -> Stats {
-        let evaluations = match &self.engine {
-            Engine::Paper(scheme) => scheme.evaluations(),
-            Engine::PaperLimit(limit) => limit.evaluations(),
-            Engine::Conservative(motion) => motion.evaluations(),
-        };
-        Stats { evaluations, ..self.stats }
+        Stats { evaluations: self.scheme.evaluations(), ..self.stats }
     }
 
     /// Goes on to the next row, or as far as `most_steps` tries lead. Allocates nothing once each length of step has
@@ -437,9 +399,6 @@ impl Simulation {
         if self.account.is_empty() {
             self.check_energy()?;
         }
-        if self.stats.accepted == 0 {
-            self.check_attitude()?;
-        }
         for _ in 0..most_steps {
             match self.next_step() {
                 None => return Ok(Reached::End),
@@ -449,21 +408,23 @@ impl Simulation {
                     }
                     if self.corner_ahead && self.segment_is_done() {
                         self.corner_ahead = false;
-                        if let Engine::Conservative(motion) = &mut self.engine {
-                            motion.pass_corner()?;
-                        }
+                        self.scheme.pass_corner()?;
                     }
                     // Under step control, steps are tried in pairs.
                     let (count, length) = if self.is_controlled() { (2, 0.5 * h) } else { (1, h) };
                     self.stats.accepted += count;
                     self.stats.shortest = self.stats.shortest.min(length);
                     self.stats.longest = self.stats.longest.max(length);
-                    self.account.exchange(self.done());
+                    self.account.exchange(self.scheme.work_and_dissipation());
                     self.check_energy()?;
-                    if self.stats.accepted.is_multiple_of(STEPS_OF_ATTITUDE) {
-                        self.check_attitude()?;
+                    if let Some(number) = self.look_at_step()? {
+                        return Ok(Reached::Event(number));
                     }
                     self.steps_since_row += count;
+                    if self.plan.is_at_stop(self.time()) {
+                        self.plan.set_stop(None);
+                        return Ok(Reached::Stop);
+                    }
                     let at_row = match self.rows {
                         Rows::EverySteps(steps) => self.steps_since_row >= steps || end >= self.end,
                         Rows::Interval(_) => row_at_end && self.segment_is_done(),
@@ -493,8 +454,9 @@ impl Simulation {
             self.corner_ahead = segment.corner;
             // Step control does not see what swings within a step either, where all its stages fall on like phases.
             let inside = segment.start + 0.5 * segment.length;
-            let of_histories = self.histories.iter().map(|history| history.longest_step(inside));
-            let longest = of_histories.fold(self.formula_steps.longest_step(inside), f64::min);
+            let of_loads = self.loads.iter().map(|load| load.longest_step(inside));
+            let of_drive = self.drive.iter().map(|history| history.longest_step(inside));
+            let longest = of_loads.chain(of_drive).fold(self.formula_steps.longest_step(inside), f64::min);
             match &mut self.walk {
                 Walk::Equal { step, steps } => {
                     *steps = Some((EqualSteps::new(segment, step.min(longest)), segment.row));
@@ -521,13 +483,18 @@ impl Simulation {
     /// Does a step; under step control, `false` where it was rejected.
     fn try_step(&mut self, h: f64, end: f64) -> Result<bool, StepError> {
         let time = self.time();
-        match (&mut self.engine, &mut self.walk) {
-            (Engine::Conservative(motion), Walk::Halved { tolerance, longest_try, steps: Some((steps, _)) }) => {
+        let halved = self.is_controlled();
+        if let Some(step) = &mut self.last_step {
+            step.begin(&*self.scheme, h, halved);
+        }
+        match &mut self.walk {
+            Walk::Halved { tolerance, longest_try, steps: Some((steps, _)) } => {
                 // Each step may take its share of the tolerance, so that the estimates of all steps sum to it. Where the
                 // share is below rounding, a shorter step would be no better.
                 let allowed = (*tolerance * h / self.end).max(f64::EPSILON);
-                let error = match motion.controlled_steps(0.5 * h, end, allowed) {
+                let error = match self.scheme.controlled_step(h, end, allowed) {
                     Ok(estimate) => estimate / allowed,
+                    Err(error @ StepError::NoErrorEstimate { .. }) => return Err(error),
                     // A step so long that it cannot even be tried.
                     Err(_) => f64::INFINITY,
                 };
@@ -545,9 +512,7 @@ impl Simulation {
                     Err(StepError::Tolerance { time, step: h, tolerance: *tolerance })
                 }
             }
-            (Engine::Conservative(motion), _) => motion.step(h, end).map(|()| true),
-            (Engine::Paper(scheme), _) => scheme.take_step(h, end).map(|()| true),
-            (Engine::PaperLimit(limit), _) => limit.step(h, end).map(|()| true),
+            _ => self.scheme.step(h, end).map(|()| true),
         }
     }
 }
@@ -562,7 +527,7 @@ impl Iterator for Simulation {
         }
         loop {
             match self.advance(u64::MAX) {
-                Ok(Reached::Between) => {}
+                Ok(Reached::Between | Reached::Stop | Reached::Event(_)) => {}
                 Ok(Reached::End) => return None,
                 Ok(Reached::Row) => {
                     let mut out = self.observation();
@@ -592,47 +557,70 @@ fn pass_steps<S>(steps: &mut Option<(S, bool)>, blank: S, pass: fn(&mut S, &mut 
     }
 }
 
-/// Refuses a step beyond the limit of the method: that of the highest mode for Runge–Kutta, that of the spin else.
-fn check_step(setup: &Setup, step: f64) -> Result<(), SetupError> {
-    let model = ModalModel::new(setup.body, setup.damping_ratios, setup.loads.to_vec())?;
-    if setup.method.limited_by_modes() {
-        return model.check_step(step);
+impl Setup<'_> {
+    /// Refuses what the method cannot do.
+    fn check(&self) -> Result<(), SetupError> {
+        match self.control {
+            StepControl::Fixed(step) => self.check_step(step),
+            StepControl::Tolerance(_) if self.method.estimates_error => Ok(()),
+            StepControl::Tolerance(_) => {
+                let Method { formulation, scheme, .. } = self.method;
+                Err(SetupError::NoErrorEstimate { formulation, scheme })
+            }
+        }
     }
-    if !(step > 0.0 && step.is_finite()) {
-        return Err(SetupError::Value { what: "the step", found: step, expected: "a positive number" });
+
+    /// Refuses times and tolerances that are not positive.
+    fn check_times(&self) -> Result<(), SetupError> {
+        positive("the end", self.end)?;
+        match self.control {
+            StepControl::Fixed(step) => positive("the step", step)?,
+            StepControl::Tolerance(tolerance) => positive("the tolerance", tolerance)?,
+        }
+        match self.rows {
+            Rows::EverySteps(0) => {
+                let (what, expected) = ("the number of steps for a row", "1 or more");
+                Err(SetupError::Value { what, found: 0.0, expected })
+            }
+            Rows::EverySteps(_) => Ok(()),
+            Rows::Interval(interval) => positive("the interval of the rows", interval),
+        }
     }
-    if setup.method == Method::Conservative(ConservativeScheme::Strang) && !setup.loads.is_empty() {
-        check_splitting(&setup.body.circular_frequencies, step)?;
+
+    /// Refuses a step beyond the limit of the method: that of the fastest mode, or that of the spin.
+    fn check_step(&self, step: f64) -> Result<(), SetupError> {
+        let model = ModalModel::new(self.body, self.damping_ratios, self.loads.to_vec())?;
+        let StepLimit::Turn(longest_turn) = self.method.limit else { return model.check_step(step) };
+        positive("the step", step)?;
+        let driven = self.physics.drive.as_ref().map_or(0.0, |drive| match drive.motion {
+            DrivenMotion::Turn { .. } => (drive.amplitude * drive.history.largest(self.end)).abs(),
+            DrivenMotion::Slide { .. } => 0.0,
+        });
+        let spin = self.initial.omega.norm().max(driven);
+        let limit = longest_turn / spin;
+        if step <= limit { Ok(()) } else { Err(SetupError::StepBeyondSpin { step, limit, spin }) }
     }
-    let driven = setup.physics.drive.as_ref().map_or(0.0, |drive| match drive.motion {
-        DrivenMotion::Turn { .. } => (drive.amplitude * drive.history.largest(setup.end)).abs(),
-        DrivenMotion::Slide { .. } => 0.0,
-    });
-    let spin = setup.initial.omega.norm().max(driven);
-    let limit = setup.method.longest_turn() / spin;
-    if step <= limit { Ok(()) } else { Err(SetupError::StepBeyondSpin { step, limit, spin }) }
+
+    /// Scale of the energy that the loads may give the body, where it is needed: where steps do not resolve the fastest
+    /// mode, and for formulas, which may rise from nothing within a step.
+    pub(crate) fn energy_of_loads(&self) -> Result<f64, SetupError> {
+        let has_formula = self.loads.iter().filter_map(|load| load.history()).any(History::has_formula);
+        if self.method.is_of_paper() && !has_formula {
+            return Ok(0.0);
+        }
+        let body = ConservativeBody::new(self.body, self.damping_ratios, self.loads.to_vec(), self.physics)?;
+        let is_resolved = match self.control {
+            StepControl::Fixed(step) => account::is_resolved(body.fastest_rate(), step),
+            StepControl::Tolerance(_) => false,
+        };
+        Ok(if is_resolved && !has_formula { 0.0 } else { body.energy_of_loads(self.end) })
+    }
 }
 
-/// Refuses a step in which a mode turns by more than π: with x = ωh, splitting answers a static load with (x/2) cot(x/2)
-/// of the deflection, which has the wrong sign beyond π and no bound at 2π.
-fn check_splitting(circular_frequencies: &[f64], step: f64) -> Result<(), SetupError> {
-    let fastest = circular_frequencies.iter().copied().enumerate().fold((0, 0.0), |a, b| if b.1 > a.1 { b } else { a });
-    let limit = std::f64::consts::PI / fastest.1;
-    if step <= limit {
-        return Ok(());
-    }
-    let frequency = fastest.1 / std::f64::consts::TAU;
-    Err(SetupError::StepBeyondSplitting { step, limit, mode: fastest.0 + 1, frequency })
-}
-
-/// Refuses what the formulation of the paper has not got.
-fn refuse_beyond_paper(physics: &Physics) -> Result<(), SetupError> {
-    let what = if physics.drive.is_some() {
-        "driven motion"
-    } else if physics.load_stiffness.is_some() {
-        "geometric stiffening"
+fn positive(what: &'static str, found: f64) -> Result<(), SetupError> {
+    if found > 0.0 && found.is_finite() {
+        Ok(())
     } else {
-        return Ok(());
-    };
-    Err(SetupError::NotInPaper { what })
+        Err(SetupError::Value { what, found, expected: "a positive number" })
+    }
 }

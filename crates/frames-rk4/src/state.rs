@@ -8,6 +8,46 @@ use crate::checkpoint::Tape;
 use crate::error::SetupError;
 use crate::initial::Initial;
 
+/// A state in quantities that every formulation has.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MotionState {
+    /// Time.
+    pub time: f64,
+    /// Attitude of the body frame.
+    pub attitude: Attitude,
+    /// Position of the body's origin, global components.
+    pub origin_global: Vector3<f64>,
+    /// Velocity of the body's origin, global components.
+    pub velocity_global: Vector3<f64>,
+    /// Angular velocity of the body frame, body components.
+    pub omega_body: Vector3<f64>,
+    /// Flexible modal displacements (nf).
+    pub modal_displacement: Vec<f64>,
+    /// Their rates as seen from the body frame (nf).
+    pub modal_velocity: Vec<f64>,
+}
+
+impl MotionState {
+    /// Refuses lists of the wrong length and numbers that are not finite.
+    pub(crate) fn check(&self, flexible: usize) -> Result<(), SetupError> {
+        for (what, list) in [
+            ("the list of modal displacements", &self.modal_displacement),
+            ("the list of modal velocities", &self.modal_velocity),
+        ] {
+            if list.len() != flexible {
+                return Err(SetupError::Length { what, expected: flexible, found: list.len() });
+            }
+        }
+        let Self { time, origin_global, velocity_global, omega_body, modal_displacement, modal_velocity, .. } = self;
+        let vectors = [origin_global, velocity_global, omega_body].into_iter().flatten();
+        let numbers = std::iter::once(time).chain(vectors).chain(modal_displacement).chain(modal_velocity);
+        match numbers.copied().find(|x| !x.is_finite()) {
+            Some(found) => Err(SetupError::Value { what: "a value of the state", found, expected: "a finite number" }),
+            None => Ok(()),
+        }
+    }
+}
+
 /// State at one time, in the inertial frame that coincides with the (dummy) rigid body then.
 ///
 /// Modal lists have 6+nf entries: three translations, three rotations, then the flexible modes. They are components
@@ -38,7 +78,7 @@ impl State {
         let (modal_displacement, modal_velocity) = initial.modal_state(body)?;
         Ok(Self {
             time: 0.0,
-            attitude: Attitude::identity(),
+            attitude: initial.attitude,
             origin_global: body.origin,
             modal_acceleration: vec![0.0; modal_velocity.len()],
             modal_displacement,
@@ -46,6 +86,16 @@ impl State {
             omega_body: Vector3::zeros(),
             alpha_body: Vector3::zeros(),
         })
+    }
+
+    /// Takes over another state of the same body, without allocating.
+    pub(crate) fn copy_from(&mut self, other: &Self) {
+        let Self { time, attitude, origin_global, omega_body, alpha_body, .. } = other;
+        (self.time, self.attitude, self.origin_global) = (*time, *attitude, *origin_global);
+        (self.omega_body, self.alpha_body) = (*omega_body, *alpha_body);
+        self.modal_displacement.copy_from_slice(&other.modal_displacement);
+        self.modal_velocity.copy_from_slice(&other.modal_velocity);
+        self.modal_acceleration.copy_from_slice(&other.modal_acceleration);
     }
 
     pub(crate) fn pass(&mut self, tape: &mut Tape) {

@@ -5,7 +5,7 @@ mod common;
 
 use allocation_counter::measure;
 use frames_rk4::{
-    ConservativeScheme, Expression, History, Initial, Method, Physics, Reached, Rows, Setup, Simulation, StepControl,
+    Expression, History, Initial, Method, Physics, Reached, Rows, Setup, Simulation, StepControl,
     Table,
 };
 use nalgebra::Vector3;
@@ -61,7 +61,7 @@ fn steps_and_rows_of_a_run_allocate_nothing_once_the_step_is_known() {
     for method in Method::ALL {
         assert_eq!(allocations(simulation(method, StepControl::Fixed(5e-5), 1.0), 1), 0, "{method:?}");
     }
-    for scheme in [ConservativeScheme::Exponential, ConservativeScheme::Rkmk4] {
+    for scheme in [ConservativeScheme::Exponential::Rkmk4] {
         let method = Method::Conservative(scheme);
         assert_eq!(allocations(simulation(method, StepControl::Tolerance(1e-6), 1.0), 200), 0, "{method:?}");
     }

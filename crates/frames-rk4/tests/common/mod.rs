@@ -1,9 +1,11 @@
 //! Real bodies for the tests, each solved once: the paper's plate, and a notched ring with curved elements.
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use fem_tet10::{Material, Materials, Matrices, Mesh, PointMass, assemble, read_msh};
-use frames_rk4::{History, Initial, Load, ModalModel, PaperScheme, PointShapes};
+use frames_rk4::{
+    History, Initial, ModalModel, PaperScheme, PointForce, PointShapes, Scheme, SharedLoad, State, StepError,
+};
 use modal::{BodyPoint, Modes, ReducedBody, Solver, Support};
 use nalgebra::Vector3;
 
@@ -86,15 +88,20 @@ impl Specimen {
     }
 
     /// A dead half-sine that begins at zero.
-    pub fn half_sine(&self, at: [f64; 3], force_global: [f64; 3], duration: f64) -> Load {
-        let history = History::HalfSine { start: 0.0, duration };
-        Load::dead_force(self.point(at), force_global.into(), history)
+    pub fn half_sine(&self, at: [f64; 3], force_global: [f64; 3], duration: f64) -> SharedLoad {
+        self.pulse(at, force_global, 0.0, duration)
     }
 
-    pub fn scheme(&self, damping_ratio: f64, loads: Vec<Load>, initial: &Initial, step: f64) -> PaperScheme {
+    /// A dead half-sine from `start` on.
+    pub fn pulse(&self, at: [f64; 3], force_global: [f64; 3], start: f64, duration: f64) -> SharedLoad {
+        dead_force(self.point(at), force_global.into(), History::HalfSine { start, duration })
+    }
+
+    pub fn scheme(&self, damping_ratio: f64, loads: Vec<SharedLoad>, initial: &Initial, step: f64) -> Stepped {
         let ratios = vec![damping_ratio; self.body.flexible()];
         let model = ModalModel::new(&self.body, &ratios, loads).unwrap();
-        PaperScheme::new(&self.body, model, self.reference_points_body(), initial, step).unwrap()
+        let scheme = PaperScheme::new(&self.body, model, self.reference_points_body(), initial).unwrap();
+        Stepped { scheme, step, done: 0 }
     }
 
     /// No motion but a spin.
@@ -103,8 +110,33 @@ impl Specimen {
     }
 }
 
+/// A dead force.
+pub fn dead_force(point: PointShapes, force: Vector3<f64>, history: History) -> SharedLoad {
+    Arc::new(PointForce::dead(point, force, history))
+}
+
+/// The paper's scheme in equal steps.
+#[derive(Debug, Clone)]
+pub struct Stepped {
+    pub scheme: PaperScheme,
+    pub step: f64,
+    pub done: u64,
+}
+
+impl Stepped {
+    pub fn step(&mut self) -> Result<&State, StepError> {
+        self.scheme.step(self.step, (self.done + 1) as f64 * self.step)?;
+        self.done += 1;
+        Ok(self.scheme.state())
+    }
+
+    pub fn state(&self) -> &State {
+        self.scheme.state()
+    }
+}
+
 /// Makes `steps` steps.
-pub fn advance(scheme: &mut PaperScheme, steps: usize) {
+pub fn advance(scheme: &mut Stepped, steps: usize) {
     for _ in 0..steps {
         scheme.step().unwrap();
     }

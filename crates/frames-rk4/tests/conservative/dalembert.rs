@@ -7,7 +7,7 @@
 
 use faer::sparse::SparseColMatRef;
 use frames_rk4::{
-    ConservativeBody, ConservativeMotion, ConservativeScheme, Initial, Load, Observation, Physics, Rows, StepControl,
+    ConservativeBody, ConservativeMotion, Initial, Load, Observation, Physics, Rows, StepControl,
 };
 use nalgebra::Vector3;
 
@@ -136,7 +136,7 @@ fn accelerations_balance_all_forces_at_the_nodes() {
 fn modal_momenta_are_projections_of_the_velocities() {
     let ring = ring();
     let body = ConservativeBody::new(&ring.body, &[0.0; 10], vec![], &Physics::default()).unwrap();
-    let motion = ConservativeMotion::new(body, ConservativeScheme::Exponential, &start()).unwrap();
+    let motion = ConservativeMotion::new(body::Exponential, &start()).unwrap();
     let u = field(ring, &start().modal_displacement);
     let v = field(ring, &start().modal_velocity);
     let x = undeformed(ring);

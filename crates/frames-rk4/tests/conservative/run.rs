@@ -1,7 +1,7 @@
 //! A run of a body, with what the tests vary, and how far its end is from that of another.
 
 use frames_rk4::{
-    ConservativeScheme, Initial, Load, Method, Observation, Physics, PointShapes, Rows, Setup, SetupError, Simulation,
+    Initial, Method, Observation, Physics, PointShapes, Rows, Setup, SetupError, SharedLoad, Simulation,
     StepControl,
 };
 use modal::ReducedBody;
@@ -9,16 +9,15 @@ use nalgebra::Vector3;
 
 use crate::common::Specimen;
 
-pub const RKMK4: Method = Method::Conservative(ConservativeScheme::Rkmk4);
-pub const EXPONENTIAL: Method = Method::Conservative(ConservativeScheme::Exponential);
-pub const STRANG: Method = Method::Conservative(ConservativeScheme::Strang);
+pub const RKMK4: Method = Method::RKMK4;
+pub const EXPONENTIAL: Method = Method::EXPONENTIAL;
 
 #[derive(Debug, Clone)]
 pub struct Run<'a> {
     pub body: &'a ReducedBody,
     pub reference_points: [Vector3<f64>; 3],
     pub damping_ratio: f64,
-    pub loads: Vec<Load>,
+    pub loads: Vec<SharedLoad>,
     pub initial: Initial,
     pub end: f64,
     pub points: Vec<PointShapes>,

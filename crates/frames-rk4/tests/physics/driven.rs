@@ -85,7 +85,7 @@ fn a_driven_slide_is_a_base_acceleration() {
         },
     );
     let acceleration = 1.2 * std::f64::consts::PI / 4.0;
-    run.loads = vec![frames_rk4::Load::dead_force(
+    run.loads = vec![crate::sample::dead_force(
         center,
         -direction * body.mass * acceleration,
         History::HalfSine { start: -2.0, duration: 4.0 },

@@ -1,10 +1,10 @@
 //! Bodies that are held.
 
-use frames_rk4::{History, Load, Rows, StepControl};
+use frames_rk4::{History, Rows, StepControl};
 use modal::RigidMotion;
 use nalgebra::Vector3;
 
-use crate::sample::{EXPONENTIAL, MASS, RKMK4, Run, body, point};
+use crate::sample::{EXPONENTIAL, MASS, RKMK4, Run, body, point, dead_force};
 
 fn axis() -> Vector3<f64> {
     Vector3::new(1.0, 2.0, -2.0) / 3.0
@@ -82,7 +82,7 @@ fn a_compound_pendulum_has_the_period_of_the_elliptic_integral() {
     let down = Vector3::new(largest.cos(), largest.sin(), 0.0);
     let mut run = Run::new(&pendulum, 1.0);
     let weight = point(&pendulum, pendulum.center_of_mass.into());
-    run.loads = vec![Load::dead_force(weight, down * MASS * gravity, History::Constant)];
+    run.loads = vec![dead_force(weight, down * MASS * gravity, History::Constant)];
     run.initial.omega = Vector3::zeros();
     let period = pendulum_period(pendulum.inertia[(2, 2)], MASS * gravity * 0.7, largest);
     run.end = period;
@@ -110,7 +110,7 @@ fn a_heavy_top_keeps_its_energy_and_the_momenta_that_gravity_leaves() {
     // The body axes begin as the global ones: the vertical is tilted instead.
     let up = Vector3::new(0.0, tilt.sin(), tilt.cos());
     let mut run = Run::new(&top, 10.0);
-    run.loads = vec![Load::dead_force(point(&top, [0.0, 0.0, 1.0]), -20.0 * up, History::Constant)];
+    run.loads = vec![dead_force(point(&top, [0.0, 0.0, 1.0]), -20.0 * up, History::Constant)];
     run.initial.omega = Vector3::new(0.0, 0.0, 50.0);
     let [first, last] = run.ends(EXPONENTIAL, 1e-3);
     let energy = |o: &frames_rk4::Observation| o.energy() + 20.0 * up.dot(&o.position_global);

@@ -1,53 +1,57 @@
 //! Loads beside dead forces.
 
+use std::sync::Arc;
+
 use faer::Mat;
-use frames_rk4::{Action, BodyField, History, Load, LoadFrame, RotationShapes};
+use frames_rk4::{BodyField, FieldLoad, History, LoadFrame, PointForce, PointMoment, RotationShapes, SharedLoad};
 use modal::RigidMotion;
 use nalgebra::Vector3;
 
-use crate::sample::{EXPONENTIAL, RKMK4, Run, body, point};
+use crate::sample::{EXPONENTIAL, RKMK4, Run, body, dead_force, point};
 
 const PULSE: History = History::HalfSine { start: 0.2, duration: 1.5 };
 
-fn force(frame: LoadFrame) -> Action {
+fn force(frame: LoadFrame) -> SharedLoad {
     let body = body(RigidMotion::Free, &[5.0, 8.0, 13.0]);
-    Action::Force { point: point(&body, [0.5, -0.2, 0.4]), force: Vector3::new(0.5, 1.0, -0.7), frame }
+    let (point, force) = (point(&body, [0.5, -0.2, 0.4]), Vector3::new(0.5, 1.0, -0.7));
+    Arc::new(PointForce { point, force, frame, history: PULSE })
 }
 
-fn moment(frame: LoadFrame) -> Action {
+fn moment(frame: LoadFrame) -> SharedLoad {
     let body = body(RigidMotion::Free, &[5.0, 8.0, 13.0]);
     let rotation = RotationShapes::new(&body, Mat::from_fn(3, 3, |i, k| 0.1 * (i as f64 - k as f64)).as_ref());
-    Action::Moment { rotation, moment: Vector3::new(0.4, -0.9, 0.3), frame }
+    Arc::new(PointMoment { rotation, moment: Vector3::new(0.4, -0.9, 0.3), frame, history: PULSE })
 }
 
-fn field() -> Action {
-    Action::Field(BodyField {
+fn field() -> SharedLoad {
+    let field = BodyField {
         force_body: Vector3::new(0.2, 0.5, -0.4),
         moment_body: Vector3::new(-0.3, 0.2, 0.6),
         modal: vec![0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.3, -0.2, 0.4],
         lever: (0..3).map(|k| Vector3::new(0.1, 0.05 * k as f64, -0.1)).collect(),
-    })
+    };
+    Arc::new(FieldLoad { field, history: PULSE })
 }
 
 #[test]
 fn work_and_impulses_of_every_load_close_the_balances() {
     let body = body(RigidMotion::Free, &[5.0, 8.0, 13.0]);
     let [global, follower] = [LoadFrame::Global, LoadFrame::Body];
-    for action in [force(global), force(follower), moment(global), moment(follower), field()] {
+    for load in [force(global), force(follower), moment(global), moment(follower), field()] {
         let mut run = Run::new(&body, 3.0);
-        run.loads = vec![Load { action: action.clone(), history: PULSE }];
+        run.loads = vec![load.clone()];
         for method in [EXPONENTIAL, RKMK4] {
             let gap = |step: f64| {
                 let [first, last] = run.ends(method, step);
                 let angular = last.angular_balance_global() - first.angular_balance_global();
                 let energy = (last.energy_balance() - first.energy_balance()).abs() / first.energy();
                 assert!((last.linear_balance_global() - first.linear_balance_global()).norm() < 1e-13);
-                assert!((last.work.work / first.energy()).abs() > 1e-3, "{action:?} does nothing");
+                assert!((last.work.work / first.energy()).abs() > 1e-3, "{load:?} does nothing");
                 [energy, angular.norm() / first.angular_momentum_global.norm()]
             };
             let (coarse, fine) = (gap(2e-2), gap(5e-3));
             for (coarse, fine) in coarse.into_iter().zip(fine) {
-                assert!(fine < 1e-6 && (coarse / fine > 100.0 || fine < 1e-11), "{action:?}: {coarse:e} {fine:e}");
+                assert!(fine < 1e-6 && (coarse / fine > 100.0 || fine < 1e-11), "{load:?}: {coarse:e} {fine:e}");
             }
         }
     }
@@ -62,8 +66,8 @@ fn followers_follow() {
     let mut run = Run::new(&rigid, 2.0);
     run.initial.omega = Vector3::zeros();
     let rotation = RotationShapes::new(&rigid, Mat::zeros(3, 0).as_ref());
-    let action = Action::Moment { rotation, moment: Vector3::new(0.0, 0.0, 6.0), frame: LoadFrame::Body };
-    run.loads = vec![Load { action, history: History::Constant }];
+    let (moment, frame, history) = (Vector3::new(0.0, 0.0, 6.0), LoadFrame::Body, History::Constant);
+    run.loads = vec![Arc::new(PointMoment { rotation, moment, frame, history })];
     let [_, last] = run.ends(EXPONENTIAL, 1e-2);
     assert!((last.omega_body - Vector3::new(0.0, 0.0, 3.0)).norm() < 1e-12);
 
@@ -71,8 +75,8 @@ fn followers_follow() {
     // turning force, F/(m Ω) (sin Ωt, 1 − cos Ωt).
     run.initial.velocity = Vector3::zeros();
     run.initial.omega = Vector3::new(0.0, 0.0, 1.5);
-    let action = Action::Force { point: point(&rigid, [0.0; 3]), force: Vector3::x(), frame: LoadFrame::Body };
-    run.loads = vec![Load { action, history: History::Constant }];
+    let (point, force, history) = (point(&rigid, [0.0; 3]), Vector3::x(), History::Constant);
+    run.loads = vec![Arc::new(PointForce { point, force, frame: LoadFrame::Body, history })];
     let [_, last] = run.ends(EXPONENTIAL, 5e-3);
     let (omega, t) = (1.5_f64, 2.0);
     let expected = Vector3::new((omega * t).sin(), 1.0 - (omega * t).cos(), 0.0) / (rigid.mass * omega);
@@ -88,7 +92,7 @@ fn a_jump_costs_no_accuracy() {
     run.initial.modal_displacement.fill(0.0);
     run.initial.modal_velocity.fill(0.0);
     let (load, force) = (point(&body, [0.0; 3]), Vector3::new(1.0, 2.0, 3.0));
-    run.loads = vec![Load::dead_force(load, force, History::Step { at: 0.7 })];
+    run.loads = vec![dead_force(load, force, History::Step { at: 0.7 })];
     let modal_force = modal_force(&body, force);
     let [_, last] = run.ends(EXPONENTIAL, 0.3);
     // q = f/ω² (1 − cos ω(t − 0.7)): the exponential scheme has a constant load exactly.
@@ -103,7 +107,7 @@ fn modal_force(body: &modal::ReducedBody, force: Vector3<f64>) -> Vec<f64> {
     let mut run = Run::new(body, 1e-6);
     run.initial.modal_displacement.fill(0.0);
     run.initial.modal_velocity.fill(0.0);
-    run.loads = vec![Load::dead_force(point(body, [0.0; 3]), force, History::Constant)];
+    run.loads = vec![dead_force(point(body, [0.0; 3]), force, History::Constant)];
     let [first, _] = run.ends(EXPONENTIAL, 1e-6);
     first.modal_acceleration
 }

@@ -1,14 +1,22 @@
 //! A body of made-up constants, and runs of it.
 
+use std::sync::Arc;
+
 use faer::Mat;
 use frames_rk4::{
-    ConservativeScheme, Initial, Load, Method, Observation, Physics, PointShapes, Rows, Setup, Simulation, StepControl,
+    History, Initial, Method, Observation, Physics, PointForce, PointShapes, Rows, Setup, SharedLoad, Simulation,
+    StepControl,
 };
 use modal::{BodyPoint, ReducedBody, RigidMotion};
 use nalgebra::{Matrix3, Vector3};
 
-pub const EXPONENTIAL: Method = Method::Conservative(ConservativeScheme::Exponential);
-pub const RKMK4: Method = Method::Conservative(ConservativeScheme::Rkmk4);
+pub const EXPONENTIAL: Method = Method::EXPONENTIAL;
+pub const RKMK4: Method = Method::RKMK4;
+
+/// A dead force.
+pub fn dead_force(point: PointShapes, force: Vector3<f64>, history: History) -> SharedLoad {
+    Arc::new(PointForce::dead(point, force, history))
+}
 
 pub const MASS: f64 = 1.5;
 
@@ -57,6 +65,7 @@ pub fn point(body: &ReducedBody, at: [f64; 3]) -> PointShapes {
 
 /// A start with everything in motion.
 pub fn start(flexible: usize) -> Initial {
+    attitude: rigid_kin::Attitude::identity(),
     Initial {
         velocity: Vector3::new(0.3, -0.2, 0.5),
         omega: Vector3::new(1.0, -0.6, 0.8),
@@ -68,7 +77,7 @@ pub fn start(flexible: usize) -> Initial {
 pub struct Run<'a> {
     pub body: &'a ReducedBody,
     pub damping_ratio: f64,
-    pub loads: Vec<Load>,
+    pub loads: Vec<SharedLoad>,
     pub physics: Physics,
     pub initial: Initial,
     pub end: f64,

@@ -1,12 +1,13 @@
 //! Motions that are known exactly.
 
-use frames_rk4::{BodyMotion, Initial, Load};
+use frames_rk4::{BodyMotion, Initial, SharedLoad};
 use nalgebra::Vector3;
 use rigid_kin::{Attitude, RigidBody, RigidState, Wrench};
 
 use crate::common::{Specimen, advance, plate, ring};
 
 fn tumbling() -> Initial {
+    attitude: rigid_kin::Attitude::identity(),
     Initial {
         velocity: Vector3::new(300.0, -100.0, 50.0),
         omega: Vector3::new(4.0, -6.0, 7.0),
@@ -48,7 +49,7 @@ fn a_force_at_the_centre_of_mass_gives_the_sums_of_rk4() {
     let center = plate.body.center_of_mass;
     let force = Vector3::new(3.0, -2.0, 5.0);
     let load = plate.half_sine(center.into(), force.into(), 0.1);
-    let (history, h) = (load.history.clone(), 1e-3);
+    let (history, h) = (load.history().unwrap().clone(), 1e-3);
     let mut scheme = plate.scheme(0.0, vec![load], &Initial::at_rest(0), h);
     let motion = BodyMotion::new(&plate.body).unwrap();
     let (mut position, mut velocity) = (center, Vector3::zeros());
@@ -113,7 +114,7 @@ fn without_loads_linear_momentum_is_kept_to_rounding_and_the_path_leans() {
 const FORCE: Vector3<f64> = Vector3::new(2.0, 0.0, 5.0);
 
 /// A rigid ring that turns about the normal of its plane of symmetry, driven by a force in this plane.
-fn turning_in_plane(reference_points: [[f64; 3]; 3]) -> (Specimen, Load, Initial) {
+fn turning_in_plane(reference_points: [[f64; 3]; 3]) -> (Specimen, SharedLoad, Initial) {
     let mut ring = ring().truncated(0);
     ring.reference_points = reference_points;
     let load = ring.half_sine([-100.0, 0.0, 0.0], FORCE.into(), 0.1);
@@ -127,7 +128,7 @@ fn plane_motion_under_a_dead_force_tends_to_that_of_a_rigid_body() {
     let rigid = RigidBody::new(ring.body.mass, ring.body.inertia).unwrap();
     let motion = BodyMotion::new(&ring.body).unwrap();
     let at = ring.point([-100.0, 0.0, 0.0]).position_body();
-    let wrench = |t: f64, attitude: &Attitude| Wrench::dead_force(attitude, &at, &(FORCE * load.history.at(t, t)));
+    let wrench = |t: f64, attitude: &Attitude| Wrench::dead_force(attitude, &at, &(FORCE * load.history().unwrap().at(t, t)));
     let mut expected = RigidState {
         attitude: Attitude::identity(),
         omega_body: initial.omega,

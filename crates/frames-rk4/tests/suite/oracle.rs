@@ -1,16 +1,17 @@
 //! The condensed scheme equals the literal one to rounding.
 
-use frames_rk4::{Initial, PaperScheme, State};
+use frames_rk4::{Initial, State};
 use nalgebra::{DVector, Vector3};
 use rigid_kin::Attitude;
 
-use crate::common::{Specimen, advance, ring};
+use crate::common::{Specimen, Stepped, advance, ring};
 use crate::literal::{Literal, NodeForce, Reading};
 
 const DAMPING: f64 = 0.02;
 
 /// Tumbling at 10 rad/s with vibration.
 fn start(specimen: &Specimen) -> Initial {
+    attitude: rigid_kin::Attitude::identity(),
     let nf = specimen.body.flexible();
     Initial {
         velocity: Vector3::new(300.0, -100.0, 50.0),
@@ -25,7 +26,7 @@ fn force(specimen: &Specimen) -> NodeForce {
     NodeForce { node, force_global: Vector3::new(2.0, -1.0, 3.0), duration: 0.03 }
 }
 
-fn condensed(specimen: &Specimen, step: f64) -> PaperScheme {
+fn condensed(specimen: &Specimen, step: f64) -> Stepped {
     let NodeForce { node, force_global, duration } = force(specimen);
     let load = specimen.half_sine(specimen.mesh.positions()[node], force_global.into(), duration);
     specimen.scheme(DAMPING, vec![load], &start(specimen), step)
@@ -33,7 +34,7 @@ fn condensed(specimen: &Specimen, step: f64) -> PaperScheme {
 
 /// The literal scheme from the physical velocity field `V + ω×(X + u) + Ψ_f q̇`.
 fn literal(specimen: &Specimen, reading: Reading, step: f64) -> Literal {
-    let Initial { velocity, omega, modal_displacement, modal_velocity } = start(specimen);
+    let Initial { velocity, omega, modal_displacement, modal_velocity, .. } = start(specimen);
     let shapes = &specimen.modes.shapes;
     let expand = |coordinates: &[f64]| {
         DVector::from_fn(shapes.nrows(), |i, _| coordinates.iter().enumerate().map(|(k, q)| shapes[(i, k)] * q).sum())

@@ -1,6 +1,6 @@
 //! The paper's scheme converges with first order to the limit equation, which is solved here on its own.
 
-use frames_rk4::{Initial, Load, ModalModel, PaperLimit};
+use frames_rk4::{Initial, ModalModel, PaperLimit, Scheme, SharedLoad};
 use nalgebra::{DVector, Matrix3, Vector3};
 
 use crate::common::{Specimen, advance, plate};
@@ -10,6 +10,7 @@ const END: f64 = 0.2;
 
 /// Tumbling at 10 rad/s with vibration.
 fn start() -> Initial {
+    attitude: rigid_kin::Attitude::identity(),
     Initial {
         velocity: Vector3::zeros(),
         omega: Vector3::new(5.0, 5.0, 7.0),
@@ -18,7 +19,7 @@ fn start() -> Initial {
     }
 }
 
-fn load(specimen: &Specimen) -> Load {
+fn load(specimen: &Specimen) -> SharedLoad {
     specimen.half_sine([-500.0, 0.0, 10.0], [20.0, 10.0, 30.0], 0.5)
 }
 

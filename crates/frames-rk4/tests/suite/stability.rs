@@ -1,14 +1,26 @@
 //! RK4 on the modes: the limit 2.83/ω_max that steps are checked against is where the motion starts to grow.
 
-use frames_rk4::{Initial, ModalModel, PaperScheme, SetupError};
+use frames_rk4::{Initial, Method, Physics, Rows, Setup, SetupError, Simulation, StepControl};
 
 use crate::common::{Specimen, advance, plate};
 
 /// The refusal of a step of a millisecond.
 fn refusal(specimen: &Specimen, damping_ratio: f64) -> SetupError {
     let nf = specimen.body.flexible();
-    let model = ModalModel::new(&specimen.body, &vec![damping_ratio; nf], vec![]).unwrap();
-    PaperScheme::new(&specimen.body, model, specimen.reference_points_body(), &Initial::at_rest(nf), 1e-3).unwrap_err()
+    Simulation::new(&Setup {
+        body: &specimen.body,
+        damping_ratios: &vec![damping_ratio; nf],
+        loads: &[],
+        physics: &Physics::default(),
+        reference_points: specimen.reference_points_body(),
+        initial: &Initial::at_rest(nf),
+        method: Method::PAPER,
+        control: StepControl::Fixed(1e-3),
+        end: 1.0,
+        rows: Rows::EverySteps(1),
+        points: &[],
+    })
+    .unwrap_err()
 }
 
 #[test]

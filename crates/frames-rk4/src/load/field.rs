@@ -1,0 +1,54 @@
+//! Forces on many nodes that are fixed in body axes, such as a pressure.
+
+use nalgebra::Vector3;
+
+use super::{Applied, Kinematics, Load, LoadFrame, Pattern, check_vector};
+use crate::error::SetupError;
+use crate::history::History;
+
+/// Forces f_i on nodes, body components, in modal coordinates.
+#[derive(Debug, Clone)]
+pub struct BodyField {
+    /// Σ f_i.
+    pub force_body: Vector3<f64>,
+    /// Σ X_i × f_i.
+    pub moment_body: Vector3<f64>,
+    /// Ψᵀ f, rigid and flexible modes (6+nf).
+    pub modal: Vec<f64>,
+    /// Σ Φ_k,i × f_i for each flexible mode: what a deformation adds to the moment (nf).
+    pub lever: Vec<Vector3<f64>>,
+}
+
+/// A field of forces times a history.
+#[derive(Debug, Clone)]
+pub struct FieldLoad {
+    /// The forces where the history is 1.
+    pub field: BodyField,
+    /// The factor on them.
+    pub history: History,
+}
+
+impl Load for FieldLoad {
+    fn apply(&self, motion: &Kinematics, applied: &mut Applied) {
+        applied.field(&self.field, motion.factor(&self.history));
+    }
+
+    fn history(&self) -> Option<&History> {
+        Some(&self.history)
+    }
+
+    fn pattern(&self) -> Option<Pattern> {
+        let columns = self.field.modal.iter().map(|f| Vector3::x() * *f).collect();
+        Some(Pattern { columns, vector: Vector3::x(), frame: LoadFrame::Body, local: false })
+    }
+
+    fn check(&self, flexible: usize) -> Result<(), SetupError> {
+        self.history.check()?;
+        let BodyField { force_body, moment_body, modal, lever } = &self.field;
+        let levers = lever.iter().flat_map(|lever| lever.iter());
+        if let Some(found) = moment_body.iter().chain(modal).chain(levers).copied().find(|f| !f.is_finite()) {
+            return Err(SetupError::Value { what: "a field of forces", found, expected: "a finite number" });
+        }
+        check_vector("a field of forces", force_body, lever.len().min(modal.len().saturating_sub(6)), flexible)
+    }
+}

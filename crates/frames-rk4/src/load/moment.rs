@@ -1,0 +1,41 @@
+//! A moment at a place of the body.
+
+use nalgebra::Vector3;
+
+use super::{Applied, Kinematics, Load, LoadFrame, Pattern, check_vector};
+use crate::error::SetupError;
+use crate::history::History;
+use crate::motion::RotationShapes;
+
+/// A moment.
+#[derive(Debug, Clone)]
+pub struct PointMoment {
+    /// How the place where it acts is turned by the modes.
+    pub rotation: RotationShapes,
+    /// Moment where the history is 1, components in the axes of `frame`.
+    pub moment: Vector3<f64>,
+    /// Its axes.
+    pub frame: LoadFrame,
+    /// The factor on it.
+    pub history: History,
+}
+
+impl Load for PointMoment {
+    fn apply(&self, motion: &Kinematics, applied: &mut Applied) {
+        applied.moment(&self.rotation, &(motion.to_body(&self.moment, self.frame) * motion.factor(&self.history)));
+    }
+
+    fn history(&self) -> Option<&History> {
+        Some(&self.history)
+    }
+
+    fn pattern(&self) -> Option<Pattern> {
+        let columns = self.rotation.columns().to_vec();
+        Some(Pattern { columns, vector: self.moment, frame: self.frame, local: true })
+    }
+
+    fn check(&self, flexible: usize) -> Result<(), SetupError> {
+        self.history.check()?;
+        check_vector("a moment", &self.moment, self.rotation.flexible(), flexible)
+    }
+}
