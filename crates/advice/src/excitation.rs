@@ -154,7 +154,7 @@ impl Spin {
         if largest_of(momentum) * case.end > turn {
             (sources, momentum) = met(f64::INFINITY);
         }
-        let directions = directions(body);
+        let directions = body.motion.rotation_projector();
         let certain = (directions * case.initial.omega).norm();
         let torque_free = sources.iter().all(|s| s.rotation * s.impulse() <= 1e-12 * initial);
         let omega = case.initial.omega;
@@ -215,13 +215,4 @@ fn polhode(inertia: &Matrix3<f64>, omega: &Vector3<f64>) -> f64 {
         }
     }
     DEFORMED * largest.sqrt()
-}
-
-/// Projection on the directions of ω that the rigid motions leave.
-fn directions(body: &ReducedBody) -> Matrix3<f64> {
-    match body.motion {
-        modal::RigidMotion::Free | modal::RigidMotion::Pin { .. } => Matrix3::identity(),
-        modal::RigidMotion::Hinge { axis, .. } => axis * axis.transpose(),
-        modal::RigidMotion::Slider { .. } | modal::RigidMotion::Clamp { .. } => Matrix3::zeros(),
-    }
 }

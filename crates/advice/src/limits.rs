@@ -70,11 +70,7 @@ fn certain_spin(case: &Case) -> Option<(Vector3<f64>, f64)> {
             axis * (drive.amplitude * Course::new(&drive.history, case.end).largest)
         }
         Some((DrivenMotion::Slide { .. }, _)) => Vector3::zeros(),
-        None => match case.body.motion {
-            modal::RigidMotion::Free | modal::RigidMotion::Pin { .. } => case.initial.omega,
-            modal::RigidMotion::Hinge { axis, .. } => axis * axis.dot(&case.initial.omega),
-            modal::RigidMotion::Slider { .. } | modal::RigidMotion::Clamp { .. } => Vector3::zeros(),
-        },
+        None => case.body.motion.rotation_projector() * case.initial.omega,
     };
     let speed = omega.norm();
     (speed > 0.0).then(|| (omega / speed, speed))

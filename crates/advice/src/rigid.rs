@@ -1,7 +1,5 @@
 //! The motion of the body as a whole: what excites it, and how a change of its spin adds up.
 
-use modal::RigidMotion;
-
 use crate::case::Case;
 use crate::excitation::{Source, Spin};
 use crate::response::{Response, norm, relative};
@@ -20,7 +18,7 @@ pub(crate) fn attitude_change(case: &Case, spin: &Spin, momentum: f64, vibration
 
 /// How far two neighbouring motions of a rigid body move apart: near its middle axis they do so exponentially.
 fn separation(case: &Case, spin: &Spin) -> f64 {
-    if case.body.motion.count() < 3 || matches!(case.body.motion, RigidMotion::Slider { .. }) {
+    if case.body.motion.rotations().len() < 3 {
         return 1.0;
     }
     let eigen = case.body.inertia.symmetric_eigen();

@@ -18,7 +18,7 @@
 //! zero otherwise. With stiffening, N_ij is `N_ij − Ψ_fᵀ K_ij Ψ_f`.
 
 use faer::MatRef;
-use modal::{ReducedBody, RigidMotion};
+use modal::ReducedBody;
 use nalgebra::{Matrix3, SVector, Vector3};
 use rigid_kin::{Attitude, f_inverse, transformation_matrix};
 
@@ -259,7 +259,7 @@ impl ConservativeBody {
         let driven = match drive {
             Some(drive) => {
                 drive.check()?;
-                if !matches!(body.motion, RigidMotion::Clamp { .. }) {
+                if body.motion.count() > 0 {
                     return Err(SetupError::DriveOfFreeBody { motion: body.motion });
                 }
                 Some(drive.motion)
@@ -845,14 +845,17 @@ fn degrees_of_freedom(
     effects: &Effects,
     driven: Option<DrivenMotion>,
 ) -> (Translation, Vec<Vector3<f64>>) {
-    let (translation, axes) = match (driven, body.motion) {
-        (Some(DrivenMotion::Turn { axis }), _) => (Translation::None, vec![axis]),
-        (Some(DrivenMotion::Slide { direction }), _) => (Translation::Driven(direction), Vec::new()),
-        (None, RigidMotion::Free) => (Translation::Free, Vec::from([Vector3::x(), Vector3::y(), Vector3::z()])),
-        (None, RigidMotion::Pin { .. }) => (Translation::None, Vec::from([Vector3::x(), Vector3::y(), Vector3::z()])),
-        (None, RigidMotion::Hinge { axis, .. }) => (Translation::None, vec![axis]),
-        (None, RigidMotion::Slider { direction }) => (Translation::Along(direction), Vec::new()),
-        (None, RigidMotion::Clamp { .. }) => (Translation::None, Vec::new()),
+    let (translation, axes) = match driven {
+        Some(DrivenMotion::Turn { axis }) => (Translation::None, vec![axis]),
+        Some(DrivenMotion::Slide { direction }) => (Translation::Driven(direction), Vec::new()),
+        None => {
+            let translation = match body.motion.translations() {
+                [] => Translation::None,
+                [direction] => Translation::Along(*direction),
+                _ => Translation::Free,
+            };
+            (translation, body.motion.rotations().to_vec())
+        }
     };
     let is_driven = driven.is_some();
     (

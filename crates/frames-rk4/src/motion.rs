@@ -196,14 +196,15 @@ impl BodyMotion {
         out.work = *work;
         out.linear_momentum_global = self.linear_momentum_global(state);
         out.angular_momentum_global = self.angular_momentum_global(state);
-        if self.motion != RigidMotion::Free {
+        if !self.motion.is_free() {
             out.work.impulse_global = out.linear_momentum_global;
         }
-        let left = match self.motion {
-            RigidMotion::Free | RigidMotion::Pin { .. } => return,
-            RigidMotion::Hinge { axis, .. } => axis * axis.transpose(),
-            RigidMotion::Slider { .. } | RigidMotion::Clamp { .. } => Matrix3::zeros(),
-        };
+        if self.motion.rotations().len() == 3 {
+            return;
+        }
+        // An axis is the same in body and global axes but for the attitude at the beginning.
+        let to_global = self.initial_attitude.global_to_body().transpose();
+        let left = to_global * self.motion.rotation_projector() * to_global.transpose();
         out.angular_momentum_global = left * out.angular_momentum_global;
         out.work.angular_impulse_global = left * out.work.angular_impulse_global;
     }
@@ -384,12 +385,8 @@ pub(crate) struct CenterOfMass {
 
 impl CenterOfMass {
     pub(crate) fn new(body: &ReducedBody) -> Self {
-        let columns = match body.motion {
-            RigidMotion::Free => Vec::new(),
-            _ => (0..body.flexible())
-                .map(|k| Vector3::from_fn(|i, _| body.translation_first[i][k] / body.mass))
-                .collect(),
-        };
+        let added = |k: usize| Vector3::from_fn(|i, _| body.translation_first[i][k] / body.mass);
+        let columns = if body.motion.is_free() { Vec::new() } else { (0..body.flexible()).map(added).collect() };
         Self { undeformed_body: body.center_of_mass - body.origin, columns }
     }
 

@@ -29,7 +29,7 @@ impl Default for Effects {
 }
 
 /// A motion that something forces on the held part of a body. The body's own modes are those of the part held still
-/// ([`modal::RigidMotion::Clamp`]).
+/// ([`modal::RigidMotion::clamp`]).
 #[derive(Debug, Clone)]
 pub struct Drive {
     /// How it moves.

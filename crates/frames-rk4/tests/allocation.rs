@@ -61,8 +61,7 @@ fn steps_and_rows_of_a_run_allocate_nothing_once_the_step_is_known() {
     for method in Method::ALL {
         assert_eq!(allocations(simulation(method, StepControl::Fixed(5e-5), 1.0), 1), 0, "{method:?}");
     }
-    for scheme in [ConservativeScheme::Exponential::Rkmk4] {
-        let method = Method::Conservative(scheme);
+    for method in [Method::EXPONENTIAL, Method::RKMK4] {
         assert_eq!(allocations(simulation(method, StepControl::Tolerance(1e-6), 1.0), 200), 0, "{method:?}");
     }
 }

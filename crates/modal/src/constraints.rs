@@ -49,7 +49,7 @@ impl Constraints {
         };
         let limit = NEGLIGIBLE * (places.len() as f64).sqrt();
         let allowed = range(displaced(&support.motion), limit);
-        let any = displaced(&RigidMotion::Free);
+        let any = displaced(&RigidMotion::free());
         let prevented = &any - &allowed * (allowed.transpose() * &any);
         let (left, expected) = (6 - range(prevented, limit).ncols(), support.motion.count());
         if left > expected {

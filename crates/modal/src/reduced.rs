@@ -110,7 +110,7 @@ impl ReducedBody {
             std::array::from_fn(|a| std::array::from_fn(|b| tall::inner(rows[a].as_ref(), m_rows[b].as_ref())));
 
         let modal = 6 + nf;
-        let is_free = rigid.motion == RigidMotion::Free;
+        let is_free = rigid.motion.is_free();
         let rotation_products = std::array::from_fn(|a| {
             std::array::from_fn(|b| {
                 let mut product = products[a][b].get(..modal, ..modal).to_owned();
@@ -147,7 +147,7 @@ impl ReducedBody {
             Mat::from_fn(nf, nf, |k, l| ab[(k, l)] - ba[(k, l)])
         });
         // The modes are orthogonal to the rigid motions that the body has: what is left is rounding, and would leak momentum.
-        let turns_freely = is_free || matches!(rigid.motion, RigidMotion::Pin { .. });
+        let turns_freely = rigid.motion.rotations().len() == 3;
         let unless = |is_zero: bool, value: f64| if is_zero { 0.0 } else { value };
         let translation_first =
             std::array::from_fn(|i| (0..nf).map(|k| unless(is_free, products[i][i][(6 + k, modal + 1)])).collect());

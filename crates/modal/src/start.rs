@@ -31,10 +31,10 @@ pub(crate) fn shift(
     positions: &[[f64; 3]],
     rigid: &RigidModes,
 ) -> Result<f64, ModalError> {
-    if rigid.motion == RigidMotion::Free {
+    if rigid.motion.is_free() {
         return eigenvalue_estimate(stiffness, mass, positions, rigid);
     }
-    let free = RigidModes::new(mass, positions, RigidMotion::Free)?;
+    let free = RigidModes::new(mass, positions, RigidMotion::free())?;
     Ok(HELD * eigenvalue_estimate(stiffness, mass, positions, &free)?)
 }
 

@@ -7,33 +7,38 @@ use crate::error::ModalError;
 /// How far from 1 the length of a direction may be.
 const UNIT: f64 = 1e-9;
 
-/// The rigid motions of a body that what holds it leaves free.
+/// The rigid motions of a body that what holds it leaves free, mesh axes.
+///
+/// What moves a body is read off this: the directions that it may translate along, the axes that it may turn about, and
+/// the point that stays where it is.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum RigidMotion {
-    /// Nothing holds the body: three translations and three rotations.
-    Free,
-    /// Three rotations about a point, mesh axes.
-    Pin {
-        /// The point.
-        point: Vector3<f64>,
-    },
-    /// A rotation about an axis, mesh axes.
-    Hinge {
-        /// A point of the axis.
-        point: Vector3<f64>,
-        /// Its direction, a unit vector.
-        axis: Vector3<f64>,
-    },
-    /// A translation, mesh axes.
-    Slider {
-        /// Its direction, a unit vector.
-        direction: Vector3<f64>,
-    },
-    /// None: the body can only deform.
-    Clamp {
-        /// The point that positions are measured from, e.g. a point of the axis that the clamp is turned about.
-        origin: Vector3<f64>,
-    },
+pub struct RigidMotion {
+    translations: Directions,
+    rotations: Directions,
+    fixed_point: Option<Vector3<f64>>,
+}
+
+/// Up to three unit vectors.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Directions {
+    list: [Vector3<f64>; 3],
+    count: usize,
+}
+
+impl Directions {
+    const NONE: Self = Self { list: [Vector3::new(0.0, 0.0, 0.0); 3], count: 0 };
+    const ALL: Self = Self {
+        list: [Vector3::new(1.0, 0.0, 0.0), Vector3::new(0.0, 1.0, 0.0), Vector3::new(0.0, 0.0, 1.0)],
+        count: 3,
+    };
+
+    fn one(direction: Vector3<f64>) -> Self {
+        Self { list: [direction, Vector3::zeros(), Vector3::zeros()], count: 1 }
+    }
+
+    fn as_slice(&self) -> &[Vector3<f64>] {
+        &self.list[..self.count]
+    }
 }
 
 /// How a body is held: the nodes that move with the support, and the motions that the support has.
@@ -51,28 +56,71 @@ pub struct Support {
 impl Support {
     /// Of a body that nothing holds.
     pub fn free() -> Self {
-        Self { motion: RigidMotion::Free, nodes: Vec::new() }
+        Self { motion: RigidMotion::free(), nodes: Vec::new() }
     }
 }
 
 impl RigidMotion {
+    /// Of a body that nothing holds: three translations and three rotations.
+    pub const fn free() -> Self {
+        Self { translations: Directions::ALL, rotations: Directions::ALL, fixed_point: None }
+    }
+
+    /// Three rotations about a point.
+    pub const fn pin(point: Vector3<f64>) -> Self {
+        Self { translations: Directions::NONE, rotations: Directions::ALL, fixed_point: Some(point) }
+    }
+
+    /// A rotation about an axis: a point of it and its direction, a unit vector.
+    pub fn hinge(point: Vector3<f64>, axis: Vector3<f64>) -> Self {
+        Self { translations: Directions::NONE, rotations: Directions::one(axis), fixed_point: Some(point) }
+    }
+
+    /// A translation along a unit vector.
+    pub fn slider(direction: Vector3<f64>) -> Self {
+        Self { translations: Directions::one(direction), rotations: Directions::NONE, fixed_point: None }
+    }
+
+    /// None: the body can only deform. Positions are measured from `origin`, e.g. a point of the axis that a clamp is
+    /// turned about.
+    pub const fn clamp(origin: Vector3<f64>) -> Self {
+        Self { translations: Directions::NONE, rotations: Directions::NONE, fixed_point: Some(origin) }
+    }
+
+    /// Unit vectors that the body may translate along: three, one or none.
+    pub fn translations(&self) -> &[Vector3<f64>] {
+        self.translations.as_slice()
+    }
+
+    /// Unit vectors that the body may turn about: three, one or none.
+    pub fn rotations(&self) -> &[Vector3<f64>] {
+        self.rotations.as_slice()
+    }
+
     /// Number of rigid modes: 6, 3, 1, 1 or 0.
     pub fn count(&self) -> usize {
-        match self {
-            Self::Free => 6,
-            Self::Pin { .. } => 3,
-            Self::Hinge { .. } | Self::Slider { .. } => 1,
-            Self::Clamp { .. } => 0,
-        }
+        self.translations.count + self.rotations.count
+    }
+
+    /// Whether nothing holds the body.
+    pub fn is_free(&self) -> bool {
+        self.count() == 6
     }
 
     /// The point that stays where it is (of a clamp, the one that positions are to be measured from): the origin of a
     /// body with these motions. `None` where that is the centre of mass.
     pub fn fixed_point(&self) -> Option<Vector3<f64>> {
-        match self {
-            Self::Free | Self::Slider { .. } => None,
-            Self::Pin { point } | Self::Hinge { point, .. } | Self::Clamp { origin: point } => Some(*point),
-        }
+        self.fixed_point
+    }
+
+    /// The part of an angular velocity that the body may have: Σ a aᵀ of its axes.
+    pub fn rotation_projector(&self) -> Matrix3<f64> {
+        self.rotations().iter().map(|axis| axis * axis.transpose()).sum()
+    }
+
+    /// The part of a velocity of its origin that the body may have: Σ d dᵀ of its directions.
+    pub fn translation_projector(&self) -> Matrix3<f64> {
+        self.translations().iter().map(|direction| direction * direction.transpose()).sum()
     }
 
     /// T and B of a rigid body with these motions: the velocity of the origin is `T y[..3]` and the angular velocity
@@ -90,23 +138,22 @@ impl RigidMotion {
             return Err(no_inertia());
         }
         let (mut translation, mut rotation) = (Matrix3::zeros(), Matrix3::zeros());
-        match self {
-            Self::Free | Self::Pin { .. } => {
-                let factor = inertia.cholesky().ok_or_else(no_inertia)?.l();
-                rotation = factor.transpose().try_inverse().ok_or_else(no_inertia)?;
-                if *self == Self::Free {
-                    translation = Matrix3::identity() / mass.sqrt();
-                }
-            }
-            Self::Hinge { axis, .. } => {
+        for (i, direction) in self.translations().iter().enumerate() {
+            translation.set_column(i, &(direction / mass.sqrt()));
+        }
+        match self.rotations() {
+            [] => {}
+            [axis] => {
                 let moment = axis.dot(&(inertia * axis));
                 if !(moment > 0.0 && moment.is_finite()) {
                     return Err(no_inertia());
                 }
                 rotation.set_column(0, &(axis / moment.sqrt()));
             }
-            Self::Slider { direction } => translation.set_column(0, &(direction / mass.sqrt())),
-            Self::Clamp { .. } => {}
+            _ => {
+                let factor = inertia.cholesky().ok_or_else(no_inertia)?.l();
+                rotation = factor.transpose().try_inverse().ok_or_else(no_inertia)?;
+            }
         }
         Ok((translation, rotation))
     }
@@ -118,23 +165,17 @@ impl RigidMotion {
         center: &Vector3<f64>,
         length: f64,
     ) -> Vec<Vector3<f64>> {
-        let axes: [Vector3<f64>; 3] = std::array::from_fn(|axis| Vector3::ith(axis, 1.0));
-        let turned = |axis: &Vector3<f64>, about: &Vector3<f64>| axis.cross(&(position - about)) / length;
-        match self {
-            Self::Free => axes.into_iter().chain(axes.map(|axis| turned(&axis, center))).collect(),
-            Self::Pin { point } => axes.map(|axis| turned(&axis, point)).into(),
-            Self::Hinge { point, axis } => vec![turned(axis, point)],
-            Self::Slider { direction } => vec![*direction],
-            Self::Clamp { .. } => Vec::new(),
-        }
+        let about = self.fixed_point.unwrap_or(*center);
+        let turned = self.rotations().iter().map(|axis| axis.cross(&(position - about)) / length);
+        self.translations().iter().copied().chain(turned).collect()
     }
 
     /// What a message calls the motion of column `mode` of the six rigid shapes.
     pub(crate) fn name(&self, mode: usize) -> &'static str {
-        match self {
-            Self::Hinge { .. } => "rotation about the hinge",
-            Self::Slider { .. } => "translation along the slider",
-            Self::Free | Self::Pin { .. } | Self::Clamp { .. } => [
+        match (self.translations(), self.rotations()) {
+            (_, [_]) => "rotation about the hinge",
+            ([_], _) => "translation along the slider",
+            _ => [
                 "translation along x",
                 "translation along y",
                 "translation along z",
@@ -151,15 +192,10 @@ impl RigidMotion {
         if let Some((index, value)) = point.iter().enumerate().find(|(_, c)| !c.is_finite()) {
             return Err(ModalError::NotFinite { what: "the support's point", index, value: *value });
         }
-        let direction = match self {
-            Self::Hinge { axis, .. } => Some(axis),
-            Self::Slider { direction } => Some(direction),
-            Self::Free | Self::Pin { .. } | Self::Clamp { .. } => None,
-        };
-        let off = direction.map_or(0.0, |d| (d.norm() - 1.0).abs());
-        match direction {
-            Some(d) if off.is_nan() || off >= UNIT => Err(ModalError::NotUnit { direction: (*d).into() }),
-            _ => Ok(()),
+        let is_unit = |direction: &Vector3<f64>| (direction.norm() - 1.0).abs() < UNIT;
+        match self.translations().iter().chain(self.rotations()).find(|direction| !is_unit(direction)) {
+            Some(direction) => Err(ModalError::NotUnit { direction: (*direction).into() }),
+            None => Ok(()),
         }
     }
 }

@@ -8,7 +8,7 @@ use nalgebra::{Matrix3, Vector3};
 /// A rigid body of mass 1 with these principal moments.
 pub fn rigid(moments: [f64; 3]) -> Result<ReducedBody, String> {
     let inertia = Matrix3::from_diagonal(&moments.into());
-    ReducedBody::rigid(1.0, Vector3::zeros(), inertia, RigidMotion::Free).map_err(|e| e.to_string())
+    ReducedBody::rigid(1.0, Vector3::zeros(), inertia, RigidMotion::free()).map_err(|e| e.to_string())
 }
 
 /// An elastic body with its mode shapes.

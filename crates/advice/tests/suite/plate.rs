@@ -33,7 +33,7 @@ pub fn clamped() -> &'static Plate {
     static PLATE: OnceLock<Plate> = OnceLock::new();
     PLATE.get_or_init(|| {
         Plate::new(|positions| Support {
-            motion: RigidMotion::Clamp { origin: Vector3::new(-500.0, 0.0, 5.0) },
+            motion: RigidMotion::clamp(Vector3::new(-500.0, 0.0, 5.0)),
             nodes: (0..).zip(positions).filter(|(_, x)| x[0] < -499.9).map(|(node, _)| node).collect(),
         })
     })

@@ -18,6 +18,7 @@ fn rows(simulation: &mut Simulation, most: usize) -> (Vec<Observation>, Vec<u64>
                 simulation.observe(&mut row).unwrap();
                 rows.push(row);
             }
+            other => panic!("{other:?}"),
         }
     }
     simulation.checkpoint(&mut checkpoint);

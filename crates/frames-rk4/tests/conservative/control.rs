@@ -3,16 +3,15 @@
 use frames_rk4::{Expression, History, Initial, Method, Observation, Reached, Rows, StepControl};
 use nalgebra::Vector3;
 
-use crate::common::{Specimen, plate};
-use crate::run::{EXPONENTIAL, Error, RKMK4, Run, STRANG, relative_3};
+use crate::common::{dead_force, Specimen, plate};
+use crate::run::{EXPONENTIAL, Error, RKMK4, Run, relative_3};
 
 /// Tumbling at 10 rad/s with vibration, under a pulse that begins and ends between the rows.
 fn tumbling(plate: &Specimen) -> Run<'_> {
     let mut initial = Initial::at_rest(10);
     initial.omega = Vector3::new(3.0, 8.0, 5.0);
     initial.modal_velocity[..4].copy_from_slice(&[77.0, -54.0, 117.0, 37.0]);
-    let mut load = plate.half_sine([-500.0, 0.0, 10.0], [20.0, 10.0, 30.0], 0.1);
-    load.history = History::HalfSine { start: 0.031_41, duration: 0.073_217 };
+    let load = plate.pulse([-500.0, 0.0, 10.0], [20.0, 10.0, 30.0], 0.031_41, 0.073_217);
     Run { damping_ratio: 0.02, loads: vec![load], ..Run::free(plate, initial, 0.5) }
 }
 
@@ -44,8 +43,7 @@ fn a_short_pulse_in_a_long_quiet_run_is_not_missed() {
     let plate = plate();
     let force = Vector3::new(20.0, 10.0, 30.0);
     let (start, duration) = (5.000_3, 1e-3);
-    let mut load = plate.half_sine([-500.0, 0.0, 10.0], force.into(), 1.0);
-    load.history = History::HalfSine { start, duration };
+    let load = plate.pulse([-500.0, 0.0, 10.0], force.into(), start, duration);
     let run = Run { damping_ratio: 0.05, loads: vec![load], ..Run::free(plate, Initial::at_rest(10), 10.0) };
     let impulse = force * (2.0 * duration / std::f64::consts::PI);
     let run_to = |tolerance: f64| {
@@ -77,8 +75,7 @@ fn a_load_that_swings_in_time_with_the_steps_is_not_missed() {
         (formula("sin(2000*pi*t)"), [0.0, end / omega], 1e-5),       // 3.3e-7
         (bell, [bell_impulse, bell_impulse * (end - 0.0437)], 1e-8), // 8.2e-11
     ] {
-        let mut load = rigid.half_sine([-500.0, 0.0, 10.0], [0.0, 0.0, 40.0], 1.0);
-        load.history = history;
+        let load = dead_force(rigid.point([-500.0, 0.0, 10.0]), Vector3::new(0.0, 0.0, 40.0), history);
         let run = Run { loads: vec![load], ..Run::free(&rigid, Initial::at_rest(0), end) };
         let mut simulation = run.start(EXPONENTIAL, StepControl::Tolerance(1e-6), Rows::Interval(0.01));
         let last = simulation.by_ref().last().unwrap().unwrap();

@@ -4,8 +4,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 use faer::Mat;
 use frames_rk4::{
-    ConservativeBody, ConservativeMotion, History, Initial, Load, Method, Physics, PointShapes,
-    Rows, SetupError, StepControl, StepError,
+    History, Initial, Method, PointShapes, Rows, SetupError, StepControl, StepError,
 };
 use modal::{BodyPoint, ReducedBody, RigidMotion};
 use nalgebra::{Matrix3, Vector3};
@@ -107,7 +106,7 @@ fn the_paper_s_scheme_stops_when_its_attitude_is_lost() {
         1.0,
         Vector3::zeros(),
         Matrix3::from_diagonal(&Vector3::new(1.0, 2.0, 3.0)),
-        RigidMotion::Free,
+        RigidMotion::free(),
     )
     .unwrap();
     let initial = Initial { omega: Vector3::new(0.0, 0.0, 100.0), ..Initial::at_rest(0) };
@@ -158,7 +157,7 @@ fn a_motion_that_blows_up_ends_with_an_error_and_not_with_nan() {
 /// up to 0.75 of the largest energy, and the motion is right.
 #[test]
 fn a_long_shaking_is_not_stopped() {
-    let body = ReducedBody::rigid(1.0, Vector3::zeros(), Matrix3::identity(), RigidMotion::Free).unwrap();
+    let body = ReducedBody::rigid(1.0, Vector3::zeros(), Matrix3::identity(), RigidMotion::free()).unwrap();
     let centre = PointShapes::new(&body, &BodyPoint { position_body: Vector3::zeros(), shapes: Mat::zeros(3, 0) });
     let omega = TAU * 200.0;
     let sine = History::Sine { frequency: 200.0, phase: FRAC_PI_2, start: 0.0, duration: None };

@@ -4,11 +4,12 @@ use frames_rk4::{Initial, Method, Observation};
 use nalgebra::Vector3;
 
 use crate::common::{Specimen, plate};
-use crate::run::{EXPONENTIAL, Error, RKMK4, Run, STRANG, fitted_order};
+use crate::run::{EXPONENTIAL, Error, RKMK4, Run, fitted_order};
 
 /// Tumbling at 10 rad/s with vibration under a dead load.
 fn tumbling(plate: &Specimen) -> Run<'_> {
     let initial = Initial {
+        attitude: rigid_kin::Attitude::identity(),
         velocity: Vector3::zeros(),
         omega: Vector3::new(5.0, 5.0, 7.0),
         modal_displacement: vec![0.1, 0.02, 0.02, 0.01],

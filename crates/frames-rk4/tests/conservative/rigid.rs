@@ -15,7 +15,7 @@ fn body() -> ReducedBody {
     ReducedBody {
         mass: 1.0,
         center_of_mass: Vector3::zeros(),
-        motion: RigidMotion::Free,
+        motion: RigidMotion::free(),
         origin: Vector3::zeros(),
         inertia,
         translation_basis: Matrix3::identity(),

@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 use crate::sample::{EXPONENTIAL, RKMK4, Run, body};
 
 fn clamped() -> modal::ReducedBody {
-    body(RigidMotion::Clamp { origin: Vector3::zeros() }, &[5.0, 8.0, 13.0])
+    body(RigidMotion::clamp(Vector3::zeros()), &[5.0, 8.0, 13.0])
 }
 
 fn drive(motion: DrivenMotion) -> Drive {

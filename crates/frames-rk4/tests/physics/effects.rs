@@ -18,7 +18,7 @@ fn all() -> [Effects; 16] {
 
 #[test]
 fn energy_is_conserved_whatever_is_off() {
-    let body = body(RigidMotion::Free, &[5.0, 8.0, 13.0]);
+    let body = body(RigidMotion::free(), &[5.0, 8.0, 13.0]);
     for effects in all() {
         let mut run = Run::new(&body, 5.0);
         run.physics.effects = effects;
@@ -30,7 +30,7 @@ fn energy_is_conserved_whatever_is_off() {
 #[test]
 fn what_is_off_takes_no_memory_and_no_multiplication() {
     let nf = 5;
-    let body = body(RigidMotion::Free, &[5.0, 8.0, 13.0, 20.0, 30.0]);
+    let body = body(RigidMotion::free(), &[5.0, 8.0, 13.0, 20.0, 30.0]);
     for effects in all() {
         let physics = Physics { effects, ..Physics::default() };
         let reduced = ConservativeBody::new(&body, &[0.0; 5], Vec::new(), &physics).unwrap();
@@ -40,14 +40,14 @@ fn what_is_off_takes_no_memory_and_no_multiplication() {
         };
         assert_eq!(reduced.matrix_entries(), matrices * nf * nf, "{effects:?}");
     }
-    let hinged = crate::sample::body(RigidMotion::Hinge { point: Vector3::zeros(), axis: Vector3::x() }, &[5.0; 5]);
+    let hinged = crate::sample::body(RigidMotion::hinge(Vector3::zeros(), Vector3::x()), &[5.0; 5]);
     let reduced = ConservativeBody::new(&hinged, &[0.0; 5], Vec::new(), &Physics::default()).unwrap();
     assert_eq!(reduced.matrix_entries(), 2 * nf * nf);
 }
 
 #[test]
 fn what_is_off_has_no_part_in_the_motion() {
-    let body = body(RigidMotion::Free, &[5.0, 8.0, 13.0]);
+    let body = body(RigidMotion::free(), &[5.0, 8.0, 13.0]);
     let end = |effects: Effects| {
         let mut run = Run::new(&body, 2.0);
         run.physics.effects = effects;

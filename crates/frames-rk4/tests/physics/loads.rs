@@ -12,13 +12,13 @@ use crate::sample::{EXPONENTIAL, RKMK4, Run, body, dead_force, point};
 const PULSE: History = History::HalfSine { start: 0.2, duration: 1.5 };
 
 fn force(frame: LoadFrame) -> SharedLoad {
-    let body = body(RigidMotion::Free, &[5.0, 8.0, 13.0]);
+    let body = body(RigidMotion::free(), &[5.0, 8.0, 13.0]);
     let (point, force) = (point(&body, [0.5, -0.2, 0.4]), Vector3::new(0.5, 1.0, -0.7));
     Arc::new(PointForce { point, force, frame, history: PULSE })
 }
 
 fn moment(frame: LoadFrame) -> SharedLoad {
-    let body = body(RigidMotion::Free, &[5.0, 8.0, 13.0]);
+    let body = body(RigidMotion::free(), &[5.0, 8.0, 13.0]);
     let rotation = RotationShapes::new(&body, Mat::from_fn(3, 3, |i, k| 0.1 * (i as f64 - k as f64)).as_ref());
     Arc::new(PointMoment { rotation, moment: Vector3::new(0.4, -0.9, 0.3), frame, history: PULSE })
 }
@@ -35,7 +35,7 @@ fn field() -> SharedLoad {
 
 #[test]
 fn work_and_impulses_of_every_load_close_the_balances() {
-    let body = body(RigidMotion::Free, &[5.0, 8.0, 13.0]);
+    let body = body(RigidMotion::free(), &[5.0, 8.0, 13.0]);
     let [global, follower] = [LoadFrame::Global, LoadFrame::Body];
     for load in [force(global), force(follower), moment(global), moment(follower), field()] {
         let mut run = Run::new(&body, 3.0);
@@ -61,7 +61,7 @@ fn work_and_impulses_of_every_load_close_the_balances() {
 /// and a follower force agree while the body does not turn.
 #[test]
 fn followers_follow() {
-    let mut rigid = body(RigidMotion::Free, &[]);
+    let mut rigid = body(RigidMotion::free(), &[]);
     rigid.inertia = nalgebra::Matrix3::from_diagonal(&Vector3::new(2.0, 3.0, 4.0));
     let mut run = Run::new(&rigid, 2.0);
     run.initial.omega = Vector3::zeros();
@@ -87,7 +87,7 @@ fn followers_follow() {
 /// A load that jumps: steps end at the jump and see one law each, so nothing of the order is lost.
 #[test]
 fn a_jump_costs_no_accuracy() {
-    let body = body(RigidMotion::Clamp { origin: Vector3::zeros() }, &[5.0, 8.0, 13.0]);
+    let body = body(RigidMotion::clamp(Vector3::zeros()), &[5.0, 8.0, 13.0]);
     let mut run = Run::new(&body, 2.0);
     run.initial.modal_displacement.fill(0.0);
     run.initial.modal_velocity.fill(0.0);

@@ -35,8 +35,8 @@ pub fn body(motion: RigidMotion, circular_frequencies: &[f64]) -> ReducedBody {
     let symmetric = |seed: usize| Mat::from_fn(nf, nf, |i, j| 0.3 * noise(seed + 7 * i.max(j) + 3 * i.min(j)));
     let skew =
         |seed: usize| Mat::from_fn(nf, nf, |i, j| 0.3 * (noise(seed + 5 * i + 11 * j) - noise(seed + 5 * j + 11 * i)));
-    let held = !matches!(motion, RigidMotion::Free);
-    let clamped = matches!(motion, RigidMotion::Clamp { .. });
+    let held = !motion.is_free();
+    let clamped = motion.count() == 0;
     ReducedBody {
         mass: MASS,
         center_of_mass: if held { Vector3::new(0.4, -0.3, 0.5) } else { Vector3::zeros() },
@@ -65,8 +65,8 @@ pub fn point(body: &ReducedBody, at: [f64; 3]) -> PointShapes {
 
 /// A start with everything in motion.
 pub fn start(flexible: usize) -> Initial {
-    attitude: rigid_kin::Attitude::identity(),
     Initial {
+        attitude: rigid_kin::Attitude::identity(),
         velocity: Vector3::new(0.3, -0.2, 0.5),
         omega: Vector3::new(1.0, -0.6, 0.8),
         modal_displacement: (0..flexible).map(|k| 0.2 * noise(700 + k)).collect(),

@@ -9,7 +9,7 @@ use crate::sample::body;
 
 /// A point on a round spring that turns about the third axis: q are its first and second coordinate.
 fn round_spring(omega: f64) -> ReducedBody {
-    let mut body = body(RigidMotion::Clamp { origin: Vector3::zeros() }, &[omega, omega]);
+    let mut body = body(RigidMotion::clamp(Vector3::zeros()), &[omega, omega]);
     body.inertia_second[2] = Mat::identity(2, 2);
     // qᵀ G q̇ = −e₃·(q × q̇)
     body.gyroscopic[2] = Mat::from_fn(2, 2, |i, j| i as f64 - j as f64);
@@ -47,7 +47,7 @@ fn critical_speeds_of_a_round_spring_are_fractions_of_its_frequency() {
 
 #[test]
 fn at_a_critical_speed_some_frequency_is_a_multiple_of_the_spin() {
-    let body = body(RigidMotion::Free, &[5.0, 8.0, 13.0, 14.0]);
+    let body = body(RigidMotion::free(), &[5.0, 8.0, 13.0, 14.0]);
     let axis = Vector3::new(1.0, 2.0, -2.0) / 3.0;
     let spin = SteadySpin::new(&body, &axis, &Effects::default());
     for order in [1.0, 2.5, 4.0] {

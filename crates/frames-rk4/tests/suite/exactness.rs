@@ -7,8 +7,8 @@ use rigid_kin::{Attitude, RigidBody, RigidState, Wrench};
 use crate::common::{Specimen, advance, plate, ring};
 
 fn tumbling() -> Initial {
-    attitude: rigid_kin::Attitude::identity(),
     Initial {
+        attitude: rigid_kin::Attitude::identity(),
         velocity: Vector3::new(300.0, -100.0, 50.0),
         omega: Vector3::new(4.0, -6.0, 7.0),
         modal_displacement: vec![0.005; 10],

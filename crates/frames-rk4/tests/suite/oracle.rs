@@ -11,9 +11,9 @@ const DAMPING: f64 = 0.02;
 
 /// Tumbling at 10 rad/s with vibration.
 fn start(specimen: &Specimen) -> Initial {
-    attitude: rigid_kin::Attitude::identity(),
     let nf = specimen.body.flexible();
     Initial {
+        attitude: rigid_kin::Attitude::identity(),
         velocity: Vector3::new(300.0, -100.0, 50.0),
         omega: Vector3::new(4.0, -6.0, 7.0),
         modal_displacement: (0..nf).map(|k| 0.01 / (1.0 + k as f64)).collect(),

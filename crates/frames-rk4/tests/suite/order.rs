@@ -10,8 +10,8 @@ const END: f64 = 0.2;
 
 /// Tumbling at 10 rad/s with vibration.
 fn start() -> Initial {
-    attitude: rigid_kin::Attitude::identity(),
     Initial {
+        attitude: rigid_kin::Attitude::identity(),
         velocity: Vector3::zeros(),
         omega: Vector3::new(5.0, 5.0, 7.0),
         modal_displacement: vec![0.1, 0.02, 0.02, 0.01],

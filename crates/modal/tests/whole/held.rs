@@ -66,14 +66,15 @@ fn held_nodes_move_with_the_support_only() {
             let shape = modes.shapes.col(mode);
             let u = |node: &u32| Vector3::from_fn(|axis, _| shape[3 * *node as usize + axis]);
             let x = |node: &u32| Vector3::from(body.positions[*node as usize]);
-            let other_than_allowed: f64 = match support.motion {
-                RigidMotion::Free => 0.0,
-                RigidMotion::Clamp { .. } => support.nodes.iter().map(|node| u(node).norm()).fold(0.0, f64::max),
-                RigidMotion::Slider { direction } => {
-                    let along = u(&support.nodes[0]).dot(&direction);
+            let point = support.motion.fixed_point().unwrap_or_default();
+            let other_than_allowed: f64 = match (support.motion.translations(), support.motion.rotations()) {
+                ([_, _, _], _) => 0.0,
+                ([], []) => support.nodes.iter().map(|node| u(node).norm()).fold(0.0, f64::max),
+                ([direction], _) => {
+                    let along = u(&support.nodes[0]).dot(direction);
                     support.nodes.iter().map(|node| (u(node) - direction * along).norm()).fold(0.0, f64::max)
                 }
-                RigidMotion::Hinge { point, axis } => {
+                (_, [axis]) => {
                     let turned = |node: &u32| axis.cross(&(x(node) - point));
                     let (mut along, mut squared) = (0.0, 0.0);
                     for node in &support.nodes {
@@ -83,7 +84,7 @@ fn held_nodes_move_with_the_support_only() {
                     let angle = if squared > 0.0 { along / squared } else { 0.0 };
                     support.nodes.iter().map(|node| (u(node) - turned(node) * angle).norm()).fold(0.0, f64::max)
                 }
-                RigidMotion::Pin { point } => {
+                _ => {
                     // Rigid about the point: no velocity along the arm, nor towards each other.
                     let pairs = support.nodes.iter().flat_map(|a| support.nodes.iter().map(move |b| (a, b)));
                     let stretch = pairs.map(|(a, b)| (x(a) - x(b)).dot(&(u(a) - u(b))).abs());

@@ -209,9 +209,9 @@ fn with_support(motion: RigidMotion, nodes: &[u32]) -> Option<ModalError> {
 fn a_support_that_holds_too_little() {
     // The block has 3×3×3 nodes: 0, 1, 2 are in line along x, 3 is beside 0, 26 is opposite.
     let at = |node: usize| Vector3::from(small().positions[node]);
-    let (pin, clamp) = (RigidMotion::Pin { point: at(0) }, RigidMotion::Clamp { origin: at(0) });
+    let (pin, clamp) = (RigidMotion::pin(at(0)), RigidMotion::clamp(at(0)));
     let (hinge, slider) =
-        (RigidMotion::Hinge { point: at(0), axis: Vector3::x() }, RigidMotion::Slider { direction: Vector3::x() });
+        (RigidMotion::hinge(at(0), Vector3::x()), RigidMotion::slider(Vector3::x()));
     let cases: [(RigidMotion, &[u32], usize); 10] = [
         (pin, &[], 6),
         // A node beside the point of a pin moves about it: only the distance is kept.
@@ -250,13 +250,13 @@ fn a_support_that_holds_too_little() {
 
 #[test]
 fn a_support_that_is_not_there() {
-    let clamp = RigidMotion::Clamp { origin: Vector3::zeros() };
+    let clamp = RigidMotion::clamp(Vector3::zeros());
     let error = with_support(clamp, &[0, 1, 27]).unwrap();
     assert!(matches!(error, ModalError::NoSuchNode { node: 27, count: 27 }), "{error}");
-    let error = with_support(RigidMotion::Pin { point: Vector3::new(0.0, f64::NAN, 0.0) }, &[0]).unwrap();
+    let error = with_support(RigidMotion::pin(Vector3::new(0.0, f64::NAN, 0.0)), &[0]).unwrap();
     assert!(matches!(error, ModalError::NotFinite { what: "the support's point", index: 1, .. }), "{error}");
     for axis in [Vector3::new(1.0, 1.0, 0.0), Vector3::zeros(), Vector3::new(f64::NAN, 0.0, 0.0)] {
-        for motion in [RigidMotion::Hinge { point: Vector3::zeros(), axis }, RigidMotion::Slider { direction: axis }] {
+        for motion in [RigidMotion::hinge(Vector3::zeros(), axis), RigidMotion::slider(axis)] {
             let error = with_support(motion, &[0, 1, 3]).unwrap();
             assert!(matches!(error, ModalError::NotUnit { .. }), "{error}");
         }

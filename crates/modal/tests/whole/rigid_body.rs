@@ -55,11 +55,11 @@ fn energy_of_rigid_modal_velocities_is_half_their_square() {
     let arm = center - point;
     let about_point = inertia + (Matrix3::identity() * arm.norm_squared() - arm * arm.transpose()) * mass;
     for (motion, inertia) in [
-        (RigidMotion::Free, inertia),
-        (RigidMotion::Pin { point }, about_point),
-        (RigidMotion::Hinge { point, axis }, about_point),
-        (RigidMotion::Slider { direction: axis }, inertia),
-        (RigidMotion::Clamp { origin: point }, about_point),
+        (RigidMotion::free(), inertia),
+        (RigidMotion::pin(point), about_point),
+        (RigidMotion::hinge(point, axis), about_point),
+        (RigidMotion::slider(axis), inertia),
+        (RigidMotion::clamp(point), about_point),
     ] {
         let body = ReducedBody::rigid(mass, center, inertia, motion).unwrap();
         assert_eq!(body.origin, motion.fixed_point().unwrap_or(center));
@@ -85,21 +85,21 @@ fn what_is_no_rigid_body_is_refused() {
     };
     let unit = Matrix3::identity();
     for mass in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        assert!(matches!(refused(mass, unit, RigidMotion::Free), ModalError::NoInertia { .. }));
+        assert!(matches!(refused(mass, unit, RigidMotion::free()), ModalError::NoInertia { .. }));
     }
     for inertia in [Matrix3::zeros(), -unit, Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, 0.0))] {
-        assert!(matches!(refused(1.0, inertia, RigidMotion::Free), ModalError::NoInertia { .. }));
+        assert!(matches!(refused(1.0, inertia, RigidMotion::free()), ModalError::NoInertia { .. }));
     }
     let nan = Matrix3::from_diagonal(&Vector3::new(1.0, f64::NAN, 1.0));
-    assert!(matches!(refused(1.0, nan, RigidMotion::Free), ModalError::NotFinite { .. }));
+    assert!(matches!(refused(1.0, nan, RigidMotion::free()), ModalError::NotFinite { .. }));
     let skewed = Matrix3::new(1.0, 0.1, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0);
-    let error = refused(1.0, skewed, RigidMotion::Free);
+    let error = refused(1.0, skewed, RigidMotion::free());
     assert!(matches!(error, ModalError::NotSymmetric { what: "inertia", row: 1, column: 0, .. }), "{error}");
-    let slanted = RigidMotion::Slider { direction: Vector3::new(1.0, 1.0, 0.0) };
+    let slanted = RigidMotion::slider(Vector3::new(1.0, 1.0, 0.0));
     assert!(matches!(refused(1.0, unit, slanted), ModalError::NotUnit { .. }));
     // Inertia about the hinge only is all that a hinge needs.
     let about_z = Matrix3::from_diagonal(&Vector3::new(0.0, 0.0, 2.0));
-    let hinge = |axis| RigidMotion::Hinge { point: Vector3::zeros(), axis };
+    let hinge = |axis| RigidMotion::hinge(Vector3::zeros(), axis);
     assert!(ReducedBody::rigid(1.0, Vector3::zeros(), about_z, hinge(Vector3::z())).is_ok());
     assert!(matches!(refused(1.0, about_z, hinge(Vector3::x())), ModalError::NoInertia { .. }));
 }

@@ -117,7 +117,7 @@ fn what_falls_is_not_strained() {
         let answer = solver.static_response(gravity.as_ref()).unwrap();
         let modes = solver.with_static_shapes(solver.modes(3, |_| ()).unwrap(), answer.as_ref()).unwrap();
         let falls =
-            matches!(support.motion, RigidMotion::Free) || support.motion == RigidMotion::Slider { direction: down };
+            matches!(support.motion, RigidMotion::free()) || support.motion == RigidMotion::slider(down);
         assert_eq!((answer.norm_max() == 0.0, modes.shapes.ncols()), (falls, 4 - usize::from(falls)), "{support:?}");
     }
 }

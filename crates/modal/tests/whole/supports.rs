@@ -27,13 +27,13 @@ pub fn supports(positions: &[[f64; 3]]) -> [(Support, usize); 8] {
     let oblique = Vector3::new(2.0, -1.0, 2.0) / 3.0;
     [
         (Support::free(), 6),
-        (held(RigidMotion::Pin { point: corner }, &nodes(positions, |x| *x == corner)), 3),
-        (held(RigidMotion::Pin { point: corner }, &near_corner), 3),
-        (held(RigidMotion::Hinge { point: corner, axis }, &nodes(positions, |x| x.xy() == corner.xy())), 1),
-        (held(RigidMotion::Hinge { point: corner, axis: oblique }, &near_corner), 1),
-        (held(RigidMotion::Clamp { origin: corner }, &left), 0),
-        (held(RigidMotion::Slider { direction: Vector3::y() }, &left), 1),
-        (held(RigidMotion::Slider { direction: oblique }, &near_corner), 1),
+        (held(RigidMotion::pin(corner), &nodes(positions, |x| *x == corner)), 3),
+        (held(RigidMotion::pin(corner), &near_corner), 3),
+        (held(RigidMotion::hinge(corner, axis), &nodes(positions, |x| x.xy() == corner.xy())), 1),
+        (held(RigidMotion::hinge(corner, oblique), &near_corner), 1),
+        (held(RigidMotion::clamp(corner), &left), 0),
+        (held(RigidMotion::slider(Vector3::y()), &left), 1),
+        (held(RigidMotion::slider(oblique), &near_corner), 1),
     ]
 }
 
@@ -41,14 +41,13 @@ pub fn supports(positions: &[[f64; 3]]) -> [(Support, usize); 8] {
 /// held ones.
 pub fn allowed(support: &Support, positions: &[[f64; 3]]) -> Mat<f64> {
     let is_held = |node: usize| support.nodes.contains(&(node as u32));
-    let units: [Vector3<f64>; 3] = std::array::from_fn(|axis| Vector3::ith(axis, 1.0));
     let moved = |x: Vector3<f64>| -> Vec<Vector3<f64>> {
-        match support.motion {
-            RigidMotion::Free | RigidMotion::Clamp { .. } => vec![],
-            RigidMotion::Pin { point } => units.map(|axis| axis.cross(&(x - point))).into(),
-            RigidMotion::Hinge { point, axis } => vec![axis.cross(&(x - point))],
-            RigidMotion::Slider { direction } => vec![direction],
+        if support.motion.is_free() {
+            return Vec::new();
         }
+        let point = support.motion.fixed_point().unwrap_or_default();
+        let turned = support.motion.rotations().iter().map(|axis| axis.cross(&(x - point)));
+        support.motion.translations().iter().copied().chain(turned).collect()
     };
     let others: Vec<usize> = (0..3 * positions.len()).filter(|i| !is_held(i / 3)).collect();
     let common: Vec<Vec<f64>> = (0..moved(Vector3::zeros()).len())

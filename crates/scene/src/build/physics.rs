@@ -16,11 +16,8 @@ pub(super) fn may_spin(scene: &Scene, motion: RigidMotion, drive: Option<&Drive>
 
 /// Whether a body can turn.
 fn turns(motion: RigidMotion, drive: Option<&Drive>) -> bool {
-    match (motion, drive.map(|drive| drive.motion)) {
-        (_, Some(DrivenMotion::Turn { .. })) => true,
-        (RigidMotion::Free | RigidMotion::Pin { .. } | RigidMotion::Hinge { .. }, _) => true,
-        (RigidMotion::Slider { .. } | RigidMotion::Clamp { .. }, _) => false,
-    }
+    let is_turned = drive.is_some_and(|drive| matches!(drive.motion, DrivenMotion::Turn { .. }));
+    is_turned || !motion.rotations().is_empty()
 }
 
 /// Whether the stress of a load stiffens the body: one that stays as it is, seen from the body.

@@ -29,26 +29,26 @@ pub(super) fn support(scene: &Scene, mesh: Option<&Mesh>) -> Result<(Support, Op
         nodes.iter().map(of).sum::<Vector3<f64>>() / nodes.len().max(1) as f64
     };
     let (motion, drive) = match constraint {
-        Constraint::Pin { at, .. } => (RigidMotion::Pin { point: (*at).into() }, None),
+        Constraint::Pin { at, .. } => (RigidMotion::pin((*at).into()), None),
         Constraint::Hinge { line, motion, .. } => {
             let (point, axis) = (line.at().into(), line.direction().into());
             match motion {
                 Some(drive) => {
-                    (RigidMotion::Clamp { origin: point }, Some(driven(drive, DrivenMotion::Turn { axis })?))
+                    (RigidMotion::clamp(point), Some(driven(drive, DrivenMotion::Turn { axis })?))
                 }
-                None => (RigidMotion::Hinge { point, axis }, None),
+                None => (RigidMotion::hinge(point, axis), None),
             }
         }
         Constraint::Slider { direction, motion, .. } => {
             let direction = (*direction).into();
             match motion {
                 Some(drive) => {
-                    (RigidMotion::Clamp { origin: mean() }, Some(driven(drive, DrivenMotion::Slide { direction })?))
+                    (RigidMotion::clamp(mean()), Some(driven(drive, DrivenMotion::Slide { direction })?))
                 }
-                None => (RigidMotion::Slider { direction }, None),
+                None => (RigidMotion::slider(direction), None),
             }
         }
-        Constraint::Clamp { .. } => (RigidMotion::Clamp { origin: mean() }, None),
+        Constraint::Clamp { .. } => (RigidMotion::clamp(mean()), None),
     };
     Ok((Support { motion, nodes }, drive))
 }

@@ -35,17 +35,17 @@ fn each_kind_leaves_its_rigid_motions() {
     let count = |constraint: &str| build(&held(constraint, "", TIME)).body.motion;
     assert_eq!(build(&bar("flexible = 4", "", TIME)).body.motion.count(), 6);
     for pin in PINS {
-        assert_eq!(count(pin), RigidMotion::Pin { point: Vector3::zeros() });
+        assert_eq!(count(pin), RigidMotion::pin(Vector3::zeros()));
     }
     for hinge in HINGES {
-        let RigidMotion::Hinge { point, axis } = count(hinge) else { panic!("{hinge}") };
+        let RigidMotion::hinge(point, axis) = count(hinge) else { panic!("{hinge}") };
         assert_eq!((point.cross(&axis), axis), (Vector3::zeros(), Vector3::y()), "{hinge}");
     }
     for clamp in CLAMPS {
         assert_eq!(count(clamp).count(), 0);
     }
     for slider in SLIDERS {
-        assert_eq!(count(slider), RigidMotion::Slider { direction: Vector3::z() });
+        assert_eq!(count(slider), RigidMotion::slider(Vector3::z()));
     }
     for (kind, constraint) in [HINGES[4], SLIDERS[2]].into_iter().enumerate() {
         let motion = "motion = { amplitude = 2.0, history = { kind = \"ramp\", duration = 0.01 } }";
