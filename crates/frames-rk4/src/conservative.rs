@@ -17,7 +17,7 @@
 //! body, ω is given, and the modes, which are those of the driven part held still, have a momentum b in its motion; b is
 //! zero otherwise. With stiffening, N_ij is `N_ij − Ψ_fᵀ K_ij Ψ_f`.
 
-use faer::MatRef;
+use faer::{Mat, MatRef};
 use modal::ReducedBody;
 use nalgebra::{Matrix3, SVector, Vector3};
 use rigid_kin::{Attitude, f_inverse, transformation_matrix};
@@ -256,6 +256,10 @@ impl ConservativeBody {
         crate::model::check_damping(damping_ratios, nf)?;
         loads.iter().try_for_each(|load| load.check(nf))?;
         let Physics { effects, drive, load_stiffness } = physics;
+        if let Some(found) = load_stiffness.as_ref().map(Mat::shape).filter(|shape| *shape != (nf, nf)) {
+            let what = "the stress stiffness of the loads, in rows and columns,";
+            return Err(SetupError::Length { what, expected: nf, found: found.0.min(found.1) });
+        }
         let driven = match drive {
             Some(drive) => {
                 drive.check()?;
@@ -292,7 +296,7 @@ impl ConservativeBody {
             axes[axis].iter().zip(&body.gyroscopic).map(|(a, g)| a * g[(i, j)]).sum::<f64>()
         };
         let second = |weights: &[f64; 6], i: usize, j: usize| {
-            let of = |matrices: &[faer::Mat<f64>; 6]| -> f64 {
+            let of = |matrices: &[Mat<f64>; 6]| -> f64 {
                 matrices.iter().zip(weights).map(|(m, w)| w * m[(i, j)]).sum()
             };
             of(&body.inertia_second) - stiffness.map_or(0.0, of)

@@ -67,6 +67,32 @@ pub enum ModalError {
         /// The direction.
         direction: [f64; 3],
     },
+    /// Lists or matrices whose sizes do not fit together.
+    #[error("{what}: found {found}, expected {expected}")]
+    Size {
+        /// Which.
+        what: &'static str,
+        /// Its size.
+        found: usize,
+        /// The size that fits.
+        expected: usize,
+    },
+    /// A number that has to be positive.
+    #[error("{what} is {value}; expected a positive number")]
+    NotPositive {
+        /// Which.
+        what: &'static str,
+        /// Its value.
+        value: f64,
+    },
+    /// A node that is not there.
+    #[error("node {node} (counted from 0) is not there; the mesh has {count} nodes")]
+    NoNode {
+        /// Index of the node.
+        node: u32,
+        /// Nodes of the mesh.
+        count: usize,
+    },
     /// A held node that is not there.
     #[error("the support holds node {node} (counted from 0); the mesh has {count} nodes")]
     NoSuchNode {

@@ -39,7 +39,7 @@ mod tall;
 pub use error::ModalError;
 pub use fields::{acceleration_fields, centrifugal_fields};
 pub use mass::NodalMass;
-pub use reduced::{BodyPoint, ReducedBody};
+pub use reduced::{BodyPoint, Constants, ReducedBody};
 pub use rigid::RigidModes;
 pub use solve::{Modes, Progress, SolveStats, Solver};
 pub use support::{RigidMotion, Support};

@@ -23,10 +23,23 @@ use crate::solve::Modes;
 use crate::support::RigidMotion;
 use crate::tall;
 
-/// An elastic body in modal coordinates. Axes are those of the mesh. X is measured from the origin: the centre of mass
-/// of a free body, a fixed point of one that is held.
+/// An elastic body in modal coordinates: [`Constants`] whose sizes fit together and which are finite. They can be read as
+/// its fields.
 #[derive(Debug, Clone)]
-pub struct ReducedBody {
+pub struct ReducedBody(Constants);
+
+impl std::ops::Deref for ReducedBody {
+    type Target = Constants;
+
+    fn deref(&self) -> &Constants {
+        &self.0
+    }
+}
+
+/// The constants of a body in modal coordinates. Axes are those of the mesh. X is measured from the origin: the centre
+/// of mass of a free body, a fixed point of one that is held.
+#[derive(Debug, Clone)]
+pub struct Constants {
     /// Total mass m.
     pub mass: f64,
     /// Centre of mass in the mesh's frame.
@@ -77,10 +90,28 @@ impl ReducedBody {
     /// ij of [`ReducedBody::inertia_first`] and [`ReducedBody::inertia_second`], and of any symmetric 3×3 matrix.
     pub const PAIRS: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1)];
 
+    /// The body with these constants.
+    ///
+    /// # Errors
+    /// [`ModalError::Size`] where sizes do not fit together, [`ModalError::NotFinite`], [`ModalError::NotPositive`].
+    pub fn from_constants(constants: Constants) -> Result<Self, ModalError> {
+        constants.check()?;
+        Ok(Self(constants))
+    }
+
+    /// The same body, stiffened by the stress of a spin: [`Constants::stress_stiffness`].
+    ///
+    /// # Errors
+    /// As [`Self::from_constants`].
+    pub fn with_stress_stiffness(self, stress_stiffness: Option<[Mat<f64>; 6]>) -> Result<Self, ModalError> {
+        Self::from_constants(Constants { stress_stiffness, ..self.0 })
+    }
+
     /// Reduces the body with mass matrix `mass` and nodes `positions` to its `modes`.
     ///
     /// # Errors
-    /// [`ModalError::AnisotropicMass`] where M is not a nodal mass on each axis.
+    /// [`ModalError::AnisotropicMass`] where M is not a nodal mass on each axis; [`ModalError::Size`] where the modes or
+    /// the positions are not those of its nodes.
     pub fn new(
         modes: &Modes,
         mass: SparseColMatRef<'_, usize, f64>,
@@ -90,6 +121,10 @@ impl ReducedBody {
         let rigid = &modes.rigid;
         let n = nodal.node_count();
         let nf = modes.shapes.ncols();
+        check_size("the list of node positions", positions.len(), n)?;
+        check_size("the rows of the mode shapes", modes.shapes.nrows(), 3 * n)?;
+        check_size("the rows of the rigid mode shapes", rigid.shapes.nrows(), 3 * n)?;
+        check_size("the list of eigenvalues", modes.eigenvalues.len(), nf)?;
         // Ψ, X and 1 side by side: all constants are products of their rows on one axis with M_s times those on another.
         let columns = 6 + nf + 2;
         let mut all = Mat::zeros(3 * n, columns);
@@ -153,7 +188,7 @@ impl ReducedBody {
             std::array::from_fn(|i| (0..nf).map(|k| unless(is_free, products[i][i][(6 + k, modal + 1)])).collect());
         let rotation_first = [(2, 1), (0, 2), (1, 0)]
             .map(|(a, b)| (0..nf).map(|k| unless(turns_freely, flexible_x(a, b, k) - flexible_x(b, a, k))).collect());
-        Ok(Self {
+        Self::from_constants(Constants {
             mass: rigid.mass,
             center_of_mass: rigid.center_of_mass,
             motion: rigid.motion,
@@ -182,7 +217,7 @@ impl ReducedBody {
     pub fn truncated(&self, flexible: usize) -> Self {
         let nf = flexible.min(self.flexible());
         let leading = |matrix: &Mat<f64>, size: usize| matrix.get(..size, ..size).to_owned();
-        Self {
+        Self(Constants {
             circular_frequencies: self.circular_frequencies[..nf].to_vec(),
             rotation_products: self.rotation_products.each_ref().map(|r| r.each_ref().map(|m| leading(m, 6 + nf))),
             position_products: self.position_products.each_ref().map(|r| r.each_ref().map(|v| v[..6 + nf].to_vec())),
@@ -192,8 +227,8 @@ impl ReducedBody {
             translation_first: self.translation_first.each_ref().map(|v| v[..nf].to_vec()),
             rotation_first: self.rotation_first.each_ref().map(|v| v[..nf].to_vec()),
             stress_stiffness: self.stress_stiffness.as_ref().map(|k| k.each_ref().map(|m| leading(m, nf))),
-            ..*self
-        }
+            ..self.0
+        })
     }
 
     /// Rows of the rigid shapes at a point X from the origin (3×6): `[T, −[X×] B]`.
@@ -202,6 +237,52 @@ impl ReducedBody {
         shapes.fixed_view_mut::<3, 3>(0, 0).copy_from(&self.translation_basis);
         shapes.fixed_view_mut::<3, 3>(0, 3).copy_from(&(-position_body.cross_matrix() * self.rotation_basis));
         shapes
+    }
+}
+
+impl Constants {
+    /// Refuses sizes that do not fit together, numbers that are not finite, and frequencies that are not positive.
+    fn check(&self) -> Result<(), ModalError> {
+        let nf = self.circular_frequencies.len();
+        let square = |what, matrix: &Mat<f64>, size: usize| -> Result<(), ModalError> {
+            check_size(what, matrix.nrows(), size)?;
+            check_size(what, matrix.ncols(), size)?;
+            finite(what, matrix.col_iter().flat_map(|column| column.iter()).copied())
+        };
+        let list = |what, values: &[f64], size: usize| -> Result<(), ModalError> {
+            check_size(what, values.len(), size)?;
+            finite(what, values.iter().copied())
+        };
+        self.motion.check()?;
+        finite("mass", [self.mass])?;
+        finite("center of mass", self.center_of_mass.iter().copied())?;
+        finite("origin", self.origin.iter().copied())?;
+        finite("inertia", self.inertia.iter().copied())?;
+        finite("translation basis", self.translation_basis.iter().copied())?;
+        finite("rotation basis", self.rotation_basis.iter().copied())?;
+        if let Some(value) = self.circular_frequencies.iter().copied().find(|omega| !(*omega > 0.0 && omega.is_finite())) {
+            return Err(ModalError::NotPositive { what: "circular frequency", value });
+        }
+        self.rotation_products.iter().flatten().try_for_each(|m| square("rotation products", m, 6 + nf))?;
+        self.position_products.iter().flatten().try_for_each(|v| list("position products", v, 6 + nf))?;
+        self.inertia_first.iter().try_for_each(|v| list("first moments of the modes", v, nf))?;
+        self.inertia_second.iter().try_for_each(|m| square("second moments of the modes", m, nf))?;
+        self.gyroscopic.iter().try_for_each(|m| square("gyroscopic matrix", m, nf))?;
+        self.translation_first.iter().try_for_each(|v| list("momenta of the modes in a translation", v, nf))?;
+        self.rotation_first.iter().try_for_each(|v| list("momenta of the modes in a rotation", v, nf))?;
+        self.stress_stiffness.iter().flatten().try_for_each(|m| square("stress stiffness", m, nf))
+    }
+}
+
+/// Refuses a list of another length.
+fn check_size(what: &'static str, found: usize, expected: usize) -> Result<(), ModalError> {
+    if found == expected { Ok(()) } else { Err(ModalError::Size { what, found, expected }) }
+}
+
+fn finite(what: &'static str, values: impl IntoIterator<Item = f64>) -> Result<(), ModalError> {
+    match values.into_iter().enumerate().find(|(_, value)| !value.is_finite()) {
+        Some((index, value)) => Err(ModalError::NotFinite { what, index, value }),
+        None => Ok(()),
     }
 }
 
@@ -220,15 +301,31 @@ fn set_translations(product: &mut Mat<f64>, a: usize, b: usize) {
 
 impl BodyPoint {
     /// The point that moves as `Σ weights_i u(nodes_i)`, where the weights sum to one.
-    pub fn new(modes: &Modes, positions: &[[f64; 3]], nodes: &[u32], weights: &[f64]) -> Self {
+    ///
+    /// # Errors
+    /// [`ModalError::NoNode`] for a node that the mesh has not got, [`ModalError::Size`] for lists of other lengths,
+    /// [`ModalError::NotFinite`].
+    pub fn new(modes: &Modes, positions: &[[f64; 3]], nodes: &[u32], weights: &[f64]) -> Result<Self, ModalError> {
+        let count = positions.len();
+        check_size("the list of weights", weights.len(), nodes.len())?;
+        check_size("the rows of the mode shapes", modes.shapes.nrows(), 3 * count)?;
+        finite("weight", weights.iter().copied())?;
+        if let Some(node) = nodes.iter().copied().find(|node| *node as usize >= count) {
+            return Err(ModalError::NoNode { node, count });
+        }
         let carried = || nodes.iter().map(|node| *node as usize).zip(weights);
         let position: Vector3<f64> = carried().map(|(node, w)| Vector3::from(positions[node]) * *w).sum();
         let shapes: MatRef<'_, f64> = modes.shapes.as_ref();
-        Self {
+        Ok(Self {
             position_body: position - modes.rigid.origin,
             shapes: Mat::from_fn(3, shapes.ncols(), |axis, k| {
                 carried().map(|(node, w)| shapes[(3 * node + axis, k)] * w).sum()
             }),
-        }
+        })
+    }
+
+    /// A point of a rigid body, at a position from its origin.
+    pub fn rigid(position_body: Vector3<f64>) -> Self {
+        Self { position_body, shapes: Mat::zeros(3, 0) }
     }
 }

@@ -4,7 +4,7 @@ use faer::Mat;
 use nalgebra::{Matrix3, Vector3};
 
 use crate::error::ModalError;
-use crate::reduced::ReducedBody;
+use crate::reduced::{Constants, ReducedBody};
 use crate::support::RigidMotion;
 
 /// Entries of the inertia that differ from their mirror image by more than this, relative to its norm, are no rounding.
@@ -51,7 +51,7 @@ impl ReducedBody {
         let with_shape = |k: usize, l: usize| -> Matrix3<f64> {
             mass * constant(k) * constant(l).transpose() + with_position[k] * linear(l).transpose()
         };
-        Ok(Self {
+        Self::from_constants(Constants {
             mass,
             center_of_mass,
             motion,

@@ -74,7 +74,7 @@ impl Plate {
 
     pub fn force(&self, at: [f64; 3], force: [f64; 3], history: History) -> Load {
         let place = self.mesh.locate(at).unwrap();
-        let point = BodyPoint::new(&self.modes, self.mesh.positions(), &place.nodes, &place.weights);
+        let point = BodyPoint::new(&self.modes, self.mesh.positions(), &place.nodes, &place.weights).unwrap();
         Load::dead_force(PointShapes::new(&self.body, &point), force.into(), history)
     }
 

@@ -78,7 +78,7 @@ impl Specimen {
 
     pub fn point(&self, at: [f64; 3]) -> PointShapes {
         let location = self.mesh.locate(at).unwrap();
-        let point = BodyPoint::new(&self.modes, self.mesh.positions(), &location.nodes, &location.weights);
+        let point = BodyPoint::new(&self.modes, self.mesh.positions(), &location.nodes, &location.weights).unwrap();
         PointShapes::new(&self.body, &point)
     }
 

@@ -1,6 +1,5 @@
 //! A body without flexible modes against rigid-body motion in closed form.
 
-use faer::Mat;
 use frames_rk4::{Initial, Rows, StepControl};
 use modal::{ReducedBody, RigidMotion};
 use nalgebra::{Matrix3, Vector3};
@@ -11,25 +10,7 @@ use crate::run::{EXPONENTIAL, RKMK4, Run};
 /// Mass 1 and the inertia of the closed-form cases.
 fn body() -> ReducedBody {
     let inertia = Matrix3::from_diagonal(&Vector3::new(1.0, 2.0, 3.0));
-    let none = || Mat::zeros(0, 0);
-    ReducedBody {
-        mass: 1.0,
-        center_of_mass: Vector3::zeros(),
-        motion: RigidMotion::free(),
-        origin: Vector3::zeros(),
-        inertia,
-        translation_basis: Matrix3::identity(),
-        rotation_basis: Matrix3::from_diagonal(&inertia.diagonal().map(|moment| moment.sqrt().recip())),
-        circular_frequencies: vec![],
-        rotation_products: std::array::from_fn(|_| std::array::from_fn(|_| Mat::zeros(6, 6))),
-        position_products: std::array::from_fn(|_| std::array::from_fn(|_| vec![0.0; 6])),
-        inertia_first: std::array::from_fn(|_| vec![]),
-        inertia_second: std::array::from_fn(|_| none()),
-        gyroscopic: std::array::from_fn(|_| none()),
-        translation_first: std::array::from_fn(|_| vec![]),
-        rotation_first: std::array::from_fn(|_| vec![]),
-        stress_stiffness: None,
-    }
+    ReducedBody::rigid(1.0, Vector3::zeros(), inertia, RigidMotion::free()).unwrap()
 }
 
 #[test]

@@ -7,7 +7,7 @@ use frames_rk4::{
     History, Initial, Method, Observation, Physics, PointForce, PointShapes, Rows, Setup, SharedLoad, Simulation,
     StepControl,
 };
-use modal::{BodyPoint, ReducedBody, RigidMotion};
+use modal::{BodyPoint, Constants, ReducedBody, RigidMotion};
 use nalgebra::{Matrix3, Vector3};
 
 pub const EXPONENTIAL: Method = Method::EXPONENTIAL;
@@ -37,7 +37,7 @@ pub fn body(motion: RigidMotion, circular_frequencies: &[f64]) -> ReducedBody {
         |seed: usize| Mat::from_fn(nf, nf, |i, j| 0.3 * (noise(seed + 5 * i + 11 * j) - noise(seed + 5 * j + 11 * i)));
     let held = !motion.is_free();
     let clamped = motion.count() == 0;
-    ReducedBody {
+    let constants = Constants {
         mass: MASS,
         center_of_mass: if held { Vector3::new(0.4, -0.3, 0.5) } else { Vector3::zeros() },
         motion,
@@ -54,7 +54,13 @@ pub fn body(motion: RigidMotion, circular_frequencies: &[f64]) -> ReducedBody {
         translation_first: if held { vectors(400, 0.3) } else { vectors(400, 0.0) },
         rotation_first: if clamped { vectors(500, 0.3) } else { vectors(500, 0.0) },
         stress_stiffness: None,
-    }
+    };
+    ReducedBody::from_constants(constants).unwrap()
+}
+
+/// The body with another inertia.
+pub fn with_inertia(body: &ReducedBody, inertia: Matrix3<f64>) -> ReducedBody {
+    ReducedBody::from_constants(Constants { inertia, ..(**body).clone() }).unwrap()
 }
 
 /// A point of the body with made-up shapes.

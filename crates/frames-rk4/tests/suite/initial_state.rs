@@ -25,7 +25,7 @@ fn the_initial_state_is_the_projected_velocity_field() {
         if k < 6 { ring.modes.rigid.shapes[(i, k)] } else { ring.modes.shapes[(i, k - 6)] }
     });
     for (node, x) in positions.iter().enumerate() {
-        let shapes = BodyPoint::new(&ring.modes, positions, &[node as u32], &[1.0]).shapes;
+        let shapes = BodyPoint::new(&ring.modes, positions, &[node as u32], &[1.0]).unwrap().shapes;
         let sum = |coordinates: &[f64]| -> Vector3<f64> {
             Vector3::from_fn(|axis, _| coordinates.iter().enumerate().map(|(k, q)| shapes[(axis, k)] * q).sum())
         };
