@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
+use figures::{Animation, FigureError, Frame, View};
 use frames_rk4::Reached;
 use nalgebra::Vector3;
-use results::{Animation, FigureError, Frame, View};
 use scene::{Meshed, Model, Scene};
 
 use crate::run::{RunError, RunProgress};

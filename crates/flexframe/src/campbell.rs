@@ -13,9 +13,9 @@ mod table;
 
 use std::path::{Path, PathBuf};
 
+use figures::FigureError;
 use frames_rk4::{EigenError, SteadySpin};
 use nalgebra::Vector3;
-use results::FigureError;
 use scene::{Body, BuildError, BuildProgress, Choice, Flexible, Model, Scene};
 use serde::Serialize;
 

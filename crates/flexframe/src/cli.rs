@@ -14,7 +14,7 @@ use flexframe::campbell::{CampbellError, CampbellSettings, Speeds, campbell};
 use flexframe::cost::{self, CostSettings};
 use flexframe::paper::PaperError;
 use flexframe::run::{RunError, RunProgress, RunSettings};
-use flexframe::{advise, figures, modes, paper, run};
+use flexframe::{advise, mode_shapes, modes, paper, run};
 use scene::{BuildError, Flexible, Scene, SceneError};
 use serde::Serialize;
 use signal_hook::consts::{SIGINT, SIGTERM};
@@ -267,7 +267,7 @@ fn execute(cli: Cli) -> Result<(), Box<dyn Error>> {
                 Some(folder) => {
                     std::fs::create_dir_all(&folder)
                         .map_err(|source| run::RunError::Folder { folder: folder.clone(), source })?;
-                    figures::mode_shapes(&scene, &model, &folder.join("modes"))?.to_vec()
+                    mode_shapes::draw(&scene, &model, &folder.join("modes"))?.to_vec()
                 }
                 None => Vec::new(),
             };

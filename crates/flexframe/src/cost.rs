@@ -20,8 +20,8 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use fem_tet10::read_msh;
+use figures::FigureError;
 use frames_rk4::{ConservativeScheme, Method, StepControl};
-use results::FigureError;
 use scene::{Body, BuildError, BuildProgress, Choice, Flexible, Model, Scene};
 use serde::Serialize;
 

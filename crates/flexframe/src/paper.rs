@@ -9,7 +9,8 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use results::{FigureError, FileError, Results};
+use ::figures::FigureError;
+use results::{FileError, Results};
 use rigid_kin::{RigidBodyError, StepError};
 use scene::{BuildError, Scene};
 use serde::Serialize;

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use results::{FigureError, LineChart, Scale, Series, Stroke};
+use figures::{FigureError, LineChart, Scale, Series, Stroke};
 
 use super::ladder::{Line, Outcome};
 use super::{CostError, CostReport, Setting};

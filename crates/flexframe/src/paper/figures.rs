@@ -2,13 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
+use figures::{FigureError, LineChart, Scale, Series, Stroke};
 use frames_rk4::Load;
-use results::{FigureError, LineChart, Results, Scale, Series, Stroke};
+use results::Results;
 use scene::{Model, Scene};
 
 use super::WATCHED_POINT;
 use super::rigid_plate::{RigidHistories, dead_force};
-use crate::figures::mode_shapes;
+use crate::mode_shapes;
 
 /// Draws all figures into `folder` and returns their files.
 pub(super) fn draw(
@@ -38,7 +39,7 @@ pub(super) fn draw(
         vec![solid(label, history(rows, axis)), dashed("rigid plate", history(theirs, axis))]
     };
 
-    let mut files = mode_shapes(scene, model, &folder.join("fig03_mode_shapes"))?.to_vec();
+    let mut files = mode_shapes::draw(scene, model, &folder.join("fig03_mode_shapes"))?.to_vec();
     let mut chart = |name: &str, title: &str, y_label: String, series: Vec<Series>| -> Result<(), FigureError> {
         let chart = LineChart {
             title: title.to_owned(),

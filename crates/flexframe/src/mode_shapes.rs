@@ -1,9 +1,9 @@
-//! Pictures of any scene: the shapes of its modes.
+//! A picture of the mode shapes of a scene.
 
 use std::path::{Path, PathBuf};
 
+use figures::{FigureError, Panel, ShapeGrid, View};
 use nalgebra::Vector3;
-use results::{FigureError, Panel, ShapeGrid, View};
 use scene::{Meshed, Model, Scene};
 
 use crate::modes::frequency_unit;
@@ -18,7 +18,7 @@ const MOST_PANELS: usize = 20;
 ///
 /// # Errors
 /// [`FigureError`], also where there are no flexible modes to draw.
-pub fn mode_shapes(scene: &Scene, model: &Model, stem: &Path) -> Result<[PathBuf; 2], FigureError> {
+pub fn draw(scene: &Scene, model: &Model, stem: &Path) -> Result<[PathBuf; 2], FigureError> {
     let Some(Meshed { mesh, modes, .. }) = &model.meshed else {
         return Err(FigureError::Empty { figure: scene.title.clone(), what: "a mesh" });
     };

@@ -4,7 +4,7 @@
 #[path = "../src/test_body.rs"]
 mod test_body;
 
-use results::*;
+use figures::*;
 use std::f64::consts::PI;
 use std::path::{Path, PathBuf};
 use test_body::Block;
