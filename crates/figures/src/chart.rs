@@ -1,13 +1,22 @@
 //! Line charts with linear or logarithmic axes.
 
-use crate::picture::{Anchor, Picture, Place};
-use crate::ticks::{self, Ticks};
-use crate::{FigureError, font};
-use plotters::style::RGBColor;
 use std::path::{Path, PathBuf};
 
+use plotters::backend::DrawingBackend;
+use plotters::chart::ChartBuilder;
+use plotters::coord::{CoordTranslate, Shift};
+use plotters::drawing::DrawingArea;
+use plotters::element::{Circle, DashedPathElement, PathElement};
+use plotters::style::text_anchor::{HPos, VPos};
+use plotters::style::{Color, RGBColor, ShapeStyle, TextStyle, WHITE};
+
+use crate::FigureError;
+use crate::axis::{Axis, Scale};
+use crate::path::{Point, clipped, thinned};
+use crate::picture::{Figure, INK, LABEL_EM, TICK_EM, TITLE_EM, Unit, save};
+
 /// Okabe and Ito's colours, told apart by all common kinds of colour vision; the light ones last.
-pub(crate) const COLOURS: [RGBColor; 7] = [
+const COLOURS: [RGBColor; 7] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
     RGBColor(0, 158, 115),
@@ -16,54 +25,32 @@ pub(crate) const COLOURS: [RGBColor; 7] = [
     RGBColor(230, 159, 0),
     RGBColor(86, 180, 233),
 ];
-
-pub(crate) const INK: RGBColor = RGBColor(30, 30, 30);
 const GRID: RGBColor = RGBColor(222, 222, 222);
+const FAINT_GRID: RGBColor = RGBColor(240, 240, 240);
 const GUIDE: RGBColor = RGBColor(150, 150, 150);
 const GUIDE_INK: RGBColor = RGBColor(95, 95, 95);
-const PAPER: RGBColor = RGBColor(255, 255, 255);
-const FAINT_GRID: RGBColor = RGBColor(240, 240, 240);
 
-const WIDTH: f64 = 720.0;
-const HEIGHT: f64 = 440.0;
+// Lengths in pixels.
+const SIZE: [u32; 2] = [720, 440];
 const MARGIN: f64 = 14.0;
-/// Sizes of letters, in pixels per em.
-pub(crate) const TITLE_EM: f64 = 14.0;
-pub(crate) const LABEL_EM: f64 = 13.0;
-pub(crate) const TICK_EM: f64 = 11.5;
 const LEGEND_ROW: f64 = 19.0;
-const LEGEND_GAP: f64 = 5.0;
 const LEGEND_LINE: f64 = 30.0;
-const TICK_LENGTH: f64 = 4.0;
+const LEGEND_GAP: f64 = 20.0;
+const TICK: f64 = 4.0;
 const SOLID_WIDTH: f64 = 1.5;
-const GUIDE_WIDTH: f64 = 1.0;
-/// Between the end of a guide and its label.
-const GUIDE_GAP: f64 = 4.0;
 /// Wider than a solid line, so that either is seen where they coincide.
 const DASHED_WIDTH: f64 = 2.5;
-const DASH: [f64; 2] = [8.0, 6.0];
-/// Coordinates per pixel.
-const FINENESS: u32 = 4;
+const DASH: f64 = 8.0;
+const DASH_GAP: f64 = 6.0;
+const DOT: f64 = 3.0;
+const RING: f64 = 3.5;
+/// Between the end of a guide and its label.
+const GUIDE_GAP: f64 = 4.0;
+
 /// Series with no more points than this show each as a dot.
 const FEW_POINTS: usize = 24;
-const DOT_RADIUS: f64 = 3.0;
-const RING_RADIUS: f64 = 4.0;
-/// Series with more points than this are thinned.
-const MANY_POINTS: usize = 3000;
-/// Columns per pixel, each of which keeps the highest and the lowest point of a thinned series.
+/// Columns per pixel, each of which keeps the highest and the lowest point of a long series.
 const COLUMNS_PER_PIXEL: f64 = 2.0;
-
-/// How an axis maps values.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub enum Scale {
-    /// Evenly.
-    #[default]
-    Linear,
-    /// Evenly, between two values, the lower one first: lines are cut off there, and points beyond are left out.
-    Window(f64, f64),
-    /// By decades; values must be positive.
-    Log,
-}
 
 /// How a series is drawn. Dashed lines are wider and lie above solid ones: where the two coincide,
 /// both are seen.
@@ -91,12 +78,6 @@ pub struct Series {
     pub stroke: Stroke,
 }
 
-impl Series {
-    fn is_in_legend(&self) -> bool {
-        !self.label.is_empty() && self.stroke != Stroke::Guide
-    }
-}
-
 /// A chart of lines over two axes. Colours are chosen by the order of the series; a series of a few
 /// points shows each of them as a dot.
 #[derive(Debug, Clone, PartialEq)]
@@ -115,43 +96,6 @@ pub struct LineChart {
     pub series: Vec<Series>,
 }
 
-/// An axis on the picture: from pixel `start` to pixel `end`.
-struct Axis {
-    scale: Scale,
-    /// In decades if the scale is logarithmic.
-    range: (f64, f64),
-    start: f64,
-    end: f64,
-    ticks: Ticks,
-}
-
-impl Axis {
-    fn pixel(&self, value: f64) -> f64 {
-        let value = match self.scale {
-            Scale::Linear | Scale::Window(..) => value,
-            Scale::Log => value.log10(),
-        };
-        let (min, max) = self.range;
-        self.start + (value - min) / (max - min) * (self.end - self.start)
-    }
-
-    fn new(scale: Scale, values: impl Iterator<Item = f64>, margin: f64, ticks: usize) -> Self {
-        let (min, max) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(min, max), v| (min.min(v), max.max(v)));
-        let (range, ticks) = match scale {
-            Scale::Linear => {
-                let (min, max) = ticks::linear_range(min, max, margin);
-                ((min, max), ticks::linear(min, max, ticks))
-            }
-            Scale::Window(min, max) => ((min, max), ticks::linear(min, max, ticks)),
-            Scale::Log => {
-                let (low, high) = ticks::decades(min, max);
-                ((f64::from(low), f64::from(high)), ticks::logarithmic((low, high), ticks))
-            }
-        };
-        Self { scale, range, start: 0.0, end: 1.0, ticks }
-    }
-}
-
 impl LineChart {
     /// Writes `<stem>.svg` and `<stem>.png` and returns the two paths. Long histories are thinned to
     /// the highest and lowest point of every half pixel, so that peaks survive.
@@ -160,77 +104,8 @@ impl LineChart {
     /// [`FigureError::Empty`] without any point, [`FigureError::NotFinite`],
     /// [`FigureError::NotPositive`] on a logarithmic axis, [`FigureError::Write`].
     pub fn save(&self, stem: impl AsRef<Path>) -> Result<[PathBuf; 2], FigureError> {
-        self.picture()?.save(stem.as_ref())
-    }
-
-    fn picture(&self) -> Result<Picture, FigureError> {
         self.check()?;
-        let points = || self.series.iter().flat_map(|series| &series.points);
-        let mut x = Axis::new(self.x_scale, points().map(|p| p.0), 0.0, 7);
-        let mut y = Axis::new(self.y_scale, points().map(|p| p.1), 0.05, 6);
-
-        let legend = self.legend_rows()?;
-        let mut widest = 0.0_f64;
-        for (_, label) in &y.ticks.major {
-            widest = widest.max(font::width(label, TICK_EM)?);
-        }
-        let top = MARGIN
-            + if self.title.is_empty() { 0.0 } else { 1.6 * TITLE_EM }
-            + LEGEND_ROW * legend.len() as f64
-            + if legend.is_empty() && self.title.is_empty() { 0.0 } else { LEGEND_GAP }
-            + if y.ticks.note.is_empty() { 0.0 } else { 1.3 * TICK_EM };
-        let mut right = 1.8 * MARGIN;
-        for guide in self.series.iter().filter(|series| series.stroke == Stroke::Guide) {
-            right = right.max(GUIDE_GAP + font::width(&guide.label, TICK_EM)? + 0.5 * MARGIN);
-        }
-        (x.start, x.end) = (MARGIN + 1.9 * LABEL_EM + widest + 8.0, WIDTH - right);
-        (y.start, y.end) = (HEIGHT - MARGIN - 3.6 * LABEL_EM, top);
-
-        let mut picture = Picture::new(WIDTH as u32, HEIGHT as u32, FINENESS);
-        let mut baseline = MARGIN + TITLE_EM;
-        if !self.title.is_empty() {
-            picture.text([0.5 * (x.start + x.end), baseline], &self.title, TITLE_EM, Anchor::Centre, INK);
-            baseline += 1.6 * TITLE_EM;
-        }
-        for row in &legend {
-            self.draw_legend_row(&mut picture, row, 0.5 * (x.start + x.end), baseline);
-            baseline += LEGEND_ROW;
-        }
-        draw_grid(&mut picture, &x, &y);
-        let is_visible = |p: &Place| between(p[0], x.start, x.end) && between(p[1], y.end, y.start);
-        for stroke in [Stroke::Guide, Stroke::Solid, Stroke::Dashed] {
-            for (i, series) in self.series.iter().enumerate().filter(|(_, series)| series.stroke == stroke) {
-                let places: Vec<Place> = series.points.iter().map(|p| [x.pixel(p.0), y.pixel(p.1)]).collect();
-                if stroke != Stroke::Guide && places.len() <= FEW_POINTS {
-                    let dots = places.iter().filter(|place| is_visible(place));
-                    dots.for_each(|place| draw_dot(&mut picture, *place, DOT_RADIUS, colour(i)));
-                }
-                for piece in self.visible(places, &x, &y) {
-                    if stroke == Stroke::Guide {
-                        draw_guide_label(&mut picture, &piece, &series.label, x.end);
-                    }
-                    draw_stroke(&mut picture, thinned(piece), colour(i), stroke);
-                }
-            }
-        }
-        self.draw_axes(&mut picture, &x, &y);
-        for series in self.series.iter().filter(|series| series.stroke == Stroke::Rings) {
-            let places = series.points.iter().map(|p| [x.pixel(p.0), y.pixel(p.1)]);
-            draw_stroke(&mut picture, places.filter(is_visible).collect(), INK, Stroke::Rings);
-        }
-        Ok(picture)
-    }
-
-    /// The parts of a path that its windows leave.
-    fn visible(&self, path: Vec<Place>, x: &Axis, y: &Axis) -> Vec<Vec<Place>> {
-        let mut pieces = vec![path];
-        for (i, axis) in [x, y].into_iter().enumerate().filter(|(_, axis)| matches!(axis.scale, Scale::Window(..))) {
-            for bound in [axis.start, axis.end] {
-                let sign = if bound == axis.start.min(axis.end) { 1.0 } else { -1.0 };
-                pieces = pieces.iter().flat_map(|piece| beyond(piece, i, bound, sign)).collect();
-            }
-        }
-        pieces
+        save(self, stem.as_ref())
     }
 
     fn check(&self) -> Result<(), FigureError> {
@@ -253,16 +128,31 @@ impl LineChart {
         Ok(())
     }
 
-    /// Series with a label and the widths of their entries, broken into rows that fit.
-    fn legend_rows(&self) -> Result<Vec<Vec<(usize, f64)>>, FigureError> {
-        let room = WIDTH - 8.0 * MARGIN;
-        let mut rows: Vec<Vec<(usize, f64)>> = Vec::new();
-        let mut used = f64::INFINITY;
-        for (i, series) in self.series.iter().enumerate().filter(|(_, series)| series.is_in_legend()) {
-            let width = LEGEND_LINE + 6.0 + font::width(&series.label, TICK_EM)? + 20.0;
-            if used + width > room {
+    /// The series of a stroke, each with its pen.
+    fn with(&self, stroke: Stroke, unit: Unit) -> impl Iterator<Item = (&Series, Pen)> {
+        let with_pens =
+            self.series.iter().enumerate().map(move |(i, series)| (series, Pen::new(series.stroke, i, unit)));
+        with_pens.filter(move |(series, _)| series.stroke == stroke)
+    }
+
+    /// Entries of the legend with their widths, broken into rows that fit. plotters' own legend would hide a part of the
+    /// lines, so it is not used.
+    fn legend<DB: DrawingBackend>(
+        &self,
+        area: &DrawingArea<DB, Shift>,
+        unit: Unit,
+    ) -> Result<Vec<Vec<(usize, i32)>>, FigureError> {
+        let room = area.dim_in_pixel().0 as i32 - unit.px(6.0 * MARGIN);
+        let mut rows: Vec<Vec<(usize, i32)>> = Vec::new();
+        let mut used = i32::MAX;
+        for (i, series) in self.series.iter().enumerate() {
+            if series.label.is_empty() || series.stroke == Stroke::Guide {
+                continue;
+            }
+            let width = unit.px(LEGEND_LINE + 6.0 + LEGEND_GAP) + text_width(area, &series.label, unit)?;
+            if used.saturating_add(width) > room {
                 rows.push(Vec::new());
-                used = 0.0;
+                used = 0;
             }
             used += width;
             if let Some(row) = rows.last_mut() {
@@ -272,195 +162,195 @@ impl LineChart {
         Ok(rows)
     }
 
-    fn draw_legend_row(&self, picture: &mut Picture, row: &[(usize, f64)], centre: f64, baseline: f64) {
-        let mut left = centre - 0.5 * (row.iter().map(|entry| entry.1).sum::<f64>() - 20.0);
-        for &(i, width) in row {
-            let height = baseline - 0.36 * TICK_EM;
-            let line = match self.series[i].stroke {
-                Stroke::Rings => vec![[left + 0.5 * LEGEND_LINE, height]],
-                _ => vec![[left, height], [left + LEGEND_LINE, height]],
-            };
-            draw_stroke(picture, line, colour(i), self.series[i].stroke);
-            picture.text([left + LEGEND_LINE + 6.0, baseline], &self.series[i].label, TICK_EM, Anchor::Left, INK);
-            left += width;
+    fn draw_legend<DB: DrawingBackend>(
+        &self,
+        area: &DrawingArea<DB, Shift>,
+        rows: &[Vec<(usize, i32)>],
+        unit: Unit,
+    ) -> Result<(), FigureError> {
+        for (row, entries) in rows.iter().enumerate() {
+            let width = entries.iter().map(|entry| entry.1).sum::<i32>() - unit.px(LEGEND_GAP);
+            let mut left = (area.dim_in_pixel().0 as i32 - width) / 2;
+            let height = unit.px(LEGEND_ROW * (row as f64 + 0.5));
+            for &(i, width) in entries {
+                let Series { label, stroke, .. } = &self.series[i];
+                let line = match stroke {
+                    Stroke::Rings => vec![(left + unit.px(0.5 * LEGEND_LINE), height)],
+                    _ => vec![(left, height), (left + unit.px(LEGEND_LINE), height)],
+                };
+                Pen::new(*stroke, i, unit).draw(area, line)?;
+                let text = unit.text(TICK_EM, HPos::Left, VPos::Center);
+                area.draw_text(label, &text, (left + unit.px(LEGEND_LINE + 6.0), height))?;
+                left += width;
+            }
         }
+        Ok(())
     }
 
-    fn draw_axes(&self, picture: &mut Picture, x: &Axis, y: &Axis) {
-        let corners = [[x.start, y.start], [x.end, y.start], [x.end, y.end], [x.start, y.end], [x.start, y.start]];
-        picture.line(corners.to_vec(), INK, 1.0);
-        for (value, label) in &x.ticks.major {
-            let at = x.pixel(*value);
-            picture.line(vec![[at, y.start], [at, y.start - TICK_LENGTH]], INK, 1.0);
-            picture.text([at, y.start + 1.5 * TICK_EM], label, TICK_EM, Anchor::Centre, INK);
+    /// Room to the right of the axes: for the labels of guides, or half that of a tick.
+    fn right_margin<DB: DrawingBackend>(&self, area: &DrawingArea<DB, Shift>, unit: Unit) -> Result<i32, FigureError> {
+        let mut right = unit.px(0.8 * MARGIN);
+        for (guide, _) in self.with(Stroke::Guide, unit) {
+            right = right.max(unit.px(GUIDE_GAP) + text_width(area, &guide.label, unit)?);
         }
-        for (value, label) in &y.ticks.major {
-            let at = y.pixel(*value);
-            picture.line(vec![[x.start, at], [x.start + TICK_LENGTH, at]], INK, 1.0);
-            picture.text([x.start - 6.0, at + 0.36 * TICK_EM], label, TICK_EM, Anchor::Right, INK);
-        }
-        let below = HEIGHT - MARGIN - 0.3 * LABEL_EM;
-        picture.text([0.5 * (x.start + x.end), below], &self.x_label, LABEL_EM, Anchor::Centre, INK);
-        picture.text([x.end, below], &x.ticks.note, TICK_EM, Anchor::Right, INK);
-        let middle = 0.5 * (y.start + y.end);
-        picture.text([MARGIN + LABEL_EM, middle], &self.y_label, LABEL_EM, Anchor::Upwards, INK);
-        picture.text([x.start, y.end - 0.5 * TICK_EM], &y.ticks.note, TICK_EM, Anchor::Left, INK);
-    }
-}
-
-fn colour(series: usize) -> RGBColor {
-    COLOURS[series % COLOURS.len()]
-}
-
-fn draw_grid(picture: &mut Picture, x: &Axis, y: &Axis) {
-    let lines = |axis: &Axis| {
-        let minor = axis.ticks.minor.iter().map(|&value| (value, FAINT_GRID));
-        let major = axis.ticks.major.iter().map(|(value, _)| (*value, GRID));
-        minor.chain(major).map(|(value, colour)| (axis.pixel(value), colour)).collect::<Vec<_>>()
-    };
-    for (at, colour) in lines(x) {
-        picture.line(vec![[at, y.start], [at, y.end]], colour, 0.75);
-    }
-    for (at, colour) in lines(y) {
-        picture.line(vec![[x.start, at], [x.end, at]], colour, 0.75);
+        Ok(right)
     }
 }
 
-fn draw_dot(picture: &mut Picture, [x, y]: Place, radius: f64, colour: RGBColor) {
-    let corner = |i: u32| (f64::from(i) * std::f64::consts::TAU / 24.0).sin_cos();
-    let circle = (0..24).map(corner).map(|(sin, cos)| [x + radius * cos, y + radius * sin]);
-    picture.area(circle.collect(), colour);
-}
-
-fn between(value: f64, low: f64, high: f64) -> bool {
-    (low - 1e-6..=high + 1e-6).contains(&value)
-}
-
-/// The parts of a path whose coordinate `i` is not below `bound`, or for the sign −1 not above.
-fn beyond(path: &[Place], i: usize, bound: f64, sign: f64) -> Vec<Vec<Place>> {
-    let depth = |place: &Place| sign * (place[i] - bound);
-    let mut pieces = Vec::new();
-    let mut piece: Vec<Place> = path.first().copied().filter(|place| depth(place) >= 0.0).into_iter().collect();
-    for pair in path.windows(2) {
-        let (a, b) = (pair[0], pair[1]);
-        let (from, to) = (depth(&a), depth(&b));
-        if (from < 0.0) != (to < 0.0) {
-            let part = from / (from - to);
-            piece.push([a[0] + part * (b[0] - a[0]), a[1] + part * (b[1] - a[1])]);
-        }
-        if to >= 0.0 {
-            piece.push(b);
-        } else if !piece.is_empty() {
-            pieces.push(std::mem::take(&mut piece));
-        }
+impl Figure for LineChart {
+    fn size(&self) -> [u32; 2] {
+        SIZE
     }
-    pieces.push(piece);
-    pieces.retain(|piece| !piece.is_empty());
-    pieces
+
+    fn draw<DB: DrawingBackend>(&self, picture: &DrawingArea<DB, Shift>, unit: Unit) -> Result<(), FigureError> {
+        let points = || self.series.iter().flat_map(|series| &series.points);
+        let x = Axis::new(self.x_scale, points().map(|p| p.0), 0.0, 7);
+        let y = Axis::new(self.y_scale, points().map(|p| p.1), 0.05, 6);
+
+        let margin = unit.px(MARGIN);
+        let mut area = picture.margin(unit.px(0.6 * MARGIN), margin, margin, margin);
+        if !self.title.is_empty() {
+            area =
+                area.titled(&self.title, unit.text(TITLE_EM, HPos::Center, VPos::Top))?.margin(unit.px(5.0), 0, 0, 0);
+        }
+        let rows = self.legend(&area, unit)?;
+        let (legend, area) = area.split_vertically(unit.px(LEGEND_ROW * rows.len() as f64));
+        self.draw_legend(&legend, &rows, unit)?;
+
+        let mut widest = 0;
+        for label in y.labels() {
+            widest = widest.max(text_width(&area, &label, unit)?);
+        }
+        let note_height = if y.note.is_empty() { 0.0 } else { TICK_EM };
+        let mut chart = ChartBuilder::on(&area)
+            .margin_top(unit.px(6.0 + note_height))
+            .margin_right(self.right_margin(&area, unit)?)
+            .x_label_area_size(unit.px(3.6 * LABEL_EM))
+            .y_label_area_size(widest + unit.px(1.6 * LABEL_EM + 2.0 * TICK))
+            .build_cartesian_2d(x.clone(), y.clone())?;
+        let label = unit.text(LABEL_EM, HPos::Center, VPos::Top);
+        chart
+            .configure_mesh()
+            .light_line_style(FAINT_GRID.stroke_width(unit.stroke(0.75)))
+            .bold_line_style(GRID.stroke_width(unit.stroke(0.75)))
+            .axis_style(INK.stroke_width(unit.stroke(1.0)))
+            .label_style(unit.text(TICK_EM, HPos::Center, VPos::Top))
+            .axis_desc_style(label)
+            .x_desc(&self.x_label)
+            .y_desc(&self.y_label)
+            .set_all_tick_mark_size(unit.px(TICK))
+            .draw()?;
+
+        let plot = chart.plotting_area();
+        let shown =
+            |series: &Series| -> Vec<Point> { series.points.iter().map(|p| (x.shown(p.0), y.shown(p.1))).collect() };
+        let column = (x.range.1 - x.range.0) / (f64::from(SIZE[0]) * COLUMNS_PER_PIXEL);
+        for (series, pen) in self.with(Stroke::Guide, unit) {
+            for line in clipped(shown(series), x.range, y.range) {
+                draw_guide_label(picture, plot, &line, &series.label, unit)?;
+                pen.draw(plot, line)?;
+            }
+        }
+        for (series, pen) in self.with(Stroke::Solid, unit).chain(self.with(Stroke::Dashed, unit)) {
+            let points = shown(series);
+            if points.len() <= FEW_POINTS {
+                for point in points.iter().filter(|p| is_within(p.0, x.range) && is_within(p.1, y.range)) {
+                    plot.draw(&Circle::new(*point, unit.px(DOT), pen.style.filled()))?;
+                }
+            }
+            for line in clipped(points, x.range, y.range) {
+                pen.draw(plot, thinned(line, column))?;
+            }
+        }
+
+        let (across, down) = plot.get_pixel_range();
+        let (left, right, top, bottom) = (across.start, across.end - 1, down.start, down.end - 1);
+        let frame = vec![(left, bottom), (left, top), (right, top), (right, bottom), (left, bottom)];
+        picture.draw(&PathElement::new(frame, INK.stroke_width(unit.stroke(1.0))))?;
+        let above = (left, top - unit.px(3.0));
+        let below = (right, picture.dim_in_pixel().1 as i32 - margin);
+        for (note, side, place) in [(&y.note, HPos::Left, above), (&x.note, HPos::Right, below)] {
+            if !note.is_empty() {
+                picture.draw_text(note, &unit.text(TICK_EM, side, VPos::Bottom), place)?;
+            }
+        }
+        for (series, pen) in self.with(Stroke::Rings, unit) {
+            let points = shown(series).into_iter();
+            pen.draw(plot, points.filter(|p| is_within(p.0, x.range) && is_within(p.1, y.range)).collect())?;
+        }
+        Ok(())
+    }
 }
 
-/// In the margin if the line ends there, else to the left of its end.
-fn draw_guide_label(picture: &mut Picture, places: &[Place], label: &str, right: f64) {
-    let &[.., [x0, y0], [x, y]] = places else { return };
-    if x > right - 0.5 {
-        picture.text([x + GUIDE_GAP, y + 0.36 * TICK_EM], label, TICK_EM, Anchor::Left, GUIDE_INK);
+/// How the line of a series is drawn.
+struct Pen {
+    stroke: Stroke,
+    style: ShapeStyle,
+    unit: Unit,
+}
+
+impl Pen {
+    /// Of the series with this index.
+    fn new(stroke: Stroke, i: usize, unit: Unit) -> Self {
+        let (colour, width) = match stroke {
+            Stroke::Solid => (COLOURS[i % COLOURS.len()], SOLID_WIDTH),
+            Stroke::Dashed => (COLOURS[i % COLOURS.len()], DASHED_WIDTH),
+            Stroke::Guide => (GUIDE, 1.0),
+            Stroke::Rings => (INK, SOLID_WIDTH),
+        };
+        Self { stroke, style: colour.stroke_width(unit.stroke(width)), unit }
+    }
+
+    /// On a chart or on a legend.
+    fn draw<DB: DrawingBackend, C: CoordTranslate<From: Clone + 'static>>(
+        &self,
+        area: &DrawingArea<DB, C>,
+        points: Vec<C::From>,
+    ) -> Result<(), FigureError> {
+        let px = |pixels| self.unit.px(pixels);
+        match self.stroke {
+            Stroke::Solid | Stroke::Guide => area.draw(&PathElement::new(points, self.style))?,
+            Stroke::Dashed => area.draw(&DashedPathElement::new(points, px(DASH), px(DASH_GAP), self.style))?,
+            Stroke::Rings => {
+                for point in points {
+                    area.draw(&Circle::new(point.clone(), px(RING), WHITE.filled()))?;
+                    area.draw(&Circle::new(point, px(RING), self.style))?;
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// In the margin if the line ends at the right edge, else to the left of its end.
+fn draw_guide_label<DB: DrawingBackend, C: CoordTranslate<From = Point>>(
+    picture: &DrawingArea<DB, Shift>,
+    plot: &DrawingArea<DB, C>,
+    line: &[Point],
+    label: &str,
+    unit: Unit,
+) -> Result<(), FigureError> {
+    let &[.., before, end] = line else { return Ok(()) };
+    let [(x0, y0), (x, y)] = [before, end].map(|point| plot.map_coordinate(&point));
+    let text =
+        |horizontal| TextStyle { color: GUIDE_INK.to_backend_color(), ..unit.text(TICK_EM, horizontal, VPos::Center) };
+    let gap = unit.px(GUIDE_GAP);
+    if x >= plot.get_pixel_range().0.end - 2 {
+        picture.draw_text(label, &text(HPos::Left), (x + gap, y))?;
     } else {
-        let below = 1.3 * TICK_EM;
-        let back = if y0 > y { (x - x0) / (y0 - y) * below } else { 0.0 };
-        picture.text([x - back - GUIDE_GAP, y + below], label, TICK_EM, Anchor::Right, GUIDE_INK);
+        let below = unit.px(TICK_EM);
+        let back = if y0 > y { (x - x0) * below / (y0 - y) } else { 0 };
+        picture.draw_text(label, &text(HPos::Right), (x - back - gap, y + below))?;
     }
+    Ok(())
 }
 
-fn draw_stroke(picture: &mut Picture, places: Vec<Place>, colour: RGBColor, stroke: Stroke) {
-    match stroke {
-        Stroke::Solid => picture.line(places, colour, SOLID_WIDTH),
-        Stroke::Guide => picture.line(places, GUIDE, GUIDE_WIDTH),
-        Stroke::Rings => places.into_iter().for_each(|place| {
-            draw_dot(picture, place, RING_RADIUS, INK);
-            draw_dot(picture, place, RING_RADIUS - SOLID_WIDTH, PAPER);
-        }),
-        Stroke::Dashed => {
-            for dash in dashes(&places) {
-                picture.line(dash, colour, DASHED_WIDTH);
-            }
-        }
-    }
+fn text_width<DB: DrawingBackend>(area: &DrawingArea<DB, Shift>, text: &str, unit: Unit) -> Result<i32, FigureError> {
+    Ok(area.estimate_text_size(text, &unit.text(TICK_EM, HPos::Left, VPos::Center))?.0 as i32)
 }
 
-/// The parts of a path that the pen is down for.
-fn dashes(places: &[Place]) -> Vec<Vec<Place>> {
-    let mut dashes = Vec::new();
-    let mut dash: Vec<Place> = places.first().copied().into_iter().collect();
-    let (mut pen, mut left) = (0, DASH[0]);
-    for pair in places.windows(2) {
-        let ([mut at, end], mut rest) = ([pair[0], pair[1]], distance(pair[0], pair[1]));
-        while rest > left {
-            let fraction = left / rest;
-            at = [at[0] + fraction * (end[0] - at[0]), at[1] + fraction * (end[1] - at[1])];
-            rest -= left;
-            if pen == 0 {
-                dash.push(at);
-                dashes.push(std::mem::take(&mut dash));
-            } else {
-                dash.push(at);
-            }
-            pen = 1 - pen;
-            left = DASH[pen];
-        }
-        left -= rest;
-        if pen == 0 {
-            dash.push(end);
-        }
-    }
-    dashes.push(dash);
-    dashes.retain(|dash| dash.len() > 1);
-    dashes
-}
-
-fn distance(a: Place, b: Place) -> f64 {
-    (b[0] - a[0]).hypot(b[1] - a[1])
-}
-
-/// What a reader can see of a long path. Of a path that runs to the right, each column keeps its first,
-/// lowest, highest and last place; of any other, places a quarter of a pixel apart.
-fn thinned(places: Vec<Place>) -> Vec<Place> {
-    if places.len() <= MANY_POINTS {
-        return places;
-    }
-    let column = |place: &Place| (place[0] * COLUMNS_PER_PIXEL).floor();
-    let mut kept = Vec::new();
-    if places.is_sorted_by(|a, b| a[0] <= b[0]) {
-        for group in places.chunk_by(|a, b| column(a) == column(b)) {
-            let by_height = |a: &&Place, b: &&Place| a[1].total_cmp(&b[1]);
-            let mut four: Vec<Place> = [group.first(), group.last()].into_iter().flatten().copied().collect();
-            four.extend(group.iter().min_by(by_height));
-            four.extend(group.iter().max_by(by_height));
-            four.sort_by(|a, b| a[0].total_cmp(&b[0]));
-            kept.extend(four);
-        }
-        kept.dedup();
-    } else {
-        for place in places {
-            if kept.last().is_none_or(|&last| distance(last, place) >= 0.25) {
-                kept.push(place);
-            }
-        }
-    }
-    kept
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_path_is_cut_where_it_leaves_a_window() {
-        let path = [[0.0, 0.0], [1.0, 2.0], [2.0, 0.0], [3.0, 0.5], [4.0, 3.0]];
-        let below = beyond(&path, 1, 1.0, -1.0);
-        assert_eq!(below, [vec![[0.0, 0.0], [0.5, 1.0]], vec![[1.5, 1.0], [2.0, 0.0], [3.0, 0.5], [3.2, 1.0]]]);
-        let above = beyond(&path, 1, 1.0, 1.0);
-        assert_eq!(above, [vec![[0.5, 1.0], [1.0, 2.0], [1.5, 1.0]], vec![[3.2, 1.0], [4.0, 3.0]]]);
-        assert!(beyond(&path, 0, 5.0, 1.0).is_empty());
-        assert_eq!(beyond(&path, 0, -1.0, 1.0), [path.to_vec()]);
-    }
+/// Whether a shown value lies on an axis, up to rounding.
+fn is_within(value: f64, (low, high): (f64, f64)) -> bool {
+    let rounding = 1e-9 * (high - low);
+    (low - rounding..=high + rounding).contains(&value)
 }

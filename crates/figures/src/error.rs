@@ -3,6 +3,8 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
+use plotters::drawing::DrawingAreaErrorKind;
+
 /// An error of a figure.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -92,5 +94,12 @@ impl FigureError {
             _ => "check the file and its disk",
         };
         Self::Write { path: path.to_path_buf(), reason: format!("{error}; {cure}") }
+    }
+}
+
+/// What plotters cannot draw.
+impl<E: std::error::Error + Send + Sync> From<DrawingAreaErrorKind<E>> for FigureError {
+    fn from(error: DrawingAreaErrorKind<E>) -> Self {
+        Self::Draw { reason: error.to_string() }
     }
 }

@@ -9,21 +9,23 @@
 #![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable))]
 
 mod animation;
+mod axis;
 mod chart;
 mod error;
 mod font;
+mod path;
 mod picture;
 mod render;
 mod shapes;
 mod surface;
-mod ticks;
 mod view;
 
 #[cfg(test)]
 mod test_body;
 
 pub use animation::{Animation, Frame};
-pub use chart::{LineChart, Scale, Series, Stroke};
+pub use axis::Scale;
+pub use chart::{LineChart, Series, Stroke};
 pub use error::FigureError;
 pub use shapes::{Panel, ShapeGrid};
 pub use surface::{boundary_triangles, sharp_edges};

@@ -1,279 +1,256 @@
-//! A picture as a list of lines, areas, texts and bitmaps, and its writers.
+//! Drawing with plotters, as an SVG document and as a bitmap.
 //!
-//! A figure is composed once, in pixels with y downwards; SVG and bitmap come from the same list. The
-//! drawing library works in whole units, so both are drawn on a grid finer than the pixel: an SVG
-//! keeps the fine coordinates, a bitmap is averaged down, which smooths all its edges.
+//! plotters counts in whole units. Figures are composed in pixels with y downwards and drawn in units finer than the
+//! pixel: an SVG keeps the fine units, a bitmap is averaged down, which smooths all its edges.
 
-use crate::{FigureError, font};
-use plotters::backend::{BitMapBackend, DrawingBackend, SVGBackend};
-use plotters::style::text_anchor::{HPos, Pos, VPos};
-use plotters::style::{Color, FontTransform, RGBColor, ShapeStyle};
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
-/// A place in the picture: pixels to the right, pixels down.
-pub(crate) type Place = [f64; 2];
+use plotters::backend::{BitMapBackend, DrawingBackend, SVGBackend};
+use plotters::coord::Shift;
+use plotters::drawing::{DrawingArea, IntoDrawingArea};
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+use plotters::style::{RGBColor, TextStyle, WHITE};
+use plotters_backend::{BackendColor, BackendCoord, BackendStyle, BackendTextStyle, DrawingErrorKind};
+use whole_file::write_whole;
 
-/// Which point of a text is given; vertically it is always the base line.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Anchor {
-    Left,
-    Centre,
-    Right,
-    /// Reads upwards, centred on the place, the base line to its right.
-    Upwards,
+use crate::{FigureError, font};
+
+pub(crate) const INK: RGBColor = RGBColor(30, 30, 30);
+/// Sizes of letters, in pixels per em.
+pub(crate) const TITLE_EM: f64 = 14.0;
+pub(crate) const LABEL_EM: f64 = 13.0;
+pub(crate) const TICK_EM: f64 = 11.5;
+
+/// Units per pixel of an SVG.
+const FINE: u32 = 4;
+/// Units per dot of a bitmap.
+const SMOOTHING: u32 = 2;
+/// Dots per pixel of a PNG.
+const DOTS: u32 = 2;
+
+/// What can be drawn.
+pub(crate) trait Figure {
+    /// Width and height in pixels.
+    fn size(&self) -> [u32; 2];
+
+    /// Draws into an area of this size.
+    fn draw<DB: DrawingBackend>(&self, area: &DrawingArea<DB, Shift>, unit: Unit) -> Result<(), FigureError>;
 }
 
-#[derive(Debug)]
-enum Item {
-    Line {
-        places: Vec<Place>,
-        colour: RGBColor,
-        width: f64,
-    },
-    Area {
-        places: Vec<Place>,
-        colour: RGBColor,
-    },
-    Text {
-        place: Place,
-        text: String,
-        em: f64,
-        anchor: Anchor,
-        colour: RGBColor,
-    },
-    /// RGB bytes, row by row, at the picture's fine resolution.
-    Bitmap {
-        place: Place,
-        width: u32,
-        height: u32,
-        rgb: Vec<u8>,
-    },
-}
-
-#[derive(Debug)]
-pub(crate) struct Picture {
-    width: u32,
-    height: u32,
-    /// Fine units per pixel.
-    fineness: u32,
-    items: Vec<Item>,
-}
-
-impl Picture {
-    pub(crate) fn new(width: u32, height: u32, fineness: u32) -> Self {
-        Self { width, height, fineness, items: Vec::new() }
-    }
-
-    pub(crate) fn line(&mut self, places: Vec<Place>, colour: RGBColor, width: f64) {
-        self.items.push(Item::Line { places, colour, width });
-    }
-
-    pub(crate) fn area(&mut self, places: Vec<Place>, colour: RGBColor) {
-        self.items.push(Item::Area { places, colour });
-    }
-
-    pub(crate) fn text(&mut self, place: Place, text: &str, em: f64, anchor: Anchor, colour: RGBColor) {
-        if text.is_empty() {
-            return;
-        }
-        self.items.push(Item::Text { place, text: text.to_owned(), em, anchor, colour });
-    }
-
-    /// `width` and `height` in fine units.
-    pub(crate) fn bitmap(&mut self, place: Place, width: u32, height: u32, rgb: Vec<u8>) {
-        self.items.push(Item::Bitmap { place, width, height, rgb });
-    }
-
-    /// Writes `<stem>.svg` and `<stem>.png`, the latter with two dots per pixel, and returns the two paths.
-    pub(crate) fn save(&self, stem: &Path) -> Result<[PathBuf; 2], FigureError> {
-        let [svg, png] = ["svg", "png"].map(|extension| {
-            let mut name = stem.as_os_str().to_owned();
-            name.push(".");
-            name.push(extension);
-            PathBuf::from(name)
-        });
-        std::fs::write(&svg, self.svg()?).map_err(|error| FigureError::system(&svg, &error))?;
-
-        let dots = 2;
-        let size = (self.width * dots, self.height * dots);
-        let rgb = self.rgb(dots)?;
-        let mut backend = BitMapBackend::new(&png, size);
-        backend.blit_bitmap((0, 0), size, &rgb).and_then(|()| backend.present()).map_err(write_error(&png))?;
-        drop(backend);
-        Ok([svg, png])
-    }
-
-    /// The picture as an SVG document.
-    pub(crate) fn svg(&self) -> Result<String, FigureError> {
-        let mut document = String::new();
-        let mut backend = SVGBackend::with_string(&mut document, self.fine_size());
-        self.draw(&mut backend, Target::Svg)?;
-        backend.present().map_err(draw_error)?;
-        drop(backend);
-
-        let (fine_width, fine_height) = self.fine_size();
-        let fine = format!("width=\"{fine_width}\" height=\"{fine_height}\" viewBox");
-        let shown = format!("width=\"{}\" height=\"{}\" stroke-linejoin=\"round\" viewBox", self.width, self.height);
-        // The drawing library leaves the word "image" out of the type of an embedded bitmap.
-        Ok(document.replacen(&fine, &shown, 1).replace("\"data:png;", "\"data:image/png;"))
-    }
-
-    /// RGB bytes, row by row, with `dots` dots per pixel, a divisor of the fineness.
-    pub(crate) fn rgb(&self, dots: u32) -> Result<Vec<u8>, FigureError> {
-        let (width, height) = self.fine_size();
-        let mut fine = vec![255; 3 * width as usize * height as usize];
-        let mut backend = BitMapBackend::with_buffer(&mut fine, (width, height));
-        self.draw(&mut backend, Target::Bitmap)?;
-        drop(backend);
-        Ok(averaged(&fine, width as usize, (self.fineness / dots) as usize))
-    }
-
-    fn fine_size(&self) -> (u32, u32) {
-        (self.width * self.fineness, self.height * self.fineness)
-    }
-
-    fn draw<DB: DrawingBackend>(&self, backend: &mut DB, target: Target) -> Result<(), FigureError> {
-        let fineness = f64::from(self.fineness);
-        let unit = |length: f64| (length * fineness).round() as i32;
-        let fine = |place: &Place| (unit(place[0]), unit(place[1]));
-        let (width, height) = self.fine_size();
-        backend
-            .draw_rect((0, 0), (width as i32, height as i32), &RGBColor(255, 255, 255).filled(), true)
-            .map_err(draw_error)?;
-        for item in &self.items {
-            match item {
-                Item::Line { places, colour, width } => {
-                    let width = unit(*width).max(1) as u32;
-                    let style = ShapeStyle::from(colour).stroke_width(width);
-                    let mut path: Vec<_> = places.iter().map(fine).collect();
-                    path.dedup();
-                    match target {
-                        Target::Svg => backend.draw_path(path, &style).map_err(draw_error),
-                        Target::Bitmap => draw_thick_path(backend, &path, &style),
-                    }
-                }
-                Item::Area { places, colour } => {
-                    backend.fill_polygon(places.iter().map(fine), colour).map_err(draw_error)
-                }
-                Item::Bitmap { place, width, height, rgb } => {
-                    backend.blit_bitmap(fine(place), (*width, *height), rgb).map_err(draw_error)
-                }
-                Item::Text { place, text, em, anchor, colour } => {
-                    // Where each writer has its reference height, seen from the base line, and how
-                    // many of its units make an em.
-                    let (below_base, units_per_em) = match target {
-                        Target::Svg => (font::HALF_X_HEIGHT * em, 1.24),
-                        Target::Bitmap => (-0.5 * font::LINE_PER_EM * em, font::LINE_PER_EM),
-                    };
-                    let (horizontal, [x, y]) = match anchor {
-                        Anchor::Left => (HPos::Left, [place[0], place[1] + below_base]),
-                        Anchor::Centre => (HPos::Center, [place[0], place[1] + below_base]),
-                        Anchor::Right => (HPos::Right, [place[0], place[1] + below_base]),
-                        Anchor::Upwards => (HPos::Center, [place[0] + below_base, place[1]]),
-                    };
-                    let vertical = match target {
-                        Target::Svg => VPos::Bottom,
-                        Target::Bitmap => VPos::Top,
-                    };
-                    let mut style = font::style(em * units_per_em * fineness)?;
-                    if *anchor == Anchor::Upwards {
-                        style = style.transform(FontTransform::Rotate270);
-                    }
-                    let style = style.color(colour).pos(Pos::new(horizontal, vertical));
-                    backend.draw_text(text, &style, (unit(x), unit(y))).map_err(draw_error)
-                }
-            }?;
-        }
-        Ok(())
-    }
-}
-
+/// What turns pixels into the units that plotters counts in.
 #[derive(Debug, Clone, Copy)]
-enum Target {
-    Svg,
-    Bitmap,
+pub(crate) struct Unit(u32);
+
+impl Unit {
+    /// Units that this many pixels make.
+    pub(crate) fn px(self, pixels: f64) -> i32 {
+        (pixels * self.per_pixel()).round() as i32
+    }
+
+    /// The same for the width of a line, which is never nothing.
+    pub(crate) fn stroke(self, pixels: f64) -> u32 {
+        self.px(pixels).max(1) as u32
+    }
+
+    pub(crate) fn per_pixel(self) -> f64 {
+        f64::from(self.0)
+    }
+
+    /// Text whose em is this many pixels, and which point of it stands where it is drawn.
+    pub(crate) fn text(self, em: f64, horizontal: HPos, vertical: VPos) -> TextStyle<'static> {
+        let size = em * self.per_pixel() * font::SIZE_PER_EM;
+        font::of_size(size).color(&INK).pos(Pos::new(horizontal, vertical))
+    }
 }
 
-/// Segment by segment with round joints: the library's own thick path leaves holes where it crosses itself.
-fn draw_thick_path<DB: DrawingBackend>(
-    backend: &mut DB,
-    path: &[(i32, i32)],
-    style: &ShapeStyle,
-) -> Result<(), FigureError> {
-    for segment in path.windows(2) {
-        backend.draw_line(segment[0], segment[1], style).map_err(draw_error)?;
+/// Writes `<stem>.svg` and `<stem>.png` and returns the two paths.
+pub(crate) fn save(figure: &impl Figure, stem: &Path) -> Result<[PathBuf; 2], FigureError> {
+    let paths = ["svg", "png"].map(|extension| {
+        let mut name = stem.as_os_str().to_owned();
+        name.push(".");
+        name.push(extension);
+        PathBuf::from(name)
+    });
+    let files = [svg(figure)?.into_bytes(), png(figure)?];
+    for (path, bytes) in paths.iter().zip(files) {
+        write_whole(path, bytes).map_err(|error| FigureError::system(path, &error))?;
     }
-    let joints = path.get(1..path.len().saturating_sub(1)).unwrap_or_default();
-    for &joint in joints {
-        backend.draw_circle(joint, style.stroke_width / 2, &style.color, true).map_err(draw_error)?;
-    }
-    Ok(())
+    Ok(paths)
 }
 
-/// Means over squares of `n`×`n` dots of an RGB bitmap.
-fn averaged(rgb: &[u8], width: usize, n: usize) -> Vec<u8> {
-    if n == 1 {
-        return rgb.to_vec();
-    }
+fn svg(figure: &impl Figure) -> Result<String, FigureError> {
+    font::register()?;
+    let [width, height] = figure.size();
+    let mut document = String::new();
+    let area = SVGBackend::with_string(&mut document, (width * FINE, height * FINE)).into_drawing_area();
+    area.fill(&WHITE)?;
+    figure.draw(&area, Unit(FINE))?;
+    area.present()?;
+    drop(area);
+
+    let fine = format!("width=\"{}\" height=\"{}\" viewBox", width * FINE, height * FINE);
+    let shown = format!("width=\"{width}\" height=\"{height}\" stroke-linejoin=\"round\" viewBox");
+    // plotters leaves the word "image" out of the type of an embedded bitmap.
+    Ok(document.replacen(&fine, &shown, 1).replace("\"data:png;", "\"data:image/png;"))
+}
+
+fn png(figure: &impl Figure) -> Result<Vec<u8>, FigureError> {
+    let rgb = rgb(figure, DOTS)?;
+    let [width, height] = figure.size().map(|pixels| pixels * DOTS);
+    let mut file = Vec::new();
+    let mut encoder = png::Encoder::new(&mut file, width, height);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_adaptive_filter(png::AdaptiveFilterType::Adaptive);
+    encoder.write_header().and_then(|mut writer| writer.write_image_data(&rgb)).map_err(draw_error)?;
+    Ok(file)
+}
+
+/// RGB bytes, row by row, with `dots` dots per pixel.
+pub(crate) fn rgb(figure: &impl Figure, dots: u32) -> Result<Vec<u8>, FigureError> {
+    font::register()?;
+    let unit = SMOOTHING * dots;
+    let [width, height] = figure.size().map(|pixels| pixels * unit);
+    let mut fine = vec![255; 3 * width as usize * height as usize];
+    let area = Bitmap(BitMapBackend::with_buffer(&mut fine, (width, height))).into_drawing_area();
+    figure.draw(&area, Unit(unit))?;
+    drop(area);
+    Ok(averaged(&fine, width as usize))
+}
+
+/// Means over squares of [`SMOOTHING`] dots of an RGB bitmap.
+fn averaged(rgb: &[u8], width: usize) -> Vec<u8> {
+    let n = SMOOTHING as usize;
     let (row, count) = (3 * width, (n * n) as u32);
     let mut means = Vec::with_capacity(rgb.len() / (n * n));
-    let mut sums = vec![0_u32; row / n];
     for band in rgb.chunks_exact(row * n) {
-        sums.fill(0);
-        for line in band.chunks_exact(row) {
-            for (sum, square) in sums.chunks_exact_mut(3).zip(line.chunks_exact(3 * n)) {
-                for dot in square.chunks_exact(3) {
-                    sum[0] += u32::from(dot[0]);
-                    sum[1] += u32::from(dot[1]);
-                    sum[2] += u32::from(dot[2]);
-                }
+        for x in (0..width).step_by(n) {
+            for channel in 0..3 {
+                let dots = (0..n * n).map(|i| u32::from(band[row * (i / n) + 3 * (x + i % n) + channel]));
+                means.push(((dots.sum::<u32>() + count / 2) / count) as u8);
             }
         }
-        means.extend(sums.iter().map(|sum| ((sum + count / 2) / count) as u8));
     }
     means
 }
 
-fn draw_error(error: impl Display) -> FigureError {
-    FigureError::Draw { reason: error.to_string() }
+/// plotters' bitmaps, with two things as they are in an SVG: a thick path has no holes where it crosses itself, and text
+/// stands where it should.
+struct Bitmap<'a>(BitMapBackend<'a>);
+
+type Drawn<'a> = Result<(), DrawingErrorKind<<BitMapBackend<'a> as DrawingBackend>::ErrorType>>;
+
+impl<'a> DrawingBackend for Bitmap<'a> {
+    type ErrorType = <BitMapBackend<'a> as DrawingBackend>::ErrorType;
+
+    /// Segment by segment with round joints.
+    fn draw_path<S: BackendStyle, I: IntoIterator<Item = BackendCoord>>(&mut self, path: I, style: &S) -> Drawn<'a> {
+        let mut path: Vec<_> = path.into_iter().collect();
+        path.dedup();
+        for segment in path.windows(2) {
+            self.0.draw_line(segment[0], segment[1], style)?;
+        }
+        for joint in path.get(1..path.len().saturating_sub(1)).unwrap_or_default() {
+            self.0.draw_circle(*joint, style.stroke_width() / 2, style, true)?;
+        }
+        Ok(())
+    }
+
+    /// By the base line, at the distances from the anchor that plotters writes into an SVG.
+    fn draw_text<S: BackendTextStyle>(&mut self, text: &str, style: &S, at: BackendCoord) -> Drawn<'a> {
+        let em = style.size() / font::SIZE_PER_EM;
+        let base_line = em
+            * match style.anchor().v_pos {
+                VPos::Top => 0.76,
+                VPos::Center => 0.5 * font::X_PER_EM,
+                VPos::Bottom => -0.5 * font::X_PER_EM,
+            };
+        // plotters' bitmaps have the base line half a line below the top.
+        let line = em * font::LINE_PER_EM;
+        let (x, y) = style.transform().transform(0, (base_line - 0.5 * line).round() as i32);
+        let mut shifted = font::of_size(line).pos(Pos::new(style.anchor().h_pos, VPos::Top));
+        shifted.font = shifted.font.transform(style.transform());
+        shifted.color = style.color();
+        self.0.draw_text(text, &shifted, (at.0 + x, at.1 + y))
+    }
+
+    fn get_size(&self) -> (u32, u32) {
+        self.0.get_size()
+    }
+
+    fn ensure_prepared(&mut self) -> Drawn<'a> {
+        self.0.ensure_prepared()
+    }
+
+    fn present(&mut self) -> Drawn<'a> {
+        self.0.present()
+    }
+
+    fn draw_pixel(&mut self, at: BackendCoord, colour: BackendColor) -> Drawn<'a> {
+        self.0.draw_pixel(at, colour)
+    }
+
+    fn draw_rect<S: BackendStyle>(&mut self, from: BackendCoord, to: BackendCoord, style: &S, fill: bool) -> Drawn<'a> {
+        self.0.draw_rect(from, to, style, fill)
+    }
+
+    fn blit_bitmap(&mut self, at: BackendCoord, size: (u32, u32), rgb: &[u8]) -> Drawn<'a> {
+        self.0.blit_bitmap(at, size, rgb)
+    }
 }
 
-pub(crate) fn write_error<E: Display>(path: &Path) -> impl FnOnce(E) -> FigureError {
-    let path = path.to_path_buf();
-    move |error| FigureError::Write { path, reason: error.to_string() }
+pub(crate) fn draw_error(error: impl Display) -> FigureError {
+    FigureError::Draw { reason: error.to_string() }
 }
 
 #[cfg(test)]
 mod tests {
+    use plotters::element::BitMapElement;
+
     use super::*;
+
+    struct Letters(&'static str, VPos);
+
+    impl Figure for Letters {
+        fn size(&self) -> [u32; 2] {
+            [100, 60]
+        }
+
+        fn draw<DB: DrawingBackend>(&self, area: &DrawingArea<DB, Shift>, unit: Unit) -> Result<(), FigureError> {
+            area.draw_text(self.0, &unit.text(20.0, HPos::Center, self.1), (unit.px(50.0), unit.px(30.0)))?;
+            let bitmap: Option<BitMapElement<_>> = BitMapElement::with_owned_buffer((0, 0), (4, 4), vec![255; 48]);
+            area.draw(&bitmap.unwrap())?;
+            Ok(())
+        }
+    }
 
     #[test]
     fn averaging_keeps_the_mean() {
         let rgb: Vec<u8> = (0..4 * 4).flat_map(|i| [i * 2, 7, 255]).collect();
-        let means = averaged(&rgb, 4, 2);
+        let means = averaged(&rgb, 4);
         // Dots 0, 1, 4, 5 of the first channel are 0, 2, 8, 10.
         assert_eq!(means[..3], [5, 7, 255]);
         assert_eq!(means.len(), 3 * 4);
     }
 
     #[test]
-    fn text_stands_on_its_base_line_in_a_bitmap() {
-        let mut picture = Picture::new(100, 60, 4);
-        picture.text([50.0, 40.0], "HEH", 20.0, Anchor::Centre, RGBColor(0, 0, 0));
-        let rgb = picture.rgb(1).unwrap();
-        let dark = |row: usize| (0..100).any(|x| rgb[3 * (100 * row + x)] < 100);
-        let rows: Vec<_> = (0..60).filter(|&row| dark(row)).collect();
-        // Capitals of DejaVu Sans are 0.729 em high.
-        assert!(rows[0].abs_diff(40 - 15) <= 1 && rows.last().unwrap().abs_diff(39) <= 1, "{rows:?}");
+    fn text_stands_in_a_bitmap_where_it_stands_in_an_svg() {
+        // Distances of the base line from the anchor, in ems, as plotters writes them into an SVG.
+        for (vertical, below) in [(VPos::Top, 0.76), (VPos::Center, 0.27), (VPos::Bottom, -0.27)] {
+            let rgb = rgb(&Letters("HEH", vertical), 1).unwrap();
+            let dark = |row: usize| (0..100).any(|x| rgb[3 * (100 * row + x)] < 160);
+            let rows: Vec<_> = (0..60).filter(|&row| dark(row)).collect();
+            let (top, bottom) = (rows[0] as f64, *rows.last().unwrap() as f64 + 1.0);
+            let base_line = 30.0 + 20.0 * below;
+            // Capitals of DejaVu Sans are 0.729 em high.
+            assert!((top - (base_line - 0.729 * 20.0)).abs() <= 1.0, "{top} {base_line}");
+            assert!((bottom - base_line).abs() <= 1.0, "{bottom} {base_line}");
+        }
     }
 
     #[test]
     fn an_svg_is_as_large_as_the_picture_and_escapes_text() {
-        let mut picture = Picture::new(100, 60, 4);
-        picture.text([50.0, 40.0], "a < b", 20.0, Anchor::Centre, RGBColor(0, 0, 0));
-        picture.bitmap([10.0, 10.0], 4, 4, vec![9; 48]);
-        let svg = picture.svg().unwrap();
+        let svg = svg(&Letters("a < b", VPos::Top)).unwrap();
         assert!(svg.contains("width=\"100\" height=\"60\"") && svg.contains("viewBox=\"0 0 400 240\""), "{svg}");
         assert!(svg.contains("a &lt; b") && svg.contains("data:image/png;base64,"), "{svg}");
     }

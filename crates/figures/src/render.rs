@@ -3,10 +3,15 @@
 //! The nearest of all things wins a dot, so that hidden parts are right for any shape, and the size
 //! of a picture does not depend on the number of triangles.
 
-use crate::FigureError;
-use crate::view::Seen;
+use plotters::backend::DrawingBackend;
+use plotters::coord::Shift;
+use plotters::drawing::DrawingArea;
+use plotters::element::BitMapElement;
 use plotters::style::RGBColor;
 use plotters::style::colors::colormaps::{ColorMap, ViridisRGB};
+
+use crate::FigureError;
+use crate::view::Seen;
 
 /// How finely the colours of a surface are graded: by value and by the light on it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -64,8 +69,15 @@ impl Canvas {
         }
     }
 
-    pub(crate) fn into_rgb(self) -> Vec<u8> {
-        self.rgb
+    /// Draws the bitmap into a picture, with its upper left corner at a place.
+    pub(crate) fn draw<DB: DrawingBackend>(
+        &self,
+        picture: &DrawingArea<DB, Shift>,
+        at: (i32, i32),
+    ) -> Result<(), FigureError> {
+        let size = (self.width as u32, self.height as u32);
+        let bitmap: Option<BitMapElement<_>> = BitMapElement::with_ref(at, size, &self.rgb);
+        bitmap.map_or(Ok(()), |bitmap| Ok(picture.draw(&bitmap)?))
     }
 
     /// A point in dots: right, down, and towards the viewer.
@@ -200,7 +212,7 @@ mod tests {
             for (points, value) in order {
                 canvas.surface(&triangles, points, &[value; 4]);
             }
-            canvas.into_rgb()
+            canvas.rgb
         };
         let rgb = draw([(&near, 0.0), (&far, 1.0)]);
         assert_eq!(rgb, draw([(&far, 1.0), (&near, 0.0)]));

@@ -1,19 +1,28 @@
 //! A grid of deformed bodies seen in space: mode shapes, snapshots.
 
-use crate::FigureError;
-use crate::chart::{INK, LABEL_EM, TICK_EM, TITLE_EM};
-use crate::picture::{Anchor, Picture};
-use crate::render::{Canvas, Grades, check_indices, check_points, value_colour};
-use crate::ticks;
-use crate::view::{Seen, View, Window};
-use plotters::style::RGBColor;
 use std::path::{Path, PathBuf};
+
+use plotters::backend::DrawingBackend;
+use plotters::chart::ChartBuilder;
+use plotters::coord::Shift;
+use plotters::drawing::DrawingArea;
+use plotters::element::{Rectangle, Text};
+use plotters::style::text_anchor::{HPos, VPos};
+use plotters::style::{Color, RGBColor};
+
+use crate::FigureError;
+use crate::axis::{Axis, Scale};
+use crate::picture::{Figure, INK, LABEL_EM, TICK_EM, TITLE_EM, Unit, save};
+use crate::render::{Canvas, Grades, check_indices, check_points, value_colour};
+use crate::view::{Seen, View, Window};
 
 const WIDTH: f64 = 900.0;
 const MARGIN: f64 = 16.0;
 const GAP: f64 = 14.0;
 const BAR: [f64; 2] = [240.0, 10.0];
-const FINENESS: u32 = 4;
+const CAPTION: f64 = 1.7 * LABEL_EM;
+/// The colour bar with its labels.
+const BAR_AREA: f64 = BAR[1] + 2.6 * LABEL_EM + 8.0;
 const GRADES: Grades = Grades { values: 64, lights: 12 };
 pub(crate) const EDGE: RGBColor = RGBColor(40, 40, 40);
 const UNDEFORMED: RGBColor = RGBColor(150, 150, 150);
@@ -58,55 +67,8 @@ impl ShapeGrid<'_> {
     /// [`FigureError::Empty`] without panels or columns, [`FigureError::WrongLength`],
     /// [`FigureError::NoSuchPoint`], [`FigureError::NotFinite`], [`FigureError::Write`].
     pub fn save(&self, stem: impl AsRef<Path>) -> Result<[PathBuf; 2], FigureError> {
-        self.picture()?.save(stem.as_ref())
-    }
-
-    fn picture(&self) -> Result<Picture, FigureError> {
         self.check()?;
-        let see = |points: &[[f64; 3]]| points.iter().map(|point| self.view.see(point)).collect::<Vec<_>>();
-        let undeformed = see(self.undeformed);
-        let bodies: Vec<Vec<Seen>> = self.panels.iter().map(|panel| see(&panel.points)).collect();
-        let windows: Vec<_> =
-            bodies.iter().map(|body| Window::around(body.iter().chain(&undeformed).copied())).collect();
-        let largest = |axis: usize| windows.iter().map(|w| w.size()[axis]).fold(0.0, f64::max);
-        let extent = largest(0).max(largest(1));
-
-        // The panel is as wide as the grid allows and as high as the largest body needs, up to a square.
-        let columns = self.columns as f64;
-        let panel_width = ((WIDTH - 2.0 * MARGIN - (columns - 1.0) * GAP) / columns).floor();
-        let scale = 0.99 * panel_width / if extent > 0.0 { extent } else { 1.0 };
-        let panel_height = (scale * largest(1) * 1.02).ceil().max(24.0) + 4.0;
-        let caption = 1.7 * LABEL_EM;
-        let rows = self.panels.len().div_ceil(self.columns) as f64;
-        let top = MARGIN + if self.title.is_empty() { 0.0 } else { 1.8 * TITLE_EM };
-        let bar_top = top + rows * (caption + panel_height + GAP) + 4.0;
-        let height = bar_top + BAR[1] + 1.6 * TICK_EM + 1.7 * LABEL_EM + 0.5 * MARGIN;
-
-        let mut picture = Picture::new(WIDTH as u32, height.ceil() as u32, FINENESS);
-        picture.text([0.5 * WIDTH, MARGIN + TITLE_EM], &self.title, TITLE_EM, Anchor::Centre, INK);
-        let (low, high) = self.value_range();
-        for (i, (panel, body)) in self.panels.iter().zip(&bodies).enumerate() {
-            let (row, column) = (i / self.columns, i % self.columns);
-            let left = MARGIN + column as f64 * (panel_width + GAP);
-            let above = (top + row as f64 * (caption + panel_height + GAP)).floor();
-            let centre = [left + 0.5 * panel_width, above + LABEL_EM];
-            picture.text(centre, &panel.title, LABEL_EM, Anchor::Centre, INK);
-
-            let values: Vec<f64> = panel.values.iter().map(|value| (value - low) / (high - low)).collect();
-            let fineness = f64::from(FINENESS);
-            let size = [panel_width, panel_height].map(|length| (length * fineness) as u32);
-            let mut canvas = Canvas::new(size, scale * fineness, windows[i].centre(), GRADES);
-            canvas.surface(self.triangles, body, &values);
-            for (points, width, colour) in [(body, 0.7, EDGE), (&undeformed, 0.7, UNDEFORMED)] {
-                for edge in self.edges.iter().filter(|_| !points.is_empty()) {
-                    let [from, to] = edge.map(|i| points[i as usize]);
-                    canvas.line(&from, &to, width * fineness, colour);
-                }
-            }
-            picture.bitmap([left, above + caption], size[0], size[1], canvas.into_rgb());
-        }
-        self.draw_bar(&mut picture, bar_top, (low, high));
-        Ok(picture)
+        save(self, stem.as_ref())
     }
 
     fn check(&self) -> Result<(), FigureError> {
@@ -127,30 +89,115 @@ impl ShapeGrid<'_> {
         Ok(())
     }
 
-    fn value_range(&self) -> (f64, f64) {
-        let values = self.panels.iter().flat_map(|panel| &panel.values);
-        let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &v| (l.min(v), h.max(v)));
-        ticks::linear_range(low, high, 0.0)
+    fn top(&self) -> f64 {
+        MARGIN + if self.title.is_empty() { 0.0 } else { 1.8 * TITLE_EM }
     }
 
-    fn draw_bar(&self, picture: &mut Picture, top: f64, (low, high): (f64, f64)) {
-        let [width, height] = BAR;
-        let left = 0.5 * (WIDTH - width);
+    /// How the bodies are laid out.
+    fn layout(&self) -> Layout {
+        let see = |points: &[[f64; 3]]| points.iter().map(|point| self.view.see(point)).collect::<Vec<_>>();
+        let undeformed = see(self.undeformed);
+        let bodies: Vec<Vec<Seen>> = self.panels.iter().map(|panel| see(&panel.points)).collect();
+        let windows: Vec<_> =
+            bodies.iter().map(|body| Window::around(body.iter().chain(&undeformed).copied())).collect();
+        let largest = |axis: usize| windows.iter().map(|w| w.size()[axis]).fold(0.0, f64::max);
+        let extent = largest(0).max(largest(1));
+        // A panel is as wide as the grid allows and as high as the largest body needs, up to a square.
+        let columns = self.columns as f64;
+        let width = ((WIDTH - 2.0 * MARGIN - (columns - 1.0) * GAP) / columns).floor();
+        let scale = 0.99 * width / if extent > 0.0 { extent } else { 1.0 };
+        let height = (scale * largest(1) * 1.02).ceil().max(24.0) + 4.0;
+        Layout { undeformed, bodies, windows, panel: [width, height], scale }
+    }
+
+    fn draw_bar<DB: DrawingBackend>(
+        &self,
+        area: &DrawingArea<DB, Shift>,
+        values: &Axis,
+        unit: Unit,
+    ) -> Result<(), FigureError> {
+        let side = unit.px(0.5 * (WIDTH - BAR[0]));
+        let mut chart = ChartBuilder::on(area)
+            .margin_left(side)
+            .margin_right(side)
+            .x_label_area_size(area.dim_in_pixel().1 as i32 - unit.px(BAR[1]))
+            .build_cartesian_2d(values.clone(), 0.0..1.0)?;
+        chart
+            .configure_mesh()
+            .disable_mesh()
+            .axis_style(INK.stroke_width(unit.stroke(1.0)))
+            .label_style(unit.text(TICK_EM, HPos::Center, VPos::Top))
+            .axis_desc_style(unit.text(LABEL_EM, HPos::Center, VPos::Top))
+            .x_desc(&self.value_label)
+            .set_all_tick_mark_size(unit.px(3.0))
+            .draw()?;
         let steps = 120;
-        for i in 0..steps {
-            let at = |i: usize| left + width * i as f64 / steps as f64;
-            let (from, to) = (at(i), at(i + 1));
+        let (low, high) = values.range;
+        let at = |i: usize| low + (high - low) * i as f64 / steps as f64;
+        chart.draw_series((0..steps).map(|i| {
             let colour = value_colour((i as f64 + 0.5) / steps as f64);
-            picture.area(vec![[from, top], [to, top], [to, top + height], [from, top + height]], colour);
+            Rectangle::new([(at(i), 0.0), (at(i + 1), 1.0)], colour.filled())
+        }))?;
+        if !values.note.is_empty() {
+            let (across, down) = chart.plotting_area().get_pixel_range();
+            let text = unit.text(TICK_EM, HPos::Left, VPos::Bottom);
+            let screen = area.use_screen_coord();
+            screen.draw(&Text::new(values.note.as_str(), (across.end + unit.px(14.0), down.end), text))?;
         }
-        let ticks = ticks::linear(low, high, 5);
-        for (value, label) in &ticks.major {
-            let at = left + width * (value - low) / (high - low);
-            picture.line(vec![[at, top + height], [at, top + height + 3.0]], INK, 1.0);
-            picture.text([at, top + height + 1.4 * TICK_EM], label, TICK_EM, Anchor::Centre, INK);
+        Ok(())
+    }
+}
+
+struct Layout {
+    undeformed: Vec<Seen>,
+    bodies: Vec<Vec<Seen>>,
+    windows: Vec<Window>,
+    /// Width and height of a panel in pixels.
+    panel: [f64; 2],
+    /// Pixels per unit of length.
+    scale: f64,
+}
+
+impl Figure for ShapeGrid<'_> {
+    fn size(&self) -> [u32; 2] {
+        let rows = self.panels.len().div_ceil(self.columns) as f64;
+        let [_, height] = self.layout().panel;
+        [WIDTH, self.top() + rows * (CAPTION + height + GAP) + BAR_AREA + 0.5 * MARGIN]
+            .map(|length| length.ceil() as u32)
+    }
+
+    fn draw<DB: DrawingBackend>(&self, picture: &DrawingArea<DB, Shift>, unit: Unit) -> Result<(), FigureError> {
+        let Layout { undeformed, bodies, windows, panel: [width, height], scale } = self.layout();
+        let values =
+            Axis::new(Scale::Linear, self.panels.iter().flat_map(|panel| panel.values.iter().copied()), 0.0, 5);
+        let (low, high) = values.range;
+        let centred = |em| unit.text(em, HPos::Center, VPos::Top);
+        if !self.title.is_empty() {
+            picture.draw_text(&self.title, &centred(TITLE_EM), (unit.px(0.5 * WIDTH), unit.px(MARGIN)))?;
         }
-        picture.text([left + width + 14.0, top + height], &ticks.note, TICK_EM, Anchor::Left, INK);
-        let below = top + height + 1.6 * TICK_EM + 1.2 * LABEL_EM;
-        picture.text([0.5 * WIDTH, below], &self.value_label, LABEL_EM, Anchor::Centre, INK);
+        for (i, (panel, body)) in self.panels.iter().zip(&bodies).enumerate() {
+            let (row, column) = (i / self.columns, i % self.columns);
+            let left = MARGIN + column as f64 * (width + GAP);
+            let above = (self.top() + row as f64 * (CAPTION + height + GAP)).floor();
+            let caption = (unit.px(left + 0.5 * width), unit.px(above));
+            picture.draw_text(&panel.title, &centred(LABEL_EM), caption)?;
+
+            let shades: Vec<f64> =
+                panel.values.iter().map(|value| (values.shown(*value) - low) / (high - low)).collect();
+            let fine = unit.per_pixel();
+            let size = [width, height].map(|length| (length * fine) as u32);
+            let mut canvas = Canvas::new(size, scale * fine, windows[i].centre(), GRADES);
+            canvas.surface(self.triangles, body, &shades);
+            for (points, colour) in [(body, EDGE), (&undeformed, UNDEFORMED)] {
+                for edge in self.edges.iter().filter(|_| !points.is_empty()) {
+                    let [from, to] = edge.map(|i| points[i as usize]);
+                    canvas.line(&from, &to, 0.7 * fine, colour);
+                }
+            }
+            canvas.draw(picture, (unit.px(left), unit.px(above + CAPTION)))?;
+        }
+        let (_, bar) = picture.split_vertically(picture.dim_in_pixel().1 as i32 - unit.px(BAR_AREA + 0.5 * MARGIN));
+        let (bar, _) = bar.split_vertically(unit.px(BAR_AREA));
+        self.draw_bar(&bar, &values, unit)
     }
 }

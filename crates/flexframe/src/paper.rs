@@ -14,6 +14,7 @@ use results::{FileError, Results};
 use rigid_kin::{RigidBodyError, StepError};
 use scene::{BuildError, Scene};
 use serde::Serialize;
+use whole_file::write_whole;
 
 use crate::run::{RunError, RunProgress, RunReport, RunSettings, run};
 use comparison::Comparison;
@@ -105,7 +106,7 @@ pub fn reproduce(
     let figures = figures::draw(scene, &model, &results, &rigid, folder)?;
     run.times.add("figures", started.elapsed());
     let path = folder.join("report.md");
-    std::fs::write(&path, page::page(scene, &run, &comparison))
+    write_whole(&path, page::page(scene, &run, &comparison))
         .map_err(|source| PaperError::Report { path: path.clone(), source })?;
     Ok(PaperReport { run, report: path, figures, comparison })
 }

@@ -4,6 +4,7 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use figures::{FigureError, LineChart, Scale, Series, Stroke};
+use whole_file::write_whole;
 
 use super::ladder::{Line, Outcome};
 use super::{CostError, CostReport, Setting};
@@ -41,7 +42,7 @@ const DRAWN: f64 = 1.0;
 pub(super) fn write(report: &CostReport, folder: &Path) -> Result<Vec<PathBuf>, CostError> {
     std::fs::create_dir_all(folder).map_err(|source| CostError::Write { path: folder.to_owned(), source })?;
     let path = folder.join("cost.csv");
-    std::fs::write(&path, csv(report)).map_err(|source| CostError::Write { path: path.clone(), source })?;
+    write_whole(&path, csv(report)).map_err(|source| CostError::Write { path: path.clone(), source })?;
     let mut files = vec![path];
     files.extend(draw(report, &folder.join("work_precision"))?);
     Ok(files)

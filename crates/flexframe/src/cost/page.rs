@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use scene::{Model, Scene};
+use whole_file::write_whole;
 
 use super::ladder::{Line, Measured, Outcome, Row};
 use super::spin::{SpinRow, spin_rates};
@@ -50,11 +51,11 @@ pub fn accuracy_page(
     for (_, report) in &reports {
         let picture = pictures.join(format!("{}.svg", name_of(&report.scene)));
         if let Some(drawn) = report.files.iter().find(|file| file.extension() == Some("svg".as_ref())) {
-            std::fs::copy(drawn, &picture).map_err(written(&picture))?;
+            std::fs::read(drawn).and_then(|svg| write_whole(&picture, svg)).map_err(written(&picture))?;
             files.push(picture);
         }
     }
-    std::fs::write(path, page(&reports, &spin, &pictures)).map_err(written(path))?;
+    write_whole(path, page(&reports, &spin, &pictures)).map_err(written(path))?;
     files.push(path.to_owned());
     Ok(files)
 }
