@@ -5,16 +5,13 @@ use std::collections::HashMap;
 use std::path::Path;
 
 use gif::{Encoder, EncodingError, Repeat};
-use plotters::backend::DrawingBackend;
-use plotters::coord::Shift;
-use plotters::drawing::DrawingArea;
-use plotters::style::RGBColor;
+use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 use whole_file::WholeFile;
 
 use crate::FigureError;
 use crate::axis::{linear_range, round_step};
-use crate::picture::{Figure, INK, LABEL_EM, TITLE_EM, Unit, draw_error, rgb};
+use crate::picture::{Area, Figure, INK, LABEL_EM, TITLE_EM, Unit, draw_error, rgb};
 use crate::render::{Canvas, Grades, check_indices, check_points, surface_colours};
 use crate::shapes::EDGE;
 use crate::view::{View, Window};
@@ -165,13 +162,12 @@ impl Figure for Shot<'_> {
         [WIDTH, HEIGHT].map(u32::from)
     }
 
-    fn draw<DB: DrawingBackend>(&self, picture: &DrawingArea<DB, Shift>, unit: Unit) -> Result<(), FigureError> {
+    fn draw<DB: DrawingBackend>(&self, picture: &Area<DB>, unit: Unit) -> Result<(), FigureError> {
         let &Shot { animation: &Animation { ref title, triangles, edges, frames, view, .. }, stage, last } = self;
         let frame = &frames[last];
         let fine = unit.per_pixel();
-        let top = unit.px(self.animation.body_top().floor());
-        let (width, height) = picture.dim_in_pixel();
-        let mut canvas = Canvas::new([width, height - top as u32], stage.scale * fine, stage.centre, GRADES);
+        let (_, area) = picture.split_vertically(unit.px(self.animation.body_top()));
+        let mut canvas = Canvas::new(area.dim_in_pixel().into(), stage.scale * fine, stage.centre, GRADES);
         for line in &stage.ground {
             let [from, to] = line.map(|point| view.see(&point));
             canvas.line(&from, &to, fine, GROUND);
@@ -190,7 +186,7 @@ impl Figure for Shot<'_> {
                 canvas.line(&pair[0], &pair[1], 1.6 * fine, TRACE);
             }
         }
-        canvas.draw(picture, (0, top))?;
+        canvas.draw(&area)?;
 
         let mut below = MARGIN;
         for (text, em) in [(title, TITLE_EM), (&frame.caption, LABEL_EM)] {

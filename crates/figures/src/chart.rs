@@ -2,18 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
-use plotters::backend::DrawingBackend;
-use plotters::chart::ChartBuilder;
-use plotters::coord::{CoordTranslate, Shift};
-use plotters::drawing::DrawingArea;
-use plotters::element::{Circle, DashedPathElement, PathElement};
+use plotters::element::DashedPathElement;
+use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
-use plotters::style::{Color, RGBColor, ShapeStyle, TextStyle, WHITE};
 
 use crate::FigureError;
 use crate::axis::{Axis, Scale};
 use crate::path::{Point, clipped, thinned};
-use crate::picture::{Figure, INK, LABEL_EM, TICK_EM, TITLE_EM, Unit, save};
+use crate::picture::{Area, Figure, INK, LABEL_EM, TICK_EM, TITLE_EM, Unit, save, titled};
 
 /// Okabe and Ito's colours, told apart by all common kinds of colour vision; the light ones last.
 const COLOURS: [RGBColor; 7] = [
@@ -135,60 +131,36 @@ impl LineChart {
         with_pens.filter(move |(series, _)| series.stroke == stroke)
     }
 
-    /// Entries of the legend with their widths, broken into rows that fit. plotters' own legend would hide a part of the
-    /// lines, so it is not used.
-    fn legend<DB: DrawingBackend>(
-        &self,
-        area: &DrawingArea<DB, Shift>,
-        unit: Unit,
-    ) -> Result<Vec<Vec<(usize, i32)>>, FigureError> {
-        let room = area.dim_in_pixel().0 as i32 - unit.px(6.0 * MARGIN);
-        let mut rows: Vec<Vec<(usize, i32)>> = Vec::new();
-        let mut used = i32::MAX;
-        for (i, series) in self.series.iter().enumerate() {
-            if series.label.is_empty() || series.stroke == Stroke::Guide {
-                continue;
-            }
-            let width = unit.px(LEGEND_LINE + 6.0 + LEGEND_GAP) + text_width(area, &series.label, unit)?;
-            if used.saturating_add(width) > room {
-                rows.push(Vec::new());
-                used = 0;
-            }
-            used += width;
-            if let Some(row) = rows.last_mut() {
-                row.push((i, width));
-            }
+    /// Draws the legend in columns at the top of an area and returns the rest. plotters' own legend would hide a part of
+    /// the lines, so it is not used.
+    fn draw_legend<DB: DrawingBackend>(&self, area: Area<DB>, unit: Unit) -> Result<Area<DB>, FigureError> {
+        let named = |(_, series): &(usize, &Series)| !series.label.is_empty() && series.stroke != Stroke::Guide;
+        let entries: Vec<_> = self.series.iter().enumerate().filter(named).collect();
+        let text = unit.text(TICK_EM, HPos::Left, VPos::Center);
+        let mut width = 1;
+        for (_, series) in &entries {
+            width = width.max(unit.px(LEGEND_LINE + 6.0 + LEGEND_GAP) + text_width(&area, &series.label, unit)?);
         }
-        Ok(rows)
-    }
-
-    fn draw_legend<DB: DrawingBackend>(
-        &self,
-        area: &DrawingArea<DB, Shift>,
-        rows: &[Vec<(usize, i32)>],
-        unit: Unit,
-    ) -> Result<(), FigureError> {
-        for (row, entries) in rows.iter().enumerate() {
-            let width = entries.iter().map(|entry| entry.1).sum::<i32>() - unit.px(LEGEND_GAP);
-            let mut left = (area.dim_in_pixel().0 as i32 - width) / 2;
-            let height = unit.px(LEGEND_ROW * (row as f64 + 0.5));
-            for &(i, width) in entries {
-                let Series { label, stroke, .. } = &self.series[i];
-                let line = match stroke {
-                    Stroke::Rings => vec![(left + unit.px(0.5 * LEGEND_LINE), height)],
-                    _ => vec![(left, height), (left + unit.px(LEGEND_LINE), height)],
-                };
-                Pen::new(*stroke, i, unit).draw(area, line)?;
-                let text = unit.text(TICK_EM, HPos::Left, VPos::Center);
-                area.draw_text(label, &text, (left + unit.px(LEGEND_LINE + 6.0), height))?;
-                left += width;
-            }
+        let room = area.dim_in_pixel().0 as i32;
+        let columns = (room / width).clamp(1, entries.len().max(1) as i32);
+        let rows = entries.len().div_ceil(columns as usize);
+        let (legend, rest) = area.split_vertically(unit.px(LEGEND_ROW * rows as f64));
+        let side = (room - columns * width + unit.px(LEGEND_GAP)) / 2;
+        let cells = legend.margin(0, 0, side, side - unit.px(LEGEND_GAP)).split_evenly((rows, columns as usize));
+        for ((i, Series { label, stroke, .. }), cell) in entries.into_iter().zip(cells) {
+            let height = unit.px(0.5 * LEGEND_ROW);
+            let line = match stroke {
+                Stroke::Rings => vec![(unit.px(0.5 * LEGEND_LINE), height)],
+                _ => vec![(0, height), (unit.px(LEGEND_LINE), height)],
+            };
+            Pen::new(*stroke, i, unit).draw(&cell, line)?;
+            cell.draw_text(label, &text, (unit.px(LEGEND_LINE + 6.0), height))?;
         }
-        Ok(())
+        Ok(rest)
     }
 
     /// Room to the right of the axes: for the labels of guides, or half that of a tick.
-    fn right_margin<DB: DrawingBackend>(&self, area: &DrawingArea<DB, Shift>, unit: Unit) -> Result<i32, FigureError> {
+    fn right_margin<DB: DrawingBackend>(&self, area: &Area<DB>, unit: Unit) -> Result<i32, FigureError> {
         let mut right = unit.px(0.8 * MARGIN);
         for (guide, _) in self.with(Stroke::Guide, unit) {
             right = right.max(unit.px(GUIDE_GAP) + text_width(area, &guide.label, unit)?);
@@ -202,20 +174,14 @@ impl Figure for LineChart {
         SIZE
     }
 
-    fn draw<DB: DrawingBackend>(&self, picture: &DrawingArea<DB, Shift>, unit: Unit) -> Result<(), FigureError> {
+    fn draw<DB: DrawingBackend>(&self, picture: &Area<DB>, unit: Unit) -> Result<(), FigureError> {
         let points = || self.series.iter().flat_map(|series| &series.points);
         let x = Axis::new(self.x_scale, points().map(|p| p.0), 0.0, 7);
         let y = Axis::new(self.y_scale, points().map(|p| p.1), 0.05, 6);
 
         let margin = unit.px(MARGIN);
-        let mut area = picture.margin(unit.px(0.6 * MARGIN), margin, margin, margin);
-        if !self.title.is_empty() {
-            area =
-                area.titled(&self.title, unit.text(TITLE_EM, HPos::Center, VPos::Top))?.margin(unit.px(5.0), 0, 0, 0);
-        }
-        let rows = self.legend(&area, unit)?;
-        let (legend, area) = area.split_vertically(unit.px(LEGEND_ROW * rows.len() as f64));
-        self.draw_legend(&legend, &rows, unit)?;
+        let area = picture.margin(unit.px(0.6 * MARGIN), margin, margin, margin);
+        let area = self.draw_legend(titled(area, &self.title, TITLE_EM, unit)?, unit)?;
 
         let mut widest = 0;
         for label in y.labels() {
@@ -228,14 +194,13 @@ impl Figure for LineChart {
             .x_label_area_size(unit.px(3.6 * LABEL_EM))
             .y_label_area_size(widest + unit.px(1.6 * LABEL_EM + 2.0 * TICK))
             .build_cartesian_2d(x.clone(), y.clone())?;
-        let label = unit.text(LABEL_EM, HPos::Center, VPos::Top);
         chart
             .configure_mesh()
             .light_line_style(FAINT_GRID.stroke_width(unit.stroke(0.75)))
             .bold_line_style(GRID.stroke_width(unit.stroke(0.75)))
             .axis_style(INK.stroke_width(unit.stroke(1.0)))
             .label_style(unit.text(TICK_EM, HPos::Center, VPos::Top))
-            .axis_desc_style(label)
+            .axis_desc_style(unit.text(LABEL_EM, HPos::Center, VPos::Top))
             .x_desc(&self.x_label)
             .y_desc(&self.y_label)
             .set_all_tick_mark_size(unit.px(TICK))
@@ -324,7 +289,7 @@ impl Pen {
 
 /// In the margin if the line ends at the right edge, else to the left of its end.
 fn draw_guide_label<DB: DrawingBackend, C: CoordTranslate<From = Point>>(
-    picture: &DrawingArea<DB, Shift>,
+    picture: &Area<DB>,
     plot: &DrawingArea<DB, C>,
     line: &[Point],
     label: &str,
@@ -345,7 +310,7 @@ fn draw_guide_label<DB: DrawingBackend, C: CoordTranslate<From = Point>>(
     Ok(())
 }
 
-fn text_width<DB: DrawingBackend>(area: &DrawingArea<DB, Shift>, text: &str, unit: Unit) -> Result<i32, FigureError> {
+fn text_width<DB: DrawingBackend>(area: &Area<DB>, text: &str, unit: Unit) -> Result<i32, FigureError> {
     Ok(area.estimate_text_size(text, &unit.text(TICK_EM, HPos::Left, VPos::Center))?.0 as i32)
 }
 

@@ -6,11 +6,9 @@
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
-use plotters::backend::{BitMapBackend, DrawingBackend, SVGBackend};
 use plotters::coord::Shift;
-use plotters::drawing::{DrawingArea, IntoDrawingArea};
+use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
-use plotters::style::{RGBColor, TextStyle, WHITE};
 use plotters_backend::{BackendColor, BackendCoord, BackendStyle, BackendTextStyle, DrawingErrorKind};
 use whole_file::write_whole;
 
@@ -29,13 +27,16 @@ const SMOOTHING: u32 = 2;
 /// Dots per pixel of a PNG.
 const DOTS: u32 = 2;
 
+/// A picture or a part of one, in units.
+pub(crate) type Area<DB> = DrawingArea<DB, Shift>;
+
 /// What can be drawn.
 pub(crate) trait Figure {
     /// Width and height in pixels.
     fn size(&self) -> [u32; 2];
 
     /// Draws into an area of this size.
-    fn draw<DB: DrawingBackend>(&self, area: &DrawingArea<DB, Shift>, unit: Unit) -> Result<(), FigureError>;
+    fn draw<DB: DrawingBackend>(&self, area: &Area<DB>, unit: Unit) -> Result<(), FigureError>;
 }
 
 /// What turns pixels into the units that plotters counts in.
@@ -62,6 +63,19 @@ impl Unit {
         let size = em * self.per_pixel() * font::SIZE_PER_EM;
         font::of_size(size).color(&INK).pos(Pos::new(horizontal, vertical))
     }
+}
+
+/// Draws a title, if there is one, and returns the area below it.
+pub(crate) fn titled<DB: DrawingBackend>(
+    area: Area<DB>,
+    title: &str,
+    em: f64,
+    unit: Unit,
+) -> Result<Area<DB>, FigureError> {
+    if title.is_empty() {
+        return Ok(area);
+    }
+    Ok(area.titled(title, unit.text(em, HPos::Center, VPos::Top))?.margin(unit.px(5.0), 0, 0, 0))
 }
 
 /// Writes `<stem>.svg` and `<stem>.png` and returns the two paths.
@@ -205,7 +219,6 @@ pub(crate) fn draw_error(error: impl Display) -> FigureError {
 
 #[cfg(test)]
 mod tests {
-    use plotters::element::BitMapElement;
 
     use super::*;
 
@@ -216,7 +229,7 @@ mod tests {
             [100, 60]
         }
 
-        fn draw<DB: DrawingBackend>(&self, area: &DrawingArea<DB, Shift>, unit: Unit) -> Result<(), FigureError> {
+        fn draw<DB: DrawingBackend>(&self, area: &Area<DB>, unit: Unit) -> Result<(), FigureError> {
             area.draw_text(self.0, &unit.text(20.0, HPos::Center, self.1), (unit.px(50.0), unit.px(30.0)))?;
             let bitmap: Option<BitMapElement<_>> = BitMapElement::with_owned_buffer((0, 0), (4, 4), vec![255; 48]);
             area.draw(&bitmap.unwrap())?;

@@ -3,14 +3,10 @@
 //! The nearest of all things wins a dot, so that hidden parts are right for any shape, and the size
 //! of a picture does not depend on the number of triangles.
 
-use plotters::backend::DrawingBackend;
-use plotters::coord::Shift;
-use plotters::drawing::DrawingArea;
-use plotters::element::BitMapElement;
-use plotters::style::RGBColor;
-use plotters::style::colors::colormaps::{ColorMap, ViridisRGB};
+use plotters::prelude::*;
 
 use crate::FigureError;
+use crate::picture::Area;
 use crate::view::Seen;
 
 /// How finely the colours of a surface are graded: by value and by the light on it.
@@ -69,15 +65,11 @@ impl Canvas {
         }
     }
 
-    /// Draws the bitmap into a picture, with its upper left corner at a place.
-    pub(crate) fn draw<DB: DrawingBackend>(
-        &self,
-        picture: &DrawingArea<DB, Shift>,
-        at: (i32, i32),
-    ) -> Result<(), FigureError> {
+    /// Draws the bitmap into an area of its size.
+    pub(crate) fn draw<DB: DrawingBackend>(&self, area: &Area<DB>) -> Result<(), FigureError> {
         let size = (self.width as u32, self.height as u32);
-        let bitmap: Option<BitMapElement<_>> = BitMapElement::with_ref(at, size, &self.rgb);
-        bitmap.map_or(Ok(()), |bitmap| Ok(picture.draw(&bitmap)?))
+        let bitmap: Option<BitMapElement<_>> = BitMapElement::with_ref((0, 0), size, &self.rgb);
+        bitmap.map_or(Ok(()), |bitmap| Ok(area.draw(&bitmap)?))
     }
 
     /// A point in dots: right, down, and towards the viewer.

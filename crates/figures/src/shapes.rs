@@ -2,17 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use plotters::backend::DrawingBackend;
-use plotters::chart::ChartBuilder;
-use plotters::coord::Shift;
-use plotters::drawing::DrawingArea;
-use plotters::element::{Rectangle, Text};
+use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
-use plotters::style::{Color, RGBColor};
 
 use crate::FigureError;
 use crate::axis::{Axis, Scale};
-use crate::picture::{Figure, INK, LABEL_EM, TICK_EM, TITLE_EM, Unit, save};
+use crate::picture::{Area, Figure, INK, LABEL_EM, TICK_EM, TITLE_EM, Unit, save, titled};
 use crate::render::{Canvas, Grades, check_indices, check_points, value_colour};
 use crate::view::{Seen, View, Window};
 
@@ -89,34 +84,19 @@ impl ShapeGrid<'_> {
         Ok(())
     }
 
-    fn top(&self) -> f64 {
-        MARGIN + if self.title.is_empty() { 0.0 } else { 1.8 * TITLE_EM }
+    fn rows(&self) -> usize {
+        self.panels.len().div_ceil(self.columns)
     }
 
-    /// How the bodies are laid out.
-    fn layout(&self) -> Layout {
-        let see = |points: &[[f64; 3]]| points.iter().map(|point| self.view.see(point)).collect::<Vec<_>>();
-        let undeformed = see(self.undeformed);
-        let bodies: Vec<Vec<Seen>> = self.panels.iter().map(|panel| see(&panel.points)).collect();
-        let windows: Vec<_> =
-            bodies.iter().map(|body| Window::around(body.iter().chain(&undeformed).copied())).collect();
-        let largest = |axis: usize| windows.iter().map(|w| w.size()[axis]).fold(0.0, f64::max);
-        let extent = largest(0).max(largest(1));
-        // A panel is as wide as the grid allows and as high as the largest body needs, up to a square.
-        let columns = self.columns as f64;
-        let width = ((WIDTH - 2.0 * MARGIN - (columns - 1.0) * GAP) / columns).floor();
-        let scale = 0.99 * width / if extent > 0.0 { extent } else { 1.0 };
-        let height = (scale * largest(1) * 1.02).ceil().max(24.0) + 4.0;
-        Layout { undeformed, bodies, windows, panel: [width, height], scale }
+    /// What is seen of each panel with the undeformed body.
+    fn windows(&self) -> Vec<Window> {
+        let around =
+            |panel: &Panel| Window::around(panel.points.iter().chain(self.undeformed).map(|p| self.view.see(p)));
+        self.panels.iter().map(around).collect()
     }
 
-    fn draw_bar<DB: DrawingBackend>(
-        &self,
-        area: &DrawingArea<DB, Shift>,
-        values: &Axis,
-        unit: Unit,
-    ) -> Result<(), FigureError> {
-        let side = unit.px(0.5 * (WIDTH - BAR[0]));
+    fn draw_bar<DB: DrawingBackend>(&self, area: &Area<DB>, values: &Axis, unit: Unit) -> Result<(), FigureError> {
+        let side = unit.px(0.5 * (WIDTH - BAR[0]) - MARGIN);
         let mut chart = ChartBuilder::on(area)
             .margin_left(side)
             .margin_right(side)
@@ -148,56 +128,54 @@ impl ShapeGrid<'_> {
     }
 }
 
-struct Layout {
-    undeformed: Vec<Seen>,
-    bodies: Vec<Vec<Seen>>,
-    windows: Vec<Window>,
-    /// Width and height of a panel in pixels.
-    panel: [f64; 2],
-    /// Pixels per unit of length.
-    scale: f64,
-}
-
 impl Figure for ShapeGrid<'_> {
+    /// Panels are as wide as the grid allows and as high as the largest body needs, up to a square.
     fn size(&self) -> [u32; 2] {
-        let rows = self.panels.len().div_ceil(self.columns) as f64;
-        let [_, height] = self.layout().panel;
-        [WIDTH, self.top() + rows * (CAPTION + height + GAP) + BAR_AREA + 0.5 * MARGIN]
-            .map(|length| length.ceil() as u32)
+        let [across, up] = largest(&self.windows());
+        let width = (WIDTH - 2.0 * MARGIN) / self.columns as f64 - GAP;
+        let height = (width * up / across.max(up)).max(24.0); // which leaves out what is no number, too
+        let title = if self.title.is_empty() { 0.0 } else { 1.8 * TITLE_EM };
+        let rows = self.rows() as f64 * (CAPTION + height + GAP);
+        [WIDTH, 2.0 * MARGIN + title + rows + BAR_AREA].map(|length| length.ceil() as u32)
     }
 
-    fn draw<DB: DrawingBackend>(&self, picture: &DrawingArea<DB, Shift>, unit: Unit) -> Result<(), FigureError> {
-        let Layout { undeformed, bodies, windows, panel: [width, height], scale } = self.layout();
+    fn draw<DB: DrawingBackend>(&self, picture: &Area<DB>, unit: Unit) -> Result<(), FigureError> {
         let values =
             Axis::new(Scale::Linear, self.panels.iter().flat_map(|panel| panel.values.iter().copied()), 0.0, 5);
         let (low, high) = values.range;
-        let centred = |em| unit.text(em, HPos::Center, VPos::Top);
-        if !self.title.is_empty() {
-            picture.draw_text(&self.title, &centred(TITLE_EM), (unit.px(0.5 * WIDTH), unit.px(MARGIN)))?;
-        }
-        for (i, (panel, body)) in self.panels.iter().zip(&bodies).enumerate() {
-            let (row, column) = (i / self.columns, i % self.columns);
-            let left = MARGIN + column as f64 * (width + GAP);
-            let above = (self.top() + row as f64 * (CAPTION + height + GAP)).floor();
-            let caption = (unit.px(left + 0.5 * width), unit.px(above));
-            picture.draw_text(&panel.title, &centred(LABEL_EM), caption)?;
+        let see = |points: &[[f64; 3]]| -> Vec<Seen> { points.iter().map(|point| self.view.see(point)).collect() };
+        let undeformed = see(self.undeformed);
+        let windows = self.windows();
+        let [across, up] = largest(&windows);
 
+        let margin = unit.px(MARGIN);
+        let area = titled(picture.margin(margin, margin, margin, margin), &self.title, TITLE_EM, unit)?;
+        let (grid, bar) = area.split_vertically(area.dim_in_pixel().1 as i32 - unit.px(BAR_AREA));
+        let cells = grid.split_evenly((self.rows(), self.columns));
+        for ((panel, window), cell) in self.panels.iter().zip(windows).zip(cells) {
+            let gap = unit.px(0.5 * GAP);
+            let cell = titled(cell.margin(0, 2 * gap, gap, gap), &panel.title, LABEL_EM, unit)?;
+            let (width, height) = cell.dim_in_pixel();
+            let fit = (f64::from(width) / across).min(f64::from(height) / up);
+            let scale = 0.98 * if fit.is_finite() { fit } else { 1.0 };
+            let mut canvas = Canvas::new([width, height], scale, window.centre(), GRADES);
+            let body = see(&panel.points);
             let shades: Vec<f64> =
                 panel.values.iter().map(|value| (values.shown(*value) - low) / (high - low)).collect();
-            let fine = unit.per_pixel();
-            let size = [width, height].map(|length| (length * fine) as u32);
-            let mut canvas = Canvas::new(size, scale * fine, windows[i].centre(), GRADES);
-            canvas.surface(self.triangles, body, &shades);
-            for (points, colour) in [(body, EDGE), (&undeformed, UNDEFORMED)] {
+            canvas.surface(self.triangles, &body, &shades);
+            for (points, colour) in [(&body, EDGE), (&undeformed, UNDEFORMED)] {
                 for edge in self.edges.iter().filter(|_| !points.is_empty()) {
                     let [from, to] = edge.map(|i| points[i as usize]);
-                    canvas.line(&from, &to, 0.7 * fine, colour);
+                    canvas.line(&from, &to, 0.7 * unit.per_pixel(), colour);
                 }
             }
-            canvas.draw(picture, (unit.px(left), unit.px(above + CAPTION)))?;
+            canvas.draw(&cell)?;
         }
-        let (_, bar) = picture.split_vertically(picture.dim_in_pixel().1 as i32 - unit.px(BAR_AREA + 0.5 * MARGIN));
-        let (bar, _) = bar.split_vertically(unit.px(BAR_AREA));
         self.draw_bar(&bar, &values, unit)
     }
+}
+
+/// The largest extents of all windows, to the right and up.
+fn largest(windows: &[Window]) -> [f64; 2] {
+    [0, 1].map(|axis| windows.iter().map(|window| window.size()[axis]).fold(0.0, f64::max))
 }

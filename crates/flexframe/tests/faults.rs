@@ -160,6 +160,70 @@ fn a_run_that_is_killed_again_and_again_ends_in_the_same_file() {
     println!("{done} kills, {rounds} runs that came to their end between them");
 }
 
+/// Kills a command that writes into a folder at random moments. Each of its files must then be the old one or the new
+/// one; returns how many were either.
+fn kill_while_it_writes(whole: &Path, killed: &Path, command: impl Fn(&Path) -> Command) -> (usize, usize) {
+    let started = Instant::now();
+    succeed(command(whole));
+    let longest = started.elapsed();
+    let names: Vec<_> = std::fs::read_dir(whole).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    assert!(!names.is_empty());
+    let kills: usize = std::env::var("FLEXFRAME_KILLS").map_or(6, |count| count.parse().unwrap());
+    std::fs::create_dir(killed).unwrap();
+    let mut random = random();
+    let (mut old, mut new) = (0, 0);
+    for _ in 0..kills {
+        for name in &names {
+            std::fs::write(killed.join(name), "old").unwrap();
+        }
+        let mut child = spawn(command(killed));
+        std::thread::sleep(longest.mul_f64(1.2 * random()));
+        child.kill().unwrap();
+        child.wait().unwrap();
+        for name in &names {
+            let now = std::fs::read(killed.join(name)).unwrap();
+            let is_new = now == std::fs::read(whole.join(name)).unwrap();
+            assert!(is_new || now == b"old", "{}: {} bytes", name.display(), now.len());
+            if is_new { new += 1 } else { old += 1 }
+        }
+    }
+    (old, new)
+}
+
+#[test]
+fn pictures_and_tables_are_the_old_or_the_new_ones_when_a_command_is_killed() {
+    let scene = Scene::new("2e-5");
+    let folder = |name: &str| scene.folder.path().join(name);
+    std::fs::create_dir(folder("gif")).unwrap();
+    let kept = kill_while_it_writes(&folder("gif"), &folder("gif-killed"), |folder| {
+        let mut animate = flexframe(&["animate", "--frames", "12", "-o"]);
+        animate.arg(folder.join("ring.gif")).arg(&scene.path);
+        animate
+    });
+    println!("animate: {kept:?} old and new files");
+    let kept = kill_while_it_writes(&folder("tables"), &folder("tables-killed"), |folder| {
+        let mut campbell = flexframe(&["campbell", "--axis", "z", "--speeds", "0:3000:40", "-o"]);
+        campbell.arg(folder).arg(&scene.path);
+        campbell
+    });
+    println!("campbell: {kept:?} old and new files");
+}
+
+#[test]
+fn a_full_disk_leaves_the_old_picture() {
+    let scene = Scene::new("2e-5");
+    let path = scene.folder.path().join("ring.gif");
+    std::fs::write(&path, "old").unwrap();
+    // The shell's limit on the size of a file stands for a full disk.
+    let mut limited = Command::new("sh");
+    limited.args(["-c", "trap '' XFSZ; ulimit -f 20; exec \"$@\"", "sh", env!("CARGO_BIN_EXE_flexframe"), "animate"]);
+    limited.arg(&scene.path).arg("-o").arg(&path);
+    assert_has(&failure(limited), &["ring.gif", "File too large", "make room"]);
+    assert_eq!(std::fs::read(&path).unwrap(), b"old");
+    // The scene and the picture, and nothing half-written.
+    assert_eq!(std::fs::read_dir(scene.folder.path()).unwrap().count(), 2);
+}
+
 #[test]
 fn control_c_stops_at_a_row_and_says_how_to_go_on() {
     let scene = Scene::new("5e-7");
