@@ -45,16 +45,15 @@ impl WholeFile {
     /// Those of the system, also where the file that is there may not be written.
     pub fn create(path: impl AsRef<Path>) -> io::Result<Self> {
         let path = path.as_ref();
-        let path = if path.is_symlink() { fs::canonicalize(path)? } else { path.to_owned() };
-        let permissions = match OpenOptions::new().write(true).open(&path) {
+        let (path, permissions) = match OpenOptions::new().write(true).open(path) {
             Ok(old) => {
                 let old_is = old.metadata()?;
                 if !old_is.is_file() {
                     return Ok(Self { file: BufWriter::new(old), place: None });
                 }
-                Some(old_is.permissions())
+                (fs::canonicalize(path)?, Some(old_is.permissions()))
             }
-            Err(error) if error.kind() == io::ErrorKind::NotFound => None,
+            Err(error) if error.kind() == io::ErrorKind::NotFound && !path.is_symlink() => (path.to_owned(), None),
             Err(error) => return Err(error),
         };
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
@@ -146,6 +145,7 @@ mod tests {
     #[cfg(target_os = "linux")]
     #[test]
     fn permissions_links_and_devices_are_kept() {
+        use std::os::fd::AsRawFd;
         use std::os::unix::fs::{FileTypeExt, MetadataExt, PermissionsExt, symlink};
         let folder = tempfile::tempdir().unwrap();
         let place = |name: &str| folder.path().join(name);
@@ -164,6 +164,11 @@ mod tests {
         write_whole("/dev/null", "new").unwrap();
         assert!(fs::metadata("/dev/null").unwrap().file_type().is_char_device());
         assert_eq!(write_whole("/dev/full", "new").unwrap_err().kind(), io::ErrorKind::StorageFull);
+        // As `/dev/stdout` is in a pipeline: a link to a pipe that has no name.
+        let (reader, writer) = io::pipe().unwrap();
+        write_whole(format!("/proc/self/fd/{}", writer.as_raw_fd()), "new").unwrap();
+        drop(writer);
+        assert_eq!(io::read_to_string(reader).unwrap(), "new");
         // The superuser writes everywhere.
         fs::set_permissions(place("page"), PermissionsExt::from_mode(0o440)).unwrap();
         if OpenOptions::new().write(true).open(place("page")).is_err() {
