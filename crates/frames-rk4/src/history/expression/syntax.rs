@@ -12,9 +12,7 @@
 
 use std::f64::consts::{E, PI};
 
-use super::functions::{
-    Binary, DIFFERENCE, FUNCTIONS, Function, NEGATIVE, POWER, PRODUCT, QUOTIENT, REMAINDER, SUM,
-};
+use super::functions::{Binary, DIFFERENCE, FUNCTIONS, Function, NEGATIVE, POWER, PRODUCT, QUOTIENT, REMAINDER, SUM};
 use super::law::Law;
 
 /// Parentheses within parentheses. They are read and evaluated by recursion: with a hundred thousand the stack would
