@@ -122,6 +122,9 @@ struct Draft {
     initial: Initial,
 }
 
+/// A load, and another force or moment in the place of its own.
+type Acting<'a> = (&'a MeshLoad, Option<Vector3<f64>>);
+
 /// Static answers (3n each), side by side; none where nothing asks for them.
 struct Statics {
     /// To the loads in every direction that they may come to have in the body, and the work of each load on its answers.
@@ -297,8 +300,8 @@ impl Parts<'_> {
         let turning = physics::turning(self.scene, self.support.motion, self.drive.as_ref());
         let loads = if of_loads { &self.loads[..] } else { &[] };
         let turned: Vec<Vec<Vector3<f64>>> = loads.iter().map(|load| load.turned(turning)).collect();
-        // What each column sums: loads, or other forces or moments in their places.
-        let mut columns: Vec<Vec<(&MeshLoad, Option<Vector3<f64>>)>> = Vec::new();
+        // What each column is the sum of.
+        let mut columns: Vec<Vec<Acting<'_>>> = Vec::new();
         for (load, turned) in loads.iter().zip(&turned) {
             match turned[..] {
                 [] => columns.push(vec![(load, None)]),
