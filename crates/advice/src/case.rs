@@ -2,6 +2,7 @@
 
 use frames_rk4::{Drive, Initial, Load, Method};
 use modal::ReducedBody;
+use nalgebra::Vector3;
 
 /// A run before it is made. Units are any consistent set, angles rad.
 #[derive(Debug, Clone, Copy)]
@@ -26,12 +27,20 @@ pub struct Case<'a> {
     pub length: f64,
     /// Largest displacement of a node in each mode (nf).
     pub peaks: &'a [f64],
-    /// `f·u` of each load where its history is 1, and its whole static answer u
-    /// (`modal::Solver::static_response`): first those of `loads`, then of `gravity`. Empty where not known.
-    pub static_compliances: &'a [f64],
+    /// Of each load, first those of `loads`, then of `gravity`. Empty where not known.
+    pub static_compliances: &'a [StaticCompliance],
     /// `√(uᵀMu − Σ(Φ_kᵀMu)²)` of the static answer u to the centrifugal field of each pair of spins, in the order of
     /// [`ReducedBody::PAIRS`]: what the modes leave out of it (6). Empty where not known.
     pub centrifugal_remainders: &'a [f64],
+}
+
+/// The work f·u of a load where its history is 1 and of its whole static answer u (`modal::Solver::static_response`).
+#[derive(Debug, Clone, PartialEq)]
+pub struct StaticCompliance {
+    /// In the first attitude.
+    pub at_start: f64,
+    /// Of other forces or moments that a dead load may become as the body turns, each in body axes with its work.
+    pub turned: Vec<(Vector3<f64>, f64)>,
 }
 
 /// A case that no advice can be given on.
@@ -94,10 +103,14 @@ impl Case<'_> {
             }
         }
         let initial = self.initial;
+        let works = |c: &StaticCompliance| {
+            std::iter::once(c.at_start).chain(c.turned.iter().map(|(_, work)| *work)).collect::<Vec<_>>()
+        };
+        let compliances: Vec<f64> = self.static_compliances.iter().flat_map(works).collect();
         let finite = [
             ("a damping ratio", self.damping_ratios),
             ("a largest displacement", self.peaks),
-            ("a static compliance", self.static_compliances),
+            ("a static compliance", &compliances),
             ("a centrifugal remainder", self.centrifugal_remainders),
             ("an initial velocity", initial.velocity.as_slice()),
             ("an initial angular velocity", initial.omega.as_slice()),

@@ -5,8 +5,9 @@ use frames_rk4::{Action, DrivenMotion, Load, LoadFrame};
 use modal::ReducedBody;
 use nalgebra::{Matrix3, Matrix3xX, Vector3};
 
-use crate::case::Case;
+use crate::case::{Case, StaticCompliance};
 use crate::course::Course;
+use crate::response::relative;
 
 /// A load: its largest forces on the translations, the rotations and each mode where its history is 1.
 #[derive(Debug, Clone)]
@@ -16,6 +17,8 @@ pub(crate) struct Source {
     /// nf; and as the load meets the body at the beginning.
     pub modal: Vec<f64>,
     pub modal_at_start: Vec<f64>,
+    /// Displacement of each mode where the load acts (nf).
+    shapes: Vec<Vector3<f64>>,
     pub course: Course,
     /// Whether its direction turns in the body as the body turns, and the angle that may turn it.
     pub dead: bool,
@@ -80,6 +83,7 @@ impl Source {
             rotation: if is_rounding { 0.0 } else { largest(turning) },
             modal: moved(&|shape| largest(&[*shape])),
             modal_at_start: moved(&|shape| shape.dot(&vector).abs()),
+            shapes: columns[6..].to_vec(),
             course: course.clone(),
             dead,
             turn,
@@ -91,6 +95,19 @@ impl Source {
     fn all(case: &Case, courses: &[Course], turn: f64) -> Vec<Self> {
         let loads = case.loads.iter().map(|load| (load, false)).chain(case.gravity.iter().map(|load| (load, true)));
         loads.zip(courses).map(|((load, gravity), course)| Self::new(load, course, turn, gravity, case)).collect()
+    }
+
+    /// Largest part of a static answer that the first `keep` modes, of frequencies `omega`, leave out where the load acts.
+    /// Of the answers in other directions than the first it counts as far as the body may turn.
+    pub(crate) fn left_out(&self, whole: &StaticCompliance, omega: &[f64], keep: usize) -> f64 {
+        let part = |whole: f64, modal: &dyn Fn(usize) -> f64| -> f64 {
+            let carried: f64 = (0..keep).map(|k| (modal(k) / omega[k]).powi(2)).sum();
+            if whole > 0.0 { relative((whole - carried).max(0.0), whole) } else { 0.0 }
+        };
+        let at_start = part(whole.at_start, &|k| self.modal_at_start[k]);
+        let astray = if self.dead { self.turn.min(1.0).powi(2) } else { 0.0 };
+        let turned = whole.turned.iter().map(|(vector, work)| astray * part(*work, &|k| self.shapes[k].dot(vector)));
+        turned.fold(at_start, f64::max)
     }
 
     /// Largest impulse where the force is 1; with a direction a(t) that turns, by parts: `|∫ h a| ≤ max|∫h| (1 + ∫|a'|)`.

@@ -69,7 +69,7 @@ mod row;
 mod table;
 mod tensor;
 
-pub use case::{AdviceError, Case};
+pub use case::{AdviceError, Case, StaticCompliance};
 pub use limits::{Refusal, SOFTENED, buckling, limits};
 pub use review::{Broken, Review};
 pub use row::{Effect, Row, Worth};

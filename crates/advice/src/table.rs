@@ -341,13 +341,8 @@ fn left_out_at_most(body: &ReducedBody) -> [f64; 6] {
 
 fn static_correction(case: &Case, spin: &Spin, sources: &[Source], keep: usize, stretch: f64) -> Estimate {
     let omega = &case.body.circular_frequencies;
-    let compliance = |source: &Source, modes: usize| -> f64 {
-        (0..modes).map(|k| (source.modal_at_start[k] / omega[k]).powi(2)).sum()
-    };
     let left = |(i, source): (usize, &Source)| match case.static_compliances.get(i) {
-        // The loads as they are at the beginning: a field that turns in the body has no one compliance.
-        Some(whole) if *whole > 0.0 => relative((whole - compliance(source, keep)).max(0.0), *whole),
-        Some(_) => 0.0,
+        Some(whole) => source.left_out(whole, omega, keep),
         None if source.course.largest == 0.0 => 0.0,
         None => 1.0,
     };

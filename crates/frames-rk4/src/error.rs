@@ -50,7 +50,7 @@ pub enum SetupError {
     /// A text that is no expression in t.
     #[error(
         "the expression \"{text}\" at character {position}: {problem}; an expression has t, numbers, pi and e, + - * / % ^ and parentheses, and functions like {functions}",
-        functions = crate::history::FUNCTIONS
+        functions = crate::history::function_names()
     )]
     Expression {
         /// The expression.

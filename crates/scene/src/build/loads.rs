@@ -7,10 +7,14 @@ use modal::{BodyPoint, Modes, ReducedBody};
 use nalgebra::Vector3;
 
 use super::history::history;
+use super::physics::Turning;
 use super::{BuildError, refuse, refuse_mesh};
 use crate::effects::Choice;
 use crate::load::{self, Load};
 use crate::scene::Scene;
+
+/// A part of a load along or across an axis that is rounding.
+const PARALLEL: f64 = 1e-12;
 
 /// A load on the nodes of the mesh.
 pub(super) struct MeshLoad {
@@ -172,20 +176,62 @@ fn frame(frame: load::LoadFrame) -> LoadFrame {
 }
 
 impl MeshLoad {
-    /// The forces on the nodes of the undeformed body in its first attitude, where the history is 1 (3n).
-    pub(super) fn add_nodal_forces(&self, mut forces: faer::ColMut<'_, f64>) {
+    /// The force or moment in the first attitude, where the history is 1; none of a field.
+    fn vector(&self) -> Option<Vector3<f64>> {
+        match &self.place {
+            Place::Force { force: vector, .. } | Place::Moment { moment: vector, .. } => Some(*vector),
+            Place::Field { .. } => None,
+        }
+    }
+
+    /// Forces or moments of the same size, in body axes, whose combinations are all that a dead load may become as the
+    /// body turns; none where it keeps its direction in the body.
+    pub(super) fn turned(&self, turning: Turning) -> Vec<Vector3<f64>> {
+        let Some(vector) = self.vector().filter(|v| !self.follows && v.norm() > 0.0) else { return Vec::new() };
+        let size = vector.norm();
+        match turning {
+            Turning::Not => Vec::new(),
+            Turning::Freely => [Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| axis * size).into(),
+            Turning::About(axis) => {
+                let along = axis * axis.dot(&vector);
+                let across = vector - along;
+                let mut turned = Vec::new();
+                if across.norm() > PARALLEL * size {
+                    let across = across.normalize() * size;
+                    turned.extend([across, axis.cross(&across)]);
+                }
+                if along.norm() > PARALLEL * size {
+                    turned.push(axis * size);
+                }
+                turned
+            }
+        }
+    }
+
+    /// The parts of the load in its first attitude along `turned`, relative to them: one whole part without any.
+    pub(super) fn parts(&self, turned: &[Vector3<f64>]) -> Vec<f64> {
+        match self.vector() {
+            Some(vector) if !turned.is_empty() => turned.iter().map(|t| t.dot(&vector) / t.norm_squared()).collect(),
+            _ => vec![1.0],
+        }
+    }
+
+    /// The forces on the nodes of the undeformed body in its first attitude, where the history is 1 (3n); with `vector`,
+    /// of that force or moment in place of the load's own.
+    pub(super) fn add_nodal_forces(&self, vector: Option<Vector3<f64>>, mut forces: faer::ColMut<'_, f64>) {
+        let vector = vector.or(self.vector()).unwrap_or_default();
         let mut add = |node: u32, force: &Vector3<f64>| {
             for axis in 0..3 {
                 forces[3 * node as usize + axis] += force[axis];
             }
         };
         match &self.place {
-            Place::Force { nodes, weights, force } => {
-                nodes.iter().zip(weights).for_each(|(node, w)| add(*node, &(force * *w)));
+            Place::Force { nodes, weights, .. } => {
+                nodes.iter().zip(weights).for_each(|(node, w)| add(*node, &(vector * *w)));
             }
-            Place::Moment { patch, moment } => {
+            Place::Moment { patch, .. } => {
                 for (node, turned) in patch.nodes.iter().zip(&patch.rotation_per_displacement) {
-                    add(*node, &turned.tr_mul(moment));
+                    add(*node, &turned.tr_mul(&vector));
                 }
             }
             Place::Field { nodes, forces } => nodes.iter().zip(forces).for_each(|(node, f)| add(*node, f)),

@@ -2,8 +2,8 @@
 
 use std::time::Instant;
 
-use advice::{Advice, Case, Effect, advise, buckling, limits, screen};
-use faer::{Mat, MatRef};
+use advice::{Advice, Case, Effect, StaticCompliance, advise, buckling, limits, screen};
+use faer::{Col, Mat, MatRef};
 use fem_tet10::{Location, Matrices, Mesh, reduced_geometric_stiffness};
 use frames_rk4::{Drive, Initial, Load, Physics, PointShapes};
 use modal::{BodyPoint, Modes, ReducedBody, Solver, Support, centrifugal_fields};
@@ -122,12 +122,17 @@ struct Draft {
     initial: Initial,
 }
 
-/// Static answers, side by side; none where nothing asks for them.
+/// A load, and another force or moment in the place of its own.
+type Acting<'a> = (&'a MeshLoad, Option<Vector3<f64>>);
+
+/// Static answers (3n each), side by side; none where nothing asks for them.
 struct Statics {
-    /// To the loads (3n × loads), and the work f·u of each.
-    of_loads: Option<(Mat<f64>, Vec<f64>)>,
+    /// To the loads in every direction that they may come to have in the body, and the work of each load on its answers.
+    of_loads: Option<(Mat<f64>, Vec<StaticCompliance>)>,
     /// To the centrifugal field of each pair of spins (3n × 6), and what the modes leave out of each.
     of_spin: Option<(Mat<f64>, Vec<f64>)>,
+    /// To the steady loads together (3n × 1).
+    of_steady: Option<Mat<f64>>,
 }
 
 impl Parts<'_> {
@@ -157,7 +162,7 @@ impl Parts<'_> {
             progress(BuildProgress::Statics);
         }
         let started = Instant::now();
-        let statics = self.statics(&modes, &draft.body, of_loads, of_spin)?;
+        let statics = self.statics(&modes, &draft.body, [of_loads, of_spin], &steady)?;
         if stiffening {
             draft.body.stress_stiffness = self.stress_stiffness(&statics, &modes)?;
         }
@@ -186,8 +191,9 @@ impl Parts<'_> {
         if keep < draft.body.flexible() || corrects {
             modes = truncated_modes(&modes, keep);
             if corrects {
-                let answers = [statics.of_loads.as_ref(), statics.of_spin.as_ref()];
-                for (answers, _) in answers.into_iter().flatten() {
+                let of_loads = statics.of_loads.as_ref().map(|(answers, _)| answers);
+                let of_spin = statics.of_spin.as_ref().map(|(answers, _)| answers);
+                for answers in of_loads.into_iter().chain(of_spin) {
                     modes = self.solver.with_static_shapes(modes, answers.as_ref()).map_err(modal(scene))?;
                 }
             }
@@ -202,7 +208,7 @@ impl Parts<'_> {
         if !effects.geometric_stiffening {
             draft.body.stress_stiffness = None;
         }
-        let load_stiffness = self.load_stiffness(&steady, &modes, &draft, &mut advice)?;
+        let load_stiffness = self.load_stiffness(statics.of_steady.as_ref(), &modes, &draft, &mut advice)?;
         if of_loads || of_spin || !steady.is_empty() {
             times.statics = started.elapsed();
         }
@@ -232,7 +238,6 @@ impl Parts<'_> {
 
     fn case<'a>(&'a self, draft: &'a Draft, statics: Option<&'a Statics>) -> Case<'a> {
         let (loads, gravity) = draft.loads.split_at(draft.loads.len() - loads::count_gravity(self.scene));
-        let list = |answers: Option<&'a (Mat<f64>, Vec<f64>)>| answers.map_or(&[][..], |(_, list)| list);
         Case {
             body: &draft.body,
             damping_ratios: &draft.damping_ratios,
@@ -244,8 +249,8 @@ impl Parts<'_> {
             step: step(self.scene),
             length: draft.size.length,
             peaks: &draft.size.peaks,
-            static_compliances: list(statics.and_then(|s| s.of_loads.as_ref())),
-            centrifugal_remainders: list(statics.and_then(|s| s.of_spin.as_ref())),
+            static_compliances: statics.and_then(|s| s.of_loads.as_ref()).map_or(&[], |(_, compliances)| compliances),
+            centrifugal_remainders: statics.and_then(|s| s.of_spin.as_ref()).map_or(&[], |(_, remainders)| remainders),
         }
     }
 
@@ -284,23 +289,65 @@ impl Parts<'_> {
             })
     }
 
-    fn statics(&self, modes: &Modes, body: &ReducedBody, of_loads: bool, of_spin: bool) -> Result<Statics, BuildError> {
-        let to_loads = || -> Result<_, BuildError> {
-            let mut forces = Mat::zeros(3 * self.mesh.positions().len(), self.loads.len());
-            for (i, load) in self.loads.iter().enumerate() {
-                load.add_nodal_forces(forces.as_mut().col_mut(i));
+    /// All static answers that are asked for, from one block of forces.
+    fn statics(
+        &self,
+        modes: &Modes,
+        body: &ReducedBody,
+        [of_loads, of_spin]: [bool; 2],
+        steady: &[&MeshLoad],
+    ) -> Result<Statics, BuildError> {
+        let turning = physics::turning(self.scene, self.support.motion, self.drive.as_ref());
+        let loads = if of_loads { &self.loads[..] } else { &[] };
+        let turned: Vec<Vec<Vector3<f64>>> = loads.iter().map(|load| load.turned(turning)).collect();
+        // What each column is the sum of.
+        let mut columns: Vec<Vec<Acting<'_>>> = Vec::new();
+        for (load, turned) in loads.iter().zip(&turned) {
+            match turned[..] {
+                [] => columns.push(vec![(load, None)]),
+                _ => columns.extend(turned.iter().map(|vector| vec![(load, Some(*vector))])),
             }
-            let answers = self.solver.static_response(forces.as_ref()).map_err(modal(self.scene))?;
-            let work = forces.col_iter().zip(answers.col_iter()).map(|(f, u)| f.transpose() * u).collect();
-            Ok((answers, work))
-        };
-        let to_spin = || -> Result<_, BuildError> {
-            let fields = centrifugal_fields(self.solver.nodal_mass(), self.mesh.positions(), &body.origin);
-            let answers = self.solver.static_response(fields.as_ref()).map_err(modal(self.scene))?;
-            let remainders = self.remainders(modes, answers.as_ref());
-            Ok((answers, remainders))
-        };
-        Ok(Statics { of_loads: of_loads.then(to_loads).transpose()?, of_spin: of_spin.then(to_spin).transpose()? })
+        }
+        let for_loads = columns.len();
+        if !steady.is_empty() {
+            columns.push(steady.iter().map(|load| (*load, None)).collect());
+        }
+        let for_all_loads = columns.len();
+        let fields = of_spin.then(|| centrifugal_fields(self.solver.nodal_mass(), self.mesh.positions(), &body.origin));
+        if columns.is_empty() && fields.is_none() {
+            return Ok(Statics { of_loads: None, of_spin: None, of_steady: None });
+        }
+        let spins = fields.as_ref().map_or(0, Mat::ncols);
+        let mut forces = Mat::zeros(3 * self.mesh.positions().len(), for_all_loads + spins);
+        for (i, loads) in columns.iter().enumerate() {
+            for (load, vector) in loads {
+                load.add_nodal_forces(*vector, forces.as_mut().col_mut(i));
+            }
+        }
+        if let Some(fields) = &fields {
+            forces.as_mut().subcols_mut(for_all_loads, spins).copy_from(fields);
+        }
+        let answers = self.solver.static_response(forces.as_ref()).map_err(modal(self.scene))?;
+
+        let to_spin = answers.subcols(for_all_loads, spins);
+        let mut first = 0;
+        let compliances = loads.iter().zip(&turned).map(|(load, turned)| {
+            let columns = turned.len().max(1);
+            let (of, to) = (forces.subcols(first, columns), answers.subcols(first, columns));
+            first += columns;
+            let parts = Col::from_iter(load.parts(turned));
+            let work = |i: usize| of.col(i).transpose() * to.col(i);
+            StaticCompliance {
+                at_start: (of * &parts).transpose() * (to * &parts),
+                turned: turned.iter().enumerate().map(|(i, vector)| (*vector, work(i))).collect(),
+            }
+        });
+        let compliances: Vec<StaticCompliance> = compliances.collect();
+        Ok(Statics {
+            of_loads: of_loads.then(|| (answers.subcols(0, for_loads).to_owned(), compliances)),
+            of_spin: of_spin.then(|| (to_spin.to_owned(), self.remainders(modes, to_spin))),
+            of_steady: (!steady.is_empty()).then(|| answers.subcols(for_loads, 1).to_owned()),
+        })
     }
 
     /// √(uᵀMu − Σ(Φ_kᵀMu)²) of each answer u.
@@ -330,17 +377,12 @@ impl Parts<'_> {
     /// Stress stiffness of steady loads in the modes; none where it may be left out, which `advice` is told.
     fn load_stiffness(
         &self,
-        steady: &[&MeshLoad],
+        answer: Option<&Mat<f64>>,
         modes: &Modes,
         draft: &Draft,
         advice: &mut Advice,
     ) -> Result<Option<Mat<f64>>, BuildError> {
-        if steady.is_empty() || modes.shapes.ncols() == 0 {
-            return Ok(None);
-        }
-        let mut force = Mat::zeros(3 * self.mesh.positions().len(), 1);
-        steady.iter().for_each(|load| load.add_nodal_forces(force.as_mut().col_mut(0)));
-        let answer = self.solver.static_response(force.as_ref()).map_err(modal(self.scene))?;
+        let Some(answer) = answer.filter(|_| modes.shapes.ncols() > 0) else { return Ok(None) };
         // Gravity stresses no body that falls.
         if answer.norm_max() == 0.0 {
             return Ok(None);

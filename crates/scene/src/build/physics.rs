@@ -3,6 +3,7 @@
 use advice::{Advice, Effect};
 use frames_rk4::{Drive, DrivenMotion, Effects};
 use modal::RigidMotion;
+use nalgebra::Vector3;
 
 use super::loads::MeshLoad;
 use crate::effects::Choice;
@@ -11,21 +12,30 @@ use crate::scene::Scene;
 /// Whether anything may set the body spinning.
 pub(super) fn may_spin(scene: &Scene, motion: RigidMotion, drive: Option<&Drive>) -> bool {
     let set_off = drive.is_some() || scene.initial.angular_velocity != [0.0; 3] || !scene.loads.is_empty();
-    scene.effects.rotation != Choice::Off && turns(motion, drive) && set_off
+    turning(scene, motion, drive) != Turning::Not && set_off
 }
 
-/// Whether a body can turn.
-fn turns(motion: RigidMotion, drive: Option<&Drive>) -> bool {
+/// How a body can turn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Turning {
+    Not,
+    /// About one axis, a unit vector.
+    About(Vector3<f64>),
+    Freely,
+}
+
+pub(super) fn turning(scene: &Scene, motion: RigidMotion, drive: Option<&Drive>) -> Turning {
     match (motion, drive.map(|drive| drive.motion)) {
-        (_, Some(DrivenMotion::Turn { .. })) => true,
-        (RigidMotion::Free | RigidMotion::Pin { .. } | RigidMotion::Hinge { .. }, _) => true,
-        (RigidMotion::Slider { .. } | RigidMotion::Clamp { .. }, _) => false,
+        _ if scene.effects.rotation == Choice::Off => Turning::Not,
+        (_, Some(DrivenMotion::Turn { axis })) | (RigidMotion::Hinge { axis, .. }, _) => Turning::About(axis),
+        (RigidMotion::Free | RigidMotion::Pin { .. }, _) => Turning::Freely,
+        (RigidMotion::Slider { .. } | RigidMotion::Clamp { .. }, _) => Turning::Not,
     }
 }
 
 /// Whether the stress of a load stiffens the body: one that stays as it is, seen from the body.
 pub(super) fn stiffens(scene: &Scene, motion: RigidMotion, drive: Option<&Drive>, load: &MeshLoad) -> bool {
-    let turns = turns(motion, drive) && scene.effects.rotation != Choice::Off;
+    let turns = turning(scene, motion, drive) != Turning::Not;
     scene.effects.geometric_stiffening != Choice::Off
         && !scene.time.method.is_of_paper()
         && matches!(load.history, frames_rk4::History::Constant)

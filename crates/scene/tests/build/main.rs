@@ -8,6 +8,7 @@ mod off;
 mod statics;
 mod stretch;
 mod supports;
+mod turned;
 
 use std::path::Path;
 
