@@ -3,6 +3,8 @@
 use frames_rk4::{Drive, Initial, Load, Method};
 use modal::ReducedBody;
 
+use crate::backbone::Backbone;
+
 /// A run before it is made. Units are any consistent set, angles rad.
 #[derive(Debug, Clone, Copy)]
 pub struct Case<'a> {
@@ -32,6 +34,8 @@ pub struct Case<'a> {
     /// `√(uᵀMu − Σ(Φ_kᵀMu)²)` of the static answer u to the centrifugal field of each pair of spins, in the order of
     /// [`ReducedBody::PAIRS`]: what the modes leave out of it (6). Empty where not known.
     pub centrifugal_remainders: &'a [f64],
+    /// How the frequency of each of the first modes goes with its amplitude, where that is known.
+    pub backbones: &'a [Option<Backbone>],
 }
 
 /// A case that no advice can be given on.

@@ -52,7 +52,7 @@ fn where_the_scheme_does_not_take_them_advice_and_review_say_that_the_answer_lac
         let [Broken::Stretch { held, influence, .. }] = broken[..] else { panic!("{scheme}: {broken:?}") };
         assert!(held < 1e-2 && influence > 0.9, "{scheme}: {held} {influence}");
         assert!(
-            why.contains("hold only") && why.contains("lacks") && why.contains("static_correction = true"),
+            why.contains("leave out") && why.contains("lacks") && why.contains("static_correction = true"),
             "{why}"
         );
     }
