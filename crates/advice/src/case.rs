@@ -67,6 +67,12 @@ pub enum AdviceError {
 }
 
 impl Case<'_> {
+    /// How many histories cost more to evaluate than closed forms do: they share a budget of samples.
+    pub(crate) fn costly_histories(&self) -> usize {
+        let of_loads = self.loads.iter().chain(self.gravity).map(|load| &load.history);
+        of_loads.chain(self.drive.map(|drive| &drive.history)).filter(|history| history.cost() > 1.0).count()
+    }
+
     /// Refuses lists of the wrong length and numbers that are not finite or not positive.
     pub(crate) fn check(&self, tolerance: f64) -> Result<(), AdviceError> {
         let nf = self.body.flexible();

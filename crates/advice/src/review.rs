@@ -114,7 +114,10 @@ impl fmt::Display for Detunings<'_> {
                 Number(phase.abs()),
             )?;
         }
-        write!(f, " (each by its own motion, without spin); smaller motions are right, their error goes with the square")?;
+        write!(
+            f,
+            " (each by its own motion, without spin); smaller motions are right, their error goes with the square"
+        )?;
         if first.phase.abs() > LOST { write!(f, "; the phase is lost") } else { Ok(()) }
     }
 }
@@ -327,7 +330,8 @@ impl<'a> Review<'a> {
         });
         let found = self.bent.0;
         let linear = (found > LINEAR || !modes.is_empty()).then_some(Broken::Linear { time, found, modes });
-        let limits = [self.limit, limit_of_bending].map(|limit| limit.map(|(time, refusal)| Broken::Limit { time, refusal }));
+        let limits =
+            [self.limit, limit_of_bending].map(|limit| limit.map(|(time, refusal)| Broken::Limit { time, refusal }));
         let (left, time, left_out) = self.left_out;
         let influence = relative(left, self.deformation.hypot(left));
         let stretch = (influence >= self.tolerance).then_some(Broken::Stretch { time, left_out, influence });
@@ -388,7 +392,6 @@ impl<'a> Review<'a> {
     /// Whether a limit has broken, or was looked up for about this spin: it costs an eigenvalue problem.
     fn is_known(&self, omega_body: &Vector3<f64>, speed: f64) -> bool {
         let (fastest, axis) = &self.looked_up;
-        self.limit.is_some()
-            || speed < 1.02 * fastest && omega_body.dot(axis).abs() > 0.999 * speed
+        self.limit.is_some() || speed < 1.02 * fastest && omega_body.dot(axis).abs() > 0.999 * speed
     }
 }

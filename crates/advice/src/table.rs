@@ -6,9 +6,9 @@ use nalgebra::Matrix3;
 
 use crate::backbone::LARGE;
 use crate::case::{AdviceError, Case};
+use crate::excitation::{Source, Spin};
 use crate::limits::{Refusal, deflected};
 use crate::number::Number;
-use crate::excitation::{Source, Spin};
 use crate::response::{Response, norm, relative};
 use crate::row::{Effect, Row, Worth};
 use crate::{rigid, tensor};

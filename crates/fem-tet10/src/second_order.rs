@@ -65,9 +65,14 @@ pub fn geometric_stiffness_product(
     check_field(mesh, "displacements", displacement)?;
     let columns = fields.ncols();
     check_field(mesh, "fields", fields)?;
-    let all = Mat::from_fn(fields.nrows(), columns + 1, |i, j| {
-        if j < columns { fields[(i, j)] } else { displacement[(i, 0)] }
-    });
+    let all =
+        Mat::from_fn(
+            fields.nrows(),
+            columns + 1,
+            |i, j| {
+                if j < columns { fields[(i, j)] } else { displacement[(i, 0)] }
+            },
+        );
     let forces = |gradients: &[Matrix3<f64>], material: &Material, out: &mut Vec<Matrix3<f64>>| {
         let stress = stress(material, &strain(&gradients[columns]));
         out.extend(gradients[..columns].iter().map(|gradient| gradient * stress));

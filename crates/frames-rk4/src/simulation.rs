@@ -456,11 +456,7 @@ impl Simulation {
     ///
     /// # Errors
     /// As [`Self::advance`].
-    pub fn advance_watched(
-        &mut self,
-        most_steps: u64,
-        mut watch: impl FnMut(&Moment),
-    ) -> Result<Reached, StepError> {
+    pub fn advance_watched(&mut self, most_steps: u64, mut watch: impl FnMut(&Moment)) -> Result<Reached, StepError> {
         if self.account.is_empty() {
             self.check_energy()?;
         }

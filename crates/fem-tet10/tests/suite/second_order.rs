@@ -40,11 +40,13 @@ fn a_turned_body_meets_turned_forces() {
         let turn = field(&mesh, |x| w.cross(&Vector3::from(x)).into());
         let u = smooth(&mesh);
         let found = forces(&mesh, &[turn.clone(), u.clone()], &[[0, 1], [0, 0]]);
-        let of_u: Vec<f64> = turned(&w, &product(k, &u)).iter().zip(product(k, &turned(&w, &u))).map(|(a, b)| a - b).collect();
+        let of_u: Vec<f64> =
+            turned(&w, &product(k, &u)).iter().zip(product(k, &turned(&w, &u))).map(|(a, b)| a - b).collect();
         let of_turn: Vec<f64> = product(k, &turned(&w, &turn)).iter().map(|f| -f).collect();
-        for (found, expected, scale) in
-            [(&found[0], &of_u, absolute_product(k, &u)), (&found[1], &of_turn, absolute_product(k, &turned(&w, &turn)))]
-        {
+        for (found, expected, scale) in [
+            (&found[0], &of_u, absolute_product(k, &u)),
+            (&found[1], &of_turn, absolute_product(k, &turned(&w, &turn))),
+        ] {
             let largest = |v: &[f64]| v.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
             let off: Vec<f64> = found.iter().zip(expected).map(|(a, b)| a - b).collect();
             assert!(largest(&off) < 1e-13 * largest(&scale), "{name}: {:e} of {:e}", largest(&off), largest(&scale));
@@ -66,14 +68,15 @@ fn of_homogeneous_fields_they_are_what_the_formulas_say() {
     let fields: Vec<_> = gradients.iter().map(|g| field(&mesh, |x| (g * Vector3::from(x)).into())).collect();
     let symmetric = |g: Matrix3<f64>| 0.5 * (g + g.transpose());
     let (lambda, mu) = ALUMINIUM.lame();
-    let product_of =
-        |a: Matrix3<f64>, b: Matrix3<f64>| lambda * a.trace() * b.trace() + 2.0 * mu * a.dot(&b);
+    let product_of = |a: Matrix3<f64>, b: Matrix3<f64>| lambda * a.trace() * b.trace() + 2.0 * mu * a.dot(&b);
     let first = |a: usize| symmetric(gradients[a]);
     let second = |a: usize, b: usize| symmetric(gradients[a].transpose() * gradients[b]);
     let g = forces(&mesh, &fields, &[[0, 1], [1, 2], [2, 0]]);
     let work = |u: &[f64], f: &[f64]| u.iter().zip(f).map(|(u, f)| u * f).sum::<f64>();
     let expected = volume
-        * (product_of(first(2), second(0, 1)) + product_of(first(0), second(2, 1)) + product_of(first(1), second(2, 0)));
+        * (product_of(first(2), second(0, 1))
+            + product_of(first(0), second(2, 1))
+            + product_of(first(1), second(2, 0)));
     for (u, f) in [(2, 0), (0, 1), (1, 2)] {
         assert_close("u·g", work(&fields[u], &g[f]), expected, 1e-11);
     }
@@ -87,10 +90,8 @@ fn of_homogeneous_fields_they_are_what_the_formulas_say() {
 fn the_product_with_the_geometric_stiffness_is_the_reduced_one() {
     for mesh in [data_mesh("cube.msh"), workspace_mesh("ring.msh")] {
         let u = columns(&[smooth(&mesh)]);
-        let shapes = columns(&[
-            field(&mesh, |[x, y, z]| [y * z, x * x, x * y]),
-            field(&mesh, |[x, y, z]| [z, x * y, y * y]),
-        ]);
+        let shapes =
+            columns(&[field(&mesh, |[x, y, z]| [y * z, x * x, x * y]), field(&mesh, |[x, y, z]| [z, x * y, y * y])]);
         let reduced = &reduced_geometric_stiffness(&mesh, &aluminium(), u.as_ref(), shapes.as_ref()).unwrap()[0];
         let product = geometric_stiffness_product(&mesh, &aluminium(), u.as_ref(), shapes.as_ref()).unwrap();
         let found = shapes.transpose() * &product;

@@ -62,6 +62,8 @@ impl Expression {
 
     /// The value at a time; at a corner the one on the side of `inside`.
     pub(crate) fn at(&self, time: f64, inside: f64) -> f64 {
+        #[cfg(test)]
+        EVALUATIONS.with(|count| count.set(count.get() + 1));
         if self.corners.is_empty() {
             return (self.law)(time);
         }
@@ -110,6 +112,17 @@ impl PartialEq for Expression {
     fn eq(&self, other: &Self) -> bool {
         self.text == other.text && self.corners == other.corners
     }
+}
+
+#[cfg(test)]
+thread_local! {
+    static EVALUATIONS: std::cell::Cell<u64> = const { std::cell::Cell::new(0) };
+}
+
+/// How often expressions have been evaluated on this thread.
+#[cfg(test)]
+pub(crate) fn evaluations() -> u64 {
+    EVALUATIONS.with(std::cell::Cell::get)
 }
 
 /// The text for the life of the program: what the parser returns borrows from it.
