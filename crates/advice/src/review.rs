@@ -173,8 +173,9 @@ pub struct Review<'a> {
     left_out: (f64, f64, f64),
     /// Largest √(qᵀq).
     deformation: f64,
-    /// Largest deflection over the length, and when.
-    bent: (f64, f64),
+    /// Largest deflection over the length, and when it was that, but for a hundredth.
+    bent: f64,
+    bent_at: Passed,
     spun_above: Option<Passed>,
     bent_above: Option<Passed>,
     limit: Option<(f64, Refusal)>,
@@ -209,7 +210,8 @@ impl<'a> Review<'a> {
             looked_up: (0.0, Vector3::zeros()),
             left_out: (0.0, 0.0, 0.0),
             deformation: 0.0,
-            bent: (0.0, 0.0),
+            bent: 0.0,
+            bent_at: Passed { time: 0.0, found: 0.0 },
             spun_above: None,
             bent_above: None,
             limit: None,
@@ -250,8 +252,9 @@ impl<'a> Review<'a> {
         if self.stop.is_none() {
             self.stop = stopped.or_else(|| deflected(deflection)).map(|refusal| (time, refusal));
         }
-        if deflection > self.bent.0 {
-            self.bent = (deflection, time);
+        self.bent = self.bent.max(deflection);
+        if deflection > MARGIN * self.bent_at.found {
+            self.bent_at = Passed { time, found: deflection };
         }
         let speed = omega_body.norm();
         if speed > self.fastest.0 {
@@ -314,7 +317,7 @@ impl<'a> Review<'a> {
 
     /// What has broken so far: each assumption once, with the first time and the worst.
     pub fn broken(&self) -> Vec<Broken> {
-        let (time, limit_of_bending) = (self.bent.1, self.stop);
+        let (time, limit_of_bending) = (self.bent_at.time, self.stop);
         let modes = self.detunings();
         let spin = self.spun_above.map(|Passed { time, found }| Broken::Spin {
             time,
@@ -328,7 +331,7 @@ impl<'a> Review<'a> {
             assumed: self.deflection,
             off: self.off(),
         });
-        let found = self.bent.0;
+        let found = self.bent;
         let linear = (found > LINEAR || !modes.is_empty()).then_some(Broken::Linear { time, found, modes });
         let limits =
             [self.limit, limit_of_bending].map(|limit| limit.map(|(time, refusal)| Broken::Limit { time, refusal }));

@@ -433,9 +433,9 @@ impl<'a> Recorder<'a> {
         loop {
             let review = &mut self.review;
             let reached = simulation.advance_watched(STEPS_PER_REPORT, |moment| review.look(moment));
-            let reached = reached.map_err(|source| self.failed(source))?;
+            // A step that fails after the model has come to mean nothing fails for that.
             self.refuse()?;
-            match reached {
+            match reached.map_err(|source| self.failed(source))? {
                 Reached::Row => {
                     self.record(&mut simulation)?;
                     let stop = settings.stop.load(Ordering::Relaxed) && simulation.time() < simulation.end();
