@@ -208,7 +208,7 @@ mod tests {
 
     #[test]
     fn a_long_formula_is_asked_for_few_values() {
-        for (bytes, most) in [(30, 1_600_000), (900, 12_000)] {
+        for (bytes, most) in [(30, 1_600_000), (900, 16_000)] {
             for scan in [History::largest as fn(&History, f64) -> f64, History::magnitude_integral] {
                 let history = noise(bytes);
                 let before = expression::evaluations();
