@@ -4,6 +4,8 @@ use frames_rk4::{Drive, Initial, Load, Method};
 use modal::ReducedBody;
 use nalgebra::Vector3;
 
+use crate::backbone::Backbone;
+
 /// A run before it is made. Units are any consistent set, angles rad.
 #[derive(Debug, Clone, Copy)]
 pub struct Case<'a> {
@@ -32,6 +34,8 @@ pub struct Case<'a> {
     /// `√(uᵀMu − Σ(Φ_kᵀMu)²)` of the static answer u to the centrifugal field of each pair of spins, in the order of
     /// [`ReducedBody::PAIRS`]: what the modes leave out of it (6). Empty where not known.
     pub centrifugal_remainders: &'a [f64],
+    /// How the frequency of each of the first modes goes with its amplitude, where that is known.
+    pub backbones: &'a [Option<Backbone>],
 }
 
 /// The work f·u of a load where its history is 1 and of its whole static answer u (`modal::Solver::static_response`).
@@ -72,6 +76,12 @@ pub enum AdviceError {
 }
 
 impl Case<'_> {
+    /// How many histories cost more to evaluate than closed forms do: they share a budget of samples.
+    pub(crate) fn costly_histories(&self) -> usize {
+        let of_loads = self.loads.iter().chain(self.gravity).map(|load| &load.history);
+        of_loads.chain(self.drive.map(|drive| &drive.history)).filter(|history| history.cost() > 1.0).count()
+    }
+
     /// Refuses lists of the wrong length and numbers that are not finite or not positive.
     pub(crate) fn check(&self, tolerance: f64) -> Result<(), AdviceError> {
         let nf = self.body.flexible();

@@ -126,9 +126,10 @@ impl Spin {
     pub(crate) fn new(case: &Case) -> (Self, Vec<Source>) {
         let body = case.body;
         let histories = case.loads.iter().chain(case.gravity).map(|load| &load.history);
-        let courses: Vec<Course> = histories.map(|history| Course::new(history, case.end)).collect();
+        let courses: Vec<Course> =
+            histories.map(|history| Course::new(history, case.end, case.costly_histories())).collect();
         if let Some(drive) = case.drive {
-            let course = Course::new(&drive.history, case.end);
+            let course = Course::new(&drive.history, case.end, case.costly_histories());
             let (axis, speed) = match drive.motion {
                 DrivenMotion::Turn { axis } => (axis, drive.amplitude.abs() * course.largest),
                 DrivenMotion::Slide { .. } => (Vector3::zeros(), 0.0),

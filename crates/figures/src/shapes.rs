@@ -25,7 +25,7 @@ const UNDEFORMED: RGBColor = RGBColor(150, 150, 150);
 /// One body of a [`ShapeGrid`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Panel {
-    /// What it shows, for instance "Mode 7: 24.53 Hz".
+    /// What it shows, for instance "Mode 1: 24.53 Hz".
     pub title: String,
     /// Places of the points in the deformed body.
     pub points: Vec<[f64; 3]>,

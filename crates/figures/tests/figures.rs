@@ -189,7 +189,7 @@ fn mode(block: &Block, k: usize, amplitude: f64) -> (Vec<[f64; 3]>, Vec<f64>) {
 fn grid<'a>(block: &'a Block, triangles: &'a [[u32; 3]], edges: &'a [[u32; 2]], amplitude: f64) -> ShapeGrid<'a> {
     let panel = |k: usize| {
         let (points, values) = mode(block, k, amplitude);
-        Panel { title: format!("Mode {}: {:.2} Hz", k + 7, 24.53 * (k as f64 + 1.0).powi(2)), points, values }
+        Panel { title: format!("Mode {}: {:.2} Hz", k + 1, 24.53 * (k as f64 + 1.0).powi(2)), points, values }
     };
     ShapeGrid {
         title: "Flexible modes of the free plate".into(),
@@ -260,7 +260,7 @@ fn a_tumbling_plate_is_a_small_animation() {
         })
         .collect();
     let animation = Animation {
-        title: "Free plate, 50 N corner pulse".into(),
+        title: "Free plate, 50 N end pulse".into(),
         triangles: &triangles,
         edges: &edges,
         frames: &frames,

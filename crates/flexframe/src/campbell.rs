@@ -225,7 +225,6 @@ pub fn campbell(
     let spin = SteadySpin::new(&model.body, &axis, effects);
     let total = speeds.len();
     let branches = Branches::follow(&spin, speeds, |done| progress(CampbellProgress::Speeds { done, total }))?;
-    let first_mode = model.body.motion.count() + 1;
     let critical_speed = spin.critical_speed()?;
     let mut report = CampbellReport {
         title: scene.title.clone(),
@@ -240,8 +239,8 @@ pub fn campbell(
             stiffening: effects.geometric_stiffening,
         },
         stable_below: critical_speed.is_finite().then_some(critical_speed),
-        critical_speeds: critical::find(&spin, &branches, &settings.orders, first_mode)?,
-        branches: branches.lines(first_mode),
+        critical_speeds: critical::find(&spin, &branches, &settings.orders)?,
+        branches: branches.lines(),
         speeds: branches.speeds,
         files: Vec::new(),
     };

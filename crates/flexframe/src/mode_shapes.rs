@@ -23,7 +23,6 @@ pub fn draw(scene: &Scene, model: &Model, stem: &Path) -> Result<[PathBuf; 2], F
         return Err(FigureError::Empty { figure: scene.title.clone(), what: "a mesh" });
     };
     let surface = Surface::new(mesh);
-    let first = model.body.motion.count() + 1;
     let unit = frequency_unit(&scene.units.time);
     let panels = modes
         .natural_frequencies()
@@ -37,7 +36,7 @@ pub fn draw(scene: &Scene, model: &Model, stem: &Path) -> Result<[PathBuf; 2], F
             let largest = shape.iter().map(Vector3::norm).fold(0.0, f64::max);
             let scale = DRAWN * mesh.diagonal() / largest;
             Panel {
-                title: format!("Mode {}: {frequency:.4} {unit}", k + first),
+                title: format!("Mode {}: {frequency:.4} {unit}", k + 1),
                 points: surface
                     .points
                     .iter()

@@ -60,7 +60,7 @@ impl fmt::Display for ModesReport {
         let body = &self.body;
         for (k, (frequency, damping)) in body.natural_frequencies.iter().zip(&body.damping_ratios).enumerate() {
             let residual = body.residuals.get(k).map_or_else(|| "static shape".to_owned(), |r| format!("{r:.0e}"));
-            writeln!(f, "  {:>4}  {frequency:>17.6}  {damping:>7.4}  {residual}", k + 1 + body.rigid_modes)?;
+            writeln!(f, "  {:>4}  {frequency:>17.6}  {damping:>7.4}  {residual}", k + 1)?;
         }
         write!(f, "\n  time   {}", self.times)
     }

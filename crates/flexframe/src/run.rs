@@ -6,7 +6,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-use advice::Review;
+use advice::{Refusal, Review};
 use frames_rk4::{Initial, Observation, Reached, RestoreError, Simulation, StepError};
 use nalgebra::Vector3;
 use results::{BodyProperties, Expected, FileError, Metadata, PointSample, Results, Resumed, Sample, Units, Writer};
@@ -39,6 +39,16 @@ pub enum RunError {
         results: PathBuf,
         /// Why.
         source: StepError,
+    },
+    /// The motion has come where the model is known to be wrong. The states before it are in the unfinished file.
+    #[error("at time {time:.6}: {refusal} (the states up to there are in {})", results.display())]
+    Refused {
+        /// The unfinished file.
+        results: PathBuf,
+        /// When it was so for the first time.
+        time: f64,
+        /// Why.
+        refusal: Refusal,
     },
     /// The results file cannot be written.
     #[error(transparent)]
@@ -395,6 +405,8 @@ impl<'a> Recorder<'a> {
             self.observation.omega_body = sample.angular_velocity.into();
             self.observation.modal_displacement.clear();
             self.observation.modal_displacement.extend_from_slice(sample.modal_displacement);
+            self.observation.modal_velocity.clear();
+            self.observation.modal_velocity.extend_from_slice(sample.modal_velocity);
             self.review.observe(&self.observation).map_err(BuildError::from)?;
             self.monitor.watch_row(&sample);
             self.peak_strain_energy = self.peak_strain_energy.max(sample.strain_energy);
@@ -419,7 +431,11 @@ impl<'a> Recorder<'a> {
     ) -> Result<RunReport, RunError> {
         let before = simulation.stats().accepted;
         loop {
-            match simulation.advance(STEPS_PER_REPORT).map_err(|source| self.failed(source))? {
+            let review = &mut self.review;
+            let reached = simulation.advance_watched(STEPS_PER_REPORT, |moment| review.look(moment));
+            // A step that fails after the model has come to mean nothing fails for that.
+            self.refuse()?;
+            match reached.map_err(|source| self.failed(source))? {
                 Reached::Row => {
                     self.record(&mut simulation)?;
                     let stop = settings.stop.load(Ordering::Relaxed) && simulation.time() < simulation.end();
@@ -481,6 +497,16 @@ impl<'a> Recorder<'a> {
         self.writer.finish()?;
         report.times.add("motion", started.elapsed());
         Ok(report)
+    }
+
+    /// Refuses to go on where the review has found that the model is wrong, unless the scene wants to.
+    fn refuse(&self) -> Result<(), RunError> {
+        match self.review.stop() {
+            Some((time, refusal)) if self.scene.effects.refuse => {
+                Err(RunError::Refused { results: self.writer.unfinished().to_path_buf(), time, refusal })
+            }
+            _ => Ok(()),
+        }
     }
 
     fn failed(&self, source: StepError) -> RunError {

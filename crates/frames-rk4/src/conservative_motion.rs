@@ -8,6 +8,7 @@ use crate::conservative::{ConservativeBody, ConservativeState, Evaluation, Slow,
 use crate::error::{SetupError, StepError};
 use crate::exponential::{BlockStore, StepBlocks, apply};
 use crate::initial::Initial;
+use crate::moment::Moment;
 use crate::motion::PointShapes;
 use crate::observation::Observation;
 
@@ -108,6 +109,17 @@ impl ConservativeMotion {
     /// Energies at the start of the last step, as its first stage found them.
     pub(crate) fn reckoning(&self) -> Option<&Reckoning> {
         self.reckoning.as_ref()
+    }
+
+    /// Where the rates were last found: at the state under step control, else at the start of the last step.
+    pub(crate) fn moment(&self) -> Moment<'_> {
+        let Evaluation { omega_body, velocity, .. } = &self.stages[0];
+        let (time, q) = match self.first_known {
+            true => (self.state.time, &self.state.modal_displacement),
+            // The states have changed places at the end of the step.
+            false => (self.next.time, &self.start_q),
+        };
+        Moment { time, omega_body: *omega_body, modal_displacement: q, modal_velocity: velocity }
     }
 
     /// Work of the loads and dissipation.

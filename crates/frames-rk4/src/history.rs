@@ -1,6 +1,6 @@
 //! How loads go with time.
 
-mod expression;
+pub(crate) mod expression;
 mod scan;
 mod table;
 

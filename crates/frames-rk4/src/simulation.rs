@@ -14,6 +14,7 @@ use crate::history::History;
 use crate::initial::Initial;
 use crate::load::Load;
 use crate::model::ModalModel;
+use crate::moment::Moment;
 use crate::motion::PointShapes;
 use crate::observation::Observation;
 use crate::paper::PaperScheme;
@@ -351,6 +352,20 @@ impl Simulation {
         }
     }
 
+    fn moment(&self) -> Moment<'_> {
+        let state = match &self.engine {
+            Engine::Paper(scheme) => scheme.state(),
+            Engine::PaperLimit(limit) => limit.state(),
+            Engine::Conservative(motion) => return motion.moment(),
+        };
+        Moment {
+            time: state.time,
+            omega_body: state.omega_body,
+            modal_displacement: &state.modal_displacement[6..],
+            modal_velocity: &state.modal_velocity[6..],
+        }
+    }
+
     /// Work of the loads and dissipation since the beginning.
     fn done(&self) -> [f64; 2] {
         match &self.engine {
@@ -434,6 +449,14 @@ impl Simulation {
     /// # Errors
     /// [`StepError`]; the motion stays where it was before the step that failed, or where its energy was found wrong.
     pub fn advance(&mut self, most_steps: u64) -> Result<Reached, StepError> {
+        self.advance_watched(most_steps, |_| ())
+    }
+
+    /// As [`Self::advance`]; `watch` sees the motion once for each step that is taken, rows or not.
+    ///
+    /// # Errors
+    /// As [`Self::advance`].
+    pub fn advance_watched(&mut self, most_steps: u64, mut watch: impl FnMut(&Moment)) -> Result<Reached, StepError> {
         if self.account.is_empty() {
             self.check_energy()?;
         }
@@ -447,6 +470,7 @@ impl Simulation {
                     if !self.try_step(h, end)? {
                         continue;
                     }
+                    watch(&self.moment());
                     if self.corner_ahead && self.segment_is_done() {
                         self.corner_ahead = false;
                         if let Engine::Conservative(motion) = &mut self.engine {

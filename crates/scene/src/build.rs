@@ -1,5 +1,6 @@
 //! From a scene to a body that can move.
 
+mod backbones;
 mod history;
 mod loads;
 mod meshed;
@@ -10,7 +11,7 @@ mod support;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use advice::{Advice, AdviceError, Case, Refusal};
+use advice::{Advice, AdviceError, Backbone, Case, Refusal};
 use fem_tet10::{AssemblyError, Matrices, Mesh, MeshError, assemble, read_msh};
 use frames_rk4::{
     ConservativeScheme, Initial, Load, Physics, PointShapes, Rows, Setup, SetupError, Simulation, StepControl,
@@ -111,6 +112,8 @@ pub struct Model {
     size: Size,
     /// What the modes leave out of the static answers to the spin (6), where that is to be watched.
     left_out: Vec<f64>,
+    /// Of the modes that may bend the body far.
+    backbones: Vec<Option<Backbone>>,
 }
 
 /// The size of a body and of its modes.
@@ -163,6 +166,7 @@ impl Model {
             size: Size { peaks: self.size.peaks[..flexible].to_vec(), ..self.size },
             advice: self.advice.clone(),
             left_out: self.left_out.clone(),
+            backbones: self.backbones.iter().copied().take(flexible).collect(),
             ..*self
         }
     }
@@ -180,6 +184,11 @@ impl Model {
     /// How many static shapes follow the natural modes.
     pub fn static_shapes(&self) -> usize {
         self.meshed.as_ref().map_or(0, |meshed| meshed.modes.eigenvalues.len() - meshed.modes.natural())
+    }
+
+    /// How the frequency of each of the first modes goes with its amplitude, of those that may bend the body far.
+    pub fn backbones(&self) -> &[Option<Backbone>] {
+        &self.backbones
     }
 
     /// Largest displacement by deformation over the length of the body, bounded above by the sum over the modes.
@@ -208,6 +217,7 @@ impl Model {
             peaks: &self.size.peaks,
             static_compliances: &[],
             centrifugal_remainders: &self.left_out,
+            backbones: &self.backbones,
         }
     }
 

@@ -12,7 +12,7 @@ const EXAMPLE: &str = include_str!("../src/example.toml");
 #[test]
 fn the_whole_example() {
     let scene = Scene::parse(EXAMPLE, "examples/plate.toml").unwrap();
-    assert_eq!(scene.title, "Free plate, 50 N corner pulse");
+    assert_eq!(scene.title, "Free plate, 50 N end pulse");
     let units = &scene.units;
     assert_eq!([&units.length, &units.mass, &units.time], ["mm", "Mg", "s"]);
     assert_eq!(meshed(&scene).mesh, Path::new("examples/../meshes/plate.msh"));

@@ -325,7 +325,7 @@ fn wrong_types() {
         ),
         ("length = \"mm\"", "length = 1", "1,", "units.length", "the number 1", "a string", "put it in quotes"),
         (
-            "title = \"Free plate, 50 N corner pulse\"",
+            "title = \"Free plate, 50 N end pulse\"",
             "title = []",
             "[]",
             "title",
@@ -615,7 +615,7 @@ fn names_and_texts() {
         );
     }
     refused("\"mm\"", "\"m\\u0000m\"", "\"m\\u0000m\"", "units.length", &["found \"m\\u0000m\"", "control"]);
-    refused("\"Free plate, 50 N corner pulse\"", "\"\"\"a\nb\"\"\"", "\"\"\"a", "title", &["on one line"]);
+    refused("\"Free plate, 50 N end pulse\"", "\"\"\"a\nb\"\"\"", "\"\"\"a", "title", &["on one line"]);
     refused("\"../meshes/plate.msh\"", "\"\"", "\"\"", "body.mesh", &["found \"\"", "the name of a mesh file"]);
 }
 

@@ -92,6 +92,7 @@ impl Plate {
             peaks: &self.peaks,
             static_compliances: &[],
             centrifugal_remainders: &[],
+            backbones: &[],
         }
     }
 }

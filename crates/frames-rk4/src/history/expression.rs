@@ -65,6 +65,8 @@ impl Expression {
 
     /// The value at a time; at a corner the one on the side of `inside`.
     pub(crate) fn at(&self, time: f64, inside: f64) -> f64 {
+        #[cfg(test)]
+        EVALUATIONS.with(|count| count.set(count.get() + 1));
         self.law.value(self.beside_corners(time, inside))
     }
 
@@ -98,4 +100,15 @@ impl PartialEq for Expression {
     fn eq(&self, other: &Self) -> bool {
         self.text == other.text && self.corners == other.corners
     }
+}
+
+#[cfg(test)]
+thread_local! {
+    static EVALUATIONS: std::cell::Cell<u64> = const { std::cell::Cell::new(0) };
+}
+
+/// How often expressions have been evaluated on this thread.
+#[cfg(test)]
+pub(crate) fn evaluations() -> u64 {
+    EVALUATIONS.with(std::cell::Cell::get)
 }

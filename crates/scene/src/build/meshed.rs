@@ -2,13 +2,14 @@
 
 use std::time::Instant;
 
-use advice::{Advice, Case, Effect, StaticCompliance, advise, buckling, limits, screen};
+use advice::{Advice, Backbone, Case, Effect, StaticCompliance, advise, buckling, limits, screen};
 use faer::{Col, Mat, MatRef};
-use fem_tet10::{Location, Matrices, Mesh, reduced_geometric_stiffness};
+use fem_tet10::{AssemblyError, Location, Matrices, Mesh, geometric_stiffness_product, reduced_geometric_stiffness};
 use frames_rk4::{Drive, Initial, Load, Physics, PointShapes};
-use modal::{BodyPoint, Modes, ReducedBody, Solver, Support, centrifugal_fields};
+use modal::{BodyPoint, ModalError, Modes, ReducedBody, Solver, Support, centrifugal_fields};
 use nalgebra::Vector3;
 
+use super::backbones::backbones;
 use super::loads::{self, MeshLoad};
 use super::support::support;
 use super::{
@@ -43,7 +44,7 @@ pub(super) fn build(
     let loads = loads::on_mesh(scene, &mesh, &solver.nodal_mass().row_sums())?;
     let parts =
         Parts { scene, body, mesh: &mesh, matrices: &matrices, solver: &solver, support: &support, loads, drive };
-    let Reduced { modes, body, physics, mut loads, size, damping_ratios, advice, left_out } =
+    let Reduced { modes, body, physics, mut loads, size, damping_ratios, advice, left_out, buckles, backbones } =
         parts.reduce(modes, &mut times, &mut progress)?;
 
     let started = Instant::now();
@@ -76,14 +77,16 @@ pub(super) fn build(
         damping_ratios,
         size,
         left_out,
+        backbones,
     };
     let initial = model.initial(scene);
-    model.refusal = match &model.physics.load_stiffness {
-        Some(load_stiffness) => buckling(&model.body, load_stiffness)?,
-        None => None,
-    };
+    model.refusal = buckling(buckles);
     if model.refusal.is_none() {
         model.refusal = limits(&model.case(scene, &initial), &model.physics.effects)?;
+    }
+    // What stresses the body may stiffen it beyond what the estimate knows.
+    if model.refusal.is_none() && model.physics.load_stiffness.is_none() {
+        model.refusal = model.advice.refusal();
     }
     Ok(model)
 }
@@ -111,6 +114,9 @@ struct Reduced {
     damping_ratios: Vec<f64>,
     advice: Advice,
     left_out: Vec<f64>,
+    /// The steady loads over those at which the body buckles; 0 where they do not.
+    buckles: f64,
+    backbones: Vec<Option<Backbone>>,
 }
 
 /// A body in the coordinates of some modes.
@@ -120,6 +126,7 @@ struct Draft {
     size: Size,
     damping_ratios: Vec<f64>,
     initial: Initial,
+    backbones: Vec<Option<Backbone>>,
 }
 
 /// A load, and another force or moment in the place of its own.
@@ -167,6 +174,11 @@ impl Parts<'_> {
             draft.body.stress_stiffness = self.stress_stiffness(&statics, &modes)?;
         }
         let mut advice = advise(&self.case(&draft, Some(&statics)), tolerance)?;
+        let material = materials(self.body);
+        draft.backbones = backbones(scene, self.mesh, &material, self.solver, &modes, &draft.size, &advice)?;
+        if draft.backbones.iter().any(Option::is_some) {
+            advice = advise(&self.case(&draft, Some(&statics)), tolerance)?;
+        }
         let keep = match (scene.modes.flexible, scene.effects.flexibility) {
             (Flexible::Auto { .. }, Choice::On) => advice.keep.max(1).min(draft.body.flexible()),
             (Flexible::Auto { .. }, Choice::Auto) => advice.keep,
@@ -197,7 +209,9 @@ impl Parts<'_> {
                     modes = self.solver.with_static_shapes(modes, answers.as_ref()).map_err(modal(scene))?;
                 }
             }
+            let backbones = std::mem::take(&mut draft.backbones);
             draft = self.draft(&modes)?;
+            draft.backbones = backbones.into_iter().take(keep).collect();
             // What the static shapes carry is to be expected, too.
             advice.deflection = advise(&self.case(&draft, None), tolerance)?.deflection;
             if stiffening {
@@ -208,17 +222,17 @@ impl Parts<'_> {
         if !effects.geometric_stiffening {
             draft.body.stress_stiffness = None;
         }
-        let load_stiffness = self.load_stiffness(statics.of_steady.as_ref(), &modes, &draft, &mut advice)?;
+        let (load_stiffness, buckles) = self.load_stiffness(statics.of_steady.as_ref(), &modes, &draft, &mut advice)?;
         if of_loads || of_spin || !steady.is_empty() {
             times.statics = started.elapsed();
         }
 
-        let Draft { body, loads, size, mut damping_ratios, .. } = draft;
+        let Draft { body, loads, size, mut damping_ratios, backbones, .. } = draft;
         if scene.effects.damping == Choice::Auto && !scene.time.method.is_of_paper() && !advice.is_on(Effect::Damping) {
             damping_ratios.fill(0.0);
         }
         let physics = Physics { effects, drive: self.drive.clone(), load_stiffness };
-        Ok(Reduced { modes, body, physics, loads, size, damping_ratios, advice, left_out })
+        Ok(Reduced { modes, body, physics, loads, size, damping_ratios, advice, left_out, buckles, backbones })
     }
 
     fn draft(&self, modes: &Modes) -> Result<Draft, BuildError> {
@@ -232,6 +246,7 @@ impl Parts<'_> {
             size: Size { length: self.mesh.diagonal(), peaks: modes.shapes.as_ref().col_iter().map(peak).collect() },
             damping_ratios: damping_ratios(self.scene, &body),
             initial: initial(self.scene, body.flexible()),
+            backbones: Vec::new(),
             body,
         })
     }
@@ -251,6 +266,7 @@ impl Parts<'_> {
             peaks: &draft.size.peaks,
             static_compliances: statics.and_then(|s| s.of_loads.as_ref()).map_or(&[], |(_, compliances)| compliances),
             centrifugal_remainders: statics.and_then(|s| s.of_spin.as_ref()).map_or(&[], |(_, remainders)| remainders),
+            backbones: &draft.backbones,
         }
     }
 
@@ -374,19 +390,21 @@ impl Parts<'_> {
         self.loads.iter().filter(steady).filter(|_| draft.body.flexible() > 0).collect()
     }
 
-    /// Stress stiffness of steady loads in the modes; none where it may be left out, which `advice` is told.
+    /// Stress stiffness of steady loads in the modes, none where it may be left out, which `advice` is told; and the loads
+    /// over those at which the body buckles.
     fn load_stiffness(
         &self,
         answer: Option<&Mat<f64>>,
         modes: &Modes,
         draft: &Draft,
         advice: &mut Advice,
-    ) -> Result<Option<Mat<f64>>, BuildError> {
-        let Some(answer) = answer.filter(|_| modes.shapes.ncols() > 0) else { return Ok(None) };
+    ) -> Result<(Option<Mat<f64>>, f64), BuildError> {
+        let Some(answer) = answer.filter(|_| modes.shapes.ncols() > 0) else { return Ok((None, 0.0)) };
         // Gravity stresses no body that falls.
         if answer.norm_max() == 0.0 {
-            return Ok(None);
+            return Ok((None, 0.0));
         }
+        let buckles = self.buckles(answer.as_ref(), modes)?;
         let shapes = modes.shapes.as_ref();
         let stiffness = reduced_geometric_stiffness(self.mesh, &materials(self.body), answer.as_ref(), shapes)?.pop();
         let (value, influence) = stiffness.as_ref().map_or((0.0, 0.0), |k| steady_stiffening(k, draft, self.scene));
@@ -397,8 +415,31 @@ impl Parts<'_> {
             row.why = format!("The stress of steady loads moves the frequency of a mode by up to {shift:.2e} %.");
             (row.value, row.influence, row.on) = (value, influence, influence >= tolerance);
         }
-        Ok(stiffness.filter(|_| choice == Choice::On || influence >= tolerance))
+        Ok((stiffness.filter(|_| choice == Choice::On || influence >= tolerance), buckles))
     }
+
+    /// The loads of a static `answer` over those at which the body buckles, on the whole mesh: the modes that are kept do
+    /// not hold the shape in which it does.
+    fn buckles(&self, answer: MatRef<'_, f64>, modes: &Modes) -> Result<f64, BuildError> {
+        let material = materials(self.body);
+        let product = |fields: MatRef<'_, f64>| -> Result<Mat<f64>, BucklingError> {
+            Ok(geometric_stiffness_product(self.mesh, &material, answer, fields)?)
+        };
+        match self.solver.lowest_buckling_ratio(modes.shapes.as_ref(), product) {
+            Ok(lowest) => Ok(-lowest),
+            Err(BucklingError::Modal(error)) => Err(modal(self.scene)(error)),
+            Err(BucklingError::Assembly(error)) => Err(error.into()),
+        }
+    }
+}
+
+/// What the search for the buckling load may meet.
+#[derive(Debug, thiserror::Error)]
+enum BucklingError {
+    #[error(transparent)]
+    Modal(#[from] ModalError),
+    #[error(transparent)]
+    Assembly(#[from] AssemblyError),
 }
 
 /// Largest |K_kl|/(ω_k ω_l), and its influence: the phase that a mode is out by in the end of the time that it rings.

@@ -47,6 +47,7 @@ pub(super) fn build(scene: &Scene, rigid: &RigidBody) -> Result<Model, BuildErro
             peaks: &[],
             static_compliances: &[],
             centrifugal_remainders: &[],
+            backbones: &[],
         },
         scene.effects.tolerance,
     )?;
@@ -66,6 +67,7 @@ pub(super) fn build(scene: &Scene, rigid: &RigidBody) -> Result<Model, BuildErro
         size,
         body,
         left_out: Vec::new(),
+        backbones: Vec::new(),
     })
 }
 

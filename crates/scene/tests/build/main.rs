@@ -1,6 +1,7 @@
 //! From the text of a scene to the motion of its body, on a bar small enough for closed forms.
 
 mod auto;
+mod backbones;
 mod damping;
 mod histories;
 mod loads;
