@@ -12,7 +12,8 @@
 //!    on, compute that.
 //! 3. [`advise`] gives the table: a [`Row`] for each [`Effect`], and what each mode is worth. Nothing stiffens where
 //!    `deformed_inertia` is off: the stiffness is counted as part of it too.
-//! 4. [`Review`] watches the run and names what has broken, and when.
+//! 4. [`step_estimate()`] gives the row of the step, and which attitude or mode it gets wrong by how much.
+//! 5. [`Review`] watches the run and names what has broken, and when.
 //!
 //! ```
 //! use advice::{Case, Effect, Review, advise, limits, screen};
@@ -36,7 +37,6 @@
 //!     drive: None,
 //!     initial: &initial,
 //!     end: 1.0,
-//!     step: None,
 //!     length: 200.0,
 //!     peaks: &[100.0; 4], // the largest of each column of `modes.shapes`
 //!     static_compliances: &[],
@@ -66,6 +66,7 @@ mod response;
 mod review;
 mod rigid;
 mod row;
+mod step;
 mod table;
 mod tensor;
 
@@ -73,4 +74,5 @@ pub use case::{AdviceError, Case};
 pub use limits::{Refusal, SOFTENED, buckling, limits};
 pub use review::{Broken, Review};
 pub use row::{Effect, Row, Worth};
+pub use step::{ModeError, StepEstimate, step_estimate};
 pub use table::{Advice, advise, screen};

@@ -103,7 +103,16 @@ pub fn advise(scene: &Scene, verify: bool, mut progress: impl FnMut(AdviseProgre
     }
     let scene = &scene;
     let model = Model::build(scene, |p| progress(AdviseProgress::Build(p)))?;
-    let rows = model.advice.rows.iter().map(|row| EffectRow {
+    // A model that is refused has no motion to estimate anything from.
+    let step = match model.refusal {
+        Some(_) => None,
+        None => model.step_estimate(scene).map_err(|source| RunError::Setup {
+            scene: scene.path.clone(),
+            source: Box::new(source),
+        })?,
+    };
+    let step = step.map(|step| step.row(scene.effects.tolerance));
+    let rows = model.advice.rows.iter().chain(&step).map(|row| EffectRow {
         effect: row.effect.name(),
         formula: row.effect.formula(),
         value: row.value,

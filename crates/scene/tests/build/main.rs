@@ -6,6 +6,7 @@ mod histories;
 mod loads;
 mod off;
 mod statics;
+mod step;
 mod stretch;
 mod supports;
 
