@@ -25,6 +25,8 @@ const FEWEST: f64 = 8.0;
 const STEEPEST: f64 = 2.0;
 /// Times 1/(ζ_k ω_k) after which an error that a mode has made is gone.
 const FORGOTTEN: f64 = 3.0;
+/// An error of the way below this is not worth a word.
+const SHOWN: f64 = 1e-9;
 /// Deformation and way, over the radius of gyration, that are rounding.
 const STILL: f64 = 1e-12;
 
@@ -86,7 +88,7 @@ impl StepEstimate {
             return format!("Steps of {step:.1e} fail: {failure}.");
         }
         let mut parts = vec![format!("{attitude:.1e} rad in the attitude")];
-        if *position > 0.0 {
+        if *position > SHOWN {
             parts.push(format!("{position:.1e} of the way of the centre of mass"));
         }
         if !self.modes.is_empty() {
@@ -96,7 +98,7 @@ impl StepEstimate {
             format!("; mode {mode} is the worst, {error:.1e} of its own largest value")
         });
         let from = if *seen < 1.0 {
-            format!(" (carried on from the first {:.1e} of the run; what begins later is not seen)", seen)
+            format!(" (carried on from the first {seen:.1e} of the run; what begins later is not seen)")
         } else {
             String::new()
         };

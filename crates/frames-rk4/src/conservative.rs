@@ -660,7 +660,7 @@ impl ConservativeBody {
     }
 
     /// ½ P²/m + ½ π·J0⁻¹π
-    fn rigid_energy(&self, momentum: &Vector3<f64>, pi: &Vector3<f64>) -> f64 {
+    pub(crate) fn rigid_energy(&self, momentum: &Vector3<f64>, pi: &Vector3<f64>) -> f64 {
         0.5 * (momentum.norm_squared() / self.mass + pi.dot(&(self.inverse_inertia * pi)))
     }
 
@@ -689,6 +689,11 @@ impl ConservativeBody {
     /// ½ qᵀ(Λ + K)q
     fn strain_energy(&self, q: &[f64], e: &Evaluation) -> f64 {
         q.iter().enumerate().map(|(k, q)| self.modal_energy(k, *q, 0.0)).sum::<f64>() + 0.5 * dot(q, &e.stressed)
+    }
+
+    /// Lowest ω_k; infinite without modes.
+    pub(crate) fn lowest_frequency(&self) -> f64 {
+        self.circular_frequencies.iter().copied().fold(f64::INFINITY, f64::min)
     }
 
     /// Largest of ω_k and 2 ζ_k ω_k.

@@ -6,6 +6,7 @@ use crate::account::Reckoning;
 use crate::checkpoint::Tape;
 use crate::conservative::{ConservativeBody, ConservativeState, Evaluation, Slow, get, part};
 use crate::error::{SetupError, StepError};
+use crate::error_size::Sizes;
 use crate::exponential::{BlockStore, StepBlocks, apply};
 use crate::initial::Initial;
 use crate::motion::PointShapes;
@@ -46,8 +47,8 @@ pub struct ConservativeMotion {
     p: Vec<f64>,
     blocks: BlockStore,
     evaluations: u64,
-    /// Largest energy so far, that of the centre's motion left out; not less than what the loads are to give.
-    energy_scale: f64,
+    /// Under step control, the largest sizes so far; the energy not less than what the loads are to give.
+    largest: Sizes,
     /// Energies at the start of the last step; none of a driven body, whose drive may jump.
     reckoning: Option<Reckoning>,
 }
@@ -76,7 +77,7 @@ impl ConservativeMotion {
             p: vec![0.0; nf],
             blocks: BlockStore::default(),
             evaluations: 0,
-            energy_scale: 0.0,
+            largest: Sizes::default(),
             reckoning: None,
             body,
         })
@@ -84,8 +85,8 @@ impl ConservativeMotion {
 
     /// Takes the loads until `end` into account in the scale of errors, for step control, and returns that scale.
     pub(crate) fn expect_loads_until(&mut self, end: f64) -> f64 {
-        self.energy_scale = self.body.energy_of_loads(end);
-        self.energy_scale
+        self.largest.energy = self.body.energy_of_loads(end);
+        self.largest.energy
     }
 
     /// A load or a drive may jump here: the rates at the end of the last step are not those of the next one's beginning.
@@ -135,7 +136,7 @@ impl ConservativeMotion {
         tape.numbers(&mut first.displacement);
         tape.numbers(&mut first.momentum);
         tape.count(&mut self.evaluations);
-        tape.number(&mut self.energy_scale);
+        self.largest.pass(tape);
     }
 
     /// Does one step of length `h` that ends at time `end` (= time + h but for rounding).
@@ -156,9 +157,8 @@ impl ConservativeMotion {
     /// single step would be cheaper, but all answers of third order weigh a pure function of time by Simpson's rule as
     /// the fourth-order one does: such an estimate is blind to loads, and to modes faster than the step.
     ///
-    /// The size of the error is the square root of its energy over the largest energy of the motion so far (about the
-    /// centre of mass; not less than what the impulses of the loads would give the rigid body), or the angle in the
-    /// attitude, whichever is larger.
+    /// The size of the error is the angle in the attitude or the largest of [`Sizes`], whichever is larger; the energy of
+    /// the motion counts as not less than what the impulses of the loads would give the rigid body.
     ///
     /// # Errors
     /// [`StepError`], where even the attempt fails; the state stays.
@@ -167,7 +167,7 @@ impl ConservativeMotion {
         let estimate = self.two_steps(h, end);
         match estimate {
             Ok(estimate) if estimate <= tolerance => {
-                self.energy_scale = self.body.internal_energy(&self.next, &self.ahead).max(self.energy_scale);
+                self.largest = self.body.sizes(&self.next, &self.ahead).max(self.largest);
                 let ConservativeState { time, slow, modal_displacement, modal_momentum, .. } = &self.next;
                 self.reckoning = self.body.reckon(*time, slow, modal_displacement, modal_momentum, &self.ahead);
                 if self.scheme == ConservativeScheme::Rkmk4 {
@@ -207,9 +207,8 @@ impl ConservativeMotion {
         )
         .map_err(|error| error.in_step(time, h))?;
         self.evaluations += 1;
-        let scale = body.internal_energy(next, ahead).max(self.energy_scale);
-        let energy = body.energy_of_difference(next, coarse);
-        let relative = if energy == 0.0 { 0.0 } else { (energy / scale).sqrt() };
+        let motion = body.sizes(next, ahead).max(self.largest);
+        let relative = body.sizes_of_difference(next, coarse).relative_to(motion, body.lowest_frequency());
         let angle = next.attitude.angle_to(&coarse.attitude);
         // A NaN stays one, and is rejected.
         Ok(if relative <= angle { angle } else { relative } / 15.0)

@@ -1,7 +1,7 @@
 //! Rows whose numbers are known.
 
 use advice::{AdviceError, Case, Effect, advise, screen};
-use frames_rk4::{ConservativeScheme, History, Initial, Method};
+use frames_rk4::{History, Initial};
 
 use crate::plate::{CORNER, plate, run, spinning};
 

@@ -9,6 +9,7 @@ mod statics;
 mod step;
 mod stretch;
 mod supports;
+mod tolerance;
 
 use std::path::Path;
 

@@ -3,7 +3,7 @@
 use frames_rk4::{Observation, Reached, Rows, StepControl};
 use scene::{Choice, Model, Scene, Stepping};
 
-fn example(name: &str) -> Scene {
+pub(super) fn example(name: &str) -> Scene {
     Scene::read(format!("{}/../../examples/{name}.toml", env!("CARGO_MANIFEST_DIR"))).unwrap()
 }
 
@@ -15,7 +15,9 @@ fn motion(model: &Model, scene: &Scene, step: f64, interval: f64) -> Vec<Observa
         match simulation.advance(u64::MAX) {
             Ok(Reached::Row) => {
                 let mut row = simulation.observation();
-                simulation.observe(&mut row).unwrap();
+                if simulation.observe(&mut row).is_err() {
+                    return rows;
+                }
                 rows.push(row);
             }
             Ok(Reached::Between) => {}
