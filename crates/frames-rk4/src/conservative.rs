@@ -25,6 +25,7 @@ use rigid_kin::{Attitude, f_inverse, transformation_matrix};
 use crate::account::Reckoning;
 use crate::checkpoint::Tape;
 use crate::error::{RateError, SetupError};
+use crate::error_size::own_coupling;
 use crate::initial::Initial;
 use crate::load::{Acting, Load};
 use crate::motion::CenterOfMass;
@@ -109,6 +110,8 @@ pub struct ConservativeBody {
     pub(crate) g_rows: usize,
     /// Column by column, G_i and N_ij one below another.
     stacked: Vec<f64>,
+    /// Largest N_ij and G_i that couple each mode to itself and its like (nf).
+    pub(crate) own_coupling: Vec<[f64; 2]>,
     /// Stress stiffness of steady loads, column by column (nf × nf), or empty.
     load_stiffness: Vec<f64>,
     loads: Vec<Load>,
@@ -276,6 +279,7 @@ impl ConservativeBody {
             drive: drive.clone(),
             s_rows,
             g_rows,
+            own_coupling: own_coupling(&body.circular_frequencies, &stacked, g_rows),
             stacked,
             load_stiffness: load_stiffness.as_ref().map_or_else(Vec::new, |k| columns(k.as_ref())),
             loads,

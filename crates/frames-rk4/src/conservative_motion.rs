@@ -164,7 +164,7 @@ impl ConservativeMotion {
     /// [`StepError`], where even the attempt fails; the state stays.
     pub(crate) fn controlled_steps(&mut self, h: f64, end: f64, tolerance: f64) -> Result<f64, StepError> {
         self.before.copy_from(&self.state);
-        let estimate = self.two_steps(h, end);
+        let estimate = self.two_steps(h, end, tolerance);
         match estimate {
             Ok(estimate) if estimate <= tolerance => {
                 self.largest = self.body.sizes(&self.next, &self.ahead).max(self.largest);
@@ -187,8 +187,9 @@ impl ConservativeMotion {
         estimate
     }
 
-    /// Goes to `end` by one step of twice `h` and by two of `h`, the latter's end in `next`, and estimates its error.
-    fn two_steps(&mut self, h: f64, end: f64) -> Result<f64, StepError> {
+    /// Goes to `end` by one step of twice `h` and by two of `h`, the latter's end in `next`, and estimates its error. The
+    /// estimate is not below half the `tolerance` where steps of twice the length would leave out more than they may.
+    fn two_steps(&mut self, h: f64, end: f64, tolerance: f64) -> Result<f64, StepError> {
         let time = self.state.time;
         self.attempt(2.0 * h, end)?;
         self.coarse.copy_from(&self.next);
@@ -210,8 +211,11 @@ impl ConservativeMotion {
         let motion = body.sizes(next, ahead).max(self.largest);
         let relative = body.sizes_of_difference(next, coarse).relative_to(motion, body.lowest_frequency());
         let angle = next.attitude.angle_to(&coarse.attitude);
+        let unseen = |step: f64| body.unseen(step, next, ahead).relative_to(motion, body.lowest_frequency());
         // A NaN stays one, and is rejected.
-        Ok(if relative <= angle { angle } else { relative } / 15.0)
+        let estimate = if relative <= angle { angle } else { relative } / 15.0 + unseen(2.0 * h);
+        let keeps_its_length = estimate < 0.5 * tolerance && unseen(4.0 * h) > 2.0 * tolerance;
+        Ok(if keeps_its_length { 0.5 * tolerance } else { estimate })
     }
 
     /// Fills `out` with the motion at the state, and that of `points`.

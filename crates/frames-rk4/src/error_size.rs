@@ -21,6 +21,30 @@ pub(crate) struct Sizes {
 /// Part of the motion, as a ratio of amplitudes, below which a vibration is none.
 const STILL: f64 = 1e-6;
 
+/// Largest turn of a mode in a step, rad, at which half of the step tells what the step gets wrong.
+const SEEN: f64 = 8.0;
+/// Frequencies that differ by less than this part are alike.
+const ALIKE: f64 = 0.2;
+
+/// The largest entries of the N_ij and of the G_i, rows of `stacked`, by which each mode is coupled to itself and to modes of
+/// like frequency.
+pub(crate) fn own_coupling(circular_frequencies: &[f64], stacked: &[f64], g_rows: usize) -> Vec<[f64; 2]> {
+    let nf = circular_frequencies.len();
+    let rows = stacked.len().checked_div(nf).unwrap_or(0);
+    let mut coupling = vec![[0.0_f64; 2]; nf];
+    for (l, column) in stacked.chunks_exact(rows.max(1)).enumerate() {
+        for (row, entry) in column.iter().enumerate() {
+            let k = row % nf;
+            let (a, b) = (circular_frequencies[k], circular_frequencies[l]);
+            if (a - b).abs() <= ALIKE * a {
+                let largest = &mut coupling[k][usize::from(row < g_rows)];
+                *largest = largest.max(entry.abs());
+            }
+        }
+    }
+    coupling
+}
+
 impl Sizes {
     /// The larger of each.
     pub(crate) fn max(self, other: Self) -> Self {
@@ -74,6 +98,27 @@ impl ConservativeBody {
         for (k, (q, p)) in q.zip(p).enumerate() {
             sizes.displacement += q * q;
             sizes.acceleration += self.linear_force(k, q, p).powi(2);
+        }
+        sizes
+    }
+
+    /// What a `step` leaves out unseen: where modes turn by many radians in a step, its stages meet their coupling to the
+    /// spin at any phase, and so do those of half the step, so that the two agree on a motion without it. Counted is what
+    /// the coupling of such a mode to itself and to modes of like frequency does to what swings of it, in the step.
+    pub(crate) fn unseen(&self, step: f64, state: &ConservativeState, e: &Evaluation) -> Sizes {
+        let spin = e.spin.norm();
+        let mut sizes = Sizes::default();
+        for (k, omega) in self.circular_frequencies.iter().enumerate() {
+            if omega * step <= SEEN {
+                continue;
+            }
+            // What follows its load is no swing.
+            let swing = (state.modal_displacement[k] - e.momentum[k] / (omega * omega)).hypot(e.velocity[k] / omega);
+            let [softening, turning] = self.own_coupling[k];
+            let p = 0.5 * step * spin * (spin * softening + omega * turning) * swing;
+            sizes.energy += 0.5 * p * p;
+            sizes.displacement += (p / omega).powi(2);
+            sizes.acceleration += (p * omega).powi(2);
         }
         sizes
     }
