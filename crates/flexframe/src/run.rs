@@ -487,8 +487,8 @@ impl<'a> Recorder<'a> {
         let balances = self.monitor.balances();
         let right_unsummed = balances.energy > OPEN && self.is_right_unsummed(stats.longest);
         let Self { scene, model, .. } = self;
-        let open = (balances.energy > OPEN && !right_unsummed)
-            .then(|| open_balance(balances.energy, model.body.flexible()));
+        let open =
+            (balances.energy > OPEN && !right_unsummed).then(|| open_balance(balances.energy, model.body.flexible()));
         let wrong = self.step.as_ref().filter(|step| step.largest() >= WRONG);
         let last = &self.observation;
         let mut report = RunReport {

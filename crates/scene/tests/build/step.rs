@@ -64,11 +64,15 @@ fn check(scene: &mut Scene, steps: &[f64], reference: f64, above: f64) -> Vec<f6
             return estimate.largest();
         }
         // What is off by more than 1 is lost, and by how much means nothing.
-        let close = |estimated: f64, truth: f64| estimated >= truth.min(1.0) / 3.0 && estimated <= above * truth + 1e-10;
+        let close =
+            |estimated: f64, truth: f64| estimated >= truth.min(1.0) / 3.0 && estimated <= above * truth + 1e-10;
         assert!(close(estimate.attitude, attitude), "{step:e}: {:e} for {attitude:e}", estimate.attitude);
         for (k, (mode, truth)) in estimate.modes.iter().zip(&modes).enumerate() {
             let estimated = mode.error * mode.share;
-            assert!(truth.max(estimated) < 1e-7 || close(estimated, *truth), "{step:e} {k}: {estimated:e} for {truth:e}");
+            assert!(
+                truth.max(estimated) < 1e-7 || close(estimated, *truth),
+                "{step:e} {k}: {estimated:e} for {truth:e}"
+            );
         }
         estimate.largest()
     };
