@@ -1,6 +1,6 @@
 //! What is known before a run.
 
-use frames_rk4::{Drive, Initial, Load, Method};
+use frames_rk4::{Drive, Initial, Load};
 use modal::ReducedBody;
 use nalgebra::Vector3;
 
@@ -23,8 +23,6 @@ pub struct Case<'a> {
     pub initial: &'a Initial,
     /// When it ends.
     pub end: f64,
-    /// Method and length of step, where the step is fixed.
-    pub step: Option<(Method, f64)>,
     /// Largest distance of two points of the body.
     pub length: f64,
     /// Largest displacement of a node in each mode (nf).
@@ -105,7 +103,6 @@ impl Case<'_> {
         }
         let mut positive =
             vec![("the end", self.end), ("the length of the body", self.length), ("the tolerance", tolerance)];
-        positive.extend(self.step.map(|(_, step)| ("the step", step)));
         positive.extend(self.body.circular_frequencies.iter().map(|omega| ("a circular frequency", *omega)));
         for (what, found) in positive {
             if !(found > 0.0 && found.is_finite()) {

@@ -12,7 +12,8 @@
 //!    on, compute that.
 //! 3. [`advise`] gives the table: a [`Row`] for each [`Effect`], and what each mode is worth. Nothing stiffens where
 //!    `deformed_inertia` is off: the stiffness is counted as part of it too.
-//! 4. [`Backbone`]s of the modes that may bend the body by more than [`LARGE`] tell what linear strain makes of that.
+//! 4. [`Backbone`]s of the modes that may bend the body by more than [`LARGE`] tell what linear strain makes of that, and
+//!    [`step_estimate()`] gives the row of the step: which attitude or mode it gets wrong, and by how much.
 //! 5. [`Review`] watches the run and names what has broken, and when.
 //!
 //! ```
@@ -37,7 +38,6 @@
 //!     drive: None,
 //!     initial: &initial,
 //!     end: 1.0,
-//!     step: None,
 //!     length: 200.0,
 //!     peaks: &[100.0; 4], // the largest of each column of `modes.shapes`
 //!     static_compliances: &[],
@@ -71,6 +71,7 @@ mod response;
 mod review;
 mod rigid;
 mod row;
+mod step;
 mod table;
 mod tensor;
 
@@ -79,4 +80,5 @@ pub use case::{AdviceError, Case, StaticCompliance};
 pub use limits::{BUCKLED, Refusal, SOFTENED, buckling, limits};
 pub use review::{Broken, Detuning, Review};
 pub use row::{Effect, Row, Worth};
+pub use step::{ModeError, StepEstimate, step_estimate};
 pub use table::{Advice, advise, screen};

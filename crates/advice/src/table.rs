@@ -16,7 +16,7 @@ use crate::{rigid, tensor};
 /// What to expect of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Advice {
-    /// A row for each effect, in the order of [`Effect::ALL`].
+    /// A row for each effect but [`Effect::Step`], in the order of [`Effect::ALL`].
     pub rows: Vec<Row>,
     /// What each mode is worth (nf).
     pub modes: Vec<Worth>,
@@ -137,7 +137,6 @@ pub fn advise(case: &Case, tolerance: f64) -> Result<Advice, AdviceError> {
         static_correction(case, &spin, &sources, keep, stretch),
         bending(case, &response, deflection),
         foreshortening(deflection),
-        step(case, &spin, &shares),
     ];
     let rows = estimates.into_iter().map(|estimate| estimate.row(tolerance)).collect();
     Ok(Advice {
@@ -417,28 +416,6 @@ fn foreshortening(deflection: f64) -> Estimate {
             "A bar bent that far is shorter by up to {value:.1e} of its length, which linear modes do not show."
         ),
     }
-}
-
-fn step(case: &Case, spin: &Spin, shares: &[f64]) -> Estimate {
-    let effect = Effect::Step;
-    let Some((method, step)) = case.step else {
-        return Estimate { effect, value: 0.0, influence: 0.0, why: "The step follows from the tolerance.".into() };
-    };
-    let omega = &case.body.circular_frequencies;
-    let highest = omega.iter().copied().fold(0.0, f64::max);
-    let value = step * if method.limited_by_modes() { highest } else { spin.largest };
-    // Phase error of RK4: x⁵/120 a step.
-    let order = i32::try_from(method.order()).unwrap_or(1);
-    let late = |rate: f64| (rate * step).powi(order) * rate * case.end / if order == 4 { 120.0 } else { 2.0 };
-    let modes = match method.limited_by_modes() {
-        true => {
-            omega.iter().zip(shares).map(|(w, share)| share.min(1.0) * (w * step).powi(4) * w * case.end / 120.0).sum()
-        }
-        false => 0.0,
-    };
-    let influence = relative(modes.max(late(spin.largest)), 1.0);
-    let why = format!("Steps of {step:.1e} put the motion late by up to {influence:.1e} rad at the end.");
-    Estimate { effect, value, influence, why }
 }
 
 /// Σ m_kl x_k y_l

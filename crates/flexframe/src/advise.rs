@@ -4,7 +4,7 @@ mod verify;
 
 use std::fmt;
 
-use advice::Effect;
+use advice::{Effect, Row};
 use scene::{BuildProgress, Method, Model, Scene};
 use serde::Serialize;
 
@@ -103,7 +103,8 @@ pub fn advise(scene: &Scene, verify: bool, mut progress: impl FnMut(AdviseProgre
     }
     let scene = &scene;
     let model = Model::build(scene, |p| progress(AdviseProgress::Build(p)))?;
-    let rows = model.advice.rows.iter().map(|row| EffectRow {
+    let step = step_row(scene, &model);
+    let rows = model.advice.rows.iter().chain([&step]).map(|row| EffectRow {
         effect: row.effect.name(),
         formula: row.effect.formula(),
         value: row.value,
@@ -145,6 +146,22 @@ pub fn advise(scene: &Scene, verify: bool, mut progress: impl FnMut(AdviseProgre
         }
     }
     Ok(report)
+}
+
+/// What the steps get wrong; a step that no run can start with gets everything wrong.
+fn step_row(scene: &Scene, model: &Model) -> Row {
+    let tolerance = scene.effects.tolerance;
+    match model.step_estimate(scene) {
+        Ok(Some(estimate)) => estimate.row(tolerance),
+        Ok(None) => {
+            let why = "The step follows from the tolerance.".into();
+            Row { effect: Effect::Step, value: 0.0, influence: 0.0, on: false, why }
+        }
+        Err(error) => {
+            let why = format!("No run can start: {error}.");
+            Row { effect: Effect::Step, value: 0.0, influence: 1.0, on: true, why }
+        }
+    }
 }
 
 impl EffectRow {

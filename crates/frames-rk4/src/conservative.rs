@@ -25,6 +25,7 @@ use rigid_kin::{Attitude, f_inverse, transformation_matrix};
 use crate::account::Reckoning;
 use crate::checkpoint::Tape;
 use crate::error::{RateError, SetupError};
+use crate::error_size::own_coupling;
 use crate::initial::Initial;
 use crate::load::{Acting, Load};
 use crate::motion::CenterOfMass;
@@ -109,6 +110,8 @@ pub struct ConservativeBody {
     pub(crate) g_rows: usize,
     /// Column by column, G_i and N_ij one below another.
     stacked: Vec<f64>,
+    /// Largest N_ij and G_i that couple each mode to itself and its like (nf).
+    pub(crate) own_coupling: Vec<[f64; 2]>,
     /// Stress stiffness of steady loads, column by column (nf × nf), or empty.
     load_stiffness: Vec<f64>,
     loads: Vec<Load>,
@@ -276,6 +279,7 @@ impl ConservativeBody {
             drive: drive.clone(),
             s_rows,
             g_rows,
+            own_coupling: own_coupling(&body.circular_frequencies, &stacked, g_rows),
             stacked,
             load_stiffness: load_stiffness.as_ref().map_or_else(Vec::new, |k| columns(k.as_ref())),
             loads,
@@ -660,7 +664,7 @@ impl ConservativeBody {
     }
 
     /// ½ P²/m + ½ π·J0⁻¹π
-    fn rigid_energy(&self, momentum: &Vector3<f64>, pi: &Vector3<f64>) -> f64 {
+    pub(crate) fn rigid_energy(&self, momentum: &Vector3<f64>, pi: &Vector3<f64>) -> f64 {
         0.5 * (momentum.norm_squared() / self.mass + pi.dot(&(self.inverse_inertia * pi)))
     }
 
@@ -689,6 +693,11 @@ impl ConservativeBody {
     /// ½ qᵀ(Λ + K)q
     fn strain_energy(&self, q: &[f64], e: &Evaluation) -> f64 {
         q.iter().enumerate().map(|(k, q)| self.modal_energy(k, *q, 0.0)).sum::<f64>() + 0.5 * dot(q, &e.stressed)
+    }
+
+    /// Lowest ω_k; infinite without modes.
+    pub(crate) fn lowest_frequency(&self) -> f64 {
+        self.circular_frequencies.iter().copied().fold(f64::INFINITY, f64::min)
     }
 
     /// Largest of ω_k and 2 ζ_k ω_k.

@@ -6,6 +6,7 @@ use crate::account::Reckoning;
 use crate::checkpoint::Tape;
 use crate::conservative::{ConservativeBody, ConservativeState, Evaluation, Slow, get, part};
 use crate::error::{SetupError, StepError};
+use crate::error_size::Sizes;
 use crate::exponential::{BlockStore, StepBlocks, apply};
 use crate::initial::Initial;
 use crate::moment::Moment;
@@ -47,8 +48,8 @@ pub struct ConservativeMotion {
     p: Vec<f64>,
     blocks: BlockStore,
     evaluations: u64,
-    /// Largest energy so far, that of the centre's motion left out; not less than what the loads are to give.
-    energy_scale: f64,
+    /// Under step control, the largest sizes so far; the energy not less than what the loads are to give.
+    largest: Sizes,
     /// Energies at the start of the last step; none of a driven body, whose drive may jump.
     reckoning: Option<Reckoning>,
 }
@@ -77,7 +78,7 @@ impl ConservativeMotion {
             p: vec![0.0; nf],
             blocks: BlockStore::default(),
             evaluations: 0,
-            energy_scale: 0.0,
+            largest: Sizes::default(),
             reckoning: None,
             body,
         })
@@ -85,8 +86,8 @@ impl ConservativeMotion {
 
     /// Takes the loads until `end` into account in the scale of errors, for step control, and returns that scale.
     pub(crate) fn expect_loads_until(&mut self, end: f64) -> f64 {
-        self.energy_scale = self.body.energy_of_loads(end);
-        self.energy_scale
+        self.largest.energy = self.body.energy_of_loads(end);
+        self.largest.energy
     }
 
     /// A load or a drive may jump here: the rates at the end of the last step are not those of the next one's beginning.
@@ -147,7 +148,7 @@ impl ConservativeMotion {
         tape.numbers(&mut first.displacement);
         tape.numbers(&mut first.momentum);
         tape.count(&mut self.evaluations);
-        tape.number(&mut self.energy_scale);
+        self.largest.pass(tape);
     }
 
     /// Does one step of length `h` that ends at time `end` (= time + h but for rounding).
@@ -168,18 +169,17 @@ impl ConservativeMotion {
     /// single step would be cheaper, but all answers of third order weigh a pure function of time by Simpson's rule as
     /// the fourth-order one does: such an estimate is blind to loads, and to modes faster than the step.
     ///
-    /// The size of the error is the square root of its energy over the largest energy of the motion so far (about the
-    /// centre of mass; not less than what the impulses of the loads would give the rigid body), or the angle in the
-    /// attitude, whichever is larger.
+    /// The size of the error is the angle in the attitude or the largest of [`Sizes`], whichever is larger; the energy of
+    /// the motion counts as not less than what the impulses of the loads would give the rigid body.
     ///
     /// # Errors
     /// [`StepError`], where even the attempt fails; the state stays.
     pub(crate) fn controlled_steps(&mut self, h: f64, end: f64, tolerance: f64) -> Result<f64, StepError> {
         self.before.copy_from(&self.state);
-        let estimate = self.two_steps(h, end);
+        let estimate = self.two_steps(h, end, tolerance);
         match estimate {
             Ok(estimate) if estimate <= tolerance => {
-                self.energy_scale = self.body.internal_energy(&self.next, &self.ahead).max(self.energy_scale);
+                self.largest = self.body.sizes(&self.next, &self.ahead).max(self.largest);
                 let ConservativeState { time, slow, modal_displacement, modal_momentum, .. } = &self.next;
                 self.reckoning = self.body.reckon(*time, slow, modal_displacement, modal_momentum, &self.ahead);
                 if self.scheme == ConservativeScheme::Rkmk4 {
@@ -199,8 +199,9 @@ impl ConservativeMotion {
         estimate
     }
 
-    /// Goes to `end` by one step of twice `h` and by two of `h`, the latter's end in `next`, and estimates its error.
-    fn two_steps(&mut self, h: f64, end: f64) -> Result<f64, StepError> {
+    /// Goes to `end` by one step of twice `h` and by two of `h`, the latter's end in `next`, and estimates its error. The
+    /// estimate is not below half the `tolerance` where steps of twice the length would leave out more than they may.
+    fn two_steps(&mut self, h: f64, end: f64, tolerance: f64) -> Result<f64, StepError> {
         let time = self.state.time;
         self.attempt(2.0 * h, end)?;
         self.coarse.copy_from(&self.next);
@@ -219,12 +220,14 @@ impl ConservativeMotion {
         )
         .map_err(|error| error.in_step(time, h))?;
         self.evaluations += 1;
-        let scale = body.internal_energy(next, ahead).max(self.energy_scale);
-        let energy = body.energy_of_difference(next, coarse);
-        let relative = if energy == 0.0 { 0.0 } else { (energy / scale).sqrt() };
+        let motion = body.sizes(next, ahead).max(self.largest);
+        let relative = body.sizes_of_difference(next, coarse).relative_to(motion, body.lowest_frequency());
         let angle = next.attitude.angle_to(&coarse.attitude);
+        let unseen = |step: f64| body.unseen(step, next, ahead).relative_to(motion, body.lowest_frequency());
         // A NaN stays one, and is rejected.
-        Ok(if relative <= angle { angle } else { relative } / 15.0)
+        let estimate = if relative <= angle { angle } else { relative } / 15.0 + unseen(2.0 * h);
+        let keeps_its_length = estimate < 0.5 * tolerance && unseen(4.0 * h) > 2.0 * tolerance;
+        Ok(if keeps_its_length { 0.5 * tolerance } else { estimate })
     }
 
     /// Fills `out` with the motion at the state, and that of `points`.

@@ -28,6 +28,7 @@ mod conservative;
 mod conservative_motion;
 mod conservative_observation;
 mod error;
+mod error_size;
 mod exponential;
 mod formula_steps;
 mod history;

@@ -11,7 +11,7 @@ mod support;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use advice::{Advice, AdviceError, Backbone, Case, Refusal};
+use advice::{Advice, AdviceError, Backbone, Case, Refusal, StepEstimate};
 use fem_tet10::{AssemblyError, Matrices, Mesh, MeshError, assemble, read_msh};
 use frames_rk4::{
     ConservativeScheme, Initial, Load, Physics, PointShapes, Rows, Setup, SetupError, Simulation, StepControl,
@@ -212,7 +212,6 @@ impl Model {
             drive: self.physics.drive.as_ref(),
             initial,
             end: scene.time.end,
-            step: step(scene),
             length: self.size.length,
             peaks: &self.size.peaks,
             static_compliances: &[],
@@ -226,11 +225,7 @@ impl Model {
     /// # Errors
     /// [`StartError`], e.g. a step beyond the stability limit.
     pub fn start(&self, scene: &Scene) -> Result<Simulation, StartError> {
-        let rows = match scene.output.rows {
-            scene::Rows::EverySteps(steps) => Rows::EverySteps(steps),
-            scene::Rows::Interval(interval) => Rows::Interval(interval),
-        };
-        self.start_with(scene, method(scene.time.method), control(scene.time.stepping), rows)
+        self.start_with(scene, method(scene.time.method), control(scene.time.stepping), rows(scene))
     }
 
     /// The motion of a scene by another method, in other steps or with other rows than its own.
@@ -247,22 +242,43 @@ impl Model {
         if let Some(refusal) = self.refusal.filter(|_| scene.effects.refuse) {
             return Err(refusal.into());
         }
-        let initial = self.initial(scene);
         let points: Vec<PointShapes> = self.points.iter().map(|(_, point)| point.clone()).collect();
-        let simulation = Simulation::new(&Setup {
+        let initial = self.initial(scene);
+        let setup = Setup { method, control, rows, points: &points, ..self.setup(scene, &initial) };
+        Ok(Simulation::new(&setup)?)
+    }
+
+    /// What the length of the steps gets wrong, estimated; nothing under step control.
+    ///
+    /// # Errors
+    /// As [`Model::start`].
+    pub fn step_estimate(&self, scene: &Scene) -> Result<Option<StepEstimate>, StartError> {
+        Ok(advice::step_estimate(&self.setup(scene, &self.initial(scene)))?)
+    }
+
+    /// The run of a scene, but for its points.
+    fn setup<'a>(&'a self, scene: &Scene, initial: &'a Initial) -> Setup<'a> {
+        Setup {
             body: &self.body,
             damping_ratios: &self.damping_ratios,
             loads: &self.loads,
             physics: &self.physics,
             reference_points: self.reference_points,
-            initial: &initial,
-            method,
-            control,
+            initial,
+            method: method(scene.time.method),
+            control: control(scene.time.stepping),
             end: scene.time.end,
-            rows,
-            points: &points,
-        })?;
-        Ok(simulation)
+            rows: rows(scene),
+            points: &[],
+        }
+    }
+}
+
+/// When a scene is observed.
+fn rows(scene: &Scene) -> Rows {
+    match scene.output.rows {
+        scene::Rows::EverySteps(steps) => Rows::EverySteps(steps),
+        scene::Rows::Interval(interval) => Rows::Interval(interval),
     }
 }
 
@@ -284,14 +300,6 @@ fn initial(scene: &Scene, flexible: usize) -> Initial {
         omega: scene.initial.angular_velocity.into(),
         modal_displacement: padded(&scene.initial.modal_displacement),
         modal_velocity: padded(&scene.initial.modal_velocity),
-    }
-}
-
-/// Method and length of the step, where it is fixed.
-fn step(scene: &Scene) -> Option<(frames_rk4::Method, f64)> {
-    match scene.time.stepping {
-        scene::Stepping::Step(step) => Some((method(scene.time.method), step)),
-        scene::Stepping::Tolerance(_) => None,
     }
 }
 

@@ -87,7 +87,6 @@ impl Plate {
             drive: None,
             initial,
             end,
-            step: None,
             length: self.length,
             peaks: &self.peaks,
             static_compliances: &[],

@@ -14,7 +14,7 @@ use super::loads::{self, MeshLoad};
 use super::support::support;
 use super::{
     BuildError, BuildProgress, BuildTimes, Meshed, Model, Size, damping_ratios, initial, materials, matrices, modal,
-    output_points, physics, read_mesh, refuse, step, timed, too_many_modes, truncated_modes, well_spread,
+    output_points, physics, read_mesh, refuse, timed, too_many_modes, truncated_modes, well_spread,
 };
 use crate::effects::{Choice, Effects};
 use crate::error::SceneError;
@@ -261,7 +261,6 @@ impl Parts<'_> {
             drive: self.drive.as_ref(),
             initial: &draft.initial,
             end: self.scene.time.end,
-            step: step(self.scene),
             length: draft.size.length,
             peaks: &draft.size.peaks,
             static_compliances: statics.and_then(|s| s.of_loads.as_ref()).map_or(&[], |(_, compliances)| compliances),

@@ -7,7 +7,7 @@ use modal::{BodyPoint, ReducedBody, Support};
 use nalgebra::{Matrix3, Vector3};
 
 use super::support::support;
-use super::{BuildError, BuildTimes, Model, Size, initial, loads, modal, output_points, physics, step};
+use super::{BuildError, BuildTimes, Model, Size, initial, loads, modal, output_points, physics};
 use crate::effects::Choice;
 use crate::error::SceneError;
 use crate::scene::{Frame, RigidBody, Scene};
@@ -42,7 +42,6 @@ pub(super) fn build(scene: &Scene, rigid: &RigidBody) -> Result<Model, BuildErro
             drive: drive.as_ref(),
             initial: &initial,
             end: scene.time.end,
-            step: step(scene),
             length: size.length,
             peaks: &[],
             static_compliances: &[],

@@ -20,7 +20,7 @@ impl Check<'_> {
         let method = self.method(formulation, scheme)?;
         let expected = "exactly one of them";
         let cure = "give `step`, the length of a step, e.g. `step = 1e-4`, or `tolerance`, \
-                    the relative error allowed in a step, e.g. `tolerance = 1e-8`";
+                    what the estimated relative errors of all steps may sum to, e.g. `tolerance = 1e-6`";
         let stepping = match (step, tolerance) {
             (Some(_), Some(_)) => {
                 return Err(self.document.place("time.tolerance").refuse(
@@ -77,7 +77,7 @@ impl Check<'_> {
                     tolerance > 0.0 && tolerance < 1.0,
                     "time.tolerance",
                     "a number between 0 and 1, both excluded",
-                    "give the relative error allowed in a step, e.g. `tolerance = 1e-8`",
+                    "give what the estimated relative errors of all steps may sum to, e.g. `tolerance = 1e-6`",
                 );
             }
             Method::Paper | Method::PaperRkmk4 => "a tolerance with the paper's formulation",

@@ -7,8 +7,10 @@ mod histories;
 mod loads;
 mod off;
 mod statics;
+mod step;
 mod stretch;
 mod supports;
+mod tolerance;
 mod turned;
 
 use std::path::Path;
