@@ -14,6 +14,7 @@
 mod animation;
 mod chart;
 mod checkpoint;
+mod description;
 mod error;
 mod font;
 pub mod layout;
@@ -26,6 +27,7 @@ mod sample;
 mod seal;
 mod shapes;
 mod store;
+mod structure;
 mod surface;
 mod ticks;
 mod view;
