@@ -56,7 +56,8 @@ pub struct Metadata {
     pub fingerprint: u32,
     /// The scene file, word for word.
     pub scene_text: String,
-    /// Where the scene file was, so that the files that it names can be found again; empty if nowhere.
+    /// Where the scene file was, so that the files that it names can be found again; empty if nowhere. A path, or one that is
+    /// no UTF-8 as a `file:` URL.
     pub scene_file: String,
     /// The body.
     pub body: BodyProperties,
