@@ -178,7 +178,12 @@ fn a_description_that_does_not_fit_the_file_is_refused() {
         let (outcome, memory) = described(&part, &place, &json);
         let error = outcome.err().unwrap_or_else(|| panic!("accepted: {shown}")).to_string();
         assert!(error.len() < 500, "{error}");
-        // A list of names takes 24 bytes for each of two; a list that grows is held twice for a moment.
+        println!(
+            "{:.1} bytes of memory for a byte: {}",
+            memory as f64 / json.len().max(part.len()) as f64,
+            &shown[..shown.len().min(50)]
+        );
+        // An empty name takes 24 bytes for three; a list that grows is held twice for a moment.
         assert!(memory < 40 * json.len().max(part.len() / 10), "{memory} bytes for {}: {shown}", json.len());
         assert!(Writer::resume(&place).is_err(), "{shown}");
     }
@@ -238,7 +243,7 @@ fn changed_bytes_under_a_right_seal_do_no_harm() {
         }
         let mut bytes = part.clone();
         bytes[at] ^= [1 << (at / 2 % 8), 0xff][at % 2];
-        attempt(bytes, at % 128 == 0);
+        attempt(bytes, at % 512 == 0);
     }
     // Several at once, among them numbers and checkpoints.
     let forgeries: usize = std::env::var("FLEXFRAME_FORGERIES").map_or(1000, |count| count.parse().unwrap());
@@ -249,8 +254,8 @@ fn changed_bytes_under_a_right_seal_do_no_harm() {
             let at = next(&mut state) % if next(&mut state) % 4 == 0 { bytes.len() } else { 4096 };
             bytes[at] = next(&mut state) as u8;
         }
-        attempt(bytes, i % 10 == 0);
+        attempt(bytes, i % 20 == 0);
     }
     println!("{read} read, {refused} refused, {finished} brought to their end");
-    assert!(read > 10_000 && refused > 500 && finished > 100, "{read} {refused} {finished}");
+    assert!(read > 10_000 && refused > 500 && finished > 50, "{read} {refused} {finished}");
 }
