@@ -212,7 +212,7 @@ impl Writer {
         check_length(path, "the checkpoint", expected, checkpoint.len())?;
         self.write_buffers()?;
         let path = &self.place.part;
-        self.serial += 1;
+        self.serial = self.serial.saturating_add(1); // a forged file may have any
         let (rows, sum_of_rows) = (self.rows_written, self.sums.total());
         self.checkpoint = Checkpoint { serial: self.serial, rows, sum_of_rows, state: checkpoint.to_vec() }.words();
         // In turns, so that one of the two is whole at any moment.
