@@ -72,7 +72,8 @@ fn numbers_are_taken_from_the_file_itself_and_written_there() {
     let more = |file: &hdf5::File| {
         file.create_group("points/P2").unwrap().new_attr::<hdf5::types::VarLenUnicode>().create("unit").unwrap();
     };
-    let forgeries: [(&str, &dyn Fn(&hdf5::File)); 8] = [
+    type Forgery<'a> = (&'a str, &'a dyn Fn(&hdf5::File));
+    let forgeries: [Forgery; 8] = [
         ("external storage", &external),
         ("external link", &link),
         ("soft link", &soft),
@@ -251,7 +252,7 @@ fn changed_bytes_under_a_right_seal_do_no_harm() {
     for i in 0..forgeries {
         let mut bytes = part.clone();
         for _ in 0..1 + next(&mut state) % 8 {
-            let at = next(&mut state) % if next(&mut state) % 4 == 0 { bytes.len() } else { 4096 };
+            let at = next(&mut state) % if next(&mut state).is_multiple_of(4) { bytes.len() } else { 4096 };
             bytes[at] = next(&mut state) as u8;
         }
         attempt(bytes, i % 20 == 0);

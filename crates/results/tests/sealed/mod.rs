@@ -57,7 +57,7 @@ pub fn seal(bytes: &mut [u8], left_out: &[Range<usize>]) {
     bytes[32..40].copy_from_slice(&(length as u64).to_le_bytes());
     let mut sum = crc32fast::Hasher::new();
     let mut start = 32;
-    for range in left_out.iter().cloned().chain([length..length]) {
+    for range in left_out.iter().cloned().chain(std::iter::once(length..length)) {
         sum.update(bytes.get(start..range.start).unwrap_or_default());
         start = range.end;
     }
