@@ -38,7 +38,7 @@ pub enum MeshError {
     Version {
         /// The mesh.
         source_name: String,
-        /// The version, or the beginning of the file.
+        /// The version, or that there is none.
         found: String,
     },
     /// The text or bytes do not follow the format.

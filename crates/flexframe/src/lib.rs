@@ -30,4 +30,5 @@ pub mod modes;
 pub mod paper;
 pub mod report;
 pub mod run;
+mod scene_file;
 pub mod surface;

@@ -17,6 +17,7 @@ use serde::Serialize;
 use crate::effects;
 use crate::modes::frequency_unit;
 use crate::report::{BodyReport, MeshReport, Times, quantity};
+use crate::scene_file;
 
 /// A run that could not be done.
 #[derive(Debug, thiserror::Error)]
@@ -238,7 +239,7 @@ pub fn resume(
 ) -> Result<(Scene, Model, RunReport), RunError> {
     let Resumed { writer, results, checkpoint } = Writer::resume(file)?;
     let part = writer.unfinished().to_path_buf();
-    let scene = Scene::parse(&results.metadata.scene_text, &results.metadata.scene_file)?;
+    let scene = Scene::parse(&results.metadata.scene_text, scene_file::to_path(&results.metadata.scene_file))?;
     let model = Model::build(&scene, |p| progress(RunProgress::Build(p)))?;
     let started = Instant::now();
     let mut simulation = start(&scene, &model)?;
@@ -341,7 +342,7 @@ fn metadata(scene: &Scene, model: &Model, at_start: &Simulation) -> Metadata {
         program_version: env!("CARGO_PKG_VERSION").to_owned(),
         fingerprint: fingerprint(at_start),
         scene_text: scene.source.clone(),
-        scene_file: std::path::absolute(&scene.path).unwrap_or_else(|_| scene.path.clone()).display().to_string(),
+        scene_file: scene_file::to_text(&scene.path),
         body: BodyProperties {
             mass: body.mass,
             center_of_mass: body.center_of_mass,

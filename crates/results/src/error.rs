@@ -124,10 +124,43 @@ pub enum FileError {
         /// The value.
         value: f64,
     },
+    /// A constant of the run that is no finite number.
+    #[error("{path}: {quantity} is {value}, expected a finite number; check the scene's numbers and units", path = .path.display())]
+    ConstantNotFinite {
+        /// The results file.
+        path: PathBuf,
+        /// Name of the dataset or attribute that was to hold it.
+        quantity: &'static str,
+        /// The value.
+        value: f64,
+    },
+    /// A symbolic link is where a results file would go.
+    #[error(
+        "{path}: this is a symbolic link (to {target}); results are not written through a link, nor in its place: remove \
+         it, move it away, or choose another folder",
+        path = .path.display(),
+        target = .target.display()
+    )]
+    Link {
+        /// The link.
+        path: PathBuf,
+        /// What it names.
+        target: PathBuf,
+    },
+    /// The name of the folder is not text in UTF-8, which HDF5 wants.
+    #[error(
+        "{path}: HDF5 makes files only in folders whose names are text in UTF-8; choose another folder, or go into this one \
+         and name the files from there",
+        path = .path.display()
+    )]
+    NameNotUtf8 {
+        /// The folder.
+        path: PathBuf,
+    },
     /// A file to be read that does not begin as results files do.
     #[error(
-        "{path}: this is no results file of flexframe, or its beginning is damaged; check the name (a file that another \
-         program has written anew, such as h5repack, is not read)",
+        "{path}: this is no results file of this version of flexframe, or its beginning is damaged; check the name (a file \
+         that another program has written anew, such as h5repack, is not read)",
         path = .path.display()
     )]
     NoSeal {
@@ -145,56 +178,6 @@ pub enum FileError {
         path: PathBuf,
         /// What was found, and what was expected.
         what: String,
-    },
-    /// A dataset or group of the contract is not in the file.
-    #[error("{path}: there is no {dataset}; is it a results file of flexframe?", path = .path.display())]
-    MissingDataset {
-        /// The results file.
-        path: PathBuf,
-        /// The dataset or group that was looked for.
-        dataset: String,
-    },
-    /// An attribute of the contract is not in the file.
-    #[error("{path}: there is no attribute `{attribute}`; is it a results file of flexframe?", path = .path.display())]
-    MissingAttribute {
-        /// The results file.
-        path: PathBuf,
-        /// The attribute that was looked for.
-        attribute: String,
-    },
-    /// A text is not in UTF-8.
-    #[error("{path}: the attribute `{attribute}` is not text in UTF-8; is the file damaged?", path = .path.display())]
-    NotUtf8 {
-        /// The results file.
-        path: PathBuf,
-        /// The attribute.
-        attribute: String,
-    },
-    /// The histories claim more numbers than the file can hold.
-    #[error(
-        "{path}: the datasets claim {claimed} bytes of numbers, more than the {length} bytes of the file; it is damaged, \
-         or was compressed (h5repack without a filter undoes that)",
-        path = .path.display()
-    )]
-    ClaimsTooMuch {
-        /// The results file.
-        path: PathBuf,
-        /// Bytes that the shapes of the datasets come to.
-        claimed: u128,
-        /// Bytes of the file.
-        length: u64,
-    },
-    /// A dataset has a shape other than the contract's.
-    #[error("{path}: {dataset} has the shape {found:?} where {expected} is expected", path = .path.display())]
-    WrongShape {
-        /// The results file.
-        path: PathBuf,
-        /// Name of the dataset.
-        dataset: String,
-        /// The shape expected, `T` standing for any number of rows.
-        expected: String,
-        /// The shape found.
-        found: Vec<usize>,
     },
 }
 
@@ -240,6 +223,7 @@ impl FileError {
             }
             PermissionDenied | ReadOnlyFilesystem => "choose a folder that you may write to",
             NotFound | NotADirectory => "check the name of the folder",
+            OutOfMemory => "end other programs, or take a machine with more memory",
             WouldBlock => "another process has the file open; wait for it or stop it",
             _ => "check the file and its disk",
         };

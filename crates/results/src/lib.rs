@@ -10,6 +10,7 @@
 #![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable))]
 
 mod checkpoint;
+mod description;
 mod error;
 pub mod layout;
 mod metadata;
@@ -18,6 +19,7 @@ mod reader;
 mod sample;
 mod seal;
 mod store;
+mod structure;
 mod writer;
 
 #[cfg(test)]

@@ -128,8 +128,8 @@ pub struct Place {
     pub column: usize,
     /// Path of keys, e.g. `loads[0].history.duration`; empty if unknown.
     pub key: String,
-    /// The line, or the piece of a very long one around the column.
-    excerpt: String,
+    /// The line, or the piece of a very long one around the column; `None` if it is not to be shown.
+    excerpt: Option<String>,
     /// What is meant, in characters of the excerpt.
     mark: Range<usize>,
 }
@@ -154,9 +154,15 @@ impl Place {
             line: 1 + before.matches('\n').count(),
             column: 1 + column,
             key,
-            excerpt: line.iter().skip(first).take(SHOWN).map(printable).collect(),
+            excerpt: Some(line.iter().skip(first).take(SHOWN).map(printable).collect()),
             mark: column - first..(column + width - first).min(SHOWN.max(column - first + 1)),
         }
+    }
+
+    /// The line of a file that a scene names, none of which is shown: what it names may be any file of the user's, such as
+    /// one with passwords, and the scene from elsewhere.
+    pub(crate) fn unseen(file: &Path, line: usize, key: String) -> Self {
+        Self { file: file.to_owned(), line, column: 1, key, excerpt: None, mark: 0..0 }
     }
 
     /// The refusal of the value at this place.
@@ -169,13 +175,11 @@ impl Place {
     fn show(&self, headline: &str, cure: &str) -> String {
         let line = self.line.to_string();
         let gutter = " ".repeat(line.len());
+        let Some(excerpt) = &self.excerpt else { return format!("{self}: {headline}\n{gutter} = {cure}") };
         let indent = " ".repeat(self.mark.start);
         let carets = "^".repeat(self.mark.len());
         let cure = cure.replace('\n', &format!("\n{gutter}   "));
-        format!(
-            "{self}: {headline}\n{gutter} |\n{line} | {}\n{gutter} | {indent}{carets}\n{gutter} = {cure}",
-            self.excerpt
-        )
+        format!("{self}: {headline}\n{gutter} |\n{line} | {excerpt}\n{gutter} | {indent}{carets}\n{gutter} = {cure}",)
     }
 }
 
