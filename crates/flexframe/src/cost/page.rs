@@ -37,7 +37,8 @@ pub fn accuracy_page(
     }
     let spin = match fastest(&reports) {
         Some((scene, report)) if report.initial_spin > 0.0 => {
-            spin_rates(scene, &Model::build(scene, |p| progress(CostProgress::Build(p)))?, patience)
+            let model = Model::build(scene, |p| progress(CostProgress::Build(p)))?;
+            spin_rates(scene, &model, CostSettings::with_patience(patience).budget(20).time)
         }
         _ => Vec::new(),
     };
@@ -99,7 +100,7 @@ fn write_page(
          and of the differences in modal coordinates and in displacement, velocity and acceleration of the scene's \
          points, each relative to its largest value. The **reference** is the exponential scheme on the conservative form with steps \
          halved until halving no longer changes it; nothing is ranked below three times its own error (≤). **Time** is \
-         that of the loop on one core: the shortest of at least three runs after one that warms up (the slowest run of \
+         that of the loop on one core: the shortest of three runs or more after one that warms up (the slowest run of \
          a series took up to {worst_spread:.1} times as long). An evaluation is one of the rates of all modes.\n"
     )?;
 

@@ -35,7 +35,8 @@ impl Watch {
             let reached = simulation.advance(STEPS_PER_LOOK)?;
             let stats = simulation.stats();
             let tried = stats.accepted + stats.rejected;
-            if reached != Reached::End && tried - self.looked >= STEPS_PER_LOOK {
+            // What has come to its end need not be stopped.
+            if simulation.time() < simulation.end() && tried - self.looked >= STEPS_PER_LOOK {
                 self.looked = tried;
                 if self.started.elapsed() >= self.patience {
                     let reached = simulation.time() / simulation.end();
@@ -101,15 +102,28 @@ pub(super) struct Timing {
 }
 
 impl Timing {
-    /// Runs the simulation from its beginning at least three times, and so often that it takes `at_least` in all. None of
-    /// the runs may take longer than the patience.
+    /// Runs the simulation from its beginning at least three times, and so often that it takes `at_least` in all. A run that
+    /// takes longer than the patience is the last, and does not count.
+    ///
+    /// # Errors
+    /// That of the first run.
     pub(super) fn of(simulation: &Simulation, at_least: Duration, patience: Duration) -> Result<Self, RunFailure> {
         let mut timing = Self { shortest: Duration::MAX, longest: Duration::ZERO, repeats: 0 };
         let mut sum = Duration::ZERO;
         while timing.repeats < 3 || (sum < at_least && timing.repeats < 1000) {
             let mut simulation = simulation.clone();
             let mut watch = Watch::new(patience);
-            while watch.advance(&mut simulation)? != Reached::End {}
+            let ended = loop {
+                match watch.advance(&mut simulation) {
+                    Ok(Reached::Row | Reached::Between) => {}
+                    Ok(Reached::End) => break Ok(()),
+                    Err(failure) => break Err(failure),
+                }
+            };
+            match ended {
+                Err(RunFailure::OutOfPatience { .. }) if timing.repeats > 0 => break,
+                ended => ended?,
+            }
             let time = watch.started.elapsed();
             timing.shortest = timing.shortest.min(time);
             timing.longest = timing.longest.max(time);
