@@ -212,7 +212,9 @@ fn signals_at_once_are_one_request_to_stop() {
     std::fs::write(&scene.path, text).unwrap();
     let child = scene.start(scene.run("burst"), "burst");
     let id = child.id();
-    let burst = format!("for i in 1 2 3 4 5 6 7 8 9 10; do kill -INT {id}; kill -TERM {id}; done 2>/dev/null; true");
+    // Until the motion has begun, a signal ends the program at once.
+    std::thread::sleep(Duration::from_millis(200));
+    let burst = format!("kill -TERM {id}; for i in 1 2 3 4 5 6 7 8 9 10; do kill -INT {id}; done 2>/dev/null; true");
     let mut kill = Command::new("bash");
     kill.args(["-c", &burst]);
     succeed(kill);

@@ -70,7 +70,7 @@ pub struct Row {
 #[serde(rename_all = "snake_case")]
 pub enum Outcome {
     /// It came to its end.
-    Ran(Measured),
+    Ran(Box<Measured>),
     /// It failed, and why.
     Failed(String),
     /// It was stopped: it takes longer than the patience.
@@ -161,7 +161,7 @@ impl Judge<'_> {
     /// Runs the motion once for its errors, warming up, and then again and again for the time.
     pub(super) fn measure(&self, case: &Case<'_>, method: Method, control: StepControl) -> Outcome {
         match self.try_measure(case, method, control) {
-            Ok(measured) => Outcome::Ran(measured),
+            Ok(measured) => Outcome::Ran(measured.into()),
             Err(RunFailure::OutOfPatience { patience, reached }) => {
                 Outcome::OutOfPatience(Stopped { patience, reached })
             }
@@ -403,7 +403,7 @@ mod tests {
             spread: 1.0,
             repeats: 3,
         };
-        Row::new(StepControl::Fixed(step), Outcome::Ran(measured), false)
+        Row::new(StepControl::Fixed(step), Outcome::Ran(measured.into()), false)
     }
 
     #[test]

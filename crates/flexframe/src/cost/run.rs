@@ -75,11 +75,8 @@ impl Trajectory {
             Ok(())
         };
         observe(&mut simulation)?;
-        loop {
-            match watch.advance(&mut simulation)? {
-                Reached::Row | Reached::Between => observe(&mut simulation)?,
-                Reached::End => break,
-            }
+        while watch.advance(&mut simulation)? != Reached::End {
+            observe(&mut simulation)?;
         }
         let balances = monitor.balances();
         Ok(Self { observations, stats: simulation.stats(), balances, time: watch.started.elapsed() })
