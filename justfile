@@ -31,7 +31,7 @@ msrv:
     here=$(rustc --version | cut -d ' ' -f 2)
     if ! is_stated "$here"; then
         installed=$(rustup toolchain list 2>/dev/null | cut -d - -f 1 || true)
-        RUSTUP_TOOLCHAIN=$(for version in $installed; do is_stated "$version" && echo "$version"; done | tail -1)
+        RUSTUP_TOOLCHAIN=$(for version in $installed; do if is_stated "$version"; then echo "$version"; fi; done | tail -1)
         if [ -z "$RUSTUP_TOOLCHAIN" ]; then
             echo "msrv: Cargo.toml promises Rust $stated, but the compiler here is $here and rustup has no $stated:" \
                 "install it (rustup toolchain install $stated), or promise in rust-version what is built with" >&2
