@@ -25,6 +25,8 @@ pub mod animation;
 pub mod campbell;
 pub mod cost;
 mod effects;
+pub mod failure;
+mod json;
 pub mod mode_shapes;
 pub mod modes;
 pub mod paper;

@@ -1,7 +1,11 @@
 //! The command line.
 
 mod cli;
+mod cli_error;
+mod output;
 mod progress;
+mod signals;
+mod threads;
 
 use std::process::ExitCode;
 use std::sync::Arc;

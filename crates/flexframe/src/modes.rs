@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use scene::{BuildError, BuildProgress, Choice, Flexible, Model, Scene};
+use scene::{Body, BuildError, BuildProgress, Choice, Flexible, Meshed, Model, Scene, SceneError};
 use serde::Serialize;
 
 use crate::report::{BodyReport, MeshReport, Times, quantity};
@@ -42,6 +42,25 @@ pub fn modes(scene: &Scene, progress: impl FnMut(BuildProgress)) -> Result<(Mode
         times: Times::of_model(&model),
     };
     Ok((model, report))
+}
+
+/// The mesh and the modes of a body that has flexible ones.
+///
+/// # Errors
+/// The refusal of a body that has none, at the key that says so.
+pub(crate) fn require_flexible<'a>(scene: &Scene, model: &'a Model) -> Result<&'a Meshed, SceneError> {
+    if let Some(meshed) = model.meshed.as_ref().filter(|_| model.body.flexible() > 0) {
+        return Ok(meshed);
+    }
+    let (key, cure) = match scene.body {
+        Body::Rigid(_) => ("body.rigid", "give the body a mesh, and `flexible` in [modes]"),
+        Body::Meshed(_) if scene.effects.flexibility == Choice::Off => {
+            ("effects.flexibility", "remove it, so that the body deforms")
+        }
+        Body::Meshed(_) => ("modes.flexible", "keep flexible modes"),
+    };
+    let found = "a body without flexible modes, which has no natural frequencies";
+    Err(scene.refuse(key, found, "one flexible mode or more", cure))
 }
 
 /// "Hz" where time is in seconds.

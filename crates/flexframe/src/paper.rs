@@ -9,13 +9,14 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use ::figures::FigureError;
 use results::{FileError, Results};
 use rigid_kin::{RigidBodyError, StepError};
 use scene::{BuildError, Scene};
 use serde::Serialize;
 use whole_file::write_whole;
 
+use crate::mode_shapes::ShapesError;
+use crate::json;
 use crate::run::{RunError, RunProgress, RunReport, RunSettings, run};
 use comparison::Comparison;
 
@@ -36,7 +37,7 @@ pub enum PaperError {
     File(#[from] FileError),
     /// A figure could not be drawn.
     #[error(transparent)]
-    Figure(#[from] FigureError),
+    Figure(#[from] ShapesError),
     /// The rigid plate has no mass or inertia.
     #[error(transparent)]
     RigidBody(#[from] RigidBodyError),
@@ -74,8 +75,10 @@ pub struct PaperReport {
     #[serde(flatten)]
     pub run: RunReport,
     /// The page.
+    #[serde(serialize_with = "json::path")]
     pub report: PathBuf,
     /// The figures, SVG and PNG.
+    #[serde(serialize_with = "json::paths")]
     pub figures: Vec<PathBuf>,
     /// The numbers on the page.
     pub comparison: Comparison,

@@ -15,6 +15,7 @@ use scene::{BuildError, BuildProgress, Model, Rows, Scene, SceneError, StartErro
 use serde::Serialize;
 
 use crate::effects;
+use crate::json;
 use crate::modes::frequency_unit;
 use crate::report::{BodyReport, MeshReport, Times, quantity};
 use crate::scene_file;
@@ -111,6 +112,17 @@ pub enum RunFailure {
     /// A step failed.
     #[error(transparent)]
     Step(#[from] StepError),
+    /// It was stopped when the time that it may take was used up.
+    #[error(
+        "stopped at {:.2} % of the motion, when its patience of {patience} s was used up (more with --patience)",
+        100.0 * reached
+    )]
+    OutOfPatience {
+        /// Time of computing that it was allowed, seconds.
+        patience: f64,
+        /// Part of the motion that it came to, 0 to 1.
+        reached: f64,
+    },
 }
 
 /// How far a run has come.
@@ -130,6 +142,7 @@ pub struct RunReport {
     /// Labels of length, mass and time.
     pub units: [String; 3],
     /// The results file.
+    #[serde(serialize_with = "json::path")]
     pub results: PathBuf,
     /// Rows in it.
     pub rows: u64,
@@ -144,10 +157,12 @@ pub struct RunReport {
     /// Steps that step control tried in vain.
     pub rejected_steps: u64,
     /// Lengths of the shortest and the longest step.
+    #[serde(serialize_with = "json::numbers")]
     pub step_lengths: [f64; 2],
     /// Evaluations of the rates.
     pub evaluations: u64,
     /// Steps per second of computing, writing included.
+    #[serde(serialize_with = "json::number")]
     pub steps_per_second: f64,
     /// The finite-element model.
     pub mesh: Option<MeshReport>,
@@ -158,8 +173,10 @@ pub struct RunReport {
     /// Displacement of the centre of mass, global.
     pub moved: [f64; 3],
     /// Largest strain energy among the rows.
+    #[serde(serialize_with = "json::number")]
     pub peak_strain_energy: f64,
     /// Kinetic plus strain energy of the last row.
+    #[serde(serialize_with = "json::number")]
     pub final_energy: f64,
     /// How far the balances are from closed.
     pub balances: Balances,
@@ -179,10 +196,13 @@ pub struct RunReport {
 #[derive(Debug, Clone, Copy, Default, Serialize)]
 pub struct Balances {
     /// Energy − work of the loads + dissipation.
+    #[serde(serialize_with = "json::number")]
     pub energy: f64,
     /// Linear momentum less the impulse of the loads.
+    #[serde(serialize_with = "json::number")]
     pub linear_momentum: f64,
     /// Angular momentum about the centre of mass less the angular impulse of the loads.
+    #[serde(serialize_with = "json::number")]
     pub angular_momentum: f64,
 }
 

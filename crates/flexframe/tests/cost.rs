@@ -187,6 +187,52 @@ fn a_target_beyond_reach_is_said_to_be() {
 }
 
 #[test]
+fn a_run_that_takes_longer_than_the_patience_is_stopped_and_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let patience = Duration::from_millis(20);
+    let settings = CostSettings { patience, timed_for: Duration::from_millis(1), ..settings(1_000_000, TARGET) };
+    // Five million steps, which take some seconds.
+    let report = price_list(&scene("step = 1e-8"), folder.path(), settings, |_| ()).unwrap();
+    let rows: Vec<&Row> = report.lines.iter().flat_map(|line| &line.rows).collect();
+    let own = rows.iter().find(|row| row.of_scene).unwrap();
+    let Outcome::OutOfPatience(stopped) = &own.outcome else { panic!("{own:?}") };
+    assert!(stopped.patience == 0.02 && stopped.reached < 0.5, "{stopped:?}");
+    // None of the others took longer, those under step control neither: a thousand steps may go by between two looks.
+    for run in rows.iter().filter_map(|row| row.measured()) {
+        let of_a_thousand_steps = 1000.0 / (run.steps + run.rejected) as f64 * run.seconds;
+        assert!(run.seconds <= 0.02 + of_a_thousand_steps, "{run:?}");
+    }
+    let answer = report.answer.as_ref().unwrap().to_string();
+    for words in
+        ["not waited for", "step 1e-8 (the scene's own setting): stopped at", "patience of 0.02 s", "--patience"]
+    {
+        assert!(answer.contains(words), "{words} in {answer}");
+    }
+    let table = CostReport { answer: None, ..report }.to_string();
+    assert!(table.contains("patience of 0.02 s was used up"), "{table}");
+    let csv = std::fs::read_to_string(folder.path().join("cost.csv")).unwrap();
+    assert!(csv.lines().any(|line| fields(line).last().unwrap().contains("patience of 0.02 s")));
+}
+
+#[test]
+fn the_worst_quantity_of_the_modes_is_named_with_the_others_beside_it() {
+    let report = &list().0;
+    let errors = report.modes[1].errors.unwrap();
+    // The half-sine strikes the point: its acceleration needs the most modes.
+    assert!(errors.largest() == errors.acceleration.unwrap() && errors.displacement < errors.velocity, "{errors:?}");
+    let words = report.answer.as_ref().unwrap().modes.as_ref().unwrap();
+    for expected in [
+        format!("with 4 of them the acceleration of the points is {:.1e} off", errors.largest()),
+        format!("the displacement of the points {:.1e}", errors.displacement.unwrap()),
+        format!("the velocity of the points {:.1e}", errors.velocity.unwrap()),
+    ] {
+        assert!(words.contains(&expected), "{expected} in {words}");
+    }
+    // With and without a target.
+    assert!(CostReport { answer: None, ..report.clone() }.to_string().contains("the acceleration of the points is"));
+}
+
+#[test]
 fn modes_left_out_are_an_error_of_their_own() {
     let modes = &list().0.modes;
     let counts: Vec<usize> = modes.iter().map(|row| row.flexible).collect();
@@ -227,6 +273,7 @@ fn the_table_for_programs_is_well_formed() {
                 assert!(record[column("failure")].is_empty());
             }
             Outcome::Failed(failure) => assert_eq!(&record[column("failure")], failure),
+            Outcome::OutOfPatience(stopped) => assert_eq!(record[column("failure")], stopped.to_string()),
         }
     }
 }
@@ -291,7 +338,7 @@ fn the_page_has_its_tables_and_its_pictures() {
     let folder = tempfile::tempdir().unwrap();
     scene_file(folder.path());
     std::fs::create_dir(folder.path().join("docs")).unwrap();
-    let output = flexframe(folder.path(), &["accuracy", "ring.toml", "-o", "docs/accuracy.md", "--patience", "0.005"]);
+    let output = flexframe(folder.path(), &["accuracy", "ring.toml", "-o", "docs/accuracy.md", "--patience", "0.02"]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let page = std::fs::read_to_string(folder.path().join("docs/accuracy.md")).unwrap();
     for words in ["# What accuracy costs", "## Ring", "**The paper's scheme.**", "What the modes cost", "ω²Δt/2"] {

@@ -83,10 +83,19 @@ fn succeed(command: Command) {
     assert!(output.status.success(), "{}", message(&output));
 }
 
-/// What is said on standard error by a command that is to fail.
+/// What is said on standard error by a command that is to fail with bad input.
 fn failure(command: Command) -> String {
+    failure_with(3, command)
+}
+
+/// What is said on standard error by a command that is to fail because of a file.
+fn io_failure(command: Command) -> String {
+    failure_with(6, command)
+}
+
+fn failure_with(code: i32, command: Command) -> String {
     let output = spawn(command).wait_with_output().unwrap();
-    assert_eq!(output.status.code(), Some(1), "{}", message(&output));
+    assert_eq!(output.status.code(), Some(code), "{}", message(&output));
     assert!(output.stdout.is_empty());
     message(&output)
 }
@@ -257,6 +266,27 @@ fn control_c_stops_at_a_row_and_says_how_to_go_on() {
     assert_has(&failure(again), &["complete", "nothing to resume"]);
 }
 
+/// A terminal, a shell and a job scheduler may send several signals for one request.
+#[test]
+fn signals_at_once_are_one_request_to_stop() {
+    let scene = Scene::new("1e-9");
+    let text = std::fs::read_to_string(&scene.path).unwrap();
+    // No row comes soon, and many modes make the steps between two looks at the request long.
+    let text = text.replace("interval = 1e-4", "interval = 0.2").replace("flexible = 2", "flexible = 60");
+    std::fs::write(&scene.path, text).unwrap();
+    let child = scene.start(scene.run("burst"), "burst");
+    let id = child.id();
+    // Until the motion has begun, a signal ends the program at once.
+    std::thread::sleep(Duration::from_millis(200));
+    let burst = format!("kill -TERM {id}; for i in 1 2 3 4 5 6 7 8 9 10; do kill -INT {id}; done 2>/dev/null; true");
+    let mut kill = Command::new("bash");
+    kill.args(["-c", &burst]);
+    succeed(kill);
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(130), "{}", message(&output));
+    assert_has(&message(&output), &["stopped at time", "flexframe resume", "long.part.h5"]);
+}
+
 #[test]
 fn what_is_there_is_not_lost_unasked() {
     let scene = Scene::new("3e-7");
@@ -270,12 +300,12 @@ fn what_is_there_is_not_lost_unasked() {
         },
         scene.resume("out"),
     ] {
-        assert_has(&failure(command), &["long.part.h5", "another run is writing this file"]);
+        assert_has(&io_failure(command), &["long.part.h5", "another run is writing this file"]);
     }
     let mut first = first;
     first.kill().unwrap();
     first.wait().unwrap();
-    assert_has(&failure(scene.run("out")), &["unfinished run", "flexframe resume", "--overwrite"]);
+    assert_has(&io_failure(scene.run("out")), &["unfinished run", "flexframe resume", "--overwrite"]);
     succeed(scene.resume("out"));
     let whole = std::fs::read(scene.results("out")).unwrap();
     // A complete file stays until the new one is complete.
@@ -287,9 +317,9 @@ fn what_is_there_is_not_lost_unasked() {
     // What is none of ours stays.
     std::fs::create_dir(scene.folder.path().join("other")).unwrap();
     std::fs::write(scene.results("other"), "a diary").unwrap();
-    assert_has(&failure(scene.run("other")), &["long.h5", "no results file of flexframe", "--overwrite"]);
+    assert_has(&io_failure(scene.run("other")), &["long.h5", "no results file of flexframe", "--overwrite"]);
     assert_eq!(std::fs::read(scene.results("other")).unwrap(), b"a diary");
-    assert_has(&failure(scene.resume("nowhere")), &["no unfinished run", "long.part.h5"]);
+    assert_has(&io_failure(scene.resume("nowhere")), &["no unfinished run", "long.part.h5"]);
 }
 
 #[test]
@@ -378,12 +408,12 @@ fn no_room_and_no_folder_are_said_plainly() {
     let mut limited = Command::new("sh");
     limited.args(["-c", "ulimit -f 1000; exec \"$@\"", "sh", env!("CARGO_BIN_EXE_flexframe"), "run"]);
     limited.arg(&scene.path).arg("-o").arg(scene.folder.path().join("full"));
-    assert_has(&failure(limited), &["long.part.h5", "File too large", "make room"]);
+    assert_has(&io_failure(limited), &["long.part.h5", "File too large", "make room"]);
     // Nothing half-written is left.
     assert_eq!(std::fs::read_dir(scene.folder.path().join("full")).unwrap().count(), 0);
 
     std::fs::write(scene.folder.path().join("file"), "").unwrap();
-    assert_has(&failure(scene.run("file")), &["cannot make the output folder"]);
+    assert_has(&io_failure(scene.run("file")), &["cannot make the output folder"]);
 
     let locked = scene.folder.path().join("locked");
     std::fs::create_dir(&locked).unwrap();
@@ -392,6 +422,6 @@ fn no_room_and_no_folder_are_said_plainly() {
     std::fs::set_permissions(&locked, permissions).unwrap();
     // The superuser writes everywhere.
     if std::fs::write(locked.join("probe"), "").is_err() {
-        assert_has(&failure(scene.run("locked")), &["long.h5", "Permission denied", "choose a folder"]);
+        assert_has(&io_failure(scene.run("locked")), &["long.h5", "Permission denied", "choose a folder"]);
     }
 }

@@ -182,6 +182,36 @@ pub enum FileError {
 }
 
 impl FileError {
+    /// The file.
+    pub fn path(&self) -> &Path {
+        match self {
+            Self::Hdf5 { path, .. }
+            | Self::System { path, .. }
+            | Self::Busy { path, .. }
+            | Self::Unfinished { path, .. }
+            | Self::NotResults { path, .. }
+            | Self::Complete { path, .. }
+            | Self::NothingToResume { path, .. }
+            | Self::PointName { path, .. }
+            | Self::NulInText { path, .. }
+            | Self::WrongLength { path, .. }
+            | Self::NotFinite { path, .. }
+            | Self::NoSeal { path, .. }
+            | Self::Damaged { path, .. }
+            | Self::ConstantNotFinite { path, .. }
+            | Self::Link { path, .. }
+            | Self::NameNotUtf8 { path, .. } => path,
+        }
+    }
+
+    /// What helps, where the system has refused something.
+    pub fn cure(&self) -> Option<&'static str> {
+        match self {
+            Self::System { cure, .. } => Some(cure),
+            _ => None,
+        }
+    }
+
     /// What [`Result::map_err`] takes. Where the operating system has refused something, it says so in the library's
     /// message.
     pub(crate) fn hdf5(path: &Path, action: impl Into<String>) -> impl FnOnce(hdf5::Error) -> Self {

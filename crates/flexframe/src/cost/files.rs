@@ -10,7 +10,7 @@ use super::ladder::{Line, Outcome};
 use super::{CostError, CostReport, Setting};
 
 /// The names of the columns of `cost.csv`.
-const COLUMNS: [&str; 23] = [
+const COLUMNS: [&str; 24] = [
     "formulation",
     "scheme",
     "step",
@@ -19,6 +19,7 @@ const COLUMNS: [&str; 23] = [
     "at_reference",
     "attitude",
     "modal",
+    "displacement",
     "velocity",
     "acceleration",
     "step_error",
@@ -64,11 +65,12 @@ fn csv(report: &CostReport) -> String {
                     let number = |value: Option<f64>| value.map_or_else(String::new, |value| format!("{value:e}"));
                     writeln!(
                         csv,
-                        ",{:e},{},{:e},{},{},{},{},{:e},{:e},{},{},{},{},{},{:e},{:.3},{},{},",
+                        ",{:e},{},{:e},{},{},{},{},{},{:e},{:e},{},{},{},{},{},{:e},{:.3},{},{},",
                         m.error,
                         m.at_reference,
                         e.attitude,
                         number(e.modal),
+                        number(e.displacement),
                         number(e.velocity),
                         number(e.acceleration),
                         number(m.step_errors.map(|errors| errors.largest())),
@@ -85,14 +87,18 @@ fn csv(report: &CostReport) -> String {
                         row.on_front,
                     )
                 }
-                Outcome::Failed(failure) => {
-                    let empty = ",".repeat(COLUMNS.len() - 5);
-                    writeln!(csv, "{empty},\"{}\"", failure.replace('"', "\"\""))
-                }
+                Outcome::Failed(failure) => write_failure(&mut csv, failure),
+                Outcome::OutOfPatience(stopped) => write_failure(&mut csv, &stopped.to_string()),
             };
         }
     }
     csv
+}
+
+/// The columns after setting and scheme of a run that did not come to its end.
+fn write_failure(csv: &mut String, why: &str) -> std::fmt::Result {
+    let empty = ",".repeat(COLUMNS.len() - 5);
+    writeln!(csv, "{empty},\"{}\"", why.replace('"', "\"\""))
 }
 
 /// Draws time against error, a line a scheme, to `<stem>.svg` and `<stem>.png`; nothing where there is nothing to draw.

@@ -9,7 +9,7 @@ use scene::{Model, Scene};
 
 use super::WATCHED_POINT;
 use super::rigid_plate::{RigidHistories, dead_force};
-use crate::mode_shapes;
+use crate::mode_shapes::{self, ShapesError};
 
 /// Draws all figures into `folder` and returns their files.
 pub(super) fn draw(
@@ -18,7 +18,7 @@ pub(super) fn draw(
     results: &Results,
     rigid: &RigidHistories,
     folder: &Path,
-) -> Result<Vec<PathBuf>, FigureError> {
+) -> Result<Vec<PathBuf>, ShapesError> {
     let units = &scene.units;
     let (length, time) = (&units.length, &units.time);
     let x_label = format!("time, {time}");
