@@ -22,6 +22,26 @@ lint:
     cargo clippy --workspace --all-targets --quiet -- -D warnings
     RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --document-private-items --quiet
 
+# Everything once with the oldest Rust that is promised (`rust-version` in Cargo.toml).
+msrv:
+    #!/usr/bin/env bash
+    set -euo pipefail
+    stated=$(sed -n 's/^rust-version = "\([0-9.]*\)".*/\1/p' Cargo.toml)
+    is_stated() { [[ "$1" == "$stated" || "$1" == "$stated".* ]]; }
+    here=$(rustc --version | cut -d ' ' -f 2)
+    if ! is_stated "$here"; then
+        installed=$(rustup toolchain list 2>/dev/null | cut -d - -f 1 || true)
+        RUSTUP_TOOLCHAIN=$(for version in $installed; do if is_stated "$version"; then echo "$version"; fi; done | tail -1)
+        if [ -z "$RUSTUP_TOOLCHAIN" ]; then
+            echo "msrv: Cargo.toml promises Rust $stated, but the compiler here is $here and rustup has no $stated:" \
+                "install it (rustup toolchain install $stated), or promise in rust-version what is built with" >&2
+            exit 1
+        fi
+        export RUSTUP_TOOLCHAIN
+    fi
+    cargo check --workspace --all-targets --quiet
+    echo "msrv: builds with $(rustc --version)"
+
 # The program, optimised: target/release/flexframe.
 build:
     cargo build --release --quiet --package flexframe

@@ -44,10 +44,9 @@ pub fn run() -> Result<Answer, Box<dyn Error>> {
         rows: Rows::Interval(3.0),
         points: &[at(Vector3::new(0.3, 0.1, -0.2))],
     })?;
-    let impact = simulation
-        .add_event(Event::new("the corner is on the plane", Crossing::Falling, |now| {
-            now.points[0].displacement.z + HEIGHT
-        }))?;
+    let impact = simulation.add_event(Event::new("the corner is on the plane", Crossing::Falling, |now| {
+        now.points[0].displacement.z + HEIGHT
+    }))?;
     let top = simulation.add_event(Event::new("at rest", Crossing::Falling, |now| now.velocity_global.z))?;
 
     let mut times = [0.0; 2];

@@ -47,9 +47,8 @@ pub fn run() -> Result<[f64; 2], Box<dyn Error>> {
     })?
     .last()
     .ok_or("the run has no rows")??;
-    let difference = |steps: u32| -> Result<f64, Box<dyn Error>> {
-        Ok(by_midpoint(steps)?.attitude.angle_to(&last.attitude))
-    };
+    let difference =
+        |steps: u32| -> Result<f64, Box<dyn Error>> { Ok(by_midpoint(steps)?.attitude.angle_to(&last.attitude)) };
     Ok([difference(500)?, difference(1000)?])
 }
 

@@ -1,7 +1,10 @@
 //! What is known before a run.
 
-use frames_rk4::{Drive, Initial, Load, Method};
+use frames_rk4::{Drive, History, Initial, SharedLoad};
 use modal::ReducedBody;
+use nalgebra::Vector3;
+
+use crate::backbone::Backbone;
 
 /// A run before it is made. Units are any consistent set, angles rad.
 #[derive(Debug, Clone, Copy)]
@@ -11,27 +14,35 @@ pub struct Case<'a> {
     /// One damping ratio for each mode (nf).
     pub damping_ratios: &'a [f64],
     /// The loads but gravity.
-    pub loads: &'a [Load],
+    pub loads: &'a [SharedLoad],
     /// The loads of gravity.
-    pub gravity: &'a [Load],
+    pub gravity: &'a [SharedLoad],
     /// What drives the held part.
     pub drive: Option<&'a Drive>,
     /// How it begins (nf modal coordinates).
     pub initial: &'a Initial,
     /// When it ends.
     pub end: f64,
-    /// Method and length of step, where the step is fixed.
-    pub step: Option<(Method, f64)>,
     /// Largest distance of two points of the body.
     pub length: f64,
     /// Largest displacement of a node in each mode (nf).
     pub peaks: &'a [f64],
-    /// `f·u` of each load where its history is 1, and its whole static answer u
-    /// (`modal::Solver::static_response`): first those of `loads`, then of `gravity`. Empty where not known.
-    pub static_compliances: &'a [f64],
+    /// Of each load, first those of `loads`, then of `gravity`. Empty where not known.
+    pub static_compliances: &'a [StaticCompliance],
     /// `√(uᵀMu − Σ(Φ_kᵀMu)²)` of the static answer u to the centrifugal field of each pair of spins, in the order of
     /// [`ReducedBody::PAIRS`]: what the modes leave out of it (6). Empty where not known.
     pub centrifugal_remainders: &'a [f64],
+    /// How the frequency of each of the first modes goes with its amplitude, where that is known.
+    pub backbones: &'a [Option<Backbone>],
+}
+
+/// The work f·u of a load where its history is 1 and of its whole static answer u (`modal::Solver::static_response`).
+#[derive(Debug, Clone, PartialEq)]
+pub struct StaticCompliance {
+    /// In the first attitude.
+    pub at_start: f64,
+    /// Of other forces or moments that a dead load may become as the body turns, each in body axes with its work.
+    pub turned: Vec<(Vector3<f64>, f64)>,
 }
 
 /// A case that no advice can be given on.
@@ -63,6 +74,17 @@ pub enum AdviceError {
 }
 
 impl Case<'_> {
+    /// The histories of the loads that have one, and of the drive.
+    fn histories(&self) -> impl Iterator<Item = &History> {
+        let of_loads = self.loads.iter().chain(self.gravity).filter_map(|load| load.history());
+        of_loads.chain(self.drive.map(|drive| &drive.history))
+    }
+
+    /// How many histories cost more to evaluate than closed forms do: they share a budget of samples.
+    pub(crate) fn costly_histories(&self) -> usize {
+        self.histories().filter(|history| history.cost() > 1.0).count()
+    }
+
     /// Refuses lists of the wrong length and numbers that are not finite or not positive.
     pub(crate) fn check(&self, tolerance: f64) -> Result<(), AdviceError> {
         let nf = self.body.flexible();
@@ -86,7 +108,6 @@ impl Case<'_> {
         }
         let mut positive =
             vec![("the end", self.end), ("the length of the body", self.length), ("the tolerance", tolerance)];
-        positive.extend(self.step.map(|(_, step)| ("the step", step)));
         positive.extend(self.body.circular_frequencies.iter().map(|omega| ("a circular frequency", *omega)));
         for (what, found) in positive {
             if !(found > 0.0 && found.is_finite()) {
@@ -94,10 +115,14 @@ impl Case<'_> {
             }
         }
         let initial = self.initial;
+        let works = |c: &StaticCompliance| {
+            std::iter::once(c.at_start).chain(c.turned.iter().map(|(_, work)| *work)).collect::<Vec<_>>()
+        };
+        let compliances: Vec<f64> = self.static_compliances.iter().flat_map(works).collect();
         let finite = [
             ("a damping ratio", self.damping_ratios),
             ("a largest displacement", self.peaks),
-            ("a static compliance", self.static_compliances),
+            ("a static compliance", &compliances),
             ("a centrifugal remainder", self.centrifugal_remainders),
             ("an initial velocity", initial.velocity.as_slice()),
             ("an initial angular velocity", initial.omega.as_slice()),
@@ -109,9 +134,7 @@ impl Case<'_> {
                 return Err(AdviceError::Value { what, found, expected: "a finite number" });
             }
         }
-        for history in
-            self.loads.iter().chain(self.gravity).map(|load| &load.history).chain(self.drive.map(|d| &d.history))
-        {
+        for history in self.histories() {
             let found = history.largest(self.end);
             if !found.is_finite() {
                 return Err(AdviceError::Value { what: "a history", found, expected: "one that is finite to the end" });

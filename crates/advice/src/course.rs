@@ -32,12 +32,15 @@ const MOST_IN_ALL: usize = 1 << 22;
 const CLOSE: f64 = 1e-3;
 
 impl Course {
-    pub(crate) fn new(history: &History, end: f64) -> Self {
+    /// The course of one history `among` so many that cost more than closed forms do.
+    pub(crate) fn new(history: &History, end: f64, among: usize) -> Self {
         let mut stops: Vec<f64> = history.corners().into_iter().filter(|t| *t > 0.0 && *t < end).collect();
         stops.push(end);
         stops.sort_by(f64::total_cmp);
         let largest = history.largest(end);
-        let most = (MOST_IN_ALL / stops.len()).clamp(1, MOST);
+        // What a value costs is in the number of samples as its square root: the walks for the size have the other part.
+        let share = history.cost().sqrt() * among.max(1) as f64;
+        let most = ((MOST_IN_ALL / stops.len()).clamp(1, MOST) as f64 / share).max(1.0) as usize;
         let mut start = 0.0;
         let mut resolved = true;
         let mut pieces = Vec::with_capacity(stops.len());
@@ -210,7 +213,7 @@ mod tests {
             [(0.5, 400.0, 0.0), (0.02, 154.0, 0.0), (0.02, 154.0, 0.1), (0.02, 1000.0, 0.02), (1e-4, 60.0, 0.0)]
         {
             let pulse = History::HalfSine { start: 0.01, duration };
-            let swing = Course::new(&pulse, 0.7).swing(omega, zeta);
+            let swing = Course::new(&pulse, 0.7, 1).swing(omega, zeta);
             let damped = (1.0_f64 - zeta * zeta).sqrt();
             let [actual, acceleration] = dynamic_factor(&pulse, omega, zeta, 0.7);
             let bound = swing.z * omega / damped;
@@ -226,10 +229,10 @@ mod tests {
     fn a_short_pulse_swings_by_its_impulse_and_a_course_that_has_risen_starts_at_zero() {
         let duration = 1e-4;
         let pulse = History::HalfSine { start: 0.0, duration };
-        let swing = Course::new(&pulse, 1.0).swing(10.0, 0.0).z;
+        let swing = Course::new(&pulse, 1.0, 1).swing(10.0, 0.0).z;
         assert!((swing / (2.0 * duration / std::f64::consts::PI) - 1.0).abs() < 2e-3);
         let late = History::HalfSine { start: -0.5, duration: 1.0 };
-        let risen = Course::new(&late, 0.25).risen();
+        let risen = Course::new(&late, 0.25, 1).risen();
         assert!((risen.largest - (1.0 - 0.5_f64.sqrt())).abs() < 1e-12);
     }
 
@@ -239,7 +242,7 @@ mod tests {
             let times: Vec<f64> = (0..corners).map(f64::from).collect();
             let values = (0..corners).map(|k| f64::from(k % 2)).collect();
             let table = frames_rk4::Table::new(times, values).unwrap();
-            let course = Course::new(&History::Table(table), f64::from(corners));
+            let course = Course::new(&History::Table(table), f64::from(corners), 1);
             let samples: usize = course.pieces.iter().map(|piece| piece.samples.len()).sum();
             // The straight lines of a table are followed by however few. Measured: 195 000 and 4 200 000.
             assert!(course.resolved && samples < MOST_IN_ALL + 2 * course.pieces.len(), "{samples}");
@@ -248,10 +251,23 @@ mod tests {
     }
 
     #[test]
+    fn long_formulas_share_few_samples_and_fall_back_to_the_bound() {
+        let text = format!("fract(9e5*sin(7e4*t)){}", " + 0*t*t*t*t*t".repeat(60));
+        let history = History::Expression(frames_rk4::Expression::new(&text, vec![]).unwrap());
+        for (among, most) in [(1, 2_000), (20, 100)] {
+            let course = Course::new(&history, 1.0, among);
+            let samples: usize = course.pieces.iter().map(|piece| piece.samples.len()).sum();
+            assert!(!course.resolved && samples < most, "{samples}");
+            let swing = course.swing(1e3, 0.0);
+            assert!(course.net_integral == course.magnitude_integral && swing.z == course.magnitude_integral);
+        }
+    }
+
+    #[test]
     fn the_net_integral_is_that_of_a_half_wave() {
         let frequency = 10.0;
         let sine = History::Sine { frequency, phase: 0.0, start: 0.0, duration: None };
-        let course = Course::new(&sine, 1.0);
+        let course = Course::new(&sine, 1.0, 1);
         let half = 1.0 / (std::f64::consts::PI * frequency);
         // Measured 0.9999 of it, and 20.000 of them in the magnitude.
         assert!((0.999..1.01).contains(&(course.net_integral / half)));

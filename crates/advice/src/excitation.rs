@@ -1,12 +1,12 @@
 //! What acts on the rigid motions and on each mode, in modal coordinates: with mass-normalised shapes, forces and motions
 //! of all of them are on one scale.
 
-use frames_rk4::{Action, DrivenMotion, Load, LoadFrame};
-use modal::ReducedBody;
+use frames_rk4::{DrivenMotion, History, LoadFrame, Pattern, SharedLoad};
 use nalgebra::{Matrix3, Matrix3xX, Vector3};
 
-use crate::case::Case;
+use crate::case::{Case, StaticCompliance};
 use crate::course::Course;
+use crate::response::relative;
 
 /// A load: its largest forces on the translations, the rotations and each mode where its history is 1.
 #[derive(Debug, Clone)]
@@ -16,6 +16,8 @@ pub(crate) struct Source {
     /// nf; and as the load meets the body at the beginning.
     pub modal: Vec<f64>,
     pub modal_at_start: Vec<f64>,
+    /// Displacement of each mode where the load acts (nf).
+    shapes: Vec<Vector3<f64>>,
     pub course: Course,
     /// Whether its direction turns in the body as the body turns, and the angle that may turn it.
     pub dead: bool,
@@ -48,16 +50,15 @@ pub(crate) struct Spin {
 const ROUNDING: f64 = 1e-10;
 
 impl Source {
-    /// Of a load on the body of `case` that may turn by `turn` rad.
-    fn new(load: &Load, course: &Course, turn: f64, gravity: bool, case: &Case) -> Self {
-        let (columns, vector, frame): (Vec<Vector3<f64>>, Vector3<f64>, LoadFrame) = match &load.action {
-            Action::Force { point, force, frame } => (point.columns().to_vec(), *force, *frame),
-            Action::Moment { rotation, moment, frame } => (rotation.columns().to_vec(), *moment, *frame),
-            // A field is as it is in body axes: one number for each mode.
-            Action::Field(field) => {
-                (field.modal.iter().map(|f| Vector3::x() * *f).collect(), Vector3::x(), LoadFrame::Body)
-            }
+    /// Of a load on the body of `case` that may turn by `turn` rad. A load that is no pattern of forces times a history
+    /// counts for nothing: what it will do is not known before the run.
+    fn new(load: &SharedLoad, course: &Course, turn: f64, gravity: bool, case: &Case) -> Self {
+        let nothing = || {
+            let columns = vec![Vector3::zeros(); 6 + case.body.flexible()];
+            Pattern { columns, vector: Vector3::x(), frame: LoadFrame::Body, local: false }
         };
+        let Pattern { columns, vector, frame, local } = load.pattern().unwrap_or_else(nothing);
+        let vector = if frame == LoadFrame::Global { case.initial.attitude.to_body(&vector) } else { vector };
         let dead = frame == LoadFrame::Global && turn > 0.0;
         let astray = if dead { turn.min(1.0) } else { 0.0 };
         let largest = |rows: &[Vector3<f64>]| {
@@ -65,21 +66,19 @@ impl Source {
             let worst = (&rows * rows.transpose()).symmetric_eigenvalues().max().max(0.0).sqrt() * vector.norm();
             ((rows.transpose() * vector).norm() + astray * worst).min(worst)
         };
-        let is_field = matches!(load.action, Action::Field(_));
         let turning = &columns[3..6];
         let arm = case.body.rotation_basis.norm() * case.length;
-        let is_rounding = !is_field && turning.iter().all(|column| column.norm() <= ROUNDING * arm);
+        let is_rounding = local && turning.iter().all(|column| column.norm() <= ROUNDING * arm);
         let moved = |of: &dyn Fn(&Vector3<f64>) -> f64| -> Vec<f64> {
             let modes = columns[6..].iter().zip(case.peaks);
-            modes
-                .map(|(shape, peak)| if !is_field && shape.norm() <= ROUNDING * peak { 0.0 } else { of(shape) })
-                .collect()
+            modes.map(|(shape, peak)| if local && shape.norm() <= ROUNDING * peak { 0.0 } else { of(shape) }).collect()
         };
         Self {
             translation: largest(&columns[..3]),
             rotation: if is_rounding { 0.0 } else { largest(turning) },
             modal: moved(&|shape| largest(&[*shape])),
             modal_at_start: moved(&|shape| shape.dot(&vector).abs()),
+            shapes: columns[6..].to_vec(),
             course: course.clone(),
             dead,
             turn,
@@ -91,6 +90,19 @@ impl Source {
     fn all(case: &Case, courses: &[Course], turn: f64) -> Vec<Self> {
         let loads = case.loads.iter().map(|load| (load, false)).chain(case.gravity.iter().map(|load| (load, true)));
         loads.zip(courses).map(|((load, gravity), course)| Self::new(load, course, turn, gravity, case)).collect()
+    }
+
+    /// Largest part of a static answer that the first `keep` modes, of frequencies `omega`, leave out where the load acts.
+    /// Of the answers in other directions than the first it counts as far as the body may turn.
+    pub(crate) fn left_out(&self, whole: &StaticCompliance, omega: &[f64], keep: usize) -> f64 {
+        let part = |whole: f64, modal: &dyn Fn(usize) -> f64| -> f64 {
+            let carried: f64 = (0..keep).map(|k| (modal(k) / omega[k]).powi(2)).sum();
+            if whole > 0.0 { relative((whole - carried).max(0.0), whole) } else { 0.0 }
+        };
+        let at_start = part(whole.at_start, &|k| self.modal_at_start[k]);
+        let astray = if self.dead { self.turn.min(1.0).powi(2) } else { 0.0 };
+        let turned = whole.turned.iter().map(|(vector, work)| astray * part(*work, &|k| self.shapes[k].dot(vector)));
+        turned.fold(at_start, f64::max)
     }
 
     /// Largest impulse where the force is 1; with a direction a(t) that turns, by parts: `|∫ h a| ≤ max|∫h| (1 + ∫|a'|)`.
@@ -108,10 +120,12 @@ impl Spin {
     /// Bounds that hold for the body with its undeformed inertia, and the loads in the directions they may come to have.
     pub(crate) fn new(case: &Case) -> (Self, Vec<Source>) {
         let body = case.body;
-        let histories = case.loads.iter().chain(case.gravity).map(|load| &load.history);
-        let courses: Vec<Course> = histories.map(|history| Course::new(history, case.end)).collect();
+        let of = |load: &'_ SharedLoad| load.history().cloned().unwrap_or(History::Constant);
+        let histories = case.loads.iter().chain(case.gravity).map(of);
+        let courses: Vec<Course> =
+            histories.map(|history| Course::new(&history, case.end, case.costly_histories())).collect();
         if let Some(drive) = case.drive {
-            let course = Course::new(&drive.history, case.end);
+            let course = Course::new(&drive.history, case.end, case.costly_histories());
             let (axis, speed) = match drive.motion {
                 DrivenMotion::Turn { axis } => (axis, drive.amplitude.abs() * course.largest),
                 DrivenMotion::Slide { .. } => (Vector3::zeros(), 0.0),

@@ -12,7 +12,9 @@
 //!    on, compute that.
 //! 3. [`advise`] gives the table: a [`Row`] for each [`Effect`], and what each mode is worth. Nothing stiffens where
 //!    `deformed_inertia` is off: the stiffness is counted as part of it too.
-//! 4. [`Review`] watches the run and names what has broken, and when.
+//! 4. [`Backbone`]s of the modes that may bend the body by more than [`LARGE`] tell what linear strain makes of that, and
+//!    [`step_estimate()`] gives the row of the step: which attitude or mode it gets wrong, and by how much.
+//! 5. [`Review`] watches the run and names what has broken, and when.
 //!
 //! ```
 //! use advice::{Case, Effect, Review, advise, limits, screen};
@@ -36,11 +38,11 @@
 //!     drive: None,
 //!     initial: &initial,
 //!     end: 1.0,
-//!     step: None,
 //!     length: 200.0,
 //!     peaks: &[100.0; 4], // the largest of each column of `modes.shapes`
 //!     static_compliances: &[],
 //!     centrifugal_remainders: &[],
+//!     backbones: &[],
 //! };
 //! let effects = Effects::default();
 //! assert_eq!(limits(&case, &effects)?, None);
@@ -50,7 +52,8 @@
 //! let advice = advise(&case, 1e-3)?;
 //! assert!(advice.is_on(Effect::Rotation) && !advice.is_on(Effect::Translation));
 //! let review = Review::new(case, effects, &advice);
-//! // for each observation of the run: review.observe(&observation)?;
+//! // at each step of the run, by Simulation::advance_watched: review.look(&moment);
+//! // for each observation: review.observe(&observation)?;
 //! assert!(review.broken().is_empty());
 //! # Ok(())
 //! # }
@@ -58,19 +61,24 @@
 #![forbid(unsafe_code)]
 #![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable))]
 
+mod backbone;
 mod case;
 mod course;
 mod excitation;
 mod limits;
+mod number;
 mod response;
 mod review;
 mod rigid;
 mod row;
+mod step;
 mod table;
 mod tensor;
 
-pub use case::{AdviceError, Case};
-pub use limits::{Refusal, SOFTENED, buckling, limits};
-pub use review::{Broken, Review};
+pub use backbone::{Backbone, DETUNED, LARGE};
+pub use case::{AdviceError, Case, StaticCompliance};
+pub use limits::{BUCKLED, Refusal, SOFTENED, buckling, limits};
+pub use review::{Broken, Detuning, Review};
 pub use row::{Effect, Row, Worth};
+pub use step::{ModeError, StepEstimate, step_estimate};
 pub use table::{Advice, advise, screen};

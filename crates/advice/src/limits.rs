@@ -1,12 +1,12 @@
 //! Models that are known to be wrong.
 
-use faer::{Mat, Side};
-use frames_rk4::{DrivenMotion, Effects, EigenError, SteadySpin};
-use modal::ReducedBody;
+use frames_rk4::{DrivenMotion, Effects, SteadySpin};
 use nalgebra::Vector3;
 
+use crate::backbone::DETUNED;
 use crate::case::{AdviceError, Case};
 use crate::course::Course;
+use crate::number::Number;
 
 /// Part of the speed at which softening alone would take all stiffness, from which on a model without stiffening is
 /// refused: there, a third of the lowest stiffness across the spin is gone.
@@ -17,8 +17,9 @@ pub const SOFTENED: f64 = 0.577;
 pub enum Refusal {
     /// K + Ω²(K_σ − N) is not definite.
     #[error(
-        "the body spins at {spin:.4} rad per time, beyond the {critical:.4} at which K + Ω²(K_σ − N) loses definiteness: \
-         it would bend without limit; spin it slower{} (`refuse = false` in [effects] runs it all the same)", if *.stiffening { "" } else { ", or turn geometric_stiffening on" }
+        "the body spins at {} rad per time, beyond the {} at which K + Ω²(K_σ − N) loses definiteness: \
+         it would bend without limit; spin it slower{} (`refuse = false` in [effects] runs it all the same)",
+        Number(*.spin), Number(*.critical), if *.stiffening { "" } else { ", or turn geometric_stiffening on" }
     )]
     Unstable {
         /// |ω|.
@@ -30,8 +31,9 @@ pub enum Refusal {
     },
     /// The centrifugal force softens the body, and nothing stiffens it.
     #[error(
-        "the body spins at {spin:.4} rad per time, {:.0} % of the {critical:.4} at which centrifugal softening takes all \
-         stiffness, and geometric_stiffening is off: turn it on, or deformed_inertia off (`refuse = false` in [effects] runs it all the same)", 100.0 * .spin / .critical
+        "the body spins at {} rad per time, {:.0} % of the {} at which centrifugal softening takes all \
+         stiffness, and geometric_stiffening is off: turn it on, or deformed_inertia off (`refuse = false` in [effects] runs it all the same)",
+        Number(*.spin), 100.0 * .spin / .critical, Number(*.critical)
     )]
     Softened {
         /// |ω|.
@@ -39,35 +41,83 @@ pub enum Refusal {
         /// The speed at which no stiffness is left.
         critical: f64,
     },
-    /// K + K_σ of the steady loads is not definite.
+    /// K + K_σ of the steady loads is not definite, or nearly so.
     #[error(
-        "the steady loads are {factor:.4} times those at which the body buckles, where K + K_σ loses definiteness: it \
-         would bend without limit; make them smaller, or hold the body at more places"
+        "the steady loads are {factor:.4} times those at which the body buckles, where K + K_σ loses definiteness (from \
+         {BUCKLED} on a run is refused): it would bend without limit; make them smaller, or hold the body at more places \
+         (`refuse = false` in [effects] runs it all the same)"
     )]
     Buckled {
         /// The loads over those at which it buckles.
         factor: f64,
     },
+    /// The body bends by more than its length.
+    #[error(
+        "the body bends by {} times its length, where strains are taken to be linear: the answer means nothing; make the \
+         loads smaller or the body stiffer (`refuse = false` in [effects] runs it all the same)",
+        Number(*.deflection)
+    )]
+    Deflected {
+        /// The deflection over the length.
+        deflection: f64,
+    },
+    /// A mode swings so far that its frequency is not that of linear strain.
+    #[error(
+        "mode {mode} bends the body by {:.1} % of its length, where linear strain has its frequency off by {:.0} % or more: \
+         the answer means nothing; make the loads smaller or the body stiffer (`refuse = false` in [effects] runs it all \
+         the same)",
+        100.0 * .deflection, 100.0 * DETUNED
+    )]
+    Detuned {
+        /// Number of the mode, the first flexible one is 1.
+        mode: usize,
+        /// Its deflection over the length.
+        deflection: f64,
+    },
 }
 
-/// The refusal of a body with the stress stiffness K_σ of its steady loads (nf×nf), if any.
-///
-/// # Errors
-/// [`AdviceError::Eigen`] for numbers that are not finite.
-pub fn buckling(body: &ReducedBody, load_stiffness: &Mat<f64>) -> Result<Option<Refusal>, AdviceError> {
-    let omega = &body.circular_frequencies;
-    let nf = omega.len();
-    let scaled = Mat::from_fn(nf, nf, |i, j| load_stiffness[(i, j)] / (omega[i] * omega[j]));
-    let eigenvalues = scaled.self_adjoint_eigenvalues(Side::Lower).map_err(|_| EigenError { size: nf })?;
-    let factor = -eigenvalues.iter().copied().fold(0.0, f64::min);
-    Ok((factor >= 1.0).then_some(Refusal::Buckled { factor }))
+/// Part of the loads at which a body buckles that is refused: nothing is left there of the stiffness against the way it
+/// buckles, and what is left is off by more than itself.
+pub const BUCKLED: f64 = 0.99;
+
+/// The refusal of a body under `factor` times the steady loads at which it buckles, if any.
+pub fn buckling(factor: f64) -> Option<Refusal> {
+    (factor >= BUCKLED).then_some(Refusal::Buckled { factor })
+}
+
+/// The refusal of a deflection, over the length of the body, if any.
+pub(crate) fn deflected(deflection: f64) -> Option<Refusal> {
+    (deflection > 1.0).then_some(Refusal::Deflected { deflection })
+}
+
+/// The refusal of an amplitude of mode `k` from 0 by its own backbone, if that is known.
+pub(crate) fn detuned(case: &Case, k: usize, amplitude: f64) -> Option<Refusal> {
+    let backbone = case.backbones.get(k)?.as_ref()?;
+    let deflection = amplitude * case.peaks[k] / case.length;
+    (amplitude > backbone.largest_amplitude()).then_some(Refusal::Detuned { mode: k + 1, deflection })
+}
+
+/// The refusal of the amplitudes that the modes have at the beginning, if any: of their displacement, and of their
+/// velocity where nothing stiffens the body and the run lasts a quarter of their period.
+fn bent_at_start(case: &Case) -> Option<Refusal> {
+    let still = case.initial.omega == Vector3::zeros() && case.drive.is_none();
+    let amplitude = |k: usize| {
+        let (omega, initial) = (case.body.circular_frequencies[k], case.initial);
+        let swings = still && omega * case.end >= std::f64::consts::FRAC_PI_2;
+        let damped = (-std::f64::consts::FRAC_PI_2 * case.damping_ratios[k]).exp();
+        let rate = if swings { initial.modal_velocity[k] / omega * damped } else { 0.0 };
+        initial.modal_displacement[k].abs().max(rate.abs())
+    };
+    let modes = 0..case.body.flexible();
+    let largest = modes.clone().map(|k| amplitude(k) * case.peaks[k] / case.length).fold(0.0, f64::max);
+    deflected(largest).or_else(|| modes.into_iter().find_map(|k| detuned(case, k, amplitude(k))))
 }
 
 /// The spin that there is without doubt: at the beginning, or driven. `None` where the body does not turn.
 fn certain_spin(case: &Case) -> Option<(Vector3<f64>, f64)> {
     let omega = match case.drive.map(|drive| (drive.motion, drive)) {
         Some((DrivenMotion::Turn { axis }, drive)) => {
-            axis * (drive.amplitude * Course::new(&drive.history, case.end).largest)
+            axis * (drive.amplitude * Course::new(&drive.history, case.end, case.costly_histories()).largest)
         }
         Some((DrivenMotion::Slide { .. }, _)) => Vector3::zeros(),
         None => case.body.motion.rotation_projector() * case.initial.omega,
@@ -97,15 +147,17 @@ pub(crate) fn refusal(
     })
 }
 
-/// The reason why a model is known to be wrong, if it is: by the spin at the beginning, or the one that is driven. What
-/// the loads may cause is left to [`crate::Review`].
+/// The reason why a model is known to be wrong, if it is: by the spin at the beginning, or the one that is driven, and by
+/// the deflection that it begins with. What the loads may cause is left to [`crate::Advice::refusal`] and
+/// [`crate::Review`].
 ///
 /// # Errors
 /// [`AdviceError`]: lists of the wrong length, numbers out of range, and an eigenvalue problem without an answer.
 pub fn limits(case: &Case, effects: &Effects) -> Result<Option<Refusal>, AdviceError> {
     case.check(1.0)?;
-    match certain_spin(case) {
-        Some((axis, speed)) => refusal(case, &axis, speed, effects),
-        None => Ok(None),
-    }
+    let of_spin = match certain_spin(case) {
+        Some((axis, speed)) => refusal(case, &axis, speed, effects)?,
+        None => None,
+    };
+    Ok(of_spin.or_else(|| bent_at_start(case)))
 }

@@ -18,12 +18,14 @@ pub(crate) struct Response {
     pub of_gravity: Vec<f64>,
     /// |q| that there will be at some time.
     pub scale: f64,
+    /// Deflection over the length by a single mode that the loads will make at some time, but for what stiffens the body.
+    pub certain_deflection: f64,
     /// Forces on the modes whose course has been followed, for resonance with one mode of what another passes on:
     /// modal force, and |z| at each frequency.
     forced: Vec<(Vec<f64>, Vec<f64>)>,
     omega: Vec<f64>,
     /// How long a mode remembers: min(T, 1/ζω).
-    memory: Vec<f64>,
+    pub memory: Vec<f64>,
 }
 
 impl Response {
@@ -41,6 +43,7 @@ impl Response {
             acceleration: (0..nf).map(|k| start[k] * omega[k] * omega[k]).collect(),
             of_gravity: vec![0.0; nf],
             scale: norm(&start),
+            certain_deflection: 0.0,
             forced: Vec::new(),
             omega: omega.clone(),
             memory,
@@ -62,6 +65,8 @@ impl Response {
             let straight = |k: usize| source.modal_at_start[k] * source.course.swing(omega[k], zeta[k]).z / omega[k];
             let certain: Vec<f64> = (0..nf).map(|k| straight(k) / turning(k)).collect();
             response.certainly(&certain, 0.5);
+            let bent = certain.iter().zip(case.peaks).map(|(q, peak)| 0.5 * q * peak / case.length);
+            response.certain_deflection = bent.fold(response.certain_deflection, f64::max);
             response.forced.push((source.modal.clone(), z.iter().map(|z| z.0).collect()));
         }
         if let Some(drive) = case.drive {
@@ -69,7 +74,7 @@ impl Response {
                 DrivenMotion::Turn { axis } => (axis, &case.body.rotation_first),
                 DrivenMotion::Slide { direction } => (direction, &case.body.translation_first),
             };
-            let course = Course::new(&drive.history, case.end).risen();
+            let course = Course::new(&drive.history, case.end, case.costly_histories()).risen();
             let z: Vec<_> = (0..nf).map(|k| course.swing(omega[k], zeta[k])).collect();
             let force: Vec<f64> = (0..nf)
                 .map(|k| ((0..3).map(|i| unit[i] * coupling[i][k]).sum::<f64>() * drive.amplitude).abs())

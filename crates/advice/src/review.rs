@@ -1,11 +1,14 @@
 //! After, or during, the run: whether what was assumed has held.
 
-use frames_rk4::{Effects, Observation};
+use std::fmt;
+
+use frames_rk4::{Effects, Moment, Observation};
 use nalgebra::Vector3;
 
 use crate::case::{AdviceError, Case};
-use crate::limits::{Refusal, SOFTENED, refusal};
-use crate::response::{norm, relative};
+use crate::limits::{Refusal, SOFTENED, deflected, detuned, refusal};
+use crate::number::Number;
+use crate::response::relative;
 use crate::row::Effect;
 use crate::table::{Advice, LINEAR, held};
 
@@ -14,7 +17,8 @@ use crate::table::{Advice, LINEAR, held};
 pub enum Broken {
     /// The spin rose above what the estimates allow for.
     #[error(
-        "at time {time:.6} the spin was {found:.4}, above the {assumed:.4} that the estimates allow for: set {off} = true in [effects]"
+        "at time {time:.6} the spin was {}, above the {} that the estimates allow for: set {off} = true in [effects]",
+        Number(*.found), Number(*.assumed)
     )]
     Spin {
         /// When it was so for the first time.
@@ -41,29 +45,30 @@ pub enum Broken {
         off: String,
     },
     /// The strain is not linear.
-    #[error(
-        "at time {time:.6} the deflection passed 10 % of the length, up to {found:.3e}: linear strain ends there; trust the answer to some per cent only"
-    )]
+    #[error("at time {time:.6} the deflection reached {:.1} % of the length{}", 100.0 * .found, Detunings(.modes))]
     Linear {
-        /// When it was so for the first time.
+        /// When it was largest.
         time: f64,
         /// The largest there was.
         found: f64,
+        /// The modes whose frequencies that changes noticeably.
+        modes: Vec<Detuning>,
     },
     /// The modes do not carry what the spin does to the body.
     #[error(
-        "at time {time:.6} the modes held only {held:.1e} of the static answer to the spin, and the answer lacks the rest, \
-         {influence:.1e} of the deformation: take static_correction = true with the scheme exponential, or more modes"
+        "at time {time:.6} the modes left out {:.1} % of the static answer to the spin, and the answer lacks it, \
+         {influence:.1e} of the deformation: take static_correction = true with the scheme exponential, or more modes",
+        100.0 * .left_out
     )]
     Stretch {
         /// When most was missing.
         time: f64,
-        /// Part of the static answer that the modes held.
-        held: f64,
+        /// Part of the static answer that the modes left out.
+        left_out: f64,
         /// Part of the whole deformation that was missing.
         influence: f64,
     },
-    /// A spin was reached at which the model is known to be wrong.
+    /// A spin or a deflection was reached at which the model is known to be wrong.
     #[error("at time {time:.6}: {refusal}")]
     Limit {
         /// When it was so for the first time.
@@ -73,95 +78,298 @@ pub enum Broken {
     },
 }
 
-/// Watches a run.
+/// What linear strain makes of a mode that swings far, by its own [`Backbone`](crate::Backbone) without spin.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Detuning {
+    /// Number of the mode, the first flexible one is 1.
+    pub mode: usize,
+    /// Its largest deflection over the length of the body.
+    pub deflection: f64,
+    /// Change of the frequency at that amplitude, relative to the linear one: negative where the linear one is too high.
+    pub shift: f64,
+    /// Periods that its phase is out by at the end, with the amplitudes that there were, and how many periods there were.
+    pub phase: f64,
+    /// Periods of the mode in the time that was watched.
+    pub periods: f64,
+}
+
+/// The modes of [`Broken::Linear`] in words.
+struct Detunings<'a>(&'a [Detuning]);
+
+impl fmt::Display for Detunings<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Some(first) = self.0.first() else {
+            return write!(f, ": linear strain ends at 10 %, and so does what the answer can be trusted for");
+        };
+        write!(f, ", which linear strain does not follow:")?;
+        for (i, detuning) in self.0.iter().enumerate() {
+            let Detuning { mode, deflection, shift, phase, periods } = *detuning;
+            let (comma, way) = (if i == 0 { "" } else { ";" }, if shift < 0.0 { "high" } else { "low" });
+            write!(
+                f,
+                "{comma} at {:.1} % the frequency of mode {mode} is about {:.2} % too {way}, its phase out by {} of a period \
+                 after {periods:.1} periods",
+                100.0 * deflection,
+                100.0 * shift.abs(),
+                Number(phase.abs()),
+            )?;
+        }
+        write!(
+            f,
+            " (each by its own motion, without spin); smaller motions are right, their error goes with the square"
+        )?;
+        if first.phase.abs() > LOST { write!(f, "; the phase is lost") } else { Ok(()) }
+    }
+}
+
+/// Periods from which on a phase is lost.
+const LOST: f64 = 0.25;
+
+/// Something that has passed what was assumed.
+#[derive(Debug, Clone, Copy)]
+struct Passed {
+    /// When it was so for the first time.
+    time: f64,
+    /// The largest there was.
+    found: f64,
+}
+
+impl Passed {
+    fn note(passed: &mut Option<Self>, time: f64, found: f64) {
+        let passed = passed.get_or_insert(Self { time, found });
+        passed.found = passed.found.max(found);
+    }
+}
+
+/// What a mode has done so far.
+#[derive(Debug, Clone, Copy, Default)]
+struct Swing {
+    /// At the last look: q̇, and q² + (q̇/ω)².
+    rate: f64,
+    square: f64,
+    /// Largest |q|, and that beyond which the frequency is out by too much.
+    largest: f64,
+    most: f64,
+    /// ∫ (q² + (q̇/ω)²) dt.
+    integral: f64,
+}
+
+/// Watches a run: [`Self::look`] at every step, [`Self::observe`] at every row.
 #[derive(Debug, Clone)]
 pub struct Review<'a> {
     case: Case<'a>,
     effects: Effects,
     spin: f64,
     deflection: f64,
+    tolerance: f64,
+    swings: Vec<Swing>,
+    /// Time of the last look.
+    time: f64,
+    /// Largest |ω| since the last row, and when.
+    fastest: (f64, Vector3<f64>),
     /// The last |ω| whose limit was looked up, and its direction.
     looked_up: (f64, Vector3<f64>),
-    tolerance: f64,
-    /// The most that the modes left out of the static answer to the spin, when, and the part that they held.
+    /// The most that the modes left out of the static answer to the spin, when, and the part of it.
     left_out: (f64, f64, f64),
     /// Largest √(qᵀq).
     deformation: f64,
-    broken: Vec<Broken>,
+    /// Largest deflection over the length, and when it was that, but for a hundredth.
+    bent: f64,
+    bent_at: Passed,
+    spun_above: Option<Passed>,
+    bent_above: Option<Passed>,
+    limit: Option<(f64, Refusal)>,
+    stop: Option<(f64, Refusal)>,
 }
 
 /// What rounding and the change of inertia by a small deformation may add to a bound.
 const MARGIN: f64 = 1.01;
-/// Deflection over length that is rounding.
+/// Deflection over length, or angle turned, that is rounding.
 const ROUNDING: f64 = 1e-10;
+/// Change of a frequency, and periods of phase at the end, from which on they are told.
+const SHIFTED: f64 = 0.01;
+const OUT_OF_PHASE: f64 = 0.02;
 
 impl<'a> Review<'a> {
     /// Of a run with these effects that `advice` was given on. The case has the modes that are simulated.
     pub fn new(case: Case<'a>, effects: Effects, advice: &Advice) -> Self {
+        let most = |k: usize| match case.backbones.get(k) {
+            Some(Some(backbone)) => backbone.largest_amplitude(),
+            _ => f64::INFINITY,
+        };
+        let swings = (0..case.peaks.len()).map(|k| Swing { most: most(k), ..Swing::default() }).collect();
         Self {
             case,
             effects,
             spin: advice.spin,
             deflection: advice.deflection,
-            looked_up: (0.0, Vector3::zeros()),
             tolerance: advice.tolerance,
-            left_out: (0.0, 0.0, 1.0),
+            swings,
+            time: 0.0,
+            fastest: (0.0, Vector3::zeros()),
+            looked_up: (0.0, Vector3::zeros()),
+            left_out: (0.0, 0.0, 0.0),
             deformation: 0.0,
-            broken: Vec::new(),
+            bent: 0.0,
+            bent_at: Passed { time: 0.0, found: 0.0 },
+            spun_above: None,
+            bent_above: None,
+            limit: None,
+            stop: None,
         }
     }
 
-    /// Looks at the motion at a time; times rise.
+    /// Looks at the motion at a step. Allocates nothing, and takes some operations for each mode. A list of modal
+    /// displacements or velocities of another length is not looked at.
+    ///
+    /// Between two looks a mode swings as far as √(q² + (q̇/ω)²) of the larger of both, if it turns there or the time
+    /// between them is longer than half its period.
+    pub fn look(&mut self, moment: &Moment) {
+        let Moment { time, omega_body, modal_displacement: q, modal_velocity: v } = *moment;
+        if q.len() != self.swings.len() || v.len() != self.swings.len() {
+            return;
+        }
+        let passed = time - self.time;
+        self.time = time;
+        let (mut deflection, mut deformation) = (0.0, 0.0);
+        let mut stopped = None;
+        let case = &self.case;
+        for (k, swing) in self.swings.iter_mut().enumerate() {
+            let omega = case.body.circular_frequencies[k];
+            let square = q[k] * q[k] + (v[k] / omega) * (v[k] / omega);
+            let turned = passed > 0.0 && (v[k] * swing.rate < 0.0 || omega * passed >= std::f64::consts::PI);
+            let reach = if turned { square.max(swing.square).sqrt() } else { q[k].abs() };
+            swing.integral += 0.5 * passed * (square + swing.square);
+            (swing.rate, swing.square) = (v[k], square);
+            swing.largest = swing.largest.max(reach);
+            if reach > swing.most && stopped.is_none() {
+                stopped = detuned(case, k, reach);
+            }
+            deflection += reach * case.peaks[k];
+            deformation += reach * reach;
+        }
+        deflection /= case.length;
+        if self.stop.is_none() {
+            self.stop = stopped.or_else(|| deflected(deflection)).map(|refusal| (time, refusal));
+        }
+        self.bent = self.bent.max(deflection);
+        if deflection > MARGIN * self.bent_at.found {
+            self.bent_at = Passed { time, found: deflection };
+        }
+        let speed = omega_body.norm();
+        if speed > self.fastest.0 {
+            self.fastest = (speed, omega_body);
+        }
+        if self.something_is_off() {
+            if speed > MARGIN * self.spin + ROUNDING / case.end {
+                Passed::note(&mut self.spun_above, time, speed);
+            }
+            if deflection > MARGIN * self.deflection + ROUNDING {
+                Passed::note(&mut self.bent_above, time, deflection);
+            }
+        }
+        self.deformation = self.deformation.max(f64::sqrt(deformation));
+    }
+
+    /// Looks at the motion at a row; times rise. Where the spin is near a limit, that is looked up.
     ///
     /// # Errors
     /// An eigenvalue problem without an answer; a list of modal displacements of another length.
     pub fn observe(&mut self, observation: &Observation) -> Result<(), AdviceError> {
-        let (q, peaks) = (&observation.modal_displacement, self.case.peaks);
-        if q.len() != peaks.len() {
-            let what = "the list of modal displacements";
-            return Err(AdviceError::Length { what, found: q.len(), expected: peaks.len() });
-        }
-        let time = observation.time;
-        let deflection = q.iter().zip(peaks).map(|(q, a)| (q * a).abs()).sum::<f64>() / self.case.length;
-        let speed = observation.omega_body.norm();
-        if self.something_is_off() && speed > MARGIN * self.spin {
-            self.note(Broken::Spin { time, found: speed, assumed: self.spin, off: self.off() });
-        }
-        if self.something_is_off() && deflection > MARGIN * self.deflection + ROUNDING {
-            self.note(Broken::Deflection { time, found: deflection, assumed: self.deflection, off: self.off() });
-        }
-        if self.effects.deformed_inertia && !self.case.centrifugal_remainders.is_empty() {
-            let omega = &observation.omega_body;
-            let (held, left) = held(&self.case, &(omega * omega.transpose()));
-            if left > self.left_out.0 {
-                self.left_out = (left, time, held);
+        for (what, list) in [
+            ("the list of modal displacements", &observation.modal_displacement),
+            ("the list of modal velocities", &observation.modal_velocity),
+        ] {
+            let (found, expected) = (list.len(), self.case.peaks.len());
+            if found != expected {
+                return Err(AdviceError::Length { what, found, expected });
             }
-            self.deformation = self.deformation.max(norm(q));
         }
-        if deflection > LINEAR {
-            self.note(Broken::Linear { time, found: deflection });
-        }
-        if speed >= SOFTENED * self.lowest() && !self.is_known(&observation.omega_body, speed) {
-            let axis = observation.omega_body / speed;
-            self.looked_up = (speed, axis);
-            if let Some(refusal) = refusal(&self.case, &axis, speed, &self.effects)? {
-                self.broken.push(Broken::Limit { time, refusal });
+        self.look(&Moment {
+            time: observation.time,
+            omega_body: observation.omega_body,
+            modal_displacement: &observation.modal_displacement,
+            modal_velocity: &observation.modal_velocity,
+        });
+        let between = std::mem::replace(&mut self.fastest, (0.0, Vector3::zeros()));
+        for (speed, omega_body) in [between, (observation.omega_body.norm(), observation.omega_body)] {
+            if self.effects.deformed_inertia && !self.case.centrifugal_remainders.is_empty() {
+                let (held, left) = held(&self.case, &(omega_body * omega_body.transpose()));
+                if left > self.left_out.0 {
+                    self.left_out = (left, observation.time, (1.0 - held * held).max(0.0).sqrt());
+                }
+            }
+            if speed >= SOFTENED * self.lowest() && !self.is_known(&omega_body, speed) {
+                let axis = omega_body / speed;
+                self.looked_up = (speed, axis);
+                if let Some(refusal) = refusal(&self.case, &axis, speed, &self.effects)? {
+                    self.limit = Some((observation.time, refusal));
+                }
             }
         }
         Ok(())
     }
 
+    /// Why the run should not go on, and since when: the body bends further than linear strain can have any meaning.
+    pub fn stop(&self) -> Option<(f64, Refusal)> {
+        self.stop
+    }
+
     /// What has broken so far: each assumption once, with the first time and the worst.
     pub fn broken(&self) -> Vec<Broken> {
-        let (left, time, held) = self.left_out;
+        let (time, limit_of_bending) = (self.bent_at.time, self.stop);
+        let modes = self.detunings();
+        let spin = self.spun_above.map(|Passed { time, found }| Broken::Spin {
+            time,
+            found,
+            assumed: self.spin,
+            off: self.off(),
+        });
+        let bent = self.bent_above.map(|Passed { time, found }| Broken::Deflection {
+            time,
+            found,
+            assumed: self.deflection,
+            off: self.off(),
+        });
+        let found = self.bent;
+        let linear = (found > LINEAR || !modes.is_empty()).then_some(Broken::Linear { time, found, modes });
+        let limits =
+            [self.limit, limit_of_bending].map(|limit| limit.map(|(time, refusal)| Broken::Limit { time, refusal }));
+        let (left, time, left_out) = self.left_out;
         let influence = relative(left, self.deformation.hypot(left));
-        let stretch = (influence >= self.tolerance).then_some(Broken::Stretch { time, held, influence });
-        self.broken.iter().cloned().chain(stretch).collect()
+        let stretch = (influence >= self.tolerance).then_some(Broken::Stretch { time, left_out, influence });
+        [spin, bent, linear].into_iter().chain(limits).chain([stretch]).flatten().collect()
+    }
+
+    /// The modes whose frequency, or phase in the time that was watched, linear strain puts out noticeably.
+    fn detunings(&self) -> Vec<Detuning> {
+        let case = &self.case;
+        let of = |(k, backbone): (usize, &Option<crate::Backbone>)| {
+            let (swing, omega) = (self.swings.get(k)?, case.body.circular_frequencies[k]);
+            let backbone = backbone.as_ref()?;
+            let turns = omega / std::f64::consts::TAU;
+            let detuning = Detuning {
+                mode: k + 1,
+                deflection: swing.largest * case.peaks[k] / case.length,
+                shift: backbone.shift(swing.largest),
+                phase: backbone.curvature() * swing.integral * turns,
+                periods: self.time * turns,
+            };
+            let matters = detuning.shift.abs() >= SHIFTED || detuning.phase.abs() >= OUT_OF_PHASE;
+            (matters && detuning.deflection >= crate::LARGE).then_some(detuning)
+        };
+        case.backbones.iter().enumerate().filter_map(of).collect()
     }
 
     /// Whether an effect of turning and bending was left out, for which the estimates had to hold.
     fn something_is_off(&self) -> bool {
-        !(self.effects.deformed_inertia && self.effects.coriolis && self.effects.geometric_stiffening)
+        self.turns() && !(self.effects.deformed_inertia && self.effects.coriolis && self.effects.geometric_stiffening)
+    }
+
+    /// Whether the body can turn: if not, nothing of turning is left out, whatever is off.
+    fn turns(&self) -> bool {
+        let is_turned = |drive: &frames_rk4::Drive| matches!(drive.motion, frames_rk4::DrivenMotion::Turn { .. });
+        self.case.drive.is_some_and(is_turned) || self.effects.rotation && !self.case.body.motion.rotations().is_empty()
     }
 
     /// The names of those effects.
@@ -184,22 +392,6 @@ impl<'a> Review<'a> {
     /// Whether a limit has broken, or was looked up for about this spin: it costs an eigenvalue problem.
     fn is_known(&self, omega_body: &Vector3<f64>, speed: f64) -> bool {
         let (fastest, axis) = &self.looked_up;
-        self.broken.iter().any(|broken| matches!(broken, Broken::Limit { .. }))
-            || speed < 1.02 * fastest && omega_body.dot(axis).abs() > 0.999 * speed
-    }
-
-    fn note(&mut self, new: Broken) {
-        for old in &mut self.broken {
-            match (old, &new) {
-                (Broken::Spin { found, .. }, Broken::Spin { found: now, .. })
-                | (Broken::Deflection { found, .. }, Broken::Deflection { found: now, .. })
-                | (Broken::Linear { found, .. }, Broken::Linear { found: now, .. }) => {
-                    *found = found.max(*now);
-                    return;
-                }
-                _ => {}
-            }
-        }
-        self.broken.push(new);
+        self.limit.is_some() || speed < 1.02 * fastest && omega_body.dot(axis).abs() > 0.999 * speed
     }
 }

@@ -4,8 +4,11 @@ use faer::Mat;
 use modal::ReducedBody;
 use nalgebra::Matrix3;
 
+use crate::backbone::LARGE;
 use crate::case::{AdviceError, Case};
 use crate::excitation::{Source, Spin};
+use crate::limits::{Refusal, deflected};
+use crate::number::Number;
 use crate::response::{Response, norm, relative};
 use crate::row::{Effect, Row, Worth};
 use crate::{rigid, tensor};
@@ -13,7 +16,7 @@ use crate::{rigid, tensor};
 /// What to expect of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Advice {
-    /// A row for each effect, in the order of [`Effect::ALL`].
+    /// A row for each effect but [`Effect::Step`], in the order of [`Effect::ALL`].
     pub rows: Vec<Row>,
     /// What each mode is worth (nf).
     pub modes: Vec<Worth>,
@@ -25,6 +28,8 @@ pub struct Advice {
     pub spin: f64,
     /// Largest displacement by deformation, over the length of the body, that is to be expected at most.
     pub deflection: f64,
+    /// The same that there will be without doubt: by loads on a body that neither spins nor is stiffened by them.
+    pub certain_deflection: f64,
     /// Influence of what the modes leave out of the static answer to the spin, bounded above; at most 1.
     pub stretch: f64,
     /// The tolerance.
@@ -35,6 +40,11 @@ impl Advice {
     /// The row of an effect.
     pub fn row(&self, effect: Effect) -> Option<&Row> {
         self.rows.iter().find(|row| row.effect == effect)
+    }
+
+    /// Why the model is known to be wrong by what the loads do to it, if it is.
+    pub fn refusal(&self) -> Option<Refusal> {
+        deflected(self.certain_deflection)
     }
 
     /// Says in the row of static shapes that a run has not got them, if what the spin makes of them matters.
@@ -125,14 +135,8 @@ pub fn advise(case: &Case, tolerance: f64) -> Result<Advice, AdviceError> {
         rigid::translation(case, &sources),
         rigid::rotation(case, &spin, &sources, &response),
         static_correction(case, &spin, &sources, keep, stretch),
-        Estimate {
-            effect: Effect::Deflection,
-            value: deflection,
-            influence: relative(SHORTENING * deflection * deflection, 1.0),
-            why: format!("At most {deflection:.1e} of the length; linear strain ends at 10 %."),
-        },
+        bending(case, &response, deflection),
         foreshortening(deflection),
-        step(case, &spin, &shares),
     ];
     let rows = estimates.into_iter().map(|estimate| estimate.row(tolerance)).collect();
     Ok(Advice {
@@ -142,6 +146,7 @@ pub fn advise(case: &Case, tolerance: f64) -> Result<Advice, AdviceError> {
         more_modes: keep > 0 && keep == case.body.flexible(),
         spin: spin.largest,
         deflection,
+        certain_deflection: if spin.largest == 0.0 { response.certain_deflection } else { 0.0 },
         stretch,
         tolerance,
     })
@@ -341,13 +346,8 @@ fn left_out_at_most(body: &ReducedBody) -> [f64; 6] {
 
 fn static_correction(case: &Case, spin: &Spin, sources: &[Source], keep: usize, stretch: f64) -> Estimate {
     let omega = &case.body.circular_frequencies;
-    let compliance = |source: &Source, modes: usize| -> f64 {
-        (0..modes).map(|k| (source.modal_at_start[k] / omega[k]).powi(2)).sum()
-    };
     let left = |(i, source): (usize, &Source)| match case.static_compliances.get(i) {
-        // The loads as they are at the beginning: a field that turns in the body has no one compliance.
-        Some(whole) if *whole > 0.0 => relative((whole - compliance(source, keep)).max(0.0), *whole),
-        Some(_) => 0.0,
+        Some(whole) => source.left_out(whole, omega, keep),
         None if source.course.largest == 0.0 => 0.0,
         None => 1.0,
     };
@@ -364,8 +364,9 @@ fn static_correction(case: &Case, spin: &Spin, sources: &[Source], keep: usize, 
     } else if !case.centrifugal_remainders.is_empty() && stretch > if known { value } else { 0.0 } {
         let squares = spin.directions * (spin.largest * spin.largest);
         let held = held(case, &squares).0;
+        let left_out = 100.0 * (1.0 - held * held).max(0.0).sqrt();
         format!(
-            "The modes hold only {held:.1e} of the static answer to the spin; the rest comes to {stretch:.1e} of the deformation."
+            "The modes leave out {left_out:.1} % of the static answer to the spin, which may come to {stretch:.1e} of the deformation."
         )
     } else if known {
         format!(
@@ -378,6 +379,33 @@ fn static_correction(case: &Case, spin: &Spin, sources: &[Source], keep: usize, 
     Estimate { effect: Effect::StaticCorrection, value, influence, why }
 }
 
+/// The deflection, and what linear strain makes of the mode that it puts out most.
+fn bending(case: &Case, response: &Response, deflection: f64) -> Estimate {
+    let of = |(k, backbone): (usize, &Option<crate::Backbone>)| {
+        let (backbone, amplitude) = (backbone.as_ref()?, *response.displacement.get(k)?);
+        let periods = case.body.circular_frequencies[k] * response.memory[k] / std::f64::consts::TAU;
+        let phase = backbone.curvature().abs() * amplitude * amplitude * periods;
+        (amplitude * case.peaks[k] >= LARGE * case.length).then(|| (k, backbone.shift(amplitude), phase))
+    };
+    let worst = case.backbones.iter().enumerate().filter_map(of).max_by(|a, b| a.2.total_cmp(&b.2));
+    let why = format!("At most {deflection:.1e} of the length; linear strain ends at 10 %.");
+    let (influence, why) = match worst {
+        None => (0.0, why),
+        Some((k, shift, phase)) => (
+            relative(std::f64::consts::TAU * phase, 1.0),
+            format!(
+                "{why} It has the frequency of mode {} about {:.2} % too {} at most, and its phase out by {} of a period.",
+                k + 1,
+                100.0 * shift.abs(),
+                if shift < 0.0 { "high" } else { "low" },
+                Number(phase)
+            ),
+        ),
+    };
+    let influence = influence.max(relative(SHORTENING * deflection * deflection, 1.0));
+    Estimate { effect: Effect::Deflection, value: deflection, influence, why }
+}
+
 fn foreshortening(deflection: f64) -> Estimate {
     let value = SHORTENING * deflection * deflection;
     Estimate {
@@ -388,28 +416,6 @@ fn foreshortening(deflection: f64) -> Estimate {
             "A bar bent that far is shorter by up to {value:.1e} of its length, which linear modes do not show."
         ),
     }
-}
-
-fn step(case: &Case, spin: &Spin, shares: &[f64]) -> Estimate {
-    let effect = Effect::Step;
-    let Some((method, step)) = case.step else {
-        return Estimate { effect, value: 0.0, influence: 0.0, why: "The step follows from the tolerance.".into() };
-    };
-    let omega = &case.body.circular_frequencies;
-    let highest = omega.iter().copied().fold(0.0, f64::max);
-    let value = step * if method.limited_by_modes() { highest } else { spin.largest };
-    // Phase error of RK4: x⁵/120 a step.
-    let order = i32::try_from(method.order()).unwrap_or(1);
-    let late = |rate: f64| (rate * step).powi(order) * rate * case.end / if order == 4 { 120.0 } else { 2.0 };
-    let modes = match method.limited_by_modes() {
-        true => {
-            omega.iter().zip(shares).map(|(w, share)| share.min(1.0) * (w * step).powi(4) * w * case.end / 120.0).sum()
-        }
-        false => 0.0,
-    };
-    let influence = relative(modes.max(late(spin.largest)), 1.0);
-    let why = format!("Steps of {step:.1e} put the motion late by up to {influence:.1e} rad at the end.");
-    Estimate { effect, value, influence, why }
 }
 
 /// Σ m_kl x_k y_l

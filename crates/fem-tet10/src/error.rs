@@ -38,7 +38,7 @@ pub enum MeshError {
     Version {
         /// The mesh.
         source_name: String,
-        /// The version, or the beginning of the file.
+        /// The version, or that there is none.
         found: String,
     },
     /// The text or bytes do not follow the format.
@@ -319,6 +319,46 @@ pub enum MeshError {
     },
 }
 
+impl MeshError {
+    /// The mesh: its file, or what the caller named it.
+    pub fn source_name(&self) -> &str {
+        match self {
+            Self::Io { source_name, .. }
+            | Self::Version { source_name, .. }
+            | Self::Syntax { source_name, .. }
+            | Self::Total { source_name, .. }
+            | Self::MissingSection { source_name, .. }
+            | Self::ElementType { source_name, .. }
+            | Self::NoElements { source_name, .. }
+            | Self::UnknownNode { source_name, .. }
+            | Self::DuplicateTag { source_name, .. }
+            | Self::SameElement { source_name, .. }
+            | Self::NotFinite { source_name, .. }
+            | Self::TooManyGroups { source_name, .. }
+            | Self::AmbiguousGroup { source_name, .. }
+            | Self::UnknownRegion { source_name, .. }
+            | Self::UnknownGroup { source_name, .. }
+            | Self::NotAFace { source_name, .. }
+            | Self::InnerFace { source_name, .. }
+            | Self::UnknownGroupNode { source_name, .. }
+            | Self::NoGroup { source_name, .. }
+            | Self::SeveralGroups { source_name, .. }
+            | Self::Jacobian { source_name, .. }
+            | Self::OrphanNodes { source_name, .. }
+            | Self::Pieces { source_name, .. }
+            | Self::Lengths { source_name, .. } => source_name,
+        }
+    }
+
+    /// Line in its file, from 1, where the fault is in one.
+    pub fn line(&self) -> Option<usize> {
+        match self {
+            Self::Syntax { place: Place::Line(line), .. } | Self::Total { place: Place::Line(line), .. } => Some(*line),
+            _ => None,
+        }
+    }
+}
+
 /// The beginning of a list, for a message.
 fn first_few<T: std::fmt::Debug>(list: &[T]) -> String {
     const FEW: usize = 10;
@@ -491,4 +531,25 @@ pub enum AssemblyError {
         /// What stands there.
         found: f64,
     },
+}
+
+impl AssemblyError {
+    /// The mesh: its file, or what the caller named it; `None` where the fault is none of a mesh.
+    pub fn source_name(&self) -> Option<&str> {
+        match self {
+            Self::MissingGroup { source_name, .. }
+            | Self::NoMaterial { source_name, .. }
+            | Self::TwoMaterials { source_name, .. }
+            | Self::OffBody { source_name, .. }
+            | Self::Spread { source_name, .. }
+            | Self::SpreadTooWide { source_name, .. }
+            | Self::Patch { source_name, .. } => Some(source_name),
+            Self::MaterialConstant { .. }
+            | Self::PointMass { .. }
+            | Self::SpreadRadius { .. }
+            | Self::PatchRadius { .. }
+            | Self::FieldRows { .. }
+            | Self::FieldNotFinite { .. } => None,
+        }
+    }
 }

@@ -24,7 +24,7 @@ const PARTS: usize = 64;
 /// Elements that are multiplied at once.
 const BLOCK: usize = 32;
 /// Nodes of an element besides its first.
-const OTHERS: usize = 9;
+pub(crate) const OTHERS: usize = 9;
 
 /// For each displacement field (column of `displacements`, N×s with N = 3n, length) the matrix `Ψᵀ K_σ Ψ` (f×f), where
 /// Ψ is `shapes` (N×f, row `3·node + axis`) and K_σ the geometric stiffness, force per length, of the field's linear
@@ -107,7 +107,7 @@ pub fn reduced_geometric_stiffness(
     Ok(sums)
 }
 
-fn check_field(mesh: &Mesh, what: &'static str, field: MatRef<'_, f64>) -> Result<(), AssemblyError> {
+pub(crate) fn check_field(mesh: &Mesh, what: &'static str, field: MatRef<'_, f64>) -> Result<(), AssemblyError> {
     let expected = 3 * mesh.positions().len();
     if field.nrows() != expected {
         return Err(AssemblyError::FieldRows { what, expected, found: field.nrows() });
@@ -121,7 +121,7 @@ fn check_field(mesh: &Mesh, what: &'static str, field: MatRef<'_, f64>) -> Resul
 }
 
 /// Displacements of the nodes 1 to 9 of an element against node 0: by node, then axis, then column of `fields`.
-fn relative_displacements(fields: MatRef<'_, f64>, nodes: &[u32; 10]) -> Vec<f64> {
+pub(crate) fn relative_displacements(fields: MatRef<'_, f64>, nodes: &[u32; 10]) -> Vec<f64> {
     let first = 3 * nodes[0] as usize;
     let mut relative = Vec::with_capacity(3 * OTHERS * fields.ncols());
     for node in &nodes[1..] {

@@ -11,7 +11,9 @@
 //! * Physical groups of surfaces carry loads, see [`Mesh::surface_weights`] and [`Mesh::surface_pressure`]; groups of any
 //!   dimension, boxes, balls and lines pick nodes, see [`Mesh::group_nodes`]; [`Mesh::mean_rotation`] carries a moment.
 //! * [`assemble`] fills K and M in parallel into one sparsity pattern. Nothing of size N×N is ever dense.
-//! * [`reduced_geometric_stiffness`] gives the stress stiffness of displacement fields, reduced to a few shapes.
+//! * [`reduced_geometric_stiffness`] gives the stress stiffness of displacement fields, reduced to a few shapes;
+//!   [`second_order_forces`] and [`second_order_energies`] what displacements of second order meet in a St. Venant–Kirchhoff
+//!   body.
 //!
 //! Degrees of freedom are numbered `3·node + axis`. Any consistent set of units will do; the mesh's frame
 //! is the frame of every vector here.
@@ -30,6 +32,7 @@ mod mesh;
 mod msh;
 mod point_mass;
 mod quadrature;
+mod second_order;
 mod selection;
 mod shape;
 mod surface;
@@ -44,4 +47,5 @@ pub use mean_rotation::MeanRotation;
 pub use mesh::{Mesh, MeshParts, NodeGroup, SurfaceGroup};
 pub use msh::{parse_msh, read_msh};
 pub use point_mass::PointMass;
+pub use second_order::{geometric_stiffness_product, second_order_energies, second_order_forces};
 pub use shape::{shape_functions, shape_gradients};

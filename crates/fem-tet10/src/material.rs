@@ -6,7 +6,8 @@ use crate::error::AssemblyError;
 use crate::mesh::Mesh;
 
 /// An isotropic, linearly elastic material.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Material {
     /// Young's modulus E, force per area.
     pub young_modulus: f64,

@@ -10,7 +10,8 @@ use crate::mesh::Mesh;
 const MOST_CARRIERS: usize = 500;
 
 /// A mass at a point of the body.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct PointMass {
     /// Where, in the mesh's frame.
     pub at: [f64; 3],

@@ -65,7 +65,7 @@ fn main() {
 
 /// Microseconds a step, and evaluations a step.
 fn measure(model: &Model, scene: &Scene) -> (f64, f64) {
-    let method = flexframe::scene::method(scene.time.method);
+    let method = scene.time.method;
     let simulation = model
         .start_with(scene, method, StepControl::Fixed(STEP), Rows::EverySteps(u64::MAX))
         .expect("the motion starts");

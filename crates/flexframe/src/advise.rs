@@ -4,11 +4,12 @@ mod verify;
 
 use std::fmt;
 
-use advice::Effect;
+use advice::{Effect, Row};
 use scene::{BuildProgress, Method, Model, Scene};
 use serde::Serialize;
 
 use crate::effects::{TOGGLED, is_on};
+use crate::json;
 use crate::modes::frequency_unit;
 use crate::run::RunError;
 
@@ -27,7 +28,8 @@ pub struct AdviseReport {
     pub rows: Vec<EffectRow>,
     /// What each natural mode is worth.
     pub modes: Vec<ModeRow>,
-    /// How many of the modes are worth keeping: the shares of those after them sum to less than the tolerance.
+    /// How many of the modes to keep, the lowest first: the shares of those after them sum to less than the tolerance. More
+    /// than are worth it each, where others come before them or add up.
     pub keep: usize,
     /// Whether the last mode is still worth keeping, so that more may be.
     pub more_modes: bool,
@@ -42,9 +44,11 @@ pub struct EffectRow {
     pub effect: &'static str,
     /// The number that governs it.
     pub formula: &'static str,
-    /// That number in this scene.
+    /// That number in this scene; infinite where there is nothing to compare with.
+    #[serde(serialize_with = "json::number")]
     pub value: f64,
     /// Estimated relative influence on the answer, an upper bound.
+    #[serde(serialize_with = "json::number")]
     pub influence: f64,
     /// Whether that reaches the tolerance; of deflection, foreshortening and step whether they may matter.
     pub advised: bool,
@@ -61,7 +65,7 @@ pub struct EffectRow {
 #[serde(rename_all = "snake_case")]
 pub enum Real {
     /// Relative difference of the motions.
-    Difference(f64),
+    Difference(#[serde(serialize_with = "json::number")] f64),
     /// One of the runs fails, with the reason.
     Fails(String),
 }
@@ -72,6 +76,7 @@ pub struct ModeRow {
     /// Cycles per time.
     pub frequency: f64,
     /// Estimated largest share in the deformation, an upper bound.
+    #[serde(serialize_with = "json::number")]
     pub share: f64,
     /// Whether that reaches the tolerance.
     pub worth_keeping: bool,
@@ -99,11 +104,12 @@ pub fn advise(scene: &Scene, verify: bool, mut progress: impl FnMut(AdviseProgre
     let of_paper = scene.time.method.is_of_paper();
     let mut scene = scene.clone();
     if of_paper {
-        scene.time.method = Method::Exponential;
+        scene.time.method = Method::EXPONENTIAL;
     }
     let scene = &scene;
     let model = Model::build(scene, |p| progress(AdviseProgress::Build(p)))?;
-    let rows = model.advice.rows.iter().map(|row| EffectRow {
+    let step = step_row(scene, &model);
+    let rows = model.advice.rows.iter().chain([&step]).map(|row| EffectRow {
         effect: row.effect.name(),
         formula: row.effect.formula(),
         value: row.value,
@@ -145,6 +151,22 @@ pub fn advise(scene: &Scene, verify: bool, mut progress: impl FnMut(AdviseProgre
         }
     }
     Ok(report)
+}
+
+/// What the steps get wrong; a step that no run can start with gets everything wrong.
+fn step_row(scene: &Scene, model: &Model) -> Row {
+    let tolerance = scene.effects.tolerance;
+    match model.step_estimate(scene) {
+        Ok(Some(estimate)) => estimate.row(tolerance),
+        Ok(None) => {
+            let why = "The step follows from the tolerance.".into();
+            Row { effect: Effect::Step, value: 0.0, influence: 0.0, on: false, why }
+        }
+        Err(error) => {
+            let why = format!("No run can start: {error}.");
+            Row { effect: Effect::Step, value: 0.0, influence: 1.0, on: true, why }
+        }
+    }
 }
 
 impl EffectRow {
@@ -194,13 +216,26 @@ impl fmt::Display for AdviseReport {
             }
         }
         if !self.modes.is_empty() {
-            writeln!(f, "\n  mode  frequency, {:<6}     share  worth keeping", self.frequency_unit)?;
+            writeln!(f, "\n  mode  frequency, {:<6}     share  keep", self.frequency_unit)?;
             for (k, mode) in self.modes.iter().enumerate() {
-                let worth = if mode.worth_keeping { "yes" } else { "no" };
-                writeln!(f, "  {:>4}  {:>17.6}  {:>8.1e}  {worth}", k + 1, mode.frequency, mode.share)?;
+                let keep = match (mode.worth_keeping, k < self.keep) {
+                    (true, _) => "yes",
+                    (false, true) => "yes, with the others",
+                    (false, false) => "no",
+                };
+                writeln!(f, "  {:>4}  {:>17.6}  {:>8.1e}  {keep}", k + 1, mode.frequency, mode.share)?;
+            }
+            write!(f, "\n  Keep the lowest {} of {} modes", self.keep, self.modes.len())?;
+            let alone = self.modes.iter().filter(|mode| mode.worth_keeping).count();
+            if alone < self.keep {
+                write!(
+                    f,
+                    ": {alone} for their own share, the others because such a mode comes after them, or because their \
+                     shares add up"
+                )?;
             }
             let more = if self.more_modes { "; there may be more, raise modes.flexible or modes.most" } else { "" };
-            write!(f, "\n  {} of {} modes are worth keeping{more}.", self.keep, self.modes.len())?;
+            write!(f, "{more}.")?;
         }
         if let Some(refusal) = &self.refusal {
             write!(f, "\n\n  This model is refused: {refusal}.")?;

@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use frames_rk4::Reached;
+use figures::{Animation, FigureError, Frame, View};
+use frames_rk4::{Reached, StepError};
 use nalgebra::Vector3;
-use results::{Animation, FigureError, Frame, View};
 use scene::{Meshed, Model, Scene};
 
 use crate::run::{RunError, RunProgress};
@@ -25,6 +25,14 @@ pub enum AnimationError {
     /// The scene could not be run.
     #[error(transparent)]
     Run(#[from] RunError),
+    /// A step failed, and no picture is drawn.
+    #[error("{}: {source}", scene.display())]
+    Step {
+        /// The scene file.
+        scene: PathBuf,
+        /// Why.
+        source: StepError,
+    },
     /// There is nothing to draw.
     #[error("{}: a rigid body without a mesh has no surface to draw; give it a mesh and `flexible = 0`", scene.display())]
     NoMesh {
@@ -68,7 +76,7 @@ pub fn animate(
     for frame in 0..=last {
         // The first step at or after the frame's time.
         let due = scene.time.end * (frame as f64 / last as f64) * (1.0 - 1e-12);
-        let failed = |source| RunError::Step { results: PathBuf::from("no file"), source };
+        let failed = |source| AnimationError::Step { scene: scene.path.clone(), source };
         while simulation.time() < due && simulation.advance(1).map_err(failed)? != Reached::End {}
         simulation.observe(&mut now).map_err(failed)?;
         let u = surface.displacements(modes, &now.modal_displacement);

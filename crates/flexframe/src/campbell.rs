@@ -13,15 +13,16 @@ mod table;
 
 use std::path::{Path, PathBuf};
 
+use figures::FigureError;
 use frames_rk4::{EigenError, SteadySpin};
 use nalgebra::Vector3;
-use results::FigureError;
-use scene::{Body, BuildError, BuildProgress, Choice, Flexible, Model, Scene};
+use scene::{BuildError, BuildProgress, Choice, Flexible, Model, Scene};
 use serde::Serialize;
 
 pub use critical::Critical;
 
-use crate::modes::frequency_unit;
+use crate::json;
+use crate::modes::{frequency_unit, require_flexible};
 use crate::report::MeshReport;
 use branches::Branches;
 
@@ -32,8 +33,13 @@ pub enum CampbellError {
     #[error(transparent)]
     Build(#[from] BuildError),
     /// The vibrations cannot be found.
-    #[error(transparent)]
-    Eigen(#[from] EigenError),
+    #[error("{}: {source}", scene.display())]
+    Eigen {
+        /// The scene file.
+        scene: PathBuf,
+        /// Why.
+        source: EigenError,
+    },
     /// The axis has no direction.
     #[error("axis {axis:?}: expected three finite numbers that are not all zero, in the axes of the mesh")]
     Axis {
@@ -149,6 +155,7 @@ pub struct CampbellReport {
     /// Where orders and branches cross, by order and speed; order 0 where a frequency is zero.
     pub critical_speeds: Vec<Critical>,
     /// Files written.
+    #[serde(serialize_with = "json::paths")]
     pub files: Vec<PathBuf>,
 }
 
@@ -208,25 +215,15 @@ pub fn campbell(
         }
     }
     let model = Model::build(&scene, |p| progress(CampbellProgress::Build(p)))?;
-    if model.body.flexible() == 0 {
-        let (key, cure) = match scene.body {
-            Body::Rigid(_) => ("body.rigid", "give the body a mesh, and `flexible` in [modes]"),
-            Body::Meshed(_) if scene.effects.flexibility == Choice::Off => {
-                ("effects.flexibility", "remove it, so that the body deforms")
-            }
-            Body::Meshed(_) => ("modes.flexible", "keep flexible modes"),
-        };
-        let found = "a body without flexible modes, which has no natural frequencies";
-        let refusal = scene.refuse(key, found, "one flexible mode or more", cure);
-        return Err(BuildError::from(refusal).into());
-    }
+    require_flexible(&scene, &model).map_err(BuildError::from)?;
 
     let effects = &model.physics.effects;
     let spin = SteadySpin::new(&model.body, &axis, effects);
     let total = speeds.len();
-    let branches = Branches::follow(&spin, speeds, |done| progress(CampbellProgress::Speeds { done, total }))?;
-    let first_mode = model.body.motion.count() + 1;
-    let critical_speed = spin.critical_speed()?;
+    let failed = |source| CampbellError::Eigen { scene: scene.path.clone(), source };
+    let branches =
+        Branches::follow(&spin, speeds, |done| progress(CampbellProgress::Speeds { done, total })).map_err(failed)?;
+    let critical_speed = spin.critical_speed().map_err(failed)?;
     let mut report = CampbellReport {
         title: scene.title.clone(),
         time_unit: scene.units.time.clone(),
@@ -240,8 +237,8 @@ pub fn campbell(
             stiffening: effects.geometric_stiffening,
         },
         stable_below: critical_speed.is_finite().then_some(critical_speed),
-        critical_speeds: critical::find(&spin, &branches, &settings.orders, first_mode)?,
-        branches: branches.lines(first_mode),
+        critical_speeds: critical::find(&spin, &branches, &settings.orders).map_err(failed)?,
+        branches: branches.lines(),
         speeds: branches.speeds,
         files: Vec::new(),
     };

@@ -1,33 +1,29 @@
 //! Arguments, and what is printed.
 
-use std::error::Error;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use clap::{Args, Parser, Subcommand};
 use flexframe::animation::{AnimationSettings, animate};
 use flexframe::campbell::{CampbellError, CampbellSettings, Speeds, campbell};
 use flexframe::cost::{self, CostSettings};
-use flexframe::paper::PaperError;
-use flexframe::run::{RunError, RunProgress, RunSettings};
-use flexframe::{advise, figures, modes, paper, run};
+use flexframe::failure::{Details, Failure, FailureReport, Kind};
+use flexframe::run::RunSettings;
+use flexframe::{advise, mode_shapes, modes, paper, run};
 use scene::{BuildError, Flexible, Scene, SceneError};
-use serde::Serialize;
-use signal_hook::consts::{SIGINT, SIGTERM};
-use signal_hook::flag;
 
+use crate::cli_error::CliError;
 use crate::progress::Bar;
+use crate::signals::Signals;
+use crate::{output, threads};
 
 /// Flexible-body dynamics: how an elastic body moves that flies, tumbles and spins while it vibrates.
 ///
 /// A scene (a TOML file, see docs/scene.md) names a gmsh mesh of second-order tetrahedra, its material, the modes to
 /// keep, the loads, and the time. Start with `flexframe run examples/plate.toml`.
 #[derive(Debug, Parser)]
-#[command(version, max_term_width = 100)]
+#[command(version, max_term_width = 100, after_long_help = exit_codes(), after_help = "--help says more, exit codes too.")]
 struct Cli {
     /// Threads for meshes and modes; all cores if not given. The results are the same for any number.
     #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256))]
@@ -39,6 +35,9 @@ struct Cli {
 #[derive(Debug, Subcommand)]
 enum Command {
     /// Run a scene and write its motion to an HDF5 file.
+    ///
+    /// The first ctrl-C (or SIGTERM) stops it at its next row, from where `flexframe resume` goes on; one that comes half a
+    /// second later or more ends the program at once.
     Run {
         #[command(flatten)]
         scene: SceneArgs,
@@ -53,7 +52,7 @@ enum Command {
         /// The unfinished file, such as out/plate/plate.part.h5, or the results file that it would have become.
         #[arg(value_name = "FILE")]
         file: PathBuf,
-        /// Print the summary as JSON, for scripts.
+        /// Print the summary as JSON, for scripts; an error, too, on standard error.
         #[arg(long)]
         json: bool,
     },
@@ -128,7 +127,7 @@ enum Command {
         /// Find the cheapest setting within this error, ready for the scene.
         #[arg(long, value_name = "ERROR", value_parser = positive)]
         target: Option<f64>,
-        /// Seconds that a run may take; the reference may take twenty times as long.
+        /// Seconds that a run may take, after which it is stopped; the reference may take twenty times as long.
         #[arg(long, value_name = "SECONDS", default_value = "1", value_parser = patience)]
         patience: Duration,
     },
@@ -167,7 +166,7 @@ struct SceneArgs {
     /// The scene file.
     #[arg(value_name = "SCENE")]
     scene: PathBuf,
-    /// Print the summary as JSON, for scripts.
+    /// Print the summary as JSON, for scripts; an error, too, on standard error.
     #[arg(long)]
     json: bool,
 }
@@ -179,81 +178,59 @@ struct FileArgs {
     overwrite: bool,
 }
 
-/// As a shell has it of a program that ctrl-C has ended.
-const STOPPED: u8 = 130;
-
 pub fn main() -> ExitCode {
-    match execute(Cli::parse()) {
+    // A wrong command line has to be reported before it is parsed to its end.
+    let json = std::env::args_os().skip(1).take_while(|argument| argument != "--").any(|argument| argument == "--json");
+    let done = match Cli::try_parse() {
+        Ok(cli) => execute(cli, json).map_err(|failure| FailureReport::of(failure.as_ref())),
+        Err(error) if error.use_stderr() && !json => {
+            // Where it cannot be written, the exit code still tells.
+            let _ = error.print();
+            return ExitCode::from(Kind::Usage.exit_code());
+        }
+        Err(error) if error.use_stderr() => {
+            let text = error.render().to_string();
+            let message = text.trim().strip_prefix("error: ").unwrap_or(text.trim());
+            Err(FailureReport::new(Kind::Usage, message, Details::default()))
+        }
+        // The help or the version was asked for.
+        Err(asked) => output::written(asked.print()).map_err(|failure| FailureReport::of(&failure)),
+    };
+    match done {
         Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("error: {error}");
-            match (error.downcast_ref(), error.downcast_ref()) {
-                (Some(RunError::Stopped { .. }), _) | (_, Some(PaperError::Run(RunError::Stopped { .. }))) => {
-                    ExitCode::from(STOPPED)
-                }
-                _ => ExitCode::FAILURE,
-            }
+        Err(report) => {
+            output::report(&report, json);
+            ExitCode::from(report.exit_code())
         }
     }
 }
 
-/// What ctrl-C, and a request to terminate, do: before the motion begins there is nothing to lose, and they end the
-/// program at once; then the first stops the run at its next row, and the second ends the program at once.
-struct Signals {
-    at_once: Arc<AtomicBool>,
-    stop: Arc<AtomicBool>,
+fn settings(signals: &Signals, overwrite: bool) -> RunSettings {
+    RunSettings { overwrite, stop: signals.stop() }
 }
 
-impl Signals {
-    fn listen() -> std::io::Result<Self> {
-        let (at_once, stop) = (Arc::new(AtomicBool::new(true)), Arc::<AtomicBool>::default());
-        for signal in [SIGINT, SIGTERM] {
-            // In this order, so that the second signal finds what the first has set.
-            flag::register_conditional_shutdown(signal, STOPPED.into(), at_once.clone())?;
-            flag::register(signal, at_once.clone())?;
-            flag::register(signal, stop.clone())?;
-        }
-        Ok(Self { at_once, stop })
-    }
-
-    fn settings(&self, overwrite: bool) -> RunSettings {
-        RunSettings { overwrite, stop: self.stop.clone() }
-    }
-
-    fn heard(&self, progress: RunProgress) {
-        match progress {
-            RunProgress::Motion(0.0) => self.at_once.store(false, Ordering::Relaxed),
-            RunProgress::Motion(1.0) => self.at_once.store(true, Ordering::Relaxed),
-            _ => {}
-        }
-    }
-}
-
-fn execute(cli: Cli) -> Result<(), Box<dyn Error>> {
-    if let Some(threads) = cli.threads {
-        rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build_global()?;
-    }
+fn execute(cli: Cli, json_errors: bool) -> Result<(), Box<dyn Failure>> {
+    let signals = Signals::listen(json_errors).map_err(CliError::Signals)?;
+    threads::start(cli.threads)?;
     let mut bar = Bar::new();
     match cli.command {
         Command::Run { scene: SceneArgs { scene, json }, output, files } => {
             let scene = Scene::read(scene)?;
-            let signals = Signals::listen()?;
-            let settings = signals.settings(files.overwrite);
+            let settings = settings(&signals, files.overwrite);
             let (_, report) = run::run(&scene, &folder(&scene, output), &settings, |p| {
                 signals.heard(p);
                 bar.run(p);
             })?;
             drop(bar);
-            print(&report, json)
+            output::print(&report, json)
         }
         Command::Resume { file, json } => {
-            let signals = Signals::listen()?;
-            let (_, _, report) = run::resume(&file, &signals.settings(false), |p| {
+            let (_, _, report) = run::resume(&file, &settings(&signals, false), |p| {
                 signals.heard(p);
                 bar.run(p);
             })?;
             drop(bar);
-            print(&report, json)
+            output::print(&report, json)
         }
         Command::Modes { scene: SceneArgs { scene, json }, flexible, output } => {
             let mut scene = Scene::read(scene)?;
@@ -267,20 +244,20 @@ fn execute(cli: Cli) -> Result<(), Box<dyn Error>> {
                 Some(folder) => {
                     std::fs::create_dir_all(&folder)
                         .map_err(|source| run::RunError::Folder { folder: folder.clone(), source })?;
-                    figures::mode_shapes(&scene, &model, &folder.join("modes"))?.to_vec()
+                    mode_shapes::draw(&scene, &model, &folder.join("modes"))?.to_vec()
                 }
                 None => Vec::new(),
             };
-            print(&report, json)?;
+            output::print(&report, json)?;
             if !json {
-                list(&pictures)?;
+                output::list(&pictures)?;
             }
             Ok(())
         }
         Command::Advise { scene: SceneArgs { scene, json }, verify } => {
             let report = advise::advise(&Scene::read(scene)?, verify, |p| bar.advise(p))?;
             drop(bar);
-            print(&report, json)
+            output::print(&report, json)
         }
         Command::Campbell {
             scene: SceneArgs { scene, json },
@@ -298,40 +275,46 @@ fn execute(cli: Cli) -> Result<(), Box<dyn Error>> {
             let report = campbell(&scene, &folder(&scene, output), &settings, |p| bar.campbell(p))
                 .map_err(|error| of_option(error, flexible))?;
             drop(bar);
-            print(&report, json)
+            output::print(&report, json)
         }
         Command::Paper { scene: SceneArgs { scene, json }, output, files } => {
             let scene = Scene::read(scene)?;
-            let signals = Signals::listen()?;
-            let settings = signals.settings(files.overwrite);
+            let settings = settings(&signals, files.overwrite);
             let report = paper::reproduce(&scene, &folder(&scene, output), &settings, |p| {
                 signals.heard(p);
                 bar.run(p);
             })?;
             drop(bar);
-            print(&report, json)
+            output::print(&report, json)
         }
         Command::Cost { scene: SceneArgs { scene, json }, output, target, patience } => {
             let scene = Scene::read(scene)?;
             let settings = CostSettings { target, ..CostSettings::with_patience(patience) };
             let report = cost::price_list(&scene, &folder(&scene, output), settings, |p| bar.cost(p))?;
             drop(bar);
-            print(&report, json)
+            output::print(&report, json)
         }
         Command::Accuracy { scenes, output, patience } => {
             let scenes = scenes.iter().map(Scene::read).collect::<Result<Vec<_>, _>>()?;
             let lists = Path::new("out").join("accuracy");
             let files = cost::accuracy_page(&scenes, &output, &lists, patience, |p| bar.cost(p))?;
             drop(bar);
-            list(&files)
+            output::list(&files)
         }
         Command::Animate { scene, output, frames, magnify } => {
             let scene = Scene::read(scene)?;
             animate(&scene, &output, AnimationSettings { frames, magnification: magnify }, |p| bar.run(p))?;
             drop(bar);
-            list(&[output])
+            output::list(&[output])
         }
     }
+}
+
+/// The exit codes as a part of the help.
+fn exit_codes() -> String {
+    let line = |kind: &Kind| format!("\n  {:>3}  {}", kind.exit_code(), kind.meaning());
+    let codes: String = Kind::ALL.iter().map(line).collect();
+    format!("Exit codes:\n    0  done{codes}")
 }
 
 /// A number that is none of NaN and infinity.
@@ -389,12 +372,12 @@ fn speeds(text: &str) -> Result<Speeds, String> {
 }
 
 /// The refusal of a number of modes, at the option where that has replaced what the scene says.
-fn of_option(error: CampbellError, flexible: Option<usize>) -> Box<dyn Error> {
+fn of_option(error: CampbellError, flexible: Option<usize>) -> Box<dyn Failure> {
     match (error, flexible) {
         (CampbellError::Build(BuildError::Scene(SceneError::Invalid { at, found, expected, cure })), Some(_))
             if at.key == "modes.flexible" =>
         {
-            format!("--flexible: found {found}, expected {expected}\n = {cure}").into()
+            CliError::Option { option: "--flexible", found, expected, cure }.into()
         }
         (error, _) => error.into(),
     }
@@ -403,21 +386,4 @@ fn of_option(error: CampbellError, flexible: Option<usize>) -> Box<dyn Error> {
 /// The folder asked for, or one named after the scene.
 fn folder(scene: &Scene, output: Option<PathBuf>) -> PathBuf {
     output.unwrap_or_else(|| Path::new("out").join(scene.path.file_stem().unwrap_or("scene".as_ref())))
-}
-
-fn print<R: Serialize + std::fmt::Display>(report: &R, json: bool) -> Result<(), Box<dyn Error>> {
-    let text = if json { serde_json::to_string_pretty(report)? } else { report.to_string() };
-    write_line(&text)
-}
-
-/// A line on the terminal; a reader such as `head` that has had enough is no error.
-fn write_line(line: &str) -> Result<(), Box<dyn Error>> {
-    match writeln!(std::io::stdout(), "{line}") {
-        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Err(error.into()),
-        _ => Ok(()),
-    }
-}
-
-fn list(files: &[PathBuf]) -> Result<(), Box<dyn Error>> {
-    files.iter().try_for_each(|file| write_line(&format!("  wrote    {}", file.display())))
 }

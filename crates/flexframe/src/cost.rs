@@ -20,13 +20,13 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use fem_tet10::read_msh;
-use frames_rk4::{ConservativeScheme, Method, StepControl};
-use results::FigureError;
+use figures::FigureError;
+use frames_rk4::{Method, StepControl};
 use scene::{Body, BuildError, BuildProgress, Choice, Flexible, Model, Scene};
 use serde::Serialize;
 
 pub use answer::{Answer, Setting};
-pub use ladder::{Line, Measured, Outcome, Row};
+pub use ladder::{Line, Measured, Outcome, Row, Stopped};
 pub use machine::Machine;
 pub use modes::ModesRow;
 pub use page::accuracy_page;
@@ -34,6 +34,8 @@ pub use reference::ReferenceReport;
 pub use run::Errors;
 
 pub use crate::run::RunFailure;
+
+use crate::json;
 
 use answer::refine;
 use case::Case;
@@ -48,8 +50,8 @@ pub enum CostError {
     Build(#[from] BuildError),
     /// No run of the reference came to its end.
     #[error(
-        "{scene}: no reference can be made: even {steps} steps of the exponential scheme fail: {failure}; make the run \
-         shorter, or give more time with --patience",
+        "{scene}: no reference can be made: a run of {steps} steps of the exponential scheme failed: {failure}; make the \
+         run shorter, or give more time with --patience",
         scene = scene.display()
     )]
     Reference {
@@ -90,7 +92,8 @@ pub enum CostProgress {
 /// What a price list is asked for.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CostSettings {
-    /// The ladders end before runs that would take longer; the reference may take twenty times as long.
+    /// What a run may take: it is stopped when this is used up, and the ladders end before runs that would take longer. All
+    /// runs of the reference together may take twenty times as long.
     pub patience: Duration,
     /// The ladders end before runs with more steps than this; the reference may have four times as many.
     pub most_steps: u64,
@@ -124,6 +127,7 @@ pub struct CostReport {
     /// Title of the scene.
     pub title: String,
     /// The scene file.
+    #[serde(serialize_with = "json::path")]
     pub scene: PathBuf,
     /// Label of the unit of time.
     pub time_unit: String,
@@ -145,11 +149,14 @@ pub struct CostReport {
     pub paper_limit: Option<ReferenceReport>,
     /// The ladders.
     pub lines: Vec<Line>,
-    /// The same motion with fewer and with more modes, fewest first.
+    /// The same motion with fewer and with more modes, fewest first; empty where they could not be compared.
     pub modes: Vec<ModesRow>,
+    /// Why they could not be compared.
+    pub modes_failure: Option<String>,
     /// The answer to the target.
     pub answer: Option<Answer>,
     /// Files written.
+    #[serde(serialize_with = "json::paths")]
     pub files: Vec<PathBuf>,
 }
 
@@ -177,7 +184,7 @@ pub fn price_list(
     let ladders: Vec<(Method, bool)> = Method::ALL
         .into_iter()
         .flat_map(|method| [(method, false), (method, true)])
-        .filter(|(method, controlled)| !controlled || method.estimates_error())
+        .filter(|(method, controlled)| !controlled || method.estimates_error)
         .collect();
     let total = ladders.len() as u64 + 3;
     let mut done = 0;
@@ -186,12 +193,12 @@ pub fn price_list(
         progress(CostProgress::Measuring { done, total });
     };
     step(0);
-    let exponential = Method::Conservative(ConservativeScheme::Exponential);
+    let exponential = Method::EXPONENTIAL;
     let reference = converge(&case, exponential, settings.budget(20), 0.0)
         .map_err(|(steps, failure)| CostError::Reference { scene: scene.path.clone(), steps, failure })?;
     step(1);
     // The paper's formulation has a limit of its own, to which its schemes converge.
-    let paper_limit = converge(&case, Method::PaperRkmk4, settings.budget(5), 0.0).ok();
+    let paper_limit = converge(&case, Method::PAPER_RKMK4, settings.budget(5), 0.0).ok();
     step(1);
     let judge = Judge { reference: &reference, paper_limit: paper_limit.as_ref(), settings };
     let own = own_setting(scene);
@@ -204,7 +211,10 @@ pub fn price_list(
         refine(&case, &judge, &mut lines, target);
     }
     ladder::mark_front(&mut lines);
-    let modes = modes::compare(scene, &richest, &counts, &settings);
+    let (modes, modes_failure) = match modes::compare(scene, &richest, &counts, &settings) {
+        Ok(modes) => (modes, None),
+        Err((count, failure)) => (Vec::new(), Some(format!("with {count} modes: {failure}"))),
+    };
     step(1);
 
     let mut report = CostReport {
@@ -222,6 +232,7 @@ pub fn price_list(
         answer: settings.target.map(|target| Answer::new(target, scene, &lines, &modes, flexible)),
         lines,
         modes,
+        modes_failure,
         files: Vec::new(),
     };
     report.files = files::write(&report, folder)?;
@@ -230,7 +241,7 @@ pub fn price_list(
 
 /// Method and control that the scene asks for itself.
 fn own_setting(scene: &Scene) -> (Method, StepControl) {
-    (scene::method(scene.time.method), scene::control(scene.time.stepping))
+    (scene.time.method, scene.time.control)
 }
 
 /// Flexible modes of the scene's mesh. A mesh that cannot be read is refused where the model is built.

@@ -18,16 +18,20 @@
 #![forbid(unsafe_code)]
 #![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable))]
 
-pub use {advice, fem_tet10, frames_rk4, modal, results, rigid_kin, scene};
+pub use {advice, fem_tet10, figures, frames_rk4, modal, results, rigid_kin, scene};
+pub use {faer, nalgebra};
 
 pub mod advise;
 pub mod animation;
 pub mod campbell;
 pub mod cost;
 mod effects;
-pub mod figures;
+pub mod failure;
+mod json;
+pub mod mode_shapes;
 pub mod modes;
 pub mod paper;
 pub mod report;
 pub mod run;
+mod scene_file;
 pub mod surface;

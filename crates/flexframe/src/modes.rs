@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use scene::{BuildError, BuildProgress, Choice, Flexible, Model, Scene};
+use scene::{Body, BuildError, BuildProgress, Choice, Flexible, Meshed, Model, Scene, SceneError};
 use serde::Serialize;
 
 use crate::report::{BodyReport, MeshReport, Times, quantity};
@@ -44,6 +44,25 @@ pub fn modes(scene: &Scene, progress: impl FnMut(BuildProgress)) -> Result<(Mode
     Ok((model, report))
 }
 
+/// The mesh and the modes of a body that has flexible ones.
+///
+/// # Errors
+/// The refusal of a body that has none, at the key that says so.
+pub(crate) fn require_flexible<'a>(scene: &Scene, model: &'a Model) -> Result<&'a Meshed, SceneError> {
+    if let Some(meshed) = model.meshed.as_ref().filter(|_| model.body.flexible() > 0) {
+        return Ok(meshed);
+    }
+    let (key, cure) = match scene.body {
+        Body::Rigid(_) => ("body.rigid", "give the body a mesh, and `flexible` in [modes]"),
+        Body::Meshed(_) if scene.effects.flexibility == Choice::Off => {
+            ("effects.flexibility", "remove it, so that the body deforms")
+        }
+        Body::Meshed(_) => ("modes.flexible", "keep flexible modes"),
+    };
+    let found = "a body without flexible modes, which has no natural frequencies";
+    Err(scene.refuse(key, found, "one flexible mode or more", cure))
+}
+
 /// "Hz" where time is in seconds.
 pub(crate) fn frequency_unit(time: &str) -> String {
     if time == "s" { "Hz".to_owned() } else { format!("1/{time}") }
@@ -60,7 +79,7 @@ impl fmt::Display for ModesReport {
         let body = &self.body;
         for (k, (frequency, damping)) in body.natural_frequencies.iter().zip(&body.damping_ratios).enumerate() {
             let residual = body.residuals.get(k).map_or_else(|| "static shape".to_owned(), |r| format!("{r:.0e}"));
-            writeln!(f, "  {:>4}  {frequency:>17.6}  {damping:>7.4}  {residual}", k + 1 + body.rigid_modes)?;
+            writeln!(f, "  {:>4}  {frequency:>17.6}  {damping:>7.4}  {residual}", k + 1)?;
         }
         write!(f, "\n  time   {}", self.times)
     }

@@ -9,11 +9,14 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use results::{FigureError, FileError, Results};
+use results::{FileError, Results};
 use rigid_kin::{RigidBodyError, StepError};
 use scene::{BuildError, Scene};
 use serde::Serialize;
+use whole_file::write_whole;
 
+use crate::json;
+use crate::mode_shapes::ShapesError;
 use crate::run::{RunError, RunProgress, RunReport, RunSettings, run};
 use comparison::Comparison;
 
@@ -34,7 +37,7 @@ pub enum PaperError {
     File(#[from] FileError),
     /// A figure could not be drawn.
     #[error(transparent)]
-    Figure(#[from] FigureError),
+    Figure(#[from] ShapesError),
     /// The rigid plate has no mass or inertia.
     #[error(transparent)]
     RigidBody(#[from] RigidBodyError),
@@ -72,8 +75,10 @@ pub struct PaperReport {
     #[serde(flatten)]
     pub run: RunReport,
     /// The page.
+    #[serde(serialize_with = "json::path")]
     pub report: PathBuf,
     /// The figures, SVG and PNG.
+    #[serde(serialize_with = "json::paths")]
     pub figures: Vec<PathBuf>,
     /// The numbers on the page.
     pub comparison: Comparison,
@@ -104,7 +109,7 @@ pub fn reproduce(
     let figures = figures::draw(scene, &model, &results, &rigid, folder)?;
     run.times.add("figures", started.elapsed());
     let path = folder.join("report.md");
-    std::fs::write(&path, page::page(scene, &run, &comparison))
+    write_whole(&path, page::page(scene, &run, &comparison))
         .map_err(|source| PaperError::Report { path: path.clone(), source })?;
     Ok(PaperReport { run, report: path, figures, comparison })
 }

@@ -6,17 +6,19 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-use advice::Review;
+use advice::{Refusal, Review, StepEstimate};
 use frames_rk4::{Initial, Observation, Reached, RestoreError, Simulation, StepError};
 use nalgebra::Vector3;
 use results::{BodyProperties, Expected, FileError, Metadata, PointSample, Results, Resumed, Sample, Units, Writer};
 use rigid_kin::Attitude;
-use scene::{BuildError, BuildProgress, Model, Rows, Scene, SceneError, StartError, Stepping};
+use scene::{BuildError, BuildProgress, Model, Rows, Scene, SceneError, StartError, StepControl};
 use serde::Serialize;
 
 use crate::effects;
+use crate::json;
 use crate::modes::frequency_unit;
 use crate::report::{BodyReport, MeshReport, Times, quantity};
+use crate::scene_file;
 
 /// A run that could not be done.
 #[derive(Debug, thiserror::Error)]
@@ -39,6 +41,16 @@ pub enum RunError {
         results: PathBuf,
         /// Why.
         source: StepError,
+    },
+    /// The motion has come where the model is known to be wrong. The states before it are in the unfinished file.
+    #[error("at time {time:.6}: {refusal} (the states up to there are in {})", results.display())]
+    Refused {
+        /// The unfinished file.
+        results: PathBuf,
+        /// When it was so for the first time.
+        time: f64,
+        /// Why.
+        refusal: Refusal,
     },
     /// The results file cannot be written.
     #[error(transparent)]
@@ -100,6 +112,17 @@ pub enum RunFailure {
     /// A step failed.
     #[error(transparent)]
     Step(#[from] StepError),
+    /// It was stopped when the time that it may take was used up.
+    #[error(
+        "stopped at {:.2} % of the motion, when its patience of {patience} s was used up (more with --patience)",
+        100.0 * reached
+    )]
+    OutOfPatience {
+        /// Time of computing that it was allowed, seconds.
+        patience: f64,
+        /// Part of the motion that it came to, 0 to 1.
+        reached: f64,
+    },
 }
 
 /// How far a run has come.
@@ -119,6 +142,7 @@ pub struct RunReport {
     /// Labels of length, mass and time.
     pub units: [String; 3],
     /// The results file.
+    #[serde(serialize_with = "json::path")]
     pub results: PathBuf,
     /// Rows in it.
     pub rows: u64,
@@ -133,10 +157,12 @@ pub struct RunReport {
     /// Steps that step control tried in vain.
     pub rejected_steps: u64,
     /// Lengths of the shortest and the longest step.
+    #[serde(serialize_with = "json::numbers")]
     pub step_lengths: [f64; 2],
     /// Evaluations of the rates.
     pub evaluations: u64,
     /// Steps per second of computing, writing included.
+    #[serde(serialize_with = "json::number")]
     pub steps_per_second: f64,
     /// The finite-element model.
     pub mesh: Option<MeshReport>,
@@ -147,11 +173,16 @@ pub struct RunReport {
     /// Displacement of the centre of mass, global.
     pub moved: [f64; 3],
     /// Largest strain energy among the rows.
+    #[serde(serialize_with = "json::number")]
     pub peak_strain_energy: f64,
     /// Kinetic plus strain energy of the last row.
+    #[serde(serialize_with = "json::number")]
     pub final_energy: f64,
     /// How far the balances are from closed.
     pub balances: Balances,
+    /// Whether the balance of energy is open though the motion is right: modes faster than the steps follow themselves
+    /// exactly, but the work on them and their dissipation are summed by the stages.
+    pub right_unsummed: bool,
     /// The effects of this body and whether each was computed; none of the paper's formulation, which has its own.
     pub effects: Vec<(&'static str, bool)>,
     /// Assumptions that did not hold.
@@ -165,10 +196,13 @@ pub struct RunReport {
 #[derive(Debug, Clone, Copy, Default, Serialize)]
 pub struct Balances {
     /// Energy − work of the loads + dissipation.
+    #[serde(serialize_with = "json::number")]
     pub energy: f64,
     /// Linear momentum less the impulse of the loads.
+    #[serde(serialize_with = "json::number")]
     pub linear_momentum: f64,
     /// Angular momentum about the centre of mass less the angular impulse of the loads.
+    #[serde(serialize_with = "json::number")]
     pub angular_momentum: f64,
 }
 
@@ -206,7 +240,7 @@ pub fn run(
     let writer = Writer::create(&path, &metadata(scene, &model, &simulation), expected)?;
     progress(RunProgress::Motion(0.0));
     let initial = model.initial(scene);
-    let mut recorder = Recorder::new(scene, &model, &initial, &simulation, writer);
+    let mut recorder = Recorder::new(scene, &model, &initial, &simulation, writer)?;
     recorder.begin(&mut simulation)?;
     let report = recorder.follow(simulation, started, settings, progress)?;
     Ok((model, report))
@@ -225,7 +259,7 @@ pub fn resume(
 ) -> Result<(Scene, Model, RunReport), RunError> {
     let Resumed { writer, results, checkpoint } = Writer::resume(file)?;
     let part = writer.unfinished().to_path_buf();
-    let scene = Scene::parse(&results.metadata.scene_text, &results.metadata.scene_file)?;
+    let scene = Scene::parse(&results.metadata.scene_text, scene_file::to_path(&results.metadata.scene_file))?;
     let model = Model::build(&scene, |p| progress(RunProgress::Build(p)))?;
     let started = Instant::now();
     let mut simulation = start(&scene, &model)?;
@@ -247,12 +281,12 @@ pub fn resume(
         Some(checkpoint) => {
             simulation =
                 simulation.restored(&checkpoint).map_err(|source| RunError::Restore { part: part.clone(), source })?;
-            let mut recorder = Recorder::new(&scene, &model, &initial, &simulation, writer);
+            let mut recorder = Recorder::new(&scene, &model, &initial, &simulation, writer)?;
             recorder.take_up(&mut simulation, &results)?;
             recorder.follow(simulation, started, settings, progress)?
         }
         None => {
-            let mut recorder = Recorder::new(&scene, &model, &initial, &simulation, writer);
+            let mut recorder = Recorder::new(&scene, &model, &initial, &simulation, writer)?;
             recorder.begin(&mut simulation)?;
             recorder.follow(simulation, started, settings, progress)?
         }
@@ -266,10 +300,10 @@ fn start(scene: &Scene, model: &Model) -> Result<Simulation, RunError> {
 
 /// Rows that a run will have, but for corners of loads between them; 0 where its steps are not known.
 fn expected_rows(scene: &Scene) -> usize {
-    let spacing = match (scene.output.rows, scene.time.stepping) {
+    let spacing = match (scene.output.rows, scene.time.control) {
         (Rows::Interval(interval), _) => interval,
-        (Rows::EverySteps(steps), Stepping::Step(step)) => steps as f64 * step,
-        (Rows::EverySteps(_), Stepping::Tolerance(_)) => return 0,
+        (Rows::EverySteps(steps), StepControl::Fixed(step)) => steps as f64 * step,
+        (Rows::EverySteps(_), StepControl::Tolerance(_)) => return 0,
     };
     ((scene.time.end / spacing * (1.0 - 1e-12)).ceil() as usize).saturating_add(1)
 }
@@ -277,18 +311,24 @@ fn expected_rows(scene: &Scene) -> usize {
 /// Energy balance from which on a run says that it is open.
 const OPEN: f64 = 1e-2;
 
-fn open_balance(monitor: &Monitor, flexible: usize) -> Option<String> {
-    let open = monitor.balances().energy;
-    (open > OPEN).then(|| {
-        let (work, cure) = match flexible {
-            0 => ("the work of the loads", "shorter steps"),
-            _ => ("the work on modes that are faster than the step", "shorter steps, or fewer modes,"),
-        };
-        format!(
-            "the energy balance is open by {open:.1e} of the energy that there was or that came and went: {work} is summed \
-             too coarsely, or the motion itself is; take {cure} until it does not matter to the answer"
-        )
-    })
+/// Estimated error from which on a run says that its steps are too long.
+const WRONG: f64 = 1e-2;
+/// Largest step times ω_max in which the stages see the work on the modes and their dissipation as they are.
+const RESOLVED: f64 = 0.5;
+
+fn open_balance(open: f64, flexible: usize) -> String {
+    let (work, cure) = match flexible {
+        0 => ("the work of the loads", "shorter steps"),
+        _ => ("the work on modes that are faster than the step", "shorter steps, or fewer modes,"),
+    };
+    format!(
+        "the energy balance is open by {open:.1e} of the energy that there was or that came and went: {work} is summed \
+         too coarsely, or the motion itself is; take {cure} until it does not matter to the answer"
+    )
+}
+
+fn long_steps(estimate: &StepEstimate, share: f64) -> String {
+    format!("{} Take shorter steps, or `tolerance` instead of `step`", estimate.in_words(share))
 }
 
 /// Steps between two reports of progress, where no row comes first.
@@ -303,10 +343,10 @@ pub fn results_path(scene: &Scene, folder: &Path) -> PathBuf {
 
 fn metadata(scene: &Scene, model: &Model, at_start: &Simulation) -> Metadata {
     let body = BodyReport::new(model);
-    let method = scene::method(scene.time.method);
-    let (step, tolerance) = match scene.time.stepping {
-        Stepping::Step(step) => (Some(step), None),
-        Stepping::Tolerance(tolerance) => (None, Some(tolerance)),
+    let method = scene.time.method;
+    let (step, tolerance) = match scene.time.control {
+        StepControl::Fixed(step) => (Some(step), None),
+        StepControl::Tolerance(tolerance) => (None, Some(tolerance)),
     };
     Metadata {
         title: scene.title.clone(),
@@ -315,14 +355,14 @@ fn metadata(scene: &Scene, model: &Model, at_start: &Simulation) -> Metadata {
             mass: scene.units.mass.clone(),
             time: scene.units.time.clone(),
         },
-        formulation: method.formulation().to_owned(),
-        scheme: method.scheme().to_owned(),
+        formulation: method.formulation.to_owned(),
+        scheme: method.scheme.to_owned(),
         step,
         tolerance,
         program_version: env!("CARGO_PKG_VERSION").to_owned(),
         fingerprint: fingerprint(at_start),
         scene_text: scene.source.clone(),
-        scene_file: std::path::absolute(&scene.path).unwrap_or_else(|_| scene.path.clone()).display().to_string(),
+        scene_file: scene_file::to_text(&scene.path),
         body: BodyProperties {
             mass: body.mass,
             center_of_mass: body.center_of_mass,
@@ -362,11 +402,22 @@ struct Recorder<'a> {
     rows: u64,
     peak_strain_energy: f64,
     monitor: Monitor,
+    /// What fixed steps are expected to get wrong.
+    step: Option<StepEstimate>,
 }
 
 impl<'a> Recorder<'a> {
-    fn new(scene: &'a Scene, model: &'a Model, initial: &'a Initial, simulation: &Simulation, writer: Writer) -> Self {
-        Self {
+    fn new(
+        scene: &'a Scene,
+        model: &'a Model,
+        initial: &'a Initial,
+        simulation: &Simulation,
+        writer: Writer,
+    ) -> Result<Self, RunError> {
+        let step = model
+            .step_estimate(scene)
+            .map_err(|source| RunError::Setup { scene: scene.path.clone(), source: Box::new(source) })?;
+        Ok(Self {
             scene,
             model,
             observation: simulation.observation(),
@@ -377,6 +428,22 @@ impl<'a> Recorder<'a> {
             rows: 0,
             peak_strain_energy: 0.0,
             monitor: Monitor::default(),
+            step,
+        })
+    }
+
+    /// Whether the steps are known to be right though they are too long for the sum of work and dissipation.
+    fn is_right_unsummed(&self, longest_step: f64) -> bool {
+        if self.scene.time.method.is_of_paper() {
+            // The equations of the paper do not keep the energy in any steps.
+            return false;
+        }
+        let frequencies = self.model.body.circular_frequencies.iter().zip(self.model.damping_ratios());
+        let fastest = frequencies.map(|(omega, zeta)| omega * (2.0 * zeta).max(1.0)).fold(0.0, f64::max);
+        let resolved = fastest * longest_step <= RESOLVED;
+        match &self.step {
+            Some(step) => step.largest() < WRONG && (step.seen >= 1.0 || !resolved),
+            None => !resolved,
         }
     }
 
@@ -395,6 +462,8 @@ impl<'a> Recorder<'a> {
             self.observation.omega_body = sample.angular_velocity.into();
             self.observation.modal_displacement.clear();
             self.observation.modal_displacement.extend_from_slice(sample.modal_displacement);
+            self.observation.modal_velocity.clear();
+            self.observation.modal_velocity.extend_from_slice(sample.modal_velocity);
             self.review.observe(&self.observation).map_err(BuildError::from)?;
             self.monitor.watch_row(&sample);
             self.peak_strain_energy = self.peak_strain_energy.max(sample.strain_energy);
@@ -419,7 +488,11 @@ impl<'a> Recorder<'a> {
     ) -> Result<RunReport, RunError> {
         let before = simulation.stats().accepted;
         loop {
-            match simulation.advance(STEPS_PER_REPORT).map_err(|source| self.failed(source))? {
+            let review = &mut self.review;
+            let reached = simulation.advance_watched(STEPS_PER_REPORT, |moment| review.look(moment));
+            // A step that fails after the model has come to mean nothing fails for that.
+            self.refuse()?;
+            match reached.map_err(|source| self.failed(source))? {
                 Reached::Row => {
                     self.record(&mut simulation)?;
                     let stop = settings.stop.load(Ordering::Relaxed) && simulation.time() < simulation.end();
@@ -436,8 +509,8 @@ impl<'a> Recorder<'a> {
                     let part = self.writer.unfinished().to_path_buf();
                     return Err(RunError::Stopped { part, time: simulation.time() });
                 }
-                Reached::Between => {}
                 Reached::End => break,
+                _ => {}
             }
             progress(RunProgress::Motion(simulation.time() / simulation.end()));
         }
@@ -445,19 +518,24 @@ impl<'a> Recorder<'a> {
         self.flush(&mut simulation)?;
         let time = started.elapsed();
         let stats = simulation.stats();
-        let method = scene::method(self.scene.time.method);
+        let method = self.scene.time.method;
         self.monitor.exchanged(simulation.exchanged());
+        let balances = self.monitor.balances();
+        let right_unsummed = balances.energy > OPEN && self.is_right_unsummed(stats.longest);
         let Self { scene, model, .. } = self;
+        let open =
+            (balances.energy > OPEN && !right_unsummed).then(|| open_balance(balances.energy, model.body.flexible()));
+        let wrong = self.step.as_ref().filter(|step| step.largest() >= WRONG);
         let last = &self.observation;
         let mut report = RunReport {
             title: scene.title.clone(),
             units: [&scene.units.length, &scene.units.mass, &scene.units.time].map(Clone::clone),
             rows: self.rows,
-            formulation: method.formulation().to_owned(),
-            scheme: method.scheme().to_owned(),
-            tolerance: match scene.time.stepping {
-                Stepping::Step(_) => None,
-                Stepping::Tolerance(tolerance) => Some(tolerance),
+            formulation: method.formulation.to_owned(),
+            scheme: method.scheme.to_owned(),
+            tolerance: match scene.time.control {
+                StepControl::Fixed(_) => None,
+                StepControl::Tolerance(tolerance) => Some(tolerance),
             },
             steps: stats.accepted,
             rejected_steps: stats.rejected,
@@ -470,10 +548,12 @@ impl<'a> Recorder<'a> {
             moved: (last.position_global - model.body.center_of_mass).into(),
             peak_strain_energy: self.peak_strain_energy,
             final_energy: last.energy(),
-            balances: self.monitor.balances(),
+            balances,
+            right_unsummed,
             effects: effects::computed(scene, model),
             warnings: (self.review.broken().iter().map(ToString::to_string))
-                .chain(open_balance(&self.monitor, model.body.flexible()))
+                .chain(wrong.map(|step| long_steps(step, scene.effects.tolerance)))
+                .chain(open)
                 .collect(),
             results: self.writer.path().to_path_buf(),
             times: Times::of_model(model),
@@ -481,6 +561,16 @@ impl<'a> Recorder<'a> {
         self.writer.finish()?;
         report.times.add("motion", started.elapsed());
         Ok(report)
+    }
+
+    /// Refuses to go on where the review has found that the model is wrong, unless the scene wants to.
+    fn refuse(&self) -> Result<(), RunError> {
+        match self.review.stop() {
+            Some((time, refusal)) if self.scene.effects.refuse => {
+                Err(RunError::Refused { results: self.writer.unfinished().to_path_buf(), time, refusal })
+            }
+            _ => Ok(()),
+        }
     }
 
     fn failed(&self, source: StepError) -> RunError {
@@ -644,9 +734,14 @@ impl fmt::Display for RunReport {
             quantity(self.peak_strain_energy)
         )?;
         let Balances { energy, linear_momentum, angular_momentum } = self.balances;
+        let closed = if self.right_unsummed {
+            format!("known to {energy:.1e} only, by modes faster than the steps")
+        } else {
+            format!("closed to {energy:.1e}")
+        };
         writeln!(
             f,
-            "  balance  energy closed to {energy:.1e}, linear momentum to {linear_momentum:.1e}, angular momentum to \
+            "  balance  energy {closed}, linear momentum to {linear_momentum:.1e}, angular momentum to \
              {angular_momentum:.1e}"
         )?;
         writeln!(f, "  time     {}", self.times)?;

@@ -1,9 +1,9 @@
 //! The surface of a body, for pictures: boundary triangles over their own list of points.
 
 use fem_tet10::Mesh;
+use figures::{boundary_triangles, sharp_edges};
 use modal::Modes;
 use nalgebra::Vector3;
-use results::{boundary_triangles, sharp_edges};
 use rigid_kin::Attitude;
 use scene::Model;
 

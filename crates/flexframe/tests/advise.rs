@@ -1,6 +1,6 @@
 //! `flexframe advise`: what it calls negligible is, on scenes of each kind.
 
-use flexframe::advise::{AdviseReport, Real, advise};
+use flexframe::advise::{AdviseReport, ModeRow, Real, advise};
 use flexframe::scene::{Choice, Scene};
 
 fn example(name: &str) -> Scene {
@@ -74,4 +74,26 @@ fn the_plate_at_10_rad_s_is_stiffened_by_three_per_cent() {
     // Measured: 0.42 % and 3.5 %.
     assert!((ratio - 0.0042).abs() < 1e-4 && (0.03..0.04).contains(&shift), "{ratio} {shift}");
     assert!(row.advised && row.on == Some(true), "{}", row.why);
+}
+
+#[test]
+fn the_table_of_modes_shows_as_many_to_keep_as_the_sentence_says() {
+    let mode = |share: f64| ModeRow { frequency: 1.0, share, worth_keeping: share >= 1e-3 };
+    let report = AdviseReport {
+        title: "Bar".to_owned(),
+        frequency_unit: "Hz".to_owned(),
+        tolerance: 1e-3,
+        of_paper: false,
+        rows: Vec::new(),
+        // The second is kept for the third, the fourth because it and the fifth add up.
+        modes: [0.5, 1e-9, 0.1, 6e-4, 6e-4].map(mode).into(),
+        keep: 4,
+        more_modes: false,
+        refusal: None,
+    };
+    let text = report.to_string();
+    let rows: Vec<&str> = text.lines().filter(|line| line.contains("1.000000")).collect();
+    assert_eq!(rows.len(), 5, "{text}");
+    assert_eq!(rows.iter().filter(|row| row.contains("yes")).count(), report.keep, "{text}");
+    assert!(text.contains("Keep the lowest 4 of 5 modes: 2 for their own share"), "{text}");
 }

@@ -6,7 +6,7 @@ use std::sync::OnceLock;
 use std::time::Duration;
 
 use flexframe::cost::{CostReport, CostSettings, Line, Measured, Outcome, Row, Setting, price_list};
-use frames_rk4::{ConservativeScheme, Method, Observation, Rows, StepControl};
+use frames_rk4::{Method, Observation, Rows, StepControl};
 use scene::{Model, Scene};
 
 const TARGET: f64 = 1e-4;
@@ -70,7 +70,7 @@ fn list() -> &'static (CostReport, String) {
 
 fn line(method: Method, controlled: bool) -> &'static Line {
     let is_it = |line: &&Line| {
-        (line.formulation, line.scheme, line.controlled) == (method.formulation(), method.scheme(), controlled)
+        (line.formulation, line.scheme, line.controlled) == (method.formulation, method.scheme, controlled)
     };
     list().0.lines.iter().find(is_it).unwrap()
 }
@@ -83,14 +83,14 @@ fn runs(line: &Line) -> Vec<(f64, &Measured)> {
 fn every_method_is_in_the_list_with_its_order() {
     for method in Method::ALL {
         let line = line(method, false);
-        assert_eq!(line.order, method.order());
+        assert_eq!(line.order, method.order);
         let order = line.measured_order.unwrap_or_else(|| panic!("no order of {}", line.name()));
         assert!((order - f64::from(line.order)).abs() < 0.3, "{}: {order}", line.name());
         for (_, run) in runs(line) {
-            assert_eq!(run.evaluations, run.steps * u64::from(method.evaluations_per_step()));
+            assert_eq!(run.evaluations, run.steps * u64::from(method.evaluations_per_step));
         }
     }
-    let controlled = Method::ALL.into_iter().filter(|method| method.estimates_error());
+    let controlled = Method::ALL.into_iter().filter(|method| method.estimates_error);
     assert_eq!(controlled.map(|method| line(method, true).rows.len()).filter(|rows| *rows > 2).count(), 2);
 }
 
@@ -115,7 +115,7 @@ fn the_reference_is_closer_than_all_that_is_ranked() {
         assert_eq!(run.at_reference, run.errors.largest() <= 3.0 * own);
     }
     // A scheme that has no step in common with the reference comes to the same motion.
-    let closest = runs(line(Method::Conservative(ConservativeScheme::Rkmk4), false)).last().unwrap().1;
+    let closest = runs(line(Method::RKMK4, false)).last().unwrap().1;
     assert!(closest.errors.largest() < 1e-5, "{:?}", closest.errors);
     // The paper's formulation comes to another one.
     let limit = report.paper_limit.as_ref().unwrap();
@@ -149,7 +149,7 @@ fn the_answer_reaches_the_target_when_the_scene_is_run_with_it() {
     let all = |simulation: frames_rk4::Simulation| -> Vec<Observation> { simulation.map(Result::unwrap).collect() };
     let found = all(model.start(&pasted).unwrap());
     // Another scheme at a step that is short enough.
-    let rkmk4 = Method::Conservative(ConservativeScheme::Rkmk4);
+    let rkmk4 = Method::RKMK4;
     let expected = all(model.start_with(&pasted, rkmk4, StepControl::Fixed(2.5e-6), Rows::Interval(5e-4)).unwrap());
     assert_eq!((found.len(), expected.len()), (100, 100));
     let worst = |values: &dyn Fn(&Observation, &Observation) -> (f64, f64)| {
@@ -184,6 +184,52 @@ fn a_target_beyond_reach_is_said_to_be() {
     let answer = report.answer.unwrap();
     assert!(answer.run.is_none() && answer.lines.is_empty() && answer.smallest_error > 1e-20);
     assert!(answer.to_string().contains("no setting that was tried"), "{answer}");
+}
+
+#[test]
+fn a_run_that_takes_longer_than_the_patience_is_stopped_and_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let patience = Duration::from_millis(20);
+    let settings = CostSettings { patience, timed_for: Duration::from_millis(1), ..settings(1_000_000, TARGET) };
+    // Five million steps, which take some seconds.
+    let report = price_list(&scene("step = 1e-8"), folder.path(), settings, |_| ()).unwrap();
+    let rows: Vec<&Row> = report.lines.iter().flat_map(|line| &line.rows).collect();
+    let own = rows.iter().find(|row| row.of_scene).unwrap();
+    let Outcome::OutOfPatience(stopped) = &own.outcome else { panic!("{own:?}") };
+    assert!(stopped.patience == 0.02 && stopped.reached < 0.5, "{stopped:?}");
+    // None of the others took longer, those under step control neither: a thousand steps may go by between two looks.
+    for run in rows.iter().filter_map(|row| row.measured()) {
+        let of_a_thousand_steps = 1000.0 / (run.steps + run.rejected) as f64 * run.seconds;
+        assert!(run.seconds <= 0.02 + of_a_thousand_steps, "{run:?}");
+    }
+    let answer = report.answer.as_ref().unwrap().to_string();
+    for words in
+        ["not waited for", "step 1e-8 (the scene's own setting): stopped at", "patience of 0.02 s", "--patience"]
+    {
+        assert!(answer.contains(words), "{words} in {answer}");
+    }
+    let table = CostReport { answer: None, ..report }.to_string();
+    assert!(table.contains("patience of 0.02 s was used up"), "{table}");
+    let csv = std::fs::read_to_string(folder.path().join("cost.csv")).unwrap();
+    assert!(csv.lines().any(|line| fields(line).last().unwrap().contains("patience of 0.02 s")));
+}
+
+#[test]
+fn the_worst_quantity_of_the_modes_is_named_with_the_others_beside_it() {
+    let report = &list().0;
+    let errors = report.modes[1].errors.unwrap();
+    // The half-sine strikes the point: its acceleration needs the most modes.
+    assert!(errors.largest() == errors.acceleration.unwrap() && errors.displacement < errors.velocity, "{errors:?}");
+    let words = report.answer.as_ref().unwrap().modes.as_ref().unwrap();
+    for expected in [
+        format!("with 4 of them the acceleration of the points is {:.1e} off", errors.largest()),
+        format!("the displacement of the points {:.1e}", errors.displacement.unwrap()),
+        format!("the velocity of the points {:.1e}", errors.velocity.unwrap()),
+    ] {
+        assert!(words.contains(&expected), "{expected} in {words}");
+    }
+    // With and without a target.
+    assert!(CostReport { answer: None, ..report.clone() }.to_string().contains("the acceleration of the points is"));
 }
 
 #[test]
@@ -227,6 +273,7 @@ fn the_table_for_programs_is_well_formed() {
                 assert!(record[column("failure")].is_empty());
             }
             Outcome::Failed(failure) => assert_eq!(&record[column("failure")], failure),
+            Outcome::OutOfPatience(stopped) => assert_eq!(record[column("failure")], stopped.to_string()),
         }
     }
 }
@@ -291,7 +338,7 @@ fn the_page_has_its_tables_and_its_pictures() {
     let folder = tempfile::tempdir().unwrap();
     scene_file(folder.path());
     std::fs::create_dir(folder.path().join("docs")).unwrap();
-    let output = flexframe(folder.path(), &["accuracy", "ring.toml", "-o", "docs/accuracy.md", "--patience", "0.005"]);
+    let output = flexframe(folder.path(), &["accuracy", "ring.toml", "-o", "docs/accuracy.md", "--patience", "0.02"]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let page = std::fs::read_to_string(folder.path().join("docs/accuracy.md")).unwrap();
     for words in ["# What accuracy costs", "## Ring", "**The paper's scheme.**", "What the modes cost", "ω²Δt/2"] {

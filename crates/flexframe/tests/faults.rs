@@ -83,10 +83,19 @@ fn succeed(command: Command) {
     assert!(output.status.success(), "{}", message(&output));
 }
 
-/// What is said on standard error by a command that is to fail.
+/// What is said on standard error by a command that is to fail with bad input.
 fn failure(command: Command) -> String {
+    failure_with(3, command)
+}
+
+/// What is said on standard error by a command that is to fail because of a file.
+fn io_failure(command: Command) -> String {
+    failure_with(6, command)
+}
+
+fn failure_with(code: i32, command: Command) -> String {
     let output = spawn(command).wait_with_output().unwrap();
-    assert_eq!(output.status.code(), Some(1), "{}", message(&output));
+    assert_eq!(output.status.code(), Some(code), "{}", message(&output));
     assert!(output.stdout.is_empty());
     message(&output)
 }
@@ -160,6 +169,70 @@ fn a_run_that_is_killed_again_and_again_ends_in_the_same_file() {
     println!("{done} kills, {rounds} runs that came to their end between them");
 }
 
+/// Kills a command that writes into a folder at random moments. Each of its files must then be the old one or the new
+/// one; returns how many were either.
+fn kill_while_it_writes(whole: &Path, killed: &Path, command: impl Fn(&Path) -> Command) -> (usize, usize) {
+    let started = Instant::now();
+    succeed(command(whole));
+    let longest = started.elapsed();
+    let names: Vec<_> = std::fs::read_dir(whole).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    assert!(!names.is_empty());
+    let kills: usize = std::env::var("FLEXFRAME_KILLS").map_or(6, |count| count.parse().unwrap());
+    std::fs::create_dir(killed).unwrap();
+    let mut random = random();
+    let (mut old, mut new) = (0, 0);
+    for _ in 0..kills {
+        for name in &names {
+            std::fs::write(killed.join(name), "old").unwrap();
+        }
+        let mut child = spawn(command(killed));
+        std::thread::sleep(longest.mul_f64(1.2 * random()));
+        child.kill().unwrap();
+        child.wait().unwrap();
+        for name in &names {
+            let now = std::fs::read(killed.join(name)).unwrap();
+            let is_new = now == std::fs::read(whole.join(name)).unwrap();
+            assert!(is_new || now == b"old", "{}: {} bytes", name.display(), now.len());
+            if is_new { new += 1 } else { old += 1 }
+        }
+    }
+    (old, new)
+}
+
+#[test]
+fn pictures_and_tables_are_the_old_or_the_new_ones_when_a_command_is_killed() {
+    let scene = Scene::new("2e-5");
+    let folder = |name: &str| scene.folder.path().join(name);
+    std::fs::create_dir(folder("gif")).unwrap();
+    let kept = kill_while_it_writes(&folder("gif"), &folder("gif-killed"), |folder| {
+        let mut animate = flexframe(&["animate", "--frames", "12", "-o"]);
+        animate.arg(folder.join("ring.gif")).arg(&scene.path);
+        animate
+    });
+    println!("animate: {kept:?} old and new files");
+    let kept = kill_while_it_writes(&folder("tables"), &folder("tables-killed"), |folder| {
+        let mut campbell = flexframe(&["campbell", "--axis", "z", "--speeds", "0:3000:40", "-o"]);
+        campbell.arg(folder).arg(&scene.path);
+        campbell
+    });
+    println!("campbell: {kept:?} old and new files");
+}
+
+#[test]
+fn a_full_disk_leaves_the_old_picture() {
+    let scene = Scene::new("2e-5");
+    let path = scene.folder.path().join("ring.gif");
+    std::fs::write(&path, "old").unwrap();
+    // The shell's limit on the size of a file stands for a full disk.
+    let mut limited = Command::new("sh");
+    limited.args(["-c", "trap '' XFSZ; ulimit -f 20; exec \"$@\"", "sh", env!("CARGO_BIN_EXE_flexframe"), "animate"]);
+    limited.arg(&scene.path).arg("-o").arg(&path);
+    assert_has(&failure(limited), &["ring.gif", "File too large", "make room"]);
+    assert_eq!(std::fs::read(&path).unwrap(), b"old");
+    // The scene and the picture, and nothing half-written.
+    assert_eq!(std::fs::read_dir(scene.folder.path()).unwrap().count(), 2);
+}
+
 #[test]
 fn control_c_stops_at_a_row_and_says_how_to_go_on() {
     let scene = Scene::new("5e-7");
@@ -193,6 +266,27 @@ fn control_c_stops_at_a_row_and_says_how_to_go_on() {
     assert_has(&failure(again), &["complete", "nothing to resume"]);
 }
 
+/// A terminal, a shell and a job scheduler may send several signals for one request.
+#[test]
+fn signals_at_once_are_one_request_to_stop() {
+    let scene = Scene::new("1e-9");
+    let text = std::fs::read_to_string(&scene.path).unwrap();
+    // No row comes soon, and many modes make the steps between two looks at the request long.
+    let text = text.replace("interval = 1e-4", "interval = 0.2").replace("flexible = 2", "flexible = 60");
+    std::fs::write(&scene.path, text).unwrap();
+    let child = scene.start(scene.run("burst"), "burst");
+    let id = child.id();
+    // Until the motion has begun, a signal ends the program at once.
+    std::thread::sleep(Duration::from_millis(200));
+    let burst = format!("kill -TERM {id}; for i in 1 2 3 4 5 6 7 8 9 10; do kill -INT {id}; done 2>/dev/null; true");
+    let mut kill = Command::new("bash");
+    kill.args(["-c", &burst]);
+    succeed(kill);
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(130), "{}", message(&output));
+    assert_has(&message(&output), &["stopped at time", "flexframe resume", "long.part.h5"]);
+}
+
 #[test]
 fn what_is_there_is_not_lost_unasked() {
     let scene = Scene::new("3e-7");
@@ -206,12 +300,12 @@ fn what_is_there_is_not_lost_unasked() {
         },
         scene.resume("out"),
     ] {
-        assert_has(&failure(command), &["long.part.h5", "another run is writing this file"]);
+        assert_has(&io_failure(command), &["long.part.h5", "another run is writing this file"]);
     }
     let mut first = first;
     first.kill().unwrap();
     first.wait().unwrap();
-    assert_has(&failure(scene.run("out")), &["unfinished run", "flexframe resume", "--overwrite"]);
+    assert_has(&io_failure(scene.run("out")), &["unfinished run", "flexframe resume", "--overwrite"]);
     succeed(scene.resume("out"));
     let whole = std::fs::read(scene.results("out")).unwrap();
     // A complete file stays until the new one is complete.
@@ -223,9 +317,9 @@ fn what_is_there_is_not_lost_unasked() {
     // What is none of ours stays.
     std::fs::create_dir(scene.folder.path().join("other")).unwrap();
     std::fs::write(scene.results("other"), "a diary").unwrap();
-    assert_has(&failure(scene.run("other")), &["long.h5", "no results file of flexframe", "--overwrite"]);
+    assert_has(&io_failure(scene.run("other")), &["long.h5", "no results file of flexframe", "--overwrite"]);
     assert_eq!(std::fs::read(scene.results("other")).unwrap(), b"a diary");
-    assert_has(&failure(scene.resume("nowhere")), &["no unfinished run", "long.part.h5"]);
+    assert_has(&io_failure(scene.resume("nowhere")), &["no unfinished run", "long.part.h5"]);
 }
 
 #[test]
@@ -261,19 +355,65 @@ fn a_run_goes_on_with_the_same_body_or_not_at_all() {
     succeed(resume);
 }
 
+/// The folder of the scene has a name in Latin-1.
+#[cfg(unix)]
+#[test]
+fn a_run_goes_on_in_a_folder_whose_name_is_no_utf8() {
+    use std::os::unix::ffi::OsStrExt;
+    let mut scene = Scene::new("3e-7");
+    let folder = scene.folder.path().join(std::ffi::OsStr::from_bytes(b"caf\xe9 %41"));
+    std::fs::create_dir(&folder).unwrap();
+    let mesh = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../meshes/ring.msh").canonicalize().unwrap();
+    std::fs::copy(&mesh, folder.join("ring.msh")).unwrap();
+    let text = std::fs::read_to_string(&scene.path).unwrap().replace(mesh.to_str().unwrap(), "ring.msh");
+    assert!(text.contains("\"ring.msh\""));
+    scene.path = folder.join("long.toml");
+    std::fs::write(&scene.path, text).unwrap();
+    succeed(scene.run("whole"));
+    let mut child = scene.start(scene.run("out"), "out");
+    child.kill().unwrap();
+    child.wait().unwrap();
+    let mut resume = scene.resume("out");
+    resume.current_dir(std::env::temp_dir());
+    succeed(resume);
+    assert!(std::fs::read(scene.results("out")).unwrap() == std::fs::read(scene.results("whole")).unwrap());
+}
+
+#[cfg(unix)]
+#[test]
+fn one_scene_gives_one_file_by_whatever_name_it_is_called() {
+    let scene = Scene::new("2e-5");
+    let root = scene.folder.path();
+    succeed(scene.run("first"));
+    let first = std::fs::read(scene.results("first")).unwrap();
+    std::os::unix::fs::symlink(root, root.join("link")).unwrap();
+    for (folder, path) in [
+        ("", "long.toml"),
+        ("", "./long.toml"),
+        ("first", "../long.toml"),
+        ("first", "../first/../long.toml"),
+        ("", "link/long.toml"),
+    ] {
+        let mut run = flexframe(&["run", path, "-o"]);
+        run.arg(root.join("again")).current_dir(root.join(folder));
+        succeed(run);
+        assert!(std::fs::read(scene.results("again")).unwrap() == first, "{path} in {folder}");
+    }
+}
+
 #[test]
 fn no_room_and_no_folder_are_said_plainly() {
     let scene = Scene::new("2e-5");
     // The shell's limit on the size of a file stands for a full disk; half of what the run needs.
     let mut limited = Command::new("sh");
-    limited.args(["-c", "trap '' XFSZ; ulimit -f 1000; exec \"$@\"", "sh", env!("CARGO_BIN_EXE_flexframe"), "run"]);
+    limited.args(["-c", "ulimit -f 1000; exec \"$@\"", "sh", env!("CARGO_BIN_EXE_flexframe"), "run"]);
     limited.arg(&scene.path).arg("-o").arg(scene.folder.path().join("full"));
-    assert_has(&failure(limited), &["long.part.h5", "File too large", "make room"]);
+    assert_has(&io_failure(limited), &["long.part.h5", "File too large", "make room"]);
     // Nothing half-written is left.
     assert_eq!(std::fs::read_dir(scene.folder.path().join("full")).unwrap().count(), 0);
 
     std::fs::write(scene.folder.path().join("file"), "").unwrap();
-    assert_has(&failure(scene.run("file")), &["cannot make the output folder"]);
+    assert_has(&io_failure(scene.run("file")), &["cannot make the output folder"]);
 
     let locked = scene.folder.path().join("locked");
     std::fs::create_dir(&locked).unwrap();
@@ -282,6 +422,6 @@ fn no_room_and_no_folder_are_said_plainly() {
     std::fs::set_permissions(&locked, permissions).unwrap();
     // The superuser writes everywhere.
     if std::fs::write(locked.join("probe"), "").is_err() {
-        assert_has(&failure(scene.run("locked")), &["long.h5", "Permission denied", "choose a folder"]);
+        assert_has(&io_failure(scene.run("locked")), &["long.h5", "Permission denied", "choose a folder"]);
     }
 }

@@ -3,12 +3,12 @@
 //! The start, the work of the loads and the dissipation account for the energy of every state. A scheme whose steps are
 //! too long breaks this long before a number overflows.
 
-use crate::checkpoint::Tape;
+use crate::checkpoint::StateCoder;
 use crate::error::StepError;
 
 /// The energy of a state, and what has been done to it since the start.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Reckoning {
+pub struct Energies {
     /// Time.
     pub time: f64,
     /// Energy without that of the motion of the origin.
@@ -21,30 +21,30 @@ pub(crate) struct Reckoning {
     pub dissipation: f64,
 }
 
-impl Reckoning {
-    const BLANK: Self = Self { time: 0.0, internal: 0.0, translation: 0.0, work: 0.0, dissipation: 0.0 };
+impl Energies {
+    const ZERO: Self = Self { time: 0.0, internal: 0.0, translation: 0.0, work: 0.0, dissipation: 0.0 };
 
-    /// One that there may be or not; the tape is as long in both cases.
-    pub(crate) fn pass(reckoning: &mut Option<Self>, tape: &mut Tape) {
-        let mut there = reckoning.is_some();
-        tape.flag(&mut there);
-        let mut now = reckoning.unwrap_or(Self::BLANK);
+    /// One that there may be or not; the coder is as long in both cases.
+    pub(crate) fn code(energies: &mut Option<Self>, coder: &mut StateCoder) {
+        let mut there = energies.is_some();
+        coder.flag(&mut there);
+        let mut now = energies.unwrap_or(Self::ZERO);
         for number in [&mut now.time, &mut now.internal, &mut now.translation, &mut now.work, &mut now.dissipation] {
-            tape.number(number);
+            coder.number(number);
         }
-        *reckoning = there.then_some(now);
+        *energies = there.then_some(now);
     }
 }
 
 /// The account of a run.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct EnergyAccount {
-    start: Option<Reckoning>,
+    start: Option<Energies>,
     /// Largest of the energies at the start, put in and taken out so far.
     scale: f64,
     /// Largest sum of the work and the dissipation of one step: where a load sets in, they are no better known than that.
     largest_exchange: f64,
-    last: Option<Reckoning>,
+    last: Option<Energies>,
     /// Sum of |work| + |dissipation| of all steps, and what work and dissipation were after the last.
     exchanged: f64,
     done: [f64; 2],
@@ -86,13 +86,13 @@ impl EnergyAccount {
         self.of_loads
     }
 
-    pub(crate) fn pass(&mut self, tape: &mut Tape) {
-        Reckoning::pass(&mut self.start, tape);
-        tape.number(&mut self.scale);
-        tape.number(&mut self.largest_exchange);
-        Reckoning::pass(&mut self.last, tape);
-        tape.number(&mut self.exchanged);
-        self.done.iter_mut().for_each(|done| tape.number(done));
+    pub(crate) fn code(&mut self, coder: &mut StateCoder) {
+        Energies::code(&mut self.start, coder);
+        coder.number(&mut self.scale);
+        coder.number(&mut self.largest_exchange);
+        Energies::code(&mut self.last, coder);
+        coder.number(&mut self.exchanged);
+        self.done.iter_mut().for_each(|done| coder.number(done));
     }
 
     /// Takes a step into account, after which work and dissipation since the beginning are these.
@@ -115,8 +115,8 @@ impl EnergyAccount {
     ///
     /// # Errors
     /// [`StepError::NotFinite`] and [`StepError::Energy`].
-    pub(crate) fn check(&mut self, now: &Reckoning, rate: f64, step: f64) -> Result<(), StepError> {
-        let Reckoning { time, internal, .. } = *now;
+    pub(crate) fn check(&mut self, now: &Energies, rate: f64, step: f64) -> Result<(), StepError> {
+        let Energies { time, internal, .. } = *now;
         let start = *self.start.get_or_insert(*now);
         let put_in = (now.work - start.work) - (now.translation - start.translation);
         let taken_out = now.dissipation - start.dissipation;
@@ -144,31 +144,31 @@ impl EnergyAccount {
 mod tests {
     use super::*;
 
-    fn reckoning(time: f64, internal: f64, work: f64, dissipation: f64) -> Reckoning {
-        Reckoning { time, internal, translation: 0.0, work, dissipation }
+    fn energies(time: f64, internal: f64, work: f64, dissipation: f64) -> Energies {
+        Energies { time, internal, translation: 0.0, work, dissipation }
     }
 
     #[test]
     fn what_work_and_damping_account_for_passes_and_what_they_do_not_is_found() {
         let mut account = EnergyAccount::default();
         for (time, internal, work, dissipation) in [(0.0, 2.0, 0.0, 0.0), (1.0, 5.0, 4.0, 1.0), (2.0, 1.5, 1.0, 2.0)] {
-            account.check(&reckoning(time, internal, work, dissipation), 1.0, 0.1).unwrap();
+            account.check(&energies(time, internal, work, dissipation), 1.0, 0.1).unwrap();
         }
         // Half of the largest of start, work and dissipation, 4, and the work of a step, 5, may be missing.
-        assert!(account.check(&reckoning(3.0, 7.9, 1.0, 2.0), 1.0, 0.1).is_ok());
-        let error = account.check(&reckoning(3.0, 8.1, 1.0, 2.0), 1.0, 0.1).unwrap_err();
+        assert!(account.check(&energies(3.0, 7.9, 1.0, 2.0), 1.0, 0.1).is_ok());
+        let error = account.check(&energies(3.0, 8.1, 1.0, 2.0), 1.0, 0.1).unwrap_err();
         assert_eq!(error, StepError::Energy { time: 3.0, energy: 8.1, accounted: 1.0, step: 0.1 });
         // Where steps do not see the modes, only much too much counts.
-        assert!(account.check(&reckoning(3.0, 8.1, 1.0, 2.0), 10.0, 0.1).is_ok());
-        assert!(account.check(&reckoning(3.0, 23.0, 1.0, 2.0), 10.0, 0.1).is_err());
+        assert!(account.check(&energies(3.0, 8.1, 1.0, 2.0), 10.0, 0.1).is_ok());
+        assert!(account.check(&energies(3.0, 23.0, 1.0, 2.0), 10.0, 0.1).is_err());
     }
 
     #[test]
     fn an_energy_that_is_nothing_to_what_the_loads_are_good_for_is_let_pass() {
         let check = |energy: f64| {
             let mut account = EnergyAccount::new(2.0);
-            account.check(&reckoning(0.0, 0.0, 0.0, 0.0), 1.0, 0.1).unwrap();
-            account.check(&reckoning(1.0, energy, 0.0, 0.0), 1.0, 0.1)
+            account.check(&energies(0.0, 0.0, 0.0, 0.0), 1.0, 0.1).unwrap();
+            account.check(&energies(1.0, energy, 0.0, 0.0), 1.0, 0.1)
         };
         assert!(check(1.9e-6).is_ok() && check(2.1e-6).is_err());
     }
@@ -177,10 +177,10 @@ mod tests {
     fn work_that_goes_to_and_fro_is_known_less_well_with_every_period() {
         let check = |periods: u32, energy: f64| {
             let mut account = EnergyAccount::default();
-            account.check(&reckoning(0.0, 0.0, 0.0, 0.0), 1.0, 0.1).unwrap();
+            account.check(&energies(0.0, 0.0, 0.0, 0.0), 1.0, 0.1).unwrap();
             (0..periods).for_each(|_| [[1.0, 0.0], [0.0, 0.0]].into_iter().for_each(|done| account.exchange(done)));
             assert_eq!(account.exchanged(), 2.0 * f64::from(periods));
-            account.check(&reckoning(1.0, energy, 0.0, 0.0), 1.0, 0.1)
+            account.check(&energies(1.0, energy, 0.0, 0.0), 1.0, 0.1)
         };
         assert!(check(5000, 0.99).is_ok() && check(5000, 1.01).is_err());
         assert!(check(0, 1e-9).is_err());
@@ -189,7 +189,7 @@ mod tests {
     #[test]
     fn the_motion_of_the_origin_hides_nothing_but_its_own_rounding() {
         let mut account = EnergyAccount::default();
-        let moving = |internal: f64| Reckoning { translation: 1e6, ..reckoning(1.0, internal, 0.0, 0.0) };
+        let moving = |internal: f64| Energies { translation: 1e6, ..energies(1.0, internal, 0.0, 0.0) };
         account.check(&moving(1.0), 1.0, 0.1).unwrap();
         assert!(account.check(&moving(1.4), 1.0, 0.1).is_ok() && account.check(&moving(1.6), 1.0, 0.1).is_err());
     }
@@ -198,8 +198,8 @@ mod tests {
     fn an_energy_that_is_no_number_is_found_before_a_coordinate_is_none() {
         for energy in [f64::NAN, f64::INFINITY, 1e200 * 1e200] {
             let mut account = EnergyAccount::default();
-            account.check(&reckoning(0.0, 1.0, 0.0, 0.0), 1.0, 0.1).unwrap();
-            let error = account.check(&reckoning(7.0, energy, 0.0, 0.0), 1.0, 0.1).unwrap_err();
+            account.check(&energies(0.0, 1.0, 0.0, 0.0), 1.0, 0.1).unwrap();
+            let error = account.check(&energies(7.0, energy, 0.0, 0.0), 1.0, 0.1).unwrap_err();
             assert_eq!(error, StepError::NotFinite { time: 7.0, what: "the energy" });
         }
     }

@@ -6,7 +6,7 @@
 
 use nalgebra::Vector3;
 
-use crate::checkpoint::Tape;
+use crate::checkpoint::StateCoder;
 use crate::error::StepError;
 
 /// Angle in rad, of turns that no load has caused, beyond which nothing is known about the attitude. Where the
@@ -23,14 +23,14 @@ pub(crate) struct AttitudeAccount {
 }
 
 impl AttitudeAccount {
-    pub(crate) fn pass(&mut self, tape: &mut Tape) {
+    pub(crate) fn code(&mut self, coder: &mut StateCoder) {
         let mut there = self.start.is_some();
-        tape.flag(&mut there);
+        coder.flag(&mut there);
         let (mut momentum, mut time) = self.start.unwrap_or_default();
-        tape.vector(&mut momentum);
-        tape.number(&mut time);
+        coder.vector(&mut momentum);
+        coder.number(&mut time);
         self.start = there.then_some((momentum, time));
-        tape.vector(&mut self.turn_global);
+        coder.vector(&mut self.turn_global);
     }
 
     /// Checks the angular momentum less the impulse of the loads, `balance_global`, at a time; `spin_of` is the spin

@@ -26,12 +26,17 @@ pub enum RestoreError {
     },
 }
 
-/// Passes over the words of a state, in one order for both directions: it notes them, or sets them.
+/// Encodes or decodes a state as a list of words.
 ///
-/// Each part of the state has one function that hands its variables to a tape, so that what is noted and what is set
-/// cannot differ. Constants of the run, and what is computed anew before it is read, are left out.
+/// Each part of the state has one function `code` for both directions, so that the encoder and the decoder cannot differ.
+/// It hands over its variables one by one. Constants of the run, and what is computed again before it is read, are left
+/// out.
 #[derive(Debug)]
-pub(crate) enum Tape<'a> {
+pub struct StateCoder<'a>(Way<'a>);
+
+/// Which way it goes.
+#[derive(Debug)]
+enum Way<'a> {
     /// Notes the words.
     Note(&'a mut Vec<u64>),
     /// Sets them from a list.
@@ -43,26 +48,32 @@ pub(crate) enum Tape<'a> {
     },
 }
 
-impl<'a> Tape<'a> {
-    pub(crate) fn set(words: &'a [u64]) -> Self {
-        Self::Set { words, passed: 0, wrong: None }
+impl<'a> StateCoder<'a> {
+    /// Sets a state from a list of words.
+    pub(crate) fn decode(words: &'a [u64]) -> Self {
+        Self(Way::Set { words, passed: 0, wrong: None })
+    }
+
+    /// Notes a state in a list of words.
+    pub(crate) fn encode(words: &'a mut Vec<u64>) -> Self {
+        Self(Way::Note(words))
     }
 
     /// Whether what was set is a whole state.
     pub(crate) fn finish(self) -> Result<(), RestoreError> {
-        match self {
-            Self::Set { words, passed, .. } if passed != words.len() => {
+        match self.0 {
+            Way::Set { words, passed, .. } if passed != words.len() => {
                 Err(RestoreError::Length { expected: passed, found: words.len() })
             }
-            Self::Set { wrong: Some(what), .. } => Err(RestoreError::Value { what }),
+            Way::Set { wrong: Some(what), .. } => Err(RestoreError::Value { what }),
             _ => Ok(()),
         }
     }
 
     fn word(&mut self, value: &mut u64) {
-        match self {
-            Self::Note(words) => words.push(*value),
-            Self::Set { words, passed, .. } => {
+        match &mut self.0 {
+            Way::Note(words) => words.push(*value),
+            Way::Set { words, passed, .. } => {
                 *value = words.get(*passed).copied().unwrap_or(*value);
                 *passed += 1;
             }
@@ -70,47 +81,50 @@ impl<'a> Tape<'a> {
     }
 
     /// The words set so far are refused unless `holds`.
-    pub(crate) fn expect(&mut self, what: &'static str, holds: bool) {
-        if let (Self::Set { wrong, .. }, false) = (self, holds) {
+    pub fn expect(&mut self, what: &'static str, holds: bool) {
+        if let (Way::Set { wrong, .. }, false) = (&mut self.0, holds) {
             *wrong = Some(what);
         }
     }
 
     /// A count, which no run brings beyond 2⁶⁰.
-    pub(crate) fn count(&mut self, value: &mut u64) {
+    pub fn count(&mut self, value: &mut u64) {
         self.word(value);
         self.expect("a count", *value <= 1 << 60);
     }
 
-    pub(crate) fn flag(&mut self, value: &mut bool) {
+    /// Yes or no.
+    pub fn flag(&mut self, value: &mut bool) {
         let mut word = u64::from(*value);
         self.word(&mut word);
         *value = word != 0;
     }
 
     /// Bit for bit, infinities and NaN too.
-    pub(crate) fn number(&mut self, value: &mut f64) {
+    pub fn number(&mut self, value: &mut f64) {
         let mut word = value.to_bits();
         self.word(&mut word);
         *value = f64::from_bits(word);
     }
 
     /// A number that is finite in any run.
-    pub(crate) fn finite(&mut self, what: &'static str, value: &mut f64) {
+    pub fn finite(&mut self, what: &'static str, value: &mut f64) {
         self.number(value);
         self.expect(what, value.is_finite());
     }
 
     /// A list whose length is a constant of the run.
-    pub(crate) fn numbers(&mut self, values: &mut [f64]) {
+    pub fn numbers(&mut self, values: &mut [f64]) {
         values.iter_mut().for_each(|value| self.number(value));
     }
 
-    pub(crate) fn vector<const N: usize>(&mut self, vector: &mut SVector<f64, N>) {
+    /// A vector, bit for bit.
+    pub fn vector<const N: usize>(&mut self, vector: &mut SVector<f64, N>) {
         self.numbers(vector.as_mut_slice());
     }
 
-    pub(crate) fn attitude(&mut self, attitude: &mut Attitude) {
+    /// An attitude, bit for bit.
+    pub fn attitude(&mut self, attitude: &mut Attitude) {
         let mut wxyz = attitude.wxyz();
         self.numbers(&mut wxyz);
         match Attitude::from_unit_wxyz(wxyz) {

@@ -22,15 +22,16 @@ use modal::ReducedBody;
 use nalgebra::{Matrix3, SVector, Vector3};
 use rigid_kin::{Attitude, f_inverse, transformation_matrix};
 
-use crate::account::Reckoning;
-use crate::checkpoint::Tape;
+use crate::account::Energies;
+use crate::checkpoint::StateCoder;
 use crate::error::{RateError, SetupError, StepError};
+use crate::error_size::own_coupling;
 use crate::history::History;
 use crate::initial::Initial;
 use crate::load::{Applied, Coordinates, Kinematics, SharedLoad};
 use crate::motion::CenterOfMass;
-use crate::state::MotionState;
 use crate::physics::{Drive, DrivenMotion, Effects, Physics};
+use crate::state::MotionState;
 
 /// What moves slowly, beside the modes: see [`part`].
 pub(crate) type Slow = SVector<f64, 20>;
@@ -111,6 +112,8 @@ pub struct ConservativeBody {
     pub(crate) g_rows: usize,
     /// Column by column, G_i and N_ij one below another.
     stacked: Vec<f64>,
+    /// Largest N_ij and G_i that couple each mode to itself and its like (nf).
+    pub(crate) own_coupling: Vec<[f64; 2]>,
     /// Stress stiffness of steady loads, column by column (nf × nf), or empty.
     load_stiffness: Vec<f64>,
     loads: Vec<SharedLoad>,
@@ -188,12 +191,12 @@ impl ConservativeState {
         }
     }
 
-    pub(crate) fn pass(&mut self, tape: &mut Tape) {
-        tape.finite("the time", &mut self.time);
-        tape.attitude(&mut self.attitude);
-        tape.vector(&mut self.slow);
-        tape.numbers(&mut self.modal_displacement);
-        tape.numbers(&mut self.modal_momentum);
+    pub(crate) fn code(&mut self, coder: &mut StateCoder) {
+        coder.finite("the time", &mut self.time);
+        coder.attitude(&mut self.attitude);
+        coder.vector(&mut self.slow);
+        coder.numbers(&mut self.modal_displacement);
+        coder.numbers(&mut self.modal_momentum);
     }
 }
 
@@ -296,9 +299,8 @@ impl ConservativeBody {
             axes[axis].iter().zip(&body.gyroscopic).map(|(a, g)| a * g[(i, j)]).sum::<f64>()
         };
         let second = |weights: &[f64; 6], i: usize, j: usize| {
-            let of = |matrices: &[Mat<f64>; 6]| -> f64 {
-                matrices.iter().zip(weights).map(|(m, w)| w * m[(i, j)]).sum()
-            };
+            let of =
+                |matrices: &[Mat<f64>; 6]| -> f64 { matrices.iter().zip(weights).map(|(m, w)| w * m[(i, j)]).sum() };
             of(&body.inertia_second) - stiffness.map_or(0.0, of)
         };
         let mut stacked = Vec::with_capacity((g_rows + pairs.len() * nf) * nf);
@@ -347,6 +349,7 @@ impl ConservativeBody {
             drive: drive.clone(),
             s_rows,
             g_rows,
+            own_coupling: own_coupling(&body.circular_frequencies, &stacked, g_rows),
             stacked,
             load_stiffness: load_stiffness.as_ref().map_or_else(Vec::new, |k| columns(k.as_ref())),
             loads,
@@ -734,14 +737,14 @@ impl ConservativeBody {
 
     /// The energies of a motion whose rates are in `e`; none of a driven body, to which a jump of its drive gives energy
     /// at an instant.
-    pub(crate) fn reckon(&self, time: f64, slow: &Slow, q: &[f64], p: &[f64], e: &Evaluation) -> Option<Reckoning> {
+    pub(crate) fn energies_of(&self, time: f64, slow: &Slow, q: &[f64], p: &[f64], e: &Evaluation) -> Option<Energies> {
         if self.drive.is_some() {
             return None;
         }
         let internal = 0.5 * (get(slow, part::PI).dot(&e.spin) + dot(p, &e.velocity)) + self.strain_energy(q, e);
         let translation = 0.5 * get(slow, part::MOMENTUM).norm_squared() / self.mass;
         let (work, dissipation) = (slow[part::WORK], slow[part::DISSIPATION]);
-        Some(Reckoning { time, internal, translation, work, dissipation })
+        Some(Energies { time, internal, translation, work, dissipation })
     }
 
     /// Energy of rotation, vibration and strain of a state whose rates are in `e`: all but that of the origin's motion.
@@ -759,7 +762,7 @@ impl ConservativeBody {
         rigid + q.zip(p).enumerate().map(|(k, (q, p))| self.modal_energy(k, q.0 - q.1, p.0 - p.1)).sum::<f64>()
     }
 
-    /// Reckoning that the loads, one by one, would give the body from rest within the longest period or until `end`: by
+    /// Energies that the loads, one by one, would give the body from rest within the longest period or until `end`: by
     /// their impulse the rigid body, by their largest force the modes. The scale of a motion that begins without any.
     pub(crate) fn energy_of_loads(&self, end: f64) -> f64 {
         let lowest = self.circular_frequencies.iter().copied().reduce(f64::min);
@@ -806,7 +809,7 @@ impl ConservativeBody {
     }
 
     /// ½ P²/m + ½ π·J0⁻¹π
-    fn rigid_energy(&self, momentum: &Vector3<f64>, pi: &Vector3<f64>) -> f64 {
+    pub(crate) fn rigid_energy(&self, momentum: &Vector3<f64>, pi: &Vector3<f64>) -> f64 {
         0.5 * (momentum.norm_squared() / self.mass + pi.dot(&(self.inverse_inertia * pi)))
     }
 
@@ -816,7 +819,7 @@ impl ConservativeBody {
         0.5 * (omega_q * omega_q + p * p)
     }
 
-    /// Reckoning of a state whose rates are in `e`: (kinetic, strain).
+    /// Energies of a state whose rates are in `e`: (kinetic, strain).
     pub(crate) fn energies(&self, state: &ConservativeState, e: &Evaluation) -> (f64, f64) {
         let q = &state.modal_displacement;
         let moving = match (&self.drive, self.translation) {
@@ -835,6 +838,11 @@ impl ConservativeBody {
     /// ½ qᵀ(Λ + K)q
     fn strain_energy(&self, q: &[f64], e: &Evaluation) -> f64 {
         q.iter().enumerate().map(|(k, q)| self.modal_energy(k, *q, 0.0)).sum::<f64>() + 0.5 * dot(q, &e.stressed)
+    }
+
+    /// Lowest ω_k; infinite without modes.
+    pub(crate) fn lowest_frequency(&self) -> f64 {
+        self.circular_frequencies.iter().copied().fold(f64::INFINITY, f64::min)
     }
 
     /// Largest of ω_k and 2 ζ_k ω_k.

@@ -5,12 +5,14 @@ use std::any::Any;
 use nalgebra::Vector2;
 use rigid_kin::Attitude;
 
-use crate::account::Reckoning;
-use crate::checkpoint::Tape;
+use crate::account::Energies;
+use crate::checkpoint::StateCoder;
 use crate::conservative::{ConservativeBody, ConservativeState, Evaluation, Slow, get, part};
 use crate::error::{SetupError, StepError};
+use crate::error_size::Sizes;
 use crate::exponential::{BlockStore, apply};
 use crate::initial::Initial;
+use crate::moment::Moment;
 use crate::motion::PointShapes;
 use crate::observation::Observation;
 use crate::scheme::{Method, Scheme, StepLimit};
@@ -50,10 +52,10 @@ pub struct ConservativeMotion {
     p: Vec<f64>,
     blocks: BlockStore,
     evaluations: u64,
-    /// Largest energy so far, that of the centre's motion left out; not less than what the loads are to give.
-    energy_scale: f64,
+    /// Under step control, the largest sizes so far; the energy not less than what the loads are to give.
+    largest: Sizes,
     /// Energies at the start of the last step; none of a driven body, whose drive may jump.
-    reckoning: Option<Reckoning>,
+    energies: Option<Energies>,
 }
 
 /// Classical Runge–Kutta in the list of schemes.
@@ -83,7 +85,7 @@ pub(crate) const EXPONENTIAL: Method = Method {
 fn begin(setup: &Setup, scheme: Stepping) -> Result<Box<dyn Scheme>, SetupError> {
     let body = ConservativeBody::new(setup.body, setup.damping_ratios, setup.loads.to_vec(), setup.physics)?;
     let mut motion = ConservativeMotion::new(body, scheme, setup.initial)?;
-    motion.energy_scale = setup.energy_of_loads()?;
+    motion.largest.energy = setup.energy_of_loads()?;
     Ok(Box::new(motion))
 }
 
@@ -116,7 +118,7 @@ impl Scheme for ConservativeMotion {
         let Self { body, initial_attitude, state, ahead, .. } = self;
         body.observe(state, initial_attitude, points, ahead, out).map_err(|error| error.in_step(state.time, 0.0))?;
         let (q, p) = (&state.modal_displacement, &state.modal_momentum);
-        self.reckoning = body.reckon(state.time, &state.slow, q, p, ahead);
+        self.energies = body.energies_of(state.time, &state.slow, q, p, ahead);
         Ok(())
     }
 
@@ -135,13 +137,24 @@ impl Scheme for ConservativeMotion {
         self.state.copy_from(&from.state);
         self.first_known = false;
         self.evaluations = from.evaluations;
-        self.energy_scale = from.energy_scale;
-        self.reckoning = from.reckoning;
+        self.largest = from.largest;
+        self.energies = from.energies;
     }
 
     /// At the start of the last step, as its first stage found them; none of a driven body, whose drive may jump.
-    fn reckoning(&self) -> Option<Reckoning> {
-        self.reckoning
+    fn energies(&self) -> Option<Energies> {
+        self.energies
+    }
+
+    /// Where the rates were last found: at the state under step control, else at the start of the last step.
+    fn moment(&self) -> Moment<'_> {
+        let Evaluation { omega_body, velocity, .. } = &self.stages[0];
+        let (time, q) = match self.first_known {
+            true => (self.state.time, &self.state.modal_displacement),
+            // The states have changed places at the end of the step.
+            false => (self.next.time, &self.start_q),
+        };
+        Moment { time, omega_body: *omega_body, modal_displacement: q, modal_velocity: velocity }
     }
 
     fn work_and_dissipation(&self) -> [f64; 2] {
@@ -160,17 +173,17 @@ impl Scheme for ConservativeMotion {
         self.body.flexible()
     }
 
-    fn pass(&mut self, tape: &mut Tape<'_>) {
-        self.state.pass(tape);
-        Reckoning::pass(&mut self.reckoning, tape);
-        tape.flag(&mut self.first_known);
+    fn code(&mut self, coder: &mut StateCoder<'_>) {
+        self.state.code(coder);
+        Energies::code(&mut self.energies, coder);
+        coder.flag(&mut self.first_known);
         // Of a known evaluation the stages read the rates only.
         let first = &mut self.stages[0];
-        tape.vector(&mut first.slow);
-        tape.numbers(&mut first.displacement);
-        tape.numbers(&mut first.momentum);
-        tape.count(&mut self.evaluations);
-        tape.number(&mut self.energy_scale);
+        coder.vector(&mut first.slow);
+        coder.numbers(&mut first.displacement);
+        coder.numbers(&mut first.momentum);
+        coder.count(&mut self.evaluations);
+        self.largest.code(coder);
     }
 
     fn boxed_clone(&self) -> Box<dyn Scheme> {
@@ -203,8 +216,8 @@ impl ConservativeMotion {
             p: vec![0.0; nf],
             blocks: BlockStore::default(),
             evaluations: 0,
-            energy_scale: 0.0,
-            reckoning: None,
+            largest: Sizes::default(),
+            energies: None,
             body,
         })
     }
@@ -222,7 +235,7 @@ impl ConservativeMotion {
         to.check(self.body.flexible())?;
         self.state.copy_from(to);
         self.first_known = false;
-        self.reckoning = None;
+        self.energies = None;
         Ok(())
     }
 
@@ -238,20 +251,19 @@ impl ConservativeMotion {
     /// single step would be cheaper, but all answers of third order weigh a pure function of time by Simpson's rule as
     /// the fourth-order one does: such an estimate is blind to loads, and to modes faster than the step.
     ///
-    /// The size of the error is the square root of its energy over the largest energy of the motion so far (about the
-    /// centre of mass; not less than what the impulses of the loads would give the rigid body), or the angle in the
-    /// attitude, whichever is larger.
+    /// The size of the error is the angle in the attitude or the largest of [`Sizes`], whichever is larger; the energy of
+    /// the motion counts as not less than what the impulses of the loads would give the rigid body.
     ///
     /// # Errors
     /// [`StepError`], where even the attempt fails; the state stays.
     pub(crate) fn controlled_steps(&mut self, h: f64, end: f64, tolerance: f64) -> Result<f64, StepError> {
         self.before.copy_from(&self.state);
-        let estimate = self.two_steps(h, end);
+        let estimate = self.two_steps(h, end, tolerance);
         match estimate {
             Ok(estimate) if estimate <= tolerance => {
-                self.energy_scale = self.body.internal_energy(&self.next, &self.ahead).max(self.energy_scale);
+                self.largest = self.body.sizes(&self.next, &self.ahead).max(self.largest);
                 let ConservativeState { time, slow, modal_displacement, modal_momentum, .. } = &self.next;
-                self.reckoning = self.body.reckon(*time, slow, modal_displacement, modal_momentum, &self.ahead);
+                self.energies = self.body.energies_of(*time, slow, modal_displacement, modal_momentum, &self.ahead);
                 if self.scheme == Stepping::Rkmk4 {
                     let (q, p) = (&self.next.modal_displacement, &self.next.modal_momentum);
                     self.body.add_linear(q, p, &mut self.ahead);
@@ -269,8 +281,9 @@ impl ConservativeMotion {
         estimate
     }
 
-    /// Goes to `end` by one step of twice `h` and by two of `h`, the latter's end in `next`, and estimates its error.
-    fn two_steps(&mut self, h: f64, end: f64) -> Result<f64, StepError> {
+    /// Goes to `end` by one step of twice `h` and by two of `h`, the latter's end in `next`, and estimates its error. The
+    /// estimate is not below half the `tolerance` where steps of twice the length would leave out more than they may.
+    fn two_steps(&mut self, h: f64, end: f64, tolerance: f64) -> Result<f64, StepError> {
         let time = self.state.time;
         self.attempt(2.0 * h, end)?;
         self.coarse.copy_from(&self.next);
@@ -289,12 +302,14 @@ impl ConservativeMotion {
         )
         .map_err(|error| error.in_step(time, h))?;
         self.evaluations += 1;
-        let scale = body.internal_energy(next, ahead).max(self.energy_scale);
-        let energy = body.energy_of_difference(next, coarse);
-        let relative = if energy == 0.0 { 0.0 } else { (energy / scale).sqrt() };
+        let motion = body.sizes(next, ahead).max(self.largest);
+        let relative = body.sizes_of_difference(next, coarse).relative_to(motion, body.lowest_frequency());
         let angle = next.attitude.angle_to(&coarse.attitude);
+        let unseen = |step: f64| body.unseen(step, next, ahead).relative_to(motion, body.lowest_frequency());
         // A NaN stays one, and is rejected.
-        Ok(if relative <= angle { angle } else { relative } / 15.0)
+        let estimate = if relative <= angle { angle } else { relative } / 15.0 + unseen(2.0 * h);
+        let keeps_its_length = estimate < 0.5 * tolerance && unseen(4.0 * h) > 2.0 * tolerance;
+        Ok(if keeps_its_length { 0.5 * tolerance } else { estimate })
     }
 
     /// Computes `next` from `state`.
@@ -337,7 +352,7 @@ impl ConservativeMotion {
         let slow = self.state.slow;
         self.evaluate(0, self.state.time, &slow, h)?;
         let Self { body, state, stages, q, p, .. } = self;
-        self.reckoning = body.reckon(state.time, &slow, q, p, &stages[0]);
+        self.energies = body.energies_of(state.time, &slow, q, p, &stages[0]);
         if self.scheme == Stepping::Rkmk4 {
             self.body.add_linear(&self.q, &self.p, &mut self.stages[0]);
         }

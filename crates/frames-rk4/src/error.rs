@@ -50,7 +50,7 @@ pub enum SetupError {
     /// A text that is no expression in t.
     #[error(
         "the expression \"{text}\" at character {position}: {problem}; an expression has t, numbers, pi and e, + - * / % ^ and parentheses, and functions like {functions}",
-        functions = crate::history::FUNCTIONS
+        functions = crate::history::function_names()
     )]
     Expression {
         /// The expression.
@@ -206,7 +206,9 @@ pub enum StepError {
         time: f64,
     },
     /// A time that is not inside the last step.
-    #[error("time {time} is not inside the last step, from {from} to {to}; ask for the steps to be kept before they are taken")]
+    #[error(
+        "time {time} is not inside the last step, from {from} to {to}; ask for the steps to be kept before they are taken"
+    )]
     OutsideLastStep {
         /// The time asked for.
         time: f64,

@@ -124,6 +124,8 @@ pub(crate) struct Events {
     list: Vec<Event>,
     values: Vec<f64>,
     after: Vec<f64>,
+    /// Whether the values are those of another state.
+    stale: bool,
 }
 
 /// Halvings of a step are enough of these to reach rounding, and the secants come sooner.
@@ -146,11 +148,22 @@ impl Events {
         self.list.get(number)
     }
 
-    /// Takes the motion as where the events are now, whatever they were before.
+    /// Whether the values are to be found again, after a change of the state.
+    pub(crate) fn is_stale(&self) -> bool {
+        self.stale && !self.list.is_empty()
+    }
+
+    /// The state has been changed.
+    pub(crate) fn forget(&mut self) {
+        self.stale = true;
+    }
+
+    /// Finds the values of the events at a motion.
     pub(crate) fn reset(&mut self, now: &Observation) {
         for (value, event) in self.values.iter_mut().zip(&self.list) {
             *value = (event.function)(now);
         }
+        self.stale = false;
     }
 
     /// The first event that is passed in the last step, at whose end the motion is `now`: its number and time. The probe

@@ -16,8 +16,12 @@ const ACCURACY: f64 = 1e-4;
 const LEFT_OVER: f64 = 1e-3;
 /// So often is a step halved at most.
 const HALVINGS: u32 = 10;
-/// Cells that the run is looked at in, at most; longer ones than steps need more halvings.
-const MOST_CELLS: f64 = 1e6;
+/// Values that all formulas of a run may be asked for, where one costs 1 ([`History::cost`]), and those for each cell that
+/// the run is looked at in: fourteen, and some for halving. Cells that are longer than steps need more halvings.
+const BUDGET: f64 = 6.4e7;
+const VALUES_OF_CELL: f64 = 32.0;
+/// Values of the rules over a cell.
+const VALUES_OF_RULES: f64 = 7.0;
 /// Cells that it is looked at in under step control.
 const CELLS: f64 = 4096.0;
 /// Places closer than so many cells are one.
@@ -55,9 +59,13 @@ impl FormulaSteps {
     pub(crate) fn new(histories: &[History], end: f64, step: Option<f64>) -> Result<Self, SetupError> {
         let mut expressions = Vec::new();
         histories.iter().for_each(|history| collect(history, &mut expressions));
-        let formulas = expressions.into_iter().map(|expression| match step {
-            Some(step) => of_fixed_steps(expression, end, step),
-            None => of_step_control(expression, end),
+        let count = expressions.len() as f64;
+        let formulas = expressions.into_iter().map(|expression| {
+            let budget = BUDGET / (History::Expression(expression.clone()).cost() * count);
+            match step {
+                Some(step) => of_fixed_steps(expression, end, step, budget),
+                None => of_step_control(expression, end, budget),
+            }
         });
         Ok(Self { formulas: formulas.collect::<Result<_, _>>()? })
     }
@@ -96,16 +104,17 @@ fn cells(from: f64, to: f64, count: f64) -> impl Iterator<Item = [f64; 2]> {
     (0..count as u64).map(move |k| [from + (to - from) * k as f64 / count, from + (to - from) * (k + 1) as f64 / count])
 }
 
-fn of_fixed_steps(expression: &Expression, end: f64, step: f64) -> Result<Vec<Stretch>, SetupError> {
+fn of_fixed_steps(expression: &Expression, end: f64, step: f64, budget: f64) -> Result<Vec<Stretch>, SetupError> {
     let stops = stops(expression, end);
+    let most_cells = budget / VALUES_OF_CELL;
     let walk = || {
         stops.windows(2).flat_map(|pair| {
             let length = pair[1] - pair[0];
-            let count = (length / step).ceil().min(MOST_CELLS * length / end).ceil().max(1.0);
+            let count = (length / step).ceil().min(most_cells * length / end).ceil().max(1.0);
             cells(pair[0], pair[1], count)
         })
     };
-    let mut search = Search::new(expression, walk(), end, step);
+    let mut search = Search::new(expression, walk(), end, step, budget);
     let mut found: Vec<Stretch> = Vec::new();
     for [start, stop] in walk() {
         let length = stop - start;
@@ -124,13 +133,14 @@ fn of_fixed_steps(expression: &Expression, end: f64, step: f64) -> Result<Vec<St
     Ok(found)
 }
 
-fn of_step_control(expression: &Expression, end: f64) -> Result<Vec<Stretch>, SetupError> {
+fn of_step_control(expression: &Expression, end: f64, budget: f64) -> Result<Vec<Stretch>, SetupError> {
     let stops = stops(expression, end);
+    let most_cells = CELLS.min(budget / VALUES_OF_CELL).max(1.0);
     let between = |pair: &[f64]| -> Vec<[f64; 2]> {
-        let count = (CELLS * (pair[1] - pair[0]) / end).ceil() as u64;
+        let count = (most_cells * (pair[1] - pair[0]) / end).ceil() as u64;
         cells(pair[0], pair[1], count.next_power_of_two() as f64).collect()
     };
-    let mut search = Search::new(expression, stops.windows(2).flat_map(between), end, end / CELLS);
+    let mut search = Search::new(expression, stops.windows(2).flat_map(between), end, end / most_cells, budget);
     let mut found: Vec<Stretch> = Vec::new();
     for pair in stops.windows(2) {
         let cells = between(pair);
@@ -183,12 +193,20 @@ struct Search<'a> {
     step: f64,
     /// Sum of the differences where steps are as short as they may be.
     left_over: f64,
+    /// Values that may still be asked for. Where there are none left, steps are as short as the shortest so far.
+    values: f64,
+    shortest: f64,
 }
 
 impl<'a> Search<'a> {
-    fn new(expression: &'a Expression, walk: impl Iterator<Item = [f64; 2]>, end: f64, step: f64) -> Self {
-        let magnitude: f64 = walk.map(|cell| rules(expression, cell).magnitude).sum();
-        Self { expression, magnitude, allowed: ACCURACY * magnitude / end, step, left_over: 0.0 }
+    fn new(expression: &'a Expression, walk: impl Iterator<Item = [f64; 2]>, end: f64, step: f64, budget: f64) -> Self {
+        let (mut magnitude, mut values) = (0.0, budget);
+        for cell in walk {
+            magnitude += rules(expression, cell).magnitude;
+            values -= VALUES_OF_RULES;
+        }
+        let allowed = ACCURACY * magnitude / end;
+        Self { expression, magnitude, allowed, step, left_over: 0.0, values, shortest: f64::INFINITY }
     }
 
     fn is_seen(&self, [start, end]: [f64; 2], difference: f64) -> bool {
@@ -210,7 +228,12 @@ impl<'a> Search<'a> {
 
     fn halved(&mut self, [start, end]: [f64; 2], limit: f64) -> f64 {
         let length = end - start;
+        if self.values <= 0.0 {
+            return length.min(self.shortest.max(limit));
+        }
+        self.values -= VALUES_OF_RULES;
         let Rules { difference, .. } = rules(self.expression, [start, end]);
+        self.shortest = self.shortest.min(length);
         if self.is_seen([start, end], difference) {
             return length;
         }
@@ -316,6 +339,21 @@ mod tests {
         let error = steps("sin(1e9*t)", &[], 1.0, 1e-2).unwrap_err();
         let message = error.to_string();
         assert!(message.contains("sin(1e9*t)") && message.contains("corners"), "{message}");
+    }
+
+    #[test]
+    fn the_values_of_a_long_formula_are_counted() {
+        // Waves of a hundredth of a step that grow: the halvings end before they are refused.
+        let text = format!("sin(6e5*t){}", " + 0*t*t*t*t*t".repeat(60));
+        for step in [Some(1e-4), None] {
+            let before = crate::history::expression::evaluations();
+            let _ = steps(&text, &[], 1.0, step);
+            let found = crate::history::expression::evaluations() - before;
+            assert!(found < 170_000 && found > 1_000, "{found}");
+        }
+        // What is smooth is still left alone.
+        let text = format!("exp(-t){}", " + 0*t*t*t*t*t".repeat(60));
+        assert_eq!(steps(&text, &[], 1.0, 1e-5).unwrap().stops().count(), 0);
     }
 
     #[test]

@@ -1,13 +1,13 @@
 //! How loads go with time.
 
-mod expression;
+pub(crate) mod expression;
 mod scan;
 mod table;
 
 use std::f64::consts::{PI, TAU};
 
 pub use expression::Expression;
-pub(crate) use expression::FUNCTIONS;
+pub(crate) use expression::function_names;
 pub use table::Table;
 
 use crate::error::SetupError;
@@ -110,9 +110,8 @@ impl History {
 
     /// The factor's rate at a time, by the law that holds at the time `inside`; per time.
     ///
-    /// Exact but for an expression, whose rate is taken from differences over a hundred-thousandth of `span`, the length
-    /// of the run: right to 1e-9 of itself if the expression has less than a thousand cycles in it. Allocates nothing.
-    pub fn rate(&self, time: f64, inside: f64, span: f64) -> f64 {
+    /// It is the exact derivative. Allocates nothing.
+    pub fn rate(&self, time: f64, inside: f64) -> f64 {
         match self {
             Self::Ramp { start, duration } if within(*start, *duration, inside) => duration.recip(),
             Self::HalfSine { start, duration } if within(*start, *duration, inside) => {
@@ -133,10 +132,10 @@ impl History {
             Self::Constant | Self::Step { .. } | Self::Ramp { .. } => 0.0,
             Self::HalfSine { .. } | Self::Sine { .. } | Self::Sweep { .. } => 0.0,
             Self::Table(table) => table.rate(time, inside),
-            Self::Expression(expression) => expression.rate(time, inside, span),
+            Self::Expression(expression) => expression.rate(time, inside),
             Self::Product(factors) => {
                 let times = |(value, rate): (f64, f64), factor: &Self| {
-                    let (by, by_rate) = (factor.at(time, inside), factor.rate(time, inside, span));
+                    let (by, by_rate) = (factor.at(time, inside), factor.rate(time, inside));
                     (value * by, rate * by + value * by_rate)
                 };
                 factors.iter().fold((1.0, 0.0), times).1

@@ -8,6 +8,7 @@ mod field;
 mod force;
 mod moment;
 
+use std::any::Any;
 use std::fmt;
 use std::sync::Arc;
 
@@ -26,7 +27,7 @@ pub use moment::PointMoment;
 ///
 /// It sees the motion and adds forces and moments to what is applied. It is evaluated several times a step, so it must
 /// not allocate, and it must depend on nothing but the motion, or steps would not converge.
-pub trait Load: fmt::Debug + Send + Sync {
+pub trait Load: fmt::Debug + Send + Sync + Any {
     /// Adds what the load does to the body in this motion.
     fn apply(&self, motion: &Kinematics, applied: &mut Applied);
 
@@ -185,7 +186,15 @@ impl<'a> Applied<'a> {
     /// Nothing yet; modal forces are added to `modal_force`.
     pub(crate) fn new(coordinates: Coordinates<'a>, center_body: Vector3<f64>, modal_force: &'a mut [f64]) -> Self {
         let zero = Vector3::zeros();
-        Self { coordinates, center_body, weight: 1.0, force_body: zero, moment_body: zero, modal_power: 0.0, modal_force }
+        Self {
+            coordinates,
+            center_body,
+            weight: 1.0,
+            force_body: zero,
+            moment_body: zero,
+            modal_power: 0.0,
+            modal_force,
+        }
     }
 
     /// Adds a force at a point, body components.

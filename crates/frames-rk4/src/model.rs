@@ -61,7 +61,8 @@ impl ModalModel {
     /// q̈ of (35) into `acceleration`, and the rates of the loads' work, of the dissipation and of the impulses. The loads
     /// are the mean of those at the given `times`.
     pub(crate) fn rates(&self, frame: &LinearMotion, times: &[f64], acceleration: &mut [f64]) -> Work {
-        let LinearMotion { coordinates, branch_time, body_from_global, origin_global, omega_body, center_body } = *frame;
+        let LinearMotion { coordinates, branch_time, body_from_global, origin_global, omega_body, center_body } =
+            *frame;
         let Coordinates { displacement, velocity, .. } = coordinates;
         let mut dissipation = 0.0;
         let modes = displacement.iter().zip(velocity).zip(self.stiffness.iter().zip(&self.damping));
@@ -73,8 +74,16 @@ impl ModalModel {
         applied.weight = 1.0 / times.len() as f64;
         for time in times {
             let (time, velocity_global, unit) = (*time, Vector3::zeros(), false);
-            let motion =
-                Kinematics { time, branch_time, body_from_global, origin_global, velocity_global, omega_body, coordinates, unit };
+            let motion = Kinematics {
+                time,
+                branch_time,
+                body_from_global,
+                origin_global,
+                velocity_global,
+                omega_body,
+                coordinates,
+                unit,
+            };
             self.loads.iter().for_each(|load| load.apply(&motion, &mut applied));
         }
         Work {

@@ -5,7 +5,7 @@ use modal::{BodyPoint, ReducedBody, RigidMotion};
 use nalgebra::{Matrix3, Vector3};
 use rigid_kin::{Attitude, Inertia, InertiaError, euler_angular_acceleration};
 
-use crate::account::Reckoning;
+use crate::account::Energies;
 use crate::attitude_account::AttitudeAccount;
 use crate::error::{SetupError, StepError};
 use crate::observation::Observation;
@@ -258,7 +258,13 @@ impl BodyMotion {
         let mut turned = vec![0.0; size];
         let y = &mut state.modal_velocity;
         for (k, y) in y.iter_mut().enumerate() {
-            *y = if k < 3 { translating[k] } else if k < 6 { z[k - 3] } else { to.modal_velocity[k - 6] };
+            *y = if k < 3 {
+                translating[k]
+            } else if k < 6 {
+                z[k - 3]
+            } else {
+                to.modal_velocity[k - 6]
+            };
         }
         for (i, products) in self.cross_products.iter().enumerate() {
             crate::conservative::multiply(products, size, &state.modal_displacement, &mut turned);
@@ -289,10 +295,10 @@ impl BodyMotion {
     }
 
     /// Energies of a state.
-    pub(crate) fn reckon(&self, state: &State, work: &Work) -> Reckoning {
+    pub(crate) fn energies_of(&self, state: &State, work: &Work) -> Energies {
         let translation = 0.5 * translation(&state.modal_velocity).norm_squared();
         let others = 0.5 * state.modal_velocity[3..].iter().map(|y| y * y).sum::<f64>();
-        Reckoning {
+        Energies {
             time: state.time,
             internal: others + self.strain_energy(state),
             translation,

@@ -11,14 +11,15 @@ use modal::ReducedBody;
 use nalgebra::{Matrix3, Vector3};
 use rigid_kin::{BeyondFullTurn, ReferencePoints, f_inverse, relative_velocity_rate, transformation_matrix};
 
-use crate::account::Reckoning;
+use crate::account::Energies;
 use crate::attitude_account::AttitudeAccount;
-use crate::checkpoint::Tape;
+use crate::checkpoint::StateCoder;
 use crate::error::{RateError, SetupError, StepError};
 use crate::initial::Initial;
-use crate::modal_rotation::ModalRotation;
 use crate::load::Coordinates;
+use crate::modal_rotation::ModalRotation;
 use crate::model::{LinearMotion, ModalModel};
+use crate::moment::Moment;
 use crate::motion::{BodyMotion, PointShapes};
 use crate::observation::Observation;
 use crate::physics::Physics;
@@ -215,7 +216,11 @@ impl PaperScheme {
         let [v_p, v_q] = kinematics.relative(&state.modal_velocity);
         state.omega_body = kinematics.points.angular_velocity(&v_p, &v_q);
         let linear = LinearMotion {
-            coordinates: Coordinates { first: 0, displacement: &state.modal_displacement, velocity: &state.modal_velocity },
+            coordinates: Coordinates {
+                first: 0,
+                displacement: &state.modal_displacement,
+                velocity: &state.modal_velocity,
+            },
             branch_time: inside,
             body_from_global: &global_to_body,
             origin_global: state.origin_global,
@@ -305,8 +310,14 @@ impl Scheme for PaperScheme {
         self.at_corner = from.at_corner;
     }
 
-    fn reckoning(&self) -> Option<Reckoning> {
-        Some(self.motion.reckon(&self.state, &self.work))
+    fn moment(&self) -> Moment<'_> {
+        let State { time, omega_body, modal_displacement, modal_velocity, .. } = &self.state;
+        let (q, y) = (&modal_displacement[6..], &modal_velocity[6..]);
+        Moment { time: *time, omega_body: *omega_body, modal_displacement: q, modal_velocity: y }
+    }
+
+    fn energies(&self) -> Option<Energies> {
+        Some(self.motion.energies_of(&self.state, &self.work))
     }
 
     fn work_and_dissipation(&self) -> [f64; 2] {
@@ -325,14 +336,14 @@ impl Scheme for PaperScheme {
         self.state.modal_displacement.len() - 6
     }
 
-    fn pass(&mut self, tape: &mut Tape<'_>) {
-        self.state.pass(tape);
-        self.work.pass(tape);
-        self.power.pass(tape);
-        tape.count(&mut self.steps_done);
-        tape.flag(&mut self.at_corner);
-        tape.number(&mut self.longest_step);
-        self.attitude_account.pass(tape);
+    fn code(&mut self, coder: &mut StateCoder<'_>) {
+        self.state.code(coder);
+        self.work.code(coder);
+        self.power.code(coder);
+        coder.count(&mut self.steps_done);
+        coder.flag(&mut self.at_corner);
+        coder.number(&mut self.longest_step);
+        self.attitude_account.code(coder);
     }
 
     fn boxed_clone(&self) -> Box<dyn Scheme> {

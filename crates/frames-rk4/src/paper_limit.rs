@@ -16,13 +16,14 @@ use modal::ReducedBody;
 use nalgebra::Vector3;
 use rigid_kin::{f_inverse, transformation_matrix};
 
-use crate::account::Reckoning;
+use crate::account::Energies;
 use crate::attitude_account::AttitudeAccount;
-use crate::checkpoint::Tape;
+use crate::checkpoint::StateCoder;
 use crate::error::{RateError, SetupError, StepError};
 use crate::initial::Initial;
 use crate::load::Coordinates;
 use crate::model::{LinearMotion, ModalModel};
+use crate::moment::Moment;
 use crate::motion::{BodyMotion, PointShapes};
 use crate::observation::Observation;
 use crate::paper::{STEPS_OF_ATTITUDE, refuse_beyond_paper};
@@ -261,8 +262,14 @@ impl Scheme for PaperLimit {
         self.longest_step = from.longest_step;
     }
 
-    fn reckoning(&self) -> Option<Reckoning> {
-        Some(self.motion.reckon(&self.state, &self.work))
+    fn moment(&self) -> Moment<'_> {
+        let State { time, omega_body, modal_displacement, modal_velocity, .. } = &self.state;
+        let (q, y) = (&modal_displacement[6..], &modal_velocity[6..]);
+        Moment { time: *time, omega_body: *omega_body, modal_displacement: q, modal_velocity: y }
+    }
+
+    fn energies(&self) -> Option<Energies> {
+        Some(self.motion.energies_of(&self.state, &self.work))
     }
 
     fn work_and_dissipation(&self) -> [f64; 2] {
@@ -281,13 +288,13 @@ impl Scheme for PaperLimit {
         self.state.modal_displacement.len() - 6
     }
 
-    fn pass(&mut self, tape: &mut Tape<'_>) {
-        self.state.pass(tape);
-        self.work.pass(tape);
-        tape.count(&mut self.evaluations);
-        tape.count(&mut self.steps_done);
-        tape.number(&mut self.longest_step);
-        self.attitude_account.pass(tape);
+    fn code(&mut self, coder: &mut StateCoder<'_>) {
+        self.state.code(coder);
+        self.work.code(coder);
+        coder.count(&mut self.evaluations);
+        coder.count(&mut self.steps_done);
+        coder.number(&mut self.longest_step);
+        self.attitude_account.code(coder);
     }
 
     fn boxed_clone(&self) -> Box<dyn Scheme> {

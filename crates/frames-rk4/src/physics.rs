@@ -38,7 +38,7 @@ pub struct Drive {
     pub amplitude: f64,
     /// Course of the speed.
     pub history: History,
-    /// Length of the run, for the rate of a speed that a formula gives ([`History::rate`]).
+    /// Length of the run.
     pub span: f64,
 }
 
@@ -65,7 +65,7 @@ impl Drive {
 
     /// The rate of the speed.
     pub(crate) fn acceleration(&self, time: f64, inside: f64) -> f64 {
-        self.amplitude * self.history.rate(time, inside, self.span)
+        self.amplitude * self.history.rate(time, inside)
     }
 
     /// Refuses numbers that are not finite, and a direction that is no unit vector.

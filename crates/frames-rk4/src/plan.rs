@@ -1,6 +1,6 @@
 //! Which steps lead through a run: they end exactly at output times and at the corners of load histories.
 
-use crate::checkpoint::Tape;
+use crate::checkpoint::StateCoder;
 
 /// How long the steps are.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,12 +38,12 @@ impl Segment {
     /// Of no length, to be set.
     const BLANK: Self = Self { start: 0.0, end: 0.0, length: 0.0, row: false, corner: false };
 
-    fn pass(&mut self, tape: &mut Tape) {
+    fn code(&mut self, coder: &mut StateCoder) {
         for time in [&mut self.start, &mut self.end, &mut self.length] {
-            tape.finite("a segment of the run", time);
+            coder.finite("a segment of the run", time);
         }
-        tape.flag(&mut self.row);
-        tape.flag(&mut self.corner);
+        coder.flag(&mut self.row);
+        coder.flag(&mut self.corner);
     }
 }
 
@@ -74,14 +74,14 @@ impl Plan {
         Self { end, corners, passed: 0, interval, outputs: 0, reached: 0.0, last_length: 0.0, stop: None }
     }
 
-    pub(crate) fn pass(&mut self, tape: &mut Tape) {
+    pub(crate) fn code(&mut self, coder: &mut StateCoder) {
         let mut passed = self.passed as u64;
-        tape.count(&mut passed);
-        tape.expect("the number of corners passed", passed <= self.corners.len() as u64);
+        coder.count(&mut passed);
+        coder.expect("the number of corners passed", passed <= self.corners.len() as u64);
         self.passed = passed as usize;
-        tape.count(&mut self.outputs);
-        tape.finite("the end of the segment", &mut self.reached);
-        tape.finite("the length of the segment", &mut self.last_length);
+        coder.count(&mut self.outputs);
+        coder.finite("the end of the segment", &mut self.reached);
+        coder.finite("the length of the segment", &mut self.last_length);
     }
 
     /// Sets or takes back a time to stop at.
@@ -164,11 +164,11 @@ impl EqualSteps {
     /// To be set.
     pub(crate) const BLANK: Self = Self { segment: Segment::BLANK, count: 1, done: 1 };
 
-    pub(crate) fn pass(&mut self, tape: &mut Tape) {
-        self.segment.pass(tape);
-        tape.count(&mut self.count);
-        tape.count(&mut self.done);
-        tape.expect("the number of steps done", self.done <= self.count);
+    pub(crate) fn code(&mut self, coder: &mut StateCoder) {
+        self.segment.code(coder);
+        coder.count(&mut self.count);
+        coder.count(&mut self.done);
+        coder.expect("the number of steps done", self.done <= self.count);
     }
 
     /// Whether all steps have been handed out.
@@ -216,16 +216,16 @@ impl HalvedSteps {
     /// To be set.
     pub(crate) const BLANK: Self = Self { segment: Segment::BLANK, level: 0, lowest_level: 0, done: 1 };
 
-    pub(crate) fn pass(&mut self, tape: &mut Tape) {
-        self.segment.pass(tape);
+    pub(crate) fn code(&mut self, coder: &mut StateCoder) {
+        self.segment.code(coder);
         for level in [&mut self.level, &mut self.lowest_level] {
             let mut count = u64::from(*level);
-            tape.count(&mut count);
-            tape.expect("the halvings of the step", count <= u64::from(DEEPEST));
+            coder.count(&mut count);
+            coder.expect("the halvings of the step", count <= u64::from(DEEPEST));
             *level = count.min(u64::from(DEEPEST)) as u32;
         }
-        tape.count(&mut self.done);
-        tape.expect("the number of steps done", self.done <= 1 << self.level);
+        coder.count(&mut self.done);
+        coder.expect("the number of steps done", self.done <= 1 << self.level);
     }
 
     /// Length and end of the next step; `None` at the segment's end.

@@ -2,10 +2,12 @@
 
 use std::any::Any;
 use std::fmt;
+use std::sync::LazyLock;
 
-use crate::account::Reckoning;
-use crate::checkpoint::Tape;
+use crate::account::Energies;
+use crate::checkpoint::StateCoder;
 use crate::error::{SetupError, StepError};
+use crate::moment::Moment;
 use crate::motion::PointShapes;
 use crate::observation::Observation;
 use crate::simulation::Setup;
@@ -66,8 +68,11 @@ pub trait Scheme: fmt::Debug + Send + Sync + Any {
     /// type.
     fn copy_state(&mut self, from: &dyn Scheme);
 
-    /// Reckoning where they were last found; `None` where they say nothing, as under a drive.
-    fn reckoning(&self) -> Option<Reckoning>;
+    /// The motion where its rates were last found.
+    fn moment(&self) -> Moment<'_>;
+
+    /// Energies where they were last found; `None` where they say nothing, as under a drive.
+    fn energies(&self) -> Option<Energies>;
 
     /// Work of the loads and energy that damping has taken, since the beginning.
     fn work_and_dissipation(&self) -> [f64; 2];
@@ -81,9 +86,8 @@ pub trait Scheme: fmt::Debug + Send + Sync + Any {
     /// Number of flexible modes.
     fn flexible(&self) -> usize;
 
-    /// Encodes or decodes the state.
-    #[doc(hidden)]
-    fn pass(&mut self, tape: &mut Tape<'_>);
+    /// Encodes or decodes the state, all that a run needs to go on bit for bit.
+    fn code(&mut self, coder: &mut StateCoder<'_>);
 
     /// A copy.
     fn boxed_clone(&self) -> Box<dyn Scheme>;
@@ -136,6 +140,26 @@ impl Method {
     /// The conservative form by the exponential scheme: the default.
     pub const EXPONENTIAL: Self = conservative_motion::EXPONENTIAL;
 
+    /// The scheme of this name; where no formulation is named, that of the conservative form comes first. `None` where
+    /// the list has no such pair.
+    pub fn named(formulation: Option<&str>, scheme: &str) -> Option<Self> {
+        let fits =
+            |method: &&Self| method.scheme == scheme && formulation.is_none_or(|name| method.formulation == name);
+        Self::ALL.iter().filter(fits).max_by_key(|method| !method.is_of_paper()).copied()
+    }
+
+    /// The names of all schemes, each once.
+    pub fn scheme_names() -> &'static [&'static str] {
+        static NAMES: LazyLock<Vec<&'static str>> = LazyLock::new(|| once_each(|method| method.scheme));
+        &NAMES
+    }
+
+    /// The names of all formulations, each once.
+    pub fn formulation_names() -> &'static [&'static str] {
+        static NAMES: LazyLock<Vec<&'static str>> = LazyLock::new(|| once_each(|method| method.formulation));
+        &NAMES
+    }
+
     /// Whether it is of the paper's formulation.
     pub fn is_of_paper(&self) -> bool {
         self.formulation == "paper"
@@ -145,6 +169,16 @@ impl Method {
     pub fn is_limited_by_modes(&self) -> bool {
         self.limit == StepLimit::Modes
     }
+}
+
+fn once_each(name: fn(&Method) -> &'static str) -> Vec<&'static str> {
+    let mut names: Vec<&str> = Vec::new();
+    for method in &Method::ALL {
+        if !names.contains(&name(method)) {
+            names.push(name(method));
+        }
+    }
+    names
 }
 
 impl PartialEq for Method {

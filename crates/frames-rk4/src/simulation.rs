@@ -7,7 +7,7 @@ use modal::ReducedBody;
 use nalgebra::Vector3;
 
 use crate::account::{self, EnergyAccount};
-use crate::checkpoint::{RestoreError, Tape};
+use crate::checkpoint::{RestoreError, StateCoder};
 use crate::conservative::ConservativeBody;
 use crate::error::{SetupError, StepError};
 use crate::events::{Event, Events, LastStep};
@@ -16,6 +16,7 @@ use crate::history::History;
 use crate::initial::Initial;
 use crate::load::SharedLoad;
 use crate::model::ModalModel;
+use crate::moment::Moment;
 use crate::motion::PointShapes;
 use crate::observation::Observation;
 use crate::physics::{DrivenMotion, Physics};
@@ -216,6 +217,7 @@ impl Simulation {
     pub fn set_state(&mut self, state: &MotionState) -> Result<(), SetupError> {
         self.scheme.set_state(state)?;
         self.account = EnergyAccount::new(self.account.of_loads());
+        self.events.forget();
         self.go_on_from_here();
         Ok(())
     }
@@ -338,7 +340,7 @@ impl Simulation {
     /// Whether the energy, where it was last looked at, is what it should be. Of the conservative form that is the start
     /// of the last step or the last observation, since it takes an evaluation of the rates.
     fn check_energy(&mut self) -> Result<(), StepError> {
-        let Some(now) = self.scheme.reckoning() else { return Ok(()) };
+        let Some(now) = self.scheme.energies() else { return Ok(()) };
         self.account.check(&now, self.scheme.fastest_rate(), self.stats.longest)
     }
 
@@ -350,7 +352,7 @@ impl Simulation {
     /// Notes the state that has been reached in `out`, instead of what it held.
     pub fn checkpoint(&mut self, out: &mut Vec<u64>) {
         out.clear();
-        self.pass(&mut Tape::Note(out));
+        self.code(&mut StateCoder::encode(out));
     }
 
     /// Takes up the state of a [`Self::checkpoint`] of a run with the same setup: what follows is what would have
@@ -359,30 +361,30 @@ impl Simulation {
     /// # Errors
     /// [`RestoreError`] for a checkpoint of another run.
     pub fn restored(mut self, checkpoint: &[u64]) -> Result<Self, RestoreError> {
-        let mut tape = Tape::set(checkpoint);
-        self.pass(&mut tape);
-        tape.finish()?;
+        let mut coder = StateCoder::decode(checkpoint);
+        self.code(&mut coder);
+        coder.finish()?;
         Ok(self)
     }
 
-    fn pass(&mut self, tape: &mut Tape) {
-        self.scheme.pass(tape);
-        self.plan.pass(tape);
+    fn code(&mut self, coder: &mut StateCoder) {
+        self.scheme.code(coder);
+        self.plan.code(coder);
         match &mut self.walk {
-            Walk::Equal { steps, .. } => pass_steps(steps, EqualSteps::BLANK, EqualSteps::pass, tape),
+            Walk::Equal { steps, .. } => code_steps(steps, EqualSteps::BLANK, EqualSteps::code, coder),
             Walk::Halved { longest_try, steps, .. } => {
-                tape.number(longest_try);
-                pass_steps(steps, HalvedSteps::BLANK, HalvedSteps::pass, tape);
+                coder.number(longest_try);
+                code_steps(steps, HalvedSteps::BLANK, HalvedSteps::code, coder);
             }
         }
-        tape.count(&mut self.steps_since_row);
-        tape.flag(&mut self.corner_ahead);
-        self.account.pass(tape);
+        coder.count(&mut self.steps_since_row);
+        coder.flag(&mut self.corner_ahead);
+        self.account.code(coder);
         let Stats { accepted, rejected, evaluations: _, shortest, longest } = &mut self.stats;
-        tape.count(accepted);
-        tape.count(rejected);
-        tape.number(shortest);
-        tape.number(longest);
+        coder.count(accepted);
+        coder.count(rejected);
+        coder.number(shortest);
+        coder.number(longest);
     }
 
     /// What the run has cost so far.
@@ -396,8 +398,20 @@ impl Simulation {
     /// # Errors
     /// [`StepError`]; the motion stays where it was before the step that failed, or where its energy was found wrong.
     pub fn advance(&mut self, most_steps: u64) -> Result<Reached, StepError> {
+        self.advance_watched(most_steps, |_| ())
+    }
+
+    /// As [`Self::advance`]; `watch` sees the motion once for each step that is taken, rows or not.
+    ///
+    /// # Errors
+    /// As [`Self::advance`].
+    pub fn advance_watched(&mut self, most_steps: u64, mut watch: impl FnMut(&Moment)) -> Result<Reached, StepError> {
         if self.account.is_empty() {
             self.check_energy()?;
+        }
+        if self.events.is_stale() {
+            self.scheme.observe(&self.points, &mut self.looked_at)?;
+            self.events.reset(&self.looked_at);
         }
         for _ in 0..most_steps {
             match self.next_step() {
@@ -406,6 +420,7 @@ impl Simulation {
                     if !self.try_step(h, end)? {
                         continue;
                     }
+                    watch(&self.scheme.moment());
                     if self.corner_ahead && self.segment_is_done() {
                         self.corner_ahead = false;
                         self.scheme.pass_corner()?;
@@ -545,13 +560,13 @@ impl Iterator for Simulation {
 }
 
 /// Passes over the steps through a segment, which there are none of before the first.
-fn pass_steps<S>(steps: &mut Option<(S, bool)>, blank: S, pass: fn(&mut S, &mut Tape), tape: &mut Tape) {
+fn code_steps<S>(steps: &mut Option<(S, bool)>, blank: S, code: fn(&mut S, &mut StateCoder), coder: &mut StateCoder) {
     let mut there = steps.is_some();
-    tape.flag(&mut there);
+    coder.flag(&mut there);
     // Passed even where there are none, so that every checkpoint of a run has the same length.
     let (inner, row) = steps.get_or_insert((blank, false));
-    pass(inner, tape);
-    tape.flag(row);
+    code(inner, coder);
+    coder.flag(row);
     if !there {
         *steps = None;
     }

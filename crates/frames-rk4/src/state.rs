@@ -4,7 +4,7 @@ use modal::ReducedBody;
 use nalgebra::Vector3;
 use rigid_kin::Attitude;
 
-use crate::checkpoint::Tape;
+use crate::checkpoint::StateCoder;
 use crate::error::SetupError;
 use crate::initial::Initial;
 
@@ -98,15 +98,15 @@ impl State {
         self.modal_acceleration.copy_from_slice(&other.modal_acceleration);
     }
 
-    pub(crate) fn pass(&mut self, tape: &mut Tape) {
-        tape.finite("the time", &mut self.time);
-        tape.attitude(&mut self.attitude);
-        tape.vector(&mut self.origin_global);
-        tape.numbers(&mut self.modal_displacement);
-        tape.numbers(&mut self.modal_velocity);
-        tape.numbers(&mut self.modal_acceleration);
-        tape.vector(&mut self.omega_body);
-        tape.vector(&mut self.alpha_body);
+    pub(crate) fn code(&mut self, coder: &mut StateCoder) {
+        coder.finite("the time", &mut self.time);
+        coder.attitude(&mut self.attitude);
+        coder.vector(&mut self.origin_global);
+        coder.numbers(&mut self.modal_displacement);
+        coder.numbers(&mut self.modal_velocity);
+        coder.numbers(&mut self.modal_acceleration);
+        coder.vector(&mut self.omega_body);
+        coder.vector(&mut self.alpha_body);
     }
 }
 

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::checkpoint::Tape;
+use crate::checkpoint::StateCoder;
 
 /// Sums since the beginning.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -25,10 +25,10 @@ impl Work {
         self.impulse_global += factor * other.impulse_global;
         self.angular_impulse_global += factor * other.angular_impulse_global;
     }
-    pub(crate) fn pass(&mut self, tape: &mut Tape) {
-        tape.number(&mut self.work);
-        tape.number(&mut self.dissipation);
-        tape.vector(&mut self.impulse_global);
-        tape.vector(&mut self.angular_impulse_global);
+    pub(crate) fn code(&mut self, coder: &mut StateCoder) {
+        coder.number(&mut self.work);
+        coder.number(&mut self.dissipation);
+        coder.vector(&mut self.impulse_global);
+        coder.vector(&mut self.angular_impulse_global);
     }
 }

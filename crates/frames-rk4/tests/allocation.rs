@@ -4,10 +4,7 @@
 mod common;
 
 use allocation_counter::measure;
-use frames_rk4::{
-    Expression, History, Initial, Method, Physics, Reached, Rows, Setup, Simulation, StepControl,
-    Table,
-};
+use frames_rk4::{Expression, History, Initial, Method, Physics, Reached, Rows, Setup, Simulation, StepControl, Table};
 use nalgebra::Vector3;
 
 fn spinning() -> Initial {

@@ -68,8 +68,8 @@ pub enum ModalError {
         direction: [f64; 3],
     },
     /// Lists or matrices whose sizes do not fit together.
-    #[error("{what}: found {found}, expected {expected}")]
-    Size {
+    #[error("the size of {what} is {found}; expected {expected}")]
+    Length {
         /// Which.
         what: &'static str,
         /// Its size.

@@ -234,7 +234,7 @@ fn append(left: &mut Mat<f64>, right: MatRef<'_, f64>) {
 }
 
 /// Numbers in (−1, 1) from a 64-bit linear congruential generator: the same on every run and machine.
-fn random_block(rows: usize, columns: usize, seed: &mut u64) -> Mat<f64> {
+pub(crate) fn random_block(rows: usize, columns: usize, seed: &mut u64) -> Mat<f64> {
     Mat::from_fn(rows, columns, |_, _| {
         *seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (*seed >> 11) as f64 / (1u64 << 52) as f64 - 1.0

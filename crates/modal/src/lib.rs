@@ -16,6 +16,7 @@
 #![deny(unsafe_code)]
 #![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable))]
 
+mod buckling;
 mod constraints;
 mod dense;
 mod error;

@@ -93,7 +93,7 @@ impl ReducedBody {
     /// The body with these constants.
     ///
     /// # Errors
-    /// [`ModalError::Size`] where sizes do not fit together, [`ModalError::NotFinite`], [`ModalError::NotPositive`].
+    /// [`ModalError::Length`] where sizes do not fit together, [`ModalError::NotFinite`], [`ModalError::NotPositive`].
     pub fn from_constants(constants: Constants) -> Result<Self, ModalError> {
         constants.check()?;
         Ok(Self(constants))
@@ -110,7 +110,7 @@ impl ReducedBody {
     /// Reduces the body with mass matrix `mass` and nodes `positions` to its `modes`.
     ///
     /// # Errors
-    /// [`ModalError::AnisotropicMass`] where M is not a nodal mass on each axis; [`ModalError::Size`] where the modes or
+    /// [`ModalError::AnisotropicMass`] where M is not a nodal mass on each axis; [`ModalError::Length`] where the modes or
     /// the positions are not those of its nodes.
     pub fn new(
         modes: &Modes,
@@ -260,7 +260,9 @@ impl Constants {
         finite("inertia", self.inertia.iter().copied())?;
         finite("translation basis", self.translation_basis.iter().copied())?;
         finite("rotation basis", self.rotation_basis.iter().copied())?;
-        if let Some(value) = self.circular_frequencies.iter().copied().find(|omega| !(*omega > 0.0 && omega.is_finite())) {
+        if let Some(value) =
+            self.circular_frequencies.iter().copied().find(|omega| !(*omega > 0.0 && omega.is_finite()))
+        {
             return Err(ModalError::NotPositive { what: "circular frequency", value });
         }
         self.rotation_products.iter().flatten().try_for_each(|m| square("rotation products", m, 6 + nf))?;
@@ -276,7 +278,7 @@ impl Constants {
 
 /// Refuses a list of another length.
 fn check_size(what: &'static str, found: usize, expected: usize) -> Result<(), ModalError> {
-    if found == expected { Ok(()) } else { Err(ModalError::Size { what, found, expected }) }
+    if found == expected { Ok(()) } else { Err(ModalError::Length { what, found, expected }) }
 }
 
 fn finite(what: &'static str, values: impl IntoIterator<Item = f64>) -> Result<(), ModalError> {
@@ -303,7 +305,7 @@ impl BodyPoint {
     /// The point that moves as `Σ weights_i u(nodes_i)`, where the weights sum to one.
     ///
     /// # Errors
-    /// [`ModalError::NoNode`] for a node that the mesh has not got, [`ModalError::Size`] for lists of other lengths,
+    /// [`ModalError::NoNode`] for a node that the mesh has not got, [`ModalError::Length`] for lists of other lengths,
     /// [`ModalError::NotFinite`].
     pub fn new(modes: &Modes, positions: &[[f64; 3]], nodes: &[u32], weights: &[f64]) -> Result<Self, ModalError> {
         let count = positions.len();

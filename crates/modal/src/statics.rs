@@ -57,8 +57,8 @@ impl Solver<'_> {
     /// The modes, with shapes appended that make them span the static `answers` (N×k, see
     /// [`static_response`](Self::static_response)): a few modes then give the right static displacement.
     ///
-    /// What the answers have beside the rigid modes and `modes` is made into Rayleigh–Ritz vectors of (K, M); answers
-    /// that add less than 1e-8 of themselves add nothing.
+    /// What the answers have beside the rigid modes and `modes` is made into Rayleigh–Ritz vectors of (K, M), together
+    /// with the static shapes that `modes` has already; answers that add less than 1e-8 of themselves add nothing.
     ///
     /// # Errors
     /// [`ModalError::Size`], [`ModalError::NotFinite`], [`ModalError::DenseEigen`].
@@ -92,12 +92,16 @@ impl Solver<'_> {
                 }
             }
         }
-        let added = basis.subcols(rigid + flexible, basis.ncols() - rigid - flexible).to_owned();
+        // Static shapes are no eigenvectors: what is M-orthogonal to them is not K-orthogonal, unless all are combined.
+        let natural = modes.natural();
+        let added = basis.subcols(rigid + natural, basis.ncols() - rigid - natural).to_owned();
         let RitzPairs { eigenvalues, shapes, .. } =
             rayleigh_ritz(self.stiffness, &self.nodal_mass, &self.constraints, &added)?;
         let mut modes = modes;
+        modes.eigenvalues.truncate(natural);
         modes.eigenvalues.extend(eigenvalues);
-        modes.shapes.resize_with(expected, flexible + shapes.ncols(), |i, j| shapes[(i, j - flexible)]);
+        modes.shapes.truncate(expected, natural);
+        modes.shapes.resize_with(expected, natural + shapes.ncols(), |i, j| shapes[(i, j - natural)]);
         Ok(modes)
     }
 }

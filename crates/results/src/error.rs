@@ -1,4 +1,4 @@
-//! What can go wrong with a results file or a figure.
+//! What can go wrong with a results file.
 
 use std::fs::OpenOptions;
 use std::io::{self, Write};
@@ -124,10 +124,43 @@ pub enum FileError {
         /// The value.
         value: f64,
     },
+    /// A constant of the run that is no finite number.
+    #[error("{path}: {quantity} is {value}, expected a finite number; check the scene's numbers and units", path = .path.display())]
+    ConstantNotFinite {
+        /// The results file.
+        path: PathBuf,
+        /// Name of the dataset or attribute that was to hold it.
+        quantity: &'static str,
+        /// The value.
+        value: f64,
+    },
+    /// A symbolic link is where a results file would go.
+    #[error(
+        "{path}: this is a symbolic link (to {target}); results are not written through a link, nor in its place: remove \
+         it, move it away, or choose another folder",
+        path = .path.display(),
+        target = .target.display()
+    )]
+    Link {
+        /// The link.
+        path: PathBuf,
+        /// What it names.
+        target: PathBuf,
+    },
+    /// The name of the folder is not text in UTF-8, which HDF5 wants.
+    #[error(
+        "{path}: HDF5 makes files only in folders whose names are text in UTF-8; choose another folder, or go into this one \
+         and name the files from there",
+        path = .path.display()
+    )]
+    NameNotUtf8 {
+        /// The folder.
+        path: PathBuf,
+    },
     /// A file to be read that does not begin as results files do.
     #[error(
-        "{path}: this is no results file of flexframe, or its beginning is damaged; check the name (a file that another \
-         program has written anew, such as h5repack, is not read)",
+        "{path}: this is no results file of this version of flexframe, or its beginning is damaged; check the name (a file \
+         that another program has written anew, such as h5repack, is not read)",
         path = .path.display()
     )]
     NoSeal {
@@ -146,59 +179,39 @@ pub enum FileError {
         /// What was found, and what was expected.
         what: String,
     },
-    /// A dataset or group of the contract is not in the file.
-    #[error("{path}: there is no {dataset}; is it a results file of flexframe?", path = .path.display())]
-    MissingDataset {
-        /// The results file.
-        path: PathBuf,
-        /// The dataset or group that was looked for.
-        dataset: String,
-    },
-    /// An attribute of the contract is not in the file.
-    #[error("{path}: there is no attribute `{attribute}`; is it a results file of flexframe?", path = .path.display())]
-    MissingAttribute {
-        /// The results file.
-        path: PathBuf,
-        /// The attribute that was looked for.
-        attribute: String,
-    },
-    /// A text is not in UTF-8.
-    #[error("{path}: the attribute `{attribute}` is not text in UTF-8; is the file damaged?", path = .path.display())]
-    NotUtf8 {
-        /// The results file.
-        path: PathBuf,
-        /// The attribute.
-        attribute: String,
-    },
-    /// The histories claim more numbers than the file can hold.
-    #[error(
-        "{path}: the datasets claim {claimed} bytes of numbers, more than the {length} bytes of the file; it is damaged, \
-         or was compressed (h5repack without a filter undoes that)",
-        path = .path.display()
-    )]
-    ClaimsTooMuch {
-        /// The results file.
-        path: PathBuf,
-        /// Bytes that the shapes of the datasets come to.
-        claimed: u128,
-        /// Bytes of the file.
-        length: u64,
-    },
-    /// A dataset has a shape other than the contract's.
-    #[error("{path}: {dataset} has the shape {found:?} where {expected} is expected", path = .path.display())]
-    WrongShape {
-        /// The results file.
-        path: PathBuf,
-        /// Name of the dataset.
-        dataset: String,
-        /// The shape expected, `T` standing for any number of rows.
-        expected: String,
-        /// The shape found.
-        found: Vec<usize>,
-    },
 }
 
 impl FileError {
+    /// The file.
+    pub fn path(&self) -> &Path {
+        match self {
+            Self::Hdf5 { path, .. }
+            | Self::System { path, .. }
+            | Self::Busy { path, .. }
+            | Self::Unfinished { path, .. }
+            | Self::NotResults { path, .. }
+            | Self::Complete { path, .. }
+            | Self::NothingToResume { path, .. }
+            | Self::PointName { path, .. }
+            | Self::NulInText { path, .. }
+            | Self::WrongLength { path, .. }
+            | Self::NotFinite { path, .. }
+            | Self::NoSeal { path, .. }
+            | Self::Damaged { path, .. }
+            | Self::ConstantNotFinite { path, .. }
+            | Self::Link { path, .. }
+            | Self::NameNotUtf8 { path, .. } => path,
+        }
+    }
+
+    /// What helps, where the system has refused something.
+    pub fn cure(&self) -> Option<&'static str> {
+        match self {
+            Self::System { cure, .. } => Some(cure),
+            _ => None,
+        }
+    }
+
     /// What [`Result::map_err`] takes. Where the operating system has refused something, it says so in the library's
     /// message.
     pub(crate) fn hdf5(path: &Path, action: impl Into<String>) -> impl FnOnce(hdf5::Error) -> Self {
@@ -240,6 +253,7 @@ impl FileError {
             }
             PermissionDenied | ReadOnlyFilesystem => "choose a folder that you may write to",
             NotFound | NotADirectory => "check the name of the folder",
+            OutOfMemory => "end other programs, or take a machine with more memory",
             WouldBlock => "another process has the file open; wait for it or stop it",
             _ => "check the file and its disk",
         };
@@ -247,97 +261,5 @@ impl FileError {
         // The name of a temporary file says nothing.
         let reason = reason.split(" at path ").next().unwrap_or_default().to_owned();
         Self::System { path: path.to_path_buf(), action: action.into(), reason, cure }
-    }
-}
-
-/// An error of a figure.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum FigureError {
-    /// The file could not be written.
-    #[error("{path}: cannot write the figure: {reason}", path = .path.display())]
-    Write {
-        /// The figure's file.
-        path: PathBuf,
-        /// The message of the drawing library or the operating system.
-        reason: String,
-    },
-    /// The drawing library failed on a picture held in memory.
-    #[error("cannot draw the figure: {reason}")]
-    Draw {
-        /// The message of the drawing library.
-        reason: String,
-    },
-    /// There is nothing to draw.
-    #[error("the figure \"{figure}\" has no {what}; give it at least one")]
-    Empty {
-        /// Title of the figure.
-        figure: String,
-        /// What is missing.
-        what: &'static str,
-    },
-    /// A NaN or an infinity in the data.
-    #[error("the figure \"{figure}\" has a value that is not finite: {what}, entry {index}")]
-    NotFinite {
-        /// Title of the figure.
-        figure: String,
-        /// The series, panel or frame.
-        what: String,
-        /// Index in it, from 0.
-        index: usize,
-    },
-    /// A logarithmic axis cannot show zero or a negative number.
-    #[error(
-        "the figure \"{figure}\" has a logarithmic axis but series \"{series}\" holds {value}, entry {index}; \
-         leave the entry out or use a linear axis"
-    )]
-    NotPositive {
-        /// Title of the figure.
-        figure: String,
-        /// Label of the series.
-        series: String,
-        /// Index in the series, from 0.
-        index: usize,
-        /// The value.
-        value: f64,
-    },
-    /// Lists that belong together differ in length.
-    #[error("the figure \"{figure}\": {what} has {found} entries where {expected} are expected")]
-    WrongLength {
-        /// Title of the figure.
-        figure: String,
-        /// The list.
-        what: String,
-        /// Length expected.
-        expected: usize,
-        /// Length found.
-        found: usize,
-    },
-    /// A triangle, edge or trace names a point that is not there.
-    #[error("the figure \"{figure}\": {what} names point {index}, but there are {count} points")]
-    NoSuchPoint {
-        /// Title of the figure.
-        figure: String,
-        /// What names it.
-        what: &'static str,
-        /// The index, from 0.
-        index: usize,
-        /// The number of points.
-        count: usize,
-    },
-}
-
-impl FigureError {
-    /// With what helps against the error.
-    pub(crate) fn system(path: &Path, error: &io::Error) -> Self {
-        use io::ErrorKind::*;
-        let cure = match error.kind() {
-            StorageFull | QuotaExceeded | FileTooLarge => "make room there",
-            PermissionDenied | ReadOnlyFilesystem => "choose a folder that you may write to",
-            NotFound | NotADirectory => "make its folder, or check the name",
-            IsADirectory => "this is a folder; name a file in it",
-            _ => "check the file and its disk",
-        };
-        Self::Write { path: path.to_path_buf(), reason: format!("{error}; {cure}") }
     }
 }

@@ -158,7 +158,7 @@ impl Quantity {
             Velocity => "velocity of the centre of mass",
             AngularVelocity => "angular velocity of the body frame",
             AngularAcceleration => "angular acceleration of the body frame",
-            ModalDisplacement => "coordinates of the mass-normalised flexible modes",
+            ModalDisplacement => "coordinates of the mass-normalised flexible modes and static shapes",
             ModalVelocity => "rates of the modal coordinates",
             KineticEnergy => "kinetic energy",
             StrainEnergy => "strain energy",

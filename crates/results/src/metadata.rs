@@ -1,7 +1,13 @@
 //! What a results file says about the run as a whole.
 
+use crate::FileError;
+use serde::{Deserialize, Serialize};
+use std::collections::HashSet;
+use std::path::Path;
+
 /// Labels of the units; any consistent set.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Units {
     /// For instance "mm".
     pub length: String,
@@ -12,7 +18,8 @@ pub struct Units {
 }
 
 /// Rigid-body and modal properties of the body, in its undeformed state.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct BodyProperties {
     /// Total mass.
     pub mass: f64,
@@ -27,7 +34,8 @@ pub struct BodyProperties {
 }
 
 /// Everything in a results file that does not change with time.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Metadata {
     /// Title of the scene.
     pub title: String,
@@ -48,10 +56,54 @@ pub struct Metadata {
     pub fingerprint: u32,
     /// The scene file, word for word.
     pub scene_text: String,
-    /// Where the scene file was, so that the files that it names can be found again; empty if nowhere.
+    /// Where the scene file was, so that the files that it names can be found again; empty if nowhere. A path, or one that is
+    /// no UTF-8 as a `file:` URL.
     pub scene_file: String,
     /// The body.
     pub body: BodyProperties,
     /// Names of the points whose motion is stored, in the order of [`Sample::points`](crate::Sample::points).
     pub point_names: Vec<String>,
+}
+
+impl Metadata {
+    /// Refuses what a file cannot hold; `path` is named in messages.
+    pub(crate) fn check(&self, path: &Path) -> Result<(), FileError> {
+        self.check_point_names(path)?;
+        let BodyProperties { mass, center_of_mass, inertia, frequencies, damping_ratios } = &self.body;
+        let (expected, found) = (frequencies.len(), damping_ratios.len());
+        if expected != found {
+            let quantity = "body/damping_ratios".into();
+            return Err(FileError::WrongLength { path: path.to_path_buf(), quantity, expected, found });
+        }
+        for (quantity, values) in [
+            ("body/mass", &[*mass][..]),
+            ("body/center_of_mass", center_of_mass),
+            ("body/inertia", inertia.as_flattened()),
+            ("body/frequencies", frequencies),
+            ("body/damping_ratios", damping_ratios),
+            ("step", self.step.as_slice()),
+            ("tolerance", self.tolerance.as_slice()),
+        ] {
+            if let Some(&value) = values.iter().find(|value| !value.is_finite()) {
+                return Err(FileError::ConstantNotFinite { path: path.to_path_buf(), quantity, value });
+            }
+        }
+        Ok(())
+    }
+
+    fn check_point_names(&self, path: &Path) -> Result<(), FileError> {
+        let mut before = HashSet::new();
+        for name in &self.point_names {
+            let reason = match name.as_str() {
+                "" => "it is empty",
+                "." | ".." => "HDF5 gives dots a meaning of their own",
+                name if name.contains('/') => "HDF5 takes / as the separator of a path",
+                name if name.contains('\0') => "it holds a NUL character",
+                name if !before.insert(name) => "it occurs twice",
+                _ => continue,
+            };
+            return Err(FileError::PointName { path: path.to_path_buf(), name: name.clone(), reason });
+        }
+        Ok(())
+    }
 }

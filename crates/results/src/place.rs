@@ -1,6 +1,7 @@
 //! Where a results file and its unfinished forerunner are, and how they get there in one go.
 
 use crate::{FileError, seal};
+use std::ffi::OsStr;
 use std::fs::{File, TryLockError};
 use std::io;
 use std::path::{Path, PathBuf};
@@ -19,13 +20,16 @@ pub(crate) struct Place {
 impl Place {
     /// By the name of either.
     pub(crate) fn of(path: &Path) -> Self {
-        let name = path.file_name().unwrap_or_default().to_string_lossy();
-        match name.strip_suffix(PART) {
-            Some(stem) => Self { path: path.with_file_name(format!("{stem}.h5")), part: path.to_owned() },
-            None => {
-                let stem = name.strip_suffix(".h5").unwrap_or(&name);
-                Self { path: path.to_owned(), part: path.with_file_name(format!("{stem}{PART}")) }
-            }
+        let with = |stem: &OsStr, ending: &str| {
+            let mut name = stem.to_owned();
+            name.push(ending);
+            path.with_file_name(name)
+        };
+        let is_h5 = path.extension() == Some(OsStr::new("h5"));
+        let stem = if is_h5 { path.file_stem() } else { path.file_name() }.unwrap_or_default();
+        match (is_h5, Path::new(stem).extension(), Path::new(stem).file_stem()) {
+            (true, Some(part), Some(stem)) if part == "part" => Self { path: with(stem, ".h5"), part: path.to_owned() },
+            _ => Self { path: path.to_owned(), part: with(stem, PART) },
         }
     }
 
@@ -35,6 +39,8 @@ impl Place {
 
     /// Refuses to begin where something would be lost.
     pub(crate) fn check(&self, overwrite: bool) -> Result<(), FileError> {
+        refuse_link(&self.part)?;
+        refuse_link(&self.path)?;
         if self.part.exists() {
             if is_busy(&self.part) {
                 return Err(FileError::Busy { path: self.part.clone() });
@@ -52,10 +58,16 @@ impl Place {
         Ok(())
     }
 
-    /// Refuses to go on where there is nothing to go on from.
+    /// Refuses to go on where there is nothing to go on from, or no results file could be made in the end.
     pub(crate) fn check_resumable(&self) -> Result<(), FileError> {
+        refuse_link(&self.part)?;
         if self.part.is_file() {
-            return if is_busy(&self.part) { Err(FileError::Busy { path: self.part.clone() }) } else { Ok(()) };
+            refuse_link(&self.path)?;
+            return if is_busy(&self.part) {
+                Err(FileError::Busy { path: self.part.clone() })
+            } else {
+                self.temporary().map(drop)
+            };
         }
         if is_ours(&self.path) {
             return Err(FileError::Complete { path: self.path.clone() });
@@ -65,6 +77,10 @@ impl Place {
 
     /// A file of another name in the same folder, which is removed if it gets no other name.
     pub(crate) fn temporary(&self) -> Result<TempPath, FileError> {
+        // HDF5 is given names as text.
+        if self.folder().to_str().is_none() {
+            return Err(FileError::NameNotUtf8 { path: self.folder().to_owned() });
+        }
         let mut builder = tempfile::Builder::new();
         builder.prefix(".flexframe-").suffix(".h5");
         #[cfg(unix)]
@@ -113,7 +129,15 @@ fn lock(folder: &Path) -> Option<File> {
     Some(folder)
 }
 
-/// Whether another process writes the file: HDF5 locks what it has open.
+/// A link may lead anywhere, or nowhere: nothing is written through it, nor in its place.
+fn refuse_link(path: &Path) -> Result<(), FileError> {
+    match std::fs::read_link(path) {
+        Ok(target) => Err(FileError::Link { path: path.to_owned(), target }),
+        Err(_) => Ok(()),
+    }
+}
+
+/// Whether another process writes the file: it has it locked.
 pub(crate) fn is_busy(path: &Path) -> bool {
     path.is_file() && File::open(path).is_ok_and(|file| matches!(file.try_lock(), Err(TryLockError::WouldBlock)))
 }

@@ -2,10 +2,8 @@
 
 use crate::checkpoint::{Checkpoint, Sums};
 use crate::layout::Quantity;
-use crate::{BodyProperties, FileError, Metadata, PointSample, Sample, Units, seal};
-use hdf5::types::VarLenUnicode;
-use hdf5::{IndexType, IterationOrder};
-use ndarray::s;
+use crate::store::Store;
+use crate::{FileError, Metadata, PointSample, Sample};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -104,35 +102,26 @@ impl Results {
     /// Reads the whole file. Of an unfinished one, the rows that every dataset has.
     ///
     /// # Errors
-    /// [`FileError::NoSeal`] and [`FileError::Damaged`] if it is not what a [`Writer`](crate::Writer) wrote;
-    /// [`FileError::System`] and [`FileError::Hdf5`] if it cannot be read, [`FileError::MissingDataset`],
-    /// [`FileError::MissingAttribute`], [`FileError::NotUtf8`] or [`FileError::WrongShape`] if it departs from the
-    /// contract, [`FileError::ClaimsTooMuch`] if its shapes come to more than the file holds.
+    /// [`FileError::NoSeal`] and [`FileError::Damaged`] if it is not what a [`Writer`](crate::Writer) wrote, or those of
+    /// [`Writer::create`](crate::Writer::create) for its metadata; [`FileError::Busy`] if another process writes it;
+    /// [`FileError::System`] if it cannot be read.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, FileError> {
-        Ok(Self::open_with_checkpoint(path.as_ref())?.0)
+        let path = path.as_ref();
+        Ok(Self::read_with_checkpoint(&Store::open(path)?, path)?.0)
     }
 
     /// With the last checkpoint of an unfinished file whose rows are as they were then, and their sums.
-    pub(crate) fn open_with_checkpoint(path: &Path) -> Result<(Self, Option<(Checkpoint, Sums)>), FileError> {
-        seal::check(path)?;
-        let file = hdf5::File::open(path).map_err(FileError::hdf5(path, "open the file"))?;
-        let source = Source { path, file: &file, length: file.size() };
-
-        let metadata = source.metadata()?;
-        let complete = source.attribute::<i64>("complete")? == 1;
+    pub(crate) fn read_with_checkpoint(
+        store: &Store,
+        path: &Path,
+    ) -> Result<(Self, Option<(Checkpoint, Sums)>), FileError> {
+        let metadata = store.metadata().clone();
+        let complete = store.is_complete();
         let modes = metadata.body.frequencies.len();
         let names = &metadata.point_names;
         let quantities: Vec<Quantity> = Quantity::all(names.len()).collect();
-        let mut rows = usize::MAX;
-        for quantity in &quantities {
-            rows = rows.min(source.rows_of(&quantity.path(names), quantity.width(modes))?);
-        }
-        let width: usize = quantities.iter().map(|quantity| quantity.width(modes).unwrap_or(1)).sum();
-        source.refuse_if_claimed(rows as u128 * width as u128)?;
-        let mut columns = Vec::with_capacity(quantities.len());
-        for quantity in &quantities {
-            columns.push(source.column(&quantity.path(names), quantity.width(modes), rows)?);
-        }
+        let mut rows = store.rows();
+        let mut columns = store.read(path)?;
         if !complete {
             // What has not been written is NaN; no run writes what is not finite.
             for (quantity, column) in quantities.iter().zip(&columns) {
@@ -140,7 +129,11 @@ impl Results {
                 rows = rows.min(whole / quantity.width(modes).unwrap_or(1).max(1));
             }
         }
-        let checkpoints = if complete { Vec::new() } else { source.checkpoints()? };
+        // Whole ones, the last first.
+        let places = store.read_checkpoints(path)?;
+        let mut checkpoints: Vec<Checkpoint> =
+            places.chunks(store.checkpoint_words().max(1)).filter_map(Checkpoint::read).collect();
+        checkpoints.sort_unstable_by_key(|checkpoint| std::cmp::Reverse(checkpoint.serial));
         let sums = |checkpoint: &Checkpoint| {
             let mut sums = Sums::new(columns.len());
             let widths = quantities.iter().map(|quantity| quantity.width(modes).unwrap_or(1));
@@ -156,23 +149,25 @@ impl Results {
             let what = format!("its first {known} rows are not those that its checkpoint is for");
             return Err(FileError::Damaged { path: path.to_path_buf(), what });
         }
-        let mut column = |quantity: Quantity| {
-            let place = quantities.iter().position(|q| *q == quantity);
-            let mut values = place.map(|place| std::mem::take(&mut columns[place])).unwrap_or_default();
-            values.truncate(rows * quantity.width(modes).unwrap_or(1));
-            values
-        };
-
+        let widths = quantities.iter().map(|quantity| quantity.width(modes).unwrap_or(1));
+        columns.iter_mut().zip(widths).for_each(|(column, width)| column.truncate(rows * width));
+        let mut of_points = columns.split_off(Quantity::all(0).count()).into_iter();
         let mut points = BTreeMap::new();
-        for (i, name) in names.iter().enumerate() {
+        for name in names {
+            let mut next = || vectors(of_points.next().unwrap_or_default());
             let history = PointHistory {
-                displacement: vectors(column(Quantity::Point(i, 0))),
-                velocity: vectors(column(Quantity::Point(i, 1))),
-                acceleration: vectors(column(Quantity::Point(i, 2))),
-                rigid_acceleration: vectors(column(Quantity::Point(i, 3))),
+                displacement: next(),
+                velocity: next(),
+                acceleration: next(),
+                rigid_acceleration: next(),
             };
             points.insert(name.clone(), history);
         }
+        let mut column = |quantity: Quantity| {
+            let place = quantities.iter().position(|q| *q == quantity);
+            place.map(|place| std::mem::take(&mut columns[place])).unwrap_or_default()
+        };
+
         let results = Self {
             complete,
             time: column(Quantity::Time),
@@ -286,239 +281,4 @@ impl Results {
 /// Groups row-by-row values into rows of `N`.
 fn vectors<const N: usize>(values: Vec<f64>) -> Vec<[f64; N]> {
     values.as_chunks().0.to_vec()
-}
-
-struct Source<'a> {
-    path: &'a Path,
-    file: &'a hdf5::File,
-    /// Bytes of the file.
-    length: u64,
-}
-
-impl Source<'_> {
-    fn metadata(&self) -> Result<Metadata, FileError> {
-        let frequencies = self.vector("body/frequencies", None)?;
-        let modes = frequencies.len();
-        let inertia = self.fixed("body/inertia", &[3, 3])?;
-        let center_of_mass = self.fixed("body/center_of_mass", &[3])?;
-        let body = BodyProperties {
-            mass: self.fixed("body/mass", &[])?[0],
-            center_of_mass: [center_of_mass[0], center_of_mass[1], center_of_mass[2]],
-            inertia: [0, 3, 6].map(|i| [inertia[i], inertia[i + 1], inertia[i + 2]]),
-            damping_ratios: self.vector("body/damping_ratios", Some(modes))?,
-            frequencies,
-        };
-        Ok(Metadata {
-            title: self.text("title")?,
-            units: Units {
-                length: self.text("units_length")?,
-                mass: self.text("units_mass")?,
-                time: self.text("units_time")?,
-            },
-            formulation: self.text("formulation")?,
-            scheme: self.text("scheme")?,
-            step: self.attribute_if_given("step")?,
-            tolerance: self.attribute_if_given("tolerance")?,
-            program_version: self.text("program_version")?,
-            fingerprint: self.attribute::<i64>("fingerprint")? as u32,
-            scene_text: self.text("scene")?,
-            scene_file: self.attribute_if_given::<VarLenUnicode>("scene_file")?.unwrap_or_default().as_str().to_owned(),
-            body,
-            point_names: self.point_names()?,
-        })
-    }
-
-    fn point_names(&self) -> Result<Vec<String>, FileError> {
-        if !self.file.link_exists("points") {
-            return Err(self.missing("points"));
-        }
-        let group = self.file.group("points").map_err(self.failed("open the group points"))?;
-        group
-            .member_names_by(IndexType::CreationOrder, IterationOrder::Increasing)
-            .or_else(|_| group.member_names()) // a file from elsewhere need not keep the order
-            .map_err(self.failed("list the points"))
-    }
-
-    /// Whole checkpoints, the last first.
-    fn checkpoints(&self) -> Result<Vec<Checkpoint>, FileError> {
-        let dataset = self.dataset("checkpoint")?;
-        let &[2, words] = &dataset.shape()[..] else {
-            return Err(self.wrong_shape("checkpoint", "[2, words]".into(), &dataset));
-        };
-        self.refuse_if_claimed(2 * words as u128)?;
-        let places = dataset.read_raw::<u64>().map_err(self.failed("read dataset checkpoint"))?;
-        let mut checkpoints: Vec<Checkpoint> = places.chunks(words.max(1)).filter_map(Checkpoint::read).collect();
-        checkpoints.sort_unstable_by_key(|checkpoint| std::cmp::Reverse(checkpoint.serial));
-        Ok(checkpoints)
-    }
-
-    fn dataset(&self, name: &str) -> Result<hdf5::Dataset, FileError> {
-        // `link_exists` wants every group on the way to be there.
-        let mut end = 0;
-        for part in name.split('/') {
-            end += part.len();
-            if !self.file.link_exists(&name[..end]) {
-                return Err(self.missing(name));
-            }
-            end += 1;
-        }
-        self.file.dataset(name).map_err(self.failed(format!("open dataset {name}")))
-    }
-
-    /// Refuses to make room for more numbers than the file has bytes for: a shape is only a claim.
-    fn refuse_if_claimed(&self, numbers: u128) -> Result<(), FileError> {
-        let claimed = numbers.saturating_mul(size_of::<f64>() as u128);
-        if claimed <= u128::from(self.length) {
-            return Ok(());
-        }
-        Err(FileError::ClaimsTooMuch { path: self.path.to_path_buf(), claimed, length: self.length })
-    }
-
-    fn read(&self, name: &str, dataset: &hdf5::Dataset) -> Result<Vec<f64>, FileError> {
-        self.refuse_if_claimed(dataset.shape().iter().fold(1, |size, n| size.saturating_mul(*n as u128)))?;
-        dataset.read_raw::<f64>().map_err(self.failed(format!("read dataset {name}")))
-    }
-
-    /// A dataset of known shape, row by row.
-    fn fixed(&self, name: &str, shape: &[usize]) -> Result<Vec<f64>, FileError> {
-        let dataset = self.dataset(name)?;
-        if dataset.shape() != shape {
-            return Err(self.wrong_shape(name, format!("{shape:?}"), &dataset));
-        }
-        self.read(name, &dataset)
-    }
-
-    /// A one-dimensional dataset, of known length or not.
-    fn vector(&self, name: &str, length: Option<usize>) -> Result<Vec<f64>, FileError> {
-        let dataset = self.dataset(name)?;
-        match (&dataset.shape()[..], length) {
-            ([_], None) => self.read(name, &dataset),
-            ([found], Some(length)) if *found == length => self.read(name, &dataset),
-            (_, None) => Err(self.wrong_shape(name, "[nf]".into(), &dataset)),
-            (_, Some(length)) => Err(self.wrong_shape(name, format!("[{length}]"), &dataset)),
-        }
-    }
-
-    fn rows_of(&self, name: &str, width: Option<usize>) -> Result<usize, FileError> {
-        let dataset = self.dataset(name)?;
-        match (&dataset.shape()[..], width) {
-            ([rows], None) => Ok(*rows),
-            ([rows, found], Some(width)) if *found == width => Ok(*rows),
-            (_, None) => Err(self.wrong_shape(name, "[T]".into(), &dataset)),
-            (_, Some(width)) => Err(self.wrong_shape(name, format!("[T, {width}]"), &dataset)),
-        }
-    }
-
-    /// The first `rows` rows, row by row.
-    fn column(&self, name: &str, width: Option<usize>, rows: usize) -> Result<Vec<f64>, FileError> {
-        let dataset = self.dataset(name)?;
-        match width {
-            None => dataset.read_slice_1d(s![..rows]).map(|values| values.into_raw_vec_and_offset().0),
-            Some(_) => dataset.read_slice_2d(s![..rows, ..]).map(|values| values.into_raw_vec_and_offset().0),
-        }
-        .map_err(self.failed(format!("read dataset {name}")))
-    }
-
-    fn attribute<T: hdf5::H5Type>(&self, name: &str) -> Result<T, FileError> {
-        self.attribute_if_given(name)?
-            .ok_or_else(|| FileError::MissingAttribute { path: self.path.to_path_buf(), attribute: name.into() })
-    }
-
-    fn attribute_if_given<T: hdf5::H5Type>(&self, name: &str) -> Result<Option<T>, FileError> {
-        let names = self.file.attr_names().map_err(self.failed("list the attributes"))?;
-        if !names.iter().any(|found| found == name) {
-            return Ok(None);
-        }
-        self.file
-            .attr(name)
-            .and_then(|attribute| attribute.read_scalar())
-            .map(Some)
-            .map_err(self.failed(format!("read the attribute {name}")))
-    }
-
-    fn text(&self, name: &str) -> Result<String, FileError> {
-        // The bytes are the file's: `as_str` would take them for UTF-8 unseen.
-        let text = self.attribute::<VarLenUnicode>(name)?;
-        String::from_utf8(text.as_bytes().to_vec())
-            .map_err(|_| FileError::NotUtf8 { path: self.path.to_path_buf(), attribute: name.into() })
-    }
-
-    fn missing(&self, dataset: &str) -> FileError {
-        FileError::MissingDataset { path: self.path.to_path_buf(), dataset: dataset.into() }
-    }
-
-    fn wrong_shape(&self, name: &str, expected: String, dataset: &hdf5::Dataset) -> FileError {
-        let found = dataset.shape();
-        FileError::WrongShape { path: self.path.to_path_buf(), dataset: name.into(), expected, found }
-    }
-
-    fn failed(&self, action: impl Into<String>) -> impl FnOnce(hdf5::Error) -> FileError {
-        FileError::hdf5(self.path, action)
-    }
-}
-
-#[cfg(test)]
-#[path = "../tests/rows/mod.rs"]
-#[allow(dead_code)] // no test needs all of it
-mod rows;
-
-/// Files that have a seal, but are not what a writer writes.
-#[cfg(test)]
-mod tests {
-    use super::rows::{Row, folder, metadata};
-    use super::*;
-    use crate::{Expected, Writer};
-
-    /// What the reader says of a file that another program has changed and sealed.
-    fn refusal(change: impl Fn(&hdf5::File)) -> FileError {
-        let (_folder, path) = folder();
-        let mut writer = Writer::create(&path, &metadata(2, &["P1"]), Expected::default()).unwrap();
-        (0..10).for_each(|i| writer.push(&Row::new(i, 2, 1).sample()).unwrap());
-        writer.finish().unwrap();
-        let file = hdf5::File::open_rw(&path).unwrap();
-        change(&file);
-        file.close().unwrap();
-        assert!(matches!(Results::open(&path), Err(FileError::Damaged { .. })));
-        seal::put(&path, &path, &[]).unwrap();
-        Results::open(&path).unwrap_err()
-    }
-
-    #[test]
-    fn errors_name_what_is_missing_or_of_another_shape() {
-        match refusal(|file| file.unlink("points/P1/velocity").unwrap()) {
-            FileError::MissingDataset { dataset, .. } => assert_eq!(dataset, "points/P1/velocity"),
-            other => panic!("{other}"),
-        }
-        match refusal(|file| file.unlink("body").unwrap()) {
-            FileError::MissingDataset { dataset, .. } => assert_eq!(dataset, "body/frequencies"),
-            other => panic!("{other}"),
-        }
-        match refusal(|file| file.delete_attr("scheme").unwrap()) {
-            FileError::MissingAttribute { attribute, .. } => assert_eq!(attribute, "scheme"),
-            other => panic!("{other}"),
-        }
-        match refusal(|file| {
-            file.unlink("attitude").unwrap();
-            file.new_dataset::<f64>().shape((10, 3)).create("attitude").unwrap();
-        }) {
-            FileError::WrongShape { dataset, expected, found, .. } => {
-                assert_eq!((dataset.as_str(), expected.as_str(), found), ("attitude", "[T, 4]", vec![10, 3]));
-            }
-            other => panic!("{other}"),
-        }
-    }
-
-    #[test]
-    fn a_shape_is_only_a_claim() {
-        let vast = 1_000_000_000_000_usize;
-        match refusal(|file| {
-            file.unlink("body/frequencies").unwrap();
-            file.new_dataset::<f64>().chunk(1000).shape(vast).create("body/frequencies").unwrap();
-        }) {
-            FileError::ClaimsTooMuch { claimed, length, .. } => {
-                assert!(claimed == 8 * vast as u128 && length < 100_000_000)
-            }
-            other => panic!("{other}"),
-        }
-    }
 }

@@ -1,108 +1,117 @@
-//! The seal of a results file: a check sum of what is not to change any more.
+//! The seal of a results file: a description of it, and a check sum of what is not to change any more.
 //!
-//! HDF5 is a library of C: a damaged file can make it crash or run for ever, and no look at its answers can prevent
-//! that. So the file begins with a sum of its bytes, in what HDF5 calls the user block and leaves alone, and the reader
-//! compares before HDF5 sees the file. Of an unfinished file, whose structure is written once and never touched again,
-//! the sum leaves out the numbers of the histories and the checkpoints, which HDF5 only copies, and a flag of HDF5's for
-//! a file that is being written. That of a finished one is of all of it.
+//! HDF5 is a library of C: a damaged or forged file can make it crash, run for ever, or write to other files, which it
+//! opens where the file says so, and no look at its answers can prevent that. So HDF5 makes results files, but never
+//! opens one to read it or to go on with it. A file begins, in what HDF5 calls the user block and leaves alone, with a
+//! description that says all that the reader must know: the metadata, and where the numbers are. The reader takes the
+//! numbers from there, within this one file. A check sum finds damage. Of an unfinished file, whose structure is written
+//! once and never touched again, it leaves out the numbers of the histories and the checkpoints. That of a finished one
+//! is of all of it.
 //!
 //! | bytes | what, integers in 64 bits, the lowest byte first |
 //! |---|---|
-//! | 0–24 | `flexframe results, v. 1` and a line feed |
+//! | 0–24 | `flexframe results, v. 2` and a line feed |
 //! | 24–32 | CRC-32 of all bytes after it that are not left out |
 //! | 32–40 | bytes of the file |
-//! | 40–48 | ranges that are left out |
-//! | 48– | first byte, and first byte after, of each |
+//! | 40–48 | bytes of the description |
+//! | 48– | the description as JSON: `rows`, `checkpoint_words`, `starts` (first byte of each history and of the checkpoints, 0 where there is nothing), `metadata` |
 
 use crate::FileError;
-use std::fs::{File, OpenOptions};
+use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::iter::once;
 use std::ops::Range;
 use std::path::Path;
 
-const MAGIC: &[u8; 24] = b"flexframe results, v. 1\n";
+const MAGIC: &[u8; 24] = b"flexframe results, v. 2\n";
 
-/// Where the sum is, and where what it is of begins.
+/// Bytes of the magic text that are those of every version.
+const ANY_VERSION: usize = 21;
+
+/// Where the sum is.
 const SUM: Range<u64> = 24..32;
 
-/// Bytes before the ranges, and of each.
-const HEAD: u64 = 48;
-const RANGE: u64 = 16;
+/// Bytes before the description.
+pub(crate) const HEAD: u64 = 48;
+
+/// The longest description that is read, in bytes. A scene has at most 1 MiB, and not so many points and modes.
+const LONGEST: u64 = 64 << 20;
 
 /// Bytes that are read at a time.
 const BLOCK: usize = 1 << 14;
 
-/// Size of the user block, of those that HDF5 allows, in which so many ranges can be left out.
-pub(crate) fn room(ranges: usize) -> u64 {
-    (HEAD + RANGE * ranges as u64).next_power_of_two().max(512)
+/// Size of the user block, of those that HDF5 allows, for a description of so many bytes.
+pub(crate) fn room(description: u64) -> u64 {
+    (HEAD + description).next_power_of_two().max(512)
 }
 
-/// Seals the file `place`, called `path` in messages, leaving out the ranges given, which are in order.
-pub(crate) fn put(place: &Path, path: &Path, left_out: &[Range<u64>]) -> Result<(), FileError> {
+/// Seals the file, called `path` in messages, leaving out the ranges given, which are in order.
+pub(crate) fn put(file: &File, path: &Path, description: &[u8], left_out: &[Range<u64>]) -> Result<(), FileError> {
     let failed = |error| FileError::system(path, "write the check sum of the file", &error);
-    let mut file = OpenOptions::new().read(true).write(true).open(place).map_err(failed)?;
     let length = file.metadata().map_err(failed)?.len();
     let mut head = MAGIC.to_vec();
-    let numbers = [0, length, left_out.len() as u64].into_iter();
-    for number in numbers.chain(left_out.iter().flat_map(|range| [range.start, range.end])) {
-        head.extend(number.to_le_bytes());
-    }
-    let write = |file: &mut File, at, bytes: &[u8]| {
+    [0, length, description.len() as u64].iter().for_each(|number| head.extend(number.to_le_bytes()));
+    head.extend(description);
+    let write = |mut file: &File, at, bytes: &[u8]| {
         file.seek(SeekFrom::Start(at))?;
         file.write_all(bytes)
     };
-    write(&mut file, 0, &head).map_err(failed)?;
-    let sum = sum(&mut file, left_out, length).map_err(failed)?;
-    write(&mut file, SUM.start, &u64::from(sum).to_le_bytes()).map_err(failed)
+    write(file, 0, &head).map_err(failed)?;
+    let sum = sum(file, left_out, length).map_err(failed)?;
+    write(file, SUM.start, &u64::from(sum).to_le_bytes()).map_err(failed)
 }
 
-/// Refuses a file that is none of ours or not as it was sealed.
-pub(crate) fn check(path: &Path) -> Result<(), FileError> {
+/// The description. Refuses a file that is none of ours or has not the length that it had.
+pub(crate) fn description(mut file: &File, path: &Path) -> Result<Vec<u8>, FileError> {
     let failed = |error| FileError::system(path, "read the file", &error);
-    let mut file = File::open(path).map_err(|error| FileError::system(path, "open the file", &error))?;
     let length = file.metadata().map_err(failed)?.len();
-    let mut head = [0; HEAD as usize];
-    if length < HEAD || file.read_exact(&mut head).is_err() || !head.starts_with(MAGIC) {
-        return Err(FileError::NoSeal { path: path.to_path_buf() });
-    }
+    let (_, sealed_length, described) = head(file, path)?;
     let damaged = |what: String| Err(FileError::Damaged { path: path.to_path_buf(), what });
-    let (words, _) = head[MAGIC.len()..].as_chunks().0.split_at(3);
-    let &[written, sealed_length, ranges] = words else { return damaged("its head is cut off".into()) };
-    let [written, sealed_length, ranges] = [written, sealed_length, ranges].map(u64::from_le_bytes);
     if sealed_length != length {
         return damaged(format!("it has {length} bytes where {sealed_length} were written"));
     }
-    if ranges > (length - HEAD) / RANGE {
-        return damaged(format!("it is too short for the {ranges} ranges that its head claims"));
+    if described > LONGEST.min(length - HEAD) {
+        return damaged(format!("its head claims a description of {described} bytes"));
     }
-    let mut left_out = Vec::new();
-    let mut end = HEAD + RANGE * ranges;
-    let mut of_ranges = vec![0; (RANGE * ranges) as usize];
-    file.read_exact(&mut of_ranges).map_err(failed)?;
-    for [start, stop] in of_ranges.as_chunks().0.as_chunks().0 {
-        let range = u64::from_le_bytes(*start)..u64::from_le_bytes(*stop);
-        if range.start < end || range.end < range.start || length < range.end {
-            return damaged(format!("bytes {range:?} of its histories are not in order"));
-        }
-        end = range.end;
-        left_out.push(range);
-    }
-    let found = u64::from(sum(&mut file, &left_out, length).map_err(failed)?);
-    if found == written {
-        return Ok(());
-    }
-    damaged(format!("its check sum is {found:08x} where {written:08x} was written"))
+    let mut description = vec![0; described as usize];
+    file.read_exact(&mut description).map_err(failed)?;
+    Ok(description)
 }
 
-/// Whether a file claims to be one of ours.
+/// Refuses a file that is not as it was sealed. The ranges left out are in order, and within the file.
+pub(crate) fn check(file: &File, path: &Path, left_out: &[Range<u64>]) -> Result<(), FileError> {
+    let (written, length, _) = head(file, path)?;
+    let found = sum(file, left_out, length).map_err(|error| FileError::system(path, "read the file", &error))?;
+    if u64::from(found) == written {
+        return Ok(());
+    }
+    let what = format!("its check sum is {found:08x} where {written:08x} was written");
+    Err(FileError::Damaged { path: path.to_path_buf(), what })
+}
+
+/// Check sum, length of the file, and length of its description, as its head has them.
+fn head(mut file: &File, path: &Path) -> Result<(u64, u64, u64), FileError> {
+    let mut head = [0; HEAD as usize];
+    let outcome = file.seek(SeekFrom::Start(0)).and_then(|_| file.read_exact(&mut head));
+    match (outcome, head[MAGIC.len()..].as_chunks().0) {
+        (Ok(()), &[sum, length, described]) if head.starts_with(MAGIC) => {
+            Ok((u64::from_le_bytes(sum), u64::from_le_bytes(length), u64::from_le_bytes(described)))
+        }
+        (Err(error), _) if error.kind() != io::ErrorKind::UnexpectedEof => {
+            Err(FileError::system(path, "read the file", &error))
+        }
+        _ => Err(FileError::NoSeal { path: path.to_path_buf() }),
+    }
+}
+
+/// Whether a file claims to be one of ours, of any version.
 pub(crate) fn is_claimed(path: &Path) -> bool {
-    let mut magic = [0; MAGIC.len()];
-    File::open(path).and_then(|mut file| file.read_exact(&mut magic)).is_ok() && magic == *MAGIC
+    let mut magic = [0; ANY_VERSION];
+    File::open(path).and_then(|mut file| file.read_exact(&mut magic)).is_ok() && MAGIC.starts_with(&magic)
 }
 
 /// CRC-32 of the bytes after the sum, up to `length`, that are in none of the ranges.
-fn sum(file: &mut File, left_out: &[Range<u64>], length: u64) -> io::Result<u32> {
+fn sum(mut file: &File, left_out: &[Range<u64>], length: u64) -> io::Result<u32> {
     let mut hasher = crc32fast::Hasher::new();
     let mut block = [0; BLOCK];
     let mut start = SUM.end;

@@ -2,10 +2,10 @@
 
 use crate::checkpoint::{self, Checkpoint, Sums};
 use crate::layout::Quantity;
-use crate::place::{Place, is_busy};
+use crate::place::Place;
 use crate::reader::Results;
 use crate::store::{Room, Store};
-use crate::{FileError, Metadata, Sample, seal};
+use crate::{FileError, Metadata, Sample};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 use tempfile::TempPath;
@@ -75,14 +75,13 @@ impl Writer {
     /// # Errors
     /// [`FileError::PointName`] for a name that is empty, ".", "..", contains "/" or NUL or occurs
     /// twice, [`FileError::WrongLength`] if there are not as many damping ratios as frequencies,
-    /// [`FileError::NulInText`]; [`FileError::Busy`] if another process writes it,
-    /// [`FileError::Unfinished`] and [`FileError::NotResults`] for what would be lost;
-    /// [`FileError::System`] and [`FileError::Hdf5`] if the file cannot be written.
+    /// [`FileError::ConstantNotFinite`], [`FileError::NulInText`]; [`FileError::Busy`] if another process writes it,
+    /// [`FileError::Unfinished`], [`FileError::NotResults`] and [`FileError::Link`] for what would be lost;
+    /// [`FileError::NameNotUtf8`], [`FileError::System`] and [`FileError::Hdf5`] if the file cannot be written.
     pub fn create(path: impl AsRef<Path>, metadata: &Metadata, expected: Expected) -> Result<Self, FileError> {
         let place = Place::of(path.as_ref());
-        check_point_names(&place.path, &metadata.point_names)?;
+        metadata.check(&place.path)?;
         let modes = metadata.body.frequencies.len();
-        check_length(&place.path, "body/damping_ratios", modes, metadata.body.damping_ratios.len())?;
         place.check(expected.overwrite)?;
 
         let buffers: Vec<_> = Quantity::all(metadata.point_names.len())
@@ -91,7 +90,7 @@ impl Writer {
         let numbers_per_row: usize = buffers.iter().map(|(quantity, _)| quantity.width(modes).unwrap_or(1)).sum();
         let rows = expected.rows.min(FIRST_ROOM / numbers_per_row).max(ROWS_PER_WRITE);
         let checkpoint = vec![0; checkpoint::FRAME + expected.checkpoint];
-        let room = Room { rows, checkpoint: Some(checkpoint.len()), complete: false };
+        let room = Room { rows, checkpoint_words: Some(checkpoint.len()) };
         let (file, store) = make_room(&place, metadata, room)?;
         place.put_part(file, expected.overwrite)?;
         Ok(Self {
@@ -111,8 +110,8 @@ impl Writer {
     /// Whether [`Writer::create`] would begin, for those who have long work to do before.
     ///
     /// # Errors
-    /// [`FileError::Busy`], [`FileError::Unfinished`], [`FileError::NotResults`], and [`FileError::System`] if no file
-    /// can be made in the folder.
+    /// [`FileError::Busy`], [`FileError::Unfinished`], [`FileError::NotResults`], [`FileError::Link`], and
+    /// [`FileError::NameNotUtf8`] or [`FileError::System`] if no file can be made in the folder.
     pub fn check(path: impl AsRef<Path>, overwrite: bool) -> Result<(), FileError> {
         let place = Place::of(path.as_ref());
         place.check(overwrite)?;
@@ -123,15 +122,18 @@ impl Writer {
     /// last checkpoint. Rows after that are written anew.
     ///
     /// # Errors
-    /// [`FileError::Complete`] and [`FileError::NothingToResume`] if there is no unfinished file, [`FileError::Busy`]
-    /// if its run goes on, and those of [`Results::open`].
+    /// [`FileError::Complete`] and [`FileError::NothingToResume`] if there is no unfinished file, [`FileError::Link`],
+    /// [`FileError::Busy`] if its run goes on, [`FileError::NameNotUtf8`] or [`FileError::System`] if no file can be made
+    /// in the folder, and those of [`Results::open`].
     pub fn resume(path: impl AsRef<Path>) -> Result<Resumed, FileError> {
         let place = Place::of(path.as_ref());
         place.check_resumable()?;
         let part = &place.part;
-        let (mut results, last) = Results::open_with_checkpoint(part)?;
-        let store = Store::open(part, part, &results.metadata)
-            .map_err(|error| if is_busy(part) { FileError::Busy { path: part.clone() } } else { error })?;
+        let store = Store::open_to_write(part)?;
+        if store.is_complete() {
+            return Err(FileError::Complete { path: part.clone() });
+        }
+        let (mut results, last) = Results::read_with_checkpoint(&store, part)?;
         let (rows, serial, frame, state, sums) = match last {
             Some((last, sums)) => (last.rows, last.serial, last.words(), Some(last.state), sums),
             None => {
@@ -210,13 +212,11 @@ impl Writer {
         check_length(path, "the checkpoint", expected, checkpoint.len())?;
         self.write_buffers()?;
         let path = &self.place.part;
-        self.store.flush(path)?;
-        self.serial += 1;
+        self.serial = self.serial.saturating_add(1); // a forged file may have any
         let (rows, sum_of_rows) = (self.rows_written, self.sums.total());
         self.checkpoint = Checkpoint { serial: self.serial, rows, sum_of_rows, state: checkpoint.to_vec() }.words();
         // In turns, so that one of the two is whole at any moment.
         self.store.write_checkpoint(path, (self.serial % 2) as usize, &self.checkpoint)?;
-        self.store.flush(path)?;
         self.last_flush = Instant::now();
         Ok(())
     }
@@ -227,17 +227,13 @@ impl Writer {
     /// [`FileError::System`] and [`FileError::Hdf5`] if the file cannot be written; the unfinished file stays.
     pub fn finish(mut self) -> Result<(), FileError> {
         self.write_buffers()?;
-        let room = Room { rows: self.rows_written, checkpoint: None, complete: true };
+        let room = Room { rows: self.rows_written, checkpoint_words: None };
         let file = self.place.temporary()?;
         let path = &self.place.path;
-        Store::create(&file, path, &self.metadata, room)
-            .and_then(|_| {
-                let store = Store::open(&file, path, &self.metadata)?;
-                store.copy_rows(path, &self.store, self.rows_written)?;
-                store.close(path)?;
-                seal::put(&file, path, &[])
-            })
-            .map_err(|error| error.with_reason_from_system(&file))?;
+        let store = Store::create(&file, path, &self.metadata, room)?;
+        store.copy_rows(path, &self.store, self.rows_written)?;
+        store.seal(path)?;
+        drop(store);
         self.place.put_results(file)?;
         self.place.remove_part()
     }
@@ -267,35 +263,28 @@ impl Writer {
     fn grow(&mut self, rows: usize) -> Result<(), FileError> {
         let part = &self.place.part;
         let rows = rows.max(2 * self.store.rows());
-        let room = Room { rows, checkpoint: Some(self.checkpoint.len()), complete: false };
+        let room = Room { rows, checkpoint_words: Some(self.checkpoint.len()) };
         let (file, store) = make_room(&self.place, &self.metadata, room)?;
-        store
-            .copy_rows(part, &self.store, self.rows_written)
-            .and_then(|()| store.write_checkpoint(part, (self.serial % 2) as usize, &self.checkpoint))
-            .and_then(|()| store.flush(part))
-            .map_err(|error| error.with_reason_from_system(&file))?;
+        store.copy_rows(part, &self.store, self.rows_written)?;
+        store.write_checkpoint(part, (self.serial % 2) as usize, &self.checkpoint)?;
         self.place.exchange_part(file)?;
         self.store = store;
         Ok(())
     }
 }
 
-/// A sealed unfinished file that has no name yet, closed and opened again: HDF5 changes its structure no more.
+/// A sealed unfinished file that has no name yet.
 fn make_room(place: &Place, metadata: &Metadata, room: Room) -> Result<(TempPath, Store), FileError> {
     let file = place.temporary()?;
-    let store = Store::create(&file, &place.part, metadata, room)
-        .and_then(|changing| {
-            seal::put(&file, &place.part, &changing)?;
-            Store::open(&file, &place.part, metadata)
-        })
-        .map_err(|error| error.with_reason_from_system(&file))?;
+    let store = Store::create(&file, &place.part, metadata, room)?;
+    store.seal(&place.part)?;
     Ok((file, store))
 }
 
 impl Drop for Writer {
     fn drop(&mut self) {
         // Best effort: there is nobody left to tell. After `finish` there is nothing to do.
-        let _ = self.write_buffers().and_then(|()| self.store.flush(&self.place.part));
+        let _ = self.write_buffers();
     }
 }
 
@@ -304,19 +293,4 @@ fn check_length(path: &Path, quantity: &str, expected: usize, found: usize) -> R
         return Ok(());
     }
     Err(FileError::WrongLength { path: path.to_path_buf(), quantity: quantity.into(), expected, found })
-}
-
-fn check_point_names(path: &Path, names: &[String]) -> Result<(), FileError> {
-    for (i, name) in names.iter().enumerate() {
-        let reason = match name.as_str() {
-            "" => "it is empty",
-            "." | ".." => "HDF5 gives dots a meaning of their own",
-            name if name.contains('/') => "HDF5 takes / as the separator of a path",
-            name if name.contains('\0') => "it holds a NUL character",
-            _ if names[..i].contains(name) => "it occurs twice",
-            _ => continue,
-        };
-        return Err(FileError::PointName { path: path.to_path_buf(), name: name.clone(), reason });
-    }
-    Ok(())
 }

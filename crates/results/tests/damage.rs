@@ -1,6 +1,8 @@
-//! Damaged files: each is refused before HDF5, a library of C, sees it, and none costs more memory than it has bytes.
+//! Damaged files: each is refused, and none costs much more memory than it has bytes.
 
 mod rows;
+#[allow(dead_code)] // files are made right again by other tests
+mod sealed;
 
 use results::*;
 use rows::{Row, assert_rows, folder, metadata};
@@ -34,13 +36,9 @@ fn files(path: &Path) -> [Vec<u8>; 2] {
     })
 }
 
-fn word(bytes: &[u8], at: usize) -> usize {
-    u64::from_le_bytes(bytes[at..at + 8].try_into().unwrap()) as usize
-}
-
-/// The bytes that the head of a file leaves out of its sum.
+/// The bytes that the sum leaves out.
 fn left_out(bytes: &[u8]) -> Vec<Range<usize>> {
-    (0..word(bytes, 40)).map(|i| word(bytes, 48 + 16 * i)..word(bytes, 56 + 16 * i)).collect()
+    sealed::left_out(&sealed::read(bytes), bytes.len())
 }
 
 /// What the reader says of a file, and the most memory that it held meanwhile.
@@ -50,7 +48,7 @@ fn read(path: &Path) -> (Result<Results, FileError>, usize) {
     (outcome.unwrap(), memory.bytes_max as usize)
 }
 
-/// The reader must refuse the file, with no more in memory than a message and the ranges that its head claims.
+/// The reader must refuse the file, with no more in memory than its description and a message.
 fn refuse(path: &Path, what: std::fmt::Arguments) {
     let (outcome, memory) = read(path);
     let Err(error) = outcome else { panic!("{what}: accepted") };
@@ -68,7 +66,7 @@ fn next(state: &mut u64) -> usize {
 }
 
 #[test]
-fn every_damage_is_found_before_hdf5_sees_the_file() {
+fn every_damage_is_found() {
     let (folder, path) = folder();
     let files = files(&path);
     let place = folder.path().join("damaged.part.h5");
@@ -77,7 +75,7 @@ fn every_damage_is_found_before_hdf5_sees_the_file() {
         let (results, memory) = read(&place);
         assert_rows(&results.unwrap(), ROWS);
         println!("{} bytes: {memory} bytes of memory", bytes.len());
-        assert!(memory < 3 * bytes.len()); // 1.7 times, 0.9 times
+        assert!(memory < 3 * bytes.len()); // 0.5 times, 0.9 times
         let numbers = left_out(bytes);
         let file = OpenOptions::new().write(true).open(&place).unwrap();
         for at in (0..bytes.len()).filter(|at| !numbers.iter().any(|range| range.contains(at))) {
@@ -113,27 +111,15 @@ fn every_damage_is_found_before_hdf5_sees_the_file() {
             bytes[32..40].copy_from_slice(&length.to_le_bytes());
             bytes[40..48].copy_from_slice(&claim.to_le_bytes());
             std::fs::write(&place, bytes).unwrap();
-            refuse(&place, format_args!("{claim} ranges"));
+            refuse(&place, format_args!("a description of {claim} bytes"));
         }
     }
 
     println!("{} damaged files refused", REFUSED.load(Relaxed));
 
-    // What the sum leaves out is HDF5's flags and numbers. The rows of a checkpoint have a sum in it; of the checkpoints
-    // the last whole one counts.
-    let left_out = left_out(&part);
-    let (flags, numbers) = left_out.split_first().unwrap();
-    for at in flags.clone() {
-        for byte in 0..=255 {
-            let mut bytes = part.clone();
-            bytes[at] = byte;
-            std::fs::write(&place, &bytes).unwrap();
-            match Results::open(&place) {
-                Ok(results) => assert_rows(&results, ROWS),
-                Err(error) => assert!(matches!(error, FileError::Hdf5 { .. }), "{error}"),
-            }
-        }
-    }
+    // What the sum leaves out is numbers. The rows of a checkpoint have a sum in it; of the checkpoints the last whole
+    // one counts.
+    let numbers = left_out(&part);
     let mut state = 1;
     let mut refused = 0;
     for _ in 0..500 {

@@ -370,3 +370,108 @@ fn names_types_and_shapes_are_those_of_the_contract() {
         assert_eq!((text("unit").as_str(), text("frame").as_str()), (unit, frame), "{name}");
     }
 }
+
+/// The writer puts the numbers into their places by itself; HDF5 must find them there.
+#[test]
+fn hdf5_finds_the_numbers_that_were_written() {
+    let (_folder, path) = folder();
+    let metadata = metadata(3, &["P10", "P2"]);
+    let mut writer = Writer::create(&path, &metadata, Expected { checkpoint: 2, ..Expected::default() }).unwrap();
+    (0..700).for_each(|i| writer.push(&Row::new(i, 3, 2).sample()).unwrap());
+    writer.flush(&[7, 8]).unwrap();
+    let part = unfinished(&path);
+    std::fs::copy(&part, path.with_extension("copy.h5")).unwrap();
+    writer.finish().unwrap();
+    for (path, complete, room) in [(path.clone(), 1, 700), (path.with_extension("copy.h5"), 0, 1024)] {
+        let results = Results::open(&path).unwrap();
+        assert_rows(&results, 700);
+        let file = hdf5::File::open(&path).unwrap();
+        assert_eq!(file.attr("complete").unwrap().read_scalar::<i64>().unwrap(), complete);
+        let numbers = |name: &str| file.dataset(name).unwrap().read_raw::<f64>().unwrap();
+        let check = |name: &str, width: usize, expected: &[f64]| {
+            let found = numbers(name);
+            assert_eq!(found.len(), room * width, "{name}");
+            assert_eq!(found[..700 * width], *expected, "{name}");
+            assert!(found[700 * width..].iter().all(|value| value.is_nan()), "{name}");
+        };
+        check("time", 1, &results.time);
+        check("attitude", 4, results.attitude.as_flattened());
+        check("energy/balance", 1, &results.energy_balance);
+        let modal: Vec<f64> = (0..700).flat_map(|i| results.modal_velocity.row(i).unwrap().to_vec()).collect();
+        check("modal/velocity", 3, &modal);
+        for (name, point) in &results.points {
+            check(&format!("points/{name}/displacement"), 3, point.displacement.as_flattened());
+            check(&format!("points/{name}/rigid_acceleration"), 3, point.rigid_acceleration.as_flattened());
+        }
+        assert_eq!(numbers("body/frequencies"), metadata.body.frequencies);
+        if complete == 0 {
+            let checkpoint = file.dataset("checkpoint").unwrap();
+            assert_eq!(checkpoint.shape(), [2, 6]);
+            assert_eq!(checkpoint.read_raw::<u64>().unwrap()[6 + 3..6 + 5], [7, 8]);
+        }
+    }
+}
+
+/// What is behind a link may be any file.
+#[cfg(unix)]
+#[test]
+fn nothing_is_written_through_a_link_or_in_its_place() {
+    use std::os::unix::fs::symlink;
+    let (folder, path) = folder();
+    let metadata = metadata(1, &[]);
+    let target = folder.path().join("target");
+    let refused = |outcome: Result<(), FileError>, link: &Path| match outcome {
+        Err(FileError::Link { path, .. }) => assert_eq!(path, link),
+        other => panic!("{other:?}"),
+    };
+    let elsewhere = folder.path().join("elsewhere.h5");
+    drop(write(&elsewhere, 3, &metadata));
+    let sound = std::fs::read(unfinished(&elsewhere)).unwrap();
+    for content in [None, Some(&b"a diary"[..]), Some(&sound)] {
+        for link in [path.clone(), unfinished(&path)] {
+            content.iter().for_each(|content| std::fs::write(&target, content).unwrap());
+            symlink(&target, &link).unwrap();
+            for overwrite in [false, true] {
+                refused(Writer::check(&path, overwrite), &link);
+                let expected = Expected { overwrite, ..Expected::default() };
+                refused(Writer::create(&path, &metadata, expected).map(drop), &link);
+            }
+            if link != path {
+                refused(Writer::resume(&path).map(drop), &link);
+            }
+            assert_eq!(std::fs::read_link(&link).unwrap(), target);
+            assert_eq!(std::fs::read(&target).ok().as_deref(), content);
+            std::fs::remove_file(link).unwrap();
+        }
+    }
+    let message = FileError::Link { path, target }.to_string();
+    assert!(message.contains("symbolic link") && message.contains("remove it"), "{message}");
+}
+
+#[cfg(unix)]
+#[test]
+fn names_that_are_not_utf8() {
+    use std::os::unix::ffi::OsStrExt;
+    let (folder, _) = folder();
+    let name = |bytes: &[u8]| folder.path().join(std::ffi::OsStr::from_bytes(bytes));
+    let [path, other] = [name(b"run\xff.h5"), name(b"run\xfe.h5")];
+    assert_eq!(unfinished(&path), name(b"run\xff.part.h5"));
+    assert_eq!(unfinished(unfinished(&other)), name(b"run\xfe.part.h5"));
+    assert_eq!(unfinished(name(b"a.part")), name(b"a.part.part.h5"));
+    assert_eq!(unfinished(name(b"a.b")), name(b"a.b.part.h5"));
+    write(&path, 3, &metadata(1, &[])).finish().unwrap();
+    assert_rows(&Results::open(&path).unwrap(), 3);
+    // HDF5 wants the folder's name as text; that is said before the work.
+    std::fs::create_dir(name(b"f\xff")).unwrap();
+    let outcome = Writer::check(name(b"f\xff").join("run.h5"), false);
+    assert!(matches!(outcome, Err(FileError::NameNotUtf8 { .. })), "{outcome:?}");
+}
+
+#[test]
+fn constants_are_finite() {
+    let (_folder, path) = folder();
+    let mut vast = metadata(2, &[]);
+    vast.body.inertia[1][2] = f64::INFINITY;
+    let error = Writer::create(&path, &vast, Expected::default()).unwrap_err().to_string();
+    assert!(error.contains("body/inertia is inf"), "{error}");
+}

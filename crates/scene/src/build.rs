@@ -1,5 +1,6 @@
 //! From a scene to a body that can move.
 
+mod backbones;
 mod history;
 mod loads;
 mod meshed;
@@ -10,17 +11,16 @@ mod support;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use advice::{Advice, AdviceError, Case, Refusal};
+use advice::{Advice, AdviceError, Backbone, Case, Refusal, StepEstimate};
 use fem_tet10::{AssemblyError, Matrices, Mesh, MeshError, assemble, read_msh};
-use frames_rk4::{
-    ConservativeScheme, Initial, Load, Physics, PointShapes, Rows, Setup, SetupError, Simulation, StepControl,
-};
+use frames_rk4::{Initial, Physics, PointShapes, Rows, Setup, SetupError, SharedLoad, Simulation, StepControl};
 use modal::{ModalError, Modes, ReducedBody};
 use nalgebra::Vector3;
+use rigid_kin::Attitude;
 
 use crate::effects::Choice;
 use crate::error::{SceneError, shorten};
-use crate::scene::{self, Body, MeshedBody, Scene};
+use crate::scene::{Body, MeshedBody, Scene};
 use crate::suggest::one_of;
 
 /// A scene that cannot be built.
@@ -106,11 +106,13 @@ pub struct Model {
     pub refusal: Option<Refusal>,
     /// Where the time went.
     pub times: BuildTimes,
-    loads: Vec<Load>,
+    loads: Vec<SharedLoad>,
     damping_ratios: Vec<f64>,
     size: Size,
     /// What the modes leave out of the static answers to the spin (6), where that is to be watched.
     left_out: Vec<f64>,
+    /// Of the modes that may bend the body far.
+    backbones: Vec<Option<Backbone>>,
 }
 
 /// The size of a body and of its modes.
@@ -158,11 +160,12 @@ impl Model {
             physics,
             body: self.body.truncated(flexible),
             points: self.points.iter().map(|(name, point)| (name.clone(), point.truncated(flexible))).collect(),
-            loads: self.loads.iter().map(|load| load.truncated(flexible)).collect(),
+            loads: self.loads.clone(),
             damping_ratios: self.damping_ratios[..flexible].to_vec(),
             size: Size { peaks: self.size.peaks[..flexible].to_vec(), ..self.size },
             advice: self.advice.clone(),
             left_out: self.left_out.clone(),
+            backbones: self.backbones.iter().copied().take(flexible).collect(),
             ..*self
         }
     }
@@ -173,13 +176,18 @@ impl Model {
     }
 
     /// The loads, at their points of the body.
-    pub fn loads(&self) -> &[Load] {
+    pub fn loads(&self) -> &[SharedLoad] {
         &self.loads
     }
 
     /// How many static shapes follow the natural modes.
     pub fn static_shapes(&self) -> usize {
         self.meshed.as_ref().map_or(0, |meshed| meshed.modes.eigenvalues.len() - meshed.modes.natural())
+    }
+
+    /// How the frequency of each of the first modes goes with its amplitude, of those that may bend the body far.
+    pub fn backbones(&self) -> &[Option<Backbone>] {
+        &self.backbones
     }
 
     /// Largest displacement by deformation over the length of the body, bounded above by the sum over the modes.
@@ -203,11 +211,11 @@ impl Model {
             drive: self.physics.drive.as_ref(),
             initial,
             end: scene.time.end,
-            step: step(scene),
             length: self.size.length,
             peaks: &self.size.peaks,
             static_compliances: &[],
             centrifugal_remainders: &self.left_out,
+            backbones: &self.backbones,
         }
     }
 
@@ -216,11 +224,7 @@ impl Model {
     /// # Errors
     /// [`StartError`], e.g. a step beyond the stability limit.
     pub fn start(&self, scene: &Scene) -> Result<Simulation, StartError> {
-        let rows = match scene.output.rows {
-            scene::Rows::EverySteps(steps) => Rows::EverySteps(steps),
-            scene::Rows::Interval(interval) => Rows::Interval(interval),
-        };
-        self.start_with(scene, method(scene.time.method), control(scene.time.stepping), rows)
+        self.start_with(scene, scene.time.method, scene.time.control, scene.output.rows)
     }
 
     /// The motion of a scene by another method, in other steps or with other rows than its own.
@@ -237,22 +241,36 @@ impl Model {
         if let Some(refusal) = self.refusal.filter(|_| scene.effects.refuse) {
             return Err(refusal.into());
         }
-        let initial = self.initial(scene);
         let points: Vec<PointShapes> = self.points.iter().map(|(_, point)| point.clone()).collect();
-        let simulation = Simulation::new(&Setup {
+        let initial = self.initial(scene);
+        let setup = Setup { method, control, rows, points: &points, ..self.setup(scene, &initial) };
+        Ok(Simulation::new(&setup)?)
+    }
+
+    /// What the length of the steps gets wrong, estimated; nothing under step control.
+    ///
+    /// # Errors
+    /// As [`Model::start`].
+    pub fn step_estimate(&self, scene: &Scene) -> Result<Option<StepEstimate>, StartError> {
+        Ok(advice::step_estimate(&self.setup(scene, &self.initial(scene)))?)
+    }
+
+    /// What [`Simulation::new`] needs for the run of a scene, without its points. Loads, steps or anything else may be
+    /// replaced.
+    pub fn setup<'a>(&'a self, scene: &Scene, initial: &'a Initial) -> Setup<'a> {
+        Setup {
             body: &self.body,
             damping_ratios: &self.damping_ratios,
             loads: &self.loads,
             physics: &self.physics,
             reference_points: self.reference_points,
-            initial: &initial,
-            method,
-            control,
+            initial,
+            method: scene.time.method,
+            control: scene.time.control,
             end: scene.time.end,
-            rows,
-            points: &points,
-        })?;
-        Ok(simulation)
+            rows: scene.output.rows,
+            points: &[],
+        }
     }
 }
 
@@ -267,41 +285,19 @@ pub enum StartError {
     Refused(#[from] Refusal),
 }
 
+/// The attitude at the beginning. The scene has been checked: no quaternion in it names no rotation.
+fn first_attitude(scene: &Scene) -> Attitude {
+    scene.initial.attitude.and_then(|wxyz| Attitude::from_wxyz(wxyz).ok()).unwrap_or(Attitude::identity())
+}
+
 fn initial(scene: &Scene, flexible: usize) -> Initial {
     let padded = |list: &[f64]| (0..flexible).map(|k| list.get(k).copied().unwrap_or(0.0)).collect();
     Initial {
+        attitude: first_attitude(scene),
         velocity: scene.initial.velocity.into(),
         omega: scene.initial.angular_velocity.into(),
         modal_displacement: padded(&scene.initial.modal_displacement),
         modal_velocity: padded(&scene.initial.modal_velocity),
-    }
-}
-
-/// Method and length of the step, where it is fixed.
-fn step(scene: &Scene) -> Option<(frames_rk4::Method, f64)> {
-    match scene.time.stepping {
-        scene::Stepping::Step(step) => Some((method(scene.time.method), step)),
-        scene::Stepping::Tolerance(_) => None,
-    }
-}
-
-/// The control of the step that a scene names.
-pub fn control(stepping: scene::Stepping) -> StepControl {
-    match stepping {
-        scene::Stepping::Step(step) => StepControl::Fixed(step),
-        scene::Stepping::Tolerance(tolerance) => StepControl::Tolerance(tolerance),
-    }
-}
-
-/// The method that a scene names.
-pub fn method(method: scene::Method) -> frames_rk4::Method {
-    use frames_rk4::Method;
-    match method {
-        scene::Method::Paper => Method::Paper,
-        scene::Method::PaperRkmk4 => Method::PaperRkmk4,
-        scene::Method::Rkmk4 => Method::Conservative(ConservativeScheme::Rkmk4),
-        scene::Method::Exponential => Method::Conservative(ConservativeScheme::Exponential),
-        scene::Method::Strang => Method::Conservative(ConservativeScheme::Strang),
     }
 }
 
@@ -313,36 +309,16 @@ impl Scene {
     pub fn centroid_lumped_inertia(&self, mesh: &Mesh) -> Result<Option<fem_tet10::LumpedInertia>, BuildError> {
         match &self.body {
             Body::Meshed(body) => {
-                Ok(Some(fem_tet10::centroid_lumped_inertia(mesh, &materials(body), &point_masses(body))?))
+                Ok(Some(fem_tet10::centroid_lumped_inertia(mesh, &body.materials, &body.point_masses)?))
             }
             Body::Rigid(_) => Ok(None),
         }
     }
 }
 
-/// The materials in the words of fem-tet10.
-fn materials(body: &MeshedBody) -> fem_tet10::Materials {
-    let material = |m: &scene::Material| fem_tet10::Material {
-        young_modulus: m.young_modulus,
-        poisson_ratio: m.poisson_ratio,
-        density: m.density,
-    };
-    match &body.materials {
-        scene::Materials::Whole(m) => fem_tet10::Materials::Uniform(material(m)),
-        scene::Materials::ByGroup(groups) => {
-            fem_tet10::Materials::ByGroup(groups.iter().map(|(name, m)| (name.clone(), material(m))).collect())
-        }
-    }
-}
-
-fn point_masses(body: &MeshedBody) -> Vec<fem_tet10::PointMass> {
-    let point_mass = |p: &scene::PointMass| fem_tet10::PointMass { at: p.at, mass: p.mass, spread: p.spread };
-    body.point_masses.iter().map(point_mass).collect()
-}
-
 fn output_points(
     scene: &Scene,
-    point: impl Fn(String, [f64; 3]) -> Result<PointShapes, SceneError>,
+    point: impl Fn(String, [f64; 3]) -> Result<PointShapes, BuildError>,
 ) -> Result<Vec<(String, PointShapes)>, BuildError> {
     let named = scene.output.points.iter();
     named.map(|(name, at)| Ok((name.clone(), point(format!("output.points.{name}"), *at)?))).collect()
@@ -389,7 +365,7 @@ fn read_mesh(scene: &Scene, body: &MeshedBody) -> Result<Mesh, BuildError> {
 }
 
 fn matrices(scene: &Scene, body: &MeshedBody, mesh: &Mesh) -> Result<Matrices, BuildError> {
-    assemble(mesh, &materials(body), &point_masses(body)).map_err(|error| {
+    assemble(mesh, &body.materials, &body.point_masses).map_err(|error| {
         let at = match &error {
             AssemblyError::OffBody { at, .. } | AssemblyError::Spread { at, .. } => *at,
             AssemblyError::MissingGroup { group, .. } => {

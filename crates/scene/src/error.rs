@@ -11,6 +11,10 @@ use crate::suggest::{list, nearest};
 /// Longest piece of a line, of a key or of a value that is shown, in characters.
 const SHOWN: usize = 100;
 
+const TOO_LARGE_CURE: &str = "name a scene file; the mesh goes into a file of its own, named by `body.mesh`, and so does a \
+                              long table of a history, named by `file`";
+const NOT_UTF8_CURE: &str = "save it with encoding UTF-8";
+
 /// Why a scene is refused. The message gives the place, what was found, what was expected and
 /// the cure, with the line and a caret under it.
 #[derive(Debug, thiserror::Error)]
@@ -27,12 +31,7 @@ pub enum SceneError {
         cure: &'static str,
     },
     /// The file is longer than a scene can be.
-    #[error(
-        "{}: the scene file is longer than {limit} bytes\n \
-         = name a scene file; the mesh goes into a file of its own, named by `body.mesh`, and so does a long table of a \
-         history, named by `file`",
-        .path.display()
-    )]
+    #[error("{}: the scene file is longer than {limit} bytes\n = {TOO_LARGE_CURE}", .path.display())]
     TooLarge {
         /// The scene file.
         path: PathBuf,
@@ -41,8 +40,7 @@ pub enum SceneError {
     },
     /// The file is not text in UTF-8.
     #[error(
-        "{}:{line}: the scene file is not text in UTF-8: found byte 0x{byte:02x} here\n \
-         = save it with encoding UTF-8",
+        "{}:{line}: the scene file is not text in UTF-8: found byte 0x{byte:02x} here\n = {NOT_UTF8_CURE}",
         .path.display()
     )]
     NotUtf8 {
@@ -115,6 +113,66 @@ impl SceneError {
             | Self::Invalid { at, .. } => Some(at),
         }
     }
+
+    /// The scene file.
+    pub fn file(&self) -> &Path {
+        match self {
+            Self::Unreadable { path, .. } | Self::TooLarge { path, .. } | Self::NotUtf8 { path, .. } => path,
+            Self::Syntax { at, .. }
+            | Self::UnknownKey { at, .. }
+            | Self::UnknownName { at, .. }
+            | Self::MissingKey { at, .. }
+            | Self::Invalid { at, .. } => &at.file,
+        }
+    }
+
+    /// Line in the scene file, from 1, where the fault is in one.
+    pub fn line(&self) -> Option<usize> {
+        match self {
+            Self::NotUtf8 { line, .. } => Some(*line),
+            _ => self.place().map(|place| place.line),
+        }
+    }
+
+    /// What stands there, where something does.
+    pub fn found(&self) -> Option<String> {
+        match self {
+            Self::Unreadable { .. } | Self::TooLarge { .. } | Self::Syntax { .. } | Self::MissingKey { .. } => None,
+            Self::NotUtf8 { byte, .. } => Some(format!("byte 0x{byte:02x}")),
+            Self::UnknownKey { key: found, .. } | Self::UnknownName { found, .. } => Some(shorten(found)),
+            Self::Invalid { found, .. } => Some(found.clone()),
+        }
+    }
+
+    /// What should stand there, where that is known.
+    pub fn expected(&self) -> Option<String> {
+        match self {
+            Self::Unreadable { .. } => None,
+            Self::TooLarge { limit, .. } => Some(format!("at most {limit} bytes")),
+            Self::NotUtf8 { .. } => Some("text in UTF-8".to_owned()),
+            Self::Syntax { .. } => Some("TOML".to_owned()),
+            Self::UnknownKey { known, .. } | Self::UnknownName { known, .. } => {
+                Some(format!("one of {}", list(known))).filter(|_| !known.is_empty())
+            }
+            Self::MissingKey { key, .. } => Some(format!("`{key}`")),
+            Self::Invalid { expected, .. } => Some(expected.clone()),
+        }
+    }
+
+    /// What to do about it.
+    pub fn cure(&self) -> Option<String> {
+        match self {
+            Self::Unreadable { cure, .. } => Some((*cure).to_owned()),
+            Self::TooLarge { .. } => Some(TOO_LARGE_CURE.to_owned()),
+            Self::NotUtf8 { .. } => Some(NOT_UTF8_CURE.to_owned()),
+            Self::Syntax { message, .. } => Some(syntax_cure(message).to_owned()),
+            Self::UnknownKey { key: found, known, .. } | Self::UnknownName { found, known, .. } => {
+                Some(unknown_cure(found, known))
+            }
+            Self::MissingKey { at, .. } => Some(missing_cure(at)),
+            Self::Invalid { cure, .. } => Some(cure.clone()),
+        }
+    }
 }
 
 /// A place in a scene file. Displayed as `file:line:column: ` and the key.
@@ -128,8 +186,8 @@ pub struct Place {
     pub column: usize,
     /// Path of keys, e.g. `loads[0].history.duration`; empty if unknown.
     pub key: String,
-    /// The line, or the piece of a very long one around the column.
-    excerpt: String,
+    /// The line, or the piece of a very long one around the column; `None` if it is not to be shown.
+    excerpt: Option<String>,
     /// What is meant, in characters of the excerpt.
     mark: Range<usize>,
 }
@@ -154,9 +212,15 @@ impl Place {
             line: 1 + before.matches('\n').count(),
             column: 1 + column,
             key,
-            excerpt: line.iter().skip(first).take(SHOWN).map(printable).collect(),
+            excerpt: Some(line.iter().skip(first).take(SHOWN).map(printable).collect()),
             mark: column - first..(column + width - first).min(SHOWN.max(column - first + 1)),
         }
+    }
+
+    /// The line of a file that a scene names, none of which is shown: what it names may be any file of the user's, such as
+    /// one with passwords, and the scene from elsewhere.
+    pub(crate) fn unseen(file: &Path, line: usize, key: String) -> Self {
+        Self { file: file.to_owned(), line, column: 1, key, excerpt: None, mark: 0..0 }
     }
 
     /// The refusal of the value at this place.
@@ -169,13 +233,11 @@ impl Place {
     fn show(&self, headline: &str, cure: &str) -> String {
         let line = self.line.to_string();
         let gutter = " ".repeat(line.len());
+        let Some(excerpt) = &self.excerpt else { return format!("{self}: {headline}\n{gutter} = {cure}") };
         let indent = " ".repeat(self.mark.start);
         let carets = "^".repeat(self.mark.len());
         let cure = cure.replace('\n', &format!("\n{gutter}   "));
-        format!(
-            "{self}: {headline}\n{gutter} |\n{line} | {}\n{gutter} | {indent}{carets}\n{gutter} = {cure}",
-            self.excerpt
-        )
+        format!("{self}: {headline}\n{gutter} |\n{line} | {excerpt}\n{gutter} | {indent}{carets}\n{gutter} = {cure}",)
     }
 }
 
@@ -205,20 +267,25 @@ pub(crate) fn shorten(text: &str) -> String {
 
 fn show_unknown(at: &Place, what: &str, found: &str, known: &[&str]) -> String {
     let shown = shorten(found);
+    let question = nearest(found, known).map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
+    at.show(&format!("unknown {what} `{shown}`{question}"), &unknown_cure(found, known))
+}
+
+fn unknown_cure(found: &str, known: &[&str]) -> String {
     match nearest(found, known) {
-        Some(near) => at.show(
-            &format!("unknown {what} `{shown}`; did you mean `{near}`?"),
-            &format!("rename it to `{near}` (possible here: {})", list(known)),
-        ),
-        None => at.show(&format!("unknown {what} `{shown}`"), &format!("possible here: {}", list(known))),
+        Some(near) => format!("rename it to `{near}` (possible here: {})", list(known)),
+        None => format!("possible here: {}", list(known)),
     }
 }
 
 fn show_missing(at: &Place, key: &str) -> String {
-    let headline = format!("`{key}` is missing");
+    at.show(&format!("`{key}` is missing"), &missing_cure(at))
+}
+
+fn missing_cure(at: &Place) -> String {
     match example(&at.key) {
-        Some(example) => at.show(&headline, &format!("add it, for example:\n{example}")),
-        None => at.show(&headline, "add it"),
+        Some(example) => format!("add it, for example:\n{example}"),
+        None => "add it".to_owned(),
     }
 }
 

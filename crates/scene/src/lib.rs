@@ -48,14 +48,13 @@ mod section;
 mod shape;
 mod suggest;
 
-pub use build::{BuildError, BuildProgress, BuildTimes, Meshed, Model, StartError, control, method};
+pub use build::{BuildError, BuildProgress, BuildTimes, Meshed, Model, StartError};
 pub use constraint::{Constraint, Drive, HingeLine, Region};
 pub use effects::{Choice, Effects};
 pub use error::{Place, SceneError};
+pub use fem_tet10::{Material, Materials, PointMass};
+pub use frames_rk4::{LoadFrame, Method, Rows, StepControl};
 pub use history::{History, Table};
-pub use load::{BaseAcceleration, Force, Gravity, Load, LoadFrame, Moment, Pressure, Traction};
+pub use load::{BaseAcceleration, Force, Gravity, Load, Moment, Pressure, Traction};
 pub use modes::{Damping, Flexible, Modes, Rayleigh};
-pub use scene::{
-    Body, Frame, Initial, Material, Materials, MeshedBody, Method, Output, PointMass, RigidBody, Rows, Scene, Stepping,
-    Time, Units,
-};
+pub use scene::{Body, Frame, Initial, MeshedBody, Output, RigidBody, Scene, Time, Units};

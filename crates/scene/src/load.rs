@@ -1,5 +1,6 @@
 //! The loads of a scene: what acts, and where.
 
+use frames_rk4::LoadFrame;
 use serde::Deserialize;
 
 use crate::history::History;
@@ -117,15 +118,4 @@ pub struct BaseAcceleration {
     pub amplitude: f64,
     /// Factor on the amplitude over time.
     pub history: History,
-}
-
-/// The axes that a load's direction is fixed in.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum LoadFrame {
-    /// Global axes: a dead load.
-    #[default]
-    Global,
-    /// Body axes: a follower load.
-    Body,
 }

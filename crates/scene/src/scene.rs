@@ -7,6 +7,8 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
+use fem_tet10::{Materials, PointMass};
+use frames_rk4::{Method, Rows, StepControl};
 use serde::Deserialize;
 
 use crate::constraint::Constraint;
@@ -71,7 +73,7 @@ pub enum Body {
 pub struct MeshedBody {
     /// The mesh file, already resolved against the folder of the scene file.
     pub mesh: PathBuf,
-    /// What the elements are made of.
+    /// What the elements are made of: key `material` for the whole mesh, or `materials` by the name of the physical group.
     pub materials: Materials,
     /// Masses added at points; default none.
     pub point_masses: Vec<PointMass>,
@@ -89,40 +91,6 @@ pub struct RigidBody {
     pub inertia: [[f64; 3]; 3],
 }
 
-/// What the elements are made of: the scene has exactly one of the two keys.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Materials {
-    /// Key `material`: one material for the whole mesh.
-    Whole(Material),
-    /// Key `materials`: by the name of the physical group in the mesh; at least one.
-    ByGroup(BTreeMap<String, Material>),
-}
-
-/// A linear elastic, isotropic material.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Material {
-    /// Young's modulus E > 0, force per area.
-    pub young_modulus: f64,
-    /// Poisson's ratio, −1 < ν < 0.5.
-    pub poisson_ratio: f64,
-    /// Density > 0, mass per volume.
-    pub density: f64,
-}
-
-/// A mass without extent, added to the mesh.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct PointMass {
-    /// Position, length, mesh axes.
-    pub at: [f64; 3],
-    /// Mass > 0.
-    pub mass: f64,
-    /// Radius > 0, length, of the ball whose nodes share the mass; `None` puts it on the node
-    /// at `at`.
-    pub spread: Option<f64>,
-}
-
 /// The paper's reference points: three points of the body that are not on one line.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -138,10 +106,13 @@ pub struct Frame {
     pub q: [f64; 3],
 }
 
-/// The state at t = 0, where the body axes are the global ones. Every key is optional; default 0.
+/// The state at t = 0. Every key is optional; default 0.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Initial {
+    /// Attitude as a quaternion [w, x, y, z] that takes body components to global ones; its length is made one. `None`
+    /// has the body axes along the global ones.
+    pub attitude: Option<[f64; 4]>,
     /// Velocity of the centre of mass, length per time, global.
     pub velocity: [f64; 3],
     /// Angular velocity, radians per time, body axes.
@@ -158,62 +129,20 @@ pub struct Initial {
 pub struct Time {
     /// Time > 0 at the end of the run, which starts at 0.
     pub end: f64,
-    /// What sets the length of a step.
-    pub stepping: Stepping,
-    /// The equations of motion and the way from one step to the next.
+    /// What sets the length of a step: key `step`, 1e-12 end ≤ step ≤ end, or `tolerance`, above 0 and below 1.
+    pub control: StepControl,
+    /// The equations of motion and the way from one step to the next: keys `formulation` and `scheme`.
     pub method: Method,
-}
-
-/// What sets the length of a step: the scene has exactly one of the two keys.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Stepping {
-    /// Key `step`: steps of at most this length, 1e-12 end ≤ step ≤ end.
-    Step(f64),
-    /// Key `tolerance`: what the estimated relative errors of all steps may sum to, 0 < tolerance < 1. Only with
-    /// [`Method::Rkmk4`] and [`Method::Exponential`].
-    Tolerance(f64),
-}
-
-/// The equations of motion and the way from one step to the next: keys `formulation` and `scheme`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Method {
-    /// Formulation and scheme of the paper, Eqs. 36–40.
-    Paper,
-    /// Formulation of the paper, in the limit of short steps, by the scheme `rkmk4`.
-    PaperRkmk4,
-    /// Conservative formulation, scheme `rkmk4`: Runge–Kutta–Munthe-Kaas of fourth order.
-    Rkmk4,
-    /// Conservative formulation, scheme `exponential`: Krogstad's ETD-RK4. The default.
-    Exponential,
-    /// Conservative formulation, scheme `strang`: a splitting of second order.
-    Strang,
-}
-
-impl Method {
-    /// Whether the formulation is the paper's, which has the effects that it has.
-    pub fn is_of_paper(self) -> bool {
-        matches!(self, Self::Paper | Self::PaperRkmk4)
-    }
 }
 
 /// What is written out.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Output {
-    /// When a state is written, besides the first and the last.
+    /// When a state is written, besides the first and the last: key `every`, after so many steps (default 1), or `interval`,
+    /// at the multiples of this time. With a tolerance the default is a 500th of the end.
     pub rows: Rows,
     /// Points whose motion is written: name, and position (length, mesh axes); default none.
     /// A name is not empty, `.` or `..` and has no `/` and no control character, since it names
     /// a group of the results file.
     pub points: BTreeMap<String, [f64; 3]>,
-}
-
-/// When a state is written: the scene has at most one of the two keys.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Rows {
-    /// Key `every`: after every so many steps, ≥ 1. Only with [`Stepping::Step`], where 1 is the
-    /// default.
-    EverySteps(u64),
-    /// Key `interval`: at the multiples of this time, 1e-12 end ≤ interval ≤ end. With
-    /// [`Stepping::Tolerance`] the default is a 500th of the end.
-    Interval(f64),
 }

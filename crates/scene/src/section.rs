@@ -3,15 +3,17 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
+use fem_tet10::{Material, PointMass};
+use frames_rk4::Method;
 use serde::de::value::SeqAccessDeserializer;
-use serde::de::{Error, SeqAccess, Visitor};
+use serde::de::{DeserializeSeed, EnumAccess, Error, SeqAccess, VariantAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 
 use crate::constraint::Drive;
 use crate::effects::{Choice, Effects, auto};
 use crate::load::Load;
 use crate::modes::Rayleigh;
-use crate::scene::{Frame, Initial, Material, PointMass, Units};
+use crate::scene::{Frame, Initial, Units};
 
 /// The whole file.
 #[derive(Deserialize)]
@@ -170,22 +172,58 @@ pub(crate) struct TimeSection {
     pub scheme: Option<Scheme>,
 }
 
-/// The equations of motion.
-#[derive(Clone, Copy, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum Formulation {
-    Conservative,
-    Paper,
+/// A name from the list of schemes.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Formulation(pub &'static str);
+
+/// A name from the list of schemes.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Scheme(pub &'static str);
+
+impl<'de> Deserialize<'de> for Formulation {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        one_of_names(deserializer, Method::formulation_names()).map(Self)
+    }
 }
 
-/// The way from one step to the next.
-#[derive(Clone, Copy, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum Scheme {
-    Paper,
-    Rkmk4,
-    Exponential,
-    Strang,
+impl<'de> Deserialize<'de> for Scheme {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        one_of_names(deserializer, Method::scheme_names()).map(Self)
+    }
+}
+
+/// One of some names: as a text, or as the key `kind` of a table.
+fn one_of_names<'de, D: Deserializer<'de>>(
+    deserializer: D,
+    names: &'static [&'static str],
+) -> Result<&'static str, D::Error> {
+    #[derive(Clone, Copy)]
+    struct OneOf(&'static [&'static str]);
+    impl<'de> Visitor<'de> for OneOf {
+        type Value = &'static str;
+
+        fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+            write!(f, "one of {}", self.0.join(", "))
+        }
+
+        fn visit_str<E: Error>(self, text: &str) -> Result<Self::Value, E> {
+            self.0.iter().copied().find(|name| *name == text).ok_or_else(|| E::unknown_variant(text, self.0))
+        }
+
+        fn visit_enum<A: EnumAccess<'de>>(self, data: A) -> Result<Self::Value, A::Error> {
+            let (name, rest) = data.variant_seed(self)?;
+            rest.unit_variant()?;
+            Ok(name)
+        }
+    }
+    impl<'de> DeserializeSeed<'de> for OneOf {
+        type Value = &'static str;
+
+        fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Self::Value, D::Error> {
+            deserializer.deserialize_identifier(self)
+        }
+    }
+    deserializer.deserialize_enum("name", names, OneOf(names))
 }
 
 #[derive(Default, Deserialize)]

@@ -56,7 +56,7 @@ fn scenes() -> Vec<String> {
         free("flexible = \"auto\"\nmost = 4\ndamping_table = [[1e4, 0.1], [1e6, 0.2]]", &format!("{PUSH}{tolerance}")),
         free(
             "flexible = 3\nrayleigh = { alpha = 10.0, beta = 1e-7 }",
-            &format!("{frame}{PUSH}{step}scheme = \"strang\"\n"),
+            &format!("{frame}{PUSH}{step}scheme = \"rkmk4\"\n"),
         )
         .replace("step = 1e-4", "step = 1e-6"),
         free(

@@ -2,7 +2,7 @@
 
 use faer::sparse::{SparseColMat, Triplet};
 use frames_rk4::{Initial, PointShapes};
-use modal::{BodyPoint, Modes, ReducedBody, RigidMotion, Solver, Support};
+use modal::{BodyPoint, Constants, Modes, ReducedBody, RigidMotion, Solver, Support};
 use nalgebra::{Matrix3, Vector3};
 
 /// A rigid body of mass 1 with these principal moments.
@@ -25,7 +25,8 @@ pub struct Elastic {
 impl Elastic {
     /// A node as a point.
     pub fn point(&self, node: u32) -> PointShapes {
-        PointShapes::new(&self.body, &BodyPoint::new(&self.modes, &self.positions, &[node], &[1.0]))
+        let point = BodyPoint::new(&self.modes, &self.positions, &[node], &[1.0]).expect("a node of the body");
+        PointShapes::new(&self.body, &point)
     }
 
     /// From stiffness and mass.
@@ -40,6 +41,13 @@ impl Elastic {
         let body = ReducedBody::new(&modes, mass, &positions).map_err(|e| e.to_string())?;
         Ok(Self { body, modes, positions })
     }
+}
+
+/// A body with other constants, which fit together as before.
+pub fn changed(body: &ReducedBody, change: impl FnOnce(&mut Constants)) -> ReducedBody {
+    let mut constants = (**body).clone();
+    change(&mut constants);
+    ReducedBody::from_constants(constants).expect("constants that fit together")
 }
 
 /// Point masses, each joined to each other by a spring of the same stiffness: small, elastic in every direction, and

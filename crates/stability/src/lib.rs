@@ -15,16 +15,16 @@ pub mod trial;
 
 use std::fmt;
 
-use frames_rk4::{ConservativeScheme, Method};
+use frames_rk4::Method;
 
-/// The schemes, in the order of the table's columns.
-pub const SCHEMES: [Method; 5] = [
-    Method::Conservative(ConservativeScheme::Exponential),
-    Method::Conservative(ConservativeScheme::Rkmk4),
-    Method::Conservative(ConservativeScheme::Strang),
-    Method::Paper,
-    Method::PaperRkmk4,
-];
+/// The schemes whose bounds are written down, in the order of [`Case::expected`].
+pub const BOUNDED: [Method; 4] = [Method::EXPONENTIAL, Method::RKMK4, Method::PAPER, Method::PAPER_RKMK4];
+
+/// All schemes, in the order of the table's columns. One without bounds is run and shown without being held to any.
+pub fn schemes() -> Vec<Method> {
+    let others = Method::ALL.into_iter().filter(|method| !BOUNDED.contains(method));
+    BOUNDED.into_iter().chain(others).collect()
+}
 
 /// How long the runs of a case are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -39,7 +39,7 @@ impl Extent {
     /// The number for this extent. The paper's formulation always goes as far as the study does: it often stops there
     /// only.
     pub fn pick(self, method: Method, test: u32, study: u32) -> f64 {
-        let always = !matches!(method, Method::Conservative(_));
+        let always = method.is_of_paper();
         f64::from(if self == Self::Study || always { study } else { test })
     }
 }
@@ -113,8 +113,16 @@ pub struct Case {
     pub measure: &'static str,
     /// Runs it.
     pub run: fn(Method, Extent) -> Outcome,
-    /// What is asked of each of [`SCHEMES`].
-    pub expected: [Expected; 5],
+    /// What is asked of each of [`BOUNDED`].
+    pub expected: [Expected; 4],
+}
+
+impl Case {
+    /// What is asked of a scheme, where anything is.
+    pub fn expected_of(&self, method: Method) -> Option<&Expected> {
+        let place = BOUNDED.iter().position(|bounded| *bounded == method)?;
+        self.expected.get(place)
+    }
 }
 
 /// The cases with their headings.

@@ -11,7 +11,7 @@ fn main() -> ExitCode {
         return ExitCode::FAILURE;
     };
     let (page, broken) = page::page(Extent::Study, |line| eprintln!("{line}"));
-    if let Err(error) = std::fs::write(&path, page) {
+    if let Err(error) = whole_file::write_whole(&path, page) {
         eprintln!("error: {path}: {error}");
         return ExitCode::FAILURE;
     }

@@ -13,7 +13,7 @@ use crate::{BodyCheck, Case, Expected, Extent, Outcome};
 
 const DRIFT: &str = "drift of energy and angular momentum";
 /// Of the tumbling of any well-made body.
-const TUMBLING: [Expected; 5] = [Within(1e-8), Within(1e-5), Within(1e-3), Within(0.1), Within(0.1)];
+const TUMBLING: [Expected; 4] = [Within(1e-8), Within(1e-5), Within(0.1), Within(0.1)];
 
 /// The cases.
 pub fn cases() -> Vec<Case> {
@@ -36,7 +36,7 @@ pub fn cases() -> Vec<Case> {
             body: None,
             measure: "whether it is refused",
             run: |method, _| moves(bar([10.0, 0.1, 5e-4], [10, 1, 1], METRES, 6), method),
-            expected: [Refused("rounding hides the stiffness"); 5],
+            expected: [Refused("rounding hides the stiffness"); 4],
         },
         Case {
             name: "a ribbon of slivers, 100 000 times as long as thick",
@@ -44,7 +44,7 @@ pub fn cases() -> Vec<Case> {
             body: None,
             measure: "whether it is refused",
             run: |method, _| moves(bar([10.0, 0.1, 1e-4], [10, 1, 1], METRES, 6), method),
-            expected: [Refused("too thin"); 5],
+            expected: [Refused("too thin"); 4],
         },
         Case {
             name: "a plate of 1000×50×0.1",
@@ -159,7 +159,7 @@ pub fn cases() -> Vec<Case> {
                 what: "the five lowest frequencies against Lamb's k a = 2.50113 of torsion, relative",
                 figure: || {
                     let lamb = 2.501_132_620_409_396 * shear_speed(METRES);
-                    let found = solve(ball(2), METRES, 10)?.body.circular_frequencies;
+                    let found = solve(ball(2), METRES, 10)?.body.circular_frequencies.clone();
                     Ok(found[..5].iter().map(|omega| (omega / lamb - 1.0).abs()).fold(0.0, f64::max))
                 },
                 expected: Within(5e-3),
@@ -360,7 +360,7 @@ fn permutation(n: usize) -> Vec<usize> {
 
 /// A mesh that is refused before anything can move.
 fn refused(name: &'static str, why: &'static str, words: &'static str, run: fn(Method, Extent) -> Outcome) -> Case {
-    Case { name, why, body: None, measure: "whether it is refused", run, expected: [Refused(words); 5] }
+    Case { name, why, body: None, measure: "whether it is refused", run, expected: [Refused(words); 4] }
 }
 
 /// √(G/ρ)

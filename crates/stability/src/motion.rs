@@ -24,7 +24,7 @@ pub fn cases() -> Vec<Case> {
             body: None,
             measure: "attitude (rad), angular velocity, ‖A Aᵀ − I‖, eight times a turn",
             run: |method, extent| on(rigid(MOMENTS), |body| turns(body, method, extent)),
-            expected: [Within(1e-9), Within(1e-9), Within(1e-9), Refused(LOST), Within(1e-9)],
+            expected: [Within(1e-9), Within(1e-9), Refused(LOST), Within(1e-9)],
         },
         Case {
             name: "tumbling through the unstable axis, 100 flips, rigid",
@@ -32,7 +32,7 @@ pub fn cases() -> Vec<Case> {
             body: None,
             measure: "attitude (rad) and angular velocity against the closed form",
             run: |method, extent| on(rigid(MOMENTS), |body| flips(body, method, extent)),
-            expected: [Within(1e-4), Within(1e-4), Within(1e-4), Refused(LOST), Within(1e-4)],
+            expected: [Within(1e-4), Within(1e-4), Refused(LOST), Within(1e-4)],
         },
         Case {
             name: "tumbling through the unstable axis, flexible",
@@ -45,7 +45,7 @@ pub fn cases() -> Vec<Case> {
                     Trial::free(body, spinning(body, tilted(body), 0.01), 0.01, end).drift(method)
                 })
             },
-            expected: [Within(1e-8), Within(1e-3), Within(1e-4), Refused(LOST), Refused(LOST)],
+            expected: [Within(1e-8), Within(1e-3), Refused(LOST), Refused(LOST)],
         },
         Case {
             name: "1e-8 rad/s from the separatrix, a whole period",
@@ -53,7 +53,7 @@ pub fn cases() -> Vec<Case> {
             body: None,
             measure: "drift of energy and angular momentum",
             run: |method, _| on(rigid(MOMENTS), |body| near_separatrix(body, method)),
-            expected: [Within(1e-11), Within(1e-11), Within(1e-11), Refused(LOST), Within(1e-11)],
+            expected: [Within(1e-11), Within(1e-11), Refused(LOST), Within(1e-11)],
         },
         Case {
             name: "1e-5 rad/s from the separatrix, a whole period",
@@ -67,7 +67,7 @@ pub fn cases() -> Vec<Case> {
                     Trial::free(body, spin(omega), 1e-3, period).off_closed_form(method)
                 })
             },
-            expected: [Within(1e-3), Within(1e-3), Within(1e-3), Refused(LOST), Within(1e-3)],
+            expected: [Within(1e-3), Within(1e-3), Refused(LOST), Within(1e-3)],
         },
         Case {
             name: "1e-12 rad a step",
@@ -75,7 +75,7 @@ pub fn cases() -> Vec<Case> {
             body: None,
             measure: "attitude and angular velocity, relative to the angle turned",
             run: |method, _| on(rigid(MOMENTS), |body| tiny(body, method)),
-            expected: [Within(1e-12); 5],
+            expected: [Within(1e-12); 4],
         },
         Case {
             name: "no motion at all",
@@ -83,7 +83,7 @@ pub fn cases() -> Vec<Case> {
             body: None,
             measure: "anything that moves",
             run: |method, _| on(cluster(6).map(|e| e.body), |body| nothing(body, method)),
-            expected: [Within(0.0); 5],
+            expected: [Within(0.0); 4],
         },
         Case {
             name: "spin about each axis at 1e-6 and 1e6 rad/s, 100 turns",
@@ -91,7 +91,7 @@ pub fn cases() -> Vec<Case> {
             body: None,
             measure: "attitude (rad) and angular velocity against the closed form",
             run: |method, _| on(rigid(MOMENTS), |body| each_axis(body, method)),
-            expected: [Within(1e-9), Within(1e-9), Within(1e-9), Refused(LOST), Within(1e-9)],
+            expected: [Within(1e-9), Within(1e-9), Refused(LOST), Within(1e-9)],
         },
         Case {
             name: "ten million steps of a vibrating, tumbling body",
@@ -104,7 +104,7 @@ pub fn cases() -> Vec<Case> {
                     Trial::free(body, spinning(body, [1.0, 2.0, 1.5], 0.05), 1e-3, end).drift(method)
                 })
             },
-            expected: [Within(1e-8), Within(1e-6), Within(1e-5), Refused(LOST), Refused(LOST)],
+            expected: [Within(1e-8), Within(1e-6), Refused(LOST), Refused(LOST)],
         },
         Case {
             name: "a body 1e6 units away from the origin of its mesh",
@@ -112,7 +112,7 @@ pub fn cases() -> Vec<Case> {
             body: None,
             measure: "attitude (rad) and modal coordinates against the same body at the origin",
             run: |method, _| far_away(method),
-            expected: [Within(1e-6); 5],
+            expected: [Within(1e-6); 4],
         },
         Case {
             name: "a body that moves at 1e6 units a second",
@@ -120,7 +120,7 @@ pub fn cases() -> Vec<Case> {
             body: None,
             measure: "attitude (rad) and modal coordinates against the same body at rest",
             run: |method, _| on(cluster(6).map(|e| e.body), |body| fast(body, method)),
-            expected: [Within(1e-9), Within(1e-9), Within(1e-9), Within(1e-9), Within(1e-9)],
+            expected: [Within(1e-9), Within(1e-9), Within(1e-9), Within(1e-9)],
         },
     ]
 }

@@ -7,7 +7,7 @@ use modal::ReducedBody;
 use nalgebra::Vector3;
 
 use crate::Expected::{Refused, Within};
-use crate::bodies::{CLUSTER, Elastic, cluster, rigid, spinning, truss};
+use crate::bodies::{CLUSTER, Elastic, changed, cluster, rigid, spinning, truss};
 use crate::motion::on;
 use crate::trial::{Trial, worse};
 use crate::{BodyCheck, Case, Outcome};
@@ -29,7 +29,7 @@ pub fn cases() -> Vec<Case> {
             }),
             measure: DRIFT,
             run: |method, _| on(cube().map(|e| e.body), |body| tumble(body, method)),
-            expected: [Within(1e-11), Within(1e-6), Within(1e-5), Within(0.1), Within(0.1)],
+            expected: [Within(1e-11), Within(1e-6), Within(0.1), Within(0.1)],
         },
         Case {
             name: "an icosahedron of twelve equal masses",
@@ -44,7 +44,7 @@ pub fn cases() -> Vec<Case> {
             }),
             measure: DRIFT,
             run: |method, _| on(icosahedron().map(|e| e.body), |body| tumble(body, method)),
-            expected: [Within(1e-11), Within(1e-6), Within(1e-5), Within(0.1), Within(0.1)],
+            expected: [Within(1e-11), Within(1e-6), Within(0.1), Within(0.1)],
         },
         Case {
             name: "modes from 1e-3 to 1e6 Hz in one body, steps of 10 ms",
@@ -52,7 +52,7 @@ pub fn cases() -> Vec<Case> {
             body: None,
             measure: DRIFT,
             run: |method, _| on(cluster(6).map(|e| e.body), |body| wide_spectrum(body, method)),
-            expected: [Within(1e-3), Refused(MODES), Refused("the energy is"), Refused(MODES), Refused(MODES)],
+            expected: [Within(1e-3), Refused(MODES), Refused(MODES), Refused(MODES)],
         },
         Case {
             name: "damping of 0, 100 % and 500 % in one body",
@@ -60,7 +60,7 @@ pub fn cases() -> Vec<Case> {
             body: None,
             measure: "modal coordinates against the closed form, relative to the start",
             run: |method, _| damped([0.0, 1.0, 5.0, 0.0, 1.0, 5.0], 0.05, method),
-            expected: [Within(1e-9), Within(1e-4), Within(1e-9), Within(1e-4), Within(1e-4)],
+            expected: [Within(1e-9), Within(1e-4), Within(1e-4), Within(1e-4)],
         },
         Case {
             name: "damping of 100 % and 500 %, steps of 100/ω",
@@ -68,7 +68,7 @@ pub fn cases() -> Vec<Case> {
             body: None,
             measure: "modal coordinates against the closed form, relative to the start",
             run: |method, _| damped([1.0, 5.0, 1.0, 5.0, 1.0, 5.0], 100.0, method),
-            expected: [Within(1e-9), Refused(MODES), Within(1e-9), Refused(MODES), Refused(MODES)],
+            expected: [Within(1e-9), Refused(MODES), Refused(MODES), Refused(MODES)],
         },
         Case {
             name: "a point mass of 1e6 times the rest of the body",
@@ -80,7 +80,7 @@ pub fn cases() -> Vec<Case> {
                 nodes[0].1 = 1e6;
                 on(truss(&nodes, 60.0, 6).map(|e| e.body), |body| tumble(body, method))
             },
-            expected: [Within(1e-9), Within(1e-6), Within(1e-4), Within(0.1), Within(0.1)],
+            expected: [Within(1e-9), Within(1e-6), Within(0.1), Within(0.1)],
         },
         Case {
             name: "P, Q, R on a line but for 1e-7 of it",
@@ -88,7 +88,7 @@ pub fn cases() -> Vec<Case> {
             body: None,
             measure: DRIFT,
             run: |method, _| reference_points(1e-7, method),
-            expected: [Within(1e-9), Within(1e-6), Within(1e-5), Refused("line"), Within(0.1)],
+            expected: [Within(1e-9), Within(1e-6), Refused("line"), Within(0.1)],
         },
         Case {
             name: "P, Q, R on a line but for 1e-4 of it",
@@ -96,7 +96,7 @@ pub fn cases() -> Vec<Case> {
             body: None,
             measure: DRIFT,
             run: |method, _| reference_points(1e-4, method),
-            expected: [Within(1e-9), Within(1e-6), Within(1e-5), Within(0.1), Within(0.1)],
+            expected: [Within(1e-9), Within(1e-6), Within(0.1), Within(0.1)],
         },
         Case {
             name: "the inertia of a rod: principal moments 1e-8, 1, 1 + 1e-8",
@@ -109,7 +109,7 @@ pub fn cases() -> Vec<Case> {
                     Trial::free(body, initial, 1e-3, 10.0).off_closed_form(method)
                 })
             },
-            expected: [Within(1e-6), Within(1e-6), Within(1e-6), Refused("the attitude is lost"), Within(1e-6)],
+            expected: [Within(1e-6), Within(1e-6), Refused("the attitude is lost"), Within(1e-6)],
         },
         Case {
             name: "the inertia of a sphere but for 1e-12",
@@ -122,7 +122,7 @@ pub fn cases() -> Vec<Case> {
                     Trial::free(body, initial, 1e-3, 10.0).off_closed_form(method)
                 })
             },
-            expected: [Within(1e-10), Within(1e-10), Within(1e-10), Within(0.5), Within(1e-10)],
+            expected: [Within(1e-10), Within(1e-10), Within(0.5), Within(1e-10)],
         },
     ]
 }
@@ -167,8 +167,8 @@ fn largest_gap_in_groups(frequencies: &[f64]) -> f64 {
 }
 
 fn wide_spectrum(body: &ReducedBody, method: Method) -> Outcome {
-    let mut body = body.clone();
-    body.circular_frequencies = [1e-3, 1e-1, 1e1, 1e3, 1e5, 1e6].map(|hertz| TAU * hertz).to_vec();
+    let frequencies = [1e-3, 1e-1, 1e1, 1e3, 1e5, 1e6].map(|hertz| TAU * hertz).to_vec();
+    let body = changed(body, |body| body.circular_frequencies = frequencies);
     let initial = spinning(&body, [1e-4, 2e-4, 1.5e-4], 1e-5);
     Trial::free(&body, initial, 1e-2, 100.0).drift(method)
 }

@@ -4,13 +4,16 @@
 //! `q̈ + 2ζω q̇ + ω² q = f(t)` with a closed form, for every scheme.
 
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
-use frames_rk4::{Action, BodyField, Expression, History, Initial, Load, LoadFrame, Method, SetupError, Table};
+use frames_rk4::{
+    BodyField, Expression, FieldLoad, History, Initial, LoadFrame, Method, PointForce, SetupError, SharedLoad, Table,
+};
 use modal::ReducedBody;
 use nalgebra::Vector3;
 
 use crate::Expected::{Refused, Within};
-use crate::bodies::{Elastic, cluster, spinning};
+use crate::bodies::{Elastic, changed, cluster, spinning};
 use crate::motion::on;
 use crate::trial::{Trial, worse};
 use crate::{Case, Outcome};
@@ -27,7 +30,7 @@ pub fn cases() -> Vec<Case> {
             body: None,
             measure: "free vibration against the closed form, relative",
             run: |method, _| free_vibration(method),
-            expected: [Within(1e-9), Refused(MODES), Within(1e-9), Refused(MODES), Refused(MODES)],
+            expected: [Within(1e-9), Refused(MODES), Refused(MODES), Refused(MODES)],
         },
         Case {
             name: "a spin of more than the scheme follows in a step",
@@ -42,7 +45,6 @@ pub fn cases() -> Vec<Case> {
             expected: [
                 Refused("too long for a spin"),
                 Refused("within a step"),
-                Refused("too long for a spin"),
                 Refused("within a step"),
                 Refused("within a step"),
             ],
@@ -56,7 +58,7 @@ pub fn cases() -> Vec<Case> {
                 let jump = 0.123_456;
                 oscillator(|_| (History::Step { at: jump }, Exact(step_response, jump)), 0.1, 20.0 * TAU, method)
             },
-            expected: [Within(1e-9), Within(1e-4), Within(1e-3), Within(1e-4), Within(1e-4)],
+            expected: [Within(1e-9), Within(1e-4), Within(1e-4), Within(1e-4)],
         },
         Case {
             name: "a pulse of 2e-6 s in steps of 5e-3 s",
@@ -67,7 +69,7 @@ pub fn cases() -> Vec<Case> {
                 let pulse = History::HalfSine { start: 0.05, duration: PULSE };
                 oscillator(|_| (pulse.clone(), Exact(pulse_response, 0.05)), 0.05, 20.0 * TAU, method)
             },
-            expected: [Within(1e-4), Within(1e-4), Within(1e-3), Within(5e-2), Within(1e-4)],
+            expected: [Within(1e-4), Within(1e-4), Within(5e-2), Within(1e-4)],
         },
         Case {
             name: "a spike of 2e-6 s in a table, in steps of 5e-3 s",
@@ -78,7 +80,7 @@ pub fn cases() -> Vec<Case> {
                 let rows = Table::new(vec![0.05, 0.05 + 0.5 * PULSE, 0.05 + PULSE], vec![0.0, 1.0, 0.0]);
                 with_history(rows.map(History::Table), Exact(spike_response, 0.05), method)
             },
-            expected: [Within(1e-4), Within(1e-4), Within(1e-3), Within(5e-2), Within(1e-4)],
+            expected: [Within(1e-4), Within(1e-4), Within(5e-2), Within(1e-4)],
         },
         Case {
             name: "a spike of 2e-6 s in a formula, its place named by corners, in steps of 5e-3 s",
@@ -90,7 +92,7 @@ pub fn cases() -> Vec<Case> {
                     Expression::new("exp(-((t - 0.05)/2e-7)^2)", vec![0.05 - 0.5 * PULSE, 0.05 + 0.5 * PULSE]);
                 with_history(formula.map(History::Expression), Exact(bell_response, 0.05 - 0.5 * PULSE), method)
             },
-            expected: [Within(1e-4), Within(1e-4), Within(1e-3), Within(5e-2), Within(1e-4)],
+            expected: [Within(1e-4), Within(1e-4), Within(5e-2), Within(1e-4)],
         },
         Case {
             name: "a bell curve of 20 ms, in steps of 2 ms, from rest",
@@ -98,7 +100,7 @@ pub fn cases() -> Vec<Case> {
             body: None,
             measure: "gap in the balance of energy afterwards, relative to the energy",
             run: |method, _| bell(method),
-            expected: [Within(1e-3), Within(1e-3), Within(1e-2), Within(1e-2), Within(1e-3)],
+            expected: [Within(1e-3), Within(1e-3), Within(1e-2), Within(1e-3)],
         },
         Case {
             name: "a formula of eight cycles a step: sin(1e4*t) in steps of 5e-3 s",
@@ -109,7 +111,7 @@ pub fn cases() -> Vec<Case> {
                 let formula = Expression::new("sin(1e4*t)", vec![]);
                 with_history(formula.map(History::Expression), Exact(fast_sine_response, 0.0), method)
             },
-            expected: [Within(1e-3), Within(1e-3), Within(1e-3), Within(5e-2), Within(1e-3)],
+            expected: [Within(1e-3), Within(1e-3), Within(5e-2), Within(1e-3)],
         },
         Case {
             name: "a formula that jumps within a step where no corner is named",
@@ -120,7 +122,7 @@ pub fn cases() -> Vec<Case> {
                 let formula = Expression::new("(1 + sign(t - 0.123456))/2", vec![]);
                 with_history(formula.map(History::Expression), Exact(step_response, 0.123_456), method)
             },
-            expected: [Within(1e-3), Within(1e-3), Within(1e-3), Within(1e-3), Within(1e-3)],
+            expected: [Within(1e-3), Within(1e-3), Within(1e-3), Within(1e-3)],
         },
         Case {
             name: "a formula of 8e6 cycles a step: sin(1e10*t) in steps of 5e-3 s",
@@ -131,7 +133,7 @@ pub fn cases() -> Vec<Case> {
                 let formula = Expression::new("sin(1e10*t)", vec![]);
                 with_history(formula.map(History::Expression), Exact(step_response, 0.0), method)
             },
-            expected: [Refused("changes too fast"); 5],
+            expected: [Refused("changes too fast"); 4],
         },
         Case {
             name: "1000 cycles at a natural frequency without damping",
@@ -146,7 +148,7 @@ pub fn cases() -> Vec<Case> {
                 };
                 oscillator(load, TAU / 100.0, cycles * TAU, method)
             },
-            expected: [Within(1e-6), Within(1e-2), Within(1e-2), Within(1e-2), Within(1e-2)],
+            expected: [Within(1e-6), Within(1e-2), Within(1e-2), Within(1e-2)],
         },
         Case {
             name: "a static load switched on, in steps of 0.2/ω",
@@ -154,7 +156,7 @@ pub fn cases() -> Vec<Case> {
             body: None,
             measure: "modal coordinates at the end, relative to K⁻¹f",
             run: |method, _| settled(0.2, method),
-            expected: [Within(1e-9), Within(1e-9), Within(1e-2), Within(1e-9), Within(1e-9)],
+            expected: [Within(1e-9), Within(1e-9), Within(1e-9), Within(1e-9)],
         },
         Case {
             name: "a static load switched on, in steps of 1000/ω",
@@ -162,7 +164,7 @@ pub fn cases() -> Vec<Case> {
             body: None,
             measure: "modal coordinates at the end, relative to K⁻¹f",
             run: |method, _| settled(1000.0, method),
-            expected: [Within(1e-9), Refused(MODES), Refused("loses what a load does"), Refused(MODES), Refused(MODES)],
+            expected: [Within(1e-9), Refused(MODES), Refused(MODES), Refused(MODES)],
         },
         Case {
             name: "a follower force on a point of a tumbling body, stiff in its modes",
@@ -170,7 +172,7 @@ pub fn cases() -> Vec<Case> {
             body: None,
             measure: "gap in the balances of energy and angular momentum",
             run: |method, _| follower(method),
-            expected: [Within(1e-9), Within(1e-7), Within(1e-2), Refused("the attitude is lost"), Within(1e-2)],
+            expected: [Within(1e-9), Within(1e-7), Refused("the attitude is lost"), Within(1e-2)],
         },
     ]
 }
@@ -216,7 +218,7 @@ fn resonance(omega: f64, t: f64) -> f64 {
 const FORCE: f64 = 1e-6;
 
 /// A force on one mode, fixed in the body, without force or moment on the whole.
-fn on_mode(body: &ReducedBody, mode: usize, history: History) -> Load {
+fn on_mode(body: &ReducedBody, mode: usize, history: History) -> SharedLoad {
     let nf = body.flexible();
     let mut modal = vec![0.0; 6 + nf];
     modal[6 + mode] = FORCE;
@@ -226,7 +228,7 @@ fn on_mode(body: &ReducedBody, mode: usize, history: History) -> Load {
         modal,
         lever: vec![Vector3::zeros(); nf],
     };
-    Load { action: Action::Field(field), history }
+    Arc::new(FieldLoad { field, history })
 }
 
 /// The highest mode of the cluster, set free.
@@ -310,12 +312,13 @@ fn settled(turn: f64, method: Method) -> Outcome {
 fn follower(method: Method) -> Outcome {
     match cluster(6) {
         Ok(mut elastic) => {
-            elastic.body.circular_frequencies.iter_mut().for_each(|omega| *omega *= 50.0);
+            elastic.body = changed(&elastic.body, |body| body.circular_frequencies.iter_mut().for_each(|w| *w *= 50.0));
             let Elastic { body, .. } = &elastic;
             let force = Vector3::new(0.1, 0.4, -0.2);
-            let action = Action::Force { point: elastic.point(0), force, frame: LoadFrame::Body };
+            let history = History::Ramp { start: 0.0, duration: 1.0 };
+            let load = PointForce { point: elastic.point(0), force, frame: LoadFrame::Body, history };
             let trial = Trial::free(body, spinning(body, [0.3, -0.2, 0.5], 0.0), 1e-3, 20.0);
-            let loads = vec![Load { action, history: History::Ramp { start: 0.0, duration: 1.0 } }];
+            let loads: Vec<SharedLoad> = vec![Arc::new(load)];
             Trial { loads, damping_ratios: vec![0.05; 6], ..trial }.drift(method)
         }
         Err(refusal) => Outcome::Refused(refusal),

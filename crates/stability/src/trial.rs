@@ -1,6 +1,8 @@
 //! A run of a case, and its largest error.
 
-use frames_rk4::{Initial, Load, Method, Observation, Physics, PointShapes, Rows, Setup, Simulation, StepControl};
+use frames_rk4::{
+    Initial, Method, Observation, Physics, PointShapes, Rows, Setup, SharedLoad, Simulation, StepControl,
+};
 use modal::ReducedBody;
 use nalgebra::Vector3;
 use rigid_kin::{Attitude, Inertia, TorqueFreeMotion};
@@ -15,7 +17,7 @@ pub struct Trial<'a> {
     /// One damping ratio for each flexible mode.
     pub damping_ratios: Vec<f64>,
     /// The loads.
-    pub loads: Vec<Load>,
+    pub loads: Vec<SharedLoad>,
     /// R, P, Q from the centre of mass.
     pub reference_points: [Vector3<f64>; 3],
     /// How it begins.

@@ -5,8 +5,7 @@ use std::sync::OnceLock;
 use advice::Case;
 use fem_tet10::{Material, Materials, Mesh, PointMass, assemble, read_msh, reduced_geometric_stiffness};
 use frames_rk4::{
-    ConservativeScheme, Effects, History, Initial, Load, Method, Observation, Physics, PointShapes, Rows, Setup,
-    Simulation, StepControl,
+    Effects, History, Initial, Load, Method, Observation, Physics, PointShapes, Rows, Setup, Simulation, StepControl,
 };
 use modal::{BodyPoint, Modes, ReducedBody, RigidMotion, Solver, Support, centrifugal_fields};
 use nalgebra::Vector3;
@@ -87,11 +86,11 @@ impl Plate {
             drive: None,
             initial,
             end,
-            step: None,
             length: self.length,
             peaks: &self.peaks,
             static_compliances: &[],
             centrifugal_remainders: &[],
+            backbones: &[],
         }
     }
 }
@@ -111,7 +110,7 @@ pub fn run(case: &Case, effects: Effects) -> Vec<Observation> {
         physics: &physics,
         reference_points: [Vector3::x(), Vector3::y(), Vector3::z()],
         initial: case.initial,
-        method: Method::Conservative(ConservativeScheme::Exponential),
+        method: Method::EXPONENTIAL,
         control: StepControl::Fixed(1e-4),
         end: case.end,
         rows: Rows::Interval(case.end / 200.0),

@@ -1,9 +1,10 @@
 //! What happened against what was assumed.
 
-use advice::{Broken, Review, advise};
-use frames_rk4::{Effects, History, Initial};
+use advice::{Backbone, Broken, Case, Detuning, Refusal, Review, advise};
+use frames_rk4::{Effects, History, Initial, Method, Physics, Reached, Rows, Setup, Simulation, StepControl};
+use nalgebra::Vector3;
 
-use crate::plate::{CORNER, plate, run, spinning};
+use crate::plate::{CORNER, clamped, plate, run, spinning};
 
 #[test]
 fn what_was_assumed_holds_and_what_was_not_is_named_with_its_time() {
@@ -43,9 +44,7 @@ fn a_deflection_above_a_tenth_and_a_spin_at_the_limit_are_named() {
     let mut review = Review::new(case, bare, &advise(&case, 1e-3).unwrap());
     rows.iter().for_each(|row| review.observe(row).unwrap());
     println!("{:?}", review.broken());
-    assert!(
-        review.broken().iter().any(|b| matches!(b, Broken::Linear { time, found } if *time == 0.0 && *found >= 0.1499))
-    );
+    assert!(review.broken().iter().any(|b| matches!(b, Broken::Linear { found, .. } if *found >= 0.1499)));
     assert!(review.broken().iter().any(|b| matches!(b, Broken::Limit { .. })));
 }
 
@@ -82,16 +81,137 @@ fn what_the_modes_leave_out_of_the_spin_is_weighed_by_the_spin_that_there_is() {
         let mut row = row.clone();
         row.omega_body = omega.into();
         row.modal_displacement.fill(0.0);
+        row.modal_velocity.fill(0.0);
         row.modal_displacement[0] = q;
         review.observe(&row).unwrap();
         review.broken()
     };
     let on = Effects::default();
     // 4e-6 about z, of it and a deformation of 3e-6: four fifths.
-    let [Broken::Stretch { influence, held, .. }] = broken([0.0, 0.0, 2.0], 3e-6, on)[..] else { panic!() };
-    assert!((influence - 0.8).abs() < 1e-12 && held < 1.0, "{influence} {held}");
+    let [Broken::Stretch { influence, left_out, .. }] = broken([0.0, 0.0, 2.0], 3e-6, on)[..] else { panic!() };
+    assert!((influence - 0.8).abs() < 1e-12 && left_out > 0.0, "{influence} {left_out}");
     // Too little of a large deformation; no spin; no centrifugal force.
     assert_eq!(broken([0.0, 0.0, 2.0], 5e-3, on), []);
     assert_eq!(broken([0.0, 0.0, 0.0], 0.0, on), []);
     assert_eq!(broken([0.0, 0.0, 2.0], 3e-6, Effects { deformed_inertia: false, ..on }), []);
+}
+
+/// What is watched at every step of a run in steps of `step`, with rows at multiples of `interval`.
+fn watched(case: &Case, effects: Effects, step: f64, interval: f64) -> Vec<Broken> {
+    let mut simulation = Simulation::new(&Setup {
+        body: case.body,
+        damping_ratios: case.damping_ratios,
+        loads: case.loads,
+        physics: &Physics { effects, drive: None, load_stiffness: None },
+        reference_points: [Vector3::x(), Vector3::y(), Vector3::z()],
+        initial: case.initial,
+        method: Method::EXPONENTIAL,
+        control: StepControl::Fixed(step),
+        end: case.end,
+        rows: Rows::Interval(interval),
+        points: &[],
+    })
+    .unwrap();
+    let mut review = Review::new(*case, effects, &advise(case, 1e-3).unwrap());
+    let mut row = simulation.observation();
+    loop {
+        simulation.observe(&mut row).unwrap();
+        review.observe(&row).unwrap();
+        if simulation.advance_watched(u64::MAX, |moment| review.look(moment)).unwrap() == Reached::End {
+            return review.broken();
+        }
+    }
+}
+
+/// A free plate whose first mode alone swings to this part of its length, through zero at time 0, for some half periods.
+fn swinging(part: f64) -> (Initial, f64) {
+    let omega = plate().body.circular_frequencies[0];
+    let mut initial = Initial::at_rest(10);
+    initial.modal_velocity[0] = part * omega * plate().length / plate().peaks[0];
+    (initial, std::f64::consts::PI / omega)
+}
+
+const STILL: Effects = Effects {
+    translation: false,
+    rotation: false,
+    deformed_inertia: false,
+    coriolis: false,
+    geometric_stiffening: false,
+};
+
+#[test]
+fn a_deflection_between_two_rows_or_two_steps_is_seen() {
+    let (zeta, (initial, half)) = ([0.0; 10], swinging(0.18));
+    let case = plate().case(&zeta, &[], &initial, 8.0 * half);
+    // Rows, and in the end the steps too, fall where the plate is straight. Measured: 0.17998, 0.18000.
+    for (step, interval) in [(half / 50.0, half), (half, half), (2.0 * half, 2.0 * half)] {
+        let broken = watched(&case, STILL, step, interval);
+        let [Broken::Linear { found, .. }] = &broken[..] else { panic!("{step} {interval}: {broken:?}") };
+        assert!((found / 0.18 - 1.0).abs() < 1e-3, "{found}");
+    }
+}
+
+#[test]
+fn the_warning_tells_frequency_and_phase_by_the_modes_own_backbone() {
+    let (zeta, (initial, half)) = ([0.0; 10], swinging(0.05));
+    let amplitude = 0.05 * plate().length / plate().peaks[0];
+    // 1 % at this amplitude, half of it by inertia.
+    let backbone = Backbone { stiffening: -0.005 / amplitude.powi(2), inertia: 0.02 / amplitude.powi(2) };
+    let backbones = [Some(backbone), None];
+    let case = Case { backbones: &backbones, ..plate().case(&zeta, &[], &initial, 16.0 * half) };
+    let broken = watched(&case, STILL, half / 20.0, 16.0 * half);
+    let [Broken::Linear { found, modes, .. }] = &broken[..] else { panic!("{broken:?}") };
+    let [Detuning { mode: 1, deflection, shift, phase, periods }] = modes[..] else { panic!("{modes:?}") };
+    assert!((found / 0.05 - 1.0).abs() < 1e-3 && (deflection / 0.05 - 1.0).abs() < 1e-3);
+    assert!((shift + 0.01).abs() < 1e-4 && (phase + 0.08).abs() < 1e-4, "{shift} {phase}");
+    assert!((periods - 8.0).abs() < 1e-9);
+    let text = broken[0].to_string();
+    for words in ["reached 5.0 % of the length", "mode 1 is about 1.00 % too high", "0.08000", "after 8.0 periods"] {
+        assert!(text.contains(words), "{text}");
+    }
+    // A fifth of the amplitude, a 25th of both: not worth a word.
+    let (initial, _) = swinging(0.0099);
+    let case = Case { initial: &initial, ..case };
+    assert_eq!(watched(&case, STILL, half / 20.0, 16.0 * half), []);
+}
+
+#[test]
+fn what_means_nothing_is_refused() {
+    let zeta = [0.0; 10];
+    let stop = |part: f64, backbones: &[Option<Backbone>]| {
+        let (initial, half) = swinging(part);
+        let case = Case { backbones, ..plate().case(&zeta, &[], &initial, half) };
+        let mut review = Review::new(case, STILL, &advise(&case, 1e-3).unwrap());
+        run(&case, STILL).iter().for_each(|row| review.observe(row).unwrap());
+        (review.stop().map(|(_, refusal)| refusal), advice::limits(&case, &STILL).unwrap())
+    };
+    assert_eq!(stop(0.9, &[]), (None, None));
+    let (Some(Refusal::Deflected { deflection }), Some(Refusal::Deflected { .. })) = stop(36.0, &[]) else { panic!() };
+    assert!(deflection > 1.0);
+    let amplitude = 0.3 * plate().length / plate().peaks[0];
+    let backbones = [Some(Backbone { stiffening: -0.25 / amplitude.powi(2), inertia: 0.0 })];
+    assert!(matches!(stop(0.31, &backbones), (Some(Refusal::Detuned { mode: 1, .. }), Some(Refusal::Detuned { .. }))));
+    assert_eq!(stop(0.2, &backbones), (None, None));
+}
+
+/// Coriolis forces and the stress of a spin are nothing to a clamped body, whatever it bends by.
+#[test]
+fn a_body_that_cannot_turn_is_not_told_to_switch_on_what_turning_does() {
+    let zeta = [0.0; 10];
+    let still = Initial::at_rest(10);
+    let case = clamped().case(&zeta, &[], &still, 1e-3);
+    let mut row = run(&case, STILL).pop().unwrap();
+    row.modal_displacement[0] = 0.05 * clamped().length / clamped().peaks[0];
+    let mut review = Review::new(case, STILL, &advise(&case, 1e-3).unwrap());
+    review.observe(&row).unwrap();
+    assert_eq!(review.broken(), []);
+}
+
+#[test]
+fn no_spin_is_written_as_zero() {
+    let spin = Broken::Spin { time: 0.5, found: 3.2e-5, assumed: 1.1e-6, off: "coriolis".into() };
+    let text = spin.to_string();
+    assert!(text.contains("the spin was 3.200e-5, above the 1.100e-6"), "{text}");
+    let stretch = Broken::Stretch { time: 0.5, left_out: 0.031, influence: 2e-3 };
+    assert!(stretch.to_string().contains("left out 3.1 % of the static answer"), "{stretch}");
 }

@@ -37,7 +37,8 @@ impl<'a> Source<'a> {
         let version_error = |found: String| MeshError::Version { source_name: name.to_owned(), found };
         match source.next_section() {
             Ok(Some(section)) if section == "$MeshFormat" => {}
-            _ => return Err(version_error(format!("a file that begins with {:?}", readable(bytes)))),
+            // What is no mesh may be any file, such as one with passwords that a scene from elsewhere names.
+            _ => return Err(version_error("a file that does not begin with $MeshFormat".to_owned())),
         }
         let version = source.peek_word();
         if version != b"4.1" {

@@ -12,6 +12,7 @@ mod reader;
 mod refused_files;
 mod refused_meshes;
 mod refused_models;
+mod second_order;
 mod selection;
 mod stiffness;
 mod surface;

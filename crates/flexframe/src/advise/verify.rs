@@ -110,12 +110,12 @@ impl<'a> Base<'a> {
 }
 
 fn follow(scene: &Scene, model: &Model) -> Result<Vec<Observation>, RunFailure> {
-    let control = scene::control(scene.time.stepping);
+    let control = scene.time.control;
     let interval = match control {
         StepControl::Fixed(step) => (scene.time.end / step / COMPARED).ceil() * step,
         StepControl::Tolerance(_) => scene.time.end / COMPARED,
     };
-    let method = scene::method(scene.time.method);
+    let method = scene.time.method;
     let simulation = model.start_with(scene, method, control, Rows::Interval(interval))?;
     Ok(simulation.collect::<Result<Vec<_>, _>>()?)
 }

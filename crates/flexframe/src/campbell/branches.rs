@@ -46,11 +46,11 @@ impl Branches {
     }
 
     /// The lines of the diagram.
-    pub fn lines(&self, first_mode: usize) -> Vec<Branch> {
+    pub fn lines(&self) -> Vec<Branch> {
         let of = |k: usize, value: fn(&SpinMode) -> f64| self.modes.iter().map(|here| value(&here[k])).collect();
         (0..self.modes[0].len())
             .map(|k| Branch {
-                mode: first_mode + k,
+                mode: k + 1,
                 frequency: of(k, |mode| mode.circular_frequency / TAU),
                 growth: of(k, |mode| mode.growth),
                 whirl: of(k, |mode| mode.whirl),

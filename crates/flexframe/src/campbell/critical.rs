@@ -22,12 +22,7 @@ pub struct Critical {
 
 /// All crossings within the speeds of the branches, not read off the branches but found as eigenvalues
 /// ([`SteadySpin::critical_speeds`]).
-pub(super) fn find(
-    spin: &SteadySpin,
-    branches: &Branches,
-    orders: &[f64],
-    first_mode: usize,
-) -> Result<Vec<Critical>, EigenError> {
+pub(super) fn find(spin: &SteadySpin, branches: &Branches, orders: &[f64]) -> Result<Vec<Critical>, EigenError> {
     let (Some(&start), Some(&end)) = (branches.speeds.first(), branches.speeds.last()) else { return Ok(Vec::new()) };
     let mut all = Vec::new();
     for &order in std::iter::once(&0.0).chain(orders) {
@@ -39,7 +34,7 @@ pub(super) fn find(
                 .enumerate()
                 .min_by(|(_, a), (_, b)| off(a.circular_frequency).total_cmp(&off(b.circular_frequency)));
             if let Some((k, _)) = nearest {
-                all.push(Critical { order, mode: first_mode + k, speed, frequency: order * speed / TAU });
+                all.push(Critical { order, mode: k + 1, speed, frequency: order * speed / TAU });
             }
         }
     }

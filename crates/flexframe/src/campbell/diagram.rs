@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 
-use results::{FigureError, LineChart, Scale, Series, Stroke};
+use figures::{FigureError, LineChart, Scale, Series, Stroke};
 
 use super::CampbellReport;
 

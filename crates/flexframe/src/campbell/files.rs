@@ -3,6 +3,8 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
+use whole_file::write_whole;
+
 use super::diagram::draw;
 use super::{CampbellError, CampbellReport};
 
@@ -12,7 +14,7 @@ pub(super) fn write(report: &CampbellReport, folder: &Path, orders: &[f64]) -> R
     let mut files = Vec::new();
     for (name, text) in [("campbell.csv", branches(report)), ("critical_speeds.csv", critical_speeds(report))] {
         let path = folder.join(name);
-        std::fs::write(&path, text).map_err(|source| CampbellError::Write { path: path.clone(), source })?;
+        write_whole(&path, text).map_err(|source| CampbellError::Write { path: path.clone(), source })?;
         files.push(path);
     }
     files.extend(draw(report, orders, &folder.join("campbell"))?);

@@ -7,9 +7,10 @@ use scene::{Rows, Scene};
 use serde::Serialize;
 
 use super::case::Case;
-use super::ladder::{Judge, Line, Row, settings_between};
+use super::ladder::{Judge, Line, Outcome, Row, settings_between};
 use super::modes::ModesRow;
-use super::table::duration;
+use super::table::{duration, setting};
+use crate::json;
 
 /// A rung between two others cannot be faster than the finer of them by more than this.
 const MOST_GAIN: f64 = 2.7;
@@ -62,11 +63,14 @@ pub struct Answer {
     /// The run; none where nothing reaches the target.
     pub run: Option<Row>,
     /// The smallest error that is known of.
+    #[serde(serialize_with = "json::number")]
     pub smallest_error: f64,
     /// Whether the scene's `every` has to give way to an `interval`.
     pub needs_interval: bool,
     /// What the modes left out change, if that is more than the target.
     pub modes: Option<String>,
+    /// The settings whose runs were stopped because they take longer than the patience, and how far they came.
+    pub out_of_patience: Vec<String>,
 }
 
 /// Looks between the rungs for cheaper settings that still reach the target, and adds them to the lines.
@@ -123,8 +127,19 @@ impl Answer {
             needs_interval: matches!(scene.output.rows, Rows::EverySteps(_))
                 && best.is_some_and(|(_, row)| matches!(row.setting, Setting::Tolerance(_))),
             modes: super::modes::warning(modes, flexible, target),
+            out_of_patience: out_of_patience(lines),
         }
     }
+}
+
+/// The runs that the patience has stopped, in words.
+pub(super) fn out_of_patience(lines: &[Line]) -> Vec<String> {
+    let words = |line: &Line, row: &Row| {
+        let Outcome::OutOfPatience(stopped) = &row.outcome else { return None };
+        let own = if row.of_scene { " (the scene's own setting)" } else { "" };
+        Some(format!("{}, {}{own}: {stopped}", line.name(), setting(row.setting)))
+    };
+    lines.iter().flat_map(|line| line.rows.iter().filter_map(move |row| words(line, row))).collect()
 }
 
 impl fmt::Display for Answer {
@@ -158,6 +173,10 @@ impl fmt::Display for Answer {
         }
         if let Some(modes) = &self.modes {
             write!(f, "\n\n{modes}")?;
+        }
+        if !self.out_of_patience.is_empty() {
+            write!(f, "\n\nNothing is known of the error and time of runs that were not waited for:")?;
+            self.out_of_patience.iter().try_for_each(|run| write!(f, "\n  {run}"))?;
         }
         Ok(())
     }

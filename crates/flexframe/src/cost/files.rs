@@ -3,13 +3,14 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use results::{FigureError, LineChart, Scale, Series, Stroke};
+use figures::{FigureError, LineChart, Scale, Series, Stroke};
+use whole_file::write_whole;
 
 use super::ladder::{Line, Outcome};
 use super::{CostError, CostReport, Setting};
 
 /// The names of the columns of `cost.csv`.
-const COLUMNS: [&str; 23] = [
+const COLUMNS: [&str; 24] = [
     "formulation",
     "scheme",
     "step",
@@ -18,6 +19,7 @@ const COLUMNS: [&str; 23] = [
     "at_reference",
     "attitude",
     "modal",
+    "displacement",
     "velocity",
     "acceleration",
     "step_error",
@@ -41,7 +43,7 @@ const DRAWN: f64 = 1.0;
 pub(super) fn write(report: &CostReport, folder: &Path) -> Result<Vec<PathBuf>, CostError> {
     std::fs::create_dir_all(folder).map_err(|source| CostError::Write { path: folder.to_owned(), source })?;
     let path = folder.join("cost.csv");
-    std::fs::write(&path, csv(report)).map_err(|source| CostError::Write { path: path.clone(), source })?;
+    write_whole(&path, csv(report)).map_err(|source| CostError::Write { path: path.clone(), source })?;
     let mut files = vec![path];
     files.extend(draw(report, &folder.join("work_precision"))?);
     Ok(files)
@@ -63,11 +65,12 @@ fn csv(report: &CostReport) -> String {
                     let number = |value: Option<f64>| value.map_or_else(String::new, |value| format!("{value:e}"));
                     writeln!(
                         csv,
-                        ",{:e},{},{:e},{},{},{},{},{:e},{:e},{},{},{},{},{},{:e},{:.3},{},{},",
+                        ",{:e},{},{:e},{},{},{},{},{},{:e},{:e},{},{},{},{},{},{:e},{:.3},{},{},",
                         m.error,
                         m.at_reference,
                         e.attitude,
                         number(e.modal),
+                        number(e.displacement),
                         number(e.velocity),
                         number(e.acceleration),
                         number(m.step_errors.map(|errors| errors.largest())),
@@ -84,14 +87,18 @@ fn csv(report: &CostReport) -> String {
                         row.on_front,
                     )
                 }
-                Outcome::Failed(failure) => {
-                    let empty = ",".repeat(COLUMNS.len() - 5);
-                    writeln!(csv, "{empty},\"{}\"", failure.replace('"', "\"\""))
-                }
+                Outcome::Failed(failure) => write_failure(&mut csv, failure),
+                Outcome::OutOfPatience(stopped) => write_failure(&mut csv, &stopped.to_string()),
             };
         }
     }
     csv
+}
+
+/// The columns after setting and scheme of a run that did not come to its end.
+fn write_failure(csv: &mut String, why: &str) -> std::fmt::Result {
+    let empty = ",".repeat(COLUMNS.len() - 5);
+    writeln!(csv, "{empty},\"{}\"", why.replace('"', "\"\""))
 }
 
 /// Draws time against error, a line a scheme, to `<stem>.svg` and `<stem>.png`; nothing where there is nothing to draw.

@@ -1,5 +1,6 @@
 //! The ladders: each method with shorter and shorter steps, or smaller and smaller tolerances.
 
+use std::fmt;
 use std::time::Instant;
 
 use frames_rk4::{Method, StepControl};
@@ -10,6 +11,7 @@ use super::answer::Setting;
 use super::case::Case;
 use super::reference::{ROUNDING, Reference};
 use super::run::{Errors, Timing, Trajectory};
+use crate::json;
 use crate::run::RunFailure;
 
 /// Errors below this multiple of the reference's own are not told apart.
@@ -42,6 +44,7 @@ pub struct Line {
     pub order: u32,
     /// The order that was measured: the slope of the error against the step, where errors come from the steps; of the
     /// quantity that converges most slowly.
+    #[serde(serialize_with = "json::optional")]
     pub measured_order: Option<f64>,
     /// The runs, longest step or largest tolerance first.
     pub rows: Vec<Row>,
@@ -67,15 +70,33 @@ pub struct Row {
 #[serde(rename_all = "snake_case")]
 pub enum Outcome {
     /// It came to its end.
-    Ran(Measured),
+    Ran(Box<Measured>),
     /// It failed, and why.
     Failed(String),
+    /// It was stopped: it takes longer than the patience.
+    OutOfPatience(Stopped),
+}
+
+/// A run that was stopped.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Stopped {
+    /// Time of computing that it was allowed, seconds.
+    pub patience: f64,
+    /// Part of the motion that it came to, 0 to 1.
+    pub reached: f64,
+}
+
+impl fmt::Display for Stopped {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        RunFailure::OutOfPatience { patience: self.patience, reached: self.reached }.fmt(f)
+    }
 }
 
 /// A run that came to its end.
 #[derive(Debug, Clone, Serialize)]
 pub struct Measured {
     /// The largest of the errors against the reference, or, if that is larger, three times the reference's own error.
+    #[serde(serialize_with = "json::number")]
     pub error: f64,
     /// Whether the error is so small that the reference cannot tell it.
     pub at_reference: bool,
@@ -84,12 +105,16 @@ pub struct Measured {
     /// Errors against the limit of its own formulation: what the steps do.
     pub step_errors: Option<Errors>,
     /// Change of energy − work + dissipation, relative to the largest energy.
+    #[serde(serialize_with = "json::number")]
     pub energy: f64,
     /// Change of angular momentum less angular impulse, relative to the largest angular momentum.
+    #[serde(serialize_with = "json::number")]
     pub angular_momentum: f64,
     /// |ω| at the end over that of the reference, less one; none where the reference does not spin.
+    #[serde(serialize_with = "json::optional")]
     pub spin: Option<f64>,
     /// The same against the limit of its own formulation: what the steps do to the spin.
+    #[serde(serialize_with = "json::optional")]
     pub step_spin: Option<f64>,
     /// Steps taken.
     pub steps: u64,
@@ -98,8 +123,10 @@ pub struct Measured {
     /// Evaluations of the rates.
     pub evaluations: u64,
     /// Shortest time of the loop, seconds.
+    #[serde(serialize_with = "json::number")]
     pub seconds: f64,
     /// Longest time over shortest.
+    #[serde(serialize_with = "json::number")]
     pub spread: f64,
     /// How often it was timed.
     pub repeats: u32,
@@ -110,7 +137,7 @@ impl Row {
     pub fn measured(&self) -> Option<&Measured> {
         match &self.outcome {
             Outcome::Ran(measured) => Some(measured),
-            Outcome::Failed(_) => None,
+            Outcome::Failed(_) | Outcome::OutOfPatience(_) => None,
         }
     }
 }
@@ -125,24 +152,24 @@ pub(super) struct Judge<'a> {
 impl Judge<'_> {
     /// The limit to which a method converges with short steps.
     fn limit(&self, method: Method) -> Option<&Reference> {
-        match method {
-            Method::Paper | Method::PaperRkmk4 => self.paper_limit,
-            Method::Conservative(_) => Some(self.reference),
-        }
+        if method.is_of_paper() { self.paper_limit } else { Some(self.reference) }
     }
 
     /// Runs the motion once for its errors, warming up, and then again and again for the time.
     pub(super) fn measure(&self, case: &Case<'_>, method: Method, control: StepControl) -> Outcome {
         match self.try_measure(case, method, control) {
-            Ok(measured) => Outcome::Ran(measured),
+            Ok(measured) => Outcome::Ran(measured.into()),
+            Err(RunFailure::OutOfPatience { patience, reached }) => {
+                Outcome::OutOfPatience(Stopped { patience, reached })
+            }
             Err(failure) => Outcome::Failed(failure.to_string()),
         }
     }
 
     fn try_measure(&self, case: &Case<'_>, method: Method, control: StepControl) -> Result<Measured, RunFailure> {
         let simulation = case.begin(method, control)?;
-        let run = Trajectory::follow(simulation.clone())?;
-        let timing = Timing::of(&simulation, self.settings.timed_for)?;
+        let run = Trajectory::follow(simulation.clone(), self.settings.patience)?;
+        let timing = Timing::of(&simulation, self.settings.timed_for, self.settings.patience)?;
         let errors = Errors::between(&run, &self.reference.trajectory, case.scales());
         let least = RANKED_ABOVE * self.reference.error.largest();
         let limit = self.limit(method).map(|limit| &limit.trajectory);
@@ -188,10 +215,10 @@ pub(super) fn climb(
     own: (Method, StepControl),
 ) -> Line {
     let mut line = Line {
-        formulation: method.formulation(),
-        scheme: method.scheme(),
+        formulation: method.formulation,
+        scheme: method.scheme,
         controlled,
-        order: method.order(),
+        order: method.order,
         measured_order: None,
         rows: Vec::new(),
         method,
@@ -212,7 +239,7 @@ pub(super) fn climb(
         let measured = row.measured().cloned();
         line.rows.push(row);
         let Some(measured) = measured else {
-            // A run that stops on its way does so at every step where its formulation is at fault.
+            // A run that fails on its way does so at every step where its formulation is at fault.
             if 2 * started.elapsed() > judge.settings.patience {
                 break;
             }
@@ -270,7 +297,7 @@ fn rungs(case: &Case<'_>, method: Method, controlled: bool) -> Vec<(StepControl,
     }
     let end = case.end();
     let longest = case.longest_step(method);
-    let factor = if method.limited_by_modes() && longest < end { BELOW_LIMIT } else { 1.0 };
+    let factor = if method.is_limited_by_modes() && longest < end { BELOW_LIMIT } else { 1.0 };
     let fewest = (end / (factor * longest)).max(FEWEST_STEPS) * (1.0 - 1e-12);
     let first = step_counts().find(|count| *count as f64 >= fewest);
     let others = step_counts().filter(|count| is_one_two_five(*count) && Some(*count) > first);
@@ -327,8 +354,8 @@ pub(super) fn settings_between(case: &Case<'_>, coarse: Setting, fine: Setting) 
 /// The smallest of the orders of all quantities: of each, the slope of ln(error) against ln(step) between the finest two
 /// runs whose errors come from the steps. `limit` is the error of what they are compared with.
 fn slowest_order(rows: &[Row], limit: &Errors) -> Option<f64> {
-    let quantities: [fn(&Errors) -> Option<f64>; 4] =
-        [|e| Some(e.attitude), |e| e.modal, |e| e.velocity, |e| e.acceleration];
+    let quantities: [fn(&Errors) -> Option<f64>; 5] =
+        [|e| Some(e.attitude), |e| e.modal, |e| e.displacement, |e| e.velocity, |e| e.acceleration];
     let orders = quantities.into_iter().filter_map(|quantity| {
         let above = ROUNDED.max(FAR_ABOVE * quantity(limit)?);
         let mut points = rows.iter().rev().filter_map(|row| {
@@ -373,7 +400,7 @@ mod tests {
             spread: 1.0,
             repeats: 3,
         };
-        Row::new(StepControl::Fixed(step), Outcome::Ran(measured), false)
+        Row::new(StepControl::Fixed(step), Outcome::Ran(measured.into()), false)
     }
 
     #[test]
@@ -399,12 +426,12 @@ mod tests {
         let failed = Row::new(StepControl::Fixed(8.0), Outcome::Failed("blown up".to_owned()), false);
         let line = |rows| Line {
             formulation: "conservative",
-            scheme: "strang",
+            scheme: "exponential",
             controlled: false,
-            order: 2,
+            order: 4,
             measured_order: None,
             rows,
-            method: Method::ALL[4],
+            method: Method::EXPONENTIAL,
         };
         let mut lines = vec![line(rows), line(vec![failed])];
         mark_front(&mut lines);

@@ -1,13 +1,15 @@
 //! Modes as an axis of their own: what keeping fewer or more of them changes.
 
-use frames_rk4::{ConservativeScheme, Method, StepControl};
+use frames_rk4::{Method, StepControl};
 use scene::{Model, Scene};
 use serde::Serialize;
 
 use super::CostSettings;
 use super::case::Case;
 use super::reference::converge;
-use super::run::{Errors, Timing, Trajectory};
+use super::run::{Errors, Trajectory, seconds_per_step};
+use crate::json;
+use crate::run::RunFailure;
 
 /// Errors of the steps that do not matter here.
 const CONVERGED: f64 = 1e-9;
@@ -23,8 +25,10 @@ pub struct ModesRow {
     /// modes themselves.
     pub errors: Option<Errors>,
     /// What the steps leave of error in these motions.
+    #[serde(serialize_with = "json::number")]
     pub step_error: f64,
     /// Time of a step of the exponential scheme, seconds.
+    #[serde(serialize_with = "json::number")]
     pub seconds_per_step: f64,
 }
 
@@ -39,44 +43,63 @@ pub(super) fn counts(flexible: usize, most: usize) -> Vec<usize> {
     counts
 }
 
-/// Runs the motion with the exponential scheme and each number of modes. `richest` has the most; empty where the motion
-/// with the most modes cannot be run.
-pub(super) fn compare(scene: &Scene, richest: &Model, counts: &[usize], settings: &CostSettings) -> Vec<ModesRow> {
-    let method = Method::Conservative(ConservativeScheme::Exponential);
-    let Ok(most) = converge(&Case::new(scene, richest), method, settings.budget(5), CONVERGED) else {
-        return Vec::new();
-    };
+/// Runs the motion with the exponential scheme and each number of modes. `richest` has the most.
+///
+/// # Errors
+/// The number of modes with which the motion could not be run, and why.
+pub(super) fn compare(
+    scene: &Scene,
+    richest: &Model,
+    counts: &[usize],
+    settings: &CostSettings,
+) -> Result<Vec<ModesRow>, (usize, RunFailure)> {
+    let method = Method::EXPONENTIAL;
+    let budget = settings.budget(5);
+    let most = converge(&Case::new(scene, richest), method, budget, CONVERGED)
+        .map_err(|(_, failure)| (richest.body.flexible(), failure))?;
     let control = StepControl::Fixed(most.step);
-    let row = |count: usize| -> Option<ModesRow> {
+    let row = |count: usize| -> Result<ModesRow, RunFailure> {
         let model = richest.truncated(count);
         let case = Case::new(scene, &model);
-        let simulation = case.begin(method, control).ok()?;
-        let timing = Timing::of(&simulation, settings.timed_for).ok()?;
-        let run = Trajectory::follow(simulation).ok()?;
+        let simulation = case.begin(method, control)?;
+        let seconds_per_step = seconds_per_step(&simulation, settings.timed_for)?;
+        let run = Trajectory::follow(simulation, budget.time)?;
         let is_most = count == richest.body.flexible();
-        Some(ModesRow {
+        Ok(ModesRow {
             flexible: count,
             highest_frequency: model.natural_frequencies().last().copied().unwrap_or_default(),
             errors: (!is_most).then(|| Errors::between(&run, &most.trajectory, case.scales())),
             step_error: most.error.largest(),
-            seconds_per_step: timing.shortest.as_secs_f64() / run.stats.accepted as f64,
+            seconds_per_step,
         })
     };
-    counts.iter().filter_map(|count| row(*count)).collect()
+    counts.iter().map(|&count| row(count).map_err(|failure| (count, failure))).collect()
 }
 
-/// Says that more digits than a target's need more modes, if they do.
+/// Says that more digits than a target's need more modes, if they do, and in which quantity.
 pub(super) fn warning(rows: &[ModesRow], flexible: usize, target: f64) -> Option<String> {
     let most = rows.last()?.flexible;
-    let error = |count: usize| rows.iter().find(|row| row.flexible == count)?.errors.map(|errors| errors.largest());
-    let here = error(flexible).filter(|error| *error > target)?;
-    let better = error(2 * flexible)
-        .map_or_else(String::new, |error| format!(" (with `flexible = {}` {error:.1e})", 2 * flexible));
+    let errors = |count: usize| rows.iter().find(|row| row.flexible == count)?.errors;
+    let here = errors(flexible).filter(|errors| errors.largest() > target)?;
+    let (worst, error) = here.worst();
+    let beside: Vec<String> = here
+        .named()
+        .filter(|(name, _)| *name != worst && OF_POINTS.contains(name))
+        .map(|(name, error)| format!("the {name} {error:.1e}"))
+        .collect();
+    let beside = if beside.is_empty() { String::new() } else { format!(", {}", beside.join(", ")) };
+    let better = errors(2 * flexible).map_or_else(String::new, |errors| {
+        let (worst, error) = errors.worst();
+        format!(" With `flexible = {}` the {worst} is the worst, {error:.1e} off.", 2 * flexible)
+    });
     Some(format!(
-        "The modes are the larger error: the motion with {flexible} of them is {here:.1e} from that with \
-         {most}{better}. Digits below that come from more modes, not from shorter steps."
+        "The modes are the larger error: with {flexible} of them the {worst} is {error:.1e} off from that with \
+         {most}{beside}.{better} Digits below that come from more modes, not from shorter steps."
     ))
 }
+
+/// The quantities of the points that are shown beside the worst.
+const OF_POINTS: [&str; 2] = ["displacement of the points", "velocity of the points"];
 
 #[cfg(test)]
 mod tests {
@@ -102,10 +125,35 @@ mod tests {
         };
         let rows = [row(5, Some(1e-2)), row(10, Some(1e-3)), row(20, Some(1e-4)), row(40, None)];
         let words = warning(&rows, 10, 1e-6).unwrap();
-        for expected in ["with 10 of them is 1.0e-3 from that with 40", "`flexible = 20` 1.0e-4"] {
+        for expected in [
+            "with 10 of them the attitude is 1.0e-3 off from that with 40",
+            "With `flexible = 20` the attitude is the worst, 1.0e-4 off",
+        ] {
             assert!(words.contains(expected), "{words}");
         }
         assert_eq!(warning(&rows, 10, 1e-2), None);
         assert_eq!(warning(&rows[..2], 10, 1e-2), None);
+    }
+
+    #[test]
+    fn the_worst_quantity_is_named_with_displacement_and_velocity_beside_it() {
+        let errors = Errors {
+            attitude: 2e-6,
+            modal: Some(1e-4),
+            displacement: Some(3e-5),
+            velocity: Some(4e-2),
+            acceleration: Some(0.8),
+        };
+        let row = |flexible, errors| ModesRow {
+            flexible,
+            highest_frequency: 1.0,
+            errors,
+            step_error: 1e-12,
+            seconds_per_step: 1e-6,
+        };
+        let words = warning(&[row(6, Some(errors)), row(24, None)], 6, 0.0).unwrap();
+        let expected = "with 6 of them the acceleration of the points is 8.0e-1 off from that with 24, the displacement of \
+                        the points 3.0e-5, the velocity of the points 4.0e-2.";
+        assert!(words.contains(expected), "{words}");
     }
 }

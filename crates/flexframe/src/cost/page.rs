@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use scene::{Model, Scene};
+use whole_file::write_whole;
 
 use super::ladder::{Line, Measured, Outcome, Row};
 use super::spin::{SpinRow, spin_rates};
@@ -37,7 +38,8 @@ pub fn accuracy_page(
     }
     let spin = match fastest(&reports) {
         Some((scene, report)) if report.initial_spin > 0.0 => {
-            spin_rates(scene, &Model::build(scene, |p| progress(CostProgress::Build(p)))?)
+            let model = Model::build(scene, |p| progress(CostProgress::Build(p)))?;
+            spin_rates(scene, &model, CostSettings::with_patience(patience).budget(20).time)
         }
         _ => Vec::new(),
     };
@@ -50,11 +52,11 @@ pub fn accuracy_page(
     for (_, report) in &reports {
         let picture = pictures.join(format!("{}.svg", name_of(&report.scene)));
         if let Some(drawn) = report.files.iter().find(|file| file.extension() == Some("svg".as_ref())) {
-            std::fs::copy(drawn, &picture).map_err(written(&picture))?;
+            std::fs::read(drawn).and_then(|svg| write_whole(&picture, svg)).map_err(written(&picture))?;
             files.push(picture);
         }
     }
-    std::fs::write(path, page(&reports, &spin, &pictures)).map_err(written(path))?;
+    write_whole(path, page(&reports, &spin, &pictures)).map_err(written(path))?;
     files.push(path.to_owned());
     Ok(files)
 }
@@ -96,10 +98,10 @@ fn write_page(
     writeln!(
         out,
         "**Error** is the largest, over up to 100 equally spaced times, of the angle to the reference's attitude (rad) \
-         and of the differences in modal coordinates and in velocity and acceleration of the scene's points, each \
-         relative to its largest value. The **reference** is the exponential scheme on the conservative form with steps \
+         and of the differences in modal coordinates and in displacement, velocity and acceleration of the scene's \
+         points, each relative to its largest value. The **reference** is the exponential scheme on the conservative form with steps \
          halved until halving no longer changes it; nothing is ranked below three times its own error (≤). **Time** is \
-         that of the loop on one core: the shortest of at least three runs after one that warms up (the slowest run of \
+         that of the loop on one core: the shortest of three runs or more after one that warms up (the slowest run of \
          a series took up to {worst_spread:.1} times as long). An evaluation is one of the rates of all modes.\n"
     )?;
 
@@ -206,6 +208,7 @@ fn write_row(out: &mut String, line: &Line, row: &Row) -> std::fmt::Result {
             )
         }
         Outcome::Failed(failure) => writeln!(out, " failed: {failure} | | | | | | | | |"),
+        Outcome::OutOfPatience(stopped) => writeln!(out, " {stopped} | | | | | | | | |"),
     }
 }
 
@@ -261,22 +264,23 @@ fn write_modes(out: &mut String, report: &CostReport) -> std::fmt::Result {
     )?;
     writeln!(
         out,
-        "| modes | to, {} | error | attitude | modal | velocity | acceleration | time of a step |\n\
-         |---:|---:|---:|---:|---:|---:|---:|---:|",
+        "| modes | to, {} | error | attitude | modal | displacement | velocity | acceleration | time of a step |\n\
+         |---:|---:|---:|---:|---:|---:|---:|---:|---:|",
         crate::modes::frequency_unit(&report.time_unit)
     )?;
     let optional = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| format!("{value:.1e}"));
     for row in &report.modes {
         let errors = match row.errors {
             Some(e) => format!(
-                "{:.1e} | {:.1e} | {} | {} | {}",
+                "{:.1e} | {:.1e} | {} | {} | {} | {}",
                 e.largest(),
                 e.attitude,
                 optional(e.modal),
+                optional(e.displacement),
                 optional(e.velocity),
                 optional(e.acceleration)
             ),
-            None => "– | – | – | – | –".to_owned(),
+            None => "– | – | – | – | – | –".to_owned(),
         };
         writeln!(
             out,

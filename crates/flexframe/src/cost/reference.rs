@@ -46,7 +46,7 @@ pub(super) struct Budget {
 }
 
 /// Runs a fourth-order method with ever shorter steps, each half as long as those before, until the error is below
-/// `goal`, or rounding hides what halving changes, or the next run would go beyond the `budget`. Of two runs that are d
+/// `goal`, or rounding hides what halving changes, or the next run would go beyond the `budget`, which also stops a run. Of two runs that are d
 /// apart, the finer is d/15 from the limit, if d has fallen as it does for fourth order; else d is taken.
 ///
 /// # Errors
@@ -58,10 +58,12 @@ pub(super) fn converge(
     goal: f64,
 ) -> Result<Reference, (u64, RunFailure)> {
     let started = Instant::now();
+    let left = || budget.time.saturating_sub(started.elapsed());
     let mut steps = FIRST;
     let coarse = loop {
-        match follow(case, method, steps) {
+        match follow(case, method, steps, left()) {
             Ok(run) => break run,
+            Err(failure @ RunFailure::OutOfPatience { .. }) => return Err((steps, failure)),
             Err(failure) if started.elapsed() > budget.time || 2 * steps > budget.steps => {
                 return Err((steps, failure));
             }
@@ -69,9 +71,9 @@ pub(super) fn converge(
         }
     };
     let reference = |trajectory, steps, error| Reference { trajectory, step: case.end() / steps as f64, steps, error };
-    // A second run is made whatever it takes, since without it nothing is known of the error.
+    // Without a second run nothing is known of the error.
     steps *= 2;
-    let finer = follow(case, method, steps).map_err(|failure| (steps, failure))?;
+    let finer = follow(case, method, steps, left()).map_err(|failure| (steps, failure))?;
     let mut difference = Errors::between(&coarse, &finer, case.scales());
     let mut best = reference(finer, steps, difference);
     while best.error.largest() > goal
@@ -79,7 +81,7 @@ pub(super) fn converge(
         && started.elapsed() + 2 * best.trajectory.time <= budget.time
     {
         steps *= 2;
-        let Ok(finer) = follow(case, method, steps) else { break };
+        let Ok(finer) = follow(case, method, steps, left()) else { break };
         let before = difference.largest();
         difference = Errors::between(&best.trajectory, &finer, case.scales());
         let now = difference.largest();
@@ -92,7 +94,7 @@ pub(super) fn converge(
     Ok(best)
 }
 
-fn follow(case: &Case<'_>, method: Method, steps: u64) -> Result<Trajectory, RunFailure> {
+fn follow(case: &Case<'_>, method: Method, steps: u64, patience: Duration) -> Result<Trajectory, RunFailure> {
     let simulation = case.begin(method, StepControl::Fixed(case.end() / steps as f64))?;
-    Ok(Trajectory::follow(simulation)?)
+    Trajectory::follow(simulation, patience)
 }

@@ -2,15 +2,53 @@
 
 use std::time::{Duration, Instant};
 
-use frames_rk4::{Observation, PointMotion, Reached, Simulation, Stats, StepError};
+use frames_rk4::{Observation, PointMotion, Reached, Simulation, Stats};
 use nalgebra::Vector3;
 use scene::Model;
 use serde::Serialize;
 
-use crate::run::{Balances, Monitor};
+use crate::json;
+use crate::run::{Balances, Monitor, RunFailure};
 
 /// Motion smaller than this fraction of the body is rounding.
 const STILL: f64 = 1e-12;
+
+/// Steps between two looks at the clock. Shorter runs come to their end whatever the patience is.
+const STEPS_PER_LOOK: u64 = 1000;
+
+/// Leads a run on until its patience is used up.
+struct Watch {
+    started: Instant,
+    patience: Duration,
+    /// Steps tried at the last look.
+    looked: u64,
+}
+
+impl Watch {
+    fn new(patience: Duration) -> Self {
+        Self { started: Instant::now(), patience, looked: 0 }
+    }
+
+    /// Goes on to the next row, or to the end.
+    fn advance(&mut self, simulation: &mut Simulation) -> Result<Reached, RunFailure> {
+        loop {
+            let reached = simulation.advance(STEPS_PER_LOOK)?;
+            let stats = simulation.stats();
+            let tried = stats.accepted + stats.rejected;
+            // What has come to its end need not be stopped.
+            if simulation.time() < simulation.end() && tried - self.looked >= STEPS_PER_LOOK {
+                self.looked = tried;
+                if self.started.elapsed() >= self.patience {
+                    let reached = simulation.time() / simulation.end();
+                    return Err(RunFailure::OutOfPatience { patience: self.patience.as_secs_f64(), reached });
+                }
+            }
+            if reached != Reached::Between {
+                return Ok(reached);
+            }
+        }
+    }
+}
 
 /// A run, observed at equally spaced times.
 #[derive(Debug, Clone)]
@@ -24,12 +62,12 @@ pub(super) struct Trajectory {
 }
 
 impl Trajectory {
-    /// Runs a simulation to its end.
-    pub(super) fn follow(mut simulation: Simulation) -> Result<Self, StepError> {
-        let started = Instant::now();
+    /// Runs a simulation to its end, if that takes no longer than the patience.
+    pub(super) fn follow(mut simulation: Simulation, patience: Duration) -> Result<Self, RunFailure> {
+        let mut watch = Watch::new(patience);
         let mut observations = Vec::new();
         let mut monitor = Monitor::default();
-        let mut observe = |simulation: &mut Simulation| -> Result<(), StepError> {
+        let mut observe = |simulation: &mut Simulation| -> Result<(), RunFailure> {
             let mut now = simulation.observation();
             simulation.observe(&mut now)?;
             monitor.watch(&now);
@@ -37,15 +75,11 @@ impl Trajectory {
             Ok(())
         };
         observe(&mut simulation)?;
-        loop {
-            match simulation.advance(u64::MAX)? {
-                Reached::Row => observe(&mut simulation)?,
-                Reached::Between => {}
-                Reached::End => break,
-            }
+        while watch.advance(&mut simulation)? != Reached::End {
+            observe(&mut simulation)?;
         }
         let balances = monitor.balances();
-        Ok(Self { observations, stats: simulation.stats(), balances, time: started.elapsed() })
+        Ok(Self { observations, stats: simulation.stats(), balances, time: watch.started.elapsed() })
     }
 
     /// |ω| at the end.
@@ -65,15 +99,29 @@ pub(super) struct Timing {
 }
 
 impl Timing {
-    /// Runs the simulation from its beginning at least three times, and so often that it takes `at_least` in all.
-    pub(super) fn of(simulation: &Simulation, at_least: Duration) -> Result<Self, StepError> {
+    /// Runs the simulation from its beginning at least three times, and so often that it takes `at_least` in all. A run that
+    /// takes longer than the patience is the last, and does not count.
+    ///
+    /// # Errors
+    /// That of the first run.
+    pub(super) fn of(simulation: &Simulation, at_least: Duration, patience: Duration) -> Result<Self, RunFailure> {
         let mut timing = Self { shortest: Duration::MAX, longest: Duration::ZERO, repeats: 0 };
         let mut sum = Duration::ZERO;
         while timing.repeats < 3 || (sum < at_least && timing.repeats < 1000) {
             let mut simulation = simulation.clone();
-            let started = Instant::now();
-            while simulation.advance(u64::MAX)? != Reached::End {}
-            let time = started.elapsed();
+            let mut watch = Watch::new(patience);
+            let ended = loop {
+                match watch.advance(&mut simulation) {
+                    Ok(Reached::End) => break Ok(()),
+                    Ok(_) => {}
+                    Err(failure) => break Err(failure),
+                }
+            };
+            match ended {
+                Err(RunFailure::OutOfPatience { .. }) if timing.repeats > 0 => break,
+                ended => ended?,
+            }
+            let time = watch.started.elapsed();
             timing.shortest = timing.shortest.min(time);
             timing.longest = timing.longest.max(time);
             timing.repeats += 1;
@@ -83,11 +131,32 @@ impl Timing {
     }
 }
 
+/// Time of a step, seconds: the shortest of the means over three stretches from the beginning of the run, each of which
+/// takes `at_least` or the whole run.
+pub(super) fn seconds_per_step(simulation: &Simulation, at_least: Duration) -> Result<f64, RunFailure> {
+    let mut shortest = f64::INFINITY;
+    for _ in 0..3 {
+        let mut simulation = simulation.clone();
+        let mut watch = Watch::new(at_least);
+        loop {
+            match watch.advance(&mut simulation) {
+                Ok(Reached::End) | Err(RunFailure::OutOfPatience { .. }) => break,
+                Ok(_) => {}
+                Err(failure) => return Err(failure),
+            }
+        }
+        let steps = simulation.stats().accepted.max(1) as f64;
+        shortest = shortest.min(watch.started.elapsed().as_secs_f64() / steps);
+    }
+    Ok(shortest)
+}
+
 /// Sizes of the quantities that are compared; an error is relative to the largest value in the reference, unless that
 /// is below this.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Scales {
     modal: f64,
+    displacement: f64,
     velocity: f64,
     acceleration: f64,
 }
@@ -101,7 +170,7 @@ impl Scales {
         };
         let length = STILL * size;
         let modal = length * model.body.mass.sqrt();
-        Self { modal, velocity: length / end, acceleration: length / (end * end) }
+        Self { modal, displacement: length, velocity: length / end, acceleration: length / (end * end) }
     }
 }
 
@@ -109,12 +178,19 @@ impl Scales {
 #[derive(Debug, Clone, Copy, Default, Serialize)]
 pub struct Errors {
     /// Angle to the reference's attitude, rad.
+    #[serde(serialize_with = "json::number")]
     pub attitude: f64,
     /// Modal coordinates, relative to the largest of the reference; none where nothing vibrates.
+    #[serde(serialize_with = "json::optional")]
     pub modal: Option<f64>,
-    /// Velocity of the points, relative to the largest of the reference; none without points or where they rest.
+    /// Displacement of the points, relative to the largest of the reference; none without points or where they rest.
+    #[serde(serialize_with = "json::optional")]
+    pub displacement: Option<f64>,
+    /// Velocity of the points, likewise.
+    #[serde(serialize_with = "json::optional")]
     pub velocity: Option<f64>,
     /// Acceleration of the points, likewise.
+    #[serde(serialize_with = "json::optional")]
     pub acceleration: Option<f64>,
 }
 
@@ -147,6 +223,7 @@ impl Errors {
         Self {
             attitude: largest(&mut pairs().map(|(a, b)| a.attitude.angle_to(&b.attitude))),
             modal: relative(modal, modal_peak, scales.modal),
+            displacement: of_points(|p| p.displacement, scales.displacement),
             velocity: of_points(|p| p.velocity, scales.velocity),
             acceleration: of_points(|p| p.acceleration, scales.acceleration),
         }
@@ -154,7 +231,13 @@ impl Errors {
 
     /// The largest of them: the error of a run.
     pub fn largest(&self) -> f64 {
-        [self.modal, self.velocity, self.acceleration].into_iter().flatten().fold(self.attitude, f64::max)
+        self.worst().1
+    }
+
+    /// Name and value of the largest.
+    pub(super) fn worst(&self) -> (&'static str, f64) {
+        let attitude = ("attitude", self.attitude);
+        self.named().fold(attitude, |worst, error| if error.1 > worst.1 { error } else { worst })
     }
 
     /// Name and value of each.
@@ -162,6 +245,7 @@ impl Errors {
         [
             ("attitude", Some(self.attitude)),
             ("modal coordinates", self.modal),
+            ("displacement of the points", self.displacement),
             ("velocity of the points", self.velocity),
             ("acceleration of the points", self.acceleration),
         ]
@@ -175,6 +259,7 @@ impl Errors {
         Self {
             attitude: factor * self.attitude,
             modal: scaled(self.modal),
+            displacement: scaled(self.displacement),
             velocity: scaled(self.velocity),
             acceleration: scaled(self.acceleration),
         }

@@ -47,11 +47,12 @@ impl CostReport {
         }
         writeln!(
             f,
-            "\n     {:<17} {:>9}  {:>9} {:>9} {:>9} {:>9}  {:>9} {:>9}  {:>8} {:>9}  {:>10} {:>6}",
+            "\n     {:<17} {:>9}  {:>9} {:>9} {:>9} {:>9} {:>9}  {:>9} {:>9}  {:>8} {:>9}  {:>10} {:>6}",
             "",
             "error",
             "attitude",
             "modal",
+            "displac.",
             "velocity",
             "accel.",
             "energy",
@@ -70,21 +71,25 @@ impl CostReport {
         writeln!(
             f,
             "  * nothing tried is both closer and faster    < the scene's own setting    ≤ the reference cannot tell\n  \
-             error: largest of attitude (rad), modal coordinates, velocity and acceleration of the points (of their \
-             peaks)"
+             error: largest of attitude (rad), modal coordinates, displacement, velocity and acceleration of the points \
+             (of their peaks)"
         )?;
         self.write_modes(f)
     }
 
     fn write_modes(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(why) = &self.modes_failure {
+            return writeln!(f, "\n  Numbers of modes are not compared: {why}");
+        }
         let (Some(first), Some(most)) = (self.modes.first(), self.modes.last()) else { return Ok(()) };
         writeln!(
             f,
-            "\n  modes   to, {:<6} {:>9}  {:>9} {:>9} {:>9} {:>9}  {:>9}",
+            "\n  modes   to, {:<6} {:>9}  {:>9} {:>9} {:>9} {:>9} {:>9}  {:>9}",
             frequency_unit(&self.time_unit),
             "error",
             "attitude",
             "modal",
+            "displac.",
             "velocity",
             "accel.",
             "time/step"
@@ -94,14 +99,15 @@ impl CostReport {
             match row.errors {
                 Some(e) => write!(
                     f,
-                    "{:>9.1e}  {:>9.1e} {} {} {}",
+                    "{:>9.1e}  {:>9.1e} {} {} {} {}",
                     e.largest(),
                     e.attitude,
                     optional(e.modal),
+                    optional(e.displacement),
                     optional(e.velocity),
                     optional(e.acceleration)
                 )?,
-                None => write!(f, "{:>50}", "what the others are compared with")?,
+                None => write!(f, "{:>60}", "what the others are compared with")?,
             }
             writeln!(f, "  {:>6.2} µs", 1e6 * row.seconds_per_step)?;
         }
@@ -109,7 +115,11 @@ impl CostReport {
             f,
             "  the same motion with {} to {} modes; the steps leave an error of {:.0e}",
             first.flexible, most.flexible, most.step_error
-        )
+        )?;
+        match super::modes::warning(&self.modes, self.flexible, 0.0) {
+            Some(words) => writeln!(f, "  {words}"),
+            None => Ok(()),
+        }
     }
 }
 
@@ -161,9 +171,10 @@ impl fmt::Display for RowText<'_> {
                 let e = &m.errors;
                 write!(
                     f,
-                    " {error:>9}  {:>9.1e} {} {} {}  {:>9.1e} {:>9.1e}  {:>8} {:>9}  {:>10} {:>6.2}",
+                    " {error:>9}  {:>9.1e} {} {} {} {}  {:>9.1e} {:>9.1e}  {:>8} {:>9}  {:>10} {:>6.2}",
                     e.attitude,
                     optional(e.modal),
+                    optional(e.displacement),
                     optional(e.velocity),
                     optional(e.acceleration),
                     m.energy,
@@ -175,6 +186,7 @@ impl fmt::Display for RowText<'_> {
                 )
             }
             Outcome::Failed(failure) => write!(f, " failed: {failure}"),
+            Outcome::OutOfPatience(stopped) => write!(f, " {stopped}"),
         }
     }
 }

@@ -9,7 +9,7 @@ use super::WATCHED_POINT;
 use super::rigid_plate::RigidHistories;
 use crate::run::RunReport;
 
-/// Table 1 of the paper: frequencies of modes 7 to 16, Hz.
+/// Table 1 of the paper: frequencies of its modes 7 to 16, the flexible modes 1 to 10, Hz.
 pub(super) const TABLE_1: [f64; 10] =
     [24.5282, 85.8433, 93.2656, 117.3671, 206.1601, 359.8918, 387.63, 534.3499, 544.946, 579.7381];
 /// Mass (Mg) and principal moments (Mg mm²) as the paper prints them.

@@ -2,13 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
-use frames_rk4::Load;
-use results::{FigureError, LineChart, Results, Scale, Series, Stroke};
+use figures::{FigureError, LineChart, Scale, Series, Stroke};
+use frames_rk4::SharedLoad;
+use results::Results;
 use scene::{Model, Scene};
 
 use super::WATCHED_POINT;
 use super::rigid_plate::{RigidHistories, dead_force};
-use crate::figures::mode_shapes;
+use crate::mode_shapes::{self, ShapesError};
 
 /// Draws all figures into `folder` and returns their files.
 pub(super) fn draw(
@@ -17,7 +18,7 @@ pub(super) fn draw(
     results: &Results,
     rigid: &RigidHistories,
     folder: &Path,
-) -> Result<Vec<PathBuf>, FigureError> {
+) -> Result<Vec<PathBuf>, ShapesError> {
     let units = &scene.units;
     let (length, time) = (&units.length, &units.time);
     let x_label = format!("time, {time}");
@@ -30,7 +31,7 @@ pub(super) fn draw(
     let (alpha, omega) = (&results.angular_acceleration, &results.angular_velocity);
     let point = results.points.get(WATCHED_POINT).cloned().unwrap_or_default();
     let force = |axis: usize| -> Vec<(f64, f64)> {
-        let of = |load: &Load, t: f64| dead_force(load).map_or(0.0, |(_, f)| f[axis] * load.history.at(t, t));
+        let of = |load: &SharedLoad, t: f64| dead_force(load).map_or(0.0, |f| f.force[axis] * f.history.at(t, t));
         let total = |t: f64| model.loads().iter().map(|load| of(load, t)).sum();
         results.time.iter().map(|t| (*t, total(*t))).collect()
     };
@@ -38,7 +39,7 @@ pub(super) fn draw(
         vec![solid(label, history(rows, axis)), dashed("rigid plate", history(theirs, axis))]
     };
 
-    let mut files = mode_shapes(scene, model, &folder.join("fig03_mode_shapes"))?.to_vec();
+    let mut files = mode_shapes::draw(scene, model, &folder.join("fig03_mode_shapes"))?.to_vec();
     let mut chart = |name: &str, title: &str, y_label: String, series: Vec<Series>| -> Result<(), FigureError> {
         let chart = LineChart {
             title: title.to_owned(),

@@ -66,9 +66,9 @@ fn write_page(out: &mut String, scene: &Scene, run: &RunReport, c: &Comparison) 
     }
 
     writeln!(out, "\n## Table 1: frequencies of the flexible modes, Hz\n")?;
-    writeln!(out, "| mode | paper | here | difference |\n|---:|---:|---:|---:|")?;
+    writeln!(out, "| mode | paper's number | paper | here | difference |\n|---:|---:|---:|---:|---:|")?;
     for (k, pair) in c.frequencies.iter().enumerate() {
-        writeln!(out, "| {} | {:.4} | {:.4} | {} |", k + 7, pair.paper, pair.here, percent(pair))?;
+        writeln!(out, "| {} | {} | {:.4} | {:.4} | {} |", k + 1, k + 7, pair.paper, pair.here, percent(pair))?;
     }
     writeln!(out, "\n![mode shapes](fig03_mode_shapes.png)\n\n*Fig. 3. Mode shapes.*\n")?;
 

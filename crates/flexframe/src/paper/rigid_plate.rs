@@ -1,6 +1,8 @@
 //! The rigid plate that the paper compares with: same mass, inertia and load.
 
-use frames_rk4::{Action, Load, LoadFrame};
+use std::any::Any;
+
+use frames_rk4::{LoadFrame, PointForce, SharedLoad};
 use nalgebra::Vector3;
 use results::Results;
 use rigid_kin::{Attitude, RigidBody, RigidState, Wrench};
@@ -18,25 +20,22 @@ pub(super) struct RigidHistories {
     pub acceleration_global: Vec<[f64; 3]>,
 }
 
-/// The dead force of a load, and where it acts; `None` for other loads.
-pub(super) fn dead_force(load: &Load) -> Option<(Vector3<f64>, Vector3<f64>)> {
-    match &load.action {
-        Action::Force { point, force, frame: LoadFrame::Global } => Some((point.position_body(), *force)),
-        _ => None,
-    }
+/// The dead force of a load; `None` for other loads.
+pub(super) fn dead_force(load: &SharedLoad) -> Option<&PointForce> {
+    let force = (&**load as &dyn Any).downcast_ref::<PointForce>();
+    force.filter(|force| force.frame == LoadFrame::Global)
 }
 
 /// Integrates the rigid plate under the scene's loads, in the steps of the results; `None` where there are other loads
 /// than dead forces.
 pub(super) fn histories(model: &Model, results: &Results) -> Result<Option<RigidHistories>, PaperError> {
-    let of = |load: &Load| dead_force(load).map(|(at, force)| (at, force, load.history.clone()));
-    let Some(forces) = model.loads().iter().map(of).collect::<Option<Vec<_>>>() else { return Ok(None) };
+    let Some(forces) = model.loads().iter().map(dead_force).collect::<Option<Vec<_>>>() else { return Ok(None) };
     let body = RigidBody::new(model.body.mass, model.body.inertia)?;
     let watched = model.points.iter().find(|(name, _)| name == WATCHED_POINT);
     let arm = watched.map_or_else(Vector3::zeros, |(_, point)| point.position_body());
     let wrench = |time: f64, attitude: &Attitude| {
-        forces.iter().fold(Wrench::zero(), |sum, (at, force, history)| {
-            let one = Wrench::dead_force(attitude, at, &(force * history.at(time, time)));
+        forces.iter().fold(Wrench::zero(), |sum, PointForce { point, force, history, .. }| {
+            let one = Wrench::dead_force(attitude, &point.position_body(), &(force * history.at(time, time)));
             Wrench { force_global: sum.force_global + one.force_global, moment_body: sum.moment_body + one.moment_body }
         })
     };

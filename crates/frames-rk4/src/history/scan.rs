@@ -7,8 +7,12 @@ use nalgebra::Complex;
 use super::History;
 use crate::error::SetupError;
 
-/// Values that a walk may ask the factors of a product for at its panels.
+/// Values that a walk may ask for at its panels, where one costs 1 ([`History::cost`]).
 const MOST_PANELS: f64 = 1e6;
+/// Bytes of a formula whose value costs 1, and the least and the most that one may cost.
+const CHEAP: f64 = 16.0;
+const LEAST_COST: f64 = 4.0;
+const MOST_COST: f64 = 400.0;
 
 /// A short stretch between two corners.
 #[derive(Debug, Clone, Copy)]
@@ -139,26 +143,31 @@ impl History {
 
     /// Panels a walk may have, but for one in each stretch.
     fn most_panels(&self) -> f64 {
-        MOST_PANELS / self.factors() as f64
+        MOST_PANELS / self.cost()
     }
 
-    /// How many histories are multiplied in all.
-    fn factors(&self) -> usize {
+    /// What a value counts against a budget of values: 1 for what has a closed form. A formula's goes with the square of
+    /// its length, for the time that a value takes and for the number of values that it is worth waiting for; those of
+    /// factors are added.
+    pub fn cost(&self) -> f64 {
         match self {
-            Self::Product(factors) => factors.iter().map(Self::factors).sum(),
-            _ => 1,
+            Self::Expression(expression) => {
+                (expression.text().len() as f64 / CHEAP).powi(2).clamp(LEAST_COST, MOST_COST)
+            }
+            Self::Product(factors) => factors.iter().map(Self::cost).sum(),
+            _ => 1.0,
         }
     }
 
     /// Highest frequency that the factor has by itself between corners. An expression does not tell its own: it is
-    /// taken to have less than a thousand cycles in all, and the refinement sees to the rest.
+    /// taken to have less than a thousand cycles in all, a long one less, and the refinement sees to the rest.
     fn fastest(&self, end: f64) -> f64 {
         match self {
             Self::Constant | Self::Step { .. } | Self::Ramp { .. } | Self::Table(_) => 0.0,
             Self::HalfSine { duration, .. } => 0.5 / duration,
             Self::Sine { frequency, .. } => *frequency,
             Self::Sweep { from, to, .. } => from.max(*to),
-            Self::Expression(_) => 1e3 / end,
+            Self::Expression(_) => 1e3_f64.min(self.most_panels() / 64.0) / end,
             Self::Product(factors) => factors.iter().map(|factor| factor.fastest(end)).sum(),
         }
     }
@@ -182,4 +191,37 @@ fn moments(theta: f64) -> [f64; 3] {
     }
     let (sin, cos) = theta.sin_cos();
     [2.0 * sin / theta, 2.0 * (sin / theta - cos) / theta, 2.0 * (sin + 2.0 * cos / theta - 2.0 * sin / square) / theta]
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::history::{Expression, History, expression};
+
+    /// What no walk resolves: noise, in as many terms as there is room for.
+    fn noise(bytes: usize) -> History {
+        let mut text = "fract(9e5*sin(7e4*t))".to_owned();
+        while text.len() + 28 < bytes {
+            text.push_str(" + fract(9e5*sin(7e4*t)) * 1");
+        }
+        History::Expression(Expression::new(&text, vec![]).unwrap())
+    }
+
+    #[test]
+    fn a_long_formula_is_asked_for_few_values() {
+        for (bytes, most) in [(30, 1_600_000), (900, 16_000)] {
+            for scan in [History::largest as fn(&History, f64) -> f64, History::magnitude_integral] {
+                let history = noise(bytes);
+                let before = expression::evaluations();
+                assert!(scan(&history, 1.0).is_finite());
+                let found = expression::evaluations() - before;
+                assert!(found < most && found > most / 40, "{bytes}: {found}");
+            }
+        }
+        // What is smooth is found with few, long or short: here to 1e-4.
+        let smooth = format!("exp(-t){}", " + 0*t*t*t*t*t".repeat(60));
+        let smooth = History::Expression(Expression::new(&smooth, vec![]).unwrap());
+        let before = expression::evaluations();
+        assert!((smooth.magnitude_integral(1.0) / (1.0 - (-1.0_f64).exp()) - 1.0).abs() < 1e-6);
+        assert!(expression::evaluations() - before < 5_000);
+    }
 }

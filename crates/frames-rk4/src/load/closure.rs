@@ -27,7 +27,7 @@ pub struct LoadFn<F> {
 
 impl<F> LoadFn<F>
 where
-    F: Fn(&Kinematics, &mut Applied) + Send + Sync,
+    F: Fn(&Kinematics, &mut Applied) + Send + Sync + 'static,
 {
     /// A load with a name for messages, and its law.
     pub fn new(name: impl Into<String>, law: F) -> Self {
@@ -52,7 +52,7 @@ where
 
 impl<F> Load for LoadFn<F>
 where
-    F: Fn(&Kinematics, &mut Applied) + Send + Sync,
+    F: Fn(&Kinematics, &mut Applied) + Send + Sync + 'static,
 {
     fn apply(&self, motion: &Kinematics, applied: &mut Applied) {
         (self.law)(motion, applied);

@@ -3,7 +3,7 @@
 use frames_rk4::{Expression, History, Initial, Method, Observation, Reached, Rows, StepControl};
 use nalgebra::Vector3;
 
-use crate::common::{dead_force, Specimen, plate};
+use crate::common::{Specimen, dead_force, plate};
 use crate::run::{EXPONENTIAL, Error, RKMK4, Run, relative_3};
 
 /// Tumbling at 10 rad/s with vibration, under a pulse that begins and ends between the rows.
@@ -29,7 +29,8 @@ fn the_error_falls_with_the_tolerance() {
             let error = Error::between(&last, &reference);
             let error = error.attitude.max(error.modal);
             let stats = simulation.stats();
-            assert!(error < 0.5 * before, "{method:?} {tolerance:e}: {error:e} after {before:e}");
+            // The reference itself is no closer than some 1e-12.
+            assert!(error < (0.5 * before).max(2e-12), "{method:?} {tolerance:e}: {error:e} after {before:e}");
             assert!(error < tolerance, "{method:?} {tolerance:e}: {error:e}");
             // Few tries in vain.
             assert!(stats.rejected > 0 && 10 * stats.rejected < stats.accepted, "{stats:?}");

@@ -6,9 +6,7 @@
 //! reduced body enters.
 
 use faer::sparse::SparseColMatRef;
-use frames_rk4::{
-    ConservativeBody, Initial, SharedLoad, Observation, Physics, Rows, StepControl,
-};
+use frames_rk4::{ConservativeBody, Initial, Observation, Physics, Rows, SharedLoad, StepControl};
 use nalgebra::Vector3;
 
 use crate::common::{Specimen, ring};

@@ -3,9 +3,7 @@
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 use faer::Mat;
-use frames_rk4::{
-    History, Initial, Method, PointShapes, Rows, SetupError, StepControl, StepError,
-};
+use frames_rk4::{History, Initial, Method, PointShapes, Rows, SetupError, StepControl, StepError};
 use modal::{BodyPoint, ReducedBody, RigidMotion};
 use nalgebra::{Matrix3, Vector3};
 
@@ -90,9 +88,7 @@ fn a_pulse_shorter_than_the_step_is_not_missed() {
     let run = Run { end: 0.01, initial: Initial::at_rest(10), ..run };
     let impulse = 1000.0 * duration * 2.0 / std::f64::consts::PI;
     // Measured: 8.3e-6; of the paper's scheme 1.3e-2, by the trapezoidal rule.
-    for (method, bound) in
-        [(EXPONENTIAL, 1e-5), (RKMK4, 1e-5), (Method::PAPER_RKMK4, 1e-5), (Method::PAPER, 0.02)]
-    {
+    for (method, bound) in [(EXPONENTIAL, 1e-5), (RKMK4, 1e-5), (Method::PAPER_RKMK4, 1e-5), (Method::PAPER, 0.02)] {
         let last = run.end(method, 2e-4);
         let error = (last.linear_momentum_global.y / impulse - 1.0).abs();
         assert!(error < bound, "{method:?}: {error:e}");

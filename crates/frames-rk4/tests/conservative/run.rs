@@ -1,8 +1,7 @@
 //! A run of a body, with what the tests vary, and how far its end is from that of another.
 
 use frames_rk4::{
-    Initial, Method, Observation, Physics, PointShapes, Rows, Setup, SetupError, SharedLoad, Simulation,
-    StepControl,
+    Initial, Method, Observation, Physics, PointShapes, Rows, Setup, SetupError, SharedLoad, Simulation, StepControl,
 };
 use modal::ReducedBody;
 use nalgebra::Vector3;

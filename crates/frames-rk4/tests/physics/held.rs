@@ -4,7 +4,7 @@ use frames_rk4::{History, Rows, StepControl};
 use modal::RigidMotion;
 use nalgebra::Vector3;
 
-use crate::sample::{EXPONENTIAL, MASS, RKMK4, Run, body, point, dead_force};
+use crate::sample::{EXPONENTIAL, MASS, RKMK4, Run, body, dead_force, point};
 
 fn axis() -> Vector3<f64> {
     Vector3::new(1.0, 2.0, -2.0) / 3.0
@@ -75,8 +75,8 @@ fn pendulum_period(inertia: f64, weight_arm: f64, largest: f64) -> f64 {
 #[test]
 fn a_compound_pendulum_has_the_period_of_the_elliptic_integral() {
     let hinge = RigidMotion::hinge(Vector3::zeros(), Vector3::z());
-    let mut pendulum = body(hinge, &[]);
-    pendulum.center_of_mass = Vector3::new(0.7, 0.0, 0.2);
+    let center = Vector3::new(0.7, 0.0, 0.2);
+    let pendulum = crate::sample::changed(body(hinge, &[]), |body| body.center_of_mass = center);
     let (gravity, largest) = (9.81, 2.0_f64);
     // The centre hangs along +x; gravity is turned by the largest angle about the hinge, so that it starts there.
     let down = Vector3::new(largest.cos(), largest.sin(), 0.0);
@@ -102,10 +102,11 @@ fn a_compound_pendulum_has_the_period_of_the_elliptic_integral() {
 /// The heavy symmetrical top of Simo and Wong: M g l = 20, J = diag(5, 5, 1) about the fixed point, 50 rad/s.
 #[test]
 fn a_heavy_top_keeps_its_energy_and_the_momenta_that_gravity_leaves() {
-    let inertia = nalgebra::Matrix3::from_diagonal(&Vector3::new(5.0, 5.0, 1.0));
-    let top = crate::sample::with_inertia(&body(RigidMotion::pin(Vector3::zeros()), &[]), inertia);
-    top.mass = 20.0;
-    top.center_of_mass = Vector3::z();
+    let top = crate::sample::changed(body(RigidMotion::pin(Vector3::zeros()), &[]), |top| {
+        top.mass = 20.0;
+        top.center_of_mass = Vector3::z();
+        top.inertia = nalgebra::Matrix3::from_diagonal(&Vector3::new(5.0, 5.0, 1.0));
+    });
     let tilt = 0.05_f64;
     // The body axes begin as the global ones: the vertical is tilted instead.
     let up = Vector3::new(0.0, tilt.sin(), tilt.cos());

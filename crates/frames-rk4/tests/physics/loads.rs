@@ -62,7 +62,7 @@ fn work_and_impulses_of_every_load_close_the_balances() {
 #[test]
 fn followers_follow() {
     let inertia = nalgebra::Matrix3::from_diagonal(&Vector3::new(2.0, 3.0, 4.0));
-    let rigid = crate::sample::with_inertia(&body(RigidMotion::free(), &[]), inertia);
+    let rigid = crate::sample::changed(body(RigidMotion::free(), &[]), |body| body.inertia = inertia);
     let mut run = Run::new(&rigid, 2.0);
     run.initial.omega = Vector3::zeros();
     let rotation = RotationShapes::new(&rigid, Mat::zeros(3, 0).as_ref());

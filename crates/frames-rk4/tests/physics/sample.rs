@@ -58,9 +58,11 @@ pub fn body(motion: RigidMotion, circular_frequencies: &[f64]) -> ReducedBody {
     ReducedBody::from_constants(constants).unwrap()
 }
 
-/// The body with another inertia.
-pub fn with_inertia(body: &ReducedBody, inertia: Matrix3<f64>) -> ReducedBody {
-    ReducedBody::from_constants(Constants { inertia, ..(**body).clone() }).unwrap()
+/// The body with other constants.
+pub fn changed(body: ReducedBody, change: impl FnOnce(&mut Constants)) -> ReducedBody {
+    let mut constants = (*body).clone();
+    change(&mut constants);
+    ReducedBody::from_constants(constants).unwrap()
 }
 
 /// A point of the body with made-up shapes.

@@ -128,7 +128,8 @@ fn plane_motion_under_a_dead_force_tends_to_that_of_a_rigid_body() {
     let rigid = RigidBody::new(ring.body.mass, ring.body.inertia).unwrap();
     let motion = BodyMotion::new(&ring.body).unwrap();
     let at = ring.point([-100.0, 0.0, 0.0]).position_body();
-    let wrench = |t: f64, attitude: &Attitude| Wrench::dead_force(attitude, &at, &(FORCE * load.history().unwrap().at(t, t)));
+    let wrench =
+        |t: f64, attitude: &Attitude| Wrench::dead_force(attitude, &at, &(FORCE * load.history().unwrap().at(t, t)));
     let mut expected = RigidState {
         attitude: Attitude::identity(),
         omega_body: initial.omega,

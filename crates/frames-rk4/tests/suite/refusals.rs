@@ -1,7 +1,8 @@
 //! What cannot start or go on is refused with what was found, and the state before it is kept.
 
 use frames_rk4::{
-    Initial, Method, ModalModel, PaperScheme, Physics, Rows, Scheme, Setup, SetupError, Simulation, StepControl, StepError,
+    Initial, Method, ModalModel, PaperScheme, Physics, Rows, Scheme, Setup, SetupError, Simulation, StepControl,
+    StepError,
 };
 use nalgebra::Vector3;
 

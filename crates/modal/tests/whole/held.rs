@@ -1,6 +1,5 @@
 //! Modes of bodies that are held.
 
-use modal::RigidMotion;
 use nalgebra::Vector3;
 
 use crate::oracles::dense_eigenvalues_of;

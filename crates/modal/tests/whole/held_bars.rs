@@ -43,8 +43,7 @@ fn assert_near(found: f64, expected: f64, tolerance: f64) {
 fn a_clamped_bar_bends_as_beam_theory_says() {
     let bar = bar();
     let end = Vector3::new(-0.5 * LENGTH, 0.0, 0.0);
-    let clamp =
-        Support { motion: RigidMotion::clamp(end), nodes: nodes(&bar.positions, |x| x.x < end.x + 1e-9) };
+    let clamp = Support { motion: RigidMotion::clamp(end), nodes: nodes(&bar.positions, |x| x.x < end.x + 1e-9) };
     let modes = bar.held(&clamp).modes(6, |_| ()).unwrap();
     for (axis, thickness) in [(1, WIDTH), (2, HEIGHT)] {
         let found = along(&modes, axis);

@@ -1,7 +1,7 @@
 //! The constants of the reduced body against their definitions, evaluated node by node in physical space.
 
 use faer::Mat;
-use modal::{Constants, BodyPoint, Modes, ReducedBody, RigidMotion, Support};
+use modal::{BodyPoint, Constants, Modes, ReducedBody, Support};
 use nalgebra::{Matrix3, Vector3};
 
 use crate::bodies::Body;
@@ -97,7 +97,8 @@ fn assert_definitions(case: &Case) {
 
 #[test]
 fn symmetries_hold() {
-    let Constants { rotation_products, inertia_second, gyroscopic, rotation_basis, inertia, .. } = (*case().reduced).clone();
+    let Constants { rotation_products, inertia_second, gyroscopic, rotation_basis, inertia, .. } =
+        (*case().reduced).clone();
     let trace = &rotation_products[0][0] + &rotation_products[1][1] + &rotation_products[2][2];
     assert!((trace - Mat::<f64>::identity(6 + NF, 6 + NF)).norm_max() < 1e-12);
     for n in &inertia_second {

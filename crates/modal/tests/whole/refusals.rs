@@ -210,8 +210,7 @@ fn a_support_that_holds_too_little() {
     // The block has 3×3×3 nodes: 0, 1, 2 are in line along x, 3 is beside 0, 26 is opposite.
     let at = |node: usize| Vector3::from(small().positions[node]);
     let (pin, clamp) = (RigidMotion::pin(at(0)), RigidMotion::clamp(at(0)));
-    let (hinge, slider) =
-        (RigidMotion::hinge(at(0), Vector3::x()), RigidMotion::slider(Vector3::x()));
+    let (hinge, slider) = (RigidMotion::hinge(at(0), Vector3::x()), RigidMotion::slider(Vector3::x()));
     let cases: [(RigidMotion, &[u32], usize); 10] = [
         (pin, &[], 6),
         // A node beside the point of a pin moves about it: only the distance is kept.

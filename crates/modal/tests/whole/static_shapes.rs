@@ -83,6 +83,26 @@ fn modes_and_several_static_shapes_are_orthogonal_whatever_holds_the_body() {
 }
 
 #[test]
+fn shapes_that_come_in_two_goes_are_those_that_come_in_one() {
+    let body = body();
+    let n = 3 * body.positions.len();
+    let forces = Mat::from_fn(n, 4, |i, j| ((5 + 2 * j) as f64 * i as f64).sin());
+    for (support, _) in supports(&body.positions) {
+        let solver = body.held(&support);
+        let (modes, at_once) = completed(&solver, 5, &forces);
+        let answers = solver.static_response(forces.as_ref()).unwrap();
+        let first = solver.with_static_shapes(modes, answers.subcols(0, 2)).unwrap();
+        let both = solver.with_static_shapes(first, answers.subcols(2, 2)).unwrap();
+        assert_eq!(both.shapes.ncols(), 9);
+        assert_orthogonal(&body, &both, support.motion);
+        for (a, b) in both.eigenvalues.iter().zip(&at_once.eigenvalues) {
+            // 1e-12 at most.
+            assert!((a / b - 1.0).abs() < 1e-9, "{:?}: {a} {b}", support.motion);
+        }
+    }
+}
+
+#[test]
 fn answers_that_add_nothing_are_left_out() {
     let bar = Bar::new(200.0);
     let solver = bar.body.held(&bar.clamp());
@@ -116,8 +136,7 @@ fn what_falls_is_not_strained() {
         let gravity = Mat::from_fn(3 * nodal.len(), 1, |i, _| nodal[i / 3] * down[i % 3]);
         let answer = solver.static_response(gravity.as_ref()).unwrap();
         let modes = solver.with_static_shapes(solver.modes(3, |_| ()).unwrap(), answer.as_ref()).unwrap();
-        let falls =
-            matches!(support.motion, RigidMotion::free()) || support.motion == RigidMotion::slider(down);
+        let falls = support.motion.is_free() || support.motion == RigidMotion::slider(down);
         assert_eq!((answer.norm_max() == 0.0, modes.shapes.ncols()), (falls, 4 - usize::from(falls)), "{support:?}");
     }
 }

@@ -1,16 +1,23 @@
 //! Loads of a scene: where they act on the mesh, and what that is in modal coordinates.
 
+use std::sync::Arc;
+
 use faer::Mat;
 use fem_tet10::{Location, MeanRotation, Mesh};
-use frames_rk4::{Action, BodyField, LoadFrame, PointShapes, RotationShapes};
-use modal::{BodyPoint, Modes, ReducedBody};
+use frames_rk4::{BodyField, FieldLoad, LoadFrame, PointForce, PointMoment, PointShapes, RotationShapes, SharedLoad};
+use modal::{BodyPoint, ModalError, Modes, ReducedBody};
 use nalgebra::Vector3;
+use rigid_kin::Attitude;
 
 use super::history::history;
-use super::{BuildError, refuse, refuse_mesh};
+use super::physics::Turning;
+use super::{BuildError, first_attitude, refuse, refuse_mesh};
 use crate::effects::Choice;
 use crate::load::{self, Load};
 use crate::scene::Scene;
+
+/// A part of a load along or across an axis that is rounding.
+const PARALLEL: f64 = 1e-12;
 
 /// A load on the nodes of the mesh.
 pub(super) struct MeshLoad {
@@ -18,6 +25,8 @@ pub(super) struct MeshLoad {
     pub history: frames_rk4::History,
     /// Whether it keeps its direction in the body.
     pub follows: bool,
+    /// Attitude of the body at the beginning.
+    attitude: Attitude,
 }
 
 /// Where a load acts, and how much.
@@ -32,6 +41,7 @@ enum Place {
 
 /// The loads of a scene on its mesh. `nodal_mass` is the mass that each node stands for.
 pub(super) fn on_mesh(scene: &Scene, mesh: &Mesh, nodal_mass: &[f64]) -> Result<Vec<MeshLoad>, BuildError> {
+    let attitude = first_attitude(scene);
     acting(scene)
         .map(|(i, load)| {
             let key = |name: &str| format!("loads[{i}].{name}");
@@ -71,35 +81,38 @@ pub(super) fn on_mesh(scene: &Scene, mesh: &Mesh, nodal_mass: &[f64]) -> Result<
                     spread(nodal_mass.to_vec(), nodes, acceleration(load))
                 }
             };
-            Ok(MeshLoad { place, history: history(scene, &key("history"), of(load))?, follows: follows(load) })
+            let history = history(scene, &key("history"), of(load))?;
+            Ok(MeshLoad { place, history, follows: follows(load), attitude })
         })
         .collect()
 }
 
 /// The loads of a scene on a rigid body without a mesh.
-pub(super) fn on_rigid(scene: &Scene, body: &ReducedBody) -> Result<Vec<frames_rk4::Load>, BuildError> {
+pub(super) fn on_rigid(scene: &Scene, body: &ReducedBody) -> Result<Vec<SharedLoad>, BuildError> {
     acting(scene)
         .map(|(i, load)| {
             let at = |position: [f64; 3]| {
                 let position_body = Vector3::from(position) - body.origin;
-                PointShapes::new(body, &BodyPoint { position_body, shapes: Mat::zeros(3, 0) })
+                PointShapes::new(body, &BodyPoint::rigid(position_body))
             };
-            let action = match load {
-                Load::Force(load) => Action::Force {
+            let history = history(scene, &format!("loads[{i}].history"), of(load))?;
+            let on_body: SharedLoad = match load {
+                Load::Force(load) => Arc::new(PointForce {
                     point: at(load.at),
                     force: Vector3::from(load.direction) * load.amplitude,
-                    frame: frame(load.frame),
-                },
-                Load::Moment(load) => Action::Moment {
+                    frame: load.frame,
+                    history,
+                }),
+                Load::Moment(load) => Arc::new(PointMoment {
                     rotation: RotationShapes::new(body, Mat::zeros(3, 0).as_ref()),
                     moment: Vector3::from(load.direction) * load.amplitude,
-                    frame: frame(load.frame),
-                },
-                Load::Gravity(_) | Load::BaseAcceleration(_) => Action::Force {
-                    point: at(body.center_of_mass.into()),
-                    force: acceleration(load) * body.mass,
-                    frame: LoadFrame::Global,
-                },
+                    frame: load.frame,
+                    history,
+                }),
+                Load::Gravity(_) | Load::BaseAcceleration(_) => {
+                    let weight = acceleration(load) * body.mass;
+                    Arc::new(PointForce::dead(at(body.center_of_mass.into()), weight, history))
+                }
                 Load::Pressure(_) | Load::Traction(_) => {
                     return Err(scene
                         .refuse(
@@ -111,8 +124,7 @@ pub(super) fn on_rigid(scene: &Scene, body: &ReducedBody) -> Result<Vec<frames_r
                         .into());
                 }
             };
-            let history = history(scene, &format!("loads[{i}].history"), of(load))?;
-            Ok(frames_rk4::Load { action, history })
+            Ok(on_body)
         })
         .collect()
 }
@@ -159,33 +171,70 @@ fn follows(load: &Load) -> bool {
         Load::Pressure(_) => true,
         Load::Force(load::Force { frame, .. })
         | Load::Moment(load::Moment { frame, .. })
-        | Load::Traction(load::Traction { frame, .. }) => *frame == load::LoadFrame::Body,
+        | Load::Traction(load::Traction { frame, .. }) => *frame == LoadFrame::Body,
         Load::Gravity(_) | Load::BaseAcceleration(_) => false,
     }
 }
 
-fn frame(frame: load::LoadFrame) -> LoadFrame {
-    match frame {
-        load::LoadFrame::Global => LoadFrame::Global,
-        load::LoadFrame::Body => LoadFrame::Body,
-    }
-}
-
 impl MeshLoad {
-    /// The forces on the nodes of the undeformed body in its first attitude, where the history is 1 (3n).
-    pub(super) fn add_nodal_forces(&self, mut forces: faer::ColMut<'_, f64>) {
+    /// The force or moment in the first attitude, where the history is 1; none of a field.
+    fn vector(&self) -> Option<Vector3<f64>> {
+        match &self.place {
+            Place::Force { force: vector, .. } | Place::Moment { moment: vector, .. } => {
+                Some(if self.follows { *vector } else { self.attitude.to_body(vector) })
+            }
+            Place::Field { .. } => None,
+        }
+    }
+
+    /// Forces or moments of the same size, in body axes, whose combinations are all that a dead load may become as the
+    /// body turns; none where it keeps its direction in the body.
+    pub(super) fn turned(&self, turning: Turning) -> Vec<Vector3<f64>> {
+        let Some(vector) = self.vector().filter(|v| !self.follows && v.norm() > 0.0) else { return Vec::new() };
+        let size = vector.norm();
+        match turning {
+            Turning::Not => Vec::new(),
+            Turning::Freely => [Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| axis * size).into(),
+            Turning::About(axis) => {
+                let along = axis * axis.dot(&vector);
+                let across = vector - along;
+                let mut turned = Vec::new();
+                if across.norm() > PARALLEL * size {
+                    let across = across.normalize() * size;
+                    turned.extend([across, axis.cross(&across)]);
+                }
+                if along.norm() > PARALLEL * size {
+                    turned.push(axis * size);
+                }
+                turned
+            }
+        }
+    }
+
+    /// The parts of the load in its first attitude along `turned`, relative to them: one whole part without any.
+    pub(super) fn parts(&self, turned: &[Vector3<f64>]) -> Vec<f64> {
+        match self.vector() {
+            Some(vector) if !turned.is_empty() => turned.iter().map(|t| t.dot(&vector) / t.norm_squared()).collect(),
+            _ => vec![1.0],
+        }
+    }
+
+    /// The forces on the nodes of the undeformed body in its first attitude, where the history is 1 (3n); with `vector`,
+    /// of that force or moment in place of the load's own.
+    pub(super) fn add_nodal_forces(&self, vector: Option<Vector3<f64>>, mut forces: faer::ColMut<'_, f64>) {
+        let vector = vector.or(self.vector()).unwrap_or_default();
         let mut add = |node: u32, force: &Vector3<f64>| {
             for axis in 0..3 {
                 forces[3 * node as usize + axis] += force[axis];
             }
         };
         match &self.place {
-            Place::Force { nodes, weights, force } => {
-                nodes.iter().zip(weights).for_each(|(node, w)| add(*node, &(force * *w)));
+            Place::Force { nodes, weights, .. } => {
+                nodes.iter().zip(weights).for_each(|(node, w)| add(*node, &(vector * *w)));
             }
-            Place::Moment { patch, moment } => {
+            Place::Moment { patch, .. } => {
                 for (node, turned) in patch.nodes.iter().zip(&patch.rotation_per_displacement) {
-                    add(*node, &turned.tr_mul(moment));
+                    add(*node, &turned.tr_mul(&vector));
                 }
             }
             Place::Field { nodes, forces } => nodes.iter().zip(forces).for_each(|(node, f)| add(*node, f)),
@@ -193,14 +242,15 @@ impl MeshLoad {
     }
 
     /// The load on the modes of a body.
-    pub(super) fn reduced(&self, body: &ReducedBody, modes: &Modes, mesh: &Mesh) -> frames_rk4::Load {
+    pub(super) fn reduced(&self, body: &ReducedBody, modes: &Modes, mesh: &Mesh) -> Result<SharedLoad, ModalError> {
         let frame = if self.follows { LoadFrame::Body } else { LoadFrame::Global };
         let nf = body.flexible();
         let shape = |node: u32, k: usize| Vector3::from_fn(|axis, _| modes.shapes[(3 * node as usize + axis, k)]);
-        let action = match &self.place {
+        let history = self.history.clone();
+        Ok(match &self.place {
             Place::Force { nodes, weights, force } => {
-                let point = BodyPoint::new(modes, mesh.positions(), nodes, weights);
-                Action::Force { point: PointShapes::new(body, &point), force: *force, frame }
+                let point = PointShapes::new(body, &BodyPoint::new(modes, mesh.positions(), nodes, weights)?);
+                Arc::new(PointForce { point, force: *force, frame, history })
             }
             Place::Moment { patch, moment } => {
                 let turned: Vec<Vector3<f64>> = (0..nf)
@@ -210,7 +260,8 @@ impl MeshLoad {
                     })
                     .collect();
                 let turned = Mat::from_fn(3, nf, |axis, k| turned[k][axis]);
-                Action::Moment { rotation: RotationShapes::new(body, turned.as_ref()), moment: *moment, frame }
+                let rotation = RotationShapes::new(body, turned.as_ref());
+                Arc::new(PointMoment { rotation, moment: *moment, frame, history })
             }
             Place::Field { nodes, forces } => {
                 let position = |node: u32| Vector3::from(mesh.positions()[node as usize]) - body.origin;
@@ -219,14 +270,14 @@ impl MeshLoad {
                 let moment_body: Vector3<f64> = acting().map(|(node, f)| position(node).cross(f)).sum();
                 let rigid = [body.translation_basis.tr_mul(&force_body), body.rotation_basis.tr_mul(&moment_body)];
                 let flexible = (0..nf).map(|k| acting().map(|(node, f)| shape(node, k).dot(f)).sum());
-                Action::Field(BodyField {
+                let field = BodyField {
                     force_body,
                     moment_body,
                     modal: rigid.iter().flat_map(|v| v.iter().copied()).chain(flexible).collect(),
                     lever: (0..nf).map(|k| acting().map(|(node, f)| shape(node, k).cross(f)).sum()).collect(),
-                })
+                };
+                Arc::new(FieldLoad { field, history })
             }
-        };
-        frames_rk4::Load { action, history: self.history.clone() }
+        })
     }
 }

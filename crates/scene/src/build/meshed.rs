@@ -2,23 +2,23 @@
 
 use std::time::Instant;
 
-use advice::{Advice, Case, Effect, advise, buckling, limits, screen};
-use faer::{Mat, MatRef};
-use fem_tet10::{Location, Matrices, Mesh, reduced_geometric_stiffness};
-use frames_rk4::{Drive, Initial, Load, Physics, PointShapes};
-use modal::{BodyPoint, Modes, ReducedBody, Solver, Support, centrifugal_fields};
+use advice::{Advice, Backbone, Case, Effect, StaticCompliance, advise, buckling, limits, screen};
+use faer::{Col, Mat, MatRef};
+use fem_tet10::{AssemblyError, Location, Matrices, Mesh, geometric_stiffness_product, reduced_geometric_stiffness};
+use frames_rk4::{Drive, Initial, Method, Physics, PointShapes, SharedLoad};
+use modal::{BodyPoint, ModalError, Modes, ReducedBody, Solver, Support, centrifugal_fields};
 use nalgebra::Vector3;
 
+use super::backbones::backbones;
 use super::loads::{self, MeshLoad};
 use super::support::support;
 use super::{
-    BuildError, BuildProgress, BuildTimes, Meshed, Model, Size, damping_ratios, initial, materials, matrices, modal,
-    output_points, physics, read_mesh, refuse, step, timed, too_many_modes, truncated_modes, well_spread,
+    BuildError, BuildProgress, BuildTimes, Meshed, Model, Size, damping_ratios, initial, matrices, modal,
+    output_points, physics, read_mesh, refuse, timed, too_many_modes, truncated_modes, well_spread,
 };
 use crate::effects::{Choice, Effects};
-use crate::error::SceneError;
 use crate::modes::Flexible;
-use crate::scene::{Frame, MeshedBody, Method, Scene};
+use crate::scene::{Frame, MeshedBody, Scene};
 
 pub(super) fn build(
     scene: &Scene,
@@ -43,13 +43,14 @@ pub(super) fn build(
     let loads = loads::on_mesh(scene, &mesh, &solver.nodal_mass().row_sums())?;
     let parts =
         Parts { scene, body, mesh: &mesh, matrices: &matrices, solver: &solver, support: &support, loads, drive };
-    let Reduced { modes, body, physics, mut loads, size, damping_ratios, advice, left_out } =
+    let Reduced { modes, body, physics, mut loads, size, damping_ratios, advice, left_out, buckles, backbones } =
         parts.reduce(modes, &mut times, &mut progress)?;
 
     let started = Instant::now();
-    let point = |key: String, at: [f64; 3]| -> Result<PointShapes, SceneError> {
+    let point = |key: String, at: [f64; 3]| -> Result<PointShapes, BuildError> {
         let Location { nodes, weights } = mesh.locate(at).map_err(|error| refuse(scene, &key, error))?;
-        Ok(PointShapes::new(&body, &BodyPoint::new(&modes, mesh.positions(), &nodes, &weights)))
+        let point = BodyPoint::new(&modes, mesh.positions(), &nodes, &weights);
+        Ok(PointShapes::new(&body, &point.map_err(modal(scene))?))
     };
     let points = output_points(scene, point)?;
     if scene.effects.gravity == Choice::Auto && !advice.is_on(Effect::Gravity) {
@@ -76,14 +77,16 @@ pub(super) fn build(
         damping_ratios,
         size,
         left_out,
+        backbones,
     };
     let initial = model.initial(scene);
-    model.refusal = match &model.physics.load_stiffness {
-        Some(load_stiffness) => buckling(&model.body, load_stiffness)?,
-        None => None,
-    };
+    model.refusal = buckling(buckles);
     if model.refusal.is_none() {
         model.refusal = limits(&model.case(scene, &initial), &model.physics.effects)?;
+    }
+    // What stresses the body may stiffen it beyond what the estimate knows.
+    if model.refusal.is_none() && model.physics.load_stiffness.is_none() {
+        model.refusal = model.advice.refusal();
     }
     Ok(model)
 }
@@ -106,28 +109,37 @@ struct Reduced {
     modes: Modes,
     body: ReducedBody,
     physics: Physics,
-    loads: Vec<Load>,
+    loads: Vec<SharedLoad>,
     size: Size,
     damping_ratios: Vec<f64>,
     advice: Advice,
     left_out: Vec<f64>,
+    /// The steady loads over those at which the body buckles; 0 where they do not.
+    buckles: f64,
+    backbones: Vec<Option<Backbone>>,
 }
 
 /// A body in the coordinates of some modes.
 struct Draft {
     body: ReducedBody,
-    loads: Vec<Load>,
+    loads: Vec<SharedLoad>,
     size: Size,
     damping_ratios: Vec<f64>,
     initial: Initial,
+    backbones: Vec<Option<Backbone>>,
 }
 
-/// Static answers, side by side; none where nothing asks for them.
+/// A load, and another force or moment in the place of its own.
+type Acting<'a> = (&'a MeshLoad, Option<Vector3<f64>>);
+
+/// Static answers (3n each), side by side; none where nothing asks for them.
 struct Statics {
-    /// To the loads (3n × loads), and the work f·u of each.
-    of_loads: Option<(Mat<f64>, Vec<f64>)>,
+    /// To the loads in every direction that they may come to have in the body, and the work of each load on its answers.
+    of_loads: Option<(Mat<f64>, Vec<StaticCompliance>)>,
     /// To the centrifugal field of each pair of spins (3n × 6), and what the modes leave out of each.
     of_spin: Option<(Mat<f64>, Vec<f64>)>,
+    /// To the steady loads together (3n × 1).
+    of_steady: Option<Mat<f64>>,
 }
 
 impl Parts<'_> {
@@ -147,7 +159,7 @@ impl Parts<'_> {
         let correction = match scene.modes.static_correction {
             _ if draft.body.flexible() == 0 => Choice::Off,
             // The shapes are stiff, which only this scheme does not mind.
-            Choice::Auto if scene.time.method != Method::Exponential => Choice::Off,
+            Choice::Auto if scene.time.method != Method::EXPONENTIAL => Choice::Off,
             choice => choice,
         };
         let of_loads = correction != Choice::Off && !self.loads.is_empty();
@@ -157,11 +169,16 @@ impl Parts<'_> {
             progress(BuildProgress::Statics);
         }
         let started = Instant::now();
-        let statics = self.statics(&modes, &draft.body, of_loads, of_spin)?;
+        let statics = self.statics(&modes, &draft.body, [of_loads, of_spin], &steady)?;
         if stiffening {
-            draft.body.stress_stiffness = self.stress_stiffness(&statics, &modes)?;
+            self.stiffen(&mut draft, self.stress_stiffness(&statics, &modes)?)?;
         }
         let mut advice = advise(&self.case(&draft, Some(&statics)), tolerance)?;
+        let material = &self.body.materials;
+        draft.backbones = backbones(scene, self.mesh, material, self.solver, &modes, &draft.size, &advice)?;
+        if draft.backbones.iter().any(Option::is_some) {
+            advice = advise(&self.case(&draft, Some(&statics)), tolerance)?;
+        }
         let keep = match (scene.modes.flexible, scene.effects.flexibility) {
             (Flexible::Auto { .. }, Choice::On) => advice.keep.max(1).min(draft.body.flexible()),
             (Flexible::Auto { .. }, Choice::Auto) => advice.keep,
@@ -186,33 +203,42 @@ impl Parts<'_> {
         if keep < draft.body.flexible() || corrects {
             modes = truncated_modes(&modes, keep);
             if corrects {
-                let answers = [statics.of_loads.as_ref(), statics.of_spin.as_ref()];
-                for (answers, _) in answers.into_iter().flatten() {
+                let of_loads = statics.of_loads.as_ref().map(|(answers, _)| answers);
+                let of_spin = statics.of_spin.as_ref().map(|(answers, _)| answers);
+                for answers in of_loads.into_iter().chain(of_spin) {
                     modes = self.solver.with_static_shapes(modes, answers.as_ref()).map_err(modal(scene))?;
                 }
             }
+            let backbones = std::mem::take(&mut draft.backbones);
             draft = self.draft(&modes)?;
+            draft.backbones = backbones.into_iter().take(keep).collect();
             // What the static shapes carry is to be expected, too.
             advice.deflection = advise(&self.case(&draft, None), tolerance)?.deflection;
             if stiffening {
-                draft.body.stress_stiffness = self.stress_stiffness(&statics, &modes)?;
+                self.stiffen(&mut draft, self.stress_stiffness(&statics, &modes)?)?;
             }
         }
         let effects = physics::effects(scene, &advice, stiffening);
         if !effects.geometric_stiffening {
-            draft.body.stress_stiffness = None;
+            self.stiffen(&mut draft, None)?;
         }
-        let load_stiffness = self.load_stiffness(&steady, &modes, &draft, &mut advice)?;
+        let (load_stiffness, buckles) = self.load_stiffness(statics.of_steady.as_ref(), &modes, &draft, &mut advice)?;
         if of_loads || of_spin || !steady.is_empty() {
             times.statics = started.elapsed();
         }
 
-        let Draft { body, loads, size, mut damping_ratios, .. } = draft;
+        let Draft { body, loads, size, mut damping_ratios, backbones, .. } = draft;
         if scene.effects.damping == Choice::Auto && !scene.time.method.is_of_paper() && !advice.is_on(Effect::Damping) {
             damping_ratios.fill(0.0);
         }
         let physics = Physics { effects, drive: self.drive.clone(), load_stiffness };
-        Ok(Reduced { modes, body, physics, loads, size, damping_ratios, advice, left_out })
+        Ok(Reduced { modes, body, physics, loads, size, damping_ratios, advice, left_out, buckles, backbones })
+    }
+
+    /// Gives the body the stress stiffness of the spin, or takes it away.
+    fn stiffen(&self, draft: &mut Draft, stress_stiffness: Option<[Mat<f64>; 6]>) -> Result<(), BuildError> {
+        draft.body = draft.body.clone().with_stress_stiffness(stress_stiffness).map_err(modal(self.scene))?;
+        Ok(())
     }
 
     fn draft(&self, modes: &Modes) -> Result<Draft, BuildError> {
@@ -222,17 +248,22 @@ impl Parts<'_> {
             (0..shape.nrows() / 3).map(at).fold(0.0, f64::max)
         };
         Ok(Draft {
-            loads: self.loads.iter().map(|load| load.reduced(&body, modes, self.mesh)).collect(),
+            loads: self
+                .loads
+                .iter()
+                .map(|load| load.reduced(&body, modes, self.mesh))
+                .collect::<Result<_, _>>()
+                .map_err(modal(self.scene))?,
             size: Size { length: self.mesh.diagonal(), peaks: modes.shapes.as_ref().col_iter().map(peak).collect() },
             damping_ratios: damping_ratios(self.scene, &body),
             initial: initial(self.scene, body.flexible()),
+            backbones: Vec::new(),
             body,
         })
     }
 
     fn case<'a>(&'a self, draft: &'a Draft, statics: Option<&'a Statics>) -> Case<'a> {
         let (loads, gravity) = draft.loads.split_at(draft.loads.len() - loads::count_gravity(self.scene));
-        let list = |answers: Option<&'a (Mat<f64>, Vec<f64>)>| answers.map_or(&[][..], |(_, list)| list);
         Case {
             body: &draft.body,
             damping_ratios: &draft.damping_ratios,
@@ -241,11 +272,11 @@ impl Parts<'_> {
             drive: self.drive.as_ref(),
             initial: &draft.initial,
             end: self.scene.time.end,
-            step: step(self.scene),
             length: draft.size.length,
             peaks: &draft.size.peaks,
-            static_compliances: list(statics.and_then(|s| s.of_loads.as_ref())),
-            centrifugal_remainders: list(statics.and_then(|s| s.of_spin.as_ref())),
+            static_compliances: statics.and_then(|s| s.of_loads.as_ref()).map_or(&[], |(_, compliances)| compliances),
+            centrifugal_remainders: statics.and_then(|s| s.of_spin.as_ref()).map_or(&[], |(_, remainders)| remainders),
+            backbones: &draft.backbones,
         }
     }
 
@@ -284,23 +315,65 @@ impl Parts<'_> {
             })
     }
 
-    fn statics(&self, modes: &Modes, body: &ReducedBody, of_loads: bool, of_spin: bool) -> Result<Statics, BuildError> {
-        let to_loads = || -> Result<_, BuildError> {
-            let mut forces = Mat::zeros(3 * self.mesh.positions().len(), self.loads.len());
-            for (i, load) in self.loads.iter().enumerate() {
-                load.add_nodal_forces(forces.as_mut().col_mut(i));
+    /// All static answers that are asked for, from one block of forces.
+    fn statics(
+        &self,
+        modes: &Modes,
+        body: &ReducedBody,
+        [of_loads, of_spin]: [bool; 2],
+        steady: &[&MeshLoad],
+    ) -> Result<Statics, BuildError> {
+        let turning = physics::turning(self.scene, self.support.motion, self.drive.as_ref());
+        let loads = if of_loads { &self.loads[..] } else { &[] };
+        let turned: Vec<Vec<Vector3<f64>>> = loads.iter().map(|load| load.turned(turning)).collect();
+        // What each column is the sum of.
+        let mut columns: Vec<Vec<Acting<'_>>> = Vec::new();
+        for (load, turned) in loads.iter().zip(&turned) {
+            match turned[..] {
+                [] => columns.push(vec![(load, None)]),
+                _ => columns.extend(turned.iter().map(|vector| vec![(load, Some(*vector))])),
             }
-            let answers = self.solver.static_response(forces.as_ref()).map_err(modal(self.scene))?;
-            let work = forces.col_iter().zip(answers.col_iter()).map(|(f, u)| f.transpose() * u).collect();
-            Ok((answers, work))
-        };
-        let to_spin = || -> Result<_, BuildError> {
-            let fields = centrifugal_fields(self.solver.nodal_mass(), self.mesh.positions(), &body.origin);
-            let answers = self.solver.static_response(fields.as_ref()).map_err(modal(self.scene))?;
-            let remainders = self.remainders(modes, answers.as_ref());
-            Ok((answers, remainders))
-        };
-        Ok(Statics { of_loads: of_loads.then(to_loads).transpose()?, of_spin: of_spin.then(to_spin).transpose()? })
+        }
+        let for_loads = columns.len();
+        if !steady.is_empty() {
+            columns.push(steady.iter().map(|load| (*load, None)).collect());
+        }
+        let for_all_loads = columns.len();
+        let fields = of_spin.then(|| centrifugal_fields(self.solver.nodal_mass(), self.mesh.positions(), &body.origin));
+        if columns.is_empty() && fields.is_none() {
+            return Ok(Statics { of_loads: None, of_spin: None, of_steady: None });
+        }
+        let spins = fields.as_ref().map_or(0, Mat::ncols);
+        let mut forces = Mat::zeros(3 * self.mesh.positions().len(), for_all_loads + spins);
+        for (i, loads) in columns.iter().enumerate() {
+            for (load, vector) in loads {
+                load.add_nodal_forces(*vector, forces.as_mut().col_mut(i));
+            }
+        }
+        if let Some(fields) = &fields {
+            forces.as_mut().subcols_mut(for_all_loads, spins).copy_from(fields);
+        }
+        let answers = self.solver.static_response(forces.as_ref()).map_err(modal(self.scene))?;
+
+        let to_spin = answers.subcols(for_all_loads, spins);
+        let mut first = 0;
+        let compliances = loads.iter().zip(&turned).map(|(load, turned)| {
+            let columns = turned.len().max(1);
+            let (of, to) = (forces.subcols(first, columns), answers.subcols(first, columns));
+            first += columns;
+            let parts = Col::from_iter(load.parts(turned));
+            let work = |i: usize| of.col(i).transpose() * to.col(i);
+            StaticCompliance {
+                at_start: (of * &parts).transpose() * (to * &parts),
+                turned: turned.iter().enumerate().map(|(i, vector)| (*vector, work(i))).collect(),
+            }
+        });
+        let compliances: Vec<StaticCompliance> = compliances.collect();
+        Ok(Statics {
+            of_loads: of_loads.then(|| (answers.subcols(0, for_loads).to_owned(), compliances)),
+            of_spin: of_spin.then(|| (to_spin.to_owned(), self.remainders(modes, to_spin))),
+            of_steady: (!steady.is_empty()).then(|| answers.subcols(for_loads, 1).to_owned()),
+        })
     }
 
     /// √(uᵀMu − Σ(Φ_kᵀMu)²) of each answer u.
@@ -317,7 +390,7 @@ impl Parts<'_> {
     fn stress_stiffness(&self, statics: &Statics, modes: &Modes) -> Result<Option<[Mat<f64>; 6]>, BuildError> {
         let Some((answers, _)) = &statics.of_spin else { return Ok(None) };
         let shapes = modes.shapes.as_ref();
-        let stiffness = reduced_geometric_stiffness(self.mesh, &materials(self.body), answers.as_ref(), shapes)?;
+        let stiffness = reduced_geometric_stiffness(self.mesh, &self.body.materials, answers.as_ref(), shapes)?;
         Ok(stiffness.try_into().ok())
     }
 
@@ -327,26 +400,23 @@ impl Parts<'_> {
         self.loads.iter().filter(steady).filter(|_| draft.body.flexible() > 0).collect()
     }
 
-    /// Stress stiffness of steady loads in the modes; none where it may be left out, which `advice` is told.
+    /// Stress stiffness of steady loads in the modes, none where it may be left out, which `advice` is told; and the loads
+    /// over those at which the body buckles.
     fn load_stiffness(
         &self,
-        steady: &[&MeshLoad],
+        answer: Option<&Mat<f64>>,
         modes: &Modes,
         draft: &Draft,
         advice: &mut Advice,
-    ) -> Result<Option<Mat<f64>>, BuildError> {
-        if steady.is_empty() || modes.shapes.ncols() == 0 {
-            return Ok(None);
-        }
-        let mut force = Mat::zeros(3 * self.mesh.positions().len(), 1);
-        steady.iter().for_each(|load| load.add_nodal_forces(force.as_mut().col_mut(0)));
-        let answer = self.solver.static_response(force.as_ref()).map_err(modal(self.scene))?;
+    ) -> Result<(Option<Mat<f64>>, f64), BuildError> {
+        let Some(answer) = answer.filter(|_| modes.shapes.ncols() > 0) else { return Ok((None, 0.0)) };
         // Gravity stresses no body that falls.
         if answer.norm_max() == 0.0 {
-            return Ok(None);
+            return Ok((None, 0.0));
         }
+        let buckles = self.buckles(answer.as_ref(), modes)?;
         let shapes = modes.shapes.as_ref();
-        let stiffness = reduced_geometric_stiffness(self.mesh, &materials(self.body), answer.as_ref(), shapes)?.pop();
+        let stiffness = reduced_geometric_stiffness(self.mesh, &self.body.materials, answer.as_ref(), shapes)?.pop();
         let (value, influence) = stiffness.as_ref().map_or((0.0, 0.0), |k| steady_stiffening(k, draft, self.scene));
         let Effects { geometric_stiffening: choice, tolerance, .. } = self.scene.effects;
         let row = advice.rows.iter_mut().find(|row| row.effect == Effect::GeometricStiffening);
@@ -355,8 +425,31 @@ impl Parts<'_> {
             row.why = format!("The stress of steady loads moves the frequency of a mode by up to {shift:.2e} %.");
             (row.value, row.influence, row.on) = (value, influence, influence >= tolerance);
         }
-        Ok(stiffness.filter(|_| choice == Choice::On || influence >= tolerance))
+        Ok((stiffness.filter(|_| choice == Choice::On || influence >= tolerance), buckles))
     }
+
+    /// The loads of a static `answer` over those at which the body buckles, on the whole mesh: the modes that are kept do
+    /// not hold the shape in which it does.
+    fn buckles(&self, answer: MatRef<'_, f64>, modes: &Modes) -> Result<f64, BuildError> {
+        let material = &self.body.materials;
+        let product = |fields: MatRef<'_, f64>| -> Result<Mat<f64>, BucklingError> {
+            Ok(geometric_stiffness_product(self.mesh, material, answer, fields)?)
+        };
+        match self.solver.lowest_buckling_ratio(modes.shapes.as_ref(), product) {
+            Ok(lowest) => Ok(-lowest),
+            Err(BucklingError::Modal(error)) => Err(modal(self.scene)(error)),
+            Err(BucklingError::Assembly(error)) => Err(error.into()),
+        }
+    }
+}
+
+/// What the search for the buckling load may meet.
+#[derive(Debug, thiserror::Error)]
+enum BucklingError {
+    #[error(transparent)]
+    Modal(#[from] ModalError),
+    #[error(transparent)]
+    Assembly(#[from] AssemblyError),
 }
 
 /// Largest |K_kl|/(ω_k ω_l), and its influence: the phase that a mode is out by in the end of the time that it rings.

@@ -3,6 +3,7 @@
 use advice::{Advice, Effect};
 use frames_rk4::{Drive, DrivenMotion, Effects};
 use modal::RigidMotion;
+use nalgebra::Vector3;
 
 use super::loads::MeshLoad;
 use crate::effects::Choice;
@@ -11,18 +12,33 @@ use crate::scene::Scene;
 /// Whether anything may set the body spinning.
 pub(super) fn may_spin(scene: &Scene, motion: RigidMotion, drive: Option<&Drive>) -> bool {
     let set_off = drive.is_some() || scene.initial.angular_velocity != [0.0; 3] || !scene.loads.is_empty();
-    scene.effects.rotation != Choice::Off && turns(motion, drive) && set_off
+    turning(scene, motion, drive) != Turning::Not && set_off
 }
 
-/// Whether a body can turn.
-fn turns(motion: RigidMotion, drive: Option<&Drive>) -> bool {
-    let is_turned = drive.is_some_and(|drive| matches!(drive.motion, DrivenMotion::Turn { .. }));
-    is_turned || !motion.rotations().is_empty()
+/// How a body can turn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Turning {
+    Not,
+    /// About one axis, a unit vector.
+    About(Vector3<f64>),
+    Freely,
+}
+
+pub(super) fn turning(scene: &Scene, motion: RigidMotion, drive: Option<&Drive>) -> Turning {
+    if scene.effects.rotation == Choice::Off {
+        return Turning::Not;
+    }
+    match (motion.rotations(), drive.map(|drive| drive.motion)) {
+        (_, Some(DrivenMotion::Turn { axis })) => Turning::About(axis),
+        ([], _) => Turning::Not,
+        ([axis], _) => Turning::About(*axis),
+        _ => Turning::Freely,
+    }
 }
 
 /// Whether the stress of a load stiffens the body: one that stays as it is, seen from the body.
 pub(super) fn stiffens(scene: &Scene, motion: RigidMotion, drive: Option<&Drive>, load: &MeshLoad) -> bool {
-    let turns = turns(motion, drive) && scene.effects.rotation != Choice::Off;
+    let turns = turning(scene, motion, drive) != Turning::Not;
     scene.effects.geometric_stiffening != Choice::Off
         && !scene.time.method.is_of_paper()
         && matches!(load.history, frames_rk4::History::Constant)

@@ -7,9 +7,8 @@ use modal::{BodyPoint, ReducedBody, Support};
 use nalgebra::{Matrix3, Vector3};
 
 use super::support::support;
-use super::{BuildError, BuildTimes, Model, Size, initial, loads, modal, output_points, physics, step};
+use super::{BuildError, BuildTimes, Model, Size, initial, loads, modal, output_points, physics};
 use crate::effects::Choice;
-use crate::error::SceneError;
 use crate::scene::{Frame, RigidBody, Scene};
 
 pub(super) fn build(scene: &Scene, rigid: &RigidBody) -> Result<Model, BuildError> {
@@ -19,7 +18,7 @@ pub(super) fn build(scene: &Scene, rigid: &RigidBody) -> Result<Model, BuildErro
     let arm = center - motion.fixed_point().unwrap_or(center);
     let inertia = about_center + (Matrix3::identity() * arm.norm_squared() - arm * arm.transpose()) * rigid.mass;
     let body = ReducedBody::rigid(rigid.mass, center, inertia, motion).map_err(modal(scene))?;
-    let point = |_: String, at: [f64; 3]| -> Result<PointShapes, SceneError> {
+    let point = |_: String, at: [f64; 3]| -> Result<PointShapes, BuildError> {
         let position_body = Vector3::from(at) - body.origin;
         Ok(PointShapes::new(&body, &BodyPoint { position_body, shapes: Mat::zeros(3, 0) }))
     };
@@ -42,11 +41,11 @@ pub(super) fn build(scene: &Scene, rigid: &RigidBody) -> Result<Model, BuildErro
             drive: drive.as_ref(),
             initial: &initial,
             end: scene.time.end,
-            step: step(scene),
             length: size.length,
             peaks: &[],
             static_compliances: &[],
             centrifugal_remainders: &[],
+            backbones: &[],
         },
         scene.effects.tolerance,
     )?;
@@ -66,6 +65,7 @@ pub(super) fn build(scene: &Scene, rigid: &RigidBody) -> Result<Model, BuildErro
         size,
         body,
         left_out: Vec::new(),
+        backbones: Vec::new(),
     })
 }
 

@@ -33,18 +33,14 @@ pub(super) fn support(scene: &Scene, mesh: Option<&Mesh>) -> Result<(Support, Op
         Constraint::Hinge { line, motion, .. } => {
             let (point, axis) = (line.at().into(), line.direction().into());
             match motion {
-                Some(drive) => {
-                    (RigidMotion::clamp(point), Some(driven(drive, DrivenMotion::Turn { axis })?))
-                }
+                Some(drive) => (RigidMotion::clamp(point), Some(driven(drive, DrivenMotion::Turn { axis })?)),
                 None => (RigidMotion::hinge(point, axis), None),
             }
         }
         Constraint::Slider { direction, motion, .. } => {
             let direction = (*direction).into();
             match motion {
-                Some(drive) => {
-                    (RigidMotion::clamp(mean()), Some(driven(drive, DrivenMotion::Slide { direction })?))
-                }
+                Some(drive) => (RigidMotion::clamp(mean()), Some(driven(drive, DrivenMotion::Slide { direction })?)),
                 None => (RigidMotion::slider(direction), None),
             }
         }

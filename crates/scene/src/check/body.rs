@@ -2,12 +2,13 @@
 
 use std::collections::BTreeMap;
 
+use fem_tet10::{Material, Materials, PointMass};
 use nalgebra::{Matrix3, Vector3};
 
 use super::Check;
 use crate::document::join;
 use crate::error::SceneError;
-use crate::scene::{Body, Material, Materials, MeshedBody, PointMass, RigidBody};
+use crate::scene::{Body, MeshedBody, RigidBody};
 use crate::section::{BodySection, RigidSection};
 
 /// Relative difference of entries of an inertia tensor that should be equal, still taken for rounding.
@@ -96,7 +97,7 @@ impl Check<'_> {
             }
             (Some(material), None) => {
                 self.material("body.material", &material)?;
-                Ok(Materials::Whole(material))
+                Ok(Materials::Uniform(material))
             }
             (None, Some(groups)) => {
                 self.require(

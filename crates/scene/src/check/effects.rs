@@ -1,5 +1,7 @@
 //! The rules on `[effects]`: what is asked for must be there, and what is there by force cannot be switched off.
 
+use frames_rk4::Method;
+
 use super::Check;
 use crate::constraint::Constraint;
 use crate::document::join;
@@ -7,7 +9,7 @@ use crate::effects::{Choice, Effects};
 use crate::error::SceneError;
 use crate::load::Load;
 use crate::modes::{Flexible, Modes};
-use crate::scene::{Initial, Method};
+use crate::scene::Initial;
 
 impl Check<'_> {
     pub fn effects(

@@ -146,17 +146,14 @@ impl Check<'_> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let mut points: Vec<[f64; 2]> = Vec::new();
         let mut is_first = true;
-        let mut start = 0;
         // Numbers need no quotes, and a library for CSV loses the line where comments stand before it.
-        for written in text.split_inclusive('\n') {
-            let range = start..start + written.trim_end().len();
-            start += written.len();
-            let line = written.trim();
+        for (number, line) in (1..).zip(text.lines()) {
+            let line = line.trim();
             if line.is_empty() || line.starts_with('#') {
                 continue;
             }
             let refuse = |found: String, expected: &str, cure: &str| {
-                Err(Place::new(path, text, range, key.to_owned()).refuse(found, expected, cure))
+                Err(Place::unseen(path, number, key.to_owned()).refuse(found, expected, cure))
             };
             let numbers: Vec<Option<f64>> = line.split(',').map(|field| field.trim().parse().ok()).collect();
             let names_columns = is_first && numbers.iter().all(Option::is_none);
@@ -179,12 +176,17 @@ impl Check<'_> {
                 }
                 _ => {
                     let expected = "two finite numbers, time and factor, with a comma between them";
-                    return refuse(shorten(line), expected, "correct the line; only the first may name the columns");
+                    let count = numbers.iter().flatten().filter(|number| number.is_finite()).count();
+                    return refuse(
+                        format!("{} field(s), {count} of them finite numbers", numbers.len()),
+                        expected,
+                        "correct the line; only the first may name the columns",
+                    );
                 }
             }
         }
         if points.len() < 2 {
-            let place = Place::new(path, text, 0..text.len(), key.to_owned());
+            let place = Place::unseen(path, 1, key.to_owned());
             let found = format!("{} of the {PAIRS}", points.len());
             return Err(place.refuse(found, "at least two", "write a line `time,factor` for each point"));
         }

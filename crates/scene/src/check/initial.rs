@@ -1,6 +1,7 @@
 //! The rules on `[initial]`.
 
 use nalgebra::Vector3;
+use rigid_kin::Attitude;
 
 use super::Check;
 use crate::constraint::Constraint;
@@ -34,6 +35,16 @@ impl Check<'_> {
                 self.require(false, &format!("{key}[{i}]"), &expected, cure)?;
             }
         }
+        if let Some(wxyz) = initial.attitude {
+            let expected = "a quaternion [w, x, y, z] of finite numbers that are not all zero";
+            let cure = "[1, 0, 0, 0] has the body axes along the global ones; a turn by the angle a about the unit vector n \
+                        is [cos(a/2), n sin(a/2)]";
+            self.require(Attitude::from_wxyz(wxyz).is_ok(), "initial.attitude", expected, cure)?;
+        }
+        let attitude = initial.attitude.and_then(|wxyz| Attitude::from_wxyz(wxyz).ok());
+        let to_global = |direction: &[f64; 3]| -> [f64; 3] {
+            attitude.map_or(*direction, |attitude| attitude.to_global(&Vector3::from(*direction)).into())
+        };
         let Some(constraint) = constraint else { return Ok(()) };
         // What the constraint leaves of the velocity and of the angular velocity.
         let (velocity, angular_velocity) = match constraint {
@@ -42,7 +53,7 @@ impl Check<'_> {
                 (Left::Nothing("it follows from the angular velocity about the hinge"), Left::Along(line.direction()))
             }
             Constraint::Slider { motion: None, direction, .. } => {
-                (Left::Along(*direction), Left::Nothing("a slider does not turn"))
+                (Left::Along(to_global(direction)), Left::Nothing("a slider does not turn"))
             }
             Constraint::Clamp { .. } => (Left::Nothing("a clamped body stays"), Left::Nothing("a clamped body stays")),
             Constraint::Hinge { .. } | Constraint::Slider { .. } => {

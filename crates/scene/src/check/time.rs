@@ -1,9 +1,11 @@
 //! The rules on `[time]` and `[output]`.
 
+use frames_rk4::{Method, Rows, StepControl};
+
 use super::Check;
 use crate::document::join;
 use crate::error::{SceneError, shorten};
-use crate::scene::{Method, Output, Rows, Stepping, Time};
+use crate::scene::{Output, Time};
 use crate::section::{Formulation, OutputSection, Scheme, TimeSection};
 
 /// Intervals between rows where the scene gives a tolerance and no interval.
@@ -20,8 +22,8 @@ impl Check<'_> {
         let method = self.method(formulation, scheme)?;
         let expected = "exactly one of them";
         let cure = "give `step`, the length of a step, e.g. `step = 1e-4`, or `tolerance`, \
-                    the relative error allowed in a step, e.g. `tolerance = 1e-8`";
-        let stepping = match (step, tolerance) {
+                    what the estimated relative errors of all steps may sum to, e.g. `tolerance = 1e-6`";
+        let control = match (step, tolerance) {
             (Some(_), Some(_)) => {
                 return Err(self.document.place("time.tolerance").refuse(
                     "both `step` and `tolerance`",
@@ -35,56 +37,48 @@ impl Check<'_> {
             (Some(step), None) => {
                 self.positive("time.step", step, "give the length of a time step, e.g. `step = 1e-4`")?;
                 self.part_of_the_run("time.step", step, end, "step")?;
-                Stepping::Step(step)
+                StepControl::Fixed(step)
             }
             (None, Some(tolerance)) => {
                 self.tolerance(tolerance, method)?;
-                Stepping::Tolerance(tolerance)
+                StepControl::Tolerance(tolerance)
             }
         };
-        Ok(Time { end, stepping, method })
+        Ok(Time { end, control, method })
     }
 
     fn method(&self, formulation: Option<Formulation>, scheme: Option<Scheme>) -> Result<Method, SceneError> {
-        match (formulation, scheme) {
-            (Some(Formulation::Conservative), Some(Scheme::Paper)) => {
-                let found = "the conservative formulation with the scheme `paper`";
-                let expected = "the formulation `paper`, which that scheme belongs to";
-                let cure = "remove `formulation`, or set `scheme = \"exponential\"` for the conservative one";
-                Err(self.document.place("time.formulation").refuse(found, expected, cure))
-            }
-            (None | Some(Formulation::Paper), Some(Scheme::Paper)) | (Some(Formulation::Paper), None) => {
-                Ok(Method::Paper)
-            }
-            (Some(Formulation::Paper), Some(Scheme::Rkmk4)) => Ok(Method::PaperRkmk4),
-            (Some(Formulation::Paper), Some(Scheme::Exponential | Scheme::Strang)) => {
-                let scheme = self.document.nearest("time.scheme");
-                let found = format!("{} with the formulation `paper`", shorten(scheme.written()));
-                let expected = "`paper` or `rkmk4`, since `exponential` and `strang` need the conservative form";
-                let cure = "set `scheme = \"rkmk4\"`, or `formulation = \"conservative\"`";
-                Err(scheme.place().refuse(found, expected, cure))
-            }
-            (None | Some(Formulation::Conservative), Some(Scheme::Rkmk4)) => Ok(Method::Rkmk4),
-            (None | Some(Formulation::Conservative), Some(Scheme::Strang)) => Ok(Method::Strang),
-            (None | Some(Formulation::Conservative), Some(Scheme::Exponential) | None) => Ok(Method::Exponential),
-        }
+        let of_formulation = formulation.map(|Formulation(name)| name);
+        let Some(Scheme(name)) = scheme else {
+            return Ok(if of_formulation == Some("paper") { Method::PAPER } else { Method::EXPONENTIAL });
+        };
+        Method::named(of_formulation, name).ok_or_else(|| {
+            let of_formulation = of_formulation.unwrap_or_default();
+            let others = |fits: &dyn Fn(&Method) -> bool, of: fn(&Method) -> &'static str| {
+                let names: Vec<String> =
+                    Method::ALL.iter().filter(|m| fits(m)).map(|m| format!("`{}`", of(m))).collect();
+                names.join(" or ")
+            };
+            let schemes = others(&|method| method.formulation == of_formulation, |method| method.scheme);
+            let formulations = others(&|method| method.scheme == name, |method| method.formulation);
+            let scheme = self.document.nearest("time.scheme");
+            let found = format!("{} with the formulation `{of_formulation}`", shorten(scheme.written()));
+            let expected = format!("{schemes}, or the formulation {formulations}, which has that scheme");
+            scheme.place().refuse(found, expected, "change `scheme`, or change or remove `formulation`")
+        })
     }
 
     fn tolerance(&self, tolerance: f64, method: Method) -> Result<(), SceneError> {
-        let found = match method {
-            Method::Rkmk4 | Method::Exponential => {
-                return self.require(
-                    tolerance > 0.0 && tolerance < 1.0,
-                    "time.tolerance",
-                    "a number between 0 and 1, both excluded",
-                    "give the relative error allowed in a step, e.g. `tolerance = 1e-8`",
-                );
-            }
-            Method::Paper | Method::PaperRkmk4 => "a tolerance with the paper's formulation",
-            Method::Strang => "a tolerance with the scheme `strang`",
-        };
+        if method.estimates_error {
+            return self.require(
+                tolerance > 0.0 && tolerance < 1.0,
+                "time.tolerance",
+                "a number between 0 and 1, both excluded",
+                "give what the estimated relative errors of all steps may sum to, e.g. `tolerance = 1e-6`",
+            );
+        }
         Err(self.document.place("time.tolerance").refuse(
-            found,
+            format!("a tolerance with the scheme `{}` of the formulation `{}`", method.scheme, method.formulation),
             "`step`, since only `exponential` and `rkmk4` on the conservative form estimate the error of a step",
             "give `step`, e.g. `step = 1e-4`, or set `scheme = \"exponential\"` and \
              `formulation = \"conservative\"`",
@@ -118,7 +112,7 @@ impl Check<'_> {
 
     pub fn output(&self, section: OutputSection, time: &Time) -> Result<Output, SceneError> {
         let OutputSection { every, interval, points } = section;
-        let rows = match (every, interval, time.stepping) {
+        let rows = match (every, interval, time.control) {
             (Some(_), Some(_), _) => {
                 return Err(self.document.place("output.interval").refuse(
                     "both `every` and `interval`",
@@ -126,14 +120,14 @@ impl Check<'_> {
                     "keep `every` for a row after so many steps, or `interval` for rows at its multiples",
                 ));
             }
-            (Some(_), None, Stepping::Tolerance(_)) => {
+            (Some(_), None, StepControl::Tolerance(_)) => {
                 return Err(self.document.place("output.every").refuse(
                     "`every` with a tolerance",
                     "`interval`, since steps under a tolerance are not equally long",
                     "replace it by the time between two rows, e.g. `interval = 1e-3`",
                 ));
             }
-            (Some(every), None, Stepping::Step(_)) => {
+            (Some(every), None, StepControl::Fixed(_)) => {
                 self.require(
                     every >= 1,
                     "output.every",
@@ -148,8 +142,8 @@ impl Check<'_> {
                 self.part_of_the_run("output.interval", interval, time.end, "interval")?;
                 Rows::Interval(interval)
             }
-            (None, None, Stepping::Step(_)) => Rows::EverySteps(1),
-            (None, None, Stepping::Tolerance(_)) => Rows::Interval(time.end / DEFAULT_ROWS),
+            (None, None, StepControl::Fixed(_)) => Rows::EverySteps(1),
+            (None, None, StepControl::Tolerance(_)) => Rows::Interval(time.end / DEFAULT_ROWS),
         };
         let cure = "keep the points that you look at";
         self.not_too_many("output.points", points.len(), cure)?;

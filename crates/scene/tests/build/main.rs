@@ -1,13 +1,17 @@
 //! From the text of a scene to the motion of its body, on a bar small enough for closed forms.
 
 mod auto;
+mod backbones;
 mod damping;
 mod histories;
 mod loads;
 mod off;
 mod statics;
+mod step;
 mod stretch;
 mod supports;
+mod tolerance;
+mod turned;
 
 use std::path::Path;
 
@@ -134,7 +138,7 @@ fn what_the_modal_analysis_refuses_names_the_scene_file() {
     {
         let mut scene = bar("flexible = 2", "", "end = 1e-3\nstep = 1e-5");
         let Body::Meshed(body) = &mut scene.body else { panic!("no mesh") };
-        body.materials = Materials::Whole(Material { young_modulus, poisson_ratio: POISSON, density });
+        body.materials = Materials::Uniform(Material { young_modulus, poisson_ratio: POISSON, density });
         let error = refusal(&scene);
         assert!(matches!(error, BuildError::Modal { .. }), "{error}");
         let message = error.to_string();

@@ -1,12 +1,12 @@
-//! Pictures of any scene: the shapes of its modes.
+//! A picture of the mode shapes of a scene.
 
 use std::path::{Path, PathBuf};
 
+use figures::{FigureError, Panel, ShapeGrid, View};
 use nalgebra::Vector3;
-use results::{FigureError, Panel, ShapeGrid, View};
-use scene::{Meshed, Model, Scene};
+use scene::{Meshed, Model, Scene, SceneError};
 
-use crate::modes::frequency_unit;
+use crate::modes::{frequency_unit, require_flexible};
 use crate::surface::Surface;
 
 /// Largest displacement drawn, as a fraction of the body's size.
@@ -14,16 +14,24 @@ const DRAWN: f64 = 0.08;
 /// More modes than this do not fit a page.
 const MOST_PANELS: usize = 20;
 
+/// Mode shapes that could not be drawn.
+#[derive(Debug, thiserror::Error)]
+pub enum ShapesError {
+    /// The body has no flexible modes.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// The picture could not be drawn.
+    #[error(transparent)]
+    Figure(#[from] FigureError),
+}
+
 /// Draws the flexible mode shapes, numbered after the six rigid ones, to `<stem>.svg` and `<stem>.png`.
 ///
 /// # Errors
-/// [`FigureError`], also where there are no flexible modes to draw.
-pub fn mode_shapes(scene: &Scene, model: &Model, stem: &Path) -> Result<[PathBuf; 2], FigureError> {
-    let Some(Meshed { mesh, modes, .. }) = &model.meshed else {
-        return Err(FigureError::Empty { figure: scene.title.clone(), what: "a mesh" });
-    };
+/// [`ShapesError`], also where there are no flexible modes to draw.
+pub fn draw(scene: &Scene, model: &Model, stem: &Path) -> Result<[PathBuf; 2], ShapesError> {
+    let Meshed { mesh, modes, .. } = require_flexible(scene, model)?;
     let surface = Surface::new(mesh);
-    let first = model.body.motion.count() + 1;
     let unit = frequency_unit(&scene.units.time);
     let panels = modes
         .natural_frequencies()
@@ -37,7 +45,7 @@ pub fn mode_shapes(scene: &Scene, model: &Model, stem: &Path) -> Result<[PathBuf
             let largest = shape.iter().map(Vector3::norm).fold(0.0, f64::max);
             let scale = DRAWN * mesh.diagonal() / largest;
             Panel {
-                title: format!("Mode {}: {frequency:.4} {unit}", k + first),
+                title: format!("Mode {}: {frequency:.4} {unit}", k + 1),
                 points: surface
                     .points
                     .iter()
@@ -48,7 +56,7 @@ pub fn mode_shapes(scene: &Scene, model: &Model, stem: &Path) -> Result<[PathBuf
             }
         })
         .collect();
-    ShapeGrid {
+    let pictures = ShapeGrid {
         title: format!("{}: mode shapes", scene.title),
         value_label: "displacement / largest of the mode".to_owned(),
         triangles: &surface.triangles,
@@ -58,5 +66,6 @@ pub fn mode_shapes(scene: &Scene, model: &Model, stem: &Path) -> Result<[PathBuf
         columns: 2,
         view: View::default(),
     }
-    .save(stem)
+    .save(stem)?;
+    Ok(pictures)
 }

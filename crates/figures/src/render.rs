@@ -3,10 +3,11 @@
 //! The nearest of all things wins a dot, so that hidden parts are right for any shape, and the size
 //! of a picture does not depend on the number of triangles.
 
+use plotters::prelude::*;
+
 use crate::FigureError;
+use crate::picture::Area;
 use crate::view::Seen;
-use plotters::style::RGBColor;
-use plotters::style::colors::colormaps::{ColorMap, ViridisRGB};
 
 /// How finely the colours of a surface are graded: by value and by the light on it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -64,8 +65,11 @@ impl Canvas {
         }
     }
 
-    pub(crate) fn into_rgb(self) -> Vec<u8> {
-        self.rgb
+    /// Draws the bitmap into an area of its size.
+    pub(crate) fn draw<DB: DrawingBackend>(&self, area: &Area<DB>) -> Result<(), FigureError> {
+        let size = (self.width as u32, self.height as u32);
+        let bitmap: Option<BitMapElement<_>> = BitMapElement::with_ref((0, 0), size, &self.rgb);
+        bitmap.map_or(Ok(()), |bitmap| Ok(area.draw(&bitmap)?))
     }
 
     /// A point in dots: right, down, and towards the viewer.
@@ -200,7 +204,7 @@ mod tests {
             for (points, value) in order {
                 canvas.surface(&triangles, points, &[value; 4]);
             }
-            canvas.into_rgb()
+            canvas.rgb
         };
         let rgb = draw([(&near, 0.0), (&far, 1.0)]);
         assert_eq!(rgb, draw([(&far, 1.0), (&near, 0.0)]));

@@ -1,22 +1,24 @@
 //! A moving body as an animated GIF.
 
-use crate::FigureError;
-use crate::chart::{INK, LABEL_EM, TITLE_EM};
-use crate::picture::{Anchor, Picture, write_error};
-use crate::render::{Canvas, Grades, check_indices, check_points, surface_colours};
-use crate::shapes::EDGE;
-use crate::ticks;
-use crate::view::{View, Window};
-use plotters::backend::{BitMapBackend, DrawingBackend};
-use plotters::style::RGBColor;
+use std::borrow::Cow;
 use std::collections::HashMap;
-use std::fs::File;
 use std::path::Path;
 
-const WIDTH: u32 = 720;
-const HEIGHT: u32 = 400;
+use gif::{Encoder, EncodingError, Repeat};
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, VPos};
+use whole_file::WholeFile;
+
+use crate::FigureError;
+use crate::axis::{linear_range, round_step};
+use crate::picture::{Area, Figure, INK, LABEL_EM, TITLE_EM, Unit, draw_error, rgb};
+use crate::render::{Canvas, Grades, check_indices, check_points, surface_colours};
+use crate::shapes::EDGE;
+use crate::view::{View, Window};
+
+const WIDTH: u16 = 720;
+const HEIGHT: u16 = 400;
 const MARGIN: f64 = 14.0;
-const FINENESS: u32 = 2;
 /// Few enough that all frames share one palette of a GIF's 256 colours.
 const GRADES: Grades = Grades { values: 28, lights: 5 };
 const GROUND: RGBColor = RGBColor(214, 214, 214);
@@ -67,15 +69,27 @@ impl Animation<'_> {
         self.check()?;
         let stage = self.stage();
         let mut palette = Palette::new();
-        let size = (WIDTH, HEIGHT);
-        // The drawing library keeps the system's reason for itself.
-        File::create(path).map_err(|error| FigureError::system(path, &error))?;
-        let mut gif = BitMapBackend::gif(path, size, self.frame_milliseconds).map_err(write_error(path))?;
+        let system = |error| FigureError::system(path, &error);
+        let written = |error| match error {
+            EncodingError::Io(error) => system(error),
+            error => draw_error(error),
+        };
+        let mut file = WholeFile::create(path).map_err(system)?;
+        let mut gif = Encoder::new(&mut file, WIDTH, HEIGHT, &palette.colours.concat()).map_err(written)?;
+        gif.set_repeat(Repeat::Infinite).map_err(written)?;
         for last in 0..self.frames.len() {
-            let rgb = palette.applied(self.picture(&stage, last).rgb(1)?);
-            gif.blit_bitmap((0, 0), size, &rgb).and_then(|()| gif.present()).map_err(write_error(path))?;
+            let dots = palette.applied(&rgb(&Shot { animation: self, stage: &stage, last }, 1)?);
+            let frame = gif::Frame {
+                width: WIDTH,
+                height: HEIGHT,
+                delay: (self.frame_milliseconds / 10).try_into().unwrap_or(u16::MAX),
+                buffer: Cow::Owned(dots),
+                ..gif::Frame::default()
+            };
+            gif.write_frame(&frame).map_err(written)?;
         }
-        Ok(())
+        gif.into_inner().map_err(written)?;
+        file.finish().map_err(system)
     }
 
     fn check(&self) -> Result<(), FigureError> {
@@ -108,7 +122,7 @@ impl Animation<'_> {
 
         let values = self.frames.iter().flat_map(|frame| &frame.values);
         let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &v| (l.min(v), h.max(v)));
-        Stage { ground, scale, centre: window.centre(), values: ticks::linear_range(low, high, 0.0) }
+        Stage { ground, scale, centre: window.centre(), values: linear_range(low, high, 0.0) }
     }
 
     fn body_top(&self) -> f64 {
@@ -126,7 +140,7 @@ impl Animation<'_> {
         if largest <= 0.0 {
             return Vec::new();
         }
-        let step = ticks::round_step(largest / 10.0);
+        let step = round_step(largest / 10.0);
         let level = z.0 - 0.02 * largest;
         let whole = |(low, high): (f64, f64)| ((low / step).floor() as i64, (high / step).ceil() as i64);
         let ((x0, x1), (y0, y1)) = (whole(x), whole(y));
@@ -134,41 +148,54 @@ impl Animation<'_> {
         let along_y = (x0..=x1).map(|i| [place(i, y0), place(i, y1)]);
         along_y.chain((y0..=y1).map(|j| [place(x0, j), place(x1, j)])).collect()
     }
+}
 
-    fn picture(&self, stage: &Stage, last: usize) -> Picture {
-        let frame = &self.frames[last];
-        let fineness = f64::from(FINENESS);
-        let top = self.body_top().floor();
-        let size = [WIDTH * FINENESS, (HEIGHT - top as u32) * FINENESS];
-        let mut canvas = Canvas::new(size, stage.scale * fineness, stage.centre, GRADES);
+/// One frame to be drawn, with the trace up to it.
+struct Shot<'a> {
+    animation: &'a Animation<'a>,
+    stage: &'a Stage,
+    last: usize,
+}
+
+impl Figure for Shot<'_> {
+    fn size(&self) -> [u32; 2] {
+        [WIDTH, HEIGHT].map(u32::from)
+    }
+
+    fn draw<DB: DrawingBackend>(&self, picture: &Area<DB>, unit: Unit) -> Result<(), FigureError> {
+        let &Shot { animation: &Animation { ref title, triangles, edges, frames, view, .. }, stage, last } = self;
+        let frame = &frames[last];
+        let fine = unit.per_pixel();
+        let (_, area) = picture.split_vertically(unit.px(self.animation.body_top()));
+        let mut canvas = Canvas::new(area.dim_in_pixel().into(), stage.scale * fine, stage.centre, GRADES);
         for line in &stage.ground {
-            let [from, to] = line.map(|point| self.view.see(&point));
-            canvas.line(&from, &to, fineness, GROUND);
+            let [from, to] = line.map(|point| view.see(&point));
+            canvas.line(&from, &to, fine, GROUND);
         }
         let (low, high) = stage.values;
         let values: Vec<f64> = frame.values.iter().map(|value| (value - low) / (high - low)).collect();
-        let points: Vec<_> = frame.points.iter().map(|point| self.view.see(point)).collect();
-        canvas.surface(self.triangles, &points, &values);
-        for edge in self.edges {
+        let points: Vec<_> = frame.points.iter().map(|point| view.see(point)).collect();
+        canvas.surface(triangles, &points, &values);
+        for edge in edges {
             let [from, to] = edge.map(|i| points[i as usize]);
-            canvas.line(&from, &to, 0.9 * fineness, EDGE);
+            canvas.line(&from, &to, 0.9 * fine, EDGE);
         }
-        if let Some(point) = self.traced_point {
-            let path: Vec<_> = self.frames[..=last].iter().map(|frame| self.view.see(&frame.points[point])).collect();
+        if let Some(point) = self.animation.traced_point {
+            let path: Vec<_> = frames[..=last].iter().map(|frame| view.see(&frame.points[point])).collect();
             for pair in path.windows(2) {
-                canvas.line(&pair[0], &pair[1], 1.6 * fineness, TRACE);
+                canvas.line(&pair[0], &pair[1], 1.6 * fine, TRACE);
             }
         }
+        canvas.draw(&area)?;
 
-        let mut picture = Picture::new(WIDTH, HEIGHT, FINENESS);
-        picture.bitmap([0.0, top], size[0], size[1], canvas.into_rgb());
-        let mut baseline = MARGIN + TITLE_EM;
-        if !self.title.is_empty() {
-            picture.text([MARGIN, baseline], &self.title, TITLE_EM, Anchor::Left, INK);
-            baseline += 1.5 * TITLE_EM;
+        let mut below = MARGIN;
+        for (text, em) in [(title, TITLE_EM), (&frame.caption, LABEL_EM)] {
+            if !text.is_empty() {
+                picture.draw_text(text, &unit.text(em, HPos::Left, VPos::Top), (unit.px(MARGIN), unit.px(below)))?;
+                below += 1.5 * em;
+            }
         }
-        picture.text([MARGIN, baseline], &frame.caption, LABEL_EM, Anchor::Left, INK);
-        picture
+        Ok(())
     }
 }
 
@@ -183,8 +210,8 @@ struct Stage {
 /// At most 256 colours for all frames: a palette made anew for each would flicker.
 struct Palette {
     colours: Vec<[u8; 3]>,
-    /// The nearest of them to the colours met so far.
-    nearest: HashMap<[u8; 3], [u8; 3]>,
+    /// Which of them is nearest to the colours met so far.
+    nearest: HashMap<[u8; 3], u8>,
 }
 
 impl Palette {
@@ -204,15 +231,15 @@ impl Palette {
         Self { colours, nearest: HashMap::new() }
     }
 
-    fn applied(&mut self, mut rgb: Vec<u8>) -> Vec<u8> {
+    /// For each dot, which colour it has.
+    fn applied(&mut self, rgb: &[u8]) -> Vec<u8> {
         let square = |a: u8, b: u8| u32::from(a.abs_diff(b)).pow(2);
-        for dot in rgb.as_chunks_mut::<3>().0 {
-            *dot = *self.nearest.entry(*dot).or_insert_with_key(|dot| {
-                let distance = |c: &&[u8; 3]| square(c[0], dot[0]) + square(c[1], dot[1]) + square(c[2], dot[2]);
-                self.colours.iter().min_by_key(distance).copied().unwrap_or(*dot)
-            });
-        }
-        rgb
+        let nearest = |dot: &[u8; 3]| {
+            let distance = |c: &[u8; 3]| square(c[0], dot[0]) + square(c[1], dot[1]) + square(c[2], dot[2]);
+            (0..=u8::MAX).zip(&self.colours).min_by_key(|(_, colour)| distance(colour)).map_or(0, |(i, _)| i)
+        };
+        let dots = rgb.as_chunks::<3>().0;
+        dots.iter().map(|dot| *self.nearest.entry(*dot).or_insert_with_key(nearest)).collect()
     }
 }
 
@@ -224,8 +251,9 @@ mod tests {
     fn the_palette_fits_a_gif_and_keeps_its_own_colours() {
         let mut palette = Palette::new();
         assert!(palette.colours.len() <= 256, "{}", palette.colours.len());
-        let own = palette.colours.concat();
-        assert_eq!(palette.applied(own.clone()), own);
-        assert_eq!(palette.applied(vec![255, 254, 255]), [255, 255, 255]);
+        let own = palette.colours.clone();
+        let kept: Vec<_> = palette.applied(&own.concat()).iter().map(|i| own[usize::from(*i)]).collect();
+        assert_eq!(kept, own);
+        assert_eq!(own[usize::from(palette.applied(&[255, 254, 255])[0])], [255, 255, 255]);
     }
 }

@@ -1,0 +1,202 @@
+//! What a St. Venant–Kirchhoff body adds to the linear one: the strain of second order, its forces and its energy.
+//!
+//! ```text
+//! E = ε(u) + ½ ε₂(u,u)        ε(a) = sym ∇a        ε₂(a,b) = sym(∇aᵀ ∇b)        W = ½ ∫ E : C : E dV
+//!
+//! v·g_ab = ∫ ε(v):C:ε₂(a,b) + ε(a):C:ε₂(v,b) + ε(b):C:ε₂(v,a) dV        g_ab = ∂²f_int/∂q_a∂q_b at rest
+//! v·K_σ(u)·b = ∫ C:ε(u) : ε₂(v,b) dV
+//! ```
+//!
+//! All integrands are sums of products of ∇v with a matrix P, so a force on a node is `∫ P ∇N_i dV`. As in the reduced
+//! geometric stiffness, displacements count against the element's first node, whose force is what balances the others.
+
+use faer::{Mat, MatRef};
+use nalgebra::{Matrix3, Vector3};
+use rayon::prelude::*;
+
+use crate::error::AssemblyError;
+use crate::geometric_stiffness::{OTHERS, check_field, relative_displacements};
+use crate::integration::{IntegrationPoint, Rules};
+use crate::material::{Material, Materials};
+use crate::mesh::Mesh;
+
+/// Elements whose forces are held at once, before they are added in the order of the elements: the sums are the same for
+/// any number of threads.
+const BLOCK: usize = 1024;
+
+/// The forces g_ab (N×p, force per squared unit of the fields) of each pair (a, b) of columns of `fields` (N×k, length,
+/// row `3·node + axis`): the second derivatives of the internal forces of a St. Venant–Kirchhoff body at rest.
+///
+/// `u·g_ab` is symmetric in u, a and b. With `r = ω × X`, `g_rb = ω × K b − K (ω × b)`.
+///
+/// # Errors
+/// Materials that do not fit the mesh; fields whose rows are not the degrees of freedom, or with an entry that is not
+/// finite.
+///
+/// # Panics
+/// Where a pair names a column that `fields` has not got.
+pub fn second_order_forces(
+    mesh: &Mesh,
+    materials: &Materials,
+    fields: MatRef<'_, f64>,
+    pairs: &[[usize; 2]],
+) -> Result<Mat<f64>, AssemblyError> {
+    let forces = |gradients: &[Matrix3<f64>], material: &Material, out: &mut Vec<Matrix3<f64>>| {
+        for [a, b] in pairs {
+            let (ga, gb) = (&gradients[*a], &gradients[*b]);
+            let of_second = stress(material, &second_strain(ga, gb));
+            out.push(of_second + gb * stress(material, &strain(ga)) + ga * stress(material, &strain(gb)));
+        }
+    };
+    element_forces(mesh, materials, fields, pairs.len(), forces)
+}
+
+/// `K_σ V` (N×k, force) for the columns V of `fields` (N×k, length): K_σ is the geometric stiffness of the linear stress of
+/// `displacement` (N×1, length), as in [`reduced_geometric_stiffness`](crate::reduced_geometric_stiffness).
+///
+/// # Errors
+/// As [`second_order_forces`].
+pub fn geometric_stiffness_product(
+    mesh: &Mesh,
+    materials: &Materials,
+    displacement: MatRef<'_, f64>,
+    fields: MatRef<'_, f64>,
+) -> Result<Mat<f64>, AssemblyError> {
+    check_field(mesh, "displacements", displacement)?;
+    let columns = fields.ncols();
+    check_field(mesh, "fields", fields)?;
+    let all =
+        Mat::from_fn(
+            fields.nrows(),
+            columns + 1,
+            |i, j| {
+                if j < columns { fields[(i, j)] } else { displacement[(i, 0)] }
+            },
+        );
+    let forces = |gradients: &[Matrix3<f64>], material: &Material, out: &mut Vec<Matrix3<f64>>| {
+        let stress = stress(material, &strain(&gradients[columns]));
+        out.extend(gradients[..columns].iter().map(|gradient| gradient * stress));
+    };
+    element_forces(mesh, materials, all.as_ref(), columns, forces)
+}
+
+/// `∫ ε₂(a,b) : C : ε₂(c,d) dV` (energy, one for each of `quadruples`) of columns a, b, c, d of `fields` (N×k, length).
+///
+/// An eighth of it, with all four alike, is the strain energy of fourth order of `u`, before the body has found the
+/// displacements of second order that relieve it.
+///
+/// # Errors
+/// As [`second_order_forces`].
+///
+/// # Panics
+/// Where a quadruple names a column that `fields` has not got.
+pub fn second_order_energies(
+    mesh: &Mesh,
+    materials: &Materials,
+    fields: MatRef<'_, f64>,
+    quadruples: &[[usize; 4]],
+) -> Result<Vec<f64>, AssemblyError> {
+    check_field(mesh, "fields", fields)?;
+    let materials = materials.of_elements(mesh)?;
+    let rules = Rules::new();
+    let of_element = |e: usize| -> Vec<f64> {
+        let relative = relative_displacements(fields, &mesh.elements()[e]);
+        let mut gradients = Vec::with_capacity(fields.ncols());
+        let mut energies = vec![0.0; quadruples.len()];
+        for point in rules.fine_points(&mesh.element_positions(e)) {
+            displacement_gradients(&relative, &point, fields.ncols(), &mut gradients);
+            for (energy, [a, b, c, d]) in energies.iter_mut().zip(quadruples) {
+                let stress = stress(&materials[e], &second_strain(&gradients[*a], &gradients[*b]));
+                *energy += point.volume * stress.dot(&second_strain(&gradients[*c], &gradients[*d]));
+            }
+        }
+        energies
+    };
+    let mut sums = vec![0.0; quadruples.len()];
+    let elements: Vec<usize> = (0..mesh.elements().len()).collect();
+    for block in elements.chunks(BLOCK) {
+        let parts: Vec<Vec<f64>> = block.par_iter().map(|e| of_element(*e)).collect();
+        for part in parts {
+            sums.iter_mut().zip(part).for_each(|(sum, energy)| *sum += energy);
+        }
+    }
+    Ok(sums)
+}
+
+/// Forces (N×outputs) whose virtual work is `Σ ∫ ∇v : P dV`; `forces` gives the `outputs` matrices P of a point from the
+/// gradients of the fields there.
+fn element_forces(
+    mesh: &Mesh,
+    materials: &Materials,
+    fields: MatRef<'_, f64>,
+    outputs: usize,
+    forces: impl Fn(&[Matrix3<f64>], &Material, &mut Vec<Matrix3<f64>>) + Sync,
+) -> Result<Mat<f64>, AssemblyError> {
+    check_field(mesh, "fields", fields)?;
+    let materials = materials.of_elements(mesh)?;
+    let rules = Rules::new();
+    // By output, then node but the first.
+    let of_element = |e: usize| -> Vec<Vector3<f64>> {
+        let relative = relative_displacements(fields, &mesh.elements()[e]);
+        let mut gradients = Vec::with_capacity(fields.ncols());
+        let mut matrices = Vec::with_capacity(outputs);
+        let mut sums = vec![Vector3::zeros(); outputs * OTHERS];
+        for point in rules.fine_points(&mesh.element_positions(e)) {
+            displacement_gradients(&relative, &point, fields.ncols(), &mut gradients);
+            matrices.clear();
+            forces(&gradients, &materials[e], &mut matrices);
+            for (sums, matrix) in sums.chunks_exact_mut(OTHERS).zip(&matrices) {
+                for (sum, gradient) in sums.iter_mut().zip(&point.gradients[1..]) {
+                    *sum += matrix * Vector3::from(*gradient) * point.volume;
+                }
+            }
+        }
+        sums
+    };
+    let mut result = Mat::zeros(fields.nrows(), outputs);
+    let elements: Vec<usize> = (0..mesh.elements().len()).collect();
+    for block in elements.chunks(BLOCK) {
+        let parts: Vec<Vec<Vector3<f64>>> = block.par_iter().map(|e| of_element(*e)).collect();
+        for (e, sums) in block.iter().zip(parts) {
+            let nodes = &mesh.elements()[*e];
+            for (output, sums) in sums.chunks_exact(OTHERS).enumerate() {
+                for (node, force) in nodes[1..].iter().zip(sums) {
+                    for axis in 0..3 {
+                        result[(3 * *node as usize + axis, output)] += force[axis];
+                        result[(3 * nodes[0] as usize + axis, output)] -= force[axis];
+                    }
+                }
+            }
+        }
+    }
+    Ok(result)
+}
+
+/// ∇u of each field at a point, `(∇u)_ab = ∂u_a/∂x_b`. `relative` is by node, then axis, then field.
+fn displacement_gradients(relative: &[f64], point: &IntegrationPoint, count: usize, out: &mut Vec<Matrix3<f64>>) {
+    out.clear();
+    out.resize(count, Matrix3::zeros());
+    for (node, gradient) in point.gradients[1..].iter().enumerate() {
+        for axis in 0..3 {
+            let of_fields = &relative[(3 * node + axis) * count..(3 * node + axis + 1) * count];
+            for (sum, u) in out.iter_mut().zip(of_fields) {
+                for b in 0..3 {
+                    sum[(axis, b)] += u * gradient[b];
+                }
+            }
+        }
+    }
+}
+
+fn strain(gradient: &Matrix3<f64>) -> Matrix3<f64> {
+    0.5 * (gradient + gradient.transpose())
+}
+
+fn second_strain(a: &Matrix3<f64>, b: &Matrix3<f64>) -> Matrix3<f64> {
+    strain(&(a.transpose() * b))
+}
+
+fn stress(material: &Material, strain: &Matrix3<f64>) -> Matrix3<f64> {
+    let (lambda, mu) = material.lame();
+    lambda * strain.trace() * Matrix3::identity() + 2.0 * mu * strain
+}

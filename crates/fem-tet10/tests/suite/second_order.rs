@@ -1,0 +1,104 @@
+//! Forces and energies of second order against rotated forces and closed forms.
+
+use faer::Mat;
+use fem_tet10::{
+    Mesh, assemble, geometric_stiffness_product, reduced_geometric_stiffness, second_order_energies,
+    second_order_forces,
+};
+use nalgebra::{Matrix3, Vector3};
+
+use crate::fixtures::{
+    ALUMINIUM, PLATE_MASS, absolute_product, aluminium, assert_close, data_mesh, field, product, workspace_mesh,
+};
+
+fn columns(fields: &[Vec<f64>]) -> Mat<f64> {
+    Mat::from_fn(fields[0].len(), fields.len(), |i, j| fields[j][i])
+}
+
+fn forces(mesh: &Mesh, fields: &[Vec<f64>], pairs: &[[usize; 2]]) -> Vec<Vec<f64>> {
+    let forces = second_order_forces(mesh, &aluminium(), columns(fields).as_ref(), pairs).unwrap();
+    forces.col_iter().map(|column| column.iter().copied().collect()).collect()
+}
+
+fn smooth(mesh: &Mesh) -> Vec<f64> {
+    field(mesh, |[x, y, z]| [1e-5 * x * y, 1e-4 * z - 1e-5 * y * y, 2e-5 * x * z])
+}
+
+fn turned(w: &Vector3<f64>, u: &[f64]) -> Vec<f64> {
+    u.chunks_exact(3).flat_map(|u| <[f64; 3]>::from(w.cross(&Vector3::new(u[0], u[1], u[2])))).collect()
+}
+
+/// A body that is turned, its displacement too, meets turned forces: to first order in the turn θ this is
+/// `K (θ × u) + g(θ × X, u) = θ × K u`, to second order in θ alone `g(θ × X, θ × X) = −K (θ × (θ × X))`.
+#[test]
+fn a_turned_body_meets_turned_forces() {
+    let w = Vector3::new(0.3, -0.7, 0.5);
+    for name in ["plate.msh", "ring.msh"] {
+        let mesh = workspace_mesh(name);
+        let matrices = assemble(&mesh, &aluminium(), &[]).unwrap();
+        let k = matrices.stiffness();
+        let turn = field(&mesh, |x| w.cross(&Vector3::from(x)).into());
+        let u = smooth(&mesh);
+        let found = forces(&mesh, &[turn.clone(), u.clone()], &[[0, 1], [0, 0]]);
+        let of_u: Vec<f64> =
+            turned(&w, &product(k, &u)).iter().zip(product(k, &turned(&w, &u))).map(|(a, b)| a - b).collect();
+        let of_turn: Vec<f64> = product(k, &turned(&w, &turn)).iter().map(|f| -f).collect();
+        for (found, expected, scale) in [
+            (&found[0], &of_u, absolute_product(k, &u)),
+            (&found[1], &of_turn, absolute_product(k, &turned(&w, &turn))),
+        ] {
+            let largest = |v: &[f64]| v.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+            let off: Vec<f64> = found.iter().zip(expected).map(|(a, b)| a - b).collect();
+            assert!(largest(&off) < 1e-13 * largest(&scale), "{name}: {:e} of {:e}", largest(&off), largest(&scale));
+            assert!(largest(expected) > 1e-5 * largest(&scale), "{name}: the test can fail");
+        }
+    }
+}
+
+/// Fields u = A x have one gradient everywhere.
+#[test]
+fn of_homogeneous_fields_they_are_what_the_formulas_say() {
+    let mesh = workspace_mesh("plate.msh");
+    let volume = PLATE_MASS / ALUMINIUM.density;
+    let gradients = [
+        Matrix3::new(1e-3, 2e-3, 0.0, -1e-3, 5e-4, 3e-3, 7e-4, 0.0, -2e-3),
+        Matrix3::new(0.0, 1e-3, 4e-4, 6e-4, -1e-3, 0.0, 2e-3, 1e-3, 3e-4),
+        Matrix3::new(5e-4, 0.0, -1e-3, 2e-3, 0.0, 1e-3, 0.0, -3e-3, 1e-3),
+    ];
+    let fields: Vec<_> = gradients.iter().map(|g| field(&mesh, |x| (g * Vector3::from(x)).into())).collect();
+    let symmetric = |g: Matrix3<f64>| 0.5 * (g + g.transpose());
+    let (lambda, mu) = ALUMINIUM.lame();
+    let product_of = |a: Matrix3<f64>, b: Matrix3<f64>| lambda * a.trace() * b.trace() + 2.0 * mu * a.dot(&b);
+    let first = |a: usize| symmetric(gradients[a]);
+    let second = |a: usize, b: usize| symmetric(gradients[a].transpose() * gradients[b]);
+    let g = forces(&mesh, &fields, &[[0, 1], [1, 2], [2, 0]]);
+    let work = |u: &[f64], f: &[f64]| u.iter().zip(f).map(|(u, f)| u * f).sum::<f64>();
+    let expected = volume
+        * (product_of(first(2), second(0, 1))
+            + product_of(first(0), second(2, 1))
+            + product_of(first(1), second(2, 0)));
+    for (u, f) in [(2, 0), (0, 1), (1, 2)] {
+        assert_close("u·g", work(&fields[u], &g[f]), expected, 1e-11);
+    }
+    let energies = second_order_energies(&mesh, &aluminium(), columns(&fields).as_ref(), &[[0, 1, 2, 2], [0, 0, 0, 0]]);
+    let energies = energies.unwrap();
+    assert_close("ε₂:C:ε₂", energies[0], volume * product_of(second(0, 1), second(2, 2)), 1e-11);
+    assert_close("ε₂:C:ε₂", energies[1], volume * product_of(second(0, 0), second(0, 0)), 1e-11);
+}
+
+#[test]
+fn the_product_with_the_geometric_stiffness_is_the_reduced_one() {
+    for mesh in [data_mesh("cube.msh"), workspace_mesh("ring.msh")] {
+        let u = columns(&[smooth(&mesh)]);
+        let shapes =
+            columns(&[field(&mesh, |[x, y, z]| [y * z, x * x, x * y]), field(&mesh, |[x, y, z]| [z, x * y, y * y])]);
+        let reduced = &reduced_geometric_stiffness(&mesh, &aluminium(), u.as_ref(), shapes.as_ref()).unwrap()[0];
+        let product = geometric_stiffness_product(&mesh, &aluminium(), u.as_ref(), shapes.as_ref()).unwrap();
+        let found = shapes.transpose() * &product;
+        for i in 0..2 {
+            for j in 0..2 {
+                assert!((found[(i, j)] - reduced[(i, j)]).abs() < 1e-12 * reduced.norm_max());
+            }
+        }
+    }
+}

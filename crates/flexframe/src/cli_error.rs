@@ -1,0 +1,67 @@
+//! What goes wrong in the program itself, outside of the library.
+
+use std::io;
+
+use flexframe::failure::{Details, Failure, Kind};
+
+/// An error of the command line, the terminal or the threads.
+#[derive(Debug, thiserror::Error)]
+pub enum CliError {
+    /// An option has replaced what the scene says, and is refused.
+    #[error("{option}: found {found}, expected {expected}\n = {cure}")]
+    Option { option: &'static str, found: String, expected: String, cure: String },
+    /// RAYON_NUM_THREADS is no number of threads.
+    #[error(
+        "the environment variable RAYON_NUM_THREADS: found \"{found}\", expected a number from 1 to {most}\n = \
+         correct it, remove it, or give --threads"
+    )]
+    ThreadsVariable { found: String, most: u16 },
+    /// The system gives no threads.
+    #[error("{} cannot be started: {reason}\n = ask for fewer with --threads", match count {
+        Some(count) => format!("{count} threads"),
+        None => "the threads, one for each core,".to_owned(),
+    })]
+    Threads { count: Option<u16>, reason: String },
+    /// Signals cannot be listened to.
+    #[error("cannot listen to signals: {0}; allow the program another thread and a few open files")]
+    Signals(#[source] io::Error),
+    /// Standard output takes nothing.
+    #[error(
+        "standard output cannot be written: {0}\n = send it where there is room; files that the command has written are \
+         complete"
+    )]
+    Output(#[source] io::Error),
+    /// The summary has no form in JSON.
+    #[error("the summary cannot be written as JSON: {0}")]
+    Json(#[from] serde_json::Error),
+}
+
+impl Failure for CliError {
+    fn kind(&self) -> Kind {
+        match self {
+            Self::Option { .. } | Self::ThreadsVariable { .. } => Kind::Usage,
+            Self::Threads { .. } | Self::Signals(_) | Self::Output(_) => Kind::Io,
+            Self::Json(_) => Kind::Run,
+        }
+    }
+
+    fn details(&self) -> Details {
+        match self {
+            Self::Option { option, found, expected, cure } => Details {
+                key: Some((*option).to_owned()),
+                found: Some(found.clone()),
+                expected: Some(expected.clone()),
+                cure: Some(cure.clone()),
+                ..Details::default()
+            },
+            Self::ThreadsVariable { found, most } => Details {
+                key: Some("RAYON_NUM_THREADS".to_owned()),
+                found: Some(found.clone()),
+                expected: Some(format!("a number from 1 to {most}")),
+                ..Details::default()
+            },
+            Self::Output(_) => Details::of_file("standard output"),
+            Self::Threads { .. } | Self::Signals(_) | Self::Json(_) => Details::default(),
+        }
+    }
+}

@@ -1,0 +1,138 @@
+//! What ends a command in failure: its kind, its exit code, and what is known of the fault.
+
+mod kinds;
+
+use std::error::Error;
+use std::fmt;
+use std::path::Path;
+
+use serde::Serialize;
+
+/// Why a command failed, in the classes that a script tells apart. Each has an exit code of its own.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Kind {
+    /// The arguments of the command are wrong.
+    Usage,
+    /// A scene, mesh, table or results file says something that cannot be right.
+    Input,
+    /// The model is understood, but known to give wrong answers or none.
+    Refused,
+    /// The computation did not come to its end.
+    Run,
+    /// The system refused a file, standard output or a thread.
+    Io,
+    /// A signal stopped the program.
+    Stopped,
+}
+
+impl Kind {
+    /// All of them, by exit code.
+    pub const ALL: [Self; 6] = [Self::Usage, Self::Input, Self::Refused, Self::Run, Self::Io, Self::Stopped];
+
+    /// The exit code of the program.
+    pub fn exit_code(self) -> u8 {
+        match self {
+            Self::Usage => 2,
+            Self::Input => 3,
+            Self::Refused => 4,
+            Self::Run => 5,
+            Self::Io => 6,
+            // As shells have it of a program that ctrl-C has ended.
+            Self::Stopped => 130,
+        }
+    }
+
+    /// What it stands for, in a few words.
+    pub fn meaning(self) -> &'static str {
+        match self {
+            Self::Usage => "wrong arguments",
+            Self::Input => "bad input: a scene, mesh, table or results file is wrong",
+            Self::Refused => "refused model: it is known to give wrong answers, or none",
+            Self::Run => "failed run: the computation did not come to its end",
+            Self::Io => "input or output: the system refused a file, standard output or a thread",
+            Self::Stopped => "stopped by a signal (ctrl-C, SIGTERM)",
+        }
+    }
+}
+
+/// What is known of a fault beside its message. What is not known is left out of the JSON.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
+pub struct Details {
+    /// The file that is at fault, or could not be read or written.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub file: Option<String>,
+    /// Line in it, from 1.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub line: Option<usize>,
+    /// Path of keys in the scene, such as `loads[0].history.duration`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub key: Option<String>,
+    /// What stands there.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub found: Option<String>,
+    /// What should stand there.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub expected: Option<String>,
+    /// What to do about it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cure: Option<String>,
+}
+
+impl Details {
+    /// A file, of which nothing more is known. A name that is not UTF-8 is shown as well as that goes.
+    pub fn of_file(file: impl AsRef<Path>) -> Self {
+        Self { file: Some(file.as_ref().display().to_string()), ..Self::default() }
+    }
+}
+
+/// An error that ends a command.
+pub trait Failure: Error {
+    /// Its class.
+    fn kind(&self) -> Kind;
+
+    /// What is known of the fault.
+    fn details(&self) -> Details {
+        Details::default()
+    }
+}
+
+impl<E: Failure + 'static> From<E> for Box<dyn Failure> {
+    fn from(error: E) -> Self {
+        Box::new(error)
+    }
+}
+
+/// The object that stands for a failure under `--json`.
+#[derive(Debug, Serialize)]
+pub struct FailureReport {
+    kind: Kind,
+    exit_code: u8,
+    message: String,
+    #[serde(flatten)]
+    details: Details,
+}
+
+impl FailureReport {
+    /// Of a class, with a message.
+    pub fn new(kind: Kind, message: impl Into<String>, details: Details) -> Self {
+        Self { kind, exit_code: kind.exit_code(), message: message.into(), details }
+    }
+
+    /// Of an error.
+    pub fn of(failure: &dyn Failure) -> Self {
+        Self::new(failure.kind(), failure.to_string(), failure.details())
+    }
+
+    /// The exit code of the program.
+    pub fn exit_code(&self) -> u8 {
+        self.exit_code
+    }
+}
+
+/// The message for people.
+impl fmt::Display for FailureReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "error: {}", self.message)
+    }
+}

@@ -1,0 +1,342 @@
+//! The kind of every error, and what it knows: the one place where that is decided.
+
+use advice::AdviceError;
+use fem_tet10::{AssemblyError, MeshError};
+use figures::FigureError;
+use frames_rk4::{EigenError, SetupError};
+use modal::ModalError;
+use results::FileError;
+use scene::{BuildError, SceneError, StartError};
+
+use super::{Details, Failure, Kind};
+use crate::animation::AnimationError;
+use crate::campbell::CampbellError;
+use crate::cost::CostError;
+use crate::mode_shapes::ShapesError;
+use crate::paper::PaperError;
+use crate::run::{RunError, RunFailure};
+
+impl Failure for SceneError {
+    fn kind(&self) -> Kind {
+        match self {
+            Self::Unreadable { .. } => Kind::Io,
+            _ => Kind::Input,
+        }
+    }
+
+    fn details(&self) -> Details {
+        Details {
+            line: self.line(),
+            key: self.place().map(|place| place.key.clone()).filter(|key| !key.is_empty()),
+            found: self.found(),
+            expected: self.expected(),
+            cure: self.cure(),
+            ..Details::of_file(self.file())
+        }
+    }
+}
+
+impl Failure for MeshError {
+    fn kind(&self) -> Kind {
+        match self {
+            Self::Io { .. } => Kind::Io,
+            _ => Kind::Input,
+        }
+    }
+
+    fn details(&self) -> Details {
+        let mut details = Details { line: self.line(), ..Details::of_file(self.source_name()) };
+        if let Self::Syntax { expected, found, .. } = self {
+            details.expected = Some(expected.clone());
+            details.found = Some(found.clone());
+        }
+        details
+    }
+}
+
+impl Failure for AssemblyError {
+    fn kind(&self) -> Kind {
+        Kind::Input
+    }
+
+    fn details(&self) -> Details {
+        self.source_name().map_or_else(Details::default, Details::of_file)
+    }
+}
+
+impl Failure for ModalError {
+    fn kind(&self) -> Kind {
+        match self {
+            Self::TooManyModes { .. } | Self::NoSuchNode { .. } | Self::NotUnit { .. } => Kind::Input,
+            Self::Size { .. }
+            | Self::Length { .. }
+            | Self::NotPositive { .. }
+            | Self::NoNode { .. }
+            | Self::NotFinite { .. }
+            | Self::NotSymmetric { .. }
+            | Self::AnisotropicMass { .. }
+            | Self::NoInertia { .. }
+            | Self::Underheld { .. }
+            | Self::NotFree { .. }
+            | Self::Mechanism { .. }
+            | Self::HiddenByRounding { .. }
+            | Self::Indefinite { .. } => Kind::Refused,
+            Self::Ordering { .. }
+            | Self::Factorization { .. }
+            | Self::NotConverged { .. }
+            | Self::StaticNotConverged { .. }
+            | Self::DenseEigen { .. } => Kind::Run,
+        }
+    }
+}
+
+impl Failure for EigenError {
+    fn kind(&self) -> Kind {
+        Kind::Run
+    }
+}
+
+impl Failure for AdviceError {
+    fn kind(&self) -> Kind {
+        match self {
+            Self::Length { .. } | Self::Value { .. } => Kind::Input,
+            Self::Eigen(error) => error.kind(),
+        }
+    }
+}
+
+impl Failure for BuildError {
+    fn kind(&self) -> Kind {
+        match self {
+            Self::Scene(error) => error.kind(),
+            Self::Mesh(error) => error.kind(),
+            Self::Assembly(error) => error.kind(),
+            Self::Modal { source, .. } => source.kind(),
+            Self::Advice(error) => error.kind(),
+        }
+    }
+
+    fn details(&self) -> Details {
+        match self {
+            Self::Scene(error) => error.details(),
+            Self::Mesh(error) => error.details(),
+            Self::Assembly(error) => error.details(),
+            Self::Modal { scene, .. } => Details::of_file(scene),
+            Self::Advice(error) => error.details(),
+        }
+    }
+}
+
+impl Failure for SetupError {
+    fn kind(&self) -> Kind {
+        match self {
+            Self::Length { .. }
+            | Self::Value { .. }
+            | Self::Entries { .. }
+            | Self::NotRising { .. }
+            | Self::Expression { .. }
+            | Self::LongExpression { .. }
+            | Self::HistoryNotFinite { .. }
+            | Self::NoErrorEstimate { .. }
+            | Self::DriveOfFreeBody { .. }
+            | Self::NotInPaper { .. } => Kind::Input,
+            Self::FormulaTooFast { .. }
+            | Self::StepBeyondLimit { .. }
+            | Self::StepBeyondSpin { .. }
+            | Self::CollinearPoints(_)
+            | Self::Inertia(_) => Kind::Refused,
+        }
+    }
+}
+
+impl Failure for StartError {
+    fn kind(&self) -> Kind {
+        match self {
+            Self::Setup(error) => error.kind(),
+            Self::Refused(_) => Kind::Refused,
+        }
+    }
+}
+
+impl Failure for RunFailure {
+    fn kind(&self) -> Kind {
+        match self {
+            Self::Start(error) => error.kind(),
+            Self::Step(_) | Self::OutOfPatience { .. } => Kind::Run,
+        }
+    }
+}
+
+impl Failure for RunError {
+    fn kind(&self) -> Kind {
+        match self {
+            Self::Build(error) => error.kind(),
+            Self::Setup { source, .. } => source.kind(),
+            Self::Step { .. } => Kind::Run,
+            Self::Refused { .. } => Kind::Refused,
+            Self::File(error) => error.kind(),
+            Self::Verify { failure, .. } => failure.kind(),
+            Self::Stopped { .. } => Kind::Stopped,
+            Self::Scene(error) => error.kind(),
+            Self::Restore { .. } | Self::Changed { .. } => Kind::Input,
+            Self::Folder { .. } => Kind::Io,
+        }
+    }
+
+    fn details(&self) -> Details {
+        match self {
+            Self::Build(error) => error.details(),
+            Self::Setup { scene, .. } | Self::Verify { scene, .. } => Details::of_file(scene),
+            Self::Step { results, .. } | Self::Refused { results, .. } => Details::of_file(results),
+            Self::File(error) => error.details(),
+            Self::Stopped { part, .. } | Self::Restore { part, .. } | Self::Changed { part, .. } => {
+                Details::of_file(part)
+            }
+            Self::Scene(error) => error.details(),
+            Self::Folder { folder, .. } => Details::of_file(folder),
+        }
+    }
+}
+
+impl Failure for FileError {
+    fn kind(&self) -> Kind {
+        match self {
+            Self::Hdf5 { .. }
+            | Self::System { .. }
+            | Self::Busy { .. }
+            | Self::Unfinished { .. }
+            | Self::NotResults { .. }
+            | Self::Link { .. }
+            | Self::NothingToResume { .. } => Kind::Io,
+            Self::NotFinite { .. } => Kind::Run,
+            // What is wrong with a file's content, or with the names in it.
+            _ => Kind::Input,
+        }
+    }
+
+    fn details(&self) -> Details {
+        Details { cure: self.cure().map(str::to_owned), ..Details::of_file(self.path()) }
+    }
+}
+
+impl Failure for FigureError {
+    fn kind(&self) -> Kind {
+        match self {
+            Self::Write { .. } => Kind::Io,
+            _ => Kind::Run,
+        }
+    }
+
+    fn details(&self) -> Details {
+        match self {
+            Self::Write { path, .. } => Details::of_file(path),
+            _ => Details::default(),
+        }
+    }
+}
+
+impl Failure for ShapesError {
+    fn kind(&self) -> Kind {
+        match self {
+            Self::Scene(error) => error.kind(),
+            Self::Figure(error) => error.kind(),
+        }
+    }
+
+    fn details(&self) -> Details {
+        match self {
+            Self::Scene(error) => error.details(),
+            Self::Figure(error) => error.details(),
+        }
+    }
+}
+
+impl Failure for AnimationError {
+    fn kind(&self) -> Kind {
+        match self {
+            Self::Run(error) => error.kind(),
+            Self::Step { .. } => Kind::Run,
+            Self::NoMesh { .. } => Kind::Input,
+            Self::NotGif { .. } => Kind::Usage,
+            Self::Figure(error) => error.kind(),
+        }
+    }
+
+    fn details(&self) -> Details {
+        match self {
+            Self::Run(error) => error.details(),
+            Self::Step { scene, .. } | Self::NoMesh { scene } => Details::of_file(scene),
+            Self::NotGif { path } => Details::of_file(path),
+            Self::Figure(error) => error.details(),
+        }
+    }
+}
+
+impl Failure for CampbellError {
+    fn kind(&self) -> Kind {
+        match self {
+            Self::Build(error) => error.kind(),
+            Self::Eigen { source, .. } => source.kind(),
+            Self::Axis { .. } | Self::Speeds { .. } | Self::Order { .. } => Kind::Usage,
+            Self::Figure(error) => error.kind(),
+            Self::Write { .. } => Kind::Io,
+        }
+    }
+
+    fn details(&self) -> Details {
+        match self {
+            Self::Build(error) => error.details(),
+            Self::Eigen { scene, .. } => Details::of_file(scene),
+            Self::Axis { .. } | Self::Speeds { .. } | Self::Order { .. } => Details::default(),
+            Self::Figure(error) => error.details(),
+            Self::Write { path, .. } => Details::of_file(path),
+        }
+    }
+}
+
+impl Failure for CostError {
+    fn kind(&self) -> Kind {
+        match self {
+            Self::Build(error) => error.kind(),
+            Self::Reference { failure, .. } => failure.kind(),
+            Self::Figure(error) => error.kind(),
+            Self::Write { .. } => Kind::Io,
+        }
+    }
+
+    fn details(&self) -> Details {
+        match self {
+            Self::Build(error) => error.details(),
+            Self::Reference { scene, .. } => Details::of_file(scene),
+            Self::Figure(error) => error.details(),
+            Self::Write { path, .. } => Details::of_file(path),
+        }
+    }
+}
+
+impl Failure for PaperError {
+    fn kind(&self) -> Kind {
+        match self {
+            Self::Run(error) => error.kind(),
+            Self::Build(error) => error.kind(),
+            Self::File(error) => error.kind(),
+            Self::Figure(error) => error.kind(),
+            Self::RigidBody(_) => Kind::Refused,
+            Self::Step(_) => Kind::Run,
+            Self::MissingPoint { .. } | Self::NotThePlate { .. } => Kind::Input,
+            Self::Report { .. } => Kind::Io,
+        }
+    }
+
+    fn details(&self) -> Details {
+        match self {
+            Self::Run(error) => error.details(),
+            Self::Build(error) => error.details(),
+            Self::File(error) => error.details(),
+            Self::Figure(error) => error.details(),
+            Self::RigidBody(_) | Self::Step(_) => Details::default(),
+            Self::MissingPoint { scene, .. } | Self::NotThePlate { scene } => Details::of_file(scene),
+            Self::Report { path, .. } => Details::of_file(path),
+        }
+    }
+}

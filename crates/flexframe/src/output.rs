@@ -1,0 +1,40 @@
+//! What goes to standard output and standard error, either of which may be full or closed.
+
+use std::fmt::Display;
+use std::io::{self, ErrorKind, Write};
+use std::path::PathBuf;
+
+use flexframe::failure::{Failure, FailureReport};
+use serde::Serialize;
+
+use crate::cli_error::CliError;
+
+/// Prints a summary.
+pub fn print<R: Serialize + Display>(report: &R, json: bool) -> Result<(), Box<dyn Failure>> {
+    let text = if json { serde_json::to_string_pretty(report).map_err(CliError::from)? } else { report.to_string() };
+    Ok(line(&text)?)
+}
+
+/// Prints the names of files.
+pub fn list(files: &[PathBuf]) -> Result<(), Box<dyn Failure>> {
+    files.iter().try_for_each(|file| Ok(line(&format!("  wrote    {}", file.display()))?))
+}
+
+fn line(line: &str) -> Result<(), CliError> {
+    written(writeln!(io::stdout(), "{line}"))
+}
+
+/// What became of a write to standard output. A reader such as `head` that has had enough is no error.
+pub fn written(result: io::Result<()>) -> Result<(), CliError> {
+    match result.and_then(|()| io::stdout().flush()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(CliError::Output(error)),
+        _ => Ok(()),
+    }
+}
+
+/// Tells of a failure on standard error: as a message, or as a line of JSON.
+pub fn report(report: &FailureReport, json: bool) {
+    let text = if json { serde_json::to_string(report).unwrap_or_default() } else { report.to_string() };
+    // Where it cannot be written, the exit code still tells.
+    let _ = writeln!(io::stderr(), "{text}");
+}

@@ -1,0 +1,127 @@
+//! What ctrl-C, and a request to terminate, do.
+//!
+//! Before the motion begins there is nothing to lose, and a signal ends the program at once. Then the first stops the run
+//! at its next row, and another that comes half a second later or more ends the program at once. A shell, a job scheduler
+//! and a terminal may send several for one request, only milliseconds apart.
+
+use std::io;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use flexframe::failure::{Details, FailureReport, Kind};
+use flexframe::run::RunProgress;
+use signal_hook::consts::{SIGINT, SIGTERM};
+use signal_hook::{iterator, low_level};
+
+use crate::output;
+
+/// Signals that come sooner after the first belong to it.
+const ONE_REQUEST: Duration = Duration::from_millis(500);
+
+/// Listens to signals.
+pub struct Signals {
+    /// Whether a motion is being computed that can be resumed.
+    in_motion: Arc<AtomicBool>,
+    /// Asks the motion to stop.
+    stop: Arc<AtomicBool>,
+}
+
+impl Signals {
+    /// Begins to listen; `json` is the form in which the end of the program is told.
+    pub fn listen(json: bool) -> io::Result<Self> {
+        let ours = Self { in_motion: Arc::default(), stop: Arc::default() };
+        let (in_motion, stop) = (ours.in_motion.clone(), ours.stop.clone());
+        let mut signals = iterator::Signals::new([SIGINT, SIGTERM])?;
+        thread::Builder::new().name("signals".to_owned()).spawn(move || {
+            let mut request = Request::default();
+            for _ in signals.forever() {
+                match request.answer(in_motion.load(Ordering::SeqCst), Instant::now()) {
+                    Answer::Stop => stop.store(true, Ordering::SeqCst),
+                    Answer::Wait => {}
+                    Answer::End { told } => {
+                        if !told {
+                            output::report(&FailureReport::new(Kind::Stopped, "stopped", Details::default()), json);
+                        }
+                        // Without handlers at exit, which would close files that others are writing.
+                        low_level::exit(Kind::Stopped.exit_code().into());
+                    }
+                }
+            }
+        })?;
+        Ok(ours)
+    }
+
+    /// What stops a run.
+    pub fn stop(&self) -> Arc<AtomicBool> {
+        self.stop.clone()
+    }
+
+    /// Hears how far a run is.
+    pub fn heard(&self, progress: RunProgress) {
+        match progress {
+            RunProgress::Motion(0.0) => self.in_motion.store(true, Ordering::SeqCst),
+            RunProgress::Motion(1.0) => self.in_motion.store(false, Ordering::SeqCst),
+            _ => {}
+        }
+    }
+}
+
+/// The request to stop, of which several signals may tell.
+#[derive(Default)]
+struct Request {
+    first: Option<Instant>,
+}
+
+/// What a signal brings about.
+#[derive(Debug, PartialEq, Eq)]
+enum Answer {
+    /// The run is to stop at its next row.
+    Stop,
+    /// Nothing more.
+    Wait,
+    /// The program ends at once.
+    End {
+        /// Whether a signal before has already been answered: there is nothing to say that is not known.
+        told: bool,
+    },
+}
+
+impl Request {
+    fn answer(&mut self, in_motion: bool, now: Instant) -> Answer {
+        match self.first {
+            None if in_motion => {
+                self.first = Some(now);
+                Answer::Stop
+            }
+            None => Answer::End { told: false },
+            Some(first) if now.duration_since(first) < ONE_REQUEST => Answer::Wait,
+            Some(_) => Answer::End { told: true },
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn signals_at_once_are_one_request_and_a_later_one_ends_the_program() {
+        let start = Instant::now();
+        let at = |milliseconds| start + Duration::from_millis(milliseconds);
+        let mut request = Request::default();
+        assert_eq!(request.answer(true, at(0)), Answer::Stop);
+        for soon in [0, 3, 499] {
+            assert_eq!(request.answer(true, at(soon)), Answer::Wait);
+            // The run may have come to its end in the meantime.
+            assert_eq!(request.answer(false, at(soon)), Answer::Wait);
+        }
+        assert_eq!(request.answer(true, at(500)), Answer::End { told: true });
+    }
+
+    #[test]
+    fn before_the_motion_there_is_nothing_to_wait_for() {
+        assert_eq!(Request::default().answer(false, Instant::now()), Answer::End { told: false });
+    }
+}

@@ -1,0 +1,42 @@
+//! The examples of library use, each held to its number.
+
+#[path = "../../../examples/bounce.rs"]
+mod bounce;
+#[path = "../../../examples/controller.rs"]
+mod controller;
+#[path = "../../../examples/own_integrator.rs"]
+mod own_integrator;
+#[path = "../../../examples/spring_to_ground.rs"]
+mod spring_to_ground;
+
+#[test]
+fn a_controller_from_outside_damps_the_plate_and_its_work_is_accounted_for() {
+    let controller::Answer { strain_energy_left, balance } = controller::run().unwrap();
+    println!("{strain_energy_left} {balance:e}");
+    assert!((0.01..0.9).contains(&strain_energy_left), "{strain_energy_left}");
+    assert!(balance < 1e-9, "{balance:e}");
+}
+
+#[test]
+fn an_event_is_found_to_the_accuracy_of_the_scheme_and_a_new_state_goes_on() {
+    let bounce::Answer { impact, back } = bounce::run().unwrap();
+    println!("{impact:?} {back:?}");
+    for [found, exact] in [impact, back] {
+        assert!((found - exact).abs() < 1e-12, "{found} {exact}");
+    }
+}
+
+#[test]
+fn the_rates_serve_an_integrator_of_one_s_own() {
+    let [coarse, fine] = own_integrator::run().unwrap();
+    println!("{coarse:e} {fine:e}");
+    assert!(fine < 1e-3 && (coarse / fine - 4.0).abs() < 0.4, "{coarse:e} {fine:e}");
+}
+
+#[test]
+fn laws_as_closures_have_their_closed_forms() {
+    let spring_to_ground::Answer { after_a_period, energy, circled } = spring_to_ground::run().unwrap();
+    println!("{after_a_period} {energy} {circled:?}");
+    assert!((after_a_period - 1.0).abs() < 1e-9 && (energy - 1.0).abs() < 1e-9, "{after_a_period} {energy}");
+    assert!((circled[0] - circled[1]).abs() < 1e-10, "{circled:?}");
+}

@@ -1,0 +1,132 @@
+//! How large the error of a step is beside the motion: what step control keeps within its tolerance.
+//!
+//! Three sizes, each the root of a sum over the whole body and relative to the largest so far: of the energy, of the
+//! modal displacements, and of the accelerations. The energy alone, most of which may be that of the rigid motion, would
+//! let a small vibration be wrong altogether; displacements alone would let high modes be, which make accelerations.
+
+use crate::checkpoint::StateCoder;
+use crate::conservative::{ConservativeBody, ConservativeState, Evaluation, get, part};
+
+/// Squares of the sizes of a motion, or of the difference of two states.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(crate) struct Sizes {
+    /// Energy, that of the origin's motion left out where it is a motion's.
+    pub energy: f64,
+    /// Σ q², which is ∫ ρ |u|² dV.
+    pub displacement: f64,
+    /// ∫ ρ |a|² dV of the rigid motion and of the modes.
+    pub acceleration: f64,
+}
+
+/// Part of the motion, as a ratio of amplitudes, below which a vibration is none.
+const STILL: f64 = 1e-6;
+
+/// Largest turn of a mode in a step, rad, at which half of the step tells what the step gets wrong.
+const SEEN: f64 = 8.0;
+/// Frequencies that differ by less than this part are alike.
+const ALIKE: f64 = 0.2;
+
+/// The largest entries of the N_ij and of the G_i, rows of `stacked`, by which each mode is coupled to itself and to modes of
+/// like frequency.
+pub(crate) fn own_coupling(circular_frequencies: &[f64], stacked: &[f64], g_rows: usize) -> Vec<[f64; 2]> {
+    let nf = circular_frequencies.len();
+    let rows = stacked.len().checked_div(nf).unwrap_or(0);
+    let mut coupling = vec![[0.0_f64; 2]; nf];
+    for (l, column) in stacked.chunks_exact(rows.max(1)).enumerate() {
+        for (row, entry) in column.iter().enumerate() {
+            let k = row % nf;
+            let (a, b) = (circular_frequencies[k], circular_frequencies[l]);
+            if (a - b).abs() <= ALIKE * a {
+                let largest = &mut coupling[k][usize::from(row < g_rows)];
+                *largest = largest.max(entry.abs());
+            }
+        }
+    }
+    coupling
+}
+
+impl Sizes {
+    /// The larger of each.
+    pub(crate) fn max(self, other: Self) -> Self {
+        Self {
+            energy: self.energy.max(other.energy),
+            displacement: self.displacement.max(other.displacement),
+            acceleration: self.acceleration.max(other.acceleration),
+        }
+    }
+
+    pub(crate) fn code(&mut self, coder: &mut StateCoder) {
+        [&mut self.energy, &mut self.displacement, &mut self.acceleration].into_iter().for_each(|x| coder.number(x));
+    }
+
+    /// The largest of the three beside those of a motion of a body with this lowest ω_k.
+    pub(crate) fn relative_to(self, motion: Self, lowest: f64) -> f64 {
+        // What vibrates with less is rounding.
+        let still = STILL * STILL * motion.energy;
+        let square = lowest * lowest;
+        let pairs = [
+            (self.energy, motion.energy),
+            (self.displacement, motion.displacement.max(still / square)),
+            (self.acceleration, motion.acceleration.max(still * square)),
+        ];
+        let ratios = pairs.map(|(error, whole)| if error == 0.0 { 0.0 } else { (error / whole).sqrt() });
+        // A NaN stays one.
+        ratios.into_iter().fold(0.0, |most, ratio| if ratio <= most { most } else { ratio })
+    }
+}
+
+impl ConservativeBody {
+    /// The sizes of a motion whose rates, the linear part of the modes left out, are in `e`.
+    pub(crate) fn sizes(&self, state: &ConservativeState, e: &Evaluation) -> Sizes {
+        let (force, moment) = (get(&e.slow, part::MOMENTUM), get(&e.slow, part::PI));
+        // Tangential accelerations by π' ≈ J₀ α, and those towards the axis.
+        let rigid =
+            2.0 * self.rigid_energy(&force, &moment) + e.spin.norm_squared() * e.spin.dot(&(e.inertia * e.spin));
+        let (q, p) = (&state.modal_displacement, &state.modal_momentum);
+        let modal: f64 = (0..q.len()).map(|k| (e.momentum[k] - self.linear_force(k, q[k], p[k])).powi(2)).sum();
+        Sizes {
+            energy: self.internal_energy(state, e),
+            displacement: q.iter().map(|q| q * q).sum(),
+            acceleration: rigid + modal,
+        }
+    }
+
+    /// The sizes of the difference of two states at one time.
+    pub(crate) fn sizes_of_difference(&self, a: &ConservativeState, b: &ConservativeState) -> Sizes {
+        let q = a.modal_displacement.iter().zip(&b.modal_displacement).map(|(a, b)| a - b);
+        let p = a.modal_momentum.iter().zip(&b.modal_momentum).map(|(a, b)| a - b);
+        let mut sizes = Sizes { energy: self.energy_of_difference(a, b), ..Sizes::default() };
+        for (k, (q, p)) in q.zip(p).enumerate() {
+            sizes.displacement += q * q;
+            sizes.acceleration += self.linear_force(k, q, p).powi(2);
+        }
+        sizes
+    }
+
+    /// What a `step` leaves out unseen: where modes turn by many radians in a step, its stages meet their coupling to the
+    /// spin at any phase, and so do those of half the step, so that the two agree on a motion without it. Counted is what
+    /// the coupling of such a mode to itself and to modes of like frequency does to what swings of it, in the step.
+    pub(crate) fn unseen(&self, step: f64, state: &ConservativeState, e: &Evaluation) -> Sizes {
+        let spin = e.spin.norm();
+        let mut sizes = Sizes::default();
+        for (k, omega) in self.circular_frequencies.iter().enumerate() {
+            if omega * step <= SEEN {
+                continue;
+            }
+            // What follows its load is no swing.
+            let swing = (state.modal_displacement[k] - e.momentum[k] / (omega * omega)).hypot(e.velocity[k] / omega);
+            let [softening, turning] = self.own_coupling[k];
+            let p = 0.5 * step * spin * (spin * softening + omega * turning) * swing;
+            sizes.energy += 0.5 * p * p;
+            sizes.displacement += (p / omega).powi(2);
+            sizes.acceleration += (p * omega).powi(2);
+        }
+        sizes
+    }
+
+    /// ω_k² q + 2 ζ_k ω_k p
+    fn linear_force(&self, k: usize, q: f64, p: f64) -> f64 {
+        let omega = self.circular_frequencies[k];
+        omega * (omega * q + 2.0 * self.damping_ratios[k] * p)
+    }
+}

@@ -1,0 +1,62 @@
+//! What a results file holds and where, in a form that is read without HDF5.
+
+use crate::layout::Quantity;
+use crate::{FileError, Metadata};
+use serde::{Deserialize, Serialize};
+use std::ops::Range;
+use std::path::Path;
+
+/// Stands as JSON in the head of the file.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Description {
+    /// Rows that there is room for.
+    pub rows: usize,
+    /// Words of each of the two places for a checkpoint; none in a finished file.
+    pub checkpoint_words: Option<usize>,
+    /// First byte of each history, in the order of [`Quantity::all`], and of the checkpoints; 0 where there is nothing.
+    pub starts: Vec<u64>,
+    /// Of the run.
+    pub metadata: Metadata,
+}
+
+impl Description {
+    pub(crate) fn to_json(&self) -> String {
+        // It has no maps, whose keys might be no text: it cannot fail.
+        serde_json::to_string(self).unwrap_or_default()
+    }
+
+    pub(crate) fn from_json(path: &Path, json: &[u8]) -> Result<Self, FileError> {
+        serde_json::from_slice(json).map_err(|error| {
+            // Without what stands there.
+            let what = format!("its description cannot be read from byte {} on", error.column());
+            FileError::Damaged { path: path.to_path_buf(), what }
+        })
+    }
+
+    /// Values per row of each history.
+    pub(crate) fn widths(&self) -> impl Iterator<Item = usize> {
+        let modes = self.metadata.body.frequencies.len();
+        Quantity::all(self.metadata.point_names.len()).map(move |quantity| quantity.width(modes).unwrap_or(1))
+    }
+
+    /// The bytes of each history, and of the checkpoints. `None` if they are not all within `free`, each in a place of
+    /// its own.
+    pub(crate) fn ranges(&self, free: Range<u64>) -> Option<Vec<Range<u64>>> {
+        let size = |numbers: usize, each: usize| Some((numbers.checked_mul(each)?.checked_mul(8)?) as u64);
+        let sizes = self.widths().map(|width| size(self.rows, width));
+        let sizes = sizes.chain(self.checkpoint_words.map(|words| size(2, words)));
+        let mut starts = self.starts.iter();
+        let ranges: Vec<Range<u64>> = sizes
+            .map(|size| {
+                let start = *starts.next()?;
+                Some(start..start.checked_add(size?)?)
+            })
+            .collect::<Option<_>>()?;
+        let mut sorted: Vec<&Range<u64>> = ranges.iter().filter(|range| !range.is_empty()).collect();
+        sorted.sort_unstable_by_key(|range| range.start);
+        let apart = sorted.windows(2).all(|pair| pair[0].end <= pair[1].start);
+        let within = sorted.iter().all(|range| free.start <= range.start && range.end <= free.end);
+        (apart && within && starts.next().is_none()).then_some(ranges)
+    }
+}

@@ -1,0 +1,176 @@
+//! The HDF5 structure of a results file, laid out as [`mod@crate::layout`] says.
+//!
+//! HDF5 only makes files here. It opens none that was there before, see [`mod@crate::seal`].
+
+use crate::layout::Quantity;
+use crate::store::Room;
+use crate::{FileError, Metadata, Units};
+use hdf5::dataset::Layout;
+use hdf5::plist::dataset_create::{AllocTime, FillTime};
+use hdf5::plist::group_create::LinkCreationOrder;
+use hdf5::types::VarLenUnicode;
+use ndarray::{ArrayView2, aview0, aview1};
+use std::path::Path;
+
+/// Makes the file at `place` (called `path` in messages), which begins with so many bytes that HDF5 leaves alone, and
+/// closes it. Gives the first byte of each history, in the order of [`Quantity::all`], and of the checkpoints; 0 where
+/// there is nothing.
+pub(crate) fn make(
+    place: &Path,
+    path: &Path,
+    metadata: &Metadata,
+    room: Room,
+    user_block: u64,
+) -> Result<Vec<u64>, FileError> {
+    let mut builder = hdf5::File::with_options();
+    // Without times of creation, so that equal runs give equal files; the seal goes into the user block.
+    builder.with_fcpl(|plist| plist.obj_track_times(false).userblock(user_block));
+    // Numbers do not straddle the pages of the file, which may be written one by one.
+    builder.with_fapl(|plist| plist.alignment(1, 8));
+    let file = builder.create(place).map_err(FileError::hdf5(path, "create the file"))?;
+    write_root_attributes(path, &file, metadata, room.checkpoint_words.is_none())?;
+    write_body(path, &file, metadata)?;
+    create_point_groups(&file, &metadata.point_names).map_err(FileError::hdf5(path, "create the points"))?;
+    let mut datasets = Quantity::all(metadata.point_names.len())
+        .map(|quantity| create_column(path, &file, quantity, metadata, room.rows))
+        .collect::<Result<Vec<_>, _>>()?;
+    if let Some(words) = room.checkpoint_words {
+        let checkpoint = file
+            .new_dataset::<u64>()
+            .layout(Layout::Contiguous)
+            .alloc_time(Some(AllocTime::Early))
+            .obj_track_times(false)
+            .shape((2, words))
+            .create("checkpoint")
+            .map_err(FileError::hdf5(path, "create dataset checkpoint"))?;
+        datasets.push(checkpoint);
+    }
+    // An empty dataset has no place.
+    let starts = datasets.iter().map(|dataset| dataset.offset().unwrap_or(0)).collect();
+    drop(datasets);
+    // HDF5 gives back what room it has left over when it closes the file: from then on its structure stays.
+    file.close().map_err(FileError::hdf5(path, "write the file"))?;
+    Ok(starts)
+}
+
+/// Room for so many rows, NaN where nothing has been written.
+fn create_column(
+    path: &Path,
+    file: &hdf5::File,
+    quantity: Quantity,
+    metadata: &Metadata,
+    rows: usize,
+) -> Result<hdf5::Dataset, FileError> {
+    let name = quantity.path(&metadata.point_names);
+    let builder = file
+        .new_dataset::<f64>()
+        .layout(Layout::Contiguous)
+        .alloc_time(Some(AllocTime::Early))
+        .fill_time(FillTime::Alloc)
+        .fill_value(f64::NAN)
+        .obj_track_times(false);
+    let dataset = match quantity.width(metadata.body.frequencies.len()) {
+        None => builder.shape(rows).create(name.as_str()),
+        Some(width) => builder.shape((rows, width)).create(name.as_str()),
+    }
+    .map_err(FileError::hdf5(path, format!("make room for {name}")))?;
+    describe(path, &dataset, &quantity.unit(&metadata.units), quantity.frame(), quantity.description())?;
+    Ok(dataset)
+}
+
+/// The groups keep the order in which they were made, so that the reader lists the points as given.
+fn create_point_groups(file: &hdf5::File, names: &[String]) -> hdf5::Result<()> {
+    let points = file
+        .create_group_builder()
+        .with_create_plist(|plist| plist.link_creation_order(LinkCreationOrder::Indexed).obj_track_times(false))
+        .create("points")?;
+    for name in names {
+        points.create_group(name)?;
+    }
+    Ok(())
+}
+
+fn write_root_attributes(path: &Path, file: &hdf5::File, metadata: &Metadata, complete: bool) -> Result<(), FileError> {
+    let texts = [
+        ("title", &metadata.title),
+        ("scene", &metadata.scene_text),
+        ("scene_file", &metadata.scene_file),
+        ("formulation", &metadata.formulation),
+        ("scheme", &metadata.scheme),
+        ("program_version", &metadata.program_version),
+        ("units_length", &metadata.units.length),
+        ("units_mass", &metadata.units.mass),
+        ("units_time", &metadata.units.time),
+    ];
+    for (name, text) in texts {
+        write_text(path, file, name, text)?;
+    }
+    for (name, number) in [("step", metadata.step), ("tolerance", metadata.tolerance)] {
+        let Some(number) = number else { continue };
+        file.new_attr::<f64>()
+            .create(name)
+            .and_then(|attribute| attribute.write_scalar(&number))
+            .map_err(FileError::hdf5(path, format!("write the attribute {name}")))?;
+    }
+    for (name, number) in [("fingerprint", metadata.fingerprint.into()), ("complete", i64::from(complete))] {
+        file.new_attr::<i64>()
+            .create(name)
+            .and_then(|attribute| attribute.write_scalar(&number))
+            .map_err(FileError::hdf5(path, format!("write the attribute {name}")))?;
+    }
+    Ok(())
+}
+
+fn write_body(path: &Path, file: &hdf5::File, metadata: &Metadata) -> Result<(), FileError> {
+    let body = &metadata.body;
+    let Units { length, mass, time } = &metadata.units;
+    let frequency_unit = if time == "s" { "Hz".into() } else { format!("1/{time}") };
+    let inertia_unit = format!("{mass} {length}^2");
+    let inertia = ArrayView2::from(&body.inertia);
+    for (name, values, unit, frame, description) in [
+        ("mass", aview0(&body.mass).into_dyn(), mass, "none", "total mass"),
+        ("center_of_mass", aview1(&body.center_of_mass).into_dyn(), length, "mesh", "centre of mass"),
+        ("inertia", inertia.into_dyn(), &inertia_unit, "body", "undeformed inertia about the centre of mass"),
+        (
+            "frequencies",
+            aview1(&body.frequencies).into_dyn(),
+            &frequency_unit,
+            "none",
+            "natural frequencies of the flexible modes",
+        ),
+        (
+            "damping_ratios",
+            aview1(&body.damping_ratios).into_dyn(),
+            &"1".into(),
+            "none",
+            "damping ratios of the flexible modes",
+        ),
+    ] {
+        let name = format!("body/{name}");
+        let dataset = file
+            .new_dataset_builder()
+            .with_data(values)
+            .obj_track_times(false)
+            .create(name.as_str())
+            .map_err(FileError::hdf5(path, format!("write {name}")))?;
+        describe(path, &dataset, unit, frame, description)?;
+    }
+    Ok(())
+}
+
+fn describe(path: &Path, dataset: &hdf5::Dataset, unit: &str, frame: &str, description: &str) -> Result<(), FileError> {
+    write_text(path, dataset, "unit", unit)?;
+    write_text(path, dataset, "frame", frame)?;
+    write_text(path, dataset, "description", description)
+}
+
+/// A variable-length UTF-8 string, which h5py reads as `str`.
+fn write_text(path: &Path, owner: &hdf5::Location, name: &str, text: &str) -> Result<(), FileError> {
+    let value: VarLenUnicode =
+        text.parse().map_err(|_| FileError::NulInText { path: path.to_path_buf(), attribute: name.into() })?;
+    owner
+        .new_attr::<VarLenUnicode>()
+        .create(name)
+        .and_then(|attribute| attribute.write_scalar(&value))
+        .map_err(FileError::hdf5(path, format!("write the attribute {name}")))
+}

@@ -1,0 +1,59 @@
+//! How the frequencies of modes that may bend the body far go with their amplitudes.
+
+use advice::{Advice, Backbone, LARGE};
+use faer::Mat;
+use fem_tet10::{Materials, Mesh, second_order_energies, second_order_forces};
+use modal::{ModalError, Modes, Solver};
+
+use super::{BuildError, Size, modal};
+use crate::scene::Scene;
+
+/// The backbones of the natural modes that may bend the body by [`LARGE`] of its length by the bounds of `advice`; none
+/// of others, and none at all where the static answers cannot be found.
+///
+/// The static modal derivative `Θ = −K⁻¹ g` is made M-orthogonal to its mode φ, so that the modal coordinate stays what
+/// it is: with c = φᵀMΘ, its inertia is ΘᵀMΘ − c², its energy −g·Θ − ω²c².
+pub(super) fn backbones(
+    scene: &Scene,
+    mesh: &Mesh,
+    materials: &Materials,
+    solver: &Solver<'_>,
+    modes: &Modes,
+    size: &Size,
+    advice: &Advice,
+) -> Result<Vec<Option<Backbone>>, BuildError> {
+    let natural = modes.natural().min(modes.shapes.ncols());
+    let is_large = |k: &usize| {
+        let bound = advice.modes.get(*k).map_or(0.0, |mode| mode.displacement);
+        bound * size.peaks[*k] >= LARGE * size.length
+    };
+    let large: Vec<usize> = (0..natural).filter(is_large).collect();
+    let mut found = vec![None; natural];
+    if large.is_empty() {
+        return Ok(found);
+    }
+    let nodes = modes.shapes.nrows();
+    let shapes = Mat::from_fn(nodes, large.len(), |i, j| modes.shapes[(i, large[j])]);
+    let pairs: Vec<[usize; 2]> = (0..large.len()).map(|j| [j, j]).collect();
+    let quadruples: Vec<[usize; 4]> = (0..large.len()).map(|j| [j; 4]).collect();
+    let forces = second_order_forces(mesh, materials, shapes.as_ref(), &pairs)?;
+    let energies = second_order_energies(mesh, materials, shapes.as_ref(), &quadruples)?;
+    let answers = match solver.static_response(forces.as_ref()) {
+        Ok(answers) => answers,
+        // The run can do without.
+        Err(ModalError::StaticNotConverged { .. }) => return Ok(found),
+        Err(error) => return Err(modal(scene)(error)),
+    };
+    let momenta = solver.nodal_mass().product(answers.as_ref());
+    for (j, k) in large.into_iter().enumerate() {
+        let square = modes.eigenvalues[k];
+        // The derivative is minus the answer.
+        let (shape, answer, force) = (shapes.col(j), answers.col(j), forces.col(j));
+        let along = shape.transpose() * momenta.col(j);
+        let inertia = answer.transpose() * momenta.col(j) - along * along;
+        let relief = force.transpose() * answer - square * along * along;
+        let (cubic, quartic) = (shape.transpose() * force, 3.0 * (energies[j] - relief));
+        found[k] = Some(Backbone::new(square.sqrt(), inertia, cubic, quartic));
+    }
+    Ok(found)
+}
