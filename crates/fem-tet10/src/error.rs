@@ -23,6 +23,14 @@ impl fmt::Display for Place {
 /// A mesh that cannot be read or used. `source_name` is the file's path (or what the caller named the mesh).
 #[derive(Debug, thiserror::Error)]
 pub enum MeshError {
+    /// Not enough memory.
+    #[error("{source_name}: {source}")]
+    Memory {
+        /// The mesh.
+        source_name: String,
+        /// How much is wanted, and what is left.
+        source: memory::OutOfMemory,
+    },
     /// The file cannot be read.
     #[error("{source_name}: cannot read the mesh: {source}")]
     Io {
@@ -331,6 +339,9 @@ fn first_few<T: std::fmt::Debug>(list: &[T]) -> String {
 /// A model that cannot be assembled.
 #[derive(Debug, thiserror::Error)]
 pub enum AssemblyError {
+    /// Not enough memory.
+    #[error(transparent)]
+    Memory(#[from] memory::OutOfMemory),
     /// A material constant outside its range.
     #[error("material of {group}: {quantity} is {found}; expected {expected}")]
     MaterialConstant {

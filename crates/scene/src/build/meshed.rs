@@ -286,7 +286,10 @@ impl Parts<'_> {
 
     fn statics(&self, modes: &Modes, body: &ReducedBody, of_loads: bool, of_spin: bool) -> Result<Statics, BuildError> {
         let to_loads = || -> Result<_, BuildError> {
-            let mut forces = Mat::zeros(3 * self.mesh.positions().len(), self.loads.len());
+            let unknowns = 3 * self.mesh.positions().len();
+            memory::check("the forces of the loads", 8 * unknowns * self.loads.len())
+                .map_err(|source| modal(self.scene)(source.into()))?;
+            let mut forces = Mat::zeros(unknowns, self.loads.len());
             for (i, load) in self.loads.iter().enumerate() {
                 load.add_nodal_forces(forces.as_mut().col_mut(i));
             }
