@@ -120,9 +120,15 @@ impl MeshReport {
             unknowns: 3 * mesh.positions().len(),
             matrix_bytes: *matrix_bytes,
             factor_entries: modes.stats.factor_entries,
-            peak_bytes: modes.stats.peak_bytes,
+            peak_bytes: with_kept(modes.stats.peak_bytes),
         })
     }
+}
+
+/// With what the allocator of the C library keeps of blocks that were given back: those below 32 MiB. Measured on bodies
+/// of 6000 to 28 000 unknowns: 0.3 to 0.5 of the rest, and 65 to 68 MB at the most.
+fn with_kept(bytes: usize) -> usize {
+    bytes + (2 * bytes / 5).min(64 << 20)
 }
 
 impl fmt::Display for MeshReport {

@@ -30,7 +30,7 @@ fn little_memory_ends_in_words() {
     ];
     for arguments in commands {
         let (mut good, mut refused) = (0, 0);
-        for megabytes in [40, 60, 80, 100, 130, 160, 200, 250, 300, 350, 400, 450, 500, 600, 800, 1000] {
+        for megabytes in [100, 115, 130, 145, 160, 200, 250, 300, 350, 400, 450, 500, 600, 800, 1000] {
             let (code, words) = limited(1000 * megabytes, arguments);
             match code {
                 Some(0) => good += 1,
