@@ -202,6 +202,12 @@ fn sum(
     faer::sparse::ops::binary_op(stiffness, mass, |k, m| k.copied().unwrap_or(0.0) + shift * m.copied().unwrap_or(0.0))
 }
 
-fn failed(size: usize, reason: impl std::fmt::Display) -> ModalError {
-    ModalError::Factorization { size, reason: reason.to_string() }
+fn failed(size: usize, reason: FaerError) -> ModalError {
+    match reason {
+        FaerError::OutOfMemory => {
+            // At least a row and a value of each column were asked for.
+            memory::OutOfMemory { what: FACTOR, wanted: 16 * size, left: memory::Left::Unknown }.into()
+        }
+        other => ModalError::Factorization { size, reason: other.to_string() },
+    }
 }
