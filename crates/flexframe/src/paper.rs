@@ -15,8 +15,8 @@ use scene::{BuildError, Scene};
 use serde::Serialize;
 use whole_file::write_whole;
 
-use crate::mode_shapes::ShapesError;
 use crate::json;
+use crate::mode_shapes::ShapesError;
 use crate::run::{RunError, RunProgress, RunReport, RunSettings, run};
 use comparison::Comparison;
 

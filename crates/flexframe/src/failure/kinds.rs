@@ -2,9 +2,9 @@
 
 use advice::AdviceError;
 use fem_tet10::{AssemblyError, MeshError};
+use figures::FigureError;
 use frames_rk4::{EigenError, SetupError};
 use modal::ModalError;
-use figures::FigureError;
 use results::FileError;
 use scene::{BuildError, SceneError, StartError};
 
@@ -39,7 +39,7 @@ impl Failure for SceneError {
 impl Failure for MeshError {
     fn kind(&self) -> Kind {
         match self {
-            Self::Io { .. } => Kind::Io,
+            Self::Io { .. } | Self::Memory { .. } => Kind::Io,
             _ => Kind::Input,
         }
     }
@@ -56,7 +56,10 @@ impl Failure for MeshError {
 
 impl Failure for AssemblyError {
     fn kind(&self) -> Kind {
-        Kind::Input
+        match self {
+            Self::Memory(_) => Kind::Io,
+            _ => Kind::Input,
+        }
     }
 
     fn details(&self) -> Details {
@@ -78,6 +81,7 @@ impl Failure for ModalError {
             | Self::Mechanism { .. }
             | Self::HiddenByRounding { .. }
             | Self::Indefinite { .. } => Kind::Refused,
+            Self::Memory(_) => Kind::Io,
             Self::Ordering { .. }
             | Self::Factorization { .. }
             | Self::NotConverged { .. }
