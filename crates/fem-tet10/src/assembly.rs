@@ -17,6 +17,11 @@ use crate::point_mass::PointMass;
 use crate::quadrature;
 use crate::shape::shape_functions;
 
+/// What the memory is for.
+const MATRICES: &str = "the mass and stiffness matrices";
+/// The integration points of a curved element.
+const INTEGRATION_BYTES: usize = 3500;
+
 /// Stiffness and mass matrices (N×N, N = 3n) that share one pattern, both triangles stored.
 #[derive(Debug, Clone)]
 pub struct Matrices {
@@ -57,9 +62,11 @@ pub fn assemble(mesh: &Mesh, materials: &Materials, point_masses: &[PointMass]) 
 
     let incidence = Incidence::new(mesh);
     let neighbours = neighbours(mesh, &incidence, &carried);
-    let pattern = pattern(&neighbours);
-    let mut stiffness = vec![0.0; pattern.row_idx().len()];
-    let mut mass = vec![0.0; pattern.row_idx().len()];
+    let entries = 9 * neighbours.iter().map(Vec::len).sum::<usize>();
+    memory::check(MATRICES, 24 * entries + INTEGRATION_BYTES * mesh.elements().len())?;
+    let pattern = pattern(&neighbours)?;
+    let mut stiffness = memory::zeros(MATRICES, entries)?;
+    let mut mass = memory::zeros(MATRICES, entries)?;
 
     let rules = Rules::new();
     let points: Vec<Vec<IntegrationPoint>> =
@@ -145,10 +152,10 @@ fn neighbours(mesh: &Mesh, incidence: &Incidence, carried: &[(f64, Location)]) -
 }
 
 /// The pattern over degrees of freedom: a 3×3 block for each pair of coupled nodes.
-fn pattern(neighbours: &[Vec<u32>]) -> SymbolicSparseColMat<usize> {
+fn pattern(neighbours: &[Vec<u32>]) -> Result<SymbolicSparseColMat<usize>, AssemblyError> {
     let n = 3 * neighbours.len();
     let mut col_ptr = Vec::with_capacity(n + 1);
-    let mut row_idx = Vec::with_capacity(9 * neighbours.iter().map(Vec::len).sum::<usize>());
+    let mut row_idx = memory::with_capacity(MATRICES, 9 * neighbours.iter().map(Vec::len).sum::<usize>())?;
     col_ptr.push(0);
     for rows in neighbours {
         for _axis in 0..3 {
@@ -159,7 +166,7 @@ fn pattern(neighbours: &[Vec<u32>]) -> SymbolicSparseColMat<usize> {
             col_ptr.push(row_idx.len());
         }
     }
-    SymbolicSparseColMat::new_checked(n, n, col_ptr, None, row_idx)
+    Ok(SymbolicSparseColMat::new_checked(n, n, col_ptr, None, row_idx))
 }
 
 /// The values of each node's three columns.

@@ -23,6 +23,14 @@ impl fmt::Display for Place {
 /// A mesh that cannot be read or used. `source_name` is the file's path (or what the caller named the mesh).
 #[derive(Debug, thiserror::Error)]
 pub enum MeshError {
+    /// Not enough memory.
+    #[error("{source_name}: {source}")]
+    Memory {
+        /// The mesh.
+        source_name: String,
+        /// How much is wanted, and what is left.
+        source: memory::OutOfMemory,
+    },
     /// The file cannot be read.
     #[error("{source_name}: cannot read the mesh: {source}")]
     Io {
@@ -324,6 +332,7 @@ impl MeshError {
     pub fn source_name(&self) -> &str {
         match self {
             Self::Io { source_name, .. }
+            | Self::Memory { source_name, .. }
             | Self::Version { source_name, .. }
             | Self::Syntax { source_name, .. }
             | Self::Total { source_name, .. }
@@ -371,6 +380,9 @@ fn first_few<T: std::fmt::Debug>(list: &[T]) -> String {
 /// A model that cannot be assembled.
 #[derive(Debug, thiserror::Error)]
 pub enum AssemblyError {
+    /// Not enough memory.
+    #[error(transparent)]
+    Memory(#[from] memory::OutOfMemory),
     /// A material constant outside its range.
     #[error("material of {group}: {quantity} is {found}; expected {expected}")]
     MaterialConstant {
@@ -544,7 +556,8 @@ impl AssemblyError {
             | Self::Spread { source_name, .. }
             | Self::SpreadTooWide { source_name, .. }
             | Self::Patch { source_name, .. } => Some(source_name),
-            Self::MaterialConstant { .. }
+            Self::Memory(_)
+            | Self::MaterialConstant { .. }
             | Self::PointMass { .. }
             | Self::SpreadRadius { .. }
             | Self::PatchRadius { .. }

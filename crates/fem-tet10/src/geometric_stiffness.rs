@@ -48,6 +48,7 @@ pub fn reduced_geometric_stiffness(
     check_field(mesh, "shapes", shapes)?;
     let materials = materials.of_elements(mesh)?;
     let f = shapes.ncols();
+    memory::check("the geometric stiffness", f.saturating_mul(f).saturating_mul(8 * PARTS * displacements.ncols()))?;
     let zeros = || vec![Mat::<f64>::zeros(f, f); displacements.ncols()];
     let rules = Rules::new();
     let elements: Vec<usize> = (0..mesh.elements().len()).collect();

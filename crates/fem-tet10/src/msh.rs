@@ -24,6 +24,9 @@ const TET4: i32 = 4;
 const TRI6: i32 = 9;
 const TET10: i32 = 11;
 
+/// Bytes that reading takes for each byte of the file, which is one of them: meshes of gmsh took 3.6.
+const FACTOR: usize = 4;
+
 const REMESH: &str = "mesh with -order 2 (or `Mesh.ElementOrder = 2;`)";
 const TETRAHEDRA_ONLY: &str =
     "mesh with tetrahedra (gmsh: no Recombine, no Transfinite Volume with Recombine) and -order 2";
@@ -45,6 +48,9 @@ struct Block {
 /// See [`MeshError`]: unreadable file, wrong format, wrong elements, and all that [`Mesh::new`] refuses.
 pub fn read_msh(path: impl AsRef<Path>) -> Result<Mesh, MeshError> {
     let source_name = path.as_ref().display().to_string();
+    let size = std::fs::metadata(path.as_ref()).map_or(0, |found| usize::try_from(found.len()).unwrap_or(usize::MAX));
+    memory::check("the mesh", size.saturating_mul(FACTOR))
+        .map_err(|source| MeshError::Memory { source_name: source_name.clone(), source })?;
     let bytes =
         read_ordinary(path.as_ref()).map_err(|source| MeshError::Io { source_name: source_name.clone(), source })?;
     parse_msh(&bytes, &source_name)

@@ -2,6 +2,7 @@
 
 mod cli;
 mod cli_error;
+mod out_of_memory;
 mod output;
 mod progress;
 mod signals;
@@ -14,5 +15,7 @@ fn main() -> ExitCode {
     // At the limit on the size of a file this signal would end the program without a word. Caught, it leaves the error to
     // the write that comes too far.
     let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Arc::default());
+    // Without it the program works as well, but for its last words.
+    let _ = out_of_memory::listen();
     cli::main()
 }

@@ -3,6 +3,7 @@
 use std::fmt::{self, Write};
 use std::time::Duration;
 
+use memory::Bytes;
 use nalgebra::Matrix3;
 use scene::{Meshed, Model};
 use serde::Serialize;
@@ -83,6 +84,8 @@ pub struct MeshReport {
     pub matrix_bytes: usize,
     /// Entries of the factor of K + sM.
     pub factor_entries: usize,
+    /// Bytes that the model takes while it is made, at the most at a time: matrices, factor, basis and scratch.
+    pub peak_bytes: usize,
 }
 
 /// Mass properties and modes.
@@ -117,20 +120,28 @@ impl MeshReport {
             unknowns: 3 * mesh.positions().len(),
             matrix_bytes: *matrix_bytes,
             factor_entries: modes.stats.factor_entries,
+            peak_bytes: with_kept(modes.stats.peak_bytes),
         })
     }
+}
+
+/// With what the allocator of the C library keeps of blocks that were given back: those below 32 MiB. Measured on bodies
+/// of 6000 to 28 000 unknowns: 0.3 to 0.5 of the rest, and 65 to 68 MB at the most.
+fn with_kept(bytes: usize) -> usize {
+    bytes + (2 * bytes / 5).min(64 << 20)
 }
 
 impl fmt::Display for MeshReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "{} nodes, {} elements, {} unknowns (matrices {:.0} MB, factor {:.0} MB)",
+            "{} nodes, {} elements, {} unknowns (memory {}: matrices {}, factor {} of it)",
             self.nodes,
             self.elements,
             self.unknowns,
-            self.matrix_bytes as f64 / 1e6,
-            8e-6 * self.factor_entries as f64
+            Bytes(self.peak_bytes),
+            Bytes(self.matrix_bytes),
+            Bytes(8 * self.factor_entries)
         )
     }
 }

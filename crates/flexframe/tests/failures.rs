@@ -143,7 +143,11 @@ fn a_refused_model_a_failed_run_and_a_file_in_the_way_differ() {
     let object = failure(Kind::Refused, &["run", &beyond, "-o", &ring.out(), "--json"]);
     assert_eq!(object["file"], beyond);
 
-    let wild = ring.scene(&[("tolerance = 1e-6", "step = 1e-3"), ("amplitude = 200.0", "amplitude = 2e12")]);
+    let wild = ring.scene(&[
+        ("tolerance = 1e-6", "step = 1e-3"),
+        ("amplitude = 200.0", "amplitude = 2e12"),
+        ("[initial]", "[effects]\nrefuse = false\n[initial]"),
+    ]);
     let object = failure(Kind::Run, &["run", &wild, "-o", &ring.out(), "--json"]);
     assert_says(&object["message"], &["at time", "the states before it are in"]);
     let gif = format!("{}.gif", ring.out());

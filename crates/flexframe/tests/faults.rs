@@ -227,7 +227,7 @@ fn a_full_disk_leaves_the_old_picture() {
     let mut limited = Command::new("sh");
     limited.args(["-c", "trap '' XFSZ; ulimit -f 20; exec \"$@\"", "sh", env!("CARGO_BIN_EXE_flexframe"), "animate"]);
     limited.arg(&scene.path).arg("-o").arg(&path);
-    assert_has(&failure(limited), &["ring.gif", "File too large", "make room"]);
+    assert_has(&io_failure(limited), &["ring.gif", "File too large", "make room"]);
     assert_eq!(std::fs::read(&path).unwrap(), b"old");
     // The scene and the picture, and nothing half-written.
     assert_eq!(std::fs::read_dir(scene.folder.path()).unwrap().count(), 2);

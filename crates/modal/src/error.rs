@@ -181,8 +181,11 @@ pub enum ModalError {
         /// METIS's own code.
         status: i32,
     },
-    /// No memory for the factor, or an index too large.
-    #[error("the factorisation of {size} unknowns failed: {reason}; use a coarser mesh or a machine with more memory")]
+    /// Not enough memory.
+    #[error(transparent)]
+    Memory(#[from] memory::OutOfMemory),
+    /// An index that is too large.
+    #[error("the factorisation of {size} unknowns failed: {reason}; use a coarser mesh")]
     Factorization {
         /// Unknowns.
         size: usize,

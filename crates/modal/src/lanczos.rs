@@ -7,15 +7,16 @@ use faer::{Accum, Mat, MatRef};
 
 use crate::dense::symmetric_eigen;
 use crate::error::ModalError;
+use crate::foretold::of_vectors;
 use crate::mass::NodalMass;
 use crate::products::Packed;
 use crate::shifted::Shifted;
 use crate::tall;
 
 /// Columns of the rigid modes, zero for those that are missing.
-const FIXED: usize = 6;
+pub(crate) const FIXED: usize = 6;
 /// Vectors solved for at a time.
-const BLOCK: usize = 8;
+pub(crate) const BLOCK: usize = 8;
 /// ‖(K + sM)⁻¹Mφ − μφ‖_M / μ of a pair that is accepted.
 const TOLERANCE: f64 = 1e-10;
 /// Directions of a new block below this, relative to the block before orthogonalisation, are rounding.
@@ -50,7 +51,7 @@ pub(crate) fn largest_pairs(
     let n = rigid.nrows();
     let max_steps = SPARE_STEPS + 2 * count.div_ceil(BLOCK);
     let mut scratch = operator.solve_scratch(BLOCK)?;
-    let mut basis = Basis::new(mass, rigid, available.min(4 * count + 4 * BLOCK));
+    let mut basis = Basis::new(mass, rigid, room(count, available))?;
     // Projection of the operator; row and column blocks grow with the basis.
     let mut projected: Mat<f64> = Mat::zeros(0, 0);
 
@@ -109,6 +110,11 @@ pub(crate) fn largest_pairs(
     Err(ModalError::NotConverged { converged, requested: count, steps: max_steps, residual, tolerance: TOLERANCE })
 }
 
+/// Vectors that a search for `count` of the `available` ones has room for.
+pub(crate) fn room(count: usize, available: usize) -> usize {
+    available.min(4 * count + 4 * BLOCK)
+}
+
 /// An M-orthonormal basis. Its first [`FIXED`] vectors are the rigid modes, which the search stays away from.
 struct Basis<'a> {
     mass: &'a NodalMass,
@@ -129,20 +135,21 @@ struct Extension {
 }
 
 impl<'a> Basis<'a> {
-    fn new(mass: &'a NodalMass, rigid: MatRef<'_, f64>, room: usize) -> Self {
+    fn new(mass: &'a NodalMass, rigid: MatRef<'_, f64>, room: usize) -> Result<Self, ModalError> {
+        memory::check("the Lanczos basis", of_vectors(rigid.nrows(), 2 * (FIXED + room) + 4 * BLOCK))?;
         let with_room = |columns: MatRef<'_, f64>| {
             let mut matrix = Mat::with_capacity(columns.nrows(), FIXED + room);
             append(&mut matrix, columns);
             matrix
         };
-        Self {
+        Ok(Self {
             mass,
             vectors: with_room(rigid),
             m_vectors: with_room(mass.product(rigid).as_ref()),
             m_w: Mat::new(),
             spare: Mat::new(),
             packed: Vec::new(),
-        }
+        })
     }
 
     /// Vectors beside the rigid modes.

@@ -21,6 +21,7 @@ mod constraints;
 mod dense;
 mod error;
 mod fields;
+mod foretold;
 mod lanczos;
 mod mass;
 mod ordering;

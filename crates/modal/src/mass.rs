@@ -28,6 +28,8 @@ impl NodalMass {
     /// [`ModalError::AnisotropicMass`] where M is not `M_s ⊗ I₃`, [`ModalError::NotSymmetric`] where M_s is not symmetric.
     pub fn new(mass: SparseColMatRef<'_, usize, f64>) -> Result<Self, ModalError> {
         let n = mass.ncols() / 3;
+        // A column of each node, which grows by doubling, and then all of them in one.
+        memory::check("the mass matrix over nodes", 48 * mass.row_idx().len() / 9)?;
         let entry = |row: usize, column: usize| mass.get(row, column).copied().unwrap_or(0.0);
         let diagonal: Vec<f64> = (0..n).map(|node| entry(3 * node, 3 * node)).collect();
         let columns: Vec<Vec<(u32, f64)>> = (0..n)

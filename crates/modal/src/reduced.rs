@@ -18,6 +18,7 @@ use faer::{Mat, MatRef};
 use nalgebra::{Matrix3, Vector3};
 
 use crate::error::ModalError;
+use crate::foretold::of_vectors;
 use crate::mass::NodalMass;
 use crate::solve::Modes;
 use crate::support::RigidMotion;
@@ -127,6 +128,7 @@ impl ReducedBody {
         check_size("the list of eigenvalues", modes.eigenvalues.len(), nf)?;
         // Ψ, X and 1 side by side: all constants are products of their rows on one axis with M_s times those on another.
         let columns = 6 + nf + 2;
+        memory::check("the reduced body", of_vectors(3 * n, 4 * columns))?;
         let mut all = Mat::zeros(3 * n, columns);
         all.as_mut().subcols_mut(0, 6).copy_from(&rigid.shapes);
         all.as_mut().subcols_mut(6, nf).copy_from(&modes.shapes);

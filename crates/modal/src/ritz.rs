@@ -7,6 +7,7 @@ use faer::sparse::SparseColMatRef;
 use crate::constraints::Constraints;
 use crate::dense::{symmetric_eigen, whitening};
 use crate::error::ModalError;
+use crate::foretold::of_vectors;
 use crate::mass::NodalMass;
 use crate::products::symmetric_product;
 use crate::tall;
@@ -30,6 +31,7 @@ pub(crate) fn rayleigh_ritz(
     constraints: &Constraints,
     vectors: &Mat<f64>,
 ) -> Result<RitzPairs, ModalError> {
+    memory::check("the mode shapes and their products with K and M", of_vectors(vectors.nrows(), 5 * vectors.ncols()))?;
     let m_vectors = mass.product(vectors.as_ref());
     let k_vectors = symmetric_product(stiffness, vectors.as_ref());
     let gram = tall::inner(vectors.as_ref(), m_vectors.as_ref());

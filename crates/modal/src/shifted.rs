@@ -6,11 +6,12 @@
 
 use std::time::{Duration, Instant};
 
-use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::linalg::cholesky::llt::factor::LltError as PivotError;
 use faer::reborrow::{Reborrow, ReborrowMut};
 use faer::sparse::linalg::cholesky::{
-    CholeskySymbolicParams, LltRef, SymbolicCholesky, SymmetricOrdering, factorize_symbolic_cholesky,
+    CholeskySymbolicParams, LltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
+    factorize_symbolic_cholesky,
 };
 use faer::sparse::{FaerError, SparseColMat, SparseColMatRef};
 use faer::{Accum, Conj, Mat, MatMut, Par, Side, Spec};
@@ -18,9 +19,15 @@ use faer::{Accum, Conj, Mat, MatMut, Par, Side, Spec};
 use crate::constraints::Constraints;
 use crate::dense::whitening;
 use crate::error::ModalError;
+use crate::foretold::{Foretold, of_dense_products};
 use crate::ordering::nested_dissection;
 use crate::products::symmetric_product;
 use crate::tall;
+
+/// What the memory is for.
+const FACTOR: &str = "the factor of K + sM and the search for modes";
+/// Entries of a factor that is small.
+const SMALL: usize = 500_000;
 
 /// The factor of K + sM.
 pub(crate) struct Shifted {
@@ -33,6 +40,8 @@ pub(crate) struct Shifted {
     /// E, A-orthonormal.
     extensions: Mat<f64>,
     par: Par,
+    /// The memory that it takes.
+    pub memory: Foretold,
     /// Time that it took to choose the shift.
     pub estimate_time: Duration,
     /// Time of the ordering and the symbolic factorisation.
@@ -42,16 +51,18 @@ pub(crate) struct Shifted {
 }
 
 impl Shifted {
-    /// Orders and factors `K + shift·M`.
+    /// Orders and factors `K + shift·M`, where there is memory for it and for what `search` says of what comes after.
     pub(crate) fn factor(
         stiffness: SparseColMatRef<'_, usize, f64>,
         mass: SparseColMatRef<'_, usize, f64>,
         shift: f64,
         constraints: &Constraints,
+        search: impl Fn(&Foretold) -> usize,
     ) -> Result<Self, ModalError> {
         let start = Instant::now();
-        let par = parallelism();
         let size = stiffness.ncols();
+        let memory = Foretold::new(stiffness, mass, 6);
+        memory::check("ordering K + sM", memory.of_ordering())?;
         let mut shifted = sum(stiffness, mass, shift).map_err(|reason| failed(size, reason))?;
         let motions = constraints.motions();
         let a_motions = symmetric_product(shifted.as_ref(), motions.as_ref());
@@ -69,9 +80,14 @@ impl Shifted {
         let ordering_time = start.elapsed();
 
         let start = Instant::now();
-        let mut values = vec![0.0; symbolic.len_val()];
-        let mut memory = MemBuffer::try_new(symbolic.factorize_numeric_llt_scratch::<f64>(par, Spec::default()))
-            .map_err(|_| failed(size, "no memory left"))?;
+        let par = parallelism(&symbolic);
+        let needed = symbolic.factorize_numeric_llt_scratch::<f64>(par, Spec::default());
+        let memory = memory.with_factor(&symbolic, needed.unaligned_bytes_required());
+        let is_dense = matches!(symbolic.raw(), SymbolicCholeskyRaw::Supernodal(_));
+        let reserve = if is_dense { of_dense_products(par.degree()) } else { 0 };
+        memory::check_with_reserve(FACTOR, memory.of_factor(search(&memory)), reserve)?;
+        let mut values = memory::zeros(FACTOR, symbolic.len_val())?;
+        let mut scratch = buffer(needed)?;
         symbolic
             .factorize_numeric_llt(
                 &mut values,
@@ -79,10 +95,11 @@ impl Shifted {
                 Side::Lower,
                 Default::default(),
                 par,
-                MemStack::new(&mut memory),
+                MemStack::new(&mut scratch),
                 Spec::default(),
             )
             .map_err(|PivotError::NonPositivePivot { index }| ModalError::Indefinite { pivot: index, shift })?;
+        drop(scratch);
         let extensions = Mat::zeros(size, 0);
         let constraints = constraints.clone();
         let estimate_time = Duration::ZERO;
@@ -93,6 +110,7 @@ impl Shifted {
             values,
             extensions,
             par,
+            memory,
             estimate_time,
             ordering_time,
             factor_time: start.elapsed(),
@@ -123,8 +141,7 @@ impl Shifted {
 
     /// Scratch memory for [`solve_in_place`](Self::solve_in_place) with up to `columns` columns.
     pub(crate) fn solve_scratch(&self, columns: usize) -> Result<MemBuffer, ModalError> {
-        MemBuffer::try_new(self.symbolic.solve_in_place_scratch::<f64>(columns, self.par))
-            .map_err(|_| failed(self.symbolic.ncols(), "no memory left"))
+        buffer(self.symbolic.solve_in_place_scratch::<f64>(columns, self.par))
     }
 
     /// Replaces forces `x` by the displacements (K + sM)⁻¹ x that the support allows.
@@ -158,9 +175,17 @@ fn hold_out(matrix: &mut SparseColMat<usize, f64>, constraints: &Constraints) {
     }
 }
 
-/// faer's parallelism on the rayon pool that the caller runs in.
-fn parallelism() -> Par {
-    if rayon::current_num_threads() == 1 { Par::Seq } else { Par::rayon(0) }
+/// faer's parallelism on the rayon pool that the caller runs in. A small factor is made by one thread, which is as fast
+/// and takes the scratch of one.
+fn parallelism(symbolic: &SymbolicCholesky<usize>) -> Par {
+    if rayon::current_num_threads() == 1 || symbolic.len_val() < SMALL { Par::Seq } else { Par::rayon(0) }
+}
+
+fn buffer(needed: StackReq) -> Result<MemBuffer, ModalError> {
+    let bytes = needed.unaligned_bytes_required();
+    memory::check(FACTOR, bytes)?;
+    let left = memory::Left::Unknown;
+    Ok(MemBuffer::try_new(needed).map_err(|_| memory::OutOfMemory { what: FACTOR, wanted: bytes, left })?)
 }
 
 /// K + shift·M, on the pattern of both; zeros that are stored stay stored.
@@ -177,6 +202,12 @@ fn sum(
     faer::sparse::ops::binary_op(stiffness, mass, |k, m| k.copied().unwrap_or(0.0) + shift * m.copied().unwrap_or(0.0))
 }
 
-fn failed(size: usize, reason: impl std::fmt::Display) -> ModalError {
-    ModalError::Factorization { size, reason: reason.to_string() }
+fn failed(size: usize, reason: FaerError) -> ModalError {
+    match reason {
+        FaerError::OutOfMemory => {
+            // At least a row and a value of each column were asked for.
+            memory::OutOfMemory { what: FACTOR, wanted: 16 * size, left: memory::Left::Unknown }.into()
+        }
+        other => ModalError::Factorization { size, reason: other.to_string() },
+    }
 }

@@ -8,7 +8,8 @@ use faer::{ColRef, Mat};
 
 use crate::constraints::Constraints;
 use crate::error::ModalError;
-use crate::lanczos::largest_pairs;
+use crate::foretold::Foretold;
+use crate::lanczos::{BLOCK, FIXED, largest_pairs, room};
 use crate::mass::NodalMass;
 use crate::rigid::RigidModes;
 use crate::ritz::{RitzPairs, rayleigh_ritz};
@@ -53,6 +54,8 @@ pub struct SolveStats {
     pub unknowns: usize,
     /// Entries of the factor of K + sM.
     pub factor_entries: usize,
+    /// Bytes that are held at the most, from K and M to the reduced body, foretold from the sizes of all that is large.
+    pub peak_bytes: usize,
     /// Solutions with a block of vectors.
     pub block_solves: usize,
     /// Vectors in the Lanczos basis at the end.
@@ -170,13 +173,20 @@ impl<'a> Solver<'a> {
                 shapes: Mat::zeros(unknowns, 0),
                 residuals: none(),
                 force_residuals: none(),
-                stats: SolveStats { unknowns, preparation_time: self.preparation_time, ..SolveStats::default() },
+                stats: SolveStats {
+                    unknowns,
+                    peak_bytes: Foretold::new(self.stiffness, self.mass, FIXED).peak(0, 0, 0),
+                    preparation_time: self.preparation_time,
+                    ..SolveStats::default()
+                },
             });
         }
         if self.factor.get().is_none() {
             progress(Progress::Factorizing);
         }
-        let factor = self.factor()?;
+        let factor = self.factor_for(|memory| {
+            memory.of_basis(FIXED + room(flexible, available), BLOCK).max(memory.of_reduction(flexible))
+        })?;
         let mut stats = SolveStats {
             shift: factor.shift,
             unknowns,
@@ -193,6 +203,7 @@ impl<'a> Solver<'a> {
         stats.preparation_time = self.preparation_time + factor.estimate_time;
         stats.block_solves = pairs.block_solves;
         stats.basis_size = pairs.basis_size;
+        stats.peak_bytes = factor.memory.peak(FIXED + pairs.basis_size, BLOCK, flexible);
         stats.lanczos_time = started.elapsed();
 
         let started = Instant::now();
@@ -207,13 +218,18 @@ impl<'a> Solver<'a> {
 
     /// K + sM, factored at the first call.
     pub(crate) fn factor(&self) -> Result<&Shifted, ModalError> {
+        self.factor_for(|memory| memory.of_basis(FIXED, BLOCK))
+    }
+
+    /// The same, where there is memory for the `search` that follows.
+    fn factor_for(&self, search: impl Fn(&Foretold) -> usize) -> Result<&Shifted, ModalError> {
         if let Some(factor) = self.factor.get() {
             return Ok(factor);
         }
         let started = Instant::now();
         let shift = start::shift(self.stiffness, &self.nodal_mass, self.positions, &self.rigid)?;
         let estimate_time = started.elapsed();
-        let mut factor = Shifted::factor(self.stiffness, self.mass, shift, &self.constraints)?;
+        let mut factor = Shifted::factor(self.stiffness, self.mass, shift, &self.constraints, search)?;
         factor.estimate_time = estimate_time;
         Ok(self.factor.get_or_init(|| factor))
     }

@@ -11,6 +11,7 @@ use faer::dyn_stack::MemBuffer;
 use faer::{Accum, Mat, MatRef, Scale};
 
 use crate::error::ModalError;
+use crate::foretold::of_vectors;
 use crate::products::symmetric_product;
 use crate::ritz::{RitzPairs, rayleigh_ritz};
 use crate::shifted::Shifted;
@@ -45,6 +46,7 @@ impl Solver<'_> {
         }
         check_finite("forces", forces)?;
         let mut statics = Statics::new(self, self.factor()?)?;
+        memory::check("static answers", of_vectors(expected, forces.ncols() + 10 * BLOCK))?;
         let mut answers = Mat::zeros(expected, forces.ncols());
         for first in (0..forces.ncols()).step_by(BLOCK) {
             let width = BLOCK.min(forces.ncols() - first);
@@ -69,6 +71,7 @@ impl Solver<'_> {
         }
         check_finite("static answers", answers)?;
         let (rigid, flexible) = (6, modes.shapes.ncols());
+        memory::check("static shapes", of_vectors(expected, 2 * (rigid + flexible + answers.ncols()) + flexible))?;
         let mut basis = Mat::zeros(expected, rigid + flexible);
         basis.as_mut().subcols_mut(0, rigid).copy_from(&self.rigid.shapes);
         basis.as_mut().subcols_mut(rigid, flexible).copy_from(&modes.shapes);

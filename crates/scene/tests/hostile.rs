@@ -198,14 +198,16 @@ fn bad_numbers_are_refused_or_move_with_finite_ones() {
     // What other threads hold would not be seen.
     rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread().build_global().unwrap();
     let scenes = scenes();
+    let mut usual = 0;
     for text in &scenes {
-        assert_eq!(run(text), (Ended::Moved, String::new()), "{text}");
+        let moved = || assert_eq!(run(text), (Ended::Moved, String::new()), "{text}");
+        usual = allocation_counter::measure(moved).bytes_max.max(usual);
     }
     let mut ended = [0; 5];
     let mut measured = |text: &str| {
         let held = allocation_counter::measure(|| ended[run(text).0 as usize] += 1).bytes_max;
-        // Measured: 3.6 MB, for the formula of the first scene.
-        assert!(held < 8 << 20, "{held} bytes were held for {text}");
+        // Measured: 3.6 MB without what the factorization asks for as its scratch, which goes with the processor's cache.
+        assert!(held < usual + (8 << 20), "{held} bytes were held for {text}, where sound scenes need {usual}");
     };
     let mut state = 1;
     for text in &scenes {

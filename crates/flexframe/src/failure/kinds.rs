@@ -39,7 +39,7 @@ impl Failure for SceneError {
 impl Failure for MeshError {
     fn kind(&self) -> Kind {
         match self {
-            Self::Io { .. } => Kind::Io,
+            Self::Io { .. } | Self::Memory { .. } => Kind::Io,
             _ => Kind::Input,
         }
     }
@@ -56,7 +56,10 @@ impl Failure for MeshError {
 
 impl Failure for AssemblyError {
     fn kind(&self) -> Kind {
-        Kind::Input
+        match self {
+            Self::Memory(_) => Kind::Io,
+            _ => Kind::Input,
+        }
     }
 
     fn details(&self) -> Details {
@@ -81,6 +84,7 @@ impl Failure for ModalError {
             | Self::Mechanism { .. }
             | Self::HiddenByRounding { .. }
             | Self::Indefinite { .. } => Kind::Refused,
+            Self::Memory(_) => Kind::Io,
             Self::Ordering { .. }
             | Self::Factorization { .. }
             | Self::NotConverged { .. }

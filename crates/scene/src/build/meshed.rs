@@ -344,7 +344,10 @@ impl Parts<'_> {
             return Ok(Statics { of_loads: None, of_spin: None, of_steady: None });
         }
         let spins = fields.as_ref().map_or(0, Mat::ncols);
-        let mut forces = Mat::zeros(3 * self.mesh.positions().len(), for_all_loads + spins);
+        let unknowns = 3 * self.mesh.positions().len();
+        memory::check("the forces of the loads", 8 * unknowns * (for_all_loads + spins))
+            .map_err(|source| modal(self.scene)(source.into()))?;
+        let mut forces = Mat::zeros(unknowns, for_all_loads + spins);
         for (i, loads) in columns.iter().enumerate() {
             for (load, vector) in loads {
                 load.add_nodal_forces(*vector, forces.as_mut().col_mut(i));

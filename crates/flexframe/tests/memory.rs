@@ -1,0 +1,58 @@
+//! What becomes of a command that has little memory.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+fn example(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples").join(name).canonicalize().unwrap()
+}
+
+/// Runs the program in an address space of so many kB: exit code and standard error.
+fn limited(kilobytes: usize, arguments: &[&str]) -> (Option<i32>, String) {
+    let mut command = Command::new("sh");
+    command.args(["-c", &format!("ulimit -v {kilobytes}; exec \"$@\""), "sh", env!("CARGO_BIN_EXE_flexframe")]);
+    // A trace of a panic wants memory, too.
+    let output = command.args(arguments).env("RUST_BACKTRACE", "1").output().unwrap();
+    (output.status.code(), String::from_utf8_lossy(&output.stderr).into_owned())
+}
+
+#[test]
+fn little_memory_ends_in_words() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path().to_str().unwrap();
+    let (small, plate) = (example("bar/free.toml"), example("plate.toml"));
+    let (small, plate) = (small.to_str().unwrap(), plate.to_str().unwrap());
+    let commands: [&[&str]; 4] = [
+        &["modes", small, "--threads", "1"],
+        &["modes", small, "--threads", "2", "-o", folder],
+        &["modes", plate, "--threads", "2"],
+        &["run", small, "-o", folder, "--overwrite"],
+    ];
+    for arguments in commands {
+        let (mut good, mut refused) = (0, 0);
+        for megabytes in [100, 115, 130, 145, 160, 200, 250, 300, 350, 400, 450, 500, 600, 800, 1000] {
+            let (code, words) = limited(1000 * megabytes, arguments);
+            match code {
+                Some(0) => good += 1,
+                Some(1..=6)
+                    if words.contains("memory") || words.contains("os error 12") || words.contains("thread") =>
+                {
+                    refused += 1;
+                }
+                _ => panic!("{arguments:?} under {megabytes} MB: {code:?}: {words}"),
+            }
+        }
+        assert!(good > 0 && refused > 0, "{arguments:?}: {good} good, {refused} refused");
+        println!("{arguments:?}: {good} good, {refused} refused");
+    }
+}
+
+#[test]
+fn a_factor_that_does_not_fit_is_refused_before_it_is_made_with_numbers() {
+    let scene = example("plate.toml");
+    let (code, words) = limited(330_000, &["modes", scene.to_str().unwrap(), "--threads", "1", "-n", "200"]);
+    assert!(code != Some(0), "{words}");
+    for expected in ["not enough memory for", "wanted", "ulimit -v", "coarser mesh", "fewer modes"] {
+        assert!(words.contains(expected), "{expected} in: {words}");
+    }
+}
