@@ -25,6 +25,7 @@ pub struct Answer {
 const HEIGHT: f64 = 1.5;
 const GRAVITY: f64 = 9.81;
 
+/// Runs the example.
 pub fn run() -> Result<Answer, Box<dyn Error>> {
     let inertia = Matrix3::from_diagonal(&Vector3::new(0.2, 0.3, 0.4));
     let body = ReducedBody::rigid(2.0, Vector3::zeros(), inertia, RigidMotion::free())?;

@@ -20,6 +20,7 @@ pub struct Answer {
     pub balance: f64,
 }
 
+/// Runs the example.
 pub fn run() -> Result<Answer, Box<dyn Error>> {
     let scene = Scene::read(concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/plate.toml"))?;
     let model = Model::build(&scene, |_| ())?;

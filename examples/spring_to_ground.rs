@@ -24,6 +24,7 @@ pub struct Answer {
     pub circled: [f64; 2],
 }
 
+/// Runs the example.
 pub fn run() -> Result<Answer, Box<dyn Error>> {
     let inertia = Matrix3::from_diagonal(&Vector3::new(0.2, 0.3, 0.4));
     let body = ReducedBody::rigid(MASS, Vector3::zeros(), inertia, RigidMotion::free())?;

@@ -74,7 +74,7 @@ fn the_period_of_a_meshed_pendulum_is_the_elliptic_integral() {
         period_of_bar(scene, &model) / expected - 1.0
     };
     let of_steel = gap(&scene);
-    let Body::Meshed(MeshedBody { materials: Materials::Whole(material), .. }) = &mut scene.body else { panic!() };
+    let Body::Meshed(MeshedBody { materials: Materials::Uniform(material), .. }) = &mut scene.body else { panic!() };
     material.young_modulus *= 10.0;
     let of_stiffer = gap(&scene);
     // Measured: 1.0947e-6 and 1.0948e-7.
