@@ -1,12 +1,19 @@
 //! From a scene to a body that can move.
 
 mod backbones;
+mod decide;
 mod history;
 mod loads;
+mod mesh_model;
 mod meshed;
+mod modal_model;
 mod physics;
+mod reduce;
 mod rigid;
+mod statics;
+mod steady_stress;
 mod support;
+mod survey;
 
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
@@ -207,7 +214,7 @@ impl Model {
             body: &self.body,
             damping_ratios: &self.damping_ratios,
             loads: &self.loads,
-            gravity: &[],
+            is_gravity: &[],
             drive: self.physics.drive.as_ref(),
             initial,
             end: scene.time.end,

@@ -63,7 +63,7 @@ fn compare(name: &str, case: &Case) {
     assert!(advice.spin >= 0.99 * spin, "{name}: {} {spin}", advice.spin);
 }
 
-fn pulse(size: f64) -> [frames_rk4::Load; 1] {
+fn pulse(size: f64) -> [frames_rk4::SharedLoad; 1] {
     [plate().force(CORNER, [0.0, 0.0, size], History::HalfSine { start: 0.0, duration: 0.02 })]
 }
 

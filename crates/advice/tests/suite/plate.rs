@@ -1,11 +1,12 @@
 //! The plate of the paper, solved once, with the stiffness that spinning gives it.
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use advice::Case;
 use fem_tet10::{Material, Materials, Mesh, PointMass, assemble, read_msh, reduced_geometric_stiffness};
 use frames_rk4::{
-    Effects, History, Initial, Load, Method, Observation, Physics, PointShapes, Rows, Setup, Simulation, StepControl,
+    Effects, History, Initial, Method, Observation, Physics, PointForce, PointShapes, Rows, Setup, SharedLoad,
+    Simulation, StepControl,
 };
 use modal::{BodyPoint, Modes, ReducedBody, RigidMotion, Solver, Support, centrifugal_fields};
 use nalgebra::Vector3;
@@ -71,18 +72,18 @@ impl Plate {
         Plate { peaks: (0..10).map(peak).collect(), length: 1001.3, corner_compliance, mesh, modes, body }
     }
 
-    pub fn force(&self, at: [f64; 3], force: [f64; 3], history: History) -> Load {
+    pub fn force(&self, at: [f64; 3], force: [f64; 3], history: History) -> SharedLoad {
         let place = self.mesh.locate(at).unwrap();
         let point = BodyPoint::new(&self.modes, self.mesh.positions(), &place.nodes, &place.weights).unwrap();
-        Load::dead_force(PointShapes::new(&self.body, &point), force.into(), history)
+        Arc::new(PointForce::dead(PointShapes::new(&self.body, &point), force.into(), history))
     }
 
-    pub fn case<'a>(&'a self, damping: &'a [f64], loads: &'a [Load], initial: &'a Initial, end: f64) -> Case<'a> {
+    pub fn case<'a>(&'a self, damping: &'a [f64], loads: &'a [SharedLoad], initial: &'a Initial, end: f64) -> Case<'a> {
         Case {
             body: &self.body,
             damping_ratios: damping,
             loads,
-            gravity: &[],
+            is_gravity: &[],
             drive: None,
             initial,
             end,
@@ -101,12 +102,11 @@ pub fn spinning(omega: [f64; 3]) -> Initial {
 
 /// 200 rows of the motion.
 pub fn run(case: &Case, effects: Effects) -> Vec<Observation> {
-    let loads = [case.loads, case.gravity].concat();
     let physics = Physics { effects, drive: case.drive.cloned(), load_stiffness: None };
     let mut simulation = Simulation::new(&Setup {
         body: case.body,
         damping_ratios: case.damping_ratios,
-        loads: &loads,
+        loads: case.loads,
         physics: &physics,
         reference_points: [Vector3::x(), Vector3::y(), Vector3::z()],
         initial: case.initial,
