@@ -52,11 +52,11 @@ impl Plate {
         let (k, m) = (matrices.stiffness(), matrices.mass());
         let solver = Solver::new(k, m, mesh.positions(), &support(mesh.positions())).unwrap();
         let modes = solver.modes(10, |_| ()).unwrap();
-        let mut body = ReducedBody::new(&modes, m, mesh.positions()).unwrap();
+        let body = ReducedBody::new(&modes, m, mesh.positions()).unwrap();
         let fields = centrifugal_fields(solver.nodal_mass(), mesh.positions(), &body.origin);
         let answers = solver.static_response(fields.as_ref()).unwrap();
         let reduced = reduced_geometric_stiffness(&mesh, &material, answers.as_ref(), modes.shapes.as_ref()).unwrap();
-        body.stress_stiffness = Some(reduced.try_into().unwrap());
+        let body = body.with_stress_stiffness(Some(reduced.try_into().unwrap())).unwrap();
         let nodes = mesh.positions().len();
         let peak = |k: usize| {
             let at = |node: usize| Vector3::from_fn(|axis, _| modes.shapes[(3 * node + axis, k)]).norm();
