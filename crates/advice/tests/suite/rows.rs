@@ -156,7 +156,8 @@ fn gravity_is_told_by_its_mark_wherever_it_stands_among_the_loads() {
     let other = row([&push, &weight], &[true, false]);
     println!("{} {} {}", first.value, last.value, other.value);
     assert!(first.value > 0.0 && (first.value / last.value - 1.0).abs() < 1e-12, "{first:?} {last:?}");
-    assert!((other.value - last.value).abs() > 0.1, "{other:?}");
+    // The push beside the weight: 3 % of the translation, and all of the rotation.
+    assert!(last.value < 0.98 && other.value > 0.99, "{last:?} {other:?}");
     assert!(!row([&push, &weight], &[]).on);
 }
 
