@@ -9,7 +9,7 @@ use crate::backbone::Backbone;
 /// A run before it is made. Units are any consistent set, angles rad.
 #[derive(Debug, Clone, Copy)]
 pub struct Case<'a> {
-    /// The body, with all modes that there are to choose from; [`ReducedBody::stress_stiffness`] where it is known.
+    /// The body, with all modes that there are to choose from; [`stress_stiffness`](modal::Constants::stress_stiffness) where it is known.
     pub body: &'a ReducedBody,
     /// One damping ratio for each mode (nf).
     pub damping_ratios: &'a [f64],

@@ -8,7 +8,7 @@
 //!
 //! 1. [`limits()`] refuses what is known to be wrong (again when the stiffness is known), and [`buckling`] what steady
 //!    loads bend without limit.
-//! 2. [`screen`] tells, from the modes alone, whether [`modal::ReducedBody::stress_stiffness`] may matter. If its row is
+//! 2. [`screen`] tells, from the modes alone, whether [`modal::Constants::stress_stiffness`] may matter. If its row is
 //!    on, compute that.
 //! 3. [`advise`] gives the table: a [`Row`] for each [`Effect`], and what each mode is worth. Nothing stiffens where
 //!    `deformed_inertia` is off: the stiffness is counted as part of it too. What only the reduced body can tell, such as
