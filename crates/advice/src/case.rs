@@ -13,10 +13,10 @@ pub struct Case<'a> {
     pub body: &'a ReducedBody,
     /// One damping ratio for each mode (nf).
     pub damping_ratios: &'a [f64],
-    /// The loads but gravity.
+    /// The loads.
     pub loads: &'a [SharedLoad],
-    /// The loads of gravity.
-    pub gravity: &'a [SharedLoad],
+    /// Whether each load is gravity. Empty where none is, or where the share of gravity is of no interest.
+    pub is_gravity: &'a [bool],
     /// What drives the held part.
     pub drive: Option<&'a Drive>,
     /// How it begins (nf modal coordinates).
@@ -27,7 +27,7 @@ pub struct Case<'a> {
     pub length: f64,
     /// Largest displacement of a node in each mode (nf).
     pub peaks: &'a [f64],
-    /// Of each load, first those of `loads`, then of `gravity`. Empty where not known.
+    /// Of each load. Empty where not known.
     pub static_compliances: &'a [StaticCompliance],
     /// `√(uᵀMu − Σ(Φ_kᵀMu)²)` of the static answer u to the centrifugal field of each pair of spins, in the order of
     /// [`ReducedBody::PAIRS`]: what the modes leave out of it (6). Empty where not known.
@@ -76,7 +76,7 @@ pub enum AdviceError {
 impl Case<'_> {
     /// The histories of the loads that have one, and of the drive.
     fn histories(&self) -> impl Iterator<Item = &History> {
-        let of_loads = self.loads.iter().chain(self.gravity).filter_map(|load| load.history());
+        let of_loads = self.loads.iter().filter_map(|load| load.history());
         of_loads.chain(self.drive.map(|drive| &drive.history))
     }
 
@@ -94,13 +94,13 @@ impl Case<'_> {
             ("the list of initial modal displacements", self.initial.modal_displacement.len(), nf),
             ("the list of initial modal velocities", self.initial.modal_velocity.len(), nf),
         ];
-        if !self.static_compliances.is_empty() {
-            let loads = self.loads.len() + self.gravity.len();
-            lists.push(("the list of static compliances", self.static_compliances.len(), loads));
-        }
-        if !self.centrifugal_remainders.is_empty() {
-            lists.push(("the list of centrifugal remainders", self.centrifugal_remainders.len(), 6));
-        }
+        let loads = self.loads.len();
+        let optional = [
+            ("the list that marks gravity", self.is_gravity.len(), loads),
+            ("the list of static compliances", self.static_compliances.len(), loads),
+            ("the list of centrifugal remainders", self.centrifugal_remainders.len(), 6),
+        ];
+        lists.extend(optional.into_iter().filter(|(_, found, _)| *found > 0));
         for (what, found, expected) in lists {
             if found != expected {
                 return Err(AdviceError::Length { what, found, expected });

@@ -88,8 +88,11 @@ impl Source {
 
     /// Of all loads of a case, whose courses are `courses`, on a body that may turn by `turn` rad.
     fn all(case: &Case, courses: &[Course], turn: f64) -> Vec<Self> {
-        let loads = case.loads.iter().map(|load| (load, false)).chain(case.gravity.iter().map(|load| (load, true)));
-        loads.zip(courses).map(|((load, gravity), course)| Self::new(load, course, turn, gravity, case)).collect()
+        let of = |(i, (load, course))| {
+            let gravity = case.is_gravity.get(i).is_some_and(|is_gravity| *is_gravity);
+            Self::new(load, course, turn, gravity, case)
+        };
+        case.loads.iter().zip(courses).enumerate().map(of).collect()
     }
 
     /// Largest part of a static answer that the first `keep` modes, of frequencies `omega`, leave out where the load acts.
@@ -121,7 +124,7 @@ impl Spin {
     pub(crate) fn new(case: &Case) -> (Self, Vec<Source>) {
         let body = case.body;
         let of = |load: &'_ SharedLoad| load.history().cloned().unwrap_or(History::Constant);
-        let histories = case.loads.iter().chain(case.gravity).map(of);
+        let histories = case.loads.iter().map(of);
         let courses: Vec<Course> =
             histories.map(|history| Course::new(&history, case.end, case.costly_histories())).collect();
         if let Some(drive) = case.drive {

@@ -11,7 +11,8 @@
 //! 2. [`screen`] tells, from the modes alone, whether [`modal::ReducedBody::stress_stiffness`] may matter. If its row is
 //!    on, compute that.
 //! 3. [`advise`] gives the table: a [`Row`] for each [`Effect`], and what each mode is worth. Nothing stiffens where
-//!    `deformed_inertia` is off: the stiffness is counted as part of it too.
+//!    `deformed_inertia` is off: the stiffness is counted as part of it too. What only the reduced body can tell, such as
+//!    the row of [`steady_stress()`], goes into [`Advice::completed`].
 //! 4. [`Backbone`]s of the modes that may bend the body by more than [`LARGE`] tell what linear strain makes of that, and
 //!    [`step_estimate()`] gives the row of the step: which attitude or mode it gets wrong, and by how much.
 //! 5. [`Review`] watches the run and names what has broken, and when.
@@ -34,7 +35,7 @@
 //!     body: &body,
 //!     damping_ratios: &[0.01; 4],
 //!     loads: &[],
-//!     gravity: &[],
+//!     is_gravity: &[],
 //!     drive: None,
 //!     initial: &initial,
 //!     end: 1.0,
@@ -63,6 +64,7 @@
 
 mod backbone;
 mod case;
+mod completed;
 mod course;
 mod estimate;
 mod excitation;
@@ -73,14 +75,17 @@ mod response;
 mod review;
 mod rigid;
 mod row;
+mod steady_stress;
 mod step;
 mod table;
 mod tensor;
 
 pub use backbone::{Backbone, DETUNED, LARGE};
 pub use case::{AdviceError, Case, StaticCompliance};
+pub use completed::Findings;
 pub use limits::{BUCKLED, Refusal, SOFTENED, buckling, limits};
 pub use review::{Broken, Detuning, Review};
 pub use row::{Effect, Row, Worth};
+pub use steady_stress::steady_stress;
 pub use step::{ModeError, StepEstimate, step_estimate};
 pub use table::{Advice, advise, screen};

@@ -34,7 +34,7 @@ fn separation(case: &Case, spin: &Spin) -> f64 {
 
 pub(crate) fn gravity(case: &Case, sources: &[Source], response: &Response) -> Estimate {
     let effect = Effect::Gravity;
-    if case.gravity.is_empty() {
+    if !case.is_gravity.contains(&true) {
         return Estimate { effect, value: 0.0, influence: 0.0, why: "There is none.".into() };
     }
     let sum = |gravity: bool, of: &dyn Fn(&Source) -> f64| -> f64 {

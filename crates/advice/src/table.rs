@@ -49,19 +49,6 @@ impl Advice {
         deflected(self.certain_deflection)
     }
 
-    /// Says in the row of static shapes that a run has not got them, if what the spin makes of them matters.
-    pub fn lack_stretch(&mut self) {
-        if self.stretch < self.tolerance {
-            return;
-        }
-        if let Some(row) = self.rows.iter_mut().find(|row| row.effect == Effect::StaticCorrection) {
-            row.why.push_str(
-                " The answer lacks what the spin stretches beyond the modes: take static_correction = true with the scheme \
-                 exponential, or more modes.",
-            );
-        }
-    }
-
     /// Whether an effect is on.
     pub fn is_on(&self, effect: Effect) -> bool {
         self.row(effect).is_some_and(|row| row.on)

@@ -2,18 +2,25 @@
 
 mod backbones;
 mod damping;
+mod decide;
 mod error;
 mod history;
 mod initial;
 mod loads;
 mod mesh;
+mod mesh_model;
 mod meshed;
+mod modal_model;
 mod model;
 mod physics;
 mod points;
 mod progress;
+mod reduce;
 mod rigid;
+mod statics;
+mod steady_stress;
 mod support;
+mod survey;
 mod turning;
 
 use fem_tet10::Mesh;

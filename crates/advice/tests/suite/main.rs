@@ -1,5 +1,6 @@
 //! Advice against what happens.
 
+mod completed;
 mod influence;
 mod limits;
 mod plate;

@@ -83,7 +83,7 @@ impl Plate {
             body: &self.body,
             damping_ratios: damping,
             loads,
-            gravity: &[],
+            is_gravity: &[],
             drive: None,
             initial,
             end,
@@ -102,12 +102,11 @@ pub fn spinning(omega: [f64; 3]) -> Initial {
 
 /// 200 rows of the motion.
 pub fn run(case: &Case, effects: Effects) -> Vec<Observation> {
-    let loads = [case.loads, case.gravity].concat();
     let physics = Physics { effects, drive: case.drive.cloned(), load_stiffness: None };
     let mut simulation = Simulation::new(&Setup {
         body: case.body,
         damping_ratios: case.damping_ratios,
-        loads: &loads,
+        loads: case.loads,
         physics: &physics,
         reference_points: [Vector3::x(), Vector3::y(), Vector3::z()],
         initial: case.initial,
@@ -122,9 +121,4 @@ pub fn run(case: &Case, effects: Effects) -> Vec<Observation> {
     simulation.observe(&mut first).unwrap();
     let rest = simulation.map(Result::unwrap);
     std::iter::once(first).chain(rest).collect()
-}
-
-/// The force that a load is.
-pub fn force_of(load: &SharedLoad) -> &PointForce {
-    (&**load as &dyn std::any::Any).downcast_ref().unwrap()
 }

@@ -1,10 +1,10 @@
 //! Rows whose numbers are known.
 
 use advice::{AdviceError, Case, Effect, StaticCompliance, advise, screen};
-use frames_rk4::{History, Initial};
+use frames_rk4::{History, Initial, Pattern, SharedLoad};
 use nalgebra::Vector3;
 
-use crate::plate::{CORNER, force_of, plate, run, spinning};
+use crate::plate::{CORNER, plate, run, spinning};
 
 #[test]
 fn the_stress_of_the_paper_s_plate_at_10_rad_per_s_is_not_called_0_4_per_cent() {
@@ -90,8 +90,8 @@ fn the_static_answer_that_the_modes_leave_out_is_the_rest_of_the_compliance() {
     let case = Case { static_compliances: &compliances, ..plate().case(&zeta, &loads, &initial, 1e-3) };
     let advice = advise(&case, 1e-9).unwrap();
     assert_eq!(advice.keep, 10);
-    let point = &force_of(&loads[0]).point;
-    let carried: f64 = (0..10).map(|k| (2.0 * point.columns()[6 + k].z / body.circular_frequencies[k]).powi(2)).sum();
+    let columns = loads[0].pattern().unwrap().columns;
+    let carried: f64 = (0..10).map(|k| (2.0 * columns[6 + k].z / body.circular_frequencies[k]).powi(2)).sum();
     let rest = 1.0 - carried / whole;
     let row = advice.row(Effect::StaticCorrection).unwrap();
     println!("{rest} {row:?}");
@@ -108,9 +108,9 @@ fn other_directions_of_a_dead_load_count_as_far_as_the_body_may_turn() {
     let stretch = Vector3::new(1e-9, 0.0, 0.0);
     let loads = [plate().force(CORNER, force.into(), History::Constant)];
     let whole = 1e-18 * plate().corner_compliance;
-    let point = &force_of(&loads[0]).point;
+    let columns = loads[0].pattern().unwrap().columns;
     let omega = &plate().body.circular_frequencies;
-    let carried: f64 = (0..10).map(|k| (point.columns()[6 + k].dot(&stretch) / omega[k]).powi(2)).sum();
+    let carried: f64 = (0..10).map(|k| (columns[6 + k].dot(&stretch) / omega[k]).powi(2)).sum();
     let value = |end: f64, turned: &[(Vector3<f64>, f64)]| {
         let compliances = [StaticCompliance { at_start: whole, turned: turned.to_vec() }];
         let initial = spinning([0.0, 10.0, 0.0]);
@@ -134,12 +134,30 @@ fn deflection_foreshortening_and_gravity_follow_from_their_formulas() {
     let body = &plate().body;
     initial.modal_displacement[0] = 0.2 * plate().length / plate().peaks[0];
     let weight = [plate().force([0.0, 0.0, 5.0], [0.0, 0.0, -9810.0 * body.mass], History::Constant)];
-    let case = Case { gravity: &weight, ..plate().case(&zeta, &[], &initial, 0.1) };
+    let case = Case { is_gravity: &[true], ..plate().case(&zeta, &weight, &initial, 0.1) };
     let advice = advise(&case, 1e-3).unwrap();
     let value = |effect| advice.row(effect).unwrap().value;
     assert!(value(Effect::Deflection) >= 0.2 && advice.is_on(Effect::Deflection));
     assert!((value(Effect::Foreshortening) / (6.2 * value(Effect::Deflection).powi(2)) - 1.0).abs() < 1e-12);
     assert!(advice.is_on(Effect::Gravity) && (value(Effect::Gravity) - 1.0).abs() < 1e-12);
+}
+
+#[test]
+fn gravity_is_told_by_its_mark_wherever_it_stands_among_the_loads() {
+    let (zeta, initial) = ([0.0; 10], Initial::at_rest(10));
+    let weight = plate().force([0.0, 0.0, 5.0], [0.0, 0.0, -9810.0 * plate().body.mass], History::Constant);
+    let push = plate().force(CORNER, [0.0, 0.0, 3.0], History::Constant);
+    let row = |loads: [&SharedLoad; 2], is_gravity: &[bool]| {
+        let loads = loads.map(Clone::clone);
+        let case = Case { is_gravity, ..plate().case(&zeta, &loads, &initial, 0.1) };
+        advise(&case, 1e-3).unwrap().row(Effect::Gravity).unwrap().clone()
+    };
+    let (first, last) = (row([&weight, &push], &[true, false]), row([&push, &weight], &[false, true]));
+    let other = row([&push, &weight], &[true, false]);
+    println!("{} {} {}", first.value, last.value, other.value);
+    assert!(first.value > 0.0 && (first.value / last.value - 1.0).abs() < 1e-12, "{first:?} {last:?}");
+    assert!((other.value - last.value).abs() > 0.1, "{other:?}");
+    assert!(!row([&push, &weight], &[]).on);
 }
 
 #[test]
@@ -149,6 +167,8 @@ fn lists_of_another_length_and_numbers_out_of_range_are_refused() {
     let refused = advise(&plate().case(&short, &[], &initial, 1.0), 1e-3);
     assert_eq!(refused, Err(AdviceError::Length { what: "the list of damping ratios", found: 9, expected: 10 }));
     let zeta = [0.0; 10];
+    let marked = advise(&Case { is_gravity: &[true], ..plate().case(&zeta, &[], &initial, 1.0) }, 1e-3);
+    assert_eq!(marked, Err(AdviceError::Length { what: "the list that marks gravity", found: 1, expected: 0 }));
     assert!(matches!(advise(&plate().case(&zeta, &[], &initial, f64::NAN), 1e-3), Err(AdviceError::Value { .. })));
 }
 
@@ -158,8 +178,8 @@ fn flexibility_is_what_the_modes_add_to_the_rigid_acceleration() {
     for duration in [0.02, 1.0] {
         let loads = [plate().force(CORNER, [0.0, 0.0, 1e-4], History::HalfSine { start: 0.0, duration })];
         let case = plate().case(&zeta, &loads, &initial, duration);
-        let frames_rk4::PointForce { point, force, .. } = force_of(&loads[0]);
-        let rigid: f64 = point.columns()[..6].iter().map(|column| column.dot(force).powi(2)).sum::<f64>().sqrt();
+        let Pattern { columns, vector, .. } = loads[0].pattern().unwrap();
+        let rigid: f64 = columns[..6].iter().map(|column| column.dot(&vector).powi(2)).sum::<f64>().sqrt();
         let size = |row: &frames_rk4::Observation| row.modal_acceleration.iter().map(|a| a * a).sum::<f64>().sqrt();
         let real = run(&case, frames_rk4::Effects::default()).iter().map(size).fold(0.0, f64::max) / rigid;
         let row = advise(&case, 1e-3).unwrap();

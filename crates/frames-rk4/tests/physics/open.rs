@@ -9,7 +9,7 @@ use modal::RigidMotion;
 use nalgebra::Vector3;
 use rigid_kin::Attitude;
 
-use crate::sample::{EXPONENTIAL, Run, body, point};
+use crate::sample::{EXPONENTIAL, RKMK4, Run, body, point};
 
 const OMEGA: [f64; 3] = [5.0, 8.0, 13.0];
 
@@ -30,14 +30,14 @@ fn largest(a: &[f64], b: &[f64]) -> f64 {
 }
 
 #[test]
-fn the_state_of_every_scheme_is_what_was_given_and_can_be_put_back() {
+fn the_state_is_what_was_given_and_can_be_put_back() {
     for motion in motions() {
         let body = body(motion, &OMEGA);
         let mut run = Run::new(&body, 1.0);
         run.initial.attitude = Attitude::from_wxyz([0.9, 0.1, -0.3, 0.2]).unwrap();
         let Initial { omega, modal_displacement, modal_velocity, .. } = run.initial.clone();
         let spin = motion.rotation_projector() * omega;
-        for method in Method::ALL {
+        for method in [EXPONENTIAL, RKMK4] {
             let mut simulation = run.start(method, StepControl::Fixed(1e-3), Rows::Interval(0.5));
             let state = simulation.state().unwrap();
             let what = format!("{motion:?} {method:?}");
@@ -98,7 +98,7 @@ fn a_motion_does_not_depend_on_the_attitude_that_it_begins_at() {
             assert_eq!(first.attitude, attitude);
             last
         };
-        for method in Method::ALL {
+        for method in [EXPONENTIAL, RKMK4] {
             let (straight, turned) = (ends(Attitude::identity(), method), ends(turn, method));
             let what = format!("{motion:?} {method:?}");
             // Measured: 1e-13.

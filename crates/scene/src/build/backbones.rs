@@ -2,12 +2,12 @@
 
 use advice::{Advice, Backbone, LARGE};
 use faer::Mat;
-use fem_tet10::{Materials, Mesh, second_order_energies, second_order_forces};
-use modal::{ModalError, Modes, Solver};
+use fem_tet10::{second_order_energies, second_order_forces};
+use modal::{ModalError, Modes};
 
 use super::error::{BuildError, modal};
+use super::mesh_model::MeshModel;
 use super::model::Size;
-use crate::scene::Scene;
 
 /// The backbones of the natural modes that may bend the body by [`LARGE`] of its length by the bounds of `advice`; none
 /// of others, and none at all where the static answers cannot be found.
@@ -15,14 +15,13 @@ use crate::scene::Scene;
 /// The static modal derivative `Θ = −K⁻¹ g` is made M-orthogonal to its mode φ, so that the modal coordinate stays what
 /// it is: with c = φᵀMΘ, its inertia is ΘᵀMΘ − c², its energy −g·Θ − ω²c².
 pub(super) fn backbones(
-    scene: &Scene,
-    mesh: &Mesh,
-    materials: &Materials,
-    solver: &Solver<'_>,
+    model: &MeshModel<'_>,
     modes: &Modes,
     size: &Size,
     advice: &Advice,
 ) -> Result<Vec<Option<Backbone>>, BuildError> {
+    let &MeshModel { scene, mesh, solver, .. } = model;
+    let materials = &model.body.materials;
     let natural = modes.natural().min(modes.shapes.ncols());
     let is_large = |k: &usize| {
         let bound = advice.modes.get(*k).map_or(0.0, |mode| mode.displacement);

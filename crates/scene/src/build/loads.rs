@@ -28,6 +28,28 @@ pub(super) struct MeshLoad {
     pub follows: bool,
     /// Attitude of the body at the beginning.
     attitude: Attitude,
+    is_gravity: bool,
+}
+
+/// Loads on a body, each with whether it is gravity.
+pub(super) struct BodyLoads {
+    pub loads: Vec<SharedLoad>,
+    pub is_gravity: Vec<bool>,
+}
+
+impl BodyLoads {
+    /// All of them, or all but gravity.
+    pub fn acting(self, with_gravity: bool) -> Vec<SharedLoad> {
+        let acts = |is_gravity: &bool| with_gravity || !is_gravity;
+        self.loads.into_iter().zip(&self.is_gravity).filter(|(_, g)| acts(g)).map(|(load, _)| load).collect()
+    }
+}
+
+impl FromIterator<(SharedLoad, bool)> for BodyLoads {
+    fn from_iter<I: IntoIterator<Item = (SharedLoad, bool)>>(loads: I) -> Self {
+        let (loads, is_gravity) = loads.into_iter().unzip();
+        Self { loads, is_gravity }
+    }
 }
 
 /// Where a load acts, and how much.
@@ -83,13 +105,13 @@ pub(super) fn on_mesh(scene: &Scene, mesh: &Mesh, nodal_mass: &[f64]) -> Result<
                 }
             };
             let history = history(scene, &key("history"), of(load))?;
-            Ok(MeshLoad { place, history, follows: follows(load), attitude })
+            Ok(MeshLoad { place, history, follows: follows(load), attitude, is_gravity: is_gravity(load) })
         })
         .collect()
 }
 
 /// The loads of a scene on a rigid body without a mesh.
-pub(super) fn on_rigid(scene: &Scene, body: &ReducedBody) -> Result<Vec<SharedLoad>, BuildError> {
+pub(super) fn on_rigid(scene: &Scene, body: &ReducedBody) -> Result<BodyLoads, BuildError> {
     acting(scene)
         .map(|(i, load)| {
             let at = |position: [f64; 3]| {
@@ -125,26 +147,19 @@ pub(super) fn on_rigid(scene: &Scene, body: &ReducedBody) -> Result<Vec<SharedLo
                         .into());
                 }
             };
-            Ok(on_body)
+            Ok((on_body, is_gravity(load)))
         })
         .collect()
 }
 
-/// The loads that may act, with their numbers in the scene; gravity last.
+/// The loads that may act, with their numbers in the scene.
 fn acting(scene: &Scene) -> impl Iterator<Item = (usize, &Load)> {
-    let numbered = || scene.loads.iter().enumerate();
     let with_gravity = scene.effects.gravity != Choice::Off;
-    let others = numbered().filter(|(_, load)| !is_gravity(load));
-    others.chain(numbered().filter(move |(_, load)| with_gravity && is_gravity(load)))
+    scene.loads.iter().enumerate().filter(move |(_, load)| with_gravity || !is_gravity(load))
 }
 
 fn is_gravity(load: &Load) -> bool {
     matches!(load, Load::Gravity(_))
-}
-
-/// How many of the loads that may act are gravity.
-pub(super) fn count_gravity(scene: &Scene) -> usize {
-    acting(scene).filter(|(_, load)| is_gravity(load)).count()
 }
 
 fn of(load: &Load) -> &crate::history::History {
@@ -178,6 +193,10 @@ fn follows(load: &Load) -> bool {
 }
 
 impl MeshLoad {
+    pub fn is_gravity(&self) -> bool {
+        self.is_gravity
+    }
+
     /// The force or moment in the first attitude, where the history is 1; none of a field.
     fn vector(&self) -> Option<Vector3<f64>> {
         match &self.place {

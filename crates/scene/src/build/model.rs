@@ -130,7 +130,7 @@ impl Model {
             body: &self.body,
             damping_ratios: &self.damping_ratios,
             loads: &self.loads,
-            gravity: &[],
+            is_gravity: &[],
             drive: self.physics.drive.as_ref(),
             initial,
             end: scene.time.end,

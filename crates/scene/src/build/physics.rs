@@ -1,7 +1,7 @@
 //! Which effects a scene gets.
 
 use advice::{Advice, Effect};
-use frames_rk4::{Drive, Effects};
+use frames_rk4::{Drive, Effects, Method};
 use modal::RigidMotion;
 
 use super::loads::MeshLoad;
@@ -22,6 +22,26 @@ pub(super) fn stiffens(scene: &Scene, motion: RigidMotion, drive: Option<&Drive>
         && !scene.time.method.is_of_paper()
         && matches!(load.history, frames_rk4::History::Constant)
         && (load.follows || !turns)
+}
+
+/// Whether the loads of gravity that the scene lets act do act.
+pub(super) fn gravity(scene: &Scene, advice: &Advice) -> bool {
+    scene.effects.gravity != Choice::Auto || advice.is_on(Effect::Gravity)
+}
+
+/// Whether modes keep the damping that the scene lets them have.
+pub(super) fn damping(scene: &Scene, advice: &Advice) -> bool {
+    scene.effects.damping != Choice::Auto || scene.time.method.is_of_paper() || advice.is_on(Effect::Damping)
+}
+
+/// Whether static shapes are to be added to the `flexible` modes that there are.
+pub(super) fn static_correction(scene: &Scene, flexible: usize) -> Choice {
+    match scene.modes.static_correction {
+        _ if flexible == 0 => Choice::Off,
+        // The shapes are stiff, which only this scheme does not mind.
+        Choice::Auto if scene.time.method != Method::EXPONENTIAL => Choice::Off,
+        choice => choice,
+    }
 }
 
 /// The effects of the equations of motion: what the scene leaves open is as advised.

@@ -1,6 +1,6 @@
 //! A rigid body without a mesh.
 
-use advice::{Case, Effect, advise};
+use advice::{Case, advise};
 use faer::Mat;
 use frames_rk4::{Physics, PointShapes};
 use modal::{BodyPoint, ReducedBody, Support};
@@ -13,7 +13,6 @@ use super::points::output_points;
 use super::progress::BuildTimes;
 use super::support::support;
 use super::{loads, physics};
-use crate::effects::Choice;
 use crate::scene::{Frame, RigidBody, Scene};
 
 pub(super) fn build(scene: &Scene, rigid: &RigidBody) -> Result<Model, BuildError> {
@@ -32,8 +31,7 @@ pub(super) fn build(scene: &Scene, rigid: &RigidBody) -> Result<Model, BuildErro
         Some(Frame { r, p, q }) => [r, p, q].map(|x| Vector3::from(x) - body.origin),
         None => [Vector3::zeros(), Vector3::x(), Vector3::y()],
     };
-    let mut loads = loads::on_rigid(scene, &body)?;
-    let without_gravity = loads.len() - loads::count_gravity(scene);
+    let loads = loads::on_rigid(scene, &body)?;
     // The radius of gyration stands for the size.
     let size = Size { length: (rigid.inertia_trace() / rigid.mass).sqrt(), peaks: Vec::new() };
     let initial = initial(scene, 0);
@@ -41,8 +39,8 @@ pub(super) fn build(scene: &Scene, rigid: &RigidBody) -> Result<Model, BuildErro
         &Case {
             body: &body,
             damping_ratios: &[],
-            loads: &loads[..without_gravity],
-            gravity: &loads[without_gravity..],
+            loads: &loads.loads,
+            is_gravity: &loads.is_gravity,
             drive: drive.as_ref(),
             initial: &initial,
             end: scene.time.end,
@@ -54,18 +52,15 @@ pub(super) fn build(scene: &Scene, rigid: &RigidBody) -> Result<Model, BuildErro
         },
         scene.effects.tolerance,
     )?;
-    if scene.effects.gravity == Choice::Auto && !advice.is_on(Effect::Gravity) {
-        loads.truncate(without_gravity);
-    }
     Ok(Model {
         meshed: None,
+        loads: loads.acting(physics::gravity(scene, &advice)),
         physics: Physics { effects: physics::effects(scene, &advice, false), drive, load_stiffness: None },
         points,
         reference_points,
         advice,
         refusal: None,
         times: BuildTimes::default(),
-        loads,
         damping_ratios: Vec::new(),
         size,
         body,

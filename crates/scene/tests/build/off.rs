@@ -137,3 +137,22 @@ fn loads_of_gravity_that_are_off_are_not_there() {
     assert_eq!(build(&effects("", &format!("{CLAMPED}{falls}"))).loads().len(), 2);
     assert_eq!(build(&effects("gravity = false", &format!("{CLAMPED}{falls}"))).loads().len(), 1);
 }
+
+#[test]
+fn gravity_is_found_by_its_kind_wherever_it_stands_among_the_loads() {
+    let weight =
+        |size: &str| format!("[[loads]]\nkind = \"gravity\"\ndirection = [0.0, 0.0, -1.0]\namplitude = {size}\n");
+    let push = "[[loads]]\nkind = \"force\"\nat = [200.0, 0.0, 0.0]\ndirection = [0.0, 0.0, 1.0]\namplitude = 9.0\n";
+    let forces = |choice: &str, loads: &str| -> Vec<f64> {
+        let model = build(&effects(choice, &format!("{CLAMPED}{loads}")));
+        model.loads().iter().map(|load| load.pattern().unwrap().vector.z).collect()
+    };
+    let faint = weight("1e-9");
+    for loads in [format!("{faint}{push}"), format!("{push}{faint}")] {
+        for choice in ["", "gravity = \"auto\"", "gravity = false"] {
+            assert_eq!(forces(choice, &loads), [9.0], "{choice} {loads}");
+        }
+        assert_eq!(forces("gravity = true", &loads).len(), 2, "{loads}");
+    }
+    assert!(matches!(forces("", &format!("{}{push}", weight("9810.0")))[..], [down, 9.0] if down < 0.0));
+}

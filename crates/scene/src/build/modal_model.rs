@@ -1,0 +1,68 @@
+//! A body and its loads in the coordinates of some modes.
+
+use advice::Case;
+use faer::Mat;
+use frames_rk4::Initial;
+use modal::{Modes, ReducedBody};
+use nalgebra::Vector3;
+
+use super::damping::damping_ratios;
+use super::error::{BuildError, modal};
+use super::initial::initial;
+use super::loads::BodyLoads;
+use super::mesh_model::MeshModel;
+use super::model::Size;
+
+/// A body and its loads in the coordinates of some modes.
+pub(super) struct ModalModel {
+    pub body: ReducedBody,
+    pub loads: BodyLoads,
+    pub size: Size,
+    pub damping_ratios: Vec<f64>,
+    pub initial: Initial,
+}
+
+impl ModalModel {
+    /// Without the stress stiffness of the spin.
+    pub fn new(model: &MeshModel<'_>, modes: &Modes) -> Result<Self, BuildError> {
+        let &MeshModel { scene, mesh, .. } = model;
+        let body = ReducedBody::new(modes, model.matrices.mass(), mesh.positions()).map_err(modal(scene))?;
+        let loads: Result<BodyLoads, _> =
+            model.loads.iter().map(|load| Ok((load.reduced(&body, modes, mesh)?, load.is_gravity()))).collect();
+        let peak = |shape: faer::ColRef<'_, f64>| {
+            let at = |node: usize| Vector3::from_fn(|axis, _| shape[3 * node + axis]).norm();
+            (0..shape.nrows() / 3).map(at).fold(0.0, f64::max)
+        };
+        Ok(Self {
+            loads: loads.map_err(modal(scene))?,
+            size: Size { length: mesh.diagonal(), peaks: modes.shapes.as_ref().col_iter().map(peak).collect() },
+            damping_ratios: damping_ratios(scene, &body),
+            initial: initial(scene, body.flexible()),
+            body,
+        })
+    }
+
+    /// The same model with a stress stiffness of the spin, or without any.
+    pub fn with_stress_stiffness(self, model: &MeshModel<'_>, k: Option<[Mat<f64>; 6]>) -> Result<Self, BuildError> {
+        let body = self.body.with_stress_stiffness(k).map_err(modal(model.scene))?;
+        Ok(Self { body, ..self })
+    }
+
+    /// The run of the scene as [`advice`] sees it, where nothing is known of static answers and backbones.
+    pub fn case<'a>(&'a self, model: &'a MeshModel<'_>) -> Case<'a> {
+        Case {
+            body: &self.body,
+            damping_ratios: &self.damping_ratios,
+            loads: &self.loads.loads,
+            is_gravity: &self.loads.is_gravity,
+            drive: model.drive.as_ref(),
+            initial: &self.initial,
+            end: model.scene.time.end,
+            length: self.size.length,
+            peaks: &self.size.peaks,
+            static_compliances: &[],
+            centrifugal_remainders: &[],
+            backbones: &[],
+        }
+    }
+}

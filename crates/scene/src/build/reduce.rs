@@ -1,0 +1,70 @@
+//! Third stage: the body that has what was decided.
+
+use advice::{Advice, Backbone, Findings, advise};
+use frames_rk4::Effects;
+use modal::{Modes, Solver};
+
+use super::decide::Decision;
+use super::error::{BuildError, modal};
+use super::mesh_model::MeshModel;
+use super::modal_model::ModalModel;
+use super::model::truncated_modes;
+use super::statics::Statics;
+use super::steady_stress::SteadyStress;
+use super::survey::Survey;
+use crate::scene::Scene;
+
+/// A body in the modes that it keeps and its static shapes.
+pub(super) struct Reduction {
+    pub modes: Modes,
+    pub modal: ModalModel,
+    /// Of the modes that are kept.
+    pub backbones: Vec<Option<Backbone>>,
+    pub steady_stress: SteadyStress,
+    /// With what only this body tells.
+    pub advice: Advice,
+}
+
+impl Reduction {
+    pub fn new(model: &MeshModel<'_>, survey: Survey, decision: &Decision) -> Result<Self, BuildError> {
+        let Survey { modes, modal, statics, mut backbones, advice } = survey;
+        let tolerance = model.scene.effects.tolerance;
+        backbones.truncate(decision.keep);
+        let Effects { geometric_stiffening: stiffens, .. } = decision.effects;
+        let has_all = decision.keep == modal.body.flexible() && !decision.has_static_shapes;
+        let (modes, modal, deflection) = if has_all {
+            let stiffness = modal.body.stress_stiffness.clone().filter(|_| stiffens);
+            (modes, modal.with_stress_stiffness(model, stiffness)?, advice.deflection)
+        } else {
+            let modes = basis(model.scene, model.solver, &modes, &statics, decision)?;
+            let modal = ModalModel::new(model, &modes)?;
+            let deflection = advise(&modal.case(model), tolerance)?.deflection;
+            let stiffness = if stiffens { statics.stress_stiffness(model, &modes)? } else { None };
+            (modes, modal.with_stress_stiffness(model, stiffness)?, deflection)
+        };
+        let steady_stress = SteadyStress::new(model, statics.of_steady.as_ref(), &modes, &modal)?;
+        let findings =
+            Findings { deflection, steady_stress: steady_stress.row.clone(), lacks_stretch: decision.lacks.is_some() };
+        Ok(Self { modes, modal, backbones, steady_stress, advice: advice.completed(findings) })
+    }
+}
+
+/// The modes that are kept, and the static shapes.
+fn basis(
+    scene: &Scene,
+    solver: &Solver<'_>,
+    modes: &Modes,
+    statics: &Statics,
+    decision: &Decision,
+) -> Result<Modes, BuildError> {
+    let kept = truncated_modes(modes, decision.keep);
+    if !decision.has_static_shapes {
+        return Ok(kept);
+    }
+    let of_loads = statics.of_loads.iter().map(|of_loads| &of_loads.answers);
+    let of_spin = statics.of_spin.iter().map(|of_spin| &of_spin.answers);
+    of_loads
+        .chain(of_spin)
+        .try_fold(kept, |modes, answers| solver.with_static_shapes(modes, answers.as_ref()))
+        .map_err(modal(scene))
+}

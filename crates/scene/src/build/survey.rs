@@ -1,0 +1,101 @@
+//! First stage: what is known of a body with all the modes that were searched for.
+
+use advice::{Advice, Backbone, Case, advise, screen};
+use modal::Modes;
+
+use super::backbones::backbones;
+use super::error::BuildError;
+use super::mesh_model::MeshModel;
+use super::modal_model::ModalModel;
+use super::physics;
+use super::progress::BuildProgress;
+use super::statics::{Asked, Statics, steady_loads};
+use crate::effects::Choice;
+
+/// What is known of a body with all the modes that were searched for. What cannot matter has not been computed.
+pub(super) struct Survey {
+    pub modes: Modes,
+    /// With the stress stiffness of the spin where it may matter.
+    pub modal: ModalModel,
+    pub statics: Statics,
+    pub backbones: Vec<Option<Backbone>>,
+    /// On all of the modes.
+    pub advice: Advice,
+}
+
+impl Survey {
+    pub fn new(
+        model: &MeshModel<'_>,
+        modes: Modes,
+        modal: ModalModel,
+        progress: &mut dyn FnMut(BuildProgress),
+    ) -> Result<Self, BuildError> {
+        let tolerance = model.scene.effects.tolerance;
+        let stiffens = may_stiffen(model, &modal)?;
+        let flexible = modal.body.flexible();
+        let asked = Asked {
+            loads: physics::static_correction(model.scene, flexible) != Choice::Off && !model.loads.is_empty(),
+            spin: stiffens || may_stretch(model, &modal)?,
+            steady: flexible > 0 && !steady_loads(model).is_empty(),
+        };
+        if asked.any() {
+            progress(BuildProgress::Statics);
+        }
+        let statics = Statics::new(model, &modes, &modal.body.origin, asked)?;
+        let modal = if stiffens {
+            let stiffness = statics.stress_stiffness(model, &modes)?;
+            modal.with_stress_stiffness(model, stiffness)?
+        } else {
+            modal
+        };
+
+        let case = Case {
+            static_compliances: statics.compliances(),
+            centrifugal_remainders: statics.remainders(),
+            ..modal.case(model)
+        };
+        let first = advise(&case, tolerance)?;
+        let backbones = backbones(model, &modes, &modal.size, &first)?;
+        let advice = if backbones.iter().any(Option::is_some) {
+            advise(&Case { backbones: &backbones, ..case }, tolerance)?
+        } else {
+            first
+        };
+        Ok(Self { modes, modal, statics, backbones, advice })
+    }
+}
+
+/// Whether the stress of the spin may matter, and is to be computed.
+fn may_stiffen(model: &MeshModel<'_>, modal: &ModalModel) -> Result<bool, BuildError> {
+    let &MeshModel { scene, support, .. } = model;
+    if modal.body.flexible() == 0 || scene.effects.deformed_inertia == Choice::Off {
+        return Ok(false);
+    }
+    Ok(match scene.effects.geometric_stiffening {
+        Choice::On => true,
+        Choice::Off => false,
+        Choice::Auto => {
+            !scene.time.method.is_of_paper()
+                && physics::may_spin(scene, support.motion, model.drive.as_ref())
+                && screen(&modal.case(model), scene.effects.tolerance)?.on
+        }
+    })
+}
+
+/// Whether the modes may leave out something of the static answer to the spin that matters, and what is to be computed:
+/// for static shapes, or to tell that they are missing.
+fn may_stretch(model: &MeshModel<'_>, modal: &ModalModel) -> Result<bool, BuildError> {
+    let &MeshModel { scene, support, .. } = model;
+    let acts = modal.body.flexible() > 0
+        && scene.effects.deformed_inertia != Choice::Off
+        && physics::may_spin(scene, support.motion, model.drive.as_ref());
+    Ok(acts
+        && match scene.modes.static_correction {
+            Choice::On => true,
+            Choice::Off => false,
+            Choice::Auto => {
+                let tolerance = scene.effects.tolerance;
+                advise(&modal.case(model), tolerance)?.stretch >= tolerance
+            }
+        })
+}
