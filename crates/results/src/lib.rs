@@ -16,6 +16,7 @@ pub mod layout;
 mod metadata;
 mod place;
 mod reader;
+mod room;
 mod sample;
 mod seal;
 mod store;

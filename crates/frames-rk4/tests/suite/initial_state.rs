@@ -1,8 +1,9 @@
 //! The state at the beginning is (30) and (31) of the velocity field `V + ω×(X + u) + Ψ_f q̇`.
 
-use frames_rk4::Initial;
+use frames_rk4::{Initial, Method, Observation, Physics, Rows, Setup, Simulation, StepControl};
 use modal::BodyPoint;
 use nalgebra::{DMatrix, DVector, Vector3};
+use rigid_kin::Attitude;
 
 use crate::common::ring;
 use crate::literal::Csc;
@@ -49,4 +50,49 @@ fn the_initial_state_is_the_projected_velocity_field() {
     // Measured: 4.4e-3 for a deformation of about 1 mm.
     let shift = (state.omega_body - initial.omega).norm() / initial.omega.norm();
     assert!(shift > 1e-3 && shift < 1e-2, "{shift}");
+}
+
+/// The states of the paper's formulation are of an inertial frame; read as a motion of the body they are what was given,
+/// and a run that begins turned is the same run, turned.
+#[test]
+fn states_of_the_paper_s_formulation_are_what_was_given_in_any_attitude() {
+    let ring = ring();
+    let turn = Attitude::from_wxyz([0.8, -0.2, 0.4, 0.3]).unwrap();
+    for method in [Method::PAPER, Method::PAPER_RKMK4] {
+        let run = |attitude: Attitude| {
+            let mut initial = ring.spinning(Vector3::new(4.0, -6.0, 7.0));
+            initial.attitude = attitude;
+            initial.velocity = attitude.to_global(&Vector3::new(300.0, -100.0, 50.0));
+            initial.modal_displacement.fill(0.005);
+            initial.modal_velocity.fill(10.0);
+            let force = attitude.to_global(&Vector3::new(2.0, -1.0, 3.0));
+            let mut simulation = Simulation::new(&Setup {
+                body: &ring.body,
+                damping_ratios: &[0.02; 10],
+                loads: &[ring.half_sine([-100.0, 0.0, 0.0], force.into(), 0.01)],
+                physics: &Physics::default(),
+                reference_points: ring.reference_points_body(),
+                initial: &initial,
+                method,
+                control: StepControl::Fixed(1e-5),
+                end: 2e-3,
+                rows: Rows::Interval(2e-3),
+                points: &[],
+            })
+            .unwrap();
+            let state = simulation.state().unwrap();
+            assert!((state.omega_body - initial.omega).norm() < 1e-10, "{}", state.omega_body);
+            assert!((state.velocity_global - initial.velocity).norm() < 1e-9, "{}", state.velocity_global);
+            let off = state.modal_velocity.iter().map(|v| (v - 10.0).abs()).fold(0.0, f64::max);
+            assert!(off < 1e-9, "{off:e}");
+            simulation.next().unwrap().unwrap()
+        };
+        let (straight, turned) = (run(Attitude::identity()), run(turn));
+        assert!((straight.omega_body - turned.omega_body).norm() < 1e-9);
+        let moved = |row: &Observation| row.velocity_global;
+        assert!((turn.to_global(&moved(&straight)) - moved(&turned)).norm() < 1e-7);
+        for (a, b) in straight.modal_displacement.iter().zip(&turned.modal_displacement) {
+            assert!((a - b).abs() < 1e-11, "{a} {b}");
+        }
+    }
 }

@@ -5,8 +5,9 @@ use faer::Mat;
 use fem_tet10::{second_order_energies, second_order_forces};
 use modal::{ModalError, Modes};
 
+use super::error::{BuildError, modal};
 use super::mesh_model::MeshModel;
-use super::{BuildError, Size, modal};
+use super::model::Size;
 
 /// The backbones of the natural modes that may bend the body by [`LARGE`] of its length by the bounds of `advice`; none
 /// of others, and none at all where the static answers cannot be found.

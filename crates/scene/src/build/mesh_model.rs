@@ -5,7 +5,7 @@ use fem_tet10::{Matrices, Mesh, reduced_geometric_stiffness};
 use frames_rk4::Drive;
 use modal::{Modes, Solver, Support};
 
-use super::BuildError;
+use super::error::BuildError;
 use super::loads::MeshLoad;
 use crate::scene::{MeshedBody, Scene};
 

@@ -9,16 +9,17 @@ use modal::{BodyPoint, Modes, ReducedBody, Solver};
 use nalgebra::Vector3;
 
 use super::decide::Decision;
+use super::error::{BuildError, modal, refuse, too_many_modes};
 use super::loads;
+use super::mesh::{matrices, read_mesh};
 use super::mesh_model::MeshModel;
 use super::modal_model::ModalModel;
+use super::model::{Meshed, Model};
+use super::points::{output_points, well_spread};
+use super::progress::{BuildProgress, BuildTimes, timed};
 use super::reduce::Reduction;
 use super::support::support;
 use super::survey::Survey;
-use super::{
-    BuildError, BuildProgress, BuildTimes, Meshed, Model, matrices, modal, output_points, read_mesh, refuse, timed,
-    too_many_modes, well_spread,
-};
 use crate::effects::Choice;
 use crate::scene::{Frame, MeshedBody, Scene};
 

@@ -6,9 +6,12 @@ use frames_rk4::Initial;
 use modal::{Modes, ReducedBody};
 use nalgebra::Vector3;
 
+use super::damping::damping_ratios;
+use super::error::{BuildError, modal};
+use super::initial::initial;
 use super::loads::BodyLoads;
 use super::mesh_model::MeshModel;
-use super::{BuildError, Size, damping_ratios, initial, modal};
+use super::model::Size;
 
 /// A body and its loads in the coordinates of some modes.
 pub(super) struct ModalModel {

@@ -5,12 +5,13 @@ use frames_rk4::Effects;
 use modal::{Modes, Solver};
 
 use super::decide::Decision;
+use super::error::{BuildError, modal};
 use super::mesh_model::MeshModel;
 use super::modal_model::ModalModel;
+use super::model::truncated_modes;
 use super::statics::Statics;
 use super::steady_stress::SteadyStress;
 use super::survey::Survey;
-use super::{BuildError, modal, truncated_modes};
 use crate::scene::Scene;
 
 /// A body in the modes that it keeps and its static shapes.

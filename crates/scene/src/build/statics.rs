@@ -5,9 +5,10 @@ use faer::{Col, ColRef, Mat, MatRef};
 use modal::{Modes, centrifugal_fields};
 use nalgebra::Vector3;
 
+use super::error::{BuildError, modal};
 use super::loads::MeshLoad;
 use super::mesh_model::MeshModel;
-use super::{BuildError, modal, physics};
+use super::{physics, turning};
 
 /// Which static answers are asked for.
 #[derive(Clone, Copy)]
@@ -61,7 +62,7 @@ impl Statics {
             return Ok(Self { of_loads: None, of_spin: None, of_steady: None });
         }
         let &MeshModel { scene, mesh, solver, .. } = model;
-        let turning = physics::turning(scene, model.support.motion, model.drive.as_ref());
+        let turning = turning::turning(scene, model.support.motion, model.drive.as_ref());
         let loads = if asked.loads { &model.loads[..] } else { &[] };
         let turned: Vec<Vec<Vector3<f64>>> = loads.iter().map(|load| load.turned(turning)).collect();
         let columns = Columns::new(loads, &turned, if asked.steady { steady_loads(model) } else { Vec::new() });

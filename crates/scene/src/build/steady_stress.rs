@@ -5,9 +5,9 @@ use faer::{Mat, MatRef};
 use fem_tet10::{AssemblyError, geometric_stiffness_product};
 use modal::{ModalError, Modes};
 
+use super::error::{BuildError, modal};
 use super::mesh_model::MeshModel;
 use super::modal_model::ModalModel;
-use super::{BuildError, modal};
 use crate::effects::Choice;
 
 /// What the stress of steady loads does to a body.

@@ -4,10 +4,12 @@ use advice::{Advice, Backbone, Case, advise, screen};
 use modal::Modes;
 
 use super::backbones::backbones;
+use super::error::BuildError;
 use super::mesh_model::MeshModel;
 use super::modal_model::ModalModel;
+use super::physics;
+use super::progress::BuildProgress;
 use super::statics::{Asked, Statics, steady_loads};
-use super::{BuildError, BuildProgress, physics};
 use crate::effects::Choice;
 
 /// What is known of a body with all the modes that were searched for. What cannot matter has not been computed.
