@@ -268,7 +268,7 @@ impl ConservativeBody {
             Some(drive) => {
                 drive.check()?;
                 if body.motion.count() > 0 {
-                    return Err(SetupError::DriveOfFreeBody { motion: body.motion });
+                    return Err(SetupError::DriveOfFreeBody { motion: Box::new(body.motion) });
                 }
                 Some(drive.motion)
             }

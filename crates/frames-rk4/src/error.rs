@@ -132,7 +132,7 @@ pub enum SetupError {
     #[error("a drive needs the modes of a clamped body; this one has the rigid motions {motion:?}")]
     DriveOfFreeBody {
         /// Its rigid motions.
-        motion: modal::RigidMotion,
+        motion: Box<modal::RigidMotion>,
     },
     /// Something that the formulation of the paper has not got.
     #[error("the formulation paper has no {what}; take the conservative one")]

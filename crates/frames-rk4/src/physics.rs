@@ -17,7 +17,7 @@ pub struct Effects {
     pub deformed_inertia: bool,
     /// Coriolis terms, G_i.
     pub coriolis: bool,
-    /// The stress of the spin stiffens the body: K_ij of [`modal::ReducedBody::stress_stiffness`], where it has any.
+    /// The stress of the spin stiffens the body: K_ij of [`modal::Constants::stress_stiffness`], where it has any.
     pub geometric_stiffening: bool,
 }
 
