@@ -15,6 +15,7 @@ use scene::{BuildError, Scene};
 use serde::Serialize;
 use whole_file::write_whole;
 
+use crate::columns::COLUMNS;
 use crate::json;
 use crate::mode_shapes::ShapesError;
 use crate::run::{RunError, RunProgress, RunReport, RunSettings, run};
@@ -100,7 +101,7 @@ pub fn reproduce(
     }
     let (model, mut run) = run(scene, folder, settings, progress)?;
     let started = Instant::now();
-    let results = Results::open(&run.results)?;
+    let results = Results::open(&run.results, &COLUMNS)?;
     let only_plates = || PaperError::NotThePlate { scene: scene.path.clone() };
     let meshed = model.meshed.as_ref().ok_or_else(only_plates)?;
     let rigid = rigid_plate::histories(&model, &results)?.ok_or_else(only_plates)?;
