@@ -35,11 +35,7 @@ impl Description {
 
     /// The bytes of each history, and of the checkpoints, from the values per row of the histories. `None` if they are
     /// not all within `free`, each in a place of its own.
-    pub(crate) fn ranges(
-        &self,
-        widths: impl Iterator<Item = usize>,
-        free: Range<u64>,
-    ) -> Option<Vec<Range<u64>>> {
+    pub(crate) fn ranges(&self, widths: impl Iterator<Item = usize>, free: Range<u64>) -> Option<Vec<Range<u64>>> {
         let size = |numbers: usize, each: usize| Some((numbers.checked_mul(each)?.checked_mul(8)?) as u64);
         let sizes = widths.map(|width| size(self.rows, width));
         let sizes = sizes.chain(self.checkpoint_words.map(|words| size(2, words)));

@@ -28,9 +28,15 @@ fn what_is_written_is_read_bit_for_bit() {
         assert_rows(&results, rows);
     }
     let results = Results::open(&path, &COLUMNS).unwrap();
-    let column: Vec<f64> = results.modal_velocity.column(2).unwrap().collect();
+    let velocity = results.table("modal/velocity").unwrap();
+    let column: Vec<f64> = velocity.column(2).unwrap().collect();
     assert_eq!((column.len(), column[7]), (1300, -3.0 * (7.0 * 1e-4 + 2.0)));
-    assert!(results.modal_velocity.column(3).is_none() && results.modal_velocity.row(1300).is_none());
+    assert!(velocity.column(3).is_none() && velocity.row(1300).is_none());
+    assert_eq!(results.numbers("energy/work").unwrap()[7], 7.0 * 1e-4 + 14.0);
+    assert_eq!(results.vectors("points/P2/velocity").unwrap()[0], [111.0, -111.0, 0.0]);
+    // Nothing by a path that there is not, or of another width.
+    assert!(results.table("energy").is_none() && results.numbers("position").is_none());
+    assert!(results.vectors::<3>("attitude").is_none() && results.vectors::<4>("attitude").is_some());
 }
 
 #[test]
@@ -53,8 +59,8 @@ fn a_rigid_body_without_points_is_a_file_too() {
         write(&path, rows, &metadata(0, &[])).finish().unwrap();
         let results = Results::open(&path, &COLUMNS).unwrap();
         assert_rows(&results, rows);
-        assert_eq!((results.modal_displacement.width(), results.points.len()), (0, 0));
-        assert_eq!(results.modal_displacement.rows(), rows);
+        let displacement = results.table("modal/displacement").unwrap();
+        assert_eq!((displacement.width(), displacement.rows()), (0, rows));
     }
 }
 
@@ -74,7 +80,7 @@ fn a_sample_that_is_not_finite_is_refused_and_those_before_it_stay() {
     let metadata = metadata(2, &["P1"]);
     let mut writer = write(&path, 20, &metadata);
     let mut row = Row::new(20, 2, 1);
-    row.points[0].acceleration[1] = f64::NAN;
+    row.points[0][2][1] = f64::NAN;
     match writer.push(&row) {
         Err(FileError::NotFinite { time, quantity, .. }) => {
             assert_eq!((time, quantity.as_str()), (row.time, "points/P1/acceleration"));
@@ -93,9 +99,12 @@ fn a_sample_that_is_not_finite_is_refused_and_those_before_it_stay() {
 fn wrong_lengths_and_names_are_refused() {
     let (_folder, path) = folder();
     let mut writer = write(&path, 2, &metadata(2, &["P1"]));
-    for (modes, points, name, expected, found) in
-        [(3, 1, "modal/displacement", 2, 3), (2, 0, "points", 1, 0), (0, 1, "modal/displacement", 2, 0)]
-    {
+    for (modes, points, name, expected, found) in [
+        (3, 1, "modal/displacement", 2, 3),
+        (2, 0, "points/P1/displacement", 3, 0),
+        (2, 2, "points", 1, 2),
+        (0, 1, "modal/displacement", 2, 0),
+    ] {
         match writer.push(&Row::new(2, modes, points)) {
             Err(FileError::WrongLength { quantity, expected: e, found: f, .. }) => {
                 assert_eq!((quantity.as_str(), e, f), (name, expected, found));
@@ -165,7 +174,8 @@ fn a_finished_file_is_the_same_byte_for_byte_whatever_way_led_to_it() {
         // The clock of HDF5 files has a second's resolution.
         std::thread::sleep(std::time::Duration::from_millis(1100));
     }
-    let mut writer = Writer::create(&path, &metadata, &COLUMNS, Expected { checkpoint: 2, ..Expected::default() }).unwrap();
+    let mut writer =
+        Writer::create(&path, &metadata, &COLUMNS, Expected { checkpoint: 2, ..Expected::default() }).unwrap();
     push(&mut writer, 0..700);
     writer.flush(&[7, 8]).unwrap();
     push(&mut writer, 700..1500);
@@ -298,36 +308,23 @@ fn names_types_and_shapes_are_those_of_the_contract() {
     let (_folder, path) = folder();
     write(&path, 5, &metadata(4, &["P1"])).finish().unwrap();
     let file = hdf5::File::open(&path).unwrap();
-    let shapes: [(&str, &[usize]); 26] = [
-        ("time", &[5]),
-        ("attitude", &[5, 4]),
-        ("position", &[5, 3]),
-        ("velocity", &[5, 3]),
-        ("angular_velocity", &[5, 3]),
-        ("angular_acceleration", &[5, 3]),
-        ("modal/displacement", &[5, 4]),
-        ("modal/velocity", &[5, 4]),
-        ("energy/kinetic", &[5]),
-        ("energy/strain", &[5]),
-        ("energy/work", &[5]),
-        ("energy/dissipation", &[5]),
-        ("energy/balance", &[5]),
-        ("momentum/linear", &[5, 3]),
-        ("momentum/angular", &[5, 3]),
-        ("momentum/linear_balance", &[5, 3]),
-        ("momentum/angular_balance", &[5, 3]),
-        ("points/P1/displacement", &[5, 3]),
-        ("points/P1/velocity", &[5, 3]),
-        ("points/P1/acceleration", &[5, 3]),
-        ("points/P1/rigid_acceleration", &[5, 3]),
+    let of_columns = COLUMNS.iter().map(|column| {
+        (column.path.replace("<name>", "P1"), [5].into_iter().chain(column.width(4)).collect::<Vec<_>>())
+    });
+    let of_body: [(&str, &[usize]); 5] = [
         ("body/mass", &[]),
         ("body/center_of_mass", &[3]),
         ("body/inertia", &[3, 3]),
         ("body/frequencies", &[4]),
         ("body/damping_ratios", &[4]),
     ];
+    let shapes: Vec<_> = of_columns.chain(of_body.map(|(name, shape)| (name.to_owned(), shape.to_vec()))).collect();
+    assert_eq!(
+        (shapes.len(), &shapes[1], &shapes[6]),
+        (26, &("attitude".into(), vec![5, 4]), &("modal/displacement".into(), vec![5, 4]))
+    );
     for (name, shape) in shapes {
-        let dataset = file.dataset(name).unwrap();
+        let dataset = file.dataset(&name).unwrap();
         assert_eq!(dataset.shape(), shape, "{name}");
         assert_eq!(dataset.dtype().unwrap().to_descriptor().unwrap(), TypeDescriptor::Float(FloatSize::U8));
         for attribute in ["unit", "frame", "description"] {
@@ -356,19 +353,6 @@ fn names_types_and_shapes_are_those_of_the_contract() {
     for name in ["complete", "fingerprint"] {
         assert_eq!(descriptor(name), TypeDescriptor::Integer(IntSize::U8));
     }
-    for (name, unit, frame) in [
-        ("energy/strain", "Mg mm^2/s^2", "none"),
-        ("energy/work", "Mg mm^2/s^2", "none"),
-        ("energy/dissipation", "Mg mm^2/s^2", "none"),
-        ("energy/balance", "Mg mm^2/s^2", "none"),
-        ("momentum/linear_balance", "Mg mm/s", "global"),
-        ("momentum/angular_balance", "Mg mm^2/s", "global"),
-    ] {
-        let text = |attribute: &str| -> VarLenUnicode {
-            file.dataset(name).unwrap().attr(attribute).unwrap().read_scalar().unwrap()
-        };
-        assert_eq!((text("unit").as_str(), text("frame").as_str()), (unit, frame), "{name}");
-    }
 }
 
 /// The writer puts the numbers into their places by itself; HDF5 must find them there.
@@ -376,7 +360,8 @@ fn names_types_and_shapes_are_those_of_the_contract() {
 fn hdf5_finds_the_numbers_that_were_written() {
     let (_folder, path) = folder();
     let metadata = metadata(3, &["P10", "P2"]);
-    let mut writer = Writer::create(&path, &metadata, &COLUMNS, Expected { checkpoint: 2, ..Expected::default() }).unwrap();
+    let mut writer =
+        Writer::create(&path, &metadata, &COLUMNS, Expected { checkpoint: 2, ..Expected::default() }).unwrap();
     (0..700).for_each(|i| writer.push(&Row::new(i, 3, 2)).unwrap());
     writer.flush(&[7, 8]).unwrap();
     let part = unfinished(&path);
@@ -394,14 +379,11 @@ fn hdf5_finds_the_numbers_that_were_written() {
             assert_eq!(found[..700 * width], *expected, "{name}");
             assert!(found[700 * width..].iter().all(|value| value.is_nan()), "{name}");
         };
-        check("time", 1, &results.time);
-        check("attitude", 4, results.attitude.as_flattened());
-        check("energy/balance", 1, &results.energy_balance);
-        let modal: Vec<f64> = (0..700).flat_map(|i| results.modal_velocity.row(i).unwrap().to_vec()).collect();
-        check("modal/velocity", 3, &modal);
-        for (name, point) in &results.points {
-            check(&format!("points/{name}/displacement"), 3, point.displacement.as_flattened());
-            check(&format!("points/{name}/rigid_acceleration"), 3, point.rigid_acceleration.as_flattened());
+        for column in &COLUMNS {
+            for name in &metadata.point_names {
+                let path = column.path.replace("<name>", name);
+                check(&path, column.width(3).unwrap_or(1), results.table(&path).unwrap().values());
+            }
         }
         assert_eq!(numbers("body/frequencies"), metadata.body.frequencies);
         if complete == 0 {
@@ -474,4 +456,19 @@ fn constants_are_finite() {
     vast.body.inertia[1][2] = f64::INFINITY;
     let error = Writer::create(&path, &vast, &COLUMNS, Expected::default()).unwrap_err().to_string();
     assert!(error.contains("body/inertia is inf"), "{error}");
+}
+
+#[test]
+fn units_are_in_the_labels_of_the_run() {
+    let label = |unit, [length, mass, time]: [&str; 3]| {
+        let units = Units { length: length.into(), mass: mass.into(), time: time.into() };
+        Column::<Row>::new("x", unit, "none", "", Values::Number(|row| row.time)).unit(&units)
+    };
+    let mm = ["mm", "Mg", "s"];
+    assert_eq!(label("1", mm), "1");
+    assert_eq!(label("rad/time^2", mm), "rad/s^2");
+    assert_eq!(label("length mass^(1/2)/time", mm), "mm Mg^(1/2)/s");
+    assert_eq!(label("mass length^2/time^2", mm), "Mg mm^2/s^2");
+    // A label may be any text.
+    assert_eq!(label("mass length/time", ["mass", "time", "length"]), "time mass/length");
 }

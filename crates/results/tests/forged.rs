@@ -21,7 +21,8 @@ fn push(writer: &mut Writer, rows: std::ops::Range<usize>) {
 /// An unfinished file, as bytes, and the finished one that it becomes with as many rows again.
 fn files(path: &Path) -> [Vec<u8>; 2] {
     let metadata = Metadata { scene_text: "title = \"ω₂\"".into(), ..metadata(2, &["P1"]) };
-    let mut writer = Writer::create(path, &metadata, &COLUMNS, Expected { checkpoint: 4, ..Expected::default() }).unwrap();
+    let mut writer =
+        Writer::create(path, &metadata, &COLUMNS, Expected { checkpoint: 4, ..Expected::default() }).unwrap();
     push(&mut writer, 0..ROWS);
     writer.flush(&[1, 2, 3, 4]).unwrap();
     let part = std::fs::read(writer.unfinished()).unwrap();
