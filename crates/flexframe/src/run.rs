@@ -610,7 +610,7 @@ fn restore(results: &Results, row: usize, out: &mut Observation) -> Option<Conse
 /// Energy, and linear and angular momentum.
 type Momenta = (f64, Vector3<f64>, Vector3<f64>);
 
-/// What should be constant once it is balanced by what the loads and damping have done.
+/// Quantities that exact motion conserves, and what is left of them without what the loads and damping have done.
 struct Conserved {
     quantities: Momenta,
     balances: Momenta,
