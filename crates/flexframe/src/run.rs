@@ -573,10 +573,11 @@ impl<'a> Recorder<'a> {
     fn record(&mut self, simulation: &mut Simulation) -> Result<(), RunError> {
         simulation.observe(&mut self.observation).map_err(|source| self.failed(source))?;
         let now = &self.observation;
+        // It refuses what is not finite.
+        self.writer.push(now)?;
         self.peak_strain_energy = self.peak_strain_energy.max(now.strain_energy);
         self.monitor.watch(now);
         self.review.observe(now).map_err(BuildError::from)?;
-        self.writer.push(now)?;
         self.rows += 1;
         Ok(())
     }
