@@ -90,9 +90,12 @@ fn the_paper_is_reproduced_with_every_figure() {
 }
 
 /// HDF5 finds each column of the table in the file, with its shape, unit, frame and description, and no other.
-fn assert_describes_its_columns(path: &Path, rows: usize, modes: usize, point: &str) {
+fn assert_describes_its_columns(path: &Path, rows: usize, point: &str) {
     let file = hdf5::File::open(path).unwrap();
     let units = Units { length: "mm".into(), mass: "Mg".into(), time: "s".into() };
+    // And static shapes.
+    let modes = file.dataset("body/frequencies").unwrap().size();
+    assert!(modes > 6);
     let mut paths = Vec::new();
     for column in &COLUMNS {
         let path = column.path.replace("<name>", point);
@@ -155,7 +158,7 @@ fn another_mesh_runs_and_its_file_holds_all_that_is_promised() {
     let out = folder.path().to_str().unwrap();
     let report = json(&["run", "examples/ring.toml", "-o", out, "--json"]);
     let path = folder.path().join("ring.h5");
-    assert_describes_its_columns(&path, 2001, 6, "struck");
+    assert_describes_its_columns(&path, 2001, "struck");
     let results = Results::open(path, &COLUMNS).unwrap();
     assert!(results.complete);
     assert_eq!(results.rows(), 2001);
