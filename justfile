@@ -22,6 +22,10 @@ lint:
     cargo clippy --workspace --all-targets --quiet -- -D warnings
     RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --document-private-items --quiet
 
+# No file of a crate uses another that uses it in turn.
+circles:
+    .ci/circles
+
 # Everything once with the oldest Rust that is promised (`rust-version` in Cargo.toml).
 msrv:
     #!/usr/bin/env bash

@@ -6,7 +6,7 @@ use nalgebra::{Matrix3, Matrix3xX, Vector3};
 
 use crate::case::{Case, StaticCompliance};
 use crate::course::Course;
-use crate::response::relative;
+use crate::relative::relative;
 
 /// A load: its largest forces on the translations, the rotations and each mode where its history is 1.
 #[derive(Debug, Clone)]

@@ -64,9 +64,11 @@
 mod backbone;
 mod case;
 mod course;
+mod estimate;
 mod excitation;
 mod limits;
 mod number;
+mod relative;
 mod response;
 mod review;
 mod rigid;

@@ -5,6 +5,7 @@ use frames_rk4::DrivenMotion;
 use crate::case::Case;
 use crate::course::{Course, Swing};
 use crate::excitation::{Source, Spin};
+use crate::relative::relative;
 use crate::tensor;
 
 /// Motion of the modes.
@@ -197,17 +198,6 @@ fn swing(source: &Source, spin: &Spin, omega: f64, zeta: f64, memory: f64) -> (f
 /// 1 + ∫|a'| of the direction of a load, as far back as a mode remembers.
 fn turning(source: &Source, spin: &Spin, memory: f64) -> f64 {
     if source.dead { 1.0 + spin.turn.min(spin.largest * memory) } else { 1.0 }
-}
-
-/// part/whole, at most 1; 1 where something is changed of nothing.
-pub(crate) fn relative(part: f64, whole: f64) -> f64 {
-    if part <= 0.0 {
-        0.0
-    } else if part >= whole || part.is_nan() || whole.is_nan() {
-        1.0
-    } else {
-        part / whole
-    }
 }
 
 pub(crate) fn norm(x: &[f64]) -> f64 {

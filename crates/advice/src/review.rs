@@ -6,11 +6,12 @@ use frames_rk4::{Effects, Moment, Observation};
 use nalgebra::Vector3;
 
 use crate::case::{AdviceError, Case};
+use crate::estimate::LINEAR;
 use crate::limits::{Refusal, SOFTENED, deflected, detuned, refusal};
 use crate::number::Number;
-use crate::response::relative;
+use crate::relative::relative;
 use crate::row::Effect;
-use crate::table::{Advice, LINEAR, held};
+use crate::table::{Advice, held};
 
 /// An assumption that has broken.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

@@ -1,10 +1,11 @@
 //! The motion of the body as a whole: what excites it, and how a change of its spin adds up.
 
 use crate::case::Case;
+use crate::estimate::Estimate;
 use crate::excitation::{Source, Spin};
-use crate::response::{Response, norm, relative};
+use crate::relative::relative;
+use crate::response::{Response, norm};
 use crate::row::Effect;
-use crate::table::Estimate;
 
 /// Relative change of the attitude by a change of momentum that is there all the time (in the scale of
 /// [`Spin::momentum`]): of the angle turned up to 1 rad, or of the vibration where the body hardly turns.

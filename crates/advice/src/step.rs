@@ -6,7 +6,7 @@
 
 use frames_rk4::{Observation, Reached, Rows, Setup, SetupError, Simulation, StepControl, StepError};
 
-use crate::response::relative;
+use crate::relative::relative;
 use crate::row::{Effect, Row};
 
 /// What the comparison may cost, in products of the modal matrices: some tenths of a second.

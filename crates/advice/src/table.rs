@@ -6,10 +6,12 @@ use nalgebra::Matrix3;
 
 use crate::backbone::LARGE;
 use crate::case::{AdviceError, Case};
+use crate::estimate::Estimate;
 use crate::excitation::{Source, Spin};
 use crate::limits::{Refusal, deflected};
 use crate::number::Number;
-use crate::response::{Response, norm, relative};
+use crate::relative::relative;
+use crate::response::{Response, norm};
 use crate::row::{Effect, Row, Worth};
 use crate::{rigid, tensor};
 
@@ -68,8 +70,6 @@ impl Advice {
 
 /// How far the stiffening that [`screen`] allows for is above the bending of a bar whose mass is at its ends (π²/8).
 const SCREEN: f64 = 10.0;
-/// Deflection over length at which linear strain ends.
-pub(crate) const LINEAR: f64 = 0.1;
 /// How far what the modes leave out of a static answer may count above its share in the work of the load.
 const SWING: f64 = 4.0;
 /// The same of the centrifugal field, with what the Euler force of a spin that changes adds.
@@ -150,25 +150,6 @@ pub fn advise(case: &Case, tolerance: f64) -> Result<Advice, AdviceError> {
         stretch,
         tolerance,
     })
-}
-
-/// A row but for the decision.
-pub(crate) struct Estimate {
-    pub effect: Effect,
-    pub value: f64,
-    pub influence: f64,
-    pub why: String,
-}
-
-impl Estimate {
-    fn row(self, tolerance: f64) -> Row {
-        let Self { effect, value, influence, why } = self;
-        let on = match effect {
-            Effect::Deflection => value >= LINEAR,
-            _ => influence >= tolerance || influence.is_nan(),
-        };
-        Row { effect, value, influence, on, why }
-    }
 }
 
 fn flexibility(spin: &Spin, sources: &[Source], response: &Response, deflection: f64) -> Estimate {

@@ -3,8 +3,6 @@
 use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 
-use crate::error::MeshError;
-use crate::mesh::Mesh;
 use crate::quadrature::{self, Point};
 use crate::shape::{EDGES, NODES, shape_gradients};
 
@@ -89,12 +87,27 @@ pub(crate) fn jacobian(positions: &[[f64; 3]; 10], dn: &[[f64; 3]; 10]) -> Matri
     jacobian
 }
 
-/// Refuses elements that are inverted or have no volume at a node or at an integration point.
-pub(crate) fn check_jacobians(mesh: &Mesh) -> Result<(), MeshError> {
+/// An element that is inverted or has no volume somewhere.
+pub(crate) struct BadJacobian {
+    /// Its index.
+    pub element: usize,
+    /// "inverted" or "degenerate".
+    pub what: &'static str,
+    /// The smallest determinant.
+    pub jacobian: f64,
+    /// That of a regular tetrahedron of its size.
+    pub expected: f64,
+}
+
+/// The first of `count` elements that is inverted or has no volume at a node or at an integration point.
+pub(crate) fn first_bad_jacobian(
+    count: usize,
+    positions: impl Fn(usize) -> [[f64; 3]; 10] + Sync,
+) -> Option<BadJacobian> {
     let at_nodes = NODES.map(shape_gradients);
     let inside: Vec<_> = quadrature::degree_5().iter().map(|p| shape_gradients(p.at)).collect();
-    let bad = (0..mesh.elements().len()).into_par_iter().find_map_first(|e| {
-        let positions = mesh.element_positions(e);
+    (0..count).into_par_iter().find_map_first(|e| {
+        let positions = positions(e);
         let regular = regular_determinant(&positions);
         let smallest = if is_straight(&positions) {
             jacobian(&positions, &at_nodes[0]).determinant()
@@ -107,18 +120,13 @@ pub(crate) fn check_jacobians(mesh: &Mesh) -> Result<(), MeshError> {
                 .fold(f64::INFINITY, |least, det| if least.is_nan() || least <= det { least } else { det })
         };
         let good = smallest > DEGENERATE * regular;
-        (!good).then_some((e, smallest, regular))
-    });
-    match bad {
-        None => Ok(()),
-        Some((e, jacobian, expected)) => Err(MeshError::Jacobian {
-            source_name: mesh.source().to_owned(),
-            element: mesh.element_tags()[e],
-            what: if jacobian < -DEGENERATE * expected { "inverted" } else { "degenerate" },
-            jacobian,
-            expected,
-        }),
-    }
+        (!good).then_some(BadJacobian {
+            element: e,
+            what: if smallest < -DEGENERATE * regular { "inverted" } else { "degenerate" },
+            jacobian: smallest,
+            expected: regular,
+        })
+    })
 }
 
 /// Determinant of the Jacobian of a regular tetrahedron with the longest edge of this one: h³/√2.

@@ -22,6 +22,7 @@
 
 mod assembly;
 mod error;
+mod faces;
 mod geometric_stiffness;
 mod integration;
 mod locate;
@@ -30,12 +31,14 @@ mod material;
 mod mean_rotation;
 mod mesh;
 mod msh;
+mod parts;
 mod point_mass;
 mod quadrature;
 mod second_order;
 mod selection;
 mod shape;
 mod surface;
+mod tags;
 
 pub use assembly::{Matrices, assemble};
 pub use error::{AssemblyError, MeshError, Place};
@@ -44,8 +47,9 @@ pub use locate::Location;
 pub use lumped::{LumpedInertia, centroid_lumped_inertia};
 pub use material::{Material, Materials};
 pub use mean_rotation::MeanRotation;
-pub use mesh::{Mesh, MeshParts, NodeGroup, SurfaceGroup};
+pub use mesh::Mesh;
 pub use msh::{parse_msh, read_msh};
+pub use parts::{MeshParts, NodeGroup, SurfaceGroup};
 pub use point_mass::PointMass;
 pub use second_order::{geometric_stiffness_product, second_order_energies, second_order_forces};
 pub use shape::{shape_functions, shape_gradients};

@@ -3,58 +3,13 @@
 use std::collections::HashMap;
 
 use crate::error::MeshError;
-use crate::integration;
-use crate::surface::{self, Surface};
+use crate::faces::{self, Surface};
+use crate::integration::{self, BadJacobian};
+use crate::parts::{MeshParts, NodeGroup};
+use crate::tags::{index_nodes, resolve_tags};
 
 /// What is grouped, by its dimension.
 pub(crate) const KINDS: [&str; 4] = ["point", "curve", "surface", "volume"];
-
-/// The raw parts of a mesh, from a file or from a program; [`Mesh::new`] checks them.
-#[derive(Debug, Clone, Default)]
-pub struct MeshParts {
-    /// What to call the mesh in messages: the file's path.
-    pub source: String,
-    /// Tags of the nodes, in the file's numbering.
-    pub node_tags: Vec<u64>,
-    /// Positions of the nodes (n×3).
-    pub positions: Vec<[f64; 3]>,
-    /// Tags of the elements, in the file's numbering.
-    pub element_tags: Vec<u64>,
-    /// Node *tags* of each element, in gmsh's order: corners, then mid-edges 01 12 02 03 23 13.
-    pub elements: Vec<[u64; 10]>,
-    /// Names of the volume physical groups.
-    pub groups: Vec<String>,
-    /// The regions of the body (gmsh's volume entities): for each, the indices of the groups it is in.
-    pub regions: Vec<Vec<usize>>,
-    /// For each element, the index of its region.
-    pub element_regions: Vec<usize>,
-    /// The surface physical groups.
-    pub surfaces: Vec<SurfaceGroup>,
-    /// The physical groups of curves and points.
-    pub node_groups: Vec<NodeGroup>,
-}
-
-/// A physical group of surfaces, among the parts of a mesh.
-#[derive(Debug, Clone, Default)]
-pub struct SurfaceGroup {
-    /// Its name.
-    pub name: String,
-    /// Tags of its triangles, in the file's numbering.
-    pub triangle_tags: Vec<u64>,
-    /// Node *tags* of each triangle, in gmsh's order: corners, either way round, then mid-edges 01 12 20.
-    pub triangles: Vec<[u64; 6]>,
-}
-
-/// A physical group of curves or points, among the parts of a mesh.
-#[derive(Debug, Clone)]
-pub struct NodeGroup {
-    /// Its name.
-    pub name: String,
-    /// 0 for points, 1 for curves.
-    pub dimension: usize,
-    /// Tags of the nodes of its elements, in any order, each as often as it comes.
-    pub nodes: Vec<u64>,
-}
 
 /// A mesh of ten-node tetrahedra in one piece, every node in use and every element the right way round.
 #[derive(Debug, Clone)]
@@ -133,7 +88,7 @@ impl Mesh {
         }
         let index_of = index_nodes(&source, &node_tags)?;
         let elements = resolve_tags(&source, &index_of, &element_tags, &elements)?;
-        let surfaces = surface::resolve(&source, &index_of, &elements, surfaces)?;
+        let surfaces = faces::resolve(&source, &index_of, &elements, surfaces)?;
         let node_sets = resolve_node_groups(&source, &index_of, node_groups)?;
         let mesh = Self {
             source,
@@ -149,7 +104,7 @@ impl Mesh {
         };
         mesh.refuse_same_elements()?;
         mesh.refuse_orphans()?;
-        integration::check_jacobians(&mesh)?;
+        mesh.refuse_bad_jacobians()?;
         mesh.refuse_pieces()?;
         Ok(mesh)
     }
@@ -251,6 +206,20 @@ impl Mesh {
         }
     }
 
+    /// Elements that are inverted or have no volume at a node or at an integration point.
+    fn refuse_bad_jacobians(&self) -> Result<(), MeshError> {
+        match integration::first_bad_jacobian(self.elements.len(), |e| self.element_positions(e)) {
+            None => Ok(()),
+            Some(BadJacobian { element, what, jacobian, expected }) => Err(MeshError::Jacobian {
+                source_name: self.source.clone(),
+                element: self.element_tags[element],
+                what,
+                jacobian,
+                expected,
+            }),
+        }
+    }
+
     fn refuse_pieces(&self) -> Result<(), MeshError> {
         let mut sets = DisjointSets::new(self.positions.len());
         for nodes in &self.elements {
@@ -274,54 +243,6 @@ impl Mesh {
             examples: pieces.iter().map(|(_, first)| self.element_tags[*first]).collect(),
         })
     }
-}
-
-fn duplicate(source: &str, kind: &'static str, tag: u64) -> MeshError {
-    MeshError::DuplicateTag { source_name: source.to_owned(), kind, tag }
-}
-
-/// Index of a node by its tag.
-fn index_nodes(source: &str, node_tags: &[u64]) -> Result<HashMap<u64, u32>, MeshError> {
-    let mut index_of: HashMap<u64, u32> = HashMap::with_capacity(node_tags.len());
-    for (index, tag) in node_tags.iter().enumerate() {
-        if index_of.insert(*tag, index as u32).is_some() {
-            return Err(duplicate(source, "node", *tag));
-        }
-    }
-    Ok(index_of)
-}
-
-/// The nodes of an element, by index.
-pub(crate) fn indices<const N: usize>(
-    source: &str,
-    index_of: &HashMap<u64, u32>,
-    element: u64,
-    nodes: &[u64; N],
-) -> Result<[u32; N], MeshError> {
-    let mut indices = [0; N];
-    for (index, node) in indices.iter_mut().zip(nodes) {
-        *index = *index_of.get(node).ok_or_else(|| MeshError::UnknownNode {
-            source_name: source.to_owned(),
-            element,
-            node: *node,
-        })?;
-    }
-    Ok(indices)
-}
-
-/// Turns node tags into indices.
-fn resolve_tags(
-    source: &str,
-    index_of: &HashMap<u64, u32>,
-    element_tags: &[u64],
-    elements: &[[u64; 10]],
-) -> Result<Vec<[u32; 10]>, MeshError> {
-    let mut sorted = element_tags.to_vec();
-    sorted.sort_unstable();
-    if let Some(pair) = sorted.windows(2).find(|pair| pair[0] == pair[1]) {
-        return Err(duplicate(source, "element", pair[0]));
-    }
-    elements.iter().zip(element_tags).map(|(nodes, tag)| indices(source, index_of, *tag, nodes)).collect()
 }
 
 fn resolve_node_groups(

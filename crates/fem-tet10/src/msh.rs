@@ -3,6 +3,7 @@
 //! Both forms carry the same numbers in the same order, so one parser asks a [`Source`] for the next number
 //! and the source knows how it is written. No count in a file is trusted: memory grows with what is read.
 
+mod block;
 mod groups;
 mod source;
 
@@ -11,7 +12,9 @@ use std::io;
 use std::path::Path;
 
 use crate::error::MeshError;
-use crate::mesh::{Mesh, MeshParts};
+use crate::mesh::Mesh;
+use crate::parts::MeshParts;
+use block::Block;
 use groups::PhysicalGroups;
 use source::Source;
 
@@ -21,7 +24,6 @@ const NODES_OF_TYPE: [usize; 32] =
 /// The largest number of an element type that gmsh uses.
 const LAST_TYPE: i32 = 140;
 const TET4: i32 = 4;
-const TRI6: i32 = 9;
 const TET10: i32 = 11;
 
 /// Bytes that reading takes for each byte of the file, which is one of them: meshes of gmsh took 3.6.
@@ -30,17 +32,6 @@ const FACTOR: usize = 4;
 const REMESH: &str = "mesh with -order 2 (or `Mesh.ElementOrder = 2;`)";
 const TETRAHEDRA_ONLY: &str =
     "mesh with tetrahedra (gmsh: no Recombine, no Transfinite Volume with Recombine) and -order 2";
-
-/// Points, lines or triangles of one entity.
-struct Block {
-    dimension: usize,
-    entity: i32,
-    /// gmsh's element type.
-    kind: i32,
-    tags: Vec<u64>,
-    /// Tags of the nodes, element after element.
-    nodes: Vec<u64>,
-}
 
 /// Reads a MSH 4.1 file and checks the mesh.
 ///

@@ -13,6 +13,8 @@ use crate::json;
 use crate::modes::frequency_unit;
 use crate::run::RunError;
 
+pub use verify::Real;
+
 /// What `flexframe advise` says.
 #[derive(Debug, Clone, Serialize)]
 pub struct AdviseReport {
@@ -58,16 +60,6 @@ pub struct EffectRow {
     pub why: String,
     /// The influence found by running the scene with the effect switched.
     pub real: Option<Real>,
-}
-
-/// What switching an effect does.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Real {
-    /// Relative difference of the motions.
-    Difference(#[serde(serialize_with = "json::number")] f64),
-    /// One of the runs fails, with the reason.
-    Fails(String),
 }
 
 /// What a mode is worth.

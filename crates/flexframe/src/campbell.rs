@@ -8,75 +8,26 @@
 mod branches;
 mod critical;
 mod diagram;
+mod error;
 mod files;
+mod report;
 mod table;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use figures::FigureError;
-use frames_rk4::{EigenError, SteadySpin};
+use frames_rk4::SteadySpin;
 use nalgebra::Vector3;
 use scene::{BuildError, BuildProgress, Choice, Flexible, Model, Scene};
-use serde::Serialize;
 
+pub use branches::Branch;
 pub use critical::Critical;
+pub use error::CampbellError;
+pub use report::{CampbellReport, SpinEffects};
 
-use crate::json;
 use crate::modes::{frequency_unit, require_flexible};
 use crate::report::MeshReport;
 use branches::Branches;
-
-/// A diagram that could not be made.
-#[derive(Debug, thiserror::Error)]
-pub enum CampbellError {
-    /// The scene cannot be built, or has no modes.
-    #[error(transparent)]
-    Build(#[from] BuildError),
-    /// The vibrations cannot be found.
-    #[error("{}: {source}", scene.display())]
-    Eigen {
-        /// The scene file.
-        scene: PathBuf,
-        /// Why.
-        source: EigenError,
-    },
-    /// The axis has no direction.
-    #[error("axis {axis:?}: expected three finite numbers that are not all zero, in the axes of the mesh")]
-    Axis {
-        /// The axis.
-        axis: [f64; 3],
-    },
-    /// The speeds are no range.
-    #[error(
-        "speeds {start}:{end}:{count}: expected start:end:count, radians per time, with 0 ≤ start < end and a count of 2 \
-         to {MOST_SPEEDS}, e.g. 0:200:50"
-    )]
-    Speeds {
-        /// The lowest.
-        start: f64,
-        /// The highest.
-        end: f64,
-        /// How many.
-        count: usize,
-    },
-    /// An engine order is not positive.
-    #[error("order {order}: expected a positive number of times a turn, e.g. 1, 2 or 0.5")]
-    Order {
-        /// The order.
-        order: f64,
-    },
-    /// The diagram cannot be drawn.
-    #[error(transparent)]
-    Figure(#[from] FigureError),
-    /// A file cannot be written.
-    #[error("{}: cannot be written: {source}", path.display())]
-    Write {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: std::io::Error,
-    },
-}
+use error::MOST_SPEEDS;
 
 /// How far a diagram has come.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -91,9 +42,6 @@ pub enum CampbellProgress {
         total: usize,
     },
 }
-
-/// Each speed takes an eigenvalue problem, and a row of a table.
-const MOST_SPEEDS: usize = 10_000;
 
 /// Equally spaced spin speeds, both ends included.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -126,61 +74,6 @@ pub struct CampbellSettings {
     pub speeds: Speeds,
     /// Engine orders: loads that come by so many times a turn.
     pub orders: Vec<f64>,
-}
-
-/// Natural frequencies against spin speed.
-#[derive(Debug, Clone, Serialize)]
-pub struct CampbellReport {
-    /// Title of the scene.
-    pub title: String,
-    /// Label of the unit of time.
-    pub time_unit: String,
-    /// Unit of frequencies, such as "1/s".
-    pub frequency_unit: String,
-    /// The finite-element model.
-    pub mesh: Option<MeshReport>,
-    /// The spin axis: unit vector, axes of the mesh.
-    pub axis: [f64; 3],
-    /// The point that the axis goes through, mesh axes.
-    pub origin: [f64; 3],
-    /// The effects of the spin that are computed.
-    pub effects: SpinEffects,
-    /// Spin speeds, radians per time.
-    pub speeds: Vec<f64>,
-    /// The lines of the diagram, in the order of their frequencies at the lowest speed.
-    pub branches: Vec<Branch>,
-    /// The spin speed at which the body loses its stability because K + Ω²(K_σ − N) is no longer positive definite; none
-    /// if it never does.
-    pub stable_below: Option<f64>,
-    /// Where orders and branches cross, by order and speed; order 0 where a frequency is zero.
-    pub critical_speeds: Vec<Critical>,
-    /// Files written.
-    #[serde(serialize_with = "json::paths")]
-    pub files: Vec<PathBuf>,
-}
-
-/// Effects of the spin that are computed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-pub struct SpinEffects {
-    /// Coriolis forces, G.
-    pub coriolis: bool,
-    /// The centrifugal forces of the deformation, N.
-    pub softening: bool,
-    /// The stress of the centrifugal field, K_σ.
-    pub stiffening: bool,
-}
-
-/// A vibration followed through all spin speeds by its shape.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Branch {
-    /// Its number as `flexframe modes` counts, at the lowest speed.
-    pub mode: usize,
-    /// Frequency at each speed, cycles per time.
-    pub frequency: Vec<f64>,
-    /// Growth at each speed, 1 per time: positive where the vibration is unstable.
-    pub growth: Vec<f64>,
-    /// Sense of the vibration at each speed: 1 forwards round the axis, −1 backwards, 0 to and fro.
-    pub whirl: Vec<f64>,
 }
 
 /// Computes the diagram of a scene, and writes `campbell.csv`, `critical_speeds.csv`, `campbell.svg` and `campbell.png`

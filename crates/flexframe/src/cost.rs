@@ -6,74 +6,45 @@
 
 mod answer;
 mod case;
+mod error;
 mod files;
 mod ladder;
 mod machine;
 mod modes;
 mod page;
 mod reference;
+mod report;
 mod run;
+mod setting;
+mod settings;
+mod short;
 mod spin;
 mod table;
 
-use std::path::{Path, PathBuf};
-use std::time::Duration;
+use std::path::Path;
 
 use fem_tet10::read_msh;
-use figures::FigureError;
 use frames_rk4::{Method, StepControl};
-use scene::{Body, BuildError, BuildProgress, Choice, Flexible, Model, Scene};
-use serde::Serialize;
+use scene::{Body, BuildProgress, Choice, Flexible, Model, Scene};
 
-pub use answer::{Answer, Setting};
+pub use answer::Answer;
+pub use error::CostError;
 pub use ladder::{Line, Measured, Outcome, Row, Stopped};
 pub use machine::Machine;
 pub use modes::ModesRow;
 pub use page::accuracy_page;
 pub use reference::ReferenceReport;
+pub use report::CostReport;
 pub use run::Errors;
+pub use setting::Setting;
+pub use settings::CostSettings;
 
 pub use crate::run::RunFailure;
-
-use crate::json;
 
 use answer::refine;
 use case::Case;
 use ladder::{Judge, climb};
-use reference::{Budget, Reference, converge};
-
-/// A price list that could not be made.
-#[derive(Debug, thiserror::Error)]
-pub enum CostError {
-    /// The scene cannot be built.
-    #[error(transparent)]
-    Build(#[from] BuildError),
-    /// No run of the reference came to its end.
-    #[error(
-        "{scene}: no reference can be made: a run of {steps} steps of the exponential scheme failed: {failure}; make the \
-         run shorter, or give more time with --patience",
-        scene = scene.display()
-    )]
-    Reference {
-        /// The scene file.
-        scene: PathBuf,
-        /// Steps of the last try.
-        steps: u64,
-        /// Why it failed.
-        failure: RunFailure,
-    },
-    /// The diagram cannot be drawn.
-    #[error(transparent)]
-    Figure(#[from] FigureError),
-    /// A file cannot be written.
-    #[error("{}: cannot be written: {source}", path.display())]
-    Write {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: std::io::Error,
-    },
-}
+use reference::{Reference, converge};
 
 /// How far a price list has come.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -87,77 +58,6 @@ pub enum CostProgress {
         /// Parts of the list.
         total: u64,
     },
-}
-
-/// What a price list is asked for.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct CostSettings {
-    /// What a run may take: it is stopped when this is used up, and the ladders end before runs that would take longer. All
-    /// runs of the reference together may take twenty times as long.
-    pub patience: Duration,
-    /// The ladders end before runs with more steps than this; the reference may have four times as many.
-    pub most_steps: u64,
-    /// Each run is repeated until it has been timed for so long.
-    pub timed_for: Duration,
-    /// An error for which the cheapest setting is wanted.
-    pub target: Option<f64>,
-}
-
-impl Default for CostSettings {
-    fn default() -> Self {
-        Self::with_patience(Duration::from_secs(1))
-    }
-}
-
-impl CostSettings {
-    /// Each run timed for a tenth of the patience.
-    pub fn with_patience(patience: Duration) -> Self {
-        Self { patience, most_steps: 1_000_000, timed_for: patience / 10, target: None }
-    }
-
-    /// Time and steps that a reference may take.
-    fn budget(&self, patience: u32) -> Budget {
-        Budget { time: self.patience.saturating_mul(patience), steps: 4 * self.most_steps }
-    }
-}
-
-/// The price list of a scene.
-#[derive(Debug, Clone, Serialize)]
-pub struct CostReport {
-    /// Title of the scene.
-    pub title: String,
-    /// The scene file.
-    #[serde(serialize_with = "json::path")]
-    pub scene: PathBuf,
-    /// Label of the unit of time.
-    pub time_unit: String,
-    /// Where it was measured.
-    pub machine: Machine,
-    /// Flexible modes kept.
-    pub flexible: usize,
-    /// Their highest frequency, cycles per time; none for a rigid body.
-    pub highest_frequency: Option<f64>,
-    /// |ω| at the beginning.
-    pub initial_spin: f64,
-    /// End of the run.
-    pub end: f64,
-    /// Points whose velocity and acceleration are compared.
-    pub points: usize,
-    /// What all errors are measured against.
-    pub reference: ReferenceReport,
-    /// The limit of the paper's formulation for short steps; its errors are those to the reference.
-    pub paper_limit: Option<ReferenceReport>,
-    /// The ladders.
-    pub lines: Vec<Line>,
-    /// The same motion with fewer and with more modes, fewest first; empty where they could not be compared.
-    pub modes: Vec<ModesRow>,
-    /// Why they could not be compared.
-    pub modes_failure: Option<String>,
-    /// The answer to the target.
-    pub answer: Option<Answer>,
-    /// Files written.
-    #[serde(serialize_with = "json::paths")]
-    pub files: Vec<PathBuf>,
 }
 
 /// Measures what accuracy costs on a scene, and writes `cost.csv`, `work_precision.svg` and `.png` to `folder`.

@@ -1,6 +1,7 @@
 //! `flexframe paper`: the paper's plate, each figure and number beside the paper's.
 
 mod comparison;
+mod error;
 mod figures;
 mod page;
 mod rigid_plate;
@@ -9,65 +10,18 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use results::{FileError, Results};
-use rigid_kin::{RigidBodyError, StepError};
-use scene::{BuildError, Scene};
+use results::Results;
+use scene::Scene;
 use serde::Serialize;
 use whole_file::write_whole;
 
 use crate::columns::COLUMNS;
 use crate::json;
-use crate::mode_shapes::ShapesError;
-use crate::run::{RunError, RunProgress, RunReport, RunSettings, run};
+use crate::run::{RunProgress, RunReport, RunSettings, run};
 use comparison::Comparison;
+use rigid_plate::WATCHED_POINT;
 
-/// The point whose accelerations Figs. 10 to 13 show.
-const WATCHED_POINT: &str = "P1";
-
-/// A reproduction that could not be made.
-#[derive(Debug, thiserror::Error)]
-pub enum PaperError {
-    /// The scene could not be run.
-    #[error(transparent)]
-    Run(#[from] RunError),
-    /// The lumped inertia could not be found.
-    #[error(transparent)]
-    Build(#[from] BuildError),
-    /// The results could not be read back.
-    #[error(transparent)]
-    File(#[from] FileError),
-    /// A figure could not be drawn.
-    #[error(transparent)]
-    Figure(#[from] ShapesError),
-    /// The rigid plate has no mass or inertia.
-    #[error(transparent)]
-    RigidBody(#[from] RigidBodyError),
-    /// The rigid plate could not be stepped.
-    #[error(transparent)]
-    Step(#[from] StepError),
-    /// The scene lacks a point that the paper's figures need.
-    #[error("{scene}: the paper's figures need the output point {point}; add it under [output.points], as in examples/plate.toml", scene = scene.display())]
-    MissingPoint {
-        /// The scene file.
-        scene: PathBuf,
-        /// The point.
-        point: &'static str,
-    },
-    /// Another body, or other loads, than the paper's.
-    #[error("{}: the paper has a free body with a mesh under dead half-sine forces; use `flexframe run` for others", scene.display())]
-    NotThePlate {
-        /// The scene file.
-        scene: PathBuf,
-    },
-    /// The report cannot be written.
-    #[error("{}: cannot write the report: {source}", path.display())]
-    Report {
-        /// The report.
-        path: PathBuf,
-        /// Why.
-        source: std::io::Error,
-    },
-}
+pub use error::PaperError;
 
 /// What `flexframe paper` says at its end.
 #[derive(Debug, Clone, Serialize)]

@@ -280,13 +280,37 @@ fn signals_at_once_are_one_request_to_stop() {
     let id = child.id();
     // Until the motion has begun, a signal ends the program at once.
     std::thread::sleep(Duration::from_millis(200));
-    let burst = format!("kill -TERM {id}; for i in 1 2 3 4 5 6 7 8 9 10; do kill -INT {id}; done 2>/dev/null; true");
+    let burst = format!("for i in 1 2 3 4 5; do kill -TERM {id}; kill -INT {id}; done 2>/dev/null; true");
     let mut kill = Command::new("bash");
     kill.args(["-c", &burst]);
     succeed(kill);
     let output = child.wait_with_output().unwrap();
     assert_eq!(output.status.code(), Some(130), "{}", message(&output));
     assert_has(&message(&output), &["stopped at time", "flexframe resume", "long.part.h5"]);
+}
+
+/// Reading, assembling, ordering by METIS, factoring, searching: whatever a request to stop meets, it is answered in words.
+#[test]
+fn a_request_to_stop_is_answered_whenever_it_comes() {
+    let scene = Scene::new("1e-9");
+    let text = std::fs::read_to_string(&scene.path).unwrap().replace("flexible = 2", "flexible = 60");
+    std::fs::write(&scene.path, text).unwrap();
+    for delay in (5..300).step_by(20) {
+        let mut modes = Command::new(env!("CARGO_BIN_EXE_flexframe"));
+        modes.arg("modes").arg(&scene.path);
+        let child = spawn(modes);
+        std::thread::sleep(Duration::from_millis(delay));
+        // It may have come to its end before.
+        let _ = Command::new("kill").args(["-TERM", &child.id().to_string()]).output().unwrap();
+        let output = child.wait_with_output().unwrap();
+        match output.status.code() {
+            Some(0) => {}
+            Some(130) => assert_has(&message(&output), &["stopped"]),
+            // The signal came before the program could listen.
+            None if delay < 20 => {}
+            other => panic!("{other:?} after {delay} ms: {}", message(&output)),
+        }
+    }
 }
 
 #[test]

@@ -17,19 +17,20 @@
 //! body, ω is given, and the modes, which are those of the driven part held still, have a momentum b in its motion; b is
 //! zero otherwise. With stiffening, N_ij is `N_ij − Ψ_fᵀ K_ij Ψ_f`.
 
-use faer::{Mat, MatRef};
+use faer::Mat;
 use modal::ReducedBody;
 use nalgebra::{Matrix3, SVector, Vector3};
 use rigid_kin::{Attitude, f_inverse, transformation_matrix};
 
 use crate::account::Energies;
 use crate::checkpoint::StateCoder;
+use crate::column_major::{columns, dot, multiply, multiply_top};
 use crate::error::{RateError, SetupError, StepError};
-use crate::error_size::own_coupling;
 use crate::history::History;
 use crate::initial::Initial;
 use crate::load::{Applied, Coordinates, Kinematics, SharedLoad};
 use crate::motion::CenterOfMass;
+use crate::own_coupling::own_coupling;
 use crate::physics::{Drive, DrivenMotion, Effects, Physics};
 use crate::state::MotionState;
 
@@ -884,43 +885,7 @@ fn along_axes(axes: &[Vector3<f64>], matrix: &Matrix3<f64>) -> Matrix3<f64> {
     })
 }
 
-/// The entries of a matrix, column by column.
-fn columns(matrix: MatRef<'_, f64>) -> Vec<f64> {
-    (0..matrix.ncols()).flat_map(|j| (0..matrix.nrows()).map(move |i| matrix[(i, j)])).collect()
-}
-
 /// The part of a vector along a unit vector.
 fn along(unit: &Vector3<f64>, vector: &Vector3<f64>) -> Vector3<f64> {
     unit * unit.dot(vector)
-}
-
-pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
-/// y = M x for M with `rows` rows, column by column.
-pub(crate) fn multiply(matrix: &[f64], rows: usize, x: &[f64], y: &mut [f64]) {
-    y.fill(0.0);
-    if rows == 0 {
-        return;
-    }
-    for (column, x) in matrix.chunks_exact(rows).zip(x) {
-        for (y, m) in y.iter_mut().zip(column) {
-            *y += m * x;
-        }
-    }
-}
-
-/// The first `y.len()` rows of M x.
-fn multiply_top(matrix: &[f64], rows: usize, x: &[f64], y: &mut [f64]) {
-    y.fill(0.0);
-    if rows == 0 {
-        return;
-    }
-    let top = y.len();
-    for (column, x) in matrix.chunks_exact(rows).zip(x) {
-        for (y, m) in y.iter_mut().zip(&column[..top]) {
-            *y += m * x;
-        }
-    }
 }

@@ -15,8 +15,8 @@ use crate::initial::Initial;
 use crate::moment::Moment;
 use crate::motion::PointShapes;
 use crate::observation::Observation;
-use crate::scheme::{Method, Scheme, StepLimit};
-use crate::simulation::Setup;
+use crate::scheme::Scheme;
+use crate::setup::{Method, Setup, StepLimit};
 use crate::state::MotionState;
 
 /// How the conservative form is stepped.

@@ -3,10 +3,11 @@
 use nalgebra::{Matrix3, Vector3};
 use rigid_kin::Attitude;
 
-use crate::conservative::{ConservativeBody, ConservativeState, Evaluation, Translation, dot, get, part};
+use crate::column_major::dot;
+use crate::conservative::{ConservativeBody, ConservativeState, Evaluation, Translation, get, part};
 use crate::error::RateError;
-use crate::motion::{PointMotion, PointShapes};
-use crate::observation::Observation;
+use crate::motion::PointShapes;
+use crate::observation::{Observation, PointMotion};
 use crate::work::Work;
 
 impl ConservativeBody {

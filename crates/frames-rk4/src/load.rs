@@ -3,6 +3,7 @@
 //! A load is anything that implements [`Load`]. The built-in ones are [`PointForce`], [`PointMoment`] and [`FieldLoad`],
 //! each in a file of its own; [`LoadFn`] makes one from a closure.
 
+mod body_field;
 mod closure;
 mod field;
 mod force;
@@ -18,8 +19,9 @@ use crate::error::SetupError;
 use crate::history::History;
 use crate::motion::{PointShapes, RotationShapes};
 
+pub use body_field::BodyField;
 pub use closure::LoadFn;
-pub use field::{BodyField, FieldLoad};
+pub use field::FieldLoad;
 pub use force::PointForce;
 pub use moment::PointMoment;
 

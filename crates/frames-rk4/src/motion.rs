@@ -8,7 +8,7 @@ use rigid_kin::{Attitude, Inertia, InertiaError, euler_angular_acceleration};
 use crate::account::Energies;
 use crate::attitude_account::AttitudeAccount;
 use crate::error::{SetupError, StepError};
-use crate::observation::Observation;
+use crate::observation::{Observation, PointMotion};
 use crate::state::{MotionState, State, rotation, translation};
 use crate::work::Work;
 
@@ -18,19 +18,6 @@ pub struct PointShapes {
     position_body: Vector3<f64>,
     /// Column k is the displacement of the point in mode k (6+nf columns).
     columns: Vec<Vector3<f64>>,
-}
-
-/// Motion of a point, global components.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PointMotion {
-    /// Displacement from where the point was in the undeformed body at the beginning.
-    pub displacement: Vector3<f64>,
-    /// Velocity.
-    pub velocity: Vector3<f64>,
-    /// Acceleration.
-    pub acceleration: Vector3<f64>,
-    /// Acceleration of the embedded rigid motion at the point: `a + α×X + ω×(ω×X)`.
-    pub rigid_acceleration: Vector3<f64>,
 }
 
 impl PointShapes {
@@ -220,7 +207,7 @@ impl BodyMotion {
         // [e_i×]: G_i q of all modes.
         let turned: [Vec<f64>; 3] = std::array::from_fn(|i| {
             let mut product = vec![0.0; size];
-            crate::conservative::multiply(&self.cross_products[i], size, q, &mut product);
+            crate::column_major::multiply(&self.cross_products[i], size, q, &mut product);
             product
         });
         let of_spin = |omega: &Vector3<f64>, k: usize| (0..3).map(|i| omega[i] * turned[i][k]).sum::<f64>();
@@ -267,7 +254,7 @@ impl BodyMotion {
             };
         }
         for (i, products) in self.cross_products.iter().enumerate() {
-            crate::conservative::multiply(products, size, &state.modal_displacement, &mut turned);
+            crate::column_major::multiply(products, size, &state.modal_displacement, &mut turned);
             y.iter_mut().zip(&turned).for_each(|(y, turned)| *y += omega_body[i] * turned);
         }
         Ok(())

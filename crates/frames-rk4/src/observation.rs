@@ -3,8 +3,20 @@
 use nalgebra::Vector3;
 use rigid_kin::Attitude;
 
-use crate::motion::PointMotion;
 use crate::work::Work;
+
+/// Motion of a point, global components.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PointMotion {
+    /// Displacement from where the point was in the undeformed body at the beginning.
+    pub displacement: Vector3<f64>,
+    /// Velocity.
+    pub velocity: Vector3<f64>,
+    /// Acceleration.
+    pub acceleration: Vector3<f64>,
+    /// Acceleration of the embedded rigid motion at the point: `a + α×X + ω×(ω×X)`.
+    pub rigid_acceleration: Vector3<f64>,
+}
 
 /// The motion at one time. Lists have one entry for each flexible mode, or for each point that was asked for.
 #[derive(Debug, Clone, PartialEq)]

@@ -23,7 +23,8 @@ use crate::moment::Moment;
 use crate::motion::{BodyMotion, PointShapes};
 use crate::observation::Observation;
 use crate::physics::Physics;
-use crate::scheme::{Method, Scheme, StepLimit};
+use crate::scheme::Scheme;
+use crate::setup::{Method, StepLimit};
 use crate::state::{MotionState, State};
 use crate::work::Work;
 

@@ -27,7 +27,8 @@ use crate::moment::Moment;
 use crate::motion::{BodyMotion, PointShapes};
 use crate::observation::Observation;
 use crate::paper::{STEPS_OF_ATTITUDE, refuse_beyond_paper};
-use crate::scheme::{Method, Scheme, StepLimit};
+use crate::scheme::Scheme;
+use crate::setup::{Method, StepLimit};
 use crate::state::{MotionState, State, rotation};
 use crate::work::Work;
 
@@ -311,7 +312,7 @@ fn add_cross(
     products: &mut [f64],
     mut put: impl FnMut(usize, f64),
 ) {
-    crate::conservative::multiply(stacked, 3 * size, x, products);
+    crate::column_major::multiply(stacked, 3 * size, x, products);
     for i in 0..size {
         put(i, omega.x * products[i] + omega.y * products[size + i] + omega.z * products[2 * size + i]);
     }

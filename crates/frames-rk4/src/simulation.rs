@@ -3,53 +3,20 @@
 use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use modal::ReducedBody;
-use nalgebra::Vector3;
-
-use crate::account::{self, EnergyAccount};
+use crate::account::EnergyAccount;
 use crate::checkpoint::{RestoreError, StateCoder};
-use crate::conservative::ConservativeBody;
 use crate::error::{SetupError, StepError};
 use crate::events::{Event, Events, LastStep};
 use crate::formula_steps::FormulaSteps;
 use crate::history::History;
-use crate::initial::Initial;
 use crate::load::SharedLoad;
-use crate::model::ModalModel;
 use crate::moment::Moment;
 use crate::motion::PointShapes;
 use crate::observation::Observation;
-use crate::physics::{DrivenMotion, Physics};
 use crate::plan::{EqualSteps, HalvedSteps, Plan, Rows, StepControl};
-use crate::scheme::{Method, Scheme, StepLimit};
+use crate::scheme::Scheme;
+use crate::setup::Setup;
 use crate::state::MotionState;
-
-/// Everything that a run needs.
-#[derive(Debug, Clone)]
-pub struct Setup<'a> {
-    /// The body.
-    pub body: &'a ReducedBody,
-    /// One damping ratio for each flexible mode.
-    pub damping_ratios: &'a [f64],
-    /// The loads.
-    pub loads: &'a [SharedLoad],
-    /// Effects, drives and stress.
-    pub physics: &'a Physics,
-    /// R, P, Q of the paper's scheme, from the body's origin, body axes.
-    pub reference_points: [Vector3<f64>; 3],
-    /// How it begins.
-    pub initial: &'a Initial,
-    /// How it is stepped.
-    pub method: Method,
-    /// How long the steps are.
-    pub control: StepControl,
-    /// When it ends.
-    pub end: f64,
-    /// When it is observed.
-    pub rows: Rows,
-    /// Points whose motion is observed.
-    pub points: &'a [PointShapes],
-}
 
 /// What a run has cost.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -566,73 +533,5 @@ fn code_steps<S>(steps: &mut Option<(S, bool)>, blank: S, code: fn(&mut S, &mut 
     coder.flag(row);
     if !there {
         *steps = None;
-    }
-}
-
-impl Setup<'_> {
-    /// Refuses what the method cannot do.
-    fn check(&self) -> Result<(), SetupError> {
-        match self.control {
-            StepControl::Fixed(step) => self.check_step(step),
-            StepControl::Tolerance(_) if self.method.estimates_error => Ok(()),
-            StepControl::Tolerance(_) => {
-                let Method { formulation, scheme, .. } = self.method;
-                Err(SetupError::NoErrorEstimate { formulation, scheme })
-            }
-        }
-    }
-
-    /// Refuses times and tolerances that are not positive.
-    fn check_times(&self) -> Result<(), SetupError> {
-        positive("the end", self.end)?;
-        match self.control {
-            StepControl::Fixed(step) => positive("the step", step)?,
-            StepControl::Tolerance(tolerance) => positive("the tolerance", tolerance)?,
-        }
-        match self.rows {
-            Rows::EverySteps(0) => {
-                let (what, expected) = ("the number of steps for a row", "1 or more");
-                Err(SetupError::Value { what, found: 0.0, expected })
-            }
-            Rows::EverySteps(_) => Ok(()),
-            Rows::Interval(interval) => positive("the interval of the rows", interval),
-        }
-    }
-
-    /// Refuses a step beyond the limit of the method: that of the fastest mode, or that of the spin.
-    fn check_step(&self, step: f64) -> Result<(), SetupError> {
-        let model = ModalModel::new(self.body, self.damping_ratios, self.loads.to_vec())?;
-        let StepLimit::Turn(longest_turn) = self.method.limit else { return model.check_step(step) };
-        positive("the step", step)?;
-        let driven = self.physics.drive.as_ref().map_or(0.0, |drive| match drive.motion {
-            DrivenMotion::Turn { .. } => (drive.amplitude * drive.history.largest(self.end)).abs(),
-            DrivenMotion::Slide { .. } => 0.0,
-        });
-        let spin = self.initial.omega.norm().max(driven);
-        let limit = longest_turn / spin;
-        if step <= limit { Ok(()) } else { Err(SetupError::StepBeyondSpin { step, limit, spin }) }
-    }
-
-    /// Scale of the energy that the loads may give the body, where it is needed: where steps do not resolve the fastest
-    /// mode, and for formulas, which may rise from nothing within a step.
-    pub(crate) fn energy_of_loads(&self) -> Result<f64, SetupError> {
-        let has_formula = self.loads.iter().filter_map(|load| load.history()).any(History::has_formula);
-        if self.method.is_of_paper() && !has_formula {
-            return Ok(0.0);
-        }
-        let body = ConservativeBody::new(self.body, self.damping_ratios, self.loads.to_vec(), self.physics)?;
-        let is_resolved = match self.control {
-            StepControl::Fixed(step) => account::is_resolved(body.fastest_rate(), step),
-            StepControl::Tolerance(_) => false,
-        };
-        Ok(if is_resolved && !has_formula { 0.0 } else { body.energy_of_loads(self.end) })
-    }
-}
-
-fn positive(what: &'static str, found: f64) -> Result<(), SetupError> {
-    if found > 0.0 && found.is_finite() {
-        Ok(())
-    } else {
-        Err(SetupError::Value { what, found, expected: "a positive number" })
     }
 }

@@ -7,10 +7,10 @@
 
 #![forbid(unsafe_code)]
 
+mod bytes;
 mod left;
 
-use std::fmt;
-
+pub use bytes::Bytes;
 pub use left::Left;
 
 /// Less than this is not worth asking for.
@@ -79,17 +79,6 @@ pub fn with_capacity<T>(what: &'static str, length: usize) -> Result<Vec<T>, Out
     let mut room = Vec::new();
     room.try_reserve_exact(length).map_err(|_| OutOfMemory { what, wanted: bytes, left: Left::of_process() })?;
     Ok(room)
-}
-
-/// A number of bytes for people to read: "841 MB", "1.5 GB".
-#[derive(Debug, Clone, Copy)]
-pub struct Bytes(pub usize);
-
-impl fmt::Display for Bytes {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let bytes = self.0 as f64;
-        if bytes < 999.5e6 { write!(f, "{:.0} MB", (bytes * 1e-6).ceil()) } else { write!(f, "{:.1} GB", bytes * 1e-9) }
-    }
 }
 
 #[cfg(test)]

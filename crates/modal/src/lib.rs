@@ -25,6 +25,7 @@ mod foretold;
 mod lanczos;
 mod mass;
 mod ordering;
+mod pairs;
 mod products;
 mod reduced;
 mod rigid;

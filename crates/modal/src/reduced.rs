@@ -20,6 +20,7 @@ use nalgebra::{Matrix3, Vector3};
 use crate::error::ModalError;
 use crate::foretold::of_vectors;
 use crate::mass::NodalMass;
+use crate::pairs::PAIRS;
 use crate::solve::Modes;
 use crate::support::RigidMotion;
 use crate::tall;
@@ -89,7 +90,7 @@ pub struct BodyPoint {
 
 impl ReducedBody {
     /// ij of [`ReducedBody::inertia_first`] and [`ReducedBody::inertia_second`], and of any symmetric 3×3 matrix.
-    pub const PAIRS: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1)];
+    pub const PAIRS: [(usize, usize); 6] = PAIRS;
 
     /// The body with these constants.
     ///

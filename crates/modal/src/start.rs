@@ -10,8 +10,8 @@ use nalgebra::Vector3;
 use crate::dense::symmetric_eigen;
 use crate::error::ModalError;
 use crate::mass::NodalMass;
+use crate::pairs::PAIRS;
 use crate::products::symmetric_product;
-use crate::reduced::ReducedBody;
 use crate::rigid::RigidModes;
 use crate::support::RigidMotion;
 use crate::tall;
@@ -76,7 +76,7 @@ fn polynomial_fields(positions: &[[f64; 3]], rigid: &RigidModes) -> Mat<f64> {
     let mut fields = Mat::zeros(3 * positions.len(), FIELDS);
     for (node, position) in positions.iter().enumerate() {
         let x = Vector3::from(*position) - rigid.center_of_mass;
-        for (pair, (a, b)) in ReducedBody::PAIRS.into_iter().enumerate() {
+        for (pair, (a, b)) in PAIRS.into_iter().enumerate() {
             fields[(3 * node + a, pair)] += x[b];
             fields[(3 * node + b, pair)] += x[a];
             for axis in 0..3 {

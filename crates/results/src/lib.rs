@@ -26,6 +26,7 @@ mod error;
 mod metadata;
 mod place;
 mod reader;
+mod room;
 mod seal;
 mod store;
 mod structure;

@@ -2,6 +2,7 @@
 
 use crate::column::{histories, widths};
 use crate::description::Description;
+use crate::room::Room;
 use crate::{Column, FileError, Metadata, seal, structure};
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{self, Read, Seek, SeekFrom, Write};
@@ -13,15 +14,6 @@ const BLOCK: usize = 1 << 14;
 
 /// Bytes of a number.
 const NUMBER: usize = size_of::<f64>();
-
-/// What a store is to hold.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Room {
-    /// Rows.
-    pub rows: usize,
-    /// Words of a checkpoint; none in a finished file.
-    pub checkpoint_words: Option<usize>,
-}
 
 /// The open file, locked. All its room is there from the beginning, NaN where nothing has been written yet, so that
 /// rows are written without a change to the structure of the file: it is a whole HDF5 file at any moment.

@@ -3,7 +3,7 @@
 //! HDF5 only makes files here. It opens none that was there before, see [`mod@crate::seal`].
 
 use crate::column::{History, histories};
-use crate::store::Room;
+use crate::room::Room;
 use crate::{Column, FileError, Metadata, Units};
 use hdf5::dataset::Layout;
 use hdf5::plist::dataset_create::{AllocTime, FillTime};

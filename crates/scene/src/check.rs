@@ -14,14 +14,19 @@ use std::cell::Cell;
 use nalgebra::Vector3;
 
 use crate::document::{Document, join};
-use crate::error::{SceneError, shorten};
+use crate::error::SceneError;
 use crate::scene::{Frame, Units};
+use crate::shorten::shorten;
+use crate::unit_vector::unit;
 
 /// Three points whose triangle has an angle with a smaller sine count as lying on one line.
 const LEAST_SINE: f64 = 1e-6;
 
 /// The most entries of a list of which each takes memory and work as the mesh does.
 const MOST_ENTRIES: usize = 1000;
+
+/// The most that is read from the table files of a scene, in bytes (16 MiB).
+const LONGEST_TABLES: u64 = 16 << 20;
 
 /// The rules, on the values of one document.
 pub(crate) struct Check<'d> {
@@ -34,7 +39,7 @@ pub(crate) struct Check<'d> {
 
 impl<'d> Check<'d> {
     pub fn new(document: &'d Document<'d>, end: f64) -> Self {
-        Self { document, end, table_bytes: Cell::new(history::LONGEST) }
+        Self { document, end, table_bytes: Cell::new(LONGEST_TABLES) }
     }
 }
 
@@ -148,13 +153,6 @@ impl Check<'_> {
             cure,
         ))
     }
-}
-
-/// The vector with length 1, of any finite length but 0 (scaled first, so that neither huge nor
-/// tiny components are lost in their squares).
-pub(crate) fn unit(vector: &Vector3<f64>) -> Option<Vector3<f64>> {
-    let largest = vector.amax();
-    (largest > 0.0).then(|| (vector / largest).normalize())
 }
 
 /// The smallest sine of an angle of the triangle: the altitude on the longest side over the

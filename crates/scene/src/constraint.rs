@@ -3,8 +3,8 @@
 use nalgebra::Vector3;
 use serde::Deserialize;
 
-use crate::check::unit;
 use crate::history::History;
+use crate::unit_vector::unit;
 
 /// What holds the body, chosen by the key `kind` of the `[[constraints]]` entry.
 #[derive(Clone, Debug, PartialEq)]

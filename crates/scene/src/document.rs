@@ -6,13 +6,22 @@ use std::path::Path;
 use toml::Spanned;
 use toml::de::{DeString, DeTable, DeValue};
 
-use crate::error::{Place, SceneError};
+use crate::place::Place;
 
 /// A parsed TOML text.
 pub(crate) struct Document<'t> {
     path: &'t Path,
     text: &'t str,
     root: Spanned<DeValue<'t>>,
+}
+
+/// A text that is not TOML.
+#[derive(Debug)]
+pub(crate) struct NotToml {
+    /// Where; its key is empty.
+    pub at: Place,
+    /// What the TOML parser said.
+    pub message: String,
 }
 
 /// A value of a document.
@@ -28,7 +37,7 @@ pub(crate) struct Node<'d> {
 
 impl<'t> Document<'t> {
     /// Parses `text`; `path` serves for messages only.
-    pub fn parse(text: &'t str, path: &'t Path) -> Result<Self, SceneError> {
+    pub fn parse(text: &'t str, path: &'t Path) -> Result<Self, NotToml> {
         match DeTable::parse(text) {
             Ok(table) => {
                 // What the root lacks is missed at the end of the text.
@@ -38,7 +47,7 @@ impl<'t> Document<'t> {
             }
             Err(error) => {
                 let at = Place::new(path, text, error.span().unwrap_or(0..0), String::new());
-                Err(SceneError::Syntax { at: at.into(), message: error.message().to_owned() })
+                Err(NotToml { at, message: error.message().to_owned() })
             }
         }
     }

@@ -1,15 +1,13 @@
 //! Why a scene is refused, and how that is shown.
 
-use std::fmt;
 use std::io;
-use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+use crate::document::NotToml;
 use crate::example::example;
+use crate::place::Place;
+use crate::shorten::shorten;
 use crate::suggest::{list, nearest};
-
-/// Longest piece of a line, of a key or of a value that is shown, in characters.
-const SHOWN: usize = 100;
 
 const TOO_LARGE_CURE: &str = "name a scene file; the mesh goes into a file of its own, named by `body.mesh`, and so does a \
                               long table of a history, named by `file`";
@@ -175,93 +173,17 @@ impl SceneError {
     }
 }
 
-/// A place in a scene file. Displayed as `file:line:column: ` and the key.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Place {
-    /// The scene file.
-    pub file: PathBuf,
-    /// Line, from 1.
-    pub line: usize,
-    /// Column in characters, from 1.
-    pub column: usize,
-    /// Path of keys, e.g. `loads[0].history.duration`; empty if unknown.
-    pub key: String,
-    /// The line, or the piece of a very long one around the column; `None` if it is not to be shown.
-    excerpt: Option<String>,
-    /// What is meant, in characters of the excerpt.
-    mark: Range<usize>,
-}
-
 impl Place {
-    /// The place of the bytes `span` of `text`. What is beyond the first line is left out.
-    pub(crate) fn new(file: &Path, text: &str, span: Range<usize>, key: String) -> Self {
-        let start = char_boundary(text, span.start);
-        let end = char_boundary(text, span.end).max(start);
-        let (before, after) = text.split_at(start);
-        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
-        let line_end = start + after.find('\n').unwrap_or(after.len());
-
-        let line: Vec<char> = text[line_start..line_end].trim_end().chars().collect();
-        let column = text[line_start..start].chars().count();
-        let width = text[start..end.min(line_end)].trim_end().chars().count().max(1);
-
-        let first = if line.len() > SHOWN { column.saturating_sub(SHOWN / 2) } else { 0 };
-        let printable = |&c: &char| if c.is_control() { ' ' } else { c };
-        Self {
-            file: file.to_owned(),
-            line: 1 + before.matches('\n').count(),
-            column: 1 + column,
-            key,
-            excerpt: Some(line.iter().skip(first).take(SHOWN).map(printable).collect()),
-            mark: column - first..(column + width - first).min(SHOWN.max(column - first + 1)),
-        }
-    }
-
-    /// The line of a file that a scene names, none of which is shown: what it names may be any file of the user's, such as
-    /// one with passwords, and the scene from elsewhere.
-    pub(crate) fn unseen(file: &Path, line: usize, key: String) -> Self {
-        Self { file: file.to_owned(), line, column: 1, key, excerpt: None, mark: 0..0 }
-    }
-
     /// The refusal of the value at this place.
     pub fn refuse(self, found: impl Into<String>, expected: impl Into<String>, cure: impl Into<String>) -> SceneError {
         let (found, expected, cure) = (found.into(), expected.into(), cure.into());
         SceneError::Invalid { at: self.into(), found, expected, cure }
     }
-
-    /// The place, the headline, the line with what is meant underlined, and the cure.
-    fn show(&self, headline: &str, cure: &str) -> String {
-        let line = self.line.to_string();
-        let gutter = " ".repeat(line.len());
-        let Some(excerpt) = &self.excerpt else { return format!("{self}: {headline}\n{gutter} = {cure}") };
-        let indent = " ".repeat(self.mark.start);
-        let carets = "^".repeat(self.mark.len());
-        let cure = cure.replace('\n', &format!("\n{gutter}   "));
-        format!("{self}: {headline}\n{gutter} |\n{line} | {excerpt}\n{gutter} | {indent}{carets}\n{gutter} = {cure}",)
-    }
 }
 
-impl fmt::Display for Place {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}:{}:{}", self.file.display(), self.line, self.column)?;
-        if self.key.is_empty() {
-            return Ok(());
-        }
-        write!(f, ": `{}`", shorten(&self.key))
-    }
-}
-
-/// The text, cut if it is very long, on one line.
-pub(crate) fn shorten(text: &str) -> String {
-    let mut words = text.split_whitespace();
-    let mut short = words.next().unwrap_or_default().to_owned();
-    for word in words.take(SHOWN) {
-        short.push(' ');
-        short.push_str(word);
-    }
-    match short.char_indices().nth(SHOWN) {
-        Some((cut, _)) => format!("{}…", &short[..cut]),
-        None => short,
+impl From<NotToml> for SceneError {
+    fn from(NotToml { at, message }: NotToml) -> Self {
+        Self::Syntax { at: at.into(), message }
     }
 }
 
@@ -294,10 +216,4 @@ fn syntax_cure(message: &str) -> &'static str {
         "duplicate key" => "keep one of the two",
         _ => "correct it; a line is `key = value` or `[section]`, and text stands in quotes",
     }
-}
-
-/// The end of the text, or the last start of a character not after `index`.
-fn char_boundary(text: &str, index: usize) -> usize {
-    let at_most = index.min(text.len());
-    (0..=at_most).rev().find(|&i| text.is_char_boundary(i)).unwrap_or(0)
 }

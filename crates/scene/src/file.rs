@@ -1,12 +1,13 @@
 //! From the scene file to a [`Scene`].
 
-use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
 use crate::check::Check;
 use crate::document::Document;
-use crate::error::{Place, SceneError};
+use crate::error::SceneError;
+use crate::ordinary_file::open_ordinary;
+use crate::place::Place;
 use crate::scene::Scene;
 use crate::section::Sections;
 
@@ -106,18 +107,6 @@ impl Scene {
     ) -> SceneError {
         self.place(key).refuse(found, expected, cure)
     }
-}
-
-/// A device or a pipe might never end, or never begin.
-pub(crate) fn open_ordinary(path: &Path) -> io::Result<File> {
-    let found = std::fs::metadata(path)?;
-    if found.is_dir() {
-        return Err(io::ErrorKind::IsADirectory.into());
-    }
-    if !found.is_file() {
-        return Err(io::Error::other("this is no ordinary file, but a device or a pipe"));
-    }
-    File::open(path)
 }
 
 fn refuse_long(bytes: usize, path: &Path) -> Result<(), SceneError> {

@@ -5,8 +5,9 @@ use std::fmt;
 use toml::de::DeValue;
 
 use crate::document::Node;
-use crate::error::{SceneError, shorten};
+use crate::error::SceneError;
 use crate::example::example;
+use crate::shorten::shorten;
 
 /// What a value must look like.
 #[derive(Clone, Copy, Debug)]

@@ -1,6 +1,6 @@
 //! The right names for a misspelt one.
 
-use crate::error::shorten;
+use crate::shorten::shorten;
 
 /// The name in `known` that `found` most likely means: a few letters away, or one the beginning
 /// of the other.

@@ -5,6 +5,7 @@
 #![forbid(unsafe_code)]
 
 pub mod bodies;
+mod case;
 pub mod mesh;
 pub mod meshes;
 pub mod motion;
@@ -13,116 +14,14 @@ pub mod structure;
 pub mod time;
 pub mod trial;
 
-use std::fmt;
-
 use frames_rk4::Method;
 
-/// The schemes whose bounds are written down, in the order of [`Case::expected`].
-pub const BOUNDED: [Method; 4] = [Method::EXPONENTIAL, Method::RKMK4, Method::PAPER, Method::PAPER_RKMK4];
+pub use case::{BOUNDED, BodyCheck, Case, Expected, Extent, Outcome};
 
 /// All schemes, in the order of the table's columns. One without bounds is run and shown without being held to any.
 pub fn schemes() -> Vec<Method> {
     let others = Method::ALL.into_iter().filter(|method| !BOUNDED.contains(method));
     BOUNDED.into_iter().chain(others).collect()
-}
-
-/// How long the runs of a case are.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Extent {
-    /// Seconds for all cases together.
-    Test,
-    /// Minutes.
-    Study,
-}
-
-impl Extent {
-    /// The number for this extent. The paper's formulation always goes as far as the study does: it often stops there
-    /// only.
-    pub fn pick(self, method: Method, test: u32, study: u32) -> f64 {
-        let always = method.is_of_paper();
-        f64::from(if self == Self::Study || always { study } else { test })
-    }
-}
-
-/// How a run went.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Outcome {
-    /// It came to its end, with this error or drift. NaN where anything in its observations was none.
-    Ran(f64),
-    /// It did not start, or stopped, with this message.
-    Refused(String),
-}
-
-/// What is asked of a scheme.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Expected {
-    /// The error or drift is not above this.
-    Within(f64),
-    /// It does not start, or stops, with this in its message.
-    Refused(&'static str),
-}
-
-impl Expected {
-    /// Whether the outcome is what is asked for.
-    pub fn holds(&self, outcome: &Outcome) -> bool {
-        match (self, outcome) {
-            (Self::Within(bound), Outcome::Ran(error)) => error <= bound,
-            (Self::Refused(part), Outcome::Refused(message)) => message.contains(part),
-            _ => false,
-        }
-    }
-}
-
-impl fmt::Display for Expected {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Within(bound) => write!(f, "≤ {bound:.0e}"),
-            Self::Refused(part) => write!(f, "refused: “{part}”"),
-        }
-    }
-}
-
-/// What is measured of the body itself, before it moves.
-#[derive(Debug, Clone, Copy)]
-pub struct BodyCheck {
-    /// What the figure is.
-    pub what: &'static str,
-    /// Finds it.
-    pub figure: fn() -> Result<f64, String>,
-    /// What is asked of it.
-    pub expected: Expected,
-}
-
-impl BodyCheck {
-    /// Finds the figure.
-    pub fn run(&self) -> Outcome {
-        (self.figure)().map_or_else(Outcome::Refused, Outcome::Ran)
-    }
-}
-
-/// A hard case.
-#[derive(Debug, Clone, Copy)]
-pub struct Case {
-    /// Its name.
-    pub name: &'static str,
-    /// Why it is hard.
-    pub why: &'static str,
-    /// What is measured of the body.
-    pub body: Option<BodyCheck>,
-    /// What is measured of the motion.
-    pub measure: &'static str,
-    /// Runs it.
-    pub run: fn(Method, Extent) -> Outcome,
-    /// What is asked of each of [`BOUNDED`].
-    pub expected: [Expected; 4],
-}
-
-impl Case {
-    /// What is asked of a scheme, where anything is.
-    pub fn expected_of(&self, method: Method) -> Option<&Expected> {
-        let place = BOUNDED.iter().position(|bounded| *bounded == method)?;
-        self.expected.get(place)
-    }
 }
 
 /// The cases with their headings.

@@ -6,8 +6,8 @@ use frames_rk4::Method;
 
 use crate::Expected::{Refused, Within};
 use crate::bodies::Elastic;
+use crate::case::on;
 use crate::meshes::{EDGES, ball, box_mesh, cells_of, cracked, numbered, opened};
-use crate::motion::on;
 use crate::structure::tumble;
 use crate::{BodyCheck, Case, Expected, Extent, Outcome};
 

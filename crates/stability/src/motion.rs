@@ -9,6 +9,7 @@ use rigid_kin::{Attitude, Inertia, TorqueFreeMotion, euler_angular_acceleration}
 
 use crate::Expected::{Refused, Within};
 use crate::bodies::{CLUSTER, cluster, rigid, spinning, truss};
+use crate::case::on;
 use crate::trial::{Trial, worse};
 use crate::{Case, Extent, Outcome};
 
@@ -123,14 +124,6 @@ pub fn cases() -> Vec<Case> {
             expected: [Within(1e-9), Within(1e-9), Within(1e-9), Within(1e-9)],
         },
     ]
-}
-
-/// A case with a body, or its refusal.
-pub(crate) fn on(body: Result<ReducedBody, String>, run: impl FnOnce(&ReducedBody) -> Outcome) -> Outcome {
-    match body {
-        Ok(body) => run(&body),
-        Err(refusal) => Outcome::Refused(refusal),
-    }
 }
 
 fn spin(omega: [f64; 3]) -> Initial {

@@ -8,7 +8,7 @@ use nalgebra::Vector3;
 
 use crate::Expected::{Refused, Within};
 use crate::bodies::{CLUSTER, Elastic, changed, cluster, rigid, spinning, truss};
-use crate::motion::on;
+use crate::case::on;
 use crate::trial::{Trial, worse};
 use crate::{BodyCheck, Case, Outcome};
 

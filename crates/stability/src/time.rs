@@ -14,7 +14,7 @@ use nalgebra::Vector3;
 
 use crate::Expected::{Refused, Within};
 use crate::bodies::{Elastic, changed, cluster, spinning};
-use crate::motion::on;
+use crate::case::on;
 use crate::trial::{Trial, worse};
 use crate::{Case, Outcome};
 

@@ -63,7 +63,7 @@ fn compare(name: &str, case: &Case) {
     assert!(advice.spin >= 0.99 * spin, "{name}: {} {spin}", advice.spin);
 }
 
-fn pulse(size: f64) -> [frames_rk4::Load; 1] {
+fn pulse(size: f64) -> [frames_rk4::SharedLoad; 1] {
     [plate().force(CORNER, [0.0, 0.0, size], History::HalfSine { start: 0.0, duration: 0.02 })]
 }
 
@@ -124,7 +124,7 @@ fn modes_that_are_not_worth_keeping_can_be_left_out() {
         let case = plate().case(&zeta, &loads, &initial, 0.3);
         let advice = advise(&case, tolerance).unwrap();
         let keep = advice.keep;
-        let (body, few) = (case.body.truncated(keep), [loads[0].truncated(keep)]);
+        let (body, few) = (case.body.truncated(keep), loads.clone());
         let start = Initial::at_rest(keep);
         let short = Case {
             body: &body,

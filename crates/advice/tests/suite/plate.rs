@@ -1,11 +1,12 @@
 //! The plate of the paper, solved once, with the stiffness that spinning gives it.
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use advice::Case;
 use fem_tet10::{Material, Materials, Mesh, PointMass, assemble, read_msh, reduced_geometric_stiffness};
 use frames_rk4::{
-    Effects, History, Initial, Load, Method, Observation, Physics, PointShapes, Rows, Setup, Simulation, StepControl,
+    Effects, History, Initial, Method, Observation, Physics, PointForce, PointShapes, Rows, Setup, SharedLoad,
+    Simulation, StepControl,
 };
 use modal::{BodyPoint, Modes, ReducedBody, RigidMotion, Solver, Support, centrifugal_fields};
 use nalgebra::Vector3;
@@ -51,11 +52,11 @@ impl Plate {
         let (k, m) = (matrices.stiffness(), matrices.mass());
         let solver = Solver::new(k, m, mesh.positions(), &support(mesh.positions())).unwrap();
         let modes = solver.modes(10, |_| ()).unwrap();
-        let mut body = ReducedBody::new(&modes, m, mesh.positions()).unwrap();
+        let body = ReducedBody::new(&modes, m, mesh.positions()).unwrap();
         let fields = centrifugal_fields(solver.nodal_mass(), mesh.positions(), &body.origin);
         let answers = solver.static_response(fields.as_ref()).unwrap();
         let reduced = reduced_geometric_stiffness(&mesh, &material, answers.as_ref(), modes.shapes.as_ref()).unwrap();
-        body.stress_stiffness = Some(reduced.try_into().unwrap());
+        let body = body.with_stress_stiffness(Some(reduced.try_into().unwrap())).unwrap();
         let nodes = mesh.positions().len();
         let peak = |k: usize| {
             let at = |node: usize| Vector3::from_fn(|axis, _| modes.shapes[(3 * node + axis, k)]).norm();
@@ -71,13 +72,13 @@ impl Plate {
         Plate { peaks: (0..10).map(peak).collect(), length: 1001.3, corner_compliance, mesh, modes, body }
     }
 
-    pub fn force(&self, at: [f64; 3], force: [f64; 3], history: History) -> Load {
+    pub fn force(&self, at: [f64; 3], force: [f64; 3], history: History) -> SharedLoad {
         let place = self.mesh.locate(at).unwrap();
         let point = BodyPoint::new(&self.modes, self.mesh.positions(), &place.nodes, &place.weights).unwrap();
-        Load::dead_force(PointShapes::new(&self.body, &point), force.into(), history)
+        Arc::new(PointForce::dead(PointShapes::new(&self.body, &point), force.into(), history))
     }
 
-    pub fn case<'a>(&'a self, damping: &'a [f64], loads: &'a [Load], initial: &'a Initial, end: f64) -> Case<'a> {
+    pub fn case<'a>(&'a self, damping: &'a [f64], loads: &'a [SharedLoad], initial: &'a Initial, end: f64) -> Case<'a> {
         Case {
             body: &self.body,
             damping_ratios: damping,
@@ -121,4 +122,9 @@ pub fn run(case: &Case, effects: Effects) -> Vec<Observation> {
     simulation.observe(&mut first).unwrap();
     let rest = simulation.map(Result::unwrap);
     std::iter::once(first).chain(rest).collect()
+}
+
+/// The force that a load is.
+pub fn force_of(load: &SharedLoad) -> &PointForce {
+    (&**load as &dyn std::any::Any).downcast_ref().unwrap()
 }

@@ -4,7 +4,7 @@ use advice::{AdviceError, Case, Effect, StaticCompliance, advise, screen};
 use frames_rk4::{History, Initial};
 use nalgebra::Vector3;
 
-use crate::plate::{CORNER, plate, run, spinning};
+use crate::plate::{CORNER, force_of, plate, run, spinning};
 
 #[test]
 fn the_stress_of_the_paper_s_plate_at_10_rad_per_s_is_not_called_0_4_per_cent() {
@@ -90,7 +90,7 @@ fn the_static_answer_that_the_modes_leave_out_is_the_rest_of_the_compliance() {
     let case = Case { static_compliances: &compliances, ..plate().case(&zeta, &loads, &initial, 1e-3) };
     let advice = advise(&case, 1e-9).unwrap();
     assert_eq!(advice.keep, 10);
-    let frames_rk4::Action::Force { point, .. } = &loads[0].action else { panic!() };
+    let point = &force_of(&loads[0]).point;
     let carried: f64 = (0..10).map(|k| (2.0 * point.columns()[6 + k].z / body.circular_frequencies[k]).powi(2)).sum();
     let rest = 1.0 - carried / whole;
     let row = advice.row(Effect::StaticCorrection).unwrap();
@@ -108,7 +108,7 @@ fn other_directions_of_a_dead_load_count_as_far_as_the_body_may_turn() {
     let stretch = Vector3::new(1e-9, 0.0, 0.0);
     let loads = [plate().force(CORNER, force.into(), History::Constant)];
     let whole = 1e-18 * plate().corner_compliance;
-    let frames_rk4::Action::Force { point, .. } = &loads[0].action else { panic!() };
+    let point = &force_of(&loads[0]).point;
     let omega = &plate().body.circular_frequencies;
     let carried: f64 = (0..10).map(|k| (point.columns()[6 + k].dot(&stretch) / omega[k]).powi(2)).sum();
     let value = |end: f64, turned: &[(Vector3<f64>, f64)]| {
@@ -158,7 +158,7 @@ fn flexibility_is_what_the_modes_add_to_the_rigid_acceleration() {
     for duration in [0.02, 1.0] {
         let loads = [plate().force(CORNER, [0.0, 0.0, 1e-4], History::HalfSine { start: 0.0, duration })];
         let case = plate().case(&zeta, &loads, &initial, duration);
-        let frames_rk4::Action::Force { point, force, .. } = &loads[0].action else { panic!() };
+        let frames_rk4::PointForce { point, force, .. } = force_of(&loads[0]);
         let rigid: f64 = point.columns()[..6].iter().map(|column| column.dot(force).powi(2)).sum::<f64>().sqrt();
         let size = |row: &frames_rk4::Observation| row.modal_acceleration.iter().map(|a| a * a).sum::<f64>().sqrt();
         let real = run(&case, frames_rk4::Effects::default()).iter().map(size).fold(0.0, f64::max) / rigid;

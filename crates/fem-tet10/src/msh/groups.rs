@@ -3,10 +3,11 @@
 use std::borrow::Cow;
 use std::collections::HashMap;
 
+use super::block::{Block, TRI6};
 use super::source::Source;
-use super::{Block, TRI6};
 use crate::error::MeshError;
-use crate::mesh::{KINDS, MeshParts, NodeGroup, SurfaceGroup};
+use crate::mesh::KINDS;
+use crate::parts::{MeshParts, NodeGroup, SurfaceGroup};
 
 /// Entries of groups for a byte of the file, at most: a small file that has much in many groups would fill the memory.
 /// Numbers of four digits may be in twenty groups at once.

@@ -4,9 +4,10 @@ use advice::Effect;
 use frames_rk4::{Observation, Rows, StepControl};
 use nalgebra::{Matrix3, Vector3};
 use scene::{Choice, Flexible, Model, Scene};
+use serde::Serialize;
 
-use super::Real;
 use crate::effects::is_on;
+use crate::json;
 use crate::run::{RunError, RunFailure};
 
 /// Times at which motions are compared.
@@ -16,6 +17,16 @@ const COMPARED: f64 = 500.0;
 const LEAST_TURN: f64 = 1e-6;
 /// What the rounding of an attitude comes to, rad.
 const ROUNDING: f64 = 1e-14;
+
+/// What switching an effect does.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Real {
+    /// Relative difference of the motions.
+    Difference(#[serde(serialize_with = "json::number")] f64),
+    /// One of the runs fails, with the reason.
+    Fails(String),
+}
 
 /// The scene as it is.
 pub(super) struct Base<'a> {

@@ -3,14 +3,26 @@
 use std::f64::consts::TAU;
 
 use frames_rk4::{EigenError, SpinMode, SteadySpin};
-
-use super::Branch;
+use serde::Serialize;
 
 /// |⟨a, b⟩|² of two shapes that are taken for the same without a closer look. Above ½ only one can be.
 const ALIKE: f64 = 0.6;
 /// How often a step between two speeds is halved where shapes change too much to be told apart. Shapes of equal
 /// frequencies stay ambiguous however short it is.
 const HALVINGS: u32 = 5;
+
+/// A vibration followed through all spin speeds by its shape.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Branch {
+    /// Its number as `flexframe modes` counts, at the lowest speed.
+    pub mode: usize,
+    /// Frequency at each speed, cycles per time.
+    pub frequency: Vec<f64>,
+    /// Growth at each speed, 1 per time: positive where the vibration is unstable.
+    pub growth: Vec<f64>,
+    /// Sense of the vibration at each speed: 1 forwards round the axis, −1 backwards, 0 to and fro.
+    pub whirl: Vec<f64>,
+}
 
 /// The vibrations at each speed, each always at the same place of the list.
 pub(super) struct Branches {

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use figures::{FigureError, LineChart, Scale, Series, Stroke};
 
-use super::CampbellReport;
+use super::report::CampbellReport;
 
 /// Colours that a chart has before they begin again.
 const COLOURS: usize = 7;

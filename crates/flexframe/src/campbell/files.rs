@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 use whole_file::write_whole;
 
 use super::diagram::draw;
-use super::{CampbellError, CampbellReport};
+use super::error::CampbellError;
+use super::report::CampbellReport;
 
 /// Writes `campbell.csv`, `critical_speeds.csv`, `campbell.svg` and `campbell.png`.
 pub(super) fn write(report: &CampbellReport, folder: &Path, orders: &[f64]) -> Result<Vec<PathBuf>, CampbellError> {

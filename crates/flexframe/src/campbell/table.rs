@@ -3,7 +3,8 @@
 use std::f64::consts::TAU;
 use std::fmt;
 
-use super::{CampbellReport, Critical, SpinEffects};
+use super::critical::Critical;
+use super::report::{CampbellReport, SpinEffects};
 use crate::report::quantity;
 
 /// More speeds than this are thinned: the file has them all.

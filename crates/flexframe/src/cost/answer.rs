@@ -2,56 +2,18 @@
 
 use std::fmt;
 
-use frames_rk4::StepControl;
 use scene::{Rows, Scene};
 use serde::Serialize;
 
 use super::case::Case;
 use super::ladder::{Judge, Line, Outcome, Row, settings_between};
 use super::modes::ModesRow;
-use super::table::{duration, setting};
+use super::setting::Setting;
+use super::short::{duration, setting};
 use crate::json;
 
 /// A rung between two others cannot be faster than the finer of them by more than this.
 const MOST_GAIN: f64 = 2.7;
-
-/// Step or tolerance, as in the scene.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Setting {
-    /// Length of a step.
-    Step(f64),
-    /// Tolerance of step control.
-    Tolerance(f64),
-}
-
-impl Setting {
-    /// The number.
-    pub fn value(self) -> f64 {
-        match self {
-            Self::Step(value) | Self::Tolerance(value) => value,
-        }
-    }
-}
-
-impl From<StepControl> for Setting {
-    fn from(control: StepControl) -> Self {
-        match control {
-            StepControl::Fixed(step) => Self::Step(step),
-            StepControl::Tolerance(tolerance) => Self::Tolerance(tolerance),
-        }
-    }
-}
-
-/// The line of the scene file.
-impl fmt::Display for Setting {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Step(step) => write!(f, "step = {step:e}"),
-            Self::Tolerance(tolerance) => write!(f, "tolerance = {tolerance:e}"),
-        }
-    }
-}
 
 /// The cheapest way to a target.
 #[derive(Debug, Clone, Serialize)]

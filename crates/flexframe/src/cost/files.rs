@@ -6,8 +6,10 @@ use std::path::{Path, PathBuf};
 use figures::{FigureError, LineChart, Scale, Series, Stroke};
 use whole_file::write_whole;
 
+use super::error::CostError;
 use super::ladder::{Line, Outcome};
-use super::{CostError, CostReport, Setting};
+use super::report::CostReport;
+use super::setting::Setting;
 
 /// The names of the columns of `cost.csv`.
 const COLUMNS: [&str; 24] = [

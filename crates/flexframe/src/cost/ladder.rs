@@ -6,11 +6,11 @@ use std::time::Instant;
 use frames_rk4::{Method, StepControl};
 use serde::Serialize;
 
-use super::CostSettings;
-use super::answer::Setting;
 use super::case::Case;
 use super::reference::{ROUNDING, Reference};
 use super::run::{Errors, Timing, Trajectory};
+use super::setting::Setting;
+use super::settings::CostSettings;
 use crate::json;
 use crate::run::RunFailure;
 

@@ -4,10 +4,10 @@ use frames_rk4::{Method, StepControl};
 use scene::{Model, Scene};
 use serde::Serialize;
 
-use super::CostSettings;
 use super::case::Case;
 use super::reference::converge;
 use super::run::{Errors, Trajectory, seconds_per_step};
+use super::settings::CostSettings;
 use crate::json;
 use crate::run::RunFailure;
 

@@ -8,8 +8,8 @@ use scene::{Model, Scene};
 use whole_file::write_whole;
 
 use super::ladder::{Line, Measured, Outcome, Row};
+use super::short::{duration, setting};
 use super::spin::{SpinRow, spin_rates};
-use super::table::{duration, setting};
 use super::{CostError, CostProgress, CostReport, CostSettings, price_list};
 
 /// Errors whose price is shown: 10^−k for these k.

@@ -5,8 +5,7 @@ use nalgebra::{Matrix3, SymmetricEigen};
 use results::Results;
 use serde::Serialize;
 
-use super::WATCHED_POINT;
-use super::rigid_plate::RigidHistories;
+use super::rigid_plate::{RigidHistories, WATCHED_POINT};
 use crate::run::RunReport;
 
 /// Table 1 of the paper: frequencies of its modes 7 to 16, the flexible modes 1 to 10, Hz.

@@ -8,8 +8,7 @@ use frames_rk4::SharedLoad;
 use results::Results;
 use scene::{Model, Scene};
 
-use super::WATCHED_POINT;
-use super::rigid_plate::{RigidHistories, dead_force};
+use super::rigid_plate::{RigidHistories, WATCHED_POINT, dead_force};
 use crate::mode_shapes::{self, ShapesError};
 
 /// Draws all figures into `folder` and returns their files.

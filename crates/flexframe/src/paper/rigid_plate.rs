@@ -8,7 +8,10 @@ use results::Results;
 use rigid_kin::{Attitude, RigidBody, RigidState, Wrench};
 use scene::Model;
 
-use super::{PaperError, WATCHED_POINT};
+use super::error::PaperError;
+
+/// The point whose accelerations Figs. 10 to 13 show.
+pub(super) const WATCHED_POINT: &str = "P1";
 
 /// Histories of the rigid plate at the times of the results.
 pub(super) struct RigidHistories {

@@ -8,15 +8,11 @@ use std::fmt;
 use std::sync::Arc;
 
 use crate::error::SetupError;
+pub(crate) use functions::function_names;
 use law::Law;
 
 /// The longest formula, in bytes: sums and products are evaluated by recursion, one level a term.
 const LONGEST: usize = 1000;
-
-/// Names of the functions, for messages.
-pub(crate) fn function_names() -> String {
-    functions::FUNCTIONS.each_ref().map(|(name, _)| *name).join(", ")
-}
 
 /// A formula in t, one smooth law between the corners named with it.
 ///

@@ -5,5 +5,6 @@ mod driven;
 mod effects;
 mod held;
 mod loads;
+mod open;
 mod sample;
 mod steady;

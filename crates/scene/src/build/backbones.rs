@@ -5,7 +5,8 @@ use faer::Mat;
 use fem_tet10::{Materials, Mesh, second_order_energies, second_order_forces};
 use modal::{ModalError, Modes, Solver};
 
-use super::{BuildError, Size, modal};
+use super::error::{BuildError, modal};
+use super::model::Size;
 use crate::scene::Scene;
 
 /// The backbones of the natural modes that may bend the body by [`LARGE`] of its length by the bounds of `advice`; none

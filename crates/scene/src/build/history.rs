@@ -2,7 +2,7 @@
 
 use frames_rk4::{Expression, SetupError, Table};
 
-use super::BuildError;
+use super::error::BuildError;
 use crate::history;
 use crate::scene::Scene;
 

@@ -9,9 +9,10 @@ use modal::{BodyPoint, ModalError, Modes, ReducedBody};
 use nalgebra::Vector3;
 use rigid_kin::Attitude;
 
+use super::error::{BuildError, refuse, refuse_mesh};
 use super::history::history;
-use super::physics::Turning;
-use super::{BuildError, first_attitude, refuse, refuse_mesh};
+use super::initial::first_attitude;
+use super::turning::Turning;
 use crate::effects::Choice;
 use crate::load::{self, Load};
 use crate::scene::Scene;

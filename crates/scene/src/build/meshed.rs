@@ -10,12 +10,16 @@ use modal::{BodyPoint, ModalError, Modes, ReducedBody, Solver, Support, centrifu
 use nalgebra::Vector3;
 
 use super::backbones::backbones;
+use super::damping::damping_ratios;
+use super::error::{BuildError, modal, refuse, too_many_modes};
+use super::initial::initial;
 use super::loads::{self, MeshLoad};
+use super::mesh::{matrices, read_mesh};
+use super::model::{Meshed, Model, Size, truncated_modes};
+use super::points::{output_points, well_spread};
+use super::progress::{BuildProgress, BuildTimes, timed};
 use super::support::support;
-use super::{
-    BuildError, BuildProgress, BuildTimes, Meshed, Model, Size, damping_ratios, initial, matrices, modal,
-    output_points, physics, read_mesh, refuse, timed, too_many_modes, truncated_modes, well_spread,
-};
+use super::{physics, turning};
 use crate::effects::{Choice, Effects};
 use crate::modes::Flexible;
 use crate::scene::{Frame, MeshedBody, Scene};
@@ -323,7 +327,7 @@ impl Parts<'_> {
         [of_loads, of_spin]: [bool; 2],
         steady: &[&MeshLoad],
     ) -> Result<Statics, BuildError> {
-        let turning = physics::turning(self.scene, self.support.motion, self.drive.as_ref());
+        let turning = turning::turning(self.scene, self.support.motion, self.drive.as_ref());
         let loads = if of_loads { &self.loads[..] } else { &[] };
         let turned: Vec<Vec<Vector3<f64>>> = loads.iter().map(|load| load.turned(turning)).collect();
         // What each column is the sum of.

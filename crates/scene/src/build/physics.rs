@@ -1,11 +1,11 @@
 //! Which effects a scene gets.
 
 use advice::{Advice, Effect};
-use frames_rk4::{Drive, DrivenMotion, Effects};
+use frames_rk4::{Drive, Effects};
 use modal::RigidMotion;
-use nalgebra::Vector3;
 
 use super::loads::MeshLoad;
+use super::turning::{Turning, turning};
 use crate::effects::Choice;
 use crate::scene::Scene;
 
@@ -13,27 +13,6 @@ use crate::scene::Scene;
 pub(super) fn may_spin(scene: &Scene, motion: RigidMotion, drive: Option<&Drive>) -> bool {
     let set_off = drive.is_some() || scene.initial.angular_velocity != [0.0; 3] || !scene.loads.is_empty();
     turning(scene, motion, drive) != Turning::Not && set_off
-}
-
-/// How a body can turn.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Turning {
-    Not,
-    /// About one axis, a unit vector.
-    About(Vector3<f64>),
-    Freely,
-}
-
-pub(super) fn turning(scene: &Scene, motion: RigidMotion, drive: Option<&Drive>) -> Turning {
-    if scene.effects.rotation == Choice::Off {
-        return Turning::Not;
-    }
-    match (motion.rotations(), drive.map(|drive| drive.motion)) {
-        (_, Some(DrivenMotion::Turn { axis })) => Turning::About(axis),
-        ([], _) => Turning::Not,
-        ([axis], _) => Turning::About(*axis),
-        _ => Turning::Freely,
-    }
 }
 
 /// Whether the stress of a load stiffens the body: one that stays as it is, seen from the body.

@@ -6,8 +6,13 @@ use frames_rk4::{Physics, PointShapes};
 use modal::{BodyPoint, ReducedBody, Support};
 use nalgebra::{Matrix3, Vector3};
 
+use super::error::{BuildError, modal};
+use super::initial::initial;
+use super::model::{Model, Size};
+use super::points::output_points;
+use super::progress::BuildTimes;
 use super::support::support;
-use super::{BuildError, BuildTimes, Model, Size, initial, loads, modal, output_points, physics};
+use super::{loads, physics};
 use crate::effects::Choice;
 use crate::scene::{Frame, RigidBody, Scene};
 

@@ -5,8 +5,8 @@ use frames_rk4::{Drive, DrivenMotion};
 use modal::{RigidMotion, Support};
 use nalgebra::Vector3;
 
+use super::error::{BuildError, refuse_mesh};
 use super::history::history;
-use super::{BuildError, refuse_mesh};
 use crate::constraint::{self, Constraint, HingeLine, Region};
 use crate::scene::Scene;
 

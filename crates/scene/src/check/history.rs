@@ -3,14 +3,13 @@
 use std::io::Read;
 use std::path::Path;
 
-use super::Check;
+use super::{Check, LONGEST_TABLES};
 use crate::document::join;
-use crate::error::{Place, SceneError, shorten};
-use crate::file::open_ordinary;
+use crate::error::SceneError;
 use crate::history::{History, Table};
-
-/// The most that is read from the table files of a scene, in bytes (16 MiB).
-pub(super) const LONGEST: u64 = 16 << 20;
+use crate::ordinary_file::open_ordinary;
+use crate::place::Place;
+use crate::shorten::shorten;
 
 /// What a table holds.
 const PAIRS: &str = "pairs of time and factor";
@@ -130,7 +129,7 @@ impl Check<'_> {
             Some(left) => self.table_bytes.set(left),
             None => {
                 return Err(self.document.place(key).refuse(
-                    format!("more than {LONGEST} bytes of tables, with {shown}"),
+                    format!("more than {LONGEST_TABLES} bytes of tables, with {shown}"),
                     "CSV files of at most that length in all",
                     "name CSV files of two columns, with fewer points",
                 ));

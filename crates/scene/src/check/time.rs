@@ -4,9 +4,10 @@ use frames_rk4::{Method, Rows, StepControl};
 
 use super::Check;
 use crate::document::join;
-use crate::error::{SceneError, shorten};
+use crate::error::SceneError;
 use crate::scene::{Output, Time};
 use crate::section::{Formulation, OutputSection, Scheme, TimeSection};
+use crate::shorten::shorten;
 
 /// Intervals between rows where the scene gives a tolerance and no interval.
 const DEFAULT_ROWS: f64 = 500.0;

@@ -39,6 +39,11 @@ pub(super) static POWER: Binary = Binary {
     },
 };
 
+/// Names of the functions, for messages.
+pub(crate) fn function_names() -> String {
+    FUNCTIONS.each_ref().map(|(name, _)| *name).join(", ")
+}
+
 /// All functions by name.
 pub(super) static FUNCTIONS: [(&str, Function); 26] = [
     ("sin", unary(f64::sin, f64::cos)),

@@ -1,0 +1,167 @@
+//! What programs outside take part with: states, stop times, times between steps, observers, and attitudes to begin at.
+
+use std::sync::{Arc, Mutex};
+
+use frames_rk4::{
+    History, Initial, LoadFrame, Method, Observation, PointForce, Reached, Rows, SharedLoad, StepControl,
+};
+use modal::RigidMotion;
+use nalgebra::Vector3;
+use rigid_kin::Attitude;
+
+use crate::sample::{EXPONENTIAL, Run, body, point};
+
+const OMEGA: [f64; 3] = [5.0, 8.0, 13.0];
+
+fn motions() -> [RigidMotion; 5] {
+    let (zero, axis) = (Vector3::zeros(), Vector3::new(0.6, 0.0, 0.8));
+    [
+        RigidMotion::free(),
+        RigidMotion::pin(zero),
+        RigidMotion::hinge(zero, axis),
+        RigidMotion::slider(axis),
+        RigidMotion::clamp(zero),
+    ]
+}
+
+fn largest(a: &[f64], b: &[f64]) -> f64 {
+    assert_eq!(a.len(), b.len());
+    a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+}
+
+#[test]
+fn the_state_of_every_scheme_is_what_was_given_and_can_be_put_back() {
+    for motion in motions() {
+        let body = body(motion, &OMEGA);
+        let mut run = Run::new(&body, 1.0);
+        run.initial.attitude = Attitude::from_wxyz([0.9, 0.1, -0.3, 0.2]).unwrap();
+        let Initial { omega, modal_displacement, modal_velocity, .. } = run.initial.clone();
+        let spin = motion.rotation_projector() * omega;
+        for method in Method::ALL {
+            let mut simulation = run.start(method, StepControl::Fixed(1e-3), Rows::Interval(0.5));
+            let state = simulation.state().unwrap();
+            let what = format!("{motion:?} {method:?}");
+            // Measured: 4e-15.
+            assert!((state.omega_body - spin).norm() < 1e-12, "{what}: {} {spin}", state.omega_body);
+            assert!(largest(&state.modal_velocity, &modal_velocity) < 1e-12, "{what}");
+            assert_eq!(state.modal_displacement, modal_displacement, "{what}");
+            assert!(state.attitude.angle_to(&run.initial.attitude) < 1e-15, "{what}");
+
+            simulation.advance(300).unwrap();
+            let there = simulation.state().unwrap();
+            simulation.set_state(&there).unwrap();
+            let again = simulation.state().unwrap();
+            assert!(largest(&again.modal_velocity, &there.modal_velocity) < 1e-12, "{what}");
+            assert!((again.omega_body - there.omega_body).norm() < 1e-12, "{what}");
+            assert!((again.velocity_global - there.velocity_global).norm() < 1e-12, "{what}");
+        }
+    }
+}
+
+#[test]
+fn a_state_put_back_changes_nothing_of_the_motion() {
+    let body = body(RigidMotion::free(), &OMEGA);
+    let run = Run::new(&body, 2.0);
+    let end = |interrupted: bool| {
+        let mut simulation = run.start(EXPONENTIAL, StepControl::Fixed(1e-2), Rows::Interval(2.0));
+        if interrupted {
+            simulation.advance(70).unwrap();
+            let state = simulation.state().unwrap();
+            simulation.set_state(&state).unwrap();
+        }
+        simulation.last().unwrap().unwrap()
+    };
+    let (whole, interrupted) = (end(false), end(true));
+    // Measured: 2e-14.
+    assert!(largest(&whole.modal_displacement, &interrupted.modal_displacement) < 1e-11);
+    assert!(whole.attitude.angle_to(&interrupted.attitude) < 1e-11);
+}
+
+/// A run that begins turned by R under loads that are turned by R is the run without R, turned.
+#[test]
+fn a_motion_does_not_depend_on_the_attitude_that_it_begins_at() {
+    let turn = Attitude::from_wxyz([0.8, -0.2, 0.4, 0.3]).unwrap();
+    for motion in motions() {
+        let body = body(motion, &OMEGA);
+        let ends = |attitude: Attitude, method: Method| -> Observation {
+            let mut run = Run::new(&body, 1.0);
+            run.initial.velocity = attitude.to_global(&run.initial.velocity);
+            run.initial.attitude = attitude;
+            let force = attitude.to_global(&Vector3::new(0.5, 1.0, -0.7));
+            let history = History::HalfSine { start: 0.1, duration: 0.6 };
+            let dead = PointForce::dead(point(&body, [0.5, -0.2, 0.4]), force, history.clone());
+            let force = Vector3::new(-0.3, 0.2, 0.4);
+            let follower = PointForce { force, frame: LoadFrame::Body, history, point: point(&body, [-0.1, 0.3, 0.2]) };
+            let loads: [SharedLoad; 2] = [Arc::new(dead), Arc::new(follower)];
+            run.loads = loads.into();
+            let [first, last] = run.ends(method, 1e-3);
+            assert_eq!(first.attitude, attitude);
+            last
+        };
+        for method in Method::ALL {
+            let (straight, turned) = (ends(Attitude::identity(), method), ends(turn, method));
+            let what = format!("{motion:?} {method:?}");
+            // Measured: 1e-13.
+            assert!(largest(&straight.modal_displacement, &turned.modal_displacement) < 1e-10, "{what}");
+            assert!((straight.omega_body - turned.omega_body).norm() < 1e-10, "{what}");
+            for (a, b) in [
+                (straight.origin_global, turned.origin_global),
+                (straight.velocity_global, turned.velocity_global),
+                (straight.angular_momentum_global, turned.angular_momentum_global),
+                (straight.angular_balance_global(), turned.angular_balance_global()),
+            ] {
+                assert!((turn.to_global(&a) - b).norm() < 1e-10, "{what}: {a} {b}");
+            }
+            assert!((straight.energy_balance() - turned.energy_balance()).abs() < 1e-10, "{what}");
+        }
+    }
+}
+
+#[test]
+fn a_stop_time_ends_a_step_and_the_run_goes_on() {
+    let body = body(RigidMotion::free(), &OMEGA);
+    let run = Run::new(&body, 1.0);
+    for control in [StepControl::Fixed(1e-2), StepControl::Tolerance(1e-8)] {
+        let mut simulation = run.start(EXPONENTIAL, control, Rows::Interval(0.25));
+        simulation.set_stop_time(Some(0.4321));
+        let mut reached = Vec::new();
+        loop {
+            let what = simulation.advance(u64::MAX).unwrap();
+            reached.push((what, simulation.time()));
+            if what == Reached::End {
+                break;
+            }
+        }
+        let rows = [0.25, 0.5, 0.75, 1.0].map(|time| (Reached::Row, time));
+        let expected = [&rows[..1], &[(Reached::Stop, 0.4321)], &rows[1..], &[(Reached::End, 1.0)]].concat();
+        assert_eq!(reached, expected, "{control:?}");
+    }
+}
+
+#[test]
+fn a_time_inside_a_step_is_as_accurate_as_the_scheme_and_observers_see_every_step() {
+    let body = body(RigidMotion::free(), &OMEGA);
+    let run = Run::new(&body, 1.0);
+    let between = |step: f64| {
+        let mut simulation = run.start(EXPONENTIAL, StepControl::Fixed(step), Rows::Interval(1.0));
+        let seen = Arc::new(Mutex::new(Vec::new()));
+        let times = Arc::clone(&seen);
+        simulation.watch(Arc::new(Mutex::new(move |now: &Observation| times.lock().unwrap().push(now.time))));
+        simulation.keep_last_step();
+        let mut out = simulation.observation();
+        while simulation.time() < 0.437 {
+            simulation.advance(1).unwrap();
+        }
+        assert_eq!(seen.lock().unwrap().len() as u64, simulation.stats().accepted);
+        let reached = simulation.time();
+        simulation.interpolate(0.437, &mut out).unwrap();
+        assert!(out.time == 0.437 && simulation.time() == reached);
+        assert!(simulation.interpolate(0.1, &mut simulation.observation()).is_err());
+        out
+    };
+    let exact = run.start(EXPONENTIAL, StepControl::Fixed(1e-4), Rows::Interval(0.437)).next().unwrap().unwrap();
+    let error = |step: f64| largest(&between(step).modal_displacement, &exact.modal_displacement);
+    let (coarse, fine) = (error(4e-2), error(2e-2));
+    // Fourth order: 16 and somewhat more.
+    assert!(fine < 1e-4 && coarse / fine > 12.0, "{coarse:e} {fine:e}");
+}

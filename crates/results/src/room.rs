@@ -1,0 +1,10 @@
+//! How much a results file has room for.
+
+/// What a store is to hold.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Room {
+    /// Rows.
+    pub rows: usize,
+    /// Words of a checkpoint; none in a finished file.
+    pub checkpoint_words: Option<usize>,
+}

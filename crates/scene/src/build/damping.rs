@@ -1,0 +1,15 @@
+//! The damping of a scene.
+
+use modal::ReducedBody;
+
+use crate::effects::Choice;
+use crate::scene::Scene;
+
+/// One damping ratio for each flexible mode.
+pub(super) fn damping_ratios(scene: &Scene, body: &ReducedBody) -> Vec<f64> {
+    let frequencies = body.circular_frequencies.iter().enumerate();
+    match scene.effects.damping {
+        Choice::Off => vec![0.0; body.flexible()],
+        Choice::On | Choice::Auto => frequencies.map(|(k, omega)| scene.modes.damping.ratio(k, *omega)).collect(),
+    }
+}

@@ -1,0 +1,126 @@
+//! Why a scene cannot be built or started, each reason at its place in the scene file.
+
+use std::path::PathBuf;
+
+use advice::{AdviceError, Refusal};
+use fem_tet10::{AssemblyError, MeshError};
+use frames_rk4::SetupError;
+use modal::ModalError;
+use nalgebra::Vector3;
+
+use crate::error::SceneError;
+use crate::scene::Scene;
+use crate::shorten::shorten;
+use crate::suggest::one_of;
+
+/// A scene that cannot be built.
+#[derive(Debug, thiserror::Error)]
+pub enum BuildError {
+    /// Something in the scene does not fit the mesh.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// The mesh cannot be used.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+    /// The matrices cannot be assembled.
+    #[error(transparent)]
+    Assembly(#[from] AssemblyError),
+    /// The modes cannot be found.
+    #[error("{}: {source}", scene.display())]
+    Modal {
+        /// The scene file.
+        scene: PathBuf,
+        /// Why.
+        source: ModalError,
+    },
+    /// No advice can be given on it.
+    #[error(transparent)]
+    Advice(#[from] AdviceError),
+}
+
+/// A motion that cannot start.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum StartError {
+    /// The integrator refuses it.
+    #[error(transparent)]
+    Setup(#[from] SetupError),
+    /// The model is known to be wrong.
+    #[error(transparent)]
+    Refused(#[from] Refusal),
+}
+
+/// An assembly error at its place in the scene file.
+pub(super) fn refuse(scene: &Scene, key: &str, error: AssemblyError) -> SceneError {
+    let message = error.to_string();
+    match error {
+        AssemblyError::OffBody { source_name, node, position, distance, .. } => {
+            // A coordinate that is zero but for rounding is shown as zero.
+            let size = Vector3::from(position).norm();
+            let shown = position.map(|c| if c.abs() < 1e-9 * size { 0.0 } else { c });
+            scene.refuse(
+                key,
+                format!("a point that is not on the body: the nearest node of {source_name} is {distance:.6} away"),
+                "a point of the body",
+                format!("use a point of the body; its node {node} is at {shown:?}"),
+            )
+        }
+        AssemblyError::Spread { radius, count, distance, .. } => scene.refuse(
+            key,
+            format!("{count} node(s) within {radius}, the nearest {distance:.6} away"),
+            "nodes all around the point that can carry the mass",
+            "use a larger spread, or leave it out for a point of the body",
+        ),
+        AssemblyError::Patch { radius, count, distance, .. } => scene.refuse(
+            key,
+            format!("{count} node(s) within {radius}, the nearest {distance:.6} away"),
+            "three nodes or more, not on a line, that can take the moment",
+            "use a larger radius, or leave it out for a point of the body",
+        ),
+        AssemblyError::MissingGroup { group, present, .. } => scene.refuse(
+            key,
+            format!("the physical volume \"{}\", which the mesh has not", shorten(&group)),
+            one_of(&present),
+            "rename it, or name the volume in the geometry and mesh again",
+        ),
+        _ => scene.refuse(key, message, "something that fits the mesh", "correct it"),
+    }
+}
+
+/// A mesh error, such as a group that is not there, at its place in the scene file.
+pub(super) fn refuse_mesh(scene: &Scene, key: &str, error: &MeshError) -> BuildError {
+    if let MeshError::NoGroup { kind, group, present, .. } = error {
+        let cure = "use one of these, or name it in the geometry and mesh again";
+        let found = format!("the physical {kind} \"{}\", which the mesh has not", shorten(group));
+        return scene.refuse(key, found, one_of(present), cure).into();
+    }
+    scene
+        .refuse(key, error.to_string(), "something that the mesh has", "name it in the geometry, and mesh again")
+        .into()
+}
+
+pub(super) fn too_many_modes(scene: &Scene, error: ModalError) -> BuildError {
+    match error {
+        ModalError::TooManyModes { available: 0, .. } => scene
+            .refuse(
+                "constraints[0]",
+                "a support that holds every node of the body",
+                "a part of the body that is free to deform",
+                "hold fewer nodes, or set `flexible = 0` in [modes]",
+            )
+            .into(),
+        ModalError::TooManyModes { requested, available } => scene
+            .refuse(
+                "modes.flexible",
+                requested.to_string(),
+                format!("at most {available}: three modes for each node that nothing holds, less the rigid ones"),
+                "ask for fewer modes, or use a finer mesh",
+            )
+            .into(),
+        other => modal(scene)(other),
+    }
+}
+
+/// What the modal analysis says knows no file.
+pub(super) fn modal(scene: &Scene) -> impl Fn(ModalError) -> BuildError {
+    |source| BuildError::Modal { scene: scene.path.clone(), source }
+}

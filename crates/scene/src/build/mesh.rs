@@ -1,0 +1,38 @@
+//! The mesh of a scene and its matrices.
+
+use fem_tet10::{AssemblyError, Matrices, Mesh, MeshError, assemble, read_msh};
+
+use super::error::{BuildError, refuse};
+use crate::scene::{MeshedBody, Scene};
+use crate::shorten::shorten;
+
+pub(super) fn read_mesh(scene: &Scene, body: &MeshedBody) -> Result<Mesh, BuildError> {
+    read_msh(&body.mesh).map_err(|error| match error {
+        MeshError::Io { source_name, source } => scene
+            .refuse(
+                "body.mesh",
+                format!("a mesh that cannot be read: {}: {source}", shorten(&source_name)),
+                "a MSH 4.1 file, its path relative to the folder of the scene file",
+                "correct the path, or make the mesh: gmsh -3 -order 2 -format msh41 BODY.geo",
+            )
+            .into(),
+        other => other.into(),
+    })
+}
+
+pub(super) fn matrices(scene: &Scene, body: &MeshedBody, mesh: &Mesh) -> Result<Matrices, BuildError> {
+    assemble(mesh, &body.materials, &body.point_masses).map_err(|error| {
+        let at = match &error {
+            AssemblyError::OffBody { at, .. } | AssemblyError::Spread { at, .. } => *at,
+            AssemblyError::MissingGroup { group, .. } => {
+                let key = format!("body.materials.{group}");
+                return refuse(scene, &key, error).into();
+            }
+            _ => return error.into(),
+        };
+        match body.point_masses.iter().position(|p| p.at == at) {
+            Some(i) => refuse(scene, &format!("body.point_masses[{i}].at"), error).into(),
+            None => error.into(),
+        }
+    })
+}

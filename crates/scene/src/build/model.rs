@@ -1,0 +1,208 @@
+//! A body that can move, as a scene describes it.
+
+use advice::{Advice, Backbone, Case, Refusal, StepEstimate};
+use fem_tet10::Mesh;
+use frames_rk4::{Initial, Physics, PointShapes, Rows, Setup, SharedLoad, Simulation, StepControl};
+use modal::{Modes, ReducedBody};
+use nalgebra::Vector3;
+
+use super::error::StartError;
+use super::initial::initial;
+use super::progress::BuildTimes;
+use crate::scene::Scene;
+
+/// The finite-element side of a body.
+#[derive(Debug, Clone)]
+pub struct Meshed {
+    /// The mesh.
+    pub mesh: Mesh,
+    /// Bytes that the mass and stiffness matrices took.
+    pub matrix_bytes: usize,
+    /// Rigid and flexible modes on the mesh.
+    pub modes: Modes,
+}
+
+/// The body of a scene in modal coordinates, with its mesh, its points and its loads.
+#[derive(Debug)]
+pub struct Model {
+    /// Mesh and modes; `None` for a rigid body without a mesh.
+    pub meshed: Option<Meshed>,
+    /// The reduced body.
+    pub body: ReducedBody,
+    /// What of the physics is computed.
+    pub physics: Physics,
+    /// The points whose motion is written out, by name.
+    pub points: Vec<(String, PointShapes)>,
+    /// R, P, Q from the origin of the body, body axes.
+    pub reference_points: [Vector3<f64>; 3],
+    /// Which effects the scene calls for, and why.
+    pub advice: Advice,
+    /// Why the model is known to be wrong, if it is: it does not start unless the scene says `refuse = false`.
+    pub refusal: Option<Refusal>,
+    /// Where the time went.
+    pub times: BuildTimes,
+    pub(super) loads: Vec<SharedLoad>,
+    pub(super) damping_ratios: Vec<f64>,
+    pub(super) size: Size,
+    /// What the modes leave out of the static answers to the spin (6), where that is to be watched.
+    pub(super) left_out: Vec<f64>,
+    /// Of the modes that may bend the body far.
+    pub(super) backbones: Vec<Option<Backbone>>,
+}
+
+/// The size of a body and of its modes.
+#[derive(Debug, Clone)]
+pub(super) struct Size {
+    /// Largest distance of two points of the body.
+    pub length: f64,
+    /// Largest displacement of a node in each mode (nf).
+    pub peaks: Vec<f64>,
+}
+
+impl Model {
+    /// Frequencies of the flexible modes, cycles per time.
+    pub fn natural_frequencies(&self) -> Vec<f64> {
+        self.body.circular_frequencies.iter().map(|omega| omega / std::f64::consts::TAU).collect()
+    }
+
+    /// The same body with its first `flexible` modes only.
+    pub fn truncated(&self, flexible: usize) -> Self {
+        let flexible = flexible.min(self.body.flexible());
+        let meshed = self.meshed.as_ref().map(|meshed| Meshed {
+            mesh: meshed.mesh.clone(),
+            modes: truncated_modes(&meshed.modes, flexible),
+            ..*meshed
+        });
+        let stiffness = self.physics.load_stiffness.as_ref();
+        let physics = Physics {
+            load_stiffness: stiffness.map(|k| k.get(..flexible, ..flexible).to_owned()),
+            ..self.physics.clone()
+        };
+        Self {
+            meshed,
+            physics,
+            body: self.body.truncated(flexible),
+            points: self.points.iter().map(|(name, point)| (name.clone(), point.truncated(flexible))).collect(),
+            loads: self.loads.clone(),
+            damping_ratios: self.damping_ratios[..flexible].to_vec(),
+            size: Size { peaks: self.size.peaks[..flexible].to_vec(), ..self.size },
+            advice: self.advice.clone(),
+            left_out: self.left_out.clone(),
+            backbones: self.backbones.iter().copied().take(flexible).collect(),
+            ..*self
+        }
+    }
+
+    /// Damping ratio of each flexible mode.
+    pub fn damping_ratios(&self) -> &[f64] {
+        &self.damping_ratios
+    }
+
+    /// The loads, at their points of the body.
+    pub fn loads(&self) -> &[SharedLoad] {
+        &self.loads
+    }
+
+    /// How many static shapes follow the natural modes.
+    pub fn static_shapes(&self) -> usize {
+        self.meshed.as_ref().map_or(0, |meshed| meshed.modes.eigenvalues.len() - meshed.modes.natural())
+    }
+
+    /// How the frequency of each of the first modes goes with its amplitude, of those that may bend the body far.
+    pub fn backbones(&self) -> &[Option<Backbone>] {
+        &self.backbones
+    }
+
+    /// Largest displacement by deformation over the length of the body, bounded above by the sum over the modes.
+    pub fn deflection(&self, modal_displacement: &[f64]) -> f64 {
+        modal_displacement.iter().zip(&self.size.peaks).map(|(q, peak)| (q * peak).abs()).sum::<f64>()
+            / self.size.length
+    }
+
+    /// The state that a scene begins with, its lists padded with zeros.
+    pub fn initial(&self, scene: &Scene) -> Initial {
+        initial(scene, self.body.flexible())
+    }
+
+    /// The run as [`advice`] sees it, which begins with `initial`.
+    pub fn case<'a>(&'a self, scene: &Scene, initial: &'a Initial) -> Case<'a> {
+        Case {
+            body: &self.body,
+            damping_ratios: &self.damping_ratios,
+            loads: &self.loads,
+            gravity: &[],
+            drive: self.physics.drive.as_ref(),
+            initial,
+            end: scene.time.end,
+            length: self.size.length,
+            peaks: &self.size.peaks,
+            static_compliances: &[],
+            centrifugal_remainders: &self.left_out,
+            backbones: &self.backbones,
+        }
+    }
+
+    /// The motion of a scene from its beginning.
+    ///
+    /// # Errors
+    /// [`StartError`], e.g. a step beyond the stability limit.
+    pub fn start(&self, scene: &Scene) -> Result<Simulation, StartError> {
+        self.start_with(scene, scene.time.method, scene.time.control, scene.output.rows)
+    }
+
+    /// The motion of a scene by another method, in other steps or with other rows than its own.
+    ///
+    /// # Errors
+    /// As [`Model::start`].
+    pub fn start_with(
+        &self,
+        scene: &Scene,
+        method: frames_rk4::Method,
+        control: StepControl,
+        rows: Rows,
+    ) -> Result<Simulation, StartError> {
+        if let Some(refusal) = self.refusal.filter(|_| scene.effects.refuse) {
+            return Err(refusal.into());
+        }
+        let points: Vec<PointShapes> = self.points.iter().map(|(_, point)| point.clone()).collect();
+        let initial = self.initial(scene);
+        let setup = Setup { method, control, rows, points: &points, ..self.setup(scene, &initial) };
+        Ok(Simulation::new(&setup)?)
+    }
+
+    /// What the length of the steps gets wrong, estimated; nothing under step control.
+    ///
+    /// # Errors
+    /// As [`Model::start`].
+    pub fn step_estimate(&self, scene: &Scene) -> Result<Option<StepEstimate>, StartError> {
+        Ok(advice::step_estimate(&self.setup(scene, &self.initial(scene)))?)
+    }
+
+    /// What [`Simulation::new`] needs for the run of a scene, without its points. Loads, steps or anything else may be
+    /// replaced.
+    pub fn setup<'a>(&'a self, scene: &Scene, initial: &'a Initial) -> Setup<'a> {
+        Setup {
+            body: &self.body,
+            damping_ratios: &self.damping_ratios,
+            loads: &self.loads,
+            physics: &self.physics,
+            reference_points: self.reference_points,
+            initial,
+            method: scene.time.method,
+            control: scene.time.control,
+            end: scene.time.end,
+            rows: scene.output.rows,
+            points: &[],
+        }
+    }
+}
+
+/// The first of some modes.
+pub(super) fn truncated_modes(modes: &Modes, flexible: usize) -> Modes {
+    let mut modes = modes.clone();
+    modes.eigenvalues.truncate(flexible);
+    modes.residuals.truncate(flexible);
+    modes.force_residuals.truncate(flexible);
+    modes.shapes = modes.shapes.get(.., ..flexible).to_owned();
+    modes
+}

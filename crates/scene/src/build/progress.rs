@@ -1,0 +1,38 @@
+//! How far the building of a model has come, and where the time went.
+
+use std::time::{Duration, Instant};
+
+/// How far the building of a model has come.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum BuildProgress {
+    /// The mesh is being read.
+    Mesh,
+    /// Mass and stiffness are being assembled.
+    Assembly,
+    /// The modes are being searched.
+    Modes(modal::Progress),
+    /// Static answers to loads and to the centrifugal field are being computed.
+    Statics,
+}
+
+/// Where the time went. That of the modes is in [`modal::SolveStats`].
+#[derive(Debug, Clone, Copy, Default)]
+pub struct BuildTimes {
+    /// Reading and checking the mesh.
+    pub mesh: Duration,
+    /// Assembling mass and stiffness.
+    pub assembly: Duration,
+    /// Finding the modes.
+    pub modes: Duration,
+    /// Static answers and the stress stiffness of the centrifugal field and of steady loads.
+    pub statics: Duration,
+    /// Making the reduced body and its points.
+    pub reduction: Duration,
+}
+
+pub(super) fn timed<T>(time: &mut Duration, work: impl FnOnce() -> T) -> T {
+    let started = Instant::now();
+    let result = work();
+    *time = started.elapsed();
+    result
+}

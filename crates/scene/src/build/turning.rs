@@ -1,0 +1,29 @@
+//! Whether and how the body of a scene can turn.
+
+use frames_rk4::{Drive, DrivenMotion};
+use modal::RigidMotion;
+use nalgebra::Vector3;
+
+use crate::effects::Choice;
+use crate::scene::Scene;
+
+/// How a body can turn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Turning {
+    Not,
+    /// About one axis, a unit vector.
+    About(Vector3<f64>),
+    Freely,
+}
+
+pub(super) fn turning(scene: &Scene, motion: RigidMotion, drive: Option<&Drive>) -> Turning {
+    if scene.effects.rotation == Choice::Off {
+        return Turning::Not;
+    }
+    match (motion.rotations(), drive.map(|drive| drive.motion)) {
+        (_, Some(DrivenMotion::Turn { axis })) => Turning::About(axis),
+        ([], _) => Turning::Not,
+        ([axis], _) => Turning::About(*axis),
+        _ => Turning::Freely,
+    }
+}
