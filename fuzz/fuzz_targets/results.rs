@@ -5,7 +5,7 @@ use std::os::unix::fs::FileExt;
 use std::path::PathBuf;
 use std::sync::LazyLock;
 
-use flexframe_fuzz::write_results;
+use flexframe_fuzz::{COLUMNS, write_results};
 use libfuzzer_sys::fuzz_target;
 use results::{FileError, Results, Writer};
 
@@ -19,8 +19,8 @@ static FILES: LazyLock<(tempfile::TempDir, PathBuf, PathBuf, Vec<u8>)> = LazyLoc
 });
 
 fn open(path: &PathBuf) {
-    match Results::open(path) {
-        Ok(results) => assert!(results.points.values().all(|point| point.velocity.len() == results.time.len())),
+    match Results::open(path, &COLUMNS) {
+        Ok(results) => assert_eq!(results.numbers("time").map(<[f64]>::len), Some(results.rows())),
         Err(error) => assert!(!error.to_string().is_empty()),
     }
 }
@@ -39,7 +39,7 @@ fuzz_target!(|bytes: &[u8]| {
     }
     drop(file);
     open(part);
-    if let Err(error) = Writer::resume(part) {
+    if let Err(error) = Writer::resume(part, &COLUMNS) {
         assert!(matches!(error, FileError::NoSeal { .. } | FileError::Damaged { .. }), "{error}");
     }
 });

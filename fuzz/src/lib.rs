@@ -2,7 +2,30 @@
 
 use std::path::Path;
 
-use results::{BodyProperties, Expected, FileError, Metadata, PointSample, Sample, Units, Writer};
+use results::Values::{Modal, Number, Point, Quaternion, Vector};
+use results::{BodyProperties, Column, Expected, FileError, Metadata, Units, Writer};
+
+/// A row.
+#[derive(Debug)]
+pub struct Row {
+    modes: Vec<f64>,
+    points: usize,
+}
+
+/// A column of each kind.
+pub static COLUMNS: [Column<Row>; 5] = [
+    Column::new("time", "time", "none", "time of each row", Number(|_| 0.5)),
+    Column::new("attitude", "1", "none", "a quaternion", Quaternion(|_| [1.0, 0.0, 0.0, 0.0])),
+    Column::new("velocity", "length/time", "global", "a vector", Vector(|_| [1.0; 3])),
+    Column::new("modal/velocity", "1", "none", "modal coordinates", Modal(|row| &row.modes)),
+    Column::new(
+        "points/<name>/velocity",
+        "length/time",
+        "global",
+        "a vector of each point",
+        Point(|row, i| (i < row.points).then_some([2.0; 3])),
+    ),
+];
 
 /// Writes a file of so many modes, points and rows, finished or not.
 pub fn write_results(path: &Path, modes: usize, points: usize, rows: u32, finish: bool) -> Result<(), FileError> {
@@ -26,36 +49,8 @@ pub fn write_results(path: &Path, modes: usize, points: usize, rows: u32, finish
         },
         point_names: (0..points).map(|i| format!("P{i}")).collect(),
     };
-    let mut writer = Writer::create(path, &metadata, Expected { overwrite: true, ..Expected::default() })?;
-    let modal = vec![0.5; modes];
-    let point = || PointSample {
-        displacement: [1.0; 3],
-        velocity: [2.0; 3],
-        acceleration: [3.0; 3],
-        rigid_acceleration: [4.0; 3],
-    };
-    let at_points: Vec<_> = (0..points).map(|_| point()).collect();
-    for row in 0..rows {
-        writer.push(&Sample {
-            time: f64::from(row),
-            attitude: [1.0, 0.0, 0.0, 0.0],
-            position: [0.0; 3],
-            velocity: [0.0; 3],
-            angular_velocity: [0.0; 3],
-            angular_acceleration: [0.0; 3],
-            modal_displacement: &modal,
-            modal_velocity: &modal,
-            kinetic_energy: 0.0,
-            strain_energy: 0.0,
-            work: 0.0,
-            dissipation: 0.0,
-            energy_balance: 0.0,
-            linear_momentum: [0.0; 3],
-            angular_momentum: [0.0; 3],
-            linear_balance: [0.0; 3],
-            angular_balance: [0.0; 3],
-            points: &at_points,
-        })?;
-    }
+    let mut writer = Writer::create(path, &metadata, &COLUMNS, Expected { overwrite: true, ..Expected::default() })?;
+    let row = Row { modes: vec![0.5; modes], points };
+    (0..rows).try_for_each(|_| writer.push(&row))?;
     if finish { writer.finish() } else { Ok(()) }
 }

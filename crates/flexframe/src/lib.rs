@@ -24,6 +24,7 @@ pub use {faer, nalgebra};
 pub mod advise;
 pub mod animation;
 pub mod campbell;
+pub mod columns;
 pub mod cost;
 mod effects;
 pub mod failure;

@@ -15,6 +15,7 @@ use scene::Scene;
 use serde::Serialize;
 use whole_file::write_whole;
 
+use crate::columns::COLUMNS;
 use crate::json;
 use crate::run::{RunProgress, RunReport, RunSettings, run};
 use comparison::Comparison;
@@ -54,7 +55,7 @@ pub fn reproduce(
     }
     let (model, mut run) = run(scene, folder, settings, progress)?;
     let started = Instant::now();
-    let results = Results::open(&run.results)?;
+    let results = Results::open(&run.results, &COLUMNS)?;
     let only_plates = || PaperError::NotThePlate { scene: scene.path.clone() };
     let meshed = model.meshed.as_ref().ok_or_else(only_plates)?;
     let rigid = rigid_plate::histories(&model, &results)?.ok_or_else(only_plates)?;

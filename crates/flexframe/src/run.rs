@@ -9,11 +9,12 @@ use std::time::Instant;
 use advice::{Refusal, Review, StepEstimate};
 use frames_rk4::{Initial, Observation, Reached, RestoreError, Simulation, StepError};
 use nalgebra::Vector3;
-use results::{BodyProperties, Expected, FileError, Metadata, PointSample, Results, Resumed, Sample, Units, Writer};
+use results::{BodyProperties, Expected, FileError, Metadata, Results, Resumed, Units, Writer};
 use rigid_kin::Attitude;
 use scene::{BuildError, BuildProgress, Model, Rows, Scene, SceneError, StartError, StepControl};
 use serde::Serialize;
 
+use crate::columns::COLUMNS;
 use crate::effects;
 use crate::json;
 use crate::modes::frequency_unit;
@@ -229,7 +230,7 @@ pub fn run(
 ) -> Result<(Model, RunReport), RunError> {
     std::fs::create_dir_all(folder).map_err(|source| RunError::Folder { folder: folder.to_owned(), source })?;
     let path = results_path(scene, folder);
-    Writer::check(&path, settings.overwrite)?;
+    Writer::<Observation>::check(&path, settings.overwrite)?;
     let model = Model::build(scene, |p| progress(RunProgress::Build(p)))?;
 
     let started = Instant::now();
@@ -237,7 +238,7 @@ pub fn run(
     let mut checkpoint = Vec::new();
     simulation.checkpoint(&mut checkpoint);
     let expected = Expected { rows: expected_rows(scene), checkpoint: checkpoint.len(), overwrite: settings.overwrite };
-    let writer = Writer::create(&path, &metadata(scene, &model, &simulation), expected)?;
+    let writer = Writer::create(&path, &metadata(scene, &model, &simulation), &COLUMNS, expected)?;
     progress(RunProgress::Motion(0.0));
     let initial = model.initial(scene);
     let mut recorder = Recorder::new(scene, &model, &initial, &simulation, writer)?;
@@ -257,7 +258,7 @@ pub fn resume(
     settings: &RunSettings,
     mut progress: impl FnMut(RunProgress),
 ) -> Result<(Scene, Model, RunReport), RunError> {
-    let Resumed { writer, results, checkpoint } = Writer::resume(file)?;
+    let Resumed { writer, results, checkpoint } = Writer::resume(file, &COLUMNS)?;
     let part = writer.unfinished().to_path_buf();
     let scene = Scene::parse(&results.metadata.scene_text, scene_file::to_path(&results.metadata.scene_file))?;
     let model = Model::build(&scene, |p| progress(RunProgress::Build(p)))?;
@@ -395,10 +396,9 @@ struct Recorder<'a> {
     scene: &'a Scene,
     model: &'a Model,
     observation: Observation,
-    writer: Writer,
+    writer: Writer<Observation>,
     checkpoint: Vec<u64>,
     review: Review<'a>,
-    points: Vec<PointSample>,
     rows: u64,
     peak_strain_energy: f64,
     monitor: Monitor,
@@ -412,7 +412,7 @@ impl<'a> Recorder<'a> {
         model: &'a Model,
         initial: &'a Initial,
         simulation: &Simulation,
-        writer: Writer,
+        writer: Writer<Observation>,
     ) -> Result<Self, RunError> {
         let step = model
             .step_estimate(scene)
@@ -424,7 +424,6 @@ impl<'a> Recorder<'a> {
             writer,
             checkpoint: Vec::new(),
             review: Review::new(model.case(scene, initial), model.physics.effects, &model.advice),
-            points: Vec::with_capacity(model.points.len()),
             rows: 0,
             peak_strain_energy: 0.0,
             monitor: Monitor::default(),
@@ -455,27 +454,20 @@ impl<'a> Recorder<'a> {
 
     /// Takes the rows before a checkpoint into account, the last of which must be what the simulation is at.
     fn take_up(&mut self, simulation: &mut Simulation, results: &Results) -> Result<(), RunError> {
-        let mut points = Vec::new();
-        let mut row = 0;
-        while let Some(sample) = results.sample(row, &mut points) {
-            self.observation.time = sample.time;
-            self.observation.omega_body = sample.angular_velocity.into();
-            self.observation.modal_displacement.clear();
-            self.observation.modal_displacement.extend_from_slice(sample.modal_displacement);
-            self.observation.modal_velocity.clear();
-            self.observation.modal_velocity.extend_from_slice(sample.modal_velocity);
+        let part = self.writer.unfinished().to_path_buf();
+        let changed = |what| RunError::Changed { part: part.clone(), what };
+        for row in 0..results.rows() {
+            let past = restore(results, row, &mut self.observation).ok_or_else(|| changed("the columns"))?;
             self.review.observe(&self.observation).map_err(BuildError::from)?;
-            self.monitor.watch_row(&sample);
-            self.peak_strain_energy = self.peak_strain_energy.max(sample.strain_energy);
-            row += 1;
+            self.monitor.take(&past);
+            self.peak_strain_energy = self.peak_strain_energy.max(self.observation.strain_energy);
         }
-        self.rows = row as u64;
-        self.observe(simulation)?;
-        let now = sample(&self.observation, &self.points);
-        if row > 0 && results.sample(row - 1, &mut points) == Some(now) {
-            return Ok(());
+        self.rows = results.rows() as u64;
+        simulation.observe(&mut self.observation).map_err(|source| self.failed(source))?;
+        match results.rows().checked_sub(1) {
+            Some(last) if results.is_row(last, &COLUMNS, &self.observation) => Ok(()),
+            _ => Err(changed("the motion at the checkpoint")),
         }
-        Err(RunError::Changed { part: self.writer.unfinished().to_path_buf(), what: "the motion at the checkpoint" })
     }
 
     /// Goes on to the end.
@@ -577,27 +569,15 @@ impl<'a> Recorder<'a> {
         RunError::Step { results: self.writer.unfinished().to_path_buf(), source }
     }
 
-    /// Observes the time that `simulation` has reached.
-    fn observe(&mut self, simulation: &mut Simulation) -> Result<(), RunError> {
-        simulation.observe(&mut self.observation).map_err(|source| self.failed(source))?;
-        self.points.clear();
-        self.points.extend(self.observation.points.iter().map(|point| PointSample {
-            displacement: point.displacement.into(),
-            velocity: point.velocity.into(),
-            acceleration: point.acceleration.into(),
-            rigid_acceleration: point.rigid_acceleration.into(),
-        }));
-        Ok(())
-    }
-
     /// Writes the row of the time that `simulation` has reached.
     fn record(&mut self, simulation: &mut Simulation) -> Result<(), RunError> {
-        self.observe(simulation)?;
-        let now = sample(&self.observation, &self.points);
+        simulation.observe(&mut self.observation).map_err(|source| self.failed(source))?;
+        let now = &self.observation;
+        // It refuses what is not finite.
+        self.writer.push(now)?;
         self.peak_strain_energy = self.peak_strain_energy.max(now.strain_energy);
-        self.monitor.watch_row(&now);
-        self.review.observe(&self.observation).map_err(BuildError::from)?;
-        self.writer.push(&now)?;
+        self.monitor.watch(now);
+        self.review.observe(now).map_err(BuildError::from)?;
         self.rows += 1;
         Ok(())
     }
@@ -609,34 +589,38 @@ impl<'a> Recorder<'a> {
     }
 }
 
-/// An observation as a row.
-fn sample<'a>(now: &'a Observation, points: &'a [PointSample]) -> Sample<'a> {
-    Sample {
-        time: now.time,
-        attitude: now.attitude.wxyz(),
-        position: now.position_global.into(),
-        velocity: now.velocity_global.into(),
-        angular_velocity: now.omega_body.into(),
-        angular_acceleration: now.alpha_body.into(),
-        modal_displacement: &now.modal_displacement,
-        modal_velocity: &now.modal_velocity,
-        kinetic_energy: now.kinetic_energy,
-        strain_energy: now.strain_energy,
-        work: now.work.work,
-        dissipation: now.work.dissipation,
-        energy_balance: now.energy_balance(),
-        linear_momentum: now.linear_momentum_global.into(),
-        angular_momentum: now.angular_momentum_global.into(),
-        linear_balance: now.linear_balance_global().into(),
-        angular_balance: now.angular_balance_global().into(),
-        points,
-    }
+/// Reads a row back as far as the review and the monitor look at it.
+fn restore(results: &Results, row: usize, out: &mut Observation) -> Option<Conserved> {
+    let number = |path| results.numbers(path)?.get(row).copied();
+    let vector = |path| results.vectors(path)?.get(row).copied().map(Vector3::from);
+    let modal = |path| results.table(path)?.row(row);
+    out.time = number("time")?;
+    out.omega_body = vector("angular_velocity")?;
+    out.modal_displacement.clear();
+    out.modal_displacement.extend(modal("modal/displacement")?);
+    out.modal_velocity.clear();
+    out.modal_velocity.extend(modal("modal/velocity")?);
+    out.kinetic_energy = number("energy/kinetic")?;
+    out.strain_energy = number("energy/strain")?;
+    Some(Conserved {
+        quantities: (out.energy(), vector("momentum/linear")?, vector("momentum/angular")?),
+        balances: (number("energy/balance")?, vector("momentum/linear_balance")?, vector("momentum/angular_balance")?),
+    })
+}
+
+/// Energy, and linear and angular momentum.
+type Momenta = (f64, Vector3<f64>, Vector3<f64>);
+
+/// Quantities that exact motion conserves, and what is left of them without what the loads and damping have done.
+struct Conserved {
+    quantities: Momenta,
+    balances: Momenta,
 }
 
 /// Watches the constants of the motion.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Monitor {
-    start: Option<(f64, Vector3<f64>, Vector3<f64>)>,
+    start: Option<Momenta>,
     changes: Balances,
     scales: Balances,
 }
@@ -644,19 +628,21 @@ pub(crate) struct Monitor {
 impl Monitor {
     /// Takes one more observation into account.
     pub(crate) fn watch(&mut self, now: &Observation) {
-        self.watch_row(&sample(now, &[]));
+        self.take(&Conserved {
+            quantities: (now.energy(), now.linear_momentum_global, now.angular_momentum_global),
+            balances: (now.energy_balance(), now.linear_balance_global(), now.angular_balance_global()),
+        });
     }
 
-    fn watch_row(&mut self, now: &Sample) {
-        let balance = (now.energy_balance, now.linear_balance.into(), now.angular_balance.into());
-        let start = self.start.get_or_insert(balance);
+    fn take(&mut self, Conserved { quantities, balances }: &Conserved) {
+        let start = self.start.get_or_insert(*balances);
         let grow = |largest: &mut f64, value: f64| *largest = largest.max(value.abs());
-        grow(&mut self.changes.energy, balance.0 - start.0);
-        grow(&mut self.changes.linear_momentum, (balance.1 - start.1).norm());
-        grow(&mut self.changes.angular_momentum, (balance.2 - start.2).norm());
-        grow(&mut self.scales.energy, now.kinetic_energy + now.strain_energy);
-        grow(&mut self.scales.linear_momentum, Vector3::from(now.linear_momentum).norm());
-        grow(&mut self.scales.angular_momentum, Vector3::from(now.angular_momentum).norm());
+        grow(&mut self.changes.energy, balances.0 - start.0);
+        grow(&mut self.changes.linear_momentum, (balances.1 - start.1).norm());
+        grow(&mut self.changes.angular_momentum, (balances.2 - start.2).norm());
+        grow(&mut self.scales.energy, quantities.0);
+        grow(&mut self.scales.linear_momentum, quantities.1.norm());
+        grow(&mut self.scales.angular_momentum, quantities.2.norm());
     }
 
     /// Takes into account how much energy has come and gone between the rows: they may all fall where there is none.

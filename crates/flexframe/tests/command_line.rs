@@ -3,7 +3,9 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-use results::Results;
+use flexframe::columns::COLUMNS;
+use hdf5::types::VarLenUnicode;
+use results::{Column, Results, Units, Values};
 use serde_json::Value;
 
 fn root() -> PathBuf {
@@ -87,26 +89,97 @@ fn the_paper_is_reproduced_with_every_figure() {
     assert!((0.09..0.13).contains(&comparison["fig_13"]["difference"].as_f64().unwrap()));
 }
 
+/// HDF5 finds each column of the table in the file, with its shape, unit, frame and description, and no other.
+fn assert_describes_its_columns(path: &Path, rows: usize, point: &str) {
+    let file = hdf5::File::open(path).unwrap();
+    let units = Units { length: "mm".into(), mass: "Mg".into(), time: "s".into() };
+    // And static shapes.
+    let modes = file.dataset("body/frequencies").unwrap().size();
+    assert!(modes > 6);
+    let mut paths = Vec::new();
+    for column in &COLUMNS {
+        let path = column.path.replace("<name>", point);
+        let dataset = file.dataset(&path).unwrap();
+        let shape: Vec<usize> = std::iter::once(rows).chain(column.width(modes)).collect();
+        assert_eq!(dataset.shape(), shape, "{path}");
+        assert!(dataset.read_raw::<f64>().unwrap().iter().all(|value| value.is_finite()), "{path}");
+        let text = |name: &str| dataset.attr(name).unwrap().read_scalar::<VarLenUnicode>().unwrap().to_string();
+        assert_eq!(text("unit"), column.unit(&units), "{path}");
+        assert_eq!([text("frame"), text("description")], [column.frame, column.description], "{path}");
+        paths.push(path);
+    }
+    for (path, unit, frame) in [
+        ("attitude", "1", "body to global"),
+        ("angular_acceleration", "rad/s^2", "body"),
+        ("modal/displacement", "mm Mg^(1/2)", "none"),
+        ("modal/velocity", "mm Mg^(1/2)/s", "none"),
+        ("energy/balance", "Mg mm^2/s^2", "none"),
+        ("momentum/linear_balance", "Mg mm/s", "global"),
+        ("momentum/angular_balance", "Mg mm^2/s", "global"),
+        ("points/struck/rigid_acceleration", "mm/s^2", "global"),
+    ] {
+        let text = |name: &str| file.dataset(path).unwrap().attr(name).unwrap().read_scalar::<VarLenUnicode>().unwrap();
+        assert_eq!((text("unit").as_str(), text("frame").as_str()), (unit, frame), "{path}");
+    }
+    let mut found = Vec::new();
+    datasets(&file, &mut found);
+    let mut found: Vec<_> = found.iter().map(|path| path[1..].to_owned()).collect();
+    found.retain(|path| !path.starts_with("body/"));
+    found.sort();
+    paths.sort();
+    assert_eq!(found, paths);
+}
+
+/// Paths of all data sets within a group.
+fn datasets(group: &hdf5::Group, out: &mut Vec<String>) {
+    out.extend(group.datasets().unwrap().iter().map(|dataset| dataset.name()));
+    group.groups().unwrap().iter().for_each(|group| datasets(group, out));
+}
+
+#[test]
+fn the_page_on_results_has_the_table_of_columns() {
+    let mut table = "| data set | shape | unit | frame | what |\n|---|---|---|---|---|\n".to_owned();
+    for Column { path, unit, frame, description, values } in &COLUMNS {
+        let shape = match values {
+            Values::Number(_) => "T",
+            Values::Vector(_) | Values::Point(_) => "T×3",
+            Values::Quaternion(_) => "T×4",
+            Values::Modal(_) => "T×nf",
+        };
+        table += &format!("| `{path}` | {shape} | {unit} | {frame} | {description} |\n");
+    }
+    let page = std::fs::read_to_string(root().join("docs/results.md")).unwrap();
+    assert!(page.contains(&(table.clone() + "\n")), "docs/results.md is to have this table:\n{table}");
+}
+
 #[test]
 fn another_mesh_runs_and_its_file_holds_all_that_is_promised() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().to_str().unwrap();
     let report = json(&["run", "examples/ring.toml", "-o", out, "--json"]);
-    let results = Results::open(folder.path().join("ring.h5")).unwrap();
+    let path = folder.path().join("ring.h5");
+    assert_describes_its_columns(&path, 2001, "struck");
+    let results = Results::open(path, &COLUMNS).unwrap();
     assert!(results.complete);
-    assert_eq!(results.time.len(), 2001);
+    assert_eq!(results.rows(), 2001);
     assert_eq!(report["rows"], 2001);
-    assert!((results.time[2000] - 0.2).abs() < 1e-15);
+    assert!((results.numbers("time").unwrap()[2000] - 0.2).abs() < 1e-15);
     assert_eq!(results.metadata.scheme, "exponential");
     assert_eq!(results.metadata.scene_text, std::fs::read_to_string(root().join("examples/ring.toml")).unwrap());
     // Impulse = momentum: 200 N x 2/pi x 2 ms along (0, -1, 0.5) normalised.
     let impulse = 200.0 * 2.0 / std::f64::consts::PI * 0.002;
     let direction = [0.0, -1.0 / 1.25_f64.sqrt(), 0.5 / 1.25_f64.sqrt()];
-    let momentum = results.linear_momentum[2000];
+    let momentum = results.vectors::<3>("momentum/linear").unwrap()[2000];
     for axis in 0..3 {
         assert!((momentum[axis] - impulse * direction[axis]).abs() < 1e-9 * impulse, "{momentum:?}");
     }
-    assert!(results.attitude.iter().all(|q| (q.iter().map(|c| c * c).sum::<f64>() - 1.0).abs() < 1e-14));
+    assert!(
+        results
+            .vectors::<4>("attitude")
+            .unwrap()
+            .iter()
+            .all(|q| (q.iter().map(|c| c * c).sum::<f64>() - 1.0).abs() < 1e-14)
+    );
 }
 
 #[test]
@@ -137,15 +210,15 @@ fn the_tumbling_plate_turns_and_swings() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().to_str().unwrap();
     let report = json(&["run", "examples/tumbling_plate.toml", "-o", out, "--json"]);
-    let results = Results::open(folder.path().join("tumbling_plate.h5")).unwrap();
+    let results = Results::open(folder.path().join("tumbling_plate.h5"), &COLUMNS).unwrap();
     assert_eq!(report["steps"], 20000);
     // Without loads the linear momentum stays m V to rounding.
-    let last = results.linear_momentum.last().unwrap();
+    let last = results.vectors::<3>("momentum/linear").unwrap().last().unwrap();
     for (p, v) in last.iter().zip([400.0, 0.0, 250.0]) {
         assert!((p - 0.00935 * v).abs() < 1e-11, "{last:?}");
     }
     // It swings by centimetres.
-    let peak = results.modal_displacement.column(0).unwrap().fold(0.0_f64, |m, q| m.max(q.abs()));
+    let peak = results.table("modal/displacement").unwrap().column(0).unwrap().fold(0.0_f64, |m, q| m.max(q.abs()));
     assert!(peak > 1.0, "{peak}");
 }
 
@@ -189,9 +262,9 @@ fn a_dot_in_the_name_of_a_scene_stays_in_those_of_its_results() {
         std::fs::write(place(scene), COIN).unwrap();
         let report = json(&["run", &place(scene), "-o", folder.path().to_str().unwrap(), "--json"]);
         assert_eq!(report["results"], place(file));
-        assert!(Results::open(place(file)).unwrap().complete);
+        assert!(Results::open(place(file), &COLUMNS).unwrap().complete);
     }
-    assert!(Results::open(first).unwrap().metadata.scene_file.ends_with("coin.toml"));
+    assert!(Results::open(first, &COLUMNS).unwrap().metadata.scene_file.ends_with("coin.toml"));
     std::fs::write(place("coin.v2.part.h5"), "").unwrap();
     let message = refused(6, &["run", &place("coin.v2.toml"), "-o", folder.path().to_str().unwrap()]);
     assert_says(&message, &["coin.v2.part.h5"]);

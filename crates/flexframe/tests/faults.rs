@@ -7,6 +7,7 @@ use std::process::{Child, Command, Output, Stdio};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
+use flexframe::columns::COLUMNS;
 use results::{Results, unfinished};
 use tempfile::TempDir;
 
@@ -75,7 +76,7 @@ fn spawn(mut command: Command) -> Child {
 
 fn open(path: impl AsRef<Path>) -> Results {
     let _open = OPEN.lock().unwrap_or_else(PoisonError::into_inner);
-    Results::open(path).unwrap()
+    Results::open(path, &COLUMNS).unwrap()
 }
 
 fn succeed(command: Command) {
@@ -147,15 +148,16 @@ fn a_run_that_is_killed_again_and_again_ends_in_the_same_file() {
         done += 1;
         if part.exists() {
             let results = open(&part);
-            let rows = results.time.len();
+            let rows = results.rows();
             assert!(!results.complete);
             // Never less than before, and every row is that of the whole run.
             assert!(rows >= kept || rounds > 0, "{rows} after {kept}");
             kept = rows;
-            assert_eq!(results.time, whole.time[..rows]);
-            assert_eq!(results.attitude, whole.attitude[..rows]);
-            assert_eq!(results.angular_balance, whole.angular_balance[..rows]);
-            assert_eq!(results.points["struck"].acceleration, whole.points["struck"].acceleration[..rows]);
+            for column in &COLUMNS {
+                let path = column.path.replace("<name>", "struck");
+                let (found, expected) = (results.table(&path).unwrap(), whole.table(&path).unwrap());
+                assert_eq!(found.values(), &expected.values()[..rows * found.width()], "{path}");
+            }
         }
         if scene.results("killed").exists() {
             assert!(std::fs::read(scene.results("killed")).unwrap() == expected);
@@ -247,7 +249,7 @@ fn control_c_stops_at_a_row_and_says_how_to_go_on() {
         assert_eq!(output.status.code(), Some(130), "{}", message(&output));
         assert_has(&message(&output), &["stopped at time", "flexframe resume", "long.part.h5"]);
         assert!(!scene.results(signal).exists());
-        assert!(open(unfinished(scene.results(signal))).time.len() > 1);
+        assert!(open(unfinished(scene.results(signal))).rows() > 1);
         succeed(scene.resume(signal));
         assert!(std::fs::read(scene.results(signal)).unwrap() == std::fs::read(scene.results("whole")).unwrap());
     }
@@ -261,7 +263,7 @@ fn control_c_stops_at_a_row_and_says_how_to_go_on() {
     succeed(kill);
     let output = child.wait_with_output().unwrap();
     assert_eq!(output.status.code(), Some(130), "{}", message(&output));
-    assert_eq!(open(unfinished(scene.results("far"))).time.len(), 1);
+    assert_eq!(open(unfinished(scene.results("far"))).rows(), 1);
     let again = scene.resume("-INT");
     assert_has(&failure(again), &["complete", "nothing to resume"]);
 }

@@ -79,30 +79,6 @@ impl Observation {
         }
     }
 
-    /// Which quantity is NaN or infinite, if one is.
-    pub(crate) fn not_finite(&self) -> Option<&'static str> {
-        let is_off = |vector: &Vector3<f64>| vector.iter().any(|x| !x.is_finite());
-        let is_list_off = |list: &[f64]| list.iter().any(|x| !x.is_finite());
-        let of_points = |p: &PointMotion| {
-            [&p.displacement, &p.velocity, &p.acceleration, &p.rigid_acceleration].into_iter().any(is_off)
-        };
-        let quantities = [
-            ("the attitude", is_list_off(&self.attitude.wxyz())),
-            ("the position", is_off(&self.origin_global) || is_off(&self.position_global)),
-            ("the velocity", is_off(&self.velocity_global)),
-            ("the angular velocity", is_off(&self.omega_body)),
-            ("the angular acceleration", is_off(&self.alpha_body)),
-            ("a modal displacement", is_list_off(&self.modal_displacement)),
-            ("a modal velocity", is_list_off(&self.modal_velocity)),
-            ("a modal acceleration", is_list_off(&self.modal_acceleration)),
-            ("the energy", !self.energy_balance().is_finite()),
-            ("the linear momentum", is_off(&self.linear_balance_global())),
-            ("the angular momentum", is_off(&self.angular_balance_global())),
-            ("the motion of a point", self.points.iter().any(of_points)),
-        ];
-        quantities.into_iter().find(|(_, off)| *off).map(|(what, _)| what)
-    }
-
     /// Kinetic + strain energy.
     pub fn energy(&self) -> f64 {
         self.kinetic_energy + self.strain_energy

@@ -1,6 +1,5 @@
 //! What a results file holds and where, in a form that is read without HDF5.
 
-use crate::layout::Quantity;
 use crate::{FileError, Metadata};
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
@@ -14,7 +13,7 @@ pub(crate) struct Description {
     pub rows: usize,
     /// Words of each of the two places for a checkpoint; none in a finished file.
     pub checkpoint_words: Option<usize>,
-    /// First byte of each history, in the order of [`Quantity::all`], and of the checkpoints; 0 where there is nothing.
+    /// First byte of each history, in the order of the columns, and of the checkpoints; 0 where there is nothing.
     pub starts: Vec<u64>,
     /// Of the run.
     pub metadata: Metadata,
@@ -34,17 +33,11 @@ impl Description {
         })
     }
 
-    /// Values per row of each history.
-    pub(crate) fn widths(&self) -> impl Iterator<Item = usize> {
-        let modes = self.metadata.body.frequencies.len();
-        Quantity::all(self.metadata.point_names.len()).map(move |quantity| quantity.width(modes).unwrap_or(1))
-    }
-
-    /// The bytes of each history, and of the checkpoints. `None` if they are not all within `free`, each in a place of
-    /// its own.
-    pub(crate) fn ranges(&self, free: Range<u64>) -> Option<Vec<Range<u64>>> {
+    /// The bytes of each history, and of the checkpoints, from the values per row of the histories. `None` if they are
+    /// not all within `free`, each in a place of its own.
+    pub(crate) fn ranges(&self, widths: impl Iterator<Item = usize>, free: Range<u64>) -> Option<Vec<Range<u64>>> {
         let size = |numbers: usize, each: usize| Some((numbers.checked_mul(each)?.checked_mul(8)?) as u64);
-        let sizes = self.widths().map(|width| size(self.rows, width));
+        let sizes = widths.map(|width| size(self.rows, width));
         let sizes = sizes.chain(self.checkpoint_words.map(|words| size(2, words)));
         let mut starts = self.starts.iter();
         let ranges: Vec<Range<u64>> = sizes

@@ -1,8 +1,18 @@
 //! Results of a run: streamed HDF5 files and their reader.
 //!
-//! [`Writer`] appends one [`Sample`] per output step to an HDF5 file while the run goes on;
-//! [`Results`] reads such a file back, finished or not. [`mod@layout`] is the list of all columns,
-//! shared by both.
+//! [`Writer`] appends one row per output step to an HDF5 file while the run goes on; [`Results`] reads such a file back,
+//! finished or not. Both are given a table of [`Column`]s, which says what a row holds and how to get it from the
+//! caller's own type of row.
+//!
+//! A file with T rows has one dataset for each column, and for each point one for each column of points. It has
+//! `body/mass`, `center_of_mass` (3), `inertia` (3×3), `frequencies` and `damping_ratios` (nf) besides. Every dataset has
+//! the attributes `unit`, `frame` and `description`. The root has `title`, `scene` (the scene file's text), `scene_file`
+//! (where it was), `formulation`, `scheme`, `step` or `tolerance`, `program_version`, `fingerprint`, `units_length`,
+//! `units_mass`, `units_time` and `complete`: 1, or 0 in an unfinished file.
+//!
+//! In an unfinished file, T is the number of rows that there is room for. Those that have not been written are NaN. It
+//! has the dataset `checkpoint` besides (2×words): two places for the state of the run, written in turns, each with
+//! its number, the rows before it, their check sum, the words of the state, and a check sum of itself.
 //!
 //! The crate knows plain data only: no mesh, no mode, no scheme.
 
@@ -10,14 +20,13 @@
 #![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable))]
 
 mod checkpoint;
+mod column;
 mod description;
 mod error;
-pub mod layout;
 mod metadata;
 mod place;
 mod reader;
 mod room;
-mod sample;
 mod seal;
 mod store;
 mod structure;
@@ -26,8 +35,8 @@ mod writer;
 #[cfg(test)]
 extern crate self as results; // for what the tests share
 
+pub use column::{Column, Values};
 pub use error::FileError;
 pub use metadata::{BodyProperties, Metadata, Units};
-pub use reader::{PointHistory, Results, Table};
-pub use sample::{PointSample, Sample};
+pub use reader::{Results, Table};
 pub use writer::{Expected, Resumed, Writer, unfinished};

@@ -61,7 +61,7 @@ pub struct Metadata {
     pub scene_file: String,
     /// The body.
     pub body: BodyProperties,
-    /// Names of the points whose motion is stored, in the order of [`Sample::points`](crate::Sample::points).
+    /// Names of the points whose motion is stored, in the order of a row's points.
     pub point_names: Vec<String>,
 }
 

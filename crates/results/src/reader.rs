@@ -1,71 +1,22 @@
 //! Reads a results file back, finished or not.
 
 use crate::checkpoint::{Checkpoint, Sums};
-use crate::layout::Quantity;
+use crate::column::histories;
 use crate::store::Store;
-use crate::{FileError, Metadata, PointSample, Sample};
+use crate::{Column, FileError, Metadata};
 use std::collections::BTreeMap;
 use std::path::Path;
 
 /// A results file in memory; rows are output times.
-///
-/// Frames and units are those of [`mod@crate::layout`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Results {
     /// What the file says of the run as a whole; the points in the order in which they were given.
     pub metadata: Metadata,
     /// Whether the run came to its end.
     pub complete: bool,
-    /// Time (T).
-    pub time: Vec<f64>,
-    /// Unit quaternions w x y z, body to global.
-    pub attitude: Vec<[f64; 4]>,
-    /// Position of the centre of mass, global.
-    pub position: Vec<[f64; 3]>,
-    /// Velocity of the centre of mass, global.
-    pub velocity: Vec<[f64; 3]>,
-    /// Angular velocity, body axes.
-    pub angular_velocity: Vec<[f64; 3]>,
-    /// Angular acceleration, body axes.
-    pub angular_acceleration: Vec<[f64; 3]>,
-    /// Coordinates of the flexible modes (T×nf).
-    pub modal_displacement: Table,
-    /// Their rates (T×nf).
-    pub modal_velocity: Table,
-    /// Kinetic energy.
-    pub kinetic_energy: Vec<f64>,
-    /// Strain energy.
-    pub strain_energy: Vec<f64>,
-    /// Work of the loads since t = 0.
-    pub work: Vec<f64>,
-    /// Energy that damping has taken since t = 0.
-    pub dissipation: Vec<f64>,
-    /// Kinetic + strain energy − work + dissipation.
-    pub energy_balance: Vec<f64>,
-    /// Linear momentum, global.
-    pub linear_momentum: Vec<[f64; 3]>,
-    /// Angular momentum about the centre of mass, global.
-    pub angular_momentum: Vec<[f64; 3]>,
-    /// Linear momentum less the impulse of the loads since t = 0, global.
-    pub linear_balance: Vec<[f64; 3]>,
-    /// Angular momentum less the angular impulse of the loads since t = 0, both about the centre of
-    /// mass, global.
-    pub angular_balance: Vec<[f64; 3]>,
-    /// The points by name.
-    pub points: BTreeMap<String, PointHistory>,
-}
-
-/// Motion of one point, global components.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct PointHistory {
-    /// Displacement from the place at t = 0 in the undeformed body.
-    pub displacement: Vec<[f64; 3]>,
-    /// Velocity.
-    pub velocity: Vec<[f64; 3]>,
-    /// Acceleration.
-    pub acceleration: Vec<[f64; 3]>,
-    /// Part of the acceleration that belongs to the rigid motion.
-    pub rigid_acceleration: Vec<[f64; 3]>,
+    rows: usize,
+    /// By path.
+    histories: BTreeMap<String, Table>,
 }
 
 /// A T×n table, row by row.
@@ -92,41 +43,50 @@ impl Table {
         (i < self.rows).then(|| &self.values[i * self.width..(i + 1) * self.width])
     }
 
+    /// All values, row by row.
+    pub fn values(&self) -> &[f64] {
+        &self.values
+    }
+
     /// The history of column `k`, if there is one.
     pub fn column(&self, k: usize) -> Option<impl Iterator<Item = f64>> {
         (k < self.width).then(|| self.values.iter().skip(k).step_by(self.width).copied())
     }
+
+    fn truncate(&mut self, rows: usize) {
+        self.rows = self.rows.min(rows);
+        self.values.truncate(self.rows * self.width);
+    }
 }
 
 impl Results {
-    /// Reads the whole file. Of an unfinished one, the rows that every dataset has.
+    /// Reads the whole file, whose columns are those it was written with. Of an unfinished one, the rows that every
+    /// dataset has.
     ///
     /// # Errors
     /// [`FileError::NoSeal`] and [`FileError::Damaged`] if it is not what a [`Writer`](crate::Writer) wrote, or those of
     /// [`Writer::create`](crate::Writer::create) for its metadata; [`FileError::Busy`] if another process writes it;
     /// [`FileError::System`] if it cannot be read.
-    pub fn open(path: impl AsRef<Path>) -> Result<Self, FileError> {
+    pub fn open<R>(path: impl AsRef<Path>, columns: &'static [Column<R>]) -> Result<Self, FileError> {
         let path = path.as_ref();
-        Ok(Self::read_with_checkpoint(&Store::open(path)?, path)?.0)
+        Ok(Self::read_with_checkpoint(&Store::open(path, columns)?, path, columns)?.0)
     }
 
     /// With the last checkpoint of an unfinished file whose rows are as they were then, and their sums.
-    pub(crate) fn read_with_checkpoint(
+    pub(crate) fn read_with_checkpoint<R>(
         store: &Store,
         path: &Path,
+        table: &'static [Column<R>],
     ) -> Result<(Self, Option<(Checkpoint, Sums)>), FileError> {
         let metadata = store.metadata().clone();
         let complete = store.is_complete();
-        let modes = metadata.body.frequencies.len();
-        let names = &metadata.point_names;
-        let quantities: Vec<Quantity> = Quantity::all(names.len()).collect();
         let mut rows = store.rows();
-        let mut columns = store.read(path)?;
+        let columns = store.read(path)?;
         if !complete {
             // What has not been written is NaN; no run writes what is not finite.
-            for (quantity, column) in quantities.iter().zip(&columns) {
+            for (width, column) in store.widths().zip(&columns) {
                 let whole = column.iter().position(|value| !value.is_finite()).unwrap_or(usize::MAX);
-                rows = rows.min(whole / quantity.width(modes).unwrap_or(1).max(1));
+                rows = rows.min(whole / width.max(1));
             }
         }
         // Whole ones, the last first.
@@ -136,8 +96,7 @@ impl Results {
         checkpoints.sort_unstable_by_key(|checkpoint| std::cmp::Reverse(checkpoint.serial));
         let sums = |checkpoint: &Checkpoint| {
             let mut sums = Sums::new(columns.len());
-            let widths = quantities.iter().map(|quantity| quantity.width(modes).unwrap_or(1));
-            sums.add(columns.iter().zip(widths).map(|(column, width)| &column[..checkpoint.rows * width]));
+            sums.add(columns.iter().zip(store.widths()).map(|(column, width)| &column[..checkpoint.rows * width]));
             sums
         };
         let known = checkpoints.iter().map(|checkpoint| checkpoint.rows).max();
@@ -149,136 +108,50 @@ impl Results {
             let what = format!("its first {known} rows are not those that its checkpoint is for");
             return Err(FileError::Damaged { path: path.to_path_buf(), what });
         }
-        let widths = quantities.iter().map(|quantity| quantity.width(modes).unwrap_or(1));
-        columns.iter_mut().zip(widths).for_each(|(column, width)| column.truncate(rows * width));
-        let mut of_points = columns.split_off(Quantity::all(0).count()).into_iter();
-        let mut points = BTreeMap::new();
-        for name in names {
-            let mut next = || vectors(of_points.next().unwrap_or_default());
-            let history = PointHistory {
-                displacement: next(),
-                velocity: next(),
-                acceleration: next(),
-                rigid_acceleration: next(),
-            };
-            points.insert(name.clone(), history);
-        }
-        let mut column = |quantity: Quantity| {
-            let place = quantities.iter().position(|q| *q == quantity);
-            place.map(|place| std::mem::take(&mut columns[place])).unwrap_or_default()
-        };
-
-        let results = Self {
-            complete,
-            time: column(Quantity::Time),
-            attitude: vectors(column(Quantity::Attitude)),
-            position: vectors(column(Quantity::Position)),
-            velocity: vectors(column(Quantity::Velocity)),
-            angular_velocity: vectors(column(Quantity::AngularVelocity)),
-            angular_acceleration: vectors(column(Quantity::AngularAcceleration)),
-            modal_displacement: Table { rows, width: modes, values: column(Quantity::ModalDisplacement) },
-            modal_velocity: Table { rows, width: modes, values: column(Quantity::ModalVelocity) },
-            kinetic_energy: column(Quantity::KineticEnergy),
-            strain_energy: column(Quantity::StrainEnergy),
-            work: column(Quantity::Work),
-            dissipation: column(Quantity::Dissipation),
-            energy_balance: column(Quantity::EnergyBalance),
-            linear_momentum: vectors(column(Quantity::LinearMomentum)),
-            angular_momentum: vectors(column(Quantity::AngularMomentum)),
-            linear_balance: vectors(column(Quantity::LinearBalance)),
-            angular_balance: vectors(column(Quantity::AngularBalance)),
-            points,
-            metadata,
-        };
-        Ok((results, checkpoint))
+        let tables = columns.into_iter().zip(store.widths()).map(|(mut values, width)| {
+            values.truncate(rows * width);
+            Table { rows, width, values }
+        });
+        let paths = histories(table, metadata.point_names.len()).map(|history| history.path(&metadata.point_names));
+        let histories = paths.zip(tables).collect();
+        Ok((Self { metadata, complete, rows, histories }, checkpoint))
     }
 
-    /// Row `row`, if there is one; `points` is the room for its points.
-    pub fn sample<'a>(&'a self, row: usize, points: &'a mut Vec<PointSample>) -> Option<Sample<'a>> {
-        points.clear();
-        for name in &self.metadata.point_names {
-            let point = self.points.get(name)?;
-            points.push(PointSample {
-                displacement: *point.displacement.get(row)?,
-                velocity: *point.velocity.get(row)?,
-                acceleration: *point.acceleration.get(row)?,
-                rigid_acceleration: *point.rigid_acceleration.get(row)?,
-            });
-        }
-        Some(Sample {
-            time: *self.time.get(row)?,
-            attitude: *self.attitude.get(row)?,
-            position: *self.position.get(row)?,
-            velocity: *self.velocity.get(row)?,
-            angular_velocity: *self.angular_velocity.get(row)?,
-            angular_acceleration: *self.angular_acceleration.get(row)?,
-            modal_displacement: self.modal_displacement.row(row)?,
-            modal_velocity: self.modal_velocity.row(row)?,
-            kinetic_energy: *self.kinetic_energy.get(row)?,
-            strain_energy: *self.strain_energy.get(row)?,
-            work: *self.work.get(row)?,
-            dissipation: *self.dissipation.get(row)?,
-            energy_balance: *self.energy_balance.get(row)?,
-            linear_momentum: *self.linear_momentum.get(row)?,
-            angular_momentum: *self.angular_momentum.get(row)?,
-            linear_balance: *self.linear_balance.get(row)?,
-            angular_balance: *self.angular_balance.get(row)?,
-            points,
+    /// Number of rows, T.
+    pub fn rows(&self) -> usize {
+        self.rows
+    }
+
+    /// The history of this path, such as "modal/displacement" or "points/P1/velocity", if there is one.
+    pub fn table(&self, path: &str) -> Option<&Table> {
+        self.histories.get(path)
+    }
+
+    /// The history of this path, if there is one with one value a row, such as "energy/work".
+    pub fn numbers(&self, path: &str) -> Option<&[f64]> {
+        self.vectors(path).map(<[[f64; 1]]>::as_flattened)
+    }
+
+    /// The history of this path, if there is one with `N` values a row, such as "position".
+    pub fn vectors<const N: usize>(&self, path: &str) -> Option<&[[f64; N]]> {
+        let table = self.table(path).filter(|table| table.width == N)?;
+        Some(table.values.as_chunks().0)
+    }
+
+    /// Whether row `i` is this one, to the last bit of every column.
+    pub fn is_row<R>(&self, i: usize, columns: &'static [Column<R>], row: &R) -> bool {
+        let names = &self.metadata.point_names;
+        let mut values = Vec::new();
+        histories(columns, names.len()).all(|history| {
+            values.clear();
+            history.append(row, &mut values);
+            self.table(&history.path(names)).and_then(|table| table.row(i)) == Some(&values)
         })
     }
 
     /// Keeps the first `rows` rows only.
     pub(crate) fn truncate(&mut self, rows: usize) {
-        let Self {
-            metadata: _,
-            complete: _,
-            time,
-            attitude,
-            position,
-            velocity,
-            angular_velocity,
-            angular_acceleration,
-            modal_displacement,
-            modal_velocity,
-            kinetic_energy,
-            strain_energy,
-            work,
-            dissipation,
-            energy_balance,
-            linear_momentum,
-            angular_momentum,
-            linear_balance,
-            angular_balance,
-            points,
-        } = self;
-        for column in [time, kinetic_energy, strain_energy, work, dissipation, energy_balance] {
-            column.truncate(rows);
-        }
-        let vectors = [
-            position,
-            velocity,
-            angular_velocity,
-            angular_acceleration,
-            linear_momentum,
-            angular_momentum,
-            linear_balance,
-            angular_balance,
-        ];
-        let of_points = points.values_mut().flat_map(|point| {
-            [&mut point.displacement, &mut point.velocity, &mut point.acceleration, &mut point.rigid_acceleration]
-        });
-        for column in vectors.into_iter().chain(of_points) {
-            column.truncate(rows);
-        }
-        attitude.truncate(rows);
-        for table in [modal_displacement, modal_velocity] {
-            table.rows = table.rows.min(rows);
-            table.values.truncate(table.rows * table.width);
-        }
+        self.rows = self.rows.min(rows);
+        self.histories.values_mut().for_each(|table| table.truncate(rows));
     }
-}
-
-/// Groups row-by-row values into rows of `N`.
-fn vectors<const N: usize>(values: Vec<f64>) -> Vec<[f64; N]> {
-    values.as_chunks().0.to_vec()
 }

@@ -1,9 +1,9 @@
 //! The numbers of an open results file, written and read at their places without HDF5.
 
+use crate::column::{histories, widths};
 use crate::description::Description;
-use crate::layout::Quantity;
 use crate::room::Room;
-use crate::{FileError, Metadata, seal, structure};
+use crate::{Column, FileError, Metadata, seal, structure};
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::ops::Range;
@@ -21,7 +21,7 @@ const NUMBER: usize = size_of::<f64>();
 pub(crate) struct Store {
     file: File,
     description: Description,
-    /// Bytes of the histories, in the order of [`Quantity::all`], and their values per row.
+    /// Bytes of the histories and their values per row.
     columns: Vec<(Range<u64>, usize)>,
     /// Bytes of the two places for a checkpoint.
     checkpoints: Range<u64>,
@@ -29,9 +29,15 @@ pub(crate) struct Store {
 
 impl Store {
     /// Makes the file at `place`, called `path` in messages. It has no seal yet.
-    pub(crate) fn create(place: &Path, path: &Path, metadata: &Metadata, room: Room) -> Result<Self, FileError> {
-        let quantities = Quantity::all(metadata.point_names.len()).count();
-        let starts = vec![u64::MAX; quantities + usize::from(room.checkpoint_words.is_some())];
+    pub(crate) fn create<R>(
+        place: &Path,
+        path: &Path,
+        metadata: &Metadata,
+        columns: &'static [Column<R>],
+        room: Room,
+    ) -> Result<Self, FileError> {
+        let count = histories(columns, metadata.point_names.len()).count();
+        let starts = vec![u64::MAX; count + usize::from(room.checkpoint_words.is_some())];
         let mut description = Description {
             rows: room.rows,
             checkpoint_words: room.checkpoint_words,
@@ -40,27 +46,29 @@ impl Store {
         };
         // No other places take more digits.
         let user_block = seal::room(description.to_json().len() as u64);
-        description.starts = structure::make(place, path, metadata, room, user_block)
+        description.starts = structure::make(place, path, metadata, columns, room, user_block)
             .map_err(|error| error.with_reason_from_system(place))?;
         let file = OpenOptions::new().read(true).write(true).open(place);
         let file = file.map_err(|error| FileError::system(path, "open the file for writing", &error))?;
         lock(&file, path, File::try_lock)?;
         let described = description.to_json().len();
-        Self::new(file, path, description, described)
+        Self::new(file, path, columns, description, described)
     }
 
     /// Opens a sealed file for reading.
-    pub(crate) fn open(path: &Path) -> Result<Self, FileError> {
-        Self::open_as(path, "open the file", OpenOptions::new().read(true), File::try_lock_shared)
+    pub(crate) fn open<R>(path: &Path, columns: &'static [Column<R>]) -> Result<Self, FileError> {
+        Self::open_as(path, columns, "open the file", OpenOptions::new().read(true), File::try_lock_shared)
     }
 
     /// Opens a sealed file for writing.
-    pub(crate) fn open_to_write(path: &Path) -> Result<Self, FileError> {
-        Self::open_as(path, "open the file for writing", OpenOptions::new().read(true).write(true), File::try_lock)
+    pub(crate) fn open_to_write<R>(path: &Path, columns: &'static [Column<R>]) -> Result<Self, FileError> {
+        let options = OpenOptions::new().read(true).write(true).clone();
+        Self::open_as(path, columns, "open the file for writing", &options, File::try_lock)
     }
 
-    fn open_as(
+    fn open_as<R>(
         path: &Path,
+        columns: &'static [Column<R>],
         action: &str,
         options: &OpenOptions,
         try_lock: fn(&File) -> Result<(), TryLockError>,
@@ -73,7 +81,7 @@ impl Store {
         let file = options.open(path).map_err(failed)?;
         lock(&file, path, try_lock)?;
         let json = seal::description(&file, path)?;
-        let store = Self::new(file, path, Description::from_json(path, &json)?, json.len())?;
+        let store = Self::new(file, path, columns, Description::from_json(path, &json)?, json.len())?;
         seal::check(&store.file, path, &store.changing())?;
         // Who makes a file on purpose can make its seal, too.
         store.metadata().check(path)?;
@@ -81,16 +89,24 @@ impl Store {
     }
 
     /// A description may be any: what it claims must be within the file after it, each in a place of its own.
-    fn new(file: File, path: &Path, description: Description, described: usize) -> Result<Self, FileError> {
+    fn new<R>(
+        file: File,
+        path: &Path,
+        columns: &'static [Column<R>],
+        description: Description,
+        described: usize,
+    ) -> Result<Self, FileError> {
         let failed = |error| FileError::system(path, "read the file", &error);
         let length = file.metadata().map_err(failed)?.len();
-        let ranges = description.ranges(seal::HEAD + described as u64..length);
+        let Metadata { body, point_names, .. } = &description.metadata;
+        let widths = widths(columns, body.frequencies.len(), point_names.len());
+        let ranges = description.ranges(widths.clone(), seal::HEAD + described as u64..length);
         let Some(mut ranges) = ranges else {
             let what = "its histories are not within it, each in a place of its own".into();
             return Err(FileError::Damaged { path: path.to_path_buf(), what });
         };
         let checkpoints = description.checkpoint_words.and_then(|_| ranges.pop()).unwrap_or_default();
-        let columns = ranges.into_iter().zip(description.widths()).collect();
+        let columns = ranges.into_iter().zip(widths).collect();
         Ok(Self { file, description, columns, checkpoints })
     }
 
@@ -126,12 +142,17 @@ impl Store {
         self.description.rows
     }
 
+    /// Values per row of all histories.
+    pub(crate) fn widths(&self) -> impl Iterator<Item = usize> {
+        self.columns.iter().map(|(_, width)| *width)
+    }
+
     /// Words of each of the two places for a checkpoint.
     pub(crate) fn checkpoint_words(&self) -> usize {
         self.description.checkpoint_words.unwrap_or(0)
     }
 
-    /// Writes rows of all columns, in the order of [`Quantity::all`].
+    /// Writes rows of all histories.
     pub(crate) fn write<'a>(
         &self,
         path: &Path,
@@ -146,7 +167,7 @@ impl Store {
         Ok(())
     }
 
-    /// All columns, in the order of [`Quantity::all`].
+    /// The numbers of all histories.
     pub(crate) fn read(&self, path: &Path) -> Result<Vec<Vec<f64>>, FileError> {
         let columns = self.columns.iter().map(|(bytes, _)| self.read_words(bytes, f64::from_bits));
         columns.collect::<io::Result<_>>().map_err(|error| FileError::system(path, "read the histories", &error))

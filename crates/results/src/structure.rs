@@ -1,10 +1,10 @@
-//! The HDF5 structure of a results file, laid out as [`mod@crate::layout`] says.
+//! The HDF5 structure of a results file, laid out as its columns say.
 //!
 //! HDF5 only makes files here. It opens none that was there before, see [`mod@crate::seal`].
 
-use crate::layout::Quantity;
+use crate::column::{History, histories};
 use crate::room::Room;
-use crate::{FileError, Metadata, Units};
+use crate::{Column, FileError, Metadata, Units};
 use hdf5::dataset::Layout;
 use hdf5::plist::dataset_create::{AllocTime, FillTime};
 use hdf5::plist::group_create::LinkCreationOrder;
@@ -13,12 +13,13 @@ use ndarray::{ArrayView2, aview0, aview1};
 use std::path::Path;
 
 /// Makes the file at `place` (called `path` in messages), which begins with so many bytes that HDF5 leaves alone, and
-/// closes it. Gives the first byte of each history, in the order of [`Quantity::all`], and of the checkpoints; 0 where
+/// closes it. Gives the first byte of each history, in the order of the columns, and of the checkpoints; 0 where
 /// there is nothing.
-pub(crate) fn make(
+pub(crate) fn make<R>(
     place: &Path,
     path: &Path,
     metadata: &Metadata,
+    columns: &'static [Column<R>],
     room: Room,
     user_block: u64,
 ) -> Result<Vec<u64>, FileError> {
@@ -31,8 +32,8 @@ pub(crate) fn make(
     write_root_attributes(path, &file, metadata, room.checkpoint_words.is_none())?;
     write_body(path, &file, metadata)?;
     create_point_groups(&file, &metadata.point_names).map_err(FileError::hdf5(path, "create the points"))?;
-    let mut datasets = Quantity::all(metadata.point_names.len())
-        .map(|quantity| create_column(path, &file, quantity, metadata, room.rows))
+    let mut datasets = histories(columns, metadata.point_names.len())
+        .map(|history| create_history(path, &file, &history, metadata, room.rows))
         .collect::<Result<Vec<_>, _>>()?;
     if let Some(words) = room.checkpoint_words {
         let checkpoint = file
@@ -54,14 +55,14 @@ pub(crate) fn make(
 }
 
 /// Room for so many rows, NaN where nothing has been written.
-fn create_column(
+fn create_history<R>(
     path: &Path,
     file: &hdf5::File,
-    quantity: Quantity,
+    history: &History<R>,
     metadata: &Metadata,
     rows: usize,
 ) -> Result<hdf5::Dataset, FileError> {
-    let name = quantity.path(&metadata.point_names);
+    let (name, column) = (history.path(&metadata.point_names), history.column);
     let builder = file
         .new_dataset::<f64>()
         .layout(Layout::Contiguous)
@@ -69,12 +70,12 @@ fn create_column(
         .fill_time(FillTime::Alloc)
         .fill_value(f64::NAN)
         .obj_track_times(false);
-    let dataset = match quantity.width(metadata.body.frequencies.len()) {
+    let dataset = match column.width(metadata.body.frequencies.len()) {
         None => builder.shape(rows).create(name.as_str()),
         Some(width) => builder.shape((rows, width)).create(name.as_str()),
     }
     .map_err(FileError::hdf5(path, format!("make room for {name}")))?;
-    describe(path, &dataset, &quantity.unit(&metadata.units), quantity.frame(), quantity.description())?;
+    describe(path, &dataset, &column.unit(&metadata.units), column.frame, column.description)?;
     Ok(dataset)
 }
 

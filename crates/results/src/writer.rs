@@ -1,12 +1,12 @@
-//! Streams samples into an HDF5 file while a run goes on.
+//! Streams rows into an HDF5 file while a run goes on.
 
 use crate::checkpoint::{self, Checkpoint, Sums};
-use crate::layout::Quantity;
+use crate::column::{History, histories, widths};
 use crate::place::Place;
 use crate::reader::Results;
 use crate::room::Room;
 use crate::store::Store;
-use crate::{FileError, Metadata, Sample};
+use crate::{Column, FileError, Metadata, Values};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 use tempfile::TempPath;
@@ -31,19 +31,20 @@ pub struct Expected {
     pub overwrite: bool,
 }
 
-/// Appends [`Sample`]s to an HDF5 file whose names and shapes are those of [`mod@crate::layout`].
+/// Appends rows of type `R` to an HDF5 file whose datasets are those of a table of [`Column`]s.
 ///
 /// While the run goes on, the rows are in an unfinished file beside the place of the results ([`unfinished`]), which is
 /// locked. It is a whole HDF5 file at any moment, whenever the process is killed, and holds the rows up to the last
 /// flush. [`Writer::finish`] writes the results file and puts it into its place in one go: what is there is always
 /// whole, and is as it was until then.
 #[derive(Debug)]
-pub struct Writer {
+pub struct Writer<R: 'static> {
     place: Place,
     metadata: Metadata,
+    columns: &'static [Column<R>],
     store: Store,
-    /// Values of the rows that have not been written, by column.
-    buffers: Vec<(Quantity, Vec<f64>)>,
+    /// Values of the rows that have not been written, by history.
+    buffers: Vec<(History<R>, Vec<f64>)>,
     /// Of the rows that have been written.
     sums: Sums,
     rows_written: usize,
@@ -61,16 +62,16 @@ pub fn unfinished(path: impl AsRef<Path>) -> PathBuf {
 
 /// A run that can go on.
 #[derive(Debug)]
-pub struct Resumed {
+pub struct Resumed<R: 'static> {
     /// Goes on after the rows.
-    pub writer: Writer,
+    pub writer: Writer<R>,
     /// The rows up to the checkpoint.
     pub results: Results,
     /// The last checkpoint; of a run that was cut off before its first there is none, nor are there rows.
     pub checkpoint: Option<Vec<u64>>,
 }
 
-impl Writer {
+impl<R> Writer<R> {
     /// Begins the results file `path` with the metadata and empty histories.
     ///
     /// # Errors
@@ -79,24 +80,34 @@ impl Writer {
     /// [`FileError::ConstantNotFinite`], [`FileError::NulInText`]; [`FileError::Busy`] if another process writes it,
     /// [`FileError::Unfinished`], [`FileError::NotResults`] and [`FileError::Link`] for what would be lost;
     /// [`FileError::NameNotUtf8`], [`FileError::System`] and [`FileError::Hdf5`] if the file cannot be written.
-    pub fn create(path: impl AsRef<Path>, metadata: &Metadata, expected: Expected) -> Result<Self, FileError> {
+    pub fn create(
+        path: impl AsRef<Path>,
+        metadata: &Metadata,
+        columns: &'static [Column<R>],
+        expected: Expected,
+    ) -> Result<Self, FileError> {
         let place = Place::of(path.as_ref());
         metadata.check(&place.path)?;
         let modes = metadata.body.frequencies.len();
         place.check(expected.overwrite)?;
 
-        let buffers: Vec<_> = Quantity::all(metadata.point_names.len())
-            .map(|quantity| (quantity, Vec::with_capacity(ROWS_PER_WRITE * quantity.width(modes).unwrap_or(1))))
+        let points = metadata.point_names.len();
+        let buffers: Vec<_> = histories(columns, points)
+            .map(|history| {
+                let room = ROWS_PER_WRITE * history.width(modes);
+                (history, Vec::with_capacity(room))
+            })
             .collect();
-        let numbers_per_row: usize = buffers.iter().map(|(quantity, _)| quantity.width(modes).unwrap_or(1)).sum();
-        let rows = expected.rows.min(FIRST_ROOM / numbers_per_row).max(ROWS_PER_WRITE);
+        let numbers_per_row: usize = widths(columns, modes, points).sum();
+        let rows = expected.rows.min(FIRST_ROOM / numbers_per_row.max(1)).max(ROWS_PER_WRITE);
         let checkpoint = vec![0; checkpoint::FRAME + expected.checkpoint];
         let room = Room { rows, checkpoint_words: Some(checkpoint.len()) };
-        let (file, store) = make_room(&place, metadata, room)?;
+        let (file, store) = make_room(&place, metadata, columns, room)?;
         place.put_part(file, expected.overwrite)?;
         Ok(Self {
             place,
             metadata: metadata.clone(),
+            columns,
             store,
             sums: Sums::new(buffers.len()),
             buffers,
@@ -126,27 +137,25 @@ impl Writer {
     /// [`FileError::Complete`] and [`FileError::NothingToResume`] if there is no unfinished file, [`FileError::Link`],
     /// [`FileError::Busy`] if its run goes on, [`FileError::NameNotUtf8`] or [`FileError::System`] if no file can be made
     /// in the folder, and those of [`Results::open`].
-    pub fn resume(path: impl AsRef<Path>) -> Result<Resumed, FileError> {
+    pub fn resume(path: impl AsRef<Path>, columns: &'static [Column<R>]) -> Result<Resumed<R>, FileError> {
         let place = Place::of(path.as_ref());
         place.check_resumable()?;
         let part = &place.part;
-        let store = Store::open_to_write(part)?;
+        let store = Store::open_to_write(part, columns)?;
         if store.is_complete() {
             return Err(FileError::Complete { path: part.clone() });
         }
-        let (mut results, last) = Results::read_with_checkpoint(&store, part)?;
+        let (mut results, last) = Results::read_with_checkpoint(&store, part, columns)?;
         let (rows, serial, frame, state, sums) = match last {
             Some((last, sums)) => (last.rows, last.serial, last.words(), Some(last.state), sums),
-            None => {
-                let columns = Quantity::all(results.metadata.point_names.len()).count();
-                (0, 0, vec![0; store.checkpoint_words()], None, Sums::new(columns))
-            }
+            None => (0, 0, vec![0; store.checkpoint_words()], None, Sums::new(store.widths().count())),
         };
         results.truncate(rows);
-        let buffers =
-            Quantity::all(results.metadata.point_names.len()).map(|quantity| (quantity, Vec::new())).collect();
+        let points = results.metadata.point_names.len();
+        let buffers = histories(columns, points).map(|history| (history, Vec::new())).collect();
         let writer = Self {
             metadata: results.metadata.clone(),
+            columns,
             place,
             store,
             buffers,
@@ -175,26 +184,41 @@ impl Writer {
     /// # Errors
     /// [`FileError::WrongLength`] and [`FileError::NotFinite`] leave the row out and everything before
     /// it in; [`FileError::System`] and [`FileError::Hdf5`] if the file cannot be written.
-    pub fn push(&mut self, sample: &Sample) -> Result<(), FileError> {
-        let (path, modes) = (&self.place.part, self.metadata.body.frequencies.len());
-        check_length(path, "points", self.metadata.point_names.len(), sample.points.len())?;
-        check_length(path, "modal/displacement", modes, sample.modal_displacement.len())?;
-        check_length(path, "modal/velocity", modes, sample.modal_velocity.len())?;
-        for (quantity, _) in &self.buffers {
-            if let Some(&value) = quantity.of(sample).iter().find(|value| !value.is_finite()) {
-                return Err(FileError::NotFinite {
-                    path: path.clone(),
-                    time: sample.time,
-                    quantity: quantity.path(&self.metadata.point_names),
-                    value,
-                });
+    pub fn push(&mut self, row: &R) -> Result<(), FileError> {
+        self.buffers.iter_mut().for_each(|(history, buffer)| history.append(row, buffer));
+        let modes = self.metadata.body.frequencies.len();
+        if let Err(error) = self.check_last(row) {
+            for (history, buffer) in &mut self.buffers {
+                buffer.truncate(self.rows_buffered * history.width(modes));
             }
-        }
-        for (quantity, buffer) in &mut self.buffers {
-            buffer.extend_from_slice(quantity.of(sample));
+            return Err(error);
         }
         self.rows_buffered += 1;
         if self.rows_buffered == ROWS_PER_WRITE { self.write_buffers() } else { Ok(()) }
+    }
+
+    /// Refuses the row whose values are the last in the buffers where it lacks a value, or has one that is not finite.
+    fn check_last(&self, row: &R) -> Result<(), FileError> {
+        let (path, Metadata { body, point_names, .. }) = (&self.place.part, &self.metadata);
+        let points = point_names.len();
+        let has_more = |column: &Column<R>| matches!(column.values, Values::Point(of) if of(row, points).is_some());
+        if self.columns.iter().any(has_more) {
+            return check_length(path, "points", points, points + 1);
+        }
+        let mut time = None;
+        for (history, buffer) in &self.buffers {
+            let width = history.width(body.frequencies.len());
+            let values = &buffer[self.rows_buffered * width..];
+            let quantity = || history.path(point_names);
+            if values.len() != width {
+                return check_length(path, &quantity(), width, values.len());
+            }
+            let time = *time.get_or_insert(values.first().copied().unwrap_or(f64::NAN));
+            if let Some(&value) = values.iter().find(|value| !value.is_finite()) {
+                return Err(FileError::NotFinite { path: path.clone(), time, quantity: quantity(), value });
+            }
+        }
+        Ok(())
     }
 
     /// Whether the last flush is about a second ago.
@@ -231,7 +255,7 @@ impl Writer {
         let room = Room { rows: self.rows_written, checkpoint_words: None };
         let file = self.place.temporary()?;
         let path = &self.place.path;
-        let store = Store::create(&file, path, &self.metadata, room)?;
+        let store = Store::create(&file, path, &self.metadata, self.columns, room)?;
         store.copy_rows(path, &self.store, self.rows_written)?;
         store.seal(path)?;
         drop(store);
@@ -265,7 +289,7 @@ impl Writer {
         let part = &self.place.part;
         let rows = rows.max(2 * self.store.rows());
         let room = Room { rows, checkpoint_words: Some(self.checkpoint.len()) };
-        let (file, store) = make_room(&self.place, &self.metadata, room)?;
+        let (file, store) = make_room(&self.place, &self.metadata, self.columns, room)?;
         store.copy_rows(part, &self.store, self.rows_written)?;
         store.write_checkpoint(part, (self.serial % 2) as usize, &self.checkpoint)?;
         self.place.exchange_part(file)?;
@@ -275,14 +299,19 @@ impl Writer {
 }
 
 /// A sealed unfinished file that has no name yet.
-fn make_room(place: &Place, metadata: &Metadata, room: Room) -> Result<(TempPath, Store), FileError> {
+fn make_room<R>(
+    place: &Place,
+    metadata: &Metadata,
+    columns: &'static [Column<R>],
+    room: Room,
+) -> Result<(TempPath, Store), FileError> {
     let file = place.temporary()?;
-    let store = Store::create(&file, &place.part, metadata, room)?;
+    let store = Store::create(&file, &place.part, metadata, columns, room)?;
     store.seal(&place.part)?;
     Ok((file, store))
 }
 
-impl Drop for Writer {
+impl<R> Drop for Writer<R> {
     fn drop(&mut self) {
         // Best effort: there is nobody left to tell. After `finish` there is nothing to do.
         let _ = self.write_buffers();

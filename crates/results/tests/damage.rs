@@ -5,7 +5,7 @@ mod rows;
 mod sealed;
 
 use results::*;
-use rows::{Row, assert_rows, folder, metadata};
+use rows::{COLUMNS, Resumed, Row, Writer, assert_rows, folder, metadata};
 use std::fs::OpenOptions;
 use std::ops::Range;
 use std::os::unix::fs::FileExt;
@@ -22,8 +22,8 @@ fn files(path: &Path) -> [Vec<u8>; 2] {
     let metadata = Metadata { scene_text: "title = \"ω₂\"".into(), ..metadata(2, &["P1"]) };
     let begin = || {
         let expected = Expected { checkpoint: 4, ..Expected::default() };
-        let mut writer = Writer::create(path, &metadata, expected).unwrap();
-        (0..ROWS).for_each(|i| writer.push(&Row::new(i, 2, 1).sample()).unwrap());
+        let mut writer = Writer::create(path, &metadata, &COLUMNS, expected).unwrap();
+        (0..ROWS).for_each(|i| writer.push(&Row::new(i, 2, 1)).unwrap());
         writer.flush(&[1, 2, 3, 4]).unwrap();
         writer
     };
@@ -44,7 +44,7 @@ fn left_out(bytes: &[u8]) -> Vec<Range<usize>> {
 /// What the reader says of a file, and the most memory that it held meanwhile.
 fn read(path: &Path) -> (Result<Results, FileError>, usize) {
     let mut outcome = None;
-    let memory = allocation_counter::measure(|| outcome = Some(Results::open(path)));
+    let memory = allocation_counter::measure(|| outcome = Some(Results::open(path, &COLUMNS)));
     (outcome.unwrap(), memory.bytes_max as usize)
 }
 
@@ -133,10 +133,10 @@ fn every_damage_is_found() {
         assert!(memory < 3 * bytes.len());
         match results {
             // Rows after the checkpoint may be anything that is finite.
-            Ok(results) => assert!(results.time.iter().all(|time| time.is_finite())),
+            Ok(results) => assert!(results.numbers("time").unwrap().iter().all(|time| time.is_finite())),
             Err(error) => assert!(matches!(error, FileError::Damaged { .. }), "{error}"),
         }
-        match Writer::resume(&place) {
+        match Writer::resume(&place, &COLUMNS) {
             Ok(Resumed { results, checkpoint: Some(state), .. }) => {
                 assert_rows(&results, ROWS);
                 assert_eq!(state, [1, 2, 3, 4]);

@@ -4,13 +4,13 @@ mod rows;
 
 use hdf5::types::{FloatSize, IntSize, TypeDescriptor, VarLenUnicode};
 use results::*;
-use rows::{Row, assert_rows, folder, metadata};
+use rows::{COLUMNS, Resumed, Row, Writer, assert_rows, folder, metadata};
 use std::path::Path;
 
 fn write(path: &Path, rows: usize, metadata: &Metadata) -> Writer {
-    let mut writer = Writer::create(path, metadata, Expected::default()).unwrap();
+    let mut writer = Writer::create(path, metadata, &COLUMNS, Expected::default()).unwrap();
     for i in 0..rows {
-        writer.push(&Row::new(i, metadata.body.frequencies.len(), metadata.point_names.len()).sample()).unwrap();
+        writer.push(&Row::new(i, metadata.body.frequencies.len(), metadata.point_names.len())).unwrap();
     }
     writer
 }
@@ -22,15 +22,21 @@ fn what_is_written_is_read_bit_for_bit() {
     for rows in [0, 1, 511, 512, 513, 1300] {
         let metadata = metadata(3, &["P10", "P2", "corner at -x"]);
         write(&path, rows, &metadata).finish().unwrap();
-        let results = Results::open(&path).unwrap();
+        let results = Results::open(&path, &COLUMNS).unwrap();
         assert_eq!(results.metadata, metadata);
         assert!(results.complete);
         assert_rows(&results, rows);
     }
-    let results = Results::open(&path).unwrap();
-    let column: Vec<f64> = results.modal_velocity.column(2).unwrap().collect();
+    let results = Results::open(&path, &COLUMNS).unwrap();
+    let velocity = results.table("modal/velocity").unwrap();
+    let column: Vec<f64> = velocity.column(2).unwrap().collect();
     assert_eq!((column.len(), column[7]), (1300, -3.0 * (7.0 * 1e-4 + 2.0)));
-    assert!(results.modal_velocity.column(3).is_none() && results.modal_velocity.row(1300).is_none());
+    assert!(velocity.column(3).is_none() && velocity.row(1300).is_none());
+    assert_eq!(results.numbers("energy/work").unwrap()[7], 7.0 * 1e-4 + 14.0);
+    assert_eq!(results.vectors("points/P2/velocity").unwrap()[0], [111.0, -111.0, 0.0]);
+    // Nothing by a path that there is not, or of another width.
+    assert!(results.table("energy").is_none() && results.numbers("position").is_none());
+    assert!(results.vectors::<3>("attitude").is_none() && results.vectors::<4>("attitude").is_some());
 }
 
 #[test]
@@ -39,7 +45,7 @@ fn a_run_has_a_step_or_a_tolerance() {
     for (step, tolerance) in [(Some(2e-5), None), (None, Some(1e-8))] {
         let metadata = Metadata { step, tolerance, ..metadata(1, &[]) };
         write(&path, 3, &metadata).finish().unwrap();
-        assert_eq!(Results::open(&path).unwrap().metadata, metadata);
+        assert_eq!(Results::open(&path, &COLUMNS).unwrap().metadata, metadata);
         let attributes = hdf5::File::open(&path).unwrap().attr_names().unwrap();
         let has = |name: &str| attributes.iter().any(|found| found == name);
         assert_eq!((has("step"), has("tolerance")), (step.is_some(), tolerance.is_some()));
@@ -51,10 +57,10 @@ fn a_rigid_body_without_points_is_a_file_too() {
     let (_folder, path) = folder();
     for rows in [0, 600] {
         write(&path, rows, &metadata(0, &[])).finish().unwrap();
-        let results = Results::open(&path).unwrap();
+        let results = Results::open(&path, &COLUMNS).unwrap();
         assert_rows(&results, rows);
-        assert_eq!((results.modal_displacement.width(), results.points.len()), (0, 0));
-        assert_eq!(results.modal_displacement.rows(), rows);
+        let displacement = results.table("modal/displacement").unwrap();
+        assert_eq!((displacement.width(), displacement.rows()), (0, rows));
     }
 }
 
@@ -63,7 +69,7 @@ fn a_dropped_writer_leaves_its_rows_in_an_unfinished_file_and_nothing_in_the_pla
     let (_folder, path) = folder();
     drop(write(&path, 700, &metadata(2, &["P1"])));
     assert!(!path.exists());
-    let results = Results::open(unfinished(&path)).unwrap();
+    let results = Results::open(unfinished(&path), &COLUMNS).unwrap();
     assert!(!results.complete);
     assert_rows(&results, 700);
 }
@@ -74,8 +80,8 @@ fn a_sample_that_is_not_finite_is_refused_and_those_before_it_stay() {
     let metadata = metadata(2, &["P1"]);
     let mut writer = write(&path, 20, &metadata);
     let mut row = Row::new(20, 2, 1);
-    row.points[0].acceleration[1] = f64::NAN;
-    match writer.push(&row.sample()) {
+    row.points[0][2][1] = f64::NAN;
+    match writer.push(&row) {
         Err(FileError::NotFinite { time, quantity, .. }) => {
             assert_eq!((time, quantity.as_str()), (row.time, "points/P1/acceleration"));
         }
@@ -83,20 +89,23 @@ fn a_sample_that_is_not_finite_is_refused_and_those_before_it_stay() {
     }
     let mut row = Row::new(20, 2, 1);
     row.modal[1][1] = f64::INFINITY;
-    let error = writer.push(&row.sample()).unwrap_err().to_string();
+    let error = writer.push(&row).unwrap_err().to_string();
     assert!(error.contains("modal/velocity is inf at time 0.002") && error.contains("smaller step"), "{error}");
     writer.finish().unwrap();
-    assert_rows(&Results::open(&path).unwrap(), 20);
+    assert_rows(&Results::open(&path, &COLUMNS).unwrap(), 20);
 }
 
 #[test]
 fn wrong_lengths_and_names_are_refused() {
     let (_folder, path) = folder();
     let mut writer = write(&path, 2, &metadata(2, &["P1"]));
-    for (modes, points, name, expected, found) in
-        [(3, 1, "modal/displacement", 2, 3), (2, 0, "points", 1, 0), (0, 1, "modal/displacement", 2, 0)]
-    {
-        match writer.push(&Row::new(2, modes, points).sample()) {
+    for (modes, points, name, expected, found) in [
+        (3, 1, "modal/displacement", 2, 3),
+        (2, 0, "points/P1/displacement", 3, 0),
+        (2, 2, "points", 1, 2),
+        (0, 1, "modal/displacement", 2, 0),
+    ] {
+        match writer.push(&Row::new(2, modes, points)) {
             Err(FileError::WrongLength { quantity, expected: e, found: f, .. }) => {
                 assert_eq!((quantity.as_str(), e, f), (name, expected, found));
             }
@@ -104,33 +113,33 @@ fn wrong_lengths_and_names_are_refused() {
         }
     }
     writer.finish().unwrap();
-    assert_rows(&Results::open(&path).unwrap(), 2);
+    assert_rows(&Results::open(&path, &COLUMNS).unwrap(), 2);
 
     for names in [[""].as_slice(), &["."], &[".."], &["a/b"], &["a\0"], &["a", "a"]] {
-        let error = Writer::create(&path, &metadata(1, names), Expected::default()).unwrap_err();
+        let error = Writer::create(&path, &metadata(1, names), &COLUMNS, Expected::default()).unwrap_err();
         assert!(matches!(error, FileError::PointName { .. }), "{names:?}: {error}");
     }
     let mut unequal = metadata(2, &[]);
     unequal.body.damping_ratios.pop();
     assert!(matches!(
-        Writer::create(&path, &unequal, Expected::default()),
+        Writer::create(&path, &unequal, &COLUMNS, Expected::default()),
         Err(FileError::WrongLength { expected: 2, found: 1, .. })
     ));
     let mut nul = metadata(2, &[]);
     nul.scene_text = "a\0b".into();
-    assert!(matches!(Writer::create(&path, &nul, Expected::default()), Err(FileError::NulInText { .. })));
+    assert!(matches!(Writer::create(&path, &nul, &COLUMNS, Expected::default()), Err(FileError::NulInText { .. })));
 }
 
 #[test]
 fn errors_name_the_file_and_what_is_wrong_with_it() {
     let (folder, path) = folder();
     let nowhere = folder.path().join("no such folder").join("run.h5");
-    let error = Writer::create(&nowhere, &metadata(0, &[]), Expected::default()).unwrap_err().to_string();
+    let error = Writer::create(&nowhere, &metadata(0, &[]), &COLUMNS, Expected::default()).unwrap_err().to_string();
     assert!(error.contains("no such folder") && error.contains("create the file"), "{error}");
-    let error = Results::open(&nowhere).unwrap_err().to_string();
+    let error = Results::open(&nowhere, &COLUMNS).unwrap_err().to_string();
     assert!(error.contains("no such folder") && error.contains("open the file"), "{error}");
     std::fs::write(&path, "a diary").unwrap();
-    let error = Results::open(&path).unwrap_err();
+    let error = Results::open(&path, &COLUMNS).unwrap_err();
     assert!(matches!(error, FileError::NoSeal { .. }) && error.to_string().contains("run.h5"), "{error}");
 }
 
@@ -145,7 +154,7 @@ fn an_unfinished_file_has_the_rows_that_are_whole_in_every_column() {
     column.write_slice(&[f64::NAN], ndarray::s![7, 1..2]).unwrap();
     drop(column);
     file.close().unwrap();
-    assert_rows(&Results::open(&part).unwrap(), 7);
+    assert_rows(&Results::open(&part, &COLUMNS).unwrap(), 7);
 }
 
 #[test]
@@ -153,11 +162,11 @@ fn a_finished_file_is_the_same_byte_for_byte_whatever_way_led_to_it() {
     let (_folder, path) = folder();
     let metadata = metadata(3, &["P1"]);
     let push = |writer: &mut Writer, rows: std::ops::Range<usize>| {
-        rows.for_each(|i| writer.push(&Row::new(i, 3, 1).sample()).unwrap());
+        rows.for_each(|i| writer.push(&Row::new(i, 3, 1)).unwrap());
     };
     let mut files = Vec::new();
     for expected in [Expected::default(), Expected { rows: 3000, checkpoint: 5, overwrite: false }] {
-        let mut writer = Writer::create(&path, &metadata, expected).unwrap();
+        let mut writer = Writer::create(&path, &metadata, &COLUMNS, expected).unwrap();
         push(&mut writer, 0..2000);
         writer.finish().unwrap();
         assert!(!unfinished(&path).exists());
@@ -165,19 +174,20 @@ fn a_finished_file_is_the_same_byte_for_byte_whatever_way_led_to_it() {
         // The clock of HDF5 files has a second's resolution.
         std::thread::sleep(std::time::Duration::from_millis(1100));
     }
-    let mut writer = Writer::create(&path, &metadata, Expected { checkpoint: 2, ..Expected::default() }).unwrap();
+    let mut writer =
+        Writer::create(&path, &metadata, &COLUMNS, Expected { checkpoint: 2, ..Expected::default() }).unwrap();
     push(&mut writer, 0..700);
     writer.flush(&[7, 8]).unwrap();
     push(&mut writer, 700..1500);
     drop(writer);
-    let Resumed { mut writer, results, checkpoint } = Writer::resume(&path).unwrap();
+    let Resumed { mut writer, results, checkpoint } = Writer::resume(&path, &COLUMNS).unwrap();
     assert_eq!(checkpoint, Some(vec![7, 8]));
     assert_rows(&results, 700);
     push(&mut writer, 700..2000);
     writer.finish().unwrap();
     files.push(std::fs::read(&path).unwrap());
     assert!(files[0] == files[1] && files[1] == files[2]);
-    assert_rows(&Results::open(&path).unwrap(), 2000);
+    assert_rows(&Results::open(&path, &COLUMNS).unwrap(), 2000);
 }
 
 #[test]
@@ -185,17 +195,17 @@ fn of_two_checkpoints_the_last_whole_one_counts() {
     let (_folder, path) = folder();
     let metadata = metadata(1, &[]);
     let expected = Expected { checkpoint: 3, ..Expected::default() };
-    let mut writer = Writer::create(&path, &metadata, expected).unwrap();
+    let mut writer = Writer::create(&path, &metadata, &COLUMNS, expected).unwrap();
     for i in 0..40 {
-        writer.push(&Row::new(i, 1, 0).sample()).unwrap();
+        writer.push(&Row::new(i, 1, 0)).unwrap();
         if i % 10 == 9 {
             writer.flush(&[i as u64, 1, 2]).unwrap();
         }
     }
     assert!(matches!(writer.flush(&[1, 2]), Err(FileError::WrongLength { expected: 3, found: 2, .. })));
     drop(writer);
-    let resumed = || Writer::resume(&path).unwrap();
-    let rows_and_state = |resumed: Resumed| (resumed.results.time.len(), resumed.checkpoint);
+    let resumed = || Writer::resume(&path, &COLUMNS).unwrap();
+    let rows_and_state = |resumed: Resumed| (resumed.results.rows(), resumed.checkpoint);
     assert_eq!(rows_and_state(resumed()), (40, Some(vec![39, 1, 2])));
     // The fourth is in place 0; a torn one differs in a word.
     let spoil = |place: usize, word: usize| {
@@ -206,7 +216,7 @@ fn of_two_checkpoints_the_last_whole_one_counts() {
     assert_eq!(rows_and_state(resumed()), (30, Some(vec![29, 1, 2])));
     // From there its successor is the fourth again.
     let mut writer = resumed().writer;
-    writer.push(&Row::new(30, 1, 0).sample()).unwrap();
+    writer.push(&Row::new(30, 1, 0)).unwrap();
     writer.flush(&[30, 1, 2]).unwrap();
     drop(writer);
     assert_eq!(rows_and_state(resumed()), (31, Some(vec![30, 1, 2])));
@@ -219,13 +229,13 @@ fn of_two_checkpoints_the_last_whole_one_counts() {
 fn nothing_is_overwritten_that_a_user_would_miss() {
     let (folder, path) = folder();
     let metadata = metadata(1, &[]);
-    let create = |overwrite| Writer::create(&path, &metadata, Expected { overwrite, ..Expected::default() });
-    assert!(matches!(Writer::resume(&path), Err(FileError::NothingToResume { .. })));
+    let create = |overwrite| Writer::create(&path, &metadata, &COLUMNS, Expected { overwrite, ..Expected::default() });
+    assert!(matches!(Writer::resume(&path, &COLUMNS), Err(FileError::NothingToResume { .. })));
     write(&path, 5, &metadata).finish().unwrap();
-    assert!(matches!(Writer::resume(&path), Err(FileError::Complete { .. })));
+    assert!(matches!(Writer::resume(&path, &COLUMNS), Err(FileError::Complete { .. })));
     // A complete file stays until another one is complete.
     drop(create(false).unwrap());
-    assert_rows(&Results::open(&path).unwrap(), 5);
+    assert_rows(&Results::open(&path, &COLUMNS).unwrap(), 5);
     // Which is not resumed, nor thrown away unasked.
     let error = create(false).unwrap_err();
     assert!(matches!(error, FileError::Unfinished { .. }));
@@ -235,9 +245,9 @@ fn nothing_is_overwritten_that_a_user_would_miss() {
     for overwrite in [false, true] {
         assert!(matches!(create(overwrite), Err(FileError::Busy { .. })));
     }
-    assert!(matches!(Writer::resume(unfinished(&path)), Err(FileError::Busy { .. })));
+    assert!(matches!(Writer::resume(unfinished(&path), &COLUMNS), Err(FileError::Busy { .. })));
     writer.finish().unwrap();
-    assert_rows(&Results::open(&path).unwrap(), 0);
+    assert_rows(&Results::open(&path, &COLUMNS).unwrap(), 0);
     // What is none of ours.
     std::fs::write(&path, "a diary").unwrap();
     assert!(matches!(create(false), Err(FileError::NotResults { .. })));
@@ -271,8 +281,8 @@ fn of_runs_that_begin_at_once_each_has_the_file_to_itself() {
         let outcomes: Vec<Result<(), FileError>> = std::thread::scope(|scope| {
             let run = || {
                 let expected = Expected { overwrite: true, ..Expected::default() };
-                let mut writer = Writer::create(&path, &metadata, expected)?;
-                (0..5).for_each(|i| writer.push(&Row::new(i, 1, 0).sample()).unwrap());
+                let mut writer = Writer::create(&path, &metadata, &COLUMNS, expected)?;
+                (0..5).for_each(|i| writer.push(&Row::new(i, 1, 0)).unwrap());
                 writer.finish()
             };
             let threads: Vec<_> = (0..4).map(|_| scope.spawn(run)).collect();
@@ -287,7 +297,7 @@ fn of_runs_that_begin_at_once_each_has_the_file_to_itself() {
                 }
             }
         }
-        assert_rows(&Results::open(&path).unwrap(), 5);
+        assert_rows(&Results::open(&path, &COLUMNS).unwrap(), 5);
     }
     assert!(done >= 20 && done + busy == 80, "{done} {busy}");
 }
@@ -298,36 +308,23 @@ fn names_types_and_shapes_are_those_of_the_contract() {
     let (_folder, path) = folder();
     write(&path, 5, &metadata(4, &["P1"])).finish().unwrap();
     let file = hdf5::File::open(&path).unwrap();
-    let shapes: [(&str, &[usize]); 26] = [
-        ("time", &[5]),
-        ("attitude", &[5, 4]),
-        ("position", &[5, 3]),
-        ("velocity", &[5, 3]),
-        ("angular_velocity", &[5, 3]),
-        ("angular_acceleration", &[5, 3]),
-        ("modal/displacement", &[5, 4]),
-        ("modal/velocity", &[5, 4]),
-        ("energy/kinetic", &[5]),
-        ("energy/strain", &[5]),
-        ("energy/work", &[5]),
-        ("energy/dissipation", &[5]),
-        ("energy/balance", &[5]),
-        ("momentum/linear", &[5, 3]),
-        ("momentum/angular", &[5, 3]),
-        ("momentum/linear_balance", &[5, 3]),
-        ("momentum/angular_balance", &[5, 3]),
-        ("points/P1/displacement", &[5, 3]),
-        ("points/P1/velocity", &[5, 3]),
-        ("points/P1/acceleration", &[5, 3]),
-        ("points/P1/rigid_acceleration", &[5, 3]),
+    let of_columns = COLUMNS.iter().map(|column| {
+        (column.path.replace("<name>", "P1"), [5].into_iter().chain(column.width(4)).collect::<Vec<_>>())
+    });
+    let of_body: [(&str, &[usize]); 5] = [
         ("body/mass", &[]),
         ("body/center_of_mass", &[3]),
         ("body/inertia", &[3, 3]),
         ("body/frequencies", &[4]),
         ("body/damping_ratios", &[4]),
     ];
+    let shapes: Vec<_> = of_columns.chain(of_body.map(|(name, shape)| (name.to_owned(), shape.to_vec()))).collect();
+    assert_eq!(
+        (shapes.len(), &shapes[1], &shapes[6]),
+        (26, &("attitude".into(), vec![5, 4]), &("modal/displacement".into(), vec![5, 4]))
+    );
     for (name, shape) in shapes {
-        let dataset = file.dataset(name).unwrap();
+        let dataset = file.dataset(&name).unwrap();
         assert_eq!(dataset.shape(), shape, "{name}");
         assert_eq!(dataset.dtype().unwrap().to_descriptor().unwrap(), TypeDescriptor::Float(FloatSize::U8));
         for attribute in ["unit", "frame", "description"] {
@@ -356,19 +353,6 @@ fn names_types_and_shapes_are_those_of_the_contract() {
     for name in ["complete", "fingerprint"] {
         assert_eq!(descriptor(name), TypeDescriptor::Integer(IntSize::U8));
     }
-    for (name, unit, frame) in [
-        ("energy/strain", "Mg mm^2/s^2", "none"),
-        ("energy/work", "Mg mm^2/s^2", "none"),
-        ("energy/dissipation", "Mg mm^2/s^2", "none"),
-        ("energy/balance", "Mg mm^2/s^2", "none"),
-        ("momentum/linear_balance", "Mg mm/s", "global"),
-        ("momentum/angular_balance", "Mg mm^2/s", "global"),
-    ] {
-        let text = |attribute: &str| -> VarLenUnicode {
-            file.dataset(name).unwrap().attr(attribute).unwrap().read_scalar().unwrap()
-        };
-        assert_eq!((text("unit").as_str(), text("frame").as_str()), (unit, frame), "{name}");
-    }
 }
 
 /// The writer puts the numbers into their places by itself; HDF5 must find them there.
@@ -376,14 +360,15 @@ fn names_types_and_shapes_are_those_of_the_contract() {
 fn hdf5_finds_the_numbers_that_were_written() {
     let (_folder, path) = folder();
     let metadata = metadata(3, &["P10", "P2"]);
-    let mut writer = Writer::create(&path, &metadata, Expected { checkpoint: 2, ..Expected::default() }).unwrap();
-    (0..700).for_each(|i| writer.push(&Row::new(i, 3, 2).sample()).unwrap());
+    let mut writer =
+        Writer::create(&path, &metadata, &COLUMNS, Expected { checkpoint: 2, ..Expected::default() }).unwrap();
+    (0..700).for_each(|i| writer.push(&Row::new(i, 3, 2)).unwrap());
     writer.flush(&[7, 8]).unwrap();
     let part = unfinished(&path);
     std::fs::copy(&part, path.with_extension("copy.h5")).unwrap();
     writer.finish().unwrap();
     for (path, complete, room) in [(path.clone(), 1, 700), (path.with_extension("copy.h5"), 0, 1024)] {
-        let results = Results::open(&path).unwrap();
+        let results = Results::open(&path, &COLUMNS).unwrap();
         assert_rows(&results, 700);
         let file = hdf5::File::open(&path).unwrap();
         assert_eq!(file.attr("complete").unwrap().read_scalar::<i64>().unwrap(), complete);
@@ -394,14 +379,11 @@ fn hdf5_finds_the_numbers_that_were_written() {
             assert_eq!(found[..700 * width], *expected, "{name}");
             assert!(found[700 * width..].iter().all(|value| value.is_nan()), "{name}");
         };
-        check("time", 1, &results.time);
-        check("attitude", 4, results.attitude.as_flattened());
-        check("energy/balance", 1, &results.energy_balance);
-        let modal: Vec<f64> = (0..700).flat_map(|i| results.modal_velocity.row(i).unwrap().to_vec()).collect();
-        check("modal/velocity", 3, &modal);
-        for (name, point) in &results.points {
-            check(&format!("points/{name}/displacement"), 3, point.displacement.as_flattened());
-            check(&format!("points/{name}/rigid_acceleration"), 3, point.rigid_acceleration.as_flattened());
+        for column in &COLUMNS {
+            for name in &metadata.point_names {
+                let path = column.path.replace("<name>", name);
+                check(&path, column.width(3).unwrap_or(1), results.table(&path).unwrap().values());
+            }
         }
         assert_eq!(numbers("body/frequencies"), metadata.body.frequencies);
         if complete == 0 {
@@ -434,10 +416,10 @@ fn nothing_is_written_through_a_link_or_in_its_place() {
             for overwrite in [false, true] {
                 refused(Writer::check(&path, overwrite), &link);
                 let expected = Expected { overwrite, ..Expected::default() };
-                refused(Writer::create(&path, &metadata, expected).map(drop), &link);
+                refused(Writer::create(&path, &metadata, &COLUMNS, expected).map(drop), &link);
             }
             if link != path {
-                refused(Writer::resume(&path).map(drop), &link);
+                refused(Writer::resume(&path, &COLUMNS).map(drop), &link);
             }
             assert_eq!(std::fs::read_link(&link).unwrap(), target);
             assert_eq!(std::fs::read(&target).ok().as_deref(), content);
@@ -460,7 +442,7 @@ fn names_that_are_not_utf8() {
     assert_eq!(unfinished(name(b"a.part")), name(b"a.part.part.h5"));
     assert_eq!(unfinished(name(b"a.b")), name(b"a.b.part.h5"));
     write(&path, 3, &metadata(1, &[])).finish().unwrap();
-    assert_rows(&Results::open(&path).unwrap(), 3);
+    assert_rows(&Results::open(&path, &COLUMNS).unwrap(), 3);
     // HDF5 wants the folder's name as text; that is said before the work.
     std::fs::create_dir(name(b"f\xff")).unwrap();
     let outcome = Writer::check(name(b"f\xff").join("run.h5"), false);
@@ -472,6 +454,21 @@ fn constants_are_finite() {
     let (_folder, path) = folder();
     let mut vast = metadata(2, &[]);
     vast.body.inertia[1][2] = f64::INFINITY;
-    let error = Writer::create(&path, &vast, Expected::default()).unwrap_err().to_string();
+    let error = Writer::create(&path, &vast, &COLUMNS, Expected::default()).unwrap_err().to_string();
     assert!(error.contains("body/inertia is inf"), "{error}");
+}
+
+#[test]
+fn units_are_in_the_labels_of_the_run() {
+    let label = |unit, [length, mass, time]: [&str; 3]| {
+        let units = Units { length: length.into(), mass: mass.into(), time: time.into() };
+        Column::<Row>::new("x", unit, "none", "", Values::Number(|row| row.time)).unit(&units)
+    };
+    let mm = ["mm", "Mg", "s"];
+    assert_eq!(label("1", mm), "1");
+    assert_eq!(label("rad/time^2", mm), "rad/s^2");
+    assert_eq!(label("length mass^(1/2)/time", mm), "mm Mg^(1/2)/s");
+    assert_eq!(label("mass length^2/time^2", mm), "Mg mm^2/s^2");
+    // A label may be any text.
+    assert_eq!(label("mass length/time", ["mass", "time", "length"]), "time mass/length");
 }

@@ -8,20 +8,21 @@ mod sealed;
 
 use hdf5::dataset::Layout;
 use results::*;
-use rows::{Row, assert_rows, folder, metadata};
+use rows::{COLUMNS, Resumed, Row, Writer, assert_rows, folder, metadata};
 use serde_json::{Value, json};
 use std::path::Path;
 
 const ROWS: usize = 30;
 
 fn push(writer: &mut Writer, rows: std::ops::Range<usize>) {
-    rows.for_each(|i| writer.push(&Row::new(i, 2, 1).sample()).unwrap());
+    rows.for_each(|i| writer.push(&Row::new(i, 2, 1)).unwrap());
 }
 
 /// An unfinished file, as bytes, and the finished one that it becomes with as many rows again.
 fn files(path: &Path) -> [Vec<u8>; 2] {
     let metadata = Metadata { scene_text: "title = \"ω₂\"".into(), ..metadata(2, &["P1"]) };
-    let mut writer = Writer::create(path, &metadata, Expected { checkpoint: 4, ..Expected::default() }).unwrap();
+    let mut writer =
+        Writer::create(path, &metadata, &COLUMNS, Expected { checkpoint: 4, ..Expected::default() }).unwrap();
     push(&mut writer, 0..ROWS);
     writer.flush(&[1, 2, 3, 4]).unwrap();
     let part = std::fs::read(writer.unfinished()).unwrap();
@@ -34,7 +35,7 @@ fn files(path: &Path) -> [Vec<u8>; 2] {
 
 /// Goes on with the unfinished file to its end.
 fn go_on(part: &Path) -> Result<(), FileError> {
-    let mut writer = Writer::resume(part)?.writer;
+    let mut writer = Writer::resume(part, &COLUMNS)?.writer;
     push(&mut writer, ROWS..2 * ROWS);
     writer.finish()
 }
@@ -99,10 +100,10 @@ fn numbers_are_taken_from_the_file_itself_and_written_there() {
         // HDF5 may have used the room of the velocities for something else.
         numbers.iter().for_each(|range| bytes[range.clone()].copy_from_slice(&part[range.clone()]));
         std::fs::write(&place, &bytes).unwrap();
-        assert!(matches!(Results::open(&place), Err(FileError::Damaged { .. })), "{what}");
+        assert!(matches!(Results::open(&place, &COLUMNS), Err(FileError::Damaged { .. })), "{what}");
         sealed::seal(&mut bytes, &numbers);
         std::fs::write(&place, &bytes).unwrap();
-        assert_rows(&Results::open(&place).unwrap(), ROWS);
+        assert_rows(&Results::open(&place, &COLUMNS).unwrap(), ROWS);
         go_on(&place).unwrap();
         assert!(std::fs::read(&path).unwrap() == finished, "{what}");
         assert!(std::fs::read(&victim).unwrap() == of_victim, "{what}");
@@ -116,7 +117,7 @@ fn described(part: &[u8], place: &Path, json: &str) -> (Result<Results, FileErro
     sealed::describe(&mut bytes, json);
     std::fs::write(place, &bytes).unwrap();
     let mut outcome = None;
-    let memory = allocation_counter::measure(|| outcome = Some(Results::open(place)));
+    let memory = allocation_counter::measure(|| outcome = Some(Results::open(place, &COLUMNS)));
     (outcome.unwrap(), memory.bytes_max as usize)
 }
 
@@ -186,7 +187,7 @@ fn a_description_that_does_not_fit_the_file_is_refused() {
         );
         // An empty name takes 24 bytes for three; a list that grows is held twice for a moment.
         assert!(memory < 40 * json.len().max(part.len() / 10), "{memory} bytes for {}: {shown}", json.len());
-        assert!(Writer::resume(&place).is_err(), "{shown}");
+        assert!(Writer::resume(&place, &COLUMNS).is_err(), "{shown}");
     }
     // Text that is no UTF-8.
     let at = sealed::description(&part).start + sound.to_string().find("platten").unwrap();
@@ -196,7 +197,7 @@ fn a_description_that_does_not_fit_the_file_is_refused() {
         let numbers = sealed::left_out(&sound, bytes.len());
         sealed::seal(&mut bytes, &numbers);
         std::fs::write(&place, &bytes).unwrap();
-        assert!(matches!(Results::open(&place), Err(FileError::Damaged { .. })));
+        assert!(matches!(Results::open(&place, &COLUMNS), Err(FileError::Damaged { .. })));
     }
 }
 
@@ -220,7 +221,7 @@ fn changed_bytes_under_a_right_seal_do_no_harm() {
         sealed::seal(&mut bytes, &numbers);
         std::fs::write(&place, &bytes).unwrap();
         let mut outcome = None;
-        let memory = allocation_counter::measure(|| outcome = Some(Results::open(&place)));
+        let memory = allocation_counter::measure(|| outcome = Some(Results::open(&place, &COLUMNS)));
         assert!(memory.bytes_max < 3 * bytes.len() as u64, "{} bytes for {}", memory.bytes_max, bytes.len());
         match outcome.unwrap() {
             Ok(_) => read += 1,
@@ -229,7 +230,7 @@ fn changed_bytes_under_a_right_seal_do_no_harm() {
                 refused += 1;
             }
         }
-        if to_the_end && let Ok(Resumed { writer, .. }) = Writer::resume(&place) {
+        if to_the_end && let Ok(Resumed { writer, .. }) = Writer::resume(&place, &COLUMNS) {
             // Only a text that HDF5 cannot hold keeps it from its end.
             match writer.finish() {
                 Ok(()) => finished += 1,

@@ -5,8 +5,8 @@
 
 mod rows;
 
-use results::{Expected, FileError, Results, Resumed, Writer, unfinished};
-use rows::{Row, assert_rows, folder, metadata};
+use results::{Expected, FileError, Results, unfinished};
+use rows::{COLUMNS, Resumed, Row, Writer, assert_rows, folder, metadata};
 use std::path::Path;
 use std::process::Command;
 use std::sync::Mutex;
@@ -20,9 +20,9 @@ fn child_that_is_killed() {
     let Some(path) = std::env::var_os("RESULTS_TEST_CHILD") else { return };
     let metadata = metadata(2, &["P1"]);
     let expected = Expected { checkpoint: 1, ..Expected::default() };
-    let mut writer = Writer::create(Path::new(&path), &metadata, expected).unwrap();
+    let mut writer = Writer::create(Path::new(&path), &metadata, &COLUMNS, expected).unwrap();
     for i in 0..801 {
-        writer.push(&Row::new(i, 2, 1).sample()).unwrap();
+        writer.push(&Row::new(i, 2, 1)).unwrap();
         if i == 700 {
             writer.flush(&[4711]).unwrap();
         }
@@ -41,11 +41,11 @@ fn a_killed_run_can_be_read_up_to_its_last_flush() {
         .unwrap()
         .status;
     assert!(!status.success(), "the child was to abort");
-    let results = Results::open(unfinished(&path)).unwrap();
+    let results = Results::open(unfinished(&path), &COLUMNS).unwrap();
     assert!(!results.complete);
-    assert!(results.time.len() >= 701, "{}", results.time.len());
-    assert_rows(&results, results.time.len());
-    let Resumed { results, checkpoint, .. } = Writer::resume(&path).unwrap();
+    assert!(results.rows() >= 701, "{}", results.rows());
+    assert_rows(&results, results.rows());
+    let Resumed { results, checkpoint, .. } = Writer::resume(&path, &COLUMNS).unwrap();
     assert_rows(&results, 701);
     assert_eq!(checkpoint, Some(vec![4711]));
 }
@@ -57,17 +57,17 @@ fn child_that_flushes_at_every_row() {
     let Some(path) = std::env::var_os("RESULTS_TEST_CHILD") else { return };
     let path = Path::new(&path);
     let (mut writer, done) = if unfinished(path).exists() {
-        let Resumed { writer, results, checkpoint } = Writer::resume(path).unwrap();
-        let rows = results.time.len();
+        let Resumed { writer, results, checkpoint } = Writer::resume(path, &COLUMNS).unwrap();
+        let rows = results.rows();
         assert_eq!(checkpoint.map_or(0, |state| state[0]), rows as u64);
         assert_rows(&results, rows);
         (writer, rows)
     } else {
         let expected = Expected { checkpoint: STATE, ..Expected::default() };
-        (Writer::create(path, &metadata(2, &["P1"]), expected).unwrap(), 0)
+        (Writer::create(path, &metadata(2, &["P1"]), &COLUMNS, expected).unwrap(), 0)
     };
     for i in done..ROWS {
-        writer.push(&Row::new(i, 2, 1).sample()).unwrap();
+        writer.push(&Row::new(i, 2, 1)).unwrap();
         writer.flush(&vec![i as u64 + 1; STATE]).unwrap();
     }
     writer.finish().unwrap();
@@ -102,11 +102,11 @@ fn a_file_is_whole_whenever_its_writer_is_killed() {
             code => assert_eq!(code, Some(0)),
         }
         if unfinished(&path).exists() {
-            let results = Results::open(unfinished(&path)).unwrap();
-            assert_rows(&results, results.time.len());
+            let results = Results::open(unfinished(&path), &COLUMNS).unwrap();
+            assert_rows(&results, results.rows());
         }
         if path.exists() {
-            let results = Results::open(&path).unwrap();
+            let results = Results::open(&path, &COLUMNS).unwrap();
             assert!(results.complete);
             assert_rows(&results, ROWS);
         }
@@ -122,7 +122,7 @@ fn a_pipe_is_refused_without_being_opened() {
     for pipe in [path.clone(), unfinished(&path)] {
         assert!(Command::new("mkfifo").arg(&pipe).status().unwrap().success());
         assert!(matches!(Writer::check(&path, false), Err(FileError::NotResults { path }) if path == pipe));
-        assert!(matches!(Writer::resume(&path), Err(FileError::NothingToResume { .. })));
+        assert!(matches!(Writer::resume(&path, &COLUMNS), Err(FileError::NothingToResume { .. })));
         std::fs::remove_file(pipe).unwrap();
     }
 }

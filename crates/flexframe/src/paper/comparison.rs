@@ -78,10 +78,13 @@ impl Comparison {
         moments.sort_by(f64::total_cmp);
         let beside_printed =
             |here: [f64; 3]| std::array::from_fn(|i| Pair { paper: PRINTED_MOMENTS[i], here: here[i] });
-        let point = results.points.get(WATCHED_POINT).cloned().unwrap_or_default();
+        let history = |path: &str| results.vectors(path).unwrap_or_default();
+        let watched = |quantity: &str| history(&format!("points/{WATCHED_POINT}/{quantity}"));
+        let (alpha, omega) = (history("angular_acceleration"), history("angular_velocity"));
         let beside = |ours: &[[f64; 3]], theirs: &[[f64; 3]], axis: usize| compare(ours, theirs, axis);
         let transverse = |rows: &[[f64; 3]]| largest(rows, 0).max(largest(rows, 2)) / largest(rows, 1);
-        let displacements = || results.points.values().flat_map(|p| &p.displacement);
+        let names = &results.metadata.point_names;
+        let displacements = || names.iter().flat_map(|name| history(&format!("points/{name}/displacement")));
         let norm = |d: &[f64; 3]| d.iter().map(|c| c * c).sum::<f64>().sqrt();
         Self {
             frequencies: TABLE_1
@@ -92,16 +95,16 @@ impl Comparison {
             mass: Pair { paper: PRINTED_MASS, here: run.body.mass },
             moments: beside_printed(moments),
             lumped_moments: beside_printed(lumped.principal_moments),
-            fig_5: transverse(&results.angular_acceleration),
-            fig_6: transverse(&results.angular_velocity),
+            fig_5: transverse(alpha),
+            fig_6: transverse(omega),
             fig_7: displacements().map(|d| d[1].abs()).fold(0.0, f64::max)
                 / displacements().map(norm).fold(0.0, f64::max),
-            fig_8: beside(&results.angular_acceleration, &rigid.alpha_body, 1),
-            fig_9: beside(&results.angular_velocity, &rigid.omega_body, 1),
-            fig_10: beside(&point.rigid_acceleration, &rigid.acceleration_global, 0),
-            fig_11: beside(&point.rigid_acceleration, &rigid.acceleration_global, 2),
-            fig_12: beside(&point.acceleration, &rigid.acceleration_global, 0),
-            fig_13: beside(&point.acceleration, &rigid.acceleration_global, 2),
+            fig_8: beside(alpha, &rigid.alpha_body, 1),
+            fig_9: beside(omega, &rigid.omega_body, 1),
+            fig_10: beside(watched("rigid_acceleration"), &rigid.acceleration_global, 0),
+            fig_11: beside(watched("rigid_acceleration"), &rigid.acceleration_global, 2),
+            fig_12: beside(watched("acceleration"), &rigid.acceleration_global, 0),
+            fig_13: beside(watched("acceleration"), &rigid.acceleration_global, 2),
         }
     }
 

@@ -1,5 +1,6 @@
 //! Figs. 3 to 13 of the paper.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use figures::{FigureError, LineChart, Scale, Series, Stroke};
@@ -22,17 +23,19 @@ pub(super) fn draw(
     let (length, time) = (&units.length, &units.time);
     let x_label = format!("time, {time}");
     let acceleration = format!("{length}/{time}²");
+    let times = results.numbers("time").unwrap_or_default();
     let history = |rows: &[[f64; 3]], axis: usize| -> Vec<(f64, f64)> {
-        results.time.iter().copied().zip(rows.iter().map(|row| row[axis])).collect()
+        times.iter().copied().zip(rows.iter().map(|row| row[axis])).collect()
     };
     let solid = |label: &str, points| Series { label: label.to_owned(), points, stroke: Stroke::Solid };
     let dashed = |label: &str, points| Series { label: label.to_owned(), points, stroke: Stroke::Dashed };
-    let (alpha, omega) = (&results.angular_acceleration, &results.angular_velocity);
-    let point = results.points.get(WATCHED_POINT).cloned().unwrap_or_default();
+    let vectors = |path: &str| results.vectors(path).unwrap_or_default();
+    let watched = |quantity: &str| vectors(&format!("points/{WATCHED_POINT}/{quantity}"));
+    let (alpha, omega) = (vectors("angular_acceleration"), vectors("angular_velocity"));
     let force = |axis: usize| -> Vec<(f64, f64)> {
         let of = |load: &SharedLoad, t: f64| dead_force(load).map_or(0.0, |f| f.force[axis] * f.history.at(t, t));
         let total = |t: f64| model.loads().iter().map(|load| of(load, t)).sum();
-        results.time.iter().map(|t| (*t, total(*t))).collect()
+        times.iter().map(|t| (*t, total(*t))).collect()
     };
     let beside_rigid = |rows: &[[f64; 3]], theirs: &[[f64; 3]], axis: usize, label: &str| {
         vec![solid(label, history(rows, axis)), dashed("rigid plate", history(theirs, axis))]
@@ -69,16 +72,17 @@ pub(super) fn draw(
         format!("angular velocity, rad/{time}"),
         vec![solid("ω₁", history(omega, 0)), dashed("ω₃", history(omega, 2))],
     )?;
+    // By name.
+    let names: BTreeSet<_> = results.metadata.point_names.iter().collect();
     chart(
         "fig07_displacement_2",
         "Displacement in X₂",
         format!("displacement, {length}"),
-        results
-            .points
-            .iter()
+        names
+            .into_iter()
             .enumerate()
-            .map(|(i, (name, p))| {
-                let points = history(&p.displacement, 1);
+            .map(|(i, name)| {
+                let points = history(vectors(&format!("points/{name}/displacement")), 1);
                 if i % 2 == 0 { solid(name, points) } else { dashed(name, points) }
             })
             .collect(),
@@ -96,10 +100,10 @@ pub(super) fn draw(
         beside_rigid(omega, &rigid.omega_body, 1, "flexible plate"),
     )?;
     let accelerations = [
-        ("fig10_rigid_acceleration_1", "embedded rigid motion", &point.rigid_acceleration, 0, "X₁"),
-        ("fig11_rigid_acceleration_3", "embedded rigid motion", &point.rigid_acceleration, 2, "X₃"),
-        ("fig12_acceleration_1", "flexible plate", &point.acceleration, 0, "X₁"),
-        ("fig13_acceleration_3", "flexible plate", &point.acceleration, 2, "X₃"),
+        ("fig10_rigid_acceleration_1", "embedded rigid motion", watched("rigid_acceleration"), 0, "X₁"),
+        ("fig11_rigid_acceleration_3", "embedded rigid motion", watched("rigid_acceleration"), 2, "X₃"),
+        ("fig12_acceleration_1", "flexible plate", watched("acceleration"), 0, "X₁"),
+        ("fig13_acceleration_3", "flexible plate", watched("acceleration"), 2, "X₃"),
     ];
     for (name, label, rows, axis, direction) in accelerations {
         chart(

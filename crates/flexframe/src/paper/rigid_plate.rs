@@ -42,20 +42,19 @@ pub(super) fn histories(model: &Model, results: &Results) -> Result<Option<Rigid
             Wrench { force_global: sum.force_global + one.force_global, moment_body: sum.moment_body + one.moment_body }
         })
     };
-    let row = |i: usize| -> RigidState {
-        RigidState {
-            attitude: Attitude::identity(),
-            omega_body: Vector3::from(results.angular_velocity[i]),
-            position_global: Vector3::from(results.position[i]),
-            velocity_global: Vector3::from(results.velocity[i]),
-        }
-    };
+    let first = |path| results.vectors(path)?.first().copied().map(Vector3::from);
     let mut histories =
         RigidHistories { omega_body: Vec::new(), alpha_body: Vec::new(), acceleration_global: Vec::new() };
-    let mut state = row(0);
-    for (i, time) in results.time.iter().copied().enumerate() {
+    let mut state = RigidState {
+        attitude: Attitude::identity(),
+        omega_body: first("angular_velocity").unwrap_or_default(),
+        position_global: first("position").unwrap_or_default(),
+        velocity_global: first("velocity").unwrap_or_default(),
+    };
+    let times = results.numbers("time").unwrap_or_default();
+    for (i, time) in times.iter().copied().enumerate() {
         if i > 0 {
-            let before = results.time[i - 1];
+            let before = times[i - 1];
             state = body.step(&state, before, time - before, wrench)?;
         }
         let load = wrench(time, &state.attitude);
