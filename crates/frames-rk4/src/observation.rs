@@ -79,6 +79,19 @@ impl Observation {
         }
     }
 
+    /// Whether all quantities are finite numbers.
+    pub fn is_finite(&self) -> bool {
+        let Self { position_global, velocity_global, omega_body, alpha_body, .. } = self;
+        let balances = [self.linear_balance_global(), self.angular_balance_global()];
+        let vectors = [position_global, velocity_global, omega_body, alpha_body].into_iter().chain(&balances);
+        let modal = [&self.modal_displacement, &self.modal_velocity, &self.modal_acceleration];
+        let points =
+            self.points.iter().flat_map(|p| [&p.displacement, &p.velocity, &p.acceleration, &p.rigid_acceleration]);
+        self.energy_balance().is_finite()
+            && vectors.chain(points).flatten().all(|x| x.is_finite())
+            && modal.into_iter().flatten().chain(&self.attitude.wxyz()).all(|x| x.is_finite())
+    }
+
     /// Kinetic + strain energy.
     pub fn energy(&self) -> f64 {
         self.kinetic_energy + self.strain_energy

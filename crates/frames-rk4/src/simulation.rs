@@ -298,6 +298,9 @@ impl Simulation {
     /// what the start, the loads and the damping account for.
     pub fn observe(&mut self, out: &mut Observation) -> Result<(), StepError> {
         self.scheme.observe(&self.points, out)?;
+        if !out.is_finite() {
+            return Err(StepError::NotFinite { time: out.time, what: "a quantity of the motion" });
+        }
         self.check_energy()
     }
 

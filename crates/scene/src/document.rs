@@ -19,7 +19,7 @@ pub(crate) struct Document<'t> {
 #[derive(Debug)]
 pub(crate) struct NotToml {
     /// Where; its key is empty.
-    pub at: Place,
+    pub at: Box<Place>,
     /// What the TOML parser said.
     pub message: String,
 }
@@ -47,7 +47,7 @@ impl<'t> Document<'t> {
             }
             Err(error) => {
                 let at = Place::new(path, text, error.span().unwrap_or(0..0), String::new());
-                Err(NotToml { at, message: error.message().to_owned() })
+                Err(NotToml { at: Box::new(at), message: error.message().to_owned() })
             }
         }
     }

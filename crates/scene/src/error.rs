@@ -183,7 +183,7 @@ impl Place {
 
 impl From<NotToml> for SceneError {
     fn from(NotToml { at, message }: NotToml) -> Self {
-        Self::Syntax { at: at.into(), message }
+        Self::Syntax { at, message }
     }
 }
 

@@ -9,12 +9,11 @@ use crate::sample::body;
 
 /// A point on a round spring that turns about the third axis: q are its first and second coordinate.
 fn round_spring(omega: f64) -> ReducedBody {
-    let body = crate::sample::changed(body(RigidMotion::clamp(Vector3::zeros()), &[omega, omega]), |body| {
+    crate::sample::changed(body(RigidMotion::clamp(Vector3::zeros()), &[omega, omega]), |body| {
         body.inertia_second[2] = Mat::identity(2, 2);
         // qᵀ G q̇ = −e₃·(q × q̇)
         body.gyroscopic[2] = Mat::from_fn(2, 2, |i, j| i as f64 - j as f64);
-    });
-    body
+    })
 }
 
 #[test]
