@@ -67,7 +67,7 @@ fn misspelt_names() {
             "\"conservativ\"",
             "time.formulation",
             "conservative",
-            "`conservative`, `paper`",
+            "`paper`, `conservative`",
         ),
     ] {
         let meant = format!("did you mean `{near}`?");
@@ -146,7 +146,7 @@ fn neither_or_both_materials() {
 
 #[test]
 fn neither_or_both_of_step_and_tolerance() {
-    let cures = ["expected exactly one of them", "e.g. `step = 1e-4`", "e.g. `tolerance = 1e-8`"];
+    let cures = ["expected exactly one of them", "e.g. `step = 1e-4`", "e.g. `tolerance = 1e-6`"];
     let words = |found| [&[found], &cures[..]].concat();
     refused("step = 1e-4", "", "[time]", "time.step", &words("found neither `step` nor `tolerance`"));
     let both = "step = 1e-4\ntolerance = 1e-7";
@@ -210,7 +210,7 @@ fn a_tolerance_without_an_error_estimate() {
             &format!("tolerance = {bad}"),
             &format!("{bad}\nformulation"),
             "time.tolerance",
-            &[&format!("found {bad}, expected a number between 0 and 1, both excluded"), "e.g. `tolerance = 1e-8`"],
+            &[&format!("found {bad}, expected a number between 0 and 1, both excluded"), "e.g. `tolerance = 1e-6`"],
         );
     }
 }
