@@ -9,7 +9,7 @@ use crate::reduced::ReducedBody;
 /// f_ij (3n×6, pairs as in [`ReducedBody::PAIRS`]): `−M (I⊗sym([e_i×][e_j×])) X`, X from `origin`, mesh axes.
 ///
 /// A body that spins at ω about the origin meets the centrifugal force `Σ ω_iω_j f_ij` over all nine ij, so each of the
-/// last three columns counts twice. `Ψ_fᵀ f_ij` is [`ReducedBody::inertia_first`].
+/// last three columns counts twice. `Ψ_fᵀ f_ij` is [`crate::Constants::inertia_first`].
 pub fn centrifugal_fields(mass: &NodalMass, positions: &[[f64; 3]], origin: &Vector3<f64>) -> Mat<f64> {
     let mut fields = Mat::zeros(3 * positions.len(), ReducedBody::PAIRS.len());
     for (node, position) in positions.iter().enumerate() {

@@ -5,13 +5,13 @@
 //!
 //! | here | theory | definition |
 //! |---|---|---|
-//! | [`rotation_products`](ReducedBody::rotation_products) | E_ab | `Ψᵀ M (I⊗e_a e_bᵀ) Ψ`, so `Ψᵀ M (I⊗R) Ψ = Σ R_ab E_ab` |
-//! | [`inertia_first`](ReducedBody::inertia_first) | c_ij | `Ψ_fᵀ M (I⊗[e_i×]ᵀ[e_j×]) X`, symmetrised in ij |
-//! | [`inertia_second`](ReducedBody::inertia_second) | N_ij | `Ψ_fᵀ M (I⊗[e_i×]ᵀ[e_j×]) Ψ_f`, symmetrised in ij |
-//! | [`gyroscopic`](ReducedBody::gyroscopic) | G_i | `Ψ_fᵀ M (I⊗[e_i×]) Ψ_f`, skew |
-//! | [`translation_first`](ReducedBody::translation_first) | t_i | `Ψ_fᵀ M (1⊗e_i)`, zero for a free body |
-//! | [`rotation_first`](ReducedBody::rotation_first) | b_i | `Ψ_fᵀ M (I⊗[e_i×]) X`, zero for a free or pinned body |
-//! | [`stress_stiffness`](ReducedBody::stress_stiffness) | Ψ_fᵀ K_ij Ψ_f | of the stress that spinning causes |
+//! | [`rotation_products`](Constants::rotation_products) | E_ab | `Ψᵀ M (I⊗e_a e_bᵀ) Ψ`, so `Ψᵀ M (I⊗R) Ψ = Σ R_ab E_ab` |
+//! | [`inertia_first`](Constants::inertia_first) | c_ij | `Ψ_fᵀ M (I⊗[e_i×]ᵀ[e_j×]) X`, symmetrised in ij |
+//! | [`inertia_second`](Constants::inertia_second) | N_ij | `Ψ_fᵀ M (I⊗[e_i×]ᵀ[e_j×]) Ψ_f`, symmetrised in ij |
+//! | [`gyroscopic`](Constants::gyroscopic) | G_i | `Ψ_fᵀ M (I⊗[e_i×]) Ψ_f`, skew |
+//! | [`translation_first`](Constants::translation_first) | t_i | `Ψ_fᵀ M (1⊗e_i)`, zero for a free body |
+//! | [`rotation_first`](Constants::rotation_first) | b_i | `Ψ_fᵀ M (I⊗[e_i×]) X`, zero for a free or pinned body |
+//! | [`stress_stiffness`](Constants::stress_stiffness) | Ψ_fᵀ K_ij Ψ_f | of the stress that spinning causes |
 
 use faer::sparse::SparseColMatRef;
 use faer::{Mat, MatRef};
@@ -89,7 +89,7 @@ pub struct BodyPoint {
 }
 
 impl ReducedBody {
-    /// ij of [`ReducedBody::inertia_first`] and [`ReducedBody::inertia_second`], and of any symmetric 3×3 matrix.
+    /// ij of [`Constants::inertia_first`] and [`Constants::inertia_second`], and of any symmetric 3×3 matrix.
     pub const PAIRS: [(usize, usize); 6] = PAIRS;
 
     /// The body with these constants.
