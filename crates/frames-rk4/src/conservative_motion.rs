@@ -84,8 +84,9 @@ pub(crate) const EXPONENTIAL: Method = Method {
 
 fn begin(setup: &Setup, scheme: Stepping) -> Result<Box<dyn Scheme>, SetupError> {
     let body = ConservativeBody::new(setup.body, setup.damping_ratios, setup.loads.to_vec(), setup.physics)?;
+    let energy_of_loads = setup.energy_of_loads_on(&body);
     let mut motion = ConservativeMotion::new(body, scheme, setup.initial)?;
-    motion.largest.energy = setup.energy_of_loads()?;
+    motion.largest.energy = energy_of_loads;
     Ok(Box::new(motion))
 }
 

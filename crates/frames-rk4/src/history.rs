@@ -241,7 +241,8 @@ fn finite(what: &'static str, found: f64) -> Result<(), SetupError> {
     if found.is_finite() { Ok(()) } else { Err(SetupError::Value { what, found, expected: "a finite number" }) }
 }
 
-fn positive(what: &'static str, found: f64) -> Result<(), SetupError> {
+/// Refuses a number that is not positive and finite.
+pub(crate) fn positive(what: &'static str, found: f64) -> Result<(), SetupError> {
     if found > 0.0 && found.is_finite() {
         Ok(())
     } else {

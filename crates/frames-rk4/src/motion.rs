@@ -236,7 +236,7 @@ impl BodyMotion {
         to.check(state.modal_displacement.len() - 6)?;
         // T⁻¹ = m Tᵀ and B⁻¹ = Bᵀ J₀, since T Tᵀ = I/m and B Bᵀ = J₀⁻¹.
         let z = self.rotation_basis.tr_mul(&(self.inertia.matrix() * to.omega_body));
-        let translating = self.translation_basis.tr_mul(&state_velocity_body(to)) * self.mass;
+        let translating = self.translation_basis.tr_mul(&to.attitude.to_body(&to.velocity_global)) * self.mass;
         let omega_body = self.angular_rate(&z);
         (state.time, state.attitude, state.origin_global) = (to.time, to.attitude, to.origin_global);
         state.modal_displacement[..6].fill(0.0);
@@ -360,11 +360,6 @@ impl BodyMotion {
             rigid_acceleration: global(of_origin + alpha.cross(&x) + omega.cross(&omega.cross(&x))),
         }
     }
-}
-
-/// Velocity of the origin, body components.
-fn state_velocity_body(state: &MotionState) -> Vector3<f64> {
-    state.attitude.to_body(&state.velocity_global)
 }
 
 /// Where the centre of mass of a body is, seen from its origin.

@@ -8,7 +8,7 @@ use nalgebra::Vector3;
 use crate::account;
 use crate::conservative::ConservativeBody;
 use crate::error::SetupError;
-use crate::history::History;
+use crate::history::{History, positive};
 use crate::initial::Initial;
 use crate::load::SharedLoad;
 use crate::model::ModalModel;
@@ -119,24 +119,24 @@ impl Setup<'_> {
     /// Scale of the energy that the loads may give the body, where it is needed: where steps do not resolve the fastest
     /// mode, and for formulas, which may rise from nothing within a step.
     pub(crate) fn energy_of_loads(&self) -> Result<f64, SetupError> {
-        let has_formula = self.loads.iter().filter_map(|load| load.history()).any(History::has_formula);
-        if self.method.is_of_paper() && !has_formula {
+        if self.method.is_of_paper() && !self.has_formula() {
             return Ok(0.0);
         }
         let body = ConservativeBody::new(self.body, self.damping_ratios, self.loads.to_vec(), self.physics)?;
+        Ok(self.energy_of_loads_on(&body))
+    }
+
+    /// The same, of the body of this set-up.
+    pub(crate) fn energy_of_loads_on(&self, body: &ConservativeBody) -> f64 {
         let is_resolved = match self.control {
             StepControl::Fixed(step) => account::is_resolved(body.fastest_rate(), step),
             StepControl::Tolerance(_) => false,
         };
-        Ok(if is_resolved && !has_formula { 0.0 } else { body.energy_of_loads(self.end) })
+        if is_resolved && !self.has_formula() { 0.0 } else { body.energy_of_loads(self.end) }
     }
-}
 
-fn positive(what: &'static str, found: f64) -> Result<(), SetupError> {
-    if found > 0.0 && found.is_finite() {
-        Ok(())
-    } else {
-        Err(SetupError::Value { what, found, expected: "a positive number" })
+    fn has_formula(&self) -> bool {
+        self.loads.iter().filter_map(|load| load.history()).any(History::has_formula)
     }
 }
 
