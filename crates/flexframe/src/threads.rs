@@ -5,6 +5,9 @@ use crate::cli_error::CliError;
 /// The most that may be asked for.
 pub const MOST: u16 = 256;
 
+/// Bytes of a thread's stack.
+const STACK: usize = 2 << 20;
+
 /// Starts them: so many, or as many as RAYON_NUM_THREADS says, or one for each core. Left to itself, the library starts
 /// them at their first use, and panics where it cannot.
 pub fn start(count: Option<u16>) -> Result<(), CliError> {
@@ -12,7 +15,13 @@ pub fn start(count: Option<u16>) -> Result<(), CliError> {
         Some(count) => Some(count),
         None => variable()?,
     };
-    rayon::ThreadPoolBuilder::new().num_threads(count.map_or(0, usize::from)).build_global().map_err(|error| {
+    let threads = count.map_or_else(|| std::thread::available_parallelism().map_or(1, usize::from), usize::from);
+    // A thread that has begun panics where there is no room for its signal stack, so the room is asked for before: the
+    // stacks, and as much again for what a thread allocates when it begins.
+    memory::check_with_reserve("the stacks of the threads", 0, 2 * threads * STACK)
+        .map_err(|error| CliError::Threads { count, reason: error.to_string() })?;
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).stack_size(STACK);
+    pool.build_global().map_err(|error| {
         let reason = std::error::Error::source(&error).map_or_else(|| error.to_string(), ToString::to_string);
         CliError::Threads { count, reason }
     })
