@@ -1,12 +1,15 @@
-//! Geometric (stress) stiffness, reduced to a few shapes.
+//! Geometric stiffness: what a small displacement u adds to the tangent stiffness, reduced to a few shapes.
 //!
 //! ```text
-//! σ = D ε(u)        K_σ = ∫ σ_ab ∂_a N_i ∂_b N_j dV ⊗ I₃        reduced: Ψᵀ K_σ Ψ
+//! K(u)_ab = ∫ ε(u):C:ε₂(a,b) + ε(a):C:ε₂(u,b) + ε(b):C:ε₂(u,a) dV        reduced: Ψᵀ K(u) Ψ
 //! ```
 //!
-//! K_σ of the whole body is never made. In an element it is a 10×10 matrix S for each axis alike, and as the rows of S
-//! sum to zero, only displacements *against the element's first node* count. With those, a translation of the element
-//! drops out exactly, and rounding is measured against the deformation and not against the motion.
+//! The first term is the initial stress, the other two are the initial displacement: together the third derivative of the
+//! strain energy of a St. Venant–Kirchhoff body along u.
+//!
+//! K(u) of the whole body is never made. In an element its rows sum to zero over the nodes, so only displacements
+//! *against the element's first node* count. With those, a translation of the element drops out exactly, and rounding is
+//! measured against the deformation and not against the motion.
 
 use faer::linalg::matmul::matmul;
 use faer::linalg::matmul::triangular::{self, BlockStructure};
@@ -25,13 +28,15 @@ const PARTS: usize = 64;
 const BLOCK: usize = 32;
 /// Nodes of an element besides its first.
 pub(crate) const OTHERS: usize = 9;
+/// Their displacements.
+const FREEDOMS: usize = 3 * OTHERS;
 
-/// For each displacement field (column of `displacements`, N×s with N = 3n, length) the matrix `Ψᵀ K_σ Ψ` (f×f), where
-/// Ψ is `shapes` (N×f, row `3·node + axis`) and K_σ the geometric stiffness, force per length, of the field's linear
-/// stress `σ = D ε(u)`. Symmetric to the last bit, and the same for any number of threads.
+/// For each displacement field u (column of `displacements`, N×s with N = 3n, length) the matrix `Ψᵀ K(u) Ψ` (f×f, force
+/// per length), where Ψ is `shapes` (N×f, row `3·node + axis`). Symmetric to the last bit, and the same for any number of
+/// threads. `v·K(u)·b` is also `u·g_vb` of [`second_order_forces`](crate::second_order_forces).
 ///
 /// Exact on straight elements. On curved ones by the rule that [`assemble`](crate::assemble) has for them, so that
-/// `K_σ (θ × X) = θ × K u` holds at every node there too, for any small rotation θ.
+/// `K(u) (θ × X) = θ × K u − K (θ × u)` holds at every node there too, for any small rotation θ.
 ///
 /// It holds 64·s·f² numbers, and for each thread the products of 32 elements: no more for a larger mesh.
 ///
@@ -64,18 +69,18 @@ pub fn reduced_geometric_stiffness(
                 for (sum, u) in sums.iter_mut().zip(displacements.col_iter()) {
                     for (i, e) in block.iter().enumerate() {
                         let u = relative_displacements(u.as_mat(), &mesh.elements()[*e]);
-                        let stiffness = stress_matrix(&points[i], &materials[*e], &u);
-                        let of_element = i * 3 * f * OTHERS..(i + 1) * 3 * f * OTHERS;
+                        let stiffness = element_stiffness(&points[i], &materials[*e], &u);
+                        let of_element = i * f * FREEDOMS..(i + 1) * f * FREEDOMS;
                         matmul(
-                            MatMut::from_column_major_slice_mut(&mut forces[of_element.clone()], 3 * f, OTHERS),
+                            MatMut::from_column_major_slice_mut(&mut forces[of_element.clone()], f, FREEDOMS),
                             Accum::Replace,
-                            MatRef::from_column_major_slice(&relative[of_element], 3 * f, OTHERS),
-                            MatRef::from_column_major_slice(stiffness.as_flattened(), OTHERS, OTHERS),
+                            MatRef::from_column_major_slice(&relative[of_element], f, FREEDOMS),
+                            MatRef::from_column_major_slice(stiffness.as_flattened(), FREEDOMS, FREEDOMS),
                             1.0,
                             Par::Seq,
                         );
                     }
-                    let columns = 3 * OTHERS * block.len();
+                    let columns = FREEDOMS * block.len();
                     triangular::matmul(
                         sum.as_mut(),
                         BlockStructure::TriangularLower,
@@ -134,10 +139,13 @@ pub(crate) fn relative_displacements(fields: MatRef<'_, f64>, nodes: &[u32; 10])
     relative
 }
 
-/// `S_ij = ∫ ∇N_i · σ ∇N_j dV` over the element for its nodes 1 to 9, whose displacements against node 0 are `relative`.
-fn stress_matrix(points: &[IntegrationPoint], material: &Material, relative: &[f64]) -> [[f64; OTHERS]; OTHERS] {
+/// K(u) of an element for the displacements of its nodes 1 to 9 against node 0, of which `relative` are those of u. Rows
+/// and columns are by node, then axis.
+///
+/// With H = ∇u, whose row a is h_a, and g_i = ∇N_i, the displacement e_a N_i has `ε₂(u, e_a N_i) = sym(h_a g_iᵀ)`.
+fn element_stiffness(points: &[IntegrationPoint], material: &Material, relative: &[f64]) -> [[f64; FREEDOMS]; FREEDOMS] {
     let (lambda, mu) = material.lame();
-    let mut lower = [[0.0; OTHERS]; OTHERS];
+    let mut stiffness = [[0.0; FREEDOMS]; FREEDOMS];
     for point in points {
         let gradients: [Vector3<f64>; OTHERS] = std::array::from_fn(|i| point.gradients[i + 1].into());
         let mut displacement_gradient = Matrix3::zeros();
@@ -145,13 +153,32 @@ fn stress_matrix(points: &[IntegrationPoint], material: &Material, relative: &[f
             displacement_gradient += Vector3::new(u[0], u[1], u[2]) * gradient.transpose();
         }
         let strain = 0.5 * (displacement_gradient + displacement_gradient.transpose());
-        let stress = lambda * strain.trace() * Matrix3::identity() + 2.0 * mu * strain;
+        let stress = (lambda * strain.trace() * Matrix3::identity() + 2.0 * mu * strain) * point.volume;
+        let (lambda, mu) = (lambda * point.volume, mu * point.volume);
+        let turned = gradients.map(|gradient| displacement_gradient * gradient);
+        let both = mu * (displacement_gradient + displacement_gradient.transpose());
         for j in 0..OTHERS {
-            let traction = stress * gradients[j] * point.volume;
+            let (g_j, turned_j) = (&gradients[j], &turned[j]);
+            let traction = stress * g_j;
             for i in 0..=j {
-                lower[j][i] += gradients[i].dot(&traction);
+                let (g_i, turned_i) = (&gradients[i], &turned[i]);
+                let (initial_stress, product) = (g_i.dot(&traction), g_i.dot(g_j));
+                for b in 0..3 {
+                    for a in 0..3 {
+                        // ε(a):C:ε₂(u,b), and the same with a and b in each other's place.
+                        stiffness[3 * j + b][3 * i + a] += lambda * (g_i[a] * turned_j[b] + turned_i[a] * g_j[b])
+                            + mu * (turned_i[b] * g_j[a] + turned_j[a] * g_i[b])
+                            + both[(a, b)] * product;
+                    }
+                    stiffness[3 * j + b][3 * i + b] += initial_stress;
+                }
             }
         }
     }
-    std::array::from_fn(|i| std::array::from_fn(|j| lower[i.max(j)][i.min(j)]))
+    for column in 0..FREEDOMS {
+        for row in column + 1..FREEDOMS {
+            stiffness[column][row] = stiffness[row][column];
+        }
+    }
+    stiffness
 }

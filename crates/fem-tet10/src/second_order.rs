@@ -4,7 +4,6 @@
 //! E = ε(u) + ½ ε₂(u,u)        ε(a) = sym ∇a        ε₂(a,b) = sym(∇aᵀ ∇b)        W = ½ ∫ E : C : E dV
 //!
 //! v·g_ab = ∫ ε(v):C:ε₂(a,b) + ε(a):C:ε₂(v,b) + ε(b):C:ε₂(v,a) dV        g_ab = ∂²f_int/∂q_a∂q_b at rest
-//! v·K_σ(u)·b = ∫ C:ε(u) : ε₂(v,b) dV
 //! ```
 //!
 //! All integrands are sums of products of ∇v with a matrix P, so a force on a node is `∫ P ∇N_i dV`. As in the reduced
@@ -51,8 +50,8 @@ pub fn second_order_forces(
     element_forces(mesh, materials, fields, pairs.len(), forces)
 }
 
-/// `K_σ V` (N×k, force) for the columns V of `fields` (N×k, length): K_σ is the geometric stiffness of the linear stress of
-/// `displacement` (N×1, length), as in [`reduced_geometric_stiffness`](crate::reduced_geometric_stiffness).
+/// `K(u) V` (N×k, force) for the columns V of `fields` (N×k, length): K(u) is the geometric stiffness of `displacement`
+/// (N×1, length), as in [`reduced_geometric_stiffness`](crate::reduced_geometric_stiffness).
 ///
 /// # Errors
 /// As [`second_order_forces`].
@@ -63,21 +62,13 @@ pub fn geometric_stiffness_product(
     fields: MatRef<'_, f64>,
 ) -> Result<Mat<f64>, AssemblyError> {
     check_field(mesh, "displacements", displacement)?;
-    let columns = fields.ncols();
     check_field(mesh, "fields", fields)?;
-    let all =
-        Mat::from_fn(
-            fields.nrows(),
-            columns + 1,
-            |i, j| {
-                if j < columns { fields[(i, j)] } else { displacement[(i, 0)] }
-            },
-        );
-    let forces = |gradients: &[Matrix3<f64>], material: &Material, out: &mut Vec<Matrix3<f64>>| {
-        let stress = stress(material, &strain(&gradients[columns]));
-        out.extend(gradients[..columns].iter().map(|gradient| gradient * stress));
-    };
-    element_forces(mesh, materials, all.as_ref(), columns, forces)
+    let columns = fields.ncols();
+    let all = Mat::from_fn(fields.nrows(), columns + 1, |i, j| {
+        if j < columns { fields[(i, j)] } else { displacement[(i, 0)] }
+    });
+    let pairs: Vec<[usize; 2]> = (0..columns).map(|column| [columns, column]).collect();
+    second_order_forces(mesh, materials, all.as_ref(), &pairs)
 }
 
 /// `∫ ε₂(a,b) : C : ε₂(c,d) dV` (energy, one for each of `quadruples`) of columns a, b, c, d of `fields` (N×k, length).
