@@ -8,20 +8,20 @@ use crate::table::Advice;
 pub struct Findings {
     /// [`Advice::deflection`] of that body: static shapes carry some of it, too.
     pub deflection: f64,
-    /// The row of [`crate::steady_stress()`], where steady loads stress the body.
-    pub steady_stress: Option<Row>,
+    /// The row of [`crate::stress_row`], where loads or a drive stress the body.
+    pub stress: Option<Row>,
     /// Whether the body has no static shapes for what the spin stretches.
     pub lacks_stretch: bool,
 }
 
 impl Advice {
     /// The same advice with what has been found since. Of the two reasons for stiffening, the stress of the spin and that
-    /// of steady loads, the one with the larger influence has the row.
+    /// of loads and drives, the one with the larger influence has the row.
     pub fn completed(self, findings: Findings) -> Self {
-        let Findings { deflection, mut steady_stress, lacks_stretch } = findings;
+        let Findings { deflection, mut stress, lacks_stretch } = findings;
         let lacks_stretch = lacks_stretch && self.stretch >= self.tolerance;
         let complete = |row: Row| match row.effect {
-            Effect::GeometricStiffening => steady_stress.take().filter(|s| row.influence <= s.influence).unwrap_or(row),
+            Effect::GeometricStiffening => stress.take().filter(|s| row.influence <= s.influence).unwrap_or(row),
             Effect::StaticCorrection if lacks_stretch => Row { why: row.why + LACKS_STRETCH, ..row },
             _ => row,
         };

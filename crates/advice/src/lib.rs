@@ -12,7 +12,7 @@
 //!    on, compute that.
 //! 3. [`advise`] gives the table: a [`Row`] for each [`Effect`], and what each mode is worth. Nothing stiffens where
 //!    `deformed_inertia` is off: the stiffness is counted as part of it too. What only the reduced body can tell, such as
-//!    the row of [`steady_stress()`], goes into [`Advice::completed`].
+//!    the row of [`stress_row`] for the stress of the loads, goes into [`Advice::completed`].
 //! 4. [`Backbone`]s of the modes that may bend the body by more than [`LARGE`] tell what linear strain makes of that, and
 //!    [`step_estimate()`] gives the row of the step: which attitude or mode it gets wrong, and by how much.
 //! 5. [`Review`] watches the run and names what has broken, and when.
@@ -75,8 +75,8 @@ mod response;
 mod review;
 mod rigid;
 mod row;
-mod steady_stress;
 mod step;
+mod stress;
 mod table;
 mod tensor;
 
@@ -86,6 +86,6 @@ pub use completed::Findings;
 pub use limits::{BUCKLED, Refusal, SOFTENED, buckling, limits};
 pub use review::{Broken, Detuning, Review};
 pub use row::{Effect, Row, Worth};
-pub use steady_stress::steady_stress;
 pub use step::{ModeError, StepEstimate, step_estimate};
+pub use stress::{StressField, StressInfluence, StressSource, stress, stress_row};
 pub use table::{Advice, advise, screen};

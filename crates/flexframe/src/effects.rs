@@ -45,7 +45,7 @@ pub(crate) fn is_on(scene: &Scene, model: &Model, effect: Effect) -> Option<bool
         }
         Effect::DeformedInertia => of_modes(effects.deformed_inertia),
         Effect::Coriolis => of_modes(effects.coriolis),
-        Effect::GeometricStiffening => of_modes(effects.geometric_stiffening || model.physics.load_stiffness.is_some()),
+        Effect::GeometricStiffening => of_modes(effects.geometric_stiffening || model.is_stressed()),
         // What is driven cannot be switched.
         Effect::Translation => {
             (!drives(model, |m| matches!(m, DrivenMotion::Slide { .. }))).then_some(effects.translation)

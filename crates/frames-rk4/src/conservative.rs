@@ -15,7 +15,11 @@
 //!
 //! i and j count the axes that the body turns about: three, the one of a hinge, or none. Where something drives the
 //! body, ω is given, and the modes, which are those of the driven part held still, have a momentum b in its motion; b is
-//! zero otherwise. With stiffening, N_ij is `N_ij − Ψ_fᵀ K_ij Ψ_f`.
+//! zero otherwise.
+//!
+//! With geometric stiffening the displacement is `Ψ_f q + u₂`, to second order in q, and each field of forces does its work
+//! on u₂, too: of the centrifugal field, N_ij becomes `N_ij − Ψ_fᵀ K_ij Ψ_f`; of the inertia of a driven motion, b becomes
+//! `b − K q`; a load has its own in [`SecondOrder`](crate::SecondOrder).
 
 use faer::Mat;
 use modal::ReducedBody;
@@ -24,7 +28,7 @@ use rigid_kin::{Attitude, f_inverse, transformation_matrix};
 
 use crate::account::Energies;
 use crate::checkpoint::StateCoder;
-use crate::column_major::{columns, dot, multiply, multiply_top};
+use crate::column_major::{columns, dot, multiply, multiply_and_subtract, multiply_top};
 use crate::error::{RateError, SetupError, StepError};
 use crate::history::History;
 use crate::initial::Initial;
@@ -115,8 +119,8 @@ pub struct ConservativeBody {
     stacked: Vec<f64>,
     /// Largest N_ij and G_i that couple each mode to itself and its like (nf).
     pub(crate) own_coupling: Vec<[f64; 2]>,
-    /// Stress stiffness of steady loads, column by column (nf × nf), or empty.
-    load_stiffness: Vec<f64>,
+    /// K of a unit acceleration of what is driven, column by column (nf × nf), or empty.
+    drive_stiffness: Vec<f64>,
     loads: Vec<SharedLoad>,
 }
 
@@ -232,11 +236,15 @@ pub(crate) struct Evaluation {
     pub gyroscopic: Vec<f64>,
     /// q̇ (nf).
     pub velocity: Vec<f64>,
-    /// K q of the stress stiffness of steady loads (nf).
-    stressed: Vec<f64>,
+    /// b − K q of a driven translation (nf).
+    pub sliding: Vec<f64>,
+    /// K q̇ of the stiffness of what is driven (nf).
+    pub drive_stiffened: Vec<f64>,
     /// Angular velocity, one component for each axis.
     pub spin: Vector3<f64>,
     pub omega_body: Vector3<f64>,
+    /// Angular velocity or velocity of what is driven; zero without a drive.
+    pub driven_speed: f64,
     /// π of a driven turn or the P of a driven slide, along its axis.
     pub driven_momentum: f64,
     /// J(q) and J − SᵀS.
@@ -259,10 +267,11 @@ impl ConservativeBody {
         let nf = body.flexible();
         crate::model::check_damping(damping_ratios, nf)?;
         loads.iter().try_for_each(|load| load.check(nf))?;
-        let Physics { effects, drive, load_stiffness } = physics;
-        if let Some(found) = load_stiffness.as_ref().map(Mat::shape).filter(|shape| *shape != (nf, nf)) {
-            let what = "the stress stiffness of the loads, in rows and columns,";
-            return Err(SetupError::Length { what, expected: nf, found: found.0.min(found.1) });
+        let Physics { effects, drive, drive_stiffness } = physics;
+        let drive_stiffness = drive_stiffness.as_ref().filter(|_| drive.is_some());
+        for found in drive_stiffness.iter().flat_map(|k| [k.nrows(), k.ncols()]).filter(|found| *found != nf) {
+            let what = "a row or column of the geometric stiffness of the drive";
+            return Err(SetupError::Length { what, expected: nf, found });
         }
         let driven = match drive {
             Some(drive) => {
@@ -352,7 +361,7 @@ impl ConservativeBody {
             g_rows,
             own_coupling: own_coupling(&body.circular_frequencies, &stacked, g_rows),
             stacked,
-            load_stiffness: load_stiffness.as_ref().map_or_else(Vec::new, |k| columns(k.as_ref())),
+            drive_stiffness: drive_stiffness.map_or_else(Vec::new, |k| columns(k.as_ref())),
             loads,
         })
     }
@@ -369,26 +378,25 @@ impl ConservativeBody {
 
     /// Numbers in the matrices that an evaluation reads: what an effect that is off does not cost.
     pub fn matrix_entries(&self) -> usize {
-        self.stacked.len() + self.load_stiffness.len()
+        let of_loads: usize = self.loads.iter().map(|load| load.matrix_entries()).sum();
+        self.stacked.len() + self.drive_stiffness.len() + of_loads
     }
 
     pub(crate) fn evaluation(&self) -> Evaluation {
         let nf = self.flexible();
         let zeros = |n: usize| vec![0.0; n];
-        let mut products = zeros(self.s_rows + self.pairs.len() * nf);
-        for (s, b) in products.chunks_exact_mut(nf.max(1)).zip(&self.coupling) {
-            s.copy_from_slice(b);
-        }
         Evaluation {
             slow: Slow::zeros(),
             displacement: zeros(nf),
             momentum: zeros(nf),
-            products,
+            products: zeros(self.s_rows + self.pairs.len() * nf),
             gyroscopic: zeros(self.g_rows),
             velocity: zeros(nf),
-            stressed: zeros(if self.load_stiffness.is_empty() { 0 } else { nf }),
+            sliding: self.sliding.clone(),
+            drive_stiffened: zeros(if self.drive_stiffness.is_empty() { 0 } else { nf }),
             spin: Vector3::zeros(),
             omega_body: Vector3::zeros(),
+            driven_speed: 0.0,
             driven_momentum: 0.0,
             inertia: self.inertia,
             locked_inertia: self.inertia,
@@ -417,7 +425,7 @@ impl ConservativeBody {
                 *p += s * spin[i];
             }
         }
-        for (p, b) in momentum.iter_mut().zip(&self.sliding) {
+        for (p, b) in momentum.iter_mut().zip(&e.sliding) {
             *p += b * speed;
         }
         for k in self.axes.len()..3 {
@@ -496,15 +504,30 @@ impl ConservativeBody {
     /// S(q), N_ij q and J(q).
     fn deform(&self, q: &[f64], e: &mut Evaluation) {
         let nf = q.len();
-        if self.stacked.is_empty() {
-            return;
+        if !self.stacked.is_empty() {
+            let rows = self.g_rows + self.pairs.len() * nf;
+            multiply(&self.stacked, rows, q, &mut e.products[self.s_rows - self.g_rows..]);
         }
-        let rows = self.g_rows + self.pairs.len() * nf;
-        multiply(&self.stacked, rows, q, &mut e.products[self.s_rows - self.g_rows..]);
         if self.g_rows > 0 {
             for (s, b) in e.products.chunks_exact_mut(nf).zip(&self.coupling) {
                 s.iter_mut().zip(b).for_each(|(s, b)| *s += b);
             }
+        } else {
+            for (s, b) in e.products.chunks_exact_mut(nf.max(1)).zip(&self.coupling) {
+                s.copy_from_slice(b);
+            }
+        }
+        if !self.drive_stiffness.is_empty() {
+            let driven = if self.turn_driven {
+                &mut e.products[..nf]
+            } else {
+                e.sliding.copy_from_slice(&self.sliding);
+                &mut e.sliding
+            };
+            multiply_and_subtract(&self.drive_stiffness, nf, q, driven);
+        }
+        if self.stacked.is_empty() && self.s_rows == 0 {
+            return;
         }
         let (s, n_q) = e.products.split_at(self.s_rows);
         let mut inertia = self.inertia;
@@ -556,6 +579,7 @@ impl ConservativeBody {
         let nf = q.len();
         self.deform(q, e);
         let speed = self.drive.as_ref().map_or(0.0, |drive| drive.speed(t, inside));
+        e.driven_speed = speed;
         let pi = get(slow, part::PI);
         if self.turn_driven {
             e.spin = Vector3::new(speed, 0.0, 0.0);
@@ -652,7 +676,7 @@ impl ConservativeBody {
         for (s, w) in s.chunks_exact(nf.max(1)).zip(w.iter()) {
             e.displacement.iter_mut().zip(s).for_each(|(rate, s)| *rate -= s * w);
         }
-        e.displacement.iter_mut().zip(&self.sliding).for_each(|(rate, b)| *rate -= b * speed);
+        e.displacement.iter_mut().zip(&e.sliding).for_each(|(rate, b)| *rate -= b * speed);
         for ((v, p), rate) in e.velocity.iter_mut().zip(p).zip(&e.displacement) {
             *v = p + rate;
         }
@@ -668,9 +692,10 @@ impl ConservativeBody {
                 *rate += square * (c + n);
             }
         }
-        if !self.load_stiffness.is_empty() {
-            multiply(&self.load_stiffness, nf, q, &mut e.stressed);
-            e.momentum.iter_mut().zip(&e.stressed).for_each(|(rate, k_q)| *rate -= k_q);
+        if !self.drive_stiffness.is_empty() {
+            // ∂/∂q of the kinetic energy v (b − K q)·q̇.
+            multiply(&self.drive_stiffness, nf, &e.velocity, &mut e.drive_stiffened);
+            e.momentum.iter_mut().zip(&e.drive_stiffened).for_each(|(rate, k_v)| *rate -= speed * k_v);
         }
     }
 
@@ -693,10 +718,14 @@ impl ConservativeBody {
             let omega = self.circular_frequencies[k];
             e.momentum[k] - omega * omega * q[k] - self.damping[k] * p[k]
         };
+        // With b − K q in S: S' = −K q̇ beside G q̇, and q̈ = p' − S' v − S v'.
+        let k_v = |k: usize| e.drive_stiffened.get(k).copied().unwrap_or(0.0);
+        let stiffened: f64 = -dot(&e.drive_stiffened, &e.velocity);
         if let Translation::Driven(direction) = self.translation {
-            let b = &self.sliding;
+            let b = &e.sliding;
             e.driven_momentum = self.mass * speed + dot(b, &e.velocity);
-            let changing: f64 = (0..nf).map(|k| b[k] * (rate(k) - b[k] * acceleration)).sum();
+            let changing: f64 =
+                (0..nf).map(|k| b[k] * (rate(k) + k_v(k) * speed - b[k] * acceleration)).sum::<f64>() + stiffened;
             return (self.mass * acceleration + changing - direction.dot(force_body)) * speed;
         }
         let (s, n_q) = e.products.split_at(self.s_rows);
@@ -707,8 +736,8 @@ impl ConservativeBody {
             None => 0.0,
         };
         let g_v = |k: usize| e.gyroscopic.get(k).copied().unwrap_or(0.0);
-        // q̈ = p' − S' ω − S ω', and S'·q̇ = 0.
-        let changing: f64 = (0..nf).map(|k| s[k] * (rate(k) - g_v(k) * speed - s[k] * acceleration)).sum();
+        let changing: f64 =
+            (0..nf).map(|k| s[k] * (rate(k) - (g_v(k) - k_v(k)) * speed - s[k] * acceleration)).sum::<f64>() + stiffened;
         (inertia_rate * speed + e.inertia[(0, 0)] * acceleration + changing - moment[0]) * speed
     }
 
@@ -742,7 +771,7 @@ impl ConservativeBody {
         if self.drive.is_some() {
             return None;
         }
-        let internal = 0.5 * (get(slow, part::PI).dot(&e.spin) + dot(p, &e.velocity)) + self.strain_energy(q, e);
+        let internal = 0.5 * (get(slow, part::PI).dot(&e.spin) + dot(p, &e.velocity)) + self.strain_energy(q);
         let translation = 0.5 * get(slow, part::MOMENTUM).norm_squared() / self.mass;
         let (work, dissipation) = (slow[part::WORK], slow[part::DISSIPATION]);
         Some(Energies { time, internal, translation, work, dissipation })
@@ -833,12 +862,12 @@ impl ConservativeBody {
             }
         };
         let kinetic = 0.5 * (moving + dot(&state.modal_momentum, &e.velocity));
-        (kinetic, self.strain_energy(q, e))
+        (kinetic, self.strain_energy(q))
     }
 
-    /// ½ qᵀ(Λ + K)q
-    fn strain_energy(&self, q: &[f64], e: &Evaluation) -> f64 {
-        q.iter().enumerate().map(|(k, q)| self.modal_energy(k, *q, 0.0)).sum::<f64>() + 0.5 * dot(q, &e.stressed)
+    /// ½ qᵀΛq
+    fn strain_energy(&self, q: &[f64]) -> f64 {
+        q.iter().enumerate().map(|(k, q)| self.modal_energy(k, *q, 0.0)).sum()
     }
 
     /// Lowest ω_k; infinite without modes.

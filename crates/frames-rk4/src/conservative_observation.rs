@@ -70,7 +70,7 @@ impl ConservativeBody {
 
     /// Modal accelerations into `modal`, and the rate of the spin.
     ///
-    /// π = J ω + Sᵀq̇ and p = q̇ + S ω, differentiated: with S' = S(q̇) and S'ᵀq̇ = 0 (G is skew),
+    /// π = J ω + Sᵀq̇ and p = q̇ + S ω, differentiated: with S' = S(q̇) − b, where S'ᵀq̇ = 0 (G is skew) but for what is driven,
     /// (J − SᵀS) ω' = π' − J'ω − Sᵀ(p' − S'ω),  q̈ = p' − S'ω − S ω'.
     fn accelerations(
         &self,
@@ -85,7 +85,8 @@ impl ConservativeBody {
         for (g, w) in e.gyroscopic.chunks_exact(nf.max(1)).zip(e.spin.iter()) {
             modal.iter_mut().zip(g).for_each(|(a, g)| *a -= g * w);
         }
-        modal.iter_mut().zip(&self.sliding).for_each(|(a, b)| *a -= b * driven_acceleration);
+        modal.iter_mut().zip(&e.sliding).for_each(|(a, b)| *a -= b * driven_acceleration);
+        modal.iter_mut().zip(&e.drive_stiffened).for_each(|(a, k_v)| *a += k_v * e.driven_speed);
         let spin_rate = if self.turn_driven {
             Vector3::new(driven_acceleration, 0.0, 0.0)
         } else if self.axes.is_empty() {

@@ -18,6 +18,7 @@ use nalgebra::{Matrix3, Vector3};
 use crate::error::SetupError;
 use crate::history::History;
 use crate::motion::{PointShapes, RotationShapes};
+use crate::second_order::SecondOrder;
 
 pub use body_field::BodyField;
 pub use closure::LoadFn;
@@ -52,6 +53,11 @@ pub trait Load: fmt::Debug + Send + Sync + Any {
     /// need it; a load without one is simulated all the same.
     fn pattern(&self) -> Option<Pattern> {
         None
+    }
+
+    /// Numbers in the matrices that an evaluation reads for it.
+    fn matrix_entries(&self) -> usize {
+        0
     }
 
     /// Refuses numbers that are not finite, and shapes of another body than one with `flexible` modes.
@@ -143,7 +149,10 @@ impl Kinematics<'_> {
     /// Velocity of a point, global components.
     pub fn velocity_global(&self, point: &PointShapes) -> Vector3<f64> {
         let Coordinates { first, velocity, .. } = self.coordinates;
-        let modal = sum(&point.columns()[first..], velocity);
+        let mut modal = sum(&point.columns()[first..], velocity);
+        if let Some(second_order) = point.second_order() {
+            modal += second_order.velocity(self.modal_displacement(), self.modal_velocity());
+        }
         let turning = if first > 0 { self.omega_body.cross(&self.arm_body(point)) } else { Vector3::zeros() };
         let of_origin = if first > 0 { self.velocity_global } else { Vector3::zeros() };
         of_origin + self.body_from_global.tr_mul(&(turning + modal))
@@ -162,7 +171,10 @@ impl Kinematics<'_> {
     /// From the origin to a point of the deformed body, body components.
     fn arm_body(&self, point: &PointShapes) -> Vector3<f64> {
         let Coordinates { first, displacement, .. } = self.coordinates;
-        point.position_body() + sum(&point.columns()[first..], displacement)
+        let second_order = |second: &SecondOrder| second.displacement(self.modal_displacement());
+        point.position_body()
+            + sum(&point.columns()[first..], displacement)
+            + point.second_order().map_or_else(Vector3::zeros, second_order)
     }
 }
 
@@ -204,7 +216,8 @@ impl<'a> Applied<'a> {
         let force_body = force_body * self.weight;
         let Coordinates { first, displacement, .. } = self.coordinates;
         let columns = &point.columns()[first..];
-        let arm = point.position_body() + sum(columns, displacement) - self.center_body;
+        let second_order = self.push(point.second_order(), &force_body);
+        let arm = point.position_body() + sum(columns, displacement) + second_order - self.center_body;
         self.force_body += force_body;
         self.moment_body += arm.cross(&force_body);
         self.project(columns.iter().map(|shape| shape.dot(&force_body)));
@@ -214,6 +227,7 @@ impl<'a> Applied<'a> {
     pub fn moment(&mut self, place: &RotationShapes, moment_body: &Vector3<f64>) {
         let moment_body = moment_body * self.weight;
         self.moment_body += moment_body;
+        self.push(place.second_order(), &moment_body);
         let columns = &place.columns()[self.coordinates.first..];
         self.project(columns.iter().map(|rotation| rotation.dot(&moment_body)));
     }
@@ -223,10 +237,21 @@ impl<'a> Applied<'a> {
         let factor = factor * self.weight;
         let Coordinates { first, displacement, .. } = self.coordinates;
         let force_body = field.force_body * factor;
-        let turned = sum(&field.lever, &displacement[6 - first..]);
+        let flexible = &displacement[6 - first..];
+        let turned = sum(&field.moment_change, flexible);
+        let force_body = force_body + sum(&field.force_change, flexible) * factor;
         self.force_body += force_body;
         self.moment_body += (field.moment_body + turned) * factor - self.center_body.cross(&force_body);
         self.project(field.modal[first..].iter().map(|f| f * factor));
+        let velocity = self.coordinates.velocity;
+        let modal_force = &mut self.modal_force[6 - first..];
+        for (column, q) in field.modal_change.chunks_exact(field.moment_change.len().max(1)).zip(flexible) {
+            for ((f, v), change) in modal_force.iter_mut().zip(&velocity[6 - first..]).zip(column) {
+                let change = change * (q * factor);
+                *f += change;
+                self.modal_power += change * v;
+            }
+        }
     }
 
     /// Adds a modal force on one flexible mode, numbered from 0. It has no resultant.
@@ -236,6 +261,17 @@ impl<'a> Applied<'a> {
             *f += force * self.weight;
             self.modal_power += force * self.weight * v;
         }
+    }
+
+    /// Adds the modal force of a force or moment on a displacement or rotation of second order, which is returned.
+    fn push(&mut self, second_order: Option<&SecondOrder>, vector: &Vector3<f64>) -> Vector3<f64> {
+        let Some(second_order) = second_order else { return Vector3::zeros() };
+        let rigid = 6 - self.coordinates.first;
+        let Coordinates { displacement, velocity, .. } = self.coordinates;
+        let (bent, power) =
+            second_order.push(vector, &displacement[rigid..], &velocity[rigid..], &mut self.modal_force[rigid..]);
+        self.modal_power += power;
+        bent
     }
 
     /// Adds the components of a force along the modes.
@@ -254,7 +290,16 @@ fn sum(columns: &[Vector3<f64>], coordinates: &[f64]) -> Vector3<f64> {
 }
 
 /// Refuses a force or moment that is not finite, and a place of a body with fewer modes than `flexible`.
-fn check_vector(what: &'static str, vector: &Vector3<f64>, modes: usize, flexible: usize) -> Result<(), SetupError> {
+fn check_vector(
+    what: &'static str,
+    vector: &Vector3<f64>,
+    modes: usize,
+    second_order: Option<&SecondOrder>,
+    flexible: usize,
+) -> Result<(), SetupError> {
+    if let Some(found) = second_order.map(SecondOrder::modes).filter(|found| *found < flexible) {
+        return Err(SetupError::Length { what: "the geometric stiffness of a load", expected: flexible, found });
+    }
     if let Some(found) = vector.iter().copied().find(|f| !f.is_finite()) {
         return Err(SetupError::Value { what, found, expected: "a finite number" });
     }

@@ -9,6 +9,7 @@ use crate::account::Energies;
 use crate::attitude_account::AttitudeAccount;
 use crate::error::{SetupError, StepError};
 use crate::observation::{Observation, PointMotion};
+use crate::second_order::SecondOrder;
 use crate::state::{MotionState, State, rotation, translation};
 use crate::work::Work;
 
@@ -18,6 +19,7 @@ pub struct PointShapes {
     position_body: Vector3<f64>,
     /// Column k is the displacement of the point in mode k (6+nf columns).
     columns: Vec<Vector3<f64>>,
+    second_order: Option<SecondOrder>,
 }
 
 impl PointShapes {
@@ -28,7 +30,18 @@ impl PointShapes {
             .map(|k| rigid.column(k).into())
             .chain(point.shapes.col_iter().map(|c| Vector3::new(c[0], c[1], c[2])))
             .collect();
-        Self { position_body: point.position_body, columns }
+        Self { position_body: point.position_body, columns, second_order: None }
+    }
+
+    /// The point with its displacement to second order: a load on it then stiffens the body.
+    #[must_use]
+    pub fn with_second_order(self, second_order: SecondOrder) -> Self {
+        Self { second_order: Some(second_order), ..self }
+    }
+
+    /// The displacement of second order, if it is known.
+    pub(crate) fn second_order(&self) -> Option<&SecondOrder> {
+        self.second_order.as_ref()
     }
 
     /// X: undeformed position from the body's origin, body axes.
@@ -44,7 +57,8 @@ impl PointShapes {
     /// The point with the rows of the first `flexible` flexible modes only.
     pub fn truncated(&self, flexible: usize) -> Self {
         let kept = self.columns.len().min(6 + flexible);
-        Self { position_body: self.position_body, columns: self.columns[..kept].to_vec() }
+        let second_order = self.second_order.as_ref().map(|second_order| second_order.truncated(flexible));
+        Self { position_body: self.position_body, columns: self.columns[..kept].to_vec(), second_order }
     }
 
     /// Modal expansion at the point, (28): Σ_k Ψ_k c_k.
@@ -68,13 +82,26 @@ impl PointShapes {
 pub struct RotationShapes {
     /// Column k is the rotation vector of the place in mode k (6+nf columns).
     columns: Vec<Vector3<f64>>,
+    second_order: Option<SecondOrder>,
 }
 
 impl RotationShapes {
     /// `flexible` has the rotation vectors of the flexible modes (3×nf).
     pub fn new(body: &ReducedBody, flexible: MatRef<'_, f64>) -> Self {
         let rigid = (0..3).map(|_| Vector3::zeros()).chain((0..3).map(|i| body.rotation_basis.column(i).into()));
-        Self { columns: rigid.chain(flexible.col_iter().map(|c| Vector3::new(c[0], c[1], c[2]))).collect() }
+        let columns = rigid.chain(flexible.col_iter().map(|c| Vector3::new(c[0], c[1], c[2]))).collect();
+        Self { columns, second_order: None }
+    }
+
+    /// The place with its rotation to second order: a moment on it then stiffens the body.
+    #[must_use]
+    pub fn with_second_order(self, second_order: SecondOrder) -> Self {
+        Self { second_order: Some(second_order), ..self }
+    }
+
+    /// The rotation of second order, if it is known.
+    pub(crate) fn second_order(&self) -> Option<&SecondOrder> {
+        self.second_order.as_ref()
     }
 
     /// Number of flexible modes.
@@ -84,7 +111,9 @@ impl RotationShapes {
 
     /// The place with the first `flexible` flexible modes only.
     pub fn truncated(&self, flexible: usize) -> Self {
-        Self { columns: self.columns[..self.columns.len().min(6 + flexible)].to_vec() }
+        let kept = self.columns.len().min(6 + flexible);
+        let second_order = self.second_order.as_ref().map(|second_order| second_order.truncated(flexible));
+        Self { columns: self.columns[..kept].to_vec(), second_order }
     }
 
     /// Columns of all modes, rigid and flexible (6+nf).

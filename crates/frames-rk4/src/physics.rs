@@ -95,6 +95,7 @@ pub struct Physics {
     pub effects: Effects,
     /// What drives the held part.
     pub drive: Option<Drive>,
-    /// Stress stiffness Ψ_fᵀ K Ψ_f of loads that stay as they are (nf×nf).
-    pub load_stiffness: Option<Mat<f64>>,
+    /// Geometric stiffness Ψ_fᵀ K Ψ_f (nf×nf, symmetric) of the static answer to the forces `M (1⊗e)` of a unit
+    /// acceleration of a driven slide along e, or `M (I⊗[a×]) X` of a driven turn about a.
+    pub drive_stiffness: Option<Mat<f64>>,
 }

@@ -31,3 +31,9 @@ pub fn centrifugal_fields(mass: &NodalMass, positions: &[[f64; 3]], origin: &Vec
 pub fn acceleration_fields(mass: &NodalMass) -> Mat<f64> {
     mass.product(Mat::from_fn(3 * mass.node_count(), 3, |i, axis| f64::from(i % 3 == axis)).as_ref())
 }
+
+/// `M (I⊗[a×]) X` (3n×1), X from `origin`: minus the Euler force of a unit angular acceleration about `axis` (a).
+pub fn turning_field(mass: &NodalMass, positions: &[[f64; 3]], origin: &Vector3<f64>, axis: &Vector3<f64>) -> Mat<f64> {
+    let velocity = |i: usize| axis.cross(&(Vector3::from(positions[i / 3]) - origin))[i % 3];
+    mass.product(Mat::from_fn(3 * positions.len(), 1, |i, _| velocity(i)).as_ref())
+}

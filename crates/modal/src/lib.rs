@@ -40,7 +40,7 @@ mod symmetry;
 mod tall;
 
 pub use error::ModalError;
-pub use fields::{acceleration_fields, centrifugal_fields};
+pub use fields::{acceleration_fields, centrifugal_fields, turning_field};
 pub use mass::NodalMass;
 pub use reduced::{BodyPoint, Constants, ReducedBody};
 pub use rigid::RigidModes;

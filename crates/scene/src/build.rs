@@ -18,7 +18,7 @@ mod progress;
 mod reduce;
 mod rigid;
 mod statics;
-mod steady_stress;
+mod stress;
 mod support;
 mod survey;
 mod turning;

@@ -226,7 +226,9 @@ fn on_mode(body: &ReducedBody, mode: usize, history: History) -> SharedLoad {
         force_body: Vector3::zeros(),
         moment_body: Vector3::zeros(),
         modal,
-        lever: vec![Vector3::zeros(); nf],
+        force_change: Vec::new(),
+        modal_change: Vec::new(),
+        moment_change: vec![Vector3::zeros(); nf],
     };
     Arc::new(FieldLoad { field, history })
 }

@@ -1,8 +1,11 @@
 //! What only the body that a run is made with tells.
 
-use advice::{Advice, AdviceError, Effect, Findings, Row, advise, steady_stress};
+use std::sync::Arc;
+
+use advice::{Advice, AdviceError, Effect, Findings, Row, StressField, StressSource, advise, stress, stress_row};
 use faer::Mat;
-use frames_rk4::Initial;
+use frames_rk4::{BodyField, FieldLoad, History, Initial, SharedLoad};
+use nalgebra::Vector3;
 
 use crate::plate::{plate, spinning};
 
@@ -14,7 +17,7 @@ fn spun(speed: f64) -> Advice {
 }
 
 fn found(advice: &Advice) -> Findings {
-    Findings { deflection: advice.deflection, steady_stress: None, lacks_stretch: false }
+    Findings { deflection: advice.deflection, stress: None, lacks_stretch: false }
 }
 
 fn stiffening(influence: f64) -> Row {
@@ -34,7 +37,7 @@ fn nothing_found_changes_nothing_and_a_deflection_that_is_found_is_taken() {
 fn the_larger_of_two_reasons_for_stiffening_has_the_row() {
     let (still, fast) = (spun(0.0), spun(10.0));
     let row = |advice: &Advice, steady: Row| {
-        let complete = advice.clone().completed(Findings { steady_stress: Some(steady), ..found(advice) });
+        let complete = advice.clone().completed(Findings { stress: Some(steady), ..found(advice) });
         assert_eq!(complete.rows.len(), advice.rows.len());
         complete.row(Effect::GeometricStiffening).unwrap().clone()
     };
@@ -58,30 +61,55 @@ fn a_stretch_that_is_lacking_is_said_only_where_it_matters() {
     assert!(!why(100.0, false).1);
 }
 
-/// Of one mode: |K|/ω² is twice the shift of its frequency, which adds up for as long as it rings.
-#[test]
-fn the_stress_of_steady_loads_counts_as_the_phase_it_shifts() {
+/// A load with a history, which does nothing.
+fn load(history: History) -> SharedLoad {
+    let field = BodyField {
+        force_body: Vector3::zeros(),
+        moment_body: Vector3::zeros(),
+        modal: vec![0.0; 16],
+        force_change: Vec::new(),
+        moment_change: vec![Vector3::zeros(); 10],
+        modal_change: Vec::new(),
+    };
+    Arc::new(FieldLoad { field, history })
+}
+
+/// The row of a load whose stiffness is −`ratio` ω² in mode 3.
+fn stressed(ratio: f64, zeta: f64, history: History) -> Row {
     let (initial, end) = (Initial::at_rest(10), 0.5);
     let omega = plate().body.circular_frequencies[2];
-    let ratio = 1e-6;
     let mut stiffness = Mat::zeros(10, 10);
     stiffness[(2, 2)] = -ratio * omega * omega;
-    let row = |zeta: f64| {
-        let zeta = [zeta; 10];
-        steady_stress(&plate().case(&zeta, &[], &initial, end), stiffness.as_ref(), TOLERANCE).unwrap()
-    };
-    let free = row(0.0);
-    let phase = 0.5 * ratio * omega * end;
-    println!("{free:?} {phase}");
+    let (zeta, loads) = ([zeta; 10], [load(history)]);
+    let field = StressField { name: "a test", source: StressSource::Load(0), stiffness: stiffness.as_ref() };
+    let case = plate().case(&zeta, &loads, &initial, end);
+    let found = stress(&case, &[field], TOLERANCE).unwrap();
+    stress_row(&[field], &found, TOLERANCE).unwrap()
+}
+
+/// Of one mode: |K|/ω² is twice the shift of its frequency, which adds up for as long as it rings.
+#[test]
+fn the_stress_of_a_load_counts_as_the_phase_it_shifts() {
+    let ratio = 1e-6;
+    let omega = plate().body.circular_frequencies[2];
+    let free = stressed(ratio, 0.0, History::Constant);
+    let phase = 0.5 * ratio * omega * 0.5;
     assert!((free.value / ratio - 1.0).abs() < 1e-12 && (free.influence / phase - 1.0).abs() < 1e-12, "{free:?}");
     assert_eq!(free.on, phase >= TOLERANCE);
-    assert!((row(0.1).influence / (0.5 * ratio / 0.1) - 1.0).abs() < 1e-12, "{:?}", row(0.1));
+    assert!(free.why.contains("The stress of a test"), "{free:?}");
+    let damped = stressed(ratio, 0.1, History::Constant);
+    assert!((damped.influence / (0.5 * ratio / 0.1) - 1.0).abs() < 1e-12, "{damped:?}");
+    // Of a load that acts for a tenth of the run, with a mean of 2/π.
+    let pulse = stressed(ratio, 0.0, History::HalfSine { start: 0.1, duration: 0.05 });
+    let expected = phase * 0.1 * 2.0 / std::f64::consts::PI;
+    assert!((pulse.influence / expected - 1.0).abs() < 1e-3 && pulse.value == free.value, "{pulse:?}");
 }
 
 #[test]
 fn a_stiffness_of_another_size_is_refused() {
     let (zeta, initial) = ([0.0; 10], Initial::at_rest(10));
     let small = Mat::zeros(9, 9);
-    let refused = steady_stress(&plate().case(&zeta, &[], &initial, 1.0), small.as_ref(), TOLERANCE);
+    let field = StressField { name: "a test", source: StressSource::Drive, stiffness: small.as_ref() };
+    let refused = stress(&plate().case(&zeta, &[], &initial, 1.0), &[field], TOLERANCE);
     assert!(matches!(refused, Err(AdviceError::Length { found: 9, expected: 10, .. })), "{refused:?}");
 }

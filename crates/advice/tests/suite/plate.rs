@@ -102,7 +102,7 @@ pub fn spinning(omega: [f64; 3]) -> Initial {
 
 /// 200 rows of the motion.
 pub fn run(case: &Case, effects: Effects) -> Vec<Observation> {
-    let physics = Physics { effects, drive: case.drive.cloned(), load_stiffness: None };
+    let physics = Physics { effects, drive: case.drive.cloned(), drive_stiffness: None };
     let mut simulation = Simulation::new(&Setup {
         body: case.body,
         damping_ratios: case.damping_ratios,

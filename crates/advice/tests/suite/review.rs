@@ -102,7 +102,7 @@ fn watched(case: &Case, effects: Effects, step: f64, interval: f64) -> Vec<Broke
         body: case.body,
         damping_ratios: case.damping_ratios,
         loads: case.loads,
-        physics: &Physics { effects, drive: None, load_stiffness: None },
+        physics: &Physics { effects, drive: None, drive_stiffness: None },
         reference_points: [Vector3::x(), Vector3::y(), Vector3::z()],
         initial: case.initial,
         method: Method::EXPONENTIAL,

@@ -117,6 +117,7 @@ impl Failure for BuildError {
             Self::Assembly(error) => error.kind(),
             Self::Modal { source, .. } => source.kind(),
             Self::Advice(error) => error.kind(),
+            Self::Load(error) => error.kind(),
         }
     }
 
@@ -127,6 +128,7 @@ impl Failure for BuildError {
             Self::Assembly(error) => error.details(),
             Self::Modal { scene, .. } => Details::of_file(scene),
             Self::Advice(error) => error.details(),
+            Self::Load(error) => error.details(),
         }
     }
 }

@@ -11,6 +11,11 @@ pub struct BodyField {
     pub moment_body: Vector3<f64>,
     /// Ψᵀ f, rigid and flexible modes (6+nf).
     pub modal: Vec<f64>,
-    /// Σ Φ_k,i × f_i for each flexible mode: what a deformation adds to the moment (nf).
-    pub lever: Vec<Vector3<f64>>,
+    /// What each flexible mode adds to the resultant: that of a pressure that turns with its surface (nf, or none).
+    pub force_change: Vec<Vector3<f64>>,
+    /// What each flexible mode adds to the moment, Σ Φ_k,i × f_i + X_i × ∂f_i/∂q_k (nf).
+    pub moment_change: Vec<Vector3<f64>>,
+    /// What the flexible modes add to the modal forces, column by column (nf×nf, or none): L − K, of the load stiffness
+    /// L = Ψᵀ ∂f/∂q and the geometric stiffness K of the field's own stress.
+    pub modal_change: Vec<f64>,
 }

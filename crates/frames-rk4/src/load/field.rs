@@ -31,11 +31,24 @@ impl Load for FieldLoad {
 
     fn check(&self, flexible: usize) -> Result<(), SetupError> {
         self.history.check()?;
-        let BodyField { force_body, moment_body, modal, lever } = &self.field;
-        let levers = lever.iter().flat_map(|lever| lever.iter());
-        if let Some(found) = moment_body.iter().chain(modal).chain(levers).copied().find(|f| !f.is_finite()) {
+        let BodyField { force_body, moment_body, modal, force_change, moment_change, modal_change } = &self.field;
+        let modes = moment_change.len().min(modal.len().saturating_sub(6));
+        for (what, found, expected) in [
+            ("the changes of the resultant of a field of forces", force_change.len(), modes),
+            ("the changes of the modal forces of a field of forces", modal_change.len(), modes * modes),
+        ] {
+            if found != 0 && found != expected {
+                return Err(SetupError::Length { what, expected, found });
+            }
+        }
+        let vectors = force_change.iter().chain(moment_change).chain([moment_body]).flat_map(|vector| vector.iter());
+        if let Some(found) = vectors.chain(modal).chain(modal_change).copied().find(|f| !f.is_finite()) {
             return Err(SetupError::Value { what: "a field of forces", found, expected: "a finite number" });
         }
-        check_vector("a field of forces", force_body, lever.len().min(modal.len().saturating_sub(6)), flexible)
+        check_vector("a field of forces", force_body, modes, None, flexible)
+    }
+
+    fn matrix_entries(&self) -> usize {
+        self.field.modal_change.len()
     }
 }

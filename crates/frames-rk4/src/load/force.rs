@@ -6,6 +6,7 @@ use super::{Applied, Kinematics, Load, LoadFrame, Pattern, check_vector};
 use crate::error::SetupError;
 use crate::history::History;
 use crate::motion::PointShapes;
+use crate::second_order::SecondOrder;
 
 /// A force at a point. A load of one direction that is spread over the body, such as a traction or gravity, is its
 /// resultant at the point that moves as the weighted mean of where it acts.
@@ -42,8 +43,12 @@ impl Load for PointForce {
         Some(Pattern { columns, vector: self.force, frame: self.frame, local: true })
     }
 
+    fn matrix_entries(&self) -> usize {
+        self.point.second_order().map_or(0, SecondOrder::entries)
+    }
+
     fn check(&self, flexible: usize) -> Result<(), SetupError> {
         self.history.check()?;
-        check_vector("a force", &self.force, self.point.flexible(), flexible)
+        check_vector("a force", &self.force, self.point.flexible(), self.point.second_order(), flexible)
     }
 }

@@ -6,6 +6,7 @@ use super::{Applied, Kinematics, Load, LoadFrame, Pattern, check_vector};
 use crate::error::SetupError;
 use crate::history::History;
 use crate::motion::RotationShapes;
+use crate::second_order::SecondOrder;
 
 /// A moment.
 #[derive(Debug, Clone)]
@@ -34,8 +35,12 @@ impl Load for PointMoment {
         Some(Pattern { columns, vector: self.moment, frame: self.frame, local: true })
     }
 
+    fn matrix_entries(&self) -> usize {
+        self.rotation.second_order().map_or(0, SecondOrder::entries)
+    }
+
     fn check(&self, flexible: usize) -> Result<(), SetupError> {
         self.history.check()?;
-        check_vector("a moment", &self.moment, self.rotation.flexible(), flexible)
+        check_vector("a moment", &self.moment, self.rotation.flexible(), self.rotation.second_order(), flexible)
     }
 }

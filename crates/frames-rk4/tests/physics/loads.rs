@@ -28,16 +28,46 @@ fn field() -> SharedLoad {
         force_body: Vector3::new(0.2, 0.5, -0.4),
         moment_body: Vector3::new(-0.3, 0.2, 0.6),
         modal: vec![0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.3, -0.2, 0.4],
-        lever: (0..3).map(|k| Vector3::new(0.1, 0.05 * k as f64, -0.1)).collect(),
+        force_change: Vec::new(),
+        modal_change: Vec::new(),
+        moment_change: (0..3).map(|k| Vector3::new(0.1, 0.05 * k as f64, -0.1)).collect(),
     };
     Arc::new(FieldLoad { field, history: PULSE })
+}
+
+/// A field that follows the deformation, such as a pressure: its modal forces are not symmetric in the modes.
+fn following_field() -> SharedLoad {
+    let field = BodyField {
+        force_body: Vector3::new(0.2, 0.5, -0.4),
+        moment_body: Vector3::new(-0.3, 0.2, 0.6),
+        modal: vec![0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.3, -0.2, 0.4],
+        force_change: (0..3).map(|k| Vector3::new(0.3 - 0.1 * k as f64, 0.2, -0.1)).collect(),
+        moment_change: (0..3).map(|k| Vector3::new(0.1, 0.05 * k as f64, -0.1)).collect(),
+        modal_change: (0..9).map(|k| 0.4 * (1.7 * f64::from(k)).sin()).collect(),
+    };
+    Arc::new(FieldLoad { field, history: PULSE })
+}
+
+/// A force and a moment that stiffen the body.
+fn stiffening(frame: LoadFrame) -> [SharedLoad; 2] {
+    let body = body(RigidMotion::free(), &[5.0, 8.0, 13.0]);
+    let vector = Vector3::new(0.5, 1.0, -0.7);
+    let point = point(&body, [0.5, -0.2, 0.4]).with_second_order(crate::stress::second_order(3));
+    let rotation = RotationShapes::new(&body, Mat::from_fn(3, 3, |i, k| 0.1 * (i as f64 - k as f64)).as_ref())
+        .with_second_order(crate::stress::second_order(3));
+    [
+        Arc::new(PointForce { point, force: vector, frame, history: PULSE }),
+        Arc::new(PointMoment { rotation, moment: vector, frame, history: PULSE }),
+    ]
 }
 
 #[test]
 fn work_and_impulses_of_every_load_close_the_balances() {
     let body = body(RigidMotion::free(), &[5.0, 8.0, 13.0]);
     let [global, follower] = [LoadFrame::Global, LoadFrame::Body];
-    for load in [force(global), force(follower), moment(global), moment(follower), field()] {
+    let stiffening = [stiffening(global), stiffening(follower)].concat();
+    let others = [force(global), force(follower), moment(global), moment(follower), field(), following_field()];
+    for load in others.into_iter().chain(stiffening) {
         let mut run = Run::new(&body, 3.0);
         run.loads = vec![load.clone()];
         for method in [EXPONENTIAL, RKMK4] {

@@ -8,3 +8,4 @@ mod loads;
 mod open;
 mod sample;
 mod steady;
+mod stress;

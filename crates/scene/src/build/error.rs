@@ -36,6 +36,9 @@ pub enum BuildError {
     /// No advice can be given on it.
     #[error(transparent)]
     Advice(#[from] AdviceError),
+    /// A load that the integrator refuses.
+    #[error(transparent)]
+    Load(#[from] SetupError),
 }
 
 /// A motion that cannot start.

@@ -4,14 +4,18 @@ use std::sync::Arc;
 
 use faer::Mat;
 use fem_tet10::{Location, MeanRotation, Mesh};
-use frames_rk4::{BodyField, FieldLoad, LoadFrame, PointForce, PointMoment, PointShapes, RotationShapes, SharedLoad};
-use modal::{BodyPoint, ModalError, Modes, ReducedBody};
+use frames_rk4::{
+    BodyField, FieldLoad, LoadFrame, PointForce, PointMoment, PointShapes, RotationShapes, SecondOrder, SharedLoad,
+};
+use modal::{BodyPoint, Modes, ReducedBody};
 use nalgebra::Vector3;
 use rigid_kin::Attitude;
 
-use super::error::{BuildError, refuse, refuse_mesh};
+use super::error::{BuildError, modal, refuse, refuse_mesh};
 use super::history::history;
 use super::initial::first_attitude;
+use super::mesh_model::MeshModel;
+use super::stress::Directed;
 use super::turning::Turning;
 use crate::effects::Choice;
 use crate::load::{self, Load};
@@ -22,6 +26,8 @@ const PARALLEL: f64 = 1e-12;
 
 /// A load on the nodes of the mesh.
 pub(super) struct MeshLoad {
+    /// What it is, for the reader.
+    name: String,
     place: Place,
     pub history: frames_rk4::History,
     /// Whether it keeps its direction in the body.
@@ -59,7 +65,16 @@ enum Place {
     /// A couple on the mean rotation of nodes.
     Moment { patch: MeanRotation, moment: Vector3<f64> },
     /// Forces on nodes that are fixed in the body.
-    Field { nodes: Vec<u32>, forces: Vec<Vector3<f64>> },
+    Field { nodes: Vec<u32>, forces: Vec<Vector3<f64>>, group: String, pressure: f64 },
+}
+
+/// What a pressure on a surface becomes as the surface moves in each mode.
+pub(super) struct FollowerChange {
+    /// Of the resultant and of the moment about the origin of the body (nf).
+    pub force: Vec<Vector3<f64>>,
+    pub moment: Vec<Vector3<f64>>,
+    /// Ψᵀ ∂f/∂q (nf × nf).
+    pub load_stiffness: Mat<f64>,
 }
 
 /// The loads of a scene on its mesh. `nodal_mass` is the mass that each node stands for.
@@ -97,7 +112,7 @@ pub(super) fn on_mesh(scene: &Scene, mesh: &Mesh, nodal_mass: &[f64]) -> Result<
                 Load::Pressure(load) => {
                     let (nodes, forces) = mesh.surface_pressure(&load.group).map_err(surface)?;
                     let forces = forces.into_iter().map(|f| f * load.amplitude).collect();
-                    Place::Field { nodes, forces }
+                    Place::Field { nodes, forces, group: load.group.clone(), pressure: load.amplitude }
                 }
                 Load::Gravity(_) | Load::BaseAcceleration(_) => {
                     let nodes = (0..nodal_mass.len() as u32).collect();
@@ -105,7 +120,8 @@ pub(super) fn on_mesh(scene: &Scene, mesh: &Mesh, nodal_mass: &[f64]) -> Result<
                 }
             };
             let history = history(scene, &key("history"), of(load))?;
-            Ok(MeshLoad { place, history, follows: follows(load), attitude, is_gravity: is_gravity(load) })
+            let name = name(i, load);
+            Ok(MeshLoad { name, place, history, follows: follows(load), attitude, is_gravity: is_gravity(load) })
         })
         .collect()
 }
@@ -158,6 +174,19 @@ fn acting(scene: &Scene) -> impl Iterator<Item = (usize, &Load)> {
     scene.loads.iter().enumerate().filter(move |(_, load)| with_gravity || !is_gravity(load))
 }
 
+/// What a load is, for the reader.
+fn name(i: usize, load: &Load) -> String {
+    let kind = match load {
+        Load::Force(_) => "the force",
+        Load::Moment(_) => "the moment",
+        Load::Traction(_) => "the traction",
+        Load::Pressure(_) => "the pressure",
+        Load::Gravity(_) => "gravity",
+        Load::BaseAcceleration(_) => "the base acceleration",
+    };
+    format!("{kind} loads[{i}]")
+}
+
 fn is_gravity(load: &Load) -> bool {
     matches!(load, Load::Gravity(_))
 }
@@ -197,8 +226,17 @@ impl MeshLoad {
         self.is_gravity
     }
 
-    /// The force or moment in the first attitude, where the history is 1; none of a field.
-    fn vector(&self) -> Option<Vector3<f64>> {
+    /// "gravity along (0, 0, -1)", for a force or moment in body axes.
+    pub fn name_along(&self, vector: &Vector3<f64>) -> String {
+        let rounded = |x: f64| (x * 100.0).round() / 100.0 + 0.0;
+        match vector.try_normalize(0.0) {
+            Some(d) => format!("{} along ({}, {}, {}) of the body", self.name, rounded(d.x), rounded(d.y), rounded(d.z)),
+            None => self.name.clone(),
+        }
+    }
+
+    /// The force or moment in the first attitude, body axes, where the history is 1; none of a field.
+    pub(super) fn vector(&self) -> Option<Vector3<f64>> {
         match &self.place {
             Place::Force { force: vector, .. } | Place::Moment { moment: vector, .. } => {
                 Some(if self.follows { *vector } else { self.attitude.to_body(vector) })
@@ -257,47 +295,112 @@ impl MeshLoad {
                     add(*node, &turned.tr_mul(&vector));
                 }
             }
-            Place::Field { nodes, forces } => nodes.iter().zip(forces).for_each(|(node, f)| add(*node, f)),
+            Place::Field { nodes, forces, .. } => nodes.iter().zip(forces).for_each(|(node, f)| add(*node, f)),
         }
     }
 
-    /// The load on the modes of a body.
-    pub(super) fn reduced(&self, body: &ReducedBody, modes: &Modes, mesh: &Mesh) -> Result<SharedLoad, ModalError> {
+    /// What a pressure becomes as its surface moves; none of other loads.
+    pub(super) fn follower_change(
+        &self,
+        model: &MeshModel<'_>,
+        body: &ReducedBody,
+        modes: &Modes,
+    ) -> Result<Option<FollowerChange>, BuildError> {
+        let Place::Field { nodes, forces, group, pressure } = &self.place else { return Ok(None) };
+        let nf = body.flexible();
+        let mut change = FollowerChange {
+            force: vec![Vector3::zeros(); nf],
+            moment: vec![Vector3::zeros(); nf],
+            load_stiffness: Mat::zeros(nf, nf),
+        };
+        for k in 0..nf {
+            let (_, changes) = model
+                .mesh
+                .surface_pressure_change(group, modes.shapes.col(k))
+                .map_err(|error| refuse_mesh(model.scene, "loads", &error))?;
+            for ((node, force), added) in nodes.iter().zip(forces).zip(&changes) {
+                let added = added * *pressure;
+                let position = Vector3::from(model.mesh.positions()[*node as usize]) - body.origin;
+                change.force[k] += added;
+                change.moment[k] += shape(modes, *node, k).cross(force) + position.cross(&added);
+                for a in 0..nf {
+                    change.load_stiffness[(a, k)] += shape(modes, *node, a).dot(&added);
+                }
+            }
+        }
+        Ok(Some(change))
+    }
+
+    /// The load on the modes of a body, with the stiffness by its stress.
+    pub(super) fn reduced(
+        &self,
+        model: &MeshModel<'_>,
+        body: &ReducedBody,
+        modes: &Modes,
+        stress: &[Directed],
+    ) -> Result<SharedLoad, BuildError> {
+        let &MeshModel { scene, mesh, .. } = model;
         let frame = if self.follows { LoadFrame::Body } else { LoadFrame::Global };
         let nf = body.flexible();
-        let shape = |node: u32, k: usize| Vector3::from_fn(|axis, _| modes.shapes[(3 * node as usize + axis, k)]);
         let history = self.history.clone();
+        let second_order = || -> Result<Option<SecondOrder>, BuildError> {
+            if stress.is_empty() {
+                return Ok(None);
+            }
+            let of_unit = |directed: &Directed| {
+                let size = directed.vector.norm();
+                (directed.vector / size, &directed.stiffness * faer::Scale(1.0 / size))
+            };
+            Ok(Some(SecondOrder::new(stress.iter().map(of_unit).collect())?))
+        };
         Ok(match &self.place {
             Place::Force { nodes, weights, force } => {
-                let point = PointShapes::new(body, &BodyPoint::new(modes, mesh.positions(), nodes, weights)?);
+                let point = BodyPoint::new(modes, mesh.positions(), nodes, weights).map_err(modal(scene))?;
+                let point = PointShapes::new(body, &point);
+                let point = match second_order()? {
+                    Some(second_order) => point.with_second_order(second_order),
+                    None => point,
+                };
                 Arc::new(PointForce { point, force: *force, frame, history })
             }
             Place::Moment { patch, moment } => {
                 let turned: Vec<Vector3<f64>> = (0..nf)
                     .map(|k| {
                         let of = patch.nodes.iter().zip(&patch.rotation_per_displacement);
-                        of.map(|(node, a)| a * shape(*node, k)).sum()
+                        of.map(|(node, a)| a * shape(modes, *node, k)).sum()
                     })
                     .collect();
                 let turned = Mat::from_fn(3, nf, |axis, k| turned[k][axis]);
                 let rotation = RotationShapes::new(body, turned.as_ref());
+                let rotation = match second_order()? {
+                    Some(second_order) => rotation.with_second_order(second_order),
+                    None => rotation,
+                };
                 Arc::new(PointMoment { rotation, moment: *moment, frame, history })
             }
-            Place::Field { nodes, forces } => {
+            Place::Field { nodes, forces, .. } => {
                 let position = |node: u32| Vector3::from(mesh.positions()[node as usize]) - body.origin;
                 let acting = || nodes.iter().copied().zip(forces);
                 let force_body: Vector3<f64> = forces.iter().sum();
                 let moment_body: Vector3<f64> = acting().map(|(node, f)| position(node).cross(f)).sum();
                 let rigid = [body.translation_basis.tr_mul(&force_body), body.rotation_basis.tr_mul(&moment_body)];
-                let flexible = (0..nf).map(|k| acting().map(|(node, f)| shape(node, k).dot(f)).sum());
-                let field = BodyField {
-                    force_body,
-                    moment_body,
-                    modal: rigid.iter().flat_map(|v| v.iter().copied()).chain(flexible).collect(),
-                    lever: (0..nf).map(|k| acting().map(|(node, f)| shape(node, k).cross(f)).sum()).collect(),
+                let flexible = (0..nf).map(|k| acting().map(|(node, f)| shape(modes, node, k).dot(f)).sum());
+                let modal = rigid.iter().flat_map(|v| v.iter().copied()).chain(flexible).collect();
+                let (force_change, moment_change) = match self.follower_change(model, body, modes)? {
+                    Some(change) => (change.force, change.moment),
+                    None => (Vec::new(), vec![Vector3::zeros(); nf]),
                 };
+                // −(K − L), column by column.
+                let entries = |k: &Mat<f64>| k.col_iter().flat_map(|c| c.iter()).map(|k| -k).collect();
+                let modal_change = stress.first().map_or_else(Vec::new, |directed| entries(&directed.stiffness));
+                let field = BodyField { force_body, moment_body, modal, force_change, moment_change, modal_change };
                 Arc::new(FieldLoad { field, history })
             }
         })
     }
+}
+
+/// Displacement of a node in a flexible mode.
+fn shape(modes: &Modes, node: u32, k: usize) -> Vector3<f64> {
+    Vector3::from_fn(|axis, _| modes.shapes[(3 * node as usize + axis, k)])
 }

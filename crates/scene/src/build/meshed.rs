@@ -52,7 +52,7 @@ pub(super) fn build(
     let survey = Survey::new(&model, modes, on_all_modes, &mut progress)?;
     let has_statics = survey.statics.any();
     let decision = Decision::new(scene, &survey);
-    let Reduction { modes, modal: reduced, backbones, steady_stress, advice } =
+    let Reduction { modes, modal: reduced, backbones, stress, advice } =
         Reduction::new(&model, survey, &decision)?;
     if has_statics {
         times.statics = started.elapsed();
@@ -64,9 +64,8 @@ pub(super) fn build(
     times.reduction += started.elapsed();
 
     let Decision { effects, has_damping, has_gravity, lacks, .. } = decision;
-    let load_stiffness = steady_stress.stiffness;
     let mut model = Model {
-        physics: Physics { effects, drive: model.drive, load_stiffness },
+        physics: Physics { effects, drive: model.drive, drive_stiffness: stress.of_drive },
         points,
         reference_points,
         advice,
@@ -84,12 +83,12 @@ pub(super) fn build(
     drop(solver);
     model.meshed = Some(Meshed { matrix_bytes: matrices.bytes(), mesh, modes });
     let initial = model.initial(scene);
-    model.refusal = buckling(steady_stress.buckling_ratio);
+    model.refusal = buckling(stress.buckling_ratio);
     if model.refusal.is_none() {
         model.refusal = limits(&model.case(scene, &initial), &model.physics.effects)?;
     }
     // What stresses the body may stiffen it beyond what the estimate knows.
-    if model.refusal.is_none() && model.physics.load_stiffness.is_none() {
+    if model.refusal.is_none() && !model.is_stressed() {
         model.refusal = model.advice.refusal();
     }
     Ok(model)

@@ -9,9 +9,10 @@ use nalgebra::Vector3;
 use super::damping::damping_ratios;
 use super::error::{BuildError, modal};
 use super::initial::initial;
-use super::loads::BodyLoads;
+use super::loads::{BodyLoads, MeshLoad};
 use super::mesh_model::MeshModel;
 use super::model::Size;
+use super::stress::Stress;
 
 /// A body and its loads in the coordinates of some modes.
 pub(super) struct ModalModel {
@@ -27,14 +28,13 @@ impl ModalModel {
     pub fn new(model: &MeshModel<'_>, modes: &Modes) -> Result<Self, BuildError> {
         let &MeshModel { scene, mesh, .. } = model;
         let body = ReducedBody::new(modes, model.matrices.mass(), mesh.positions()).map_err(modal(scene))?;
-        let loads: Result<BodyLoads, _> =
-            model.loads.iter().map(|load| Ok((load.reduced(&body, modes, mesh)?, load.is_gravity()))).collect();
+        let loads = loads(model, &body, modes, &Stress::default())?;
         let peak = |shape: faer::ColRef<'_, f64>| {
             let at = |node: usize| Vector3::from_fn(|axis, _| shape[3 * node + axis]).norm();
             (0..shape.nrows() / 3).map(at).fold(0.0, f64::max)
         };
         Ok(Self {
-            loads: loads.map_err(modal(scene))?,
+            loads,
             size: Size { length: mesh.diagonal(), peaks: modes.shapes.as_ref().col_iter().map(peak).collect() },
             damping_ratios: damping_ratios(scene, &body),
             initial: initial(scene, body.flexible()),
@@ -46,6 +46,11 @@ impl ModalModel {
     pub fn with_stress_stiffness(self, model: &MeshModel<'_>, k: Option<[Mat<f64>; 6]>) -> Result<Self, BuildError> {
         let body = self.body.with_stress_stiffness(k).map_err(modal(model.scene))?;
         Ok(Self { body, ..self })
+    }
+
+    /// The same model with loads that stiffen the body by their stress.
+    pub fn with_stress(self, model: &MeshModel<'_>, modes: &Modes, stress: &Stress) -> Result<Self, BuildError> {
+        Ok(Self { loads: loads(model, &self.body, modes, stress)?, ..self })
     }
 
     /// The run of the scene as [`advice`] sees it, where nothing is known of static answers and backbones.
@@ -65,4 +70,17 @@ impl ModalModel {
             backbones: &[],
         }
     }
+}
+
+/// The loads on the modes of a body.
+fn loads(
+    model: &MeshModel<'_>,
+    body: &ReducedBody,
+    modes: &Modes,
+    stress: &Stress,
+) -> Result<BodyLoads, BuildError> {
+    let reduced = |(i, load): (usize, &MeshLoad)| {
+        Ok((load.reduced(model, body, modes, stress.of_load(i))?, load.is_gravity()))
+    };
+    model.loads.iter().enumerate().map(reduced).collect()
 }

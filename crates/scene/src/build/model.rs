@@ -73,9 +73,9 @@ impl Model {
             modes: truncated_modes(&meshed.modes, flexible),
             ..*meshed
         });
-        let stiffness = self.physics.load_stiffness.as_ref();
+        let stiffness = self.physics.drive_stiffness.as_ref();
         let physics = Physics {
-            load_stiffness: stiffness.map(|k| k.get(..flexible, ..flexible).to_owned()),
+            drive_stiffness: stiffness.map(|k| k.get(..flexible, ..flexible).to_owned()),
             ..self.physics.clone()
         };
         Self {
@@ -101,6 +101,11 @@ impl Model {
     /// The loads, at their points of the body.
     pub fn loads(&self) -> &[SharedLoad] {
         &self.loads
+    }
+
+    /// Whether the stress of loads or of a drive stiffens the body.
+    pub fn is_stressed(&self) -> bool {
+        self.physics.drive_stiffness.is_some() || self.loads.iter().any(|load| load.matrix_entries() > 0)
     }
 
     /// How many static shapes follow the natural modes.

@@ -15,13 +15,15 @@ pub(super) fn may_spin(scene: &Scene, motion: RigidMotion, drive: Option<&Drive>
     turning(scene, motion, drive) != Turning::Not && set_off
 }
 
-/// Whether the stress of a load stiffens the body: one that stays as it is, seen from the body.
-pub(super) fn stiffens(scene: &Scene, motion: RigidMotion, drive: Option<&Drive>, load: &MeshLoad) -> bool {
+/// Whether the stress of loads and drives may stiffen the body.
+pub(super) fn may_stress(scene: &Scene) -> bool {
+    scene.effects.geometric_stiffening != Choice::Off && !scene.time.method.is_of_paper()
+}
+
+/// Whether a load stays as it is, seen from the body.
+pub(super) fn is_steady(scene: &Scene, motion: RigidMotion, drive: Option<&Drive>, load: &MeshLoad) -> bool {
     let turns = turning(scene, motion, drive) != Turning::Not;
-    scene.effects.geometric_stiffening != Choice::Off
-        && !scene.time.method.is_of_paper()
-        && matches!(load.history, frames_rk4::History::Constant)
-        && (load.follows || !turns)
+    matches!(load.history, frames_rk4::History::Constant) && (load.follows || !turns)
 }
 
 /// Whether the loads of gravity that the scene lets act do act.

@@ -9,9 +9,11 @@ use super::error::{BuildError, modal};
 use super::mesh_model::MeshModel;
 use super::modal_model::ModalModel;
 use super::model::truncated_modes;
+use super::physics;
 use super::statics::Statics;
-use super::steady_stress::SteadyStress;
+use super::stress::Stress;
 use super::survey::Survey;
+use crate::effects::Choice;
 use crate::scene::Scene;
 
 /// A body in the modes that it keeps and its static shapes.
@@ -20,7 +22,7 @@ pub(super) struct Reduction {
     pub modal: ModalModel,
     /// Of the modes that are kept.
     pub backbones: Vec<Option<Backbone>>,
-    pub steady_stress: SteadyStress,
+    pub stress: Stress,
     /// With what only this body tells.
     pub advice: Advice,
 }
@@ -42,10 +44,11 @@ impl Reduction {
             let stiffness = if stiffens { statics.stress_stiffness(model, &modes)? } else { None };
             (modes, modal.with_stress_stiffness(model, stiffness)?, deflection)
         };
-        let steady_stress = SteadyStress::new(model, statics.of_steady.as_ref(), &modes, &modal)?;
-        let findings =
-            Findings { deflection, steady_stress: steady_stress.row.clone(), lacks_stretch: decision.lacks.is_some() };
-        Ok(Self { modes, modal, backbones, steady_stress, advice: advice.completed(findings) })
+        let stress = Stress::new(model, &statics, &modes, &modal)?;
+        refuse_without_stress(model, &stress)?;
+        let modal = if stress.any() { modal.with_stress(model, &modes, &stress)? } else { modal };
+        let findings = Findings { deflection, stress: stress.row.clone(), lacks_stretch: decision.lacks.is_some() };
+        Ok(Self { modes, modal, backbones, stress, advice: advice.completed(findings) })
     }
 }
 
@@ -61,10 +64,25 @@ fn basis(
     if !decision.has_static_shapes {
         return Ok(kept);
     }
-    let of_loads = statics.of_loads.iter().map(|of_loads| &of_loads.answers);
-    let of_spin = statics.of_spin.iter().map(|of_spin| &of_spin.answers);
-    of_loads
-        .chain(of_spin)
+    statics
+        .answers()
         .try_fold(kept, |modes, answers| solver.with_static_shapes(modes, answers.as_ref()))
         .map_err(modal(scene))
+}
+
+/// Refuses stiffening that is asked for where nothing stresses the body.
+fn refuse_without_stress(model: &MeshModel<'_>, stress: &Stress) -> Result<(), BuildError> {
+    let &MeshModel { scene, support, .. } = model;
+    let asked = scene.effects.geometric_stiffening == Choice::On;
+    if !asked || stress.any() || physics::may_spin(scene, support.motion, model.drive.as_ref()) {
+        return Ok(());
+    }
+    Err(scene
+        .refuse(
+            "effects.geometric_stiffening",
+            "`geometric_stiffening = true` where nothing stresses the body: it does not spin, and no load or drive strains it",
+            "`false` or `\"auto\"`",
+            "set `geometric_stiffening = \"auto\"`, or let something act on the body",
+        )
+        .into())
 }

@@ -55,7 +55,7 @@ pub(super) fn build(scene: &Scene, rigid: &RigidBody) -> Result<Model, BuildErro
     Ok(Model {
         meshed: None,
         loads: loads.acting(physics::gravity(scene, &advice)),
-        physics: Physics { effects: physics::effects(scene, &advice, false), drive, load_stiffness: None },
+        physics: Physics { effects: physics::effects(scene, &advice, false), drive, drive_stiffness: None },
         points,
         reference_points,
         advice,

@@ -1,8 +1,11 @@
 //! Static answers of the whole mesh.
 
+use std::ops::Range;
+
 use advice::StaticCompliance;
 use faer::{Col, ColRef, Mat, MatRef};
-use modal::{Modes, centrifugal_fields};
+use frames_rk4::DrivenMotion;
+use modal::{Modes, acceleration_fields, centrifugal_fields, turning_field};
 use nalgebra::Vector3;
 
 use super::error::{BuildError, modal};
@@ -17,13 +20,13 @@ pub(super) struct Asked {
     pub loads: bool,
     /// To the centrifugal field.
     pub spin: bool,
-    /// To the steady loads together.
-    pub steady: bool,
+    /// To the inertia of a driven motion.
+    pub drive: bool,
 }
 
 impl Asked {
     pub fn any(self) -> bool {
-        self.loads || self.spin || self.steady
+        self.loads || self.spin || self.drive
     }
 }
 
@@ -31,8 +34,8 @@ impl Asked {
 pub(super) struct Statics {
     pub of_loads: Option<OfLoads>,
     pub of_spin: Option<OfSpin>,
-    /// To the loads of [`steady_loads`] together (3n × 1).
-    pub of_steady: Option<Mat<f64>>,
+    /// To the forces M (1⊗e) of a slide along e, or M (I⊗[a×]) X of a turn about a (3n × 1).
+    pub of_drive: Option<Mat<f64>>,
 }
 
 /// The answers to the loads in every direction that they may come to have in the body.
@@ -40,6 +43,8 @@ pub(super) struct OfLoads {
     pub answers: Mat<f64>,
     /// The work of each load on its answers.
     pub compliances: Vec<StaticCompliance>,
+    /// For each load, its columns and [`MeshLoad::turned`].
+    columns: Vec<(Range<usize>, Vec<Vector3<f64>>)>,
 }
 
 /// The answers to the centrifugal field of each pair of spins (3n × 6).
@@ -49,59 +54,89 @@ pub(super) struct OfSpin {
     pub remainders: Vec<f64>,
 }
 
-/// The loads whose stress may stiffen the body: those that stay as they are, seen from the body.
-pub(super) fn steady_loads<'a>(model: &'a MeshModel<'_>) -> Vec<&'a MeshLoad> {
-    let steady = |load: &&MeshLoad| physics::stiffens(model.scene, model.support.motion, model.drive.as_ref(), load);
-    model.loads.iter().filter(steady).collect()
-}
-
 impl Statics {
     /// All static answers that are asked for, from one block of forces.
     pub fn new(model: &MeshModel<'_>, modes: &Modes, origin: &Vector3<f64>, asked: Asked) -> Result<Self, BuildError> {
         if !asked.any() {
-            return Ok(Self { of_loads: None, of_spin: None, of_steady: None });
+            return Ok(Self { of_loads: None, of_spin: None, of_drive: None });
         }
         let &MeshModel { scene, mesh, solver, .. } = model;
         let turning = turning::turning(scene, model.support.motion, model.drive.as_ref());
         let loads = if asked.loads { &model.loads[..] } else { &[] };
-        let turned: Vec<Vec<Vector3<f64>>> = loads.iter().map(|load| load.turned(turning)).collect();
-        let columns = Columns::new(loads, &turned, if asked.steady { steady_loads(model) } else { Vec::new() });
-        let (of_loads, of_all_loads) = (columns.of_loads, columns.sums.len());
+        let mut columns = Vec::with_capacity(loads.len());
+        let mut of_loads = 0;
+        for load in loads {
+            let turned = load.turned(turning);
+            let count = turned.len().max(1);
+            columns.push((of_loads..of_loads + count, turned));
+            of_loads += count;
+        }
         let fields = asked.spin.then(|| centrifugal_fields(solver.nodal_mass(), mesh.positions(), origin));
         let spins = fields.as_ref().map_or(0, Mat::ncols);
+        let driven = model.drive.as_ref().filter(|_| asked.drive).map(|drive| match drive.motion {
+            DrivenMotion::Slide { direction } => {
+                let fields = acceleration_fields(solver.nodal_mass());
+                let weights = Mat::from_fn(3, 1, |i, _| direction[i]);
+                fields * weights
+            }
+            DrivenMotion::Turn { axis } => turning_field(solver.nodal_mass(), mesh.positions(), origin, &axis),
+        });
 
         let unknowns = 3 * mesh.positions().len();
-        memory::check("the forces of the loads", 8 * unknowns * (of_all_loads + spins))
+        let count = of_loads + spins + usize::from(driven.is_some());
+        memory::check("the forces of the loads", 8 * unknowns * count)
             .map_err(|source| modal(scene)(source.into()))?;
-        let mut forces = Mat::zeros(unknowns, of_all_loads + spins);
-        columns.add_to(&mut forces);
-        if let Some(fields) = &fields {
-            forces.as_mut().subcols_mut(of_all_loads, spins).copy_from(fields);
+        let mut forces = Mat::zeros(unknowns, count);
+        for (load, (range, turned)) in loads.iter().zip(&columns) {
+            for column in range.clone() {
+                load.add_nodal_forces(turned.get(column - range.start).copied(), forces.as_mut().col_mut(column));
+            }
+        }
+        for (first, field) in [(of_loads, &fields), (of_loads + spins, &driven)] {
+            if let Some(field) = field {
+                forces.as_mut().subcols_mut(first, field.ncols()).copy_from(field);
+            }
         }
         let answers = solver.static_response(forces.as_ref()).map_err(modal(scene))?;
         let to = |first: usize, count: usize| answers.subcols(first, count).to_owned();
         Ok(Self {
             of_loads: asked.loads.then(|| OfLoads {
                 answers: to(0, of_loads),
-                compliances: compliances(loads, &turned, forces.as_ref(), answers.as_ref()),
+                compliances: compliances(loads, &columns, forces.as_ref(), answers.as_ref()),
+                columns,
             }),
             of_spin: asked.spin.then(|| OfSpin {
-                answers: to(of_all_loads, spins),
-                remainders: remainders(model, modes, answers.subcols(of_all_loads, spins)),
+                answers: to(of_loads, spins),
+                remainders: remainders(model, modes, answers.subcols(of_loads, spins)),
             }),
-            of_steady: asked.steady.then(|| to(of_loads, 1)),
+            of_drive: driven.map(|_| to(of_loads + spins, 1)),
         })
     }
 
     /// Whether there are any.
     pub fn any(&self) -> bool {
-        self.of_loads.is_some() || self.of_spin.is_some() || self.of_steady.is_some()
+        self.of_loads.is_some() || self.of_spin.is_some() || self.of_drive.is_some()
     }
 
     /// K_ij of each pair of spins in the modes; none where the answers to the spin are not known.
     pub fn stress_stiffness(&self, model: &MeshModel<'_>, modes: &Modes) -> Result<Option<[Mat<f64>; 6]>, BuildError> {
         let Some(of_spin) = &self.of_spin else { return Ok(None) };
         Ok(model.stress_stiffness(of_spin.answers.as_ref(), modes)?.try_into().ok())
+    }
+
+    /// The answer to all dead loads together that stay as they are, seen from the body (3n × 1).
+    pub fn to_steady_loads(&self, model: &MeshModel<'_>) -> Option<Mat<f64>> {
+        let of_loads = self.of_loads.as_ref()?;
+        let is_steady = |load: &MeshLoad| {
+            !load.follows && physics::is_steady(model.scene, model.support.motion, model.drive.as_ref(), load)
+        };
+        let mut sum: Option<Mat<f64>> = None;
+        for (i, _) in model.loads.iter().enumerate().filter(|(_, load)| is_steady(load)) {
+            // A dead load on a body that does not turn has one answer.
+            let answer = of_loads.answers_to(i).subcols(0, 1);
+            sum = Some(sum.map_or_else(|| answer.to_owned(), |sum| sum + answer));
+        }
+        sum
     }
 
     /// The work of each load on its static answers; none where it is not known.
@@ -113,56 +148,37 @@ impl Statics {
     pub fn remainders(&self) -> &[f64] {
         self.of_spin.as_ref().map_or(&[], |of_spin| &of_spin.remainders)
     }
+
+    /// All answers that static shapes are made of.
+    pub fn answers(&self) -> impl Iterator<Item = &Mat<f64>> {
+        let of_loads = self.of_loads.iter().map(|of_loads| &of_loads.answers);
+        of_loads.chain(self.of_spin.iter().map(|of_spin| &of_spin.answers)).chain(&self.of_drive)
+    }
 }
 
-/// A load, and another force or moment in the place of its own.
-type Acting<'a> = (&'a MeshLoad, Option<Vector3<f64>>);
-
-/// The loads that each column of forces is the sum of.
-struct Columns<'a> {
-    sums: Vec<Vec<Acting<'a>>>,
-    /// How many of them are of single loads.
-    of_loads: usize,
-}
-
-impl<'a> Columns<'a> {
-    /// A column for each load and direction that it may turn to, and one for all `steady` loads if there are any.
-    fn new(loads: &'a [MeshLoad], turned: &[Vec<Vector3<f64>>], steady: Vec<&'a MeshLoad>) -> Self {
-        let mut sums: Vec<Vec<Acting<'a>>> = Vec::new();
-        for (load, turned) in loads.iter().zip(turned) {
-            match turned[..] {
-                [] => sums.push(vec![(load, None)]),
-                _ => sums.extend(turned.iter().map(|vector| vec![(load, Some(*vector))])),
-            }
-        }
-        let of_loads = sums.len();
-        if !steady.is_empty() {
-            sums.push(steady.into_iter().map(|load| (load, None)).collect());
-        }
-        Self { sums, of_loads }
+impl OfLoads {
+    /// The answers to a load, in each of its directions.
+    pub fn answers_to(&self, load: usize) -> MatRef<'_, f64> {
+        let (range, _) = &self.columns[load];
+        self.answers.subcols(range.start, range.len())
     }
 
-    fn add_to(&self, forces: &mut Mat<f64>) {
-        for (i, loads) in self.sums.iter().enumerate() {
-            for (load, vector) in loads {
-                load.add_nodal_forces(*vector, forces.as_mut().col_mut(i));
-            }
-        }
+    /// The forces or moments that these are the answers to, body axes.
+    pub fn vectors(&self, i: usize, load: &MeshLoad) -> Vec<Vector3<f64>> {
+        let (_, turned) = &self.columns[i];
+        if turned.is_empty() { vec![load.vector().unwrap_or_default()] } else { turned.clone() }
     }
 }
 
 /// The work of each load on its answers; the columns of the loads come first in `forces` and `answers`.
 fn compliances(
     loads: &[MeshLoad],
-    turned: &[Vec<Vector3<f64>>],
+    columns: &[(Range<usize>, Vec<Vector3<f64>>)],
     forces: MatRef<'_, f64>,
     answers: MatRef<'_, f64>,
 ) -> Vec<StaticCompliance> {
-    let mut first = 0;
-    let of = |(load, turned): (&MeshLoad, &Vec<Vector3<f64>>)| {
-        let columns = turned.len().max(1);
-        let (of, to) = (forces.subcols(first, columns), answers.subcols(first, columns));
-        first += columns;
+    let of = |(load, (range, turned)): (&MeshLoad, &(Range<usize>, Vec<Vector3<f64>>))| {
+        let (of, to) = (forces.subcols(range.start, range.len()), answers.subcols(range.start, range.len()));
         let parts = Col::from_iter(load.parts(turned));
         let work = |i: usize| of.col(i).transpose() * to.col(i);
         StaticCompliance {
@@ -170,7 +186,7 @@ fn compliances(
             turned: turned.iter().enumerate().map(|(i, vector)| (*vector, work(i))).collect(),
         }
     };
-    loads.iter().zip(turned).map(of).collect()
+    loads.iter().zip(columns).map(of).collect()
 }
 
 /// √(uᵀMu − Σ(Φ_kᵀMu)²) of each answer u.

@@ -9,7 +9,7 @@ use super::mesh_model::MeshModel;
 use super::modal_model::ModalModel;
 use super::physics;
 use super::progress::BuildProgress;
-use super::statics::{Asked, Statics, steady_loads};
+use super::statics::{Asked, Statics};
 use crate::effects::Choice;
 
 /// What is known of a body with all the modes that were searched for. What cannot matter has not been computed.
@@ -33,10 +33,12 @@ impl Survey {
         let tolerance = model.scene.effects.tolerance;
         let stiffens = may_stiffen(model, &modal)?;
         let flexible = modal.body.flexible();
+        let has_shapes = physics::static_correction(model.scene, flexible) != Choice::Off;
+        let may_stress = flexible > 0 && physics::may_stress(model.scene);
         let asked = Asked {
-            loads: physics::static_correction(model.scene, flexible) != Choice::Off && !model.loads.is_empty(),
+            loads: (has_shapes || may_stress) && !model.loads.is_empty(),
             spin: stiffens || may_stretch(model, &modal)?,
-            steady: flexible > 0 && !steady_loads(model).is_empty(),
+            drive: may_stress && model.drive.is_some(),
         };
         if asked.any() {
             progress(BuildProgress::Statics);
@@ -50,7 +52,7 @@ impl Survey {
         };
 
         let case = Case {
-            static_compliances: statics.compliances(),
+            static_compliances: if has_shapes { statics.compliances() } else { &[] },
             centrifugal_remainders: statics.remainders(),
             ..modal.case(model)
         };

@@ -1,0 +1,141 @@
+//! What loads and a drive stress, and what that makes of the stiffness.
+
+use advice::{Row, StressField, StressSource, stress, stress_row};
+use faer::{Mat, MatRef};
+use fem_tet10::{AssemblyError, geometric_stiffness_product};
+use modal::{ModalError, Modes};
+use nalgebra::Vector3;
+
+use super::error::{BuildError, modal};
+use super::mesh_model::MeshModel;
+use super::modal_model::ModalModel;
+use super::physics;
+use super::statics::Statics;
+use crate::effects::Choice;
+
+/// Stiffness in the modes (nf × nf) by the stress of what acts on a body, where it matters.
+#[derive(Default)]
+pub(super) struct Stress {
+    /// Of each load, in the direction of each of its static answers; empty where it is left out.
+    pub of_loads: Vec<Vec<Directed>>,
+    /// Of a unit acceleration of the drive.
+    pub of_drive: Option<Mat<f64>>,
+    /// What the advice says of the one that matters most.
+    pub row: Option<Row>,
+    /// The steady dead loads over those at which the body buckles; 0 where they do not make it buckle.
+    pub buckling_ratio: f64,
+}
+
+/// A force or moment in body axes, where the history of the load is 1, and the stiffness by its stress. A field of forces
+/// has no direction; its stiffness is less its own load stiffness.
+pub(super) struct Directed {
+    pub vector: Vector3<f64>,
+    pub stiffness: Mat<f64>,
+}
+
+impl Stress {
+    /// By the static answers to the loads and to the drive.
+    pub fn new(
+        model: &MeshModel<'_>,
+        statics: &Statics,
+        modes: &Modes,
+        body: &ModalModel,
+    ) -> Result<Self, BuildError> {
+        if !physics::may_stress(model.scene) || modes.shapes.ncols() == 0 {
+            return Ok(Self::default());
+        }
+        let mut found = Self { buckling_ratio: buckling_ratio(model, statics, modes)?, ..Self::default() };
+        let mut names = Vec::new();
+        if let Some(of_loads) = &statics.of_loads {
+            for (i, load) in model.loads.iter().enumerate() {
+                let answers = of_loads.answers_to(i);
+                // Gravity stresses no body that falls.
+                if answers.norm_max() == 0.0 {
+                    found.of_loads.push(Vec::new());
+                    continue;
+                }
+                let stiffness = model.stress_stiffness(answers, modes)?;
+                let mut directed = Vec::new();
+                for (vector, mut stiffness) in of_loads.vectors(i, load).into_iter().zip(stiffness) {
+                    if let Some(change) = load.follower_change(model, &body.body, modes)? {
+                        stiffness -= change.load_stiffness;
+                    }
+                    names.push((StressSource::Load(i), load.name_along(&vector)));
+                    directed.push(Directed { vector, stiffness });
+                }
+                found.of_loads.push(directed);
+            }
+        }
+        if let Some(answer) = &statics.of_drive {
+            names.push((StressSource::Drive, "the acceleration of the drive".to_owned()));
+            found.of_drive = model.stress_stiffness(answer.as_ref(), modes)?.pop();
+        }
+        found.decided(model, body, &names)
+    }
+
+    /// Without what the scene leaves open and does not call for.
+    fn decided(
+        mut self,
+        model: &MeshModel<'_>,
+        body: &ModalModel,
+        names: &[(StressSource, String)],
+    ) -> Result<Self, BuildError> {
+        let effects = &model.scene.effects;
+        let stiffness = self.of_loads.iter().flatten().map(|directed| &directed.stiffness).chain(&self.of_drive);
+        let fields: Vec<StressField<'_>> = names
+            .iter()
+            .zip(stiffness)
+            .map(|((source, name), stiffness)| StressField { name, source: *source, stiffness: stiffness.as_ref() })
+            .collect();
+        let influences = stress(&body.case(model), &fields, effects.tolerance)?;
+        self.row = stress_row(&fields, &influences, effects.tolerance);
+        let matters = |source: StressSource| {
+            let of_source = names.iter().zip(&influences).filter(|((s, _), _)| *s == source);
+            effects.geometric_stiffening == Choice::On
+                || of_source.into_iter().any(|(_, found)| found.influence >= effects.tolerance)
+        };
+        let kept: Vec<bool> = (0..self.of_loads.len()).map(|i| matters(StressSource::Load(i))).collect();
+        let drive_is_kept = matters(StressSource::Drive);
+        drop(fields);
+        for (directed, _) in self.of_loads.iter_mut().zip(kept).filter(|(_, kept)| !kept) {
+            directed.clear();
+        }
+        self.of_drive = self.of_drive.filter(|_| drive_is_kept);
+        Ok(self)
+    }
+
+    /// The stiffness of a load.
+    pub fn of_load(&self, i: usize) -> &[Directed] {
+        self.of_loads.get(i).map_or(&[], |directed| directed)
+    }
+
+    /// Whether there is any.
+    pub fn any(&self) -> bool {
+        self.of_drive.is_some() || self.of_loads.iter().any(|directed| !directed.is_empty())
+    }
+}
+
+/// The steady dead loads over those at which the body buckles, on the whole mesh: the modes that are kept do not hold the
+/// shape in which it does.
+fn buckling_ratio(model: &MeshModel<'_>, statics: &Statics, modes: &Modes) -> Result<f64, BuildError> {
+    let Some(answer) = statics.to_steady_loads(model).filter(|answer| answer.norm_max() > 0.0) else {
+        return Ok(0.0);
+    };
+    let product = |fields: MatRef<'_, f64>| -> Result<Mat<f64>, BucklingError> {
+        Ok(geometric_stiffness_product(model.mesh, &model.body.materials, answer.as_ref(), fields)?)
+    };
+    match model.solver.lowest_buckling_ratio(modes.shapes.as_ref(), product) {
+        Ok(lowest) => Ok(-lowest),
+        Err(BucklingError::Modal(error)) => Err(modal(model.scene)(error)),
+        Err(BucklingError::Assembly(error)) => Err(error.into()),
+    }
+}
+
+/// What the search for the buckling load may meet.
+#[derive(Debug, thiserror::Error)]
+enum BucklingError {
+    #[error(transparent)]
+    Modal(#[from] ModalError),
+    #[error(transparent)]
+    Assembly(#[from] AssemblyError),
+}
