@@ -6,8 +6,8 @@
 //!
 //! The order of calls:
 //!
-//! 1. [`limits()`] refuses what is known to be wrong (again when the stiffness is known), and [`buckling`] what steady
-//!    loads bend without limit.
+//! 1. [`limits()`] refuses what is known to be wrong (again when the stiffness is known), and [`buckling`] and
+//!    [`unsteady`] what steady loads bend without limit.
 //! 2. [`screen`] tells, from the modes alone, whether [`modal::Constants::stress_stiffness`] may matter. If its row is
 //!    on, compute that.
 //! 3. [`advise`] gives the table: a [`Row`] for each [`Effect`], and what each mode is worth. Nothing stiffens where
@@ -83,7 +83,7 @@ mod tensor;
 pub use backbone::{Backbone, DETUNED, LARGE};
 pub use case::{AdviceError, Case, StaticCompliance};
 pub use completed::Findings;
-pub use limits::{BUCKLED, Refusal, SOFTENED, buckling, limits};
+pub use limits::{BUCKLED, Refusal, SOFTENED, buckling, limits, unsteady};
 pub use review::{Broken, Detuning, Review};
 pub use row::{Effect, Row, Worth};
 pub use step::{ModeError, StepEstimate, step_estimate};

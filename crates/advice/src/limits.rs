@@ -1,6 +1,6 @@
 //! Models that are known to be wrong.
 
-use frames_rk4::{DrivenMotion, Effects, SteadySpin};
+use frames_rk4::{DrivenMotion, Effects, LoadedMode, SteadySpin};
 use nalgebra::Vector3;
 
 use crate::backbone::DETUNED;
@@ -51,6 +51,28 @@ pub enum Refusal {
         /// The loads over those at which it buckles.
         factor: f64,
     },
+    /// The steady loads, some of which follow the body, leave no stiffness against one of its vibrations.
+    #[error(
+        "the steady loads take all stiffness from one of the modes, which would grow by exp({} t) (divergence): make the \
+         loads smaller, or hold the body at more places (`refuse = false` in [effects] runs it all the same)",
+        Number(*.growth)
+    )]
+    Diverges {
+        /// Rate at which it grows, per time.
+        growth: f64,
+    },
+    /// Two frequencies have met under steady loads that follow the body.
+    #[error(
+        "under the steady loads two vibrations meet at {} rad per time and grow by exp({} t) (flutter): make the loads \
+         smaller, or damp the modes by more (`refuse = false` in [effects] runs it all the same)",
+        Number(*.circular_frequency), Number(*.growth)
+    )]
+    Flutters {
+        /// rad per time.
+        circular_frequency: f64,
+        /// Rate at which it grows, per time, less what damping takes.
+        growth: f64,
+    },
     /// The body bends by more than its length.
     #[error(
         "the body bends by {} times its length, where strains are taken to be linear: the answer means nothing; make the \
@@ -83,6 +105,21 @@ pub const BUCKLED: f64 = 0.99;
 /// The refusal of a body under `factor` times the steady loads at which it buckles, if any.
 pub fn buckling(factor: f64) -> Option<Refusal> {
     (factor >= BUCKLED).then_some(Refusal::Buckled { factor })
+}
+
+/// A part of its frequency that a vibration must grow by to be refused: what is slower may be rounding.
+const GROWS: f64 = 1e-3;
+
+/// The refusal of vibrations under steady loads that grow faster than `damping_ratio` lets them, if any do.
+pub fn unsteady(modes: &[LoadedMode], damping_ratio: f64) -> Option<Refusal> {
+    let refusal = |&LoadedMode { circular_frequency, growth }: &LoadedMode| {
+        if circular_frequency == 0.0 {
+            return (growth > 0.0).then_some(Refusal::Diverges { growth });
+        }
+        let growth = growth - damping_ratio * circular_frequency;
+        (growth > GROWS * circular_frequency).then_some(Refusal::Flutters { circular_frequency, growth })
+    };
+    modes.iter().find_map(refusal)
 }
 
 /// The refusal of a deflection, over the length of the body, if any.

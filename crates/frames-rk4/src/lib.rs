@@ -36,6 +36,7 @@ mod formula_steps;
 mod history;
 mod initial;
 mod load;
+mod loaded;
 mod methods;
 mod modal_rotation;
 mod model;
@@ -67,6 +68,7 @@ pub use initial::Initial;
 pub use load::{
     Applied, BodyField, FieldLoad, Kinematics, Load, LoadFn, LoadFrame, Pattern, PointForce, PointMoment, SharedLoad,
 };
+pub use loaded::{LoadedError, LoadedMode};
 pub use modal_rotation::ModalRotation;
 pub use model::ModalModel;
 pub use moment::Moment;

@@ -118,6 +118,7 @@ impl Failure for BuildError {
             Self::Modal { source, .. } => source.kind(),
             Self::Advice(error) => error.kind(),
             Self::Load(error) => error.kind(),
+            Self::Loaded(_) => Kind::Run,
         }
     }
 
@@ -129,6 +130,7 @@ impl Failure for BuildError {
             Self::Modal { scene, .. } => Details::of_file(scene),
             Self::Advice(error) => error.details(),
             Self::Load(error) => error.details(),
+            Self::Loaded(_) => Details::default(),
         }
     }
 }

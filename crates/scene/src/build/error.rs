@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use advice::{AdviceError, Refusal};
 use fem_tet10::{AssemblyError, MeshError};
-use frames_rk4::SetupError;
+use frames_rk4::{LoadedError, SetupError};
 use modal::ModalError;
 use nalgebra::Vector3;
 
@@ -39,6 +39,9 @@ pub enum BuildError {
     /// A load that the integrator refuses.
     #[error(transparent)]
     Load(#[from] SetupError),
+    /// The vibrations under steady loads are not known.
+    #[error(transparent)]
+    Loaded(#[from] LoadedError),
 }
 
 /// A motion that cannot start.

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use advice::{buckling, limits};
+use advice::{buckling, limits, unsteady};
 use fem_tet10::{Location, Mesh};
 use frames_rk4::{Physics, PointShapes};
 use modal::{BodyPoint, Modes, ReducedBody, Solver};
@@ -84,6 +84,10 @@ pub(super) fn build(
     model.meshed = Some(Meshed { matrix_bytes: matrices.bytes(), mesh, modes });
     let initial = model.initial(scene);
     model.refusal = buckling(stress.buckling_ratio);
+    if model.refusal.is_none() && model.is_stressed() {
+        let least = model.damping_ratios.iter().copied().fold(f64::INFINITY, f64::min);
+        model.refusal = unsteady(&model.loaded_modes(scene)?, least);
+    }
     if model.refusal.is_none() {
         model.refusal = limits(&model.case(scene, &initial), &model.physics.effects)?;
     }

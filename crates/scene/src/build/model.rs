@@ -2,7 +2,10 @@
 
 use advice::{Advice, Backbone, Case, Refusal, StepEstimate};
 use fem_tet10::Mesh;
-use frames_rk4::{Initial, Physics, PointShapes, Rows, Setup, SharedLoad, Simulation, StepControl};
+use frames_rk4::{
+    ConservativeBody, History, Initial, LoadFrame, LoadedError, LoadedMode, Physics, PointShapes, Rows, Setup,
+    SharedLoad, Simulation, StepControl,
+};
 use modal::{Modes, ReducedBody};
 use nalgebra::Vector3;
 
@@ -10,6 +13,9 @@ use super::error::StartError;
 use super::initial::initial;
 use super::progress::BuildTimes;
 use crate::scene::Scene;
+
+/// Deflection over the length at which small vibrations are looked at.
+const SMALL: f64 = 1e-3;
 
 /// The finite-element side of a body.
 #[derive(Debug, Clone)]
@@ -106,6 +112,23 @@ impl Model {
     /// Whether the stress of loads or of a drive stiffens the body.
     pub fn is_stressed(&self) -> bool {
         self.physics.drive_stiffness.is_some() || self.loads.iter().any(|load| load.matrix_entries() > 0)
+    }
+
+    /// The small vibrations of the body under the loads that stay as they are, seen from it.
+    ///
+    /// # Errors
+    /// [`LoadedError`].
+    pub fn loaded_modes(&self, scene: &Scene) -> Result<Vec<LoadedMode>, LoadedError> {
+        let turns = self.physics.drive.is_some() || !self.body.motion.rotations().is_empty();
+        let is_steady = |load: &&SharedLoad| {
+            let follows = load.pattern().is_some_and(|pattern| pattern.frame == LoadFrame::Body);
+            matches!(load.history(), Some(History::Constant)) && (follows || !turns)
+        };
+        let steady = self.loads.iter().filter(is_steady).cloned().collect();
+        let physics = Physics { drive: None, drive_stiffness: None, ..self.physics.clone() };
+        let body = ConservativeBody::new(&self.body, &self.damping_ratios, steady, &physics)?;
+        let amplitudes: Vec<f64> = self.size.peaks.iter().map(|peak| SMALL * self.size.length / peak).collect();
+        body.loaded_modes(&self.initial(scene), &amplitudes)
     }
 
     /// How many static shapes follow the natural modes.

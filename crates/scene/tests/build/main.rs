@@ -8,6 +8,7 @@ mod loads;
 mod off;
 mod statics;
 mod step;
+mod stress;
 mod stretch;
 mod supports;
 mod tolerance;

@@ -9,3 +9,4 @@ Physical Volume("bar") = {out[1]};
 Physical Surface("root") = {1};
 Physical Surface("tip") = {out[0]};
 Physical Surface("top") = {out[4]};
+Physical Surface("sides") = {out[2], out[3], out[5]};
