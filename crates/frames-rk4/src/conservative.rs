@@ -20,6 +20,15 @@
 //! With geometric stiffening the displacement is `Ψ_f q + u₂`, to second order in q, and each field of forces does its work
 //! on u₂, too: of the centrifugal field, N_ij becomes `N_ij − Ψ_fᵀ K_ij Ψ_f`; of the inertia of a driven motion, b becomes
 //! `b − K q`; a load has its own in [`SecondOrder`](crate::SecondOrder).
+//!
+//! With large deflection all constants are those of the extended shapes, with coordinates ξ(q) and their slopes D on a
+//! curved manifold ([`Manifold`]):
+//!
+//! ```text
+//! S = Dᵀ S_ext(ξ),  M = DᵀD:      p = M q̇ + S ω,   π = J(ξ) ω + Sᵀ q̇,   ν = D q̇,   μ = ν + S_ext ω
+//! ω = (J − SᵀM⁻¹S)⁻¹ (π − SᵀM⁻¹p),      q̇ = M⁻¹ (p − S ω)
+//! p' = Dᵀ [Σ ω_iω_j (c_ij + N_ij ξ) − Σ ω_i G_i ν + Ψ_extᵀF] + Ḋᵀμ − Λq − D q̇ − ∂V_n/∂q
+//! ```
 
 use faer::Mat;
 use modal::ReducedBody;
@@ -33,6 +42,7 @@ use crate::error::{RateError, SetupError, StepError};
 use crate::history::History;
 use crate::initial::Initial;
 use crate::load::{Applied, Coordinates, Kinematics, SharedLoad};
+use crate::manifold::{Manifold, Place};
 use crate::motion::CenterOfMass;
 use crate::own_coupling::own_coupling;
 use crate::physics::{Drive, DrivenMotion, Effects, Physics};
@@ -122,6 +132,8 @@ pub struct ConservativeBody {
     /// K of a unit acceleration of what is driven, column by column (nf × nf), or empty.
     drive_stiffness: Vec<f64>,
     loads: Vec<SharedLoad>,
+    /// Of a body with large modes.
+    pub(crate) manifold: Option<Manifold>,
 }
 
 /// State at a time.
@@ -235,7 +247,22 @@ pub(crate) struct Evaluation {
     /// G_i q̇.
     pub gyroscopic: Vec<f64>,
     /// q̇ (nf).
+    pub modal_velocity: Vec<f64>,
+    /// ξ and ν in the extended shapes: q and q̇ but on a manifold.
+    pub extended: Vec<f64>,
     pub velocity: Vec<f64>,
+    /// Forces in the extended shapes, on a manifold.
+    force: Vec<f64>,
+    /// The place on the manifold, and there S and M⁻¹S (a row for each axis) and b of a driven translation.
+    pub place: Place,
+    pub s: Vec<f64>,
+    pub solved_s: Vec<f64>,
+    pub modal_sliding: Vec<f64>,
+    /// q̈ and what it is made of.
+    pub acceleration: Vec<f64>,
+    pub change: Vec<f64>,
+    /// Ḋ q̇, on a manifold.
+    pub curvature: Vec<f64>,
     /// b − K q of a driven translation (nf).
     pub sliding: Vec<f64>,
     /// K q̇ of the stiffness of what is driven (nf).
@@ -264,10 +291,16 @@ impl ConservativeBody {
         loads: Vec<SharedLoad>,
         physics: &Physics,
     ) -> Result<Self, SetupError> {
+        crate::model::check_damping(damping_ratios, body.flexible())?;
+        let Physics { effects, drive, drive_stiffness, large_deflection } = physics;
+        let modes = body;
+        let body = large_deflection.as_ref().map_or(modes, Manifold::body);
+        if let Some(found) = large_deflection.as_ref().map(Manifold::modes).filter(|found| *found != modes.flexible()) {
+            let what = "the modes of the manifold of large deflection";
+            return Err(SetupError::Length { what, expected: modes.flexible(), found });
+        }
         let nf = body.flexible();
-        crate::model::check_damping(damping_ratios, nf)?;
         loads.iter().try_for_each(|load| load.check(nf))?;
-        let Physics { effects, drive, drive_stiffness } = physics;
         let drive_stiffness = drive_stiffness.as_ref().filter(|_| drive.is_some());
         for found in drive_stiffness.iter().flat_map(|k| [k.nrows(), k.ncols()]).filter(|found| *found != nf) {
             let what = "a row or column of the geometric stiffness of the drive";
@@ -286,7 +319,7 @@ impl ConservativeBody {
         let (translation, axes) = degrees_of_freedom(body, effects, driven);
         let turn_driven = matches!(driven, Some(DrivenMotion::Turn { .. }));
         let damping: Vec<f64> =
-            body.circular_frequencies.iter().zip(damping_ratios).map(|(omega, zeta)| 2.0 * zeta * omega).collect();
+            modes.circular_frequencies.iter().zip(damping_ratios).map(|(omega, zeta)| 2.0 * zeta * omega).collect();
         let inertia = along_axes(&axes, &body.inertia);
 
         let pairs: Vec<(usize, usize)> = match axes.len() {
@@ -338,7 +371,7 @@ impl ConservativeBody {
             center: CenterOfMass::new(body),
             inverse_inertia: inertia.try_inverse().unwrap_or_else(Matrix3::zeros),
             inertia,
-            circular_frequencies: body.circular_frequencies.clone(),
+            circular_frequencies: modes.circular_frequencies.clone(),
             damping_ratios: damping_ratios.to_vec(),
             damped: damping.iter().any(|d| *d > 0.0),
             damping,
@@ -363,12 +396,18 @@ impl ConservativeBody {
             stacked,
             drive_stiffness: drive_stiffness.map_or_else(Vec::new, |k| columns(k.as_ref())),
             loads,
+            manifold: large_deflection.clone(),
         })
     }
 
     /// Number of flexible modes nf.
     pub fn flexible(&self) -> usize {
         self.circular_frequencies.len()
+    }
+
+    /// Number of extended shapes: that of the modes, but on a manifold.
+    pub(crate) fn extended(&self) -> usize {
+        self.manifold.as_ref().map_or(self.flexible(), |manifold| manifold.body().flexible())
     }
 
     /// The loads.
@@ -383,15 +422,27 @@ impl ConservativeBody {
     }
 
     pub(crate) fn evaluation(&self) -> Evaluation {
-        let nf = self.flexible();
+        let (modes, nf) = (self.flexible(), self.extended());
         let zeros = |n: usize| vec![0.0; n];
+        let on_manifold = |n: usize| if self.manifold.is_some() { zeros(n) } else { Vec::new() };
+        let s_axes = self.s_rows.checked_div(nf).unwrap_or(0);
         Evaluation {
             slow: Slow::zeros(),
-            displacement: zeros(nf),
-            momentum: zeros(nf),
+            displacement: zeros(modes),
+            momentum: zeros(modes),
             products: zeros(self.s_rows + self.pairs.len() * nf),
             gyroscopic: zeros(self.g_rows),
+            modal_velocity: zeros(modes),
+            extended: zeros(nf),
             velocity: zeros(nf),
+            force: on_manifold(nf),
+            acceleration: zeros(modes),
+            change: zeros(nf),
+            curvature: on_manifold(nf),
+            place: self.manifold.as_ref().map_or_else(Place::default, Manifold::place),
+            s: on_manifold(s_axes * modes),
+            solved_s: on_manifold(s_axes * modes),
+            modal_sliding: if self.sliding.is_empty() { Vec::new() } else { on_manifold(modes) },
             sliding: self.sliding.clone(),
             drive_stiffened: zeros(if self.drive_stiffness.is_empty() { 0 } else { nf }),
             spin: Vector3::zeros(),
@@ -417,17 +468,22 @@ impl ConservativeBody {
         for (w, axis) in spin.iter_mut().zip(&self.axes) {
             *w = if self.turn_driven { speed } else { axis.dot(&initial.omega) };
         }
-        let mut momentum = initial.modal_velocity.clone();
+        self.extend_rate(&initial.modal_velocity, &mut e);
+        let mut mu = e.velocity.clone();
         let mut pi: Vector3<f64> = e.inertia * spin;
-        for (i, s) in e.products[..self.s_rows].chunks_exact(self.flexible().max(1)).enumerate() {
-            pi[i] += dot(s, &initial.modal_velocity);
-            for (p, s) in momentum.iter_mut().zip(s) {
-                *p += s * spin[i];
+        for (i, s) in e.products[..self.s_rows].chunks_exact(self.extended().max(1)).enumerate() {
+            pi[i] += dot(s, &e.velocity);
+            mu.iter_mut().zip(s).for_each(|(mu, s)| *mu += s * spin[i]);
+        }
+        mu.iter_mut().zip(&e.sliding).for_each(|(mu, b)| *mu += b * speed);
+        let momentum = match &self.manifold {
+            Some(manifold) => {
+                let mut momentum = vec![0.0; self.flexible()];
+                manifold.project(&e.place, &mu, &mut momentum);
+                momentum
             }
-        }
-        for (p, b) in momentum.iter_mut().zip(&e.sliding) {
-            *p += b * speed;
-        }
+            None => mu,
+        };
         for k in self.axes.len()..3 {
             pi[k] = 0.0;
         }
@@ -461,7 +517,7 @@ impl ConservativeBody {
             velocity_global: get(&e.slow, part::POSITION),
             omega_body: e.omega_body,
             modal_displacement: q.clone(),
-            modal_velocity: e.velocity,
+            modal_velocity: e.modal_velocity,
         })
     }
 
@@ -501,8 +557,25 @@ impl ConservativeBody {
         })
     }
 
-    /// S(q), N_ij q and J(q).
+    /// q̇ and ν.
+    fn extend_rate(&self, rate: &[f64], e: &mut Evaluation) {
+        e.modal_velocity.copy_from_slice(rate);
+        match &self.manifold {
+            Some(manifold) => {
+                manifold.go_along(rate, &mut e.place);
+                manifold.extend(&e.place, rate, &mut e.velocity);
+            }
+            None => e.velocity.copy_from_slice(rate),
+        }
+    }
+
+    /// ξ, S_ext(ξ), N_ij ξ and J(ξ).
     fn deform(&self, q: &[f64], e: &mut Evaluation) {
+        match &self.manifold {
+            Some(manifold) => manifold.go(q, &mut e.place, &mut e.extended),
+            None => e.extended.copy_from_slice(q),
+        }
+        let q = &e.extended;
         let nf = q.len();
         if !self.stacked.is_empty() {
             let rows = self.g_rows + self.pairs.len() * nf;
@@ -541,8 +614,21 @@ impl ConservativeBody {
         }
         e.inertia = inertia;
         e.locked_inertia = inertia;
-        for (i, a) in s.chunks_exact(nf).enumerate() {
-            for (j, b) in s.chunks_exact(nf).enumerate().take(i + 1) {
+        let (s, solved_s, size) = match &self.manifold {
+            Some(manifold) => {
+                let modes = self.flexible();
+                let on_modes = e.s.chunks_exact_mut(modes.max(1)).zip(e.solved_s.chunks_exact_mut(modes.max(1)));
+                for (s, (on_modes, solved)) in s.chunks_exact(nf.max(1)).zip(on_modes) {
+                    manifold.project(&e.place, s, on_modes);
+                    solved.copy_from_slice(on_modes);
+                    manifold.solve(&e.place, solved);
+                }
+                (&e.s[..], &e.solved_s[..], modes)
+            }
+            None => (s, s, nf),
+        };
+        for (i, a) in s.chunks_exact(size.max(1)).enumerate() {
+            for (j, b) in solved_s.chunks_exact(size.max(1)).enumerate().take(i + 1) {
                 let product = dot(a, b);
                 e.locked_inertia[(i, j)] -= product;
                 if i != j {
@@ -576,7 +662,6 @@ impl ConservativeBody {
         p: &[f64],
         e: &mut Evaluation,
     ) -> Result<(), RateError> {
-        let nf = q.len();
         self.deform(q, e);
         let speed = self.drive.as_ref().map_or(0.0, |drive| drive.speed(t, inside));
         e.driven_speed = speed;
@@ -585,7 +670,7 @@ impl ConservativeBody {
             e.spin = Vector3::new(speed, 0.0, 0.0);
         } else if !self.axes.is_empty() {
             let mut right = pi;
-            for (i, s) in e.products[..self.s_rows].chunks_exact(nf.max(1)).enumerate() {
+            for (i, s) in self.momenta_of_turning(e).1.chunks_exact(q.len().max(1)).enumerate() {
                 right[i] -= dot(s, p);
             }
             e.spin = self.solve_locked(e, &right)?;
@@ -593,15 +678,10 @@ impl ConservativeBody {
         let w = e.spin;
         e.omega_body = self.axes.iter().zip(w.iter()).map(|(axis, w)| axis * *w).sum();
 
-        self.modal_rates(q, p, speed, e);
-        let mut dissipation = 0.0;
-        if self.damped {
-            for k in 0..nf {
-                // −D q̇ = −D p + D (S ω); the first term is in the linear part.
-                e.momentum[k] -= self.damping[k] * e.displacement[k];
-                dissipation += self.damping[k] * e.velocity[k] * e.velocity[k];
-            }
-        }
+        self.velocities(p, speed, e);
+        // Forces in the extended shapes are gathered in a list that is put back at the end.
+        let mut modal_force = std::mem::take(if self.manifold.is_some() { &mut e.force } else { &mut e.momentum });
+        self.inertia_forces(speed, e, &mut modal_force);
 
         let momentum = get(slow, part::MOMENTUM);
         let velocity = match self.translation {
@@ -620,7 +700,7 @@ impl ConservativeBody {
             let first_attitude = attitude.global_to_body();
             let body_from_global =
                 if turning { transformation_matrix(&theta) * first_attitude } else { first_attitude };
-            let coordinates = Coordinates { first: 6, displacement: q, velocity: &e.velocity };
+            let coordinates = Coordinates { first: 6, displacement: &e.extended, velocity: &e.velocity };
             let motion = Kinematics {
                 time: t,
                 branch_time: inside,
@@ -631,7 +711,7 @@ impl ConservativeBody {
                 coordinates,
                 unit: false,
             };
-            let mut applied = Applied::new(coordinates, Vector3::zeros(), &mut e.momentum);
+            let mut applied = Applied::new(coordinates, Vector3::zeros(), &mut modal_force);
             self.loads.iter().for_each(|load| load.apply(&motion, &mut applied));
             let moment = applied.moment_body;
             power = applied.modal_power + moment.dot(&e.omega_body);
@@ -645,6 +725,15 @@ impl ConservativeBody {
             angular_impulse = body_from_global.tr_mul(&left);
             power += force.dot(&velocity);
         }
+        self.project_forces(q, speed, modal_force, e);
+        let mut dissipation = 0.0;
+        if self.damped {
+            for k in 0..q.len() {
+                // −D q̇ = −D p + D (p − q̇); the first term is in the linear part.
+                e.momentum[k] -= self.damping[k] * e.displacement[k];
+                dissipation += self.damping[k] * e.modal_velocity[k] * e.modal_velocity[k];
+            }
+        }
         let force_rate = match self.translation {
             Translation::Free => force,
             Translation::Along(direction) => along(&attitude.to_global(&direction), &force),
@@ -652,7 +741,7 @@ impl ConservativeBody {
         };
         if let Some(drive) = &self.drive {
             let force_body = attitude.to_body(&force);
-            power += self.drive_power(speed, drive.acceleration(t, inside), q, p, &force_body, &pi_rate, e);
+            power += self.drive_power(drive.acceleration(t, inside), [q, p], &force_body, pi_rate[0], e);
             pi_rate = Vector3::zeros();
         }
         set(&mut e.slow, part::THETA, &theta_rate);
@@ -666,79 +755,84 @@ impl ConservativeBody {
         Ok(())
     }
 
-    /// q̇ and the rates of the modes by inertia and stress alone, at the spin of `e`.
-    fn modal_rates(&self, q: &[f64], p: &[f64], speed: f64, e: &mut Evaluation) {
-        let nf = q.len();
+    /// S and M⁻¹S on the modes, a row for each axis.
+    pub(crate) fn momenta_of_turning<'e>(&self, e: &'e Evaluation) -> (&'e [f64], &'e [f64]) {
+        if self.manifold.is_some() { (&e.s, &e.solved_s) } else { (&e.products[..self.s_rows], &e.products[..self.s_rows]) }
+    }
+
+    /// q̇ and ν, at the spin of `e`.
+    fn velocities(&self, p: &[f64], speed: f64, e: &mut Evaluation) {
+        let modes = p.len();
         let w = e.spin;
-        let (s, n_q) = e.products.split_at(self.s_rows);
         e.displacement.fill(0.0);
-        e.momentum.fill(0.0);
-        for (s, w) in s.chunks_exact(nf.max(1)).zip(w.iter()) {
+        let s = if self.manifold.is_some() { &e.s } else { &e.products[..self.s_rows] };
+        for (s, w) in s.chunks_exact(modes.max(1)).zip(w.iter()) {
             e.displacement.iter_mut().zip(s).for_each(|(rate, s)| *rate -= s * w);
         }
-        e.displacement.iter_mut().zip(&e.sliding).for_each(|(rate, b)| *rate -= b * speed);
-        for ((v, p), rate) in e.velocity.iter_mut().zip(p).zip(&e.displacement) {
+        let Some(manifold) = &self.manifold else {
+            e.displacement.iter_mut().zip(&e.sliding).for_each(|(rate, b)| *rate -= b * speed);
+            for ((v, p), rate) in e.velocity.iter_mut().zip(p).zip(&e.displacement) {
+                *v = p + rate;
+            }
+            e.modal_velocity.copy_from_slice(&e.velocity);
+            return;
+        };
+        if !e.sliding.is_empty() {
+            manifold.project(&e.place, &e.sliding, &mut e.modal_sliding);
+            e.displacement.iter_mut().zip(&e.modal_sliding).for_each(|(rate, b)| *rate -= b * speed);
+        }
+        for ((v, p), rate) in e.modal_velocity.iter_mut().zip(p).zip(&e.displacement) {
             *v = p + rate;
         }
+        manifold.solve(&e.place, &mut e.modal_velocity);
+        for ((rate, p), v) in e.displacement.iter_mut().zip(p).zip(&e.modal_velocity) {
+            *rate = v - p;
+        }
+        manifold.go_along(&e.modal_velocity, &mut e.place);
+        manifold.extend(&e.place, &e.modal_velocity, &mut e.velocity);
+    }
+
+    /// Σ ω_iω_j (c_ij + N_ij ξ) − Σ ω_i G_i ν, and the stress of what is driven.
+    fn inertia_forces(&self, speed: f64, e: &mut Evaluation, force: &mut [f64]) {
+        let nf = force.len();
+        let w = e.spin;
+        let n_q = &e.products[self.s_rows..];
+        force.fill(0.0);
         if self.g_rows > 0 {
             multiply_top(&self.stacked, self.g_rows + self.pairs.len() * nf, &e.velocity, &mut e.gyroscopic);
             for (g, w) in e.gyroscopic.chunks_exact(nf).zip(w.iter()) {
-                e.momentum.iter_mut().zip(g).for_each(|(rate, g)| *rate -= w * g);
+                force.iter_mut().zip(g).for_each(|(rate, g)| *rate -= w * g);
             }
         }
         for (((i, j), first), n_q) in self.pairs.iter().zip(&self.first).zip(n_q.chunks_exact(nf.max(1))) {
             let square = if i == j { w[*i] * w[*j] } else { 2.0 * w[*i] * w[*j] };
-            for ((rate, c), n) in e.momentum.iter_mut().zip(first).zip(n_q) {
+            for ((rate, c), n) in force.iter_mut().zip(first).zip(n_q) {
                 *rate += square * (c + n);
             }
         }
         if !self.drive_stiffness.is_empty() {
             // ∂/∂q of the kinetic energy v (b − K q)·q̇.
             multiply(&self.drive_stiffness, nf, &e.velocity, &mut e.drive_stiffened);
-            e.momentum.iter_mut().zip(&e.drive_stiffened).for_each(|(rate, k_v)| *rate -= speed * k_v);
+            force.iter_mut().zip(&e.drive_stiffened).for_each(|(rate, k_v)| *rate -= speed * k_v);
         }
     }
 
-    /// Power of what drives the body, less that of the loads on it: with π = J ω + S·q̇ and P = m v + b·q̇ along the
-    /// driven axis, (π' − M) ω and (P' − F) v.
-    #[allow(clippy::too_many_arguments)]
-    fn drive_power(
-        &self,
-        speed: f64,
-        acceleration: f64,
-        q: &[f64],
-        p: &[f64],
-        force_body: &Vector3<f64>,
-        moment: &Vector3<f64>,
-        e: &mut Evaluation,
-    ) -> f64 {
-        let nf = q.len();
-        // p' of the whole equation.
-        let rate = |k: usize| {
-            let omega = self.circular_frequencies[k];
-            e.momentum[k] - omega * omega * q[k] - self.damping[k] * p[k]
+    /// p' without its linear part and damping: Dᵀ of the forces in the extended shapes, Ḋᵀμ and −∂V_n/∂q.
+    fn project_forces(&self, q: &[f64], speed: f64, mut force: Vec<f64>, e: &mut Evaluation) {
+        let Some(manifold) = &self.manifold else {
+            e.momentum = force;
+            return;
         };
-        // With b − K q in S: S' = −K q̇ beside G q̇, and q̈ = p' − S' v − S v'.
-        let k_v = |k: usize| e.drive_stiffened.get(k).copied().unwrap_or(0.0);
-        let stiffened: f64 = -dot(&e.drive_stiffened, &e.velocity);
-        if let Translation::Driven(direction) = self.translation {
-            let b = &e.sliding;
-            e.driven_momentum = self.mass * speed + dot(b, &e.velocity);
-            let changing: f64 =
-                (0..nf).map(|k| b[k] * (rate(k) + k_v(k) * speed - b[k] * acceleration)).sum::<f64>() + stiffened;
-            return (self.mass * acceleration + changing - direction.dot(force_body)) * speed;
+        manifold.project(&e.place, &force, &mut e.momentum);
+        let mu = &mut force;
+        mu.copy_from_slice(&e.velocity);
+        for (s, w) in e.products[..self.s_rows].chunks_exact(mu.len()).zip(e.spin.iter()) {
+            mu.iter_mut().zip(s).for_each(|(mu, s)| *mu += s * w);
         }
-        let (s, n_q) = e.products.split_at(self.s_rows);
-        let s = &s[..nf];
-        e.driven_momentum = e.inertia[(0, 0)] * speed + dot(s, &e.velocity);
-        let inertia_rate: f64 = match self.first.first() {
-            Some(first) => (0..nf).map(|k| 2.0 * (first[k] + n_q[k]) * e.velocity[k]).sum(),
-            None => 0.0,
-        };
-        let g_v = |k: usize| e.gyroscopic.get(k).copied().unwrap_or(0.0);
-        let changing: f64 =
-            (0..nf).map(|k| s[k] * (rate(k) - (g_v(k) - k_v(k)) * speed - s[k] * acceleration)).sum::<f64>() + stiffened;
-        (inertia_rate * speed + e.inertia[(0, 0)] * acceleration + changing - moment[0]) * speed
+        mu.iter_mut().zip(&e.sliding).for_each(|(mu, b)| *mu += b * speed);
+        manifold.add_projected_rate(&e.place, mu, &mut e.momentum);
+        manifold.subtract_force(q, &mut e.momentum);
+        e.force = force;
     }
 
     /// What the drive does where its speed jumps at the state's time: its impulse times the mean of the speeds.
@@ -759,10 +853,15 @@ impl ConservativeBody {
     /// Adds the linear part of the modes to an evaluation: q' += p, p' −= Λq + Dp.
     pub(crate) fn add_linear(&self, q: &[f64], p: &[f64], e: &mut Evaluation) {
         for k in 0..q.len() {
-            let omega = self.circular_frequencies[k];
             e.displacement[k] += p[k];
-            e.momentum[k] -= omega * omega * q[k] + self.damping[k] * p[k];
+            e.momentum[k] += self.linear_rate(k, q[k], p[k]);
         }
+    }
+
+    /// −Λq − Dp
+    pub(crate) fn linear_rate(&self, k: usize, q: f64, p: f64) -> f64 {
+        let omega = self.circular_frequencies[k];
+        -(omega * omega * q + self.damping[k] * p)
     }
 
     /// The energies of a motion whose rates are in `e`; none of a driven body, to which a jump of its drive gives energy
@@ -771,7 +870,7 @@ impl ConservativeBody {
         if self.drive.is_some() {
             return None;
         }
-        let internal = 0.5 * (get(slow, part::PI).dot(&e.spin) + dot(p, &e.velocity)) + self.strain_energy(q);
+        let internal = 0.5 * (get(slow, part::PI).dot(&e.spin) + dot(p, &e.modal_velocity)) + self.strain_energy(q);
         let translation = 0.5 * get(slow, part::MOMENTUM).norm_squared() / self.mass;
         let (work, dissipation) = (slow[part::WORK], slow[part::DISSIPATION]);
         Some(Energies { time, internal, translation, work, dissipation })
@@ -797,7 +896,7 @@ impl ConservativeBody {
     pub(crate) fn energy_of_loads(&self, end: f64) -> f64 {
         let lowest = self.circular_frequencies.iter().copied().reduce(f64::min);
         let period = lowest.map_or(end, |omega| (std::f64::consts::TAU / omega).min(end));
-        let still = vec![0.0; self.flexible()];
+        let still = vec![0.0; self.extended()];
         let coordinates = Coordinates { first: 6, displacement: &still, velocity: &still };
         // At rest, in the body's own axes: a dead load does as much in any attitude, but for how its modes see it.
         let motion = Kinematics {
@@ -861,13 +960,14 @@ impl ConservativeBody {
                 get(&state.slow, part::MOMENTUM).norm_squared() / self.mass + get(&state.slow, part::PI).dot(&e.spin)
             }
         };
-        let kinetic = 0.5 * (moving + dot(&state.modal_momentum, &e.velocity));
+        let kinetic = 0.5 * (moving + dot(&state.modal_momentum, &e.modal_velocity));
         (kinetic, self.strain_energy(q))
     }
 
-    /// ½ qᵀΛq
+    /// ½ qᵀΛq + V_n
     fn strain_energy(&self, q: &[f64]) -> f64 {
-        q.iter().enumerate().map(|(k, q)| self.modal_energy(k, *q, 0.0)).sum()
+        let linear: f64 = q.iter().enumerate().map(|(k, q)| self.modal_energy(k, *q, 0.0)).sum();
+        linear + self.manifold.as_ref().map_or(0.0, |manifold| manifold.energy(q))
     }
 
     /// Lowest ω_k; infinite without modes.

@@ -149,13 +149,13 @@ impl Scheme for ConservativeMotion {
 
     /// Where the rates were last found: at the state under step control, else at the start of the last step.
     fn moment(&self) -> Moment<'_> {
-        let Evaluation { omega_body, velocity, .. } = &self.stages[0];
+        let Evaluation { omega_body, modal_velocity, .. } = &self.stages[0];
         let (time, q) = match self.first_known {
             true => (self.state.time, &self.state.modal_displacement),
             // The states have changed places at the end of the step.
             false => (self.next.time, &self.start_q),
         };
-        Moment { time, omega_body: *omega_body, modal_displacement: q, modal_velocity: velocity }
+        Moment { time, omega_body: *omega_body, modal_displacement: q, modal_velocity }
     }
 
     fn work_and_dissipation(&self) -> [f64; 2] {

@@ -1,9 +1,8 @@
 //! The motion that a state of the conservative form stands for.
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Vector3;
 use rigid_kin::Attitude;
 
-use crate::column_major::dot;
 use crate::conservative::{ConservativeBody, ConservativeState, Evaluation, Translation, get, part};
 use crate::error::RateError;
 use crate::motion::PointShapes;
@@ -25,7 +24,9 @@ impl ConservativeBody {
         let (kinetic, strain) = self.energies(state, e);
         self.add_linear(q, p, e);
         let driven_acceleration = self.drive.as_ref().map_or(0.0, |drive| drive.acceleration(state.time, state.time));
-        let spin_rate = self.accelerations(driven_acceleration, e, &mut out.modal_acceleration)?;
+        e.acceleration.copy_from_slice(&e.momentum);
+        let spin_rate = self.accelerate(driven_acceleration, e)?;
+        out.modal_acceleration.clone_from(&e.acceleration);
         let alpha = self.axes.iter().zip(spin_rate.iter()).map(|(axis, a)| axis * *a).sum::<Vector3<f64>>();
         let omega = e.omega_body;
 
@@ -37,7 +38,7 @@ impl ConservativeBody {
             Translation::Driven(direction) => global(direction) * driven_acceleration,
         };
         let position = get(&state.slow, part::POSITION);
-        let center = self.center.position_body(q);
+        let center = self.center.position_body(&e.extended);
         out.time = state.time;
         out.attitude = state.attitude;
         out.origin_global = position;
@@ -46,16 +47,18 @@ impl ConservativeBody {
         out.omega_body = omega;
         out.alpha_body = alpha;
         out.modal_displacement.clone_from(q);
-        out.modal_velocity.clone_from(&e.velocity);
+        out.modal_velocity.clone_from(&e.modal_velocity);
         out.kinetic_energy = kinetic;
         out.strain_energy = strain;
         self.observe_momenta(state, e, out);
         let moved = position - self.origin;
+        self.extend_acceleration(e);
+        let acceleration = &e.change;
         out.points.clear();
         out.points.extend(points.iter().map(|point| {
             let x = point.position_body();
             let (u, v, a) =
-                (point.deformation(q), point.deformation(&e.velocity), point.deformation(&out.modal_acceleration));
+                (point.deformation(&e.extended), point.deformation(&e.velocity), point.deformation(acceleration));
             let arm = x + u;
             PointMotion {
                 displacement: moved + (global(arm) - initial_attitude.to_global(&x)),
@@ -66,48 +69,6 @@ impl ConservativeBody {
             }
         }));
         Ok(())
-    }
-
-    /// Modal accelerations into `modal`, and the rate of the spin.
-    ///
-    /// π = J ω + Sᵀq̇ and p = q̇ + S ω, differentiated: with S' = S(q̇) − b, where S'ᵀq̇ = 0 (G is skew) but for what is driven,
-    /// (J − SᵀS) ω' = π' − J'ω − Sᵀ(p' − S'ω),  q̈ = p' − S'ω − S ω'.
-    fn accelerations(
-        &self,
-        driven_acceleration: f64,
-        e: &Evaluation,
-        modal: &mut Vec<f64>,
-    ) -> Result<Vector3<f64>, RateError> {
-        let nf = self.flexible();
-        let (s, n_q) = e.products.split_at(self.s_rows);
-        modal.clear();
-        modal.extend_from_slice(&e.momentum);
-        for (g, w) in e.gyroscopic.chunks_exact(nf.max(1)).zip(e.spin.iter()) {
-            modal.iter_mut().zip(g).for_each(|(a, g)| *a -= g * w);
-        }
-        modal.iter_mut().zip(&e.sliding).for_each(|(a, b)| *a -= b * driven_acceleration);
-        modal.iter_mut().zip(&e.drive_stiffened).for_each(|(a, k_v)| *a += k_v * e.driven_speed);
-        let spin_rate = if self.turn_driven {
-            Vector3::new(driven_acceleration, 0.0, 0.0)
-        } else if self.axes.is_empty() {
-            Vector3::zeros()
-        } else {
-            let mut inertia_rate = Matrix3::zeros();
-            for (((i, j), first), n_q) in self.pairs.iter().zip(&self.first).zip(n_q.chunks_exact(nf.max(1))) {
-                let rate: f64 = first.iter().zip(n_q).zip(&e.velocity).map(|((c, n), v)| 2.0 * (c + n) * v).sum();
-                inertia_rate[(*i, *j)] = rate;
-                inertia_rate[(*j, *i)] = rate;
-            }
-            let mut right = get(&e.slow, part::PI) - inertia_rate * e.spin;
-            for (i, s) in s.chunks_exact(nf.max(1)).enumerate() {
-                right[i] -= dot(s, modal);
-            }
-            self.solve_locked(e, &right)?
-        };
-        for (s, w) in s.chunks_exact(nf.max(1)).zip(spin_rate.iter()) {
-            modal.iter_mut().zip(s).for_each(|(a, s)| *a -= s * w);
-        }
-        Ok(spin_rate)
     }
 
     /// Momenta and what has been done to them. What holds or drives a body gives it whatever its momenta need, so there

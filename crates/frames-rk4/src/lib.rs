@@ -21,6 +21,7 @@
 #![forbid(unsafe_code)]
 #![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable))]
 
+mod acceleration;
 mod account;
 mod attitude_account;
 mod checkpoint;
@@ -37,6 +38,7 @@ mod history;
 mod initial;
 mod load;
 mod loaded;
+mod manifold;
 mod methods;
 mod modal_rotation;
 mod model;
@@ -69,6 +71,7 @@ pub use load::{
     Applied, BodyField, FieldLoad, Kinematics, Load, LoadFn, LoadFrame, Pattern, PointForce, PointMoment, SharedLoad,
 };
 pub use loaded::{LoadedError, LoadedMode};
+pub use manifold::{MOST_LARGE, Manifold};
 pub use modal_rotation::ModalRotation;
 pub use model::ModalModel;
 pub use moment::Moment;

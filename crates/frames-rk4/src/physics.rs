@@ -5,6 +5,7 @@ use nalgebra::Vector3;
 
 use crate::error::SetupError;
 use crate::history::History;
+use crate::manifold::Manifold;
 
 /// Effects of the conservative form. What is off is not computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -98,4 +99,6 @@ pub struct Physics {
     /// Geometric stiffness Ψ_fᵀ K Ψ_f (nf×nf, symmetric) of the static answer to the forces `M (1⊗e)` of a unit
     /// acceleration of a driven slide along e, or `M (I⊗[a×]) X` of a driven turn about a.
     pub drive_stiffness: Option<Mat<f64>>,
+    /// The manifold of large modes. Points, loads and `drive_stiffness` are then in its extended shapes.
+    pub large_deflection: Option<Manifold>,
 }

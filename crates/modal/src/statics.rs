@@ -65,6 +65,26 @@ impl Solver<'_> {
     /// # Errors
     /// [`ModalError::Size`], [`ModalError::NotFinite`], [`ModalError::DenseEigen`].
     pub fn with_static_shapes(&self, modes: Modes, answers: MatRef<'_, f64>) -> Result<Modes, ModalError> {
+        let added = self.beside(&modes, answers, DEPENDENT)?;
+        // Static shapes are no eigenvectors: what is M-orthogonal to them is not K-orthogonal, unless all are combined.
+        let (expected, natural) = (modes.shapes.nrows(), modes.natural());
+        let before = modes.shapes.ncols() - natural;
+        let added = Mat::from_fn(expected, before + added.ncols(), |i, j| {
+            if j < before { modes.shapes[(i, natural + j)] } else { added[(i, j - before)] }
+        });
+        let RitzPairs { eigenvalues, shapes, .. } =
+            rayleigh_ritz(self.stiffness, &self.nodal_mass, &self.constraints, &added)?;
+        let mut modes = modes;
+        modes.eigenvalues.truncate(natural);
+        modes.eigenvalues.extend(eigenvalues);
+        modes.shapes.truncate(expected, natural);
+        modes.shapes.resize_with(expected, natural + shapes.ncols(), |i, j| shapes[(i, j - natural)]);
+        Ok(modes)
+    }
+
+    /// What `answers` (N×k) have beside the rigid modes and `modes`, M-orthonormal; without those that add less than
+    /// `least` of themselves.
+    pub(crate) fn beside(&self, modes: &Modes, answers: MatRef<'_, f64>, least: f64) -> Result<Mat<f64>, ModalError> {
         let (expected, found) = (modes.shapes.nrows(), answers.nrows());
         if found != expected {
             return Err(ModalError::Size { what: "static answers", expected, found });
@@ -88,24 +108,14 @@ impl Solver<'_> {
             }
             m_shape = self.nodal_mass.product(shape.as_ref());
             let rest = norm(&shape, &m_shape);
-            if rest > DEPENDENT * whole {
+            if rest > least * whole {
                 for (matrix, column) in [(&mut basis, shape), (&mut m_basis, m_shape)] {
                     let columns = matrix.ncols();
                     matrix.resize_with(expected, columns + 1, |i, _| column[(i, 0)] / rest);
                 }
             }
         }
-        // Static shapes are no eigenvectors: what is M-orthogonal to them is not K-orthogonal, unless all are combined.
-        let natural = modes.natural();
-        let added = basis.subcols(rigid + natural, basis.ncols() - rigid - natural).to_owned();
-        let RitzPairs { eigenvalues, shapes, .. } =
-            rayleigh_ritz(self.stiffness, &self.nodal_mass, &self.constraints, &added)?;
-        let mut modes = modes;
-        modes.eigenvalues.truncate(natural);
-        modes.eigenvalues.extend(eigenvalues);
-        modes.shapes.truncate(expected, natural);
-        modes.shapes.resize_with(expected, natural + shapes.ncols(), |i, j| shapes[(i, j - natural)]);
-        Ok(modes)
+        Ok(basis.subcols(rigid + flexible, basis.ncols() - rigid - flexible).to_owned())
     }
 }
 

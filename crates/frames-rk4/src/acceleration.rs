@@ -1,0 +1,127 @@
+//! Accelerations of the conservative form.
+//!
+//! ```text
+//! p = Dᵀμ,  μ = ν + S_ext ω + b v:      Dᵀμ' = p' − Ḋᵀμ
+//! μ' = D q̈ + Ḋ q̇ + S_ext' ω + b' v + b v' + S_ext ω',      S_ext' = G ν
+//! q̈ = M⁻¹ [p' − Ḋᵀμ − Dᵀ(Ḋ q̇ + S_ext' ω + b' v + b v')] − M⁻¹ S ω'
+//! π = J ω + S_extᵀν:      (J − SᵀM⁻¹S) ω' = π' − J' ω − S_ext'ᵀν − S_extᵀ(ν' at ω' = 0)
+//! ```
+//!
+//! D is 1, and Ḋ is zero, but on a manifold. Of what is driven v or ω is given, and S or b has −K q besides.
+
+use nalgebra::{Matrix3, Vector3};
+
+use crate::column_major::dot;
+use crate::conservative::{ConservativeBody, Evaluation, Translation, get, part};
+use crate::error::RateError;
+
+impl ConservativeBody {
+    /// Turns `e.acceleration` from the whole of p' into the q̈ that there would be without ω'.
+    fn without_spin_rate(&self, driven_acceleration: f64, e: &mut Evaluation) {
+        let nf = self.extended();
+        // Ḋ q̇ + S_ext' ω + b' v + b v', by −; then μ.
+        let change = &mut e.change;
+        change.fill(0.0);
+        for (g, w) in e.gyroscopic.chunks_exact(nf.max(1)).zip(e.spin.iter()) {
+            change.iter_mut().zip(g).for_each(|(c, g)| *c -= g * w);
+        }
+        change.iter_mut().zip(&e.sliding).for_each(|(c, b)| *c -= b * driven_acceleration);
+        change.iter_mut().zip(&e.drive_stiffened).for_each(|(c, k_v)| *c += k_v * e.driven_speed);
+        let Some(manifold) = &self.manifold else {
+            e.acceleration.iter_mut().zip(change).for_each(|(a, c)| *a += *c);
+            return;
+        };
+        e.curvature.fill(0.0);
+        manifold.add_curvature(&e.place, &e.modal_velocity, &mut e.curvature);
+        change.iter_mut().zip(&e.curvature).for_each(|(c, curvature)| *c -= curvature);
+        manifold.add_projection(&e.place, change, &mut e.acceleration);
+        change.copy_from_slice(&e.velocity);
+        for (s, w) in e.products[..self.s_rows].chunks_exact(nf).zip(e.spin.iter()) {
+            change.iter_mut().zip(s).for_each(|(mu, s)| *mu += s * w);
+        }
+        change.iter_mut().zip(&e.sliding).for_each(|(mu, b)| *mu += b * e.driven_speed);
+        change.iter_mut().for_each(|mu| *mu = -*mu);
+        manifold.add_projected_rate(&e.place, change, &mut e.acceleration);
+        manifold.solve(&e.place, &mut e.acceleration);
+    }
+
+    /// Turns `e.acceleration` from the whole of p' into q̈, and gives the rate of the spin. `e` has the rates of the state.
+    pub(crate) fn accelerate(&self, driven_acceleration: f64, e: &mut Evaluation) -> Result<Vector3<f64>, RateError> {
+        let (modes, nf) = (self.flexible(), self.extended());
+        self.without_spin_rate(driven_acceleration, e);
+        let spin_rate = if self.turn_driven {
+            Vector3::new(driven_acceleration, 0.0, 0.0)
+        } else if self.axes.is_empty() {
+            Vector3::zeros()
+        } else {
+            let n_q = &e.products[self.s_rows..];
+            let mut inertia_rate = Matrix3::zeros();
+            for (((i, j), first), n_q) in self.pairs.iter().zip(&self.first).zip(n_q.chunks_exact(nf.max(1))) {
+                let rate: f64 = first.iter().zip(n_q).zip(&e.velocity).map(|((c, n), v)| 2.0 * (c + n) * v).sum();
+                inertia_rate[(*i, *j)] = rate;
+                inertia_rate[(*j, *i)] = rate;
+            }
+            let mut right = get(&e.slow, part::PI) - inertia_rate * e.spin;
+            for (i, s) in self.momenta_of_turning(e).0.chunks_exact(modes.max(1)).enumerate() {
+                right[i] -= dot(s, &e.acceleration);
+            }
+            for (i, s) in e.products[..self.s_rows].chunks_exact(nf.max(1)).enumerate() {
+                right[i] -= dot(s, &e.curvature);
+            }
+            self.solve_locked(e, &right)?
+        };
+        let solved = if self.manifold.is_some() { &e.solved_s } else { &e.products[..self.s_rows] };
+        for (s, w) in solved.chunks_exact(modes.max(1)).zip(spin_rate.iter()) {
+            e.acceleration.iter_mut().zip(s).for_each(|(a, s)| *a -= s * w);
+        }
+        Ok(spin_rate)
+    }
+
+    /// Puts ν' of q̈ into `e.change`, in the extended shapes.
+    pub(crate) fn extend_acceleration(&self, e: &mut Evaluation) {
+        match &self.manifold {
+            Some(manifold) => {
+                manifold.extend(&e.place, &e.acceleration, &mut e.change);
+                e.change.iter_mut().zip(&e.curvature).for_each(|(a, curvature)| *a += curvature);
+            }
+            None => e.change.copy_from_slice(&e.acceleration),
+        }
+    }
+
+    /// Power of what drives the body, less that of the loads on it: with π = J ω + S·ν and P = m v + b·ν along the
+    /// driven axis, (π' − M) ω and (P' − F) v. `e` has all other rates, its momentum without the linear part at q and p.
+    pub(crate) fn drive_power(
+        &self,
+        acceleration: f64,
+        [q, p]: [&[f64]; 2],
+        force_body: &Vector3<f64>,
+        moment: f64,
+        e: &mut Evaluation,
+    ) -> f64 {
+        let (speed, nf) = (e.driven_speed, self.extended());
+        for (k, rate) in e.acceleration.iter_mut().enumerate() {
+            *rate = e.momentum[k] + self.linear_rate(k, q[k], p[k]);
+        }
+        self.without_spin_rate(acceleration, e);
+        // S' has −K ν, and G ν does no work on ν.
+        let stiffened: f64 = -dot(&e.drive_stiffened, &e.velocity);
+        if let Translation::Driven(direction) = self.translation {
+            let b = if self.manifold.is_some() { &e.modal_sliding } else { &e.sliding };
+            e.driven_momentum = self.mass * speed + dot(&e.sliding, &e.velocity);
+            let changing = dot(b, &e.acceleration) + dot(&e.sliding, &e.curvature) + stiffened;
+            return (self.mass * acceleration + changing - direction.dot(force_body)) * speed;
+        }
+        let (s_ext, n_q) = (&e.products[..nf], &e.products[self.s_rows..]);
+        let (s, solved) = self.momenta_of_turning(e);
+        let inertia = e.inertia[(0, 0)];
+        let momentum = inertia * speed + dot(s_ext, &e.velocity);
+        let inertia_rate: f64 = match self.first.first() {
+            Some(first) => (0..nf).map(|k| 2.0 * (first[k] + n_q[k]) * e.velocity[k]).sum(),
+            None => 0.0,
+        };
+        let changing =
+            dot(s, &e.acceleration) - dot(s, solved) * acceleration + dot(s_ext, &e.curvature) + stiffened;
+        e.driven_momentum = momentum;
+        (inertia_rate * speed + inertia * acceleration + changing - moment) * speed
+    }
+}

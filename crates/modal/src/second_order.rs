@@ -1,0 +1,105 @@
+//! Shapes of second order: what large modes draw in, twist and stretch.
+//!
+//! ```text
+//! Θ_jk = −K⁻¹ g_jk,   g_jk = ∂²f_int/∂q_j∂q_k at rest        u = Ψ q + ½ Σ Θ_jk q_j q_k
+//! Ψ_ext = [Ψ, H]      T_jk = −K_ee⁻¹ (Ψ_eᵀ g_jk)
+//! ```
+//!
+//! H are M-orthonormal vectors of what the Θ have beside the modes Ψ. In the extended shapes, Θ_jk without its parts along
+//! the large modes, which is a choice of what their coordinates mean, is T_jk; e are all extended shapes but the large
+//! modes.
+
+use faer::linalg::solvers::Solve;
+use faer::{Mat, MatRef, Side};
+
+use crate::error::ModalError;
+use crate::foretold::of_vectors;
+use crate::products::symmetric_product;
+use crate::solve::{Modes, Solver};
+use crate::tall;
+
+/// What a static answer adds to the modes must be more than this part of it: less is rounding.
+const DEPENDENT: f64 = 1e-6;
+
+/// The shapes that follow large modes, and what the strain energy has of third and fourth order.
+#[derive(Debug, Clone)]
+pub struct SecondOrderShapes {
+    /// The modes, then the shapes that only follow; K-orthogonality is lost.
+    pub modes: Modes,
+    /// Number of shapes that are coordinates of the motion.
+    pub dynamic: usize,
+    /// The large ones among them, numbered from 0, ascending.
+    pub large: Vec<usize>,
+    /// T (extended shapes × pairs of large modes), zero along the large modes.
+    pub slopes: Mat<f64>,
+    /// Φ_i·g_jk (large modes × pairs), force.
+    pub cubic: Mat<f64>,
+    /// T_ijᵀ K_ee T_kl (pairs × pairs): energy that the shapes that follow relieve.
+    pub relief: Mat<f64>,
+}
+
+impl SecondOrderShapes {
+    /// The pairs (j ≤ k) of `count` large modes, in the order of all lists here.
+    pub fn pairs(count: usize) -> Vec<[usize; 2]> {
+        (0..count).flat_map(|j| (j..count).map(move |k| [j, k])).collect()
+    }
+}
+
+impl Solver<'_> {
+    /// The shapes that follow the `large` ones of `modes`, which are numbered from 0 and ascend. `forces` are the g_jk
+    /// (N×pairs) of [`SecondOrderShapes::pairs`], `fem_tet10::second_order_forces`.
+    ///
+    /// # Errors
+    /// [`ModalError::Size`], [`ModalError::NotFinite`], and what refuses static answers.
+    pub fn second_order_shapes(
+        &self,
+        modes: Modes,
+        large: &[usize],
+        forces: MatRef<'_, f64>,
+    ) -> Result<SecondOrderShapes, ModalError> {
+        let (size, dynamic) = (modes.shapes.nrows(), modes.shapes.ncols());
+        let pairs = SecondOrderShapes::pairs(large.len());
+        if forces.ncols() != pairs.len() {
+            return Err(ModalError::Size { what: "forces of second order", expected: pairs.len(), found: forces.ncols() });
+        }
+        if let Some(found) = large.last().copied().filter(|last| *last >= dynamic) {
+            return Err(ModalError::Size { what: "modes up to the last large one", expected: dynamic, found: found + 1 });
+        }
+        let answers = self.static_response(forces)?;
+        memory::check("shapes of second order", of_vectors(size, 3 * (dynamic + pairs.len())))?;
+        let follow = self.beside(&modes, answers.as_ref(), DEPENDENT)?;
+        let extended = dynamic + follow.ncols();
+        let shapes = Mat::from_fn(size, extended, |i, j| {
+            if j < dynamic { modes.shapes[(i, j)] } else { follow[(i, j - dynamic)] }
+        });
+        let stiff = symmetric_product(self.stiffness, shapes.as_ref());
+        let stiffness = tall::inner(shapes.as_ref(), stiff.as_ref());
+        let along = tall::inner(shapes.as_ref(), forces);
+        let others: Vec<usize> = (0..extended).filter(|a| !large.contains(a)).collect();
+        let (k, g) = (
+            Mat::from_fn(others.len(), others.len(), |i, j| {
+                0.5 * (stiffness[(others[i], others[j])] + stiffness[(others[j], others[i])])
+            }),
+            Mat::from_fn(others.len(), pairs.len(), |i, j| along[(others[i], j)]),
+        );
+        let factor = k.llt(Side::Lower).map_err(|_| ModalError::DenseEigen { size: others.len() })?;
+        let answer = factor.solve(&g);
+        let mut slopes = Mat::zeros(extended, pairs.len());
+        for (i, a) in others.iter().enumerate() {
+            for j in 0..pairs.len() {
+                slopes[(*a, j)] = -answer[(i, j)];
+            }
+        }
+        let mut modes = modes;
+        modes.eigenvalues.extend((dynamic..extended).map(|a| stiffness[(a, a)]));
+        modes.shapes = shapes;
+        Ok(SecondOrderShapes {
+            modes,
+            dynamic,
+            large: large.to_vec(),
+            cubic: Mat::from_fn(large.len(), pairs.len(), |i, j| along[(large[i], j)]),
+            relief: answer.transpose() * g,
+            slopes,
+        })
+    }
+}
