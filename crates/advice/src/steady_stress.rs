@@ -3,9 +3,9 @@
 use faer::MatRef;
 
 use crate::case::{AdviceError, Case};
-use crate::row::{Effect, Row};
+use crate::row::Row;
 
-/// The row of [`Effect::GeometricStiffening`] by the stress of steady loads, whose stiffness in the modes of the case is
+/// The row of [`Effect::GeometricStiffening`](frames_rk4::Effect) by the stress of steady loads, whose stiffness in the modes of the case is
 /// `stiffness` (nf × nf, K_kl). Its value is the largest |K_kl|/(ω_k ω_l); its influence is the phase that a mode is out
 /// by at the end of the time that it rings.
 ///
@@ -32,5 +32,5 @@ pub fn steady_stress(case: &Case, stiffness: MatRef<'_, f64>, tolerance: f64) ->
     let influence = influence.min(1.0);
     let shift = 100.0 * 0.5 * value;
     let why = format!("The stress of steady loads moves the frequency of a mode by up to {shift:.2e} %.");
-    Ok(Row { effect: Effect::GeometricStiffening, value, influence, on: influence >= tolerance, why })
+    Ok(Row { value, influence, on: influence >= tolerance, why })
 }

@@ -1,8 +1,8 @@
 //! What only the body that a run is made with tells.
 
-use advice::{Advice, AdviceError, Effect, Findings, Row, advise, steady_stress};
+use advice::{Advice, AdviceError, Findings, Row, advise, steady_stress};
 use faer::Mat;
-use frames_rk4::Initial;
+use frames_rk4::{Effect, Initial};
 
 use crate::plate::{plate, spinning};
 
@@ -19,7 +19,7 @@ fn found(advice: &Advice) -> Findings {
 
 fn stiffening(influence: f64) -> Row {
     let why = "The stress of steady loads.".into();
-    Row { effect: Effect::GeometricStiffening, value: 0.5, influence, on: influence >= TOLERANCE, why }
+    Row { value: 0.5, influence, on: influence >= TOLERANCE, why }
 }
 
 #[test]
@@ -35,11 +35,10 @@ fn the_larger_of_two_reasons_for_stiffening_has_the_row() {
     let (still, fast) = (spun(0.0), spun(10.0));
     let row = |advice: &Advice, steady: Row| {
         let complete = advice.clone().completed(Findings { steady_stress: Some(steady), ..found(advice) });
-        assert_eq!(complete.rows.len(), advice.rows.len());
-        complete.row(Effect::GeometricStiffening).unwrap().clone()
+        complete.effects[Effect::GeometricStiffening].clone()
     };
     assert_eq!(row(&still, stiffening(0.2)), stiffening(0.2));
-    let by_spin = fast.row(Effect::GeometricStiffening).unwrap();
+    let by_spin = &fast.effects[Effect::GeometricStiffening];
     assert!(by_spin.influence > 1e-6, "{by_spin:?}");
     assert_eq!(&row(&fast, stiffening(0.5 * by_spin.influence)), by_spin);
 }
@@ -49,7 +48,7 @@ fn a_stretch_that_is_lacking_is_said_only_where_it_matters() {
     let why = |speed: f64, lacks_stretch: bool| {
         let advice = spun(speed);
         let complete = advice.clone().completed(Findings { lacks_stretch, ..found(&advice) });
-        (advice.stretch, complete.row(Effect::StaticCorrection).unwrap().why.contains("lacks what the spin stretches"))
+        (advice.stretch, complete.static_correction.why.contains("lacks what the spin stretches"))
     };
     let (fast, still) = (why(100.0, true), why(0.0, true));
     println!("{fast:?} {still:?}");

@@ -4,7 +4,9 @@ use std::sync::Arc;
 
 use faer::Mat;
 use fem_tet10::{Location, MeanRotation, Mesh};
-use frames_rk4::{BodyField, FieldLoad, LoadFrame, PointForce, PointMoment, PointShapes, RotationShapes, SharedLoad};
+use frames_rk4::{
+    BodyField, Effect, FieldLoad, LoadFrame, PointForce, PointMoment, PointShapes, RotationShapes, SharedLoad,
+};
 use modal::{BodyPoint, ModalError, Modes, ReducedBody};
 use nalgebra::Vector3;
 use rigid_kin::Attitude;
@@ -154,7 +156,7 @@ pub(super) fn on_rigid(scene: &Scene, body: &ReducedBody) -> Result<BodyLoads, B
 
 /// The loads that may act, with their numbers in the scene.
 fn acting(scene: &Scene) -> impl Iterator<Item = (usize, &Load)> {
-    let with_gravity = scene.effects.gravity != Choice::Off;
+    let with_gravity = scene.effects.choices[Effect::Gravity] != Choice::Off;
     scene.loads.iter().enumerate().filter(move |(_, load)| with_gravity || !is_gravity(load))
 }
 

@@ -3,6 +3,7 @@
 use advice::{Row, steady_stress};
 use faer::{Mat, MatRef};
 use fem_tet10::{AssemblyError, geometric_stiffness_product};
+use frames_rk4::Effect;
 use modal::{ModalError, Modes};
 
 use super::error::{BuildError, modal};
@@ -39,7 +40,7 @@ impl SteadyStress {
             return Ok(Self { buckling_ratio, ..Self::default() });
         };
         let row = steady_stress(&body.case(model), stiffness.as_ref(), effects.tolerance)?;
-        let acts = effects.geometric_stiffening == Choice::On || row.on;
+        let acts = effects.choices[Effect::GeometricStiffening] == Choice::On || row.on;
         Ok(Self { stiffness: acts.then_some(stiffness), row: Some(row), buckling_ratio })
     }
 }
