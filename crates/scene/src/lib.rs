@@ -58,7 +58,7 @@ pub use effects::{Choice, Effects};
 pub use error::SceneError;
 pub use fem_tet10::{Material, Materials, PointMass};
 pub use frames_rk4::{Effect, EffectMap, LoadFrame, Method, Rows, StepControl};
-pub use history::{History, Table};
+pub use history::{Formula, History, TablePoints};
 pub use load::{BaseAcceleration, Force, Gravity, Load, Moment, Pressure, Traction};
 pub use modes::{Damping, Flexible, Modes, Rayleigh};
 pub use place::Place;
