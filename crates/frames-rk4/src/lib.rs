@@ -54,6 +54,7 @@ mod setup;
 mod simulation;
 mod state;
 mod steady_spin;
+mod travelling_frame;
 mod work;
 
 pub use account::Energies;
@@ -82,4 +83,5 @@ pub use setup::{Method, Setup, StepLimit};
 pub use simulation::{Observer, Reached, Simulation, Stats};
 pub use state::{MotionState, State};
 pub use steady_spin::{EigenError, SpinMode, SteadySpin};
+pub use travelling_frame::TravellingFrame;
 pub use work::Work;
