@@ -36,7 +36,14 @@ effects! {
     Rotation "rotation" "The body as a whole turns; a turn that is driven does so in any case.",
 }
 
-/// A value for each effect.
+/// A value for each effect, such as whether it is computed.
+///
+/// ```
+/// use frames_rk4::{Effect, EffectMap};
+///
+/// let effects = EffectMap::all().without(Effect::Coriolis);
+/// assert!(effects[Effect::DeformedInertia] && !effects[Effect::Coriolis]);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct EffectMap<T>([T; Effect::ALL.len()]);
 
