@@ -1,6 +1,8 @@
 //! The advice with what is found out after the modes to keep have been chosen.
 
-use crate::row::{Effect, Row};
+use frames_rk4::Effect;
+
+use crate::row::Row;
 use crate::table::Advice;
 
 /// What is found out about the body that a run is made with.
@@ -18,14 +20,15 @@ impl Advice {
     /// The same advice with what has been found since. Of the two reasons for stiffening, the stress of the spin and that
     /// of loads and drives, the one with the larger influence has the row.
     pub fn completed(self, findings: Findings) -> Self {
-        let Findings { deflection, mut stress, lacks_stretch } = findings;
-        let lacks_stretch = lacks_stretch && self.stretch >= self.tolerance;
-        let complete = |row: Row| match row.effect {
-            Effect::GeometricStiffening => stress.take().filter(|s| row.influence <= s.influence).unwrap_or(row),
-            Effect::StaticCorrection if lacks_stretch => Row { why: row.why + LACKS_STRETCH, ..row },
-            _ => row,
-        };
-        Self { rows: self.rows.into_iter().map(complete).collect(), deflection, ..self }
+        let mut advice = Self { deflection: findings.deflection, ..self };
+        let stiffening = &mut advice.effects[Effect::GeometricStiffening];
+        if let Some(stress) = findings.stress.filter(|stress| stiffening.influence <= stress.influence) {
+            *stiffening = stress;
+        }
+        if findings.lacks_stretch && advice.stretch >= advice.tolerance {
+            advice.static_correction.why += LACKS_STRETCH;
+        }
+        advice
     }
 }
 

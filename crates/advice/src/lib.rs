@@ -10,7 +10,7 @@
 //!    [`unsteady`] what steady loads bend without limit.
 //! 2. [`screen`] tells, from the modes alone, whether [`modal::Constants::stress_stiffness`] may matter. If its row is
 //!    on, compute that.
-//! 3. [`advise`] gives the table: a [`Row`] for each [`Effect`], and what each mode is worth. Nothing stiffens where
+//! 3. [`advise`] gives the table: a [`Row`] for each [`Subject`], and what each mode is worth. Nothing stiffens where
 //!    `deformed_inertia` is off: the stiffness is counted as part of it too. What only the reduced body can tell, such as
 //!    the row of [`stress_row`] for the stress of the loads, goes into [`Advice::completed`].
 //! 4. [`Backbone`]s of the modes that may bend the body by more than [`LARGE`] tell what linear strain makes of that, and
@@ -18,9 +18,9 @@
 //! 5. [`Review`] watches the run and names what has broken, and when.
 //!
 //! ```
-//! use advice::{Case, Effect, Review, advise, limits, screen};
+//! use advice::{Case, Review, advise, limits, screen};
 //! use fem_tet10::{Material, Materials, assemble, read_msh};
-//! use frames_rk4::{Effects, Initial};
+//! use frames_rk4::{Effect, EffectMap, Initial};
 //! use modal::{ReducedBody, Solver, Support};
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -45,13 +45,13 @@
 //!     centrifugal_remainders: &[],
 //!     backbones: &[],
 //! };
-//! let effects = Effects::default();
+//! let effects = EffectMap::all();
 //! assert_eq!(limits(&case, &effects)?, None);
 //! if screen(&case, 1e-3)?.on {
 //!     // compute body.stress_stiffness
 //! }
 //! let advice = advise(&case, 1e-3)?;
-//! assert!(advice.is_on(Effect::Rotation) && !advice.is_on(Effect::Translation));
+//! assert!(advice.effects[Effect::Rotation].on && !advice.effects[Effect::Translation].on);
 //! let review = Review::new(case, effects, &advice);
 //! // at each step of the run, by Simulation::advance_watched: review.look(&moment);
 //! // for each observation: review.observe(&observation)?;
@@ -85,7 +85,7 @@ pub use case::{AdviceError, Case, StaticCompliance};
 pub use completed::Findings;
 pub use limits::{BUCKLED, Refusal, SOFTENED, buckling, limits, unsteady};
 pub use review::{Broken, Detuning, Review};
-pub use row::{Effect, Row, Worth};
+pub use row::{Row, Subject, Worth};
 pub use step::{ModeError, StepEstimate, step_estimate};
 pub use stress::{StressField, StressInfluence, StressSource, stress, stress_row};
 pub use table::{Advice, advise, screen};

@@ -1,12 +1,15 @@
 //! Models that are known to be wrong.
 
-use frames_rk4::{DrivenMotion, Effects, LoadedMode, SteadySpin};
+use frames_rk4::{DrivenMotion, Effect, EffectMap, LoadedMode, SteadySpin};
 use nalgebra::Vector3;
 
 use crate::backbone::DETUNED;
 use crate::case::{AdviceError, Case};
 use crate::course::Course;
 use crate::number::Number;
+
+/// Deflection over length at which linear strain ends.
+pub(crate) const LINEAR: f64 = 0.1;
 
 /// Part of the speed at which softening alone would take all stiffness, from which on a model without stiffening is
 /// refused: there, a third of the lowest stiffness across the spin is gone.
@@ -168,13 +171,13 @@ pub(crate) fn refusal(
     case: &Case,
     axis: &Vector3<f64>,
     speed: f64,
-    effects: &Effects,
+    effects: &EffectMap<bool>,
 ) -> Result<Option<Refusal>, AdviceError> {
-    if !(effects.rotation && effects.deformed_inertia) || case.body.flexible() == 0 {
+    if !(effects[Effect::Rotation] && effects[Effect::DeformedInertia]) || case.body.flexible() == 0 {
         return Ok(None);
     }
     let critical = SteadySpin::new(case.body, axis, effects).critical_speed()?;
-    let stiffening = effects.geometric_stiffening && case.body.stress_stiffness.is_some();
+    let stiffening = effects[Effect::GeometricStiffening] && case.body.stress_stiffness.is_some();
     Ok(if speed >= critical {
         Some(Refusal::Unstable { spin: speed, critical, stiffening })
     } else if !stiffening && speed >= SOFTENED * critical {
@@ -190,7 +193,7 @@ pub(crate) fn refusal(
 ///
 /// # Errors
 /// [`AdviceError`]: lists of the wrong length, numbers out of range, and an eigenvalue problem without an answer.
-pub fn limits(case: &Case, effects: &Effects) -> Result<Option<Refusal>, AdviceError> {
+pub fn limits(case: &Case, effects: &EffectMap<bool>) -> Result<Option<Refusal>, AdviceError> {
     case.check(1.0)?;
     let of_spin = match certain_spin(case) {
         Some((axis, speed)) => refusal(case, &axis, speed, effects)?,

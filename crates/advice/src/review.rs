@@ -2,15 +2,13 @@
 
 use std::fmt;
 
-use frames_rk4::{Effects, Moment, Observation};
+use frames_rk4::{Effect, EffectMap, Moment, Observation};
 use nalgebra::Vector3;
 
 use crate::case::{AdviceError, Case};
-use crate::estimate::LINEAR;
-use crate::limits::{Refusal, SOFTENED, deflected, detuned, refusal};
+use crate::limits::{LINEAR, Refusal, SOFTENED, deflected, detuned, refusal};
 use crate::number::Number;
 use crate::relative::relative;
-use crate::row::Effect;
 use crate::table::{Advice, held};
 
 /// An assumption that has broken.
@@ -159,7 +157,7 @@ struct Swing {
 #[derive(Debug, Clone)]
 pub struct Review<'a> {
     case: Case<'a>,
-    effects: Effects,
+    effects: EffectMap<bool>,
     spin: f64,
     deflection: f64,
     tolerance: f64,
@@ -187,13 +185,15 @@ pub struct Review<'a> {
 const MARGIN: f64 = 1.01;
 /// Deflection over length, or angle turned, that is rounding.
 const ROUNDING: f64 = 1e-10;
+/// The effects of turning and bending.
+const OF_TURNING: [Effect; 3] = [Effect::DeformedInertia, Effect::Coriolis, Effect::GeometricStiffening];
 /// Change of a frequency, and periods of phase at the end, from which on they are told.
 const SHIFTED: f64 = 0.01;
 const OUT_OF_PHASE: f64 = 0.02;
 
 impl<'a> Review<'a> {
     /// Of a run with these effects that `advice` was given on. The case has the modes that are simulated.
-    pub fn new(case: Case<'a>, effects: Effects, advice: &Advice) -> Self {
+    pub fn new(case: Case<'a>, effects: EffectMap<bool>, advice: &Advice) -> Self {
         let most = |k: usize| match case.backbones.get(k) {
             Some(Some(backbone)) => backbone.largest_amplitude(),
             _ => f64::INFINITY,
@@ -294,7 +294,7 @@ impl<'a> Review<'a> {
         });
         let between = std::mem::replace(&mut self.fastest, (0.0, Vector3::zeros()));
         for (speed, omega_body) in [between, (observation.omega_body.norm(), observation.omega_body)] {
-            if self.effects.deformed_inertia && !self.case.centrifugal_remainders.is_empty() {
+            if self.effects[Effect::DeformedInertia] && !self.case.centrifugal_remainders.is_empty() {
                 let (held, left) = held(&self.case, &(omega_body * omega_body.transpose()));
                 if left > self.left_out.0 {
                     self.left_out = (left, observation.time, (1.0 - held * held).max(0.0).sqrt());
@@ -364,24 +364,20 @@ impl<'a> Review<'a> {
 
     /// Whether an effect of turning and bending was left out, for which the estimates had to hold.
     fn something_is_off(&self) -> bool {
-        self.turns() && !(self.effects.deformed_inertia && self.effects.coriolis && self.effects.geometric_stiffening)
+        self.turns() && !OF_TURNING.into_iter().all(|effect| self.effects[effect])
     }
 
     /// Whether the body can turn: if not, nothing of turning is left out, whatever is off.
     fn turns(&self) -> bool {
         let is_turned = |drive: &frames_rk4::Drive| matches!(drive.motion, frames_rk4::DrivenMotion::Turn { .. });
-        self.case.drive.is_some_and(is_turned) || self.effects.rotation && !self.case.body.motion.rotations().is_empty()
+        self.case.drive.is_some_and(is_turned)
+            || self.effects[Effect::Rotation] && !self.case.body.motion.rotations().is_empty()
     }
 
-    /// The names of those effects.
+    /// The names of those effects that are off.
     fn off(&self) -> String {
-        let Effects { deformed_inertia, coriolis, geometric_stiffening, .. } = self.effects;
-        let all = [
-            (deformed_inertia, Effect::DeformedInertia),
-            (coriolis, Effect::Coriolis),
-            (geometric_stiffening, Effect::GeometricStiffening),
-        ];
-        all.iter().filter(|(on, _)| !on).map(|(_, effect)| effect.name()).collect::<Vec<_>>().join(" = true, ")
+        let off = OF_TURNING.into_iter().filter(|effect| !self.effects[*effect]);
+        off.map(Effect::name).collect::<Vec<_>>().join(" = true, ")
     }
 
     /// Lowest natural frequency, rad per time. The centrifugal force takes at most Ω² from the stiffness of a mode, so

@@ -5,7 +5,6 @@ use crate::estimate::Estimate;
 use crate::excitation::{Source, Spin};
 use crate::relative::relative;
 use crate::response::{Response, norm};
-use crate::row::Effect;
 
 /// Relative change of the attitude by a change of momentum that is there all the time (in the scale of
 /// [`Spin::momentum`]): of the angle turned up to 1 rad, or of the vibration where the body hardly turns.
@@ -33,9 +32,8 @@ fn separation(case: &Case, spin: &Spin) -> f64 {
 }
 
 pub(crate) fn gravity(case: &Case, sources: &[Source], response: &Response) -> Estimate {
-    let effect = Effect::Gravity;
     if !case.is_gravity.contains(&true) {
-        return Estimate { effect, value: 0.0, influence: 0.0, why: "There is none.".into() };
+        return Estimate { value: 0.0, influence: 0.0, why: "There is none.".into() };
     }
     let sum = |gravity: bool, of: &dyn Fn(&Source) -> f64| -> f64 {
         sources.iter().filter(|s| s.gravity == gravity).map(|s| of(s) * s.impulse()).sum()
@@ -56,7 +54,7 @@ pub(crate) fn gravity(case: &Case, sources: &[Source], response: &Response) -> E
     let why = format!(
         "It makes {moved:.1e} of the translation, {turned:.1e} of the rotation and {bent:.1e} of the deformation."
     );
-    Estimate { effect, value, influence: value.max(bent), why }
+    Estimate { value, influence: value.max(bent), why }
 }
 
 pub(crate) fn translation(case: &Case, sources: &[Source]) -> Estimate {
@@ -70,22 +68,16 @@ pub(crate) fn translation(case: &Case, sources: &[Source]) -> Estimate {
         (false, true) => "What holds the body leaves none.",
         (false, false) => "Nothing ever pushes the body.",
     };
-    Estimate { effect: Effect::Translation, value, influence: value, why: why.into() }
+    Estimate { value, influence: value, why: why.into() }
 }
 
 pub(crate) fn rotation(case: &Case, spin: &Spin, sources: &[Source], response: &Response) -> Estimate {
-    let effect = Effect::Rotation;
     let driven = matches!(case.drive.map(|d| d.motion), Some(frames_rk4::DrivenMotion::Turn { .. }));
     if driven || spin.certain > 0.0 {
-        return Estimate {
-            effect,
-            value: 1.0,
-            influence: 1.0,
-            why: "The body turns from the beginning, or is driven.".into(),
-        };
+        return Estimate { value: 1.0, influence: 1.0, why: "The body turns from the beginning, or is driven.".into() };
     }
     if case.body.rotation_basis.iter().all(|x| *x == 0.0) {
-        return Estimate { effect, value: 0.0, influence: 0.0, why: "What holds the body leaves none.".into() };
+        return Estimate { value: 0.0, influence: 0.0, why: "What holds the body leaves none.".into() };
     }
     // Beside the moments: the arms that a deflection adds, and what vibrations of two modes turn.
     let basis = case.body.rotation_basis.singular_values().max();
@@ -99,5 +91,5 @@ pub(crate) fn rotation(case: &Case, spin: &Spin, sources: &[Source], response: &
     let pushed = sources.iter().map(|s| s.translation * s.impulse()).fold(0.0, f64::max);
     let value = relative(turned, (pushed + response.scale / case.end).max(f64::MIN_POSITIVE));
     let why = if value == 0.0 { "Nothing ever turns the body." } else { "The loads or the vibrations turn the body." };
-    Estimate { effect, value, influence: value, why: why.into() }
+    Estimate { value, influence: value, why: why.into() }
 }

@@ -1,24 +1,12 @@
 //! What a row of the table says.
 
-/// What a run can have or leave out, or goes by.
+use frames_rk4::Effect;
+
+/// What a row of the table is about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Effect {
-    /// The body deforms.
-    Flexibility,
-    /// The modes are damped.
-    Damping,
-    /// Gravity acts.
-    Gravity,
-    /// The inertia follows the deformation.
-    DeformedInertia,
-    /// Turning couples the modes.
-    Coriolis,
-    /// The stress of the spin stiffens the body.
-    GeometricStiffening,
-    /// The body as a whole moves.
-    Translation,
-    /// The body as a whole turns.
-    Rotation,
+pub enum Subject {
+    /// An effect.
+    Effect(Effect),
     /// Static shapes beside the modes.
     StaticCorrection,
     /// Large deflection, which no setting cures: "on" from 10 % of the length, and a warning.
@@ -29,34 +17,11 @@ pub enum Effect {
     Step,
 }
 
-impl Effect {
-    /// All of them.
-    pub const ALL: [Self; 12] = [
-        Self::Flexibility,
-        Self::Damping,
-        Self::Gravity,
-        Self::DeformedInertia,
-        Self::Coriolis,
-        Self::GeometricStiffening,
-        Self::Translation,
-        Self::Rotation,
-        Self::StaticCorrection,
-        Self::Deflection,
-        Self::Foreshortening,
-        Self::Step,
-    ];
-
-    /// Its name, as in a scene.
+impl Subject {
+    /// Its name; that of what a scene can switch is its key there.
     pub fn name(self) -> &'static str {
         match self {
-            Self::Flexibility => "flexibility",
-            Self::Damping => "damping",
-            Self::Gravity => "gravity",
-            Self::DeformedInertia => "deformed_inertia",
-            Self::Coriolis => "coriolis",
-            Self::GeometricStiffening => "geometric_stiffening",
-            Self::Translation => "translation",
-            Self::Rotation => "rotation",
+            Self::Effect(effect) => effect.name(),
             Self::StaticCorrection => "static_correction",
             Self::Deflection => "deflection",
             Self::Foreshortening => "foreshortening",
@@ -67,14 +32,16 @@ impl Effect {
     /// The dimensionless number that governs it, as a formula.
     pub fn formula(self) -> &'static str {
         match self {
-            Self::Flexibility => "|q̈|/|a_rigid|",
-            Self::Damping => "ζ_k ω_k T",
-            Self::Gravity => "m g T / (all impulses)",
-            Self::DeformedInertia => "2c·q/J",
-            Self::Coriolis => "2 Ω G_kl/ω_k",
-            Self::GeometricStiffening => "Ω² K_σ,kk/ω_k²",
-            Self::Translation => "∫F dt + m v > 0",
-            Self::Rotation => "∫M dt + J ω / (all impulses)",
+            Self::Effect(effect) => match effect {
+                Effect::Flexibility => "|q̈|/|a_rigid|",
+                Effect::Damping => "ζ_k ω_k T",
+                Effect::Gravity => "m g T / (all impulses)",
+                Effect::DeformedInertia => "2c·q/J",
+                Effect::Coriolis => "2 Ω G_kl/ω_k",
+                Effect::GeometricStiffening => "Ω² K_σ,kk/ω_k²",
+                Effect::Translation => "∫F dt + m v > 0",
+                Effect::Rotation => "∫M dt + J ω / (all impulses)",
+            },
             Self::StaticCorrection => "1 − Σ(Φ_k·f)²/ω_k² / f·K⁻¹f",
             Self::Deflection => "u/L",
             Self::Foreshortening => "6.2 (u/L)²",
@@ -83,16 +50,14 @@ impl Effect {
     }
 }
 
-/// An effect and what it means for a run.
+/// What a subject means for a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Row {
-    /// The effect.
-    pub effect: Effect,
-    /// The number of [`Effect::formula`].
+    /// The number of [`Subject::formula`].
     pub value: f64,
     /// Relative influence on the answer, bounded above; at most 1.
     pub influence: f64,
-    /// Whether that reaches the tolerance ([`Effect::Deflection`]: whether the deflection reaches 10 % of the length).
+    /// Whether that reaches the tolerance ([`Subject::Deflection`]: whether the deflection reaches 10 % of the length).
     pub on: bool,
     /// One sentence.
     pub why: String,

@@ -7,7 +7,7 @@
 use frames_rk4::{Observation, Reached, Rows, Setup, SetupError, Simulation, StepControl, StepError};
 
 use crate::relative::relative;
-use crate::row::{Effect, Row};
+use crate::row::Row;
 
 /// What the comparison may cost, in products of the modal matrices: some tenths of a second.
 const PRODUCTS: f64 = 6e8;
@@ -109,7 +109,6 @@ impl StepEstimate {
     pub fn row(&self, tolerance: f64) -> Row {
         let influence = relative(self.largest(), 1.0);
         Row {
-            effect: Effect::Step,
             value: self.value,
             influence,
             on: influence >= tolerance || influence.is_nan(),

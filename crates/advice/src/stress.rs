@@ -4,7 +4,7 @@ use faer::MatRef;
 
 use crate::case::{AdviceError, Case};
 use crate::course::Course;
-use crate::row::{Effect, Row};
+use crate::row::Row;
 
 /// A field of forces that stresses the body.
 #[derive(Debug, Clone, Copy)]
@@ -91,11 +91,11 @@ fn amplitude(case: &Case, source: StressSource) -> Amplitude {
     }
 }
 
-/// The row of [`Effect::GeometricStiffening`] of the field with the largest influence; none without fields.
+/// The row of [`frames_rk4::Effect::GeometricStiffening`] of the field with the largest influence; none without fields.
 pub fn stress_row(fields: &[StressField<'_>], influences: &[StressInfluence], tolerance: f64) -> Option<Row> {
     let larger = |a: &(_, &StressInfluence), b: &(_, &StressInfluence)| a.1.influence.total_cmp(&b.1.influence);
     let (field, &StressInfluence { value, influence }) = fields.iter().zip(influences).max_by(larger)?;
     let (name, shift) = (field.name, 100.0 * 0.5 * value);
     let why = format!("The stress of {name} moves the frequency of a mode by up to {shift:.2e} %.");
-    Some(Row { effect: Effect::GeometricStiffening, value, influence, on: influence >= tolerance, why })
+    Some(Row { value, influence, on: influence >= tolerance, why })
 }

@@ -1,6 +1,7 @@
-//! The table: a row an effect.
+//! The table: a row for each effect, and for what else a run goes by.
 
 use faer::Mat;
+use frames_rk4::{Effect, EffectMap};
 use modal::ReducedBody;
 use nalgebra::Matrix3;
 
@@ -8,18 +9,24 @@ use crate::backbone::LARGE;
 use crate::case::{AdviceError, Case};
 use crate::estimate::Estimate;
 use crate::excitation::{Source, Spin};
-use crate::limits::{Refusal, deflected};
+use crate::limits::{LINEAR, Refusal, deflected};
 use crate::number::Number;
 use crate::relative::relative;
 use crate::response::{Response, norm};
-use crate::row::{Effect, Row, Worth};
+use crate::row::{Row, Subject, Worth};
 use crate::{rigid, tensor};
 
 /// What to expect of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Advice {
-    /// A row for each effect but [`Effect::Step`], in the order of [`Effect::ALL`].
-    pub rows: Vec<Row>,
+    /// The row of each effect.
+    pub effects: EffectMap<Row>,
+    /// The row of [`Subject::StaticCorrection`].
+    pub static_correction: Row,
+    /// The row of [`Subject::Deflection`].
+    pub large_deflection: Row,
+    /// The row of [`Subject::Foreshortening`].
+    pub foreshortening: Row,
     /// What each mode is worth (nf).
     pub modes: Vec<Worth>,
     /// How many of the modes to keep: those after them have shares that sum to less than the tolerance.
@@ -39,19 +46,19 @@ pub struct Advice {
 }
 
 impl Advice {
-    /// The row of an effect.
-    pub fn row(&self, effect: Effect) -> Option<&Row> {
-        self.rows.iter().find(|row| row.effect == effect)
+    /// All rows, those of the effects first.
+    pub fn rows(&self) -> impl Iterator<Item = (Subject, &Row)> {
+        let others = [
+            (Subject::StaticCorrection, &self.static_correction),
+            (Subject::Deflection, &self.large_deflection),
+            (Subject::Foreshortening, &self.foreshortening),
+        ];
+        Effect::ALL.into_iter().map(|effect| (Subject::Effect(effect), &self.effects[effect])).chain(others)
     }
 
     /// Why the model is known to be wrong by what the loads do to it, if it is.
     pub fn refusal(&self) -> Option<Refusal> {
         deflected(self.certain_deflection)
-    }
-
-    /// Whether an effect is on.
-    pub fn is_on(&self, effect: Effect) -> bool {
-        self.row(effect).is_some_and(|row| row.on)
     }
 }
 
@@ -112,22 +119,21 @@ pub fn advise(case: &Case, tolerance: f64) -> Result<Advice, AdviceError> {
     let keep = shares.len() - negligible.count();
     let stretch = stretch(case, &spin, &response);
     let deflection = response.displacement.iter().zip(case.peaks).map(|(q, a)| q * a).sum::<f64>() / case.length;
-    let estimates = [
-        flexibility(&spin, &sources, &response, deflection),
-        damping(case, &response),
-        rigid::gravity(case, &sources, &response),
-        deformed_inertia(case, &spin, &response, &second, stiffness.as_ref(), stretch),
-        coriolis(case, &spin, &response, &coupling),
-        stiffening(case, &spin, &response, stiffness.as_ref()),
-        rigid::translation(case, &sources),
-        rigid::rotation(case, &spin, &sources, &response),
-        static_correction(case, &spin, &sources, keep, stretch),
-        bending(case, &response, deflection),
-        foreshortening(deflection),
-    ];
-    let rows = estimates.into_iter().map(|estimate| estimate.row(tolerance)).collect();
+    let estimate = |effect| match effect {
+        Effect::Flexibility => flexibility(&spin, &sources, &response, deflection),
+        Effect::Damping => damping(case, &response),
+        Effect::Gravity => rigid::gravity(case, &sources, &response),
+        Effect::DeformedInertia => deformed_inertia(case, &spin, &response, &second, stiffness.as_ref(), stretch),
+        Effect::Coriolis => coriolis(case, &spin, &response, &coupling),
+        Effect::GeometricStiffening => stiffening(case, &spin, &response, stiffness.as_ref()),
+        Effect::Translation => rigid::translation(case, &sources),
+        Effect::Rotation => rigid::rotation(case, &spin, &sources, &response),
+    };
     Ok(Advice {
-        rows,
+        effects: EffectMap::from_fn(|effect| estimate(effect).row(tolerance)),
+        static_correction: static_correction(case, &spin, &sources, keep, stretch).row(tolerance),
+        large_deflection: bending(case, &response, deflection),
+        foreshortening: foreshortening(deflection).row(tolerance),
         modes,
         keep,
         more_modes: keep > 0 && keep == case.body.flexible(),
@@ -158,7 +164,7 @@ fn flexibility(spin: &Spin, sources: &[Source], response: &Response, deflection:
             ),
         )
     };
-    Estimate { effect: Effect::Flexibility, value, influence, why }
+    Estimate { value, influence, why }
 }
 
 fn damping(case: &Case, response: &Response) -> Estimate {
@@ -175,7 +181,7 @@ fn damping(case: &Case, response: &Response) -> Estimate {
     } else {
         format!("Vibration decays by up to e^-{value:.1e} in the run.")
     };
-    Estimate { effect: Effect::Damping, value, influence, why }
+    Estimate { value, influence, why }
 }
 
 fn deformed_inertia(
@@ -209,7 +215,7 @@ fn deformed_inertia(
     // The centrifugal field stretches in ways that the modes do not carry, too, where that is known.
     let stretch = if case.centrifugal_remainders.is_empty() { 0.0 } else { stretch };
     let influence = if spin.largest == 0.0 { 0.0 } else { attitude.max(modes).max(stretch) };
-    Estimate { effect: Effect::DeformedInertia, value, influence, why }
+    Estimate { value, influence, why }
 }
 
 fn coriolis(case: &Case, spin: &Spin, response: &Response, g: &Mat<f64>) -> Estimate {
@@ -231,7 +237,7 @@ fn coriolis(case: &Case, spin: &Spin, response: &Response, g: &Mat<f64>) -> Esti
             "Turning couples modes by up to {value:.1e}: {modes:.1e} of the vibration, and what it returns {attitude:.1e} of the rotation."
         )
     };
-    Estimate { effect: Effect::Coriolis, value, influence, why }
+    Estimate { value, influence, why }
 }
 
 fn stiffening(case: &Case, spin: &Spin, response: &Response, stiffness: Option<&Mat<f64>>) -> Estimate {
@@ -261,7 +267,7 @@ fn stiffening(case: &Case, spin: &Spin, response: &Response, stiffness: Option<&
         }
         (None, _) => "There are no modes.".into(),
     };
-    Estimate { effect: Effect::GeometricStiffening, value, influence, why }
+    Estimate { value, influence, why }
 }
 
 /// Influence of what the modes leave out of the static answer to the spin; by [`left_out_at_most`] where it is not known.
@@ -344,11 +350,11 @@ fn static_correction(case: &Case, spin: &Spin, sources: &[Source], keep: usize, 
     } else {
         "The whole static answer to the loads is not known.".into()
     };
-    Estimate { effect: Effect::StaticCorrection, value, influence, why }
+    Estimate { value, influence, why }
 }
 
 /// The deflection, and what linear strain makes of the mode that it puts out most.
-fn bending(case: &Case, response: &Response, deflection: f64) -> Estimate {
+fn bending(case: &Case, response: &Response, deflection: f64) -> Row {
     let of = |(k, backbone): (usize, &Option<crate::Backbone>)| {
         let (backbone, amplitude) = (backbone.as_ref()?, *response.displacement.get(k)?);
         let periods = case.body.circular_frequencies[k] * response.memory[k] / std::f64::consts::TAU;
@@ -371,13 +377,12 @@ fn bending(case: &Case, response: &Response, deflection: f64) -> Estimate {
         ),
     };
     let influence = influence.max(relative(SHORTENING * deflection * deflection, 1.0));
-    Estimate { effect: Effect::Deflection, value: deflection, influence, why }
+    Row { value: deflection, influence, on: deflection >= LINEAR, why }
 }
 
 fn foreshortening(deflection: f64) -> Estimate {
     let value = SHORTENING * deflection * deflection;
     Estimate {
-        effect: Effect::Foreshortening,
         value,
         influence: relative(value, 1.0),
         why: format!(

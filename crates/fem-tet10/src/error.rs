@@ -4,14 +4,14 @@ use std::fmt;
 
 /// Where in a mesh file something was found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Place {
+pub enum FilePosition {
     /// A line of the text, counted from 1.
     Line(usize),
     /// An offset in bytes: the binary parts of a file have no lines.
     Byte(usize),
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for FilePosition {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Line(line) => write!(f, "line {line}"),
@@ -55,7 +55,7 @@ pub enum MeshError {
         /// The mesh.
         source_name: String,
         /// Line or byte.
-        place: Place,
+        place: FilePosition,
         /// The section of the file, such as `$Nodes`.
         section: String,
         /// What the format asks for.
@@ -71,7 +71,7 @@ pub enum MeshError {
         /// The mesh.
         source_name: String,
         /// Line or byte.
-        place: Place,
+        place: FilePosition,
         /// `$Nodes` or `$Elements`.
         section: String,
         /// "nodes" or "elements".
@@ -362,7 +362,8 @@ impl MeshError {
     /// Line in its file, from 1, where the fault is in one.
     pub fn line(&self) -> Option<usize> {
         match self {
-            Self::Syntax { place: Place::Line(line), .. } | Self::Total { place: Place::Line(line), .. } => Some(*line),
+            Self::Syntax { place: FilePosition::Line(line), .. }
+            | Self::Total { place: FilePosition::Line(line), .. } => Some(*line),
             _ => None,
         }
     }

@@ -41,7 +41,7 @@ mod surface;
 mod tags;
 
 pub use assembly::{Matrices, assemble};
-pub use error::{AssemblyError, MeshError, Place};
+pub use error::{AssemblyError, FilePosition, MeshError};
 pub use geometric_stiffness::reduced_geometric_stiffness;
 pub use locate::Location;
 pub use lumped::{LumpedInertia, centroid_lumped_inertia};

@@ -8,7 +8,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use flexframe::frames_rk4::{ConservativeBody, Reached, Rows, StepControl};
-use flexframe::scene::{Choice, Effects, Model, Scene};
+use flexframe::scene::{Choice, Effect, Model, Scene};
 
 const STEP: f64 = 1e-4;
 const RUNS: usize = 15;
@@ -19,22 +19,22 @@ fn main() {
         Scene::read(Path::new(env!("CARGO_MANIFEST_DIR")).join(file)).expect("the scene is there")
     };
     let full = read("full");
-    let without = |change: fn(&mut Effects)| {
+    let without = |effect: Effect| {
         let mut scene = full.clone();
-        change(&mut scene.effects);
+        scene.effects.choices[effect] = Choice::Off;
         scene
     };
     let mut uncorrected = full.clone();
     uncorrected.modes.static_correction = Choice::Off;
     let rows = [
         ("everything", full.clone()),
-        ("without damping", without(|effects| effects.damping = Choice::Off)),
-        ("without gravity", without(|effects| effects.gravity = Choice::Off)),
-        ("without deformed inertia", without(|effects| effects.deformed_inertia = Choice::Off)),
-        ("without Coriolis", without(|effects| effects.coriolis = Choice::Off)),
-        ("without geometric stiffening", without(|effects| effects.geometric_stiffening = Choice::Off)),
+        ("without damping", without(Effect::Damping)),
+        ("without gravity", without(Effect::Gravity)),
+        ("without deformed inertia", without(Effect::DeformedInertia)),
+        ("without Coriolis", without(Effect::Coriolis)),
+        ("without geometric stiffening", without(Effect::GeometricStiffening)),
         ("without static correction", uncorrected),
-        ("without translation", without(|effects| effects.translation = Choice::Off)),
+        ("without translation", without(Effect::Translation)),
         ("without rotation", read("translation")),
         ("without flexibility", read("rigid")),
     ];

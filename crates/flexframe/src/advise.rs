@@ -4,11 +4,11 @@ mod verify;
 
 use std::fmt;
 
-use advice::{Effect, Row};
+use advice::{Row, Subject};
 use scene::{BuildProgress, Method, Model, Scene};
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
-use crate::effects::{TOGGLED, is_on};
+use crate::effects::{is_on, is_switch};
 use crate::json;
 use crate::modes::frequency_unit;
 use crate::run::RunError;
@@ -39,11 +39,12 @@ pub struct AdviseReport {
     pub refusal: Option<String>,
 }
 
-/// What is to be said of an effect.
+/// What is to be said of an effect, or of what else a run goes by.
 #[derive(Debug, Clone, Serialize)]
 pub struct EffectRow {
-    /// Its name in the scene.
-    pub effect: &'static str,
+    /// What it is about; as JSON its name.
+    #[serde(rename = "effect", serialize_with = "name")]
+    pub subject: Subject,
     /// The number that governs it.
     pub formula: &'static str,
     /// That number in this scene; infinite where there is nothing to compare with.
@@ -60,6 +61,10 @@ pub struct EffectRow {
     pub why: String,
     /// The influence found by running the scene with the effect switched.
     pub real: Option<Real>,
+}
+
+fn name<S: Serializer>(subject: &Subject, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(subject.name())
 }
 
 /// What a mode is worth.
@@ -101,13 +106,13 @@ pub fn advise(scene: &Scene, verify: bool, mut progress: impl FnMut(AdviseProgre
     let scene = &scene;
     let model = Model::build(scene, |p| progress(AdviseProgress::Build(p)))?;
     let step = step_row(scene, &model);
-    let rows = model.advice.rows.iter().chain([&step]).map(|row| EffectRow {
-        effect: row.effect.name(),
-        formula: row.effect.formula(),
+    let rows = model.advice.rows().chain([(Subject::Step, &step)]).map(|(subject, row)| EffectRow {
+        subject,
+        formula: subject.formula(),
         value: row.value,
         influence: row.influence,
         advised: row.on,
-        on: is_on(scene, &model, row.effect),
+        on: is_on(scene, &model, subject),
         why: row.why.clone(),
         real: None,
     });
@@ -129,17 +134,12 @@ pub fn advise(scene: &Scene, verify: bool, mut progress: impl FnMut(AdviseProgre
         refusal: model.refusal.map(|refusal| refusal.to_string()),
     };
     if verify {
-        let switched: Vec<Effect> =
-            TOGGLED.into_iter().filter(|effect| is_on(scene, &model, *effect).is_some()).collect();
-        let total = switched.len() as u64 + 1;
+        let total = report.rows.iter().filter(|row| row.on.is_some()).count() as u64 + 1;
         progress(AdviseProgress::Verifying { done: 0, total });
         let base = verify::Base::new(scene, &model)?;
-        for (i, effect) in switched.into_iter().enumerate() {
+        for (i, row) in report.rows.iter_mut().filter(|row| row.on.is_some()).enumerate() {
             progress(AdviseProgress::Verifying { done: i as u64 + 1, total });
-            let real = base.influence(effect);
-            if let Some(row) = report.rows.iter_mut().find(|row| row.effect == effect.name()) {
-                row.real = Some(real);
-            }
+            row.real = Some(base.influence(row.subject));
         }
     }
     Ok(report)
@@ -152,11 +152,11 @@ fn step_row(scene: &Scene, model: &Model) -> Row {
         Ok(Some(estimate)) => estimate.row(tolerance),
         Ok(None) => {
             let why = "The step follows from the tolerance.".into();
-            Row { effect: Effect::Step, value: 0.0, influence: 0.0, on: false, why }
+            Row { value: 0.0, influence: 0.0, on: false, why }
         }
         Err(error) => {
             let why = format!("No run can start: {error}.");
-            Row { effect: Effect::Step, value: 0.0, influence: 1.0, on: true, why }
+            Row { value: 0.0, influence: 1.0, on: true, why }
         }
     }
 }
@@ -169,7 +169,7 @@ impl EffectRow {
             (Some(true), _) => "on",
             (Some(false), true) => "off, may matter",
             (Some(false), false) => "off",
-            (None, _) if TOGGLED.iter().any(|effect| effect.name() == self.effect) => "-",
+            (None, _) if is_switch(self.subject) => "-",
             (None, true) => "may matter",
             (None, false) => "fine",
         }
@@ -186,7 +186,7 @@ impl fmt::Display for AdviseReport {
         let real = if verified { "      real" } else { "" };
         writeln!(f, "\n  {:<21} {:<29} {:>9} {:>10}{real}  verdict", "effect", "number", "value", "influence")?;
         for row in &self.rows {
-            write!(f, "  {:<21} {:<29} {:>9.1e} {:>10.1e}", row.effect, row.formula, row.value, row.influence)?;
+            write!(f, "  {:<21} {:<29} {:>9.1e} {:>10.1e}", row.subject.name(), row.formula, row.value, row.influence)?;
             if verified {
                 match &row.real {
                     Some(Real::Difference(real)) => write!(f, " {real:>9.1e}")?,
@@ -202,7 +202,7 @@ impl fmt::Display for AdviseReport {
         )?;
         writeln!(f, "  is on from {:.0e} (effects.tolerance), or as the scene says.\n", self.tolerance)?;
         for row in &self.rows {
-            writeln!(f, "  {:<21} {}", row.effect, row.why)?;
+            writeln!(f, "  {:<21} {}", row.subject.name(), row.why)?;
             if let Some(Real::Fails(reason)) = &row.real {
                 writeln!(f, "  {:<21} Switched: {reason}", "")?;
             }

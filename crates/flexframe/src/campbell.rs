@@ -15,7 +15,7 @@ mod table;
 
 use std::path::Path;
 
-use frames_rk4::SteadySpin;
+use frames_rk4::{Effect, SteadySpin};
 use nalgebra::Vector3;
 use scene::{BuildError, BuildProgress, Choice, Flexible, Model, Scene};
 
@@ -101,10 +101,9 @@ pub fn campbell(
     scene.loads.clear();
     scene.modes.flexible = Flexible::Count(scene.modes.flexible.most());
     // The spin is given here, whatever the scene's own motion would call for.
-    let effects = &mut scene.effects;
-    for choice in [&mut effects.deformed_inertia, &mut effects.coriolis, &mut effects.geometric_stiffening] {
-        if *choice == Choice::Auto {
-            *choice = Choice::On;
+    for effect in [Effect::DeformedInertia, Effect::Coriolis, Effect::GeometricStiffening] {
+        if scene.effects.choices[effect] == Choice::Auto {
+            scene.effects.choices[effect] = Choice::On;
         }
     }
     let model = Model::build(&scene, |p| progress(CampbellProgress::Build(p)))?;
@@ -125,9 +124,9 @@ pub fn campbell(
         axis: axis.into(),
         origin: model.body.origin.into(),
         effects: SpinEffects {
-            coriolis: effects.coriolis,
-            softening: effects.deformed_inertia,
-            stiffening: effects.geometric_stiffening,
+            coriolis: effects[Effect::Coriolis],
+            softening: effects[Effect::DeformedInertia],
+            stiffening: effects[Effect::GeometricStiffening],
         },
         stable_below: critical_speed.is_finite().then_some(critical_speed),
         critical_speeds: critical::find(&spin, &branches, &settings.orders).map_err(failed)?,

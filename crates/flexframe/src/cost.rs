@@ -42,7 +42,7 @@ pub use settings::CostSettings;
 pub use crate::run::RunFailure;
 
 use answer::refine;
-use case::Case;
+use case::PreparedScene;
 use ladder::{Judge, climb};
 use reference::{Reference, converge};
 
@@ -79,7 +79,7 @@ pub fn price_list(
     // Static shapes stand behind the modes, and would be cut off with them.
     richest.modes.static_correction = Choice::Off;
     let richest = Model::build(&richest, |p| progress(CostProgress::Build(p)))?;
-    let case = Case::new(scene, &model);
+    let case = PreparedScene::new(scene, &model);
 
     let ladders: Vec<(Method, bool)> = Method::ALL
         .into_iter()

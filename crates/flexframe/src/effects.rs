@@ -1,58 +1,48 @@
 //! Which effects a run has.
 
-use advice::Effect;
-use frames_rk4::DrivenMotion;
+use advice::Subject;
+use frames_rk4::{DrivenMotion, Effect};
 use scene::{Load, Model, Scene};
 
-/// The effects that can be on or off in a run of the conservative form, and whether they are; none for the paper's
-/// formulation, which has its own.
+/// The effects and static shapes that can be on or off in a run of the conservative form, and whether they are; none for
+/// the paper's formulation, which has its own.
 pub(crate) fn computed(scene: &Scene, model: &Model) -> Vec<(&'static str, bool)> {
     if scene.time.method.is_of_paper() {
         return Vec::new();
     }
-    let scene_has = |effect| is_on(scene, model, effect).map(|on| (effect.name(), on));
-    TOGGLED.into_iter().filter_map(scene_has).collect()
+    let subjects = model.advice.rows().map(|(subject, _)| subject);
+    subjects.filter_map(|subject| Some((subject.name(), is_on(scene, model, subject)?))).collect()
 }
 
-/// The effects that a scene can switch.
-pub(crate) const TOGGLED: [Effect; 9] = [
-    Effect::Flexibility,
-    Effect::Damping,
-    Effect::Gravity,
-    Effect::DeformedInertia,
-    Effect::Coriolis,
-    Effect::GeometricStiffening,
-    Effect::Translation,
-    Effect::Rotation,
-    Effect::StaticCorrection,
-];
+/// Whether a scene can switch what a row is about.
+pub(crate) fn is_switch(subject: Subject) -> bool {
+    matches!(subject, Subject::Effect(_) | Subject::StaticCorrection)
+}
 
-/// Whether an effect is in a model; `None` where the scene has nothing that it could act on.
-pub(crate) fn is_on(scene: &Scene, model: &Model, effect: Effect) -> Option<bool> {
-    let effects = &model.physics.effects;
-    let flexible = model.body.flexible() > 0;
-    let of_modes = |on: bool| flexible.then_some(on);
-    match effect {
-        Effect::Flexibility => Some(flexible),
-        Effect::Damping => {
-            let damped = |k: usize| scene.modes.damping.ratio(k, model.body.circular_frequencies[k]) > 0.0;
-            (0..model.body.flexible()).any(damped).then(|| model.damping_ratios().iter().any(|zeta| *zeta > 0.0))
+/// Whether a model has what a row is about; `None` where that cannot be switched, or the scene has nothing that it could
+/// act on.
+pub(crate) fn is_on(scene: &Scene, model: &Model, subject: Subject) -> Option<bool> {
+    let flexible = model.body.flexible();
+    match subject {
+        Subject::Effect(effect) => {
+            let by_stress = effect == Effect::GeometricStiffening && model.is_stressed();
+            let on = model.physics.effects[effect] || by_stress;
+            let can_act = match effect {
+                Effect::Flexibility => true,
+                Effect::Damping => {
+                    let damped = |k: usize| scene.modes.damping.ratio(k, model.body.circular_frequencies[k]) > 0.0;
+                    (0..flexible).any(damped)
+                }
+                Effect::Gravity => scene.loads.iter().any(|load| matches!(load, Load::Gravity(_))),
+                Effect::DeformedInertia | Effect::Coriolis | Effect::GeometricStiffening => flexible > 0,
+                // What is driven cannot be switched.
+                Effect::Translation => !drives(model, |m| matches!(m, DrivenMotion::Slide { .. })),
+                Effect::Rotation => !drives(model, |m| matches!(m, DrivenMotion::Turn { .. })),
+            };
+            can_act.then_some(on)
         }
-        Effect::Gravity => {
-            let falls = |load: &&Load| matches!(load, Load::Gravity(_));
-            let others = scene.loads.len() - scene.loads.iter().filter(falls).count();
-            (scene.loads.len() > others).then(|| model.loads().len() > others)
-        }
-        Effect::DeformedInertia => of_modes(effects.deformed_inertia),
-        Effect::Coriolis => of_modes(effects.coriolis),
-        Effect::GeometricStiffening => of_modes(effects.geometric_stiffening || model.is_stressed()),
-        // What is driven cannot be switched.
-        Effect::Translation => {
-            (!drives(model, |m| matches!(m, DrivenMotion::Slide { .. }))).then_some(effects.translation)
-        }
-        Effect::Rotation => (!drives(model, |m| matches!(m, DrivenMotion::Turn { .. }))).then_some(effects.rotation),
-        Effect::StaticCorrection => of_modes(model.static_shapes() > 0),
-        Effect::Deflection | Effect::Foreshortening | Effect::Step => None,
+        Subject::StaticCorrection => (flexible > 0).then(|| model.static_shapes() > 0),
+        Subject::Deflection | Subject::Foreshortening | Subject::Step => None,
     }
 }
 

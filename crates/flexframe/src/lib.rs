@@ -36,3 +36,4 @@ pub mod report;
 pub mod run;
 mod scene_file;
 pub mod surface;
+pub mod write_error;

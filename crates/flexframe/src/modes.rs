@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use frames_rk4::Effect;
 use scene::{Body, BuildError, BuildProgress, Choice, Flexible, Meshed, Model, Scene, SceneError};
 use serde::Serialize;
 
@@ -31,8 +32,8 @@ pub fn modes(scene: &Scene, progress: impl FnMut(BuildProgress)) -> Result<(Mode
     let mut scene = scene.clone();
     scene.modes.flexible = Flexible::Count(scene.modes.flexible.most());
     scene.modes.static_correction = Choice::Off;
-    scene.effects.damping = Choice::On;
-    scene.effects.geometric_stiffening = Choice::Off;
+    scene.effects.choices[Effect::Damping] = Choice::On;
+    scene.effects.choices[Effect::GeometricStiffening] = Choice::Off;
     let model = Model::build(&scene, progress)?;
     let report = ModesReport {
         title: scene.title.clone(),
@@ -54,7 +55,7 @@ pub(crate) fn require_flexible<'a>(scene: &Scene, model: &'a Model) -> Result<&'
     }
     let (key, cure) = match scene.body {
         Body::Rigid(_) => ("body.rigid", "give the body a mesh, and `flexible` in [modes]"),
-        Body::Meshed(_) if scene.effects.flexibility == Choice::Off => {
+        Body::Meshed(_) if scene.effects.choices[Effect::Flexibility] == Choice::Off => {
             ("effects.flexibility", "remove it, so that the body deforms")
         }
         Body::Meshed(_) => ("modes.flexible", "keep flexible modes"),

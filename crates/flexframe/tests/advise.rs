@@ -1,7 +1,7 @@
 //! `flexframe advise`: what it calls negligible is, on scenes of each kind.
 
 use flexframe::advise::{AdviseReport, ModeRow, Real, advise};
-use flexframe::scene::{Choice, Scene};
+use flexframe::scene::{Choice, Effect, Scene};
 
 fn example(name: &str) -> Scene {
     Scene::read(format!("{}/../../examples/{name}.toml", env!("CARGO_MANIFEST_DIR"))).unwrap()
@@ -11,14 +11,14 @@ fn example(name: &str) -> Scene {
 fn verified(scene: &Scene) -> AdviseReport {
     let report = advise(scene, true, |_| ()).unwrap();
     for row in &report.rows {
-        let name = format!("{}: {}", report.title, row.effect);
+        let name = format!("{}: {}", report.title, row.subject.name());
         match &row.real {
             Some(Real::Difference(real)) => {
                 assert!(row.advised || *real < report.tolerance, "{name}: estimated {}, real {real}", row.influence);
             }
             // Without stiffening a fast spin is refused.
             Some(Real::Fails(why)) => {
-                assert!(row.effect == "geometric_stiffening" && why.contains("definiteness"), "{name}: {why}");
+                assert!(row.subject.name() == "geometric_stiffening" && why.contains("definiteness"), "{name}: {why}");
             }
             None => {}
         }
@@ -27,7 +27,7 @@ fn verified(scene: &Scene) -> AdviseReport {
 }
 
 fn real(report: &AdviseReport, effect: &str) -> f64 {
-    match report.rows.iter().find(|row| row.effect == effect).and_then(|row| row.real.clone()) {
+    match report.rows.iter().find(|row| row.subject.name() == effect).and_then(|row| row.real.clone()) {
         Some(Real::Difference(real)) => real,
         other => panic!("{effect}: {other:?}"),
     }
@@ -46,7 +46,7 @@ fn of_a_driven_body() {
     let mut scene = example("wu_haug");
     scene.time.end = 4.0;
     let report = verified(&scene);
-    let rows = |effect: &str| report.rows.iter().find(|row| row.effect == effect).unwrap();
+    let rows = |effect: &str| report.rows.iter().find(|row| row.subject.name() == effect).unwrap();
     assert!(real(&report, "geometric_stiffening") > 1e-3 && rows("geometric_stiffening").on == Some(true));
     // The drive cannot be switched.
     assert!(rows("rotation").on.is_none() && rows("translation").on == Some(false));
@@ -56,7 +56,7 @@ fn of_a_driven_body() {
 fn of_a_held_body_under_gravity() {
     let mut scene = example("bar/pendulum");
     scene.time.end = 0.2;
-    scene.effects.flexibility = Choice::Auto;
+    scene.effects.choices[Effect::Flexibility] = Choice::Auto;
     assert!(real(&verified(&scene), "gravity") >= 1.0);
 }
 
@@ -66,9 +66,9 @@ fn the_plate_at_10_rad_s_is_stiffened_by_three_per_cent() {
     let mut scene = example("accuracy/tumbling");
     scene.initial.angular_velocity = [0.0, 10.0, 0.0];
     scene.initial.modal_velocity = vec![1.0];
-    scene.effects.geometric_stiffening = Choice::Auto;
+    scene.effects.choices[Effect::GeometricStiffening] = Choice::Auto;
     let report = advise(&scene, false, |_| ()).unwrap();
-    let row = report.rows.iter().find(|row| row.effect == "geometric_stiffening").unwrap();
+    let row = report.rows.iter().find(|row| row.subject.name() == "geometric_stiffening").unwrap();
     let ratio = (10.0 / (std::f64::consts::TAU * report.modes[0].frequency)).powi(2);
     let shift = (1.0 + row.value).sqrt() - 1.0;
     // Measured: 0.42 % and 3.5 %.

@@ -1,7 +1,7 @@
 //! Beams on a driven hinge that spin faster than they bend: examples/spin_up.toml and examples/wu_haug.toml.
 
 use flexframe::advice::Refusal;
-use flexframe::scene::{Choice, Constraint, Effects, Model, Scene};
+use flexframe::scene::{Choice, Constraint, Effect, Effects, Model, Scene};
 use nalgebra::Vector3;
 
 fn scene(name: &str) -> Scene {
@@ -46,7 +46,7 @@ fn the_beam_of_simo_and_vu_quoc_lags_and_grows_longer() {
 #[test]
 fn the_beam_of_simo_and_vu_quoc_is_refused_without_stiffening() {
     let mut scene = scene("spin_up");
-    scene.effects.geometric_stiffening = Choice::Off;
+    scene.effects.choices[Effect::GeometricStiffening] = Choice::Off;
     let model = Model::build(&scene, |_| ()).unwrap();
     let Err(error) = model.start(&scene) else { panic!("it starts") };
     let message = error.to_string();
@@ -65,7 +65,7 @@ fn the_beam_of_wu_and_haug_lags_as_beam_theory_says() {
         assert!((time - at).abs() < 0.03 && (lag / expected - 1.0).abs() < 1e-3, "{speed}: {lag} at {time}");
     }
     // Without stiffening all of them are refused: half of the stiffness is gone at 2 rad/s, all of it at 2.911.
-    scene.effects.geometric_stiffening = Choice::Off;
+    scene.effects.choices[Effect::GeometricStiffening] = Choice::Off;
     for speed in [2.0, 4.0, 6.0] {
         set_speed(&mut scene, speed);
         let model = Model::build(&scene, |_| ()).unwrap();

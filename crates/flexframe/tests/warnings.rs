@@ -150,7 +150,7 @@ fn of_modes_that_long_steps_get_wrong_though_the_energy_is_right_there_is_one() 
         scene.output.rows = flexframe::scene::Rows::EverySteps(1);
         let table = advise(&scene, false, |_| ()).unwrap();
         let report = run(&scene, tempfile::tempdir().unwrap().path(), &RunSettings::default(), |_| ()).unwrap().1;
-        (table.rows.into_iter().find(|row| row.effect == "step").unwrap(), report)
+        (table.rows.into_iter().find(|row| row.subject.name() == "step").unwrap(), report)
     };
     let (row, report) = with_step(2.5e-3);
     assert!(report.balances.energy < 1e-5, "{:e}", report.balances.energy);

@@ -38,6 +38,7 @@ use rigid_kin::{Attitude, f_inverse, transformation_matrix};
 use crate::account::Energies;
 use crate::checkpoint::StateCoder;
 use crate::column_major::{columns, dot, multiply, multiply_and_subtract, multiply_top};
+use crate::effect::{Effect, EffectMap};
 use crate::error::{RateError, SetupError, StepError};
 use crate::history::History;
 use crate::initial::Initial;
@@ -45,7 +46,7 @@ use crate::load::{Applied, Coordinates, Kinematics, SharedLoad};
 use crate::manifold::{Manifold, Place};
 use crate::motion::CenterOfMass;
 use crate::own_coupling::own_coupling;
-use crate::physics::{Drive, DrivenMotion, Effects, Physics};
+use crate::physics::{Drive, DrivenMotion, Physics};
 use crate::state::MotionState;
 
 /// What moves slowly, beside the modes: see [`part`].
@@ -327,10 +328,10 @@ impl ConservativeBody {
             1 => vec![(0, 0)],
             _ => Vec::new(),
         };
-        let pairs = if effects.deformed_inertia && nf > 0 { pairs } else { Vec::new() };
-        let g_rows = if effects.coriolis { axes.len() * nf } else { 0 };
-        let s_rows = if effects.coriolis || turn_driven { axes.len() * nf } else { 0 };
-        let stiffness = body.stress_stiffness.as_ref().filter(|_| effects.geometric_stiffening);
+        let pairs = if effects[Effect::DeformedInertia] && nf > 0 { pairs } else { Vec::new() };
+        let g_rows = if effects[Effect::Coriolis] { axes.len() * nf } else { 0 };
+        let s_rows = if effects[Effect::Coriolis] || turn_driven { axes.len() * nf } else { 0 };
+        let stiffness = body.stress_stiffness.as_ref().filter(|_| effects[Effect::GeometricStiffening]);
         // Weights of the constants of PAIRS in those of a pair of axes.
         let weights = |(i, j): (usize, usize)| {
             ReducedBody::PAIRS.map(|(k, l)| {
@@ -800,7 +801,7 @@ impl ConservativeBody {
         force.fill(0.0);
         if self.g_rows > 0 {
             multiply_top(&self.stacked, self.g_rows + self.pairs.len() * nf, &e.velocity, &mut e.gyroscopic);
-            for (g, w) in e.gyroscopic.chunks_exact(nf).zip(w.iter()) {
+            for (g, w) in e.gyroscopic.chunks_exact(nf.max(1)).zip(w.iter()) {
                 force.iter_mut().zip(g).for_each(|(rate, g)| *rate -= w * g);
             }
         }
@@ -984,7 +985,7 @@ impl ConservativeBody {
 /// How the origin moves, and what the body turns about.
 fn degrees_of_freedom(
     body: &ReducedBody,
-    effects: &Effects,
+    effects: &EffectMap<bool>,
     driven: Option<DrivenMotion>,
 ) -> (Translation, Vec<Vector3<f64>>) {
     let (translation, axes) = match driven {
@@ -1001,8 +1002,8 @@ fn degrees_of_freedom(
     };
     let is_driven = driven.is_some();
     (
-        if effects.translation || is_driven { translation } else { Translation::None },
-        if effects.rotation || is_driven { axes } else { Vec::new() },
+        if effects[Effect::Translation] || is_driven { translation } else { Translation::None },
+        if effects[Effect::Rotation] || is_driven { axes } else { Vec::new() },
     )
 }
 

@@ -16,7 +16,7 @@ use crate::moment::Moment;
 use crate::motion::PointShapes;
 use crate::observation::Observation;
 use crate::scheme::Scheme;
-use crate::setup::{Method, Setup, StepLimit};
+use crate::setup::{Beginning, Method, Setup, StepLimit};
 use crate::state::MotionState;
 
 /// How the conservative form is stepped.
@@ -82,12 +82,12 @@ pub(crate) const EXPONENTIAL: Method = Method {
     begin: |setup| begin(setup, Stepping::Exponential),
 };
 
-fn begin(setup: &Setup, scheme: Stepping) -> Result<Box<dyn Scheme>, SetupError> {
+fn begin(setup: &Setup, scheme: Stepping) -> Result<Beginning, SetupError> {
     let body = ConservativeBody::new(setup.body, setup.damping_ratios, setup.loads.to_vec(), setup.physics)?;
     let energy_of_loads = setup.energy_of_loads_on(&body);
     let mut motion = ConservativeMotion::new(body, scheme, setup.initial)?;
     motion.largest.energy = energy_of_loads;
-    Ok(Box::new(motion))
+    Ok(Beginning { scheme: Box::new(motion), energy_of_loads })
 }
 
 impl Scheme for ConservativeMotion {

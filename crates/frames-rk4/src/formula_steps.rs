@@ -88,7 +88,7 @@ impl FormulaSteps {
 fn collect<'a>(history: &'a History, out: &mut Vec<&'a Expression>) {
     match history {
         History::Expression(expression) => out.push(expression),
-        History::Product(factors) => factors.iter().for_each(|factor| collect(factor, out)),
+        History::Product { factors } => factors.iter().for_each(|factor| collect(factor, out)),
         _ => {}
     }
 }
@@ -275,7 +275,7 @@ mod tests {
     fn steps(text: &str, corners: &[f64], end: f64, step: impl Into<Option<f64>>) -> Result<FormulaSteps, SetupError> {
         let expression = Expression::new(text, corners.to_vec()).unwrap();
         FormulaSteps::new(
-            &[History::Product(vec![History::Constant, History::Expression(expression)])],
+            &[History::Product { factors: vec![History::Constant, History::Expression(expression)] }],
             end,
             step.into(),
         )

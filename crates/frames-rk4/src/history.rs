@@ -8,33 +8,40 @@ use std::f64::consts::{PI, TAU};
 
 pub use expression::Expression;
 pub(crate) use expression::function_names;
+use serde::Deserialize;
 pub use table::Table;
 
 use crate::error::SetupError;
 
 /// The course of a load in time, as a factor of its amplitude.
 ///
-/// Times are those of the run, frequencies cycles per time. Kinds with a start are zero before it; those with a
-/// duration (but for the ramp, which stays at one) are zero after it.
-#[derive(Debug, Clone, PartialEq)]
-pub enum History {
+/// Times are those of the run, frequencies cycles per time, phases radians. Kinds with a start are zero before it; those
+/// with a duration (but for the ramp, which stays at one) are zero after it. As data it is an enum whose variants have
+/// kebab-case names; a table and an expression have, as data, other types `T` and `E` than those that can be evaluated,
+/// and [`Self::try_map`] goes from one to the other.
+#[derive(Debug, Clone, Default, PartialEq, Deserialize)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub enum History<T = Table, E = Expression> {
     /// One at all times.
+    #[default]
     Constant,
-    /// Zero before a time, one after.
+    /// Zero before a time, one from there on.
     Step {
-        /// The time.
+        /// The time; one that is not positive has happened before the run.
         at: f64,
     },
     /// Zero, then straight up to one within the duration, then one.
     Ramp {
-        /// Beginning.
+        /// Beginning; as data 0 if absent.
+        #[serde(default)]
         start: f64,
         /// Length of the rise.
         duration: f64,
     },
     /// `sin(π (t − start) / duration)` within the duration, zero before and after.
     HalfSine {
-        /// Beginning.
+        /// Beginning; as data 0 if absent. A negative one has begun before the run.
+        #[serde(default)]
         start: f64,
         /// Length.
         duration: f64,
@@ -43,9 +50,11 @@ pub enum History {
     Sine {
         /// f, cycles per time.
         frequency: f64,
-        /// Angle at the start, rad.
+        /// Angle at the start, rad; as data 0 if absent.
+        #[serde(default)]
         phase: f64,
-        /// Beginning.
+        /// Beginning; as data 0 if absent.
+        #[serde(default)]
         start: f64,
         /// Length; none for ever.
         duration: Option<f64>,
@@ -57,17 +66,47 @@ pub enum History {
         from: f64,
         /// Frequency at the end.
         to: f64,
-        /// Beginning.
+        /// Beginning; as data 0 if absent.
+        #[serde(default)]
         start: f64,
         /// Length T.
         duration: f64,
     },
     /// Straight lines between given values.
-    Table(Table),
+    Table(T),
     /// A formula in t.
-    Expression(Expression),
+    Expression(E),
     /// The product of several histories.
-    Product(Vec<History>),
+    Product {
+        /// They.
+        factors: Vec<Self>,
+    },
+}
+
+impl<T, E> History<T, E> {
+    /// The same history with other types for its tables and expressions.
+    ///
+    /// # Errors
+    /// The first error of the two functions.
+    pub fn try_map<U, F, Error>(
+        &self,
+        table: &impl Fn(&T) -> Result<U, Error>,
+        expression: &impl Fn(&E) -> Result<F, Error>,
+    ) -> Result<History<U, F>, Error> {
+        Ok(match self {
+            Self::Constant => History::Constant,
+            &Self::Step { at } => History::Step { at },
+            &Self::Ramp { start, duration } => History::Ramp { start, duration },
+            &Self::HalfSine { start, duration } => History::HalfSine { start, duration },
+            &Self::Sine { frequency, phase, start, duration } => History::Sine { frequency, phase, start, duration },
+            &Self::Sweep { from, to, start, duration } => History::Sweep { from, to, start, duration },
+            Self::Table(data) => History::Table(table(data)?),
+            Self::Expression(data) => History::Expression(expression(data)?),
+            Self::Product { factors } => History::Product {
+                factors: factors.iter().map(|factor| factor.try_map(table, expression)).collect::<Result<_, _>>()?,
+            },
+        })
+    }
 }
 
 impl History {
@@ -104,7 +143,7 @@ impl History {
             Self::HalfSine { .. } | Self::Sine { .. } | Self::Sweep { .. } => 0.0,
             Self::Table(table) => table.at(time, inside),
             Self::Expression(expression) => expression.at(time, inside),
-            Self::Product(factors) => factors.iter().map(|factor| factor.at(time, inside)).product(),
+            Self::Product { factors } => factors.iter().map(|factor| factor.at(time, inside)).product(),
         }
     }
 
@@ -133,7 +172,7 @@ impl History {
             Self::HalfSine { .. } | Self::Sine { .. } | Self::Sweep { .. } => 0.0,
             Self::Table(table) => table.rate(time, inside),
             Self::Expression(expression) => expression.rate(time, inside),
-            Self::Product(factors) => {
+            Self::Product { factors } => {
                 let times = |(value, rate): (f64, f64), factor: &Self| {
                     let (by, by_rate) = (factor.at(time, inside), factor.rate(time, inside));
                     (value * by, rate * by + value * by_rate)
@@ -156,7 +195,7 @@ impl History {
             | Self::Sweep { start, duration, .. } => vec![*start, start + duration],
             Self::Table(table) => table.corners().to_vec(),
             Self::Expression(expression) => expression.corners().to_vec(),
-            Self::Product(factors) => {
+            Self::Product { factors } => {
                 let mut corners: Vec<f64> = factors.iter().flat_map(Self::corners).collect();
                 corners.sort_by(f64::total_cmp);
                 corners.dedup();
@@ -169,7 +208,7 @@ impl History {
     pub(crate) fn has_formula(&self) -> bool {
         match self {
             Self::Expression(_) => true,
-            Self::Product(factors) => factors.iter().any(Self::has_formula),
+            Self::Product { factors } => factors.iter().any(Self::has_formula),
             _ => false,
         }
     }
@@ -189,7 +228,7 @@ impl History {
             Self::Sweep { from, to, start, duration } if within(*start, *duration, inside) => {
                 of_period(from.max(*to).recip())
             }
-            Self::Product(factors) => factors.iter().map(|f| f.longest_step(inside)).fold(f64::INFINITY, f64::min),
+            Self::Product { factors } => factors.iter().map(|f| f.longest_step(inside)).fold(f64::INFINITY, f64::min),
             _ => f64::INFINITY,
         }
     }
@@ -224,10 +263,10 @@ impl History {
                 finite("the start of a sweep", *start)?;
                 positive("the duration of a sweep", *duration)
             }
-            Self::Product(factors) if factors.is_empty() => {
+            Self::Product { factors } if factors.is_empty() => {
                 Err(SetupError::Entries { what: "a product of histories", found: 0, expected: "at least one".into() })
             }
-            Self::Product(factors) => factors.iter().try_for_each(Self::check),
+            Self::Product { factors } => factors.iter().try_for_each(Self::check),
         }
     }
 }

@@ -5,41 +5,31 @@
 //! each step's rotation vector starts at zero, since (22) is singular after one turn, and a stage takes the loads'
 //! components in the stage's own frame.
 
-use std::any::Any;
-
 use modal::ReducedBody;
 use nalgebra::{Matrix3, Vector3};
 use rigid_kin::{BeyondFullTurn, ReferencePoints, f_inverse, relative_velocity_rate, transformation_matrix};
 
-use crate::account::Energies;
-use crate::attitude_account::AttitudeAccount;
 use crate::checkpoint::StateCoder;
 use crate::error::{RateError, SetupError, StepError};
 use crate::initial::Initial;
 use crate::load::Coordinates;
 use crate::modal_rotation::ModalRotation;
 use crate::model::{LinearMotion, ModalModel};
-use crate::moment::Moment;
-use crate::motion::{BodyMotion, PointShapes};
-use crate::observation::Observation;
 use crate::physics::Physics;
-use crate::scheme::Scheme;
-use crate::setup::{Method, StepLimit};
-use crate::state::{MotionState, State};
+use crate::setup::{Beginning, Method, StepLimit};
+use crate::state::State;
+use crate::travelling_frame::{EVALUATIONS, FrameMotion, FrameSteps, TravellingFrame};
 use crate::work::Work;
 
 /// Steps a flexible body by the paper's scheme.
+pub type PaperScheme = TravellingFrame<PaperSteps>;
+
+/// The steps of the paper.
 #[derive(Debug, Clone)]
-pub struct PaperScheme {
-    model: ModalModel,
+pub struct PaperSteps {
     rotation: ModalRotation,
     kinematics: ReferenceKinematics,
-    motion: BodyMotion,
-    steps_done: u64,
-    attitude_account: AttitudeAccount,
-    longest_step: f64,
-    state: State,
-    work: Work,
+    /// Of the loads and the damping at the state.
     power: Work,
     /// Whether a load may jump where the state is, so that its accelerations are to be found again.
     at_corner: bool,
@@ -89,29 +79,22 @@ impl PaperScheme {
         reference_points: [Vector3<f64>; 3],
         initial: &Initial,
     ) -> Result<Self, SetupError> {
-        model.check_body(body)?;
         let [r, p, q] = reference_points;
         let kinematics = ReferenceKinematics {
             points: ReferencePoints::new(&r, &p, &q)?,
             rotation_basis: body.rotation_basis,
             arms: [p - r, q - r],
         };
-        let state = State::begin(body, initial)?;
-        let zeros = || vec![0.0; state.modal_displacement.len()];
+        let zeros = || vec![0.0; 6 + body.flexible()];
         let increment = || Increment {
             displacement: zeros(),
             velocity: zeros(),
             rotation_vector: Vector3::zeros(),
             relative_velocity: [Vector3::zeros(); 2],
         };
-        let mut scheme = Self {
+        let steps = PaperSteps {
             rotation: ModalRotation::new(body),
             kinematics,
-            motion: BodyMotion::new(body)?.beginning_at(initial.attitude),
-            steps_done: 0,
-            attitude_account: AttitudeAccount::default(),
-            longest_step: 0.0,
-            work: Work::default(),
             power: Work::default(),
             at_corner: true,
             scratch: Scratch {
@@ -122,27 +105,22 @@ impl PaperScheme {
                 next_velocity: zeros(),
                 acceleration: zeros(),
             },
-            state,
-            model,
         };
-        scheme.complete_state(0.0);
-        Ok(scheme)
+        Self::begin(body, model, initial, steps)
     }
+}
 
-    /// The state that has been reached.
-    pub fn state(&self) -> &State {
-        &self.state
-    }
-
+impl FrameSteps for PaperSteps {
     /// Does one step, k1 to k4 and (38) to (40).
-    fn take_step(&mut self, h: f64, end: f64) -> Result<(), StepError> {
-        let time = self.state.time;
+    fn step(&mut self, body: &mut FrameMotion, h: f64, end: f64) -> Result<(), StepError> {
+        let time = body.state.time;
         let inside = time + 0.5 * h;
         if self.at_corner {
-            self.complete_state(inside);
+            self.complete_state(body, inside);
             self.at_corner = false;
         }
-        let Self { model, rotation, kinematics, motion, state, scratch, .. } = self;
+        let Self { rotation, kinematics, scratch, .. } = self;
+        let FrameMotion { model, motion, state, work } = body;
         let global_to_body = state.attitude.global_to_body();
         let relative_velocity = kinematics.relative(&state.modal_velocity);
         let turn_error = |error: BeyondFullTurn| RateError::Turn(error).in_step(time, h);
@@ -195,24 +173,24 @@ impl PaperScheme {
         }
 
         // The rigid displacement that (40) takes out is where the frame goes.
-        let moved_body = self.motion.of_origin(&total.displacement);
+        let moved_body = motion.of_origin(&total.displacement);
         state.origin_global += state.attitude.to_global(&moved_body);
         state.attitude = state.attitude.advanced_by(&theta);
         std::mem::swap(&mut state.modal_displacement, next_displacement);
         std::mem::swap(&mut state.modal_velocity, next_velocity);
-        self.steps_done += 1;
         state.time = end;
-        self.work.add(0.5 * h, &self.power);
-        self.complete_state(inside);
         // By the trapezoidal rule: far closer than a first-order scheme closes its balances.
-        self.work.add(0.5 * h, &self.power);
+        work.add(0.5 * h, &self.power);
+        self.complete_state(body, inside);
+        body.work.add(0.5 * h, &self.power);
         Ok(())
     }
 
     /// Accelerations (35), ω (36) and α (37) of the state's displacements and velocities, and the power of the loads.
     /// Loads follow the laws that hold at the time `inside`.
-    fn complete_state(&mut self, inside: f64) {
-        let Self { model, kinematics, motion, state, .. } = self;
+    fn complete_state(&mut self, body: &mut FrameMotion, inside: f64) {
+        let kinematics = &self.kinematics;
+        let FrameMotion { model, motion, state, .. } = body;
         let global_to_body = state.attitude.global_to_body();
         let [v_p, v_q] = kinematics.relative(&state.modal_velocity);
         state.omega_body = kinematics.points.angular_velocity(&v_p, &v_q);
@@ -232,117 +210,40 @@ impl PaperScheme {
         let [a_p, a_q] = kinematics.relative(&state.modal_acceleration);
         state.alpha_body = kinematics.points.angular_acceleration(&v_p, &v_q, &a_p, &a_q, &state.omega_body);
     }
-}
 
-/// A state is looked at for its attitude after so many steps: often enough for a sum, and too seldom to cost anything.
-pub(crate) const STEPS_OF_ATTITUDE: u64 = 8;
+    fn pass_corner(&mut self) {
+        self.at_corner = true;
+    }
+
+    fn copy_from(&mut self, from: &Self) {
+        (self.power, self.at_corner) = (from.power, from.at_corner);
+    }
+
+    fn code(&mut self, coder: &mut StateCoder<'_>) {
+        self.power.code(coder);
+        coder.flag(&mut self.at_corner);
+    }
+}
 
 /// The paper's scheme in the list of schemes.
 pub(crate) const METHOD: Method = Method {
     formulation: "paper",
     scheme: "paper",
     order: 1,
-    evaluations_per_step: 4,
+    evaluations_per_step: EVALUATIONS,
     limit: StepLimit::Modes,
     estimates_error: false,
     begin: |setup| {
         refuse_beyond_paper(setup.physics)?;
         let model = ModalModel::new(setup.body, setup.damping_ratios, setup.loads.to_vec())?;
-        Ok(Box::new(PaperScheme::new(setup.body, model, setup.reference_points, setup.initial)?))
+        let scheme = PaperScheme::new(setup.body, model, setup.reference_points, setup.initial)?;
+        Ok(Beginning { scheme: Box::new(scheme), energy_of_loads: setup.energy_of_loads()? })
     },
 };
 
 /// Refuses what the formulation of the paper has not got.
 pub(crate) fn refuse_beyond_paper(physics: &Physics) -> Result<(), SetupError> {
     if physics.drive.is_some() { Err(SetupError::NotInPaper { what: "driven motion" }) } else { Ok(()) }
-}
-
-impl Scheme for PaperScheme {
-    fn time(&self) -> f64 {
-        self.state.time
-    }
-
-    fn step(&mut self, h: f64, end: f64) -> Result<(), StepError> {
-        let Self { motion, state, work, attitude_account, .. } = self;
-        if self.steps_done.is_multiple_of(STEPS_OF_ATTITUDE) {
-            motion.check_attitude(state, work, attitude_account, self.longest_step)?;
-        }
-        self.take_step(h, end)?;
-        self.longest_step = self.longest_step.max(h);
-        Ok(())
-    }
-
-    fn pass_corner(&mut self) -> Result<(), StepError> {
-        self.at_corner = true;
-        Ok(())
-    }
-
-    fn observe(&mut self, points: &[PointShapes], out: &mut Observation) -> Result<(), StepError> {
-        self.motion.observe(&self.state, &self.work, points, out);
-        Ok(())
-    }
-
-    fn state(&self) -> Result<MotionState, StepError> {
-        Ok(self.motion.state(&self.state))
-    }
-
-    fn set_state(&mut self, state: &MotionState) -> Result<(), SetupError> {
-        self.motion.set_state(state, &mut self.state)?;
-        self.complete_state(state.time);
-        self.at_corner = true;
-        self.attitude_account = AttitudeAccount::default();
-        Ok(())
-    }
-
-    fn copy_state(&mut self, from: &dyn Scheme) {
-        let Some(from) = (from as &dyn Any).downcast_ref::<Self>() else { return };
-        self.state.copy_from(&from.state);
-        (self.work, self.power) = (from.work, from.power);
-        self.steps_done = from.steps_done;
-        self.attitude_account = from.attitude_account;
-        self.longest_step = from.longest_step;
-        self.at_corner = from.at_corner;
-    }
-
-    fn moment(&self) -> Moment<'_> {
-        let State { time, omega_body, modal_displacement, modal_velocity, .. } = &self.state;
-        let (q, y) = (&modal_displacement[6..], &modal_velocity[6..]);
-        Moment { time: *time, omega_body: *omega_body, modal_displacement: q, modal_velocity: y }
-    }
-
-    fn energies(&self) -> Option<Energies> {
-        Some(self.motion.energies_of(&self.state, &self.work))
-    }
-
-    fn work_and_dissipation(&self) -> [f64; 2] {
-        [self.work.work, self.work.dissipation]
-    }
-
-    fn fastest_rate(&self) -> f64 {
-        self.model.fastest_rate()
-    }
-
-    fn evaluations(&self) -> u64 {
-        4 * self.steps_done
-    }
-
-    fn flexible(&self) -> usize {
-        self.state.modal_displacement.len() - 6
-    }
-
-    fn code(&mut self, coder: &mut StateCoder<'_>) {
-        self.state.code(coder);
-        self.work.code(coder);
-        self.power.code(coder);
-        coder.count(&mut self.steps_done);
-        coder.flag(&mut self.at_corner);
-        coder.number(&mut self.longest_step);
-        self.attitude_account.code(coder);
-    }
-
-    fn boxed_clone(&self) -> Box<dyn Scheme> {
-        Box::new(self.clone())
-    }
 }
 
 impl ReferenceKinematics {

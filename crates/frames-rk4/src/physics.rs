@@ -3,31 +3,10 @@
 use faer::Mat;
 use nalgebra::Vector3;
 
+use crate::effect::EffectMap;
 use crate::error::SetupError;
 use crate::history::History;
 use crate::manifold::Manifold;
-
-/// Effects of the conservative form. What is off is not computed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Effects {
-    /// The origin of the body moves; a slide that is driven does so in any case.
-    pub translation: bool,
-    /// The body turns; a turn that is driven does so in any case.
-    pub rotation: bool,
-    /// Inertia follows the deformation: c_ij and N_ij.
-    pub deformed_inertia: bool,
-    /// Coriolis terms, G_i.
-    pub coriolis: bool,
-    /// The stress of the spin stiffens the body: K_ij of [`modal::Constants::stress_stiffness`], where it has any.
-    pub geometric_stiffening: bool,
-}
-
-impl Default for Effects {
-    /// All of them.
-    fn default() -> Self {
-        Self { translation: true, rotation: true, deformed_inertia: true, coriolis: true, geometric_stiffening: true }
-    }
-}
 
 /// A motion that something forces on the held part of a body. The body's own modes are those of the part held still
 /// ([`modal::RigidMotion::clamp`]).
@@ -90,10 +69,11 @@ impl Drive {
 }
 
 /// What a motion in the conservative form is to have beside modes, damping and loads.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub struct Physics {
-    /// Which effects are computed.
-    pub effects: Effects,
+    /// Which effects are computed; all by default. Flexibility, damping and gravity are the matter of the body, its
+    /// damping ratios and its loads: what these do not hold is not computed.
+    pub effects: EffectMap<bool>,
     /// What drives the held part.
     pub drive: Option<Drive>,
     /// Geometric stiffness Ψ_fᵀ K Ψ_f (nf×nf, symmetric) of the static answer to the forces `M (1⊗e)` of a unit
@@ -101,4 +81,11 @@ pub struct Physics {
     pub drive_stiffness: Option<Mat<f64>>,
     /// The manifold of large modes. Points, loads and `drive_stiffness` are then in its extended shapes.
     pub large_deflection: Option<Manifold>,
+}
+
+impl Default for Physics {
+    /// All effects; nothing drives or stresses the body.
+    fn default() -> Self {
+        Self { effects: EffectMap::all(), drive: None, drive_stiffness: None, large_deflection: None }
+    }
 }

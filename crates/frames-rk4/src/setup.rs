@@ -69,7 +69,14 @@ pub struct Method {
     /// Whether it estimates the error of a step.
     pub estimates_error: bool,
     /// Begins a motion.
-    pub(crate) begin: fn(&Setup) -> Result<Box<dyn Scheme>, SetupError>,
+    pub(crate) begin: fn(&Setup) -> Result<Beginning, SetupError>,
+}
+
+/// A motion that begins.
+pub(crate) struct Beginning {
+    pub scheme: Box<dyn Scheme>,
+    /// [`Setup::energy_of_loads`].
+    pub energy_of_loads: f64,
 }
 
 impl Setup<'_> {

@@ -15,7 +15,7 @@ use crate::motion::PointShapes;
 use crate::observation::Observation;
 use crate::plan::{EqualSteps, HalvedSteps, Plan, Rows, StepControl};
 use crate::scheme::Scheme;
-use crate::setup::Setup;
+use crate::setup::{Beginning, Setup};
 use crate::state::MotionState;
 
 /// What a run has cost.
@@ -120,7 +120,9 @@ impl Simulation {
     /// tolerance for a method without an error estimate.
     pub fn new(setup: &Setup) -> Result<Self, SetupError> {
         setup.check()?;
-        Self::with_scheme((setup.method.begin)(setup)?, setup)
+        let Beginning { scheme, energy_of_loads } = (setup.method.begin)(setup)?;
+        setup.check_times()?;
+        Self::begin(scheme, energy_of_loads, setup)
     }
 
     /// Begins a run by a scheme of one's own; the method of the setup is left aside.
@@ -129,6 +131,10 @@ impl Simulation {
     /// [`SetupError`]: numbers out of range.
     pub fn with_scheme(scheme: Box<dyn Scheme>, setup: &Setup) -> Result<Self, SetupError> {
         setup.check_times()?;
+        Self::begin(scheme, setup.energy_of_loads()?, setup)
+    }
+
+    fn begin(scheme: Box<dyn Scheme>, energy_of_loads: f64, setup: &Setup) -> Result<Self, SetupError> {
         let (step, walk) = match setup.control {
             StepControl::Fixed(step) => (Some(step), Walk::Equal { step, steps: None }),
             StepControl::Tolerance(tolerance) => {
@@ -159,7 +165,7 @@ impl Simulation {
             corner_ahead: false,
             points: setup.points.to_vec(),
             stats: Stats { accepted: 0, rejected: 0, evaluations: 0, shortest: f64::INFINITY, longest: 0.0 },
-            account: EnergyAccount::new(setup.energy_of_loads()?),
+            account: EnergyAccount::new(energy_of_loads),
             failed: false,
         })
     }

@@ -11,7 +11,7 @@ use faer::{Mat, Side, c64};
 use modal::ReducedBody;
 use nalgebra::Vector3;
 
-use crate::physics::Effects;
+use crate::effect::{Effect, EffectMap};
 
 /// The constants of the vibrations of a body that spins about an axis.
 #[derive(Debug, Clone)]
@@ -47,7 +47,7 @@ pub struct EigenError {
 
 impl SteadySpin {
     /// Spin about `axis`, a unit vector in body axes, with the effects that are on.
-    pub fn new(body: &ReducedBody, axis: &Vector3<f64>, effects: &Effects) -> Self {
+    pub fn new(body: &ReducedBody, axis: &Vector3<f64>, effects: &EffectMap<bool>) -> Self {
         let nf = body.flexible();
         let weight = |(i, j): (usize, usize)| if i == j { axis[i] * axis[i] } else { 2.0 * axis[i] * axis[j] };
         let projected = |matrices: &[Mat<f64>; 6]| {
@@ -55,14 +55,14 @@ impl SteadySpin {
             terms.fold(Mat::zeros(nf, nf), |sum, (matrix, w)| sum + matrix * faer::Scale(w))
         };
         let mut softening = Mat::zeros(nf, nf);
-        if effects.deformed_inertia {
+        if effects[Effect::DeformedInertia] {
             softening += projected(&body.inertia_second);
-            if let Some(stiffness) = body.stress_stiffness.as_ref().filter(|_| effects.geometric_stiffening) {
+            if let Some(stiffness) = body.stress_stiffness.as_ref().filter(|_| effects[Effect::GeometricStiffening]) {
                 softening -= projected(stiffness);
             }
         }
         let mut gyroscopic = Mat::zeros(nf, nf);
-        if effects.coriolis {
+        if effects[Effect::Coriolis] {
             for (matrix, a) in body.gyroscopic.iter().zip(axis.iter()) {
                 gyroscopic += matrix * faer::Scale(*a);
             }

@@ -67,12 +67,14 @@ fn steps_and_rows_of_a_run_allocate_nothing_once_the_step_is_known() {
 fn histories_allocate_nothing() {
     let text = "min(exp(-t^2), 2)*max(sin(2*pi*t), cos(t), 0.5)*abs(t)^0.3 + hypot(atan2(t, 2), sqrt(t))";
     let rows: Vec<f64> = (0..1000).map(f64::from).collect();
-    let history = History::Product(vec![
-        History::Sweep { from: 1.0, to: 9.0, start: 0.0, duration: 10.0 },
-        History::Table(Table::new(rows.clone(), rows.iter().map(|t| t.sin()).collect()).unwrap()),
-        History::Expression(Expression::new(text, vec![3.0]).unwrap()),
-        History::Ramp { start: 1.0, duration: 1.0 },
-    ]);
+    let history = History::Product {
+        factors: vec![
+            History::Sweep { from: 1.0, to: 9.0, start: 0.0, duration: 10.0 },
+            History::Table(Table::new(rows.clone(), rows.iter().map(|t| t.sin()).collect()).unwrap()),
+            History::Expression(Expression::new(text, vec![3.0]).unwrap()),
+            History::Ramp { start: 1.0, duration: 1.0 },
+        ],
+    };
     let mut sum = 0.0;
     let memory = measure(|| sum = (0..1000).map(|k| 0.01 * f64::from(k)).map(|t| history.at(t, t + 0.005)).sum());
     assert_eq!(memory.count_total, 0);

@@ -24,7 +24,7 @@ mod column;
 mod description;
 mod error;
 mod metadata;
-mod place;
+mod paths;
 mod reader;
 mod room;
 mod seal;
@@ -38,5 +38,5 @@ extern crate self as results; // for what the tests share
 pub use column::{Column, Values};
 pub use error::FileError;
 pub use metadata::{BodyProperties, Metadata, Units};
-pub use reader::{Results, Table};
+pub use reader::{ColumnTable, Results};
 pub use writer::{Expected, Resumed, Writer, unfinished};

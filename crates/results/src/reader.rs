@@ -16,18 +16,18 @@ pub struct Results {
     pub complete: bool,
     rows: usize,
     /// By path.
-    histories: BTreeMap<String, Table>,
+    histories: BTreeMap<String, ColumnTable>,
 }
 
 /// A T×n table, row by row.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Table {
+pub struct ColumnTable {
     rows: usize,
     width: usize,
     values: Vec<f64>,
 }
 
-impl Table {
+impl ColumnTable {
     /// Number of rows, T.
     pub fn rows(&self) -> usize {
         self.rows
@@ -110,7 +110,7 @@ impl Results {
         }
         let tables = columns.into_iter().zip(store.widths()).map(|(mut values, width)| {
             values.truncate(rows * width);
-            Table { rows, width, values }
+            ColumnTable { rows, width, values }
         });
         let paths = histories(table, metadata.point_names.len()).map(|history| history.path(&metadata.point_names));
         let histories = paths.zip(tables).collect();
@@ -123,7 +123,7 @@ impl Results {
     }
 
     /// The history of this path, such as "modal/displacement" or "points/P1/velocity", if there is one.
-    pub fn table(&self, path: &str) -> Option<&Table> {
+    pub fn table(&self, path: &str) -> Option<&ColumnTable> {
         self.histories.get(path)
     }
 

@@ -2,7 +2,7 @@
 
 use crate::checkpoint::{self, Checkpoint, Sums};
 use crate::column::{History, histories, widths};
-use crate::place::Place;
+use crate::paths::ResultsPaths;
 use crate::reader::Results;
 use crate::room::Room;
 use crate::store::Store;
@@ -39,7 +39,7 @@ pub struct Expected {
 /// whole, and is as it was until then.
 #[derive(Debug)]
 pub struct Writer<R: 'static> {
-    place: Place,
+    place: ResultsPaths,
     metadata: Metadata,
     columns: &'static [Column<R>],
     store: Store,
@@ -57,7 +57,7 @@ pub struct Writer<R: 'static> {
 
 /// The unfinished file of a results file: `run.part.h5` of `run.h5`.
 pub fn unfinished(path: impl AsRef<Path>) -> PathBuf {
-    Place::of(path.as_ref()).part
+    ResultsPaths::of(path.as_ref()).part
 }
 
 /// A run that can go on.
@@ -86,7 +86,7 @@ impl<R> Writer<R> {
         columns: &'static [Column<R>],
         expected: Expected,
     ) -> Result<Self, FileError> {
-        let place = Place::of(path.as_ref());
+        let place = ResultsPaths::of(path.as_ref());
         metadata.check(&place.path)?;
         let modes = metadata.body.frequencies.len();
         place.check(expected.overwrite)?;
@@ -125,7 +125,7 @@ impl<R> Writer<R> {
     /// [`FileError::Busy`], [`FileError::Unfinished`], [`FileError::NotResults`], [`FileError::Link`], and
     /// [`FileError::NameNotUtf8`] or [`FileError::System`] if no file can be made in the folder.
     pub fn check(path: impl AsRef<Path>, overwrite: bool) -> Result<(), FileError> {
-        let place = Place::of(path.as_ref());
+        let place = ResultsPaths::of(path.as_ref());
         place.check(overwrite)?;
         place.temporary().map(drop)
     }
@@ -138,7 +138,7 @@ impl<R> Writer<R> {
     /// [`FileError::Busy`] if its run goes on, [`FileError::NameNotUtf8`] or [`FileError::System`] if no file can be made
     /// in the folder, and those of [`Results::open`].
     pub fn resume(path: impl AsRef<Path>, columns: &'static [Column<R>]) -> Result<Resumed<R>, FileError> {
-        let place = Place::of(path.as_ref());
+        let place = ResultsPaths::of(path.as_ref());
         place.check_resumable()?;
         let part = &place.part;
         let store = Store::open_to_write(part, columns)?;
@@ -300,7 +300,7 @@ impl<R> Writer<R> {
 
 /// A sealed unfinished file that has no name yet.
 fn make_room<R>(
-    place: &Place,
+    place: &ResultsPaths,
     metadata: &Metadata,
     columns: &'static [Column<R>],
     room: Room,

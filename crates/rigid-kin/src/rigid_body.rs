@@ -23,7 +23,7 @@ pub enum RigidBodyError {
 
 /// Why a step could not be made.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-pub enum StepError {
+pub enum RigidStepError {
     /// The body turns too far within the step.
     #[error(
         "in the step from t = {time} to {} the body turns by {angle} rad, a full turn or more; take a step well \
@@ -145,7 +145,7 @@ impl RigidBody {
     /// `wrench` gives force and moment at a time and attitude.
     ///
     /// # Errors
-    /// [`StepError`] if the body turns by 2π or more within the step, or the result is not
+    /// [`RigidStepError`] if the body turns by 2π or more within the step, or the result is not
     /// finite.
     pub fn step(
         &self,
@@ -153,12 +153,12 @@ impl RigidBody {
         time: f64,
         step: f64,
         wrench: impl Fn(f64, &Attitude) -> Wrench,
-    ) -> Result<RigidState, StepError> {
+    ) -> Result<RigidState, RigidStepError> {
         let refusal = |BeyondFullTurn { angle }| {
             if angle.is_finite() {
-                StepError::TurnTooLarge { time, step, angle }
+                RigidStepError::TurnTooLarge { time, step, angle }
             } else {
-                StepError::NotFinite { time, step }
+                RigidStepError::NotFinite { time, step }
             }
         };
         // Columns: rotation vector since the start of the step, ω, position, velocity.
@@ -184,7 +184,7 @@ impl RigidBody {
         let k4 = rate(time + step, &(start + step * k3))?;
         let end = start + step / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
         if !end.iter().all(|entry| entry.is_finite()) {
-            return Err(StepError::NotFinite { time, step });
+            return Err(RigidStepError::NotFinite { time, step });
         }
         Ok(RigidState {
             attitude: state.attitude.advanced_by(&end.column(0).into()),
@@ -357,11 +357,11 @@ mod tests {
         let body = RigidBody::new(1.0, Matrix3::identity()).unwrap();
         let state = |spin| spinning(Attitude::identity(), Vector3::new(0.0, 0.0, spin));
         let too_far = body.step(&state(100.0), 0.0, 0.2, |_, _| Wrench::zero());
-        assert!(matches!(too_far, Err(StepError::TurnTooLarge { angle, .. }) if angle > 6.3));
+        assert!(matches!(too_far, Err(RigidStepError::TurnTooLarge { angle, .. }) if angle > 6.3));
         let (nan, zero) = (Vector3::repeat(f64::NAN), Vector3::zeros());
         for load in [Wrench { force_global: nan, moment_body: zero }, Wrench { force_global: zero, moment_body: nan }] {
             let refused = body.step(&state(1.0), 2.0, 0.1, |_, _| load);
-            assert_eq!(refused, Err(StepError::NotFinite { time: 2.0, step: 0.1 }));
+            assert_eq!(refused, Err(RigidStepError::NotFinite { time: 2.0, step: 0.1 }));
         }
     }
 }

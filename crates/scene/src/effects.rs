@@ -2,7 +2,8 @@
 
 use std::fmt;
 
-use serde::de::{Error, Unexpected, Visitor};
+use frames_rk4::{Effect, EffectMap};
+use serde::de::{Error, MapAccess, Unexpected, Visitor};
 use serde::{Deserialize, Deserializer};
 
 /// Whether something is done: `true`, `false` or `"auto"`.
@@ -18,46 +19,60 @@ pub enum Choice {
 }
 
 /// The effects: `[effects]`. Every key is optional; what is off is not computed.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields, default)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Effects {
-    /// The body deforms.
-    pub flexibility: Choice,
-    /// Its modes are damped.
-    pub damping: Choice,
-    /// The loads `kind = "gravity"` act.
-    pub gravity: Choice,
-    /// The inertia follows the deformation.
-    pub deformed_inertia: Choice,
-    /// Coriolis forces couple the modes of a turning body.
-    pub coriolis: Choice,
-    /// The stresses of the centrifugal field, and of steady loads and accelerations, stiffen or soften the body.
-    pub geometric_stiffening: Choice,
-    /// The body as a whole moves from its place.
-    pub translation: Choice,
-    /// The body as a whole turns.
-    pub rotation: Choice,
+    /// Which are simulated: a key for each, by its name.
+    pub choices: EffectMap<Choice>,
     /// Relative influence on the answer, between 0 and 1, below which `"auto"` leaves an effect out; default 1e-3.
     pub tolerance: f64,
     /// Whether a model that is known to be wrong is refused, which is the default.
     pub refuse: bool,
 }
 
+impl Effects {
+    /// The keys: the names of the effects, and the others.
+    const KEYS: [&str; Effect::ALL.len() + 2] = {
+        let mut keys = ["tolerance"; Effect::ALL.len() + 2];
+        let mut i = 0;
+        while i < Effect::ALL.len() {
+            keys[i] = Effect::ALL[i].name();
+            i += 1;
+        }
+        keys[i + 1] = "refuse";
+        keys
+    };
+}
+
 impl Default for Effects {
     fn default() -> Self {
-        let auto = Choice::Auto;
-        Self {
-            flexibility: auto,
-            damping: auto,
-            gravity: auto,
-            deformed_inertia: auto,
-            coriolis: auto,
-            geometric_stiffening: auto,
-            translation: auto,
-            rotation: auto,
-            tolerance: 1e-3,
-            refuse: true,
+        Self { choices: EffectMap::from_fn(|_| Choice::Auto), tolerance: 1e-3, refuse: true }
+    }
+}
+
+impl<'de> Deserialize<'de> for Effects {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct EffectsVisitor;
+        impl<'de> Visitor<'de> for EffectsVisitor {
+            type Value = Effects;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a table of effects")
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Effects, A::Error> {
+                let mut effects = Effects::default();
+                while let Some(key) = map.next_key::<String>()? {
+                    match (Effect::ALL.into_iter().find(|effect| effect.name() == key), key.as_str()) {
+                        (Some(effect), _) => effects.choices[effect] = map.next_value()?,
+                        (None, "tolerance") => effects.tolerance = map.next_value()?,
+                        (None, "refuse") => effects.refuse = map.next_value()?,
+                        (None, _) => return Err(A::Error::unknown_field(&key, &Effects::KEYS)),
+                    }
+                }
+                Ok(effects)
+            }
         }
+        deserializer.deserialize_struct("Effects", &Self::KEYS, EffectsVisitor)
     }
 }
 

@@ -25,8 +25,8 @@
 //! `section`, `scene`, `modes`, `effects`, `constraint`, `load` and `history` are those structs, and so the list of
 //! all keys;
 //! `check` has the rules on their values.
-//! A new kind of load is a new variant in `load`, of history in `history`, of constraint in `section` and
-//! `constraint`, a new scheme one in `section` and `scene`; its rules are in `check`.
+//! A new kind of load is a new variant in `load`, of constraint in `section` and `constraint`; its rules are in `check`.
+//! The kinds of histories, the effects and the schemes are those of `frames_rk4`; `check` has the rules on histories.
 
 #![forbid(unsafe_code)]
 #![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable))]
@@ -57,8 +57,8 @@ pub use constraint::{Constraint, Drive, HingeLine, Region};
 pub use effects::{Choice, Effects};
 pub use error::SceneError;
 pub use fem_tet10::{Material, Materials, PointMass};
-pub use frames_rk4::{LoadFrame, Method, Rows, StepControl};
-pub use history::{History, Table};
+pub use frames_rk4::{Effect, EffectMap, LoadFrame, Method, Rows, StepControl};
+pub use history::{Formula, History, TablePoints};
 pub use load::{BaseAcceleration, Force, Gravity, Load, Moment, Pressure, Traction};
 pub use modes::{Damping, Flexible, Modes, Rayleigh};
 pub use place::Place;

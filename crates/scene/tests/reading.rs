@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use scene::{
-    Body, Choice, Damping, Effects, Flexible, Force, History, Load, LoadFrame, Material, Materials, MeshedBody, Method,
-    Rows, Scene, SceneError, StepControl,
+    Body, Choice, Damping, Effect, Effects, Flexible, Force, History, Load, LoadFrame, Material, Materials, MeshedBody,
+    Method, Rows, Scene, SceneError, StepControl,
 };
 
 const EXAMPLE: &str = include_str!("../src/example.toml");
@@ -73,7 +73,7 @@ fn defaults_and_whole_numbers() {
     assert_eq!((scene.modes.flexible, &scene.modes.damping), (Flexible::Count(0), &Damping::Uniform(0.0)));
     assert_eq!(scene.modes.static_correction, Choice::Auto);
     assert_eq!((scene.effects, &scene.constraint), (Effects::default(), &None));
-    assert_eq!((scene.effects.rotation, scene.effects.tolerance), (Choice::Auto, 1e-3));
+    assert_eq!((scene.effects.choices[Effect::Rotation], scene.effects.tolerance), (Choice::Auto, 1e-3));
     assert_eq!(scene.frame, None);
     assert_eq!(scene.initial.velocity, [0.0; 3]);
     assert_eq!(scene.initial.angular_velocity, [0.0; 3]);

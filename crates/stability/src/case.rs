@@ -5,7 +5,7 @@ use std::fmt;
 use frames_rk4::Method;
 use modal::ReducedBody;
 
-/// The schemes whose bounds are written down, in the order of [`Case::expected`].
+/// The schemes whose bounds are written down, in the order of [`HardCase::expected`].
 pub const BOUNDED: [Method; 4] = [Method::EXPONENTIAL, Method::RKMK4, Method::PAPER, Method::PAPER_RKMK4];
 
 /// How long the runs of a case are.
@@ -84,7 +84,7 @@ impl BodyCheck {
 
 /// A hard case.
 #[derive(Debug, Clone, Copy)]
-pub struct Case {
+pub struct HardCase {
     /// Its name.
     pub name: &'static str,
     /// Why it is hard.
@@ -99,7 +99,7 @@ pub struct Case {
     pub expected: [Expected; 4],
 }
 
-impl Case {
+impl HardCase {
     /// What is asked of a scheme, where anything is.
     pub fn expected_of(&self, method: Method) -> Option<&Expected> {
         let place = BOUNDED.iter().position(|bounded| *bounded == method)?;

@@ -1,6 +1,6 @@
 //! Hard cases: why they are hard, what every scheme makes of them, and the bound that a test holds it to.
 //!
-//! A [`Case`] is run by the tests at [`Extent::Test`] and by the study, which writes `docs/stability.md`, at
+//! A [`HardCase`] is run by the tests at [`Extent::Test`] and by the study, which writes `docs/stability.md`, at
 //! [`Extent::Study`]: the same bounds, longer runs.
 #![forbid(unsafe_code)]
 
@@ -16,7 +16,7 @@ pub mod trial;
 
 use frames_rk4::Method;
 
-pub use case::{BOUNDED, BodyCheck, Case, Expected, Extent, Outcome};
+pub use case::{BOUNDED, BodyCheck, Expected, Extent, HardCase, Outcome};
 
 /// All schemes, in the order of the table's columns. One without bounds is run and shown without being held to any.
 pub fn schemes() -> Vec<Method> {
@@ -25,7 +25,7 @@ pub fn schemes() -> Vec<Method> {
 }
 
 /// The cases with their headings.
-pub fn sections() -> [(&'static str, Vec<Case>); 4] {
+pub fn sections() -> [(&'static str, Vec<HardCase>); 4] {
     [
         ("Motion", motion::cases()),
         ("Time", time::cases()),

@@ -9,16 +9,16 @@ use crate::bodies::Elastic;
 use crate::case::on;
 use crate::meshes::{EDGES, ball, box_mesh, cells_of, cracked, numbered, opened};
 use crate::structure::tumble;
-use crate::{BodyCheck, Case, Expected, Extent, Outcome};
+use crate::{BodyCheck, Expected, Extent, HardCase, Outcome};
 
 const DRIFT: &str = "drift of energy and angular momentum";
 /// Of the tumbling of any well-made body.
 const TUMBLING: [Expected; 4] = [Within(1e-8), Within(1e-5), Within(0.1), Within(0.1)];
 
 /// The cases.
-pub fn cases() -> Vec<Case> {
+pub fn cases() -> Vec<HardCase> {
     vec![
-        Case {
+        HardCase {
             name: "a layer of slivers of aspect 1e4 in a cube",
             why: "stiffnesses across and along an element differ by 1e8",
             body: Some(BodyCheck {
@@ -30,7 +30,7 @@ pub fn cases() -> Vec<Case> {
             run: |method, _| moves(with_layer(), method),
             expected: TUMBLING,
         },
-        Case {
+        HardCase {
             name: "a ribbon of slivers, 20 000 times as long as thick",
             why: "stiffnesses along and across differ by the square of that: rounding in K is as large as the bending stiffness (it puts the lowest frequency off by up to 6 % at 10 000 times, and from 13 000 times on by any factor)",
             body: None,
@@ -38,7 +38,7 @@ pub fn cases() -> Vec<Case> {
             run: |method, _| moves(bar([10.0, 0.1, 5e-4], [10, 1, 1], METRES, 6), method),
             expected: [Refused("rounding hides"); 4],
         },
-        Case {
+        HardCase {
             name: "a ribbon of slivers, 100 000 times as long as thick",
             why: "its bending stiffness is a thousandth of the rounding in that of its elements, and may come out negative",
             body: None,
@@ -46,7 +46,7 @@ pub fn cases() -> Vec<Case> {
             run: |method, _| moves(bar([10.0, 0.1, 1e-4], [10, 1, 1], METRES, 6), method),
             expected: [Refused("too thin"); 4],
         },
-        Case {
+        HardCase {
             name: "a plate of 1000×50×0.1",
             why: "10 000 times as long as thick",
             body: Some(BodyCheck {
@@ -58,7 +58,7 @@ pub fn cases() -> Vec<Case> {
             run: |method, _| moves(bar([1000.0, 50.0, 0.1], [40, 2, 1], METRES, 6), method),
             expected: TUMBLING,
         },
-        Case {
+        HardCase {
             name: "curved elements: a bar bent to a quarter of a ring",
             why: "the mid-edge nodes leave the edges, and the integrands are no polynomials",
             body: Some(BodyCheck {
@@ -70,7 +70,7 @@ pub fn cases() -> Vec<Case> {
             run: |method, _| moves(quarter_ring(), method),
             expected: TUMBLING,
         },
-        Case {
+        HardCase {
             name: "ν = 0.4999",
             why: "the volume can hardly change: an element that locks is too stiff",
             body: Some(BodyCheck {
@@ -88,7 +88,7 @@ pub fn cases() -> Vec<Case> {
             run: |method, _| moves(bar([1.0; 3], [2; 3], Material { poisson_ratio: 0.4999, ..METRES }, 10), method),
             expected: TUMBLING,
         },
-        Case {
+        HardCase {
             name: "ν = −0.9",
             why: "the bulk modulus is a forty-second of the shear modulus: the body would rather change its size than its shape",
             body: None,
@@ -96,7 +96,7 @@ pub fn cases() -> Vec<Case> {
             run: |method, _| moves(bar([1.0; 3], [2; 3], Material { poisson_ratio: -0.9, ..METRES }, 10), method),
             expected: TUMBLING,
         },
-        Case {
+        HardCase {
             name: "a square plate",
             why: "frequencies that repeat in the plate do so only nearly in its mesh",
             body: Some(BodyCheck {
@@ -108,7 +108,7 @@ pub fn cases() -> Vec<Case> {
             run: |method, _| moves(bar([1.0, 1.0, 0.05], [6, 6, 1], METRES, 8), method),
             expected: TUMBLING,
         },
-        Case {
+        HardCase {
             name: "a bar in metres and in micrometres",
             why: "lengths differ by 1e6, the entries of K by 1, those of M by 1, inertias by 1e12",
             body: Some(BodyCheck {
@@ -120,7 +120,7 @@ pub fn cases() -> Vec<Case> {
             run: |method, _| moves(micrometres(), method),
             expected: TUMBLING,
         },
-        Case {
+        HardCase {
             name: "one element with all of its 24 modes",
             why: "the smallest mesh; nothing is left to truncate",
             body: None,
@@ -128,7 +128,7 @@ pub fn cases() -> Vec<Case> {
             run: |method, _| moves(one_element(), method),
             expected: TUMBLING,
         },
-        Case {
+        HardCase {
             name: "nodes and elements numbered at random",
             why: "bandwidth, pivots and the order of every sum change",
             body: Some(BodyCheck {
@@ -140,7 +140,7 @@ pub fn cases() -> Vec<Case> {
             run: |method, _| moves(shuffled(), method),
             expected: TUMBLING,
         },
-        Case {
+        HardCase {
             name: "a cube of elements",
             why: "its frequencies repeat, but its mesh has not all of its symmetry",
             body: Some(BodyCheck {
@@ -152,7 +152,7 @@ pub fn cases() -> Vec<Case> {
             run: |method, _| moves(bar([1.0; 3], [3; 3], METRES, 10), method),
             expected: TUMBLING,
         },
-        Case {
+        HardCase {
             name: "a ball of curved elements",
             why: "the inertia of a sphere; frequencies that repeat five times in a ball do so only nearly in its mesh",
             body: Some(BodyCheck {
@@ -168,7 +168,7 @@ pub fn cases() -> Vec<Case> {
             run: |method, _| moves(solve(ball(1), METRES, 10), method),
             expected: TUMBLING,
         },
-        Case {
+        HardCase {
             name: "a point mass of 1e6 times the rest of a mesh",
             why: "M spans twelve orders of magnitude, and the body swings about a point that hardly moves",
             body: Some(BodyCheck {
@@ -180,7 +180,7 @@ pub fn cases() -> Vec<Case> {
             run: |method, _| moves(loaded(1e6), method),
             expected: TUMBLING,
         },
-        Case {
+        HardCase {
             name: "a crack: nodes in one place along half of a section",
             why: "what touches is not joined; nothing holds the faces of the crack together or apart",
             body: Some(BodyCheck {
@@ -359,8 +359,8 @@ fn permutation(n: usize) -> Vec<usize> {
 }
 
 /// A mesh that is refused before anything can move.
-fn refused(name: &'static str, why: &'static str, words: &'static str, run: fn(Method, Extent) -> Outcome) -> Case {
-    Case { name, why, body: None, measure: "whether it is refused", run, expected: [Refused(words); 4] }
+fn refused(name: &'static str, why: &'static str, words: &'static str, run: fn(Method, Extent) -> Outcome) -> HardCase {
+    HardCase { name, why, body: None, measure: "whether it is refused", run, expected: [Refused(words); 4] }
 }
 
 /// √(G/ρ)

@@ -112,9 +112,9 @@ pub fn ball(halvings: u32) -> MeshParts {
     // Places are weights of the vertices, in parts of `whole`: two of them have their middle exactly.
     let whole = 2 << halvings;
     let mut parts = MeshParts { source: "ball".to_owned(), regions: vec![vec![]], ..MeshParts::default() };
-    let mut tags: HashMap<Place, u64> = HashMap::new();
+    let mut tags: HashMap<Barycentric, u64> = HashMap::new();
     for [a, b, c] in faces {
-        let mut pieces = vec![[0, a, b, c].map(|vertex| Place::from([(vertex, whole)]))];
+        let mut pieces = vec![[0, a, b, c].map(|vertex| Barycentric::from([(vertex, whole)]))];
         for _ in 0..halvings {
             pieces = pieces.iter().flat_map(eighths).collect();
         }
@@ -138,9 +138,9 @@ pub fn ball(halvings: u32) -> MeshParts {
 }
 
 /// Weights of vertices.
-type Place = BTreeMap<usize, u32>;
+type Barycentric = BTreeMap<usize, u32>;
 
-fn middle(a: &Place, b: &Place) -> Place {
+fn middle(a: &Barycentric, b: &Barycentric) -> Barycentric {
     let mut sum = a.clone();
     for (vertex, weight) in b {
         *sum.entry(*vertex).or_default() += weight;
@@ -149,7 +149,7 @@ fn middle(a: &Place, b: &Place) -> Place {
 }
 
 /// A tetrahedron's four corners and its octahedron in four.
-fn eighths(corners: &[Place; 4]) -> [[Place; 4]; 8] {
+fn eighths(corners: &[Barycentric; 4]) -> [[Barycentric; 4]; 8] {
     let [m01, m12, m02, m03, m23, m13] = &EDGES.map(|[a, b]| middle(&corners[a], &corners[b]));
     let [c0, c1, c2, c3] = corners;
     [
@@ -162,11 +162,11 @@ fn eighths(corners: &[Place; 4]) -> [[Place; 4]; 8] {
         [m02, m03, m13, m23],
         [m02, m12, m13, m23],
     ]
-    .map(|piece| piece.map(Place::clone))
+    .map(|piece| piece.map(Barycentric::clone))
 }
 
 /// Where a place is in the ball: in its direction, as far out as the weights of the vertices on the sphere say.
-fn position(vertices: &[Vector3<f64>], place: &Place, whole: u32) -> Vector3<f64> {
+fn position(vertices: &[Vector3<f64>], place: &Barycentric, whole: u32) -> Vector3<f64> {
     let part = |weight: u32| f64::from(weight) / f64::from(whole);
     let direction: Vector3<f64> = place.iter().map(|(vertex, weight)| vertices[*vertex] * part(*weight)).sum();
     let radius: f64 = place.iter().filter(|(vertex, _)| **vertex > 0).map(|(_, weight)| part(*weight)).sum();

@@ -11,15 +11,15 @@ use crate::Expected::{Refused, Within};
 use crate::bodies::{CLUSTER, cluster, rigid, spinning, truss};
 use crate::case::on;
 use crate::trial::{Trial, worse};
-use crate::{Case, Extent, Outcome};
+use crate::{Extent, HardCase, Outcome};
 
 const MOMENTS: [f64; 3] = [1.0, 2.0, 3.0];
 const LOST: &str = "the attitude is lost";
 
 /// The cases.
-pub fn cases() -> Vec<Case> {
+pub fn cases() -> Vec<HardCase> {
     vec![
-        Case {
+        HardCase {
             name: "10 000 turns at 100 rad/s, 0.1 rad a step",
             why: "rotation vectors are singular at 2π, 4π …; rounding adds up over 628 000 steps",
             body: None,
@@ -27,7 +27,7 @@ pub fn cases() -> Vec<Case> {
             run: |method, extent| on(rigid(MOMENTS), |body| turns(body, method, extent)),
             expected: [Within(1e-9), Within(1e-9), Refused(LOST), Within(1e-9)],
         },
-        Case {
+        HardCase {
             name: "tumbling through the unstable axis, 100 flips, rigid",
             why: "each flip starts from an error that grows exponentially",
             body: None,
@@ -35,7 +35,7 @@ pub fn cases() -> Vec<Case> {
             run: |method, extent| on(rigid(MOMENTS), |body| flips(body, method, extent)),
             expected: [Within(1e-4), Within(1e-4), Refused(LOST), Within(1e-4)],
         },
-        Case {
+        HardCase {
             name: "tumbling through the unstable axis, flexible",
             why: "the flips shake the modes, which must give the energy back",
             body: None,
@@ -48,7 +48,7 @@ pub fn cases() -> Vec<Case> {
             },
             expected: [Within(1e-8), Within(1e-3), Refused(LOST), Refused(LOST)],
         },
-        Case {
+        HardCase {
             name: "1e-8 rad/s from the separatrix, a whole period",
             why: "what tells the two kinds of motion apart is the last bit of the energy: no attitude can be right",
             body: None,
@@ -56,7 +56,7 @@ pub fn cases() -> Vec<Case> {
             run: |method, _| on(rigid(MOMENTS), |body| near_separatrix(body, method)),
             expected: [Within(1e-11), Within(1e-11), Refused(LOST), Within(1e-11)],
         },
-        Case {
+        HardCase {
             name: "1e-5 rad/s from the separatrix, a whole period",
             why: "a part in 1e10 of the energy makes it another motion",
             body: None,
@@ -70,7 +70,7 @@ pub fn cases() -> Vec<Case> {
             },
             expected: [Within(1e-3), Within(1e-3), Refused(LOST), Within(1e-3)],
         },
-        Case {
+        HardCase {
             name: "1e-12 rad a step",
             why: "sines and cosines of tiny angles cancel",
             body: None,
@@ -78,7 +78,7 @@ pub fn cases() -> Vec<Case> {
             run: |method, _| on(rigid(MOMENTS), |body| tiny(body, method)),
             expected: [Within(1e-12); 4],
         },
-        Case {
+        HardCase {
             name: "no motion at all",
             why: "a zero angle has no axis",
             body: None,
@@ -86,7 +86,7 @@ pub fn cases() -> Vec<Case> {
             run: |method, _| on(cluster(6).map(|e| e.body), |body| nothing(body, method)),
             expected: [Within(0.0); 4],
         },
-        Case {
+        HardCase {
             name: "spin about each axis at 1e-6 and 1e6 rad/s, 100 turns",
             why: "squares of spins over 24 orders of magnitude; the middle axis is unstable",
             body: None,
@@ -94,7 +94,7 @@ pub fn cases() -> Vec<Case> {
             run: |method, _| on(rigid(MOMENTS), |body| each_axis(body, method)),
             expected: [Within(1e-9), Within(1e-9), Refused(LOST), Within(1e-9)],
         },
-        Case {
+        HardCase {
             name: "ten million steps of a vibrating, tumbling body",
             why: "what drifts by 1e-10 a step is off by 1e-3",
             body: None,
@@ -107,7 +107,7 @@ pub fn cases() -> Vec<Case> {
             },
             expected: [Within(1e-8), Within(1e-6), Refused(LOST), Refused(LOST)],
         },
-        Case {
+        HardCase {
             name: "a body 1e6 units away from the origin of its mesh",
             why: "its shape is in the last six digits of its coordinates",
             body: None,
@@ -115,7 +115,7 @@ pub fn cases() -> Vec<Case> {
             run: |method, _| far_away(method),
             expected: [Within(1e-6); 4],
         },
-        Case {
+        HardCase {
             name: "a body that moves at 1e6 units a second",
             why: "the kinetic energy of the whole is 1e12 times that of the rest",
             body: None,

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::time::Instant;
 
-use crate::{Case, Expected, Extent, Outcome, schemes, sections};
+use crate::{Expected, Extent, HardCase, Outcome, schemes, sections};
 
 /// The page, and the outcomes that are not what is asked for.
 pub fn page(extent: Extent, mut progress: impl FnMut(&str)) -> (String, Vec<String>) {
@@ -41,13 +41,13 @@ pub fn page(extent: Extent, mut progress: impl FnMut(&str)) -> (String, Vec<Stri
 
 fn row(
     page: &mut String,
-    case: &Case,
+    case: &HardCase,
     extent: Extent,
     refusals: &mut Vec<String>,
     broken: &mut Vec<String>,
     progress: &mut impl FnMut(&str),
 ) {
-    let Case { name: title, why, measure, .. } = case;
+    let HardCase { name: title, why, measure, .. } = case;
     let _ = write!(page, "| **{title}**: {why} | {measure}");
     let mut judge = |who: &str, outcome: &Outcome, expected: Option<&Expected>| {
         if let Some(expected) = expected.filter(|expected| !expected.holds(outcome)) {

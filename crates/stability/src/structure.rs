@@ -10,16 +10,16 @@ use crate::Expected::{Refused, Within};
 use crate::bodies::{CLUSTER, Elastic, changed, cluster, rigid, spinning, truss};
 use crate::case::on;
 use crate::trial::{Trial, worse};
-use crate::{BodyCheck, Case, Outcome};
+use crate::{BodyCheck, HardCase, Outcome};
 
 /// Of a step beyond the limit of a mode.
 const MODES: &str = "beyond the stability limit";
 const DRIFT: &str = "drift of energy and angular momentum";
 
 /// The cases.
-pub fn cases() -> Vec<Case> {
+pub fn cases() -> Vec<HardCase> {
     vec![
-        Case {
+        HardCase {
             name: "a cube of eight equal masses",
             why: "its frequencies repeat two and three times, and any turn of a group's modes is as good as another",
             body: Some(BodyCheck {
@@ -31,7 +31,7 @@ pub fn cases() -> Vec<Case> {
             run: |method, _| on(cube().map(|e| e.body), |body| tumble(body, method)),
             expected: [Within(1e-11), Within(1e-6), Within(0.1), Within(0.1)],
         },
-        Case {
+        HardCase {
             name: "an icosahedron of twelve equal masses",
             why: "the inertia of a sphere, whose principal axes are any, and frequencies that repeat five times",
             body: Some(BodyCheck {
@@ -46,7 +46,7 @@ pub fn cases() -> Vec<Case> {
             run: |method, _| on(icosahedron().map(|e| e.body), |body| tumble(body, method)),
             expected: [Within(1e-11), Within(1e-6), Within(0.1), Within(0.1)],
         },
-        Case {
+        HardCase {
             name: "modes from 1e-3 to 1e6 Hz in one body, steps of 10 ms",
             why: "the fastest swings 10 000 times within a step, the softest not once within the run, and a step is a whole number of periods: resonance for a splitting",
             body: None,
@@ -54,7 +54,7 @@ pub fn cases() -> Vec<Case> {
             run: |method, _| on(cluster(6).map(|e| e.body), |body| wide_spectrum(body, method)),
             expected: [Within(1e-3), Refused(MODES), Refused(MODES), Refused(MODES)],
         },
-        Case {
+        HardCase {
             name: "damping of 0, 100 % and 500 % in one body",
             why: "at 100 % the two solutions of a mode fall together; at 500 % they are a hundred times apart",
             body: None,
@@ -62,7 +62,7 @@ pub fn cases() -> Vec<Case> {
             run: |method, _| damped([0.0, 1.0, 5.0, 0.0, 1.0, 5.0], 0.05, method),
             expected: [Within(1e-9), Within(1e-4), Within(1e-4), Within(1e-4)],
         },
-        Case {
+        HardCase {
             name: "damping of 100 % and 500 %, steps of 100/ω",
             why: "at 500 % the fast solution is down to 1e-430 after a step of the highest mode, the slow one to 5e-5",
             body: None,
@@ -70,7 +70,7 @@ pub fn cases() -> Vec<Case> {
             run: |method, _| damped([1.0, 5.0, 1.0, 5.0, 1.0, 5.0], 100.0, method),
             expected: [Within(1e-9), Refused(MODES), Refused(MODES), Refused(MODES)],
         },
-        Case {
+        HardCase {
             name: "a point mass of 1e6 times the rest of the body",
             why: "the body swings about a point of it that hardly moves; the rest of the masses are rounding in the sum",
             body: None,
@@ -82,7 +82,7 @@ pub fn cases() -> Vec<Case> {
             },
             expected: [Within(1e-9), Within(1e-6), Within(0.1), Within(0.1)],
         },
-        Case {
+        HardCase {
             name: "P, Q, R on a line but for 1e-7 of it",
             why: "three points on a line do not see the turn about it (the other schemes do not need them)",
             body: None,
@@ -90,7 +90,7 @@ pub fn cases() -> Vec<Case> {
             run: |method, _| reference_points(1e-7, method),
             expected: [Within(1e-9), Within(1e-6), Refused("line"), Within(0.1)],
         },
-        Case {
+        HardCase {
             name: "P, Q, R on a line but for 1e-4 of it",
             why: "the turn about the line is seen through differences of one part in 10 000",
             body: None,
@@ -98,7 +98,7 @@ pub fn cases() -> Vec<Case> {
             run: |method, _| reference_points(1e-4, method),
             expected: [Within(1e-9), Within(1e-6), Within(0.1), Within(0.1)],
         },
-        Case {
+        HardCase {
             name: "the inertia of a rod: principal moments 1e-8, 1, 1 + 1e-8",
             why: "a small moment about the axis makes fast spins; J⁻¹ spans eight orders of magnitude",
             body: None,
@@ -111,7 +111,7 @@ pub fn cases() -> Vec<Case> {
             },
             expected: [Within(1e-6), Within(1e-6), Refused("the attitude is lost"), Within(1e-6)],
         },
-        Case {
+        HardCase {
             name: "the inertia of a sphere but for 1e-12",
             why: "the differences of the moments, which drive Euler's equations, are rounding",
             body: None,

@@ -16,15 +16,15 @@ use crate::Expected::{Refused, Within};
 use crate::bodies::{Elastic, changed, cluster, spinning};
 use crate::case::on;
 use crate::trial::{Trial, worse};
-use crate::{Case, Outcome};
+use crate::{HardCase, Outcome};
 
 /// Of a step beyond the limit of a mode.
 const MODES: &str = "beyond the stability limit";
 
 /// The cases.
-pub fn cases() -> Vec<Case> {
+pub fn cases() -> Vec<HardCase> {
     vec![
-        Case {
+        HardCase {
             name: "steps of ten times the limit 2.83/ω of the highest mode",
             why: "each step of Runge–Kutta would make more than 1e4 of every 1",
             body: None,
@@ -32,7 +32,7 @@ pub fn cases() -> Vec<Case> {
             run: |method, _| free_vibration(method),
             expected: [Within(1e-9), Refused(MODES), Refused(MODES), Refused(MODES)],
         },
-        Case {
+        HardCase {
             name: "a spin of more than the scheme follows in a step",
             why: "beyond 2π a rotation vector is another one",
             body: None,
@@ -49,7 +49,7 @@ pub fn cases() -> Vec<Case> {
                 Refused("within a step"),
             ],
         },
-        Case {
+        HardCase {
             name: "a load that jumps in the middle of a step",
             why: "a step across a jump is of first order",
             body: None,
@@ -60,7 +60,7 @@ pub fn cases() -> Vec<Case> {
             },
             expected: [Within(1e-9), Within(1e-4), Within(1e-4), Within(1e-4)],
         },
-        Case {
+        HardCase {
             name: "a pulse of 2e-6 s in steps of 5e-3 s",
             why: "between the stages nothing can be seen of it",
             body: None,
@@ -71,7 +71,7 @@ pub fn cases() -> Vec<Case> {
             },
             expected: [Within(1e-4), Within(1e-4), Within(5e-2), Within(1e-4)],
         },
-        Case {
+        HardCase {
             name: "a spike of 2e-6 s in a table, in steps of 5e-3 s",
             why: "between the stages nothing can be seen of it",
             body: None,
@@ -82,7 +82,7 @@ pub fn cases() -> Vec<Case> {
             },
             expected: [Within(1e-4), Within(1e-4), Within(5e-2), Within(1e-4)],
         },
-        Case {
+        HardCase {
             name: "a spike of 2e-6 s in a formula, its place named by corners, in steps of 5e-3 s",
             why: "a formula does not tell where it changes; its law between two corners is sampled before the run",
             body: None,
@@ -94,7 +94,7 @@ pub fn cases() -> Vec<Case> {
             },
             expected: [Within(1e-4), Within(1e-4), Within(5e-2), Within(1e-4)],
         },
-        Case {
+        HardCase {
             name: "a bell curve of 20 ms, in steps of 2 ms, from rest",
             why: "before it is felt, the energy grows by a factor of up to 2e4 a step, which no account of the work follows",
             body: None,
@@ -102,7 +102,7 @@ pub fn cases() -> Vec<Case> {
             run: |method, _| bell(method),
             expected: [Within(1e-3), Within(1e-3), Within(1e-2), Within(1e-3)],
         },
-        Case {
+        HardCase {
             name: "a formula of eight cycles a step: sin(1e4*t) in steps of 5e-3 s",
             why: "the stages see a slow swing that is not there",
             body: None,
@@ -113,7 +113,7 @@ pub fn cases() -> Vec<Case> {
             },
             expected: [Within(1e-3), Within(1e-3), Within(5e-2), Within(1e-3)],
         },
-        Case {
+        HardCase {
             name: "a formula that jumps within a step where no corner is named",
             why: "a step across a jump is of first order",
             body: None,
@@ -124,7 +124,7 @@ pub fn cases() -> Vec<Case> {
             },
             expected: [Within(1e-3), Within(1e-3), Within(1e-3), Within(1e-3)],
         },
-        Case {
+        HardCase {
             name: "a formula of 8e6 cycles a step: sin(1e10*t) in steps of 5e-3 s",
             why: "no step that could be taken follows it",
             body: None,
@@ -135,7 +135,7 @@ pub fn cases() -> Vec<Case> {
             },
             expected: [Refused("changes too fast"); 4],
         },
-        Case {
+        HardCase {
             name: "1000 cycles at a natural frequency without damping",
             why: "the amplitude grows with every cycle, and so does every error of phase",
             body: None,
@@ -150,7 +150,7 @@ pub fn cases() -> Vec<Case> {
             },
             expected: [Within(1e-6), Within(1e-2), Within(1e-2), Within(1e-2)],
         },
-        Case {
+        HardCase {
             name: "a static load switched on, in steps of 0.2/ω",
             why: "the answer must be K⁻¹f once the vibration has died",
             body: None,
@@ -158,7 +158,7 @@ pub fn cases() -> Vec<Case> {
             run: |method, _| settled(0.2, method),
             expected: [Within(1e-9), Within(1e-9), Within(1e-9), Within(1e-9)],
         },
-        Case {
+        HardCase {
             name: "a static load switched on, in steps of 1000/ω",
             why: "the vibration is over within a thousandth of a step",
             body: None,
@@ -166,7 +166,7 @@ pub fn cases() -> Vec<Case> {
             run: |method, _| settled(1000.0, method),
             expected: [Within(1e-9), Refused(MODES), Refused(MODES), Refused(MODES)],
         },
-        Case {
+        HardCase {
             name: "a follower force on a point of a tumbling body, stiff in its modes",
             why: "it feeds energy into the tumbling without end, while the modes swing hundreds of times in a turn",
             body: None,

@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use advice::{Advice, AdviceError, Effect, Findings, Row, StressField, StressSource, advise, stress, stress_row};
+use advice::{Advice, AdviceError, Findings, Row, StressField, StressSource, advise, stress, stress_row};
 use faer::Mat;
-use frames_rk4::{BodyField, FieldLoad, History, Initial, SharedLoad};
+use frames_rk4::{BodyField, Effect, FieldLoad, History, Initial, SharedLoad};
 use nalgebra::Vector3;
 
 use crate::plate::{plate, spinning};
@@ -22,7 +22,7 @@ fn found(advice: &Advice) -> Findings {
 
 fn stiffening(influence: f64) -> Row {
     let why = "The stress of steady loads.".into();
-    Row { effect: Effect::GeometricStiffening, value: 0.5, influence, on: influence >= TOLERANCE, why }
+    Row { value: 0.5, influence, on: influence >= TOLERANCE, why }
 }
 
 #[test]
@@ -38,11 +38,10 @@ fn the_larger_of_two_reasons_for_stiffening_has_the_row() {
     let (still, fast) = (spun(0.0), spun(10.0));
     let row = |advice: &Advice, steady: Row| {
         let complete = advice.clone().completed(Findings { stress: Some(steady), ..found(advice) });
-        assert_eq!(complete.rows.len(), advice.rows.len());
-        complete.row(Effect::GeometricStiffening).unwrap().clone()
+        complete.effects[Effect::GeometricStiffening].clone()
     };
     assert_eq!(row(&still, stiffening(0.2)), stiffening(0.2));
-    let by_spin = fast.row(Effect::GeometricStiffening).unwrap();
+    let by_spin = &fast.effects[Effect::GeometricStiffening];
     assert!(by_spin.influence > 1e-6, "{by_spin:?}");
     assert_eq!(&row(&fast, stiffening(0.5 * by_spin.influence)), by_spin);
 }
@@ -52,7 +51,7 @@ fn a_stretch_that_is_lacking_is_said_only_where_it_matters() {
     let why = |speed: f64, lacks_stretch: bool| {
         let advice = spun(speed);
         let complete = advice.clone().completed(Findings { lacks_stretch, ..found(&advice) });
-        (advice.stretch, complete.row(Effect::StaticCorrection).unwrap().why.contains("lacks what the spin stretches"))
+        (advice.stretch, complete.static_correction.why.contains("lacks what the spin stretches"))
     };
     let (fast, still) = (why(100.0, true), why(0.0, true));
     println!("{fast:?} {still:?}");

@@ -1,7 +1,7 @@
 //! Estimated influences against the real ones: an effect that is called negligible must be.
 
-use advice::{Case, Effect, advise};
-use frames_rk4::{Drive, DrivenMotion, Effects, History, Initial, Observation};
+use advice::{Case, advise};
+use frames_rk4::{Drive, DrivenMotion, Effect, EffectMap, History, Initial, Observation};
 
 use crate::plate::{CORNER, clamped, plate, run, spinning};
 
@@ -30,15 +30,10 @@ fn difference(a: &[Observation], b: &[Observation]) -> f64 {
 
 fn compare(name: &str, case: &Case) {
     let advice = advise(case, 1e-3).unwrap();
-    let all = Effects::default();
-    let on = run(case, all);
-    for (effect, off) in [
-        (Effect::DeformedInertia, Effects { deformed_inertia: false, ..all }),
-        (Effect::Coriolis, Effects { coriolis: false, ..all }),
-        (Effect::GeometricStiffening, Effects { geometric_stiffening: false, ..all }),
-    ] {
-        let real = difference(&on, &run(case, off)).min(1.0);
-        let row = advice.row(effect).unwrap();
+    let on = run(case, EffectMap::all());
+    for effect in [Effect::DeformedInertia, Effect::Coriolis, Effect::GeometricStiffening] {
+        let real = difference(&on, &run(case, EffectMap::all().without(effect))).min(1.0);
+        let row = &advice.effects[effect];
         println!(
             "{name} {}: value {:.2e} estimate {:.2e} real {real:.2e} {}",
             effect.name(),
@@ -49,8 +44,8 @@ fn compare(name: &str, case: &Case) {
         assert!(row.influence >= real - ROUNDING, "{name} {}: {} {real}", effect.name(), row.influence);
     }
     let undamped = vec![0.0; case.body.flexible()];
-    let real = difference(&on, &run(&Case { damping_ratios: &undamped, ..*case }, all)).min(1.0);
-    let row = advice.row(Effect::Damping).unwrap();
+    let real = difference(&on, &run(&Case { damping_ratios: &undamped, ..*case }, EffectMap::all())).min(1.0);
+    let row = &advice.effects[Effect::Damping];
     println!("{name} damping: estimate {:.2e} real {real:.2e}", row.influence);
     assert!(row.influence >= real - ROUNDING, "{name} damping: {} {real}", row.influence);
     let largest = |k: usize| on.iter().map(|x| x.modal_displacement[k].abs()).fold(0.0, f64::max);
@@ -128,9 +123,9 @@ fn modes_that_are_not_worth_keeping_can_be_left_out() {
         let start = Initial::at_rest(keep);
         let short =
             Case { body: &body, damping_ratios: &zeta[..keep], initial: &start, peaks: &case.peaks[..keep], ..case };
-        let mut rows = run(&short, Effects::default());
+        let mut rows = run(&short, EffectMap::all());
         rows.iter_mut().for_each(|row| row.modal_displacement.resize(10, 0.0));
-        let real = difference(&run(&case, Effects::default()), &rows);
+        let real = difference(&run(&case, EffectMap::all()), &rows);
         println!("{tolerance}: {keep} modes, {real:.1e}");
         // Measured: 2, 3 and 5 modes; 3.4e-2, 4.7e-3 and 1.5e-3.
         assert!((1..10).contains(&keep) && real <= tolerance, "{tolerance}: {keep} modes, {real}");
@@ -156,7 +151,7 @@ fn estimates_are_above_what_an_effect_does_to_a_driven_plate() {
 fn the_spin_of_a_tumbling_plate_is_bounded_closely() {
     let (zeta, initial) = ([0.0; 10], spinning([3.0, 8.0, 5.0]));
     let case = plate().case(&zeta, &[], &initial, 0.3);
-    let real = run(&case, Effects::default()).iter().map(|x| x.omega_body.norm()).fold(0.0, f64::max);
+    let real = run(&case, EffectMap::all()).iter().map(|x| x.omega_body.norm()).fold(0.0, f64::max);
     let bound = advise(&case, 1e-3).unwrap().spin;
     println!("tumbling {bound} {real}");
     assert!(bound >= real && bound < 1.1 * real, "{bound} {real}");

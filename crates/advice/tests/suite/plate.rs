@@ -5,7 +5,7 @@ use std::sync::{Arc, OnceLock};
 use advice::Case;
 use fem_tet10::{Material, Materials, Mesh, PointMass, assemble, read_msh, reduced_geometric_stiffness};
 use frames_rk4::{
-    Effects, History, Initial, Method, Observation, Physics, PointForce, PointShapes, Rows, Setup, SharedLoad,
+    EffectMap, History, Initial, Method, Observation, Physics, PointForce, PointShapes, Rows, Setup, SharedLoad,
     Simulation, StepControl,
 };
 use modal::{BodyPoint, Modes, ReducedBody, RigidMotion, Solver, Support, centrifugal_fields};
@@ -101,8 +101,8 @@ pub fn spinning(omega: [f64; 3]) -> Initial {
 }
 
 /// 200 rows of the motion.
-pub fn run(case: &Case, effects: Effects) -> Vec<Observation> {
-    let physics = Physics { effects, drive: case.drive.cloned(), drive_stiffness: None };
+pub fn run(case: &Case, effects: EffectMap<bool>) -> Vec<Observation> {
+    let physics = Physics { effects, drive: case.drive.cloned(), ..Physics::default() };
     let mut simulation = Simulation::new(&Setup {
         body: case.body,
         damping_ratios: case.damping_ratios,

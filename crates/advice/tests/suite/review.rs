@@ -1,7 +1,7 @@
 //! What happened against what was assumed.
 
 use advice::{Backbone, Broken, Case, Detuning, Refusal, Review, advise};
-use frames_rk4::{Effects, History, Initial, Method, Physics, Reached, Rows, Setup, Simulation, StepControl};
+use frames_rk4::{Effect, EffectMap, History, Initial, Method, Physics, Reached, Rows, Setup, Simulation, StepControl};
 use nalgebra::Vector3;
 
 use crate::plate::{CORNER, clamped, plate, run, spinning};
@@ -12,19 +12,19 @@ fn what_was_assumed_holds_and_what_was_not_is_named_with_its_time() {
     let calm = Initial::at_rest(10);
     let loads = [plate().force(CORNER, [0.0, 0.0, 1.0], History::HalfSine { start: 0.1, duration: 0.02 })];
     let pushed = plate().case(&zeta, &loads, &calm, 0.3);
-    let rows = run(&pushed, Effects::default());
+    let rows = run(&pushed, EffectMap::all());
     let review = |effects, case, advice: &advice::Advice, rows: &[frames_rk4::Observation]| {
         let mut review = Review::new(case, effects, advice);
         rows.iter().for_each(|row| review.observe(row).unwrap());
         review.broken().to_vec()
     };
-    let without = Effects { coriolis: false, ..Effects::default() };
+    let without = EffectMap::all().without(Effect::Coriolis);
     assert_eq!(review(without, pushed, &advise(&pushed, 1e-3).unwrap(), &rows), []);
     // Advice on the same body without the load: both the spin and the deflection break at the pulse.
     let unpushed = plate().case(&zeta, &[], &calm, 0.3);
     let broken = review(without, pushed, &advise(&unpushed, 1e-3).unwrap(), &rows);
     // With all effects on, nothing rests on the estimates.
-    assert_eq!(review(Effects::default(), pushed, &advise(&unpushed, 1e-3).unwrap(), &rows), []);
+    assert_eq!(review(EffectMap::all(), pushed, &advise(&unpushed, 1e-3).unwrap(), &rows), []);
     let spin =
         broken.iter().find_map(|b| if let Broken::Spin { time, found, .. } = b { Some((*time, *found)) } else { None });
     let (time, found) = spin.unwrap();
@@ -39,7 +39,7 @@ fn a_deflection_above_a_tenth_and_a_spin_at_the_limit_are_named() {
     let mut initial = spinning([0.0, 100.0, 0.0]);
     initial.modal_displacement[0] = 0.15 * plate().length / plate().peaks[0];
     let case = plate().case(&zeta, &[], &initial, 1e-3);
-    let bare = Effects { geometric_stiffening: false, ..Effects::default() };
+    let bare = EffectMap::all().without(Effect::GeometricStiffening);
     let rows = run(&case, bare);
     let mut review = Review::new(case, bare, &advise(&case, 1e-3).unwrap());
     rows.iter().for_each(|row| review.observe(row).unwrap());
@@ -53,8 +53,8 @@ fn rounding_is_no_deflection_and_the_cure_names_what_is_off() {
     let zeta = [0.0; 10];
     let still = Initial::at_rest(10);
     let case = plate().case(&zeta, &[], &still, 1e-3);
-    let mut row = run(&case, Effects::default()).pop().unwrap();
-    let bare = Effects { coriolis: false, geometric_stiffening: false, ..Effects::default() };
+    let mut row = run(&case, EffectMap::all()).pop().unwrap();
+    let bare = EffectMap::all().without(Effect::Coriolis).without(Effect::GeometricStiffening);
     let advice = advise(&case, 1e-3).unwrap();
     assert_eq!(advice.deflection, 0.0);
     let mut broken = |deflection: f64| {
@@ -74,9 +74,9 @@ fn what_the_modes_leave_out_of_the_spin_is_weighed_by_the_spin_that_there_is() {
     let initial = spinning([0.0, 0.0, 2.0]);
     let remainders = [0.0, 0.0, 1e-6, 0.0, 0.0, 5e-7];
     let case = advice::Case { centrifugal_remainders: &remainders, ..plate().case(&zeta, &[], &initial, 1e-3) };
-    let row = run(&case, Effects::default()).pop().unwrap();
+    let row = run(&case, EffectMap::all()).pop().unwrap();
     let advice = advise(&case, 1e-3).unwrap();
-    let broken = |omega: [f64; 3], q: f64, effects: Effects| {
+    let broken = |omega: [f64; 3], q: f64, effects: EffectMap<bool>| {
         let mut review = Review::new(case, effects, &advice);
         let mut row = row.clone();
         row.omega_body = omega.into();
@@ -86,23 +86,23 @@ fn what_the_modes_leave_out_of_the_spin_is_weighed_by_the_spin_that_there_is() {
         review.observe(&row).unwrap();
         review.broken()
     };
-    let on = Effects::default();
+    let on = EffectMap::all();
     // 4e-6 about z, of it and a deformation of 3e-6: four fifths.
     let [Broken::Stretch { influence, left_out, .. }] = broken([0.0, 0.0, 2.0], 3e-6, on)[..] else { panic!() };
     assert!((influence - 0.8).abs() < 1e-12 && left_out > 0.0, "{influence} {left_out}");
     // Too little of a large deformation; no spin; no centrifugal force.
     assert_eq!(broken([0.0, 0.0, 2.0], 5e-3, on), []);
     assert_eq!(broken([0.0, 0.0, 0.0], 0.0, on), []);
-    assert_eq!(broken([0.0, 0.0, 2.0], 3e-6, Effects { deformed_inertia: false, ..on }), []);
+    assert_eq!(broken([0.0, 0.0, 2.0], 3e-6, on.without(Effect::DeformedInertia)), []);
 }
 
 /// What is watched at every step of a run in steps of `step`, with rows at multiples of `interval`.
-fn watched(case: &Case, effects: Effects, step: f64, interval: f64) -> Vec<Broken> {
+fn watched(case: &Case, effects: EffectMap<bool>, step: f64, interval: f64) -> Vec<Broken> {
     let mut simulation = Simulation::new(&Setup {
         body: case.body,
         damping_ratios: case.damping_ratios,
         loads: case.loads,
-        physics: &Physics { effects, drive: None, drive_stiffness: None },
+        physics: &Physics { effects, ..Physics::default() },
         reference_points: [Vector3::x(), Vector3::y(), Vector3::z()],
         initial: case.initial,
         method: Method::EXPONENTIAL,
@@ -131,13 +131,12 @@ fn swinging(part: f64) -> (Initial, f64) {
     (initial, std::f64::consts::PI / omega)
 }
 
-const STILL: Effects = Effects {
-    translation: false,
-    rotation: false,
-    deformed_inertia: false,
-    coriolis: false,
-    geometric_stiffening: false,
-};
+const STILL: EffectMap<bool> = EffectMap::all()
+    .without(Effect::Translation)
+    .without(Effect::Rotation)
+    .without(Effect::DeformedInertia)
+    .without(Effect::Coriolis)
+    .without(Effect::GeometricStiffening);
 
 #[test]
 fn a_deflection_between_two_rows_or_two_steps_is_seen() {

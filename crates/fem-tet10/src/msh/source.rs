@@ -2,7 +2,7 @@
 
 use std::str::FromStr;
 
-use crate::error::{MeshError, Place};
+use crate::error::{FilePosition, MeshError};
 
 /// So many bytes of a file are quoted in a message at most; no name of a section is longer.
 const LONGEST_QUOTE: usize = 40;
@@ -16,7 +16,7 @@ pub(super) struct Total {
     what: &'static str,
     claimed: u64,
     /// Where it says so.
-    place: Place,
+    place: FilePosition,
 }
 
 /// A cursor over a MSH file.
@@ -158,11 +158,11 @@ impl<'a> Source<'a> {
     }
 
     /// The place that has been reached.
-    fn place(&self) -> Place {
+    fn place(&self) -> FilePosition {
         if self.binary {
-            Place::Byte(self.at)
+            FilePosition::Byte(self.at)
         } else {
-            Place::Line(1 + self.bytes[..self.at.min(self.bytes.len())].iter().filter(|b| **b == b'\n').count())
+            FilePosition::Line(1 + self.bytes[..self.at.min(self.bytes.len())].iter().filter(|b| **b == b'\n').count())
         }
     }
 

@@ -1,6 +1,6 @@
 //! Files that are refused, and what is said about them.
 
-use fem_tet10::{MeshError, Place, parse_msh, read_msh};
+use fem_tet10::{FilePosition, MeshError, parse_msh, read_msh};
 
 use crate::fixtures::data;
 
@@ -111,12 +111,15 @@ fn the_place_of_a_cut_is_told() {
     let cut = whole.find("$Elements").unwrap() + "$Elements\n1 24".len();
     let lines = whole[..cut].lines().count();
     let (error, message) = refusal(&whole[..cut]);
-    assert!(matches!(error, MeshError::Syntax { place: Place::Line(l), .. } if l == lines), "{message}");
+    assert!(matches!(error, MeshError::Syntax { place: FilePosition::Line(l), .. } if l == lines), "{message}");
     assert_says(&message, &["$Elements", "the end of the file"]);
 
     let whole = std::fs::read(data("cube_binary.msh")).unwrap();
     let (error, message) = refusal(&whole[..1000]);
-    assert!(matches!(error, MeshError::Syntax { place: Place::Byte(b), .. } if (992..=1000).contains(&b)), "{message}");
+    assert!(
+        matches!(error, MeshError::Syntax { place: FilePosition::Byte(b), .. } if (992..=1000).contains(&b)),
+        "{message}"
+    );
     assert_says(&message, &["the end of the file"]);
 }
 
@@ -150,7 +153,7 @@ fn the_line_of_an_error_is_right() {
                 continue; // the size of a number, checked above
             }
             assert!(
-                matches!(error, MeshError::Syntax { place: Place::Line(l), .. } if l == number),
+                matches!(error, MeshError::Syntax { place: FilePosition::Line(l), .. } if l == number),
                 "{number}: {message}"
             );
             assert_says(&message, &["expected", "\"1x2\"", &format!("line {number}:")]);
@@ -192,12 +195,15 @@ fn a_total_that_the_blocks_do_not_hold_is_refused() {
             ];
             let says = says.each_ref().map(String::as_str);
             let (error, message) = refusal(format!("{start}{} {claim} {} {}{rest}", words[0], words[2], words[3]));
-            assert!(matches!(error, MeshError::Total { place: Place::Line(l), .. } if l == line), "{message}");
+            assert!(matches!(error, MeshError::Total { place: FilePosition::Line(l), .. } if l == line), "{message}");
             assert_says(&message, &says);
             assert_says(&message, &["save the mesh again"]);
             spoiled[place..place + 8].copy_from_slice(&claim.to_le_bytes());
             let (error, message) = refusal(&spoiled);
-            assert!(matches!(error, MeshError::Total { place: Place::Byte(b), .. } if b == place + 8), "{message}");
+            assert!(
+                matches!(error, MeshError::Total { place: FilePosition::Byte(b), .. } if b == place + 8),
+                "{message}"
+            );
             assert_says(&message, &says);
         }
     }

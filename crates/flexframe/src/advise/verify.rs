@@ -1,7 +1,7 @@
 //! What an effect really does: the scene run with it switched.
 
-use advice::Effect;
-use frames_rk4::{Observation, Rows, StepControl};
+use advice::Subject;
+use frames_rk4::{Effect, EffectMap, Observation, Rows, StepControl};
 use nalgebra::{Matrix3, Vector3};
 use scene::{Choice, Flexible, Model, Scene};
 use serde::Serialize;
@@ -17,6 +17,8 @@ const COMPARED: f64 = 500.0;
 const LEAST_TURN: f64 = 1e-6;
 /// What the rounding of an attitude comes to, rad.
 const ROUNDING: f64 = 1e-14;
+
+const FLEXIBILITY: Subject = Subject::Effect(Effect::Flexibility);
 
 /// What switching an effect does.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -45,48 +47,41 @@ impl<'a> Base<'a> {
         Ok(base)
     }
 
-    /// The difference that switching an effect makes.
-    pub(super) fn influence(&self, effect: Effect) -> Real {
-        let Some(on) = is_on(self.scene, self.model, effect) else { return Real::Difference(0.0) };
-        let switched = self.settled(Some((effect, !on)));
+    /// The difference that switching an effect or the static shapes makes.
+    pub(super) fn influence(&self, subject: Subject) -> Real {
+        let Some(on) = is_on(self.scene, self.model, subject) else { return Real::Difference(0.0) };
+        let switched = self.settled(Some((subject, !on)));
         let model = match Model::build(&switched, |_| ()) {
             Ok(model) => model,
             Err(error) => return Real::Fails(error.to_string()),
         };
         match follow(&switched, &model) {
-            Ok(motion) => Real::Difference(self.difference(&motion, effect)),
+            Ok(motion) => Real::Difference(self.difference(&motion, subject)),
             Err(failure) => Real::Fails(failure.to_string()),
         }
     }
 
     /// The scene with all effects as they were resolved, but for one that is switched.
-    fn settled(&self, switched: Option<(Effect, bool)>) -> Scene {
+    fn settled(&self, switched: Option<(Subject, bool)>) -> Scene {
         let mut scene = self.scene.clone();
         let natural = self.model.body.flexible() - self.model.static_shapes();
-        let count = if switched == Some((Effect::Flexibility, true)) { scene.modes.flexible.most() } else { natural };
+        let count = if switched == Some((FLEXIBILITY, true)) { scene.modes.flexible.most() } else { natural };
         scene.modes.flexible = Flexible::Count(count);
-        let choose = |effect: Effect| {
+        let choose = |subject: Subject| {
             let on = match switched {
-                Some((of, on)) if of == effect => on,
-                _ => is_on(self.scene, self.model, effect).unwrap_or(false),
+                Some((of, on)) if of == subject => on,
+                _ => is_on(self.scene, self.model, subject).unwrap_or(false),
             };
             if on { Choice::On } else { Choice::Off }
         };
-        scene.effects.flexibility = choose(Effect::Flexibility);
-        scene.effects.damping = choose(Effect::Damping);
-        scene.effects.gravity = choose(Effect::Gravity);
-        scene.effects.deformed_inertia = choose(Effect::DeformedInertia);
-        scene.effects.coriolis = choose(Effect::Coriolis);
-        scene.effects.geometric_stiffening = choose(Effect::GeometricStiffening);
-        scene.effects.translation = choose(Effect::Translation);
-        scene.effects.rotation = choose(Effect::Rotation);
-        scene.modes.static_correction = choose(Effect::StaticCorrection);
+        scene.effects.choices = EffectMap::from_fn(|effect| choose(Subject::Effect(effect)));
+        scene.modes.static_correction = choose(Subject::StaticCorrection);
         scene
     }
 
     /// Largest relative difference of the motions: of the modal displacements (flexibility: the deflection over the
     /// length), of the attitude against the angle turned (up to 1 rad), and of the way of the centre of mass.
-    fn difference(&self, other: &[Observation], effect: Effect) -> f64 {
+    fn difference(&self, other: &[Observation], subject: Subject) -> f64 {
         let (a, b) = (&self.motion, other);
         let norm = |q: &[f64]| q.iter().map(|q| q * q).sum::<f64>().sqrt();
         let largest = |of: &dyn Fn(&Observation) -> f64| a.iter().chain(b).map(of).fold(0.0, f64::max);
@@ -100,7 +95,7 @@ impl<'a> Base<'a> {
         let travelled = largest(&way);
         let relative = |part: f64, whole: f64| if part > 1e-12 * whole { part / whole } else { 0.0 };
         let apart = a.iter().zip(b).map(|(x, y)| {
-            let bent = if effect == Effect::Flexibility {
+            let bent = if subject == FLEXIBILITY {
                 0.0
             } else {
                 let count = x.modal_displacement.len().max(y.modal_displacement.len());
@@ -112,7 +107,7 @@ impl<'a> Base<'a> {
                 .max(relative(moved.norm(), travelled))
         });
         let apart = apart.fold(0.0, |most: f64, x| if x.is_nan() { f64::INFINITY } else { most.max(x) });
-        if effect == Effect::Flexibility {
+        if subject == FLEXIBILITY {
             apart.max(largest(&|x| self.model.deflection(&x.modal_displacement)))
         } else {
             apart

@@ -6,6 +6,8 @@ use figures::FigureError;
 use frames_rk4::EigenError;
 use scene::BuildError;
 
+use crate::write_error::WriteError;
+
 /// Each speed takes an eigenvalue problem, and a row of a table.
 pub(super) const MOST_SPEEDS: usize = 10_000;
 
@@ -52,11 +54,6 @@ pub enum CampbellError {
     #[error(transparent)]
     Figure(#[from] FigureError),
     /// A file cannot be written.
-    #[error("{}: cannot be written: {source}", path.display())]
-    Write {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: std::io::Error,
-    },
+    #[error(transparent)]
+    Write(#[from] WriteError),
 }

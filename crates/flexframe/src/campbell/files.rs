@@ -8,14 +8,15 @@ use whole_file::write_whole;
 use super::diagram::draw;
 use super::error::CampbellError;
 use super::report::CampbellReport;
+use crate::write_error::WriteError;
 
 /// Writes `campbell.csv`, `critical_speeds.csv`, `campbell.svg` and `campbell.png`.
 pub(super) fn write(report: &CampbellReport, folder: &Path, orders: &[f64]) -> Result<Vec<PathBuf>, CampbellError> {
-    std::fs::create_dir_all(folder).map_err(|source| CampbellError::Write { path: folder.to_owned(), source })?;
+    std::fs::create_dir_all(folder).map_err(WriteError::of(folder))?;
     let mut files = Vec::new();
     for (name, text) in [("campbell.csv", branches(report)), ("critical_speeds.csv", critical_speeds(report))] {
         let path = folder.join(name);
-        write_whole(&path, text).map_err(|source| CampbellError::Write { path: path.clone(), source })?;
+        write_whole(&path, text).map_err(WriteError::of(&path))?;
         files.push(path);
     }
     files.extend(draw(report, orders, &folder.join("campbell"))?);

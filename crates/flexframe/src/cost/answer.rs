@@ -5,7 +5,7 @@ use std::fmt;
 use scene::{Rows, Scene};
 use serde::Serialize;
 
-use super::case::Case;
+use super::case::PreparedScene;
 use super::ladder::{Judge, Line, Outcome, Row, settings_between};
 use super::modes::ModesRow;
 use super::setting::Setting;
@@ -36,7 +36,7 @@ pub struct Answer {
 }
 
 /// Looks between the rungs for cheaper settings that still reach the target, and adds them to the lines.
-pub(super) fn refine(case: &Case<'_>, judge: &Judge<'_>, lines: &mut [Line], target: f64) {
+pub(super) fn refine(case: &PreparedScene<'_>, judge: &Judge<'_>, lines: &mut [Line], target: f64) {
     let fastest = lines.iter().filter_map(|line| Some(first_reaching(line, target)?.1)).fold(f64::INFINITY, f64::min);
     for line in lines {
         let Some((reaches, seconds)) = first_reaching(line, target) else { continue };

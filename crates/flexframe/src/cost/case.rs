@@ -9,13 +9,13 @@ use super::run::Scales;
 const COMPARED: u64 = 100;
 
 /// A scene with its model.
-pub(super) struct Case<'a> {
+pub(super) struct PreparedScene<'a> {
     scene: &'a Scene,
     model: &'a Model,
     scales: Scales,
 }
 
-impl<'a> Case<'a> {
+impl<'a> PreparedScene<'a> {
     pub(super) fn new(scene: &'a Scene, model: &'a Model) -> Self {
         Self { scene, model, scales: Scales::of_body(model, scene.time.end) }
     }

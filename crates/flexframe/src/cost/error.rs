@@ -6,6 +6,7 @@ use figures::FigureError;
 use scene::BuildError;
 
 use crate::run::RunFailure;
+use crate::write_error::WriteError;
 
 /// A price list that could not be made.
 #[derive(Debug, thiserror::Error)]
@@ -31,11 +32,6 @@ pub enum CostError {
     #[error(transparent)]
     Figure(#[from] FigureError),
     /// A file cannot be written.
-    #[error("{}: cannot be written: {source}", path.display())]
-    Write {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: std::io::Error,
-    },
+    #[error(transparent)]
+    Write(#[from] WriteError),
 }

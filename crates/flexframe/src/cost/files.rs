@@ -10,6 +10,7 @@ use super::error::CostError;
 use super::ladder::{Line, Outcome};
 use super::report::CostReport;
 use super::setting::Setting;
+use crate::write_error::WriteError;
 
 /// The names of the columns of `cost.csv`.
 const COLUMNS: [&str; 24] = [
@@ -43,9 +44,9 @@ const DRAWN: f64 = 1.0;
 
 /// Writes `cost.csv`, `work_precision.svg` and `work_precision.png`.
 pub(super) fn write(report: &CostReport, folder: &Path) -> Result<Vec<PathBuf>, CostError> {
-    std::fs::create_dir_all(folder).map_err(|source| CostError::Write { path: folder.to_owned(), source })?;
+    std::fs::create_dir_all(folder).map_err(WriteError::of(folder))?;
     let path = folder.join("cost.csv");
-    write_whole(&path, csv(report)).map_err(|source| CostError::Write { path: path.clone(), source })?;
+    write_whole(&path, csv(report)).map_err(WriteError::of(&path))?;
     let mut files = vec![path];
     files.extend(draw(report, &folder.join("work_precision"))?);
     Ok(files)

@@ -6,7 +6,7 @@ use std::time::Instant;
 use frames_rk4::{Method, StepControl};
 use serde::Serialize;
 
-use super::case::Case;
+use super::case::PreparedScene;
 use super::reference::{ROUNDING, Reference};
 use super::run::{Errors, Timing, Trajectory};
 use super::setting::Setting;
@@ -156,7 +156,7 @@ impl Judge<'_> {
     }
 
     /// Runs the motion once for its errors, warming up, and then again and again for the time.
-    pub(super) fn measure(&self, case: &Case<'_>, method: Method, control: StepControl) -> Outcome {
+    pub(super) fn measure(&self, case: &PreparedScene<'_>, method: Method, control: StepControl) -> Outcome {
         match self.try_measure(case, method, control) {
             Ok(measured) => Outcome::Ran(measured.into()),
             Err(RunFailure::OutOfPatience { patience, reached }) => {
@@ -166,7 +166,12 @@ impl Judge<'_> {
         }
     }
 
-    fn try_measure(&self, case: &Case<'_>, method: Method, control: StepControl) -> Result<Measured, RunFailure> {
+    fn try_measure(
+        &self,
+        case: &PreparedScene<'_>,
+        method: Method,
+        control: StepControl,
+    ) -> Result<Measured, RunFailure> {
         let simulation = case.begin(method, control)?;
         let run = Trajectory::follow(simulation.clone(), self.settings.patience)?;
         let timing = Timing::of(&simulation, self.settings.timed_for, self.settings.patience)?;
@@ -208,7 +213,7 @@ impl Judge<'_> {
 /// Runs a method with shorter and shorter steps (or smaller tolerances), until that no longer helps, or a run would
 /// take longer than the patience. `own` is what the scene asks for.
 pub(super) fn climb(
-    case: &Case<'_>,
+    case: &PreparedScene<'_>,
     judge: &Judge<'_>,
     method: Method,
     controlled: bool,
@@ -288,7 +293,7 @@ impl Line {
 }
 
 /// The rungs of a ladder, and the work of each relative to the first.
-fn rungs(case: &Case<'_>, method: Method, controlled: bool) -> Vec<(StepControl, f64)> {
+fn rungs(case: &PreparedScene<'_>, method: Method, controlled: bool) -> Vec<(StepControl, f64)> {
     if controlled {
         // The estimate goes with the fourth power of the step.
         return TOLERANCES
@@ -334,7 +339,7 @@ fn is_one_two_five(count: u64) -> bool {
 }
 
 /// The settings between a rung and a finer one, coarsest first.
-pub(super) fn settings_between(case: &Case<'_>, coarse: Setting, fine: Setting) -> Vec<StepControl> {
+pub(super) fn settings_between(case: &PreparedScene<'_>, coarse: Setting, fine: Setting) -> Vec<StepControl> {
     match (coarse, fine) {
         (Setting::Step(coarse), Setting::Step(fine)) => step_counts()
             .map(|count| tidy(case.end() / count as f64))

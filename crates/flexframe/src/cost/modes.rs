@@ -4,7 +4,7 @@ use frames_rk4::{Method, StepControl};
 use scene::{Model, Scene};
 use serde::Serialize;
 
-use super::case::Case;
+use super::case::PreparedScene;
 use super::reference::converge;
 use super::run::{Errors, Trajectory, seconds_per_step};
 use super::settings::CostSettings;
@@ -55,12 +55,12 @@ pub(super) fn compare(
 ) -> Result<Vec<ModesRow>, (usize, RunFailure)> {
     let method = Method::EXPONENTIAL;
     let budget = settings.budget(5);
-    let most = converge(&Case::new(scene, richest), method, budget, CONVERGED)
+    let most = converge(&PreparedScene::new(scene, richest), method, budget, CONVERGED)
         .map_err(|(_, failure)| (richest.body.flexible(), failure))?;
     let control = StepControl::Fixed(most.step);
     let row = |count: usize| -> Result<ModesRow, RunFailure> {
         let model = richest.truncated(count);
-        let case = Case::new(scene, &model);
+        let case = PreparedScene::new(scene, &model);
         let simulation = case.begin(method, control)?;
         let seconds_per_step = seconds_per_step(&simulation, settings.timed_for)?;
         let run = Trajectory::follow(simulation, budget.time)?;

@@ -11,6 +11,7 @@ use super::ladder::{Line, Measured, Outcome, Row};
 use super::short::{duration, setting};
 use super::spin::{SpinRow, spin_rates};
 use super::{CostError, CostProgress, CostReport, CostSettings, price_list};
+use crate::write_error::WriteError;
 
 /// Errors whose price is shown: 10^−k for these k.
 const DECADES: std::ops::RangeInclusive<i32> = 1..=10;
@@ -43,20 +44,16 @@ pub fn accuracy_page(
         }
         _ => Vec::new(),
     };
-    let written = |path: &Path| {
-        let path = path.to_owned();
-        move |source| CostError::Write { path, source }
-    };
-    std::fs::create_dir_all(&pictures).map_err(written(&pictures))?;
+    std::fs::create_dir_all(&pictures).map_err(WriteError::of(&pictures))?;
     let mut files = Vec::new();
     for (_, report) in &reports {
         let picture = pictures.join(format!("{}.svg", name_of(&report.scene)));
         if let Some(drawn) = report.files.iter().find(|file| file.extension() == Some("svg".as_ref())) {
-            std::fs::read(drawn).and_then(|svg| write_whole(&picture, svg)).map_err(written(&picture))?;
+            std::fs::read(drawn).and_then(|svg| write_whole(&picture, svg)).map_err(WriteError::of(&picture))?;
             files.push(picture);
         }
     }
-    write_whole(path, page(&reports, &spin, &pictures)).map_err(written(path))?;
+    write_whole(path, page(&reports, &spin, &pictures)).map_err(WriteError::of(path))?;
     files.push(path.to_owned());
     Ok(files)
 }

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use frames_rk4::{Method, StepControl};
 use serde::Serialize;
 
-use super::case::Case;
+use super::case::PreparedScene;
 use super::run::{Errors, Trajectory};
 use crate::run::RunFailure;
 
@@ -52,7 +52,7 @@ pub(super) struct Budget {
 /// # Errors
 /// Steps of the last try and its failure, where none came to its end.
 pub(super) fn converge(
-    case: &Case<'_>,
+    case: &PreparedScene<'_>,
     method: Method,
     budget: Budget,
     goal: f64,
@@ -94,7 +94,7 @@ pub(super) fn converge(
     Ok(best)
 }
 
-fn follow(case: &Case<'_>, method: Method, steps: u64, patience: Duration) -> Result<Trajectory, RunFailure> {
+fn follow(case: &PreparedScene<'_>, method: Method, steps: u64, patience: Duration) -> Result<Trajectory, RunFailure> {
     let simulation = case.begin(method, StepControl::Fixed(case.end() / steps as f64))?;
     Trajectory::follow(simulation, patience)
 }

@@ -5,7 +5,7 @@ use std::time::Duration;
 use frames_rk4::{Method, StepControl};
 use scene::{Model, Scene};
 
-use super::case::Case;
+use super::case::PreparedScene;
 use super::run::Trajectory;
 
 /// Steps of the runs.
@@ -27,7 +27,7 @@ pub(super) fn spin_rates(scene: &Scene, model: &Model, patience: Duration) -> Ve
     let mut rows = Vec::new();
     for flexible in [model.body.flexible() / 2, model.body.flexible()] {
         let model = model.truncated(flexible);
-        let case = Case::new(scene, &model);
+        let case = PreparedScene::new(scene, &model);
         let rate = |method, step| -> Option<f64> {
             let run = Trajectory::follow(case.begin(method, StepControl::Fixed(step)).ok()?, patience).ok()?;
             Some((run.final_spin() / run.observations.first()?.omega_body.norm()).ln() / case.end())

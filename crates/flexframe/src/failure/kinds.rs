@@ -15,6 +15,7 @@ use crate::cost::CostError;
 use crate::mode_shapes::ShapesError;
 use crate::paper::PaperError;
 use crate::run::{RunError, RunFailure};
+use crate::write_error::WriteError;
 
 impl Failure for SceneError {
     fn kind(&self) -> Kind {
@@ -280,6 +281,16 @@ impl Failure for AnimationError {
     }
 }
 
+impl Failure for WriteError {
+    fn kind(&self) -> Kind {
+        Kind::Io
+    }
+
+    fn details(&self) -> Details {
+        Details::of_file(&self.path)
+    }
+}
+
 impl Failure for CampbellError {
     fn kind(&self) -> Kind {
         match self {
@@ -287,7 +298,7 @@ impl Failure for CampbellError {
             Self::Eigen { source, .. } => source.kind(),
             Self::Axis { .. } | Self::Speeds { .. } | Self::Order { .. } => Kind::Usage,
             Self::Figure(error) => error.kind(),
-            Self::Write { .. } => Kind::Io,
+            Self::Write(error) => error.kind(),
         }
     }
 
@@ -297,7 +308,7 @@ impl Failure for CampbellError {
             Self::Eigen { scene, .. } => Details::of_file(scene),
             Self::Axis { .. } | Self::Speeds { .. } | Self::Order { .. } => Details::default(),
             Self::Figure(error) => error.details(),
-            Self::Write { path, .. } => Details::of_file(path),
+            Self::Write(error) => error.details(),
         }
     }
 }
@@ -308,7 +319,7 @@ impl Failure for CostError {
             Self::Build(error) => error.kind(),
             Self::Reference { failure, .. } => failure.kind(),
             Self::Figure(error) => error.kind(),
-            Self::Write { .. } => Kind::Io,
+            Self::Write(error) => error.kind(),
         }
     }
 
@@ -317,7 +328,7 @@ impl Failure for CostError {
             Self::Build(error) => error.details(),
             Self::Reference { scene, .. } => Details::of_file(scene),
             Self::Figure(error) => error.details(),
-            Self::Write { path, .. } => Details::of_file(path),
+            Self::Write(error) => error.details(),
         }
     }
 }

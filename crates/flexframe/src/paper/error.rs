@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use results::FileError;
-use rigid_kin::{RigidBodyError, StepError};
+use rigid_kin::{RigidBodyError, RigidStepError};
 use scene::BuildError;
 
 use crate::mode_shapes::ShapesError;
@@ -29,7 +29,7 @@ pub enum PaperError {
     RigidBody(#[from] RigidBodyError),
     /// The rigid plate could not be stepped.
     #[error(transparent)]
-    Step(#[from] StepError),
+    Step(#[from] RigidStepError),
     /// The scene lacks a point that the paper's figures need.
     #[error("{scene}: the paper's figures need the output point {point}; add it under [output.points], as in examples/plate.toml", scene = scene.display())]
     MissingPoint {

@@ -1,6 +1,6 @@
 //! Conservation with geometric stiffening on, and what stiffening does to the paper's plate.
 
-use flexframe::scene::Choice;
+use flexframe::scene::{Choice, Effect};
 
 use crate::{build, rows, scene};
 
@@ -8,7 +8,7 @@ use crate::{build, rows, scene};
 fn a_stiffened_plate_keeps_its_energy_and_momenta_for_ten_seconds() {
     let scene = scene("spinning_plate");
     let model = build(&scene);
-    assert!(model.body.stress_stiffness.is_some() && model.physics.effects.geometric_stiffening);
+    assert!(model.body.stress_stiffness.is_some() && model.physics.effects[Effect::GeometricStiffening]);
     let rows = rows(&model, &scene);
     let first = &rows[0];
     let deflection = first.points[0].displacement.norm();
@@ -29,7 +29,7 @@ fn first_frequency(stiffening: Choice) -> f64 {
     let mut scene = scene("spinning_plate");
     scene.time.end = 0.5;
     scene.output.rows = flexframe::scene::Rows::Interval(5e-4);
-    scene.effects.geometric_stiffening = stiffening;
+    scene.effects.choices[Effect::GeometricStiffening] = stiffening;
     let rows = rows(&build(&scene), &scene);
     let passages: Vec<f64> = rows
         .windows(2)

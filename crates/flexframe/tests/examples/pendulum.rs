@@ -1,7 +1,7 @@
 //! Compound pendulums on a hinge under gravity, against the elliptic integral.
 
 use flexframe::frames_rk4::Observation;
-use flexframe::scene::{Body, Choice, Materials, MeshedBody, Model, Scene};
+use flexframe::scene::{Body, Choice, Effect, Materials, MeshedBody, Model, Scene};
 use nalgebra::Vector3;
 
 use crate::{build, rows, scene};
@@ -67,7 +67,7 @@ fn the_period_of_a_meshed_pendulum_is_the_elliptic_integral() {
     assert!((period / expected - 1.0).abs() < 1e-9, "{period} {expected}");
 
     // The bar that deforms bends as it swings, by something of (Ω/ω₁)² = 1.6e-5: the gap falls as 1/E.
-    scene.effects.flexibility = Choice::On;
+    scene.effects.choices[Effect::Flexibility] = Choice::On;
     let gap = |scene: &Scene| {
         let model = build(scene);
         assert_eq!(model.body.flexible(), 10);

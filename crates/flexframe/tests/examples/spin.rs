@@ -1,13 +1,12 @@
 //! The paper's plate spinning across and along its first bending, without stiffening.
 
 use flexframe::advice::Refusal;
-use flexframe::frames_rk4::{Effects, SteadySpin};
+use flexframe::frames_rk4::{Effect, EffectMap, SteadySpin};
 use nalgebra::Vector3;
 
 use crate::{build, rows, scene};
 
-const UNSTIFFENED: Effects =
-    Effects { translation: true, rotation: true, deformed_inertia: true, coriolis: true, geometric_stiffening: false };
+const UNSTIFFENED: EffectMap<bool> = EffectMap::all().without(Effect::GeometricStiffening);
 
 /// σ² of the first mode, q₁'' + σ² q₁ = 0, by [`SteadySpin`] at the mean spin of a scene's run (the plate grows longer and
 /// so turns slower), and how far the run is from q₁(0) cos σt, in parts of the largest amplitude.

@@ -135,7 +135,7 @@ impl History {
     /// Nothing that the magnitude of the factor exceeds.
     fn bound(&self, end: f64) -> f64 {
         match self {
-            Self::Product(factors) => factors.iter().map(|factor| factor.bound(end)).product(),
+            Self::Product { factors } => factors.iter().map(|factor| factor.bound(end)).product(),
             Self::Table(_) | Self::Expression(_) => self.largest(end),
             _ => 1.0,
         }
@@ -154,7 +154,7 @@ impl History {
             Self::Expression(expression) => {
                 (expression.text().len() as f64 / CHEAP).powi(2).clamp(LEAST_COST, MOST_COST)
             }
-            Self::Product(factors) => factors.iter().map(Self::cost).sum(),
+            Self::Product { factors } => factors.iter().map(Self::cost).sum(),
             _ => 1.0,
         }
     }
@@ -168,7 +168,7 @@ impl History {
             Self::Sine { frequency, .. } => *frequency,
             Self::Sweep { from, to, .. } => from.max(*to),
             Self::Expression(_) => 1e3_f64.min(self.most_panels() / 64.0) / end,
-            Self::Product(factors) => factors.iter().map(|factor| factor.fastest(end)).sum(),
+            Self::Product { factors } => factors.iter().map(|factor| factor.fastest(end)).sum(),
         }
     }
 }

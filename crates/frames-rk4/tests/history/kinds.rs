@@ -86,14 +86,14 @@ fn a_product_is_that_of_its_factors_with_all_their_corners() {
         table(&[1.0, 2.0, 3.0], &[1.0, 3.0, 1.0]),
         formula("exp(-t)"),
     ];
-    let product = History::Product(factors.clone());
+    let product = History::Product { factors: factors.clone() };
     assert_eq!(product.corners(), [0.0, 1.0, 2.0, 3.0, 4.0]);
     for t in [0.5, 1.5, 2.5, 3.5, 4.5] {
         assert_eq!(at(&product, t), factors.iter().map(|factor| at(factor, t)).product::<f64>());
     }
     assert_eq!(sides(&product, 2.0), [0.0, 0.5 * 3.0 * (-2.0_f64).exp()]);
     // Products nest.
-    let nested = History::Product(vec![product, History::Step { at: 0.5 }]);
+    let nested = History::Product { factors: vec![product, History::Step { at: 0.5 }] };
     assert_eq!(nested.corners(), [0.0, 0.5, 1.0, 2.0, 3.0, 4.0]);
 }
 
@@ -110,7 +110,7 @@ fn rates_are_those_of_the_values() {
         History::Sweep { from: 1.0, to: 5.0, start: 0.2, duration: 2.0 },
         table(&[0.0, 0.4, 1.0], &[1.0, 3.0, -2.0]),
         formula("exp(-t)*sin(7*t^2)"),
-        History::Product(vec![sine, formula("t^3"), History::Ramp { start: 0.0, duration: 1.0 }]),
+        History::Product { factors: vec![sine, formula("t^3"), History::Ramp { start: 0.0, duration: 1.0 }] },
     ];
     let h = 1e-5;
     for history in histories {

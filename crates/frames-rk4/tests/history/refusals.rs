@@ -22,9 +22,11 @@ fn numbers_outside_their_range() {
         (sweep(1.0, inf, 0.0, 1.0), "the last frequency of a sweep is inf"),
         (sweep(1.0, 2.0, nan, 1.0), "the start of a sweep is NaN"),
         (sweep(1.0, 2.0, 0.0, 0.0), "the duration of a sweep is 0"),
-        (History::Product(vec![]), "a product of histories has 0 entries; expected at least one"),
+        (History::Product { factors: vec![] }, "a product of histories has 0 entries; expected at least one"),
         (
-            History::Product(vec![History::Constant, History::Product(vec![History::Step { at: nan }])]),
+            History::Product {
+                factors: vec![History::Constant, History::Product { factors: vec![History::Step { at: nan }] }],
+            },
             "the time of a step is NaN",
         ),
     ];
@@ -191,7 +193,7 @@ fn spoiled_formulas() {
 fn an_expression_that_is_no_number_somewhere() {
     let cases = [("1/t", 0.0, f64::INFINITY), ("0/t", 0.0, f64::NAN), ("sqrt(0.5 - t)", 0.5, f64::NAN)];
     for (text, near, value) in cases {
-        for history in [formula(text), History::Product(vec![History::Constant, formula(text)])] {
+        for history in [formula(text), History::Product { factors: vec![History::Constant, formula(text)] }] {
             match history.check_over(2.0) {
                 Err(SetupError::HistoryNotFinite { time, found }) => {
                     assert!((time - near).abs() < 1e-3, "{text} {time}");

@@ -30,7 +30,7 @@ fn magnitudes_integrate_to_their_closed_forms() {
         (table(&[0.0, 1.0, 2.0], &[1.0, -1.0, -1.0]), 3.0, 2.5),
         (formula("exp(-t)"), 10.0, 1.0),
         (formula("sin(2*pi*50*t)"), 10.0, 10.0 * FRAC_2_PI),
-        (History::Product(vec![History::Step { at: 1.0 }, formula("-t")]), 3.0, 4.0),
+        (History::Product { factors: vec![History::Step { at: 1.0 }, formula("-t")] }, 3.0, 4.0),
     ];
     for (history, end, expected) in cases {
         let found = history.magnitude_integral(end);
@@ -119,10 +119,12 @@ fn spectra_of_tables_and_products() {
     let found = table(&times, &values).amplitude_at(12.5, 4.0);
     // Interpolation takes (2π 12.5 · 4e-4)²/12 = 8.2e-5 of it.
     assert!((found / 2.0 - 1.0 + 8.2e-5).abs() < 1e-6, "{found}");
-    let burst = History::Product(vec![
-        History::Sine { frequency: 40.0, phase: 0.0, start: 0.0, duration: None },
-        History::HalfSine { start: 0.0, duration: 1.0 },
-    ]);
+    let burst = History::Product {
+        factors: vec![
+            History::Sine { frequency: 40.0, phase: 0.0, start: 0.0, duration: None },
+            History::HalfSine { start: 0.0, duration: 1.0 },
+        ],
+    };
     // At its own frequency: half of the pulse's 2T/π, but for the mirrored part at 80, below 3e-5.
     assert!((burst.amplitude_at(40.0, 1.0) - 1.0 / PI).abs() < 3e-5);
 }
@@ -144,7 +146,7 @@ fn what_is_too_fast_to_be_walked_along_has_a_bound() {
     }
     let times: Vec<f64> = (0..1000).map(|k| 2e-3 * f64::from(k)).collect();
     let values: Vec<f64> = (0..1000).map(|k| f64::from(k % 7) - 4.0).collect();
-    let product = History::Product(vec![table(&times, &values), sine(1e300), formula("3*exp(-t)")]);
+    let product = History::Product { factors: vec![table(&times, &values), sine(1e300), formula("3*exp(-t)")] };
     product.check_over(2.0).unwrap();
     assert!((product.largest(2.0) - 12.0).abs() < 0.01, "{}", product.largest(2.0));
 }
@@ -152,7 +154,9 @@ fn what_is_too_fast_to_be_walked_along_has_a_bound() {
 #[test]
 fn the_rate_of_a_product_is_that_of_differences() {
     let factors: Vec<History> = (1..=5).map(|k| History::Ramp { start: -0.2 * f64::from(k), duration: 3.0 }).collect();
-    let product = History::Product(vec![History::Product(factors.clone()), formula("cos(3*t)"), History::Constant]);
+    let product = History::Product {
+        factors: vec![History::Product { factors: factors.clone() }, formula("cos(3*t)"), History::Constant],
+    };
     for t in [0.1, 0.7, 1.3] {
         let h = 1e-4;
         let difference = (product.at(t + h, t) - product.at(t - h, t)) / (2.0 * h);

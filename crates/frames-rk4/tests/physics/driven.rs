@@ -1,6 +1,6 @@
 //! Bodies whose held part is driven.
 
-use frames_rk4::{Drive, DrivenMotion, History, Rows, StepControl};
+use frames_rk4::{Drive, DrivenMotion, Effect, History, Rows, StepControl};
 use modal::RigidMotion;
 use nalgebra::Vector3;
 
@@ -104,8 +104,8 @@ fn what_is_driven_moves_whatever_is_off() {
         let mut run = Run::new(&body, 1.0);
         run.physics.drive = Some(drive(motion));
         let [_, expected] = run.ends(EXPONENTIAL, 1e-2);
-        run.physics.effects.translation = false;
-        run.physics.effects.rotation = false;
+        run.physics.effects[Effect::Translation] = false;
+        run.physics.effects[Effect::Rotation] = false;
         let [_, last] = run.ends(EXPONENTIAL, 1e-2);
         assert_eq!(last.modal_displacement, expected.modal_displacement);
         assert_eq!(last.position_global, expected.position_global);

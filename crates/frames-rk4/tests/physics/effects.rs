@@ -1,18 +1,16 @@
 //! Effects that are off.
 
-use frames_rk4::{ConservativeBody, Effects, Physics};
+use frames_rk4::{ConservativeBody, Effect, EffectMap, Physics};
 use modal::RigidMotion;
 use nalgebra::Vector3;
 
 use crate::sample::{EXPONENTIAL, Run, body};
 
-fn all() -> [Effects; 16] {
-    std::array::from_fn(|bits| Effects {
-        translation: bits & 1 != 0,
-        rotation: bits & 2 != 0,
-        deformed_inertia: bits & 4 != 0,
-        coriolis: bits & 8 != 0,
-        geometric_stiffening: true,
+fn all() -> [EffectMap<bool>; 16] {
+    let switched = [Effect::Translation, Effect::Rotation, Effect::DeformedInertia, Effect::Coriolis];
+    std::array::from_fn(|bits| {
+        let off = switched.iter().enumerate().filter(|(bit, _)| bits & (1 << bit) == 0);
+        off.fold(EffectMap::all(), |effects, (_, effect)| effects.without(*effect))
     })
 }
 
@@ -34,7 +32,7 @@ fn what_is_off_takes_no_memory_and_no_multiplication() {
     for effects in all() {
         let physics = Physics { effects, ..Physics::default() };
         let reduced = ConservativeBody::new(&body, &[0.0; 5], Vec::new(), &physics).unwrap();
-        let matrices = match (effects.rotation, effects.deformed_inertia, effects.coriolis) {
+        let matrices = match (effects[Effect::Rotation], effects[Effect::DeformedInertia], effects[Effect::Coriolis]) {
             (false, _, _) => 0,
             (true, inertia, coriolis) => 6 * usize::from(inertia) + 3 * usize::from(coriolis),
         };
@@ -48,14 +46,14 @@ fn what_is_off_takes_no_memory_and_no_multiplication() {
 #[test]
 fn what_is_off_has_no_part_in_the_motion() {
     let body = body(RigidMotion::free(), &[5.0, 8.0, 13.0]);
-    let end = |effects: Effects| {
+    let end = |effects: EffectMap<bool>| {
         let mut run = Run::new(&body, 2.0);
         run.physics.effects = effects;
         let [_, last] = run.ends(EXPONENTIAL, 1e-2);
         last
     };
-    let full = end(Effects::default());
-    let still = end(Effects { rotation: false, ..Effects::default() });
+    let full = end(EffectMap::all());
+    let still = end(EffectMap::all().without(Effect::Rotation));
     assert!(still.omega_body == Vector3::zeros() && still.position_global == full.position_global);
     // Without turning each mode swings by itself.
     for (k, omega) in [5.0_f64, 8.0, 13.0].into_iter().enumerate() {
@@ -64,11 +62,9 @@ fn what_is_off_has_no_part_in_the_motion() {
             start.modal_displacement[k] * (omega * 2.0).cos() + start.modal_velocity[k] / omega * (omega * 2.0).sin();
         assert!((still.modal_displacement[k] - expected).abs() < 1e-13);
     }
-    let fixed = end(Effects { translation: false, ..Effects::default() });
+    let fixed = end(EffectMap::all().without(Effect::Translation));
     assert!(fixed.position_global == Vector3::zeros() && fixed.modal_displacement == full.modal_displacement);
-    for effects in
-        [Effects { coriolis: false, ..Effects::default() }, Effects { deformed_inertia: false, ..Effects::default() }]
-    {
+    for effects in [EffectMap::all().without(Effect::Coriolis), EffectMap::all().without(Effect::DeformedInertia)] {
         assert!(end(effects).attitude.angle_to(&full.attitude) > 1e-3, "{effects:?}");
     }
 }

@@ -1,7 +1,7 @@
 //! Vibrations of a body in steady spin.
 
 use faer::Mat;
-use frames_rk4::{Effects, SteadySpin};
+use frames_rk4::{Effect, EffectMap, SteadySpin};
 use modal::{ReducedBody, RigidMotion};
 use nalgebra::Vector3;
 
@@ -18,7 +18,7 @@ fn round_spring(omega: f64) -> ReducedBody {
 
 #[test]
 fn a_point_on_a_round_spring_circles_by_the_sum_and_the_difference_of_frequency_and_spin() {
-    let spin = SteadySpin::new(&round_spring(3.0), &Vector3::z(), &Effects::default());
+    let spin = SteadySpin::new(&round_spring(3.0), &Vector3::z(), &EffectMap::all());
     for speed in [0.5, 2.0, 2.9, 5.0] {
         let modes = spin.modes(speed).unwrap();
         // Beyond its frequency a body overtakes the circle that goes forwards, which it then sees go backwards.
@@ -33,7 +33,7 @@ fn a_point_on_a_round_spring_circles_by_the_sum_and_the_difference_of_frequency_
 
 #[test]
 fn critical_speeds_of_a_round_spring_are_fractions_of_its_frequency() {
-    let spin = SteadySpin::new(&round_spring(3.0), &Vector3::z(), &Effects::default());
+    let spin = SteadySpin::new(&round_spring(3.0), &Vector3::z(), &EffectMap::all());
     // |3 − Ω| = nΩ and 3 + Ω = nΩ.
     for (order, expected) in [(0.0, vec![3.0, 3.0]), (0.5, vec![2.0, 6.0]), (1.0, vec![1.5]), (2.0, vec![1.0, 3.0])] {
         let found = spin.critical_speeds(order).unwrap();
@@ -49,7 +49,7 @@ fn critical_speeds_of_a_round_spring_are_fractions_of_its_frequency() {
 fn at_a_critical_speed_some_frequency_is_a_multiple_of_the_spin() {
     let body = body(RigidMotion::free(), &[5.0, 8.0, 13.0, 14.0]);
     let axis = Vector3::new(1.0, 2.0, -2.0) / 3.0;
-    let spin = SteadySpin::new(&body, &axis, &Effects::default());
+    let spin = SteadySpin::new(&body, &axis, &EffectMap::all());
     for order in [1.0, 2.5, 4.0] {
         let speeds = spin.critical_speeds(order).unwrap();
         assert!(!speeds.is_empty());
@@ -64,7 +64,7 @@ fn at_a_critical_speed_some_frequency_is_a_multiple_of_the_spin() {
 
 #[test]
 fn without_coriolis_terms_what_loses_definiteness_grows() {
-    let effects = Effects { coriolis: false, ..Effects::default() };
+    let effects = EffectMap::all().without(Effect::Coriolis);
     let spin = SteadySpin::new(&round_spring(3.0), &Vector3::z(), &effects);
     for mode in spin.modes(5.0).unwrap() {
         // ω² = 3² − 5²

@@ -1,5 +1,6 @@
 //! The damping of a scene.
 
+use frames_rk4::Effect;
 use modal::ReducedBody;
 
 use crate::effects::Choice;
@@ -8,7 +9,7 @@ use crate::scene::Scene;
 /// One damping ratio for each flexible mode.
 pub(super) fn damping_ratios(scene: &Scene, body: &ReducedBody) -> Vec<f64> {
     let frequencies = body.circular_frequencies.iter().enumerate();
-    match scene.effects.damping {
+    match scene.effects.choices[Effect::Damping] {
         Choice::Off => vec![0.0; body.flexible()],
         Choice::On | Choice::Auto => frequencies.map(|(k, omega)| scene.modes.damping.ratio(k, *omega)).collect(),
     }

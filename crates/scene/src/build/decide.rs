@@ -1,7 +1,6 @@
 //! Second stage: what the scene leaves open is decided.
 
-use advice::Effect;
-use frames_rk4::Effects;
+use frames_rk4::{Effect, EffectMap};
 
 use super::physics;
 use super::survey::Survey;
@@ -17,17 +16,14 @@ pub(super) struct Decision {
     pub has_static_shapes: bool,
     /// What the modes leave out of the static answers to the spin (6), where static shapes for it are missing.
     pub lacks: Option<Vec<f64>>,
-    /// Effects of the equations of motion.
-    pub effects: Effects,
-    pub has_damping: bool,
-    pub has_gravity: bool,
+    pub effects: EffectMap<bool>,
 }
 
 impl Decision {
     pub fn new(scene: &Scene, survey: &Survey) -> Self {
         let Survey { modal, advice, statics, .. } = survey;
         let flexible = modal.body.flexible();
-        let keep = match (scene.modes.flexible, scene.effects.flexibility) {
+        let keep = match (scene.modes.flexible, scene.effects.choices[Effect::Flexibility]) {
             (Flexible::Auto { .. }, Choice::On) => advice.keep.max(1).min(flexible),
             (Flexible::Auto { .. }, Choice::Auto) => advice.keep,
             _ => flexible,
@@ -36,19 +32,14 @@ impl Decision {
             && match physics::static_correction(scene, flexible) {
                 Choice::On => true,
                 Choice::Off => false,
-                Choice::Auto => advice.is_on(Effect::StaticCorrection),
+                Choice::Auto => advice.static_correction.on,
             };
         let of_spin = statics.of_spin.as_ref().filter(|_| keep > 0 && !has_static_shapes);
-        let stiffening = keep > 0
-            && modal.body.stress_stiffness.is_some()
-            && (scene.effects.geometric_stiffening == Choice::On || advice.is_on(Effect::GeometricStiffening));
         Self {
             keep,
             has_static_shapes,
             lacks: of_spin.map(|of_spin| of_spin.remainders.clone()),
-            effects: physics::effects(scene, advice, stiffening),
-            has_damping: physics::damping(scene, advice),
-            has_gravity: physics::gravity(scene, advice),
+            effects: physics::effects(scene, advice, &modal.body, keep),
         }
     }
 }

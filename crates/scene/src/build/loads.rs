@@ -5,7 +5,7 @@ use std::sync::Arc;
 use faer::Mat;
 use fem_tet10::{Location, MeanRotation, Mesh};
 use frames_rk4::{
-    BodyField, FieldLoad, LoadFrame, PointForce, PointMoment, PointShapes, RotationShapes, SecondOrder, SharedLoad,
+    BodyField, Effect, FieldLoad, LoadFrame, PointForce, PointMoment, PointShapes, RotationShapes, SecondOrder, SharedLoad,
 };
 use modal::{BodyPoint, Modes, ReducedBody};
 use nalgebra::Vector3;
@@ -28,7 +28,7 @@ const PARALLEL: f64 = 1e-12;
 pub(super) struct MeshLoad {
     /// What it is, for the reader.
     name: String,
-    place: Place,
+    action: Action,
     pub history: frames_rk4::History,
     /// Whether it keeps its direction in the body.
     pub follows: bool,
@@ -59,7 +59,7 @@ impl FromIterator<(SharedLoad, bool)> for BodyLoads {
 }
 
 /// Where a load acts, and how much.
-enum Place {
+enum Action {
     /// A force at the weighted mean of nodes; the weights sum to one.
     Force { nodes: Vec<u32>, weights: Vec<f64>, force: Vector3<f64> },
     /// A couple on the mean rotation of nodes.
@@ -87,19 +87,19 @@ pub(super) fn on_mesh(scene: &Scene, mesh: &Mesh, nodal_mass: &[f64]) -> Result<
             let spread = |weights: Vec<f64>, nodes: Vec<u32>, of_unit: Vector3<f64>| {
                 let total: f64 = weights.iter().sum();
                 let weights = weights.into_iter().map(|w| w / total).collect();
-                Place::Force { nodes, weights, force: of_unit * total }
+                Action::Force { nodes, weights, force: of_unit * total }
             };
-            let place = match load {
+            let action = match load {
                 Load::Force(load) => {
                     let Location { nodes, weights } =
                         mesh.locate(load.at).map_err(|error| refuse(scene, &key("at"), error))?;
-                    Place::Force {
+                    Action::Force {
                         nodes: nodes.to_vec(),
                         weights: weights.to_vec(),
                         force: Vector3::from(load.direction) * load.amplitude,
                     }
                 }
-                Load::Moment(load) => Place::Moment {
+                Load::Moment(load) => Action::Moment {
                     patch: mesh.mean_rotation(load.at, load.radius).map_err(|error| {
                         refuse(scene, &key(if load.radius.is_some() { "radius" } else { "at" }), error)
                     })?,
@@ -112,7 +112,7 @@ pub(super) fn on_mesh(scene: &Scene, mesh: &Mesh, nodal_mass: &[f64]) -> Result<
                 Load::Pressure(load) => {
                     let (nodes, forces) = mesh.surface_pressure(&load.group).map_err(surface)?;
                     let forces = forces.into_iter().map(|f| f * load.amplitude).collect();
-                    Place::Field { nodes, forces, group: load.group.clone(), pressure: load.amplitude }
+                    Action::Field { nodes, forces, group: load.group.clone(), pressure: load.amplitude }
                 }
                 Load::Gravity(_) | Load::BaseAcceleration(_) => {
                     let nodes = (0..nodal_mass.len() as u32).collect();
@@ -121,7 +121,7 @@ pub(super) fn on_mesh(scene: &Scene, mesh: &Mesh, nodal_mass: &[f64]) -> Result<
             };
             let history = history(scene, &key("history"), of(load))?;
             let name = name(i, load);
-            Ok(MeshLoad { name, place, history, follows: follows(load), attitude, is_gravity: is_gravity(load) })
+            Ok(MeshLoad { name, action, history, follows: follows(load), attitude, is_gravity: is_gravity(load) })
         })
         .collect()
 }
@@ -170,7 +170,7 @@ pub(super) fn on_rigid(scene: &Scene, body: &ReducedBody) -> Result<BodyLoads, B
 
 /// The loads that may act, with their numbers in the scene.
 fn acting(scene: &Scene) -> impl Iterator<Item = (usize, &Load)> {
-    let with_gravity = scene.effects.gravity != Choice::Off;
+    let with_gravity = scene.effects.choices[Effect::Gravity] != Choice::Off;
     scene.loads.iter().enumerate().filter(move |(_, load)| with_gravity || !is_gravity(load))
 }
 
@@ -237,11 +237,11 @@ impl MeshLoad {
 
     /// The force or moment in the first attitude, body axes, where the history is 1; none of a field.
     pub(super) fn vector(&self) -> Option<Vector3<f64>> {
-        match &self.place {
-            Place::Force { force: vector, .. } | Place::Moment { moment: vector, .. } => {
+        match &self.action {
+            Action::Force { force: vector, .. } | Action::Moment { moment: vector, .. } => {
                 Some(if self.follows { *vector } else { self.attitude.to_body(vector) })
             }
-            Place::Field { .. } => None,
+            Action::Field { .. } => None,
         }
     }
 
@@ -286,16 +286,16 @@ impl MeshLoad {
                 forces[3 * node as usize + axis] += force[axis];
             }
         };
-        match &self.place {
-            Place::Force { nodes, weights, .. } => {
+        match &self.action {
+            Action::Force { nodes, weights, .. } => {
                 nodes.iter().zip(weights).for_each(|(node, w)| add(*node, &(vector * *w)));
             }
-            Place::Moment { patch, .. } => {
+            Action::Moment { patch, .. } => {
                 for (node, turned) in patch.nodes.iter().zip(&patch.rotation_per_displacement) {
                     add(*node, &turned.tr_mul(&vector));
                 }
             }
-            Place::Field { nodes, forces, .. } => nodes.iter().zip(forces).for_each(|(node, f)| add(*node, f)),
+            Action::Field { nodes, forces, .. } => nodes.iter().zip(forces).for_each(|(node, f)| add(*node, f)),
         }
     }
 
@@ -306,7 +306,7 @@ impl MeshLoad {
         body: &ReducedBody,
         modes: &Modes,
     ) -> Result<Option<FollowerChange>, BuildError> {
-        let Place::Field { nodes, forces, group, pressure } = &self.place else { return Ok(None) };
+        let Action::Field { nodes, forces, group, pressure } = &self.action else { return Ok(None) };
         let nf = body.flexible();
         let mut change = FollowerChange {
             force: vec![Vector3::zeros(); nf],
@@ -353,8 +353,8 @@ impl MeshLoad {
             };
             Ok(Some(SecondOrder::new(stress.iter().map(of_unit).collect())?))
         };
-        Ok(match &self.place {
-            Place::Force { nodes, weights, force } => {
+        Ok(match &self.action {
+            Action::Force { nodes, weights, force } => {
                 let point = BodyPoint::new(modes, mesh.positions(), nodes, weights).map_err(modal(scene))?;
                 let point = PointShapes::new(body, &point);
                 let point = match second_order()? {
@@ -363,7 +363,7 @@ impl MeshLoad {
                 };
                 Arc::new(PointForce { point, force: *force, frame, history })
             }
-            Place::Moment { patch, moment } => {
+            Action::Moment { patch, moment } => {
                 let turned: Vec<Vector3<f64>> = (0..nf)
                     .map(|k| {
                         let of = patch.nodes.iter().zip(&patch.rotation_per_displacement);
@@ -378,7 +378,7 @@ impl MeshLoad {
                 };
                 Arc::new(PointMoment { rotation, moment: *moment, frame, history })
             }
-            Place::Field { nodes, forces, .. } => {
+            Action::Field { nodes, forces, .. } => {
                 let position = |node: u32| Vector3::from(mesh.positions()[node as usize]) - body.origin;
                 let acting = || nodes.iter().copied().zip(forces);
                 let force_body: Vector3<f64> = forces.iter().sum();

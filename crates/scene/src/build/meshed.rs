@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use advice::{buckling, limits, unsteady};
 use fem_tet10::{Location, Mesh};
-use frames_rk4::{Physics, PointShapes};
+use frames_rk4::{Effect, Physics, PointShapes};
 use modal::{BodyPoint, Modes, ReducedBody, Solver};
 use nalgebra::Vector3;
 
@@ -34,7 +34,7 @@ pub(super) fn build(
     progress(BuildProgress::Assembly);
     let matrices = timed(&mut times.assembly, || matrices(scene, body, &mesh))?;
     let (support, drive) = support(scene, Some(&mesh))?;
-    let requested = match scene.effects.flexibility {
+    let requested = match scene.effects.choices[Effect::Flexibility] {
         Choice::Off => 0,
         Choice::On | Choice::Auto => scene.modes.flexible.most(),
     };
@@ -63,16 +63,20 @@ pub(super) fn build(
     let reference_points = reference_points(scene, &mesh, &reduced.body);
     times.reduction += started.elapsed();
 
-    let Decision { effects, has_damping, has_gravity, lacks, .. } = decision;
+    let Decision { effects, lacks, .. } = decision;
     let mut model = Model {
-        physics: Physics { effects, drive: model.drive, drive_stiffness: stress.of_drive },
+        physics: Physics { effects, drive: model.drive, drive_stiffness: stress.of_drive, large_deflection: None },
         points,
         reference_points,
         advice,
         refusal: None,
         times,
-        loads: reduced.loads.acting(has_gravity),
-        damping_ratios: if has_damping { reduced.damping_ratios } else { vec![0.0; reduced.body.flexible()] },
+        loads: reduced.loads.acting(effects[Effect::Gravity]),
+        damping_ratios: if effects[Effect::Damping] {
+            reduced.damping_ratios
+        } else {
+            vec![0.0; reduced.body.flexible()]
+        },
         size: reduced.size,
         // Who switches static shapes off is not warned again.
         left_out: lacks.filter(|_| scene.modes.static_correction == Choice::Auto).unwrap_or_default(),

@@ -1,8 +1,8 @@
 //! Which effects a scene gets.
 
-use advice::{Advice, Effect};
-use frames_rk4::{Drive, Effects, Method};
-use modal::RigidMotion;
+use advice::Advice;
+use frames_rk4::{Drive, Effect, EffectMap, Method};
+use modal::{ReducedBody, RigidMotion};
 
 use super::loads::MeshLoad;
 use super::turning::{Turning, turning};
@@ -17,23 +17,13 @@ pub(super) fn may_spin(scene: &Scene, motion: RigidMotion, drive: Option<&Drive>
 
 /// Whether the stress of loads and drives may stiffen the body.
 pub(super) fn may_stress(scene: &Scene) -> bool {
-    scene.effects.geometric_stiffening != Choice::Off && !scene.time.method.is_of_paper()
+    scene.effects.choices[Effect::GeometricStiffening] != Choice::Off && !scene.time.method.is_of_paper()
 }
 
 /// Whether a load stays as it is, seen from the body.
 pub(super) fn is_steady(scene: &Scene, motion: RigidMotion, drive: Option<&Drive>, load: &MeshLoad) -> bool {
     let turns = turning(scene, motion, drive) != Turning::Not;
     matches!(load.history, frames_rk4::History::Constant) && (load.follows || !turns)
-}
-
-/// Whether the loads of gravity that the scene lets act do act.
-pub(super) fn gravity(scene: &Scene, advice: &Advice) -> bool {
-    scene.effects.gravity != Choice::Auto || advice.is_on(Effect::Gravity)
-}
-
-/// Whether modes keep the damping that the scene lets them have.
-pub(super) fn damping(scene: &Scene, advice: &Advice) -> bool {
-    scene.effects.damping != Choice::Auto || scene.time.method.is_of_paper() || advice.is_on(Effect::Damping)
 }
 
 /// Whether static shapes are to be added to the `flexible` modes that there are.
@@ -46,21 +36,17 @@ pub(super) fn static_correction(scene: &Scene, flexible: usize) -> Choice {
     }
 }
 
-/// The effects of the equations of motion: what the scene leaves open is as advised.
-pub(super) fn effects(scene: &Scene, advice: &Advice, stiffening: bool) -> Effects {
-    let paper = scene.time.method.is_of_paper();
-    let resolve = |choice: Choice, effect: Effect| match choice {
+/// The effects of the motion of a body of which `keep` modes are kept: what the scene leaves open is as advised.
+pub(super) fn effects(scene: &Scene, advice: &Advice, body: &ReducedBody, keep: usize) -> EffectMap<bool> {
+    // The paper's formulation has the effects that it has; gravity is a load like others.
+    let in_any_case = |effect: Effect| scene.time.method.is_of_paper() && effect != Effect::Gravity;
+    let mut effects = EffectMap::from_fn(|effect| match scene.effects.choices[effect] {
         Choice::On => true,
         Choice::Off => false,
-        Choice::Auto => paper || advice.is_on(effect),
-    };
-    let chosen = &scene.effects;
-    let deformed_inertia = resolve(chosen.deformed_inertia, Effect::DeformedInertia);
-    Effects {
-        translation: resolve(chosen.translation, Effect::Translation),
-        rotation: resolve(chosen.rotation, Effect::Rotation),
-        deformed_inertia,
-        coriolis: resolve(chosen.coriolis, Effect::Coriolis),
-        geometric_stiffening: stiffening && deformed_inertia,
-    }
+        Choice::Auto => in_any_case(effect) || advice.effects[effect].on,
+    });
+    effects[Effect::Flexibility] = keep > 0;
+    effects[Effect::GeometricStiffening] &=
+        keep > 0 && body.stress_stiffness.is_some() && effects[Effect::DeformedInertia];
+    effects
 }

@@ -1,7 +1,7 @@
 //! Third stage: the body that has what was decided.
 
 use advice::{Advice, Backbone, Findings, advise};
-use frames_rk4::Effects;
+use frames_rk4::Effect;
 use modal::{Modes, Solver};
 
 use super::decide::Decision;
@@ -32,7 +32,7 @@ impl Reduction {
         let Survey { modes, modal, statics, mut backbones, advice } = survey;
         let tolerance = model.scene.effects.tolerance;
         backbones.truncate(decision.keep);
-        let Effects { geometric_stiffening: stiffens, .. } = decision.effects;
+        let stiffens = decision.effects[Effect::GeometricStiffening];
         let has_all = decision.keep == modal.body.flexible() && !decision.has_static_shapes;
         let (modes, modal, deflection) = if has_all {
             let stiffness = modal.body.stress_stiffness.clone().filter(|_| stiffens);
@@ -73,7 +73,7 @@ fn basis(
 /// Refuses stiffening that is asked for where nothing stresses the body.
 fn refuse_without_stress(model: &MeshModel<'_>, stress: &Stress) -> Result<(), BuildError> {
     let &MeshModel { scene, support, .. } = model;
-    let asked = scene.effects.geometric_stiffening == Choice::On;
+    let asked = scene.effects.choices[Effect::GeometricStiffening] == Choice::On;
     if !asked || stress.any() || physics::may_spin(scene, support.motion, model.drive.as_ref()) {
         return Ok(());
     }

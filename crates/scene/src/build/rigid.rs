@@ -2,7 +2,7 @@
 
 use advice::{Case, advise};
 use faer::Mat;
-use frames_rk4::{Physics, PointShapes};
+use frames_rk4::{Effect, Physics, PointShapes};
 use modal::{BodyPoint, ReducedBody, Support};
 use nalgebra::{Matrix3, Vector3};
 
@@ -52,10 +52,11 @@ pub(super) fn build(scene: &Scene, rigid: &RigidBody) -> Result<Model, BuildErro
         },
         scene.effects.tolerance,
     )?;
+    let effects = physics::effects(scene, &advice, &body, 0);
     Ok(Model {
         meshed: None,
-        loads: loads.acting(physics::gravity(scene, &advice)),
-        physics: Physics { effects: physics::effects(scene, &advice, false), drive, drive_stiffness: None },
+        loads: loads.acting(effects[Effect::Gravity]),
+        physics: Physics { effects, drive, ..Physics::default() },
         points,
         reference_points,
         advice,

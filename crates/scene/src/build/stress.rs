@@ -2,6 +2,7 @@
 
 use advice::{Row, StressField, StressSource, stress, stress_row};
 use faer::{Mat, MatRef};
+use frames_rk4::Effect;
 use fem_tet10::{AssemblyError, geometric_stiffness_product};
 use modal::{ModalError, Modes};
 use nalgebra::Vector3;
@@ -91,7 +92,7 @@ impl Stress {
         self.row = stress_row(&fields, &influences, effects.tolerance);
         let matters = |source: StressSource| {
             let of_source = names.iter().zip(&influences).filter(|((s, _), _)| *s == source);
-            effects.geometric_stiffening == Choice::On
+            effects.choices[Effect::GeometricStiffening] == Choice::On
                 || of_source.into_iter().any(|(_, found)| found.influence >= effects.tolerance)
         };
         let kept: Vec<bool> = (0..self.of_loads.len()).map(|i| matters(StressSource::Load(i))).collect();

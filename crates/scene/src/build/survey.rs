@@ -1,6 +1,7 @@
 //! First stage: what is known of a body with all the modes that were searched for.
 
 use advice::{Advice, Backbone, Case, advise, screen};
+use frames_rk4::Effect;
 use modal::Modes;
 
 use super::backbones::backbones;
@@ -70,10 +71,10 @@ impl Survey {
 /// Whether the stress of the spin may matter, and is to be computed.
 fn may_stiffen(model: &MeshModel<'_>, modal: &ModalModel) -> Result<bool, BuildError> {
     let &MeshModel { scene, support, .. } = model;
-    if modal.body.flexible() == 0 || scene.effects.deformed_inertia == Choice::Off {
+    if modal.body.flexible() == 0 || scene.effects.choices[Effect::DeformedInertia] == Choice::Off {
         return Ok(false);
     }
-    Ok(match scene.effects.geometric_stiffening {
+    Ok(match scene.effects.choices[Effect::GeometricStiffening] {
         Choice::On => true,
         Choice::Off => false,
         Choice::Auto => {
@@ -89,7 +90,7 @@ fn may_stiffen(model: &MeshModel<'_>, modal: &ModalModel) -> Result<bool, BuildE
 fn may_stretch(model: &MeshModel<'_>, modal: &ModalModel) -> Result<bool, BuildError> {
     let &MeshModel { scene, support, .. } = model;
     let acts = modal.body.flexible() > 0
-        && scene.effects.deformed_inertia != Choice::Off
+        && scene.effects.choices[Effect::DeformedInertia] != Choice::Off
         && physics::may_spin(scene, support.motion, model.drive.as_ref());
     Ok(acts
         && match scene.modes.static_correction {

@@ -1,6 +1,6 @@
 //! Whether and how the body of a scene can turn.
 
-use frames_rk4::{Drive, DrivenMotion};
+use frames_rk4::{Drive, DrivenMotion, Effect};
 use modal::RigidMotion;
 use nalgebra::Vector3;
 
@@ -17,7 +17,7 @@ pub(super) enum Turning {
 }
 
 pub(super) fn turning(scene: &Scene, motion: RigidMotion, drive: Option<&Drive>) -> Turning {
-    if scene.effects.rotation == Choice::Off {
+    if scene.effects.choices[Effect::Rotation] == Choice::Off {
         return Turning::Not;
     }
     match (motion.rotations(), drive.map(|drive| drive.motion)) {

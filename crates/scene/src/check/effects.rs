@@ -1,6 +1,6 @@
 //! The rules on `[effects]`: what is asked for must be there, and what is there by force cannot be switched off.
 
-use frames_rk4::Method;
+use frames_rk4::{Effect, Method};
 
 use super::Check;
 use crate::constraint::Constraint;
@@ -29,7 +29,7 @@ impl Check<'_> {
         )?;
         self.of_deformation(effects, modes, initial)?;
         let has_gravity = loads.iter().any(|load| matches!(load, Load::Gravity(_)));
-        self.not_on("gravity", effects.gravity, !has_gravity, "no load `kind = \"gravity\"`", "add it to [[loads]]")?;
+        self.not_on(effects, Effect::Gravity, !has_gravity, "no load `kind = \"gravity\"`", "add it to [[loads]]")?;
 
         let (can_translate, can_turn) = match constraint {
             None => (true, true),
@@ -39,21 +39,17 @@ impl Check<'_> {
         };
         let held = "a constraint that leaves none";
         let cure = "change [[constraints]]";
-        self.not_on("translation", effects.translation, !can_translate, held, cure)?;
-        self.not_on("rotation", effects.rotation, !can_turn, held, cure)?;
+        self.not_on(effects, Effect::Translation, !can_translate, held, cure)?;
+        self.not_on(effects, Effect::Rotation, !can_turn, held, cure)?;
 
         let turned = matches!(constraint, Some(Constraint::Hinge { motion: Some(_), .. }));
         let driven = matches!(constraint, Some(Constraint::Slider { motion: Some(_), .. }));
         let motion = "the `motion` of the constraint";
-        self.not_off("rotation", effects.rotation, turned, motion)?;
-        self.not_off("translation", effects.translation, driven, motion)?;
-        self.not_off(
-            "rotation",
-            effects.rotation,
-            initial.angular_velocity != [0.0; 3],
-            "an initial `angular_velocity`",
-        )?;
-        self.not_off("translation", effects.translation, initial.velocity != [0.0; 3], "an initial `velocity`")
+        self.not_off(effects, Effect::Rotation, turned, motion)?;
+        self.not_off(effects, Effect::Translation, driven, motion)?;
+        let turns = initial.angular_velocity != [0.0; 3];
+        self.not_off(effects, Effect::Rotation, turns, "an initial `angular_velocity`")?;
+        self.not_off(effects, Effect::Translation, initial.velocity != [0.0; 3], "an initial `velocity`")
     }
 
     /// The paper's formulation has the effects that it has.
@@ -62,48 +58,43 @@ impl Check<'_> {
             return Ok(());
         }
         let paper = "the paper's formulation";
-        let stiffening = effects.geometric_stiffening;
-        self.not_on("geometric_stiffening", stiffening, true, paper, "set `formulation = \"conservative\"`")?;
-        let &Effects { deformed_inertia, coriolis, translation, rotation, .. } = effects;
-        for (name, choice) in [
-            ("deformed_inertia", deformed_inertia),
-            ("coriolis", coriolis),
-            ("translation", translation),
-            ("rotation", rotation),
-        ] {
-            self.not_off(name, choice, true, paper)?;
-        }
-        Ok(())
+        let cure = "set `formulation = \"conservative\"`";
+        self.not_on(effects, Effect::GeometricStiffening, true, paper, cure)?;
+        [Effect::DeformedInertia, Effect::Coriolis, Effect::Translation, Effect::Rotation]
+            .into_iter()
+            .try_for_each(|effect| self.not_off(effects, effect, true, paper))
     }
 
     /// The effects that need a body that deforms.
     fn of_deformation(&self, effects: &Effects, modes: &Modes, initial: &Initial) -> Result<(), SceneError> {
-        let &Effects { flexibility, damping, deformed_inertia, coriolis, geometric_stiffening, .. } = effects;
         let no_modes = modes.flexible == Flexible::Count(0);
         let (found, cure) = match no_modes {
             true => ("no flexible modes", "keep flexible modes of a body with a mesh"),
             false => ("`flexibility = false`", "set `flexibility = \"auto\"`"),
         };
-        self.not_on("flexibility", flexibility, no_modes, found, cure)?;
-        let is_rigid = no_modes || flexibility == Choice::Off;
-        for (name, choice) in [
-            ("damping", damping),
-            ("deformed_inertia", deformed_inertia),
-            ("coriolis", coriolis),
-            ("geometric_stiffening", geometric_stiffening),
-        ] {
-            self.not_on(name, choice, is_rigid, found, cure)?;
+        self.not_on(effects, Effect::Flexibility, no_modes, found, cure)?;
+        let is_rigid = no_modes || effects.choices[Effect::Flexibility] == Choice::Off;
+        for effect in [Effect::Damping, Effect::DeformedInertia, Effect::Coriolis, Effect::GeometricStiffening] {
+            self.not_on(effects, effect, is_rigid, found, cure)?;
         }
         let is_deformed =
             [&initial.modal_displacement, &initial.modal_velocity].into_iter().flatten().any(|&q| q != 0.0);
-        self.not_off("flexibility", flexibility, is_deformed, "an initial modal displacement or velocity")
+        self.not_off(effects, Effect::Flexibility, is_deformed, "an initial modal displacement or velocity")
     }
 
     /// Refuses an effect that is on although there is nothing to it.
-    fn not_on(&self, name: &str, choice: Choice, nothing: bool, found: &str, cure: &str) -> Result<(), SceneError> {
-        if choice != Choice::On || !nothing {
+    fn not_on(
+        &self,
+        effects: &Effects,
+        effect: Effect,
+        nothing: bool,
+        found: &str,
+        cure: &str,
+    ) -> Result<(), SceneError> {
+        if effects.choices[effect] != Choice::On || !nothing {
             return Ok(());
         }
+        let name = effect.name();
         Err(self.document.place(&join("effects", name)).refuse(
             format!("`{name} = true` with {found}"),
             "`false` or `\"auto\"`",
@@ -112,10 +103,11 @@ impl Check<'_> {
     }
 
     /// Refuses an effect that is off although the scene demands it.
-    fn not_off(&self, name: &str, choice: Choice, demanded: bool, by: &str) -> Result<(), SceneError> {
-        if choice != Choice::Off || !demanded {
+    fn not_off(&self, effects: &Effects, effect: Effect, demanded: bool, by: &str) -> Result<(), SceneError> {
+        if effects.choices[effect] != Choice::Off || !demanded {
             return Ok(());
         }
+        let name = effect.name();
         Err(self.document.place(&join("effects", name)).refuse(
             format!("`{name} = false` with {by}"),
             "`true` or `\"auto\"`",

@@ -6,7 +6,7 @@ use std::path::Path;
 use super::{Check, LONGEST_TABLES};
 use crate::document::join;
 use crate::error::SceneError;
-use crate::history::{History, Table};
+use crate::history::{Formula, History, TablePoints};
 use crate::ordinary_file::open_ordinary;
 use crate::place::Place;
 use crate::shorten::shorten;
@@ -46,7 +46,7 @@ impl Check<'_> {
                 self.duration(key, *duration, "give the length of the sweep in time, e.g. `duration = 2.0`")
             }
             History::Table(table) => self.table(key, table),
-            History::Expression { formula, corners } => {
+            History::Expression(Formula { formula, corners }) => {
                 self.require(
                     !formula.trim().is_empty(),
                     &join(key, "formula"),
@@ -89,7 +89,7 @@ impl Check<'_> {
         format!("times whose distance is not lost in rounding beside the end of the run, {:?}", self.end)
     }
 
-    fn table(&self, key: &str, table: &mut Table) -> Result<(), SceneError> {
+    fn table(&self, key: &str, table: &mut TablePoints) -> Result<(), SceneError> {
         let cure = "keep `points` for a table in the scene, or `file` for one in a CSV file";
         self.at_most_one(key, &["points", "file"], cure)?;
         if let Some(file) = &mut table.file {

@@ -1,6 +1,6 @@
 //! What the steps are estimated to get wrong, against what they do.
 
-use frames_rk4::{Observation, Reached, Rows, StepControl};
+use frames_rk4::{Effect, Observation, Reached, Rows, StepControl};
 use scene::{Choice, Model, Scene};
 
 pub(super) fn example(name: &str) -> Scene {
@@ -83,7 +83,7 @@ fn check(scene: &mut Scene, steps: &[f64], reference: f64, above: f64) -> Vec<f6
 #[test]
 fn of_an_undamped_plate_that_tumbles() {
     let mut scene = example("tumbling_plate");
-    scene.effects.damping = Choice::Off;
+    scene.effects.choices[Effect::Damping] = Choice::Off;
     let found = check(&mut scene, &[5e-3, 2e-3, 1e-3, 5e-4, 1e-4], 2.5e-5, 3.0);
     assert!(found[0] > 0.1 && found[2] > 0.1 && found[4] < 1e-2, "{found:?}");
     let found = check(&mut example("accuracy/tumbling"), &[5e-3, 1e-3, 5e-4], 2.5e-5, 3.0);
@@ -96,7 +96,7 @@ fn of_modes_far_faster_than_the_steps() {
     let found = check(&mut example("accuracy/spin"), &[5e-3, 2.5e-3, 5e-4], 2.5e-5, 3.0);
     assert!(found[0] > 0.1 && found[2] < 1e-2, "{found:?}");
     let mut pendulum = example("bar/pendulum");
-    pendulum.effects.flexibility = Choice::On;
+    pendulum.effects.choices[Effect::Flexibility] = Choice::On;
     let found = check(&mut pendulum, &[2e-2, 5e-3, 1e-3], 1e-4, 3.0);
     assert!(found[0] > 1e-2 && found[2] < 1e-2, "{found:?}");
 }

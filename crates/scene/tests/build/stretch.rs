@@ -1,6 +1,6 @@
 //! What a steady spin stretches: a free bar about its middle, whose lowest modes bend and hold nothing of it.
 
-use advice::{Broken, Effect, Review};
+use advice::{Broken, Review};
 
 use crate::{DENSITY, LENGTH, Scene, YOUNG, bar, build, observations, point};
 
@@ -26,7 +26,7 @@ fn stretched(scene: &Scene) -> (usize, f64, Vec<Broken>, String) {
     let place = |name: &str| point(&model, last, name).displacement;
     let arm = nalgebra::Vector3::x() * (0.5 * LENGTH);
     let stretch = (arm + place("tip") - place("middle")).norm() - arm.norm();
-    let why = model.advice.row(Effect::StaticCorrection).unwrap().why.clone();
+    let why = model.advice.static_correction.why.clone();
     (model.static_shapes(), stretch / EXACT, review.broken(), why)
 }
 

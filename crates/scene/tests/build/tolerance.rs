@@ -1,6 +1,6 @@
 //! What step control keeps within its tolerance.
 
-use frames_rk4::{Observation, Rows, StepControl};
+use frames_rk4::{Effect, Observation, Rows, StepControl};
 use scene::{Choice, Model, Scene};
 
 use super::step::example;
@@ -67,7 +67,7 @@ fn of_a_plate_that_tumbles() {
 #[test]
 fn high_modes_that_a_load_strikes_are_right_in_a_pendulum() {
     let mut scene = example("bar/pendulum");
-    scene.effects.flexibility = Choice::On;
+    scene.effects.choices[Effect::Flexibility] = Choice::On;
     scene.time.end = 1.0;
     scene.output.points = [("middle".into(), [200.0, 0.0, 0.0]), ("tip".into(), [400.0, 0.0, 0.0])].into();
     check(&scene, &[1e-3, 1e-5], 1e-5, 3.0);

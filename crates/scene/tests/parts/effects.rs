@@ -1,6 +1,6 @@
 //! Which effects are simulated.
 
-use scene::{Choice, Effects};
+use scene::{Choice, Effect, EffectMap};
 
 const KEYS: [&str; 8] = [
     "flexibility",
@@ -12,12 +12,6 @@ const KEYS: [&str; 8] = [
     "translation",
     "rotation",
 ];
-
-fn choices(effects: &Effects) -> [Choice; 8] {
-    let &Effects { flexibility, damping, gravity, deformed_inertia, coriolis, geometric_stiffening, .. } = effects;
-    let Effects { translation, rotation, .. } = *effects;
-    [flexibility, damping, gravity, deformed_inertia, coriolis, geometric_stiffening, translation, rotation]
-}
 
 /// Asserts that the keys of effects are refused beside other sections.
 #[track_caller]
@@ -31,12 +25,11 @@ fn refused(others: &str, line: &str, words: &[&str]) {
 fn each_alone() {
     const GRAVITY: &str = "[[loads]]\nkind = \"gravity\"\ndirection = [0, 0, -1]\namplitude = 9.81\n";
     for (written, choice) in [("true", Choice::On), ("false", Choice::Off), ("\"auto\"", Choice::Auto)] {
-        for (i, key) in KEYS.iter().enumerate() {
+        for (effect, key) in Effect::ALL.into_iter().zip(KEYS) {
             let new = format!("[effects]\n{key} = {written}\n{GRAVITY}");
             let effects = crate::with("[initial]", "[[loads]]", &new).effects;
-            let mut wanted = [Choice::Auto; 8];
-            wanted[i] = choice;
-            assert_eq!((choices(&effects), effects.tolerance), (wanted, 1e-3), "{key}");
+            let wanted = EffectMap::from_fn(|other| if other == effect { choice } else { Choice::Auto });
+            assert_eq!((effects.choices, effects.tolerance), (wanted, 1e-3), "{key}");
         }
     }
     assert_eq!(crate::with("[initial]", "[[loads]]", "[effects]\ntolerance = 0.01").effects.tolerance, 0.01);

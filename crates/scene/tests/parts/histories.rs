@@ -1,6 +1,6 @@
 //! How loads go with time. Tables in files have a test of their own.
 
-use scene::{History, Load, Table};
+use scene::{Formula, History, Load, TablePoints};
 
 const HALF_SINE: &str = "history = { kind = \"half-sine\", start = 0.0, duration = 0.02 }";
 
@@ -32,15 +32,15 @@ fn every_kind() {
         }),
         (
             "kind = 'table', points = [[0, 1], [2, 3.5]]",
-            History::Table(Table { points: vec![[0.0, 1.0], [2.0, 3.5]], file: None }),
+            History::Table(TablePoints { points: vec![[0.0, 1.0], [2.0, 3.5]], file: None }),
         ),
         (
             "kind = 'expression', formula = 'sin(2*pi*t)'",
-            History::Expression { formula: "sin(2*pi*t)".to_owned(), corners: vec![] },
+            History::Expression(Formula { formula: "sin(2*pi*t)".to_owned(), corners: vec![] }),
         ),
         (
             "kind = 'expression', formula = 'abs(t - 1)', corners = [1, 2]",
-            History::Expression { formula: "abs(t - 1)".to_owned(), corners: vec![1.0, 2.0] },
+            History::Expression(Formula { formula: "abs(t - 1)".to_owned(), corners: vec![1.0, 2.0] }),
         ),
         (
             "kind = 'product', factors = ['constant', { kind = 'product', factors = [{ kind = 'step', at = 1 }] }]",

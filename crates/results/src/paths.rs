@@ -12,12 +12,12 @@ const PART: &str = ".part.h5";
 
 /// A results file and its unfinished forerunner.
 #[derive(Debug, Clone)]
-pub(crate) struct Place {
+pub(crate) struct ResultsPaths {
     pub path: PathBuf,
     pub part: PathBuf,
 }
 
-impl Place {
+impl ResultsPaths {
     /// By the name of either.
     pub(crate) fn of(path: &Path) -> Self {
         let with = |stem: &OsStr, ending: &str| {
