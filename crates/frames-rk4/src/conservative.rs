@@ -680,9 +680,6 @@ impl ConservativeBody {
         e.omega_body = self.axes.iter().zip(w.iter()).map(|(axis, w)| axis * *w).sum();
 
         self.velocities(p, speed, e);
-        // Forces in the extended shapes are gathered in a list that is put back at the end.
-        let mut modal_force = std::mem::take(if self.manifold.is_some() { &mut e.force } else { &mut e.momentum });
-        self.inertia_forces(speed, e, &mut modal_force);
 
         let momentum = get(slow, part::MOMENTUM);
         let velocity = match self.translation {
@@ -694,6 +691,9 @@ impl ConservativeBody {
         let turning = !self.axes.is_empty();
         let theta_rate =
             if turning { f_inverse(&theta, &e.omega_body).map_err(RateError::Turn)? } else { Vector3::zeros() };
+        // Forces in the extended shapes are gathered in a list that is put back below: nothing may fail in between.
+        let mut modal_force = std::mem::take(if self.manifold.is_some() { &mut e.force } else { &mut e.momentum });
+        self.inertia_forces(speed, e, &mut modal_force);
         let mut pi_rate = if self.axes.len() == 3 { pi.cross(&w) } else { Vector3::zeros() };
         let mut power = 0.0;
         let (mut force, mut angular_impulse) = (Vector3::zeros(), Vector3::zeros());
