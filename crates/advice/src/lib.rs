@@ -89,3 +89,5 @@ pub use row::{Effect, Row, Worth};
 pub use steady_stress::steady_stress;
 pub use step::{ModeError, StepEstimate, step_estimate};
 pub use table::{Advice, advise, screen};
+/// Crates whose types are in the interface.
+pub use {frames_rk4, modal};

@@ -22,6 +22,7 @@ impl fmt::Display for Place {
 
 /// A mesh that cannot be read or used. `source_name` is the file's path (or what the caller named the mesh).
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum MeshError {
     /// Not enough memory.
     #[error("{source_name}: {source}")]
@@ -379,6 +380,7 @@ fn first_few<T: std::fmt::Debug>(list: &[T]) -> String {
 
 /// A model that cannot be assembled.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum AssemblyError {
     /// Not enough memory.
     #[error(transparent)]

@@ -241,7 +241,7 @@ pub fn run(
     let writer = Writer::create(&path, &metadata(scene, &model, &simulation), &COLUMNS, expected)?;
     progress(RunProgress::Motion(0.0));
     let initial = model.initial(scene);
-    let mut recorder = Recorder::new(scene, &model, &initial, &simulation, writer)?;
+    let mut recorder = Recorder::new(scene, &model, &initial, writer)?;
     recorder.begin(&mut simulation)?;
     let report = recorder.follow(simulation, started, settings, progress)?;
     Ok((model, report))
@@ -282,12 +282,12 @@ pub fn resume(
         Some(checkpoint) => {
             simulation =
                 simulation.restored(&checkpoint).map_err(|source| RunError::Restore { part: part.clone(), source })?;
-            let mut recorder = Recorder::new(&scene, &model, &initial, &simulation, writer)?;
+            let mut recorder = Recorder::new(&scene, &model, &initial, writer)?;
             recorder.take_up(&mut simulation, &results)?;
             recorder.follow(simulation, started, settings, progress)?
         }
         None => {
-            let mut recorder = Recorder::new(&scene, &model, &initial, &simulation, writer)?;
+            let mut recorder = Recorder::new(&scene, &model, &initial, writer)?;
             recorder.begin(&mut simulation)?;
             recorder.follow(simulation, started, settings, progress)?
         }
@@ -411,7 +411,6 @@ impl<'a> Recorder<'a> {
         scene: &'a Scene,
         model: &'a Model,
         initial: &'a Initial,
-        simulation: &Simulation,
         writer: Writer<Observation>,
     ) -> Result<Self, RunError> {
         let step = model
@@ -420,7 +419,7 @@ impl<'a> Recorder<'a> {
         Ok(Self {
             scene,
             model,
-            observation: simulation.observation(),
+            observation: Observation::new(model.body.flexible(), model.points.len()),
             writer,
             checkpoint: Vec::new(),
             review: Review::new(model.case(scene, initial), model.physics.effects, &model.advice),

@@ -151,7 +151,7 @@ fn the_answer_reaches_the_target_when_the_scene_is_run_with_it() {
     // Another scheme at a step that is short enough.
     let rkmk4 = Method::RKMK4;
     let expected = all(model.start_with(&pasted, rkmk4, StepControl::Fixed(2.5e-6), Rows::Interval(5e-4)).unwrap());
-    assert_eq!((found.len(), expected.len()), (100, 100));
+    assert_eq!((found.len(), expected.len()), (101, 101));
     let worst = |values: &dyn Fn(&Observation, &Observation) -> (f64, f64)| {
         let (mut error, mut peak) = (0.0_f64, 0.0_f64);
         for (a, b) in found.iter().zip(&expected) {

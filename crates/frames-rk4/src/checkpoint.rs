@@ -5,6 +5,7 @@ use rigid_kin::Attitude;
 
 /// A checkpoint that does not belong to the run that is to go on from it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum RestoreError {
     /// It has more or fewer words than the state of the run.
     #[error(

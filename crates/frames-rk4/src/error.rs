@@ -2,6 +2,7 @@
 
 /// A motion that cannot start.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum SetupError {
     /// A list with one number for each flexible mode has another length.
     #[error("{what} has {found} entries; expected one for each of the {expected} flexible modes")]
@@ -150,6 +151,7 @@ pub enum SetupError {
 
 /// A step that failed. The state before it is kept.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum StepError {
     /// The body turns by more than a full turn within a step.
     #[error("at time {time}: the body turns by {angle:.3} rad within a step of {step:.3e}; take a step of at most {:.1e}", step / angle)]

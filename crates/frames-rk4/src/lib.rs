@@ -23,6 +23,7 @@
 
 mod account;
 mod attitude_account;
+mod builder;
 mod checkpoint;
 mod column_major;
 mod conservative;
@@ -56,6 +57,7 @@ mod steady_spin;
 mod work;
 
 pub use account::Energies;
+pub use builder::SimulationBuilder;
 pub use checkpoint::{RestoreError, StateCoder};
 pub use conservative::{ConservativeBody, ConservativeRates, ConservativeState};
 pub use conservative_motion::ConservativeMotion;
@@ -81,3 +83,6 @@ pub use simulation::{Observer, Reached, Simulation, Stats};
 pub use state::{MotionState, State};
 pub use steady_spin::{EigenError, SpinMode, SteadySpin};
 pub use work::Work;
+
+/// Crates whose types are in the interface.
+pub use {faer, modal, nalgebra, rigid_kin};

@@ -20,6 +20,7 @@ use crate::state::MotionState;
 
 /// What a run has cost.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Stats {
     /// Steps taken.
     pub accepted: u64,
@@ -78,7 +79,7 @@ pub enum Reached {
     End,
 }
 
-/// A run in progress. As an iterator it yields the observations after the first.
+/// A run in progress. As an iterator it yields the motion at each row; see [`Rows`].
 #[derive(Debug, Clone)]
 pub struct Simulation {
     scheme: Box<dyn Scheme>,
@@ -96,7 +97,10 @@ pub struct Simulation {
     points: Vec<PointShapes>,
     stats: Stats,
     account: EnergyAccount,
+    /// Whether the iterator has nothing more to give: it has failed.
     failed: bool,
+    /// Whether a step has been tried, or the row at the start been given.
+    begun: bool,
     events: Events,
     /// Kept where events or times between steps are asked for.
     last_step: Option<LastStep>,
@@ -161,6 +165,7 @@ impl Simulation {
             stats: Stats { accepted: 0, rejected: 0, evaluations: 0, shortest: f64::INFINITY, longest: 0.0 },
             account: EnergyAccount::new(setup.energy_of_loads()?),
             failed: false,
+            begun: false,
         })
     }
 
@@ -286,9 +291,14 @@ impl Simulation {
         self.end
     }
 
-    /// Room for an observation.
-    pub fn observation(&self) -> Observation {
-        Observation::new(self.scheme.flexible(), self.points.len())
+    /// The motion at the time that has been reached. [`Self::observe`] does the same without allocating.
+    ///
+    /// # Errors
+    /// As [`Self::observe`].
+    pub fn observation(&mut self) -> Result<Observation, StepError> {
+        let mut out = Observation::new(self.scheme.flexible(), self.points.len());
+        self.observe(&mut out)?;
+        Ok(out)
     }
 
     /// Fills `out` with the motion at the time that has been reached.
@@ -373,6 +383,7 @@ impl Simulation {
     /// # Errors
     /// As [`Self::advance`].
     pub fn advance_watched(&mut self, most_steps: u64, mut watch: impl FnMut(&Moment)) -> Result<Reached, StepError> {
+        self.begun = true;
         if self.account.is_empty() {
             self.check_energy()?;
         }
@@ -502,27 +513,25 @@ impl Simulation {
 impl Iterator for Simulation {
     type Item = Result<Observation, StepError>;
 
-    /// The observation at the next row; `None` at the end and after an error.
+    /// The motion at the next row, the first of which is the start where no step has been tried yet; `None` at the end
+    /// and after an error.
     fn next(&mut self) -> Option<Self::Item> {
         if self.failed {
             return None;
         }
-        loop {
-            match self.advance(u64::MAX) {
-                Ok(Reached::Between | Reached::Stop | Reached::Event(_)) => {}
-                Ok(Reached::End) => return None,
-                Ok(Reached::Row) => {
-                    let mut out = self.observation();
-                    let result = self.observe(&mut out).map(|()| out);
-                    self.failed = result.is_err();
-                    return Some(result);
+        let row = match std::mem::replace(&mut self.begun, true) {
+            false => self.observation(),
+            true => loop {
+                match self.advance(u64::MAX) {
+                    Ok(Reached::Between | Reached::Stop | Reached::Event(_)) => {}
+                    Ok(Reached::End) => return None,
+                    Ok(Reached::Row) => break self.observation(),
+                    Err(error) => break Err(error),
                 }
-                Err(error) => {
-                    self.failed = true;
-                    return Some(Err(error));
-                }
-            }
-        }
+            },
+        };
+        self.failed = row.is_err();
+        Some(row)
     }
 }
 

@@ -2,6 +2,7 @@
 
 /// What can be wrong with the matrices, or with what is asked of them.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ModalError {
     /// Matrices and positions of different sizes.
     #[error("{what} has {found} rows or columns; expected {expected}, three for each of the nodes")]

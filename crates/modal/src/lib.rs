@@ -46,3 +46,5 @@ pub use reduced::{BodyPoint, Constants, ReducedBody};
 pub use rigid::RigidModes;
 pub use solve::{Modes, Progress, SolveStats, Solver};
 pub use support::{RigidMotion, Support};
+/// Crates whose types are in the interface.
+pub use {faer, nalgebra};

@@ -9,6 +9,7 @@ use crate::rotation::{BeyondFullTurn, f_inverse};
 
 /// Why numbers make no rigid body.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum RigidBodyError {
     /// The mass is zero, negative or not finite.
     #[error("the mass of a rigid body is {mass}; give a finite number above zero")]
@@ -23,6 +24,7 @@ pub enum RigidBodyError {
 
 /// Why a step could not be made.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum StepError {
     /// The body turns too far within the step.
     #[error(

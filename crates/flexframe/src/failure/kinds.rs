@@ -71,25 +71,13 @@ impl Failure for ModalError {
     fn kind(&self) -> Kind {
         match self {
             Self::TooManyModes { .. } | Self::NoSuchNode { .. } | Self::NotUnit { .. } => Kind::Input,
-            Self::Size { .. }
-            | Self::Length { .. }
-            | Self::NotPositive { .. }
-            | Self::NoNode { .. }
-            | Self::NotFinite { .. }
-            | Self::NotSymmetric { .. }
-            | Self::AnisotropicMass { .. }
-            | Self::NoInertia { .. }
-            | Self::Underheld { .. }
-            | Self::NotFree { .. }
-            | Self::Mechanism { .. }
-            | Self::HiddenByRounding { .. }
-            | Self::Indefinite { .. } => Kind::Refused,
             Self::Memory(_) => Kind::Io,
             Self::Ordering { .. }
             | Self::Factorization { .. }
             | Self::NotConverged { .. }
             | Self::StaticNotConverged { .. }
             | Self::DenseEigen { .. } => Kind::Run,
+            _ => Kind::Refused,
         }
     }
 }
@@ -103,8 +91,8 @@ impl Failure for EigenError {
 impl Failure for AdviceError {
     fn kind(&self) -> Kind {
         match self {
-            Self::Length { .. } | Self::Value { .. } => Kind::Input,
             Self::Eigen(error) => error.kind(),
+            _ => Kind::Input,
         }
     }
 }
@@ -117,6 +105,7 @@ impl Failure for BuildError {
             Self::Assembly(error) => error.kind(),
             Self::Modal { source, .. } => source.kind(),
             Self::Advice(error) => error.kind(),
+            _ => Kind::Run,
         }
     }
 
@@ -127,6 +116,7 @@ impl Failure for BuildError {
             Self::Assembly(error) => error.details(),
             Self::Modal { scene, .. } => Details::of_file(scene),
             Self::Advice(error) => error.details(),
+            _ => Details::default(),
         }
     }
 }
@@ -134,21 +124,12 @@ impl Failure for BuildError {
 impl Failure for SetupError {
     fn kind(&self) -> Kind {
         match self {
-            Self::Length { .. }
-            | Self::Value { .. }
-            | Self::Entries { .. }
-            | Self::NotRising { .. }
-            | Self::Expression { .. }
-            | Self::LongExpression { .. }
-            | Self::HistoryNotFinite { .. }
-            | Self::NoErrorEstimate { .. }
-            | Self::DriveOfFreeBody { .. }
-            | Self::NotInPaper { .. } => Kind::Input,
             Self::FormulaTooFast { .. }
             | Self::StepBeyondLimit { .. }
             | Self::StepBeyondSpin { .. }
             | Self::CollinearPoints(_)
             | Self::Inertia(_) => Kind::Refused,
+            _ => Kind::Input,
         }
     }
 }
@@ -157,7 +138,7 @@ impl Failure for StartError {
     fn kind(&self) -> Kind {
         match self {
             Self::Setup(error) => error.kind(),
-            Self::Refused(_) => Kind::Refused,
+            _ => Kind::Refused,
         }
     }
 }

@@ -14,9 +14,7 @@ fn rows(simulation: &mut Simulation, most: usize) -> (Vec<Observation>, Vec<u64>
             Reached::End => break,
             Reached::Between => {}
             Reached::Row => {
-                let mut row = simulation.observation();
-                simulation.observe(&mut row).unwrap();
-                rows.push(row);
+                rows.push(simulation.observation().unwrap());
             }
             other => panic!("{other:?}"),
         }
@@ -98,8 +96,7 @@ fn no_word_of_a_checkpoint_can_do_harm() {
                 spoilt[word] = value;
                 if let Ok(mut simulation) = start().restored(&spoilt) {
                     for _ in 0..3 {
-                        let mut row = simulation.observation();
-                        let _ = simulation.advance(20).and_then(|_| simulation.observe(&mut row));
+                        let _ = simulation.advance(20).and_then(|_| simulation.observation());
                     }
                 }
             }

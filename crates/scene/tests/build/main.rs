@@ -93,17 +93,14 @@ fn refusal(scene: &Scene) -> BuildError {
 
 /// All observations of a run, the first included.
 fn observations(scene: &Scene, model: &Model) -> Vec<Observation> {
-    let mut run = model.start(scene).unwrap_or_else(|error| panic!("{error}"));
-    let mut first = run.observation();
-    run.observe(&mut first).unwrap();
-    std::iter::once(first).chain(run.map(|row| row.unwrap_or_else(|error| panic!("{error}")))).collect()
+    let run = model.start(scene).unwrap_or_else(|error| panic!("{error}"));
+    run.map(|row| row.unwrap_or_else(|error| panic!("{error}"))).collect()
 }
 
 fn first(scene: &Scene) -> (Model, Observation) {
     let model = build(scene);
     let mut run = model.start(scene).unwrap_or_else(|error| panic!("{error}"));
-    let mut first = run.observation();
-    run.observe(&mut first).unwrap();
+    let first = run.observation().unwrap();
     (model, first)
 }
 
