@@ -372,7 +372,7 @@ fn a_run_goes_on_with_the_same_body_or_not_at_all() {
     std::fs::copy(&original, &mesh).unwrap();
     // A table whose change is still to come.
     std::fs::write(&table, pulse.replace("0.2,0.1", "0.2,0.2")).unwrap();
-    assert_has(&failure(scene.resume("out")), &["a load or its history", "no longer what it was"]);
+    assert_has(&failure(scene.resume("out")), &["load 1 has changed", "another run"]);
     std::fs::write(&table, pulse).unwrap();
     // The scene counts as it was, wherever the program is started.
     std::fs::write(&scene.path, "nonsense").unwrap();

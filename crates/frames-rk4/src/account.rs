@@ -3,11 +3,13 @@
 //! The start, the work of the loads and the dissipation account for the energy of every state. A scheme whose steps are
 //! too long breaks this long before a number overflows.
 
-use crate::checkpoint::StateCoder;
+use serde::{Deserialize, Serialize};
+
+use crate::checkpoint::{CheckpointError, equal_room, finite};
 use crate::error::StepError;
 
 /// The energy of a state, and what has been done to it since the start.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Energies {
     /// Time.
     pub time: f64,
@@ -22,28 +24,27 @@ pub struct Energies {
 }
 
 impl Energies {
-    const ZERO: Self = Self { time: 0.0, internal: 0.0, translation: 0.0, work: 0.0, dissipation: 0.0 };
+    /// All its numbers.
+    fn numbers(&self) -> [&f64; 5] {
+        [&self.time, &self.internal, &self.translation, &self.work, &self.dissipation]
+    }
 
-    /// One that there may be or not; the coder is as long in both cases.
-    pub(crate) fn code(energies: &mut Option<Self>, coder: &mut StateCoder) {
-        let mut there = energies.is_some();
-        coder.flag(&mut there);
-        let mut now = energies.unwrap_or(Self::ZERO);
-        for number in [&mut now.time, &mut now.internal, &mut now.translation, &mut now.work, &mut now.dissipation] {
-            coder.number(number);
-        }
-        *energies = there.then_some(now);
+    /// Refuses numbers that are not finite.
+    pub(crate) fn check(&self) -> Result<(), CheckpointError> {
+        finite("an energy", self.numbers())
     }
 }
 
 /// The account of a run.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
 pub(crate) struct EnergyAccount {
+    #[serde(with = "equal_room")]
     start: Option<Energies>,
     /// Largest of the energies at the start, put in and taken out so far.
     scale: f64,
     /// Largest sum of the work and the dissipation of one step: where a load sets in, they are no better known than that.
     largest_exchange: f64,
+    #[serde(with = "equal_room")]
     last: Option<Energies>,
     /// Sum of |work| + |dissipation| of all steps, and what work and dissipation were after the last.
     exchanged: f64,
@@ -86,13 +87,11 @@ impl EnergyAccount {
         self.of_loads
     }
 
-    pub(crate) fn code(&mut self, coder: &mut StateCoder) {
-        Energies::code(&mut self.start, coder);
-        coder.number(&mut self.scale);
-        coder.number(&mut self.largest_exchange);
-        Energies::code(&mut self.last, coder);
-        coder.number(&mut self.exchanged);
-        self.done.iter_mut().for_each(|done| coder.number(done));
+    /// Refuses numbers that are not finite.
+    pub(crate) fn check_saved(&self) -> Result<(), CheckpointError> {
+        let Self { start, scale, largest_exchange, last, exchanged, done, of_loads } = self;
+        start.iter().chain(last).try_for_each(Energies::check)?;
+        finite("the account of the energy", [scale, largest_exchange, exchanged, of_loads].into_iter().chain(done))
     }
 
     /// Takes a step into account, after which work and dissipation since the beginning are these.

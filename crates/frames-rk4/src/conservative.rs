@@ -23,7 +23,6 @@ use nalgebra::{Matrix3, SVector, Vector3};
 use rigid_kin::{Attitude, f_inverse, transformation_matrix};
 
 use crate::account::Energies;
-use crate::checkpoint::StateCoder;
 use crate::column_major::{columns, dot, multiply, multiply_top};
 use crate::error::{RateError, SetupError, StepError};
 use crate::history::History;
@@ -121,7 +120,7 @@ pub struct ConservativeBody {
 }
 
 /// State at a time.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct ConservativeState {
     /// Time.
     pub time: f64,
@@ -190,14 +189,6 @@ impl ConservativeState {
             Some(found) => Err(SetupError::Value { what: "a value of the state", found, expected: "a finite number" }),
             None => Ok(()),
         }
-    }
-
-    pub(crate) fn code(&mut self, coder: &mut StateCoder) {
-        coder.finite("the time", &mut self.time);
-        coder.attitude(&mut self.attitude);
-        coder.vector(&mut self.slow);
-        coder.numbers(&mut self.modal_displacement);
-        coder.numbers(&mut self.modal_momentum);
     }
 }
 

@@ -33,6 +33,7 @@ mod error;
 mod error_size;
 mod events;
 mod exponential;
+mod fingerprint;
 mod formula_steps;
 mod history;
 mod initial;
@@ -58,7 +59,7 @@ mod work;
 
 pub use account::Energies;
 pub use builder::SimulationBuilder;
-pub use checkpoint::{RestoreError, StateCoder};
+pub use checkpoint::{CheckpointError, decode, encode};
 pub use conservative::{ConservativeBody, ConservativeRates, ConservativeState};
 pub use conservative_motion::ConservativeMotion;
 pub use error::{SetupError, StepError};

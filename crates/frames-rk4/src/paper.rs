@@ -10,10 +10,11 @@ use std::any::Any;
 use modal::ReducedBody;
 use nalgebra::{Matrix3, Vector3};
 use rigid_kin::{BeyondFullTurn, ReferencePoints, f_inverse, relative_velocity_rate, transformation_matrix};
+use serde::{Deserialize, Serialize};
 
 use crate::account::Energies;
 use crate::attitude_account::AttitudeAccount;
-use crate::checkpoint::StateCoder;
+use crate::checkpoint::{CheckpointError, counts, decode, encode, finite};
 use crate::error::{RateError, SetupError, StepError};
 use crate::initial::Initial;
 use crate::load::Coordinates;
@@ -44,6 +45,19 @@ pub struct PaperScheme {
     /// Whether a load may jump where the state is, so that its accelerations are to be found again.
     at_corner: bool,
     scratch: Scratch,
+}
+
+/// What a checkpoint keeps.
+#[derive(Serialize, Deserialize)]
+struct Saved {
+    state: State,
+    work: Work,
+    power: Work,
+    #[serde(with = "postcard::fixint::le")]
+    steps_done: u64,
+    at_corner: bool,
+    longest_step: f64,
+    attitude_account: AttitudeAccount,
 }
 
 /// Relative motion of P and Q in the rigid modes.
@@ -337,14 +351,29 @@ impl Scheme for PaperScheme {
         self.state.modal_displacement.len() - 6
     }
 
-    fn code(&mut self, coder: &mut StateCoder<'_>) {
-        self.state.code(coder);
-        self.work.code(coder);
-        self.power.code(coder);
-        coder.count(&mut self.steps_done);
-        coder.flag(&mut self.at_corner);
-        coder.number(&mut self.longest_step);
-        self.attitude_account.code(coder);
+    fn save(&self) -> Result<Vec<u8>, CheckpointError> {
+        encode(&Saved {
+            state: self.state.clone(),
+            work: self.work,
+            power: self.power,
+            steps_done: self.steps_done,
+            at_corner: self.at_corner,
+            longest_step: self.longest_step,
+            attitude_account: self.attitude_account,
+        })
+    }
+
+    fn restore(&mut self, saved: &[u8]) -> Result<(), CheckpointError> {
+        let Saved { state, work, power, steps_done, at_corner, longest_step, attitude_account } = decode(saved)?;
+        state.check(self.state.modal_displacement.len())?;
+        work.check()?;
+        power.check()?;
+        counts(&[steps_done])?;
+        finite("the longest step", [&longest_step])?;
+        attitude_account.check_saved()?;
+        (self.state, self.work, self.power, self.steps_done) = (state, work, power, steps_done);
+        (self.at_corner, self.longest_step, self.attitude_account) = (at_corner, longest_step, attitude_account);
+        Ok(())
     }
 
     fn boxed_clone(&self) -> Box<dyn Scheme> {

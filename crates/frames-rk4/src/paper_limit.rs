@@ -15,10 +15,11 @@ use std::any::Any;
 use modal::ReducedBody;
 use nalgebra::Vector3;
 use rigid_kin::{f_inverse, transformation_matrix};
+use serde::{Deserialize, Serialize};
 
 use crate::account::Energies;
 use crate::attitude_account::AttitudeAccount;
-use crate::checkpoint::StateCoder;
+use crate::checkpoint::{CheckpointError, counts, decode, encode, finite};
 use crate::error::{RateError, SetupError, StepError};
 use crate::initial::Initial;
 use crate::load::Coordinates;
@@ -49,6 +50,19 @@ pub struct PaperLimit {
     steps_done: u64,
     attitude_account: AttitudeAccount,
     longest_step: f64,
+}
+
+/// What a checkpoint keeps.
+#[derive(Serialize, Deserialize)]
+struct Saved {
+    state: State,
+    work: Work,
+    #[serde(with = "postcard::fixint::le")]
+    evaluations: u64,
+    #[serde(with = "postcard::fixint::le")]
+    steps_done: u64,
+    longest_step: f64,
+    attitude_account: AttitudeAccount,
 }
 
 #[derive(Debug, Clone)]
@@ -289,13 +303,27 @@ impl Scheme for PaperLimit {
         self.state.modal_displacement.len() - 6
     }
 
-    fn code(&mut self, coder: &mut StateCoder<'_>) {
-        self.state.code(coder);
-        self.work.code(coder);
-        coder.count(&mut self.evaluations);
-        coder.count(&mut self.steps_done);
-        coder.number(&mut self.longest_step);
-        self.attitude_account.code(coder);
+    fn save(&self) -> Result<Vec<u8>, CheckpointError> {
+        encode(&Saved {
+            state: self.state.clone(),
+            work: self.work,
+            evaluations: self.evaluations,
+            steps_done: self.steps_done,
+            longest_step: self.longest_step,
+            attitude_account: self.attitude_account,
+        })
+    }
+
+    fn restore(&mut self, saved: &[u8]) -> Result<(), CheckpointError> {
+        let Saved { state, work, evaluations, steps_done, longest_step, attitude_account } = decode(saved)?;
+        state.check(self.state.modal_displacement.len())?;
+        work.check()?;
+        counts(&[evaluations, steps_done])?;
+        finite("the longest step", [&longest_step])?;
+        attitude_account.check_saved()?;
+        (self.state, self.work, self.evaluations) = (state, work, evaluations);
+        (self.steps_done, self.longest_step, self.attitude_account) = (steps_done, longest_step, attitude_account);
+        Ok(())
     }
 
     fn boxed_clone(&self) -> Box<dyn Scheme> {

@@ -3,17 +3,20 @@
 use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
 
+use serde::{Deserialize, Serialize};
+
 use crate::account::EnergyAccount;
-use crate::checkpoint::{RestoreError, StateCoder};
+use crate::checkpoint::{CheckpointError, counts, decode, encode, equal_room, expect, from_words, to_words};
 use crate::error::{SetupError, StepError};
 use crate::events::{Event, Events, LastStep};
+use crate::fingerprint::Fingerprint;
 use crate::formula_steps::FormulaSteps;
 use crate::history::History;
 use crate::load::SharedLoad;
 use crate::moment::Moment;
 use crate::motion::PointShapes;
 use crate::observation::Observation;
-use crate::plan::{EqualSteps, HalvedSteps, Plan, Rows, StepControl};
+use crate::plan::{EqualSteps, HalvedSteps, Plan, Progress, Rows, StepControl};
 use crate::scheme::Scheme;
 use crate::setup::Setup;
 use crate::state::MotionState;
@@ -82,6 +85,7 @@ pub enum Reached {
 /// A run in progress. As an iterator it yields the motion at each row; see [`Rows`].
 #[derive(Debug, Clone)]
 pub struct Simulation {
+    fingerprint: Fingerprint,
     scheme: Box<dyn Scheme>,
     loads: Vec<SharedLoad>,
     /// Of the drive.
@@ -110,10 +114,56 @@ pub struct Simulation {
 }
 
 /// The way through the segment of the moment.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 enum Walk {
-    Equal { step: f64, steps: Option<(EqualSteps, bool)> },
-    Halved { tolerance: f64, longest_try: f64, steps: Option<(HalvedSteps, bool)> },
+    Equal {
+        step: f64,
+        #[serde(with = "equal_room")]
+        steps: Option<(EqualSteps, bool)>,
+    },
+    Halved {
+        tolerance: f64,
+        longest_try: f64,
+        #[serde(with = "equal_room")]
+        steps: Option<(HalvedSteps, bool)>,
+    },
+}
+
+impl Walk {
+    /// Refuses what a run of this one cannot leave.
+    fn check_saved(&self, saved: &Self) -> Result<(), CheckpointError> {
+        match (self, saved) {
+            (Self::Equal { step, .. }, Self::Equal { step: found, steps }) => {
+                expect("the step", step == found)?;
+                steps.iter().try_for_each(|(steps, _)| steps.check())
+            }
+            (Self::Halved { tolerance, .. }, Self::Halved { tolerance: found, longest_try, steps }) => {
+                expect("the tolerance", tolerance == found)?;
+                expect("the longest step to try", *longest_try > 0.0)?;
+                steps.iter().try_for_each(|(steps, _)| steps.check())
+            }
+            _ => expect("the kind of step control", false),
+        }
+    }
+}
+
+/// What a checkpoint keeps of a run.
+#[derive(Serialize, Deserialize)]
+struct Saved {
+    scheme: Vec<u8>,
+    plan: Progress,
+    walk: Walk,
+    #[serde(with = "postcard::fixint::le")]
+    steps_since_row: u64,
+    corner_ahead: bool,
+    begun: bool,
+    account: EnergyAccount,
+    #[serde(with = "postcard::fixint::le")]
+    accepted: u64,
+    #[serde(with = "postcard::fixint::le")]
+    rejected: u64,
+    shortest: f64,
+    longest: f64,
 }
 
 impl Simulation {
@@ -147,6 +197,7 @@ impl Simulation {
         let corners = of_loads.chain(drive.iter().flat_map(History::corners)).chain(formula_steps.stops());
         let looked_at = Observation::new(scheme.flexible(), setup.points.len());
         Ok(Self {
+            fingerprint: Fingerprint::of(setup),
             scheme,
             events: Events::default(),
             last_step: None,
@@ -326,42 +377,49 @@ impl Simulation {
         self.account.exchanged()
     }
 
-    /// Notes the state that has been reached in `out`, instead of what it held.
-    pub fn checkpoint(&mut self, out: &mut Vec<u64>) {
-        out.clear();
-        self.code(&mut StateCoder::encode(out));
+    /// The state that has been reached, as words; they are equally many for all states of a run.
+    ///
+    /// # Errors
+    /// [`CheckpointError::Encoding`], from a scheme of one's own.
+    pub fn checkpoint(&self) -> Result<Vec<u64>, CheckpointError> {
+        let Stats { accepted, rejected, shortest, longest, .. } = self.stats;
+        let saved = Saved {
+            scheme: self.scheme.save()?,
+            plan: self.plan.progress(),
+            walk: self.walk.clone(),
+            steps_since_row: self.steps_since_row,
+            corner_ahead: self.corner_ahead,
+            begun: self.begun,
+            account: self.account,
+            accepted,
+            rejected,
+            shortest,
+            longest,
+        };
+        Ok(to_words(&encode(&(&self.fingerprint, encode(&saved)?))?))
     }
 
-    /// Takes up the state of a [`Self::checkpoint`] of a run with the same setup: what follows is what would have
+    /// Takes up the state of a [`Self::checkpoint`] of a run with the same set-up: what follows is what would have
     /// followed there, bit for bit.
     ///
     /// # Errors
-    /// [`RestoreError`] for a checkpoint of another run.
-    pub fn restored(mut self, checkpoint: &[u64]) -> Result<Self, RestoreError> {
-        let mut coder = StateCoder::decode(checkpoint);
-        self.code(&mut coder);
-        coder.finish()?;
+    /// [`CheckpointError`] for a checkpoint of another run, with what differs: the body, the damping, a load, ... Of a load
+    /// from a closure only its name, corners and longest step are compared, and of a scheme of one's own what it checks.
+    pub fn restored(mut self, checkpoint: &[u64]) -> Result<Self, CheckpointError> {
+        let (fingerprint, saved): (Fingerprint, Vec<u8>) = from_words(checkpoint)?;
+        self.fingerprint.check(&fingerprint)?;
+        let saved: Saved = decode(&saved)?;
+        let Saved { accepted, rejected, shortest, longest, steps_since_row, .. } = saved;
+        counts(&[accepted, rejected, steps_since_row])?;
+        expect("the length of a step", shortest > 0.0 && longest >= 0.0)?;
+        saved.account.check_saved()?;
+        self.walk.check_saved(&saved.walk)?;
+        self.scheme.restore(&saved.scheme)?;
+        self.plan.set_progress(&saved.plan)?;
+        self.stats = Stats { accepted, rejected, shortest, longest, ..self.stats };
+        (self.walk, self.account, self.steps_since_row) = (saved.walk, saved.account, steps_since_row);
+        (self.corner_ahead, self.begun) = (saved.corner_ahead, saved.begun);
         Ok(self)
-    }
-
-    fn code(&mut self, coder: &mut StateCoder) {
-        self.scheme.code(coder);
-        self.plan.code(coder);
-        match &mut self.walk {
-            Walk::Equal { steps, .. } => code_steps(steps, EqualSteps::BLANK, EqualSteps::code, coder),
-            Walk::Halved { longest_try, steps, .. } => {
-                coder.number(longest_try);
-                code_steps(steps, HalvedSteps::BLANK, HalvedSteps::code, coder);
-            }
-        }
-        coder.count(&mut self.steps_since_row);
-        coder.flag(&mut self.corner_ahead);
-        self.account.code(coder);
-        let Stats { accepted, rejected, evaluations: _, shortest, longest } = &mut self.stats;
-        coder.count(accepted);
-        coder.count(rejected);
-        coder.number(shortest);
-        coder.number(longest);
     }
 
     /// What the run has cost so far.
@@ -532,18 +590,5 @@ impl Iterator for Simulation {
         };
         self.failed = row.is_err();
         Some(row)
-    }
-}
-
-/// Passes over the steps through a segment, which there are none of before the first.
-fn code_steps<S>(steps: &mut Option<(S, bool)>, blank: S, code: fn(&mut S, &mut StateCoder), coder: &mut StateCoder) {
-    let mut there = steps.is_some();
-    coder.flag(&mut there);
-    // Passed even where there are none, so that every checkpoint of a run has the same length.
-    let (inner, row) = steps.get_or_insert((blank, false));
-    code(inner, coder);
-    coder.flag(row);
-    if !there {
-        *steps = None;
     }
 }

@@ -15,10 +15,26 @@ pub struct NotAQuaternion {
     pub wxyz: [f64; 4],
 }
 
-/// The attitude of a body: the rotation between its body axes and the global axes.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// The attitude of a body: the rotation between its body axes and the global axes. Serde has it as [w, x, y, z], bit for
+/// bit.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(into = "[f64; 4]", try_from = "[f64; 4]")]
 pub struct Attitude {
     body_to_global: UnitQuaternion<f64>,
+}
+
+impl From<Attitude> for [f64; 4] {
+    fn from(attitude: Attitude) -> Self {
+        attitude.wxyz()
+    }
+}
+
+impl TryFrom<[f64; 4]> for Attitude {
+    type Error = NotAQuaternion;
+
+    fn try_from(wxyz: [f64; 4]) -> Result<Self, NotAQuaternion> {
+        Self::from_unit_wxyz(wxyz)
+    }
 }
 
 impl Attitude {
