@@ -131,19 +131,6 @@ enum Command {
         #[arg(long, value_name = "SECONDS", default_value = "1", value_parser = patience)]
         patience: Duration,
     },
-    /// Write a page with the price lists of some scenes, for docs/.
-    #[command(hide = true)]
-    Accuracy {
-        /// The scene files.
-        #[arg(value_name = "SCENE", required = true)]
-        scenes: Vec<PathBuf>,
-        /// The page.
-        #[arg(short, long, value_name = "FILE")]
-        output: PathBuf,
-        /// Seconds that a run may take.
-        #[arg(long, value_name = "SECONDS", default_value = "1", value_parser = patience)]
-        patience: Duration,
-    },
     /// Run a scene and draw it as an animated GIF.
     Animate {
         /// The scene file.
@@ -293,13 +280,6 @@ fn execute(cli: Cli, json_errors: bool) -> Result<(), Box<dyn Failure>> {
             let report = cost::price_list(&scene, &folder(&scene, output), settings, |p| bar.cost(p))?;
             drop(bar);
             output::print(&report, json)
-        }
-        Command::Accuracy { scenes, output, patience } => {
-            let scenes = scenes.iter().map(Scene::read).collect::<Result<Vec<_>, _>>()?;
-            let lists = Path::new("out").join("accuracy");
-            let files = cost::accuracy_page(&scenes, &output, &lists, patience, |p| bar.cost(p))?;
-            drop(bar);
-            output::list(&files)
         }
         Command::Animate { scene, output, frames, magnify } => {
             let scene = Scene::read(scene)?;

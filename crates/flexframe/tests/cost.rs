@@ -332,22 +332,3 @@ fn the_command_prints_the_list_or_the_answer() {
         assert_eq!(refused.status.code(), Some(2), "{wrong}");
     }
 }
-
-#[test]
-fn the_page_has_its_tables_and_its_pictures() {
-    let folder = tempfile::tempdir().unwrap();
-    scene_file(folder.path());
-    std::fs::create_dir(folder.path().join("docs")).unwrap();
-    let output = flexframe(folder.path(), &["accuracy", "ring.toml", "-o", "docs/accuracy.md", "--patience", "0.1"]);
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let page = std::fs::read_to_string(folder.path().join("docs/accuracy.md")).unwrap();
-    for words in ["# What accuracy costs", "## Ring", "**The paper's scheme.**", "What the modes cost", "ω²Δt/2"] {
-        assert!(page.contains(words), "{words} in {page}");
-    }
-    assert!(folder.path().join("docs/accuracy/ring.svg").exists());
-    // Every table has as many cells in each row as in its head.
-    for table in page.split("\n\n").filter(|block| block.starts_with('|')) {
-        let cells: Vec<usize> = table.lines().map(|row| row.matches('|').count()).collect();
-        assert!(cells.windows(2).all(|pair| pair[0] == pair[1]), "{table}");
-    }
-}

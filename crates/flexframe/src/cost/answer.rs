@@ -88,7 +88,7 @@ impl Answer {
             smallest_error: runs().map(|(_, _, measured)| measured.error).fold(f64::INFINITY, f64::min),
             needs_interval: matches!(scene.output.rows, Rows::EverySteps(_))
                 && best.is_some_and(|(_, row)| matches!(row.setting, Setting::Tolerance(_))),
-            modes: super::modes::warning(modes, flexible, target),
+            modes: super::modes::modes_warning(modes, flexible, target),
             out_of_patience: out_of_patience(lines),
         }
     }

@@ -240,7 +240,7 @@ impl Errors {
     }
 
     /// Name and value of each.
-    pub(super) fn named(&self) -> impl Iterator<Item = (&'static str, f64)> {
+    pub fn named(&self) -> impl Iterator<Item = (&'static str, f64)> {
         [
             ("attitude", Some(self.attitude)),
             ("modal coordinates", self.modal),
