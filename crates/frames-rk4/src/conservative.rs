@@ -22,8 +22,8 @@ use modal::ReducedBody;
 use nalgebra::{Matrix3, SVector, Vector3};
 use rigid_kin::{Attitude, f_inverse, transformation_matrix};
 
-use crate::account::Energies;
 use crate::column_major::{columns, dot, multiply, multiply_top};
+use crate::energies::Energies;
 use crate::error::{RateError, SetupError, StepError};
 use crate::history::History;
 use crate::initial::Initial;

@@ -6,9 +6,9 @@ use nalgebra::Vector2;
 use rigid_kin::Attitude;
 use serde::{Deserialize, Serialize};
 
-use crate::account::Energies;
 use crate::checkpoint::{CheckpointError, counts, decode, encode, equal_room, expect, finite};
 use crate::conservative::{ConservativeBody, ConservativeState, Evaluation, Slow, get, part};
+use crate::energies::Energies;
 use crate::error::{SetupError, StepError};
 use crate::error_size::Sizes;
 use crate::exponential::{BlockStore, apply};

@@ -12,9 +12,9 @@ use nalgebra::{Matrix3, Vector3};
 use rigid_kin::{BeyondFullTurn, ReferencePoints, f_inverse, relative_velocity_rate, transformation_matrix};
 use serde::{Deserialize, Serialize};
 
-use crate::account::Energies;
 use crate::attitude_account::AttitudeAccount;
 use crate::checkpoint::{CheckpointError, counts, decode, encode, finite};
+use crate::energies::Energies;
 use crate::error::{RateError, SetupError, StepError};
 use crate::initial::Initial;
 use crate::load::Coordinates;

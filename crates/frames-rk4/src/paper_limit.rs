@@ -17,9 +17,9 @@ use nalgebra::Vector3;
 use rigid_kin::{f_inverse, transformation_matrix};
 use serde::{Deserialize, Serialize};
 
-use crate::account::Energies;
 use crate::attitude_account::AttitudeAccount;
 use crate::checkpoint::{CheckpointError, counts, decode, encode, finite};
+use crate::energies::Energies;
 use crate::error::{RateError, SetupError, StepError};
 use crate::initial::Initial;
 use crate::load::Coordinates;

@@ -3,8 +3,8 @@
 use std::any::Any;
 use std::fmt;
 
-use crate::account::Energies;
 use crate::checkpoint::CheckpointError;
+use crate::energies::Energies;
 use crate::error::{SetupError, StepError};
 use crate::moment::Moment;
 use crate::motion::PointShapes;

@@ -362,14 +362,7 @@ impl Simulation {
         if !out.is_finite() {
             return Err(StepError::NotFinite { time: out.time, what: "a quantity of the motion" });
         }
-        self.check_energy()
-    }
-
-    /// Whether the energy, where it was last looked at, is what it should be. Of the conservative form that is the start
-    /// of the last step or the last observation, since it takes an evaluation of the rates.
-    fn check_energy(&mut self) -> Result<(), StepError> {
-        let Some(now) = self.scheme.energies() else { return Ok(()) };
-        self.account.check(&now, self.scheme.fastest_rate(), self.stats.longest)
+        self.account.look(&*self.scheme, self.stats.longest)
     }
 
     /// Sum of |work of the loads| + |dissipation| of all steps so far: how much energy has come and gone.
@@ -443,7 +436,7 @@ impl Simulation {
     pub fn advance_watched(&mut self, most_steps: u64, mut watch: impl FnMut(&Moment)) -> Result<Reached, StepError> {
         self.begun = true;
         if self.account.is_empty() {
-            self.check_energy()?;
+            self.account.look(&*self.scheme, self.stats.longest)?;
         }
         if self.events.is_stale() {
             self.scheme.observe(&self.points, &mut self.looked_at)?;
@@ -466,8 +459,7 @@ impl Simulation {
                     self.stats.accepted += count;
                     self.stats.shortest = self.stats.shortest.min(length);
                     self.stats.longest = self.stats.longest.max(length);
-                    self.account.exchange(self.scheme.work_and_dissipation());
-                    self.check_energy()?;
+                    self.account.step(&*self.scheme, self.stats.longest)?;
                     if let Some(number) = self.look_at_step()? {
                         return Ok(Reached::Event(number));
                     }
