@@ -343,7 +343,7 @@ fn what_is_there_is_not_lost_unasked() {
     // What is none of ours stays.
     std::fs::create_dir(scene.folder.path().join("other")).unwrap();
     std::fs::write(scene.results("other"), "a diary").unwrap();
-    assert_has(&io_failure(scene.run("other")), &["long.h5", "no results file of flexframe", "--overwrite"]);
+    assert_has(&io_failure(scene.run("other")), &["long.h5", "not a results file of flexframe", "--overwrite"]);
     assert_eq!(std::fs::read(scene.results("other")).unwrap(), b"a diary");
     assert_has(&io_failure(scene.resume("nowhere")), &["no unfinished run", "long.part.h5"]);
 }

@@ -48,7 +48,7 @@ pub enum SetupError {
         /// The time of the row before.
         previous: f64,
     },
-    /// A text that is no expression in t.
+    /// A text that is not an expression in t.
     #[error(
         "the expression \"{text}\" at character {position}: {problem}; an expression has t, numbers, pi and e, + - * / % ^ and parentheses, and functions like {functions}",
         functions = crate::history::function_names()
@@ -135,7 +135,7 @@ pub enum SetupError {
         /// Its rigid motions.
         motion: Box<modal::RigidMotion>,
     },
-    /// Something that the formulation of the paper has not got.
+    /// Something that the formulation of the paper does not have.
     #[error("the formulation paper has no {what}; take the conservative one")]
     NotInPaper {
         /// What.
@@ -144,7 +144,7 @@ pub enum SetupError {
     /// The reference points lie on a line.
     #[error(transparent)]
     CollinearPoints(#[from] rigid_kin::CollinearPoints),
-    /// The inertia is none of a rigid body.
+    /// The inertia is not one of a rigid body.
     #[error(transparent)]
     Inertia(#[from] rigid_kin::InertiaError),
 }

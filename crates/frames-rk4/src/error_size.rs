@@ -20,7 +20,7 @@ pub(crate) struct Sizes {
     pub acceleration: f64,
 }
 
-/// Part of the motion, as a ratio of amplitudes, below which a vibration is none.
+/// Part of the motion, as a ratio of amplitudes, below which a vibration is taken as rounding.
 const STILL: f64 = 1e-6;
 
 /// Largest turn of a mode in a step, rad, at which half of the step tells what the step gets wrong.

@@ -224,7 +224,7 @@ impl PaperScheme {
     }
 
     /// Accelerations (35), ω (36) and α (37) of the state's displacements and velocities, and the power of the loads.
-    /// Loads follow the laws that hold at the time `inside`.
+    /// Loads follow the branches of their histories that hold at the time `inside`.
     fn complete_state(&mut self, inside: f64) {
         let Self { model, kinematics, motion, state, .. } = self;
         let global_to_body = state.attitude.global_to_body();
@@ -266,7 +266,7 @@ pub(crate) const METHOD: Method = Method {
     },
 };
 
-/// Refuses what the formulation of the paper has not got.
+/// Refuses what the formulation of the paper does not have.
 pub(crate) fn refuse_beyond_paper(physics: &Physics) -> Result<(), SetupError> {
     let what = if physics.drive.is_some() {
         "driven motion"

@@ -196,7 +196,7 @@ impl PaperLimit {
     }
 
     /// Accelerations, ω and α of the state: q̈ in the inertial frame that coincides with the body now, and α = ω' in
-    /// body axes, which is Euler's. Loads follow the laws that hold at the time `inside`.
+    /// body axes, which is Euler's. Loads follow the branches of their histories that hold at the time `inside`.
     fn complete_state(&mut self, inside: f64) {
         let Self { model, motion, state, cross_products, products, .. } = self;
         let global_to_body = state.attitude.global_to_body();

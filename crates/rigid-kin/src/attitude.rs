@@ -4,11 +4,11 @@ use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
 use crate::rotation::{NotARotation, quaternion_body_to_global, sinc};
 
-/// Four numbers that name no rotation.
+/// Four numbers that are not a rotation.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error(
-    "{wxyz:?} names no rotation; give a quaternion [w, x, y, z] of finite numbers, not all zero \
-     ([1, 0, 0, 0] is no rotation)"
+    "{wxyz:?} is not a rotation; give a quaternion [w, x, y, z] of finite numbers, not all zero \
+     ([1, 0, 0, 0] leaves the body unturned)"
 )]
 pub struct NotAQuaternion {
     /// The numbers given, in the order w, x, y, z.

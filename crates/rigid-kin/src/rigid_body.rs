@@ -17,7 +17,7 @@ pub enum RigidBodyError {
         /// The mass given.
         mass: f64,
     },
-    /// The inertia tensor is none.
+    /// The inertia tensor is not one of a body.
     #[error(transparent)]
     Inertia(#[from] InertiaError),
 }
