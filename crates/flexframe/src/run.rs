@@ -85,7 +85,7 @@ pub enum RunError {
     },
     /// What is computed now is not what was computed then, to the last bit.
     #[error(
-        "{}: {what} is no longer what it was when the run began (a changed mesh or table, another version of flexframe, or another machine); a run goes on bit for bit or not at all: run the scene again with --overwrite",
+        "{}: {what} is no longer what it was when the run began (a changed mesh or table, another version of flexframe, or another machine); a run is continued only if it stays the same bit for bit: run the scene again with --overwrite",
         part.display()
     )]
     Changed {
@@ -115,7 +115,7 @@ pub enum RunFailure {
     Step(#[from] StepError),
     /// It was stopped when the time that it may take was used up.
     #[error(
-        "stopped at {:.2} % of the motion, when its patience of {patience} s was used up (more with --patience)",
+        "stopped at {:.2} % of the motion, when its patience of {patience} s was used up (allow more with --patience)",
         100.0 * reached
     )]
     OutOfPatience {

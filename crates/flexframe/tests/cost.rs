@@ -203,9 +203,12 @@ fn a_run_that_takes_longer_than_the_patience_is_stopped_and_named() {
         assert!(run.seconds <= 0.02 + of_a_thousand_steps, "{run:?}");
     }
     let answer = report.answer.as_ref().unwrap().to_string();
-    for words in
-        ["not waited for", "step 1e-8 (the scene's own setting): stopped at", "patience of 0.02 s", "--patience"]
-    {
+    for words in [
+        "took too long and were stopped",
+        "step 1e-8 (the scene's own setting): stopped at",
+        "patience of 0.02 s",
+        "--patience",
+    ] {
         assert!(answer.contains(words), "{words} in {answer}");
     }
     let table = CostReport { answer: None, ..report }.to_string();

@@ -137,7 +137,7 @@ impl fmt::Display for Answer {
             write!(f, "\n\n{modes}")?;
         }
         if !self.out_of_patience.is_empty() {
-            write!(f, "\n\nNothing is known of the error and time of runs that were not waited for:")?;
+            write!(f, "\n\nThese runs took too long and were stopped, so their error and time are not known:")?;
             self.out_of_patience.iter().try_for_each(|run| write!(f, "\n  {run}"))?;
         }
         Ok(())
