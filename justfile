@@ -59,8 +59,8 @@ picture: build
     {{flexframe}} animate examples/tumbling_plate.toml -o docs/tumbling_plate.gif --frames 80
 
 # What accuracy costs: docs/accuracy.md and its diagrams from real runs of three scenes (some minutes).
-accuracy: build
-    {{flexframe}} accuracy examples/accuracy/{pulse,tumbling,spin}.toml -o docs/accuracy.md
+accuracy:
+    cargo run --release --quiet --package accuracy -- docs/accuracy.md examples/accuracy/{pulse,tumbling,spin}.toml
 
 # What hard cases come to with every scheme: docs/stability.md; then kills of many runs (some minutes). Fails where a
 # bound is broken or a row is lost.

@@ -5,11 +5,9 @@
 //! the same time again, where its velocity is zero.
 
 use std::error::Error;
-use std::sync::Arc;
 
 use flexframe::frames_rk4::{
-    Crossing, Event, History, Initial, Method, Physics, PointForce, PointShapes, Reached, Rows, Setup, SharedLoad,
-    Simulation, StepControl,
+    Crossing, Event, History, PointForce, PointShapes, Reached, Rows, Simulation, StepControl,
 };
 use flexframe::modal::{BodyPoint, ReducedBody, RigidMotion};
 use flexframe::nalgebra::{Matrix3, Vector3};
@@ -31,20 +29,11 @@ pub fn run() -> Result<Answer, Box<dyn Error>> {
     let body = ReducedBody::rigid(2.0, Vector3::zeros(), inertia, RigidMotion::free())?;
     let at = |position: Vector3<f64>| PointShapes::new(&body, &BodyPoint::rigid(position));
     let weight = Vector3::new(0.0, 0.0, -GRAVITY * body.mass);
-    let gravity: SharedLoad = Arc::new(PointForce::dead(at(Vector3::zeros()), weight, History::Constant));
-    let mut simulation = Simulation::new(&Setup {
-        body: &body,
-        damping_ratios: &[],
-        loads: &[gravity],
-        physics: &Physics::default(),
-        reference_points: [Vector3::zeros(), Vector3::x(), Vector3::y()],
-        initial: &Initial::at_rest(0),
-        method: Method::EXPONENTIAL,
-        control: StepControl::Fixed(0.01),
-        end: 3.0,
-        rows: Rows::Interval(3.0),
-        points: &[at(Vector3::new(0.3, 0.1, -0.2))],
-    })?;
+    let mut simulation = Simulation::builder(&body, StepControl::Fixed(0.01), 3.0)
+        .load(PointForce::dead(at(Vector3::zeros()), weight, History::Constant))
+        .point(at(Vector3::new(0.3, 0.1, -0.2)))
+        .rows(Rows::Interval(3.0))
+        .build()?;
     let impact = simulation.add_event(Event::new("the corner is on the plane", Crossing::Falling, |now| {
         now.points[0].displacement.z + HEIGHT
     }))?;

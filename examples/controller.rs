@@ -48,8 +48,7 @@ pub fn run() -> Result<Answer, Box<dyn Error>> {
             rows: Rows::Interval(0.2),
             points: &[],
         })?;
-        let mut first = simulation.observation();
-        simulation.observe(&mut first)?;
+        let first = simulation.observation()?;
         let last = simulation.last().ok_or("the run has no rows")??;
         Ok([first, last])
     };

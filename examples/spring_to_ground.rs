@@ -4,11 +4,8 @@
 //! body spins about with Ω moves it as T t²/2m; across that axis it only makes it circle: T/(mΩ²) (1 − cos Ωt).
 
 use std::error::Error;
-use std::sync::Arc;
 
-use flexframe::frames_rk4::{
-    Initial, LoadFn, Method, Observation, Physics, PointShapes, Rows, Setup, SharedLoad, Simulation, StepControl,
-};
+use flexframe::frames_rk4::{Initial, Load, LoadFn, Observation, PointShapes, Rows, Simulation, StepControl};
 use flexframe::modal::{BodyPoint, ReducedBody, RigidMotion};
 use flexframe::nalgebra::{Matrix3, Vector3};
 
@@ -33,21 +30,21 @@ pub fn run() -> Result<Answer, Box<dyn Error>> {
     let anchor = Vector3::new(-amplitude, 0.0, 0.0);
 
     let point = center.clone();
-    let spring: SharedLoad = Arc::new(LoadFn::new("spring to ground", move |motion, applied| {
+    let spring = LoadFn::new("spring to ground", move |motion, applied| {
         let stretch: Vector3<f64> = motion.position_global(&point) - anchor;
         applied.force(&point, &(motion.body_from_global * stretch * -stiffness));
-    }));
+    });
     let period = std::f64::consts::TAU * (MASS / stiffness).sqrt();
-    let [first, last] = ends(&body, &[spring], &Initial::at_rest(0), period)?;
+    let [first, last] = ends(&body, spring, Initial::at_rest(0), period)?;
     let deflection = |now: &Observation| (now.position_global - anchor).x;
     let energy = |now: &Observation| now.energy() + 0.5 * stiffness * deflection(now).powi(2);
 
-    let thrust: SharedLoad = Arc::new(LoadFn::new("thrust across the spin", move |_, applied| {
+    let thrust = LoadFn::new("thrust across the spin", move |_, applied| {
         applied.force(&center, &Vector3::new(3.0, 0.0, 0.0));
-    }));
+    });
     let (spin, end) = (2.0_f64, 1.0);
     let spinning = Initial { omega: Vector3::new(0.0, 0.0, spin), ..Initial::at_rest(0) };
-    let [_, thrown] = ends(&body, &[thrust], &spinning, end)?;
+    let [_, thrown] = ends(&body, thrust, spinning, end)?;
     let circled = 3.0 / (MASS * spin * spin) * (1.0 - (spin * end).cos());
     Ok(Answer {
         after_a_period: deflection(&last) / deflection(&first),
@@ -57,27 +54,13 @@ pub fn run() -> Result<Answer, Box<dyn Error>> {
 }
 
 /// Beginning and end of a run.
-fn ends(
-    body: &ReducedBody,
-    loads: &[SharedLoad],
-    initial: &Initial,
-    end: f64,
-) -> Result<[Observation; 2], Box<dyn Error>> {
-    let mut simulation = Simulation::new(&Setup {
-        body,
-        damping_ratios: &[],
-        loads,
-        physics: &Physics::default(),
-        reference_points: [Vector3::zeros(), Vector3::x(), Vector3::y()],
-        initial,
-        method: Method::EXPONENTIAL,
-        control: StepControl::Fixed(1e-3),
-        end,
-        rows: Rows::Interval(end),
-        points: &[],
-    })?;
-    let mut first = simulation.observation();
-    simulation.observe(&mut first)?;
+fn ends(body: &ReducedBody, load: impl Load, initial: Initial, end: f64) -> Result<[Observation; 2], Box<dyn Error>> {
+    let mut simulation = Simulation::builder(body, StepControl::Fixed(1e-3), end)
+        .load(load)
+        .initial(initial)
+        .rows(Rows::Interval(end))
+        .build()?;
+    let first = simulation.observation()?;
     Ok([first, simulation.last().ok_or("the run has no rows")??])
 }
 

@@ -47,6 +47,7 @@ pub struct StaticCompliance {
 
 /// A case that no advice can be given on.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum AdviceError {
     /// A list of the wrong length.
     #[error("{what} has {found} entries where {expected} are needed; give one for each")]

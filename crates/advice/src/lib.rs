@@ -89,3 +89,5 @@ pub use row::{Row, Subject, Worth};
 pub use step::{ModeError, StepEstimate, step_estimate};
 pub use stress::{StressField, StressInfluence, StressSource, stress, stress_row};
 pub use table::{Advice, advise, screen};
+/// Crates whose types are in the interface.
+pub use {frames_rk4, modal};

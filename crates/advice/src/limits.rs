@@ -17,6 +17,7 @@ pub const SOFTENED: f64 = 0.577;
 
 /// Why a model is refused.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum Refusal {
     /// K + Ω²(K_σ − N) is not definite.
     #[error(

@@ -17,7 +17,7 @@ pub(crate) struct Response {
     pub acceleration: Vec<f64>,
     /// Part of `displacement` that gravity makes (nf).
     pub of_gravity: Vec<f64>,
-    /// |q| that there will be at some time.
+    /// Lower bound on max |q| over the run.
     pub scale: f64,
     /// Deflection over the length by a single mode that the loads will make at some time, but for what stiffens the body.
     pub certain_deflection: f64,

@@ -13,6 +13,7 @@ use crate::table::{Advice, held};
 
 /// An assumption that has broken.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum Broken {
     /// The spin rose above what the estimates allow for.
     #[error(

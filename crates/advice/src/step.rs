@@ -187,8 +187,7 @@ impl Comparison {
 
     /// Follows both until the end, or for so many `samples`.
     fn follow(&mut self, mut a: Simulation, mut b: Simulation, samples: usize) -> Result<(), StepError> {
-        let (mut of_a, mut of_b) = (a.observation(), b.observation());
-        a.observe(&mut of_a)?;
+        let (mut of_a, mut of_b) = (a.observation()?, b.observation()?);
         let start = of_a.position_global;
         while self.times.len() < samples && next_row(&mut a, &mut of_a)? {
             // That the shorter steps fail says nothing about those of the run.

@@ -37,7 +37,7 @@ pub struct Advice {
     pub spin: f64,
     /// Largest displacement by deformation, over the length of the body, that is to be expected at most.
     pub deflection: f64,
-    /// The same that there will be without doubt: by loads on a body that neither spins nor is stiffened by them.
+    /// Its certain part: that of loads on a body that neither spins nor is stiffened by them.
     pub certain_deflection: f64,
     /// Influence of what the modes leave out of the static answer to the spin, bounded above; at most 1.
     pub stretch: f64,

@@ -22,6 +22,7 @@ impl fmt::Display for FilePosition {
 
 /// A mesh that cannot be read or used. `source_name` is the file's path (or what the caller named the mesh).
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum MeshError {
     /// Not enough memory.
     #[error("{source_name}: {source}")]
@@ -211,9 +212,9 @@ pub enum MeshError {
         /// Length of the list of groups.
         count: usize,
     },
-    /// An element of a physical surface that is no face of the body.
+    /// An element of a physical surface that is not a face of the body.
     #[error(
-        "{source_name}: element {element} of the physical surface \"{group}\" is no face of a tetrahedron of the body; take surfaces of the meshed volume into the group, and mesh both at once with -order 2"
+        "{source_name}: element {element} of the physical surface \"{group}\" is not a face of a tetrahedron of the body; take surfaces of the meshed volume into the group, and mesh both at once with -order 2"
     )]
     NotAFace {
         /// The mesh.
@@ -380,6 +381,7 @@ fn first_few<T: std::fmt::Debug>(list: &[T]) -> String {
 
 /// A model that cannot be assembled.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum AssemblyError {
     /// Not enough memory.
     #[error(transparent)]
@@ -547,7 +549,7 @@ pub enum AssemblyError {
 }
 
 impl AssemblyError {
-    /// The mesh: its file, or what the caller named it; `None` where the fault is none of a mesh.
+    /// The mesh: its file, or what the caller named it; `None` where the fault is not in a mesh.
     pub fn source_name(&self) -> Option<&str> {
         match self {
             Self::MissingGroup { source_name, .. }

@@ -42,6 +42,8 @@ mod tags;
 
 pub use assembly::{Matrices, assemble};
 pub use error::{AssemblyError, FilePosition, MeshError};
+/// The crate whose types are in the interface.
+pub use faer;
 pub use geometric_stiffness::reduced_geometric_stiffness;
 pub use locate::Location;
 pub use lumped::{LumpedInertia, centroid_lumped_inertia};

@@ -52,7 +52,7 @@ fn read_ordinary(path: &Path) -> io::Result<Vec<u8>> {
     match std::fs::metadata(path)? {
         found if found.is_file() => std::fs::read(path),
         found if found.is_dir() => Err(io::Error::other("this is a folder; name the mesh file in it")),
-        _ => Err(io::Error::other("this is no ordinary file, but a device or a pipe; write the mesh into a file")),
+        _ => Err(io::Error::other("this is not an ordinary file but a device or a pipe; write the mesh into a file")),
     }
 }
 

@@ -33,7 +33,7 @@ const BLOCK: usize = 1024;
 /// finite.
 ///
 /// # Panics
-/// Where a pair names a column that `fields` has not got.
+/// Where a pair names a column that `fields` does not have.
 pub fn second_order_forces(
     mesh: &Mesh,
     materials: &Materials,
@@ -80,7 +80,7 @@ pub fn geometric_stiffness_product(
 /// As [`second_order_forces`].
 ///
 /// # Panics
-/// Where a quadruple names a column that `fields` has not got.
+/// Where a quadruple names a column that `fields` does not have.
 pub fn second_order_energies(
     mesh: &Mesh,
     materials: &Materials,

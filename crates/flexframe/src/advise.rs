@@ -24,7 +24,7 @@ pub struct AdviseReport {
     pub frequency_unit: String,
     /// Relative influence from which an effect is on.
     pub tolerance: f64,
-    /// Whether the scene's scheme is one of the paper's formulation, which has the effects that it has.
+    /// Whether the scene's scheme is one of the paper's formulation, whose effects are fixed.
     pub of_paper: bool,
     /// A row for each effect.
     pub rows: Vec<EffectRow>,
@@ -180,7 +180,10 @@ impl fmt::Display for AdviseReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{}", self.title)?;
         if self.of_paper {
-            writeln!(f, "  The paper's formulation has the effects that it has; this is for the conservative form.")?;
+            writeln!(
+                f,
+                "  The effects of the paper's formulation are fixed; this table is for the conservative form."
+            )?;
         }
         let verified = self.rows.iter().any(|row| row.real.is_some());
         let real = if verified { "      real" } else { "" };

@@ -71,14 +71,13 @@ pub fn animate(
     };
     let surface = Surface::new(mesh);
     let last = settings.frames.max(2) - 1;
-    let mut now = simulation.observation();
     let mut frames = Vec::new();
     for frame in 0..=last {
         // The first step at or after the frame's time.
         let due = scene.time.end * (frame as f64 / last as f64) * (1.0 - 1e-12);
         let failed = |source| AnimationError::Step { scene: scene.path.clone(), source };
         while simulation.time() < due && simulation.advance(1).map_err(failed)? != Reached::End {}
-        simulation.observe(&mut now).map_err(failed)?;
+        let now = simulation.observation().map_err(failed)?;
         let u = surface.displacements(modes, &now.modal_displacement);
         let drawn: Vec<Vector3<f64>> = u.iter().map(|u| u * settings.magnification).collect();
         frames.push(Frame {

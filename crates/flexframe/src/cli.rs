@@ -18,7 +18,7 @@ use crate::progress::Bar;
 use crate::signals::Signals;
 use crate::{output, threads};
 
-/// Flexible-body dynamics: how an elastic body moves that flies, tumbles and spins while it vibrates.
+/// Flexible-body dynamics: the motion of elastic bodies that fly, tumble and spin while they vibrate.
 ///
 /// A scene (a TOML file, see docs/scene.md) names a gmsh mesh of second-order tetrahedra, its material, the modes to
 /// keep, the loads, and the time. Start with `flexframe run examples/plate.toml`.
@@ -36,23 +36,23 @@ struct Cli {
 enum Command {
     /// Run a scene and write its motion to an HDF5 file.
     ///
-    /// The first ctrl-C (or SIGTERM) stops it at its next row, from where `flexframe resume` goes on; one that comes half a
-    /// second later or more ends the program at once.
+    /// The first ctrl-C (or SIGTERM) stops the run at its next row, and `flexframe resume` continues it. A second one, at
+    /// least half a second later, ends the program at once.
     Run {
         #[command(flatten)]
         scene: SceneArgs,
-        /// Folder for the results; it is made if it is not there [default: out/<name of the scene file>].
+        /// Folder for the results; it is made if it does not exist [default: out/<name of the scene file>].
         #[arg(short, long, value_name = "DIR")]
         output: Option<PathBuf>,
         #[command(flatten)]
         files: FileArgs,
     },
-    /// Go on with a run that was cut off: the results are the same as if it had not been, bit for bit.
+    /// Continue an interrupted run: the results are the same, bit for bit, as those of a run without interruption.
     Resume {
-        /// The unfinished file, such as out/plate/plate.part.h5, or the results file that it would have become.
+        /// The unfinished file, such as out/plate/plate.part.h5, or the name of its results file.
         #[arg(value_name = "FILE")]
         file: PathBuf,
-        /// Print the summary as JSON, for scripts; an error, too, on standard error.
+        /// Print the summary as JSON, for scripts, and errors as JSON on standard error.
         #[arg(long)]
         json: bool,
     },
@@ -63,7 +63,7 @@ enum Command {
         /// Number of flexible modes, instead of the scene's.
         #[arg(short = 'n', long, value_name = "N")]
         flexible: Option<usize>,
-        /// Folder for a picture of the mode shapes (SVG and PNG); none if not given.
+        /// Folder for a picture of the mode shapes (SVG and PNG) [default: no picture].
         #[arg(short, long, value_name = "DIR")]
         output: Option<PathBuf>,
     },
@@ -77,11 +77,11 @@ enum Command {
     },
     /// Find natural frequencies against spin speed: table, CSV and Campbell diagram, with critical speeds.
     ///
-    /// The body is held in a steady spin about an axis through its origin: its centre of mass, or a fixed point of a
-    /// held one (of a clamp the mean of its nodes). Coriolis, softening and stiffening are on unless the scene's
-    /// [effects] say false; loads are left out. Frequencies are those that the body sees: order n is a load that comes
-    /// by n times a turn. Branches are followed by their shapes and numbered by their order at the lowest speed: where
-    /// two frequencies meet they cross, or turn away from each other if the spin couples them.
+    /// The body spins steadily about an axis through its origin: the centre of mass of a free body, a fixed point of a
+    /// held one (the mean of the nodes of a clamp). Coriolis terms, softening and stiffening are on unless the scene's
+    /// [effects] say false; loads are left out. Frequencies are those in the rotating frame: order n is a load that
+    /// passes n times in a revolution. Branches are followed by their mode shapes and numbered by their order at the
+    /// lowest speed. Where two branches meet they cross, or veer if the spin couples them.
     Campbell {
         #[command(flatten)]
         scene: SceneArgs,
@@ -91,7 +91,7 @@ enum Command {
         /// Spin speeds in radians per time: from start to end, both included, count in all.
         #[arg(long, value_name = "START:END:COUNT", value_parser = speeds, allow_hyphen_values = true)]
         speeds: Speeds,
-        /// Engine orders, times a turn.
+        /// Engine orders, per revolution.
         #[arg(
             long,
             value_name = "N,N,…",
@@ -107,7 +107,7 @@ enum Command {
         #[arg(short, long, value_name = "DIR")]
         output: Option<PathBuf>,
     },
-    /// Run the paper's plate and set it beside the paper: every figure, and a report.
+    /// Run the paper's plate and compare it with the paper: every figure, and a report.
     Paper {
         #[command(flatten)]
         scene: SceneArgs,
@@ -117,7 +117,7 @@ enum Command {
         #[command(flatten)]
         files: FileArgs,
     },
-    /// Find out what accuracy costs on a scene: every scheme at many steps, its error and its time.
+    /// Measure error and computing time on a scene, for every scheme at many steps.
     Cost {
         #[command(flatten)]
         scene: SceneArgs,
@@ -127,20 +127,7 @@ enum Command {
         /// Find the cheapest setting within this error, ready for the scene.
         #[arg(long, value_name = "ERROR", value_parser = positive)]
         target: Option<f64>,
-        /// Seconds that a run may take, after which it is stopped; the reference may take twenty times as long.
-        #[arg(long, value_name = "SECONDS", default_value = "1", value_parser = patience)]
-        patience: Duration,
-    },
-    /// Write a page with the price lists of some scenes, for docs/.
-    #[command(hide = true)]
-    Accuracy {
-        /// The scene files.
-        #[arg(value_name = "SCENE", required = true)]
-        scenes: Vec<PathBuf>,
-        /// The page.
-        #[arg(short, long, value_name = "FILE")]
-        output: PathBuf,
-        /// Seconds that a run may take.
+        /// Longest time of a run in seconds; the reference may take twenty times as long.
         #[arg(long, value_name = "SECONDS", default_value = "1", value_parser = patience)]
         patience: Duration,
     },
@@ -166,7 +153,7 @@ struct SceneArgs {
     /// The scene file.
     #[arg(value_name = "SCENE")]
     scene: PathBuf,
-    /// Print the summary as JSON, for scripts; an error, too, on standard error.
+    /// Print the summary as JSON, for scripts, and errors as JSON on standard error.
     #[arg(long)]
     json: bool,
 }
@@ -294,13 +281,6 @@ fn execute(cli: Cli, json_errors: bool) -> Result<(), Box<dyn Failure>> {
             drop(bar);
             output::print(&report, json)
         }
-        Command::Accuracy { scenes, output, patience } => {
-            let scenes = scenes.iter().map(Scene::read).collect::<Result<Vec<_>, _>>()?;
-            let lists = Path::new("out").join("accuracy");
-            let files = cost::accuracy_page(&scenes, &output, &lists, patience, |p| bar.cost(p))?;
-            drop(bar);
-            output::list(&files)
-        }
         Command::Animate { scene, output, frames, magnify } => {
             let scene = Scene::read(scene)?;
             animate(&scene, &output, AnimationSettings { frames, magnification: magnify }, |p| bar.run(p))?;
@@ -317,7 +297,7 @@ fn exit_codes() -> String {
     format!("Exit codes:\n    0  done{codes}")
 }
 
-/// A number that is none of NaN and infinity.
+/// A finite number.
 fn finite(text: &str) -> Result<f64, String> {
     text.parse().ok().filter(|number: &f64| number.is_finite()).ok_or_else(|| "expected a finite number".to_owned())
 }

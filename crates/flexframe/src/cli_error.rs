@@ -10,7 +10,7 @@ pub enum CliError {
     /// An option has replaced what the scene says, and is refused.
     #[error("{option}: found {found}, expected {expected}\n = {cure}")]
     Option { option: &'static str, found: String, expected: String, cure: String },
-    /// RAYON_NUM_THREADS is no number of threads.
+    /// RAYON_NUM_THREADS is not a number of threads.
     #[error(
         "the environment variable RAYON_NUM_THREADS: found \"{found}\", expected a number from 1 to {most}\n = \
          correct it, remove it, or give --threads"

@@ -11,14 +11,12 @@ mod files;
 mod ladder;
 mod machine;
 mod modes;
-mod page;
 mod reference;
 mod report;
 mod run;
 mod setting;
 mod settings;
 mod short;
-mod spin;
 mod table;
 
 use std::path::Path;
@@ -31,13 +29,13 @@ pub use answer::Answer;
 pub use error::CostError;
 pub use ladder::{Line, Measured, Outcome, Row, Stopped};
 pub use machine::Machine;
-pub use modes::ModesRow;
-pub use page::accuracy_page;
+pub use modes::{ModesRow, modes_warning};
 pub use reference::ReferenceReport;
 pub use report::CostReport;
 pub use run::Errors;
 pub use setting::Setting;
 pub use settings::CostSettings;
+pub use short::{duration, setting};
 
 pub use crate::run::RunFailure;
 

@@ -48,7 +48,7 @@ impl Kind {
         match self {
             Self::Usage => "wrong arguments",
             Self::Input => "bad input: a scene, mesh, table or results file is wrong",
-            Self::Refused => "refused model: it is known to give wrong answers, or none",
+            Self::Refused => "refused model: its answers would be wrong, or it has none",
             Self::Run => "failed run: the computation did not come to its end",
             Self::Io => "input or output: the system refused a file, standard output or a thread",
             Self::Stopped => "stopped by a signal (ctrl-C, SIGTERM)",

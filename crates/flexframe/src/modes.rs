@@ -65,7 +65,7 @@ pub(crate) fn require_flexible<'a>(scene: &Scene, model: &'a Model) -> Result<&'
 }
 
 /// "Hz" where time is in seconds.
-pub(crate) fn frequency_unit(time: &str) -> String {
+pub fn frequency_unit(time: &str) -> String {
     if time == "s" { "Hz".to_owned() } else { format!("1/{time}") }
 }
 

@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use advice::{Refusal, Review, StepEstimate};
-use frames_rk4::{Initial, Observation, Reached, RestoreError, Simulation, StepError};
+use frames_rk4::{CheckpointError, Initial, Observation, Reached, Simulation, StepError};
 use nalgebra::Vector3;
 use results::{BodyProperties, Expected, FileError, Metadata, Results, Resumed, Units, Writer};
 use rigid_kin::Attitude;
@@ -72,20 +72,20 @@ pub enum RunError {
         /// The time that was reached.
         time: f64,
     },
-    /// The scene in an unfinished file is none.
+    /// The scene in an unfinished file is invalid.
     #[error(transparent)]
     Scene(#[from] SceneError),
-    /// The checkpoint of an unfinished file is none of this scene.
+    /// The checkpoint of an unfinished file is that of another scene, or damaged.
     #[error("{}: {source}", part.display())]
     Restore {
         /// The unfinished file.
         part: PathBuf,
         /// Why.
-        source: RestoreError,
+        source: CheckpointError,
     },
     /// What is computed now is not what was computed then, to the last bit.
     #[error(
-        "{}: {what} is no longer what it was when the run began (a changed mesh or table, another version of flexframe, or another machine); a run goes on bit for bit or not at all: run the scene again with --overwrite",
+        "{}: {what} is no longer what it was when the run began (a changed mesh or table, another version of flexframe, or another machine); a run is continued only if it stays the same bit for bit: run the scene again with --overwrite",
         part.display()
     )]
     Changed {
@@ -115,7 +115,7 @@ pub enum RunFailure {
     Step(#[from] StepError),
     /// It was stopped when the time that it may take was used up.
     #[error(
-        "stopped at {:.2} % of the motion, when its patience of {patience} s was used up (more with --patience)",
+        "stopped at {:.2} % of the motion, when its patience of {patience} s was used up (allow more with --patience)",
         100.0 * reached
     )]
     OutOfPatience {
@@ -235,13 +235,12 @@ pub fn run(
 
     let started = Instant::now();
     let mut simulation = start(scene, &model)?;
-    let mut checkpoint = Vec::new();
-    simulation.checkpoint(&mut checkpoint);
-    let expected = Expected { rows: expected_rows(scene), checkpoint: checkpoint.len(), overwrite: settings.overwrite };
-    let writer = Writer::create(&path, &metadata(scene, &model, &simulation), &COLUMNS, expected)?;
+    let checkpoint = simulation.checkpoint().map_err(|source| RunError::Restore { part: path.clone(), source })?.len();
+    let expected = Expected { rows: expected_rows(scene), checkpoint, overwrite: settings.overwrite };
+    let writer = Writer::create(&path, &metadata(scene, &model), &COLUMNS, expected)?;
     progress(RunProgress::Motion(0.0));
     let initial = model.initial(scene);
-    let mut recorder = Recorder::new(scene, &model, &initial, &simulation, writer)?;
+    let mut recorder = Recorder::new(scene, &model, &initial, writer)?;
     recorder.begin(&mut simulation)?;
     let report = recorder.follow(simulation, started, settings, progress)?;
     Ok((model, report))
@@ -265,15 +264,12 @@ pub fn resume(
     let started = Instant::now();
     let mut simulation = start(&scene, &model)?;
     let changed = |what| RunError::Changed { part: part.clone(), what };
-    let now = metadata(&scene, &model, &simulation);
+    let now = metadata(&scene, &model);
     if now.program_version != results.metadata.program_version {
         return Err(changed("the version of flexframe"));
     }
     if now.body != results.metadata.body {
         return Err(changed("the body"));
-    }
-    if now.fingerprint != results.metadata.fingerprint {
-        return Err(changed("a load or its history"));
     }
 
     progress(RunProgress::Motion(0.0));
@@ -282,12 +278,12 @@ pub fn resume(
         Some(checkpoint) => {
             simulation =
                 simulation.restored(&checkpoint).map_err(|source| RunError::Restore { part: part.clone(), source })?;
-            let mut recorder = Recorder::new(&scene, &model, &initial, &simulation, writer)?;
+            let mut recorder = Recorder::new(&scene, &model, &initial, writer)?;
             recorder.take_up(&mut simulation, &results)?;
             recorder.follow(simulation, started, settings, progress)?
         }
         None => {
-            let mut recorder = Recorder::new(&scene, &model, &initial, &simulation, writer)?;
+            let mut recorder = Recorder::new(&scene, &model, &initial, writer)?;
             recorder.begin(&mut simulation)?;
             recorder.follow(simulation, started, settings, progress)?
         }
@@ -342,7 +338,7 @@ pub fn results_path(scene: &Scene, folder: &Path) -> PathBuf {
     folder.join(name)
 }
 
-fn metadata(scene: &Scene, model: &Model, at_start: &Simulation) -> Metadata {
+fn metadata(scene: &Scene, model: &Model) -> Metadata {
     let body = BodyReport::new(model);
     let method = scene.time.method;
     let (step, tolerance) = match scene.time.control {
@@ -361,7 +357,6 @@ fn metadata(scene: &Scene, model: &Model, at_start: &Simulation) -> Metadata {
         step,
         tolerance,
         program_version: env!("CARGO_PKG_VERSION").to_owned(),
-        fingerprint: fingerprint(at_start),
         scene_text: scene.source.clone(),
         scene_file: scene_file::to_text(&scene.path),
         body: BodyProperties {
@@ -375,29 +370,12 @@ fn metadata(scene: &Scene, model: &Model, at_start: &Simulation) -> Metadata {
     }
 }
 
-/// CRC-32 of all that a simulation knows at its start. How it is written down may change from version to version, but no
-/// run goes on in another version anyway.
-fn fingerprint(at_start: &Simulation) -> u32 {
-    struct Sum(crc32fast::Hasher);
-    impl fmt::Write for Sum {
-        fn write_str(&mut self, text: &str) -> fmt::Result {
-            self.0.update(text.as_bytes());
-            Ok(())
-        }
-    }
-    let mut sum = Sum(crc32fast::Hasher::new());
-    // It cannot fail, since a sum takes everything.
-    let _ = fmt::write(&mut sum, format_args!("{at_start:?}"));
-    sum.0.finalize()
-}
-
 /// Follows a run, and turns its observations into rows of the results file.
 struct Recorder<'a> {
     scene: &'a Scene,
     model: &'a Model,
     observation: Observation,
     writer: Writer<Observation>,
-    checkpoint: Vec<u64>,
     review: Review<'a>,
     rows: u64,
     peak_strain_energy: f64,
@@ -411,7 +389,6 @@ impl<'a> Recorder<'a> {
         scene: &'a Scene,
         model: &'a Model,
         initial: &'a Initial,
-        simulation: &Simulation,
         writer: Writer<Observation>,
     ) -> Result<Self, RunError> {
         let step = model
@@ -420,9 +397,8 @@ impl<'a> Recorder<'a> {
         Ok(Self {
             scene,
             model,
-            observation: simulation.observation(),
+            observation: Observation::new(model.body.flexible(), model.points.len()),
             writer,
-            checkpoint: Vec::new(),
             review: Review::new(model.case(scene, initial), model.physics.effects, &model.advice),
             rows: 0,
             peak_strain_energy: 0.0,
@@ -584,8 +560,9 @@ impl<'a> Recorder<'a> {
 
     /// Hands the rows to the operating system, with the state after the last.
     fn flush(&mut self, simulation: &mut Simulation) -> Result<(), RunError> {
-        simulation.checkpoint(&mut self.checkpoint);
-        Ok(self.writer.flush(&self.checkpoint)?)
+        let part = || self.writer.unfinished().to_path_buf();
+        let checkpoint = simulation.checkpoint().map_err(|source| RunError::Restore { part: part(), source })?;
+        Ok(self.writer.flush(&checkpoint)?)
     }
 }
 

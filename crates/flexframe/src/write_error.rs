@@ -15,7 +15,7 @@ pub struct WriteError {
 
 impl WriteError {
     /// Makes an error of the system that of a file.
-    pub(crate) fn of(path: &Path) -> impl FnOnce(io::Error) -> Self {
+    pub fn of(path: &Path) -> impl FnOnce(io::Error) -> Self {
         move |source| Self { path: path.to_owned(), source }
     }
 }

@@ -1,55 +1,32 @@
 //! Whether the energy that a motion has is the one that it should have.
 //!
 //! The start, the work of the loads and the dissipation account for the energy of every state. A scheme whose steps are
-//! too long breaks this long before a number overflows.
+//! too long breaks this long before a number overflows. The account watches every step; unlike an
+//! [`Observer`](crate::Observer) it needs no evaluation of the rates, ends the run, and is part of its checkpoint.
 
-use crate::checkpoint::StateCoder;
+use serde::{Deserialize, Serialize};
+
+use crate::checkpoint::{CheckpointError, equal_room, finite};
+use crate::energies::Energies;
 use crate::error::StepError;
-
-/// The energy of a state, and what has been done to it since the start.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Energies {
-    /// Time.
-    pub time: f64,
-    /// Energy without that of the motion of the origin.
-    pub internal: f64,
-    /// Energy of the motion of the origin.
-    pub translation: f64,
-    /// Work of the loads.
-    pub work: f64,
-    /// Energy that damping has taken.
-    pub dissipation: f64,
-}
-
-impl Energies {
-    const ZERO: Self = Self { time: 0.0, internal: 0.0, translation: 0.0, work: 0.0, dissipation: 0.0 };
-
-    /// One that there may be or not; the coder is as long in both cases.
-    pub(crate) fn code(energies: &mut Option<Self>, coder: &mut StateCoder) {
-        let mut there = energies.is_some();
-        coder.flag(&mut there);
-        let mut now = energies.unwrap_or(Self::ZERO);
-        for number in [&mut now.time, &mut now.internal, &mut now.translation, &mut now.work, &mut now.dissipation] {
-            coder.number(number);
-        }
-        *energies = there.then_some(now);
-    }
-}
+use crate::scheme::Scheme;
 
 /// The account of a run.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
 pub(crate) struct EnergyAccount {
+    #[serde(with = "equal_room")]
     start: Option<Energies>,
     /// Largest of the energies at the start, put in and taken out so far.
     scale: f64,
     /// Largest sum of the work and the dissipation of one step: where a load sets in, they are no better known than that.
     largest_exchange: f64,
+    #[serde(with = "equal_room")]
     last: Option<Energies>,
     /// Sum of |work| + |dissipation| of all steps, and what work and dissipation were after the last.
     exchanged: f64,
     done: [f64; 2],
-    /// What the loads are good for: the scale of modes that follow them within a step, where no stage sees it, and of a
-    /// load that sets in.
+    /// Energy scale of the loads: that of modes that follow them within a step, where no stage sees it, and of a load that
+    /// sets in.
     of_loads: f64,
 }
 
@@ -60,7 +37,7 @@ const RESOLVED: f64 = 0.5;
 const OFF: f64 = 0.5;
 /// The same where they are not, for too much alone: work and dissipation are then known in their size only.
 const OFF_UNRESOLVED: f64 = 4.0;
-/// Part of what the loads are good for that may be missing or too much: a formula may grow from nothing by many orders
+/// Part of the energy scale of the loads that may be missing or too much: a formula may grow from nothing by many orders
 /// of magnitude within a step, as a bell curve does, and the work of that step is not known.
 const SETTING_IN: f64 = 1e-6;
 /// Part of all that was exchanged that the stages may have summed wrongly: work that goes to and fro leaves an error in
@@ -81,22 +58,41 @@ impl EnergyAccount {
         Self { of_loads, ..Self::default() }
     }
 
-    /// What the loads are good for.
+    /// Energy scale of the loads.
     pub(crate) fn of_loads(&self) -> f64 {
         self.of_loads
     }
 
-    pub(crate) fn code(&mut self, coder: &mut StateCoder) {
-        Energies::code(&mut self.start, coder);
-        coder.number(&mut self.scale);
-        coder.number(&mut self.largest_exchange);
-        Energies::code(&mut self.last, coder);
-        coder.number(&mut self.exchanged);
-        self.done.iter_mut().for_each(|done| coder.number(done));
+    /// Refuses numbers that are not finite.
+    pub(crate) fn check_saved(&self) -> Result<(), CheckpointError> {
+        let Self { start, scale, largest_exchange, last, exchanged, done, of_loads } = self;
+        start.iter().chain(last).try_for_each(Energies::check)?;
+        finite("the account of the energy", [scale, largest_exchange, exchanged, of_loads].into_iter().chain(done))
+    }
+
+    /// Sees the end of a step of a scheme whose longest step so far is `step`.
+    ///
+    /// # Errors
+    /// As [`Self::look`].
+    pub(crate) fn step(&mut self, scheme: &dyn Scheme, step: f64) -> Result<(), StepError> {
+        self.exchange(scheme.work_and_dissipation());
+        self.look(scheme, step)
+    }
+
+    /// Checks the energy where the scheme last found it: of the conservative form that is the start of the last step or
+    /// the last observation, since it takes an evaluation of the rates.
+    ///
+    /// # Errors
+    /// [`StepError::NotFinite`] and [`StepError::Energy`].
+    pub(crate) fn look(&mut self, scheme: &dyn Scheme, step: f64) -> Result<(), StepError> {
+        match scheme.energies() {
+            Some(now) => self.check(&now, scheme.fastest_rate(), step),
+            None => Ok(()),
+        }
     }
 
     /// Takes a step into account, after which work and dissipation since the beginning are these.
-    pub(crate) fn exchange(&mut self, done: [f64; 2]) {
+    fn exchange(&mut self, done: [f64; 2]) {
         self.exchanged += (done[0] - self.done[0]).abs() + (done[1] - self.done[1]).abs();
         self.done = done;
     }
@@ -111,11 +107,8 @@ impl EnergyAccount {
         self.start.is_none()
     }
 
-    /// Checks the energy at a time; the `step` is the longest so far, the `rate` the largest of ω_k and 2 ζ_k ω_k.
-    ///
-    /// # Errors
-    /// [`StepError::NotFinite`] and [`StepError::Energy`].
-    pub(crate) fn check(&mut self, now: &Energies, rate: f64, step: f64) -> Result<(), StepError> {
+    /// Checks the energy at a time; the `rate` is the largest of ω_k and 2 ζ_k ω_k.
+    fn check(&mut self, now: &Energies, rate: f64, step: f64) -> Result<(), StepError> {
         let Energies { time, internal, .. } = *now;
         let start = *self.start.get_or_insert(*now);
         let put_in = (now.work - start.work) - (now.translation - start.translation);
@@ -164,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn an_energy_that_is_nothing_to_what_the_loads_are_good_for_is_let_pass() {
+    fn an_energy_far_below_that_of_the_loads_passes() {
         let check = |energy: f64| {
             let mut account = EnergyAccount::new(2.0);
             account.check(&energies(0.0, 0.0, 0.0, 0.0), 1.0, 0.1).unwrap();

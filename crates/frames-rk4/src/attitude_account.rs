@@ -5,8 +5,9 @@
 //! small rotations do, so that those to and fro of a vibration cancel.
 
 use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
 
-use crate::checkpoint::StateCoder;
+use crate::checkpoint::{CheckpointError, equal_room, finite};
 use crate::error::StepError;
 
 /// Angle in rad, of turns that no load has caused, beyond which nothing is known about the attitude. Where the
@@ -14,23 +15,20 @@ use crate::error::StepError;
 const LOST: f64 = 1.0;
 
 /// The account of a run.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
 pub(crate) struct AttitudeAccount {
     /// Angular momentum at the start, global components, and the time up to which the angle is known.
+    #[serde(with = "equal_room")]
     start: Option<(Vector3<f64>, f64)>,
     /// Sum of the turns that nothing accounts for, rad, global components.
     turn_global: Vector3<f64>,
 }
 
 impl AttitudeAccount {
-    pub(crate) fn code(&mut self, coder: &mut StateCoder) {
-        let mut there = self.start.is_some();
-        coder.flag(&mut there);
-        let (mut momentum, mut time) = self.start.unwrap_or_default();
-        coder.vector(&mut momentum);
-        coder.number(&mut time);
-        self.start = there.then_some((momentum, time));
-        coder.vector(&mut self.turn_global);
+    /// Refuses numbers that are not finite.
+    pub(crate) fn check_saved(&self) -> Result<(), CheckpointError> {
+        let (momentum, time) = self.start.unwrap_or_default();
+        finite("the account of the attitude", momentum.iter().chain(&self.turn_global).chain([&time]))
     }
 
     /// Checks the angular momentum less the impulse of the loads, `balance_global`, at a time; `spin_of` is the spin

@@ -1,135 +1,116 @@
-//! A run's state as a list of words, so that it can be taken up again in another process.
+//! A run's state as bytes, so that it can be taken up again in another process.
+//!
+//! States are encoded by serde and postcard. Counts and optional values take the same room whatever they are, so that all
+//! checkpoints of a run are equally long, and a file can have a place for them.
 
-use nalgebra::SVector;
-use rigid_kin::Attitude;
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-/// A checkpoint that does not belong to the run that is to go on from it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-pub enum RestoreError {
-    /// It has more or fewer words than the state of the run.
+use crate::error::SetupError;
+
+/// A checkpoint that cannot be made, or that does not belong to the run that is to go on from it.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum CheckpointError {
+    /// It was made by a run of something else.
     #[error(
-        "the checkpoint has {found} words where the state of this run has {expected}; it is that of another scene or version: run the scene again from its beginning"
+        "the checkpoint is that of another run: {what} has changed since; put back what was changed, or run the scene again from its beginning"
     )]
-    Length {
-        /// Words that this run's state has.
-        expected: usize,
-        /// Words of the checkpoint.
-        found: usize,
+    Changed {
+        /// What differs.
+        what: String,
     },
-    /// A word that no run can have left.
+    /// The bytes are too few, too many, or hold no state.
+    #[error("the checkpoint cannot be decoded: {0}; run the scene again from its beginning")]
+    Encoding(#[from] postcard::Error),
+    /// A state with lists of the wrong length, or with numbers that are not finite.
+    #[error("the checkpoint does not hold a state of this run: {0}; run the scene again from its beginning")]
+    State(#[from] SetupError),
+    /// A value that no run can have left.
     #[error(
-        "the checkpoint holds no state of a run: {what} is out of its range; run the scene again from its beginning"
+        "the checkpoint does not hold a state of this run: {what} is out of its range; run the scene again from its beginning"
     )]
     Value {
-        /// What the word stands for.
+        /// What it stands for.
         what: &'static str,
     },
 }
 
-/// Encodes or decodes a state as a list of words.
+/// The bytes of a value.
 ///
-/// Each part of the state has one function `code` for both directions, so that the encoder and the decoder cannot differ.
-/// It hands over its variables one by one. Constants of the run, and what is computed again before it is read, are left
-/// out.
-#[derive(Debug)]
-pub struct StateCoder<'a>(Way<'a>);
-
-/// Which way it goes.
-#[derive(Debug)]
-enum Way<'a> {
-    /// Notes the words.
-    Note(&'a mut Vec<u64>),
-    /// Sets them from a list.
-    Set {
-        words: &'a [u64],
-        /// Words passed, those beyond the end of the list counted too.
-        passed: usize,
-        wrong: Option<&'static str>,
-    },
+/// # Errors
+/// [`CheckpointError::Encoding`] for a type that postcard cannot encode.
+pub fn encode(value: &impl Serialize) -> Result<Vec<u8>, CheckpointError> {
+    Ok(postcard::to_allocvec(value)?)
 }
 
-impl<'a> StateCoder<'a> {
-    /// Sets a state from a list of words.
-    pub(crate) fn decode(words: &'a [u64]) -> Self {
-        Self(Way::Set { words, passed: 0, wrong: None })
+/// The value of [`encode`]d bytes. Its sizes and numbers are still to be checked.
+///
+/// # Errors
+/// [`CheckpointError::Encoding`] for bytes that are not those of such a value.
+pub fn decode<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, CheckpointError> {
+    match postcard::take_from_bytes(bytes)? {
+        (value, []) => Ok(value),
+        _ => Err(postcard::Error::DeserializeBadEncoding.into()),
+    }
+}
+
+/// Bytes as words, the last filled up with zeros.
+pub(crate) fn to_words(bytes: &[u8]) -> Vec<u64> {
+    let word = |chunk: &[u8]| {
+        let mut word = [0; 8];
+        word[..chunk.len()].copy_from_slice(chunk);
+        u64::from_le_bytes(word)
+    };
+    bytes.chunks(8).map(word).collect()
+}
+
+/// The value of the words of encoded bytes.
+pub(crate) fn from_words<T: DeserializeOwned>(words: &[u64]) -> Result<T, CheckpointError> {
+    let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
+    let (value, rest) = postcard::take_from_bytes(&bytes)?;
+    match rest.len() < 8 && rest.iter().all(|byte| *byte == 0) {
+        true => Ok(value),
+        false => Err(postcard::Error::DeserializeBadEncoding.into()),
+    }
+}
+
+/// Refuses what does not hold.
+pub(crate) fn expect(what: &'static str, holds: bool) -> Result<(), CheckpointError> {
+    if holds { Ok(()) } else { Err(CheckpointError::Value { what }) }
+}
+
+/// Refuses counts beyond 2⁶⁰, which no run reaches and which could overflow.
+pub(crate) fn counts(counts: &[u64]) -> Result<(), CheckpointError> {
+    expect("a count", counts.iter().all(|count| *count <= 1 << 60))
+}
+
+/// Refuses numbers that are not finite.
+pub(crate) fn finite<'a>(
+    what: &'static str,
+    numbers: impl IntoIterator<Item = &'a f64>,
+) -> Result<(), CheckpointError> {
+    expect(what, numbers.into_iter().all(|number| number.is_finite()))
+}
+
+/// Serde for an optional value that takes the same room whether it is there or not.
+pub(crate) mod equal_room {
+    use super::{Deserialize, Deserializer, Serialize, Serializer};
+
+    pub(crate) fn serialize<T, S>(value: &Option<T>, serializer: S) -> Result<S::Ok, S::Error>
+    where
+        T: Serialize + Default + Copy,
+        S: Serializer,
+    {
+        (value.is_some(), value.unwrap_or_default()).serialize(serializer)
     }
 
-    /// Notes a state in a list of words.
-    pub(crate) fn encode(words: &'a mut Vec<u64>) -> Self {
-        Self(Way::Note(words))
-    }
-
-    /// Whether what was set is a whole state.
-    pub(crate) fn finish(self) -> Result<(), RestoreError> {
-        match self.0 {
-            Way::Set { words, passed, .. } if passed != words.len() => {
-                Err(RestoreError::Length { expected: passed, found: words.len() })
-            }
-            Way::Set { wrong: Some(what), .. } => Err(RestoreError::Value { what }),
-            _ => Ok(()),
-        }
-    }
-
-    fn word(&mut self, value: &mut u64) {
-        match &mut self.0 {
-            Way::Note(words) => words.push(*value),
-            Way::Set { words, passed, .. } => {
-                *value = words.get(*passed).copied().unwrap_or(*value);
-                *passed += 1;
-            }
-        }
-    }
-
-    /// The words set so far are refused unless `holds`.
-    pub fn expect(&mut self, what: &'static str, holds: bool) {
-        if let (Way::Set { wrong, .. }, false) = (&mut self.0, holds) {
-            *wrong = Some(what);
-        }
-    }
-
-    /// A count, which no run brings beyond 2⁶⁰.
-    pub fn count(&mut self, value: &mut u64) {
-        self.word(value);
-        self.expect("a count", *value <= 1 << 60);
-    }
-
-    /// Yes or no.
-    pub fn flag(&mut self, value: &mut bool) {
-        let mut word = u64::from(*value);
-        self.word(&mut word);
-        *value = word != 0;
-    }
-
-    /// Bit for bit, infinities and NaN too.
-    pub fn number(&mut self, value: &mut f64) {
-        let mut word = value.to_bits();
-        self.word(&mut word);
-        *value = f64::from_bits(word);
-    }
-
-    /// A number that is finite in any run.
-    pub fn finite(&mut self, what: &'static str, value: &mut f64) {
-        self.number(value);
-        self.expect(what, value.is_finite());
-    }
-
-    /// A list whose length is a constant of the run.
-    pub fn numbers(&mut self, values: &mut [f64]) {
-        values.iter_mut().for_each(|value| self.number(value));
-    }
-
-    /// A vector, bit for bit.
-    pub fn vector<const N: usize>(&mut self, vector: &mut SVector<f64, N>) {
-        self.numbers(vector.as_mut_slice());
-    }
-
-    /// An attitude, bit for bit.
-    pub fn attitude(&mut self, attitude: &mut Attitude) {
-        let mut wxyz = attitude.wxyz();
-        self.numbers(&mut wxyz);
-        match Attitude::from_unit_wxyz(wxyz) {
-            Ok(found) => *attitude = found,
-            Err(_) => self.expect("the attitude", false),
-        }
+    pub(crate) fn deserialize<'de, T, D>(deserializer: D) -> Result<Option<T>, D::Error>
+    where
+        T: Deserialize<'de>,
+        D: Deserializer<'de>,
+    {
+        let (is_there, value) = <(bool, T)>::deserialize(deserializer)?;
+        Ok(is_there.then_some(value))
     }
 }

@@ -35,10 +35,9 @@ use modal::ReducedBody;
 use nalgebra::{Matrix3, SVector, Vector3};
 use rigid_kin::{Attitude, f_inverse, transformation_matrix};
 
-use crate::account::Energies;
-use crate::checkpoint::StateCoder;
 use crate::column_major::{columns, dot, multiply, multiply_and_subtract, multiply_top};
 use crate::effect::{Effect, EffectMap};
+use crate::energies::Energies;
 use crate::error::{RateError, SetupError, StepError};
 use crate::history::History;
 use crate::initial::Initial;
@@ -138,7 +137,7 @@ pub struct ConservativeBody {
 }
 
 /// State at a time.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct ConservativeState {
     /// Time.
     pub time: f64,
@@ -207,14 +206,6 @@ impl ConservativeState {
             Some(found) => Err(SetupError::Value { what: "a value of the state", found, expected: "a finite number" }),
             None => Ok(()),
         }
-    }
-
-    pub(crate) fn code(&mut self, coder: &mut StateCoder) {
-        coder.finite("the time", &mut self.time);
-        coder.attitude(&mut self.attitude);
-        coder.vector(&mut self.slow);
-        coder.numbers(&mut self.modal_displacement);
-        coder.numbers(&mut self.modal_momentum);
     }
 }
 

@@ -4,10 +4,11 @@ use std::any::Any;
 
 use nalgebra::Vector2;
 use rigid_kin::Attitude;
+use serde::{Deserialize, Serialize};
 
-use crate::account::Energies;
-use crate::checkpoint::StateCoder;
+use crate::checkpoint::{CheckpointError, counts, decode, encode, equal_room, expect, finite};
 use crate::conservative::{ConservativeBody, ConservativeState, Evaluation, Slow, get, part};
+use crate::energies::Energies;
 use crate::error::{SetupError, StepError};
 use crate::error_size::Sizes;
 use crate::exponential::{BlockStore, apply};
@@ -56,6 +57,20 @@ pub struct ConservativeMotion {
     largest: Sizes,
     /// Energies at the start of the last step; none of a driven body, whose drive may jump.
     energies: Option<Energies>,
+}
+
+/// What a checkpoint keeps.
+#[derive(Serialize, Deserialize)]
+struct Saved {
+    state: ConservativeState,
+    #[serde(with = "equal_room")]
+    energies: Option<Energies>,
+    first_known: bool,
+    /// Of `stages[0]`.
+    rates: (Slow, Vec<f64>, Vec<f64>),
+    #[serde(with = "postcard::fixint::le")]
+    evaluations: u64,
+    largest: Sizes,
 }
 
 /// Classical Runge–Kutta in the list of schemes.
@@ -174,17 +189,34 @@ impl Scheme for ConservativeMotion {
         self.body.flexible()
     }
 
-    fn code(&mut self, coder: &mut StateCoder<'_>) {
-        self.state.code(coder);
-        Energies::code(&mut self.energies, coder);
-        coder.flag(&mut self.first_known);
+    fn save(&self) -> Result<Vec<u8>, CheckpointError> {
         // Of a known evaluation the stages read the rates only.
+        let Evaluation { slow, displacement, momentum, .. } = self.stages[0].clone();
+        encode(&Saved {
+            state: self.state.clone(),
+            energies: self.energies,
+            first_known: self.first_known,
+            rates: (slow, displacement, momentum),
+            evaluations: self.evaluations,
+            largest: self.largest,
+        })
+    }
+
+    fn restore(&mut self, saved: &[u8]) -> Result<(), CheckpointError> {
+        let Saved { state, energies, first_known, rates: (slow, displacement, momentum), evaluations, largest } =
+            decode(saved)?;
+        let nf = self.body.flexible();
+        state.check(nf)?;
+        expect("a list of rates", displacement.len() == nf && momentum.len() == nf)?;
+        finite("a rate", slow.iter().chain(&displacement).chain(&momentum))?;
+        energies.iter().try_for_each(Energies::check)?;
+        counts(&[evaluations])?;
+        largest.check()?;
         let first = &mut self.stages[0];
-        coder.vector(&mut first.slow);
-        coder.numbers(&mut first.displacement);
-        coder.numbers(&mut first.momentum);
-        coder.count(&mut self.evaluations);
-        self.largest.code(coder);
+        (first.slow, first.displacement, first.momentum) = (slow, displacement, momentum);
+        (self.state, self.energies, self.first_known) = (state, energies, first_known);
+        (self.evaluations, self.largest) = (evaluations, largest);
+        Ok(())
     }
 
     fn boxed_clone(&self) -> Box<dyn Scheme> {

@@ -2,6 +2,7 @@
 
 /// A motion that cannot start.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum SetupError {
     /// A list with one number for each flexible mode has another length.
     #[error("{what} has {found} entries; expected one for each of the {expected} flexible modes")]
@@ -47,7 +48,7 @@ pub enum SetupError {
         /// The time of the row before.
         previous: f64,
     },
-    /// A text that is no expression in t.
+    /// A text that is not an expression in t.
     #[error(
         "the expression \"{text}\" at character {position}: {problem}; an expression has t, numbers, pi and e, + - * / % ^ and parentheses, and functions like {functions}",
         functions = crate::history::function_names()
@@ -134,7 +135,7 @@ pub enum SetupError {
         /// Its rigid motions.
         motion: Box<modal::RigidMotion>,
     },
-    /// Something that the formulation of the paper has not got.
+    /// Something that the formulation of the paper does not have.
     #[error("the formulation paper has no {what}; take the conservative one")]
     NotInPaper {
         /// What.
@@ -143,13 +144,14 @@ pub enum SetupError {
     /// The reference points lie on a line.
     #[error(transparent)]
     CollinearPoints(#[from] rigid_kin::CollinearPoints),
-    /// The inertia is none of a rigid body.
+    /// The inertia is not one of a rigid body.
     #[error(transparent)]
     Inertia(#[from] rigid_kin::InertiaError),
 }
 
 /// A step that failed. The state before it is kept.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum StepError {
     /// The body turns by more than a full turn within a step.
     #[error("at time {time}: the body turns by {angle:.3} rad within a step of {step:.3e}; take a step of at most {:.1e}", step / angle)]

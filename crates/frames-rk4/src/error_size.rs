@@ -4,11 +4,13 @@
 //! modal displacements, and of the accelerations. The energy alone, most of which may be that of the rigid motion, would
 //! let a small vibration be wrong altogether; displacements alone would let high modes be, which make accelerations.
 
-use crate::checkpoint::StateCoder;
+use serde::{Deserialize, Serialize};
+
+use crate::checkpoint::{CheckpointError, finite};
 use crate::conservative::{ConservativeBody, ConservativeState, Evaluation, get, part};
 
 /// Squares of the sizes of a motion, or of the difference of two states.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Sizes {
     /// Energy, that of the origin's motion left out where it is a motion's.
     pub energy: f64,
@@ -18,7 +20,7 @@ pub(crate) struct Sizes {
     pub acceleration: f64,
 }
 
-/// Part of the motion, as a ratio of amplitudes, below which a vibration is none.
+/// Part of the motion, as a ratio of amplitudes, below which a vibration is taken as rounding.
 const STILL: f64 = 1e-6;
 
 /// Largest turn of a mode in a step, rad, at which half of the step tells what the step gets wrong.
@@ -34,8 +36,9 @@ impl Sizes {
         }
     }
 
-    pub(crate) fn code(&mut self, coder: &mut StateCoder) {
-        [&mut self.energy, &mut self.displacement, &mut self.acceleration].into_iter().for_each(|x| coder.number(x));
+    /// Refuses numbers that are not finite.
+    pub(crate) fn check(&self) -> Result<(), CheckpointError> {
+        finite("the size of the motion", [&self.energy, &self.displacement, &self.acceleration])
     }
 
     /// The largest of the three beside those of a motion of a body with this lowest ω_k.

@@ -24,16 +24,19 @@
 mod acceleration;
 mod account;
 mod attitude_account;
+mod builder;
 mod checkpoint;
 mod column_major;
 mod conservative;
 mod conservative_motion;
 mod conservative_observation;
 mod effect;
+mod energies;
 mod error;
 mod error_size;
 mod events;
 mod exponential;
+mod fingerprint;
 mod formula_steps;
 mod history;
 mod initial;
@@ -61,11 +64,12 @@ mod steady_spin;
 mod travelling_frame;
 mod work;
 
-pub use account::Energies;
-pub use checkpoint::{RestoreError, StateCoder};
+pub use builder::SimulationBuilder;
+pub use checkpoint::{CheckpointError, decode, encode};
 pub use conservative::{ConservativeBody, ConservativeRates, ConservativeState};
 pub use conservative_motion::ConservativeMotion;
 pub use effect::{Effect, EffectMap};
+pub use energies::Energies;
 pub use error::{SetupError, StepError};
 pub use events::{Crossing, Event};
 pub use history::{Expression, History, Table};
@@ -92,3 +96,6 @@ pub use state::{MotionState, State};
 pub use steady_spin::{EigenError, SpinMode, SteadySpin};
 pub use travelling_frame::TravellingFrame;
 pub use work::Work;
+
+/// Crates whose types are in the interface.
+pub use {faer, modal, nalgebra, rigid_kin};

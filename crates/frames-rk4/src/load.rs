@@ -30,6 +30,8 @@ pub use moment::PointMoment;
 ///
 /// It sees the motion and adds forces and moments to what is applied. It is evaluated several times a step, so it must
 /// not allocate, and it must depend on nothing but the motion, or steps would not converge.
+///
+/// A checkpoint knows a load by what [`fmt::Debug`] prints of it, so that must be its data, the same in every process.
 pub trait Load: fmt::Debug + Send + Sync + Any {
     /// Adds what the load does to the body in this motion.
     fn apply(&self, motion: &Kinematics, applied: &mut Applied);

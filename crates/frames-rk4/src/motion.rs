@@ -5,8 +5,8 @@ use modal::{BodyPoint, ReducedBody, RigidMotion};
 use nalgebra::{Matrix3, Vector3};
 use rigid_kin::{Attitude, Inertia, InertiaError, euler_angular_acceleration};
 
-use crate::account::Energies;
 use crate::attitude_account::AttitudeAccount;
+use crate::energies::Energies;
 use crate::error::{SetupError, StepError};
 use crate::observation::{Observation, PointMotion};
 use crate::second_order::SecondOrder;

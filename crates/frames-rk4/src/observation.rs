@@ -6,7 +6,8 @@ use rigid_kin::Attitude;
 use crate::work::Work;
 
 /// Motion of a point, global components.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[non_exhaustive]
 pub struct PointMotion {
     /// Displacement from where the point was in the undeformed body at the beginning.
     pub displacement: Vector3<f64>,
@@ -20,6 +21,7 @@ pub struct PointMotion {
 
 /// The motion at one time. Lists have one entry for each flexible mode, or for each point that was asked for.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Observation {
     /// Time.
     pub time: f64,
@@ -56,9 +58,9 @@ pub struct Observation {
 }
 
 impl Observation {
-    /// Room for `flexible` modes and `points` points.
+    /// Zeros, for `flexible` modes and `points` points: room for a motion.
     pub fn new(flexible: usize, points: usize) -> Self {
-        let list = || Vec::with_capacity(flexible);
+        let list = || vec![0.0; flexible];
         Self {
             time: 0.0,
             attitude: Attitude::identity(),
@@ -75,7 +77,7 @@ impl Observation {
             work: Work::default(),
             linear_momentum_global: Vector3::zeros(),
             angular_momentum_global: Vector3::zeros(),
-            points: Vec::with_capacity(points),
+            points: vec![PointMotion::default(); points],
         }
     }
 

@@ -9,7 +9,6 @@ use modal::ReducedBody;
 use nalgebra::{Matrix3, Vector3};
 use rigid_kin::{BeyondFullTurn, ReferencePoints, f_inverse, relative_velocity_rate, transformation_matrix};
 
-use crate::checkpoint::StateCoder;
 use crate::error::{RateError, SetupError, StepError};
 use crate::initial::Initial;
 use crate::load::Coordinates;
@@ -18,7 +17,7 @@ use crate::model::{LinearMotion, ModalModel};
 use crate::physics::Physics;
 use crate::setup::{Beginning, Method, StepLimit};
 use crate::state::State;
-use crate::travelling_frame::{EVALUATIONS, FrameMotion, FrameSteps, TravellingFrame};
+use crate::travelling_frame::{Carried, EVALUATIONS, FrameMotion, FrameSteps, TravellingFrame};
 use crate::work::Work;
 
 /// Steps a flexible body by the paper's scheme.
@@ -215,13 +214,12 @@ impl FrameSteps for PaperSteps {
         self.at_corner = true;
     }
 
-    fn copy_from(&mut self, from: &Self) {
-        (self.power, self.at_corner) = (from.power, from.at_corner);
+    fn carried(&self) -> Carried {
+        Carried { power: self.power, at_corner: self.at_corner }
     }
 
-    fn code(&mut self, coder: &mut StateCoder<'_>) {
-        self.power.code(coder);
-        coder.flag(&mut self.at_corner);
+    fn carry_on(&mut self, carried: Carried) {
+        (self.power, self.at_corner) = (carried.power, carried.at_corner);
     }
 }
 
@@ -241,7 +239,7 @@ pub(crate) const METHOD: Method = Method {
     },
 };
 
-/// Refuses what the formulation of the paper has not got.
+/// Refuses what the formulation of the paper does not have.
 pub(crate) fn refuse_beyond_paper(physics: &Physics) -> Result<(), SetupError> {
     if physics.drive.is_some() { Err(SetupError::NotInPaper { what: "driven motion" }) } else { Ok(()) }
 }

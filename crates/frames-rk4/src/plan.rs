@@ -1,6 +1,8 @@
 //! Which steps lead through a run: they end exactly at output times and at the corners of load histories.
 
-use crate::checkpoint::StateCoder;
+use serde::{Deserialize, Serialize};
+
+use crate::checkpoint::{CheckpointError, counts, expect, finite};
 
 /// How long the steps are.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -21,7 +23,7 @@ pub enum Rows {
 }
 
 /// A stretch of time without a corner or an output time inside.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Segment {
     pub start: f64,
     pub end: f64,
@@ -35,15 +37,9 @@ pub(crate) struct Segment {
 }
 
 impl Segment {
-    /// Of no length, to be set.
-    const BLANK: Self = Self { start: 0.0, end: 0.0, length: 0.0, row: false, corner: false };
-
-    fn code(&mut self, coder: &mut StateCoder) {
-        for time in [&mut self.start, &mut self.end, &mut self.length] {
-            coder.finite("a segment of the run", time);
-        }
-        coder.flag(&mut self.row);
-        coder.flag(&mut self.corner);
+    /// Refuses numbers that are not finite.
+    fn check(&self) -> Result<(), CheckpointError> {
+        finite("a segment of the run", [&self.start, &self.end, &self.length])
     }
 }
 
@@ -63,6 +59,15 @@ pub(crate) struct Plan {
     stop: Option<f64>,
 }
 
+/// How far a plan has come.
+#[derive(Debug, Serialize, Deserialize)]
+pub(crate) struct Progress {
+    #[serde(with = "postcard::fixint::le")]
+    outputs: u64,
+    reached: f64,
+    last_length: f64,
+}
+
 impl Plan {
     pub(crate) fn new(end: f64, corners: impl Iterator<Item = f64>, rows: Rows) -> Self {
         let mut corners: Vec<f64> = corners.filter(|t| *t > 0.0 && *t < end).collect();
@@ -74,14 +79,24 @@ impl Plan {
         Self { end, corners, passed: 0, interval, outputs: 0, reached: 0.0, last_length: 0.0, stop: None }
     }
 
-    pub(crate) fn code(&mut self, coder: &mut StateCoder) {
-        let mut passed = self.passed as u64;
-        coder.count(&mut passed);
-        coder.expect("the number of corners passed", passed <= self.corners.len() as u64);
-        self.passed = passed as usize;
-        coder.count(&mut self.outputs);
-        coder.finite("the end of the segment", &mut self.reached);
-        coder.finite("the length of the segment", &mut self.last_length);
+    /// How far it has come.
+    pub(crate) fn progress(&self) -> Progress {
+        Progress { outputs: self.outputs, reached: self.reached, last_length: self.last_length }
+    }
+
+    /// Goes on from there.
+    pub(crate) fn set_progress(&mut self, progress: &Progress) -> Result<(), CheckpointError> {
+        let Progress { outputs, reached, last_length } = *progress;
+        counts(&[outputs])?;
+        finite("the end of the segment", [&reached, &last_length])?;
+        self.passed = self.corners_passed(reached);
+        (self.outputs, self.reached, self.last_length) = (outputs, reached, last_length);
+        Ok(())
+    }
+
+    fn corners_passed(&self, time: f64) -> usize {
+        let same = self.same();
+        self.corners.partition_point(|corner| *corner <= time + same)
     }
 
     /// Sets or takes back a time to stop at.
@@ -98,7 +113,7 @@ impl Plan {
     pub(crate) fn go_to(&mut self, time: f64) {
         let same = self.same();
         self.reached = time;
-        self.passed = self.corners.partition_point(|corner| *corner <= time + same);
+        self.passed = self.corners_passed(time);
         self.outputs = self.interval.map_or(0, |interval| ((time + same) / interval).floor().max(0.0) as u64);
     }
 
@@ -146,10 +161,12 @@ impl Plan {
 }
 
 /// Equal steps through a segment.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
 pub(crate) struct EqualSteps {
     segment: Segment,
+    #[serde(with = "postcard::fixint::le")]
     count: u64,
+    #[serde(with = "postcard::fixint::le")]
     done: u64,
 }
 
@@ -161,14 +178,11 @@ impl EqualSteps {
         Self { segment, count, done: 0 }
     }
 
-    /// To be set.
-    pub(crate) const BLANK: Self = Self { segment: Segment::BLANK, count: 1, done: 1 };
-
-    pub(crate) fn code(&mut self, coder: &mut StateCoder) {
-        self.segment.code(coder);
-        coder.count(&mut self.count);
-        coder.count(&mut self.done);
-        coder.expect("the number of steps done", self.done <= self.count);
+    /// Refuses what no run leaves.
+    pub(crate) fn check(&self) -> Result<(), CheckpointError> {
+        self.segment.check()?;
+        counts(&[self.count])?;
+        expect("the number of steps done", self.done <= self.count)
     }
 
     /// Whether all steps have been handed out.
@@ -190,7 +204,7 @@ impl EqualSteps {
 
 /// Steps through a segment whose lengths are its length over a power of two, so that they end exactly at its end and
 /// few different lengths occur.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
 pub(crate) struct HalvedSteps {
     segment: Segment,
     /// Steps are `length / 2^level` long.
@@ -198,6 +212,7 @@ pub(crate) struct HalvedSteps {
     /// That of the longest allowed.
     lowest_level: u32,
     /// Steps of this length that have been done.
+    #[serde(with = "postcard::fixint::le")]
     done: u64,
 }
 
@@ -213,19 +228,11 @@ impl HalvedSteps {
         Self { segment, level: level_of(step).max(lowest_level), lowest_level, done: 0 }
     }
 
-    /// To be set.
-    pub(crate) const BLANK: Self = Self { segment: Segment::BLANK, level: 0, lowest_level: 0, done: 1 };
-
-    pub(crate) fn code(&mut self, coder: &mut StateCoder) {
-        self.segment.code(coder);
-        for level in [&mut self.level, &mut self.lowest_level] {
-            let mut count = u64::from(*level);
-            coder.count(&mut count);
-            coder.expect("the halvings of the step", count <= u64::from(DEEPEST));
-            *level = count.min(u64::from(DEEPEST)) as u32;
-        }
-        coder.count(&mut self.done);
-        coder.expect("the number of steps done", self.done <= 1 << self.level);
+    /// Refuses what no run leaves.
+    pub(crate) fn check(&self) -> Result<(), CheckpointError> {
+        self.segment.check()?;
+        expect("the halvings of the step", self.level.max(self.lowest_level) <= DEEPEST)?;
+        expect("the number of steps done", self.done <= 1 << self.level)
     }
 
     /// Length and end of the next step; `None` at the segment's end.

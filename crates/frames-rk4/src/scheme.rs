@@ -3,8 +3,8 @@
 use std::any::Any;
 use std::fmt;
 
-use crate::account::Energies;
-use crate::checkpoint::StateCoder;
+use crate::checkpoint::CheckpointError;
+use crate::energies::Energies;
 use crate::error::{SetupError, StepError};
 use crate::moment::Moment;
 use crate::motion::PointShapes;
@@ -83,8 +83,18 @@ pub trait Scheme: fmt::Debug + Send + Sync + Any {
     /// Number of flexible modes.
     fn flexible(&self) -> usize;
 
-    /// Encodes or decodes the state, all that a run needs to go on bit for bit.
-    fn code(&mut self, coder: &mut StateCoder<'_>);
+    /// All that a run needs to go on bit for bit, as bytes: [`encode`](crate::encode) makes them. They are equally many
+    /// for all states of a run.
+    ///
+    /// # Errors
+    /// [`CheckpointError::Encoding`].
+    fn save(&self) -> Result<Vec<u8>, CheckpointError>;
+
+    /// Goes on from what was saved, after checking its sizes and numbers.
+    ///
+    /// # Errors
+    /// [`CheckpointError`] for bytes that are not those of such a state.
+    fn restore(&mut self, saved: &[u8]) -> Result<(), CheckpointError>;
 
     /// A copy.
     fn boxed_clone(&self) -> Box<dyn Scheme>;

@@ -46,6 +46,7 @@ pub struct Setup<'a> {
 
 /// What limits the step of a scheme.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub enum StepLimit {
     /// The fastest mode, at about 2.83/ω_max.
     Modes,
@@ -55,6 +56,7 @@ pub enum StepLimit {
 
 /// A scheme that a scene can name.
 #[derive(Clone, Copy)]
+#[non_exhaustive]
 pub struct Method {
     /// The name of its formulation: "paper" or "conservative".
     pub formulation: &'static str,

@@ -3,23 +3,27 @@
 use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
 
+use serde::{Deserialize, Serialize};
+
 use crate::account::EnergyAccount;
-use crate::checkpoint::{RestoreError, StateCoder};
+use crate::checkpoint::{CheckpointError, counts, decode, encode, equal_room, expect, from_words, to_words};
 use crate::error::{SetupError, StepError};
 use crate::events::{Event, Events, LastStep};
+use crate::fingerprint::Fingerprint;
 use crate::formula_steps::FormulaSteps;
 use crate::history::History;
 use crate::load::SharedLoad;
 use crate::moment::Moment;
 use crate::motion::PointShapes;
 use crate::observation::Observation;
-use crate::plan::{EqualSteps, HalvedSteps, Plan, Rows, StepControl};
+use crate::plan::{EqualSteps, HalvedSteps, Plan, Progress, Rows, StepControl};
 use crate::scheme::Scheme;
 use crate::setup::{Beginning, Setup};
 use crate::state::MotionState;
 
 /// What a run has cost.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Stats {
     /// Steps taken.
     pub accepted: u64,
@@ -78,9 +82,10 @@ pub enum Reached {
     End,
 }
 
-/// A run in progress. As an iterator it yields the observations after the first.
+/// A run in progress. As an iterator it yields the motion at each row; see [`Rows`].
 #[derive(Debug, Clone)]
 pub struct Simulation {
+    fingerprint: Fingerprint,
     scheme: Box<dyn Scheme>,
     loads: Vec<SharedLoad>,
     /// Of the drive.
@@ -96,7 +101,10 @@ pub struct Simulation {
     points: Vec<PointShapes>,
     stats: Stats,
     account: EnergyAccount,
+    /// Whether the iterator has nothing more to give: it has failed.
     failed: bool,
+    /// Whether a step has been tried, or the row at the start been given.
+    begun: bool,
     events: Events,
     /// Kept where events or times between steps are asked for.
     last_step: Option<LastStep>,
@@ -106,10 +114,56 @@ pub struct Simulation {
 }
 
 /// The way through the segment of the moment.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 enum Walk {
-    Equal { step: f64, steps: Option<(EqualSteps, bool)> },
-    Halved { tolerance: f64, longest_try: f64, steps: Option<(HalvedSteps, bool)> },
+    Equal {
+        step: f64,
+        #[serde(with = "equal_room")]
+        steps: Option<(EqualSteps, bool)>,
+    },
+    Halved {
+        tolerance: f64,
+        longest_try: f64,
+        #[serde(with = "equal_room")]
+        steps: Option<(HalvedSteps, bool)>,
+    },
+}
+
+impl Walk {
+    /// Refuses what a run of this one cannot leave.
+    fn check_saved(&self, saved: &Self) -> Result<(), CheckpointError> {
+        match (self, saved) {
+            (Self::Equal { step, .. }, Self::Equal { step: found, steps }) => {
+                expect("the step", step == found)?;
+                steps.iter().try_for_each(|(steps, _)| steps.check())
+            }
+            (Self::Halved { tolerance, .. }, Self::Halved { tolerance: found, longest_try, steps }) => {
+                expect("the tolerance", tolerance == found)?;
+                expect("the longest step to try", *longest_try > 0.0)?;
+                steps.iter().try_for_each(|(steps, _)| steps.check())
+            }
+            _ => expect("the kind of step control", false),
+        }
+    }
+}
+
+/// What a checkpoint keeps of a run.
+#[derive(Serialize, Deserialize)]
+struct Saved {
+    scheme: Vec<u8>,
+    plan: Progress,
+    walk: Walk,
+    #[serde(with = "postcard::fixint::le")]
+    steps_since_row: u64,
+    corner_ahead: bool,
+    begun: bool,
+    account: EnergyAccount,
+    #[serde(with = "postcard::fixint::le")]
+    accepted: u64,
+    #[serde(with = "postcard::fixint::le")]
+    rejected: u64,
+    shortest: f64,
+    longest: f64,
 }
 
 impl Simulation {
@@ -149,6 +203,7 @@ impl Simulation {
         let corners = of_loads.chain(drive.iter().flat_map(History::corners)).chain(formula_steps.stops());
         let looked_at = Observation::new(scheme.flexible(), setup.points.len());
         Ok(Self {
+            fingerprint: Fingerprint::of(setup),
             scheme,
             events: Events::default(),
             last_step: None,
@@ -167,6 +222,7 @@ impl Simulation {
             stats: Stats { accepted: 0, rejected: 0, evaluations: 0, shortest: f64::INFINITY, longest: 0.0 },
             account: EnergyAccount::new(energy_of_loads),
             failed: false,
+            begun: false,
         })
     }
 
@@ -292,9 +348,14 @@ impl Simulation {
         self.end
     }
 
-    /// Room for an observation.
-    pub fn observation(&self) -> Observation {
-        Observation::new(self.scheme.flexible(), self.points.len())
+    /// The motion at the time that has been reached. [`Self::observe`] does the same without allocating.
+    ///
+    /// # Errors
+    /// As [`Self::observe`].
+    pub fn observation(&mut self) -> Result<Observation, StepError> {
+        let mut out = Observation::new(self.scheme.flexible(), self.points.len());
+        self.observe(&mut out)?;
+        Ok(out)
     }
 
     /// Fills `out` with the motion at the time that has been reached.
@@ -307,14 +368,7 @@ impl Simulation {
         if !out.is_finite() {
             return Err(StepError::NotFinite { time: out.time, what: "a quantity of the motion" });
         }
-        self.check_energy()
-    }
-
-    /// Whether the energy, where it was last looked at, is what it should be. Of the conservative form that is the start
-    /// of the last step or the last observation, since it takes an evaluation of the rates.
-    fn check_energy(&mut self) -> Result<(), StepError> {
-        let Some(now) = self.scheme.energies() else { return Ok(()) };
-        self.account.check(&now, self.scheme.fastest_rate(), self.stats.longest)
+        self.account.look(&*self.scheme, self.stats.longest)
     }
 
     /// Sum of |work of the loads| + |dissipation| of all steps so far: how much energy has come and gone.
@@ -322,42 +376,49 @@ impl Simulation {
         self.account.exchanged()
     }
 
-    /// Notes the state that has been reached in `out`, instead of what it held.
-    pub fn checkpoint(&mut self, out: &mut Vec<u64>) {
-        out.clear();
-        self.code(&mut StateCoder::encode(out));
+    /// The state that has been reached, as words; they are equally many for all states of a run.
+    ///
+    /// # Errors
+    /// [`CheckpointError::Encoding`], from a scheme of one's own.
+    pub fn checkpoint(&self) -> Result<Vec<u64>, CheckpointError> {
+        let Stats { accepted, rejected, shortest, longest, .. } = self.stats;
+        let saved = Saved {
+            scheme: self.scheme.save()?,
+            plan: self.plan.progress(),
+            walk: self.walk.clone(),
+            steps_since_row: self.steps_since_row,
+            corner_ahead: self.corner_ahead,
+            begun: self.begun,
+            account: self.account,
+            accepted,
+            rejected,
+            shortest,
+            longest,
+        };
+        Ok(to_words(&encode(&(&self.fingerprint, encode(&saved)?))?))
     }
 
-    /// Takes up the state of a [`Self::checkpoint`] of a run with the same setup: what follows is what would have
+    /// Takes up the state of a [`Self::checkpoint`] of a run with the same set-up: what follows is what would have
     /// followed there, bit for bit.
     ///
     /// # Errors
-    /// [`RestoreError`] for a checkpoint of another run.
-    pub fn restored(mut self, checkpoint: &[u64]) -> Result<Self, RestoreError> {
-        let mut coder = StateCoder::decode(checkpoint);
-        self.code(&mut coder);
-        coder.finish()?;
+    /// [`CheckpointError`] for a checkpoint of another run, with what differs: the body, the damping, a load, ... Of a load
+    /// from a closure only its name, corners and longest step are compared, and of a scheme of one's own what it checks.
+    pub fn restored(mut self, checkpoint: &[u64]) -> Result<Self, CheckpointError> {
+        let (fingerprint, saved): (Fingerprint, Vec<u8>) = from_words(checkpoint)?;
+        self.fingerprint.check(&fingerprint)?;
+        let saved: Saved = decode(&saved)?;
+        let Saved { accepted, rejected, shortest, longest, steps_since_row, .. } = saved;
+        counts(&[accepted, rejected, steps_since_row])?;
+        expect("the length of a step", shortest > 0.0 && longest >= 0.0)?;
+        saved.account.check_saved()?;
+        self.walk.check_saved(&saved.walk)?;
+        self.scheme.restore(&saved.scheme)?;
+        self.plan.set_progress(&saved.plan)?;
+        self.stats = Stats { accepted, rejected, shortest, longest, ..self.stats };
+        (self.walk, self.account, self.steps_since_row) = (saved.walk, saved.account, steps_since_row);
+        (self.corner_ahead, self.begun) = (saved.corner_ahead, saved.begun);
         Ok(self)
-    }
-
-    fn code(&mut self, coder: &mut StateCoder) {
-        self.scheme.code(coder);
-        self.plan.code(coder);
-        match &mut self.walk {
-            Walk::Equal { steps, .. } => code_steps(steps, EqualSteps::BLANK, EqualSteps::code, coder),
-            Walk::Halved { longest_try, steps, .. } => {
-                coder.number(longest_try);
-                code_steps(steps, HalvedSteps::BLANK, HalvedSteps::code, coder);
-            }
-        }
-        coder.count(&mut self.steps_since_row);
-        coder.flag(&mut self.corner_ahead);
-        self.account.code(coder);
-        let Stats { accepted, rejected, evaluations: _, shortest, longest } = &mut self.stats;
-        coder.count(accepted);
-        coder.count(rejected);
-        coder.number(shortest);
-        coder.number(longest);
     }
 
     /// What the run has cost so far.
@@ -379,8 +440,9 @@ impl Simulation {
     /// # Errors
     /// As [`Self::advance`].
     pub fn advance_watched(&mut self, most_steps: u64, mut watch: impl FnMut(&Moment)) -> Result<Reached, StepError> {
+        self.begun = true;
         if self.account.is_empty() {
-            self.check_energy()?;
+            self.account.look(&*self.scheme, self.stats.longest)?;
         }
         if self.events.is_stale() {
             self.scheme.observe(&self.points, &mut self.looked_at)?;
@@ -403,8 +465,7 @@ impl Simulation {
                     self.stats.accepted += count;
                     self.stats.shortest = self.stats.shortest.min(length);
                     self.stats.longest = self.stats.longest.max(length);
-                    self.account.exchange(self.scheme.work_and_dissipation());
-                    self.check_energy()?;
+                    self.account.step(&*self.scheme, self.stats.longest)?;
                     if let Some(number) = self.look_at_step()? {
                         return Ok(Reached::Event(number));
                     }
@@ -508,39 +569,24 @@ impl Simulation {
 impl Iterator for Simulation {
     type Item = Result<Observation, StepError>;
 
-    /// The observation at the next row; `None` at the end and after an error.
+    /// The motion at the next row, the first of which is the start where no step has been tried yet; `None` at the end
+    /// and after an error.
     fn next(&mut self) -> Option<Self::Item> {
         if self.failed {
             return None;
         }
-        loop {
-            match self.advance(u64::MAX) {
-                Ok(Reached::Between | Reached::Stop | Reached::Event(_)) => {}
-                Ok(Reached::End) => return None,
-                Ok(Reached::Row) => {
-                    let mut out = self.observation();
-                    let result = self.observe(&mut out).map(|()| out);
-                    self.failed = result.is_err();
-                    return Some(result);
+        let row = match std::mem::replace(&mut self.begun, true) {
+            false => self.observation(),
+            true => loop {
+                match self.advance(u64::MAX) {
+                    Ok(Reached::Between | Reached::Stop | Reached::Event(_)) => {}
+                    Ok(Reached::End) => return None,
+                    Ok(Reached::Row) => break self.observation(),
+                    Err(error) => break Err(error),
                 }
-                Err(error) => {
-                    self.failed = true;
-                    return Some(Err(error));
-                }
-            }
-        }
-    }
-}
-
-/// Passes over the steps through a segment, which there are none of before the first.
-fn code_steps<S>(steps: &mut Option<(S, bool)>, blank: S, code: fn(&mut S, &mut StateCoder), coder: &mut StateCoder) {
-    let mut there = steps.is_some();
-    coder.flag(&mut there);
-    // Passed even where there are none, so that every checkpoint of a run has the same length.
-    let (inner, row) = steps.get_or_insert((blank, false));
-    code(inner, coder);
-    coder.flag(row);
-    if !there {
-        *steps = None;
+            },
+        };
+        self.failed = row.is_err();
+        Some(row)
     }
 }

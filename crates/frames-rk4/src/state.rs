@@ -3,8 +3,9 @@
 use modal::ReducedBody;
 use nalgebra::Vector3;
 use rigid_kin::Attitude;
+use serde::{Deserialize, Serialize};
 
-use crate::checkpoint::StateCoder;
+use crate::checkpoint::{CheckpointError, expect, finite};
 use crate::error::SetupError;
 use crate::initial::Initial;
 
@@ -52,7 +53,7 @@ impl MotionState {
 ///
 /// Modal lists have 6+nf entries: three translations, three rotations, then the flexible modes. They are components
 /// in this frame, of motion relative to global space (η of Eq. 33), not to the body.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct State {
     /// Time.
     pub time: f64,
@@ -98,15 +99,13 @@ impl State {
         self.modal_acceleration.copy_from_slice(&other.modal_acceleration);
     }
 
-    pub(crate) fn code(&mut self, coder: &mut StateCoder) {
-        coder.finite("the time", &mut self.time);
-        coder.attitude(&mut self.attitude);
-        coder.vector(&mut self.origin_global);
-        coder.numbers(&mut self.modal_displacement);
-        coder.numbers(&mut self.modal_velocity);
-        coder.numbers(&mut self.modal_acceleration);
-        coder.vector(&mut self.omega_body);
-        coder.vector(&mut self.alpha_body);
+    /// Refuses lists of the wrong length and numbers that are not finite.
+    pub(crate) fn check(&self, modes: usize) -> Result<(), CheckpointError> {
+        let Self { time, origin_global, modal_displacement, modal_velocity, modal_acceleration, .. } = self;
+        let modal = [modal_displacement, modal_velocity, modal_acceleration];
+        expect("a list of modes", modal.iter().all(|list| list.len() == modes))?;
+        let vectors = [origin_global, &self.omega_body, &self.alpha_body].into_iter().flatten();
+        finite("the state", std::iter::once(time).chain(vectors).chain(modal.into_iter().flatten()))
     }
 }
 

@@ -4,10 +4,11 @@ use std::any::Any;
 use std::fmt;
 
 use modal::ReducedBody;
+use serde::{Deserialize, Serialize};
 
-use crate::account::Energies;
 use crate::attitude_account::AttitudeAccount;
-use crate::checkpoint::StateCoder;
+use crate::checkpoint::{CheckpointError, counts, decode, encode, finite};
+use crate::energies::Energies;
 use crate::error::{SetupError, StepError};
 use crate::initial::Initial;
 use crate::model::ModalModel;
@@ -48,11 +49,34 @@ pub trait FrameSteps: fmt::Debug + Clone + Send + Sync + 'static {
     /// A load may jump at the time of the state.
     fn pass_corner(&mut self) {}
 
-    /// Takes over from another what it carries from step to step.
-    fn copy_from(&mut self, _from: &Self) {}
+    /// What it carries from step to step.
+    fn carried(&self) -> Carried {
+        Carried::default()
+    }
 
-    /// Encodes or decodes what it carries from step to step.
-    fn code(&mut self, _coder: &mut StateCoder<'_>) {}
+    /// Goes on with what another has carried.
+    fn carry_on(&mut self, _carried: Carried) {}
+}
+
+/// What steps may carry from one to the next.
+#[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
+pub struct Carried {
+    /// Power of the loads at the state.
+    pub(crate) power: Work,
+    /// Whether a load may jump at the state.
+    pub(crate) at_corner: bool,
+}
+
+/// What a checkpoint keeps.
+#[derive(Serialize, Deserialize)]
+struct Saved {
+    state: State,
+    work: Work,
+    carried: Carried,
+    #[serde(with = "postcard::fixint::le")]
+    steps_done: u64,
+    longest_step: f64,
+    attitude_account: AttitudeAccount,
 }
 
 /// Steps a body of the paper's formulation.
@@ -131,7 +155,7 @@ impl<S: FrameSteps> Scheme for TravellingFrame<S> {
         let Some(from) = (from as &dyn Any).downcast_ref::<Self>() else { return };
         self.body.state.copy_from(&from.body.state);
         self.body.work = from.body.work;
-        self.steps.copy_from(&from.steps);
+        self.steps.carry_on(from.steps.carried());
         self.steps_done = from.steps_done;
         self.attitude_account = from.attitude_account;
         self.longest_step = from.longest_step;
@@ -163,13 +187,29 @@ impl<S: FrameSteps> Scheme for TravellingFrame<S> {
         self.body.state.modal_displacement.len() - 6
     }
 
-    fn code(&mut self, coder: &mut StateCoder<'_>) {
-        self.body.state.code(coder);
-        self.body.work.code(coder);
-        self.steps.code(coder);
-        coder.count(&mut self.steps_done);
-        coder.number(&mut self.longest_step);
-        self.attitude_account.code(coder);
+    fn save(&self) -> Result<Vec<u8>, CheckpointError> {
+        encode(&Saved {
+            state: self.body.state.clone(),
+            work: self.body.work,
+            carried: self.steps.carried(),
+            steps_done: self.steps_done,
+            longest_step: self.longest_step,
+            attitude_account: self.attitude_account,
+        })
+    }
+
+    fn restore(&mut self, saved: &[u8]) -> Result<(), CheckpointError> {
+        let Saved { state, work, carried, steps_done, longest_step, attitude_account } = decode(saved)?;
+        state.check(self.body.state.modal_displacement.len())?;
+        work.check()?;
+        carried.power.check()?;
+        counts(&[steps_done])?;
+        finite("the longest step", [&longest_step])?;
+        attitude_account.check_saved()?;
+        (self.body.state, self.body.work) = (state, work);
+        self.steps.carry_on(carried);
+        (self.steps_done, self.longest_step, self.attitude_account) = (steps_done, longest_step, attitude_account);
+        Ok(())
     }
 
     fn boxed_clone(&self) -> Box<dyn Scheme> {

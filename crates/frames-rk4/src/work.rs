@@ -1,11 +1,12 @@
 //! What loads and damping have done so far: the other side of the balances of energy and angular momentum.
 
 use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
 
-use crate::checkpoint::StateCoder;
+use crate::checkpoint::{CheckpointError, finite};
 
 /// Sums since the beginning.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Work {
     /// Work of the loads.
     pub work: f64,
@@ -25,10 +26,10 @@ impl Work {
         self.impulse_global += factor * other.impulse_global;
         self.angular_impulse_global += factor * other.angular_impulse_global;
     }
-    pub(crate) fn code(&mut self, coder: &mut StateCoder) {
-        coder.number(&mut self.work);
-        coder.number(&mut self.dissipation);
-        coder.vector(&mut self.impulse_global);
-        coder.vector(&mut self.angular_impulse_global);
+
+    /// Refuses numbers that are not finite.
+    pub(crate) fn check(&self) -> Result<(), CheckpointError> {
+        let Self { work, dissipation, impulse_global, angular_impulse_global } = self;
+        finite("the work", [work, dissipation].into_iter().chain(impulse_global).chain(angular_impulse_global))
     }
 }

@@ -42,7 +42,7 @@ fn simulation(method: Method, control: StepControl, end: f64) -> Simulation {
 
 /// Allocations of 1000 steps with a row after each ten, after `warm` such rows.
 fn allocations(mut simulation: Simulation, warm: usize) -> u64 {
-    let mut out = simulation.observation();
+    let mut out = simulation.observation().unwrap();
     let mut rows = |count| {
         for _ in 0..count {
             assert_eq!(simulation.advance(u64::MAX).unwrap(), Reached::Row);

@@ -2,6 +2,7 @@
 
 /// What can be wrong with the matrices, or with what is asked of them.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ModalError {
     /// Matrices and positions of different sizes.
     #[error("{what} has {found} rows or columns; expected {expected}, three for each of the nodes")]
@@ -53,7 +54,7 @@ pub enum ModalError {
     },
     /// The body has no mass, or none to resist a rotation.
     #[error(
-        "the body has mass {mass:.3e} and moments of inertia {inertia:?} about its origin, which is no rigid body: the mass and all three moments must be positive (of a hinge, that about its axis), and large enough to divide by: are they in the units of the mesh?"
+        "the body has mass {mass:.3e} and moments of inertia {inertia:?} about its origin, which no rigid body can have: the mass and all three moments must be positive (of a hinge, that about its axis), and large enough to divide by: are they in the units of the mesh?"
     )]
     NoInertia {
         /// Total mass.
@@ -61,8 +62,8 @@ pub enum ModalError {
         /// Diagonal of the inertia about the origin.
         inertia: [f64; 3],
     },
-    /// A direction that is no unit vector.
-    #[error("the direction {direction:?} of the support is no unit vector; divide it by its length")]
+    /// A direction that is not a unit vector.
+    #[error("the direction {direction:?} of the support is not a unit vector; divide it by its length")]
     NotUnit {
         /// The direction.
         direction: [f64; 3],

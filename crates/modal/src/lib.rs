@@ -48,3 +48,5 @@ pub use rigid::RigidModes;
 pub use second_order::SecondOrderShapes;
 pub use solve::{Modes, Progress, SolveStats, Solver};
 pub use support::{RigidMotion, Support};
+/// Crates whose types are in the interface.
+pub use {faer, nalgebra};

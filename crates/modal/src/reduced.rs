@@ -53,7 +53,7 @@ pub struct Constants {
     /// Inertia J₀ of the undeformed body about the origin.
     pub inertia: Matrix3<f64>,
     /// T (3×3): the velocity of the origin of rigid modal velocities y is `T y[..3]`. Columns of motions that the body
-    /// has not got are zero; I/√m of a free body.
+    /// does not have are zero; I/√m of a free body.
     pub translation_basis: Matrix3<f64>,
     /// B (3×3): the angular velocity of rigid modal velocities y is `B y[3..6]`. Columns of motions that the body has
     /// not got are zero.
@@ -308,7 +308,7 @@ impl BodyPoint {
     /// The point that moves as `Σ weights_i u(nodes_i)`, where the weights sum to one.
     ///
     /// # Errors
-    /// [`ModalError::NoNode`] for a node that the mesh has not got, [`ModalError::Length`] for lists of other lengths,
+    /// [`ModalError::NoNode`] for a node that the mesh does not have, [`ModalError::Length`] for lists of other lengths,
     /// [`ModalError::NotFinite`].
     pub fn new(modes: &Modes, positions: &[[f64; 3]], nodes: &[u32], weights: &[f64]) -> Result<Self, ModalError> {
         let count = positions.len();

@@ -15,7 +15,7 @@ const FREE: f64 = 1e-9;
 
 /// Rigid modes, M-orthonormal, and the rigid body that they belong to. All in mesh axes.
 ///
-/// There is a column for each of the three translations and rotations, zero for a motion that the body has not got.
+/// There is a column for each of the three translations and rotations, zero for a motion that the body does not have.
 /// The first three are translations `T[:,i]`, the others rotations `B[:,i] × X` with X measured from the origin. So the
 /// velocity of the origin of modal velocities y is `T y[..3]`, and the angular velocity `B y[3..6]`.
 #[derive(Debug, Clone)]

@@ -127,7 +127,7 @@ impl RigidMotion {
     /// `B y[3..6]`, where the kinetic energy is ½|y|². Columns of motions that are missing are zero.
     ///
     /// `inertia` is about the origin. B = L⁻ᵀ with J₀ = L Lᵀ where all rotations are free: no principal axes are
-    /// needed, which a sphere has not got.
+    /// needed, which a sphere does not have.
     ///
     /// # Errors
     /// [`ModalError::NoInertia`] where a motion meets none, [`ModalError::NotUnit`], [`ModalError::NotFinite`].
@@ -186,7 +186,7 @@ impl RigidMotion {
         }
     }
 
-    /// Refuses points that are not finite and directions that are no unit vectors.
+    /// Refuses points that are not finite and directions that are not unit vectors.
     pub(crate) fn check(&self) -> Result<(), ModalError> {
         let point = self.fixed_point().unwrap_or_default();
         if let Some((index, value)) = point.iter().enumerate().find(|(_, c)| !c.is_finite()) {

@@ -50,7 +50,7 @@ pub enum FileError {
     },
     /// Something else is where the results would go.
     #[error(
-        "{path}: what is there is no results file of flexframe; choose another folder, move it away, or replace it with --overwrite (a folder never)",
+        "{path}: what is there is not a results file of flexframe; choose another folder, move it away, or replace it with --overwrite (a folder never)",
         path = .path.display()
     )]
     NotResults {
@@ -65,7 +65,7 @@ pub enum FileError {
     },
     /// There is no unfinished run.
     #[error(
-        "{path}: there is no unfinished run: no {part}; check the name, or begin with `flexframe run`",
+        "{path}: there is no unfinished run ({part} does not exist); check the name, or begin with `flexframe run`",
         path = .path.display(),
         part = .part.display()
     )]
@@ -124,7 +124,7 @@ pub enum FileError {
         /// The value.
         value: f64,
     },
-    /// A constant of the run that is no finite number.
+    /// A constant of the run that is not finite.
     #[error("{path}: {quantity} is {value}, expected a finite number; check the scene's numbers and units", path = .path.display())]
     ConstantNotFinite {
         /// The results file.
@@ -159,7 +159,7 @@ pub enum FileError {
     },
     /// A file to be read that does not begin as results files do.
     #[error(
-        "{path}: this is no results file of this version of flexframe, or its beginning is damaged; check the name (a file \
+        "{path}: this is not a results file of this version of flexframe, or its beginning is damaged; check the name (a file \
          that another program has written anew, such as h5repack, is not read)",
         path = .path.display()
     )]

@@ -7,7 +7,7 @@
 //! A file with T rows has one dataset for each column, and for each point one for each column of points. It has
 //! `body/mass`, `center_of_mass` (3), `inertia` (3×3), `frequencies` and `damping_ratios` (nf) besides. Every dataset has
 //! the attributes `unit`, `frame` and `description`. The root has `title`, `scene` (the scene file's text), `scene_file`
-//! (where it was), `formulation`, `scheme`, `step` or `tolerance`, `program_version`, `fingerprint`, `units_length`,
+//! (where it was), `formulation`, `scheme`, `step` or `tolerance`, `program_version`, `units_length`,
 //! `units_mass`, `units_time` and `complete`: 1, or 0 in an unfinished file.
 //!
 //! In an unfinished file, T is the number of rows that there is room for. Those that have not been written are NaN. It

@@ -51,9 +51,6 @@ pub struct Metadata {
     pub tolerance: Option<f64>,
     /// Version of the program that made the run.
     pub program_version: String,
-    /// A check sum of all that determines the motion, the files that the scene names included: where it is another, a
-    /// run cannot go on.
-    pub fingerprint: u32,
     /// The scene file, word for word.
     pub scene_text: String,
     /// Where the scene file was, so that the files that it names can be found again; empty if nowhere. A path, or one that is

@@ -61,7 +61,7 @@ pub(crate) fn put(file: &File, path: &Path, description: &[u8], left_out: &[Rang
     write(file, SUM.start, &u64::from(sum).to_le_bytes()).map_err(failed)
 }
 
-/// The description. Refuses a file that is none of ours or has not the length that it had.
+/// The description. Refuses a file that flexframe did not write, or whose length has changed.
 pub(crate) fn description(mut file: &File, path: &Path) -> Result<Vec<u8>, FileError> {
     let failed = |error| FileError::system(path, "read the file", &error);
     let length = file.metadata().map_err(failed)?.len();

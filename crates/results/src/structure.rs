@@ -113,13 +113,10 @@ fn write_root_attributes(path: &Path, file: &hdf5::File, metadata: &Metadata, co
             .and_then(|attribute| attribute.write_scalar(&number))
             .map_err(FileError::hdf5(path, format!("write the attribute {name}")))?;
     }
-    for (name, number) in [("fingerprint", metadata.fingerprint.into()), ("complete", i64::from(complete))] {
-        file.new_attr::<i64>()
-            .create(name)
-            .and_then(|attribute| attribute.write_scalar(&number))
-            .map_err(FileError::hdf5(path, format!("write the attribute {name}")))?;
-    }
-    Ok(())
+    file.new_attr::<i64>()
+        .create("complete")
+        .and_then(|attribute| attribute.write_scalar(&i64::from(complete)))
+        .map_err(FileError::hdf5(path, "write the attribute complete"))
 }
 
 fn write_body(path: &Path, file: &hdf5::File, metadata: &Metadata) -> Result<(), FileError> {

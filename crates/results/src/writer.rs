@@ -27,7 +27,7 @@ pub struct Expected {
     pub rows: usize,
     /// Words of each checkpoint.
     pub checkpoint: usize,
-    /// Whether an unfinished run of the same name, or a file that is none of results, may be thrown away.
+    /// Whether an unfinished run of the same name, or a file that is not a results file, may be thrown away.
     pub overwrite: bool,
 }
 

@@ -350,9 +350,7 @@ fn names_types_and_shapes_are_those_of_the_contract() {
     }
     let descriptor = |name: &str| file.attr(name).unwrap().dtype().unwrap().to_descriptor().unwrap();
     assert_eq!(descriptor("step"), TypeDescriptor::Float(FloatSize::U8));
-    for name in ["complete", "fingerprint"] {
-        assert_eq!(descriptor(name), TypeDescriptor::Integer(IntSize::U8));
-    }
+    assert_eq!(descriptor("complete"), TypeDescriptor::Integer(IntSize::U8));
 }
 
 /// The writer puts the numbers into their places by itself; HDF5 must find them there.

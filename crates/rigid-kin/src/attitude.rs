@@ -4,21 +4,37 @@ use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
 use crate::rotation::{NotARotation, quaternion_body_to_global, sinc};
 
-/// Four numbers that name no rotation.
+/// Four numbers that are not a rotation.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error(
-    "{wxyz:?} names no rotation; give a quaternion [w, x, y, z] of finite numbers, not all zero \
-     ([1, 0, 0, 0] is no rotation)"
+    "{wxyz:?} is not a rotation; give a quaternion [w, x, y, z] of finite numbers, not all zero \
+     ([1, 0, 0, 0] leaves the body unturned)"
 )]
 pub struct NotAQuaternion {
     /// The numbers given, in the order w, x, y, z.
     pub wxyz: [f64; 4],
 }
 
-/// The attitude of a body: the rotation between its body axes and the global axes.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// The attitude of a body: the rotation between its body axes and the global axes. Serde has it as [w, x, y, z], bit for
+/// bit.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(into = "[f64; 4]", try_from = "[f64; 4]")]
 pub struct Attitude {
     body_to_global: UnitQuaternion<f64>,
+}
+
+impl From<Attitude> for [f64; 4] {
+    fn from(attitude: Attitude) -> Self {
+        attitude.wxyz()
+    }
+}
+
+impl TryFrom<[f64; 4]> for Attitude {
+    type Error = NotAQuaternion;
+
+    fn try_from(wxyz: [f64; 4]) -> Result<Self, NotAQuaternion> {
+        Self::from_unit_wxyz(wxyz)
+    }
 }
 
 impl Attitude {

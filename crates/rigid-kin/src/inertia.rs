@@ -2,8 +2,9 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-/// Why a matrix is no inertia tensor of a body.
+/// Why a matrix is not the inertia tensor of a body.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum InertiaError {
     /// Some entry is NaN or infinite.
     #[error("entry ({row}, {column}) of the inertia tensor (counted from 1) is {value}; give nine finite numbers")]

@@ -78,6 +78,8 @@ mod torque_free;
 
 pub use attitude::{Attitude, NotAQuaternion};
 pub use inertia::{Inertia, InertiaError};
+/// The crate whose types are in the interface.
+pub use nalgebra;
 pub use reference_points::{CollinearPoints, ReferencePoints, euler_angular_acceleration, relative_velocity_rate};
 pub use rigid_body::{RigidBody, RigidBodyError, RigidState, RigidStepError, Wrench};
 pub use rotation::{BeyondFullTurn, NotARotation, cross_matrix, f_inverse, rotation_vector, transformation_matrix};

@@ -9,6 +9,7 @@ use crate::rotation::{BeyondFullTurn, f_inverse};
 
 /// Why numbers make no rigid body.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum RigidBodyError {
     /// The mass is zero, negative or not finite.
     #[error("the mass of a rigid body is {mass}; give a finite number above zero")]
@@ -16,13 +17,14 @@ pub enum RigidBodyError {
         /// The mass given.
         mass: f64,
     },
-    /// The inertia tensor is none.
+    /// The inertia tensor is not one of a body.
     #[error(transparent)]
     Inertia(#[from] InertiaError),
 }
 
 /// Why a step could not be made.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum RigidStepError {
     /// The body turns too far within the step.
     #[error(

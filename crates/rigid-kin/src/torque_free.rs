@@ -30,6 +30,7 @@ use crate::inertia::Inertia;
 
 /// Why a free motion, or its state at a time, cannot be given.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum TorqueFreeError {
     /// The initial angular velocity is not finite, or its square leaves the range of f64.
     #[error(

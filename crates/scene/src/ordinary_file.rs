@@ -11,7 +11,7 @@ pub(crate) fn open_ordinary(path: &Path) -> io::Result<File> {
         return Err(io::ErrorKind::IsADirectory.into());
     }
     if !found.is_file() {
-        return Err(io::Error::other("this is no ordinary file, but a device or a pipe"));
+        return Err(io::Error::other("this is not an ordinary file but a device or a pipe"));
     }
     File::open(path)
 }

@@ -172,7 +172,7 @@ fn run(text: &str) -> (Ended, String) {
         Ok(motion) => motion,
         Err(error) => return (Ended::Unstarted, message(error)),
     };
-    let mut now = motion.observation();
+    let mut now = Observation::new(model.body.flexible(), model.points.len());
     for _ in 0..5 {
         if let Err(error) = motion.observe(&mut now) {
             return (Ended::Stopped, message(error));

@@ -226,7 +226,7 @@ fn files() {
     #[cfg(unix)]
     {
         let (message, _) = refusal(Path::new("/dev/zero"));
-        assert!(message.contains("no ordinary file, but a device or a pipe"), "{message}");
+        assert!(message.contains("not an ordinary file but a device or a pipe"), "{message}");
     }
 
     std::fs::write(&path, b"title = 'a'\n# caf\xe9\n").unwrap();

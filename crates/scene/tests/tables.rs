@@ -88,7 +88,7 @@ fn a_table_that_cannot_be_read_is_named_in_the_scene() {
         Scene::parse(&text, folder.path().join("scene.toml")).unwrap_err().to_string()
     };
     #[cfg(unix)]
-    assert!(named("/dev/zero").contains("no ordinary file, but a device or a pipe"), "{}", named("/dev/zero"));
+    assert!(named("/dev/zero").contains("not an ordinary file but a device or a pipe"), "{}", named("/dev/zero"));
     let message = named("nowhere.csv");
     assert!(message.contains("nowhere.csv") && message.contains("`loads[0].history.file`"), "{message}");
     assert!(message.contains("relative to the folder of the scene file"), "{message}");

@@ -67,10 +67,10 @@ impl<'a> Trial<'a> {
             Ok(simulation) => simulation,
             Err(refusal) => return Outcome::Refused(refusal.to_string()),
         };
-        let mut first = simulation.observation();
-        if let Err(refusal) = simulation.observe(&mut first) {
-            return Outcome::Refused(refusal.to_string());
-        }
+        let first = match simulation.observation() {
+            Ok(first) => first,
+            Err(refusal) => return Outcome::Refused(refusal.to_string()),
+        };
         let mut largest = error(&first, &first);
         for row in simulation {
             match row {

@@ -103,7 +103,7 @@ pub fn spinning(omega: [f64; 3]) -> Initial {
 /// 200 rows of the motion.
 pub fn run(case: &Case, effects: EffectMap<bool>) -> Vec<Observation> {
     let physics = Physics { effects, drive: case.drive.cloned(), ..Physics::default() };
-    let mut simulation = Simulation::new(&Setup {
+    let simulation = Simulation::new(&Setup {
         body: case.body,
         damping_ratios: case.damping_ratios,
         loads: case.loads,
@@ -117,8 +117,5 @@ pub fn run(case: &Case, effects: EffectMap<bool>) -> Vec<Observation> {
         points: &[],
     })
     .unwrap();
-    let mut first = simulation.observation();
-    simulation.observe(&mut first).unwrap();
-    let rest = simulation.map(Result::unwrap);
-    std::iter::once(first).chain(rest).collect()
+    simulation.map(Result::unwrap).collect()
 }

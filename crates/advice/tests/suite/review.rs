@@ -113,7 +113,7 @@ fn watched(case: &Case, effects: EffectMap<bool>, step: f64, interval: f64) -> V
     })
     .unwrap();
     let mut review = Review::new(*case, effects, &advise(case, 1e-3).unwrap());
-    let mut row = simulation.observation();
+    let mut row = simulation.observation().unwrap();
     loop {
         simulation.observe(&mut row).unwrap();
         review.observe(&row).unwrap();

@@ -224,7 +224,7 @@ fn what_is_no_ordinary_file_is_refused_before_it_is_opened() {
     };
     assert_says(&says(&data("")), &["cannot read the mesh", "a folder", "name the mesh file in it"]);
     #[cfg(unix)]
-    assert_says(&says("/dev/zero".as_ref()), &["/dev/zero", "no ordinary file", "write the mesh into a file"]);
+    assert_says(&says("/dev/zero".as_ref()), &["/dev/zero", "not an ordinary file", "write the mesh into a file"]);
 }
 
 #[test]

@@ -273,7 +273,7 @@ fn what_is_no_face_of_the_body_is_refused_with_group_and_element() {
         let error = Mesh::new(single_with(vec![[1, 2, 3, 5, 6, 7], triangle])).unwrap_err();
         assert!(matches!(&error, MeshError::NotAFace { group, element: 102, .. } if group == "skin"), "{error:?}");
         let message = error.to_string();
-        assert!(message.contains("element 102 of the physical surface \"skin\" is no face"), "{message}");
+        assert!(message.contains("element 102 of the physical surface \"skin\" is not a face"), "{message}");
     }
     let error = Mesh::new(single_with(vec![[1, 2, 99, 5, 6, 7]])).unwrap_err();
     assert!(matches!(error, MeshError::UnknownNode { element: 101, node: 99, .. }), "{error:?}");

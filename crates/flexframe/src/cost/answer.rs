@@ -88,7 +88,7 @@ impl Answer {
             smallest_error: runs().map(|(_, _, measured)| measured.error).fold(f64::INFINITY, f64::min),
             needs_interval: matches!(scene.output.rows, Rows::EverySteps(_))
                 && best.is_some_and(|(_, row)| matches!(row.setting, Setting::Tolerance(_))),
-            modes: super::modes::warning(modes, flexible, target),
+            modes: super::modes::modes_warning(modes, flexible, target),
             out_of_patience: out_of_patience(lines),
         }
     }
@@ -137,7 +137,7 @@ impl fmt::Display for Answer {
             write!(f, "\n\n{modes}")?;
         }
         if !self.out_of_patience.is_empty() {
-            write!(f, "\n\nNothing is known of the error and time of runs that were not waited for:")?;
+            write!(f, "\n\nThese runs took too long and were stopped, so their error and time are not known:")?;
             self.out_of_patience.iter().try_for_each(|run| write!(f, "\n  {run}"))?;
         }
         Ok(())

@@ -77,7 +77,7 @@ pub(super) fn compare(
 }
 
 /// Says that more digits than a target's need more modes, if they do, and in which quantity.
-pub(super) fn warning(rows: &[ModesRow], flexible: usize, target: f64) -> Option<String> {
+pub fn modes_warning(rows: &[ModesRow], flexible: usize, target: f64) -> Option<String> {
     let most = rows.last()?.flexible;
     let errors = |count: usize| rows.iter().find(|row| row.flexible == count)?.errors;
     let here = errors(flexible).filter(|errors| errors.largest() > target)?;
@@ -124,15 +124,15 @@ mod tests {
             seconds_per_step: 1e-6,
         };
         let rows = [row(5, Some(1e-2)), row(10, Some(1e-3)), row(20, Some(1e-4)), row(40, None)];
-        let words = warning(&rows, 10, 1e-6).unwrap();
+        let words = modes_warning(&rows, 10, 1e-6).unwrap();
         for expected in [
             "with 10 of them the attitude is 1.0e-3 off from that with 40",
             "With `flexible = 20` the attitude is the worst, 1.0e-4 off",
         ] {
             assert!(words.contains(expected), "{words}");
         }
-        assert_eq!(warning(&rows, 10, 1e-2), None);
-        assert_eq!(warning(&rows[..2], 10, 1e-2), None);
+        assert_eq!(modes_warning(&rows, 10, 1e-2), None);
+        assert_eq!(modes_warning(&rows[..2], 10, 1e-2), None);
     }
 
     #[test]
@@ -151,7 +151,7 @@ mod tests {
             step_error: 1e-12,
             seconds_per_step: 1e-6,
         };
-        let words = warning(&[row(6, Some(errors)), row(24, None)], 6, 0.0).unwrap();
+        let words = modes_warning(&[row(6, Some(errors)), row(24, None)], 6, 0.0).unwrap();
         let expected = "with 6 of them the acceleration of the points is 8.0e-1 off from that with 24, the displacement of \
                         the points 3.0e-5, the velocity of the points 4.0e-2.";
         assert!(words.contains(expected), "{words}");

@@ -68,8 +68,7 @@ impl Trajectory {
         let mut observations = Vec::new();
         let mut monitor = Monitor::default();
         let mut observe = |simulation: &mut Simulation| -> Result<(), RunFailure> {
-            let mut now = simulation.observation();
-            simulation.observe(&mut now)?;
+            let now = simulation.observation()?;
             monitor.watch(&now);
             observations.push(now);
             Ok(())
@@ -241,7 +240,7 @@ impl Errors {
     }
 
     /// Name and value of each.
-    pub(super) fn named(&self) -> impl Iterator<Item = (&'static str, f64)> {
+    pub fn named(&self) -> impl Iterator<Item = (&'static str, f64)> {
         [
             ("attitude", Some(self.attitude)),
             ("modal coordinates", self.modal),

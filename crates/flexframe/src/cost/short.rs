@@ -3,7 +3,7 @@
 use super::setting::Setting;
 
 /// A time with three digits.
-pub(super) fn duration(seconds: f64) -> String {
+pub fn duration(seconds: f64) -> String {
     let (value, unit) = match seconds {
         s if s < 1e-3 => (1e6 * s, "µs"),
         s if s < 1.0 => (1e3 * s, "ms"),
@@ -14,7 +14,7 @@ pub(super) fn duration(seconds: f64) -> String {
 }
 
 /// A step or a tolerance with the digits that it needs.
-pub(super) fn setting(setting: Setting) -> String {
+pub fn setting(setting: Setting) -> String {
     match setting {
         Setting::Step(step) => format!("step {}", digits(step)),
         Setting::Tolerance(tolerance) => format!("tol. {}", digits(tolerance)),

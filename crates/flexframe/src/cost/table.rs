@@ -117,7 +117,7 @@ impl CostReport {
             "  the same motion with {} to {} modes; the steps leave an error of {:.0e}",
             first.flexible, most.flexible, most.step_error
         )?;
-        match super::modes::warning(&self.modes, self.flexible, 0.0) {
+        match super::modes::modes_warning(&self.modes, self.flexible, 0.0) {
             Some(words) => writeln!(f, "  {words}"),
             None => Ok(()),
         }

@@ -72,25 +72,13 @@ impl Failure for ModalError {
     fn kind(&self) -> Kind {
         match self {
             Self::TooManyModes { .. } | Self::NoSuchNode { .. } | Self::NotUnit { .. } => Kind::Input,
-            Self::Size { .. }
-            | Self::Length { .. }
-            | Self::NotPositive { .. }
-            | Self::NoNode { .. }
-            | Self::NotFinite { .. }
-            | Self::NotSymmetric { .. }
-            | Self::AnisotropicMass { .. }
-            | Self::NoInertia { .. }
-            | Self::Underheld { .. }
-            | Self::NotFree { .. }
-            | Self::Mechanism { .. }
-            | Self::HiddenByRounding { .. }
-            | Self::Indefinite { .. } => Kind::Refused,
             Self::Memory(_) => Kind::Io,
             Self::Ordering { .. }
             | Self::Factorization { .. }
             | Self::NotConverged { .. }
             | Self::StaticNotConverged { .. }
             | Self::DenseEigen { .. } => Kind::Run,
+            _ => Kind::Refused,
         }
     }
 }
@@ -104,8 +92,8 @@ impl Failure for EigenError {
 impl Failure for AdviceError {
     fn kind(&self) -> Kind {
         match self {
-            Self::Length { .. } | Self::Value { .. } => Kind::Input,
             Self::Eigen(error) => error.kind(),
+            _ => Kind::Input,
         }
     }
 }
@@ -119,7 +107,7 @@ impl Failure for BuildError {
             Self::Modal { source, .. } => source.kind(),
             Self::Advice(error) => error.kind(),
             Self::Load(error) => error.kind(),
-            Self::Loaded(_) => Kind::Run,
+            _ => Kind::Run,
         }
     }
 
@@ -131,7 +119,7 @@ impl Failure for BuildError {
             Self::Modal { scene, .. } => Details::of_file(scene),
             Self::Advice(error) => error.details(),
             Self::Load(error) => error.details(),
-            Self::Loaded(_) => Details::default(),
+            _ => Details::default(),
         }
     }
 }
@@ -139,21 +127,12 @@ impl Failure for BuildError {
 impl Failure for SetupError {
     fn kind(&self) -> Kind {
         match self {
-            Self::Length { .. }
-            | Self::Value { .. }
-            | Self::Entries { .. }
-            | Self::NotRising { .. }
-            | Self::Expression { .. }
-            | Self::LongExpression { .. }
-            | Self::HistoryNotFinite { .. }
-            | Self::NoErrorEstimate { .. }
-            | Self::DriveOfFreeBody { .. }
-            | Self::NotInPaper { .. } => Kind::Input,
             Self::FormulaTooFast { .. }
             | Self::StepBeyondLimit { .. }
             | Self::StepBeyondSpin { .. }
             | Self::CollinearPoints(_)
             | Self::Inertia(_) => Kind::Refused,
+            _ => Kind::Input,
         }
     }
 }
@@ -162,7 +141,7 @@ impl Failure for StartError {
     fn kind(&self) -> Kind {
         match self {
             Self::Setup(error) => error.kind(),
-            Self::Refused(_) => Kind::Refused,
+            _ => Kind::Refused,
         }
     }
 }

@@ -28,8 +28,5 @@ fn build(scene: &Scene) -> Model {
 
 /// All rows of a scene's run, the first at t = 0.
 fn rows(model: &Model, scene: &Scene) -> Vec<Observation> {
-    let mut simulation = model.start(scene).unwrap();
-    let mut first = simulation.observation();
-    simulation.observe(&mut first).unwrap();
-    std::iter::once(first).chain(simulation.map(Result::unwrap)).collect()
+    model.start(scene).unwrap().map(Result::unwrap).collect()
 }

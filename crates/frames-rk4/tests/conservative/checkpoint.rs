@@ -1,6 +1,9 @@
 //! A run that is taken up again from a checkpoint goes on as if it had not stopped.
 
-use frames_rk4::{Method, Observation, Reached, RestoreError, Rows, Simulation, StepControl};
+use std::sync::Arc;
+
+use frames_rk4::{CheckpointError, LoadFn, Method, Observation, Reached, Rows, SharedLoad, Simulation, StepControl};
+use modal::ReducedBody;
 use nalgebra::Vector3;
 
 use crate::common::plate;
@@ -8,21 +11,18 @@ use crate::run::{EXPONENTIAL, RKMK4, Run};
 
 /// The first `most` rows that follow, and the checkpoint at the last of them.
 fn rows(simulation: &mut Simulation, most: usize) -> (Vec<Observation>, Vec<u64>) {
-    let (mut rows, mut checkpoint) = (Vec::new(), Vec::new());
+    let mut rows = Vec::new();
     while rows.len() < most {
         match simulation.advance(7).unwrap() {
             Reached::End => break,
             Reached::Between => {}
             Reached::Row => {
-                let mut row = simulation.observation();
-                simulation.observe(&mut row).unwrap();
-                rows.push(row);
+                rows.push(simulation.observation().unwrap());
             }
             other => panic!("{other:?}"),
         }
     }
-    simulation.checkpoint(&mut checkpoint);
-    (rows, checkpoint)
+    (rows, simulation.checkpoint().unwrap())
 }
 
 fn run() -> Run<'static> {
@@ -64,43 +64,107 @@ fn every_method_goes_on_bit_for_bit() {
     }
 }
 
-#[test]
-fn a_checkpoint_of_another_run_is_refused() {
-    let fixed = StepControl::Fixed(1e-5);
-    let start = || run().start(EXPONENTIAL, fixed, Rows::Interval(0.001));
-    let (_, checkpoint) = rows(&mut start(), 5);
-    let words = checkpoint.len();
-    assert!(start().restored(&checkpoint).is_ok());
-    for other in [&checkpoint[..words - 1], &[], &[checkpoint.as_slice(), &[0]].concat()] {
-        let found = other.len();
-        let error = start().restored(other).unwrap_err();
-        assert!(matches!(error, RestoreError::Length { found: f, .. } if f == found), "{error}");
-    }
-    let (_, of_paper) = rows(&mut run().start(Method::PAPER, fixed, Rows::Interval(0.001)), 5);
-    assert!(matches!(start().restored(&of_paper), Err(RestoreError::Length { .. })));
-    // The first word is the time, the next four are the attitude.
-    for (word, value, what) in [(0, f64::NAN, "the time"), (1, 7.0, "the attitude"), (2, f64::NAN, "the attitude")] {
-        let mut spoilt = checkpoint.clone();
-        spoilt[word] = value.to_bits();
-        assert_eq!(start().restored(&spoilt).unwrap_err(), RestoreError::Value { what });
-    }
+/// What a load of this name does.
+fn thrust(name: &str) -> SharedLoad {
+    let point = plate().point([500.0, 0.0, 10.0]);
+    Arc::new(LoadFn::new(name, move |_, applied| applied.force(&point, &Vector3::new(0.1, 0.0, 0.2))))
 }
 
-/// Whatever the words are, there is an error or a run that can be stepped: no panic, no hang.
 #[test]
-fn no_word_of_a_checkpoint_can_do_harm() {
+fn a_checkpoint_of_another_run_is_refused_and_the_error_names_what_differs() {
+    let control = StepControl::Fixed(1e-5);
+    let begin = |run: &Run, method| run.start(method, control, Rows::Interval(0.001));
+    let mut original = run();
+    original.loads.push(thrust("thrust"));
+    let (_, checkpoint) = rows(&mut begin(&original, EXPONENTIAL), 5);
+    assert!(begin(&original, EXPONENTIAL).restored(&checkpoint).is_ok());
+    let refused = |run: &Run, method| match begin(run, method).restored(&checkpoint).unwrap_err() {
+        CheckpointError::Changed { what } => what,
+        other => panic!("{other}"),
+    };
+    let changed = |change: &dyn Fn(&mut Run)| {
+        let mut run = original.clone();
+        change(&mut run);
+        refused(&run, EXPONENTIAL)
+    };
+    let plate = plate();
+    assert_eq!(
+        changed(&|run| run.loads[0] = plate.half_sine([-500.0, 0.0, 10.0], [20.0, 10.0, 31.0], 0.0123)),
+        "load 1"
+    );
+    assert_eq!(
+        changed(&|run| run.loads[0] = plate.half_sine([-500.0, 0.0, 10.0], [20.0, 10.0, 30.0], 0.0124)),
+        "load 1"
+    );
+    assert_eq!(changed(&|run| run.loads[1] = thrust("drag")), "load 2");
+    assert_eq!(changed(&|run| run.loads.truncate(1)), "the number of loads");
+    assert_eq!(changed(&|run| run.damping_ratio = 0.021), "the damping");
+    assert_eq!(changed(&|run| run.initial.omega.x = 3.1), "the start");
+    assert_eq!(changed(&|run| run.end = 0.04), "the scheme or its steps");
+    assert_eq!(refused(&original, Method::PAPER), "the scheme or its steps");
+    // The last bit of one number of the body.
+    let mut constants = (*plate.body).clone();
+    let entry = &mut constants.gyroscopic[1][(3, 7)];
+    *entry = f64::from_bits(entry.to_bits() ^ 1);
+    let other = ReducedBody::from_constants(constants).unwrap();
+    assert_eq!(refused(&Run { body: &other, ..original.clone() }, EXPONENTIAL), "the body");
+}
+
+#[test]
+fn a_checkpoint_that_is_cut_or_too_long_or_holds_no_state_is_refused() {
+    let start = || run().start(EXPONENTIAL, StepControl::Fixed(1e-5), Rows::Interval(0.001));
+    let (_, checkpoint) = rows(&mut start(), 5);
+    let words = checkpoint.len();
+    for other in [&checkpoint[..words - 1], &[], &[checkpoint.as_slice(), &[0]].concat()] {
+        let error = start().restored(other).unwrap_err();
+        assert!(matches!(error, CheckpointError::Encoding(_)), "{error}");
+    }
+    // A list that claims 2⁶³ entries is refused without asking for the memory.
+    let error = start().restored(&[u64::MAX; 100]).unwrap_err();
+    assert!(matches!(error, CheckpointError::Encoding(_)), "{error}");
+    // The time of the state, wherever it is.
+    let time = start_of(&checkpoint, 0.005_f64).unwrap();
+    for value in [f64::NAN, f64::INFINITY] {
+        let mut bytes = to_bytes(&checkpoint);
+        bytes[time..time + 8].copy_from_slice(&value.to_le_bytes());
+        let error = start().restored(&to_words(&bytes)).unwrap_err();
+        assert!(matches!(error, CheckpointError::State(_)), "{error}");
+    }
+    // A count of steps near 2⁶⁴ would overflow with the next step.
+    let steps = start_of(&checkpoint, f64::from_bits(500)).unwrap();
+    let mut bytes = to_bytes(&checkpoint);
+    bytes[steps..steps + 8].copy_from_slice(&(u64::MAX - 1).to_le_bytes());
+    let error = start().restored(&to_words(&bytes)).unwrap_err();
+    assert!(matches!(error, CheckpointError::Value { what: "a count" }), "{error}");
+}
+
+fn to_bytes(words: &[u64]) -> Vec<u8> {
+    words.iter().flat_map(|word| word.to_le_bytes()).collect()
+}
+
+fn to_words(bytes: &[u8]) -> Vec<u64> {
+    bytes.as_chunks().0.iter().map(|word| u64::from_le_bytes(*word)).collect()
+}
+
+/// Where the bytes of a number are first.
+fn start_of(words: &[u64], number: f64) -> Option<usize> {
+    to_bytes(words).windows(8).position(|bytes| bytes == number.to_le_bytes())
+}
+
+/// Whatever the bytes are, there is an error or a run that can be stepped: no panic, no hang.
+#[test]
+fn no_byte_of_a_checkpoint_can_do_harm() {
+    let patterns = [f64::INFINITY.to_bits(), 1e300_f64.to_bits(), u64::MAX, 63].map(u64::to_le_bytes);
     for control in [StepControl::Fixed(1e-5), StepControl::Tolerance(1e-7)] {
         let start = || run().start(EXPONENTIAL, control, Rows::Interval(0.001));
         let (_, checkpoint) = rows(&mut start(), 5);
-        for word in 0..checkpoint.len() {
-            for value in [0, 1, 63, 64, u64::MAX, f64::INFINITY.to_bits(), 1e300_f64.to_bits(), (-1.0_f64).to_bits()] {
-                let mut spoilt = checkpoint.clone();
-                spoilt[word] = value;
-                if let Ok(mut simulation) = start().restored(&spoilt) {
-                    for _ in 0..3 {
-                        let mut row = simulation.observation();
-                        let _ = simulation.advance(20).and_then(|_| simulation.observe(&mut row));
-                    }
+        let whole = to_bytes(&checkpoint);
+        for at in 0..whole.len() - 8 {
+            for pattern in patterns.iter().map(|pattern| &pattern[..]).chain([&[0][..], &[1], &[255]]) {
+                let mut spoilt = whole.clone();
+                spoilt[at..at + pattern.len()].copy_from_slice(pattern);
+                if let Ok(mut simulation) = start().restored(&to_words(&spoilt)) {
+                    let _ = simulation.advance(3).and_then(|_| simulation.observation());
                 }
             }
         }

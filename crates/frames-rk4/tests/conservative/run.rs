@@ -63,10 +63,7 @@ impl<'a> Run<'a> {
 
     /// The motion at the beginning.
     pub fn beginning(&self) -> Observation {
-        let mut simulation = self.start(EXPONENTIAL, StepControl::Fixed(1e-5), Rows::EverySteps(1));
-        let mut out = simulation.observation();
-        simulation.observe(&mut out).unwrap();
-        out
+        self.start(EXPONENTIAL, StepControl::Fixed(1e-5), Rows::EverySteps(1)).observation().unwrap()
     }
 }
 

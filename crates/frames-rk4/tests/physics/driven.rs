@@ -50,7 +50,7 @@ fn a_driven_part_is_where_its_speed_has_taken_it() {
     assert!((last.attitude.angle_to(&first.attitude) - way).abs() < 1e-9);
     run.physics.drive = Some(drive(slide));
     let mut simulation = run.start(EXPONENTIAL, StepControl::Fixed(1e-2), Rows::Interval(3.0));
-    let last = simulation.next().unwrap().unwrap();
+    let last = simulation.nth(1).unwrap().unwrap();
     let DrivenMotion::Slide { direction } = slide else { unreachable!() };
     let center = body.center_of_mass
         + Vector3::from_fn(|i, _| {
@@ -123,8 +123,7 @@ fn a_jump_of_the_driven_speed_does_its_work_at_once() {
         assert!(gaps[1] < 1e-6 && gaps[0] > 8.0 * gaps[1], "{motion:?}: {gaps:?}");
         // The row of the jump itself has what it did.
         let mut rows = run.start(EXPONENTIAL, StepControl::Fixed(1e-2), Rows::Interval(1.25));
-        let mut start = rows.observation();
-        rows.observe(&mut start).unwrap();
+        let start = rows.next().unwrap().unwrap();
         let jump = rows.next().unwrap().unwrap();
         assert!((jump.energy_balance() - start.energy_balance()).abs() < 1e-6 * jump.energy(), "{motion:?}");
     }

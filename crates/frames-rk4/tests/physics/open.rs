@@ -3,7 +3,8 @@
 use std::sync::{Arc, Mutex};
 
 use frames_rk4::{
-    History, Initial, LoadFrame, Method, Observation, PointForce, Reached, Rows, SharedLoad, StepControl,
+    History, Initial, LoadFrame, Method, Observation, PointForce, Reached, Rows, SetupError, SharedLoad, Simulation,
+    StepControl,
 };
 use modal::RigidMotion;
 use nalgebra::Vector3;
@@ -148,7 +149,7 @@ fn a_time_inside_a_step_is_as_accurate_as_the_scheme_and_observers_see_every_ste
         let times = Arc::clone(&seen);
         simulation.watch(Arc::new(Mutex::new(move |now: &Observation| times.lock().unwrap().push(now.time))));
         simulation.keep_last_step();
-        let mut out = simulation.observation();
+        let mut out = simulation.observation().unwrap();
         while simulation.time() < 0.437 {
             simulation.advance(1).unwrap();
         }
@@ -156,12 +157,51 @@ fn a_time_inside_a_step_is_as_accurate_as_the_scheme_and_observers_see_every_ste
         let reached = simulation.time();
         simulation.interpolate(0.437, &mut out).unwrap();
         assert!(out.time == 0.437 && simulation.time() == reached);
-        assert!(simulation.interpolate(0.1, &mut simulation.observation()).is_err());
+        assert!(simulation.interpolate(0.1, &mut out.clone()).is_err());
         out
     };
-    let exact = run.start(EXPONENTIAL, StepControl::Fixed(1e-4), Rows::Interval(0.437)).next().unwrap().unwrap();
+    let exact = run.start(EXPONENTIAL, StepControl::Fixed(1e-4), Rows::Interval(0.437)).nth(1).unwrap().unwrap();
     let error = |step: f64| largest(&between(step).modal_displacement, &exact.modal_displacement);
     let (coarse, fine) = (error(4e-2), error(2e-2));
     // Fourth order: 16 and somewhat more.
     assert!(fine < 1e-4 && coarse / fine > 12.0, "{coarse:e} {fine:e}");
+}
+
+#[test]
+fn a_run_can_be_looked_at_before_its_first_step_and_its_rows_begin_at_time_zero() {
+    let body = body(RigidMotion::free(), &OMEGA);
+    let initial = Run::new(&body, 0.01).initial;
+    let builder = Simulation::builder(&body, StepControl::Fixed(1e-3), 0.01).initial(initial);
+    let mut simulation = builder.point(point(&body, [0.3, 0.2, 0.1])).build().unwrap();
+    let first = simulation.observation().unwrap();
+    assert_eq!((first.time, first.points.len(), first.modal_displacement.len()), (0.0, 1, OMEGA.len()));
+    assert!(first.points[0].velocity.norm() > 0.0 && first.energy() > 0.0);
+    let room = Observation::new(OMEGA.len(), 1);
+    assert_eq!((room.points.len(), room.modal_velocity.len()), (1, OMEGA.len()));
+
+    let rows: Vec<Observation> = simulation.clone().map(Result::unwrap).collect();
+    assert_eq!((rows.len(), &rows[0]), (11, &first));
+    // The start is no row of one that has gone on.
+    simulation.advance(1).unwrap();
+    assert_eq!(simulation.next().unwrap().unwrap().time, rows[2].time);
+}
+
+#[test]
+fn a_builder_starts_what_a_setup_does_and_refuses_what_it_refuses() {
+    let body = body(RigidMotion::free(), &OMEGA);
+    let run = Run::new(&body, 0.2);
+    let control = StepControl::Fixed(1e-3);
+    let of_setup = run.start(RKMK4, control, Rows::Interval(0.1));
+    let builder = Simulation::builder(&body, control, run.end)
+        .damping_ratio(run.damping_ratio)
+        .loads(run.loads.clone())
+        .physics(run.physics.clone())
+        .initial(run.initial.clone())
+        .method(RKMK4)
+        .rows(Rows::Interval(0.1));
+    assert!(of_setup.eq(builder.build().unwrap()));
+    let refused = builder.clone().damping_ratios(vec![0.1]).build();
+    assert!(matches!(refused, Err(SetupError::Length { found: 1, .. })));
+    let refused = Simulation::builder(&body, StepControl::Fixed(-1.0), 1.0).build();
+    assert!(matches!(refused, Err(SetupError::Value { what: "the step", .. })));
 }

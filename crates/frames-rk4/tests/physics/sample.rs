@@ -117,8 +117,7 @@ impl<'a> Run<'a> {
     /// Beginning and end.
     pub fn ends(&self, method: Method, step: f64) -> [Observation; 2] {
         let mut simulation = self.start(method, StepControl::Fixed(step), Rows::Interval(self.end));
-        let mut first = simulation.observation();
-        simulation.observe(&mut first).unwrap();
+        let first = simulation.observation().unwrap();
         [first, simulation.last().unwrap().unwrap()]
     }
 

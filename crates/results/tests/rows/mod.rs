@@ -13,7 +13,6 @@ pub fn metadata(modes: usize, point_names: &[&str]) -> Metadata {
         step: Some(1e-4),
         tolerance: None,
         program_version: "0.1.0".into(),
-        fingerprint: 0x89ab_cdef,
         scene_text: "title = \"ω₂\"\n".repeat(10_000), // more than an attribute of fixed length can hold
         scene_file: "platten/frei.toml".into(),
         body: BodyProperties {

@@ -15,6 +15,7 @@ use crate::suggest::one_of;
 
 /// A scene that cannot be built.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum BuildError {
     /// Something in the scene does not fit the mesh.
     #[error(transparent)]
@@ -46,6 +47,7 @@ pub enum BuildError {
 
 /// A motion that cannot start.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum StartError {
     /// The integrator refuses it.
     #[error(transparent)]

@@ -5,7 +5,7 @@ use rigid_kin::Attitude;
 
 use crate::scene::Scene;
 
-/// The attitude at the beginning. The scene has been checked: no quaternion in it names no rotation.
+/// The attitude at the beginning. The scene has been checked: its quaternion is a rotation.
 pub(super) fn first_attitude(scene: &Scene) -> Attitude {
     scene.initial.attitude.and_then(|wxyz| Attitude::from_wxyz(wxyz).ok()).unwrap_or(Attitude::identity())
 }

@@ -136,7 +136,7 @@ impl Check<'_> {
     }
 
     fn point_masses(&self, masses: &[PointMass]) -> Result<(), SceneError> {
-        let cure = "make masses that are many a part of the mesh, as a material with their density";
+        let cure = "mesh so many masses as a part of the body, with a material of their density";
         self.not_too_many("body.point_masses", masses.len(), cure)?;
         for (i, point_mass) in masses.iter().enumerate() {
             let key = format!("body.point_masses[{i}]");

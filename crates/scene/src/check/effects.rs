@@ -52,7 +52,7 @@ impl Check<'_> {
         self.not_off(effects, Effect::Translation, initial.velocity != [0.0; 3], "an initial `velocity`")
     }
 
-    /// The paper's formulation has the effects that it has.
+    /// The effects of the paper's formulation are fixed.
     pub fn effects_of_paper(&self, effects: &Effects, method: Method) -> Result<(), SceneError> {
         if !method.is_of_paper() {
             return Ok(());

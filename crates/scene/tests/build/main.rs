@@ -94,17 +94,14 @@ fn refusal(scene: &Scene) -> BuildError {
 
 /// All observations of a run, the first included.
 fn observations(scene: &Scene, model: &Model) -> Vec<Observation> {
-    let mut run = model.start(scene).unwrap_or_else(|error| panic!("{error}"));
-    let mut first = run.observation();
-    run.observe(&mut first).unwrap();
-    std::iter::once(first).chain(run.map(|row| row.unwrap_or_else(|error| panic!("{error}")))).collect()
+    let run = model.start(scene).unwrap_or_else(|error| panic!("{error}"));
+    run.map(|row| row.unwrap_or_else(|error| panic!("{error}"))).collect()
 }
 
 fn first(scene: &Scene) -> (Model, Observation) {
     let model = build(scene);
     let mut run = model.start(scene).unwrap_or_else(|error| panic!("{error}"));
-    let mut first = run.observation();
-    run.observe(&mut first).unwrap();
+    let first = run.observation().unwrap();
     (model, first)
 }
 
@@ -135,7 +132,7 @@ fn close(found: f64, expected: f64, relative: f64) {
 #[test]
 fn what_the_modal_analysis_refuses_names_the_scene_file() {
     for (density, young_modulus, says) in
-        [(1e-310, YOUNG, "which is no rigid body"), (1e300, 1e300, "a dense eigenvalue problem")]
+        [(1e-310, YOUNG, "which no rigid body can have"), (1e300, 1e300, "a dense eigenvalue problem")]
     {
         let mut scene = bar("flexible = 2", "", "end = 1e-3\nstep = 1e-5");
         let Body::Meshed(body) = &mut scene.body else { panic!("no mesh") };

@@ -14,10 +14,7 @@ fn motion(model: &Model, scene: &Scene, step: f64, interval: f64) -> Vec<Observa
     loop {
         match simulation.advance(u64::MAX) {
             Ok(Reached::Row) => {
-                let mut row = simulation.observation();
-                if simulation.observe(&mut row).is_err() {
-                    return rows;
-                }
+                let Ok(row) = simulation.observation() else { return rows };
                 rows.push(row);
             }
             Ok(Reached::End) | Err(_) => return rows,

@@ -4,14 +4,15 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use scene::{Model, Scene};
+use flexframe::cost::{
+    CostError, CostReport, CostSettings, Line, Measured, Outcome, Row, duration, modes_warning, price_list, setting,
+};
+use flexframe::modes::frequency_unit;
+use flexframe::write_error::WriteError;
+use flexframe::scene::{Model, Scene};
 use whole_file::write_whole;
 
-use super::ladder::{Line, Measured, Outcome, Row};
-use super::short::{duration, setting};
-use super::spin::{SpinRow, spin_rates};
-use super::{CostError, CostProgress, CostReport, CostSettings, price_list};
-use crate::write_error::WriteError;
+use crate::spin::{SpinRow, spin_rates};
 
 /// Errors whose price is shown: 10^−k for these k.
 const DECADES: std::ops::RangeInclusive<i32> = 1..=10;
@@ -28,20 +29,16 @@ pub fn accuracy_page(
     path: &Path,
     lists: &Path,
     patience: Duration,
-    mut progress: impl FnMut(CostProgress),
 ) -> Result<Vec<PathBuf>, CostError> {
     let pictures = path.with_extension("");
     let mut reports = Vec::new();
     for scene in scenes {
         let folder = lists.join(name_of(&scene.path));
         let settings = CostSettings::with_patience(patience);
-        reports.push((scene, price_list(scene, &folder, settings, &mut progress)?));
+        reports.push((scene, price_list(scene, &folder, settings, |_| ())?));
     }
     let spin = match fastest(&reports) {
-        Some((scene, report)) if report.initial_spin > 0.0 => {
-            let model = Model::build(scene, |p| progress(CostProgress::Build(p)))?;
-            spin_rates(scene, &model, CostSettings::with_patience(patience).budget(20).time)
-        }
+        Some((scene, report)) if report.initial_spin > 0.0 => spin_rates(scene, &Model::build(scene, |_| ())?),
         _ => Vec::new(),
     };
     std::fs::create_dir_all(&pictures).map_err(WriteError::of(&pictures))?;
@@ -263,7 +260,7 @@ fn write_modes(out: &mut String, report: &CostReport) -> std::fmt::Result {
         out,
         "| modes | to, {} | error | attitude | modal | displacement | velocity | acceleration | time of a step |\n\
          |---:|---:|---:|---:|---:|---:|---:|---:|---:|",
-        crate::modes::frequency_unit(&report.time_unit)
+        frequency_unit(&report.time_unit)
     )?;
     let optional = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| format!("{value:.1e}"));
     for row in &report.modes {
@@ -287,7 +284,7 @@ fn write_modes(out: &mut String, report: &CostReport) -> std::fmt::Result {
             duration(row.seconds_per_step)
         )?;
     }
-    if let Some(warning) = super::modes::warning(&report.modes, report.flexible, 0.0) {
+    if let Some(warning) = modes_warning(&report.modes, report.flexible, 0.0) {
         writeln!(out, "\n{warning}")?;
     }
     Ok(())

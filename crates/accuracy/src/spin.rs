@@ -1,12 +1,7 @@
 //! The spin that the paper's scheme makes or loses in steady rotation.
 
-use std::time::Duration;
-
-use frames_rk4::{Method, StepControl};
-use scene::{Model, Scene};
-
-use super::case::PreparedScene;
-use super::run::Trajectory;
+use flexframe::frames_rk4::{Method, Rows, StepControl};
+use flexframe::scene::{Model, Scene};
 
 /// Steps of the runs.
 const STEPS: [u64; 4] = [1000, 2000, 5000, 10_000];
@@ -21,21 +16,23 @@ pub(super) struct SpinRow {
     pub rate_of_limit: f64,
 }
 
-/// Runs the paper's scheme, and its limit, with all and with half of the modes. Runs that fail, or take longer than the
-/// patience, are left out.
-pub(super) fn spin_rates(scene: &Scene, model: &Model, patience: Duration) -> Vec<SpinRow> {
+/// Runs the paper's scheme, and its limit, with all and with half of the modes. Runs that fail are left
+/// out.
+pub(super) fn spin_rates(scene: &Scene, model: &Model) -> Vec<SpinRow> {
+    let end = scene.time.end;
     let mut rows = Vec::new();
     for flexible in [model.body.flexible() / 2, model.body.flexible()] {
         let model = model.truncated(flexible);
-        let case = PreparedScene::new(scene, &model);
         let rate = |method, step| -> Option<f64> {
-            let run = Trajectory::follow(case.begin(method, StepControl::Fixed(step)).ok()?, patience).ok()?;
-            Some((run.final_spin() / run.observations.first()?.omega_body.norm()).ln() / case.end())
+            let rows = model.start_with(scene, method, StepControl::Fixed(step), Rows::Interval(end)).ok()?;
+            let spins: Vec<f64> =
+                rows.map(|row| row.map(|now| now.omega_body.norm())).collect::<Result<_, _>>().ok()?;
+            Some((spins.last()? / spins.first()?).ln() / end)
         };
-        let finest = case.end() / STEPS.into_iter().fold(1, u64::max) as f64;
+        let finest = end / STEPS.into_iter().fold(1, u64::max) as f64;
         let Some(rate_of_limit) = rate(Method::PAPER_RKMK4, finest) else { continue };
         rows.extend(STEPS.iter().filter_map(|steps| {
-            let step = case.end() / *steps as f64;
+            let step = end / *steps as f64;
             Some(SpinRow { flexible, step, rate: rate(Method::PAPER, step)?, rate_of_limit })
         }));
     }
