@@ -257,6 +257,7 @@ impl ConservativeBody {
         physics: &Physics,
     ) -> Result<Self, SetupError> {
         let nf = body.flexible();
+        crate::model::check_motion(body)?;
         crate::model::check_damping(damping_ratios, nf)?;
         loads.iter().try_for_each(|load| load.check(nf))?;
         let Physics { effects, drive, load_stiffness } = physics;

@@ -70,7 +70,9 @@ impl Failure for AssemblyError {
 impl Failure for ModalError {
     fn kind(&self) -> Kind {
         match self {
-            Self::TooManyModes { .. } | Self::NoSuchNode { .. } | Self::NotUnit { .. } => Kind::Input,
+            Self::TooManyModes { .. } | Self::NoSuchNode { .. } | Self::NoSuchFreedom { .. } | Self::NotUnit { .. } => {
+                Kind::Input
+            }
             Self::Size { .. }
             | Self::Length { .. }
             | Self::NotPositive { .. }
@@ -78,6 +80,10 @@ impl Failure for ModalError {
             | Self::NotFinite { .. }
             | Self::NotSymmetric { .. }
             | Self::AnisotropicMass { .. }
+            | Self::NoRigidBodyMass { .. }
+            | Self::IndefiniteMass { .. }
+            | Self::NegativeStiffness { .. }
+            | Self::Loose { .. }
             | Self::NoInertia { .. }
             | Self::Underheld { .. }
             | Self::NotFree { .. }
@@ -143,6 +149,7 @@ impl Failure for SetupError {
             | Self::HistoryNotFinite { .. }
             | Self::NoErrorEstimate { .. }
             | Self::DriveOfFreeBody { .. }
+            | Self::MotionLeft { .. }
             | Self::NotInPaper { .. } => Kind::Input,
             Self::FormulaTooFast { .. }
             | Self::StepBeyondLimit { .. }

@@ -67,7 +67,7 @@ impl Statics {
         let turned: Vec<Vec<Vector3<f64>>> = loads.iter().map(|load| load.turned(turning)).collect();
         let columns = Columns::new(loads, &turned, if asked.steady { steady_loads(model) } else { Vec::new() });
         let (of_loads, of_all_loads) = (columns.of_loads, columns.sums.len());
-        let fields = asked.spin.then(|| centrifugal_fields(solver.nodal_mass(), mesh.positions(), origin));
+        let fields = asked.spin.then(|| centrifugal_fields(solver.mass(), mesh.positions(), origin));
         let spins = fields.as_ref().map_or(0, Mat::ncols);
 
         let unknowns = 3 * mesh.positions().len();
@@ -175,7 +175,7 @@ fn compliances(
 
 /// √(uᵀMu − Σ(Φ_kᵀMu)²) of each answer u.
 fn remainders(model: &MeshModel<'_>, modes: &Modes, answers: MatRef<'_, f64>) -> Vec<f64> {
-    let momenta = model.solver.nodal_mass().product(answers);
+    let momenta = model.solver.mass().product(answers);
     let of = |(u, mu): (ColRef<'_, f64>, ColRef<'_, f64>)| {
         let carried: f64 = modes.shapes.as_ref().col_iter().map(|shape| (shape.transpose() * mu).powi(2)).sum();
         (u.transpose() * mu - carried).max(0.0).sqrt()

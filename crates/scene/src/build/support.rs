@@ -46,7 +46,7 @@ pub(super) fn support(scene: &Scene, mesh: Option<&Mesh>) -> Result<(Support, Op
         }
         Constraint::Clamp { .. } => (RigidMotion::clamp(mean()), None),
     };
-    Ok((Support { motion, nodes }, drive))
+    Ok((Support::new(motion, nodes), drive))
 }
 
 fn held_nodes(scene: &Scene, mesh: &Mesh, constraint: &Constraint) -> Result<Vec<u32>, BuildError> {
