@@ -10,6 +10,9 @@ use crate::constraints::{NEGLIGIBLE, extent};
 use crate::error::ModalError;
 use crate::support::{RigidMotion, Support, Twist};
 
+/// A component of a unit vector below this is rounding.
+const ROUNDING: f64 = 1e-12;
+
 impl Support {
     /// Of a body with nodes at `positions` that is held in single degrees of freedom, `(node, 0..6)`: translations along
     /// the axes of the mesh, then rotations about them. The rigid motions that are left come from the geometry.
@@ -118,7 +121,9 @@ fn named(translations: &[Vector3<f64>], turning: &Twists, origin: Vector3<f64>, 
 /// The unit vector or its opposite: the first component that is not small is positive.
 fn toward_positive(direction: Vector3<f64>) -> Vector3<f64> {
     let leading = direction.iter().copied().find(|c| c.abs() > NEGLIGIBLE).unwrap_or(1.0);
-    if leading < 0.0 { -direction } else { direction }
+    let turned = if leading < 0.0 { -direction } else { direction };
+    // Rounding beside a unit vector along an axis.
+    turned.map(|c| if c.abs() < ROUNDING { 0.0 } else { c })
 }
 
 fn columns(matrix: &DMatrix<f64>) -> Vec<Vector3<f64>> {

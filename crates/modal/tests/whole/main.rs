@@ -3,6 +3,7 @@
 mod beam;
 mod bodies;
 mod closed_forms;
+mod convergence;
 mod fields;
 mod general_mass;
 mod held;
