@@ -39,10 +39,11 @@ fn the_rates_serve_an_integrator_of_one_s_own() {
 fn a_beam_from_its_own_matrices_has_its_frequencies_and_tumbles_without_loss() {
     let own_matrices::Answer { frequencies, energy, angular_momentum, against_rigid } = own_matrices::run().unwrap();
     println!("{frequencies:?} {energy:e} {angular_momentum:e} {against_rigid:e}");
-    // Those of the second pair are 3.4e-5 above.
+    // Those of the second pair are 3.9e-5 above.
     assert!(frequencies.iter().all(|ratio| (1.0..1.0001).contains(ratio)), "{frequencies:?}");
-    assert!(energy < 1e-9 && angular_momentum < 1e-9, "{energy:e} {angular_momentum:e}");
-    assert!(against_rigid > 1e-4, "{against_rigid:e}");
+    // 2.0e-11 and 1.6e-12
+    assert!(energy < 1e-10 && angular_momentum < 1e-11, "{energy:e} {angular_momentum:e}");
+    assert!(against_rigid > 1e-2, "{against_rigid:e}");
 }
 
 #[test]

@@ -118,8 +118,7 @@ impl GeneralMass<'_> {
         let mut entries = Vec::with_capacity(self.matrix.row_idx().len() + size);
         for entry in self.matrix.triplet_iter().filter(|entry| *entry.val != 0.0) {
             let scale = (diagonal[entry.row] * diagonal[entry.col]).sqrt();
-            // NaN too.
-            if !(scale > 0.0) {
+            if scale.is_nan() || scale <= 0.0 {
                 let row = if diagonal[entry.row] > 0.0 { entry.col } else { entry.row };
                 return Err(self.negative(row));
             }

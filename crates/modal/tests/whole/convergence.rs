@@ -1,5 +1,5 @@
-//! The ten-node tetrahedron against closed forms on finer and finer meshes: displacements of order 3 in the mean, energies and
-//! frequencies of order 4.
+//! The ten-node tetrahedron against closed forms on finer and finer meshes: displacements of order 3 in the mean (fitted 3.01),
+//! energies and frequencies of order 4 (3.95 and 3.88).
 //!
 //! A bar without Poisson's effect stretches by u = sin(πx/L) e_x, whether as a mode, ω = (π/L)√(E/ρ), or under the body
 //! force ρω² u, which leaves its ends free of stress.
@@ -50,9 +50,8 @@ fn mean_error(mesh: &Mesh, displacement: &Mat<f64>) -> f64 {
     for nodes in mesh.elements() {
         let corner = |i: usize| nalgebra::Vector3::from(positions[nodes[i] as usize]);
         let edges = nalgebra::Matrix3::from_columns(&[1, 2, 3].map(|i| corner(i) - corner(0)));
-        for ((a, wa), (b, wb), (c, wc)) in
-            rule.iter().flat_map(|a| rule.iter().flat_map(move |b| rule.iter().map(move |c| (*a, *b, *c))))
-        {
+        for place in 0..64 {
+            let [(a, wa), (b, wb), (c, wc)] = [place / 16, place / 4 % 4, place % 4].map(|i| rule[i]);
             let point = [a, b * (1.0 - a), c * (1.0 - a) * (1.0 - b)];
             let measure = wa * wb * wc * (1.0 - a).powi(2) * (1.0 - b) * edges.determinant();
             let x = (corner(0) + edges * nalgebra::Vector3::from(point)).x;
@@ -92,8 +91,8 @@ fn displacements_converge_with_the_third_power_of_the_element_length_and_energie
         let mass = MATERIAL.density * SIZE.iter().product::<f64>();
         energy[i] = 1.0 - (force.transpose() * &answer)[(0, 0)] / (0.5 * mass * frequency().powi(2));
     }
-    assert_converges("displacement", &mean, [0.0; 4], 3.0);
-    assert_converges("energy", &energy, [0.0; 4], 4.0);
+    assert_converges("displacement", &mean, [1.9832e-2, 2.0711e-3, 6.1659e-4, 2.5679e-4], 3.0);
+    assert_converges("energy", &energy, [1.5518e-2, 1.0800e-3, 2.1813e-4, 6.9659e-5], 4.0);
 }
 
 #[test]
@@ -107,5 +106,5 @@ fn frequencies_converge_with_the_fourth_power_of_the_element_length() {
         let along = (0..14).max_by(|a, b| overlap[(0, *a)].abs().total_cmp(&overlap[(0, *b)].abs())).unwrap();
         modes.natural_frequencies()[along] * TAU / frequency() - 1.0
     });
-    assert_converges("frequency", &errors, [0.0; 4], 4.0);
+    assert_converges("frequency", &errors, [2.1694e-3, 1.5024e-4, 3.1361e-5, 1.0165e-5], 4.0);
 }
