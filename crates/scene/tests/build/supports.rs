@@ -198,7 +198,8 @@ fn supports_leave_what_the_geometry_says() {
     let of = |parts: &[(&str, &str)]| build(&supported(parts, "")).body.motion.to_string();
     // The nodes of the root are in the plane x = 0, so that z of them leaves the turn about y too.
     assert_eq!(of(&[(ROOT, "[\"z\"]")]), "2 translations and 2 rotations");
-    assert_eq!(of(&[(ROOT, "[\"z\"]"), (EDGE, "[\"y\", \"x\"]")]), "no rigid motion");
+    assert_eq!(of(&[(ROOT, "[\"z\"]"), (EDGE, "[\"y\", \"x\"]")]), "1 rotation");
+    assert_eq!(of(&[(ROOT, "[\"x\"]"), (EDGE, "[\"y\", \"z\"]")]), "no rigid motion");
 }
 
 #[test]
