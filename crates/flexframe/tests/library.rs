@@ -6,6 +6,8 @@ mod bounce;
 mod controller;
 #[path = "../../../examples/own_integrator.rs"]
 mod own_integrator;
+#[path = "../../../examples/own_matrices.rs"]
+mod own_matrices;
 #[path = "../../../examples/spring_to_ground.rs"]
 mod spring_to_ground;
 
@@ -31,6 +33,17 @@ fn the_rates_serve_an_integrator_of_one_s_own() {
     let [coarse, fine] = own_integrator::run().unwrap();
     println!("{coarse:e} {fine:e}");
     assert!(fine < 1e-3 && (coarse / fine - 4.0).abs() < 0.4, "{coarse:e} {fine:e}");
+}
+
+#[test]
+fn a_beam_from_its_own_matrices_has_its_frequencies_and_tumbles_without_loss() {
+    let own_matrices::Answer { frequencies, energy, angular_momentum, against_rigid } = own_matrices::run().unwrap();
+    println!("{frequencies:?} {energy:e} {angular_momentum:e} {against_rigid:e}");
+    // Those of the second pair are 3.9e-5 above.
+    assert!(frequencies.iter().all(|ratio| (1.0..1.0001).contains(ratio)), "{frequencies:?}");
+    // 2.0e-11 and 1.6e-12
+    assert!(energy < 1e-10 && angular_momentum < 1e-11, "{energy:e} {angular_momentum:e}");
+    assert!(against_rigid > 1e-2, "{against_rigid:e}");
 }
 
 #[test]

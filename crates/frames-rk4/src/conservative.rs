@@ -283,6 +283,7 @@ impl ConservativeBody {
         loads: Vec<SharedLoad>,
         physics: &Physics,
     ) -> Result<Self, SetupError> {
+        crate::model::check_motion(body)?;
         crate::model::check_damping(damping_ratios, body.flexible())?;
         let Physics { effects, drive, drive_stiffness, large_deflection } = physics;
         let modes = body;

@@ -135,7 +135,15 @@ pub enum SetupError {
         /// Its rigid motions.
         motion: Box<modal::RigidMotion>,
     },
-    /// Something that the formulation of the paper does not have.
+    /// Rigid motions that there are no equations for.
+    #[error(
+        "what holds the body leaves it {motion}; a run needs a body that is free, turns about a point (3 rotations) or an axis (1 rotation), slides along a line (1 translation), or is held altogether; hold more directions or fewer (its modes are there as it is)"
+    )]
+    MotionLeft {
+        /// Its rigid motions.
+        motion: Box<modal::RigidMotion>,
+    },
+    /// Something that the formulation of the paper has not got.
     #[error("the formulation paper has no {what}; take the conservative one")]
     NotInPaper {
         /// What.

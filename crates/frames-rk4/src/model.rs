@@ -40,8 +40,10 @@ impl ModalModel {
     /// The model of a body with one damping ratio for each flexible mode.
     ///
     /// # Errors
-    /// [`SetupError`] for a list of the wrong length, and numbers that are negative or not finite.
+    /// [`SetupError`] for a list of the wrong length, numbers that are negative or not finite, and rigid motions of a kind
+    /// that has no equations here.
     pub fn new(body: &ReducedBody, damping_ratios: &[f64], loads: Vec<SharedLoad>) -> Result<Self, SetupError> {
+        check_motion(body)?;
         check_damping(damping_ratios, body.flexible())?;
         loads.iter().try_for_each(|load| load.check(body.flexible()))?;
         let rigid = || std::iter::repeat_n(0.0, 6);
@@ -127,6 +129,11 @@ impl ModalModel {
         let frequency = self.stiffness[6 + mode].sqrt() / std::f64::consts::TAU;
         Err(SetupError::StepBeyondLimit { step, limit, mode: mode + 1, frequency })
     }
+}
+
+/// Refuses a body whose rigid motions are of a kind that has no equations here.
+pub(crate) fn check_motion(body: &ReducedBody) -> Result<(), SetupError> {
+    if body.motion.others().is_empty() { Ok(()) } else { Err(SetupError::MotionLeft { motion: Box::new(body.motion) }) }
 }
 
 /// Refuses damping ratios that are not one number of zero or more for each mode.

@@ -44,8 +44,7 @@ impl Solver<'_> {
         let size = self.rigid.shapes.nrows();
         // What the given vectors have nothing of, such as the other half of a symmetric body, is in a random one.
         let mut seed = 1;
-        let random =
-            self.static_response(self.nodal_mass.product(random_block(size, 1, &mut seed).as_ref()).as_ref())?;
+        let random = self.static_response(self.mass.product(random_block(size, 1, &mut seed).as_ref()).as_ref())?;
         let given = GIVEN.min(start.ncols());
         let mut block = Mat::from_fn(size, given + 1, |i, j| if j < given { start[(i, j)] } else { random[(i, 0)] });
         let (mut basis, mut forces) = (Mat::<f64>::zeros(size, 0), Mat::<f64>::zeros(size, 0));

@@ -1,9 +1,10 @@
 //! The space of the displacements that a support allows.
 //!
 //! A held node moves as one of the support's rigid motions takes it along, so the held nodes together have one unknown
-//! for each motion that moves them: none at the point of a pin, one for a patch around a hinge.
+//! for each motion that moves them: none at the point of a pin, one for a patch around a hinge. A degree of freedom that is
+//! held by itself is a row that none of the motions moves.
 //!
-//! Vectors keep their 3n rows. With T the orthonormal basis of the space (a column for each degree of freedom of the
+//! Vectors keep the rows of all degrees of freedom. With T the orthonormal basis of the space (a column for each degree of freedom of the
 //! other nodes, one for each motion of the held ones), [`Constraints::project`] is `T Tᵀ`. It takes any displacement
 //! into the space, and takes out of a force what the support's reactions balance.
 
@@ -15,69 +16,100 @@ use crate::error::ModalError;
 use crate::support::{RigidMotion, Support};
 
 /// A motion that moves the held nodes by less than this, relative to the size of the body, does not move them.
-const NEGLIGIBLE: f64 = 1e-7;
+pub(crate) const NEGLIGIBLE: f64 = 1e-7;
 
-/// What the held nodes may do.
+/// What the held degrees of freedom may do.
 #[derive(Clone)]
 pub(crate) struct Constraints {
-    /// Held nodes, in rising order.
-    nodes: Vec<usize>,
-    /// Whether each node is held.
+    /// Held degrees of freedom, in rising order.
+    rows: Vec<usize>,
+    /// Whether each degree of freedom is held.
     held: Vec<bool>,
-    /// The displacements of the held nodes that the support allows (3h×k, orthonormal).
+    /// The displacements of the held rows that the support allows (as many rows × k, orthonormal).
     motions: Mat<f64>,
 }
 
 impl Constraints {
+    /// `freedoms` is the number of degrees of freedom of a node, 3 or 6.
+    ///
     /// # Errors
-    /// [`ModalError::NoSuchNode`], [`ModalError::Underheld`], and what [`RigidMotion::check`] refuses.
-    pub(crate) fn new(support: &Support, positions: &[[f64; 3]]) -> Result<Self, ModalError> {
+    /// [`ModalError::NoSuchNode`], [`ModalError::NoSuchFreedom`], [`ModalError::Underheld`], and what
+    /// [`RigidMotion::check`] refuses.
+    pub(crate) fn new(support: &Support, positions: &[[f64; 3]], freedoms: usize) -> Result<Self, ModalError> {
         support.motion.check()?;
         let count = positions.len();
-        if let Some(node) = support.nodes.iter().find(|node| **node as usize >= count) {
-            return Err(ModalError::NoSuchNode { node: *node, count });
+        let nodes = support.nodes.iter().copied().chain(support.freedoms.iter().map(|(node, _)| *node));
+        if let Some(node) = nodes.clone().find(|node| *node as usize >= count) {
+            return Err(ModalError::NoSuchNode { node, count });
         }
-        let mut nodes: Vec<usize> = support.nodes.iter().map(|node| *node as usize).collect();
-        nodes.sort_unstable();
-        nodes.dedup();
+        if let Some(&(node, freedom)) = support.freedoms.iter().find(|(_, freedom)| *freedom >= freedoms) {
+            return Err(ModalError::NoSuchFreedom { node, freedom, count: freedoms });
+        }
+        let of_nodes = support.nodes.iter().flat_map(|node| (0..freedoms).map(move |freedom| (*node, freedom)));
+        let mut rows: Vec<usize> = of_nodes
+            .chain(support.freedoms.iter().copied())
+            .map(|(node, freedom)| freedoms * node as usize + freedom)
+            .collect();
+        rows.sort_unstable();
+        rows.dedup();
+        let mut held_nodes: Vec<usize> = rows.iter().map(|row| row / freedoms).collect();
+        held_nodes.dedup();
 
-        let places: Vec<Vector3<f64>> = nodes.iter().map(|node| Vector3::from(positions[*node])).collect();
         let (center, radius) = extent(positions);
+        // Rotations count times the radius, so that the units of length do not matter.
         let displaced = |motion: &RigidMotion| {
-            let columns: Vec<_> = places.iter().map(|x| motion.displacements(x, &center, radius)).collect();
-            DMatrix::from_fn(3 * places.len(), motion.count(), |i, j| columns[i / 3][j][i % 3])
+            let turns = motion.turns(radius);
+            let moved: Vec<Vec<_>> = held_nodes
+                .iter()
+                .map(|node| motion.displacements(&Vector3::from(positions[*node]), &center, radius))
+                .collect();
+            DMatrix::from_fn(rows.len(), motion.count(), |i, j| {
+                let (node, freedom) = (rows[i] / freedoms, rows[i] % freedoms);
+                if freedom >= 3 {
+                    return turns[j][freedom - 3] * radius;
+                }
+                held_nodes.binary_search(&node).map_or(0.0, |place| moved[place][j][freedom])
+            })
         };
-        let limit = NEGLIGIBLE * (places.len() as f64).sqrt();
-        let allowed = range(displaced(&support.motion), limit);
+        let limit = NEGLIGIBLE * (held_nodes.len() as f64).sqrt();
+        let mut allowed = range(displaced(&support.motion), limit);
         let any = displaced(&RigidMotion::free());
         let prevented = &any - &allowed * (allowed.transpose() * &any);
         let (left, expected) = (6 - range(prevented, limit).ncols(), support.motion.count());
         if left > expected {
-            return Err(ModalError::Underheld { held: places.len(), left, expected });
+            return Err(ModalError::Underheld { held: held_nodes.len(), left, expected });
         }
-        let mut held = vec![false; count];
-        nodes.iter().for_each(|node| held[*node] = true);
-        Ok(Self { nodes, held, motions: Mat::from_fn(allowed.nrows(), allowed.ncols(), |i, j| allowed[(i, j)]) })
+        if freedoms == 6 {
+            for (i, mut row) in allowed.row_iter_mut().enumerate() {
+                if rows[i] % freedoms >= 3 {
+                    row /= radius;
+                }
+            }
+            allowed = range(allowed, 0.0);
+        }
+        let mut held = vec![false; freedoms * count];
+        rows.iter().for_each(|row| held[*row] = true);
+        Ok(Self { rows, held, motions: Mat::from_fn(allowed.nrows(), allowed.ncols(), |i, j| allowed[(i, j)]) })
     }
 
-    /// Number of unknowns of the held nodes.
+    /// Number of unknowns of the held rows.
     pub(crate) fn motion_count(&self) -> usize {
         self.motions.ncols()
     }
 
     /// Whether nothing is held.
     pub(crate) fn is_empty(&self) -> bool {
-        self.nodes.is_empty()
+        self.rows.is_empty()
     }
 
-    /// Whether a node is held.
-    pub(crate) fn holds(&self, node: usize) -> bool {
-        self.held[node]
+    /// Whether a degree of freedom is held.
+    pub(crate) fn holds(&self, row: usize) -> bool {
+        self.held[row]
     }
 
-    /// The motions of the held nodes, zero on all others (3n×k).
+    /// The motions of the held rows, zero on all others (N×k).
     pub(crate) fn motions(&self) -> Mat<f64> {
-        let mut all = Mat::zeros(3 * self.held.len(), self.motion_count());
+        let mut all = Mat::zeros(self.held.len(), self.motion_count());
         self.scatter(&self.motions, all.as_mut());
         all
     }
@@ -90,34 +122,35 @@ impl Constraints {
         }
     }
 
-    /// Sets the rows of the held nodes to zero.
+    /// Sets the held rows to zero.
     pub(crate) fn clear(&self, x: MatMut<'_, f64>) {
-        self.scatter(&Mat::zeros(3 * self.nodes.len(), x.ncols()), x);
+        self.scatter(&Mat::zeros(self.rows.len(), x.ncols()), x);
     }
 
-    /// The rows of the held nodes.
+    /// The held rows.
     fn gather(&self, x: MatMut<'_, f64>) -> Mat<f64> {
         let x = x.rb();
-        Mat::from_fn(3 * self.nodes.len(), x.ncols(), |i, j| x[(3 * self.nodes[i / 3] + i % 3, j)])
+        Mat::from_fn(self.rows.len(), x.ncols(), |i, j| x[(self.rows[i], j)])
     }
 
-    /// Replaces the rows of the held nodes.
+    /// Replaces the held rows.
     fn scatter(&self, rows: &Mat<f64>, mut x: MatMut<'_, f64>) {
         for j in 0..x.ncols() {
-            for i in 0..rows.nrows() {
-                x[(3 * self.nodes[i / 3] + i % 3, j)] = rows[(i, j)];
+            for (i, row) in self.rows.iter().enumerate() {
+                x[(*row, j)] = rows[(i, j)];
             }
         }
     }
 }
 
-/// Centre and half diagonal of the bounding box.
-fn extent(positions: &[[f64; 3]]) -> (Vector3<f64>, f64) {
+/// Centre and half diagonal of the bounding box (1 where all nodes are at one place).
+pub(crate) fn extent(positions: &[[f64; 3]]) -> (Vector3<f64>, f64) {
     let fold = |start: f64, choose: fn(f64, f64) -> f64| {
         Vector3::from_fn(|axis, _| positions.iter().map(|x| x[axis]).fold(start, choose))
     };
     let (low, high) = (fold(f64::INFINITY, f64::min), fold(f64::NEG_INFINITY, f64::max));
-    (0.5 * (low + high), 0.5 * (high - low).norm())
+    let radius = 0.5 * (high - low).norm();
+    (0.5 * (low + high), if radius == 0.0 { 1.0 } else { radius })
 }
 
 /// An orthonormal basis of the columns, without directions below `limit`.

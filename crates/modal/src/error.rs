@@ -5,11 +5,13 @@
 #[non_exhaustive]
 pub enum ModalError {
     /// Matrices and positions of different sizes.
-    #[error("{what} has {found} rows or columns; expected {expected}, three for each of the nodes")]
+    #[error(
+        "{what} has {found} rows or columns; expected {expected}, three for each of the nodes (or six, with rotations)"
+    )]
     Size {
         /// "stiffness", "mass" or "forces".
         what: &'static str,
-        /// Three times the number of positions.
+        /// Degrees of freedom of all nodes.
         expected: usize,
         /// Rows or columns of the matrix.
         found: usize,
@@ -51,6 +53,47 @@ pub enum ModalError {
         column: usize,
         /// The entry.
         value: f64,
+    },
+    /// The mass matrix is that of no rigid body.
+    #[error(
+        "the mass matrix does not give a translation of the whole body the mass of a rigid one: {what} is off by {relative:.3e} (expected below {limit:.0e}); a body that moves needs the same mass m along every axis, m times the 3x3 identity, and the momentum m ω×c of a rotation. Is mass of a surrounding fluid in the matrix, or is mass missing along an axis? Put it on all three axes, or clamp the body"
+    )]
+    NoRigidBodyMass {
+        /// "the mass along the axes" or "the momentum of a rotation".
+        what: &'static str,
+        /// Relative to m, or to m times the size of the body.
+        relative: f64,
+        /// What rounding explains.
+        limit: f64,
+    },
+    /// A motion would have a negative kinetic energy.
+    #[error(
+        "the mass matrix is not positive semi-definite{}: some motion would have a negative kinetic energy; is a sign or an element wrong?",
+        place.map(|[node, freedom]| format!(", as degree of freedom {freedom} of node {node} (both counted from 0) shows: its diagonal entry is not positive though others of its row are there")).unwrap_or_default()
+    )]
+    IndefiniteMass {
+        /// Node and degree of freedom whose diagonal entry shows it; `None` where only the whole matrix does.
+        place: Option<[usize; 2]>,
+    },
+    /// K lets some motion set energy free.
+    #[error(
+        "the stiffness matrix is not positive semi-definite: its lowest eigenvalue against the mass is {eigenvalue:.3e} (shift {shift:.3e}); a material constant or an element must be wrong"
+    )]
+    NegativeStiffness {
+        /// Lowest eigenvalue, (rad/time)².
+        eigenvalue: f64,
+        /// The shift s.
+        shift: f64,
+    },
+    /// A degree of freedom that nothing resists.
+    #[error(
+        "degree of freedom {freedom} of node {node} (both counted from 0) has neither stiffness nor mass; hold it, or give it some"
+    )]
+    Loose {
+        /// Index of the node.
+        node: usize,
+        /// Degree of freedom of the node.
+        freedom: usize,
     },
     /// The body has no mass, or none to resist a rotation.
     #[error(
@@ -100,6 +143,19 @@ pub enum ModalError {
         /// Index of the node.
         node: u32,
         /// Nodes of the mesh.
+        count: usize,
+    },
+    /// A held degree of freedom that a node has not got.
+    #[error(
+        "the support holds degree of freedom {freedom} of node {node} (both counted from 0); a node has {count}: translations along x, y and z{}",
+        if *count == 6 { ", then rotations about them" } else { "" }
+    )]
+    NoSuchFreedom {
+        /// Index of the node.
+        node: u32,
+        /// Degree of freedom.
+        freedom: usize,
+        /// Degrees of freedom of a node.
         count: usize,
     },
     /// Held nodes that leave more rigid motions than the support has.

@@ -3,14 +3,27 @@
 use faer::Mat;
 use nalgebra::Vector3;
 
-use crate::mass::NodalMass;
+use crate::mass_matrix::MassMatrix;
 use crate::reduced::ReducedBody;
+use crate::rigid_fields::rigid_fields;
+use crate::turned::turned;
 
-/// f_ij (3n×6, pairs as in [`ReducedBody::PAIRS`]): `−M (I⊗sym([e_i×][e_j×])) X`, X from `origin`, mesh axes.
+/// f_ij (N×6, pairs as in [`ReducedBody::PAIRS`]): `−M (I⊗sym([e_i×][e_j×])) X`, X from `origin`, mesh axes. With a mass that
+/// is not a scalar for each pair of nodes, `−sym((I⊗[e_j×]) M H_i)` with the unit rotations `H_i = [e_i × X; e_i]`, which is
+/// the same where M acts alike on all axes.
 ///
 /// A body that spins at ω about the origin meets the centrifugal force `Σ ω_iω_j f_ij` over all nine ij, so each of the
 /// last three columns counts twice. `Ψ_fᵀ f_ij` is [`crate::Constants::inertia_first`].
-pub fn centrifugal_fields(mass: &NodalMass, positions: &[[f64; 3]], origin: &Vector3<f64>) -> Mat<f64> {
+pub fn centrifugal_fields(mass: &MassMatrix<'_>, positions: &[[f64; 3]], origin: &Vector3<f64>) -> Mat<f64> {
+    if let MassMatrix::General(general) = mass {
+        let fields = rigid_fields(positions, origin, general.freedoms);
+        let momenta = mass.product(fields.subcols(3, 3));
+        let forces: [Mat<f64>; 3] = std::array::from_fn(|axis| turned(momenta.as_ref(), axis));
+        return Mat::from_fn(momenta.nrows(), ReducedBody::PAIRS.len(), |row, pair| {
+            let (i, j) = ReducedBody::PAIRS[pair];
+            -0.5 * (forces[j][(row, i)] + forces[i][(row, j)])
+        });
+    }
     let mut fields = Mat::zeros(3 * positions.len(), ReducedBody::PAIRS.len());
     for (node, position) in positions.iter().enumerate() {
         let x = Vector3::from(*position) - origin;
@@ -27,13 +40,26 @@ pub fn centrifugal_fields(mass: &NodalMass, positions: &[[f64; 3]], origin: &Vec
     mass.product(fields.as_ref())
 }
 
-/// `M (1⊗e_i)` (3n×3): the weight of a unit acceleration of gravity along each axis of the mesh.
-pub fn acceleration_fields(mass: &NodalMass) -> Mat<f64> {
-    mass.product(Mat::from_fn(3 * mass.node_count(), 3, |i, axis| f64::from(i % 3 == axis)).as_ref())
+/// `M (1⊗e_i)` (N×3): the weight of a unit acceleration of gravity along each axis of the mesh.
+pub fn acceleration_fields(mass: &MassMatrix<'_>) -> Mat<f64> {
+    let translations = match mass {
+        MassMatrix::Nodal(mass) => Mat::from_fn(3 * mass.node_count(), 3, |i, axis| f64::from(i % 3 == axis)),
+        MassMatrix::General(mass) => mass.translations(),
+    };
+    mass.product(translations.as_ref())
 }
 
-/// `M (I⊗[a×]) X` (3n×1), X from `origin`: minus the Euler force of a unit angular acceleration about `axis` (a).
-pub fn turning_field(mass: &NodalMass, positions: &[[f64; 3]], origin: &Vector3<f64>, axis: &Vector3<f64>) -> Mat<f64> {
-    let velocity = |i: usize| axis.cross(&(Vector3::from(positions[i / 3]) - origin))[i % 3];
-    mass.product(Mat::from_fn(3 * positions.len(), 1, |i, _| velocity(i)).as_ref())
+/// `M (I⊗[a×]) X` (N×1), X from `origin`: minus the Euler force of a unit angular acceleration about `axis` (a).
+pub fn turning_field(
+    mass: &MassMatrix<'_>,
+    positions: &[[f64; 3]],
+    origin: &Vector3<f64>,
+    axis: &Vector3<f64>,
+) -> Mat<f64> {
+    let freedoms = match mass {
+        MassMatrix::Nodal(_) => 3,
+        MassMatrix::General(general) => general.freedoms,
+    };
+    let rotations = rigid_fields(positions, origin, freedoms).subcols(3, 3).to_owned();
+    mass.product((rotations * Mat::from_fn(3, 1, |i, _| axis[i])).as_ref())
 }

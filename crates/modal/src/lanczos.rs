@@ -3,12 +3,13 @@
 //! The whole basis V is kept and every new block is made M-orthogonal to it twice, so T = Vᵀ M (K + sM)⁻¹ M V is
 //! known to rounding and no ghost eigenvalue appears.
 
+use faer::dyn_stack::MemBuffer;
 use faer::{Accum, Mat, MatRef};
 
 use crate::dense::symmetric_eigen;
 use crate::error::ModalError;
 use crate::foretold::of_vectors;
-use crate::mass::NodalMass;
+use crate::mass_matrix::MassMatrix;
 use crate::products::Packed;
 use crate::shifted::Shifted;
 use crate::tall;
@@ -42,7 +43,7 @@ pub(crate) struct LanczosPairs {
 /// `report` is called after each step with the number of pairs that have converged.
 pub(crate) fn largest_pairs(
     operator: &Shifted,
-    mass: &NodalMass,
+    mass: &MassMatrix<'_>,
     rigid: MatRef<'_, f64>,
     count: usize,
     available: usize,
@@ -56,8 +57,17 @@ pub(crate) fn largest_pairs(
     let mut projected: Mat<f64> = Mat::zeros(0, 0);
 
     let mut seed = 1;
-    let mut w = random_block(n, BLOCK.min(available), &mut seed);
-    operator.constraints.project(w.as_mut());
+    let mut begin = |columns: usize, scratch: &mut MemBuffer| {
+        let mut block = random_block(n, columns, &mut seed);
+        operator.constraints.project(block.as_mut());
+        if let MassMatrix::General(_) = mass {
+            // Motions without mass, which a random block has parts of, are no part of any mode.
+            block = mass.product(block.as_ref());
+            operator.solve_in_place(block.as_mut(), scratch);
+        }
+        block
+    };
+    let mut w = begin(BLOCK.min(available), &mut scratch);
     let mut last = basis.extend(&mut w)?.columns;
     let (mut converged, mut residual) = (0, f64::INFINITY);
     for block_solves in 1..=max_steps {
@@ -102,8 +112,7 @@ pub(crate) fn largest_pairs(
         last = extension.columns;
         if last == 0 {
             // The basis spans an invariant subspace: go on from elsewhere, uncoupled from it.
-            w = random_block(n, BLOCK.min(available - size), &mut seed);
-            operator.constraints.project(w.as_mut());
+            w = begin(BLOCK.min(available - size), &mut scratch);
             last = basis.extend(&mut w)?.columns;
         }
     }
@@ -117,7 +126,7 @@ pub(crate) fn room(count: usize, available: usize) -> usize {
 
 /// An M-orthonormal basis. Its first [`FIXED`] vectors are the rigid modes, which the search stays away from.
 struct Basis<'a> {
-    mass: &'a NodalMass,
+    mass: &'a MassMatrix<'a>,
     vectors: Mat<f64>,
     m_vectors: Mat<f64>,
     // Scratch of a block's size, used again for each block.
@@ -135,7 +144,7 @@ struct Extension {
 }
 
 impl<'a> Basis<'a> {
-    fn new(mass: &'a NodalMass, rigid: MatRef<'_, f64>, room: usize) -> Result<Self, ModalError> {
+    fn new(mass: &'a MassMatrix<'a>, rigid: MatRef<'_, f64>, room: usize) -> Result<Self, ModalError> {
         memory::check("the Lanczos basis", of_vectors(rigid.nrows(), 2 * (FIXED + room) + 4 * BLOCK))?;
         let with_room = |columns: MatRef<'_, f64>| {
             let mut matrix = Mat::with_capacity(columns.nrows(), FIXED + room);

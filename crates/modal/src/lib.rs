@@ -5,11 +5,14 @@
 //! K φ = λ M φ,   ω = √λ,   φᵀ M φ = 1
 //! ```
 //!
-//! [`Solver`] takes any symmetric sparse K and M of the body without supports, with three degrees of freedom a node
-//! (`3·node + axis`), the positions of the nodes, and the [`Support`]. K has no stiffness against the rigid modes that
+//! [`Solver`] takes any symmetric sparse K and M of the body without supports, with three or six degrees of freedom a node
+//! (translations, then small rotations), the positions of the nodes, and the [`Support`]. K has no stiffness against the rigid modes that
 //! the support leaves; they are known from the geometry ([`RigidModes`]), checked against K, and kept out of the search,
 //! which works on `K + sM`, s > 0, in the space of the displacements that the support allows.
 //! Modes come out mass-normalised, the component of largest magnitude positive.
+//!
+//! A mass that is a scalar for each pair of nodes ([`NodalMass`]: solid elements, point masses) is kept as that. What the
+//! large rotation of a body uses of any other mass, [`ReducedBody::new`] says.
 //!
 //! [`ReducedBody`] holds the constants that the motion of the body needs, with nothing of the mesh's size.
 
@@ -22,14 +25,20 @@ mod dense;
 mod error;
 mod fields;
 mod foretold;
+mod held_freedoms;
+mod inertia_products;
 mod lanczos;
 mod mass;
+mod mass_matrix;
 mod ordering;
 mod pairs;
 mod products;
 mod reduced;
+mod reduced_general;
+mod reduced_nodal;
 mod rigid;
 mod rigid_body;
+mod rigid_fields;
 mod ritz;
 mod second_order;
 mod shifted;
@@ -39,14 +48,16 @@ mod statics;
 mod support;
 mod symmetry;
 mod tall;
+mod turned;
 
 pub use error::ModalError;
 pub use fields::{acceleration_fields, centrifugal_fields, turning_field};
 pub use mass::NodalMass;
+pub use mass_matrix::{GeneralMass, MassMatrix};
 pub use reduced::{BodyPoint, Constants, ReducedBody};
 pub use rigid::RigidModes;
 pub use second_order::SecondOrderShapes;
 pub use solve::{Modes, Progress, SolveStats, Solver};
-pub use support::{RigidMotion, Support};
+pub use support::{RigidMotion, Support, Twist};
 /// Crates whose types are in the interface.
 pub use {faer, nalgebra};

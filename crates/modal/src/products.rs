@@ -18,9 +18,20 @@ pub(crate) type Packed = [f64; WIDTH];
 
 /// A·X for a symmetric A (3n×3n) with both triangles stored.
 pub(crate) fn symmetric_product(a: SparseColMatRef<'_, usize, f64>, x: MatRef<'_, f64>) -> Mat<f64> {
-    let (col_ptr, row_idx, values) = (a.symbolic().col_ptr(), a.symbolic().row_idx(), a.val());
     let mut y = Mat::zeros(x.nrows(), x.ncols());
-    blocked(x, y.as_mut(), &mut Vec::new(), |node, packed| {
+    symmetric_product_into(a, x, y.as_mut(), &mut Vec::new());
+    y
+}
+
+/// Y = A·X for the same; `packed` is scratch.
+pub(crate) fn symmetric_product_into(
+    a: SparseColMatRef<'_, usize, f64>,
+    x: MatRef<'_, f64>,
+    y: MatMut<'_, f64>,
+    packed: &mut Vec<Packed>,
+) {
+    let (col_ptr, row_idx, values) = (a.symbolic().col_ptr(), a.symbolic().row_idx(), a.val());
+    blocked(x, y, packed, |node, packed| {
         std::array::from_fn(|axis| {
             // A column of a symmetric matrix is its row.
             let column = 3 * node + axis;
@@ -31,7 +42,6 @@ pub(crate) fn symmetric_product(a: SparseColMatRef<'_, usize, f64>, x: MatRef<'_
             sum
         })
     });
-    y
 }
 
 /// Y = (A ⊗ I₃)·X for a symmetric matrix A over nodes, in compressed rows. `packed` is scratch.

@@ -1,7 +1,8 @@
 //! The reduced body: every constant that the motion needs, none of them of the mesh's size.
 //!
 //! With `X` the node positions from the origin (the centre of mass of a free body), `Ψ = [Ψ_R, Ψ_f]` the rigid and
-//! flexible shapes, and `(I⊗A)` a 3×3 matrix A acting on each node's vector:
+//! flexible shapes, and `(I⊗A)` a 3×3 matrix A acting on each node's vector (the definitions of any other mass than a scalar
+//! for each pair of nodes are those of [`ReducedBody::new`]):
 //!
 //! | here | theory | definition |
 //! |---|---|---|
@@ -18,12 +19,13 @@ use faer::{Mat, MatRef};
 use nalgebra::{Matrix3, Vector3};
 
 use crate::error::ModalError;
-use crate::foretold::of_vectors;
-use crate::mass::NodalMass;
+use crate::inertia_products::Products;
+use crate::mass_matrix::MassMatrix;
 use crate::pairs::PAIRS;
+use crate::reduced_general::general_products;
+use crate::reduced_nodal::nodal_products;
 use crate::solve::Modes;
 use crate::support::RigidMotion;
-use crate::tall;
 
 /// An elastic body in modal coordinates: [`Constants`] whose sizes fit together and which are finite. They can be read as
 /// its fields.
@@ -111,86 +113,46 @@ impl ReducedBody {
 
     /// Reduces the body with mass matrix `mass` and nodes `positions` to its `modes`.
     ///
+    /// What a large rotation uses of M, where M is constant in body axes:
+    ///
+    /// * A scalar mass for each pair of nodes ([`crate::NodalMass`]) commutes with rotations: every constant is exact.
+    /// * Any other M, with three or six degrees of freedom a node: J₀, b_i and t_i are exact. The deformed body takes the
+    ///   velocities of a node for `ω×(X + u) + u̇` and `ω + ω×θ + θ̇` (body axes): c_ij is exact for a rotary inertia that
+    ///   sits on a node, and turns with it. Left out is what M gives because it does not commute with rotations: the
+    ///   symmetric part of `Ψᵀ M (I⊗[e_i×]) Ψ`, the momentum `Eᵀ M (I⊗[ω×]) Ψ q` (the centre of mass of a free body stays
+    ///   at its origin), couplings of translations with rotations that turn with a node, and all that is of second order in
+    ///   the rotations of nodes. With consistent masses of beams and shells this vanishes with the square of the element
+    ///   length; energy and momenta of the motion are conserved in any case.
+    /// * The formulation of the paper has no rotations of nodes: it is right for masses of the first kind only.
+    ///
     /// # Errors
-    /// [`ModalError::AnisotropicMass`] where M is not a nodal mass on each axis; [`ModalError::Length`] where the modes or
-    /// the positions are not those of its nodes.
+    /// [`ModalError::NoRigidBodyMass`] where M does not give translations the mass of a rigid body to 1e-9,
+    /// [`ModalError::NotSymmetric`]; [`ModalError::Length`] and [`ModalError::Size`] where the modes or the positions are
+    /// not those of its nodes.
     pub fn new(
         modes: &Modes,
         mass: SparseColMatRef<'_, usize, f64>,
         positions: &[[f64; 3]],
     ) -> Result<Self, ModalError> {
-        let nodal = NodalMass::new(mass)?;
         let rigid = &modes.rigid;
-        let n = nodal.node_count();
+        let n = positions.len();
         let nf = modes.shapes.ncols();
-        check_size("the list of node positions", positions.len(), n)?;
-        check_size("the rows of the mode shapes", modes.shapes.nrows(), 3 * n)?;
-        check_size("the rows of the rigid mode shapes", rigid.shapes.nrows(), 3 * n)?;
+        let mass = MassMatrix::new(mass, n)?;
+        check_size("the rows of the mode shapes", modes.shapes.nrows(), mass.freedoms() * n)?;
+        check_size("the rows of the rigid mode shapes", rigid.shapes.nrows(), mass.freedoms() * n)?;
         check_size("the list of eigenvalues", modes.eigenvalues.len(), nf)?;
-        // Ψ, X and 1 side by side: all constants are products of their rows on one axis with M_s times those on another.
-        let columns = 6 + nf + 2;
-        memory::check("the reduced body", of_vectors(3 * n, 4 * columns))?;
-        let mut all = Mat::zeros(3 * n, columns);
-        all.as_mut().subcols_mut(0, 6).copy_from(&rigid.shapes);
-        all.as_mut().subcols_mut(6, nf).copy_from(&modes.shapes);
-        for (node, x) in positions.iter().enumerate() {
-            let offset = Vector3::from(*x) - rigid.origin;
-            for axis in 0..3 {
-                all[(3 * node + axis, columns - 2)] = offset[axis];
-                all[(3 * node + axis, columns - 1)] = 1.0;
-            }
-        }
-        let m_all = nodal.product(all.as_ref());
-        let on_axis = |matrix: &Mat<f64>, axis: usize| Mat::from_fn(n, columns, |i, j| matrix[(3 * i + axis, j)]);
-        let rows: [Mat<f64>; 3] = std::array::from_fn(|axis| on_axis(&all, axis));
-        let m_rows: [Mat<f64>; 3] = std::array::from_fn(|axis| on_axis(&m_all, axis));
-        let products: [[Mat<f64>; 3]; 3] =
-            std::array::from_fn(|a| std::array::from_fn(|b| tall::inner(rows[a].as_ref(), m_rows[b].as_ref())));
-
-        let modal = 6 + nf;
-        let is_free = rigid.motion.is_free();
-        let rotation_products = std::array::from_fn(|a| {
-            std::array::from_fn(|b| {
-                let mut product = products[a][b].get(..modal, ..modal).to_owned();
-                if is_free {
-                    set_translations(&mut product, a, b);
-                }
-                product
-            })
-        });
-        let position_products = std::array::from_fn(|a| {
-            std::array::from_fn(|b| (0..modal).map(|k| products[a][b][(k, modal)]).collect::<Vec<f64>>())
-        });
-        let flexible = |a: usize, b: usize| products[a][b].submatrix(6, 6, nf, nf);
-        let flexible_x = |a: usize, b: usize, k: usize| products[a][b][(6 + k, modal)];
-        // [e_i×]ᵀ[e_j×] = δ_ij I − e_j e_iᵀ
-        let inertia_first = Self::PAIRS.map(|(i, j)| {
-            (0..nf)
-                .map(|k| {
-                    let trace: f64 = if i == j { (0..3).map(|a| flexible_x(a, a, k)).sum() } else { 0.0 };
-                    trace - 0.5 * (flexible_x(i, j, k) + flexible_x(j, i, k))
-                })
-                .collect()
-        });
-        let inertia_second = Self::PAIRS.map(|(i, j)| {
-            let (ij, ji) = (flexible(i, j), flexible(j, i));
-            Mat::from_fn(nf, nf, |k, l| {
-                let trace: f64 = if i == j { (0..3).map(|a| flexible(a, a)[(k, l)]).sum() } else { 0.0 };
-                trace - 0.5 * (ij[(k, l)] + ji[(k, l)])
-            })
-        });
-        // [e_1×] = e_3 e_2ᵀ − e_2 e_3ᵀ and cyclic.
-        let gyroscopic = [(2, 1), (0, 2), (1, 0)].map(|(a, b)| {
-            let (ab, ba) = (flexible(a, b), flexible(b, a));
-            Mat::from_fn(nf, nf, |k, l| ab[(k, l)] - ba[(k, l)])
-        });
-        // The modes are orthogonal to the rigid motions that the body has: what is left is rounding, and would leak momentum.
-        let turns_freely = rigid.motion.rotations().len() == 3;
-        let unless = |is_zero: bool, value: f64| if is_zero { 0.0 } else { value };
-        let translation_first =
-            std::array::from_fn(|i| (0..nf).map(|k| unless(is_free, products[i][i][(6 + k, modal + 1)])).collect());
-        let rotation_first = [(2, 1), (0, 2), (1, 0)]
-            .map(|(a, b)| (0..nf).map(|k| unless(turns_freely, flexible_x(a, b, k) - flexible_x(b, a, k))).collect());
+        let Products {
+            rotation_products,
+            position_products,
+            inertia_first,
+            inertia_second,
+            gyroscopic,
+            translation_first,
+            rotation_first,
+        } = match mass {
+            MassMatrix::Nodal(mass) => nodal_products(modes, &mass, positions)?,
+            MassMatrix::General(mass) => general_products(modes, &mass, positions)?,
+        };
         Self::from_constants(Constants {
             mass: rigid.mass,
             center_of_mass: rigid.center_of_mass,
@@ -291,21 +253,8 @@ fn finite(what: &'static str, values: impl IntoIterator<Item = f64>) -> Result<(
     }
 }
 
-/// Rows and columns of E_ab that belong to translations, as the geometry has them: a translation couples to another one
-/// only, since all other modes leave the centre of mass where it is. With rounding left in them, a long motion would
-/// leak momentum.
-fn set_translations(product: &mut Mat<f64>, a: usize, b: usize) {
-    for i in 0..3 {
-        for j in 0..product.ncols() {
-            product[(i, j)] = 0.0;
-            product[(j, i)] = 0.0;
-        }
-    }
-    product[(a, b)] = 1.0;
-}
-
 impl BodyPoint {
-    /// The point that moves as `Σ weights_i u(nodes_i)`, where the weights sum to one.
+    /// The point that moves as `Σ weights_i u(nodes_i)`, where the weights sum to one. Rotations of nodes do not move it.
     ///
     /// # Errors
     /// [`ModalError::NoNode`] for a node that the mesh does not have, [`ModalError::Length`] for lists of other lengths,
@@ -313,7 +262,8 @@ impl BodyPoint {
     pub fn new(modes: &Modes, positions: &[[f64; 3]], nodes: &[u32], weights: &[f64]) -> Result<Self, ModalError> {
         let count = positions.len();
         check_size("the list of weights", weights.len(), nodes.len())?;
-        check_size("the rows of the mode shapes", modes.shapes.nrows(), 3 * count)?;
+        let freedoms = if modes.shapes.nrows() == 6 * count { 6 } else { 3 };
+        check_size("the rows of the mode shapes", modes.shapes.nrows(), freedoms * count)?;
         finite("weight", weights.iter().copied())?;
         if let Some(node) = nodes.iter().copied().find(|node| *node as usize >= count) {
             return Err(ModalError::NoNode { node, count });
@@ -324,7 +274,7 @@ impl BodyPoint {
         Ok(Self {
             position_body: position - modes.rigid.origin,
             shapes: Mat::from_fn(3, shapes.ncols(), |axis, k| {
-                carried().map(|(node, w)| shapes[(3 * node + axis, k)] * w).sum()
+                carried().map(|(node, w)| shapes[(freedoms * node + axis, k)] * w).sum()
             }),
         })
     }

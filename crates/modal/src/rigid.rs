@@ -4,9 +4,11 @@ use faer::Mat;
 use faer::sparse::SparseColMatRef;
 use nalgebra::{Matrix3, Vector3};
 
+use crate::dense::whitening;
 use crate::error::ModalError;
-use crate::mass::NodalMass;
+use crate::mass_matrix::MassMatrix;
 use crate::products::symmetric_product;
+use crate::rigid_fields::{General, rigid_fields};
 use crate::support::RigidMotion;
 use crate::tall;
 
@@ -17,7 +19,9 @@ const FREE: f64 = 1e-9;
 ///
 /// There is a column for each of the three translations and rotations, zero for a motion that the body does not have.
 /// The first three are translations `T[:,i]`, the others rotations `B[:,i] × X` with X measured from the origin. So the
-/// velocity of the origin of modal velocities y is `T y[..3]`, and the angular velocity `B y[3..6]`.
+/// velocity of the origin of modal velocities y is `T y[..3]`, and the angular velocity `B y[3..6]`. The rotation of a node
+/// with six degrees of freedom is `B[:,i]`. Where the motions are [`RigidMotion::others`], T and B are zero, and the first
+/// columns of the shapes are combinations of them.
 #[derive(Debug, Clone)]
 pub struct RigidModes {
     /// The motions that the body has.
@@ -43,32 +47,57 @@ impl RigidModes {
     /// Mass properties and rigid modes of the nodes at `positions` (n×3) with the mass matrix `mass`.
     ///
     /// # Errors
-    /// [`ModalError::NoInertia`] where a motion meets neither mass nor inertia; [`ModalError::NotUnit`].
-    pub fn new(mass: &NodalMass, positions: &[[f64; 3]], motion: RigidMotion) -> Result<Self, ModalError> {
-        let nodal = mass.row_sums();
-        let total: f64 = nodal.iter().sum();
+    /// [`ModalError::NoInertia`] where a motion meets neither mass nor inertia; [`ModalError::NotUnit`];
+    /// [`ModalError::NoRigidBodyMass`] of a body that moves.
+    pub fn new(mass: &MassMatrix<'_>, positions: &[[f64; 3]], motion: RigidMotion) -> Result<Self, ModalError> {
         // Measured from the first node, so that a body far from the mesh's origin loses no digits.
         let first = Vector3::from(positions[0]);
-        let moment: Vector3<f64> = positions.iter().zip(&nodal).map(|(x, m)| (Vector3::from(*x) - first) * *m).sum();
+        let (total, moment) = match mass {
+            MassMatrix::Nodal(mass) => {
+                let nodal = mass.row_sums();
+                let of_node = |(x, m): (&[f64; 3], &f64)| (Vector3::from(*x) - first) * *m;
+                (nodal.iter().sum(), positions.iter().zip(&nodal).map(of_node).sum())
+            }
+            MassMatrix::General(mass) => {
+                let general = General::new(mass, positions, &first);
+                if motion.count() > 0 {
+                    general.check_rigid_body()?;
+                }
+                (general.mass(), general.moment())
+            }
+        };
+        let moment: Vector3<f64> = moment;
         let center_of_mass = first + moment / total;
         let origin = motion.fixed_point().unwrap_or(center_of_mass);
         let arm = motion.fixed_point().map_or(moment / total, |point| point - first);
         let offset = |node: usize| (Vector3::from(positions[node]) - first) - arm;
 
-        // M is the same for each axis: ∫ρ X_a X_b needs X_b on the axis a, so the three axes make three vectors.
-        let on_axis = Mat::from_fn(3 * positions.len(), 3, |i, b| if i % 3 == 0 { offset(i / 3)[b] } else { 0.0 });
-        let second = tall::inner(on_axis.as_ref(), mass.product(on_axis.as_ref()).as_ref());
-        let second = Matrix3::from_fn(|a, b| 0.5 * (second[(a, b)] + second[(b, a)]));
-        let inertia = Matrix3::identity() * second.trace() - second;
-        let (translation_basis, rotation_basis) = motion.bases(total, &inertia)?;
-        let shapes = Mat::from_fn(3 * positions.len(), 6, |i, mode| {
-            let (node, axis) = (i / 3, i % 3);
-            if mode < 3 {
-                translation_basis[(axis, mode)]
-            } else {
-                rotation_basis.column(mode - 3).cross(&offset(node))[axis]
+        let inertia = match mass {
+            MassMatrix::Nodal(mass) => {
+                // M is the same for each axis: ∫ρ X_a X_b needs X_b on the axis a, so the three axes make three vectors.
+                let on_axis =
+                    Mat::from_fn(3 * positions.len(), 3, |i, b| if i % 3 == 0 { offset(i / 3)[b] } else { 0.0 });
+                let second = tall::inner(on_axis.as_ref(), mass.product(on_axis.as_ref()).as_ref());
+                let second = Matrix3::from_fn(|a, b| 0.5 * (second[(a, b)] + second[(b, a)]));
+                Matrix3::identity() * second.trace() - second
             }
-        });
+            MassMatrix::General(mass) => General::new(mass, positions, &(first + arm)).inertia(),
+        };
+        let (translation_basis, rotation_basis) = motion.bases(total, &inertia)?;
+        let freedoms = mass.freedoms();
+        let shapes = if motion.others().is_empty() {
+            Mat::from_fn(freedoms * positions.len(), 6, |i, mode| {
+                let (node, freedom) = (i / freedoms, i % freedoms);
+                match (mode.checked_sub(3), freedom.checked_sub(3)) {
+                    (None, None) => translation_basis[(freedom, mode)],
+                    (None, Some(_)) => 0.0,
+                    (Some(axis), None) => rotation_basis.column(axis).cross(&offset(node))[freedom],
+                    (Some(axis), Some(about)) => rotation_basis[(about, axis)],
+                }
+            })
+        } else {
+            orthonormal_motions(mass, positions, &motion, &origin)?
+        };
         Ok(Self { motion, mass: total, center_of_mass, origin, inertia, translation_basis, rotation_basis, shapes })
     }
 
@@ -87,4 +116,26 @@ impl RigidModes {
         }
         Ok(())
     }
+}
+
+/// The motions of another kind, M-orthonormal, then zeros (N×6).
+fn orthonormal_motions(
+    mass: &MassMatrix<'_>,
+    positions: &[[f64; 3]],
+    motion: &RigidMotion,
+    origin: &Vector3<f64>,
+) -> Result<Mat<f64>, ModalError> {
+    let motions = motion.others();
+    let fields = rigid_fields(positions, origin, mass.freedoms());
+    let coefficients =
+        Mat::from_fn(6, motions.len(), |i, k| if i < 3 { motions[k].velocity[i] } else { motions[k].rotation[i - 3] });
+    let fields = tall::product(fields.as_ref(), coefficients.as_ref());
+    let gram = tall::inner(fields.as_ref(), mass.product(fields.as_ref()).as_ref());
+    let whitening = whitening(&gram).map_err(|_| ModalError::NoInertia {
+        mass: gram[(0, 0)],
+        inertia: std::array::from_fn(|k| gram[(k.min(motions.len() - 1), k.min(motions.len() - 1))]),
+    })?;
+    let mut shapes = Mat::zeros(fields.nrows(), 6);
+    shapes.as_mut().subcols_mut(0, motions.len()).copy_from(tall::product(fields.as_ref(), whitening.as_ref()));
+    Ok(shapes)
 }

@@ -8,7 +8,7 @@ use crate::constraints::Constraints;
 use crate::dense::{symmetric_eigen, whitening};
 use crate::error::ModalError;
 use crate::foretold::of_vectors;
-use crate::mass::NodalMass;
+use crate::mass_matrix::MassMatrix;
 use crate::products::symmetric_product;
 use crate::tall;
 
@@ -27,7 +27,7 @@ pub(crate) struct RitzPairs {
 /// Rayleigh–Ritz of (K, M) on the span of `vectors`.
 pub(crate) fn rayleigh_ritz(
     stiffness: SparseColMatRef<'_, usize, f64>,
-    mass: &NodalMass,
+    mass: &MassMatrix<'_>,
     constraints: &Constraints,
     vectors: &Mat<f64>,
 ) -> Result<RitzPairs, ModalError> {

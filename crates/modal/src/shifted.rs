@@ -1,8 +1,8 @@
 //! A = K + sM in the space that the support allows, factored once.
 //!
-//! The rows and columns of held nodes are taken out of A before it is factored, `L Lᵀ = P A_f Pᵀ`. The few unknowns
-//! that the held nodes have in common (motions C) are eliminated as a block: with `E = C − A_f⁻¹ A C`, which is
-//! A-orthogonal to all displacements of the other nodes, `x = A_f⁻¹ b + E (Eᵀ A E)⁻¹ Eᵀ b`.
+//! The held rows and columns are taken out of A before it is factored, `L Lᵀ = P A_f Pᵀ`. The few unknowns
+//! that they have in common (motions C) are eliminated as a block: with `E = C − A_f⁻¹ A C`, which is
+//! A-orthogonal to all displacements of the other rows, `x = A_f⁻¹ b + E (Eᵀ A E)⁻¹ Eᵀ b`.
 
 use std::time::{Duration, Instant};
 
@@ -31,7 +31,7 @@ const SMALL: usize = 500_000;
 
 /// The factor of K + sM.
 pub(crate) struct Shifted {
-    /// What the held nodes may do.
+    /// What the held degrees of freedom may do.
     pub constraints: Constraints,
     /// The shift s.
     pub shift: f64,
@@ -120,7 +120,7 @@ impl Shifted {
         Ok(shifted)
     }
 
-    /// Takes in the motions C of the held nodes, with their forces A C.
+    /// Takes in the motions C of the held rows, with their forces A C.
     fn extend(&mut self, motions: Mat<f64>, a_motions: Mat<f64>) -> Result<(), ModalError> {
         if motions.ncols() == 0 {
             return Ok(());
@@ -161,14 +161,14 @@ impl Shifted {
     }
 }
 
-/// Replaces rows and columns of held nodes by those of the identity.
+/// Replaces held rows and columns by those of the identity.
 fn hold_out(matrix: &mut SparseColMat<usize, f64>, constraints: &Constraints) {
     let (symbolic, values) = matrix.parts_mut();
     for column in 0..symbolic.ncols() {
-        let column_is_held = constraints.holds(column / 3);
+        let column_is_held = constraints.holds(column);
         for entry in symbolic.col_range(column) {
             let row = symbolic.row_idx()[entry];
-            if column_is_held || constraints.holds(row / 3) {
+            if column_is_held || constraints.holds(row) {
                 values[entry] = if row == column { 1.0 } else { 0.0 };
             }
         }

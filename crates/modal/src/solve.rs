@@ -10,7 +10,7 @@ use crate::constraints::Constraints;
 use crate::error::ModalError;
 use crate::foretold::Foretold;
 use crate::lanczos::{BLOCK, FIXED, largest_pairs, room};
-use crate::mass::NodalMass;
+use crate::mass_matrix::{MassMatrix, freedoms};
 use crate::rigid::RigidModes;
 use crate::ritz::{RitzPairs, rayleigh_ritz};
 use crate::shifted::Shifted;
@@ -33,7 +33,7 @@ pub struct Modes {
     pub rigid: RigidModes,
     /// λ of the flexible modes, (rad/time)², smallest first; then those of static shapes, if any.
     pub eigenvalues: Vec<f64>,
-    /// Flexible mode shapes (3n×nf), mass-normalised, the component of largest magnitude positive; then static shapes,
+    /// Flexible mode shapes (N×nf), mass-normalised, the component of largest magnitude positive; then static shapes,
     /// which are K-orthogonal and M-orthonormal to the modes and to each other.
     pub shapes: Mat<f64>,
     /// ‖(K + sM)⁻¹Mφ − μφ‖_M / μ for each natural mode, in the scale of the shifted problem, where rounding is small.
@@ -101,9 +101,9 @@ impl Modes {
 /// A body, what holds it, and (from the first question on) the factor of K + sM that its answers come from.
 pub struct Solver<'a> {
     pub(crate) stiffness: SparseColMatRef<'a, usize, f64>,
-    mass: SparseColMatRef<'a, usize, f64>,
+    sparse_mass: SparseColMatRef<'a, usize, f64>,
     positions: &'a [[f64; 3]],
-    pub(crate) nodal_mass: NodalMass,
+    pub(crate) mass: MassMatrix<'a>,
     pub(crate) rigid: RigidModes,
     pub(crate) constraints: Constraints,
     factor: OnceLock<Shifted>,
@@ -113,8 +113,11 @@ pub struct Solver<'a> {
 impl<'a> Solver<'a> {
     /// Checks the matrices and the support.
     ///
-    /// `stiffness` and `mass` are N×N with both triangles stored, N = 3n, degrees of freedom `3·node + axis`, of the
-    /// body without its supports; `positions` are the n nodes.
+    /// `stiffness` and `mass` are N×N, symmetric with both triangles stored, of the body without its supports; `positions`
+    /// are the n nodes. N is 3n or 6n: each node has its translations along x, y and z, then its rotations about them if
+    /// there are six, small angles as a vector: degree of freedom `3·node + axis`, or `6·node + axis` and
+    /// `6·node + 3 + axis`. K and M are checked: their symmetry, that K resists none of the rigid motions left, that
+    /// neither gives a motion a negative energy.
     ///
     /// # Errors
     /// See [`ModalError`].
@@ -128,16 +131,19 @@ impl<'a> Solver<'a> {
         check_input(stiffness, mass, positions)?;
         let (rows, values) = (stiffness.symbolic().row_idx(), stiffness.val());
         check_symmetric("stiffness", 1, stiffness.symbolic().col_ptr(), |entry| rows[entry], |entry| values[entry])?;
-        let nodal_mass = NodalMass::new(mass)?;
-        let constraints = Constraints::new(support, positions)?;
-        let rigid = RigidModes::new(&nodal_mass, positions, support.motion)?;
+        let sparse_mass = mass;
+        let mass = MassMatrix::new(mass, positions.len())?;
+        mass.check_semidefinite()?;
+        let constraints = Constraints::new(support, positions, mass.freedoms())?;
+        let rigid = RigidModes::new(&mass, positions, support.motion)?;
         rigid.check_free(stiffness)?;
+        check_loose(stiffness, &mass, &constraints)?;
         let preparation_time = started.elapsed();
         Ok(Self {
             stiffness,
-            mass,
+            sparse_mass,
             positions,
-            nodal_mass,
+            mass,
             rigid,
             constraints,
             factor: OnceLock::new(),
@@ -145,9 +151,9 @@ impl<'a> Solver<'a> {
         })
     }
 
-    /// The mass matrix over nodes.
-    pub fn nodal_mass(&self) -> &NodalMass {
-        &self.nodal_mass
+    /// The mass matrix.
+    pub fn mass(&self) -> &MassMatrix<'a> {
+        &self.mass
     }
 
     /// The rigid modes that the support leaves, and the mass properties.
@@ -164,7 +170,7 @@ impl<'a> Solver<'a> {
         if flexible > available {
             return Err(ModalError::TooManyModes { requested: flexible, available });
         }
-        let unknowns = 3 * self.positions.len();
+        let unknowns = self.stiffness.ncols();
         if flexible == 0 {
             let none = Vec::new;
             return Ok(Modes {
@@ -175,7 +181,7 @@ impl<'a> Solver<'a> {
                 force_residuals: none(),
                 stats: SolveStats {
                     unknowns,
-                    peak_bytes: Foretold::new(self.stiffness, self.mass, FIXED).peak(0, 0, 0),
+                    peak_bytes: Foretold::new(self.stiffness, self.sparse_mass, FIXED).peak(0, 0, 0),
                     preparation_time: self.preparation_time,
                     ..SolveStats::default()
                 },
@@ -197,7 +203,7 @@ impl<'a> Solver<'a> {
         };
         let started = Instant::now();
         let rigid = self.rigid.shapes.as_ref();
-        let pairs = largest_pairs(factor, &self.nodal_mass, rigid, flexible, available, |converged| {
+        let pairs = largest_pairs(factor, &self.mass, rigid, flexible, available, |converged| {
             progress(Progress::Lanczos { converged, requested: flexible });
         })?;
         stats.preparation_time = self.preparation_time + factor.estimate_time;
@@ -208,7 +214,7 @@ impl<'a> Solver<'a> {
 
         let started = Instant::now();
         let RitzPairs { eigenvalues, shapes, force_residuals } =
-            rayleigh_ritz(self.stiffness, &self.nodal_mass, &self.constraints, &pairs.vectors)?;
+            rayleigh_ritz(self.stiffness, &self.mass, &self.constraints, &pairs.vectors)?;
         self.refuse_mechanism(&eigenvalues, &shapes, stats.shift)?;
         self.refuse_hidden(eigenvalues[0], shapes.col(0))?;
         stats.ritz_time = started.elapsed();
@@ -227,19 +233,19 @@ impl<'a> Solver<'a> {
             return Ok(factor);
         }
         let started = Instant::now();
-        let shift = start::shift(self.stiffness, &self.nodal_mass, self.positions, &self.rigid)?;
+        let shift = start::shift(self.stiffness, &self.mass, self.positions, &self.rigid)?;
         let estimate_time = started.elapsed();
-        let mut factor = Shifted::factor(self.stiffness, self.mass, shift, &self.constraints, search)?;
+        let mut factor = Shifted::factor(self.stiffness, self.sparse_mass, shift, &self.constraints, search)?;
         factor.estimate_time = estimate_time;
         Ok(self.factor.get_or_init(|| factor))
     }
 
     /// Number of flexible modes that there are.
     fn available(&self) -> usize {
-        let free = (0..self.positions.len())
-            .filter(|node| self.nodal_mass.is_massive(*node) && !self.constraints.holds(*node))
+        let free = (0..self.stiffness.ncols())
+            .filter(|row| self.mass.is_massive(*row) && !self.constraints.holds(*row))
             .count();
-        (3 * free + self.constraints.motion_count()).saturating_sub(self.rigid.motion.count())
+        (free + self.constraints.motion_count()).saturating_sub(self.rigid.motion.count())
     }
 
     fn refuse_mechanism(&self, eigenvalues: &[f64], shapes: &Mat<f64>, shift: f64) -> Result<(), ModalError> {
@@ -247,24 +253,32 @@ impl<'a> Solver<'a> {
         if count == 0 {
             return Ok(());
         }
-        let (positions, rigid) = (self.positions, self.rigid.motion.count());
-        let squared = |node: usize| (0..3).map(|axis| shapes[(3 * node + axis, 0)].powi(2)).sum::<f64>();
+        if eigenvalues[0] < -ROUNDING * self.rounding(shapes.col(0)) {
+            return Err(ModalError::NegativeStiffness { eigenvalue: eigenvalues[0], shift });
+        }
+        let (positions, rigid, freedoms) = (self.positions, self.rigid.motion.count(), self.mass.freedoms());
+        let squared = |node: usize| (0..3).map(|axis| shapes[(freedoms * node + axis, 0)].powi(2)).sum::<f64>();
         let node = (0..positions.len()).max_by(|a, b| squared(*a).total_cmp(&squared(*b))).unwrap_or(0);
         Err(ModalError::Mechanism { rigid, count, eigenvalue: eigenvalues[0], shift, node, position: positions[node] })
     }
 
     /// Refuses a lowest mode that may be little more than rounding in K.
     fn refuse_hidden(&self, eigenvalue: f64, shape: ColRef<'_, f64>) -> Result<(), ModalError> {
+        let rounding = self.rounding(shape);
+        if rounding <= ROUNDING * eigenvalue {
+            return Ok(());
+        }
+        Err(ModalError::HiddenByRounding { eigenvalue, rounding, limit: ROUNDING * eigenvalue })
+    }
+
+    /// What rounding of the entries of K may come to in the eigenvalue of a shape: ε |φ|ᵀ|K||φ|.
+    fn rounding(&self, shape: ColRef<'_, f64>) -> f64 {
         let k = self.stiffness;
         let of_column = |j: usize| -> f64 {
             let products = k.row_idx_of_col(j).zip(k.val_of_col(j)).map(|(i, value)| (shape[i] * value).abs());
             products.sum::<f64>() * shape[j].abs()
         };
-        let rounding = f64::EPSILON * (0..k.ncols()).map(of_column).sum::<f64>();
-        if rounding <= ROUNDING * eigenvalue {
-            return Ok(());
-        }
-        Err(ModalError::HiddenByRounding { eigenvalue, rounding, limit: ROUNDING * eigenvalue })
+        f64::EPSILON * (0..k.ncols()).map(of_column).sum::<f64>()
     }
 }
 
@@ -273,7 +287,7 @@ fn check_input(
     mass: SparseColMatRef<'_, usize, f64>,
     positions: &[[f64; 3]],
 ) -> Result<(), ModalError> {
-    let expected = 3 * positions.len();
+    let expected = positions.len() * freedoms("stiffness", stiffness.ncols(), positions.len())?;
     for (what, matrix) in [("stiffness", stiffness), ("mass", mass)] {
         for found in [matrix.nrows(), matrix.ncols()] {
             if found != expected || found == 0 {
@@ -287,6 +301,23 @@ fn check_input(
     }
     match positions.iter().enumerate().find_map(|(i, x)| x.iter().find(|c| !c.is_finite()).map(|c| (i, *c))) {
         Some((index, value)) => Err(ModalError::NotFinite { what: "positions", index, value }),
+        None => Ok(()),
+    }
+}
+
+/// Refuses a free degree of freedom that has neither stiffness nor mass.
+fn check_loose(
+    stiffness: SparseColMatRef<'_, usize, f64>,
+    mass: &MassMatrix<'_>,
+    constraints: &Constraints,
+) -> Result<(), ModalError> {
+    let MassMatrix::General(_) = mass else { return Ok(()) };
+    let is_loose = |row: &usize| {
+        let resists = stiffness.val_of_col(*row).iter().any(|value| *value != 0.0);
+        !resists && !mass.is_massive(*row) && !constraints.holds(*row)
+    };
+    match (0..stiffness.ncols()).find(is_loose) {
+        Some(row) => Err(ModalError::Loose { node: row / mass.freedoms(), freedom: row % mass.freedoms() }),
         None => Ok(()),
     }
 }

@@ -9,10 +9,11 @@ use nalgebra::Vector3;
 
 use crate::dense::symmetric_eigen;
 use crate::error::ModalError;
-use crate::mass::NodalMass;
+use crate::mass_matrix::MassMatrix;
 use crate::pairs::PAIRS;
 use crate::products::symmetric_product;
 use crate::rigid::RigidModes;
+use crate::rigid_fields::rigid_fields;
 use crate::support::RigidMotion;
 use crate::tall;
 
@@ -27,30 +28,57 @@ const HELD: f64 = 0.02;
 /// The shift s: about the first flexible eigenvalue, whatever holds the body.
 pub(crate) fn shift(
     stiffness: SparseColMatRef<'_, usize, f64>,
-    mass: &NodalMass,
+    mass: &MassMatrix<'_>,
     positions: &[[f64; 3]],
     rigid: &RigidModes,
 ) -> Result<f64, ModalError> {
+    let center = &rigid.center_of_mass;
     if rigid.motion.is_free() {
-        return eigenvalue_estimate(stiffness, mass, positions, rigid);
+        return eigenvalue_estimate(stiffness, mass, positions, center, &rigid.shapes);
     }
-    let free = RigidModes::new(mass, positions, RigidMotion::free())?;
-    Ok(HELD * eigenvalue_estimate(stiffness, mass, positions, &free)?)
+    let free = match mass {
+        MassMatrix::Nodal(_) => RigidModes::new(mass, positions, RigidMotion::free())?.shapes,
+        MassMatrix::General(_) => orthonormal_motions(mass, positions, center)?,
+    };
+    Ok(HELD * eigenvalue_estimate(stiffness, mass, positions, center, &free)?)
+}
+
+/// An M-orthonormal basis of the rigid motions, without those that meet no mass.
+fn orthonormal_motions(
+    mass: &MassMatrix<'_>,
+    positions: &[[f64; 3]],
+    center: &Vector3<f64>,
+) -> Result<Mat<f64>, ModalError> {
+    let fields = rigid_fields(positions, center, mass.freedoms());
+    let gram = tall::inner(fields.as_ref(), mass.product(fields.as_ref()).as_ref());
+    Ok(tall::product(fields.as_ref(), independent(&gram)?.as_ref()))
+}
+
+/// Orthonormal combinations (size × k) of fields with this Gram matrix, without those that depend on others.
+fn independent(gram: &Mat<f64>) -> Result<Mat<f64>, ModalError> {
+    let size = gram.nrows();
+    let unit = |i: usize| if gram[(i, i)] > 0.0 { 1.0 / gram[(i, i)].sqrt() } else { 0.0 };
+    let scaled = Mat::from_fn(size, size, |i, j| gram[(i, j)] * unit(i) * unit(j));
+    let (values, vectors) = symmetric_eigen(&scaled)?;
+    let largest = values.iter().copied().fold(0.0, f64::max);
+    let kept: Vec<usize> = (0..size).filter(|k| values[*k] > DEPENDENT * largest).collect();
+    Ok(Mat::from_fn(size, kept.len(), |i, j| unit(i) * vectors[(i, kept[j])] / values[kept[j]].sqrt()))
 }
 
 /// The lowest Rayleigh–Ritz value of the polynomial fields, of the body without supports.
 fn eigenvalue_estimate(
     stiffness: SparseColMatRef<'_, usize, f64>,
-    mass: &NodalMass,
+    mass: &MassMatrix<'_>,
     positions: &[[f64; 3]],
-    rigid: &RigidModes,
+    center: &Vector3<f64>,
+    rigid: &Mat<f64>,
 ) -> Result<f64, ModalError> {
-    let fields = polynomial_fields(positions, rigid);
+    let fields = polynomial_fields(positions, center, mass.freedoms());
     let k_fields = symmetric_product(stiffness, fields.as_ref());
     let m_fields = mass.product(fields.as_ref());
     let stiffness = tall::inner(fields.as_ref(), k_fields.as_ref());
     let gram = tall::inner(fields.as_ref(), m_fields.as_ref());
-    let coupling = tall::inner(rigid.shapes.as_ref(), m_fields.as_ref());
+    let coupling = tall::inner(rigid.as_ref(), m_fields.as_ref());
 
     // Rigid parts are taken out of the Gram matrix; K has none of them to begin with.
     let gram = gram - coupling.transpose() * &coupling;
@@ -71,16 +99,23 @@ fn eigenvalue_estimate(
 /// Number of polynomial fields: three passes over K at eight vectors each.
 const FIELDS: usize = 24;
 
-/// The linear fields `x_a e_b + x_b e_a` and the quadratic ones `x_a x_b e_c` (3n×24).
-fn polynomial_fields(positions: &[[f64; 3]], rigid: &RigidModes) -> Mat<f64> {
-    let mut fields = Mat::zeros(3 * positions.len(), FIELDS);
+/// The linear fields `x_a e_b + x_b e_a` and the quadratic ones `x_a x_b e_c`; rotations are half the curl (N×24).
+fn polynomial_fields(positions: &[[f64; 3]], center: &Vector3<f64>, freedoms: usize) -> Mat<f64> {
+    let mut fields = Mat::zeros(freedoms * positions.len(), FIELDS);
     for (node, position) in positions.iter().enumerate() {
-        let x = Vector3::from(*position) - rigid.center_of_mass;
+        let x = Vector3::from(*position) - center;
         for (pair, (a, b)) in PAIRS.into_iter().enumerate() {
-            fields[(3 * node + a, pair)] += x[b];
-            fields[(3 * node + b, pair)] += x[a];
+            fields[(freedoms * node + a, pair)] += x[b];
+            fields[(freedoms * node + b, pair)] += x[a];
             for axis in 0..3 {
-                fields[(3 * node + axis, 6 + 3 * pair + axis)] = x[a] * x[b];
+                let field = 6 + 3 * pair + axis;
+                fields[(freedoms * node + axis, field)] = x[a] * x[b];
+                if freedoms == 6 {
+                    // The curl of f e is ∇f × e.
+                    let gradient = Vector3::ith(a, x[b]) + Vector3::ith(b, x[a]);
+                    let rotation = 0.5 * gradient.cross(&Vector3::ith(axis, 1.0));
+                    (0..3).for_each(|i| fields[(6 * node + 3 + i, field)] = rotation[i]);
+                }
             }
         }
     }

@@ -73,7 +73,7 @@ impl Solver<'_> {
             if j < before { modes.shapes[(i, natural + j)] } else { added[(i, j - before)] }
         });
         let RitzPairs { eigenvalues, shapes, .. } =
-            rayleigh_ritz(self.stiffness, &self.nodal_mass, &self.constraints, &added)?;
+            rayleigh_ritz(self.stiffness, &self.mass, &self.constraints, &added)?;
         let mut modes = modes;
         modes.eigenvalues.truncate(natural);
         modes.eigenvalues.extend(eigenvalues);
@@ -95,10 +95,10 @@ impl Solver<'_> {
         let mut basis = Mat::zeros(expected, rigid + flexible);
         basis.as_mut().subcols_mut(0, rigid).copy_from(&self.rigid.shapes);
         basis.as_mut().subcols_mut(rigid, flexible).copy_from(&modes.shapes);
-        let mut m_basis = self.nodal_mass.product(basis.as_ref());
+        let mut m_basis = self.mass.product(basis.as_ref());
         for answer in 0..answers.ncols() {
             let mut shape = answers.subcols(answer, 1).to_owned();
-            let mut m_shape = self.nodal_mass.product(shape.as_ref());
+            let mut m_shape = self.mass.product(shape.as_ref());
             let norm =
                 |shape: &Mat<f64>, m_shape: &Mat<f64>| tall::inner(shape.as_ref(), m_shape.as_ref())[(0, 0)].sqrt();
             let whole = norm(&shape, &m_shape);
@@ -106,7 +106,7 @@ impl Solver<'_> {
                 let parts = tall::inner(m_basis.as_ref(), shape.as_ref());
                 tall::multiply(shape.as_mut(), Accum::Add, basis.as_ref(), parts.as_ref(), -1.0);
             }
-            m_shape = self.nodal_mass.product(shape.as_ref());
+            m_shape = self.mass.product(shape.as_ref());
             let rest = norm(&shape, &m_shape);
             if rest > least * whole {
                 for (matrix, column) in [(&mut basis, shape), (&mut m_basis, m_shape)] {
@@ -139,7 +139,7 @@ struct Statics<'a> {
 
 impl<'a> Statics<'a> {
     fn new(solver: &'a Solver<'_>, factor: &'a Shifted) -> Result<Self, ModalError> {
-        let mut m_rigid = solver.nodal_mass.product(solver.rigid.shapes.as_ref());
+        let mut m_rigid = solver.mass.product(solver.rigid.shapes.as_ref());
         solver.constraints.project(m_rigid.as_mut());
         Ok(Self { solver, factor, m_rigid, scratch: factor.solve_scratch(BLOCK)? })
     }

@@ -16,6 +16,30 @@ pub struct RigidMotion {
     translations: Directions,
     rotations: Directions,
     fixed_point: Option<Vector3<f64>>,
+    others: Twists,
+}
+
+/// A rigid motion: the velocity of a point of the body, and its angular velocity.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Twist {
+    /// Velocity of the point.
+    pub velocity: Vector3<f64>,
+    /// Angular velocity; zero of a translation.
+    pub rotation: Vector3<f64>,
+}
+
+/// Up to six rigid motions.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Twists {
+    list: [Twist; 6],
+    count: usize,
+}
+
+impl Twists {
+    const NONE: Self = Self {
+        list: [Twist { velocity: Vector3::new(0.0, 0.0, 0.0), rotation: Vector3::new(0.0, 0.0, 0.0) }; 6],
+        count: 0,
+    };
 }
 
 /// Up to three unit vectors.
@@ -41,50 +65,96 @@ impl Directions {
     }
 }
 
-/// How a body is held: the nodes that move with the support, and the motions that the support has.
+/// How a body is held: the nodes and degrees of freedom that move with the support, and the motions that the support has.
 ///
 /// A held node moves as the support does, i.e. as one of the rigid motions of [`Support::motion`] takes it along; a
-/// node on the axis of a hinge or at the point of a pin does not move at all.
+/// node on the axis of a hinge or at the point of a pin does not move at all. The same holds for single degrees of freedom:
+/// none of the motions that they leave moves them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Support {
     /// The rigid motions left.
     pub motion: RigidMotion,
-    /// Indices of the nodes that are held.
+    /// Indices of the nodes that are held in all their degrees of freedom.
     pub nodes: Vec<u32>,
+    /// Single degrees of freedom that are held, as pairs of a node and 0 to 2 for its translation along x, y or z, 3 to 5
+    /// for its rotation.
+    pub freedoms: Vec<(u32, usize)>,
 }
 
 impl Support {
     /// Of a body that nothing holds.
     pub fn free() -> Self {
-        Self { motion: RigidMotion::free(), nodes: Vec::new() }
+        Self::new(RigidMotion::free(), Vec::new())
+    }
+
+    /// Of a body whose nodes of these indices move as the `motion` takes them along.
+    pub fn new(motion: RigidMotion, nodes: Vec<u32>) -> Self {
+        Self { motion, nodes, freedoms: Vec::new() }
     }
 }
 
 impl RigidMotion {
     /// Of a body that nothing holds: three translations and three rotations.
     pub const fn free() -> Self {
-        Self { translations: Directions::ALL, rotations: Directions::ALL, fixed_point: None }
+        Self { translations: Directions::ALL, rotations: Directions::ALL, fixed_point: None, others: Twists::NONE }
     }
 
     /// Three rotations about a point.
     pub const fn pin(point: Vector3<f64>) -> Self {
-        Self { translations: Directions::NONE, rotations: Directions::ALL, fixed_point: Some(point) }
+        Self {
+            translations: Directions::NONE,
+            rotations: Directions::ALL,
+            fixed_point: Some(point),
+            others: Twists::NONE,
+        }
     }
 
     /// A rotation about an axis: a point of it and its direction, a unit vector.
     pub fn hinge(point: Vector3<f64>, axis: Vector3<f64>) -> Self {
-        Self { translations: Directions::NONE, rotations: Directions::one(axis), fixed_point: Some(point) }
+        Self {
+            translations: Directions::NONE,
+            rotations: Directions::one(axis),
+            fixed_point: Some(point),
+            others: Twists::NONE,
+        }
     }
 
     /// A translation along a unit vector.
     pub fn slider(direction: Vector3<f64>) -> Self {
-        Self { translations: Directions::one(direction), rotations: Directions::NONE, fixed_point: None }
+        Self {
+            translations: Directions::one(direction),
+            rotations: Directions::NONE,
+            fixed_point: None,
+            others: Twists::NONE,
+        }
     }
 
     /// None: the body can only deform. Positions are measured from `origin`, e.g. a point of the axis that a clamp is
     /// turned about.
     pub const fn clamp(origin: Vector3<f64>) -> Self {
-        Self { translations: Directions::NONE, rotations: Directions::NONE, fixed_point: Some(origin) }
+        Self {
+            translations: Directions::NONE,
+            rotations: Directions::NONE,
+            fixed_point: Some(origin),
+            others: Twists::NONE,
+        }
+    }
+
+    /// Motions of another kind, up to six; positions are measured from `origin`.
+    pub(crate) fn other(origin: Vector3<f64>, motions: impl Iterator<Item = Twist>) -> Self {
+        let mut others = Twists::NONE;
+        for motion in motions.take(others.list.len()) {
+            others.list[others.count] = motion;
+            others.count += 1;
+        }
+        Self { others, ..Self::clamp(origin) }
+    }
+
+    /// A basis of the motions that [`Support::of_freedoms`] left, as velocities of [`Self::fixed_point`] and angular
+    /// velocities, where they are not those of a free, pinned, hinged, sliding or clamped body: e.g. two translations and a
+    /// rotation in a plane. Empty otherwise. Such a body has modes; the equations of large motion are not there for it.
+    pub fn others(&self) -> &[Twist] {
+        &self.others.list[..self.others.count]
     }
 
     /// Unit vectors that the body may translate along: three, one or none.
@@ -97,18 +167,18 @@ impl RigidMotion {
         self.rotations.as_slice()
     }
 
-    /// Number of rigid modes: 6, 3, 1, 1 or 0.
+    /// Number of rigid modes: 6, 3, 1 or 0, or that of [`Self::others`].
     pub fn count(&self) -> usize {
-        self.translations.count + self.rotations.count
+        self.translations.count + self.rotations.count + self.others.count
     }
 
     /// Whether nothing holds the body.
     pub fn is_free(&self) -> bool {
-        self.count() == 6
+        self.translations.count + self.rotations.count == 6
     }
 
-    /// The point that stays where it is (of a clamp, the one that positions are to be measured from): the origin of a
-    /// body with these motions. `None` where that is the centre of mass.
+    /// The point that stays where it is (of a clamp and of [`Self::others`], the one that positions are measured from): the
+    /// origin of a body with these motions. `None` where that is the centre of mass.
     pub fn fixed_point(&self) -> Option<Vector3<f64>> {
         self.fixed_point
     }
@@ -167,12 +237,21 @@ impl RigidMotion {
     ) -> Vec<Vector3<f64>> {
         let about = self.fixed_point.unwrap_or(*center);
         let turned = self.rotations().iter().map(|axis| axis.cross(&(position - about)) / length);
-        self.translations().iter().copied().chain(turned).collect()
+        let others = self.others().iter().map(|twist| twist.velocity + twist.rotation.cross(&(position - about)));
+        self.translations().iter().copied().chain(turned).chain(others).collect()
+    }
+
+    /// Angular velocities of the same motions.
+    pub(crate) fn turns(&self, length: f64) -> Vec<Vector3<f64>> {
+        let unturned = self.translations().iter().map(|_| Vector3::zeros());
+        let turned = self.rotations().iter().map(|axis| axis / length);
+        unturned.chain(turned).chain(self.others().iter().map(|twist| twist.rotation)).collect()
     }
 
     /// What a message calls the motion of column `mode` of the six rigid shapes.
     pub(crate) fn name(&self, mode: usize) -> &'static str {
         match (self.translations(), self.rotations()) {
+            _ if self.others.count > 0 => "motion that the support leaves",
             (_, [_]) => "rotation about the hinge",
             ([_], _) => "translation along the slider",
             _ => [
@@ -196,6 +275,23 @@ impl RigidMotion {
         match self.translations().iter().chain(self.rotations()).find(|direction| !is_unit(direction)) {
             Some(direction) => Err(ModalError::NotUnit { direction: (*direction).into() }),
             None => Ok(()),
+        }
+    }
+}
+
+/// In words, such as "2 translations and 1 rotation".
+impl std::fmt::Display for RigidMotion {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let turns = self.turns(1.0);
+        let rotations = turns.iter().filter(|turn| **turn != Vector3::zeros()).count();
+        let counted = |count: usize, what: &str| format!("{count} {what}{}", if count == 1 { "" } else { "s" });
+        match (turns.len() - rotations, rotations) {
+            (0, 0) => f.write_str("no rigid motion"),
+            (0, rotations) => f.write_str(&counted(rotations, "rotation")),
+            (translations, 0) => f.write_str(&counted(translations, "translation")),
+            (translations, rotations) => {
+                write!(f, "{} and {}", counted(translations, "translation"), counted(rotations, "rotation"))
+            }
         }
     }
 }

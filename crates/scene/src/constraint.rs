@@ -42,6 +42,21 @@ pub enum Constraint {
         /// The velocity along the direction, length per time; `None` leaves the body to slide freely.
         motion: Option<Drive>,
     },
+    /// `kind = "support"`, of which there may be several: parts of the body are held in some directions. The rigid motions
+    /// that are left come from the geometry.
+    Support {
+        /// At least one.
+        parts: Vec<HeldDirections>,
+    },
+}
+
+/// A part of the body that is held in some directions.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HeldDirections {
+    /// What is held.
+    pub region: Region,
+    /// Whether along x, y and z of the mesh; at least one.
+    pub directions: [bool; 3],
 }
 
 /// The line of a hinge: the scene has `at` and `axis`, or `points`.

@@ -53,7 +53,7 @@ mod suggest;
 mod unit_vector;
 
 pub use build::{BuildError, BuildProgress, BuildTimes, Meshed, Model, StartError};
-pub use constraint::{Constraint, Drive, HingeLine, Region};
+pub use constraint::{Constraint, Drive, HeldDirections, HingeLine, Region};
 pub use effects::{Choice, Effects};
 pub use error::SceneError;
 pub use fem_tet10::{Material, Materials, PointMass};

@@ -160,6 +160,13 @@ pub(crate) enum ConstraintSection {
         group: Option<String>,
         motion: Option<Drive>,
     },
+    Support {
+        directions: Vec<String>,
+        at: Option<[f64; 3]>,
+        radius: Option<f64>,
+        r#box: Option<[[f64; 3]; 2]>,
+        group: Option<String>,
+    },
 }
 
 #[derive(Deserialize)]

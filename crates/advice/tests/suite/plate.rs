@@ -32,9 +32,9 @@ pub fn plate() -> &'static Plate {
 pub fn clamped() -> &'static Plate {
     static PLATE: OnceLock<Plate> = OnceLock::new();
     PLATE.get_or_init(|| {
-        Plate::new(|positions| Support {
-            motion: RigidMotion::clamp(Vector3::new(-500.0, 0.0, 5.0)),
-            nodes: (0..).zip(positions).filter(|(_, x)| x[0] < -499.9).map(|(node, _)| node).collect(),
+        Plate::new(|positions| {
+            let held = (0..).zip(positions).filter(|(_, x)| x[0] < -499.9).map(|(node, _)| node).collect();
+            Support::new(RigidMotion::clamp(Vector3::new(-500.0, 0.0, 5.0)), held)
         })
     })
 }
@@ -53,7 +53,7 @@ impl Plate {
         let solver = Solver::new(k, m, mesh.positions(), &support(mesh.positions())).unwrap();
         let modes = solver.modes(10, |_| ()).unwrap();
         let body = ReducedBody::new(&modes, m, mesh.positions()).unwrap();
-        let fields = centrifugal_fields(solver.nodal_mass(), mesh.positions(), &body.origin);
+        let fields = centrifugal_fields(solver.mass(), mesh.positions(), &body.origin);
         let answers = solver.static_response(fields.as_ref()).unwrap();
         let reduced = reduced_geometric_stiffness(&mesh, &material, answers.as_ref(), modes.shapes.as_ref()).unwrap();
         let body = body.with_stress_stiffness(Some(reduced.try_into().unwrap())).unwrap();

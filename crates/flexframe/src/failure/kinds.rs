@@ -71,7 +71,9 @@ impl Failure for AssemblyError {
 impl Failure for ModalError {
     fn kind(&self) -> Kind {
         match self {
-            Self::TooManyModes { .. } | Self::NoSuchNode { .. } | Self::NotUnit { .. } => Kind::Input,
+            Self::TooManyModes { .. } | Self::NoSuchNode { .. } | Self::NoSuchFreedom { .. } | Self::NotUnit { .. } => {
+                Kind::Input
+            }
             Self::Memory(_) => Kind::Io,
             Self::Ordering { .. }
             | Self::Factorization { .. }

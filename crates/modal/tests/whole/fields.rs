@@ -23,7 +23,7 @@ fn centrifugal_fields_make_the_centrifugal_force_of_any_spin() {
     let solver = body.held(&Support::free());
     let origin = Vector3::new(3.0, -8.0, 2.0);
     let omega = Vector3::new(0.7, -1.1, 2.3);
-    let fields = centrifugal_fields(solver.nodal_mass(), &body.positions, &origin);
+    let fields = centrifugal_fields(solver.mass(), &body.positions, &origin);
     let acceleration = Mat::from_fn(3 * body.positions.len(), 1, |i, _| {
         -omega.cross(&omega.cross(&(Vector3::from(body.positions[i / 3]) - origin)))[i % 3]
     });
@@ -34,7 +34,7 @@ fn centrifugal_fields_make_the_centrifugal_force_of_any_spin() {
 
     // The resultant is that of the mass at its centre.
     let rigid = solver.rigid();
-    let resultant = acceleration_fields(solver.nodal_mass());
+    let resultant = acceleration_fields(solver.mass());
     let mass = Mat::from_fn(3, 3, |i, j| (i..resultant.nrows()).step_by(3).map(|row| resultant[(row, j)]).sum::<f64>());
     assert!((mass - Mat::<f64>::identity(3, 3) * faer::Scale(rigid.mass)).norm_max() < 1e-13 * rigid.mass);
     let force = of_spin(&fields, &omega);
@@ -50,7 +50,7 @@ fn the_modes_meet_centrifugal_fields_as_c_ij() {
         let solver = body.held(&support);
         let modes = solver.modes(6, |_| ()).unwrap();
         let reduced = ReducedBody::new(&modes, body.matrices.mass(), &body.positions).unwrap();
-        let fields = centrifugal_fields(solver.nodal_mass(), &body.positions, &reduced.origin);
+        let fields = centrifugal_fields(solver.mass(), &body.positions, &reduced.origin);
         let found = modes.shapes.transpose() * fields;
         let scale = reduced.inertia.norm().sqrt();
         for (pair, expected) in reduced.inertia_first.iter().enumerate() {
@@ -74,7 +74,7 @@ fn a_spinning_rod_stretches_as_the_closed_form_says() {
         let expected = |x: f64| pull * (reach.powi(2) * x / 2.0 - x.powi(3) / 6.0);
         let origin = Vector3::new(origin, 0.0, 0.0);
         let solver = bar.body.held(&support);
-        let fields = centrifugal_fields(solver.nodal_mass(), &bar.body.positions, &origin);
+        let fields = centrifugal_fields(solver.mass(), &bar.body.positions, &origin);
         let answers = solver.static_response(fields.as_ref()).unwrap();
         let stretch = of_spin(&answers, &omega);
         let tip = bar.traction(1.0, 0);
@@ -97,7 +97,7 @@ fn a_spinning_rod_stretches_as_the_closed_form_says() {
 fn a_hanging_rod_stretches_exactly() {
     let bar = Bar::new(100.0);
     let solver = bar.body.held(&bar.clamp());
-    let answers = solver.static_response(acceleration_fields(solver.nodal_mass()).as_ref()).unwrap();
+    let answers = solver.static_response(acceleration_fields(solver.mass()).as_ref()).unwrap();
     let weight = STEEL.density / STEEL.young_modulus;
     for (node, x) in bar.body.positions.iter().enumerate() {
         let s = x[0] + 0.5 * bar.length;

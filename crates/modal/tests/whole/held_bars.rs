@@ -43,7 +43,7 @@ fn assert_near(found: f64, expected: f64, tolerance: f64) {
 fn a_clamped_bar_bends_as_beam_theory_says() {
     let bar = bar();
     let end = Vector3::new(-0.5 * LENGTH, 0.0, 0.0);
-    let clamp = Support { motion: RigidMotion::clamp(end), nodes: nodes(&bar.positions, |x| x.x < end.x + 1e-9) };
+    let clamp = Support::new(RigidMotion::clamp(end), nodes(&bar.positions, |x| x.x < end.x + 1e-9));
     let modes = bar.held(&clamp).modes(6, |_| ()).unwrap();
     for (axis, thickness) in [(1, WIDTH), (2, HEIGHT)] {
         let found = along(&modes, axis);
@@ -60,8 +60,7 @@ fn a_hinged_bar_swings_freely_in_one_plane_and_is_clamped_in_the_other() {
     let point = Vector3::new(-0.5 * LENGTH, 0.0, 0.0);
     let axis = Vector3::y();
     // A rigid shaft through the whole end.
-    let hinge =
-        Support { motion: RigidMotion::hinge(point, axis), nodes: nodes(&bar.positions, |x| x.x < point.x + 1e-9) };
+    let hinge = Support::new(RigidMotion::hinge(point, axis), nodes(&bar.positions, |x| x.x < point.x + 1e-9));
     let modes = bar.held(&hinge).modes(6, |_| ()).unwrap();
     // −3.9e-4, by shear, and 4.0e-6.
     assert_near(along(&modes, 2)[0], bending(3.926_602_312_047_919, HEIGHT), 1e-3);
@@ -72,7 +71,7 @@ fn a_hinged_bar_swings_freely_in_one_plane_and_is_clamped_in_the_other() {
 fn a_bar_pinned_at_its_end_bends_as_pinned_and_free() {
     let bar = bar();
     let point = Vector3::new(-0.5 * LENGTH, 0.0, 0.0);
-    let pin = Support { motion: RigidMotion::pin(point), nodes: nodes(&bar.positions, |x| x.x < point.x + 1e-9) };
+    let pin = Support::new(RigidMotion::pin(point), nodes(&bar.positions, |x| x.x < point.x + 1e-9));
     let modes = bar.held(&pin).modes(4, |_| ()).unwrap();
     for (axis, thickness) in [(1, WIDTH), (2, HEIGHT)] {
         // −5.5e-5 and −3.9e-4, by shear.
@@ -84,7 +83,7 @@ fn a_bar_pinned_at_its_end_bends_as_pinned_and_free() {
 fn a_bar_pinned_at_its_middle_bends_as_two_clamped_ones_or_as_if_free() {
     let bar = bar();
     let point = Vector3::zeros();
-    let pin = Support { motion: RigidMotion::pin(point), nodes: nodes(&bar.positions, |x| *x == point) };
+    let pin = Support::new(RigidMotion::pin(point), nodes(&bar.positions, |x| *x == point));
     assert_eq!(pin.nodes.len(), 1);
     let (pinned, free) = (bar.held(&pin).modes(6, |_| ()).unwrap(), bar.modes(6));
     for (axis, thickness) in [(1, WIDTH), (2, HEIGHT)] {

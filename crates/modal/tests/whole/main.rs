@@ -1,10 +1,14 @@
 //! Modes and reduced bodies of whole meshes.
 
+mod beam;
 mod bodies;
 mod closed_forms;
+mod convergence;
 mod fields;
+mod general_mass;
 mod held;
 mod held_bars;
+mod held_freedoms;
 mod invariance;
 mod oracles;
 mod plate;

@@ -126,11 +126,19 @@ fn one_triangle() {
 }
 
 #[test]
-fn masses_that_differ_between_axes() {
-    let error = message(with_mass(|i, _, m| Some(if i % 3 == 2 { 1.1 * m } else { m })), &["mass", "identity"]);
-    assert!(matches!(error, ModalError::AnisotropicMass { .. }));
+fn masses_that_no_rigid_body_has() {
+    let error =
+        message(with_mass(|i, _, m| Some(if i % 3 == 2 { 1.1 * m } else { m })), &["mass along the axes", "identity"]);
+    match error {
+        // √6 0.1/3 of the mean
+        ModalError::NoRigidBodyMass { relative, .. } => assert!((relative - 0.0790).abs() < 1e-4, "{relative}"),
+        other => panic!("{other:?}"),
+    }
     let coupled = with_mass(|i, j, m| Some(if i / 3 == j / 3 && i != j { 1.0 } else { m }));
-    assert!(matches!(message(coupled, &["couples degrees of freedom"]), ModalError::AnisotropicMass { .. }));
+    assert!(matches!(message(coupled, &["negative kinetic energy"]), ModalError::IndefiniteMass { place: None }));
+    let negative = with_mass(|i, j, m| Some(if i == 7 && j == 7 { -m } else { m }));
+    let negative = message(negative, &["degree of freedom 1 of node 2"]);
+    assert!(matches!(negative, ModalError::IndefiniteMass { place: Some([2, 1]) }));
 }
 
 #[test]
@@ -201,7 +209,7 @@ fn no_flexible_modes_are_an_answer_too() {
 /// What a support of the small block is refused for.
 fn with_support(motion: RigidMotion, nodes: &[u32]) -> Option<ModalError> {
     let Body { positions, matrices } = small();
-    let support = Support { motion, nodes: nodes.to_vec() };
+    let support = Support::new(motion, nodes.to_vec());
     Solver::new(matrices.stiffness(), matrices.mass(), &positions, &support).err()
 }
 

@@ -132,7 +132,7 @@ fn what_falls_is_not_strained() {
     let down = Vector3::y();
     for (support, _) in supports(&body.positions) {
         let solver = body.held(&support);
-        let nodal = solver.nodal_mass().row_sums();
+        let nodal = solver.mass().row_sums();
         let gravity = Mat::from_fn(3 * nodal.len(), 1, |i, _| nodal[i / 3] * down[i % 3]);
         let answer = solver.static_response(gravity.as_ref()).unwrap();
         let modes = solver.with_static_shapes(solver.modes(3, |_| ()).unwrap(), answer.as_ref()).unwrap();

@@ -25,10 +25,8 @@ impl Bar {
 
     pub fn clamp(&self) -> Support {
         let end = -0.5 * self.length;
-        Support {
-            motion: RigidMotion::clamp(Vector3::new(end, 0.0, 0.0)),
-            nodes: nodes(&self.body.positions, |x| x.x < end + 1e-9),
-        }
+        let held = nodes(&self.body.positions, |x| x.x < end + 1e-9);
+        Support::new(RigidMotion::clamp(Vector3::new(end, 0.0, 0.0)), held)
     }
 
     /// The nodal forces of a uniform traction with resultant 1 along `axis` on the end of the bar at `x = side·L/2`.

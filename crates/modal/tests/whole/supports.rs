@@ -22,7 +22,7 @@ pub fn supports(positions: &[[f64; 3]]) -> [(Support, usize); 8] {
     let corner = Vector3::new(-15.0, -7.0, -4.5);
     let near_corner = nodes(positions, |x| (x - corner).norm() < 8.0);
     let left = nodes(positions, |x| x.x < -14.9);
-    let held = |motion, nodes: &Vec<u32>| Support { motion, nodes: nodes.clone() };
+    let held = |motion, nodes: &Vec<u32>| Support::new(motion, nodes.clone());
     let axis = Vector3::z();
     let oblique = Vector3::new(2.0, -1.0, 2.0) / 3.0;
     [

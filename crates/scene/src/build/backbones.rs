@@ -44,7 +44,7 @@ pub(super) fn backbones(
         Err(ModalError::StaticNotConverged { .. }) => return Ok(found),
         Err(error) => return Err(modal(scene)(error)),
     };
-    let momenta = solver.nodal_mass().product(answers.as_ref());
+    let momenta = solver.mass().product(answers.as_ref());
     for (j, k) in large.into_iter().enumerate() {
         let square = modes.eigenvalues[k];
         // The derivative is minus the answer.

@@ -43,7 +43,7 @@ pub(super) fn build(
     let modes = timed(&mut times.modes, || {
         solver.modes(requested, |p| progress(BuildProgress::Modes(p))).map_err(|error| too_many_modes(scene, error))
     })?;
-    let loads = loads::on_mesh(scene, &mesh, &solver.nodal_mass().row_sums())?;
+    let loads = loads::on_mesh(scene, &mesh, &solver.mass().row_sums())?;
     let model =
         MeshModel { scene, body, mesh: &mesh, matrices: &matrices, solver: &solver, support: &support, loads, drive };
 

@@ -71,15 +71,15 @@ impl Statics {
             columns.push((of_loads..of_loads + count, turned));
             of_loads += count;
         }
-        let fields = asked.spin.then(|| centrifugal_fields(solver.nodal_mass(), mesh.positions(), origin));
+        let fields = asked.spin.then(|| centrifugal_fields(solver.mass(), mesh.positions(), origin));
         let spins = fields.as_ref().map_or(0, Mat::ncols);
         let driven = model.drive.as_ref().filter(|_| asked.drive).map(|drive| match drive.motion {
             DrivenMotion::Slide { direction } => {
-                let fields = acceleration_fields(solver.nodal_mass());
+                let fields = acceleration_fields(solver.mass());
                 let weights = Mat::from_fn(3, 1, |i, _| direction[i]);
                 fields * weights
             }
-            DrivenMotion::Turn { axis } => turning_field(solver.nodal_mass(), mesh.positions(), origin, &axis),
+            DrivenMotion::Turn { axis } => turning_field(solver.mass(), mesh.positions(), origin, &axis),
         });
 
         let unknowns = 3 * mesh.positions().len();
@@ -191,7 +191,7 @@ fn compliances(
 
 /// √(uᵀMu − Σ(Φ_kᵀMu)²) of each answer u.
 fn remainders(model: &MeshModel<'_>, modes: &Modes, answers: MatRef<'_, f64>) -> Vec<f64> {
-    let momenta = model.solver.nodal_mass().product(answers);
+    let momenta = model.solver.mass().product(answers);
     let of = |(u, mu): (ColRef<'_, f64>, ColRef<'_, f64>)| {
         let carried: f64 = modes.shapes.as_ref().col_iter().map(|shape| (shape.transpose() * mu).powi(2)).sum();
         (u.transpose() * mu - carried).max(0.0).sqrt()

@@ -5,17 +5,26 @@ use frames_rk4::{Drive, DrivenMotion};
 use modal::{RigidMotion, Support};
 use nalgebra::Vector3;
 
-use super::error::{BuildError, refuse_mesh};
+use super::error::{BuildError, modal, refuse_mesh};
 use super::history::history;
-use crate::constraint::{self, Constraint, HingeLine, Region};
+use super::initial::first_attitude;
+use crate::constraint::{self, Constraint, HeldDirections, HingeLine, Region};
+use crate::document::join;
 use crate::scene::Scene;
 
 /// A node this close to a point or a line, relative to the size of the mesh, is on it.
 const ON: f64 = 1e-6;
+/// Sine of the angle between an initial velocity and the direction that is left, up to which it counts as rounding.
+const ALONG: f64 = 1e-6;
+/// Nodes of a region that hold it as a whole.
+const FEWEST: usize = 3;
 
 /// The support of a scene's body and its drive. `mesh` is `None` for a rigid body without one.
 pub(super) fn support(scene: &Scene, mesh: Option<&Mesh>) -> Result<(Support, Option<Drive>), BuildError> {
     let Some(constraint) = &scene.constraint else { return Ok((Support::free(), None)) };
+    if let (Constraint::Support { parts }, Some(mesh)) = (constraint, mesh) {
+        return Ok((held_directions(scene, mesh, parts)?, None));
+    }
     let nodes = match mesh {
         Some(mesh) => held_nodes(scene, mesh, constraint)?,
         None => Vec::new(),
@@ -44,9 +53,54 @@ pub(super) fn support(scene: &Scene, mesh: Option<&Mesh>) -> Result<(Support, Op
                 None => (RigidMotion::slider(direction), None),
             }
         }
-        Constraint::Clamp { .. } => (RigidMotion::clamp(mean()), None),
+        Constraint::Clamp { .. } | Constraint::Support { .. } => (RigidMotion::clamp(mean()), None),
     };
-    Ok((Support { motion, nodes }, drive))
+    Ok((Support::new(motion, nodes), drive))
+}
+
+/// The support that holds parts of the mesh in some directions.
+fn held_directions(scene: &Scene, mesh: &Mesh, parts: &[HeldDirections]) -> Result<Support, BuildError> {
+    let mut freedoms = Vec::new();
+    for (i, HeldDirections { region, directions }) in parts.iter().enumerate() {
+        let nodes = region_nodes(scene, mesh, region, &format!("constraints[{i}]"), 1)?;
+        let held = (0..3).filter(|axis| directions[*axis]);
+        freedoms.extend(held.flat_map(|axis| nodes.iter().map(move |node| (*node, axis))));
+    }
+    let support = Support::of_freedoms(mesh.positions(), &freedoms).map_err(modal(scene))?;
+    let motion = &support.motion;
+    // Where another motion is left, there is no run.
+    if motion.others().is_empty() {
+        let (translations, rotations) = (motion.translations(), motion.rotations());
+        let attitude = first_attitude(scene);
+        let global: Vec<_> = translations.iter().map(|direction| attitude.to_global(direction)).collect();
+        require_left(scene, "initial.velocity", scene.initial.velocity, &global, motion)?;
+        require_left(scene, "initial.angular_velocity", scene.initial.angular_velocity, rotations, motion)?;
+    }
+    Ok(support)
+}
+
+/// Refuses an initial velocity that the supports prevent; `left` are three directions, one or none.
+fn require_left(
+    scene: &Scene,
+    key: &str,
+    value: [f64; 3],
+    left: &[Vector3<f64>],
+    motion: &RigidMotion,
+) -> Result<(), BuildError> {
+    let vector = Vector3::from(value);
+    let (prevented, expected) = match left {
+        [] => (vector.norm() > 0.0, "0".to_owned()),
+        [along] => (
+            vector.cross(along).norm() > ALONG * vector.norm(),
+            format!("a multiple of [{:.6}, {:.6}, {:.6}]", along.x, along.y, along.z),
+        ),
+        _ => (false, String::new()),
+    };
+    if !prevented {
+        return Ok(());
+    }
+    let expected = format!("{expected}: the supports leave the body {motion}");
+    Err(scene.refuse(key, format!("{value:?}"), expected, "give what is left of it, or change [[constraints]]").into())
 }
 
 fn held_nodes(scene: &Scene, mesh: &Mesh, constraint: &Constraint) -> Result<Vec<u32>, BuildError> {
@@ -69,7 +123,7 @@ fn held_nodes(scene: &Scene, mesh: &Mesh, constraint: &Constraint) -> Result<Vec
     match constraint {
         Constraint::Pin { at, radius: None } => Ok(vec![nearest("constraints[0].at", *at)?]),
         Constraint::Pin { at, radius: Some(radius) } => {
-            region_nodes(scene, mesh, &Region::Ball { at: *at, radius: *radius }, "constraints[0].radius")
+            region_nodes(scene, mesh, &Region::Ball { at: *at, radius: *radius }, "constraints[0].radius", FEWEST)
         }
         Constraint::Hinge { line: HingeLine::Points(points), shaft, .. } if shaft.is_empty() => {
             points.iter().map(|at| nearest("constraints[0].points", *at)).collect()
@@ -91,20 +145,21 @@ fn held_nodes(scene: &Scene, mesh: &Mesh, constraint: &Constraint) -> Result<Vec
         Constraint::Hinge { shaft, .. } => {
             let mut nodes = Vec::new();
             for region in shaft {
-                nodes.extend(region_nodes(scene, mesh, region, "constraints[0]")?);
+                nodes.extend(region_nodes(scene, mesh, region, "constraints[0]", FEWEST)?);
             }
             nodes.sort_unstable();
             nodes.dedup();
             Ok(nodes)
         }
         Constraint::Clamp { region } | Constraint::Slider { region: Some(region), .. } => {
-            region_nodes(scene, mesh, region, "constraints[0]")
+            region_nodes(scene, mesh, region, "constraints[0]", FEWEST)
         }
-        Constraint::Slider { region: None, .. } => Ok(Vec::new()),
+        Constraint::Slider { region: None, .. } | Constraint::Support { .. } => Ok(Vec::new()),
     }
 }
 
-fn region_nodes(scene: &Scene, mesh: &Mesh, region: &Region, key: &str) -> Result<Vec<u32>, BuildError> {
+/// The nodes of a region, which has at least `fewest`.
+fn region_nodes(scene: &Scene, mesh: &Mesh, region: &Region, key: &str, fewest: usize) -> Result<Vec<u32>, BuildError> {
     let nodes = match region {
         Region::Ball { at, radius } => mesh.nodes_within(*at, *radius),
         Region::Box { low, high } => {
@@ -113,17 +168,17 @@ fn region_nodes(scene: &Scene, mesh: &Mesh, region: &Region, key: &str) -> Resul
             mesh.nodes_in_box(low.map(|x| x - slack), high.map(|x| x + slack))
         }
         Region::Group(name) => {
-            mesh.group_nodes(name).map_err(|error| refuse_mesh(scene, "constraints[0].group", &error))?
+            mesh.group_nodes(name).map_err(|error| refuse_mesh(scene, &join(key, "group"), &error))?
         }
     };
-    if nodes.len() >= 3 {
+    if nodes.len() >= fewest {
         return Ok(nodes);
     }
     Err(scene
         .refuse(
             key,
             format!("a part of the body with {} node(s) in it", nodes.len()),
-            "three nodes or more",
+            if fewest == 1 { "one node or more" } else { "three nodes or more" },
             "make it larger, or look where the body is: `flexframe modes` draws it",
         )
         .into())

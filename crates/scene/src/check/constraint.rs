@@ -1,7 +1,7 @@
 //! The rules on `[[constraints]]`.
 
 use super::Check;
-use crate::constraint::{Constraint, Drive, HingeLine, Region};
+use crate::constraint::{Constraint, Drive, HeldDirections, HingeLine, Region};
 use crate::document::join;
 use crate::error::SceneError;
 use crate::scene::Body;
@@ -21,14 +21,36 @@ impl Check<'_> {
         mut sections: Vec<ConstraintSection>,
         body: &Body,
     ) -> Result<Option<Constraint>, SceneError> {
+        if sections.iter().any(|section| matches!(section, ConstraintSection::Support { .. })) {
+            return self.supports(sections, body).map(Some);
+        }
         if sections.len() > 1 {
             return Err(self.document.place("constraints[1]").refuse(
                 format!("{} constraints", sections.len()),
-                "at most one, since the rigid motion left is known in closed form for one only",
+                "at most one, unless all are of the kind `support`",
                 "keep one; a clamp, or a hinge's or slider's region, may hold several places as one physical group",
             ));
         }
         sections.pop().map(|section| self.constraint("constraints[0]", section, body)).transpose()
+    }
+
+    /// Constraints that are supports, all of them.
+    fn supports(&self, sections: Vec<ConstraintSection>, body: &Body) -> Result<Constraint, SceneError> {
+        let mut parts = Vec::new();
+        for (i, section) in sections.into_iter().enumerate() {
+            let key = format!("constraints[{i}]");
+            match self.constraint(&key, section, body)? {
+                Constraint::Support { parts: of_section } => parts.extend(of_section),
+                _ => {
+                    return Err(self.document.place(&join(&key, "kind")).refuse(
+                        "another constraint beside one of the kind `support`",
+                        "supports only, or one constraint of another kind",
+                        "hold what is to be held by supports alone: all three directions of two nodes make a hinge",
+                    ));
+                }
+            }
+        }
+        Ok(Constraint::Support { parts })
     }
 
     fn constraint(&self, key: &str, section: ConstraintSection, body: &Body) -> Result<Constraint, SceneError> {
@@ -88,7 +110,28 @@ impl Check<'_> {
                 let motion = self.motion(key, motion)?;
                 Ok(Constraint::Slider { direction, region, motion })
             }
+            ConstraintSection::Support { directions, at, radius, r#box, group } => {
+                self.at_with_radius(key)?;
+                let directions = self.directions(&join(key, "directions"), &directions)?;
+                match self.region(key, RegionKeys { at, radius, r#box, group }, body)? {
+                    Some(region) => Ok(Constraint::Support { parts: vec![HeldDirections { region, directions }] }),
+                    None => Err(self.no_region(key)),
+                }
+            }
         }
+    }
+
+    /// The axes of the mesh that are named.
+    fn directions(&self, key: &str, names: &[String]) -> Result<[bool; 3], SceneError> {
+        let (expected, cure) = ("one to three of \"x\", \"y\" and \"z\"", "e.g. `directions = [\"z\"]`");
+        self.require(!names.is_empty(), key, expected, cure)?;
+        let mut directions = [false; 3];
+        for (i, name) in names.iter().enumerate() {
+            let axis = ["x", "y", "z"].iter().position(|axis| axis == name);
+            self.require(axis.is_some_and(|axis| !directions[axis]), &format!("{key}[{i}]"), expected, cure)?;
+            axis.into_iter().for_each(|axis| directions[axis] = true);
+        }
+        Ok(directions)
     }
 
     /// The line of a hinge, from `at` and `axis` or from `points`.

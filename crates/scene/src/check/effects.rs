@@ -32,7 +32,8 @@ impl Check<'_> {
         self.not_on(effects, Effect::Gravity, !has_gravity, "no load `kind = \"gravity\"`", "add it to [[loads]]")?;
 
         let (can_translate, can_turn) = match constraint {
-            None => (true, true),
+            // What supports leave is known when the mesh is.
+            None | Some(Constraint::Support { .. }) => (true, true),
             Some(Constraint::Pin { .. } | Constraint::Hinge { .. }) => (false, true),
             Some(Constraint::Slider { .. }) => (true, false),
             Some(Constraint::Clamp { .. }) => (false, false),

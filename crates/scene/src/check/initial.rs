@@ -56,6 +56,8 @@ impl Check<'_> {
                 (Left::Along(to_global(direction)), Left::Nothing("a slider does not turn"))
             }
             Constraint::Clamp { .. } => (Left::Nothing("a clamped body stays"), Left::Nothing("a clamped body stays")),
+            // What supports leave is known when the mesh is.
+            Constraint::Support { .. } => (Left::All, Left::All),
             Constraint::Hinge { .. } | Constraint::Slider { .. } => {
                 (Left::Nothing("`motion` gives it"), Left::Nothing("`motion` gives it"))
             }

@@ -88,7 +88,7 @@ fn answer_to_unit_force(axis: usize) -> Vector3<f64> {
     let mesh = read_msh(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/bar.msh")).unwrap();
     let material = Material { young_modulus: YOUNG, poisson_ratio: POISSON, density: DENSITY };
     let matrices = assemble(&mesh, &Materials::Uniform(material), &[]).unwrap();
-    let support = Support { motion: RigidMotion::clamp(Vector3::zeros()), nodes: mesh.group_nodes("root").unwrap() };
+    let support = Support::new(RigidMotion::clamp(Vector3::zeros()), mesh.group_nodes("root").unwrap());
     let solver = Solver::new(matrices.stiffness(), matrices.mass(), mesh.positions(), &support).unwrap();
     let (tip, _) = mesh.nearest_node([LENGTH, 0.0, 0.0]);
     let forces = Mat::from_fn(3 * mesh.positions().len(), 1, |i, _| f64::from(i == 3 * tip as usize + axis));

@@ -150,3 +150,89 @@ fn driven_bodies_are_not_the_paper_s() {
     let message = build(&scene).start(&scene).unwrap_err().to_string();
     assert!(message.contains("driven motion") && message.contains("conservative"), "{message}");
 }
+
+/// Constraints of the kind `support` on nodes of the bar, each with its directions.
+fn supports(parts: &[(&str, &str)]) -> String {
+    parts
+        .iter()
+        .map(|(region, directions)| {
+            format!("[[constraints]]\nkind = \"support\"\ndirections = {directions}\n{region}\n")
+        })
+        .collect()
+}
+
+const ALL: &str = "[\"x\", \"y\", \"z\"]";
+const ROOT: &str = "group = \"root\"";
+/// One node on the line of the bar, and the edge of the root along y.
+const MIDDLE: &str = "at = [0.0, 0.0, 0.0]\nradius = 0.1";
+const EDGE: &str = "box = [[0.0, -5.0, -5.0], [0.0, 5.0, -5.0]]";
+
+fn supported(parts: &[(&str, &str)], rest: &str) -> Scene {
+    bar("flexible = 4\nstatic_correction = false", &format!("{rest}\n{}", supports(parts)), TIME)
+}
+
+#[test]
+fn supports_leave_what_the_geometry_says() {
+    // As the constraint with that name leaves it, modes and all.
+    for (parts, constraint) in [
+        (vec![(ROOT, ALL)], CLAMPS[2]),
+        (vec![(ROOT, "[\"x\", \"y\"]")], SLIDERS[2]),
+        (vec![(EDGE, ALL)], "kind = \"hinge\"\nat = [0.0, 0.0, -5.0]\naxis = [0.0, 1.0, 0.0]"),
+        (vec![(MIDDLE, ALL)], PINS[0]),
+    ] {
+        let (found, expected) = (build(&supported(&parts, "")), build(&held(constraint, "", TIME)));
+        let (of_support, of_constraint) = (found.body.motion, expected.body.motion);
+        assert_eq!(of_support.to_string(), of_constraint.to_string(), "{parts:?}");
+        assert!(of_support.others().is_empty());
+        let close = |a: &[Vector3<f64>], b: &[Vector3<f64>]| a.iter().zip(b).all(|(a, b)| (a - b).norm() < 1e-9);
+        if of_support.count() == 1 {
+            assert!(close(of_support.rotations(), of_constraint.rotations()), "{of_support:?}");
+            assert!(close(of_support.translations(), of_constraint.translations()), "{of_support:?}");
+        }
+        // The root of a slider moves as one along it, where a support leaves each of its nodes free.
+        let tolerance = if constraint == SLIDERS[2] { 0.01 } else { 1e-8 };
+        for (a, b) in found.natural_frequencies().iter().zip(expected.natural_frequencies()) {
+            assert!((a / b - 1.0).abs() < tolerance, "{parts:?}: {a} {b}");
+        }
+    }
+    let of = |parts: &[(&str, &str)]| build(&supported(parts, "")).body.motion.to_string();
+    // The nodes of the root are in the plane x = 0, so that z of them leaves the turn about y too.
+    assert_eq!(of(&[(ROOT, "[\"z\"]")]), "2 translations and 2 rotations");
+    assert_eq!(of(&[(ROOT, "[\"z\"]"), (EDGE, "[\"y\", \"x\"]")]), "1 rotation");
+    assert_eq!(of(&[(ROOT, "[\"x\"]"), (EDGE, "[\"y\", \"z\"]")]), "no rigid motion");
+}
+
+#[test]
+fn a_body_on_supports_moves_as_one_on_a_hinge() {
+    // Gravity across a hinge of the root's lower edge.
+    let gravity = "[[loads]]\nkind = \"gravity\"\ndirection = [0.0, 0.0, -1.0]\namplitude = 9810.0";
+    let start = "[initial]\nangular_velocity = [0.0, 3.0, 0.0]";
+    let hinge = "kind = \"hinge\"\nat = [0.0, 0.0, -5.0]\naxis = [0.0, 1.0, 0.0]";
+    let of = |constraints: &str| {
+        let rest = format!("{start}\n{gravity}\n{constraints}");
+        let scene = bar("flexible = 4\nstatic_correction = false", &rest, "end = 0.02\nstep = 1e-3");
+        observations(&scene, &build(&scene))
+    };
+    let by_support: Vec<Observation> = of(&supports(&[(EDGE, ALL)]));
+    let by_hinge: Vec<Observation> = of(&format!("[[constraints]]\n{hinge}"));
+    let (a, b) = (by_support.last().unwrap(), by_hinge.last().unwrap());
+    assert!(a.attitude.angle_to(&b.attitude) < 1e-8, "{:e}", a.attitude.angle_to(&b.attitude));
+    assert!(a.attitude.angle_to(&rigid_kin::Attitude::identity()) > 0.05);
+}
+
+#[test]
+fn supports_that_prevent_the_initial_motion_are_refused() {
+    for (parts, lines, words) in [
+        (vec![(ROOT, ALL)], "velocity = [1.0, 0.0, 0.0]", "expected 0: the supports leave the body no rigid motion"),
+        (vec![(ROOT, "[\"x\", \"y\"]")], "velocity = [0.0, 1.0, 1.0]", "a multiple of [0.000000, 0.000000, 1.000000]"),
+        (vec![(EDGE, ALL)], "angular_velocity = [1.0, 0.0, 0.0]", "a multiple of [0.000000, 1.000000, 0.000000]"),
+        (vec![(MIDDLE, ALL)], "velocity = [0.0, 1.0, 0.0]", "leave the body 3 rotations"),
+    ] {
+        let message = refusal(&supported(&parts, &format!("[initial]\n{lines}"))).to_string();
+        assert!(message.contains("initial.") && message.contains(words), "{message}");
+    }
+    let message = refusal(&supported(&[("at = [0.0, 0.0, 900.0]\nradius = 0.1", ALL)], "")).to_string();
+    assert!(message.contains("constraints[0]") && message.contains("one node or more"), "{message}");
+    let message = refusal(&supported(&[(ROOT, ALL), ("group = \"rot\"", ALL)], "")).to_string();
+    assert!(message.contains("constraints[1].group"), "{message}");
+}

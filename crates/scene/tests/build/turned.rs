@@ -54,7 +54,7 @@ fn off(motion: &Motion, angle: f64, modes: &str) -> f64 {
 
 #[test]
 fn the_answer_to_a_dead_force_is_right_whichever_way_the_body_has_turned() {
-    let held = Support { motion: RigidMotion::clamp(Vector3::zeros()), nodes: vec![0] };
+    let held = Support::new(RigidMotion::clamp(Vector3::zeros()), vec![0]);
     let motions = [
         // The force is small, since its moment about the middle grows with its square.
         Motion {

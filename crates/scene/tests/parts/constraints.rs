@@ -1,6 +1,6 @@
 //! What holds or drives the body.
 
-use scene::{Constraint, Drive, HingeLine, History, Region, Scene};
+use scene::{Constraint, Drive, HeldDirections, HingeLine, History, Region, Scene};
 
 use crate::common::EXAMPLE;
 
@@ -135,11 +135,39 @@ fn a_clamp_and_a_slider() {
 }
 
 #[test]
+fn supports_hold_directions_of_regions() {
+    let group = |name: &str| Region::Group(name.to_owned());
+    let one = "kind = \"support\"\ndirections = [\"z\", \"x\"]\ngroup = \"a\"";
+    let part = HeldDirections { region: group("a"), directions: [true, false, true] };
+    assert_eq!(held(one), Constraint::Support { parts: vec![part.clone()] });
+    let two = format!("{one}\n[[constraints]]\nkind = \"support\"\ndirections = [\"y\"]\ngroup = \"b\"");
+    let other = HeldDirections { region: group("b"), directions: [false, true, false] };
+    assert_eq!(held(&two), Constraint::Support { parts: vec![part, other] });
+
+    let support = "kind = \"support\"\ngroup = \"a\"\n";
+    let expected = ["expected one to three of \"x\", \"y\" and \"z\""];
+    refused(&format!("{support}directions = []"), "[]", ".directions", &expected);
+    refused(&format!("{support}directions = [\"w\"]"), "\"w\"", ".directions[0]", &expected);
+    refused(&format!("{support}directions = ['z', \"z\"]"), "\"z\"]", ".directions[1]", &expected);
+    refused(support, "[[constraints", ".directions", &["`directions` is missing"]);
+    let nowhere = "kind = \"support\"\ndirections = [\"z\"]";
+    refused(nowhere, "[[constraints", "", &["found none of `radius`, `box` and `group`"]);
+    let mixed = format!("[[constraints]]\n{one}\n[[constraints]]\nkind = \"clamp\"\ngroup = \"a\"");
+    let words = ["found another constraint beside one of the kind `support`"];
+    crate::refused(FROM, TO, &mixed, "\"clamp\"", "constraints[1].kind", &words);
+}
+
+#[test]
 fn kinds_and_numbers_of_constraints() {
-    refused("kind = \"hing\"", "\"hing\"", ".kind", &["did you mean `hinge`?", "`pin`, `hinge`, `clamp`, `slider`"]);
+    refused(
+        "kind = \"hing\"",
+        "\"hing\"",
+        ".kind",
+        &["did you mean `hinge`?", "`pin`, `hinge`, `clamp`, `slider`, `support`"],
+    );
     refused("at = [0, 0, 0]", "[[constraints", ".kind", &["`kind` is missing", "kind = \"hinge\""]);
     let two = "[[constraints]]\nkind = \"pin\"\nat = [0, 0, 0]\n[[constraints]]\nkind = \"pin\"\nat = [1, 0, 0]";
-    let words = ["found 2 constraints, expected at most one, since the rigid motion left", "keep one"];
+    let words = ["found 2 constraints, expected at most one, unless all are of the kind `support`", "keep one"];
     crate::refused(FROM, TO, two, "[[constraints]]\nkind = \"pin\"\nat = [1", "constraints[1]", &words);
     let table = "[constraints]\nkind = \"pin\"\nat = [0, 0, 0]";
     let words = ["found a table, expected a list", "write it like this:\n     [[constraints]]\n     kind = \"hinge\""];
@@ -199,6 +227,7 @@ fn a_rigid_body_is_held_without_nodes() {
         ("kind = \"hinge\"\nat = [0, 0, 0]\naxis = [0, 0, 1]\ngroup = \"a\"", "group", "found a part of a mesh"),
         ("kind = \"slider\"\ndirection = [0, 0, 1]\nbox = [[0, 0, 0], [1, 1, 1]]", "box", "found a part of a mesh"),
         ("kind = \"clamp\"\ngroup = \"a\"", "kind", "found a rigid body that is clamped"),
+        ("kind = \"support\"\ndirections = [\"x\"]\ngroup = \"a\"", "group", "found a part of a mesh"),
     ] {
         let message = Scene::parse(&text(lines), "a.toml").unwrap_err().to_string();
         assert!(message.contains(&format!("`constraints[0].{key}`: {words}")), "{message}");

@@ -1,0 +1,153 @@
+//! The mass matrix of a body: a scalar for each pair of nodes where it is that, any symmetric matrix otherwise.
+
+use faer::sparse::{SparseColMat, SparseColMatRef, Triplet};
+use faer::{Mat, MatMut, MatRef, Side};
+
+use crate::error::ModalError;
+use crate::mass::NodalMass;
+use crate::products::{Packed, symmetric_product_into};
+use crate::symmetry::check_symmetric;
+
+/// An eigenvalue of M, scaled to a unit diagonal, that is below zero by less than this is rounding.
+const SEMIDEFINITE: f64 = 1e-10;
+
+/// The mass matrix of a body.
+#[derive(Debug, Clone)]
+pub enum MassMatrix<'a> {
+    /// `M_s ⊗ I₃`: three degrees of freedom a node, and the same mass along every axis.
+    Nodal(NodalMass),
+    /// Any symmetric positive semi-definite matrix, with three or six degrees of freedom a node.
+    General(GeneralMass<'a>),
+}
+
+/// A symmetric mass matrix that need not act alike on the three axes.
+#[derive(Debug, Clone, Copy)]
+pub struct GeneralMass<'a> {
+    pub(crate) matrix: SparseColMatRef<'a, usize, f64>,
+    /// Degrees of freedom of a node: 3 or 6.
+    pub(crate) freedoms: usize,
+}
+
+impl<'a> MassMatrix<'a> {
+    /// Takes M (3n×3n or 6n×6n, both triangles stored) of `nodes` nodes.
+    ///
+    /// # Errors
+    /// [`ModalError::Size`], [`ModalError::NotSymmetric`].
+    pub fn new(mass: SparseColMatRef<'a, usize, f64>, nodes: usize) -> Result<Self, ModalError> {
+        let freedoms = freedoms("mass", mass.ncols(), nodes)?;
+        if freedoms == 3 {
+            match NodalMass::new(mass) {
+                Err(ModalError::AnisotropicMass { .. }) => {}
+                nodal => return nodal.map(Self::Nodal),
+            }
+        }
+        let (rows, values) = (mass.symbolic().row_idx(), mass.val());
+        check_symmetric("mass", 1, mass.symbolic().col_ptr(), |entry| rows[entry], |entry| values[entry])?;
+        Ok(Self::General(GeneralMass { matrix: mass, freedoms }))
+    }
+
+    /// Degrees of freedom of a node: 3 or 6.
+    pub fn freedoms(&self) -> usize {
+        match self {
+            Self::Nodal(_) => 3,
+            Self::General(mass) => mass.freedoms,
+        }
+    }
+
+    /// M·X for X with a row for each degree of freedom.
+    pub fn product(&self, x: MatRef<'_, f64>) -> Mat<f64> {
+        let mut y = Mat::zeros(x.nrows(), x.ncols());
+        self.product_into(x, y.as_mut(), &mut Vec::new());
+        y
+    }
+
+    /// Y = M·X; `packed` is scratch that can be used again.
+    pub(crate) fn product_into(&self, x: MatRef<'_, f64>, y: MatMut<'_, f64>, packed: &mut Vec<Packed>) {
+        match self {
+            Self::Nodal(mass) => mass.product_into(x, y, packed),
+            Self::General(mass) => symmetric_product_into(mass.matrix, x, y, packed),
+        }
+    }
+
+    /// The mass that each node stands for (n): what a unit acceleration of the whole body takes there, the mean over the
+    /// three axes.
+    pub fn row_sums(&self) -> Vec<f64> {
+        match self {
+            Self::Nodal(mass) => mass.row_sums(),
+            Self::General(mass) => {
+                let forces = self.product(mass.translations().as_ref());
+                let of_node = |node: usize| (0..3).map(|axis| forces[(mass.freedoms * node + axis, axis)]).sum::<f64>();
+                (0..mass.nodes()).map(|node| of_node(node) / 3.0).collect()
+            }
+        }
+    }
+
+    /// Whether a degree of freedom has a mass at all.
+    pub(crate) fn is_massive(&self, row: usize) -> bool {
+        match self {
+            Self::Nodal(mass) => mass.is_massive(row / 3),
+            Self::General(mass) => mass.matrix.val_of_col(row).iter().any(|value| *value != 0.0),
+        }
+    }
+
+    /// Refuses a matrix that gives a motion a negative kinetic energy.
+    pub(crate) fn check_semidefinite(&self) -> Result<(), ModalError> {
+        match self {
+            // Its motions along one axis are those of a scalar mass, which the Gram matrices of the search refuse.
+            Self::Nodal(_) => Ok(()),
+            Self::General(mass) => mass.check_semidefinite(),
+        }
+    }
+}
+
+impl GeneralMass<'_> {
+    /// Number of nodes n.
+    pub(crate) fn nodes(&self) -> usize {
+        self.matrix.ncols() / self.freedoms
+    }
+
+    /// A unit translation along each axis (N×3).
+    pub(crate) fn translations(&self) -> Mat<f64> {
+        Mat::from_fn(self.matrix.ncols(), 3, |i, axis| f64::from(i % self.freedoms == axis))
+    }
+
+    fn check_semidefinite(&self) -> Result<(), ModalError> {
+        let size = self.matrix.ncols();
+        let diagonal: Vec<f64> = (0..size).map(|i| self.matrix.get(i, i).copied().unwrap_or(0.0)).collect();
+        memory::check("the check of the mass matrix", 4 * 24 * self.matrix.row_idx().len())?;
+        let mut entries = Vec::with_capacity(self.matrix.row_idx().len() + size);
+        for entry in self.matrix.triplet_iter().filter(|entry| *entry.val != 0.0) {
+            let scale = (diagonal[entry.row] * diagonal[entry.col]).sqrt();
+            if scale.is_nan() || scale <= 0.0 {
+                let row = if diagonal[entry.row] > 0.0 { entry.col } else { entry.row };
+                return Err(self.negative(row));
+            }
+            entries.push(Triplet::new(entry.row, entry.col, entry.val / scale));
+        }
+        for (i, value) in diagonal.iter().enumerate() {
+            entries.push(Triplet::new(i, i, if *value > 0.0 { SEMIDEFINITE } else { 1.0 }));
+        }
+        let failed = |reason: String| ModalError::Factorization { size, reason };
+        let scaled = SparseColMat::<usize, f64>::try_new_from_triplets(size, size, &entries)
+            .map_err(|reason| failed(reason.to_string()))?;
+        match scaled.sp_cholesky(Side::Lower) {
+            Ok(_) => Ok(()),
+            Err(faer::sparse::linalg::LltError::Numeric(_)) => Err(ModalError::IndefiniteMass { place: None }),
+            Err(faer::sparse::linalg::LltError::Generic(reason)) => Err(failed(reason.to_string())),
+        }
+    }
+
+    fn negative(&self, row: usize) -> ModalError {
+        ModalError::IndefiniteMass { place: Some([row / self.freedoms, row % self.freedoms]) }
+    }
+}
+
+/// Degrees of freedom of a node, 3 or 6, from the number of rows of a matrix.
+pub(crate) fn freedoms(what: &'static str, found: usize, nodes: usize) -> Result<usize, ModalError> {
+    match found {
+        _ if found == 0 => Err(ModalError::Size { what, expected: 3 * nodes, found }),
+        _ if found == 6 * nodes => Ok(6),
+        _ if found == 3 * nodes => Ok(3),
+        _ => Err(ModalError::Size { what, expected: 3 * nodes, found }),
+    }
+}

@@ -1,0 +1,91 @@
+//! The constants of a body whose mass is a scalar for each pair of nodes: it commutes with rotations, and all are exact.
+
+use faer::Mat;
+use nalgebra::Vector3;
+
+use crate::error::ModalError;
+use crate::foretold::of_vectors;
+use crate::inertia_products::{Products, set_translations};
+use crate::mass::NodalMass;
+use crate::pairs::PAIRS;
+use crate::solve::Modes;
+use crate::tall;
+
+/// The products of the modes, whose shapes and positions fit the mass.
+pub(crate) fn nodal_products(modes: &Modes, nodal: &NodalMass, positions: &[[f64; 3]]) -> Result<Products, ModalError> {
+    let rigid = &modes.rigid;
+    let (n, nf) = (positions.len(), modes.shapes.ncols());
+    // Ψ, X and 1 side by side: all constants are products of their rows on one axis with M_s times those on another.
+    let columns = 6 + nf + 2;
+    memory::check("the reduced body", of_vectors(3 * n, 4 * columns))?;
+    let mut all = Mat::zeros(3 * n, columns);
+    all.as_mut().subcols_mut(0, 6).copy_from(&rigid.shapes);
+    all.as_mut().subcols_mut(6, nf).copy_from(&modes.shapes);
+    for (node, x) in positions.iter().enumerate() {
+        let offset = Vector3::from(*x) - rigid.origin;
+        for axis in 0..3 {
+            all[(3 * node + axis, columns - 2)] = offset[axis];
+            all[(3 * node + axis, columns - 1)] = 1.0;
+        }
+    }
+    let m_all = nodal.product(all.as_ref());
+    let on_axis = |matrix: &Mat<f64>, axis: usize| Mat::from_fn(n, columns, |i, j| matrix[(3 * i + axis, j)]);
+    let rows: [Mat<f64>; 3] = std::array::from_fn(|axis| on_axis(&all, axis));
+    let m_rows: [Mat<f64>; 3] = std::array::from_fn(|axis| on_axis(&m_all, axis));
+    let products: [[Mat<f64>; 3]; 3] =
+        std::array::from_fn(|a| std::array::from_fn(|b| tall::inner(rows[a].as_ref(), m_rows[b].as_ref())));
+
+    let modal = 6 + nf;
+    let is_free = rigid.motion.is_free();
+    let rotation_products = std::array::from_fn(|a| {
+        std::array::from_fn(|b| {
+            let mut product = products[a][b].get(..modal, ..modal).to_owned();
+            if is_free {
+                set_translations(&mut product, a, b);
+            }
+            product
+        })
+    });
+    let position_products = std::array::from_fn(|a| {
+        std::array::from_fn(|b| (0..modal).map(|k| products[a][b][(k, modal)]).collect::<Vec<f64>>())
+    });
+    let flexible = |a: usize, b: usize| products[a][b].submatrix(6, 6, nf, nf);
+    let flexible_x = |a: usize, b: usize, k: usize| products[a][b][(6 + k, modal)];
+    // [e_i×]ᵀ[e_j×] = δ_ij I − e_j e_iᵀ
+    let inertia_first = PAIRS.map(|(i, j)| {
+        (0..nf)
+            .map(|k| {
+                let trace: f64 = if i == j { (0..3).map(|a| flexible_x(a, a, k)).sum() } else { 0.0 };
+                trace - 0.5 * (flexible_x(i, j, k) + flexible_x(j, i, k))
+            })
+            .collect()
+    });
+    let inertia_second = PAIRS.map(|(i, j)| {
+        let (ij, ji) = (flexible(i, j), flexible(j, i));
+        Mat::from_fn(nf, nf, |k, l| {
+            let trace: f64 = if i == j { (0..3).map(|a| flexible(a, a)[(k, l)]).sum() } else { 0.0 };
+            trace - 0.5 * (ij[(k, l)] + ji[(k, l)])
+        })
+    });
+    // [e_1×] = e_3 e_2ᵀ − e_2 e_3ᵀ and cyclic.
+    let gyroscopic = [(2, 1), (0, 2), (1, 0)].map(|(a, b)| {
+        let (ab, ba) = (flexible(a, b), flexible(b, a));
+        Mat::from_fn(nf, nf, |k, l| ab[(k, l)] - ba[(k, l)])
+    });
+    // The modes are orthogonal to the rigid motions that the body has: what is left is rounding, and would leak momentum.
+    let turns_freely = rigid.motion.rotations().len() == 3;
+    let unless = |is_zero: bool, value: f64| if is_zero { 0.0 } else { value };
+    let translation_first =
+        std::array::from_fn(|i| (0..nf).map(|k| unless(is_free, products[i][i][(6 + k, modal + 1)])).collect());
+    let rotation_first = [(2, 1), (0, 2), (1, 0)]
+        .map(|(a, b)| (0..nf).map(|k| unless(turns_freely, flexible_x(a, b, k) - flexible_x(b, a, k))).collect());
+    Ok(Products {
+        rotation_products,
+        position_products,
+        inertia_first,
+        inertia_second,
+        gyroscopic,
+        translation_first,
+        rotation_first,
+    })
+}
