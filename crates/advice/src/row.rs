@@ -11,8 +11,6 @@ pub enum Subject {
     StaticCorrection,
     /// Large deflection, which no setting cures: "on" from 10 % of the length, and a warning.
     Deflection,
-    /// Foreshortening, which no setting cures: "on" warns.
-    Foreshortening,
     /// The error of the step: "on" warns.
     Step,
 }
@@ -24,7 +22,6 @@ impl Subject {
             Self::Effect(effect) => effect.name(),
             Self::StaticCorrection => "static_correction",
             Self::Deflection => "deflection",
-            Self::Foreshortening => "foreshortening",
             Self::Step => "step",
         }
     }
@@ -39,12 +36,12 @@ impl Subject {
                 Effect::DeformedInertia => "2c·q/J",
                 Effect::Coriolis => "2 Ω G_kl/ω_k",
                 Effect::GeometricStiffening => "Ω² K_σ,kk/ω_k²",
+                Effect::LargeDeflection => "6.2 (u/L)²",
                 Effect::Translation => "∫F dt + m v > 0",
                 Effect::Rotation => "∫M dt + J ω / (all impulses)",
             },
             Self::StaticCorrection => "1 − Σ(Φ_k·f)²/ω_k² / f·K⁻¹f",
             Self::Deflection => "u/L",
-            Self::Foreshortening => "6.2 (u/L)²",
             Self::Step => "h ω_max, or h Ω",
         }
     }

@@ -25,8 +25,6 @@ pub struct Advice {
     pub static_correction: Row,
     /// The row of [`Subject::Deflection`].
     pub large_deflection: Row,
-    /// The row of [`Subject::Foreshortening`].
-    pub foreshortening: Row,
     /// What each mode is worth (nf).
     pub modes: Vec<Worth>,
     /// How many of the modes to keep: those after them have shares that sum to less than the tolerance.
@@ -48,11 +46,8 @@ pub struct Advice {
 impl Advice {
     /// All rows, those of the effects first.
     pub fn rows(&self) -> impl Iterator<Item = (Subject, &Row)> {
-        let others = [
-            (Subject::StaticCorrection, &self.static_correction),
-            (Subject::Deflection, &self.large_deflection),
-            (Subject::Foreshortening, &self.foreshortening),
-        ];
+        let others =
+            [(Subject::StaticCorrection, &self.static_correction), (Subject::Deflection, &self.large_deflection)];
         Effect::ALL.into_iter().map(|effect| (Subject::Effect(effect), &self.effects[effect])).chain(others)
     }
 
@@ -126,6 +121,7 @@ pub fn advise(case: &Case, tolerance: f64) -> Result<Advice, AdviceError> {
         Effect::DeformedInertia => deformed_inertia(case, &spin, &response, &second, stiffness.as_ref(), stretch),
         Effect::Coriolis => coriolis(case, &spin, &response, &coupling),
         Effect::GeometricStiffening => stiffening(case, &spin, &response, stiffness.as_ref()),
+        Effect::LargeDeflection => foreshortening(deflection),
         Effect::Translation => rigid::translation(case, &sources),
         Effect::Rotation => rigid::rotation(case, &spin, &sources, &response),
     };
@@ -133,7 +129,6 @@ pub fn advise(case: &Case, tolerance: f64) -> Result<Advice, AdviceError> {
         effects: EffectMap::from_fn(|effect| estimate(effect).row(tolerance)),
         static_correction: static_correction(case, &spin, &sources, keep, stretch).row(tolerance),
         large_deflection: bending(case, &response, deflection),
-        foreshortening: foreshortening(deflection).row(tolerance),
         modes,
         keep,
         more_modes: keep > 0 && keep == case.body.flexible(),

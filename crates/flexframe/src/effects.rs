@@ -34,7 +34,9 @@ pub(crate) fn is_on(scene: &Scene, model: &Model, subject: Subject) -> Option<bo
                     (0..flexible).any(damped)
                 }
                 Effect::Gravity => scene.loads.iter().any(|load| matches!(load, Load::Gravity(_))),
-                Effect::DeformedInertia | Effect::Coriolis | Effect::GeometricStiffening => flexible > 0,
+                Effect::DeformedInertia | Effect::Coriolis | Effect::GeometricStiffening | Effect::LargeDeflection => {
+                    flexible > 0
+                }
                 // What is driven cannot be switched.
                 Effect::Translation => !drives(model, |m| matches!(m, DrivenMotion::Slide { .. })),
                 Effect::Rotation => !drives(model, |m| matches!(m, DrivenMotion::Turn { .. })),
@@ -42,7 +44,7 @@ pub(crate) fn is_on(scene: &Scene, model: &Model, subject: Subject) -> Option<bo
             can_act.then_some(on)
         }
         Subject::StaticCorrection => (flexible > 0).then(|| model.static_shapes() > 0),
-        Subject::Deflection | Subject::Foreshortening | Subject::Step => None,
+        Subject::Deflection | Subject::Step => None,
     }
 }
 

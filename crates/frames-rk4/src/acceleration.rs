@@ -119,8 +119,7 @@ impl ConservativeBody {
             Some(first) => (0..nf).map(|k| 2.0 * (first[k] + n_q[k]) * e.velocity[k]).sum(),
             None => 0.0,
         };
-        let changing =
-            dot(s, &e.acceleration) - dot(s, solved) * acceleration + dot(s_ext, &e.curvature) + stiffened;
+        let changing = dot(s, &e.acceleration) - dot(s, solved) * acceleration + dot(s_ext, &e.curvature) + stiffened;
         e.driven_momentum = momentum;
         (inertia_rate * speed + inertia * acceleration + changing - moment) * speed
     }

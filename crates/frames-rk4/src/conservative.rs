@@ -689,11 +689,15 @@ impl ConservativeBody {
         let mut pi_rate = if self.axes.len() == 3 { pi.cross(&w) } else { Vector3::zeros() };
         let mut power = 0.0;
         let (mut force, mut angular_impulse) = (Vector3::zeros(), Vector3::zeros());
+        if self.manifold.is_some() {
+            e.momentum.fill(0.0);
+        }
         if !self.loads.is_empty() {
             let first_attitude = attitude.global_to_body();
             let body_from_global =
                 if turning { transformation_matrix(&theta) * first_attitude } else { first_attitude };
-            let coordinates = Coordinates { first: 6, displacement: &e.extended, velocity: &e.velocity };
+            let on_manifold = self.manifold.as_ref().map(|_| [q, &e.modal_velocity[..]]);
+            let coordinates = Coordinates { first: 6, displacement: &e.extended, velocity: &e.velocity, on_manifold };
             let motion = Kinematics {
                 time: t,
                 branch_time: inside,
@@ -705,6 +709,9 @@ impl ConservativeBody {
                 unit: false,
             };
             let mut applied = Applied::new(coordinates, Vector3::zeros(), &mut modal_force);
+            if self.manifold.is_some() {
+                applied = applied.on_manifold(&mut e.momentum);
+            }
             self.loads.iter().for_each(|load| load.apply(&motion, &mut applied));
             let moment = applied.moment_body;
             power = applied.modal_power + moment.dot(&e.omega_body);
@@ -750,7 +757,11 @@ impl ConservativeBody {
 
     /// S and M⁻¹S on the modes, a row for each axis.
     pub(crate) fn momenta_of_turning<'e>(&self, e: &'e Evaluation) -> (&'e [f64], &'e [f64]) {
-        if self.manifold.is_some() { (&e.s, &e.solved_s) } else { (&e.products[..self.s_rows], &e.products[..self.s_rows]) }
+        if self.manifold.is_some() {
+            (&e.s, &e.solved_s)
+        } else {
+            (&e.products[..self.s_rows], &e.products[..self.s_rows])
+        }
     }
 
     /// q̇ and ν, at the spin of `e`.
@@ -816,7 +827,7 @@ impl ConservativeBody {
             e.momentum = force;
             return;
         };
-        manifold.project(&e.place, &force, &mut e.momentum);
+        manifold.add_projection(&e.place, &force, &mut e.momentum);
         let mu = &mut force;
         mu.copy_from_slice(&e.velocity);
         for (s, w) in e.products[..self.s_rows].chunks_exact(mu.len()).zip(e.spin.iter()) {
@@ -890,7 +901,9 @@ impl ConservativeBody {
         let lowest = self.circular_frequencies.iter().copied().reduce(f64::min);
         let period = lowest.map_or(end, |omega| (std::f64::consts::TAU / omega).min(end));
         let still = vec![0.0; self.extended()];
-        let coordinates = Coordinates { first: 6, displacement: &still, velocity: &still };
+        let modes = &still[..self.flexible()];
+        let on_manifold = self.manifold.as_ref().map(|_| [modes, modes]);
+        let coordinates = Coordinates { first: 6, displacement: &still, velocity: &still, on_manifold };
         // At rest, in the body's own axes: a dead load does as much in any attitude, but for how its modes see it.
         let motion = Kinematics {
             time: 0.0,

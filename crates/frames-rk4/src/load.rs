@@ -127,6 +127,16 @@ pub(crate) struct Coordinates<'a> {
     pub first: usize,
     pub displacement: &'a [f64],
     pub velocity: &'a [f64],
+    /// q and q̇ of the flexible modes, on a manifold of large modes, where the others are ξ and ν of the extended shapes.
+    pub on_manifold: Option<[&'a [f64]; 2]>,
+}
+
+impl<'a> Coordinates<'a> {
+    /// q and q̇ of the flexible modes, which displacements of second order go by.
+    fn modes(&self) -> [&'a [f64]; 2] {
+        let rigid = 6 - self.first;
+        self.on_manifold.unwrap_or_else(|| [&self.displacement[rigid..], &self.velocity[rigid..]])
+    }
 }
 
 impl Kinematics<'_> {
@@ -153,7 +163,8 @@ impl Kinematics<'_> {
         let Coordinates { first, velocity, .. } = self.coordinates;
         let mut modal = sum(&point.columns()[first..], velocity);
         if let Some(second_order) = point.second_order() {
-            modal += second_order.velocity(self.modal_displacement(), self.modal_velocity());
+            let [q, rate] = self.coordinates.modes();
+            modal += second_order.velocity(q, rate);
         }
         let turning = if first > 0 { self.omega_body.cross(&self.arm_body(point)) } else { Vector3::zeros() };
         let of_origin = if first > 0 { self.velocity_global } else { Vector3::zeros() };
@@ -162,18 +173,18 @@ impl Kinematics<'_> {
 
     /// Displacements of the flexible modes (nf).
     pub fn modal_displacement(&self) -> &[f64] {
-        &self.coordinates.displacement[6 - self.coordinates.first..]
+        self.coordinates.modes()[0]
     }
 
     /// Velocities of the flexible modes (nf).
     pub fn modal_velocity(&self) -> &[f64] {
-        &self.coordinates.velocity[6 - self.coordinates.first..]
+        self.coordinates.modes()[1]
     }
 
     /// From the origin to a point of the deformed body, body components.
     fn arm_body(&self, point: &PointShapes) -> Vector3<f64> {
         let Coordinates { first, displacement, .. } = self.coordinates;
-        let second_order = |second: &SecondOrder| second.displacement(self.modal_displacement());
+        let second_order = |second: &SecondOrder| second.displacement(self.coordinates.modes()[0]);
         point.position_body()
             + sum(&point.columns()[first..], displacement)
             + point.second_order().map_or_else(Vector3::zeros, second_order)
@@ -196,6 +207,8 @@ pub struct Applied<'a> {
     pub(crate) modal_power: f64,
     /// Ψᵀf is added here, of the modes of `coordinates`.
     modal_force: &'a mut [f64],
+    /// Forces on q itself, on a manifold.
+    on_modes: Option<&'a mut [f64]>,
 }
 
 impl<'a> Applied<'a> {
@@ -210,7 +223,13 @@ impl<'a> Applied<'a> {
             moment_body: zero,
             modal_power: 0.0,
             modal_force,
+            on_modes: None,
         }
+    }
+
+    /// The same on a manifold of large modes: forces on q itself are added to `on_modes`.
+    pub(crate) fn on_manifold(self, on_modes: &'a mut [f64]) -> Self {
+        Self { on_modes: Some(on_modes), ..self }
     }
 
     /// Adds a force at a point, body components.
@@ -247,19 +266,24 @@ impl<'a> Applied<'a> {
         self.project(field.modal[first..].iter().map(|f| f * factor));
         let velocity = self.coordinates.velocity;
         let modal_force = &mut self.modal_force[6 - first..];
-        for (column, q) in field.modal_change.chunks_exact(field.moment_change.len().max(1)).zip(flexible) {
+        for (column, q) in field.load_stiffness.chunks_exact(field.moment_change.len().max(1)).zip(flexible) {
             for ((f, v), change) in modal_force.iter_mut().zip(&velocity[6 - first..]).zip(column) {
                 let change = change * (q * factor);
                 *f += change;
                 self.modal_power += change * v;
             }
         }
+        self.push(field.second_order.as_ref(), &(Vector3::x() * factor));
     }
 
     /// Adds a modal force on one flexible mode, numbered from 0. It has no resultant.
     pub fn modal_force(&mut self, flexible_mode: usize, force: f64) {
-        let k = flexible_mode + 6 - self.coordinates.first;
-        if let (Some(f), Some(v)) = (self.modal_force.get_mut(k), self.coordinates.velocity.get(k)) {
+        let [_, rate] = self.coordinates.modes();
+        let modes = match &mut self.on_modes {
+            Some(on_modes) => on_modes,
+            None => &mut self.modal_force[6 - self.coordinates.first..],
+        };
+        if let (Some(f), Some(v)) = (modes.get_mut(flexible_mode), rate.get(flexible_mode)) {
             *f += force * self.weight;
             self.modal_power += force * self.weight * v;
         }
@@ -268,10 +292,12 @@ impl<'a> Applied<'a> {
     /// Adds the modal force of a force or moment on a displacement or rotation of second order, which is returned.
     fn push(&mut self, second_order: Option<&SecondOrder>, vector: &Vector3<f64>) -> Vector3<f64> {
         let Some(second_order) = second_order else { return Vector3::zeros() };
-        let rigid = 6 - self.coordinates.first;
-        let Coordinates { displacement, velocity, .. } = self.coordinates;
-        let (bent, power) =
-            second_order.push(vector, &displacement[rigid..], &velocity[rigid..], &mut self.modal_force[rigid..]);
+        let [q, rate] = self.coordinates.modes();
+        let force = match &mut self.on_modes {
+            Some(on_modes) => on_modes,
+            None => &mut self.modal_force[6 - self.coordinates.first..],
+        };
+        let (bent, power) = second_order.push(vector, q, rate, force);
         self.modal_power += power;
         bent
     }

@@ -102,6 +102,21 @@ impl Manifold {
         })))
     }
 
+    /// The same manifold with another body in the extended shapes, such as one that its spin stiffens.
+    ///
+    /// # Errors
+    /// [`SetupError`] for another number of shapes.
+    pub fn with_body(&self, body: ReducedBody) -> Result<Self, SetupError> {
+        let (expected, found) = (self.extended(), body.flexible());
+        if found != expected {
+            return Err(SetupError::Length { what: "the body in the extended shapes", expected, found });
+        }
+        let Constants { modes, large, slopes, cubic, quartic, .. } = &*self.0;
+        let (large, slopes) = (large.clone(), slopes.clone());
+        let (cubic, quartic) = (cubic.clone(), quartic.clone());
+        Ok(Self(Arc::new(Constants { body, modes: *modes, large, slopes, cubic, quartic })))
+    }
+
     /// The body in the extended shapes.
     pub fn body(&self) -> &ReducedBody {
         &self.0.body
@@ -140,8 +155,7 @@ impl Manifold {
         let count = large.len();
         for i in 0..count {
             for j in 0..=i {
-                let mut sum = f64::from(u8::from(i == j))
-                    + dot(&place.slopes[i][*modes..], &place.slopes[j][*modes..]);
+                let mut sum = f64::from(u8::from(i == j)) + dot(&place.slopes[i][*modes..], &place.slopes[j][*modes..]);
                 for k in 0..j {
                     sum -= place.factor[i * count + k] * place.factor[j * count + k];
                 }

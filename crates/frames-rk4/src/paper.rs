@@ -145,7 +145,12 @@ impl FrameSteps for PaperSteps {
             rotation.set(&turn);
             advance(rotation, state, fraction, stage, unrotated, next_displacement, next_velocity);
             let linear = LinearMotion {
-                coordinates: Coordinates { first: 0, displacement: next_displacement, velocity: next_velocity },
+                coordinates: Coordinates {
+                    first: 0,
+                    displacement: next_displacement,
+                    velocity: next_velocity,
+                    on_manifold: None,
+                },
                 branch_time: inside,
                 body_from_global: &(turn * global_to_body),
                 origin_global: state.origin_global,
@@ -198,6 +203,7 @@ impl FrameSteps for PaperSteps {
                 first: 0,
                 displacement: &state.modal_displacement,
                 velocity: &state.modal_velocity,
+                on_manifold: None,
             },
             branch_time: inside,
             body_from_global: &global_to_body,

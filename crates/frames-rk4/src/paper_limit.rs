@@ -137,7 +137,7 @@ impl FrameSteps for LimitSteps {
         let (q, y) = (&state.modal_displacement, &state.modal_velocity);
         state.omega_body = motion.angular_rate(&rotation(y));
         let linear = LinearMotion {
-            coordinates: Coordinates { first: 0, displacement: q, velocity: y },
+            coordinates: Coordinates { first: 0, displacement: q, velocity: y, on_manifold: None },
             branch_time: inside,
             body_from_global: &global_to_body,
             origin_global: state.origin_global,
@@ -172,7 +172,7 @@ impl LimitSteps {
         let global_to_body = transformation_matrix(theta) * state.attitude.global_to_body();
         let omega = motion.angular_rate(&rotation(y));
         let linear = LinearMotion {
-            coordinates: Coordinates { first: 0, displacement: q, velocity: y },
+            coordinates: Coordinates { first: 0, displacement: q, velocity: y, on_manifold: None },
             branch_time: inside,
             body_from_global: &global_to_body,
             origin_global: state.origin_global,

@@ -7,6 +7,7 @@ mod error;
 mod history;
 mod initial;
 mod loads;
+mod manifold;
 mod mesh;
 mod mesh_model;
 mod meshed;

@@ -69,6 +69,14 @@ pub(crate) struct ModesSection {
     pub rayleigh: Option<Rayleigh>,
     #[serde(default)]
     pub static_correction: Choice,
+    pub large: Option<CountOrList>,
+}
+
+#[derive(Deserialize)]
+#[serde(untagged, expecting = "a number of modes or a list of their numbers")]
+pub(crate) enum CountOrList {
+    Count(usize),
+    List(Vec<usize>),
 }
 
 pub(crate) enum CountOrAuto {

@@ -227,7 +227,8 @@ fn on_mode(body: &ReducedBody, mode: usize, history: History) -> SharedLoad {
         moment_body: Vector3::zeros(),
         modal,
         force_change: Vec::new(),
-        modal_change: Vec::new(),
+        load_stiffness: Vec::new(),
+        second_order: None,
         moment_change: vec![Vector3::zeros(); nf],
     };
     Arc::new(FieldLoad { field, history })

@@ -68,7 +68,8 @@ fn load(history: History) -> SharedLoad {
         modal: vec![0.0; 16],
         force_change: Vec::new(),
         moment_change: vec![Vector3::zeros(); 10],
-        modal_change: Vec::new(),
+        load_stiffness: Vec::new(),
+        second_order: None,
     };
     Arc::new(FieldLoad { field, history })
 }

@@ -2,6 +2,8 @@
 
 use nalgebra::Vector3;
 
+use crate::second_order::SecondOrder;
+
 /// Forces f_i on nodes, body components, in modal coordinates.
 #[derive(Debug, Clone)]
 pub struct BodyField {
@@ -15,7 +17,8 @@ pub struct BodyField {
     pub force_change: Vec<Vector3<f64>>,
     /// What each flexible mode adds to the moment, Σ Φ_k,i × f_i + X_i × ∂f_i/∂q_k (nf).
     pub moment_change: Vec<Vector3<f64>>,
-    /// What the flexible modes add to the modal forces, column by column (nf×nf, or none): L − K, of the load stiffness
-    /// L = Ψᵀ ∂f/∂q and the geometric stiffness K of the field's own stress.
-    pub modal_change: Vec<f64>,
+    /// L = Ψᵀ ∂f/∂q of a field that follows the deformation, column by column (nf×nf, or none).
+    pub load_stiffness: Vec<f64>,
+    /// The geometric stiffness of the field's own stress, along x.
+    pub second_order: Option<SecondOrder>,
 }

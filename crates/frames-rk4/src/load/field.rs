@@ -31,24 +31,25 @@ impl Load for FieldLoad {
 
     fn check(&self, flexible: usize) -> Result<(), SetupError> {
         self.history.check()?;
-        let BodyField { force_body, moment_body, modal, force_change, moment_change, modal_change } = &self.field;
+        let BodyField { force_body, moment_body, modal, force_change, moment_change, load_stiffness, second_order } =
+            &self.field;
         let modes = moment_change.len().min(modal.len().saturating_sub(6));
         for (what, found, expected) in [
             ("the changes of the resultant of a field of forces", force_change.len(), modes),
-            ("the changes of the modal forces of a field of forces", modal_change.len(), modes * modes),
+            ("the load stiffness of a field of forces", load_stiffness.len(), modes * modes),
         ] {
             if found != 0 && found != expected {
                 return Err(SetupError::Length { what, expected, found });
             }
         }
         let vectors = force_change.iter().chain(moment_change).chain([moment_body]).flat_map(|vector| vector.iter());
-        if let Some(found) = vectors.chain(modal).chain(modal_change).copied().find(|f| !f.is_finite()) {
+        if let Some(found) = vectors.chain(modal).chain(load_stiffness).copied().find(|f| !f.is_finite()) {
             return Err(SetupError::Value { what: "a field of forces", found, expected: "a finite number" });
         }
-        check_vector("a field of forces", force_body, modes, None, flexible)
+        check_vector("a field of forces", force_body, modes, second_order.as_ref(), flexible)
     }
 
     fn matrix_entries(&self) -> usize {
-        self.field.modal_change.len()
+        self.field.load_stiffness.len() + self.field.second_order.as_ref().map_or(0, |k| k.entries())
     }
 }

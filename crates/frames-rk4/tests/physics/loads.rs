@@ -29,7 +29,8 @@ fn field() -> SharedLoad {
         moment_body: Vector3::new(-0.3, 0.2, 0.6),
         modal: vec![0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.3, -0.2, 0.4],
         force_change: Vec::new(),
-        modal_change: Vec::new(),
+        load_stiffness: Vec::new(),
+        second_order: None,
         moment_change: (0..3).map(|k| Vector3::new(0.1, 0.05 * k as f64, -0.1)).collect(),
     };
     Arc::new(FieldLoad { field, history: PULSE })
@@ -43,7 +44,8 @@ fn following_field() -> SharedLoad {
         modal: vec![0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.3, -0.2, 0.4],
         force_change: (0..3).map(|k| Vector3::new(0.3 - 0.1 * k as f64, 0.2, -0.1)).collect(),
         moment_change: (0..3).map(|k| Vector3::new(0.1, 0.05 * k as f64, -0.1)).collect(),
-        modal_change: (0..9).map(|k| 0.4 * (1.7 * f64::from(k)).sin()).collect(),
+        load_stiffness: (0..9).map(|k| 0.4 * (1.7 * f64::from(k)).sin()).collect(),
+        second_order: Some(crate::stress::second_order(3)),
     };
     Arc::new(FieldLoad { field, history: PULSE })
 }

@@ -5,7 +5,8 @@ use std::sync::Arc;
 use faer::Mat;
 use fem_tet10::{Location, MeanRotation, Mesh};
 use frames_rk4::{
-    BodyField, Effect, FieldLoad, LoadFrame, PointForce, PointMoment, PointShapes, RotationShapes, SecondOrder, SharedLoad,
+    BodyField, Effect, FieldLoad, LoadFrame, PointForce, PointMoment, PointShapes, RotationShapes, SecondOrder,
+    SharedLoad,
 };
 use modal::{BodyPoint, Modes, ReducedBody};
 use nalgebra::Vector3;
@@ -230,7 +231,9 @@ impl MeshLoad {
     pub fn name_along(&self, vector: &Vector3<f64>) -> String {
         let rounded = |x: f64| (x * 100.0).round() / 100.0 + 0.0;
         match vector.try_normalize(0.0) {
-            Some(d) => format!("{} along ({}, {}, {}) of the body", self.name, rounded(d.x), rounded(d.y), rounded(d.z)),
+            Some(d) => {
+                format!("{} along ({}, {}, {}) of the body", self.name, rounded(d.x), rounded(d.y), rounded(d.z))
+            }
             None => self.name.clone(),
         }
     }
@@ -386,14 +389,28 @@ impl MeshLoad {
                 let rigid = [body.translation_basis.tr_mul(&force_body), body.rotation_basis.tr_mul(&moment_body)];
                 let flexible = (0..nf).map(|k| acting().map(|(node, f)| shape(modes, node, k).dot(f)).sum());
                 let modal = rigid.iter().flat_map(|v| v.iter().copied()).chain(flexible).collect();
-                let (force_change, moment_change) = match self.follower_change(model, body, modes)? {
+                let change = self.follower_change(model, body, modes)?;
+                let (load_stiffness, second_order) = match (&change, stress.first()) {
+                    (Some(FollowerChange { load_stiffness, .. }), Some(directed)) => {
+                        let entries = load_stiffness.col_iter().flat_map(|c| c.iter().copied().collect::<Vec<_>>());
+                        let second_order = SecondOrder::new(vec![(Vector3::x(), directed.stiffness.clone())])?;
+                        (entries.collect(), Some(second_order))
+                    }
+                    _ => (Vec::new(), None),
+                };
+                let (force_change, moment_change) = match change {
                     Some(change) => (change.force, change.moment),
                     None => (Vec::new(), vec![Vector3::zeros(); nf]),
                 };
-                // −(K − L), column by column.
-                let entries = |k: &Mat<f64>| k.col_iter().flat_map(|c| c.iter()).map(|k| -k).collect();
-                let modal_change = stress.first().map_or_else(Vec::new, |directed| entries(&directed.stiffness));
-                let field = BodyField { force_body, moment_body, modal, force_change, moment_change, modal_change };
+                let field = BodyField {
+                    force_body,
+                    moment_body,
+                    modal,
+                    force_change,
+                    moment_change,
+                    load_stiffness,
+                    second_order,
+                };
                 Arc::new(FieldLoad { field, history })
             }
         })

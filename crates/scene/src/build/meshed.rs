@@ -52,20 +52,25 @@ pub(super) fn build(
     let survey = Survey::new(&model, modes, on_all_modes, &mut progress)?;
     let has_statics = survey.statics.any();
     let decision = Decision::new(scene, &survey);
-    let Reduction { modes, modal: reduced, backbones, stress, advice } =
+    let Reduction { modes, modal: reduced, large, backbones, stress, advice } =
         Reduction::new(&model, survey, &decision)?;
     if has_statics {
         times.statics = started.elapsed();
     }
 
     let started = Instant::now();
-    let points = points(scene, &mesh, &modes, &reduced.body)?;
+    let points = match &large {
+        Some(large) => points(scene, &mesh, &large.shapes.modes, large.manifold.body())?,
+        None => points(scene, &mesh, &modes, &reduced.body)?,
+    };
     let reference_points = reference_points(scene, &mesh, &reduced.body);
     times.reduction += started.elapsed();
 
-    let Decision { effects, lacks, .. } = decision;
+    let Decision { mut effects, lacks, .. } = decision;
+    effects[Effect::LargeDeflection] = large.is_some();
+    let large_deflection = large.map(|large| large.manifold);
     let mut model = Model {
-        physics: Physics { effects, drive: model.drive, drive_stiffness: stress.of_drive, large_deflection: None },
+        physics: Physics { effects, drive: model.drive, drive_stiffness: stress.of_drive, large_deflection },
         points,
         reference_points,
         advice,

@@ -10,6 +10,7 @@ use super::damping::damping_ratios;
 use super::error::{BuildError, modal};
 use super::initial::initial;
 use super::loads::{BodyLoads, MeshLoad};
+use super::manifold::LargeDeflection;
 use super::mesh_model::MeshModel;
 use super::model::Size;
 use super::stress::Stress;
@@ -53,6 +54,16 @@ impl ModalModel {
         Ok(Self { loads: loads(model, &self.body, modes, stress)?, ..self })
     }
 
+    /// The same model with loads in the extended shapes of large modes.
+    pub fn on_manifold(
+        self,
+        model: &MeshModel<'_>,
+        large: &LargeDeflection,
+        stress: &Stress,
+    ) -> Result<Self, BuildError> {
+        Ok(Self { loads: loads(model, large.manifold.body(), &large.shapes.modes, stress)?, ..self })
+    }
+
     /// The run of the scene as [`advice`] sees it, where nothing is known of static answers and backbones.
     pub fn case<'a>(&'a self, model: &'a MeshModel<'_>) -> Case<'a> {
         Case {
@@ -73,14 +84,8 @@ impl ModalModel {
 }
 
 /// The loads on the modes of a body.
-fn loads(
-    model: &MeshModel<'_>,
-    body: &ReducedBody,
-    modes: &Modes,
-    stress: &Stress,
-) -> Result<BodyLoads, BuildError> {
-    let reduced = |(i, load): (usize, &MeshLoad)| {
-        Ok((load.reduced(model, body, modes, stress.of_load(i))?, load.is_gravity()))
-    };
+fn loads(model: &MeshModel<'_>, body: &ReducedBody, modes: &Modes, stress: &Stress) -> Result<BodyLoads, BuildError> {
+    let reduced =
+        |(i, load): (usize, &MeshLoad)| Ok((load.reduced(model, body, modes, stress.of_load(i))?, load.is_gravity()));
     model.loads.iter().enumerate().map(reduced).collect()
 }

@@ -71,9 +71,12 @@ impl Model {
         self.body.circular_frequencies.iter().map(|omega| omega / std::f64::consts::TAU).collect()
     }
 
-    /// The same body with its first `flexible` modes only.
+    /// The same body with its first `flexible` modes only. With fewer modes than it has, the manifold of large modes goes:
+    /// its shapes belong to all of them.
     pub fn truncated(&self, flexible: usize) -> Self {
         let flexible = flexible.min(self.body.flexible());
+        let large_deflection = self.physics.large_deflection.clone().filter(|_| flexible == self.body.flexible());
+        let extended = large_deflection.as_ref().map_or(flexible, |manifold| manifold.body().flexible());
         let meshed = self.meshed.as_ref().map(|meshed| Meshed {
             mesh: meshed.mesh.clone(),
             modes: truncated_modes(&meshed.modes, flexible),
@@ -81,14 +84,15 @@ impl Model {
         });
         let stiffness = self.physics.drive_stiffness.as_ref();
         let physics = Physics {
-            drive_stiffness: stiffness.map(|k| k.get(..flexible, ..flexible).to_owned()),
+            drive_stiffness: stiffness.map(|k| k.get(..extended, ..extended).to_owned()),
+            large_deflection,
             ..self.physics.clone()
         };
         Self {
             meshed,
             physics,
             body: self.body.truncated(flexible),
-            points: self.points.iter().map(|(name, point)| (name.clone(), point.truncated(flexible))).collect(),
+            points: self.points.iter().map(|(name, point)| (name.clone(), point.truncated(extended))).collect(),
             loads: self.loads.clone(),
             damping_ratios: self.damping_ratios[..flexible].to_vec(),
             size: Size { peaks: self.size.peaks[..flexible].to_vec(), ..self.size },

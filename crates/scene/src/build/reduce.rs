@@ -6,6 +6,7 @@ use modal::{Modes, Solver};
 
 use super::decide::Decision;
 use super::error::{BuildError, modal};
+use super::manifold::{LargeDeflection, large_modes};
 use super::mesh_model::MeshModel;
 use super::modal_model::ModalModel;
 use super::model::truncated_modes;
@@ -23,6 +24,8 @@ pub(super) struct Reduction {
     /// Of the modes that are kept.
     pub backbones: Vec<Option<Backbone>>,
     pub stress: Stress,
+    /// The manifold of the large modes, if any are.
+    pub large: Option<LargeDeflection>,
     /// With what only this body tells.
     pub advice: Advice,
 }
@@ -46,9 +49,22 @@ impl Reduction {
         };
         let stress = Stress::new(model, &statics, &modes, &modal)?;
         refuse_without_stress(model, &stress)?;
-        let modal = if stress.any() { modal.with_stress(model, &modes, &stress)? } else { modal };
+        let large = large_modes(model.scene, decision.keep, &advice, &backbones);
+        let large = if large.is_empty() { None } else { Some(LargeDeflection::new(model, &modes, &large)?) };
+        let (modal, stress, large) = match large {
+            Some(large) => {
+                let large = match (&statics.of_spin, &modal.body.stress_stiffness) {
+                    (Some(of_spin), Some(k)) => large.stiffened(model, of_spin.answers.as_ref(), k)?,
+                    _ => large,
+                };
+                let stress = large.stressed(model, &statics, stress);
+                (modal.on_manifold(model, &large, &stress)?, stress, Some(large))
+            }
+            None if stress.any() => (modal.with_stress(model, &modes, &stress)?, stress, None),
+            None => (modal, stress, None),
+        };
         let findings = Findings { deflection, stress: stress.row.clone(), lacks_stretch: decision.lacks.is_some() };
-        Ok(Self { modes, modal, backbones, stress, advice: advice.completed(findings) })
+        Ok(Self { modes, modal, large, backbones, stress, advice: advice.completed(findings) })
     }
 }
 

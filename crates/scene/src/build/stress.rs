@@ -2,8 +2,8 @@
 
 use advice::{Row, StressField, StressSource, stress, stress_row};
 use faer::{Mat, MatRef};
-use frames_rk4::Effect;
 use fem_tet10::{AssemblyError, geometric_stiffness_product};
+use frames_rk4::Effect;
 use modal::{ModalError, Modes};
 use nalgebra::Vector3;
 
@@ -28,7 +28,7 @@ pub(super) struct Stress {
 }
 
 /// A force or moment in body axes, where the history of the load is 1, and the stiffness by its stress. A field of forces
-/// has no direction; its stiffness is less its own load stiffness.
+/// has no direction.
 pub(super) struct Directed {
     pub vector: Vector3<f64>,
     pub stiffness: Mat<f64>,
@@ -36,17 +36,12 @@ pub(super) struct Directed {
 
 impl Stress {
     /// By the static answers to the loads and to the drive.
-    pub fn new(
-        model: &MeshModel<'_>,
-        statics: &Statics,
-        modes: &Modes,
-        body: &ModalModel,
-    ) -> Result<Self, BuildError> {
+    pub fn new(model: &MeshModel<'_>, statics: &Statics, modes: &Modes, body: &ModalModel) -> Result<Self, BuildError> {
         if !physics::may_stress(model.scene) || modes.shapes.ncols() == 0 {
             return Ok(Self::default());
         }
         let mut found = Self { buckling_ratio: buckling_ratio(model, statics, modes)?, ..Self::default() };
-        let mut names = Vec::new();
+        let (mut names, mut shown) = (Vec::new(), Vec::new());
         if let Some(of_loads) = &statics.of_loads {
             for (i, load) in model.loads.iter().enumerate() {
                 let answers = of_loads.answers_to(i);
@@ -57,11 +52,13 @@ impl Stress {
                 }
                 let stiffness = model.stress_stiffness(answers, modes)?;
                 let mut directed = Vec::new();
-                for (vector, mut stiffness) in of_loads.vectors(i, load).into_iter().zip(stiffness) {
-                    if let Some(change) = load.follower_change(model, &body.body, modes)? {
-                        stiffness -= change.load_stiffness;
-                    }
+                for (vector, stiffness) in of_loads.vectors(i, load).into_iter().zip(stiffness) {
                     names.push((StressSource::Load(i), load.name_along(&vector)));
+                    // A pressure that follows its surface has a stiffness of its own.
+                    shown.push(match load.follower_change(model, &body.body, modes)? {
+                        Some(change) => &stiffness - change.load_stiffness,
+                        None => stiffness.clone(),
+                    });
                     directed.push(Directed { vector, stiffness });
                 }
                 found.of_loads.push(directed);
@@ -70,8 +67,9 @@ impl Stress {
         if let Some(answer) = &statics.of_drive {
             names.push((StressSource::Drive, "the acceleration of the drive".to_owned()));
             found.of_drive = model.stress_stiffness(answer.as_ref(), modes)?.pop();
+            shown.extend(found.of_drive.clone());
         }
-        found.decided(model, body, &names)
+        found.decided(model, body, &names, &shown)
     }
 
     /// Without what the scene leaves open and does not call for.
@@ -80,9 +78,9 @@ impl Stress {
         model: &MeshModel<'_>,
         body: &ModalModel,
         names: &[(StressSource, String)],
+        stiffness: &[Mat<f64>],
     ) -> Result<Self, BuildError> {
         let effects = &model.scene.effects;
-        let stiffness = self.of_loads.iter().flatten().map(|directed| &directed.stiffness).chain(&self.of_drive);
         let fields: Vec<StressField<'_>> = names
             .iter()
             .zip(stiffness)
@@ -97,7 +95,6 @@ impl Stress {
         };
         let kept: Vec<bool> = (0..self.of_loads.len()).map(|i| matters(StressSource::Load(i))).collect();
         let drive_is_kept = matters(StressSource::Drive);
-        drop(fields);
         for (directed, _) in self.of_loads.iter_mut().zip(kept).filter(|(_, kept)| !kept) {
             directed.clear();
         }

@@ -61,6 +61,7 @@ impl Check<'_> {
         let paper = "the paper's formulation";
         let cure = "set `formulation = \"conservative\"`";
         self.not_on(effects, Effect::GeometricStiffening, true, paper, cure)?;
+        self.not_on(effects, Effect::LargeDeflection, true, paper, cure)?;
         [Effect::DeformedInertia, Effect::Coriolis, Effect::Translation, Effect::Rotation]
             .into_iter()
             .try_for_each(|effect| self.not_off(effects, effect, true, paper))
@@ -75,7 +76,13 @@ impl Check<'_> {
         };
         self.not_on(effects, Effect::Flexibility, no_modes, found, cure)?;
         let is_rigid = no_modes || effects.choices[Effect::Flexibility] == Choice::Off;
-        for effect in [Effect::Damping, Effect::DeformedInertia, Effect::Coriolis, Effect::GeometricStiffening] {
+        for effect in [
+            Effect::Damping,
+            Effect::DeformedInertia,
+            Effect::Coriolis,
+            Effect::GeometricStiffening,
+            Effect::LargeDeflection,
+        ] {
             self.not_on(effects, effect, is_rigid, found, cure)?;
         }
         let is_deformed =

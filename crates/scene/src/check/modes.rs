@@ -1,14 +1,18 @@
 //! The rules on `[modes]`.
 
+use frames_rk4::MOST_LARGE;
+
 use super::Check;
 use crate::effects::Choice;
 use crate::error::SceneError;
-use crate::modes::{Damping, Flexible, Modes, Rayleigh};
+use crate::modes::{Damping, Flexible, Large, Modes, Rayleigh};
 use crate::scene::Body;
-use crate::section::{CountOrAuto, ModesSection, NumberOrList};
+use crate::section::{CountOrAuto, CountOrList, ModesSection, NumberOrList};
 
 /// The largest number of modes with `flexible = "auto"`, where the scene gives none.
 const DEFAULT_MOST: usize = 40;
+/// How many modes may be large, where the scene does not say which.
+const DEFAULT_LARGE: usize = 4;
 
 impl Check<'_> {
     pub fn modes(&self, section: Option<ModesSection>, body: &Body) -> Result<Modes, SceneError> {
@@ -19,6 +23,7 @@ impl Check<'_> {
                     flexible: Flexible::Count(0),
                     damping: Damping::Uniform(0.0),
                     static_correction: Choice::Auto,
+                    large: Large::Count(DEFAULT_LARGE),
                 }),
                 false => Err(self.missing("", "modes")),
             };
@@ -40,7 +45,31 @@ impl Check<'_> {
             ));
         }
         let damping = self.damping(section.damping_ratio, section.damping_table, section.rayleigh, flexible)?;
-        Ok(Modes { flexible, damping, static_correction })
+        let large = self.large(section.large)?;
+        Ok(Modes { flexible, damping, static_correction, large })
+    }
+
+    fn large(&self, large: Option<CountOrList>) -> Result<Large, SceneError> {
+        let refuse = |found: String| {
+            self.document.place("modes.large").refuse(
+                found,
+                format!("a number from 1 to {MOST_LARGE}, or a list of as many numbers of modes that ascend from 1"),
+                "name the modes that bend the body far",
+            )
+        };
+        match large {
+            None => Ok(Large::Count(DEFAULT_LARGE)),
+            Some(CountOrList::Count(count)) if (1..=MOST_LARGE).contains(&count) => Ok(Large::Count(count)),
+            Some(CountOrList::Count(count)) => Err(refuse(count.to_string())),
+            Some(CountOrList::List(list)) => {
+                let ascends = list.windows(2).all(|pair| pair[0] < pair[1]) && list.first().is_some_and(|k| *k > 0);
+                if ascends && list.len() <= MOST_LARGE {
+                    Ok(Large::List(list))
+                } else {
+                    Err(refuse(format!("{list:?}")))
+                }
+            }
+        }
     }
 
     fn flexible(&self, flexible: CountOrAuto, most: Option<usize>) -> Result<Flexible, SceneError> {

@@ -5,6 +5,7 @@ mod backbones;
 mod damping;
 mod histories;
 mod loads;
+mod manifold;
 mod off;
 mod statics;
 mod step;
