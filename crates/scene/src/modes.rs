@@ -13,14 +13,14 @@ pub struct Modes {
     pub damping: Damping,
     /// Whether the residual shapes of the loads and of the centrifugal field stand beside the modes.
     pub static_correction: Choice,
-    /// Which modes may bend the body far, where large deflection is simulated.
-    pub large: Large,
+    /// Which modes may bend the body far.
+    pub large: Option<Large>,
 }
 
 /// Which modes may bend the body far.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Large {
-    /// The first so many, 1 to 8; default 4.
+    /// The first so many, 1 to 8.
     Count(usize),
     /// These, numbered from 1, ascending, 1 to 8 of them.
     List(Vec<usize>),

@@ -1,6 +1,5 @@
 //! Large deflection: the manifold that the large modes of a body move on.
 
-use advice::{Advice, Backbone};
 use faer::{Mat, MatRef};
 use fem_tet10::{second_order_energies, second_order_forces};
 use frames_rk4::{Effect, Manifold};
@@ -13,9 +12,8 @@ use crate::effects::Choice;
 use crate::modes::Large;
 use crate::scene::Scene;
 
-/// Change of a frequency, and phase in rad over the run, from which on `"auto"` has a mode on the manifold.
-const SHIFTED: f64 = 0.005;
-const OUT_OF_PHASE: f64 = 0.1;
+/// How many modes are large where the scene does not say which.
+const DEFAULT_LARGE: usize = 4;
 
 /// The shapes of second order of the large modes, and the body in them.
 pub(super) struct LargeDeflection {
@@ -25,28 +23,16 @@ pub(super) struct LargeDeflection {
     stiffness: Vec<Mat<f64>>,
 }
 
-/// Which of the `keep` modes that are kept are large, numbered from 0.
-pub(super) fn large_modes(
-    scene: &Scene,
-    natural: usize,
-    advice: &Advice,
-    backbones: &[Option<Backbone>],
-) -> Vec<usize> {
-    let candidates = match &scene.modes.large {
-        Large::Count(count) => (0..natural.min(*count)).collect(),
-        Large::List(list) => list.iter().map(|mode| mode - 1).filter(|k| *k < natural).collect::<Vec<_>>(),
-    };
-    let calls_for_it = |k: &usize| {
-        let (Some(Some(backbone)), Some(mode)) = (backbones.get(*k), advice.modes.get(*k)) else { return false };
-        let shift = backbone.shift(mode.displacement).abs();
-        let phase = shift * mode.circular_frequency * scene.time.end;
-        shift >= SHIFTED || phase >= OUT_OF_PHASE
-    };
-    match scene.effects.choices[Effect::LargeDeflection] {
-        Choice::On => candidates,
-        Choice::Off => Vec::new(),
-        Choice::Auto if scene.time.method.is_of_paper() => Vec::new(),
-        Choice::Auto => candidates.into_iter().filter(calls_for_it).collect(),
+/// Which of the `natural` modes that are kept are large, numbered from 0. What is left open is on where the scene names
+/// them.
+pub(super) fn large_modes(scene: &Scene, natural: usize) -> Vec<usize> {
+    let first = |count: usize| (0..natural.min(count)).collect();
+    match (scene.effects.choices[Effect::LargeDeflection], &scene.modes.large) {
+        (Choice::Off, _) | (Choice::Auto, None) => Vec::new(),
+        (Choice::Auto, _) if scene.time.method.is_of_paper() => Vec::new(),
+        (Choice::On, None) => first(DEFAULT_LARGE),
+        (_, Some(Large::Count(count))) => first(*count),
+        (_, Some(Large::List(list))) => list.iter().map(|mode| mode - 1).filter(|k| *k < natural).collect(),
     }
 }
 

@@ -49,10 +49,12 @@ impl Reduction {
         };
         let stress = Stress::new(model, &statics, &modes, &modal)?;
         refuse_without_stress(model, &stress)?;
-        let large = large_modes(model.scene, decision.keep, &advice, &backbones);
+        let large = large_modes(model.scene, decision.keep);
         let large = if large.is_empty() { None } else { Some(LargeDeflection::new(model, &modes, &large)?) };
         let (modal, stress, large) = match large {
             Some(large) => {
+                // The frequencies of these follow their amplitudes.
+                large.manifold.large().iter().for_each(|k| backbones[*k] = None);
                 let large = match (&statics.of_spin, &modal.body.stress_stiffness) {
                     (Some(of_spin), Some(k)) => large.stiffened(model, of_spin.answers.as_ref(), k)?,
                     _ => large,

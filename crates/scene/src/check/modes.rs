@@ -11,8 +11,6 @@ use crate::section::{CountOrAuto, CountOrList, ModesSection, NumberOrList};
 
 /// The largest number of modes with `flexible = "auto"`, where the scene gives none.
 const DEFAULT_MOST: usize = 40;
-/// How many modes may be large, where the scene does not say which.
-const DEFAULT_LARGE: usize = 4;
 
 impl Check<'_> {
     pub fn modes(&self, section: Option<ModesSection>, body: &Body) -> Result<Modes, SceneError> {
@@ -23,7 +21,7 @@ impl Check<'_> {
                     flexible: Flexible::Count(0),
                     damping: Damping::Uniform(0.0),
                     static_correction: Choice::Auto,
-                    large: Large::Count(DEFAULT_LARGE),
+                    large: None,
                 }),
                 false => Err(self.missing("", "modes")),
             };
@@ -49,7 +47,7 @@ impl Check<'_> {
         Ok(Modes { flexible, damping, static_correction, large })
     }
 
-    fn large(&self, large: Option<CountOrList>) -> Result<Large, SceneError> {
+    fn large(&self, large: Option<CountOrList>) -> Result<Option<Large>, SceneError> {
         let refuse = |found: String| {
             self.document.place("modes.large").refuse(
                 found,
@@ -58,13 +56,13 @@ impl Check<'_> {
             )
         };
         match large {
-            None => Ok(Large::Count(DEFAULT_LARGE)),
-            Some(CountOrList::Count(count)) if (1..=MOST_LARGE).contains(&count) => Ok(Large::Count(count)),
+            None => Ok(None),
+            Some(CountOrList::Count(count)) if (1..=MOST_LARGE).contains(&count) => Ok(Some(Large::Count(count))),
             Some(CountOrList::Count(count)) => Err(refuse(count.to_string())),
             Some(CountOrList::List(list)) => {
                 let ascends = list.windows(2).all(|pair| pair[0] < pair[1]) && list.first().is_some_and(|k| *k > 0);
                 if ascends && list.len() <= MOST_LARGE {
-                    Ok(Large::List(list))
+                    Ok(Some(Large::List(list)))
                 } else {
                     Err(refuse(format!("{list:?}")))
                 }
