@@ -8,8 +8,8 @@ use flexframe::cost::{
     CostError, CostReport, CostSettings, Line, Measured, Outcome, Row, duration, modes_warning, price_list, setting,
 };
 use flexframe::modes::frequency_unit;
-use flexframe::write_error::WriteError;
 use flexframe::scene::{Model, Scene};
+use flexframe::write_error::WriteError;
 use whole_file::write_whole;
 
 use crate::spin::{SpinRow, spin_rates};

@@ -143,7 +143,11 @@ pub(crate) fn relative_displacements(fields: MatRef<'_, f64>, nodes: &[u32; 10])
 /// and columns are by node, then axis.
 ///
 /// With H = ∇u, whose row a is h_a, and g_i = ∇N_i, the displacement e_a N_i has `ε₂(u, e_a N_i) = sym(h_a g_iᵀ)`.
-fn element_stiffness(points: &[IntegrationPoint], material: &Material, relative: &[f64]) -> [[f64; FREEDOMS]; FREEDOMS] {
+fn element_stiffness(
+    points: &[IntegrationPoint],
+    material: &Material,
+    relative: &[f64],
+) -> [[f64; FREEDOMS]; FREEDOMS] {
     let (lambda, mu) = material.lame();
     let mut stiffness = [[0.0; FREEDOMS]; FREEDOMS];
     for point in points {

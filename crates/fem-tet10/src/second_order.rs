@@ -64,9 +64,14 @@ pub fn geometric_stiffness_product(
     check_field(mesh, "displacements", displacement)?;
     check_field(mesh, "fields", fields)?;
     let columns = fields.ncols();
-    let all = Mat::from_fn(fields.nrows(), columns + 1, |i, j| {
-        if j < columns { fields[(i, j)] } else { displacement[(i, 0)] }
-    });
+    let all =
+        Mat::from_fn(
+            fields.nrows(),
+            columns + 1,
+            |i, j| {
+                if j < columns { fields[(i, j)] } else { displacement[(i, 0)] }
+            },
+        );
     let pairs: Vec<[usize; 2]> = (0..columns).map(|column| [columns, column]).collect();
     second_order_forces(mesh, materials, all.as_ref(), &pairs)
 }

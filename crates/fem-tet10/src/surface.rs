@@ -67,9 +67,8 @@ impl Mesh {
         displacement: ColRef<'_, f64>,
     ) -> Result<(Vec<u32>, Vec<Vector3<f64>>), MeshError> {
         let surface = self.outer_surface(group)?;
-        let moved = |face: &Face| {
-            face.nodes.map(|node| Vector3::from_fn(|axis, _| displacement[3 * node as usize + axis]))
-        };
+        let moved =
+            |face: &Face| face.nodes.map(|node| Vector3::from_fn(|axis, _| displacement[3 * node as usize + axis]));
         Ok(self.integrate_with(surface, moved, |x, u, slopes| {
             let (xs, xt) = (tangent(x, slopes, 0), tangent(x, slopes, 1));
             -(tangent(u, slopes, 0).cross(&xt) + xs.cross(&tangent(u, slopes, 1)))

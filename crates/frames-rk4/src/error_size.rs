@@ -96,7 +96,8 @@ impl ConservativeBody {
                 continue;
             }
             // What follows its load is no swing.
-            let swing = (state.modal_displacement[k] - e.momentum[k] / (omega * omega)).hypot(e.modal_velocity[k] / omega);
+            let swing =
+                (state.modal_displacement[k] - e.momentum[k] / (omega * omega)).hypot(e.modal_velocity[k] / omega);
             let [softening, turning] = self.own_coupling[k];
             let p = 0.5 * step * spin * (spin * softening + omega * turning) * swing;
             sizes.energy += 0.5 * p * p;

@@ -140,8 +140,7 @@ impl Manifold {
         let count = large.len();
         for i in 0..count {
             for j in 0..=i {
-                let mut sum = f64::from(u8::from(i == j))
-                    + dot(&place.slopes[i][*modes..], &place.slopes[j][*modes..]);
+                let mut sum = f64::from(u8::from(i == j)) + dot(&place.slopes[i][*modes..], &place.slopes[j][*modes..]);
                 for k in 0..j {
                     sum -= place.factor[i * count + k] * place.factor[j * count + k];
                 }

@@ -60,18 +60,31 @@ impl Solver<'_> {
         let (size, dynamic) = (modes.shapes.nrows(), modes.shapes.ncols());
         let pairs = SecondOrderShapes::pairs(large.len());
         if forces.ncols() != pairs.len() {
-            return Err(ModalError::Size { what: "forces of second order", expected: pairs.len(), found: forces.ncols() });
+            return Err(ModalError::Size {
+                what: "forces of second order",
+                expected: pairs.len(),
+                found: forces.ncols(),
+            });
         }
         if let Some(found) = large.last().copied().filter(|last| *last >= dynamic) {
-            return Err(ModalError::Size { what: "modes up to the last large one", expected: dynamic, found: found + 1 });
+            return Err(ModalError::Size {
+                what: "modes up to the last large one",
+                expected: dynamic,
+                found: found + 1,
+            });
         }
         let answers = self.static_response(forces)?;
         memory::check("shapes of second order", of_vectors(size, 3 * (dynamic + pairs.len())))?;
         let follow = self.beside(&modes, answers.as_ref(), DEPENDENT)?;
         let extended = dynamic + follow.ncols();
-        let shapes = Mat::from_fn(size, extended, |i, j| {
-            if j < dynamic { modes.shapes[(i, j)] } else { follow[(i, j - dynamic)] }
-        });
+        let shapes =
+            Mat::from_fn(
+                size,
+                extended,
+                |i, j| {
+                    if j < dynamic { modes.shapes[(i, j)] } else { follow[(i, j - dynamic)] }
+                },
+            );
         let stiff = symmetric_product(self.stiffness, shapes.as_ref());
         let stiffness = tall::inner(shapes.as_ref(), stiff.as_ref());
         let along = tall::inner(shapes.as_ref(), forces);

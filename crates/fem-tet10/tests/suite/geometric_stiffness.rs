@@ -101,9 +101,8 @@ fn a_rotation_turns_the_forces_in_the_body() {
             let shapes =
                 [field(&mesh, turn), random_field(&mesh, 1.0, 12), field(&mesh, |[x, y, z]| [y * z, x * x, x * y])];
             let k = &reduced(&mesh, std::slice::from_ref(&u), &shapes)[0];
-            let turned = |field: &[f64]| -> Vec<f64> {
-                field.chunks_exact(3).flat_map(|f| turn([f[0], f[1], f[2]])).collect()
-            };
+            let turned =
+                |field: &[f64]| -> Vec<f64> { field.chunks_exact(3).flat_map(|f| turn([f[0], f[1], f[2]])).collect() };
             let forces = turned(&product(stiffness.stiffness(), &u));
             let of_turned = product(stiffness.stiffness(), &turned(&u));
             let turned: Vec<f64> = forces.iter().zip(&of_turned).map(|(a, b)| a - b).collect();

@@ -22,7 +22,10 @@ pub fn second_order(nf: usize) -> SecondOrder {
 fn displacement(q: &[f64]) -> Vector3<f64> {
     Vector3::from_fn(|i, _| {
         let k = stiffness(i, q.len());
-        -0.5 * (0..q.len()).flat_map(|a| (0..q.len()).map(move |b| (a, b))).map(|(a, b)| q[a] * k[(a, b)] * q[b]).sum::<f64>()
+        -0.5 * (0..q.len())
+            .flat_map(|a| (0..q.len()).map(move |b| (a, b)))
+            .map(|(a, b)| q[a] * k[(a, b)] * q[b])
+            .sum::<f64>()
     })
 }
 

@@ -5,7 +5,8 @@ use std::sync::Arc;
 use faer::Mat;
 use fem_tet10::{Location, MeanRotation, Mesh};
 use frames_rk4::{
-    BodyField, Effect, FieldLoad, LoadFrame, PointForce, PointMoment, PointShapes, RotationShapes, SecondOrder, SharedLoad,
+    BodyField, Effect, FieldLoad, LoadFrame, PointForce, PointMoment, PointShapes, RotationShapes, SecondOrder,
+    SharedLoad,
 };
 use modal::{BodyPoint, Modes, ReducedBody};
 use nalgebra::Vector3;
@@ -230,7 +231,9 @@ impl MeshLoad {
     pub fn name_along(&self, vector: &Vector3<f64>) -> String {
         let rounded = |x: f64| (x * 100.0).round() / 100.0 + 0.0;
         match vector.try_normalize(0.0) {
-            Some(d) => format!("{} along ({}, {}, {}) of the body", self.name, rounded(d.x), rounded(d.y), rounded(d.z)),
+            Some(d) => {
+                format!("{} along ({}, {}, {}) of the body", self.name, rounded(d.x), rounded(d.y), rounded(d.z))
+            }
             None => self.name.clone(),
         }
     }

@@ -52,8 +52,7 @@ pub(super) fn build(
     let survey = Survey::new(&model, modes, on_all_modes, &mut progress)?;
     let has_statics = survey.statics.any();
     let decision = Decision::new(scene, &survey);
-    let Reduction { modes, modal: reduced, backbones, stress, advice } =
-        Reduction::new(&model, survey, &decision)?;
+    let Reduction { modes, modal: reduced, backbones, stress, advice } = Reduction::new(&model, survey, &decision)?;
     if has_statics {
         times.statics = started.elapsed();
     }

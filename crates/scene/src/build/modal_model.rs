@@ -73,14 +73,8 @@ impl ModalModel {
 }
 
 /// The loads on the modes of a body.
-fn loads(
-    model: &MeshModel<'_>,
-    body: &ReducedBody,
-    modes: &Modes,
-    stress: &Stress,
-) -> Result<BodyLoads, BuildError> {
-    let reduced = |(i, load): (usize, &MeshLoad)| {
-        Ok((load.reduced(model, body, modes, stress.of_load(i))?, load.is_gravity()))
-    };
+fn loads(model: &MeshModel<'_>, body: &ReducedBody, modes: &Modes, stress: &Stress) -> Result<BodyLoads, BuildError> {
+    let reduced =
+        |(i, load): (usize, &MeshLoad)| Ok((load.reduced(model, body, modes, stress.of_load(i))?, load.is_gravity()));
     model.loads.iter().enumerate().map(reduced).collect()
 }

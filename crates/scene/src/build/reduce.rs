@@ -9,11 +9,9 @@ use super::error::{BuildError, modal};
 use super::mesh_model::MeshModel;
 use super::modal_model::ModalModel;
 use super::model::truncated_modes;
-use super::physics;
 use super::statics::Statics;
 use super::stress::Stress;
 use super::survey::Survey;
-use crate::effects::Choice;
 use crate::scene::Scene;
 
 /// A body in the modes that it keeps and its static shapes.
@@ -45,7 +43,6 @@ impl Reduction {
             (modes, modal.with_stress_stiffness(model, stiffness)?, deflection)
         };
         let stress = Stress::new(model, &statics, &modes, &modal)?;
-        refuse_without_stress(model, &stress)?;
         let modal = if stress.any() { modal.with_stress(model, &modes, &stress)? } else { modal };
         let findings = Findings { deflection, stress: stress.row.clone(), lacks_stretch: decision.lacks.is_some() };
         Ok(Self { modes, modal, backbones, stress, advice: advice.completed(findings) })
@@ -68,21 +65,4 @@ fn basis(
         .answers()
         .try_fold(kept, |modes, answers| solver.with_static_shapes(modes, answers.as_ref()))
         .map_err(modal(scene))
-}
-
-/// Refuses stiffening that is asked for where nothing stresses the body.
-fn refuse_without_stress(model: &MeshModel<'_>, stress: &Stress) -> Result<(), BuildError> {
-    let &MeshModel { scene, support, .. } = model;
-    let asked = scene.effects.choices[Effect::GeometricStiffening] == Choice::On;
-    if !asked || stress.any() || physics::may_spin(scene, support.motion, model.drive.as_ref()) {
-        return Ok(());
-    }
-    Err(scene
-        .refuse(
-            "effects.geometric_stiffening",
-            "`geometric_stiffening = true` where nothing stresses the body: it does not spin, and no load or drive strains it",
-            "`false` or `\"auto\"`",
-            "set `geometric_stiffening = \"auto\"`, or let something act on the body",
-        )
-        .into())
 }

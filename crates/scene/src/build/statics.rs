@@ -84,8 +84,7 @@ impl Statics {
 
         let unknowns = 3 * mesh.positions().len();
         let count = of_loads + spins + usize::from(driven.is_some());
-        memory::check("the forces of the loads", 8 * unknowns * count)
-            .map_err(|source| modal(scene)(source.into()))?;
+        memory::check("the forces of the loads", 8 * unknowns * count).map_err(|source| modal(scene)(source.into()))?;
         let mut forces = Mat::zeros(unknowns, count);
         for (load, (range, turned)) in loads.iter().zip(&columns) {
             for column in range.clone() {

@@ -2,8 +2,8 @@
 
 use advice::{Row, StressField, StressSource, stress, stress_row};
 use faer::{Mat, MatRef};
-use frames_rk4::Effect;
 use fem_tet10::{AssemblyError, geometric_stiffness_product};
+use frames_rk4::Effect;
 use modal::{ModalError, Modes};
 use nalgebra::Vector3;
 
@@ -36,12 +36,7 @@ pub(super) struct Directed {
 
 impl Stress {
     /// By the static answers to the loads and to the drive.
-    pub fn new(
-        model: &MeshModel<'_>,
-        statics: &Statics,
-        modes: &Modes,
-        body: &ModalModel,
-    ) -> Result<Self, BuildError> {
+    pub fn new(model: &MeshModel<'_>, statics: &Statics, modes: &Modes, body: &ModalModel) -> Result<Self, BuildError> {
         if !physics::may_stress(model.scene) || modes.shapes.ncols() == 0 {
             return Ok(Self::default());
         }

@@ -79,9 +79,8 @@ fn becks_column_flutters_and_is_refused() {
 
 /// Modal displacements at the end of a run that begins bent.
 fn end(rest: &str, more: &str) -> Vec<f64> {
-    let rest = format!(
-        "{rest}\n[effects]\ngeometric_stiffening = true\n[initial]\nmodal_displacement = [1e-3, 5e-4, 2e-4]\n"
-    );
+    let rest =
+        format!("{rest}\n[effects]\ngeometric_stiffening = true\n[initial]\nmodal_displacement = [1e-3, 5e-4, 2e-4]\n");
     let modes = "flexible = 3\nstatic_correction = false";
     let scene = bar(modes, &rest, &format!("end = 0.02\n{more}"));
     let model = build(&scene);
