@@ -7,7 +7,7 @@
 //! π = J ω + S_extᵀν:      (J − SᵀM⁻¹S) ω' = π' − J' ω − S_ext'ᵀν − S_extᵀ(ν' at ω' = 0)
 //! ```
 //!
-//! D is 1, and Ḋ is zero, but on a manifold. Of what is driven v or ω is given, and S or b has −K q besides.
+//! D is 1, and Ḋ is zero, but on a manifold. Of what is driven v or ω is given.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -25,8 +25,7 @@ impl ConservativeBody {
         for (g, w) in e.gyroscopic.chunks_exact(nf.max(1)).zip(e.spin.iter()) {
             change.iter_mut().zip(g).for_each(|(c, g)| *c -= g * w);
         }
-        change.iter_mut().zip(&e.sliding).for_each(|(c, b)| *c -= b * driven_acceleration);
-        change.iter_mut().zip(&e.drive_stiffened).for_each(|(c, k_v)| *c += k_v * e.driven_speed);
+        change.iter_mut().zip(&self.sliding).for_each(|(c, b)| *c -= b * driven_acceleration);
         let Some(manifold) = &self.manifold else {
             e.acceleration.iter_mut().zip(change).for_each(|(a, c)| *a += *c);
             return;
@@ -39,7 +38,7 @@ impl ConservativeBody {
         for (s, w) in e.products[..self.s_rows].chunks_exact(nf).zip(e.spin.iter()) {
             change.iter_mut().zip(s).for_each(|(mu, s)| *mu += s * w);
         }
-        change.iter_mut().zip(&e.sliding).for_each(|(mu, b)| *mu += b * e.driven_speed);
+        change.iter_mut().zip(&self.sliding).for_each(|(mu, b)| *mu += b * e.driven_speed);
         change.iter_mut().for_each(|mu| *mu = -*mu);
         manifold.add_projected_rate(&e.place, change, &mut e.acceleration);
         manifold.solve(&e.place, &mut e.acceleration);
@@ -70,11 +69,16 @@ impl ConservativeBody {
             }
             self.solve_locked(e, &right)?
         };
+        self.add_spin_rate(&spin_rate, e);
+        Ok(spin_rate)
+    }
+
+    /// q̈ −= M⁻¹ S ω'
+    fn add_spin_rate(&self, spin_rate: &Vector3<f64>, e: &mut Evaluation) {
         let solved = if self.manifold.is_some() { &e.solved_s } else { &e.products[..self.s_rows] };
-        for (s, w) in solved.chunks_exact(modes.max(1)).zip(spin_rate.iter()) {
+        for (s, w) in solved.chunks_exact(self.flexible().max(1)).zip(spin_rate.iter()) {
             e.acceleration.iter_mut().zip(s).for_each(|(a, s)| *a -= s * w);
         }
-        Ok(spin_rate)
     }
 
     /// Puts ν' of q̈ into `e.change`, in the extended shapes.
@@ -89,7 +93,8 @@ impl ConservativeBody {
     }
 
     /// Power of what drives the body, less that of the loads on it: with π = J ω + S·ν and P = m v + b·ν along the
-    /// driven axis, (π' − M) ω and (P' − F) v. `e` has all other rates, its momentum without the linear part at q and p.
+    /// driven axis, both less (K ξ)·ν, (π' − M) ω and (P' − F) v. `e` has all other rates, its momentum without the linear
+    /// part at q and p.
     pub(crate) fn drive_power(
         &self,
         acceleration: f64,
@@ -103,24 +108,33 @@ impl ConservativeBody {
             *rate = e.momentum[k] + self.linear_rate(k, q[k], p[k]);
         }
         self.without_spin_rate(acceleration, e);
-        // S' has −K ν, and G ν does no work on ν.
-        let stiffened: f64 = -dot(&e.drive_stiffened, &e.velocity);
+        if self.turn_driven {
+            self.add_spin_rate(&Vector3::new(acceleration, 0.0, 0.0), e);
+        }
+        self.extend_acceleration(e);
+        // (K ξ)·ν and its rate.
+        let stressed = dot(&e.drive_stress, &e.velocity);
+        let mut changing = -dot(&e.drive_stress, &e.change) - self.drive_stress_power(&e.velocity);
         if let Translation::Driven(direction) = self.translation {
-            let b = if self.manifold.is_some() { &e.modal_sliding } else { &e.sliding };
-            e.driven_momentum = self.mass * speed + dot(&e.sliding, &e.velocity);
-            let changing = dot(b, &e.acceleration) + dot(&e.sliding, &e.curvature) + stiffened;
+            e.driven_momentum = self.mass * speed + dot(&self.sliding, &e.velocity) - stressed;
+            changing += dot(&self.sliding, &e.change);
             return (self.mass * acceleration + changing - direction.dot(force_body)) * speed;
         }
-        let (s_ext, n_q) = (&e.products[..nf], &e.products[self.s_rows..]);
-        let (s, solved) = self.momenta_of_turning(e);
+        let (s, n_q) = (&e.products[..nf], &e.products[self.s_rows..]);
         let inertia = e.inertia[(0, 0)];
-        let momentum = inertia * speed + dot(s_ext, &e.velocity);
         let inertia_rate: f64 = match self.first.first() {
             Some(first) => (0..nf).map(|k| 2.0 * (first[k] + n_q[k]) * e.velocity[k]).sum(),
             None => 0.0,
         };
-        let changing = dot(s, &e.acceleration) - dot(s, solved) * acceleration + dot(s_ext, &e.curvature) + stiffened;
-        e.driven_momentum = momentum;
+        // G ν does no work on ν.
+        changing += dot(s, &e.change);
+        e.driven_momentum = inertia * speed + dot(s, &e.velocity) - stressed;
         (inertia_rate * speed + inertia * acceleration + changing - moment) * speed
+    }
+
+    /// νᵀK ν
+    fn drive_stress_power(&self, velocity: &[f64]) -> f64 {
+        let columns = self.drive_stiffness.chunks_exact(velocity.len().max(1));
+        columns.zip(velocity).map(|(column, v)| v * dot(column, velocity)).sum()
     }
 }

@@ -24,18 +24,6 @@ pub(crate) fn multiply(matrix: &[f64], rows: usize, x: &[f64], y: &mut [f64]) {
     }
 }
 
-/// y −= M x for M with `rows` rows, column by column.
-pub(crate) fn multiply_and_subtract(matrix: &[f64], rows: usize, x: &[f64], y: &mut [f64]) {
-    if rows == 0 {
-        return;
-    }
-    for (column, x) in matrix.chunks_exact(rows).zip(x) {
-        for (y, m) in y.iter_mut().zip(column) {
-            *y -= m * x;
-        }
-    }
-}
-
 /// The first `y.len()` rows of M x.
 pub(crate) fn multiply_top(matrix: &[f64], rows: usize, x: &[f64], y: &mut [f64]) {
     y.fill(0.0);

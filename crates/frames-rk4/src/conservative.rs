@@ -18,8 +18,12 @@
 //! zero otherwise.
 //!
 //! With geometric stiffening the displacement is `Ψ_f q + u₂`, to second order in q, and each field of forces does its work
-//! on u₂, too: of the centrifugal field, N_ij becomes `N_ij − Ψ_fᵀ K_ij Ψ_f`; of the inertia of a driven motion, b becomes
-//! `b − K q`; a load has its own in [`SecondOrder`](crate::SecondOrder).
+//! on u₂, too: of the centrifugal field, N_ij becomes `N_ij − Ψ_fᵀ K_ij Ψ_f`; the inertia of a driven motion of speed v adds
+//! `v' K q` to p'; a load has its own in [`SecondOrder`](crate::SecondOrder).
+//!
+//! The momentum of a driven motion has −(K q)·q̇ besides, which changes the Lagrangian by `−v (½ qᵀK q)'`. That is
+//! `½ v' qᵀK q` but for a total derivative: in p, −v K q would be as large as the momenta of stiff modes. Where v jumps, p
+//! jumps by K q times as much.
 //!
 //! With large deflection all constants are those of the extended shapes, with coordinates ξ(q) and their slopes D on a
 //! curved manifold ([`Manifold`]):
@@ -35,7 +39,7 @@ use modal::ReducedBody;
 use nalgebra::{Matrix3, SVector, Vector3};
 use rigid_kin::{Attitude, f_inverse, transformation_matrix};
 
-use crate::column_major::{columns, dot, multiply, multiply_and_subtract, multiply_top};
+use crate::column_major::{columns, dot, multiply, multiply_top};
 use crate::effect::{Effect, EffectMap};
 use crate::energies::Energies;
 use crate::error::{RateError, SetupError, StepError};
@@ -130,7 +134,7 @@ pub struct ConservativeBody {
     /// Largest N_ij and G_i that couple each mode to itself and its like (nf).
     pub(crate) own_coupling: Vec<[f64; 2]>,
     /// K of a unit acceleration of what is driven, column by column (nf × nf), or empty.
-    drive_stiffness: Vec<f64>,
+    pub(crate) drive_stiffness: Vec<f64>,
     loads: Vec<SharedLoad>,
     /// Of a body with large modes.
     pub(crate) manifold: Option<Manifold>,
@@ -255,10 +259,8 @@ pub(crate) struct Evaluation {
     pub change: Vec<f64>,
     /// Ḋ q̇, on a manifold.
     pub curvature: Vec<f64>,
-    /// b − K q of a driven translation (nf).
-    pub sliding: Vec<f64>,
-    /// K q̇ of the stiffness of what is driven (nf).
-    pub drive_stiffened: Vec<f64>,
+    /// K q of the stiffness of what is driven (nf).
+    pub drive_stress: Vec<f64>,
     /// Angular velocity, one component for each axis.
     pub spin: Vector3<f64>,
     pub omega_body: Vector3<f64>,
@@ -436,8 +438,7 @@ impl ConservativeBody {
             s: on_manifold(s_axes * modes),
             solved_s: on_manifold(s_axes * modes),
             modal_sliding: if self.sliding.is_empty() { Vec::new() } else { on_manifold(modes) },
-            sliding: self.sliding.clone(),
-            drive_stiffened: zeros(if self.drive_stiffness.is_empty() { 0 } else { nf }),
+            drive_stress: zeros(if self.drive_stiffness.is_empty() { 0 } else { nf }),
             spin: Vector3::zeros(),
             omega_body: Vector3::zeros(),
             driven_speed: 0.0,
@@ -468,7 +469,7 @@ impl ConservativeBody {
             pi[i] += dot(s, &e.velocity);
             mu.iter_mut().zip(s).for_each(|(mu, s)| *mu += s * spin[i]);
         }
-        mu.iter_mut().zip(&e.sliding).for_each(|(mu, b)| *mu += b * speed);
+        mu.iter_mut().zip(&self.sliding).for_each(|(mu, b)| *mu += b * speed);
         let momentum = match &self.manifold {
             Some(manifold) => {
                 let mut momentum = vec![0.0; self.flexible()];
@@ -562,7 +563,7 @@ impl ConservativeBody {
         }
     }
 
-    /// ξ, S_ext(ξ), N_ij ξ and J(ξ).
+    /// ξ, S_ext(ξ), N_ij ξ, K ξ and J(ξ).
     fn deform(&self, q: &[f64], e: &mut Evaluation) {
         match &self.manifold {
             Some(manifold) => manifold.go(q, &mut e.place, &mut e.extended),
@@ -584,13 +585,7 @@ impl ConservativeBody {
             }
         }
         if !self.drive_stiffness.is_empty() {
-            let driven = if self.turn_driven {
-                &mut e.products[..nf]
-            } else {
-                e.sliding.copy_from_slice(&self.sliding);
-                &mut e.sliding
-            };
-            multiply_and_subtract(&self.drive_stiffness, nf, q, driven);
+            multiply(&self.drive_stiffness, nf, q, &mut e.drive_stress);
         }
         if self.stacked.is_empty() && self.s_rows == 0 {
             return;
@@ -657,6 +652,7 @@ impl ConservativeBody {
     ) -> Result<(), RateError> {
         self.deform(q, e);
         let speed = self.drive.as_ref().map_or(0.0, |drive| drive.speed(t, inside));
+        let driven_acceleration = self.drive.as_ref().map_or(0.0, |drive| drive.acceleration(t, inside));
         e.driven_speed = speed;
         let pi = get(slow, part::PI);
         if self.turn_driven {
@@ -685,7 +681,7 @@ impl ConservativeBody {
             if turning { f_inverse(&theta, &e.omega_body).map_err(RateError::Turn)? } else { Vector3::zeros() };
         // Forces in the extended shapes are gathered in a list that is put back below: nothing may fail in between.
         let mut modal_force = std::mem::take(if self.manifold.is_some() { &mut e.force } else { &mut e.momentum });
-        self.inertia_forces(speed, e, &mut modal_force);
+        self.inertia_forces(driven_acceleration, e, &mut modal_force);
         let mut pi_rate = if self.axes.len() == 3 { pi.cross(&w) } else { Vector3::zeros() };
         let mut power = 0.0;
         let (mut force, mut angular_impulse) = (Vector3::zeros(), Vector3::zeros());
@@ -739,9 +735,9 @@ impl ConservativeBody {
             Translation::Along(direction) => along(&attitude.to_global(&direction), &force),
             Translation::None | Translation::Driven(_) => Vector3::zeros(),
         };
-        if let Some(drive) = &self.drive {
+        if self.drive.is_some() {
             let force_body = attitude.to_body(&force);
-            power += self.drive_power(drive.acceleration(t, inside), [q, p], &force_body, pi_rate[0], e);
+            power += self.drive_power(driven_acceleration, [q, p], &force_body, pi_rate[0], e);
             pi_rate = Vector3::zeros();
         }
         set(&mut e.slow, part::THETA, &theta_rate);
@@ -774,15 +770,15 @@ impl ConservativeBody {
             e.displacement.iter_mut().zip(s).for_each(|(rate, s)| *rate -= s * w);
         }
         let Some(manifold) = &self.manifold else {
-            e.displacement.iter_mut().zip(&e.sliding).for_each(|(rate, b)| *rate -= b * speed);
+            e.displacement.iter_mut().zip(&self.sliding).for_each(|(rate, b)| *rate -= b * speed);
             for ((v, p), rate) in e.velocity.iter_mut().zip(p).zip(&e.displacement) {
                 *v = p + rate;
             }
             e.modal_velocity.copy_from_slice(&e.velocity);
             return;
         };
-        if !e.sliding.is_empty() {
-            manifold.project(&e.place, &e.sliding, &mut e.modal_sliding);
+        if !self.sliding.is_empty() {
+            manifold.project(&e.place, &self.sliding, &mut e.modal_sliding);
             e.displacement.iter_mut().zip(&e.modal_sliding).for_each(|(rate, b)| *rate -= b * speed);
         }
         for ((v, p), rate) in e.modal_velocity.iter_mut().zip(p).zip(&e.displacement) {
@@ -797,7 +793,7 @@ impl ConservativeBody {
     }
 
     /// Σ ω_iω_j (c_ij + N_ij ξ) − Σ ω_i G_i ν, and the stress of what is driven.
-    fn inertia_forces(&self, speed: f64, e: &mut Evaluation, force: &mut [f64]) {
+    fn inertia_forces(&self, driven_acceleration: f64, e: &mut Evaluation, force: &mut [f64]) {
         let nf = force.len();
         let w = e.spin;
         let n_q = &e.products[self.s_rows..];
@@ -814,11 +810,7 @@ impl ConservativeBody {
                 *rate += square * (c + n);
             }
         }
-        if !self.drive_stiffness.is_empty() {
-            // ∂/∂q of the kinetic energy v (b − K q)·q̇.
-            multiply(&self.drive_stiffness, nf, &e.velocity, &mut e.drive_stiffened);
-            force.iter_mut().zip(&e.drive_stiffened).for_each(|(rate, k_v)| *rate -= speed * k_v);
-        }
+        force.iter_mut().zip(&e.drive_stress).for_each(|(rate, k_q)| *rate += driven_acceleration * k_q);
     }
 
     /// p' without its linear part and damping: Dᵀ of the forces in the extended shapes, Ḋᵀμ and −∂V_n/∂q.
@@ -833,25 +825,39 @@ impl ConservativeBody {
         for (s, w) in e.products[..self.s_rows].chunks_exact(mu.len()).zip(e.spin.iter()) {
             mu.iter_mut().zip(s).for_each(|(mu, s)| *mu += s * w);
         }
-        mu.iter_mut().zip(&e.sliding).for_each(|(mu, b)| *mu += b * speed);
+        mu.iter_mut().zip(&self.sliding).for_each(|(mu, b)| *mu += b * speed);
         manifold.add_projected_rate(&e.place, mu, &mut e.momentum);
         manifold.subtract_force(q, &mut e.momentum);
         e.force = force;
     }
 
-    /// What the drive does where its speed jumps at the state's time: its impulse times the mean of the speeds.
-    pub(crate) fn work_of_jump(&self, state: &ConservativeState, e: &mut Evaluation) -> Result<f64, RateError> {
-        let Some(drive) = &self.drive else { return Ok(0.0) };
+    /// Takes a state past a jump of the speed of the drive at its time. The drive does its impulse times the mean of the
+    /// speeds.
+    pub(crate) fn pass_jump(&self, state: &mut ConservativeState, e: &mut Evaluation) -> Result<(), RateError> {
+        let Some(drive) = &self.drive else { return Ok(()) };
         // The corner itself is where it is but for rounding.
         let aside = 1e-12 * drive.span;
-        let mut on_side = |inside: f64| -> Result<[f64; 2], RateError> {
+        let on_side = |state: &ConservativeState, inside: f64, e: &mut Evaluation| -> Result<[f64; 2], RateError> {
             let (q, p) = (&state.modal_displacement, &state.modal_momentum);
             self.evaluate([state.time, inside], &state.attitude, &state.slow, q, p, e)?;
-            Ok([drive.speed(state.time, inside), e.driven_momentum])
+            Ok([e.driven_speed, e.driven_momentum])
         };
-        let [before, held] = on_side(state.time - aside)?;
-        let [after, given] = on_side(state.time + aside)?;
-        Ok(0.5 * (before + after) * (given - held))
+        let [after, _] = on_side(state, state.time + aside, e)?;
+        let [before, held] = on_side(state, state.time - aside, e)?;
+        let jump = after - before;
+        match &self.manifold {
+            Some(manifold) if !self.drive_stiffness.is_empty() => {
+                e.change.iter_mut().zip(&e.drive_stress).for_each(|(push, k_q)| *push = jump * k_q);
+                manifold.add_projection(&e.place, &e.change, &mut state.modal_momentum);
+            }
+            _ => {
+                let push = state.modal_momentum.iter_mut().zip(&e.drive_stress);
+                push.for_each(|(p, k_q)| *p += jump * k_q);
+            }
+        }
+        let [_, given] = on_side(state, state.time + aside, e)?;
+        state.slow[part::WORK] += 0.5 * (before + after) * (given - held);
+        Ok(())
     }
 
     /// Adds the linear part of the modes to an evaluation: q' += p, p' −= Λq + Dp.
@@ -966,7 +972,9 @@ impl ConservativeBody {
                 get(&state.slow, part::MOMENTUM).norm_squared() / self.mass + get(&state.slow, part::PI).dot(&e.spin)
             }
         };
-        let kinetic = 0.5 * (moving + dot(&state.modal_momentum, &e.modal_velocity));
+        // What of the driven momentum is not in p.
+        let stressed = e.driven_speed * dot(&e.drive_stress, &e.velocity);
+        let kinetic = 0.5 * (moving + dot(&state.modal_momentum, &e.modal_velocity) - stressed);
         (kinetic, self.strain_energy(q))
     }
 

@@ -121,13 +121,12 @@ impl Scheme for ConservativeMotion {
         self.controlled_steps(0.5 * h, end, tolerance)
     }
 
-    /// The rates at the end of the last step are not those of the next one's beginning, and a drive that jumps does work.
+    /// The rates at the end of the last step are not those of the next one's beginning, and a drive may jump.
     fn pass_corner(&mut self) -> Result<(), StepError> {
         self.first_known = false;
         let Self { body, state, ahead, .. } = self;
-        let work = body.work_of_jump(state, ahead).map_err(|error| error.in_step(state.time, 0.0))?;
-        self.state.slow[part::WORK] += work;
-        Ok(())
+        let time = state.time;
+        body.pass_jump(state, ahead).map_err(|error| error.in_step(time, 0.0))
     }
 
     fn observe(&mut self, points: &[PointShapes], out: &mut Observation) -> Result<(), StepError> {

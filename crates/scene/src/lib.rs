@@ -60,6 +60,6 @@ pub use fem_tet10::{Material, Materials, PointMass};
 pub use frames_rk4::{Effect, EffectMap, LoadFrame, Method, Rows, StepControl};
 pub use history::{Formula, History, TablePoints};
 pub use load::{BaseAcceleration, Force, Gravity, Load, Moment, Pressure, Traction};
-pub use modes::{Damping, Flexible, Modes, Rayleigh};
+pub use modes::{Damping, Flexible, Large, Modes, Rayleigh};
 pub use place::Place;
 pub use scene::{Body, Frame, Initial, MeshedBody, Output, RigidBody, Scene, Time, Units};

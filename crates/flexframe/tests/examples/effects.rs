@@ -24,10 +24,11 @@ fn what_a_scene_has_not_got_is_not_computed() {
     let [of_full, of_rigid, of_translation] = &models;
 
     // Forty modes and the static shapes of the centrifugal field and of the force, whose direction turns in the body;
-    // gravity strains nothing.
+    // gravity strains nothing. The stress of the spin has no matrices of its own; that of the force has one for each of its
+    // three directions.
     let nf = of_full.body.flexible();
     assert_eq!(nf, 40 + 6 + 3);
-    assert_eq!(matrix_entries(of_full), (6 + 3) * nf * nf);
+    assert_eq!(matrix_entries(of_full), (6 + 3 + 3) * nf * nf);
     assert!(of_full.body.stress_stiffness.is_some());
     assert!(of_full.damping_ratios().iter().all(|ratio| *ratio == 0.01));
 

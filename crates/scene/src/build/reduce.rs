@@ -10,11 +10,9 @@ use super::manifold::{LargeDeflection, large_modes};
 use super::mesh_model::MeshModel;
 use super::modal_model::ModalModel;
 use super::model::truncated_modes;
-use super::physics;
 use super::statics::Statics;
 use super::stress::Stress;
 use super::survey::Survey;
-use crate::effects::Choice;
 use crate::scene::Scene;
 
 /// A body in the modes that it keeps and its static shapes.
@@ -48,13 +46,14 @@ impl Reduction {
             (modes, modal.with_stress_stiffness(model, stiffness)?, deflection)
         };
         let stress = Stress::new(model, &statics, &modes, &modal)?;
-        refuse_without_stress(model, &stress)?;
         let large = large_modes(model.scene, decision.keep);
         let large = if large.is_empty() { None } else { Some(LargeDeflection::new(model, &modes, &large)?) };
         let (modal, stress, large) = match large {
             Some(large) => {
                 // The frequencies of these follow their amplitudes.
-                large.manifold.large().iter().for_each(|k| backbones[*k] = None);
+                for (k, backbone) in backbones.iter_mut().enumerate() {
+                    *backbone = backbone.take().filter(|_| !large.manifold.large().contains(&k));
+                }
                 let large = match (&statics.of_spin, &modal.body.stress_stiffness) {
                     (Some(of_spin), Some(k)) => large.stiffened(model, of_spin.answers.as_ref(), k)?,
                     _ => large,
@@ -86,21 +85,4 @@ fn basis(
         .answers()
         .try_fold(kept, |modes, answers| solver.with_static_shapes(modes, answers.as_ref()))
         .map_err(modal(scene))
-}
-
-/// Refuses stiffening that is asked for where nothing stresses the body.
-fn refuse_without_stress(model: &MeshModel<'_>, stress: &Stress) -> Result<(), BuildError> {
-    let &MeshModel { scene, support, .. } = model;
-    let asked = scene.effects.choices[Effect::GeometricStiffening] == Choice::On;
-    if !asked || stress.any() || physics::may_spin(scene, support.motion, model.drive.as_ref()) {
-        return Ok(());
-    }
-    Err(scene
-        .refuse(
-            "effects.geometric_stiffening",
-            "`geometric_stiffening = true` where nothing stresses the body: it does not spin, and no load or drive strains it",
-            "`false` or `\"auto\"`",
-            "set `geometric_stiffening = \"auto\"`, or let something act on the body",
-        )
-        .into())
 }

@@ -46,9 +46,13 @@ impl Check<'_> {
         let turned = matches!(constraint, Some(Constraint::Hinge { motion: Some(_), .. }));
         let driven = matches!(constraint, Some(Constraint::Slider { motion: Some(_), .. }));
         let motion = "the `motion` of the constraint";
+        let turns = initial.angular_velocity != [0.0; 3];
+        let found =
+            "nothing that stresses the body: no load, no `motion` of a constraint, no initial `angular_velocity`";
+        let nothing = !(turned || driven || turns) && loads.is_empty();
+        self.not_on(effects, Effect::GeometricStiffening, nothing, found, "let something act on the body")?;
         self.not_off(effects, Effect::Rotation, turned, motion)?;
         self.not_off(effects, Effect::Translation, driven, motion)?;
-        let turns = initial.angular_velocity != [0.0; 3];
         self.not_off(effects, Effect::Rotation, turns, "an initial `angular_velocity`")?;
         self.not_off(effects, Effect::Translation, initial.velocity != [0.0; 3], "an initial `velocity`")
     }

@@ -43,25 +43,30 @@ impl Check<'_> {
             ));
         }
         let damping = self.damping(section.damping_ratio, section.damping_table, section.rayleigh, flexible)?;
-        let large = self.large(section.large)?;
+        let large = self.large(section.large, flexible.most())?;
         Ok(Modes { flexible, damping, static_correction, large })
     }
 
-    fn large(&self, large: Option<CountOrList>) -> Result<Option<Large>, SceneError> {
+    fn large(&self, large: Option<CountOrList>, flexible: usize) -> Result<Option<Large>, SceneError> {
+        let most = MOST_LARGE.min(flexible);
         let refuse = |found: String| {
             self.document.place("modes.large").refuse(
                 found,
-                format!("a number from 1 to {MOST_LARGE}, or a list of as many numbers of modes that ascend from 1"),
-                "name the modes that bend the body far",
+                format!(
+                    "a number from 1 to {most}, or a list of as many numbers of modes that ascend, from 1 to {flexible}"
+                ),
+                "name the modes that bend the body far, or remove it",
             )
         };
+        let is_in = |count: usize| (1..=most).contains(&count);
         match large {
             None => Ok(None),
-            Some(CountOrList::Count(count)) if (1..=MOST_LARGE).contains(&count) => Ok(Some(Large::Count(count))),
+            Some(CountOrList::Count(count)) if is_in(count) => Ok(Some(Large::Count(count))),
             Some(CountOrList::Count(count)) => Err(refuse(count.to_string())),
             Some(CountOrList::List(list)) => {
-                let ascends = list.windows(2).all(|pair| pair[0] < pair[1]) && list.first().is_some_and(|k| *k > 0);
-                if ascends && list.len() <= MOST_LARGE {
+                let ascends = list.windows(2).all(|pair| pair[0] < pair[1]);
+                let exist = list.iter().all(|mode| (1..=flexible).contains(mode));
+                if is_in(list.len()) && ascends && exist {
                     Ok(Some(Large::List(list)))
                 } else {
                     Err(refuse(format!("{list:?}")))

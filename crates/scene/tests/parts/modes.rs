@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use scene::{Choice, Damping, Flexible, Modes, Rayleigh};
+use scene::{Choice, Damping, Flexible, Large, Modes, Rayleigh};
 
 const FROM: &str = "[modes]";
 const TO: &str = "[frame]";
@@ -48,6 +48,25 @@ fn static_correction() {
     refused("flexible = 1\nstatic_correction = \"true\"", "\"true\"", key, &["remove the quotes"]);
     refused("flexible = 1\nstatic_correction = 7", "7\n", key, &["found the number 7, expected true", "= \"auto\"`"]);
     refused("flexible = 0\nstatic_correction = true", "true", key, &["a body without flexible modes"]);
+}
+
+#[test]
+fn large_modes() {
+    let large = |line: &str| modes(&format!("flexible = 6\n{line}")).large;
+    assert_eq!(large(""), None);
+    assert_eq!(large("large = 4"), Some(Large::Count(4)));
+    assert_eq!(large("large = [1, 6]"), Some(Large::List(vec![1, 6])));
+    for (written, found) in [("0", "0"), ("7", "7"), ("[]", "[]"), ("[2, 1]", "[2, 1]"), ("[0]", "[0]"), ("[7]", "[7]")]
+    {
+        let words = format!("found {found}, expected a number from 1 to 6, or a list");
+        refused(
+            &format!("flexible = 6\nlarge = {written}"),
+            &format!("{written}\n\n[frame]"),
+            "modes.large",
+            &[&words],
+        );
+    }
+    refused("flexible = 6\nlarge = \"many\"", "\"many\"", "modes.large", &["a number of modes or a list"]);
 }
 
 #[test]
