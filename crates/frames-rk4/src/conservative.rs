@@ -639,11 +639,11 @@ impl ConservativeBody {
         if inverse.iter().all(|x| x.is_finite()) { Ok(inverse * x) } else { Err(RateError::Inertia) }
     }
 
-    /// All rates at time `t`, with the rotation vector counted from `attitude`. Loads and drives follow the laws that
-    /// hold at the time `inside`.
+    /// All rates at time `t`, with the rotation vector counted from `attitude`. Loads and drives follow the branches of their histories that
+    /// hold at `branch_time`.
     pub(crate) fn evaluate(
         &self,
-        [t, inside]: [f64; 2],
+        [t, branch_time]: [f64; 2],
         attitude: &Attitude,
         slow: &Slow,
         q: &[f64],
@@ -651,8 +651,8 @@ impl ConservativeBody {
         e: &mut Evaluation,
     ) -> Result<(), RateError> {
         self.deform(q, e);
-        let speed = self.drive.as_ref().map_or(0.0, |drive| drive.speed(t, inside));
-        let driven_acceleration = self.drive.as_ref().map_or(0.0, |drive| drive.acceleration(t, inside));
+        let speed = self.drive.as_ref().map_or(0.0, |drive| drive.speed(t, branch_time));
+        let driven_acceleration = self.drive.as_ref().map_or(0.0, |drive| drive.acceleration(t, branch_time));
         e.driven_speed = speed;
         let pi = get(slow, part::PI);
         if self.turn_driven {
@@ -696,7 +696,7 @@ impl ConservativeBody {
             let coordinates = Coordinates { first: 6, displacement: &e.extended, velocity: &e.velocity, on_manifold };
             let motion = Kinematics {
                 time: t,
-                branch_time: inside,
+                branch_time,
                 body_from_global: &body_from_global,
                 origin_global: get(slow, part::POSITION),
                 velocity_global: velocity,
@@ -837,11 +837,12 @@ impl ConservativeBody {
         let Some(drive) = &self.drive else { return Ok(()) };
         // The corner itself is where it is but for rounding.
         let aside = 1e-12 * drive.span;
-        let on_side = |state: &ConservativeState, inside: f64, e: &mut Evaluation| -> Result<[f64; 2], RateError> {
-            let (q, p) = (&state.modal_displacement, &state.modal_momentum);
-            self.evaluate([state.time, inside], &state.attitude, &state.slow, q, p, e)?;
-            Ok([e.driven_speed, e.driven_momentum])
-        };
+        let on_side =
+            |state: &ConservativeState, branch_time: f64, e: &mut Evaluation| -> Result<[f64; 2], RateError> {
+                let (q, p) = (&state.modal_displacement, &state.modal_momentum);
+                self.evaluate([state.time, branch_time], &state.attitude, &state.slow, q, p, e)?;
+                Ok([e.driven_speed, e.driven_momentum])
+            };
         let [after, _] = on_side(state, state.time + aside, e)?;
         let [before, held] = on_side(state, state.time - aside, e)?;
         let jump = after - before;

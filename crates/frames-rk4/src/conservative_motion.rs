@@ -369,8 +369,8 @@ impl ConservativeMotion {
     fn evaluate(&mut self, s: usize, t: f64, slow: &Slow, h: f64) -> Result<(), StepError> {
         let Self { body, state, stages, q, p, .. } = self;
         self.evaluations += 1;
-        let inside = state.time + 0.5 * h;
-        body.evaluate([t, inside], &state.attitude, slow, q, p, &mut stages[s])
+        let branch_time = state.time + 0.5 * h;
+        body.evaluate([t, branch_time], &state.attitude, slow, q, p, &mut stages[s])
             .map_err(|error| error.in_step(state.time, h))
     }
 

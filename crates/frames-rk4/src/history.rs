@@ -110,71 +110,71 @@ impl<T, E> History<T, E> {
 }
 
 impl History {
-    /// The factor at a time, by the law that holds at the time `inside`.
+    /// The factor at a time, by the branch that holds at `branch_time`.
     ///
     /// Between two corners a history follows one smooth law. A step lies between corners and its stages at both of its
-    /// ends: with `inside` its middle, both see the law of the step, and not what is left or right of a jump there.
+    /// ends: with `branch_time` its middle, both see the law of the step, and not what is left or right of a jump there.
     /// Allocates nothing. An expression may give NaN or infinity; [`Self::check_over`] finds that beforehand.
-    pub fn at(&self, time: f64, inside: f64) -> f64 {
+    pub fn at(&self, time: f64, branch_time: f64) -> f64 {
         match self {
             Self::Constant => 1.0,
-            Self::Step { at } => f64::from(inside >= *at),
+            Self::Step { at } => f64::from(branch_time >= *at),
             Self::Ramp { start, duration } => {
-                if inside < *start {
+                if branch_time < *start {
                     0.0
-                } else if inside <= start + duration {
+                } else if branch_time <= start + duration {
                     (time - start) / duration
                 } else {
                     1.0
                 }
             }
-            Self::HalfSine { start, duration } if within(*start, *duration, inside) => {
+            Self::HalfSine { start, duration } if within(*start, *duration, branch_time) => {
                 (PI * (time - start) / duration).sin()
             }
             Self::Sine { frequency, phase, start, duration }
-                if within(*start, duration.unwrap_or(f64::INFINITY), inside) =>
+                if within(*start, duration.unwrap_or(f64::INFINITY), branch_time) =>
             {
                 (TAU * frequency * (time - start) + phase).sin()
             }
-            Self::Sweep { from, to, start, duration } if within(*start, *duration, inside) => {
+            Self::Sweep { from, to, start, duration } if within(*start, *duration, branch_time) => {
                 let tau = time - start;
                 (TAU * tau * (from + 0.5 * (to - from) * tau / duration)).sin()
             }
             Self::HalfSine { .. } | Self::Sine { .. } | Self::Sweep { .. } => 0.0,
-            Self::Table(table) => table.at(time, inside),
-            Self::Expression(expression) => expression.at(time, inside),
-            Self::Product { factors } => factors.iter().map(|factor| factor.at(time, inside)).product(),
+            Self::Table(table) => table.at(time, branch_time),
+            Self::Expression(expression) => expression.at(time, branch_time),
+            Self::Product { factors } => factors.iter().map(|factor| factor.at(time, branch_time)).product(),
         }
     }
 
-    /// The factor's rate at a time, by the law that holds at the time `inside`; per time.
+    /// The factor's rate at a time, by the branch that holds at `branch_time`; per time.
     ///
     /// It is the exact derivative. Allocates nothing.
-    pub fn rate(&self, time: f64, inside: f64) -> f64 {
+    pub fn rate(&self, time: f64, branch_time: f64) -> f64 {
         match self {
-            Self::Ramp { start, duration } if within(*start, *duration, inside) => duration.recip(),
-            Self::HalfSine { start, duration } if within(*start, *duration, inside) => {
+            Self::Ramp { start, duration } if within(*start, *duration, branch_time) => duration.recip(),
+            Self::HalfSine { start, duration } if within(*start, *duration, branch_time) => {
                 let circular = PI / duration;
                 circular * (circular * (time - start)).cos()
             }
             Self::Sine { frequency, phase, start, duration }
-                if within(*start, duration.unwrap_or(f64::INFINITY), inside) =>
+                if within(*start, duration.unwrap_or(f64::INFINITY), branch_time) =>
             {
                 let circular = TAU * frequency;
                 circular * (circular * (time - start) + phase).cos()
             }
-            Self::Sweep { from, to, start, duration } if within(*start, *duration, inside) => {
+            Self::Sweep { from, to, start, duration } if within(*start, *duration, branch_time) => {
                 let tau = time - start;
                 let circular = |average: f64| TAU * (from + average * (to - from) * tau / duration);
                 circular(1.0) * (tau * circular(0.5)).cos()
             }
             Self::Constant | Self::Step { .. } | Self::Ramp { .. } => 0.0,
             Self::HalfSine { .. } | Self::Sine { .. } | Self::Sweep { .. } => 0.0,
-            Self::Table(table) => table.rate(time, inside),
-            Self::Expression(expression) => expression.rate(time, inside),
+            Self::Table(table) => table.rate(time, branch_time),
+            Self::Expression(expression) => expression.rate(time, branch_time),
             Self::Product { factors } => {
                 let times = |(value, rate): (f64, f64), factor: &Self| {
-                    let (by, by_rate) = (factor.at(time, inside), factor.rate(time, inside));
+                    let (by, by_rate) = (factor.at(time, branch_time), factor.rate(time, branch_time));
                     (value * by, rate * by + value * by_rate)
                 };
                 factors.iter().fold((1.0, 0.0), times).1
@@ -213,22 +213,24 @@ impl History {
         }
     }
 
-    /// Longest step that sees the factor as it is in a stretch of time around `inside` that has no corner: a sixteenth
+    /// Longest step that sees the factor as it is in a stretch of time around `branch_time` that has no corner: a sixteenth
     /// of a period of what swings, so that Simpson's rule errs by 1e-5 of it. Straight lines are seen by any step; for
     /// expressions see [`FormulaSteps`](crate::formula_steps::FormulaSteps).
-    pub(crate) fn longest_step(&self, inside: f64) -> f64 {
+    pub(crate) fn longest_step(&self, branch_time: f64) -> f64 {
         let of_period = |period: f64| period / 16.0;
         match self {
-            Self::HalfSine { start, duration } if within(*start, *duration, inside) => of_period(2.0 * duration),
+            Self::HalfSine { start, duration } if within(*start, *duration, branch_time) => of_period(2.0 * duration),
             Self::Sine { frequency, start, duration, .. }
-                if within(*start, duration.unwrap_or(f64::INFINITY), inside) =>
+                if within(*start, duration.unwrap_or(f64::INFINITY), branch_time) =>
             {
                 of_period(frequency.recip())
             }
-            Self::Sweep { from, to, start, duration } if within(*start, *duration, inside) => {
+            Self::Sweep { from, to, start, duration } if within(*start, *duration, branch_time) => {
                 of_period(from.max(*to).recip())
             }
-            Self::Product { factors } => factors.iter().map(|f| f.longest_step(inside)).fold(f64::INFINITY, f64::min),
+            Self::Product { factors } => {
+                factors.iter().map(|f| f.longest_step(branch_time)).fold(f64::INFINITY, f64::min)
+            }
             _ => f64::INFINITY,
         }
     }

@@ -113,9 +113,9 @@ impl FrameSteps for PaperSteps {
     /// Does one step, k1 to k4 and (38) to (40).
     fn step(&mut self, body: &mut FrameMotion, h: f64, end: f64) -> Result<(), StepError> {
         let time = body.state.time;
-        let inside = time + 0.5 * h;
+        let branch_time = time + 0.5 * h;
         if self.at_corner {
-            self.complete_state(body, inside);
+            self.complete_state(body, branch_time);
             self.at_corner = false;
         }
         let Self { rotation, kinematics, scratch, .. } = self;
@@ -151,7 +151,7 @@ impl FrameSteps for PaperSteps {
                     velocity: next_velocity,
                     on_manifold: None,
                 },
-                branch_time: inside,
+                branch_time,
                 body_from_global: &(turn * global_to_body),
                 origin_global: state.origin_global,
                 omega_body: omega,
@@ -185,14 +185,14 @@ impl FrameSteps for PaperSteps {
         state.time = end;
         // By the trapezoidal rule: far closer than a first-order scheme closes its balances.
         work.add(0.5 * h, &self.power);
-        self.complete_state(body, inside);
+        self.complete_state(body, branch_time);
         body.work.add(0.5 * h, &self.power);
         Ok(())
     }
 
     /// Accelerations (35), ω (36) and α (37) of the state's displacements and velocities, and the power of the loads.
-    /// Loads follow the laws that hold at the time `inside`.
-    fn complete_state(&mut self, body: &mut FrameMotion, inside: f64) {
+    /// Loads follow the branches of their histories that hold at `branch_time`.
+    fn complete_state(&mut self, body: &mut FrameMotion, branch_time: f64) {
         let kinematics = &self.kinematics;
         let FrameMotion { model, motion, state, .. } = body;
         let global_to_body = state.attitude.global_to_body();
@@ -205,7 +205,7 @@ impl FrameSteps for PaperSteps {
                 velocity: &state.modal_velocity,
                 on_manifold: None,
             },
-            branch_time: inside,
+            branch_time,
             body_from_global: &global_to_body,
             origin_global: state.origin_global,
             omega_body: state.omega_body,

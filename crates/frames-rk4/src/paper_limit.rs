@@ -88,7 +88,7 @@ impl FrameSteps for LimitSteps {
     /// Does one step of classical Runge–Kutta.
     fn step(&mut self, body: &mut FrameMotion, h: f64, end: f64) -> Result<(), StepError> {
         let time = body.state.time;
-        let inside = time + 0.5 * h;
+        let branch_time = time + 0.5 * h;
         for (s, fraction) in [0.0, 0.5, 0.5, 1.0].into_iter().enumerate() {
             let c = fraction * h;
             let mut theta = Vector3::zeros();
@@ -100,7 +100,7 @@ impl FrameSteps for LimitSteps {
                 add(&mut self.q, c, &before.displacement);
                 add(&mut self.y, c, &before.velocity);
             }
-            self.evaluate(body, s, time + c, inside, &theta).map_err(|error| error.in_step(time, h))?;
+            self.evaluate(body, s, time + c, branch_time, &theta).map_err(|error| error.in_step(time, h))?;
         }
         let Self { stages, q, y, .. } = self;
         let FrameMotion { state, work, .. } = body;
@@ -124,13 +124,13 @@ impl FrameSteps for LimitSteps {
         state.time = end;
         std::mem::swap(&mut state.modal_displacement, q);
         std::mem::swap(&mut state.modal_velocity, y);
-        self.complete_state(body, inside);
+        self.complete_state(body, branch_time);
         Ok(())
     }
 
     /// Accelerations, ω and α of the state: q̈ in the inertial frame that coincides with the body now, and α = ω' in
-    /// body axes, which is Euler's. Loads follow the laws that hold at the time `inside`.
-    fn complete_state(&mut self, body: &mut FrameMotion, inside: f64) {
+    /// body axes, which is Euler's. Loads follow the branches of their histories that hold at `branch_time`.
+    fn complete_state(&mut self, body: &mut FrameMotion, branch_time: f64) {
         let Self { cross_products, products, .. } = self;
         let FrameMotion { model, motion, state, .. } = body;
         let global_to_body = state.attitude.global_to_body();
@@ -138,7 +138,7 @@ impl FrameSteps for LimitSteps {
         state.omega_body = motion.angular_rate(&rotation(y));
         let linear = LinearMotion {
             coordinates: Coordinates { first: 0, displacement: q, velocity: y, on_manifold: None },
-            branch_time: inside,
+            branch_time,
             body_from_global: &global_to_body,
             origin_global: state.origin_global,
             omega_body: state.omega_body,
@@ -162,7 +162,7 @@ impl LimitSteps {
         body: &FrameMotion,
         s: usize,
         t: f64,
-        inside: f64,
+        branch_time: f64,
         theta: &Vector3<f64>,
     ) -> Result<(), RateError> {
         let Self { cross_products, stages, q, y, products } = self;
@@ -173,7 +173,7 @@ impl LimitSteps {
         let omega = motion.angular_rate(&rotation(y));
         let linear = LinearMotion {
             coordinates: Coordinates { first: 0, displacement: q, velocity: y, on_manifold: None },
-            branch_time: inside,
+            branch_time,
             body_from_global: &global_to_body,
             origin_global: state.origin_global,
             omega_body: omega,

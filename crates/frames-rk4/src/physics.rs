@@ -38,14 +38,14 @@ pub enum DrivenMotion {
 }
 
 impl Drive {
-    /// The speed at a time, by the law that holds at the time `inside`.
-    pub(crate) fn speed(&self, time: f64, inside: f64) -> f64 {
-        self.amplitude * self.history.at(time, inside)
+    /// The speed at a time, by the branch that holds at `branch_time`.
+    pub(crate) fn speed(&self, time: f64, branch_time: f64) -> f64 {
+        self.amplitude * self.history.at(time, branch_time)
     }
 
     /// The rate of the speed.
-    pub(crate) fn acceleration(&self, time: f64, inside: f64) -> f64 {
-        self.amplitude * self.history.rate(time, inside)
+    pub(crate) fn acceleration(&self, time: f64, branch_time: f64) -> f64 {
+        self.amplitude * self.history.rate(time, branch_time)
     }
 
     /// Refuses numbers that are not finite, and a direction that is no unit vector.

@@ -502,10 +502,10 @@ impl Simulation {
             let segment = self.plan.next_segment()?;
             self.corner_ahead = segment.corner;
             // Step control does not see what swings within a step either, where all its stages fall on like phases.
-            let inside = segment.start + 0.5 * segment.length;
-            let of_loads = self.loads.iter().map(|load| load.longest_step(inside));
-            let of_drive = self.drive.iter().map(|history| history.longest_step(inside));
-            let longest = of_loads.chain(of_drive).fold(self.formula_steps.longest_step(inside), f64::min);
+            let branch_time = segment.start + 0.5 * segment.length;
+            let of_loads = self.loads.iter().map(|load| load.longest_step(branch_time));
+            let of_drive = self.drive.iter().map(|history| history.longest_step(branch_time));
+            let longest = of_loads.chain(of_drive).fold(self.formula_steps.longest_step(branch_time), f64::min);
             match &mut self.walk {
                 Walk::Equal { step, steps } => {
                     *steps = Some((EqualSteps::new(segment, step.min(longest)), segment.row));

@@ -43,8 +43,8 @@ pub trait FrameSteps: fmt::Debug + Clone + Send + Sync + 'static {
     fn step(&mut self, body: &mut FrameMotion, h: f64, end: f64) -> Result<(), StepError>;
 
     /// Finds the accelerations, ω and α that belong to the displacements and velocities of the state. Loads follow the
-    /// laws that hold at the time `inside`.
-    fn complete_state(&mut self, body: &mut FrameMotion, inside: f64);
+    /// branches of their histories that hold at `branch_time`.
+    fn complete_state(&mut self, body: &mut FrameMotion, branch_time: f64);
 
     /// A load may jump at the time of the state.
     fn pass_corner(&mut self) {}

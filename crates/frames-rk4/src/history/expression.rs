@@ -59,27 +59,27 @@ impl Expression {
         &self.corners
     }
 
-    /// The value at a time; at a corner the one on the side of `inside`.
-    pub(crate) fn at(&self, time: f64, inside: f64) -> f64 {
+    /// The value at a time; at a corner the one on the side of `branch_time`.
+    pub(crate) fn at(&self, time: f64, branch_time: f64) -> f64 {
         #[cfg(test)]
         EVALUATIONS.with(|count| count.set(count.get() + 1));
-        self.law.value(self.beside_corners(time, inside))
+        self.law.value(self.beside_corners(time, branch_time))
     }
 
-    /// The rate at a time, by the law that holds at the time `inside`: the exact derivative. At a kink that is not named
+    /// The rate at a time, by the branch that holds at `branch_time`: the exact derivative. At a kink that is not named
     /// as a corner it is the mean of both sides; jumps have none.
-    pub(super) fn rate(&self, time: f64, inside: f64) -> f64 {
-        self.law.value_and_rate(self.beside_corners(time, inside)).1
+    pub(super) fn rate(&self, time: f64, branch_time: f64) -> f64 {
+        self.law.value_and_rate(self.beside_corners(time, branch_time)).1
     }
 
-    /// The time moved off the corners to the side of `inside`: a formula can be asked on one side of a jump only beside
+    /// The time moved off the corners to the side of `branch_time`: a formula can be asked on one side of a jump only beside
     /// it.
-    fn beside_corners(&self, time: f64, inside: f64) -> f64 {
+    fn beside_corners(&self, time: f64, branch_time: f64) -> f64 {
         if self.corners.is_empty() {
             return time;
         }
         let beside = |corner: f64| 4.0 * f64::EPSILON * corner.abs().max(f64::MIN_POSITIVE);
-        let next = self.corners.partition_point(|corner| *corner <= inside);
+        let next = self.corners.partition_point(|corner| *corner <= branch_time);
         let from = next.checked_sub(1).map_or(f64::NEG_INFINITY, |k| self.corners[k] + beside(self.corners[k]));
         let to = self.corners.get(next).map_or(f64::INFINITY, |corner| corner - beside(*corner));
         time.min(to).max(from)

@@ -108,8 +108,8 @@ impl History {
         let mut start = 0.0;
         for stop in stops {
             let panels = self.panels(stop - start, end, refinement) as usize;
-            let (inside, half) = (0.5 * (start + stop), 0.5 * (stop - start) / panels as f64);
-            let at = |k: usize| self.at(if k == 2 * panels { stop } else { start + half * k as f64 }, inside);
+            let (branch_time, half) = (0.5 * (start + stop), 0.5 * (stop - start) / panels as f64);
+            let at = |k: usize| self.at(if k == 2 * panels { stop } else { start + half * k as f64 }, branch_time);
             let mut first = at(0);
             for k in 0..panels {
                 let values = [first, at(2 * k + 1), at(2 * k + 2)];

@@ -44,25 +44,25 @@ impl Table {
         &self.corners
     }
 
-    /// The value at a time, by the line that holds at the time `inside`.
-    pub(super) fn at(&self, time: f64, inside: f64) -> f64 {
-        let (row, slope) = self.line(time, inside);
+    /// The value at a time, by the line that holds at `branch_time`.
+    pub(super) fn at(&self, time: f64, branch_time: f64) -> f64 {
+        let (row, slope) = self.line(time, branch_time);
         self.values[row] + slope * (time - self.times[row])
     }
 
-    /// The slope at a time, of the line that holds at the time `inside`.
-    pub(super) fn rate(&self, time: f64, inside: f64) -> f64 {
-        self.line(time, inside).1
+    /// The slope at a time, of the line that holds at `branch_time`.
+    pub(super) fn rate(&self, time: f64, branch_time: f64) -> f64 {
+        self.line(time, branch_time).1
     }
 
     /// A row and the slope of the line through it that holds at a time.
-    fn line(&self, time: f64, inside: f64) -> (usize, f64) {
+    fn line(&self, time: f64, branch_time: f64) -> (usize, f64) {
         // Rows that lie on one line but for rounding are a smooth stretch, which a step may cross: within it the rows
-        // next to the time count, and not those next to `inside`.
-        let next = self.corners.partition_point(|corner| *corner <= inside);
+        // next to the time count, and not those next to `branch_time`.
+        let next = self.corners.partition_point(|corner| *corner <= branch_time);
         let from = if next == 0 { f64::NEG_INFINITY } else { self.corners[next - 1] };
         let to = self.corners.get(next).copied().unwrap_or(f64::INFINITY);
-        let within = if (from..=to).contains(&time) { time } else { inside };
+        let within = if (from..=to).contains(&time) { time } else { branch_time };
         // Row after the time; at the ends of the stretch the one that belongs to its inner side.
         let row = if within >= to {
             self.times.partition_point(|t| *t < to)
