@@ -179,10 +179,9 @@ fn element_stiffness(
             }
         }
     }
-    for column in 0..FREEDOMS {
-        for row in column + 1..FREEDOMS {
-            stiffness[column][row] = stiffness[row][column];
-        }
+    for row in 1..FREEDOMS {
+        let (above, below) = stiffness.split_at_mut(row);
+        above.iter_mut().zip(&below[0]).for_each(|(upper, lower)| upper[row] = *lower);
     }
     stiffness
 }

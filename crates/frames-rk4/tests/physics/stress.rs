@@ -137,3 +137,29 @@ fn a_steady_load_moves_the_frequencies_as_its_stiffness_says() {
         assert!((last.modal_displacement[0] - expected).abs() < 1e-9, "{force}");
     }
 }
+
+/// Where the speed of a drive jumps, the body goes on as after a rise that is ever steeper.
+#[test]
+fn a_jump_of_a_driven_speed_is_the_limit_of_steep_rises() {
+    let unit = Vector3::new(2.0, -1.0, 2.0) / 3.0;
+    for motion in [DrivenMotion::Turn { axis: unit }, DrivenMotion::Slide { direction: unit }] {
+        let body = clamped();
+        let mut run = Run::new(&body, 2.0);
+        run.physics.drive_stiffness = Some(stiffness(0, 3));
+        let mut end = |history: History| {
+            run.physics.drive = Some(Drive { history, ..drive(motion) });
+            let gap = run.energy_gap(EXPONENTIAL, 1e-3);
+            // Measured: 4e-11.
+            assert!(gap < 1e-8, "{motion:?}: {gap:e}");
+            let [_, last] = run.ends(EXPONENTIAL, 1e-3);
+            last.modal_displacement
+        };
+        let jump = end(History::Step { at: 1.25 });
+        let off = [0.01, 0.005].map(|duration| {
+            let rise = end(History::Ramp { start: 1.25 - 0.5 * duration, duration });
+            rise.iter().zip(&jump).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+        });
+        // The way within the rise is another: first order in its duration, at least.
+        assert!(off[1] < 1e-4 && off[0] / off[1] > 1.8, "{motion:?}: {off:?}");
+    }
+}
