@@ -5,7 +5,9 @@
 //! ```
 //!
 //! The first term is the initial stress, the other two are the initial displacement: together the third derivative of the
-//! strain energy of a St. Venant–Kirchhoff body along u.
+//! strain energy of a St. Venant–Kirchhoff body along u. The terms of the initial displacement couple bending to
+//! stretching, where their effect is of second order in u and others of that order, which are not there, balance it: a
+//! body that u bends by more than its thickness may lose all stiffness by them.
 //!
 //! K(u) of the whole body is never made. In an element its rows sum to zero over the nodes, so only displacements
 //! *against the element's first node* count. With those, a translation of the element drops out exactly, and rounding is
@@ -31,12 +33,21 @@ pub(crate) const OTHERS: usize = 9;
 /// Their displacements.
 const FREEDOMS: usize = 3 * OTHERS;
 
+/// Which terms of K(u) are computed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum GeometricTerms {
+    /// The initial stress.
+    InitialStress,
+    /// The initial stress and the initial displacement.
+    All,
+}
+
 /// For each displacement field u (column of `displacements`, N×s with N = 3n, length) the matrix `Ψᵀ K(u) Ψ` (f×f, force
 /// per length), where Ψ is `shapes` (N×f, row `3·node + axis`). Symmetric to the last bit, and the same for any number of
 /// threads. `v·K(u)·b` is also `u·g_vb` of [`second_order_forces`](crate::second_order_forces).
 ///
 /// Exact on straight elements. On curved ones by the rule that [`assemble`](crate::assemble) has for them, so that
-/// `K(u) (θ × X) = θ × K u − K (θ × u)` holds at every node there too, for any small rotation θ.
+/// `K(u) (θ × X) = θ × K u − K (θ × u)`, of the initial stress alone `θ × K u`, holds at every node there too, for any small rotation θ.
 ///
 /// It holds 64·s·f² numbers, and for each thread the products of 32 elements: no more for a larger mesh.
 ///
@@ -48,6 +59,7 @@ pub fn reduced_geometric_stiffness(
     materials: &Materials,
     displacements: MatRef<'_, f64>,
     shapes: MatRef<'_, f64>,
+    terms: GeometricTerms,
 ) -> Result<Vec<Mat<f64>>, AssemblyError> {
     check_field(mesh, "displacements", displacements)?;
     check_field(mesh, "shapes", shapes)?;
@@ -69,7 +81,7 @@ pub fn reduced_geometric_stiffness(
                 for (sum, u) in sums.iter_mut().zip(displacements.col_iter()) {
                     for (i, e) in block.iter().enumerate() {
                         let u = relative_displacements(u.as_mat(), &mesh.elements()[*e]);
-                        let stiffness = element_stiffness(&points[i], &materials[*e], &u);
+                        let stiffness = element_stiffness(&points[i], &materials[*e], &u, terms);
                         let of_element = i * f * FREEDOMS..(i + 1) * f * FREEDOMS;
                         matmul(
                             MatMut::from_column_major_slice_mut(&mut forces[of_element.clone()], f, FREEDOMS),
@@ -147,6 +159,7 @@ fn element_stiffness(
     points: &[IntegrationPoint],
     material: &Material,
     relative: &[f64],
+    terms: GeometricTerms,
 ) -> [[f64; FREEDOMS]; FREEDOMS] {
     let (lambda, mu) = material.lame();
     let mut stiffness = [[0.0; FREEDOMS]; FREEDOMS];
@@ -168,13 +181,18 @@ fn element_stiffness(
                 let (g_i, turned_i) = (&gradients[i], &turned[i]);
                 let (initial_stress, product) = (g_i.dot(&traction), g_i.dot(g_j));
                 for b in 0..3 {
+                    stiffness[3 * j + b][3 * i + b] += initial_stress;
+                }
+                if terms == GeometricTerms::InitialStress {
+                    continue;
+                }
+                for b in 0..3 {
                     for a in 0..3 {
                         // ε(a):C:ε₂(u,b), and the same with a and b in each other's place.
                         stiffness[3 * j + b][3 * i + a] += lambda * (g_i[a] * turned_j[b] + turned_i[a] * g_j[b])
                             + mu * (turned_i[b] * g_j[a] + turned_j[a] * g_i[b])
                             + both[(a, b)] * product;
                     }
-                    stiffness[3 * j + b][3 * i + b] += initial_stress;
                 }
             }
         }

@@ -50,7 +50,7 @@ pub fn second_order_forces(
     element_forces(mesh, materials, fields, pairs.len(), forces)
 }
 
-/// `K(u) V` (N×k, force) for the columns V of `fields` (N×k, length): K(u) is the geometric stiffness of `displacement`
+/// `K(u) V` (N×k, force) for the columns V of `fields` (N×k, length), where K(u) is the initial stress of `displacement`
 /// (N×1, length), as in [`reduced_geometric_stiffness`](crate::reduced_geometric_stiffness).
 ///
 /// # Errors
@@ -64,16 +64,13 @@ pub fn geometric_stiffness_product(
     check_field(mesh, "displacements", displacement)?;
     check_field(mesh, "fields", fields)?;
     let columns = fields.ncols();
-    let all =
-        Mat::from_fn(
-            fields.nrows(),
-            columns + 1,
-            |i, j| {
-                if j < columns { fields[(i, j)] } else { displacement[(i, 0)] }
-            },
-        );
-    let pairs: Vec<[usize; 2]> = (0..columns).map(|column| [columns, column]).collect();
-    second_order_forces(mesh, materials, all.as_ref(), &pairs)
+    let column = |i: usize, j: usize| if j < columns { fields[(i, j)] } else { displacement[(i, 0)] };
+    let all = Mat::from_fn(fields.nrows(), columns + 1, column);
+    let forces = |gradients: &[Matrix3<f64>], material: &Material, out: &mut Vec<Matrix3<f64>>| {
+        let stress = stress(material, &strain(&gradients[columns]));
+        out.extend(gradients[..columns].iter().map(|gradient| gradient * stress));
+    };
+    element_forces(mesh, materials, all.as_ref(), columns, forces)
 }
 
 /// `∫ ε₂(a,b) : C : ε₂(c,d) dV` (energy, one for each of `quadruples`) of columns a, b, c, d of `fields` (N×k, length).

@@ -1,7 +1,7 @@
 //! The reduced geometric stiffness against closed forms, rotated forces, and an assembly written out in plain loops.
 
 use faer::Mat;
-use fem_tet10::{AssemblyError, Mesh, assemble, reduced_geometric_stiffness, shape_gradients};
+use fem_tet10::{AssemblyError, GeometricTerms, Mesh, assemble, reduced_geometric_stiffness, shape_gradients};
 use nalgebra::{DMatrix, Matrix3, Vector3};
 
 use crate::fixtures::{
@@ -13,7 +13,14 @@ fn columns(fields: &[Vec<f64>]) -> Mat<f64> {
 }
 
 fn reduced(mesh: &Mesh, displacements: &[Vec<f64>], shapes: &[Vec<f64>]) -> Vec<Mat<f64>> {
-    reduced_geometric_stiffness(mesh, &aluminium(), columns(displacements).as_ref(), columns(shapes).as_ref()).unwrap()
+    reduced_geometric_stiffness(
+        mesh,
+        &aluminium(),
+        columns(displacements).as_ref(),
+        columns(shapes).as_ref(),
+        GeometricTerms::All,
+    )
+    .unwrap()
 }
 
 /// Displacements with no symmetry and no order, of about the size given.
@@ -116,6 +123,22 @@ fn a_rotation_turns_the_forces_in_the_body() {
                 assert!(expected.abs() > 1e-9 * scale, "{name}, shape {i}: the test can fail");
             }
         }
+    }
+}
+
+/// The initial stress alone is that of a string, and turns the forces in the body.
+#[test]
+fn the_initial_stress_alone_is_that_of_a_string() {
+    let mesh = workspace_mesh("plate.msh");
+    let shapes: Vec<_> =
+        (0..3).map(|axis| field(&mesh, |[x, ..]| std::array::from_fn(|i| if i == axis { x } else { 0.0 }))).collect();
+    let (u, shapes) = (columns(&[tension(&mesh)]), columns(&shapes));
+    let k =
+        &reduced_geometric_stiffness(&mesh, &aluminium(), u.as_ref(), shapes.as_ref(), GeometricTerms::InitialStress)
+            .unwrap()[0];
+    for i in 0..3 {
+        // Measured: 5.6e-16 at worst.
+        assert_close("∫ σ w'² dV", k[(i, i)], 1000.0 * 50.0 * 10.0, 5e-15);
     }
 }
 
@@ -244,7 +267,14 @@ fn the_number_of_threads_does_not_change_a_bit_of_it() {
     let with_threads = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
-            reduced_geometric_stiffness(&mesh, &aluminium(), displacements.as_ref(), shapes.as_ref()).unwrap()
+            reduced_geometric_stiffness(
+                &mesh,
+                &aluminium(),
+                displacements.as_ref(),
+                shapes.as_ref(),
+                GeometricTerms::All,
+            )
+            .unwrap()
         })
     };
     let one = with_threads(1);
@@ -264,6 +294,7 @@ fn no_shapes_and_no_fields_cost_no_error() {
             &aluminium(),
             Mat::<f64>::zeros(n, fields).as_ref(),
             Mat::<f64>::zeros(n, shapes).as_ref(),
+            GeometricTerms::All,
         )
         .unwrap()
     };
@@ -278,7 +309,7 @@ fn fields_that_do_not_fit_the_mesh_are_refused() {
     let n = 3 * mesh.positions().len();
     let good = Mat::<f64>::zeros(n, 2);
     let of = |u: &Mat<f64>, shapes: &Mat<f64>| {
-        reduced_geometric_stiffness(&mesh, &aluminium(), u.as_ref(), shapes.as_ref()).unwrap_err()
+        reduced_geometric_stiffness(&mesh, &aluminium(), u.as_ref(), shapes.as_ref(), GeometricTerms::All).unwrap_err()
     };
     let error = of(&Mat::zeros(n - 1, 2), &good);
     assert!(matches!(error, AssemblyError::FieldRows { what: "displacements", .. }), "{error}");

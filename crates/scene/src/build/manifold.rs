@@ -1,13 +1,13 @@
 //! Large deflection: the manifold that the large modes of a body move on.
 
 use faer::{Mat, MatRef};
-use fem_tet10::{second_order_energies, second_order_forces};
+use fem_tet10::{GeometricTerms, second_order_energies, second_order_forces};
 use frames_rk4::{Effect, Manifold};
 use modal::{Modes, ReducedBody, SecondOrderShapes};
 
 use super::error::{BuildError, modal};
 use super::mesh_model::MeshModel;
-use super::stress::Stress;
+use super::stress::{LOADS, Stress};
 use crate::effects::Choice;
 use crate::modes::Large;
 use crate::scene::Scene;
@@ -21,6 +21,8 @@ pub(super) struct LargeDeflection {
     pub manifold: Manifold,
     /// The geometric stiffness of each large mode in the modes (nf × nf).
     stiffness: Vec<Mat<f64>>,
+    /// The same with the terms that loads have.
+    of_stress: Vec<Mat<f64>>,
 }
 
 /// Which of the `natural` modes that are kept are large, numbered from 0. What is left open is on where the scene names
@@ -50,14 +52,21 @@ impl LargeDeflection {
         let shapes = solver.second_order_shapes(modes.clone(), large, forces.as_ref()).map_err(modal(scene))?;
         let body = ReducedBody::new(&shapes.modes, model.matrices.mass(), mesh.positions()).map_err(modal(scene))?;
         let manifold = Manifold::new(body, &shapes, &energies)?;
-        let stiffness = model.stress_stiffness(of_large.as_ref(), modes)?;
-        Ok(Self { shapes, manifold, stiffness })
+        let stiffness = |terms| model.stress_stiffness(of_large.as_ref(), modes, terms);
+        let (stiffness, of_stress) = (stiffness(GeometricTerms::All)?, stiffness(LOADS)?);
+        Ok(Self { shapes, manifold, stiffness, of_stress })
     }
 
     /// The geometric stiffness `k` (nf × nf) of a static `answer` (3n × 1) in the extended shapes. Between two large modes
     /// it is zero, since the manifold has it. Between a large mode and another it is without that of the answer's parts along
     /// the large modes, which are coordinates that move.
-    pub fn extended(&self, model: &MeshModel<'_>, answer: MatRef<'_, f64>, k: &Mat<f64>) -> Mat<f64> {
+    fn extended(
+        &self,
+        model: &MeshModel<'_>,
+        answer: MatRef<'_, f64>,
+        k: &Mat<f64>,
+        of_large: &[Mat<f64>],
+    ) -> Mat<f64> {
         let SecondOrderShapes { modes, large, dynamic, .. } = &self.shapes;
         let momentum = model.solver.mass().product(answer);
         let along: Vec<f64> = large
@@ -72,7 +81,7 @@ impl LargeDeflection {
             match (large.contains(&a), large.contains(&b)) {
                 (true, true) => 0.0,
                 (false, false) => k[(a, b)],
-                _ => k[(a, b)] - along.iter().zip(&self.stiffness).map(|(part, of)| part * of[(a, b)]).sum::<f64>(),
+                _ => k[(a, b)] - along.iter().zip(of_large).map(|(part, of)| part * of[(a, b)]).sum::<f64>(),
             }
         })
     }
@@ -84,7 +93,8 @@ impl LargeDeflection {
         answers: MatRef<'_, f64>,
         k: &[Mat<f64>; 6],
     ) -> Result<Self, BuildError> {
-        let extended = std::array::from_fn(|pair| self.extended(model, answers.subcols(pair, 1), &k[pair]));
+        let extended =
+            std::array::from_fn(|pair| self.extended(model, answers.subcols(pair, 1), &k[pair], &self.stiffness));
         let body = self.manifold.body().clone().with_stress_stiffness(Some(extended)).map_err(modal(model.scene))?;
         Ok(Self { manifold: self.manifold.with_body(body)?, ..self })
     }
@@ -94,13 +104,17 @@ impl LargeDeflection {
         if let Some(of_loads) = &statics.of_loads {
             for (i, directed) in stress.of_loads.iter_mut().enumerate() {
                 for (j, directed) in directed.iter_mut().enumerate() {
-                    directed.stiffness =
-                        self.extended(model, of_loads.answers_to(i).subcols(j, 1), &directed.stiffness);
+                    directed.stiffness = self.extended(
+                        model,
+                        of_loads.answers_to(i).subcols(j, 1),
+                        &directed.stiffness,
+                        &self.of_stress,
+                    );
                 }
             }
         }
         if let (Some(answer), Some(k)) = (&statics.of_drive, stress.of_drive.take()) {
-            stress.of_drive = Some(self.extended(model, answer.as_ref(), &k));
+            stress.of_drive = Some(self.extended(model, answer.as_ref(), &k, &self.of_stress));
         }
         stress
     }

@@ -1,7 +1,7 @@
 //! The finite-element model of a scene.
 
 use faer::{Mat, MatRef};
-use fem_tet10::{Matrices, Mesh, reduced_geometric_stiffness};
+use fem_tet10::{GeometricTerms, Matrices, Mesh, reduced_geometric_stiffness};
 use frames_rk4::Drive;
 use modal::{Modes, Solver, Support};
 
@@ -24,7 +24,12 @@ pub(super) struct MeshModel<'a> {
 
 impl MeshModel<'_> {
     /// Stiffness in the modes (nf × nf) by the stress of each static answer (3n × m).
-    pub fn stress_stiffness(&self, answers: MatRef<'_, f64>, modes: &Modes) -> Result<Vec<Mat<f64>>, BuildError> {
-        Ok(reduced_geometric_stiffness(self.mesh, &self.body.materials, answers, modes.shapes.as_ref())?)
+    pub fn stress_stiffness(
+        &self,
+        answers: MatRef<'_, f64>,
+        modes: &Modes,
+        terms: GeometricTerms,
+    ) -> Result<Vec<Mat<f64>>, BuildError> {
+        Ok(reduced_geometric_stiffness(self.mesh, &self.body.materials, answers, modes.shapes.as_ref(), terms)?)
     }
 }

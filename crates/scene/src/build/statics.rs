@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use advice::StaticCompliance;
 use faer::{Col, ColRef, Mat, MatRef};
+use fem_tet10::GeometricTerms;
 use frames_rk4::DrivenMotion;
 use modal::{Modes, acceleration_fields, centrifugal_fields, turning_field};
 use nalgebra::Vector3;
@@ -120,7 +121,7 @@ impl Statics {
     /// K_ij of each pair of spins in the modes; none where the answers to the spin are not known.
     pub fn stress_stiffness(&self, model: &MeshModel<'_>, modes: &Modes) -> Result<Option<[Mat<f64>; 6]>, BuildError> {
         let Some(of_spin) = &self.of_spin else { return Ok(None) };
-        Ok(model.stress_stiffness(of_spin.answers.as_ref(), modes)?.try_into().ok())
+        Ok(model.stress_stiffness(of_spin.answers.as_ref(), modes, GeometricTerms::All)?.try_into().ok())
     }
 
     /// The answer to all dead loads together that stay as they are, seen from the body (3n × 1).

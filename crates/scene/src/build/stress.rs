@@ -2,7 +2,7 @@
 
 use advice::{Row, StressField, StressSource, stress, stress_row};
 use faer::{Mat, MatRef};
-use fem_tet10::{AssemblyError, geometric_stiffness_product};
+use fem_tet10::{AssemblyError, GeometricTerms, geometric_stiffness_product};
 use frames_rk4::Effect;
 use modal::{ModalError, Modes};
 use nalgebra::Vector3;
@@ -13,6 +13,10 @@ use super::modal_model::ModalModel;
 use super::physics;
 use super::statics::Statics;
 use crate::effects::Choice;
+
+/// A load across a slender body bends it by more than its thickness long before it stresses it much, and the terms of the
+/// initial displacement are wrong there: see [`fem_tet10::reduced_geometric_stiffness`].
+pub(super) const LOADS: GeometricTerms = GeometricTerms::InitialStress;
 
 /// Stiffness in the modes (nf × nf) by the stress of what acts on a body, where it matters.
 #[derive(Default)]
@@ -50,7 +54,7 @@ impl Stress {
                     found.of_loads.push(Vec::new());
                     continue;
                 }
-                let stiffness = model.stress_stiffness(answers, modes)?;
+                let stiffness = model.stress_stiffness(answers, modes, LOADS)?;
                 let mut directed = Vec::new();
                 for (vector, stiffness) in of_loads.vectors(i, load).into_iter().zip(stiffness) {
                     names.push((StressSource::Load(i), load.name_along(&vector)));
@@ -66,7 +70,7 @@ impl Stress {
         }
         if let Some(answer) = &statics.of_drive {
             names.push((StressSource::Drive, "the acceleration of the drive".to_owned()));
-            found.of_drive = model.stress_stiffness(answer.as_ref(), modes)?.pop();
+            found.of_drive = model.stress_stiffness(answer.as_ref(), modes, LOADS)?.pop();
             shown.extend(found.of_drive.clone());
         }
         found.decided(model, body, &names, &shown)
