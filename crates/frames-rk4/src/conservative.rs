@@ -297,7 +297,8 @@ impl ConservativeBody {
         let nf = body.flexible();
         loads.iter().try_for_each(|load| load.check(nf))?;
         let drive_stiffness = drive_stiffness.as_ref().filter(|_| drive.is_some());
-        for found in drive_stiffness.iter().flat_map(|k| [k.nrows(), k.ncols()]).filter(|found| *found != nf) {
+        let mut sizes = drive_stiffness.iter().flat_map(|k| [k.nrows(), k.ncols()]);
+        if let Some(found) = sizes.find(|found| *found != nf) {
             let what = "a row or column of the geometric stiffness of the drive";
             return Err(SetupError::Length { what, expected: nf, found });
         }

@@ -100,7 +100,8 @@ impl SecondOrder {
         let mut sum = Vector3::zeros();
         for Term { direction, stiffness } in self.terms.iter() {
             // Symmetric, so that a column is a row: Σ_l q_l value(K_l) is the value of K q.
-            let along: f64 = stiffness.chunks_exact(self.modes).zip(q).map(|(column, q)| q * value(column)).sum();
+            let along: f64 =
+                stiffness.chunks_exact(self.modes.max(1)).zip(q).map(|(column, q)| q * value(column)).sum();
             sum -= direction * along;
         }
         sum
@@ -118,7 +119,7 @@ impl SecondOrder {
         for Term { direction, stiffness } in self.terms.iter() {
             let along = direction.dot(vector);
             let mut bent = 0.0;
-            for (l, column) in stiffness.chunks_exact(self.modes).enumerate().take(q.len()) {
+            for (l, column) in stiffness.chunks_exact(self.modes.max(1)).enumerate().take(q.len()) {
                 let k_q = dot(column, q);
                 modal_force[l] -= along * k_q;
                 power -= along * k_q * velocity[l];

@@ -3,6 +3,7 @@
 mod backbones;
 mod damping;
 mod decide;
+mod directed;
 mod error;
 mod history;
 mod initial;

@@ -149,7 +149,7 @@ fn a_jump_of_a_driven_speed_is_the_limit_of_steep_rises() {
         let mut end = |history: History| {
             run.physics.drive = Some(Drive { history, ..drive(motion) });
             let gap = run.energy_gap(EXPONENTIAL, 1e-3);
-            // Measured: 4e-11.
+
             assert!(gap < 1e-8, "{motion:?}: {gap:e}");
             let [_, last] = run.ends(EXPONENTIAL, 1e-3);
             last.modal_displacement

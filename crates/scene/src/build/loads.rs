@@ -12,11 +12,10 @@ use modal::{BodyPoint, Modes, ReducedBody};
 use nalgebra::Vector3;
 use rigid_kin::Attitude;
 
+use super::directed::Directed;
 use super::error::{BuildError, modal, refuse, refuse_mesh};
 use super::history::history;
 use super::initial::first_attitude;
-use super::mesh_model::MeshModel;
-use super::stress::Directed;
 use super::turning::Turning;
 use crate::effects::Choice;
 use crate::load::{self, Load};
@@ -305,7 +304,8 @@ impl MeshLoad {
     /// What a pressure becomes as its surface moves; none of other loads.
     pub(super) fn follower_change(
         &self,
-        model: &MeshModel<'_>,
+        scene: &Scene,
+        mesh: &Mesh,
         body: &ReducedBody,
         modes: &Modes,
     ) -> Result<Option<FollowerChange>, BuildError> {
@@ -317,13 +317,12 @@ impl MeshLoad {
             load_stiffness: Mat::zeros(nf, nf),
         };
         for k in 0..nf {
-            let (_, changes) = model
-                .mesh
+            let (_, changes) = mesh
                 .surface_pressure_change(group, modes.shapes.col(k))
-                .map_err(|error| refuse_mesh(model.scene, "loads", &error))?;
+                .map_err(|error| refuse_mesh(scene, "loads", &error))?;
             for ((node, force), added) in nodes.iter().zip(forces).zip(&changes) {
                 let added = added * *pressure;
-                let position = Vector3::from(model.mesh.positions()[*node as usize]) - body.origin;
+                let position = Vector3::from(mesh.positions()[*node as usize]) - body.origin;
                 change.force[k] += added;
                 change.moment[k] += shape(modes, *node, k).cross(force) + position.cross(&added);
                 for a in 0..nf {
@@ -337,12 +336,12 @@ impl MeshLoad {
     /// The load on the modes of a body, with the stiffness by its stress.
     pub(super) fn reduced(
         &self,
-        model: &MeshModel<'_>,
+        scene: &Scene,
+        mesh: &Mesh,
         body: &ReducedBody,
         modes: &Modes,
         stress: &[Directed],
     ) -> Result<SharedLoad, BuildError> {
-        let &MeshModel { scene, mesh, .. } = model;
         let frame = if self.follows { LoadFrame::Body } else { LoadFrame::Global };
         let nf = body.flexible();
         let history = self.history.clone();
@@ -389,7 +388,7 @@ impl MeshLoad {
                 let rigid = [body.translation_basis.tr_mul(&force_body), body.rotation_basis.tr_mul(&moment_body)];
                 let flexible = (0..nf).map(|k| acting().map(|(node, f)| shape(modes, node, k).dot(f)).sum());
                 let modal = rigid.iter().flat_map(|v| v.iter().copied()).chain(flexible).collect();
-                let change = self.follower_change(model, body, modes)?;
+                let change = self.follower_change(scene, mesh, body, modes)?;
                 let (load_stiffness, second_order) = match (&change, stress.first()) {
                     (Some(FollowerChange { load_stiffness, .. }), Some(directed)) => {
                         let entries = load_stiffness.col_iter().flat_map(|c| c.iter().copied().collect::<Vec<_>>());

@@ -7,13 +7,12 @@ use modal::{Modes, ReducedBody};
 use nalgebra::Vector3;
 
 use super::damping::damping_ratios;
+use super::directed::Directed;
 use super::error::{BuildError, modal};
 use super::initial::initial;
 use super::loads::{BodyLoads, MeshLoad};
-use super::manifold::LargeDeflection;
 use super::mesh_model::MeshModel;
 use super::model::Size;
-use super::stress::Stress;
 
 /// A body and its loads in the coordinates of some modes.
 pub(super) struct ModalModel {
@@ -29,7 +28,7 @@ impl ModalModel {
     pub fn new(model: &MeshModel<'_>, modes: &Modes) -> Result<Self, BuildError> {
         let &MeshModel { scene, mesh, .. } = model;
         let body = ReducedBody::new(modes, model.matrices.mass(), mesh.positions()).map_err(modal(scene))?;
-        let loads = loads(model, &body, modes, &Stress::default())?;
+        let loads = loads(model, &body, modes, &[])?;
         let peak = |shape: faer::ColRef<'_, f64>| {
             let at = |node: usize| Vector3::from_fn(|axis, _| shape[3 * node + axis]).norm();
             (0..shape.nrows() / 3).map(at).fold(0.0, f64::max)
@@ -49,19 +48,16 @@ impl ModalModel {
         Ok(Self { body, ..self })
     }
 
-    /// The same model with loads that stiffen the body by their stress.
-    pub fn with_stress(self, model: &MeshModel<'_>, modes: &Modes, stress: &Stress) -> Result<Self, BuildError> {
-        Ok(Self { loads: loads(model, &self.body, modes, stress)?, ..self })
-    }
-
-    /// The same model with loads in the extended shapes of large modes.
-    pub fn on_manifold(
+    /// The same model with loads in the modes of `body`, which may be the extended shapes of large modes, that stiffen it by
+    /// the stress of each.
+    pub fn with_stress(
         self,
         model: &MeshModel<'_>,
-        large: &LargeDeflection,
-        stress: &Stress,
+        body: Option<&ReducedBody>,
+        modes: &Modes,
+        stress: &[Vec<Directed>],
     ) -> Result<Self, BuildError> {
-        Ok(Self { loads: loads(model, large.manifold.body(), &large.shapes.modes, stress)?, ..self })
+        Ok(Self { loads: loads(model, body.unwrap_or(&self.body), modes, stress)?, ..self })
     }
 
     /// The run of the scene as [`advice`] sees it, where nothing is known of static answers and backbones.
@@ -84,8 +80,15 @@ impl ModalModel {
 }
 
 /// The loads on the modes of a body.
-fn loads(model: &MeshModel<'_>, body: &ReducedBody, modes: &Modes, stress: &Stress) -> Result<BodyLoads, BuildError> {
-    let reduced =
-        |(i, load): (usize, &MeshLoad)| Ok((load.reduced(model, body, modes, stress.of_load(i))?, load.is_gravity()));
+fn loads(
+    model: &MeshModel<'_>,
+    body: &ReducedBody,
+    modes: &Modes,
+    stress: &[Vec<Directed>],
+) -> Result<BodyLoads, BuildError> {
+    let reduced = |(i, load): (usize, &MeshLoad)| {
+        let of_load = stress.get(i).map_or(&[][..], |of_load| of_load);
+        Ok((load.reduced(model.scene, model.mesh, body, modes, of_load)?, load.is_gravity()))
+    };
     model.loads.iter().enumerate().map(reduced).collect()
 }

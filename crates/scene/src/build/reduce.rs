@@ -59,9 +59,10 @@ impl Reduction {
                     _ => large,
                 };
                 let stress = large.stressed(model, &statics, stress);
-                (modal.on_manifold(model, &large, &stress)?, stress, Some(large))
+                let (body, modes) = (large.manifold.body(), &large.shapes.modes);
+                (modal.with_stress(model, Some(body), modes, &stress.of_loads)?, stress, Some(large))
             }
-            None if stress.any() => (modal.with_stress(model, &modes, &stress)?, stress, None),
+            None if stress.any() => (modal.with_stress(model, None, &modes, &stress.of_loads)?, stress, None),
             None => (modal, stress, None),
         };
         let findings = Findings { deflection, stress: stress.row.clone(), lacks_stretch: decision.lacks.is_some() };

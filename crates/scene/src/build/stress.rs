@@ -5,8 +5,8 @@ use faer::{Mat, MatRef};
 use fem_tet10::{AssemblyError, GeometricTerms, geometric_stiffness_product};
 use frames_rk4::Effect;
 use modal::{ModalError, Modes};
-use nalgebra::Vector3;
 
+use super::directed::Directed;
 use super::error::{BuildError, modal};
 use super::mesh_model::MeshModel;
 use super::modal_model::ModalModel;
@@ -31,13 +31,6 @@ pub(super) struct Stress {
     pub buckling_ratio: f64,
 }
 
-/// A force or moment in body axes, where the history of the load is 1, and the stiffness by its stress. A field of forces
-/// has no direction.
-pub(super) struct Directed {
-    pub vector: Vector3<f64>,
-    pub stiffness: Mat<f64>,
-}
-
 impl Stress {
     /// By the static answers to the loads and to the drive.
     pub fn new(model: &MeshModel<'_>, statics: &Statics, modes: &Modes, body: &ModalModel) -> Result<Self, BuildError> {
@@ -59,7 +52,7 @@ impl Stress {
                 for (vector, stiffness) in of_loads.vectors(i, load).into_iter().zip(stiffness) {
                     names.push((StressSource::Load(i), load.name_along(&vector)));
                     // A pressure that follows its surface has a stiffness of its own.
-                    shown.push(match load.follower_change(model, &body.body, modes)? {
+                    shown.push(match load.follower_change(model.scene, model.mesh, &body.body, modes)? {
                         Some(change) => &stiffness - change.load_stiffness,
                         None => stiffness.clone(),
                     });
@@ -104,11 +97,6 @@ impl Stress {
         }
         self.of_drive = self.of_drive.filter(|_| drive_is_kept);
         Ok(self)
-    }
-
-    /// The stiffness of a load.
-    pub fn of_load(&self, i: usize) -> &[Directed] {
-        self.of_loads.get(i).map_or(&[], |directed| directed)
     }
 
     /// Whether there is any.
