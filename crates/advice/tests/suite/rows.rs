@@ -49,8 +49,8 @@ fn a_body_at_rest_has_nothing_on_and_a_central_push_does_not_turn_it() {
     let initial = Initial::at_rest(10);
     let rest = advise(&plate().case(&zeta, &[], &initial, 1.0), 1e-3).unwrap();
     assert!(rest.rows().all(|(_, row)| !row.on), "{rest:?}");
-    // Static shapes, deflection and foreshortening have rows, too; that of the step is of a run, not of a case.
-    assert_eq!((rest.keep, rest.rows().count()), (0, Effect::ALL.len() + 3));
+    // Static shapes and deflection have rows, too; that of the step is of a run, not of a case.
+    assert_eq!((rest.keep, rest.rows().count()), (0, Effect::ALL.len() + 2));
     let moving = Initial { velocity: [1.0, 0.0, 0.0].into(), ..initial };
     let advice = advise(&plate().case(&zeta, &[], &moving, 1.0), 1e-3).unwrap();
     let on = [Effect::Translation, Effect::Rotation, Effect::Flexibility].map(|effect| advice.effects[effect].on);
