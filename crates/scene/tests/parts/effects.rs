@@ -2,13 +2,14 @@
 
 use scene::{Choice, Effect, EffectMap};
 
-const KEYS: [&str; 8] = [
+const KEYS: [&str; 9] = [
     "flexibility",
     "damping",
     "gravity",
     "deformed_inertia",
     "coriolis",
     "geometric_stiffening",
+    "large_deflection",
     "translation",
     "rotation",
 ];
@@ -50,7 +51,7 @@ fn values_and_keys() {
 
 #[test]
 fn what_there_is_nothing_to() {
-    for key in ["damping", "deformed_inertia", "coriolis", "geometric_stiffening"] {
+    for key in ["damping", "deformed_inertia", "coriolis", "geometric_stiffening", "large_deflection"] {
         let new = format!("[effects]\nflexibility = false\n{key} = true");
         let words = format!("found `{key} = true` with `flexibility = false`, expected `false` or `\"auto\"`");
         crate::refused("[initial]", "[[loads]]", &new, "true\n\n[[loads", &format!("effects.{key}"), &[&words]);
