@@ -12,32 +12,7 @@ use scene::{Model, Scene};
 const TARGET: f64 = 1e-4;
 
 /// The ring, spinning and ringing, for a twentieth of a second.
-const SCENE: &str = r#"
-title = "Ring"
-units = { length = "mm", mass = "Mg", time = "s" }
-[body]
-mesh = "MESH"
-material = { young_modulus = 210000.0, poisson_ratio = 0.3, density = 7.85e-9 }
-[modes]
-flexible = 4
-damping_ratio = 0.01
-static_correction = false
-[initial]
-angular_velocity = [0.0, 5.0, 20.0]
-modal_velocity = [12.0, -5.0, 4.0, 2.0]
-[[loads]]
-kind = "force"
-at = [0.0, 100.0, 10.0]
-direction = [0.0, -1.0, 0.5]
-amplitude = 50.0
-history = { kind = "half-sine", start = 0.0031, duration = 0.02 }
-[time]
-end = 0.05
-TIME
-[output]
-interval = 5e-4
-points = { struck = [0.0, 100.0, 10.0] }
-"#;
+const SCENE: &str = include_str!("short_ring.toml");
 
 fn scene_text(time: &str) -> String {
     let mesh = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../meshes/ring.msh");

@@ -35,10 +35,7 @@ impl ConservativeBody {
         change.iter_mut().zip(&e.curvature).for_each(|(c, curvature)| *c -= curvature);
         manifold.add_projection(&e.place, change, &mut e.acceleration);
         change.copy_from_slice(&e.velocity);
-        for (s, w) in e.products[..self.s_rows].chunks_exact(nf).zip(e.spin.iter()) {
-            change.iter_mut().zip(s).for_each(|(mu, s)| *mu += s * w);
-        }
-        change.iter_mut().zip(&self.sliding).for_each(|(mu, b)| *mu += b * e.driven_speed);
+        self.add_rigid_momenta(&e.products[..self.s_rows], &e.spin, e.driven_speed, change);
         change.iter_mut().for_each(|mu| *mu = -*mu);
         manifold.add_projected_rate(&e.place, change, &mut e.acceleration);
         manifold.solve(&e.place, &mut e.acceleration);

@@ -92,7 +92,7 @@ impl SimulationBuilder<'_> {
         self
     }
 
-    /// Effects, a drive, and the stiffness of steady loads.
+    /// Effects, a drive with its geometric stiffness, and the manifold of large modes.
     #[must_use]
     pub fn physics(mut self, physics: Physics) -> Self {
         self.physics = physics;

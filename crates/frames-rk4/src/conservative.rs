@@ -468,9 +468,8 @@ impl ConservativeBody {
         let mut pi: Vector3<f64> = e.inertia * spin;
         for (i, s) in e.products[..self.s_rows].chunks_exact(self.extended().max(1)).enumerate() {
             pi[i] += dot(s, &e.velocity);
-            mu.iter_mut().zip(s).for_each(|(mu, s)| *mu += s * spin[i]);
         }
-        mu.iter_mut().zip(&self.sliding).for_each(|(mu, b)| *mu += b * speed);
+        self.add_rigid_momenta(&e.products[..self.s_rows], &spin, speed, &mut mu);
         let momentum = match &self.manifold {
             Some(manifold) => {
                 let mut momentum = vec![0.0; self.flexible()];
@@ -823,13 +822,18 @@ impl ConservativeBody {
         manifold.add_projection(&e.place, &force, &mut e.momentum);
         let mu = &mut force;
         mu.copy_from_slice(&e.velocity);
-        for (s, w) in e.products[..self.s_rows].chunks_exact(mu.len()).zip(e.spin.iter()) {
-            mu.iter_mut().zip(s).for_each(|(mu, s)| *mu += s * w);
-        }
-        mu.iter_mut().zip(&self.sliding).for_each(|(mu, b)| *mu += b * speed);
+        self.add_rigid_momenta(&e.products[..self.s_rows], &e.spin, speed, mu);
         manifold.add_projected_rate(&e.place, mu, &mut e.momentum);
         manifold.subtract_force(q, &mut e.momentum);
         e.force = force;
+    }
+
+    /// Adds S_ext ω + b v to ν, which makes it μ.
+    pub(crate) fn add_rigid_momenta(&self, s_ext: &[f64], spin: &Vector3<f64>, speed: f64, mu: &mut [f64]) {
+        for (s, w) in s_ext.chunks_exact(mu.len().max(1)).zip(spin.iter()) {
+            mu.iter_mut().zip(s).for_each(|(mu, s)| *mu += s * w);
+        }
+        mu.iter_mut().zip(&self.sliding).for_each(|(mu, b)| *mu += b * speed);
     }
 
     /// Takes a state past a jump of the speed of the drive at its time. The drive does its impulse times the mean of the

@@ -65,7 +65,7 @@ impl ConservativeBody {
         let rigid =
             2.0 * self.rigid_energy(&force, &moment) + e.spin.norm_squared() * e.spin.dot(&(e.inertia * e.spin));
         let (q, p) = (&state.modal_displacement, &state.modal_momentum);
-        let modal: f64 = (0..q.len()).map(|k| (e.momentum[k] - self.linear_force(k, q[k], p[k])).powi(2)).sum();
+        let modal: f64 = (0..q.len()).map(|k| (e.momentum[k] + self.linear_rate(k, q[k], p[k])).powi(2)).sum();
         Sizes {
             energy: self.internal_energy(state, e),
             displacement: q.iter().map(|q| q * q).sum(),
@@ -80,7 +80,7 @@ impl ConservativeBody {
         let mut sizes = Sizes { energy: self.energy_of_difference(a, b), ..Sizes::default() };
         for (k, (q, p)) in q.zip(p).enumerate() {
             sizes.displacement += q * q;
-            sizes.acceleration += self.linear_force(k, q, p).powi(2);
+            sizes.acceleration += self.linear_rate(k, q, p).powi(2);
         }
         sizes
     }
@@ -105,11 +105,5 @@ impl ConservativeBody {
             sizes.acceleration += (p * omega).powi(2);
         }
         sizes
-    }
-
-    /// ω_k² q + 2 ζ_k ω_k p
-    fn linear_force(&self, k: usize, q: f64, p: f64) -> f64 {
-        let omega = self.circular_frequencies[k];
-        omega * (omega * q + 2.0 * self.damping_ratios[k] * p)
     }
 }

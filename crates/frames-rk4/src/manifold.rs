@@ -102,21 +102,6 @@ impl Manifold {
         })))
     }
 
-    /// The same manifold with another body in the extended shapes, such as one that its spin stiffens.
-    ///
-    /// # Errors
-    /// [`SetupError`] for another number of shapes.
-    pub fn with_body(&self, body: ReducedBody) -> Result<Self, SetupError> {
-        let (expected, found) = (self.extended(), body.flexible());
-        if found != expected {
-            return Err(SetupError::Length { what: "the body in the extended shapes", expected, found });
-        }
-        let Constants { modes, large, slopes, cubic, quartic, .. } = &*self.0;
-        let (large, slopes) = (large.clone(), slopes.clone());
-        let (cubic, quartic) = (cubic.clone(), quartic.clone());
-        Ok(Self(Arc::new(Constants { body, modes: *modes, large, slopes, cubic, quartic })))
-    }
-
     /// The body in the extended shapes.
     pub fn body(&self) -> &ReducedBody {
         &self.0.body
@@ -200,23 +185,23 @@ impl Manifold {
 
     /// Dᵀ y of forces or momenta y in the extended shapes, on the modes.
     pub(crate) fn project(&self, place: &Place, y: &[f64], out: &mut [f64]) {
-        out.copy_from_slice(&y[..self.0.modes]);
-        for (j, column) in self.0.large.iter().zip(&place.slopes) {
-            out[*j] += dot(column, y);
-        }
+        out.fill(0.0);
+        self.add_projection(place, y, out);
     }
 
     /// Adds Dᵀ y.
     pub(crate) fn add_projection(&self, place: &Place, y: &[f64], out: &mut [f64]) {
         out.iter_mut().zip(y).for_each(|(out, y)| *out += y);
-        for (j, column) in self.0.large.iter().zip(&place.slopes) {
-            out[*j] += dot(column, y);
-        }
+        self.add_products(&place.slopes, y, out);
     }
 
     /// Adds Ḋᵀ y.
     pub(crate) fn add_projected_rate(&self, place: &Place, y: &[f64], out: &mut [f64]) {
-        for (j, column) in self.0.large.iter().zip(&place.rates) {
+        self.add_products(&place.rates, y, out);
+    }
+
+    fn add_products(&self, columns: &[Vec<f64>], y: &[f64], out: &mut [f64]) {
+        for (j, column) in self.0.large.iter().zip(columns) {
             out[*j] += dot(column, y);
         }
     }

@@ -52,10 +52,7 @@ impl Drive {
     pub(crate) fn check(&self) -> Result<(), SetupError> {
         self.history.check()?;
         let (DrivenMotion::Turn { axis: unit } | DrivenMotion::Slide { direction: unit }) = self.motion;
-        let length = unit.norm();
-        if (length - 1.0).abs() > 1e-9 || length.is_nan() {
-            return Err(SetupError::Value { what: "the length of a drive's direction", found: length, expected: "1" });
-        }
+        check_unit("the length of a drive's direction", &unit)?;
         if !self.amplitude.is_finite() {
             let (what, expected) = ("the speed of a drive", "a finite number");
             return Err(SetupError::Value { what, found: self.amplitude, expected });
@@ -66,6 +63,15 @@ impl Drive {
         }
         Ok(())
     }
+}
+
+/// Refuses a direction that is no unit vector.
+pub(crate) fn check_unit(what: &'static str, direction: &Vector3<f64>) -> Result<(), SetupError> {
+    let found = direction.norm();
+    if (found - 1.0).abs() > 1e-9 || found.is_nan() {
+        return Err(SetupError::Value { what, found, expected: "1" });
+    }
+    Ok(())
 }
 
 /// What a motion in the conservative form is to have beside modes, damping and loads.

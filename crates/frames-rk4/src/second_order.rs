@@ -15,6 +15,7 @@ use nalgebra::Vector3;
 
 use crate::column_major::{columns, dot};
 use crate::error::SetupError;
+use crate::physics::check_unit;
 
 /// How a point moves, or a place turns, to second order in the modes.
 #[derive(Debug, Clone)]
@@ -47,11 +48,7 @@ impl SecondOrder {
                     return Err(SetupError::Length { what, expected: modes, found });
                 }
             }
-            let length = direction.norm();
-            if (length - 1.0).abs() > 1e-9 || length.is_nan() {
-                let what = "the length of a direction of the geometric stiffness";
-                return Err(SetupError::Value { what, found: length, expected: "1" });
-            }
+            check_unit("the length of a direction of the geometric stiffness", direction)?;
             if let Some(found) = stiffness.col_iter().flat_map(|c| c.iter()).copied().find(|k| !k.is_finite()) {
                 let what = "the geometric stiffness of a load";
                 return Err(SetupError::Value { what, found, expected: "a finite number" });

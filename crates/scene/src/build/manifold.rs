@@ -7,6 +7,7 @@ use modal::{Modes, ReducedBody, SecondOrderShapes};
 
 use super::error::{BuildError, modal};
 use super::mesh_model::MeshModel;
+use super::statics::Statics;
 use super::stress::{LOADS, Stress};
 use crate::effects::Choice;
 use crate::modes::Large;
@@ -15,13 +16,16 @@ use crate::scene::Scene;
 /// How many modes are large where the scene does not say which.
 const DEFAULT_LARGE: usize = 4;
 
-/// The shapes of second order of the large modes, and the body in them.
+/// The manifold of the large modes, and the shapes that it is made of.
 pub(super) struct LargeDeflection {
-    pub shapes: SecondOrderShapes,
     pub manifold: Manifold,
-    /// The geometric stiffness of each large mode in the modes (nf × nf).
-    stiffness: Vec<Mat<f64>>,
-    /// The same with the terms that loads have.
+    large: LargeShapes,
+}
+
+/// The shapes of second order of the large modes.
+struct LargeShapes {
+    shapes: SecondOrderShapes,
+    /// The geometric stiffness of each large mode in the modes (nf × nf), with the terms that loads have.
     of_stress: Vec<Mat<f64>>,
 }
 
@@ -39,8 +43,14 @@ pub(super) fn large_modes(scene: &Scene, natural: usize) -> Vec<usize> {
 }
 
 impl LargeDeflection {
-    /// Of some `large` ones of the modes.
-    pub fn new(model: &MeshModel<'_>, modes: &Modes, large: &[usize]) -> Result<Self, BuildError> {
+    /// Of some `large` ones of the modes. `stress_stiffness` (6 of nf × nf) is by the static answers to the spin.
+    pub fn new(
+        model: &MeshModel<'_>,
+        modes: &Modes,
+        large: &[usize],
+        stress_stiffness: Option<&[Mat<f64>; 6]>,
+        statics: &Statics,
+    ) -> Result<Self, BuildError> {
         let &MeshModel { scene, mesh, solver, .. } = model;
         let materials = &model.body.materials;
         let of_large = Mat::from_fn(modes.shapes.nrows(), large.len(), |i, j| modes.shapes[(i, large[j])]);
@@ -50,16 +60,50 @@ impl LargeDeflection {
         let forces = second_order_forces(mesh, materials, of_large.as_ref(), &pairs)?;
         let energies = second_order_energies(mesh, materials, of_large.as_ref(), &quadruples)?;
         let shapes = solver.second_order_shapes(modes.clone(), large, forces.as_ref()).map_err(modal(scene))?;
-        let body = ReducedBody::new(&shapes.modes, model.matrices.mass(), mesh.positions()).map_err(modal(scene))?;
-        let manifold = Manifold::new(body, &shapes, &energies)?;
-        let stiffness = |terms| model.stress_stiffness(of_large.as_ref(), modes, terms);
-        let (stiffness, of_stress) = (stiffness(GeometricTerms::All)?, stiffness(LOADS)?);
-        Ok(Self { shapes, manifold, stiffness, of_stress })
+        let of_stress = model.stress_stiffness(of_large.as_ref(), modes, LOADS)?;
+        let large = LargeShapes { shapes, of_stress };
+        let extended = match (&statics.of_spin, stress_stiffness) {
+            (Some(of_spin), Some(k)) => {
+                let of_large = model.stress_stiffness(of_large.as_ref(), modes, GeometricTerms::All)?;
+                let answer = |pair| of_spin.answers.subcols(pair, 1);
+                Some(std::array::from_fn(|pair| large.extended(model, answer(pair), &k[pair], &of_large)))
+            }
+            _ => None,
+        };
+        let shapes = &large.shapes;
+        let body = ReducedBody::new(&shapes.modes, model.matrices.mass(), mesh.positions())
+            .and_then(|body| body.with_stress_stiffness(extended))
+            .map_err(modal(scene))?;
+        Ok(Self { manifold: Manifold::new(body, shapes, &energies)?, large })
     }
 
+    /// The extended shapes.
+    pub fn modes(&self) -> &Modes {
+        &self.large.shapes.modes
+    }
+
+    /// The stress of loads and of a drive in the extended shapes.
+    pub fn stressed(&self, model: &MeshModel<'_>, statics: &Statics, mut stress: Stress) -> Stress {
+        let extended =
+            |answer: MatRef<'_, f64>, k: &Mat<f64>| self.large.extended(model, answer, k, &self.large.of_stress);
+        if let Some(of_loads) = &statics.of_loads {
+            for (i, directed) in stress.of_loads.iter_mut().enumerate() {
+                for (j, directed) in directed.iter_mut().enumerate() {
+                    directed.stiffness = extended(of_loads.answers_to(i).subcols(j, 1), &directed.stiffness);
+                }
+            }
+        }
+        if let (Some(answer), Some(k)) = (&statics.of_drive, stress.of_drive.take()) {
+            stress.of_drive = Some(extended(answer.as_ref(), &k));
+        }
+        stress
+    }
+}
+
+impl LargeShapes {
     /// The geometric stiffness `k` (nf × nf) of a static `answer` (3n × 1) in the extended shapes. Between two large modes
     /// it is zero, since the manifold has it. Between a large mode and another it is without that of the answer's parts along
-    /// the large modes, which are coordinates that move.
+    /// the large modes, which are coordinates that move; `of_large` are the geometric stiffnesses of these.
     fn extended(
         &self,
         model: &MeshModel<'_>,
@@ -84,38 +128,5 @@ impl LargeDeflection {
                 _ => k[(a, b)] - along.iter().zip(of_large).map(|(part, of)| part * of[(a, b)]).sum::<f64>(),
             }
         })
-    }
-
-    /// The manifold of a body that its spin stiffens by `k`, by the static answers (3n × 6) to it.
-    pub fn stiffened(
-        self,
-        model: &MeshModel<'_>,
-        answers: MatRef<'_, f64>,
-        k: &[Mat<f64>; 6],
-    ) -> Result<Self, BuildError> {
-        let extended =
-            std::array::from_fn(|pair| self.extended(model, answers.subcols(pair, 1), &k[pair], &self.stiffness));
-        let body = self.manifold.body().clone().with_stress_stiffness(Some(extended)).map_err(modal(model.scene))?;
-        Ok(Self { manifold: self.manifold.with_body(body)?, ..self })
-    }
-
-    /// The stress of loads and of a drive in the extended shapes.
-    pub fn stressed(&self, model: &MeshModel<'_>, statics: &super::statics::Statics, mut stress: Stress) -> Stress {
-        if let Some(of_loads) = &statics.of_loads {
-            for (i, directed) in stress.of_loads.iter_mut().enumerate() {
-                for (j, directed) in directed.iter_mut().enumerate() {
-                    directed.stiffness = self.extended(
-                        model,
-                        of_loads.answers_to(i).subcols(j, 1),
-                        &directed.stiffness,
-                        &self.of_stress,
-                    );
-                }
-            }
-        }
-        if let (Some(answer), Some(k)) = (&statics.of_drive, stress.of_drive.take()) {
-            stress.of_drive = Some(self.extended(model, answer.as_ref(), &k, &self.of_stress));
-        }
-        stress
     }
 }

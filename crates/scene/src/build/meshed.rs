@@ -60,7 +60,7 @@ pub(super) fn build(
 
     let started = Instant::now();
     let points = match &large {
-        Some(large) => points(scene, &mesh, &large.shapes.modes, large.manifold.body())?,
+        Some(large) => points(scene, &mesh, large.modes(), large.manifold.body())?,
         None => points(scene, &mesh, &modes, &reduced.body)?,
     };
     let reference_points = reference_points(scene, &mesh, &reduced.body);

@@ -47,23 +47,19 @@ impl Reduction {
         };
         let stress = Stress::new(model, &statics, &modes, &modal)?;
         let large = large_modes(model.scene, decision.keep);
-        let large = if large.is_empty() { None } else { Some(LargeDeflection::new(model, &modes, &large)?) };
-        let (modal, stress, large) = match large {
-            Some(large) => {
-                // The frequencies of these follow their amplitudes.
-                for (k, backbone) in backbones.iter_mut().enumerate() {
-                    *backbone = backbone.take().filter(|_| !large.manifold.large().contains(&k));
-                }
-                let large = match (&statics.of_spin, &modal.body.stress_stiffness) {
-                    (Some(of_spin), Some(k)) => large.stiffened(model, of_spin.answers.as_ref(), k)?,
-                    _ => large,
-                };
-                let stress = large.stressed(model, &statics, stress);
-                let (body, modes) = (large.manifold.body(), &large.shapes.modes);
-                (modal.with_stress(model, Some(body), modes, &stress.of_loads)?, stress, Some(large))
+        let (modal, stress, large) = if !large.is_empty() {
+            // The frequencies of these follow their amplitudes.
+            for (k, backbone) in backbones.iter_mut().enumerate() {
+                *backbone = backbone.take().filter(|_| !large.contains(&k));
             }
-            None if stress.any() => (modal.with_stress(model, None, &modes, &stress.of_loads)?, stress, None),
-            None => (modal, stress, None),
+            let large = LargeDeflection::new(model, &modes, &large, modal.body.stress_stiffness.as_ref(), &statics)?;
+            let stress = large.stressed(model, &statics, stress);
+            let modal = modal.with_stress(model, Some(large.manifold.body()), large.modes(), &stress.of_loads)?;
+            (modal, stress, Some(large))
+        } else if stress.any() {
+            (modal.with_stress(model, None, &modes, &stress.of_loads)?, stress, None)
+        } else {
+            (modal, stress, None)
         };
         let findings = Findings { deflection, stress: stress.row.clone(), lacks_stretch: decision.lacks.is_some() };
         Ok(Self { modes, modal, large, backbones, stress, advice: advice.completed(findings) })
