@@ -458,7 +458,7 @@ impl ConservativeBody {
         initial.check(self.flexible())?;
         let mut e = self.evaluation();
         self.deform(&initial.modal_displacement, &mut e);
-        let speed = self.drive.as_ref().map_or(0.0, |drive| drive.speed(0.0, 0.0));
+        let speed = self.drive.as_ref().map_or(0.0, |drive| drive.speed.at(0.0, 0.0));
         let mut spin = Vector3::zeros();
         for (w, axis) in spin.iter_mut().zip(&self.axes) {
             *w = if self.turn_driven { speed } else { axis.dot(&initial.omega) };
@@ -651,8 +651,8 @@ impl ConservativeBody {
         e: &mut Evaluation,
     ) -> Result<(), RateError> {
         self.deform(q, e);
-        let speed = self.drive.as_ref().map_or(0.0, |drive| drive.speed(t, branch_time));
-        let driven_acceleration = self.drive.as_ref().map_or(0.0, |drive| drive.acceleration(t, branch_time));
+        let speed = self.drive.as_ref().map_or(0.0, |drive| drive.speed.at(t, branch_time));
+        let driven_acceleration = self.drive.as_ref().map_or(0.0, |drive| drive.speed.rate(t, branch_time));
         e.driven_speed = speed;
         let pi = get(slow, part::PI);
         if self.turn_driven {
@@ -839,9 +839,11 @@ impl ConservativeBody {
     /// Takes a state past a jump of the speed of the drive at its time. The drive does its impulse times the mean of the
     /// speeds.
     pub(crate) fn pass_jump(&self, state: &mut ConservativeState, e: &mut Evaluation) -> Result<(), RateError> {
-        let Some(drive) = &self.drive else { return Ok(()) };
+        if self.drive.is_none() {
+            return Ok(());
+        }
         // The corner itself is where it is but for rounding.
-        let aside = 1e-12 * drive.span;
+        let aside = 1e-12 * state.time.abs();
         let on_side =
             |state: &ConservativeState, branch_time: f64, e: &mut Evaluation| -> Result<[f64; 2], RateError> {
                 let (q, p) = (&state.modal_displacement, &state.modal_momentum);
@@ -947,7 +949,7 @@ impl ConservativeBody {
             self.rigid_energy(&(pushed * impulse), &(moment * impulse)) + strain
         };
         let driven = self.drive.as_ref().map_or(0.0, |drive| {
-            let speed = drive.amplitude * drive.history.largest(end);
+            let speed = drive.speed.largest(end);
             let inertia = if self.turn_driven { self.inertia[(0, 0)] } else { self.mass };
             0.5 * inertia * speed * speed
         });

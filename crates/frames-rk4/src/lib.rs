@@ -86,7 +86,7 @@ pub use motion::{BodyMotion, PointShapes, RotationShapes};
 pub use observation::{Observation, PointMotion};
 pub use paper::PaperScheme;
 pub use paper_limit::PaperLimit;
-pub use physics::{Drive, DrivenMotion, Physics};
+pub use physics::{Drive, DrivenMotion, DrivenSpeed, Physics};
 pub use plan::{Rows, StepControl};
 pub use scheme::Scheme;
 pub use second_order::SecondOrder;

@@ -195,7 +195,7 @@ impl Simulation {
                 (None, Walk::Halved { tolerance, longest_try: f64::INFINITY, steps: None })
             }
         };
-        let drive = setup.physics.drive.as_ref().map(|drive| drive.history.clone());
+        let drive = setup.physics.drive.as_ref().map(|drive| drive.speed.history.clone());
         let of_loads = setup.loads.iter().filter_map(|load| load.history());
         let histories: Vec<History> = of_loads.chain(&drive).cloned().collect();
         let formula_steps = FormulaSteps::new(&histories, setup.end, step)?;
