@@ -1,5 +1,6 @@
 //! From a scene to a body that can move.
 
+mod assembly;
 mod backbones;
 mod damping;
 mod decide;
@@ -29,6 +30,7 @@ use fem_tet10::Mesh;
 
 use crate::scene::{Body, Scene};
 
+pub use assembly::{Assembly, ModelBuilder};
 pub use error::{BuildError, StartError};
 pub use model::{Meshed, Model};
 pub use progress::{BuildProgress, BuildTimes};
@@ -39,11 +41,8 @@ impl Model {
     /// # Errors
     /// [`BuildError`]: what the mesh, the materials or the modes refuse, with the place in the scene file where
     /// there is one.
-    pub fn build(scene: &Scene, progress: impl FnMut(BuildProgress)) -> Result<Self, BuildError> {
-        match &scene.body {
-            Body::Meshed(body) => meshed::build(scene, body, progress),
-            Body::Rigid(body) => rigid::build(scene, body),
-        }
+    pub fn build(scene: &Scene, mut progress: impl FnMut(BuildProgress)) -> Result<Self, BuildError> {
+        Assembly::new(scene, &mut progress)?.builder(scene)?.into_model(scene, progress)
     }
 }
 

@@ -52,7 +52,7 @@ mod shorten;
 mod suggest;
 mod unit_vector;
 
-pub use build::{BuildError, BuildProgress, BuildTimes, Meshed, Model, StartError};
+pub use build::{Assembly, BuildError, BuildProgress, BuildTimes, Meshed, Model, ModelBuilder, StartError};
 pub use constraint::{Constraint, HeldDirections, HingeLine, Region};
 pub use effects::{Choice, Effects};
 pub use error::SceneError;

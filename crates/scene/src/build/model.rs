@@ -1,5 +1,7 @@
 //! A body that can move, as a scene describes it.
 
+use std::sync::Arc;
+
 use advice::{Advice, Backbone, Case, Refusal, StepEstimate};
 use fem_tet10::Mesh;
 use frames_rk4::{
@@ -21,7 +23,7 @@ const SMALL: f64 = 1e-3;
 #[derive(Debug, Clone)]
 pub struct Meshed {
     /// The mesh.
-    pub mesh: Mesh,
+    pub mesh: Arc<Mesh>,
     /// Bytes that the mass and stiffness matrices took.
     pub matrix_bytes: usize,
     /// Rigid and flexible modes on the mesh.
@@ -69,38 +71,6 @@ impl Model {
     /// Frequencies of the flexible modes, cycles per time.
     pub fn natural_frequencies(&self) -> Vec<f64> {
         self.body.circular_frequencies.iter().map(|omega| omega / std::f64::consts::TAU).collect()
-    }
-
-    /// The same body with its first `flexible` modes only. With fewer modes than it has, the manifold of large modes goes:
-    /// its shapes belong to all of them.
-    pub fn truncated(&self, flexible: usize) -> Self {
-        let flexible = flexible.min(self.body.flexible());
-        let large_deflection = self.physics.large_deflection.clone().filter(|_| flexible == self.body.flexible());
-        let extended = large_deflection.as_ref().map_or(flexible, |manifold| manifold.body().flexible());
-        let meshed = self.meshed.as_ref().map(|meshed| Meshed {
-            mesh: meshed.mesh.clone(),
-            modes: truncated_modes(&meshed.modes, flexible),
-            ..*meshed
-        });
-        let stiffness = self.physics.drive_stiffness.as_ref();
-        let physics = Physics {
-            drive_stiffness: stiffness.map(|k| k.get(..extended, ..extended).to_owned()),
-            large_deflection,
-            ..self.physics.clone()
-        };
-        Self {
-            meshed,
-            physics,
-            body: self.body.truncated(flexible),
-            points: self.points.iter().map(|(name, point)| (name.clone(), point.truncated(extended))).collect(),
-            loads: self.loads.clone(),
-            damping_ratios: self.damping_ratios[..flexible].to_vec(),
-            size: Size { peaks: self.size.peaks[..flexible].to_vec(), ..self.size },
-            advice: self.advice.clone(),
-            left_out: self.left_out.clone(),
-            backbones: self.backbones.iter().copied().take(flexible).collect(),
-            ..*self
-        }
     }
 
     /// Damping ratio of each flexible mode.
@@ -227,14 +197,4 @@ impl Model {
             points: &[],
         }
     }
-}
-
-/// The first of some modes.
-pub(super) fn truncated_modes(modes: &Modes, flexible: usize) -> Modes {
-    let mut modes = modes.clone();
-    modes.eigenvalues.truncate(flexible);
-    modes.residuals.truncate(flexible);
-    modes.force_residuals.truncate(flexible);
-    modes.shapes = modes.shapes.get(.., ..flexible).to_owned();
-    modes
 }
