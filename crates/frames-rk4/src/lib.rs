@@ -50,6 +50,7 @@ mod moment;
 mod motion;
 mod observation;
 mod observer;
+mod observers;
 mod own_coupling;
 mod paper;
 mod paper_limit;

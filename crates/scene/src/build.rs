@@ -2,6 +2,7 @@
 
 mod assembly;
 mod backbones;
+mod builder;
 mod damping;
 mod decide;
 mod directed;
@@ -30,7 +31,8 @@ use fem_tet10::Mesh;
 
 use crate::scene::{Body, Scene};
 
-pub use assembly::{Assembly, ModelBuilder};
+pub use assembly::Assembly;
+pub use builder::ModelBuilder;
 pub use error::{BuildError, StartError};
 pub use model::{Meshed, Model};
 pub use progress::{BuildProgress, BuildTimes};
