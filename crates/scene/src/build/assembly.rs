@@ -37,7 +37,7 @@ impl Assembly {
     pub fn new(scene: &Scene, mut progress: impl FnMut(BuildProgress)) -> Result<Self, BuildError> {
         let body = match &scene.body {
             Body::Meshed(body) => body.clone(),
-            Body::Rigid(body) => return Ok(Self(Assembled::Rigid(body.clone()))),
+            Body::Rigid(body) => return Ok(Self(Assembled::Rigid(*body))),
         };
         let mut times = BuildTimes::default();
         progress(BuildProgress::Mesh);
