@@ -8,4 +8,5 @@ Mesh.MeshSizeMin = lc; Mesh.MeshSizeMax = lc;
 out[] = Extrude {0, 0, 0.1} { Surface{1}; Layers{1}; };
 Physical Volume("l") = {out[1]};
 Physical Surface("end") = {out[6]};
+Physical Surface("all") = {1, out[0], out[2], out[3], out[4], out[5], out[6], out[7]};
 Mesh.ElementOrder = 2;

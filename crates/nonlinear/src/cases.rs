@@ -223,7 +223,8 @@ fn turned_back(solid: &Solid, u: &[f64], node: usize) -> Vector3<f64> {
 }
 
 /// Frequency in cycles per time of small vibrations in the first mode of a free body about its rest under a pressure on
-/// some faces: of the nonlinear body, and of flexframe, without the pressure and with it.
+/// some faces: of the nonlinear body, and of flexframe, without the pressure and with it. `shift` over the square of the
+/// circular frequency is that of [`Solid::at_rest`].
 ///
 /// # Errors
 /// What stops a run.
@@ -232,6 +233,7 @@ pub fn pressed(
     young_modulus: f64,
     pressures: &[(&str, f64)],
     is_on: impl Fn(Vector3<f64>) -> bool,
+    shift: f64,
 ) -> Result<[f64; 3], NonlinearError> {
     let loads: String = pressures
         .iter()
@@ -256,15 +258,15 @@ pub fn pressed(
     let size = pressures[0].1;
     let force = |u: &[f64]| solid.pressure(&faces, u).iter().map(|f| f * size).collect::<Vec<f64>>();
     let omega = free.body.circular_frequencies[0];
-    let at_rest = solid.at_rest(1, 10.0 * omega * omega, force)?;
+    let at_rest = solid.at_rest(1, shift * omega * omega, force)?;
     let phi = shape(&free, 0);
     let momentum = solid.momentum(&phi);
     let amplitude = 1e-5 / peaks(&phi, 0)[0];
     let u = at_rest.iter().zip(&phi).map(|(u, phi)| u + amplitude * phi).collect();
-    let h = std::f64::consts::TAU / omega / 40.0;
+    let h = std::f64::consts::TAU / omega / 80.0;
     let mut motion = Motion::new(&solid, Place { time: 0.0, u, v: vec![0.0; phi.len()] }, h, |_, u| force(u));
     let mut course = Course::default();
-    for _ in 0..160 {
+    for _ in 0..320 {
         motion.advance()?;
         course.times.push(motion.place.time);
         let moved: Vec<f64> = motion.place.u.iter().zip(&at_rest).map(|(u, rest)| u - rest).collect();

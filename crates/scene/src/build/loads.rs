@@ -37,6 +37,8 @@ pub(super) struct MeshLoad {
     /// Attitude of the body at the beginning.
     attitude: Attitude,
     is_gravity: bool,
+    /// Whether it is the acceleration of the base, which stresses the body as that of a drive does.
+    pub is_base_acceleration: bool,
 }
 
 /// Loads on a body, each with whether it is gravity.
@@ -125,7 +127,8 @@ pub(super) fn on_mesh(scene: &Scene, mesh: &Mesh, nodal_mass: &[f64]) -> Result<
             let name = name(i, load);
             let turning = turning(mesh, load).map_err(|error| refuse(scene, &key("frame"), error))?;
             let (follows, is_gravity) = (follows(load), is_gravity(load));
-            Ok(MeshLoad { name, action, history, follows, turning, attitude, is_gravity })
+            let is_base_acceleration = matches!(load, Load::BaseAcceleration(_));
+            Ok(MeshLoad { name, action, history, follows, turning, attitude, is_gravity, is_base_acceleration })
         })
         .collect()
 }

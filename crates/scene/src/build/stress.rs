@@ -18,7 +18,7 @@ use crate::effects::Choice;
 /// initial displacement are wrong there: see [`fem_tet10::reduced_geometric_stiffness`]. They are taken where none of them
 /// exceeds this part of √(λ_k λ_l): what they get wrong is of the size of its square.
 const SMALL: f64 = 0.03;
-/// What the stress of a drive has.
+/// What the stress of a drive has, and of a base that is accelerated alike.
 pub(super) const DRIVE: GeometricTerms = GeometricTerms::InitialStress;
 
 /// Stiffness in the modes (nf × nf) by the stress of what acts on a body, where it matters.
@@ -50,8 +50,11 @@ impl Stress {
                     found.of_loads.push(Vec::new());
                     continue;
                 }
-                let largest = load.history.largest(model.scene.time.end);
-                let (stiffness, terms) = of_load(model, answers, modes, largest)?;
+                let (stiffness, terms) = if load.is_base_acceleration {
+                    (model.stress_stiffness(answers, modes, DRIVE)?, DRIVE)
+                } else {
+                    of_load(model, answers, modes, load.history.largest(model.scene.time.end))?
+                };
                 let mut directed = Vec::new();
                 for (vector, stiffness) in of_loads.vectors(i, load).into_iter().zip(stiffness) {
                     names.push((StressSource::Load(i), load.name_along(&vector)));
