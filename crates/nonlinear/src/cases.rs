@@ -202,7 +202,10 @@ pub fn pendulum(young_modulus: f64, end: f64, steps: usize, rests: &[&str]) -> R
         let rows = rows(&scene, &model)?;
         courses.push(Course {
             times: rows.iter().map(|row| row.time).collect(),
-            values: rows.iter().map(|row| row.attitude.to_body(&(Vector3::x() + row.points[0].displacement)).z).collect(),
+            values: rows
+                .iter()
+                .map(|row| row.attitude.to_body(&(Vector3::x() + row.points[0].displacement)).z)
+                .collect(),
         });
     }
     Ok(courses)

@@ -33,8 +33,14 @@ impl Solid {
                 Vector3::from(self.mesh().positions()[i]) + Vector3::from_column_slice(&u[3 * i..3 * i + 3])
             });
             for ([a, b, c], weight) in &rule {
-                let shapes =
-                    [a * (2.0 * a - 1.0), b * (2.0 * b - 1.0), c * (2.0 * c - 1.0), 4.0 * a * b, 4.0 * b * c, 4.0 * c * a];
+                let shapes = [
+                    a * (2.0 * a - 1.0),
+                    b * (2.0 * b - 1.0),
+                    c * (2.0 * c - 1.0),
+                    4.0 * a * b,
+                    4.0 * b * c,
+                    4.0 * c * a,
+                ];
                 // c = 1 − a − b.
                 let by_a = [4.0 * a - 1.0, 0.0, 1.0 - 4.0 * c, 4.0 * b, -4.0 * b, 4.0 * (c - a)];
                 let by_b = [0.0, 4.0 * b - 1.0, 1.0 - 4.0 * c, 4.0 * a, 4.0 * (c - b), -4.0 * a];

@@ -5,8 +5,8 @@
 //! ```
 
 use faer::Side;
-use faer::sparse::linalg::solvers::{Llt, SymbolicLlt};
 use faer::sparse::SparseColMatRef;
+use faer::sparse::linalg::solvers::{Llt, SymbolicLlt};
 use fem_tet10::{Material, Materials, Matrices, Mesh, assemble, quadrature, shape_gradients};
 use nalgebra::{Matrix3, Vector3};
 
@@ -59,7 +59,15 @@ impl Solid {
         });
         let symbolic = SymbolicLlt::try_new(pattern, Side::Lower).map_err(|_| NonlinearError::Factor)?;
         let is_held = mesh.positions().iter().flat_map(|x| [held(Vector3::from(*x)); 3]).collect();
-        Ok(Self { lame: material.lame(), points: points.collect(), places: places.collect(), held: is_held, symbolic, matrices, mesh })
+        Ok(Self {
+            lame: material.lame(),
+            points: points.collect(),
+            places: places.collect(),
+            held: is_held,
+            symbolic,
+            matrices,
+            mesh,
+        })
     }
 
     /// Its mesh.
@@ -170,7 +178,12 @@ impl Solid {
     }
 
     /// F half-way and the mean of the stresses.
-    fn half_way(&self, before: &[Vector3<f64>; 10], after: &[Vector3<f64>; 10], point: &Point) -> (Matrix3<f64>, Matrix3<f64>) {
+    fn half_way(
+        &self,
+        before: &[Vector3<f64>; 10],
+        after: &[Vector3<f64>; 10],
+        point: &Point,
+    ) -> (Matrix3<f64>, Matrix3<f64>) {
         let (f, g) = (deformation(before, point), deformation(after, point));
         (0.5 * (f + g), stress(self.lame, &(0.5 * (strain(&f) + strain(&g)))))
     }
@@ -232,4 +245,3 @@ fn strain(f: &Matrix3<f64>) -> Matrix3<f64> {
 fn stress((lambda, mu): (f64, f64), strain: &Matrix3<f64>) -> Matrix3<f64> {
     lambda * strain.trace() * Matrix3::identity() + 2.0 * mu * strain
 }
-

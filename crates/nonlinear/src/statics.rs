@@ -6,7 +6,9 @@ use crate::NonlinearError;
 use crate::motion::{clear, dot, norm};
 use crate::solid::Solid;
 
-const MOST: usize = 60;
+/// Most iterations: with a large shift they come to rest slowly.
+const MOST: usize = 300;
+/// What is left of the forces or of the displacements, relative.
 const TOLERANCE: f64 = 1e-11;
 
 impl Solid {
@@ -15,7 +17,12 @@ impl Solid {
     ///
     /// # Errors
     /// [`NonlinearError`] where no equilibrium is found.
-    pub fn at_rest(&self, steps: usize, shift: f64, forces: impl Fn(&[f64]) -> Vec<f64>) -> Result<Vec<f64>, NonlinearError> {
+    pub fn at_rest(
+        &self,
+        steps: usize,
+        shift: f64,
+        forces: impl Fn(&[f64]) -> Vec<f64>,
+    ) -> Result<Vec<f64>, NonlinearError> {
         let mut u = vec![0.0; self.freedoms()];
         for step in 1..=steps {
             let part = step as f64 / steps as f64;

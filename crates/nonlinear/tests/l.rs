@@ -2,7 +2,8 @@
 
 use nonlinear::{Solid, bodies, cases};
 
-const MANIFOLD: &str = "static_correction = false\nlarge = [IN_PLANE]\n[effects]\nlarge_deflection = true\nrefuse = false";
+const MANIFOLD: &str =
+    "static_correction = false\nlarge = [IN_PLANE]\n[effects]\nlarge_deflection = true\nrefuse = false";
 
 #[test]
 fn the_static_energy_of_the_first_mode_is_that_of_the_whole_mesh() {
@@ -46,7 +47,11 @@ fn its_frequency_rises_with_the_spin() {
         let off = |i: usize| courses[i].distance(&courses[0]) / courses[0].peak();
         println!(
             "{part}: nonlinear elements {:.5} Hz, stiffened {:.5} (off {:.1e} of the peak), manifold {:.5} ({:.1e})",
-            shift(0), shift(1), off(1), shift(2), off(2)
+            shift(0),
+            shift(1),
+            off(1),
+            shift(2),
+            off(2)
         );
         assert!((shift(2) - shift(0)).abs() < tolerance, "{part}: {} instead of {}", shift(2), shift(0));
     }

@@ -66,7 +66,12 @@ fn it_keeps_energy_and_momenta_while_it_tumbles_and_bends() {
         strained = strained.max(state(&motion).1);
     }
     let (last, _, ends) = state(&motion);
-    println!("energy {:e}, momenta {:e} {:e}", last / energy - 1.0, (ends[0] - momenta[0]).norm(), (ends[1] - momenta[1]).norm());
+    println!(
+        "energy {:e}, momenta {:e} {:e}",
+        last / energy - 1.0,
+        (ends[0] - momenta[0]).norm(),
+        (ends[1] - momenta[1]).norm()
+    );
     assert!(strained > 0.01 * energy);
     assert!((last / energy - 1.0).abs() < 1e-9);
     for (end, start) in ends.iter().zip(momenta) {
@@ -83,7 +88,8 @@ fn small_vibrations_have_the_linear_frequency() {
     let momentum = solid.momentum(&phi);
     let u = phi.iter().map(|phi| 1e-6 * phi).collect();
     let step = std::f64::consts::TAU / omega / 30.0;
-    let mut motion = Motion::new(&solid, Place { time: 0.0, u, v: vec![0.0; phi.len()] }, step, |_, u| vec![0.0; u.len()]);
+    let mut motion =
+        Motion::new(&solid, Place { time: 0.0, u, v: vec![0.0; phi.len()] }, step, |_, u| vec![0.0; u.len()]);
     let (mut times, mut values) = (vec![], vec![]);
     for _ in 0..90 {
         motion.advance().unwrap();

@@ -179,7 +179,11 @@ fn a_force_that_turns_with_the_material_bends_as_the_follower_elastica() {
         let found = at_rest(alpha, "material", "large_deflection = true") / linear;
         let dead = at_rest(alpha, "global", "large_deflection = true") / linear;
         let expected = follower_elastica(alpha) / (alpha / 3.0);
-        println!("{alpha}: tip {:.4}, {found:.5} of linear, elastica {expected:.5}; dead {dead:.5}, {:.5}", found * linear, elastica(alpha) / (alpha / 3.0));
+        println!(
+            "{alpha}: tip {:.4}, {found:.5} of linear, elastica {expected:.5}; dead {dead:.5}, {:.5}",
+            found * linear,
+            elastica(alpha) / (alpha / 3.0)
+        );
         assert!((found / expected - 1.0).abs() < tolerance, "{alpha}: {found} instead of {expected}");
     }
 }
