@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use fem_tet10::{Material, Mesh, read_msh};
 
-use crate::NonlinearError;
+use crate::error::NonlinearError;
 
 /// The material of the soft bodies, SI.
 pub const SOFT: Material = Material { young_modulus: 1e7, poisson_ratio: 0.3, density: 1000.0 };

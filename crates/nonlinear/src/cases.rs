@@ -6,9 +6,11 @@ use frames_rk4::Observation;
 use nalgebra::Vector3;
 use scene::{Model, Scene};
 
+use crate::error::NonlinearError;
+use crate::mean_axes::mean_axes;
 use crate::motion::{Motion, Place, dot};
+use crate::signal;
 use crate::solid::Solid;
-use crate::{NonlinearError, mean_axes, signal};
 
 /// A scene of a mesh of this crate in SI, read and built.
 ///

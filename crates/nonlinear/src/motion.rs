@@ -7,7 +7,7 @@
 //! Without loads it keeps energy, momentum and angular momentum for any step (Simo and Tarnow 1992). A small vibration ω
 //! comes out as ω' with `tan ½ω'h = ½ωh`.
 
-use crate::NonlinearError;
+use crate::error::NonlinearError;
 use crate::solid::{Factor, Solid};
 
 /// Most iterations in a step.

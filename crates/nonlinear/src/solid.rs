@@ -10,7 +10,7 @@ use faer::sparse::linalg::solvers::{Llt, SymbolicLlt};
 use fem_tet10::{Material, Materials, Matrices, Mesh, assemble, quadrature, shape_gradients};
 use nalgebra::{Matrix3, Vector3};
 
-use crate::NonlinearError;
+use crate::error::NonlinearError;
 
 /// An integration point of an element.
 struct Point {

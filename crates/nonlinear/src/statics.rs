@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::NonlinearError;
+use crate::error::NonlinearError;
 use crate::motion::{clear, dot, norm};
 use crate::solid::Solid;
 
