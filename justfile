@@ -69,6 +69,12 @@ stability:
     FLEXFRAME_KILLS=200 cargo test --release --quiet --package results --test killed
     FLEXFRAME_KILLS=40 cargo test --release --quiet --package flexframe --test faults
 
+# Large deflection and stress against a nonlinear finite-element body, and the curves of docs/nonlinear.md (some minutes).
+nonlinear:
+    cargo test --release --quiet --package nonlinear -- --ignored --nocapture
+    mkdir -p docs/nonlinear
+    cargo run --release --quiet --package nonlinear -- docs/nonlinear
+
 # Steps a second of every scheme on one core, and what each effect costs per step and in set-up.
 bench:
     cargo bench --quiet --package frames-rk4 --bench steps

@@ -33,7 +33,7 @@ mod mesh;
 mod msh;
 mod parts;
 mod point_mass;
-mod quadrature;
+pub mod quadrature;
 mod second_order;
 mod selection;
 mod shape;

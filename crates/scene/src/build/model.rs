@@ -95,7 +95,7 @@ impl Model {
     pub fn loaded_modes(&self, scene: &Scene) -> Result<Vec<LoadedMode>, LoadedError> {
         let turns = self.physics.drive.is_some() || !self.body.motion.rotations().is_empty();
         let is_steady = |load: &&SharedLoad| {
-            let follows = load.pattern().is_some_and(|pattern| pattern.frame == LoadFrame::Body);
+            let follows = load.pattern().is_some_and(|pattern| pattern.frame != LoadFrame::Global);
             matches!(load.history(), Some(History::Constant)) && (follows || !turns)
         };
         let steady = self.loads.iter().filter(is_steady).cloned().collect();
