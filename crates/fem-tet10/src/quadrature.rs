@@ -1,6 +1,7 @@
 //! Quadrature on the reference tetrahedron (volume 1/6) and triangle (area 1/2), with positive weights.
 
 /// A point of a quadrature rule: reference coordinates (ξ, η, ζ) and weight.
+#[derive(Debug)]
 pub(crate) struct Point {
     pub at: [f64; 3],
     pub weight: f64,
