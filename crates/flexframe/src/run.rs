@@ -18,7 +18,9 @@ use crate::columns::COLUMNS;
 use crate::effects;
 use crate::json;
 use crate::modes::frequency_unit;
+use crate::peak_stress::{Largest, PeakStress};
 use crate::report::{BodyReport, MeshReport, Times, quantity};
+use crate::row::Row;
 use crate::scene_file;
 
 /// A run that could not be done.
@@ -176,6 +178,8 @@ pub struct RunReport {
     /// Largest strain energy among the rows.
     #[serde(serialize_with = "json::number")]
     pub peak_strain_energy: f64,
+    /// Largest von Mises stress among the rows, where the scene asks for it.
+    pub peak_stress: Option<PeakStress>,
     /// Kinetic plus strain energy of the last row.
     #[serde(serialize_with = "json::number")]
     pub final_energy: f64,
@@ -230,7 +234,7 @@ pub fn run(
 ) -> Result<(Model, RunReport), RunError> {
     std::fs::create_dir_all(folder).map_err(|source| RunError::Folder { folder: folder.to_owned(), source })?;
     let path = results_path(scene, folder);
-    Writer::<Observation>::check(&path, settings.overwrite)?;
+    Writer::<Row>::check(&path, settings.overwrite)?;
     let model = Model::build(scene, |p| progress(RunProgress::Build(p)))?;
 
     let started = Instant::now();
@@ -367,6 +371,7 @@ fn metadata(scene: &Scene, model: &Model) -> Metadata {
             damping_ratios: body.damping_ratios,
         },
         point_names: model.points.iter().map(|(name, _)| name.clone()).collect(),
+        point_stress: scene.output.stress,
     }
 }
 
@@ -374,34 +379,31 @@ fn metadata(scene: &Scene, model: &Model) -> Metadata {
 struct Recorder<'a> {
     scene: &'a Scene,
     model: &'a Model,
-    observation: Observation,
-    writer: Writer<Observation>,
+    row: Row,
+    writer: Writer<Row>,
     review: Review<'a>,
     rows: u64,
     peak_strain_energy: f64,
+    peak_stress: Option<Largest>,
     monitor: Monitor,
     /// What fixed steps are expected to get wrong.
     step: Option<StepEstimate>,
 }
 
 impl<'a> Recorder<'a> {
-    fn new(
-        scene: &'a Scene,
-        model: &'a Model,
-        initial: &'a Initial,
-        writer: Writer<Observation>,
-    ) -> Result<Self, RunError> {
+    fn new(scene: &'a Scene, model: &'a Model, initial: &'a Initial, writer: Writer<Row>) -> Result<Self, RunError> {
         let step = model
             .step_estimate(scene)
             .map_err(|source| RunError::Setup { scene: scene.path.clone(), source: Box::new(source) })?;
         Ok(Self {
             scene,
             model,
-            observation: Observation::new(model.body.flexible(), model.points.len()),
+            row: Row::new(model),
             writer,
             review: Review::new(model.case(scene, initial), model.physics.effects, &model.advice),
             rows: 0,
             peak_strain_energy: 0.0,
+            peak_stress: None,
             monitor: Monitor::default(),
             step,
         })
@@ -433,15 +435,16 @@ impl<'a> Recorder<'a> {
         let part = self.writer.unfinished().to_path_buf();
         let changed = |what| RunError::Changed { part: part.clone(), what };
         for row in 0..results.rows() {
-            let past = restore(results, row, &mut self.observation).ok_or_else(|| changed("the columns"))?;
-            self.review.observe(&self.observation).map_err(BuildError::from)?;
+            let past = restore(results, row, &mut self.row.motion).ok_or_else(|| changed("the columns"))?;
+            self.review.observe(&self.row).map_err(BuildError::from)?;
             self.monitor.take(&past);
-            self.peak_strain_energy = self.peak_strain_energy.max(self.observation.strain_energy);
+            self.peak_strain_energy = self.peak_strain_energy.max(self.row.strain_energy);
+            Largest::watch(&mut self.peak_stress, self.model, &self.row);
         }
         self.rows = results.rows() as u64;
-        simulation.observe(&mut self.observation).map_err(|source| self.failed(source))?;
+        self.observe(simulation)?;
         match results.rows().checked_sub(1) {
-            Some(last) if results.is_row(last, &COLUMNS, &self.observation) => Ok(()),
+            Some(last) if results.is_row(last, &COLUMNS, &self.row) => Ok(()),
             _ => Err(changed("the motion at the checkpoint")),
         }
     }
@@ -494,7 +497,7 @@ impl<'a> Recorder<'a> {
         let open =
             (balances.energy > OPEN && !right_unsummed).then(|| open_balance(balances.energy, model.body.flexible()));
         let wrong = self.step.as_ref().filter(|step| step.largest() >= WRONG);
-        let last = &self.observation;
+        let last = &self.row;
         let mut report = RunReport {
             title: scene.title.clone(),
             units: [&scene.units.length, &scene.units.mass, &scene.units.time].map(Clone::clone),
@@ -515,6 +518,7 @@ impl<'a> Recorder<'a> {
             turned: Attitude::identity().angle_to(&last.attitude),
             moved: (last.position_global - model.body.center_of_mass).into(),
             peak_strain_energy: self.peak_strain_energy,
+            peak_stress: self.peak_stress.as_ref().and_then(|peak| peak.report(scene, model)),
             final_energy: last.energy(),
             balances,
             right_unsummed,
@@ -545,13 +549,21 @@ impl<'a> Recorder<'a> {
         RunError::Step { results: self.writer.unfinished().to_path_buf(), source }
     }
 
+    /// What there is to know of the time that `simulation` has reached.
+    fn observe(&mut self, simulation: &mut Simulation) -> Result<(), RunError> {
+        simulation.observe(&mut self.row.motion).map_err(|source| self.failed(source))?;
+        self.row.complete(self.model);
+        Ok(())
+    }
+
     /// Writes the row of the time that `simulation` has reached.
     fn record(&mut self, simulation: &mut Simulation) -> Result<(), RunError> {
-        simulation.observe(&mut self.observation).map_err(|source| self.failed(source))?;
-        let now = &self.observation;
+        self.observe(simulation)?;
+        let now = &self.row;
         // It refuses what is not finite.
         self.writer.push(now)?;
         self.peak_strain_energy = self.peak_strain_energy.max(now.strain_energy);
+        Largest::watch(&mut self.peak_stress, self.model, now);
         self.monitor.watch(now);
         self.review.observe(now).map_err(BuildError::from)?;
         self.rows += 1;
@@ -566,13 +578,15 @@ impl<'a> Recorder<'a> {
     }
 }
 
-/// Reads a row back as far as the review and the monitor look at it.
+/// Reads a row back as far as the review, the monitor and the stress look at it.
 fn restore(results: &Results, row: usize, out: &mut Observation) -> Option<Conserved> {
     let number = |path| results.numbers(path)?.get(row).copied();
     let vector = |path| results.vectors(path)?.get(row).copied().map(Vector3::from);
     let modal = |path| results.table(path)?.row(row);
     out.time = number("time")?;
+    out.attitude = Attitude::from_unit_wxyz(*results.vectors("attitude")?.get(row)?).ok()?;
     out.omega_body = vector("angular_velocity")?;
+    out.alpha_body = vector("angular_acceleration")?;
     out.modal_displacement.clear();
     out.modal_displacement.extend(modal("modal/displacement")?);
     out.modal_velocity.clear();
@@ -696,6 +710,9 @@ impl fmt::Display for RunReport {
             quantity(self.final_energy),
             quantity(self.peak_strain_energy)
         )?;
+        if let Some(stress) = &self.peak_stress {
+            writeln!(f, "  stress   {stress}, {mass}/({length} {time}²)")?;
+        }
         let Balances { energy, linear_momentum, angular_momentum } = self.balances;
         let closed = if self.right_unsummed {
             format!("known to {energy:.1e} only, by modes faster than the steps")
