@@ -10,6 +10,11 @@ pub type Point = [f64; 3];
 
 const EDGES: [[usize; 2]; 6] = [[0, 1], [1, 2], [0, 2], [0, 3], [2, 3], [1, 3]];
 
+/// The same for places that differ by rounding. It is shifted, so that no coordinate of these meshes is near a jump.
+fn place_key(at: &Point) -> [i64; 3] {
+    at.map(|c| (c * 1e7 + 0.3137).round() as i64)
+}
+
 /// A triangle cut into n² alike.
 pub fn cut(corners: [Point; 3], n: usize) -> Vec<[Point; 3]> {
     let at = |i: usize, j: usize| -> Point {
@@ -35,8 +40,7 @@ pub fn mapped(tetrahedra: &[[Point; 4]], map: impl Fn(Point) -> Point, loaded: i
     let mut positions: Vec<Point> = Vec::new();
     let mut tag = |flat: Point| {
         let at = map(flat);
-        // Shifted, so that no coordinate of these meshes is near where rounding jumps.
-        *tags.entry(at.map(|c| (c * 1e7 + 0.3137).round() as i64)).or_insert_with(|| {
+        *tags.entry(place_key(&at)).or_insert_with(|| {
             positions.push(at);
             positions.len() as u64
         })
@@ -85,7 +89,7 @@ pub fn layers(triangles: &[[Point; 3]], levels: &[f64], place: impl Fn(Point, f6
         for triangle in triangles {
             // Sides are cut from the corner that comes first in space, whichever prism they belong to.
             let mut corners = *triangle;
-            corners.sort_by(|a, b| a.partial_cmp(b).unwrap());
+            corners.sort_by_key(place_key);
             let [a, b, c] = corners.map(|x| place(x, pair[0]));
             let [d, e, f] = corners.map(|x| place(x, pair[1]));
             tetrahedra.extend([[a, b, c, f], [a, b, e, f], [a, d, e, f]]);
