@@ -152,7 +152,7 @@ pub fn holed(
             let at = |i: usize, j: usize| [i as f64 / steps as f64, j as f64 / radial as f64, 0.0];
             let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
             // Mirrored from eighth to eighth.
-            if (i / n) % 2 == 0 {
+            if (i / n).is_multiple_of(2) {
                 triangles.extend([[a, b, c], [a, c, d]]);
             } else {
                 triangles.extend([[a, b, d], [b, c, d]]);
