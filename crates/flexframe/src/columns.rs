@@ -1,18 +1,20 @@
 //! The columns of a results file of `flexframe run`.
 //!
-//! To add a quantity, compute it in [`Observation`] and give it a line here. Writing, reading, the check that numbers are
+//! To add a quantity, compute it in [`Observation`](frames_rk4::Observation) or in [`Row`] and give it a line here. Writing, reading, the check that numbers are
 //! finite, and the attributes in the file follow from the line; a test says what to put into `docs/results.md`.
 
-use frames_rk4::Observation;
 use results::Column;
-use results::Values::{Modal, Number, Point, Quaternion, Vector};
+use results::Values::{Modal, Number, Point, Quaternion, Stress, Vector};
+
+use crate::row::Row;
 
 const ENERGY: &str = "mass length^2/time^2";
 const MOMENTUM: &str = "mass length/time";
+const STRESS: &str = "mass/(length time^2)";
 const ANGULAR_MOMENTUM: &str = "mass length^2/time";
 
 /// Path, unit, frame, description, and how an observation gives the values.
-pub static COLUMNS: [Column<Observation>; 21] = [
+pub static COLUMNS: [Column<Row>; 24] = [
     Column::new("time", "time", "none", "time of each row", Number(|now| now.time)),
     Column::new(
         "attitude",
@@ -79,7 +81,7 @@ pub static COLUMNS: [Column<Observation>; 21] = [
         ENERGY,
         "none",
         "kinetic + strain energy - work + dissipation: constant in exact motion",
-        Number(Observation::energy_balance),
+        Number(|now| now.energy_balance()),
     ),
     Column::new(
         "momentum/linear",
@@ -136,5 +138,26 @@ pub static COLUMNS: [Column<Observation>; 21] = [
         "global",
         "part of the point's acceleration that belongs to the rigid motion",
         Point(|now, i| Some(now.points.get(i)?.rigid_acceleration.into())),
+    ),
+    Column::new(
+        "points/<name>/stress",
+        STRESS,
+        "body",
+        "stress at the point: components xx, yy, zz, xy, yz, zx",
+        Stress(6, |now, i| Some(&now.stress.get(i)?.components)),
+    ),
+    Column::new(
+        "points/<name>/von_mises_stress",
+        STRESS,
+        "none",
+        "von Mises stress at the point",
+        Stress(1, |now, i| Some(&now.stress.get(i)?.von_mises)),
+    ),
+    Column::new(
+        "points/<name>/principal_stress",
+        STRESS,
+        "none",
+        "principal stresses at the point, the largest first",
+        Stress(3, |now, i| Some(&now.stress.get(i)?.principal)),
     ),
 ];

@@ -9,7 +9,7 @@ mod settings;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use frames_rk4::{Observation, Simulation};
+use frames_rk4::Simulation;
 use results::{BodyProperties, Expected, Metadata, Resumed, Units, Writer};
 use scene::{Model, Rows, Scene, StepControl};
 
@@ -21,6 +21,7 @@ pub use settings::{RunProgress, RunSettings};
 
 use crate::columns::COLUMNS;
 use crate::report::BodyReport;
+use crate::row::Row;
 use crate::scene_file;
 use recorder::Recorder;
 
@@ -38,7 +39,7 @@ pub fn run(
 ) -> Result<(Model, RunReport), RunError> {
     std::fs::create_dir_all(folder).map_err(|source| RunError::Folder { folder: folder.to_owned(), source })?;
     let path = results_path(scene, folder);
-    Writer::<Observation>::check(&path, settings.overwrite)?;
+    Writer::<Row>::check(&path, settings.overwrite)?;
     let model = Model::build(scene, |p| progress(RunProgress::Build(p)))?;
 
     let started = Instant::now();
@@ -149,5 +150,6 @@ fn metadata(scene: &Scene, model: &Model) -> Metadata {
             damping_ratios: body.damping_ratios,
         },
         point_names: model.points.iter().map(|(name, _)| name.clone()).collect(),
+        point_stress: scene.output.stress,
     }
 }

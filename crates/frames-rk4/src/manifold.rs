@@ -117,6 +117,18 @@ impl Manifold {
         &self.0.large
     }
 
+    /// ξ(q): the coordinates of the extended shapes.
+    pub fn coordinates(&self, q: &[f64]) -> Vec<f64> {
+        let Constants { large, slopes, .. } = &*self.0;
+        let mut xi = vec![0.0; self.extended()];
+        xi[..q.len()].copy_from_slice(q);
+        for (pair, slopes) in slopes.iter().enumerate() {
+            let product = q[large[pair / large.len()]] * q[large[pair % large.len()]];
+            xi.iter_mut().zip(slopes).for_each(|(xi, slope)| *xi += 0.5 * slope * product);
+        }
+        xi
+    }
+
     fn extended(&self) -> usize {
         self.0.body.flexible()
     }

@@ -1,6 +1,7 @@
 //! The columns of a results file: data, from which the writer, the reader and the documentation are made.
 
 use crate::Units;
+use crate::points::Points;
 
 /// What stands for the name of a point in the path of a column.
 const NAME: &str = "<name>";
@@ -36,6 +37,8 @@ pub enum Values<R> {
     Modal(fn(&R) -> &[f64]),
     /// T×3 for each point; `None` for a number beyond the last point.
     Point(fn(&R, usize) -> Option<[f64; 3]>),
+    /// So many numbers for each point, only in files with the stress of points. One number has the shape T.
+    Stress(usize, fn(&R, usize) -> Option<&[f64]>),
 }
 
 impl<R> Column<R> {
@@ -73,11 +76,12 @@ impl<R> Column<R> {
             Values::Vector(_) | Values::Point(_) => Some(3),
             Values::Quaternion(_) => Some(4),
             Values::Modal(_) => Some(modes),
+            Values::Stress(width, _) => Some(width).filter(|width| *width > 1),
         }
     }
 
     fn is_of_points(&self) -> bool {
-        matches!(self.values, Values::Point(_))
+        matches!(self.values, Values::Point(_) | Values::Stress(..))
     }
 }
 
@@ -88,11 +92,15 @@ pub(crate) struct History<R: 'static> {
     point: usize,
 }
 
-/// All histories of a file with so many points, in their order.
-pub(crate) fn histories<R>(columns: &'static [Column<R>], points: usize) -> impl Iterator<Item = History<R>> + Clone {
+/// All histories of a file with these points, in their order.
+pub(crate) fn histories<R>(columns: &'static [Column<R>], points: Points) -> impl Iterator<Item = History<R>> + Clone {
     let of_body = columns.iter().filter(|column| !column.is_of_points());
-    let of_point = || columns.iter().filter(|column| column.is_of_points());
-    let of_points = (0..points).flat_map(move |point| of_point().map(move |column| History { column, point }));
+    let is_there = move |column: &&Column<R>| match column.values {
+        Values::Stress(..) => points.stress,
+        _ => column.is_of_points(),
+    };
+    let of_point = move || columns.iter().filter(is_there);
+    let of_points = (0..points.count).flat_map(move |point| of_point().map(move |column| History { column, point }));
     of_body.map(|column| History { column, point: 0 }).chain(of_points)
 }
 
@@ -100,7 +108,7 @@ pub(crate) fn histories<R>(columns: &'static [Column<R>], points: usize) -> impl
 pub(crate) fn widths<R>(
     columns: &'static [Column<R>],
     modes: usize,
-    points: usize,
+    points: Points,
 ) -> impl Iterator<Item = usize> + Clone {
     histories(columns, points).map(move |history| history.width(modes))
 }
@@ -127,6 +135,7 @@ impl<R> History<R> {
             Values::Quaternion(values) => out.extend(values(row)),
             Values::Modal(values) => out.extend(values(row)),
             Values::Point(values) => out.extend(values(row, self.point).into_iter().flatten()),
+            Values::Stress(_, values) => out.extend(values(row, self.point).into_iter().flatten()),
         }
     }
 }

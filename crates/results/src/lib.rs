@@ -25,6 +25,7 @@ mod description;
 mod error;
 mod metadata;
 mod paths;
+mod points;
 mod reader;
 mod room;
 mod seal;

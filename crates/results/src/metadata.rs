@@ -1,6 +1,7 @@
 //! What a results file says about the run as a whole.
 
 use crate::FileError;
+use crate::points::Points;
 use serde::{Deserialize, Serialize};
 use std::collections::HashSet;
 use std::path::Path;
@@ -60,9 +61,15 @@ pub struct Metadata {
     pub body: BodyProperties,
     /// Names of the points whose motion is stored, in the order of a row's points.
     pub point_names: Vec<String>,
+    /// Whether their stress is stored, too.
+    pub point_stress: bool,
 }
 
 impl Metadata {
+    pub(crate) fn points(&self) -> Points {
+        Points { count: self.point_names.len(), stress: self.point_stress }
+    }
+
     /// Refuses what a file cannot hold; `path` is named in messages.
     pub(crate) fn check(&self, path: &Path) -> Result<(), FileError> {
         self.check_point_names(path)?;

@@ -112,7 +112,7 @@ impl Results {
             values.truncate(rows * width);
             ColumnTable { rows, width, values }
         });
-        let paths = histories(table, metadata.point_names.len()).map(|history| history.path(&metadata.point_names));
+        let paths = histories(table, metadata.points()).map(|history| history.path(&metadata.point_names));
         let histories = paths.zip(tables).collect();
         Ok((Self { metadata, complete, rows, histories }, checkpoint))
     }
@@ -142,7 +142,7 @@ impl Results {
     pub fn is_row<R>(&self, i: usize, columns: &'static [Column<R>], row: &R) -> bool {
         let names = &self.metadata.point_names;
         let mut values = Vec::new();
-        histories(columns, names.len()).all(|history| {
+        histories(columns, self.metadata.points()).all(|history| {
             values.clear();
             history.append(row, &mut values);
             self.table(&history.path(names)).and_then(|table| table.row(i)) == Some(&values)

@@ -36,7 +36,7 @@ impl Store {
         columns: &'static [Column<R>],
         room: Room,
     ) -> Result<Self, FileError> {
-        let count = histories(columns, metadata.point_names.len()).count();
+        let count = histories(columns, metadata.points()).count();
         let starts = vec![u64::MAX; count + usize::from(room.checkpoint_words.is_some())];
         let mut description = Description {
             rows: room.rows,
@@ -98,8 +98,8 @@ impl Store {
     ) -> Result<Self, FileError> {
         let failed = |error| FileError::system(path, "read the file", &error);
         let length = file.metadata().map_err(failed)?.len();
-        let Metadata { body, point_names, .. } = &description.metadata;
-        let widths = widths(columns, body.frequencies.len(), point_names.len());
+        let metadata = &description.metadata;
+        let widths = widths(columns, metadata.body.frequencies.len(), metadata.points());
         let ranges = description.ranges(widths.clone(), seal::HEAD + described as u64..length);
         let Some(mut ranges) = ranges else {
             let what = "its histories are not within it, each in a place of its own".into();

@@ -32,7 +32,7 @@ pub(crate) fn make<R>(
     write_root_attributes(path, &file, metadata, room.checkpoint_words.is_none())?;
     write_body(path, &file, metadata)?;
     create_point_groups(&file, &metadata.point_names).map_err(FileError::hdf5(path, "create the points"))?;
-    let mut datasets = histories(columns, metadata.point_names.len())
+    let mut datasets = histories(columns, metadata.points())
         .map(|history| create_history(path, &file, &history, metadata, room.rows))
         .collect::<Result<Vec<_>, _>>()?;
     if let Some(words) = room.checkpoint_words {

@@ -91,7 +91,7 @@ impl<R> Writer<R> {
         let modes = metadata.body.frequencies.len();
         place.check(expected.overwrite)?;
 
-        let points = metadata.point_names.len();
+        let points = metadata.points();
         let buffers: Vec<_> = histories(columns, points)
             .map(|history| {
                 let room = ROWS_PER_WRITE * history.width(modes);
@@ -151,7 +151,7 @@ impl<R> Writer<R> {
             None => (0, 0, vec![0; store.checkpoint_words()], None, Sums::new(store.widths().count())),
         };
         results.truncate(rows);
-        let points = results.metadata.point_names.len();
+        let points = results.metadata.points();
         let buffers = histories(columns, points).map(|history| (history, Vec::new())).collect();
         let writer = Self {
             metadata: results.metadata.clone(),

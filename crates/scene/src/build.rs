@@ -21,8 +21,11 @@ mod points;
 mod progress;
 mod reduce;
 mod rigid;
+mod site_stress;
 mod statics;
 mod stress;
+mod stress_left_out;
+mod stress_shapes;
 mod support;
 mod survey;
 mod turning;
@@ -36,6 +39,7 @@ pub use builder::ModelBuilder;
 pub use error::{BuildError, StartError};
 pub use model::{Meshed, Model};
 pub use progress::{BuildProgress, BuildTimes};
+pub use stress_shapes::{BodyStress, StressPeak};
 
 impl Model {
     /// Reads the mesh of a scene, finds its modes and reduces the body. `progress` hears what is being done.

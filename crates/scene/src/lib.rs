@@ -52,7 +52,9 @@ mod shorten;
 mod suggest;
 mod unit_vector;
 
-pub use build::{Assembly, BuildError, BuildProgress, BuildTimes, Meshed, Model, ModelBuilder, StartError};
+pub use build::{
+    Assembly, BodyStress, BuildError, BuildProgress, BuildTimes, Meshed, Model, ModelBuilder, StartError, StressPeak,
+};
 pub use constraint::{Constraint, HeldDirections, HingeLine, Region};
 pub use effects::{Choice, Effects};
 pub use error::SceneError;

@@ -247,4 +247,6 @@ pub(crate) struct OutputSection {
     pub every: Option<u64>,
     pub interval: Option<f64>,
     pub points: BTreeMap<String, [f64; 3]>,
+    pub stress: bool,
+    pub peak_stress: bool,
 }

@@ -16,7 +16,9 @@ use super::report::RunReport;
 use super::settings::{RunProgress, RunSettings};
 use crate::columns::COLUMNS;
 use crate::effects;
+use crate::peak_stress::Largest;
 use crate::report::{BodyReport, MeshReport, Times};
+use crate::row::Row;
 
 /// Energy balance from which on a run says that it is open.
 const OPEN: f64 = 1e-2;
@@ -49,11 +51,12 @@ fn long_steps(estimate: &StepEstimate, share: f64) -> String {
 pub(super) struct Recorder<'a> {
     scene: &'a Scene,
     model: &'a Model,
-    observation: Observation,
-    writer: Writer<Observation>,
+    row: Row,
+    writer: Writer<Row>,
     review: Review<'a>,
     rows: u64,
     peak_strain_energy: f64,
+    peak_stress: Option<Largest>,
     monitor: Monitor,
     /// What fixed steps are expected to get wrong.
     step: Option<StepEstimate>,
@@ -64,7 +67,7 @@ impl<'a> Recorder<'a> {
         scene: &'a Scene,
         model: &'a Model,
         initial: &'a Initial,
-        writer: Writer<Observation>,
+        writer: Writer<Row>,
     ) -> Result<Self, RunError> {
         let step = model
             .step_estimate(scene)
@@ -72,11 +75,12 @@ impl<'a> Recorder<'a> {
         Ok(Self {
             scene,
             model,
-            observation: Observation::new(model.body.flexible(), model.points.len()),
+            row: Row::new(model),
             writer,
             review: Review::new(model.case(scene, initial), model.physics.effects, &model.advice),
             rows: 0,
             peak_strain_energy: 0.0,
+            peak_stress: None,
             monitor: Monitor::default(),
             step,
         })
@@ -108,15 +112,16 @@ impl<'a> Recorder<'a> {
         let part = self.writer.unfinished().to_path_buf();
         let changed = |what| RunError::Changed { part: part.clone(), what };
         for row in 0..results.rows() {
-            let past = restore(results, row, &mut self.observation).ok_or_else(|| changed("the columns"))?;
-            self.review.observe(&self.observation).map_err(BuildError::from)?;
+            let past = restore(results, row, &mut self.row.motion).ok_or_else(|| changed("the columns"))?;
+            self.review.observe(&self.row).map_err(BuildError::from)?;
             self.monitor.take(&past);
-            self.peak_strain_energy = self.peak_strain_energy.max(self.observation.strain_energy);
+            self.peak_strain_energy = self.peak_strain_energy.max(self.row.strain_energy);
+            Largest::watch(&mut self.peak_stress, self.model, &self.row);
         }
         self.rows = results.rows() as u64;
-        simulation.observe(&mut self.observation).map_err(|source| self.failed(source))?;
+        self.observe(simulation)?;
         match results.rows().checked_sub(1) {
-            Some(last) if results.is_row(last, &COLUMNS, &self.observation) => Ok(()),
+            Some(last) if results.is_row(last, &COLUMNS, &self.row) => Ok(()),
             _ => Err(changed("the motion at the checkpoint")),
         }
     }
@@ -169,7 +174,7 @@ impl<'a> Recorder<'a> {
         let open =
             (balances.energy > OPEN && !right_unsummed).then(|| open_balance(balances.energy, model.body.flexible()));
         let wrong = self.step.as_ref().filter(|step| step.largest() >= WRONG);
-        let last = &self.observation;
+        let last = &self.row;
         let mut report = RunReport {
             title: scene.title.clone(),
             units: [&scene.units.length, &scene.units.mass, &scene.units.time].map(Clone::clone),
@@ -190,6 +195,7 @@ impl<'a> Recorder<'a> {
             turned: Attitude::identity().angle_to(&last.attitude),
             moved: (last.position_global - model.body.center_of_mass).into(),
             peak_strain_energy: self.peak_strain_energy,
+            peak_stress: self.peak_stress.as_ref().and_then(|peak| peak.report(scene, model)),
             final_energy: last.energy(),
             balances,
             right_unsummed,
@@ -220,13 +226,21 @@ impl<'a> Recorder<'a> {
         RunError::Step { results: self.writer.unfinished().to_path_buf(), source }
     }
 
+    /// What there is to know of the time that `simulation` has reached.
+    fn observe(&mut self, simulation: &mut Simulation) -> Result<(), RunError> {
+        simulation.observe(&mut self.row.motion).map_err(|source| self.failed(source))?;
+        self.row.complete(self.model);
+        Ok(())
+    }
+
     /// Writes the row of the time that `simulation` has reached.
     fn record(&mut self, simulation: &mut Simulation) -> Result<(), RunError> {
-        simulation.observe(&mut self.observation).map_err(|source| self.failed(source))?;
-        let now = &self.observation;
+        self.observe(simulation)?;
+        let now = &self.row;
         // It refuses what is not finite.
         self.writer.push(now)?;
         self.peak_strain_energy = self.peak_strain_energy.max(now.strain_energy);
+        Largest::watch(&mut self.peak_stress, self.model, now);
         self.monitor.watch(now);
         self.review.observe(now).map_err(BuildError::from)?;
         self.rows += 1;
@@ -241,13 +255,15 @@ impl<'a> Recorder<'a> {
     }
 }
 
-/// Reads a row back as far as the review and the monitor look at it.
+/// Reads a row back as far as the review, the monitor and the stress look at it.
 fn restore(results: &Results, row: usize, out: &mut Observation) -> Option<Conserved> {
     let number = |path| results.numbers(path)?.get(row).copied();
     let vector = |path| results.vectors(path)?.get(row).copied().map(Vector3::from);
     let modal = |path| results.table(path)?.row(row);
     out.time = number("time")?;
+    out.attitude = Attitude::from_unit_wxyz(*results.vectors("attitude")?.get(row)?).ok()?;
     out.omega_body = vector("angular_velocity")?;
+    out.alpha_body = vector("angular_acceleration")?;
     out.modal_displacement.clear();
     out.modal_displacement.extend(modal("modal/displacement")?);
     out.modal_velocity.clear();

@@ -9,6 +9,7 @@ use super::balances::Balances;
 use crate::effects;
 use crate::json;
 use crate::modes::frequency_unit;
+use crate::peak_stress::PeakStress;
 use crate::report::{BodyReport, MeshReport, Times, quantity};
 
 /// What `flexframe run` says at its end.
@@ -52,6 +53,8 @@ pub struct RunReport {
     /// Largest strain energy among the rows.
     #[serde(serialize_with = "json::number")]
     pub peak_strain_energy: f64,
+    /// Largest von Mises stress among the rows, where the scene asks for it.
+    pub peak_stress: Option<PeakStress>,
     /// Kinetic plus strain energy of the last row.
     #[serde(serialize_with = "json::number")]
     pub final_energy: f64,
@@ -126,6 +129,9 @@ impl fmt::Display for RunReport {
             quantity(self.final_energy),
             quantity(self.peak_strain_energy)
         )?;
+        if let Some(stress) = &self.peak_stress {
+            writeln!(f, "  stress   {stress}, {mass}/({length} {time}²)")?;
+        }
         let Balances { energy, linear_momentum, angular_momentum } = self.balances;
         let closed = if self.right_unsummed {
             format!("known to {energy:.1e} only, by modes faster than the steps")

@@ -23,6 +23,7 @@ pub fn metadata(modes: usize, point_names: &[&str]) -> Metadata {
             damping_ratios: vec![0.05; modes],
         },
         point_names: point_names.iter().map(|name| name.to_string()).collect(),
+        point_stress: false,
     }
 }
 

@@ -289,6 +289,11 @@ impl MeshLoad {
         }
     }
 
+    /// The force or moment, global axes, of a load that keeps its direction there; none of one that does so in the body.
+    pub(super) fn dead_vector(&self) -> Option<Vector3<f64>> {
+        self.vector().filter(|_| !self.follows).map(|vector| self.attitude.to_global(&vector))
+    }
+
     /// The parts of the load in its first attitude along `turned`, relative to them: one whole part without any.
     pub(super) fn parts(&self, turned: &[Vector3<f64>]) -> Vec<f64> {
         match self.vector() {

@@ -19,6 +19,7 @@ use super::model::{Meshed, Model};
 use super::points::{output_points, well_spread};
 use super::progress::{BuildProgress, BuildTimes, timed};
 use super::reduce::Reduction;
+use super::stress_shapes::BodyStress;
 use super::survey::Survey;
 use crate::effects::Choice;
 use crate::scene::{Frame, Scene};
@@ -53,6 +54,9 @@ pub(super) fn reduce(
         None => points(scene, mesh, &modes, &reduced.body)?,
     };
     let reference_points = reference_points(scene, mesh, &reduced.body);
+    let extended = large.as_ref().map(|large| (&large.manifold, large.modes()));
+    let has_gravity = decision.effects[Effect::Gravity];
+    let body_stress = BodyStress::new(&model, &modes, extended, &reduced.body.origin, has_gravity)?;
     times.reduction += started.elapsed();
 
     let Decision { mut effects, lacks, .. } = decision;
@@ -75,6 +79,7 @@ pub(super) fn reduce(
         // Who switches static shapes off is not warned again.
         left_out: lacks.filter(|_| scene.modes.static_correction == Choice::Auto).unwrap_or_default(),
         backbones,
+        stress: body_stress,
         body: reduced.body,
         meshed: Some(Meshed { matrix_bytes: matrices.bytes(), mesh: Arc::clone(mesh), modes }),
     };

@@ -14,6 +14,7 @@ use nalgebra::Vector3;
 use super::error::StartError;
 use super::initial::initial;
 use super::progress::BuildTimes;
+use super::stress_shapes::BodyStress;
 use crate::scene::Scene;
 
 /// Deflection over the length at which small vibrations are looked at.
@@ -49,6 +50,8 @@ pub struct Model {
     pub refusal: Option<Refusal>,
     /// Where the time went.
     pub times: BuildTimes,
+    /// Its stress, where the scene asks for it.
+    pub stress: Option<BodyStress>,
     pub(super) loads: Vec<SharedLoad>,
     pub(super) damping_ratios: Vec<f64>,
     pub(super) size: Size,
