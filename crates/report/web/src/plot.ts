@@ -69,7 +69,8 @@ export class Plot {
             const reading = document.createElement("span");
             reading.className = "reading";
             const key = document.createElement("i");
-            key.style.background = `var(--course-${i % COLOURS})`;
+            key.style.color = `var(--course-${i % COLOURS})`;
+            if (i >= COLOURS) key.className = "dashed";
             const value = document.createElement("span");
             reading.append(key, course.name ? `${course.name} ` : "", value);
             this.readings.push(value);
@@ -90,7 +91,7 @@ export class Plot {
                 { ...axis, values: (_, ticks) => ticks.map((tick) => number(tick)), size: 68, gap: 4 },
             ],
             series: [{}, ...courses.map((_, i) => ({
-                stroke: () => cssColour(`course-${i % COLOURS}`), width: 1.5, pxAlign: 0, points: { show: false },
+                stroke: () => cssColour(`course-${i % COLOURS}`), width: 1.5, pxAlign: 0, dash: i >= COLOURS ? [6, 3] : undefined, points: { show: false },
             }))],
             cursor: {
                 sync: { key: "time" }, drag: { x: true, y: false, dist: CLICK_PIXELS }, points: { size: 6 },
