@@ -107,7 +107,7 @@ function shapes(panel: HTMLElement, report: Report, viewer: Viewer, coordinates:
     const count = report.shapes.length;
     const greatest = new Array<number>(count).fill(0);
     coordinates.forEach((q, i) => (greatest[i % count] = Math.max(greatest[i % count], Math.abs(q))));
-    const kinds = { natural: "vibration mode", static: "static shape", "second order": "second-order shape" };
+    const kinds = { natural: "mode", static: "static shape", "second order": "second-order shape" };
     const rows = report.shapes.map((shape, k): Cell[] => {
         let name: Cell = shape.name;
         if (report.surface) {

@@ -65,7 +65,8 @@ export class Viewer {
     /// A shape alone, or the run.
     show(shape: number | null) {
         this.shape = shape;
-        this.swinging = true;
+        this.swinging = !matchMedia("(prefers-reduced-motion: reduce)").matches;
+        this.phase = 0.25; // at its greatest
         if (shape !== null) this.clock.playing = false;
         element<HTMLSelectElement>("subject").value = shape === null ? "run" : String(shape);
         this.stage?.place(shape === null ? this.motion.origin : [0, 0, 0], [0, 0, 0, 1]);
