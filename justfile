@@ -91,6 +91,20 @@ h5py: build
     .tools/h5py/bin/pip install -q h5py
     .tools/h5py/bin/python crates/results/tests/read_with_h5py.py out/ring/ring.h5
 
+# Build the page of reports from its sources (npm). It is checked in, so that nobody else needs npm.
+report-page:
+    cd crates/report/web && npm ci --silent --no-audit --no-fund && npm run --silent build
+
+# The page of reports in a headless Chromium; before that, whether it is what its sources give (npm).
+report-page-test:
+    mkdir -p out/report-page
+    cd crates/report/web && npm ci --silent --no-audit --no-fund && npm run --silent build -- ../../../out/report-page/page.html
+    cmp crates/report/web/page.html out/report-page/page.html || \
+        { echo "report-page-test: page.html is not what web/src gives: run ./dev report-page" >&2; exit 1; }
+    for kind in small large unfinished rigid patch; do \
+        cargo run --quiet --package report --example synthetic -- $kind out/report-page/$kind.html; done
+    cd crates/report/web && REPORTS=../../../out/report-page npm test --silent
+
 # Fuzz every reader for so many seconds each (libFuzzer; wants a nightly compiler).
 fuzz seconds="600":
     test -x .tools/bin/cargo-fuzz || cargo install --quiet --locked --root .tools cargo-fuzz@0.13.2

@@ -10,7 +10,7 @@ use flexframe::campbell::{CampbellError, CampbellSettings, Speeds, campbell};
 use flexframe::cost::{self, CostSettings};
 use flexframe::failure::{Details, Failure, FailureReport, Kind};
 use flexframe::run::RunSettings;
-use flexframe::{advise, mode_shapes, modes, paper, run};
+use flexframe::{advise, html_report, mode_shapes, modes, paper, run};
 use scene::{BuildError, Flexible, Scene, SceneError};
 
 use crate::cli_error::CliError;
@@ -130,6 +130,15 @@ enum Command {
         /// Longest time of a run in seconds; the reference may take twenty times as long.
         #[arg(long, value_name = "SECONDS", default_value = "1", value_parser = patience)]
         patience: Duration,
+    },
+    /// Write one HTML page about a run: the moving body in 3-D, shapes, histories, balances. It needs no network.
+    Report {
+        /// The results file; an unfinished one is shown up to its last row, and marked.
+        #[arg(value_name = "FILE")]
+        file: PathBuf,
+        /// The page to write [default: the results file's name with .html].
+        #[arg(short, long, value_name = "FILE")]
+        output: Option<PathBuf>,
     },
     /// Run a scene and draw it as an animated GIF.
     Animate {
@@ -280,6 +289,12 @@ fn execute(cli: Cli, json_errors: bool) -> Result<(), Box<dyn Failure>> {
             let report = cost::price_list(&scene, &folder(&scene, output), settings, |p| bar.cost(p))?;
             drop(bar);
             output::print(&report, json)
+        }
+        Command::Report { file, output } => {
+            let output = output.unwrap_or_else(|| file.with_extension("html"));
+            html_report::write(&file, &output, |p| bar.build(p))?;
+            drop(bar);
+            output::list(&[output])
         }
         Command::Animate { scene, output, frames, magnify } => {
             let scene = Scene::read(scene)?;

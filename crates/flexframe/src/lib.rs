@@ -28,6 +28,7 @@ pub mod columns;
 pub mod cost;
 mod effects;
 pub mod failure;
+pub mod html_report;
 mod json;
 pub mod mode_shapes;
 pub mod modes;

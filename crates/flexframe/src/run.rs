@@ -121,7 +121,8 @@ pub fn results_path(scene: &Scene, folder: &Path) -> PathBuf {
     folder.join(name)
 }
 
-fn metadata(scene: &Scene, model: &Model) -> Metadata {
+/// What the results file of a run says about it.
+pub(crate) fn metadata(scene: &Scene, model: &Model) -> Metadata {
     let body = BodyReport::new(model);
     let method = scene.time.method;
     let (step, tolerance) = match scene.time.control {
