@@ -17,6 +17,8 @@ pub(super) struct Decision {
     /// What the modes leave out of the static answers to the spin (6), where static shapes for it are missing.
     pub lacks: Option<Vec<f64>>,
     pub effects: EffectMap<bool>,
+    /// Which of the modes that are kept are large, numbered from 0.
+    pub large: Vec<usize>,
 }
 
 impl Decision {
@@ -40,6 +42,7 @@ impl Decision {
             has_static_shapes,
             lacks: of_spin.map(|of_spin| of_spin.remainders.clone()),
             effects: physics::effects(scene, advice, &modal.body, keep),
+            large: physics::large_modes(scene, advice, keep),
         }
     }
 }

@@ -7,6 +7,7 @@ use modal::{ReducedBody, RigidMotion};
 use super::loads::MeshLoad;
 use super::turning::{Turning, turning};
 use crate::effects::Choice;
+use crate::modes::Large;
 use crate::scene::Scene;
 
 /// Whether anything may set the body spinning.
@@ -49,4 +50,22 @@ pub(super) fn effects(scene: &Scene, advice: &Advice, body: &ReducedBody, keep: 
     effects[Effect::GeometricStiffening] &=
         keep > 0 && body.stress_stiffness.is_some() && effects[Effect::DeformedInertia];
     effects
+}
+
+/// How many modes are large where the scene asks for large deflection and does not say of which.
+const DEFAULT_LARGE: usize = 4;
+
+/// Which of the modes that are kept are large, numbered from 0: those that the scene names, or what is advised. The paper's
+/// formulation has none, and nothing is advised for a body that is not to stiffen: the manifold stiffens its modes.
+pub(super) fn large_modes(scene: &Scene, advice: &Advice, keep: usize) -> Vec<usize> {
+    let first = |count: usize| (0..keep.min(count)).collect();
+    match (scene.effects.choices[Effect::LargeDeflection], &scene.modes.large) {
+        (Choice::Off, _) => Vec::new(),
+        (Choice::Auto, _) if scene.time.method.is_of_paper() => Vec::new(),
+        (_, Some(Large::Count(count))) => first(*count),
+        (_, Some(Large::List(list))) => list.iter().map(|mode| mode - 1).filter(|k| *k < keep).collect(),
+        (Choice::On, None) => first(DEFAULT_LARGE),
+        (Choice::Auto, None) if scene.effects.choices[Effect::GeometricStiffening] == Choice::Off => Vec::new(),
+        (Choice::Auto, None) => advice.large_modes(keep).taken,
+    }
 }
