@@ -138,3 +138,46 @@ pub(crate) fn large_deflection(modes: &[Worth], large: &LargeModes, deflection: 
 fn numbers(modes: &[usize]) -> String {
     modes.iter().map(|k| (k + 1).to_string()).collect::<Vec<_>>().join(", ")
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A mode that linear strain has out of phase by an angle.
+    fn out_of_phase(phase: f64) -> Worth {
+        let strain = StrainError { deflection: 0.02, frequency: -0.01, phase, statics: 0.0 };
+        Worth {
+            circular_frequency: 1.0,
+            displacement: 1.0,
+            share: 0.5,
+            worth_keeping: true,
+            strain_bound: 1.0,
+            strain: Some(strain),
+        }
+    }
+
+    #[test]
+    fn of_more_modes_than_can_be_large_those_with_the_largest_errors_are_taken() {
+        // From 0.1 to 1.1 rad, the largest in the middle.
+        let mut modes: Vec<Worth> = [0.1, 0.3, 0.5, 0.7, 0.9, 1.0, 0.8, 0.6, 0.4, 0.2].map(out_of_phase).into();
+        let found = large_modes(&modes, 10, 1e-3);
+        assert_eq!((found.taken, found.left_out), (vec![1, 2, 3, 4, 5, 6, 7, 8], vec![0, 9]));
+        let row = large_deflection(&modes, &large_modes(&modes, 10, 1e-3), 0.2).row(1e-3);
+        assert!(
+            row.on && row.why.contains("Mode 6 bends") && row.why.contains("Modes 1, 10 would be large"),
+            "{row:?}"
+        );
+        // With fewer modes, and with a tolerance above the others: 0.5 of 0.8 rad.
+        assert_eq!(large_modes(&modes, 3, 1e-3).taken, [0, 1, 2]);
+        assert_eq!(large_modes(&modes, 10, 0.39), LargeModes { taken: vec![4, 5, 6], left_out: vec![] });
+        // A mode that hardly moves may be out of phase; it is not worth it.
+        modes[5].share = 1e-4;
+        assert!(!large_modes(&modes, 10, 1e-3).taken.contains(&5));
+    }
+
+    #[test]
+    fn bounds_that_nothing_can_reach_are_scaled_down() {
+        assert_eq!(believed(0.2), 1.0);
+        assert!((350.0 * believed(350.0) - BELIEVED).abs() < 1e-12);
+    }
+}
