@@ -37,12 +37,13 @@ impl Decision {
                 Choice::Auto => advice.static_correction.on,
             };
         let of_spin = statics.of_spin.as_ref().filter(|_| keep > 0 && !has_static_shapes);
+        let large = physics::large_modes(scene, advice, keep);
         Self {
             keep,
             has_static_shapes,
             lacks: of_spin.map(|of_spin| of_spin.remainders.clone()),
-            effects: physics::effects(scene, advice, &modal.body, keep),
-            large: physics::large_modes(scene, advice, keep),
+            effects: physics::with_large_modes(scene, physics::effects(scene, advice, &modal.body, keep), &large),
+            large,
         }
     }
 }

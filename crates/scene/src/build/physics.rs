@@ -6,6 +6,7 @@ use modal::{ReducedBody, RigidMotion};
 
 use super::loads::MeshLoad;
 use super::turning::{Turning, turning};
+use crate::constraint::Constraint;
 use crate::effects::Choice;
 use crate::modes::Large;
 use crate::scene::Scene;
@@ -56,7 +57,8 @@ pub(super) fn effects(scene: &Scene, advice: &Advice, body: &ReducedBody, keep: 
 const DEFAULT_LARGE: usize = 4;
 
 /// Which of the modes that are kept are large, numbered from 0: those that the scene names, or what is advised. The paper's
-/// formulation has none, and nothing is advised for a body that is not to stiffen: the manifold stiffens its modes.
+/// formulation has none, and nothing is advised for a body that is not to stiffen, since the manifold stiffens its modes, nor for one that is
+/// driven: there the manifold is not yet what stiffening is (`examples/spin_up.toml`).
 pub(super) fn large_modes(scene: &Scene, advice: &Advice, keep: usize) -> Vec<usize> {
     let first = |count: usize| (0..keep.min(count)).collect();
     match (scene.effects.choices[Effect::LargeDeflection], &scene.modes.large) {
@@ -66,6 +68,22 @@ pub(super) fn large_modes(scene: &Scene, advice: &Advice, keep: usize) -> Vec<us
         (_, Some(Large::List(list))) => list.iter().map(|mode| mode - 1).filter(|k| *k < keep).collect(),
         (Choice::On, None) => first(DEFAULT_LARGE),
         (Choice::Auto, None) if scene.effects.choices[Effect::GeometricStiffening] == Choice::Off => Vec::new(),
+        (Choice::Auto, None) if is_driven(scene) => Vec::new(),
         (Choice::Auto, None) => advice.large_modes(keep).taken,
     }
+}
+
+fn is_driven(scene: &Scene) -> bool {
+    matches!(
+        scene.constraint,
+        Some(Constraint::Hinge { motion: Some(_), .. } | Constraint::Slider { motion: Some(_), .. })
+    )
+}
+
+/// The effects with what large modes need: what follows them moves along the body, where turning acts on it.
+pub(super) fn with_large_modes(scene: &Scene, mut effects: EffectMap<bool>, large: &[usize]) -> EffectMap<bool> {
+    for effect in [Effect::Coriolis, Effect::DeformedInertia] {
+        effects[effect] |= !large.is_empty() && scene.effects.choices[effect] == Choice::Auto;
+    }
+    effects
 }
