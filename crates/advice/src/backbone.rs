@@ -15,14 +15,16 @@
 /// linear strain leaves out.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Backbone {
-    /// c₄/(16 ω²) − 5 c₃²/(48 ω⁴), per squared modal coordinate.
-    pub stiffening: f64,
     /// m, per squared modal coordinate.
     pub inertia: f64,
+    /// c₃/ω², per modal coordinate.
+    pub cubic: f64,
+    /// c₄/ω², per squared modal coordinate.
+    pub quartic: f64,
 }
 
-/// Deflection over the length of the body from which on the backbone of a mode is worth knowing.
-pub const LARGE: f64 = 0.01;
+/// Deflection over the length of the body from which on a run says what linear strain made of a mode.
+pub(crate) const LARGE: f64 = 0.01;
 
 /// Relative change of a frequency that a model of second order cannot be right at: a run is refused there.
 pub const DETUNED: f64 = 0.25;
@@ -31,26 +33,35 @@ impl Backbone {
     /// Of a mode with the circular frequency ω and the coefficients m, c₃ and c₄.
     pub fn new(omega: f64, inertia: f64, cubic: f64, quartic: f64) -> Self {
         let square = omega * omega;
-        let stiffening = quartic / (16.0 * square) - 5.0 * cubic * cubic / (48.0 * square * square);
-        Self { stiffening, inertia }
+        Self { inertia, cubic: cubic / square, quartic: quartic / square }
+    }
+
+    /// c₄/(16 ω²) − 5 c₃²/(48 ω⁴), per squared modal coordinate.
+    pub fn stiffening(&self) -> f64 {
+        self.quartic / 16.0 - 5.0 * self.cubic * self.cubic / 48.0
+    }
+
+    /// How far the force that holds the mode at an amplitude may be from ω² times it, relative.
+    pub fn static_error(&self, amplitude: f64) -> f64 {
+        (0.5 * self.cubic * amplitude).abs() + (self.quartic / 6.0 * amplitude * amplitude).abs()
     }
 
     /// Ω/ω − 1 at an amplitude in the modal coordinate; −1 where no stiffness is left.
     pub fn shift(&self, amplitude: f64) -> f64 {
         let square = amplitude * amplitude;
-        ((1.0 + 2.0 * self.stiffening * square) / (1.0 + 0.5 * self.inertia * square)).max(0.0).sqrt() - 1.0
+        ((1.0 + 2.0 * self.stiffening() * square) / (1.0 + 0.5 * self.inertia * square)).max(0.0).sqrt() - 1.0
     }
 
     /// Coefficient of a² in Ω/ω − 1 for small amplitudes.
     pub fn curvature(&self) -> f64 {
-        self.stiffening - 0.25 * self.inertia
+        self.stiffening() - 0.25 * self.inertia
     }
 
     /// The amplitude, in the modal coordinate, at which the frequency is [`DETUNED`]; infinite where it never is.
     pub fn largest_amplitude(&self) -> f64 {
         // (1 + 2 s x) = r² (1 + m x / 2), for a frequency ratio r on either side of 1.
         let at = |ratio: f64| {
-            let square = (ratio * ratio - 1.0) / (2.0 * self.stiffening - 0.5 * self.inertia * ratio * ratio);
+            let square = (ratio * ratio - 1.0) / (2.0 * self.stiffening() - 0.5 * self.inertia * ratio * ratio);
             if square > 0.0 { square.sqrt() } else { f64::INFINITY }
         };
         at(1.0 - DETUNED).min(at(1.0 + DETUNED))
@@ -109,15 +120,13 @@ mod tests {
 
     #[test]
     fn the_largest_amplitude_is_a_quarter_off() {
-        for backbone in [
-            Backbone { stiffening: 1.0, inertia: 0.0 },
-            Backbone { stiffening: -1.0, inertia: 0.5 },
-            Backbone { stiffening: 0.1, inertia: 5.0 },
-        ] {
+        for backbone in
+            [Backbone::new(1.0, 0.0, 0.0, 16.0), Backbone::new(1.0, 0.5, 0.0, -16.0), Backbone::new(1.0, 5.0, 0.0, 1.6)]
+        {
             let amplitude = backbone.largest_amplitude();
             assert!((backbone.shift(amplitude).abs() - DETUNED).abs() < 1e-12, "{amplitude}");
             assert!(backbone.shift(0.9 * amplitude).abs() < DETUNED);
         }
-        assert_eq!(Backbone { stiffening: 0.0, inertia: 0.0 }.largest_amplitude(), f64::INFINITY);
+        assert_eq!(Backbone::new(1.0, 0.0, 0.0, 0.0).largest_amplitude(), f64::INFINITY);
     }
 }

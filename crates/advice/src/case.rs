@@ -1,6 +1,6 @@
 //! What is known before a run.
 
-use frames_rk4::{Drive, History, Initial, SharedLoad};
+use frames_rk4::{Drive, History, Initial, Manifold, SharedLoad};
 use modal::ReducedBody;
 use nalgebra::Vector3;
 
@@ -34,6 +34,8 @@ pub struct Case<'a> {
     pub centrifugal_remainders: &'a [f64],
     /// How the frequency of each of the first modes goes with its amplitude, where that is known.
     pub backbones: &'a [Option<Backbone>],
+    /// The manifold that the large modes move on, if there is one.
+    pub manifold: Option<&'a Manifold>,
 }
 
 /// The work f·u of a load where its history is 1 and of its whole static answer u (`modal::Solver::static_response`).
@@ -95,6 +97,7 @@ impl Case<'_> {
             ("the list of initial modal displacements", self.initial.modal_displacement.len(), nf),
             ("the list of initial modal velocities", self.initial.modal_velocity.len(), nf),
         ];
+        lists.extend(self.manifold.map(|manifold| ("the list of modes of the manifold", manifold.modes(), nf)));
         let loads = self.loads.len();
         let optional = [
             ("the list that marks gravity", self.is_gravity.len(), loads),

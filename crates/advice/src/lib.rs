@@ -13,8 +13,8 @@
 //! 3. [`advise`] gives the table: a [`Row`] for each [`Subject`], and what each mode is worth. Nothing stiffens where
 //!    `deformed_inertia` is off: the stiffness is counted as part of it too. What only the reduced body can tell, such as
 //!    the row of [`stress_row`] for the stress of the loads, goes into [`Advice::completed`].
-//! 4. [`Backbone`]s of the modes that may bend the body by more than [`LARGE`] tell what linear strain makes of that, and
-//!    [`step_estimate()`] gives the row of the step: which attitude or mode it gets wrong, and by how much.
+//! 4. [`Backbone`]s of the modes whose [`Worth::strain_bound`] reaches the tolerance tell what linear strain makes of
+//!    them, and with these [`Advice::large_modes`] which are to be large. [`step_estimate()`] gives the row of the step: which attitude or mode it gets wrong, and by how much.
 //! 5. [`Review`] watches the run and names what has broken, and when.
 //!
 //! ```
@@ -44,6 +44,7 @@
 //!     static_compliances: &[],
 //!     centrifugal_remainders: &[],
 //!     backbones: &[],
+//!     manifold: None,
 //! };
 //! let effects = EffectMap::all();
 //! assert_eq!(limits(&case, &effects)?, None);
@@ -68,6 +69,7 @@ mod completed;
 mod course;
 mod estimate;
 mod excitation;
+mod fourth_order;
 mod limits;
 mod number;
 mod relative;
@@ -76,17 +78,20 @@ mod review;
 mod rigid;
 mod row;
 mod step;
+mod strain;
 mod stress;
 mod table;
 mod tensor;
 
-pub use backbone::{Backbone, DETUNED, LARGE};
+pub use backbone::{Backbone, DETUNED};
 pub use case::{AdviceError, Case, StaticCompliance};
 pub use completed::Findings;
+pub use fourth_order::FourthOrder;
 pub use limits::{BUCKLED, Refusal, SOFTENED, buckling, limits, unsteady};
 pub use review::{Broken, Detuning, Review};
 pub use row::{Row, Subject, Worth};
 pub use step::{ModeError, StepEstimate, step_estimate};
+pub use strain::{LargeModes, StrainError};
 pub use stress::{StressField, StressInfluence, StressSource, stress, stress_row};
 pub use table::{Advice, advise, screen};
 /// Crates whose types are in the interface.

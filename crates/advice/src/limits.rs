@@ -1,11 +1,14 @@
 //! Models that are known to be wrong.
 
+use std::fmt;
+
 use frames_rk4::{DrivenMotion, Effect, EffectMap, LoadedMode, SteadySpin};
 use nalgebra::Vector3;
 
 use crate::backbone::DETUNED;
 use crate::case::{AdviceError, Case};
 use crate::course::Course;
+use crate::fourth_order::{FourthOrder, beyond};
 use crate::number::Number;
 
 /// Deflection over length at which linear strain ends.
@@ -87,6 +90,18 @@ pub enum Refusal {
         /// The deflection over the length.
         deflection: f64,
     },
+    /// The large modes bend the body further than the manifold holds.
+    #[error(
+        "the large modes bend the body by {:.1} % of its length, where {}: the answer means nothing; make the loads smaller \
+         or the body stiffer (`refuse = false` in [effects] runs it all the same)",
+        100.0 * .deflection, LeftOut(*.error)
+    )]
+    BeyondFourthOrder {
+        /// Their deflection over the length.
+        deflection: f64,
+        /// What is left out of the forces on them, relative, about; infinite where the strain energy is negative.
+        error: f64,
+    },
     /// A mode swings so far that its frequency is not that of linear strain.
     #[error(
         "mode {mode} bends the body by {:.1} % of its length, where linear strain has its frequency off by {:.0} % or more: \
@@ -100,6 +115,23 @@ pub enum Refusal {
         /// Its deflection over the length.
         deflection: f64,
     },
+}
+
+/// What a motion of fourth order leaves out, in words.
+pub(crate) struct LeftOut(pub f64);
+
+impl fmt::Display for LeftOut {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.0.is_finite() {
+            write!(
+                f,
+                "the orders beyond the fourth, which are left out, come to about {:.1} % of the forces",
+                100.0 * self.0
+            )
+        } else {
+            write!(f, "the strain energy to fourth order is negative, which no body has")
+        }
+    }
 }
 
 /// Part of the loads at which a body buckles that is refused: nothing is left there of the stiffness against the way it
@@ -151,7 +183,13 @@ fn bent_at_start(case: &Case) -> Option<Refusal> {
     };
     let modes = 0..case.body.flexible();
     let largest = modes.clone().map(|k| amplitude(k) * case.peaks[k] / case.length).fold(0.0, f64::max);
-    deflected(largest).or_else(|| modes.into_iter().find_map(|k| detuned(case, k, amplitude(k))))
+    let of_large = || {
+        let mut order = FourthOrder::new(case.manifold?, &case.body.circular_frequencies);
+        let q = &case.initial.modal_displacement;
+        let deflection: f64 = order.large().iter().map(|k| q[*k].abs() * case.peaks[*k] / case.length).sum();
+        beyond(order.error(q), deflection)
+    };
+    deflected(largest).or_else(|| modes.into_iter().find_map(|k| detuned(case, k, amplitude(k)))).or_else(of_large)
 }
 
 /// The spin that there is without doubt: at the beginning, or driven. `None` where the body does not turn.

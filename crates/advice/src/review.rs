@@ -6,7 +6,8 @@ use frames_rk4::{Effect, EffectMap, Moment, Observation};
 use nalgebra::Vector3;
 
 use crate::case::{AdviceError, Case};
-use crate::limits::{LINEAR, Refusal, SOFTENED, deflected, detuned, refusal};
+use crate::fourth_order::{FourthOrder, STATED, beyond};
+use crate::limits::{LINEAR, LeftOut, Refusal, SOFTENED, deflected, detuned, refusal};
 use crate::number::Number;
 use crate::relative::relative;
 use crate::table::{Advice, held};
@@ -54,6 +55,20 @@ pub enum Broken {
         /// The modes whose frequencies that changes noticeably.
         modes: Vec<Detuning>,
     },
+    /// The large modes bend the body so far that the orders which are left out matter.
+    #[error(
+        "at time {time:.6} the large modes bent the body by {:.1} % of its length, where {}, more than the {:.0} % that are \
+         taken as right: smaller motions are right, the error goes with the fourth power of their size",
+        100.0 * .deflection, LeftOut(*.error), 100.0 * STATED
+    )]
+    FourthOrder {
+        /// When it was largest.
+        time: f64,
+        /// The deflection of the large modes over the length, then.
+        deflection: f64,
+        /// What is left out of the forces on them, relative, about.
+        error: f64,
+    },
     /// The modes do not carry what the spin does to the body.
     #[error(
         "at time {time:.6} the modes left out {:.1} % of the static answer to the spin, and the answer lacks it, \
@@ -99,7 +114,11 @@ struct Detunings<'a>(&'a [Detuning]);
 impl fmt::Display for Detunings<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Some(first) = self.0.first() else {
-            return write!(f, ": linear strain ends at 10 %, and so does what the answer can be trusted for");
+            return write!(
+                f,
+                ": linear strain ends at 10 %, and so does what the answer can be trusted for; name the modes that bend the \
+                 body in `large` in [modes]"
+            );
         };
         write!(f, ", which linear strain does not follow:")?;
         for (i, detuning) in self.0.iter().enumerate() {
@@ -116,7 +135,8 @@ impl fmt::Display for Detunings<'_> {
         }
         write!(
             f,
-            " (each by its own motion, without spin); smaller motions are right, their error goes with the square"
+            " (each by its own motion, without spin); smaller motions are right, their error goes with the square; name these \
+             modes in `large` in [modes], and the run follows them"
         )?;
         if first.phase.abs() > LOST { write!(f, "; the phase is lost") } else { Ok(()) }
     }
@@ -152,6 +172,8 @@ struct Swing {
     most: f64,
     /// ∫ (q² + (q̇/ω)²) dt.
     integral: f64,
+    /// Whether its strain is that of large deflection.
+    is_large: bool,
 }
 
 /// Watches a run: [`Self::look`] at every step, [`Self::observe`] at every row.
@@ -173,7 +195,9 @@ pub struct Review<'a> {
     left_out: (f64, f64, f64),
     /// Largest √(qᵀq).
     deformation: f64,
-    /// Largest deflection over the length, and when it was that, but for a hundredth.
+    /// Of large modes, with the largest error, when it was, and their deflection over the length then.
+    order: Option<(FourthOrder<'a>, [f64; 3])>,
+    /// Largest deflection over the length by modes that are not large, and when it was that, but for a hundredth.
     bent: f64,
     bent_at: Passed,
     spun_above: Option<Passed>,
@@ -199,7 +223,9 @@ impl<'a> Review<'a> {
             Some(Some(backbone)) => backbone.largest_amplitude(),
             _ => f64::INFINITY,
         };
-        let swings = (0..case.peaks.len()).map(|k| Swing { most: most(k), ..Swing::default() }).collect();
+        let is_large = |k: usize| case.manifold.is_some_and(|manifold| manifold.large().contains(&k));
+        let swings =
+            (0..case.peaks.len()).map(|k| Swing { is_large: is_large(k), most: most(k), ..Swing::default() }).collect();
         Self {
             case,
             effects,
@@ -212,6 +238,9 @@ impl<'a> Review<'a> {
             looked_up: (0.0, Vector3::zeros()),
             left_out: (0.0, 0.0, 0.0),
             deformation: 0.0,
+            order: case
+                .manifold
+                .map(|manifold| (FourthOrder::new(manifold, &case.body.circular_frequencies), [0.0; 3])),
             bent: 0.0,
             bent_at: Passed { time: 0.0, found: 0.0 },
             spun_above: None,
@@ -233,7 +262,7 @@ impl<'a> Review<'a> {
         }
         let passed = time - self.time;
         self.time = time;
-        let (mut deflection, mut deformation) = (0.0, 0.0);
+        let (mut deflection, mut of_large, mut deformation) = (0.0, 0.0, 0.0);
         let mut stopped = None;
         let case = &self.case;
         for (k, swing) in self.swings.iter_mut().enumerate() {
@@ -247,16 +276,27 @@ impl<'a> Review<'a> {
             if reach > swing.most && stopped.is_none() {
                 stopped = detuned(case, k, reach);
             }
-            deflection += reach * case.peaks[k];
+            let bent = reach * case.peaks[k] / case.length;
+            deflection += bent;
+            if swing.is_large {
+                of_large += bent;
+            }
             deformation += reach * reach;
         }
-        deflection /= case.length;
+        if let Some((order, worst)) = &mut self.order {
+            let error = order.error(q);
+            stopped = stopped.or_else(|| beyond(error, of_large));
+            if error > worst[0] {
+                *worst = [error, time, of_large];
+            }
+        }
         if self.stop.is_none() {
             self.stop = stopped.or_else(|| deflected(deflection)).map(|refusal| (time, refusal));
         }
-        self.bent = self.bent.max(deflection);
-        if deflection > MARGIN * self.bent_at.found {
-            self.bent_at = Passed { time, found: deflection };
+        let linear = deflection - of_large;
+        self.bent = self.bent.max(linear);
+        if linear > MARGIN * self.bent_at.found {
+            self.bent_at = Passed { time, found: linear };
         }
         let speed = omega_body.norm();
         if speed > self.fastest.0 {
@@ -317,6 +357,11 @@ impl<'a> Review<'a> {
         self.stop
     }
 
+    /// The most that was left out of the forces on the large modes so far, relative, about; none without large modes.
+    pub fn left_out(&self) -> Option<f64> {
+        self.order.as_ref().map(|(_, [error, ..])| *error)
+    }
+
     /// What has broken so far: each assumption once, with the first time and the worst.
     pub fn broken(&self) -> Vec<Broken> {
         let (time, limit_of_bending) = (self.bent_at.time, self.stop);
@@ -340,7 +385,13 @@ impl<'a> Review<'a> {
         let (left, time, left_out) = self.left_out;
         let influence = relative(left, self.deformation.hypot(left));
         let stretch = (influence >= self.tolerance).then_some(Broken::Stretch { time, left_out, influence });
-        [spin, bent, linear].into_iter().chain(limits).chain([stretch]).flatten().collect()
+        let order = self.order.as_ref().filter(|(_, [error, ..])| *error > STATED);
+        let order = order.map(|(_, [error, time, deflection])| Broken::FourthOrder {
+            time: *time,
+            deflection: *deflection,
+            error: *error,
+        });
+        [spin, bent, linear, order].into_iter().chain(limits).chain([stretch]).flatten().collect()
     }
 
     /// The modes whose frequency, or phase in the time that was watched, linear strain puts out noticeably.
@@ -358,7 +409,7 @@ impl<'a> Review<'a> {
                 periods: self.time * turns,
             };
             let matters = detuning.shift.abs() >= SHIFTED || detuning.phase.abs() >= OUT_OF_PHASE;
-            (matters && detuning.deflection >= crate::LARGE).then_some(detuning)
+            (matters && detuning.deflection >= crate::backbone::LARGE).then_some(detuning)
         };
         case.backbones.iter().enumerate().filter_map(of).collect()
     }

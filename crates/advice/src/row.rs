@@ -2,6 +2,8 @@
 
 use frames_rk4::Effect;
 
+use crate::strain::StrainError;
+
 /// What a row of the table is about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Subject {
@@ -36,7 +38,7 @@ impl Subject {
                 Effect::DeformedInertia => "2c·q/J",
                 Effect::Coriolis => "2 Ω G_kl/ω_k",
                 Effect::GeometricStiffening => "Ω² K_σ,kk/ω_k²",
-                Effect::LargeDeflection => "6.2 (u/L)²",
+                Effect::LargeDeflection => "|Δω_k|/ω_k of linear strain",
                 Effect::Translation => "∫F dt + m v > 0",
                 Effect::Rotation => "∫M dt + J ω / (all impulses)",
             },
@@ -71,4 +73,9 @@ pub struct Worth {
     pub share: f64,
     /// Whether that reaches the tolerance.
     pub worth_keeping: bool,
+    /// Influence on the answer of what linear strain may get wrong of it at most, as far as that is known without its
+    /// [`Backbone`](crate::Backbone); at most 1.
+    pub strain_bound: f64,
+    /// What linear strain gets wrong of it, where its backbone is known.
+    pub strain: Option<StrainError>,
 }

@@ -5,15 +5,14 @@ use frames_rk4::{Effect, EffectMap};
 use modal::ReducedBody;
 use nalgebra::Matrix3;
 
-use crate::backbone::LARGE;
 use crate::case::{AdviceError, Case};
 use crate::estimate::Estimate;
 use crate::excitation::{Source, Spin};
 use crate::limits::{LINEAR, Refusal, deflected};
-use crate::number::Number;
 use crate::relative::relative;
 use crate::response::{Response, norm};
 use crate::row::{Row, Subject, Worth};
+use crate::strain::{self, LargeModes};
 use crate::{rigid, tensor};
 
 /// What to expect of a run.
@@ -49,6 +48,11 @@ impl Advice {
         let others =
             [(Subject::StaticCorrection, &self.static_correction), (Subject::Deflection, &self.large_deflection)];
         Effect::ALL.into_iter().map(|effect| (Subject::Effect(effect), &self.effects[effect])).chain(others)
+    }
+
+    /// Which of the first `keep` modes are to be large.
+    pub fn large_modes(&self, keep: usize) -> LargeModes {
+        strain::large_modes(&self.modes, keep, self.tolerance)
     }
 
     /// Why the model is known to be wrong by what the loads do to it, if it is.
@@ -95,14 +99,22 @@ pub fn advise(case: &Case, tolerance: f64) -> Result<Advice, AdviceError> {
         spin.largest.powi(2) * static_force + spin.pull(coupling[(k, l)], case.body.circular_frequencies[l])
     });
     let shares = response.shares();
+    let deflection = response.displacement.iter().zip(case.peaks).map(|(q, a)| q * a).sum::<f64>() / case.length;
+    let believed = strain::believed(deflection);
     let modes: Vec<Worth> = shares
         .iter()
         .enumerate()
-        .map(|(k, share)| Worth {
-            circular_frequency: case.body.circular_frequencies[k],
-            displacement: response.displacement[k],
-            share: *share,
-            worth_keeping: *share >= tolerance,
+        .map(|(k, share)| {
+            let expected = believed * response.displacement[k];
+            let backbone = case.backbones.get(k).and_then(Option::as_ref);
+            Worth {
+                circular_frequency: case.body.circular_frequencies[k],
+                displacement: response.displacement[k],
+                share: *share,
+                worth_keeping: *share >= tolerance,
+                strain_bound: strain::screen(case, &response, k, expected) * share,
+                strain: backbone.map(|backbone| strain::by_backbone(case, &response, k, expected, backbone)),
+            }
         })
         .collect();
     // What is left out adds up.
@@ -113,7 +125,7 @@ pub fn advise(case: &Case, tolerance: f64) -> Result<Advice, AdviceError> {
     });
     let keep = shares.len() - negligible.count();
     let stretch = stretch(case, &spin, &response);
-    let deflection = response.displacement.iter().zip(case.peaks).map(|(q, a)| q * a).sum::<f64>() / case.length;
+    let large = strain::large_modes(&modes, modes.len(), tolerance);
     let estimate = |effect| match effect {
         Effect::Flexibility => flexibility(&spin, &sources, &response, deflection),
         Effect::Damping => damping(case, &response),
@@ -121,14 +133,14 @@ pub fn advise(case: &Case, tolerance: f64) -> Result<Advice, AdviceError> {
         Effect::DeformedInertia => deformed_inertia(case, &spin, &response, &second, stiffness.as_ref(), stretch),
         Effect::Coriolis => coriolis(case, &spin, &response, &coupling),
         Effect::GeometricStiffening => stiffening(case, &spin, &response, stiffness.as_ref()),
-        Effect::LargeDeflection => foreshortening(deflection),
+        Effect::LargeDeflection => strain::large_deflection(&modes, &large, deflection),
         Effect::Translation => rigid::translation(case, &sources),
         Effect::Rotation => rigid::rotation(case, &spin, &sources, &response),
     };
     Ok(Advice {
         effects: EffectMap::from_fn(|effect| estimate(effect).row(tolerance)),
         static_correction: static_correction(case, &spin, &sources, keep, stretch).row(tolerance),
-        large_deflection: bending(case, &response, deflection),
+        large_deflection: bending(deflection),
         modes,
         keep,
         more_modes: keep > 0 && keep == case.body.flexible(),
@@ -348,42 +360,11 @@ fn static_correction(case: &Case, spin: &Spin, sources: &[Source], keep: usize, 
     Estimate { value, influence, why }
 }
 
-/// The deflection, and what linear strain makes of the mode that it puts out most.
-fn bending(case: &Case, response: &Response, deflection: f64) -> Row {
-    let of = |(k, backbone): (usize, &Option<crate::Backbone>)| {
-        let (backbone, amplitude) = (backbone.as_ref()?, *response.displacement.get(k)?);
-        let periods = case.body.circular_frequencies[k] * response.memory[k] / std::f64::consts::TAU;
-        let phase = backbone.curvature().abs() * amplitude * amplitude * periods;
-        (amplitude * case.peaks[k] >= LARGE * case.length).then(|| (k, backbone.shift(amplitude), phase))
-    };
-    let worst = case.backbones.iter().enumerate().filter_map(of).max_by(|a, b| a.2.total_cmp(&b.2));
+/// The deflection.
+fn bending(deflection: f64) -> Row {
     let why = format!("At most {deflection:.1e} of the length; linear strain ends at 10 %.");
-    let (influence, why) = match worst {
-        None => (0.0, why),
-        Some((k, shift, phase)) => (
-            relative(std::f64::consts::TAU * phase, 1.0),
-            format!(
-                "{why} It has the frequency of mode {} about {:.2} % too {} at most, and its phase out by {} of a period.",
-                k + 1,
-                100.0 * shift.abs(),
-                if shift < 0.0 { "high" } else { "low" },
-                Number(phase)
-            ),
-        ),
-    };
-    let influence = influence.max(relative(SHORTENING * deflection * deflection, 1.0));
+    let influence = relative(SHORTENING * deflection * deflection, 1.0);
     Row { value: deflection, influence, on: deflection >= LINEAR, why }
-}
-
-fn foreshortening(deflection: f64) -> Estimate {
-    let value = SHORTENING * deflection * deflection;
-    Estimate {
-        value,
-        influence: relative(value, 1.0),
-        why: format!(
-            "A bar bent that far is shorter by up to {value:.1e} of its length, which linear modes do not show."
-        ),
-    }
 }
 
 /// Σ m_kl x_k y_l

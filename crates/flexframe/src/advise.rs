@@ -4,7 +4,7 @@ mod verify;
 
 use std::fmt;
 
-use advice::{Row, Subject};
+use advice::{Row, StrainError, Subject};
 use scene::{Assembly, BuildProgress, Method, Model, Scene};
 use serde::{Serialize, Serializer};
 
@@ -78,6 +78,29 @@ pub struct ModeRow {
     pub share: f64,
     /// Whether that reaches the tolerance.
     pub worth_keeping: bool,
+    /// What linear strain gets wrong of it, where that may matter.
+    pub linear_strain: Option<LinearStrainRow>,
+    /// Whether a run of the scene has it among the large modes.
+    pub large: bool,
+}
+
+/// What linear strain gets wrong of a mode at the amplitude that is expected at most.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct LinearStrainRow {
+    /// That amplitude: largest displacement over the length of the body.
+    pub deflection: f64,
+    /// Change of the frequency that it leaves out, relative.
+    pub frequency_shift: f64,
+    /// Phase that it is out by at the end of the time that the mode rings, rad.
+    pub phase: f64,
+    /// Error of the force that holds the mode at that amplitude, relative.
+    pub statics: f64,
+}
+
+impl From<StrainError> for LinearStrainRow {
+    fn from(StrainError { deflection, frequency, phase, statics }: StrainError) -> Self {
+        Self { deflection, frequency_shift: frequency, phase, statics }
+    }
 }
 
 /// How far the advice has come.
@@ -125,11 +148,13 @@ pub fn advise(scene: &Scene, verify: bool, mut progress: impl FnMut(AdviseProgre
         tolerance: scene.effects.tolerance,
         of_paper,
         rows: rows.collect(),
-        modes: (model.advice.modes.iter())
-            .map(|mode| ModeRow {
+        modes: (model.advice.modes.iter().enumerate())
+            .map(|(k, mode)| ModeRow {
                 frequency: mode.circular_frequency / std::f64::consts::TAU,
                 share: mode.share,
                 worth_keeping: mode.worth_keeping,
+                linear_strain: mode.strain.map(LinearStrainRow::from),
+                large: model.large_modes().contains(&k),
             })
             .collect(),
         keep: model.advice.keep,
@@ -176,6 +201,31 @@ impl EffectRow {
             (None, true) => "may matter",
             (None, false) => "fine",
         }
+    }
+}
+
+impl AdviseReport {
+    /// The table of what linear strain gets wrong, where it may get something wrong.
+    fn write_linear_strain(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.modes.iter().all(|mode| mode.linear_strain.is_none()) {
+            return Ok(());
+        }
+        writeln!(f, "\n\n  What linear strain gets wrong at the largest amplitude that is expected of a mode:\n")?;
+        write!(f, "  mode  deflection, % of length  frequency, %  phase, rad  statics, %  large")?;
+        for (k, mode) in self.modes.iter().enumerate() {
+            let Some(LinearStrainRow { deflection, frequency_shift, phase, statics }) = mode.linear_strain else {
+                continue;
+            };
+            // The error is that of the linear frequency.
+            let [deflection, frequency, statics] = [deflection, -frequency_shift, statics].map(|part| 100.0 * part);
+            let large = if mode.large { "yes" } else { "no" };
+            write!(
+                f,
+                "\n  {:>4}  {deflection:>23.3}  {frequency:>+12.4}  {phase:>10.3e}  {statics:>10.4}  {large}",
+                k + 1
+            )?;
+        }
+        Ok(())
     }
 }
 
@@ -235,6 +285,7 @@ impl fmt::Display for AdviseReport {
             let more = if self.more_modes { "; there may be more, raise modes.flexible or modes.most" } else { "" };
             write!(f, "{more}.")?;
         }
+        self.write_linear_strain(f)?;
         if let Some(refusal) = &self.refusal {
             write!(f, "\n\n  This model is refused: {refusal}.")?;
         }

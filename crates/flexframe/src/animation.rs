@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use figures::{Animation, FigureError, Frame, View};
 use frames_rk4::{Reached, StepError};
 use nalgebra::Vector3;
-use scene::{Meshed, Model, Scene};
+use scene::{Model, Scene};
 
 use crate::run::{RunError, RunProgress};
 use crate::surface::Surface;
@@ -66,10 +66,10 @@ pub fn animate(
     let model = Model::build(scene, |p| progress(RunProgress::Build(p))).map_err(RunError::from)?;
     let mut simulation =
         model.start(scene).map_err(|source| RunError::Setup { scene: scene.path.clone(), source: Box::new(source) })?;
-    let Some(Meshed { mesh, modes, .. }) = &model.meshed else {
+    let Some(meshed) = &model.meshed else {
         return Err(AnimationError::NoMesh { scene: scene.path.clone() });
     };
-    let surface = Surface::new(mesh);
+    let surface = Surface::new(&meshed.mesh);
     let last = settings.frames.max(2) - 1;
     let mut frames = Vec::new();
     for frame in 0..=last {
@@ -78,7 +78,7 @@ pub fn animate(
         let failed = |source| AnimationError::Step { scene: scene.path.clone(), source };
         while simulation.time() < due && simulation.advance(1).map_err(failed)? != Reached::End {}
         let now = simulation.observation().map_err(failed)?;
-        let u = surface.displacements(modes, &now.modal_displacement);
+        let u = surface.displacements(meshed, &model.coordinates(&now.modal_displacement));
         let drawn: Vec<Vector3<f64>> = u.iter().map(|u| u * settings.magnification).collect();
         frames.push(Frame {
             points: surface.placed(&model, &now.origin_global, &now.attitude, &drawn),

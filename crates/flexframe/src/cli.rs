@@ -68,6 +68,9 @@ enum Command {
         output: Option<PathBuf>,
     },
     /// Say which effects a scene calls for, and why.
+    ///
+    /// A table shows what linear strain gets wrong of each mode that may bend the body far: frequency, phase and static
+    /// force at its expected amplitude, and whether it is among the large modes.
     Advise {
         #[command(flatten)]
         scene: SceneArgs,

@@ -30,7 +30,8 @@ pub enum ShapesError {
 /// # Errors
 /// [`ShapesError`], also where there are no flexible modes to draw.
 pub fn draw(scene: &Scene, model: &Model, stem: &Path) -> Result<[PathBuf; 2], ShapesError> {
-    let Meshed { mesh, modes, .. } = require_flexible(scene, model)?;
+    let meshed = require_flexible(scene, model)?;
+    let Meshed { mesh, modes, .. } = meshed;
     let surface = Surface::new(mesh);
     let unit = frequency_unit(&scene.units.time);
     let panels = modes
@@ -41,7 +42,7 @@ pub fn draw(scene: &Scene, model: &Model, stem: &Path) -> Result<[PathBuf; 2], S
         .map(|(k, frequency)| {
             let mut q = vec![0.0; k + 1];
             q[k] = 1.0;
-            let shape = surface.displacements(modes, &q);
+            let shape = surface.displacements(meshed, &q);
             let largest = shape.iter().map(Vector3::norm).fold(0.0, f64::max);
             let scale = DRAWN * mesh.diagonal() / largest;
             Panel {

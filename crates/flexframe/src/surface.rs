@@ -2,12 +2,11 @@
 
 use fem_tet10::Mesh;
 use figures::{boundary_triangles, sharp_edges};
-use modal::Modes;
 use nalgebra::Vector3;
 use rigid_kin::Attitude;
-use scene::Model;
+use scene::{Meshed, Model};
 
-/// Surface of the undeformed body, and how the modes move its points.
+/// Surface of the undeformed body, and how its points move.
 #[derive(Debug, Clone)]
 pub struct Surface {
     /// Triangles, by indices of points.
@@ -33,14 +32,17 @@ impl Surface {
         Self { edges: sharp_edges(&points, &triangles), triangles, points, nodes }
     }
 
-    /// Displacements of the points in the flexible modal coordinates `q`, body axes.
-    pub fn displacements(&self, modes: &Modes, q: &[f64]) -> Vec<Vector3<f64>> {
-        let shapes = &modes.shapes;
+    /// Displacements of the points, body axes, in the coordinates of the modes and of the shapes that follow them
+    /// ([`Model::coordinates`]); those that are not given are zero.
+    pub fn displacements(&self, meshed: &Meshed, coordinates: &[f64]) -> Vec<Vector3<f64>> {
+        let shapes = || meshed.modes.shapes.col_iter().chain(meshed.following.col_iter());
         self.nodes
             .iter()
             .map(|node| {
                 let row = 3 * *node as usize;
-                q.iter().enumerate().map(|(k, q)| Vector3::from_fn(|axis, _| shapes[(row + axis, k)]) * *q).sum()
+                let of =
+                    |(shape, xi): (faer::ColRef<'_, f64>, &f64)| Vector3::from_fn(|axis, _| shape[row + axis]) * *xi;
+                shapes().zip(coordinates).map(of).sum()
             })
             .collect()
     }

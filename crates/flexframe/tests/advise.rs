@@ -78,7 +78,8 @@ fn the_plate_at_10_rad_s_is_stiffened_by_three_per_cent() {
 
 #[test]
 fn the_table_of_modes_shows_as_many_to_keep_as_the_sentence_says() {
-    let mode = |share: f64| ModeRow { frequency: 1.0, share, worth_keeping: share >= 1e-3 };
+    let mode =
+        |share: f64| ModeRow { frequency: 1.0, share, worth_keeping: share >= 1e-3, linear_strain: None, large: false };
     let report = AdviseReport {
         title: "Bar".to_owned(),
         frequency_unit: "Hz".to_owned(),
@@ -96,4 +97,25 @@ fn the_table_of_modes_shows_as_many_to_keep_as_the_sentence_says() {
     assert_eq!(rows.len(), 5, "{text}");
     assert_eq!(rows.iter().filter(|row| row.contains("yes")).count(), report.keep, "{text}");
     assert!(text.contains("Keep the lowest 4 of 5 modes: 2 for their own share"), "{text}");
+}
+
+#[test]
+fn what_linear_strain_gets_wrong_has_a_row_for_each_mode_and_is_what_a_run_without_shows() {
+    let mut scene = example("spinning_plate");
+    // 20 mm without spin, for two periods.
+    scene.initial.angular_velocity = [0.0; 3];
+    scene.effects.choices[Effect::GeometricStiffening] = Choice::Auto;
+    scene.time.end = 0.08;
+    let report = verified(&scene);
+    let row = report.rows.iter().find(|row| row.subject.name() == "large_deflection").unwrap();
+    // 0.87 % of 24.53 Hz for 0.08 s, and what was seen of it.
+    let strain = report.modes[0].linear_strain.unwrap();
+    assert!(row.on == Some(true) && report.modes[0].large && !report.modes[1].large);
+    assert!((strain.frequency_shift / -8.7e-3 - 1.0).abs() < 0.02, "{strain:?}");
+    assert!((strain.phase / (8.7e-3 * 0.08 * std::f64::consts::TAU * 24.53) - 1.0).abs() < 0.02, "{strain:?}");
+    let seen = real(&report, "large_deflection");
+    assert!((0.5..1.2).contains(&(seen / strain.phase)), "{seen} {strain:?}");
+    let text = report.to_string();
+    let line = text.lines().find(|line| line.trim_start().starts_with("1 ") && line.contains("+0.8")).unwrap();
+    assert!(line.ends_with("yes"), "{line}");
 }

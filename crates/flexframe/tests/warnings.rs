@@ -1,8 +1,13 @@
 //! A warning means something: a run that is right ends without one.
 
+use flexframe::advice::Refusal;
 use flexframe::advise::advise;
-use flexframe::run::{RunReport, RunSettings, run};
+use flexframe::columns::COLUMNS;
+use flexframe::frames_rk4::Rows;
+use flexframe::run::{RunError, RunReport, RunSettings, results_path, run};
 use flexframe::scene::{Model, Scene};
+use flexframe::surface::Surface;
+use results::{Results, unfinished};
 
 const UNITS: &str = "title = \"x\"\nunits = { length = \"m\", mass = \"kg\", time = \"s\" }\n";
 
@@ -99,13 +104,14 @@ fn of_a_stretch_that_the_modes_do_not_hold() {
     assert!(table.contains("The answer lacks") && table.contains("off, may matter"), "{table}");
 }
 
-/// The plate of the paper with its first mode at 5 % of its length, through zero at every row.
+/// The plate of the paper with its first mode at 5 % of its length, through zero at every row; with linear strain.
 fn bent_plate(part: f64, rest: &str) -> String {
     let mesh = concat!(env!("CARGO_MANIFEST_DIR"), "/../../meshes/plate.msh");
     // Mass-normalised, 1 mm at the ends is 0.1 of the modal coordinate or so; the first frequency without masses is 50 Hz.
     format!(
         "[body]\nmesh = \"{mesh}\"\nmaterial = {{ young_modulus = 70e3, poisson_ratio = 0.33, density = 2.7e-9 }}\n\
-         [modes]\nflexible = 4\ndamping_ratio = 0.0\n[initial]\nmodal_displacement = [{part:e}]\n\
+         [modes]\nflexible = 4\ndamping_ratio = 0.0\n[effects]\nlarge_deflection = false\n\
+         [initial]\nmodal_displacement = [{part:e}]\n\
          [time]\nend = 0.1\nstep = 1e-4\n[output]\ninterval = 0.1\n{rest}"
     )
 }
@@ -181,4 +187,77 @@ fn of_long_exact_steps() {
         assert!(report.balances.energy > 1e-2 && report.warnings.is_empty(), "{stepping}: {report}");
         assert!(report.to_string().contains("by modes faster than the steps"), "{report}");
     }
+}
+
+/// A clamped bar of 200 mm whose first mode begins with parts of its length: displacement, and velocity over ω. It ends after
+/// half a period.
+fn clamped(modes: &str, displacement: f64, velocity: f64) -> Scene {
+    let mesh = concat!(env!("CARGO_MANIFEST_DIR"), "/../scene/tests/data/bar.msh");
+    let of = |q: f64, v: f64| {
+        scene(&format!(
+            "[body]\nmesh = \"{mesh}\"\nmaterial = {{ young_modulus = 70e3, poisson_ratio = 0.3, density = 2.7e-9 }}\n\
+             [modes]\nflexible = 4\n{modes}[[constraints]]\nkind = \"clamp\"\ngroup = \"root\"\n\
+             [initial]\nmodal_displacement = [{q:e}]\nmodal_velocity = [{v:e}]\n\
+             [time]\nend = 2e-3\nstep = 1e-5\n[output]\ninterval = 1e-4\npoints = {{ tip = [200.0, 5.0, 5.0] }}\n"
+        ))
+    };
+    let model = Model::build(&of(1e-9, 0.0), |_| ()).unwrap();
+    let unit = model.deflection(&[1.0, 0.0, 0.0, 0.0]);
+    of(displacement / unit, velocity * model.body.circular_frequencies[0] / unit)
+}
+
+#[test]
+fn of_large_modes_it_is_the_order_that_is_left_out() {
+    let report = |scene: &Scene| {
+        let folder = tempfile::tempdir().unwrap();
+        run(scene, folder.path(), &RunSettings::default(), |_| ()).unwrap().1
+    };
+    // By itself where it bends far, and right: no word of it.
+    let right = report(&clamped("", 0.15, 0.0));
+    assert!(right.large_modes.contains(&1) && right.left_out.unwrap() < 1e-2 && right.warnings.is_empty(), "{right}");
+    assert!(right.to_string().contains("orders beyond the fourth left out"), "{right}");
+    // Measured: 3 % at 40 %.
+    let far = report(&clamped("large = 2\n", 0.4, 0.0));
+    let [warning] = &far.warnings[..] else { panic!("{far}") };
+    assert!((0.01..0.1).contains(&far.left_out.unwrap()), "{far}");
+    assert!(warning.contains("% of the forces") && warning.contains("fourth power"), "{warning}");
+    // Where it does not bend, there is nothing to leave out.
+    let still = report(&clamped("", 1e-5, 0.0));
+    assert!(still.large_modes.is_empty() && still.left_out.is_none() && still.warnings.is_empty(), "{still}");
+}
+
+#[test]
+fn far_beyond_it_the_run_stops_and_its_file_can_be_read() {
+    let scene = clamped("large = 2\n", 0.0, 0.95);
+    let folder = tempfile::tempdir().unwrap();
+    let refusal = |result: Result<(Model, RunReport), RunError>| match result {
+        Err(RunError::Refused { time, refusal: Refusal::BeyondFourthOrder { error, .. }, .. }) => (time, error),
+        other => panic!("{other:?}"),
+    };
+    let (time, error) = refusal(run(&scene, folder.path(), &RunSettings::default(), |_| ()));
+    assert!(time > 1e-4 && error > 0.25, "{time} {error}");
+    let part = unfinished(&results_path(&scene, folder.path()));
+    let rows = Results::open(&part, &COLUMNS).unwrap().rows();
+    assert!(rows > 0 && rows as f64 <= 1.0 + time / 1e-4, "{rows} at {time}");
+}
+
+/// A picture shows what a point of the output does: the shapes that follow, too.
+#[test]
+fn the_surface_moves_as_the_points_do() {
+    let scene = clamped("large = 1\n", 0.2, 0.0);
+    let model = Model::build(&scene, |_| ()).unwrap();
+    let meshed = model.meshed.as_ref().unwrap();
+    let surface = Surface::new(&meshed.mesh);
+    let tip = surface.points.iter().position(|x| (x[0] - 200.0).hypot(x[1] - 5.0).hypot(x[2] - 5.0) < 1e-9).unwrap();
+    let mut simulation = model.start_with(&scene, scene.time.method, scene.time.control, Rows::EverySteps(1)).unwrap();
+    let now = simulation.observation().unwrap();
+    let drawn = surface.displacements(meshed, &model.coordinates(&now.modal_displacement))[tip];
+    assert!(
+        (drawn - now.points[0].displacement).norm() < 1e-9 * drawn.norm(),
+        "{drawn} {}",
+        now.points[0].displacement
+    );
+    // It is drawn in by more than a tenth of what it bends by, which the mode alone does not show.
+    let alone = surface.displacements(meshed, &now.modal_displacement)[tip];
+    assert!(drawn.x < alone.x - 0.1 * alone.norm(), "{drawn} {alone}");
 }

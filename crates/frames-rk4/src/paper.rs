@@ -247,7 +247,11 @@ pub(crate) const METHOD: Method = Method {
 
 /// Refuses what the formulation of the paper does not have.
 pub(crate) fn refuse_beyond_paper(physics: &Physics) -> Result<(), SetupError> {
-    if physics.drive.is_some() { Err(SetupError::NotInPaper { what: "driven motion" }) } else { Ok(()) }
+    let of = [(physics.drive.is_some(), "driven motion"), (physics.large_deflection.is_some(), "large deflection")];
+    match of.into_iter().find(|(is_there, _)| *is_there) {
+        Some((_, what)) => Err(SetupError::NotInPaper { what }),
+        None => Ok(()),
+    }
 }
 
 impl ReferenceKinematics {

@@ -96,6 +96,7 @@ impl Plate {
             static_compliances: &[],
             centrifugal_remainders: &[],
             backbones: &[],
+            manifold: None,
         }
     }
 }

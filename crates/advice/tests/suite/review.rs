@@ -155,7 +155,7 @@ fn the_warning_tells_frequency_and_phase_by_the_modes_own_backbone() {
     let (zeta, (initial, half)) = ([0.0; 10], swinging(0.05));
     let amplitude = 0.05 * plate().length / plate().peaks[0];
     // 1 % at this amplitude, half of it by inertia.
-    let backbone = Backbone { stiffening: -0.005 / amplitude.powi(2), inertia: 0.02 / amplitude.powi(2) };
+    let backbone = Backbone::new(1.0, 0.02 / amplitude.powi(2), 0.0, -0.08 / amplitude.powi(2));
     let backbones = [Some(backbone), None];
     let case = Case { backbones: &backbones, ..plate().case(&zeta, &[], &initial, 16.0 * half) };
     let broken = watched(&case, STILL, half / 20.0, 16.0 * half);
@@ -188,7 +188,7 @@ fn what_means_nothing_is_refused() {
     let (Some(Refusal::Deflected { deflection }), Some(Refusal::Deflected { .. })) = stop(36.0, &[]) else { panic!() };
     assert!(deflection > 1.0);
     let amplitude = 0.3 * plate().length / plate().peaks[0];
-    let backbones = [Some(Backbone { stiffening: -0.25 / amplitude.powi(2), inertia: 0.0 })];
+    let backbones = [Some(Backbone::new(1.0, 0.0, 0.0, -4.0 / amplitude.powi(2)))];
     assert!(matches!(stop(0.31, &backbones), (Some(Refusal::Detuned { mode: 1, .. }), Some(Refusal::Detuned { .. }))));
     assert_eq!(stop(0.2, &backbones), (None, None));
 }

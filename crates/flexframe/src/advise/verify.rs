@@ -3,7 +3,7 @@
 use advice::Subject;
 use frames_rk4::{Effect, EffectMap, Observation, Rows, StepControl};
 use nalgebra::{Matrix3, Vector3};
-use scene::{Choice, Flexible, Model, ModelBuilder, Scene};
+use scene::{Choice, Flexible, Large, Model, ModelBuilder, Scene};
 use serde::Serialize;
 
 use crate::effects::is_on;
@@ -111,6 +111,10 @@ pub(crate) fn settled(scene: &Scene, model: &Model, switched: Option<(Subject, b
         if on { Choice::On } else { Choice::Off }
     };
     settled.effects.choices = EffectMap::from_fn(|effect| choose(Subject::Effect(effect)));
+    let large: Vec<usize> = model.large_modes().iter().map(|k| k + 1).collect();
+    if !large.is_empty() {
+        settled.modes.large = Some(Large::List(large));
+    }
     settled.modes.static_correction = choose(Subject::StaticCorrection);
     settled
 }

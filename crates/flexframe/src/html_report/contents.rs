@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use frames_rk4::Observation;
+use frames_rk4::Manifold;
+use modal::ReducedBody;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use report::{
     Balance, Component, Effect, Fact, History, Motion, Report, RunState, SceneText, Shape, ShapeKind, Surface, Units,
@@ -14,6 +15,7 @@ use crate::columns::COLUMNS;
 use crate::effects::is_on;
 use crate::modes::frequency_unit;
 use crate::report::{BodyReport, MeshReport, quantity};
+use crate::row::Row;
 use crate::surface;
 
 /// All of it; `None` where the file has not got the columns that it needs.
@@ -91,32 +93,40 @@ fn shapes(surface: Option<&surface::Surface>, model: &Model, body: &BodyReport) 
     let shape = |k: usize| {
         let mut q = vec![0.0; k + 1];
         q[k] = 1.0;
-        let displaced =
-            surface.zip(model.meshed.as_ref()).map(|(surface, meshed)| surface.displacements(&meshed.modes, &q));
+        let displaced = surface.zip(model.meshed.as_ref()).map(|(surface, meshed)| surface.displacements(meshed, &q));
         let (name, kind) = if k < modes {
             let (frequency, damping_ratio) = (body.natural_frequencies[k], body.damping_ratios[k]);
             (format!("mode {}", k + 1), ShapeKind::Natural { frequency, damping_ratio })
-        } else {
+        } else if k < model.body.flexible() {
             (format!("static shape {}", k + 1 - modes), ShapeKind::Static)
+        } else {
+            (format!("shape {} of second order", k + 1 - model.body.flexible()), ShapeKind::SecondOrder)
         };
         let displacement = displaced.unwrap_or_default().iter().map(|u| u.map(|x| x as f32).into()).collect();
         Shape { name, kind, displacement }
     };
-    (0..model.body.flexible()).map(shape).collect()
+    (0..extended(model).flexible()).map(shape).collect()
+}
+
+/// The body in all shapes that are drawn: with those that follow large modes.
+fn extended(model: &Model) -> &ReducedBody {
+    model.physics.large_deflection.as_ref().map_or(&model.body, Manifold::body)
 }
 
 /// The file has the place of the centre of mass; the picture needs that of the body's origin.
 fn motion(results: &Results, model: &Model) -> Option<Motion> {
-    let body = &model.body;
+    let body = extended(model);
     let centers = results.vectors::<3>("position")?;
     let attitudes = results.vectors::<4>("attitude")?;
-    let coordinates = results.table("modal/displacement")?;
+    let modal = results.table("modal/displacement")?;
+    let coordinates: Option<Vec<_>> = (0..results.rows()).map(|row| Some(model.coordinates(modal.row(row)?))).collect();
+    let coordinates = coordinates?;
     let origins = centers.iter().zip(attitudes).enumerate().map(|(row, (center, attitude))| {
         // The modes of a free body leave the centre of mass where it is.
         let moved = match body.motion.is_free() {
             true => Vector3::zeros(),
             false => Vector3::from_fn(|axis, _| {
-                let products = body.translation_first[axis].iter().zip(coordinates.row(row).unwrap_or_default());
+                let products = body.translation_first[axis].iter().zip(&coordinates[row]);
                 products.map(|(t, q)| t * q).sum::<f64>() / body.mass
             }),
         };
@@ -128,12 +138,12 @@ fn motion(results: &Results, model: &Model) -> Option<Motion> {
         times: results.numbers("time")?.to_vec(),
         origins: origins.collect(),
         attitudes: attitudes.to_vec(),
-        coordinates: coordinates.values().to_vec(),
+        coordinates: coordinates.concat(),
     })
 }
 
 /// A column as histories: one, or one for each point. The time is none.
-fn histories(column: &Column<Observation>, results: &Results, body: &BodyReport) -> Vec<History> {
+fn histories(column: &Column<Row>, results: &Results, body: &BodyReport) -> Vec<History> {
     let unit = unit(column, results);
     let frame = if column.frame == "none" { String::new() } else { format!(" ({})", column.frame) };
     let history = |group: String, name: &str, path: &str| {
@@ -166,7 +176,7 @@ fn histories(column: &Column<Observation>, results: &Results, body: &BodyReport)
     }
 }
 
-fn component_name(column: &Column<Observation>, k: usize, width: usize, body: &BodyReport) -> String {
+fn component_name(column: &Column<Row>, k: usize, width: usize, body: &BodyReport) -> String {
     match column.values {
         Values::Modal(_) => {
             let modes = width - body.static_shapes().min(width);
@@ -174,11 +184,13 @@ fn component_name(column: &Column<Observation>, k: usize, width: usize, body: &B
         }
         Values::Quaternion(_) => ["w", "x", "y", "z"][k].to_owned(),
         Values::Vector(_) | Values::Point(_) => ["x", "y", "z"][k].to_owned(),
-        Values::Number(_) => String::new(),
+        Values::Stress(6, _) => ["xx", "yy", "zz", "xy", "yz", "zx"][k].to_owned(),
+        Values::Stress(1, _) | Values::Number(_) => String::new(),
+        Values::Stress(..) => format!("{}", k + 1),
     }
 }
 
-fn unit(column: &Column<Observation>, results: &Results) -> String {
+fn unit(column: &Column<Row>, results: &Results) -> String {
     let unit = column.unit(&results.metadata.units).replace("^2", "²");
     if unit == "1" { String::new() } else { unit }
 }
@@ -257,9 +269,5 @@ fn effects(scene: &Scene, model: &Model) -> Vec<Effect> {
 
 fn warnings(model: &Model) -> Vec<String> {
     let refusal = model.refusal.as_ref().map(ToString::to_string);
-    let large =
-        model.physics.large_deflection.is_some().then(|| {
-            "The picture leaves out the shapes that follow large deflection; the histories have them.".to_owned()
-        });
-    refusal.into_iter().chain(large).collect()
+    refusal.into_iter().collect()
 }

@@ -200,6 +200,8 @@ impl<'a> Recorder<'a> {
             balances,
             right_unsummed,
             effects: effects::computed(scene, model),
+            large_modes: model.large_modes().iter().map(|k| k + 1).collect(),
+            left_out: self.review.left_out(),
             warnings: (self.review.broken().iter().map(ToString::to_string))
                 .chain(wrong.map(|step| long_steps(step, scene.effects.tolerance)))
                 .chain(open)

@@ -65,6 +65,10 @@ pub struct RunReport {
     pub right_unsummed: bool,
     /// The effects of this body and whether each was computed; none of the paper's formulation, which has its own.
     pub effects: Vec<(&'static str, bool)>,
+    /// The modes that bent the body far; none without large deflection. Numbered from 1.
+    pub large_modes: Vec<usize>,
+    /// The most that the orders beyond the fourth, which are left out, come to of the forces on these modes, about.
+    pub left_out: Option<f64>,
     /// Assumptions that did not hold.
     pub warnings: Vec<String>,
     /// Where the time went, seconds.
@@ -115,6 +119,15 @@ impl fmt::Display for RunReport {
         }
         if !self.effects.is_empty() {
             writeln!(f, "  effects  {}", effects::in_words(&self.effects))?;
+        }
+        if let Some(left_out) = self.left_out {
+            let modes: Vec<String> = self.large_modes.iter().map(ToString::to_string).collect();
+            let s = if modes.len() == 1 { "" } else { "s" };
+            writeln!(
+                f,
+                "  large    mode{s} {}; orders beyond the fourth left out, about {left_out:.1e} of the forces",
+                modes.join(", ")
+            )?;
         }
         writeln!(f, "  motion   {}, {:.0} steps per second", self.steps_in_words(), self.steps_per_second)?;
         let [x, y, z] = self.moved.map(quantity);

@@ -1,33 +1,28 @@
 //! How the frequencies of modes that may bend the body far go with their amplitudes.
 
-use advice::{Advice, Backbone, LARGE};
+use advice::{Advice, Backbone};
 use faer::Mat;
 use fem_tet10::{second_order_energies, second_order_forces};
 use modal::{ModalError, Modes};
 
 use super::error::{BuildError, modal};
 use super::mesh_model::MeshModel;
-use super::model::Size;
 
-/// The backbones of the natural modes that may bend the body by [`LARGE`] of its length by the bounds of `advice`; none
-/// of others, and none at all where the static answers cannot be found.
+/// The backbones of the natural modes that linear strain may get wrong by the bounds of `advice`; none of others, and none
+/// at all where the static answers cannot be found.
 ///
 /// The static modal derivative `Θ = −K⁻¹ g` is made M-orthogonal to its mode φ, so that the modal coordinate stays what
 /// it is: with c = φᵀMΘ, its inertia is ΘᵀMΘ − c², its energy −g·Θ − ω²c².
 pub(super) fn backbones(
     model: &MeshModel<'_>,
     modes: &Modes,
-    size: &Size,
     advice: &Advice,
 ) -> Result<Vec<Option<Backbone>>, BuildError> {
     let &MeshModel { scene, mesh, solver, .. } = model;
     let materials = &model.body.materials;
     let natural = modes.natural().min(modes.shapes.ncols());
-    let is_large = |k: &usize| {
-        let bound = advice.modes.get(*k).map_or(0.0, |mode| mode.displacement);
-        bound * size.peaks[*k] >= LARGE * size.length
-    };
-    let large: Vec<usize> = (0..natural).filter(is_large).collect();
+    let may_matter = |k: &usize| advice.modes.get(*k).is_some_and(|mode| mode.strain_bound >= advice.tolerance);
+    let large: Vec<usize> = (0..natural).filter(may_matter).collect();
     let mut found = vec![None; natural];
     if large.is_empty() {
         return Ok(found);

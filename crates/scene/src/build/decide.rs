@@ -17,6 +17,8 @@ pub(super) struct Decision {
     /// What the modes leave out of the static answers to the spin (6), where static shapes for it are missing.
     pub lacks: Option<Vec<f64>>,
     pub effects: EffectMap<bool>,
+    /// Which of the modes that are kept are large, numbered from 0.
+    pub large: Vec<usize>,
 }
 
 impl Decision {
@@ -35,11 +37,13 @@ impl Decision {
                 Choice::Auto => advice.static_correction.on,
             };
         let of_spin = statics.of_spin.as_ref().filter(|_| keep > 0 && !has_static_shapes);
+        let large = physics::large_modes(scene, advice, keep);
         Self {
             keep,
             has_static_shapes,
             lacks: of_spin.map(|of_spin| of_spin.remainders.clone()),
-            effects: physics::effects(scene, advice, &modal.body, keep),
+            effects: physics::with_large_modes(scene, physics::effects(scene, advice, &modal.body, keep), &large),
+            large,
         }
     }
 }

@@ -2,19 +2,13 @@
 
 use faer::{Mat, MatRef};
 use fem_tet10::{GeometricTerms, second_order_energies, second_order_forces};
-use frames_rk4::{Effect, Manifold};
+use frames_rk4::Manifold;
 use modal::{Modes, ReducedBody, SecondOrderShapes};
 
 use super::error::{BuildError, modal};
 use super::mesh_model::MeshModel;
 use super::statics::Statics;
 use super::stress::{DRIVE, Stress};
-use crate::effects::Choice;
-use crate::modes::Large;
-use crate::scene::Scene;
-
-/// How many modes are large where the scene does not say which.
-const DEFAULT_LARGE: usize = 4;
 
 /// The manifold of the large modes, and the shapes that it is made of.
 pub(super) struct LargeDeflection {
@@ -28,19 +22,6 @@ struct LargeShapes {
     /// The geometric stiffness of each large mode in the modes (nf × nf): of its initial stress, and in full.
     of_stress: Vec<Mat<f64>>,
     in_full: Vec<Mat<f64>>,
-}
-
-/// Which of the `natural` modes that are kept are large, numbered from 0. What is left open is on where the scene names
-/// them.
-pub(super) fn large_modes(scene: &Scene, natural: usize) -> Vec<usize> {
-    let first = |count: usize| (0..natural.min(count)).collect();
-    match (scene.effects.choices[Effect::LargeDeflection], &scene.modes.large) {
-        (Choice::Off, _) | (Choice::Auto, None) => Vec::new(),
-        (Choice::Auto, _) if scene.time.method.is_of_paper() => Vec::new(),
-        (Choice::On, None) => first(DEFAULT_LARGE),
-        (_, Some(Large::Count(count))) => first(*count),
-        (_, Some(Large::List(list))) => list.iter().map(|mode| mode - 1).filter(|k| *k < natural).collect(),
-    }
 }
 
 impl LargeDeflection {
@@ -81,6 +62,12 @@ impl LargeDeflection {
     /// The extended shapes.
     pub fn modes(&self) -> &Modes {
         &self.large.shapes.modes
+    }
+
+    /// The extended shapes after the modes.
+    pub fn following(&self) -> Mat<f64> {
+        let SecondOrderShapes { modes, dynamic, .. } = &self.large.shapes;
+        modes.shapes.get(.., *dynamic..).to_owned()
     }
 
     /// The stress of loads and of a drive in the extended shapes.

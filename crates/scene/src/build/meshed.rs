@@ -4,6 +4,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use advice::{buckling, limits, unsteady};
+use faer::Mat;
 use fem_tet10::{Location, Mesh};
 use frames_rk4::{Effect, Physics, PointShapes};
 use modal::{BodyPoint, Modes, ReducedBody, Solver};
@@ -13,6 +14,7 @@ use super::assembly::AssembledMesh;
 use super::decide::Decision;
 use super::error::{BuildError, modal, refuse};
 use super::loads;
+use super::manifold::LargeDeflection;
 use super::mesh_model::MeshModel;
 use super::modal_model::ModalModel;
 use super::model::{Meshed, Model};
@@ -61,6 +63,7 @@ pub(super) fn reduce(
 
     let Decision { mut effects, lacks, .. } = decision;
     effects[Effect::LargeDeflection] = large.is_some();
+    let following = large.as_ref().map_or_else(Mat::new, LargeDeflection::following);
     let large_deflection = large.map(|large| large.manifold);
     let mut model = Model {
         physics: Physics { effects, drive: model.drive, drive_stiffness: stress.of_drive, large_deflection },
@@ -81,7 +84,7 @@ pub(super) fn reduce(
         backbones,
         stress: body_stress,
         body: reduced.body,
-        meshed: Some(Meshed { matrix_bytes: matrices.bytes(), mesh: Arc::clone(mesh), modes }),
+        meshed: Some(Meshed { matrix_bytes: matrices.bytes(), mesh: Arc::clone(mesh), modes, following }),
     };
     let initial = model.initial(scene);
     model.refusal = buckling(stress.buckling_ratio);

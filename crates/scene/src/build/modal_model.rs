@@ -75,6 +75,7 @@ impl ModalModel {
             static_compliances: &[],
             centrifugal_remainders: &[],
             backbones: &[],
+            manifold: None,
         }
     }
 }

@@ -3,10 +3,11 @@
 use std::sync::Arc;
 
 use advice::{Advice, Backbone, Case, Refusal, StepEstimate};
+use faer::Mat;
 use fem_tet10::Mesh;
 use frames_rk4::{
-    ConservativeBody, History, Initial, LoadFrame, LoadedError, LoadedMode, Physics, PointShapes, Rows, Setup,
-    SharedLoad, Simulation, StepControl,
+    ConservativeBody, History, Initial, LoadFrame, LoadedError, LoadedMode, Manifold, Physics, PointShapes, Rows,
+    Setup, SharedLoad, Simulation, StepControl,
 };
 use modal::{Modes, ReducedBody};
 use nalgebra::Vector3;
@@ -29,6 +30,9 @@ pub struct Meshed {
     pub matrix_bytes: usize,
     /// Rigid and flexible modes on the mesh.
     pub modes: Modes,
+    /// Shapes on the mesh that only follow large modes (3n × …), none without: what the extended shapes have after the
+    /// modes.
+    pub following: Mat<f64>,
 }
 
 /// The body of a scene in modal coordinates, with its mesh, its points and its loads.
@@ -113,6 +117,20 @@ impl Model {
         self.meshed.as_ref().map_or(0, |meshed| meshed.modes.eigenvalues.len() - meshed.modes.natural())
     }
 
+    /// Which modes are large, numbered from 0; none without large deflection.
+    pub fn large_modes(&self) -> &[usize] {
+        self.physics.large_deflection.as_ref().map_or(&[], Manifold::large)
+    }
+
+    /// The coordinates of the modes and of the shapes that follow them: u is their sum with [`Meshed::modes`] and then
+    /// [`Meshed::following`].
+    pub fn coordinates(&self, modal_displacement: &[f64]) -> Vec<f64> {
+        let Some(manifold) = &self.physics.large_deflection else { return modal_displacement.to_vec() };
+        let mut xi = vec![0.0; manifold.body().flexible()];
+        manifold.coordinates(modal_displacement, &mut xi);
+        xi
+    }
+
     /// How the frequency of each of the first modes goes with its amplitude, of those that may bend the body far.
     pub fn backbones(&self) -> &[Option<Backbone>] {
         &self.backbones
@@ -144,6 +162,7 @@ impl Model {
             static_compliances: &[],
             centrifugal_remainders: &self.left_out,
             backbones: &self.backbones,
+            manifold: self.physics.large_deflection.as_ref(),
         }
     }
 

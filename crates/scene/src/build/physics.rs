@@ -6,7 +6,9 @@ use modal::{ReducedBody, RigidMotion};
 
 use super::loads::MeshLoad;
 use super::turning::{Turning, turning};
+use crate::constraint::Constraint;
 use crate::effects::Choice;
+use crate::modes::Large;
 use crate::scene::Scene;
 
 /// Whether anything may set the body spinning.
@@ -48,5 +50,40 @@ pub(super) fn effects(scene: &Scene, advice: &Advice, body: &ReducedBody, keep: 
     effects[Effect::Flexibility] = keep > 0;
     effects[Effect::GeometricStiffening] &=
         keep > 0 && body.stress_stiffness.is_some() && effects[Effect::DeformedInertia];
+    effects
+}
+
+/// How many modes are large where the scene asks for large deflection and does not say of which.
+const DEFAULT_LARGE: usize = 4;
+
+/// Which of the modes that are kept are large, numbered from 0: those that the scene names, or what is advised. The paper's
+/// formulation has none, and nothing is advised for a body that is not to stiffen, since the manifold stiffens its modes, nor for one that is
+/// driven: there the manifold is not yet what stiffening is (`examples/spin_up.toml`).
+pub(super) fn large_modes(scene: &Scene, advice: &Advice, keep: usize) -> Vec<usize> {
+    let first = |count: usize| (0..keep.min(count)).collect();
+    match (scene.effects.choices[Effect::LargeDeflection], &scene.modes.large) {
+        (Choice::Off, _) => Vec::new(),
+        (Choice::Auto, _) if scene.time.method.is_of_paper() => Vec::new(),
+        (_, Some(Large::Count(count))) => first(*count),
+        (_, Some(Large::List(list))) => list.iter().map(|mode| mode - 1).filter(|k| *k < keep).collect(),
+        (Choice::On, None) => first(DEFAULT_LARGE),
+        (Choice::Auto, None) if scene.effects.choices[Effect::GeometricStiffening] == Choice::Off => Vec::new(),
+        (Choice::Auto, None) if is_driven(scene) => Vec::new(),
+        (Choice::Auto, None) => advice.large_modes(keep).taken,
+    }
+}
+
+fn is_driven(scene: &Scene) -> bool {
+    matches!(
+        scene.constraint,
+        Some(Constraint::Hinge { motion: Some(_), .. } | Constraint::Slider { motion: Some(_), .. })
+    )
+}
+
+/// The effects with what large modes need: what follows them moves along the body, where turning acts on it.
+pub(super) fn with_large_modes(scene: &Scene, mut effects: EffectMap<bool>, large: &[usize]) -> EffectMap<bool> {
+    for effect in [Effect::Coriolis, Effect::DeformedInertia] {
+        effects[effect] |= !large.is_empty() && scene.effects.choices[effect] == Choice::Auto;
+    }
     effects
 }

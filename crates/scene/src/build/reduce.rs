@@ -6,7 +6,7 @@ use modal::{Modes, Solver};
 
 use super::decide::Decision;
 use super::error::{BuildError, modal};
-use super::manifold::{LargeDeflection, large_modes};
+use super::manifold::LargeDeflection;
 use super::mesh_model::MeshModel;
 use super::modal_model::ModalModel;
 use super::statics::Statics;
@@ -45,13 +45,13 @@ impl Reduction {
             (modes, modal.with_stress_stiffness(model, stiffness)?, deflection)
         };
         let stress = Stress::new(model, &statics, &modes, &modal)?;
-        let large = large_modes(model.scene, decision.keep);
+        let large = &decision.large;
         let (modal, stress, large) = if !large.is_empty() {
             // The frequencies of these follow their amplitudes.
             for (k, backbone) in backbones.iter_mut().enumerate() {
                 *backbone = backbone.take().filter(|_| !large.contains(&k));
             }
-            let large = LargeDeflection::new(model, &modes, &large, modal.body.stress_stiffness.as_ref(), &statics)?;
+            let large = LargeDeflection::new(model, &modes, large, modal.body.stress_stiffness.as_ref(), &statics)?;
             let stress = large.stressed(model, &statics, stress);
             let modal = modal.with_stress(model, Some(large.manifold.body()), large.modes(), &stress.of_loads)?;
             (modal, stress, Some(large))

@@ -49,6 +49,7 @@ pub(super) fn build(scene: &Scene, rigid: &RigidBody) -> Result<Model, BuildErro
             static_compliances: &[],
             centrifugal_remainders: &[],
             backbones: &[],
+            manifold: None,
         },
         scene.effects.tolerance,
     )?;

@@ -136,7 +136,8 @@ impl BodyStress {
     /// ξ, then the products of the large modes.
     fn coordinates(&self, q: &[f64]) -> Vec<f64> {
         let Some(manifold) = &self.manifold else { return q.to_vec() };
-        let mut coordinates = manifold.coordinates(q);
+        let mut coordinates = vec![0.0; manifold.body().flexible()];
+        manifold.coordinates(q, &mut coordinates);
         let large = manifold.large();
         let product = |[i, j]: [usize; 2]| if i == j { 1.0 } else { 2.0 } * q[large[i]] * q[large[j]];
         coordinates.extend(SecondOrderShapes::pairs(large.len()).into_iter().map(product));

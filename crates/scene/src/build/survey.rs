@@ -58,7 +58,7 @@ impl Survey {
             ..modal.case(model)
         };
         let first = advise(&case, tolerance)?;
-        let backbones = backbones(model, &modes, &modal.size, &first)?;
+        let backbones = backbones(model, &modes, &first)?;
         let advice = if backbones.iter().any(Option::is_some) {
             advise(&Case { backbones: &backbones, ..case }, tolerance)?
         } else {

@@ -5,6 +5,7 @@ mod auto;
 mod backbones;
 mod damping;
 mod histories;
+mod large;
 mod loads;
 mod manifold;
 mod off;

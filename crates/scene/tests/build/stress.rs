@@ -12,7 +12,9 @@ const MODES: &str = "flexible = 16\nstatic_correction = false";
 
 /// Without the stiffening that the loads do not call for at this tolerance.
 fn stressed(rest: &str) -> (Scene, Model) {
-    let scene = bar(MODES, &format!("{rest}\n[effects]\ntolerance = 1e-9\nrefuse = false\n"), TIME);
+    // All of the stress, and no large modes: these carry a part of it in their own amplitudes, which are zero here.
+    let effects = "[effects]\ntolerance = 1e-9\nlarge_deflection = false\nrefuse = false\n";
+    let scene = bar(MODES, &format!("{rest}\n{effects}"), TIME);
     let model = build(&scene);
     (scene, model)
 }

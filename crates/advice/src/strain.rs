@@ -1,0 +1,183 @@
+//! What linear strain gets wrong of each mode, at the amplitude that is expected of it.
+//!
+//! With the mode's [`Backbone`] that is known; without it, it is that of a slender bar or arch: a free bar bent by u at its
+//! ends has its frequency lower by about 20 (u/L)², and the force that holds an L in another shape differs by about u/L.
+
+use frames_rk4::MOST_LARGE;
+
+use crate::backbone::Backbone;
+use crate::case::Case;
+use crate::estimate::Estimate;
+use crate::number::Number;
+use crate::relative::relative;
+use crate::response::Response;
+use crate::row::Worth;
+
+/// Change of the frequency of a free bar over (u/L)².
+const OF_BAR: f64 = 22.0;
+/// Change of the force on an L over u/L.
+const OF_ARCH: f64 = 3.0;
+/// Deflection over the length of the body up to which bounds are believed: runs that come there are stopped or warn.
+const BELIEVED: f64 = 0.3;
+
+/// What linear strain gets wrong of a mode.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StrainError {
+    /// The expected amplitude: largest displacement of a node, over the length of the body.
+    pub deflection: f64,
+    /// Ω/ω − 1 at that amplitude: negative where the linear frequency is too high.
+    pub frequency: f64,
+    /// Phase by which the mode is out at the end of the time that it rings, rad.
+    pub phase: f64,
+    /// Error of the force that holds the mode at that amplitude, relative.
+    pub statics: f64,
+}
+
+impl StrainError {
+    /// The largest error.
+    fn largest(&self) -> f64 {
+        self.frequency.abs().max(self.phase).max(self.statics)
+    }
+}
+
+/// The modes that `large_deflection = "auto"` makes large, numbered from 0, ascending.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct LargeModes {
+    /// Those that it takes.
+    pub taken: Vec<usize>,
+    /// Those that it would take if there could be more than [`MOST_LARGE`].
+    pub left_out: Vec<usize>,
+}
+
+/// The expected amplitudes as a part of the bounds. Bounds of bodies that are driven or stiffened by their spin may be
+/// far above all that could happen; what they say of the modes beside each other is kept.
+pub(crate) fn believed(deflection: f64) -> f64 {
+    if deflection > BELIEVED { BELIEVED / deflection } else { 1.0 }
+}
+
+/// Influence of linear strain on mode `k` with an expected amplitude, as far as it is known without its backbone.
+pub(crate) fn screen(case: &Case, response: &Response, k: usize, amplitude: f64) -> f64 {
+    let omega = &case.body.circular_frequencies;
+    let lowest = omega.iter().copied().fold(f64::INFINITY, f64::min);
+    let deflection = amplitude * case.peaks[k] / case.length;
+    let shift = OF_BAR * deflection * deflection * omega[k] / lowest;
+    relative((shift * (omega[k] * response.memory[k]).max(1.0)).max(OF_ARCH * deflection), 1.0)
+}
+
+/// What linear strain gets wrong of mode `k` by its backbone.
+pub(crate) fn by_backbone(
+    case: &Case,
+    response: &Response,
+    k: usize,
+    amplitude: f64,
+    backbone: &Backbone,
+) -> StrainError {
+    let frequency = backbone.shift(amplitude);
+    StrainError {
+        deflection: amplitude * case.peaks[k] / case.length,
+        frequency,
+        phase: frequency.abs() * case.body.circular_frequencies[k] * response.memory[k],
+        statics: backbone.static_error(amplitude),
+    }
+}
+
+impl Worth {
+    /// Influence on the answer of what linear strain gets wrong of the mode, where its backbone is known.
+    pub fn strain_influence(&self) -> f64 {
+        self.strain.map_or(0.0, |error| relative(error.largest(), 1.0) * self.share)
+    }
+}
+
+/// The modes whose strain is not to be linear, of the first `keep`: those with the largest influence.
+pub(crate) fn large_modes(modes: &[Worth], keep: usize, tolerance: f64) -> LargeModes {
+    let influence = |k: &usize| modes[*k].strain_influence();
+    let mut wanted: Vec<usize> = (0..modes.len().min(keep)).filter(|k| influence(k) >= tolerance).collect();
+    // The sort is stable: of equals, the lower modes first.
+    wanted.sort_by(|a, b| influence(b).total_cmp(&influence(a)));
+    let mut left_out = wanted.split_off(wanted.len().min(MOST_LARGE));
+    wanted.sort_unstable();
+    left_out.sort_unstable();
+    LargeModes { taken: wanted, left_out }
+}
+
+/// The row of [`frames_rk4::Effect::LargeDeflection`].
+pub(crate) fn large_deflection(modes: &[Worth], large: &LargeModes, deflection: f64) -> Estimate {
+    let worst = modes.iter().enumerate().filter_map(|(k, mode)| Some((k, mode.strain?, mode.strain_influence())));
+    let worst = worst.max_by(|a, b| a.2.total_cmp(&b.2));
+    let Some((k, error, influence)) = worst else {
+        let influence = modes.iter().map(|mode| mode.strain_bound).fold(0.0, f64::max);
+        let why = match deflection {
+            0.0 => "The body does not bend.".into(),
+            _ => {
+                format!("Linear strain has frequencies off by about {:.1e} at most.", OF_BAR * deflection * deflection)
+            }
+        };
+        return Estimate { value: OF_BAR * deflection * deflection, influence, why };
+    };
+    let StrainError { deflection, frequency, phase, statics } = error;
+    let mut why = format!(
+        "Mode {} bends the body by at most {:.2} % of its length: linear strain has its frequency {:.2} % too {}, its \
+         phase out by {} rad, and what holds it in place off by {:.2} %.",
+        k + 1,
+        100.0 * deflection,
+        100.0 * frequency.abs(),
+        if frequency < 0.0 { "high" } else { "low" },
+        Number(phase),
+        100.0 * statics,
+    );
+    if !large.left_out.is_empty() {
+        why += &format!(
+            " Modes {} would be large, too, but {MOST_LARGE} are the most that can be.",
+            numbers(&large.left_out)
+        );
+    }
+    Estimate { value: frequency.abs(), influence, why }
+}
+
+/// "1, 2, 5" of modes that are numbered from 0.
+fn numbers(modes: &[usize]) -> String {
+    modes.iter().map(|k| (k + 1).to_string()).collect::<Vec<_>>().join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A mode that linear strain has out of phase by an angle.
+    fn out_of_phase(phase: f64) -> Worth {
+        let strain = StrainError { deflection: 0.02, frequency: -0.01, phase, statics: 0.0 };
+        Worth {
+            circular_frequency: 1.0,
+            displacement: 1.0,
+            share: 0.5,
+            worth_keeping: true,
+            strain_bound: 1.0,
+            strain: Some(strain),
+        }
+    }
+
+    #[test]
+    fn of_more_modes_than_can_be_large_those_with_the_largest_errors_are_taken() {
+        // From 0.1 to 1.1 rad, the largest in the middle.
+        let mut modes: Vec<Worth> = [0.1, 0.3, 0.5, 0.7, 0.9, 1.0, 0.8, 0.6, 0.4, 0.2].map(out_of_phase).into();
+        let found = large_modes(&modes, 10, 1e-3);
+        assert_eq!((found.taken, found.left_out), (vec![1, 2, 3, 4, 5, 6, 7, 8], vec![0, 9]));
+        let row = large_deflection(&modes, &large_modes(&modes, 10, 1e-3), 0.2).row(1e-3);
+        assert!(
+            row.on && row.why.contains("Mode 6 bends") && row.why.contains("Modes 1, 10 would be large"),
+            "{row:?}"
+        );
+        // With fewer modes, and with a tolerance above the others: 0.5 of 0.8 rad.
+        assert_eq!(large_modes(&modes, 3, 1e-3).taken, [0, 1, 2]);
+        assert_eq!(large_modes(&modes, 10, 0.39), LargeModes { taken: vec![4, 5, 6], left_out: vec![] });
+        // A mode that hardly moves may be out of phase; it is not worth it.
+        modes[5].share = 1e-4;
+        assert!(!large_modes(&modes, 10, 1e-3).taken.contains(&5));
+    }
+
+    #[test]
+    fn bounds_that_nothing_can_reach_are_scaled_down() {
+        assert_eq!(believed(0.2), 1.0);
+        assert!((350.0 * believed(350.0) - BELIEVED).abs() < 1e-12);
+    }
+}
