@@ -5,14 +5,33 @@
 
 use frames_rk4::Observation;
 use results::Column;
-use results::Values::{Modal, Number, Point, Quaternion, Vector};
+use results::Values::{Modal, Number, Points, Quaternion, Vector};
+
+/// What runs have whose files have more columns: see [`results::Metadata::parts`].
+pub mod part {
+    /// Something holds the body.
+    pub const CONSTRAINT: &str = "constraint";
+    /// It may turn about one axis.
+    pub const HINGE: &str = "hinge";
+    /// It may move along one direction.
+    pub const SLIDER: &str = "slider";
+    /// Something drives it.
+    pub const DRIVE: &str = "drive";
+    /// The hinge is driven.
+    pub const DRIVEN_HINGE: &str = "driven hinge";
+    /// The slider is driven.
+    pub const DRIVEN_SLIDER: &str = "driven slider";
+}
 
 const ENERGY: &str = "mass length^2/time^2";
 const MOMENTUM: &str = "mass length/time";
 const ANGULAR_MOMENTUM: &str = "mass length^2/time";
+const FORCE: &str = "mass length/time^2";
+const MOMENT: &str = "mass length^2/time^2";
+const POWER: &str = "mass length^2/time^3";
 
 /// Path, unit, frame, description, and how an observation gives the values.
-pub static COLUMNS: [Column<Observation>; 21] = [
+pub static COLUMNS: [Column<Observation>; 35] = [
     Column::new("time", "time", "none", "time of each row", Number(|now| now.time)),
     Column::new(
         "attitude",
@@ -20,6 +39,13 @@ pub static COLUMNS: [Column<Observation>; 21] = [
         "body to global",
         "unit quaternion (w, x, y, z) that takes body components to global ones",
         Quaternion(|now| now.attitude.wxyz()),
+    ),
+    Column::new(
+        "origin",
+        "length",
+        "global",
+        "position of the origin of the body frame",
+        Vector(|now| now.origin_global.into()),
     ),
     Column::new(
         "position",
@@ -110,31 +136,121 @@ pub static COLUMNS: [Column<Observation>; 21] = [
         Vector(|now| now.angular_balance_global().into()),
     ),
     Column::new(
-        "points/<name>/displacement",
+        "reaction/force",
+        FORCE,
+        "global",
+        "force of the constraints on the body",
+        Vector(|now: &Observation| now.attitude.to_global(&now.reaction.force_body).into()),
+    )
+    .only_with(part::CONSTRAINT),
+    Column::new(
+        "reaction/moment",
+        MOMENT,
+        "global",
+        "moment of the constraints on the body about its origin",
+        Vector(|now: &Observation| now.attitude.to_global(&now.reaction.moment_body).into()),
+    )
+    .only_with(part::CONSTRAINT),
+    Column::new(
+        "reaction/force_body",
+        FORCE,
+        "body",
+        "force of the constraints on the body",
+        Vector(|now: &Observation| now.reaction.force_body.into()),
+    )
+    .only_with(part::CONSTRAINT),
+    Column::new(
+        "reaction/moment_body",
+        MOMENT,
+        "body",
+        "moment of the constraints on the body about its origin",
+        Vector(|now: &Observation| now.reaction.moment_body.into()),
+    )
+    .only_with(part::CONSTRAINT),
+    Column::new(
+        "hinge/angle",
+        "rad",
+        "none",
+        "angle that the body has turned by about the hinge since t = 0; it grows beyond a turn",
+        Number(|now: &Observation| now.reaction.turned),
+    )
+    .only_with(part::HINGE),
+    Column::new("hinge/speed", "rad/time", "none", "rate of hinge/angle", Number(|now: &Observation| now.reaction.turning))
+        .only_with(part::HINGE),
+    Column::new(
+        "slider/position",
+        "length",
+        "none",
+        "distance that the body has moved by along the slider since t = 0",
+        Number(|now: &Observation| now.reaction.slid),
+    )
+    .only_with(part::SLIDER),
+    Column::new("slider/speed", "length/time", "none", "rate of slider/position", Number(|now: &Observation| now.reaction.sliding))
+        .only_with(part::SLIDER),
+    Column::new(
+        "drive/torque",
+        MOMENT,
+        "none",
+        "torque of the drive on the body, about the hinge",
+        Number(|now: &Observation| now.reaction.drive),
+    )
+    .only_with(part::DRIVEN_HINGE),
+    Column::new(
+        "drive/force",
+        FORCE,
+        "none",
+        "force of the drive on the body, along the slider",
+        Number(|now: &Observation| now.reaction.drive),
+    )
+    .only_with(part::DRIVEN_SLIDER),
+    Column::new(
+        "drive/power",
+        POWER,
+        "none",
+        "power of the drive",
+        Number(|now: &Observation| now.reaction.drive_power),
+    )
+    .only_with(part::DRIVE),
+    Column::new(
+        "points/displacement",
         "length",
         "global",
         "displacement of the point from its place at t = 0 in the undeformed body",
-        Point(|now, i| Some(now.points.get(i)?.displacement.into())),
+        Points(|now, i| Some(now.points.get(i)?.displacement.into())),
     ),
     Column::new(
-        "points/<name>/velocity",
+        "points/velocity",
         "length/time",
         "global",
         "velocity of the point",
-        Point(|now, i| Some(now.points.get(i)?.velocity.into())),
+        Points(|now, i| Some(now.points.get(i)?.velocity.into())),
     ),
     Column::new(
-        "points/<name>/acceleration",
+        "points/acceleration",
         "length/time^2",
         "global",
         "acceleration of the point",
-        Point(|now, i| Some(now.points.get(i)?.acceleration.into())),
+        Points(|now, i| Some(now.points.get(i)?.acceleration.into())),
     ),
     Column::new(
-        "points/<name>/rigid_acceleration",
+        "points/rigid_acceleration",
         "length/time^2",
         "global",
         "part of the point's acceleration that belongs to the rigid motion",
-        Point(|now, i| Some(now.points.get(i)?.rigid_acceleration.into())),
+        Points(|now, i| Some(now.points.get(i)?.rigid_acceleration.into())),
+    ),
+    Column::new(
+        "points/elastic_displacement",
+        "length",
+        "global",
+        "displacement of the point by deformation alone, seen from the body frame",
+        Points(|now, i| Some(now.points.get(i)?.elastic_displacement_global.into())),
+    ),
+    Column::new(
+        "points/elastic_displacement_body",
+        "length",
+        "body",
+        "the same in body axes",
+        Points(|now, i| Some(now.points.get(i)?.elastic_displacement_body.into())),
     ),
 ];

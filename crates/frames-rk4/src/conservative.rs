@@ -50,6 +50,7 @@ use crate::manifold::{Manifold, Place};
 use crate::motion::CenterOfMass;
 use crate::own_coupling::own_coupling;
 use crate::physics::{Drive, DrivenMotion, Physics};
+use crate::reaction::Held;
 use crate::state::MotionState;
 
 /// What moves slowly, beside the modes: see [`part`].
@@ -138,6 +139,8 @@ pub struct ConservativeBody {
     loads: Vec<SharedLoad>,
     /// Of a body with large modes.
     pub(crate) manifold: Option<Manifold>,
+    /// Of a body that something holds.
+    pub(crate) held: Option<Held>,
 }
 
 /// State at a time.
@@ -148,6 +151,8 @@ pub struct ConservativeState {
     /// Attitude of the body frame.
     pub attitude: Attitude,
     pub(crate) slow: Slow,
+    /// Angle about the axis of a hinge since the beginning, rad.
+    pub(crate) turned: f64,
     /// Modal displacements q (nf).
     pub modal_displacement: Vec<f64>,
     /// Modal momenta p = q̇ + S ω (nf).
@@ -160,6 +165,7 @@ impl ConservativeState {
         self.time = other.time;
         self.attitude = other.attitude;
         self.slow = other.slow;
+        self.turned = other.turned;
         self.modal_displacement.copy_from_slice(&other.modal_displacement);
         self.modal_momentum.copy_from_slice(&other.modal_momentum);
     }
@@ -205,7 +211,7 @@ impl ConservativeState {
                 return Err(SetupError::Length { what, expected: flexible, found: list.len() });
             }
         }
-        let numbers = std::iter::once(&self.time).chain(&self.slow).chain(&self.modal_displacement);
+        let numbers = [&self.time, &self.turned].into_iter().chain(&self.slow).chain(&self.modal_displacement);
         match numbers.chain(&self.modal_momentum).copied().find(|x| !x.is_finite()) {
             Some(found) => Err(SetupError::Value { what: "a value of the state", found, expected: "a finite number" }),
             None => Ok(()),
@@ -268,6 +274,11 @@ pub(crate) struct Evaluation {
     pub driven_speed: f64,
     /// π of a driven turn or the P of a driven slide, along its axis.
     pub driven_momentum: f64,
+    /// Torque or force of the drive.
+    pub drive_effort: f64,
+    /// Resultants of the loads about the origin, body components.
+    pub load_force: Vector3<f64>,
+    pub load_moment: Vector3<f64>,
     /// J(q) and J − SᵀS.
     pub inertia: Matrix3<f64>,
     pub locked_inertia: Matrix3<f64>,
@@ -393,6 +404,7 @@ impl ConservativeBody {
             drive_stiffness: drive_stiffness.map_or_else(Vec::new, |k| columns(k.as_ref())),
             loads,
             manifold: large_deflection.clone(),
+            held: Held::new(body, effects),
         })
     }
 
@@ -444,6 +456,9 @@ impl ConservativeBody {
             omega_body: Vector3::zeros(),
             driven_speed: 0.0,
             driven_momentum: 0.0,
+            drive_effort: 0.0,
+            load_force: Vector3::zeros(),
+            load_moment: Vector3::zeros(),
             inertia: self.inertia,
             locked_inertia: self.inertia,
         }
@@ -494,6 +509,7 @@ impl ConservativeBody {
             time: 0.0,
             attitude: initial.attitude,
             slow,
+            turned: 0.0,
             modal_displacement: initial.modal_displacement.clone(),
             modal_momentum: momentum,
         })
@@ -710,6 +726,7 @@ impl ConservativeBody {
             }
             self.loads.iter().for_each(|load| load.apply(&motion, &mut applied));
             let moment = applied.moment_body;
+            (e.load_force, e.load_moment) = (applied.force_body, moment);
             power = applied.modal_power + moment.dot(&e.omega_body);
             force = body_from_global.tr_mul(&applied.force_body);
             let mut left = Vector3::zeros();
@@ -737,7 +754,8 @@ impl ConservativeBody {
         };
         if self.drive.is_some() {
             let force_body = attitude.to_body(&force);
-            power += self.drive_power(driven_acceleration, [q, p], &force_body, pi_rate[0], e);
+            self.drive_effort(driven_acceleration, [q, p], &force_body, pi_rate[0], e);
+            power += e.drive_effort * speed;
             pi_rate = Vector3::zeros();
         }
         set(&mut e.slow, part::THETA, &theta_rate);

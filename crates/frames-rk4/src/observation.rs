@@ -3,6 +3,7 @@
 use nalgebra::Vector3;
 use rigid_kin::Attitude;
 
+use crate::reaction::Reaction;
 use crate::work::Work;
 
 /// Motion of a point, global components.
@@ -17,6 +18,10 @@ pub struct PointMotion {
     pub acceleration: Vector3<f64>,
     /// Acceleration of the embedded rigid motion at the point: `a + α×X + ω×(ω×X)`.
     pub rigid_acceleration: Vector3<f64>,
+    /// Displacement by deformation alone, body components: Ψ ξ at the point.
+    pub elastic_displacement_body: Vector3<f64>,
+    /// The same, global components.
+    pub elastic_displacement_global: Vector3<f64>,
 }
 
 /// The motion at one time. Lists have one entry for each flexible mode, or for each point that was asked for.
@@ -53,6 +58,8 @@ pub struct Observation {
     pub linear_momentum_global: Vector3<f64>,
     /// Angular momentum about the centre of mass, or the fixed point of a body that is held, global components.
     pub angular_momentum_global: Vector3<f64>,
+    /// What holds the body does to it.
+    pub reaction: Reaction,
     /// Motion of the points, in the order in which they were asked for.
     pub points: Vec<PointMotion>,
 }
@@ -77,6 +84,7 @@ impl Observation {
             work: Work::default(),
             linear_momentum_global: Vector3::zeros(),
             angular_momentum_global: Vector3::zeros(),
+            reaction: Reaction::default(),
             points: vec![PointMotion::default(); points],
         }
     }
@@ -87,10 +95,13 @@ impl Observation {
         let balances = [self.linear_balance_global(), self.angular_balance_global()];
         let vectors = [position_global, velocity_global, omega_body, alpha_body].into_iter().chain(&balances);
         let modal = [&self.modal_displacement, &self.modal_velocity, &self.modal_acceleration];
-        let points =
-            self.points.iter().flat_map(|p| [&p.displacement, &p.velocity, &p.acceleration, &p.rigid_acceleration]);
+        let of_point = |p: &PointMotion| {
+            [p.displacement, p.velocity, p.acceleration, p.rigid_acceleration, p.elastic_displacement_body]
+        };
+        let points = self.points.iter().flat_map(of_point);
         self.energy_balance().is_finite()
-            && vectors.chain(points).flatten().all(|x| x.is_finite())
+            && vectors.flatten().chain(self.reaction.numbers()).all(|x| x.is_finite())
+            && points.into_iter().all(|vector| vector.iter().all(|x| x.is_finite()))
             && modal.into_iter().flatten().chain(&self.attitude.wxyz()).all(|x| x.is_finite())
     }
 

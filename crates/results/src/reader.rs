@@ -1,9 +1,9 @@
 //! Reads a results file back, finished or not.
 
 use crate::checkpoint::{Checkpoint, Sums};
-use crate::column::histories;
+use crate::column::{of_point, present};
 use crate::store::Store;
-use crate::{Column, FileError, Metadata};
+use crate::{Column, FileError, Metadata, Values};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -108,12 +108,18 @@ impl Results {
             let what = format!("its first {known} rows are not those that its checkpoint is for");
             return Err(FileError::Damaged { path: path.to_path_buf(), what });
         }
-        let tables = columns.into_iter().zip(store.widths()).map(|(mut values, width)| {
+        let mut histories = BTreeMap::new();
+        for (column, (mut values, width)) in present(table, &metadata).zip(columns.into_iter().zip(store.widths())) {
             values.truncate(rows * width);
-            ColumnTable { rows, width, values }
-        });
-        let paths = histories(table, metadata.point_names.len()).map(|history| history.path(&metadata.point_names));
-        let histories = paths.zip(tables).collect();
+            if !matches!(column.values, Values::Points(_)) {
+                histories.insert(column.path.to_owned(), ColumnTable { rows, width, values });
+                continue;
+            }
+            for (point, name) in metadata.point_names.iter().enumerate() {
+                let values = values.chunks_exact(width).flat_map(|row| &row[3 * point..3 * point + 3]).copied().collect();
+                histories.insert(of_point(column.path, name), ColumnTable { rows, width: 3, values });
+            }
+        }
         Ok((Self { metadata, complete, rows, histories }, checkpoint))
     }
 
@@ -122,7 +128,7 @@ impl Results {
         self.rows
     }
 
-    /// The history of this path, such as "modal/displacement" or "points/P1/velocity", if there is one.
+    /// The history of this path, such as "modal/displacement", or "points/P1/velocity" of the point P1, if there is one.
     pub fn table(&self, path: &str) -> Option<&ColumnTable> {
         self.histories.get(path)
     }
@@ -142,10 +148,18 @@ impl Results {
     pub fn is_row<R>(&self, i: usize, columns: &'static [Column<R>], row: &R) -> bool {
         let names = &self.metadata.point_names;
         let mut values = Vec::new();
-        histories(columns, names.len()).all(|history| {
+        let is = |path: &str, values: &[f64]| self.table(path).and_then(|table| table.row(i)) == Some(values);
+        present(columns, &self.metadata).all(|column| {
             values.clear();
-            history.append(row, &mut values);
-            self.table(&history.path(names)).and_then(|table| table.row(i)) == Some(&values)
+            column.append(row, names.len(), &mut values);
+            match column.values {
+                Values::Points(_) => {
+                    let vectors = values.as_chunks::<3>().0;
+                    vectors.len() == names.len()
+                        && names.iter().zip(vectors).all(|(name, vector)| is(&of_point(column.path, name), vector))
+                }
+                _ => is(column.path, &values),
+            }
         })
     }
 
