@@ -112,7 +112,7 @@ pub struct BodyReport {
 impl MeshReport {
     /// Of a model; `None` for a rigid body without a mesh.
     pub fn new(model: &Model) -> Option<Self> {
-        let Meshed { mesh, modes, matrix_bytes } = model.meshed.as_ref()?;
+        let Meshed { mesh, modes, matrix_bytes, .. } = model.meshed.as_ref()?;
         Some(Self {
             file: mesh.source().to_owned(),
             nodes: mesh.positions().len(),

@@ -338,7 +338,7 @@ pub fn results_path(scene: &Scene, folder: &Path) -> PathBuf {
     folder.join(name)
 }
 
-fn metadata(scene: &Scene, model: &Model) -> Metadata {
+pub(crate) fn metadata(scene: &Scene, model: &Model) -> Metadata {
     let body = BodyReport::new(model);
     let method = scene.time.method;
     let (step, tolerance) = match scene.time.control {

@@ -117,6 +117,17 @@ impl Manifold {
         &self.0.large
     }
 
+    /// ξ(q) in the extended shapes, as many as the body has.
+    pub fn coordinates(&self, q: &[f64], xi: &mut [f64]) {
+        let Constants { large, modes, slopes, .. } = &*self.0;
+        xi[..*modes].copy_from_slice(q);
+        xi[*modes..].fill(0.0);
+        for (index, slope) in slopes.iter().enumerate() {
+            let product = 0.5 * q[large[index / large.len()]] * q[large[index % large.len()]];
+            xi.iter_mut().zip(slope).for_each(|(xi, slope)| *xi += slope * product);
+        }
+    }
+
     fn extended(&self) -> usize {
         self.0.body.flexible()
     }

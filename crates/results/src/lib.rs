@@ -15,6 +15,8 @@
 //! has the dataset `checkpoint` besides (2×words): two places for the state of the run, written in turns, each with
 //! its number, the rows before it, their check sum, the words of the state, and a check sum of itself.
 //!
+//! For ParaView there are [`VtkHdf`], and [`write_vtu`] with [`write_pvd`] for versions before 5.12.
+//!
 //! The crate knows plain data only: no mesh, no mode, no scheme.
 
 #![deny(unsafe_code)] // not `forbid`, since a macro of ndarray allows it within itself
@@ -31,6 +33,9 @@ mod room;
 mod seal;
 mod store;
 mod structure;
+mod vtk;
+mod vtkhdf;
+mod vtu;
 mod writer;
 
 #[cfg(test)]
@@ -40,4 +45,7 @@ pub use column::{Column, Values};
 pub use error::FileError;
 pub use metadata::{BodyProperties, Metadata, Units};
 pub use reader::{ColumnTable, Results};
+pub use vtk::{CellKind, Field, Grid};
+pub use vtkhdf::VtkHdf;
+pub use vtu::{write_pvd, write_vtu};
 pub use writer::{Expected, Resumed, Writer, unfinished};

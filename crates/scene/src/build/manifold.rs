@@ -82,6 +82,12 @@ impl LargeDeflection {
         &self.large.shapes.modes
     }
 
+    /// The extended shapes after the modes.
+    pub fn following(&self) -> Mat<f64> {
+        let SecondOrderShapes { modes, dynamic, .. } = &self.large.shapes;
+        modes.shapes.get(.., *dynamic..).to_owned()
+    }
+
     /// The stress of loads and of a drive in the extended shapes.
     pub fn stressed(&self, model: &MeshModel<'_>, statics: &Statics, mut stress: Stress) -> Stress {
         let extended =

@@ -3,6 +3,7 @@
 use std::time::Instant;
 
 use advice::{buckling, limits, unsteady};
+use faer::Mat;
 use fem_tet10::{Location, Mesh};
 use frames_rk4::{Effect, Physics, PointShapes};
 use modal::{BodyPoint, Modes, ReducedBody, Solver};
@@ -11,6 +12,7 @@ use nalgebra::Vector3;
 use super::decide::Decision;
 use super::error::{BuildError, modal, refuse, too_many_modes};
 use super::loads;
+use super::manifold::LargeDeflection;
 use super::mesh::{matrices, read_mesh};
 use super::mesh_model::MeshModel;
 use super::modal_model::ModalModel;
@@ -68,6 +70,7 @@ pub(super) fn build(
 
     let Decision { mut effects, lacks, .. } = decision;
     effects[Effect::LargeDeflection] = large.is_some();
+    let following = large.as_ref().map_or_else(Mat::new, LargeDeflection::following);
     let large_deflection = large.map(|large| large.manifold);
     let mut model = Model {
         physics: Physics { effects, drive: model.drive, drive_stiffness: stress.of_drive, large_deflection },
@@ -90,7 +93,7 @@ pub(super) fn build(
         meshed: None,
     };
     drop(solver);
-    model.meshed = Some(Meshed { matrix_bytes: matrices.bytes(), mesh, modes });
+    model.meshed = Some(Meshed { matrix_bytes: matrices.bytes(), mesh, modes, following });
     let initial = model.initial(scene);
     model.refusal = buckling(stress.buckling_ratio);
     if model.refusal.is_none() && model.is_stressed() {

@@ -1,6 +1,7 @@
 //! A body that can move, as a scene describes it.
 
 use advice::{Advice, Backbone, Case, Refusal, StepEstimate};
+use faer::Mat;
 use fem_tet10::Mesh;
 use frames_rk4::{
     ConservativeBody, History, Initial, LoadFrame, LoadedError, LoadedMode, Physics, PointShapes, Rows, Setup,
@@ -26,6 +27,9 @@ pub struct Meshed {
     pub matrix_bytes: usize,
     /// Rigid and flexible modes on the mesh.
     pub modes: Modes,
+    /// Shapes on the mesh that only follow large modes (3n × …), none without: what the extended shapes have after the
+    /// modes.
+    pub following: Mat<f64>,
 }
 
 /// The body of a scene in modal coordinates, with its mesh, its points and its loads.
@@ -80,6 +84,10 @@ impl Model {
         let meshed = self.meshed.as_ref().map(|meshed| Meshed {
             mesh: meshed.mesh.clone(),
             modes: truncated_modes(&meshed.modes, flexible),
+            following: match large_deflection {
+                Some(_) => meshed.following.clone(),
+                None => Mat::new(),
+            },
             ..*meshed
         });
         let stiffness = self.physics.drive_stiffness.as_ref();
@@ -138,6 +146,15 @@ impl Model {
     /// How many static shapes follow the natural modes.
     pub fn static_shapes(&self) -> usize {
         self.meshed.as_ref().map_or(0, |meshed| meshed.modes.eigenvalues.len() - meshed.modes.natural())
+    }
+
+    /// The coordinates of the modes and of the shapes that follow them: u is their sum with [`Meshed::modes`] and then
+    /// [`Meshed::following`].
+    pub fn coordinates(&self, modal_displacement: &[f64]) -> Vec<f64> {
+        let Some(manifold) = &self.physics.large_deflection else { return modal_displacement.to_vec() };
+        let mut xi = vec![0.0; manifold.body().flexible()];
+        manifold.coordinates(modal_displacement, &mut xi);
+        xi
     }
 
     /// How the frequency of each of the first modes goes with its amplitude, of those that may bend the body far.
