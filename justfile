@@ -85,6 +85,18 @@ h5py: build
     .tools/h5py/bin/pip install -q h5py
     .tools/h5py/bin/python crates/results/tests/read_with_h5py.py out/ring/ring.h5
 
+# Read exports with VTK's own readers, and compare them with the modes (Python packages, 150 MB).
+paraview: build
+    {{flexframe}} run examples/ring.toml -o out/paraview --overwrite
+    python3 -m venv --upgrade-deps .tools/paraview >/dev/null
+    .tools/paraview/bin/pip install -q h5py vtk
+    for cells in "" --volume; do \
+        {{flexframe}} export out/paraview/ring.h5 --vtkhdf out/paraview/ring.vtkhdf --modes out/paraview/modes.vtkhdf \
+            --vtu out/paraview/vtu --every 200 --overwrite $cells && \
+        .tools/paraview/bin/python crates/flexframe/tests/read_with_vtk.py \
+            out/paraview/{ring.h5,ring.vtkhdf,modes.vtkhdf,vtu}; \
+    done
+
 # Fuzz every reader for so many seconds each (libFuzzer; wants a nightly compiler).
 fuzz seconds="600":
     test -x .tools/bin/cargo-fuzz || cargo install --quiet --locked --root .tools cargo-fuzz@0.13.2

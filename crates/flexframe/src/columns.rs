@@ -175,8 +175,14 @@ pub static COLUMNS: [Column<Observation>; 35] = [
         Number(|now: &Observation| now.reaction.turned),
     )
     .only_with(part::HINGE),
-    Column::new("hinge/speed", "rad/time", "none", "rate of hinge/angle", Number(|now: &Observation| now.reaction.turning))
-        .only_with(part::HINGE),
+    Column::new(
+        "hinge/speed",
+        "rad/time",
+        "none",
+        "rate of hinge/angle",
+        Number(|now: &Observation| now.reaction.turning),
+    )
+    .only_with(part::HINGE),
     Column::new(
         "slider/position",
         "length",
@@ -185,8 +191,14 @@ pub static COLUMNS: [Column<Observation>; 35] = [
         Number(|now: &Observation| now.reaction.slid),
     )
     .only_with(part::SLIDER),
-    Column::new("slider/speed", "length/time", "none", "rate of slider/position", Number(|now: &Observation| now.reaction.sliding))
-        .only_with(part::SLIDER),
+    Column::new(
+        "slider/speed",
+        "length/time",
+        "none",
+        "rate of slider/position",
+        Number(|now: &Observation| now.reaction.sliding),
+    )
+    .only_with(part::SLIDER),
     Column::new(
         "drive/torque",
         MOMENT,

@@ -5,7 +5,7 @@ use std::process::{Command, Output};
 
 use flexframe::columns::COLUMNS;
 use hdf5::types::VarLenUnicode;
-use results::{Metadata, Column, Results, Units, Values};
+use results::{Column, Metadata, Results, Units, Values};
 use serde_json::Value;
 
 fn root() -> PathBuf {

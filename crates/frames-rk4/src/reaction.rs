@@ -132,9 +132,6 @@ impl Held {
         }
         let momentum = inertia * omega + of_shapes;
         let about_origin = inertia * alpha + inertia_rate * omega + rate_of_shapes + omega.cross(&momentum);
-        [
-            motion.center_acceleration * self.mass,
-            about_origin + motion.center.cross(&motion.acceleration) * self.mass,
-        ]
+        [motion.center_acceleration * self.mass, about_origin + motion.center.cross(&motion.acceleration) * self.mass]
     }
 }

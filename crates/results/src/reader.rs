@@ -116,7 +116,8 @@ impl Results {
                 continue;
             }
             for (point, name) in metadata.point_names.iter().enumerate() {
-                let values = values.chunks_exact(width).flat_map(|row| &row[3 * point..3 * point + 3]).copied().collect();
+                let values =
+                    values.chunks_exact(width).flat_map(|row| &row[3 * point..3 * point + 3]).copied().collect();
                 histories.insert(of_point(column.path, name), ColumnTable { rows, width: 3, values });
             }
         }

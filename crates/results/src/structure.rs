@@ -146,7 +146,13 @@ fn write_body(path: &Path, file: &hdf5::File, metadata: &Metadata) -> Result<(),
     ] {
         write_constant(path, file, &format!("body/{name}"), values, [unit, frame, description])?;
     }
-    write_texts(path, file, "body/kinds", body.kinds(), "whether each coordinate is of a natural mode or a static shape")
+    write_texts(
+        path,
+        file,
+        "body/kinds",
+        body.kinds(),
+        "whether each coordinate is of a natural mode or a static shape",
+    )
 }
 
 /// A data set of numbers, with its unit, frame and description.

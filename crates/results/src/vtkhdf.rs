@@ -3,8 +3,8 @@
 //! The mesh is there once: all steps begin at the same points and cells, and `PointDataOffsets` says where the values of
 //! each step are. ParaView then keeps the mesh while time goes on. Steps are written one by one.
 
-use crate::vtk::{Field, Grid};
 use crate::FileError;
+use crate::vtk::{Field, Grid};
 use hdf5::types::FixedAscii;
 use hdf5::{Group, H5Type};
 use ndarray::{ArrayView, ArrayView1, ArrayView2, Dimension, s};
@@ -113,7 +113,8 @@ pub(crate) fn put(place: TempPath, path: &Path, overwrite: bool) -> Result<(), F
 /// Version, type and mesh.
 fn write_head(group: &Group, grid: &Grid) -> hdf5::Result<()> {
     group.new_attr_builder().with_data(&[2_i64, 0]).create("Version")?;
-    let kind = FixedAscii::<16>::from_ascii("UnstructuredGrid").map_err(|error| hdf5::Error::Internal(error.to_string()))?;
+    let kind =
+        FixedAscii::<16>::from_ascii("UnstructuredGrid").map_err(|error| hdf5::Error::Internal(error.to_string()))?;
     group.new_attr::<FixedAscii<16>>().create("Type")?.write_scalar(&kind)?;
     let (cells, each) = (grid.cells(), grid.cells.points());
     for (name, count) in [

@@ -321,9 +321,9 @@ fn names_types_and_shapes_are_those_of_the_contract() {
     let metadata = Metadata { parts: vec!["hinge".into()], ..metadata(4, &["P1", "P2"]) };
     write(&path, 5, &metadata).finish().unwrap();
     let file = hdf5::File::open(&path).unwrap();
-    let of_columns = COLUMNS.iter().map(|column| {
-        (column.path.to_owned(), [5].into_iter().chain(column.row_shape(&metadata)).collect::<Vec<_>>())
-    });
+    let of_columns = COLUMNS
+        .iter()
+        .map(|column| (column.path.to_owned(), [5].into_iter().chain(column.row_shape(&metadata)).collect::<Vec<_>>()));
     let of_body: [(&str, &[usize]); 7] = [
         ("body/origin", &[3]),
         ("points/position", &[2, 3]),

@@ -6,9 +6,9 @@ use std::path::Path;
 use results::{Column, Metadata, Results, Values};
 use whole_file::WholeFile;
 
+use super::Exported;
 use super::error::ExportError;
 use super::rows::ExportRows;
-use super::Exported;
 use crate::columns::COLUMNS;
 use crate::write_error::WriteError;
 
@@ -83,7 +83,9 @@ fn chosen(file: &Path, results: &Results, columns: &[String]) -> Result<Vec<Part
 fn parts<R>(column: &Column<R>, metadata: &Metadata) -> Vec<Part> {
     let unit = column.unit(&metadata.units);
     let part = |path: String, names: Vec<String>| {
-        let head = |name: &String| if name.is_empty() { format!("{path} [{unit}]") } else { format!("{path} {name} [{unit}]") };
+        let head = |name: &String| {
+            if name.is_empty() { format!("{path} [{unit}]") } else { format!("{path} {name} [{unit}]") }
+        };
         let heads = names.iter().map(head).collect();
         Part { path, heads }
     };

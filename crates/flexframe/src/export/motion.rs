@@ -53,7 +53,8 @@ impl Motion {
         let (grid, nodes) = if volume {
             // VTK has the middles of 13 and 23 the other way round.
             let elements = mesh.elements().iter();
-            let connectivity = elements.flat_map(|&[a, b, c, d, ab, bc, ac, ad, cd, bd]| [a, b, c, d, ab, bc, ac, ad, bd, cd]);
+            let connectivity =
+                elements.flat_map(|&[a, b, c, d, ab, bc, ac, ad, cd, bd]| [a, b, c, d, ab, bc, ac, ad, bd, cd]);
             let points = mesh.positions().to_vec();
             let nodes = (0..points.len() as u32).collect();
             (Grid { points, connectivity: connectivity.collect(), cells: CellKind::QuadraticTetrahedron }, nodes)

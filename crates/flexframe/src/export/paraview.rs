@@ -5,11 +5,11 @@ use std::path::Path;
 use results::{Field, VtkHdf, write_pvd, write_vtu};
 use scene::Meshed;
 
+use super::Exported;
 use super::error::ExportError;
 use super::fields::{FIELDS, described};
 use super::motion::{Motion, Placed};
 use super::rows::ExportRows;
-use super::Exported;
 use crate::modes::frequency_unit;
 use crate::write_error::WriteError;
 

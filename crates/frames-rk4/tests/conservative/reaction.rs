@@ -2,7 +2,8 @@
 //! reduced body enters.
 
 use frames_rk4::{
-    Drive, DrivenMotion, Effect, History, Initial, Observation, Physics, PointShapes, Rows, Setup, Simulation, StepControl,
+    Drive, DrivenMotion, Effect, History, Initial, Observation, Physics, PointShapes, Rows, Setup, Simulation,
+    StepControl,
 };
 use modal::{BodyPoint, Modes, ReducedBody, RigidMotion, Solver, Support};
 use nalgebra::Vector3;
