@@ -69,6 +69,12 @@ stability:
     FLEXFRAME_KILLS=200 cargo test --release --quiet --package results --test killed
     FLEXFRAME_KILLS=40 cargo test --release --quiet --package flexframe --test faults
 
+# Large deflection and stress against a nonlinear finite-element body, and the curves of docs/nonlinear.md (some minutes).
+nonlinear:
+    cargo test --release --quiet --package nonlinear -- --ignored --nocapture
+    mkdir -p docs/nonlinear
+    cargo run --release --quiet --package nonlinear -- docs/nonlinear
+
 # Steps a second of every scheme on one core, and what each effect costs per step and in set-up.
 bench:
     cargo bench --quiet --package frames-rk4 --bench steps
@@ -96,6 +102,20 @@ paraview: build
         .tools/paraview/bin/python crates/flexframe/tests/read_with_vtk.py \
             out/paraview/{ring.h5,ring.vtkhdf,modes.vtkhdf,vtu}; \
     done
+
+# Build the page of reports from its sources (npm). It is checked in, so that nobody else needs npm.
+report-page:
+    cd crates/report/web && npm ci --silent --no-audit --no-fund && npm run --silent build
+
+# The page of reports in a headless Chromium; before that, whether it is what its sources give (npm).
+report-page-test:
+    mkdir -p out/report-page
+    cd crates/report/web && npm ci --silent --no-audit --no-fund && npm run --silent build -- ../../../out/report-page/page.html
+    cmp crates/report/web/page.html out/report-page/page.html || \
+        { echo "report-page-test: page.html is not what web/src gives: run ./dev report-page" >&2; exit 1; }
+    for kind in small large unfinished rigid patch; do \
+        cargo run --quiet --package report --example synthetic -- $kind out/report-page/$kind.html; done
+    cd crates/report/web && REPORTS=../../../out/report-page npm test --silent
 
 # Fuzz every reader for so many seconds each (libFuzzer; wants a nightly compiler).
 fuzz seconds="600":

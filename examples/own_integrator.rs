@@ -15,8 +15,9 @@ use flexframe::scene::{Model, Scene};
 /// Differences of the attitude in rad after the run, with steps of 4e-5 s and of 2e-5 s.
 pub fn run() -> Result<[f64; 2], Box<dyn Error>> {
     let scene = Scene::read(concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/plate.toml"))?;
-    let model = Model::build(&scene, |_| ())?.truncated(4);
-    let (reduced, ratios, physics) = (&model.body, vec![0.01; 4], Physics::default());
+    let model = Model::build(&scene, |_| ())?;
+    let reduced = &model.body.truncated(4);
+    let (ratios, physics) = (vec![0.01; 4], Physics::default());
     let mut initial = Initial::at_rest(4);
     initial.omega = Vector3::new(3.0, 8.0, 5.0);
     initial.modal_velocity = vec![77.0, -54.0, 117.0, 37.0];

@@ -8,7 +8,7 @@ use flexframe::cost::{
     CostError, CostReport, CostSettings, Line, Measured, Outcome, Row, duration, modes_warning, price_list, setting,
 };
 use flexframe::modes::frequency_unit;
-use flexframe::scene::{Model, Scene};
+use flexframe::scene::Scene;
 use flexframe::write_error::WriteError;
 use whole_file::write_whole;
 
@@ -38,7 +38,7 @@ pub fn accuracy_page(
         reports.push((scene, price_list(scene, &folder, settings, |_| ())?));
     }
     let spin = match fastest(&reports) {
-        Some((scene, report)) if report.initial_spin > 0.0 => spin_rates(scene, &Model::build(scene, |_| ())?),
+        Some((scene, report)) if report.initial_spin > 0.0 => spin_rates(scene)?,
         _ => Vec::new(),
     };
     std::fs::create_dir_all(&pictures).map_err(WriteError::of(&pictures))?;

@@ -1,7 +1,7 @@
 //! The spin that the paper's scheme makes or loses in steady rotation.
 
 use flexframe::frames_rk4::{Method, Rows, StepControl};
-use flexframe::scene::{Model, Scene};
+use flexframe::scene::{Assembly, BuildError, Flexible, Scene};
 
 /// Steps of the runs.
 const STEPS: [u64; 4] = [1000, 2000, 5000, 10_000];
@@ -18,11 +18,17 @@ pub(super) struct SpinRow {
 
 /// Runs the paper's scheme, and its limit, with all and with half of the modes. Runs that fail are left
 /// out.
-pub(super) fn spin_rates(scene: &Scene, model: &Model) -> Vec<SpinRow> {
+pub(super) fn spin_rates(scene: &Scene) -> Result<Vec<SpinRow>, BuildError> {
     let end = scene.time.end;
     let mut rows = Vec::new();
-    for flexible in [model.body.flexible() / 2, model.body.flexible()] {
-        let model = model.truncated(flexible);
+    let assembly = Assembly::new(scene, |_| ())?;
+    let mut builder = assembly.builder(scene)?;
+    let model = builder.build(scene, |_| ())?;
+    let most = model.body.flexible() - model.static_shapes();
+    for flexible in [most / 2, most] {
+        let mut scene = scene.clone();
+        scene.modes.flexible = Flexible::Count(flexible);
+        let (scene, model) = (&scene, builder.build(&scene, |_| ())?);
         let rate = |method, step| -> Option<f64> {
             let rows = model.start_with(scene, method, StepControl::Fixed(step), Rows::Interval(end)).ok()?;
             let spins: Vec<f64> =
@@ -36,5 +42,5 @@ pub(super) fn spin_rates(scene: &Scene, model: &Model) -> Vec<SpinRow> {
             Some(SpinRow { flexible, step, rate: rate(Method::PAPER, step)?, rate_of_limit })
         }));
     }
-    rows
+    Ok(rows)
 }

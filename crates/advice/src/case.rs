@@ -78,7 +78,7 @@ impl Case<'_> {
     /// The histories of the loads that have one, and of the drive.
     fn histories(&self) -> impl Iterator<Item = &History> {
         let of_loads = self.loads.iter().filter_map(|load| load.history());
-        of_loads.chain(self.drive.map(|drive| &drive.history))
+        of_loads.chain(self.drive.map(|drive| &drive.speed.history))
     }
 
     /// How many histories cost more to evaluate than closed forms do: they share a budget of samples.

@@ -128,14 +128,14 @@ impl Spin {
         let courses: Vec<Course> =
             histories.map(|history| Course::new(&history, case.end, case.costly_histories())).collect();
         if let Some(drive) = case.drive {
-            let course = Course::new(&drive.history, case.end, case.costly_histories());
+            let course = Course::new(&drive.speed.history, case.end, case.costly_histories());
             let (axis, speed) = match drive.motion {
-                DrivenMotion::Turn { axis } => (axis, drive.amplitude.abs() * course.largest),
+                DrivenMotion::Turn { axis } => (axis, drive.speed.amplitude.abs() * course.largest),
                 DrivenMotion::Slide { .. } => (Vector3::zeros(), 0.0),
             };
             let momentum = speed * axis.dot(&(body.inertia * axis)).max(0.0).sqrt();
-            let turn = drive.amplitude.abs() * course.magnitude_integral * axis.norm();
-            let acceleration = drive.amplitude.abs() * course.steepest() * axis.norm();
+            let turn = drive.speed.amplitude.abs() * course.magnitude_integral * axis.norm();
+            let acceleration = drive.speed.amplitude.abs() * course.steepest() * axis.norm();
             let spin = Self {
                 largest: speed,
                 certain: speed,

@@ -158,7 +158,8 @@ fn bent_at_start(case: &Case) -> Option<Refusal> {
 fn certain_spin(case: &Case) -> Option<(Vector3<f64>, f64)> {
     let omega = match case.drive.map(|drive| (drive.motion, drive)) {
         Some((DrivenMotion::Turn { axis }, drive)) => {
-            axis * (drive.amplitude * Course::new(&drive.history, case.end, case.costly_histories()).largest)
+            axis * (drive.speed.amplitude
+                * Course::new(&drive.speed.history, case.end, case.costly_histories()).largest)
         }
         Some((DrivenMotion::Slide { .. }, _)) => Vector3::zeros(),
         None => case.body.motion.rotation_projector() * case.initial.omega,

@@ -75,10 +75,10 @@ impl Response {
                 DrivenMotion::Turn { axis } => (axis, &case.body.rotation_first),
                 DrivenMotion::Slide { direction } => (direction, &case.body.translation_first),
             };
-            let course = Course::new(&drive.history, case.end, case.costly_histories()).risen();
+            let course = Course::new(&drive.speed.history, case.end, case.costly_histories()).risen();
             let z: Vec<_> = (0..nf).map(|k| course.swing(omega[k], zeta[k])).collect();
             let force: Vec<f64> = (0..nf)
-                .map(|k| ((0..3).map(|i| unit[i] * coupling[i][k]).sum::<f64>() * drive.amplitude).abs())
+                .map(|k| ((0..3).map(|i| unit[i] * coupling[i][k]).sum::<f64>() * drive.speed.amplitude).abs())
                 .collect();
             // q̈ + ω² q = −b v̇: q goes with z of v itself.
             let q: Vec<f64> = (0..nf).map(|k| force[k] * z[k].z).collect();

@@ -84,8 +84,8 @@ fn amplitude(case: &Case, source: StressSource) -> Amplitude {
             })
         }
         StressSource::Drive => case.drive.map_or(Amplitude { largest: 0.0, integral: 0.0 }, |drive| {
-            let course = Course::new(&drive.history, case.end, case.costly_histories());
-            let largest = drive.amplitude.abs() * course.steepest();
+            let course = Course::new(&drive.speed.history, case.end, case.costly_histories());
+            let largest = drive.speed.amplitude.abs() * course.steepest();
             Amplitude { largest, integral: largest * case.end }
         }),
     }

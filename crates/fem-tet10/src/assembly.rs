@@ -97,13 +97,14 @@ pub fn assemble(mesh: &Mesh, materials: &Materials, point_masses: &[PointMass]) 
 }
 
 /// For each node, the elements it belongs to and its number in them.
-struct Incidence {
+#[derive(Debug)]
+pub(crate) struct Incidence {
     start: Vec<usize>,
     entries: Vec<(u32, u8)>,
 }
 
 impl Incidence {
-    fn new(mesh: &Mesh) -> Self {
+    pub(crate) fn new(mesh: &Mesh) -> Self {
         let mut start = vec![0; mesh.positions().len() + 1];
         for node in mesh.elements().iter().flatten() {
             start[*node as usize + 1] += 1;
@@ -122,7 +123,7 @@ impl Incidence {
         Self { start, entries }
     }
 
-    fn of(&self, node: usize) -> &[(u32, u8)] {
+    pub(crate) fn of(&self, node: usize) -> &[(u32, u8)] {
         &self.entries[self.start[node]..self.start[node + 1]]
     }
 }

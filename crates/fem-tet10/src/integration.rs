@@ -21,6 +21,7 @@ pub(crate) struct IntegrationPoint {
 }
 
 /// The rules that all elements share, with the gradients of the shape functions at their points.
+#[derive(Debug)]
 pub(crate) struct Rules {
     straight: Vec<(Point, [[f64; 3]; 10])>,
     curved: Vec<(Point, [[f64; 3]; 10])>,
@@ -44,6 +45,11 @@ impl Rules {
         in_space(if is_straight(positions) { &self.straight } else { &self.curved }, positions)
     }
 
+    /// Reference coordinates of [`fine_points`](Self::fine_points).
+    pub(crate) fn fine_rule(&self) -> impl Iterator<Item = [f64; 3]> + '_ {
+        self.curved.iter().map(|(point, _)| point.at)
+    }
+
     /// Fourteen integration points whatever the element: exact to degree 5 where it is straight.
     pub(crate) fn fine_points(&self, positions: &[[f64; 3]; 10]) -> Vec<IntegrationPoint> {
         in_space(&self.curved, positions)
@@ -51,18 +57,21 @@ impl Rules {
 }
 
 fn in_space(rule: &[(Point, [[f64; 3]; 10])], positions: &[[f64; 3]; 10]) -> Vec<IntegrationPoint> {
-    rule.iter()
-        .map(|(point, dn)| {
-            let jacobian = jacobian(positions, dn);
-            // ∂N/∂x = J⁻ᵀ ∂N/∂ξ; a mesh that has been checked has no singular Jacobian at these points.
-            let inverse = jacobian.try_inverse().unwrap_or_else(Matrix3::zeros);
-            let gradients = dn.map(|d| {
-                let g = inverse.transpose() * Vector3::from(d);
-                [g.x, g.y, g.z]
-            });
-            IntegrationPoint { gradients, volume: point.weight * jacobian.determinant() }
-        })
-        .collect()
+    rule.iter().map(|(point, dn)| IntegrationPoint::new(positions, dn, point.weight)).collect()
+}
+
+impl IntegrationPoint {
+    /// By the gradients of the shape functions in the reference element.
+    pub(crate) fn new(positions: &[[f64; 3]; 10], dn: &[[f64; 3]; 10], weight: f64) -> Self {
+        let jacobian = jacobian(positions, dn);
+        // ∂N/∂x = J⁻ᵀ ∂N/∂ξ; a mesh that has been checked has no singular Jacobian at these points.
+        let inverse = jacobian.try_inverse().unwrap_or_else(Matrix3::zeros);
+        let gradients = dn.map(|d| {
+            let g = inverse.transpose() * Vector3::from(d);
+            [g.x, g.y, g.z]
+        });
+        Self { gradients, volume: weight * jacobian.determinant() }
+    }
 }
 
 /// Whether all mid-edge nodes lie in the middle of their edges.

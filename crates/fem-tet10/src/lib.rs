@@ -14,6 +14,8 @@
 //! * [`reduced_geometric_stiffness`] gives the stress stiffness of displacement fields, reduced to a few shapes;
 //!   [`second_order_forces`] and [`second_order_energies`] what displacements of second order meet in a St. Venant–Kirchhoff
 //!   body.
+//! * [`StressRecovery`] gives the stress of displacement fields at the nodes, and an estimate of its error; [`von_mises`] and
+//!   [`principal_stresses`] what a stress is in any axes.
 //!
 //! Degrees of freedom are numbered `3·node + axis`. Any consistent set of units will do; the mesh's frame
 //! is the frame of every vector here.
@@ -33,10 +35,11 @@ mod mesh;
 mod msh;
 mod parts;
 mod point_mass;
-mod quadrature;
+pub mod quadrature;
 mod second_order;
 mod selection;
 mod shape;
+mod stress;
 mod surface;
 mod tags;
 
@@ -55,3 +58,4 @@ pub use parts::{MeshParts, NodeGroup, SurfaceGroup};
 pub use point_mass::PointMass;
 pub use second_order::{geometric_stiffness_product, second_order_energies, second_order_forces};
 pub use shape::{shape_functions, shape_gradients};
+pub use stress::{COMPONENTS, StressError, StressRecovery, StressSites, principal_stresses, von_mises};

@@ -1,8 +1,11 @@
 //! Quadrature on the reference tetrahedron (volume 1/6) and triangle (area 1/2), with positive weights.
 
-/// A point of a quadrature rule: reference coordinates (ξ, η, ζ) and weight.
-pub(crate) struct Point {
+/// A point of a quadrature rule.
+#[derive(Debug, Clone, Copy)]
+pub struct Point {
+    /// Reference coordinates (ξ, η, ζ).
     pub at: [f64; 3],
+    /// Weight.
     pub weight: f64,
 }
 
@@ -14,7 +17,7 @@ pub(crate) fn degree_2() -> Vec<Point> {
 }
 
 /// Degree 5, fourteen points (Walkington 2000): exact for the mass of a straight element (degree 4).
-pub(crate) fn degree_5() -> Vec<Point> {
+pub fn degree_5() -> Vec<Point> {
     let (a1, w1) = (0.310_885_919_263_300_6, 0.018_781_320_953_002_643);
     let (a2, w2) = (0.092_735_250_310_891_23, 0.012_248_840_519_393_66);
     let (a3, w3) = (0.045_503_704_125_649_65, 0.007_091_003_462_846_911);
@@ -25,7 +28,7 @@ pub(crate) fn degree_5() -> Vec<Point> {
 }
 
 /// Degree 6 on the triangle, twelve points (Dunavant 1985): barycentric coordinates and weights.
-pub(crate) fn triangle_degree_6() -> Vec<([f64; 3], f64)> {
+pub fn triangle_degree_6() -> Vec<([f64; 3], f64)> {
     let (a1, w1) = (0.249_286_745_170_910_42, 0.058_393_137_863_189_685);
     let (a2, w2) = (0.063_089_014_491_502_23, 0.025_422_453_185_103_41);
     let (a3, b3, w3) = (0.053_145_049_844_816_95, 0.310_352_451_033_784_4, 0.041_425_537_809_186_79);

@@ -166,7 +166,12 @@ fn element_forces(
 }
 
 /// ∇u of each field at a point, `(∇u)_ab = ∂u_a/∂x_b`. `relative` is by node, then axis, then field.
-fn displacement_gradients(relative: &[f64], point: &IntegrationPoint, count: usize, out: &mut Vec<Matrix3<f64>>) {
+pub(crate) fn displacement_gradients(
+    relative: &[f64],
+    point: &IntegrationPoint,
+    count: usize,
+    out: &mut Vec<Matrix3<f64>>,
+) {
     out.clear();
     out.resize(count, Matrix3::zeros());
     for (node, gradient) in point.gradients[1..].iter().enumerate() {
@@ -181,15 +186,15 @@ fn displacement_gradients(relative: &[f64], point: &IntegrationPoint, count: usi
     }
 }
 
-fn strain(gradient: &Matrix3<f64>) -> Matrix3<f64> {
+pub(crate) fn strain(gradient: &Matrix3<f64>) -> Matrix3<f64> {
     0.5 * (gradient + gradient.transpose())
 }
 
-fn second_strain(a: &Matrix3<f64>, b: &Matrix3<f64>) -> Matrix3<f64> {
+pub(crate) fn second_strain(a: &Matrix3<f64>, b: &Matrix3<f64>) -> Matrix3<f64> {
     strain(&(a.transpose() * b))
 }
 
-fn stress(material: &Material, strain: &Matrix3<f64>) -> Matrix3<f64> {
+pub(crate) fn stress(material: &Material, strain: &Matrix3<f64>) -> Matrix3<f64> {
     let (lambda, mu) = material.lame();
     lambda * strain.trace() * Matrix3::identity() + 2.0 * mu * strain
 }

@@ -1,5 +1,7 @@
 //! Nodes by where they are, or by the physical group they are in.
 
+use std::collections::BTreeSet;
+
 use nalgebra::Vector3;
 
 use crate::error::MeshError;
@@ -40,6 +42,16 @@ impl Mesh {
                 })
             }
         }
+    }
+
+    /// The names of the physical groups that a node is in: of volumes, then of surfaces, curves and points.
+    pub fn groups_of_node(&self, node: u32) -> Vec<&str> {
+        let around = self.elements().iter().enumerate().filter(|(_, nodes)| nodes.contains(&node));
+        let of_volumes: BTreeSet<usize> = around.flat_map(|(e, _)| self.element_groups(e)).copied().collect();
+        let of_surfaces = self.surfaces().iter().filter(|surface| surface.nodes().contains(&node));
+        let of_sets = self.node_sets().iter().filter(|set| set.nodes.binary_search(&node).is_ok());
+        let volumes = of_volumes.into_iter().map(|group| self.groups()[group].as_str());
+        volumes.chain(of_surfaces.map(|s| s.name.as_str())).chain(of_sets.map(|set| set.name.as_str())).collect()
     }
 
     /// The nodes in a box, its faces included, ascending.

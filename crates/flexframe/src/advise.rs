@@ -5,7 +5,7 @@ mod verify;
 use std::fmt;
 
 use advice::{Row, Subject};
-use scene::{BuildProgress, Method, Model, Scene};
+use scene::{Assembly, BuildProgress, Method, Model, Scene};
 use serde::{Serialize, Serializer};
 
 use crate::effects::{is_on, is_switch};
@@ -14,6 +14,7 @@ use crate::modes::frequency_unit;
 use crate::run::RunError;
 
 pub use verify::Real;
+pub(crate) use verify::settled;
 
 /// What `flexframe advise` says.
 #[derive(Debug, Clone, Serialize)]
@@ -104,7 +105,9 @@ pub fn advise(scene: &Scene, verify: bool, mut progress: impl FnMut(AdviseProgre
         scene.time.method = Method::EXPONENTIAL;
     }
     let scene = &scene;
-    let model = Model::build(scene, |p| progress(AdviseProgress::Build(p)))?;
+    let assembly = Assembly::new(scene, |p| progress(AdviseProgress::Build(p)))?;
+    let mut builder = assembly.builder(scene)?;
+    let model = builder.build(scene, |p| progress(AdviseProgress::Build(p)))?;
     let step = step_row(scene, &model);
     let rows = model.advice.rows().chain([(Subject::Step, &step)]).map(|(subject, row)| EffectRow {
         subject,
@@ -136,7 +139,7 @@ pub fn advise(scene: &Scene, verify: bool, mut progress: impl FnMut(AdviseProgre
     if verify {
         let total = report.rows.iter().filter(|row| row.on.is_some()).count() as u64 + 1;
         progress(AdviseProgress::Verifying { done: 0, total });
-        let base = verify::Base::new(scene, &model)?;
+        let mut base = verify::Base::new(scene, &model, &mut builder)?;
         for (i, row) in report.rows.iter_mut().filter(|row| row.on.is_some()).enumerate() {
             progress(AdviseProgress::Verifying { done: i as u64 + 1, total });
             row.real = Some(base.influence(row.subject));

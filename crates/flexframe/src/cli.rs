@@ -11,7 +11,7 @@ use flexframe::cost::{self, CostSettings};
 use flexframe::export::{self, ExportRows, Exported, Motion};
 use flexframe::failure::{Details, Failure, FailureReport, Kind};
 use flexframe::run::{RunProgress, RunSettings};
-use flexframe::{advise, mode_shapes, modes, paper, run};
+use flexframe::{advise, html_report, mode_shapes, modes, paper, run};
 use scene::{BuildError, Flexible, Scene, SceneError};
 
 use crate::cli_error::CliError;
@@ -168,6 +168,15 @@ enum Command {
         /// Replace files that are there.
         #[arg(long)]
         overwrite: bool,
+    },
+    /// Write one HTML page about a run: the moving body in 3-D, shapes, histories, balances. It needs no network.
+    Report {
+        /// The results file; an unfinished one is shown up to its last row, and marked.
+        #[arg(value_name = "FILE")]
+        file: PathBuf,
+        /// The page to write [default: the results file's name with .html].
+        #[arg(short, long, value_name = "FILE")]
+        output: Option<PathBuf>,
     },
     /// Run a scene and draw it as an animated GIF.
     Animate {
@@ -344,6 +353,12 @@ fn execute(cli: Cli, json_errors: bool) -> Result<(), Box<dyn Failure>> {
                 output::warn(warning.as_deref())?;
             }
             Ok(())
+        }
+        Command::Report { file, output } => {
+            let output = output.unwrap_or_else(|| file.with_extension("html"));
+            html_report::write(&file, &output, |p| bar.build(p))?;
+            drop(bar);
+            output::list(&[output])
         }
         Command::Animate { scene, output, frames, magnify } => {
             let scene = Scene::read(scene)?;

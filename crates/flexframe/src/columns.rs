@@ -1,11 +1,12 @@
 //! The columns of a results file of `flexframe run`.
 //!
-//! To add a quantity, compute it in [`Observation`] and give it a line here. Writing, reading, the check that numbers are
+//! To add a quantity, compute it in [`Observation`](frames_rk4::Observation) or in [`Row`] and give it a line here. Writing, reading, the check that numbers are
 //! finite, and the attributes in the file follow from the line; a test says what to put into `docs/results.md`.
 
-use frames_rk4::Observation;
 use results::Column;
-use results::Values::{Modal, Number, Points, Quaternion, Vector};
+use results::Values::{Modal, Number, PointNumbers, Points, Quaternion, Vector};
+
+use crate::row::Row;
 
 /// What runs have whose files have more columns: see [`results::Metadata::parts`].
 pub mod part {
@@ -17,6 +18,8 @@ pub mod part {
     pub const SLIDER: &str = "slider";
     /// Something drives it.
     pub const DRIVE: &str = "drive";
+    /// The stress at the points is asked for.
+    pub const STRESS: &str = "stress";
     /// The hinge is driven.
     pub const DRIVEN_HINGE: &str = "driven hinge";
     /// The slider is driven.
@@ -25,13 +28,14 @@ pub mod part {
 
 const ENERGY: &str = "mass length^2/time^2";
 const MOMENTUM: &str = "mass length/time";
+const STRESS: &str = "mass/(length time^2)";
 const ANGULAR_MOMENTUM: &str = "mass length^2/time";
 const FORCE: &str = "mass length/time^2";
 const MOMENT: &str = "mass length^2/time^2";
 const POWER: &str = "mass length^2/time^3";
 
 /// Path, unit, frame, description, and how an observation gives the values.
-pub static COLUMNS: [Column<Observation>; 35] = [
+pub static COLUMNS: [Column<Row>; 38] = [
     Column::new("time", "time", "none", "time of each row", Number(|now| now.time)),
     Column::new(
         "attitude",
@@ -105,7 +109,7 @@ pub static COLUMNS: [Column<Observation>; 35] = [
         ENERGY,
         "none",
         "kinetic + strain energy - work + dissipation: constant in exact motion",
-        Number(Observation::energy_balance),
+        Number(|now| now.energy_balance()),
     ),
     Column::new(
         "momentum/linear",
@@ -140,7 +144,7 @@ pub static COLUMNS: [Column<Observation>; 35] = [
         FORCE,
         "global",
         "force of the constraints on the body",
-        Vector(|now: &Observation| now.attitude.to_global(&now.reaction.force_body).into()),
+        Vector(|now: &Row| now.attitude.to_global(&now.reaction.force_body).into()),
     )
     .only_with(part::CONSTRAINT),
     Column::new(
@@ -148,7 +152,7 @@ pub static COLUMNS: [Column<Observation>; 35] = [
         MOMENT,
         "global",
         "moment of the constraints on the body about its origin",
-        Vector(|now: &Observation| now.attitude.to_global(&now.reaction.moment_body).into()),
+        Vector(|now: &Row| now.attitude.to_global(&now.reaction.moment_body).into()),
     )
     .only_with(part::CONSTRAINT),
     Column::new(
@@ -156,7 +160,7 @@ pub static COLUMNS: [Column<Observation>; 35] = [
         FORCE,
         "body",
         "force of the constraints on the body",
-        Vector(|now: &Observation| now.reaction.force_body.into()),
+        Vector(|now: &Row| now.reaction.force_body.into()),
     )
     .only_with(part::CONSTRAINT),
     Column::new(
@@ -164,7 +168,7 @@ pub static COLUMNS: [Column<Observation>; 35] = [
         MOMENT,
         "body",
         "moment of the constraints on the body about its origin",
-        Vector(|now: &Observation| now.reaction.moment_body.into()),
+        Vector(|now: &Row| now.reaction.moment_body.into()),
     )
     .only_with(part::CONSTRAINT),
     Column::new(
@@ -172,23 +176,17 @@ pub static COLUMNS: [Column<Observation>; 35] = [
         "rad",
         "none",
         "angle that the body has turned by about the hinge since t = 0; it grows beyond a turn",
-        Number(|now: &Observation| now.reaction.turned),
+        Number(|now: &Row| now.reaction.turned),
     )
     .only_with(part::HINGE),
-    Column::new(
-        "hinge/speed",
-        "rad/time",
-        "none",
-        "rate of hinge/angle",
-        Number(|now: &Observation| now.reaction.turning),
-    )
-    .only_with(part::HINGE),
+    Column::new("hinge/speed", "rad/time", "none", "rate of hinge/angle", Number(|now: &Row| now.reaction.turning))
+        .only_with(part::HINGE),
     Column::new(
         "slider/position",
         "length",
         "none",
         "distance that the body has moved by along the slider since t = 0",
-        Number(|now: &Observation| now.reaction.slid),
+        Number(|now: &Row| now.reaction.slid),
     )
     .only_with(part::SLIDER),
     Column::new(
@@ -196,7 +194,7 @@ pub static COLUMNS: [Column<Observation>; 35] = [
         "length/time",
         "none",
         "rate of slider/position",
-        Number(|now: &Observation| now.reaction.sliding),
+        Number(|now: &Row| now.reaction.sliding),
     )
     .only_with(part::SLIDER),
     Column::new(
@@ -204,7 +202,7 @@ pub static COLUMNS: [Column<Observation>; 35] = [
         MOMENT,
         "none",
         "torque of the drive on the body, about the hinge",
-        Number(|now: &Observation| now.reaction.drive),
+        Number(|now: &Row| now.reaction.drive),
     )
     .only_with(part::DRIVEN_HINGE),
     Column::new(
@@ -212,17 +210,11 @@ pub static COLUMNS: [Column<Observation>; 35] = [
         FORCE,
         "none",
         "force of the drive on the body, along the slider",
-        Number(|now: &Observation| now.reaction.drive),
+        Number(|now: &Row| now.reaction.drive),
     )
     .only_with(part::DRIVEN_SLIDER),
-    Column::new(
-        "drive/power",
-        POWER,
-        "none",
-        "power of the drive",
-        Number(|now: &Observation| now.reaction.drive_power),
-    )
-    .only_with(part::DRIVE),
+    Column::new("drive/power", POWER, "none", "power of the drive", Number(|now: &Row| now.reaction.drive_power))
+        .only_with(part::DRIVE),
     Column::new(
         "points/displacement",
         "length",
@@ -265,4 +257,28 @@ pub static COLUMNS: [Column<Observation>; 35] = [
         "the same in body axes",
         Points(|now, i| Some(now.points.get(i)?.elastic_displacement_body.into())),
     ),
+    Column::new(
+        "points/stress",
+        STRESS,
+        "body",
+        "stress at the point: components xx, yy, zz, xy, yz, zx",
+        PointNumbers(6, |now: &Row, i| Some(&now.stress.get(i)?.components)),
+    )
+    .only_with(part::STRESS),
+    Column::new(
+        "points/von_mises_stress",
+        STRESS,
+        "none",
+        "von Mises stress at the point",
+        PointNumbers(1, |now: &Row, i| Some(&now.stress.get(i)?.von_mises)),
+    )
+    .only_with(part::STRESS),
+    Column::new(
+        "points/principal_stress",
+        STRESS,
+        "none",
+        "principal stresses at the point, the largest first",
+        PointNumbers(3, |now: &Row, i| Some(&now.stress.get(i)?.principal)),
+    )
+    .only_with(part::STRESS),
 ];

@@ -21,9 +21,9 @@ mod table;
 
 use std::path::Path;
 
-use fem_tet10::read_msh;
+use advice::Subject;
 use frames_rk4::{Method, StepControl};
-use scene::{Body, BuildProgress, Choice, Flexible, Model, Scene};
+use scene::{Assembly, BuildProgress, Flexible, Scene};
 
 pub use answer::Answer;
 pub use error::CostError;
@@ -39,6 +39,7 @@ pub use short::{duration, setting};
 
 pub use crate::run::RunFailure;
 
+use crate::advise::settled;
 use answer::refine;
 use case::PreparedScene;
 use ladder::{Judge, climb};
@@ -68,15 +69,19 @@ pub fn price_list(
     settings: CostSettings,
     mut progress: impl FnMut(CostProgress),
 ) -> Result<CostReport, CostError> {
-    let model = Model::build(scene, |p| progress(CostProgress::Build(p)))?;
+    let assembly = Assembly::new(scene, |p| progress(CostProgress::Build(p)))?;
+    let mut builder = assembly.builder(scene)?;
+    let model = builder.build(scene, |p| progress(CostProgress::Build(p)))?;
     let flexible = model.body.flexible() - model.static_shapes();
-    let counts = modes::counts(flexible, most_modes(scene));
-    let most = counts.last().map_or(flexible, |most| *most);
-    let mut richest = scene.clone();
-    richest.modes.flexible = Flexible::Count(most);
-    // Static shapes stand behind the modes, and would be cut off with them.
-    richest.modes.static_correction = Choice::Off;
-    let richest = Model::build(&richest, |p| progress(CostProgress::Build(p)))?;
+    // The same effects with each number of modes, and no static shapes, which stand for modes that are left out.
+    let mut settled = settled(scene, &model, Some((Subject::StaticCorrection, false)));
+    let mut with_modes = Vec::new();
+    for count in modes::counts(flexible, builder.available()).into_iter().rev() {
+        settled.modes.flexible = Flexible::Count(count);
+        with_modes.insert(0, builder.build(&settled, |p| progress(CostProgress::Build(p)))?);
+    }
+    drop(builder);
+    drop(assembly);
     let case = PreparedScene::new(scene, &model);
 
     let ladders: Vec<(Method, bool)> = Method::ALL
@@ -109,7 +114,7 @@ pub fn price_list(
         refine(&case, &judge, &mut lines, target);
     }
     ladder::mark_front(&mut lines);
-    let (modes, modes_failure) = match modes::compare(scene, &richest, &counts, &settings) {
+    let (modes, modes_failure) = match modes::compare(&settled, &with_modes, &settings) {
         Ok(modes) => (modes, None),
         Err((count, failure)) => (Vec::new(), Some(format!("with {count} modes: {failure}"))),
     };
@@ -140,16 +145,6 @@ pub fn price_list(
 /// Method and control that the scene asks for itself.
 fn own_setting(scene: &Scene) -> (Method, StepControl) {
     (scene.time.method, scene.time.control)
-}
-
-/// Flexible modes of the scene's mesh. A mesh that cannot be read is refused where the model is built.
-fn most_modes(scene: &Scene) -> usize {
-    match &scene.body {
-        Body::Meshed(body) => {
-            read_msh(&body.mesh).map_or(usize::MAX, |mesh| (3 * mesh.positions().len()).saturating_sub(6))
-        }
-        Body::Rigid(_) => 0,
-    }
 }
 
 impl Reference {

@@ -100,7 +100,7 @@ fn assert_describes_its_columns(path: &Path, rows: usize, metadata: &Metadata) {
     for column in &COLUMNS {
         let path = column.path.to_owned();
         if column.part.is_some() {
-            assert!(file.dataset(&path).is_err(), "{path}: nothing holds the ring");
+            assert!(file.dataset(&path).is_err(), "{path}: the ring has no part of it");
             continue;
         }
         let dataset = file.dataset(&path).unwrap();
@@ -150,6 +150,8 @@ fn the_page_on_results_has_the_table_of_columns() {
             Values::Vector(_) => "T×3",
             Values::Quaternion(_) => "T×4",
             Values::Modal(_) => "T×nf",
+            Values::PointNumbers(1, _) => "T×P",
+            Values::PointNumbers(width, _) => &format!("T×P×{width}"),
         };
         table += &format!("| `{path}` | {shape} | {unit} | {frame} | {description} |\n");
     }

@@ -86,6 +86,6 @@ fn the_beam_of_wu_and_haug_lags_as_beam_theory_says() {
 }
 
 fn set_speed(scene: &mut Scene, speed: f64) {
-    let Some(Constraint::Hinge { motion: Some(drive), .. }) = &mut scene.constraint else { unreachable!() };
-    drive.amplitude = speed;
+    let Some(Constraint::Hinge { motion: Some(driven), .. }) = &mut scene.constraint else { unreachable!() };
+    driven.amplitude = speed;
 }

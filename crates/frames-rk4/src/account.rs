@@ -1,15 +1,15 @@
 //! Whether the energy that a motion has is the one that it should have.
 //!
 //! The start, the work of the loads and the dissipation account for the energy of every state. A scheme whose steps are
-//! too long breaks this long before a number overflows. The account watches every step; unlike an
-//! [`Observer`](crate::Observer) it needs no evaluation of the rates, ends the run, and is part of its checkpoint.
+//! too long breaks this long before a number overflows. The account is an observer that every run has: it needs no
+//! evaluation of the rates, ends the run, and is part of its checkpoint.
 
 use serde::{Deserialize, Serialize};
 
 use crate::checkpoint::{CheckpointError, equal_room, finite};
 use crate::energies::Energies;
 use crate::error::StepError;
-use crate::scheme::Scheme;
+use crate::observer::{Observer, StepEnd};
 
 /// The account of a run.
 #[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
@@ -53,9 +53,10 @@ pub(crate) fn is_resolved(rate: f64, step: f64) -> bool {
 }
 
 impl EnergyAccount {
-    /// An empty account of loads that would, one by one, give the body this energy.
-    pub(crate) fn new(of_loads: f64) -> Self {
-        Self { of_loads, ..Self::default() }
+    /// The account of a run that begins with these energies, if they are known, and of loads that would, one by one, give
+    /// the body this energy.
+    pub(crate) fn new(start: Option<Energies>, of_loads: f64) -> Self {
+        Self { start, of_loads, ..Self::default() }
     }
 
     /// Energy scale of the loads.
@@ -70,27 +71,6 @@ impl EnergyAccount {
         finite("the account of the energy", [scale, largest_exchange, exchanged, of_loads].into_iter().chain(done))
     }
 
-    /// Sees the end of a step of a scheme whose longest step so far is `step`.
-    ///
-    /// # Errors
-    /// As [`Self::look`].
-    pub(crate) fn step(&mut self, scheme: &dyn Scheme, step: f64) -> Result<(), StepError> {
-        self.exchange(scheme.work_and_dissipation());
-        self.look(scheme, step)
-    }
-
-    /// Checks the energy where the scheme last found it: of the conservative form that is the start of the last step or
-    /// the last observation, since it takes an evaluation of the rates.
-    ///
-    /// # Errors
-    /// [`StepError::NotFinite`] and [`StepError::Energy`].
-    pub(crate) fn look(&mut self, scheme: &dyn Scheme, step: f64) -> Result<(), StepError> {
-        match scheme.energies() {
-            Some(now) => self.check(&now, scheme.fastest_rate(), step),
-            None => Ok(()),
-        }
-    }
-
     /// Takes a step into account, after which work and dissipation since the beginning are these.
     fn exchange(&mut self, done: [f64; 2]) {
         self.exchanged += (done[0] - self.done[0]).abs() + (done[1] - self.done[1]).abs();
@@ -100,11 +80,6 @@ impl EnergyAccount {
     /// Sum of |work| + |dissipation| of all steps.
     pub(crate) fn exchanged(&self) -> f64 {
         self.exchanged
-    }
-
-    /// Whether nothing has been checked yet.
-    pub(crate) fn is_empty(&self) -> bool {
-        self.start.is_none()
     }
 
     /// Checks the energy at a time; the `rate` is the largest of ω_k and 2 ζ_k ω_k.
@@ -130,6 +105,22 @@ impl EnergyAccount {
             excess > OFF_UNRESOLVED * (self.scale + self.of_loads) + unknown
         };
         if is_off { Err(StepError::Energy { time, energy: internal, accounted, step }) } else { Ok(()) }
+    }
+}
+
+impl Observer for EnergyAccount {
+    fn step(&mut self, now: &mut StepEnd<'_>) -> Result<(), StepError> {
+        self.exchange(now.scheme().work_and_dissipation());
+        self.observed(now)
+    }
+
+    /// Checks the energy where the scheme last found it: of the conservative form that is the start of the last step or
+    /// the last observation, since it takes an evaluation of the rates.
+    fn observed(&mut self, now: &mut StepEnd<'_>) -> Result<(), StepError> {
+        match now.scheme().energies() {
+            Some(energies) => self.check(&energies, now.scheme().fastest_rate(), now.longest_step()),
+            None => Ok(()),
+        }
     }
 }
 
@@ -159,7 +150,7 @@ mod tests {
     #[test]
     fn an_energy_far_below_that_of_the_loads_passes() {
         let check = |energy: f64| {
-            let mut account = EnergyAccount::new(2.0);
+            let mut account = EnergyAccount::new(None, 2.0);
             account.check(&energies(0.0, 0.0, 0.0, 0.0), 1.0, 0.1).unwrap();
             account.check(&energies(1.0, energy, 0.0, 0.0), 1.0, 0.1)
         };

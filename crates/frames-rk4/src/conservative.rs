@@ -34,16 +34,17 @@
 //! p' = Dᵀ [Σ ω_iω_j (c_ij + N_ij ξ) − Σ ω_i G_i ν + Ψ_extᵀF] + Ḋᵀμ − Λq − D q̇ − ∂V_n/∂q
 //! ```
 
+mod energy;
+mod state;
+
 use faer::Mat;
 use modal::ReducedBody;
-use nalgebra::{Matrix3, SVector, Vector3};
+use nalgebra::{Matrix3, Vector3};
 use rigid_kin::{Attitude, f_inverse, transformation_matrix};
 
 use crate::column_major::{columns, dot, multiply, multiply_top};
 use crate::effect::{Effect, EffectMap};
-use crate::energies::Energies;
 use crate::error::{RateError, SetupError, StepError};
-use crate::history::History;
 use crate::initial::Initial;
 use crate::load::{Applied, Coordinates, Kinematics, SharedLoad};
 use crate::manifold::{Manifold, Place};
@@ -52,37 +53,8 @@ use crate::own_coupling::own_coupling;
 use crate::physics::{Drive, DrivenMotion, Physics};
 use crate::reaction::Held;
 use crate::state::MotionState;
-
-/// What moves slowly, beside the modes: see [`part`].
-pub(crate) type Slow = SVector<f64, 20>;
-
-/// First entries of the parts of [`Slow`].
-pub(crate) mod part {
-    /// Rotation vector since the start of the step, body axes.
-    pub const THETA: usize = 0;
-    /// Position of the origin, global.
-    pub const POSITION: usize = 3;
-    /// Linear momentum P of the motion of the origin, global.
-    pub const MOMENTUM: usize = 6;
-    /// Angular momentum π about the origin, one component for each axis of rotation.
-    pub const PI: usize = 9;
-    /// Work of the loads, and of what drives the body.
-    pub const WORK: usize = 12;
-    /// Energy that damping has taken.
-    pub const DISSIPATION: usize = 13;
-    /// Angular impulse of the loads about the origin, global.
-    pub const ANGULAR_IMPULSE: usize = 14;
-    /// Impulse of the loads, global.
-    pub const IMPULSE: usize = 17;
-}
-
-pub(crate) fn get(slow: &Slow, first: usize) -> Vector3<f64> {
-    slow.fixed_rows::<3>(first).into()
-}
-
-fn set(slow: &mut Slow, first: usize, value: &Vector3<f64>) {
-    slow.fixed_rows_mut::<3>(first).copy_from(value);
-}
+pub use state::ConservativeState;
+pub(crate) use state::{Slow, get, part, set};
 
 /// How the origin moves.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -141,82 +113,6 @@ pub struct ConservativeBody {
     pub(crate) manifold: Option<Manifold>,
     /// Of a body that something holds.
     pub(crate) held: Option<Held>,
-}
-
-/// State at a time.
-#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct ConservativeState {
-    /// Time.
-    pub time: f64,
-    /// Attitude of the body frame.
-    pub attitude: Attitude,
-    pub(crate) slow: Slow,
-    /// Angle about the axis of a hinge since the beginning, rad.
-    pub(crate) turned: f64,
-    /// Modal displacements q (nf).
-    pub modal_displacement: Vec<f64>,
-    /// Modal momenta p = q̇ + S ω (nf).
-    pub modal_momentum: Vec<f64>,
-}
-
-impl ConservativeState {
-    /// Takes over another state of the same body, without allocating.
-    pub(crate) fn copy_from(&mut self, other: &Self) {
-        self.time = other.time;
-        self.attitude = other.attitude;
-        self.slow = other.slow;
-        self.turned = other.turned;
-        self.modal_displacement.copy_from_slice(&other.modal_displacement);
-        self.modal_momentum.copy_from_slice(&other.modal_momentum);
-    }
-
-    /// Position of the body's origin, global components.
-    pub fn origin_global(&self) -> Vector3<f64> {
-        get(&self.slow, part::POSITION)
-    }
-
-    /// Linear momentum of the motion of the origin, global components: of a free body, that of the body.
-    pub fn linear_momentum_global(&self) -> Vector3<f64> {
-        get(&self.slow, part::MOMENTUM)
-    }
-
-    /// Angular momentum π about the origin, one component for each axis that the body turns about: the three body axes,
-    /// or the axis of a hinge first.
-    pub fn angular_momentum_body(&self) -> Vector3<f64> {
-        get(&self.slow, part::PI)
-    }
-
-    /// Puts the origin to another place, global components.
-    pub fn set_origin_global(&mut self, origin: &Vector3<f64>) {
-        set(&mut self.slow, part::POSITION, origin);
-    }
-
-    /// Gives it another linear momentum, global components.
-    pub fn set_linear_momentum_global(&mut self, momentum: &Vector3<f64>) {
-        set(&mut self.slow, part::MOMENTUM, momentum);
-    }
-
-    /// Gives it another angular momentum, in the axes of [`Self::angular_momentum_body`].
-    pub fn set_angular_momentum_body(&mut self, momentum: &Vector3<f64>) {
-        set(&mut self.slow, part::PI, momentum);
-    }
-
-    /// Refuses lists of the wrong length and numbers that are not finite.
-    pub(crate) fn check(&self, flexible: usize) -> Result<(), SetupError> {
-        for (what, list) in [
-            ("the list of modal displacements", &self.modal_displacement),
-            ("the list of modal momenta", &self.modal_momentum),
-        ] {
-            if list.len() != flexible {
-                return Err(SetupError::Length { what, expected: flexible, found: list.len() });
-            }
-        }
-        let numbers = [&self.time, &self.turned].into_iter().chain(&self.slow).chain(&self.modal_displacement);
-        match numbers.chain(&self.modal_momentum).copied().find(|x| !x.is_finite()) {
-            Some(found) => Err(SetupError::Value { what: "a value of the state", found, expected: "a finite number" }),
-            None => Ok(()),
-        }
-    }
 }
 
 /// Rates of a [`ConservativeState`].
@@ -473,7 +369,7 @@ impl ConservativeBody {
         initial.check(self.flexible())?;
         let mut e = self.evaluation();
         self.deform(&initial.modal_displacement, &mut e);
-        let speed = self.drive.as_ref().map_or(0.0, |drive| drive.speed(0.0, 0.0));
+        let speed = self.drive.as_ref().map_or(0.0, |drive| drive.speed.at(0.0, 0.0));
         let mut spin = Vector3::zeros();
         for (w, axis) in spin.iter_mut().zip(&self.axes) {
             *w = if self.turn_driven { speed } else { axis.dot(&initial.omega) };
@@ -667,8 +563,8 @@ impl ConservativeBody {
         e: &mut Evaluation,
     ) -> Result<(), RateError> {
         self.deform(q, e);
-        let speed = self.drive.as_ref().map_or(0.0, |drive| drive.speed(t, branch_time));
-        let driven_acceleration = self.drive.as_ref().map_or(0.0, |drive| drive.acceleration(t, branch_time));
+        let speed = self.drive.as_ref().map_or(0.0, |drive| drive.speed.at(t, branch_time));
+        let driven_acceleration = self.drive.as_ref().map_or(0.0, |drive| drive.speed.rate(t, branch_time));
         e.driven_speed = speed;
         let pi = get(slow, part::PI);
         if self.turn_driven {
@@ -857,9 +753,11 @@ impl ConservativeBody {
     /// Takes a state past a jump of the speed of the drive at its time. The drive does its impulse times the mean of the
     /// speeds.
     pub(crate) fn pass_jump(&self, state: &mut ConservativeState, e: &mut Evaluation) -> Result<(), RateError> {
-        let Some(drive) = &self.drive else { return Ok(()) };
+        if self.drive.is_none() {
+            return Ok(());
+        }
         // The corner itself is where it is but for rounding.
-        let aside = 1e-12 * drive.span;
+        let aside = 1e-12 * state.time.abs();
         let on_side =
             |state: &ConservativeState, branch_time: f64, e: &mut Evaluation| -> Result<[f64; 2], RateError> {
                 let (q, p) = (&state.modal_displacement, &state.modal_momentum);
@@ -896,126 +794,6 @@ impl ConservativeBody {
     pub(crate) fn linear_rate(&self, k: usize, q: f64, p: f64) -> f64 {
         let omega = self.circular_frequencies[k];
         -(omega * omega * q + self.damping[k] * p)
-    }
-
-    /// The energies of a motion whose rates are in `e`; none of a driven body, to which a jump of its drive gives energy
-    /// at an instant.
-    pub(crate) fn energies_of(&self, time: f64, slow: &Slow, q: &[f64], p: &[f64], e: &Evaluation) -> Option<Energies> {
-        if self.drive.is_some() {
-            return None;
-        }
-        let internal = 0.5 * (get(slow, part::PI).dot(&e.spin) + dot(p, &e.modal_velocity)) + self.strain_energy(q);
-        let translation = 0.5 * get(slow, part::MOMENTUM).norm_squared() / self.mass;
-        let (work, dissipation) = (slow[part::WORK], slow[part::DISSIPATION]);
-        Some(Energies { time, internal, translation, work, dissipation })
-    }
-
-    /// Energy of rotation, vibration and strain of a state whose rates are in `e`: all but that of the origin's motion.
-    pub(crate) fn internal_energy(&self, state: &ConservativeState, e: &Evaluation) -> f64 {
-        let (kinetic, strain) = self.energies(state, e);
-        kinetic + strain - 0.5 * get(&state.slow, part::MOMENTUM).norm_squared() / self.mass
-    }
-
-    /// Energy that the difference of two states at one time would have: ½ P²/m + ½ π·J0⁻¹π + ½ Σ (ω_k² q² + p²).
-    pub(crate) fn energy_of_difference(&self, a: &ConservativeState, b: &ConservativeState) -> f64 {
-        let slow = a.slow - b.slow;
-        let rigid = self.rigid_energy(&get(&slow, part::MOMENTUM), &get(&slow, part::PI));
-        let q = a.modal_displacement.iter().zip(&b.modal_displacement);
-        let p = a.modal_momentum.iter().zip(&b.modal_momentum);
-        rigid + q.zip(p).enumerate().map(|(k, (q, p))| self.modal_energy(k, q.0 - q.1, p.0 - p.1)).sum::<f64>()
-    }
-
-    /// Energies that the loads, one by one, would give the body from rest within the longest period or until `end`: by
-    /// their impulse the rigid body, by their largest force the modes. The scale of a motion that begins without any.
-    pub(crate) fn energy_of_loads(&self, end: f64) -> f64 {
-        let lowest = self.circular_frequencies.iter().copied().reduce(f64::min);
-        let period = lowest.map_or(end, |omega| (std::f64::consts::TAU / omega).min(end));
-        let still = vec![0.0; self.extended()];
-        let modes = &still[..self.flexible()];
-        let on_manifold = self.manifold.as_ref().map(|_| [modes, modes]);
-        let coordinates = Coordinates { first: 6, displacement: &still, velocity: &still, on_manifold };
-        // At rest, in the body's own axes: a dead load does as much in any attitude, but for how its modes see it.
-        let motion = Kinematics {
-            time: 0.0,
-            branch_time: 0.0,
-            body_from_global: &Matrix3::identity(),
-            origin_global: self.origin,
-            velocity_global: Vector3::zeros(),
-            omega_body: Vector3::zeros(),
-            coordinates,
-            unit: true,
-        };
-        // A load without a history is a law of the motion: from rest it has no scale of its own.
-        let energy = |(load, history): (&SharedLoad, &History)| {
-            let largest = history.largest(end);
-            let impulse = history.magnitude_integral(end).min(largest * period);
-            let mut force = still.clone();
-            let mut applied = Applied::new(coordinates, Vector3::zeros(), &mut force);
-            load.apply(&motion, &mut applied);
-            let Applied { force_body, moment_body, .. } = applied;
-            let moment =
-                Vector3::from_iterator((0..3).map(|i| self.axes.get(i).map_or(0.0, |axis| axis.dot(&moment_body))));
-            let pushed = match self.translation {
-                Translation::Free => force_body,
-                Translation::Along(direction) => along(&direction, &force_body),
-                Translation::None | Translation::Driven(_) => Vector3::zeros(),
-            };
-            let strain: f64 =
-                force.iter().zip(&self.circular_frequencies).map(|(f, w)| 0.5 * (largest * f / w).powi(2)).sum();
-            self.rigid_energy(&(pushed * impulse), &(moment * impulse)) + strain
-        };
-        let driven = self.drive.as_ref().map_or(0.0, |drive| {
-            let speed = drive.amplitude * drive.history.largest(end);
-            let inertia = if self.turn_driven { self.inertia[(0, 0)] } else { self.mass };
-            0.5 * inertia * speed * speed
-        });
-        let with_history = self.loads.iter().filter_map(|load| Some((load, load.history()?)));
-        with_history.map(energy).sum::<f64>() + driven
-    }
-
-    /// ½ P²/m + ½ π·J0⁻¹π
-    pub(crate) fn rigid_energy(&self, momentum: &Vector3<f64>, pi: &Vector3<f64>) -> f64 {
-        0.5 * (momentum.norm_squared() / self.mass + pi.dot(&(self.inverse_inertia * pi)))
-    }
-
-    /// ½ (ω_k² q² + p²)
-    pub(crate) fn modal_energy(&self, k: usize, q: f64, p: f64) -> f64 {
-        let omega_q = self.circular_frequencies[k] * q;
-        0.5 * (omega_q * omega_q + p * p)
-    }
-
-    /// Energies of a state whose rates are in `e`: (kinetic, strain).
-    pub(crate) fn energies(&self, state: &ConservativeState, e: &Evaluation) -> (f64, f64) {
-        let q = &state.modal_displacement;
-        let moving = match (&self.drive, self.translation) {
-            (Some(_), Translation::Driven(direction)) => {
-                e.driven_momentum * state.attitude.to_global(&direction).dot(&get(&e.slow, part::POSITION))
-            }
-            (Some(_), _) => e.driven_momentum * e.spin[0],
-            (None, _) => {
-                get(&state.slow, part::MOMENTUM).norm_squared() / self.mass + get(&state.slow, part::PI).dot(&e.spin)
-            }
-        };
-        // What of the driven momentum is not in p.
-        let stressed = e.driven_speed * dot(&e.drive_stress, &e.velocity);
-        let kinetic = 0.5 * (moving + dot(&state.modal_momentum, &e.modal_velocity) - stressed);
-        (kinetic, self.strain_energy(q))
-    }
-
-    /// ½ qᵀΛq + V_n
-    fn strain_energy(&self, q: &[f64]) -> f64 {
-        let linear: f64 = q.iter().enumerate().map(|(k, q)| self.modal_energy(k, *q, 0.0)).sum();
-        linear + self.manifold.as_ref().map_or(0.0, |manifold| manifold.energy(q))
-    }
-
-    /// Lowest ω_k; infinite without modes.
-    pub(crate) fn lowest_frequency(&self) -> f64 {
-        self.circular_frequencies.iter().copied().fold(f64::INFINITY, f64::min)
-    }
-
-    /// Largest of ω_k and 2 ζ_k ω_k.
-    pub(crate) fn fastest_rate(&self) -> f64 {
-        self.circular_frequencies.iter().chain(&self.damping).copied().fold(0.0, f64::max)
     }
 }
 

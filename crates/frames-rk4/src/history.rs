@@ -278,7 +278,8 @@ fn within(start: f64, duration: f64, time: f64) -> bool {
     (start..=start + duration).contains(&time)
 }
 
-fn finite(what: &'static str, found: f64) -> Result<(), SetupError> {
+/// Refuses a number that is not finite.
+pub(crate) fn finite(what: &'static str, found: f64) -> Result<(), SetupError> {
     if found.is_finite() { Ok(()) } else { Err(SetupError::Value { what, found, expected: "a finite number" }) }
 }
 

@@ -82,8 +82,10 @@ pub enum LoadFrame {
     /// Global axes: a dead load.
     #[default]
     Global,
-    /// Body axes: a follower load.
+    /// Body axes: a follower load that turns with the body frame.
     Body,
+    /// Axes that turn with the material at the place of the load. Of a rigid body they are the body axes.
+    Material,
 }
 
 /// Modal forces of a load where its history is 1, as `columnsᵀ · vector`.
@@ -145,11 +147,12 @@ impl Kinematics<'_> {
         if self.unit { 1.0 } else { history.at(self.time, self.branch_time) }
     }
 
-    /// Body components of a vector with these components in `frame`.
+    /// Body components of a vector with these components in `frame`; in axes that turn with the material, those that it has
+    /// on the undeformed body.
     pub fn to_body(&self, vector: &Vector3<f64>, frame: LoadFrame) -> Vector3<f64> {
         match frame {
             LoadFrame::Global => self.body_from_global * vector,
-            LoadFrame::Body => *vector,
+            LoadFrame::Body | LoadFrame::Material => *vector,
         }
     }
 
@@ -179,6 +182,18 @@ impl Kinematics<'_> {
     /// Velocities of the flexible modes (nf).
     pub fn modal_velocity(&self) -> &[f64] {
         self.coordinates.modes()[1]
+    }
+
+    /// Body components of a vector that turns with the material at a place, from those that it has on the undeformed body.
+    ///
+    /// The modes give w = ½ curl u, the antisymmetric part of ∇u, which of a rotation by ψ about a unit vector is sin ψ times
+    /// that vector: the vector is turned by that rotation, whose length it keeps.
+    pub(crate) fn turned(&self, place: &RotationShapes, vector: &Vector3<f64>) -> Vector3<f64> {
+        let Coordinates { first, displacement, .. } = self.coordinates;
+        let w = sum(&place.columns()[6..], &displacement[6 - first..]);
+        let sine = w.norm_squared();
+        let (w, cosine) = if sine < 1.0 { (w, (1.0 - sine).sqrt()) } else { (w / sine.sqrt(), 0.0) };
+        vector + w.cross(vector) + w.cross(&w.cross(vector)) / (1.0 + cosine)
     }
 
     /// From the origin to a point of the deformed body, body components.

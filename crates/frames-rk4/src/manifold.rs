@@ -117,15 +117,16 @@ impl Manifold {
         &self.0.large
     }
 
-    /// ξ(q) in the extended shapes, as many as the body has.
-    pub fn coordinates(&self, q: &[f64], xi: &mut [f64]) {
-        let Constants { large, modes, slopes, .. } = &*self.0;
-        xi[..*modes].copy_from_slice(q);
-        xi[*modes..].fill(0.0);
-        for (index, slope) in slopes.iter().enumerate() {
-            let product = 0.5 * q[large[index / large.len()]] * q[large[index % large.len()]];
-            xi.iter_mut().zip(slope).for_each(|(xi, slope)| *xi += slope * product);
+    /// ξ(q): the coordinates of the extended shapes.
+    pub fn coordinates(&self, q: &[f64]) -> Vec<f64> {
+        let Constants { large, slopes, .. } = &*self.0;
+        let mut xi = vec![0.0; self.extended()];
+        xi[..q.len()].copy_from_slice(q);
+        for (pair, slopes) in slopes.iter().enumerate() {
+            let product = q[large[pair / large.len()]] * q[large[pair % large.len()]];
+            xi.iter_mut().zip(slopes).for_each(|(xi, slope)| *xi += 0.5 * slope * product);
         }
+        xi
     }
 
     fn extended(&self) -> usize {

@@ -91,18 +91,46 @@ impl Observation {
 
     /// Whether all quantities are finite numbers.
     pub fn is_finite(&self) -> bool {
-        let Self { position_global, velocity_global, omega_body, alpha_body, .. } = self;
-        let balances = [self.linear_balance_global(), self.angular_balance_global()];
-        let vectors = [position_global, velocity_global, omega_body, alpha_body].into_iter().chain(&balances);
-        let modal = [&self.modal_displacement, &self.modal_velocity, &self.modal_acceleration];
-        let of_point = |p: &PointMotion| {
-            [p.displacement, p.velocity, p.acceleration, p.rigid_acceleration, p.elastic_displacement_body]
+        // All fields by name, so that none that is added is forgotten.
+        let Self {
+            time,
+            attitude,
+            origin_global,
+            position_global,
+            velocity_global,
+            omega_body,
+            alpha_body,
+            modal_displacement,
+            modal_velocity,
+            modal_acceleration,
+            kinetic_energy,
+            strain_energy,
+            work: Work { work, dissipation, impulse_global, angular_impulse_global },
+            linear_momentum_global,
+            angular_momentum_global,
+            reaction,
+            points,
+        } = self;
+        let numbers = [time, kinetic_energy, strain_energy, work, dissipation];
+        let modal = [modal_displacement, modal_velocity, modal_acceleration].into_iter().flatten();
+        let vectors = [origin_global, position_global, velocity_global, omega_body, alpha_body];
+        let momenta = [impulse_global, angular_impulse_global, linear_momentum_global, angular_momentum_global];
+        let of_points = |point: &PointMotion| {
+            let PointMotion {
+                displacement,
+                velocity,
+                acceleration,
+                rigid_acceleration,
+                elastic_displacement_body,
+                elastic_displacement_global,
+            } = *point;
+            let elastic = [elastic_displacement_body, elastic_displacement_global];
+            let motion = [displacement, velocity, acceleration, rigid_acceleration];
+            motion.iter().chain(&elastic).flatten().all(|x| x.is_finite())
         };
-        let points = self.points.iter().flat_map(of_point);
-        self.energy_balance().is_finite()
-            && vectors.flatten().chain(self.reaction.numbers()).all(|x| x.is_finite())
-            && points.into_iter().all(|vector| vector.iter().all(|x| x.is_finite()))
-            && modal.into_iter().flatten().chain(&self.attitude.wxyz()).all(|x| x.is_finite())
+        numbers.into_iter().chain(reaction.numbers()).chain(modal).chain(&attitude.wxyz()).all(|x| x.is_finite())
+            && vectors.into_iter().chain(momenta).flatten().all(|x| x.is_finite())
+            && points.iter().all(of_points)
     }
 
     /// Kinetic + strain energy.

@@ -2,10 +2,11 @@
 
 use faer::Mat;
 use nalgebra::Vector3;
+use serde::Deserialize;
 
 use crate::effect::EffectMap;
 use crate::error::SetupError;
-use crate::history::History;
+use crate::history::{Expression, History, Table, finite};
 use crate::manifold::Manifold;
 
 /// A motion that something forces on the held part of a body. The body's own modes are those of the part held still
@@ -14,12 +15,19 @@ use crate::manifold::Manifold;
 pub struct Drive {
     /// How it moves.
     pub motion: DrivenMotion,
-    /// Angular velocity, or velocity, where the history is 1.
+    /// How fast.
+    pub speed: DrivenSpeed,
+}
+
+/// A speed over time: the amplitude times the history. As data, tables and expressions have other types `T` and `E` than
+/// those that can be evaluated, as in [`History`].
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DrivenSpeed<T = Table, E = Expression> {
+    /// Angular velocity, rad/time, or velocity, length/time, where the history is 1.
     pub amplitude: f64,
-    /// Course of the speed.
-    pub history: History,
-    /// Length of the run.
-    pub span: f64,
+    /// Factor on the amplitude over time.
+    pub history: History<T, E>,
 }
 
 /// How a driven part moves.
@@ -37,31 +45,31 @@ pub enum DrivenMotion {
     },
 }
 
-impl Drive {
-    /// The speed at a time, by the branch that holds at `branch_time`.
-    pub(crate) fn speed(&self, time: f64, branch_time: f64) -> f64 {
+impl DrivenSpeed {
+    /// Its value at a time, by the branch that holds at `branch_time`.
+    pub(crate) fn at(&self, time: f64, branch_time: f64) -> f64 {
         self.amplitude * self.history.at(time, branch_time)
     }
 
-    /// The rate of the speed.
-    pub(crate) fn acceleration(&self, time: f64, branch_time: f64) -> f64 {
+    /// Its rate.
+    pub(crate) fn rate(&self, time: f64, branch_time: f64) -> f64 {
         self.amplitude * self.history.rate(time, branch_time)
     }
 
+    /// The amplitude times the largest factor up to a time.
+    pub(crate) fn largest(&self, end: f64) -> f64 {
+        self.amplitude * self.history.largest(end)
+    }
+}
+
+impl Drive {
     /// Refuses numbers that are not finite, and a direction that is no unit vector.
     pub(crate) fn check(&self) -> Result<(), SetupError> {
-        self.history.check()?;
+        let DrivenSpeed { amplitude, history } = &self.speed;
+        history.check()?;
         let (DrivenMotion::Turn { axis: unit } | DrivenMotion::Slide { direction: unit }) = self.motion;
         check_unit("the length of a drive's direction", &unit)?;
-        if !self.amplitude.is_finite() {
-            let (what, expected) = ("the speed of a drive", "a finite number");
-            return Err(SetupError::Value { what, found: self.amplitude, expected });
-        }
-        if !(self.span > 0.0 && self.span.is_finite()) {
-            let (what, expected) = ("the length of a driven run", "a positive number");
-            return Err(SetupError::Value { what, found: self.span, expected });
-        }
-        Ok(())
+        finite("the speed of a drive", *amplitude)
     }
 }
 

@@ -117,7 +117,7 @@ impl Setup<'_> {
         let StepLimit::Turn(longest_turn) = self.method.limit else { return model.check_step(step) };
         positive("the step", step)?;
         let driven = self.physics.drive.as_ref().map_or(0.0, |drive| match drive.motion {
-            DrivenMotion::Turn { .. } => (drive.amplitude * drive.history.largest(self.end)).abs(),
+            DrivenMotion::Turn { .. } => drive.speed.largest(self.end).abs(),
             DrivenMotion::Slide { .. } => 0.0,
         });
         let spin = self.initial.omega.norm().max(driven);

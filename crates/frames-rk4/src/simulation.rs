@@ -1,7 +1,6 @@
 //! A run: a body, a method, the steps that lead through it, and the times at which it is observed.
 
-use std::fmt;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 
 use serde::{Deserialize, Serialize};
 
@@ -16,6 +15,8 @@ use crate::load::SharedLoad;
 use crate::moment::Moment;
 use crate::motion::PointShapes;
 use crate::observation::Observation;
+use crate::observer::{Observer, StepEnd};
+use crate::observers::Observers;
 use crate::plan::{EqualSteps, HalvedSteps, Plan, Progress, Rows, StepControl};
 use crate::scheme::Scheme;
 use crate::setup::{Beginning, Setup};
@@ -35,35 +36,6 @@ pub struct Stats {
     pub shortest: f64,
     /// Length of the longest step taken.
     pub longest: f64,
-}
-
-/// Watches a run step by step, without owning its loop.
-pub trait Observer: Send {
-    /// Sees the motion at the end of a step.
-    fn step(&mut self, now: &Observation);
-}
-
-impl<F: FnMut(&Observation) + Send> Observer for F {
-    fn step(&mut self, now: &Observation) {
-        self(now);
-    }
-}
-
-/// Those of a run; its copies have the same ones.
-#[derive(Clone, Default)]
-struct Observers(Vec<Arc<Mutex<dyn Observer>>>);
-
-impl Observers {
-    fn show(&self, now: &Observation) {
-        // An observer that panicked in another thread still sees what comes.
-        self.0.iter().for_each(|observer| observer.lock().unwrap_or_else(PoisonError::into_inner).step(now));
-    }
-}
-
-impl fmt::Debug for Observers {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} observers", self.0.len())
-    }
 }
 
 /// Where [`Simulation::advance`] has come to.
@@ -100,7 +72,6 @@ pub struct Simulation {
     corner_ahead: bool,
     points: Vec<PointShapes>,
     stats: Stats,
-    account: EnergyAccount,
     /// Whether the iterator has nothing more to give: it has failed.
     failed: bool,
     /// Whether a step has been tried, or the row at the start been given.
@@ -195,20 +166,21 @@ impl Simulation {
                 (None, Walk::Halved { tolerance, longest_try: f64::INFINITY, steps: None })
             }
         };
-        let drive = setup.physics.drive.as_ref().map(|drive| drive.history.clone());
+        let drive = setup.physics.drive.as_ref().map(|drive| drive.speed.history.clone());
         let of_loads = setup.loads.iter().filter_map(|load| load.history());
         let histories: Vec<History> = of_loads.chain(&drive).cloned().collect();
         let formula_steps = FormulaSteps::new(&histories, setup.end, step)?;
         let of_loads = setup.loads.iter().flat_map(|load| load.corners());
         let corners = of_loads.chain(drive.iter().flat_map(History::corners)).chain(formula_steps.stops());
         let looked_at = Observation::new(scheme.flexible(), setup.points.len());
+        let account = EnergyAccount::new(scheme.energies(), energy_of_loads);
         Ok(Self {
             fingerprint: Fingerprint::of(setup),
             scheme,
             events: Events::default(),
             last_step: None,
             looked_at,
-            observers: Observers::default(),
+            observers: Observers::new(account),
             plan: Plan::new(setup.end, corners, setup.rows),
             loads: setup.loads.to_vec(),
             drive,
@@ -220,7 +192,6 @@ impl Simulation {
             corner_ahead: false,
             points: setup.points.to_vec(),
             stats: Stats { accepted: 0, rejected: 0, evaluations: 0, shortest: f64::INFINITY, longest: 0.0 },
-            account: EnergyAccount::new(energy_of_loads),
             failed: false,
             begun: false,
         })
@@ -245,7 +216,8 @@ impl Simulation {
     /// [`SetupError`] for lists of the wrong length and numbers that are not finite.
     pub fn set_state(&mut self, state: &MotionState) -> Result<(), SetupError> {
         self.scheme.set_state(state)?;
-        self.account = EnergyAccount::new(self.account.of_loads());
+        let account = &mut self.observers.energy;
+        *account = EnergyAccount::new(self.scheme.energies(), account.of_loads());
         self.events.forget();
         self.go_on_from_here();
         Ok(())
@@ -281,7 +253,7 @@ impl Simulation {
 
     /// Shows every step's end to an observer.
     pub fn watch(&mut self, observer: Arc<Mutex<dyn Observer>>) {
-        self.observers.0.push(observer);
+        self.observers.others.push(observer);
     }
 
     /// Keeps the start of each step from now on, for [`Self::interpolate`].
@@ -321,22 +293,28 @@ impl Simulation {
         self.corner_ahead = false;
     }
 
-    /// Shows the end of a step to the observers, and finds the first event in it.
+    /// Finds the first event in a step, and shows the end of the step, which may be there, to the observers.
     fn look_at_step(&mut self) -> Result<Option<usize>, StepError> {
-        if self.events.is_empty() && self.observers.0.is_empty() {
-            return Ok(None);
-        }
-        self.scheme.observe(&self.points, &mut self.looked_at)?;
-        let Self { scheme, events, last_step, looked_at, points, .. } = self;
+        let Self { scheme, events, last_step, looked_at, points, observers, stats, .. } = self;
+        let has_events = !events.is_empty();
         let mut passed = None;
-        if let Some(step) = last_step.as_mut().filter(|_| !events.is_empty()) {
-            passed = events.first_passed(step, looked_at, points)?;
-            if passed.is_some() {
-                scheme.copy_state(step.probe());
-                scheme.observe(points, looked_at)?;
+        if has_events {
+            scheme.observe(points, looked_at)?;
+            if let Some(step) = last_step {
+                passed = events.first_passed(step, looked_at, points)?;
+                if passed.is_some() {
+                    scheme.copy_state(step.probe());
+                    scheme.observe(points, looked_at)?;
+                }
             }
         }
-        self.observers.show(&self.looked_at);
+        observers.step(&mut StepEnd {
+            scheme: &mut **scheme,
+            points,
+            longest_step: stats.longest,
+            observation: looked_at,
+            is_observed: has_events,
+        })?;
         if passed.is_some() {
             self.go_on_from_here();
         }
@@ -368,12 +346,18 @@ impl Simulation {
         if !out.is_finite() {
             return Err(StepError::NotFinite { time: out.time, what: "a quantity of the motion" });
         }
-        self.account.look(&*self.scheme, self.stats.longest)
+        self.observers.observed(&mut StepEnd {
+            scheme: &mut *self.scheme,
+            points: &self.points,
+            longest_step: self.stats.longest,
+            observation: out,
+            is_observed: true,
+        })
     }
 
     /// Sum of |work of the loads| + |dissipation| of all steps so far: how much energy has come and gone.
     pub fn exchanged(&self) -> f64 {
-        self.account.exchanged()
+        self.observers.energy.exchanged()
     }
 
     /// The state that has been reached, as words; they are equally many for all states of a run.
@@ -389,7 +373,7 @@ impl Simulation {
             steps_since_row: self.steps_since_row,
             corner_ahead: self.corner_ahead,
             begun: self.begun,
-            account: self.account,
+            account: self.observers.energy,
             accepted,
             rejected,
             shortest,
@@ -416,7 +400,7 @@ impl Simulation {
         self.scheme.restore(&saved.scheme)?;
         self.plan.set_progress(&saved.plan)?;
         self.stats = Stats { accepted, rejected, shortest, longest, ..self.stats };
-        (self.walk, self.account, self.steps_since_row) = (saved.walk, saved.account, steps_since_row);
+        (self.walk, self.observers.energy, self.steps_since_row) = (saved.walk, saved.account, steps_since_row);
         (self.corner_ahead, self.begun) = (saved.corner_ahead, saved.begun);
         Ok(self)
     }
@@ -441,9 +425,6 @@ impl Simulation {
     /// As [`Self::advance`].
     pub fn advance_watched(&mut self, most_steps: u64, mut watch: impl FnMut(&Moment)) -> Result<Reached, StepError> {
         self.begun = true;
-        if self.account.is_empty() {
-            self.account.look(&*self.scheme, self.stats.longest)?;
-        }
         if self.events.is_stale() {
             self.scheme.observe(&self.points, &mut self.looked_at)?;
             self.events.reset(&self.looked_at);
@@ -465,7 +446,6 @@ impl Simulation {
                     self.stats.accepted += count;
                     self.stats.shortest = self.stats.shortest.min(length);
                     self.stats.longest = self.stats.longest.max(length);
-                    self.account.step(&*self.scheme, self.stats.longest)?;
                     if let Some(number) = self.look_at_step()? {
                         return Ok(Reached::Event(number));
                     }

@@ -92,6 +92,21 @@ impl Modes {
         self.residuals.len()
     }
 
+    /// The first of them only.
+    #[must_use]
+    pub fn truncated(&self, flexible: usize) -> Self {
+        let kept = flexible.min(self.eigenvalues.len());
+        let first = |list: &[f64]| list.iter().copied().take(kept).collect();
+        Self {
+            rigid: self.rigid.clone(),
+            eigenvalues: first(&self.eigenvalues),
+            shapes: self.shapes.get(.., ..kept).to_owned(),
+            residuals: first(&self.residuals),
+            force_residuals: first(&self.force_residuals),
+            stats: self.stats,
+        }
+    }
+
     /// Frequencies of the flexible modes and static shapes, cycles per time.
     pub fn natural_frequencies(&self) -> Vec<f64> {
         self.eigenvalues.iter().map(|lambda| lambda.sqrt() / std::f64::consts::TAU).collect()
@@ -241,7 +256,7 @@ impl<'a> Solver<'a> {
     }
 
     /// Number of flexible modes that there are.
-    fn available(&self) -> usize {
+    pub fn available(&self) -> usize {
         let free = (0..self.stiffness.ncols())
             .filter(|row| self.mass.is_massive(*row) && !self.constraints.holds(*row))
             .count();

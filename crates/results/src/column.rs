@@ -34,6 +34,8 @@ pub enum Values<R> {
     Modal(fn(&R) -> &[f64]),
     /// T×P×3: a vector of each of P points; `None` for a number beyond the last point.
     Points(fn(&R, usize) -> Option<[f64; 3]>),
+    /// T×P×n: so many numbers of each point; one has the shape T×P.
+    PointNumbers(usize, fn(&R, usize) -> Option<&[f64]>),
 }
 
 impl<R> Column<R> {
@@ -78,6 +80,8 @@ impl<R> Column<R> {
             Values::Quaternion(_) => vec![4],
             Values::Modal(_) => vec![metadata.body.frequencies.len()],
             Values::Points(_) => vec![metadata.point_names.len(), 3],
+            Values::PointNumbers(1, _) => vec![metadata.point_names.len()],
+            Values::PointNumbers(count, _) => vec![metadata.point_names.len(), count],
         }
     }
 
@@ -88,7 +92,7 @@ impl<R> Column<R> {
             Values::Vector(_) => 3,
             Values::Quaternion(_) => 4,
             Values::Modal(_) => metadata.body.frequencies.len(),
-            Values::Points(_) => 3 * metadata.point_names.len(),
+            Values::Points(_) | Values::PointNumbers(..) => self.per_point() * metadata.point_names.len(),
         }
     }
 
@@ -100,16 +104,34 @@ impl<R> Column<R> {
             Values::Quaternion(values) => out.extend(values(row)),
             Values::Modal(values) => out.extend(values(row)),
             Values::Points(values) => (0..points).map_while(|point| values(row, point)).for_each(|v| out.extend(v)),
+            Values::PointNumbers(_, values) => {
+                (0..points).map_while(|point| values(row, point)).for_each(|v| out.extend(v));
+            }
         }
     }
 
     /// What a message or a reader calls the value at `index` of a row.
     pub(crate) fn quantity(&self, metadata: &Metadata, index: usize) -> String {
+        let point = index.checked_div(self.per_point()).and_then(|point| metadata.point_names.get(point));
+        point.map_or_else(|| self.path.to_owned(), |name| of_point(self.path, name))
+    }
+
+    /// Values of each point; 0 of a column that is not of points.
+    pub(crate) fn per_point(&self) -> usize {
         match self.values {
-            Values::Points(_) => metadata.point_names.get(index / 3).map(|name| of_point(self.path, name)),
-            _ => None,
+            Values::Points(_) => 3,
+            Values::PointNumbers(count, _) => count,
+            _ => 0,
         }
-        .unwrap_or_else(|| self.path.to_owned())
+    }
+
+    /// Whether a row has values of a point with this number.
+    pub(crate) fn has_point(&self, row: &R, point: usize) -> bool {
+        match self.values {
+            Values::Points(values) => values(row, point).is_some(),
+            Values::PointNumbers(_, values) => values(row, point).is_some(),
+            _ => false,
+        }
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::checkpoint::{Checkpoint, Sums};
 use crate::column::{of_point, present};
 use crate::store::Store;
-use crate::{Column, FileError, Metadata, Values};
+use crate::{Column, FileError, Metadata};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -111,14 +111,15 @@ impl Results {
         let mut histories = BTreeMap::new();
         for (column, (mut values, width)) in present(table, &metadata).zip(columns.into_iter().zip(store.widths())) {
             values.truncate(rows * width);
-            if !matches!(column.values, Values::Points(_)) {
+            let each = column.per_point();
+            if each == 0 {
                 histories.insert(column.path.to_owned(), ColumnTable { rows, width, values });
                 continue;
             }
             for (point, name) in metadata.point_names.iter().enumerate() {
-                let values =
-                    values.chunks_exact(width).flat_map(|row| &row[3 * point..3 * point + 3]).copied().collect();
-                histories.insert(of_point(column.path, name), ColumnTable { rows, width: 3, values });
+                let its_part = each * point..each * (point + 1);
+                let values = values.chunks_exact(width).flat_map(|row| &row[its_part.clone()]).copied().collect();
+                histories.insert(of_point(column.path, name), ColumnTable { rows, width: each, values });
             }
         }
         Ok((Self { metadata, complete, rows, histories }, checkpoint))
@@ -153,13 +154,13 @@ impl Results {
         present(columns, &self.metadata).all(|column| {
             values.clear();
             column.append(row, names.len(), &mut values);
-            match column.values {
-                Values::Points(_) => {
-                    let vectors = values.as_chunks::<3>().0;
-                    vectors.len() == names.len()
-                        && names.iter().zip(vectors).all(|(name, vector)| is(&of_point(column.path, name), vector))
+            match column.per_point() {
+                0 => is(column.path, &values),
+                each => {
+                    let mut of_points = names.iter().zip(values.chunks_exact(each));
+                    values.len() == each * names.len()
+                        && of_points.all(|(name, values)| is(&of_point(column.path, name), values))
                 }
-                _ => is(column.path, &values),
             }
         })
     }

@@ -6,7 +6,7 @@ use crate::paths::ResultsPaths;
 use crate::reader::Results;
 use crate::room::Room;
 use crate::store::Store;
-use crate::{Column, FileError, Metadata, Values};
+use crate::{Column, FileError, Metadata};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 use tempfile::TempPath;
@@ -199,8 +199,7 @@ impl<R> Writer<R> {
     fn check_last(&self, row: &R) -> Result<(), FileError> {
         let (path, metadata) = (&self.place.part, &self.metadata);
         let points = metadata.point_names.len();
-        let has_more = |column: &Column<R>| matches!(column.values, Values::Points(of) if of(row, points).is_some());
-        if self.columns.iter().any(has_more) {
+        if self.columns.iter().any(|column| column.has_point(row, points)) {
             return check_length(path, "points", points, points + 1);
         }
         let mut time = None;

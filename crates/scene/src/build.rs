@@ -1,6 +1,8 @@
 //! From a scene to a body that can move.
 
+mod assembly;
 mod backbones;
+mod builder;
 mod damping;
 mod decide;
 mod directed;
@@ -19,8 +21,11 @@ mod points;
 mod progress;
 mod reduce;
 mod rigid;
+mod site_stress;
 mod statics;
 mod stress;
+mod stress_left_out;
+mod stress_shapes;
 mod support;
 mod survey;
 mod turning;
@@ -29,9 +34,12 @@ use fem_tet10::Mesh;
 
 use crate::scene::{Body, Scene};
 
+pub use assembly::Assembly;
+pub use builder::ModelBuilder;
 pub use error::{BuildError, StartError};
 pub use model::{Meshed, Model};
 pub use progress::{BuildProgress, BuildTimes};
+pub use stress_shapes::{BodyStress, StressPeak};
 
 impl Model {
     /// Reads the mesh of a scene, finds its modes and reduces the body. `progress` hears what is being done.
@@ -39,11 +47,8 @@ impl Model {
     /// # Errors
     /// [`BuildError`]: what the mesh, the materials or the modes refuse, with the place in the scene file where
     /// there is one.
-    pub fn build(scene: &Scene, progress: impl FnMut(BuildProgress)) -> Result<Self, BuildError> {
-        match &scene.body {
-            Body::Meshed(body) => meshed::build(scene, body, progress),
-            Body::Rigid(body) => rigid::build(scene, body),
-        }
+    pub fn build(scene: &Scene, mut progress: impl FnMut(BuildProgress)) -> Result<Self, BuildError> {
+        Assembly::new(scene, &mut progress)?.builder(scene)?.into_model(scene, progress)
     }
 }
 

@@ -1,9 +1,8 @@
 //! What holds or drives the body.
 
 use nalgebra::Vector3;
-use serde::Deserialize;
 
-use crate::history::History;
+use crate::history::DrivenSpeed;
 use crate::unit_vector::unit;
 
 /// What holds the body, chosen by the key `kind` of the `[[constraints]]` entry.
@@ -26,7 +25,7 @@ pub enum Constraint {
         shaft: Vec<Region>,
         /// The angular velocity about the line, radians per time; `None` leaves the body to turn freely. A driven
         /// flexible body has a shaft.
-        motion: Option<Drive>,
+        motion: Option<DrivenSpeed>,
     },
     /// `kind = "clamp"`: a part of the body is held; no rigid motion is left.
     Clamp {
@@ -40,7 +39,7 @@ pub enum Constraint {
         /// What slides; `None` for a rigid body only.
         region: Option<Region>,
         /// The velocity along the direction, length per time; `None` leaves the body to slide freely.
-        motion: Option<Drive>,
+        motion: Option<DrivenSpeed>,
     },
     /// `kind = "support"`, of which there may be several: parts of the body are held in some directions. The rigid motions
     /// that are left come from the geometry.
@@ -112,14 +111,4 @@ pub enum Region {
     },
     /// Key `group`: the nodes of a physical group of the mesh.
     Group(String),
-}
-
-/// A velocity given over time: the amplitude times the history.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Drive {
-    /// Radians per time of a hinge, length per time of a slider, where the history is 1.
-    pub amplitude: f64,
-    /// Factor on the amplitude over time.
-    pub history: History,
 }

@@ -65,7 +65,7 @@ impl Scene {
         check.effects(&effects, &modes, &initial, constraint.as_ref(), &loads)?;
         let time = check.time(&time)?;
         check.effects_of_paper(&effects, time.method)?;
-        let output = check.output(output, &time)?;
+        let output = check.output(output, &time, &body)?;
 
         Ok(Self {
             title,

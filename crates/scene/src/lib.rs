@@ -52,13 +52,15 @@ mod shorten;
 mod suggest;
 mod unit_vector;
 
-pub use build::{BuildError, BuildProgress, BuildTimes, Meshed, Model, StartError};
-pub use constraint::{Constraint, Drive, HeldDirections, HingeLine, Region};
+pub use build::{
+    Assembly, BodyStress, BuildError, BuildProgress, BuildTimes, Meshed, Model, ModelBuilder, StartError, StressPeak,
+};
+pub use constraint::{Constraint, HeldDirections, HingeLine, Region};
 pub use effects::{Choice, Effects};
 pub use error::SceneError;
 pub use fem_tet10::{Material, Materials, PointMass};
 pub use frames_rk4::{Effect, EffectMap, LoadFrame, Method, Rows, StepControl};
-pub use history::{Formula, History, TablePoints};
+pub use history::{DrivenSpeed, Formula, History, TablePoints};
 pub use load::{BaseAcceleration, Force, Gravity, Load, Moment, Pressure, Traction};
 pub use modes::{Damping, Flexible, Large, Modes, Rayleigh};
 pub use place::Place;

@@ -145,4 +145,8 @@ pub struct Output {
     /// A name is not empty, `.` or `..` and has no `/` and no control character, since it names
     /// a group of the results file.
     pub points: BTreeMap<String, [f64; 3]>,
+    /// Whether the stress at the points is written, too; default no.
+    pub stress: bool,
+    /// Whether the largest von Mises stress of the whole body among the rows is looked for; default no.
+    pub peak_stress: bool,
 }

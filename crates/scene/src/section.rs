@@ -9,8 +9,8 @@ use serde::de::value::SeqAccessDeserializer;
 use serde::de::{DeserializeSeed, EnumAccess, Error, SeqAccess, VariantAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 
-use crate::constraint::Drive;
 use crate::effects::{Choice, Effects, auto};
+use crate::history::DrivenSpeed;
 use crate::load::Load;
 use crate::modes::Rayleigh;
 use crate::scene::{Frame, Initial, Units};
@@ -152,7 +152,7 @@ pub(crate) enum ConstraintSection {
         radius: Option<f64>,
         r#box: Option<[[f64; 3]; 2]>,
         group: Option<String>,
-        motion: Option<Drive>,
+        motion: Option<DrivenSpeed>,
     },
     Clamp {
         at: Option<[f64; 3]>,
@@ -166,7 +166,7 @@ pub(crate) enum ConstraintSection {
         radius: Option<f64>,
         r#box: Option<[[f64; 3]; 2]>,
         group: Option<String>,
-        motion: Option<Drive>,
+        motion: Option<DrivenSpeed>,
     },
     Support {
         directions: Vec<String>,
@@ -247,4 +247,6 @@ pub(crate) struct OutputSection {
     pub every: Option<u64>,
     pub interval: Option<f64>,
     pub points: BTreeMap<String, [f64; 3]>,
+    pub stress: bool,
+    pub peak_stress: bool,
 }

@@ -36,6 +36,12 @@ fn misspelt_keys() {
 }
 
 #[test]
+fn the_stress_of_no_point() {
+    let words = ["found true", "points whose stress is written", "peak_stress = true"];
+    refused("points = { P1 = [-500.0, -25.0, 0.0] }", "stress = true", "true", "output.stress", &words);
+}
+
+#[test]
 fn keys_like_no_other() {
     let words = ["unknown key `gravity`\n", "possible here: `end`, `step`, `tolerance`, `formulation`, `scheme`"];
     refused("scheme = ", "gravity = 9.81\nscheme = ", "gravity", "time.gravity", &words);

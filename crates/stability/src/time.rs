@@ -319,7 +319,7 @@ fn follower(method: Method) -> Outcome {
             let Elastic { body, .. } = &elastic;
             let force = Vector3::new(0.1, 0.4, -0.2);
             let history = History::Ramp { start: 0.0, duration: 1.0 };
-            let load = PointForce { point: elastic.point(0), force, frame: LoadFrame::Body, history };
+            let load = PointForce { point: elastic.point(0), force, frame: LoadFrame::Body, turning: None, history };
             let trial = Trial::free(body, spinning(body, [0.3, -0.2, 0.5], 0.0), 1e-3, 20.0);
             let loads: Vec<SharedLoad> = vec![Arc::new(load)];
             Trial { loads, damping_ratios: vec![0.05; 6], ..trial }.drift(method)

@@ -1,7 +1,7 @@
 //! Estimated influences against the real ones: an effect that is called negligible must be.
 
 use advice::{Case, advise};
-use frames_rk4::{Drive, DrivenMotion, Effect, EffectMap, History, Initial, Observation};
+use frames_rk4::{Drive, DrivenMotion, DrivenSpeed, Effect, EffectMap, History, Initial, Observation};
 
 use crate::plate::{CORNER, clamped, plate, run, spinning};
 
@@ -142,7 +142,7 @@ fn estimates_are_above_what_an_effect_does_to_a_driven_plate() {
         ("gentle", nalgebra::Vector3::y(), 0.05),
     ] {
         let history = History::Ramp { start: 0.0, duration: 0.1 };
-        let drive = Drive { motion: DrivenMotion::Turn { axis }, amplitude: speed, history, span: 0.3 };
+        let drive = Drive { motion: DrivenMotion::Turn { axis }, speed: DrivenSpeed { amplitude: speed, history } };
         compare(name, &Case { drive: Some(&drive), ..clamped().case(&zeta, &[], &initial, 0.3) });
     }
 }

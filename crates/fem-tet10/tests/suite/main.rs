@@ -15,4 +15,5 @@ mod refused_models;
 mod second_order;
 mod selection;
 mod stiffness;
+mod stress;
 mod surface;

@@ -3,7 +3,7 @@
 use advice::Subject;
 use frames_rk4::{Effect, EffectMap, Observation, Rows, StepControl};
 use nalgebra::{Matrix3, Vector3};
-use scene::{Choice, Flexible, Model, Scene};
+use scene::{Choice, Flexible, Model, ModelBuilder, Scene};
 use serde::Serialize;
 
 use crate::effects::is_on;
@@ -31,27 +31,27 @@ pub enum Real {
 }
 
 /// The scene as it is.
-pub(super) struct Base<'a> {
+pub(super) struct Base<'a, 'b> {
     scene: &'a Scene,
     model: &'a Model,
+    builder: &'a mut ModelBuilder<'b>,
     motion: Vec<Observation>,
 }
 
-impl<'a> Base<'a> {
-    pub(super) fn new(scene: &'a Scene, model: &'a Model) -> Result<Self, RunError> {
-        let mut base = Self { scene, model, motion: Vec::new() };
+impl<'a, 'b> Base<'a, 'b> {
+    pub(super) fn new(scene: &'a Scene, model: &'a Model, builder: &'a mut ModelBuilder<'b>) -> Result<Self, RunError> {
         // Settled as the others are, so that nothing but the switch is between them.
-        let settled = base.settled(None);
-        base.motion = follow(&settled, &Model::build(&settled, |_| ())?)
+        let settled = settled(scene, model, None);
+        let motion = follow(&settled, &builder.build(&settled, |_| ())?)
             .map_err(|failure| RunError::Verify { scene: scene.path.clone(), failure: Box::new(failure) })?;
-        Ok(base)
+        Ok(Self { scene, model, builder, motion })
     }
 
     /// The difference that switching an effect or the static shapes makes.
-    pub(super) fn influence(&self, subject: Subject) -> Real {
+    pub(super) fn influence(&mut self, subject: Subject) -> Real {
         let Some(on) = is_on(self.scene, self.model, subject) else { return Real::Difference(0.0) };
-        let switched = self.settled(Some((subject, !on)));
-        let model = match Model::build(&switched, |_| ()) {
+        let switched = settled(self.scene, self.model, Some((subject, !on)));
+        let model = match self.builder.build(&switched, |_| ()) {
             Ok(model) => model,
             Err(error) => return Real::Fails(error.to_string()),
         };
@@ -59,24 +59,6 @@ impl<'a> Base<'a> {
             Ok(motion) => Real::Difference(self.difference(&motion, subject)),
             Err(failure) => Real::Fails(failure.to_string()),
         }
-    }
-
-    /// The scene with all effects as they were resolved, but for one that is switched.
-    fn settled(&self, switched: Option<(Subject, bool)>) -> Scene {
-        let mut scene = self.scene.clone();
-        let natural = self.model.body.flexible() - self.model.static_shapes();
-        let count = if switched == Some((FLEXIBILITY, true)) { scene.modes.flexible.most() } else { natural };
-        scene.modes.flexible = Flexible::Count(count);
-        let choose = |subject: Subject| {
-            let on = match switched {
-                Some((of, on)) if of == subject => on,
-                _ => is_on(self.scene, self.model, subject).unwrap_or(false),
-            };
-            if on { Choice::On } else { Choice::Off }
-        };
-        scene.effects.choices = EffectMap::from_fn(|effect| choose(Subject::Effect(effect)));
-        scene.modes.static_correction = choose(Subject::StaticCorrection);
-        scene
     }
 
     /// Largest relative difference of the motions: of the modal displacements (flexibility: the deflection over the
@@ -113,6 +95,24 @@ impl<'a> Base<'a> {
             apart
         }
     }
+}
+
+/// The scene with all effects and static shapes as its model has them, but for one that is switched.
+pub(crate) fn settled(scene: &Scene, model: &Model, switched: Option<(Subject, bool)>) -> Scene {
+    let mut settled = scene.clone();
+    let natural = model.body.flexible() - model.static_shapes();
+    let count = if switched == Some((FLEXIBILITY, true)) { scene.modes.flexible.most() } else { natural };
+    settled.modes.flexible = Flexible::Count(count);
+    let choose = |subject: Subject| {
+        let on = match switched {
+            Some((of, on)) if of == subject => on,
+            _ => is_on(scene, model, subject).unwrap_or(false),
+        };
+        if on { Choice::On } else { Choice::Off }
+    };
+    settled.effects.choices = EffectMap::from_fn(|effect| choose(Subject::Effect(effect)));
+    settled.modes.static_correction = choose(Subject::StaticCorrection);
+    settled
 }
 
 fn follow(scene: &Scene, model: &Model) -> Result<Vec<Observation>, RunFailure> {

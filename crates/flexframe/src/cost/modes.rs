@@ -43,37 +43,37 @@ pub(super) fn counts(flexible: usize, most: usize) -> Vec<usize> {
     counts
 }
 
-/// Runs the motion with the exponential scheme and each number of modes. `richest` has the most.
+/// Runs the motion with the exponential scheme by models with more and more modes.
 ///
 /// # Errors
 /// The number of modes with which the motion could not be run, and why.
 pub(super) fn compare(
     scene: &Scene,
-    richest: &Model,
-    counts: &[usize],
+    models: &[Model],
     settings: &CostSettings,
 ) -> Result<Vec<ModesRow>, (usize, RunFailure)> {
+    let Some(richest) = models.last() else { return Ok(Vec::new()) };
     let method = Method::EXPONENTIAL;
     let budget = settings.budget(5);
     let most = converge(&PreparedScene::new(scene, richest), method, budget, CONVERGED)
         .map_err(|(_, failure)| (richest.body.flexible(), failure))?;
     let control = StepControl::Fixed(most.step);
-    let row = |count: usize| -> Result<ModesRow, RunFailure> {
-        let model = richest.truncated(count);
-        let case = PreparedScene::new(scene, &model);
+    let row = |model: &Model| -> Result<ModesRow, RunFailure> {
+        let case = PreparedScene::new(scene, model);
         let simulation = case.begin(method, control)?;
         let seconds_per_step = seconds_per_step(&simulation, settings.timed_for)?;
         let run = Trajectory::follow(simulation, budget.time)?;
-        let is_most = count == richest.body.flexible();
+        let flexible = model.body.flexible();
+        let is_most = flexible == richest.body.flexible();
         Ok(ModesRow {
-            flexible: count,
+            flexible,
             highest_frequency: model.natural_frequencies().last().copied().unwrap_or_default(),
             errors: (!is_most).then(|| Errors::between(&run, &most.trajectory, case.scales())),
             step_error: most.error.largest(),
             seconds_per_step,
         })
     };
-    counts.iter().map(|&count| row(count).map_err(|failure| (count, failure))).collect()
+    models.iter().map(|model| row(model).map_err(|failure| (model.body.flexible(), failure))).collect()
 }
 
 /// Says that more digits than a target's need more modes, if they do, and in which quantity.

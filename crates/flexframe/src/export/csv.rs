@@ -103,6 +103,16 @@ fn parts<R>(column: &Column<R>, metadata: &Metadata) -> Vec<Part> {
             let of_point = |name: &String| part(format!("points/{name}/{quantity}"), list(&["x", "y", "z"]));
             metadata.point_names.iter().map(of_point).collect()
         }
+        Values::PointNumbers(count, _) => {
+            let quantity = column.path.trim_start_matches("points/");
+            let names = match (quantity, count) {
+                (_, 1) => list(&[""]),
+                ("stress", 6) => list(&["xx", "yy", "zz", "xy", "yz", "zx"]),
+                _ => (1..=count).map(|i| i.to_string()).collect(),
+            };
+            let of_point = |name: &String| part(format!("points/{name}/{quantity}"), names.clone());
+            metadata.point_names.iter().map(of_point).collect()
+        }
     }
 }
 

@@ -5,6 +5,7 @@ use fem_tet10::{AssemblyError, MeshError};
 use figures::FigureError;
 use frames_rk4::{EigenError, SetupError};
 use modal::ModalError;
+use report::ReportError;
 use results::FileError;
 use scene::{BuildError, SceneError, StartError};
 
@@ -13,6 +14,7 @@ use crate::animation::AnimationError;
 use crate::campbell::CampbellError;
 use crate::cost::CostError;
 use crate::export::ExportError;
+use crate::html_report::HtmlReportError;
 use crate::mode_shapes::ShapesError;
 use crate::paper::PaperError;
 use crate::run::{RunError, RunFailure};
@@ -287,6 +289,44 @@ impl Failure for ExportError {
             | Self::NoModes { path }
             | Self::NoRows { path, .. }
             | Self::NoColumn { path, .. } => Details::of_file(path),
+        }
+    }
+}
+
+impl Failure for ReportError {
+    fn kind(&self) -> Kind {
+        match self {
+            Self::Write { .. } => Kind::Io,
+            _ => Kind::Run,
+        }
+    }
+
+    fn details(&self) -> Details {
+        match self {
+            Self::Write { path, .. } => Details::of_file(path),
+            _ => Details::default(),
+        }
+    }
+}
+
+impl Failure for HtmlReportError {
+    fn kind(&self) -> Kind {
+        match self {
+            Self::File(error) => error.kind(),
+            Self::Scene(error) => error.kind(),
+            Self::Build(error) => error.kind(),
+            Self::Changed { .. } => Kind::Input,
+            Self::Page(error) => error.kind(),
+        }
+    }
+
+    fn details(&self) -> Details {
+        match self {
+            Self::File(error) => error.details(),
+            Self::Scene(error) => error.details(),
+            Self::Build(error) => error.details(),
+            Self::Changed { results, .. } => Details::of_file(results),
+            Self::Page(error) => error.details(),
         }
     }
 }

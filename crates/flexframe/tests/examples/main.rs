@@ -6,6 +6,7 @@ mod energy;
 mod nafems;
 mod pendulum;
 mod spin;
+mod stress;
 mod top;
 
 use std::path::{Path, PathBuf};

@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use super::{Applied, Kinematics, Load, LoadFrame, Pattern, check_vector};
 use crate::error::SetupError;
 use crate::history::History;
-use crate::motion::PointShapes;
+use crate::motion::{PointShapes, RotationShapes};
 use crate::second_order::SecondOrder;
 
 /// A force at a point. A load of one direction that is spread over the body, such as a traction or gravity, is its
@@ -18,6 +18,9 @@ pub struct PointForce {
     pub force: Vector3<f64>,
     /// Its axes.
     pub frame: LoadFrame,
+    /// How the material that a force in [`LoadFrame::Material`] turns with is turned by the modes; without it the force turns
+    /// with the body.
+    pub turning: Option<RotationShapes>,
     /// The factor on it.
     pub history: History,
 }
@@ -25,13 +28,17 @@ pub struct PointForce {
 impl PointForce {
     /// A force that keeps its global direction.
     pub fn dead(point: PointShapes, force: Vector3<f64>, history: History) -> Self {
-        Self { point, force, frame: LoadFrame::Global, history }
+        Self { point, force, frame: LoadFrame::Global, turning: None, history }
     }
 }
 
 impl Load for PointForce {
     fn apply(&self, motion: &Kinematics, applied: &mut Applied) {
-        applied.force(&self.point, &(motion.to_body(&self.force, self.frame) * motion.factor(&self.history)));
+        let force_body = match &self.turning {
+            Some(place) if self.frame == LoadFrame::Material => motion.turned(place, &self.force),
+            _ => motion.to_body(&self.force, self.frame),
+        };
+        applied.force(&self.point, &(force_body * motion.factor(&self.history)));
     }
 
     fn history(&self) -> Option<&History> {
@@ -49,6 +56,9 @@ impl Load for PointForce {
 
     fn check(&self, flexible: usize) -> Result<(), SetupError> {
         self.history.check()?;
+        if let Some(found) = self.turning.as_ref().map(RotationShapes::flexible).filter(|found| *found < flexible) {
+            return Err(SetupError::Length { what: "the turning of a force", expected: flexible, found });
+        }
         check_vector("a force", &self.force, self.point.flexible(), self.point.second_order(), flexible)
     }
 }

@@ -61,11 +61,7 @@ impl Specimen {
 
     /// The same body with its first `flexible` modes only.
     pub fn truncated(&self, flexible: usize) -> Self {
-        let mut modes = self.modes.clone();
-        modes.eigenvalues.truncate(flexible);
-        modes.residuals.truncate(flexible);
-        modes.force_residuals.truncate(flexible);
-        modes.shapes = self.modes.shapes.as_ref().subcols(0, flexible).to_owned();
+        let modes = self.modes.truncated(flexible);
         let body = ReducedBody::new(&modes, self.matrices.mass(), self.mesh.positions()).unwrap();
         Self { mesh: self.mesh.clone(), matrices: self.matrices.clone(), modes, body, ..*self }
     }

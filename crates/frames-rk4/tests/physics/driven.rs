@@ -1,6 +1,6 @@
 //! Bodies whose held part is driven.
 
-use frames_rk4::{Drive, DrivenMotion, Effect, History, Rows, StepControl};
+use frames_rk4::{Drive, DrivenMotion, DrivenSpeed, Effect, History, Rows, StepControl};
 use modal::RigidMotion;
 use nalgebra::Vector3;
 
@@ -11,7 +11,8 @@ fn clamped() -> modal::ReducedBody {
 }
 
 fn drive(motion: DrivenMotion) -> Drive {
-    Drive { motion, amplitude: 1.2, history: History::HalfSine { start: -0.3, duration: 4.0 }, span: 1.0 }
+    let history = History::HalfSine { start: -0.3, duration: 4.0 };
+    Drive { motion, speed: DrivenSpeed { amplitude: 1.2, history } }
 }
 
 fn motions() -> [DrivenMotion; 2] {
@@ -69,12 +70,8 @@ fn a_driven_slide_is_a_base_acceleration() {
     run.initial.modal_velocity.fill(0.0);
     run.initial.modal_displacement.fill(0.0);
     // v = a sin(π (t)/4): v' = a π/4 cos(π t/4) = a π/4 sin(π (t + 2)/4).
-    run.physics.drive = Some(Drive {
-        motion: slide,
-        amplitude: 1.2,
-        history: History::HalfSine { start: 0.0, duration: 4.0 },
-        span: 1.0,
-    });
+    let history = History::HalfSine { start: 0.0, duration: 4.0 };
+    run.physics.drive = Some(Drive { motion: slide, speed: DrivenSpeed { amplitude: 1.2, history } });
     let [_, driven] = run.ends(EXPONENTIAL, 5e-3);
     run.physics.drive = None;
     let center = frames_rk4::PointShapes::new(
@@ -117,7 +114,8 @@ fn a_jump_of_the_driven_speed_does_its_work_at_once() {
     for motion in motions() {
         let body = clamped();
         let mut run = Run::new(&body, 3.0);
-        run.physics.drive = Some(Drive { history: History::Step { at: 1.25 }, ..drive(motion) });
+        run.physics.drive =
+            Some(Drive { motion, speed: DrivenSpeed { amplitude: 1.2, history: History::Step { at: 1.25 } } });
         let gaps = [0.02, 0.01].map(|step| run.energy_gap(EXPONENTIAL, step));
         // Measured: 2.3e-9 (turn), 7.6e-9 (slide), and 15 times as much at twice the step.
         assert!(gaps[1] < 1e-6 && gaps[0] > 8.0 * gaps[1], "{motion:?}: {gaps:?}");

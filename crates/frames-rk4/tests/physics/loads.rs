@@ -14,7 +14,7 @@ const PULSE: History = History::HalfSine { start: 0.2, duration: 1.5 };
 fn force(frame: LoadFrame) -> SharedLoad {
     let body = body(RigidMotion::free(), &[5.0, 8.0, 13.0]);
     let (point, force) = (point(&body, [0.5, -0.2, 0.4]), Vector3::new(0.5, 1.0, -0.7));
-    Arc::new(PointForce { point, force, frame, history: PULSE })
+    Arc::new(PointForce { point, force, frame, turning: None, history: PULSE })
 }
 
 fn moment(frame: LoadFrame) -> SharedLoad {
@@ -58,7 +58,7 @@ fn stiffening(frame: LoadFrame) -> [SharedLoad; 2] {
     let rotation = RotationShapes::new(&body, Mat::from_fn(3, 3, |i, k| 0.1 * (i as f64 - k as f64)).as_ref())
         .with_second_order(crate::stress::second_order(3));
     [
-        Arc::new(PointForce { point, force: vector, frame, history: PULSE }),
+        Arc::new(PointForce { point, force: vector, frame, turning: None, history: PULSE }),
         Arc::new(PointMoment { rotation, moment: vector, frame, history: PULSE }),
     ]
 }
@@ -108,7 +108,7 @@ fn followers_follow() {
     run.initial.velocity = Vector3::zeros();
     run.initial.omega = Vector3::new(0.0, 0.0, 1.5);
     let (point, force, history) = (point(&rigid, [0.0; 3]), Vector3::x(), History::Constant);
-    run.loads = vec![Arc::new(PointForce { point, force, frame: LoadFrame::Body, history })];
+    run.loads = vec![Arc::new(PointForce { point, force, frame: LoadFrame::Body, turning: None, history })];
     let [_, last] = run.ends(EXPONENTIAL, 5e-3);
     let (omega, t) = (1.5_f64, 2.0);
     let expected = Vector3::new((omega * t).sin(), 1.0 - (omega * t).cos(), 0.0) / (rigid.mass * omega);

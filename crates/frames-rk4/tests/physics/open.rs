@@ -92,7 +92,13 @@ fn a_motion_does_not_depend_on_the_attitude_that_it_begins_at() {
             let history = History::HalfSine { start: 0.1, duration: 0.6 };
             let dead = PointForce::dead(point(&body, [0.5, -0.2, 0.4]), force, history.clone());
             let force = Vector3::new(-0.3, 0.2, 0.4);
-            let follower = PointForce { force, frame: LoadFrame::Body, history, point: point(&body, [-0.1, 0.3, 0.2]) };
+            let follower = PointForce {
+                force,
+                frame: LoadFrame::Body,
+                turning: None,
+                history,
+                point: point(&body, [-0.1, 0.3, 0.2]),
+            };
             let loads: [SharedLoad; 2] = [Arc::new(dead), Arc::new(follower)];
             run.loads = loads.into();
             let [first, last] = run.ends(method, 1e-3);

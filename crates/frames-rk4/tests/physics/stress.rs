@@ -1,7 +1,7 @@
 //! What stresses a body stiffens it: loads and drives that do their work on displacements of second order.
 
 use faer::Mat;
-use frames_rk4::{Drive, DrivenMotion, History, PointShapes, SecondOrder};
+use frames_rk4::{Drive, DrivenMotion, DrivenSpeed, History, PointShapes, SecondOrder};
 use modal::{ReducedBody, RigidMotion};
 use nalgebra::Vector3;
 
@@ -63,7 +63,8 @@ fn clamped() -> ReducedBody {
 }
 
 fn drive(motion: DrivenMotion) -> Drive {
-    Drive { motion, amplitude: 1.2, history: History::HalfSine { start: 0.0, duration: 4.0 }, span: 2.0 }
+    let history = History::HalfSine { start: 0.0, duration: 4.0 };
+    Drive { motion, speed: DrivenSpeed { amplitude: 1.2, history } }
 }
 
 #[test]
@@ -147,7 +148,7 @@ fn a_jump_of_a_driven_speed_is_the_limit_of_steep_rises() {
         let mut run = Run::new(&body, 2.0);
         run.physics.drive_stiffness = Some(stiffness(0, 3));
         let mut end = |history: History| {
-            run.physics.drive = Some(Drive { history, ..drive(motion) });
+            run.physics.drive = Some(Drive { motion, speed: DrivenSpeed { amplitude: 1.2, history } });
             let gap = run.energy_gap(EXPONENTIAL, 1e-3);
 
             assert!(gap < 1e-8, "{motion:?}: {gap:e}");

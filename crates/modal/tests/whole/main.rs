@@ -19,4 +19,5 @@ mod rigid_body;
 mod spectrum;
 mod static_shapes;
 mod statics;
+mod stress;
 mod supports;

@@ -180,9 +180,7 @@ fn points_and_rigid_shapes_are_rows_of_the_modes() {
 #[test]
 fn a_truncated_body_is_the_body_of_the_truncated_modes() {
     let case = case();
-    let mut modes = case.modes.clone();
-    modes.eigenvalues.truncate(3);
-    modes.shapes = case.modes.shapes.get(.., ..3).to_owned();
+    let modes = case.modes.truncated(3);
     let expected = ReducedBody::new(&modes, case.body.matrices.mass(), &case.body.positions).unwrap();
     let found = case.reduced.truncated(3);
     assert_eq!(found.circular_frequencies, expected.circular_frequencies);

@@ -30,11 +30,15 @@ pub(super) struct MeshLoad {
     name: String,
     action: Action,
     pub history: frames_rk4::History,
-    /// Whether it keeps its direction in the body.
+    /// Whether it keeps its direction in the body or in the material.
     pub follows: bool,
+    /// How the material that its direction turns with is turned by the nodes.
+    turning: Option<MeanRotation>,
     /// Attitude of the body at the beginning.
     attitude: Attitude,
     is_gravity: bool,
+    /// Whether it is the acceleration of the base, which stresses the body as that of a drive does.
+    pub is_base_acceleration: bool,
 }
 
 /// Loads on a body, each with whether it is gravity.
@@ -121,7 +125,10 @@ pub(super) fn on_mesh(scene: &Scene, mesh: &Mesh, nodal_mass: &[f64]) -> Result<
             };
             let history = history(scene, &key("history"), of(load))?;
             let name = name(i, load);
-            Ok(MeshLoad { name, action, history, follows: follows(load), attitude, is_gravity: is_gravity(load) })
+            let turning = turning(mesh, load).map_err(|error| refuse(scene, &key("frame"), error))?;
+            let (follows, is_gravity) = (follows(load), is_gravity(load));
+            let is_base_acceleration = matches!(load, Load::BaseAcceleration(_));
+            Ok(MeshLoad { name, action, history, follows, turning, attitude, is_gravity, is_base_acceleration })
         })
         .collect()
 }
@@ -140,6 +147,7 @@ pub(super) fn on_rigid(scene: &Scene, body: &ReducedBody) -> Result<BodyLoads, B
                     point: at(load.at),
                     force: Vector3::from(load.direction) * load.amplitude,
                     frame: load.frame,
+                    turning: None,
                     history,
                 }),
                 Load::Moment(load) => Arc::new(PointMoment {
@@ -216,8 +224,16 @@ fn follows(load: &Load) -> bool {
         Load::Pressure(_) => true,
         Load::Force(load::Force { frame, .. })
         | Load::Moment(load::Moment { frame, .. })
-        | Load::Traction(load::Traction { frame, .. }) => *frame == LoadFrame::Body,
+        | Load::Traction(load::Traction { frame, .. }) => *frame != LoadFrame::Global,
         Load::Gravity(_) | Load::BaseAcceleration(_) => false,
+    }
+}
+
+/// The rotation of the nodes around a force whose direction turns with the material.
+fn turning(mesh: &Mesh, load: &Load) -> Result<Option<MeanRotation>, fem_tet10::AssemblyError> {
+    match load {
+        Load::Force(load) if load.frame == LoadFrame::Material => mesh.mean_rotation(load.at, None).map(Some),
+        _ => Ok(None),
     }
 }
 
@@ -250,8 +266,10 @@ impl MeshLoad {
     /// Forces or moments of the same size, in body axes, whose combinations are all that a dead load may become as the
     /// body turns; none where it keeps its direction in the body.
     pub(super) fn turned(&self, turning: Turning) -> Vec<Vector3<f64>> {
-        let Some(vector) = self.vector().filter(|v| !self.follows && v.norm() > 0.0) else { return Vec::new() };
+        let turns = !self.follows || self.turning.is_some();
+        let Some(vector) = self.vector().filter(|v| turns && v.norm() > 0.0) else { return Vec::new() };
         let size = vector.norm();
+        let turning = if self.turning.is_some() { Turning::Freely } else { turning };
         match turning {
             Turning::Not => Vec::new(),
             Turning::Freely => [Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| axis * size).into(),
@@ -269,6 +287,11 @@ impl MeshLoad {
                 turned
             }
         }
+    }
+
+    /// The force or moment, global axes, of a load that keeps its direction there; none of one that does so in the body.
+    pub(super) fn dead_vector(&self) -> Option<Vector3<f64>> {
+        self.vector().filter(|_| !self.follows).map(|vector| self.attitude.to_global(&vector))
     }
 
     /// The parts of the load in its first attitude along `turned`, relative to them: one whole part without any.
@@ -363,17 +386,12 @@ impl MeshLoad {
                     Some(second_order) => point.with_second_order(second_order),
                     None => point,
                 };
-                Arc::new(PointForce { point, force: *force, frame, history })
+                let turning = self.turning.as_ref().map(|patch| rotations(patch, body, modes));
+                let frame = if turning.is_some() { LoadFrame::Material } else { frame };
+                Arc::new(PointForce { point, force: *force, frame, turning, history })
             }
             Action::Moment { patch, moment } => {
-                let turned: Vec<Vector3<f64>> = (0..nf)
-                    .map(|k| {
-                        let of = patch.nodes.iter().zip(&patch.rotation_per_displacement);
-                        of.map(|(node, a)| a * shape(modes, *node, k)).sum()
-                    })
-                    .collect();
-                let turned = Mat::from_fn(3, nf, |axis, k| turned[k][axis]);
-                let rotation = RotationShapes::new(body, turned.as_ref());
+                let rotation = rotations(patch, body, modes);
                 let rotation = match second_order()? {
                     Some(second_order) => rotation.with_second_order(second_order),
                     None => rotation,
@@ -414,6 +432,16 @@ impl MeshLoad {
             }
         })
     }
+}
+
+/// How a patch of nodes is turned by the modes.
+fn rotations(patch: &MeanRotation, body: &ReducedBody, modes: &Modes) -> RotationShapes {
+    let of_mode = |k: usize| -> Vector3<f64> {
+        let of = patch.nodes.iter().zip(&patch.rotation_per_displacement);
+        of.map(|(node, a)| a * shape(modes, *node, k)).sum()
+    };
+    let turned: Vec<Vector3<f64>> = (0..body.flexible()).map(of_mode).collect();
+    RotationShapes::new(body, Mat::from_fn(3, turned.len(), |axis, k| turned[k][axis]).as_ref())
 }
 
 /// Displacement of a node in a flexible mode.

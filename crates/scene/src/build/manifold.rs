@@ -8,7 +8,7 @@ use modal::{Modes, ReducedBody, SecondOrderShapes};
 use super::error::{BuildError, modal};
 use super::mesh_model::MeshModel;
 use super::statics::Statics;
-use super::stress::{LOADS, Stress};
+use super::stress::{DRIVE, Stress};
 use crate::effects::Choice;
 use crate::modes::Large;
 use crate::scene::Scene;
@@ -25,8 +25,9 @@ pub(super) struct LargeDeflection {
 /// The shapes of second order of the large modes.
 struct LargeShapes {
     shapes: SecondOrderShapes,
-    /// The geometric stiffness of each large mode in the modes (nf × nf), with the terms that loads have.
+    /// The geometric stiffness of each large mode in the modes (nf × nf): of its initial stress, and in full.
     of_stress: Vec<Mat<f64>>,
+    in_full: Vec<Mat<f64>>,
 }
 
 /// Which of the `natural` modes that are kept are large, numbered from 0. What is left open is on where the scene names
@@ -60,13 +61,13 @@ impl LargeDeflection {
         let forces = second_order_forces(mesh, materials, of_large.as_ref(), &pairs)?;
         let energies = second_order_energies(mesh, materials, of_large.as_ref(), &quadruples)?;
         let shapes = solver.second_order_shapes(modes.clone(), large, forces.as_ref()).map_err(modal(scene))?;
-        let of_stress = model.stress_stiffness(of_large.as_ref(), modes, LOADS)?;
-        let large = LargeShapes { shapes, of_stress };
+        let of_stress = model.stress_stiffness(of_large.as_ref(), modes, GeometricTerms::InitialStress)?;
+        let in_full = model.stress_stiffness(of_large.as_ref(), modes, GeometricTerms::All)?;
+        let large = LargeShapes { shapes, of_stress, in_full };
         let extended = match (&statics.of_spin, stress_stiffness) {
             (Some(of_spin), Some(k)) => {
-                let of_large = model.stress_stiffness(of_large.as_ref(), modes, GeometricTerms::All)?;
                 let answer = |pair| of_spin.answers.subcols(pair, 1);
-                Some(std::array::from_fn(|pair| large.extended(model, answer(pair), &k[pair], &of_large)))
+                Some(std::array::from_fn(|pair| large.extended(model, answer(pair), &k[pair], GeometricTerms::All)))
             }
             _ => None,
         };
@@ -90,17 +91,16 @@ impl LargeDeflection {
 
     /// The stress of loads and of a drive in the extended shapes.
     pub fn stressed(&self, model: &MeshModel<'_>, statics: &Statics, mut stress: Stress) -> Stress {
-        let extended =
-            |answer: MatRef<'_, f64>, k: &Mat<f64>| self.large.extended(model, answer, k, &self.large.of_stress);
         if let Some(of_loads) = &statics.of_loads {
             for (i, directed) in stress.of_loads.iter_mut().enumerate() {
                 for (j, directed) in directed.iter_mut().enumerate() {
-                    directed.stiffness = extended(of_loads.answers_to(i).subcols(j, 1), &directed.stiffness);
+                    let answer = of_loads.answers_to(i).subcols(j, 1);
+                    directed.stiffness = self.large.extended(model, answer, &directed.stiffness, directed.terms);
                 }
             }
         }
         if let (Some(answer), Some(k)) = (&statics.of_drive, stress.of_drive.take()) {
-            stress.of_drive = Some(extended(answer.as_ref(), &k));
+            stress.of_drive = Some(self.large.extended(model, answer.as_ref(), &k, DRIVE));
         }
         stress
     }
@@ -109,14 +109,18 @@ impl LargeDeflection {
 impl LargeShapes {
     /// The geometric stiffness `k` (nf × nf) of a static `answer` (3n × 1) in the extended shapes. Between two large modes
     /// it is zero, since the manifold has it. Between a large mode and another it is without that of the answer's parts along
-    /// the large modes, which are coordinates that move; `of_large` are the geometric stiffnesses of these.
+    /// the large modes, which are coordinates that move, with the same `terms`.
     fn extended(
         &self,
         model: &MeshModel<'_>,
         answer: MatRef<'_, f64>,
         k: &Mat<f64>,
-        of_large: &[Mat<f64>],
+        terms: GeometricTerms,
     ) -> Mat<f64> {
+        let of_large = match terms {
+            GeometricTerms::InitialStress => &self.of_stress,
+            GeometricTerms::All => &self.in_full,
+        };
         let SecondOrderShapes { modes, large, dynamic, .. } = &self.shapes;
         let momentum = model.solver.mass().product(answer);
         let along: Vec<f64> = large

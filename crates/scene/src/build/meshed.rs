@@ -1,5 +1,6 @@
 //! A body with a mesh: its modes, and the effects that its scene calls for.
 
+use std::sync::Arc;
 use std::time::Instant;
 
 use advice::{buckling, limits, unsteady};
@@ -9,49 +10,38 @@ use frames_rk4::{Effect, Physics, PointShapes};
 use modal::{BodyPoint, Modes, ReducedBody, Solver};
 use nalgebra::Vector3;
 
+use super::assembly::AssembledMesh;
 use super::decide::Decision;
-use super::error::{BuildError, modal, refuse, too_many_modes};
+use super::error::{BuildError, modal, refuse};
 use super::loads;
 use super::manifold::LargeDeflection;
-use super::mesh::{matrices, read_mesh};
 use super::mesh_model::MeshModel;
 use super::modal_model::ModalModel;
 use super::model::{Meshed, Model};
 use super::points::{output_points, well_spread};
 use super::progress::{BuildProgress, BuildTimes, timed};
 use super::reduce::Reduction;
-use super::support::support;
+use super::stress_shapes::BodyStress;
 use super::survey::Survey;
 use crate::effects::Choice;
-use crate::scene::{Frame, MeshedBody, Scene};
+use crate::scene::{Frame, Scene};
 
-pub(super) fn build(
+/// The model of a scene, from its mesh and the modes that it asks for.
+pub(super) fn reduce(
     scene: &Scene,
-    body: &MeshedBody,
-    mut progress: impl FnMut(BuildProgress),
+    assembled: &AssembledMesh,
+    solver: &Solver<'_>,
+    modes: Modes,
+    mut times: BuildTimes,
+    progress: &mut dyn FnMut(BuildProgress),
 ) -> Result<Model, BuildError> {
-    let mut times = BuildTimes::default();
-    progress(BuildProgress::Mesh);
-    let mesh = timed(&mut times.mesh, || read_mesh(scene, body))?;
-    progress(BuildProgress::Assembly);
-    let matrices = timed(&mut times.assembly, || matrices(scene, body, &mesh))?;
-    let (support, drive) = support(scene, Some(&mesh))?;
-    let requested = match scene.effects.choices[Effect::Flexibility] {
-        Choice::Off => 0,
-        Choice::On | Choice::Auto => scene.modes.flexible.most(),
-    };
-    let solver =
-        Solver::new(matrices.stiffness(), matrices.mass(), mesh.positions(), &support).map_err(modal(scene))?;
-    let modes = timed(&mut times.modes, || {
-        solver.modes(requested, |p| progress(BuildProgress::Modes(p))).map_err(|error| too_many_modes(scene, error))
-    })?;
-    let loads = loads::on_mesh(scene, &mesh, &solver.mass().row_sums())?;
-    let model =
-        MeshModel { scene, body, mesh: &mesh, matrices: &matrices, solver: &solver, support: &support, loads, drive };
+    let AssembledMesh { body, mesh, matrices, support, drive, .. } = assembled;
+    let loads = loads::on_mesh(scene, mesh, &solver.mass().row_sums())?;
+    let model = MeshModel { scene, body, mesh, matrices, solver, support, loads, drive: drive.clone() };
 
     let on_all_modes = timed(&mut times.reduction, || ModalModel::new(&model, &modes))?;
     let started = Instant::now();
-    let survey = Survey::new(&model, modes, on_all_modes, &mut progress)?;
+    let survey = Survey::new(&model, modes, on_all_modes, progress)?;
     let has_statics = survey.statics.any();
     let decision = Decision::new(scene, &survey);
     let Reduction { modes, modal: reduced, large, backbones, stress, advice } =
@@ -62,10 +52,13 @@ pub(super) fn build(
 
     let started = Instant::now();
     let points = match &large {
-        Some(large) => points(scene, &mesh, large.modes(), large.manifold.body())?,
-        None => points(scene, &mesh, &modes, &reduced.body)?,
+        Some(large) => points(scene, mesh, large.modes(), large.manifold.body())?,
+        None => points(scene, mesh, &modes, &reduced.body)?,
     };
-    let reference_points = reference_points(scene, &mesh, &reduced.body);
+    let reference_points = reference_points(scene, mesh, &reduced.body);
+    let extended = large.as_ref().map(|large| (&large.manifold, large.modes()));
+    let has_gravity = decision.effects[Effect::Gravity];
+    let body_stress = BodyStress::new(&model, &modes, extended, &reduced.body.origin, has_gravity)?;
     times.reduction += started.elapsed();
 
     let Decision { mut effects, lacks, .. } = decision;
@@ -89,11 +82,10 @@ pub(super) fn build(
         // Who switches static shapes off is not warned again.
         left_out: lacks.filter(|_| scene.modes.static_correction == Choice::Auto).unwrap_or_default(),
         backbones,
+        stress: body_stress,
         body: reduced.body,
-        meshed: None,
+        meshed: Some(Meshed { matrix_bytes: matrices.bytes(), mesh: Arc::clone(mesh), modes, following }),
     };
-    drop(solver);
-    model.meshed = Some(Meshed { matrix_bytes: matrices.bytes(), mesh, modes, following });
     let initial = model.initial(scene);
     model.refusal = buckling(stress.buckling_ratio);
     if model.refusal.is_none() && model.is_stressed() {

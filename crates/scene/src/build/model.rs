@@ -1,5 +1,7 @@
 //! A body that can move, as a scene describes it.
 
+use std::sync::Arc;
+
 use advice::{Advice, Backbone, Case, Refusal, StepEstimate};
 use faer::Mat;
 use fem_tet10::Mesh;
@@ -13,6 +15,7 @@ use nalgebra::Vector3;
 use super::error::StartError;
 use super::initial::initial;
 use super::progress::BuildTimes;
+use super::stress_shapes::BodyStress;
 use crate::scene::Scene;
 
 /// Deflection over the length at which small vibrations are looked at.
@@ -22,7 +25,7 @@ const SMALL: f64 = 1e-3;
 #[derive(Debug, Clone)]
 pub struct Meshed {
     /// The mesh.
-    pub mesh: Mesh,
+    pub mesh: Arc<Mesh>,
     /// Bytes that the mass and stiffness matrices took.
     pub matrix_bytes: usize,
     /// Rigid and flexible modes on the mesh.
@@ -51,6 +54,8 @@ pub struct Model {
     pub refusal: Option<Refusal>,
     /// Where the time went.
     pub times: BuildTimes,
+    /// Its stress, where the scene asks for it.
+    pub stress: Option<BodyStress>,
     pub(super) loads: Vec<SharedLoad>,
     pub(super) damping_ratios: Vec<f64>,
     pub(super) size: Size,
@@ -75,42 +80,6 @@ impl Model {
         self.body.circular_frequencies.iter().map(|omega| omega / std::f64::consts::TAU).collect()
     }
 
-    /// The same body with its first `flexible` modes only. With fewer modes than it has, the manifold of large modes goes:
-    /// its shapes belong to all of them.
-    pub fn truncated(&self, flexible: usize) -> Self {
-        let flexible = flexible.min(self.body.flexible());
-        let large_deflection = self.physics.large_deflection.clone().filter(|_| flexible == self.body.flexible());
-        let extended = large_deflection.as_ref().map_or(flexible, |manifold| manifold.body().flexible());
-        let meshed = self.meshed.as_ref().map(|meshed| Meshed {
-            mesh: meshed.mesh.clone(),
-            modes: truncated_modes(&meshed.modes, flexible),
-            following: match large_deflection {
-                Some(_) => meshed.following.clone(),
-                None => Mat::new(),
-            },
-            ..*meshed
-        });
-        let stiffness = self.physics.drive_stiffness.as_ref();
-        let physics = Physics {
-            drive_stiffness: stiffness.map(|k| k.get(..extended, ..extended).to_owned()),
-            large_deflection,
-            ..self.physics.clone()
-        };
-        Self {
-            meshed,
-            physics,
-            body: self.body.truncated(flexible),
-            points: self.points.iter().map(|(name, point)| (name.clone(), point.truncated(extended))).collect(),
-            loads: self.loads.clone(),
-            damping_ratios: self.damping_ratios[..flexible].to_vec(),
-            size: Size { peaks: self.size.peaks[..flexible].to_vec(), ..self.size },
-            advice: self.advice.clone(),
-            left_out: self.left_out.clone(),
-            backbones: self.backbones.iter().copied().take(flexible).collect(),
-            ..*self
-        }
-    }
-
     /// Damping ratio of each flexible mode.
     pub fn damping_ratios(&self) -> &[f64] {
         &self.damping_ratios
@@ -133,7 +102,7 @@ impl Model {
     pub fn loaded_modes(&self, scene: &Scene) -> Result<Vec<LoadedMode>, LoadedError> {
         let turns = self.physics.drive.is_some() || !self.body.motion.rotations().is_empty();
         let is_steady = |load: &&SharedLoad| {
-            let follows = load.pattern().is_some_and(|pattern| pattern.frame == LoadFrame::Body);
+            let follows = load.pattern().is_some_and(|pattern| pattern.frame != LoadFrame::Global);
             matches!(load.history(), Some(History::Constant)) && (follows || !turns)
         };
         let steady = self.loads.iter().filter(is_steady).cloned().collect();
@@ -152,9 +121,7 @@ impl Model {
     /// [`Meshed::following`].
     pub fn coordinates(&self, modal_displacement: &[f64]) -> Vec<f64> {
         let Some(manifold) = &self.physics.large_deflection else { return modal_displacement.to_vec() };
-        let mut xi = vec![0.0; manifold.body().flexible()];
-        manifold.coordinates(modal_displacement, &mut xi);
-        xi
+        manifold.coordinates(modal_displacement)
     }
 
     /// How the frequency of each of the first modes goes with its amplitude, of those that may bend the body far.
@@ -244,14 +211,4 @@ impl Model {
             points: &[],
         }
     }
-}
-
-/// The first of some modes.
-pub(super) fn truncated_modes(modes: &Modes, flexible: usize) -> Modes {
-    let mut modes = modes.clone();
-    modes.eigenvalues.truncate(flexible);
-    modes.residuals.truncate(flexible);
-    modes.force_residuals.truncate(flexible);
-    modes.shapes = modes.shapes.get(.., ..flexible).to_owned();
-    modes
 }

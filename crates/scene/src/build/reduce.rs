@@ -9,7 +9,6 @@ use super::error::{BuildError, modal};
 use super::manifold::{LargeDeflection, large_modes};
 use super::mesh_model::MeshModel;
 use super::modal_model::ModalModel;
-use super::model::truncated_modes;
 use super::statics::Statics;
 use super::stress::Stress;
 use super::survey::Survey;
@@ -74,7 +73,7 @@ fn basis(
     statics: &Statics,
     decision: &Decision,
 ) -> Result<Modes, BuildError> {
-    let kept = truncated_modes(modes, decision.keep);
+    let kept = modes.truncated(decision.keep);
     if !decision.has_static_shapes {
         return Ok(kept);
     }

@@ -67,6 +67,7 @@ pub(super) fn build(scene: &Scene, rigid: &RigidBody) -> Result<Model, BuildErro
         body,
         left_out: Vec::new(),
         backbones: Vec::new(),
+        stress: None,
     })
 }
 

@@ -163,6 +163,11 @@ impl OfLoads {
         self.answers.subcols(range.start, range.len())
     }
 
+    /// The forces or moments that a load's answers are combined of as the body turns, see [`MeshLoad::turned`].
+    pub fn turned(&self, load: usize) -> &[Vector3<f64>] {
+        &self.columns[load].1
+    }
+
     /// The forces or moments that these are the answers to, body axes.
     pub fn vectors(&self, i: usize, load: &MeshLoad) -> Vec<Vector3<f64>> {
         let (_, turned) = &self.columns[i];

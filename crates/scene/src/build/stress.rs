@@ -15,8 +15,11 @@ use super::statics::Statics;
 use crate::effects::Choice;
 
 /// A load across a slender body bends it by more than its thickness long before it stresses it much, and the terms of the
-/// initial displacement are wrong there: see [`fem_tet10::reduced_geometric_stiffness`].
-pub(super) const LOADS: GeometricTerms = GeometricTerms::InitialStress;
+/// initial displacement are wrong there: see [`fem_tet10::reduced_geometric_stiffness`]. They are taken where none of them
+/// exceeds this part of √(λ_k λ_l): what they get wrong is of the size of its square.
+const SMALL: f64 = 0.03;
+/// What the stress of a drive has, and of a base that is accelerated alike.
+pub(super) const DRIVE: GeometricTerms = GeometricTerms::InitialStress;
 
 /// Stiffness in the modes (nf × nf) by the stress of what acts on a body, where it matters.
 #[derive(Default)]
@@ -47,7 +50,11 @@ impl Stress {
                     found.of_loads.push(Vec::new());
                     continue;
                 }
-                let stiffness = model.stress_stiffness(answers, modes, LOADS)?;
+                let (stiffness, terms) = if load.is_base_acceleration {
+                    (model.stress_stiffness(answers, modes, DRIVE)?, DRIVE)
+                } else {
+                    of_load(model, answers, modes, load.history.largest(model.scene.time.end))?
+                };
                 let mut directed = Vec::new();
                 for (vector, stiffness) in of_loads.vectors(i, load).into_iter().zip(stiffness) {
                     names.push((StressSource::Load(i), load.name_along(&vector)));
@@ -56,14 +63,14 @@ impl Stress {
                         Some(change) => &stiffness - change.load_stiffness,
                         None => stiffness.clone(),
                     });
-                    directed.push(Directed { vector, stiffness });
+                    directed.push(Directed { vector, stiffness, terms });
                 }
                 found.of_loads.push(directed);
             }
         }
         if let Some(answer) = &statics.of_drive {
             names.push((StressSource::Drive, "the acceleration of the drive".to_owned()));
-            found.of_drive = model.stress_stiffness(answer.as_ref(), modes, LOADS)?.pop();
+            found.of_drive = model.stress_stiffness(answer.as_ref(), modes, DRIVE)?.pop();
             shown.extend(found.of_drive.clone());
         }
         found.decided(model, body, &names, &shown)
@@ -103,6 +110,27 @@ impl Stress {
     pub fn any(&self) -> bool {
         self.of_drive.is_some() || self.of_loads.iter().any(|directed| !directed.is_empty())
     }
+}
+
+/// The stiffness by each static answer to a load whose history is `largest` at most: the initial stress, and the initial
+/// displacement where it is small.
+fn of_load(
+    model: &MeshModel<'_>,
+    answers: MatRef<'_, f64>,
+    modes: &Modes,
+    largest: f64,
+) -> Result<(Vec<Mat<f64>>, GeometricTerms), BuildError> {
+    let all = model.stress_stiffness(answers, modes, GeometricTerms::All)?;
+    let stress = model.stress_stiffness(answers, modes, GeometricTerms::InitialStress)?;
+    let is_small = all.iter().zip(&stress).all(|(all, stress)| {
+        (0..all.ncols()).all(|l| {
+            (0..=l).all(|k| {
+                let scale = (modes.eigenvalues[k] * modes.eigenvalues[l]).sqrt();
+                largest * (all[(k, l)] - stress[(k, l)]).abs() <= SMALL * scale
+            })
+        })
+    });
+    Ok(if is_small { (all, GeometricTerms::All) } else { (stress, GeometricTerms::InitialStress) })
 }
 
 /// The steady dead loads over those at which the body buckles, on the whole mesh: the modes that are kept do not hold the

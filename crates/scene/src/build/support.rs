@@ -1,14 +1,14 @@
 //! What holds the body of a scene: nodes of its mesh, the rigid motions left, and what drives it.
 
 use fem_tet10::Mesh;
-use frames_rk4::{Drive, DrivenMotion};
+use frames_rk4::{Drive, DrivenMotion, DrivenSpeed};
 use modal::{RigidMotion, Support};
 use nalgebra::Vector3;
 
 use super::error::{BuildError, modal, refuse_mesh};
 use super::history::history;
 use super::initial::first_attitude;
-use crate::constraint::{self, Constraint, HeldDirections, HingeLine, Region};
+use crate::constraint::{Constraint, HeldDirections, HingeLine, Region};
 use crate::document::join;
 use crate::scene::Scene;
 
@@ -29,9 +29,9 @@ pub(super) fn support(scene: &Scene, mesh: Option<&Mesh>) -> Result<(Support, Op
         Some(mesh) => held_nodes(scene, mesh, constraint)?,
         None => Vec::new(),
     };
-    let driven = |drive: &constraint::Drive, motion: DrivenMotion| -> Result<Drive, BuildError> {
-        let history = history(scene, "constraints[0].motion.history", &drive.history)?;
-        Ok(Drive { motion, amplitude: drive.amplitude, history, span: scene.time.end })
+    let driven = |speed: &crate::history::DrivenSpeed, motion: DrivenMotion| -> Result<Drive, BuildError> {
+        let history = history(scene, "constraints[0].motion.history", &speed.history)?;
+        Ok(Drive { motion, speed: DrivenSpeed { amplitude: speed.amplitude, history } })
     };
     let mean = || {
         let of = |node: &u32| mesh.map_or(Vector3::zeros(), |mesh| mesh.positions()[*node as usize].into());
@@ -42,14 +42,14 @@ pub(super) fn support(scene: &Scene, mesh: Option<&Mesh>) -> Result<(Support, Op
         Constraint::Hinge { line, motion, .. } => {
             let (point, axis) = (line.at().into(), line.direction().into());
             match motion {
-                Some(drive) => (RigidMotion::clamp(point), Some(driven(drive, DrivenMotion::Turn { axis })?)),
+                Some(speed) => (RigidMotion::clamp(point), Some(driven(speed, DrivenMotion::Turn { axis })?)),
                 None => (RigidMotion::hinge(point, axis), None),
             }
         }
         Constraint::Slider { direction, motion, .. } => {
             let direction = (*direction).into();
             match motion {
-                Some(drive) => (RigidMotion::clamp(mean()), Some(driven(drive, DrivenMotion::Slide { direction })?)),
+                Some(speed) => (RigidMotion::clamp(mean()), Some(driven(speed, DrivenMotion::Slide { direction })?)),
                 None => (RigidMotion::slider(direction), None),
             }
         }

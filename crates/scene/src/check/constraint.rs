@@ -1,9 +1,10 @@
 //! The rules on `[[constraints]]`.
 
 use super::Check;
-use crate::constraint::{Constraint, Drive, HeldDirections, HingeLine, Region};
+use crate::constraint::{Constraint, HeldDirections, HingeLine, Region};
 use crate::document::join;
 use crate::error::SceneError;
+use crate::history::DrivenSpeed;
 use crate::scene::Body;
 use crate::section::ConstraintSection;
 
@@ -216,10 +217,10 @@ impl Check<'_> {
         self.positive(&join(key, "radius"), radius, "give the radius of the ball whose nodes are held")
     }
 
-    fn motion(&self, key: &str, motion: Option<Drive>) -> Result<Option<Drive>, SceneError> {
-        let Some(mut drive) = motion else { return Ok(None) };
-        self.history(&join(&join(key, "motion"), "history"), &mut drive.history)?;
-        Ok(Some(drive))
+    fn motion(&self, key: &str, motion: Option<DrivenSpeed>) -> Result<Option<DrivenSpeed>, SceneError> {
+        let Some(mut speed) = motion else { return Ok(None) };
+        self.history(&join(&join(key, "motion"), "history"), &mut speed.history)?;
+        Ok(Some(speed))
     }
 
     fn no_region(&self, key: &str) -> SceneError {

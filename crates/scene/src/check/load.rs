@@ -1,10 +1,12 @@
 //! The rules on `[[loads]]`.
 
+use frames_rk4::LoadFrame;
+
 use super::Check;
 use crate::constraint::Constraint;
 use crate::document::join;
 use crate::error::SceneError;
-use crate::load::Load;
+use crate::load::{self, Load};
 use crate::scene::Body;
 
 impl Check<'_> {
@@ -22,6 +24,15 @@ impl Check<'_> {
                     "the acceleration of the base of a free body",
                     "a body that something holds",
                     "add [[constraints]], or use `kind = \"gravity\"` for an acceleration of all of a free body",
+                ));
+            }
+            if let Load::Moment(load::Moment { frame, .. }) | Load::Traction(load::Traction { frame, .. }) = load
+                && *frame == LoadFrame::Material
+            {
+                return Err(self.document.place(&join(&key, "frame")).refuse(
+                    "a moment or a traction that turns with the material",
+                    "`global` or `body`",
+                    "use a force for a direction that turns with the material at a point, or a pressure, which turns with its surface",
                 ));
             }
             self.load(&key, load, body)?;

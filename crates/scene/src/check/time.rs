@@ -5,7 +5,7 @@ use frames_rk4::{Method, Rows, StepControl};
 use super::Check;
 use crate::document::join;
 use crate::error::SceneError;
-use crate::scene::{Output, Time};
+use crate::scene::{Body, Output, Time};
 use crate::section::{Formulation, OutputSection, Scheme, TimeSection};
 use crate::shorten::shorten;
 
@@ -111,8 +111,8 @@ impl Check<'_> {
         length < LEAST_PART * self.end
     }
 
-    pub fn output(&self, section: OutputSection, time: &Time) -> Result<Output, SceneError> {
-        let OutputSection { every, interval, points } = section;
+    pub fn output(&self, section: OutputSection, time: &Time, body: &Body) -> Result<Output, SceneError> {
+        let OutputSection { every, interval, points, stress, peak_stress } = section;
         let rows = match (every, interval, time.control) {
             (Some(_), Some(_), _) => {
                 return Err(self.document.place("output.interval").refuse(
@@ -158,6 +158,20 @@ impl Check<'_> {
                 ));
             }
         }
-        Ok(Output { rows, points })
+        for (key, asked) in [("output.stress", stress), ("output.peak_stress", peak_stress)] {
+            self.require(
+                !asked || matches!(body, Body::Meshed(_)),
+                key,
+                "a body with a mesh",
+                "remove the key: a rigid body without a mesh has no stress",
+            )?;
+        }
+        self.require(
+            !stress || !points.is_empty(),
+            "output.stress",
+            "points whose stress is written",
+            "name them, e.g. `points = { root = [0, 0, 0] }`, or ask for `peak_stress = true`",
+        )?;
+        Ok(Output { rows, points, stress, peak_stress })
     }
 }

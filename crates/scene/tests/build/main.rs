@@ -1,5 +1,6 @@
 //! From the text of a scene to the motion of its body, on a bar small enough for closed forms.
 
+mod assembly;
 mod auto;
 mod backbones;
 mod damping;

@@ -141,3 +141,49 @@ fn a_cantilever_bends_as_the_elastica_does() {
         assert!((found / expected - 1.0).abs() < tolerance, "{alpha}: {found} instead of {expected}");
     }
 }
+
+/// Deflection of the tip over the length under an end force α EI/L² that stays normal to the tip: from the tip inwards,
+/// φ'' = −α cos φ of the angle against the tip, φ = φ' = 0 there.
+fn follower_elastica(alpha: f64) -> f64 {
+    let steps = 2000;
+    let h = 1.0 / f64::from(steps);
+    let (mut phi, mut slope) = (0.0_f64, 0.0_f64);
+    let mut angles = vec![phi];
+    for _ in 0..steps {
+        let middle = phi + 0.5 * h * slope;
+        let half = slope - 0.5 * h * alpha * phi.cos();
+        slope -= h * alpha * middle.cos();
+        phi += h * half;
+        angles.push(phi);
+    }
+    let root = phi;
+    angles.windows(2).map(|pair| h * 0.5 * ((pair[0] - root).sin() + (pair[1] - root).sin())).sum()
+}
+
+#[test]
+fn a_force_that_turns_with_the_material_bends_as_the_follower_elastica() {
+    let at_rest = |alpha: f64, frame: &str, effects: &str| {
+        let force = alpha * YOUNG * BENDING / (LENGTH * LENGTH);
+        let load = format!(
+            "{CLAMPED}[[loads]]\nkind = \"force\"\nat = [200.0, 0.0, 0.0]\ndirection = [0.0, 0.0, 1.0]\n\
+             amplitude = {force:e}\nframe = \"{frame}\"\nhistory = {{ kind = \"ramp\", duration = 0.02 }}\n\
+             [effects]\nrefuse = false\n{effects}"
+        );
+        let modes = "flexible = 12\nlarge = 4\ndamping_ratio = 0.7\nstatic_correction = true";
+        let scene = bar(modes, &load, "end = 0.04\nstep = 1e-5");
+        let model = build(&scene);
+        point(&model, observations(&scene, &model).last().unwrap(), "tip").displacement.z / LENGTH
+    };
+    for (alpha, tolerance) in [(0.31, 1e-3), (0.62, 5e-3), (0.95, 1.7e-2)] {
+        let linear = at_rest(alpha, "global", "large_deflection = false\ngeometric_stiffening = false");
+        let found = at_rest(alpha, "material", "large_deflection = true") / linear;
+        let dead = at_rest(alpha, "global", "large_deflection = true") / linear;
+        let expected = follower_elastica(alpha) / (alpha / 3.0);
+        println!(
+            "{alpha}: tip {:.4}, {found:.5} of linear, elastica {expected:.5}; dead {dead:.5}, {:.5}",
+            found * linear,
+            elastica(alpha) / (alpha / 3.0)
+        );
+        assert!((found / expected - 1.0).abs() < tolerance, "{alpha}: {found} instead of {expected}");
+    }
+}

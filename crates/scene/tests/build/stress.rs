@@ -211,3 +211,24 @@ fn a_pressure_all_round_moves_no_frequency_to_speak_of() {
         assert!((pressed / free - 1.0).abs() < 0.01, "{free} {pressed}");
     }
 }
+
+#[test]
+fn a_pressure_all_round_gives_neither_a_force_nor_a_moment() {
+    let size = 1e-3 * YOUNG;
+    let all_round: String = ["root", "tip", "top", "sides"].iter().map(|group| pressure(group, size)).collect();
+    let duration = 2e-3;
+    let rest = format!(
+        "{all_round}\n[effects]\ngeometric_stiffening = true\nrefuse = false\n\
+         [initial]\nmodal_displacement = [2e-3, -1e-3, 5e-4, 3e-4]"
+    );
+    let scene = bar("flexible = 6", &rest, &format!("end = {duration:e}\nstep = 1e-5"));
+    let model = build(&scene);
+    assert!(model.is_stressed());
+    // What a pressure on the long sides alone gives in that time.
+    let impulse = size * LENGTH * BREADTH * duration;
+    for row in observations(&scene, &model) {
+        let (linear, angular) = (row.linear_momentum_global.norm(), row.angular_momentum_global.norm());
+        // Measured: see docs/nonlinear.md.
+        assert!(linear < 1e-12 * impulse && angular < 1e-12 * impulse * LENGTH, "{linear:e} {angular:e} {impulse:e}");
+    }
+}

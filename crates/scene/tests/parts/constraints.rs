@@ -1,6 +1,6 @@
 //! What holds or drives the body.
 
-use scene::{Constraint, Drive, HeldDirections, HingeLine, History, Region, Scene};
+use scene::{Constraint, DrivenSpeed, HeldDirections, HingeLine, History, Region, Scene};
 
 use crate::common::EXAMPLE;
 
@@ -59,7 +59,7 @@ fn a_hinge() {
     );
     assert_eq!(shaft, [Region::Group("shaft".to_owned())]);
     let history = History::Ramp { start: 0.0, duration: 15.0 };
-    assert_eq!(motion, Some(Drive { amplitude: -6.0, history }));
+    assert_eq!(motion, Some(DrivenSpeed { amplitude: -6.0, history }));
 }
 
 #[test]
@@ -114,7 +114,7 @@ fn a_clamp_and_a_slider() {
          motion = { amplitude = 2, history = { kind = \"sine\", frequency = 5 } }",
     );
     let history = History::Sine { frequency: 5.0, phase: 0.0, start: 0.0, duration: None };
-    let motion = Some(Drive { amplitude: 2.0, history });
+    let motion = Some(DrivenSpeed { amplitude: 2.0, history });
     assert_eq!(driven, Constraint::Slider { direction, region: Some(Region::Group("base".to_owned())), motion });
 
     for kind in ["kind = \"clamp\"\n", "kind = \"slider\"\ndirection = [1, 0, 0]\n"] {

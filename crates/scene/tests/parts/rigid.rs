@@ -77,6 +77,14 @@ fn it_needs_no_modes_and_takes_none() {
 }
 
 #[test]
+fn it_has_no_stress() {
+    for key in ["stress", "peak_stress"] {
+        let message = Scene::parse(&format!("{}\n{key} = true\n", text(TOP)), "a.toml").unwrap_err().to_string();
+        assert!(message.contains(&format!("`output.{key}`: found true, expected a body with a mesh")), "{message}");
+    }
+}
+
+#[test]
 fn what_is_no_rigid_body() {
     for (keys, key, words) in [
         (TOP.replace("20", "0"), "mass", "found 0, expected a number greater than 0"),

@@ -1,0 +1,86 @@
+//! What the mesh gets wrong: the recovered stress against that of the elements (Zienkiewicz and Zhu 1987).
+
+use faer::{ColRef, MatRef};
+use nalgebra::Matrix3;
+use rayon::prelude::*;
+
+use super::{COMPONENTS, StressRecovery};
+use crate::error::AssemblyError;
+use crate::geometric_stiffness::{check_field, relative_displacements};
+use crate::material::Material;
+use crate::second_order::{displacement_gradients, strain, stress};
+use crate::shape::shape_functions;
+
+/// Strain energies of an element, or of a body: of its stress, and of the difference between its stress and the
+/// recovered one.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct StressError {
+    /// ½ ∫ σ:C⁻¹:σ dV.
+    pub energy: f64,
+    /// ½ ∫ (σ* − σ):C⁻¹:(σ* − σ) dV.
+    pub error: f64,
+}
+
+impl StressError {
+    /// The error of the stress in the norm of the energy, relative to the stress; 0 without any.
+    pub fn relative(&self) -> f64 {
+        if self.energy + self.error > 0.0 { (self.error / (self.energy + self.error)).sqrt() } else { 0.0 }
+    }
+}
+
+impl std::iter::Sum for StressError {
+    fn sum<I: Iterator<Item = Self>>(all: I) -> Self {
+        all.fold(Self::default(), |sum, one| Self { energy: sum.energy + one.energy, error: sum.error + one.error })
+    }
+}
+
+impl StressRecovery<'_> {
+    /// The estimate for each element: of a displacement field (N, length) and its
+    /// [`nodal_stress`](Self::nodal_stress) (6m, force per area). That of the body is their sum.
+    ///
+    /// # Errors
+    /// Lists of another length, or with an entry that is not finite.
+    pub fn error_estimate(
+        &self,
+        displacement: ColRef<'_, f64>,
+        nodal_stress: ColRef<'_, f64>,
+    ) -> Result<Vec<StressError>, AssemblyError> {
+        check_field(self.mesh, "displacements", displacement.as_mat())?;
+        let (expected, found) = (6 * self.sites.len(), nodal_stress.nrows());
+        if found != expected {
+            return Err(AssemblyError::FieldRows { what: "nodal stress", expected, found });
+        }
+        let of = |e: usize| self.of_element(e, displacement.as_mat(), nodal_stress);
+        Ok((0..self.mesh.elements().len()).into_par_iter().map(of).collect())
+    }
+
+    fn of_element(&self, e: usize, displacement: MatRef<'_, f64>, nodal: ColRef<'_, f64>) -> StressError {
+        let relative = relative_displacements(displacement, &self.mesh.elements()[e]);
+        let mut gradients = Vec::with_capacity(1);
+        let points = self.rules.fine_points(&self.mesh.element_positions(e));
+        let shapes = self.rules.fine_rule().map(shape_functions);
+        let of_point = |(point, shapes): (&_, [f64; 10])| {
+            displacement_gradients(&relative, point, 1, &mut gradients);
+            let raw = stress(&self.materials[e], &strain(&gradients[0]));
+            let mut recovered = Matrix3::zeros();
+            for (site, shape) in self.sites.of_element(e).iter().zip(shapes) {
+                for (c, (i, j)) in COMPONENTS.into_iter().enumerate() {
+                    recovered[(i, j)] += shape * nodal[6 * *site as usize + c];
+                }
+            }
+            for (i, j) in COMPONENTS {
+                recovered[(j, i)] = recovered[(i, j)];
+            }
+            let half: f64 = 0.5 * point.volume;
+            let energy = |s: &Matrix3<f64>| half * complementary(&self.materials[e], s);
+            StressError { energy: energy(&raw), error: energy(&(recovered - raw)) }
+        };
+        points.iter().zip(shapes).map(of_point).sum()
+    }
+}
+
+/// σ:C⁻¹:σ.
+fn complementary(material: &Material, stress: &Matrix3<f64>) -> f64 {
+    let nu = material.poisson_ratio;
+    ((1.0 + nu) * stress.norm_squared() - nu * stress.trace().powi(2)) / material.young_modulus
+}

@@ -1,0 +1,127 @@
+//! Stress at the nodes, where it is known exactly.
+
+use std::collections::BTreeMap;
+
+use faer::Mat;
+use fem_tet10::{Material, Materials, StressError, StressRecovery, von_mises};
+use nalgebra::{Matrix3, Rotation3, Vector3};
+
+use crate::fixtures::{ALUMINIUM, aluminium, data_mesh, field, workspace_mesh};
+
+/// Columns of fields.
+fn columns(fields: &[Vec<f64>]) -> Mat<f64> {
+    Mat::from_fn(fields[0].len(), fields.len(), |i, j| fields[j][i])
+}
+
+fn at(nodal: &Mat<f64>, site: usize, column: usize) -> [f64; 6] {
+    std::array::from_fn(|c| nodal[(6 * site + c, column)])
+}
+
+/// C:ε of a displacement gradient.
+fn stress(material: &Material, gradient: &Matrix3<f64>) -> [f64; 6] {
+    let (lambda, mu) = material.lame();
+    let strain = 0.5 * (gradient + gradient.transpose());
+    let s = lambda * strain.trace() * Matrix3::identity() + 2.0 * mu * strain;
+    [s[(0, 0)], s[(1, 1)], s[(2, 2)], s[(0, 1)], s[(1, 2)], s[(2, 0)]]
+}
+
+#[test]
+fn the_stress_of_quadratic_displacements_is_exact_on_straight_elements() {
+    let mesh = workspace_mesh("plate.msh");
+    // More fields than are computed at once.
+    let fields: Vec<Vec<f64>> = (0..11)
+        .map(|k| {
+            let k = f64::from(k);
+            field(&mesh, |[x, y, z]| [x * y + k * z, k * y * z - x * x, z * z + x * z + k * x])
+        })
+        .collect();
+    let recovery = StressRecovery::new(&mesh, &aluminium()).unwrap();
+    let nodal = recovery.nodal_stress(columns(&fields).as_ref()).unwrap();
+    let scale = nodal.norm_max();
+    for (node, [x, y, z]) in mesh.positions().iter().copied().enumerate() {
+        for column in [0, 7, 8, 10] {
+            let k = column as f64;
+            let gradient = Matrix3::new(y, x, k, -2.0 * x, k * z, k * y, z + k, 0.0, 2.0 * z + x);
+            let truth = stress(&ALUMINIUM, &gradient);
+            for (found, truth) in at(&nodal, node, column).into_iter().zip(truth) {
+                assert!((found - truth).abs() < 1e-10 * scale, "{found} {truth}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_finite_rotation_has_no_stress_of_second_order() {
+    let mesh = data_mesh("cylinder.msh");
+    let turned = Rotation3::from_scaled_axis(Vector3::new(0.4, -0.9, 0.7)).into_inner() - Matrix3::identity();
+    let rotation = field(&mesh, |x| (turned * Vector3::from(x)).into());
+    let recovery = StressRecovery::new(&mesh, &aluminium()).unwrap();
+    let fields = columns(&[rotation]);
+    let first = recovery.nodal_stress(fields.as_ref()).unwrap();
+    let second = recovery.second_order_nodal_stress(fields.as_ref(), &[[0, 0]]).unwrap();
+    assert!(first.norm_max() > 1e4);
+    assert!((&first + &second).norm_max() < 1e-10 * first.norm_max(), "{:e}", (&first + &second).norm_max());
+}
+
+#[test]
+fn a_node_between_two_materials_has_the_stress_of_each() {
+    let mesh = data_mesh("two_materials.msh");
+    let soft = Material { young_modulus: 1e3, poisson_ratio: 0.0, density: 1.0 };
+    let stiff = Material { young_modulus: 7e3, ..soft };
+    let by_name: BTreeMap<String, Material> = mesh.groups().iter().cloned().zip([soft, stiff]).collect();
+    assert_eq!(by_name.len(), 2);
+    let recovery = StressRecovery::new(&mesh, &Materials::ByGroup(by_name)).unwrap();
+    let strain = 1e-3;
+    let nodal = recovery.nodal_stress(columns(&[field(&mesh, |[x, ..]| [strain * x, 0.0, 0.0])]).as_ref()).unwrap();
+    let sites = recovery.sites();
+    assert!(sites.len() > mesh.positions().len());
+    let (mut between, mut found_at) = (0, [0, 0]);
+    for node in 0..mesh.positions().len() as u32 {
+        let here = sites.of_node(node);
+        between += usize::from(here.len() == 2);
+        let mut values: Vec<f64> = here.map(|site| von_mises(&at(&nodal, site, 0))).collect();
+        values.sort_by(f64::total_cmp);
+        for value in &values {
+            let of_soft = (value - 1.0).abs() < 1e-9;
+            assert!(of_soft || (value - 7.0).abs() < 1e-9, "{value}");
+            found_at[usize::from(of_soft)] += 1;
+        }
+        if let [low, high] = values[..] {
+            assert!(high > 6.0 * low);
+            let location = mesh.locate(mesh.positions()[node as usize]).unwrap();
+            assert_eq!(sites.at(&location).len(), 2);
+        }
+    }
+    assert!(between > 3 && found_at.iter().all(|count| *count > between), "{between} {found_at:?}");
+    assert_eq!(sites.len(), mesh.positions().len() + between);
+}
+
+#[test]
+fn the_estimate_is_zero_for_a_stress_that_the_elements_have_and_not_for_another() {
+    let mesh = workspace_mesh("plate.msh");
+    let recovery = StressRecovery::new(&mesh, &aluminium()).unwrap();
+    let fields = columns(&[
+        field(&mesh, |[x, y, z]| [x * y, y * z, z * x]),
+        field(&mesh, |[x, y, z]| [x * x * x, y * z * x, 0.0]),
+    ]);
+    let nodal = recovery.nodal_stress(fields.as_ref()).unwrap();
+    let relative = [0, 1].map(|k| {
+        let of_elements = recovery.error_estimate(fields.col(k), nodal.col(k)).unwrap();
+        assert_eq!(of_elements.len(), mesh.elements().len());
+        of_elements.into_iter().sum::<StressError>().relative()
+    });
+    assert!(relative[0] < 1e-7 && relative[1] > 1e-5 && relative[1] < 1e-4, "{relative:?}");
+}
+
+#[test]
+fn the_energy_of_the_estimate_is_that_of_the_stiffness_matrix() {
+    let mesh = data_mesh("cylinder.msh");
+    let recovery = StressRecovery::new(&mesh, &aluminium()).unwrap();
+    let displacement = field(&mesh, |[x, y, z]| [1e-3 * x * y, 1e-3 * z * z, 1e-3 * (x - y)]);
+    let fields = columns(std::slice::from_ref(&displacement));
+    let nodal = recovery.nodal_stress(fields.as_ref()).unwrap();
+    let all: StressError = recovery.error_estimate(fields.col(0), nodal.col(0)).unwrap().into_iter().sum();
+    let matrices = fem_tet10::assemble(&mesh, &aluminium(), &[]).unwrap();
+    let energy = 0.5 * crate::fixtures::form(&displacement, matrices.stiffness(), &displacement);
+    assert!((all.energy / energy - 1.0).abs() < 1e-10, "{} {energy}", all.energy);
+}

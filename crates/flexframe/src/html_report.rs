@@ -1,0 +1,61 @@
+//! `flexframe report`: a results file as one HTML page.
+
+mod contents;
+
+use std::path::{Path, PathBuf};
+
+use report::ReportError;
+use results::{FileError, Results};
+use scene::{BuildError, BuildProgress, Model, Scene, SceneError};
+
+use crate::columns::COLUMNS;
+use crate::{run, scene_file};
+
+/// A page that could not be made.
+#[derive(Debug, thiserror::Error)]
+pub enum HtmlReportError {
+    /// The results file cannot be read.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// The scene in the results file is invalid.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// The body cannot be made again, of which the file has no shapes.
+    #[error(transparent)]
+    Build(#[from] BuildError),
+    /// What is computed now is not what was computed then, to the last bit: the shapes may be others.
+    #[error(
+        "{}: {what} is no longer what it was when the run began (a changed mesh or table, another version of flexframe, or another machine), so that its shapes may be others: run the scene again",
+        results.display()
+    )]
+    Changed {
+        /// The results file.
+        results: PathBuf,
+        /// What has changed.
+        what: &'static str,
+    },
+    /// The page cannot be written.
+    #[error(transparent)]
+    Page(#[from] ReportError),
+}
+
+/// Reads a results file, finished or not, and writes a page about it to `path`. The shapes come from the scene in the
+/// file, whose mesh is looked for where it was.
+///
+/// # Errors
+/// [`HtmlReportError`].
+pub fn write(file: &Path, path: &Path, progress: impl FnMut(BuildProgress)) -> Result<(), HtmlReportError> {
+    let results = Results::open(file, &COLUMNS)?;
+    let scene = Scene::parse(&results.metadata.scene_text, scene_file::to_path(&results.metadata.scene_file))?;
+    let model = Model::build(&scene, progress)?;
+    let changed = |what| HtmlReportError::Changed { results: file.to_owned(), what };
+    let now = run::metadata(&scene, &model);
+    if now.program_version != results.metadata.program_version {
+        return Err(changed("the version of flexframe"));
+    }
+    if now.body != results.metadata.body {
+        return Err(changed("the body"));
+    }
+    let contents = contents::contents(file, &results, &scene, &model).ok_or_else(|| changed("the set of columns"))?;
+    Ok(report::write(&contents, path)?)
+}

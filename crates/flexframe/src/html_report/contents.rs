@@ -1,0 +1,268 @@
+//! What the page of a run shows.
+
+use std::path::Path;
+
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use report::{
+    Balance, Component, Effect, Fact, History, Motion, Report, RunState, SceneText, Shape, ShapeKind, Surface, Units,
+};
+use results::{Column, Results, Values};
+use scene::{Model, Scene};
+
+use crate::columns::COLUMNS;
+use crate::effects::is_on;
+use crate::modes::frequency_unit;
+use crate::report::{BodyReport, MeshReport, quantity};
+use crate::row::Row;
+use crate::surface;
+
+/// All of it; `None` where the file has not got the columns that it needs.
+pub(super) fn contents(file: &Path, results: &Results, scene: &Scene, model: &Model) -> Option<Report> {
+    let body = BodyReport::new(model);
+    let surface = model.meshed.as_ref().map(|meshed| surface::Surface::new(&meshed.mesh));
+    let units = &results.metadata.units;
+    Some(Report {
+        title: results.metadata.title.clone(),
+        program: format!("flexframe {}", results.metadata.program_version),
+        state: state(file, results, scene)?,
+        units: Units { length: units.length.clone(), time: units.time.clone(), frequency: frequency_unit(&units.time) },
+        facts: facts(results, model, &body)?,
+        surface: surface.as_ref().map(|surface| reference(surface, model)),
+        shapes: shapes(surface.as_ref(), model, &body),
+        stress: None,
+        motion: motion(results, model)?,
+        histories: COLUMNS.iter().flat_map(|column| histories(column, results, &body)).collect(),
+        balances: balances(results)?,
+        effects: effects(scene, model),
+        scene: SceneText {
+            file: scene.path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
+            text: results.metadata.scene_text.clone(),
+        },
+        warnings: warnings(model),
+    })
+}
+
+fn state(file: &Path, results: &Results, scene: &Scene) -> Option<RunState> {
+    if results.complete {
+        return Some(RunState::Complete);
+    }
+    let reached = results.numbers("time")?.last().copied().unwrap_or_default();
+    let time = &results.metadata.units.time;
+    let (reached, end) = (quantity(reached), quantity(scene.time.end));
+    let words = format!(
+        "This run has not come to its end: its rows reach {reached} {time} of {end} {time}. Continue it with: flexframe \
+         resume {}",
+        file.display()
+    );
+    Some(RunState::Unfinished(words))
+}
+
+fn facts(results: &Results, model: &Model, body: &BodyReport) -> Option<Vec<Fact>> {
+    let units = &results.metadata.units;
+    let fact = |label: &str, value: String| Fact { label: label.to_owned(), value };
+    let mut facts = vec![fact("Mass", format!("{} {}", quantity(body.mass), units.mass))];
+    if let Some(mesh) = MeshReport::new(model) {
+        facts.push(fact("Mesh", format!("{} nodes, {} elements", mesh.nodes, mesh.elements)));
+    }
+    let fixed = body.static_shapes();
+    let modes = body.natural_frequencies.len() - fixed;
+    facts.push(match (modes, fixed) {
+        (0, 0) => fact("Shapes", "rigid body".to_owned()),
+        (modes, 0) => fact("Shapes", format!("{modes} modes")),
+        (modes, fixed) => fact("Shapes", format!("{modes} modes, {fixed} static")),
+    });
+    let last = results.numbers("time")?.last().copied().unwrap_or_default();
+    facts.push(fact("Time", format!("{} {} in {} rows", quantity(last), units.time, results.rows())));
+    facts.push(fact("Scheme", format!("{} ({})", results.metadata.scheme, results.metadata.formulation)));
+    Some(facts)
+}
+
+fn reference(surface: &surface::Surface, model: &Model) -> Surface {
+    let from_origin = |x: &[f64; 3]| (Vector3::from(*x) - model.body.origin).map(|x| x as f32).into();
+    Surface {
+        vertices: surface.points.iter().map(from_origin).collect(),
+        triangles: surface.triangles.clone(),
+        edges: surface.edges.clone(),
+    }
+}
+
+fn shapes(surface: Option<&surface::Surface>, model: &Model, body: &BodyReport) -> Vec<Shape> {
+    let modes = body.natural_frequencies.len() - body.static_shapes();
+    let shape = |k: usize| {
+        let mut q = vec![0.0; k + 1];
+        q[k] = 1.0;
+        let displaced =
+            surface.zip(model.meshed.as_ref()).map(|(surface, meshed)| surface.displacements(&meshed.modes, &q));
+        let (name, kind) = if k < modes {
+            let (frequency, damping_ratio) = (body.natural_frequencies[k], body.damping_ratios[k]);
+            (format!("mode {}", k + 1), ShapeKind::Natural { frequency, damping_ratio })
+        } else {
+            (format!("static shape {}", k + 1 - modes), ShapeKind::Static)
+        };
+        let displacement = displaced.unwrap_or_default().iter().map(|u| u.map(|x| x as f32).into()).collect();
+        Shape { name, kind, displacement }
+    };
+    (0..model.body.flexible()).map(shape).collect()
+}
+
+/// The file has the place of the centre of mass; the picture needs that of the body's origin.
+fn motion(results: &Results, model: &Model) -> Option<Motion> {
+    let body = &model.body;
+    let centers = results.vectors::<3>("position")?;
+    let attitudes = results.vectors::<4>("attitude")?;
+    let coordinates = results.table("modal/displacement")?;
+    let origins = centers.iter().zip(attitudes).enumerate().map(|(row, (center, attitude))| {
+        // The modes of a free body leave the centre of mass where it is.
+        let moved = match body.motion.is_free() {
+            true => Vector3::zeros(),
+            false => Vector3::from_fn(|axis, _| {
+                let products = body.translation_first[axis].iter().zip(coordinates.row(row).unwrap_or_default());
+                products.map(|(t, q)| t * q).sum::<f64>() / body.mass
+            }),
+        };
+        let [w, x, y, z] = *attitude;
+        let turned = UnitQuaternion::from_quaternion(Quaternion::new(w, x, y, z));
+        (Vector3::from(*center) - turned * (body.center_of_mass - body.origin + moved)).into()
+    });
+    Some(Motion {
+        times: results.numbers("time")?.to_vec(),
+        origins: origins.collect(),
+        attitudes: attitudes.to_vec(),
+        coordinates: coordinates.values().to_vec(),
+    })
+}
+
+/// A column as histories: one, or one for each point. The time is none.
+fn histories(column: &Column<Row>, results: &Results, body: &BodyReport) -> Vec<History> {
+    let unit = unit(column, results);
+    let frame = if column.frame == "none" { String::new() } else { format!(" ({})", column.frame) };
+    let history = |group: String, name: &str, path: &str| {
+        let table = results.table(path)?;
+        let components = (0..table.width())
+            .map(|k| Component {
+                name: component_name(column, k, table.width(), body),
+                values: table.column(k).into_iter().flatten().collect(),
+            })
+            .collect::<Vec<_>>();
+        let name = format!("{}{frame}", name.replace('_', " "));
+        (!components.is_empty()).then(|| History { group, name, unit: unit.clone(), components })
+    };
+    let path = column.path;
+    if path == "time" {
+        return Vec::new();
+    }
+    let of_points = matches!(column.values, Values::Points(_) | Values::PointNumbers(..));
+    match path.strip_prefix("points/").filter(|_| of_points) {
+        Some(name) => results
+            .metadata
+            .point_names
+            .iter()
+            .filter_map(|point| history(format!("point {point}"), name, &format!("points/{point}/{name}")))
+            .collect(),
+        None => {
+            let (group, name) = path.split_once('/').unwrap_or(("body", path));
+            let group = if group == "modal" { "modal coordinates" } else { group };
+            history(group.to_owned(), name, path).into_iter().collect()
+        }
+    }
+}
+
+fn component_name(column: &Column<Row>, k: usize, width: usize, body: &BodyReport) -> String {
+    match column.values {
+        Values::Modal(_) => {
+            let modes = width - body.static_shapes().min(width);
+            if k < modes { format!("{}", k + 1) } else { format!("static {}", k + 1) }
+        }
+        Values::Quaternion(_) => ["w", "x", "y", "z"][k].to_owned(),
+        Values::Vector(_) | Values::Points(_) => ["x", "y", "z"][k].to_owned(),
+        Values::PointNumbers(6, _) => ["xx", "yy", "zz", "xy", "yz", "zx"][k].to_owned(),
+        Values::PointNumbers(count, _) if count > 1 => format!("{}", k + 1),
+        Values::Number(_) | Values::PointNumbers(..) => String::new(),
+    }
+}
+
+fn unit(column: &Column<Row>, results: &Results) -> String {
+    let unit = column.unit(&results.metadata.units).replace("^2", "²");
+    if unit == "1" { String::new() } else { unit }
+}
+
+/// The three balances, each with its terms and with its change since the first row.
+fn balances(results: &Results) -> Option<Vec<Balance>> {
+    let balance = |name: &str, law: &str, terms: &[(&str, &str)], error: &str| {
+        let column = COLUMNS.iter().find(|column| column.path == error)?;
+        let components = |path: &str, name: &str, from_first: bool| -> Option<Vec<Component>> {
+            let table = results.table(path)?;
+            let component = |k: usize| {
+                let values: Vec<f64> = table.column(k)?.collect();
+                let first = if from_first { values.first().copied().unwrap_or_default() } else { 0.0 };
+                let axis = if table.width() == 1 { "" } else { ["x", "y", "z"][k] };
+                let name = [name, axis].into_iter().filter(|word| !word.is_empty()).collect::<Vec<_>>().join(" ");
+                Some(Component { name, values: values.iter().map(|value| value - first).collect() })
+            };
+            (0..table.width()).map(component).collect()
+        };
+        let terms: Vec<Vec<Component>> =
+            terms.iter().map(|(path, name)| components(path, name, false)).collect::<Option<_>>()?;
+        Some(Balance {
+            name: name.to_owned(),
+            law: law.to_owned(),
+            unit: unit(column, results),
+            terms: terms.into_iter().flatten().collect(),
+            errors: components(error, "", true)?,
+        })
+    };
+    let energies = [
+        ("energy/kinetic", "kinetic"),
+        ("energy/strain", "strain"),
+        ("energy/work", "work"),
+        ("energy/dissipation", "dissipation"),
+    ];
+    Some(vec![
+        balance(
+            "Energy",
+            "kinetic + strain energy − work of the loads + dissipation is constant",
+            &energies,
+            "energy/balance",
+        )?,
+        balance(
+            "Linear momentum",
+            "momentum less the impulse of the loads is constant (global axes)",
+            &[("momentum/linear", "")],
+            "momentum/linear_balance",
+        )?,
+        balance(
+            "Angular momentum",
+            "angular momentum less the angular impulse of the loads, about the centre of mass, is constant (global axes)",
+            &[("momentum/angular", "")],
+            "momentum/angular_balance",
+        )?,
+    ])
+}
+
+/// The paper's formulation has its own effects.
+fn effects(scene: &Scene, model: &Model) -> Vec<Effect> {
+    if scene.time.method.is_of_paper() {
+        return Vec::new();
+    }
+    let effect = |(subject, row): (advice::Subject, &advice::Row)| Effect {
+        name: subject.name().replace('_', " "),
+        state: match is_on(scene, model, subject) {
+            Some(true) => "on",
+            Some(false) => "off",
+            None => "–",
+        }
+        .to_owned(),
+        measure: format!("{} = {}", subject.formula(), quantity(row.value)),
+        reason: row.why.clone(),
+    };
+    model.advice.rows().map(effect).collect()
+}
+
+fn warnings(model: &Model) -> Vec<String> {
+    let refusal = model.refusal.as_ref().map(ToString::to_string);
+    let large =
+        model.physics.large_deflection.is_some().then(|| {
+            "The picture leaves out the shapes that follow large deflection; the histories have them.".to_owned()
+        });
+    refusal.into_iter().chain(large).collect()
+}

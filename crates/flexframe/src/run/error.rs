@@ -1,0 +1,113 @@
+//! Why a run could not be done.
+
+use std::path::PathBuf;
+
+use advice::Refusal;
+use frames_rk4::{CheckpointError, StepError};
+use results::FileError;
+use scene::{BuildError, SceneError, StartError};
+
+/// A run that could not be done.
+#[derive(Debug, thiserror::Error)]
+pub enum RunError {
+    /// The scene cannot be built.
+    #[error(transparent)]
+    Build(#[from] BuildError),
+    /// The motion cannot start.
+    #[error("{scene}: {source}")]
+    Setup {
+        /// The scene file.
+        scene: PathBuf,
+        /// Why.
+        source: Box<StartError>,
+    },
+    /// A step failed. The states before it are in the unfinished file.
+    #[error("{source} (the states before it are in {results})", results = results.display())]
+    Step {
+        /// The unfinished file.
+        results: PathBuf,
+        /// Why.
+        source: StepError,
+    },
+    /// The motion has come where the model is known to be wrong. The states before it are in the unfinished file.
+    #[error("at time {time:.6}: {refusal} (the states up to there are in {})", results.display())]
+    Refused {
+        /// The unfinished file.
+        results: PathBuf,
+        /// When it was so for the first time.
+        time: f64,
+        /// Why.
+        refusal: Refusal,
+    },
+    /// The results file cannot be written.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// The scene cannot be run to compare other runs with.
+    #[error("{}: the scene itself does not run, so that there is nothing to verify against: {failure}", scene.display())]
+    Verify {
+        /// The scene file.
+        scene: PathBuf,
+        /// Why.
+        failure: Box<RunFailure>,
+    },
+    /// The run was asked to stop. The states up to there are in the unfinished file.
+    #[error("stopped at time {time}; go on with: flexframe resume {}", part.display())]
+    Stopped {
+        /// The unfinished file.
+        part: PathBuf,
+        /// The time that was reached.
+        time: f64,
+    },
+    /// The scene in an unfinished file is invalid.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// The checkpoint of an unfinished file is that of another scene, or damaged.
+    #[error("{}: {source}", part.display())]
+    Restore {
+        /// The unfinished file.
+        part: PathBuf,
+        /// Why.
+        source: CheckpointError,
+    },
+    /// What is computed now is not what was computed then, to the last bit.
+    #[error(
+        "{}: {what} is no longer what it was when the run began (a changed mesh or table, another version of flexframe, or another machine); a run is continued only if it stays the same bit for bit: run the scene again with --overwrite",
+        part.display()
+    )]
+    Changed {
+        /// The unfinished file.
+        part: PathBuf,
+        /// What has changed.
+        what: &'static str,
+    },
+    /// The output folder cannot be made.
+    #[error("{}: cannot make the output folder: {source}", folder.display())]
+    Folder {
+        /// The folder.
+        folder: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+}
+
+/// Why a run did not come to its end.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum RunFailure {
+    /// It could not start.
+    #[error(transparent)]
+    Start(#[from] StartError),
+    /// A step failed.
+    #[error(transparent)]
+    Step(#[from] StepError),
+    /// It was stopped when the time that it may take was used up.
+    #[error(
+        "stopped at {:.2} % of the motion, when its patience of {patience} s was used up (allow more with --patience)",
+        100.0 * reached
+    )]
+    OutOfPatience {
+        /// Time of computing that it was allowed, seconds.
+        patience: f64,
+        /// Part of the motion that it came to, 0 to 1.
+        reached: f64,
+    },
+}

@@ -1,0 +1,277 @@
+//! From the motion to the rows of the results file.
+
+use std::sync::atomic::Ordering;
+use std::time::Instant;
+
+use advice::{Review, StepEstimate};
+use frames_rk4::{Initial, Observation, Reached, Simulation, StepError};
+use nalgebra::Vector3;
+use results::{Results, Writer};
+use rigid_kin::Attitude;
+use scene::{BuildError, Model, Scene, StepControl};
+
+use super::balances::{Conserved, Monitor};
+use super::error::RunError;
+use super::report::RunReport;
+use super::settings::{RunProgress, RunSettings};
+use crate::columns::COLUMNS;
+use crate::effects;
+use crate::peak_stress::Largest;
+use crate::report::{BodyReport, MeshReport, Times};
+use crate::row::Row;
+
+/// Energy balance from which on a run says that it is open.
+const OPEN: f64 = 1e-2;
+
+/// Estimated error from which on a run says that its steps are too long.
+const WRONG: f64 = 1e-2;
+
+/// Largest step times ω_max in which the stages see the work on the modes and their dissipation as they are.
+const RESOLVED: f64 = 0.5;
+
+/// Steps between two reports of progress, where no row comes first.
+const STEPS_PER_REPORT: u64 = 4096;
+
+fn open_balance(open: f64, flexible: usize) -> String {
+    let (work, cure) = match flexible {
+        0 => ("the work of the loads", "shorter steps"),
+        _ => ("the work on modes that are faster than the step", "shorter steps, or fewer modes,"),
+    };
+    format!(
+        "the energy balance is open by {open:.1e} of the energy that there was or that came and went: {work} is summed \
+         too coarsely, or the motion itself is; take {cure} until it does not matter to the answer"
+    )
+}
+
+fn long_steps(estimate: &StepEstimate, share: f64) -> String {
+    format!("{} Take shorter steps, or `tolerance` instead of `step`", estimate.in_words(share))
+}
+
+/// Follows a run, and turns its observations into rows of the results file.
+pub(super) struct Recorder<'a> {
+    scene: &'a Scene,
+    model: &'a Model,
+    row: Row,
+    writer: Writer<Row>,
+    review: Review<'a>,
+    rows: u64,
+    peak_strain_energy: f64,
+    peak_stress: Option<Largest>,
+    monitor: Monitor,
+    /// What fixed steps are expected to get wrong.
+    step: Option<StepEstimate>,
+}
+
+impl<'a> Recorder<'a> {
+    pub fn new(
+        scene: &'a Scene,
+        model: &'a Model,
+        initial: &'a Initial,
+        writer: Writer<Row>,
+    ) -> Result<Self, RunError> {
+        let step = model
+            .step_estimate(scene)
+            .map_err(|source| RunError::Setup { scene: scene.path.clone(), source: Box::new(source) })?;
+        Ok(Self {
+            scene,
+            model,
+            row: Row::new(model),
+            writer,
+            review: Review::new(model.case(scene, initial), model.physics.effects, &model.advice),
+            rows: 0,
+            peak_strain_energy: 0.0,
+            peak_stress: None,
+            monitor: Monitor::default(),
+            step,
+        })
+    }
+
+    /// Whether the steps are known to be right though they are too long for the sum of work and dissipation.
+    fn is_right_unsummed(&self, longest_step: f64) -> bool {
+        if self.scene.time.method.is_of_paper() {
+            // The equations of the paper do not keep the energy in any steps.
+            return false;
+        }
+        let frequencies = self.model.body.circular_frequencies.iter().zip(self.model.damping_ratios());
+        let fastest = frequencies.map(|(omega, zeta)| omega * (2.0 * zeta).max(1.0)).fold(0.0, f64::max);
+        let resolved = fastest * longest_step <= RESOLVED;
+        match &self.step {
+            Some(step) => step.largest() < WRONG && (step.seen >= 1.0 || !resolved),
+            None => !resolved,
+        }
+    }
+
+    /// The first row, and a first checkpoint.
+    pub fn begin(&mut self, simulation: &mut Simulation) -> Result<(), RunError> {
+        self.record(simulation)?;
+        self.flush(simulation)
+    }
+
+    /// Takes the rows before a checkpoint into account, the last of which must be what the simulation is at.
+    pub fn take_up(&mut self, simulation: &mut Simulation, results: &Results) -> Result<(), RunError> {
+        let part = self.writer.unfinished().to_path_buf();
+        let changed = |what| RunError::Changed { part: part.clone(), what };
+        for row in 0..results.rows() {
+            let past = restore(results, row, &mut self.row.motion).ok_or_else(|| changed("the columns"))?;
+            self.review.observe(&self.row).map_err(BuildError::from)?;
+            self.monitor.take(&past);
+            self.peak_strain_energy = self.peak_strain_energy.max(self.row.strain_energy);
+            Largest::watch(&mut self.peak_stress, self.model, &self.row);
+        }
+        self.rows = results.rows() as u64;
+        self.observe(simulation)?;
+        match results.rows().checked_sub(1) {
+            Some(last) if results.is_row(last, &COLUMNS, &self.row) => Ok(()),
+            _ => Err(changed("the motion at the checkpoint")),
+        }
+    }
+
+    /// Goes on to the end.
+    pub fn follow(
+        mut self,
+        mut simulation: Simulation,
+        started: Instant,
+        settings: &RunSettings,
+        mut progress: impl FnMut(RunProgress),
+    ) -> Result<RunReport, RunError> {
+        let before = simulation.stats().accepted;
+        loop {
+            let review = &mut self.review;
+            let reached = simulation.advance_watched(STEPS_PER_REPORT, |moment| review.look(moment));
+            // A step that fails after the model has come to mean nothing fails for that.
+            self.refuse()?;
+            match reached.map_err(|source| self.failed(source))? {
+                Reached::Row => {
+                    self.record(&mut simulation)?;
+                    let stop = settings.stop.load(Ordering::Relaxed) && simulation.time() < simulation.end();
+                    if stop || self.writer.flush_is_due() {
+                        self.flush(&mut simulation)?;
+                    }
+                    if stop {
+                        let part = self.writer.unfinished().to_path_buf();
+                        return Err(RunError::Stopped { part, time: simulation.time() });
+                    }
+                }
+                // What has come since the last flush is computed again.
+                Reached::Between if settings.stop.load(Ordering::Relaxed) => {
+                    let part = self.writer.unfinished().to_path_buf();
+                    return Err(RunError::Stopped { part, time: simulation.time() });
+                }
+                Reached::End => break,
+                _ => {}
+            }
+            progress(RunProgress::Motion(simulation.time() / simulation.end()));
+        }
+        // Should there be no room for the results file, they can still be had from here.
+        self.flush(&mut simulation)?;
+        let time = started.elapsed();
+        let stats = simulation.stats();
+        let method = self.scene.time.method;
+        self.monitor.exchanged(simulation.exchanged());
+        let balances = self.monitor.balances();
+        let right_unsummed = balances.energy > OPEN && self.is_right_unsummed(stats.longest);
+        let Self { scene, model, .. } = self;
+        let open =
+            (balances.energy > OPEN && !right_unsummed).then(|| open_balance(balances.energy, model.body.flexible()));
+        let wrong = self.step.as_ref().filter(|step| step.largest() >= WRONG);
+        let last = &self.row;
+        let mut report = RunReport {
+            title: scene.title.clone(),
+            units: [&scene.units.length, &scene.units.mass, &scene.units.time].map(Clone::clone),
+            rows: self.rows,
+            formulation: method.formulation.to_owned(),
+            scheme: method.scheme.to_owned(),
+            tolerance: match scene.time.control {
+                StepControl::Fixed(_) => None,
+                StepControl::Tolerance(tolerance) => Some(tolerance),
+            },
+            steps: stats.accepted,
+            rejected_steps: stats.rejected,
+            step_lengths: [stats.shortest, stats.longest],
+            evaluations: stats.evaluations,
+            steps_per_second: (stats.accepted - before) as f64 / time.as_secs_f64(),
+            mesh: MeshReport::new(model),
+            body: BodyReport::new(model),
+            turned: Attitude::identity().angle_to(&last.attitude),
+            moved: (last.position_global - model.body.center_of_mass).into(),
+            peak_strain_energy: self.peak_strain_energy,
+            peak_stress: self.peak_stress.as_ref().and_then(|peak| peak.report(scene, model)),
+            final_energy: last.energy(),
+            balances,
+            right_unsummed,
+            effects: effects::computed(scene, model),
+            warnings: (self.review.broken().iter().map(ToString::to_string))
+                .chain(wrong.map(|step| long_steps(step, scene.effects.tolerance)))
+                .chain(open)
+                .collect(),
+            results: self.writer.path().to_path_buf(),
+            times: Times::of_model(model),
+        };
+        self.writer.finish()?;
+        report.times.add("motion", started.elapsed());
+        Ok(report)
+    }
+
+    /// Refuses to go on where the review has found that the model is wrong, unless the scene wants to.
+    fn refuse(&self) -> Result<(), RunError> {
+        match self.review.stop() {
+            Some((time, refusal)) if self.scene.effects.refuse => {
+                Err(RunError::Refused { results: self.writer.unfinished().to_path_buf(), time, refusal })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn failed(&self, source: StepError) -> RunError {
+        RunError::Step { results: self.writer.unfinished().to_path_buf(), source }
+    }
+
+    /// What there is to know of the time that `simulation` has reached.
+    fn observe(&mut self, simulation: &mut Simulation) -> Result<(), RunError> {
+        simulation.observe(&mut self.row.motion).map_err(|source| self.failed(source))?;
+        self.row.complete(self.model);
+        Ok(())
+    }
+
+    /// Writes the row of the time that `simulation` has reached.
+    fn record(&mut self, simulation: &mut Simulation) -> Result<(), RunError> {
+        self.observe(simulation)?;
+        let now = &self.row;
+        // It refuses what is not finite.
+        self.writer.push(now)?;
+        self.peak_strain_energy = self.peak_strain_energy.max(now.strain_energy);
+        Largest::watch(&mut self.peak_stress, self.model, now);
+        self.monitor.watch(now);
+        self.review.observe(now).map_err(BuildError::from)?;
+        self.rows += 1;
+        Ok(())
+    }
+
+    /// Hands the rows to the operating system, with the state after the last.
+    fn flush(&mut self, simulation: &mut Simulation) -> Result<(), RunError> {
+        let part = || self.writer.unfinished().to_path_buf();
+        let checkpoint = simulation.checkpoint().map_err(|source| RunError::Restore { part: part(), source })?;
+        Ok(self.writer.flush(&checkpoint)?)
+    }
+}
+
+/// Reads a row back as far as the review, the monitor and the stress look at it.
+fn restore(results: &Results, row: usize, out: &mut Observation) -> Option<Conserved> {
+    let number = |path| results.numbers(path)?.get(row).copied();
+    let vector = |path| results.vectors(path)?.get(row).copied().map(Vector3::from);
+    let modal = |path| results.table(path)?.row(row);
+    out.time = number("time")?;
+    out.attitude = Attitude::from_unit_wxyz(*results.vectors("attitude")?.get(row)?).ok()?;
+    out.omega_body = vector("angular_velocity")?;
+    out.alpha_body = vector("angular_acceleration")?;
+    out.modal_displacement.clear();
+    out.modal_displacement.extend(modal("modal/displacement")?);
+    out.modal_velocity.clear();
+    out.modal_velocity.extend(modal("modal/velocity")?);
+    out.kinetic_energy = number("energy/kinetic")?;
+    out.strain_energy = number("energy/strain")?;
+    Some(Conserved {
+        quantities: (out.energy(), vector("momentum/linear")?, vector("momentum/angular")?),
+        balances: (number("energy/balance")?, vector("momentum/linear_balance")?, vector("momentum/angular_balance")?),
+    })
+}

@@ -1,0 +1,24 @@
+//! How a run is started and stopped, and how far it has come.
+
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use scene::BuildProgress;
+
+/// How far a run has come.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum RunProgress {
+    /// The model is being built.
+    Build(BuildProgress),
+    /// Part of the time that has been passed, 0 to 1.
+    Motion(f64),
+}
+
+/// How a run treats files, and how it is stopped.
+#[derive(Debug, Clone, Default)]
+pub struct RunSettings {
+    /// Throws an unfinished run away that is in the way.
+    pub overwrite: bool,
+    /// Set from elsewhere, stops the run at its next row, or before where that is some thousand steps away.
+    pub stop: Arc<AtomicBool>,
+}

@@ -1,0 +1,93 @@
+//! `flexframe report`: the page shows the motion that is in the results file.
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use flexframe::columns::COLUMNS;
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use results::Results;
+use serde_json::Value;
+
+fn flexframe(arguments: &[&str]) -> Output {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    Command::new(env!("CARGO_BIN_EXE_flexframe")).args(arguments).current_dir(root).output().unwrap()
+}
+
+fn succeed(arguments: &[&str]) {
+    let output = flexframe(arguments);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
+/// The data of a page as a browser would read them.
+fn data(page: &Path) -> Value {
+    let page = std::fs::read_to_string(page).unwrap();
+    let (_, rest) = page.split_once("<script type=\"application/json\" id=\"data\">").unwrap();
+    serde_json::from_str(rest.split_once("</script>").unwrap().0).unwrap()
+}
+
+fn numbers(list: &Value) -> Vec<f64> {
+    let bytes = STANDARD.decode(list["base64"].as_str().unwrap()).unwrap();
+    let factor = list["factor"].as_f64().unwrap();
+    match list["type"].as_str().unwrap() {
+        "f64" => bytes.as_chunks().0.iter().map(|b| f64::from_le_bytes(*b)).collect(),
+        "f32" => bytes.as_chunks().0.iter().map(|b| f64::from(f32::from_le_bytes(*b))).collect(),
+        "i16" => bytes.as_chunks().0.iter().map(|b| factor * f64::from(i16::from_le_bytes(*b))).collect(),
+        other => panic!("{other}"),
+    }
+}
+
+fn vectors<const N: usize>(list: &Value) -> Vec<[f64; N]> {
+    numbers(list).as_chunks().0.to_vec()
+}
+
+/// Where the page draws the vertex nearest to a point of the mesh, less where it was at first: the displacement of the
+/// point in the results file, but for the precision of the page.
+fn follows_the_point(scene: &str, point: &str, place: [f64; 3]) {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().to_str().unwrap();
+    succeed(&["run", &format!("examples/{scene}.toml"), "-o", out]);
+    let file = folder.path().join(format!("{scene}.h5"));
+    succeed(&["report", file.to_str().unwrap()]);
+    let results = Results::open(&file, &COLUMNS).unwrap();
+    let page = data(&file.with_extension("html"));
+
+    let times = numbers(&page["motion"]["times"]);
+    let vertices: Vec<[f64; 3]> = vectors(&page["surface"]["vertices"]);
+    let origins: Vec<[f64; 3]> = vectors(&page["motion"]["origins"]);
+    let attitudes: Vec<[f64; 4]> = vectors(&page["motion"]["attitudes"]);
+    let coordinates = numbers(&page["motion"]["coordinates"]);
+    let shapes: Vec<Vec<[f64; 3]>> =
+        page["shapes"].as_array().unwrap().iter().map(|shape| vectors(&shape["displacement"])).collect();
+    let drawn = |row: usize, vertex: usize| {
+        let [w, x, y, z] = attitudes[row];
+        let q = &coordinates[row * shapes.len()..(row + 1) * shapes.len()];
+        let u: Vector3<f64> = shapes.iter().zip(q).map(|(shape, q)| Vector3::from(shape[vertex]) * *q).sum();
+        let turned = UnitQuaternion::from_quaternion(Quaternion::new(w, x, y, z));
+        Vector3::from(origins[row]) + turned * (Vector3::from(vertices[vertex]) + u)
+    };
+    // The undeformed body at t = 0 is where the mesh is: the origin tells where that is in body axes.
+    let displacements = results.vectors::<3>(&format!("points/{point}/displacement")).unwrap();
+    let stored = results.numbers("time").unwrap();
+    let at_start = |vertex: usize| drawn(0, vertex) - Vector3::from(displacements[0]);
+    let distance = |vertex: &usize| (at_start(*vertex) - Vector3::from(place)).norm();
+    let vertex = (0..vertices.len()).min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap();
+    let size = vertices.iter().map(|v| Vector3::from(*v).norm()).fold(0.0, f64::max);
+    assert!(distance(&vertex) < 1e-5 * size, "the nearest vertex is {} away", distance(&vertex));
+
+    let mut moved: f64 = 0.0;
+    for (row, time) in times.iter().enumerate() {
+        let now = Vector3::from(displacements[stored.iter().position(|t| t == time).unwrap()]);
+        let error = (drawn(row, vertex) - Vector3::from(place) - now).norm();
+        moved = moved.max(now.norm());
+        assert!(error < 2e-5 * (size + now.norm()), "row {row}: {error}");
+    }
+    assert!(moved > 1e-3 * size, "{moved}");
+}
+
+/// The corner is a node, so that the point is a vertex.
+#[test]
+fn the_page_moves_a_free_body_as_the_run_did() {
+    follows_the_point("plate", "P3", [500.0, 25.0, 0.0]);
+}

@@ -1,0 +1,60 @@
+//! The curves of docs/nonlinear.md: flexframe against the nonlinear body.
+//!
+//! `nonlinear DIRECTORY` writes them there as SVG.
+
+use std::error::Error;
+use std::path::Path;
+use std::process::ExitCode;
+
+use figures::{LineChart, Scale, Series, Stroke};
+use nonlinear::cases::{Course, pendulum, spinning_l};
+
+const STIFFENED: &str = "[effects]\nlarge_deflection = false\nrefuse = false";
+
+fn main() -> ExitCode {
+    let Some(directory) = std::env::args().nth(1) else {
+        eprintln!("nonlinear: give the directory for the curves");
+        return ExitCode::FAILURE;
+    };
+    match curves(Path::new(&directory)) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("nonlinear: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn curves(directory: &Path) -> Result<(), Box<dyn Error>> {
+    let stiffened = format!("static_correction = false\n{STIFFENED}");
+    let manifold = "static_correction = false\nlarge = [IN_PLANE]\n[effects]\nlarge_deflection = true\nrefuse = false";
+    let (_, courses) = spinning_l(0.3, 6.0, &[&stiffened, manifold])?;
+    let title = "Free L that spins at 0.3 of its first frequency, from the undeformed state";
+    save(&directory.join("spinning_l"), title, "First modal coordinate", &courses)?;
+    let stiffened = format!("[modes]\nflexible = 8\n{STIFFENED}");
+    let manifold = "[modes]\nflexible = 8\nlarge = 4\n[effects]\nlarge_deflection = true\nrefuse = false";
+    let courses = pendulum(2e8, 1.0, 2000, &[&stiffened, manifold])?;
+    let title = "Soft rod that falls from the horizontal about its hinge";
+    save(&directory.join("soft_rod"), title, "Deflection of the tip over the length", &courses)?;
+    Ok(())
+}
+
+fn save(stem: &Path, title: &str, y_label: &str, courses: &[Course]) -> Result<(), Box<dyn Error>> {
+    let names =
+        [("nonlinear elements", Stroke::Dashed), ("stiffened modes", Stroke::Solid), ("large modes", Stroke::Solid)];
+    let series = names.into_iter().zip(courses).map(|((label, stroke), course)| Series {
+        label: label.to_owned(),
+        points: course.times.iter().copied().zip(course.values.iter().copied()).collect(),
+        stroke,
+    });
+    let chart = LineChart {
+        title: title.to_owned(),
+        x_label: "Time (s)".to_owned(),
+        y_label: y_label.to_owned(),
+        x_scale: Scale::Linear,
+        y_scale: Scale::Linear,
+        series: series.collect(),
+    };
+    let [_, bitmap] = chart.save(stem)?;
+    Ok(std::fs::remove_file(bitmap)?)
+}

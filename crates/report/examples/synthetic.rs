@@ -1,0 +1,226 @@
+//! Pages of made-up runs, for the test of the page in a browser.
+//!
+//!     cargo run -p report --example synthetic -- KIND FILE
+//!
+//! `small` is a struck plate, `large` one of 60 000 vertices and 40 modes, `unfinished` a run that was stopped, `rigid` a
+//! body without a surface, and `patch` a square whose displacement and stress are the same everywhere.
+
+use std::error::Error;
+use std::f64::consts::{PI, TAU};
+use std::path::Path;
+
+use report::{
+    Balance, Component, Effect, Fact, History, Motion, Report, RunState, SceneText, Shape, ShapeKind, StressField,
+    Surface, Units,
+};
+
+const LENGTH: f64 = 1000.0;
+const WIDTH: f64 = 50.0;
+const THICKNESS: f64 = 10.0;
+const YOUNG_MODULUS: f64 = 70_000.0;
+const DURATION: f64 = 0.5;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let [kind, path] = arguments.as_slice() else { return Err("expected: KIND FILE".into()) };
+    let mut report = match kind.as_str() {
+        "small" | "unfinished" => plate(120, 8, 6, 5001, "Free plate, 50 N end pulse"),
+        "large" => plate(1000, 26, 40, 5001, "Plate of 60 000 vertices and 40 modes"),
+        "rigid" => plate(4, 2, 0, 500, "Rigid body without a mesh"),
+        "patch" => patch(),
+        _ => return Err(format!("{kind}: expected small, large, unfinished, rigid or patch").into()),
+    };
+    if kind == "unfinished" {
+        let words = "This run stopped at 0.5 s of 0.8 s. Continue it with `flexframe resume plate.part.h5`.";
+        report.state = RunState::Unfinished(words.to_owned());
+        let warning = "mode 6: 9 steps per period; choose a step below 1e-5 s </script><b>or a tolerance</b>";
+        report.warnings = vec![warning.to_owned()];
+    }
+    match kind.as_str() {
+        "rigid" => report.surface = None,
+        "large" => report.stress = None, // as in most runs
+        _ => {}
+    }
+    report::write(&report, Path::new(path))?;
+    Ok(())
+}
+
+/// Points of a box: top and bottom of the plate, each a grid, with a rim between them.
+fn surface(along: usize, across: usize) -> Surface {
+    let mut vertices = Vec::new();
+    let mut triangles = Vec::new();
+    let mut edges = Vec::new();
+    let mut sheet = |n: usize, m: usize, place: &dyn Fn(f64, f64) -> [f64; 3]| {
+        let first = vertices.len() as u32;
+        let at = |i: usize, j: usize| first + (i * (m + 1) + j) as u32;
+        for i in 0..=n {
+            for j in 0..=m {
+                vertices.push(place(i as f64 / n as f64, j as f64 / m as f64).map(|x| x as f32));
+            }
+        }
+        for i in 0..n {
+            for j in 0..m {
+                triangles.push([at(i, j), at(i + 1, j), at(i + 1, j + 1)]);
+                triangles.push([at(i, j), at(i + 1, j + 1), at(i, j + 1)]);
+            }
+        }
+        edges.extend((0..n).flat_map(|i| [[at(i, 0), at(i + 1, 0)], [at(i, m), at(i + 1, m)]]));
+        edges.extend((0..m).flat_map(|j| [[at(0, j), at(0, j + 1)], [at(n, j), at(n, j + 1)]]));
+    };
+    let (l, w, t) = (LENGTH, WIDTH, THICKNESS);
+    sheet(along, across, &|a, b| [l * (a - 0.5), w * (b - 0.5), t / 2.0]);
+    sheet(along, across, &|a, b| [l * (0.5 - a), w * (b - 0.5), -t / 2.0]);
+    sheet(along, 2, &|a, b| [l * (a - 0.5), -w / 2.0, t * (b - 0.5)]);
+    sheet(along, 2, &|a, b| [l * (0.5 - a), w / 2.0, t * (b - 0.5)]);
+    sheet(across, 2, &|a, b| [l / 2.0, w * (a - 0.5), t * (b - 0.5)]);
+    sheet(across, 2, &|a, b| [-l / 2.0, w * (0.5 - a), t * (b - 0.5)]);
+    Surface { vertices, triangles, edges }
+}
+
+/// A square with two shapes: one moves it by (3, 4, 0) under tension in x, one by (0, 0, 2) under shear.
+fn patch() -> Report {
+    let mut report = plate(2, 2, 0, 3, "Patch");
+    report.surface = Some(Surface {
+        vertices: vec![[-500.0, -500.0, 0.0], [500.0, -500.0, 0.0], [500.0, 500.0, 0.0], [-500.0, 500.0, 0.0]],
+        triangles: vec![[0, 1, 2], [0, 2, 3]],
+        edges: vec![[0, 1], [1, 2], [2, 3], [3, 0]],
+    });
+    let kind = ShapeKind::Natural { frequency: 1.0, damping_ratio: 0.0 };
+    let shape = |name: &str, u: [f32; 3]| Shape { name: name.into(), kind, displacement: vec![u; 4] };
+    report.shapes = vec![shape("tension", [3.0, 4.0, 0.0]), shape("shear", [0.0, 0.0, 2.0])];
+    report.stress = Some(StressField {
+        unit: "MPa".into(),
+        shapes: vec![vec![[100.0, 0.0, 0.0, 0.0, 0.0, 0.0]; 4], vec![[0.0, 0.0, 0.0, 30.0, 0.0, 0.0]; 4]],
+    });
+    report.motion.origins = vec![[0.0; 3]; 3];
+    report.motion.attitudes = vec![[1.0, 0.0, 0.0, 0.0]; 3];
+    report.motion.coordinates = vec![2.0, 0.0, 0.0, 1.5, -1.0, 2.0];
+    report
+}
+
+/// Bending like that of a bar between supports: w = cos(k π (x/L + 1/2)), with its rotation and stress.
+fn shape(number: usize, kind: ShapeKind, name: String, surface: &Surface) -> (Shape, Vec<[f32; 6]>) {
+    let wave = number as f64 * PI / LENGTH;
+    let displacement = |[x, _, z]: [f64; 3]| {
+        let angle = wave * (x + LENGTH / 2.0);
+        [wave * angle.sin() * z, 0.0, angle.cos()].map(|u| u as f32)
+    };
+    let stress = |[x, _, z]: [f64; 3]| {
+        let strain = wave * wave * (wave * (x + LENGTH / 2.0)).cos() * z;
+        [YOUNG_MODULUS * strain, 0.0, 0.0, 0.0, 0.0, 0.0].map(|s| s as f32)
+    };
+    let at = |v: &[f32; 3]| v.map(f64::from);
+    let displacements = surface.vertices.iter().map(|v| displacement(at(v))).collect();
+    let stresses = surface.vertices.iter().map(|v| stress(at(v))).collect();
+    (Shape { name, kind, displacement: displacements }, stresses)
+}
+
+fn plate(along: usize, across: usize, modes: usize, rows: usize, title: &str) -> Report {
+    let surface = surface(along, across);
+    let frequency = |k: usize| 12.0 * ((k + 2) as f64 / 2.0).powi(2);
+    let (shapes, stresses): (Vec<_>, Vec<_>) = (0..modes)
+        .map(|k| {
+            let is_static = k > 1 && k + 1 == modes;
+            let kind = match is_static {
+                true => ShapeKind::Static,
+                false => ShapeKind::Natural { frequency: frequency(k), damping_ratio: 0.05 },
+            };
+            let name = if is_static { "static shape of load 1".to_owned() } else { format!("mode {}", k + 1) };
+            shape(k + 2, kind, name, &surface)
+        })
+        .unzip();
+    let times: Vec<f64> = (0..rows).map(|row| DURATION * row as f64 / (rows - 1) as f64).collect();
+    let coordinate = |k: usize, t: f64| {
+        let omega = TAU * frequency(k);
+        20.0 / (1.0 + k as f64).powi(3) * (-0.05 * omega * t).exp() * (omega * t).sin()
+    };
+    let angle = |t: f64| 7.0 * t;
+    let motion = Motion {
+        origins: times.iter().map(|t| [400.0 * t, -90.0 * t, 700.0 * t - 500.0 * t * t]).collect(),
+        attitudes: times.iter().map(|t| [(angle(*t) / 2.0).cos(), 0.0, (angle(*t) / 2.0).sin(), 0.0]).collect(),
+        coordinates: times.iter().flat_map(|t| (0..modes).map(move |k| coordinate(k, *t))).collect(),
+        times: times.clone(),
+    };
+    let course = |name: &str, value: &dyn Fn(f64) -> f64| Component {
+        name: name.to_owned(),
+        values: times.iter().map(|t| value(*t)).collect(),
+    };
+    let vector = |group: &str, name: &str, unit: &str, value: &dyn Fn(f64) -> [f64; 3]| History {
+        group: group.to_owned(),
+        name: name.to_owned(),
+        unit: unit.to_owned(),
+        components: ["x", "y", "z"].iter().enumerate().map(|(i, axis)| course(axis, &|t| value(t)[i])).collect(),
+    };
+    let bending = |t: f64| (0..modes).map(|k| coordinate(k, t)).sum::<f64>();
+    let rate = |t: f64| (bending(t + 1e-6) - bending(t - 1e-6)) / 2e-6;
+    let mut histories = vec![
+        vector("body", "position of the centre of mass (global)", "mm", &|t| {
+            [400.0 * t, -90.0 * t, 700.0 * t - 500.0 * t * t]
+        }),
+        vector("body", "angular velocity (body)", "rad/s", &|_| [0.0, 7.0, 0.0]),
+    ];
+    for point in 1..=8 {
+        let group = format!("point P{point}");
+        let sign = if point % 2 == 0 { 1.0 } else { -1.0 };
+        histories.push(vector(&group, "elastic displacement (body)", "mm", &|t| [0.0, 0.0, sign * bending(t)]));
+        histories.push(vector(&group, "displacement (global)", "mm", &|t| {
+            [400.0 * t + bending(t) * angle(t).sin(), -90.0 * t, 700.0 * t - 500.0 * t * t + bending(t)]
+        }));
+        histories.push(vector(&group, "velocity (global)", "mm/s", &|t| [400.0, -90.0, 700.0 - 1000.0 * t + rate(t)]));
+        histories.push(vector(&group, "acceleration (global)", "mm/s²", &|t| {
+            [0.0, 0.0, (rate(t + 1e-5) - rate(t - 1e-5)) / 2e-5 - 1000.0]
+        }));
+    }
+    let strain = |t: f64| 0.1 * bending(t).powi(2);
+    let balances = vec![
+        Balance {
+            name: "Energy".into(),
+            law: "kinetic + strain energy − work of the loads + dissipation is constant".into(),
+            unit: "mJ".into(),
+            terms: vec![course("kinetic", &|t| 60.0 - strain(t)), course("strain", &strain), course("work", &|_| 60.0)],
+            errors: vec![course("", &|t| 2e-9 * (400.0 * t).sin())],
+        },
+        Balance {
+            name: "Linear momentum".into(),
+            law: "momentum − impulse of the loads is constant".into(),
+            unit: "N s".into(),
+            terms: ["x", "y", "z"].iter().map(|axis| course(axis, &|t| 4.0 * (t * 3.0).sin())).collect(),
+            errors: ["x", "y", "z"].iter().map(|axis| course(axis, &|t| 1e-14 * (900.0 * t).cos())).collect(),
+        },
+    ];
+    let effect = |name: &str, state: &str, measure: &str, reason: &str| Effect {
+        name: name.into(),
+        state: state.into(),
+        measure: measure.into(),
+        reason: reason.into(),
+    };
+    let fact = |label: &str, value: String| Fact { label: label.into(), value };
+    Report {
+        title: title.to_owned(),
+        program: "flexframe 0.1.0".to_owned(),
+        state: RunState::Complete,
+        units: Units { length: "mm".into(), time: "s".into(), frequency: "Hz".into() },
+        facts: vec![
+            fact("Mass", "9.35 kg".into()),
+            fact("Surface", format!("{} vertices", surface.vertices.len())),
+            fact("Shapes", format!("{modes}")),
+            fact("Time", format!("{DURATION} s in {rows} rows")),
+        ],
+        stress: (modes > 0).then(|| StressField { unit: "MPa".into(), shapes: stresses }),
+        surface: Some(surface),
+        shapes,
+        motion,
+        histories,
+        balances,
+        effects: vec![
+            effect("damping", "on", "ζ = 0.05", "the scene asks for it"),
+            effect("Coriolis forces", "on", "Ω/ω₁ = 0.09", "influence of 2 % of the deformation, above the limit of 0.1 %"),
+            effect("stiffening by stress", "off", "1e-5", "influence below the limit of 0.1 %"),
+        ],
+        scene: SceneText {
+            file: "plate.toml".into(),
+            text: "title = \"Free plate, 50 N end pulse\"\n\n[body]\nmesh = \"plate.msh\"\n\n[modes]\nflexible = 10 # <all>\n".into(),
+        },
+        warnings: Vec::new(),
+    }
+}

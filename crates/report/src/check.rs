@@ -1,0 +1,124 @@
+//! Sizes and numbers of a report, checked before anything is written.
+
+use crate::ReportError;
+use crate::report::{Component, Motion, Report, Surface};
+
+/// Shapes that a page can draw: layers of a texture that every graphics processor has.
+const MOST_SHAPES: usize = 256;
+
+/// How far the norm of an attitude may be from 1.
+const UNIT_TOLERANCE: f64 = 1e-6;
+
+/// Checks sizes, indices and numbers.
+///
+/// # Errors
+/// The first thing that is wrong.
+pub(crate) fn check(report: &Report) -> Result<(), ReportError> {
+    check_motion(&report.motion, report.shapes.len())?;
+    if report.shapes.len() > MOST_SHAPES {
+        return Err(ReportError::TooManyShapes { found: report.shapes.len(), most: MOST_SHAPES });
+    }
+    if let Some(surface) = &report.surface {
+        check_surface(surface)?;
+    }
+    check_shapes(report)?;
+    let rows = report.motion.times.len();
+    for history in &report.histories {
+        let what = format!("history \"{}: {}\"", history.group, history.name);
+        check_components(&what, &history.components, rows)?;
+    }
+    for balance in &report.balances {
+        check_components(&format!("balance \"{}\", terms", balance.name), &balance.terms, rows)?;
+        check_components(&format!("balance \"{}\", errors", balance.name), &balance.errors, rows)?;
+    }
+    Ok(())
+}
+
+fn check_motion(motion: &Motion, shapes: usize) -> Result<(), ReportError> {
+    let Motion { times, origins, attitudes, coordinates } = motion;
+    if times.is_empty() {
+        return Err(ReportError::Empty { what: "rows".to_owned() });
+    }
+    length("positions", origins.len(), times.len())?;
+    length("attitudes", attitudes.len(), times.len())?;
+    length("coordinates", coordinates.len(), times.len() * shapes)?;
+    finite("times", times.iter().copied())?;
+    finite("positions", origins.as_flattened().iter().copied())?;
+    finite("attitudes", attitudes.as_flattened().iter().copied())?;
+    finite("coordinates", coordinates.iter().copied())?;
+    for (row, pair) in times.windows(2).enumerate() {
+        if pair[1] <= pair[0] {
+            return Err(ReportError::TimesNotIncreasing { row: row + 1, time: pair[1], before: pair[0] });
+        }
+    }
+    for (row, attitude) in attitudes.iter().enumerate() {
+        let norm = attitude.iter().map(|x| x * x).sum::<f64>().sqrt();
+        if (norm - 1.0).abs() > UNIT_TOLERANCE {
+            return Err(ReportError::NotUnit { row, norm });
+        }
+    }
+    Ok(())
+}
+
+fn check_surface(surface: &Surface) -> Result<(), ReportError> {
+    let count = surface.vertices.len();
+    if surface.triangles.is_empty() {
+        return Err(ReportError::Empty { what: "triangles".to_owned() });
+    }
+    finite("vertices", surface.vertices.as_flattened().iter().map(|x| f64::from(*x)))?;
+    let outside = |indices: &[u32]| indices.iter().copied().find(|index| *index as usize >= count);
+    for (what, indices) in [("triangle", surface.triangles.as_flattened()), ("edge", surface.edges.as_flattened())] {
+        if let Some(index) = outside(indices) {
+            return Err(ReportError::NoSuchVertex { what, index, count });
+        }
+    }
+    Ok(())
+}
+
+fn check_shapes(report: &Report) -> Result<(), ReportError> {
+    let vertices = report.surface.as_ref().map_or(0, |surface| surface.vertices.len());
+    for shape in &report.shapes {
+        let what = format!("shape \"{}\"", shape.name);
+        length(&what, shape.displacement.len(), vertices)?;
+        finite(&what, shape.displacement.as_flattened().iter().map(|x| f64::from(*x)))?;
+        if let crate::ShapeKind::Natural { frequency, damping_ratio } = shape.kind {
+            finite(&format!("{what}, frequency and damping ratio"), [frequency, damping_ratio].into_iter())?;
+        }
+    }
+    if let Some(stress) = &report.stress {
+        length("stresses of shapes", stress.shapes.len(), report.shapes.len())?;
+        for (shape, stresses) in report.shapes.iter().zip(&stress.shapes) {
+            let what = format!("stress of shape \"{}\"", shape.name);
+            length(&what, stresses.len(), vertices)?;
+            finite(&what, stresses.as_flattened().iter().map(|x| f64::from(*x)))?;
+        }
+    }
+    Ok(())
+}
+
+fn check_components(what: &str, components: &[Component], rows: usize) -> Result<(), ReportError> {
+    if components.is_empty() {
+        return Err(ReportError::Empty { what: format!("component in its {what}") });
+    }
+    for component in components {
+        let what = format!("{what}, component \"{}\"", component.name);
+        length(&what, component.values.len(), rows)?;
+        finite(&what, component.values.iter().copied())?;
+    }
+    Ok(())
+}
+
+fn length(what: &str, found: usize, expected: usize) -> Result<(), ReportError> {
+    if found == expected {
+        return Ok(());
+    }
+    Err(ReportError::WrongLength { what: what.to_owned(), found, expected })
+}
+
+/// Numbers are written in single precision, where those beyond 3e38 are infinite.
+fn finite(what: &str, values: impl Iterator<Item = f64>) -> Result<(), ReportError> {
+    match values.enumerate().find(|(_, value)| !(*value as f32).is_finite()) {
+        None => Ok(()),
+        Some((index, value)) => Err(ReportError::NotFinite { what: what.to_owned(), index, value }),
+    }
+}

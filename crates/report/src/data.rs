@@ -1,0 +1,233 @@
+//! The report as the page reads it. `web/src/data.ts` has the same fields.
+
+use serde::Serialize;
+
+use crate::numbers::Numbers;
+use crate::peak::{length, peak, von_mises};
+use crate::report::{Component, Motion, Report, RunState, Shape, ShapeKind, StressField, Surface};
+use crate::thin::{Thinning, spread};
+
+/// Bytes of the rows of the motion, before base64.
+const MOTION_BYTES: usize = 1 << 20;
+/// Bytes of the histories and balances together, before base64.
+const HISTORY_BYTES: usize = 5 << 17;
+/// Points of a history: few enough for the budget of bytes, but never fewer than the first, nor more than the second.
+const HISTORY_POINTS: (usize, usize) = (500, 4000);
+
+#[derive(Debug, Serialize)]
+pub(crate) struct Data<'a> {
+    title: &'a str,
+    program: &'a str,
+    /// Why the run is not complete.
+    unfinished: Option<&'a str>,
+    units: Units<'a>,
+    facts: Vec<[&'a str; 2]>,
+    /// Rows of the run, before any was left out.
+    rows: usize,
+    surface: Option<SurfaceData>,
+    shapes: Vec<ShapeData<'a>>,
+    /// Greatest length of a displacement over all rows, in the unit of length.
+    displacement_peak: f64,
+    stress: Option<StressData<'a>>,
+    motion: MotionData,
+    history_times: Numbers,
+    histories: Vec<HistoryData<'a>>,
+    balances: Vec<BalanceData<'a>>,
+    effects: Vec<[&'a str; 4]>,
+    scene: [&'a str; 2],
+    warnings: &'a [String],
+}
+
+#[derive(Debug, Serialize)]
+struct Units<'a> {
+    length: &'a str,
+    time: &'a str,
+    frequency: &'a str,
+}
+
+#[derive(Debug, Serialize)]
+struct SurfaceData {
+    vertices: Numbers,
+    triangles: Numbers,
+    edges: Numbers,
+}
+
+#[derive(Debug, Serialize)]
+struct ShapeData<'a> {
+    name: &'a str,
+    kind: &'static str,
+    frequency: Option<f64>,
+    damping_ratio: Option<f64>,
+    displacement: Numbers,
+}
+
+#[derive(Debug, Serialize)]
+struct StressData<'a> {
+    unit: &'a str,
+    /// Greatest von Mises stress over all rows.
+    peak: f64,
+    shapes: Vec<Numbers>,
+}
+
+#[derive(Debug, Serialize)]
+struct MotionData {
+    times: Numbers,
+    origins: Numbers,
+    attitudes: Numbers,
+    coordinates: Numbers,
+}
+
+#[derive(Debug, Serialize)]
+struct HistoryData<'a> {
+    group: &'a str,
+    name: &'a str,
+    unit: &'a str,
+    components: Vec<ComponentData<'a>>,
+}
+
+#[derive(Debug, Serialize)]
+struct ComponentData<'a> {
+    name: &'a str,
+    values: Numbers,
+}
+
+#[derive(Debug, Serialize)]
+struct BalanceData<'a> {
+    name: &'a str,
+    law: &'a str,
+    unit: &'a str,
+    /// Greatest magnitude of an error, and of a term, over all rows.
+    error_peak: f64,
+    term_peak: f64,
+    terms: Vec<ComponentData<'a>>,
+    errors: Vec<ComponentData<'a>>,
+}
+
+impl<'a> Data<'a> {
+    /// Of a report that has been checked.
+    pub(crate) fn new(report: &'a Report) -> Self {
+        let rows = report.motion.times.len();
+        let thinning = Thinning::new(rows, history_points(report));
+        let times = &report.motion.times;
+        let displacements: Vec<&[[f32; 3]]> = report.shapes.iter().map(|shape| &*shape.displacement).collect();
+        Self {
+            title: &report.title,
+            program: &report.program,
+            unfinished: match &report.state {
+                RunState::Complete => None,
+                RunState::Unfinished(words) => Some(words),
+            },
+            units: Units { length: &report.units.length, time: &report.units.time, frequency: &report.units.frequency },
+            facts: report.facts.iter().map(|fact| [&*fact.label, &*fact.value]).collect(),
+            rows,
+            surface: report.surface.as_ref().map(SurfaceData::new),
+            shapes: report.shapes.iter().map(ShapeData::new).collect(),
+            displacement_peak: peak(&displacements, &report.motion.coordinates, length),
+            stress: report.stress.as_ref().map(|stress| StressData::new(stress, &report.motion)),
+            motion: MotionData::new(&report.motion, report.shapes.len()),
+            history_times: match &thinning {
+                Some(thinning) => Numbers::double(thinning.times(times).into_iter()),
+                None => Numbers::double(times.iter().copied()),
+            },
+            histories: report
+                .histories
+                .iter()
+                .map(|history| HistoryData {
+                    group: &history.group,
+                    name: &history.name,
+                    unit: &history.unit,
+                    components: components(&history.components, thinning.as_ref()),
+                })
+                .collect(),
+            balances: report
+                .balances
+                .iter()
+                .map(|balance| BalanceData {
+                    name: &balance.name,
+                    law: &balance.law,
+                    unit: &balance.unit,
+                    error_peak: greatest(&balance.errors),
+                    term_peak: greatest(&balance.terms),
+                    terms: components(&balance.terms, thinning.as_ref()),
+                    errors: components(&balance.errors, thinning.as_ref()),
+                })
+                .collect(),
+            effects: report
+                .effects
+                .iter()
+                .map(|effect| [&*effect.name, &*effect.state, &*effect.measure, &*effect.reason])
+                .collect(),
+            scene: [&report.scene.file, &report.scene.text],
+            warnings: &report.warnings,
+        }
+    }
+}
+
+/// How many points a history may have.
+fn history_points(report: &Report) -> usize {
+    let of_histories: usize = report.histories.iter().map(|history| history.components.len()).sum();
+    let of_balances: usize = report.balances.iter().map(|balance| balance.terms.len() + balance.errors.len()).sum();
+    let (least, most) = HISTORY_POINTS;
+    (HISTORY_BYTES / size_of::<f32>() / (of_histories + of_balances).max(1)).clamp(least, most)
+}
+
+fn components<'a>(components: &'a [Component], thinning: Option<&Thinning>) -> Vec<ComponentData<'a>> {
+    let values = |component: &Component| match thinning {
+        Some(thinning) => Numbers::single(thinning.values(&component.values).into_iter()),
+        None => Numbers::single(component.values.iter().copied()),
+    };
+    components.iter().map(|component| ComponentData { name: &component.name, values: values(component) }).collect()
+}
+
+fn greatest(components: &[Component]) -> f64 {
+    components.iter().flat_map(|component| &component.values).fold(0.0, |greatest, value| value.abs().max(greatest))
+}
+
+impl SurfaceData {
+    fn new(surface: &Surface) -> Self {
+        let count = surface.vertices.len();
+        Self {
+            vertices: Numbers::single(surface.vertices.as_flattened().iter().map(|x| f64::from(*x))),
+            triangles: Numbers::indices(surface.triangles.as_flattened(), count),
+            edges: Numbers::indices(surface.edges.as_flattened(), count),
+        }
+    }
+}
+
+impl<'a> ShapeData<'a> {
+    fn new(shape: &'a Shape) -> Self {
+        let (kind, frequency, damping_ratio) = match shape.kind {
+            ShapeKind::Natural { frequency, damping_ratio } => ("natural", Some(frequency), Some(damping_ratio)),
+            ShapeKind::Static => ("static", None, None),
+            ShapeKind::SecondOrder => ("second order", None, None),
+        };
+        let displacement = Numbers::quantised(shape.displacement.as_flattened());
+        Self { name: &shape.name, kind, frequency, damping_ratio, displacement }
+    }
+}
+
+impl<'a> StressData<'a> {
+    fn new(stress: &'a StressField, motion: &Motion) -> Self {
+        let shapes: Vec<&[[f32; 6]]> = stress.shapes.iter().map(Vec::as_slice).collect();
+        Self {
+            unit: &stress.unit,
+            peak: peak(&shapes, &motion.coordinates, von_mises),
+            shapes: shapes.iter().map(|shape| Numbers::quantised(shape.as_flattened())).collect(),
+        }
+    }
+}
+
+impl MotionData {
+    fn new(motion: &Motion, shapes: usize) -> Self {
+        let bytes = size_of::<f64>() + (3 + 4 + shapes) * size_of::<f32>();
+        let kept = spread(motion.times.len(), MOTION_BYTES / bytes);
+        Self {
+            times: Numbers::double(kept.iter().map(|row| motion.times[*row])),
+            origins: Numbers::single(kept.iter().flat_map(|row| motion.origins[*row])),
+            attitudes: Numbers::single(kept.iter().flat_map(|row| motion.attitudes[*row])),
+            coordinates: Numbers::single(
+                kept.iter().flat_map(|row| &motion.coordinates[row * shapes..(row + 1) * shapes]).copied(),
+            ),
+        }
+    }
+}

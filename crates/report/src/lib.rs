@@ -1,0 +1,23 @@
+//! One HTML page with everything about a run, which opens without a network.
+//!
+//! [`Report`] is plain data: the surface of the body, its mode shapes, the rows of the motion, histories and balances,
+//! and words. [`html`] and [`write()`] check it and put it into the page, whose program (in `web/`) draws it.
+
+#![forbid(unsafe_code)]
+#![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable))]
+
+mod check;
+mod data;
+mod error;
+mod numbers;
+mod page;
+mod peak;
+mod report;
+mod thin;
+
+pub use error::ReportError;
+pub use page::{html, write};
+pub use report::{
+    Balance, Component, Effect, Fact, History, Motion, Report, RunState, SceneText, Shape, ShapeKind, StressField,
+    Surface, Units,
+};

@@ -1,0 +1,39 @@
+//! The page: a report inside the built program of `web/`.
+
+use std::path::Path;
+
+use whole_file::write_whole;
+
+use crate::check::check;
+use crate::data::Data;
+use crate::{Report, ReportError};
+
+/// What `just report-page` builds from `web/src`.
+const PAGE: &str = include_str!("../web/page.html");
+
+/// Where the data stand in the page.
+const PLACE: &str = "\"the data of the report\"";
+
+/// The page as one text.
+///
+/// Long runs are thinned so that the page stays small: of the motion evenly spread rows are kept, of the histories the
+/// least and the greatest value of each range of rows. Shapes are written in steps of 1/32767 of their peak, the rest in
+/// single precision.
+///
+/// # Errors
+/// Lists that do not fit together, numbers that are not finite, more than 256 shapes.
+pub fn html(report: &Report) -> Result<String, ReportError> {
+    check(report)?;
+    // Strings and finite numbers: they can all be written.
+    let json = serde_json::to_string(&Data::new(report)).unwrap_or_default();
+    // A text of the user could otherwise end the script that holds the data.
+    Ok(PAGE.replacen(PLACE, &json.replace('<', "\\u003c"), 1))
+}
+
+/// Writes the page to `path`, whole or not at all.
+///
+/// # Errors
+/// Those of [`html`], and those of the system.
+pub fn write(report: &Report, path: &Path) -> Result<(), ReportError> {
+    write_whole(path, html(report)?).map_err(|source| ReportError::Write { path: path.to_owned(), source })
+}

@@ -1,0 +1,182 @@
+//! What a page shows.
+
+/// Everything that a page shows, as plain data. The caller chooses the units and names them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Report {
+    /// Title of the run.
+    pub title: String,
+    /// Name and version of the program that made the run.
+    pub program: String,
+    /// Whether the run reached its end.
+    pub state: RunState,
+    /// Names of units.
+    pub units: Units,
+    /// Lines for the top of the page, such as the mass and the size of the mesh.
+    pub facts: Vec<Fact>,
+    /// Surface of the undeformed body; none for a rigid body without a mesh.
+    pub surface: Option<Surface>,
+    /// Shapes of the body, in the order of the coordinates.
+    pub shapes: Vec<Shape>,
+    /// Stresses of the shapes.
+    pub stress: Option<StressField>,
+    /// The rows of the run.
+    pub motion: Motion,
+    /// Courses over the rows.
+    pub histories: Vec<History>,
+    /// Balances of energy and momentum.
+    pub balances: Vec<Balance>,
+    /// Which effects were on, and why.
+    pub effects: Vec<Effect>,
+    /// The scene.
+    pub scene: SceneText,
+    /// Warnings of the run, each a sentence or more.
+    pub warnings: Vec<String>,
+}
+
+/// Whether the run reached its end.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum RunState {
+    /// It did.
+    Complete,
+    /// It did not. The words say so, and how to continue it.
+    Unfinished(String),
+}
+
+/// Names of units, as they stand after a number.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Units {
+    /// Of lengths, such as mm.
+    pub length: String,
+    /// Of times, such as s.
+    pub time: String,
+    /// Of natural frequencies, such as Hz.
+    pub frequency: String,
+}
+
+/// A line of the summary.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Fact {
+    /// What it is about.
+    pub label: String,
+    /// What there is to say.
+    pub value: String,
+}
+
+/// Surface of the undeformed body.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Surface {
+    /// Vertices in the reference shape, body axes, from the origin of the body frame.
+    pub vertices: Vec<[f32; 3]>,
+    /// Triangles by indices of vertices, counter-clockwise seen from outside.
+    pub triangles: Vec<[u32; 3]>,
+    /// Edges of the outline by indices of vertices.
+    pub edges: Vec<[u32; 2]>,
+}
+
+/// A shape of the body, which one coordinate of the motion scales.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Shape {
+    /// Name, such as "mode 3" or "static shape of load 1".
+    pub name: String,
+    /// What kind of shape it is.
+    pub kind: ShapeKind,
+    /// Displacement of each vertex of the surface where the coordinate is 1, body axes. Without a surface it is empty.
+    pub displacement: Vec<[f32; 3]>,
+}
+
+/// What kind of shape it is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum ShapeKind {
+    /// A vibration mode.
+    Natural {
+        /// Natural frequency, in the unit of frequencies.
+        frequency: f64,
+        /// Damping ratio.
+        damping_ratio: f64,
+    },
+    /// A static shape: the answer to a load beyond the modes. It has no natural frequency.
+    Static,
+    /// A shape that a product of coordinates scales, such as the shortening of a bent beam.
+    SecondOrder,
+}
+
+/// Stresses on the surface: the sum over the shapes, each times its coordinate.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StressField {
+    /// Unit of stress, such as MPa.
+    pub unit: String,
+    /// For each shape the stress of each vertex where the coordinate is 1: xx, yy, zz, xy, yz, zx in body axes.
+    pub shapes: Vec<Vec<[f32; 6]>>,
+}
+
+/// The rows of a run. A vertex X is at `origin` + attitude (X + Σ coordinate × shape).
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Motion {
+    /// Time of each row, increasing.
+    pub times: Vec<f64>,
+    /// Position of the origin of the body frame, global axes.
+    pub origins: Vec<[f64; 3]>,
+    /// Attitudes as unit quaternions (w, x, y, z), which take body components to global ones.
+    pub attitudes: Vec<[f64; 4]>,
+    /// Coordinates of the shapes, row after row.
+    pub coordinates: Vec<f64>,
+}
+
+/// A quantity over the rows of the motion.
+#[derive(Debug, Clone, PartialEq)]
+pub struct History {
+    /// What it belongs to, such as "point P1". Histories of a group are shown together.
+    pub group: String,
+    /// Name, such as "displacement (global)".
+    pub name: String,
+    /// Unit; empty for a plain number.
+    pub unit: String,
+    /// Its components, at least one.
+    pub components: Vec<Component>,
+}
+
+/// A component of a history.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Component {
+    /// Name, such as "x"; empty for the only one.
+    pub name: String,
+    /// Value in each row of the motion.
+    pub values: Vec<f64>,
+}
+
+/// A balance that holds in exact motion.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Balance {
+    /// Name, such as "energy".
+    pub name: String,
+    /// The law in words.
+    pub law: String,
+    /// Unit of the terms and of the error.
+    pub unit: String,
+    /// The terms.
+    pub terms: Vec<Component>,
+    /// What is left over: zero in exact motion. More than one for a vector.
+    pub errors: Vec<Component>,
+}
+
+/// An effect of the model.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Effect {
+    /// Name.
+    pub name: String,
+    /// On, off, or other words.
+    pub state: String,
+    /// The number that decides, in words; may be empty.
+    pub measure: String,
+    /// Why.
+    pub reason: String,
+}
+
+/// The scene as it was written.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct SceneText {
+    /// Name of the file.
+    pub file: String,
+    /// Its text.
+    pub text: String,
+}

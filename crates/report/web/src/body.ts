@@ -1,0 +1,221 @@
+// The body on the graphics processor: the vertex shader adds up the shapes, Σ q_k φ_k, which rest in textures with one
+// layer for each shape. A frame sends only the coordinates.
+
+import * as THREE from "three";
+import { indices, quantised, single, type Numbers, type Report } from "./data";
+import { rgb } from "./colours";
+import { SCALE } from "./scale.mjs";
+
+export type Field = "none" | "displacement" | "stress";
+
+const TEXTURE_WIDTH = 512;
+
+const VERTEX = /* glsl */ `
+uniform highp isampler2DArray shapes;
+uniform vec4 weights[GROUPS];
+uniform float exaggeration;
+#ifdef STRESS
+uniform highp isampler2DArray normalStresses;
+uniform highp isampler2DArray shearStresses;
+uniform vec4 stressWeights[GROUPS];
+#endif
+uniform float peak;
+out vec3 seen;
+out float level;
+
+void main() {
+    ivec2 at = ivec2(gl_VertexID % ${TEXTURE_WIDTH}, gl_VertexID / ${TEXTURE_WIDTH});
+    vec3 u = vec3(0.0);
+    for (int k = 0; k < SHAPES; k++) {
+        float weight = weights[k >> 2][k & 3];
+        if (weight != 0.0) u += weight * vec3(texelFetch(shapes, ivec3(at, k), 0).xyz);
+    }
+    float value = length(u);
+#ifdef STRESS
+    vec3 s = vec3(0.0), t = vec3(0.0);
+    for (int k = 0; k < SHAPES; k++) {
+        float weight = stressWeights[k >> 2][k & 3];
+        if (weight == 0.0) continue;
+        s += weight * vec3(texelFetch(normalStresses, ivec3(at, k), 0).xyz);
+        t += weight * vec3(texelFetch(shearStresses, ivec3(at, k), 0).xyz);
+    }
+    vec3 d = s - s.yzx;
+    value = sqrt(0.5 * dot(d, d) + 3.0 * dot(t, t));
+#endif
+    level = peak > 0.0 ? value / peak : 0.0;
+    vec4 place = modelViewMatrix * vec4(position + exaggeration * u, 1.0);
+    seen = place.xyz;
+    gl_Position = projectionMatrix * place;
+}`;
+
+const FRAGMENT = /* glsl */ `
+uniform vec3 scale[${SCALE.length}];
+uniform vec3 plain;
+uniform bool coloured;
+in vec3 seen;
+in float level;
+out vec4 colour;
+
+void main() {
+    // Flat facets: the normal of the deformed triangle, which faces the viewer.
+    vec3 normal = normalize(cross(dFdx(seen), dFdy(seen)));
+    float light = 0.62 + 0.3 * max(dot(normal, normalize(vec3(-0.35, 0.6, 0.72))), 0.0) + 0.12 * normal.z;
+    float x = clamp(level, 0.0, 1.0) * float(${SCALE.length - 1});
+    int below = min(int(x), ${SCALE.length - 2});
+    vec3 base = coloured ? mix(scale[below], scale[below + 1], x - float(below)) : plain;
+    colour = vec4(base * light, 1.0);
+}`;
+
+const LINE_FRAGMENT = /* glsl */ `
+uniform vec4 line;
+out vec4 colour;
+void main() { colour = line; }`;
+
+/// Vectors for each shape, in a layer each.
+function texture(shapes: Int16Array[], width: number, first: number, vertices: number): THREE.DataArrayTexture {
+    const height = Math.max(1, Math.ceil(vertices / TEXTURE_WIDTH));
+    const texels = new Int16Array(4 * TEXTURE_WIDTH * height * shapes.length);
+    shapes.forEach((shape, k) => {
+        const start = 4 * TEXTURE_WIDTH * height * k;
+        for (let i = 0; i < vertices; i++)
+            for (let axis = 0; axis < 3; axis++) texels[start + 4 * i + axis] = shape[width * i + first + axis];
+    });
+    const made = new THREE.DataArrayTexture(texels, TEXTURE_WIDTH, height, shapes.length);
+    made.format = THREE.RGBAIntegerFormat;
+    made.type = THREE.ShortType;
+    made.internalFormat = "RGBA16I";
+    made.needsUpdate = true;
+    return made;
+}
+
+export function vonMises(s: ArrayLike<number>, i: number): number {
+    const [xx, yy, zz, xy, yz, zx] = [0, 1, 2, 3, 4, 5].map((c) => s[i + c]);
+    const normal = (xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2;
+    return Math.sqrt(normal / 2 + 3 * (xy * xy + yz * yz + zx * zx));
+}
+
+/// Greatest magnitude of each shape where its coordinate is 1.
+function peaks(shapes: Int16Array[], factors: number[], width: number, norm: (s: Int16Array, i: number) => number) {
+    return shapes.map((shape, k) => {
+        let greatest = 0;
+        for (let i = 0; i < shape.length; i += width) greatest = Math.max(greatest, norm(shape, i));
+        return greatest * factors[k];
+    });
+}
+
+export class Body {
+    readonly group = new THREE.Group();
+    readonly outline: THREE.LineSegments;
+    private readonly edges: THREE.LineSegments;
+    readonly bounds: THREE.Sphere;
+    readonly displacementPeaks: number[];
+    readonly stressPeaks: number[] | null = null;
+    private readonly uniforms: Record<string, THREE.IUniform>;
+    private readonly materials = new Map<string, THREE.ShaderMaterial>();
+    private readonly surface: THREE.Mesh;
+    private readonly factors: number[];
+    private readonly stressFactors: number[] = [];
+    private readonly count: number;
+
+    constructor(report: Report) {
+        const surface = report.surface!;
+        const positions = single(surface.vertices);
+        const vertices = positions.length / 3;
+        this.count = report.shapes.length;
+        const shapes = report.shapes.map((shape) => quantised(shape.displacement));
+        this.factors = report.shapes.map((shape) => shape.displacement.factor);
+        this.displacementPeaks = peaks(shapes, this.factors, 3, (s, i) => Math.hypot(s[i], s[i + 1], s[i + 2]));
+        const groups = Math.max(1, Math.ceil(this.count / 4));
+        const vectors = () => Array.from({ length: groups }, () => new THREE.Vector4(0, 0, 0, 0));
+        // A body without shapes keeps the sampler, which then has one empty layer.
+        const layers = (list: Int16Array[], width: number, first: number) =>
+            texture(list.length > 0 ? list : [new Int16Array(width * vertices)], width, first, vertices);
+        this.uniforms = {
+            shapes: { value: layers(shapes, 3, 0) },
+            weights: { value: vectors() },
+            exaggeration: { value: 1 },
+            peak: { value: 1 },
+            scale: { value: SCALE.map((hex) => new THREE.Vector3(...rgb(hex))) },
+            plain: { value: new THREE.Vector3(0.6, 0.66, 0.72) },
+            coloured: { value: true },
+        };
+        if (report.stress) {
+            const stresses = report.stress.shapes.map((numbers: Numbers) => quantised(numbers));
+            this.stressFactors = report.stress.shapes.map((numbers) => numbers.factor);
+            this.stressPeaks = peaks(stresses, this.stressFactors, 6, vonMises);
+            this.uniforms.normalStresses = { value: layers(stresses, 6, 0) };
+            this.uniforms.shearStresses = { value: layers(stresses, 6, 3) };
+            this.uniforms.stressWeights = { value: vectors() };
+        }
+        const geometry = new THREE.BufferGeometry();
+        geometry.setAttribute("position", new THREE.BufferAttribute(positions, 3));
+        geometry.setIndex(new THREE.BufferAttribute(indices(surface.triangles), 1));
+        geometry.computeBoundingSphere();
+        this.bounds = geometry.boundingSphere!;
+        this.surface = new THREE.Mesh(geometry, this.material("plain"));
+        const lines = new THREE.BufferGeometry();
+        lines.setAttribute("position", geometry.getAttribute("position"));
+        lines.setIndex(new THREE.BufferAttribute(indices(surface.edges), 1));
+        this.edges = new THREE.LineSegments(lines, this.lineMaterial(this.uniforms, 0.5));
+        // The same edges with weights of zero.
+        this.outline = new THREE.LineSegments(lines, this.lineMaterial({ ...this.uniforms, weights: { value: vectors() } }, 0.9));
+        (this.outline.material as THREE.Material).depthTest = false; // also seen within the body
+        this.outline.renderOrder = 1;
+        for (const part of [this.surface, this.edges, this.outline]) {
+            part.frustumCulled = false; // the vertices move on the graphics processor
+            this.group.add(part);
+        }
+    }
+
+    private defines() {
+        return { GROUPS: Math.max(1, Math.ceil(this.count / 4)), SHAPES: this.count };
+    }
+
+    private material(kind: "plain" | "stress"): THREE.ShaderMaterial {
+        const known = this.materials.get(kind);
+        if (known) return known;
+        const defines: Record<string, number> = this.defines();
+        if (kind === "stress") defines.STRESS = 1;
+        const made = new THREE.ShaderMaterial({
+            glslVersion: THREE.GLSL3, vertexShader: VERTEX, fragmentShader: FRAGMENT,
+            uniforms: this.uniforms, defines, side: THREE.DoubleSide,
+            polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1, // edges lie before the facets
+        });
+        this.materials.set(kind, made);
+        return made;
+    }
+
+    private lineMaterial(uniforms: Record<string, THREE.IUniform>, opacity: number): THREE.ShaderMaterial {
+        return new THREE.ShaderMaterial({
+            glslVersion: THREE.GLSL3, vertexShader: VERTEX, fragmentShader: LINE_FRAGMENT,
+            uniforms: { ...uniforms, line: { value: new THREE.Vector4(0, 0, 0, opacity) } }, defines: this.defines(), transparent: true,
+        });
+    }
+
+    setLineColours(edge: THREE.Color, outline: THREE.Color) {
+        const set = (lines: THREE.LineSegments, { r, g, b }: THREE.Color) => {
+            const line = (lines.material as THREE.ShaderMaterial).uniforms.line.value as THREE.Vector4;
+            line.set(r, g, b, line.w);
+        };
+        set(this.edges, edge);
+        set(this.outline, outline);
+    }
+
+    /// What is coloured, and the value at the end of the colours.
+    colourBy(field: Field, peak: number) {
+        this.surface.material = this.material(field === "stress" ? "stress" : "plain");
+        this.uniforms.coloured.value = field !== "none";
+        this.uniforms.peak.value = peak;
+    }
+
+    /// Coordinates of the shapes, and the factor on the displacement that is drawn.
+    deform(q: ArrayLike<number>, exaggeration: number) {
+        const set = (name: string, factors: number[]) => {
+            const vectors = this.uniforms[name].value as THREE.Vector4[];
+            for (let k = 0; k < this.count; k++) vectors[k >> 2].setComponent(k & 3, q[k] * factors[k]);
+        };
+        set("weights", this.factors);
+        if (this.stressPeaks) set("stressWeights", this.stressFactors);
+        this.uniforms.exaggeration.value = exaggeration;
+    }
+}

@@ -1,0 +1,49 @@
+// The report as the page receives it; `src/data.rs` of the crate writes the same fields.
+
+export interface Numbers { type: "f64" | "f32" | "i16" | "u16" | "u32"; factor: number; base64: string }
+export interface Component { name: string; values: Numbers }
+export interface History { group: string; name: string; unit: string; components: Component[] }
+export interface Balance {
+    name: string; law: string; unit: string; error_peak: number; term_peak: number;
+    terms: Component[]; errors: Component[];
+}
+export interface Shape {
+    name: string; kind: "natural" | "static" | "second order";
+    frequency: number | null; damping_ratio: number | null; displacement: Numbers;
+}
+export interface Report {
+    title: string; program: string; unfinished: string | null;
+    units: { length: string; time: string; frequency: string };
+    facts: [string, string][];
+    rows: number;
+    surface: { vertices: Numbers; triangles: Numbers; edges: Numbers } | null;
+    shapes: Shape[];
+    displacement_peak: number;
+    stress: { unit: string; peak: number; shapes: Numbers[] } | null;
+    motion: { times: Numbers; origins: Numbers; attitudes: Numbers; coordinates: Numbers };
+    history_times: Numbers;
+    histories: History[];
+    balances: Balance[];
+    effects: [string, string, string, string][];
+    scene: [string, string];
+    warnings: string[];
+}
+
+const TYPES = { f64: Float64Array, f32: Float32Array, i16: Int16Array, u16: Uint16Array, u32: Uint32Array };
+
+/// The numbers as they are stored, without their factor.
+export function stored<T extends Numbers["type"]>(numbers: Numbers & { type: T }): InstanceType<(typeof TYPES)[T]> {
+    const text = atob(numbers.base64);
+    const bytes = new Uint8Array(text.length);
+    for (let i = 0; i < bytes.length; i++) bytes[i] = text.charCodeAt(i);
+    return new TYPES[numbers.type](bytes.buffer) as InstanceType<(typeof TYPES)[T]>;
+}
+
+export const single = (numbers: Numbers) => stored(numbers as Numbers & { type: "f32" });
+export const double = (numbers: Numbers) => stored(numbers as Numbers & { type: "f64" });
+export const quantised = (numbers: Numbers) => stored(numbers as Numbers & { type: "i16" });
+export const indices = (numbers: Numbers) => stored(numbers as Numbers & { type: "u16" | "u32" });
+
+export function readReport(): Report {
+    return JSON.parse(document.getElementById("data")!.textContent!) as Report;
+}

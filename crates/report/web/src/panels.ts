@@ -1,0 +1,199 @@
+// Plots and tables beside the body.
+
+import type { Clock } from "./clock";
+import { onSchemeChange } from "./colours";
+import { double, single, type Component, type Report } from "./data";
+import { number, withUnit } from "./format";
+import { Plot, PlotGroup } from "./plot";
+import type { Viewer } from "./viewer";
+
+type Cell = string | HTMLElement;
+
+function make<K extends keyof HTMLElementTagNameMap>(tag: K, text = "", className = ""): HTMLElementTagNameMap[K] {
+    const made = document.createElement(tag);
+    if (text) made.textContent = text;
+    if (className) made.className = className;
+    return made;
+}
+
+function table(heads: string[], rows: Cell[][], numeric: number[] = []): HTMLElement {
+    const made = make("table");
+    const head = made.createTHead().insertRow();
+    heads.forEach((text, i) => {
+        const cell = make("th", text, numeric.includes(i) ? "number" : "");
+        cell.scope = "col";
+        head.append(cell);
+    });
+    const body = made.createTBody();
+    for (const cells of rows) {
+        const row = body.insertRow();
+        cells.forEach((content, i) => {
+            const cell = row.insertCell();
+            if (numeric.includes(i)) cell.className = "number";
+            cell.append(content);
+        });
+    }
+    const scroll = make("div", "", "scroll");
+    scroll.append(made);
+    return scroll;
+}
+
+const courses = (components: Component[]) => components.map(({ name, values }) => ({ name, values: single(values) }));
+
+function zoomButtons(group: PlotGroup, unit: string): HTMLElement {
+    const bar = make("div", "", "zoom");
+    const button = (text: string, label: string, action: () => void) => {
+        const made = make("button", text, "quiet");
+        made.setAttribute("aria-label", label);
+        made.addEventListener("click", action);
+        bar.append(made);
+    };
+    bar.append(make("span", `time, ${unit}`, "muted"));
+    button("Zoom in", "Zoom in on the time that is shown", () => group.zoom(0.5));
+    button("Zoom out", "Zoom out in time", () => group.zoom(2));
+    button("Whole run", "Show the whole run in the plots", () => group.all());
+    return bar;
+}
+
+/// A long run shows fewer points than it has rows.
+function thinned(report: Report, points: number, sentence: string): HTMLElement[] {
+    return points < report.rows ? [make("p", `${points} of ${report.rows} rows. ${sentence}`, "muted")] : [];
+}
+
+function histories(panel: HTMLElement, report: Report, clock: Clock, times: Float64Array) {
+    const group = new PlotGroup(clock, times);
+    onSchemeChange(() => group.recolour());
+    const names = [...new Set(report.histories.map((history) => history.group))];
+    const plots = make("div");
+    const select = make("select");
+    names.forEach((name) => select.add(new Option(name)));
+    const draw = () => {
+        group.clear();
+        plots.replaceChildren();
+        for (const { name, unit, components } of report.histories.filter((history) => history.group === select.value))
+            new Plot(plots, group, name, unit, courses(components));
+    };
+    select.addEventListener("change", draw);
+    const bar = make("div", "", "bar");
+    const label = make("label", "Of ");
+    label.append(select);
+    bar.append(label, zoomButtons(group, report.units.time));
+    panel.append(bar, plots);
+    panel.append(...thinned(report, times.length, "Each range of rows shows its least and its greatest value, so no peak is lost."));
+    draw();
+}
+
+function balances(panel: HTMLElement, report: Report, clock: Clock, times: Float64Array) {
+    const rows = report.balances.map(({ name, unit, error_peak, term_peak }) => [
+        name, withUnit(number(error_peak, 3), unit), withUnit(number(term_peak, 3), unit),
+        term_peak > 0 ? number(error_peak / term_peak, 2) : "–",
+    ]);
+    panel.append(table(["Balance", "Greatest error", "Greatest term", "Ratio"], rows, [1, 2, 3]));
+    const group = new PlotGroup(clock, times);
+    onSchemeChange(() => group.recolour());
+    const bar = make("div", "", "bar");
+    bar.append(make("span"), zoomButtons(group, report.units.time));
+    panel.append(bar);
+    for (const { name, law, unit, terms, errors } of report.balances) {
+        const part = make("section");
+        part.append(make("h3", name), make("p", law, "muted"));
+        panel.append(part);
+        new Plot(part, group, "Terms", unit, courses(terms));
+        new Plot(part, group, "Error", unit, courses(errors));
+    }
+}
+
+function shapes(panel: HTMLElement, report: Report, viewer: Viewer, coordinates: Float32Array) {
+    const count = report.shapes.length;
+    const greatest = new Array<number>(count).fill(0);
+    coordinates.forEach((q, i) => (greatest[i % count] = Math.max(greatest[i % count], Math.abs(q))));
+    const kinds = { natural: "mode", static: "static shape", "second order": "second-order shape" };
+    const rows = report.shapes.map((shape, k): Cell[] => {
+        let name: Cell = shape.name;
+        if (report.surface) {
+            name = make("button", shape.name, "link");
+            name.setAttribute("aria-label", `Show ${shape.name} alone`);
+            name.addEventListener("click", () => viewer.show(k));
+        }
+        return [
+            name, kinds[shape.kind],
+            shape.frequency === null ? "–" : number(shape.frequency, 5),
+            shape.damping_ratio === null ? "–" : number(shape.damping_ratio, 3),
+            number(greatest[k], 3),
+        ];
+    });
+    const { frequency } = report.units;
+    panel.append(table(["Shape", "Kind", `Frequency, ${frequency}`, "Damping ratio", "Greatest |coordinate|"], rows, [2, 3, 4]));
+    const notes = [];
+    if (report.surface) notes.push("Choose a shape to see it alone.");
+    if (report.shapes.some((shape) => shape.kind !== "natural"))
+        notes.push("Static and second-order shapes are no vibration modes: they have no natural frequency.");
+    panel.append(make("p", notes.join(" "), "muted"));
+}
+
+function effects(panel: HTMLElement, report: Report) {
+    const rows = report.effects.map(([name, state, measure, reason]): Cell[] => {
+        const mark = make("span", state, state === "on" ? "mark on" : "mark");
+        return [name, mark, measure, reason];
+    });
+    panel.append(table(["Effect", "State", "Measure", "Why"], rows));
+}
+
+function scene(panel: HTMLElement, report: Report) {
+    const [file, text] = report.scene;
+    const copy = make("button", "Copy", "quiet");
+    copy.addEventListener("click", async () => {
+        await navigator.clipboard.writeText(text).then(() => (copy.textContent = "Copied"), () => (copy.textContent = "Not allowed here"));
+    });
+    const bar = make("div", "", "bar");
+    bar.append(make("code", file), copy);
+    const listing = make("pre", text);
+    listing.tabIndex = 0;
+    panel.append(bar, listing);
+}
+
+/// Tabs; each is filled when it is first shown.
+export function panels(report: Report, clock: Clock, viewer: Viewer) {
+    const times = double(report.history_times);
+    const parts: [string, boolean, (panel: HTMLElement) => void][] = [
+        ["Histories", report.histories.length > 0, (panel) => histories(panel, report, clock, times)],
+        ["Balances", report.balances.length > 0, (panel) => balances(panel, report, clock, times)],
+        ["Shapes", report.shapes.length > 0, (panel) => shapes(panel, report, viewer, clock.motion.coordinates)],
+        ["Effects", report.effects.length > 0, (panel) => effects(panel, report)],
+        ["Scene", report.scene[1] !== "", (panel) => scene(panel, report)],
+    ];
+    const list = document.getElementById("tabs")!;
+    const shown = parts.filter(([, has]) => has).map(([name, , fill], i) => {
+        const tab = make("button", name);
+        const panel = make("div", "", "panel");
+        Object.assign(tab, { id: `tab-${i}`, role: "tab" });
+        Object.assign(panel, { id: `panel-${i}`, role: "tabpanel", hidden: true });
+        tab.setAttribute("aria-controls", panel.id);
+        panel.setAttribute("aria-labelledby", tab.id);
+        list.append(tab);
+        list.parentElement!.append(panel);
+        return { tab, panel, fill, filled: false };
+    });
+    const select = (chosen: number) => shown.forEach((part, i) => {
+        part.tab.setAttribute("aria-selected", String(i === chosen));
+        part.tab.tabIndex = i === chosen ? 0 : -1;
+        part.panel.hidden = i !== chosen;
+        if (i === chosen && !part.filled) {
+            part.filled = true;
+            part.fill(part.panel);
+        }
+    });
+    shown.forEach(({ tab }, i) => tab.addEventListener("click", () => select(i)));
+    list.addEventListener("keydown", (event) => {
+        const step = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
+        if (!step) return;
+        event.stopPropagation(); // the arrows move the tabs here, not the time
+        const here = shown.findIndex(({ tab }) => tab === document.activeElement);
+        const next = (here + step + shown.length) % shown.length;
+        select(next);
+        shown[next].tab.focus();
+    });
+    if (shown.length > 0) select(0);
+    const motionRows = clock.motion.times.length;
+    document.getElementById("viewer")!.append(...thinned(report, motionRows, "The motion between the rows that are shown is interpolated."));
+}

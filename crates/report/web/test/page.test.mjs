@@ -1,0 +1,207 @@
+// The page in a real browser. REPORTS names the folder of the pages that examples/synthetic.rs has made.
+
+import assert from "node:assert/strict";
+import { after, before, test } from "node:test";
+import { SCALE } from "../src/scale.mjs";
+import { frame, launch, open, pixels } from "./browser.mjs";
+
+let browser;
+before(async () => (browser = await launch()));
+after(() => browser.close());
+
+const time = (page) => page.evaluate(() => window.reportPage.clock.time);
+const mark = (page) => page.locator("#panel-0 .now").first().evaluate((line) => new DOMMatrix(getComputedStyle(line).transform).e);
+
+test("the picture is not blank, and play moves the body, the slider and the mark in the plots", async (t) => {
+    const page = await open(t, browser, "small");
+    const [first, later] = [await pixels(page, 0), await pixels(page, 0.06)];
+    assert.ok(first.part > 0.02 && first.part < 0.9, `${first.part} of the picture is covered`);
+    assert.notEqual(first.sum, later.sum, "the body is drawn elsewhere at another time");
+    await page.evaluate(() => window.reportPage.clock.seek(0));
+    const [before, start] = [await mark(page), await pixels(page)];
+    await page.click("#play");
+    await page.waitForFunction(() => window.reportPage.clock.time > 0.01);
+    assert.equal(await page.getAttribute("#play", "aria-label"), "Pause");
+    await page.click("#play");
+    assert.equal(await page.getAttribute("#play", "aria-label"), "Play");
+    assert.ok((await mark(page)) > before);
+    assert.ok(Number(await page.inputValue("#time")) > 0.01);
+    const stopped = await time(page);
+    await frame(page);
+    assert.equal(await time(page), stopped, "a paused run stands still");
+    assert.notEqual((await pixels(page, stopped)).sum, start.sum);
+});
+
+test("the run is complete, and the page ends it at the last row", async (t) => {
+    const page = await open(t, browser, "small");
+    assert.equal(await page.textContent("#state"), "Complete run");
+    await page.evaluate(() => window.reportPage.clock.seek(0.499));
+    await page.click("#play");
+    await page.waitForFunction(() => !window.reportPage.clock.playing);
+    assert.equal(await time(page), 0.5);
+});
+
+test("the keyboard plays, steps, and changes speed and exaggeration", async (t) => {
+    const page = await open(t, browser, "small");
+    const press = async (...keys) => { for (const key of keys) await page.keyboard.press(key); };
+    await press("End");
+    assert.equal(await time(page), 0.5);
+    await press("Home");
+    assert.equal(await time(page), 0);
+    await press("ArrowRight", "ArrowRight", "ArrowLeft");
+    assert.ok(Math.abs((await time(page)) - 1e-4) < 1e-9, "one row on");
+    await press("Shift+ArrowRight");
+    assert.ok(Math.abs((await time(page)) - 0.0251) < 1e-9, "a twentieth of the run");
+    await press("+");
+    assert.equal(await page.textContent("#speed"), "0.1 s per second");
+    await press("-", "-");
+    assert.equal(await page.textContent("#speed"), "0.02 s per second");
+    await press("]", "]");
+    assert.equal(await page.textContent("#exaggeration"), "5 ×");
+    await press("[", "[", "[");
+    assert.equal(await page.textContent("#exaggeration"), "none");
+    await press("]");
+    assert.equal(await page.textContent("#exaggeration"), "true");
+    await press("Space");
+    assert.ok(await page.evaluate(() => window.reportPage.clock.playing));
+    await press("Space");
+    assert.ok(!(await page.evaluate(() => window.reportPage.clock.playing)));
+    const here = await time(page);
+    await page.focus("#tab-0");
+    await press("ArrowRight");
+    assert.equal(await page.getAttribute("#tab-1", "aria-selected"), "true");
+    assert.equal(await time(page), here, "arrows on the tabs do not move the time");
+});
+
+test("a click in a plot sets the time, a drag zooms all plots, a double click shows the whole run again", async (t) => {
+    const page = await open(t, browser, "small");
+    await page.selectOption("#panel-0 select", "point P3");
+    const plots = page.locator("#panel-0 .u-over");
+    assert.equal(await plots.count(), 4);
+    const box = await plots.first().boundingBox();
+    const y = box.y + box.height / 2;
+    await page.mouse.click(box.x + box.width / 2, y);
+    assert.ok(Math.abs((await time(page)) - 0.25) < 0.002, String(await time(page)));
+    const marks = () => page.locator("#panel-0 .now").evaluateAll((lines) =>
+        lines.map((line) => Math.round(new DOMMatrix(getComputedStyle(line).transform).e)));
+    const middle = await marks();
+    assert.ok(middle.every((x) => Math.abs(x - box.width / 2) <= 2), `${middle}`);
+    await page.mouse.move(box.x + box.width * 0.45, y);
+    await page.mouse.down();
+    await page.mouse.move(box.x + box.width * 0.85, y, { steps: 4 });
+    await page.mouse.up();
+    await frame(page);
+    const zoomed = await marks();
+    assert.ok(zoomed.every((x) => Math.abs(x - box.width / 8) <= 4), `${zoomed} of ${box.width}`);
+    assert.ok(Math.abs((await time(page)) - 0.25) < 0.002, "a drag does not set the time");
+    await page.mouse.dblclick(box.x + 40, y);
+    await frame(page);
+    await page.mouse.click(box.x + box.width / 2, y);
+    assert.ok(Math.abs((await time(page)) - 0.25) < 0.002, "all is shown again");
+});
+
+/// Colour of a level between 0 and 1, up to its brightness, which the light changes.
+function colour(level) {
+    const rgb = (hex) => [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16));
+    const x = level * (SCALE.length - 1);
+    const below = Math.min(Math.floor(x), SCALE.length - 2);
+    return direction(rgb(SCALE[below]).map((c, i) => c + (x - below) * (rgb(SCALE[below + 1])[i] - c)));
+}
+
+function direction(rgb) {
+    const norm = Math.hypot(...rgb);
+    return rgb.map((c) => c / norm);
+}
+
+test("the colours are those of the displacement and of the von Mises stress", async (t) => {
+    const page = await open(t, browser, "patch");
+    await page.uncheck("#path");
+    // Rows: 2 × tension, 1.5 × shear, -tension + 2 × shear.
+    const displacements = [10, 3, Math.hypot(-3, -4, 4)];
+    const stresses = [200, Math.sqrt(3) * 45, Math.sqrt(100 ** 2 + 3 * 60 ** 2)];
+    for (const [field, values] of [["displacement", displacements], ["stress", stresses]]) {
+        await page.selectOption("#colour", field);
+        for (const [row, value] of values.entries()) {
+            const { middle } = await pixels(page, 0.25 * row);
+            const [found, expected] = [direction(middle), colour(value / Math.max(...values))];
+            const distance = Math.hypot(...found.map((c, i) => c - expected[i]));
+            assert.ok(distance < 0.02, `${field} in row ${row}: ${middle}, ${found} for ${expected}`);
+        }
+    }
+});
+
+test("the undeformed outline, the body axes and the fixed camera change the picture", async (t) => {
+    const page = await open(t, browser, "small");
+    let last = (await pixels(page, 0.02)).sum;
+    for (const id of ["#outline", "#axes", "#path", "#follow"]) {
+        await page.click(id);
+        const { sum } = await pixels(page, 0.02);
+        assert.notEqual(sum, last, id);
+        last = sum;
+    }
+});
+
+test("a shape can be shown alone, with its frequency, and static shapes are named as such", async (t) => {
+    const page = await open(t, browser, "small");
+    await page.click("#tab-2");
+    const last = await page.locator("#panel-2 tbody tr").last().locator("td").allTextContents();
+    assert.deepEqual(last.slice(0, 4), ["static shape of load 1", "static shape", "–", "–"]);
+    await page.click("[aria-label='Show mode 3 alone']");
+    assert.equal(await page.textContent("#caption"), "mode 3: 48 Hz");
+    assert.equal(await page.textContent("#legend-ticks > :last-child"), "0");
+    const seen = new Set();
+    for (let i = 0; i < 4; i++) {
+        seen.add((await pixels(page)).sum);
+        await page.waitForTimeout(150);
+    }
+    assert.ok(seen.size > 1, "the shape swings");
+    await page.selectOption("#subject", "run");
+    assert.equal(await page.textContent("#caption"), "");
+});
+
+test("an unfinished run says so in words, and texts are shown as texts", async (t) => {
+    const page = await open(t, browser, "unfinished");
+    assert.equal(await page.textContent("#state"), "Unfinished run");
+    assert.match(await page.textContent("#warnings"), /stopped at 0.5 s of 0.8 s.*<\/script><b>or a tolerance<\/b>/);
+    await page.click("#tab-4");
+    assert.match(await page.textContent("#panel-4 pre"), /flexible = 10 # <all>/);
+});
+
+test("a rigid body without a surface is drawn by its axes", async (t) => {
+    const page = await open(t, browser, "rigid");
+    const [first, later] = [await pixels(page, 0), await pixels(page, 0.25)];
+    assert.ok(first.part > 0.002);
+    assert.notEqual(first.sum, later.sum);
+    assert.ok(!(await page.isVisible("#colour")));
+});
+
+test("on a phone nothing is wider than the screen, and a tap plays", async (t) => {
+    const options = { viewport: { width: 390, height: 844 }, isMobile: true, hasTouch: true, deviceScaleFactor: 2 };
+    const page = await open(t, browser, "small", options);
+    for (const tab of [0, 1, 2, 3, 4]) {
+        await page.tap(`#tab-${tab}`);
+        const width = await page.evaluate(() => document.documentElement.scrollWidth);
+        assert.ok(width <= 390, `tab ${tab} is ${width} wide`);
+    }
+    assert.ok((await pixels(page, 0.1)).part > 0.02);
+    await page.tap("#play");
+    await page.waitForFunction(() => window.reportPage.clock.time > 0.101);
+});
+
+test("the page follows the dark scheme of the system", async (t) => {
+    const page = await open(t, browser, "small", { colorScheme: "dark" });
+    const ground = () => page.evaluate(() => getComputedStyle(document.body).backgroundColor.match(/\d+/g).map(Number));
+    assert.ok(Math.max(...(await ground())) < 60);
+    await page.emulateMedia({ colorScheme: "light" });
+    assert.ok(Math.min(...(await ground())) > 200);
+});
+
+test("work for each frame of 60 000 vertices and 40 modes", async (t) => {
+    const page = await open(t, browser, "large");
+    const started = Date.now();
+    for (let i = 0; i < 8; i++) await pixels(page, 0.05 * i);
+    const passed = (Date.now() - started) / 8;
+    const work = await page.evaluate(() => window.reportPage.viewer.work.slice(-8).sort((a, b) => a - b));
+    t.diagnostic(`the page's program works ${work[4].toFixed(1)} ms for a frame (median; at the most ${work[7].toFixed(1)} ms)`);
+    t.diagnostic(`a frame takes ${passed.toFixed(0)} ms with software in place of a graphics processor, with reading the pixels`);
+});

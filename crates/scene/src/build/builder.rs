@@ -1,0 +1,123 @@
+//! Models of one body that differ in their effects and modes.
+
+use std::time::Duration;
+
+use frames_rk4::Effect;
+use modal::{Modes, Solver};
+
+use super::assembly::{Assembled, AssembledMesh, Assembly};
+use super::error::{BuildError, modal, too_many_modes};
+use super::model::Model;
+use super::progress::{BuildProgress, BuildTimes, timed};
+use super::{meshed, rigid};
+use crate::effects::Choice;
+use crate::scene::{RigidBody, Scene};
+
+/// Makes models of an [`Assembly`] that differ in their effects and modes. The matrices are factored once, and modes are
+/// searched again only where more of them are asked for.
+pub struct ModelBuilder<'a>(Builder<'a>);
+
+enum Builder<'a> {
+    Meshed(Box<MeshedBuilder<'a>>),
+    Rigid(&'a RigidBody),
+}
+
+struct MeshedBuilder<'a> {
+    assembled: &'a AssembledMesh,
+    solver: Solver<'a>,
+    /// The most that have been searched so far.
+    modes: Option<Modes>,
+}
+
+impl Assembly {
+    /// What makes models of it. The scene is that of the assembly, for messages.
+    ///
+    /// # Errors
+    /// [`BuildError`]: what the modal analysis refuses in the matrices and the support.
+    pub fn builder(&self, scene: &Scene) -> Result<ModelBuilder<'_>, BuildError> {
+        Ok(ModelBuilder(match &self.0 {
+            Assembled::Meshed(assembled) => {
+                let AssembledMesh { mesh, matrices, support, .. } = &**assembled;
+                let solver = Solver::new(matrices.stiffness(), matrices.mass(), mesh.positions(), support);
+                let solver = solver.map_err(modal(scene))?;
+                Builder::Meshed(Box::new(MeshedBuilder { assembled, solver, modes: None }))
+            }
+            Assembled::Rigid(body) => Builder::Rigid(body),
+        }))
+    }
+}
+
+impl ModelBuilder<'_> {
+    /// The model of a scene, which may differ from that of the assembly in its effects and modes.
+    ///
+    /// # Errors
+    /// As [`Model::build`].
+    pub fn build(&mut self, scene: &Scene, mut progress: impl FnMut(BuildProgress)) -> Result<Model, BuildError> {
+        match &mut self.0 {
+            Builder::Meshed(builder) => builder.build(scene, &mut progress),
+            Builder::Rigid(body) => rigid::build(scene, body),
+        }
+    }
+
+    /// The same, by a builder that is not needed any longer: it keeps no modes for others.
+    pub(super) fn into_model(
+        self,
+        scene: &Scene,
+        mut progress: impl FnMut(BuildProgress),
+    ) -> Result<Model, BuildError> {
+        match self.0 {
+            Builder::Meshed(builder) => {
+                let (modes, time) = builder.search(scene, &mut progress)?;
+                builder.reduce(scene, modes, time, &mut progress)
+            }
+            Builder::Rigid(body) => rigid::build(scene, body),
+        }
+    }
+
+    /// Number of flexible modes that there are.
+    pub fn available(&self) -> usize {
+        match &self.0 {
+            Builder::Meshed(builder) => builder.solver.available(),
+            Builder::Rigid(_) => 0,
+        }
+    }
+}
+
+impl MeshedBuilder<'_> {
+    fn build(&mut self, scene: &Scene, progress: &mut dyn FnMut(BuildProgress)) -> Result<Model, BuildError> {
+        let requested = requested(scene);
+        let (modes, time) = match self.modes.take().filter(|modes| modes.natural() >= requested) {
+            Some(modes) => (modes, Duration::ZERO),
+            None => self.search(scene, progress)?,
+        };
+        let model = self.reduce(scene, modes.truncated(requested), time, progress);
+        self.modes = Some(modes);
+        model
+    }
+
+    /// The modes that a scene asks for, and how long that took.
+    fn search(&self, scene: &Scene, progress: &mut dyn FnMut(BuildProgress)) -> Result<(Modes, Duration), BuildError> {
+        let mut time = Duration::ZERO;
+        let modes = timed(&mut time, || self.solver.modes(requested(scene), |p| progress(BuildProgress::Modes(p))));
+        Ok((modes.map_err(|error| too_many_modes(scene, error))?, time))
+    }
+
+    fn reduce(
+        &self,
+        scene: &Scene,
+        modes: Modes,
+        search: Duration,
+        progress: &mut dyn FnMut(BuildProgress),
+    ) -> Result<Model, BuildError> {
+        let times = BuildTimes { modes: search, ..self.assembled.times };
+        meshed::reduce(scene, self.assembled, &self.solver, modes, times, progress)
+    }
+}
+
+/// How many modes a scene asks for.
+fn requested(scene: &Scene) -> usize {
+    match scene.effects.choices[Effect::Flexibility] {
+        Choice::Off => 0,
+        Choice::On | Choice::Auto => scene.modes.flexible.most(),
+    }
+}

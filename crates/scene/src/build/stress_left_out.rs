@@ -1,0 +1,106 @@
+//! What the modes leave out of the stress: the static answer to what acts on the body, less what the modes and static
+//! shapes of the motion have of it.
+//!
+//! ```text
+//! u_j = K⁻¹ f_j (inertia relief)        r_j = u_j − Σ_k φ_k (φ_kᵀ K u_j)/λ_k        σ_left = Σ_j a_j σ(r_j)
+//! ```
+//!
+//! The forces f_j are the loads, in every direction that they may come to have in the body, the centrifugal force of the spin
+//! and the Euler force of its change. The inertia of the modes' own motion and the Coriolis force are not among them.
+
+use faer::{Mat, MatRef};
+use fem_tet10::StressRecovery;
+use frames_rk4::{History, Observation};
+use modal::{Modes, ReducedBody, turning_field};
+use nalgebra::Vector3;
+
+use super::error::{BuildError, modal};
+use super::mesh_model::MeshModel;
+use super::site_stress::SiteStress;
+use super::statics::{Asked, Statics};
+
+/// The stress that the modes leave out of each static answer, and how much of each there is at a time.
+#[derive(Debug)]
+pub(super) struct LeftOut {
+    pub stress: SiteStress,
+    /// Of the first columns of `stress`; those of the spin and of its change follow.
+    loads: Vec<LoadPart>,
+}
+
+/// A load, or one of its directions in the body.
+#[derive(Debug)]
+struct LoadPart {
+    history: History,
+    /// The load in global axes, and what stands for one unit of it in the body; none of a load whose direction there stays.
+    turning: Option<[Vector3<f64>; 2]>,
+}
+
+impl LeftOut {
+    pub fn new(
+        model: &MeshModel<'_>,
+        modes: &Modes,
+        recovery: &StressRecovery<'_>,
+        origin: &Vector3<f64>,
+        has_gravity: bool,
+    ) -> Result<Self, BuildError> {
+        let &MeshModel { scene, mesh, solver, matrices, .. } = model;
+        let asked = Asked { loads: true, spin: true, drive: false };
+        let statics = Statics::new(model, modes, origin, asked)?;
+        let mut columns: Vec<Mat<f64>> = Vec::new();
+        let mut loads = Vec::new();
+        if let Some(of_loads) = &statics.of_loads {
+            for (i, load) in model.loads.iter().enumerate() {
+                if load.is_gravity() && !has_gravity {
+                    continue;
+                }
+                columns.push(of_loads.answers_to(i).to_owned());
+                let history = || load.history.clone();
+                let turned = of_loads.turned(i);
+                match load.dead_vector().filter(|_| !turned.is_empty()) {
+                    Some(vector) => loads.extend(
+                        turned.iter().map(|unit| LoadPart { history: history(), turning: Some([vector, *unit]) }),
+                    ),
+                    None => loads.push(LoadPart { history: history(), turning: None }),
+                }
+            }
+        }
+        columns.extend(statics.of_spin.map(|of_spin| of_spin.answers));
+        for axis in [Vector3::x(), Vector3::y(), Vector3::z()] {
+            let field = turning_field(solver.mass(), mesh.positions(), origin, &axis);
+            columns.push(solver.static_response(field.as_ref()).map_err(modal(scene))?);
+        }
+        let mut stress = Mat::zeros(6 * recovery.sites().len(), columns.iter().map(Mat::ncols).sum());
+        let mut first = 0;
+        for answers in columns {
+            let momenta = matrices.stiffness() * &answers;
+            let rest = rest(modes, answers.as_ref(), momenta.as_ref());
+            stress.subcols_mut(first, rest.ncols()).copy_from(recovery.nodal_stress(rest.as_ref())?);
+            first += rest.ncols();
+        }
+        Ok(Self { stress: SiteStress::new(&stress), loads })
+    }
+
+    /// How much there is of each now.
+    pub fn amplitudes(&self, now: &Observation) -> Vec<f64> {
+        let of_load = |part: &LoadPart| {
+            let factor = part.history.at(now.time, now.time);
+            let direction = part
+                .turning
+                .map_or(1.0, |[vector, unit]| unit.dot(&now.attitude.to_body(&vector)) / unit.norm_squared());
+            factor * direction
+        };
+        let omega = &now.omega_body;
+        let of_pair = |(i, j): (usize, usize)| if i == j { 1.0 } else { 2.0 } * omega[i] * omega[j];
+        let spin = ReducedBody::PAIRS.into_iter().map(of_pair);
+        self.loads.iter().map(of_load).chain(spin).chain(now.alpha_body.iter().map(|alpha| -alpha)).collect()
+    }
+}
+
+/// What the answers have beside the modes; `forces` are K times the answers.
+fn rest(modes: &Modes, answers: MatRef<'_, f64>, forces: MatRef<'_, f64>) -> Mat<f64> {
+    let mut parts = modes.shapes.transpose() * forces;
+    for (k, eigenvalue) in modes.eigenvalues.iter().enumerate() {
+        parts.row_mut(k).iter_mut().for_each(|part| *part /= eigenvalue);
+    }
+    answers - &modes.shapes * parts
+}
