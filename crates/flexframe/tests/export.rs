@@ -5,6 +5,7 @@ use std::process::{Command, Output};
 
 use flexframe::columns::COLUMNS;
 use flexframe::rigid_kin::Attitude;
+use flexframe::row::Row;
 use flexframe::scene::{Model, Scene};
 use nalgebra::Vector3;
 use results::{Results, unfinished};
@@ -104,7 +105,7 @@ fn a_results_file_becomes_a_table_and_fields() {
     assert!(!heads.contains("drive/") && !heads.contains("slider/"), "{heads}");
     let rows: Vec<Vec<f64>> = lines.map(numbers).collect();
     assert_eq!(rows.len(), 21);
-    let per_row: usize = 1 + 4 + 6 * 3 + 2 * count + 5 + 4 * 3 + 4 * 3 + 2 + 2 * 6 * 3;
+    let per_row: usize = 1 + 4 + 5 * 3 + 2 * count + 5 + 4 * 3 + 4 * 3 + 2 + 2 * 6 * 3;
     assert!(rows.iter().all(|row| row.len() == per_row), "{} {per_row}", rows[0].len());
     assert_eq!(rows[20][1..5], results.vectors::<4>("attitude").unwrap()[20]);
 
@@ -196,7 +197,11 @@ fn what_cannot_be_exported_is_refused_and_an_unfinished_run_is_marked() {
     let model = Model::build(&scene, |_| ()).unwrap();
     let mut writer =
         results::Writer::create(at("cut.h5"), &results.metadata, &COLUMNS, results::Expected::default()).unwrap();
-    model.start(&scene).unwrap().take(3).for_each(|now| writer.push(&now.unwrap()).unwrap());
+    model
+        .start(&scene)
+        .unwrap()
+        .take(3)
+        .for_each(|now| writer.push(&Row { motion: now.unwrap(), stress: Vec::new() }).unwrap());
     drop(writer);
     let said = done(&["export", part.to_str().unwrap(), "--csv", &at("cut.csv")]);
     assert!(said.contains("the run is unfinished: its rows end at time 0.02"), "{said}");
