@@ -34,6 +34,9 @@ pub struct Expected {
     pub overwrite: bool,
 }
 
+/// Columns, and the values of each that wait to be written.
+type Buffers<R> = Vec<(&'static Column<R>, Vec<f64>)>;
+
 /// Appends rows of type `R` to an HDF5 file whose datasets are those of a table of [`Column`]s.
 ///
 /// While the run goes on, the rows are in an unfinished file beside the place of the results ([`unfinished`]), which is
@@ -47,7 +50,7 @@ pub struct Writer<R: 'static> {
     columns: &'static [Column<R>],
     store: Store,
     /// Values of the rows that have not been written, by column.
-    buffers: Vec<(&'static Column<R>, Vec<f64>)>,
+    buffers: Buffers<R>,
     rows_per_write: usize,
     /// Of the rows that have been written.
     sums: Sums,
@@ -294,7 +297,7 @@ impl<R> Writer<R> {
 }
 
 /// Empty buffers of the columns that a file has, and how many numbers make a row.
-fn buffers<R>(columns: &'static [Column<R>], metadata: &Metadata) -> (Vec<(&'static Column<R>, Vec<f64>)>, usize) {
+fn buffers<R>(columns: &'static [Column<R>], metadata: &Metadata) -> (Buffers<R>, usize) {
     let numbers_per_row = present(columns, metadata).map(|column| column.width(metadata)).sum();
     let rows = rows_per_write(numbers_per_row);
     let room = |column: &Column<R>| Vec::with_capacity(rows * column.width(metadata));
