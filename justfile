@@ -91,6 +91,18 @@ h5py: build
     .tools/h5py/bin/pip install -q h5py
     .tools/h5py/bin/python crates/results/tests/read_with_h5py.py out/ring/ring.h5
 
+# Read exports with VTK's own readers, and compare them with the modes (Python packages, 150 MB).
+paraview: build
+    {{flexframe}} run examples/ring.toml -o out/paraview --overwrite
+    python3 -m venv --upgrade-deps .tools/paraview >/dev/null
+    .tools/paraview/bin/pip install -q h5py vtk
+    for cells in "" --volume; do \
+        {{flexframe}} export out/paraview/ring.h5 --vtkhdf out/paraview/ring.vtkhdf --modes out/paraview/modes.vtkhdf \
+            --vtu out/paraview/vtu --every 200 --overwrite $cells && \
+        .tools/paraview/bin/python crates/flexframe/tests/read_with_vtk.py \
+            out/paraview/{ring.h5,ring.vtkhdf,modes.vtkhdf,vtu}; \
+    done
+
 # Build the page of reports from its sources (npm). It is checked in, so that nobody else needs npm.
 report-page:
     cd crates/report/web && npm ci --silent --no-audit --no-fund && npm run --silent build

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use results::Values::{Modal, Number, Point, Quaternion, Vector};
+use results::Values::{Modal, Number, Points, Quaternion, Vector};
 use results::{BodyProperties, Column, Expected, FileError, Metadata, Units, Writer};
 
 /// A row.
@@ -19,11 +19,11 @@ pub static COLUMNS: [Column<Row>; 5] = [
     Column::new("velocity", "length/time", "global", "a vector", Vector(|_| [1.0; 3])),
     Column::new("modal/velocity", "1", "none", "modal coordinates", Modal(|row| &row.modes)),
     Column::new(
-        "points/<name>/velocity",
+        "points/velocity",
         "length/time",
         "global",
         "a vector of each point",
-        Point(|row, i| (i < row.points).then_some([2.0; 3])),
+        Points(|row, i| (i < row.points).then_some([2.0; 3])),
     ),
 ];
 
@@ -37,7 +37,6 @@ pub fn write_results(path: &Path, modes: usize, points: usize, rows: u32, finish
         step: Some(1e-3),
         tolerance: None,
         program_version: "0".into(),
-        fingerprint: 0x89ab_cdef,
         scene_text: "title = \"a seed\"".into(),
         scene_file: "fuzz.toml".into(),
         body: BodyProperties {
@@ -46,8 +45,12 @@ pub fn write_results(path: &Path, modes: usize, points: usize, rows: u32, finish
             inertia: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
             frequencies: vec![1.0; modes],
             damping_ratios: vec![0.0; modes],
+            origin: [0.0; 3],
+            static_shapes: 0,
         },
         point_names: (0..points).map(|i| format!("P{i}")).collect(),
+        point_positions: vec![[0.0; 3]; points],
+        parts: Vec::new(),
     };
     let mut writer = Writer::create(path, &metadata, &COLUMNS, Expected { overwrite: true, ..Expected::default() })?;
     let row = Row { modes: vec![0.5; modes], points };

@@ -130,7 +130,7 @@ pub fn campbell(
         },
         stable_below: critical_speed.is_finite().then_some(critical_speed),
         critical_speeds: critical::find(&spin, &branches, &settings.orders).map_err(failed)?,
-        branches: branches.lines(),
+        branches: branches.lines(model.static_shapes()),
         speeds: branches.speeds,
         files: Vec::new(),
     };

@@ -8,8 +8,9 @@ use clap::{Args, Parser, Subcommand};
 use flexframe::animation::{AnimationSettings, animate};
 use flexframe::campbell::{CampbellError, CampbellSettings, Speeds, campbell};
 use flexframe::cost::{self, CostSettings};
+use flexframe::export::{self, ExportRows, Exported, Motion};
 use flexframe::failure::{Details, Failure, FailureReport, Kind};
-use flexframe::run::RunSettings;
+use flexframe::run::{RunProgress, RunSettings};
 use flexframe::{advise, html_report, mode_shapes, modes, paper, run};
 use scene::{BuildError, Flexible, Scene, SceneError};
 
@@ -133,6 +134,43 @@ enum Command {
         /// Longest time of a run in seconds; the reference may take twenty times as long.
         #[arg(long, value_name = "SECONDS", default_value = "1", value_parser = patience)]
         patience: Duration,
+    },
+    /// Write a results file, finished or not, as a table, or as fields for ParaView.
+    #[command(group = clap::ArgGroup::new("what").required(true).multiple(true))]
+    Export {
+        /// The results file, such as out/plate/plate.h5, or the unfinished one of a run.
+        #[arg(value_name = "FILE")]
+        file: PathBuf,
+        /// Table of the columns, with units in the heads: a file that ends in .csv, or a folder.
+        #[arg(long, value_name = "FILE|DIR", group = "what")]
+        csv: Option<PathBuf>,
+        /// Columns of the table, or what their paths begin with, such as energy,points/P1 [default: all].
+        #[arg(long, value_name = "PATH,…", value_delimiter = ',', requires = "csv")]
+        columns: Vec<String>,
+        /// The moving body for ParaView 5.12 and later: one file with the mesh and a step for each row.
+        #[arg(long, value_name = "FILE", group = "what")]
+        vtkhdf: Option<PathBuf>,
+        /// The same for older versions: a folder with a PVD file and a VTU file for each row.
+        #[arg(long, value_name = "DIR", group = "what")]
+        vtu: Option<PathBuf>,
+        /// Shapes of the modes and static shapes, a field each, in one VTKHDF file.
+        #[arg(long, value_name = "FILE", group = "what")]
+        modes: Option<PathBuf>,
+        /// The whole volume (quadratic tetrahedra) instead of the surface (triangles).
+        #[arg(long)]
+        volume: bool,
+        /// First time.
+        #[arg(long, value_name = "TIME", value_parser = finite, allow_hyphen_values = true)]
+        from: Option<f64>,
+        /// Last time.
+        #[arg(long, value_name = "TIME", value_parser = finite, allow_hyphen_values = true)]
+        to: Option<f64>,
+        /// One row of so many.
+        #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..))]
+        every: u64,
+        /// Replace files that are there.
+        #[arg(long)]
+        overwrite: bool,
     },
     /// Write one HTML page about a run: the moving body in 3-D, shapes, histories, balances. It needs no network.
     Report {
@@ -292,6 +330,32 @@ fn execute(cli: Cli, json_errors: bool) -> Result<(), Box<dyn Failure>> {
             let report = cost::price_list(&scene, &folder(&scene, output), settings, |p| bar.cost(p))?;
             drop(bar);
             output::print(&report, json)
+        }
+        Command::Export { file, csv, columns, vtkhdf, vtu, modes, volume, from, to, every, overwrite } => {
+            let rows = ExportRows { from, to, every: usize::try_from(every).unwrap_or(usize::MAX), overwrite };
+            let mut done = Vec::new();
+            if let Some(csv) = csv {
+                done.push(export::export_csv(&file, &csv, &columns, &rows)?);
+            }
+            if vtkhdf.is_some() || vtu.is_some() || modes.is_some() {
+                let motion = Motion::open(&file, volume, |p| bar.build(p))?;
+                let mut moved = |part: f64| bar.run(RunProgress::Motion(part));
+                if let Some(vtkhdf) = vtkhdf {
+                    done.push(export::export_vtkhdf(&file, &motion, &vtkhdf, &rows, &mut moved)?);
+                }
+                if let Some(vtu) = vtu {
+                    done.push(export::export_vtu(&file, &motion, &vtu, &rows, &mut moved)?);
+                }
+                if let Some(modes) = modes {
+                    done.push(export::export_modes(&file, &motion, &modes, &rows)?);
+                }
+            }
+            drop(bar);
+            for Exported { files, warning } in done {
+                output::list(&files)?;
+                output::warn(warning.as_deref())?;
+            }
+            Ok(())
         }
         Command::Report { file, output } => {
             let output = output.unwrap_or_else(|| file.with_extension("html"));

@@ -4,17 +4,38 @@
 //! finite, and the attributes in the file follow from the line; a test says what to put into `docs/results.md`.
 
 use results::Column;
-use results::Values::{Modal, Number, Point, Quaternion, Stress, Vector};
+use results::Values::{Modal, Number, PointNumbers, Points, Quaternion, Vector};
 
 use crate::row::Row;
+
+/// What runs have whose files have more columns: see [`results::Metadata::parts`].
+pub mod part {
+    /// Something holds the body.
+    pub const CONSTRAINT: &str = "constraint";
+    /// It may turn about one axis.
+    pub const HINGE: &str = "hinge";
+    /// It may move along one direction.
+    pub const SLIDER: &str = "slider";
+    /// Something drives it.
+    pub const DRIVE: &str = "drive";
+    /// The stress at the points is asked for.
+    pub const STRESS: &str = "stress";
+    /// The hinge is driven.
+    pub const DRIVEN_HINGE: &str = "driven hinge";
+    /// The slider is driven.
+    pub const DRIVEN_SLIDER: &str = "driven slider";
+}
 
 const ENERGY: &str = "mass length^2/time^2";
 const MOMENTUM: &str = "mass length/time";
 const STRESS: &str = "mass/(length time^2)";
 const ANGULAR_MOMENTUM: &str = "mass length^2/time";
+const FORCE: &str = "mass length/time^2";
+const MOMENT: &str = "mass length^2/time^2";
+const POWER: &str = "mass length^2/time^3";
 
 /// Path, unit, frame, description, and how an observation gives the values.
-pub static COLUMNS: [Column<Row>; 24] = [
+pub static COLUMNS: [Column<Row>; 38] = [
     Column::new("time", "time", "none", "time of each row", Number(|now| now.time)),
     Column::new(
         "attitude",
@@ -22,6 +43,13 @@ pub static COLUMNS: [Column<Row>; 24] = [
         "body to global",
         "unit quaternion (w, x, y, z) that takes body components to global ones",
         Quaternion(|now| now.attitude.wxyz()),
+    ),
+    Column::new(
+        "origin",
+        "length",
+        "global",
+        "position of the origin of the body frame",
+        Vector(|now| now.origin_global.into()),
     ),
     Column::new(
         "position",
@@ -112,52 +140,145 @@ pub static COLUMNS: [Column<Row>; 24] = [
         Vector(|now| now.angular_balance_global().into()),
     ),
     Column::new(
-        "points/<name>/displacement",
+        "reaction/force",
+        FORCE,
+        "global",
+        "force of the constraints on the body",
+        Vector(|now: &Row| now.attitude.to_global(&now.reaction.force_body).into()),
+    )
+    .only_with(part::CONSTRAINT),
+    Column::new(
+        "reaction/moment",
+        MOMENT,
+        "global",
+        "moment of the constraints on the body about its origin",
+        Vector(|now: &Row| now.attitude.to_global(&now.reaction.moment_body).into()),
+    )
+    .only_with(part::CONSTRAINT),
+    Column::new(
+        "reaction/force_body",
+        FORCE,
+        "body",
+        "force of the constraints on the body",
+        Vector(|now: &Row| now.reaction.force_body.into()),
+    )
+    .only_with(part::CONSTRAINT),
+    Column::new(
+        "reaction/moment_body",
+        MOMENT,
+        "body",
+        "moment of the constraints on the body about its origin",
+        Vector(|now: &Row| now.reaction.moment_body.into()),
+    )
+    .only_with(part::CONSTRAINT),
+    Column::new(
+        "hinge/angle",
+        "rad",
+        "none",
+        "angle that the body has turned by about the hinge since t = 0; it grows beyond a turn",
+        Number(|now: &Row| now.reaction.turned),
+    )
+    .only_with(part::HINGE),
+    Column::new("hinge/speed", "rad/time", "none", "rate of hinge/angle", Number(|now: &Row| now.reaction.turning))
+        .only_with(part::HINGE),
+    Column::new(
+        "slider/position",
+        "length",
+        "none",
+        "distance that the body has moved by along the slider since t = 0",
+        Number(|now: &Row| now.reaction.slid),
+    )
+    .only_with(part::SLIDER),
+    Column::new(
+        "slider/speed",
+        "length/time",
+        "none",
+        "rate of slider/position",
+        Number(|now: &Row| now.reaction.sliding),
+    )
+    .only_with(part::SLIDER),
+    Column::new(
+        "drive/torque",
+        MOMENT,
+        "none",
+        "torque of the drive on the body, about the hinge",
+        Number(|now: &Row| now.reaction.drive),
+    )
+    .only_with(part::DRIVEN_HINGE),
+    Column::new(
+        "drive/force",
+        FORCE,
+        "none",
+        "force of the drive on the body, along the slider",
+        Number(|now: &Row| now.reaction.drive),
+    )
+    .only_with(part::DRIVEN_SLIDER),
+    Column::new("drive/power", POWER, "none", "power of the drive", Number(|now: &Row| now.reaction.drive_power))
+        .only_with(part::DRIVE),
+    Column::new(
+        "points/displacement",
         "length",
         "global",
         "displacement of the point from its place at t = 0 in the undeformed body",
-        Point(|now, i| Some(now.points.get(i)?.displacement.into())),
+        Points(|now, i| Some(now.points.get(i)?.displacement.into())),
     ),
     Column::new(
-        "points/<name>/velocity",
+        "points/velocity",
         "length/time",
         "global",
         "velocity of the point",
-        Point(|now, i| Some(now.points.get(i)?.velocity.into())),
+        Points(|now, i| Some(now.points.get(i)?.velocity.into())),
     ),
     Column::new(
-        "points/<name>/acceleration",
+        "points/acceleration",
         "length/time^2",
         "global",
         "acceleration of the point",
-        Point(|now, i| Some(now.points.get(i)?.acceleration.into())),
+        Points(|now, i| Some(now.points.get(i)?.acceleration.into())),
     ),
     Column::new(
-        "points/<name>/rigid_acceleration",
+        "points/rigid_acceleration",
         "length/time^2",
         "global",
         "part of the point's acceleration that belongs to the rigid motion",
-        Point(|now, i| Some(now.points.get(i)?.rigid_acceleration.into())),
+        Points(|now, i| Some(now.points.get(i)?.rigid_acceleration.into())),
     ),
     Column::new(
-        "points/<name>/stress",
+        "points/elastic_displacement",
+        "length",
+        "global",
+        "displacement of the point by deformation alone, seen from the body frame",
+        Points(|now, i| Some(now.points.get(i)?.elastic_displacement_global.into())),
+    ),
+    Column::new(
+        "points/elastic_displacement_body",
+        "length",
+        "body",
+        "the same in body axes",
+        Points(|now, i| Some(now.points.get(i)?.elastic_displacement_body.into())),
+    ),
+    Column::new(
+        "points/stress",
         STRESS,
         "body",
         "stress at the point: components xx, yy, zz, xy, yz, zx",
-        Stress(6, |now, i| Some(&now.stress.get(i)?.components)),
-    ),
+        PointNumbers(6, |now: &Row, i| Some(&now.stress.get(i)?.components)),
+    )
+    .only_with(part::STRESS),
     Column::new(
-        "points/<name>/von_mises_stress",
+        "points/von_mises_stress",
         STRESS,
         "none",
         "von Mises stress at the point",
-        Stress(1, |now, i| Some(&now.stress.get(i)?.von_mises)),
-    ),
+        PointNumbers(1, |now: &Row, i| Some(&now.stress.get(i)?.von_mises)),
+    )
+    .only_with(part::STRESS),
     Column::new(
-        "points/<name>/principal_stress",
+        "points/principal_stress",
         STRESS,
         "none",
         "principal stresses at the point, the largest first",
-        Stress(3, |now, i| Some(&now.stress.get(i)?.principal)),
-    ),
+        PointNumbers(3, |now: &Row, i| Some(&now.stress.get(i)?.principal)),
+    )
+    .only_with(part::STRESS),
 ];

@@ -27,6 +27,7 @@ pub mod campbell;
 pub mod columns;
 pub mod cost;
 mod effects;
+pub mod export;
 pub mod failure;
 pub mod html_report;
 mod json;

@@ -25,7 +25,7 @@ pub enum ShapesError {
     Figure(#[from] FigureError),
 }
 
-/// Draws the flexible mode shapes, numbered after the six rigid ones, to `<stem>.svg` and `<stem>.png`.
+/// Draws the flexible mode shapes, numbered from 1, to `<stem>.svg` and `<stem>.png`.
 ///
 /// # Errors
 /// [`ShapesError`], also where there are no flexible modes to draw.

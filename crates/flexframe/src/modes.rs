@@ -79,7 +79,8 @@ impl fmt::Display for ModesReport {
         writeln!(f, "\n  mode  frequency, {:<6}  damping  residual", self.frequency_unit)?;
         let body = &self.body;
         for (k, (frequency, damping)) in body.natural_frequencies.iter().zip(&body.damping_ratios).enumerate() {
-            let residual = body.residuals.get(k).map_or_else(|| "static shape".to_owned(), |r| format!("{r:.0e}"));
+            let kind = body.kinds.get(k).copied().unwrap_or_default();
+            let residual = body.residuals.get(k).map_or_else(|| kind.to_owned(), |r| format!("{r:.0e}"));
             writeln!(f, "  {:>4}  {frequency:>17.6}  {damping:>7.4}  {residual}", k + 1)?;
         }
         write!(f, "\n  time   {}", self.times)

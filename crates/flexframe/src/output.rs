@@ -20,6 +20,11 @@ pub fn list(files: &[PathBuf]) -> Result<(), Box<dyn Failure>> {
     files.iter().try_for_each(|file| Ok(line(&format!("  wrote    {}", file.display()))?))
 }
 
+/// Prints what should be known of files.
+pub fn warn(warning: Option<&str>) -> Result<(), Box<dyn Failure>> {
+    Ok(warning.map_or(Ok(()), |warning| line(&format!("  warning  {warning}")))?)
+}
+
 fn line(line: &str) -> Result<(), CliError> {
     written(writeln!(io::stdout(), "{line}"))
 }

@@ -99,8 +99,10 @@ pub struct BodyReport {
     pub inertia: [[f64; 3]; 3],
     /// Rigid motions that the body has: six of a free one.
     pub rigid_modes: usize,
-    /// Natural frequencies of the flexible modes, cycles per time; after them those of static shapes.
+    /// Natural frequencies of the flexible modes, cycles per time; after them those of static shapes, which are none.
     pub natural_frequencies: Vec<f64>,
+    /// Whether each of these is of a "natural mode" or a "static shape".
+    pub kinds: Vec<&'static str>,
     /// Damping ratios.
     pub damping_ratios: Vec<f64>,
     /// Lanczos residual of each mode, in the shifted scale.
@@ -149,7 +151,19 @@ impl fmt::Display for MeshReport {
 impl BodyReport {
     /// How many static shapes follow the natural modes.
     pub fn static_shapes(&self) -> usize {
-        self.natural_frequencies.len() - self.residuals.len().min(self.natural_frequencies.len())
+        self.kinds.iter().filter(|kind| **kind == STATIC_SHAPE).count()
+    }
+
+    /// How many there are and their frequencies, such as "10 flexible modes from 24.53 to 582.1 Hz and 4 static shapes"; of a
+    /// rigid body, "rigid".
+    pub(crate) fn modes_in_words(&self, frequency_unit: &str) -> String {
+        let shapes = self.static_shapes();
+        let natural = &self.natural_frequencies[..self.natural_frequencies.len() - shapes];
+        let (Some(first), Some(last)) = (natural.first(), natural.last()) else { return "rigid".to_owned() };
+        let counted = |count: usize, what: &str| format!("{count} {what}{}", if count == 1 { "" } else { "s" });
+        let shapes = if shapes == 0 { String::new() } else { format!(" and {}", counted(shapes, STATIC_SHAPE)) };
+        let modes = counted(natural.len(), "flexible mode");
+        format!("{modes} from {first:.4} to {last:.4} {frequency_unit}{shapes}")
     }
 
     /// Of a model.
@@ -164,11 +178,20 @@ impl BodyReport {
             inertia: std::array::from_fn(|i| std::array::from_fn(|j| inertia[(i, j)])),
             rigid_modes: body.motion.count(),
             natural_frequencies: model.natural_frequencies(),
+            kinds: kinds(model),
             damping_ratios: model.damping_ratios().to_vec(),
             residuals: modes.map_or_else(Vec::new, |modes| modes.residuals.clone()),
             force_residuals: modes.map_or_else(Vec::new, |modes| modes.force_residuals.clone()),
         }
     }
+}
+
+/// What a coordinate of the body is that is no natural mode.
+const STATIC_SHAPE: &str = "static shape";
+
+fn kinds(model: &Model) -> Vec<&'static str> {
+    let (count, shapes) = (model.body.flexible(), model.static_shapes());
+    (0..count).map(|k| if k < count - shapes { "natural mode" } else { STATIC_SHAPE }).collect()
 }
 
 #[cfg(test)]

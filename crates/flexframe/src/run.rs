@@ -9,7 +9,7 @@ mod settings;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use frames_rk4::Simulation;
+use frames_rk4::{DrivenMotion, Simulation};
 use results::{BodyProperties, Expected, Metadata, Resumed, Units, Writer};
 use scene::{Model, Rows, Scene, StepControl};
 
@@ -19,7 +19,7 @@ pub use error::{RunError, RunFailure};
 pub use report::RunReport;
 pub use settings::{RunProgress, RunSettings};
 
-use crate::columns::COLUMNS;
+use crate::columns::{COLUMNS, part};
 use crate::report::BodyReport;
 use crate::row::Row;
 use crate::scene_file;
@@ -147,10 +147,33 @@ pub(crate) fn metadata(scene: &Scene, model: &Model) -> Metadata {
             mass: body.mass,
             center_of_mass: body.center_of_mass,
             inertia: body.inertia,
+            origin: model.body.origin.into(),
+            static_shapes: model.static_shapes(),
             frequencies: body.natural_frequencies,
             damping_ratios: body.damping_ratios,
         },
         point_names: model.points.iter().map(|(name, _)| name.clone()).collect(),
-        point_stress: scene.output.stress,
+        point_positions: model.points.iter().map(|(_, p)| (model.body.origin + p.position_body()).into()).collect(),
+        parts: parts(scene, model).map(str::to_owned).collect(),
     }
+}
+
+/// What the run has so that its file has further columns. In the formulation of the paper there are no reactions.
+fn parts(scene: &Scene, model: &Model) -> impl Iterator<Item = &'static str> {
+    let motion = &model.body.motion;
+    let drive = model.physics.drive.as_ref().map(|drive| drive.motion);
+    let turns = matches!(drive, Some(DrivenMotion::Turn { .. }));
+    let slides = matches!(drive, Some(DrivenMotion::Slide { .. }));
+    let is_held = !motion.is_free() && !scene.time.method.is_of_paper();
+    [
+        (part::CONSTRAINT, true),
+        (part::HINGE, turns || motion.rotations().len() == 1),
+        (part::SLIDER, slides || motion.translations().len() == 1),
+        (part::DRIVE, drive.is_some()),
+        (part::DRIVEN_HINGE, turns),
+        (part::DRIVEN_SLIDER, slides),
+    ]
+    .into_iter()
+    .filter_map(move |(part, has)| (is_held && has).then_some(part))
+    .chain(scene.output.stress.then_some(part::STRESS))
 }

@@ -16,7 +16,7 @@ pub struct Surface {
     /// Undeformed points, mesh axes.
     pub points: Vec<[f64; 3]>,
     /// Indices of the points among the nodes of the mesh.
-    nodes: Vec<u32>,
+    pub(crate) nodes: Vec<u32>,
 }
 
 impl Surface {

@@ -8,7 +8,7 @@ use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use flexframe::columns::COLUMNS;
-use results::{Results, Values, unfinished};
+use results::{Results, unfinished};
 use tempfile::TempDir;
 
 /// A scene that takes some seconds, and the folder that it is in.
@@ -153,8 +153,8 @@ fn a_run_that_is_killed_again_and_again_ends_in_the_same_file() {
             // Never less than before, and every row is that of the whole run.
             assert!(rows >= kept || rounds > 0, "{rows} after {kept}");
             kept = rows;
-            for column in COLUMNS.iter().filter(|column| !matches!(column.values, Values::Stress(..))) {
-                let path = column.path.replace("<name>", "struck");
+            for column in COLUMNS.iter().filter(|column| column.part.is_none()) {
+                let path = column.path.replace("points/", "points/struck/");
                 let (found, expected) = (results.table(&path).unwrap(), whole.table(&path).unwrap());
                 assert_eq!(found.values(), &expected.values()[..rows * found.width()], "{path}");
             }

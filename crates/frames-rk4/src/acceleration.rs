@@ -89,17 +89,16 @@ impl ConservativeBody {
         }
     }
 
-    /// Power of what drives the body, less that of the loads on it: with π = J ω + S·ν and P = m v + b·ν along the
-    /// driven axis, both less (K ξ)·ν, (π' − M) ω and (P' − F) v. `e` has all other rates, its momentum without the linear
-    /// part at q and p.
-    pub(crate) fn drive_power(
+    /// Finds the torque π' − M or the force P' − F of what drives the body: with π = J ω + S·ν and P = m v + b·ν along the
+    /// driven axis, both less (K ξ)·ν. `e` has all other rates, its momentum without the linear part at q and p.
+    pub(crate) fn drive_effort(
         &self,
         acceleration: f64,
         [q, p]: [&[f64]; 2],
         force_body: &Vector3<f64>,
         moment: f64,
         e: &mut Evaluation,
-    ) -> f64 {
+    ) {
         let (speed, nf) = (e.driven_speed, self.extended());
         for (k, rate) in e.acceleration.iter_mut().enumerate() {
             *rate = e.momentum[k] + self.linear_rate(k, q[k], p[k]);
@@ -115,7 +114,8 @@ impl ConservativeBody {
         if let Translation::Driven(direction) = self.translation {
             e.driven_momentum = self.mass * speed + dot(&self.sliding, &e.velocity) - stressed;
             changing += dot(&self.sliding, &e.change);
-            return (self.mass * acceleration + changing - direction.dot(force_body)) * speed;
+            e.drive_effort = self.mass * acceleration + changing - direction.dot(force_body);
+            return;
         }
         let (s, n_q) = (&e.products[..nf], &e.products[self.s_rows..]);
         let inertia = e.inertia[(0, 0)];
@@ -126,7 +126,7 @@ impl ConservativeBody {
         // G ν does no work on ν.
         changing += dot(s, &e.change);
         e.driven_momentum = inertia * speed + dot(s, &e.velocity) - stressed;
-        (inertia_rate * speed + inertia * acceleration + changing - moment) * speed
+        e.drive_effort = inertia_rate * speed + inertia * acceleration + changing - moment;
     }
 
     /// νᵀK ν

@@ -51,6 +51,7 @@ use crate::manifold::{Manifold, Place};
 use crate::motion::CenterOfMass;
 use crate::own_coupling::own_coupling;
 use crate::physics::{Drive, DrivenMotion, Physics};
+use crate::reaction::Held;
 use crate::state::MotionState;
 pub use state::ConservativeState;
 pub(crate) use state::{Slow, get, part, set};
@@ -110,6 +111,8 @@ pub struct ConservativeBody {
     loads: Vec<SharedLoad>,
     /// Of a body with large modes.
     pub(crate) manifold: Option<Manifold>,
+    /// Of a body that something holds.
+    pub(crate) held: Option<Held>,
 }
 
 /// Rates of a [`ConservativeState`].
@@ -167,6 +170,11 @@ pub(crate) struct Evaluation {
     pub driven_speed: f64,
     /// π of a driven turn or the P of a driven slide, along its axis.
     pub driven_momentum: f64,
+    /// Torque or force of the drive.
+    pub drive_effort: f64,
+    /// Resultants of the loads about the origin, body components.
+    pub load_force: Vector3<f64>,
+    pub load_moment: Vector3<f64>,
     /// J(q) and J − SᵀS.
     pub inertia: Matrix3<f64>,
     pub locked_inertia: Matrix3<f64>,
@@ -292,6 +300,7 @@ impl ConservativeBody {
             drive_stiffness: drive_stiffness.map_or_else(Vec::new, |k| columns(k.as_ref())),
             loads,
             manifold: large_deflection.clone(),
+            held: Held::new(body, effects),
         })
     }
 
@@ -343,6 +352,9 @@ impl ConservativeBody {
             omega_body: Vector3::zeros(),
             driven_speed: 0.0,
             driven_momentum: 0.0,
+            drive_effort: 0.0,
+            load_force: Vector3::zeros(),
+            load_moment: Vector3::zeros(),
             inertia: self.inertia,
             locked_inertia: self.inertia,
         }
@@ -393,6 +405,7 @@ impl ConservativeBody {
             time: 0.0,
             attitude: initial.attitude,
             slow,
+            turned: 0.0,
             modal_displacement: initial.modal_displacement.clone(),
             modal_momentum: momentum,
         })
@@ -609,6 +622,7 @@ impl ConservativeBody {
             }
             self.loads.iter().for_each(|load| load.apply(&motion, &mut applied));
             let moment = applied.moment_body;
+            (e.load_force, e.load_moment) = (applied.force_body, moment);
             power = applied.modal_power + moment.dot(&e.omega_body);
             force = body_from_global.tr_mul(&applied.force_body);
             let mut left = Vector3::zeros();
@@ -636,7 +650,8 @@ impl ConservativeBody {
         };
         if self.drive.is_some() {
             let force_body = attitude.to_body(&force);
-            power += self.drive_power(driven_acceleration, [q, p], &force_body, pi_rate[0], e);
+            self.drive_effort(driven_acceleration, [q, p], &force_body, pi_rate[0], e);
+            power += e.drive_effort * speed;
             pi_rate = Vector3::zeros();
         }
         set(&mut e.slow, part::THETA, &theta_rate);

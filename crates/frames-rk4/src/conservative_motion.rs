@@ -350,9 +350,12 @@ impl ConservativeMotion {
             Stepping::Rkmk4 => self.rkmk4(h)?,
             Stepping::Exponential => self.exponential(h)?,
         }
-        let Self { state, next, .. } = self;
+        let Self { body, state, next, .. } = self;
         let theta = get(&next.slow, part::THETA);
         next.attitude = state.attitude.advanced_by(&theta);
+        if let [axis] = body.axes[..] {
+            next.turned = state.turned + axis.dot(&theta);
+        }
         next.slow.fixed_rows_mut::<3>(part::THETA).fill(0.0);
         next.time = end;
         let infinite = |what| Err(StepError::NotFinite { time: state.time, what });

@@ -7,6 +7,7 @@ use crate::conservative::{ConservativeBody, ConservativeState, Evaluation, Trans
 use crate::error::RateError;
 use crate::motion::PointShapes;
 use crate::observation::{Observation, PointMotion};
+use crate::reaction::HeldMotion;
 use crate::work::Work;
 
 impl ConservativeBody {
@@ -53,22 +54,78 @@ impl ConservativeBody {
         self.observe_momenta(state, e, out);
         let moved = position - self.origin;
         self.extend_acceleration(e);
-        let acceleration = &e.change;
+        self.observe_reaction(state, &alpha, &state.attitude.to_body(&acceleration_of_origin), e, out);
+        let to_global = state.attitude.global_to_body().transpose();
+        let to_initial = initial_attitude.global_to_body().transpose();
         out.points.clear();
         out.points.extend(points.iter().map(|point| {
             let x = point.position_body();
-            let (u, v, a) =
-                (point.deformation(&e.extended), point.deformation(&e.velocity), point.deformation(acceleration));
+            let [u, v, a] = point.deformations([&e.extended, &e.velocity, &e.change]);
             let arm = x + u;
             PointMotion {
-                displacement: moved + (global(arm) - initial_attitude.to_global(&x)),
-                velocity: velocity_of_origin + global(omega.cross(&arm) + v),
+                displacement: moved + (to_global * arm - to_initial * x),
+                velocity: velocity_of_origin + to_global * (omega.cross(&arm) + v),
                 acceleration: acceleration_of_origin
-                    + global(alpha.cross(&arm) + omega.cross(&omega.cross(&arm)) + 2.0 * omega.cross(&v) + a),
-                rigid_acceleration: acceleration_of_origin + global(alpha.cross(&x) + omega.cross(&omega.cross(&x))),
+                    + to_global * (alpha.cross(&arm) + omega.cross(&omega.cross(&arm)) + 2.0 * omega.cross(&v) + a),
+                rigid_acceleration: acceleration_of_origin
+                    + to_global * (alpha.cross(&x) + omega.cross(&omega.cross(&x))),
+                elastic_displacement_body: u,
+                elastic_displacement_global: to_global * u,
             }
         }));
         Ok(())
+    }
+
+    /// What holds the body does to it. `e` has all rates, ν' in `e.change`; accelerations are body components.
+    fn observe_reaction(
+        &self,
+        state: &ConservativeState,
+        alpha: &Vector3<f64>,
+        acceleration_of_origin: &Vector3<f64>,
+        e: &Evaluation,
+        out: &mut Observation,
+    ) {
+        let Some(held) = &self.held else { return };
+        let (omega, center) = (e.omega_body, self.center.position_body(&e.extended));
+        let [center_rate, center_change] = [&e.velocity, &e.change].map(|of| self.center.deformation(of));
+        let center_acceleration = acceleration_of_origin
+            + alpha.cross(&center)
+            + omega.cross(&omega.cross(&center))
+            + 2.0 * omega.cross(&center_rate)
+            + center_change;
+        let [force, moment] = held.momentum_rates(&HeldMotion {
+            omega,
+            alpha: *alpha,
+            acceleration: *acceleration_of_origin,
+            center,
+            center_acceleration,
+            displacement: &e.extended,
+            velocity: &e.velocity,
+            shape_acceleration: &e.change,
+        });
+        let reaction = &mut out.reaction;
+        reaction.force_body = force - e.load_force;
+        reaction.moment_body = moment - e.load_moment;
+        // The drive knows the momentum of what its own stress draws in, too.
+        let along = match (self.translation, &self.axes[..]) {
+            (Translation::Driven(direction), _) => Some((direction, &mut reaction.force_body)),
+            (_, [axis]) if self.turn_driven => Some((*axis, &mut reaction.moment_body)),
+            _ => None,
+        };
+        if let Some((axis, vector)) = along {
+            *vector += axis * (e.drive_effort - axis.dot(vector));
+            reaction.drive = e.drive_effort;
+            reaction.drive_power = e.drive_effort * e.driven_speed;
+        }
+        if self.axes.len() == 1 {
+            reaction.turned = state.turned;
+            reaction.turning = e.spin[0];
+        }
+        if let Translation::Along(direction) | Translation::Driven(direction) = self.translation {
+            let direction = state.attitude.to_global(&direction);
+            reaction.slid = direction.dot(&(get(&state.slow, part::POSITION) - self.origin));
+            reaction.sliding = direction.dot(&get(&e.slow, part::POSITION));
+        }
     }
 
     /// Momenta and what has been done to them. What holds or drives a body gives it whatever its momenta need, so there

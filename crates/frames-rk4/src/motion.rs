@@ -71,6 +71,18 @@ impl PointShapes {
         self.columns[6..].iter().zip(flexible).map(|(shape, c)| shape * *c).sum()
     }
 
+    /// [`Self::deformation`] of three lists at once: each shape is read once.
+    pub(crate) fn deformations(&self, flexible: [&[f64]; 3]) -> [Vector3<f64>; 3] {
+        let [a, b, c] = flexible;
+        let mut sums = [Vector3::zeros(); 3];
+        for (((shape, a), b), c) in self.columns[6..].iter().zip(a).zip(b).zip(c) {
+            sums[0] += shape * *a;
+            sums[1] += shape * *b;
+            sums[2] += shape * *c;
+        }
+        sums
+    }
+
     /// Columns of all modes, rigid and flexible (6+nf).
     pub fn columns(&self) -> &[Vector3<f64>] {
         &self.columns
@@ -381,7 +393,10 @@ impl BodyMotion {
         let x = point.position_body;
         let (omega, alpha) = (state.omega_body, state.alpha_body);
         let of_origin = self.of_origin(&state.modal_acceleration);
+        let elastic = point.deformation(&state.modal_displacement[6..]);
         PointMotion {
+            elastic_displacement_body: elastic,
+            elastic_displacement_global: global(elastic),
             displacement: (state.origin_global - self.origin)
                 + (global(x + point.expand(&state.modal_displacement)) - self.initial_attitude.to_global(&x)),
             velocity: global(point.expand(&state.modal_velocity)),

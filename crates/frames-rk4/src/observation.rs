@@ -3,6 +3,7 @@
 use nalgebra::Vector3;
 use rigid_kin::Attitude;
 
+use crate::reaction::Reaction;
 use crate::work::Work;
 
 /// Motion of a point, global components.
@@ -17,6 +18,10 @@ pub struct PointMotion {
     pub acceleration: Vector3<f64>,
     /// Acceleration of the embedded rigid motion at the point: `a + α×X + ω×(ω×X)`.
     pub rigid_acceleration: Vector3<f64>,
+    /// Displacement by deformation alone, body components: Ψ ξ at the point.
+    pub elastic_displacement_body: Vector3<f64>,
+    /// The same, global components.
+    pub elastic_displacement_global: Vector3<f64>,
 }
 
 /// The motion at one time. Lists have one entry for each flexible mode, or for each point that was asked for.
@@ -53,6 +58,8 @@ pub struct Observation {
     pub linear_momentum_global: Vector3<f64>,
     /// Angular momentum about the centre of mass, or the fixed point of a body that is held, global components.
     pub angular_momentum_global: Vector3<f64>,
+    /// What holds the body does to it.
+    pub reaction: Reaction,
     /// Motion of the points, in the order in which they were asked for.
     pub points: Vec<PointMotion>,
 }
@@ -77,6 +84,7 @@ impl Observation {
             work: Work::default(),
             linear_momentum_global: Vector3::zeros(),
             angular_momentum_global: Vector3::zeros(),
+            reaction: Reaction::default(),
             points: vec![PointMotion::default(); points],
         }
     }
@@ -100,6 +108,7 @@ impl Observation {
             work: Work { work, dissipation, impulse_global, angular_impulse_global },
             linear_momentum_global,
             angular_momentum_global,
+            reaction,
             points,
         } = self;
         let numbers = [time, kinetic_energy, strain_energy, work, dissipation];
@@ -107,10 +116,19 @@ impl Observation {
         let vectors = [origin_global, position_global, velocity_global, omega_body, alpha_body];
         let momenta = [impulse_global, angular_impulse_global, linear_momentum_global, angular_momentum_global];
         let of_points = |point: &PointMotion| {
-            let PointMotion { displacement, velocity, acceleration, rigid_acceleration } = *point;
-            [displacement, velocity, acceleration, rigid_acceleration].iter().flatten().all(|x| x.is_finite())
+            let PointMotion {
+                displacement,
+                velocity,
+                acceleration,
+                rigid_acceleration,
+                elastic_displacement_body,
+                elastic_displacement_global,
+            } = *point;
+            let elastic = [elastic_displacement_body, elastic_displacement_global];
+            let motion = [displacement, velocity, acceleration, rigid_acceleration];
+            motion.iter().chain(&elastic).flatten().all(|x| x.is_finite())
         };
-        numbers.into_iter().chain(modal).chain(&attitude.wxyz()).all(|x| x.is_finite())
+        numbers.into_iter().chain(reaction.numbers()).chain(modal).chain(&attitude.wxyz()).all(|x| x.is_finite())
             && vectors.into_iter().chain(momenta).flatten().all(|x| x.is_finite())
             && points.iter().all(of_points)
     }

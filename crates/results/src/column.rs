@@ -1,18 +1,13 @@
 //! The columns of a results file: data, from which the writer, the reader and the documentation are made.
 
-use crate::Units;
-use crate::points::Points;
+use crate::{Metadata, Units};
 
-/// What stands for the name of a point in the path of a column.
-const NAME: &str = "<name>";
-
-/// A column of a results file: a time history, or one of each point. Rows are of type `R`.
+/// A column of a results file: a time history. Rows are of type `R`.
 ///
-/// A file has its columns in the order of their table, those of the points after the others, point by point. The first
-/// column must be the time.
+/// A file has its columns in the order of their table. The first column must be the time.
 #[derive(Debug)]
 pub struct Column<R> {
-    /// Path of the dataset, such as "energy/work". In the column of a point, `<name>` stands for the point's name.
+    /// Path of the dataset, such as "energy/work".
     pub path: &'static str,
     /// Unit, such as "mass length/time": the three words stand for the labels of the run's units.
     pub unit: &'static str,
@@ -22,6 +17,8 @@ pub struct Column<R> {
     pub description: &'static str,
     /// How a row gives its values.
     pub values: Values<R>,
+    /// What a run must have for its file to have the column, one of [`Metadata::parts`]; all files have it if `None`.
+    pub part: Option<&'static str>,
 }
 
 /// How a row gives the values of a column, which says also how many there are.
@@ -35,10 +32,10 @@ pub enum Values<R> {
     Quaternion(fn(&R) -> [f64; 4]),
     /// T×nf: one number for each flexible mode.
     Modal(fn(&R) -> &[f64]),
-    /// T×3 for each point; `None` for a number beyond the last point.
-    Point(fn(&R, usize) -> Option<[f64; 3]>),
-    /// So many numbers for each point, only in files with the stress of points. One number has the shape T.
-    Stress(usize, fn(&R, usize) -> Option<&[f64]>),
+    /// T×P×3: a vector of each of P points; `None` for a number beyond the last point.
+    Points(fn(&R, usize) -> Option<[f64; 3]>),
+    /// T×P×n: so many numbers of each point; one has the shape T×P.
+    PointNumbers(usize, fn(&R, usize) -> Option<&[f64]>),
 }
 
 impl<R> Column<R> {
@@ -50,7 +47,13 @@ impl<R> Column<R> {
         description: &'static str,
         values: Values<R>,
     ) -> Self {
-        Self { path, unit, frame, description, values }
+        Self { path, unit, frame, description, values, part: None }
+    }
+
+    /// The same in the files of runs with this part only.
+    #[must_use]
+    pub const fn only_with(self, part: &'static str) -> Self {
+        Self { part: Some(part), ..self }
     }
 
     /// The unit in the labels of a run.
@@ -69,73 +72,81 @@ impl<R> Column<R> {
         replaced.collect()
     }
 
-    /// Values per row; `None` for one number (shape T instead of T×width).
-    pub fn width(&self, modes: usize) -> Option<usize> {
+    /// Shape of a row's values: that of the dataset is T, the number of rows, and then this.
+    pub fn row_shape(&self, metadata: &Metadata) -> Vec<usize> {
         match self.values {
-            Values::Number(_) => None,
-            Values::Vector(_) | Values::Point(_) => Some(3),
-            Values::Quaternion(_) => Some(4),
-            Values::Modal(_) => Some(modes),
-            Values::Stress(width, _) => Some(width).filter(|width| *width > 1),
-        }
-    }
-
-    fn is_of_points(&self) -> bool {
-        matches!(self.values, Values::Point(_) | Values::Stress(..))
-    }
-}
-
-/// A dataset of a file: a column, of one of the points where it is a column of points.
-#[derive(Debug)]
-pub(crate) struct History<R: 'static> {
-    pub column: &'static Column<R>,
-    point: usize,
-}
-
-/// All histories of a file with these points, in their order.
-pub(crate) fn histories<R>(columns: &'static [Column<R>], points: Points) -> impl Iterator<Item = History<R>> + Clone {
-    let of_body = columns.iter().filter(|column| !column.is_of_points());
-    let is_there = move |column: &&Column<R>| match column.values {
-        Values::Stress(..) => points.stress,
-        _ => column.is_of_points(),
-    };
-    let of_point = move || columns.iter().filter(is_there);
-    let of_points = (0..points.count).flat_map(move |point| of_point().map(move |column| History { column, point }));
-    of_body.map(|column| History { column, point: 0 }).chain(of_points)
-}
-
-/// Values per row of all histories.
-pub(crate) fn widths<R>(
-    columns: &'static [Column<R>],
-    modes: usize,
-    points: Points,
-) -> impl Iterator<Item = usize> + Clone {
-    histories(columns, points).map(move |history| history.width(modes))
-}
-
-impl<R> History<R> {
-    /// Path of the dataset.
-    pub(crate) fn path(&self, point_names: &[String]) -> String {
-        match point_names.get(self.point) {
-            Some(name) => self.column.path.replace(NAME, name),
-            None => self.column.path.to_owned(),
+            Values::Number(_) => Vec::new(),
+            Values::Vector(_) => vec![3],
+            Values::Quaternion(_) => vec![4],
+            Values::Modal(_) => vec![metadata.body.frequencies.len()],
+            Values::Points(_) => vec![metadata.point_names.len(), 3],
+            Values::PointNumbers(1, _) => vec![metadata.point_names.len()],
+            Values::PointNumbers(count, _) => vec![metadata.point_names.len(), count],
         }
     }
 
     /// Values per row.
-    pub(crate) fn width(&self, modes: usize) -> usize {
-        self.column.width(modes).unwrap_or(1)
+    pub(crate) fn width(&self, metadata: &Metadata) -> usize {
+        match self.values {
+            Values::Number(_) => 1,
+            Values::Vector(_) => 3,
+            Values::Quaternion(_) => 4,
+            Values::Modal(_) => metadata.body.frequencies.len(),
+            Values::Points(_) | Values::PointNumbers(..) => self.per_point() * metadata.point_names.len(),
+        }
     }
 
-    /// Appends the values that a row has.
-    pub(crate) fn append(&self, row: &R, out: &mut Vec<f64>) {
-        match self.column.values {
+    /// Appends the values that a row has, of so many points.
+    pub(crate) fn append(&self, row: &R, points: usize, out: &mut Vec<f64>) {
+        match self.values {
             Values::Number(value) => out.push(value(row)),
             Values::Vector(values) => out.extend(values(row)),
             Values::Quaternion(values) => out.extend(values(row)),
             Values::Modal(values) => out.extend(values(row)),
-            Values::Point(values) => out.extend(values(row, self.point).into_iter().flatten()),
-            Values::Stress(_, values) => out.extend(values(row, self.point).into_iter().flatten()),
+            Values::Points(values) => (0..points).map_while(|point| values(row, point)).for_each(|v| out.extend(v)),
+            Values::PointNumbers(_, values) => {
+                (0..points).map_while(|point| values(row, point)).for_each(|v| out.extend(v));
+            }
         }
     }
+
+    /// What a message or a reader calls the value at `index` of a row.
+    pub(crate) fn quantity(&self, metadata: &Metadata, index: usize) -> String {
+        let point = index.checked_div(self.per_point()).and_then(|point| metadata.point_names.get(point));
+        point.map_or_else(|| self.path.to_owned(), |name| of_point(self.path, name))
+    }
+
+    /// Values of each point; 0 of a column that is not of points.
+    pub(crate) fn per_point(&self) -> usize {
+        match self.values {
+            Values::Points(_) => 3,
+            Values::PointNumbers(count, _) => count,
+            _ => 0,
+        }
+    }
+
+    /// Whether a row has values of a point with this number.
+    pub(crate) fn has_point(&self, row: &R, point: usize) -> bool {
+        match self.values {
+            Values::Points(values) => values(row, point).is_some(),
+            Values::PointNumbers(_, values) => values(row, point).is_some(),
+            _ => false,
+        }
+    }
+}
+
+/// What the history of one point is called: "points/P1/velocity" in the dataset "points/velocity".
+pub(crate) fn of_point(path: &str, name: &str) -> String {
+    match path.rsplit_once('/') {
+        Some((group, quantity)) => format!("{group}/{name}/{quantity}"),
+        None => format!("{name}/{path}"),
+    }
+}
+
+/// The columns of a table that a file with this metadata has.
+pub(crate) fn present<R>(
+    columns: &'static [Column<R>],
+    metadata: &Metadata,
+) -> impl Iterator<Item = &'static Column<R>> + Clone {
+    columns.iter().filter(|column| column.part.is_none_or(|part| metadata.parts.iter().any(|has| has == part)))
 }

@@ -147,6 +147,12 @@ pub enum FileError {
         /// What it names.
         target: PathBuf,
     },
+    /// A file is where an export would go.
+    #[error("{path}: this file is there already; choose another name, or replace it with --overwrite", path = .path.display())]
+    Exists {
+        /// It.
+        path: PathBuf,
+    },
     /// The name of the folder is not text in UTF-8, which HDF5 wants.
     #[error(
         "{path}: HDF5 makes files only in folders whose names are text in UTF-8; choose another folder, or go into this one \
@@ -188,6 +194,7 @@ impl FileError {
             Self::Hdf5 { path, .. }
             | Self::System { path, .. }
             | Self::Busy { path, .. }
+            | Self::Exists { path, .. }
             | Self::Unfinished { path, .. }
             | Self::NotResults { path, .. }
             | Self::Complete { path, .. }

@@ -4,15 +4,18 @@
 //! finished or not. Both are given a table of [`Column`]s, which says what a row holds and how to get it from the
 //! caller's own type of row.
 //!
-//! A file with T rows has one dataset for each column, and for each point one for each column of points. It has
-//! `body/mass`, `center_of_mass` (3), `inertia` (3×3), `frequencies` and `damping_ratios` (nf) besides. Every dataset has
-//! the attributes `unit`, `frame` and `description`. The root has `title`, `scene` (the scene file's text), `scene_file`
-//! (where it was), `formulation`, `scheme`, `step` or `tolerance`, `program_version`, `units_length`,
-//! `units_mass`, `units_time` and `complete`: 1, or 0 in an unfinished file.
+//! A file with T rows has one dataset for each column, but for those that ask for a part that the run has not got. All
+//! points are in one dataset of T×P×3, and `points/names` and `points/position` (P×3) say which they are. It has
+//! `body/mass`, `center_of_mass` (3), `inertia` (3×3), `origin` (3), `frequencies`, `damping_ratios` and `kinds` (nf)
+//! besides. Every dataset has the attributes `unit`, `frame` and `description`. The root has `title`, `scene` (the scene
+//! file's text), `scene_file` (where it was), `formulation`, `scheme`, `step` or `tolerance`, `program_version`,
+//! `units_length`, `units_mass`, `units_time` and `complete`: 1, or 0 in an unfinished file.
 //!
 //! In an unfinished file, T is the number of rows that there is room for. Those that have not been written are NaN. It
 //! has the dataset `checkpoint` besides (2×words): two places for the state of the run, written in turns, each with
 //! its number, the rows before it, their check sum, the words of the state, and a check sum of itself.
+//!
+//! For ParaView there are [`VtkHdf`], and [`write_vtu`] with [`write_pvd`] for versions before 5.12.
 //!
 //! The crate knows plain data only: no mesh, no mode, no scheme.
 
@@ -25,12 +28,14 @@ mod description;
 mod error;
 mod metadata;
 mod paths;
-mod points;
 mod reader;
 mod room;
 mod seal;
 mod store;
 mod structure;
+mod vtk;
+mod vtkhdf;
+mod vtu;
 mod writer;
 
 #[cfg(test)]
@@ -40,4 +45,7 @@ pub use column::{Column, Values};
 pub use error::FileError;
 pub use metadata::{BodyProperties, Metadata, Units};
 pub use reader::{ColumnTable, Results};
+pub use vtk::{CellKind, Field, Grid};
+pub use vtkhdf::VtkHdf;
+pub use vtu::{write_pvd, write_vtu};
 pub use writer::{Expected, Resumed, Writer, unfinished};

@@ -1,7 +1,6 @@
 //! What a results file says about the run as a whole.
 
 use crate::FileError;
-use crate::points::Points;
 use serde::{Deserialize, Serialize};
 use std::collections::HashSet;
 use std::path::Path;
@@ -28,10 +27,15 @@ pub struct BodyProperties {
     pub center_of_mass: [f64; 3],
     /// Inertia about the centre of mass, body axes, row by row.
     pub inertia: [[f64; 3]; 3],
-    /// Natural frequencies of the flexible modes, in cycles per unit of time (Hz if that is s).
+    /// Origin of the body frame in the mesh's coordinates.
+    pub origin: [f64; 3],
+    /// Natural frequencies of the flexible modes, in cycles per unit of time (Hz if that is s); after them those of the
+    /// static shapes, which are no natural frequencies.
     pub frequencies: Vec<f64>,
-    /// Damping ratios of the flexible modes, as many as frequencies.
+    /// Damping ratios of the flexible modes and static shapes, as many as frequencies.
     pub damping_ratios: Vec<f64>,
+    /// How many static shapes there are.
+    pub static_shapes: usize,
 }
 
 /// Everything in a results file that does not change with time.
@@ -61,28 +65,43 @@ pub struct Metadata {
     pub body: BodyProperties,
     /// Names of the points whose motion is stored, in the order of a row's points.
     pub point_names: Vec<String>,
-    /// Whether their stress is stored, too.
-    pub point_stress: bool,
+    /// Where they are in the undeformed body, in the mesh's coordinates.
+    pub point_positions: Vec<[f64; 3]>,
+    /// What else the run has, so that its file has the columns that ask for it ([`Column::part`](crate::Column::part)).
+    pub parts: Vec<String>,
+}
+
+impl BodyProperties {
+    /// Whether each coordinate is that of a natural mode or of a static shape, in words.
+    pub fn kinds(&self) -> impl ExactSizeIterator<Item = &'static str> {
+        let count = self.frequencies.len();
+        let natural = count.saturating_sub(self.static_shapes);
+        (0..count).map(move |k| if k < natural { "natural mode" } else { "static shape" })
+    }
 }
 
 impl Metadata {
-    pub(crate) fn points(&self) -> Points {
-        Points { count: self.point_names.len(), stress: self.point_stress }
-    }
-
     /// Refuses what a file cannot hold; `path` is named in messages.
     pub(crate) fn check(&self, path: &Path) -> Result<(), FileError> {
         self.check_point_names(path)?;
-        let BodyProperties { mass, center_of_mass, inertia, frequencies, damping_ratios } = &self.body;
-        let (expected, found) = (frequencies.len(), damping_ratios.len());
-        if expected != found {
-            let quantity = "body/damping_ratios".into();
-            return Err(FileError::WrongLength { path: path.to_path_buf(), quantity, expected, found });
+        let BodyProperties { mass, center_of_mass, inertia, origin, frequencies, damping_ratios, static_shapes } =
+            &self.body;
+        for (quantity, expected, found) in [
+            ("body/damping_ratios", frequencies.len(), damping_ratios.len()),
+            ("body/kinds", frequencies.len(), frequencies.len().max(*static_shapes)),
+            ("points/position", self.point_names.len(), self.point_positions.len()),
+        ] {
+            if expected != found {
+                let quantity = quantity.into();
+                return Err(FileError::WrongLength { path: path.to_path_buf(), quantity, expected, found });
+            }
         }
         for (quantity, values) in [
             ("body/mass", &[*mass][..]),
             ("body/center_of_mass", center_of_mass),
             ("body/inertia", inertia.as_flattened()),
+            ("body/origin", origin),
+            ("points/position", self.point_positions.as_flattened()),
             ("body/frequencies", frequencies),
             ("body/damping_ratios", damping_ratios),
             ("step", self.step.as_slice()),
@@ -100,8 +119,7 @@ impl Metadata {
         for name in &self.point_names {
             let reason = match name.as_str() {
                 "" => "it is empty",
-                "." | ".." => "HDF5 gives dots a meaning of their own",
-                name if name.contains('/') => "HDF5 takes / as the separator of a path",
+                name if name.contains('/') => "it holds a /, which separates the parts of a path",
                 name if name.contains('\0') => "it holds a NUL character",
                 name if !before.insert(name) => "it occurs twice",
                 _ => continue,

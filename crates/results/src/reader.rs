@@ -1,7 +1,7 @@
 //! Reads a results file back, finished or not.
 
 use crate::checkpoint::{Checkpoint, Sums};
-use crate::column::histories;
+use crate::column::{of_point, present};
 use crate::store::Store;
 use crate::{Column, FileError, Metadata};
 use std::collections::BTreeMap;
@@ -108,12 +108,20 @@ impl Results {
             let what = format!("its first {known} rows are not those that its checkpoint is for");
             return Err(FileError::Damaged { path: path.to_path_buf(), what });
         }
-        let tables = columns.into_iter().zip(store.widths()).map(|(mut values, width)| {
+        let mut histories = BTreeMap::new();
+        for (column, (mut values, width)) in present(table, &metadata).zip(columns.into_iter().zip(store.widths())) {
             values.truncate(rows * width);
-            ColumnTable { rows, width, values }
-        });
-        let paths = histories(table, metadata.points()).map(|history| history.path(&metadata.point_names));
-        let histories = paths.zip(tables).collect();
+            let each = column.per_point();
+            if each == 0 {
+                histories.insert(column.path.to_owned(), ColumnTable { rows, width, values });
+                continue;
+            }
+            for (point, name) in metadata.point_names.iter().enumerate() {
+                let its_part = each * point..each * (point + 1);
+                let values = values.chunks_exact(width).flat_map(|row| &row[its_part.clone()]).copied().collect();
+                histories.insert(of_point(column.path, name), ColumnTable { rows, width: each, values });
+            }
+        }
         Ok((Self { metadata, complete, rows, histories }, checkpoint))
     }
 
@@ -122,7 +130,7 @@ impl Results {
         self.rows
     }
 
-    /// The history of this path, such as "modal/displacement" or "points/P1/velocity", if there is one.
+    /// The history of this path, such as "modal/displacement", or "points/P1/velocity" of the point P1, if there is one.
     pub fn table(&self, path: &str) -> Option<&ColumnTable> {
         self.histories.get(path)
     }
@@ -142,10 +150,18 @@ impl Results {
     pub fn is_row<R>(&self, i: usize, columns: &'static [Column<R>], row: &R) -> bool {
         let names = &self.metadata.point_names;
         let mut values = Vec::new();
-        histories(columns, self.metadata.points()).all(|history| {
+        let is = |path: &str, values: &[f64]| self.table(path).and_then(|table| table.row(i)) == Some(values);
+        present(columns, &self.metadata).all(|column| {
             values.clear();
-            history.append(row, &mut values);
-            self.table(&history.path(names)).and_then(|table| table.row(i)) == Some(&values)
+            column.append(row, names.len(), &mut values);
+            match column.per_point() {
+                0 => is(column.path, &values),
+                each => {
+                    let mut of_points = names.iter().zip(values.chunks_exact(each));
+                    values.len() == each * names.len()
+                        && of_points.all(|(name, values)| is(&of_point(column.path, name), values))
+                }
+            }
         })
     }
 

@@ -10,7 +10,7 @@
 //!
 //! | bytes | what, integers in 64 bits, the lowest byte first |
 //! |---|---|
-//! | 0–24 | `flexframe results, v. 2` and a line feed |
+//! | 0–24 | `flexframe results, v. 3` and a line feed |
 //! | 24–32 | CRC-32 of all bytes after it that are not left out |
 //! | 32–40 | bytes of the file |
 //! | 40–48 | bytes of the description |
@@ -23,7 +23,7 @@ use std::iter::once;
 use std::ops::Range;
 use std::path::Path;
 
-const MAGIC: &[u8; 24] = b"flexframe results, v. 2\n";
+const MAGIC: &[u8; 24] = b"flexframe results, v. 3\n";
 
 /// Bytes of the magic text that are those of every version.
 const ANY_VERSION: usize = 21;

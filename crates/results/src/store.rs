@@ -1,6 +1,6 @@
 //! The numbers of an open results file, written and read at their places without HDF5.
 
-use crate::column::{histories, widths};
+use crate::column::present;
 use crate::description::Description;
 use crate::room::Room;
 use crate::{Column, FileError, Metadata, seal, structure};
@@ -36,7 +36,7 @@ impl Store {
         columns: &'static [Column<R>],
         room: Room,
     ) -> Result<Self, FileError> {
-        let count = histories(columns, metadata.points()).count();
+        let count = present(columns, metadata).count();
         let starts = vec![u64::MAX; count + usize::from(room.checkpoint_words.is_some())];
         let mut description = Description {
             rows: room.rows,
@@ -98,9 +98,9 @@ impl Store {
     ) -> Result<Self, FileError> {
         let failed = |error| FileError::system(path, "read the file", &error);
         let length = file.metadata().map_err(failed)?.len();
-        let metadata = &description.metadata;
-        let widths = widths(columns, metadata.body.frequencies.len(), metadata.points());
-        let ranges = description.ranges(widths.clone(), seal::HEAD + described as u64..length);
+        let widths: Vec<usize> =
+            present(columns, &description.metadata).map(|column| column.width(&description.metadata)).collect();
+        let ranges = description.ranges(widths.iter().copied(), seal::HEAD + described as u64..length);
         let Some(mut ranges) = ranges else {
             let what = "its histories are not within it, each in a place of its own".into();
             return Err(FileError::Damaged { path: path.to_path_buf(), what });

@@ -2,14 +2,13 @@
 //!
 //! HDF5 only makes files here. It opens none that was there before, see [`mod@crate::seal`].
 
-use crate::column::{History, histories};
+use crate::column::present;
 use crate::room::Room;
 use crate::{Column, FileError, Metadata, Units};
 use hdf5::dataset::Layout;
 use hdf5::plist::dataset_create::{AllocTime, FillTime};
-use hdf5::plist::group_create::LinkCreationOrder;
 use hdf5::types::VarLenUnicode;
-use ndarray::{ArrayView2, aview0, aview1};
+use ndarray::{ArrayView2, ArrayViewD, aview0, aview1};
 use std::path::Path;
 
 /// Makes the file at `place` (called `path` in messages), which begins with so many bytes that HDF5 leaves alone, and
@@ -31,9 +30,9 @@ pub(crate) fn make<R>(
     let file = builder.create(place).map_err(FileError::hdf5(path, "create the file"))?;
     write_root_attributes(path, &file, metadata, room.checkpoint_words.is_none())?;
     write_body(path, &file, metadata)?;
-    create_point_groups(&file, &metadata.point_names).map_err(FileError::hdf5(path, "create the points"))?;
-    let mut datasets = histories(columns, metadata.points())
-        .map(|history| create_history(path, &file, &history, metadata, room.rows))
+    write_points(path, &file, metadata)?;
+    let mut datasets = present(columns, metadata)
+        .map(|column| create_history(path, &file, column, metadata, room))
         .collect::<Result<Vec<_>, _>>()?;
     if let Some(words) = room.checkpoint_words {
         let checkpoint = file
@@ -54,41 +53,35 @@ pub(crate) fn make<R>(
     Ok(starts)
 }
 
-/// Room for so many rows, NaN where nothing has been written.
+/// Room for rows, NaN where nothing has been written. A finished file gets all its rows at once, and is not filled before.
 fn create_history<R>(
     path: &Path,
     file: &hdf5::File,
-    history: &History<R>,
+    column: &Column<R>,
     metadata: &Metadata,
-    rows: usize,
+    room: Room,
 ) -> Result<hdf5::Dataset, FileError> {
-    let (name, column) = (history.path(&metadata.point_names), history.column);
+    let name = column.path;
+    let shape: Vec<usize> = std::iter::once(room.rows).chain(column.row_shape(metadata)).collect();
     let builder = file
         .new_dataset::<f64>()
         .layout(Layout::Contiguous)
         .alloc_time(Some(AllocTime::Early))
-        .fill_time(FillTime::Alloc)
+        .fill_time(if room.checkpoint_words.is_some() { FillTime::Alloc } else { FillTime::Never })
         .fill_value(f64::NAN)
         .obj_track_times(false);
-    let dataset = match column.width(metadata.body.frequencies.len()) {
-        None => builder.shape(rows).create(name.as_str()),
-        Some(width) => builder.shape((rows, width)).create(name.as_str()),
-    }
-    .map_err(FileError::hdf5(path, format!("make room for {name}")))?;
+    let dataset = builder.shape(shape).create(name).map_err(FileError::hdf5(path, format!("make room for {name}")))?;
     describe(path, &dataset, &column.unit(&metadata.units), column.frame, column.description)?;
     Ok(dataset)
 }
 
-/// The groups keep the order in which they were made, so that the reader lists the points as given.
-fn create_point_groups(file: &hdf5::File, names: &[String]) -> hdf5::Result<()> {
-    let points = file
-        .create_group_builder()
-        .with_create_plist(|plist| plist.link_creation_order(LinkCreationOrder::Indexed).obj_track_times(false))
-        .create("points")?;
-    for name in names {
-        points.create_group(name)?;
-    }
-    Ok(())
+/// Names and places of the points.
+fn write_points(path: &Path, file: &hdf5::File, metadata: &Metadata) -> Result<(), FileError> {
+    let names = metadata.point_names.iter().map(String::as_str);
+    write_texts(path, file, "points/names", names, "names of the points, in the order of the other data sets")?;
+    let positions = ArrayView2::from(metadata.point_positions.as_slice());
+    let description = "position of the point in the undeformed body";
+    write_constant(path, file, "points/position", positions.into_dyn(), [&metadata.units.length, "mesh", description])
 }
 
 fn write_root_attributes(path: &Path, file: &hdf5::File, metadata: &Metadata, complete: bool) -> Result<(), FileError> {
@@ -126,34 +119,78 @@ fn write_body(path: &Path, file: &hdf5::File, metadata: &Metadata) -> Result<(),
     let inertia_unit = format!("{mass} {length}^2");
     let inertia = ArrayView2::from(&body.inertia);
     for (name, values, unit, frame, description) in [
-        ("mass", aview0(&body.mass).into_dyn(), mass, "none", "total mass"),
+        ("mass", aview0(&body.mass).into_dyn(), mass.as_str(), "none", "total mass"),
         ("center_of_mass", aview1(&body.center_of_mass).into_dyn(), length, "mesh", "centre of mass"),
         ("inertia", inertia.into_dyn(), &inertia_unit, "body", "undeformed inertia about the centre of mass"),
+        (
+            "origin",
+            aview1(&body.origin).into_dyn(),
+            length,
+            "mesh",
+            "origin of the body frame in the undeformed body: the centre of mass of a free body, else a point that is held",
+        ),
         (
             "frequencies",
             aview1(&body.frequencies).into_dyn(),
             &frequency_unit,
             "none",
-            "natural frequencies of the flexible modes",
+            "natural frequencies of the flexible modes; of a static shape (see kinds) no natural frequency",
         ),
         (
             "damping_ratios",
             aview1(&body.damping_ratios).into_dyn(),
-            &"1".into(),
+            "1",
             "none",
-            "damping ratios of the flexible modes",
+            "damping ratios of the flexible modes and static shapes",
         ),
     ] {
-        let name = format!("body/{name}");
-        let dataset = file
-            .new_dataset_builder()
-            .with_data(values)
-            .obj_track_times(false)
-            .create(name.as_str())
-            .map_err(FileError::hdf5(path, format!("write {name}")))?;
-        describe(path, &dataset, unit, frame, description)?;
+        write_constant(path, file, &format!("body/{name}"), values, [unit, frame, description])?;
     }
-    Ok(())
+    write_texts(
+        path,
+        file,
+        "body/kinds",
+        body.kinds(),
+        "whether each coordinate is of a natural mode or a static shape",
+    )
+}
+
+/// A data set of numbers, with its unit, frame and description.
+fn write_constant(
+    path: &Path,
+    file: &hdf5::File,
+    name: &str,
+    values: ArrayViewD<'_, f64>,
+    [unit, frame, description]: [&str; 3],
+) -> Result<(), FileError> {
+    let dataset = file
+        .new_dataset_builder()
+        .with_data(values)
+        .obj_track_times(false)
+        .create(name)
+        .map_err(FileError::hdf5(path, format!("write {name}")))?;
+    describe(path, &dataset, unit, frame, description)
+}
+
+/// A data set of texts.
+fn write_texts<'a>(
+    path: &Path,
+    file: &hdf5::File,
+    name: &str,
+    texts: impl Iterator<Item = &'a str>,
+    description: &str,
+) -> Result<(), FileError> {
+    let texts: Vec<VarLenUnicode> = texts
+        .map(str::parse)
+        .collect::<Result<_, _>>()
+        .map_err(|_| FileError::NulInText { path: path.to_path_buf(), attribute: name.into() })?;
+    let dataset = file
+        .new_dataset_builder()
+        .with_data(&texts)
+        .obj_track_times(false)
+        .create(name)
+        .map_err(FileError::hdf5(path, format!("write {name}")))?;
+    describe(path, &dataset, "1", "none", description)
 }
 
 fn describe(path: &Path, dataset: &hdf5::Dataset, unit: &str, frame: &str, description: &str) -> Result<(), FileError> {

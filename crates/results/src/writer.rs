@@ -1,24 +1,27 @@
 //! Streams rows into an HDF5 file while a run goes on.
 
 use crate::checkpoint::{self, Checkpoint, Sums};
-use crate::column::{History, histories, widths};
+use crate::column::present;
 use crate::paths::ResultsPaths;
 use crate::reader::Results;
 use crate::room::Room;
 use crate::store::Store;
-use crate::{Column, FileError, Metadata, Values};
+use crate::{Column, FileError, Metadata};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 use tempfile::TempPath;
 
-/// Rows that are gathered before they are written. A row at a time costs about nine times as much.
+/// Most rows that are gathered before they are written. A row at a time costs about nine times as much.
 const ROWS_PER_WRITE: usize = 512;
+
+/// Numbers that are gathered at the most (8 MiB), so that rows of many points are fewer.
+const NUMBERS_PER_WRITE: usize = 1 << 20;
 
 /// What the kill of a process can lose.
 const FLUSH_INTERVAL: Duration = Duration::from_secs(1);
 
-/// Room that is made at once for a run whose rows are expected to need more, in numbers (64 MiB).
-const FIRST_ROOM: usize = 8 << 20;
+/// Room that is made at once for a run whose rows are expected to need more, in numbers (512 MiB).
+const FIRST_ROOM: usize = 64 << 20;
 
 /// What a [`Writer`] should know of the run before it begins.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -30,6 +33,9 @@ pub struct Expected {
     /// Whether an unfinished run of the same name, or a file that is not a results file, may be thrown away.
     pub overwrite: bool,
 }
+
+/// Columns, and the values of each that wait to be written.
+type Buffers<R> = Vec<(&'static Column<R>, Vec<f64>)>;
 
 /// Appends rows of type `R` to an HDF5 file whose datasets are those of a table of [`Column`]s.
 ///
@@ -43,8 +49,9 @@ pub struct Writer<R: 'static> {
     metadata: Metadata,
     columns: &'static [Column<R>],
     store: Store,
-    /// Values of the rows that have not been written, by history.
-    buffers: Vec<(History<R>, Vec<f64>)>,
+    /// Values of the rows that have not been written, by column.
+    buffers: Buffers<R>,
+    rows_per_write: usize,
     /// Of the rows that have been written.
     sums: Sums,
     rows_written: usize,
@@ -88,18 +95,11 @@ impl<R> Writer<R> {
     ) -> Result<Self, FileError> {
         let place = ResultsPaths::of(path.as_ref());
         metadata.check(&place.path)?;
-        let modes = metadata.body.frequencies.len();
         place.check(expected.overwrite)?;
 
-        let points = metadata.points();
-        let buffers: Vec<_> = histories(columns, points)
-            .map(|history| {
-                let room = ROWS_PER_WRITE * history.width(modes);
-                (history, Vec::with_capacity(room))
-            })
-            .collect();
-        let numbers_per_row: usize = widths(columns, modes, points).sum();
-        let rows = expected.rows.min(FIRST_ROOM / numbers_per_row.max(1)).max(ROWS_PER_WRITE);
+        let (buffers, numbers_per_row) = buffers(columns, metadata);
+        let rows_per_write = rows_per_write(numbers_per_row);
+        let rows = expected.rows.min(FIRST_ROOM / numbers_per_row.max(1)).max(rows_per_write);
         let checkpoint = vec![0; checkpoint::FRAME + expected.checkpoint];
         let room = Room { rows, checkpoint_words: Some(checkpoint.len()) };
         let (file, store) = make_room(&place, metadata, columns, room)?;
@@ -111,6 +111,7 @@ impl<R> Writer<R> {
             store,
             sums: Sums::new(buffers.len()),
             buffers,
+            rows_per_write,
             rows_written: 0,
             rows_buffered: 0,
             checkpoint,
@@ -151,14 +152,14 @@ impl<R> Writer<R> {
             None => (0, 0, vec![0; store.checkpoint_words()], None, Sums::new(store.widths().count())),
         };
         results.truncate(rows);
-        let points = results.metadata.points();
-        let buffers = histories(columns, points).map(|history| (history, Vec::new())).collect();
+        let (buffers, numbers_per_row) = buffers(columns, &results.metadata);
         let writer = Self {
             metadata: results.metadata.clone(),
             columns,
             place,
             store,
             buffers,
+            rows_per_write: rows_per_write(numbers_per_row),
             sums,
             rows_written: rows,
             rows_buffered: 0,
@@ -185,37 +186,34 @@ impl<R> Writer<R> {
     /// [`FileError::WrongLength`] and [`FileError::NotFinite`] leave the row out and everything before
     /// it in; [`FileError::System`] and [`FileError::Hdf5`] if the file cannot be written.
     pub fn push(&mut self, row: &R) -> Result<(), FileError> {
-        self.buffers.iter_mut().for_each(|(history, buffer)| history.append(row, buffer));
-        let modes = self.metadata.body.frequencies.len();
+        let points = self.metadata.point_names.len();
+        self.buffers.iter_mut().for_each(|(column, buffer)| column.append(row, points, buffer));
         if let Err(error) = self.check_last(row) {
-            for (history, buffer) in &mut self.buffers {
-                buffer.truncate(self.rows_buffered * history.width(modes));
+            for (column, buffer) in &mut self.buffers {
+                buffer.truncate(self.rows_buffered * column.width(&self.metadata));
             }
             return Err(error);
         }
         self.rows_buffered += 1;
-        if self.rows_buffered == ROWS_PER_WRITE { self.write_buffers() } else { Ok(()) }
+        if self.rows_buffered >= self.rows_per_write { self.write_buffers() } else { Ok(()) }
     }
 
     /// Refuses the row whose values are the last in the buffers where it lacks a value, or has one that is not finite.
     fn check_last(&self, row: &R) -> Result<(), FileError> {
-        let (path, Metadata { body, point_names, .. }) = (&self.place.part, &self.metadata);
-        let points = point_names.len();
-        let has_more = |column: &Column<R>| matches!(column.values, Values::Point(of) if of(row, points).is_some());
-        if self.columns.iter().any(has_more) {
+        let (path, metadata) = (&self.place.part, &self.metadata);
+        let points = metadata.point_names.len();
+        if self.columns.iter().any(|column| column.has_point(row, points)) {
             return check_length(path, "points", points, points + 1);
         }
         let mut time = None;
-        for (history, buffer) in &self.buffers {
-            let width = history.width(body.frequencies.len());
+        for (column, buffer) in &self.buffers {
+            let width = column.width(metadata);
             let values = &buffer[self.rows_buffered * width..];
-            let quantity = || history.path(point_names);
-            if values.len() != width {
-                return check_length(path, &quantity(), width, values.len());
-            }
+            check_length(path, column.path, width, values.len())?;
             let time = *time.get_or_insert(values.first().copied().unwrap_or(f64::NAN));
-            if let Some(&value) = values.iter().find(|value| !value.is_finite()) {
-                return Err(FileError::NotFinite { path: path.clone(), time, quantity: quantity(), value });
+            if let Some(index) = values.iter().position(|value| !value.is_finite()) {
+                let quantity = column.quantity(metadata, index);
+                return Err(FileError::NotFinite { path: path.clone(), time, quantity, value: values[index] });
             }
         }
         Ok(())
@@ -296,6 +294,18 @@ impl<R> Writer<R> {
         self.store = store;
         Ok(())
     }
+}
+
+/// Empty buffers of the columns that a file has, and how many numbers make a row.
+fn buffers<R>(columns: &'static [Column<R>], metadata: &Metadata) -> (Buffers<R>, usize) {
+    let numbers_per_row = present(columns, metadata).map(|column| column.width(metadata)).sum();
+    let rows = rows_per_write(numbers_per_row);
+    let room = |column: &Column<R>| Vec::with_capacity(rows * column.width(metadata));
+    (present(columns, metadata).map(|column| (column, room(column))).collect(), numbers_per_row)
+}
+
+fn rows_per_write(numbers_per_row: usize) -> usize {
+    (NUMBERS_PER_WRITE / numbers_per_row.max(1)).clamp(1, ROWS_PER_WRITE)
 }
 
 /// A sealed unfinished file that has no name yet.

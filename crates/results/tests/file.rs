@@ -101,7 +101,7 @@ fn wrong_lengths_and_names_are_refused() {
     let mut writer = write(&path, 2, &metadata(2, &["P1"]));
     for (modes, points, name, expected, found) in [
         (3, 1, "modal/displacement", 2, 3),
-        (2, 0, "points/P1/displacement", 3, 0),
+        (2, 0, "points/displacement", 3, 0),
         (2, 2, "points", 1, 2),
         (0, 1, "modal/displacement", 2, 0),
     ] {
@@ -115,7 +115,7 @@ fn wrong_lengths_and_names_are_refused() {
     writer.finish().unwrap();
     assert_rows(&Results::open(&path, &COLUMNS).unwrap(), 2);
 
-    for names in [[""].as_slice(), &["."], &[".."], &["a/b"], &["a\0"], &["a", "a"]] {
+    for names in [[""].as_slice(), &["a/b"], &["a\0"], &["a", "a"]] {
         let error = Writer::create(&path, &metadata(1, names), &COLUMNS, Expected::default()).unwrap_err();
         assert!(matches!(error, FileError::PointName { .. }), "{names:?}: {error}");
     }
@@ -124,6 +124,18 @@ fn wrong_lengths_and_names_are_refused() {
     assert!(matches!(
         Writer::create(&path, &unequal, &COLUMNS, Expected::default()),
         Err(FileError::WrongLength { expected: 2, found: 1, .. })
+    ));
+    let mut shapes = metadata(2, &[]);
+    shapes.body.static_shapes = 3;
+    assert!(matches!(
+        Writer::create(&path, &shapes, &COLUMNS, Expected::default()),
+        Err(FileError::WrongLength { expected: 2, found: 3, .. })
+    ));
+    let mut nowhere = metadata(2, &["P1"]);
+    nowhere.point_positions.clear();
+    assert!(matches!(
+        Writer::create(&path, &nowhere, &COLUMNS, Expected::default()),
+        Err(FileError::WrongLength { expected: 1, found: 0, .. })
     ));
     let mut nul = metadata(2, &[]);
     nul.scene_text = "a\0b".into();
@@ -149,9 +161,9 @@ fn an_unfinished_file_has_the_rows_that_are_whole_in_every_column() {
     drop(write(&path, 10, &metadata(2, &["P1"])));
     let part = unfinished(&path);
     let file = hdf5::File::open_rw(&part).unwrap();
-    let column = file.dataset("points/P1/velocity").unwrap();
-    assert_eq!(column.shape(), [512, 3]);
-    column.write_slice(&[f64::NAN], ndarray::s![7, 1..2]).unwrap();
+    let column = file.dataset("points/velocity").unwrap();
+    assert_eq!(column.shape(), [512, 1, 3]);
+    column.write_slice(&[f64::NAN], ndarray::s![7, 0, 1..2]).unwrap();
     drop(column);
     file.close().unwrap();
     assert_rows(&Results::open(&part, &COLUMNS).unwrap(), 7);
@@ -306,12 +318,15 @@ fn of_runs_that_begin_at_once_each_has_the_file_to_itself() {
 #[test]
 fn names_types_and_shapes_are_those_of_the_contract() {
     let (_folder, path) = folder();
-    write(&path, 5, &metadata(4, &["P1"])).finish().unwrap();
+    let metadata = Metadata { parts: vec!["hinge".into()], ..metadata(4, &["P1", "P2"]) };
+    write(&path, 5, &metadata).finish().unwrap();
     let file = hdf5::File::open(&path).unwrap();
-    let of_columns = COLUMNS.iter().map(|column| {
-        (column.path.replace("<name>", "P1"), [5].into_iter().chain(column.width(4)).collect::<Vec<_>>())
-    });
-    let of_body: [(&str, &[usize]); 5] = [
+    let of_columns = COLUMNS
+        .iter()
+        .map(|column| (column.path.to_owned(), [5].into_iter().chain(column.row_shape(&metadata)).collect::<Vec<_>>()));
+    let of_body: [(&str, &[usize]); 7] = [
+        ("body/origin", &[3]),
+        ("points/position", &[2, 3]),
         ("body/mass", &[]),
         ("body/center_of_mass", &[3]),
         ("body/inertia", &[3, 3]),
@@ -321,8 +336,15 @@ fn names_types_and_shapes_are_those_of_the_contract() {
     let shapes: Vec<_> = of_columns.chain(of_body.map(|(name, shape)| (name.to_owned(), shape.to_vec()))).collect();
     assert_eq!(
         (shapes.len(), &shapes[1], &shapes[6]),
-        (26, &("attitude".into(), vec![5, 4]), &("modal/displacement".into(), vec![5, 4]))
+        (29, &("attitude".into(), vec![5, 4]), &("modal/displacement".into(), vec![5, 4]))
     );
+    assert_eq!(shapes[17], ("points/displacement".into(), vec![5, 2, 3]));
+    let texts = |name: &str| -> Vec<String> {
+        let dataset = file.dataset(name).unwrap();
+        dataset.read_raw::<VarLenUnicode>().unwrap().iter().map(ToString::to_string).collect()
+    };
+    assert_eq!(texts("points/names"), ["P1", "P2"]);
+    assert_eq!(texts("body/kinds"), ["natural mode", "natural mode", "static shape", "static shape"]);
     for (name, shape) in shapes {
         let dataset = file.dataset(&name).unwrap();
         assert_eq!(dataset.shape(), shape, "{name}");
@@ -377,12 +399,20 @@ fn hdf5_finds_the_numbers_that_were_written() {
             assert_eq!(found[..700 * width], *expected, "{name}");
             assert!(found[700 * width..].iter().all(|value| value.is_nan()), "{name}");
         };
-        for column in &COLUMNS {
-            for name in &metadata.point_names {
-                let path = column.path.replace("<name>", name);
-                check(&path, column.width(3).unwrap_or(1), results.table(&path).unwrap().values());
+        for column in &COLUMNS[..21] {
+            let width: usize = column.row_shape(&metadata).iter().product();
+            match column.path.strip_prefix("points/") {
+                Some(quantity) => {
+                    let of = |name: &String| results.table(&format!("points/{name}/{quantity}")).unwrap();
+                    let of: Vec<_> = metadata.point_names.iter().map(of).collect();
+                    let rows = (0..700).flat_map(|i| of.iter().flat_map(move |table| table.row(i).unwrap()));
+                    check(column.path, width, &rows.copied().collect::<Vec<_>>());
+                }
+                None => check(column.path, width, results.table(column.path).unwrap().values()),
             }
         }
+        // The run has no hinge.
+        assert!(file.dataset("hinge/angle").is_err() && results.table("hinge/angle").is_none());
         assert_eq!(numbers("body/frequencies"), metadata.body.frequencies);
         if complete == 0 {
             let checkpoint = file.dataset("checkpoint").unwrap();

@@ -71,7 +71,11 @@ fn numbers_are_taken_from_the_file_itself_and_written_there() {
         file.new_dataset::<i8>().shape(1).create("velocity").unwrap();
     };
     let more = |file: &hdf5::File| {
-        file.create_group("points/P2").unwrap().new_attr::<hdf5::types::VarLenUnicode>().create("unit").unwrap();
+        file.create_group("points of another")
+            .unwrap()
+            .new_attr::<hdf5::types::VarLenUnicode>()
+            .create("unit")
+            .unwrap();
     };
     type Forgery<'a> = (&'a str, &'a dyn Fn(&hdf5::File));
     let forgeries: [Forgery; 8] = [

@@ -30,10 +30,16 @@ with h5py.File(sys.argv[1], "r") as file:
         "body/inertia": (3, 3),
         "body/frequencies": (modes,),
         "body/damping_ratios": (modes,),
+        "body/origin": (3,),
+        "origin": (rows, 3),
     }
-    for point in file["points"]:
-        for quantity in ("displacement", "velocity", "acceleration", "rigid_acceleration"):
-            shapes[f"points/{point}/{quantity}"] = (rows, 3)
+    points = len(file["points/names"].asstr()[:])
+    shapes["points/position"] = (points, 3)
+    quantities = ("displacement", "velocity", "acceleration", "rigid_acceleration", "elastic_displacement",
+                  "elastic_displacement_body")
+    shapes |= {f"points/{quantity}": (rows, points, 3) for quantity in quantities}
+    kinds = list(file["body/kinds"].asstr())
+    assert len(kinds) == modes and set(kinds) <= {"natural mode", "static shape"}, kinds
     for name, shape in shapes.items():
         data = file[name]
         assert data.shape == shape, (name, data.shape, shape)

@@ -16,12 +16,24 @@ const HALVINGS: u32 = 5;
 pub struct Branch {
     /// Its number as `flexframe modes` counts, at the lowest speed.
     pub mode: usize,
+    /// "natural mode", or "static shape": its frequency is no natural one.
+    pub kind: &'static str,
     /// Frequency at each speed, cycles per time.
     pub frequency: Vec<f64>,
     /// Growth at each speed, 1 per time: positive where the vibration is unstable.
     pub growth: Vec<f64>,
     /// Sense of the vibration at each speed: 1 forwards round the axis, −1 backwards, 0 to and fro.
     pub whirl: Vec<f64>,
+}
+
+impl Branch {
+    /// What a table or a picture calls it.
+    pub(super) fn label(&self) -> String {
+        match self.kind {
+            "static shape" => format!("static {}", self.mode),
+            _ => format!("mode {}", self.mode),
+        }
+    }
 }
 
 /// The vibrations at each speed, each always at the same place of the list.
@@ -57,12 +69,14 @@ impl Branches {
         continued(spin, &self.modes[above], self.speeds[above], speed, HALVINGS)
     }
 
-    /// The lines of the diagram.
-    pub fn lines(&self) -> Vec<Branch> {
+    /// The lines of the diagram; the last ones are those of so many static shapes, which are stiff.
+    pub fn lines(&self, static_shapes: usize) -> Vec<Branch> {
+        let natural = self.modes[0].len().saturating_sub(static_shapes);
         let of = |k: usize, value: fn(&SpinMode) -> f64| self.modes.iter().map(|here| value(&here[k])).collect();
         (0..self.modes[0].len())
             .map(|k| Branch {
                 mode: k + 1,
+                kind: if k < natural { "natural mode" } else { "static shape" },
                 frequency: of(k, |mode| mode.circular_frequency / TAU),
                 growth: of(k, |mode| mode.growth),
                 whirl: of(k, |mode| mode.whirl),

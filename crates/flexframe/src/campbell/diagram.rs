@@ -28,7 +28,7 @@ pub(super) fn draw(report: &CampbellReport, orders: &[f64], stem: &Path) -> Resu
         }
         let points = report.speeds.iter().copied().zip(branch.frequency.iter().copied()).collect();
         series.push(Series {
-            label: format!("mode {}", branch.mode),
+            label: branch.label(),
             points,
             stroke: if series.len() < COLOURS { Stroke::Solid } else { Stroke::Dashed },
         });

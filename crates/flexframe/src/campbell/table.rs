@@ -47,7 +47,7 @@ impl CampbellReport {
         let shown = &self.branches[..self.branches.len().min(COLUMNS)];
         let rpm = if self.rpm(0.0).is_some() { "       rpm" } else { "" };
         write!(f, "\n  {:>10}{rpm}  ", format!("rad/{}", self.time_unit))?;
-        shown.iter().try_for_each(|branch| write!(f, "{:>10}", format!("mode {}", branch.mode)))?;
+        shown.iter().try_for_each(|branch| write!(f, "{:>10}", branch.label()))?;
         writeln!(f, "   frequency, {}", self.frequency_unit)?;
         let last = self.speeds.len() - 1;
         let stride = last.div_ceil(ROWS - 1).max(1);

@@ -13,6 +13,7 @@ use super::{Details, Failure, Kind};
 use crate::animation::AnimationError;
 use crate::campbell::CampbellError;
 use crate::cost::CostError;
+use crate::export::ExportError;
 use crate::html_report::HtmlReportError;
 use crate::mode_shapes::ShapesError;
 use crate::paper::PaperError;
@@ -196,6 +197,7 @@ impl Failure for FileError {
             Self::Hdf5 { .. }
             | Self::System { .. }
             | Self::Busy { .. }
+            | Self::Exists { .. }
             | Self::Unfinished { .. }
             | Self::NotResults { .. }
             | Self::Link { .. }
@@ -260,6 +262,33 @@ impl Failure for AnimationError {
             Self::Step { scene, .. } | Self::NoMesh { scene } => Details::of_file(scene),
             Self::NotGif { path } => Details::of_file(path),
             Self::Figure(error) => error.details(),
+        }
+    }
+}
+
+impl Failure for ExportError {
+    fn kind(&self) -> Kind {
+        match self {
+            Self::File(error) => error.kind(),
+            Self::Write(error) => error.kind(),
+            Self::Scene(error) => error.kind(),
+            Self::Build(error) => error.kind(),
+            Self::Changed { .. } | Self::NoMesh { .. } | Self::NoModes { .. } => Kind::Input,
+            Self::NoRows { .. } | Self::NoColumn { .. } => Kind::Usage,
+        }
+    }
+
+    fn details(&self) -> Details {
+        match self {
+            Self::File(error) => error.details(),
+            Self::Write(error) => error.details(),
+            Self::Scene(error) => error.details(),
+            Self::Build(error) => error.details(),
+            Self::Changed { path }
+            | Self::NoMesh { path }
+            | Self::NoModes { path }
+            | Self::NoRows { path, .. }
+            | Self::NoColumn { path, .. } => Details::of_file(path),
         }
     }
 }

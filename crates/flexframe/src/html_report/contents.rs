@@ -4,7 +4,7 @@ use std::path::Path;
 
 use frames_rk4::Manifold;
 use modal::ReducedBody;
-use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use nalgebra::Vector3;
 use report::{
     Balance, Component, Effect, Fact, History, Motion, Report, RunState, SceneText, Shape, ShapeKind, Surface, Units,
 };
@@ -98,7 +98,7 @@ fn shapes(surface: Option<&surface::Surface>, model: &Model, body: &BodyReport) 
             let (frequency, damping_ratio) = (body.natural_frequencies[k], body.damping_ratios[k]);
             (format!("mode {}", k + 1), ShapeKind::Natural { frequency, damping_ratio })
         } else if k < model.body.flexible() {
-            (format!("static shape {}", k + 1 - modes), ShapeKind::Static)
+            (format!("static shape {}", k + 1), ShapeKind::Static)
         } else {
             (format!("shape {} of second order", k + 1 - model.body.flexible()), ShapeKind::SecondOrder)
         };
@@ -113,32 +113,14 @@ fn extended(model: &Model) -> &ReducedBody {
     model.physics.large_deflection.as_ref().map_or(&model.body, Manifold::body)
 }
 
-/// The file has the place of the centre of mass; the picture needs that of the body's origin.
 fn motion(results: &Results, model: &Model) -> Option<Motion> {
-    let body = extended(model);
-    let centers = results.vectors::<3>("position")?;
-    let attitudes = results.vectors::<4>("attitude")?;
     let modal = results.table("modal/displacement")?;
     let coordinates: Option<Vec<_>> = (0..results.rows()).map(|row| Some(model.coordinates(modal.row(row)?))).collect();
-    let coordinates = coordinates?;
-    let origins = centers.iter().zip(attitudes).enumerate().map(|(row, (center, attitude))| {
-        // The modes of a free body leave the centre of mass where it is.
-        let moved = match body.motion.is_free() {
-            true => Vector3::zeros(),
-            false => Vector3::from_fn(|axis, _| {
-                let products = body.translation_first[axis].iter().zip(&coordinates[row]);
-                products.map(|(t, q)| t * q).sum::<f64>() / body.mass
-            }),
-        };
-        let [w, x, y, z] = *attitude;
-        let turned = UnitQuaternion::from_quaternion(Quaternion::new(w, x, y, z));
-        (Vector3::from(*center) - turned * (body.center_of_mass - body.origin + moved)).into()
-    });
     Some(Motion {
         times: results.numbers("time")?.to_vec(),
-        origins: origins.collect(),
-        attitudes: attitudes.to_vec(),
-        coordinates: coordinates.concat(),
+        origins: results.vectors::<3>("origin")?.to_vec(),
+        attitudes: results.vectors::<4>("attitude")?.to_vec(),
+        coordinates: coordinates?.concat(),
     })
 }
 
@@ -161,12 +143,13 @@ fn histories(column: &Column<Row>, results: &Results, body: &BodyReport) -> Vec<
     if path == "time" {
         return Vec::new();
     }
-    match path.split_once("/<name>/") {
-        Some((_, name)) => results
+    let of_points = matches!(column.values, Values::Points(_) | Values::PointNumbers(..));
+    match path.strip_prefix("points/").filter(|_| of_points) {
+        Some(name) => results
             .metadata
             .point_names
             .iter()
-            .filter_map(|point| history(format!("point {point}"), name, &path.replace("<name>", point)))
+            .filter_map(|point| history(format!("point {point}"), name, &format!("points/{point}/{name}")))
             .collect(),
         None => {
             let (group, name) = path.split_once('/').unwrap_or(("body", path));
@@ -180,13 +163,13 @@ fn component_name(column: &Column<Row>, k: usize, width: usize, body: &BodyRepor
     match column.values {
         Values::Modal(_) => {
             let modes = width - body.static_shapes().min(width);
-            if k < modes { format!("{}", k + 1) } else { format!("static {}", k + 1 - modes) }
+            if k < modes { format!("{}", k + 1) } else { format!("static {}", k + 1) }
         }
         Values::Quaternion(_) => ["w", "x", "y", "z"][k].to_owned(),
-        Values::Vector(_) | Values::Point(_) => ["x", "y", "z"][k].to_owned(),
-        Values::Stress(6, _) => ["xx", "yy", "zz", "xy", "yz", "zx"][k].to_owned(),
-        Values::Stress(1, _) | Values::Number(_) => String::new(),
-        Values::Stress(..) => format!("{}", k + 1),
+        Values::Vector(_) | Values::Points(_) => ["x", "y", "z"][k].to_owned(),
+        Values::PointNumbers(6, _) => ["xx", "yy", "zz", "xy", "yz", "zx"][k].to_owned(),
+        Values::PointNumbers(count, _) if count > 1 => format!("{}", k + 1),
+        Values::Number(_) | Values::PointNumbers(..) => String::new(),
     }
 }
 

@@ -100,23 +100,12 @@ impl RunReport {
 impl fmt::Display for RunReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [length, mass, time] = &self.units;
-        let frequencies = &self.body.natural_frequencies;
         writeln!(f, "{}", self.title)?;
         if let Some(mesh) = &self.mesh {
             writeln!(f, "  mesh     {mesh}")?;
         }
         write!(f, "  body     {} {mass}, ", quantity(self.body.mass))?;
-        match (frequencies.first(), frequencies.last()) {
-            (Some(first), Some(last)) => {
-                let shapes = match self.body.static_shapes() {
-                    0 => String::new(),
-                    count => format!(" and {count} static shapes"),
-                };
-                let modes = frequencies.len() - self.body.static_shapes();
-                writeln!(f, "{modes} flexible modes{shapes} from {first:.4} to {last:.4} {}", frequency_unit(time))?;
-            }
-            _ => writeln!(f, "rigid")?,
-        }
+        writeln!(f, "{}", self.body.modes_in_words(&frequency_unit(time)))?;
         if !self.effects.is_empty() {
             writeln!(f, "  effects  {}", effects::in_words(&self.effects))?;
         }

@@ -44,6 +44,8 @@ pub struct ConservativeState {
     /// Attitude of the body frame.
     pub attitude: Attitude,
     pub(crate) slow: Slow,
+    /// Angle about the axis of a hinge since the beginning, rad.
+    pub(crate) turned: f64,
     /// Modal displacements q (nf).
     pub modal_displacement: Vec<f64>,
     /// Modal momenta p = q̇ + S ω (nf).
@@ -56,6 +58,7 @@ impl ConservativeState {
         self.time = other.time;
         self.attitude = other.attitude;
         self.slow = other.slow;
+        self.turned = other.turned;
         self.modal_displacement.copy_from_slice(&other.modal_displacement);
         self.modal_momentum.copy_from_slice(&other.modal_momentum);
     }
@@ -101,7 +104,7 @@ impl ConservativeState {
                 return Err(SetupError::Length { what, expected: flexible, found: list.len() });
             }
         }
-        let numbers = std::iter::once(&self.time).chain(&self.slow).chain(&self.modal_displacement);
+        let numbers = [&self.time, &self.turned].into_iter().chain(&self.slow).chain(&self.modal_displacement);
         match numbers.chain(&self.modal_momentum).copied().find(|x| !x.is_finite()) {
             Some(found) => Err(SetupError::Value { what: "a value of the state", found, expected: "a finite number" }),
             None => Ok(()),

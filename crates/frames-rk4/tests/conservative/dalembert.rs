@@ -40,7 +40,7 @@ fn run(ring: &Specimen) -> Run<'_> {
 }
 
 /// M x for one vector a node.
-fn times(mass: SparseColMatRef<'_, usize, f64>, x: &[Vector3<f64>]) -> Vec<Vector3<f64>> {
+pub fn times(mass: SparseColMatRef<'_, usize, f64>, x: &[Vector3<f64>]) -> Vec<Vector3<f64>> {
     let mut product = vec![Vector3::zeros(); x.len()];
     for column in 0..3 * x.len() {
         let x = x[column / 3][column % 3];
@@ -69,7 +69,7 @@ fn undeformed(ring: &Specimen) -> Vec<Vector3<f64>> {
     ring.mesh.positions().iter().map(|x| Vector3::from(*x) - ring.body.center_of_mass).collect()
 }
 
-fn sum<'a>(x: &'a [Vector3<f64>], f: &'a [Vector3<f64>]) -> Vector3<f64> {
+pub fn sum<'a>(x: &'a [Vector3<f64>], f: &'a [Vector3<f64>]) -> Vector3<f64> {
     x.iter().zip(f).map(|(x, f)| x.cross(f)).sum()
 }
 

@@ -14,6 +14,7 @@ mod limits;
 mod modes;
 mod order;
 mod pulse;
+mod reaction;
 mod rigid;
 mod run;
 mod table;

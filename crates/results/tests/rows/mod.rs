@@ -1,6 +1,6 @@
 //! Rows that the tests write, and that they find again.
 
-use results::Values::{Modal, Number, Point, Quaternion, Vector};
+use results::Values::{Modal, Number, Points, Quaternion, Vector};
 use results::*;
 use std::path::PathBuf;
 
@@ -19,19 +19,22 @@ pub fn metadata(modes: usize, point_names: &[&str]) -> Metadata {
             mass: 0.00935,
             center_of_mass: [0.1, -0.2, 0.3],
             inertia: [[5.5, 0.1, 0.2], [0.1, 2112.7, 0.3], [0.2, 0.3, 2117.8]],
+            origin: [0.1, -0.2, 0.3],
             frequencies: (0..modes).map(|k| 24.5 + 60.0 * k as f64).collect(),
             damping_ratios: vec![0.05; modes],
+            static_shapes: modes / 2,
         },
         point_names: point_names.iter().map(|name| name.to_string()).collect(),
-        point_stress: false,
+        point_positions: (0..point_names.len()).map(|p| [p as f64, 2.0, -3.0]).collect(),
+        parts: Vec::new(),
     }
 }
 
 pub type Writer = results::Writer<Row>;
 pub type Resumed = results::Resumed<Row>;
 
-/// The widths are known to `sealed`, too.
-pub static COLUMNS: [Column<Row>; 21] = [
+/// The widths are known to `sealed`, too. The last column is in the file of a run with a hinge only.
+pub static COLUMNS: [Column<Row>; 22] = [
     column("time", Number(|row| row.time)),
     column("attitude", Quaternion(|row| [row.time, 0.1, 0.2, 0.3])),
     column("position", Vector(|row| row.vector(1.0))),
@@ -49,10 +52,11 @@ pub static COLUMNS: [Column<Row>; 21] = [
     column("momentum/angular", Vector(|row| row.vector(8.0))),
     column("momentum/linear_balance", Vector(|row| row.vector(17.0))),
     column("momentum/angular_balance", Vector(|row| row.vector(18.0))),
-    column("points/<name>/displacement", Point(|row, i| Some(row.points.get(i)?[0]))),
-    column("points/<name>/velocity", Point(|row, i| Some(row.points.get(i)?[1]))),
-    column("points/<name>/acceleration", Point(|row, i| Some(row.points.get(i)?[2]))),
-    column("points/<name>/rigid_acceleration", Point(|row, i| Some(row.points.get(i)?[3]))),
+    column("points/displacement", Points(|row, i| Some(row.points.get(i)?[0]))),
+    column("points/velocity", Points(|row, i| Some(row.points.get(i)?[1]))),
+    column("points/acceleration", Points(|row, i| Some(row.points.get(i)?[2]))),
+    column("points/rigid_acceleration", Points(|row, i| Some(row.points.get(i)?[3]))),
+    column("hinge/angle", Number(|row| row.time + 19.0)).only_with("hinge"),
 ];
 
 const fn column(path: &'static str, values: Values<Row>) -> Column<Row> {

@@ -40,7 +40,7 @@ pub fn left_out(description: &Value, length: usize) -> Vec<Range<usize>> {
     let modes = list(&description["metadata"]["body"]["frequencies"]).len();
     let points = list(&description["metadata"]["point_names"]).len();
     let widths = [1, 4, 3, 3, 3, 3, modes, modes, 1, 1, 1, 1, 1, 3, 3, 3, 3];
-    let widths = widths.into_iter().chain(std::iter::repeat_n(3, 4 * points));
+    let widths = widths.into_iter().chain(std::iter::repeat_n(3 * points, 4));
     let sizes = widths.map(|width| number(&description["rows"]).saturating_mul(8 * width));
     let sizes = sizes.chain([(words as usize).saturating_mul(16)]);
     let mut ranges: Vec<_> = (list(&description["starts"]).iter().map(number).zip(sizes))

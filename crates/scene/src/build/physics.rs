@@ -8,6 +8,7 @@ use super::loads::MeshLoad;
 use super::turning::{Turning, turning};
 use crate::constraint::Constraint;
 use crate::effects::Choice;
+use crate::load::Load;
 use crate::modes::Large;
 use crate::scene::Scene;
 
@@ -42,10 +43,12 @@ pub(super) fn static_correction(scene: &Scene, flexible: usize) -> Choice {
 pub(super) fn effects(scene: &Scene, advice: &Advice, body: &ReducedBody, keep: usize) -> EffectMap<bool> {
     // The paper's formulation has the effects that it has; gravity is a load like others.
     let in_any_case = |effect: Effect| scene.time.method.is_of_paper() && effect != Effect::Gravity;
+    // What holds a body bears its weight, however little that moves it.
+    let has_weight = !body.motion.is_free() && scene.loads.iter().any(|load| matches!(load, Load::Gravity(_)));
     let mut effects = EffectMap::from_fn(|effect| match scene.effects.choices[effect] {
         Choice::On => true,
         Choice::Off => false,
-        Choice::Auto => in_any_case(effect) || advice.effects[effect].on,
+        Choice::Auto => in_any_case(effect) || advice.effects[effect].on || (effect == Effect::Gravity && has_weight),
     });
     effects[Effect::Flexibility] = keep > 0;
     effects[Effect::GeometricStiffening] &=

@@ -1,0 +1,25 @@
+//! `flexframe export`: a results file as a table, and its motion as fields for ParaView.
+
+mod csv;
+mod error;
+mod fields;
+mod motion;
+mod paraview;
+mod rows;
+
+use std::path::PathBuf;
+
+pub use csv::export_csv;
+pub use error::ExportError;
+pub use motion::Motion;
+pub use paraview::{export_modes, export_vtkhdf, export_vtu};
+pub use rows::ExportRows;
+
+/// What an export has written.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Exported {
+    /// The files.
+    pub files: Vec<PathBuf>,
+    /// What should be known of them: that the run is unfinished.
+    pub warning: Option<String>,
+}

@@ -1,0 +1,65 @@
+//! Why nothing was exported.
+
+use std::path::PathBuf;
+
+use results::FileError;
+use scene::{BuildError, SceneError};
+
+use crate::write_error::WriteError;
+
+/// An export that could not be made. Nothing has been written, unless it is of many files.
+#[derive(Debug, thiserror::Error)]
+pub enum ExportError {
+    /// The results cannot be read, or the export not be written.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// A table cannot be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+    /// The scene in the results file cannot be read.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// The body of the scene cannot be built.
+    #[error(transparent)]
+    Build(#[from] BuildError),
+    /// The body that the scene gives now is another.
+    #[error(
+        "{}: the body is no longer what it was when the run was made (a changed mesh, another version of flexframe, or \
+         another machine), so that its shapes do not belong to the modal coordinates; run the scene again",
+        path.display()
+    )]
+    Changed {
+        /// The results file.
+        path: PathBuf,
+    },
+    /// There is no mesh to show.
+    #[error("{}: a rigid body without a mesh has no surface to export; give it a mesh and `flexible = 0`", path.display())]
+    NoMesh {
+        /// The results file.
+        path: PathBuf,
+    },
+    /// The body has no modes.
+    #[error("{}: the body has no flexible modes to export", path.display())]
+    NoModes {
+        /// The results file.
+        path: PathBuf,
+    },
+    /// No row is within the times asked for.
+    #[error("{}: no row is within the times asked for; its rows are from time {} to {}", path.display(), times[0], times[1])]
+    NoRows {
+        /// The results file.
+        path: PathBuf,
+        /// First and last time.
+        times: [f64; 2],
+    },
+    /// A column that is not in the file.
+    #[error("{}: there is no column \"{found}\"; the file has {}", path.display(), columns.join(", "))]
+    NoColumn {
+        /// The results file.
+        path: PathBuf,
+        /// What was asked for.
+        found: String,
+        /// What there is.
+        columns: Vec<String>,
+    },
+}

@@ -1,0 +1,114 @@
+//! The motion as fields for ParaView, a step at a time.
+
+use std::path::Path;
+
+use results::{Field, VtkHdf, write_pvd, write_vtu};
+use scene::Meshed;
+
+use super::Exported;
+use super::error::ExportError;
+use super::fields::{FIELDS, described};
+use super::motion::{Motion, Placed};
+use super::rows::ExportRows;
+use crate::modes::frequency_unit;
+use crate::write_error::WriteError;
+
+impl Motion {
+    /// The rows to export and their times.
+    fn chosen(&self, file: &Path, rows: &ExportRows) -> Result<(Vec<usize>, Vec<f64>), ExportError> {
+        let times = self.results.numbers("time").unwrap_or_default();
+        let chosen = rows.of(&self.results);
+        if chosen.is_empty() {
+            let times = [times.first(), times.last()].map(|time| time.copied().unwrap_or_default());
+            return Err(ExportError::NoRows { path: file.to_owned(), times });
+        }
+        let times = chosen.iter().map(|row| times[*row]).collect();
+        Ok((chosen, times))
+    }
+}
+
+/// Writes a VTKHDF file with a step for each row. `progress` hears the part that is done, 0 to 1.
+///
+/// # Errors
+/// [`ExportError`]; nothing has been written then.
+pub fn export_vtkhdf(
+    file: &Path,
+    motion: &Motion,
+    to: &Path,
+    rows: &ExportRows,
+    mut progress: impl FnMut(f64),
+) -> Result<Exported, ExportError> {
+    let (chosen, times) = motion.chosen(file, rows)?;
+    let out = VtkHdf::create(to, &motion.grid, Some(&times), &described(), rows.overwrite)?;
+    let mut placed = Placed::default();
+    for (step, row) in chosen.iter().enumerate() {
+        motion.place(*row, &mut placed);
+        FIELDS.iter().enumerate().try_for_each(|(i, field)| out.write(step, i, (field.values)(&placed)))?;
+        progress((step + 1) as f64 / chosen.len() as f64);
+    }
+    out.finish()?;
+    Ok(Exported { files: vec![to.to_owned()], warning: ExportRows::warning(&motion.results) })
+}
+
+/// Writes a folder with a VTU file for each row and a PVD file, which lists them and is written last: for ParaView before
+/// 5.12.
+///
+/// # Errors
+/// [`ExportError`]; without the PVD file, what there is of the others is a part.
+pub fn export_vtu(
+    file: &Path,
+    motion: &Motion,
+    folder: &Path,
+    rows: &ExportRows,
+    mut progress: impl FnMut(f64),
+) -> Result<Exported, ExportError> {
+    let (chosen, times) = motion.chosen(file, rows)?;
+    let stem = file.file_stem().unwrap_or("results".as_ref()).to_string_lossy().into_owned();
+    let list = folder.join(format!("{stem}.pvd"));
+    if !rows.overwrite && list.symlink_metadata().is_ok() {
+        return Err(results::FileError::Exists { path: list }.into());
+    }
+    std::fs::create_dir_all(folder).map_err(WriteError::of(folder))?;
+    let described = described();
+    let mut placed = Placed::default();
+    let mut files = Vec::new();
+    for (step, (row, time)) in chosen.iter().zip(times).enumerate() {
+        motion.place(*row, &mut placed);
+        let fields: Vec<(&Field, &[f64])> =
+            described.iter().zip(&FIELDS).map(|(described, field)| (described, (field.values)(&placed))).collect();
+        let name = format!("{stem}_{step:06}.vtu");
+        write_vtu(folder.join(&name), &motion.grid, &fields, rows.overwrite)?;
+        files.push((time, name));
+        progress((step + 1) as f64 / chosen.len() as f64);
+    }
+    write_pvd(&list, &files, rows.overwrite)?;
+    Ok(Exported { files: vec![list], warning: ExportRows::warning(&motion.results) })
+}
+
+/// Writes a VTKHDF file with the shape of each mode, and of each static shape, as a field of its own, mass-normalised.
+/// They are numbered as everywhere: from 1.
+///
+/// # Errors
+/// [`ExportError`]; nothing has been written then.
+pub fn export_modes(file: &Path, motion: &Motion, to: &Path, rows: &ExportRows) -> Result<Exported, ExportError> {
+    let body = &motion.results.metadata.body;
+    let Some(Meshed { modes, .. }) = motion.model.meshed.as_ref().filter(|_| !body.frequencies.is_empty()) else {
+        return Err(ExportError::NoModes { path: file.to_owned() });
+    };
+    let unit = frequency_unit(&motion.scene.units.time);
+    let digits = body.frequencies.len().to_string().len();
+    let name = |(k, (kind, frequency)): (usize, (&str, &f64))| match kind {
+        "natural mode" => format!("mode {:0digits$}: {frequency:.4} {}", k + 1, unit.replace('/', " per ")),
+        kind => format!("{kind} {:0digits$}", k + 1),
+    };
+    let names = body.kinds().zip(&body.frequencies).enumerate().map(name);
+    let fields: Vec<Field> = names.map(|name| Field { name, components: 3 }).collect();
+    let out = VtkHdf::create(to, &motion.grid, None, &fields, rows.overwrite)?;
+    for (k, shape) in modes.shapes.col_iter().enumerate() {
+        let mut values = vec![0.0; 3 * motion.grid.points.len()];
+        motion.add_shape(shape, 1.0, &mut values);
+        out.write(0, k, &values)?;
+    }
+    out.finish()?;
+    Ok(Exported { files: vec![to.to_owned()], warning: None })
+}

@@ -1,0 +1,210 @@
+//! `flexframe export`: tables, and fields that agree with the modes. VTK itself reads them in `just paraview`.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use flexframe::columns::COLUMNS;
+use flexframe::rigid_kin::Attitude;
+use flexframe::row::Row;
+use flexframe::scene::{Model, Scene};
+use nalgebra::Vector3;
+use results::{Results, unfinished};
+
+const SCENE: &str = r#"
+title = "A pendulum that bends"
+units = { length = "m", mass = "kg", time = "s" }
+[body]
+mesh = "MESH"
+material = { young_modulus = 6.9e10, poisson_ratio = 0.3, density = 2766.0 }
+[modes]
+flexible = 4
+[[constraints]]
+kind = "hinge"
+at = [0.0, 0.0, 0.0]
+axis = [0.0, 0.0, 1.0]
+box = [[0.0, -0.1, -0.1], [0.0, 0.1, 0.1]]
+[[loads]]
+kind = "gravity"
+direction = [0.0, -1.0, 0.0]
+amplitude = 9.81
+[time]
+end = 0.2
+step = 1e-3
+[output]
+every = 10
+points = { tip = [8.0, 0.0, 0.0], "half, way" = [4.0, 0.0, 0.0] }
+"#;
+
+const RIGID: &str = r#"
+title = "A rod"
+units = { length = "m", mass = "kg", time = "s" }
+[body]
+rigid = { mass = 3.0, center_of_mass = [0.0, 0.0, 0.0], inertia = [[0.02, 0.0, 0.0], [0.0, 0.25, 0.0], [0.0, 0.0, 0.25]] }
+[time]
+end = 0.1
+step = 1e-2
+"#;
+
+fn flexframe(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_flexframe")).args(arguments).output().unwrap()
+}
+
+fn done(arguments: &[&str]) -> String {
+    let output = flexframe(arguments);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+fn refused(arguments: &[&str], code: i32) -> String {
+    let output = flexframe(arguments);
+    let text = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(code), "{text}");
+    text
+}
+
+/// The results of a scene in a folder.
+fn run(folder: &Path, text: &str) -> PathBuf {
+    let mesh = concat!(env!("CARGO_MANIFEST_DIR"), "/../../meshes/wu_haug_beam.msh");
+    let scene = folder.join("scene.toml");
+    std::fs::write(&scene, text.replace("MESH", mesh)).unwrap();
+    done(&["run", scene.to_str().unwrap(), "-o", folder.to_str().unwrap()]);
+    folder.join("scene.h5")
+}
+
+fn numbers(line: &str) -> Vec<f64> {
+    line.split(',').map(|number| number.parse().unwrap()).collect()
+}
+
+#[test]
+fn a_results_file_becomes_a_table_and_fields() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let file = run(folder.path(), SCENE);
+    let file = file.to_str().unwrap();
+    let results = Results::open(file, &COLUMNS).unwrap();
+    let count = results.metadata.body.frequencies.len();
+    assert!(results.rows() == 21 && results.metadata.body.static_shapes == count - 4 && count > 4);
+
+    // All columns, into a folder; the numbers are the same to the last bit.
+    assert!(done(&["export", file, "--csv", &at("tables")]).contains("tables/scene.csv"));
+    let table = std::fs::read_to_string(at("tables/scene.csv")).unwrap();
+    let mut lines = table.lines();
+    let heads = lines.next().unwrap();
+    for head in [
+        "time [s]",
+        "attitude w [1]",
+        "modal/displacement 4 [m kg^(1/2)]",
+        "modal/displacement 5 static shape [m kg^(1/2)]",
+        "hinge/angle [rad]",
+        "reaction/force x [kg m/s^2]",
+        "points/tip/elastic_displacement_body y [m]",
+        "\"points/half, way/displacement z [m]\"",
+    ] {
+        assert!(heads.contains(head), "{head}: {heads}");
+    }
+    assert!(!heads.contains("drive/") && !heads.contains("slider/"), "{heads}");
+    let rows: Vec<Vec<f64>> = lines.map(numbers).collect();
+    assert_eq!(rows.len(), 21);
+    let per_row: usize = 1 + 4 + 5 * 3 + 2 * count + 5 + 4 * 3 + 4 * 3 + 2 + 2 * 6 * 3;
+    assert!(rows.iter().all(|row| row.len() == per_row), "{} {per_row}", rows[0].len());
+    assert_eq!(rows[20][1..5], results.vectors::<4>("attitude").unwrap()[20]);
+
+    // Some columns and rows.
+    let some = ["--columns", "hinge/angle,points/tip", "--from", "0.1", "--to", "0.18", "--every", "2"];
+    done(&[&["export", file, "--csv", &at("some.csv")][..], &some].concat());
+    let table = std::fs::read_to_string(at("some.csv")).unwrap();
+    let rows: Vec<Vec<f64>> = table.lines().skip(1).map(numbers).collect();
+    assert_eq!(rows.iter().map(|row| row.len()).collect::<Vec<_>>(), [20; 5]);
+    assert!(rows.iter().zip([0.1, 0.12, 0.14, 0.16, 0.18]).all(|(row, time)| (row[0] - time).abs() < 1e-12));
+    assert_eq!(rows[0][1], results.numbers("hinge/angle").unwrap()[10]);
+
+    // Fields: shapes times coordinates, the mesh once.
+    done(&["export", file, "--vtkhdf", &at("moving.vtkhdf"), "--modes", &at("modes.vtkhdf"), "--every", "4"]);
+    let moving = hdf5::File::open(at("moving.vtkhdf")).unwrap();
+    let group = moving.group("VTKHDF").unwrap();
+    let read = |group: &hdf5::Group, name: &str| group.dataset(name).unwrap().read_raw::<f64>().unwrap();
+    let integers = |name: &str| group.dataset(name).unwrap().read_raw::<i64>().unwrap();
+    assert_eq!(group.attr("Version").unwrap().read_raw::<i64>().unwrap(), [2, 0]);
+    let points = read(&group, "Points");
+    let n = points.len() / 3;
+    assert_eq!((integers("NumberOfPoints"), integers("Steps/PointOffsets")), (vec![n as i64], vec![0; 6]));
+    let offsets: Vec<i64> = (0..6).map(|step| step * n as i64).collect();
+    assert_eq!(integers("Steps/PointDataOffsets/displacement"), offsets);
+    let times = results.numbers("time").unwrap();
+    assert_eq!(read(&group, "Steps/Values"), (0..6).map(|step| times[4 * step]).collect::<Vec<_>>());
+    // By the points of the results: another way from modes to displacements.
+    let scene = Scene::parse(&results.metadata.scene_text, &results.metadata.scene_file).unwrap();
+    let model = Model::build(&scene, |_| ()).unwrap();
+    let node = (0..n).find(|i| (points[3 * i] - 8.0).abs() < 1e-9).unwrap();
+    let place = Vector3::from_column_slice(&points[3 * node..3 * node + 3]);
+    let mesh = &model.meshed.as_ref().unwrap();
+    let (on_mesh, _) = mesh.mesh.nearest_node(place.into());
+    let [displacement, elastic] =
+        ["displacement", "elastic_displacement"].map(|name| read(&group, &format!("PointData/{name}")));
+    for step in 0..6 {
+        let row = results.table("modal/displacement").unwrap().row(4 * step).unwrap();
+        let shapes = &mesh.modes.shapes;
+        let u = Vector3::from_fn(|axis, _| {
+            row.iter().enumerate().map(|(k, q)| q * shapes[(3 * on_mesh as usize + axis, k)]).sum::<f64>()
+        });
+        let first = 3 * (step * n + node);
+        let found = Vector3::from_column_slice(&elastic[first..first + 3]);
+        assert!((found - u).norm() < 1e-14, "{found} {u}");
+        let attitude = Attitude::from_wxyz(results.vectors("attitude").unwrap()[4 * step]).unwrap();
+        let moved = attitude.to_global(&(place + u)) - place; // about the hinge, which is at the origin
+        let found = Vector3::from_column_slice(&displacement[first..first + 3]);
+        assert!((found - moved).norm() < 1e-13, "{found} {moved}");
+    }
+    let modes = hdf5::File::open(at("modes.vtkhdf")).unwrap().group("VTKHDF/PointData").unwrap();
+    let names = modes.member_names().unwrap();
+    assert_eq!(names.len(), count);
+    assert!(names.iter().filter(|name| name.starts_with("mode ") && name.ends_with(" Hz")).count() == 4, "{names:?}");
+    assert!(names.iter().any(|name| name.starts_with("static shape ") && name.ends_with('5')), "{names:?}");
+
+    // What is there is not replaced unless asked for.
+    for arguments in [["--csv", &at("some.csv")], ["--vtkhdf", &at("moving.vtkhdf")]] {
+        let text = refused(&[&["export", file][..], &arguments].concat(), 6);
+        assert!(text.contains("is there already") && text.contains("--overwrite"), "{text}");
+        done(&[&["export", file, "--overwrite"][..], &arguments].concat());
+    }
+    let text = refused(&["export", file, "--csv", &at("new.csv"), "--columns", "points/nose"], 2);
+    assert!(text.contains("no column \"points/nose\"") && text.contains("points/tip/displacement"), "{text}");
+    let text = refused(&["export", file, "--vtkhdf", &at("new.vtkhdf"), "--from", "7"], 2);
+    assert!(text.contains("no row") && text.contains("from time 0 to 0.2"), "{text}");
+    refused(&["export", file], 2);
+    assert!(!Path::new(&at("new.csv")).exists() && !Path::new(&at("new.vtkhdf")).exists());
+}
+
+#[test]
+fn what_cannot_be_exported_is_refused_and_an_unfinished_run_is_marked() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let file = run(folder.path(), RIGID);
+    let file = file.to_str().unwrap();
+    for what in ["--vtkhdf", "--vtu", "--modes"] {
+        let text = refused(&["export", file, what, &at("out")], 3);
+        assert!(text.contains("a rigid body without a mesh has no surface"), "{text}");
+    }
+    std::fs::write(at("diary.h5"), "a diary").unwrap();
+    let text = refused(&["export", &at("diary.h5"), "--csv", &at("out.csv")], 3);
+    assert!(text.contains("not a results file"), "{text}");
+    assert!(!Path::new(&at("out")).exists() && !Path::new(&at("out.csv")).exists());
+
+    // A run that was cut off after three rows.
+    let scene = Scene::read(at("scene.toml")).unwrap();
+    let results = Results::open(file, &COLUMNS).unwrap();
+    let part = unfinished(at("cut.h5"));
+    let model = Model::build(&scene, |_| ()).unwrap();
+    let mut writer =
+        results::Writer::create(at("cut.h5"), &results.metadata, &COLUMNS, results::Expected::default()).unwrap();
+    model
+        .start(&scene)
+        .unwrap()
+        .take(3)
+        .for_each(|now| writer.push(&Row { motion: now.unwrap(), stress: Vec::new() }).unwrap());
+    drop(writer);
+    let said = done(&["export", part.to_str().unwrap(), "--csv", &at("cut.csv")]);
+    assert!(said.contains("the run is unfinished: its rows end at time 0.02"), "{said}");
+    let table = std::fs::read_to_string(at("cut.csv")).unwrap();
+    assert!(table.starts_with("# the run is unfinished") && table.lines().count() == 5, "{table}");
+}

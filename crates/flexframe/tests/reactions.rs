@@ -1,0 +1,140 @@
+//! Reactions, drives and angles against closed forms: statics, a pendulum, a spinning bar, a spin-up.
+
+use flexframe::frames_rk4::Observation;
+use flexframe::nalgebra::Vector3;
+use flexframe::scene::{Model, Scene};
+
+fn rows(text: &str) -> (Model, Vec<Observation>) {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/of_a_test.toml");
+    rows_of(&Scene::parse(text, path).unwrap())
+}
+
+fn rows_of(scene: &Scene) -> (Model, Vec<Observation>) {
+    let model = Model::build(scene, |_| ()).unwrap();
+    let rows = model.start(scene).unwrap().map(Result::unwrap).collect();
+    (model, rows)
+}
+
+const ROD: &str = r#"
+title = "A rod on a hinge"
+units = { length = "m", mass = "kg", time = "s" }
+[body]
+rigid = { mass = 3.0, center_of_mass = [0.5, 0.0, 0.0], inertia = [[0.02, 0.0, 0.0], [0.0, 0.25, 0.0], [0.0, 0.0, 0.25]] }
+[[constraints]]
+kind = "hinge"
+at = [0.0, 0.0, 0.0]
+axis = [0.0, 0.0, 1.0]
+"#;
+
+/// With ω² = 2 (m g d/J) (cos θ − cos θ₀), the bearing gives m (d ω² + g cos θ) along the rod and m g sin θ (1 − m d²/J)
+/// across it.
+#[test]
+fn the_bearing_of_a_pendulum_gives_what_the_closed_form_has() {
+    let scene = Scene::read(concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/pendulum.toml")).unwrap();
+    let (_, rows) = rows_of(&scene);
+    let (mass, arm, inertia, gravity, start) = (3.0, 0.5, 1.0, 9.81, 2.0_f64);
+    for now in &rows {
+        let theta = start - now.reaction.turned;
+        let square = 2.0 * mass * gravity * arm / inertia * (theta.cos() - start.cos());
+        let along = mass * (arm * square + gravity * theta.cos());
+        let across = mass * gravity * theta.sin() * (1.0 - mass * arm * arm / inertia);
+        let expected = Vector3::new(-along, -across, 0.0);
+        assert!((now.reaction.force_body - expected).norm() < 1e-8 * mass * gravity, "{now:?} {expected}");
+        // Gravity turns it about the hinge: the bearing does not.
+        assert!(now.reaction.moment_body.norm() < 1e-10 * mass * gravity, "{now:?}");
+    }
+}
+
+#[test]
+fn a_hung_rod_weighs_on_its_bearing_what_it_weighs() {
+    let load = "[[loads]]\nkind = \"gravity\"\ndirection = [1.0, 0.0, 0.0]\namplitude = 9.81\n[time]\nend = 0.1\nstep = 1e-3\n";
+    let (_, rows) = rows(&(ROD.to_owned() + load));
+    let found = rows.last().unwrap().reaction;
+    assert!((found.force_body - Vector3::new(-3.0 * 9.81, 0.0, 0.0)).norm() < 1e-12, "{found:?}");
+    assert!(found.moment_body.norm() < 1e-12);
+}
+
+#[test]
+fn seventy_two_turns_are_seventy_two_turns() {
+    let speed = 72.0 * std::f64::consts::TAU;
+    let spin = format!(
+        "[initial]\nangular_velocity = [0.0, 0.0, {speed}]\n[time]\nend = 1.0\nstep = 1e-3\n[output]\ninterval = 0.25\n"
+    );
+    let (_, rows) = rows(&(ROD.to_owned() + &spin));
+    for now in &rows {
+        assert!((now.reaction.turned - speed * now.time).abs() < 1e-9 && (now.reaction.turning - speed).abs() < 1e-9);
+        // The bearing holds the rod on its circle.
+        assert!((now.reaction.force_body.x / (-3.0 * 0.5 * speed * speed) - 1.0).abs() < 1e-12);
+    }
+}
+
+const BEAM: &str = r#"
+title = "A slender beam"
+units = { length = "m", mass = "kg", time = "s" }
+[body]
+mesh = "../meshes/wu_haug_beam.msh"
+material = { young_modulus = 6.8952e10, poisson_ratio = 0.0, density = 2766.7 }
+"#;
+
+const END: &str = "box = [[0.0, -0.1, -0.1], [0.0, 0.1, 0.1]]\n";
+
+#[test]
+fn a_clamped_beam_at_rest_has_the_moment_of_its_load() {
+    let scene = format!(
+        "{BEAM}[modes]\nflexible = 6\ndamping_ratio = 1.0\n[[constraints]]\nkind = \"clamp\"\n{END}[[loads]]\nkind = \"force\"\nat = \
+         [8.0, 0.0, 0.0]\ndirection = [0.0, 1.0, 0.0]\namplitude = 0.5\nhistory = {{ kind = \"constant\" }}\n[time]\nend = 20.0\nstep = 1e-2\n\
+         [output]\npoints = {{ tip = [8.0, 0.0, 0.0] }}\n"
+    );
+    let (_, rows) = rows(&scene);
+    let now = rows.last().unwrap();
+    let arm = Vector3::new(8.0, 0.0, 0.0) + now.points[0].elastic_displacement_body;
+    let found = now.reaction;
+    // At the start all of the load is taken by the inertia of the modes and what they leave to the support.
+    assert!((found.force_body - Vector3::new(0.0, -0.5, 0.0)).norm() < 1e-9, "{found:?}");
+    assert!((found.moment_body + arm.cross(&Vector3::new(0.0, 0.5, 0.0))).norm() < 1e-3 * 4.0, "{found:?}");
+    assert!((found.moment_body.z + 4.0).abs() < 1e-3, "{found:?}");
+}
+
+/// m Ω² times the distance of the centre of mass, which stretching moves by a ten-millionth, once the bar that was not
+/// stretched at the start has come to rest on its hinge.
+#[test]
+fn the_hinge_of_a_spinning_bar_holds_it_on_its_circle() {
+    let scene = format!(
+        "{BEAM}[modes]\nflexible = 6\ndamping_ratio = 0.9\n[[constraints]]\nkind = \"hinge\"\nat = [0.0, 0.0, 0.0]\naxis = [0.0, 0.0, 1.0]\n{END}[initial]\nangular_velocity = \
+         [0.0, 0.0, 0.5]\n[time]\nend = 8.0\nstep = 5e-3\n"
+    );
+    let (model, rows) = rows(&scene);
+    let expected = model.body.mass * 0.25 * 4.0;
+    for now in rows.iter().filter(|now| now.time > 7.0) {
+        let found = now.reaction;
+        assert!((found.force_body.x / -expected - 1.0).abs() < 1e-5, "{found:?} {expected}");
+        assert!(found.moment_body.norm() < 1e-3 * 4.0 * expected, "{found:?}");
+        assert!((found.turned - 0.5 * now.time).abs() < 1e-4);
+    }
+}
+
+/// θ(t) is the integral of the given speed; the energy is what the drive has put in.
+#[test]
+fn the_drive_of_a_spin_up_does_the_work_that_the_beam_has() {
+    let mut scene = Scene::read(concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/spin_up.toml")).unwrap();
+    scene.time.end = 17.0;
+    let (_, rows) = rows_of(&scene);
+    let last = rows.last().unwrap();
+    // 6·15/2 rad in the rise, and 6 rad a second after it: more than nine turns.
+    assert!((last.reaction.turned - (45.0 + 12.0)).abs() < 1e-8, "{:?}", last.reaction);
+    assert!((last.reaction.turning - 6.0).abs() < 1e-12);
+    let work: f64 = rows
+        .windows(2)
+        .map(|pair| 0.5 * (pair[1].time - pair[0].time) * (pair[0].reaction.drive_power + pair[1].reaction.drive_power))
+        .sum();
+    assert!((work / last.work.work - 1.0).abs() < 1e-4, "{work} {}", last.work.work);
+    assert!((work / last.energy() - 1.0).abs() < 1e-4, "{work} {}", last.energy());
+    // The torque is the rate of the angular momentum, by differences in time.
+    let momentum = |now: &Observation| now.angular_momentum_global.z;
+    let largest = rows.iter().map(|now| now.reaction.drive.abs()).fold(0.0, f64::max);
+    for three in rows.windows(3).filter(|three| three[2].time < 14.9) {
+        let rate = (momentum(&three[2]) - momentum(&three[0])) / (three[2].time - three[0].time);
+        assert!((three[1].reaction.drive - rate).abs() < 1e-2 * largest, "{rate} {:?}", three[1].reaction);
+        assert!((three[1].reaction.moment_body.z - three[1].reaction.drive).abs() < 1e-12 * largest);
+    }
+}
