@@ -57,6 +57,13 @@ impl ConservativeBody {
                 inertia_rate[(*i, *j)] = rate;
                 inertia_rate[(*j, *i)] = rate;
             }
+            for ((i, j), k_q) in self.spin_stresses(&e.spin_stress) {
+                let rate = 2.0 * dot(k_q, &e.modal_velocity);
+                inertia_rate[(*i, *j)] -= rate;
+                if i != j {
+                    inertia_rate[(*j, *i)] -= rate;
+                }
+            }
             let mut right = get(&e.slow, part::PI) - inertia_rate * e.spin;
             for (i, s) in self.momenta_of_turning(e).0.chunks_exact(modes.max(1)).enumerate() {
                 right[i] -= dot(s, &e.acceleration);
@@ -90,7 +97,7 @@ impl ConservativeBody {
     }
 
     /// Finds the torque π' − M or the force P' − F of what drives the body: with π = J ω + S·ν and P = m v + b·ν along the
-    /// driven axis, both less (K ξ)·ν. `e` has all other rates, its momentum without the linear part at q and p.
+    /// driven axis, both less (K q)·q̇. `e` has all other rates, its momentum without the linear part at q and p.
     pub(crate) fn drive_effort(
         &self,
         acceleration: f64,
@@ -108,9 +115,9 @@ impl ConservativeBody {
             self.add_spin_rate(&Vector3::new(acceleration, 0.0, 0.0), e);
         }
         self.extend_acceleration(e);
-        // (K ξ)·ν and its rate.
-        let stressed = dot(&e.drive_stress, &e.velocity);
-        let mut changing = -dot(&e.drive_stress, &e.change) - self.drive_stress_power(&e.velocity);
+        // (K q)·q̇ and its rate.
+        let stressed = dot(&e.drive_stress, &e.modal_velocity);
+        let mut changing = -dot(&e.drive_stress, &e.acceleration) - self.drive_stress_power(&e.modal_velocity);
         if let Translation::Driven(direction) = self.translation {
             e.driven_momentum = self.mass * speed + dot(&self.sliding, &e.velocity) - stressed;
             changing += dot(&self.sliding, &e.change);
@@ -119,17 +126,19 @@ impl ConservativeBody {
         }
         let (s, n_q) = (&e.products[..nf], &e.products[self.s_rows..]);
         let inertia = e.inertia[(0, 0)];
-        let inertia_rate: f64 = match self.first.first() {
+        let mut inertia_rate: f64 = match self.first.first() {
             Some(first) => (0..nf).map(|k| 2.0 * (first[k] + n_q[k]) * e.velocity[k]).sum(),
             None => 0.0,
         };
+        inertia_rate -=
+            self.spin_stresses(&e.spin_stress).map(|(_, k_q)| 2.0 * dot(k_q, &e.modal_velocity)).sum::<f64>();
         // G ν does no work on ν.
         changing += dot(s, &e.change);
         e.driven_momentum = inertia * speed + dot(s, &e.velocity) - stressed;
         e.drive_effort = inertia_rate * speed + inertia * acceleration + changing - moment;
     }
 
-    /// νᵀK ν
+    /// q̇ᵀK q̇
     fn drive_stress_power(&self, velocity: &[f64]) -> f64 {
         let columns = self.drive_stiffness.chunks_exact(velocity.len().max(1));
         columns.zip(velocity).map(|(column, v)| v * dot(column, velocity)).sum()

@@ -25,6 +25,9 @@
 //! `½ v' qᵀK q` but for a total derivative: in p, −v K q would be as large as the momenta of stiff modes. Where v jumps, p
 //! jumps by K q times as much.
 //!
+//! Every K acts on the coordinates q, on the manifold of large deflection, too: on ξ it would work on what the modes draw
+//! in, and that is of fourth order, where the strain energy has terms of its own size against it.
+//!
 //! With large deflection all constants are those of the extended shapes, with coordinates ξ(q) and their slopes D on a
 //! curved manifold ([`Manifold`]):
 //!
@@ -106,8 +109,10 @@ pub struct ConservativeBody {
     stacked: Vec<f64>,
     /// Largest N_ij and G_i that couple each mode to itself and its like (nf).
     pub(crate) own_coupling: Vec<[f64; 2]>,
-    /// K of a unit acceleration of what is driven, column by column (nf × nf), or empty.
+    /// K of a unit acceleration of what is driven in the modes, column by column, or empty.
     pub(crate) drive_stiffness: Vec<f64>,
+    /// The K_ij in the modes on a manifold, column by column, one below another; elsewhere N_ij in `stacked` is less by it.
+    spin_stiffness: Vec<f64>,
     loads: Vec<SharedLoad>,
     /// Of a body with large modes.
     pub(crate) manifold: Option<Manifold>,
@@ -163,6 +168,8 @@ pub(crate) struct Evaluation {
     pub curvature: Vec<f64>,
     /// K q of the stiffness of what is driven (nf).
     pub drive_stress: Vec<f64>,
+    /// K_ij q of the pairs on a manifold.
+    pub spin_stress: Vec<f64>,
     /// Angular velocity, one component for each axis.
     pub spin: Vector3<f64>,
     pub omega_body: Vector3<f64>,
@@ -244,21 +251,37 @@ impl ConservativeBody {
         let gyroscopic = |axis: usize, i: usize, j: usize| {
             axes[axis].iter().zip(&body.gyroscopic).map(|(a, g)| a * g[(i, j)]).sum::<f64>()
         };
-        let second = |weights: &[f64; 6], i: usize, j: usize| {
-            let of =
-                |matrices: &[Mat<f64>; 6]| -> f64 { matrices.iter().zip(weights).map(|(m, w)| w * m[(i, j)]).sum() };
-            of(&body.inertia_second) - stiffness.map_or(0.0, of)
+        let of = |matrices: &[Mat<f64>; 6], weights: &[f64; 6], i: usize, j: usize| -> f64 {
+            matrices.iter().zip(weights).map(|(m, w)| w * m[(i, j)]).sum()
         };
-        let mut stacked = Vec::with_capacity((g_rows + pairs.len() * nf) * nf);
         let pair_weights: Vec<[f64; 6]> = pairs.iter().map(|pair| weights(*pair)).collect();
-        for j in 0..nf {
-            for axis in 0..g_rows.checked_div(nf).unwrap_or(0) {
-                stacked.extend((0..nf).map(|i| gyroscopic(axis, i, j)));
+        let stack = |stiffness: Option<&[Mat<f64>; 6]>| {
+            let mut stacked = Vec::with_capacity((g_rows + pairs.len() * nf) * nf);
+            for j in 0..nf {
+                for axis in 0..g_rows.checked_div(nf).unwrap_or(0) {
+                    stacked.extend((0..nf).map(|i| gyroscopic(axis, i, j)));
+                }
+                for weights in &pair_weights {
+                    let second = |i: usize| of(&body.inertia_second, weights, i, j);
+                    stacked.extend((0..nf).map(|i| second(i) - stiffness.map_or(0.0, |k| of(k, weights, i, j))));
+                }
             }
-            for weights in &pair_weights {
-                stacked.extend((0..nf).map(|i| second(weights, i, j)));
+            stacked
+        };
+        let with_stiffness = stack(stiffness);
+        let own_coupling = own_coupling(&body.circular_frequencies, &with_stiffness, g_rows);
+        let (stacked, spin_stiffness) = match (large_deflection, stiffness) {
+            (Some(manifold), Some(stiffness)) => {
+                let on_modes = 0..manifold.modes();
+                let column = |j: usize| {
+                    let on_modes = on_modes.clone();
+                    let rows = pair_weights.iter().flat_map(move |w| on_modes.clone().map(move |i| (w, i)));
+                    rows.map(move |(weights, i)| of(stiffness, weights, i, j))
+                };
+                (stack(None), on_modes.clone().flat_map(column).collect())
             }
-        }
+            _ => (with_stiffness, Vec::new()),
+        };
         let first = pair_weights
             .iter()
             .map(|weights| {
@@ -295,9 +318,11 @@ impl ConservativeBody {
             drive: drive.clone(),
             s_rows,
             g_rows,
-            own_coupling: own_coupling(&body.circular_frequencies, &stacked, g_rows),
+            own_coupling,
             stacked,
-            drive_stiffness: drive_stiffness.map_or_else(Vec::new, |k| columns(k.as_ref())),
+            drive_stiffness: drive_stiffness
+                .map_or_else(Vec::new, |k| columns(k.get(..modes.flexible(), ..modes.flexible()))),
+            spin_stiffness,
             loads,
             manifold: large_deflection.clone(),
             held: Held::new(body, effects),
@@ -322,7 +347,7 @@ impl ConservativeBody {
     /// Numbers in the matrices that an evaluation reads: what an effect that is off does not cost.
     pub fn matrix_entries(&self) -> usize {
         let of_loads: usize = self.loads.iter().map(|load| load.matrix_entries()).sum();
-        self.stacked.len() + self.drive_stiffness.len() + of_loads
+        self.stacked.len() + self.spin_stiffness.len() + self.drive_stiffness.len() + of_loads
     }
 
     pub(crate) fn evaluation(&self) -> Evaluation {
@@ -347,7 +372,8 @@ impl ConservativeBody {
             s: on_manifold(s_axes * modes),
             solved_s: on_manifold(s_axes * modes),
             modal_sliding: if self.sliding.is_empty() { Vec::new() } else { on_manifold(modes) },
-            drive_stress: zeros(if self.drive_stiffness.is_empty() { 0 } else { nf }),
+            drive_stress: zeros(if self.drive_stiffness.is_empty() { 0 } else { modes }),
+            spin_stress: zeros(if self.spin_stiffness.is_empty() { 0 } else { self.pairs.len() * modes }),
             spin: Vector3::zeros(),
             omega_body: Vector3::zeros(),
             driven_speed: 0.0,
@@ -475,12 +501,17 @@ impl ConservativeBody {
         }
     }
 
-    /// ξ, S_ext(ξ), N_ij ξ, K ξ and J(ξ).
+    /// ξ, S_ext(ξ), N_ij ξ, K q, K_ij q and J.
     fn deform(&self, q: &[f64], e: &mut Evaluation) {
         match &self.manifold {
             Some(manifold) => manifold.go(q, &mut e.place, &mut e.extended),
             None => e.extended.copy_from_slice(q),
         }
+        if !self.drive_stiffness.is_empty() {
+            multiply(&self.drive_stiffness, q.len(), q, &mut e.drive_stress);
+        }
+        multiply(&self.spin_stiffness, e.spin_stress.len(), q, &mut e.spin_stress);
+        let modes = q;
         let q = &e.extended;
         let nf = q.len();
         if !self.stacked.is_empty() {
@@ -496,9 +527,6 @@ impl ConservativeBody {
                 s.copy_from_slice(b);
             }
         }
-        if !self.drive_stiffness.is_empty() {
-            multiply(&self.drive_stiffness, nf, q, &mut e.drive_stress);
-        }
         if self.stacked.is_empty() && self.s_rows == 0 {
             return;
         }
@@ -512,18 +540,25 @@ impl ConservativeBody {
                 inertia[(*j, *i)] += change;
             }
         }
+        for ((i, j), k_q) in self.spin_stresses(&e.spin_stress) {
+            let change = dot(k_q, modes);
+            inertia[(*i, *j)] -= change;
+            if i != j {
+                inertia[(*j, *i)] -= change;
+            }
+        }
         e.inertia = inertia;
         e.locked_inertia = inertia;
         let (s, solved_s, size) = match &self.manifold {
             Some(manifold) => {
-                let modes = self.flexible();
-                let on_modes = e.s.chunks_exact_mut(modes.max(1)).zip(e.solved_s.chunks_exact_mut(modes.max(1)));
+                let count = modes.len();
+                let on_modes = e.s.chunks_exact_mut(count.max(1)).zip(e.solved_s.chunks_exact_mut(count.max(1)));
                 for (s, (on_modes, solved)) in s.chunks_exact(nf.max(1)).zip(on_modes) {
                     manifold.project(&e.place, s, on_modes);
                     solved.copy_from_slice(on_modes);
                     manifold.solve(&e.place, solved);
                 }
-                (&e.s[..], &e.solved_s[..], modes)
+                (&e.s[..], &e.solved_s[..], count)
             }
             None => (s, s, nf),
         };
@@ -536,6 +571,14 @@ impl ConservativeBody {
                 }
             }
         }
+    }
+
+    /// The pairs of axes, each with its K_ij q of `stress`; none but on a manifold.
+    pub(crate) fn spin_stresses<'e>(
+        &'e self,
+        stress: &'e [f64],
+    ) -> impl Iterator<Item = (&'e (usize, usize), &'e [f64])> {
+        self.pairs.iter().zip(stress.chunks_exact(self.flexible().max(1)))
     }
 
     /// (J − SᵀS)⁻¹ x in the axes of rotation.
@@ -593,7 +636,7 @@ impl ConservativeBody {
             if turning { f_inverse(&theta, &e.omega_body).map_err(RateError::Turn)? } else { Vector3::zeros() };
         // Forces in the extended shapes are gathered in a list that is put back below: nothing may fail in between.
         let mut modal_force = std::mem::take(if self.manifold.is_some() { &mut e.force } else { &mut e.momentum });
-        self.inertia_forces(driven_acceleration, e, &mut modal_force);
+        self.inertia_forces(e, &mut modal_force);
         let mut pi_rate = if self.axes.len() == 3 { pi.cross(&w) } else { Vector3::zeros() };
         let mut power = 0.0;
         let (mut force, mut angular_impulse) = (Vector3::zeros(), Vector3::zeros());
@@ -635,6 +678,7 @@ impl ConservativeBody {
             power += force.dot(&velocity);
         }
         self.project_forces(q, speed, modal_force, e);
+        self.add_stress(driven_acceleration, e);
         let mut dissipation = 0.0;
         if self.damped {
             for k in 0..q.len() {
@@ -706,8 +750,8 @@ impl ConservativeBody {
         manifold.extend(&e.place, &e.modal_velocity, &mut e.velocity);
     }
 
-    /// Σ ω_iω_j (c_ij + N_ij ξ) − Σ ω_i G_i ν, and the stress of what is driven.
-    fn inertia_forces(&self, driven_acceleration: f64, e: &mut Evaluation, force: &mut [f64]) {
+    /// Σ ω_iω_j (c_ij + N_ij ξ) − Σ ω_i G_i ν
+    fn inertia_forces(&self, e: &mut Evaluation, force: &mut [f64]) {
         let nf = force.len();
         let w = e.spin;
         let n_q = &e.products[self.s_rows..];
@@ -724,7 +768,16 @@ impl ConservativeBody {
                 *rate += square * (c + n);
             }
         }
-        force.iter_mut().zip(&e.drive_stress).for_each(|(rate, k_q)| *rate += driven_acceleration * k_q);
+    }
+
+    /// Adds to p' what the stress of a drive does, and on a manifold that of the spin.
+    fn add_stress(&self, driven_acceleration: f64, e: &mut Evaluation) {
+        e.momentum.iter_mut().zip(&e.drive_stress).for_each(|(rate, k_q)| *rate += driven_acceleration * k_q);
+        let w = e.spin;
+        for ((i, j), k_q) in self.spin_stresses(&e.spin_stress) {
+            let square = if i == j { w[*i] * w[*j] } else { 2.0 * w[*i] * w[*j] };
+            e.momentum.iter_mut().zip(k_q).for_each(|(rate, k_q)| *rate -= square * k_q);
+        }
     }
 
     /// p' without its linear part and damping: Dᵀ of the forces in the extended shapes, Ḋᵀμ and −∂V_n/∂q.
@@ -767,16 +820,8 @@ impl ConservativeBody {
         let [after, _] = on_side(state, state.time + aside, e)?;
         let [before, held] = on_side(state, state.time - aside, e)?;
         let jump = after - before;
-        match &self.manifold {
-            Some(manifold) if !self.drive_stiffness.is_empty() => {
-                e.change.iter_mut().zip(&e.drive_stress).for_each(|(push, k_q)| *push = jump * k_q);
-                manifold.add_projection(&e.place, &e.change, &mut state.modal_momentum);
-            }
-            _ => {
-                let push = state.modal_momentum.iter_mut().zip(&e.drive_stress);
-                push.for_each(|(p, k_q)| *p += jump * k_q);
-            }
-        }
+        let push = state.modal_momentum.iter_mut().zip(&e.drive_stress);
+        push.for_each(|(p, k_q)| *p += jump * k_q);
         let [_, given] = on_side(state, state.time + aside, e)?;
         state.slow[part::WORK] += 0.5 * (before + after) * (given - held);
         Ok(())

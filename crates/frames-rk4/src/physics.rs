@@ -93,7 +93,8 @@ pub struct Physics {
     /// Geometric stiffness Ψ_fᵀ K Ψ_f (nf×nf, symmetric) of the static answer to the forces `M (1⊗e)` of a unit
     /// acceleration of a driven slide along e, or `M (I⊗[a×]) X` of a driven turn about a.
     pub drive_stiffness: Option<Mat<f64>>,
-    /// The manifold of large modes. Points, loads and `drive_stiffness` are then in its extended shapes.
+    /// The manifold of large modes. Points, loads and `drive_stiffness` are then in its extended shapes; of the stiffness that
+    /// of the modes counts.
     pub large_deflection: Option<Manifold>,
 }
 

@@ -109,7 +109,7 @@ impl ConservativeBody {
             }
         };
         // What of the driven momentum is not in p.
-        let stressed = e.driven_speed * dot(&e.drive_stress, &e.velocity);
+        let stressed = e.driven_speed * dot(&e.drive_stress, &e.modal_velocity);
         let kinetic = 0.5 * (moving + dot(&state.modal_momentum, &e.modal_velocity) - stressed);
         (kinetic, self.strain_energy(q))
     }
