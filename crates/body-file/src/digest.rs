@@ -2,11 +2,17 @@
 //! as the memory.
 
 use std::fmt;
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::Path;
+use std::str::FromStr;
 
 use bytemuck::NoUninit;
 
 /// More bytes than these are hashed on all cores.
 const PARALLEL: usize = 1 << 20;
+/// Bytes of a file that are read at a time.
+const BLOCK: usize = 4 << 20;
 
 /// The hash of a content, 32 bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -20,9 +26,34 @@ impl Hash {
         Self(*hasher.finalize().as_bytes())
     }
 
+    /// Of the bytes of a file.
+    ///
+    /// # Errors
+    /// Those of the system.
+    pub fn of_file(path: &Path) -> io::Result<Self> {
+        let mut hasher = blake3::Hasher::new();
+        let mut file = File::open(path)?;
+        let mut block = vec![0; BLOCK];
+        loop {
+            match file.read(&mut block)? {
+                0 => return Ok(Self(*hasher.finalize().as_bytes())),
+                count => update(&mut hasher, &block[..count]),
+            }
+        }
+    }
+
     /// Its bytes.
     pub fn as_bytes(&self) -> &[u8; 32] {
         &self.0
+    }
+}
+
+/// From hexadecimal digits.
+impl FromStr for Hash {
+    type Err = blake3::HexError;
+
+    fn from_str(digits: &str) -> Result<Self, Self::Err> {
+        blake3::Hash::from_hex(digits).map(|hash| Self(*hash.as_bytes()))
     }
 }
 
@@ -71,5 +102,9 @@ impl Digest {
 }
 
 fn update(hasher: &mut blake3::Hasher, bytes: &[u8]) {
-    if bytes.len() > PARALLEL { hasher.update_rayon(bytes) } else { hasher.update(bytes) };
+    if bytes.len() > PARALLEL {
+        hasher.update_rayon(bytes)
+    } else {
+        hasher.update(bytes)
+    };
 }

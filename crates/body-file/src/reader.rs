@@ -1,10 +1,11 @@
 //! Reads a body file, without HDF5.
 
+use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
-use crate::array::{Array, Number, bytes};
+use crate::array::{Array, Kind, Number, bytes};
 use crate::digest::Hash;
 use crate::error::BodyFileError;
 use crate::head::Description;
@@ -54,6 +55,17 @@ impl BodyFile {
         self.description.datasets.contains_key(dataset)
     }
 
+    /// The kind, the shape and the hash (in hexadecimal digits) of a dataset, without a look at its numbers.
+    pub fn described(&self, dataset: &str) -> Option<(Kind, &[usize], &str)> {
+        let place = self.description.datasets.get(dataset)?;
+        Some((place.kind, &place.shape, &place.hash))
+    }
+
+    /// The texts by name.
+    pub fn attributes(&self) -> &BTreeMap<String, String> {
+        &self.description.attributes
+    }
+
     /// Reads a dataset, whose content must be what was written.
     ///
     /// # Errors
@@ -71,9 +83,7 @@ impl BodyFile {
         };
         let mut values = Vec::new();
         let room = values.try_reserve_exact(count);
-        room.map_err(|_| {
-            BodyFileError::system(&self.path, "read the file")(std::io::ErrorKind::OutOfMemory.into())
-        })?;
+        room.map_err(|_| BodyFileError::system(&self.path, "read the file")(std::io::ErrorKind::OutOfMemory.into()))?;
         values.resize(count, T::zeroed());
         let mut file = &self.file;
         if count > 0 {
