@@ -17,6 +17,9 @@ use body_file::{Digest, Hash};
 const LIMIT: u64 = 4 << 30;
 /// The folder of flexframe in that of the caches.
 const NAME: &str = "flexframe";
+/// Digits of the names of folders.
+const PROGRAM_DIGITS: usize = 16;
+const MESH_DIGITS: usize = 64;
 
 /// Where answers are kept from run to run; nowhere by default. Clones share what [`Cache::notes`] counts.
 #[derive(Debug, Clone, Default)]
@@ -147,8 +150,7 @@ impl Cache {
     /// Removes the files that were used longest ago until the others are within the limit. Others may do the same at once.
     pub(crate) fn trim(&self) {
         let Some(folder) = self.folder() else { return };
-        let mut files = Vec::new();
-        list(folder, 2, &mut files);
+        let mut files = list(folder);
         let mut bytes: u64 = files.iter().map(|(_, bytes, _)| bytes).sum();
         files.sort();
         for (_, size, path) in files {
@@ -187,18 +189,32 @@ pub(crate) fn touch(path: &Path) {
     let _ = File::options().append(true).open(path).and_then(|file| file.set_modified(SystemTime::now()));
 }
 
-/// When each file was used last, its bytes, and its path.
-fn list(folder: &Path, depth: usize, files: &mut Vec<(SystemTime, u64, PathBuf)>) {
-    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
-        // Links are not followed.
-        match entry.metadata() {
-            Ok(found) if found.is_dir() && depth > 0 => list(&entry.path(), depth - 1, files),
-            Ok(found) if found.is_file() => {
+/// When each file of the cache was used last, its bytes, and its path. Whatever else is in the folder is left alone.
+fn list(folder: &Path) -> Vec<(SystemTime, u64, PathBuf)> {
+    let mut files = Vec::new();
+    for entry in hashed(folder, PROGRAM_DIGITS).iter().flat_map(|program| hashed(program, MESH_DIGITS)) {
+        for entry in entries(&entry).filter(|entry| entry.path().extension() == Some("h5".as_ref())) {
+            // Links are not followed.
+            if let Some(found) = entry.metadata().ok().filter(fs::Metadata::is_file) {
                 files.push((found.modified().unwrap_or(UNIX_EPOCH), found.len(), entry.path()));
             }
-            _ => {}
         }
     }
+    files
+}
+
+/// The folders in a folder whose names are so many hexadecimal digits.
+fn hashed(folder: &Path, digits: usize) -> Vec<PathBuf> {
+    let is_hash = |name: &str| name.len() == digits && name.bytes().all(|byte| byte.is_ascii_hexdigit());
+    entries(folder)
+        .filter(|entry| entry.file_name().to_str().is_some_and(is_hash))
+        .filter(|entry| entry.file_type().is_ok_and(|kind| kind.is_dir()))
+        .map(|entry| entry.path())
+        .collect()
+}
+
+fn entries(folder: &Path) -> impl Iterator<Item = fs::DirEntry> {
+    fs::read_dir(folder).into_iter().flatten().flatten()
 }
 
 /// The program and the machine, whose answers are the same to the last bit: the version, the size and the time of the file
@@ -208,7 +224,7 @@ fn program() -> String {
     let built = file.map(|file| (file.len(), file.modified().ok()));
     let text = format!("{} {} {built:?} {}", env!("CARGO_PKG_VERSION"), std::env::consts::ARCH, features());
     let digits = Digest::new().text(&text).finish().to_string();
-    digits[..16].to_owned()
+    digits[..PROGRAM_DIGITS].to_owned()
 }
 
 /// Sets of instructions that faer chooses from.
