@@ -84,12 +84,14 @@ bench:
 bench-modes: build
     crates/modal/benches/peer/run
 
-# Read a results file with h5py, as a user would (Python packages).
+# Read a results file and a body file with h5py, as a user would (Python packages).
 h5py: build
     {{flexframe}} run examples/ring.toml -o out/ring --overwrite
     python3 -m venv --upgrade-deps .tools/h5py >/dev/null
     .tools/h5py/bin/pip install -q h5py
     .tools/h5py/bin/python crates/results/tests/read_with_h5py.py out/ring/ring.h5
+    {{flexframe}} reduce examples/ring.toml -o out/ring/ring.body.h5 --matrices
+    .tools/h5py/bin/python crates/flexframe/tests/read_body_with_h5py.py out/ring/ring.body.h5 out/ring/ring.h5
 
 # Read exports with VTK's own readers, and compare them with the modes (Python packages, 150 MB).
 paraview: build

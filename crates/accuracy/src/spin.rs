@@ -22,7 +22,7 @@ pub(super) fn spin_rates(scene: &Scene) -> Result<Vec<SpinRow>, BuildError> {
     let end = scene.time.end;
     let mut rows = Vec::new();
     let assembly = Assembly::new(scene, |_| ())?;
-    let mut builder = assembly.builder(scene)?;
+    let mut builder = assembly.builder()?;
     let model = builder.build(scene, |_| ())?;
     let most = model.body.flexible() - model.static_shapes();
     for flexible in [most / 2, most] {

@@ -37,6 +37,23 @@ impl Surface {
     }
 }
 
+/// The faces that only one tetrahedron has, seen from outside, in the order of the elements.
+pub(crate) fn outer(elements: &[[u32; 10]]) -> Vec<[u32; 6]> {
+    let mut faces: Vec<([u32; 3], usize, [u32; 6])> = Vec::with_capacity(4 * elements.len());
+    for element in elements {
+        for face in FACES {
+            let nodes = face.map(|a| element[a]);
+            let mut corners = [nodes[0], nodes[1], nodes[2]];
+            corners.sort_unstable();
+            faces.push((corners, faces.len(), nodes));
+        }
+    }
+    faces.sort_unstable();
+    let mut outer: Vec<_> = faces.chunk_by(|a, b| a.0 == b.0).filter(|same| same.len() == 1).flatten().collect();
+    outer.sort_unstable_by_key(|(_, place, _)| *place);
+    outer.into_iter().map(|(_, _, nodes)| *nodes).collect()
+}
+
 /// Finds the faces of the body that the triangles of each group are; a face that a group has twice counts once.
 pub(crate) fn resolve(
     source: &str,

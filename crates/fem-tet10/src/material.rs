@@ -6,7 +6,7 @@ use crate::error::AssemblyError;
 use crate::mesh::Mesh;
 
 /// An isotropic, linearly elastic material.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Deserialize, serde::Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Material {
     /// Young's modulus E, force per area.

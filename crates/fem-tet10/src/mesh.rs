@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use crate::error::MeshError;
 use crate::faces::{self, Surface};
 use crate::integration::{self, BadJacobian};
-use crate::parts::{MeshParts, NodeGroup};
+use crate::parts::{MeshParts, NodeGroup, SurfaceGroup};
 use crate::tags::{index_nodes, resolve_tags};
 
 /// What is grouped, by its dimension.
@@ -109,6 +109,33 @@ impl Mesh {
         Ok(mesh)
     }
 
+    /// The parts that [`Mesh::new`] makes the same mesh of.
+    pub fn parts(&self) -> MeshParts {
+        let tag = |node: u32| self.node_tags[node as usize];
+        let surface = |surface: &Surface| SurfaceGroup {
+            name: surface.name.clone(),
+            triangle_tags: surface.faces.iter().map(|face| face.tag).collect(),
+            triangles: surface.faces.iter().map(|face| face.nodes.map(tag)).collect(),
+        };
+        let node_group = |set: &NodeSet| NodeGroup {
+            name: set.name.clone(),
+            dimension: KINDS.iter().position(|kind| *kind == set.kind).unwrap_or(0),
+            nodes: set.nodes.iter().map(|node| tag(*node)).collect(),
+        };
+        MeshParts {
+            source: self.source.clone(),
+            node_tags: self.node_tags.clone(),
+            positions: self.positions.clone(),
+            element_tags: self.element_tags.clone(),
+            elements: self.elements.iter().map(|nodes| nodes.map(tag)).collect(),
+            groups: self.groups.clone(),
+            regions: self.regions.clone(),
+            element_regions: self.element_regions.clone(),
+            surfaces: self.surfaces.iter().map(surface).collect(),
+            node_groups: self.node_sets.iter().map(node_group).collect(),
+        }
+    }
+
     /// What the mesh is called in messages: its file.
     pub fn source(&self) -> &str {
         &self.source
@@ -142,6 +169,11 @@ impl Mesh {
     /// Indices of the groups that an element is in: none, one or several.
     pub fn element_groups(&self, element: usize) -> &[usize] {
         self.element_regions.get(element).map_or(&[], |region| &self.regions[*region])
+    }
+
+    /// Node indices of the faces on the surface of the body, seen from outside: corners, then mid-edges 01 12 20.
+    pub fn outer_faces(&self) -> Vec<[u32; 6]> {
+        faces::outer(&self.elements)
     }
 
     /// The surface physical groups.

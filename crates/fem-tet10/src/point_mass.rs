@@ -10,7 +10,7 @@ use crate::mesh::Mesh;
 const MOST_CARRIERS: usize = 500;
 
 /// A mass at a point of the body.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Deserialize, serde::Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct PointMass {
     /// Where, in the mesh's frame.

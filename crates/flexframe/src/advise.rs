@@ -129,7 +129,7 @@ pub fn advise(scene: &Scene, verify: bool, mut progress: impl FnMut(AdviseProgre
     }
     let scene = &scene;
     let assembly = Assembly::new(scene, |p| progress(AdviseProgress::Build(p)))?;
-    let mut builder = assembly.builder(scene)?;
+    let mut builder = assembly.builder()?;
     let model = builder.build(scene, |p| progress(AdviseProgress::Build(p)))?;
     let step = step_row(scene, &model);
     let rows = model.advice.rows().chain([(Subject::Step, &step)]).map(|(subject, row)| EffectRow {

@@ -11,8 +11,9 @@ use flexframe::cost::{self, CostSettings};
 use flexframe::export::{self, ExportRows, Exported, Motion};
 use flexframe::failure::{Details, Failure, FailureReport, Kind};
 use flexframe::run::{RunProgress, RunSettings};
-use flexframe::{advise, html_report, mode_shapes, modes, paper, run};
-use scene::{BuildError, Flexible, Scene, SceneError};
+use flexframe::sweep::SweepSettings;
+use flexframe::{advise, html_report, mode_shapes, modes, paper, run, sweep};
+use scene::{BuildError, Cache, Flexible, Scene, SceneError};
 
 use crate::cli_error::CliError;
 use crate::progress::Bar;
@@ -29,6 +30,9 @@ struct Cli {
     /// Threads for meshes and modes; all cores if not given. The results are the same for any number.
     #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256))]
     threads: Option<u16>,
+    /// Neither read nor keep what was computed of a mesh before (in $XDG_CACHE_HOME/flexframe or ~/.cache/flexframe).
+    #[arg(long, global = true)]
+    no_cache: bool,
     #[command(subcommand)]
     command: Command,
 }
@@ -56,6 +60,17 @@ enum Command {
         /// Print the summary as JSON, for scripts, and errors as JSON on standard error.
         #[arg(long)]
         json: bool,
+    },
+    /// Reduce a scene's body and write it to a file (docs/body.md) that scenes name as `file` in [body].
+    Reduce {
+        #[command(flatten)]
+        scene: SceneArgs,
+        /// The body file to write.
+        #[arg(short, long, value_name = "FILE")]
+        output: PathBuf,
+        /// Write the mass and stiffness matrices, too.
+        #[arg(long)]
+        matrices: bool,
     },
     /// Find natural frequencies and mode shapes of a scene's body.
     Modes {
@@ -181,6 +196,23 @@ enum Command {
         #[arg(short, long, value_name = "FILE")]
         output: Option<PathBuf>,
     },
+    /// Run a scene with many values of its keys, and write a table of parameters and results (docs/cli.md).
+    ///
+    /// A row that fails is marked with its words, and the others go on. Run again, it does the rows that are not done.
+    Sweep {
+        /// The file of the sweep: a scene, parameters and results.
+        #[arg(value_name = "SWEEP")]
+        sweep: PathBuf,
+        /// The table to write [default: out/<name of the sweep file>.h5].
+        #[arg(short, long, value_name = "FILE")]
+        output: Option<PathBuf>,
+        /// Replace the table, whatever is in it.
+        #[arg(long)]
+        overwrite: bool,
+        /// Print the summary as JSON, for scripts, and errors as JSON on standard error.
+        #[arg(long)]
+        json: bool,
+    },
     /// Run a scene and draw it as an animated GIF.
     Animate {
         /// The scene file.
@@ -242,18 +274,28 @@ pub fn main() -> ExitCode {
     }
 }
 
-fn settings(signals: &Signals, overwrite: bool) -> RunSettings {
-    RunSettings { overwrite, stop: signals.stop() }
+fn settings(signals: &Signals, overwrite: bool, cache: &Cache) -> RunSettings {
+    RunSettings { overwrite, stop: signals.stop(), cache: cache.clone() }
 }
 
-fn execute(cli: Cli, json_errors: bool) -> Result<(), Box<dyn Failure>> {
+fn execute(cli: Cli, json: bool) -> Result<(), Box<dyn Failure>> {
+    let cache = if cli.no_cache { Cache::none() } else { Cache::of_user() };
+    let done = command(cli, json, &cache);
+    if !json {
+        output::notes(&cache.notes());
+    }
+    done
+}
+
+fn command(cli: Cli, json_errors: bool, cache: &Cache) -> Result<(), Box<dyn Failure>> {
+    let read = |path: PathBuf| Scene::read(path).map(|scene| Scene { cache: cache.clone(), ..scene });
     let signals = Signals::listen(json_errors).map_err(CliError::Signals)?;
     threads::start(cli.threads)?;
     let mut bar = Bar::new();
     match cli.command {
         Command::Run { scene: SceneArgs { scene, json }, output, files } => {
-            let scene = Scene::read(scene)?;
-            let settings = settings(&signals, files.overwrite);
+            let scene = read(scene)?;
+            let settings = settings(&signals, files.overwrite, cache);
             let (_, report) = run::run(&scene, &folder(&scene, output), &settings, |p| {
                 signals.heard(p);
                 bar.run(p);
@@ -262,15 +304,22 @@ fn execute(cli: Cli, json_errors: bool) -> Result<(), Box<dyn Failure>> {
             output::print(&report, json)
         }
         Command::Resume { file, json } => {
-            let (_, _, report) = run::resume(&file, &settings(&signals, false), |p| {
+            let (_, _, report) = run::resume(&file, &settings(&signals, false, cache), |p| {
                 signals.heard(p);
                 bar.run(p);
             })?;
             drop(bar);
             output::print(&report, json)
         }
+        Command::Reduce { scene: SceneArgs { scene, json }, output, matrices } => {
+            let scene = read(scene)?;
+            let report = modes::reduce(&scene, &output, matrices, |p| bar.build(p))?;
+            drop(bar);
+            output::print(&report, json)?;
+            if json { Ok(()) } else { output::list(&[output]) }
+        }
         Command::Modes { scene: SceneArgs { scene, json }, flexible, output } => {
-            let mut scene = Scene::read(scene)?;
+            let mut scene = read(scene)?;
             if let Some(count) = flexible {
                 scene.modes.flexible = Flexible::Count(count);
             }
@@ -292,7 +341,7 @@ fn execute(cli: Cli, json_errors: bool) -> Result<(), Box<dyn Failure>> {
             Ok(())
         }
         Command::Advise { scene: SceneArgs { scene, json }, verify } => {
-            let report = advise::advise(&Scene::read(scene)?, verify, |p| bar.advise(p))?;
+            let report = advise::advise(&read(scene)?, verify, |p| bar.advise(p))?;
             drop(bar);
             output::print(&report, json)
         }
@@ -304,7 +353,7 @@ fn execute(cli: Cli, json_errors: bool) -> Result<(), Box<dyn Failure>> {
             flexible,
             output,
         } => {
-            let mut scene = Scene::read(scene)?;
+            let mut scene = read(scene)?;
             if let Some(count) = flexible {
                 scene.modes.flexible = Flexible::Count(count);
             }
@@ -315,8 +364,8 @@ fn execute(cli: Cli, json_errors: bool) -> Result<(), Box<dyn Failure>> {
             output::print(&report, json)
         }
         Command::Paper { scene: SceneArgs { scene, json }, output, files } => {
-            let scene = Scene::read(scene)?;
-            let settings = settings(&signals, files.overwrite);
+            let scene = read(scene)?;
+            let settings = settings(&signals, files.overwrite, cache);
             let report = paper::reproduce(&scene, &folder(&scene, output), &settings, |p| {
                 signals.heard(p);
                 bar.run(p);
@@ -325,7 +374,7 @@ fn execute(cli: Cli, json_errors: bool) -> Result<(), Box<dyn Failure>> {
             output::print(&report, json)
         }
         Command::Cost { scene: SceneArgs { scene, json }, output, target, patience } => {
-            let scene = Scene::read(scene)?;
+            let scene = read(scene)?;
             let settings = CostSettings { target, ..CostSettings::with_patience(patience) };
             let report = cost::price_list(&scene, &folder(&scene, output), settings, |p| bar.cost(p))?;
             drop(bar);
@@ -338,7 +387,7 @@ fn execute(cli: Cli, json_errors: bool) -> Result<(), Box<dyn Failure>> {
                 done.push(export::export_csv(&file, &csv, &columns, &rows)?);
             }
             if vtkhdf.is_some() || vtu.is_some() || modes.is_some() {
-                let motion = Motion::open(&file, volume, |p| bar.build(p))?;
+                let motion = Motion::open(&file, volume, cache, |p| bar.build(p))?;
                 let mut moved = |part: f64| bar.run(RunProgress::Motion(part));
                 if let Some(vtkhdf) = vtkhdf {
                     done.push(export::export_vtkhdf(&file, &motion, &vtkhdf, &rows, &mut moved)?);
@@ -359,12 +408,21 @@ fn execute(cli: Cli, json_errors: bool) -> Result<(), Box<dyn Failure>> {
         }
         Command::Report { file, output } => {
             let output = output.unwrap_or_else(|| file.with_extension("html"));
-            html_report::write(&file, &output, |p| bar.build(p))?;
+            html_report::write(&file, &output, cache, |p| bar.build(p))?;
             drop(bar);
             output::list(&[output])
         }
+        Command::Sweep { sweep: file, output, overwrite, json } => {
+            let output = output.unwrap_or_else(|| {
+                Path::new("out").join(file.file_stem().unwrap_or("sweep".as_ref())).with_extension("h5")
+            });
+            let settings = SweepSettings { overwrite, threads: rayon::current_num_threads(), cache: cache.clone() };
+            let report = sweep::sweep(&file, &output, &settings, |p| bar.sweep(p))?;
+            drop(bar);
+            output::print(&report, json)
+        }
         Command::Animate { scene, output, frames, magnify } => {
-            let scene = Scene::read(scene)?;
+            let scene = read(scene)?;
             animate(&scene, &output, AnimationSettings { frames, magnification: magnify }, |p| bar.run(p))?;
             drop(bar);
             output::list(&[output])

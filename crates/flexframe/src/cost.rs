@@ -70,13 +70,13 @@ pub fn price_list(
     mut progress: impl FnMut(CostProgress),
 ) -> Result<CostReport, CostError> {
     let assembly = Assembly::new(scene, |p| progress(CostProgress::Build(p)))?;
-    let mut builder = assembly.builder(scene)?;
+    let mut builder = assembly.builder()?;
     let model = builder.build(scene, |p| progress(CostProgress::Build(p)))?;
     let flexible = model.body.flexible() - model.static_shapes();
     // The same effects with each number of modes, and no static shapes, which stand for modes that are left out.
     let mut settled = settled(scene, &model, Some((Subject::StaticCorrection, false)));
     let mut with_modes = Vec::new();
-    for count in modes::counts(flexible, builder.available()).into_iter().rev() {
+    for count in modes::counts(flexible, builder.available()?).into_iter().rev() {
         settled.modes.flexible = Flexible::Count(count);
         with_modes.insert(0, builder.build(&settled, |p| progress(CostProgress::Build(p)))?);
     }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use report::ReportError;
 use results::{FileError, Results};
-use scene::{BuildError, BuildProgress, Model, Scene, SceneError};
+use scene::{BuildError, BuildProgress, Cache, Model, Scene, SceneError};
 
 use crate::columns::COLUMNS;
 use crate::{run, scene_file};
@@ -44,9 +44,15 @@ pub enum HtmlReportError {
 ///
 /// # Errors
 /// [`HtmlReportError`].
-pub fn write(file: &Path, path: &Path, progress: impl FnMut(BuildProgress)) -> Result<(), HtmlReportError> {
+pub fn write(
+    file: &Path,
+    path: &Path,
+    cache: &Cache,
+    progress: impl FnMut(BuildProgress),
+) -> Result<(), HtmlReportError> {
     let results = Results::open(file, &COLUMNS)?;
     let scene = Scene::parse(&results.metadata.scene_text, scene_file::to_path(&results.metadata.scene_file))?;
+    let scene = Scene { cache: cache.clone(), ..scene };
     let model = Model::build(&scene, progress)?;
     let changed = |what| HtmlReportError::Changed { results: file.to_owned(), what };
     let now = run::metadata(&scene, &model);

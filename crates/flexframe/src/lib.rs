@@ -40,4 +40,5 @@ pub mod row;
 pub mod run;
 mod scene_file;
 pub mod surface;
+pub mod sweep;
 pub mod write_error;

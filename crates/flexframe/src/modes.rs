@@ -1,6 +1,7 @@
 //! `flexframe modes`: natural frequencies and mode shapes of a scene's body.
 
 use std::fmt;
+use std::path::Path;
 
 use frames_rk4::Effect;
 use scene::{Body, BuildError, BuildProgress, Choice, Flexible, Meshed, Model, Scene, SceneError};
@@ -23,6 +24,32 @@ pub struct ModesReport {
     pub times: Times,
 }
 
+impl ModesReport {
+    fn new(scene: &Scene, model: &Model) -> Self {
+        Self {
+            title: scene.title.clone(),
+            frequency_unit: frequency_unit(&scene.units.time),
+            mesh: MeshReport::new(model),
+            body: BodyReport::new(model),
+            times: Times::of_model(model),
+        }
+    }
+}
+
+/// Reduces a scene's body as a run of it asks for, and writes it to a body file; with `matrices`, mass and stiffness are in it.
+///
+/// # Errors
+/// [`BuildError`].
+pub fn reduce(
+    scene: &Scene,
+    output: &Path,
+    matrices: bool,
+    progress: impl FnMut(BuildProgress),
+) -> Result<ModesReport, BuildError> {
+    let model = Model::write_body(scene, output, matrices, progress)?;
+    Ok(ModesReport::new(scene, &model))
+}
+
 /// Finds the modes of a scene's body.
 ///
 /// # Errors
@@ -35,13 +62,7 @@ pub fn modes(scene: &Scene, progress: impl FnMut(BuildProgress)) -> Result<(Mode
     scene.effects.choices[Effect::Damping] = Choice::On;
     scene.effects.choices[Effect::GeometricStiffening] = Choice::Off;
     let model = Model::build(&scene, progress)?;
-    let report = ModesReport {
-        title: scene.title.clone(),
-        frequency_unit: frequency_unit(&scene.units.time),
-        mesh: MeshReport::new(&model),
-        body: BodyReport::new(&model),
-        times: Times::of_model(&model),
-    };
+    let report = ModesReport::new(&scene, &model);
     Ok((model, report))
 }
 

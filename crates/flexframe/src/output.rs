@@ -5,6 +5,7 @@ use std::io::{self, ErrorKind, Write};
 use std::path::PathBuf;
 
 use flexframe::failure::{Failure, FailureReport};
+use scene::CacheNotes;
 use serde::Serialize;
 
 use crate::cli_error::CliError;
@@ -23,6 +24,27 @@ pub fn list(files: &[PathBuf]) -> Result<(), Box<dyn Failure>> {
 /// Prints what should be known of files.
 pub fn warn(warning: Option<&str>) -> Result<(), Box<dyn Failure>> {
     Ok(warning.map_or(Ok(()), |warning| line(&format!("  warning  {warning}")))?)
+}
+
+/// Tells on standard error what the cache was good for.
+pub fn notes(notes: &CacheNotes) {
+    let &CacheNotes { read, computed, assembled, .. } = notes;
+    let used = match (read, computed, assembled) {
+        (0, ..) => None,
+        (_, 0, _) => {
+            Some("the body was reduced before: all that it needs was read from its file or the cache".to_owned())
+        }
+        (_, _, 0) => {
+            Some(format!("of the body, {read} parts were read from its file or the cache, {computed} were computed"))
+        }
+        _ => {
+            Some(format!("of the body, {read} parts were read from its file or the cache, {computed} were solved for"))
+        }
+    };
+    for text in used.iter().chain(notes.warnings.iter()) {
+        // Where it cannot be written, nothing is lost but words.
+        let _ = writeln!(io::stderr(), "note: {text}");
+    }
 }
 
 fn line(line: &str) -> Result<(), CliError> {

@@ -6,6 +6,7 @@ use flexframe::advise::AdviseProgress;
 use flexframe::campbell::CampbellProgress;
 use flexframe::cost::CostProgress;
 use flexframe::run::RunProgress;
+use flexframe::sweep::SweepProgress;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use modal::Progress;
 use scene::BuildProgress;
@@ -62,6 +63,13 @@ impl Bar {
         match progress {
             CostProgress::Build(progress) => self.build(progress),
             CostProgress::Measuring { done, total } => self.show("measuring", Some((done, total))),
+        }
+    }
+
+    pub fn sweep(&mut self, progress: SweepProgress) {
+        match progress {
+            SweepProgress::Build(progress) => self.build(progress),
+            SweepProgress::Rows { done, total } => self.show("sweeping", Some((done, total))),
         }
     }
 

@@ -41,18 +41,32 @@ pub fn run(
     let path = results_path(scene, folder);
     Writer::<Row>::check(&path, settings.overwrite)?;
     let model = Model::build(scene, |p| progress(RunProgress::Build(p)))?;
+    let report = run_model(scene, &model, folder, settings, progress)?;
+    Ok((model, report))
+}
 
+/// The same of a model that is there already.
+///
+/// # Errors
+/// As [`run`].
+pub fn run_model(
+    scene: &Scene,
+    model: &Model,
+    folder: &Path,
+    settings: &RunSettings,
+    mut progress: impl FnMut(RunProgress),
+) -> Result<RunReport, RunError> {
+    let path = results_path(scene, folder);
     let started = Instant::now();
-    let mut simulation = start(scene, &model)?;
+    let mut simulation = start(scene, model)?;
     let checkpoint = simulation.checkpoint().map_err(|source| RunError::Restore { part: path.clone(), source })?.len();
     let expected = Expected { rows: expected_rows(scene), checkpoint, overwrite: settings.overwrite };
-    let writer = Writer::create(&path, &metadata(scene, &model), &COLUMNS, expected)?;
+    let writer = Writer::create(&path, &metadata(scene, model), &COLUMNS, expected)?;
     progress(RunProgress::Motion(0.0));
     let initial = model.initial(scene);
-    let mut recorder = Recorder::new(scene, &model, &initial, writer)?;
+    let mut recorder = Recorder::new(scene, model, &initial, writer)?;
     recorder.begin(&mut simulation)?;
-    let report = recorder.follow(simulation, started, settings, progress)?;
-    Ok((model, report))
+    recorder.follow(simulation, started, settings, progress)
 }
 
 /// Goes on with a run that was cut off, from the last checkpoint in its unfinished file (which may be given by the name
@@ -69,6 +83,7 @@ pub fn resume(
     let Resumed { writer, results, checkpoint } = Writer::resume(file, &COLUMNS)?;
     let part = writer.unfinished().to_path_buf();
     let scene = Scene::parse(&results.metadata.scene_text, scene_file::to_path(&results.metadata.scene_file))?;
+    let scene = Scene { cache: settings.cache.clone(), ..scene };
     let model = Model::build(&scene, |p| progress(RunProgress::Build(p)))?;
     let started = Instant::now();
     let mut simulation = start(&scene, &model)?;

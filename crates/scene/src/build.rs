@@ -1,7 +1,10 @@
 //! From a scene to a body that can move.
 
+mod answer;
+mod answers;
 mod assembly;
 mod backbones;
+mod body_writer;
 mod builder;
 mod damping;
 mod decide;
@@ -12,6 +15,7 @@ mod initial;
 mod loads;
 mod manifold;
 mod mesh;
+mod mesh_arrays;
 mod mesh_model;
 mod meshed;
 mod modal_model;
@@ -22,10 +26,13 @@ mod progress;
 mod reduce;
 mod rigid;
 mod site_stress;
+mod solved;
 mod statics;
+mod store;
 mod stress;
 mod stress_left_out;
 mod stress_shapes;
+mod structure;
 mod support;
 mod survey;
 mod turning;
@@ -48,7 +55,7 @@ impl Model {
     /// [`BuildError`]: what the mesh, the materials or the modes refuse, with the place in the scene file where
     /// there is one.
     pub fn build(scene: &Scene, mut progress: impl FnMut(BuildProgress)) -> Result<Self, BuildError> {
-        Assembly::new(scene, &mut progress)?.builder(scene)?.into_model(scene, progress)
+        Assembly::new(scene, &mut progress)?.builder()?.into_model(scene, progress)
     }
 }
 

@@ -3,6 +3,7 @@
 use std::io::{self, Read};
 use std::path::Path;
 
+use crate::cache::Cache;
 use crate::check::Check;
 use crate::document::Document;
 use crate::error::SceneError;
@@ -81,6 +82,7 @@ impl Scene {
             output,
             path: path.to_owned(),
             source: text.to_owned(),
+            cache: Cache::none(),
         })
     }
 

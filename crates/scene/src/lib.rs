@@ -32,6 +32,7 @@
 #![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable))]
 
 mod build;
+mod cache;
 mod check;
 mod constraint;
 mod deserialize;
@@ -44,6 +45,7 @@ mod history;
 mod load;
 mod modes;
 mod ordinary_file;
+mod origin;
 mod place;
 mod scene;
 mod section;
@@ -55,6 +57,7 @@ mod unit_vector;
 pub use build::{
     Assembly, BodyStress, BuildError, BuildProgress, BuildTimes, Meshed, Model, ModelBuilder, StartError, StressPeak,
 };
+pub use cache::{Cache, CacheNotes};
 pub use constraint::{Constraint, HeldDirections, HingeLine, Region};
 pub use effects::{Choice, Effects};
 pub use error::SceneError;

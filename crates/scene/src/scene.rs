@@ -11,6 +11,7 @@ use fem_tet10::{Materials, PointMass};
 use frames_rk4::{Method, Rows, StepControl};
 use serde::Deserialize;
 
+use crate::cache::Cache;
 use crate::constraint::Constraint;
 use crate::effects::Effects;
 use crate::load::Load;
@@ -45,6 +46,8 @@ pub struct Scene {
     pub path: PathBuf,
     /// The text of the scene file, for the results file and for the places of later errors.
     pub source: String,
+    /// Where the answers of the finite-element model are kept from run to run; nowhere, until the program says so.
+    pub cache: Cache,
 }
 
 /// Labels of the units. The program never converts: they are shown, not used.
@@ -71,12 +74,14 @@ pub enum Body {
 /// A body of finite elements.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeshedBody {
-    /// The mesh file, already resolved against the folder of the scene file.
+    /// The mesh file, already resolved against the folder of the scene file; of a body from a body file, what that was made of.
     pub mesh: PathBuf,
     /// What the elements are made of: key `material` for the whole mesh, or `materials` by the name of the physical group.
     pub materials: Materials,
     /// Masses added at points; default none.
     pub point_masses: Vec<PointMass>,
+    /// Key `file`: the body file that the body comes from, in place of the mesh file, already resolved.
+    pub file: Option<PathBuf>,
 }
 
 /// A rigid body without a mesh. Its axes are those of the scene's positions ("mesh axes" elsewhere).

@@ -41,6 +41,7 @@ pub(crate) struct Sections {
 #[serde(deny_unknown_fields)]
 pub(crate) struct BodySection {
     pub mesh: Option<String>,
+    pub file: Option<String>,
     pub material: Option<Material>,
     pub materials: Option<BTreeMap<String, Material>>,
     #[serde(default)]

@@ -6,7 +6,7 @@ use faer::ColRef;
 use nalgebra::{Matrix3, Vector3};
 use results::{CellKind, Grid, Results};
 use rigid_kin::Attitude;
-use scene::{BuildProgress, Meshed, Model, Scene};
+use scene::{BuildProgress, Cache, Meshed, Model, Scene};
 
 use super::error::ExportError;
 use crate::columns::COLUMNS;
@@ -39,9 +39,15 @@ impl Motion {
     ///
     /// # Errors
     /// [`ExportError`].
-    pub fn open(file: &Path, volume: bool, progress: impl FnMut(BuildProgress)) -> Result<Self, ExportError> {
+    pub fn open(
+        file: &Path,
+        volume: bool,
+        cache: &Cache,
+        progress: impl FnMut(BuildProgress),
+    ) -> Result<Self, ExportError> {
         let results = Results::open(file, &COLUMNS)?;
         let scene = Scene::parse(&results.metadata.scene_text, scene_file::to_path(&results.metadata.scene_file))?;
+        let scene = Scene { cache: cache.clone(), ..scene };
         let model = Model::build(&scene, progress)?;
         let now = metadata(&scene, &model);
         if now.body != results.metadata.body {

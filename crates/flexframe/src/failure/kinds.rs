@@ -1,6 +1,7 @@
 //! The kind of every error, and what it knows: the one place where that is decided.
 
 use advice::AdviceError;
+use body_file::BodyFileError;
 use fem_tet10::{AssemblyError, MeshError};
 use figures::FigureError;
 use frames_rk4::{EigenError, SetupError};
@@ -18,6 +19,7 @@ use crate::html_report::HtmlReportError;
 use crate::mode_shapes::ShapesError;
 use crate::paper::PaperError;
 use crate::run::{RunError, RunFailure};
+use crate::sweep::SweepError;
 use crate::write_error::WriteError;
 
 impl Failure for SceneError {
@@ -112,6 +114,8 @@ impl Failure for BuildError {
             Self::Modal { source, .. } => source.kind(),
             Self::Advice(error) => error.kind(),
             Self::Load(error) => error.kind(),
+            Self::BodyFile(BodyFileError::System { .. } | BodyFileError::Hdf5 { .. }) => Kind::Io,
+            Self::BodyFile(_) => Kind::Input,
             _ => Kind::Run,
         }
     }
@@ -124,6 +128,7 @@ impl Failure for BuildError {
             Self::Modal { scene, .. } => Details::of_file(scene),
             Self::Advice(error) => error.details(),
             Self::Load(error) => error.details(),
+            Self::BodyFile(error) => Details::of_file(error.path()),
             _ => Details::default(),
         }
     }
@@ -406,6 +411,35 @@ impl Failure for PaperError {
             Self::RigidBody(_) | Self::Step(_) => Details::default(),
             Self::MissingPoint { scene, .. } | Self::NotThePlate { scene } => Details::of_file(scene),
             Self::Report { path, .. } => Details::of_file(path),
+        }
+    }
+}
+
+impl Failure for SweepError {
+    fn kind(&self) -> Kind {
+        match self {
+            Self::Unreadable { .. } | Self::Write(_) | Self::Table(_) | Self::OtherTable { .. } => Kind::Io,
+            Self::Invalid { .. } | Self::Form { .. } => Kind::Input,
+            Self::Scene { source, .. } => source.kind(),
+            Self::Build(error) => error.kind(),
+        }
+    }
+
+    fn details(&self) -> Details {
+        match self {
+            Self::Unreadable { path, .. } | Self::Form { path, .. } | Self::OtherTable { path, .. } => {
+                Details::of_file(path)
+            }
+            Self::Invalid { path, key, found, expected } => Details {
+                key: Some(key.clone()),
+                found: Some(found.clone()),
+                expected: Some(expected.clone()),
+                ..Details::of_file(path)
+            },
+            Self::Scene { source, .. } => source.details(),
+            Self::Build(error) => error.details(),
+            Self::Table(error) => Details::of_file(error.path()),
+            Self::Write(error) => Details::of_file(&error.path),
         }
     }
 }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use scene::BuildProgress;
+use scene::{BuildProgress, Cache};
 
 /// How far a run has come.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -21,4 +21,6 @@ pub struct RunSettings {
     pub overwrite: bool,
     /// Set from elsewhere, stops the run at its next row, or before where that is some thousand steps away.
     pub stop: Arc<AtomicBool>,
+    /// Where a run that is resumed finds what was computed of its mesh before; a scene that is run knows its own.
+    pub cache: Cache,
 }

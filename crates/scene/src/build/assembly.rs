@@ -1,6 +1,7 @@
 //! What all models of a body share, whatever effects and modes they have: its mesh and its matrices.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
+use std::time::Duration;
 
 use fem_tet10::{Matrices, Mesh};
 use frames_rk4::Drive;
@@ -9,6 +10,7 @@ use modal::Support;
 use super::error::BuildError;
 use super::mesh::{matrices, read_mesh};
 use super::progress::{BuildProgress, BuildTimes, timed};
+use super::store::Store;
 use super::support::support;
 use crate::scene::{Body, MeshedBody, RigidBody, Scene};
 
@@ -21,11 +23,16 @@ pub(super) enum Assembled {
 }
 
 pub(super) struct AssembledMesh {
+    /// For messages.
+    pub scene: Scene,
     pub body: MeshedBody,
     pub mesh: Arc<Mesh>,
-    pub matrices: Matrices,
+    /// Those that are needed: where answers are known, none are.
+    matrices: OnceLock<(Matrices, Duration)>,
     pub support: Support,
     pub drive: Option<Drive>,
+    /// Where answers are kept from run to run.
+    pub store: Option<Store>,
     pub times: BuildTimes,
 }
 
@@ -41,10 +48,39 @@ impl Assembly {
         };
         let mut times = BuildTimes::default();
         progress(BuildProgress::Mesh);
-        let mesh = Arc::new(timed(&mut times.mesh, || read_mesh(scene, &body))?);
-        progress(BuildProgress::Assembly);
-        let matrices = timed(&mut times.assembly, || matrices(scene, &body, &mesh))?;
+        let store = timed(&mut times.mesh, || Store::open(scene, &body))?;
+        let read = || match &store {
+            Some(store) => store.mesh(scene, &body),
+            None => read_mesh(scene, &body),
+        };
+        let mut of_mesh = Duration::ZERO;
+        let mesh = Arc::new(timed(&mut of_mesh, read)?);
+        times.mesh += of_mesh;
         let (support, drive) = support(scene, Some(&mesh))?;
-        Ok(Self(Assembled::Meshed(Box::new(AssembledMesh { body, mesh, matrices, support, drive, times }))))
+        let assembled =
+            AssembledMesh { scene: scene.clone(), body, mesh, matrices: OnceLock::new(), support, drive, store, times };
+        if assembled.store.is_none() {
+            progress(BuildProgress::Assembly);
+            assembled.matrices()?;
+        }
+        Ok(Self(Assembled::Meshed(Box::new(assembled))))
+    }
+}
+
+impl AssembledMesh {
+    /// Mass and stiffness, assembled at the first call.
+    pub fn matrices(&self) -> Result<&Matrices, BuildError> {
+        if let Some((found, _)) = self.matrices.get() {
+            return Ok(found);
+        }
+        let mut time = Duration::ZERO;
+        let assembled = timed(&mut time, || matrices(&self.scene, &self.body, &self.mesh))?;
+        self.scene.cache.has_assembled();
+        Ok(&self.matrices.get_or_init(|| (assembled, time)).0)
+    }
+
+    /// How long the assembly took.
+    pub fn assembly_time(&self) -> Duration {
+        self.matrices.get().map_or(Duration::ZERO, |(_, time)| *time)
     }
 }

@@ -2,10 +2,9 @@
 
 use advice::{Advice, Backbone};
 use faer::Mat;
-use fem_tet10::{second_order_energies, second_order_forces};
 use modal::{ModalError, Modes};
 
-use super::error::{BuildError, modal};
+use super::error::BuildError;
 use super::mesh_model::MeshModel;
 
 /// The backbones of the natural modes that linear strain may get wrong by the bounds of `advice`; none of others, and none
@@ -18,8 +17,7 @@ pub(super) fn backbones(
     modes: &Modes,
     advice: &Advice,
 ) -> Result<Vec<Option<Backbone>>, BuildError> {
-    let &MeshModel { scene, mesh, solver, .. } = model;
-    let materials = &model.body.materials;
+    let solver = model.solver;
     let natural = modes.natural().min(modes.shapes.ncols());
     let may_matter = |k: &usize| advice.modes.get(*k).is_some_and(|mode| mode.strain_bound >= advice.tolerance);
     let large: Vec<usize> = (0..natural).filter(may_matter).collect();
@@ -31,15 +29,15 @@ pub(super) fn backbones(
     let shapes = Mat::from_fn(nodes, large.len(), |i, j| modes.shapes[(i, large[j])]);
     let pairs: Vec<[usize; 2]> = (0..large.len()).map(|j| [j, j]).collect();
     let quadruples: Vec<[usize; 4]> = (0..large.len()).map(|j| [j; 4]).collect();
-    let forces = second_order_forces(mesh, materials, shapes.as_ref(), &pairs)?;
-    let energies = second_order_energies(mesh, materials, shapes.as_ref(), &quadruples)?;
+    let forces = solver.second_order_forces(shapes.as_ref(), &pairs)?;
+    let energies = solver.second_order_energies(shapes.as_ref(), &quadruples)?;
     let answers = match solver.static_response(forces.as_ref()) {
         Ok(answers) => answers,
         // The run can do without.
-        Err(ModalError::StaticNotConverged { .. }) => return Ok(found),
-        Err(error) => return Err(modal(scene)(error)),
+        Err(BuildError::Modal { source: ModalError::StaticNotConverged { .. }, .. }) => return Ok(found),
+        Err(error) => return Err(error),
     };
-    let momenta = solver.mass().product(answers.as_ref());
+    let momenta = solver.mass_product(answers.as_ref())?;
     for (j, k) in large.into_iter().enumerate() {
         let square = modes.eigenvalues[k];
         // The derivative is minus the answer.

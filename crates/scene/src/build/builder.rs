@@ -3,12 +3,14 @@
 use std::time::Duration;
 
 use frames_rk4::Effect;
-use modal::{Modes, Solver};
+use modal::Modes;
 
 use super::assembly::{Assembled, AssembledMesh, Assembly};
-use super::error::{BuildError, modal, too_many_modes};
+use super::error::BuildError;
 use super::model::Model;
 use super::progress::{BuildProgress, BuildTimes, timed};
+use super::solved::Solved;
+use super::structure::Structure;
 use super::{meshed, rigid};
 use crate::effects::Choice;
 use crate::scene::{RigidBody, Scene};
@@ -24,30 +26,28 @@ enum Builder<'a> {
 
 struct MeshedBuilder<'a> {
     assembled: &'a AssembledMesh,
-    solver: Solver<'a>,
+    solved: Solved<'a>,
     /// The most that have been searched so far.
     modes: Option<Modes>,
 }
 
 impl Assembly {
-    /// What makes models of it. The scene is that of the assembly, for messages.
+    /// What makes models of it.
     ///
     /// # Errors
     /// [`BuildError`]: what the modal analysis refuses in the matrices and the support.
-    pub fn builder(&self, scene: &Scene) -> Result<ModelBuilder<'_>, BuildError> {
+    pub fn builder(&self) -> Result<ModelBuilder<'_>, BuildError> {
         Ok(ModelBuilder(match &self.0 {
             Assembled::Meshed(assembled) => {
-                let AssembledMesh { mesh, matrices, support, .. } = &**assembled;
-                let solver = Solver::new(matrices.stiffness(), matrices.mass(), mesh.positions(), support);
-                let solver = solver.map_err(modal(scene))?;
-                Builder::Meshed(Box::new(MeshedBuilder { assembled, solver, modes: None }))
+                let solved = Solved::new(assembled)?;
+                Builder::Meshed(Box::new(MeshedBuilder { assembled, solved, modes: None }))
             }
             Assembled::Rigid(body) => Builder::Rigid(body),
         }))
     }
 }
 
-impl ModelBuilder<'_> {
+impl<'a> ModelBuilder<'a> {
     /// The model of a scene, which may differ from that of the assembly in its effects and modes.
     ///
     /// # Errors
@@ -56,6 +56,14 @@ impl ModelBuilder<'_> {
         match &mut self.0 {
             Builder::Meshed(builder) => builder.build(scene, &mut progress),
             Builder::Rigid(body) => rigid::build(scene, body),
+        }
+    }
+
+    /// The finite-element model, of a body with a mesh.
+    pub(super) fn solved(&self) -> Option<&Solved<'a>> {
+        match &self.0 {
+            Builder::Meshed(builder) => Some(&builder.solved),
+            Builder::Rigid(_) => None,
         }
     }
 
@@ -75,10 +83,13 @@ impl ModelBuilder<'_> {
     }
 
     /// Number of flexible modes that there are.
-    pub fn available(&self) -> usize {
+    ///
+    /// # Errors
+    /// As [`Assembly::builder`].
+    pub fn available(&self) -> Result<usize, BuildError> {
         match &self.0 {
-            Builder::Meshed(builder) => builder.solver.available(),
-            Builder::Rigid(_) => 0,
+            Builder::Meshed(builder) => builder.solved.available(),
+            Builder::Rigid(_) => Ok(0),
         }
     }
 }
@@ -98,8 +109,8 @@ impl MeshedBuilder<'_> {
     /// The modes that a scene asks for, and how long that took.
     fn search(&self, scene: &Scene, progress: &mut dyn FnMut(BuildProgress)) -> Result<(Modes, Duration), BuildError> {
         let mut time = Duration::ZERO;
-        let modes = timed(&mut time, || self.solver.modes(requested(scene), |p| progress(BuildProgress::Modes(p))));
-        Ok((modes.map_err(|error| too_many_modes(scene, error))?, time))
+        let modes = timed(&mut time, || self.solved.modes(requested(scene), progress))?;
+        Ok((modes, time))
     }
 
     fn reduce(
@@ -109,13 +120,13 @@ impl MeshedBuilder<'_> {
         search: Duration,
         progress: &mut dyn FnMut(BuildProgress),
     ) -> Result<Model, BuildError> {
-        let times = BuildTimes { modes: search, ..self.assembled.times };
-        meshed::reduce(scene, self.assembled, &self.solver, modes, times, progress)
+        let times = BuildTimes { modes: search, assembly: self.assembled.assembly_time(), ..self.assembled.times };
+        meshed::reduce(scene, self.assembled, &self.solved, modes, times, progress)
     }
 }
 
 /// How many modes a scene asks for.
-fn requested(scene: &Scene) -> usize {
+pub(super) fn requested(scene: &Scene) -> usize {
     match scene.effects.choices[Effect::Flexibility] {
         Choice::Off => 0,
         Choice::On | Choice::Auto => scene.modes.flexible.most(),

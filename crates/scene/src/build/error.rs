@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use advice::{AdviceError, Refusal};
+use body_file::BodyFileError;
 use fem_tet10::{AssemblyError, MeshError};
 use frames_rk4::{LoadedError, SetupError};
 use modal::ModalError;
@@ -34,6 +35,9 @@ pub enum BuildError {
         /// Why.
         source: ModalError,
     },
+    /// A body file cannot be read or written.
+    #[error(transparent)]
+    BodyFile(#[from] BodyFileError),
     /// No advice can be given on it.
     #[error(transparent)]
     Advice(#[from] AdviceError),

@@ -1,9 +1,9 @@
 //! Large deflection: the manifold that the large modes of a body move on.
 
 use faer::{Mat, MatRef};
-use fem_tet10::{GeometricTerms, second_order_energies, second_order_forces};
+use fem_tet10::GeometricTerms;
 use frames_rk4::Manifold;
-use modal::{Modes, ReducedBody, SecondOrderShapes};
+use modal::{Modes, SecondOrderShapes};
 
 use super::error::{BuildError, modal};
 use super::mesh_model::MeshModel;
@@ -33,29 +33,30 @@ impl LargeDeflection {
         stress_stiffness: Option<&[Mat<f64>; 6]>,
         statics: &Statics,
     ) -> Result<Self, BuildError> {
-        let &MeshModel { scene, mesh, solver, .. } = model;
-        let materials = &model.body.materials;
+        let solver = model.solver;
         let of_large = Mat::from_fn(modes.shapes.nrows(), large.len(), |i, j| modes.shapes[(i, large[j])]);
         let pairs = SecondOrderShapes::pairs(large.len());
         let quadruples: Vec<[usize; 4]> =
             pairs.iter().flat_map(|[i, j]| pairs.iter().map(move |[k, l]| [*i, *j, *k, *l])).collect();
-        let forces = second_order_forces(mesh, materials, of_large.as_ref(), &pairs)?;
-        let energies = second_order_energies(mesh, materials, of_large.as_ref(), &quadruples)?;
-        let shapes = solver.second_order_shapes(modes.clone(), large, forces.as_ref()).map_err(modal(scene))?;
-        let of_stress = model.stress_stiffness(of_large.as_ref(), modes, GeometricTerms::InitialStress)?;
-        let in_full = model.stress_stiffness(of_large.as_ref(), modes, GeometricTerms::All)?;
+        let forces = solver.second_order_forces(of_large.as_ref(), &pairs)?;
+        let energies = solver.second_order_energies(of_large.as_ref(), &quadruples)?;
+        let shapes = solver.second_order_shapes(modes.clone(), large, forces.as_ref())?;
+        let of_stress = solver.stress_stiffness(of_large.as_ref(), modes, GeometricTerms::InitialStress)?;
+        let in_full = solver.stress_stiffness(of_large.as_ref(), modes, GeometricTerms::All)?;
         let large = LargeShapes { shapes, of_stress, in_full };
         let extended = match (&statics.of_spin, stress_stiffness) {
             (Some(of_spin), Some(k)) => {
                 let answer = |pair| of_spin.answers.subcols(pair, 1);
-                Some(std::array::from_fn(|pair| large.extended(model, answer(pair), &k[pair], GeometricTerms::All)))
+                let mut of_pairs = Vec::with_capacity(k.len());
+                for (pair, k) in k.iter().enumerate() {
+                    of_pairs.push(large.extended(model, answer(pair), k, GeometricTerms::All)?);
+                }
+                of_pairs.try_into().ok()
             }
             _ => None,
         };
         let shapes = &large.shapes;
-        let body = ReducedBody::new(&shapes.modes, model.matrices.mass(), mesh.positions())
-            .and_then(|body| body.with_stress_stiffness(extended))
-            .map_err(modal(scene))?;
+        let body = solver.reduced_body(&shapes.modes)?.with_stress_stiffness(extended).map_err(modal(model.scene))?;
         Ok(Self { manifold: Manifold::new(body, shapes, &energies)?, large })
     }
 
@@ -71,19 +72,19 @@ impl LargeDeflection {
     }
 
     /// The stress of loads and of a drive in the extended shapes.
-    pub fn stressed(&self, model: &MeshModel<'_>, statics: &Statics, mut stress: Stress) -> Stress {
+    pub fn stressed(&self, model: &MeshModel<'_>, statics: &Statics, mut stress: Stress) -> Result<Stress, BuildError> {
         if let Some(of_loads) = &statics.of_loads {
             for (i, directed) in stress.of_loads.iter_mut().enumerate() {
                 for (j, directed) in directed.iter_mut().enumerate() {
                     let answer = of_loads.answers_to(i).subcols(j, 1);
-                    directed.stiffness = self.large.extended(model, answer, &directed.stiffness, directed.terms);
+                    directed.stiffness = self.large.extended(model, answer, &directed.stiffness, directed.terms)?;
                 }
             }
         }
         if let (Some(answer), Some(k)) = (&statics.of_drive, stress.of_drive.take()) {
-            stress.of_drive = Some(self.large.extended(model, answer.as_ref(), &k, DRIVE));
+            stress.of_drive = Some(self.large.extended(model, answer.as_ref(), &k, DRIVE)?);
         }
-        stress
+        Ok(stress)
     }
 }
 
@@ -97,19 +98,19 @@ impl LargeShapes {
         answer: MatRef<'_, f64>,
         k: &Mat<f64>,
         terms: GeometricTerms,
-    ) -> Mat<f64> {
+    ) -> Result<Mat<f64>, BuildError> {
         let of_large = match terms {
             GeometricTerms::InitialStress => &self.of_stress,
             GeometricTerms::All => &self.in_full,
         };
         let SecondOrderShapes { modes, large, dynamic, .. } = &self.shapes;
-        let momentum = model.solver.mass().product(answer);
+        let momentum = model.solver.mass_product(answer)?;
         let along: Vec<f64> = large
             .iter()
             .map(|j| (0..momentum.nrows()).map(|i| modes.shapes[(i, *j)] * momentum[(i, 0)]).sum())
             .collect();
         let extended = modes.shapes.ncols();
-        Mat::from_fn(extended, extended, |a, b| {
+        Ok(Mat::from_fn(extended, extended, |a, b| {
             if a >= *dynamic || b >= *dynamic {
                 return 0.0;
             }
@@ -118,6 +119,6 @@ impl LargeShapes {
                 (false, false) => k[(a, b)],
                 _ => k[(a, b)] - along.iter().zip(of_large).map(|(part, of)| part * of[(a, b)]).sum::<f64>(),
             }
-        })
+        }))
     }
 }

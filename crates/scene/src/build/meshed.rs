@@ -7,7 +7,7 @@ use advice::{buckling, limits, unsteady};
 use faer::Mat;
 use fem_tet10::{Location, Mesh};
 use frames_rk4::{Effect, Physics, PointShapes};
-use modal::{BodyPoint, Modes, ReducedBody, Solver};
+use modal::{BodyPoint, Modes, ReducedBody};
 use nalgebra::Vector3;
 
 use super::assembly::AssembledMesh;
@@ -21,7 +21,9 @@ use super::model::{Meshed, Model};
 use super::points::{output_points, well_spread};
 use super::progress::{BuildProgress, BuildTimes, timed};
 use super::reduce::Reduction;
+use super::solved::Solved;
 use super::stress_shapes::BodyStress;
+use super::structure::Structure;
 use super::survey::Survey;
 use crate::effects::Choice;
 use crate::scene::{Frame, Scene};
@@ -30,14 +32,14 @@ use crate::scene::{Frame, Scene};
 pub(super) fn reduce(
     scene: &Scene,
     assembled: &AssembledMesh,
-    solver: &Solver<'_>,
+    solved: &Solved<'_>,
     modes: Modes,
     mut times: BuildTimes,
     progress: &mut dyn FnMut(BuildProgress),
 ) -> Result<Model, BuildError> {
-    let AssembledMesh { body, mesh, matrices, support, drive, .. } = assembled;
-    let loads = loads::on_mesh(scene, mesh, &solver.mass().row_sums())?;
-    let model = MeshModel { scene, body, mesh, matrices, solver, support, loads, drive: drive.clone() };
+    let AssembledMesh { body, mesh, support, drive, .. } = assembled;
+    let loads = loads::on_mesh(scene, mesh, &solved.nodal_masses()?)?;
+    let model = MeshModel { scene, body, mesh, solver: solved, support, loads, drive: drive.clone() };
 
     let on_all_modes = timed(&mut times.reduction, || ModalModel::new(&model, &modes))?;
     let started = Instant::now();
@@ -84,7 +86,7 @@ pub(super) fn reduce(
         backbones,
         stress: body_stress,
         body: reduced.body,
-        meshed: Some(Meshed { matrix_bytes: matrices.bytes(), mesh: Arc::clone(mesh), modes, following }),
+        meshed: Some(Meshed { matrix_bytes: solved.matrix_bytes()?, mesh: Arc::clone(mesh), modes, following }),
     };
     let initial = model.initial(scene);
     model.refusal = buckling(stress.buckling_ratio);

@@ -27,7 +27,7 @@ impl ModalModel {
     /// Without the stress stiffness of the spin.
     pub fn new(model: &MeshModel<'_>, modes: &Modes) -> Result<Self, BuildError> {
         let &MeshModel { scene, mesh, .. } = model;
-        let body = ReducedBody::new(modes, model.matrices.mass(), mesh.positions()).map_err(modal(scene))?;
+        let body = model.solver.reduced_body(modes)?;
         let loads = loads(model, &body, modes, &[])?;
         let peak = |shape: faer::ColRef<'_, f64>| {
             let at = |node: usize| Vector3::from_fn(|axis, _| shape[3 * node + axis]).norm();

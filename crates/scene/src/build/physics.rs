@@ -6,7 +6,6 @@ use modal::{ReducedBody, RigidMotion};
 
 use super::loads::MeshLoad;
 use super::turning::{Turning, turning};
-use crate::constraint::Constraint;
 use crate::effects::Choice;
 use crate::load::Load;
 use crate::modes::Large;
@@ -60,8 +59,7 @@ pub(super) fn effects(scene: &Scene, advice: &Advice, body: &ReducedBody, keep: 
 const DEFAULT_LARGE: usize = 4;
 
 /// Which of the modes that are kept are large, numbered from 0: those that the scene names, or what is advised. The paper's
-/// formulation has none, and nothing is advised for a body that is not to stiffen, since the manifold stiffens its modes, nor for one that is
-/// driven: there the manifold is not yet what stiffening is (`examples/spin_up.toml`).
+/// formulation has none, and nothing is advised for a body that is not to stiffen: the manifold stiffens its modes.
 pub(super) fn large_modes(scene: &Scene, advice: &Advice, keep: usize) -> Vec<usize> {
     let first = |count: usize| (0..keep.min(count)).collect();
     match (scene.effects.choices[Effect::LargeDeflection], &scene.modes.large) {
@@ -71,16 +69,8 @@ pub(super) fn large_modes(scene: &Scene, advice: &Advice, keep: usize) -> Vec<us
         (_, Some(Large::List(list))) => list.iter().map(|mode| mode - 1).filter(|k| *k < keep).collect(),
         (Choice::On, None) => first(DEFAULT_LARGE),
         (Choice::Auto, None) if scene.effects.choices[Effect::GeometricStiffening] == Choice::Off => Vec::new(),
-        (Choice::Auto, None) if is_driven(scene) => Vec::new(),
         (Choice::Auto, None) => advice.large_modes(keep).taken,
     }
-}
-
-fn is_driven(scene: &Scene) -> bool {
-    matches!(
-        scene.constraint,
-        Some(Constraint::Hinge { motion: Some(_), .. } | Constraint::Slider { motion: Some(_), .. })
-    )
 }
 
 /// The effects with what large modes need: what follows them moves along the body, where turning acts on it.

@@ -2,17 +2,17 @@
 
 use advice::{Advice, Backbone, Findings, advise};
 use frames_rk4::Effect;
-use modal::{Modes, Solver};
+use modal::Modes;
 
 use super::decide::Decision;
-use super::error::{BuildError, modal};
+use super::error::BuildError;
 use super::manifold::LargeDeflection;
 use super::mesh_model::MeshModel;
 use super::modal_model::ModalModel;
 use super::statics::Statics;
 use super::stress::Stress;
+use super::structure::Structure;
 use super::survey::Survey;
-use crate::scene::Scene;
 
 /// A body in the modes that it keeps and its static shapes.
 pub(super) struct Reduction {
@@ -38,7 +38,7 @@ impl Reduction {
             let stiffness = modal.body.stress_stiffness.clone().filter(|_| stiffens);
             (modes, modal.with_stress_stiffness(model, stiffness)?, advice.deflection)
         } else {
-            let modes = basis(model.scene, model.solver, &modes, &statics, decision)?;
+            let modes = basis(model.solver, &modes, &statics, decision)?;
             let modal = ModalModel::new(model, &modes)?;
             let deflection = advise(&modal.case(model), tolerance)?.deflection;
             let stiffness = if stiffens { statics.stress_stiffness(model, &modes)? } else { None };
@@ -52,7 +52,7 @@ impl Reduction {
                 *backbone = backbone.take().filter(|_| !large.contains(&k));
             }
             let large = LargeDeflection::new(model, &modes, large, modal.body.stress_stiffness.as_ref(), &statics)?;
-            let stress = large.stressed(model, &statics, stress);
+            let stress = large.stressed(model, &statics, stress)?;
             let modal = modal.with_stress(model, Some(large.manifold.body()), large.modes(), &stress.of_loads)?;
             (modal, stress, Some(large))
         } else if stress.any() {
@@ -66,19 +66,10 @@ impl Reduction {
 }
 
 /// The modes that are kept, and the static shapes.
-fn basis(
-    scene: &Scene,
-    solver: &Solver<'_>,
-    modes: &Modes,
-    statics: &Statics,
-    decision: &Decision,
-) -> Result<Modes, BuildError> {
+fn basis(solver: &dyn Structure, modes: &Modes, statics: &Statics, decision: &Decision) -> Result<Modes, BuildError> {
     let kept = modes.truncated(decision.keep);
     if !decision.has_static_shapes {
         return Ok(kept);
     }
-    statics
-        .answers()
-        .try_fold(kept, |modes, answers| solver.with_static_shapes(modes, answers.as_ref()))
-        .map_err(modal(scene))
+    statics.answers().try_fold(kept, |modes, answers| solver.with_static_shapes(modes, answers.as_ref()))
 }

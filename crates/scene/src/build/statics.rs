@@ -3,15 +3,15 @@
 use std::ops::Range;
 
 use advice::StaticCompliance;
-use faer::{Col, ColRef, Mat, MatRef};
+use faer::{Col, Mat, MatRef};
 use fem_tet10::GeometricTerms;
-use frames_rk4::DrivenMotion;
-use modal::{Modes, acceleration_fields, centrifugal_fields, turning_field};
+use modal::Modes;
 use nalgebra::Vector3;
 
 use super::error::{BuildError, modal};
 use super::loads::MeshLoad;
 use super::mesh_model::MeshModel;
+use super::structure::StaticForces;
 use super::{physics, turning};
 
 /// Which static answers are asked for.
@@ -72,44 +72,40 @@ impl Statics {
             columns.push((of_loads..of_loads + count, turned));
             of_loads += count;
         }
-        let fields = asked.spin.then(|| centrifugal_fields(solver.mass(), mesh.positions(), origin));
-        let spins = fields.as_ref().map_or(0, Mat::ncols);
-        let driven = model.drive.as_ref().filter(|_| asked.drive).map(|drive| match drive.motion {
-            DrivenMotion::Slide { direction } => {
-                let fields = acceleration_fields(solver.mass());
-                let weights = Mat::from_fn(3, 1, |i, _| direction[i]);
-                fields * weights
-            }
-            DrivenMotion::Turn { axis } => turning_field(solver.mass(), mesh.positions(), origin, &axis),
-        });
-
         let unknowns = 3 * mesh.positions().len();
-        let count = of_loads + spins + usize::from(driven.is_some());
+        let mut forces = StaticForces {
+            of_loads: Mat::zeros(0, of_loads),
+            spin: asked.spin,
+            drive: model.drive.as_ref().filter(|_| asked.drive).map(|drive| drive.motion),
+            origin: *origin,
+        };
+        let count = forces.count();
         memory::check("the forces of the loads", 8 * unknowns * count).map_err(|source| modal(scene)(source.into()))?;
-        let mut forces = Mat::zeros(unknowns, count);
+        forces.of_loads = Mat::zeros(unknowns, of_loads);
         for (load, (range, turned)) in loads.iter().zip(&columns) {
             for column in range.clone() {
-                load.add_nodal_forces(turned.get(column - range.start).copied(), forces.as_mut().col_mut(column));
+                let forces = forces.of_loads.as_mut().col_mut(column);
+                load.add_nodal_forces(turned.get(column - range.start).copied(), forces);
             }
         }
-        for (first, field) in [(of_loads, &fields), (of_loads + spins, &driven)] {
-            if let Some(field) = field {
-                forces.as_mut().subcols_mut(first, field.ncols()).copy_from(field);
-            }
-        }
-        let answers = solver.static_response(forces.as_ref()).map_err(modal(scene))?;
+        let answers = solver.static_answers(&forces)?;
+        let (driven, of_drive) = (usize::from(forces.drive.is_some()), count - usize::from(forces.drive.is_some()));
+        let spins = of_drive - of_loads;
         let to = |first: usize, count: usize| answers.subcols(first, count).to_owned();
         Ok(Self {
             of_loads: asked.loads.then(|| OfLoads {
                 answers: to(0, of_loads),
-                compliances: compliances(loads, &columns, forces.as_ref(), answers.as_ref()),
+                compliances: compliances(loads, &columns, forces.of_loads.as_ref(), answers.as_ref()),
                 columns,
             }),
-            of_spin: asked.spin.then(|| OfSpin {
-                answers: to(of_loads, spins),
-                remainders: remainders(model, modes, answers.subcols(of_loads, spins)),
-            }),
-            of_drive: driven.map(|_| to(of_loads + spins, 1)),
+            of_spin: match asked.spin {
+                true => Some(OfSpin {
+                    remainders: solver.remainders(modes, answers.subcols(of_loads, spins))?,
+                    answers: to(of_loads, spins),
+                }),
+                false => None,
+            },
+            of_drive: (driven > 0).then(|| to(of_drive, driven)),
         })
     }
 
@@ -121,7 +117,7 @@ impl Statics {
     /// K_ij of each pair of spins in the modes; none where the answers to the spin are not known.
     pub fn stress_stiffness(&self, model: &MeshModel<'_>, modes: &Modes) -> Result<Option<[Mat<f64>; 6]>, BuildError> {
         let Some(of_spin) = &self.of_spin else { return Ok(None) };
-        Ok(model.stress_stiffness(of_spin.answers.as_ref(), modes, GeometricTerms::All)?.try_into().ok())
+        Ok(model.solver.stress_stiffness(of_spin.answers.as_ref(), modes, GeometricTerms::All)?.try_into().ok())
     }
 
     /// The answer to all dead loads together that stay as they are, seen from the body (3n × 1).
@@ -192,14 +188,4 @@ fn compliances(
         }
     };
     loads.iter().zip(columns).map(of).collect()
-}
-
-/// √(uᵀMu − Σ(Φ_kᵀMu)²) of each answer u.
-fn remainders(model: &MeshModel<'_>, modes: &Modes, answers: MatRef<'_, f64>) -> Vec<f64> {
-    let momenta = model.solver.mass().product(answers);
-    let of = |(u, mu): (ColRef<'_, f64>, ColRef<'_, f64>)| {
-        let carried: f64 = modes.shapes.as_ref().col_iter().map(|shape| (shape.transpose() * mu).powi(2)).sum();
-        (u.transpose() * mu - carried).max(0.0).sqrt()
-    };
-    answers.col_iter().zip(momenta.as_ref().col_iter()).map(of).collect()
 }

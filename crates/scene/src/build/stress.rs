@@ -2,12 +2,12 @@
 
 use advice::{Row, StressField, StressSource, stress, stress_row};
 use faer::{Mat, MatRef};
-use fem_tet10::{AssemblyError, GeometricTerms, geometric_stiffness_product};
+use fem_tet10::GeometricTerms;
 use frames_rk4::Effect;
-use modal::{ModalError, Modes};
+use modal::Modes;
 
 use super::directed::Directed;
-use super::error::{BuildError, modal};
+use super::error::BuildError;
 use super::mesh_model::MeshModel;
 use super::modal_model::ModalModel;
 use super::physics;
@@ -51,7 +51,7 @@ impl Stress {
                     continue;
                 }
                 let (stiffness, terms) = if load.is_base_acceleration {
-                    (model.stress_stiffness(answers, modes, DRIVE)?, DRIVE)
+                    (model.solver.stress_stiffness(answers, modes, DRIVE)?, DRIVE)
                 } else {
                     of_load(model, answers, modes, load.history.largest(model.scene.time.end))?
                 };
@@ -70,7 +70,7 @@ impl Stress {
         }
         if let Some(answer) = &statics.of_drive {
             names.push((StressSource::Drive, "the acceleration of the drive".to_owned()));
-            found.of_drive = model.stress_stiffness(answer.as_ref(), modes, DRIVE)?.pop();
+            found.of_drive = model.solver.stress_stiffness(answer.as_ref(), modes, DRIVE)?.pop();
             shown.extend(found.of_drive.clone());
         }
         found.decided(model, body, &names, &shown)
@@ -120,8 +120,8 @@ fn of_load(
     modes: &Modes,
     largest: f64,
 ) -> Result<(Vec<Mat<f64>>, GeometricTerms), BuildError> {
-    let all = model.stress_stiffness(answers, modes, GeometricTerms::All)?;
-    let stress = model.stress_stiffness(answers, modes, GeometricTerms::InitialStress)?;
+    let all = model.solver.stress_stiffness(answers, modes, GeometricTerms::All)?;
+    let stress = model.solver.stress_stiffness(answers, modes, GeometricTerms::InitialStress)?;
     let is_small = all.iter().zip(&stress).all(|(all, stress)| {
         (0..all.ncols()).all(|l| {
             (0..=l).all(|k| {
@@ -139,21 +139,5 @@ fn buckling_ratio(model: &MeshModel<'_>, statics: &Statics, modes: &Modes) -> Re
     let Some(answer) = statics.to_steady_loads(model).filter(|answer| answer.norm_max() > 0.0) else {
         return Ok(0.0);
     };
-    let product = |fields: MatRef<'_, f64>| -> Result<Mat<f64>, BucklingError> {
-        Ok(geometric_stiffness_product(model.mesh, &model.body.materials, answer.as_ref(), fields)?)
-    };
-    match model.solver.lowest_buckling_ratio(modes.shapes.as_ref(), product) {
-        Ok(lowest) => Ok(-lowest),
-        Err(BucklingError::Modal(error)) => Err(modal(model.scene)(error)),
-        Err(BucklingError::Assembly(error)) => Err(error.into()),
-    }
-}
-
-/// What the search for the buckling load may meet.
-#[derive(Debug, thiserror::Error)]
-enum BucklingError {
-    #[error(transparent)]
-    Modal(#[from] ModalError),
-    #[error(transparent)]
-    Assembly(#[from] AssemblyError),
+    Ok(-model.solver.lowest_buckling_ratio(answer.as_ref(), modes)?)
 }

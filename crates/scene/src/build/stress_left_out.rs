@@ -10,14 +10,15 @@
 
 use faer::{Mat, MatRef};
 use fem_tet10::StressRecovery;
-use frames_rk4::{History, Observation};
-use modal::{Modes, ReducedBody, turning_field};
+use frames_rk4::{DrivenMotion, History, Observation};
+use modal::{Modes, ReducedBody};
 use nalgebra::Vector3;
 
-use super::error::{BuildError, modal};
+use super::error::BuildError;
 use super::mesh_model::MeshModel;
 use super::site_stress::SiteStress;
 use super::statics::{Asked, Statics};
+use super::structure::StaticForces;
 
 /// The stress that the modes leave out of each static answer, and how much of each there is at a time.
 #[derive(Debug)]
@@ -43,7 +44,7 @@ impl LeftOut {
         origin: &Vector3<f64>,
         has_gravity: bool,
     ) -> Result<Self, BuildError> {
-        let &MeshModel { scene, mesh, solver, matrices, .. } = model;
+        let solver = model.solver;
         let asked = Asked { loads: true, spin: true, drive: false };
         let statics = Statics::new(model, modes, origin, asked)?;
         let mut columns: Vec<Mat<f64>> = Vec::new();
@@ -66,13 +67,18 @@ impl LeftOut {
         }
         columns.extend(statics.of_spin.map(|of_spin| of_spin.answers));
         for axis in [Vector3::x(), Vector3::y(), Vector3::z()] {
-            let field = turning_field(solver.mass(), mesh.positions(), origin, &axis);
-            columns.push(solver.static_response(field.as_ref()).map_err(modal(scene))?);
+            let forces = StaticForces {
+                of_loads: Mat::zeros(modes.shapes.nrows(), 0),
+                spin: false,
+                drive: Some(DrivenMotion::Turn { axis }),
+                origin: *origin,
+            };
+            columns.push(solver.static_answers(&forces)?);
         }
         let mut stress = Mat::zeros(6 * recovery.sites().len(), columns.iter().map(Mat::ncols).sum());
         let mut first = 0;
         for answers in columns {
-            let momenta = matrices.stiffness() * &answers;
+            let momenta = solver.stiffness_product(answers.as_ref())?;
             let rest = rest(modes, answers.as_ref(), momenta.as_ref());
             stress.subcols_mut(first, rest.ncols()).copy_from(recovery.nodal_stress(rest.as_ref())?);
             first += rest.ncols();

@@ -2,12 +2,14 @@
 
 use std::collections::BTreeMap;
 
+use body_file::{BodyFile, Hash};
 use fem_tet10::{Material, Materials, PointMass};
 use nalgebra::{Matrix3, Vector3};
 
 use super::Check;
 use crate::document::join;
 use crate::error::SceneError;
+use crate::origin::Origin;
 use crate::scene::{Body, MeshedBody, RigidBody};
 use crate::section::{BodySection, RigidSection};
 
@@ -20,15 +22,18 @@ const EXCESS: f64 = 1e-3;
 
 impl Check<'_> {
     pub fn body(&self, section: BodySection) -> Result<Body, SceneError> {
-        let BodySection { mesh, material, materials, point_masses, rigid } = section;
+        let BodySection { mesh, file, material, materials, point_masses, rigid } = section;
         let Some(rigid) = rigid else {
+            if let Some(file) = file {
+                return self.reduced(&file, mesh, material, materials, point_masses).map(Body::Meshed);
+            }
             let Some(mesh) = mesh else { return Err(self.missing("body", "mesh")) };
             let mesh = self.document.folder().join(self.mesh(&mesh)?);
             let materials = self.materials(material, materials)?;
             self.point_masses(&point_masses)?;
-            return Ok(Body::Meshed(MeshedBody { mesh, materials, point_masses }));
+            return Ok(Body::Meshed(MeshedBody { mesh, materials, point_masses, file: None }));
         };
-        for key in ["mesh", "material", "materials", "point_masses"] {
+        for key in ["mesh", "file", "material", "materials", "point_masses"] {
             if self.has(&join("body", key)) {
                 return Err(self.document.place(&join("body", key)).refuse(
                     format!("both `rigid` and `{key}`"),
@@ -38,6 +43,53 @@ impl Check<'_> {
             }
         }
         self.rigid(&rigid).map(Body::Rigid)
+    }
+
+    /// The body of a body file. What the scene says besides must be what the file was made of.
+    fn reduced(
+        &self,
+        file: &str,
+        mesh: Option<String>,
+        material: Option<Material>,
+        materials: Option<BTreeMap<String, Material>>,
+        point_masses: Vec<PointMass>,
+    ) -> Result<MeshedBody, SceneError> {
+        const KEY: &str = "body.file";
+        const CURE: &str = "make the file again: flexframe reduce SCENE -o FILE, from a scene without `file`";
+        let refuse = |found: String, expected: &str| self.document.place(KEY).refuse(found, expected, CURE);
+        self.require(!file.is_empty() && !file.contains('\0'), KEY, "the name of a body file", CURE)?;
+        let path = self.document.folder().join(file);
+        let opened = BodyFile::open(&path).and_then(|file| Origin::read(&file));
+        let origin = opened.map_err(|error| refuse(error.to_string(), "a body file that flexframe reduce has made"))?;
+        if origin.program_version != env!("CARGO_PKG_VERSION") {
+            let found = format!("a body file of flexframe {}", origin.program_version);
+            return Err(refuse(found, concat!("one of flexframe ", env!("CARGO_PKG_VERSION"))));
+        }
+        if let Some(mesh) = &mesh {
+            let mesh = self.document.folder().join(self.mesh(mesh)?);
+            // The file does without the mesh.
+            if let Ok(hash) = Hash::of_file(&mesh)
+                && hash.to_string() != origin.mesh_hash
+            {
+                return Err(refuse(
+                    "a body file that was made of another mesh".to_owned(),
+                    "one of the mesh of the scene",
+                ));
+            }
+        }
+        if material.is_some() || materials.is_some() {
+            let materials = self.materials(material, materials)?;
+            if materials != origin.materials() {
+                let found = format!("a body file of another material: {:?}", origin.materials());
+                return Err(refuse(found, "one of the materials of the scene"));
+            }
+        }
+        if self.has("body.point_masses") && point_masses != origin.point_masses {
+            let found = format!("a body file with other point masses ({} of them)", origin.point_masses.len());
+            return Err(refuse(found, "one of the point masses of the scene"));
+        }
+        let materials = origin.materials();
+        Ok(MeshedBody { mesh: origin.mesh.into(), materials, point_masses: origin.point_masses, file: Some(path) })
     }
 
     fn rigid(&self, section: &RigidSection) -> Result<RigidBody, SceneError> {

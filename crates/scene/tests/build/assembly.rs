@@ -12,7 +12,7 @@ fn models_of_one_assembly_are_those_built_alone_and_its_mesh_is_read_once() {
     scene.initial.modal_displacement = vec![1e-3];
     let mut heard = Vec::new();
     let assembly = Assembly::new(&scene, |p| heard.push(p)).unwrap();
-    let mut builder = assembly.builder(&scene).unwrap();
+    let mut builder = assembly.builder().unwrap();
     let mut shapes = Vec::new();
     // Fewer modes than before are the first of those, more are searched again.
     for count in [8, 4, 1, 10] {

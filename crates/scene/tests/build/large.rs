@@ -16,9 +16,12 @@ fn large(effects: &str, initial: &str, time: &str) -> Vec<usize> {
 fn auto_takes_the_modes_whose_amplitudes_call_for_it_and_no_others() {
     // 18 mm of 1 m in the first mode, six periods: 0.8 % of the frequency, 0.3 rad. A hundredth of it: 3e-5 rad.
     assert_eq!(large("", "modal_displacement = [0.5]", TIME), [0]);
-    assert_eq!(large("", "modal_displacement = [0.005]", TIME), []);
+    assert_eq!(large("", "modal_displacement = [0.005]", TIME), [] as [usize; 0]);
     // The same deflection over less than a hundredth of a period is not out of phase, but held by other forces.
-    assert_eq!(large("[effects]\ntolerance = 0.01", "modal_displacement = [0.5]", "end = 1e-4\nstep = 1e-4"), []);
+    assert_eq!(
+        large("[effects]\ntolerance = 0.01", "modal_displacement = [0.5]", "end = 1e-4\nstep = 1e-4"),
+        [] as [usize; 0]
+    );
     // Each for its own sake.
     assert_eq!(large("", "modal_displacement = [0.0, 0.0, 0.3]", TIME), [2]);
     assert_eq!(large("", "modal_displacement = [0.5, 0.0, 0.3]", TIME), [0, 2]);
@@ -27,17 +30,17 @@ fn auto_takes_the_modes_whose_amplitudes_call_for_it_and_no_others() {
 #[test]
 fn auto_leaves_it_off_where_it_cannot_be_or_is_not_wanted() {
     let far = "modal_displacement = [0.5]";
-    assert_eq!(large("[effects]\nlarge_deflection = false", far, TIME), []);
-    assert_eq!(large("[effects]\ngeometric_stiffening = false", far, TIME), []);
+    assert_eq!(large("[effects]\nlarge_deflection = false", far, TIME), [] as [usize; 0]);
+    assert_eq!(large("[effects]\ngeometric_stiffening = false", far, TIME), [] as [usize; 0]);
     for scheme in ["paper", "rkmk4\"\nformulation = \"paper"] {
         let time = format!("{TIME}\nscheme = \"{scheme}\"");
-        assert_eq!(large("", far, &time), []);
+        assert_eq!(large("", far, &time), [] as [usize; 0]);
         // A refusal in words, before anything is built.
         let text = format!("[effects]\nlarge_deflection = true\n[time]\n{time}");
         let found = scene::Scene::parse(&crate::large::whole(&text), "scene.toml").unwrap_err().to_string();
         assert!(found.contains("large_deflection = true` with the paper's formulation"), "{found}");
     }
-    assert_eq!(build(&rigid("", "end = 1.0\nstep = 1e-2")).large_modes(), []);
+    assert_eq!(build(&rigid("", "end = 1.0\nstep = 1e-2")).large_modes(), [] as [usize; 0]);
 }
 
 /// A scene without initial state.

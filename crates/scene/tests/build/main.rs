@@ -3,6 +3,8 @@
 mod assembly;
 mod auto;
 mod backbones;
+mod body_file;
+mod cache;
 mod damping;
 mod histories;
 mod large;

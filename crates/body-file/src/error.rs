@@ -1,0 +1,130 @@
+//! What can go wrong with a body file.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// What helps where the file is not as it was written.
+const CURE: &str = "take an unchanged copy, or make it again: flexframe reduce SCENE -o FILE";
+
+/// An error of the writer or the reader.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum BodyFileError {
+    /// The HDF5 library refused an operation.
+    #[error("{}: cannot {action}: {source}", path.display())]
+    Hdf5 {
+        /// The file.
+        path: PathBuf,
+        /// What was being done.
+        action: String,
+        /// The library's own message.
+        source: hdf5::Error,
+    },
+    /// The operating system refused an operation.
+    #[error("{}: cannot {action}: {source}", path.display())]
+    System {
+        /// The file.
+        path: PathBuf,
+        /// What was being done.
+        action: &'static str,
+        /// Why.
+        source: io::Error,
+    },
+    /// The name of the folder is not text in UTF-8, which HDF5 wants.
+    #[error(
+        "{}: HDF5 makes files only in folders whose names are text in UTF-8; choose another folder, or go into this one and \
+         name the file from there",
+        path.display()
+    )]
+    NameNotUtf8 {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// A file that does not begin as body files do.
+    #[error(
+        "{}: this is not a body file, or its beginning is damaged (one that another program has written anew, such as \
+         h5repack, is not read); {CURE}",
+        path.display()
+    )]
+    NotABody {
+        /// The file.
+        path: PathBuf,
+    },
+    /// A file of another version of the format.
+    #[error(
+        "{}: this is a body file of version {found}, and this program reads version {expected}; make it again: flexframe \
+         reduce SCENE -o FILE",
+        path.display()
+    )]
+    OtherVersion {
+        /// The file.
+        path: PathBuf,
+        /// Its version.
+        found: u32,
+        /// The version that is read.
+        expected: u32,
+    },
+    /// A file from a machine that has the bytes of a number in another order.
+    #[error(
+        "{}: this body file comes from a machine that has the bytes of a number in another order; make it again on this one: \
+         flexframe reduce SCENE -o FILE",
+        path.display()
+    )]
+    OtherMachine {
+        /// The file.
+        path: PathBuf,
+    },
+    /// A file that is not what was written.
+    #[error("{}: the body file is damaged, or another program has changed it: {what}; {CURE}", path.display())]
+    Damaged {
+        /// The file.
+        path: PathBuf,
+        /// What was found, and what was expected.
+        what: String,
+    },
+    /// A dataset that is not there.
+    #[error("{}: the body file has no dataset {dataset}; {CURE}", path.display())]
+    Missing {
+        /// The file.
+        path: PathBuf,
+        /// The path of the dataset.
+        dataset: String,
+    },
+    /// Datasets that were declared otherwise than they are written.
+    #[error("{}: the dataset {dataset} was declared otherwise: {what}", path.display())]
+    Declared {
+        /// The file.
+        path: PathBuf,
+        /// The path of the dataset.
+        dataset: String,
+        /// What differs.
+        what: &'static str,
+    },
+}
+
+impl BodyFileError {
+    /// The file.
+    pub fn path(&self) -> &Path {
+        match self {
+            Self::Hdf5 { path, .. }
+            | Self::System { path, .. }
+            | Self::NameNotUtf8 { path }
+            | Self::NotABody { path }
+            | Self::OtherVersion { path, .. }
+            | Self::OtherMachine { path }
+            | Self::Damaged { path, .. }
+            | Self::Missing { path, .. }
+            | Self::Declared { path, .. } => path,
+        }
+    }
+
+    pub(crate) fn system(path: &Path, action: &'static str) -> impl FnOnce(io::Error) -> Self + use<> {
+        let path = path.to_owned();
+        move |source| Self::System { path, action, source }
+    }
+
+    pub(crate) fn hdf5<A: Into<String>>(path: &Path, action: A) -> impl FnOnce(hdf5::Error) -> Self + use<A> {
+        let (path, action) = (path.to_owned(), action.into());
+        move |source| Self::Hdf5 { path, action, source }
+    }
+}

@@ -1,0 +1,230 @@
+//! `flexframe sweep`: one scene with many values of its keys.
+//!
+//! Scenes with the same body share it: it is assembled and factored once. The models are made one after the other, and their
+//! runs go on at once, as many as there are threads.
+
+mod error;
+mod plan;
+mod table;
+
+use std::collections::BTreeMap;
+use std::fmt;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError, mpsc};
+use std::time::{Duration, Instant};
+
+use results::Results;
+use scene::{Assembly, BuildProgress, Cache, Constraint, Model, ModelBuilder, Scene};
+use serde::Serialize;
+
+use crate::columns::COLUMNS;
+use crate::json;
+use crate::run::{self, RunSettings};
+use crate::write_error::WriteError;
+use plan::{Asked, Plan};
+use table::{Row, Table};
+
+pub use error::SweepError;
+
+/// The table is written again so often.
+const WRITE_INTERVAL: Duration = Duration::from_secs(1);
+
+/// How far a sweep has come.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum SweepProgress {
+    /// A body is being made.
+    Build(BuildProgress),
+    /// Rows that are done or have failed.
+    Rows {
+        /// So many.
+        done: u64,
+        /// Of so many.
+        total: u64,
+    },
+}
+
+/// How a sweep treats files, and how it works.
+#[derive(Debug, Clone)]
+pub struct SweepSettings {
+    /// Throws a table of another sweep away that is in the way, and the rows of this one.
+    pub overwrite: bool,
+    /// Runs at once.
+    pub threads: usize,
+    /// Where bodies are kept from run to run.
+    pub cache: Cache,
+}
+
+/// What `flexframe sweep` says at its end.
+#[derive(Debug, Clone, Serialize)]
+pub struct SweepReport {
+    /// Title of the scene.
+    pub title: String,
+    /// The table.
+    #[serde(serialize_with = "json::path")]
+    pub output: PathBuf,
+    /// Rows of the table.
+    pub rows: usize,
+    /// Rows that are done, those of an earlier run of the sweep among them.
+    pub done: usize,
+    /// Rows that were done before.
+    pub kept: usize,
+    /// Why rows have no results, by their number from 0.
+    pub failures: BTreeMap<usize, String>,
+    /// How often matrices were assembled and factored.
+    pub reductions: usize,
+}
+
+/// Runs a sweep and writes its table to `output`. Rows that are in it already are kept.
+///
+/// # Errors
+/// [`SweepError`]; what fails in one row is in the table.
+pub fn sweep(
+    path: &Path,
+    output: &Path,
+    settings: &SweepSettings,
+    mut progress: impl FnMut(SweepProgress),
+) -> Result<SweepReport, SweepError> {
+    let temporary = tempfile::tempdir().map_err(WriteError::of(output))?;
+    // Rows find what earlier rows have asked of the mesh.
+    let folder = settings.cache.folder().map_or_else(|| temporary.path().join("cache"), Path::to_owned);
+    let cache = if settings.cache.folder().is_some() { settings.cache.clone() } else { Cache::new(folder, u64::MAX) };
+    let plan = Plan::read(path, &cache)?;
+    if let Some(folder) = output.parent().filter(|folder| !folder.as_os_str().is_empty()) {
+        std::fs::create_dir_all(folder).map_err(WriteError::of(folder))?;
+    }
+    let mut table = Table::open(output, &plan, settings.overwrite)?;
+    let [kept, _] = table.counts();
+    let mut groups: BTreeMap<String, Vec<usize>> = BTreeMap::new();
+    for (i, row) in plan.rows.iter().enumerate() {
+        match row {
+            _ if table.rows[i] != Row::Open => {}
+            Ok(scene) => groups.entry(body(scene)).or_default().push(i),
+            Err(words) => table.rows[i] = Row::Failed(words.clone()),
+        }
+    }
+    table.write(output, &plan, false)?;
+    let mut written = Instant::now();
+    for rows in groups.values() {
+        let Some(Ok(first)) = rows.first().map(|row| &plan.rows[*row]) else { continue };
+        let assembly = match Assembly::new(first, |p| progress(SweepProgress::Build(p))) {
+            Ok(assembly) => assembly,
+            Err(error) => {
+                rows.iter().for_each(|row| table.rows[*row] = Row::Failed(error.to_string()));
+                continue;
+            }
+        };
+        let builder = match assembly.builder() {
+            Ok(builder) => Mutex::new(builder),
+            Err(error) => {
+                rows.iter().for_each(|row| table.rows[*row] = Row::Failed(error.to_string()));
+                continue;
+            }
+        };
+        run_rows(&plan, rows, &builder, temporary.path(), settings.threads, |row, outcome| {
+            table.rows[row] = outcome;
+            let [done, failed] = table.counts();
+            progress(SweepProgress::Rows { done: (done + failed) as u64, total: table.rows.len() as u64 });
+            if written.elapsed() >= WRITE_INTERVAL {
+                table.write(output, &plan, false)?;
+                written = Instant::now();
+            }
+            Ok(())
+        })?;
+    }
+    table.write(output, &plan, true)?;
+    let [done, _] = table.counts();
+    Ok(SweepReport {
+        title: plan.title,
+        output: output.to_owned(),
+        rows: table.rows.len(),
+        done,
+        kept,
+        failures: table.failures(),
+        reductions: cache.notes().assembled,
+    })
+}
+
+/// What models share an assembly: all that it is made of.
+fn body(scene: &Scene) -> String {
+    let flexibility = scene.effects.choices[frames_rk4::Effect::Flexibility];
+    // Such a support is checked against what the scene begins with.
+    let initial = matches!(scene.constraint, Some(Constraint::Support { .. })).then_some(&scene.initial);
+    format!("{:?} {:?} {:?} {flexibility:?} {initial:?}", scene.body, scene.constraint, scene.modes.flexible)
+}
+
+/// Runs some rows of one body, and tells what became of each.
+fn run_rows(
+    plan: &Plan,
+    rows: &[usize],
+    builder: &Mutex<ModelBuilder<'_>>,
+    folder: &Path,
+    threads: usize,
+    mut tell: impl FnMut(usize, Row) -> Result<(), SweepError>,
+) -> Result<(), SweepError> {
+    let next = AtomicUsize::new(0);
+    std::thread::scope(|scope| {
+        let (sender, receiver) = mpsc::channel();
+        for _ in 0..threads.clamp(1, rows.len()) {
+            let (sender, next) = (sender.clone(), &next);
+            scope.spawn(move || {
+                while let Some(row) = rows.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    let outcome = match &plan.rows[*row] {
+                        Ok(scene) => run_row(scene, plan, builder, folder).map_or_else(Row::Failed, Row::Done),
+                        Err(words) => Row::Failed(words.clone()),
+                    };
+                    // Where nobody listens any longer, the table could not be written.
+                    if sender.send((*row, outcome)).is_err() {
+                        break;
+                    }
+                }
+            });
+        }
+        drop(sender);
+        receiver.iter().try_for_each(|(row, outcome)| tell(row, outcome))
+    })
+}
+
+/// The results of a row, or why there are none.
+fn run_row(
+    scene: &Scene,
+    plan: &Plan,
+    builder: &Mutex<ModelBuilder<'_>>,
+    folder: &Path,
+) -> Result<Vec<Vec<f64>>, String> {
+    let model: Model = {
+        let mut builder = builder.lock().unwrap_or_else(PoisonError::into_inner);
+        builder.build(scene, |_| ()).map_err(|error| error.to_string())?
+    };
+    let folder = tempfile::tempdir_in(folder).map_err(|error| error.to_string())?;
+    run::run_model(scene, &model, folder.path(), &RunSettings::default(), |_| ()).map_err(|error| error.to_string())?;
+    let results =
+        Results::open(run::results_path(scene, folder.path()), &COLUMNS).map_err(|error| error.to_string())?;
+    let value = |asked: &Asked| {
+        let column = asked.column();
+        let table = results.table(column).ok_or_else(|| format!("the results have no column {column}"))?;
+        let row = match asked {
+            Asked::Final(_) => table.rows().checked_sub(1).and_then(|last| table.row(last)).map(<[f64]>::to_vec),
+            Asked::Peak(_) => (0..table.width())
+                .map(|k| table.column(k)?.max_by(|a, b| a.abs().total_cmp(&b.abs())))
+                .collect::<Option<Vec<f64>>>(),
+        };
+        row.ok_or_else(|| format!("the column {column} has no rows"))
+    };
+    plan.results.values().map(value).collect()
+}
+
+impl fmt::Display for SweepReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "{}", self.title)?;
+        writeln!(f, "  rows     {} done ({} of them before), {} failed", self.done, self.kept, self.failures.len())?;
+        for (row, words) in self.failures.iter().take(5) {
+            writeln!(f, "  failed   row {row}: {}", words.lines().next().unwrap_or_default())?;
+        }
+        if self.failures.len() > 5 {
+            writeln!(f, "           and {} more, see `failures` in the file", self.failures.len() - 5)?;
+        }
+        writeln!(f, "  body     matrices assembled and factored {} time(s)", self.reductions)?;
+        write!(f, "  wrote    {}", self.output.display())
+    }
+}

@@ -1,0 +1,74 @@
+//! Why a sweep cannot be made.
+
+use std::path::PathBuf;
+
+use body_file::BodyFileError;
+use scene::{BuildError, SceneError};
+
+use crate::write_error::WriteError;
+
+/// A sweep that could not be made. What fails in a row of it is in its table.
+#[derive(Debug, thiserror::Error)]
+pub enum SweepError {
+    /// The file of the sweep cannot be read.
+    #[error("{}: cannot be read: {source}", path.display())]
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// The file of the sweep says something that cannot be right.
+    #[error("{}: `{key}`: found {found}, expected {expected}", path.display())]
+    Invalid {
+        /// The file.
+        path: PathBuf,
+        /// The key in it.
+        key: String,
+        /// What stands there.
+        found: String,
+        /// What should stand there.
+        expected: String,
+    },
+    /// The file of the sweep is not TOML, or has another form.
+    #[error("{}: {message}", path.display())]
+    Form {
+        /// The file.
+        path: PathBuf,
+        /// What the parser said, with the place.
+        message: String,
+    },
+    /// The scene cannot be read, or no row of the sweep is a scene.
+    #[error("{source}{}", where_(key.as_deref()))]
+    Scene {
+        /// The parameters of the first row, if it is not the scene itself.
+        key: Option<String>,
+        /// Why.
+        source: SceneError,
+    },
+    /// The body cannot be made.
+    #[error(transparent)]
+    Build(#[from] BuildError),
+    /// What is there is not the table of this sweep.
+    #[error(
+        "{}: what is there is not the table of this sweep ({what}); move it away, choose another file with -o, or replace it \
+         with --overwrite",
+        path.display()
+    )]
+    OtherTable {
+        /// The file.
+        path: PathBuf,
+        /// What it is.
+        what: String,
+    },
+    /// The table cannot be written.
+    #[error(transparent)]
+    Table(#[from] BodyFileError),
+    /// A folder cannot be made.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+}
+
+fn where_(key: Option<&str>) -> String {
+    key.map_or_else(String::new, |key| format!("\n  = with {key} (no row of the sweep is a scene that can be read)"))
+}

@@ -1,0 +1,259 @@
+//! What a sweep is: a scene, its parameters, and what is asked of each run.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use scene::{Cache, Scene, SceneError};
+use serde::Deserialize;
+use toml::{Table, Value};
+
+use super::error::SweepError;
+
+/// More rows than these are a mistake.
+const MOST_ROWS: usize = 1_000_000;
+
+/// The file of a sweep.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct File {
+    scene: PathBuf,
+    #[serde(default)]
+    combine: Combine,
+    parameters: Table,
+    results: BTreeMap<String, Asked>,
+}
+
+/// How the lists of the parameters are combined.
+#[derive(Debug, Clone, Copy, Default, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum Combine {
+    /// Every value of one with every value of the others; the last parameter changes first.
+    #[default]
+    Grid,
+    /// The first values of all, then the second ones, and so on.
+    Zip,
+}
+
+/// What is asked of a run.
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(super) enum Asked {
+    /// The last row of a column of the results, such as `points/tip/displacement`.
+    Final(String),
+    /// Of each number of a column, the value of largest size over the rows, with its sign.
+    Peak(String),
+}
+
+impl Asked {
+    /// The path of the column.
+    pub fn column(&self) -> &str {
+        match self {
+            Self::Final(column) | Self::Peak(column) => column,
+        }
+    }
+}
+
+/// A range of numbers.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Range {
+    from: f64,
+    to: f64,
+    count: usize,
+}
+
+/// A sweep, ready to be run.
+pub(super) struct Plan {
+    pub title: String,
+    /// The text of its file and that of the scene, as one: what the table belongs to.
+    pub identity: String,
+    /// Keys of the scene, in alphabetical order, and their values in each row.
+    pub parameters: Vec<(String, Vec<Value>)>,
+    pub results: BTreeMap<String, Asked>,
+    /// The scene of each row, or why it is none.
+    pub rows: Vec<Result<Scene, String>>,
+}
+
+impl Plan {
+    pub fn read(path: &Path, cache: &Cache) -> Result<Self, SweepError> {
+        let text = |path: &Path| {
+            std::fs::read_to_string(path).map_err(|source| SweepError::Unreadable { path: path.to_owned(), source })
+        };
+        let of_sweep = text(path)?;
+        let form = |error: toml::de::Error| SweepError::Form { path: path.to_owned(), message: error.to_string() };
+        let file: File = toml::from_str(&of_sweep).map_err(form)?;
+        let scene_path = path.parent().unwrap_or(Path::new("")).join(&file.scene);
+        let scene = Scene::read(&scene_path).map_err(|source| SweepError::Scene { key: None, source })?;
+        // It is a scene: it can be read.
+        let table: Table = toml::from_str(&scene.source).map_err(form)?;
+
+        let invalid = |key: &str, found: String, expected: &str| SweepError::Invalid {
+            path: path.to_owned(),
+            key: key.to_owned(),
+            found,
+            expected: expected.to_owned(),
+        };
+        if file.results.is_empty() {
+            return Err(invalid(
+                "results",
+                "nothing".into(),
+                "what to keep of each run, such as tip = { final = \"position\" }",
+            ));
+        }
+        let lists: Vec<(String, Vec<Value>)> = file
+            .parameters
+            .into_iter()
+            .map(|(key, value)| {
+                let values = values(value)
+                    .map_err(|(found, expected)| invalid(&format!("parameters.\"{key}\""), found, expected))?;
+                Ok((key, values))
+            })
+            .collect::<Result<_, SweepError>>()?;
+        if lists.is_empty() {
+            return Err(invalid("parameters", "nothing".into(), "keys of the scene with lists or ranges of values"));
+        }
+        let parameters = match file.combine {
+            Combine::Zip => {
+                let length = lists[0].1.len();
+                if let Some((key, values)) = lists.iter().find(|(_, values)| values.len() != length) {
+                    let expected = format!("{length} values, as many as the first list has, for combine = \"zip\"");
+                    return Err(invalid(
+                        &format!("parameters.\"{key}\""),
+                        format!("{} values", values.len()),
+                        &expected,
+                    ));
+                }
+                lists
+            }
+            Combine::Grid => grid(&lists).ok_or_else(|| {
+                invalid("parameters", format!("a grid of more than {MOST_ROWS} rows"), "fewer values")
+            })?,
+        };
+        let count = parameters[0].1.len();
+        let mut rows = Vec::with_capacity(count);
+        let mut first_refusal = None;
+        for row in 0..count {
+            let mut table = table.clone();
+            for (key, values) in &parameters {
+                set(&mut table, key, values[row].clone())
+                    .map_err(|(found, expected)| invalid(&format!("parameters.\"{key}\""), found, &expected))?;
+            }
+            let text = toml::to_string(&table).unwrap_or_default();
+            rows.push(match Scene::parse(&text, &scene.path) {
+                Ok(scene) => Ok(Scene { cache: cache.clone(), ..scene }),
+                Err(refusal) => {
+                    let words = refusal.to_string();
+                    first_refusal.get_or_insert((row, refusal));
+                    Err(words)
+                }
+            });
+        }
+        if rows.iter().all(Result::is_err)
+            && let Some((row, source)) = first_refusal
+        {
+            let source: SceneError = source;
+            return Err(SweepError::Scene { key: Some(in_words(&parameters, row)), source });
+        }
+        let identity = format!("{of_sweep}\n{}", scene.source);
+        Ok(Self { title: scene.title, identity, parameters, results: file.results, rows })
+    }
+}
+
+/// The values of the parameters in a row.
+pub(super) fn in_words(parameters: &[(String, Vec<Value>)], row: usize) -> String {
+    let each = parameters.iter().map(|(key, values)| format!("{key} = {}", values[row]));
+    each.collect::<Vec<_>>().join(", ")
+}
+
+/// The values of a list or a range.
+fn values(value: Value) -> Result<Vec<Value>, (String, &'static str)> {
+    const EXPECTED: &str = "a list such as [1, 2, 5] or a range such as { from = 0, to = 100, count = 21 }; a key with dots is \
+                            written in quotes, \"initial.angular_velocity[2]\"";
+    let found = format!("{value}");
+    match value {
+        Value::Array(list) if !list.is_empty() => Ok(list),
+        Value::Table(table) => match table.try_into() {
+            Ok(Range { from, to, count }) if (1..=MOST_ROWS).contains(&count) && from.is_finite() && to.is_finite() => {
+                let step = |i: usize| if count == 1 { 0.0 } else { i as f64 / (count - 1) as f64 };
+                // The last is what was written, to the last bit.
+                let at = |i: usize| if i + 1 == count && count > 1 { to } else { from + (to - from) * step(i) };
+                Ok((0..count).map(|i| Value::Float(at(i))).collect())
+            }
+            _ => Err((found, EXPECTED)),
+        },
+        _ => Err((found, EXPECTED)),
+    }
+}
+
+/// Each list as long as the grid; the last parameter changes first.
+fn grid(lists: &[(String, Vec<Value>)]) -> Option<Vec<(String, Vec<Value>)>> {
+    let rows = lists.iter().try_fold(1usize, |rows, (_, values)| rows.checked_mul(values.len()))?;
+    if rows > MOST_ROWS {
+        return None;
+    }
+    let mut each = rows;
+    let column = |(key, values): &(String, Vec<Value>)| {
+        each /= values.len();
+        (key.clone(), (0..rows).map(|row| values[row / each % values.len()].clone()).collect())
+    };
+    Some(lists.iter().map(column).collect())
+}
+
+/// Sets the value with a path of keys such as `loads[0].amplitude`.
+fn set(table: &mut Table, path: &str, value: Value) -> Result<(), (String, String)> {
+    let expected = || "a path of keys of the scene, such as loads[0].amplitude".to_owned();
+    let (first, rest) = path.split_once('.').map_or((path, None), |(first, rest)| (first, Some(rest)));
+    let (key, mut indices) = first.split_once('[').map_or((first, ""), |(key, _)| (key, &first[key.len()..]));
+    if key.is_empty() {
+        return Err((format!("{path:?}"), expected()));
+    }
+    if indices.is_empty() {
+        return match rest {
+            None => {
+                table.insert(key.to_owned(), value);
+                Ok(())
+            }
+            Some(rest) => match table.entry(key).or_insert_with(|| Value::Table(Table::new())) {
+                Value::Table(inner) => set(inner, rest, value),
+                other => Err((format!("`{rest}` in what is {}", kind(other)), "a key of a table".to_owned())),
+            },
+        };
+    }
+    let mut place = table
+        .get_mut(key)
+        .ok_or_else(|| (format!("no list `{key}`"), format!("one that the scene has ({key} = […])")))?;
+    while !indices.is_empty() {
+        let (index, after) = indices
+            .strip_prefix('[')
+            .and_then(|rest| rest.split_once(']'))
+            .ok_or_else(|| (format!("{path:?}"), expected()))?;
+        let index: usize = index.parse().map_err(|_| (format!("{path:?}"), expected()))?;
+        let Value::Array(list) = place else {
+            return Err((format!("`{key}`, which is {}", kind(place)), "a list".to_owned()));
+        };
+        let length = list.len();
+        place = list.get_mut(index).ok_or_else(|| {
+            (format!("entry {index} of `{key}`"), format!("one from 0 to {}", length.saturating_sub(1)))
+        })?;
+        indices = after;
+    }
+    match (rest, place) {
+        (None, place) => {
+            *place = value;
+            Ok(())
+        }
+        (Some(rest), Value::Table(inner)) => set(inner, rest, value),
+        (Some(rest), other) => Err((format!("`{rest}` in what is {}", kind(other)), "a key of a table".to_owned())),
+    }
+}
+
+fn kind(value: &Value) -> &'static str {
+    match value {
+        Value::Table(_) => "a table",
+        Value::Array(_) => "a list",
+        Value::String(_) => "a text",
+        Value::Boolean(_) => "true or false",
+        Value::Integer(_) | Value::Float(_) => "a number",
+        Value::Datetime(_) => "a date",
+    }
+}

@@ -1,0 +1,171 @@
+//! The table of a sweep: its parameters, its results, and what became of each row.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use body_file::{BodyFile, BodyFileError, Declared, Digest, Kind, Writer};
+use toml::Value;
+
+use super::error::SweepError;
+use super::plan::{Asked, Plan};
+
+/// What has become of a row, by the numbers in the file.
+const OPEN: u32 = 0;
+const DONE: u32 = 1;
+const FAILED: u32 = 2;
+
+/// What has become of a row.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Row {
+    /// It has not been run.
+    Open,
+    /// The numbers of each result, in the order of the plan.
+    Done(Vec<Vec<f64>>),
+    /// Why there are none.
+    Failed(String),
+}
+
+/// The rows of a sweep.
+pub(super) struct Table {
+    pub rows: Vec<Row>,
+}
+
+impl Table {
+    /// The table in a file, or an empty one where there is none. Rows that failed are open again.
+    pub fn open(path: &Path, plan: &Plan, overwrite: bool) -> Result<Self, SweepError> {
+        let empty = Self { rows: vec![Row::Open; plan.rows.len()] };
+        if overwrite || !path.exists() {
+            return Ok(empty);
+        }
+        let other = |what: &str| SweepError::OtherTable { path: path.to_owned(), what: what.to_owned() };
+        let file = BodyFile::open(path).map_err(|error| match error {
+            BodyFileError::System { .. } => error.into(),
+            BodyFileError::Damaged { what, .. } => other(&format!("it is damaged: {what}")),
+            _ => other("it is no table of a sweep"),
+        })?;
+        if file.attribute("identity").is_none() {
+            return Err(other("it is no table of a sweep"));
+        }
+        if file.attribute("identity") != Some(&identity(plan)) {
+            return Err(other("it is of another sweep or scene, or of another version of flexframe"));
+        }
+        let status = file.read::<u32>("status").map_err(|_| other("it is damaged"))?.values;
+        let mut rows = empty.rows;
+        let mut columns = Vec::new();
+        for name in plan.results.keys() {
+            let dataset = format!("results/{name}");
+            // As long as no row is done, there is none.
+            columns.push(match file.has(&dataset) {
+                true => Some(file.read::<f64>(&dataset).map_err(|_| other("it is damaged"))?),
+                false => None,
+            });
+        }
+        for (i, row) in rows.iter_mut().enumerate() {
+            if status.get(i) == Some(&DONE) {
+                let of_row = |column: &Option<body_file::Array<f64>>| {
+                    let column = column.as_ref()?;
+                    let width = column.shape.get(1).copied()?;
+                    column.values.get(i * width..(i + 1) * width).map(<[f64]>::to_vec)
+                };
+                *row = columns.iter().map(of_row).collect::<Option<_>>().map_or(Row::Open, Row::Done);
+            }
+        }
+        Ok(Self { rows })
+    }
+
+    /// How many rows are done, and how many failed.
+    pub fn counts(&self) -> [usize; 2] {
+        let count = |is: fn(&Row) -> bool| self.rows.iter().filter(|row| is(row)).count();
+        [count(|row| matches!(row, Row::Done(_))), count(|row| matches!(row, Row::Failed(_)))]
+    }
+
+    /// The rows that failed, and why.
+    pub fn failures(&self) -> BTreeMap<usize, String> {
+        let failed = |(i, row): (usize, &Row)| match row {
+            Row::Failed(words) => Some((i, words.clone())),
+            _ => None,
+        };
+        self.rows.iter().enumerate().filter_map(failed).collect()
+    }
+
+    /// Writes the file anew.
+    pub fn write(&self, path: &Path, plan: &Plan, durable: bool) -> Result<(), SweepError> {
+        let count = self.rows.len();
+        let declared = |path: String, kind, shape: &[usize], description: String| Declared {
+            path,
+            kind,
+            shape: shape.to_vec(),
+            attributes: vec![("description", description)],
+            same_as: None,
+        };
+        let status: Vec<u32> = self
+            .rows
+            .iter()
+            .map(|row| match row {
+                Row::Open => OPEN,
+                Row::Done(_) => DONE,
+                Row::Failed(_) => FAILED,
+            })
+            .collect();
+        let mut datasets =
+            vec![declared("status".into(), Kind::U32, &[count], "0 not run, 1 done, 2 failed (see `failures`)".into())];
+        let mut columns = Vec::new();
+        for (key, values) in &plan.parameters {
+            let numbers: Option<Vec<f64>> = values.iter().map(number).collect();
+            if let Some(numbers) = numbers {
+                let path = format!("parameters/{key}");
+                datasets.push(declared(path.clone(), Kind::F64, &[count], format!("{key} of the scene")));
+                columns.push((path, numbers));
+            }
+        }
+        for (i, (name, asked)) in plan.results.iter().enumerate() {
+            let done = |row: &Row| match row {
+                Row::Done(values) => Some(values[i].len()),
+                _ => None,
+            };
+            let Some(width) = self.rows.iter().filter_map(done).max() else { continue };
+            let path = format!("results/{name}");
+            let words = match asked {
+                Asked::Final(column) => format!("{column} at the end; NaN where there is none"),
+                Asked::Peak(column) => format!("value of largest size of {column} over time; NaN where there is none"),
+            };
+            datasets.push(declared(path.clone(), Kind::F64, &[count, width], words));
+            let mut numbers = vec![f64::NAN; count * width];
+            for (row, place) in self.rows.iter().zip(numbers.chunks_mut(width.max(1))) {
+                if let Row::Done(values) = row {
+                    place.iter_mut().zip(&values[i]).for_each(|(place, value)| *place = *value);
+                }
+            }
+            columns.push((path, numbers));
+        }
+        let parameters: BTreeMap<&str, &[Value]> =
+            plan.parameters.iter().map(|(key, values)| (key.as_str(), values.as_slice())).collect();
+        let json = |text: Result<String, serde_json::Error>| text.unwrap_or_default();
+        let texts = BTreeMap::from([
+            ("title".to_owned(), plan.title.clone()),
+            ("identity".to_owned(), identity(plan)),
+            ("program_version".to_owned(), env!("CARGO_PKG_VERSION").to_owned()),
+            ("parameters".to_owned(), json(serde_json::to_string(&parameters))),
+            ("failures".to_owned(), json(serde_json::to_string(&self.failures()))),
+        ]);
+        let mut writer = Writer::create(path, texts, &datasets)?;
+        writer.write("status", &status)?;
+        for (path, numbers) in &columns {
+            writer.write(path, numbers)?;
+        }
+        Ok(writer.finish(durable)?)
+    }
+}
+
+/// What the table belongs to.
+fn identity(plan: &Plan) -> String {
+    Digest::new().text(env!("CARGO_PKG_VERSION")).text(&plan.identity).finish().to_string()
+}
+
+fn number(value: &Value) -> Option<f64> {
+    match value {
+        Value::Float(number) => Some(*number),
+        Value::Integer(number) => Some(*number as f64),
+        _ => None,
+    }
+}

@@ -1,0 +1,170 @@
+//! Sweeps: one table, one reduction, and every fault in words.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use flexframe::run::{self, RunSettings};
+use flexframe::scene::{Cache, Scene};
+use flexframe::sweep::{SweepReport, SweepSettings, sweep};
+
+const SCENE: &str = r#"
+title = "Blade"
+units = { length = "mm", mass = "Mg", time = "s" }
+[body]
+mesh = "bar.msh"
+material = { young_modulus = 70e3, poisson_ratio = 0.3, density = 2.7e-9 }
+[modes]
+flexible = 4
+[initial]
+angular_velocity = [0.0, 0.0, 10.0]
+[[loads]]
+kind = "force"
+at = [200.0, 0.0, 0.0]
+direction = [0.0, 1.0, 0.0]
+amplitude = 1.0
+history = { kind = "half-sine", duration = 1e-3 }
+[time]
+end = 2e-4
+step = 1e-5
+[output.points]
+tip = [200.0, 0.0, 0.0]
+"#;
+const RESULTS: &str =
+    "[results]\ntip = { final = \"points/tip/displacement\" }\nstrain = { peak = \"energy/strain\" }\n";
+
+/// A folder with the scene, its mesh and a sweep of these parameters.
+struct Case {
+    folder: tempfile::TempDir,
+}
+
+impl Case {
+    fn new(parameters: &str) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scene/tests/data/bar.msh");
+        fs::copy(data, folder.path().join("bar.msh")).unwrap();
+        fs::write(folder.path().join("blade.toml"), SCENE).unwrap();
+        let case = Self { folder };
+        case.write(parameters);
+        case
+    }
+
+    fn write(&self, parameters: &str) {
+        fs::write(self.path("sweep.toml"), format!("scene = \"blade.toml\"\n{parameters}\n{RESULTS}")).unwrap();
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    fn run(&self, overwrite: bool) -> Result<SweepReport, String> {
+        let settings = SweepSettings { overwrite, threads: 3, cache: Cache::none() };
+        sweep(&self.path("sweep.toml"), &self.path("sweep.h5"), &settings, |_| ()).map_err(|error| error.to_string())
+    }
+
+    /// A table of numbers as HDF5 reads it.
+    fn table(&self, name: &str) -> Vec<f64> {
+        hdf5::File::open(self.path("sweep.h5")).unwrap().dataset(name).unwrap().read_raw().unwrap()
+    }
+}
+
+#[test]
+fn a_blade_at_twenty_speeds_costs_one_reduction_and_each_row_is_that_of_its_own_run() {
+    let case = Case::new("[parameters]\n\"initial.angular_velocity[2]\" = { from = 0, to = 1900, count = 20 }");
+    let report = case.run(false).unwrap();
+    assert_eq!((report.rows, report.done, report.kept, report.reductions), (20, 20, 0, 1));
+    assert!(report.failures.is_empty(), "{:?}", report.failures);
+    let speeds: Vec<f64> = (0..20).map(|i| 100.0 * f64::from(i)).collect();
+    assert_eq!(case.table("parameters/initial.angular_velocity[2]"), speeds);
+    assert_eq!(case.table("status"), vec![1.0; 20]);
+    let tip = case.table("results/tip");
+    for row in [0, 7, 19] {
+        let text = SCENE.replace("10.0]", &format!("{:?}]", speeds[row]));
+        let scene = Scene::parse(&text, case.path("blade.toml")).unwrap();
+        run::run(&scene, &case.path("alone"), &RunSettings { overwrite: true, ..RunSettings::default() }, |_| ())
+            .unwrap();
+        let file = hdf5::File::open(case.path("alone/blade.h5")).unwrap();
+        let alone: Vec<f64> = file.dataset("points/tip/displacement").unwrap().read_raw().unwrap();
+        assert_eq!(tip[3 * row..3 * row + 3], alone[alone.len() - 3..]);
+        let strain: Vec<f64> = file.dataset("energy/strain").unwrap().read_raw().unwrap();
+        assert_eq!(case.table("results/strain")[row], strain.into_iter().fold(0.0, f64::max));
+    }
+}
+
+#[test]
+fn a_grid_has_every_pair_and_a_zip_has_pairs() {
+    let lists = "[parameters]\n\"loads[0].amplitude\" = [1.0, 2, 3.0]\n\"time.step\" = [1e-5, 2e-5]";
+    let case = Case::new(lists);
+    let report = case.run(false).unwrap();
+    assert_eq!((report.rows, report.done, report.reductions), (6, 6, 1));
+    assert_eq!(case.table("parameters/loads[0].amplitude"), [1.0, 1.0, 2.0, 2.0, 3.0, 3.0]);
+    assert_eq!(case.table("parameters/time.step"), [1e-5, 2e-5, 1e-5, 2e-5, 1e-5, 2e-5]);
+    // The answer is linear in the load, which is small, at either step.
+    let strain = case.table("results/strain");
+    assert!((strain[2] / strain[0] - 4.0).abs() < 1e-3 && (strain[5] / strain[1] - 9.0).abs() < 1e-3, "{strain:?}");
+    case.write(&format!("combine = \"zip\"\n{lists}"));
+    let error = case.run(true).unwrap_err();
+    assert!(
+        error.contains("parameters.\"time.step\"") && error.contains("found 2 values, expected 3 values"),
+        "{error}"
+    );
+    case.write("combine = \"zip\"\n[parameters]\n\"loads[0].amplitude\" = [1.0, 2.0]\n\"title\" = [\"a\", \"b\"]");
+    assert_eq!(case.run(true).unwrap().rows, 2);
+    assert_eq!(case.table("parameters/loads[0].amplitude"), [1.0, 2.0]);
+}
+
+#[test]
+fn rows_that_fail_are_marked_with_their_words_and_rows_that_are_done_are_kept() {
+    let case = Case::new("[parameters]\n\"time.step\" = [1e-5, 1.0, 2e-5]");
+    let report = case.run(false).unwrap();
+    assert_eq!((report.done, report.kept, report.failures.len()), (2, 0, 1));
+    assert!(report.failures[&1].contains("time.step"), "{:?}", report.failures);
+    let tip = case.table("results/tip");
+    assert!(tip[3..6].iter().all(|x| x.is_nan()) && tip[..3].iter().chain(&tip[6..]).all(|x| x.is_finite()));
+    // Done again, nothing is left to do but the row that failed.
+    let report = case.run(false).unwrap();
+    assert_eq!((report.done, report.kept, report.failures.len(), report.reductions), (2, 2, 1, 0));
+    assert_eq!(case.table("results/strain")[0].to_bits(), case.table("results/strain")[0].to_bits());
+    // Another sweep has another table.
+    case.write("[parameters]\n\"time.step\" = [1e-5, 2e-5]");
+    let error = case.run(false).unwrap_err();
+    assert!(error.contains("it is of another sweep or scene") && error.contains("--overwrite"), "{error}");
+    assert_eq!(case.run(true).unwrap().done, 2);
+    fs::write(case.path("sweep.h5"), "mine").unwrap();
+    let error = case.run(false).unwrap_err();
+    assert!(error.contains("it is no table of a sweep"), "{error}");
+    assert_eq!(fs::read(case.path("sweep.h5")).unwrap(), b"mine");
+}
+
+#[test]
+fn what_a_sweep_cannot_be_is_refused() {
+    let case = Case::new("");
+    let refused = |parameters: &str, words: &[&str]| {
+        case.write(parameters);
+        let error = case.run(false).unwrap_err();
+        assert!(words.iter().all(|word| error.contains(word)), "{error}");
+        assert!(!case.path("sweep.h5").exists());
+    };
+    refused(
+        "[parameters]\n\"time.stpe\" = [1e-5, 2e-5]",
+        &["unknown key `stpe`", "did you mean `step`", "time.stpe = 1"],
+    );
+    refused("[parameters]\n\"loads[3].amplitude\" = [1.0]", &["entry 3 of `loads`", "one from 0 to 0"]);
+    refused("[parameters]\n\"effects[0]\" = [1.0]", &["no list `effects`"]);
+    refused("[parameters]\n\"time.step.x\" = [1.0]", &["`x` in what is a number"]);
+    refused("[parameters]\n\"time.step\" = []", &["parameters.\"time.step\"", "a list such as"]);
+    refused("[parameters]\ntime.step = [1e-5]", &["a key with dots is written in quotes"]);
+    refused("[parameters]\n\"time.step\" = { from = 1, to = 2, count = 0 }", &["count = 0", "a range such as"]);
+    refused("[parameters]", &["`parameters`: found nothing"]);
+    refused("colour = 1\n[parameters]\n\"time.step\" = [1e-5]", &["unknown field `colour`"]);
+    fs::write(case.path("sweep.toml"), "scene = \"nowhere.toml\"\n[parameters]\n\"time.step\" = [1e-5]\n[results]\n")
+        .unwrap();
+    assert!(case.run(false).unwrap_err().contains("nowhere.toml"));
+    // A column that is not there fails each row, in words.
+    fs::write(
+        case.path("sweep.toml"),
+        "scene = \"blade.toml\"\n[parameters]\n\"time.step\" = [1e-5]\n[results]\na = { final = \"points/nose/displacement\" }\n",
+    )
+    .unwrap();
+    let report = case.run(false).unwrap();
+    assert!(report.failures[&0].contains("the results have no column points/nose/displacement"), "{report:?}");
+}

@@ -1,0 +1,373 @@
+//! The finite-element model of a body, which is assembled and solved where an answer is not known.
+
+use std::cell::{OnceCell, RefCell};
+
+use body_file::{BodyFileError, Digest, Hash};
+use faer::{ColRef, Mat, MatRef};
+use fem_tet10::{
+    AssemblyError, GeometricTerms, Matrices, geometric_stiffness_product, reduced_geometric_stiffness,
+    second_order_energies, second_order_forces,
+};
+use frames_rk4::DrivenMotion;
+use modal::{
+    ModalError, Modes, ReducedBody, SecondOrderShapes, Solver, Support, acceleration_fields, centrifugal_fields,
+    turning_field,
+};
+
+use super::answer::{Answer, Kept};
+use super::answers;
+use super::assembly::AssembledMesh;
+use super::error::{BuildError, modal, too_many_modes};
+use super::progress::BuildProgress;
+use super::store::Store;
+use super::structure::{StaticForces, Structure};
+use crate::cache::Computing;
+use crate::origin::Origin;
+
+/// The finite-element model of a scene's body.
+pub(super) struct Solved<'a> {
+    assembled: &'a AssembledMesh,
+    solver: OnceCell<Solver<'a>>,
+    /// Held from the first answer that has to be computed on.
+    computing: RefCell<Option<Computing>>,
+}
+
+impl<'a> Solved<'a> {
+    /// What can be refused is refused at once where no answers are kept.
+    pub fn new(assembled: &'a AssembledMesh) -> Result<Self, BuildError> {
+        let solved = Self { assembled, solver: OnceCell::new(), computing: RefCell::default() };
+        if assembled.store.is_none() {
+            solved.solver()?;
+        }
+        Ok(solved)
+    }
+
+    /// Bytes of the mass and stiffness matrices.
+    pub fn matrix_bytes(&self) -> Result<usize, BuildError> {
+        self.ask_count(|| self.about_the_body("matrix bytes"), || Ok(self.matrices()?.bytes()))
+    }
+
+    /// Number of flexible modes that there are.
+    pub fn available(&self) -> Result<usize, BuildError> {
+        self.ask_count(|| self.about_the_held_body("number of modes"), || Ok(self.solver()?.available()))
+    }
+
+    fn matrices(&self) -> Result<&'a Matrices, BuildError> {
+        self.assembled.matrices()
+    }
+
+    fn solver(&self) -> Result<&Solver<'a>, BuildError> {
+        if let Some(found) = self.solver.get() {
+            return Ok(found);
+        }
+        let AssembledMesh { mesh, support, .. } = self.assembled;
+        let matrices = self.matrices()?;
+        let solver = Solver::new(matrices.stiffness(), matrices.mass(), mesh.positions(), support)
+            .map_err(modal(&self.assembled.scene))?;
+        Ok(self.solver.get_or_init(|| solver))
+    }
+
+    /// What is known of a question, which is written out only where something is kept.
+    fn ask<T>(
+        &self,
+        question: impl FnOnce() -> Digest,
+        recall: impl Fn(&Kept<'_>) -> Result<T, BodyFileError>,
+        compute: impl FnOnce() -> Result<T, BuildError>,
+        keep: impl FnOnce(&T) -> Answer,
+    ) -> Result<T, BuildError> {
+        let Some(store) = &self.assembled.store else { return compute() };
+        let question = store.question().hash(&question().finish()).finish();
+        if let Some(answer) = store.recall(&question, &recall)? {
+            return Ok(answer);
+        }
+        if self.computing.borrow().is_none() {
+            *self.computing.borrow_mut() = Some(self.assembled.scene.cache.computing());
+            // Another thread may have computed it in the meantime.
+            if let Some(answer) = store.recall(&question, &recall)? {
+                return Ok(answer);
+            }
+        }
+        let answer = compute()?;
+        store.keep(&question, || keep(&answer));
+        Ok(answer)
+    }
+
+    fn ask_fields(
+        &self,
+        question: impl FnOnce() -> Digest,
+        columns: usize,
+        compute: impl FnOnce() -> Result<Mat<f64>, BuildError>,
+    ) -> Result<Mat<f64>, BuildError> {
+        let recall = |kept: &Kept<'_>| answers::fields(kept, self.rows(), columns);
+        self.ask(question, recall, compute, |fields| answers::of_fields(fields.as_ref()))
+    }
+
+    fn ask_list(
+        &self,
+        question: impl FnOnce() -> Digest,
+        length: usize,
+        compute: impl FnOnce() -> Result<Vec<f64>, BuildError>,
+    ) -> Result<Vec<f64>, BuildError> {
+        let recall = |kept: &Kept<'_>| kept.list("values", Some(length));
+        self.ask(question, recall, compute, |values| Answer::default().with_list("values", values))
+    }
+
+    fn ask_count(
+        &self,
+        question: impl FnOnce() -> Digest,
+        compute: impl FnOnce() -> Result<usize, BuildError>,
+    ) -> Result<usize, BuildError> {
+        let recall = |kept: &Kept<'_>| Ok(kept.counts::<1>("count")?[0] as usize);
+        self.ask(question, recall, compute, |count| Answer::default().with_counts("count", &[*count as u64]))
+    }
+
+    /// Refuses a body file that was made for other modes or another support: these are what takes long.
+    fn refuse_other_body(&self, flexible: usize) -> Result<(), BuildError> {
+        let Some(file) = self.assembled.store.as_ref().and_then(Store::given) else { return Ok(()) };
+        let origin = Origin::read(file)?;
+        let cure = "give the scene what the file was made for, or make the file again: flexframe reduce SCENE -o FILE, from a \
+                    scene without `file`";
+        let support = self.support_text();
+        let (found, expected) = if origin.support != support {
+            (
+                "a body file of a body that is held otherwise".to_owned(),
+                "one with the constraints of the scene".to_owned(),
+            )
+        } else {
+            (format!("a body file with {} modes", origin.modes), format!("one with {flexible}, as [modes] asks"))
+        };
+        Err(self.assembled.scene.refuse("body.file", found, expected, cure).into())
+    }
+
+    /// What holds the body. Written out, numbers are what they are to the last bit.
+    pub fn support_text(&self) -> String {
+        let Support { motion, nodes, freedoms } = &self.assembled.support;
+        format!("{motion:?} {freedoms:?} {}", Hash::of(nodes))
+    }
+
+    /// A question about the body whatever holds it.
+    fn about_the_body(&self, what: &str) -> Digest {
+        Digest::new().text(what)
+    }
+
+    /// A question about the body with its support.
+    fn about_the_held_body(&self, what: &str) -> Digest {
+        Digest::new().text(what).text(&self.support_text())
+    }
+
+    fn rows(&self) -> usize {
+        3 * self.assembled.mesh.positions().len()
+    }
+}
+
+impl Structure for Solved<'_> {
+    fn modes(&self, flexible: usize, progress: &mut dyn FnMut(BuildProgress)) -> Result<Modes, BuildError> {
+        self.ask(
+            || self.about_the_held_body("modes").text(&flexible.to_string()),
+            |kept| answers::modes(kept, self.rows(), self.assembled.support.motion),
+            || {
+                self.refuse_other_body(flexible)?;
+                if self.solver.get().is_none() {
+                    progress(BuildProgress::Assembly);
+                }
+                let modes = self.solver()?.modes(flexible, |p| progress(BuildProgress::Modes(p)));
+                modes.map_err(|error| too_many_modes(&self.assembled.scene, error))
+            },
+            answers::of_modes,
+        )
+    }
+
+    fn nodal_masses(&self) -> Result<Vec<f64>, BuildError> {
+        let masses = || Ok(self.solver()?.mass().row_sums());
+        self.ask_list(|| self.about_the_body("nodal masses"), self.assembled.mesh.positions().len(), masses)
+    }
+
+    fn mass_product(&self, fields: MatRef<'_, f64>) -> Result<Mat<f64>, BuildError> {
+        let question = || with_matrix(self.about_the_body("mass product"), fields);
+        self.ask_fields(question, fields.ncols(), || Ok(self.solver()?.mass().product(fields)))
+    }
+
+    fn stiffness_product(&self, fields: MatRef<'_, f64>) -> Result<Mat<f64>, BuildError> {
+        let question = || with_matrix(self.about_the_body("stiffness product"), fields);
+        self.ask_fields(question, fields.ncols(), || Ok(self.matrices()?.stiffness() * fields))
+    }
+
+    fn static_response(&self, forces: MatRef<'_, f64>) -> Result<Mat<f64>, BuildError> {
+        let question = || with_matrix(self.about_the_held_body("static response"), forces);
+        self.ask_fields(question, forces.ncols(), || {
+            self.solver()?.static_response(forces).map_err(modal(&self.assembled.scene))
+        })
+    }
+
+    fn static_answers(&self, forces: &StaticForces) -> Result<Mat<f64>, BuildError> {
+        let StaticForces { of_loads, spin, drive, origin } = forces;
+        let question = || {
+            let question = with_matrix(self.about_the_held_body("static answers"), of_loads.as_ref());
+            question.text(&format!("{spin} {drive:?} {origin:?}"))
+        };
+        self.ask_fields(question, forces.count(), || {
+            let solver = self.solver()?;
+            let (mass, positions) = (solver.mass(), self.assembled.mesh.positions());
+            let mut all = Mat::zeros(of_loads.nrows(), forces.count());
+            all.as_mut().subcols_mut(0, of_loads.ncols()).copy_from(of_loads);
+            let mut next = of_loads.ncols();
+            let mut add = |fields: Mat<f64>| {
+                all.as_mut().subcols_mut(next, fields.ncols()).copy_from(&fields);
+                next += fields.ncols();
+            };
+            if *spin {
+                add(centrifugal_fields(mass, positions, origin));
+            }
+            match drive {
+                Some(DrivenMotion::Slide { direction }) => {
+                    add(acceleration_fields(mass) * Mat::from_fn(3, 1, |i, _| direction[i]));
+                }
+                Some(DrivenMotion::Turn { axis }) => add(turning_field(mass, positions, origin, axis)),
+                None => {}
+            }
+            solver.static_response(all.as_ref()).map_err(modal(&self.assembled.scene))
+        })
+    }
+
+    fn with_static_shapes(&self, modes: Modes, answers: MatRef<'_, f64>) -> Result<Modes, BuildError> {
+        let natural = modes.natural();
+        let question = || {
+            let question = with_modes(self.about_the_held_body("static shapes"), &modes).text(&natural.to_string());
+            with_matrix(question, answers)
+        };
+        self.ask(
+            question,
+            |kept| answers::with_added_shapes(kept, modes.clone(), natural),
+            || self.solver()?.with_static_shapes(modes.clone(), answers).map_err(modal(&self.assembled.scene)),
+            |modes| answers::of_added_shapes(modes, natural),
+        )
+    }
+
+    fn second_order_shapes(
+        &self,
+        modes: Modes,
+        large: &[usize],
+        forces: MatRef<'_, f64>,
+    ) -> Result<SecondOrderShapes, BuildError> {
+        let question = || {
+            let question = with_modes(self.about_the_held_body("shapes of second order"), &modes);
+            with_matrix(question.text(&format!("{large:?}")), forces)
+        };
+        self.ask(
+            question,
+            |kept| answers::second_order_shapes(kept, modes.clone(), large),
+            || self.solver()?.second_order_shapes(modes.clone(), large, forces).map_err(modal(&self.assembled.scene)),
+            answers::of_second_order_shapes,
+        )
+    }
+
+    fn reduced_body(&self, modes: &Modes) -> Result<ReducedBody, BuildError> {
+        self.ask(
+            || with_modes(self.about_the_held_body("reduced body"), modes),
+            |kept| answers::reduced_body(kept, modes),
+            || {
+                ReducedBody::new(modes, self.matrices()?.mass(), self.assembled.mesh.positions())
+                    .map_err(modal(&self.assembled.scene))
+            },
+            answers::of_reduced_body,
+        )
+    }
+
+    fn remainders(&self, modes: &Modes, answers: MatRef<'_, f64>) -> Result<Vec<f64>, BuildError> {
+        let question = || with_matrix(with_modes(self.about_the_body("remainders"), modes), answers);
+        self.ask_list(question, answers.ncols(), || {
+            let momenta = self.solver()?.mass().product(answers);
+            let of = |(u, mu): (ColRef<'_, f64>, ColRef<'_, f64>)| {
+                let carried: f64 = modes.shapes.as_ref().col_iter().map(|shape| (shape.transpose() * mu).powi(2)).sum();
+                (u.transpose() * mu - carried).max(0.0).sqrt()
+            };
+            Ok(answers.col_iter().zip(momenta.as_ref().col_iter()).map(of).collect())
+        })
+    }
+
+    fn stress_stiffness(
+        &self,
+        displacements: MatRef<'_, f64>,
+        modes: &Modes,
+        terms: GeometricTerms,
+    ) -> Result<Vec<Mat<f64>>, BuildError> {
+        let shapes = modes.shapes.as_ref();
+        let question = || {
+            let question = with_matrix(self.about_the_body("stress stiffness"), displacements);
+            with_matrix(question, shapes).text(&format!("{terms:?}"))
+        };
+        self.ask(
+            question,
+            |kept| kept.matrices("stiffness", displacements.ncols(), shapes.ncols()),
+            || {
+                Ok(reduced_geometric_stiffness(
+                    &self.assembled.mesh,
+                    &self.assembled.body.materials,
+                    displacements,
+                    shapes,
+                    terms,
+                )?)
+            },
+            |stiffness| Answer::default().with_matrices("stiffness", stiffness),
+        )
+    }
+
+    fn second_order_forces(&self, fields: MatRef<'_, f64>, pairs: &[[usize; 2]]) -> Result<Mat<f64>, BuildError> {
+        let question =
+            || with_matrix(self.about_the_body("forces of second order"), fields).text(&format!("{pairs:?}"));
+        self.ask_fields(question, pairs.len(), || {
+            Ok(second_order_forces(&self.assembled.mesh, &self.assembled.body.materials, fields, pairs)?)
+        })
+    }
+
+    fn second_order_energies(
+        &self,
+        fields: MatRef<'_, f64>,
+        quadruples: &[[usize; 4]],
+    ) -> Result<Vec<f64>, BuildError> {
+        let question =
+            || with_matrix(self.about_the_body("energies of second order"), fields).text(&format!("{quadruples:?}"));
+        self.ask_list(question, quadruples.len(), || {
+            Ok(second_order_energies(&self.assembled.mesh, &self.assembled.body.materials, fields, quadruples)?)
+        })
+    }
+
+    fn lowest_buckling_ratio(&self, answer: MatRef<'_, f64>, modes: &Modes) -> Result<f64, BuildError> {
+        let shapes = modes.shapes.as_ref();
+        let question = || with_matrix(with_matrix(self.about_the_held_body("buckling"), answer), shapes);
+        let found = self.ask_list(question, 1, || {
+            let product = |fields: MatRef<'_, f64>| -> Result<Mat<f64>, BucklingError> {
+                Ok(geometric_stiffness_product(&self.assembled.mesh, &self.assembled.body.materials, answer, fields)?)
+            };
+            match self.solver()?.lowest_buckling_ratio(shapes, product) {
+                Ok(lowest) => Ok(vec![lowest]),
+                Err(BucklingError::Modal(error)) => Err(modal(&self.assembled.scene)(error)),
+                Err(BucklingError::Assembly(error)) => Err(error.into()),
+            }
+        })?;
+        Ok(found.first().copied().unwrap_or_default())
+    }
+}
+
+/// What the search for the buckling load may meet.
+#[derive(Debug, thiserror::Error)]
+enum BucklingError {
+    #[error(transparent)]
+    Modal(#[from] ModalError),
+    #[error(transparent)]
+    Assembly(#[from] AssemblyError),
+}
+
+/// A question with a matrix.
+fn with_matrix(question: Digest, matrix: MatRef<'_, f64>) -> Digest {
+    let question = question.numbers(&[matrix.nrows() as u64, matrix.ncols() as u64]);
+    matrix.col_iter().fold(question, |question, column| match column.try_as_col_major() {
+        Some(column) => question.numbers(column.as_slice()),
+        None => question.numbers(&column.iter().copied().collect::<Vec<f64>>()),
+    })
+}
+
+/// A question with modes; the rigid ones follow from the body and its support.
+fn with_modes(question: Digest, modes: &Modes) -> Digest {
+    with_matrix(question.numbers(&modes.eigenvalues), modes.shapes.as_ref())
+}

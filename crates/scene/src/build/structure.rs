@@ -1,0 +1,87 @@
+//! What is asked of the finite-element model of a body.
+
+use faer::{Mat, MatRef};
+use fem_tet10::GeometricTerms;
+use frames_rk4::DrivenMotion;
+use modal::{Modes, ReducedBody, SecondOrderShapes};
+use nalgebra::Vector3;
+
+use super::error::BuildError;
+use super::progress::BuildProgress;
+
+/// The finite-element model of a body: all that depends on its mesh and takes long. The functions of `modal` and `fem_tet10`
+/// with these names say more.
+pub(super) trait Structure {
+    /// The rigid and the `flexible` lowest other modes.
+    fn modes(&self, flexible: usize, progress: &mut dyn FnMut(BuildProgress)) -> Result<Modes, BuildError>;
+
+    /// The mass that each node stands for (n).
+    fn nodal_masses(&self) -> Result<Vec<f64>, BuildError>;
+
+    /// M times fields (3n×k).
+    fn mass_product(&self, fields: MatRef<'_, f64>) -> Result<Mat<f64>, BuildError>;
+
+    /// K times fields (3n×k).
+    fn stiffness_product(&self, fields: MatRef<'_, f64>) -> Result<Mat<f64>, BuildError>;
+
+    /// Static answers to forces (3n×k).
+    fn static_response(&self, forces: MatRef<'_, f64>) -> Result<Mat<f64>, BuildError>;
+
+    /// Static answers to the forces of loads (3n×k), to the centrifugal field of each pair of spins, and to the inertia of a
+    /// driven motion, side by side.
+    fn static_answers(&self, forces: &StaticForces) -> Result<Mat<f64>, BuildError>;
+
+    /// The modes, with shapes appended that make them span static answers (3n×k).
+    fn with_static_shapes(&self, modes: Modes, answers: MatRef<'_, f64>) -> Result<Modes, BuildError>;
+
+    /// The shapes that follow large modes, by the forces of second order.
+    fn second_order_shapes(
+        &self,
+        modes: Modes,
+        large: &[usize],
+        forces: MatRef<'_, f64>,
+    ) -> Result<SecondOrderShapes, BuildError>;
+
+    /// The body in the coordinates of its modes.
+    fn reduced_body(&self, modes: &Modes) -> Result<ReducedBody, BuildError>;
+
+    /// What each of the static answers (6) has beside the modes: √(uᵀMu − Σ(Φ_kᵀMu)²).
+    fn remainders(&self, modes: &Modes, answers: MatRef<'_, f64>) -> Result<Vec<f64>, BuildError>;
+
+    /// Stiffness in the modes (nf×nf) by the stress of each displacement field (3n×k).
+    fn stress_stiffness(
+        &self,
+        displacements: MatRef<'_, f64>,
+        modes: &Modes,
+        terms: GeometricTerms,
+    ) -> Result<Vec<Mat<f64>>, BuildError>;
+
+    /// The forces of second order (3n×p) of pairs of fields (3n×k).
+    fn second_order_forces(&self, fields: MatRef<'_, f64>, pairs: &[[usize; 2]]) -> Result<Mat<f64>, BuildError>;
+
+    /// The energies of second order of quadruples of fields (3n×k).
+    fn second_order_energies(&self, fields: MatRef<'_, f64>, quadruples: &[[usize; 4]])
+    -> Result<Vec<f64>, BuildError>;
+
+    /// The lowest buckling ratio by the stress of a static answer (3n×1), from the modes on.
+    fn lowest_buckling_ratio(&self, answer: MatRef<'_, f64>, modes: &Modes) -> Result<f64, BuildError>;
+}
+
+/// Forces that static answers are asked for.
+pub(super) struct StaticForces {
+    /// Of the loads (3n×k).
+    pub of_loads: Mat<f64>,
+    /// Whether the centrifugal fields of the pairs of spins follow.
+    pub spin: bool,
+    /// The driven motion whose inertia comes last.
+    pub drive: Option<DrivenMotion>,
+    /// The point that positions are measured from.
+    pub origin: Vector3<f64>,
+}
+
+impl StaticForces {
+    /// How many there are.
+    pub fn count(&self) -> usize {
+        self.of_loads.ncols() + if self.spin { 6 } else { 0 } + usize::from(self.drive.is_some())
+    }
+}

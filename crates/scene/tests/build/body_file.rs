@@ -1,0 +1,215 @@
+//! A scene that names a body file runs without the mesh, to the last bit; another body is refused.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use ::body_file::{BodyFile, Declared, Kind, Writer};
+use scene::{Body, Model, Scene};
+
+use super::CLAMPED;
+use super::cache::{FORCE, built};
+
+const MATERIAL: &str = "material = { young_modulus = 70e3, poisson_ratio = 0.3, density = 2.7e-9 }";
+const MASS: &str = "point_masses = [{ at = [200.0, 0.0, 0.0], mass = 1e-6 }]";
+
+/// A scene in a folder of its own, with this body and so many modes.
+fn scene(folder: &Path, body: &str, modes: &str, rest: &str) -> Scene {
+    Scene::parse(&text(body, modes, rest), folder.join("scene.toml")).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn text(body: &str, modes: &str, rest: &str) -> String {
+    format!(
+        "title = \"Bar\"\nunits = {{ length = \"mm\", mass = \"Mg\", time = \"s\" }}\n[body]\n{body}\n\
+         [modes]\n{modes}\n{rest}\n[time]\nend = 2e-4\nstep = 1e-5\n[output.points]\ntip = [200.0, 0.0, 0.0]\n"
+    )
+}
+
+/// A folder with a mesh, and a body file that was made of it.
+fn reduced(modes: &str, rest: &str, matrices: bool) -> (tempfile::TempDir, Scene, PathBuf) {
+    let folder = tempfile::tempdir().unwrap();
+    let mesh = folder.path().join("bar.msh");
+    fs::copy(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/bar.msh"), mesh).unwrap();
+    let scene = scene(folder.path(), &format!("mesh = \"bar.msh\"\n{MATERIAL}\n{MASS}"), modes, rest);
+    let path = folder.path().join("bar.body.h5");
+    Model::write_body(&scene, &path, matrices, |_| ()).unwrap();
+    (folder, scene, path)
+}
+
+const MODES: &str = "flexible = 6\nstatic_correction = true";
+const SPIN: &str = "[initial]\nangular_velocity = [3.0, 5.0, 400.0]\n";
+
+#[test]
+fn a_body_file_stands_for_the_mesh_to_the_last_bit() {
+    for rest in [format!("{SPIN}{FORCE}"), format!("{CLAMPED}{FORCE}[effects]\nrefuse = false\n")] {
+        let (folder, direct, _) = reduced(MODES, &rest, false);
+        let (expected, assembled) = built(&direct);
+        assert_eq!(assembled, 1);
+        fs::remove_file(folder.path().join("bar.msh")).unwrap();
+        for body in [
+            "file = \"bar.body.h5\"".to_owned(),
+            format!("file = \"bar.body.h5\"\nmesh = \"bar.msh\"\n{MATERIAL}\n{MASS}"),
+        ] {
+            let from_file = scene(folder.path(), &body, MODES, &rest);
+            let (found, assembled) = built(&from_file);
+            assert_eq!((assembled, from_file.cache.notes().computed), (0, 0));
+            assert!(found == expected, "{rest}");
+        }
+        // Another speed asks nothing new where the same modes are large; another load does, and is answered from the mesh in the file.
+        let faster = rest.replace("400.0", "399.0");
+        let body = "file = \"bar.body.h5\"";
+        assert_eq!(built(&scene(folder.path(), body, MODES, &faster)).1, 0);
+        let elsewhere = scene(folder.path(), body, MODES, &rest.replace("at = [200.0", "at = [100.0"));
+        assert_eq!(built(&elsewhere).1, 1);
+    }
+}
+
+#[test]
+fn a_body_file_is_the_same_whether_its_answers_were_known() {
+    let (folder, scene, path) = reduced(MODES, SPIN, true);
+    let first = fs::read(&path).unwrap();
+    let cache = scene::Cache::new(folder.path().join("cache"), 1 << 30);
+    let scene = Scene { cache, ..scene };
+    for _ in 0..2 {
+        Model::write_body(&scene, &path, true, |_| ()).unwrap();
+        assert!(fs::read(&path).unwrap() == first);
+    }
+}
+
+#[test]
+fn what_others_read_is_what_the_model_has() {
+    let (_folder, direct, path) = reduced(MODES, &format!("{SPIN}{FORCE}"), true);
+    let model = Model::build(&direct, |_| ()).unwrap();
+    let meshed = model.meshed.as_ref().unwrap();
+    let file = BodyFile::open(&path).unwrap();
+    let (natural, all, nodes) = (meshed.modes.natural(), model.body.flexible(), meshed.mesh.positions().len());
+    assert!(natural < all);
+    for (group, first, count) in [("modes", 0, natural), ("static_shapes", natural, all - natural)] {
+        let shapes = file.read::<f64>(&format!("{group}/shapes")).unwrap();
+        assert_eq!(shapes.shape, [count, nodes, 3]);
+        for k in 0..count {
+            for i in 0..3 * nodes {
+                assert_eq!(shapes.values[3 * nodes * k + i].to_bits(), meshed.modes.shapes[(i, first + k)].to_bits());
+            }
+        }
+        let ratios = file.read::<f64>(&format!("{group}/damping_ratios")).unwrap().values;
+        assert_eq!(ratios, model.damping_ratios()[first..first + count]);
+    }
+    let frequencies = file.read::<f64>("modes/frequencies").unwrap().values;
+    assert_eq!(frequencies, model.natural_frequencies()[..natural]);
+    let gyroscopic = file.read::<f64>("constants/gyroscopic").unwrap();
+    assert_eq!(gyroscopic.shape, [3, all, all]);
+    assert_eq!(gyroscopic.values[all * all + 2 * all + 1], model.body.gyroscopic[1][(2, 1)]);
+    let products = file.read::<f64>("constants/rotation_products").unwrap().values;
+    let size = 6 + all;
+    assert_eq!(products[(5 * size + 7) * size + 2], model.body.rotation_products[1][2][(7, 2)]);
+    // Every edge of the surface has two faces.
+    let faces = file.read::<u32>("mesh/surface_triangles").unwrap();
+    let mut edges: Vec<[u32; 2]> = Vec::new();
+    for face in faces.values.as_chunks::<6>().0 {
+        edges.extend([0, 1, 2].map(|i| [face[i], face[(i + 1) % 3]]));
+    }
+    let count = edges.len();
+    edges.sort_unstable();
+    edges.dedup();
+    assert_eq!(edges.len(), count);
+    assert!(edges.iter().all(|[a, b]| edges.binary_search(&[*b, *a]).is_ok()));
+    let attribute = |name: &str| file.attribute(name).unwrap().to_owned();
+    assert_eq!((attribute("title"), attribute("scene")), ("Bar".to_owned(), direct.source.clone()));
+}
+
+fn message(folder: &Path, body: &str, modes: &str, rest: &str) -> String {
+    match Scene::parse(&text(body, modes, rest), folder.join("scene.toml")) {
+        Err(error) => error.to_string(),
+        Ok(scene) => Model::build(&scene, |_| ()).unwrap_err().to_string(),
+    }
+}
+
+#[test]
+fn a_body_file_of_another_scene_is_refused_with_what_differs() {
+    let (folder, _, _) = reduced(MODES, SPIN, false);
+    let refused = |body: &str, modes: &str, rest: &str, words: &str| {
+        let message = message(folder.path(), body, modes, rest);
+        assert!(message.contains("scene.toml:") && message.contains("body.file"), "{message}");
+        assert!(message.contains(words) && message.contains("flexframe reduce"), "{message}");
+    };
+    let file = "file = \"bar.body.h5\"";
+    refused(file, "flexible = 9", SPIN, "a body file with 6 modes, expected one with 9, as [modes] asks");
+    refused(file, MODES, CLAMPED, "a body file of a body that is held otherwise");
+    let steel = MATERIAL.replace("70e3", "210e3");
+    refused(&format!("{file}\n{steel}"), MODES, SPIN, "a body file of another material");
+    refused(&format!("{file}\npoint_masses = []"), MODES, SPIN, "a body file with other point masses (1 of them)");
+    let mut changed = fs::read(folder.path().join("bar.msh")).unwrap();
+    changed.push(b'\n');
+    fs::write(folder.path().join("bar.msh"), changed).unwrap();
+    refused(&format!("{file}\nmesh = \"bar.msh\""), MODES, SPIN, "a body file that was made of another mesh");
+    refused("file = \"nowhere.h5\"", MODES, SPIN, "cannot open the file");
+    refused("file = \"bar.msh\"", MODES, SPIN, "this is not a body file");
+}
+
+/// The file again, without some datasets and with other texts.
+fn rewritten(path: &Path, keep: impl Fn(&str) -> bool, change: impl Fn(&str) -> String) {
+    let file = BodyFile::open(path).unwrap();
+    let texts = file.attributes().iter().map(|(name, text)| (name.clone(), change(text))).collect();
+    let described = |name: &str| {
+        let (kind, shape, _) = file.described(name).unwrap();
+        Declared { path: name.to_owned(), kind, shape: shape.to_vec(), attributes: Vec::new(), same_as: None }
+    };
+    let declared: Vec<_> = file.datasets().filter(|name| keep(name)).map(described).collect();
+    let mut writer = Writer::create(path, texts, &declared).unwrap();
+    for Declared { path, kind, .. } in &declared {
+        match kind {
+            Kind::F64 => writer.write(path, &file.read::<f64>(path).unwrap().values),
+            Kind::U64 => writer.write(path, &file.read::<u64>(path).unwrap().values),
+            Kind::U32 => writer.write(path, &file.read::<u32>(path).unwrap().values),
+        }
+        .unwrap();
+    }
+    writer.finish(false).unwrap();
+}
+
+#[test]
+fn a_body_file_of_another_version_or_with_a_part_missing_is_refused() {
+    let file = "file = \"bar.body.h5\"";
+    let (folder, _, path) = reduced(MODES, SPIN, false);
+    let whole = fs::read(&path).unwrap();
+    let version = concat!("\"program_version\":\"", env!("CARGO_PKG_VERSION"), "\"");
+    rewritten(&path, |_| true, |text| text.replace(version, "\"program_version\":\"0.0.9\""));
+    let other = message(folder.path(), file, MODES, SPIN);
+    assert!(other.contains("a body file of flexframe 0.0.9, expected one of flexframe"), "{other}");
+
+    fs::write(&path, &whole).unwrap();
+    rewritten(&path, |name| !name.ends_with("/shapes"), str::to_owned);
+    let missing = message(folder.path(), file, MODES, SPIN);
+    assert!(missing.contains("the body file has no dataset answers/") && missing.contains("/shapes"), "{missing}");
+
+    fs::write(&path, &whole).unwrap();
+    rewritten(&path, |name| name != "mesh/tetrahedra", str::to_owned);
+    let missing = message(folder.path(), file, MODES, SPIN);
+    assert!(missing.contains("the body file has no dataset mesh/tetrahedra"), "{missing}");
+
+    fs::write(&path, &whole[..whole.len() - 1]).unwrap();
+    let cut = message(folder.path(), file, MODES, SPIN);
+    assert!(cut.contains("the body file is damaged") && cut.contains("were written"), "{cut}");
+    // A bit of the numbers of the modes.
+    let scene = {
+        fs::write(&path, &whole).unwrap();
+        scene(folder.path(), file, MODES, SPIN)
+    };
+    let shapes = BodyFile::open(&path).unwrap().read::<f64>("modes/shapes").unwrap().values;
+    let needle: Vec<u8> = shapes[..8].iter().flat_map(|x| x.to_ne_bytes()).collect();
+    let at = whole.windows(needle.len()).position(|window| window == needle).unwrap();
+    let mut damaged = whole.clone();
+    damaged[at] ^= 1;
+    fs::write(&path, damaged).unwrap();
+    let error = Model::build(&scene, |_| ()).unwrap_err().to_string();
+    assert!(error.contains("is not what was written"), "{error}");
+}
+
+#[test]
+fn a_rigid_body_has_no_body_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = super::rigid("", "end = 1.0\nstep = 0.1");
+    assert!(matches!(scene.body, Body::Rigid(_)));
+    let error = Model::write_body(&scene, &folder.path().join("b.h5"), false, |_| ()).unwrap_err().to_string();
+    assert!(error.contains("a body with a mesh"), "{error}");
+}
