@@ -98,9 +98,9 @@ fn a_grid_has_every_pair_and_a_zip_has_pairs() {
     assert_eq!((report.rows, report.done, report.reductions), (6, 6, 1));
     assert_eq!(case.table("parameters/loads[0].amplitude"), [1.0, 1.0, 2.0, 2.0, 3.0, 3.0]);
     assert_eq!(case.table("parameters/time.step"), [1e-5, 2e-5, 1e-5, 2e-5, 1e-5, 2e-5]);
-    // The answer is linear in the load, which is small, at either step.
+    // The answer is linear in the load but for what the slow spin strains.
     let strain = case.table("results/strain");
-    assert!((strain[2] / strain[0] - 4.0).abs() < 1e-3 && (strain[5] / strain[1] - 9.0).abs() < 1e-3, "{strain:?}");
+    assert!((strain[2] / strain[0] - 4.0).abs() < 0.1 && (strain[5] / strain[1] - 9.0).abs() < 0.2, "{strain:?}");
     case.write(&format!("combine = \"zip\"\n{lists}"));
     let error = case.run(true).unwrap_err();
     assert!(
@@ -123,7 +123,7 @@ fn rows_that_fail_are_marked_with_their_words_and_rows_that_are_done_are_kept() 
     // Done again, nothing is left to do but the row that failed.
     let report = case.run(false).unwrap();
     assert_eq!((report.done, report.kept, report.failures.len(), report.reductions), (2, 2, 1, 0));
-    assert_eq!(case.table("results/strain")[0].to_bits(), case.table("results/strain")[0].to_bits());
+    assert_eq!(case.table("results/tip")[6..], tip[6..]);
     // Another sweep has another table.
     case.write("[parameters]\n\"time.step\" = [1e-5, 2e-5]");
     let error = case.run(false).unwrap_err();
@@ -146,7 +146,7 @@ fn what_a_sweep_cannot_be_is_refused() {
     };
     refused(
         "[parameters]\n\"time.stpe\" = [1e-5, 2e-5]",
-        &["unknown key `stpe`", "did you mean `step`", "time.stpe = 1"],
+        &["unknown key `stpe`", "did you mean `step`", "time.stpe = 0.00001"],
     );
     refused("[parameters]\n\"loads[3].amplitude\" = [1.0]", &["entry 3 of `loads`", "one from 0 to 0"]);
     refused("[parameters]\n\"effects[0]\" = [1.0]", &["no list `effects`"]);

@@ -21,7 +21,6 @@ use crate::scene::{Body, MeshedBody, Scene};
 /// Numbers that are ready to be written.
 enum Numbers {
     F64(Vec<f64>),
-    U64(Vec<u64>),
     U32(Vec<u32>),
 }
 
@@ -29,7 +28,6 @@ impl Numbers {
     fn kind(&self) -> Kind {
         match self {
             Self::F64(_) => f64::KIND,
-            Self::U64(_) => u64::KIND,
             Self::U32(_) => u32::KIND,
         }
     }
@@ -37,7 +35,6 @@ impl Numbers {
     fn hash(&self) -> Hash {
         match self {
             Self::F64(values) => Hash::of(values),
-            Self::U64(values) => Hash::of(values),
             Self::U32(values) => Hash::of(values),
         }
     }
@@ -161,7 +158,6 @@ fn write(
     for (dataset, numbers) in &named.datasets {
         match numbers {
             Numbers::F64(values) => writer.write(&dataset.path, values),
-            Numbers::U64(values) => writer.write(&dataset.path, values),
             Numbers::U32(values) => writer.write(&dataset.path, values),
         }?;
     }
@@ -319,11 +315,11 @@ impl Named<'_> {
         }
     }
 
-    /// By compressed columns.
+    /// By compressed columns; more entries than 32 bits can number take 50 GB.
     fn add_matrix(&mut self, name: &str, matrix: SparseColMatRef<'_, usize, f64>) {
         let (mass, time) = (&self.scene.units.mass, &self.scene.units.time);
         let unit = if name == "mass" { mass.clone() } else { format!("{mass}/{time}^2") };
-        let words = |values: &[usize]| Numbers::U64(values.iter().map(|value| *value as u64).collect());
+        let words = |values: &[usize]| Numbers::U32(values.iter().map(|value| *value as u32).collect());
         let (starts, rows) = (matrix.symbolic().col_ptr(), matrix.symbolic().row_idx());
         let description = "entries, by columns; row and column 3 node + axis";
         let values = Numbers::F64(matrix.val().to_vec());
