@@ -1,6 +1,8 @@
 //! What each effect costs, per step and in set-up: the plate of `examples/effects` with forty modes, each effect taken
 //! off in turn.
 //!
+//! The last rows are the plate with ten modes, and with four of them large.
+//!
 //! `cargo bench -p flexframe --bench effects`. The time of a step is that of the loop alone on one core, the shortest of
 //! several runs; set-up is what comes after mesh and matrices.
 
@@ -8,7 +10,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use flexframe::frames_rk4::{ConservativeBody, Reached, Rows, StepControl};
-use flexframe::scene::{Choice, Effect, Model, Scene};
+use flexframe::scene::{Choice, Effect, Flexible, Large, Model, Scene};
 
 const STEP: f64 = 1e-4;
 const RUNS: usize = 15;
@@ -26,6 +28,11 @@ fn main() {
     };
     let mut uncorrected = full.clone();
     uncorrected.modes.static_correction = Choice::Off;
+    let mut ten = full.clone();
+    ten.modes.flexible = Flexible::Count(10);
+    let mut large = ten.clone();
+    large.modes.large = Some(Large::Count(4));
+    large.effects.choices[Effect::LargeDeflection] = Choice::On;
     let rows = [
         ("everything", full.clone()),
         ("without damping", without(Effect::Damping)),
@@ -37,6 +44,8 @@ fn main() {
         ("without translation", without(Effect::Translation)),
         ("without rotation", read("translation")),
         ("without flexibility", read("rigid")),
+        ("ten modes", ten),
+        ("ten modes, four of them large", large),
     ];
     println!("what each effect costs per step and in set-up, best of {RUNS} runs of 1000 steps\n");
     println!(

@@ -25,8 +25,9 @@
 //! `½ v' qᵀK q` but for a total derivative: in p, −v K q would be as large as the momenta of stiff modes. Where v jumps, p
 //! jumps by K q times as much.
 //!
-//! Every K acts on the coordinates q, on the manifold of large deflection, too: on ξ it would work on what the modes draw
-//! in, and that is of fourth order, where the strain energy has terms of its own size against it.
+//! On the manifold of large deflection K acts on q: on ξ it would work on what the modes draw in, and that is of fourth
+//! order, where the strain energy has terms of its own size against it. Of the spin alone, its parts between a large mode
+//! and another act on ξ, which is of third order.
 //!
 //! With large deflection all constants are those of the extended shapes, with coordinates ξ(q) and their slopes D on a
 //! curved manifold ([`Manifold`]):
@@ -111,7 +112,8 @@ pub struct ConservativeBody {
     pub(crate) own_coupling: Vec<[f64; 2]>,
     /// K of a unit acceleration of what is driven in the modes, column by column, or empty.
     pub(crate) drive_stiffness: Vec<f64>,
-    /// The K_ij in the modes on a manifold, column by column, one below another; elsewhere N_ij in `stacked` is less by it.
+    /// The parts of K_ij between modes that are not large, on a manifold: column by column, one below another. All others
+    /// are in `stacked`, where N_ij is less by them.
     spin_stiffness: Vec<f64>,
     loads: Vec<SharedLoad>,
     /// Of a body with large modes.
@@ -255,33 +257,35 @@ impl ConservativeBody {
             matrices.iter().zip(weights).map(|(m, w)| w * m[(i, j)]).sum()
         };
         let pair_weights: Vec<[f64; 6]> = pairs.iter().map(|pair| weights(*pair)).collect();
-        let stack = |stiffness: Option<&[Mat<f64>; 6]>| {
-            let mut stacked = Vec::with_capacity((g_rows + pairs.len() * nf) * nf);
-            for j in 0..nf {
-                for axis in 0..g_rows.checked_div(nf).unwrap_or(0) {
-                    stacked.extend((0..nf).map(|i| gyroscopic(axis, i, j)));
-                }
+        let is_large = |k: usize| large_deflection.as_ref().is_some_and(|manifold| manifold.large().contains(&k));
+        // K_ij, but on a manifold without what acts on q itself.
+        let on_shapes = |weights: &[f64; 6], i: usize, j: usize| match stiffness {
+            Some(k) if large_deflection.is_none() || is_large(i) || is_large(j) => of(k, weights, i, j),
+            _ => 0.0,
+        };
+        let mut stacked = Vec::with_capacity((g_rows + pairs.len() * nf) * nf);
+        for j in 0..nf {
+            for axis in 0..g_rows.checked_div(nf).unwrap_or(0) {
+                stacked.extend((0..nf).map(|i| gyroscopic(axis, i, j)));
+            }
+            for weights in &pair_weights {
+                stacked.extend((0..nf).map(|i| of(&body.inertia_second, weights, i, j) - on_shapes(weights, i, j)));
+            }
+        }
+        let mut spin_stiffness = Vec::new();
+        if let (Some(manifold), Some(stiffness)) = (large_deflection, stiffness) {
+            for j in 0..manifold.modes() {
                 for weights in &pair_weights {
-                    let second = |i: usize| of(&body.inertia_second, weights, i, j);
-                    stacked.extend((0..nf).map(|i| second(i) - stiffness.map_or(0.0, |k| of(k, weights, i, j))));
+                    let between = |i: usize| {
+                        if is_large(i) || is_large(j) { 0.0 } else { of(stiffness, weights, i, j) }
+                    };
+                    spin_stiffness.extend((0..manifold.modes()).map(between));
                 }
             }
-            stacked
-        };
-        let with_stiffness = stack(stiffness);
-        let own_coupling = own_coupling(&body.circular_frequencies, &with_stiffness, g_rows);
-        let (stacked, spin_stiffness) = match (large_deflection, stiffness) {
-            (Some(manifold), Some(stiffness)) => {
-                let on_modes = 0..manifold.modes();
-                let column = |j: usize| {
-                    let on_modes = on_modes.clone();
-                    let rows = pair_weights.iter().flat_map(move |w| on_modes.clone().map(move |i| (w, i)));
-                    rows.map(move |(weights, i)| of(stiffness, weights, i, j))
-                };
-                (stack(None), on_modes.clone().flat_map(column).collect())
-            }
-            _ => (with_stiffness, Vec::new()),
-        };
+        }
+        let mut coupling = own_coupling(&body.circular_frequencies, &stacked, g_rows);
+        let of_stress = own_coupling(&modes.circular_frequencies, &spin_stiffness, 0);
+        coupling.iter_mut().zip(of_stress).for_each(|(sum, stress)| sum[0] += stress[0]);
         let first = pair_weights
             .iter()
             .map(|weights| {
@@ -318,7 +322,7 @@ impl ConservativeBody {
             drive: drive.clone(),
             s_rows,
             g_rows,
-            own_coupling,
+            own_coupling: coupling,
             stacked,
             drive_stiffness: drive_stiffness
                 .map_or_else(Vec::new, |k| columns(k.get(..modes.flexible(), ..modes.flexible()))),

@@ -4,7 +4,7 @@
 //! * [`Motion`]: its motion by the energy–momentum midpoint rule of Simo and Tarnow.
 //! * [`Solid::at_rest`], [`Solid::held_in_modes`]: its static answers.
 //! * [`Solid::pressure`]: a pressure that follows its surface, exactly.
-//! * [`mean_axes`]: the frame of the linear modes in its motion.
+//! * [`mean_axes()`]: the frame of the linear modes in its motion.
 //! * [`bodies`], [`cases`]: bodies, and what is compared on them.
 #![forbid(unsafe_code)]
 #![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable))]

@@ -33,7 +33,7 @@ fn curves(directory: &Path) -> Result<(), Box<dyn Error>> {
     save(&directory.join("spinning_l"), title, "First modal coordinate", &courses)?;
     let stiffened = format!("[modes]\nflexible = 8\n{STIFFENED}");
     let manifold = "[modes]\nflexible = 8\nlarge = 4\n[effects]\nlarge_deflection = true\nrefuse = false";
-    let courses = pendulum(2e8, 1.0, 2000, &[&stiffened, manifold])?;
+    let courses = pendulum(2e7, 1.0, 800, &[&stiffened, manifold])?;
     let title = "Soft rod that falls from the horizontal about its hinge";
     save(&directory.join("soft_rod"), title, "Deflection of the tip over the length", &courses)?;
     Ok(())
