@@ -13,8 +13,6 @@
 
 use frames_rk4::Manifold;
 
-use crate::limits::Refusal;
-
 /// Error of the forces up to which a motion is taken as right.
 pub(crate) const STATED: f64 = 0.01;
 /// Error of the forces that a motion of fourth order cannot be right at: a run is refused there.
@@ -60,9 +58,4 @@ impl<'a> FourthOrder<'a> {
     pub(crate) fn large(&self) -> &[usize] {
         self.manifold.large()
     }
-}
-
-/// The refusal of an `error` at a deflection over the length of the body, if any.
-pub(crate) fn beyond(error: f64, deflection: f64) -> Option<Refusal> {
-    (error > HOLDS).then_some(Refusal::BeyondFourthOrder { deflection, error })
 }

@@ -79,6 +79,7 @@ mod rigid;
 mod row;
 mod step;
 mod strain;
+mod strain_error;
 mod stress;
 mod table;
 mod tensor;
@@ -91,7 +92,8 @@ pub use limits::{BUCKLED, Refusal, SOFTENED, buckling, limits, unsteady};
 pub use review::{Broken, Detuning, Review};
 pub use row::{Row, Subject, Worth};
 pub use step::{ModeError, StepEstimate, step_estimate};
-pub use strain::{LargeModes, StrainError};
+pub use strain::LargeModes;
+pub use strain_error::StrainError;
 pub use stress::{StressField, StressInfluence, StressSource, stress, stress_row};
 pub use table::{Advice, advise, screen};
 /// Crates whose types are in the interface.

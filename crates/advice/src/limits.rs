@@ -8,7 +8,7 @@ use nalgebra::Vector3;
 use crate::backbone::DETUNED;
 use crate::case::{AdviceError, Case};
 use crate::course::Course;
-use crate::fourth_order::{FourthOrder, beyond};
+use crate::fourth_order::{FourthOrder, HOLDS};
 use crate::number::Number;
 
 /// Deflection over length at which linear strain ends.
@@ -168,6 +168,11 @@ pub(crate) fn detuned(case: &Case, k: usize, amplitude: f64) -> Option<Refusal> 
     let backbone = case.backbones.get(k)?.as_ref()?;
     let deflection = amplitude * case.peaks[k] / case.length;
     (amplitude > backbone.largest_amplitude()).then_some(Refusal::Detuned { mode: k + 1, deflection })
+}
+
+/// The refusal of an `error` at a deflection over the length of the body, if any.
+pub(crate) fn beyond(error: f64, deflection: f64) -> Option<Refusal> {
+    (error > HOLDS).then_some(Refusal::BeyondFourthOrder { deflection, error })
 }
 
 /// The refusal of the amplitudes that the modes have at the beginning, if any: of their displacement, and of their

@@ -6,8 +6,8 @@ use frames_rk4::{Effect, EffectMap, Moment, Observation};
 use nalgebra::Vector3;
 
 use crate::case::{AdviceError, Case};
-use crate::fourth_order::{FourthOrder, STATED, beyond};
-use crate::limits::{LINEAR, LeftOut, Refusal, SOFTENED, deflected, detuned, refusal};
+use crate::fourth_order::{FourthOrder, STATED};
+use crate::limits::{LINEAR, LeftOut, Refusal, SOFTENED, beyond, deflected, detuned, refusal};
 use crate::number::Number;
 use crate::relative::relative;
 use crate::table::{Advice, held};

@@ -2,7 +2,7 @@
 
 use frames_rk4::Effect;
 
-use crate::strain::StrainError;
+use crate::strain_error::StrainError;
 
 /// What a row of the table is about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

@@ -12,6 +12,7 @@ use crate::number::Number;
 use crate::relative::relative;
 use crate::response::Response;
 use crate::row::Worth;
+use crate::strain_error::StrainError;
 
 /// Change of the frequency of a free bar over (u/L)².
 const OF_BAR: f64 = 22.0;
@@ -19,26 +20,6 @@ const OF_BAR: f64 = 22.0;
 const OF_ARCH: f64 = 3.0;
 /// Deflection over the length of the body up to which bounds are believed: runs that come there are stopped or warn.
 const BELIEVED: f64 = 0.3;
-
-/// What linear strain gets wrong of a mode.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct StrainError {
-    /// The expected amplitude: largest displacement of a node, over the length of the body.
-    pub deflection: f64,
-    /// Ω/ω − 1 at that amplitude: negative where the linear frequency is too high.
-    pub frequency: f64,
-    /// Phase by which the mode is out at the end of the time that it rings, rad.
-    pub phase: f64,
-    /// Error of the force that holds the mode at that amplitude, relative.
-    pub statics: f64,
-}
-
-impl StrainError {
-    /// The largest error.
-    fn largest(&self) -> f64 {
-        self.frequency.abs().max(self.phase).max(self.statics)
-    }
-}
 
 /// The modes that `large_deflection = "auto"` makes large, numbered from 0, ascending.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
