@@ -236,7 +236,7 @@ fn far_beyond_it_the_run_stops_and_its_file_can_be_read() {
     };
     let (time, error) = refusal(run(&scene, folder.path(), &RunSettings::default(), |_| ()));
     assert!(time > 1e-4 && error > 0.25, "{time} {error}");
-    let part = unfinished(&results_path(&scene, folder.path()));
+    let part = unfinished(results_path(&scene, folder.path()));
     let rows = Results::open(&part, &COLUMNS).unwrap().rows();
     assert!(rows > 0 && rows as f64 <= 1.0 + time / 1e-4, "{rows} at {time}");
 }
