@@ -8,9 +8,10 @@ flexframe := "target/release/flexframe"
 default:
     @just --list --unsorted
 
-# The paper's plate, from mesh to table and figures, into out/plate.
+# The paper's plate, from mesh to table, figures and a page to look at, into out/plate.
 plate: build
     {{flexframe}} paper examples/plate.toml -o out/plate --overwrite
+    {{flexframe}} report out/plate/plate.h5
 
 # Every test.
 test:
