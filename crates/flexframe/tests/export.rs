@@ -142,10 +142,10 @@ fn a_results_file_becomes_a_table_and_fields() {
     let [displacement, elastic] =
         ["displacement", "elastic_displacement"].map(|name| read(&group, &format!("PointData/{name}")));
     for step in 0..6 {
-        let row = results.table("modal/displacement").unwrap().row(4 * step).unwrap();
-        let shapes = &mesh.modes.shapes;
+        let coordinates = model.coordinates(results.table("modal/displacement").unwrap().row(4 * step).unwrap());
+        let shapes = || mesh.modes.shapes.col_iter().chain(mesh.following.col_iter());
         let u = Vector3::from_fn(|axis, _| {
-            row.iter().enumerate().map(|(k, q)| q * shapes[(3 * on_mesh as usize + axis, k)]).sum::<f64>()
+            shapes().zip(&coordinates).map(|(shape, xi)| xi * shape[3 * on_mesh as usize + axis]).sum::<f64>()
         });
         let first = 3 * (step * n + node);
         let found = Vector3::from_column_slice(&elastic[first..first + 3]);

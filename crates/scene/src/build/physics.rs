@@ -6,6 +6,7 @@ use modal::{ReducedBody, RigidMotion};
 
 use super::loads::MeshLoad;
 use super::turning::{Turning, turning};
+use crate::constraint::Constraint;
 use crate::effects::Choice;
 use crate::load::Load;
 use crate::modes::Large;
@@ -42,8 +43,7 @@ pub(super) fn static_correction(scene: &Scene, flexible: usize) -> Choice {
 pub(super) fn effects(scene: &Scene, advice: &Advice, body: &ReducedBody, keep: usize) -> EffectMap<bool> {
     // The paper's formulation has the effects that it has; gravity is a load like others.
     let in_any_case = |effect: Effect| scene.time.method.is_of_paper() && effect != Effect::Gravity;
-    // What holds a body bears its weight, however little that moves it.
-    let has_weight = !body.motion.is_free() && scene.loads.iter().any(|load| matches!(load, Load::Gravity(_)));
+    let has_weight = !body.motion.is_free() && bears_weight(scene, body.mass);
     let mut effects = EffectMap::from_fn(|effect| match scene.effects.choices[effect] {
         Choice::On => true,
         Choice::Off => false,
@@ -55,11 +55,20 @@ pub(super) fn effects(scene: &Scene, advice: &Advice, body: &ReducedBody, keep: 
     effects
 }
 
+/// Whether what holds a body bears its weight, however little that moves it: it is no less than `tolerance` of each force.
+fn bears_weight(scene: &Scene, mass: f64) -> bool {
+    let largest = |of: fn(&Load) -> Option<f64>| scene.loads.iter().filter_map(of).map(f64::abs).reduce(f64::max);
+    let force = largest(|load| if let Load::Force(force) = load { Some(force.amplitude) } else { None });
+    let gravity = largest(|load| if let Load::Gravity(gravity) = load { Some(gravity.amplitude) } else { None });
+    gravity.is_some_and(|gravity| mass * gravity >= scene.effects.tolerance * force.unwrap_or(0.0))
+}
+
 /// How many modes are large where the scene asks for large deflection and does not say of which.
 const DEFAULT_LARGE: usize = 4;
 
 /// Which of the modes that are kept are large, numbered from 0: those that the scene names, or what is advised. The paper's
-/// formulation has none, and nothing is advised for a body that is not to stiffen: the manifold stiffens its modes.
+/// formulation has none, and nothing is advised for a body that is not to stiffen: the manifold stiffens its modes. Nor for one
+/// that is driven, whose expected amplitudes are bounds of hundreds of its length.
 pub(super) fn large_modes(scene: &Scene, advice: &Advice, keep: usize) -> Vec<usize> {
     let first = |count: usize| (0..keep.min(count)).collect();
     match (scene.effects.choices[Effect::LargeDeflection], &scene.modes.large) {
@@ -69,8 +78,16 @@ pub(super) fn large_modes(scene: &Scene, advice: &Advice, keep: usize) -> Vec<us
         (_, Some(Large::List(list))) => list.iter().map(|mode| mode - 1).filter(|k| *k < keep).collect(),
         (Choice::On, None) => first(DEFAULT_LARGE),
         (Choice::Auto, None) if scene.effects.choices[Effect::GeometricStiffening] == Choice::Off => Vec::new(),
+        (Choice::Auto, None) if is_driven(scene) => Vec::new(),
         (Choice::Auto, None) => advice.large_modes(keep).taken,
     }
+}
+
+fn is_driven(scene: &Scene) -> bool {
+    matches!(
+        scene.constraint,
+        Some(Constraint::Hinge { motion: Some(_), .. } | Constraint::Slider { motion: Some(_), .. })
+    )
 }
 
 /// The effects with what large modes need: what follows them moves along the body, where turning acts on it.
