@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use flexframe::cost::{
-    CostError, CostReport, CostSettings, Line, Measured, Outcome, Row, duration, modes_warning, price_list, setting,
+    CostError, CostReport, CostSettings, LadderRun, Line, Measured, Outcome, duration, modes_warning, price_list,
+    setting,
 };
 use flexframe::modes::frequency_unit;
 use flexframe::scene::Scene;
@@ -181,7 +182,7 @@ fn write_scene(out: &mut String, scene: &Scene, report: &CostReport, pictures: &
     write_modes(out, report)
 }
 
-fn write_row(out: &mut String, line: &Line, row: &Row) -> std::fmt::Result {
+fn write_row(out: &mut String, line: &Line, row: &LadderRun) -> std::fmt::Result {
     write!(out, "| {} | {} |", line.name(), setting(row.setting))?;
     match &row.outcome {
         Outcome::Ran(m) => {
@@ -321,7 +322,7 @@ fn write_spin(out: &mut String, report: &CostReport, rows: &[SpinRow]) -> std::f
     Ok(())
 }
 
-type Found<'a> = (&'a Line, &'a Row, &'a Measured);
+type Found<'a> = (&'a Line, &'a LadderRun, &'a Measured);
 
 fn measured(lines: &[Line]) -> impl Iterator<Item = Found<'_>> {
     lines.iter().flat_map(|line| line.rows.iter().filter_map(move |row| Some((line, row, row.measured()?))))
@@ -342,7 +343,7 @@ fn without_scheme((_, row, m): Found<'_>) -> String {
 }
 
 /// At most so many rows, evenly spread, with the first and the last.
-fn shown(rows: &[Row]) -> impl Iterator<Item = &Row> {
+fn shown(rows: &[LadderRun]) -> impl Iterator<Item = &LadderRun> {
     let count = rows.len().min(ROWS_SHOWN);
     (0..count).map(move |i| if count > 1 { i * (rows.len() - 1) / (count - 1) } else { 0 }).filter_map(|i| rows.get(i))
 }

@@ -38,13 +38,13 @@ pub(crate) struct Description {
     /// Texts by name.
     pub attributes: BTreeMap<String, String>,
     /// By path.
-    pub datasets: BTreeMap<String, Place>,
+    pub datasets: BTreeMap<String, StoredArray>,
 }
 
 /// Where a dataset is.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct Place {
+pub(crate) struct StoredArray {
     pub kind: Kind,
     pub shape: Vec<usize>,
     pub start: u64,
@@ -119,7 +119,7 @@ impl Description {
         }
         let description: Self = serde_json::from_slice(&json)
             .map_err(|error| damaged(format!("its head cannot be read from byte {} on", error.column())))?;
-        let is_within = |place: &Place| {
+        let is_within = |place: &StoredArray| {
             let end = bytes(place.kind, &place.shape).and_then(|bytes| match bytes {
                 0 => Some(length),
                 _ if place.start < HEAD + described => None,

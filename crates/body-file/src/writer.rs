@@ -13,7 +13,7 @@ use tempfile::TempPath;
 use crate::array::{Kind, Number};
 use crate::digest::Hash;
 use crate::error::BodyFileError;
-use crate::head::{Description, Place};
+use crate::head::{Description, StoredArray};
 
 /// A dataset that is going to be written.
 #[derive(Debug, Clone, PartialEq)]
@@ -65,7 +65,7 @@ impl Writer {
         let place = builder.tempfile_in(folder).map_err(BodyFileError::system(&path, "create the file"))?;
         let place = place.into_temp_path();
 
-        let longest = |declared: &Declared| Place {
+        let longest = |declared: &Declared| StoredArray {
             kind: declared.kind,
             shape: declared.shape.clone(),
             start: u64::MAX,

@@ -23,7 +23,7 @@ use crate::json;
 use crate::run::{self, RunSettings};
 use crate::write_error::WriteError;
 use plan::{Asked, Plan};
-use table::{Row, Table};
+use table::{RowState, Table};
 
 pub use error::SweepError;
 
@@ -98,9 +98,9 @@ pub fn sweep(
     let mut groups: BTreeMap<String, Vec<usize>> = BTreeMap::new();
     for (i, row) in plan.rows.iter().enumerate() {
         match row {
-            _ if table.rows[i] != Row::Open => {}
+            _ if table.rows[i] != RowState::Open => {}
             Ok(scene) => groups.entry(body(scene)).or_default().push(i),
-            Err(words) => table.rows[i] = Row::Failed(words.clone()),
+            Err(words) => table.rows[i] = RowState::Failed(words.clone()),
         }
     }
     table.write(output, &plan, false)?;
@@ -110,14 +110,14 @@ pub fn sweep(
         let assembly = match Assembly::new(first, |p| progress(SweepProgress::Build(p))) {
             Ok(assembly) => assembly,
             Err(error) => {
-                rows.iter().for_each(|row| table.rows[*row] = Row::Failed(error.to_string()));
+                rows.iter().for_each(|row| table.rows[*row] = RowState::Failed(error.to_string()));
                 continue;
             }
         };
         let builder = match assembly.builder() {
             Ok(builder) => Mutex::new(builder),
             Err(error) => {
-                rows.iter().for_each(|row| table.rows[*row] = Row::Failed(error.to_string()));
+                rows.iter().for_each(|row| table.rows[*row] = RowState::Failed(error.to_string()));
                 continue;
             }
         };
@@ -160,7 +160,7 @@ fn run_rows(
     builder: &Mutex<ModelBuilder<'_>>,
     folder: &Path,
     threads: usize,
-    mut tell: impl FnMut(usize, Row) -> Result<(), SweepError>,
+    mut tell: impl FnMut(usize, RowState) -> Result<(), SweepError>,
 ) -> Result<(), SweepError> {
     let next = AtomicUsize::new(0);
     std::thread::scope(|scope| {
@@ -170,8 +170,10 @@ fn run_rows(
             scope.spawn(move || {
                 while let Some(row) = rows.get(next.fetch_add(1, Ordering::Relaxed)) {
                     let outcome = match &plan.rows[*row] {
-                        Ok(scene) => run_row(scene, plan, builder, folder).map_or_else(Row::Failed, Row::Done),
-                        Err(words) => Row::Failed(words.clone()),
+                        Ok(scene) => {
+                            run_row(scene, plan, builder, folder).map_or_else(RowState::Failed, RowState::Done)
+                        }
+                        Err(words) => RowState::Failed(words.clone()),
                     };
                     // Where nobody listens any longer, the table could not be written.
                     if sender.send((*row, outcome)).is_err() {

@@ -5,7 +5,7 @@ use std::process::{Command, Output};
 use std::sync::OnceLock;
 use std::time::Duration;
 
-use flexframe::cost::{CostReport, CostSettings, Line, Measured, Outcome, Row, Setting, price_list};
+use flexframe::cost::{CostReport, CostSettings, LadderRun, Line, Measured, Outcome, Setting, price_list};
 use frames_rk4::{Method, Observation, Rows, StepControl};
 use scene::{Model, Scene};
 
@@ -99,14 +99,14 @@ fn the_reference_is_closer_than_all_that_is_ranked() {
 
 #[test]
 fn nothing_on_the_front_is_beaten() {
-    let all: Vec<&Row> = list().0.lines.iter().flat_map(|line| &line.rows).collect();
+    let all: Vec<&LadderRun> = list().0.lines.iter().flat_map(|line| &line.rows).collect();
     let front: Vec<&Measured> = all.iter().filter(|row| row.on_front).map(|row| row.measured().unwrap()).collect();
     assert!(front.len() > 2);
     for run in all.iter().filter_map(|row| row.measured()) {
         assert!(!front.iter().any(|best| run.error < best.error && run.seconds < best.seconds));
     }
     // The scene's own setting is marked, once.
-    let own: Vec<&&Row> = all.iter().filter(|row| row.of_scene).collect();
+    let own: Vec<&&LadderRun> = all.iter().filter(|row| row.of_scene).collect();
     assert_eq!(own.len(), 1);
     assert_eq!(own[0].setting, Setting::Step(3e-5));
 }
@@ -168,7 +168,7 @@ fn a_run_that_takes_longer_than_the_patience_is_stopped_and_named() {
     let settings = CostSettings { patience, timed_for: Duration::from_millis(1), ..settings(1_000_000, TARGET) };
     // Five million steps, which take some seconds.
     let report = price_list(&scene("step = 1e-8"), folder.path(), settings, |_| ()).unwrap();
-    let rows: Vec<&Row> = report.lines.iter().flat_map(|line| &line.rows).collect();
+    let rows: Vec<&LadderRun> = report.lines.iter().flat_map(|line| &line.rows).collect();
     let own = rows.iter().find(|row| row.of_scene).unwrap();
     let Outcome::OutOfPatience(stopped) = &own.outcome else { panic!("{own:?}") };
     assert!(stopped.patience == 0.02 && stopped.reached < 0.5, "{stopped:?}");
@@ -230,7 +230,7 @@ fn the_table_for_programs_is_well_formed() {
     let mut lines = csv.lines();
     let header: Vec<&str> = lines.next().unwrap().split(',').collect();
     let column = |name: &str| header.iter().position(|column| *column == name).unwrap();
-    let rows: Vec<&Row> = report.lines.iter().flat_map(|line| &line.rows).collect();
+    let rows: Vec<&LadderRun> = report.lines.iter().flat_map(|line| &line.rows).collect();
     let records: Vec<Vec<String>> = lines.map(fields).collect();
     assert_eq!(records.len(), rows.len());
     for (record, row) in records.iter().zip(rows) {

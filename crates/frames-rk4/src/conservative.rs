@@ -51,7 +51,7 @@ use crate::effect::{Effect, EffectMap};
 use crate::error::{RateError, SetupError, StepError};
 use crate::initial::Initial;
 use crate::load::{Applied, Coordinates, Kinematics, SharedLoad};
-use crate::manifold::{Manifold, Place};
+use crate::manifold::{Manifold, ManifoldPoint};
 use crate::motion::CenterOfMass;
 use crate::own_coupling::own_coupling;
 use crate::physics::{Drive, DrivenMotion, Physics};
@@ -159,7 +159,7 @@ pub(crate) struct Evaluation {
     /// Forces in the extended shapes, on a manifold.
     force: Vec<f64>,
     /// The place on the manifold, and there S and M⁻¹S (a row for each axis) and b of a driven translation.
-    pub place: Place,
+    pub place: ManifoldPoint,
     pub s: Vec<f64>,
     pub solved_s: Vec<f64>,
     pub modal_sliding: Vec<f64>,
@@ -372,7 +372,7 @@ impl ConservativeBody {
             acceleration: zeros(modes),
             change: zeros(nf),
             curvature: on_manifold(nf),
-            place: self.manifold.as_ref().map_or_else(Place::default, Manifold::place),
+            place: self.manifold.as_ref().map_or_else(ManifoldPoint::default, Manifold::place),
             s: on_manifold(s_axes * modes),
             solved_s: on_manifold(s_axes * modes),
             modal_sliding: if self.sliding.is_empty() { Vec::new() } else { on_manifold(modes) },

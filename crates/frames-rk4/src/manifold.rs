@@ -40,7 +40,7 @@ struct Constants {
 
 /// The place on the manifold.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Place {
+pub(crate) struct ManifoldPoint {
     /// Columns of T q for the large modes.
     slopes: Vec<Vec<f64>>,
     /// Columns of T q̇.
@@ -132,14 +132,14 @@ impl Manifold {
         self.0.body.flexible()
     }
 
-    pub(crate) fn place(&self) -> Place {
+    pub(crate) fn place(&self) -> ManifoldPoint {
         let count = self.0.large.len();
         let columns = || vec![vec![0.0; self.extended()]; count];
-        Place { slopes: columns(), rates: columns(), factor: vec![0.0; count * count] }
+        ManifoldPoint { slopes: columns(), rates: columns(), factor: vec![0.0; count * count] }
     }
 
     /// Goes to q: ξ, and the slopes there.
-    pub(crate) fn go(&self, q: &[f64], place: &mut Place, xi: &mut [f64]) {
+    pub(crate) fn go(&self, q: &[f64], place: &mut ManifoldPoint, xi: &mut [f64]) {
         let Constants { large, modes, .. } = &*self.0;
         self.columns(q, &mut place.slopes);
         xi[..*modes].copy_from_slice(q);
@@ -172,19 +172,19 @@ impl Manifold {
     }
 
     /// Goes along with q̇: the rates of the slopes.
-    pub(crate) fn go_along(&self, rate: &[f64], place: &mut Place) {
+    pub(crate) fn go_along(&self, rate: &[f64], place: &mut ManifoldPoint) {
         self.columns(rate, &mut place.rates);
     }
 
     /// D x of modal velocities or accelerations x (modes), in the extended shapes.
-    pub(crate) fn extend(&self, place: &Place, x: &[f64], out: &mut [f64]) {
+    pub(crate) fn extend(&self, place: &ManifoldPoint, x: &[f64], out: &mut [f64]) {
         out[..x.len()].copy_from_slice(x);
         out[x.len()..].fill(0.0);
         self.add_columns(&place.slopes, x, out);
     }
 
     /// Adds Ḋ q̇.
-    pub(crate) fn add_curvature(&self, place: &Place, rate: &[f64], out: &mut [f64]) {
+    pub(crate) fn add_curvature(&self, place: &ManifoldPoint, rate: &[f64], out: &mut [f64]) {
         self.add_columns(&place.rates, rate, out);
     }
 
@@ -195,19 +195,19 @@ impl Manifold {
     }
 
     /// Dᵀ y of forces or momenta y in the extended shapes, on the modes.
-    pub(crate) fn project(&self, place: &Place, y: &[f64], out: &mut [f64]) {
+    pub(crate) fn project(&self, place: &ManifoldPoint, y: &[f64], out: &mut [f64]) {
         out.fill(0.0);
         self.add_projection(place, y, out);
     }
 
     /// Adds Dᵀ y.
-    pub(crate) fn add_projection(&self, place: &Place, y: &[f64], out: &mut [f64]) {
+    pub(crate) fn add_projection(&self, place: &ManifoldPoint, y: &[f64], out: &mut [f64]) {
         out.iter_mut().zip(y).for_each(|(out, y)| *out += y);
         self.add_products(&place.slopes, y, out);
     }
 
     /// Adds Ḋᵀ y.
-    pub(crate) fn add_projected_rate(&self, place: &Place, y: &[f64], out: &mut [f64]) {
+    pub(crate) fn add_projected_rate(&self, place: &ManifoldPoint, y: &[f64], out: &mut [f64]) {
         self.add_products(&place.rates, y, out);
     }
 
@@ -218,7 +218,7 @@ impl Manifold {
     }
 
     /// M⁻¹ y in place (modes).
-    pub(crate) fn solve(&self, place: &Place, y: &mut [f64]) {
+    pub(crate) fn solve(&self, place: &ManifoldPoint, y: &mut [f64]) {
         let Constants { large, modes, .. } = &*self.0;
         let count = large.len();
         let mut x = [0.0; MOST_LARGE];

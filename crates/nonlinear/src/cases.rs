@@ -8,7 +8,7 @@ use scene::{Model, Scene};
 
 use crate::error::NonlinearError;
 use crate::mean_axes::mean_axes;
-use crate::motion::{Motion, Place, dot};
+use crate::motion::{Motion, NodalState, dot};
 use crate::signal;
 use crate::solid::Solid;
 
@@ -119,14 +119,14 @@ pub fn spinning_l(part: f64, periods: f64, rests: &[&str]) -> Result<(f64, Vec<C
         .iter()
         .flat_map(|x| <[f64; 3]>::from(Vector3::new(0.0, 0.0, spin).cross(&(Vector3::from(*x) - center))))
         .collect();
-    let start = Place { time: 0.0, u: vec![0.0; v.len()], v };
+    let start = NodalState { time: 0.0, u: vec![0.0; v.len()], v };
     let steps = (100.0 * periods).ceil();
     let mut motion = Motion::new(&solid, start, end / steps, |_, u| vec![0.0; u.len()]);
     let mut course = Course { times: vec![0.0], values: vec![0.0] };
     for _ in 0..steps as usize {
         motion.advance()?;
-        course.times.push(motion.place.time);
-        course.values.push(dot(&momentum, &mean_axes(&solid, &motion.place.u).displacement));
+        course.times.push(motion.state.time);
+        course.values.push(dot(&momentum, &mean_axes(&solid, &motion.state.u).displacement));
     }
     let mut courses = vec![course];
     let names: Vec<String> = in_plane(&model).iter().take(2).map(|k| (k + 1).to_string()).collect();
@@ -184,13 +184,13 @@ pub fn pendulum(young_modulus: f64, end: f64, steps: usize, rests: &[&str]) -> R
     let tip = solid.mesh().positions().iter().position(|x| (Vector3::from(*x) - Vector3::x()).norm() < 1e-9);
     let tip = tip.ok_or(NonlinearError::Mesh("the rod has no node at its tip".to_owned()))?;
     let rest = vec![0.0; solid.freedoms()];
-    let start = Place { time: 0.0, u: rest.clone(), v: rest };
+    let start = NodalState { time: 0.0, u: rest.clone(), v: rest };
     let mut motion = Motion::new(&solid, start, end / steps as f64, |_, _| weight.clone());
     let mut course = Course { times: vec![0.0], values: vec![0.0] };
     for _ in 0..steps {
         motion.advance()?;
-        course.times.push(motion.place.time);
-        course.values.push(turned_back(&solid, &motion.place.u, tip).z);
+        course.times.push(motion.state.time);
+        course.values.push(turned_back(&solid, &motion.state.u, tip).z);
     }
     let mut courses = vec![course];
     for rest in rests {
@@ -269,12 +269,12 @@ pub fn pressed(
     let amplitude = 1e-5 / peaks(&phi, 0)[0];
     let u = at_rest.iter().zip(&phi).map(|(u, phi)| u + amplitude * phi).collect();
     let h = std::f64::consts::TAU / omega / 80.0;
-    let mut motion = Motion::new(&solid, Place { time: 0.0, u, v: vec![0.0; phi.len()] }, h, |_, u| force(u));
+    let mut motion = Motion::new(&solid, NodalState { time: 0.0, u, v: vec![0.0; phi.len()] }, h, |_, u| force(u));
     let mut course = Course::default();
     for _ in 0..320 {
         motion.advance()?;
-        course.times.push(motion.place.time);
-        let moved: Vec<f64> = motion.place.u.iter().zip(&at_rest).map(|(u, rest)| u - rest).collect();
+        course.times.push(motion.state.time);
+        let moved: Vec<f64> = motion.state.u.iter().zip(&at_rest).map(|(u, rest)| u - rest).collect();
         course.values.push(dot(&momentum, &moved) / amplitude);
     }
     let found = signal::frequency(&course.times, &course.values, omega, 1);

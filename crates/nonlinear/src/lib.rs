@@ -21,5 +21,5 @@ mod statics;
 
 pub use error::NonlinearError;
 pub use mean_axes::{MeanAxes, mean_axes};
-pub use motion::{Motion, Place};
+pub use motion::{Motion, NodalState};
 pub use solid::{Factor, Solid, product};

@@ -17,9 +17,9 @@ const TOLERANCE: f64 = 1e-11;
 /// The tangent is made anew where an iteration leaves more than this of the last one.
 const SLOW: f64 = 0.2;
 
-/// A place in the motion.
+/// Displacements and velocities of the nodes at a time.
 #[derive(Clone)]
-pub struct Place {
+pub struct NodalState {
     /// Time.
     pub time: f64,
     /// Displacements (3n).
@@ -35,13 +35,13 @@ pub struct Motion<'a, F> {
     step: f64,
     factor: Option<Factor>,
     /// Where it is.
-    pub place: Place,
+    pub state: NodalState,
 }
 
 impl<'a, F: Fn(f64, &[f64]) -> Vec<f64>> Motion<'a, F> {
-    /// From a place, in equal steps.
-    pub fn new(solid: &'a Solid, place: Place, step: f64, forces: F) -> Self {
-        Self { solid, forces, step, factor: None, place }
+    /// From a state, in equal steps.
+    pub fn new(solid: &'a Solid, state: NodalState, step: f64, forces: F) -> Self {
+        Self { solid, forces, step, factor: None, state }
     }
 
     /// One step.
@@ -50,7 +50,7 @@ impl<'a, F: Fn(f64, &[f64]) -> Vec<f64>> Motion<'a, F> {
     /// [`NonlinearError`] where the iteration does not come to rest.
     pub fn advance(&mut self) -> Result<(), NonlinearError> {
         let (solid, h) = (self.solid, self.step);
-        let Place { time, u, v } = &self.place;
+        let NodalState { time, u, v } = &self.state;
         let mut next: Vec<f64> = u.iter().zip(v).map(|(u, v)| u + h * v).collect();
         let mut last = f64::INFINITY;
         for _ in 0..MOST {
@@ -86,14 +86,14 @@ impl<'a, F: Fn(f64, &[f64]) -> Vec<f64>> Motion<'a, F> {
             return Err(NonlinearError::Iterations { at: *time, residual: last });
         }
         let v = (0..u.len()).map(|i| 2.0 / h * (next[i] - u[i]) - v[i]).collect();
-        self.place = Place { time: time + h, u: next, v };
+        self.state = NodalState { time: time + h, u: next, v };
         Ok(())
     }
 
     /// Kinetic energy and strain energy.
     pub fn energies(&self) -> [f64; 2] {
-        let kinetic = 0.5 * dot(&self.place.v, &self.solid.momentum(&self.place.v));
-        [kinetic, self.solid.strain_energy(&self.place.u)]
+        let kinetic = 0.5 * dot(&self.state.v, &self.solid.momentum(&self.state.v));
+        [kinetic, self.solid.strain_energy(&self.state.u)]
     }
 }
 

@@ -1,7 +1,7 @@
 //! The nonlinear body itself: what it keeps, and what it is for small displacements.
 
 use nalgebra::{Rotation3, Vector3};
-use nonlinear::{Motion, Place, Solid, bodies, cases, mean_axes, signal};
+use nonlinear::{Motion, NodalState, Solid, bodies, cases, mean_axes, signal};
 
 fn l() -> Solid {
     Solid::new(bodies::mesh("l").unwrap(), bodies::SOFT, |_| false).unwrap()
@@ -53,11 +53,11 @@ fn it_keeps_energy_and_momenta_while_it_tumbles_and_bends() {
     let solid = l();
     let v = field(&solid, |x| Vector3::new(3.0, -2.0, 5.0).cross(&x) + Vector3::new(0.0, 2.0 * x.x, 4.0 * x.y * x.x));
     let u = field(&solid, |x| Vector3::new(0.0, 0.02 * x.x * x.x, 0.03 * x.y * x.x));
-    let mut motion = Motion::new(&solid, Place { time: 0.0, u, v }, 2e-3, |_, u| vec![0.0; u.len()]);
+    let mut motion = Motion::new(&solid, NodalState { time: 0.0, u, v }, 2e-3, |_, u| vec![0.0; u.len()]);
     let state = |motion: &Motion<'_, _>| {
-        let momentum = solid.momentum(&motion.place.v);
+        let momentum = solid.momentum(&motion.state.v);
         let [kinetic, strain] = motion.energies();
-        (kinetic + strain, strain, moments(&solid, &motion.place.u, &momentum))
+        (kinetic + strain, strain, moments(&solid, &motion.state.u, &momentum))
     };
     let (energy, _, momenta) = state(&motion);
     let mut strained: f64 = 0.0;
@@ -89,12 +89,12 @@ fn small_vibrations_have_the_linear_frequency() {
     let u = phi.iter().map(|phi| 1e-6 * phi).collect();
     let step = std::f64::consts::TAU / omega / 30.0;
     let mut motion =
-        Motion::new(&solid, Place { time: 0.0, u, v: vec![0.0; phi.len()] }, step, |_, u| vec![0.0; u.len()]);
+        Motion::new(&solid, NodalState { time: 0.0, u, v: vec![0.0; phi.len()] }, step, |_, u| vec![0.0; u.len()]);
     let (mut times, mut values) = (vec![], vec![]);
     for _ in 0..90 {
         motion.advance().unwrap();
-        times.push(motion.place.time);
-        values.push(1e6 * momentum.iter().zip(&motion.place.u).map(|(m, u)| m * u).sum::<f64>());
+        times.push(motion.state.time);
+        values.push(1e6 * momentum.iter().zip(&motion.state.u).map(|(m, u)| m * u).sum::<f64>());
     }
     let found = signal::frequency(&times, &values, omega, 1);
     let expected = 2.0 / step * (0.5 * omega * step).atan();

@@ -6,7 +6,7 @@ use scene::{Rows, Scene};
 use serde::Serialize;
 
 use super::case::PreparedScene;
-use super::ladder::{Judge, Line, Outcome, Row, settings_between};
+use super::ladder::{Judge, LadderRun, Line, Outcome, settings_between};
 use super::modes::ModesRow;
 use super::setting::Setting;
 use super::short::{duration, setting};
@@ -23,7 +23,7 @@ pub struct Answer {
     /// Lines for the section `[time]` of the scene; none where nothing reaches the target.
     pub lines: Vec<String>,
     /// The run; none where nothing reaches the target.
-    pub run: Option<Row>,
+    pub run: Option<LadderRun>,
     /// The smallest error that is known of.
     #[serde(serialize_with = "json::number")]
     pub smallest_error: f64,
@@ -48,7 +48,7 @@ pub(super) fn refine(case: &PreparedScene<'_>, judge: &Judge<'_>, lines: &mut [L
         while !between.is_empty() {
             let finer = between.split_off(between.len() / 2);
             let control = finer[0];
-            let row = Row::new(control, judge.measure(case, line.method, control), false);
+            let row = LadderRun::new(control, judge.measure(case, line.method, control), false);
             let good = row.measured().is_some_and(|measured| measured.error <= target);
             line.insert(row);
             if !good {
@@ -74,7 +74,7 @@ impl Answer {
             .filter(|(_, _, measured)| measured.error <= target)
             .min_by(|a, b| a.2.seconds.total_cmp(&b.2.seconds))
             .map(|(line, row, _)| (line, row));
-        let time_lines = |line: &Line, row: &Row| {
+        let time_lines = |line: &Line, row: &LadderRun| {
             vec![
                 format!("formulation = \"{}\"", line.formulation),
                 format!("scheme = \"{}\"", line.scheme),
@@ -96,7 +96,7 @@ impl Answer {
 
 /// The runs that the patience has stopped, in words.
 pub(super) fn out_of_patience(lines: &[Line]) -> Vec<String> {
-    let words = |line: &Line, row: &Row| {
+    let words = |line: &Line, row: &LadderRun| {
         let Outcome::OutOfPatience(stopped) = &row.outcome else { return None };
         let own = if row.of_scene { " (the scene's own setting)" } else { "" };
         Some(format!("{}, {}{own}: {stopped}", line.name(), setting(row.setting)))
@@ -106,7 +106,7 @@ pub(super) fn out_of_patience(lines: &[Line]) -> Vec<String> {
 
 impl fmt::Display for Answer {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self.run.as_ref().and_then(Row::measured) {
+        match self.run.as_ref().and_then(LadderRun::measured) {
             Some(run) => {
                 write!(
                     f,

@@ -47,14 +47,14 @@ pub struct Line {
     #[serde(serialize_with = "json::optional")]
     pub measured_order: Option<f64>,
     /// The runs, longest step or largest tolerance first.
-    pub rows: Vec<Row>,
+    pub rows: Vec<LadderRun>,
     #[serde(skip)]
     pub(super) method: Method,
 }
 
 /// A run of a ladder.
 #[derive(Debug, Clone, Serialize)]
-pub struct Row {
+pub struct LadderRun {
     /// What was asked for.
     pub setting: Setting,
     /// Whether the scene asks for it itself.
@@ -132,7 +132,7 @@ pub struct Measured {
     pub repeats: u32,
 }
 
-impl Row {
+impl LadderRun {
     /// The measurement, if the run came to its end.
     pub fn measured(&self) -> Option<&Measured> {
         match &self.outcome {
@@ -240,7 +240,7 @@ pub(super) fn climb(
         }
         let of_scene = own.0 == method && is_same(own.1.into(), control.into());
         let started = Instant::now();
-        let row = Row::new(control, judge.measure(case, method, control), of_scene);
+        let row = LadderRun::new(control, judge.measure(case, method, control), of_scene);
         let measured = row.measured().cloned();
         line.rows.push(row);
         let Some(measured) = measured else {
@@ -260,7 +260,7 @@ pub(super) fn climb(
     let is_ours = own_method == method && controlled == matches!(own_control, StepControl::Tolerance(_));
     if is_ours && !line.rows.iter().any(|row| row.of_scene) {
         let outcome = judge.measure(case, method, own_control);
-        line.insert(Row::new(own_control, outcome, true));
+        line.insert(LadderRun::new(own_control, outcome, true));
     }
     if !controlled && let Some(limit) = judge.limit(method) {
         line.measured_order = slowest_order(&line.rows, &limit.error);
@@ -268,7 +268,7 @@ pub(super) fn climb(
     line
 }
 
-impl Row {
+impl LadderRun {
     pub(super) fn new(control: StepControl, outcome: Outcome, of_scene: bool) -> Self {
         Self { setting: control.into(), of_scene, on_front: false, outcome }
     }
@@ -276,7 +276,7 @@ impl Row {
 
 impl Line {
     /// Puts a row where its step belongs.
-    pub(super) fn insert(&mut self, row: Row) {
+    pub(super) fn insert(&mut self, row: LadderRun) {
         let place = self.rows.partition_point(|other| other.setting.value() > row.setting.value());
         self.rows.insert(place, row);
     }
@@ -358,7 +358,7 @@ pub(super) fn settings_between(case: &PreparedScene<'_>, coarse: Setting, fine: 
 
 /// The smallest of the orders of all quantities: of each, the slope of ln(error) against ln(step) between the finest two
 /// runs whose errors come from the steps. `limit` is the error of what they are compared with.
-fn slowest_order(rows: &[Row], limit: &Errors) -> Option<f64> {
+fn slowest_order(rows: &[LadderRun], limit: &Errors) -> Option<f64> {
     let quantities: [fn(&Errors) -> Option<f64>; 5] =
         [|e| Some(e.attitude), |e| e.modal, |e| e.displacement, |e| e.velocity, |e| e.acceleration];
     let orders = quantities.into_iter().filter_map(|quantity| {
@@ -375,7 +375,7 @@ fn slowest_order(rows: &[Row], limit: &Errors) -> Option<f64> {
 
 /// Marks the runs for which no other is both closer and faster.
 pub(super) fn mark_front(lines: &mut [Line]) {
-    let cost = |row: &Row| row.measured().map(|measured| (measured.error, measured.seconds));
+    let cost = |row: &LadderRun| row.measured().map(|measured| (measured.error, measured.seconds));
     let all: Vec<(f64, f64)> = lines.iter().flat_map(|line| &line.rows).filter_map(cost).collect();
     for row in lines.iter_mut().flat_map(|line| &mut line.rows) {
         row.on_front = cost(row).is_some_and(|(error, seconds)| {
@@ -388,7 +388,7 @@ pub(super) fn mark_front(lines: &mut [Line]) {
 mod tests {
     use super::*;
 
-    fn row(step: f64, error: f64, seconds: f64) -> Row {
+    fn row(step: f64, error: f64, seconds: f64) -> LadderRun {
         let measured = Measured {
             error,
             at_reference: false,
@@ -405,7 +405,7 @@ mod tests {
             spread: 1.0,
             repeats: 3,
         };
-        Row::new(StepControl::Fixed(step), Outcome::Ran(measured.into()), false)
+        LadderRun::new(StepControl::Fixed(step), Outcome::Ran(measured.into()), false)
     }
 
     #[test]
@@ -428,7 +428,7 @@ mod tests {
     #[test]
     fn the_front_is_what_no_other_run_beats() {
         let rows = vec![row(4.0, 1e-2, 1.0), row(2.0, 1e-3, 3.0), row(1.0, 1e-3, 2.0), row(0.5, 1e-4, 2.0)];
-        let failed = Row::new(StepControl::Fixed(8.0), Outcome::Failed("blown up".to_owned()), false);
+        let failed = LadderRun::new(StepControl::Fixed(8.0), Outcome::Failed("blown up".to_owned()), false);
         let line = |rows| Line {
             formulation: "conservative",
             scheme: "exponential",
@@ -447,7 +447,7 @@ mod tests {
     #[test]
     fn the_order_is_the_slope_of_the_errors_between_coarse_and_reference() {
         let fourth = |step: f64| row(step, 3.0 * step.powi(4), 1.0);
-        let mut rows: Vec<Row> = [0.2, 0.1, 0.05, 0.02].map(fourth).into();
+        let mut rows: Vec<LadderRun> = [0.2, 0.1, 0.05, 0.02].map(fourth).into();
         // Errors that do not come from the step are left out.
         rows.insert(0, row(1.0, 0.5, 1.0));
         rows.push(row(0.01, 2e-9, 1.0));

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::ladder::{Line, Outcome, Row};
+use super::ladder::{LadderRun, Line, Outcome};
 use super::report::CostReport;
 use super::short::{duration, setting};
 use crate::modes::frequency_unit;
@@ -135,7 +135,7 @@ fn optional(value: Option<f64>) -> String {
     value.map_or_else(|| format!("{:>9}", "-"), |value| format!("{value:>9.1e}"))
 }
 
-struct RowText<'a>(&'a Row);
+struct RowText<'a>(&'a LadderRun);
 
 impl fmt::Display for RowText<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -16,7 +16,7 @@ const FAILED: u32 = 2;
 
 /// What has become of a row.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Row {
+pub(super) enum RowState {
     /// It has not been run.
     Open,
     /// The numbers of each result, in the order of the plan.
@@ -27,13 +27,13 @@ pub(super) enum Row {
 
 /// The rows of a sweep.
 pub(super) struct Table {
-    pub rows: Vec<Row>,
+    pub rows: Vec<RowState>,
 }
 
 impl Table {
     /// The table in a file, or an empty one where there is none. Rows that failed are open again.
     pub fn open(path: &Path, plan: &Plan, overwrite: bool) -> Result<Self, SweepError> {
-        let empty = Self { rows: vec![Row::Open; plan.rows.len()] };
+        let empty = Self { rows: vec![RowState::Open; plan.rows.len()] };
         if overwrite || !path.exists() {
             return Ok(empty);
         }
@@ -67,7 +67,7 @@ impl Table {
                     let width = column.shape.get(1).copied()?;
                     column.values.get(i * width..(i + 1) * width).map(<[f64]>::to_vec)
                 };
-                *row = columns.iter().map(of_row).collect::<Option<_>>().map_or(Row::Open, Row::Done);
+                *row = columns.iter().map(of_row).collect::<Option<_>>().map_or(RowState::Open, RowState::Done);
             }
         }
         Ok(Self { rows })
@@ -75,14 +75,14 @@ impl Table {
 
     /// How many rows are done, and how many failed.
     pub fn counts(&self) -> [usize; 2] {
-        let count = |is: fn(&Row) -> bool| self.rows.iter().filter(|row| is(row)).count();
-        [count(|row| matches!(row, Row::Done(_))), count(|row| matches!(row, Row::Failed(_)))]
+        let count = |is: fn(&RowState) -> bool| self.rows.iter().filter(|row| is(row)).count();
+        [count(|row| matches!(row, RowState::Done(_))), count(|row| matches!(row, RowState::Failed(_)))]
     }
 
     /// The rows that failed, and why.
     pub fn failures(&self) -> BTreeMap<usize, String> {
-        let failed = |(i, row): (usize, &Row)| match row {
-            Row::Failed(words) => Some((i, words.clone())),
+        let failed = |(i, row): (usize, &RowState)| match row {
+            RowState::Failed(words) => Some((i, words.clone())),
             _ => None,
         };
         self.rows.iter().enumerate().filter_map(failed).collect()
@@ -102,9 +102,9 @@ impl Table {
             .rows
             .iter()
             .map(|row| match row {
-                Row::Open => OPEN,
-                Row::Done(_) => DONE,
-                Row::Failed(_) => FAILED,
+                RowState::Open => OPEN,
+                RowState::Done(_) => DONE,
+                RowState::Failed(_) => FAILED,
             })
             .collect();
         let mut datasets =
@@ -119,8 +119,8 @@ impl Table {
             }
         }
         for (i, (name, asked)) in plan.results.iter().enumerate() {
-            let done = |row: &Row| match row {
-                Row::Done(values) => Some(values[i].len()),
+            let done = |row: &RowState| match row {
+                RowState::Done(values) => Some(values[i].len()),
                 _ => None,
             };
             let Some(width) = self.rows.iter().filter_map(done).max() else { continue };
@@ -132,7 +132,7 @@ impl Table {
             datasets.push(declared(path.clone(), Kind::F64, &[count, width], words));
             let mut numbers = vec![f64::NAN; count * width];
             for (row, place) in self.rows.iter().zip(numbers.chunks_mut(width.max(1))) {
-                if let Row::Done(values) = row {
+                if let RowState::Done(values) = row {
                     place.iter_mut().zip(&values[i]).for_each(|(place, value)| *place = *value);
                 }
             }
