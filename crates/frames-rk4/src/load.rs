@@ -304,9 +304,10 @@ impl<'a> Applied<'a> {
         }
     }
 
-    /// Adds the modal force of a force or moment on a displacement or rotation of second order, which is returned.
+    /// Adds the modal force of a force or moment on a displacement or rotation of second order, which is returned; zero of a
+    /// load that does not act at this time, which does no work on it.
     fn push(&mut self, second_order: Option<&SecondOrder>, vector: &Vector3<f64>) -> Vector3<f64> {
-        let Some(second_order) = second_order else { return Vector3::zeros() };
+        let Some(second_order) = second_order.filter(|_| *vector != Vector3::zeros()) else { return Vector3::zeros() };
         let [q, rate] = self.coordinates.modes();
         let force = match &mut self.on_modes {
             Some(on_modes) => on_modes,
