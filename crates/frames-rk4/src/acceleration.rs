@@ -14,6 +14,7 @@ use nalgebra::{Matrix3, Vector3};
 use crate::column_major::dot;
 use crate::conservative::{ConservativeBody, Evaluation, Translation, get, part};
 use crate::error::RateError;
+use crate::symmetric;
 
 impl ConservativeBody {
     /// Turns `e.acceleration` from the whole of p' into the q̈ that there would be without ω'.
@@ -50,21 +51,7 @@ impl ConservativeBody {
         } else if self.axes.is_empty() {
             Vector3::zeros()
         } else {
-            let n_q = &e.products[self.s_rows..];
-            let mut inertia_rate = Matrix3::zeros();
-            for (((i, j), first), n_q) in self.pairs.iter().zip(&self.first).zip(n_q.chunks_exact(nf.max(1))) {
-                let rate: f64 = first.iter().zip(n_q).zip(&e.velocity).map(|((c, n), v)| 2.0 * (c + n) * v).sum();
-                inertia_rate[(*i, *j)] = rate;
-                inertia_rate[(*j, *i)] = rate;
-            }
-            for ((i, j), k_q) in self.spin_stresses(&e.spin_stress) {
-                let rate = 2.0 * dot(k_q, &e.modal_velocity);
-                inertia_rate[(*i, *j)] -= rate;
-                if i != j {
-                    inertia_rate[(*j, *i)] -= rate;
-                }
-            }
-            let mut right = get(&e.slow, part::PI) - inertia_rate * e.spin;
+            let mut right = get(&e.slow, part::PI) - self.inertia_rate(e) * e.spin;
             for (i, s) in self.momenta_of_turning(e).0.chunks_exact(modes.max(1)).enumerate() {
                 right[i] -= dot(s, &e.acceleration);
             }
@@ -75,6 +62,20 @@ impl ConservativeBody {
         };
         self.add_spin_rate(&spin_rate, e);
         Ok(spin_rate)
+    }
+
+    /// J' = 2 (c_ij + N_ij ξ)·ν − 2 (K_ij q)·q̇
+    fn inertia_rate(&self, e: &Evaluation) -> Matrix3<f64> {
+        let n_q = e.products[self.s_rows..].chunks_exact(self.extended().max(1));
+        let mut inertia_rate = Matrix3::zeros();
+        for ((pair, first), n_q) in self.pairs.iter().zip(&self.first).zip(n_q) {
+            let rate: f64 = first.iter().zip(n_q).zip(&e.velocity).map(|((c, n), v)| 2.0 * (c + n) * v).sum();
+            symmetric::add(&mut inertia_rate, *pair, rate);
+        }
+        for (pair, k_q) in self.spin_stresses(&e.spin_stress) {
+            symmetric::add(&mut inertia_rate, *pair, -2.0 * dot(k_q, &e.modal_velocity));
+        }
+        inertia_rate
     }
 
     /// q̈ −= M⁻¹ S ω'
@@ -124,14 +125,8 @@ impl ConservativeBody {
             e.drive_effort = self.mass * acceleration + changing - direction.dot(force_body);
             return;
         }
-        let (s, n_q) = (&e.products[..nf], &e.products[self.s_rows..]);
-        let inertia = e.inertia[(0, 0)];
-        let mut inertia_rate: f64 = match self.first.first() {
-            Some(first) => (0..nf).map(|k| 2.0 * (first[k] + n_q[k]) * e.velocity[k]).sum(),
-            None => 0.0,
-        };
-        inertia_rate -=
-            self.spin_stresses(&e.spin_stress).map(|(_, k_q)| 2.0 * dot(k_q, &e.modal_velocity)).sum::<f64>();
+        let s = &e.products[..nf];
+        let (inertia, inertia_rate) = (e.inertia[(0, 0)], self.inertia_rate(e)[(0, 0)]);
         // G ν does no work on ν.
         changing += dot(s, &e.change);
         e.driven_momentum = inertia * speed + dot(s, &e.velocity) - stressed;

@@ -56,7 +56,9 @@ use crate::motion::CenterOfMass;
 use crate::own_coupling::own_coupling;
 use crate::physics::{Drive, DrivenMotion, Physics};
 use crate::reaction::Held;
+use crate::spin_stiffness::SpinStiffness;
 use crate::state::MotionState;
+use crate::symmetric;
 pub use state::ConservativeState;
 pub(crate) use state::{Slow, get, part, set};
 
@@ -243,6 +245,7 @@ impl ConservativeBody {
         let g_rows = if effects[Effect::Coriolis] { axes.len() * nf } else { 0 };
         let s_rows = if effects[Effect::Coriolis] || turn_driven { axes.len() * nf } else { 0 };
         let stiffness = body.stress_stiffness.as_ref().filter(|_| effects[Effect::GeometricStiffening]);
+        let stiffness = stiffness.map(|stiffness| SpinStiffness::new(stiffness, large_deflection.as_ref()));
         // Weights of the constants of PAIRS in those of a pair of axes.
         let weights = |(i, j): (usize, usize)| {
             ReducedBody::PAIRS.map(|(k, l)| {
@@ -257,11 +260,9 @@ impl ConservativeBody {
             matrices.iter().zip(weights).map(|(m, w)| w * m[(i, j)]).sum()
         };
         let pair_weights: Vec<[f64; 6]> = pairs.iter().map(|pair| weights(*pair)).collect();
-        let is_large = |k: usize| large_deflection.as_ref().is_some_and(|manifold| manifold.large().contains(&k));
-        // K_ij, but on a manifold without what acts on q itself.
-        let on_shapes = |weights: &[f64; 6], i: usize, j: usize| match stiffness {
-            Some(k) if large_deflection.is_none() || is_large(i) || is_large(j) => of(k, weights, i, j),
-            _ => 0.0,
+        let second = |weights: &[f64; 6], i: usize, j: usize| {
+            of(&body.inertia_second, weights, i, j)
+                - stiffness.as_ref().map_or(0.0, |stiffness| of(&stiffness.on_shapes, weights, i, j))
         };
         let mut stacked = Vec::with_capacity((g_rows + pairs.len() * nf) * nf);
         for j in 0..nf {
@@ -269,17 +270,14 @@ impl ConservativeBody {
                 stacked.extend((0..nf).map(|i| gyroscopic(axis, i, j)));
             }
             for weights in &pair_weights {
-                stacked.extend((0..nf).map(|i| of(&body.inertia_second, weights, i, j) - on_shapes(weights, i, j)));
+                stacked.extend((0..nf).map(|i| second(weights, i, j)));
             }
         }
         let mut spin_stiffness = Vec::new();
-        if let (Some(manifold), Some(stiffness)) = (large_deflection, stiffness) {
-            for j in 0..manifold.modes() {
+        if let Some(on_modes) = stiffness.as_ref().and_then(|stiffness| stiffness.on_modes.as_ref()) {
+            for j in 0..modes.flexible() {
                 for weights in &pair_weights {
-                    let between = |i: usize| {
-                        if is_large(i) || is_large(j) { 0.0 } else { of(stiffness, weights, i, j) }
-                    };
-                    spin_stiffness.extend((0..manifold.modes()).map(between));
+                    spin_stiffness.extend((0..modes.flexible()).map(|i| of(on_modes, weights, i, j)));
                 }
             }
         }
@@ -329,7 +327,7 @@ impl ConservativeBody {
             spin_stiffness,
             loads,
             manifold: large_deflection.clone(),
-            held: Held::new(body, effects),
+            held: Held::new(body, stiffness.as_ref(), effects),
         })
     }
 
@@ -536,20 +534,12 @@ impl ConservativeBody {
         }
         let (s, n_q) = e.products.split_at(self.s_rows);
         let mut inertia = self.inertia;
-        for ((pair, (i, j)), first) in self.pairs.iter().enumerate().zip(&self.first) {
-            let n_q = &n_q[pair * nf..(pair + 1) * nf];
+        for ((pair, first), n_q) in self.pairs.iter().zip(&self.first).zip(n_q.chunks_exact(nf.max(1))) {
             let change: f64 = first.iter().zip(n_q).zip(q).map(|((c, n), q)| (2.0 * c + n) * q).sum();
-            inertia[(*i, *j)] += change;
-            if i != j {
-                inertia[(*j, *i)] += change;
-            }
+            symmetric::add(&mut inertia, *pair, change);
         }
-        for ((i, j), k_q) in self.spin_stresses(&e.spin_stress) {
-            let change = dot(k_q, modes);
-            inertia[(*i, *j)] -= change;
-            if i != j {
-                inertia[(*j, *i)] -= change;
-            }
+        for (pair, k_q) in self.spin_stresses(&e.spin_stress) {
+            symmetric::add(&mut inertia, *pair, -dot(k_q, modes));
         }
         e.inertia = inertia;
         e.locked_inertia = inertia;
@@ -568,11 +558,7 @@ impl ConservativeBody {
         };
         for (i, a) in s.chunks_exact(size.max(1)).enumerate() {
             for (j, b) in solved_s.chunks_exact(size.max(1)).enumerate().take(i + 1) {
-                let product = dot(a, b);
-                e.locked_inertia[(i, j)] -= product;
-                if i != j {
-                    e.locked_inertia[(j, i)] -= product;
-                }
+                symmetric::add(&mut e.locked_inertia, (i, j), -dot(a, b));
             }
         }
     }
@@ -766,8 +752,8 @@ impl ConservativeBody {
                 force.iter_mut().zip(g).for_each(|(rate, g)| *rate -= w * g);
             }
         }
-        for (((i, j), first), n_q) in self.pairs.iter().zip(&self.first).zip(n_q.chunks_exact(nf.max(1))) {
-            let square = if i == j { w[*i] * w[*j] } else { 2.0 * w[*i] * w[*j] };
+        for ((pair, first), n_q) in self.pairs.iter().zip(&self.first).zip(n_q.chunks_exact(nf.max(1))) {
+            let square = spin_product(&w, *pair);
             for ((rate, c), n) in force.iter_mut().zip(first).zip(n_q) {
                 *rate += square * (c + n);
             }
@@ -777,9 +763,8 @@ impl ConservativeBody {
     /// Adds to p' what the stress of a drive does, and on a manifold that of the spin.
     fn add_stress(&self, driven_acceleration: f64, e: &mut Evaluation) {
         e.momentum.iter_mut().zip(&e.drive_stress).for_each(|(rate, k_q)| *rate += driven_acceleration * k_q);
-        let w = e.spin;
-        for ((i, j), k_q) in self.spin_stresses(&e.spin_stress) {
-            let square = if i == j { w[*i] * w[*j] } else { 2.0 * w[*i] * w[*j] };
+        for (pair, k_q) in self.spin_stresses(&e.spin_stress) {
+            let square = spin_product(&e.spin, *pair);
             e.momentum.iter_mut().zip(k_q).for_each(|(rate, k_q)| *rate -= square * k_q);
         }
     }
@@ -877,6 +862,12 @@ fn along_axes(axes: &[Vector3<f64>], matrix: &Matrix3<f64>) -> Matrix3<f64> {
         (Some(a), Some(b)) => a.dot(&(matrix * b)),
         _ => f64::from(u8::from(i == j)),
     })
+}
+
+/// What ω_iω_j and ω_jω_i come to together in a sum over all pairs.
+fn spin_product(spin: &Vector3<f64>, (i, j): (usize, usize)) -> f64 {
+    let product = spin[i] * spin[j];
+    if i == j { product } else { 2.0 * product }
 }
 
 /// The part of a vector along a unit vector.

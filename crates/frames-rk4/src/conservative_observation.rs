@@ -102,6 +102,8 @@ impl ConservativeBody {
             displacement: &e.extended,
             velocity: &e.velocity,
             shape_acceleration: &e.change,
+            modal_displacement: &state.modal_displacement,
+            modal_velocity: &e.modal_velocity,
         });
         let reaction = &mut out.reaction;
         reaction.force_body = force - e.load_force;

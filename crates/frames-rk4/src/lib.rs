@@ -62,8 +62,10 @@ mod scheme;
 mod second_order;
 mod setup;
 mod simulation;
+mod spin_stiffness;
 mod state;
 mod steady_spin;
+mod symmetric;
 mod travelling_frame;
 mod work;
 

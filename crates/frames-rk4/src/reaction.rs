@@ -3,12 +3,13 @@
 //! ```text
 //! F = m a_c − Σ F_k
 //! M = J ω' + J' ω + S·ν' + ω × (J ω + S·ν) + m c × a_o − Σ M_k        about the origin o, body axes
-//! J = J0 + 2 c_ij·ξ + ξᵀ N_ij ξ,   J' = 2 (c_ij + N_ij ξ)·ν,   S_i = b_i + G_i ξ
+//! J = J0 + 2 c_ij·ξ + ξᵀ N_ij ξ − qᵀ K_ij q,   J' = 2 (c_ij + N_ij ξ)·ν − 2 (K_ij q)·q̇,   S_i = b_i + G_i ξ
 //! ```
 //!
-//! c and a_c are the centre of mass and its acceleration, ξ and ν the coordinates of the shapes and their rates. These are
-//! the momenta of the motion and their rates about all three axes, with the same terms as in the equations of motion: along
-//! what is left free F and M vanish, and what a drive does is along its axis.
+//! c and a_c are the centre of mass and its acceleration, ξ and ν the coordinates of the shapes and their rates. What of K_ij
+//! acts on ξ is in N_ij ([`SpinStiffness`]). These are the momenta of the motion and their rates about all three axes, with
+//! the same terms as in the equations of motion: along what is left free F and M vanish, and what a drive does is along its
+//! axis.
 
 use faer::Mat;
 use modal::ReducedBody;
@@ -16,6 +17,8 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::column_major::{columns, dot, multiply};
 use crate::effect::{Effect, EffectMap};
+use crate::spin_stiffness::SpinStiffness;
+use crate::symmetric;
 
 /// What holds a body does to it, and where the motion that it leaves has come to. Zero of a free body, and of one that moves
 /// by the formulation of the paper.
@@ -58,6 +61,8 @@ pub(crate) struct Held {
     first: Vec<Vec<f64>>,
     /// N_ij of the same, column by column (nf × nf each).
     second: Vec<Vec<f64>>,
+    /// K_ij of the modes, column by column (each of as many rows as there are modes); none but on a manifold.
+    stress: Vec<Vec<f64>>,
     /// b_i (nf each).
     coupling: [Vec<f64>; 3],
     /// G_i, column by column (nf × nf each, or none without Coriolis terms).
@@ -77,18 +82,24 @@ pub(crate) struct HeldMotion<'a> {
     pub displacement: &'a [f64],
     pub velocity: &'a [f64],
     pub shape_acceleration: &'a [f64],
+    /// q and q̇.
+    pub modal_displacement: &'a [f64],
+    pub modal_velocity: &'a [f64],
 }
 
 impl Held {
-    /// Of a body in its shapes; `None` of a free one.
-    pub(crate) fn new(body: &ReducedBody, effects: &EffectMap<bool>) -> Option<Self> {
+    /// Of a body in its shapes, stiffened by the stress of its spin; `None` of a free one.
+    pub(crate) fn new(
+        body: &ReducedBody,
+        stiffness: Option<&SpinStiffness>,
+        effects: &EffectMap<bool>,
+    ) -> Option<Self> {
         if body.motion.is_free() {
             return None;
         }
         let follows = effects[Effect::DeformedInertia] && body.flexible() > 0;
-        let stiffness = body.stress_stiffness.as_ref().filter(|_| effects[Effect::GeometricStiffening]);
         let second = |pair: usize| match stiffness {
-            Some(stiffness) => columns((&body.inertia_second[pair] - &stiffness[pair]).as_ref()),
+            Some(stiffness) => columns((&body.inertia_second[pair] - &stiffness.on_shapes[pair]).as_ref()),
             None => columns(body.inertia_second[pair].as_ref()),
         };
         let matrices = |list: &[Mat<f64>]| list.iter().map(|matrix| columns(matrix.as_ref())).collect();
@@ -97,6 +108,10 @@ impl Held {
             inertia: body.inertia,
             first: if follows { body.inertia_first.to_vec() } else { Vec::new() },
             second: if follows { (0..6).map(second).collect() } else { Vec::new() },
+            stress: match stiffness.and_then(|stiffness| stiffness.on_modes.as_ref()) {
+                Some(on_modes) if follows => matrices(on_modes),
+                _ => Vec::new(),
+            },
             coupling: body.rotation_first.clone(),
             gyroscopic: if effects[Effect::Coriolis] { matrices(&body.gyroscopic) } else { Vec::new() },
         })
@@ -106,18 +121,19 @@ impl Held {
     /// both as an observer at rest sees them, body components. It allocates, and is for rows of output only.
     pub(crate) fn momentum_rates(&self, motion: &HeldMotion<'_>) -> [Vector3<f64>; 2] {
         let HeldMotion { omega, alpha, displacement: xi, velocity: nu, shape_acceleration, .. } = *motion;
+        let (q, q_rate) = (motion.modal_displacement, motion.modal_velocity);
         let mut product = vec![0.0; xi.len()];
         let (mut inertia, mut inertia_rate) = (self.inertia, Matrix3::zeros());
-        for ((i, j), (first, second)) in ReducedBody::PAIRS.into_iter().zip(self.first.iter().zip(&self.second)) {
+        for (pair, (first, second)) in ReducedBody::PAIRS.into_iter().zip(self.first.iter().zip(&self.second)) {
             multiply(second, xi.len(), xi, &mut product);
-            let change = 2.0 * dot(first, xi) + dot(&product, xi);
-            let rate = 2.0 * (dot(first, nu) + dot(&product, nu));
-            inertia[(i, j)] += change;
-            inertia_rate[(i, j)] += rate;
-            if i != j {
-                inertia[(j, i)] += change;
-                inertia_rate[(j, i)] += rate;
-            }
+            symmetric::add(&mut inertia, pair, 2.0 * dot(first, xi) + dot(&product, xi));
+            symmetric::add(&mut inertia_rate, pair, 2.0 * (dot(first, nu) + dot(&product, nu)));
+        }
+        for (pair, stress) in ReducedBody::PAIRS.into_iter().zip(&self.stress) {
+            let k_q = &mut product[..q.len()];
+            multiply(stress, q.len(), q, k_q);
+            symmetric::add(&mut inertia, pair, -dot(k_q, q));
+            symmetric::add(&mut inertia_rate, pair, -2.0 * dot(k_q, q_rate));
         }
         let (mut of_shapes, mut rate_of_shapes) = (Vector3::zeros(), Vector3::zeros());
         for (axis, b) in self.coupling.iter().enumerate() {
