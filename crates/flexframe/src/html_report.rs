@@ -5,24 +5,17 @@ mod contents;
 use std::path::{Path, PathBuf};
 
 use report::ReportError;
-use results::{FileError, Results};
-use scene::{BuildError, BuildProgress, Cache, Model, Scene, SceneError};
+use scene::{BuildProgress, Cache};
 
-use crate::columns::COLUMNS;
-use crate::{run, scene_file};
+use crate::reopened::{ReopenError, Reopened};
+use crate::run;
 
 /// A page that could not be made.
 #[derive(Debug, thiserror::Error)]
 pub enum HtmlReportError {
-    /// The results file cannot be read.
+    /// The results file cannot be read, or its body not be made again.
     #[error(transparent)]
-    File(#[from] FileError),
-    /// The scene in the results file is invalid.
-    #[error(transparent)]
-    Scene(#[from] SceneError),
-    /// The body cannot be made again, of which the file has no shapes.
-    #[error(transparent)]
-    Build(#[from] BuildError),
+    Reopen(#[from] ReopenError),
     /// What is computed now is not what was computed then, to the last bit: the shapes may be others.
     #[error(
         "{}: {what} is no longer what it was when the run began (a changed mesh or table, another version of flexframe, or another machine), so that its shapes may be others: run the scene again",
@@ -50,10 +43,7 @@ pub fn write(
     cache: &Cache,
     progress: impl FnMut(BuildProgress),
 ) -> Result<(), HtmlReportError> {
-    let results = Results::open(file, &COLUMNS)?;
-    let scene = Scene::parse(&results.metadata.scene_text, scene_file::to_path(&results.metadata.scene_file))?;
-    let scene = Scene { cache: cache.clone(), ..scene };
-    let model = Model::build(&scene, progress)?;
+    let Reopened { results, scene, model } = Reopened::open(file, cache, progress)?;
     let changed = |what| HtmlReportError::Changed { results: file.to_owned(), what };
     let now = run::metadata(&scene, &model);
     if now.program_version != results.metadata.program_version {

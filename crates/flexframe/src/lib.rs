@@ -35,6 +35,7 @@ pub mod mode_shapes;
 pub mod modes;
 pub mod paper;
 pub mod peak_stress;
+pub mod reopened;
 pub mod report;
 pub mod row;
 pub mod run;

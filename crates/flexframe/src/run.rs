@@ -20,6 +20,7 @@ pub use report::RunReport;
 pub use settings::{RunProgress, RunSettings};
 
 use crate::columns::{COLUMNS, part};
+use crate::reopened::scene_of;
 use crate::report::BodyReport;
 use crate::row::Row;
 use crate::scene_file;
@@ -82,8 +83,7 @@ pub fn resume(
 ) -> Result<(Scene, Model, RunReport), RunError> {
     let Resumed { writer, results, checkpoint } = Writer::resume(file, &COLUMNS)?;
     let part = writer.unfinished().to_path_buf();
-    let scene = Scene::parse(&results.metadata.scene_text, scene_file::to_path(&results.metadata.scene_file))?;
-    let scene = Scene { cache: settings.cache.clone(), ..scene };
+    let scene = scene_of(&results, &settings.cache)?;
     let model = Model::build(&scene, |p| progress(RunProgress::Build(p)))?;
     let started = Instant::now();
     let mut simulation = start(&scene, &model)?;

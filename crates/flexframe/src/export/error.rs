@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use results::FileError;
-use scene::{BuildError, SceneError};
 
+use crate::reopened::ReopenError;
 use crate::write_error::WriteError;
 
 /// An export that could not be made. Nothing has been written, unless it is of many files.
@@ -16,12 +16,9 @@ pub enum ExportError {
     /// A table cannot be written.
     #[error(transparent)]
     Write(#[from] WriteError),
-    /// The scene in the results file cannot be read.
+    /// The results file cannot be read, or its body not be made again.
     #[error(transparent)]
-    Scene(#[from] SceneError),
-    /// The body of the scene cannot be built.
-    #[error(transparent)]
-    Build(#[from] BuildError),
+    Reopen(#[from] ReopenError),
     /// The body that the scene gives now is another.
     #[error(
         "{}: the body is no longer what it was when the run was made (a changed mesh, another version of flexframe, or \

@@ -9,9 +9,8 @@ use rigid_kin::Attitude;
 use scene::{BuildProgress, Cache, Meshed, Model, Scene};
 
 use super::error::ExportError;
-use crate::columns::COLUMNS;
+use crate::reopened::Reopened;
 use crate::run::metadata;
-use crate::scene_file;
 use crate::surface::Surface;
 
 /// The rows of a results file, and the body of its scene, made anew.
@@ -45,10 +44,7 @@ impl Motion {
         cache: &Cache,
         progress: impl FnMut(BuildProgress),
     ) -> Result<Self, ExportError> {
-        let results = Results::open(file, &COLUMNS)?;
-        let scene = Scene::parse(&results.metadata.scene_text, scene_file::to_path(&results.metadata.scene_file))?;
-        let scene = Scene { cache: cache.clone(), ..scene };
-        let model = Model::build(&scene, progress)?;
+        let Reopened { results, scene, model } = Reopened::open(file, cache, progress)?;
         let now = metadata(&scene, &model);
         if now.body != results.metadata.body {
             return Err(ExportError::Changed { path: file.to_owned() });

@@ -18,6 +18,7 @@ use crate::export::ExportError;
 use crate::html_report::HtmlReportError;
 use crate::mode_shapes::ShapesError;
 use crate::paper::PaperError;
+use crate::reopened::ReopenError;
 use crate::run::{RunError, RunFailure};
 use crate::sweep::SweepError;
 use crate::write_error::WriteError;
@@ -271,13 +272,30 @@ impl Failure for AnimationError {
     }
 }
 
+impl Failure for ReopenError {
+    fn kind(&self) -> Kind {
+        match self {
+            Self::File(error) => error.kind(),
+            Self::Scene(error) => error.kind(),
+            Self::Build(error) => error.kind(),
+        }
+    }
+
+    fn details(&self) -> Details {
+        match self {
+            Self::File(error) => error.details(),
+            Self::Scene(error) => error.details(),
+            Self::Build(error) => error.details(),
+        }
+    }
+}
+
 impl Failure for ExportError {
     fn kind(&self) -> Kind {
         match self {
             Self::File(error) => error.kind(),
             Self::Write(error) => error.kind(),
-            Self::Scene(error) => error.kind(),
-            Self::Build(error) => error.kind(),
+            Self::Reopen(error) => error.kind(),
             Self::Changed { .. } | Self::NoMesh { .. } | Self::NoModes { .. } => Kind::Input,
             Self::NoRows { .. } | Self::NoColumn { .. } => Kind::Usage,
         }
@@ -287,8 +305,7 @@ impl Failure for ExportError {
         match self {
             Self::File(error) => error.details(),
             Self::Write(error) => error.details(),
-            Self::Scene(error) => error.details(),
-            Self::Build(error) => error.details(),
+            Self::Reopen(error) => error.details(),
             Self::Changed { path }
             | Self::NoMesh { path }
             | Self::NoModes { path }
@@ -317,9 +334,7 @@ impl Failure for ReportError {
 impl Failure for HtmlReportError {
     fn kind(&self) -> Kind {
         match self {
-            Self::File(error) => error.kind(),
-            Self::Scene(error) => error.kind(),
-            Self::Build(error) => error.kind(),
+            Self::Reopen(error) => error.kind(),
             Self::Changed { .. } => Kind::Input,
             Self::Page(error) => error.kind(),
         }
@@ -327,9 +342,7 @@ impl Failure for HtmlReportError {
 
     fn details(&self) -> Details {
         match self {
-            Self::File(error) => error.details(),
-            Self::Scene(error) => error.details(),
-            Self::Build(error) => error.details(),
+            Self::Reopen(error) => error.details(),
             Self::Changed { results, .. } => Details::of_file(results),
             Self::Page(error) => error.details(),
         }
