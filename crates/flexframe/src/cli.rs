@@ -1,10 +1,11 @@
 //! Arguments, and what is printed.
 
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
 
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, CommandFactory, Parser, Subcommand};
 use flexframe::animation::{AnimationSettings, animate};
 use flexframe::campbell::{CampbellError, CampbellSettings, Speeds, campbell};
 use flexframe::cost::{self, CostSettings};
@@ -12,11 +13,12 @@ use flexframe::export::{self, ExportRows, Exported, Motion};
 use flexframe::failure::{Details, Failure, FailureReport, Kind};
 use flexframe::run::{RunProgress, RunSettings};
 use flexframe::sweep::SweepSettings;
-use flexframe::{advise, html_report, mode_shapes, modes, paper, run, sweep};
+use flexframe::{advise, html_report, mode_shapes, modes, new_scene, paper, run, sweep};
 use scene::{BuildError, Cache, Flexible, Scene, SceneError};
 
 use crate::cli_error::CliError;
 use crate::progress::Bar;
+use crate::scene_input::SceneInput;
 use crate::signals::Signals;
 use crate::{output, threads};
 
@@ -39,6 +41,18 @@ struct Cli {
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    /// Write a first scene of a mesh, with comments, that runs as it is.
+    New {
+        /// The mesh file.
+        #[arg(value_name = "MESH")]
+        mesh: PathBuf,
+        /// The scene file to write [default: the mesh file's name with .toml].
+        #[arg(short, long, value_name = "FILE")]
+        output: Option<PathBuf>,
+        /// Replace a scene file of this name.
+        #[arg(long)]
+        overwrite: bool,
+    },
     /// Run a scene and write its motion to an HDF5 file.
     ///
     /// The first ctrl-C (or SIGTERM) stops the run at its next row, and `flexframe resume` continues it. A second one, at
@@ -213,11 +227,17 @@ enum Command {
         #[arg(long)]
         json: bool,
     },
+    /// Print a script that completes commands and options in a shell.
+    ///
+    /// bash: flexframe completions bash > ~/.local/share/bash-completion/completions/flexframe
+    Completions {
+        /// The shell.
+        shell: clap_complete::Shell,
+    },
     /// Run a scene and draw it as an animated GIF.
     Animate {
-        /// The scene file.
-        #[arg(value_name = "SCENE")]
-        scene: PathBuf,
+        #[command(flatten)]
+        scene: SceneInput,
         /// The GIF to write.
         #[arg(short, long, value_name = "FILE")]
         output: PathBuf,
@@ -232,9 +252,8 @@ enum Command {
 
 #[derive(Debug, Args)]
 struct SceneArgs {
-    /// The scene file.
-    #[arg(value_name = "SCENE")]
-    scene: PathBuf,
+    #[command(flatten)]
+    scene: SceneInput,
     /// Print the summary as JSON, for scripts, and errors as JSON on standard error.
     #[arg(long)]
     json: bool,
@@ -288,11 +307,19 @@ fn execute(cli: Cli, json: bool) -> Result<(), Box<dyn Failure>> {
 }
 
 fn command(cli: Cli, json_errors: bool, cache: &Cache) -> Result<(), Box<dyn Failure>> {
-    let read = |path: PathBuf| Scene::read(path).map(|scene| Scene { cache: cache.clone(), ..scene });
+    let read = |input: SceneInput| input.read(cache);
     let signals = Signals::listen(json_errors).map_err(CliError::Signals)?;
     threads::start(cli.threads)?;
-    let mut bar = Bar::new();
+    let mut bar = Bar::new(json_errors);
     match cli.command {
+        Command::New { mesh, output, overwrite } => {
+            output::list(&[new_scene::new_scene(&mesh, output.as_deref(), overwrite)?])
+        }
+        Command::Completions { shell } => {
+            let mut script = Vec::new();
+            clap_complete::generate(shell, &mut Cli::command(), "flexframe", &mut script);
+            Ok(output::written(std::io::stdout().write_all(&script))?)
+        }
         Command::Run { scene: SceneArgs { scene, json }, output, files } => {
             let scene = read(scene)?;
             let settings = settings(&signals, files.overwrite, cache);

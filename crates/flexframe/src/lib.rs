@@ -33,6 +33,7 @@ pub mod html_report;
 mod json;
 pub mod mode_shapes;
 pub mod modes;
+pub mod new_scene;
 pub mod paper;
 pub mod peak_stress;
 pub mod reopened;

@@ -5,6 +5,7 @@ mod cli_error;
 mod out_of_memory;
 mod output;
 mod progress;
+mod scene_input;
 mod signals;
 mod threads;
 

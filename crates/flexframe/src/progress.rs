@@ -1,5 +1,6 @@
-//! A progress bar for work that takes longer than a second.
+//! A progress bar for work that takes longer than a second; without a terminal, a line every ten seconds.
 
+use std::io::{self, IsTerminal, Write};
 use std::time::{Duration, Instant};
 
 use flexframe::advise::AdviseProgress;
@@ -14,16 +15,24 @@ use scene::BuildProgress;
 /// Work shorter than this needs no bar.
 const PATIENCE: Duration = Duration::from_secs(1);
 
-/// Shows how far the work is, on the terminal if there is one.
+/// Without a terminal there is a line so often.
+const LINE_INTERVAL: Duration = Duration::from_secs(10);
+
+/// Shows how far the work is.
 pub struct Bar {
     started: Instant,
     phase: &'static str,
     bar: ProgressBar,
+    /// Where there is no terminal: lines, and the time from the start at which the next one is due.
+    next_line: Option<Duration>,
 }
 
 impl Bar {
-    pub fn new() -> Self {
-        Self { started: Instant::now(), phase: "", bar: ProgressBar::hidden() }
+    /// `silent`: without a terminal, nothing is shown. (Scripts that ask for JSON read errors from the same stream.)
+    pub fn new(silent: bool) -> Self {
+        let lines = !silent && !io::stderr().is_terminal();
+        let next_line = lines.then_some(LINE_INTERVAL);
+        Self { started: Instant::now(), phase: "", bar: ProgressBar::hidden(), next_line }
     }
 
     pub fn build(&mut self, progress: BuildProgress) {
@@ -74,6 +83,16 @@ impl Bar {
     }
 
     fn show(&mut self, phase: &'static str, done: Option<(u64, u64)>) {
+        if let Some(due) = self.next_line {
+            let now = self.started.elapsed();
+            if now >= due {
+                let part = done.map_or_else(String::new, |(done, total)| format!(" {} %,", 100 * done / total.max(1)));
+                // Where it cannot be written, nothing is lost but words.
+                let _ = writeln!(io::stderr(), "{phase},{part} {} s since the start", now.as_secs());
+                self.next_line = Some(now + LINE_INTERVAL);
+            }
+            return;
+        }
         if phase != self.phase {
             self.bar.finish_and_clear();
             self.phase = phase;

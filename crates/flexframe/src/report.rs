@@ -6,11 +6,10 @@ use std::time::Duration;
 use memory::Bytes;
 use nalgebra::Matrix3;
 use scene::{Meshed, Model};
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 /// Times of the phases, seconds, in the order in which they were passed.
-#[derive(Debug, Clone, Default, Serialize)]
-#[serde(transparent)]
+#[derive(Debug, Clone, Default)]
 pub struct Times(Vec<(&'static str, f64)>);
 
 impl Times {
@@ -42,6 +41,13 @@ impl Times {
     pub fn total(&self) -> f64 {
         // The sum of none is -0.
         self.0.iter().fold(0.0, |sum, (_, seconds)| sum + seconds)
+    }
+}
+
+/// An object: the seconds of each phase by its name.
+impl Serialize for Times {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.0.iter().copied())
     }
 }
 

@@ -364,7 +364,7 @@ fn a_run_goes_on_with_the_same_body_or_not_at_all() {
     let pulse = "0,0\n0.001,1\n0.002,0\n0.15,0\n0.2,0.1\n";
     std::fs::write(&table, pulse).unwrap();
     // A run that is killed before its first checkpoint begins anew, with what the files say then.
-    for milliseconds in (0..).step_by(20) {
+    for milliseconds in std::iter::successors(Some(50), |wait| Some(2 * wait)) {
         let mut child = scene.start(scene.run("out"), "out");
         std::thread::sleep(Duration::from_millis(milliseconds));
         child.kill().unwrap();

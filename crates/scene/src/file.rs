@@ -24,20 +24,7 @@ impl Scene {
     /// breaks a rule of the scene file.
     pub fn read(path: impl AsRef<Path>) -> Result<Self, SceneError> {
         let path = path.as_ref();
-        let mut bytes = Vec::new();
-        open_ordinary(path)
-            .and_then(|file| file.take(LONGEST + 1).read_to_end(&mut bytes))
-            .map_err(|cause| unreadable(path, cause))?;
-        refuse_long(bytes.len(), path)?;
-        let text = std::str::from_utf8(&bytes).map_err(|error| {
-            let (good, bad) = bytes.split_at(error.valid_up_to());
-            SceneError::NotUtf8 {
-                path: path.to_owned(),
-                line: 1 + good.iter().filter(|&&byte| byte == b'\n').count(),
-                byte: bad.first().copied().unwrap_or_default(),
-            }
-        })?;
-        Self::parse(text, path)
+        Self::parse(&text_of(path)?, path)
     }
 
     /// Checks the text of a scene file. `path` is where the text comes from: it is named in
@@ -109,6 +96,33 @@ impl Scene {
     ) -> SceneError {
         self.place(key).refuse(found, expected, cure)
     }
+}
+
+/// The text of a scene file, not checked yet.
+///
+/// # Errors
+/// [`SceneError`] if the file cannot be read, is longer than 1 MiB, or is not UTF-8.
+pub fn text_of(path: &Path) -> Result<String, SceneError> {
+    let file = open_ordinary(path).map_err(|cause| unreadable(path, cause))?;
+    text_from(file, path)
+}
+
+/// The text of a scene from elsewhere, such as standard input; `path` is its name in messages.
+///
+/// # Errors
+/// As [`text_of`].
+pub fn text_from(reader: impl Read, path: &Path) -> Result<String, SceneError> {
+    let mut bytes = Vec::new();
+    reader.take(LONGEST + 1).read_to_end(&mut bytes).map_err(|cause| unreadable(path, cause))?;
+    refuse_long(bytes.len(), path)?;
+    String::from_utf8(bytes).map_err(|error| {
+        let (good, bad) = error.as_bytes().split_at(error.utf8_error().valid_up_to());
+        SceneError::NotUtf8 {
+            path: path.to_owned(),
+            line: 1 + good.iter().filter(|&&byte| byte == b'\n').count(),
+            byte: bad.first().copied().unwrap_or_default(),
+        }
+    })
 }
 
 fn refuse_long(bytes: usize, path: &Path) -> Result<(), SceneError> {

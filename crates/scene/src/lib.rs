@@ -24,13 +24,15 @@
 //! `deserialize` lets serde fill structs from that tree;
 //! `section`, `scene`, `modes`, `effects`, `constraint`, `load` and `history` are those structs, and so the list of
 //! all keys;
-//! `check` has the rules on their values.
+//! `check` has the rules on their values;
+//! `assign` sets values in the text of a scene from outside of it.
 //! A new kind of load is a new variant in `load`, of constraint in `section` and `constraint`; its rules are in `check`.
 //! The kinds of histories, the effects and the schemes are those of `frames_rk4`; `check` has the rules on histories.
 
 #![forbid(unsafe_code)]
 #![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable))]
 
+mod assign;
 mod build;
 mod cache;
 mod check;
@@ -54,6 +56,7 @@ mod shorten;
 mod suggest;
 mod unit_vector;
 
+pub use assign::{AssignError, assign};
 pub use build::{
     Assembly, BodyStress, BuildError, BuildProgress, BuildTimes, Meshed, Model, ModelBuilder, StartError, StressPeak,
 };
@@ -62,6 +65,7 @@ pub use constraint::{Constraint, HeldDirections, HingeLine, Region};
 pub use effects::{Choice, Effects};
 pub use error::SceneError;
 pub use fem_tet10::{Material, Materials, PointMass};
+pub use file::{text_from, text_of};
 pub use frames_rk4::{Effect, EffectMap, LoadFrame, Method, Rows, StepControl};
 pub use history::{DrivenSpeed, Formula, History, TablePoints};
 pub use load::{BaseAcceleration, Force, Gravity, Load, Moment, Pressure, Traction};

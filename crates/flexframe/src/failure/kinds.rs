@@ -17,6 +17,7 @@ use crate::cost::CostError;
 use crate::export::ExportError;
 use crate::html_report::HtmlReportError;
 use crate::mode_shapes::ShapesError;
+use crate::new_scene::NewSceneError;
 use crate::paper::PaperError;
 use crate::reopened::ReopenError;
 use crate::run::{RunError, RunFailure};
@@ -424,6 +425,26 @@ impl Failure for PaperError {
             Self::RigidBody(_) | Self::Step(_) => Details::default(),
             Self::MissingPoint { scene, .. } | Self::NotThePlate { scene } => Details::of_file(scene),
             Self::Report { path, .. } => Details::of_file(path),
+        }
+    }
+}
+
+impl Failure for NewSceneError {
+    fn kind(&self) -> Kind {
+        match self {
+            Self::Mesh(error) => error.kind(),
+            Self::Assembly(error) => error.kind(),
+            Self::Exists { .. } => Kind::Usage,
+            Self::Write(error) => error.kind(),
+        }
+    }
+
+    fn details(&self) -> Details {
+        match self {
+            Self::Mesh(error) => error.details(),
+            Self::Assembly(error) => error.details(),
+            Self::Exists { path } => Details::of_file(path),
+            Self::Write(error) => error.details(),
         }
     }
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use scene::{Cache, Scene, SceneError};
+use scene::{AssignError, Cache, Scene, SceneError, assign};
 use serde::Deserialize;
 use toml::{Table, Value};
 
@@ -84,8 +84,6 @@ impl Plan {
         let file: File = toml::from_str(&of_sweep).map_err(form)?;
         let scene_path = path.parent().unwrap_or(Path::new("")).join(&file.scene);
         let scene = Scene::read(&scene_path).map_err(|source| SweepError::Scene { key: None, source })?;
-        // It is a scene: it can be read.
-        let table: Table = toml::from_str(&scene.source).map_err(form)?;
 
         let invalid = |key: &str, found: String, expected: &str| SweepError::Invalid {
             path: path.to_owned(),
@@ -133,12 +131,10 @@ impl Plan {
         let mut rows = Vec::with_capacity(count);
         let mut first_refusal = None;
         for row in 0..count {
-            let mut table = table.clone();
-            for (key, values) in &parameters {
-                set(&mut table, key, values[row].clone())
-                    .map_err(|(found, expected)| invalid(&format!("parameters.\"{key}\""), found, &expected))?;
-            }
-            let text = toml::to_string(&table).unwrap_or_default();
+            let values: Vec<_> = parameters.iter().map(|(key, values)| (key.clone(), values[row].clone())).collect();
+            let text = assign(&scene.source, &values).map_err(|AssignError { key, found, expected }| {
+                invalid(&format!("parameters.\"{key}\""), found, &expected)
+            })?;
             rows.push(match Scene::parse(&text, &scene.path) {
                 Ok(scene) => Ok(Scene { cache: cache.clone(), ..scene }),
                 Err(refusal) => {
@@ -197,63 +193,4 @@ fn grid(lists: &[(String, Vec<Value>)]) -> Option<Vec<(String, Vec<Value>)>> {
         (key.clone(), (0..rows).map(|row| values[row / each % values.len()].clone()).collect())
     };
     Some(lists.iter().map(column).collect())
-}
-
-/// Sets the value with a path of keys such as `loads[0].amplitude`.
-fn set(table: &mut Table, path: &str, value: Value) -> Result<(), (String, String)> {
-    let expected = || "a path of keys of the scene, such as loads[0].amplitude".to_owned();
-    let (first, rest) = path.split_once('.').map_or((path, None), |(first, rest)| (first, Some(rest)));
-    let (key, mut indices) = first.split_once('[').map_or((first, ""), |(key, _)| (key, &first[key.len()..]));
-    if key.is_empty() {
-        return Err((format!("{path:?}"), expected()));
-    }
-    if indices.is_empty() {
-        return match rest {
-            None => {
-                table.insert(key.to_owned(), value);
-                Ok(())
-            }
-            Some(rest) => match table.entry(key).or_insert_with(|| Value::Table(Table::new())) {
-                Value::Table(inner) => set(inner, rest, value),
-                other => Err((format!("`{rest}` in what is {}", kind(other)), "a key of a table".to_owned())),
-            },
-        };
-    }
-    let mut place = table
-        .get_mut(key)
-        .ok_or_else(|| (format!("no list `{key}`"), format!("one that the scene has ({key} = […])")))?;
-    while !indices.is_empty() {
-        let (index, after) = indices
-            .strip_prefix('[')
-            .and_then(|rest| rest.split_once(']'))
-            .ok_or_else(|| (format!("{path:?}"), expected()))?;
-        let index: usize = index.parse().map_err(|_| (format!("{path:?}"), expected()))?;
-        let Value::Array(list) = place else {
-            return Err((format!("`{key}`, which is {}", kind(place)), "a list".to_owned()));
-        };
-        let length = list.len();
-        place = list.get_mut(index).ok_or_else(|| {
-            (format!("entry {index} of `{key}`"), format!("one from 0 to {}", length.saturating_sub(1)))
-        })?;
-        indices = after;
-    }
-    match (rest, place) {
-        (None, place) => {
-            *place = value;
-            Ok(())
-        }
-        (Some(rest), Value::Table(inner)) => set(inner, rest, value),
-        (Some(rest), other) => Err((format!("`{rest}` in what is {}", kind(other)), "a key of a table".to_owned())),
-    }
-}
-
-fn kind(value: &Value) -> &'static str {
-    match value {
-        Value::Table(_) => "a table",
-        Value::Array(_) => "a list",
-        Value::String(_) => "a text",
-        Value::Boolean(_) => "true or false",
-        Value::Integer(_) | Value::Float(_) => "a number",
-        Value::Datetime(_) => "a date",
-    }
 }

@@ -19,7 +19,7 @@ const KEYS: [&str; 9] = [
 fn refused(others: &str, line: &str, words: &[&str]) {
     let (name, value) = line.split_once(" = ").unwrap();
     let new = format!("{others}\n[effects]\n{line} #");
-    crate::refused("[initial]", "[[loads]]", &new, &format!("{value} #"), &format!("effects.{name}"), words);
+    crate::parts::refused("[initial]", "[[loads]]", &new, &format!("{value} #"), &format!("effects.{name}"), words);
 }
 
 #[test]
@@ -28,13 +28,13 @@ fn each_alone() {
     for (written, choice) in [("true", Choice::On), ("false", Choice::Off), ("\"auto\"", Choice::Auto)] {
         for (effect, key) in Effect::ALL.into_iter().zip(KEYS) {
             let new = format!("[effects]\n{key} = {written}\n{GRAVITY}");
-            let effects = crate::with("[initial]", "[[loads]]", &new).effects;
+            let effects = crate::parts::with("[initial]", "[[loads]]", &new).effects;
             let wanted = EffectMap::from_fn(|other| if other == effect { choice } else { Choice::Auto });
             assert_eq!((effects.choices, effects.tolerance), (wanted, 1e-3), "{key}");
         }
     }
-    assert_eq!(crate::with("[initial]", "[[loads]]", "[effects]\ntolerance = 0.01").effects.tolerance, 0.01);
-    assert!(!crate::with("[initial]", "[[loads]]", "[effects]\nrefuse = false").effects.refuse);
+    assert_eq!(crate::parts::with("[initial]", "[[loads]]", "[effects]\ntolerance = 0.01").effects.tolerance, 0.01);
+    assert!(!crate::parts::with("[initial]", "[[loads]]", "[effects]\nrefuse = false").effects.refuse);
 }
 
 #[test]
@@ -46,7 +46,7 @@ fn values_and_keys() {
     refused("", "rotation = \"no\"", &["found the string \"no\", expected true, false or \"auto\""]);
     refused("", "rotation = 1", &["found the number 1, expected true, false or \"auto\"", "`rotation = \"auto\"`"]);
     let new = "[effects]\ncoriolys = true";
-    crate::refused("[initial]", "[[loads]]", new, "coriolys", "effects.coriolys", &["did you mean `coriolis`?"]);
+    crate::parts::refused("[initial]", "[[loads]]", new, "coriolys", "effects.coriolys", &["did you mean `coriolis`?"]);
 }
 
 #[test]
@@ -54,13 +54,20 @@ fn what_there_is_nothing_to() {
     for key in ["damping", "deformed_inertia", "coriolis", "geometric_stiffening", "large_deflection"] {
         let new = format!("[effects]\nflexibility = false\n{key} = true");
         let words = format!("found `{key} = true` with `flexibility = false`, expected `false` or `\"auto\"`");
-        crate::refused("[initial]", "[[loads]]", &new, "true\n\n[[loads", &format!("effects.{key}"), &[&words]);
+        crate::parts::refused("[initial]", "[[loads]]", &new, "true\n\n[[loads", &format!("effects.{key}"), &[&words]);
     }
     for key in ["flexibility", "damping", "deformed_inertia", "coriolis", "geometric_stiffening"] {
         let new = format!("[modes]\nflexible = 0\n[effects]\n{key} = true");
         let words = format!("found `{key} = true` with no flexible modes");
         let key = format!("effects.{key}");
-        crate::refused("[modes]", "[[loads]]", &new, "true\n\n[[loads", &key, &[&words, "or keep flexible modes"]);
+        crate::parts::refused(
+            "[modes]",
+            "[[loads]]",
+            &new,
+            "true\n\n[[loads",
+            &key,
+            &[&words, "or keep flexible modes"],
+        );
     }
     refused("", "gravity = true", &["with no load `kind = \"gravity\"`", "or add it to [[loads]]"]);
     let held = |kind: &str| format!("[[constraints]]\n{kind}\n");
@@ -78,7 +85,7 @@ fn what_there_is_nothing_to() {
         refused(constraint, &format!("{key} = true"), &["with a constraint that leaves none"]);
     }
     for (constraint, key) in [(&pin, "rotation"), (&hinge, "rotation"), (&slider, "translation")] {
-        crate::with("[initial]", "[[loads]]", &format!("{constraint}\n[effects]\n{key} = true"));
+        crate::parts::with("[initial]", "[[loads]]", &format!("{constraint}\n[effects]\n{key} = true"));
     }
 }
 

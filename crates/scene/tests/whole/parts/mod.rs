@@ -1,7 +1,6 @@
 //! What each part of the scene file says is what the scene holds, or is refused.
 
-#[path = "../common/mod.rs"]
-mod common;
+use crate::common;
 mod constraints;
 mod effects;
 mod histories;
@@ -26,5 +25,5 @@ fn with(from: &str, to: &str, new: &str) -> Scene {
 /// with `words`.
 #[track_caller]
 fn refused(from: &str, to: &str, new: &str, mark: &str, key: &str, words: &[&str]) {
-    common::refused(section(from, to), &format!("{new}\n\n"), mark, key, words);
+    crate::common::refused(section(from, to), &format!("{new}\n\n"), mark, key, words);
 }

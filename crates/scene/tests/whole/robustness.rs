@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use scene::Scene;
 
-const EXAMPLE: &str = include_str!("../src/example.toml");
+const EXAMPLE: &str = include_str!("../../src/example.toml");
 
 /// What a text has cost, and what came of it.
 struct Read {

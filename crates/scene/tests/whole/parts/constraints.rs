@@ -8,12 +8,12 @@ const FROM: &str = "[initial]";
 const TO: &str = "[[loads]]";
 
 fn held(lines: &str) -> Constraint {
-    crate::with(FROM, TO, &format!("[[constraints]]\n{lines}")).constraint.unwrap()
+    crate::parts::with(FROM, TO, &format!("[[constraints]]\n{lines}")).constraint.unwrap()
 }
 
 #[track_caller]
 fn refused(lines: &str, mark: &str, key: &str, words: &[&str]) {
-    crate::refused(FROM, TO, &format!("[[constraints]]\n{lines}"), mark, &format!("constraints[0]{key}"), words);
+    crate::parts::refused(FROM, TO, &format!("[[constraints]]\n{lines}"), mark, &format!("constraints[0]{key}"), words);
 }
 
 #[test]
@@ -154,7 +154,7 @@ fn supports_hold_directions_of_regions() {
     refused(nowhere, "[[constraints", "", &["found none of `radius`, `box` and `group`"]);
     let mixed = format!("[[constraints]]\n{one}\n[[constraints]]\nkind = \"clamp\"\ngroup = \"a\"");
     let words = ["found another constraint beside one of the kind `support`"];
-    crate::refused(FROM, TO, &mixed, "\"clamp\"", "constraints[1].kind", &words);
+    crate::parts::refused(FROM, TO, &mixed, "\"clamp\"", "constraints[1].kind", &words);
 }
 
 #[test]
@@ -168,10 +168,10 @@ fn kinds_and_numbers_of_constraints() {
     refused("at = [0, 0, 0]", "[[constraints", ".kind", &["`kind` is missing", "kind = \"hinge\""]);
     let two = "[[constraints]]\nkind = \"pin\"\nat = [0, 0, 0]\n[[constraints]]\nkind = \"pin\"\nat = [1, 0, 0]";
     let words = ["found 2 constraints, expected at most one, unless all are of the kind `support`", "keep one"];
-    crate::refused(FROM, TO, two, "[[constraints]]\nkind = \"pin\"\nat = [1", "constraints[1]", &words);
+    crate::parts::refused(FROM, TO, two, "[[constraints]]\nkind = \"pin\"\nat = [1", "constraints[1]", &words);
     let table = "[constraints]\nkind = \"pin\"\nat = [0, 0, 0]";
     let words = ["found a table, expected a list", "write it like this:\n     [[constraints]]\n     kind = \"hinge\""];
-    crate::refused(FROM, TO, table, "[constraints]", "constraints", &words);
+    crate::parts::refused(FROM, TO, table, "[constraints]", "constraints", &words);
 }
 
 #[test]
@@ -188,7 +188,7 @@ fn the_initial_motion_that_a_constraint_leaves() {
         (&driven, "modal_velocity = [1]"),
         (clamp, "modal_displacement = [1]"),
     ] {
-        crate::with(FROM, TO, &format!("{constraint}[initial]\n{lines}"));
+        crate::parts::with(FROM, TO, &format!("{constraint}[initial]\n{lines}"));
     }
     for (constraint, name, value, words) in [
         (pin, "velocity", "[9, 0, 0]", "found [9, 0, 0], expected 0 with this constraint"),
@@ -201,7 +201,7 @@ fn the_initial_motion_that_a_constraint_leaves() {
         (clamp, "angular_velocity", "[9, 0, 0]", "a clamped body stays"),
     ] {
         let new = format!("{constraint}[initial]\n{name} = {value}");
-        crate::refused(FROM, TO, &new, value, &format!("initial.{name}"), &[words]);
+        crate::parts::refused(FROM, TO, &new, value, &format!("initial.{name}"), &[words]);
     }
 }
 
@@ -210,8 +210,8 @@ fn a_rigid_body_is_held_without_nodes() {
     let rigid =
         "[body]\nrigid = { mass = 1, center_of_mass = [0, 0, 0], inertia = [[1, 0, 0], [0, 1, 0], [0, 0, 1]] }\n";
     let text = |lines: &str| {
-        let text = EXAMPLE.replace(crate::section("[body]", "[frame]"), rigid);
-        text.replace(crate::section(FROM, TO), &format!("[[constraints]]\n{lines}\n"))
+        let text = EXAMPLE.replace(crate::parts::section("[body]", "[frame]"), rigid);
+        text.replace(crate::parts::section(FROM, TO), &format!("[[constraints]]\n{lines}\n"))
     };
     let motion = "motion = { amplitude = 1, history = \"constant\" }";
     for lines in [

@@ -2,7 +2,6 @@
 
 use scene::{Body, Flexible, RigidBody, Scene};
 
-use crate::common;
 use crate::common::EXAMPLE;
 
 const MESH: &str = "mesh = \"../meshes/plate.msh\"";
@@ -13,7 +12,7 @@ const TOP: &str = "mass = 20, center_of_mass = [0, 0, 1], inertia = [[21, 0, 0],
 
 /// The example with a rigid body of these keys.
 fn text(keys: &str) -> String {
-    EXAMPLE.replace(crate::section("[body]", "[frame]"), &format!("[body]\nrigid = {{ {keys} }}\n\n"))
+    EXAMPLE.replace(crate::parts::section("[body]", "[frame]"), &format!("[body]\nrigid = {{ {keys} }}\n\n"))
 }
 
 fn rigid(keys: &str) -> RigidBody {
@@ -121,5 +120,5 @@ fn mesh_or_rigid() {
         let words = format!("`body.{key}`: found both `rigid` and `{key}`, expected mass properties, or a mesh");
         assert!(message.contains(&words), "{message}");
     }
-    common::refused(MESH, "#", "[body]", "body.mesh", &["`mesh` is missing"]);
+    crate::common::refused(MESH, "#", "[body]", "body.mesh", &["`mesh` is missing"]);
 }

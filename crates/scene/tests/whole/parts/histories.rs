@@ -5,7 +5,11 @@ use scene::{Formula, History, Load, TablePoints};
 const HALF_SINE: &str = "history = { kind = \"half-sine\", start = 0.0, duration = 0.02 }";
 
 fn history(written: &str) -> History {
-    let scene = crate::with("[[loads]]", "[time]", &crate::section("[[loads]]", "[time]").replace(HALF_SINE, written));
+    let scene = crate::parts::with(
+        "[[loads]]",
+        "[time]",
+        &crate::parts::section("[[loads]]", "[time]").replace(HALF_SINE, written),
+    );
     match &scene.loads[..] {
         [Load::Force(force)] => force.history.clone(),
         loads => panic!("{loads:?}"),

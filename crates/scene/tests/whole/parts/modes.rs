@@ -8,12 +8,12 @@ const FROM: &str = "[modes]";
 const TO: &str = "[frame]";
 
 fn modes(lines: &str) -> Modes {
-    crate::with(FROM, TO, &format!("[modes]\n{lines}")).modes
+    crate::parts::with(FROM, TO, &format!("[modes]\n{lines}")).modes
 }
 
 #[track_caller]
 fn refused(lines: &str, mark: &str, key: &str, words: &[&str]) {
-    crate::refused(FROM, TO, &format!("[modes]\n{lines}"), mark, key, words);
+    crate::parts::refused(FROM, TO, &format!("[modes]\n{lines}"), mark, key, words);
 }
 
 #[test]

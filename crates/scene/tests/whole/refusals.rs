@@ -1,8 +1,6 @@
 //! Every refusal names file, line, column and key, says what was found and expected, and the cure.
 
-mod common;
-
-use common::{EXAMPLE, refusal, refused};
+use crate::common::{EXAMPLE, refusal, refused};
 use scene::{Scene, SceneError};
 
 #[test]

@@ -9,13 +9,13 @@ const TO: &str = "[time]";
 
 fn load(lines: &str) -> Load {
     let pin = "[[constraints]]\nkind = \"pin\"\nat = [0, 0, 0]\n\n";
-    let [load] = crate::with(FROM, TO, &format!("{pin}[[loads]]\n{lines}")).loads.try_into().unwrap();
+    let [load] = crate::parts::with(FROM, TO, &format!("{pin}[[loads]]\n{lines}")).loads.try_into().unwrap();
     load
 }
 
 #[track_caller]
 fn refused(lines: &str, mark: &str, key: &str, words: &[&str]) {
-    crate::refused(FROM, TO, &format!("[[loads]]\n{lines}"), mark, &format!("loads[0].{key}"), words);
+    crate::parts::refused(FROM, TO, &format!("[[loads]]\n{lines}"), mark, &format!("loads[0].{key}"), words);
 }
 
 #[test]
@@ -107,13 +107,13 @@ fn what_is_no_load() {
 fn surfaces_need_a_mesh() {
     let rigid =
         "[body]\nrigid = { mass = 1, center_of_mass = [0, 0, 0], inertia = [[1, 0, 0], [0, 1, 0], [0, 0, 1]] }\n";
-    let free = EXAMPLE.replace(crate::section("[body]", "[frame]"), rigid);
+    let free = EXAMPLE.replace(crate::parts::section("[body]", "[frame]"), rigid);
     for (lines, key) in [
         ("kind = \"pressure\"\ngroup = \"a\"\namplitude = 1", "group"),
         ("kind = \"traction\"\ngroup = \"a\"\ndirection = [0, 0, 1]\namplitude = 1", "group"),
         ("kind = \"moment\"\nat = [0, 0, 0]\ndirection = [0, 0, 1]\namplitude = 1\nradius = 2", "radius"),
     ] {
-        let text = free.replace(crate::section(FROM, TO), &format!("[[loads]]\n{lines}\n\n"));
+        let text = free.replace(crate::parts::section(FROM, TO), &format!("[[loads]]\n{lines}\n\n"));
         let message = Scene::parse(&text, "a.toml").unwrap_err().to_string();
         let words = format!("`loads[0].{key}`: found a part of a mesh, expected none, since `rigid` in [body]");
         assert!(message.contains(&words), "{message}");

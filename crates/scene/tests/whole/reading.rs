@@ -7,7 +7,7 @@ use scene::{
     Method, Rows, Scene, SceneError, StepControl,
 };
 
-const EXAMPLE: &str = include_str!("../src/example.toml");
+const EXAMPLE: &str = include_str!("../../src/example.toml");
 
 #[test]
 fn the_whole_example() {

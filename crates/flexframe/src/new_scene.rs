@@ -1,0 +1,213 @@
+//! `flexframe new`: a first scene of a mesh, with comments, to be changed by its user.
+
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+use fem_tet10::{AssemblyError, Material, Materials, Mesh, MeshError, centroid_lumped_inertia, read_msh};
+use whole_file::WholeFile;
+
+use crate::write_error::WriteError;
+
+/// A scene that could not be made of a mesh.
+#[derive(Debug, thiserror::Error)]
+pub enum NewSceneError {
+    /// The mesh cannot be read.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+    /// The mesh has no mass properties.
+    #[error(transparent)]
+    Assembly(#[from] AssemblyError),
+    /// A file with the name of the scene is there.
+    #[error("{}: a file of this name is there; choose another one with -o, or replace it with --overwrite", path.display())]
+    Exists {
+        /// The file.
+        path: PathBuf,
+    },
+    /// The scene cannot be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+}
+
+/// Consistent units, and steel in them.
+struct System {
+    length: &'static str,
+    mass: &'static str,
+    force: &'static str,
+    stress: &'static str,
+    steel: Material,
+    /// Standard gravity.
+    gravity: f64,
+    /// Why these.
+    because: &'static str,
+}
+
+/// A mesh has no units. A body of more than this is taken to be in millimetres, a smaller one in metres.
+const LONGEST_IN_METRES: f64 = 8.0;
+
+const METRES: System = System {
+    length: "m",
+    mass: "kg",
+    force: "N",
+    stress: "Pa",
+    steel: Material { young_modulus: 210e9, poisson_ratio: 0.3, density: 7850.0 },
+    gravity: 9.81,
+    because: "A mesh has no units; its size looks like metres.",
+};
+
+const MILLIMETRES: System = System {
+    length: "mm",
+    mass: "Mg",
+    force: "N",
+    stress: "MPa",
+    steel: Material { young_modulus: 210e3, poisson_ratio: 0.3, density: 7.85e-9 },
+    gravity: 9810.0,
+    because: "A mesh has no units; its size looks like millimetres.",
+};
+
+/// Reads a mesh and writes a scene of it, which can be run as it is: a body of steel, free in space, that spins and gets a
+/// push. Groups, size and mass are read off the mesh. Returns the path of the scene: `scene`, or that of the mesh with
+/// `.toml`.
+///
+/// # Errors
+/// [`NewSceneError`].
+pub fn new_scene(mesh: &Path, scene: Option<&Path>, overwrite: bool) -> Result<PathBuf, NewSceneError> {
+    let path = scene.map_or_else(|| mesh.with_extension("toml"), Path::to_owned);
+    if path.exists() && !overwrite {
+        return Err(NewSceneError::Exists { path });
+    }
+    let text = text(&read_msh(mesh)?, &from_folder_of(&path, mesh))?;
+    let written = WholeFile::create(&path)
+        .and_then(|mut file| std::io::Write::write_all(&mut file, text.as_bytes()).and_then(|()| file.finish()));
+    written.map_err(WriteError::of(&path))?;
+    Ok(path)
+}
+
+/// How the scene names the mesh: relative to its folder where the mesh is in it, from the root otherwise.
+fn from_folder_of(scene: &Path, mesh: &Path) -> PathBuf {
+    let absolute = |path: &Path| {
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        folder.canonicalize().ok().zip(path.file_name()).map(|(folder, name)| folder.join(name))
+    };
+    let (Some(mesh_at), Some(scene_at)) = (absolute(mesh), absolute(scene)) else { return mesh.to_owned() };
+    match scene_at.parent().and_then(|folder| mesh_at.strip_prefix(folder).ok()) {
+        Some(relative) => relative.to_owned(),
+        None => mesh_at,
+    }
+}
+
+fn text(mesh: &Mesh, mesh_path: &Path) -> Result<String, AssemblyError> {
+    let [low, high] = corners(mesh);
+    let size: [f64; 3] = std::array::from_fn(|i| high[i] - low[i]);
+    let longest = (0..3).max_by(|&i, &j| size[i].total_cmp(&size[j])).unwrap_or(0);
+    let thinnest = (0..3).min_by(|&i, &j| size[i].total_cmp(&size[j])).unwrap_or(2);
+    let system = if size[longest] > LONGEST_IN_METRES { MILLIMETRES } else { METRES };
+    let System { length, mass: mass_unit, force, stress, steel, gravity, because } = system;
+    let mass = centroid_lumped_inertia(mesh, &Materials::Uniform(steel), &[])?.mass;
+    let end = mesh.positions().iter().max_by(|a, b| a[longest].total_cmp(&b[longest])).copied().unwrap_or_default();
+    let mut push = [0.0; 3];
+    push[thinnest] = 1.0;
+    let mut spin = [0.0; 3];
+    spin[thinnest] = 1.0;
+    let title = mesh_path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let parts = mesh.parts();
+    let groups: Vec<String> = mesh.groups().iter().map(|name| quoted(name)).collect();
+    let faces: Vec<String> = parts.surfaces.iter().map(|surface| quoted(&surface.name)).collect();
+    let Material { young_modulus, poisson_ratio, density } = steel;
+
+    let mut text = String::new();
+    // Writing to a string does not fail.
+    let _ = write!(
+        text,
+        r#"# A first scene of a mesh of {nodes} nodes and {elements} elements. It runs as it is:
+#     flexframe run THIS_FILE
+# Every key is described in docs/scene.md; `flexframe advise` says which effects the scene calls for.
+title = {title}
+# {because} Nothing is converted: these are labels, and all numbers
+# of the scene are in these units (forces in {force}, stresses in {stress}).
+units = {{ length = "{length}", mass = "{mass_unit}", time = "s" }}
+
+# {dx} x {dy} x {dz} {length}. Its mass, of this material, is {mass} {mass_unit}.
+[body]
+mesh = {mesh_path}
+# Steel.
+material = {{ young_modulus = {young_modulus:?}, poisson_ratio = {poisson_ratio:?}, density = {density:?} }}
+"#,
+        nodes = mesh.positions().len(),
+        elements = mesh.elements().len(),
+        title = quoted(&title),
+        dx = short(size[0]),
+        dy = short(size[1]),
+        dz = short(size[2]),
+        mass = short(mass),
+        mesh_path = quoted(&mesh_path.to_string_lossy()),
+    );
+    if !groups.is_empty() {
+        let each: Vec<String> = groups.iter().map(|group| format!("{group} = {{ … }}")).collect();
+        let _ = writeln!(text, "# Or a material for each group of the mesh: materials = {{ {} }}", each.join(", "));
+    }
+    let _ = write!(
+        text,
+        r"
+[modes]
+flexible = 10
+damping_ratio = 0.01
+"
+    );
+    let region = match faces.first() {
+        Some(face) => format!("group = {face}"),
+        None => format!("at = {end:?}\n# radius = {}", short(0.05 * size[longest])),
+    };
+    let _ = writeln!(text, "\n# What holds the body; without it the body is free.");
+    if !faces.is_empty() {
+        let _ = writeln!(text, "# Surfaces of the mesh: {}.", faces.join(", "));
+    }
+    let _ = write!(
+        text,
+        r#"# [[constraints]]
+# kind = "clamp"
+# {region}
+
+# It spins, one turn a second.
+[initial]
+angular_velocity = {spin:?}
+
+# A push at one end: half the weight of the body, for a hundredth of a second.
+[[loads]]
+kind = "force"
+at = {end:?}
+direction = {push:?}
+amplitude = {amplitude}
+history = {{ kind = "half-sine", duration = 0.01 }}
+
+[time]
+end = 1.0
+tolerance = 1e-4
+
+# The motion of these points is written out.
+[output.points]
+end = {end:?}
+"#,
+        amplitude = short(0.5 * mass * gravity),
+        spin = spin.map(|axis| 6.28 * axis),
+    );
+    Ok(text)
+}
+
+/// The corners of the box around the mesh.
+fn corners(mesh: &Mesh) -> [[f64; 3]; 2] {
+    let each = |bound: fn(f64, f64) -> f64, start: f64| {
+        mesh.positions().iter().fold([start; 3], |corner, x| std::array::from_fn(|i| bound(corner[i], x[i])))
+    };
+    [each(f64::min, f64::INFINITY), each(f64::max, f64::NEG_INFINITY)]
+}
+
+/// A text as TOML has it.
+fn quoted(text: &str) -> String {
+    toml::Value::from(text).to_string()
+}
+
+/// A number with three digits, as TOML has it.
+fn short(value: f64) -> String {
+    let rounded: f64 = format!("{value:.2e}").parse().unwrap_or(value);
+    format!("{rounded:?}")
+}

@@ -1,0 +1,55 @@
+//! The scene of a command: a file or standard input, with values set on the command line.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use flexframe::failure::Failure;
+use scene::{AssignError, Cache, Scene, assign, text_from, text_of};
+use toml::Value;
+
+use crate::cli_error::CliError;
+
+/// What stands for standard input.
+const STANDARD_INPUT: &str = "-";
+/// Its name in messages and in names of output; paths in its scene are relative to the folder that the user is in.
+const NAME: &str = "stdin";
+
+#[derive(Debug, Args)]
+pub struct SceneInput {
+    /// The scene file, or - for standard input (paths in it are relative to the current folder then).
+    #[arg(value_name = "SCENE")]
+    scene: PathBuf,
+    /// Set a key of the scene, such as time.end=0.5 or loads[0].amplitude=20; may be given many times.
+    ///
+    /// The value is written as in the scene file; what is not TOML is taken as text, so that quotes may be left out.
+    #[arg(long, value_name = "KEY=VALUE", value_parser = assignment)]
+    set: Vec<(String, Value)>,
+}
+
+impl SceneInput {
+    /// Reads the scene, sets the values, and checks it.
+    pub fn read(self, cache: &Cache) -> Result<Scene, Box<dyn Failure>> {
+        let (text, path) = if self.scene == Path::new(STANDARD_INPUT) {
+            let path = PathBuf::from(NAME);
+            (text_from(std::io::stdin().lock(), &path)?, path)
+        } else {
+            (text_of(&self.scene)?, self.scene)
+        };
+        let text = assign(&text, &self.set).map_err(|AssignError { key, found, expected }| CliError::Option {
+            option: "--set",
+            found: format!("`{key}`, {found}"),
+            expected,
+            cure: "name the key as messages about the scene do; docs/scene.md lists them".to_owned(),
+        })?;
+        Ok(Scene { cache: cache.clone(), ..Scene::parse(&text, path)? })
+    }
+}
+
+/// A key and its value.
+fn assignment(text: &str) -> Result<(String, Value), String> {
+    let (key, value) = text.split_once('=').ok_or("expected KEY=VALUE, such as time.end=0.5")?;
+    let (key, value) = (key.trim(), value.trim());
+    let table: Option<toml::Table> = toml::from_str(&format!("value = {value}")).ok();
+    let parsed = table.filter(|table| table.len() == 1).and_then(|mut table| table.remove("value"));
+    Ok((key.to_owned(), parsed.unwrap_or_else(|| Value::String(value.to_owned()))))
+}

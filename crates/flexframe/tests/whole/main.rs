@@ -1,0 +1,19 @@
+//! The program and its library as users meet them. One program, so that it is linked once and no core waits for the last
+//! test of each file.
+
+mod advise;
+mod body;
+mod campbell;
+mod command_line;
+mod cost;
+mod export;
+mod failures;
+mod html_report;
+mod library;
+mod new_scene;
+mod reactions;
+mod scene_input;
+mod spin_up;
+mod sweep;
+mod threads;
+mod warnings;
