@@ -191,18 +191,18 @@ impl Mesh {
         self.elements[element].map(|node| self.positions[node as usize])
     }
 
+    /// Extent along the three axes: the edges of the box around the mesh.
+    pub fn size(&self) -> [f64; 3] {
+        std::array::from_fn(|axis| {
+            let extend = |(l, h): (f64, f64), x: &[f64; 3]| (l.min(x[axis]), h.max(x[axis]));
+            let (low, high) = self.positions.iter().fold((f64::INFINITY, f64::NEG_INFINITY), extend);
+            high - low
+        })
+    }
+
     /// Length of the diagonal of the box around the mesh.
     pub fn diagonal(&self) -> f64 {
-        (0..3)
-            .map(|axis| {
-                let (low, high) = self
-                    .positions
-                    .iter()
-                    .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x[axis]), h.max(x[axis])));
-                (high - low).powi(2)
-            })
-            .sum::<f64>()
-            .sqrt()
+        self.size().iter().map(|edge| edge * edge).sum::<f64>().sqrt()
     }
 
     /// The Jacobians are looked at later: two elements with the same corners fill the same space.

@@ -34,6 +34,11 @@ impl Serialize for Number {
     }
 }
 
+/// Values by their names.
+pub(crate) fn object<S: Serializer>(pairs: &[(&'static str, bool)], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(pairs.iter().copied())
+}
+
 /// A path; what is not UTF-8 in it is replaced by U+FFFD.
 pub(crate) fn path<S: Serializer>(path: &Path, serializer: S) -> Result<S::Ok, S::Error> {
     serializer.collect_str(&path.display())

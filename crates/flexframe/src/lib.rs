@@ -36,6 +36,7 @@ pub mod modes;
 pub mod new_scene;
 pub mod paper;
 pub mod peak_stress;
+mod plausible;
 pub mod reopened;
 pub mod report;
 pub mod row;

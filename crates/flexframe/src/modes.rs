@@ -7,19 +7,24 @@ use frames_rk4::Effect;
 use scene::{Body, BuildError, BuildProgress, Choice, Flexible, Meshed, Model, Scene, SceneError};
 use serde::Serialize;
 
-use crate::report::{BodyReport, MeshReport, Times, quantity};
+use crate::plausible;
+use crate::report::{BodyReport, MeshReport, Times, quantity, size_in_words};
 
 /// What `flexframe modes` says.
 #[derive(Debug, Clone, Serialize)]
 pub struct ModesReport {
     /// Title of the scene.
     pub title: String,
+    /// Labels of length, mass and time.
+    pub units: [String; 3],
     /// Unit of frequencies, such as "1/s".
     pub frequency_unit: String,
     /// The finite-element model.
     pub mesh: Option<MeshReport>,
     /// Mass properties and modes.
     pub body: BodyReport,
+    /// Values that no material has.
+    pub warnings: Vec<String>,
     /// Where the time went, seconds.
     pub times: Times,
 }
@@ -28,7 +33,9 @@ impl ModesReport {
     fn new(scene: &Scene, model: &Model) -> Self {
         Self {
             title: scene.title.clone(),
+            units: [scene.units.length.clone(), scene.units.mass.clone(), scene.units.time.clone()],
             frequency_unit: frequency_unit(&scene.units.time),
+            warnings: plausible::doubts(scene, model),
             mesh: MeshReport::new(model),
             body: BodyReport::new(model),
             times: Times::of_model(model),
@@ -96,7 +103,9 @@ impl fmt::Display for ModesReport {
         if let Some(mesh) = &self.mesh {
             writeln!(f, "  mesh   {mesh}")?;
         }
-        writeln!(f, "  mass   {}", quantity(self.body.mass))?;
+        let [length, mass, _] = &self.units;
+        let size = self.mesh.as_ref().map_or_else(String::new, |mesh| size_in_words(mesh.size, length));
+        writeln!(f, "  body   {size}{} {mass}", quantity(self.body.mass))?;
         writeln!(f, "\n  mode  frequency, {:<6}  damping  residual", self.frequency_unit)?;
         let body = &self.body;
         for (k, (frequency, damping)) in body.natural_frequencies.iter().zip(&body.damping_ratios).enumerate() {
@@ -104,6 +113,7 @@ impl fmt::Display for ModesReport {
             let residual = body.residuals.get(k).map_or_else(|| kind.to_owned(), |r| format!("{r:.0e}"));
             writeln!(f, "  {:>4}  {frequency:>17.6}  {damping:>7.4}  {residual}", k + 1)?;
         }
-        write!(f, "\n  time   {}", self.times)
+        write!(f, "\n  time   {}", self.times)?;
+        self.warnings.iter().try_for_each(|warning| write!(f, "\n  warning  {warning}"))
     }
 }

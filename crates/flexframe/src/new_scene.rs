@@ -96,8 +96,7 @@ fn from_folder_of(scene: &Path, mesh: &Path) -> PathBuf {
 }
 
 fn text(mesh: &Mesh, mesh_path: &Path) -> Result<String, AssemblyError> {
-    let [low, high] = corners(mesh);
-    let size: [f64; 3] = std::array::from_fn(|i| high[i] - low[i]);
+    let size = mesh.size();
     let longest = (0..3).max_by(|&i, &j| size[i].total_cmp(&size[j])).unwrap_or(0);
     let thinnest = (0..3).min_by(|&i, &j| size[i].total_cmp(&size[j])).unwrap_or(2);
     let system = if size[longest] > LONGEST_IN_METRES { MILLIMETRES } else { METRES };
@@ -191,14 +190,6 @@ end = {end:?}
         spin = spin.map(|axis| 6.28 * axis),
     );
     Ok(text)
-}
-
-/// The corners of the box around the mesh.
-fn corners(mesh: &Mesh) -> [[f64; 3]; 2] {
-    let each = |bound: fn(f64, f64) -> f64, start: f64| {
-        mesh.positions().iter().fold([start; 3], |corner, x| std::array::from_fn(|i| bound(corner[i], x[i])))
-    };
-    [each(f64::min, f64::INFINITY), each(f64::max, f64::NEG_INFINITY)]
 }
 
 /// A text as TOML has it.

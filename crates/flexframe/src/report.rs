@@ -86,6 +86,8 @@ pub struct MeshReport {
     pub elements: usize,
     /// Degrees of freedom.
     pub unknowns: usize,
+    /// Extent along the axes of the mesh.
+    pub size: [f64; 3],
     /// Bytes of the mass and stiffness matrices.
     pub matrix_bytes: usize,
     /// Entries of the factor of K + sM.
@@ -126,11 +128,18 @@ impl MeshReport {
             nodes: mesh.positions().len(),
             elements: mesh.elements().len(),
             unknowns: 3 * mesh.positions().len(),
+            size: mesh.size(),
             matrix_bytes: *matrix_bytes,
             factor_entries: modes.stats.factor_entries,
             peak_bytes: with_kept(modes.stats.peak_bytes),
         })
     }
+}
+
+/// A size such as "1000 x 50 x 10 mm, ".
+pub(crate) fn size_in_words(size: [f64; 3], length: &str) -> String {
+    let [x, y, z] = size.map(quantity);
+    format!("{x} x {y} x {z} {length}, ")
 }
 
 /// With what the allocator of the C library keeps of blocks that were given back: those below 32 MiB. Measured on bodies

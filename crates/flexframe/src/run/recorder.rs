@@ -17,6 +17,7 @@ use super::settings::{RunProgress, RunSettings};
 use crate::columns::COLUMNS;
 use crate::effects;
 use crate::peak_stress::Largest;
+use crate::plausible;
 use crate::report::{BodyReport, MeshReport, Times};
 use crate::row::Row;
 
@@ -202,7 +203,8 @@ impl<'a> Recorder<'a> {
             effects: effects::computed(scene, model),
             large_modes: model.large_modes().iter().map(|k| k + 1).collect(),
             left_out: self.review.left_out(),
-            warnings: (self.review.broken().iter().map(ToString::to_string))
+            warnings: (plausible::doubts(scene, model).into_iter())
+                .chain(self.review.broken().iter().map(ToString::to_string))
                 .chain(wrong.map(|step| long_steps(step, scene.effects.tolerance)))
                 .chain(open)
                 .collect(),

@@ -10,7 +10,7 @@ use crate::effects;
 use crate::json;
 use crate::modes::frequency_unit;
 use crate::peak_stress::PeakStress;
-use crate::report::{BodyReport, MeshReport, Times, quantity};
+use crate::report::{BodyReport, MeshReport, Times, quantity, size_in_words};
 
 /// What `flexframe run` says at its end.
 #[derive(Debug, Clone, Serialize)]
@@ -64,6 +64,7 @@ pub struct RunReport {
     /// exactly, but the work on them and their dissipation are summed by the stages.
     pub right_unsummed: bool,
     /// The effects of this body and whether each was computed; none of the paper's formulation, which has its own.
+    #[serde(serialize_with = "json::object")]
     pub effects: Vec<(&'static str, bool)>,
     /// The modes that bent the body far; none without large deflection. Numbered from 1.
     pub large_modes: Vec<usize>,
@@ -104,7 +105,12 @@ impl fmt::Display for RunReport {
         if let Some(mesh) = &self.mesh {
             writeln!(f, "  mesh     {mesh}")?;
         }
-        write!(f, "  body     {} {mass}, ", quantity(self.body.mass))?;
+        write!(
+            f,
+            "  body     {}{} {mass}, ",
+            self.mesh.as_ref().map_or_else(String::new, |mesh| size_in_words(mesh.size, length)),
+            quantity(self.body.mass)
+        )?;
         writeln!(f, "{}", self.body.modes_in_words(&frequency_unit(time)))?;
         if !self.effects.is_empty() {
             writeln!(f, "  effects  {}", effects::in_words(&self.effects))?;
