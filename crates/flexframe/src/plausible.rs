@@ -118,7 +118,7 @@ mod tests {
             assert!(doubts[0].contains(words), "{}", doubts[0]);
         }
         assert!(
-            doubts[1].contains("7.85e3 Mg/mm³, is 7.9e15 kg/m³") && doubts[1].contains("steel: 7.8500e-9"),
+            doubts[1].contains("7.85e3 Mg/mm³, is 7.8e15 kg/m³") && doubts[1].contains("steel: 7.8500e-9"),
             "{}",
             doubts[1]
         );
