@@ -3,7 +3,8 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use fem_tet10::{AssemblyError, Material, Materials, Mesh, MeshError, centroid_lumped_inertia, read_msh};
+use fem_tet10::{AssemblyError, Material, Materials, Mesh, centroid_lumped_inertia};
+use mesh_import::{ImportError, ImportSettings, read_mesh};
 use whole_file::WholeFile;
 
 use crate::write_error::WriteError;
@@ -13,7 +14,7 @@ use crate::write_error::WriteError;
 pub enum NewSceneError {
     /// The mesh cannot be read.
     #[error(transparent)]
-    Mesh(#[from] MeshError),
+    Mesh(#[from] ImportError),
     /// The mesh has no mass properties.
     #[error(transparent)]
     Assembly(#[from] AssemblyError),
@@ -75,7 +76,7 @@ pub fn new_scene(mesh: &Path, scene: Option<&Path>, overwrite: bool) -> Result<P
     if path.exists() && !overwrite {
         return Err(NewSceneError::Exists { path });
     }
-    let text = text(&read_msh(mesh)?, &from_folder_of(&path, mesh))?;
+    let text = text(&read_mesh(mesh, &ImportSettings::default())?.mesh, &from_folder_of(&path, mesh))?;
     let written = WholeFile::create(&path)
         .and_then(|mut file| std::io::Write::write_all(&mut file, text.as_bytes()).and_then(|()| file.finish()));
     written.map_err(WriteError::of(&path))?;

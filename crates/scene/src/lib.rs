@@ -69,6 +69,7 @@ pub use file::{text_from, text_of};
 pub use frames_rk4::{Effect, EffectMap, LoadFrame, Method, Rows, StepControl};
 pub use history::{DrivenSpeed, Formula, History, TablePoints};
 pub use load::{BaseAcceleration, Force, Gravity, Load, Moment, Pressure, Traction};
+pub use mesh_import::ImportSettings;
 pub use modes::{Damping, Flexible, Large, Modes, Rayleigh};
 pub use place::Place;
 pub use scene::{Body, Frame, Initial, MeshedBody, Output, RigidBody, Scene, Time, Units};

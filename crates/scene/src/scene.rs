@@ -9,6 +9,7 @@ use std::path::PathBuf;
 
 use fem_tet10::{Materials, PointMass};
 use frames_rk4::{Method, Rows, StepControl};
+use mesh_import::ImportSettings;
 use serde::Deserialize;
 
 use crate::cache::Cache;
@@ -76,6 +77,8 @@ pub enum Body {
 pub struct MeshedBody {
     /// The mesh file, already resolved against the folder of the scene file; of a body from a body file, what that was made of.
     pub mesh: PathBuf,
+    /// How it is read where it is no MSH 4.1: keys `mesh_size` and `raise_order`.
+    pub import: ImportSettings,
     /// What the elements are made of: key `material` for the whole mesh, or `materials` by the name of the physical group.
     pub materials: Materials,
     /// Masses added at points; default none.

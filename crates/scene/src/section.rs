@@ -42,6 +42,8 @@ pub(crate) struct Sections {
 pub(crate) struct BodySection {
     pub mesh: Option<String>,
     pub file: Option<String>,
+    pub mesh_size: Option<f64>,
+    pub raise_order: Option<bool>,
     pub material: Option<Material>,
     pub materials: Option<BTreeMap<String, Material>>,
     #[serde(default)]

@@ -5,6 +5,7 @@ use body_file::BodyFileError;
 use fem_tet10::{AssemblyError, MeshError};
 use figures::FigureError;
 use frames_rk4::{EigenError, SetupError};
+use mesh_import::ImportError;
 use modal::ModalError;
 use report::ReportError;
 use results::FileError;
@@ -107,11 +108,29 @@ impl Failure for AdviceError {
     }
 }
 
+impl Failure for ImportError {
+    fn kind(&self) -> Kind {
+        match self {
+            Self::Mesh(error) => error.kind(),
+            Self::NoReader { .. } | Self::Io { .. } => Kind::Io,
+            _ => Kind::Input,
+        }
+    }
+
+    fn details(&self) -> Details {
+        match self {
+            Self::Mesh(error) => error.details(),
+            other => Details::of_file(other.source_name()),
+        }
+    }
+}
+
 impl Failure for BuildError {
     fn kind(&self) -> Kind {
         match self {
             Self::Scene(error) => error.kind(),
             Self::Mesh(error) => error.kind(),
+            Self::Import(error) => error.kind(),
             Self::Assembly(error) => error.kind(),
             Self::Modal { source, .. } => source.kind(),
             Self::Advice(error) => error.kind(),
@@ -126,6 +145,7 @@ impl Failure for BuildError {
         match self {
             Self::Scene(error) => error.details(),
             Self::Mesh(error) => error.details(),
+            Self::Import(error) => error.details(),
             Self::Assembly(error) => error.details(),
             Self::Modal { scene, .. } => Details::of_file(scene),
             Self::Advice(error) => error.details(),

@@ -6,6 +6,7 @@ use advice::{AdviceError, Refusal};
 use body_file::BodyFileError;
 use fem_tet10::{AssemblyError, MeshError};
 use frames_rk4::{LoadedError, SetupError};
+use mesh_import::ImportError;
 use modal::ModalError;
 use nalgebra::Vector3;
 
@@ -24,6 +25,9 @@ pub enum BuildError {
     /// The mesh cannot be used.
     #[error(transparent)]
     Mesh(#[from] MeshError),
+    /// The mesh cannot be imported.
+    #[error(transparent)]
+    Import(#[from] ImportError),
     /// The matrices cannot be assembled.
     #[error(transparent)]
     Assembly(#[from] AssemblyError),

@@ -1,23 +1,32 @@
 //! The mesh of a scene and its matrices.
 
-use fem_tet10::{AssemblyError, Matrices, Mesh, MeshError, assemble, read_msh};
+use fem_tet10::{AssemblyError, Matrices, Mesh, MeshError, assemble};
+use mesh_import::{ImportError, Imported};
 
 use super::error::{BuildError, refuse};
 use crate::scene::{MeshedBody, Scene};
 use crate::shorten::shorten;
 
 pub(super) fn read_mesh(scene: &Scene, body: &MeshedBody) -> Result<Mesh, BuildError> {
-    read_msh(&body.mesh).map_err(|error| match error {
-        MeshError::Io { source_name, source } => scene
-            .refuse(
-                "body.mesh",
-                format!("a mesh that cannot be read: {}: {source}", shorten(&source_name)),
-                "a MSH 4.1 file, its path relative to the folder of the scene file",
-                "correct the path, or make the mesh: gmsh -3 -order 2 -format msh41 BODY.geo",
-            )
-            .into(),
+    let read = mesh_import::read_mesh(&body.mesh, &body.import);
+    let Imported { mesh, notes } = read.map_err(|error| match error {
+        ImportError::Mesh(MeshError::Io { source_name, source: cause }) | ImportError::Io { source_name, cause } => {
+            scene
+                .refuse(
+                    "body.mesh",
+                    format!("a mesh that cannot be read: {}: {cause}", shorten(&source_name)),
+                    "a mesh file, its path relative to the folder of the scene file",
+                    "correct the path, or make the mesh: gmsh -3 -order 2 -format msh41 BODY.geo",
+                )
+                .into()
+        }
+        ImportError::Mesh(error) => BuildError::from(error),
         other => other.into(),
-    })
+    })?;
+    for note in notes {
+        scene.cache.warn(format!("{}: {note}", body.mesh.display()));
+    }
+    Ok(mesh)
 }
 
 pub(super) fn matrices(scene: &Scene, body: &MeshedBody, mesh: &Mesh) -> Result<Matrices, BuildError> {

@@ -6,6 +6,7 @@ use std::sync::{Mutex, PoisonError};
 
 use body_file::{BodyFile, BodyFileError, Declared, Digest, Hash, Kind, Writer};
 use fem_tet10::Mesh;
+use mesh_import::hash_of_mesh;
 
 use super::answer::{Answer, Kept, group};
 use super::error::BuildError;
@@ -41,8 +42,8 @@ impl Store {
         let mesh = match &given {
             Some(file) => Origin::read(file)?.mesh_hash.parse().ok(),
             None if cache.folder().is_none() => return Ok(None),
-            // What is no ordinary file can be read only once; what cannot be read is refused elsewhere.
-            None => Some(&body.mesh).filter(|path| path.is_file()).and_then(|path| Hash::of_file(path).ok()),
+            // What cannot be read is refused elsewhere.
+            None => hash_of_mesh(&body.mesh, &body.import),
         };
         let Some(mesh) = mesh else { return Ok(None) };
         let folder = cache.of_mesh(&mesh);
@@ -84,7 +85,7 @@ impl Store {
         let mesh = read_mesh(scene, body)?;
         // It may have been changed since it was hashed.
         if let Some(place) = place.filter(|_| !self.cache.is_closed())
-            && Hash::of_file(&body.mesh).ok() == Some(self.mesh)
+            && hash_of_mesh(&body.mesh, &body.import) == Some(self.mesh)
         {
             let arrays = MeshArrays::new(&mesh);
             let texts = BTreeMap::from([arrays.text()]);

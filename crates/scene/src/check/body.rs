@@ -1,9 +1,11 @@
 //! The rules on `[body]`.
 
 use std::collections::BTreeMap;
+use std::path::Path;
 
-use body_file::{BodyFile, Hash};
+use body_file::BodyFile;
 use fem_tet10::{Material, Materials, PointMass};
+use mesh_import::{ImportSettings, Reader, hash_of_mesh, reader_of};
 use nalgebra::{Matrix3, Vector3};
 
 use super::Check;
@@ -22,18 +24,20 @@ const EXCESS: f64 = 1e-3;
 
 impl Check<'_> {
     pub fn body(&self, section: BodySection) -> Result<Body, SceneError> {
-        let BodySection { mesh, file, material, materials, point_masses, rigid } = section;
+        let BodySection { mesh, file, mesh_size, raise_order, material, materials, point_masses, rigid } = section;
+        let import = ImportSettings { mesh_size, raise_order: raise_order.unwrap_or_default() };
         let Some(rigid) = rigid else {
             if let Some(file) = file {
-                return self.reduced(&file, mesh, material, materials, point_masses).map(Body::Meshed);
+                return self.reduced(&file, mesh, import, material, materials, point_masses).map(Body::Meshed);
             }
             let Some(mesh) = mesh else { return Err(self.missing("body", "mesh")) };
             let mesh = self.document.folder().join(self.mesh(&mesh)?);
+            self.import(&mesh, &import)?;
             let materials = self.materials(material, materials)?;
             self.point_masses(&point_masses)?;
-            return Ok(Body::Meshed(MeshedBody { mesh, materials, point_masses, file: None }));
+            return Ok(Body::Meshed(MeshedBody { mesh, import, materials, point_masses, file: None }));
         };
-        for key in ["mesh", "file", "material", "materials", "point_masses"] {
+        for key in ["mesh", "file", "mesh_size", "raise_order", "material", "materials", "point_masses"] {
             if self.has(&join("body", key)) {
                 return Err(self.document.place(&join("body", key)).refuse(
                     format!("both `rigid` and `{key}`"),
@@ -50,6 +54,7 @@ impl Check<'_> {
         &self,
         file: &str,
         mesh: Option<String>,
+        import: ImportSettings,
         material: Option<Material>,
         materials: Option<BTreeMap<String, Material>>,
         point_masses: Vec<PointMass>,
@@ -68,7 +73,7 @@ impl Check<'_> {
         if let Some(mesh) = &mesh {
             let mesh = self.document.folder().join(self.mesh(mesh)?);
             // The file does without the mesh.
-            if let Ok(hash) = Hash::of_file(&mesh)
+            if let Some(hash) = hash_of_mesh(&mesh, &import)
                 && hash.to_string() != origin.mesh_hash
             {
                 return Err(refuse(
@@ -89,7 +94,27 @@ impl Check<'_> {
             return Err(refuse(found, "one of the point masses of the scene"));
         }
         let materials = origin.materials();
-        Ok(MeshedBody { mesh: origin.mesh.into(), materials, point_masses: origin.point_masses, file: Some(path) })
+        Ok(MeshedBody {
+            mesh: origin.mesh.into(),
+            import,
+            materials,
+            point_masses: origin.point_masses,
+            file: Some(path),
+        })
+    }
+
+    /// A size is for geometry.
+    fn import(&self, mesh: &Path, import: &ImportSettings) -> Result<(), SceneError> {
+        let Some(size) = import.mesh_size else { return Ok(()) };
+        self.positive("body.mesh_size", size, "give the largest size of an element in your unit of length")?;
+        if reader_of(mesh, import) == Reader::GmshMesher {
+            return Ok(());
+        }
+        Err(self.document.place("body.mesh_size").refuse(
+            "a size for a mesh that is there",
+            "geometry to be meshed: a .geo, STEP, IGES or BREP file",
+            "remove it, or mesh again with elements of this size",
+        ))
     }
 
     fn rigid(&self, section: &RigidSection) -> Result<RigidBody, SceneError> {

@@ -1,0 +1,73 @@
+//! Why a mesh cannot be imported.
+
+use std::io;
+
+use fem_tet10::MeshError;
+
+/// A mesh that could not be read.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ImportError {
+    /// flexframe's own reader refuses it.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+    /// A program that reads this format is not there.
+    #[error("{source_name}: it is read through {reader}, but `{program}` cannot be started: {cause}\n = {cure}")]
+    NoReader {
+        /// The mesh file.
+        source_name: String,
+        /// What reads it, in words.
+        reader: &'static str,
+        /// The program.
+        program: String,
+        /// Why it cannot be started.
+        cause: io::Error,
+        /// What to do.
+        cure: &'static str,
+    },
+    /// The mesh is not what it should be.
+    #[error("{source_name}: {found}\n = {cure}")]
+    Refused {
+        /// The mesh file.
+        source_name: String,
+        /// What is wrong with it.
+        found: String,
+        /// What to do.
+        cure: String,
+    },
+    /// A program that reads this format has failed.
+    #[error("{source_name}: `{program}` cannot read it ({status}): {said}\n = {cure}")]
+    Failed {
+        /// The mesh file.
+        source_name: String,
+        /// The program.
+        program: String,
+        /// How it ended.
+        status: String,
+        /// The last that it said.
+        said: String,
+        /// What to do.
+        cure: &'static str,
+    },
+    /// A file could not be read, or a temporary one not be written.
+    #[error("{source_name}: {cause}")]
+    Io {
+        /// The file.
+        source_name: String,
+        /// Why.
+        cause: io::Error,
+    },
+}
+
+impl ImportError {
+    /// The file at fault.
+    pub fn source_name(&self) -> &str {
+        match self {
+            Self::Mesh(error) => error.source_name(),
+            Self::NoReader { source_name, .. }
+            | Self::Refused { source_name, .. }
+            | Self::Failed { source_name, .. }
+            | Self::Io { source_name, .. } => source_name,
+        }
+    }
+}

@@ -1,0 +1,76 @@
+//! Who reads a file.
+
+use std::fs::File;
+use std::io::{BufRead, BufReader, Read};
+use std::path::Path;
+
+use crate::ImportSettings;
+
+/// Who reads a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Reader {
+    /// flexframe itself: MSH 4.1, and what has no known ending.
+    Own,
+    /// gmsh, which meshes geometry.
+    GmshMesher,
+    /// gmsh, which writes other meshes as MSH 4.1.
+    GmshConverter,
+    /// meshio, in Python.
+    Meshio,
+}
+
+/// Geometry.
+const MESHED: [&str; 7] = ["geo", "geo_unrolled", "step", "stp", "iges", "igs", "brep"];
+/// Meshes that meshio does not know.
+const CONVERTED: [&str; 1] = ["unv"];
+/// Meshes that meshio reads.
+const THROUGH_MESHIO: [&str; 14] =
+    ["inp", "med", "bdf", "nas", "fem", "vtu", "vtk", "xdmf", "xmf", "mesh", "meshb", "e", "exo", "h5m"];
+
+/// Who reads a file, by the ending of its name; of `.msh`, by its version, too.
+pub fn reader_of(path: &Path, settings: &ImportSettings) -> Reader {
+    let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+    let is_of = |endings: &[&str]| endings.contains(&ending.as_str());
+    if is_of(&MESHED) {
+        Reader::GmshMesher
+    } else if is_of(&CONVERTED) || (ending == "msh" && (settings.raise_order || is_older_msh(path))) {
+        Reader::GmshConverter
+    } else if is_of(&THROUGH_MESHIO) {
+        Reader::Meshio
+    } else {
+        Reader::Own
+    }
+}
+
+/// Whether a MSH file is of version 1, 2 or 4.0.
+fn is_older_msh(path: &Path) -> bool {
+    let Some(file) = Some(path).filter(|path| path.is_file()).and_then(|path| File::open(path).ok()) else {
+        return false;
+    };
+    let mut head = Vec::new();
+    let _ = file.take(200).read_to_end(&mut head);
+    let head = String::from_utf8_lossy(&head);
+    let mut lines = head.lines().map(str::trim).skip_while(|line| *line != "$MeshFormat");
+    match lines.nth(1) {
+        Some(format) => ["1", "2", "2.1", "2.2", "4", "4.0"].iter().any(|old| format.split(' ').next() == Some(old)),
+        None => head.starts_with("$NOD"),
+    }
+}
+
+/// Whether a text file takes in others, which may change without it.
+pub(crate) fn includes_others(path: &Path) -> bool {
+    let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+    let words: &[&str] = match ending.as_str() {
+        "geo" | "geo_unrolled" => &["include", "merge", "shapefromfile", "systemcall"],
+        "inp" => &["*include"],
+        "bdf" | "nas" | "fem" => &["include"],
+        // Data in files beside it.
+        "xdmf" | "xmf" => &[".h5", ".bin", "include"],
+        _ => return false,
+    };
+    let Ok(file) = File::open(path) else { return true };
+    BufReader::new(file).split(b'\n').any(|line| {
+        let line = line.map(|line| String::from_utf8_lossy(&line).to_lowercase()).unwrap_or_default();
+        words.iter().any(|word| line.contains(word))
+    })
+}
