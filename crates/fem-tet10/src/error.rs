@@ -42,7 +42,7 @@ pub enum MeshError {
     },
     /// The file is not a MSH file of version 4.1.
     #[error(
-        "{source_name}: not a MSH 4.1 file: found {found}; write it with `gmsh -3 -order 2 -format msh41`, or convert it with `meshio convert`"
+        "{source_name}: not a MSH 4.1 file: found {found}; write it with `gmsh OLD.msh -save -format msh41 -o NEW.msh`, or mesh again with `gmsh -3 -order 2 -format msh41`"
     )]
     Version {
         /// The mesh.

@@ -49,6 +49,8 @@ def main(source, target, raise_order):
         raise Refused(f"meshio cannot read it: {words}", "check the file, or write it as VTU, .inp or MSH 4.1")
 
     points = np.asarray(mesh.points, dtype=float)
+    if len(points) == 0:
+        raise Refused("it has no nodes", "check the file")
     if points.ndim != 2 or points.shape[1] != 3:
         raise Refused(f"its nodes have {points.shape[-1]} coordinates", "write it in three dimensions")
     notes = []

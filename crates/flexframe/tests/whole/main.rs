@@ -9,6 +9,7 @@ mod cost;
 mod export;
 mod failures;
 mod html_report;
+mod import;
 mod library;
 mod new_scene;
 mod reactions;

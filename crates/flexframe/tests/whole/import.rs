@@ -1,0 +1,66 @@
+//! Scenes whose mesh is of another format than MSH 4.1. (All formats: `mesh-import/tests/formats.rs`.)
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+/// `flexframe modes` of a steel bar from this file, in a folder that has it.
+fn modes(folder: &Path, body: &str, python: &str, cache: &Path) -> Output {
+    let scene = format!(
+        "title = \"bar\"\nunits = {{ length = \"mm\", mass = \"Mg\", time = \"s\" }}\n[body]\n{body}\n\
+         material = {{ young_modulus = 210e3, poisson_ratio = 0.3, density = 7.85e-9 }}\n[modes]\nflexible = 3\n\
+         [time]\nend = 1.0\nstep = 0.1\n"
+    );
+    std::fs::write(folder.join("bar.toml"), scene).unwrap();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_flexframe"));
+    command.args(["modes", "bar.toml", "--json"]).current_dir(folder);
+    command.env("FLEXFRAME_PYTHON", python).env("FLEXFRAME_CACHE", cache).output().unwrap()
+}
+
+#[test]
+fn geometry_and_first_order_meshes_give_modes_and_are_meshed_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scene/tests/data/");
+    std::fs::copy(data.join("bar.geo"), folder.path().join("bar.geo")).unwrap();
+    let cache = tempfile::tempdir().unwrap();
+    let found = |body: &str| -> Value {
+        let output = modes(folder.path(), body, "no python", cache.path());
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        serde_json::from_slice(&output.stdout).unwrap()
+    };
+    let first = |report: &Value| report["body"]["natural_frequencies"][0].as_f64().unwrap();
+    let geometry = found("mesh = \"bar.geo\"");
+    // Euler and Bernoulli: 4.73² √(EI/(ρAL⁴))/2π; shear and rotatory inertia take a per cent.
+    let beam =
+        4.73004_f64.powi(2) * (210e3 / 7.85e-9_f64 * 100.0 / 12.0).sqrt() / 200.0_f64.powi(2) / std::f64::consts::TAU;
+    assert!((first(&geometry) / beam - 1.0).abs() < 0.02, "{} {beam}", first(&geometry));
+    // Read from the cache: gmsh is not asked again, and all is the same to the last bit.
+    assert_eq!(geometry["body"]["natural_frequencies"], found("mesh = \"bar.geo\"")["body"]["natural_frequencies"]);
+
+    let gmsh = Command::new("gmsh")
+        .args(["-3", "-format", "msh41", "-v", "0", "bar.geo", "-o", "linear.msh"])
+        .current_dir(folder.path())
+        .status();
+    assert!(gmsh.unwrap().success());
+    let raised = found("mesh = \"linear.msh\"\nraise_order = true");
+    assert!((first(&raised) / first(&geometry) - 1.0).abs() < 1e-6);
+}
+
+#[test]
+fn what_is_missing_and_what_does_not_fit_is_said() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("bar.inp"), "*NODE\n").unwrap();
+    std::fs::write(folder.path().join("bar.msh"), "").unwrap();
+    for (body, code, words) in [
+        ("mesh = \"bar.inp\"", 6, &["bar.inp", "meshio", "`no python` cannot be started", "pip install meshio"][..]),
+        ("mesh = \"bar.msh\"\nmesh_size = 2.0", 3, &["`body.mesh_size`", "a size for a mesh that is there"]),
+        ("mesh = \"bar.geo\"\nmesh_size = -2.0", 3, &["`body.mesh_size`", "greater than 0"]),
+        ("mesh = \"bar.geo\"", 3, &["bar.geo", "No such file"]),
+    ] {
+        let output = modes(folder.path(), body, "no python", Path::new(""));
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(code), "{body}: {said}");
+        assert!(words.iter().all(|word| said.contains(word)), "{body}: {said}");
+    }
+}

@@ -1,0 +1,191 @@
+//! Each format with elements, groups, surfaces and node sets, in files of gmsh and meshio: what comes through, and what is
+//! said of the rest. Needs gmsh, and meshio in the Python that `FLEXFRAME_PYTHON` names (`./dev test` sees to both).
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::OnceLock;
+
+use fem_tet10::{Material, Materials, Mesh, centroid_lumped_inertia};
+use mesh_import::{ImportError, ImportSettings, Imported, Reader, hash_of_mesh, read_mesh, reader_of};
+
+const AS_IT_IS: ImportSettings = ImportSettings { mesh_size: None, raise_order: false };
+const RAISED: ImportSettings = ImportSettings { mesh_size: None, raise_order: true };
+
+/// The bar of 200 x 10 x 10, in every format.
+struct Formats {
+    folder: PathBuf,
+}
+
+/// They are written once.
+fn formats() -> &'static Formats {
+    static FORMATS: OnceLock<Formats> = OnceLock::new();
+    FORMATS.get_or_init(Formats::new)
+}
+
+impl Formats {
+    fn new() -> Self {
+        let formats = Self { folder: Path::new(env!("CARGO_TARGET_TMPDIR")).join("formats") };
+        fs::create_dir_all(&formats.folder).unwrap();
+        let geo = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scene/tests/data/bar.geo");
+        fs::copy(geo, formats.path("bar.geo")).unwrap();
+        formats.gmsh(&["bar.geo", "-3", "-order", "2", "-format", "msh41", "-o", "bar.msh"]);
+        for ending in ["inp", "bdf", "vtk", "unv"] {
+            formats.gmsh(&["bar.msh", "-save", "-o", &format!("bar.{ending}")]);
+        }
+        formats.gmsh(&["bar.msh", "-save", "-format", "msh22", "-o", "old.msh"]);
+        formats.gmsh(&["bar.msh", "-save", "-format", "msh40", "-o", "old40.msh"]);
+        formats.gmsh(&["bar.geo", "-3", "-format", "msh41", "-o", "linear.msh"]);
+        formats.gmsh(&["bar.geo", "-parse_and_exit", "-v", "0"]);
+        // What gmsh does not write: a node set, sets of sets, and surfaces of element faces, as CalculiX has them.
+        let inp = fs::read_to_string(formats.path("bar.inp")).unwrap();
+        let element = inp.lines().skip_while(|line| !line.contains("C3D10")).nth(1).unwrap();
+        let element = element.split(',').next().unwrap();
+        let more = format!(
+            "*NSET, NSET=some\n1, 2,\n3\n*SURFACE, NAME=faces, TYPE=ELEMENT\n{element}, S1\n{element}, S4\n\
+             *SURFACE, NAME=whole, TYPE=ELEMENT\nbar, S2\n*SURFACE, NAME=none, TYPE=NODE\nsome,\n"
+        );
+        fs::write(formats.path("surfaces.inp"), inp + &more).unwrap();
+        let python = std::env::var_os("FLEXFRAME_PYTHON").unwrap_or_else(|| "python3".into());
+        let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/write_formats.py");
+        let written =
+            Command::new(python).arg(script).arg(formats.path("bar.msh")).arg(&formats.folder).output().unwrap();
+        assert!(written.status.success(), "{}", String::from_utf8_lossy(&written.stderr));
+        formats
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.join(name)
+    }
+
+    fn gmsh(&self, arguments: &[&str]) {
+        let output = Command::new("gmsh").args(arguments).current_dir(&self.folder).output().unwrap();
+        assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
+    }
+
+    fn read(&self, name: &str, settings: ImportSettings) -> Result<Imported, ImportError> {
+        read_mesh(&self.path(name), &settings)
+    }
+}
+
+fn volume(mesh: &Mesh) -> f64 {
+    let material = Material { young_modulus: 1.0, poisson_ratio: 0.3, density: 1.0 };
+    centroid_lumped_inertia(mesh, &Materials::Uniform(material), &[]).unwrap().mass
+}
+
+fn surfaces(mesh: &Mesh) -> BTreeSet<String> {
+    mesh.parts().surfaces.iter().map(|surface| surface.name.clone()).collect()
+}
+
+#[test]
+fn every_format_gives_the_same_elements_and_its_groups() {
+    let formats = formats();
+    let direct = formats.read("bar.msh", AS_IT_IS).unwrap().mesh;
+    let names = ["root", "tip", "top", "sides"];
+    let of_entities = ["Surface1", "Surface13", "Surface17", "Surface21", "Surface25", "Surface26"];
+    let of_properties = ["ref_1", "ref_13", "ref_17", "ref_21", "ref_25", "ref_26"];
+    let both: Vec<&str> = names.iter().chain(&of_entities).copied().collect();
+    // File; groups of volumes; of surfaces; of nodes.
+    type Row<'a> = (&'a str, ImportSettings, Reader, &'a [&'a str], &'a [&'a str], &'a [&'a str]);
+    let table: [Row<'_>; 15] = [
+        ("bar.msh", AS_IT_IS, Reader::Own, &["bar"], &names, &[]),
+        ("old.msh", AS_IT_IS, Reader::GmshConverter, &["bar"], &names, &[]),
+        ("old40.msh", AS_IT_IS, Reader::GmshConverter, &["bar"], &names, &[]),
+        ("bar.geo", AS_IT_IS, Reader::GmshMesher, &["bar"], &names, &[]),
+        ("bar.unv", AS_IT_IS, Reader::GmshConverter, &["bar"], &names, &[]),
+        ("bar.inp", AS_IT_IS, Reader::Meshio, &["Volume1", "bar"], &both, &[]),
+        ("bar.bdf", AS_IT_IS, Reader::Meshio, &["ref_1"], &of_properties, &[]),
+        ("bar.vtk", AS_IT_IS, Reader::Meshio, &[], &[], &[]),
+        ("meshio.vtk", AS_IT_IS, Reader::Meshio, &["material_3"], &["material_2"], &[]),
+        ("bar.vtu", AS_IT_IS, Reader::Meshio, &["material_3"], &["material_2"], &[]),
+        ("bar.xdmf", AS_IT_IS, Reader::Meshio, &["material_3"], &[], &[]),
+        ("bar.med", AS_IT_IS, Reader::Meshio, &["all", "bar"], &["skin"], &["end"]),
+        ("linear.msh", RAISED, Reader::GmshConverter, &["bar"], &names, &[]),
+        ("linear.vtu", RAISED, Reader::Meshio, &[], &[], &[]),
+        ("bar.inp", RAISED, Reader::Meshio, &["Volume1", "bar"], &both, &[]),
+    ];
+    for (name, settings, reader, volumes, faces, nodes) in table {
+        assert_eq!(reader_of(&formats.path(name), &settings), reader, "{name}");
+        let Imported { mesh, notes } = formats.read(name, settings).unwrap_or_else(|error| panic!("{name}: {error}"));
+        assert!(notes.is_empty(), "{name}: {notes:?}");
+        assert_eq!(mesh.elements().len(), direct.elements().len(), "{name}");
+        assert_eq!(mesh.positions().len(), direct.positions().len(), "{name}");
+        // A wrong order of nodes gives another volume, or elements that are refused. Nastran's short fields have five digits.
+        let error = (volume(&mesh) / volume(&direct) - 1.0).abs();
+        assert!(error < 1e-5, "{name}: {error}");
+        assert_eq!(mesh.source(), formats.path(name).display().to_string());
+        let found: BTreeSet<_> = mesh.groups().iter().map(String::as_str).collect();
+        assert_eq!(found, volumes.iter().copied().collect(), "{name}");
+        assert_eq!(surfaces(&mesh), faces.iter().map(|name| (*name).to_owned()).collect(), "{name}");
+        let parts = mesh.parts();
+        let found: BTreeSet<_> = parts.node_groups.iter().map(|group| group.name.as_str()).collect();
+        assert_eq!(found, nodes.iter().copied().collect(), "{name}");
+    }
+}
+
+#[test]
+fn what_abaqus_calls_surfaces_and_node_sets_are_groups_and_the_rest_is_told() {
+    let formats = formats();
+    let Imported { mesh, notes } = formats.read("surfaces.inp", AS_IT_IS).unwrap();
+    let parts = mesh.parts();
+    let triangles = |name: &str| parts.surfaces.iter().find(|surface| surface.name == name).map(|s| s.triangles.len());
+    assert_eq!(triangles("faces"), Some(2));
+    // A face that two elements share is there once.
+    assert!(triangles("whole").is_some_and(|count| (600..=768).contains(&count)), "{:?}", triangles("whole"));
+    let some: BTreeSet<_> = parts.node_groups.iter().find(|group| group.name == "some").unwrap().nodes.iter().collect();
+    assert_eq!(some.len(), 3);
+    assert_eq!(notes.len(), 1, "{notes:?}");
+    assert!(notes[0].contains("the surface none is one of nodes") && notes[0].contains("name a node set"), "{notes:?}");
+}
+
+#[test]
+fn what_cannot_be_read_is_said_with_its_cure() {
+    let formats = formats();
+    fs::write(formats.path("empty.inp"), "*HEADING\n").unwrap();
+    fs::write(formats.path("text.vtu"), "a diary\n").unwrap();
+    fs::write(formats.path("broken.step"), "a diary\n").unwrap();
+    fs::write(formats.path("flat.geo"), "Point(1) = {0, 0, 0};\n").unwrap();
+    // Two nodes on edges of the first element change places.
+    let inp = fs::read_to_string(formats.path("bar.inp")).unwrap();
+    let line = inp.lines().skip_while(|line| !line.contains("C3D10")).nth(1).unwrap();
+    let mut nodes: Vec<&str> = line.split(',').collect();
+    nodes.swap(5, 7);
+    fs::write(formats.path("swapped.inp"), inp.replace(line, &nodes.join(","))).unwrap();
+    for (name, words) in [
+        ("linear.vtu", &["768 tetrahedra of first order", "raise_order = true"][..]),
+        ("brick.inp", &["1 hexahedron", "ten-node tetrahedra"]),
+        ("empty.inp", &["it has no nodes"]),
+        ("text.vtu", &["meshio cannot read it"]),
+        ("swapped.inp", &["1 of its 768 tetra10 elements", "in another order", "mesh again"]),
+        ("broken.step", &["broken.step", "gmsh"]),
+        ("flat.geo", &["flat.geo", "tetrahedra"]),
+        ("absent.inp", &["absent.inp", "No such file"]),
+    ] {
+        let error = formats.read(name, AS_IT_IS).unwrap_err();
+        let said = error.to_string();
+        assert!(words.iter().all(|word| said.contains(word)), "{name}: {said}");
+        assert!(error.source_name().ends_with(name), "{name}: {error:?}");
+    }
+}
+
+#[test]
+fn geometry_is_meshed_as_fine_as_asked_and_what_it_follows_from_is_known() {
+    let formats = formats();
+    let box_ = "SetFactory(\"OpenCASCADE\");\nBox(1) = {0, 0, 0, 20, 10, 10};\nPhysical Volume(\"block\") = {1};\n";
+    fs::write(formats.path("block.geo"), box_).unwrap();
+    formats.gmsh(&["block.geo", "-0", "-o", "block.brep", "-format", "brep"]);
+    let sized = |mesh_size| ImportSettings { mesh_size: Some(mesh_size), raise_order: false };
+    for name in ["block.geo", "block.brep"] {
+        let [coarse, fine] = [2.0, 1.0].map(|size| formats.read(name, sized(size)).unwrap().mesh);
+        assert!(fine.elements().len() > 3 * coarse.elements().len(), "{name}");
+        assert!((volume(&fine) / 2000.0 - 1.0).abs() < 1e-9, "{name}");
+    }
+    let path = formats.path("block.geo");
+    let hash = hash_of_mesh(&path, &sized(4.0)).unwrap();
+    assert_eq!(hash_of_mesh(&path, &sized(4.0)), Some(hash));
+    assert_ne!(hash_of_mesh(&path, &sized(5.0)), Some(hash));
+    // A file that takes in others may give another mesh without a change of its own.
+    fs::write(&path, format!("{box_}Include \"other.geo\";\n")).unwrap();
+    assert_eq!(hash_of_mesh(&path, &sized(4.0)), None);
+}

@@ -1,0 +1,50 @@
+"""Writes a mesh of gmsh in the formats that meshio writes, with numbers and names as groups.
+
+Arguments: the MSH 4.1 file, and the folder for bar.vtu, bar.vtk, bar.xdmf, bar.med and so on.
+"""
+
+import sys
+from collections import defaultdict
+from pathlib import Path
+
+import numpy as np
+
+try:
+    import meshio
+except ImportError:
+    import meshlane as meshio
+
+mesh = meshio.read(sys.argv[1])
+folder = Path(sys.argv[2])
+blocks = defaultdict(list)
+for block in mesh.cells:
+    blocks[block.type].append(block.data)
+blocks = {kind: np.vstack(data) for kind, data in blocks.items()}
+solid = {"tetra10": blocks["tetra10"]}
+both = solid | {"triangle6": blocks["triangle6"]}
+number = {"tetra10": 3, "triangle6": 2}
+
+
+def write(name, cells, label):
+    labels = [np.full(len(data), number[kind]) for kind, data in cells.items()]
+    meshio.Mesh(mesh.points, list(cells.items()), cell_data={label: labels}).write(folder / name)
+
+
+write("bar.vtu", both, "material")
+write("meshio.vtk", both, "material")
+# meshio does not read its own XDMF with elements of two kinds.
+write("bar.xdmf", solid, "material")
+
+families = {"tetra10": -3, "triangle6": -2}
+tags = [np.full(len(data), families[kind]) for kind, data in both.items()]
+med = meshio.Mesh(mesh.points, list(both.items()), cell_data={"cell_tags": tags})
+med.cell_tags = {-2: ["skin"], -3: ["bar", "all"]}
+med.point_tags = {4: ["end"]}
+med.point_data = {"point_tags": np.where(mesh.points[:, 0] == 0, 4, 0)}
+med.write(folder / "bar.med")
+
+# First order, and bricks.
+linear = meshio.Mesh(mesh.points, [("tetra", blocks["tetra10"][:, :4])])
+linear.write(folder / "linear.vtu")
+brick = np.array([[x, y, z] for z in (0, 1) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))], dtype=float)
+meshio.Mesh(brick, [("hexahedron", [list(range(8))])]).write(folder / "brick.inp")
