@@ -5,6 +5,7 @@
 mod error;
 mod reader;
 mod run;
+mod settings;
 
 use std::path::Path;
 
@@ -13,15 +14,7 @@ use fem_tet10::{Mesh, parse_msh, read_msh};
 
 pub use error::ImportError;
 pub use reader::{Reader, reader_of};
-
-/// How a mesh is read.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct ImportSettings {
-    /// The largest size of an element where geometry is meshed, in the units of the file; the reader's choice if not given.
-    pub mesh_size: Option<f64>,
-    /// Whether straight edges of first-order elements get a node in their middle.
-    pub raise_order: bool,
-}
+pub use settings::ImportSettings;
 
 /// A mesh, and what of its file was left out, in sentences.
 #[derive(Debug)]

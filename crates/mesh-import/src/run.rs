@@ -7,7 +7,8 @@ use std::process::{Command, Output, Stdio};
 
 use serde::Deserialize;
 
-use crate::{ImportError, ImportSettings};
+use crate::error::ImportError;
+use crate::settings::ImportSettings;
 
 /// The program that meshio runs.
 const WITH_MESHIO: &str = include_str!("with_meshio.py");
