@@ -57,7 +57,7 @@ mesh:
 
 # The moving picture of the README.
 picture: build
-    {{flexframe}} animate examples/tumbling_plate.toml -o docs/tumbling_plate.gif --frames 80
+    {{flexframe}} animate examples/thrown_plate.toml -o docs/thrown_plate.gif --frames 80
 
 # What accuracy costs: docs/accuracy.md and its diagrams from real runs of three scenes (some minutes).
 accuracy:
