@@ -20,8 +20,10 @@ use crate::view::{View, Window};
 const WIDTH: u16 = 720;
 const HEIGHT: u16 = 440;
 const MARGIN: f64 = 14.0;
-/// The key below the body, with a margin below.
-const KEY: f64 = key::HEIGHT + 6.0;
+/// Above and below the key.
+const KEY_MARGIN: f64 = 6.0;
+/// The key below the body, with its margins.
+const KEY: f64 = key::HEIGHT + 2.0 * KEY_MARGIN;
 /// Few enough that all frames share one palette of a GIF's 256 colours.
 const GRADES: Grades = Grades { values: 28, lights: 5 };
 const GROUND: RGBColor = RGBColor(214, 214, 214);
@@ -173,7 +175,7 @@ impl Figure for Shot<'_> {
         let (_, area) = picture.split_vertically(unit.px(self.animation.body_top()));
         let (area, key) = area.split_vertically(area.dim_in_pixel().1 as i32 - unit.px(KEY));
         draw_key(
-            &key.margin(0, unit.px(KEY - key::HEIGHT), 0, 0),
+            &key.margin(unit.px(KEY_MARGIN), unit.px(KEY_MARGIN), 0, 0),
             &view,
             &stage.values,
             &self.animation.value_label,

@@ -138,6 +138,7 @@ impl LineChart {
         plot.draw(&Rectangle::new([(left, top), (right, bottom)], pen))?;
         let window = |(low, high): (f64, f64)| Axis::new(Scale::Window(low, high), [], 0.0, 4);
         let (x, y) = (window(inset.x), window(y.values()));
+        let area = area.margin(0, 0, unit.px(4.0), 0);
         Plot { x, y, title: "", x_label: "", y_label: "", series: &self.series }.draw(&area, unit)?;
         Ok(())
     }

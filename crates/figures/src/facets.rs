@@ -9,12 +9,12 @@ use crate::picture::{Area, Unit};
 use crate::render::{Canvas, Corners};
 use crate::view::Seen;
 
-/// Documents with more areas and lines than this (about one megabyte) hold bitmaps of their bodies.
-pub(crate) const MOST: usize = 10_000;
+/// Documents with more areas and lines than this (about two megabytes, as bitmaps take) hold bitmaps of their bodies.
+pub(crate) const MOST: usize = 20_000;
 /// In pixels: how far an area reaches below the next one, so that no seam is seen between them.
 const OVERLAP: f64 = 0.4;
 /// A corner moves no further than so many times that.
-const SHARPEST: f64 = 3.0;
+const SHARPEST: f64 = 4.0;
 /// Areas are painted from the farthest to the nearest. A surface where this shows more than such a part of it wrongly, as
 /// where long areas pass through each other, is no set of areas.
 const WRONG: f64 = 2e-3;
@@ -87,7 +87,7 @@ fn grown(corners: &Corners, by: f64) -> [BackendCoord; 3] {
     };
     [0, 1, 2].map(|i| {
         let (before, after) = (normal((i + 2) % 3), normal(i));
-        let out = (before + after) * (by / (1.0 + before.dot(&after)).max(1e-3));
+        let out = (before + after) * (by / (1.0 + before.dot(&after)).max(1e-12));
         let out = out * (SHARPEST * by / out.norm().max(SHARPEST * by));
         rounded(&Seen::new(corners[i].x + out.x, corners[i].y + out.y, 0.0))
     })
@@ -109,6 +109,6 @@ mod tests {
         assert_eq!(grown(&corners, 10.0), [(-10, -10), (50, -10), (-10, 60 + 10)]);
         assert_eq!(grown(&[a, c, b], 10.0), [(-10, -10), (-10, 70), (50, -10)]);
         let needle = [(0.0, 0.0), (1000.0, 1.0), (1000.0, -1.0)].map(|(x, y)| Seen::new(x, y, 0.0));
-        assert_eq!(grown(&needle, 2.0)[0], (-6, 0));
+        assert_eq!(grown(&needle, 2.0)[0], (-8, 0));
     }
 }

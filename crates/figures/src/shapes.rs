@@ -56,7 +56,7 @@ pub struct ShapeGrid<'a> {
 impl ShapeGrid<'_> {
     /// Writes `<stem>.svg`, `<stem>.pdf` and `<stem>.png` and returns the three paths. Colours run from 0, or the smallest
     /// value of all panels if that is negative, to the largest. In the SVG and the PDF, bodies are vectors while they have
-    /// up to 10 000 visible triangles and lines together, about one megabyte; else bitmaps. Texts are texts.
+    /// up to 20 000 visible triangles and lines together, about two megabytes; else bitmaps. Texts are texts.
     ///
     /// # Errors
     /// [`FigureError::Empty`] without panels or columns, [`FigureError::WrongLength`],

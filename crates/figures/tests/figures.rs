@@ -335,9 +335,9 @@ fn small_bodies_are_vectors_and_large_ones_pictures() {
     };
     let (areas, is_picture, length) = draw("vectors", [20, 4, 2]);
     // Half of the surface is seen from one side, and less where it hides itself.
-    let all = 4 * 4 * 2 * (20 * 4 + 4 * 2 + 20 * 2);
+    let all = 4 * 8 * 2 * (20 * 4 + 4 * 2 + 20 * 2);
     assert!(!is_picture && areas > all / 3 && areas < 3 * all / 5 && length < 1_000_000, "{areas} of {all}, {length}");
-    let (areas, is_picture, _) = draw("no vectors", [80, 16, 8]);
+    let (areas, is_picture, _) = draw("no vectors", [60, 10, 5]);
     assert!(is_picture && areas == 0, "{areas}");
 }
 

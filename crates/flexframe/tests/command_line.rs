@@ -57,7 +57,13 @@ fn the_paper_is_reproduced_with_every_figure() {
         }
     }
     let page = std::fs::read_to_string(folder.path().join("report.md")).unwrap();
-    for words in ["## Table 1", "| 7 | 24.5282 | 24.5284 |", "What the paper does not give", "half-sine pulse of 50 N", " mJ at the end,"] {
+    for words in [
+        "## Table 1",
+        "| 7 | 24.5282 | 24.5284 |",
+        "What the paper does not give",
+        "half-sine pulse of 50 N",
+        " mJ at the end,",
+    ] {
         assert!(page.contains(words), "{words}");
     }
     // Every picture that the page shows is there.
@@ -207,19 +213,21 @@ fn a_results_file_is_the_same_byte_for_byte_on_each_run_and_for_any_number_of_th
 fn a_scene_flies_as_a_moving_picture() {
     let folder = tempfile::tempdir().unwrap();
     let gif = folder.path().join("ring.gif");
-    let animate = |more: &[&str]| {
+    let animate = |frames: &str, more: &[&str]| {
         let gif = gif.to_str().unwrap();
-        let output = flexframe(&[&["animate", "examples/ring.toml", "-o", gif, "--frames", "5"], more].concat());
+        let output = flexframe(&[&["animate", "examples/ring.toml", "-o", gif, "--frames", frames], more].concat());
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
         (std::fs::read(gif).unwrap(), String::from_utf8(output.stdout).unwrap())
     };
-    let (whole, said) = animate(&[]);
+    let (whole, said) = animate("5", &[]);
     assert!(whole.starts_with(b"GIF89a"));
-    // It turns by 20.6 rad/s and more for 0.2 s, in four intervals: 1 rad each.
+    // It turns by 20.6 rad/s for 0.2 s: 1 rad in each of four intervals, 4.1 rad in one.
     assert!(!said.contains("warning"), "{said}");
-    let (part, _) = animate(&["--from", "0.05", "--to", "0.0501"]);
-    let (from_above, _) = animate(&["--view", "z"]);
-    let (by_angles, _) = animate(&["--view", "-90,90"]);
+    let (_, said) = animate("2", &[]);
+    assert_says(&said, &["  warning  ", "by up to 0.66 turns from frame to frame", "--frames 4 shows it"]);
+    let (part, _) = animate("5", &["--from", "0.05", "--to", "0.0501"]);
+    let (from_above, _) = animate("5", &["--view", "z"]);
+    let (by_angles, _) = animate("5", &["--view", "-90,90"]);
     assert!(part != whole && from_above != whole && from_above == by_angles);
 
     for times in [["--from", "0.1", "--to", "0.1"], ["--from", "-0.1", "--to", "0.1"], ["--from", "0", "--to", "0.3"]] {
