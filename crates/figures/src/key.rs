@@ -64,7 +64,8 @@ fn draw_bar<DB: DrawingBackend>(area: &Area<DB>, values: &Axis, label: &str, uni
     let at = |i: usize| low + (high - low) * i as f64 / steps as f64;
     chart.draw_series((0..steps).map(|i| {
         let colour = value_colour((i as f64 + 0.5) / steps as f64);
-        Rectangle::new([(at(i), 0.0), (at(i + 1), 1.0)], colour.filled())
+        // To the end of the bar, so that no seam is seen before the next one.
+        Rectangle::new([(at(i), 0.0), (high, 1.0)], colour.filled())
     }))?;
     if !values.note.is_empty() {
         let (across, down) = chart.plotting_area().get_pixel_range();
