@@ -10,15 +10,20 @@ use plotters::style::text_anchor::{HPos, VPos};
 use whole_file::WholeFile;
 
 use crate::FigureError;
-use crate::axis::{linear_range, round_step};
+use crate::axis::{Axis, round_step};
+use crate::key::{self, colour_axis, draw_key, shade};
 use crate::picture::{Area, Figure, INK, LABEL_EM, TITLE_EM, Unit, draw_error, rgb};
 use crate::render::{Canvas, Grades, check_indices, check_points, surface_colours};
 use crate::shapes::EDGE;
 use crate::view::{View, Window};
 
 const WIDTH: u16 = 720;
-const HEIGHT: u16 = 400;
+const HEIGHT: u16 = 440;
 const MARGIN: f64 = 14.0;
+/// Above and below the key.
+const KEY_MARGIN: f64 = 6.0;
+/// The key below the body, with its margins.
+const KEY: f64 = key::HEIGHT + 2.0 * KEY_MARGIN;
 /// Few enough that all frames share one palette of a GIF's 256 colours.
 const GRADES: Grades = Grades { values: 28, lights: 5 };
 const GROUND: RGBColor = RGBColor(214, 214, 214);
@@ -41,6 +46,8 @@ pub struct Frame {
 pub struct Animation<'a> {
     /// Title in every frame; may be empty.
     pub title: String,
+    /// What the colours mean, with its unit.
+    pub value_label: String,
     /// The surface, by indices of points.
     pub triangles: &'a [[u32; 3]],
     /// Edges drawn as lines, by indices of points.
@@ -58,8 +65,8 @@ pub struct Animation<'a> {
 }
 
 impl Animation<'_> {
-    /// Writes a GIF of 720×400 dots that starts again at its end. Colours run from the smallest value
-    /// of all frames to the largest.
+    /// Writes a GIF of 720×440 dots that starts again at its end. Colours run from 0, or the smallest value of all frames
+    /// if that is negative, to the largest; a bar below the body shows them.
     ///
     /// # Errors
     /// [`FigureError::Empty`] without frames, [`FigureError::WrongLength`],
@@ -116,13 +123,12 @@ impl Animation<'_> {
         let all = points.chain(ground.iter().flatten()).map(|point| self.view.see(point));
         let window = Window::around(all);
         let top = self.body_top();
-        let room = [f64::from(WIDTH) - 2.0 * MARGIN, f64::from(HEIGHT) - top - MARGIN];
+        let room = [f64::from(WIDTH) - 2.0 * MARGIN, f64::from(HEIGHT) - top - KEY];
         let fit = |axis: usize| room[axis] / window.size()[axis];
         let scale = Some(fit(0).min(fit(1))).filter(|scale| scale.is_finite()).unwrap_or(1.0);
 
-        let values = self.frames.iter().flat_map(|frame| &frame.values);
-        let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &v| (l.min(v), h.max(v)));
-        Stage { ground, scale, centre: window.centre(), values: linear_range(low, high, 0.0) }
+        let values = self.frames.iter().flat_map(|frame| frame.values.iter().copied());
+        Stage { ground, scale, centre: window.centre(), values: colour_axis(values) }
     }
 
     fn body_top(&self) -> f64 {
@@ -167,13 +173,20 @@ impl Figure for Shot<'_> {
         let frame = &frames[last];
         let fine = unit.per_pixel();
         let (_, area) = picture.split_vertically(unit.px(self.animation.body_top()));
+        let (area, key) = area.split_vertically(area.dim_in_pixel().1 as i32 - unit.px(KEY));
+        draw_key(
+            &key.margin(unit.px(KEY_MARGIN), unit.px(KEY_MARGIN), 0, 0),
+            &view,
+            &stage.values,
+            &self.animation.value_label,
+            unit,
+        )?;
         let mut canvas = Canvas::new(area.dim_in_pixel().into(), stage.scale * fine, stage.centre, GRADES);
         for line in &stage.ground {
             let [from, to] = line.map(|point| view.see(&point));
             canvas.line(&from, &to, fine, GROUND);
         }
-        let (low, high) = stage.values;
-        let values: Vec<f64> = frame.values.iter().map(|value| (value - low) / (high - low)).collect();
+        let values: Vec<f64> = frame.values.iter().map(|value| shade(&stage.values, *value)).collect();
         let points: Vec<_> = frame.points.iter().map(|point| view.see(point)).collect();
         canvas.surface(triangles, &points, &values);
         for edge in edges {
@@ -203,8 +216,8 @@ struct Stage {
     ground: Vec<[[f64; 3]; 2]>,
     scale: f64,
     centre: [f64; 2],
-    /// Smallest and largest value of all frames.
-    values: (f64, f64),
+    /// The axis of the colours, for all frames.
+    values: Axis,
 }
 
 /// At most 256 colours for all frames: a palette made anew for each would flicker.

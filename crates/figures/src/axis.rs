@@ -105,6 +105,11 @@ impl Axis {
         if self.is_log { value.log10() } else { (value - self.offset) / self.unit }
     }
 
+    /// Lowest and highest value of a linear axis.
+    pub(crate) fn values(&self) -> (f64, f64) {
+        (self.offset + self.unit * self.range.0, self.offset + self.unit * self.range.1)
+    }
+
     pub(crate) fn labels(&self) -> impl Iterator<Item = String> {
         self.ticks.iter().map(|tick| self.format_ext(tick))
     }
@@ -182,6 +187,15 @@ fn magnitude(value: f64) -> i32 {
     value.abs().log10().floor() as i32
 }
 
+/// A number with two digits and a power of ten, such as 7.6·10⁻⁷; 0 is 0.
+pub(crate) fn power_of_ten(value: f64) -> String {
+    let text = format!("{value:.1e}");
+    match text.split_once('e').and_then(|(digits, exponent)| Some((digits, exponent.parse().ok()?))) {
+        Some((digits, exponent)) if value != 0.0 => minus_sign(&format!("{digits}·10{}", superscript(exponent))),
+        _ => "0".to_owned(),
+    }
+}
+
 fn minus_sign(text: &str) -> String {
     text.replace('-', "\u{2212}")
 }
@@ -245,6 +259,13 @@ mod tests {
         let (low, high) = linear_range(0.3, 0.1 + 0.2, 0.0);
         assert!((low - 0.15).abs() < 1e-15 && (high - 0.45).abs() < 1e-15);
         assert_eq!(linear_range(0.0, 10.0, 0.1), (-1.0, 11.0));
+    }
+
+    #[test]
+    fn small_numbers_are_written_with_a_power_of_ten() {
+        assert_eq!(power_of_ten(7.64e-7), "7.6·10⁻⁷");
+        assert_eq!(power_of_ten(9.96), "1.0·10¹");
+        assert_eq!((power_of_ten(-3.0).as_str(), power_of_ten(0.0).as_str()), ("−3.0·10⁰", "0"));
     }
 
     #[test]

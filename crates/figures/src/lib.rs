@@ -1,6 +1,6 @@
-//! Figures: line charts, deformed bodies and animations, as SVG, PNG and GIF.
+//! Figures: line charts, deformed bodies and animations, as SVG, PDF, PNG and GIF.
 //!
-//! * [`LineChart`], [`ShapeGrid`] and [`Animation`] draw figures and write their files.
+//! * [`LineChart`], [`ChartGrid`], [`ShapeGrid`] and [`Animation`] draw figures and write their files.
 //! * [`boundary_triangles`] and [`sharp_edges`] turn a mesh into what the figures draw.
 //!
 //! The crate knows plain data only: no mesh, no mode, no results file.
@@ -11,11 +11,18 @@
 mod animation;
 mod axis;
 mod chart;
+mod chart_grid;
 mod error;
+mod facets;
 mod font;
+mod inset;
+mod key;
 mod path;
+mod pdf;
 mod picture;
+mod plot;
 mod render;
+mod series;
 mod shapes;
 mod surface;
 mod view;
@@ -25,8 +32,10 @@ mod test_body;
 
 pub use animation::{Animation, Frame};
 pub use axis::Scale;
-pub use chart::{LineChart, Series, Stroke};
+pub use chart::{LineChart, Reference};
+pub use chart_grid::ChartGrid;
 pub use error::FigureError;
+pub use series::{Series, Stroke};
 pub use shapes::{Panel, ShapeGrid};
 pub use surface::{boundary_triangles, sharp_edges};
 pub use view::View;

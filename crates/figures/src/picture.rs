@@ -1,7 +1,7 @@
-//! Drawing with plotters, as an SVG document and as a bitmap.
+//! Drawing with plotters, as an SVG or PDF document and as a bitmap.
 //!
 //! plotters counts in whole units. Figures are composed in pixels with y downwards and drawn in units finer than the
-//! pixel: an SVG keeps the fine units, a bitmap is averaged down, which smooths all its edges.
+//! pixel: a document keeps the fine units, a bitmap is averaged down, which smooths all its edges.
 
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
@@ -12,6 +12,7 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters_backend::{BackendColor, BackendCoord, BackendStyle, BackendTextStyle, DrawingErrorKind};
 use whole_file::write_whole;
 
+use crate::pdf::pdf;
 use crate::{FigureError, font};
 
 pub(crate) const INK: RGBColor = RGBColor(30, 30, 30);
@@ -20,8 +21,8 @@ pub(crate) const TITLE_EM: f64 = 14.0;
 pub(crate) const LABEL_EM: f64 = 13.0;
 pub(crate) const TICK_EM: f64 = 11.5;
 
-/// Units per pixel of an SVG.
-const FINE: u32 = 4;
+/// Units per pixel of an SVG or a PDF.
+pub(crate) const FINE: u32 = 4;
 /// Units per dot of a bitmap.
 const SMOOTHING: u32 = 2;
 /// Dots per pixel of a PNG.
@@ -41,9 +42,16 @@ pub(crate) trait Figure {
 
 /// What turns pixels into the units that plotters counts in.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Unit(u32);
+pub(crate) struct Unit {
+    per_pixel: u32,
+    /// Whether lines and areas stay what they are, as in a document, and do not become dots.
+    pub(crate) is_vector: bool,
+}
 
 impl Unit {
+    /// Of an SVG or a PDF.
+    pub(crate) const DOCUMENT: Self = Self { per_pixel: FINE, is_vector: true };
+
     /// Units that this many pixels make.
     pub(crate) fn px(self, pixels: f64) -> i32 {
         (pixels * self.per_pixel()).round() as i32
@@ -55,7 +63,7 @@ impl Unit {
     }
 
     pub(crate) fn per_pixel(self) -> f64 {
-        f64::from(self.0)
+        f64::from(self.per_pixel)
     }
 
     /// Text whose em is this many pixels, and which point of it stands where it is drawn.
@@ -78,19 +86,28 @@ pub(crate) fn titled<DB: DrawingBackend>(
     Ok(area.titled(title, unit.text(em, HPos::Center, VPos::Top))?.margin(unit.px(5.0), 0, 0, 0))
 }
 
-/// Writes `<stem>.svg` and `<stem>.png` and returns the two paths.
-pub(crate) fn save(figure: &impl Figure, stem: &Path) -> Result<[PathBuf; 2], FigureError> {
-    let paths = ["svg", "png"].map(|extension| {
+/// Writes `<stem>.svg`, `<stem>.pdf` and `<stem>.png` and returns the three paths.
+pub(crate) fn save(figure: &impl Figure, stem: &Path) -> Result<[PathBuf; 3], FigureError> {
+    let paths = ["svg", "pdf", "png"].map(|extension| {
         let mut name = stem.as_os_str().to_owned();
         name.push(".");
         name.push(extension);
         PathBuf::from(name)
     });
-    let files = [svg(figure)?.into_bytes(), png(figure)?];
+    let files = [svg(figure)?.into_bytes(), pdf(figure)?, png(figure)?];
     for (path, bytes) in paths.iter().zip(files) {
-        write_whole(path, bytes).map_err(|error| FigureError::system(path, &error))?;
+        write(path, &bytes)?;
     }
     Ok(paths)
+}
+
+/// Writes an SVG.
+pub(crate) fn svg_file(figure: &impl Figure, path: &Path) -> Result<(), FigureError> {
+    write(path, svg(figure)?.as_bytes())
+}
+
+fn write(path: &Path, bytes: &[u8]) -> Result<(), FigureError> {
+    write_whole(path, bytes).map_err(|error| FigureError::system(path, &error))
 }
 
 fn svg(figure: &impl Figure) -> Result<String, FigureError> {
@@ -99,7 +116,7 @@ fn svg(figure: &impl Figure) -> Result<String, FigureError> {
     let mut document = String::new();
     let area = SVGBackend::with_string(&mut document, (width * FINE, height * FINE)).into_drawing_area();
     area.fill(&WHITE)?;
-    figure.draw(&area, Unit(FINE))?;
+    figure.draw(&area, Unit::DOCUMENT)?;
     area.present()?;
     drop(area);
 
@@ -123,11 +140,11 @@ fn png(figure: &impl Figure) -> Result<Vec<u8>, FigureError> {
 /// RGB bytes, row by row, with `dots` dots per pixel.
 pub(crate) fn rgb(figure: &impl Figure, dots: u32) -> Result<Vec<u8>, FigureError> {
     font::register()?;
-    let unit = SMOOTHING * dots;
-    let [width, height] = figure.size().map(|pixels| pixels * unit);
+    let unit = Unit { per_pixel: SMOOTHING * dots, is_vector: false };
+    let [width, height] = figure.size().map(|pixels| pixels * unit.per_pixel);
     let mut fine = vec![255; 3 * width as usize * height as usize];
     let area = Bitmap(BitMapBackend::with_buffer(&mut fine, (width, height))).into_drawing_area();
-    figure.draw(&area, Unit(unit))?;
+    figure.draw(&area, unit)?;
     drop(area);
     Ok(averaged(&fine, width as usize))
 }
@@ -173,12 +190,7 @@ impl<'a> DrawingBackend for Bitmap<'a> {
     /// By the base line, at the distances from the anchor that plotters writes into an SVG.
     fn draw_text<S: BackendTextStyle>(&mut self, text: &str, style: &S, at: BackendCoord) -> Drawn<'a> {
         let em = style.size() / font::SIZE_PER_EM;
-        let base_line = em
-            * match style.anchor().v_pos {
-                VPos::Top => 0.76,
-                VPos::Center => 0.5 * font::X_PER_EM,
-                VPos::Bottom => -0.5 * font::X_PER_EM,
-            };
+        let base_line = em * font::base_line(style.anchor().v_pos);
         // plotters' bitmaps have the base line half a line below the top.
         let line = em * font::LINE_PER_EM;
         let (x, y) = style.transform().transform(0, (base_line - 0.5 * line).round() as i32);

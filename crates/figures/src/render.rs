@@ -34,6 +34,12 @@ pub(crate) fn surface_colours(Grades { values, lights }: Grades) -> Vec<[u8; 3]>
     (0..lights).flat_map(of_light).collect()
 }
 
+/// The corners of a triangle: right and down in dots, and towards the viewer.
+pub(crate) type Corners = [Seen; 3];
+
+/// No triangle.
+const NONE: u32 = u32::MAX;
+
 /// Brightness of a surface that is seen edge-on.
 const DARKEST: f64 = 0.6;
 
@@ -46,6 +52,8 @@ pub(crate) struct Canvas {
     rgb: Vec<u8>,
     /// Nearness of each dot to the viewer.
     depth: Vec<f64>,
+    /// Which triangle of the surface is seen at each dot.
+    owner: Vec<u32>,
     grades: Grades,
     colours: Vec<[u8; 3]>,
 }
@@ -60,6 +68,7 @@ impl Canvas {
             centre,
             rgb: vec![255; 3 * width * height],
             depth: vec![f64::NEG_INFINITY; width * height],
+            owner: vec![NONE; width * height],
             grades,
             colours: surface_colours(grades),
         }
@@ -82,51 +91,85 @@ impl Canvas {
         )
     }
 
-    fn put(&mut self, x: usize, y: usize, depth: f64, colour: impl FnOnce(&Self) -> [u8; 3]) {
+    fn put(&mut self, x: usize, y: usize, depth: f64, colour: impl FnOnce(&Self) -> [u8; 3]) -> bool {
         let i = self.width * y + x;
-        if depth > self.depth[i] {
+        let is_nearest = depth > self.depth[i];
+        if is_nearest {
             self.depth[i] = depth;
             let colour = colour(self);
             self.rgb[3 * i..3 * i + 3].copy_from_slice(&colour);
         }
+        is_nearest
+    }
+
+    pub(crate) fn corners(&self, triangle: &[u32; 3], points: &[Seen]) -> Corners {
+        triangle.map(|i| self.dots(&points[i as usize]))
+    }
+
+    /// Where the colours of a triangle begin, which are those of its light, from the viewer's side.
+    fn row(&self, [a, b, c]: &Corners) -> usize {
+        let normal = (b - a).cross(&(c - a));
+        let light = (normal / normal.norm() * normal.z.signum()).dot(&Seen::new(-0.35, -0.45, 0.82)).max(0.0);
+        (light * (self.grades.lights - 1) as f64).round() as usize * self.grades.values
+    }
+
+    fn graded(&self, value: f64) -> usize {
+        (value.clamp(0.0, 1.0) * (self.grades.values - 1) as f64).round() as usize
+    }
+
+    /// The colour of a triangle with one value from 0 to 1.
+    pub(crate) fn colour(&self, corners: &Corners, value: f64) -> [u8; 3] {
+        self.colours[self.row(corners) + self.graded(value)]
     }
 
     /// A surface coloured by `values` between 0 and 1, lit from the viewer's side.
     pub(crate) fn surface(&mut self, triangles: &[[u32; 3]], points: &[Seen], values: &[f64]) {
-        for triangle in triangles {
-            let [a, b, c] = triangle.map(|i| self.dots(&points[i as usize]));
+        let size = [self.width, self.height];
+        for (number, triangle) in (0_u32..).zip(triangles) {
+            let corners = self.corners(triangle, points);
             let [va, vb, vc] = triangle.map(|i| values[i as usize]);
-            let normal = (b - a).cross(&(c - a));
-            // Twice the area on the screen, negative for a triangle that is seen from its back.
-            let area = normal.z;
-            if area == 0.0 {
-                continue;
-            }
-            let light = (normal / normal.norm() * area.signum()).dot(&Seen::new(-0.35, -0.45, 0.82)).max(0.0);
-            let row = (light * (self.grades.lights - 1) as f64).round() as usize * self.grades.values;
-            let range = |low: f64, high: f64, end: usize| {
-                (low - 0.5).ceil().max(0.0) as usize..((high - 0.5).floor() + 1.0).clamp(0.0, end as f64) as usize
-            };
-            let (xs, ys) = ([a.x, b.x, c.x], [a.y, b.y, c.y]);
-            let least = |v: [f64; 3]| v[0].min(v[1]).min(v[2]);
-            let most = |v: [f64; 3]| v[0].max(v[1]).max(v[2]);
-            for y in range(least(ys), most(ys), self.height) {
-                for x in range(least(xs), most(xs), self.width) {
-                    let (px, py) = (x as f64 + 0.5, y as f64 + 0.5);
-                    // Barycentric coordinates of the dot.
-                    let wa = ((b.x - px) * (c.y - py) - (c.x - px) * (b.y - py)) / area;
-                    let wb = ((c.x - px) * (a.y - py) - (a.x - px) * (c.y - py)) / area;
-                    let wc = 1.0 - wa - wb;
-                    if wa < 0.0 || wb < 0.0 || wc < 0.0 {
-                        continue;
-                    }
-                    let value = (wa * va + wb * vb + wc * vc).clamp(0.0, 1.0);
-                    self.put(x, y, wa * a.z + wb * b.z + wc * c.z, |canvas| {
-                        canvas.colours[row + (value * (canvas.grades.values - 1) as f64).round() as usize]
-                    });
+            let row = self.row(&corners);
+            each_dot(&corners, size, |x, y, [wa, wb, wc], depth| {
+                let value = wa * va + wb * vb + wc * vc;
+                if self.put(x, y, depth, |canvas| canvas.colours[row + canvas.graded(value)]) {
+                    self.owner[size[0] * y + x] = number;
                 }
-            }
+            });
         }
+    }
+
+    /// The triangles of the surface that are seen at one dot or more, in their order.
+    pub(crate) fn owners(&self) -> Vec<u32> {
+        let mut owners: Vec<u32> = self.owner.iter().copied().filter(|owner| *owner != NONE).collect();
+        owners.sort_unstable();
+        owners.dedup();
+        owners
+    }
+
+    /// Which part of the dots would show something too far away if triangles were painted in this order.
+    pub(crate) fn painted_wrongly<'a>(&self, order: impl Iterator<Item = &'a Corners>) -> f64 {
+        let mut painted = vec![f64::NEG_INFINITY; self.depth.len()];
+        for corners in order {
+            each_dot(corners, [self.width, self.height], |x, y, _, depth| painted[self.width * y + x] = depth);
+        }
+        let seen = || self.depth.iter().zip(&painted).filter(|(depth, _)| **depth > f64::NEG_INFINITY);
+        let wrong = seen().filter(|(depth, painted)| **painted < **depth - 2.0).count();
+        wrong as f64 / seen().count().max(1) as f64
+    }
+
+    /// The parts of a line between two points that no surface hides by more than its width, in dots.
+    pub(crate) fn unhidden(&self, from: &Seen, to: &Seen, width: f64) -> Vec<[Seen; 2]> {
+        let (from, to) = (self.dots(from), self.dots(to));
+        let steps = (to - from).xy().amax().ceil().max(1.0);
+        let at = |step: usize| from + (to - from) * (step as f64 / steps);
+        let is_seen = |step: &usize| {
+            let point = at(*step);
+            let is_on = (0.0..self.width as f64).contains(&point.x) && (0.0..self.height as f64).contains(&point.y);
+            is_on && self.depth[self.width * point.y as usize + point.x as usize] < point.z + 1.5 * width
+        };
+        let all: Vec<usize> = (0..=steps as usize).collect();
+        let parts = all.chunk_by(|a, b| is_seen(a) == is_seen(b)).filter(|part| part.len() > 1 && is_seen(&part[0]));
+        parts.map(|part| [at(part[0]), at(part[part.len() - 1])]).collect()
     }
 
     /// A line between two points, `width` dots wide; hidden where a surface is nearer by more than that.
@@ -146,6 +189,35 @@ impl Canvas {
                     let RGBColor(r, g, b) = colour;
                     self.put(x, y, at.z + 1.5 * width, |_| [r, g, b]);
                 }
+            }
+        }
+    }
+}
+
+/// Calls with each dot of a triangle, within a canvas of this width and height: its place, the weights of the corners, and
+/// how near it is.
+fn each_dot(corners: &Corners, [width, height]: [usize; 2], mut call: impl FnMut(usize, usize, [f64; 3], f64)) {
+    let [a, b, c] = corners;
+    // Twice the area on the screen, negative for a triangle that is seen from its back.
+    let area = (b - a).cross(&(c - a)).z;
+    if area == 0.0 {
+        return;
+    }
+    let range = |low: f64, high: f64, end: usize| {
+        (low - 0.5).ceil().max(0.0) as usize..((high - 0.5).floor() + 1.0).clamp(0.0, end as f64) as usize
+    };
+    let (xs, ys) = ([a.x, b.x, c.x], [a.y, b.y, c.y]);
+    let least = |v: [f64; 3]| v[0].min(v[1]).min(v[2]);
+    let most = |v: [f64; 3]| v[0].max(v[1]).max(v[2]);
+    for y in range(least(ys), most(ys), height) {
+        for x in range(least(xs), most(xs), width) {
+            let (px, py) = (x as f64 + 0.5, y as f64 + 0.5);
+            // Barycentric coordinates of the dot.
+            let wa = ((b.x - px) * (c.y - py) - (c.x - px) * (b.y - py)) / area;
+            let wb = ((c.x - px) * (a.y - py) - (a.x - px) * (c.y - py)) / area;
+            let wc = 1.0 - wa - wb;
+            if wa >= 0.0 && wb >= 0.0 && wc >= 0.0 {
+                call(x, y, [wa, wb, wc], wa * a.z + wb * b.z + wc * c.z);
             }
         }
     }

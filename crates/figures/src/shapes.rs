@@ -3,23 +3,22 @@
 use std::path::{Path, PathBuf};
 
 use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, VPos};
 
 use crate::FigureError;
-use crate::axis::{Axis, Scale};
-use crate::picture::{Area, Figure, INK, LABEL_EM, TICK_EM, TITLE_EM, Unit, save, titled};
-use crate::render::{Canvas, Grades, check_indices, check_points, value_colour};
+use crate::facets::{self, Facets};
+use crate::key::{self, colour_axis, draw_key, shade};
+use crate::picture::{Area, Figure, LABEL_EM, TITLE_EM, Unit, save, titled};
+use crate::render::{Canvas, Grades, check_indices, check_points};
 use crate::view::{Seen, View, Window};
 
 const WIDTH: f64 = 900.0;
 const MARGIN: f64 = 16.0;
 const GAP: f64 = 14.0;
-const BAR: [f64; 2] = [240.0, 10.0];
 const CAPTION: f64 = 1.7 * LABEL_EM;
-/// The colour bar with its labels.
-const BAR_AREA: f64 = BAR[1] + 2.6 * LABEL_EM + 8.0;
 const GRADES: Grades = Grades { values: 64, lights: 12 };
 pub(crate) const EDGE: RGBColor = RGBColor(40, 40, 40);
+/// Width of edges, in pixels.
+const LINE: f64 = 0.7;
 const UNDEFORMED: RGBColor = RGBColor(150, 150, 150);
 
 /// One body of a [`ShapeGrid`].
@@ -55,13 +54,14 @@ pub struct ShapeGrid<'a> {
 }
 
 impl ShapeGrid<'_> {
-    /// Writes `<stem>.svg` and `<stem>.png` and returns the two paths. Colours run from the smallest
-    /// value of all panels to the largest. The bodies are a bitmap inside the SVG, texts are texts.
+    /// Writes `<stem>.svg`, `<stem>.pdf` and `<stem>.png` and returns the three paths. Colours run from 0, or the smallest
+    /// value of all panels if that is negative, to the largest. In the SVG and the PDF, bodies are vectors while they have
+    /// up to 20 000 visible triangles and lines together, about two megabytes; else bitmaps. Texts are texts.
     ///
     /// # Errors
     /// [`FigureError::Empty`] without panels or columns, [`FigureError::WrongLength`],
     /// [`FigureError::NoSuchPoint`], [`FigureError::NotFinite`], [`FigureError::Write`].
-    pub fn save(&self, stem: impl AsRef<Path>) -> Result<[PathBuf; 2], FigureError> {
+    pub fn save(&self, stem: impl AsRef<Path>) -> Result<[PathBuf; 3], FigureError> {
         self.check()?;
         save(self, stem.as_ref())
     }
@@ -95,36 +95,10 @@ impl ShapeGrid<'_> {
         self.panels.iter().map(around).collect()
     }
 
-    fn draw_bar<DB: DrawingBackend>(&self, area: &Area<DB>, values: &Axis, unit: Unit) -> Result<(), FigureError> {
-        let side = unit.px(0.5 * (WIDTH - BAR[0]) - MARGIN);
-        let mut chart = ChartBuilder::on(area)
-            .margin_left(side)
-            .margin_right(side)
-            .x_label_area_size(area.dim_in_pixel().1 as i32 - unit.px(BAR[1]))
-            .build_cartesian_2d(values.clone(), 0.0..1.0)?;
-        chart
-            .configure_mesh()
-            .disable_mesh()
-            .axis_style(INK.stroke_width(unit.stroke(1.0)))
-            .label_style(unit.text(TICK_EM, HPos::Center, VPos::Top))
-            .axis_desc_style(unit.text(LABEL_EM, HPos::Center, VPos::Top))
-            .x_desc(&self.value_label)
-            .set_all_tick_mark_size(unit.px(3.0))
-            .draw()?;
-        let steps = 120;
-        let (low, high) = values.range;
-        let at = |i: usize| low + (high - low) * i as f64 / steps as f64;
-        chart.draw_series((0..steps).map(|i| {
-            let colour = value_colour((i as f64 + 0.5) / steps as f64);
-            Rectangle::new([(at(i), 0.0), (at(i + 1), 1.0)], colour.filled())
-        }))?;
-        if !values.note.is_empty() {
-            let (across, down) = chart.plotting_area().get_pixel_range();
-            let text = unit.text(TICK_EM, HPos::Left, VPos::Bottom);
-            let screen = area.use_screen_coord();
-            screen.draw(&Text::new(values.note.as_str(), (across.end + unit.px(14.0), down.end), text))?;
-        }
-        Ok(())
+    fn lines(&self) -> impl Iterator<Item = ([usize; 2], bool)> {
+        let has_undeformed = !self.undeformed.is_empty();
+        let edges = move |is_body: bool| self.edges.iter().map(move |edge| (edge.map(|i| i as usize), is_body));
+        edges(true).chain(edges(false).filter(move |_| has_undeformed))
     }
 }
 
@@ -136,13 +110,11 @@ impl Figure for ShapeGrid<'_> {
         let height = (width * up / across.max(up)).max(24.0); // which leaves out what is no number, too
         let title = if self.title.is_empty() { 0.0 } else { 1.8 * TITLE_EM };
         let rows = self.rows() as f64 * (CAPTION + height + GAP);
-        [WIDTH, 2.0 * MARGIN + title + rows + BAR_AREA].map(|length| length.ceil() as u32)
+        [WIDTH, 2.0 * MARGIN + title + rows + key::HEIGHT].map(|length| length.ceil() as u32)
     }
 
     fn draw<DB: DrawingBackend>(&self, picture: &Area<DB>, unit: Unit) -> Result<(), FigureError> {
-        let values =
-            Axis::new(Scale::Linear, self.panels.iter().flat_map(|panel| panel.values.iter().copied()), 0.0, 5);
-        let (low, high) = values.range;
+        let values = colour_axis(self.panels.iter().flat_map(|panel| panel.values.iter().copied()));
         let see = |points: &[[f64; 3]]| -> Vec<Seen> { points.iter().map(|point| self.view.see(point)).collect() };
         let undeformed = see(self.undeformed);
         let windows = self.windows();
@@ -150,29 +122,72 @@ impl Figure for ShapeGrid<'_> {
 
         let margin = unit.px(MARGIN);
         let area = titled(picture.margin(margin, margin, margin, margin), &self.title, TITLE_EM, unit)?;
-        let (grid, bar) = area.split_vertically(area.dim_in_pixel().1 as i32 - unit.px(BAR_AREA));
-        let cells = grid.split_evenly((self.rows(), self.columns));
-        for ((panel, window), cell) in self.panels.iter().zip(windows).zip(cells) {
+        let (grid, key) = area.split_vertically(area.dim_in_pixel().1 as i32 - unit.px(key::HEIGHT));
+        draw_key(&key, &self.view, &values, &self.value_label, unit)?;
+
+        let mut bodies = Vec::new();
+        for ((panel, window), cell) in
+            self.panels.iter().zip(windows).zip(grid.split_evenly((self.rows(), self.columns)))
+        {
             let gap = unit.px(0.5 * GAP);
             let cell = titled(cell.margin(0, 2 * gap, gap, gap), &panel.title, LABEL_EM, unit)?;
-            let (width, height) = cell.dim_in_pixel();
+            let shades: Vec<f64> = panel.values.iter().map(|value| shade(&values, *value)).collect();
+            bodies.push(Body { cell, window, points: see(&panel.points), shades });
+        }
+        let canvas = |body: &Body<DB>| {
+            let (width, height) = body.cell.dim_in_pixel();
             let fit = (f64::from(width) / across).min(f64::from(height) / up);
             let scale = 0.98 * if fit.is_finite() { fit } else { 1.0 };
-            let mut canvas = Canvas::new([width, height], scale, window.centre(), GRADES);
-            let body = see(&panel.points);
-            let shades: Vec<f64> =
-                panel.values.iter().map(|value| (values.shown(*value) - low) / (high - low)).collect();
-            canvas.surface(self.triangles, &body, &shades);
-            for (points, colour) in [(&body, EDGE), (&undeformed, UNDEFORMED)] {
-                for edge in self.edges.iter().filter(|_| !points.is_empty()) {
-                    let [from, to] = edge.map(|i| points[i as usize]);
-                    canvas.line(&from, &to, 0.7 * unit.per_pixel(), colour);
+            let mut canvas = Canvas::new([width, height], scale, body.window.centre(), GRADES);
+            canvas.surface(self.triangles, &body.points, &body.shades);
+            canvas
+        };
+        let thickness = LINE * unit.per_pixel();
+        let ends = |body: &Body<DB>, edge: [usize; 2], is_body: bool| {
+            let (points, colour) = if is_body { (&body.points, EDGE) } else { (&undeformed, UNDEFORMED) };
+            (edge.map(|i| points[i]), colour)
+        };
+
+        let mut facets = unit.is_vector.then(Vec::new);
+        let mut count = 0;
+        for body in &bodies {
+            let Some(drawn) = facets.as_mut() else { break };
+            let canvas = canvas(body);
+            let of_body = Facets::of(&canvas, self.triangles, &body.points, &body.shades, unit).map(|mut of_body| {
+                for (edge, is_body) in self.lines() {
+                    let ([from, to], colour) = ends(body, edge, is_body);
+                    of_body.line(&canvas, &from, &to, thickness, colour);
                 }
+                of_body
+            });
+            count += of_body.as_ref().map_or(0, Facets::count);
+            match of_body.filter(|_| count <= facets::MOST) {
+                Some(of_body) => drawn.push(of_body),
+                None => facets = None,
             }
-            canvas.draw(&cell)?;
         }
-        self.draw_bar(&bar, &values, unit)
+        if let Some(facets) = facets {
+            return bodies.iter().zip(facets).try_for_each(|(body, facets)| facets.draw(&body.cell));
+        }
+        for body in &bodies {
+            let mut canvas = canvas(body);
+            for (edge, is_body) in self.lines() {
+                let ([from, to], colour) = ends(body, edge, is_body);
+                canvas.line(&from, &to, thickness, colour);
+            }
+            canvas.draw(&body.cell)?;
+        }
+        Ok(())
     }
+}
+
+/// A body as it is seen, and where it is drawn.
+struct Body<DB: DrawingBackend> {
+    cell: Area<DB>,
+    window: Window,
+    points: Vec<Seen>,
+    /// Its values, from 0 to 1.
+    shades: Vec<f64>,
 }
 
 /// The largest extents of all windows, to the right and up.

@@ -27,6 +27,7 @@ fn chart(title: &str, series: Vec<Series>) -> LineChart {
         x_scale: Scale::Linear,
         y_scale: Scale::Linear,
         series,
+        reference: None,
     }
 }
 
@@ -55,7 +56,7 @@ fn coinciding_series_are_both_drawn() {
             series("rigid plate", Stroke::Solid, times(50).map(|t| (t, rigid(t)))),
         ],
     );
-    let [svg, _] = chart.save(folder().join("coinciding")).unwrap();
+    let [svg, ..] = chart.save(folder().join("coinciding")).unwrap();
     let text = std::fs::read_to_string(&svg).unwrap();
     let first = |colour: &str| text.find(&format!("stroke=\"{colour}\"")).unwrap();
     // The dashes of the second colour come after, and so above, all solid lines.
@@ -70,7 +71,7 @@ fn a_long_history_keeps_its_peak_and_a_small_file() {
     let points = (0..n).map(|i| (i as f64 * 1e-4, value(i)));
     let mut chart = chart("", vec![series("", Stroke::Solid, points)]);
     chart.y_label = "Acceleration of P1 (mm/s²)".into();
-    let [svg, _] = chart.save(folder().join("long")).unwrap();
+    let [svg, ..] = chart.save(folder().join("long")).unwrap();
     assert!(size_of(&svg) < 100_000, "{}", size_of(&svg));
 
     // The spike is alone at the top: 3 on an axis from −1.2 to 3.2, whose frame is the tallest path.
@@ -93,22 +94,22 @@ fn a_long_history_keeps_its_peak_and_a_small_file() {
 fn constant_tiny_and_many_series_have_axes() {
     let zero =
         chart("Linear momentum, undisturbed", vec![series("all zero", Stroke::Solid, times(10).map(|t| (t, 0.0)))]);
-    let [svg, _] = zero.save(folder().join("zero")).unwrap();
+    let [svg, ..] = zero.save(folder().join("zero")).unwrap();
     assert_eq!((count(&svg, "all zero"), count(&svg, "−1.0"), count(&svg, "1.0")), (1, 1, 1));
     let single = chart("One point", vec![series("", Stroke::Solid, [(2.0, 5.0)])]);
-    let [svg, _] = single.save(folder().join("single")).unwrap();
+    let [svg, ..] = single.save(folder().join("single")).unwrap();
     let text = std::fs::read_to_string(&svg).unwrap();
     assert_eq!(text.lines().filter(|line| line.contains("<circle") && line.contains("#0072B2")).count(), 1);
 
     let drift = |t: f64| 1e-13 * (40.0 * t).sin() - 4e-13 * t;
     let mut tiny = chart("Energy error", vec![series("exponential", Stroke::Solid, times(800).map(|t| (t, drift(t))))]);
     tiny.y_label = "Energy − E₀ (Mg mm²/s²)".into();
-    let [svg, _] = tiny.save(folder().join("tiny")).unwrap();
+    let [svg, ..] = tiny.save(folder().join("tiny")).unwrap();
     assert_eq!((count(&svg, "×10⁻¹⁵"), count(&svg, "−200")), (1, 1));
     let mut offset =
         chart("Kinetic energy", vec![series("", Stroke::Solid, times(800).map(|t| (t, 467.5 + 1e5 * drift(t))))]);
     offset.y_label = "E (Mg mm²/s²)".into();
-    let [svg, _] = offset.save(folder().join("offset")).unwrap();
+    let [svg, ..] = offset.save(folder().join("offset")).unwrap();
     assert_eq!((count(&svg, "×10⁻⁹ + 467.5"), count(&svg, "−25")), (1, 1));
 
     let wave = |k: usize| {
@@ -116,7 +117,7 @@ fn constant_tiny_and_many_series_have_axes() {
         let points = times(300).map(move |t| (t, 1e5 * (20.0 * t + k as f64).sin() * (1.0 + k as f64)));
         series(&format!("modal coordinate q{k}"), stroke, points)
     };
-    let [svg, _] = chart("Nine series", (0..9).map(wave).collect()).save(folder().join("many")).unwrap();
+    let [svg, ..] = chart("Nine series", (0..9).map(wave).collect()).save(folder().join("many")).unwrap();
     for k in 0..9 {
         assert_eq!(count(&svg, &format!("modal coordinate q{k}")), 1);
     }
@@ -139,8 +140,9 @@ fn logarithmic_axes_show_orders_as_slopes() {
             scheme("strang, Δt²", 2, 50.0, Stroke::Solid),
             scheme("exponential, Δt⁴", 4, 3e7, Stroke::Dashed),
         ],
+        reference: None,
     };
-    let [svg, _] = chart.save(folder().join("logarithmic")).unwrap();
+    let [svg, ..] = chart.save(folder().join("logarithmic")).unwrap();
     for decade in ["10⁻⁵", "10⁻²", "10⁻⁴", "10⁻³", "10⁻⁸"] {
         assert!(count(&svg, decade) > 0, "{decade}");
     }
@@ -166,6 +168,98 @@ fn charts_refuse_what_cannot_be_drawn() {
         Err(FigureError::Write { path, .. }) => assert!(path.ends_with("no such folder/chart.svg")),
         other => panic!("{other:?}"),
     }
+}
+
+/// A half-sine pulse at the start that is over after this part of the time, or a step where it stays.
+fn pulse(part: f64, stays: bool) -> impl Fn(f64) -> (f64, f64) {
+    move |t| {
+        let phase = (t / 0.5 / part).min(1.0) * PI;
+        (t, 50.0 * if stays { 0.5 * (1.0 - phase.cos()) } else { phase.sin() })
+    }
+}
+
+#[test]
+fn what_is_over_soon_is_enlarged_in_an_inset_and_nothing_else_is() {
+    let draw = |name: &str, part: f64, stays: bool| {
+        let both = || times(5001).map(pulse(part, stays));
+        let lines = vec![series("flexible", Stroke::Solid, both()), series("rigid", Stroke::Dashed, both())];
+        let [svg, ..] = chart("A pulse at the start", lines).save(folder().join(name)).unwrap();
+        let text = std::fs::read_to_string(svg).unwrap();
+        // The frame around the axes is a closed path of five places.
+        text.lines().filter(|line| line.contains("#1E1E1E") && line.matches(',').count() == 5).count()
+    };
+    assert_eq!(draw("pulse", 0.04, false), 2);
+    assert_eq!(draw("step", 0.04, true), 2);
+    assert_eq!(draw("slow", 0.5, false), 1);
+}
+
+#[test]
+fn noise_is_called_so_and_does_not_fill_the_axis() {
+    let noise = |peak: f64| {
+        let lines = vec![series("α₁", Stroke::Solid, times(500).map(|t| (t, 9e-11 * (40.0 * t).sin().powi(3))))];
+        let reference = Some(Reference { name: "the peak of α₂".into(), value: peak });
+        LineChart { reference, ..chart("Angular acceleration", lines) }
+    };
+    let [svg, ..] = noise(8.45).save(folder().join("noise")).unwrap();
+    // 9e-11 of 8.45; the axis goes to the peak and not by steps of 1e-12.
+    assert_eq!(count(&svg, "numerical noise: at most 9.0·10⁻¹¹, 1.1·10⁻¹¹ of the peak of α₂"), 1);
+    assert_eq!((count(&svg, "8"), count(&svg, "×10⁻¹²")), (1, 0));
+
+    let [svg, ..] = noise(1e-5).save(folder().join("small")).unwrap();
+    assert_eq!(count(&svg, "at most 9.0·10⁻¹¹, 9.0·10⁻⁶ of the peak of α₂"), 1);
+    assert_eq!(count(&svg, "×10⁻¹²"), 1);
+}
+
+#[test]
+fn small_multiples_share_their_axes() {
+    let line = |k: u32| {
+        let points = times(2000).map(move |t| (t, 4e-5 * f64::from(k) * (150.0 * t).sin() * (-9.0 * t).exp()));
+        series(&format!("P{k}"), Stroke::Solid, points)
+    };
+    let grid = ChartGrid {
+        title: "Displacement in X₂".into(),
+        x_label: "time, s".into(),
+        y_label: "displacement, mm".into(),
+        series: (1..=8).map(line).collect(),
+        columns: 2,
+        reference: Some(Reference { name: "the largest displacement".into(), value: 400.0 }),
+    };
+    let [svg, ..] = grid.save(folder().join("multiples")).unwrap();
+    assert_eq!((count(&svg, "P1"), count(&svg, "P8"), count(&svg, "time, s"), count(&svg, "×10⁻⁶")), (1, 1, 1, 8));
+    // The first line is an eighth of the last, over the same axis.
+    let heights: Vec<i64> = std::fs::read_to_string(&svg)
+        .unwrap()
+        .lines()
+        .filter(|line| line.contains("#0072B2"))
+        .map(|line| {
+            let places = line.split("points=\"").nth(1).unwrap().split('"').next().unwrap().split_whitespace();
+            let ys: Vec<i64> = places.map(|place| place.split_once(',').unwrap().1.parse().unwrap()).collect();
+            ys.iter().max().unwrap() - ys.iter().min().unwrap()
+        })
+        .collect();
+    assert_eq!(heights.len(), 8);
+    assert!((heights[7] as f64 / heights[0] as f64 - 8.0).abs() < 0.5, "{heights:?}");
+    assert!(matches!(
+        ChartGrid { columns: 0, ..grid }.save(folder().join("never")),
+        Err(FigureError::Empty { what: "column", .. })
+    ));
+}
+
+#[test]
+fn a_pdf_has_one_page_of_the_size_of_the_picture_and_the_letters_of_its_texts() {
+    let lines = || vec![series("flexible", Stroke::Dashed, times(5001).map(pulse(0.04, false)))];
+    let save = |name: &str| chart("Kinetic energy", lines()).save(folder().join(name)).unwrap();
+    let [_, pdf, _] = save("page");
+    let bytes = std::fs::read(&pdf).unwrap();
+    let text = String::from_utf8_lossy(&bytes);
+    assert!(text.starts_with("%PDF-1.") && text.trim_end().ends_with("%%EOF"));
+    assert!(text.contains("/Type/Pages/Count 1/"), "{:?}", text.split("/Count").nth(1).map(|rest| &rest[..5]));
+    // 720 by 440 pixels of 1/96 inch.
+    assert!(text.contains("/MediaBox[0 0 540 330]"), "{:?}", text.split("/MediaBox").nth(1).map(|rest| &rest[..40]));
+    assert!(text.contains("DejaVuSans") && !text.contains("/Subtype/Image"));
+    // Only the letters that are used, of a font of 750 kB.
+    assert!(bytes.len() < 60_000, "{}", bytes.len());
+    assert_eq!(std::fs::read(&save("page again")[1]).unwrap(), bytes);
 }
 
 /// Bending and torsion shapes like those of a free plate, with the size of the displacement.
@@ -210,7 +304,7 @@ fn mode_shapes_fill_their_panels() {
     let edges = sharp_edges(&block.points, &triangles);
     assert_eq!(triangles.len(), 2 * 4 * 2 * (500 + 100 + 5));
     let figure = grid(&block, &triangles, &edges, 60.0);
-    let [svg, png] = figure.save(folder().join("modes")).unwrap();
+    let [svg, _, png] = figure.save(folder().join("modes")).unwrap();
     assert!(size_of(&svg) < 2_000_000 && size_of(&png) < 1_000_000, "{} {}", size_of(&svg), size_of(&png));
 
     let cube = Block::new([100.0, 80.0, 60.0], [4, 4, 4]);
@@ -221,6 +315,62 @@ fn mode_shapes_fill_their_panels() {
     figure.columns = 3;
     figure.value_label = "nothing moves".into();
     figure.save(folder().join("blocks")).unwrap();
+}
+
+#[test]
+fn small_bodies_are_vectors_and_large_ones_pictures() {
+    let draw = |name: &str, cells: [usize; 3]| {
+        let block = Block::new([1000.0, 200.0, 100.0], cells);
+        let triangles = boundary_triangles(&block.tetrahedra);
+        let edges = sharp_edges(&block.points, &triangles);
+        let mut figure = grid(&block, &triangles, &edges, 60.0);
+        figure.panels.truncate(4);
+        let [svg, pdf, _] = figure.save(folder().join(name)).unwrap();
+        let text = std::fs::read_to_string(&svg).unwrap();
+        assert_eq!(count(&svg, "0"), 1, "the bar begins at 0");
+        assert_eq!((count(&svg, "x"), count(&svg, "y"), count(&svg, "z")), (1, 1, 1));
+        let is_picture = String::from_utf8_lossy(&std::fs::read(&pdf).unwrap()).contains("/Subtype/Image");
+        assert_eq!(text.contains("<image"), is_picture);
+        (text.matches("<polygon").count(), text.contains("<image"), text.len())
+    };
+    let (areas, is_picture, length) = draw("vectors", [20, 4, 2]);
+    // Half of the surface is seen from one side, and less where it hides itself.
+    let all = 4 * 8 * 2 * (20 * 4 + 4 * 2 + 20 * 2);
+    assert!(!is_picture && areas > all / 3 && areas < 3 * all / 5 && length < 1_000_000, "{areas} of {all}, {length}");
+    let (areas, is_picture, _) = draw("no vectors", [60, 10, 5]);
+    assert!(is_picture && areas == 0, "{areas}");
+}
+
+#[test]
+fn areas_that_cannot_be_painted_one_after_another_are_a_picture() {
+    // Two squares that pass through each other: each is in front of the other on one side.
+    let points = [
+        [-1.0, -1.0, -0.5],
+        [1.0, -1.0, 0.5],
+        [1.0, 1.0, 0.5],
+        [-1.0, 1.0, -0.5],
+        [-1.0, -1.0, 0.5],
+        [1.0, -1.0, -0.5],
+        [1.0, 1.0, -0.5],
+        [-1.0, 1.0, 0.5],
+    ];
+    let panel = Panel { title: String::new(), points: points.to_vec(), values: (0..8).map(f64::from).collect() };
+    let triangles = [[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7]];
+    let draw = |triangles: &[[u32; 3]], name: &str| {
+        let figure = ShapeGrid {
+            title: String::new(),
+            value_label: "x".into(),
+            triangles,
+            edges: &[],
+            undeformed: &[],
+            panels: vec![panel.clone()],
+            columns: 1,
+            view: View { azimuth: -90.0, elevation: 90.0 },
+        };
+        std::fs::read_to_string(&figure.save(folder().join(name)).unwrap()[0]).unwrap().contains("<image")
+    };
+    assert!(draw(&triangles, "crossed"));
+    assert!(!draw(&triangles[..2], "one of them"));
 }
 
 #[test]
@@ -261,6 +411,7 @@ fn a_tumbling_plate_is_a_small_animation() {
         .collect();
     let animation = Animation {
         title: "Free plate, 50 N end pulse".into(),
+        value_label: "displacement by deformation, mm".into(),
         triangles: &triangles,
         edges: &edges,
         frames: &frames,
@@ -277,7 +428,7 @@ fn a_tumbling_plate_is_a_small_animation() {
     assert!(gif.global_palette().is_some());
     let mut drawn = Vec::new();
     while let Some(frame) = gif.read_next_frame().unwrap() {
-        assert!(frame.palette.is_none() && frame.delay == 5 && (frame.width, frame.height) == (720, 400));
+        assert!(frame.palette.is_none() && frame.delay == 5 && (frame.width, frame.height) == (720, 440));
         drawn.push(frame.buffer.to_vec());
     }
     assert_eq!(drawn.len(), 60);
@@ -307,6 +458,7 @@ fn a_body_without_extent_is_drawn() {
     let frames = vec![Frame { points, values: vec![0.0; 3], caption: String::new() }; 2];
     let animation = Animation {
         title: String::new(),
+        value_label: String::new(),
         triangles: &[[0, 1, 2]],
         edges: &[[0, 1]],
         frames: &frames,
@@ -333,7 +485,7 @@ fn guides_are_labelled_at_their_ends_and_rings_lie_within_the_window() {
             ],
         )
     };
-    let [svg, _] = chart.save(folder().join("window")).unwrap();
+    let [svg, ..] = chart.save(folder().join("window")).unwrap();
     let text = std::fs::read_to_string(&svg).unwrap();
     for label in ["wave", "meetings", "to the right", "to the top"] {
         assert_eq!(count(&svg, label), 1, "{label}");

@@ -1,22 +1,39 @@
 //! `flexframe animate`: a scene as a moving picture.
 
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::path::{Path, PathBuf};
 
 use figures::{Animation, FigureError, Frame, View};
-use frames_rk4::{Reached, StepError};
+use frames_rk4::{Observation, Reached, Simulation, StepError};
 use nalgebra::Vector3;
 use scene::{Model, Scene};
 
+use crate::report::quantity;
 use crate::run::{RunError, RunProgress};
 use crate::surface::Surface;
+
+/// An animation has no more frames.
+pub const MOST_FRAMES: u64 = 10_000;
 
 /// How the picture is made.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AnimationSettings {
-    /// Number of frames, first and last state among them (at least two).
+    /// Number of frames, first and last state among them (two to [`MOST_FRAMES`]).
     pub frames: u64,
     /// Factor on the deformation that is drawn.
     pub magnification: f64,
+    /// Time of the first frame; `None` for the start of the run.
+    pub from: Option<f64>,
+    /// Time of the last frame; `None` for the end of the run.
+    pub to: Option<f64>,
+    /// From where the body is seen.
+    pub view: View,
+}
+
+impl Default for AnimationSettings {
+    fn default() -> Self {
+        Self { frames: 60, magnification: 1.0, from: None, to: None, view: View::default() }
+    }
 }
 
 /// An animation that could not be made.
@@ -45,12 +62,26 @@ pub enum AnimationError {
         /// Where it was to go.
         path: PathBuf,
     },
+    /// The times are not those of the run.
+    #[error(
+        "--from, --to: found the times from {from} to {to}, expected a part of the run, which goes from 0 to {end}\n = \
+         give --from and --to so that 0 ≤ from < to ≤ {end}, or leave them out"
+    )]
+    Times {
+        /// First time asked for.
+        from: f64,
+        /// Last time asked for.
+        to: f64,
+        /// End of the run.
+        end: f64,
+    },
     /// The picture could not be drawn.
     #[error(transparent)]
     Figure(#[from] FigureError),
 }
 
-/// Runs a scene and draws it into a GIF at `path`, which ends in `.gif`; colours are the deformation.
+/// Runs a scene and draws it into a GIF at `path`, which ends in `.gif`; colours are the deformation. Returns a warning
+/// where the frames are too few to show the spin.
 ///
 /// # Errors
 /// [`AnimationError`].
@@ -59,9 +90,14 @@ pub fn animate(
     path: &Path,
     settings: AnimationSettings,
     mut progress: impl FnMut(RunProgress),
-) -> Result<(), AnimationError> {
+) -> Result<Option<String>, AnimationError> {
     if !path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("gif")) {
         return Err(AnimationError::NotGif { path: path.to_owned() });
+    }
+    let end = scene.time.end;
+    let (from, to) = (settings.from.unwrap_or(0.0), settings.to.unwrap_or(end));
+    if !(0.0 <= from && from < to && to <= end) {
+        return Err(AnimationError::Times { from, to, end });
     }
     let model = Model::build(scene, |p| progress(RunProgress::Build(p))).map_err(RunError::from)?;
     let mut simulation =
@@ -69,34 +105,101 @@ pub fn animate(
     let Some(meshed) = &model.meshed else {
         return Err(AnimationError::NoMesh { scene: scene.path.clone() });
     };
+    simulation.keep_last_step();
     let surface = Surface::new(&meshed.mesh);
-    let last = settings.frames.max(2) - 1;
+    let last = settings.frames.clamp(2, MOST_FRAMES) - 1;
+    let time_unit = &scene.units.time;
+    let decimals = decimals((to - from) / last as f64);
     let mut frames = Vec::new();
+    let mut fastest = 0.0_f64;
     for frame in 0..=last {
-        // The first step at or after the frame's time.
-        let due = scene.time.end * (frame as f64 / last as f64) * (1.0 - 1e-12);
-        let failed = |source| AnimationError::Step { scene: scene.path.clone(), source };
-        while simulation.time() < due && simulation.advance(1).map_err(failed)? != Reached::End {}
-        let now = simulation.observation().map_err(failed)?;
+        let part = frame as f64 / last as f64;
+        let due = from * (1.0 - part) + to * part;
+        let now = observed_at(&mut simulation, due)
+            .map_err(|source| AnimationError::Step { scene: scene.path.clone(), source })?;
+        fastest = fastest.max(now.omega_body.norm());
         let u = surface.displacements(meshed, &model.coordinates(&now.modal_displacement));
         let drawn: Vec<Vector3<f64>> = u.iter().map(|u| u * settings.magnification).collect();
         frames.push(Frame {
             points: surface.placed(&model, &now.origin_global, &now.attitude, &drawn),
             values: u.iter().map(Vector3::norm).collect(),
-            caption: format!("t = {:.3} {}", now.time, scene.units.time),
+            caption: format!("t = {due:.decimals$} {time_unit}"),
         });
-        progress(RunProgress::Motion(simulation.time() / simulation.end()));
+        progress(RunProgress::Motion(simulation.time() / to));
     }
+    let factor = match settings.magnification {
+        1.0 => String::new(),
+        factor => format!(" (drawn {factor} times as large)"),
+    };
     Animation {
         title: scene.title.clone(),
+        value_label: format!("displacement by deformation, {}{factor}", scene.units.length),
         triangles: &surface.triangles,
         edges: &surface.edges,
         frames: &frames,
         frame_milliseconds: 50,
-        view: View::default(),
+        view: settings.view,
         ground: true,
         traced_point: None,
     }
     .save_gif(path)?;
-    Ok(())
+    Ok(aliased((to - from) / last as f64, last, fastest, time_unit))
+}
+
+/// The motion at a time that has not been passed yet.
+fn observed_at(simulation: &mut Simulation, due: f64) -> Result<Observation, StepError> {
+    while simulation.time() < due && simulation.advance(1)? != Reached::End {}
+    if simulation.time() <= due {
+        return simulation.observation();
+    }
+    let mut now = simulation.observation()?;
+    simulation.interpolate(due, &mut now)?;
+    Ok(now)
+}
+
+/// How many decimals tell the times of frames apart that are so far from each other.
+fn decimals(interval: f64) -> usize {
+    (-interval.log10().floor()).clamp(0.0, 15.0) as usize
+}
+
+/// A warning where the body turns by more than half a turn from frame to frame, so that it seems to turn slower or
+/// backwards. A quarter of a turn is seen as what it is.
+fn aliased(interval: f64, intervals: u64, fastest: f64, time_unit: &str) -> Option<String> {
+    let angle = fastest * interval;
+    if angle <= PI {
+        return None;
+    }
+    let enough = (intervals as f64 * angle / FRAC_PI_2).ceil() + 1.0;
+    let cure = if enough <= MOST_FRAMES as f64 {
+        format!("--frames {enough:.0} shows it, or less of the time with --from and --to")
+    } else {
+        let time = (MOST_FRAMES - 1) as f64 * FRAC_PI_2 / fastest;
+        format!("show {} {time_unit} or less with --from, --to and --frames {MOST_FRAMES}", quantity(time))
+    };
+    Some(format!(
+        "the body turns by up to {:.2} turns from frame to frame, so that its spin looks slower than it is, or backwards: \
+         {cure}",
+        angle / TAU
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_spin_that_the_frames_do_not_show_is_told_with_the_frames_that_do() {
+        // 0.4 turns a frame is seen; 0.6 looks like 0.4 backwards.
+        assert_eq!(aliased(0.1, 10, 0.4 * TAU / 0.1, "s"), None);
+        let warning = aliased(0.1, 10, 0.6 * TAU / 0.1, "s").unwrap();
+        // Ten intervals of 0.6 turns are 24 quarters.
+        assert!(warning.contains("0.60 turns") && warning.contains("--frames 25 "), "{warning}");
+        let warning = aliased(1.0, 10, 1e4 * TAU, "s").unwrap();
+        assert!(warning.contains("--frames 10000") && warning.contains("show 0.249975 s"), "{warning}");
+    }
+
+    #[test]
+    fn times_of_frames_are_told_apart() {
+        assert_eq!([decimals(0.5), decimals(0.01), decimals(0.0012), decimals(3.0)], [1, 2, 3, 0]);
+    }
 }

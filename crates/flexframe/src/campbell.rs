@@ -76,7 +76,7 @@ pub struct CampbellSettings {
     pub orders: Vec<f64>,
 }
 
-/// Computes the diagram of a scene, and writes `campbell.csv`, `critical_speeds.csv`, `campbell.svg` and `campbell.png`
+/// Computes the diagram of a scene, and writes `campbell.csv`, `critical_speeds.csv`, and `campbell` as SVG, PDF and PNG
 /// to `folder`.
 ///
 /// Effects are those of the scene's `[effects]`, where `"auto"` is on. All its modes are kept (`flexible = "auto"`: the

@@ -6,11 +6,12 @@ use std::process::ExitCode;
 use std::time::Duration;
 
 use clap::{Args, CommandFactory, Parser, Subcommand};
-use flexframe::animation::{AnimationSettings, animate};
+use flexframe::animation::{AnimationSettings, MOST_FRAMES, animate};
 use flexframe::campbell::{CampbellError, CampbellSettings, Speeds, campbell};
 use flexframe::cost::{self, CostSettings};
 use flexframe::export::{self, ExportRows, Exported, Motion};
 use flexframe::failure::{Details, Failure, FailureReport, Kind};
+use flexframe::figures::View;
 use flexframe::run::{RunProgress, RunSettings};
 use flexframe::sweep::SweepSettings;
 use flexframe::{advise, html_report, mode_shapes, modes, new_scene, paper, run, sweep};
@@ -93,7 +94,7 @@ enum Command {
         /// Number of flexible modes, instead of the scene's.
         #[arg(short = 'n', long, value_name = "N")]
         flexible: Option<usize>,
-        /// Folder for a picture of the mode shapes (SVG and PNG) [default: no picture].
+        /// Folder for a picture of the mode shapes (SVG, PDF and PNG) [default: no picture].
         #[arg(short, long, value_name = "DIR")]
         output: Option<PathBuf>,
     },
@@ -235,6 +236,9 @@ enum Command {
         shell: clap_complete::Shell,
     },
     /// Run a scene and draw it as an animated GIF.
+    ///
+    /// Colours are the displacement by deformation, from 0 to the largest of the frames that are shown. A warning says
+    /// where the frames are too few to show how the body turns.
     Animate {
         #[command(flatten)]
         scene: SceneInput,
@@ -242,8 +246,18 @@ enum Command {
         #[arg(short, long, value_name = "FILE")]
         output: PathBuf,
         /// Number of frames.
-        #[arg(long, default_value_t = 60, value_parser = clap::value_parser!(u64).range(2..=10_000))]
+        #[arg(long, default_value_t = 60, value_parser = clap::value_parser!(u64).range(2..=MOST_FRAMES))]
         frames: u64,
+        /// Time of the first frame [default: 0].
+        #[arg(long, value_name = "TIME", value_parser = finite, allow_hyphen_values = true)]
+        from: Option<f64>,
+        /// Time of the last frame [default: the end of the scene].
+        #[arg(long, value_name = "TIME", value_parser = finite, allow_hyphen_values = true)]
+        to: Option<f64>,
+        /// From where the body is seen: from x, y or z, or by the angles of the viewer in degrees, about z from x and above
+        /// the xy plane [default: -60,25].
+        #[arg(long, value_name = "AXIS|ANGLE,ANGLE", value_parser = view, allow_hyphen_values = true)]
+        view: Option<View>,
         /// Factor on the deformation that is drawn.
         #[arg(long, default_value_t = 1.0, value_parser = finite, allow_hyphen_values = true)]
         magnify: f64,
@@ -448,11 +462,14 @@ fn command(cli: Cli, json_errors: bool, cache: &Cache) -> Result<(), Box<dyn Fai
             drop(bar);
             output::print(&report, json)
         }
-        Command::Animate { scene, output, frames, magnify } => {
+        Command::Animate { scene, output, frames, from, to, view, magnify } => {
             let scene = read(scene)?;
-            animate(&scene, &output, AnimationSettings { frames, magnification: magnify }, |p| bar.run(p))?;
+            let view = view.unwrap_or_default();
+            let settings = AnimationSettings { frames, magnification: magnify, from, to, view };
+            let warning = animate(&scene, &output, settings, |p| bar.run(p))?;
             drop(bar);
-            output::list(&[output])
+            output::list(&[output])?;
+            output::warn(warning.as_deref())
         }
     }
 }
@@ -503,6 +520,27 @@ fn axis(text: &str) -> Result<Direction, String> {
         .or_else(numbers)
         .map(Direction)
         .ok_or_else(|| "expected x, y, z, or three numbers that are not all zero, such as 0,0.6,0.8".to_owned())
+}
+
+/// Where a viewer is: on an axis, or at two angles.
+fn view(text: &str) -> Result<View, String> {
+    let at = |azimuth, elevation| Ok(View { azimuth, elevation });
+    let angles = || {
+        let (azimuth, elevation) = text.split_once(',')?;
+        Some((finite(azimuth.trim()).ok()?, finite(elevation.trim()).ok()?))
+    };
+    match text {
+        "x" => at(0.0, 0.0),
+        "y" => at(90.0, 0.0),
+        // With x to the right and y up.
+        "z" => at(-90.0, 90.0),
+        _ => match angles() {
+            Some((azimuth, elevation)) if (-90.0..=90.0).contains(&elevation) => at(azimuth, elevation),
+            _ => {
+                Err("expected x, y, z, or two angles in degrees, the second from -90 to 90, such as -60,25".to_owned())
+            }
+        },
+    }
 }
 
 /// Speeds as start:end:count.

@@ -59,7 +59,7 @@ pub enum CostProgress {
     },
 }
 
-/// Measures what accuracy costs on a scene, and writes `cost.csv`, `work_precision.svg` and `.png` to `folder`.
+/// Measures what accuracy costs on a scene, and writes `cost.csv`, and `work_precision` as SVG, PDF and PNG to `folder`.
 ///
 /// # Errors
 /// [`CostError`]. A run that fails is a row that says so.

@@ -44,4 +44,5 @@ pub mod run;
 mod scene_file;
 pub mod surface;
 pub mod sweep;
+mod units;
 pub mod write_error;

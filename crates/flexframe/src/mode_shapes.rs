@@ -25,11 +25,11 @@ pub enum ShapesError {
     Figure(#[from] FigureError),
 }
 
-/// Draws the flexible mode shapes, numbered from 1, to `<stem>.svg` and `<stem>.png`.
+/// Draws the flexible mode shapes, numbered from 1, to `<stem>.svg`, `<stem>.pdf` and `<stem>.png`.
 ///
 /// # Errors
 /// [`ShapesError`], also where there are no flexible modes to draw.
-pub fn draw(scene: &Scene, model: &Model, stem: &Path) -> Result<[PathBuf; 2], ShapesError> {
+pub fn draw(scene: &Scene, model: &Model, stem: &Path) -> Result<[PathBuf; 3], ShapesError> {
     let meshed = require_flexible(scene, model)?;
     let Meshed { mesh, modes, .. } = meshed;
     let surface = Surface::new(mesh);

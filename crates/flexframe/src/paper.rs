@@ -32,7 +32,7 @@ pub struct PaperReport {
     /// The page.
     #[serde(serialize_with = "json::path")]
     pub report: PathBuf,
-    /// The figures, SVG and PNG.
+    /// The figures: SVG, PDF and PNG of each.
     #[serde(serialize_with = "json::paths")]
     pub figures: Vec<PathBuf>,
     /// The numbers on the page.
@@ -79,6 +79,6 @@ impl fmt::Display for PaperReport {
             100.0 * comparison.worst_frequency_difference(),
             comparison.worst_rigid_difference()
         )?;
-        write!(f, "  report   {} with {} figures beside it", self.report.display(), self.figures.len() / 2)
+        write!(f, "  report   {} with {} figures beside it", self.report.display(), self.figures.len() / 3)
     }
 }

@@ -30,16 +30,16 @@ fn curves(directory: &Path) -> Result<(), Box<dyn Error>> {
     let manifold = "static_correction = false\nlarge = [IN_PLANE]\n[effects]\nlarge_deflection = true\nrefuse = false";
     let (_, courses) = spinning_l(0.3, 6.0, &[&stiffened, manifold])?;
     let title = "Free L that spins at 0.3 of its first frequency, from the undeformed state";
-    save(&directory.join("spinning_l"), title, "First modal coordinate", &courses)?;
+    save(&directory.join("spinning_l.svg"), title, "First modal coordinate", &courses)?;
     let stiffened = format!("[modes]\nflexible = 8\n{STIFFENED}");
     let manifold = "[modes]\nflexible = 8\nlarge = 4\n[effects]\nlarge_deflection = true\nrefuse = false";
     let courses = pendulum(2e7, 1.0, 800, &[&stiffened, manifold])?;
     let title = "Soft rod that falls from the horizontal about its hinge";
-    save(&directory.join("soft_rod"), title, "Deflection of the tip over the length", &courses)?;
+    save(&directory.join("soft_rod.svg"), title, "Deflection of the tip over the length", &courses)?;
     Ok(())
 }
 
-fn save(stem: &Path, title: &str, y_label: &str, courses: &[Course]) -> Result<(), Box<dyn Error>> {
+fn save(path: &Path, title: &str, y_label: &str, courses: &[Course]) -> Result<(), Box<dyn Error>> {
     let names =
         [("nonlinear elements", Stroke::Dashed), ("stiffened modes", Stroke::Solid), ("large modes", Stroke::Solid)];
     let series = names.into_iter().zip(courses).map(|((label, stroke), course)| Series {
@@ -54,7 +54,7 @@ fn save(stem: &Path, title: &str, y_label: &str, courses: &[Course]) -> Result<(
         x_scale: Scale::Linear,
         y_scale: Scale::Linear,
         series: series.collect(),
+        reference: None,
     };
-    let [_, bitmap] = chart.save(stem)?;
-    Ok(std::fs::remove_file(bitmap)?)
+    Ok(chart.save_svg(path)?)
 }

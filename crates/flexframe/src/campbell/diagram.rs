@@ -16,8 +16,8 @@ const ABOVE_ORDERS: f64 = 1.15;
 /// but at most so far above the highest branch.
 const ABOVE_BRANCHES: f64 = 1.05;
 
-/// Draws `<stem>.svg` and `<stem>.png`. Branches far above every order are left out.
-pub(super) fn draw(report: &CampbellReport, orders: &[f64], stem: &Path) -> Result<[PathBuf; 2], FigureError> {
+/// Draws `<stem>.svg`, `<stem>.pdf` and `<stem>.png`. Branches far above every order are left out.
+pub(super) fn draw(report: &CampbellReport, orders: &[f64], stem: &Path) -> Result<[PathBuf; 3], FigureError> {
     let end = report.speeds.last().copied().unwrap_or_default();
     let highest_order = orders.iter().copied().fold(0.0, f64::max);
     let top = top(report, highest_order * end / TAU);
@@ -50,6 +50,7 @@ pub(super) fn draw(report: &CampbellReport, orders: &[f64], stem: &Path) -> Resu
         x_scale: Scale::Linear,
         y_scale: Scale::Window(0.0, top),
         series,
+        reference: None,
     }
     .save(stem)
 }

@@ -10,7 +10,7 @@ use super::error::CampbellError;
 use super::report::CampbellReport;
 use crate::write_error::WriteError;
 
-/// Writes `campbell.csv`, `critical_speeds.csv`, `campbell.svg` and `campbell.png`.
+/// Writes `campbell.csv`, `critical_speeds.csv`, and `campbell` as SVG, PDF and PNG.
 pub(super) fn write(report: &CampbellReport, folder: &Path, orders: &[f64]) -> Result<Vec<PathBuf>, CampbellError> {
     std::fs::create_dir_all(folder).map_err(WriteError::of(folder))?;
     let mut files = Vec::new();

@@ -42,7 +42,7 @@ const COLUMNS: [&str; 24] = [
 /// Runs further off than this are not drawn.
 const DRAWN: f64 = 1.0;
 
-/// Writes `cost.csv`, `work_precision.svg` and `work_precision.png`.
+/// Writes `cost.csv`, and `work_precision` as SVG, PDF and PNG.
 pub(super) fn write(report: &CostReport, folder: &Path) -> Result<Vec<PathBuf>, CostError> {
     std::fs::create_dir_all(folder).map_err(WriteError::of(folder))?;
     let path = folder.join("cost.csv");
@@ -104,7 +104,7 @@ fn write_failure(csv: &mut String, why: &str) -> std::fmt::Result {
     writeln!(csv, "{empty},\"{}\"", why.replace('"', "\"\""))
 }
 
-/// Draws time against error, a line a scheme, to `<stem>.svg` and `<stem>.png`; nothing where there is nothing to draw.
+/// Draws time against error, a line a scheme, to `<stem>.svg`, `<stem>.pdf` and `<stem>.png`; nothing where there is nothing to draw.
 pub(super) fn draw(report: &CostReport, stem: &Path) -> Result<Vec<PathBuf>, FigureError> {
     let series: Vec<Series> = report.lines.iter().map(series).filter(|series| !series.points.is_empty()).collect();
     if series.is_empty() {
@@ -117,6 +117,7 @@ pub(super) fn draw(report: &CostReport, stem: &Path) -> Result<Vec<PathBuf>, Fig
         x_scale: Scale::Log,
         y_scale: Scale::Log,
         series,
+        reference: None,
     };
     Ok(chart.save(stem)?.to_vec())
 }

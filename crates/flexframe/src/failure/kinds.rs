@@ -278,7 +278,7 @@ impl Failure for AnimationError {
             Self::Run(error) => error.kind(),
             Self::Step { .. } => Kind::Run,
             Self::NoMesh { .. } => Kind::Input,
-            Self::NotGif { .. } => Kind::Usage,
+            Self::NotGif { .. } | Self::Times { .. } => Kind::Usage,
             Self::Figure(error) => error.kind(),
         }
     }
@@ -288,6 +288,12 @@ impl Failure for AnimationError {
             Self::Run(error) => error.details(),
             Self::Step { scene, .. } | Self::NoMesh { scene } => Details::of_file(scene),
             Self::NotGif { path } => Details::of_file(path),
+            Self::Times { from, to, end } => Details {
+                key: Some("--from, --to".to_owned()),
+                found: Some(format!("{from} to {to}")),
+                expected: Some(format!("a part of 0 to {end}")),
+                ..Details::default()
+            },
             Self::Figure(error) => error.details(),
         }
     }

@@ -3,13 +3,14 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use figures::{FigureError, LineChart, Scale, Series, Stroke};
+use figures::{ChartGrid, FigureError, LineChart, Reference, Scale, Series, Stroke};
 use frames_rk4::SharedLoad;
 use results::Results;
 use scene::{Model, Scene};
 
 use super::rigid_plate::{RigidHistories, WATCHED_POINT, dead_force};
 use crate::mode_shapes::{self, ShapesError};
+use crate::units::UnitLabels;
 
 /// Draws all figures into `folder` and returns their files.
 pub(super) fn draw(
@@ -42,62 +43,57 @@ pub(super) fn draw(
     };
 
     let mut files = mode_shapes::draw(scene, model, &folder.join("fig03_mode_shapes"))?.to_vec();
-    let mut chart = |name: &str, title: &str, y_label: String, series: Vec<Series>| -> Result<(), FigureError> {
-        let chart = LineChart {
-            title: title.to_owned(),
-            x_label: x_label.clone(),
-            y_label,
-            x_scale: Scale::Linear,
-            y_scale: Scale::Linear,
-            series,
-        };
-        files.extend(chart.save(folder.join(name))?);
-        Ok(())
+    let reference = |name: &str, rows: &[[f64; 3]], axis: usize| {
+        Some(Reference { name: name.to_owned(), value: rows.iter().map(|row| row[axis].abs()).fold(0.0, f64::max) })
     };
+    let mut chart =
+        |name: &str, title: &str, y_label: String, series: Vec<Series>, reference| -> Result<(), FigureError> {
+            let chart = LineChart {
+                title: title.to_owned(),
+                x_label: x_label.clone(),
+                y_label,
+                x_scale: Scale::Linear,
+                y_scale: Scale::Linear,
+                series,
+                reference,
+            };
+            files.extend(chart.save(folder.join(name))?);
+            Ok(())
+        };
     chart(
         "fig04_force",
         "Force at the end of the plate (this project's choice)",
-        format!("force, {} {length}/{time}²", units.mass),
+        format!("force, {}", UnitLabels::from(units).force()),
         vec![solid("u₁", force(0)), dashed("u₃", force(2))],
+        None,
     )?;
     chart(
         "fig05_angular_acceleration_13",
         "Flexible plate: angular acceleration about X₁′ and X₃′",
         format!("angular acceleration, rad/{time}²"),
         vec![solid("α₁", history(alpha, 0)), dashed("α₃", history(alpha, 2))],
+        reference("the peak of α₂", alpha, 1),
     )?;
     chart(
         "fig06_angular_velocity_13",
         "Flexible plate: angular velocity about X₁′ and X₃′",
         format!("angular velocity, rad/{time}"),
         vec![solid("ω₁", history(omega, 0)), dashed("ω₃", history(omega, 2))],
-    )?;
-    // By name.
-    let names: BTreeSet<_> = results.metadata.point_names.iter().collect();
-    chart(
-        "fig07_displacement_2",
-        "Displacement in X₂",
-        format!("displacement, {length}"),
-        names
-            .into_iter()
-            .enumerate()
-            .map(|(i, name)| {
-                let points = history(vectors(&format!("points/{name}/displacement")), 1);
-                if i % 2 == 0 { solid(name, points) } else { dashed(name, points) }
-            })
-            .collect(),
+        reference("the peak of ω₂", omega, 1),
     )?;
     chart(
         "fig08_angular_acceleration_2",
         "Angular acceleration about X₂′",
         format!("angular acceleration, rad/{time}²"),
         beside_rigid(alpha, &rigid.alpha_body, 1, "flexible plate"),
+        None,
     )?;
     chart(
         "fig09_angular_velocity_2",
         "Angular velocity about X₂′",
         format!("angular velocity, rad/{time}"),
         beside_rigid(omega, &rigid.omega_body, 1, "flexible plate"),
+        None,
     )?;
     let accelerations = [
         ("fig10_rigid_acceleration_1", "embedded rigid motion", watched("rigid_acceleration"), 0, "X₁"),
@@ -111,7 +107,22 @@ pub(super) fn draw(
             &format!("Acceleration of {WATCHED_POINT} in {direction}"),
             format!("acceleration, {acceleration}"),
             beside_rigid(rows, &rigid.acceleration_global, axis, label),
+            None,
         )?;
     }
+
+    // Eight lines that hide one another in one chart, by name.
+    let names: BTreeSet<_> = results.metadata.point_names.iter().collect();
+    let displacements = |name: &String| vectors(&format!("points/{name}/displacement"));
+    let sizes = names.iter().flat_map(|name| displacements(name)).map(|d| d.iter().map(|x| x * x).sum::<f64>().sqrt());
+    let grid = ChartGrid {
+        title: "Displacement in X₂".to_owned(),
+        x_label: x_label.clone(),
+        y_label: format!("displacement, {length}"),
+        series: names.iter().map(|name| solid(name, history(displacements(name), 1))).collect(),
+        columns: 2,
+        reference: Some(Reference { name: "the largest displacement".to_owned(), value: sizes.fold(0.0, f64::max) }),
+    };
+    files.extend(grid.save(folder.join("fig07_displacement_2"))?);
     Ok(files)
 }

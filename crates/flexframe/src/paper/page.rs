@@ -6,6 +6,7 @@ use scene::{History, Load, Scene};
 
 use super::comparison::{Comparison, Histories, Pair};
 use crate::run::RunReport;
+use crate::units::UnitLabels;
 
 /// The page as Markdown.
 pub(super) fn page(scene: &Scene, run: &RunReport, comparison: &Comparison) -> String {
@@ -70,7 +71,10 @@ fn write_page(out: &mut String, scene: &Scene, run: &RunReport, c: &Comparison) 
     for (k, pair) in c.frequencies.iter().enumerate() {
         writeln!(out, "| {} | {} | {:.4} | {:.4} | {} |", k + 1, k + 7, pair.paper, pair.here, percent(pair))?;
     }
-    writeln!(out, "\n![mode shapes](fig03_mode_shapes.png)\n\n*Fig. 3. Mode shapes.*\n")?;
+    writeln!(
+        out,
+        "\n![mode shapes](fig03_mode_shapes.png)\n\n*Fig. 3. Mode shapes.* [SVG](fig03_mode_shapes.svg), [PDF](fig03_mode_shapes.pdf)\n"
+    )?;
 
     writeln!(out, "## The motion\n")?;
     writeln!(
@@ -84,16 +88,21 @@ fn write_page(out: &mut String, scene: &Scene, run: &RunReport, c: &Comparison) 
     writeln!(out, "| 6 | ω₁, ω₃ {negligible} | at most {:.1e} of the peak of ω₂ |", c.fig_6)?;
     writeln!(out, "| 7 | X₂ displacements trivial | at most {:.1e} of the largest displacement |", c.fig_7)?;
     let matched = "matches the rigid plate precisely";
-    for (figure, what, h) in [
-        (8, "α₂", &c.fig_8),
-        (9, "ω₂", &c.fig_9),
-        (10, "X₁ acceleration of P1, embedded rigid motion,", &c.fig_10),
-        (11, "X₃ acceleration of P1, embedded rigid motion,", &c.fig_11),
+    let acceleration = format!("{length}/{time}²");
+    for (figure, what, h, unit) in [
+        (8, "α₂", &c.fig_8, &format!("rad/{time}²")),
+        (9, "ω₂", &c.fig_9, &format!("rad/{time}")),
+        (10, "X₁ acceleration of P1, embedded rigid motion,", &c.fig_10, &acceleration),
+        (11, "X₃ acceleration of P1, embedded rigid motion,", &c.fig_11, &acceleration),
     ] {
-        writeln!(out, "| {figure} | {what} {matched} | {} |", apart(h))?;
+        writeln!(out, "| {figure} | {what} {matched} | {} |", apart(h, unit))?;
     }
     for (figure, direction, h) in [(12, "X₁", &c.fig_12), (13, "X₃", &c.fig_13)] {
-        writeln!(out, "| {figure} | {direction} acceleration of P1 shows rigid motion and vibration | {} |", apart(h))?;
+        writeln!(
+            out,
+            "| {figure} | {direction} acceleration of P1 shows rigid motion and vibration | {} |",
+            apart(h, &acceleration)
+        )?;
     }
     writeln!(out)?;
     for (file, caption) in [
@@ -108,7 +117,7 @@ fn write_page(out: &mut String, scene: &Scene, run: &RunReport, c: &Comparison) 
         ("fig12_acceleration_1", "Fig. 12."),
         ("fig13_acceleration_3", "Fig. 13."),
     ] {
-        writeln!(out, "![{caption}]({file}.png)\n\n*{caption}* [SVG]({file}.svg)\n")?;
+        writeln!(out, "![{caption}]({file}.png)\n\n*{caption}* [SVG]({file}.svg), [PDF]({file}.pdf)\n")?;
     }
     Ok(())
 }
@@ -117,8 +126,8 @@ fn percent(pair: &Pair) -> String {
     format!("{:+.4} %", 100.0 * pair.difference())
 }
 
-fn apart(histories: &Histories) -> String {
-    format!("apart by {:.1e} of the peak {:.5}", histories.difference, histories.peak)
+fn apart(histories: &Histories, unit: &str) -> String {
+    format!("apart by {:.1e} of the peak {:.5} {unit}", histories.difference, histories.peak)
 }
 
 fn force_in_words(scene: &Scene) -> String {
@@ -126,8 +135,12 @@ fn force_in_words(scene: &Scene) -> String {
         let Load::Force(force) = load else { return None };
         let History::HalfSine { start, duration } = force.history else { return None };
         Some(format!(
-            "Here: a half-sine pulse of {} (force) along {:.4?} at {:?}, from {start} for {duration} {}.",
-            force.amplitude, force.direction, force.at, scene.units.time
+            "Here: a half-sine pulse of {} {} along {:.4?} at {:?}, from {start} for {duration} {}.",
+            force.amplitude,
+            UnitLabels::from(&scene.units).force(),
+            force.direction,
+            force.at,
+            scene.units.time
         ))
     });
     sentences.collect::<Vec<_>>().join(" ")

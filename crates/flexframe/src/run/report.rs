@@ -11,6 +11,7 @@ use crate::json;
 use crate::modes::frequency_unit;
 use crate::peak_stress::PeakStress;
 use crate::report::{BodyReport, MeshReport, Times, quantity, size_in_words};
+use crate::units::UnitLabels;
 
 /// What `flexframe run` says at its end.
 #[derive(Debug, Clone, Serialize)]
@@ -101,6 +102,7 @@ impl RunReport {
 impl fmt::Display for RunReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [length, mass, time] = &self.units;
+        let units = UnitLabels { length, mass, time };
         writeln!(f, "{}", self.title)?;
         if let Some(mesh) = &self.mesh {
             writeln!(f, "  mesh     {mesh}")?;
@@ -133,12 +135,13 @@ impl fmt::Display for RunReport {
         )?;
         writeln!(
             f,
-            "  energy   {} at the end, largest strain energy {}, {mass} {length}²/{time}²",
+            "  energy   {} {unit} at the end, largest strain energy {} {unit}",
             quantity(self.final_energy),
-            quantity(self.peak_strain_energy)
+            quantity(self.peak_strain_energy),
+            unit = units.energy()
         )?;
         if let Some(stress) = &self.peak_stress {
-            writeln!(f, "  stress   {stress}, {mass}/({length} {time}²)")?;
+            writeln!(f, "  stress   {stress}, {}", units.stress())?;
         }
         let Balances { energy, linear_momentum, angular_momentum } = self.balances;
         let closed = if self.right_unsummed {

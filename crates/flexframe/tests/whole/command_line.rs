@@ -51,13 +51,19 @@ fn the_paper_is_reproduced_with_every_figure() {
     let files: Vec<String> =
         std::fs::read_dir(out).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
     for figure in 3..=13 {
-        for kind in [".svg", ".png"] {
+        for kind in [".svg", ".pdf", ".png"] {
             let name = format!("fig{figure:02}_");
             assert!(files.iter().any(|f| f.starts_with(&name) && f.ends_with(kind)), "{name}*{kind} in {files:?}");
         }
     }
     let page = std::fs::read_to_string(folder.path().join("report.md")).unwrap();
-    for words in ["## Table 1", "| 7 | 24.5282 | 24.5284 |", "What the paper does not give", "half-sine"] {
+    for words in [
+        "## Table 1",
+        "| 7 | 24.5282 | 24.5284 |",
+        "What the paper does not give",
+        "half-sine pulse of 50 N",
+        " mJ at the end,",
+    ] {
         assert!(page.contains(words), "{words}");
     }
     // Every picture that the page shows is there.
@@ -207,9 +213,28 @@ fn a_results_file_is_the_same_byte_for_byte_on_each_run_and_for_any_number_of_th
 fn a_scene_flies_as_a_moving_picture() {
     let folder = tempfile::tempdir().unwrap();
     let gif = folder.path().join("ring.gif");
-    let output = flexframe(&["animate", "examples/ring.toml", "-o", gif.to_str().unwrap(), "--frames", "5"]);
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    assert!(std::fs::read(gif).unwrap().starts_with(b"GIF89a"));
+    let animate = |frames: &str, more: &[&str]| {
+        let gif = gif.to_str().unwrap();
+        let output = flexframe(&[&["animate", "examples/ring.toml", "-o", gif, "--frames", frames], more].concat());
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        (std::fs::read(gif).unwrap(), String::from_utf8(output.stdout).unwrap())
+    };
+    let (whole, said) = animate("5", &[]);
+    assert!(whole.starts_with(b"GIF89a"));
+    // It turns by 20.6 rad/s for 0.2 s: 1 rad in each of four intervals, 4.1 rad in one.
+    assert!(!said.contains("warning"), "{said}");
+    let (_, said) = animate("2", &[]);
+    assert_says(&said, &["  warning  ", "by up to 0.66 turns from frame to frame", "--frames 4 shows it"]);
+    let (part, _) = animate("5", &["--from", "0.05", "--to", "0.0501"]);
+    let (from_above, _) = animate("5", &["--view", "z"]);
+    let (by_angles, _) = animate("5", &["--view", "-90,90"]);
+    assert!(part != whole && from_above != whole && from_above == by_angles);
+
+    for times in [["--from", "0.1", "--to", "0.1"], ["--from", "-0.1", "--to", "0.1"], ["--from", "0", "--to", "0.3"]] {
+        let gif = gif.to_str().unwrap();
+        let message = refused(2, &[&["animate", "examples/ring.toml", "-o", gif], &times[..]].concat());
+        assert_says(&message, &["--from", times[3], "from 0 to 0.2"]);
+    }
 }
 
 #[test]
@@ -298,7 +323,7 @@ fn an_animation_replaces_no_file_that_is_no_gif_and_says_what_keeps_it_from_bein
 
 #[test]
 fn arguments_beyond_all_bounds_are_refused() {
-    let cases: [(&[&str], &[&str]); 11] = [
+    let cases: [(&[&str], &[&str]); 13] = [
         (&["cost", "SCENE", "--patience", "1e20"], &["--patience", "from 0.001 to 1000000"]),
         (&["cost", "SCENE", "--patience", "1e18"], &["--patience", "from 0.001 to 1000000"]),
         (&["cost", "SCENE", "--patience", "1e-300"], &["--patience", "from 0.001 to 1000000"]),
@@ -306,6 +331,8 @@ fn arguments_beyond_all_bounds_are_refused() {
         (&["animate", "SCENE", "-o", "a.gif", "--frames", "100000000000"], &["--frames", "2..=10000"]),
         (&["animate", "SCENE", "-o", "a.gif", "--magnify", "nan"], &["--magnify", "a finite number"]),
         (&["animate", "SCENE", "-o", "a.gif", "--magnify", "-inf"], &["--magnify", "a finite number"]),
+        (&["animate", "SCENE", "-o", "a.gif", "--view", "w"], &["--view", "x, y, z, or two angles"]),
+        (&["animate", "SCENE", "-o", "a.gif", "--view", "10,95"], &["--view", "from -90 to 90"]),
         (&["run", "SCENE", "--threads", "65535"], &["--threads", "1..=256"]),
         (&["run", "SCENE", "--threads", "0"], &["--threads", "1..=256"]),
         (&["cost", "SCENE", "--target", "0"], &["--target", "a positive number"]),

@@ -36,7 +36,7 @@ fn list() -> &'static (CostReport, String) {
         let folder = tempfile::tempdir().unwrap();
         let settings = settings(40_000, TARGET);
         let report = price_list(&scene("step = 3e-5"), folder.path(), settings, |_| ()).unwrap();
-        assert_eq!(report.files.len(), 3);
+        assert_eq!(report.files.len(), 4);
         assert!(report.files.iter().all(|file| std::fs::metadata(file).unwrap().len() > 1000));
         let csv = std::fs::read_to_string(folder.path().join("cost.csv")).unwrap();
         (report, csv)

@@ -1,0 +1,113 @@
+//! The units that SI has names for, in the labels of a scene: N, mJ and MPa where it is in mm, Mg and s.
+
+/// Labels of a scene's units.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct UnitLabels<'a> {
+    pub(crate) length: &'a str,
+    pub(crate) mass: &'a str,
+    pub(crate) time: &'a str,
+}
+
+impl<'a> From<&'a scene::Units> for UnitLabels<'a> {
+    fn from(scene::Units { length, mass, time }: &'a scene::Units) -> Self {
+        Self { length, mass, time }
+    }
+}
+
+impl UnitLabels<'_> {
+    /// "N", or "lb in/s²" where the units are not those of SI, or not a power of 1000 of N.
+    pub(crate) fn force(&self) -> String {
+        let Self { length, mass, time } = self;
+        self.named("N", [1, 1, -2]).unwrap_or_else(|| format!("{mass} {length}/{time}²"))
+    }
+
+    /// "mJ".
+    pub(crate) fn energy(&self) -> String {
+        let Self { length, mass, time } = self;
+        self.named("J", [2, 1, -2]).unwrap_or_else(|| format!("{mass} {length}²/{time}²"))
+    }
+
+    /// "MPa".
+    pub(crate) fn stress(&self) -> String {
+        let Self { length, mass, time } = self;
+        self.named("Pa", [-1, 1, -2]).unwrap_or_else(|| format!("{mass}/({length} {time}²)"))
+    }
+
+    /// A unit of SI with its prefix, from the powers of length, mass and time that it has in m, kg and s.
+    fn named(&self, name: &str, powers: [i32; 3]) -> Option<String> {
+        let prefix = match self.tens(powers)? {
+            -9 => "n",
+            -6 => "µ",
+            -3 => "m",
+            0 => "",
+            3 => "k",
+            6 => "M",
+            9 => "G",
+            _ => return None,
+        };
+        Some(format!("{prefix}{name}"))
+    }
+
+    /// The power of ten of a unit in m, kg and s, from the powers of length, mass and time that it has.
+    pub(crate) fn tens(&self, powers: [i32; 3]) -> Option<i32> {
+        let tens = [length(self.length)?, mass(self.mass)?, time(self.time)?];
+        Some(tens.iter().zip(powers).map(|(ten, power)| ten * power).sum())
+    }
+}
+
+/// The power of ten in metres.
+fn length(label: &str) -> Option<i32> {
+    match label {
+        "km" => Some(3),
+        "m" => Some(0),
+        "cm" => Some(-2),
+        "mm" => Some(-3),
+        "um" | "µm" | "μm" => Some(-6),
+        _ => None,
+    }
+}
+
+/// The power of ten in kilograms.
+fn mass(label: &str) -> Option<i32> {
+    match label {
+        "Mg" | "t" => Some(3),
+        "kg" => Some(0),
+        "g" => Some(-3),
+        "mg" => Some(-6),
+        _ => None,
+    }
+}
+
+/// The power of ten in seconds.
+fn time(label: &str) -> Option<i32> {
+    match label {
+        "s" => Some(0),
+        "ms" => Some(-3),
+        "us" | "µs" | "μs" => Some(-6),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::UnitLabels;
+
+    #[test]
+    fn derived_units_have_their_names_where_they_are_of_si() {
+        for (length, mass, time, expected) in [
+            ("mm", "Mg", "s", ["N", "mJ", "MPa"]),
+            ("mm", "t", "s", ["N", "mJ", "MPa"]),
+            ("m", "kg", "s", ["N", "J", "Pa"]),
+            ("mm", "kg", "ms", ["kN", "J", "GPa"]),
+            ("mm", "g", "ms", ["N", "mJ", "MPa"]),
+            ("mm", "kg", "s", ["mN", "µJ", "kPa"]),
+            // A dyne is no power of 1000 of N, an erg none of J.
+            ("cm", "g", "s", ["g cm/s²", "g cm²/s²", "g/(cm s²)"]),
+            ("in", "lb", "s", ["lb in/s²", "lb in²/s²", "lb/(in s²)"]),
+            ("mm", "Mg", "", ["Mg mm/²", "Mg mm²/²", "Mg/(mm ²)"]),
+        ] {
+            let units = UnitLabels { length, mass, time };
+            assert_eq!([units.force(), units.energy(), units.stress()], expected, "{units:?}");
+        }
+    }
+}
