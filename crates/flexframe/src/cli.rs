@@ -71,6 +71,9 @@ enum Command {
         /// Write the mass and stiffness matrices, too.
         #[arg(long)]
         matrices: bool,
+        /// Write the stress of all nodes in each shape, too, as where the scene asks for stress.
+        #[arg(long)]
+        stress: bool,
     },
     /// Find natural frequencies and mode shapes of a scene's body.
     Modes {
@@ -311,9 +314,9 @@ fn command(cli: Cli, json_errors: bool, cache: &Cache) -> Result<(), Box<dyn Fai
             drop(bar);
             output::print(&report, json)
         }
-        Command::Reduce { scene: SceneArgs { scene, json }, output, matrices } => {
+        Command::Reduce { scene: SceneArgs { scene, json }, output, matrices, stress } => {
             let scene = read(scene)?;
-            let report = modes::reduce(&scene, &output, matrices, |p| bar.build(p))?;
+            let report = modes::reduce(&scene, &output, matrices, stress, |p| bar.build(p))?;
             drop(bar);
             output::print(&report, json)?;
             if json { Ok(()) } else { output::list(&[output]) }
@@ -423,7 +426,7 @@ fn command(cli: Cli, json_errors: bool, cache: &Cache) -> Result<(), Box<dyn Fai
         }
         Command::Animate { scene, output, frames, magnify } => {
             let scene = read(scene)?;
-            animate(&scene, &output, AnimationSettings { frames, magnification: magnify }, |p| bar.run(p))?;
+            animate(&scene.without_stress(), &output, AnimationSettings { frames, magnification: magnify }, |p| bar.run(p))?;
             drop(bar);
             output::list(&[output])
         }

@@ -154,4 +154,28 @@ pub struct Output {
     pub stress: bool,
     /// Whether the largest von Mises stress of the whole body among the rows is looked for; default no.
     pub peak_stress: bool,
+    /// Whether the stress of all nodes is wanted, in each coordinate: for exports, pages and body files. No key of the
+    /// scene file; [`Scene::with_stress_field`] sets it.
+    pub stress_field: bool,
+}
+
+impl Scene {
+    /// The same, with the stress of all nodes in each coordinate; a body without a mesh has none.
+    pub fn with_stress_field(mut self) -> Self {
+        self.output.stress_field = matches!(self.body, Body::Meshed(_));
+        self
+    }
+
+    /// The same, with nothing of the stress: for whoever looks at no row of the run.
+    pub fn without_stress(mut self) -> Self {
+        (self.output.stress, self.output.peak_stress, self.output.stress_field) = (false, false, false);
+        self
+    }
+}
+
+impl Output {
+    /// Whether anything of the stress is wanted.
+    pub fn any_stress(&self) -> bool {
+        self.stress || self.peak_stress || self.stress_field
+    }
 }

@@ -3,10 +3,11 @@
 use std::path::Path;
 
 use frames_rk4::Manifold;
-use modal::ReducedBody;
+use modal::{ReducedBody, SecondOrderShapes};
 use nalgebra::Vector3;
 use report::{
-    Balance, Component, Effect, Fact, History, Motion, Report, RunState, SceneText, Shape, ShapeKind, Surface, Units,
+    Balance, Component, Effect, Fact, History, Motion, Report, RunState, SceneText, Shape, ShapeKind, StressField,
+    Surface, Units,
 };
 use results::{Column, Results, Values};
 use scene::{Model, Scene};
@@ -31,7 +32,7 @@ pub(super) fn contents(file: &Path, results: &Results, scene: &Scene, model: &Mo
         facts: facts(results, model, &body)?,
         surface: surface.as_ref().map(|surface| reference(surface, model)),
         shapes: shapes(surface.as_ref(), model, &body),
-        stress: None,
+        stress: surface.as_ref().and_then(|surface| stress(surface, results, model)),
         motion: motion(results, model)?,
         histories: COLUMNS.iter().flat_map(|column| histories(column, results, &body)).collect(),
         balances: balances(results)?,
@@ -106,6 +107,42 @@ fn shapes(surface: Option<&surface::Surface>, model: &Model, body: &BodyReport) 
         Shape { name, kind, displacement }
     };
     (0..extended(model).flexible()).map(shape).collect()
+}
+
+/// The stress of each shape, and of each product of two large modes.
+fn stress(surface: &surface::Surface, results: &Results, model: &Model) -> Option<StressField> {
+    let (body, large) = (model.stress.as_ref()?, model.large_modes());
+    let shapes = extended(model).flexible();
+    if shapes == 0 {
+        return None;
+    }
+    let modal = results.table("modal/displacement")?;
+    let rows: Option<Vec<_>> = (0..results.rows()).map(|row| Some(body.coordinates(modal.row(row)?))).collect();
+    let rows = rows?;
+    let of_nodes: Vec<&[[f64; 6]]> =
+        surface.nodes.iter().filter_map(|node| body.of_most_stressed_material(*node, &rows)).collect();
+    let pairs = SecondOrderShapes::pairs(large.len());
+    // The coordinate of a pair of two modes is twice their product.
+    let factors = pairs.iter().map(|[i, j]| if i == j { 1.0 } else { 2.0 });
+    let shape = |(k, factor): (usize, f64)| {
+        of_nodes.iter().map(|shapes| shapes[k].map(|s| (factor * s) as f32)).collect::<Vec<_>>()
+    };
+    let column = COLUMNS.iter().find(|column| column.path == "points/von_mises_stress")?;
+    Some(StressField {
+        unit: stress_unit(&unit(column, results)),
+        shapes: std::iter::repeat_n(1.0, shapes).chain(factors).enumerate().map(shape).collect(),
+        products: pairs.iter().map(|pair| pair.map(|i| large[i])).collect(),
+    })
+}
+
+/// The name of a unit of stress that has one.
+fn stress_unit(unit: &str) -> String {
+    match unit {
+        "kg/(m s²)" => "Pa",
+        "Mg/(mm s²)" | "t/(mm s²)" => "MPa",
+        other => other,
+    }
+    .to_owned()
 }
 
 /// The body in all shapes that are drawn: with those that follow large modes.

@@ -37,9 +37,9 @@ pub(super) fn reduce(
     mut times: BuildTimes,
     progress: &mut dyn FnMut(BuildProgress),
 ) -> Result<Model, BuildError> {
-    let AssembledMesh { body, mesh, support, drive, .. } = assembled;
+    let AssembledMesh { mesh, support, drive, .. } = assembled;
     let loads = loads::on_mesh(scene, mesh, &solved.nodal_masses()?)?;
-    let model = MeshModel { scene, body, mesh, solver: solved, support, loads, drive: drive.clone() };
+    let model = MeshModel { scene, mesh, solver: solved, support, loads, drive: drive.clone() };
 
     let on_all_modes = timed(&mut times.reduction, || ModalModel::new(&model, &modes))?;
     let started = Instant::now();
