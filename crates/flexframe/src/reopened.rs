@@ -36,7 +36,7 @@ impl Reopened {
     pub fn open(file: &Path, cache: &Cache, progress: impl FnMut(BuildProgress)) -> Result<Self, ReopenError> {
         let results = Results::open(file, &COLUMNS)?;
         let scene = scene_of(&results, cache)?;
-        let model = Model::build(&scene.clone().without_stress().with_stress_field(), progress)?;
+        let model = Model::build(&scene.clone().without_rows().with_stress_field(), progress)?;
         Ok(Self { results, scene, model })
     }
 }

@@ -236,7 +236,7 @@ fn what_cannot_be_exported_is_refused_and_an_unfinished_run_is_marked() {
         .start(&scene)
         .unwrap()
         .take(3)
-        .for_each(|now| writer.push(&Row { motion: now.unwrap(), stress: Vec::new() }).unwrap());
+        .for_each(|now| writer.push(&Row { motion: now.unwrap(), stress: Vec::new(), supports: Vec::new() }).unwrap());
     drop(writer);
     let said = done(&["export", part.to_str().unwrap(), "--csv", &at("cut.csv")]);
     assert!(said.contains("the run is unfinished: its rows end at time 0.02"), "{said}");

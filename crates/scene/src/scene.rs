@@ -157,6 +157,8 @@ pub struct Output {
     /// Whether the stress of all nodes is wanted, in each coordinate: for exports, pages and body files. No key of the
     /// scene file; [`Scene::with_stress_field`] sets it.
     pub stress_field: bool,
+    /// Whether each of several supports gets reactions of its own. No key of the scene file; [`Scene::without_rows`] clears it.
+    pub support_reactions: bool,
 }
 
 impl Scene {
@@ -166,9 +168,11 @@ impl Scene {
         self
     }
 
-    /// The same, with nothing of the stress: for whoever looks at no row of the run.
-    pub fn without_stress(mut self) -> Self {
-        (self.output.stress, self.output.peak_stress, self.output.stress_field) = (false, false, false);
+    /// The same, without what only the rows of a run have: for whoever writes none. That is stress, and the reactions of
+    /// several supports.
+    pub fn without_rows(mut self) -> Self {
+        let Output { stress, peak_stress, stress_field, support_reactions, .. } = &mut self.output;
+        (*stress, *peak_stress, *stress_field, *support_reactions) = (false, false, false, false);
         self
     }
 }

@@ -41,7 +41,7 @@ pub(super) fn contents(file: &Path, results: &Results, scene: &Scene, model: &Mo
             file: scene.path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
             text: results.metadata.scene_text.clone(),
         },
-        warnings: warnings(model),
+        warnings: warnings(results, model),
     })
 }
 
@@ -180,13 +180,14 @@ fn histories(column: &Column<Row>, results: &Results, body: &BodyReport) -> Vec<
     if path == "time" {
         return Vec::new();
     }
-    let of_points = matches!(column.values, Values::Points(_) | Values::PointNumbers(..));
-    match path.strip_prefix("points/").filter(|_| of_points) {
-        Some(name) => results
-            .metadata
-            .point_names
-            .iter()
-            .filter_map(|point| history(format!("point {point}"), name, &format!("points/{point}/{name}")))
+    let places = match column.values {
+        Values::Points(_) | Values::PointNumbers(..) => Some(("point", "points/")),
+        Values::Supports(_) => Some(("support", "supports/")),
+        _ => None,
+    };
+    match places.and_then(|(kind, prefix)| Some((kind, prefix, path.strip_prefix(prefix)?))) {
+        Some((kind, prefix, name)) => (column.places(&results.metadata).iter())
+            .filter_map(|place| history(format!("{kind} {place}"), name, &format!("{prefix}{place}/{name}")))
             .collect(),
         None => {
             let (group, name) = path.split_once('/').unwrap_or(("body", path));
@@ -203,7 +204,7 @@ fn component_name(column: &Column<Row>, k: usize, width: usize, body: &BodyRepor
             if k < modes { format!("{}", k + 1) } else { format!("static {}", k + 1) }
         }
         Values::Quaternion(_) => ["w", "x", "y", "z"][k].to_owned(),
-        Values::Vector(_) | Values::Points(_) => ["x", "y", "z"][k].to_owned(),
+        Values::Vector(_) | Values::Points(_) | Values::Supports(_) => ["x", "y", "z"][k].to_owned(),
         Values::PointNumbers(6, _) => ["xx", "yy", "zz", "xy", "yz", "zx"][k].to_owned(),
         Values::PointNumbers(count, _) if count > 1 => format!("{}", k + 1),
         Values::Number(_) | Values::PointNumbers(..) => String::new(),
@@ -287,7 +288,9 @@ fn effects(scene: &Scene, model: &Model) -> Vec<Effect> {
     model.advice.rows().map(effect).collect()
 }
 
-fn warnings(model: &Model) -> Vec<String> {
+/// Why the model is known to be wrong, and those of the run.
+fn warnings(results: &Results, model: &Model) -> Vec<String> {
     let refusal = model.refusal.as_ref().map(ToString::to_string);
-    refusal.into_iter().collect()
+    let of_run = results.metadata.warnings.iter().filter(|warning| Some(*warning) != refusal.as_ref()).cloned();
+    refusal.iter().cloned().chain(of_run).collect()
 }
