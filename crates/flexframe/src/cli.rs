@@ -426,7 +426,9 @@ fn command(cli: Cli, json_errors: bool, cache: &Cache) -> Result<(), Box<dyn Fai
         }
         Command::Animate { scene, output, frames, magnify } => {
             let scene = read(scene)?;
-            animate(&scene.without_rows(), &output, AnimationSettings { frames, magnification: magnify }, |p| bar.run(p))?;
+            animate(&scene.without_rows(), &output, AnimationSettings { frames, magnification: magnify }, |p| {
+                bar.run(p)
+            })?;
             drop(bar);
             output::list(&[output])
         }

@@ -128,7 +128,9 @@ fn assert_describes_its_columns(path: &Path, rows: usize, metadata: &Metadata) {
     let mut found = Vec::new();
     datasets(&file, &mut found);
     let mut found: Vec<_> = found.iter().map(|path| path[1..].to_owned()).collect();
-    found.retain(|path| !path.starts_with("body/") && !["points/names", "points/position", "warnings"].contains(&path.as_str()));
+    found.retain(|path| {
+        !path.starts_with("body/") && !["points/names", "points/position", "warnings"].contains(&path.as_str())
+    });
     found.sort();
     paths.sort();
     assert_eq!(found, paths);

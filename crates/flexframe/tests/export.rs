@@ -3,12 +3,12 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
+use faer::Mat;
 use flexframe::columns::COLUMNS;
+use flexframe::fem_tet10::{self, Materials, StressRecovery};
 use flexframe::rigid_kin::Attitude;
 use flexframe::row::Row;
-use flexframe::fem_tet10::{self, Materials, StressRecovery};
 use flexframe::scene::{Body, Model, Scene};
-use faer::Mat;
 use nalgebra::Vector3;
 use results::{Results, unfinished};
 
@@ -148,8 +148,8 @@ fn a_results_file_becomes_a_table_and_fields() {
     let place = Vector3::from_column_slice(&points[3 * node..3 * node + 3]);
     let mesh = &model.meshed.as_ref().unwrap();
     let (on_mesh, _) = mesh.mesh.nearest_node(place.into());
-    let [displacement, elastic, von_mises] =
-        ["displacement", "elastic_displacement", "von_mises_stress"].map(|name| read(&group, &format!("PointData/{name}")));
+    let [displacement, elastic, von_mises] = ["displacement", "elastic_displacement", "von_mises_stress"]
+        .map(|name| read(&group, &format!("PointData/{name}")));
     // The stress of the displaced mesh, not that of the modes.
     let recovery = StressRecovery::new(&mesh.mesh, &materials(&scene)).unwrap();
     let mut largest: f64 = 0.0;

@@ -1,8 +1,8 @@
 //! Reactions, drives and angles against closed forms: statics, a pendulum, a spinning bar, a spin-up.
 
+use flexframe::columns::COLUMNS;
 use flexframe::frames_rk4::Observation;
 use flexframe::nalgebra::Vector3;
-use flexframe::columns::COLUMNS;
 use flexframe::results::Results;
 use flexframe::run::{RunSettings, run};
 use flexframe::scene::{Model, Scene};
@@ -171,7 +171,8 @@ fn on_supports(rest: &str) -> (Model, Results) {
 
 const CLAMP: &str = "[[constraints]]\nkind = \"support\"\nbox = [[0.0, -1.0, -1.0], [0.0, 1.0, 1.0]]\n\
                      directions = [\"x\", \"y\", \"z\"]\n";
-const PROP: &str = "[[constraints]]\nkind = \"support\"\nbox = [[8.0, -1.0, -1.0], [8.0, 1.0, 1.0]]\ndirections = [\"y\"]\n";
+const PROP: &str =
+    "[[constraints]]\nkind = \"support\"\nbox = [[8.0, -1.0, -1.0], [8.0, 1.0, 1.0]]\ndirections = [\"y\"]\n";
 const LENGTH: f64 = 8.0;
 
 /// At rest under its weight a propped cantilever has 3/8 of it on the prop, 5/8 on the clamp, and a moment of an eighth of it
@@ -205,7 +206,9 @@ fn two_supports_share_a_force_and_their_sum_is_that_of_dalembert() {
              {history}\n{time}",
             // Simply supported: the mid-plane of each end.
             CLAMP.replace("-1.0, -1.0]", "0.0, -1.0]").replace("1.0, 1.0]", "0.0, 1.0]"),
-            PROP.replace("-1.0, -1.0]", "0.0, -1.0]").replace("1.0, 1.0]", "0.0, 1.0]").replace("\"y\"", "\"y\", \"z\""),
+            PROP.replace("-1.0, -1.0]", "0.0, -1.0]")
+                .replace("1.0, 1.0]", "0.0, 1.0]")
+                .replace("\"y\"", "\"y\", \"z\""),
         )
     };
     let forces = |results: &Results, path: &str| -> Vec<Vector3<f64>> {
@@ -220,7 +223,8 @@ fn two_supports_share_a_force_and_their_sum_is_that_of_dalembert() {
     }
     let time = "[time]\nend = 2.0\nstep = 1e-3\n[output]\nevery = 10\n";
     let (_, results) = on_supports(&rest(2.0, "{ kind = \"sine\", frequency = 3.0 }", 0.02, time));
-    let [near, far, all] = ["supports/1/force", "supports/2/force", "reaction/force"].map(|path| forces(&results, path));
+    let [near, far, all] =
+        ["supports/1/force", "supports/2/force", "reaction/force"].map(|path| forces(&results, path));
     let moments = ["supports/1/moment", "supports/2/moment", "reaction/moment"].map(|path| forces(&results, path));
     let largest = all.iter().map(|force| force.norm()).fold(0.0, f64::max);
     assert!(largest > 3e-4, "{largest}");

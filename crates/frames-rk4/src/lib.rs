@@ -96,13 +96,13 @@ pub use paper_limit::PaperLimit;
 pub use physics::{Drive, DrivenMotion, DrivenSpeed, Physics};
 pub use plan::{Rows, StepControl};
 pub use reaction::Reaction;
-pub use support_reactions::SupportReactions;
 pub use scheme::Scheme;
 pub use second_order::SecondOrder;
 pub use setup::{Method, Setup, StepLimit};
 pub use simulation::{Reached, Simulation, Stats};
 pub use state::{MotionState, State};
 pub use steady_spin::{EigenError, SpinMode, SteadySpin};
+pub use support_reactions::SupportReactions;
 pub use travelling_frame::TravellingFrame;
 pub use work::Work;
 

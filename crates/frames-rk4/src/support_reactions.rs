@@ -119,8 +119,7 @@ impl SupportReactions {
         };
         let [displacement, velocity] = [xi, nu].map(all);
         let on_manifold = manifold.as_ref().map(|_| [&now.modal_displacement[..], &now.modal_velocity]);
-        let coordinates =
-            Coordinates { first: 6, displacement: &displacement, velocity: &velocity, on_manifold };
+        let coordinates = Coordinates { first: 6, displacement: &displacement, velocity: &velocity, on_manifold };
         let motion = Kinematics {
             time: now.time,
             branch_time: now.time,

@@ -117,7 +117,9 @@ impl<R> Column<R> {
             Values::Vector(values) => out.extend(values(row)),
             Values::Quaternion(values) => out.extend(values(row)),
             Values::Modal(values) => out.extend(values(row)),
-            Values::Points(values) | Values::Supports(values) => (0..points).map_while(|point| values(row, point)).for_each(|v| out.extend(v)),
+            Values::Points(values) | Values::Supports(values) => {
+                (0..points).map_while(|point| values(row, point)).for_each(|v| out.extend(v))
+            }
             Values::PointNumbers(_, values) => {
                 (0..points).map_while(|point| values(row, point)).for_each(|v| out.extend(v));
             }

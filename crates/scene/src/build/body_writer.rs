@@ -334,7 +334,14 @@ impl Named<'_> {
         let mut add = |name: &str, shape: &[usize], unit: &str, frame: &str, description: &str, numbers: Numbers| {
             self.add(&format!("large_deflection/{name}"), shape, unit, frame, description, numbers);
         };
-        add("pairs", &[pairs.len(), 2], "1", "none", "coordinates j <= k of the large modes, from 0", Numbers::U32(list));
+        add(
+            "pairs",
+            &[pairs.len(), 2],
+            "1",
+            "none",
+            "coordinates j <= k of the large modes, from 0",
+            Numbers::U32(list),
+        );
         let products: Vec<f64> = pairs
             .iter()
             .flat_map(|[j, k]| {
@@ -346,7 +353,8 @@ impl Named<'_> {
                            shapes that follow";
         let shape = [pairs.len(), manifold.body().flexible()];
         add("products", &shape, &format!("{mass}^-0.5 {length}^-1"), "none", description, Numbers::F64(products));
-        let description = "displacement of each node in a unit of the coordinate of each shape that only follows large modes";
+        let description =
+            "displacement of each node in a unit of the coordinate of each shape that only follows large modes";
         let shape = [following.ncols(), following.nrows() / 3, 3];
         add("shapes", &shape, &format!("{mass}^-0.5"), "mesh", description, Numbers::F64(columns(following)));
     }
@@ -365,7 +373,8 @@ impl Named<'_> {
         let pairs = SecondOrderShapes::pairs(large);
         let (linear, second) = of_coordinates.split_at(of_coordinates.len() - pairs.len());
         let order = "xx, yy, zz, xy, yz, zx";
-        let description = format!("stress of a unit of each coordinate of modes, static shapes, shapes that follow: {order}");
+        let description =
+            format!("stress of a unit of each coordinate of modes, static shapes, shapes that follow: {order}");
         let unit = format!("{mass}^0.5 {length}^-2 {time}^-2");
         let numbers = Numbers::F64(linear.concat());
         self.add("stress/shapes", &[linear.len(), sites, 6], &unit, "mesh", &description, numbers);

@@ -363,11 +363,7 @@ impl Structure for Solved<'_> {
         self.ask_stress(question, displacements.ncols(), |recovery| recovery.nodal_stress(displacements))
     }
 
-    fn second_order_nodal_stress(
-        &self,
-        fields: MatRef<'_, f64>,
-        pairs: &[[usize; 2]],
-    ) -> Result<Mat<f64>, BuildError> {
+    fn second_order_nodal_stress(&self, fields: MatRef<'_, f64>, pairs: &[[usize; 2]]) -> Result<Mat<f64>, BuildError> {
         let question =
             || with_matrix(self.about_the_body("nodal stress of second order"), fields).text(&format!("{pairs:?}"));
         self.ask_stress(question, pairs.len(), |recovery| recovery.second_order_nodal_stress(fields, pairs))

@@ -78,10 +78,9 @@ impl BodyStress {
             };
             points.push(sites.at(&location).into_iter().map(of_material).collect());
         }
-        let field = (peak_stress || stress_field)
-            .then(|| Field { sites: sites.clone(), shapes: SiteStress::new(&nodal) });
-        let left_out =
-            if peak_stress { Some(LeftOut::new(model, modes, origin, has_gravity)?) } else { None };
+        let field =
+            (peak_stress || stress_field).then(|| Field { sites: sites.clone(), shapes: SiteStress::new(&nodal) });
+        let left_out = if peak_stress { Some(LeftOut::new(model, modes, origin, has_gravity)?) } else { None };
         Ok(Some(Self { manifold: large.map(|(manifold, _)| manifold.clone()), points, field, left_out }))
     }
 
@@ -93,9 +92,7 @@ impl BodyStress {
     /// The stress at all points; where materials meet, that of the material with the larger von Mises stress.
     pub fn at_points(&self, modal_displacement: &[f64]) -> impl Iterator<Item = [f64; 6]> + '_ {
         let coordinates = self.coordinates(modal_displacement);
-        self.points.iter().map(move |materials| {
-            larger(materials.iter().map(|shapes| combined(shapes, &coordinates)))
-        })
+        self.points.iter().map(move |materials| larger(materials.iter().map(|shapes| combined(shapes, &coordinates))))
     }
 
     /// The largest von Mises stress of the body as it is now; none if it was not asked for. Its work goes with the mesh.

@@ -70,11 +70,7 @@ pub(super) trait Structure {
     fn nodal_stress(&self, displacements: MatRef<'_, f64>) -> Result<Mat<f64>, BuildError>;
 
     /// The stress of second order (6m×p) of pairs of fields (3n×k).
-    fn second_order_nodal_stress(
-        &self,
-        fields: MatRef<'_, f64>,
-        pairs: &[[usize; 2]],
-    ) -> Result<Mat<f64>, BuildError>;
+    fn second_order_nodal_stress(&self, fields: MatRef<'_, f64>, pairs: &[[usize; 2]]) -> Result<Mat<f64>, BuildError>;
 
     /// The lowest buckling ratio by the stress of a static answer (3n×1), from the modes on.
     fn lowest_buckling_ratio(&self, answer: MatRef<'_, f64>, modes: &Modes) -> Result<f64, BuildError>;

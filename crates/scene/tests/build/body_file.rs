@@ -76,13 +76,17 @@ fn a_body_file_is_the_same_whether_its_answers_were_known() {
 }
 
 /// Stress of all kinds, of a bar that may bend far.
-const STRESS: &str = "[effects]\nlarge_deflection = true\nrefuse = false\n[output]\nstress = true\npeak_stress = true\n";
+const STRESS: &str =
+    "[effects]\nlarge_deflection = true\nrefuse = false\n[output]\nstress = true\npeak_stress = true\n";
 const LARGE: &str = "flexible = 6\nstatic_correction = true\nlarge = [1, 2]";
 
 #[test]
 fn the_stress_from_a_body_file_is_the_same_to_the_last_bit_and_not_recovered_again() {
     for modes in [MODES, LARGE] {
-        let rest = format!("{CLAMPED}{FORCE}{}", if modes == LARGE { STRESS } else { &STRESS[STRESS.find("[output]").unwrap()..] });
+        let rest = format!(
+            "{CLAMPED}{FORCE}{}",
+            if modes == LARGE { STRESS } else { &STRESS[STRESS.find("[output]").unwrap()..] }
+        );
         let (folder, direct, _) = reduced(modes, &rest, false);
         let stresses = |scene: &Scene| {
             let model = Model::build(scene, |_| ()).unwrap();
@@ -113,7 +117,8 @@ fn what_is_bent_far_and_its_stress_follow_from_what_others_read() {
     let pairs = file.read::<u32>("large_deflection/pairs").unwrap();
     assert_eq!((pairs.shape, &pairs.values[..]), (vec![3, 2], &[0, 0, 0, 1, 1, 1][..]));
     let q: Vec<f64> = (0..model.body.flexible()).map(|k| 1e-3 * (1.0 + k as f64).sin()).collect();
-    let products: Vec<f64> = pairs.values.as_chunks::<2>().0.iter().map(|[j, k]| q[*j as usize] * q[*k as usize]).collect();
+    let products: Vec<f64> =
+        pairs.values.as_chunks::<2>().0.iter().map(|[j, k]| q[*j as usize] * q[*k as usize]).collect();
     // The coordinates of all shapes.
     let of_products = read("large_deflection/products");
     let all = of_products.shape[1];
@@ -122,12 +127,16 @@ fn what_is_bent_far_and_its_stress_follow_from_what_others_read() {
     for (product, adds) in products.iter().zip(of_products.values.chunks_exact(all)) {
         xi.iter_mut().zip(adds).for_each(|(xi, adds)| *xi += product * adds);
     }
-    let shapes = ["modes/shapes", "static_shapes/shapes", "large_deflection/shapes"].map(|name| read(name).values).concat();
+    let shapes =
+        ["modes/shapes", "static_shapes/shapes", "large_deflection/shapes"].map(|name| read(name).values).concat();
     let (rows, expected) = (meshed.modes.shapes.nrows(), model.coordinates(&q));
     assert_eq!((shapes.len(), expected.len()), (all * rows, all));
     let largest = |values: &[f64]| values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
     let follow = largest(&expected[q.len()..]);
-    assert!(follow > 0.0 && xi.iter().zip(&expected).all(|(a, b)| (a - b).abs() < 1e-12 * follow), "{xi:?} {expected:?}");
+    assert!(
+        follow > 0.0 && xi.iter().zip(&expected).all(|(a, b)| (a - b).abs() < 1e-12 * follow),
+        "{xi:?} {expected:?}"
+    );
     let following = meshed.following.as_ref();
     let column = |k: usize| if k < q.len() { meshed.modes.shapes.col(k) } else { following.col(k - q.len()) };
     for i in 0..rows {
