@@ -14,9 +14,9 @@ use tempfile::TempPath;
 /// Most rows that are gathered before they are written. A row at a time costs about nine times as much.
 const ROWS_PER_WRITE: usize = 512;
 
-/// Numbers that are gathered at the most (512 KiB), so that rows of many points are fewer: they stay near the processor until
+/// Numbers that are gathered at the most (2 MiB), so that rows of many points are fewer: they stay near the processor until
 /// they are written.
-const NUMBERS_PER_WRITE: usize = 1 << 16;
+const NUMBERS_PER_WRITE: usize = 1 << 18;
 
 /// What the kill of a process can lose.
 const FLUSH_INTERVAL: Duration = Duration::from_secs(1);
