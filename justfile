@@ -93,7 +93,11 @@ h5py: build
     .tools/h5py/bin/pip install -q h5py
     .tools/h5py/bin/python crates/results/tests/read_with_h5py.py out/ring/ring.h5
     {{flexframe}} reduce examples/ring.toml -o out/ring/ring.body.h5 --matrices
-    .tools/h5py/bin/python crates/flexframe/tests/read_body_with_h5py.py out/ring/ring.body.h5 out/ring/ring.h5
+    {{flexframe}} run crates/flexframe/tests/bent_rod.toml -o out/bent --overwrite
+    {{flexframe}} reduce crates/flexframe/tests/bent_rod.toml -o out/bent/bent_rod.body.h5 --stress
+    {{flexframe}} export out/bent/bent_rod.h5 --vtkhdf out/bent/bent_rod.vtkhdf --volume --overwrite
+    .tools/h5py/bin/python crates/flexframe/tests/read_body_with_h5py.py out/ring/ring.body.h5 out/ring/ring.h5 \
+        out/bent/bent_rod.body.h5 out/bent/bent_rod.h5 out/bent/bent_rod.vtkhdf
 
 # Read exports with VTK's own readers, and compare them with the modes (Python packages, 150 MB).
 paraview: build

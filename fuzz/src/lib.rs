@@ -51,6 +51,8 @@ pub fn write_results(path: &Path, modes: usize, points: usize, rows: u32, finish
         point_names: (0..points).map(|i| format!("P{i}")).collect(),
         point_positions: vec![[0.0; 3]; points],
         parts: Vec::new(),
+        support_names: Vec::new(),
+        warnings: Vec::new(),
     };
     let mut writer = Writer::create(path, &metadata, &COLUMNS, Expected { overwrite: true, ..Expected::default() })?;
     let row = Row { modes: vec![0.5; modes], points };

@@ -123,7 +123,7 @@ pub enum AdviseProgress {
 /// [`RunError`] of the scene as it is. A run with an effect switched that fails is a row that says so.
 pub fn advise(scene: &Scene, verify: bool, mut progress: impl FnMut(AdviseProgress)) -> Result<AdviseReport, RunError> {
     let of_paper = scene.time.method.is_of_paper();
-    let mut scene = scene.clone();
+    let mut scene = scene.clone().without_rows();
     if of_paper {
         scene.time.method = Method::EXPONENTIAL;
     }

@@ -97,7 +97,7 @@ pub fn campbell(
     if let Some(&order) = settings.orders.iter().find(|order| !(**order > 0.0 && order.is_finite())) {
         return Err(CampbellError::Order { order });
     }
-    let mut scene = scene.clone();
+    let mut scene = scene.clone().without_rows();
     scene.loads.clear();
     scene.modes.flexible = Flexible::Count(scene.modes.flexible.most());
     // The spin is given here, whatever the scene's own motion would call for.

@@ -86,6 +86,9 @@ enum Command {
         /// Write the mass and stiffness matrices, too.
         #[arg(long)]
         matrices: bool,
+        /// Write the stress of all nodes in each shape, too, as where the scene asks for stress.
+        #[arg(long)]
+        stress: bool,
     },
     /// Find natural frequencies and mode shapes of a scene's body.
     Modes {
@@ -352,9 +355,9 @@ fn command(cli: Cli, json_errors: bool, cache: &Cache) -> Result<(), Box<dyn Fai
             drop(bar);
             output::print(&report, json)
         }
-        Command::Reduce { scene: SceneArgs { scene, json }, output, matrices } => {
+        Command::Reduce { scene: SceneArgs { scene, json }, output, matrices, stress } => {
             let scene = read(scene)?;
-            let report = modes::reduce(&scene, &output, matrices, |p| bar.build(p))?;
+            let report = modes::reduce(&scene, &output, matrices, stress, |p| bar.build(p))?;
             drop(bar);
             output::print(&report, json)?;
             if json { Ok(()) } else { output::list(&[output]) }
@@ -466,7 +469,7 @@ fn command(cli: Cli, json_errors: bool, cache: &Cache) -> Result<(), Box<dyn Fai
             let scene = read(scene)?;
             let view = view.unwrap_or_default();
             let settings = AnimationSettings { frames, magnification: magnify, from, to, view };
-            let warning = animate(&scene, &output, settings, |p| bar.run(p))?;
+            let warning = animate(&scene.without_rows(), &output, settings, |p| bar.run(p))?;
             drop(bar);
             output::list(&[output])?;
             output::warn(warning.as_deref())

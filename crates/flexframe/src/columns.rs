@@ -4,7 +4,7 @@
 //! finite, and the attributes in the file follow from the line; a test says what to put into `docs/results.md`.
 
 use results::Column;
-use results::Values::{Modal, Number, PointNumbers, Points, Quaternion, Vector};
+use results::Values::{Modal, Number, PointNumbers, Points, Quaternion, Supports, Vector};
 
 use crate::row::Row;
 
@@ -18,6 +18,8 @@ pub mod part {
     pub const SLIDER: &str = "slider";
     /// Something drives it.
     pub const DRIVE: &str = "drive";
+    /// Several supports hold it.
+    pub const SUPPORTS: &str = "supports";
     /// The stress at the points is asked for.
     pub const STRESS: &str = "stress";
     /// The hinge is driven.
@@ -35,7 +37,7 @@ const MOMENT: &str = "mass length^2/time^2";
 const POWER: &str = "mass length^2/time^3";
 
 /// Path, unit, frame, description, and how an observation gives the values.
-pub static COLUMNS: [Column<Row>; 38] = [
+pub static COLUMNS: [Column<Row>; 40] = [
     Column::new("time", "time", "none", "time of each row", Number(|now| now.time)),
     Column::new(
         "attitude",
@@ -171,6 +173,22 @@ pub static COLUMNS: [Column<Row>; 38] = [
         Vector(|now: &Row| now.reaction.moment_body.into()),
     )
     .only_with(part::CONSTRAINT),
+    Column::new(
+        "supports/force",
+        FORCE,
+        "global",
+        "force of the support on the body",
+        Supports(|now: &Row, i| Some(now.supports.get(i)?[0])),
+    )
+    .only_with(part::SUPPORTS),
+    Column::new(
+        "supports/moment",
+        MOMENT,
+        "global",
+        "moment of the support on the body, about the mean of the nodes that it holds",
+        Supports(|now: &Row, i| Some(now.supports.get(i)?[1])),
+    )
+    .only_with(part::SUPPORTS),
     Column::new(
         "hinge/angle",
         "rad",

@@ -69,6 +69,7 @@ pub fn price_list(
     settings: CostSettings,
     mut progress: impl FnMut(CostProgress),
 ) -> Result<CostReport, CostError> {
+    let scene = &scene.clone().without_rows();
     let assembly = Assembly::new(scene, |p| progress(CostProgress::Build(p)))?;
     let mut builder = assembly.builder()?;
     let model = builder.build(scene, |p| progress(CostProgress::Build(p)))?;

@@ -43,7 +43,8 @@ impl ModesReport {
     }
 }
 
-/// Reduces a scene's body as a run of it asks for, and writes it to a body file; with `matrices`, mass and stiffness are in it.
+/// Reduces a scene's body as a run of it asks for, and writes it to a body file; with `matrices`, mass and stiffness are in it,
+/// with `stress`, the stress of all nodes, as where the scene asks for stress.
 ///
 /// # Errors
 /// [`BuildError`].
@@ -51,8 +52,10 @@ pub fn reduce(
     scene: &Scene,
     output: &Path,
     matrices: bool,
+    stress: bool,
     progress: impl FnMut(BuildProgress),
 ) -> Result<ModesReport, BuildError> {
+    let scene = &if stress { scene.clone().with_stress_field() } else { scene.clone() };
     let model = Model::write_body(scene, output, matrices, progress)?;
     Ok(ModesReport::new(scene, &model))
 }
@@ -63,7 +66,7 @@ pub fn reduce(
 /// [`BuildError`].
 pub fn modes(scene: &Scene, progress: impl FnMut(BuildProgress)) -> Result<(Model, ModesReport), BuildError> {
     // The modes as they are, whatever a motion of the scene would call for.
-    let mut scene = scene.clone();
+    let mut scene = scene.clone().without_rows();
     scene.modes.flexible = Flexible::Count(scene.modes.flexible.most());
     scene.modes.static_correction = Choice::Off;
     scene.effects.choices[Effect::Damping] = Choice::On;

@@ -31,11 +31,12 @@ pub enum ReopenError {
 }
 
 impl Reopened {
-    /// Reads a results file, finished or not. The mesh is looked for where it was.
+    /// Reads a results file, finished or not, and makes its body with the stress of all nodes. The mesh is looked for where it
+    /// was.
     pub fn open(file: &Path, cache: &Cache, progress: impl FnMut(BuildProgress)) -> Result<Self, ReopenError> {
         let results = Results::open(file, &COLUMNS)?;
         let scene = scene_of(&results, cache)?;
-        let model = Model::build(&scene, progress)?;
+        let model = Model::build(&scene.clone().without_rows().with_stress_field(), progress)?;
         Ok(Self { results, scene, model })
     }
 }

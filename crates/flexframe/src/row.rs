@@ -13,6 +13,9 @@ pub struct Row {
     pub motion: Observation,
     /// Stress at the points; empty if not asked for.
     pub stress: Vec<PointStress>,
+    /// Force of each of several supports on the body, and its moment about the mean of the nodes that it holds, global
+    /// components.
+    pub supports: Vec<[[f64; 3]; 2]>,
 }
 
 /// The stress at a point, force per area.
@@ -33,11 +36,16 @@ impl Row {
         Self {
             motion: Observation::new(model.body.flexible(), model.points.len()),
             stress: vec![PointStress::default(); stressed],
+            supports: vec![[[0.0; 3]; 2]; model.supports.as_ref().map_or(0, |supports| supports.names().len())],
         }
     }
 
     /// Fills in what follows from the motion.
     pub(crate) fn complete(&mut self, model: &Model) {
+        if let Some(supports) = &model.supports {
+            let to_global = |vectors: [_; 2]| vectors.map(|vector| self.motion.attitude.to_global(&vector).into());
+            self.supports = supports.at(&self.motion).into_iter().map(to_global).collect();
+        }
         let Some(stress) = &model.stress else { return };
         for (row, components) in self.stress.iter_mut().zip(stress.at_points(&self.motion.modal_displacement)) {
             *row = PointStress {

@@ -170,6 +170,8 @@ pub(crate) fn metadata(scene: &Scene, model: &Model) -> Metadata {
         point_names: model.points.iter().map(|(name, _)| name.clone()).collect(),
         point_positions: model.points.iter().map(|(_, p)| (model.body.origin + p.position_body()).into()).collect(),
         parts: parts(scene, model).map(str::to_owned).collect(),
+        support_names: model.supports.as_ref().map_or(Vec::new(), |supports| supports.names().to_vec()),
+        warnings: Vec::new(),
     }
 }
 
@@ -190,5 +192,6 @@ fn parts(scene: &Scene, model: &Model) -> impl Iterator<Item = &'static str> {
     ]
     .into_iter()
     .filter_map(move |(part, has)| (is_held && has).then_some(part))
+    .chain(model.supports.as_ref().map(|_| part::SUPPORTS))
     .chain(scene.output.stress.then_some(part::STRESS))
 }

@@ -40,7 +40,16 @@ with h5py.File(results) as file:
     q, body_origin = file["modal/displacement"][:], file["body/origin"][:]
     kinds = file["body/kinds"].asstr()[:]
 
-shapes = arrays(read(vtkHDFReader(), modes))
+def von_mises(stress):
+    xx, yy, zz, xy, yz, zx = stress.T
+    return np.sqrt(((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) / 2 + 3 * (xy**2 + yz**2 + zx**2))
+
+
+of_modes = arrays(read(vtkHDFReader(), modes))
+shapes = {name: values for name, values in of_modes.items() if not name.startswith("stress of ")}
+assert list(of_modes) == [*shapes, *(f"stress of {name}" for name in shapes)]
+stresses = np.stack([of_modes[f"stress of {name}"] for name in shapes], axis=2)
+assert stresses.shape[1] == 6
 assert [name.split(" ")[0] for name in shapes] == [kind.split(" ")[0].replace("natural", "mode") for kind in kinds]
 shapes = np.stack(list(shapes.values()), axis=2)
 
@@ -49,14 +58,15 @@ read(reader, moving)
 steps = reader.GetOutputInformation(0).Get(vtkStreamingDemandDrivenPipeline.TIME_STEPS())
 rows = [int(np.argmin(np.abs(time - step))) for step in steps]
 assert len(steps) > 2 and np.array_equal(time[rows], steps), steps
-largest = {"displacement": 0.0, "elastic_displacement": 0.0}
+largest = {"displacement": 0.0, "elastic_displacement": 0.0, "von_mises_stress": 0.0}
 for number, (step, row) in enumerate(zip(steps, rows)):
     reader.UpdateTimeStep(step)
     grid = reader.GetOutputDataObject(0)
     points = vtk_to_numpy(grid.GetPoints().GetData())
     elastic = shapes @ q[row]
     placed = origin[row] + (points - body_origin + elastic) @ rotation(*attitude[row]).T
-    expected = {"displacement": placed - points, "elastic_displacement": elastic}
+    expected = {"displacement": placed - points, "elastic_displacement": elastic,
+                "von_mises_stress": von_mises(stresses @ q[row])}
     other = read(vtkXMLUnstructuredGridReader(), folder / f"{results.stem}_{number:06}.vtu")
     assert other.GetNumberOfCells() == grid.GetNumberOfCells() > 0
     assert np.array_equal(vtk_to_numpy(other.GetPoints().GetData()), points)
@@ -65,8 +75,9 @@ for number, (step, row) in enumerate(zip(steps, rows)):
     assert set(map(grid.GetCellType, range(grid.GetNumberOfCells()))) <= {5, 24}
     for name, values in expected.items():
         found = arrays(grid)[name]
-        scale = max(np.abs(values).max(), 1e-12 * np.ptp(points))
-        assert np.abs(found - values).max() <= 1e-12 * max(scale, np.ptp(points)), (step, name)
+        # Displacements are rounded as positions are.
+        size = 0 if name == "von_mises_stress" else np.ptp(points)
+        assert np.abs(found - values).max() <= 1e-12 * max(10 * np.abs(values).max(), size), (step, name)
         assert np.array_equal(arrays(other)[name], found), (step, name)
         largest[name] = max(largest[name], np.abs(values).max())
 assert all(value > 0 for value in largest.values()), largest

@@ -43,6 +43,7 @@ impl ConservativeBody {
         out.time = state.time;
         out.attitude = state.attitude;
         out.origin_global = position;
+        out.origin_acceleration_global = acceleration_of_origin;
         out.position_global = position + global(center);
         out.velocity_global = velocity_of_origin + global(omega.cross(&center) + self.center.deformation(&e.velocity));
         out.omega_body = omega;

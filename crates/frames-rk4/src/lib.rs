@@ -65,6 +65,7 @@ mod simulation;
 mod spin_stiffness;
 mod state;
 mod steady_spin;
+mod support_reactions;
 mod symmetric;
 mod travelling_frame;
 mod work;
@@ -101,6 +102,7 @@ pub use setup::{Method, Setup, StepLimit};
 pub use simulation::{Reached, Simulation, Stats};
 pub use state::{MotionState, State};
 pub use steady_spin::{EigenError, SpinMode, SteadySpin};
+pub use support_reactions::SupportReactions;
 pub use travelling_frame::TravellingFrame;
 pub use work::Work;
 

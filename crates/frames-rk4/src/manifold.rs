@@ -117,6 +117,14 @@ impl Manifold {
         &self.0.large
     }
 
+    /// T_jk (extended shapes) of large modes j and k, numbered among the large ones.
+    ///
+    /// # Panics
+    /// Where there are no such large modes.
+    pub fn slopes(&self, j: usize, k: usize) -> &[f64] {
+        &self.0.slopes[j * self.0.large.len() + k]
+    }
+
     /// ξ(q) in the extended shapes, as many as the body has.
     pub fn coordinates(&self, q: &[f64], xi: &mut [f64]) {
         let Constants { large, modes, slopes, .. } = &*self.0;

@@ -34,6 +34,8 @@ pub struct Observation {
     pub attitude: Attitude,
     /// Position of the body's origin, global components: of a free body, that of its centre of mass.
     pub origin_global: Vector3<f64>,
+    /// Acceleration of the body's origin, global components; zero in the formulation of the paper.
+    pub origin_acceleration_global: Vector3<f64>,
     /// Position of the centre of mass, global components.
     pub position_global: Vector3<f64>,
     /// Velocity of the centre of mass, global components.
@@ -72,6 +74,7 @@ impl Observation {
             time: 0.0,
             attitude: Attitude::identity(),
             origin_global: Vector3::zeros(),
+            origin_acceleration_global: Vector3::zeros(),
             position_global: Vector3::zeros(),
             velocity_global: Vector3::zeros(),
             omega_body: Vector3::zeros(),
@@ -96,6 +99,7 @@ impl Observation {
             time,
             attitude,
             origin_global,
+            origin_acceleration_global,
             position_global,
             velocity_global,
             omega_body,
@@ -113,7 +117,8 @@ impl Observation {
         } = self;
         let numbers = [time, kinetic_energy, strain_energy, work, dissipation];
         let modal = [modal_displacement, modal_velocity, modal_acceleration].into_iter().flatten();
-        let vectors = [origin_global, position_global, velocity_global, omega_body, alpha_body];
+        let vectors =
+            [origin_global, origin_acceleration_global, position_global, velocity_global, omega_body, alpha_body];
         let momenta = [impulse_global, angular_impulse_global, linear_momentum_global, angular_momentum_global];
         let of_points = |point: &PointMotion| {
             let PointMotion {

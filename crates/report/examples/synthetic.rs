@@ -90,7 +90,12 @@ fn patch() -> Report {
     report.shapes = vec![shape("tension", [3.0, 4.0, 0.0]), shape("shear", [0.0, 0.0, 2.0])];
     report.stress = Some(StressField {
         unit: "MPa".into(),
-        shapes: vec![vec![[100.0, 0.0, 0.0, 0.0, 0.0, 0.0]; 4], vec![[0.0, 0.0, 0.0, 30.0, 0.0, 0.0]; 4]],
+        shapes: vec![
+            vec![[100.0, 0.0, 0.0, 0.0, 0.0, 0.0]; 4],
+            vec![[0.0, 0.0, 0.0, 30.0, 0.0, 0.0]; 4],
+            vec![[0.0, 0.0, 0.0, 0.0, 25.0, 0.0]; 4],
+        ],
+        products: vec![[0, 1]],
     });
     report.motion.origins = vec![[0.0; 3]; 3];
     report.motion.attitudes = vec![[1.0, 0.0, 0.0, 0.0]; 3];
@@ -206,7 +211,7 @@ fn plate(along: usize, across: usize, modes: usize, rows: usize, title: &str) ->
             fact("Shapes", format!("{modes}")),
             fact("Time", format!("{DURATION} s in {rows} rows")),
         ],
-        stress: (modes > 0).then(|| StressField { unit: "MPa".into(), shapes: stresses }),
+        stress: (modes > 0).then(|| StressField { unit: "MPa".into(), shapes: stresses, products: Vec::new() }),
         surface: Some(surface),
         shapes,
         motion,

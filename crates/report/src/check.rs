@@ -86,9 +86,17 @@ fn check_shapes(report: &Report) -> Result<(), ReportError> {
         }
     }
     if let Some(stress) = &report.stress {
-        length("stresses of shapes", stress.shapes.len(), report.shapes.len())?;
-        for (shape, stresses) in report.shapes.iter().zip(&stress.shapes) {
-            let what = format!("stress of shape \"{}\"", shape.name);
+        length("stresses of shapes and products", stress.shapes.len(), report.shapes.len() + stress.products.len())?;
+        if stress.shapes.len() > MOST_SHAPES {
+            return Err(ReportError::TooManyShapes { found: stress.shapes.len(), most: MOST_SHAPES });
+        }
+        if let Some(coordinate) = stress.products.as_flattened().iter().find(|k| **k >= report.shapes.len()) {
+            return Err(ReportError::NoSuchShape { coordinate: *coordinate, count: report.shapes.len() });
+        }
+        let names = report.shapes.iter().map(|shape| format!("shape \"{}\"", shape.name));
+        let products = stress.products.iter().map(|[j, k]| format!("the product of the shapes {j} and {k}"));
+        for (name, stresses) in names.chain(products).zip(&stress.shapes) {
+            let what = format!("stress of {name}");
             length(&what, stresses.len(), vertices)?;
             finite(&what, stresses.as_flattened().iter().map(|x| f64::from(*x)))?;
         }

@@ -66,7 +66,9 @@ struct StressData<'a> {
     unit: &'a str,
     /// Greatest von Mises stress over all rows.
     peak: f64,
+    /// Of the shapes, then of the products.
     shapes: Vec<Numbers>,
+    products: &'a [[usize; 2]],
 }
 
 #[derive(Debug, Serialize)]
@@ -209,9 +211,13 @@ impl<'a> ShapeData<'a> {
 impl<'a> StressData<'a> {
     fn new(stress: &'a StressField, motion: &Motion) -> Self {
         let shapes: Vec<&[[f32; 6]]> = stress.shapes.iter().map(Vec::as_slice).collect();
+        let rows = motion.coordinates.chunks_exact((shapes.len() - stress.products.len()).max(1));
+        let products = |q: &[f64]| stress.products.iter().map(|[j, k]| q[*j] * q[*k]).collect::<Vec<_>>();
+        let coordinates: Vec<f64> = rows.flat_map(|q| q.iter().copied().chain(products(q))).collect();
         Self {
             unit: &stress.unit,
-            peak: peak(&shapes, &motion.coordinates, von_mises),
+            products: &stress.products,
+            peak: peak(&shapes, &coordinates, von_mises),
             shapes: shapes.iter().map(|shape| Numbers::quantised(shape.as_flattened())).collect(),
         }
     }

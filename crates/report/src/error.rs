@@ -61,6 +61,14 @@ pub enum ReportError {
         /// Number of vertices.
         count: usize,
     },
+    /// A product names a coordinate that is not there.
+    #[error("a product of the report's stress names coordinate {coordinate} (from 0), but there are {count}")]
+    NoSuchShape {
+        /// The coordinate, from 0.
+        coordinate: usize,
+        /// Number of coordinates.
+        count: usize,
+    },
     /// More shapes than the page can draw.
     #[error("the report has {found} shapes, and the page draws {most} at the most; leave out the highest modes")]
     TooManyShapes {

@@ -100,13 +100,16 @@ pub enum ShapeKind {
     SecondOrder,
 }
 
-/// Stresses on the surface: the sum over the shapes, each times its coordinate.
+/// Stresses on the surface: the sum over the shapes, each times its coordinate, and over products of two coordinates.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StressField {
     /// Unit of stress, such as MPa.
     pub unit: String,
-    /// For each shape the stress of each vertex where the coordinate is 1: xx, yy, zz, xy, yz, zx in body axes.
+    /// For each shape, and then for each product, the stress of each vertex where the coordinate or the product is 1: xx, yy,
+    /// zz, xy, yz, zx in body axes.
     pub shapes: Vec<Vec<[f32; 6]>>,
+    /// The coordinates of each product, numbered from 0; none where stress is linear in the coordinates.
+    pub products: Vec<[usize; 2]>,
 }
 
 /// The rows of a run. A vertex X is at `origin` + attitude (X + Σ coordinate × shape).

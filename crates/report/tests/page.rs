@@ -42,6 +42,7 @@ fn strip(vertices: usize, modes: usize, rows: usize, components: usize) -> Repor
             shapes: (0..modes)
                 .map(|k| (0..vertices).map(|i| [wave(k, i), 0.0, 0.0, 0.0, 0.0, 0.0]).collect())
                 .collect(),
+            products: Vec::new(),
         }),
         motion: Motion {
             origins: vec![[0.0; 3]; rows],

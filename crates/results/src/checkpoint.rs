@@ -1,5 +1,7 @@
 //! The state of a run beside its rows in an unfinished file.
 
+use std::borrow::Cow;
+
 use crc32fast::Hasher;
 
 /// Words of a checkpoint in the file beside those of the state: number, rows, sum of the rows, and check sum.
@@ -60,13 +62,13 @@ impl Sums {
     /// Goes on with further rows of all columns.
     pub(crate) fn add<'a>(&mut self, columns: impl Iterator<Item = &'a [f64]>) {
         for (hasher, values) in self.0.iter_mut().zip(columns) {
-            let mut bytes = [0; 4096];
-            for values in values.chunks(bytes.len() / 8) {
-                let words = bytes.as_chunks_mut().0.iter_mut();
-                words.zip(values).for_each(|(word, value)| *word = value.to_le_bytes());
-                hasher.update(&bytes[..8 * values.len()]);
-            }
+            hasher.update(&little_endian(values));
         }
+    }
+
+    /// That of each column.
+    pub(crate) fn of_columns(&self) -> &[Hasher] {
+        &self.0
     }
 
     /// Of all columns.
@@ -74,5 +76,32 @@ impl Sums {
         let mut total = Hasher::new();
         self.0.iter().for_each(|hasher| total.update(&hasher.clone().finalize().to_le_bytes()));
         total.finalize()
+    }
+}
+
+/// Numbers as they are in a file; no copy where they are so in memory, too.
+pub(crate) fn little_endian<T: bytemuck::NoUninit + ToLittleEndian>(values: &[T]) -> Cow<'_, [u8]> {
+    if cfg!(target_endian = "little") {
+        Cow::Borrowed(bytemuck::cast_slice(values))
+    } else {
+        Cow::Owned(values.iter().flat_map(|value| value.bytes()).collect())
+    }
+}
+
+/// A number of eight bytes.
+pub(crate) trait ToLittleEndian {
+    /// The lowest byte first.
+    fn bytes(&self) -> [u8; 8];
+}
+
+impl ToLittleEndian for f64 {
+    fn bytes(&self) -> [u8; 8] {
+        self.to_le_bytes()
+    }
+}
+
+impl ToLittleEndian for u64 {
+    fn bytes(&self) -> [u8; 8] {
+        self.to_le_bytes()
     }
 }

@@ -34,6 +34,8 @@ pub enum Values<R> {
     Modal(fn(&R) -> &[f64]),
     /// T×P×3: a vector of each of P points; `None` for a number beyond the last point.
     Points(fn(&R, usize) -> Option<[f64; 3]>),
+    /// T×S×3: a vector of each of S supports; `None` for a number beyond the last.
+    Supports(fn(&R, usize) -> Option<[f64; 3]>),
     /// T×P×n: so many numbers of each point; one has the shape T×P.
     PointNumbers(usize, fn(&R, usize) -> Option<&[f64]>),
 }
@@ -79,7 +81,7 @@ impl<R> Column<R> {
             Values::Vector(_) => vec![3],
             Values::Quaternion(_) => vec![4],
             Values::Modal(_) => vec![metadata.body.frequencies.len()],
-            Values::Points(_) => vec![metadata.point_names.len(), 3],
+            Values::Points(_) | Values::Supports(_) => vec![self.places(metadata).len(), 3],
             Values::PointNumbers(1, _) => vec![metadata.point_names.len()],
             Values::PointNumbers(count, _) => vec![metadata.point_names.len(), count],
         }
@@ -92,18 +94,32 @@ impl<R> Column<R> {
             Values::Vector(_) => 3,
             Values::Quaternion(_) => 4,
             Values::Modal(_) => metadata.body.frequencies.len(),
-            Values::Points(_) | Values::PointNumbers(..) => self.per_point() * metadata.point_names.len(),
+            Values::Points(_) | Values::Supports(_) | Values::PointNumbers(..) => {
+                self.per_point() * self.places(metadata).len()
+            }
         }
     }
 
-    /// Appends the values that a row has, of so many points.
-    pub(crate) fn append(&self, row: &R, points: usize, out: &mut Vec<f64>) {
+    /// The names of the points or supports that it has values of; none of one that is of the whole body.
+    pub fn places<'m>(&self, metadata: &'m Metadata) -> &'m [String] {
+        match self.values {
+            Values::Points(_) | Values::PointNumbers(..) => &metadata.point_names,
+            Values::Supports(_) => &metadata.support_names,
+            _ => &[],
+        }
+    }
+
+    /// Appends the values that a row has.
+    pub(crate) fn append(&self, row: &R, metadata: &Metadata, out: &mut Vec<f64>) {
+        let points = self.places(metadata).len();
         match self.values {
             Values::Number(value) => out.push(value(row)),
             Values::Vector(values) => out.extend(values(row)),
             Values::Quaternion(values) => out.extend(values(row)),
             Values::Modal(values) => out.extend(values(row)),
-            Values::Points(values) => (0..points).map_while(|point| values(row, point)).for_each(|v| out.extend(v)),
+            Values::Points(values) | Values::Supports(values) => {
+                (0..points).map_while(|point| values(row, point)).for_each(|v| out.extend(v))
+            }
             Values::PointNumbers(_, values) => {
                 (0..points).map_while(|point| values(row, point)).for_each(|v| out.extend(v));
             }
@@ -112,23 +128,24 @@ impl<R> Column<R> {
 
     /// What a message or a reader calls the value at `index` of a row.
     pub(crate) fn quantity(&self, metadata: &Metadata, index: usize) -> String {
-        let point = index.checked_div(self.per_point()).and_then(|point| metadata.point_names.get(point));
+        let point = index.checked_div(self.per_point()).and_then(|point| self.places(metadata).get(point));
         point.map_or_else(|| self.path.to_owned(), |name| of_point(self.path, name))
     }
 
-    /// Values of each point; 0 of a column that is not of points.
+    /// Values of each point or support; 0 of a column that is of the whole body.
     pub(crate) fn per_point(&self) -> usize {
         match self.values {
-            Values::Points(_) => 3,
+            Values::Points(_) | Values::Supports(_) => 3,
             Values::PointNumbers(count, _) => count,
             _ => 0,
         }
     }
 
-    /// Whether a row has values of a point with this number.
-    pub(crate) fn has_point(&self, row: &R, point: usize) -> bool {
+    /// Whether a row has values of more points or supports than there are.
+    pub(crate) fn has_more(&self, row: &R, metadata: &Metadata) -> bool {
+        let point = self.places(metadata).len();
         match self.values {
-            Values::Points(values) => values(row, point).is_some(),
+            Values::Points(values) | Values::Supports(values) => values(row, point).is_some(),
             Values::PointNumbers(_, values) => values(row, point).is_some(),
             _ => false,
         }

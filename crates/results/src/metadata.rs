@@ -69,6 +69,10 @@ pub struct Metadata {
     pub point_positions: Vec<[f64; 3]>,
     /// What else the run has, so that its file has the columns that ask for it ([`Column::part`](crate::Column::part)).
     pub parts: Vec<String>,
+    /// Names of the supports whose reactions are stored, where there are several, in the order of a row's supports.
+    pub support_names: Vec<String>,
+    /// What should be known of the run, each a sentence or more: see [`Writer::warn`](crate::Writer::warn).
+    pub warnings: Vec<String>,
 }
 
 impl BodyProperties {
@@ -116,12 +120,13 @@ impl Metadata {
 
     fn check_point_names(&self, path: &Path) -> Result<(), FileError> {
         let mut before = HashSet::new();
-        for name in &self.point_names {
+        let points = self.point_names.iter().map(|name| ("points", name));
+        for (kind, name) in points.chain(self.support_names.iter().map(|name| ("supports", name))) {
             let reason = match name.as_str() {
                 "" => "it is empty",
                 name if name.contains('/') => "it holds a /, which separates the parts of a path",
                 name if name.contains('\0') => "it holds a NUL character",
-                name if !before.insert(name) => "it occurs twice",
+                name if !before.insert((kind, name)) => "it occurs twice",
                 _ => continue,
             };
             return Err(FileError::PointName { path: path.to_path_buf(), name: name.clone(), reason });

@@ -116,7 +116,7 @@ impl Results {
                 histories.insert(column.path.to_owned(), ColumnTable { rows, width, values });
                 continue;
             }
-            for (point, name) in metadata.point_names.iter().enumerate() {
+            for (point, name) in column.places(&metadata).iter().enumerate() {
                 let its_part = each * point..each * (point + 1);
                 let values = values.chunks_exact(width).flat_map(|row| &row[its_part.clone()]).copied().collect();
                 histories.insert(of_point(column.path, name), ColumnTable { rows, width: each, values });
@@ -130,7 +130,8 @@ impl Results {
         self.rows
     }
 
-    /// The history of this path, such as "modal/displacement", or "points/P1/velocity" of the point P1, if there is one.
+    /// The history of this path, such as "modal/displacement", or "points/P1/velocity" of the point P1 and
+    /// "supports/2/force" of the support 2, if there is one.
     pub fn table(&self, path: &str) -> Option<&ColumnTable> {
         self.histories.get(path)
     }
@@ -148,12 +149,12 @@ impl Results {
 
     /// Whether row `i` is this one, to the last bit of every column.
     pub fn is_row<R>(&self, i: usize, columns: &'static [Column<R>], row: &R) -> bool {
-        let names = &self.metadata.point_names;
         let mut values = Vec::new();
         let is = |path: &str, values: &[f64]| self.table(path).and_then(|table| table.row(i)) == Some(values);
         present(columns, &self.metadata).all(|column| {
             values.clear();
-            column.append(row, names.len(), &mut values);
+            column.append(row, &self.metadata, &mut values);
+            let names = column.places(&self.metadata);
             match column.per_point() {
                 0 => is(column.path, &values),
                 each => {

@@ -10,7 +10,7 @@
 //!
 //! | bytes | what, integers in 64 bits, the lowest byte first |
 //! |---|---|
-//! | 0–24 | `flexframe results, v. 3` and a line feed |
+//! | 0–24 | `flexframe results, v. 4` and a line feed |
 //! | 24–32 | CRC-32 of all bytes after it that are not left out |
 //! | 32–40 | bytes of the file |
 //! | 40–48 | bytes of the description |
@@ -23,7 +23,7 @@ use std::iter::once;
 use std::ops::Range;
 use std::path::Path;
 
-const MAGIC: &[u8; 24] = b"flexframe results, v. 3\n";
+const MAGIC: &[u8; 24] = b"flexframe results, v. 4\n";
 
 /// Bytes of the magic text that are those of every version.
 const ANY_VERSION: usize = 21;
@@ -45,8 +45,16 @@ pub(crate) fn room(description: u64) -> u64 {
     (HEAD + description).next_power_of_two().max(512)
 }
 
-/// Seals the file, called `path` in messages, leaving out the ranges given, which are in order.
-pub(crate) fn put(file: &File, path: &Path, description: &[u8], left_out: &[Range<u64>]) -> Result<(), FileError> {
+/// Bytes of a file that are not read for its check sum.
+#[derive(Debug)]
+pub(crate) struct Apart<'s> {
+    pub range: Range<u64>,
+    /// That of the bytes, where it is known; without it they are left out.
+    pub sum: Option<&'s crc32fast::Hasher>,
+}
+
+/// Seals the file, called `path` in messages, without a look at the ranges given, which are in order.
+pub(crate) fn put(file: &File, path: &Path, description: &[u8], apart: &[Apart<'_>]) -> Result<(), FileError> {
     let failed = |error| FileError::system(path, "write the check sum of the file", &error);
     let length = file.metadata().map_err(failed)?.len();
     let mut head = MAGIC.to_vec();
@@ -57,7 +65,7 @@ pub(crate) fn put(file: &File, path: &Path, description: &[u8], left_out: &[Rang
         file.write_all(bytes)
     };
     write(file, 0, &head).map_err(failed)?;
-    let sum = sum(file, left_out, length).map_err(failed)?;
+    let sum = sum(file, apart, length).map_err(failed)?;
     write(file, SUM.start, &u64::from(sum).to_le_bytes()).map_err(failed)
 }
 
@@ -78,10 +86,10 @@ pub(crate) fn description(mut file: &File, path: &Path) -> Result<Vec<u8>, FileE
     Ok(description)
 }
 
-/// Refuses a file that is not as it was sealed. The ranges left out are in order, and within the file.
-pub(crate) fn check(file: &File, path: &Path, left_out: &[Range<u64>]) -> Result<(), FileError> {
+/// Refuses a file that is not as it was sealed. The ranges apart are in order, and within the file.
+pub(crate) fn check(file: &File, path: &Path, apart: &[Apart<'_>]) -> Result<(), FileError> {
     let (written, length, _) = head(file, path)?;
-    let found = sum(file, left_out, length).map_err(|error| FileError::system(path, "read the file", &error))?;
+    let found = sum(file, apart, length).map_err(|error| FileError::system(path, "read the file", &error))?;
     if u64::from(found) == written {
         return Ok(());
     }
@@ -110,12 +118,12 @@ pub(crate) fn is_claimed(path: &Path) -> bool {
     File::open(path).and_then(|mut file| file.read_exact(&mut magic)).is_ok() && MAGIC.starts_with(&magic)
 }
 
-/// CRC-32 of the bytes after the sum, up to `length`, that are in none of the ranges.
-fn sum(mut file: &File, left_out: &[Range<u64>], length: u64) -> io::Result<u32> {
+/// CRC-32 of the bytes after the sum, up to `length`, but for those that are left out.
+fn sum(mut file: &File, apart: &[Apart<'_>], length: u64) -> io::Result<u32> {
     let mut hasher = crc32fast::Hasher::new();
     let mut block = [0; BLOCK];
     let mut start = SUM.end;
-    for range in left_out.iter().cloned().chain(once(length..length)) {
+    for Apart { range, sum } in apart.iter().chain(once(&Apart { range: length..length, sum: None })) {
         file.seek(SeekFrom::Start(start))?;
         let mut rest = range.start - start;
         while rest > 0 {
@@ -123,6 +131,9 @@ fn sum(mut file: &File, left_out: &[Range<u64>], length: u64) -> io::Result<u32>
             file.read_exact(part)?;
             hasher.update(part);
             rest -= part.len() as u64;
+        }
+        if let Some(sum) = sum {
+            hasher.combine(sum);
         }
         start = range.end;
     }

@@ -1,15 +1,17 @@
 //! The numbers of an open results file, written and read at their places without HDF5.
 
+use crate::checkpoint::{Sums, little_endian};
 use crate::column::present;
 use crate::description::Description;
 use crate::room::Room;
+use crate::seal::Apart;
 use crate::{Column, FileError, Metadata, seal, structure};
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::ops::Range;
 use std::path::Path;
 
-/// Bytes that are written or read at a time.
+/// Bytes that are read at a time.
 const BLOCK: usize = 1 << 14;
 
 /// Bytes of a number.
@@ -111,20 +113,24 @@ impl Store {
     }
 
     /// The bytes that change when the file has been sealed, in order: those of the numbers of an unfinished file.
-    fn changing(&self) -> Vec<Range<u64>> {
+    fn changing(&self) -> Vec<Apart<'_>> {
         if self.is_complete() {
             return Vec::new();
         }
         let columns = self.columns.iter().map(|(range, _)| range);
-        let mut ranges: Vec<_> =
-            columns.chain([&self.checkpoints]).filter(|range| !range.is_empty()).cloned().collect();
-        ranges.sort_unstable_by_key(|range| range.start);
-        ranges
+        in_order(columns.chain([&self.checkpoints]).map(|range| Apart { range: range.clone(), sum: None }))
     }
 
-    /// Seals the file as it is now.
-    pub(crate) fn seal(&self, path: &Path) -> Result<(), FileError> {
-        seal::put(&self.file, path, self.description.to_json().as_bytes(), &self.changing())
+    /// Seals the file as it is now. Histories whose check sums are known are not read for it.
+    pub(crate) fn seal(&self, path: &Path, sums: Option<&Sums>) -> Result<(), FileError> {
+        let apart = match sums.filter(|_| self.is_complete()) {
+            Some(sums) => {
+                let columns = self.columns.iter().zip(sums.of_columns());
+                in_order(columns.map(|((range, _), sum)| Apart { range: range.clone(), sum: Some(sum) }))
+            }
+            None => self.changing(),
+        };
+        seal::put(&self.file, path, self.description.to_json().as_bytes(), &apart)
     }
 
     /// What the file says of the run.
@@ -161,7 +167,7 @@ impl Store {
     ) -> Result<(), FileError> {
         for ((bytes, width), values) in self.columns.iter().zip(values) {
             let start = bytes.start + (rows.start * width * NUMBER) as u64;
-            self.write_words(start, values.iter().map(|value| value.to_bits()))
+            self.write_at(start, &little_endian(values))
                 .map_err(|error| FileError::system(path, format!("write rows {rows:?}"), &error))?;
         }
         Ok(())
@@ -191,21 +197,14 @@ impl Store {
     /// Writes one of the two places for a checkpoint.
     pub(crate) fn write_checkpoint(&self, path: &Path, place: usize, words: &[u64]) -> Result<(), FileError> {
         let start = self.checkpoints.start + (place * self.checkpoint_words() * NUMBER) as u64;
-        self.write_words(start, words.iter().copied())
+        self.write_at(start, &little_endian(words))
             .map_err(|error| FileError::system(path, "write the checkpoint", &error))
     }
 
-    fn write_words(&self, start: u64, mut words: impl ExactSizeIterator<Item = u64>) -> io::Result<()> {
+    fn write_at(&self, start: u64, bytes: &[u8]) -> io::Result<()> {
         let mut file = &self.file;
         file.seek(SeekFrom::Start(start))?;
-        let mut block = [0; BLOCK];
-        while words.len() > 0 {
-            let count = words.len().min(BLOCK / NUMBER);
-            let places = block.as_chunks_mut().0.iter_mut();
-            places.zip(words.by_ref().take(count)).for_each(|(place, word)| *place = word.to_le_bytes());
-            file.write_all(&block[..count * NUMBER])?;
-        }
-        Ok(())
+        file.write_all(bytes)
     }
 
     fn read_words<T>(&self, bytes: &Range<u64>, from_bits: impl Fn(u64) -> T) -> io::Result<Vec<T>> {
@@ -232,6 +231,13 @@ impl Store {
             _ => Err(io::ErrorKind::UnexpectedEof.into()),
         }
     }
+}
+
+/// Those that are not empty, in the order of the file.
+fn in_order<'s>(ranges: impl Iterator<Item = Apart<'s>>) -> Vec<Apart<'s>> {
+    let mut ranges: Vec<_> = ranges.filter(|apart| !apart.range.is_empty()).collect();
+    ranges.sort_unstable_by_key(|apart| apart.range.start);
+    ranges
 }
 
 /// Locks the file while it is open. Where files cannot be locked, nothing does.

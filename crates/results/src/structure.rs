@@ -31,6 +31,18 @@ pub(crate) fn make<R>(
     write_root_attributes(path, &file, metadata, room.checkpoint_words.is_none())?;
     write_body(path, &file, metadata)?;
     write_points(path, &file, metadata)?;
+    if !metadata.support_names.is_empty() {
+        let names = metadata.support_names.iter().map(String::as_str);
+        write_texts(
+            path,
+            &file,
+            "supports/names",
+            names,
+            "names of the supports, in the order of the other data sets",
+        )?;
+    }
+    let warnings = metadata.warnings.iter().map(String::as_str);
+    write_texts(path, &file, "warnings", warnings, "what should be known of the run; empty in an unfinished file")?;
     let mut datasets = present(columns, metadata)
         .map(|column| create_history(path, &file, column, metadata, room))
         .collect::<Result<Vec<_>, _>>()?;

@@ -50,6 +50,6 @@ impl Grid {
 pub struct Field {
     /// What ParaView calls it.
     pub name: String,
-    /// Numbers of each point: 1 of a scalar, 3 of a vector.
+    /// Numbers of each point: 1 of a scalar, 3 of a vector, 6 of a symmetric tensor (xx, yy, zz, xy, yz, zx).
     pub components: usize,
 }

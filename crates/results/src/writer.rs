@@ -6,7 +6,7 @@ use crate::paths::ResultsPaths;
 use crate::reader::Results;
 use crate::room::Room;
 use crate::store::Store;
-use crate::{Column, FileError, Metadata};
+use crate::{Column, FileError, Metadata, Values};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 use tempfile::TempPath;
@@ -14,8 +14,9 @@ use tempfile::TempPath;
 /// Most rows that are gathered before they are written. A row at a time costs about nine times as much.
 const ROWS_PER_WRITE: usize = 512;
 
-/// Numbers that are gathered at the most (8 MiB), so that rows of many points are fewer.
-const NUMBERS_PER_WRITE: usize = 1 << 20;
+/// Numbers that are gathered at the most (2 MiB), so that rows of many points are fewer: they stay near the processor until
+/// they are written.
+const NUMBERS_PER_WRITE: usize = 1 << 18;
 
 /// What the kill of a process can lose.
 const FLUSH_INTERVAL: Duration = Duration::from_secs(1);
@@ -186,8 +187,7 @@ impl<R> Writer<R> {
     /// [`FileError::WrongLength`] and [`FileError::NotFinite`] leave the row out and everything before
     /// it in; [`FileError::System`] and [`FileError::Hdf5`] if the file cannot be written.
     pub fn push(&mut self, row: &R) -> Result<(), FileError> {
-        let points = self.metadata.point_names.len();
-        self.buffers.iter_mut().for_each(|(column, buffer)| column.append(row, points, buffer));
+        self.buffers.iter_mut().for_each(|(column, buffer)| column.append(row, &self.metadata, buffer));
         if let Err(error) = self.check_last(row) {
             for (column, buffer) in &mut self.buffers {
                 buffer.truncate(self.rows_buffered * column.width(&self.metadata));
@@ -201,9 +201,10 @@ impl<R> Writer<R> {
     /// Refuses the row whose values are the last in the buffers where it lacks a value, or has one that is not finite.
     fn check_last(&self, row: &R) -> Result<(), FileError> {
         let (path, metadata) = (&self.place.part, &self.metadata);
-        let points = metadata.point_names.len();
-        if self.columns.iter().any(|column| column.has_point(row, points)) {
-            return check_length(path, "points", points, points + 1);
+        if let Some(column) = self.columns.iter().find(|column| column.has_more(row, metadata)) {
+            let places = column.places(metadata).len();
+            let what = if matches!(column.values, Values::Supports(_)) { "supports" } else { "points" };
+            return check_length(path, what, places, places + 1);
         }
         let mut time = None;
         for (column, buffer) in &self.buffers {
@@ -244,6 +245,11 @@ impl<R> Writer<R> {
         Ok(())
     }
 
+    /// What should be known of the run, for [`Writer::finish`] to store; an unfinished file has none.
+    pub fn warn(&mut self, warnings: Vec<String>) {
+        self.metadata.warnings = warnings;
+    }
+
     /// Writes the results file, puts it into its place, where an older one is replaced, and removes the unfinished one.
     ///
     /// # Errors
@@ -255,7 +261,7 @@ impl<R> Writer<R> {
         let path = &self.place.path;
         let store = Store::create(&file, path, &self.metadata, self.columns, room)?;
         store.copy_rows(path, &self.store, self.rows_written)?;
-        store.seal(path)?;
+        store.seal(path, Some(&self.sums))?;
         drop(store);
         self.place.put_results(file)?;
         self.place.remove_part()
@@ -317,7 +323,7 @@ fn make_room<R>(
 ) -> Result<(TempPath, Store), FileError> {
     let file = place.temporary()?;
     let store = Store::create(&file, &place.part, metadata, columns, room)?;
-    store.seal(&place.part)?;
+    store.seal(&place.part, None)?;
     Ok((file, store))
 }
 

@@ -34,6 +34,7 @@ mod stress_left_out;
 mod stress_shapes;
 mod structure;
 mod support;
+mod support_reactions;
 mod survey;
 mod turning;
 
@@ -47,6 +48,7 @@ pub use error::{BuildError, StartError};
 pub use model::{Meshed, Model};
 pub use progress::{BuildProgress, BuildTimes};
 pub use stress_shapes::{BodyStress, StressPeak};
+pub use support_reactions::SupportRows;
 
 impl Model {
     /// Reads the mesh of a scene, finds its modes and reduces the body. `progress` hears what is being done.

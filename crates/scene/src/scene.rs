@@ -157,4 +157,32 @@ pub struct Output {
     pub stress: bool,
     /// Whether the largest von Mises stress of the whole body among the rows is looked for; default no.
     pub peak_stress: bool,
+    /// Whether the stress of all nodes is wanted, in each coordinate: for exports, pages and body files. No key of the
+    /// scene file; [`Scene::with_stress_field`] sets it.
+    pub stress_field: bool,
+    /// Whether each of several supports gets reactions of its own. No key of the scene file; [`Scene::without_rows`] clears it.
+    pub support_reactions: bool,
+}
+
+impl Scene {
+    /// The same, with the stress of all nodes in each coordinate; a body without a mesh has none.
+    pub fn with_stress_field(mut self) -> Self {
+        self.output.stress_field = matches!(self.body, Body::Meshed(_));
+        self
+    }
+
+    /// The same, without what only the rows of a run have: for whoever writes none. That is stress, and the reactions of
+    /// several supports.
+    pub fn without_rows(mut self) -> Self {
+        let Output { stress, peak_stress, stress_field, support_reactions, .. } = &mut self.output;
+        (*stress, *peak_stress, *stress_field, *support_reactions) = (false, false, false, false);
+        self
+    }
+}
+
+impl Output {
+    /// Whether anything of the stress is wanted.
+    pub fn any_stress(&self) -> bool {
+        self.stress || self.peak_stress || self.stress_field
+    }
 }

@@ -103,6 +103,11 @@ fn parts<R>(column: &Column<R>, metadata: &Metadata) -> Vec<Part> {
             let of_point = |name: &String| part(format!("points/{name}/{quantity}"), list(&["x", "y", "z"]));
             metadata.point_names.iter().map(of_point).collect()
         }
+        Values::Supports(_) => {
+            let quantity = column.path.trim_start_matches("supports/");
+            let of_support = |name: &String| part(format!("supports/{name}/{quantity}"), list(&["x", "y", "z"]));
+            metadata.support_names.iter().map(of_support).collect()
+        }
         Values::PointNumbers(count, _) => {
             let quantity = column.path.trim_start_matches("points/");
             let names = match (quantity, count) {

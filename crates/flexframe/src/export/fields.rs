@@ -12,9 +12,10 @@ pub(super) struct PointField {
 }
 
 /// All of them. The mesh stays where the scene has it; warped by the first it is where the body is.
-pub(super) const FIELDS: [PointField; 2] = [
+pub(super) const FIELDS: [PointField; 3] = [
     PointField { name: "displacement", components: 3, values: |placed| &placed.displacement },
     PointField { name: "elastic_displacement", components: 3, values: |placed| &placed.elastic },
+    PointField { name: "von_mises_stress", components: 1, values: |placed| &placed.von_mises },
 ];
 
 /// What a file says of them.

@@ -3,7 +3,9 @@
 use std::path::Path;
 
 use faer::ColRef;
+use fem_tet10::von_mises;
 use nalgebra::{Matrix3, Vector3};
+use rayon::prelude::*;
 use results::{CellKind, Grid, Results};
 use rigid_kin::Attitude;
 use scene::{BuildProgress, Cache, Meshed, Model, Scene};
@@ -24,13 +26,15 @@ pub struct Motion {
     nodes: Vec<u32>,
 }
 
-/// Where all points of the grid are at a row.
+/// Where all points of the grid are at a row, and their stress.
 #[derive(Debug, Default)]
 pub(super) struct Placed {
     /// Displacement by deformation, body components, point by point.
     pub elastic: Vec<f64>,
     /// Displacement from the place in the mesh, global components.
     pub displacement: Vec<f64>,
+    /// Von Mises stress; where materials meet, the larger one.
+    pub von_mises: Vec<f64>,
 }
 
 impl Motion {
@@ -75,7 +79,16 @@ impl Motion {
         }
     }
 
-    /// Where the points are at a row: `r + Aᵀ (X + Ψ ξ)`.
+    /// The stress of a coordinate at all points, in the order of VTK's symmetric tensors, which is that of
+    /// [`fem_tet10::COMPONENTS`]; where materials meet, that with the larger von Mises stress.
+    pub(super) fn stress_of(&self, coordinate: usize) -> Vec<f64> {
+        let Some(stress) = &self.model.stress else { return vec![0.0; 6 * self.grid.points.len()] };
+        let mut unit = vec![0.0; coordinate + 1];
+        unit[coordinate] = 1.0;
+        self.nodes.iter().flat_map(|node| stress.in_coordinates(*node, &unit)).collect()
+    }
+
+    /// Where the points are at a row: `r + Aᵀ (X + Ψ ξ)`; and their stress.
     pub(super) fn place(&self, row: usize, out: &mut Placed) {
         let history = |path: &str| self.results.table(path).and_then(|table| table.row(row)).unwrap_or_default();
         let vector = |path: &str| Vector3::from_iterator(history(path).iter().copied().chain([0.0; 3]));
@@ -94,6 +107,15 @@ impl Motion {
             let x = Vector3::from(*x);
             let moved = at_origin + to_global * (x - self.model.body.origin + Vector3::from(*u)) - x;
             out.displacement.extend(moved.iter());
+        }
+        out.von_mises.clear();
+        match &self.model.stress {
+            Some(stress) => {
+                let coordinates = stress.coordinates(history("modal/displacement"));
+                let of_node = |node: &u32| von_mises(&stress.in_coordinates(*node, &coordinates));
+                self.nodes.par_iter().map(of_node).collect_into_vec(&mut out.von_mises);
+            }
+            None => out.von_mises.resize(self.nodes.len(), 0.0),
         }
     }
 }

@@ -85,8 +85,8 @@ pub fn export_vtu(
     Ok(Exported { files: vec![list], warning: ExportRows::warning(&motion.results) })
 }
 
-/// Writes a VTKHDF file with the shape of each mode, and of each static shape, as a field of its own, mass-normalised.
-/// They are numbered as everywhere: from 1.
+/// Writes a VTKHDF file with the shape of each mode, and of each static shape, as a field of its own, mass-normalised, and
+/// then the stress of each. They are numbered as everywhere: from 1.
 ///
 /// # Errors
 /// [`ExportError`]; nothing has been written then.
@@ -102,12 +102,15 @@ pub fn export_modes(file: &Path, motion: &Motion, to: &Path, rows: &ExportRows) 
         kind => format!("{kind} {:0digits$}", k + 1),
     };
     let names = body.kinds().zip(&body.frequencies).enumerate().map(name);
-    let fields: Vec<Field> = names.map(|name| Field { name, components: 3 }).collect();
+    let shapes: Vec<Field> = names.map(|name| Field { name, components: 3 }).collect();
+    let stress = |shape: &Field| Field { name: format!("stress of {}", shape.name), components: 6 };
+    let fields: Vec<Field> = shapes.iter().cloned().chain(shapes.iter().map(stress)).collect();
     let out = VtkHdf::create(to, &motion.grid, None, &fields, rows.overwrite)?;
     for (k, shape) in modes.shapes.col_iter().enumerate() {
         let mut values = vec![0.0; 3 * motion.grid.points.len()];
         motion.add_shape(shape, 1.0, &mut values);
         out.write(0, k, &values)?;
+        out.write(0, shapes.len() + k, &motion.stress_of(k))?;
     }
     out.finish()?;
     Ok(Exported { files: vec![to.to_owned()], warning: None })

@@ -3,10 +3,11 @@
 use std::path::Path;
 
 use frames_rk4::Manifold;
-use modal::ReducedBody;
+use modal::{ReducedBody, SecondOrderShapes};
 use nalgebra::Vector3;
 use report::{
-    Balance, Component, Effect, Fact, History, Motion, Report, RunState, SceneText, Shape, ShapeKind, Surface, Units,
+    Balance, Component, Effect, Fact, History, Motion, Report, RunState, SceneText, Shape, ShapeKind, StressField,
+    Surface, Units,
 };
 use results::{Column, Results, Values};
 use scene::{Model, Scene};
@@ -31,7 +32,7 @@ pub(super) fn contents(file: &Path, results: &Results, scene: &Scene, model: &Mo
         facts: facts(results, model, &body)?,
         surface: surface.as_ref().map(|surface| reference(surface, model)),
         shapes: shapes(surface.as_ref(), model, &body),
-        stress: None,
+        stress: surface.as_ref().and_then(|surface| stress(surface, results, model)),
         motion: motion(results, model)?,
         histories: COLUMNS.iter().flat_map(|column| histories(column, results, &body)).collect(),
         balances: balances(results)?,
@@ -40,7 +41,7 @@ pub(super) fn contents(file: &Path, results: &Results, scene: &Scene, model: &Mo
             file: scene.path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
             text: results.metadata.scene_text.clone(),
         },
-        warnings: warnings(model),
+        warnings: warnings(results, model),
     })
 }
 
@@ -108,6 +109,42 @@ fn shapes(surface: Option<&surface::Surface>, model: &Model, body: &BodyReport) 
     (0..extended(model).flexible()).map(shape).collect()
 }
 
+/// The stress of each shape, and of each product of two large modes.
+fn stress(surface: &surface::Surface, results: &Results, model: &Model) -> Option<StressField> {
+    let (body, large) = (model.stress.as_ref()?, model.large_modes());
+    let shapes = extended(model).flexible();
+    if shapes == 0 {
+        return None;
+    }
+    let modal = results.table("modal/displacement")?;
+    let rows: Option<Vec<_>> = (0..results.rows()).map(|row| Some(body.coordinates(modal.row(row)?))).collect();
+    let rows = rows?;
+    let of_nodes: Vec<&[[f64; 6]]> =
+        surface.nodes.iter().filter_map(|node| body.of_most_stressed_material(*node, &rows)).collect();
+    let pairs = SecondOrderShapes::pairs(large.len());
+    // The coordinate of a pair of two modes is twice their product.
+    let factors = pairs.iter().map(|[i, j]| if i == j { 1.0 } else { 2.0 });
+    let shape = |(k, factor): (usize, f64)| {
+        of_nodes.iter().map(|shapes| shapes[k].map(|s| (factor * s) as f32)).collect::<Vec<_>>()
+    };
+    let column = COLUMNS.iter().find(|column| column.path == "points/von_mises_stress")?;
+    Some(StressField {
+        unit: stress_unit(&unit(column, results)),
+        shapes: std::iter::repeat_n(1.0, shapes).chain(factors).enumerate().map(shape).collect(),
+        products: pairs.iter().map(|pair| pair.map(|i| large[i])).collect(),
+    })
+}
+
+/// The name of a unit of stress that has one.
+fn stress_unit(unit: &str) -> String {
+    match unit {
+        "kg/(m s²)" => "Pa",
+        "Mg/(mm s²)" | "t/(mm s²)" => "MPa",
+        other => other,
+    }
+    .to_owned()
+}
+
 /// The body in all shapes that are drawn: with those that follow large modes.
 fn extended(model: &Model) -> &ReducedBody {
     model.physics.large_deflection.as_ref().map_or(&model.body, Manifold::body)
@@ -143,13 +180,14 @@ fn histories(column: &Column<Row>, results: &Results, body: &BodyReport) -> Vec<
     if path == "time" {
         return Vec::new();
     }
-    let of_points = matches!(column.values, Values::Points(_) | Values::PointNumbers(..));
-    match path.strip_prefix("points/").filter(|_| of_points) {
-        Some(name) => results
-            .metadata
-            .point_names
-            .iter()
-            .filter_map(|point| history(format!("point {point}"), name, &format!("points/{point}/{name}")))
+    let places = match column.values {
+        Values::Points(_) | Values::PointNumbers(..) => Some(("point", "points/")),
+        Values::Supports(_) => Some(("support", "supports/")),
+        _ => None,
+    };
+    match places.and_then(|(kind, prefix)| Some((kind, prefix, path.strip_prefix(prefix)?))) {
+        Some((kind, prefix, name)) => (column.places(&results.metadata).iter())
+            .filter_map(|place| history(format!("{kind} {place}"), name, &format!("{prefix}{place}/{name}")))
             .collect(),
         None => {
             let (group, name) = path.split_once('/').unwrap_or(("body", path));
@@ -166,7 +204,7 @@ fn component_name(column: &Column<Row>, k: usize, width: usize, body: &BodyRepor
             if k < modes { format!("{}", k + 1) } else { format!("static {}", k + 1) }
         }
         Values::Quaternion(_) => ["w", "x", "y", "z"][k].to_owned(),
-        Values::Vector(_) | Values::Points(_) => ["x", "y", "z"][k].to_owned(),
+        Values::Vector(_) | Values::Points(_) | Values::Supports(_) => ["x", "y", "z"][k].to_owned(),
         Values::PointNumbers(6, _) => ["xx", "yy", "zz", "xy", "yz", "zx"][k].to_owned(),
         Values::PointNumbers(count, _) if count > 1 => format!("{}", k + 1),
         Values::Number(_) | Values::PointNumbers(..) => String::new(),
@@ -250,7 +288,9 @@ fn effects(scene: &Scene, model: &Model) -> Vec<Effect> {
     model.advice.rows().map(effect).collect()
 }
 
-fn warnings(model: &Model) -> Vec<String> {
+/// Why the model is known to be wrong, and those of the run.
+fn warnings(results: &Results, model: &Model) -> Vec<String> {
     let refusal = model.refusal.as_ref().map(ToString::to_string);
-    refusal.into_iter().collect()
+    let of_run = results.metadata.warnings.iter().filter(|warning| Some(*warning) != refusal.as_ref()).cloned();
+    refusal.iter().cloned().chain(of_run).collect()
 }

@@ -211,6 +211,7 @@ impl<'a> Recorder<'a> {
             results: self.writer.path().to_path_buf(),
             times: Times::of_model(model),
         };
+        self.writer.warn(report.warnings.clone());
         self.writer.finish()?;
         report.times.add("motion", started.elapsed());
         Ok(report)

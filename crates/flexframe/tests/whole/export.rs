@@ -3,10 +3,12 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
+use faer::Mat;
 use flexframe::columns::COLUMNS;
+use flexframe::fem_tet10::{self, Materials, StressRecovery};
 use flexframe::rigid_kin::Attitude;
 use flexframe::row::Row;
-use flexframe::scene::{Model, Scene};
+use flexframe::scene::{Body, Model, Scene};
 use nalgebra::Vector3;
 use results::{Results, unfinished};
 
@@ -69,6 +71,13 @@ fn run(folder: &Path, text: &str) -> PathBuf {
     std::fs::write(&scene, text.replace("MESH", mesh)).unwrap();
     done(&["run", scene.to_str().unwrap(), "-o", folder.to_str().unwrap()]);
     folder.join("scene.h5")
+}
+
+fn materials(scene: &Scene) -> Materials {
+    match &scene.body {
+        Body::Meshed(body) => body.materials.clone(),
+        Body::Rigid(_) => unreachable!("the body has a mesh"),
+    }
 }
 
 fn numbers(line: &str) -> Vec<f64> {
@@ -139,8 +148,11 @@ fn a_results_file_becomes_a_table_and_fields() {
     let place = Vector3::from_column_slice(&points[3 * node..3 * node + 3]);
     let mesh = &model.meshed.as_ref().unwrap();
     let (on_mesh, _) = mesh.mesh.nearest_node(place.into());
-    let [displacement, elastic] =
-        ["displacement", "elastic_displacement"].map(|name| read(&group, &format!("PointData/{name}")));
+    let [displacement, elastic, von_mises] = ["displacement", "elastic_displacement", "von_mises_stress"]
+        .map(|name| read(&group, &format!("PointData/{name}")));
+    // The stress of the displaced mesh, not that of the modes.
+    let recovery = StressRecovery::new(&mesh.mesh, &materials(&scene)).unwrap();
+    let mut largest: f64 = 0.0;
     for step in 0..6 {
         let coordinates = model.coordinates(results.table("modal/displacement").unwrap().row(4 * step).unwrap());
         let shapes = || mesh.modes.shapes.col_iter().chain(mesh.following.col_iter());
@@ -154,10 +166,33 @@ fn a_results_file_becomes_a_table_and_fields() {
         let moved = attitude.to_global(&(place + u)) - place; // about the hinge, which is at the origin
         let found = Vector3::from_column_slice(&displacement[first..first + 3]);
         assert!((found - moved).norm() < 1e-13, "{found} {moved}");
+        let field = Mat::from_fn(mesh.modes.shapes.nrows(), 1, |i, _| {
+            shapes().zip(&coordinates).map(|(shape, xi)| xi * shape[i]).sum::<f64>()
+        });
+        // Of the second order, that of the large modes together.
+        let of_large = Mat::from_fn(field.nrows(), 1, |i, _| {
+            model.large_modes().iter().map(|k| coordinates[*k] * mesh.modes.shapes[(i, *k)]).sum::<f64>()
+        });
+        let stress = recovery.nodal_stress(field.as_ref()).unwrap()
+            + recovery.second_order_nodal_stress(of_large.as_ref(), &[[0, 0]]).unwrap();
+        let scale = stress.norm_max();
+        largest = largest.max(scale);
+        for (i, found) in von_mises[step * n..(step + 1) * n].iter().enumerate() {
+            let (on_mesh, _) = mesh.mesh.nearest_node([0, 1, 2].map(|axis| points[3 * i + axis]));
+            let expected = fem_tet10::von_mises(&[0, 1, 2, 3, 4, 5].map(|c| stress[(6 * on_mesh as usize + c, 0)]));
+            assert!((found - expected).abs() <= 1e-11 * scale, "step {step}, point {i}: {found} {expected}");
+        }
     }
+    assert!(largest > 1e5 && !model.large_modes().is_empty(), "{largest}");
     let modes = hdf5::File::open(at("modes.vtkhdf")).unwrap().group("VTKHDF/PointData").unwrap();
     let names = modes.member_names().unwrap();
-    assert_eq!(names.len(), count);
+    assert_eq!(names.len(), 2 * count);
+    // The stress of a mode is that of its displacement.
+    let of_first = |name: &&String| name.starts_with("stress of mode 1:") || name.starts_with("stress of mode 01:");
+    let found = modes.dataset(names.iter().find(of_first).unwrap()).unwrap().read_2d::<f64>().unwrap();
+    let expected = recovery.nodal_stress(mesh.modes.shapes.as_ref().subcols(0, 1)).unwrap();
+    assert_eq!(found.dim(), (n, 6));
+    assert!((0..6).all(|c| found[(node, c)] == expected[(6 * on_mesh as usize + c, 0)]));
     assert!(names.iter().filter(|name| name.starts_with("mode ") && name.ends_with(" Hz")).count() == 4, "{names:?}");
     assert!(names.iter().any(|name| name.starts_with("static shape ") && name.ends_with('5')), "{names:?}");
 
@@ -201,7 +236,7 @@ fn what_cannot_be_exported_is_refused_and_an_unfinished_run_is_marked() {
         .start(&scene)
         .unwrap()
         .take(3)
-        .for_each(|now| writer.push(&Row { motion: now.unwrap(), stress: Vec::new() }).unwrap());
+        .for_each(|now| writer.push(&Row { motion: now.unwrap(), stress: Vec::new(), supports: Vec::new() }).unwrap());
     drop(writer);
     let said = done(&["export", part.to_str().unwrap(), "--csv", &at("cut.csv")]);
     assert!(said.contains("the run is unfinished: its rows end at time 0.02"), "{said}");

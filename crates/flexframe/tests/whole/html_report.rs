@@ -6,6 +6,8 @@ use std::process::{Command, Output};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use flexframe::columns::COLUMNS;
+use flexframe::fem_tet10::von_mises;
+use flexframe::scene::{Model, Scene};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use results::Results;
 use serde_json::Value;
@@ -84,6 +86,37 @@ fn follows_the_point(scene: &str, point: &str, place: [f64; 3]) {
         assert!(error < 2e-5 * (size + now.norm()), "row {row}: {error}");
     }
     assert!(moved > 1e-3 * size, "{moved}");
+
+    // The von Mises stress there, which the shader makes of the stress of the shapes.
+    assert_eq!(page["stress"]["unit"], "MPa");
+    let stresses: Vec<Vec<[f64; 6]>> = page["stress"]["shapes"].as_array().unwrap().iter().map(vectors).collect();
+    let index = |value: &Value| value.as_u64().unwrap() as usize;
+    let products: Vec<[usize; 2]> =
+        page["stress"]["products"].as_array().unwrap().iter().map(|pair| [index(&pair[0]), index(&pair[1])]).collect();
+    assert_eq!(stresses.len(), shapes.len() + products.len());
+    let scene = Scene::parse(&results.metadata.scene_text, &results.metadata.scene_file).unwrap().with_stress_field();
+    let model = Model::build(&scene, |_| ()).unwrap();
+    let stress = model.stress.as_ref().unwrap();
+    let (node, _) = model.meshed.as_ref().unwrap().mesh.nearest_node(place);
+    let (mut peak, mut worst): (f64, f64) = (0.0, 0.0);
+    for (row, time) in times.iter().enumerate() {
+        let q = &coordinates[row * shapes.len()..(row + 1) * shapes.len()];
+        let products = products.iter().map(|[j, k]| q[*j] * q[*k]);
+        let mut sum = [0.0; 6];
+        for (shape, q) in stresses.iter().zip(q.iter().copied().chain(products)) {
+            sum.iter_mut().zip(shape[vertex]).for_each(|(sum, s)| *sum += s * q);
+        }
+        let stored = stored.iter().position(|t| t == time).unwrap();
+        let modal = results.table("modal/displacement").unwrap().row(stored).unwrap();
+        let now = von_mises(&stress.in_coordinates(node, &stress.coordinates(modal)));
+        peak = peak.max(now);
+        worst = worst.max((von_mises(&sum) - now).abs());
+    }
+    let legend = page["stress"]["peak"].as_f64().unwrap();
+    assert!(peak > 0.0 && legend >= peak * (1.0 - 1e-6), "{peak} {legend}");
+    // The shapes are rounded to 1.6e-5 of their own peaks.
+    assert!(worst < 2e-4 * legend, "{worst} {legend}");
+    assert!(std::fs::metadata(file.with_extension("html")).unwrap().len() < 4_000_000);
 }
 
 /// The corner is a node, so that the point is a vertex.

@@ -1,7 +1,10 @@
 //! Reactions, drives and angles against closed forms: statics, a pendulum, a spinning bar, a spin-up.
 
+use flexframe::columns::COLUMNS;
 use flexframe::frames_rk4::Observation;
 use flexframe::nalgebra::Vector3;
+use flexframe::results::Results;
+use flexframe::run::{RunSettings, run};
 use flexframe::scene::{Model, Scene};
 
 fn rows(text: &str) -> (Model, Vec<Observation>) {
@@ -154,5 +157,83 @@ fn a_hinge_gives_no_moment_about_its_axis_to_a_rod_that_bends_far() {
         let moment = now.reaction.moment_body;
         // Measured: 2e-16 of it.
         assert!(moment.z.abs() < 1e-9 * weight, "{moment}");
+    }
+}
+
+/// A beam of 8 m with these supports and loads, and the reactions in its results file.
+fn on_supports(rest: &str) -> (Model, Results) {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/of_a_test.toml");
+    let scene = Scene::parse(&format!("{BEAM}{rest}"), path).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let (model, report) = run(&scene, folder.path(), &RunSettings::default(), |_| ()).unwrap();
+    (model, Results::open(report.results, &COLUMNS).unwrap())
+}
+
+const CLAMP: &str = "[[constraints]]\nkind = \"support\"\nbox = [[0.0, -1.0, -1.0], [0.0, 1.0, 1.0]]\n\
+                     directions = [\"x\", \"y\", \"z\"]\n";
+const PROP: &str =
+    "[[constraints]]\nkind = \"support\"\nbox = [[8.0, -1.0, -1.0], [8.0, 1.0, 1.0]]\ndirections = [\"y\"]\n";
+const LENGTH: f64 = 8.0;
+
+/// At rest under its weight a propped cantilever has 3/8 of it on the prop, 5/8 on the clamp, and a moment of an eighth of it
+/// times the length there; a modal sum of two modes would not have that.
+#[test]
+fn each_support_of_a_propped_cantilever_has_its_part() {
+    let (model, results) = on_supports(&format!(
+        "[modes]\nflexible = 2\ndamping_ratio = 0.7\n{CLAMP}{PROP}[effects]\nlarge_deflection = false\n[[loads]]\n\
+         kind = \"gravity\"\ndirection = [0.0, -1.0, 0.0]\namplitude = 1e-3\n[time]\nend = 20.0\nstep = 1e-2\n[output]\nevery = 100\n"
+    ));
+    assert_eq!(results.metadata.support_names, ["1", "2"]);
+    let weight = model.body.mass * 1e-3;
+    let last = |path: &str| Vector3::from(*results.vectors::<3>(path).unwrap().last().unwrap()) / weight;
+    let (clamp, prop) = (last("supports/1/force"), last("supports/2/force"));
+    let moment = last("supports/1/moment") / LENGTH;
+    println!("{clamp} {prop} {moment}");
+    // Shear moves a little of it.
+    assert!((prop.y - 0.375).abs() < 2e-3 && (clamp.y - 0.625).abs() < 2e-3, "{clamp} {prop}");
+    assert!((moment.z - 0.125).abs() < 2e-3, "{moment}");
+    assert!((clamp + prop - last("reaction/force")).norm() < 1e-6, "{clamp} {prop}");
+}
+
+/// Two supports that leave the beam to turn about none of its axes, of which each gives half of what a force in the middle
+/// does; and while a force at the quarter shakes it, both together are d'Alembert's at every row.
+#[test]
+fn two_supports_share_a_force_and_their_sum_is_that_of_dalembert() {
+    let rest = |at: f64, history: &str, damping: f64, time: &str| {
+        format!(
+            "[modes]\nflexible = 6\ndamping_ratio = {damping}\n{}{}[effects]\nlarge_deflection = false\ngeometric_stiffening = \
+             false\n[[loads]]\nkind = \"force\"\nat = [{at:?}, 0.0, 0.0]\ndirection = [0.0, -1.0, 0.0]\namplitude = 1e-3\nhistory = \
+             {history}\n{time}",
+            // Simply supported: the mid-plane of each end.
+            CLAMP.replace("-1.0, -1.0]", "0.0, -1.0]").replace("1.0, 1.0]", "0.0, 1.0]"),
+            PROP.replace("-1.0, -1.0]", "0.0, -1.0]")
+                .replace("1.0, 1.0]", "0.0, 1.0]")
+                .replace("\"y\"", "\"y\", \"z\""),
+        )
+    };
+    let forces = |results: &Results, path: &str| -> Vec<Vector3<f64>> {
+        results.vectors::<3>(path).unwrap().iter().map(|force| Vector3::from(*force)).collect()
+    };
+    for (at, expected) in [(4.0, 0.5), (2.0, 0.25)] {
+        let time = "[time]\nend = 10.0\nstep = 1e-2\n[output]\nevery = 100\n";
+        let (_, results) = on_supports(&rest(at, "{ kind = \"constant\" }", 0.7, time));
+        let far = forces(&results, "supports/2/force").last().unwrap().y / 1e-3;
+        println!("{at}: {far}");
+        assert!((far - expected).abs() < 1e-6, "{at}: {far}");
+    }
+    let time = "[time]\nend = 2.0\nstep = 1e-3\n[output]\nevery = 10\n";
+    let (_, results) = on_supports(&rest(2.0, "{ kind = \"sine\", frequency = 3.0 }", 0.02, time));
+    let [near, far, all] =
+        ["supports/1/force", "supports/2/force", "reaction/force"].map(|path| forces(&results, path));
+    let moments = ["supports/1/moment", "supports/2/moment", "reaction/moment"].map(|path| forces(&results, path));
+    let largest = all.iter().map(|force| force.norm()).fold(0.0, f64::max);
+    assert!(largest > 3e-4, "{largest}");
+    let origin = Vector3::from(results.metadata.body.origin);
+    let centers = [0.0, LENGTH].map(|x| Vector3::new(x, 0.0, 0.0) - origin);
+    for row in 0..results.rows() {
+        let sum = near[row] + far[row];
+        assert!((sum - all[row]).norm() < 1e-6 * largest, "{row}: {sum} {}", all[row]);
+        let moment = moments[0][row] + moments[1][row] + centers[0].cross(&near[row]) + centers[1].cross(&far[row]);
+        assert!((moment - moments[2][row]).norm() < 1e-5 * LENGTH * largest, "{row}: {moment} {}", moments[2][row]);
     }
 }

@@ -16,7 +16,11 @@ fn scene(text: &str) -> Scene {
 }
 
 fn report(text: &str) -> RunReport {
-    run(&scene(text), tempfile::tempdir().unwrap().path(), &RunSettings::default(), |_| ()).unwrap().1
+    let folder = tempfile::tempdir().unwrap();
+    let report = run(&scene(text), folder.path(), &RunSettings::default(), |_| ()).unwrap().1;
+    // The results file has them, too.
+    assert_eq!(Results::open(&report.results, &COLUMNS).unwrap().metadata.warnings, report.warnings);
+    report
 }
 
 /// A ring of this Young's modulus.

@@ -17,7 +17,7 @@ uniform float exaggeration;
 #ifdef STRESS
 uniform highp isampler2DArray normalStresses;
 uniform highp isampler2DArray shearStresses;
-uniform vec4 stressWeights[GROUPS];
+uniform vec4 stressWeights[STRESS_GROUPS];
 #endif
 uniform float peak;
 out vec3 seen;
@@ -33,7 +33,7 @@ void main() {
     float value = length(u);
 #ifdef STRESS
     vec3 s = vec3(0.0), t = vec3(0.0);
-    for (int k = 0; k < SHAPES; k++) {
+    for (int k = 0; k < STRESSES; k++) {
         float weight = stressWeights[k >> 2][k & 3];
         if (weight == 0.0) continue;
         s += weight * vec3(texelFetch(normalStresses, ivec3(at, k), 0).xyz);
@@ -103,6 +103,9 @@ function peaks(shapes: Int16Array[], factors: number[], width: number, norm: (s:
     });
 }
 
+/// Vectors of four weights.
+const groups = (count: number) => Math.max(1, Math.ceil(count / 4));
+
 export class Body {
     readonly group = new THREE.Group();
     readonly outline: THREE.LineSegments;
@@ -115,6 +118,7 @@ export class Body {
     private readonly surface: THREE.Mesh;
     private readonly factors: number[];
     private readonly stressFactors: number[] = [];
+    private readonly products: [number, number][] = [];
     private readonly count: number;
 
     constructor(report: Report) {
@@ -125,8 +129,7 @@ export class Body {
         const shapes = report.shapes.map((shape) => quantised(shape.displacement));
         this.factors = report.shapes.map((shape) => shape.displacement.factor);
         this.displacementPeaks = peaks(shapes, this.factors, 3, (s, i) => Math.hypot(s[i], s[i + 1], s[i + 2]));
-        const groups = Math.max(1, Math.ceil(this.count / 4));
-        const vectors = () => Array.from({ length: groups }, () => new THREE.Vector4(0, 0, 0, 0));
+        const vectors = (count = this.count) => Array.from({ length: groups(count) }, () => new THREE.Vector4(0, 0, 0, 0));
         // A body without shapes keeps the sampler, which then has one empty layer.
         const layers = (list: Int16Array[], width: number, first: number) =>
             texture(list.length > 0 ? list : [new Int16Array(width * vertices)], width, first, vertices);
@@ -135,6 +138,7 @@ export class Body {
             weights: { value: vectors() },
             exaggeration: { value: 1 },
             peak: { value: 1 },
+            stressWeights: { value: [] },
             scale: { value: SCALE.map((hex) => new THREE.Vector3(...rgb(hex))) },
             plain: { value: new THREE.Vector3(0.6, 0.66, 0.72) },
             coloured: { value: true },
@@ -145,7 +149,8 @@ export class Body {
             this.stressPeaks = peaks(stresses, this.stressFactors, 6, vonMises);
             this.uniforms.normalStresses = { value: layers(stresses, 6, 0) };
             this.uniforms.shearStresses = { value: layers(stresses, 6, 3) };
-            this.uniforms.stressWeights = { value: vectors() };
+            this.uniforms.stressWeights = { value: vectors(stresses.length) };
+            this.products = report.stress.products;
         }
         const geometry = new THREE.BufferGeometry();
         geometry.setAttribute("position", new THREE.BufferAttribute(positions, 3));
@@ -168,14 +173,15 @@ export class Body {
     }
 
     private defines() {
-        return { GROUPS: Math.max(1, Math.ceil(this.count / 4)), SHAPES: this.count };
+        return { GROUPS: groups(this.count), SHAPES: this.count };
     }
 
     private material(kind: "plain" | "stress"): THREE.ShaderMaterial {
         const known = this.materials.get(kind);
         if (known) return known;
         const defines: Record<string, number> = this.defines();
-        if (kind === "stress") defines.STRESS = 1;
+        const stresses = this.stressFactors.length;
+        if (kind === "stress") Object.assign(defines, { STRESS: 1, STRESSES: stresses, STRESS_GROUPS: groups(stresses) });
         const made = new THREE.ShaderMaterial({
             glslVersion: THREE.GLSL3, vertexShader: VERTEX, fragmentShader: FRAGMENT,
             uniforms: this.uniforms, defines, side: THREE.DoubleSide,
@@ -208,14 +214,16 @@ export class Body {
         this.uniforms.peak.value = peak;
     }
 
-    /// Coordinates of the shapes, and the factor on the displacement that is drawn.
-    deform(q: ArrayLike<number>, exaggeration: number) {
-        const set = (name: string, factors: number[]) => {
+    /// Coordinates of the shapes, and the factor on the displacement that is drawn. The stress of a small displacement has no
+    /// products of coordinates.
+    deform(q: ArrayLike<number>, exaggeration: number, small = false) {
+        const set = (name: string, factors: number[], coordinate: (k: number) => number) => {
             const vectors = this.uniforms[name].value as THREE.Vector4[];
-            for (let k = 0; k < this.count; k++) vectors[k >> 2].setComponent(k & 3, q[k] * factors[k]);
+            factors.forEach((factor, k) => vectors[k >> 2].setComponent(k & 3, coordinate(k) * factor));
         };
-        set("weights", this.factors);
-        if (this.stressPeaks) set("stressWeights", this.stressFactors);
+        set("weights", this.factors, (k) => q[k]);
+        const product = ([j, k]: [number, number]) => (small ? 0 : q[j] * q[k]);
+        set("stressWeights", this.stressFactors, (k) => (k < this.count ? q[k] : product(this.products[k - this.count])));
         this.uniforms.exaggeration.value = exaggeration;
     }
 }

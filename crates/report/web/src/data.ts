@@ -19,7 +19,7 @@ export interface Report {
     surface: { vertices: Numbers; triangles: Numbers; edges: Numbers } | null;
     shapes: Shape[];
     displacement_peak: number;
-    stress: { unit: string; peak: number; shapes: Numbers[] } | null;
+    stress: { unit: string; peak: number; shapes: Numbers[]; products: [number, number][] } | null;
     motion: { times: Numbers; origins: Numbers; attitudes: Numbers; coordinates: Numbers };
     history_times: Numbers;
     histories: History[];

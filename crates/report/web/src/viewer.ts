@@ -227,7 +227,7 @@ export class Viewer {
         const q = new Float32Array(motion.shapes);
         q[this.shape] = Math.sin(2 * Math.PI * this.phase);
         stage.place([0, 0, 0], [0, 0, 0, 1]);
-        stage.body!.deform(q, greatest > 0 ? (SWING * stage.radius) / greatest : 0);
+        stage.body!.deform(q, greatest > 0 ? (SWING * stage.radius) / greatest : 0, true);
     }
 
     private frame(now: number) {

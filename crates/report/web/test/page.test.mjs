@@ -116,9 +116,9 @@ function direction(rgb) {
 test("the colours are those of the displacement and of the von Mises stress", async (t) => {
     const page = await open(t, browser, "patch");
     await page.uncheck("#path");
-    // Rows: 2 × tension, 1.5 × shear, -tension + 2 × shear.
+    // Rows: 2 × tension, 1.5 × shear, -tension + 2 × shear; and the product of both, a shear of 25 in another direction.
     const displacements = [10, 3, Math.hypot(-3, -4, 4)];
-    const stresses = [200, Math.sqrt(3) * 45, Math.sqrt(100 ** 2 + 3 * 60 ** 2)];
+    const stresses = [200, Math.sqrt(3) * 45, Math.sqrt(100 ** 2 + 3 * (60 ** 2 + 50 ** 2))];
     for (const [field, values] of [["displacement", displacements], ["stress", stresses]]) {
         await page.selectOption("#colour", field);
         for (const [row, value] of values.entries()) {

@@ -27,6 +27,8 @@ pub fn metadata(modes: usize, point_names: &[&str]) -> Metadata {
         point_names: point_names.iter().map(|name| name.to_string()).collect(),
         point_positions: (0..point_names.len()).map(|p| [p as f64, 2.0, -3.0]).collect(),
         parts: Vec::new(),
+        support_names: Vec::new(),
+        warnings: Vec::new(),
     }
 }
 

@@ -49,7 +49,7 @@ impl Answer {
     }
 }
 
-fn by_columns(matrix: MatRef<'_, f64>) -> Vec<f64> {
+pub(super) fn by_columns(matrix: MatRef<'_, f64>) -> Vec<f64> {
     let mut values = Vec::with_capacity(matrix.nrows() * matrix.ncols());
     for column in matrix.col_iter() {
         match column.try_as_col_major() {

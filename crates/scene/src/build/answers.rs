@@ -6,7 +6,7 @@ use fem_tet10::faer::MatRef;
 use modal::{Constants, ModalError, Modes, ReducedBody, RigidModes, RigidMotion, SecondOrderShapes, SolveStats};
 use nalgebra::{Matrix3, Vector3};
 
-use super::answer::{Answer, Kept};
+use super::answer::{Answer, Kept, by_columns};
 
 /// Fields (3n×k).
 pub(super) fn of_fields(fields: MatRef<'_, f64>) -> Answer {
@@ -15,6 +15,16 @@ pub(super) fn of_fields(fields: MatRef<'_, f64>) -> Answer {
 
 pub(super) fn fields(kept: &Kept<'_>, rows: usize, columns: usize) -> Result<Mat<f64>, BodyFileError> {
     kept.fields("fields", rows, Some(columns))
+}
+
+/// Stress at the sites (6m×k), one after the other (k×m×6).
+pub(super) fn of_stress(stress: MatRef<'_, f64>) -> Answer {
+    Answer::default().with_numbers("stress", &[stress.ncols(), stress.nrows() / 6, 6], by_columns(stress))
+}
+
+pub(super) fn stress(kept: &Kept<'_>, sites: usize, columns: usize) -> Result<Mat<f64>, BodyFileError> {
+    let values = kept.numbers("stress", &[Some(columns), Some(sites), Some(6)])?.values;
+    Ok(MatRef::from_column_major_slice(&values, 6 * sites, columns).to_owned())
 }
 
 pub(super) fn of_modes(modes: &Modes) -> Answer {

@@ -7,13 +7,15 @@ use body_file::{BodyFile, BodyFileError, Declared, Hash, Kind, Number, Writer};
 use faer::sparse::SparseColMatRef;
 use faer::{Mat, MatRef};
 use fem_tet10::{Materials, Mesh};
-use modal::Modes;
+use frames_rk4::Manifold;
+use modal::{Modes, SecondOrderShapes};
 
 use super::assembly::{Assembled, Assembly};
 use super::error::BuildError;
 use super::mesh_arrays::MeshArrays;
 use super::model::{Meshed, Model};
 use super::progress::BuildProgress;
+use super::stress_shapes::BodyStress;
 use crate::cache::Cache;
 use crate::origin::{ORIGIN, Origin};
 use crate::scene::{Body, MeshedBody, Scene};
@@ -48,7 +50,8 @@ struct Named<'a> {
 
 impl Model {
     /// Builds the model of a scene, and writes its body file; with `matrices`, mass and stiffness are in it. What a run of the
-    /// scene asks of the mesh is in the file, and the file is what a scene names as `file` in `[body]`.
+    /// scene asks of the mesh is in the file, with the stress of all nodes if the scene asks for any, and the file is what a
+    /// scene names as `file` in `[body]`.
     ///
     /// # Errors
     /// [`BuildError`], also for a rigid body without a mesh.
@@ -67,7 +70,8 @@ impl Model {
             |source| BodyFileError::System { path: path.to_owned(), action: "make a temporary folder", source };
         let temporary = tempfile::tempdir().map_err(failed)?;
         let folder = scene.cache.folder().filter(|_| !scene.cache.is_closed()).unwrap_or(temporary.path());
-        let scene = &Scene { cache: Cache::new(folder, u64::MAX), ..scene.clone() };
+        let scene = Scene { cache: Cache::new(folder, u64::MAX), ..scene.clone() };
+        let scene = &if scene.output.any_stress() { scene.with_stress_field() } else { scene };
         let assembly = Assembly::new(scene, &mut progress)?;
         let mut builder = assembly.builder()?;
         let model = builder.build(scene, &mut progress)?;
@@ -85,6 +89,12 @@ impl Model {
         named.add_groups(&meshed.mesh);
         named.add_modes(&model, meshed);
         named.add_constants(&model);
+        if let Some(manifold) = &model.physics.large_deflection {
+            named.add_large_deflection(manifold, meshed.following.as_ref());
+        }
+        if let Some(stress) = &model.stress {
+            named.add_stress(stress, &model);
+        }
         if matrices {
             let matrices = assembled.matrices()?;
             named.add_matrix("stiffness", matrices.stiffness());
@@ -312,6 +322,71 @@ impl Named<'_> {
         if let Some(stiffness) = &body.stress_stiffness {
             let of_stress = format!("stiffness by the stress of the spin omega_i omega_j, {pairs}");
             add("stress_stiffness", &[6, nf, nf], "1", "body", &of_stress, matrices(&mut stiffness.iter()));
+        }
+    }
+
+    /// What makes the coordinates of all shapes from those of the modes: see [`Manifold`].
+    fn add_large_deflection(&mut self, manifold: &Manifold, following: MatRef<'_, f64>) {
+        let (mass, length) = (self.scene.units.mass.clone(), self.scene.units.length.clone());
+        let large = manifold.large();
+        let pairs = SecondOrderShapes::pairs(large.len());
+        let list = pairs.iter().flatten().map(|j| large[*j] as u32).collect();
+        let mut add = |name: &str, shape: &[usize], unit: &str, frame: &str, description: &str, numbers: Numbers| {
+            self.add(&format!("large_deflection/{name}"), shape, unit, frame, description, numbers);
+        };
+        add(
+            "pairs",
+            &[pairs.len(), 2],
+            "1",
+            "none",
+            "coordinates j <= k of the large modes, from 0",
+            Numbers::U32(list),
+        );
+        let products: Vec<f64> = pairs
+            .iter()
+            .flat_map(|[j, k]| {
+                let factor = if j == k { 0.5 } else { 1.0 };
+                manifold.slopes(*j, *k).iter().map(move |slope| factor * slope)
+            })
+            .collect();
+        let description = "what a unit of q_j q_k of each pair adds to the coordinates of the modes, the static shapes and the \
+                           shapes that follow";
+        let shape = [pairs.len(), manifold.body().flexible()];
+        add("products", &shape, &format!("{mass}^-0.5 {length}^-1"), "none", description, Numbers::F64(products));
+        let description =
+            "displacement of each node in a unit of the coordinate of each shape that only follows large modes";
+        let shape = [following.ncols(), following.nrows() / 3, 3];
+        add("shapes", &shape, &format!("{mass}^-0.5"), "mesh", description, Numbers::F64(columns(following)));
+    }
+
+    /// The stress of each coordinate, and of each product of two large modes.
+    fn add_stress(&mut self, stress: &BodyStress, model: &Model) {
+        let Some((nodes, of_coordinates)) = stress.field() else { return };
+        let (length, mass, time) = {
+            let units = &self.scene.units;
+            (units.length.clone(), units.mass.clone(), units.time.clone())
+        };
+        let sites = nodes.len();
+        let description = "node of each row of the stresses; a node between materials has a row for each";
+        self.add("stress/nodes", &[sites], "1", "none", description, Numbers::U32(nodes.to_vec()));
+        let large = model.large_modes().len();
+        let pairs = SecondOrderShapes::pairs(large);
+        let (linear, second) = of_coordinates.split_at(of_coordinates.len() - pairs.len());
+        let order = "xx, yy, zz, xy, yz, zx";
+        let description =
+            format!("stress of a unit of each coordinate of modes, static shapes, shapes that follow: {order}");
+        let unit = format!("{mass}^0.5 {length}^-2 {time}^-2");
+        let numbers = Numbers::F64(linear.concat());
+        self.add("stress/shapes", &[linear.len(), sites, 6], &unit, "mesh", &description, numbers);
+        if large > 0 {
+            let of_pair = |([j, k], stress): (&[usize; 2], &Vec<f64>)| {
+                let factor = if j == k { 1.0 } else { 2.0 };
+                stress.iter().map(move |s| factor * s).collect::<Vec<_>>()
+            };
+            let numbers = Numbers::F64(pairs.iter().zip(second).flat_map(of_pair).collect());
+            let description = format!("stress of a unit of q_j q_k of each of large_deflection/pairs: {order}");
+            let (shape, unit) = ([second.len(), sites, 6], format!("{length}^-3 {time}^-2"));
+            self.add("stress/products", &shape, &unit, "mesh", &description, numbers);
         }
     }
 

@@ -6,12 +6,11 @@ use modal::Support;
 
 use super::loads::MeshLoad;
 use super::structure::Structure;
-use crate::scene::{MeshedBody, Scene};
+use crate::scene::Scene;
 
 /// The finite-element model of a scene: what modes, static answers and the reduced body are made from.
 pub(super) struct MeshModel<'a> {
     pub scene: &'a Scene,
-    pub body: &'a MeshedBody,
     pub mesh: &'a Mesh,
     pub solver: &'a dyn Structure,
     pub support: &'a Support,

@@ -24,6 +24,7 @@ use super::reduce::Reduction;
 use super::solved::Solved;
 use super::stress_shapes::BodyStress;
 use super::structure::Structure;
+use super::support_reactions::SupportRows;
 use super::survey::Survey;
 use crate::effects::Choice;
 use crate::scene::{Frame, Scene};
@@ -37,9 +38,9 @@ pub(super) fn reduce(
     mut times: BuildTimes,
     progress: &mut dyn FnMut(BuildProgress),
 ) -> Result<Model, BuildError> {
-    let AssembledMesh { body, mesh, support, drive, .. } = assembled;
+    let AssembledMesh { mesh, support, drive, .. } = assembled;
     let loads = loads::on_mesh(scene, mesh, &solved.nodal_masses()?)?;
-    let model = MeshModel { scene, body, mesh, solver: solved, support, loads, drive: drive.clone() };
+    let model = MeshModel { scene, mesh, solver: solved, support, loads, drive: drive.clone() };
 
     let on_all_modes = timed(&mut times.reduction, || ModalModel::new(&model, &modes))?;
     let started = Instant::now();
@@ -61,6 +62,11 @@ pub(super) fn reduce(
     let extended = large.as_ref().map(|large| (&large.manifold, large.modes()));
     let has_gravity = decision.effects[Effect::Gravity];
     let body_stress = BodyStress::new(&model, &modes, extended, &reduced.body.origin, has_gravity)?;
+    let (manifold, shapes) = match &large {
+        Some(large) => (Some(&large.manifold), large.modes()),
+        None => (None, &modes),
+    };
+    let supports = SupportRows::new(&model, shapes, manifold, &decision.effects, has_gravity)?;
     times.reduction += started.elapsed();
 
     let Decision { mut effects, lacks, .. } = decision;
@@ -85,6 +91,7 @@ pub(super) fn reduce(
         left_out: lacks.filter(|_| scene.modes.static_correction == Choice::Auto).unwrap_or_default(),
         backbones,
         stress: body_stress,
+        supports,
         body: reduced.body,
         meshed: Some(Meshed { matrix_bytes: solved.matrix_bytes()?, mesh: Arc::clone(mesh), modes, following }),
     };

@@ -16,6 +16,7 @@ use super::error::StartError;
 use super::initial::initial;
 use super::progress::BuildTimes;
 use super::stress_shapes::BodyStress;
+use super::support_reactions::SupportRows;
 use crate::scene::Scene;
 
 /// Deflection over the length at which small vibrations are looked at.
@@ -56,6 +57,8 @@ pub struct Model {
     pub times: BuildTimes,
     /// Its stress, where the scene asks for it.
     pub stress: Option<BodyStress>,
+    /// What each of several supports does to it.
+    pub supports: Option<SupportRows>,
     pub(super) loads: Vec<SharedLoad>,
     pub(super) damping_ratios: Vec<f64>,
     pub(super) size: Size,

@@ -69,6 +69,7 @@ pub(super) fn build(scene: &Scene, rigid: &RigidBody) -> Result<Model, BuildErro
         left_out: Vec::new(),
         backbones: Vec::new(),
         stress: None,
+        supports: None,
     })
 }
 

@@ -22,9 +22,18 @@ impl SiteStress {
         Self { coordinates, stress }
     }
 
+    pub fn coordinates(&self) -> usize {
+        self.coordinates
+    }
+
+    /// The stress of each coordinate at a site.
+    pub fn of_site(&self, site: usize) -> &[[f64; 6]] {
+        &self.stress[site * self.coordinates..(site + 1) * self.coordinates]
+    }
+
     /// The von Mises stress at a site.
     pub fn at(&self, site: usize, coordinates: &[f64]) -> f64 {
-        von_mises(&combined(&self.stress[site * self.coordinates..(site + 1) * self.coordinates], coordinates))
+        von_mises(&combined(self.of_site(site), coordinates))
     }
 
     /// The site with the largest von Mises stress, the first of equal ones, and the stress; none without coordinates.

@@ -5,8 +5,8 @@ use std::cell::{OnceCell, RefCell};
 use body_file::{BodyFileError, Digest, Hash};
 use faer::{ColRef, Mat, MatRef};
 use fem_tet10::{
-    AssemblyError, GeometricTerms, Matrices, geometric_stiffness_product, reduced_geometric_stiffness,
-    second_order_energies, second_order_forces,
+    AssemblyError, GeometricTerms, Matrices, StressRecovery, StressSites, geometric_stiffness_product,
+    reduced_geometric_stiffness, second_order_energies, second_order_forces,
 };
 use frames_rk4::DrivenMotion;
 use modal::{
@@ -28,6 +28,7 @@ use crate::origin::Origin;
 pub(super) struct Solved<'a> {
     assembled: &'a AssembledMesh,
     solver: OnceCell<Solver<'a>>,
+    recovery: OnceCell<StressRecovery<'a>>,
     /// Held from the first answer that has to be computed on.
     computing: RefCell<Option<Computing>>,
 }
@@ -35,7 +36,8 @@ pub(super) struct Solved<'a> {
 impl<'a> Solved<'a> {
     /// What can be refused is refused at once where no answers are kept.
     pub fn new(assembled: &'a AssembledMesh) -> Result<Self, BuildError> {
-        let solved = Self { assembled, solver: OnceCell::new(), computing: RefCell::default() };
+        let solved =
+            Self { assembled, solver: OnceCell::new(), recovery: OnceCell::new(), computing: RefCell::default() };
         if assembled.store.is_none() {
             solved.solver()?;
         }
@@ -65,6 +67,15 @@ impl<'a> Solved<'a> {
         let solver = Solver::new(matrices.stiffness(), matrices.mass(), mesh.positions(), support)
             .map_err(modal(&self.assembled.scene))?;
         Ok(self.solver.get_or_init(|| solver))
+    }
+
+    fn recovery(&self) -> Result<&StressRecovery<'a>, BuildError> {
+        if let Some(found) = self.recovery.get() {
+            return Ok(found);
+        }
+        let AssembledMesh { mesh, body, .. } = self.assembled;
+        let recovery = StressRecovery::new(mesh, &body.materials)?;
+        Ok(self.recovery.get_or_init(|| recovery))
     }
 
     /// What is known of a question, which is written out only where something is kept.
@@ -100,6 +111,17 @@ impl<'a> Solved<'a> {
     ) -> Result<Mat<f64>, BuildError> {
         let recall = |kept: &Kept<'_>| answers::fields(kept, self.rows(), columns);
         self.ask(question, recall, compute, |fields| answers::of_fields(fields.as_ref()))
+    }
+
+    fn ask_stress(
+        &self,
+        question: impl FnOnce() -> Digest,
+        columns: usize,
+        compute: impl FnOnce(&StressRecovery<'a>) -> Result<Mat<f64>, AssemblyError>,
+    ) -> Result<Mat<f64>, BuildError> {
+        let recovery = self.recovery()?;
+        let recall = |kept: &Kept<'_>| answers::stress(kept, recovery.sites().len(), columns);
+        self.ask(question, recall, || Ok(compute(recovery)?), |stress| answers::of_stress(stress.as_ref()))
     }
 
     fn ask_list(
@@ -330,6 +352,21 @@ impl Structure for Solved<'_> {
         self.ask_list(question, quadruples.len(), || {
             Ok(second_order_energies(&self.assembled.mesh, &self.assembled.body.materials, fields, quadruples)?)
         })
+    }
+
+    fn stress_sites(&self) -> Result<&StressSites, BuildError> {
+        Ok(self.recovery()?.sites())
+    }
+
+    fn nodal_stress(&self, displacements: MatRef<'_, f64>) -> Result<Mat<f64>, BuildError> {
+        let question = || with_matrix(self.about_the_body("nodal stress"), displacements);
+        self.ask_stress(question, displacements.ncols(), |recovery| recovery.nodal_stress(displacements))
+    }
+
+    fn second_order_nodal_stress(&self, fields: MatRef<'_, f64>, pairs: &[[usize; 2]]) -> Result<Mat<f64>, BuildError> {
+        let question =
+            || with_matrix(self.about_the_body("nodal stress of second order"), fields).text(&format!("{pairs:?}"));
+        self.ask_stress(question, pairs.len(), |recovery| recovery.second_order_nodal_stress(fields, pairs))
     }
 
     fn lowest_buckling_ratio(&self, answer: MatRef<'_, f64>, modes: &Modes) -> Result<f64, BuildError> {

@@ -9,7 +9,6 @@
 //! and the Euler force of its change. The inertia of the modes' own motion and the Coriolis force are not among them.
 
 use faer::{Mat, MatRef};
-use fem_tet10::StressRecovery;
 use frames_rk4::{DrivenMotion, History, Observation};
 use modal::{Modes, ReducedBody};
 use nalgebra::Vector3;
@@ -40,7 +39,6 @@ impl LeftOut {
     pub fn new(
         model: &MeshModel<'_>,
         modes: &Modes,
-        recovery: &StressRecovery<'_>,
         origin: &Vector3<f64>,
         has_gravity: bool,
     ) -> Result<Self, BuildError> {
@@ -75,12 +73,12 @@ impl LeftOut {
             };
             columns.push(solver.static_answers(&forces)?);
         }
-        let mut stress = Mat::zeros(6 * recovery.sites().len(), columns.iter().map(Mat::ncols).sum());
+        let mut stress = Mat::zeros(6 * solver.stress_sites()?.len(), columns.iter().map(Mat::ncols).sum());
         let mut first = 0;
         for answers in columns {
             let momenta = solver.stiffness_product(answers.as_ref())?;
             let rest = rest(modes, answers.as_ref(), momenta.as_ref());
-            stress.subcols_mut(first, rest.ncols()).copy_from(recovery.nodal_stress(rest.as_ref())?);
+            stress.subcols_mut(first, rest.ncols()).copy_from(solver.nodal_stress(rest.as_ref())?);
             first += rest.ncols();
         }
         Ok(Self { stress: SiteStress::new(&stress), loads })

@@ -10,7 +10,7 @@
 //! in axes that turn with the material.
 
 use faer::Mat;
-use fem_tet10::{StressRecovery, von_mises};
+use fem_tet10::{StressSites, von_mises};
 use frames_rk4::{Manifold, Observation};
 use modal::{Modes, SecondOrderShapes};
 use nalgebra::Vector3;
@@ -19,23 +19,25 @@ use super::error::{BuildError, refuse};
 use super::mesh_model::MeshModel;
 use super::site_stress::{SiteStress, combined};
 use super::stress_left_out::LeftOut;
+use super::structure::Structure;
+use crate::scene::Output;
 
-/// The stress of a body in its modal coordinates, force per area, body axes, in the order of [`fem_tet10::COMPONENTS`].
+/// The stress of a body in its coordinates ([`BodyStress::coordinates`]), force per area, body axes, in the order of
+/// [`fem_tet10::COMPONENTS`].
 #[derive(Debug)]
 pub struct BodyStress {
     manifold: Option<Manifold>,
     /// For each point of the output, for each material there, the stress of each coordinate; none if not asked for.
     points: Vec<Vec<Vec<[f64; 6]>>>,
-    whole: Option<Whole>,
+    field: Option<Field>,
+    left_out: Option<LeftOut>,
 }
 
 /// The stress of the whole mesh.
 #[derive(Debug)]
-struct Whole {
-    /// Node of each site.
-    nodes: Vec<u32>,
+struct Field {
+    sites: StressSites,
     shapes: SiteStress,
-    left_out: LeftOut,
 }
 
 /// Where the von Mises stress is largest at some time.
@@ -60,30 +62,15 @@ impl BodyStress {
         origin: &Vector3<f64>,
         has_gravity: bool,
     ) -> Result<Option<Self>, BuildError> {
-        let &MeshModel { scene, mesh, body, .. } = model;
-        let output = &scene.output;
-        if !output.stress && !output.peak_stress {
+        let &MeshModel { scene, mesh, solver, .. } = model;
+        let Output { stress, peak_stress, stress_field, .. } = scene.output;
+        if !scene.output.any_stress() {
             return Ok(None);
         }
-        let recovery = StressRecovery::new(mesh, &body.materials)?;
-        let nodal = match large {
-            Some((manifold, extended)) => {
-                let linear = recovery.nodal_stress(extended.shapes.as_ref())?;
-                let of_large = Mat::from_fn(modes.shapes.nrows(), manifold.large().len(), |i, j| {
-                    modes.shapes[(i, manifold.large()[j])]
-                });
-                let pairs = SecondOrderShapes::pairs(manifold.large().len());
-                let second = recovery.second_order_nodal_stress(of_large.as_ref(), &pairs)?;
-                let first = linear.ncols();
-                Mat::from_fn(linear.nrows(), first + second.ncols(), |i, j| {
-                    if j < first { linear[(i, j)] } else { second[(i, j - first)] }
-                })
-            }
-            None => recovery.nodal_stress(modes.shapes.as_ref())?,
-        };
-        let sites = recovery.sites();
+        let nodal = of_coordinates(solver, modes, large)?;
+        let sites = solver.stress_sites()?;
         let mut points = Vec::new();
-        for (name, at) in scene.output.points.iter().filter(|_| output.stress) {
+        for (name, at) in scene.output.points.iter().filter(|_| stress) {
             let location = mesh.locate(*at).map_err(|error| refuse(scene, &format!("output.points.{name}"), error))?;
             let of_material = |weights: Vec<(usize, f64)>| -> Vec<[f64; 6]> {
                 let value = |k: usize, c: usize| weights.iter().map(|(site, w)| w * nodal[(6 * site + c, k)]).sum();
@@ -91,21 +78,10 @@ impl BodyStress {
             };
             points.push(sites.at(&location).into_iter().map(of_material).collect());
         }
-        let whole = if output.peak_stress {
-            Some(Whole {
-                nodes: sites.nodes().to_vec(),
-                shapes: SiteStress::new(&nodal),
-                left_out: LeftOut::new(model, modes, &recovery, origin, has_gravity)?,
-            })
-        } else {
-            None
-        };
-        Ok(Some(Self { manifold: large.map(|(manifold, _)| manifold.clone()), points, whole }))
-    }
-
-    /// Whether the peak over the whole body was asked for.
-    pub fn has_peak(&self) -> bool {
-        self.whole.is_some()
+        let field =
+            (peak_stress || stress_field).then(|| Field { sites: sites.clone(), shapes: SiteStress::new(&nodal) });
+        let left_out = if peak_stress { Some(LeftOut::new(model, modes, origin, has_gravity)?) } else { None };
+        Ok(Some(Self { manifold: large.map(|(manifold, _)| manifold.clone()), points, field, left_out }))
     }
 
     /// Number of points of the output whose stress is known.
@@ -116,25 +92,64 @@ impl BodyStress {
     /// The stress at all points; where materials meet, that of the material with the larger von Mises stress.
     pub fn at_points(&self, modal_displacement: &[f64]) -> impl Iterator<Item = [f64; 6]> + '_ {
         let coordinates = self.coordinates(modal_displacement);
-        self.points.iter().map(move |materials| {
-            let stresses = materials.iter().map(|shapes| combined(shapes, &coordinates));
-            stresses.max_by(|a, b| von_mises(a).total_cmp(&von_mises(b))).unwrap_or_default()
-        })
+        self.points.iter().map(move |materials| larger(materials.iter().map(|shapes| combined(shapes, &coordinates))))
     }
 
     /// The largest von Mises stress of the body as it is now; none if it was not asked for. Its work goes with the mesh.
     pub fn peak(&self, now: &Observation) -> Option<StressPeak> {
-        let Whole { nodes, shapes, left_out } = self.whole.as_ref()?;
+        let (Field { sites, shapes }, left_out) = (self.field.as_ref()?, self.left_out.as_ref()?);
         let coordinates = self.coordinates(&now.modal_displacement);
         let (site, peak) = shapes.largest(&coordinates)?;
         let missing = left_out.amplitudes(now);
         let most_left_out = left_out.stress.largest(&missing).map_or(0.0, |(_, largest)| largest);
-        let node = nodes[site];
+        let node = sites.nodes()[site];
         Some(StressPeak { von_mises: peak, node, left_out: left_out.stress.at(site, &missing), most_left_out })
     }
 
-    /// ξ, then the products of the large modes.
-    fn coordinates(&self, q: &[f64]) -> Vec<f64> {
+    /// The stress of a unit of each coordinate at a node; where materials meet, of the one whose von Mises stress is largest in
+    /// these rows of [`coordinates`](Self::coordinates). None without [`Output::stress_field`].
+    ///
+    /// # Panics
+    /// Where there is no such node.
+    pub fn of_most_stressed_material(&self, node: u32, rows: &[Vec<f64>]) -> Option<&[[f64; 6]]> {
+        let materials: Vec<&[[f64; 6]]> = self.at_node(node).collect();
+        if let [only] = materials[..] {
+            return Some(only);
+        }
+        let largest = |shapes: &[[f64; 6]]| {
+            rows.iter().map(|coordinates| von_mises(&combined(shapes, coordinates))).fold(0.0, f64::max)
+        };
+        materials.into_iter().max_by(|a, b| largest(a).total_cmp(&largest(b)))
+    }
+
+    /// The nodes that stress is known at (m), once for each material there, and the stress of a unit of each coordinate, one
+    /// after the other (each m × 6); none without [`Output::stress_field`].
+    pub(super) fn field(&self) -> Option<(&[u32], Vec<Vec<f64>>)> {
+        let Field { sites, shapes } = self.field.as_ref()?;
+        let of_coordinate = |k: usize| (0..sites.len()).flat_map(|site| shapes.of_site(site)[k]).collect();
+        Some((sites.nodes(), (0..shapes.coordinates()).map(of_coordinate).collect()))
+    }
+
+    /// The stress of a unit of each coordinate at a node, once for each material there.
+    fn at_node(&self, node: u32) -> impl Iterator<Item = &[[f64; 6]]> {
+        let of_field = |field: &'_ Field| field.sites.of_node(node);
+        let sites = self.field.as_ref().map_or(0..0, of_field);
+        sites.filter_map(|site| Some(self.field.as_ref()?.shapes.of_site(site)))
+    }
+
+    /// The stress at a node in these [`coordinates`](Self::coordinates), of the material with the larger von Mises stress; zero
+    /// without [`Output::stress_field`].
+    ///
+    /// # Panics
+    /// Where there is no such node.
+    pub fn in_coordinates(&self, node: u32, coordinates: &[f64]) -> [f64; 6] {
+        larger(self.at_node(node).map(|shapes| combined(shapes, coordinates)))
+    }
+
+    /// The coordinates of the stress: those of the modes and of the shapes that follow them
+    /// ([`Model::coordinates`](super::model::Model::coordinates)), then the products of the large modes.
+    pub fn coordinates(&self, modal_displacement: &[f64]) -> Vec<f64> {
+        let q = modal_displacement;
         let Some(manifold) = &self.manifold else { return q.to_vec() };
         let mut coordinates = vec![0.0; manifold.body().flexible()];
         manifold.coordinates(q, &mut coordinates);
@@ -143,4 +158,26 @@ impl BodyStress {
         coordinates.extend(SecondOrderShapes::pairs(large.len()).into_iter().map(product));
         coordinates
     }
+}
+
+/// The one with the larger von Mises stress.
+fn larger(stresses: impl Iterator<Item = [f64; 6]>) -> [f64; 6] {
+    stresses.max_by(|a, b| von_mises(a).total_cmp(&von_mises(b))).unwrap_or_default()
+}
+
+/// The stress (6m × …) of each coordinate at the sites.
+fn of_coordinates(
+    solver: &dyn Structure,
+    modes: &Modes,
+    large: Option<(&Manifold, &Modes)>,
+) -> Result<Mat<f64>, BuildError> {
+    let Some((manifold, extended)) = large else { return solver.nodal_stress(modes.shapes.as_ref()) };
+    let linear = solver.nodal_stress(extended.shapes.as_ref())?;
+    let large = manifold.large();
+    let of_large = Mat::from_fn(modes.shapes.nrows(), large.len(), |i, j| modes.shapes[(i, large[j])]);
+    let second = solver.second_order_nodal_stress(of_large.as_ref(), &SecondOrderShapes::pairs(large.len()))?;
+    let first = linear.ncols();
+    Ok(Mat::from_fn(linear.nrows(), first + second.ncols(), |i, j| {
+        if j < first { linear[(i, j)] } else { second[(i, j - first)] }
+    }))
 }

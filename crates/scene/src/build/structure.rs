@@ -1,7 +1,7 @@
 //! What is asked of the finite-element model of a body.
 
 use faer::{Mat, MatRef};
-use fem_tet10::GeometricTerms;
+use fem_tet10::{GeometricTerms, StressSites};
 use frames_rk4::DrivenMotion;
 use modal::{Modes, ReducedBody, SecondOrderShapes};
 use nalgebra::Vector3;
@@ -62,6 +62,15 @@ pub(super) trait Structure {
     /// The energies of second order of quadruples of fields (3n×k).
     fn second_order_energies(&self, fields: MatRef<'_, f64>, quadruples: &[[usize; 4]])
     -> Result<Vec<f64>, BuildError>;
+
+    /// Where nodal stress is known.
+    fn stress_sites(&self) -> Result<&StressSites, BuildError>;
+
+    /// The stress (6m×k) of displacement fields (3n×k).
+    fn nodal_stress(&self, displacements: MatRef<'_, f64>) -> Result<Mat<f64>, BuildError>;
+
+    /// The stress of second order (6m×p) of pairs of fields (3n×k).
+    fn second_order_nodal_stress(&self, fields: MatRef<'_, f64>, pairs: &[[usize; 2]]) -> Result<Mat<f64>, BuildError>;
 
     /// The lowest buckling ratio by the stress of a static answer (3n×1), from the modes on.
     fn lowest_buckling_ratio(&self, answer: MatRef<'_, f64>, modes: &Modes) -> Result<f64, BuildError>;

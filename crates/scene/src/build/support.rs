@@ -1,5 +1,7 @@
 //! What holds the body of a scene: nodes of its mesh, the rigid motions left, and what drives it.
 
+use std::collections::HashSet;
+
 use fem_tet10::Mesh;
 use frames_rk4::{Drive, DrivenMotion, DrivenSpeed};
 use modal::{RigidMotion, Support};
@@ -60,12 +62,7 @@ pub(super) fn support(scene: &Scene, mesh: Option<&Mesh>) -> Result<(Support, Op
 
 /// The support that holds parts of the mesh in some directions.
 fn held_directions(scene: &Scene, mesh: &Mesh, parts: &[HeldDirections]) -> Result<Support, BuildError> {
-    let mut freedoms = Vec::new();
-    for (i, HeldDirections { region, directions }) in parts.iter().enumerate() {
-        let nodes = region_nodes(scene, mesh, region, &format!("constraints[{i}]"), 1)?;
-        let held = (0..3).filter(|axis| directions[*axis]);
-        freedoms.extend(held.flat_map(|axis| nodes.iter().map(move |node| (*node, axis))));
-    }
+    let freedoms = held_parts(scene, mesh, parts)?.concat();
     let support = Support::of_freedoms(mesh.positions(), &freedoms).map_err(modal(scene))?;
     let motion = &support.motion;
     // Where another motion is left, there is no run.
@@ -77,6 +74,23 @@ fn held_directions(scene: &Scene, mesh: &Mesh, parts: &[HeldDirections]) -> Resu
         require_left(scene, "initial.angular_velocity", scene.initial.angular_velocity, rotations, motion)?;
     }
     Ok(support)
+}
+
+/// The degrees of freedom, by node, that each part holds; one that several hold is the first one's.
+pub(super) fn held_parts(
+    scene: &Scene,
+    mesh: &Mesh,
+    parts: &[HeldDirections],
+) -> Result<Vec<Vec<(u32, usize)>>, BuildError> {
+    let mut held = HashSet::new();
+    let mut of_parts = Vec::with_capacity(parts.len());
+    for (i, HeldDirections { region, directions }) in parts.iter().enumerate() {
+        let nodes = region_nodes(scene, mesh, region, &format!("constraints[{i}]"), 1)?;
+        let directions = || (0..3).filter(|axis| directions[*axis]);
+        let freedoms = nodes.iter().flat_map(|node| directions().map(move |axis| (*node, axis)));
+        of_parts.push(freedoms.filter(|freedom| held.insert(*freedom)).collect());
+    }
+    Ok(of_parts)
 }
 
 /// Refuses an initial velocity that the supports prevent; `left` are three directions, one or none.

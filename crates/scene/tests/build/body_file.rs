@@ -75,6 +75,97 @@ fn a_body_file_is_the_same_whether_its_answers_were_known() {
     }
 }
 
+/// Stress of all kinds, of a bar that may bend far.
+const STRESS: &str =
+    "[effects]\nlarge_deflection = true\nrefuse = false\n[output]\nstress = true\npeak_stress = true\n";
+const LARGE: &str = "flexible = 6\nstatic_correction = true\nlarge = [1, 2]";
+
+#[test]
+fn the_stress_from_a_body_file_is_the_same_to_the_last_bit_and_not_recovered_again() {
+    for modes in [MODES, LARGE] {
+        let rest = format!(
+            "{CLAMPED}{FORCE}{}",
+            if modes == LARGE { STRESS } else { &STRESS[STRESS.find("[output]").unwrap()..] }
+        );
+        let (folder, direct, _) = reduced(modes, &rest, false);
+        let stresses = |scene: &Scene| {
+            let model = Model::build(scene, |_| ()).unwrap();
+            let stress = model.stress.as_ref().unwrap();
+            let of_row = |now: frames_rk4::Observation| {
+                let peak = stress.peak(&now).unwrap();
+                let at_points: Vec<_> = stress.at_points(&now.modal_displacement).flatten().collect();
+                ([peak.von_mises, peak.left_out, peak.most_left_out].map(f64::to_bits), peak.node, at_points)
+            };
+            model.start(scene).unwrap().map(|now| of_row(now.unwrap())).collect::<Vec<_>>()
+        };
+        let expected = stresses(&direct);
+        assert!(f64::from_bits(expected.last().unwrap().0[0]) > 0.0);
+        fs::remove_file(folder.path().join("bar.msh")).unwrap();
+        let from_file = scene(folder.path(), "file = \"bar.body.h5\"", modes, &rest);
+        assert!(stresses(&from_file) == expected);
+        assert_eq!((from_file.cache.notes().assembled, from_file.cache.notes().computed), (0, 0));
+    }
+}
+
+#[test]
+fn what_is_bent_far_and_its_stress_follow_from_what_others_read() {
+    let (_folder, direct, path) = reduced(LARGE, &format!("{CLAMPED}{FORCE}{STRESS}"), false);
+    let model = Model::build(&direct, |_| ()).unwrap();
+    let (meshed, stress) = (model.meshed.as_ref().unwrap(), model.stress.as_ref().unwrap());
+    let file = BodyFile::open(&path).unwrap();
+    let read = |name: &str| file.read::<f64>(name).unwrap();
+    let pairs = file.read::<u32>("large_deflection/pairs").unwrap();
+    assert_eq!((pairs.shape, &pairs.values[..]), (vec![3, 2], &[0, 0, 0, 1, 1, 1][..]));
+    let q: Vec<f64> = (0..model.body.flexible()).map(|k| 1e-3 * (1.0 + k as f64).sin()).collect();
+    let products: Vec<f64> =
+        pairs.values.as_chunks::<2>().0.iter().map(|[j, k]| q[*j as usize] * q[*k as usize]).collect();
+    // The coordinates of all shapes.
+    let of_products = read("large_deflection/products");
+    let all = of_products.shape[1];
+    let mut xi = q.clone();
+    xi.resize(all, 0.0);
+    for (product, adds) in products.iter().zip(of_products.values.chunks_exact(all)) {
+        xi.iter_mut().zip(adds).for_each(|(xi, adds)| *xi += product * adds);
+    }
+    let shapes =
+        ["modes/shapes", "static_shapes/shapes", "large_deflection/shapes"].map(|name| read(name).values).concat();
+    let (rows, expected) = (meshed.modes.shapes.nrows(), model.coordinates(&q));
+    assert_eq!((shapes.len(), expected.len()), (all * rows, all));
+    let largest = |values: &[f64]| values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+    let follow = largest(&expected[q.len()..]);
+    assert!(
+        follow > 0.0 && xi.iter().zip(&expected).all(|(a, b)| (a - b).abs() < 1e-12 * follow),
+        "{xi:?} {expected:?}"
+    );
+    let following = meshed.following.as_ref();
+    let column = |k: usize| if k < q.len() { meshed.modes.shapes.col(k) } else { following.col(k - q.len()) };
+    for i in 0..rows {
+        let found: f64 = (0..all).map(|k| shapes[k * rows + i] * xi[k]).sum();
+        let truth: f64 = (0..all).map(|k| column(k)[i] * expected[k]).sum();
+        assert!((found - truth).abs() < 1e-12 * largest(&q) * largest(&shapes[..rows]), "{i}: {found} {truth}");
+    }
+    // The stress, at every node.
+    let nodes = file.read::<u32>("stress/nodes").unwrap().values;
+    assert_eq!(nodes.len(), meshed.mesh.positions().len());
+    let (linear, second) = (read("stress/shapes"), read("stress/products"));
+    assert_eq!((&linear.shape[..], &second.shape[..]), (&[all, nodes.len(), 6][..], &[3, nodes.len(), 6][..]));
+    let coordinates = stress.coordinates(&q);
+    let mut of_products = 0.0_f64;
+    for (site, node) in nodes.iter().enumerate() {
+        let truth = stress.in_coordinates(*node, &coordinates);
+        for c in 0..6 {
+            let sum = |values: &[f64], by: &[f64]| -> f64 {
+                by.iter().enumerate().map(|(k, by)| by * values[6 * (k * nodes.len() + site) + c]).sum()
+            };
+            let second = sum(&second.values, &products);
+            of_products = of_products.max(second.abs());
+            let found = sum(&linear.values, &xi) + second;
+            assert!((found - truth[c]).abs() < 1e-11 * largest(&truth), "{node}: {found} {truth:?}");
+        }
+    }
+    assert!(of_products > 0.0);
+}
+
 #[test]
 fn what_others_read_is_what_the_model_has() {
     let (_folder, direct, path) = reduced(MODES, &format!("{SPIN}{FORCE}"), true);
