@@ -11,8 +11,9 @@ use whole_file::WholeFile;
 
 use crate::FigureError;
 use crate::axis::{Axis, round_step};
+use crate::formats::rgb;
 use crate::key::{self, colour_axis, draw_key, shade};
-use crate::picture::{Area, Figure, INK, LABEL_EM, TITLE_EM, Unit, draw_error, rgb};
+use crate::picture::{Area, Figure, INK, LABEL_EM, TITLE_EM, Unit, draw_error};
 use crate::render::{Canvas, Grades, check_indices, check_points, surface_colours};
 use crate::shapes::EDGE;
 use crate::view::{View, Window};

@@ -7,8 +7,9 @@ use plotters::style::text_anchor::{HPos, VPos};
 
 use crate::FigureError;
 use crate::axis::{Axis, Scale, power_of_ten};
+use crate::formats::{save, svg_file};
 use crate::inset::Inset;
-use crate::picture::{Area, Figure, TICK_EM, TITLE_EM, Unit, save, svg_file, titled};
+use crate::picture::{Area, Figure, TICK_EM, TITLE_EM, Unit, titled};
 use crate::plot::{Plot, text_width};
 use crate::series::{GUIDE, Pen, Series, Stroke};
 

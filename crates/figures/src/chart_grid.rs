@@ -8,7 +8,8 @@ use plotters::style::text_anchor::{HPos, VPos};
 use crate::FigureError;
 use crate::axis::{Axis, Scale};
 use crate::chart::{MARGIN, Noise, Reference, Y_MARGIN, check_series};
-use crate::picture::{Area, Figure, LABEL_EM, TICK_EM, TITLE_EM, Unit, save, titled};
+use crate::formats::save;
+use crate::picture::{Area, Figure, LABEL_EM, TICK_EM, TITLE_EM, Unit, titled};
 use crate::plot::Plot;
 use crate::series::Series;
 

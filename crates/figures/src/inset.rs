@@ -103,7 +103,7 @@ mod tests {
 
     #[test]
     fn there_is_no_inset_where_it_is_not_called_for() {
-        let none = |series: &[Series]| Inset::of(series, (0.0, 1.0), (-0.05, 1.05)) == None;
+        let none = |series: &[Series]| Inset::of(series, (0.0, 1.0), (-0.05, 1.05)).is_none();
         assert!(none(&[series(|x| pulse(x, 0.0, 0.2))]), "a long pulse");
         assert!(none(&[series(|x| pulse(x, 0.0, 0.04)), series(|x| 0.3 * (30.0 * x).sin())]), "something later");
         assert!(none(&[series(|_| 0.5)]), "nothing at all");

@@ -15,6 +15,7 @@ mod chart_grid;
 mod error;
 mod facets;
 mod font;
+mod formats;
 mod inset;
 mod key;
 mod path;

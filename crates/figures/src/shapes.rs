@@ -6,8 +6,9 @@ use plotters::prelude::*;
 
 use crate::FigureError;
 use crate::facets::{self, Facets};
+use crate::formats::save;
 use crate::key::{self, colour_axis, draw_key, shade};
-use crate::picture::{Area, Figure, LABEL_EM, TITLE_EM, Unit, save, titled};
+use crate::picture::{Area, Figure, LABEL_EM, TITLE_EM, Unit, titled};
 use crate::render::{Canvas, Grades, check_indices, check_points};
 use crate::view::{Seen, View, Window};
 
