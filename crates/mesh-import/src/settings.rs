@@ -1,0 +1,10 @@
+//! How a mesh is read.
+
+/// How a mesh is read.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct ImportSettings {
+    /// The largest size of an element where geometry is meshed, in the units of the file; the reader's choice if not given.
+    pub mesh_size: Option<f64>,
+    /// Whether straight edges of first-order elements get a node in their middle.
+    pub raise_order: bool,
+}
