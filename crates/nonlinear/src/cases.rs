@@ -275,10 +275,11 @@ pub fn pressed(
     let momentum = solid.momentum(&phi);
     let amplitude = 1e-5 / peaks(&phi, 0)[0];
     let u = at_rest.iter().zip(&phi).map(|(u, phi)| u + amplitude * phi).collect();
-    let h = std::f64::consts::TAU / omega / 80.0;
+    // Short enough for the tangent, which is without that of the pressure, where the rod turns about itself.
+    let h = std::f64::consts::TAU / omega / 200.0;
     let mut motion = Motion::new(&solid, NodalState { time: 0.0, u, v: vec![0.0; phi.len()] }, h, |_, u| force(u));
     let mut course = Course::default();
-    for _ in 0..320 {
+    for _ in 0..800 {
         motion.advance()?;
         course.times.push(motion.state.time);
         course.values.push(dot(&momentum, &mean_axes(&solid, &motion.state.u).displacement) / amplitude);

@@ -57,9 +57,9 @@ fn the_motion_is_of_fourth_order_with_large_amplitudes() {
     };
     let [coarse, middle, fine] = [0, 1, 2].map(off);
     println!("{coarse:?} {middle:?} {fine:?}");
-    for k in 0..2 {
-        assert!(coarse[k] / fine[k] > 12.0 * 12.0, "{k}: {coarse:?} {middle:?} {fine:?}");
-    }
+    // Measured: 2.7e-7, 1.7e-8, 1.0e-9 of the modal displacement; the attitude is right to rounding.
+    assert!(coarse[1] / middle[1] > 12.0 && middle[1] / fine[1] > 12.0, "{coarse:?} {middle:?} {fine:?}");
+    assert!(coarse[0] < 1e-10, "{coarse:?}");
 }
 
 /// The plate of examples/spinning_plate.toml. What limits the step is the mode that the large ones draw in, at 537 Hz:
@@ -76,6 +76,7 @@ fn the_plate_keeps_its_energy_for_ten_seconds_in_short_steps() {
         scene.time.control = StepControl::Fixed(step);
         let found = gap(&cases::rows(&scene, &model).unwrap());
         println!("{step:e}: {found:e}");
+        // Measured: 6.7e-9, 2.2e-10; at 2e-4 s 1.9e-7.
         assert!(found < bound, "{step:e}: {found:e}");
     }
 }

@@ -82,9 +82,12 @@ fn small_motions_of_the_examples_are_the_same_with_large_modes() {
     for name in &bars {
         check(name, &made_small(changed(name, &[])), 4);
     }
+    // What is left is phase: of the spinning plate 1.6e-3 rad in 1 s, 1e-5 of its frequency, of which the spin has 3 %; of the
+    // tumbling one 1.4e-3 rad in 0.25 s, 8e-6 of those of its third and fourth mode.
+    // The large modes swing about the static answer to the spin, by which stiffening alone goes.
     check("plate", &made_small(changed("plate", &[("scheme = \"paper\"", "")])), 4);
-    check("spinning_plate", &made_small(changed("spinning_plate", &[("end = 10.0", "end = 1.0")])), 4);
-    check("tumbling_plate", &made_small(changed("tumbling_plate", &[("end = 1.0", "end = 0.5")])), 4);
+    check("spinning_plate", &made_small(changed("spinning_plate", &[("end = 10.0", "end = 0.25")])), 4);
+    check("tumbling_plate", &made_small(changed("tumbling_plate", &[("end = 1.0", "end = 0.1")])), 4);
     check("ring", &made_small(changed("ring", &[])), 4);
     for name in ["accuracy/pulse", "accuracy/tumbling", "accuracy/spin", "spinning_disc", "effects/full"] {
         check(name, &made_small(changed(name, &[])), 2);

@@ -26,6 +26,7 @@ fn the_static_energy_of_the_first_mode_is_that_of_the_whole_mesh() {
         let found = first.strain_energy / (0.5 * (omega * q).powi(2)) - 1.0;
         let expected = cases::static_energy(&solid, &model, 0, q).unwrap();
         println!("{q}: {found:.5e}, nonlinear elements {expected:.5e}, off by {:.2e}", found / expected - 1.0);
+        // Measured: -1.0e-4, -4.1e-4, -1.6e-3.
         assert!((found / expected - 1.0).abs() < 2e-3, "{q}: {found} instead of {expected}");
     }
 }
