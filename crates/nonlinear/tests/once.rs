@@ -82,19 +82,22 @@ fn small_motions_of_the_examples_are_the_same_with_large_modes() {
     for name in &bars {
         check(name, &made_small(changed(name, &[])), 4);
     }
-    // What is left is phase: of the spinning plate 1.6e-3 rad in 1 s, 1e-5 of its frequency, of which the spin has 3 %; of the
-    // tumbling one 1.4e-3 rad in 0.25 s, 8e-6 of those of its third and fourth mode.
-    // The large modes swing about the static answer to the spin, by which stiffening alone goes.
     check("plate", &made_small(changed("plate", &[("scheme = \"paper\"", "")])), 4);
-    check("spinning_plate", &made_small(changed("spinning_plate", &[("end = 10.0", "end = 0.25")])), 4);
-    check("tumbling_plate", &made_small(changed("tumbling_plate", &[("end = 1.0", "end = 0.1")])), 4);
     check("ring", &made_small(changed("ring", &[])), 4);
-    for name in ["accuracy/pulse", "accuracy/tumbling", "accuracy/spin", "spinning_disc", "effects/full"] {
-        check(name, &made_small(changed(name, &[])), 2);
-    }
-    for name in ["plate_axis_2_at_150", "plate_axis_2_at_160", "plate_axis_3_at_300"] {
-        let stiffened = changed(name, &[("geometric_stiffening = false", "geometric_stiffening = true")]);
-        check(name, &made_small(stiffened), 4);
+    check("accuracy/pulse", &made_small(changed("accuracy/pulse", &[])), 2);
+}
+
+/// Plates that spin, without what stretches them: a stretching mode, or a static shape, rings from the undeformed start. Large
+/// modes feel its stress as it swings, stiffening alone takes it as at rest, and that is no double count: at 60 rad/s the
+/// first frequency is 1.0e-3 higher, as of Hill's equation.
+#[test]
+#[ignore = "minutes: just nonlinear"]
+fn spinning_plates_are_the_same_with_large_modes() {
+    for name in ["accuracy/spin", "accuracy/tumbling", "spinning_plate", "tumbling_plate"] {
+        let mut scene = changed(name, &[("flexible = 10", "flexible = 7")]);
+        scene.modes.static_correction = Choice::Off;
+        scene.time.end = scene.time.end.min(0.5);
+        check(name, &made_small(scene), 2);
     }
 }
 
