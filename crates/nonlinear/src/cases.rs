@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use fem_tet10::Material;
 use frames_rk4::Observation;
 use nalgebra::Vector3;
 use scene::{Model, Scene};
@@ -16,11 +17,13 @@ use crate::solid::Solid;
 ///
 /// # Errors
 /// What the scene is refused with.
-pub fn built(mesh: &str, young_modulus: f64, rest: &str) -> Result<(Scene, Model), NonlinearError> {
+pub fn built(mesh: &str, material: Material, rest: &str) -> Result<(Scene, Model), NonlinearError> {
+    let Material { young_modulus, poisson_ratio, density } = material;
     let text = format!(
         "title = \"Case\"\nunits = {{ length = \"m\", mass = \"kg\", time = \"s\" }}\n[body]\n\
          mesh = \"meshes/{mesh}.msh\"\n\
-         material = {{ young_modulus = {young_modulus:e}, poisson_ratio = 0.3, density = 1000.0 }}\n{rest}"
+         material = {{ young_modulus = {young_modulus:e}, poisson_ratio = {poisson_ratio:e}, density = {density:e} }}\n\
+         {rest}"
     );
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scene.toml");
     let scene = Scene::parse(&text, path).map_err(|error| NonlinearError::Scene(error.to_string()))?;
@@ -95,7 +98,7 @@ const L_MODES: &str = "[modes]\nflexible = 8\n";
 /// # Errors
 /// What the scene is refused with.
 pub fn the_l(rest: &str) -> Result<(Scene, Model), NonlinearError> {
-    built("l", 1e7, &format!("{L_MODES}{rest}"))
+    built("l", crate::bodies::SOFT, &format!("{L_MODES}{rest}"))
 }
 
 /// Deflection of the spinning L in its first mode in the plane, over `periods` of it from the undeformed state, with a spin
@@ -177,7 +180,7 @@ pub fn static_energy(solid: &Solid, model: &Model, mode: usize, q: f64) -> Resul
 /// # Errors
 /// What stops a run.
 pub fn pendulum(young_modulus: f64, end: f64, steps: usize, rests: &[&str]) -> Result<Vec<Course>, NonlinearError> {
-    let material = fem_tet10::Material { young_modulus, ..crate::bodies::SOFT };
+    let material = crate::bodies::soft(young_modulus);
     let solid = Solid::new(crate::bodies::mesh("rod")?, material, |x| x.x.abs() < 1e-9 && x.z.abs() < 1e-9)?;
     let down: Vec<f64> = (0..solid.freedoms()).map(|k| if k % 3 == 2 { -9.81 } else { 0.0 }).collect();
     let weight = solid.momentum(&down);
@@ -200,7 +203,7 @@ pub fn pendulum(young_modulus: f64, end: f64, steps: usize, rests: &[&str]) -> R
              [output.points]\ntip = [1.0, 0.0, 0.0]\n[time]\nend = {end:e}\nstep = {:e}\n",
             end / (4 * steps) as f64
         );
-        let (scene, model) = built("rod", young_modulus, &text)?;
+        let (scene, model) = built("rod", material, &text)?;
         let rows = rows(&scene, &model)?;
         courses.push(Course {
             times: rows.iter().map(|row| row.time).collect(),
@@ -227,9 +230,10 @@ fn turned_back(solid: &Solid, u: &[f64], node: usize) -> Vector3<f64> {
     turn.inverse() * Vector3::from_column_slice(&all[3 * node..3 * node + 3]) - at
 }
 
-/// Frequency in cycles per time of small vibrations in the first mode of a free body about its rest under a pressure on
-/// some faces: of the nonlinear body, and of flexframe, without the pressure and with it. `shift` over the square of the
-/// circular frequency is that of [`Solid::at_rest`].
+/// Frequency in cycles per time of small vibrations in the first mode of a free body under a pressure on some faces: of the
+/// nonlinear body, and of flexframe, without the pressure and with it. A pressure without a resultant has the body vibrate
+/// about its rest, with `shift` over the square of the circular frequency as in [`Solid::at_rest`]; without a shift the
+/// pressure acts at once and takes the body along.
 ///
 /// # Errors
 /// What stops a run.
@@ -238,8 +242,9 @@ pub fn pressed(
     young_modulus: f64,
     pressures: &[(&str, f64)],
     is_on: impl Fn(Vector3<f64>) -> bool,
-    shift: f64,
+    shift: Option<f64>,
 ) -> Result<[f64; 3], NonlinearError> {
+    let material = crate::bodies::soft(young_modulus);
     let loads: String = pressures
         .iter()
         .map(|(group, size)| format!("[[loads]]\nkind = \"pressure\"\ngroup = \"{group}\"\namplitude = {size:e}\n"))
@@ -247,7 +252,7 @@ pub fn pressed(
     let scene = |rest: &str| {
         built(
             mesh,
-            young_modulus,
+            material,
             &format!(
                 "[modes]\nflexible = 20\nstatic_correction = false\n{rest}[effects]\ntolerance = 1e-9\nrefuse = false\n\
                  [time]\nend = 1e-4\nstep = 1e-4\n"
@@ -257,25 +262,27 @@ pub fn pressed(
     let (_, free) = scene("")?;
     let (with, model) = scene(&loads)?;
     let loaded = model.loaded_modes(&with).map_err(|error| NonlinearError::Scene(error.to_string()))?;
-    let material = fem_tet10::Material { young_modulus, ..crate::bodies::SOFT };
     let solid = Solid::new(crate::bodies::mesh(mesh)?, material, |_| false)?;
     let faces = solid.faces(is_on);
     let size = pressures[0].1;
     let force = |u: &[f64]| solid.pressure(&faces, u).iter().map(|f| f * size).collect::<Vec<f64>>();
     let omega = free.body.circular_frequencies[0];
-    let at_rest = solid.at_rest(1, shift * omega * omega, force)?;
+    let at_rest = match shift {
+        Some(shift) => solid.at_rest(1, shift * omega * omega, force)?,
+        None => vec![0.0; solid.freedoms()],
+    };
     let phi = shape(&free, 0);
     let momentum = solid.momentum(&phi);
     let amplitude = 1e-5 / peaks(&phi, 0)[0];
     let u = at_rest.iter().zip(&phi).map(|(u, phi)| u + amplitude * phi).collect();
-    let h = std::f64::consts::TAU / omega / 80.0;
+    // Short enough for the tangent, which is without that of the pressure, where the rod turns about itself.
+    let h = std::f64::consts::TAU / omega / 200.0;
     let mut motion = Motion::new(&solid, NodalState { time: 0.0, u, v: vec![0.0; phi.len()] }, h, |_, u| force(u));
     let mut course = Course::default();
-    for _ in 0..320 {
+    for _ in 0..800 {
         motion.advance()?;
         course.times.push(motion.state.time);
-        let moved: Vec<f64> = motion.state.u.iter().zip(&at_rest).map(|(u, rest)| u - rest).collect();
-        course.values.push(dot(&momentum, &moved) / amplitude);
+        course.values.push(dot(&momentum, &mean_axes(&solid, &motion.state.u).displacement) / amplitude);
     }
     let found = signal::frequency(&course.times, &course.values, omega, 1);
     let found = 2.0 / h * (0.5 * found * h).tan() / std::f64::consts::TAU;

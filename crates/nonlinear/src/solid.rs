@@ -7,7 +7,7 @@
 use faer::Side;
 use faer::sparse::SparseColMatRef;
 use faer::sparse::linalg::solvers::{Llt, SymbolicLlt};
-use fem_tet10::{Material, Materials, Matrices, Mesh, assemble, quadrature, shape_gradients};
+use fem_tet10::{Material, Materials, Matrices, Mesh, PointMass, assemble, quadrature, shape_gradients};
 use nalgebra::{Matrix3, Vector3};
 
 use crate::error::NonlinearError;
@@ -39,7 +39,20 @@ impl Solid {
     /// # Errors
     /// What the material and the matrices are refused with.
     pub fn new(mesh: Mesh, material: Material, held: impl Fn(Vector3<f64>) -> bool) -> Result<Self, NonlinearError> {
-        let matrices = assemble(&mesh, &Materials::Uniform(material), &[])?;
+        Self::with_masses(mesh, material, &[], held)
+    }
+
+    /// With masses at points.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn with_masses(
+        mesh: Mesh,
+        material: Material,
+        masses: &[PointMass],
+        held: impl Fn(Vector3<f64>) -> bool,
+    ) -> Result<Self, NonlinearError> {
+        let matrices = assemble(&mesh, &Materials::Uniform(material), masses)?;
         let rule: Vec<_> = quadrature::degree_5().into_iter().map(|p| (p.weight, shape_gradients(p.at))).collect();
         let points = mesh.elements().iter().map(|nodes| {
             let at = nodes.map(|node| Vector3::from(mesh.positions()[node as usize]));

@@ -8,6 +8,8 @@ use crate::solid::Solid;
 
 /// Most iterations: with a large shift they come to rest slowly.
 const MOST: usize = 300;
+/// Iterations of a subspace that begins near the answer.
+const SUBSPACE: usize = 20;
 /// What is left of the forces or of the displacements, relative.
 const TOLERANCE: f64 = 1e-11;
 
@@ -47,6 +49,50 @@ impl Solid {
             }
         }
         Ok(u)
+    }
+
+    /// The lowest circular frequencies of small vibrations about a rest `u` under dead forces, as many as there are `shapes`
+    /// near their modes, by subspace iteration.
+    ///
+    /// # Errors
+    /// [`NonlinearError::Factor`] where the rest is not stable.
+    pub fn frequencies_at_rest(&self, u: &[f64], shapes: &[Vec<f64>]) -> Result<Vec<f64>, NonlinearError> {
+        let factor = self.tangent(u, u, 0.0, 1.0)?;
+        let count = shapes.len();
+        let mut shapes = shapes.to_vec();
+        let mut squares = vec![0.0; count];
+        for _ in 0..SUBSPACE {
+            let momenta: Vec<Vec<f64>> = shapes
+                .iter()
+                .map(|shape| {
+                    let mut momentum = self.momentum(shape);
+                    clear(self, &mut momentum);
+                    momentum
+                })
+                .collect();
+            let mut answers = momenta.clone();
+            answers.iter_mut().for_each(|answer| factor.solve(answer));
+            // Of the answers y: K y = M x.
+            let moving: Vec<Vec<f64>> = answers.iter().map(|answer| self.momentum(answer)).collect();
+            let stiffness = DMatrix::from_fn(count, count, |i, j| dot(&answers[i], &momenta[j]));
+            let mass = DMatrix::from_fn(count, count, |i, j| dot(&answers[i], &moving[j]));
+            let lower = mass.cholesky().ok_or(NonlinearError::Factor)?.l();
+            let inverse = lower.try_inverse().ok_or(NonlinearError::Factor)?;
+            let found = (&inverse * stiffness * inverse.transpose()).symmetric_eigen();
+            let mixed = inverse.transpose() * &found.eigenvectors;
+            shapes = (0..count)
+                .map(|k| {
+                    let mut shape = vec![0.0; u.len()];
+                    for (i, answer) in answers.iter().enumerate() {
+                        shape.iter_mut().zip(answer).for_each(|(sum, y)| *sum += mixed[(i, k)] * y);
+                    }
+                    shape
+                })
+                .collect();
+            squares = found.eigenvalues.iter().copied().collect();
+        }
+        squares.sort_by(f64::total_cmp);
+        Ok(squares.into_iter().map(f64::sqrt).collect())
     }
 
     /// The displacements of least strain energy with given parts `amounts` along M-orthonormal `shapes`, those of rigid

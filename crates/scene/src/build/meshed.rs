@@ -6,7 +6,7 @@ use std::time::Instant;
 use advice::{buckling, limits, unsteady};
 use faer::Mat;
 use fem_tet10::{Location, Mesh};
-use frames_rk4::{Effect, Physics, PointShapes};
+use frames_rk4::{Effect, LoadedError, Physics, PointShapes};
 use modal::{BodyPoint, Modes, ReducedBody};
 use nalgebra::Vector3;
 
@@ -99,7 +99,12 @@ pub(super) fn reduce(
     model.refusal = buckling(stress.buckling_ratio);
     if model.refusal.is_none() && model.is_stressed() {
         let least = model.damping_ratios.iter().copied().fold(f64::INFINITY, f64::min);
-        model.refusal = unsteady(&model.loaded_modes(scene)?, least);
+        model.refusal = match model.loaded_modes(scene) {
+            Ok(modes) => unsteady(&modes, least),
+            // How far the run bends is watched while it runs.
+            Err(LoadedError::NoRest) => None,
+            Err(error) => return Err(error.into()),
+        };
     }
     if model.refusal.is_none() {
         model.refusal = limits(&model.case(scene, &initial), &model.physics.effects)?;

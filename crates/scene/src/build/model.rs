@@ -98,7 +98,8 @@ impl Model {
         self.physics.drive_stiffness.is_some() || self.loads.iter().any(|load| load.matrix_entries() > 0)
     }
 
-    /// The small vibrations of the body under the loads that stay as they are, seen from it.
+    /// The small vibrations of the body under the loads that stay as they are, seen from it: about its rest under them with
+    /// large modes, otherwise they are the same about the undeformed body.
     ///
     /// # Errors
     /// [`LoadedError`].
