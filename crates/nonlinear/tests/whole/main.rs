@@ -1,0 +1,10 @@
+//! flexframe against nonlinear finite elements and closed forms. One program, so that it is linked once.
+
+mod elastica;
+mod energy;
+mod l;
+mod once;
+mod oracle;
+mod plate;
+mod pressure;
+mod rods;
