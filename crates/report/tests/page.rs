@@ -151,7 +151,14 @@ fn what_does_not_fit_together_is_refused_with_its_place() {
     assert!(message(&|r| r.motion = Motion::default()).contains("no rows"));
     assert!(message(&|r| r.motion.coordinates.truncate(5)).contains("coordinates has 5 entries where 6"));
     assert!(message(&|r| r.shapes[1].displacement.truncate(3)).contains("shape \"mode 2\" has 3 entries where 4"));
-    assert!(message(&|r| r.stress.as_mut().unwrap().shapes.truncate(1)).contains("stresses of shapes has 1 entries"));
+    let few = message(&|r| r.stress.as_mut().unwrap().shapes.truncate(1));
+    assert!(few.contains("stresses of shapes and products has 1 entries"), "{few}");
+    let of_no_shape = |r: &mut Report| {
+        let stress = r.stress.as_mut().unwrap();
+        stress.shapes.push(stress.shapes[0].clone());
+        stress.products.push([0, 5]);
+    };
+    assert!(matches!(refused(&of_no_shape), ReportError::NoSuchShape { coordinate: 5, .. }));
     assert!(
         message(&|r| r.histories[0].components.clear()).contains("component in its history \"point 0: displacement\"")
     );
