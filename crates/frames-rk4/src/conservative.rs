@@ -255,7 +255,7 @@ impl ConservativeBody {
                 if k == l { product } else { product + axes[i][l] * axes[j][k] }
             })
         };
-        let on_coordinates = |matrix: Mat<f64>| match manifold.map(Manifold::from_coordinates) {
+        let on_coordinates = |matrix: Mat<f64>| match manifold.map(Manifold::shapes_by_coordinates) {
             Some(e) => e.transpose() * matrix * e,
             None => matrix,
         };
@@ -287,7 +287,7 @@ impl ConservativeBody {
             (0..size).flat_map(|j| matrices.iter().flat_map(move |matrix| matrix.col(j).iter().copied())).collect();
         let coupling = own_coupling(&modes.circular_frequencies, size, &stacked, g_rows);
         // Eᵀ of a list.
-        let list_on_coordinates = |list: Vec<f64>| match manifold.map(Manifold::from_coordinates) {
+        let list_on_coordinates = |list: Vec<f64>| match manifold.map(Manifold::shapes_by_coordinates) {
             Some(e) => e.col_iter().map(|column| column.iter().zip(&list).map(|(e, x)| e * x).sum()).collect(),
             None => list,
         };

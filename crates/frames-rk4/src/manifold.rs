@@ -50,7 +50,7 @@ struct Constants {
     /// T', column by column (extended shapes × pairs).
     shapes: Vec<f64>,
     /// E, column by column (extended shapes × (modes + pairs)).
-    from_coordinates: Mat<f64>,
+    shapes_by_coordinates: Mat<f64>,
     /// T'ᵀE, column by column (pairs × (modes + pairs)): rows of the mass of the products in z.
     mass: Vec<f64>,
     /// T_jk of the modes, by k column by column ((large modes j × modes) × large modes).
@@ -125,12 +125,13 @@ impl Manifold {
             let [j, k] = pairs[a];
             if j == k { 0.5 * slopes[(i, a)] } else { slopes[(i, a)] }
         };
-        let from_coordinates = Mat::from_fn(extended, dynamic + pairs.len(), |i, a| match a.checked_sub(*dynamic) {
-            None => f64::from(u8::from(i == a)),
-            Some(a) => of_products(i, a),
-        });
-        let shapes = from_coordinates.get(.., *dynamic..);
-        let mass = columns((shapes.transpose() * &from_coordinates).as_ref());
+        let shapes_by_coordinates =
+            Mat::from_fn(extended, dynamic + pairs.len(), |i, a| match a.checked_sub(*dynamic) {
+                None => f64::from(u8::from(i == a)),
+                Some(a) => of_products(i, a),
+            });
+        let shapes = shapes_by_coordinates.get(.., *dynamic..);
+        let mass = columns((shapes.transpose() * &shapes_by_coordinates).as_ref());
         let slope = |i: usize, j: usize, k: usize| slopes[(i, pair(j, k))];
         let follow = |a: [usize; 2], b: [usize; 2]| -> f64 {
             (*dynamic..extended).map(|i| slope(i, a[0], a[1]) * slope(i, b[0], b[1])).sum()
@@ -152,7 +153,7 @@ impl Manifold {
             locked,
             forces,
             pairs,
-            from_coordinates,
+            shapes_by_coordinates,
             body,
         })))
     }
@@ -189,8 +190,8 @@ impl Manifold {
     }
 
     /// E, by which ξ = E z.
-    pub(crate) fn from_coordinates(&self) -> &Mat<f64> {
-        &self.0.from_coordinates
+    pub(crate) fn shapes_by_coordinates(&self) -> &Mat<f64> {
+        &self.0.shapes_by_coordinates
     }
 
     pub(crate) fn place(&self) -> ManifoldPoint {
