@@ -13,25 +13,21 @@
 //! *against the element's first node* count. With those, a translation of the element drops out exactly, and rounding is
 //! measured against the deformation and not against the motion.
 
-use faer::linalg::matmul::matmul;
 use faer::linalg::matmul::triangular::{self, BlockStructure};
-use faer::{Accum, Mat, MatMut, MatRef, Par};
-use nalgebra::{Matrix3, Vector3};
+use faer::{Accum, ColRef, Mat, MatRef, Par};
+use nalgebra::Matrix3;
 use rayon::prelude::*;
 
+use crate::deformation::{check_field, second_strain, strain, stress};
 use crate::error::AssemblyError;
 use crate::integration::{IntegrationPoint, Rules};
-use crate::material::{Material, Materials};
+use crate::material::Materials;
 use crate::mesh::Mesh;
 
 /// The elements are cut into so many parts, whatever the number of threads, and the parts are summed in their order.
 const PARTS: usize = 64;
 /// Elements that are multiplied at once.
-const BLOCK: usize = 32;
-/// Nodes of an element besides its first.
-pub(crate) const OTHERS: usize = 9;
-/// Their displacements.
-const FREEDOMS: usize = 3 * OTHERS;
+const BLOCK: usize = 8;
 
 /// Which terms of K(u) are computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -46,10 +42,13 @@ pub enum GeometricTerms {
 /// per length), where Ψ is `shapes` (N×f, row `3·node + axis`). Symmetric to the last bit, and the same for any number of
 /// threads. `v·K(u)·b` is also `u·g_vb` of [`second_order_forces`](crate::second_order_forces).
 ///
+/// With the gradients at the integration points, K(u)_ab is `Σ P_a : ∇b` with
+/// `P_a = ∇a C:ε(u) + ∇u C:ε(a) + C:ε₂(u,a)`: gradients and stresses of the shapes are found once for all u.
+///
 /// Exact on straight elements. On curved ones by the rule that [`assemble`](crate::assemble) has for them, so that
 /// `K(u) (θ × X) = θ × K u − K (θ × u)`, of the initial stress alone `θ × K u`, holds at every node there too, for any small rotation θ.
 ///
-/// It holds 64·s·f² numbers, and for each thread the products of 32 elements: no more for a larger mesh.
+/// It holds 64·s·f² numbers, and for each thread the gradients in 8 elements: no more for a larger mesh.
 ///
 /// # Errors
 /// Materials that do not fit the mesh; a matrix whose rows are not the degrees of freedom, or with an entry that is not
@@ -74,32 +73,54 @@ pub fn reduced_geometric_stiffness(
         .map(|part| {
             let mut sums = zeros();
             for block in part.chunks(BLOCK) {
-                let relative: Vec<f64> =
-                    block.iter().flat_map(|e| relative_displacements(shapes, &mesh.elements()[*e])).collect();
-                let points: Vec<_> = block.iter().map(|e| rules.fine_points(&mesh.element_positions(*e))).collect();
-                let mut forces = vec![0.0; relative.len()];
-                for (sum, u) in sums.iter_mut().zip(displacements.col_iter()) {
-                    for (i, e) in block.iter().enumerate() {
-                        let u = relative_displacements(u.as_mat(), &mesh.elements()[*e]);
-                        let stiffness = element_stiffness(&points[i], &materials[*e], &u, terms);
-                        let of_element = i * f * FREEDOMS..(i + 1) * f * FREEDOMS;
-                        matmul(
-                            MatMut::from_column_major_slice_mut(&mut forces[of_element.clone()], f, FREEDOMS),
-                            Accum::Replace,
-                            MatRef::from_column_major_slice(&relative[of_element], f, FREEDOMS),
-                            MatRef::from_column_major_slice(stiffness.as_flattened(), FREEDOMS, FREEDOMS),
-                            1.0,
-                            Par::Seq,
-                        );
+                let points: Vec<(usize, IntegrationPoint)> = block
+                    .iter()
+                    .flat_map(|e| {
+                        rules.cubic_points(&mesh.element_positions(*e)).into_iter().map(move |point| (*e, point))
+                    })
+                    .collect();
+                let of_shapes: Vec<[[f64; 3]; 3]> =
+                    shapes.col_iter().flat_map(|shape| gradients(shape, mesh, &points)).collect();
+                let stresses: Vec<Matrix3<f64>> = match terms {
+                    GeometricTerms::InitialStress => Vec::new(),
+                    GeometricTerms::All => {
+                        let of_points = of_shapes.iter().zip(points.iter().cycle());
+                        of_points.map(|(a, (e, _))| stress(&materials[*e], &strain(&Matrix3::from(*a)))).collect()
                     }
-                    let columns = FREEDOMS * block.len();
+                };
+                let mut products = vec![[[0.0; 3]; 3]; of_shapes.len()];
+                for (sum, u) in sums.iter_mut().zip(displacements.col_iter()) {
+                    let of_u: Vec<(Matrix3<f64>, Matrix3<f64>)> = gradients(u, mesh, &points)
+                        .zip(&points)
+                        .map(|(gradient, (e, point))| {
+                            let gradient = Matrix3::from(gradient) * point.volume;
+                            (gradient, stress(&materials[*e], &strain(&gradient)))
+                        })
+                        .collect();
+                    let here = || of_u.iter().zip(&points).cycle();
+                    let of_both = products.iter_mut().zip(&of_shapes);
+                    match terms {
+                        GeometricTerms::InitialStress => {
+                            for ((product, a), ((_, of_u), _)) in of_both.zip(here()) {
+                                *product = (Matrix3::from(*a) * of_u).into();
+                            }
+                        }
+                        GeometricTerms::All => {
+                            for (((product, a), of_a), ((u, of_u), (e, _))) in of_both.zip(&stresses).zip(here()) {
+                                let a = Matrix3::from(*a);
+                                let of_second = stress(&materials[*e], &second_strain(u, &a));
+                                *product = (a * of_u + u * of_a + of_second).into();
+                            }
+                        }
+                    }
+                    let rows = 9 * points.len();
                     triangular::matmul(
                         sum.as_mut(),
                         BlockStructure::TriangularLower,
                         Accum::Add,
-                        MatRef::from_column_major_slice(&relative, f, columns),
+                        MatRef::from_column_major_slice(of_shapes.as_flattened().as_flattened(), rows, f).transpose(),
                         BlockStructure::Rectangular,
-                        MatRef::from_column_major_slice(&forces, f, columns).transpose(),
+                        MatRef::from_column_major_slice(products.as_flattened().as_flattened(), rows, f),
                         BlockStructure::Rectangular,
                         1.0,
                         Par::Seq,
@@ -125,81 +146,23 @@ pub fn reduced_geometric_stiffness(
     Ok(sums)
 }
 
-pub(crate) fn check_field(mesh: &Mesh, what: &'static str, field: MatRef<'_, f64>) -> Result<(), AssemblyError> {
-    let expected = 3 * mesh.positions().len();
-    if field.nrows() != expected {
-        return Err(AssemblyError::FieldRows { what, expected, found: field.nrows() });
-    }
-    for (column, values) in field.col_iter().enumerate() {
-        if let Some((row, found)) = values.iter().enumerate().find(|(_, value)| !value.is_finite()) {
-            return Err(AssemblyError::FieldNotFinite { what, row, column, found: *found });
-        }
-    }
-    Ok(())
-}
-
-/// Displacements of the nodes 1 to 9 of an element against node 0: by node, then axis, then column of `fields`.
-pub(crate) fn relative_displacements(fields: MatRef<'_, f64>, nodes: &[u32; 10]) -> Vec<f64> {
-    let first = 3 * nodes[0] as usize;
-    let mut relative = Vec::with_capacity(3 * OTHERS * fields.ncols());
-    for node in &nodes[1..] {
-        for axis in 0..3 {
-            let row = 3 * *node as usize + axis;
-            relative.extend((0..fields.ncols()).map(|k| fields[(row, k)] - fields[(first + axis, k)]));
-        }
-    }
-    relative
-}
-
-/// K(u) of an element for the displacements of its nodes 1 to 9 against node 0, of which `relative` are those of u. Rows
-/// and columns are by node, then axis.
-///
-/// With H = ∇u, whose row a is h_a, and g_i = ∇N_i, the displacement e_a N_i has `ε₂(u, e_a N_i) = sym(h_a g_iᵀ)`.
-fn element_stiffness(
-    points: &[IntegrationPoint],
-    material: &Material,
-    relative: &[f64],
-    terms: GeometricTerms,
-) -> [[f64; FREEDOMS]; FREEDOMS] {
-    let (lambda, mu) = material.lame();
-    let mut stiffness = [[0.0; FREEDOMS]; FREEDOMS];
-    for point in points {
-        let gradients: [Vector3<f64>; OTHERS] = std::array::from_fn(|i| point.gradients[i + 1].into());
-        let mut displacement_gradient = Matrix3::zeros();
-        for (u, gradient) in relative.chunks_exact(3).zip(&gradients) {
-            displacement_gradient += Vector3::new(u[0], u[1], u[2]) * gradient.transpose();
-        }
-        let strain = 0.5 * (displacement_gradient + displacement_gradient.transpose());
-        let stress = (lambda * strain.trace() * Matrix3::identity() + 2.0 * mu * strain) * point.volume;
-        let (lambda, mu) = (lambda * point.volume, mu * point.volume);
-        let turned = gradients.map(|gradient| displacement_gradient * gradient);
-        let both = mu * (displacement_gradient + displacement_gradient.transpose());
-        for j in 0..OTHERS {
-            let (g_j, turned_j) = (&gradients[j], &turned[j]);
-            let traction = stress * g_j;
-            for i in 0..=j {
-                let (g_i, turned_i) = (&gradients[i], &turned[i]);
-                let (initial_stress, product) = (g_i.dot(&traction), g_i.dot(g_j));
-                for b in 0..3 {
-                    stiffness[3 * j + b][3 * i + b] += initial_stress;
-                }
-                if terms == GeometricTerms::InitialStress {
-                    continue;
-                }
-                for b in 0..3 {
-                    for a in 0..3 {
-                        // ε(a):C:ε₂(u,b), and the same with a and b in each other's place.
-                        stiffness[3 * j + b][3 * i + a] += lambda * (g_i[a] * turned_j[b] + turned_i[a] * g_j[b])
-                            + mu * (turned_i[b] * g_j[a] + turned_j[a] * g_i[b])
-                            + both[(a, b)] * product;
-                    }
+/// ∇u of a field at points of elements, column by column; displacements count against the element's first node.
+fn gradients<'a>(
+    field: ColRef<'a, f64>,
+    mesh: &'a Mesh,
+    points: &'a [(usize, IntegrationPoint)],
+) -> impl Iterator<Item = [[f64; 3]; 3]> + 'a {
+    points.iter().map(move |(e, point)| {
+        let nodes = mesh.elements()[*e].map(|node| 3 * node as usize);
+        let mut sum = [[0.0; 3]; 3];
+        for (node, gradient) in nodes[1..].iter().zip(&point.gradients[1..]) {
+            let u: [f64; 3] = std::array::from_fn(|axis| field[node + axis] - field[nodes[0] + axis]);
+            for (sum, gradient) in sum.iter_mut().zip(gradient) {
+                for (sum, u) in sum.iter_mut().zip(u) {
+                    *sum += u * gradient;
                 }
             }
         }
-    }
-    for row in 1..FREEDOMS {
-        let (above, below) = stiffness.split_at_mut(row);
-        above.iter_mut().zip(&below[0]).for_each(|(upper, lower)| upper[row] = *lower);
-    }
-    stiffness
+        sum
+    })
 }

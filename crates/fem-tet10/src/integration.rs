@@ -24,6 +24,7 @@ pub(crate) struct IntegrationPoint {
 #[derive(Debug)]
 pub(crate) struct Rules {
     straight: Vec<(Point, [[f64; 3]; 10])>,
+    straight_cubic: Vec<(Point, [[f64; 3]; 10])>,
     curved: Vec<(Point, [[f64; 3]; 10])>,
 }
 
@@ -37,12 +38,22 @@ impl Rules {
                 })
                 .collect()
         };
-        Self { straight: with_gradients(quadrature::degree_2()), curved: with_gradients(quadrature::degree_5()) }
+        Self {
+            straight: with_gradients(quadrature::degree_2()),
+            straight_cubic: with_gradients(quadrature::degree_3()),
+            curved: with_gradients(quadrature::degree_5()),
+        }
     }
 
     /// Integration points of an element: four where it is straight (K is then exact), fourteen where it is curved.
     pub(crate) fn points(&self, positions: &[[f64; 3]; 10]) -> Vec<IntegrationPoint> {
         in_space(if is_straight(positions) { &self.straight } else { &self.curved }, positions)
+    }
+
+    /// Integration points for products of three gradients: five where the element is straight, which are exact then, fourteen
+    /// where it is curved.
+    pub(crate) fn cubic_points(&self, positions: &[[f64; 3]; 10]) -> Vec<IntegrationPoint> {
+        in_space(if is_straight(positions) { &self.straight_cubic } else { &self.curved }, positions)
     }
 
     /// Reference coordinates of [`fine_points`](Self::fine_points).

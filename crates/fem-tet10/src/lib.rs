@@ -23,6 +23,7 @@
 #![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable))]
 
 mod assembly;
+mod deformation;
 mod error;
 mod faces;
 mod geometric_stiffness;

@@ -1,4 +1,4 @@
-//! Quadrature on the reference tetrahedron (volume 1/6) and triangle (area 1/2), with positive weights.
+//! Quadrature on the reference tetrahedron (volume 1/6) and triangle (area 1/2), with positive weights but for that of degree 3.
 
 /// A point of a quadrature rule.
 #[derive(Debug, Clone, Copy)]
@@ -14,6 +14,14 @@ pub(crate) fn degree_2() -> Vec<Point> {
     let s5 = 5.0_f64.sqrt();
     let (a, b) = ((5.0 - s5) / 20.0, (5.0 + 3.0 * s5) / 20.0);
     vertex_orbit(a, b, 1.0 / 24.0)
+}
+
+/// Degree 3, five points: exact for products of three linear gradients. The weight of the middle is negative, so it is no rule
+/// for what must be positive.
+pub(crate) fn degree_3() -> Vec<Point> {
+    let mut points = vertex_orbit(1.0 / 6.0, 0.5, 0.075);
+    points.push(Point { at: [0.25; 3], weight: -2.0 / 15.0 });
+    points
 }
 
 /// Degree 5, fourteen points (Walkington 2000): exact for the mass of a straight element (degree 4).
@@ -79,6 +87,8 @@ mod tests {
     fn rules_are_exact_to_their_degree_and_no_further() {
         assert!(worst_error(&degree_2(), 2) < 1e-14);
         assert!(worst_error(&degree_2(), 3) > 1e-3);
+        assert!(worst_error(&degree_3(), 3) < 1e-14);
+        assert!(worst_error(&degree_3(), 4) > 1e-3);
         assert!(worst_error(&degree_5(), 5) < 1e-13);
         assert!(worst_error(&degree_5(), 6) > 1e-3);
     }

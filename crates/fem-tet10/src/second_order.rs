@@ -13,9 +13,11 @@ use faer::{Mat, MatRef};
 use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 
+use crate::deformation::{
+    OTHERS, check_field, displacement_gradients, relative_displacements, second_strain, strain, stress,
+};
 use crate::error::AssemblyError;
-use crate::geometric_stiffness::{OTHERS, check_field, relative_displacements};
-use crate::integration::{IntegrationPoint, Rules};
+use crate::integration::Rules;
 use crate::material::{Material, Materials};
 use crate::mesh::Mesh;
 
@@ -40,13 +42,13 @@ pub fn second_order_forces(
     fields: MatRef<'_, f64>,
     pairs: &[[usize; 2]],
 ) -> Result<Mat<f64>, AssemblyError> {
-    let forces = |gradients: &[Matrix3<f64>], material: &Material, out: &mut Vec<Matrix3<f64>>| {
-        for [a, b] in pairs {
-            let (ga, gb) = (&gradients[*a], &gradients[*b]);
-            let of_second = stress(material, &second_strain(ga, gb));
-            out.push(of_second + gb * stress(material, &strain(ga)) + ga * stress(material, &strain(gb)));
-        }
-    };
+    let forces =
+        |Deformation { gradients, stresses }: &Deformation, material: &Material, out: &mut Vec<Matrix3<f64>>| {
+            for [a, b] in pairs {
+                let of_second = stress(material, &second_strain(&gradients[*a], &gradients[*b]));
+                out.push(of_second + gradients[*b] * stresses[*a] + gradients[*a] * stresses[*b]);
+            }
+        };
     element_forces(mesh, materials, fields, pairs.len(), forces)
 }
 
@@ -66,9 +68,8 @@ pub fn geometric_stiffness_product(
     let columns = fields.ncols();
     let column = |i: usize, j: usize| if j < columns { fields[(i, j)] } else { displacement[(i, 0)] };
     let all = Mat::from_fn(fields.nrows(), columns + 1, column);
-    let forces = |gradients: &[Matrix3<f64>], material: &Material, out: &mut Vec<Matrix3<f64>>| {
-        let stress = stress(material, &strain(&gradients[columns]));
-        out.extend(gradients[..columns].iter().map(|gradient| gradient * stress));
+    let forces = |Deformation { gradients, stresses }: &Deformation, _: &Material, out: &mut Vec<Matrix3<f64>>| {
+        out.extend(gradients[..columns].iter().map(|gradient| gradient * stresses[columns]));
     };
     element_forces(mesh, materials, all.as_ref(), columns, forces)
 }
@@ -92,15 +93,30 @@ pub fn second_order_energies(
     check_field(mesh, "fields", fields)?;
     let materials = materials.of_elements(mesh)?;
     let rules = Rules::new();
+    // The strain and the stress of a pair are found once at a point, in how many quadruples it may be.
+    let mut pairs: Vec<[usize; 2]> = Vec::new();
+    let mut number = |a: usize, b: usize| {
+        let pair = [a.min(b), a.max(b)];
+        pairs.iter().position(|other| *other == pair).unwrap_or_else(|| {
+            pairs.push(pair);
+            pairs.len() - 1
+        })
+    };
+    let products: Vec<[usize; 2]> = quadruples.iter().map(|[a, b, c, d]| [number(*a, *b), number(*c, *d)]).collect();
     let of_element = |e: usize| -> Vec<f64> {
         let relative = relative_displacements(fields, &mesh.elements()[e]);
         let mut gradients = Vec::with_capacity(fields.ncols());
+        let mut of_pairs = Vec::with_capacity(pairs.len());
         let mut energies = vec![0.0; quadruples.len()];
         for point in rules.fine_points(&mesh.element_positions(e)) {
             displacement_gradients(&relative, &point, fields.ncols(), &mut gradients);
-            for (energy, [a, b, c, d]) in energies.iter_mut().zip(quadruples) {
-                let stress = stress(&materials[e], &second_strain(&gradients[*a], &gradients[*b]));
-                *energy += point.volume * stress.dot(&second_strain(&gradients[*c], &gradients[*d]));
+            of_pairs.clear();
+            of_pairs.extend(pairs.iter().map(|[a, b]| {
+                let strain = second_strain(&gradients[*a], &gradients[*b]);
+                (strain, stress(&materials[e], &strain) * point.volume)
+            }));
+            for (energy, [first, second]) in energies.iter_mut().zip(&products) {
+                *energy += of_pairs[*first].1.dot(&of_pairs[*second].0);
             }
         }
         energies
@@ -116,14 +132,20 @@ pub fn second_order_energies(
     Ok(sums)
 }
 
-/// Forces (N×outputs) whose virtual work is `Σ ∫ ∇v : P dV`; `forces` gives the `outputs` matrices P of a point from the
-/// gradients of the fields there.
+/// The fields at a point: ∇u and C:ε(u) of each.
+struct Deformation {
+    gradients: Vec<Matrix3<f64>>,
+    stresses: Vec<Matrix3<f64>>,
+}
+
+/// Forces (N×outputs) whose virtual work is `Σ ∫ ∇v : P dV`; `forces` gives the `outputs` matrices P of a point, which are
+/// products of two gradients, from the fields there.
 fn element_forces(
     mesh: &Mesh,
     materials: &Materials,
     fields: MatRef<'_, f64>,
     outputs: usize,
-    forces: impl Fn(&[Matrix3<f64>], &Material, &mut Vec<Matrix3<f64>>) + Sync,
+    forces: impl Fn(&Deformation, &Material, &mut Vec<Matrix3<f64>>) + Sync,
 ) -> Result<Mat<f64>, AssemblyError> {
     check_field(mesh, "fields", fields)?;
     let materials = materials.of_elements(mesh)?;
@@ -131,16 +153,20 @@ fn element_forces(
     // By output, then node but the first.
     let of_element = |e: usize| -> Vec<Vector3<f64>> {
         let relative = relative_displacements(fields, &mesh.elements()[e]);
-        let mut gradients = Vec::with_capacity(fields.ncols());
+        let mut fields_here = Deformation { gradients: Vec::new(), stresses: Vec::new() };
         let mut matrices = Vec::with_capacity(outputs);
         let mut sums = vec![Vector3::zeros(); outputs * OTHERS];
-        for point in rules.fine_points(&mesh.element_positions(e)) {
-            displacement_gradients(&relative, &point, fields.ncols(), &mut gradients);
+        for point in rules.cubic_points(&mesh.element_positions(e)) {
+            let Deformation { gradients, stresses } = &mut fields_here;
+            displacement_gradients(&relative, &point, fields.ncols(), gradients);
+            stresses.clear();
+            stresses.extend(gradients.iter().map(|gradient| stress(&materials[e], &strain(gradient))));
             matrices.clear();
-            forces(&gradients, &materials[e], &mut matrices);
+            forces(&fields_here, &materials[e], &mut matrices);
             for (sums, matrix) in sums.chunks_exact_mut(OTHERS).zip(&matrices) {
+                let matrix = matrix * point.volume;
                 for (sum, gradient) in sums.iter_mut().zip(&point.gradients[1..]) {
-                    *sum += matrix * Vector3::from(*gradient) * point.volume;
+                    *sum += matrix * Vector3::from(*gradient);
                 }
             }
         }
@@ -163,38 +189,4 @@ fn element_forces(
         }
     }
     Ok(result)
-}
-
-/// ∇u of each field at a point, `(∇u)_ab = ∂u_a/∂x_b`. `relative` is by node, then axis, then field.
-pub(crate) fn displacement_gradients(
-    relative: &[f64],
-    point: &IntegrationPoint,
-    count: usize,
-    out: &mut Vec<Matrix3<f64>>,
-) {
-    out.clear();
-    out.resize(count, Matrix3::zeros());
-    for (node, gradient) in point.gradients[1..].iter().enumerate() {
-        for axis in 0..3 {
-            let of_fields = &relative[(3 * node + axis) * count..(3 * node + axis + 1) * count];
-            for (sum, u) in out.iter_mut().zip(of_fields) {
-                for b in 0..3 {
-                    sum[(axis, b)] += u * gradient[b];
-                }
-            }
-        }
-    }
-}
-
-pub(crate) fn strain(gradient: &Matrix3<f64>) -> Matrix3<f64> {
-    0.5 * (gradient + gradient.transpose())
-}
-
-pub(crate) fn second_strain(a: &Matrix3<f64>, b: &Matrix3<f64>) -> Matrix3<f64> {
-    strain(&(a.transpose() * b))
-}
-
-pub(crate) fn stress(material: &Material, strain: &Matrix3<f64>) -> Matrix3<f64> {
-    let (lambda, mu) = material.lame();
-    lambda * strain.trace() * Matrix3::identity() + 2.0 * mu * strain
 }

@@ -18,12 +18,11 @@ use nalgebra::Matrix3;
 use rayon::prelude::*;
 
 use crate::assembly::Incidence;
+use crate::deformation::{check_field, displacement_gradients, relative_displacements, second_strain, strain, stress};
 use crate::error::AssemblyError;
-use crate::geometric_stiffness::{check_field, relative_displacements};
 use crate::integration::{IntegrationPoint, Rules};
 use crate::material::{Material, Materials};
 use crate::mesh::Mesh;
-use crate::second_order::{displacement_gradients, second_strain, strain, stress};
 use crate::shape::{NODES, shape_gradients};
 
 pub use error_estimate::StressError;

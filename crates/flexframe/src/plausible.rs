@@ -40,8 +40,7 @@ fn of_material(material: &Material, of: &str, units: &Units) -> Vec<String> {
     let labels = UnitLabels::from(units);
     let Units { length, mass, .. } = units;
     let stress = (material.young_modulus, [-1, 1, -2], "Pa", YOUNG_MODULI, 2.1e11, "Young's modulus", labels.stress());
-    let density =
-        (material.density, [-3, 1, 0], "kg/m³", DENSITIES, 7850.0, "density", format!("{mass}/{length}³"));
+    let density = (material.density, [-3, 1, 0], "kg/m³", DENSITIES, 7850.0, "density", format!("{mass}/{length}³"));
     let doubt = |(value, powers, si, [least, most], steel, name, unit): (f64, _, _, [f64; 2], f64, _, String)| {
         let factor = 10_f64.powi(labels.tens(powers)?);
         let in_si = value * factor;

@@ -19,7 +19,7 @@ use crate::symmetric;
 impl ConservativeBody {
     /// Turns `e.acceleration` from the whole of p' into the q̈ that there would be without ω'.
     fn without_spin_rate(&self, driven_acceleration: f64, e: &mut Evaluation) {
-        let nf = self.extended();
+        let nf = self.coordinates();
         // Ḋ q̇ + S_ext' ω + b' v + b v', by −; then μ.
         let change = &mut e.change;
         change.fill(0.0);
@@ -32,19 +32,18 @@ impl ConservativeBody {
             return;
         };
         e.curvature.fill(0.0);
-        manifold.add_curvature(&e.place, &e.modal_velocity, &mut e.curvature);
-        change.iter_mut().zip(&e.curvature).for_each(|(c, curvature)| *c -= curvature);
+        manifold.add_curvature(&e.place, &mut e.curvature);
+        manifold.subtract_mass_of_products(&e.curvature, change);
         manifold.add_projection(&e.place, change, &mut e.acceleration);
-        change.copy_from_slice(&e.velocity);
-        self.add_rigid_momenta(&e.products[..self.s_rows], &e.spin, e.driven_speed, change);
-        change.iter_mut().for_each(|mu| *mu = -*mu);
-        manifold.add_projected_rate(&e.place, change, &mut e.acceleration);
+        let negative = &mut change[e.modal_velocity.len()..];
+        negative.iter_mut().zip(&e.momenta_of_products).for_each(|(negative, mu)| *negative = -mu);
+        manifold.add_projected_rate(&e.place, negative, &mut e.acceleration);
         manifold.solve(&e.place, &mut e.acceleration);
     }
 
     /// Turns `e.acceleration` from the whole of p' into q̈, and gives the rate of the spin. `e` has the rates of the state.
     pub(crate) fn accelerate(&self, driven_acceleration: f64, e: &mut Evaluation) -> Result<Vector3<f64>, RateError> {
-        let (modes, nf) = (self.flexible(), self.extended());
+        let (modes, nf) = (self.flexible(), self.coordinates());
         self.without_spin_rate(driven_acceleration, e);
         let spin_rate = if self.turn_driven {
             Vector3::new(driven_acceleration, 0.0, 0.0)
@@ -64,16 +63,13 @@ impl ConservativeBody {
         Ok(spin_rate)
     }
 
-    /// J' = 2 (c_ij + N_ij ξ)·ν − 2 (K_ij q)·q̇
+    /// J' = 2 (c_ij + N_ij z)·ż
     fn inertia_rate(&self, e: &Evaluation) -> Matrix3<f64> {
-        let n_q = e.products[self.s_rows..].chunks_exact(self.extended().max(1));
+        let n_q = e.products[self.s_rows..].chunks_exact(self.coordinates().max(1));
         let mut inertia_rate = Matrix3::zeros();
         for ((pair, first), n_q) in self.pairs.iter().zip(&self.first).zip(n_q) {
             let rate: f64 = first.iter().zip(n_q).zip(&e.velocity).map(|((c, n), v)| 2.0 * (c + n) * v).sum();
             symmetric::add(&mut inertia_rate, *pair, rate);
-        }
-        for (pair, k_q) in self.spin_stresses(&e.spin_stress) {
-            symmetric::add(&mut inertia_rate, *pair, -2.0 * dot(k_q, &e.modal_velocity));
         }
         inertia_rate
     }
@@ -86,7 +82,7 @@ impl ConservativeBody {
         }
     }
 
-    /// Puts ν' of q̈ into `e.change`, in the extended shapes.
+    /// Puts z̈ of q̈ into `e.change`.
     pub(crate) fn extend_acceleration(&self, e: &mut Evaluation) {
         match &self.manifold {
             Some(manifold) => {
@@ -107,7 +103,7 @@ impl ConservativeBody {
         moment: f64,
         e: &mut Evaluation,
     ) {
-        let (speed, nf) = (e.driven_speed, self.extended());
+        let (speed, nf) = (e.driven_speed, self.coordinates());
         for (k, rate) in e.acceleration.iter_mut().enumerate() {
             *rate = e.momentum[k] + self.linear_rate(k, q[k], p[k]);
         }

@@ -29,8 +29,9 @@
 //! order, where the strain energy has terms of its own size against it. Of the spin alone, its parts between a large mode
 //! and another act on ξ, which is of third order.
 //!
-//! With large deflection all constants are those of the extended shapes, with coordinates ξ(q) and their slopes D on a
-//! curved manifold ([`Manifold`]):
+//! With large deflection the equations are those of the extended shapes, with coordinates ξ(q) and their slopes D on a
+//! curved manifold ([`Manifold`]). The constants are those of the coordinates z by which ξ = E z, the modes and the products
+//! of the large ones; D is E ∂z/∂q:
 //!
 //! ```text
 //! S = Dᵀ S_ext(ξ),  M = DᵀD:      p = M q̇ + S ω,   π = J(ξ) ω + Sᵀ q̇,   ν = D q̇,   μ = ν + S_ext ω
@@ -46,7 +47,7 @@ use modal::ReducedBody;
 use nalgebra::{Matrix3, Vector3};
 use rigid_kin::{Attitude, f_inverse, transformation_matrix};
 
-use crate::column_major::{columns, dot, multiply, multiply_top};
+use crate::column_major::{columns, dot, multiply};
 use crate::effect::{Effect, EffectMap};
 use crate::error::{RateError, SetupError, StepError};
 use crate::initial::Initial;
@@ -108,15 +109,12 @@ pub struct ConservativeBody {
     pub(crate) s_rows: usize,
     /// Rows of the G_i: as those of S, or none without Coriolis terms.
     pub(crate) g_rows: usize,
-    /// Column by column, G_i and N_ij one below another.
+    /// Column by column, G_i and N_ij, less by K_ij, one below another.
     stacked: Vec<f64>,
     /// Largest N_ij and G_i that couple each mode to itself and its like (nf).
     pub(crate) own_coupling: Vec<[f64; 2]>,
     /// K of a unit acceleration of what is driven in the modes, column by column, or empty.
     pub(crate) drive_stiffness: Vec<f64>,
-    /// The parts of K_ij between modes that are not large, on a manifold: column by column, one below another. All others
-    /// are in `stacked`, where N_ij is less by them.
-    spin_stiffness: Vec<f64>,
     loads: Vec<SharedLoad>,
     /// Of a body with large modes.
     pub(crate) manifold: Option<Manifold>,
@@ -155,11 +153,15 @@ pub(crate) struct Evaluation {
     pub gyroscopic: Vec<f64>,
     /// q̇ (nf).
     pub modal_velocity: Vec<f64>,
-    /// ξ and ν in the extended shapes: q and q̇ but on a manifold.
-    pub extended: Vec<f64>,
+    /// z and ż: q and q̇ but on a manifold.
+    pub coordinates: Vec<f64>,
     pub velocity: Vec<f64>,
-    /// Forces in the extended shapes, on a manifold.
+    /// On a manifold, ξ, ν and ν' in the extended shapes, and forces there and on z.
+    pub in_shapes: [Vec<f64>; 3],
+    force_in_shapes: Vec<f64>,
     force: Vec<f64>,
+    /// Momenta of the products in z.
+    pub momenta_of_products: Vec<f64>,
     /// The place on the manifold, and there S and M⁻¹S (a row for each axis) and b of a driven translation.
     pub place: ManifoldPoint,
     pub s: Vec<f64>,
@@ -168,12 +170,10 @@ pub(crate) struct Evaluation {
     /// q̈ and what it is made of.
     pub acceleration: Vec<f64>,
     pub change: Vec<f64>,
-    /// Ḋ q̇, on a manifold.
+    /// What z̈ has without q̈, on a manifold.
     pub curvature: Vec<f64>,
     /// K q of the stiffness of what is driven (nf).
     pub drive_stress: Vec<f64>,
-    /// K_ij q of the pairs on a manifold.
-    pub spin_stress: Vec<f64>,
     /// Angular velocity, one component for each axis.
     pub spin: Vector3<f64>,
     pub omega_body: Vector3<f64>,
@@ -242,10 +242,12 @@ impl ConservativeBody {
             _ => Vec::new(),
         };
         let pairs = if effects[Effect::DeformedInertia] && nf > 0 { pairs } else { Vec::new() };
-        let g_rows = if effects[Effect::Coriolis] { axes.len() * nf } else { 0 };
-        let s_rows = if effects[Effect::Coriolis] || turn_driven { axes.len() * nf } else { 0 };
+        let manifold = large_deflection.as_ref();
+        let size = manifold.map_or(nf, Manifold::size);
+        let g_rows = if effects[Effect::Coriolis] { axes.len() * size } else { 0 };
+        let s_rows = if effects[Effect::Coriolis] || turn_driven { axes.len() * size } else { 0 };
         let stiffness = body.stress_stiffness.as_ref().filter(|_| effects[Effect::GeometricStiffening]);
-        let stiffness = stiffness.map(|stiffness| SpinStiffness::new(stiffness, large_deflection.as_ref()));
+        let stiffness = stiffness.map(|stiffness| SpinStiffness::new(stiffness, manifold));
         // Weights of the constants of PAIRS in those of a pair of axes.
         let weights = |(i, j): (usize, usize)| {
             ReducedBody::PAIRS.map(|(k, l)| {
@@ -253,45 +255,51 @@ impl ConservativeBody {
                 if k == l { product } else { product + axes[i][l] * axes[j][k] }
             })
         };
-        let gyroscopic = |axis: usize, i: usize, j: usize| {
-            axes[axis].iter().zip(&body.gyroscopic).map(|(a, g)| a * g[(i, j)]).sum::<f64>()
+        let on_coordinates = |matrix: Mat<f64>| match manifold.map(Manifold::shapes_by_coordinates) {
+            Some(e) => e.transpose() * matrix * e,
+            None => matrix,
+        };
+        let gyroscopic = |axis: &Vector3<f64>| {
+            on_coordinates(Mat::from_fn(nf, nf, |i, j| {
+                axis.iter().zip(&body.gyroscopic).map(|(a, g)| a * g[(i, j)]).sum()
+            }))
         };
         let of = |matrices: &[Mat<f64>; 6], weights: &[f64; 6], i: usize, j: usize| -> f64 {
             matrices.iter().zip(weights).map(|(m, w)| w * m[(i, j)]).sum()
         };
         let pair_weights: Vec<[f64; 6]> = pairs.iter().map(|pair| weights(*pair)).collect();
-        let second = |weights: &[f64; 6], i: usize, j: usize| {
-            of(&body.inertia_second, weights, i, j)
-                - stiffness.as_ref().map_or(0.0, |stiffness| of(&stiffness.on_shapes, weights, i, j))
-        };
-        let mut stacked = Vec::with_capacity((g_rows + pairs.len() * nf) * nf);
-        for j in 0..nf {
-            for axis in 0..g_rows.checked_div(nf).unwrap_or(0) {
-                stacked.extend((0..nf).map(|i| gyroscopic(axis, i, j)));
-            }
-            for weights in &pair_weights {
-                stacked.extend((0..nf).map(|i| second(weights, i, j)));
-            }
-        }
-        let mut spin_stiffness = Vec::new();
-        if let Some(on_modes) = stiffness.as_ref().and_then(|stiffness| stiffness.on_modes.as_ref()) {
-            for j in 0..modes.flexible() {
-                for weights in &pair_weights {
-                    spin_stiffness.extend((0..modes.flexible()).map(|i| of(on_modes, weights, i, j)));
+        let second = |weights: &[f64; 6]| {
+            let mut second = on_coordinates(Mat::from_fn(nf, nf, |i, j| {
+                of(&body.inertia_second, weights, i, j)
+                    - stiffness.as_ref().map_or(0.0, |stiffness| of(&stiffness.on_shapes, weights, i, j))
+            }));
+            if let Some(on_modes) = stiffness.as_ref().and_then(|stiffness| stiffness.on_modes.as_ref()) {
+                for (i, j) in (0..modes.flexible()).flat_map(|j| (0..modes.flexible()).map(move |i| (i, j))) {
+                    second[(i, j)] -= of(on_modes, weights, i, j);
                 }
             }
-        }
-        let mut coupling = own_coupling(&body.circular_frequencies, &stacked, g_rows);
-        let of_stress = own_coupling(&modes.circular_frequencies, &spin_stiffness, 0);
-        coupling.iter_mut().zip(of_stress).for_each(|(sum, stress)| sum[0] += stress[0]);
+            second
+        };
+        let turning = if g_rows > 0 { &axes[..] } else { &[] };
+        let mut matrices: Vec<Mat<f64>> = turning.iter().map(gyroscopic).collect();
+        matrices.extend(pair_weights.iter().map(second));
+        let stacked: Vec<f64> =
+            (0..size).flat_map(|j| matrices.iter().flat_map(move |matrix| matrix.col(j).iter().copied())).collect();
+        let coupling = own_coupling(&modes.circular_frequencies, size, &stacked, g_rows);
+        // Eᵀ of a list.
+        let list_on_coordinates = |list: Vec<f64>| match manifold.map(Manifold::shapes_by_coordinates) {
+            Some(e) => e.col_iter().map(|column| column.iter().zip(&list).map(|(e, x)| e * x).sum()).collect(),
+            None => list,
+        };
         let first = pair_weights
             .iter()
             .map(|weights| {
-                (0..nf).map(|k| weights.iter().zip(&body.inertia_first).map(|(w, c)| w * c[k]).sum()).collect()
+                let of_shape = |k: usize| weights.iter().zip(&body.inertia_first).map(|(w, c)| w * c[k]).sum();
+                list_on_coordinates((0..nf).map(of_shape).collect())
             })
             .collect();
         let along = |unit: &Vector3<f64>, of: &[Vec<f64>; 3]| -> Vec<f64> {
-            (0..nf).map(|k| (0..3).map(|i| unit[i] * of[i][k]).sum()).collect()
+            list_on_coordinates((0..nf).map(|k| (0..3).map(|i| unit[i] * of[i][k]).sum()).collect())
         };
         Ok(Self {
             mass: body.mass,
@@ -324,7 +332,6 @@ impl ConservativeBody {
             stacked,
             drive_stiffness: drive_stiffness
                 .map_or_else(Vec::new, |k| columns(k.get(..modes.flexible(), ..modes.flexible()))),
-            spin_stiffness,
             loads,
             manifold: large_deflection.clone(),
             held: Held::new(body, stiffness.as_ref(), effects),
@@ -334,6 +341,11 @@ impl ConservativeBody {
     /// Number of flexible modes nf.
     pub fn flexible(&self) -> usize {
         self.circular_frequencies.len()
+    }
+
+    /// Number of coordinates z: that of the modes, but on a manifold.
+    pub(crate) fn coordinates(&self) -> usize {
+        self.manifold.as_ref().map_or(self.flexible(), Manifold::size)
     }
 
     /// Number of extended shapes: that of the modes, but on a manifold.
@@ -349,11 +361,11 @@ impl ConservativeBody {
     /// Numbers in the matrices that an evaluation reads: what an effect that is off does not cost.
     pub fn matrix_entries(&self) -> usize {
         let of_loads: usize = self.loads.iter().map(|load| load.matrix_entries()).sum();
-        self.stacked.len() + self.spin_stiffness.len() + self.drive_stiffness.len() + of_loads
+        self.stacked.len() + self.drive_stiffness.len() + of_loads
     }
 
     pub(crate) fn evaluation(&self) -> Evaluation {
-        let (modes, nf) = (self.flexible(), self.extended());
+        let (modes, nf) = (self.flexible(), self.coordinates());
         let zeros = |n: usize| vec![0.0; n];
         let on_manifold = |n: usize| if self.manifold.is_some() { zeros(n) } else { Vec::new() };
         let s_axes = self.s_rows.checked_div(nf).unwrap_or(0);
@@ -364,9 +376,12 @@ impl ConservativeBody {
             products: zeros(self.s_rows + self.pairs.len() * nf),
             gyroscopic: zeros(self.g_rows),
             modal_velocity: zeros(modes),
-            extended: zeros(nf),
+            coordinates: zeros(nf),
             velocity: zeros(nf),
+            in_shapes: std::array::from_fn(|_| on_manifold(self.extended())),
+            force_in_shapes: on_manifold(self.extended()),
             force: on_manifold(nf),
+            momenta_of_products: on_manifold(nf - modes),
             acceleration: zeros(modes),
             change: zeros(nf),
             curvature: on_manifold(nf),
@@ -375,7 +390,6 @@ impl ConservativeBody {
             solved_s: on_manifold(s_axes * modes),
             modal_sliding: if self.sliding.is_empty() { Vec::new() } else { on_manifold(modes) },
             drive_stress: zeros(if self.drive_stiffness.is_empty() { 0 } else { modes }),
-            spin_stress: zeros(if self.spin_stiffness.is_empty() { 0 } else { self.pairs.len() * modes }),
             spin: Vector3::zeros(),
             omega_body: Vector3::zeros(),
             driven_speed: 0.0,
@@ -403,16 +417,25 @@ impl ConservativeBody {
             *w = if self.turn_driven { speed } else { axis.dot(&initial.omega) };
         }
         self.extend_rate(&initial.modal_velocity, &mut e);
-        let mut mu = e.velocity.clone();
         let mut pi: Vector3<f64> = e.inertia * spin;
-        for (i, s) in e.products[..self.s_rows].chunks_exact(self.extended().max(1)).enumerate() {
+        for (i, s) in e.products[..self.s_rows].chunks_exact(self.coordinates().max(1)).enumerate() {
             pi[i] += dot(s, &e.velocity);
         }
+        let mut mu = match &self.manifold {
+            Some(manifold) => {
+                let Evaluation { velocity, in_shapes: [_, in_shapes, _], .. } = &mut e;
+                manifold.in_shapes(velocity, in_shapes);
+                let mut mu = vec![0.0; velocity.len()];
+                manifold.add_from_shapes(in_shapes, &mut mu);
+                mu
+            }
+            None => e.velocity.clone(),
+        };
         self.add_rigid_momenta(&e.products[..self.s_rows], &spin, speed, &mut mu);
         let momentum = match &self.manifold {
             Some(manifold) => {
                 let mut momentum = vec![0.0; self.flexible()];
-                manifold.project(&e.place, &mu, &mut momentum);
+                manifold.add_projection(&e.place, &mu, &mut momentum);
                 momentum
             }
             None => mu,
@@ -491,30 +514,26 @@ impl ConservativeBody {
         })
     }
 
-    /// q̇ and ν.
+    /// q̇ and ż.
     fn extend_rate(&self, rate: &[f64], e: &mut Evaluation) {
         e.modal_velocity.copy_from_slice(rate);
         match &self.manifold {
-            Some(manifold) => {
-                manifold.go_along(rate, &mut e.place);
-                manifold.extend(&e.place, rate, &mut e.velocity);
-            }
+            Some(manifold) => manifold.go_along(rate, &mut e.place, &mut e.velocity),
             None => e.velocity.copy_from_slice(rate),
         }
     }
 
-    /// ξ, S_ext(ξ), N_ij ξ, K q, K_ij q and J.
+    /// z, and there S, N_ij, K q and J.
     fn deform(&self, q: &[f64], e: &mut Evaluation) {
         match &self.manifold {
-            Some(manifold) => manifold.go(q, &mut e.place, &mut e.extended),
-            None => e.extended.copy_from_slice(q),
+            Some(manifold) => manifold.go(q, &mut e.place, &mut e.coordinates),
+            None => e.coordinates.copy_from_slice(q),
         }
         if !self.drive_stiffness.is_empty() {
             multiply(&self.drive_stiffness, q.len(), q, &mut e.drive_stress);
         }
-        multiply(&self.spin_stiffness, e.spin_stress.len(), q, &mut e.spin_stress);
-        let modes = q;
-        let q = &e.extended;
+        let modes = q.len();
+        let q = &e.coordinates;
         let nf = q.len();
         if !self.stacked.is_empty() {
             let rows = self.g_rows + self.pairs.len() * nf;
@@ -538,21 +557,18 @@ impl ConservativeBody {
             let change: f64 = first.iter().zip(n_q).zip(q).map(|((c, n), q)| (2.0 * c + n) * q).sum();
             symmetric::add(&mut inertia, *pair, change);
         }
-        for (pair, k_q) in self.spin_stresses(&e.spin_stress) {
-            symmetric::add(&mut inertia, *pair, -dot(k_q, modes));
-        }
         e.inertia = inertia;
         e.locked_inertia = inertia;
         let (s, solved_s, size) = match &self.manifold {
             Some(manifold) => {
-                let count = modes.len();
-                let on_modes = e.s.chunks_exact_mut(count.max(1)).zip(e.solved_s.chunks_exact_mut(count.max(1)));
+                let on_modes = e.s.chunks_exact_mut(modes.max(1)).zip(e.solved_s.chunks_exact_mut(modes.max(1)));
                 for (s, (on_modes, solved)) in s.chunks_exact(nf.max(1)).zip(on_modes) {
-                    manifold.project(&e.place, s, on_modes);
+                    on_modes.fill(0.0);
+                    manifold.add_projection(&e.place, s, on_modes);
                     solved.copy_from_slice(on_modes);
                     manifold.solve(&e.place, solved);
                 }
-                (&e.s[..], &e.solved_s[..], count)
+                (&e.s[..], &e.solved_s[..], modes)
             }
             None => (s, s, nf),
         };
@@ -561,14 +577,6 @@ impl ConservativeBody {
                 symmetric::add(&mut e.locked_inertia, (i, j), -dot(a, b));
             }
         }
-    }
-
-    /// The pairs of axes, each with its K_ij q of `stress`; none but on a manifold.
-    pub(crate) fn spin_stresses<'e>(
-        &'e self,
-        stress: &'e [f64],
-    ) -> impl Iterator<Item = (&'e (usize, usize), &'e [f64])> {
-        self.pairs.iter().zip(stress.chunks_exact(self.flexible().max(1)))
     }
 
     /// (J − SᵀS)⁻¹ x in the axes of rotation.
@@ -624,7 +632,7 @@ impl ConservativeBody {
         let turning = !self.axes.is_empty();
         let theta_rate =
             if turning { f_inverse(&theta, &e.omega_body).map_err(RateError::Turn)? } else { Vector3::zeros() };
-        // Forces in the extended shapes are gathered in a list that is put back below: nothing may fail in between.
+        // Forces on z are gathered in a list that is put back below: nothing may fail in between.
         let mut modal_force = std::mem::take(if self.manifold.is_some() { &mut e.force } else { &mut e.momentum });
         self.inertia_forces(e, &mut modal_force);
         let mut pi_rate = if self.axes.len() == 3 { pi.cross(&w) } else { Vector3::zeros() };
@@ -637,8 +645,17 @@ impl ConservativeBody {
             let first_attitude = attitude.global_to_body();
             let body_from_global =
                 if turning { transformation_matrix(&theta) * first_attitude } else { first_attitude };
+            self.find_in_shapes(e);
             let on_manifold = self.manifold.as_ref().map(|_| [q, &e.modal_velocity[..]]);
-            let coordinates = Coordinates { first: 6, displacement: &e.extended, velocity: &e.velocity, on_manifold };
+            let (xi, nu, on_shapes) = match &self.manifold {
+                Some(_) => {
+                    let [xi, nu, _] = &e.in_shapes;
+                    e.force_in_shapes.fill(0.0);
+                    (xi, nu, &mut e.force_in_shapes)
+                }
+                None => (&e.coordinates, &e.velocity, &mut modal_force),
+            };
+            let coordinates = Coordinates { first: 6, displacement: xi, velocity: nu, on_manifold };
             let motion = Kinematics {
                 time: t,
                 branch_time,
@@ -649,7 +666,7 @@ impl ConservativeBody {
                 coordinates,
                 unit: false,
             };
-            let mut applied = Applied::new(coordinates, Vector3::zeros(), &mut modal_force);
+            let mut applied = Applied::new(coordinates, Vector3::zeros(), on_shapes);
             if self.manifold.is_some() {
                 applied = applied.on_manifold(&mut e.momentum);
             }
@@ -666,9 +683,12 @@ impl ConservativeBody {
             }
             angular_impulse = body_from_global.tr_mul(&left);
             power += force.dot(&velocity);
+            if let Some(manifold) = &self.manifold {
+                manifold.add_from_shapes(&e.force_in_shapes, &mut modal_force);
+            }
         }
-        self.project_forces(q, speed, modal_force, e);
-        self.add_stress(driven_acceleration, e);
+        self.project_forces(speed, modal_force, e);
+        e.momentum.iter_mut().zip(&e.drive_stress).for_each(|(rate, k_q)| *rate += driven_acceleration * k_q);
         let mut dissipation = 0.0;
         if self.damped {
             for k in 0..q.len() {
@@ -708,7 +728,7 @@ impl ConservativeBody {
         }
     }
 
-    /// q̇ and ν, at the spin of `e`.
+    /// q̇ and ż, at the spin of `e`.
     fn velocities(&self, p: &[f64], speed: f64, e: &mut Evaluation) {
         let modes = p.len();
         let w = e.spin;
@@ -726,7 +746,8 @@ impl ConservativeBody {
             return;
         };
         if !self.sliding.is_empty() {
-            manifold.project(&e.place, &self.sliding, &mut e.modal_sliding);
+            e.modal_sliding.fill(0.0);
+            manifold.add_projection(&e.place, &self.sliding, &mut e.modal_sliding);
             e.displacement.iter_mut().zip(&e.modal_sliding).for_each(|(rate, b)| *rate -= b * speed);
         }
         for ((v, p), rate) in e.modal_velocity.iter_mut().zip(p).zip(&e.displacement) {
@@ -736,18 +757,17 @@ impl ConservativeBody {
         for ((rate, p), v) in e.displacement.iter_mut().zip(p).zip(&e.modal_velocity) {
             *rate = v - p;
         }
-        manifold.go_along(&e.modal_velocity, &mut e.place);
-        manifold.extend(&e.place, &e.modal_velocity, &mut e.velocity);
+        manifold.go_along(&e.modal_velocity, &mut e.place, &mut e.velocity);
     }
 
-    /// Σ ω_iω_j (c_ij + N_ij ξ) − Σ ω_i G_i ν
+    /// Σ ω_iω_j (c_ij + N_ij z) − Σ ω_i G_i ż
     fn inertia_forces(&self, e: &mut Evaluation, force: &mut [f64]) {
         let nf = force.len();
         let w = e.spin;
         let n_q = &e.products[self.s_rows..];
         force.fill(0.0);
         if self.g_rows > 0 {
-            multiply_top(&self.stacked, self.g_rows + self.pairs.len() * nf, &e.velocity, &mut e.gyroscopic);
+            multiply(&self.stacked, self.g_rows + self.pairs.len() * nf, &e.velocity, &mut e.gyroscopic);
             for (g, w) in e.gyroscopic.chunks_exact(nf.max(1)).zip(w.iter()) {
                 force.iter_mut().zip(g).for_each(|(rate, g)| *rate -= w * g);
             }
@@ -760,32 +780,41 @@ impl ConservativeBody {
         }
     }
 
-    /// Adds to p' what the stress of a drive does, and on a manifold that of the spin.
-    fn add_stress(&self, driven_acceleration: f64, e: &mut Evaluation) {
-        e.momentum.iter_mut().zip(&e.drive_stress).for_each(|(rate, k_q)| *rate += driven_acceleration * k_q);
-        for (pair, k_q) in self.spin_stresses(&e.spin_stress) {
-            let square = spin_product(&e.spin, *pair);
-            e.momentum.iter_mut().zip(k_q).for_each(|(rate, k_q)| *rate -= square * k_q);
-        }
-    }
-
-    /// p' without its linear part and damping: Dᵀ of the forces in the extended shapes, Ḋᵀμ and −∂V_n/∂q.
-    fn project_forces(&self, q: &[f64], speed: f64, mut force: Vec<f64>, e: &mut Evaluation) {
+    /// p' without its linear part and damping: Dᵀ of the forces on z, Ḋᵀμ and −∂V_n/∂q.
+    fn project_forces(&self, speed: f64, force: Vec<f64>, e: &mut Evaluation) {
         let Some(manifold) = &self.manifold else {
             e.momentum = force;
             return;
         };
         manifold.add_projection(&e.place, &force, &mut e.momentum);
-        let mu = &mut force;
-        mu.copy_from_slice(&e.velocity);
-        self.add_rigid_momenta(&e.products[..self.s_rows], &e.spin, speed, mu);
-        manifold.add_projected_rate(&e.place, mu, &mut e.momentum);
-        manifold.subtract_force(q, &mut e.momentum);
         e.force = force;
+        self.find_momenta_of_products(speed, e);
+        manifold.add_projected_rate(&e.place, &e.momenta_of_products, &mut e.momentum);
+        manifold.subtract_force(&e.place, &e.coordinates, &mut e.momentum);
     }
 
-    /// Adds S_ext ω + b v to ν, which makes it μ.
-    pub(crate) fn add_rigid_momenta(&self, s_ext: &[f64], spin: &Vector3<f64>, speed: f64, mu: &mut [f64]) {
+    /// μ of the products.
+    fn find_momenta_of_products(&self, speed: f64, e: &mut Evaluation) {
+        let Some(manifold) = &self.manifold else { return };
+        let momenta = &mut e.momenta_of_products;
+        let (modes, size) = (e.modal_velocity.len(), e.velocity.len());
+        manifold.momenta_of_products(&e.velocity, momenta);
+        for (s, w) in e.products[..self.s_rows].chunks_exact(size).zip(e.spin.iter()) {
+            momenta.iter_mut().zip(&s[modes..]).for_each(|(mu, s)| *mu += s * w);
+        }
+        momenta.iter_mut().zip(self.sliding.iter().skip(modes)).for_each(|(mu, b)| *mu += b * speed);
+    }
+
+    /// On a manifold, finds ξ and ν.
+    pub(crate) fn find_in_shapes(&self, e: &mut Evaluation) {
+        let Some(manifold) = &self.manifold else { return };
+        let [xi, nu, _] = &mut e.in_shapes;
+        manifold.in_shapes(&e.coordinates, xi);
+        manifold.in_shapes(&e.velocity, nu);
+    }
+
+    /// Adds S ω + b v.
+    fn add_rigid_momenta(&self, s_ext: &[f64], spin: &Vector3<f64>, speed: f64, mu: &mut [f64]) {
         for (s, w) in s_ext.chunks_exact(mu.len().max(1)).zip(spin.iter()) {
             mu.iter_mut().zip(s).for_each(|(mu, s)| *mu += s * w);
         }

@@ -39,13 +39,23 @@ impl ConservativeBody {
             Translation::Driven(direction) => global(direction) * driven_acceleration,
         };
         let position = get(&state.slow, part::POSITION);
-        let center = self.center.position_body(&e.extended);
+        self.extend_acceleration(e);
+        self.find_in_shapes(e);
+        if let Some(manifold) = &self.manifold {
+            manifold.in_shapes(&e.change, &mut e.in_shapes[2]);
+        }
+        let e = &*e;
+        let shapes = match &self.manifold {
+            Some(_) => e.in_shapes.each_ref().map(Vec::as_slice),
+            None => [&e.coordinates, &e.velocity, &e.change].map(Vec::as_slice),
+        };
+        let center = self.center.position_body(shapes[0]);
         out.time = state.time;
         out.attitude = state.attitude;
         out.origin_global = position;
         out.origin_acceleration_global = acceleration_of_origin;
         out.position_global = position + global(center);
-        out.velocity_global = velocity_of_origin + global(omega.cross(&center) + self.center.deformation(&e.velocity));
+        out.velocity_global = velocity_of_origin + global(omega.cross(&center) + self.center.deformation(shapes[1]));
         out.omega_body = omega;
         out.alpha_body = alpha;
         out.modal_displacement.clone_from(q);
@@ -54,14 +64,14 @@ impl ConservativeBody {
         out.strain_energy = strain;
         self.observe_momenta(state, e, out);
         let moved = position - self.origin;
-        self.extend_acceleration(e);
-        self.observe_reaction(state, &alpha, &state.attitude.to_body(&acceleration_of_origin), e, out);
+        let acceleration_body = state.attitude.to_body(&acceleration_of_origin);
+        self.observe_reaction(state, shapes, [&alpha, &acceleration_body], e, out);
         let to_global = state.attitude.global_to_body().transpose();
         let to_initial = initial_attitude.global_to_body().transpose();
         out.points.clear();
         out.points.extend(points.iter().map(|point| {
             let x = point.position_body();
-            let [u, v, a] = point.deformations([&e.extended, &e.velocity, &e.change]);
+            let [u, v, a] = point.deformations(shapes);
             let arm = x + u;
             PointMotion {
                 displacement: moved + (to_global * arm - to_initial * x),
@@ -77,18 +87,20 @@ impl ConservativeBody {
         Ok(())
     }
 
-    /// What holds the body does to it. `e` has all rates, ν' in `e.change`; accelerations are body components.
+    /// What holds the body does to it, at ξ, ν and ν' of the shapes. `e` has all rates; the accelerations, of the turning and
+    /// of the origin, are body components.
     fn observe_reaction(
         &self,
         state: &ConservativeState,
-        alpha: &Vector3<f64>,
-        acceleration_of_origin: &Vector3<f64>,
+        shapes: [&[f64]; 3],
+        [alpha, acceleration_of_origin]: [&Vector3<f64>; 2],
         e: &Evaluation,
         out: &mut Observation,
     ) {
         let Some(held) = &self.held else { return };
-        let (omega, center) = (e.omega_body, self.center.position_body(&e.extended));
-        let [center_rate, center_change] = [&e.velocity, &e.change].map(|of| self.center.deformation(of));
+        let [displacement, velocity, shape_acceleration] = shapes;
+        let (omega, center) = (e.omega_body, self.center.position_body(displacement));
+        let [center_rate, center_change] = [velocity, shape_acceleration].map(|of| self.center.deformation(of));
         let center_acceleration = acceleration_of_origin
             + alpha.cross(&center)
             + omega.cross(&omega.cross(&center))
@@ -100,9 +112,9 @@ impl ConservativeBody {
             acceleration: *acceleration_of_origin,
             center,
             center_acceleration,
-            displacement: &e.extended,
-            velocity: &e.velocity,
-            shape_acceleration: &e.change,
+            displacement,
+            velocity,
+            shape_acceleration,
             modal_displacement: &state.modal_displacement,
             modal_velocity: &e.modal_velocity,
         });

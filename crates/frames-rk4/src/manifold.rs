@@ -8,16 +8,30 @@
 //!
 //! The extended shapes Ψ_ext are the modes q of the motion and, after them, shapes that only follow: what a large mode
 //! draws in, twists or stretches. T, g and w are constants of the mesh ([`modal::SecondOrderShapes`]).
+//!
+//! The equations of motion are in coordinates z that hold ξ without a sum in the time loop: the modes, and the products m
+//! of the large ones.
+//!
+//! ```text
+//! z = (q, m),   m_jk = q_j q_k (j ≤ k)        ξ = E z,   E = [1 T'],   T'_jk = T_jk, and ½ T_jj of squares
+//! ∂z/∂q = [1; B],   B x = the products' rates at q̇ = x
+//! ```
+//!
+//! B has two entries in a row. A matrix A of the extended shapes, EᵀAE of these coordinates, is made once.
 
 use std::sync::Arc;
 
+use faer::Mat;
 use modal::{ReducedBody, SecondOrderShapes};
 
-use crate::column_major::dot;
+use crate::column_major::{columns, dot, multiply};
 use crate::error::SetupError;
 
 /// Most modes that may be large.
 pub const MOST_LARGE: usize = 8;
+
+/// Most products of them.
+const MOST_PAIRS: usize = MOST_LARGE * (MOST_LARGE + 1) / 2;
 
 /// The manifold that a body with large modes moves on.
 #[derive(Debug, Clone)]
@@ -31,21 +45,31 @@ struct Constants {
     modes: usize,
     /// Which of them are large.
     large: Vec<usize>,
-    /// T_jk (extended shapes), for j and then k of the large modes.
-    slopes: Vec<Vec<f64>>,
-    /// g_ijk and w_ijkl, symmetric.
-    cubic: Vec<f64>,
-    quartic: Vec<f64>,
+    /// Products j ≤ k of the large modes, numbered among these.
+    pairs: Vec<[usize; 2]>,
+    /// T', column by column (extended shapes × pairs).
+    shapes: Vec<f64>,
+    /// E, column by column (extended shapes × (modes + pairs)).
+    shapes_by_coordinates: Mat<f64>,
+    /// T'ᵀE, column by column (pairs × (modes + pairs)): rows of the mass of the products in z.
+    mass: Vec<f64>,
+    /// T_jk of the modes, by k column by column ((large modes j × modes) × large modes).
+    slopes: Vec<f64>,
+    /// What M leaves to the large modes beyond 1, by products, column by column (entries i ≥ j × pairs).
+    locked: Vec<f64>,
+    /// Of ∂V_n/∂q: ½ Σ g_ijk q_j q_k, then the ½ Σ w_ijkl q_k q_l for i ≥ j, by products, column by column.
+    forces: Vec<f64>,
 }
 
 /// The place on the manifold.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct ManifoldPoint {
-    /// Columns of T q for the large modes.
-    slopes: Vec<Vec<f64>>,
-    /// Columns of T q̇.
-    rates: Vec<Vec<f64>>,
-    /// Cholesky factor of what M leaves to the large modes, row by row.
+    /// The large ones of q and q̇.
+    displacement: [f64; MOST_LARGE],
+    rate: [f64; MOST_LARGE],
+    /// Columns of T q of the modes, for the large ones.
+    slopes: Vec<f64>,
+    /// Cholesky factor of what M leaves to the large modes: entries i ≥ j, row by row.
     factor: Vec<f64>,
 }
 
@@ -79,25 +103,57 @@ impl Manifold {
         let pair = |i: usize, j: usize| pairs.iter().position(|p| *p == [i.min(j), i.max(j)]).unwrap_or_default();
         // The energy of a pair of pairs, less what the shapes that follow relieve; symmetric in all four.
         let of_pairs = |a: usize, b: usize| energies[a * pairs.len() + b] - relief[(a, b)];
-        let quartic = (0..count.pow(4)).map(|index| {
-            let [i, j, k, l] = [0, 1, 2, 3].map(|digit| index / count.pow(digit) % count);
+        let quartic = |i: usize, j: usize, k: usize, l: usize| {
             [[i, j, k, l], [i, k, j, l], [i, l, j, k]]
                 .map(|[a, b, c, d]| 0.5 * (of_pairs(pair(a, b), pair(c, d)) + of_pairs(pair(c, d), pair(a, b))))
                 .iter()
                 .sum::<f64>()
                 / 3.0
-        });
-        let cubic = (0..count.pow(3)).map(|index| {
-            let [i, j, k] = [0, 1, 2].map(|digit| index / count.pow(digit) % count);
+        };
+        let cubic = |i: usize, j: usize, k: usize| {
             (cubic[(i, pair(j, k))] + cubic[(j, pair(i, k))] + cubic[(k, pair(i, j))]) / 3.0
-        });
-        let column = |index: usize| slopes.col(pair(index / count, index % count)).iter().copied().collect();
+        };
+        let mut forces = Vec::new();
+        for [k, l] in &pairs {
+            // A sum over all ordered pairs has the product twice, but for squares.
+            let twice = if k == l { 0.5 } else { 1.0 };
+            forces.extend((0..count).map(|i| twice * cubic(i, *k, *l)));
+            forces.extend(triangle(count).map(|[i, j]| twice * quartic(i, j, *k, *l)));
+        }
+        let extended = body.flexible();
+        let of_products = |i: usize, a: usize| {
+            let [j, k] = pairs[a];
+            if j == k { 0.5 * slopes[(i, a)] } else { slopes[(i, a)] }
+        };
+        let shapes_by_coordinates =
+            Mat::from_fn(extended, dynamic + pairs.len(), |i, a| match a.checked_sub(*dynamic) {
+                None => f64::from(u8::from(i == a)),
+                Some(a) => of_products(i, a),
+            });
+        let shapes = shapes_by_coordinates.get(.., *dynamic..);
+        let mass = columns((shapes.transpose() * &shapes_by_coordinates).as_ref());
+        let slope = |i: usize, j: usize, k: usize| slopes[(i, pair(j, k))];
+        let follow = |a: [usize; 2], b: [usize; 2]| -> f64 {
+            (*dynamic..extended).map(|i| slope(i, a[0], a[1]) * slope(i, b[0], b[1])).sum()
+        };
+        let mut locked = Vec::new();
+        for [j, k] in &pairs {
+            locked.extend(triangle(count).map(|[a, b]| {
+                let both = if j == k { 0.0 } else { follow([a, *k], [b, *j]) };
+                follow([a, *j], [b, *k]) + both
+            }));
+        }
+        let of_modes = (0..count).flat_map(|k| (0..count).map(move |j| [j, k]));
         Ok(Self(Arc::new(Constants {
+            slopes: of_modes.flat_map(|[j, k]| (0..*dynamic).map(move |i| slope(i, j, k))).collect(),
             modes: *dynamic,
             large: large.clone(),
-            slopes: (0..count * count).map(column).collect(),
-            cubic: cubic.collect(),
-            quartic: quartic.collect(),
+            shapes: columns(shapes),
+            mass,
+            locked,
+            forces,
+            pairs,
+            shapes_by_coordinates,
             body,
         })))
     }
@@ -117,111 +173,140 @@ impl Manifold {
         &self.0.large
     }
 
-    /// T_jk (extended shapes) of large modes j and k, numbered among the large ones.
-    ///
-    /// # Panics
-    /// Where there are no such large modes.
-    pub fn slopes(&self, j: usize, k: usize) -> &[f64] {
-        &self.0.slopes[j * self.0.large.len() + k]
+    /// What a unit of q_j q_k adds to ξ, for each pair of large modes as in [`SecondOrderShapes::pairs`]: T', pair by pair.
+    pub fn of_products(&self) -> &[f64] {
+        &self.0.shapes
     }
 
     /// ξ(q) in the extended shapes, as many as the body has.
     pub fn coordinates(&self, q: &[f64], xi: &mut [f64]) {
-        let Constants { large, modes, slopes, .. } = &*self.0;
+        let Constants { large, pairs, modes, shapes, .. } = &*self.0;
         xi[..*modes].copy_from_slice(q);
         xi[*modes..].fill(0.0);
-        for (index, slope) in slopes.iter().enumerate() {
-            let product = 0.5 * q[large[index / large.len()]] * q[large[index % large.len()]];
-            xi.iter_mut().zip(slope).for_each(|(xi, slope)| *xi += slope * product);
+        for ([j, k], shape) in pairs.iter().zip(shapes.chunks_exact(xi.len().max(1))) {
+            let product = q[large[*j]] * q[large[*k]];
+            xi.iter_mut().zip(shape).for_each(|(xi, shape)| *xi += shape * product);
         }
     }
 
-    fn extended(&self) -> usize {
-        self.0.body.flexible()
+    /// Number of coordinates z.
+    pub(crate) fn size(&self) -> usize {
+        self.0.modes + self.0.pairs.len()
+    }
+
+    /// E, by which ξ = E z.
+    pub(crate) fn shapes_by_coordinates(&self) -> &Mat<f64> {
+        &self.0.shapes_by_coordinates
     }
 
     pub(crate) fn place(&self) -> ManifoldPoint {
-        let count = self.0.large.len();
-        let columns = || vec![vec![0.0; self.extended()]; count];
-        ManifoldPoint { slopes: columns(), rates: columns(), factor: vec![0.0; count * count] }
-    }
-
-    /// Goes to q: ξ, and the slopes there.
-    pub(crate) fn go(&self, q: &[f64], place: &mut ManifoldPoint, xi: &mut [f64]) {
         let Constants { large, modes, .. } = &*self.0;
-        self.columns(q, &mut place.slopes);
-        xi[..*modes].copy_from_slice(q);
-        xi[*modes..].fill(0.0);
-        for (j, column) in large.iter().zip(&place.slopes) {
-            xi.iter_mut().zip(column).for_each(|(xi, slope)| *xi += 0.5 * slope * q[*j]);
+        ManifoldPoint {
+            slopes: vec![0.0; large.len() * modes],
+            factor: vec![0.0; large.len() * (large.len() + 1) / 2],
+            ..ManifoldPoint::default()
         }
+    }
+
+    /// Goes to q: z there, and M.
+    pub(crate) fn go(&self, q: &[f64], place: &mut ManifoldPoint, z: &mut [f64]) {
+        let Constants { large, pairs, modes, slopes, locked, .. } = &*self.0;
+        let ManifoldPoint { displacement: x, slopes: at_q, factor, .. } = place;
+        large_of(large, q, x);
+        let (of_modes, products) = z.split_at_mut(*modes);
+        of_modes.copy_from_slice(q);
+        for (product, [j, k]) in products.iter_mut().zip(pairs) {
+            *product = x[*j] * x[*k];
+        }
+        multiply(slopes, at_q.len(), &x[..large.len()], at_q);
         // Of M, the modes that are not large leave to the large ones 1 + tᵀt of the shapes that only follow.
-        let count = large.len();
-        for i in 0..count {
+        multiply(locked, factor.len(), products, factor);
+        for i in 0..large.len() {
             for j in 0..=i {
-                let mut sum = f64::from(u8::from(i == j)) + dot(&place.slopes[i][*modes..], &place.slopes[j][*modes..]);
+                let mut sum = f64::from(u8::from(i == j)) + factor[entry(i, j)];
                 for k in 0..j {
-                    sum -= place.factor[i * count + k] * place.factor[j * count + k];
+                    sum -= factor[entry(i, k)] * factor[entry(j, k)];
                 }
-                place.factor[i * count + j] = if i == j { sum.sqrt() } else { sum / place.factor[j * count + j] };
+                factor[entry(i, j)] = if i == j { sum.sqrt() } else { sum / factor[entry(j, j)] };
             }
         }
     }
 
-    /// Σ_k T_jk x_k for each large mode j.
-    fn columns(&self, x: &[f64], columns: &mut [Vec<f64>]) {
-        let Constants { large, slopes, .. } = &*self.0;
-        for (column, slopes) in columns.iter_mut().zip(slopes.chunks_exact(large.len())) {
-            column.fill(0.0);
-            for (slope, k) in slopes.iter().zip(large) {
-                column.iter_mut().zip(slope).for_each(|(sum, slope)| *sum += slope * x[*k]);
-            }
-        }
+    /// Goes along with q̇: ż.
+    pub(crate) fn go_along(&self, rate: &[f64], place: &mut ManifoldPoint, z_rate: &mut [f64]) {
+        large_of(&self.0.large, rate, &mut place.rate);
+        self.extend(place, rate, z_rate);
     }
 
-    /// Goes along with q̇: the rates of the slopes.
-    pub(crate) fn go_along(&self, rate: &[f64], place: &mut ManifoldPoint) {
-        self.columns(rate, &mut place.rates);
-    }
-
-    /// D x of modal velocities or accelerations x (modes), in the extended shapes.
+    /// ∂z/∂q x of modal velocities or accelerations x.
     pub(crate) fn extend(&self, place: &ManifoldPoint, x: &[f64], out: &mut [f64]) {
-        out[..x.len()].copy_from_slice(x);
-        out[x.len()..].fill(0.0);
-        self.add_columns(&place.slopes, x, out);
-    }
-
-    /// Adds Ḋ q̇.
-    pub(crate) fn add_curvature(&self, place: &ManifoldPoint, rate: &[f64], out: &mut [f64]) {
-        self.add_columns(&place.rates, rate, out);
-    }
-
-    fn add_columns(&self, columns: &[Vec<f64>], x: &[f64], out: &mut [f64]) {
-        for (j, column) in self.0.large.iter().zip(columns) {
-            out.iter_mut().zip(column).for_each(|(out, slope)| *out += slope * x[*j]);
+        let Constants { large, pairs, modes, .. } = &*self.0;
+        let q = &place.displacement;
+        out[..*modes].copy_from_slice(x);
+        for (out, [j, k]) in out[*modes..].iter_mut().zip(pairs) {
+            *out = q[*j] * x[large[*k]] + q[*k] * x[large[*j]];
         }
     }
 
-    /// Dᵀ y of forces or momenta y in the extended shapes, on the modes.
-    pub(crate) fn project(&self, place: &ManifoldPoint, y: &[f64], out: &mut [f64]) {
-        out.fill(0.0);
-        self.add_projection(place, y, out);
+    /// Adds what z̈ has without q̈ to out, one number for each coordinate z.
+    pub(crate) fn add_curvature(&self, place: &ManifoldPoint, out: &mut [f64]) {
+        let Constants { pairs, modes, .. } = &*self.0;
+        for (out, [j, k]) in out[*modes..].iter_mut().zip(pairs) {
+            *out += 2.0 * place.rate[*j] * place.rate[*k];
+        }
     }
 
-    /// Adds Dᵀ y.
+    /// ξ or its rates, of z or its rates.
+    pub(crate) fn in_shapes(&self, z: &[f64], xi: &mut [f64]) {
+        let Constants { modes, shapes, .. } = &*self.0;
+        multiply(shapes, xi.len(), &z[*modes..], xi);
+        xi.iter_mut().zip(&z[..*modes]).for_each(|(xi, q)| *xi += q);
+    }
+
+    /// Adds the forces on z of forces in the extended shapes.
+    pub(crate) fn add_from_shapes(&self, force: &[f64], out: &mut [f64]) {
+        let Constants { modes, shapes, .. } = &*self.0;
+        let (of_modes, products) = out.split_at_mut(*modes);
+        of_modes.iter_mut().zip(force).for_each(|(out, f)| *out += f);
+        for (out, shape) in products.iter_mut().zip(shapes.chunks_exact(force.len().max(1))) {
+            *out += dot(shape, force);
+        }
+    }
+
+    /// Adds Dᵀ y of forces or momenta y on z, on the modes.
     pub(crate) fn add_projection(&self, place: &ManifoldPoint, y: &[f64], out: &mut [f64]) {
-        out.iter_mut().zip(y).for_each(|(out, y)| *out += y);
-        self.add_products(&place.slopes, y, out);
+        let (of_modes, products) = y.split_at(self.0.modes);
+        out.iter_mut().zip(of_modes).for_each(|(out, y)| *out += y);
+        self.add_products(&place.displacement, products, out);
     }
 
-    /// Adds Ḋᵀ y.
-    pub(crate) fn add_projected_rate(&self, place: &ManifoldPoint, y: &[f64], out: &mut [f64]) {
-        self.add_products(&place.rates, y, out);
+    /// Adds Ḋᵀ of momenta of the products.
+    pub(crate) fn add_projected_rate(&self, place: &ManifoldPoint, momenta: &[f64], out: &mut [f64]) {
+        self.add_products(&place.rate, momenta, out);
     }
 
-    fn add_products(&self, columns: &[Vec<f64>], y: &[f64], out: &mut [f64]) {
-        for (j, column) in self.0.large.iter().zip(columns) {
-            out[*j] += dot(column, y);
+    fn add_products(&self, x: &[f64; MOST_LARGE], of_products: &[f64], out: &mut [f64]) {
+        let Constants { large, pairs, .. } = &*self.0;
+        let mut sum = [0.0; MOST_LARGE];
+        for (y, [j, k]) in of_products.iter().zip(pairs) {
+            sum[*j] += y * x[*k];
+            sum[*k] += y * x[*j];
+        }
+        for (mode, sum) in large.iter().zip(sum) {
+            out[*mode] += sum;
+        }
+    }
+
+    /// The momenta of the products at these ż, without spin.
+    pub(crate) fn momenta_of_products(&self, z_rate: &[f64], momenta: &mut [f64]) {
+        multiply(&self.0.mass, momenta.len(), z_rate, momenta);
+    }
+
+    /// Subtracts the mass of z times z̈ that only the products have.
+    pub(crate) fn subtract_mass_of_products(&self, acceleration: &[f64], out: &mut [f64]) {
+        let products = &acceleration[self.0.modes..];
+        for (out, column) in out.iter_mut().zip(self.0.mass.chunks_exact(products.len().max(1))) {
+            *out -= dot(column, products);
         }
     }
 
@@ -229,59 +314,76 @@ impl Manifold {
     pub(crate) fn solve(&self, place: &ManifoldPoint, y: &mut [f64]) {
         let Constants { large, modes, .. } = &*self.0;
         let count = large.len();
+        let ManifoldPoint { slopes, factor, .. } = place;
         let mut x = [0.0; MOST_LARGE];
         // The slopes are zero along the large modes, so that these rows of y stay out of the products.
-        for (i, (mode, column)) in large.iter().zip(&place.slopes).enumerate() {
-            x[i] = y[*mode] - dot(&column[..*modes], y);
+        for ((x, mode), column) in x.iter_mut().zip(large).zip(slopes.chunks_exact(*modes)) {
+            *x = y[*mode] - dot(column, y);
         }
-        let factor = |i: usize, j: usize| place.factor[i * count + j];
         for i in 0..count {
-            x[i] = (x[i] - (0..i).map(|k| factor(i, k) * x[k]).sum::<f64>()) / factor(i, i);
+            x[i] = (x[i] - (0..i).map(|k| factor[entry(i, k)] * x[k]).sum::<f64>()) / factor[entry(i, i)];
         }
         for i in (0..count).rev() {
-            x[i] = (x[i] - (i + 1..count).map(|k| factor(k, i) * x[k]).sum::<f64>()) / factor(i, i);
+            x[i] = (x[i] - (i + 1..count).map(|k| factor[entry(k, i)] * x[k]).sum::<f64>()) / factor[entry(i, i)];
         }
-        for (x, column) in x.iter().zip(&place.slopes) {
-            y.iter_mut().zip(&column[..*modes]).for_each(|(y, slope)| *y -= slope * x);
+        for (x, column) in x.iter().zip(slopes.chunks_exact(*modes)) {
+            y.iter_mut().zip(column).for_each(|(y, slope)| *y -= slope * x);
         }
         for (x, mode) in x.iter().zip(large) {
             y[*mode] = *x;
         }
     }
 
-    /// Subtracts ∂V_n/∂q from modal forces.
-    pub(crate) fn subtract_force(&self, q: &[f64], force: &mut [f64]) {
-        let count = self.0.large.len();
-        let x = self.large_of(q);
-        let x = &x[..count];
-        for (i, mode) in self.0.large.iter().enumerate() {
-            let cubic = &self.0.cubic[i * count * count..(i + 1) * count * count];
-            let quartic = &self.0.quartic[i * count.pow(3)..(i + 1) * count.pow(3)];
-            force[*mode] -= 0.5 * (contract(cubic, x, 2) + contract(quartic, x, 3));
+    /// Subtracts ∂V_n/∂q from modal forces, at z.
+    pub(crate) fn subtract_force(&self, place: &ManifoldPoint, z: &[f64], force: &mut [f64]) {
+        let [cubic, quartic] = self.forces(&place.displacement, &z[self.0.modes..]);
+        for (mode, (cubic, quartic)) in self.0.large.iter().zip(cubic.iter().zip(quartic)) {
+            force[*mode] -= cubic + quartic;
         }
     }
 
     /// V_n: the strain energy beyond ½ qᵀΛq.
     pub fn energy(&self, q: &[f64]) -> f64 {
-        let count = self.0.large.len();
-        let x = self.large_of(q);
-        let x = &x[..count];
-        contract(&self.0.cubic, x, 3) / 6.0 + contract(&self.0.quartic, x, 4) / 8.0
+        let Constants { large, pairs, .. } = &*self.0;
+        let mut x = [0.0; MOST_LARGE];
+        large_of(large, q, &mut x);
+        let mut products = [0.0; MOST_PAIRS];
+        products.iter_mut().zip(pairs).for_each(|(product, [j, k])| *product = x[*j] * x[*k]);
+        let [cubic, quartic] = self.forces(&x, &products[..pairs.len()]);
+        // Of third and of fourth degree.
+        dot(&cubic, &x) / 3.0 + dot(&quartic, &x) / 4.0
     }
 
-    /// The large ones of q, then zeros.
-    fn large_of(&self, q: &[f64]) -> [f64; MOST_LARGE] {
-        let mut large = [0.0; MOST_LARGE];
-        large.iter_mut().zip(&self.0.large).for_each(|(x, k)| *x = q[*k]);
-        large
+    /// ∂V_n/∂q of third and of fourth order, by the large modes and their products.
+    fn forces(&self, x: &[f64; MOST_LARGE], products: &[f64]) -> [[f64; MOST_LARGE]; 2] {
+        let count = self.0.large.len();
+        let mut rows = [0.0; MOST_LARGE + MOST_PAIRS];
+        let rows = &mut rows[..count + products.len()];
+        multiply(&self.0.forces, rows.len(), products, rows);
+        let (of_third, of_fourth) = rows.split_at(count);
+        let [mut cubic, mut quartic] = [[0.0; MOST_LARGE]; 2];
+        cubic[..count].copy_from_slice(of_third);
+        for ([i, j], force) in triangle(count).zip(of_fourth) {
+            quartic[i] += force * x[j];
+            if i != j {
+                quartic[j] += force * x[i];
+            }
+        }
+        [cubic, quartic]
     }
 }
 
-/// Σ tensor_i…l x_i … x_l of a tensor of an `order`.
-fn contract(tensor: &[f64], x: &[f64], order: u32) -> f64 {
-    if order == 1 {
-        return dot(tensor, x);
-    }
-    let parts = tensor.chunks_exact(x.len().pow(order - 1));
-    parts.zip(x).map(|(part, x_i)| x_i * contract(part, x, order - 1)).sum()
+/// The entries i ≥ j of a triangle, row by row.
+fn triangle(size: usize) -> impl Iterator<Item = [usize; 2]> {
+    (0..size).flat_map(|i| (0..=i).map(move |j| [i, j]))
+}
+
+/// The large ones of q, then zeros.
+fn large_of(large: &[usize], q: &[f64], x: &mut [f64; MOST_LARGE]) {
+    x.iter_mut().zip(large).for_each(|(x, k)| *x = q[*k]);
+}
+
+/// Where a triangle row by row has the entry i ≥ j.
+fn entry(i: usize, j: usize) -> usize {
+    i * (i + 1) / 2 + j
 }

@@ -82,11 +82,14 @@ impl SupportReactions {
         match manifold {
             Some(manifold) => {
                 let mut place = manifold.place();
-                manifold.go(q, &mut place, &mut xi);
-                manifold.go_along(rate, &mut place);
-                manifold.extend(&place, rate, &mut nu);
-                manifold.extend(&place, &now.modal_acceleration, &mut change);
-                manifold.add_curvature(&place, rate, &mut change);
+                let [mut z, mut z_rate, mut z_change] = [(); 3].map(|()| vec![0.0; manifold.size()]);
+                manifold.go(q, &mut place, &mut z);
+                manifold.go_along(rate, &mut place, &mut z_rate);
+                manifold.extend(&place, &now.modal_acceleration, &mut z_change);
+                manifold.add_curvature(&place, &mut z_change);
+                for (of_z, of_shapes) in [(z, &mut xi), (z_rate, &mut nu), (z_change, &mut change)] {
+                    manifold.in_shapes(&of_z, of_shapes);
+                }
             }
             None => {
                 xi.copy_from_slice(q);

@@ -47,24 +47,24 @@ impl SecondOrderShapes {
 
 impl Solver<'_> {
     /// The shapes that follow the `large` ones of `modes`, which are numbered from 0 and ascend. `forces` are the g_jk
-    /// (N×pairs) of [`SecondOrderShapes::pairs`], `fem_tet10::second_order_forces`.
+    /// (N×pairs) of [`SecondOrderShapes::pairs`], `fem_tet10::second_order_forces`, and `answers` the
+    /// [`static_response`](Self::static_response) to them.
     ///
     /// # Errors
-    /// [`ModalError::Size`], [`ModalError::NotFinite`], and what refuses static answers.
+    /// [`ModalError::Size`], [`ModalError::NotFinite`].
     pub fn second_order_shapes(
         &self,
         modes: Modes,
         large: &[usize],
         forces: MatRef<'_, f64>,
+        answers: MatRef<'_, f64>,
     ) -> Result<SecondOrderShapes, ModalError> {
         let (size, dynamic) = (modes.shapes.nrows(), modes.shapes.ncols());
         let pairs = SecondOrderShapes::pairs(large.len());
-        if forces.ncols() != pairs.len() {
-            return Err(ModalError::Size {
-                what: "forces of second order",
-                expected: pairs.len(),
-                found: forces.ncols(),
-            });
+        for (what, found) in [("forces of second order", forces.ncols()), ("answers to them", answers.ncols())] {
+            if found != pairs.len() {
+                return Err(ModalError::Size { what, expected: pairs.len(), found });
+            }
         }
         if let Some(found) = large.last().copied().filter(|last| *last >= dynamic) {
             return Err(ModalError::Size {
@@ -73,9 +73,8 @@ impl Solver<'_> {
                 found: found + 1,
             });
         }
-        let answers = self.static_response(forces)?;
         memory::check("shapes of second order", of_vectors(size, 3 * (dynamic + pairs.len())))?;
-        let follow = self.beside(&modes, answers.as_ref(), DEPENDENT)?;
+        let follow = self.beside(&modes, answers, DEPENDENT)?;
         let extended = dynamic + follow.ncols();
         let shapes =
             Mat::from_fn(

@@ -8,7 +8,7 @@
 //! (inertia relief). The factor of K + sM preconditions: the spectrum is λ/(λ + s), between about a half and one.
 
 use faer::dyn_stack::MemBuffer;
-use faer::{Accum, Mat, MatRef, Scale};
+use faer::{Accum, Col, Mat, MatRef, Scale};
 
 use crate::error::ModalError;
 use crate::foretold::of_vectors;
@@ -95,27 +95,31 @@ impl Solver<'_> {
         let mut basis = Mat::zeros(expected, rigid + flexible);
         basis.as_mut().subcols_mut(0, rigid).copy_from(&self.rigid.shapes);
         basis.as_mut().subcols_mut(rigid, flexible).copy_from(&modes.shapes);
-        let mut m_basis = self.mass.product(basis.as_ref());
-        for answer in 0..answers.ncols() {
-            let mut shape = answers.subcols(answer, 1).to_owned();
-            let mut m_shape = self.mass.product(shape.as_ref());
-            let norm =
-                |shape: &Mat<f64>, m_shape: &Mat<f64>| tall::inner(shape.as_ref(), m_shape.as_ref())[(0, 0)].sqrt();
-            let whole = norm(&shape, &m_shape);
-            for _ in 0..2 {
-                let parts = tall::inner(m_basis.as_ref(), shape.as_ref());
-                tall::multiply(shape.as_mut(), Accum::Add, basis.as_ref(), parts.as_ref(), -1.0);
-            }
-            m_shape = self.mass.product(shape.as_ref());
-            let rest = norm(&shape, &m_shape);
-            if rest > least * whole {
-                for (matrix, column) in [(&mut basis, shape), (&mut m_basis, m_shape)] {
-                    let columns = matrix.ncols();
-                    matrix.resize_with(expected, columns + 1, |i, _| column[(i, 0)] / rest);
+        let m_basis = self.mass.product(basis.as_ref());
+        let mut rests = answers.to_owned();
+        let mut wholes: Vec<f64> = dots(&rests, &self.mass.product(answers)).into_iter().map(f64::sqrt).collect();
+        // What is left of an answer may be small: a second round takes out what rounding has left in it.
+        for _ in 0..2 {
+            let parts = tall::inner(m_basis.as_ref(), rests.as_ref());
+            tall::multiply(rests.as_mut(), Accum::Add, basis.as_ref(), parts.as_ref(), -1.0);
+            let m_rests = self.mass.product(rests.as_ref());
+            let mut unit: Vec<[Col<f64>; 2]> = Vec::with_capacity(rests.ncols());
+            for (k, whole) in wholes.iter().enumerate() {
+                let [mut rest, mut momentum] = [rests.col(k).to_owned(), m_rests.col(k).to_owned()];
+                for [other, m_other] in &unit {
+                    let part = Scale(m_other.transpose() * &rest);
+                    rest -= other * part;
+                    momentum -= m_other * part;
+                }
+                let norm = (rest.transpose() * &momentum).max(0.0).sqrt();
+                if norm > least * whole {
+                    unit.push([rest, momentum].map(|list| list * Scale(1.0 / norm)));
                 }
             }
+            rests = Mat::from_fn(expected, unit.len(), |i, j| unit[j][0][i]);
+            wholes = vec![1.0; unit.len()];
         }
-        Ok(basis.subcols(rigid + flexible, basis.ncols() - rigid - flexible).to_owned())
+        Ok(rests)
     }
 }
 

@@ -5,10 +5,9 @@ use nalgebra::Matrix3;
 use rayon::prelude::*;
 
 use super::{COMPONENTS, StressRecovery};
+use crate::deformation::{check_field, displacement_gradients, relative_displacements, strain, stress};
 use crate::error::AssemblyError;
-use crate::geometric_stiffness::{check_field, relative_displacements};
 use crate::material::Material;
-use crate::second_order::{displacement_gradients, strain, stress};
 use crate::shape::shape_functions;
 
 /// Strain energies of an element, or of a body: of its stress, and of the difference between its stress and the

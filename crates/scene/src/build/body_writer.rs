@@ -342,13 +342,7 @@ impl Named<'_> {
             "coordinates j <= k of the large modes, from 0",
             Numbers::U32(list),
         );
-        let products: Vec<f64> = pairs
-            .iter()
-            .flat_map(|[j, k]| {
-                let factor = if j == k { 0.5 } else { 1.0 };
-                manifold.slopes(*j, *k).iter().map(move |slope| factor * slope)
-            })
-            .collect();
+        let products = manifold.of_products().to_vec();
         let description = "what a unit of q_j q_k of each pair adds to the coordinates of the modes, the static shapes and the \
                            shapes that follow";
         let shape = [pairs.len(), manifold.body().flexible()];

@@ -5,6 +5,7 @@ use fem_tet10::GeometricTerms;
 use frames_rk4::Manifold;
 use modal::{Modes, SecondOrderShapes};
 
+use super::backbones::Derivatives;
 use super::error::{BuildError, modal};
 use super::mesh_model::MeshModel;
 use super::statics::Statics;
@@ -26,45 +27,59 @@ pub(super) struct LargeDeflection {
 /// The shapes of second order of the large modes.
 struct LargeShapes {
     shapes: SecondOrderShapes,
-    /// The geometric stiffness of each large mode in the modes (nf × nf): of its initial stress, and in full.
-    of_stress: Vec<Mat<f64>>,
-    in_full: Vec<Mat<f64>>,
+}
+
+/// The geometric stiffness of each large mode in the modes (nf × nf), with some of its terms.
+struct OfLarge {
+    terms: GeometricTerms,
+    stiffness: Vec<Mat<f64>>,
 }
 
 impl LargeDeflection {
-    /// Of some `large` ones of the modes. `stress_stiffness` (6 of nf × nf) is by the static answers to the spin.
+    /// Of some `large` ones of the modes, of which some `derivatives` are known. `of_spin` (6 of nf × nf) is the stress
+    /// stiffness by the static answers to the spin.
     pub fn new(
         model: &MeshModel<'_>,
         modes: &Modes,
         large: &[usize],
-        stress_stiffness: Option<&[Mat<f64>; 6]>,
+        derivatives: &Derivatives,
         statics: &Statics,
+        of_spin: Option<&[Mat<f64>; 6]>,
     ) -> Result<Self, BuildError> {
         let solver = model.solver;
-        let of_large = Mat::from_fn(modes.shapes.nrows(), large.len(), |i, j| modes.shapes[(i, large[j])]);
+        let of_large = columns_of(modes, large);
         let pairs = SecondOrderShapes::pairs(large.len());
-        let quadruples: Vec<[usize; 4]> =
-            pairs.iter().flat_map(|[i, j]| pairs.iter().map(move |[k, l]| [*i, *j, *k, *l])).collect();
-        let forces = solver.second_order_forces(of_large.as_ref(), &pairs)?;
-        let energies = solver.second_order_energies(of_large.as_ref(), &quadruples)?;
+        // The energy is the same with the pairs in each other's place.
+        let halves = (0..pairs.len()).flat_map(|a| (a..pairs.len()).map(move |b| [a, b]));
+        let quadruples: Vec<[usize; 4]> = halves
+            .clone()
+            .map(|[a, b]| {
+                let ([i, j], [k, l]) = (pairs[a], pairs[b]);
+                [i, j, k, l]
+            })
+            .collect();
+        let mut energies = vec![0.0; pairs.len() * pairs.len()];
+        for ([a, b], energy) in halves.zip(solver.second_order_energies(of_large.as_ref(), &quadruples)?) {
+            energies[a * pairs.len() + b] = energy;
+            energies[b * pairs.len() + a] = energy;
+        }
+        let [forces, answers] = second_order_forces(model, of_large.as_ref(), large, &pairs, derivatives)?;
         let squares: Vec<f64> = large.iter().map(|k| modes.eigenvalues[*k]).collect();
         if let Some((follower, pair)) = drawn_in(of_large.as_ref(), &squares, forces.as_ref(), &energies) {
             let others: Vec<usize> = large.iter().copied().filter(|k| *k != large[follower]).collect();
             if model.scene.modes.large.is_none() {
-                return Self::new(model, modes, &others, stress_stiffness, statics);
+                return Self::new(model, modes, &others, derivatives, statics, of_spin);
             }
             return Err(refuse_drawn_in(model, large[follower], pair.map(|j| large[j]), &others));
         }
-        let shapes = solver.second_order_shapes(modes.clone(), large, forces.as_ref())?;
-        let of_stress = solver.stress_stiffness(of_large.as_ref(), modes, GeometricTerms::InitialStress)?;
-        let in_full = solver.stress_stiffness(of_large.as_ref(), modes, GeometricTerms::All)?;
-        let large = LargeShapes { shapes, of_stress, in_full };
-        let extended = match (&statics.of_spin, stress_stiffness) {
-            (Some(of_spin), Some(k)) => {
-                let answer = |pair| of_spin.answers.subcols(pair, 1);
+        let shapes = solver.second_order_shapes(modes.clone(), large, forces.as_ref(), answers.as_ref())?;
+        let large = LargeShapes { shapes };
+        let extended = match (&statics.of_spin, of_spin) {
+            (Some(answers), Some(k)) => {
+                let of_large = large.stiffness(model, modes, GeometricTerms::All)?;
                 let mut of_pairs = Vec::with_capacity(k.len());
                 for (pair, k) in k.iter().enumerate() {
-                    of_pairs.push(large.extended(model, answer(pair), k, GeometricTerms::All)?);
+                    of_pairs.push(large.extended(model, answers.answers.subcols(pair, 1), k, &of_large)?);
                 }
                 of_pairs.try_into().ok()
             }
@@ -86,18 +101,35 @@ impl LargeDeflection {
         modes.shapes.get(.., *dynamic..).to_owned()
     }
 
-    /// The stress of loads and of a drive in the extended shapes.
-    pub fn stressed(&self, model: &MeshModel<'_>, statics: &Statics, mut stress: Stress) -> Result<Stress, BuildError> {
+    /// The stress of loads and of a drive in the extended shapes. `modes` are those of the motion.
+    pub fn stressed(
+        &self,
+        model: &MeshModel<'_>,
+        modes: &Modes,
+        statics: &Statics,
+        mut stress: Stress,
+    ) -> Result<Stress, BuildError> {
+        // What is computed is what the stress of some load or drive has.
+        let mut known: Vec<OfLarge> = Vec::new();
+        let mut extended = |answer: MatRef<'_, f64>, k: &Mat<f64>, terms: GeometricTerms| -> Result<_, BuildError> {
+            if !known.iter().any(|of_large| of_large.terms == terms) {
+                known.push(self.large.stiffness(model, modes, terms)?);
+            }
+            let of_large = known.iter().find(|of_large| of_large.terms == terms);
+            of_large.map(|of_large| self.large.extended(model, answer, k, of_large)).transpose()
+        };
         if let Some(of_loads) = &statics.of_loads {
             for (i, directed) in stress.of_loads.iter_mut().enumerate() {
                 for (j, directed) in directed.iter_mut().enumerate() {
                     let answer = of_loads.answers_to(i).subcols(j, 1);
-                    directed.stiffness = self.large.extended(model, answer, &directed.stiffness, directed.terms)?;
+                    if let Some(stiffness) = extended(answer, &directed.stiffness, directed.terms)? {
+                        directed.stiffness = stiffness;
+                    }
                 }
             }
         }
         if let (Some(answer), Some(k)) = (&statics.of_drive, stress.of_drive.take()) {
-            stress.of_drive = Some(self.large.extended(model, answer.as_ref(), &k, DRIVE)?);
+            stress.of_drive = extended(answer.as_ref(), &k, DRIVE)?;
         }
         Ok(stress)
     }
@@ -136,21 +168,50 @@ fn refuse_drawn_in(model: &MeshModel<'_>, follower: usize, [j, k]: [usize; 2], o
     model.scene.refuse("modes.large", found, "modes that bend or twist the body", cure).into()
 }
 
+/// Forces of second order of pairs of large modes, and the static answers to them; those that are known are not computed.
+fn second_order_forces(
+    model: &MeshModel<'_>,
+    of_large: MatRef<'_, f64>,
+    large: &[usize],
+    pairs: &[[usize; 2]],
+    derivatives: &Derivatives,
+) -> Result<[Mat<f64>; 2], BuildError> {
+    let known = |[j, k]: [usize; 2]| derivatives.of_mode(large[j]).filter(|_| j == k);
+    let missing: Vec<[usize; 2]> = pairs.iter().copied().filter(|pair| known(*pair).is_none()).collect();
+    let forces = model.solver.second_order_forces(of_large, &missing)?;
+    let answers = model.solver.static_response(forces.as_ref())?;
+    let mut found = [(); 2].map(|()| Mat::zeros(of_large.nrows(), pairs.len()));
+    let mut computed = forces.col_iter().zip(answers.col_iter());
+    for (column, pair) in pairs.iter().enumerate() {
+        let known = known(*pair).or_else(|| computed.next().map(|(force, answer)| [force, answer]));
+        for (all, one) in found.iter_mut().zip(known.into_iter().flatten()) {
+            all.col_mut(column).copy_from(one);
+        }
+    }
+    Ok(found)
+}
+
+fn columns_of(modes: &Modes, large: &[usize]) -> Mat<f64> {
+    Mat::from_fn(modes.shapes.nrows(), large.len(), |i, j| modes.shapes[(i, large[j])])
+}
+
 impl LargeShapes {
+    /// The geometric stiffness of each large mode in the `modes` of the motion.
+    fn stiffness(&self, model: &MeshModel<'_>, modes: &Modes, terms: GeometricTerms) -> Result<OfLarge, BuildError> {
+        let of_large = columns_of(modes, &self.shapes.large);
+        Ok(OfLarge { terms, stiffness: model.solver.stress_stiffness(of_large.as_ref(), modes, terms)? })
+    }
+
     /// The geometric stiffness `k` (nf × nf) of a static `answer` (3n × 1) in the extended shapes. Between two large modes
     /// it is zero, since the manifold has it. Between a large mode and another it is without that of the answer's parts along
-    /// the large modes, which are coordinates that move, with the same `terms`.
+    /// the large modes, which are coordinates that move, with the same terms.
     fn extended(
         &self,
         model: &MeshModel<'_>,
         answer: MatRef<'_, f64>,
         k: &Mat<f64>,
-        terms: GeometricTerms,
+        of_large: &OfLarge,
     ) -> Result<Mat<f64>, BuildError> {
-        let of_large = match terms {
-            GeometricTerms::InitialStress => &self.of_stress,
-            GeometricTerms::All => &self.in_full,
-        };
         let SecondOrderShapes { modes, large, dynamic, .. } = &self.shapes;
         let momentum = model.solver.mass_product(answer)?;
         let along: Vec<f64> = large
@@ -165,7 +226,7 @@ impl LargeShapes {
             match (large.contains(&a), large.contains(&b)) {
                 (true, true) => 0.0,
                 (false, false) => k[(a, b)],
-                _ => k[(a, b)] - along.iter().zip(of_large).map(|(part, of)| part * of[(a, b)]).sum::<f64>(),
+                _ => k[(a, b)] - along.iter().zip(&of_large.stiffness).map(|(part, of)| part * of[(a, b)]).sum::<f64>(),
             }
         }))
     }

@@ -4,6 +4,7 @@ use advice::{Advice, Backbone, Findings, advise};
 use frames_rk4::Effect;
 use modal::Modes;
 
+use super::backbones::Backbones;
 use super::decide::Decision;
 use super::error::BuildError;
 use super::manifold::LargeDeflection;
@@ -29,7 +30,8 @@ pub(super) struct Reduction {
 
 impl Reduction {
     pub fn new(model: &MeshModel<'_>, survey: Survey, decision: &Decision) -> Result<Self, BuildError> {
-        let Survey { modes, modal, statics, mut backbones, advice } = survey;
+        let Survey { modes, modal, statics, backbones, advice } = survey;
+        let Backbones { of_modes: mut backbones, derivatives } = backbones;
         let tolerance = model.scene.effects.tolerance;
         backbones.truncate(decision.keep);
         let stiffens = decision.effects[Effect::GeometricStiffening];
@@ -51,8 +53,9 @@ impl Reduction {
             for (k, backbone) in backbones.iter_mut().enumerate() {
                 *backbone = backbone.take().filter(|_| !large.contains(&k));
             }
-            let large = LargeDeflection::new(model, &modes, large, modal.body.stress_stiffness.as_ref(), &statics)?;
-            let stress = large.stressed(model, &statics, stress)?;
+            let of_spin = modal.body.stress_stiffness.as_ref();
+            let large = LargeDeflection::new(model, &modes, large, &derivatives, &statics, of_spin)?;
+            let stress = large.stressed(model, &modes, &statics, stress)?;
             let modal = modal.with_stress(model, Some(large.manifold.body()), large.modes(), &stress.of_loads)?;
             (modal, stress, Some(large))
         } else if stress.any() {

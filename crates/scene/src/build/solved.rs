@@ -270,6 +270,7 @@ impl Structure for Solved<'_> {
         modes: Modes,
         large: &[usize],
         forces: MatRef<'_, f64>,
+        answers: MatRef<'_, f64>,
     ) -> Result<SecondOrderShapes, BuildError> {
         let question = || {
             let question = with_modes(self.about_the_held_body("shapes of second order"), &modes);
@@ -278,7 +279,10 @@ impl Structure for Solved<'_> {
         self.ask(
             question,
             |kept| answers::second_order_shapes(kept, modes.clone(), large),
-            || self.solver()?.second_order_shapes(modes.clone(), large, forces).map_err(modal(&self.assembled.scene)),
+            || {
+                let shapes = self.solver()?.second_order_shapes(modes.clone(), large, forces, answers);
+                shapes.map_err(modal(&self.assembled.scene))
+            },
             answers::of_second_order_shapes,
         )
     }

@@ -34,12 +34,13 @@ pub(super) trait Structure {
     /// The modes, with shapes appended that make them span static answers (3n×k).
     fn with_static_shapes(&self, modes: Modes, answers: MatRef<'_, f64>) -> Result<Modes, BuildError>;
 
-    /// The shapes that follow large modes, by the forces of second order.
+    /// The shapes that follow large modes, by the forces of second order and the static answers to them.
     fn second_order_shapes(
         &self,
         modes: Modes,
         large: &[usize],
         forces: MatRef<'_, f64>,
+        answers: MatRef<'_, f64>,
     ) -> Result<SecondOrderShapes, BuildError>;
 
     /// The body in the coordinates of its modes.

@@ -1,10 +1,10 @@
 //! First stage: what is known of a body with all the modes that were searched for.
 
-use advice::{Advice, Backbone, Case, advise, screen};
+use advice::{Advice, Case, advise, screen};
 use frames_rk4::Effect;
 use modal::Modes;
 
-use super::backbones::backbones;
+use super::backbones::{Backbones, backbones};
 use super::error::BuildError;
 use super::mesh_model::MeshModel;
 use super::modal_model::ModalModel;
@@ -19,7 +19,7 @@ pub(super) struct Survey {
     /// With the stress stiffness of the spin where it may matter.
     pub modal: ModalModel,
     pub statics: Statics,
-    pub backbones: Vec<Option<Backbone>>,
+    pub backbones: Backbones,
     /// On all of the modes.
     pub advice: Advice,
 }
@@ -59,8 +59,8 @@ impl Survey {
         };
         let first = advise(&case, tolerance)?;
         let backbones = backbones(model, &modes, &first)?;
-        let advice = if backbones.iter().any(Option::is_some) {
-            advise(&Case { backbones: &backbones, ..case }, tolerance)?
+        let advice = if backbones.of_modes.iter().any(Option::is_some) {
+            advise(&Case { backbones: &backbones.of_modes, ..case }, tolerance)?
         } else {
             first
         };
