@@ -6,7 +6,7 @@ use flexframe::results::Results;
 use flexframe::run::{RunSettings, run};
 use flexframe::scene::{Effect, Scene};
 
-use crate::{build, repository, scene};
+use crate::examples::{build, repository, scene};
 
 /// The results file of a scene and the peak of its summary.
 fn outcome(scene: &Scene) -> (Results, Option<PeakStress>) {

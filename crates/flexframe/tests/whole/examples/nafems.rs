@@ -6,7 +6,7 @@ use faer::{Mat, Side};
 use flexframe::fem_tet10::{Material, Materials, assemble, read_msh};
 use nalgebra::DMatrix;
 
-use crate::{build, repository, scene};
+use crate::examples::{build, repository, scene};
 
 #[test]
 fn fv12_free_thin_plate() {

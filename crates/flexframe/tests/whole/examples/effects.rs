@@ -3,7 +3,7 @@
 use flexframe::frames_rk4::{ConservativeBody, Stats};
 use flexframe::scene::{Model, Scene};
 
-use crate::{build, scene};
+use crate::examples::{build, scene};
 
 /// Numbers in the matrices that an evaluation reads.
 fn matrix_entries(model: &Model) -> usize {

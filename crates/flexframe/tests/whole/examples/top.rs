@@ -3,7 +3,7 @@
 use flexframe::frames_rk4::Observation;
 use nalgebra::Vector3;
 
-use crate::{build, rows, scene};
+use crate::examples::{build, rows, scene};
 
 /// K(m) and sn(x | m), by the arithmetic–geometric mean.
 fn elliptic(m: f64) -> (f64, impl Fn(f64) -> f64) {

@@ -4,7 +4,7 @@ use flexframe::advice::Refusal;
 use flexframe::frames_rk4::{Effect, EffectMap, SteadySpin};
 use nalgebra::Vector3;
 
-use crate::{build, rows, scene};
+use crate::examples::{build, rows, scene};
 
 const UNSTIFFENED: EffectMap<bool> = EffectMap::all().without(Effect::GeometricStiffening);
 

@@ -2,7 +2,7 @@
 
 use flexframe::scene::{Choice, Effect};
 
-use crate::{build, rows, scene};
+use crate::examples::{build, rows, scene};
 
 #[test]
 fn a_stiffened_plate_keeps_its_energy_and_momenta_for_ten_seconds() {

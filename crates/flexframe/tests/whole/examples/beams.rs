@@ -3,7 +3,7 @@
 use flexframe::fem_tet10::{Material, Materials, assemble};
 use flexframe::scene::Model;
 
-use crate::{build, rows, scene};
+use crate::examples::{build, rows, scene};
 
 const LENGTH: f64 = 400.0;
 const SIDE: f64 = 10.0;

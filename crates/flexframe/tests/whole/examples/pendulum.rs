@@ -4,7 +4,7 @@ use flexframe::frames_rk4::Observation;
 use flexframe::scene::{Body, Choice, Effect, Materials, MeshedBody, Model, Scene};
 use nalgebra::Vector3;
 
-use crate::{build, rows, scene};
+use crate::examples::{build, rows, scene};
 
 /// 4 K(sin ½θ₀) √(J/(M g d)) = 2π √(J/(M g d)) / AGM(1, cos ½θ₀).
 fn elliptic_period(inertia_over_weight_arm: f64, largest: f64) -> f64 {
