@@ -29,7 +29,8 @@ const TET10: i32 = 11;
 /// Bytes that reading takes for each byte of the file, which is one of them: meshes of gmsh took 3.6.
 const FACTOR: usize = 4;
 
-const REMESH: &str = "mesh with -order 2 (or `Mesh.ElementOrder = 2;`)";
+const REMESH: &str = "mesh with -order 2 (or `Mesh.ElementOrder = 2;`), or set raise_order = true in [body] of the scene for \
+                      straight edges with nodes in their middle";
 const TETRAHEDRA_ONLY: &str =
     "mesh with tetrahedra (gmsh: no Recombine, no Transfinite Volume with Recombine) and -order 2";
 

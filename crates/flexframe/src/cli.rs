@@ -15,7 +15,7 @@ use flexframe::figures::View;
 use flexframe::run::{RunProgress, RunSettings};
 use flexframe::sweep::SweepSettings;
 use flexframe::{advise, html_report, mode_shapes, modes, new_scene, paper, run, sweep};
-use scene::{BuildError, Cache, Flexible, Scene, SceneError};
+use scene::{BuildError, Cache, Flexible, ImportSettings, Scene, SceneError};
 
 use crate::cli_error::CliError;
 use crate::progress::Bar;
@@ -50,6 +50,12 @@ enum Command {
         /// The scene file to write [default: the mesh file's name with .toml].
         #[arg(short, long, value_name = "FILE")]
         output: Option<PathBuf>,
+        /// Largest size of an element, where geometry is meshed.
+        #[arg(long, value_name = "SIZE", value_parser = positive)]
+        mesh_size: Option<f64>,
+        /// Give first-order elements a node in the middle of each edge.
+        #[arg(long)]
+        raise_order: bool,
         /// Replace a scene file of this name.
         #[arg(long)]
         overwrite: bool,
@@ -329,8 +335,11 @@ fn command(cli: Cli, json_errors: bool, cache: &Cache) -> Result<(), Box<dyn Fai
     threads::start(cli.threads)?;
     let mut bar = Bar::new(json_errors);
     match cli.command {
-        Command::New { mesh, output, overwrite } => {
-            output::list(&[new_scene::new_scene(&mesh, output.as_deref(), overwrite)?])
+        Command::New { mesh, output, mesh_size, raise_order, overwrite } => {
+            let settings = ImportSettings { mesh_size, raise_order };
+            let (scene, notes) = new_scene::new_scene(&mesh, &settings, output.as_deref(), overwrite)?;
+            output::list(&[scene])?;
+            notes.iter().try_for_each(|note| output::warn(Some(note)))
         }
         Command::Completions { shell } => {
             let mut script = Vec::new();

@@ -19,7 +19,7 @@ pub enum NewSceneError {
     #[error(transparent)]
     Assembly(#[from] AssemblyError),
     /// A file with the name of the scene is there.
-    #[error("{}: a file of this name is there; choose another one with -o, or replace it with --overwrite", path.display())]
+    #[error("{}: a file of this name is there; choose another one with -o, or replace it with --overwrite (not the mesh itself)", path.display())]
     Exists {
         /// The file.
         path: PathBuf,
@@ -66,21 +66,28 @@ const MILLIMETRES: System = System {
 };
 
 /// Reads a mesh and writes a scene of it, which can be run as it is: a body of steel, free in space, that spins and gets a
-/// push. Groups, size and mass are read off the mesh. Returns the path of the scene: `scene`, or that of the mesh with
-/// `.toml`.
+/// push. Groups, size and mass are read off the mesh. Returns the path of the scene (`scene`, or that of the mesh with
+/// `.toml`), and what of the mesh was left out.
 ///
 /// # Errors
 /// [`NewSceneError`].
-pub fn new_scene(mesh: &Path, scene: Option<&Path>, overwrite: bool) -> Result<PathBuf, NewSceneError> {
+pub fn new_scene(
+    mesh: &Path,
+    settings: &ImportSettings,
+    scene: Option<&Path>,
+    overwrite: bool,
+) -> Result<(PathBuf, Vec<String>), NewSceneError> {
     let path = scene.map_or_else(|| mesh.with_extension("toml"), Path::to_owned);
-    if path.exists() && !overwrite {
+    let is_mesh = path.canonicalize().is_ok_and(|path| mesh.canonicalize().is_ok_and(|mesh| mesh == path));
+    if is_mesh || (path.exists() && !overwrite) {
         return Err(NewSceneError::Exists { path });
     }
-    let text = text(&read_mesh(mesh, &ImportSettings::default())?.mesh, &from_folder_of(&path, mesh))?;
+    let read = read_mesh(mesh, settings)?;
+    let text = text(&read.mesh, settings, &from_folder_of(&path, mesh))?;
     let written = WholeFile::create(&path)
         .and_then(|mut file| std::io::Write::write_all(&mut file, text.as_bytes()).and_then(|()| file.finish()));
     written.map_err(WriteError::of(&path))?;
-    Ok(path)
+    Ok((path, read.notes))
 }
 
 /// How the scene names the mesh: relative to its folder where the mesh is in it, from the root otherwise.
@@ -96,7 +103,7 @@ fn from_folder_of(scene: &Path, mesh: &Path) -> PathBuf {
     }
 }
 
-fn text(mesh: &Mesh, mesh_path: &Path) -> Result<String, AssemblyError> {
+fn text(mesh: &Mesh, settings: &ImportSettings, mesh_path: &Path) -> Result<String, AssemblyError> {
     let size = mesh.size();
     let longest = (0..3).max_by(|&i, &j| size[i].total_cmp(&size[j])).unwrap_or(0);
     let thinnest = (0..3).min_by(|&i, &j| size[i].total_cmp(&size[j])).unwrap_or(2);
@@ -129,7 +136,7 @@ units = {{ length = "{length}", mass = "{mass_unit}", time = "s" }}
 # {dx} x {dy} x {dz} {length}. Its mass, of this material, is {mass} {mass_unit}.
 [body]
 mesh = {mesh_path}
-# Steel.
+{import}# Steel.
 material = {{ young_modulus = {young_modulus:?}, poisson_ratio = {poisson_ratio:?}, density = {density:?} }}
 "#,
         nodes = mesh.positions().len(),
@@ -139,6 +146,7 @@ material = {{ young_modulus = {young_modulus:?}, poisson_ratio = {poisson_ratio:
         dy = short(size[1]),
         dz = short(size[2]),
         mass = short(mass),
+        import = import_keys(settings),
         mesh_path = quoted(&mesh_path.to_string_lossy()),
     );
     if !groups.is_empty() {
@@ -157,7 +165,10 @@ damping_ratio = 0.01
         Some(face) => format!("group = {face}"),
         None => format!("at = {end:?}\n# radius = {}", short(0.05 * size[longest])),
     };
-    let _ = writeln!(text, "\n# What holds the body; without it the body is free.");
+    let _ = writeln!(
+        text,
+        "\n# What holds the body; without it the body is free. (A clamped one cannot spin: remove [initial] below.)"
+    );
     if !faces.is_empty() {
         let _ = writeln!(text, "# Surfaces of the mesh: {}.", faces.join(", "));
     }
@@ -191,6 +202,14 @@ end = {end:?}
         spin = spin.map(|axis| 6.28 * axis),
     );
     Ok(text)
+}
+
+/// The keys of how a mesh is read, a line each.
+fn import_keys(settings: &ImportSettings) -> String {
+    let ImportSettings { mesh_size, raise_order } = settings;
+    let size = mesh_size.map(|size| format!("mesh_size = {size:?}\n"));
+    let raise = raise_order.then(|| "raise_order = true\n".to_owned());
+    size.into_iter().chain(raise).collect()
 }
 
 /// A text as TOML has it.

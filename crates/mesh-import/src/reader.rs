@@ -61,11 +61,11 @@ fn is_older_msh(path: &Path) -> bool {
 pub(crate) fn includes_others(path: &Path) -> bool {
     let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
     let words: &[&str] = match ending.as_str() {
-        "geo" | "geo_unrolled" => &["include", "merge", "shapefromfile", "systemcall"],
+        "geo" | "geo_unrolled" => &["include", "merge", "shapefromfile", "systemcall", "filename"],
         "inp" => &["*include"],
         "bdf" | "nas" | "fem" => &["include"],
         // Data in files beside it.
-        "xdmf" | "xmf" => &[".h5", ".bin", "include"],
+        "xdmf" | "xmf" => &["hdf", "binary", "include"],
         _ => return false,
     };
     let Ok(file) = File::open(path) else { return true };

@@ -62,18 +62,24 @@ pub(crate) fn gmsh(
 ) -> Result<Vec<String>, ImportError> {
     let source_name = source.display().to_string();
     let gmsh = std::env::var_os(GMSH).unwrap_or_else(|| "gmsh".into());
+    let io = |cause| ImportError::Io { source_name: source_name.clone(), cause };
     let mut command = Command::new(&gmsh);
     if meshed {
-        command.arg(not_an_option(source)).args(["-3", "-order", "2"]);
+        command.arg(not_an_option(source));
         if let Some(size) = settings.mesh_size {
-            command.args(["-clmax", &format!("{size:e}")]);
+            // After the geometry, which may set a size of its own; the option -clmax comes before it.
+            let file = target.with_file_name("size.geo");
+            std::fs::write(&file, format!("Mesh.MeshSizeMax = {size:e};\n")).map_err(io)?;
+            command.arg(file);
         }
+        command.args(["-3", "-order", "2"]);
     } else if settings.raise_order {
         // The option -order only acts on what is meshed.
-        let io = |cause| ImportError::Io { source_name: source_name.clone(), cause };
-        std::fs::copy(source, target.with_file_name("first_order.msh")).map_err(io)?;
+        let ending = source.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+        let copy = format!("first_order.{ending}");
+        std::fs::copy(source, target.with_file_name(&copy)).map_err(io)?;
         let script = target.with_file_name("raise.geo");
-        std::fs::write(&script, "Merge \"first_order.msh\";\nSetOrder 2;\n").map_err(io)?;
+        std::fs::write(&script, format!("Merge \"{copy}\";\nSetOrder 2;\n")).map_err(io)?;
         command.arg(script).arg("-save");
     } else {
         command.arg(not_an_option(source)).arg("-save");

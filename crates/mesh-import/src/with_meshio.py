@@ -1,9 +1,14 @@
 """Reads a mesh with meshio (or meshlane) and writes its second-order tetrahedra with all named sets as MSH 4.1.
 
+Abaqus and CalculiX files are read here: meshio puts element sets on wrong elements where not every *ELEMENT has a name, joins no
+*NODE blocks, and has no surfaces.
+
 Arguments: the mesh file, the MSH file to write, and "raise" if first-order tetrahedra are to get mid-edge nodes.
 Prints a line of JSON: what was left out ("notes"), or what is wrong ("error", with "cure").
 """
 
+import contextlib
+import io
 import json
 import sys
 from collections import Counter
@@ -27,37 +32,37 @@ class Refused(Exception):
         self.cure = cure
 
 
+class File:
+    """What is read of a file: nodes, blocks of elements of one kind, and names."""
+
+    def __init__(self, np, points, cells):
+        self.points = np.asarray(points, dtype=float)
+        self.cells = [(kind, np.asarray(nodes)) for kind, nodes in cells]
+        self.element_sets = {}  # name: rows of each block
+        self.node_sets = {}
+        self.labels = {}  # name: whole numbers of each block
+        self.names_of_labels = {}  # label array: {(number, dimension) or number: names}
+        self.faces = {}  # surface: (block, row, face) of elements
+
+
 def main(source, target, raise_order):
     try:
         import numpy as np
     except ImportError:
         raise Refused(f"{sys.executable} has no numpy", CURE)
-    try:
-        import meshio
-    except ImportError:
-        try:
-            import meshlane as meshio
-        except ImportError:
-            raise Refused(f"{sys.executable} has neither meshio nor meshlane", CURE)
-
-    try:
-        mesh = meshio.read(prepared(meshio, source, Path(target)))
-    except SystemExit as exit:  # meshio ends the program where it does not know a format
-        raise Refused(f"meshio cannot read it: {exit}", "check its name and contents, or mesh again with gmsh")
-    except Exception as error:
-        words = f"{type(error).__name__}: {error}".strip(": ")
-        raise Refused(f"meshio cannot read it: {words}", "check the file, or write it as VTU, .inp or MSH 4.1")
-
-    points = np.asarray(mesh.points, dtype=float)
+    notes = []
+    if Path(source).suffix.lower() == ".inp":
+        file = Abaqus(notes).read(np, Path(source))
+    else:
+        file = with_meshio(np, source, Path(target))
+    points = file.points
     if len(points) == 0:
         raise Refused("it has no nodes", "check the file")
     if points.ndim != 2 or points.shape[1] != 3:
         raise Refused(f"its nodes have {points.shape[-1]} coordinates", "write it in three dimensions")
-    notes = []
     blocks = []  # kind, nodes, number of the block in the file
     others = Counter()
-    for number, block in enumerate(mesh.cells):
-        kind, nodes = block.type, np.asarray(block.data)
+    for number, (kind, nodes) in enumerate(file.cells):
         if kind in RAISED and raise_order:
             kind = RAISED[kind]
             points, nodes = raised(np, points, nodes, kind, blocks)
@@ -78,46 +83,215 @@ def main(source, target, raise_order):
         found = ", ".join(f"{count} {kind}" for kind, count in others.items()) or "no elements at all"
         raise Refused(f"it has no tetrahedra: {found}", "mesh the volume with ten-node tetrahedra")
 
-    groups = Groups(blocks, notes)
-    for name, rows in mesh.cell_sets.items():
-        groups.add(np, name, rows, len(mesh.cells))
-    for name, arrays in mesh.cell_data.items():
-        add_labels(np, groups, mesh, name, arrays)
-    surfaces, point_sets = {}, dict(mesh.point_sets)
-    for number, names in getattr(mesh, "point_tags", {}).items():
-        nodes = np.flatnonzero(np.asarray(mesh.point_data["point_tags"]) == number)
-        for name in names:
-            point_sets[name] = np.concatenate([point_sets.get(name, []), nodes]).astype(int)
-    if Path(source).suffix.lower() == ".inp":
-        surfaces = abaqus_surfaces(np, source, mesh, blocks, notes)
-    for name, nodes in list(point_sets.items()):
-        if len(nodes) == 0:
-            notes.append(f"the node set {name} is empty")
-            del point_sets[name]
+    groups = Groups(blocks)
+    for name, rows in file.element_sets.items():
+        groups.add(np, name, rows)
+    for name, arrays in file.labels.items():
+        add_labels(np, groups, name, arrays, file.names_of_labels.get(name), notes)
+    surfaces = surfaces_of_faces(np, file.faces, blocks, notes)
+    point_sets = {name: nodes for name, nodes in file.node_sets.items() if len(nodes)}
+    tell(notes, "element set", "no tetrahedra and no triangles of six nodes", groups.without)
+    tell(notes, "node set", "no nodes", [name for name in file.node_sets if name not in point_sets])
     write(np, target, points, blocks, groups, surfaces, point_sets)
     return notes
 
 
-# What solvers and gmsh call triangles of six nodes, and meshio does not know.
-TRIANGLES = ["CPS6", "CPS6M", "CPE6M", "CAX6", "S6", "M3D6", "DS6", "SFM3D6", "R3D6"]
-TETRAHEDRA = ["C3D10R", "C3D10HS", "C3D10MT", "C3D10T"]
+def tell(notes, kind, what, names):
+    if names:
+        shown = ", ".join(names[:5]) + (f" and {len(names) - 5} more" if len(names) > 5 else "")
+        notes.append(f"the {kind} {shown} has {what}" if len(names) == 1 else f"the {kind}s {shown} have {what}")
 
 
-def prepared(meshio, source, target):
-    """What meshio can read of the file: it is strict about things that do not matter here."""
+def with_meshio(np, source, target):
+    try:
+        import meshio
+    except ImportError:
+        try:
+            import meshlane as meshio
+        except ImportError:
+            raise Refused(f"{sys.executable} has neither meshio nor meshlane", CURE)
+    said = io.StringIO()
+    cure = "check the file, or write it as VTU, .inp or MSH 4.1"
+    try:
+        # meshio prints its reasons.
+        with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
+            mesh = meshio.read(prepared(source, target))
+    except (SystemExit, Exception) as error:
+        reason = f"{type(error).__name__}: {error}" if not isinstance(error, SystemExit) else ""
+        words = " ".join([*said.getvalue().split(), *reason.split()])
+        raise Refused(f"meshio cannot read it: {words}", cure)
+    file = File(np, mesh.points, [(block.type, block.data) for block in mesh.cells])
+    count = len(mesh.cells)
+    for name, rows in mesh.cell_sets.items():
+        if not name.startswith("gmsh:bounding_entities") and len(rows) == count:
+            file.element_sets[name] = [[] if rows_of_block is None else rows_of_block for rows_of_block in rows]
+    file.node_sets = dict(mesh.point_sets)
+    for number, names in getattr(mesh, "point_tags", {}).items():
+        nodes = np.flatnonzero(np.asarray(mesh.point_data["point_tags"]) == number)
+        for name in names:
+            file.node_sets[name] = np.concatenate([file.node_sets.get(name, []), nodes]).astype(int)
+    file.labels = {name: arrays for name, arrays in mesh.cell_data.items() if name != "gmsh:geometrical"}
+    # gmsh's physical groups have names by number and dimension, MED's families by number.
+    physical = {(int(data[0]), int(data[1])): [name] for name, data in mesh.field_data.items() if len(data) == 2}
+    file.names_of_labels = {"gmsh:physical": physical, "cell_tags": getattr(mesh, "cell_tags", {})}
+    return file
+
+
+def prepared(source, target):
+    """What meshio can read of the file: it wants heads that gmsh leaves out."""
     ending = Path(source).suffix.lower()
-    if ending == ".inp":
-        types = meshio.abaqus._abaqus.abaqus_to_meshio_type
-        types.update(dict.fromkeys(TRIANGLES, "triangle6") | dict.fromkeys(TETRAHEDRA, "tetra10"))
-        types["C3D4H"] = "tetra"
     if ending in (".bdf", ".nas", ".fem"):
         text = Path(source).read_text(encoding="utf-8", errors="replace")
         if "BEGIN BULK" not in text.upper():
-            # gmsh leaves the heads out.
             whole = target.with_suffix(ending)
             whole.write_text("BEGIN BULK\n" + text + "\nENDDATA\n", encoding="utf-8")
             return str(whole)
     return source
+
+
+class Abaqus:
+    """Reads a file of Abaqus or CalculiX: nodes, elements, sets, surfaces of element faces."""
+
+    # By the start of the name: kind, and number of nodes.
+    KINDS = [
+        ("C3D10", "tetra10", 10), ("C3D4", "tetra", 4), ("C3D20", "hexahedron20", 20), ("C3D27", "hexahedron27", 27),
+        ("C3D8", "hexahedron", 8), ("C3D15", "wedge15", 15), ("C3D6", "wedge", 6), ("C3D5", "pyramid", 5),
+        ("STRI65", "triangle6", 6), ("S6", "triangle6", 6), ("CPS6", "triangle6", 6), ("CPE6", "triangle6", 6),
+        ("CAX6", "triangle6", 6), ("M3D6", "triangle6", 6), ("DS6", "triangle6", 6), ("SFM3D6", "triangle6", 6),
+        ("R3D3", "triangle", 3), ("S3", "triangle", 3), ("CPS3", "triangle", 3), ("M3D3", "triangle", 3),
+    ]  # fmt: skip
+
+    def __init__(self, notes):
+        self.notes = notes
+        self.nodes, self.elements = {}, {}  # by number: position; (kind, nodes)
+        self.names = {"NSET": {}, "ELSET": {}}  # by name in capitals: the name as it was written
+        self.sets = {"NSET": {}, "ELSET": {}}  # by name in capitals: numbers
+        self.surfaces = {}
+        self.parts = Counter()
+
+    def read(self, np, path):
+        keyword, options, waiting = "", {}, []
+        for where, line in self.lines(path, []):
+            if line.startswith("*"):
+                first, *others = [part.strip() for part in line[1:].split(",")]
+                keyword = " ".join(first.upper().split())
+                options = {k.strip().upper(): v.strip().strip('"') for k, _, v in (part.partition("=") for part in others)}
+                waiting = []
+                self.begin(keyword, options)
+                continue
+            words = [word.strip() for word in line.split(",")]
+            waiting += [word for word in words if word]
+            if keyword == "ELEMENT":
+                kind, count = self.kind(options.get("TYPE", ""))
+                # Of kinds that do not count, a line that ends in a comma goes on.
+                if len(waiting) <= count if count else not words[-1]:
+                    continue
+            try:
+                self.take(keyword, options, waiting)
+            except (ValueError, IndexError, KeyError):
+                raise Refused(f"{where}: in *{keyword}, found {line!r}", "check this line")
+            waiting = []
+        return self.file(np)
+
+    def lines(self, path, around):
+        if path in around:
+            raise Refused(f"{path} includes itself", "check its *INCLUDE")
+        try:
+            text = path.read_text(encoding="utf-8", errors="replace")
+        except OSError as error:
+            raise Refused(f"{path} cannot be read: {error}", "check the name in *INCLUDE, relative to the file")
+        for number, line in enumerate(text.splitlines(), start=1):
+            line = line.strip()
+            if not line or line.startswith("**"):
+                continue
+            if line.upper().replace(" ", "").startswith("*INCLUDE"):
+                name = line.partition("=")[2].strip().strip('"')
+                yield from self.lines(path.parent / name, [*around, path])
+            else:
+                yield f"line {number} of {path.name}", line
+
+    def begin(self, keyword, options):
+        if keyword in ("PART", "INSTANCE"):
+            self.parts[keyword] += 1
+            if self.parts[keyword] > 1:
+                raise Refused("it has several parts", "write one part, or a file without parts and assemblies")
+        for kind in ("NSET", "ELSET"):
+            if kind in options and keyword in ("NODE", "ELEMENT", kind):
+                self.set(kind, options[kind])
+        if keyword == "SURFACE" and options.get("TYPE", "ELEMENT").upper() == "ELEMENT":
+            self.surfaces[options.get("NAME", "")] = []
+        elif keyword == "SURFACE":
+            self.notes.append(f"the surface {options.get('NAME', '')} is one of nodes, and is left out: name a node set")
+
+    def take(self, keyword, options, words):
+        if keyword == "NODE":
+            number, position = int(words[0]), [float(x) for x in words[1:4]]
+            if self.nodes.setdefault(number, position) != position:
+                raise Refused(f"node {number} is there twice, at different places", "write one part, or number its nodes anew")
+            if "NSET" in options:
+                self.set("NSET", options["NSET"]).append(number)
+        elif keyword == "ELEMENT":
+            number, nodes = int(words[0]), [int(node) for node in words[1:]]
+            kind, _ = self.kind(options.get("TYPE", ""))
+            if number in self.elements:
+                raise Refused(f"element {number} is there twice", "write one part, or number its elements anew")
+            self.elements[number] = (kind, nodes)
+            if "ELSET" in options:
+                self.set("ELSET", options["ELSET"]).append(number)
+        elif keyword in ("NSET", "ELSET"):
+            members = self.set(keyword, options[keyword])
+            if "GENERATE" in options:
+                first, last, step = ([int(word) for word in words] + [1])[:3]
+                members.extend(range(first, last + 1, step))
+            else:
+                for word in words:
+                    members.extend(self.members(keyword, word))
+        elif keyword == "SURFACE" and options.get("TYPE", "ELEMENT").upper() == "ELEMENT":
+            face = words[1].upper() if len(words) > 1 else ""
+            self.surfaces[options.get("NAME", "")].extend((number, face) for number in self.members("ELSET", words[0]))
+
+    def kind(self, name):
+        name = name.upper()
+        found = [(kind, count) for start, kind, count in self.KINDS if name.startswith(start)]
+        return found[0] if found else (name, None)
+
+    def set(self, kind, name):
+        self.names[kind].setdefault(name.upper(), name)
+        return self.sets[kind].setdefault(name.upper(), [])
+
+    def members(self, kind, word):
+        # An instance may stand before a number or a name.
+        word = word.strip('"').rpartition(".")[2]
+        if word.isdigit():
+            return [int(word)]
+        if word.upper() not in self.sets[kind]:
+            raise Refused(f"the set {word} is named, but not there", "check the sets of the file")
+        return list(self.sets[kind][word.upper()])
+
+    def file(self, np):
+        index = {number: i for i, number in enumerate(self.nodes)}
+        blocks, place = {}, {}
+        for number, (kind, nodes) in self.elements.items():
+            missing = [node for node in nodes if node not in index]
+            if missing:
+                raise Refused(f"element {number} has node {missing[0]}, which is not there", "check the file")
+            rows = blocks.setdefault(kind, [])
+            place[number] = (kind, len(rows))
+            rows.append([index[node] for node in nodes])
+        number_of = {kind: number for number, kind in enumerate(blocks)}
+        cells = [(kind, rows if len({len(row) for row in rows}) == 1 else [[]] * len(rows)) for kind, rows in blocks.items()]
+        file = File(np, list(self.nodes.values()), cells)
+        for name, numbers in self.sets["ELSET"].items():
+            rows = [[] for _ in cells]
+            for kind, row in (place[number] for number in numbers if number in place):
+                rows[number_of[kind]].append(row)
+            file.element_sets[self.names["ELSET"][name]] = rows
+        for name, numbers in self.sets["NSET"].items():
+            file.node_sets[self.names["NSET"][name]] = [index[number] for number in numbers if number in index]
+        for name, faces in self.surfaces.items():
+            at = [(place.get(number), face) for number, face in faces]
+            file.faces[name] = [(number_of[p[0]], p[1], face) if p else (-1, 0, face) for p, face in at]
+        return file
 
 
 def raised(np, points, nodes, kind, blocks):
@@ -170,116 +344,70 @@ def ordered(np, points, nodes, kind):
 class Groups:
     """For each element of each block, the names of the groups that it is in."""
 
-    def __init__(self, blocks, notes):
+    def __init__(self, blocks):
         self.of_block = {number: [() for _ in nodes] for _, nodes, number in blocks}
         self.kind = {number: kind for kind, _, number in blocks}
-        self.notes = notes
+        self.without = []
 
-    def add(self, np, name, rows, count):
-        if name.startswith("gmsh:bounding_entities"):
-            return
+    def add(self, np, name, rows):
         found = 0
-        # meshio has an array for each block; of a set of sets it may have more.
-        for at, rows_of_block in enumerate(rows):
-            if rows_of_block is None:
-                continue
-            of_block = self.of_block.get(at % count)
+        for number, rows_of_block in enumerate(rows):
+            of_block = self.of_block.get(number)
             for row in np.asarray(rows_of_block, dtype=int).reshape(-1) if of_block is not None else []:
                 if name not in of_block[row]:
                     of_block[row] += (name,)
                 found += 1
         if found == 0:
-            self.notes.append(f"the element set {name} has no tetrahedra and no triangles")
+            self.without.append(name)
 
 
-def add_labels(np, groups, mesh, name, arrays):
+def add_labels(np, groups, name, arrays, names, notes):
     """Whole numbers of elements, such as property or material numbers, are groups."""
     arrays = [np.asarray(array) for array in arrays]
-    if name == "gmsh:geometrical" or any(a.ndim != 1 or a.dtype.kind not in "iu" for a in arrays):
+    if any(a.ndim != 1 or a.dtype.kind not in "iu" for a in arrays):
         return
-    # MED has names for the numbers of its families.
-    families = getattr(mesh, "cell_tags", {}) if name == "cell_tags" else {}
     labels = sorted(set().union(*(set(a.tolist()) for a in arrays)))
     if len(labels) > 1000:
+        notes.append(f"the numbers {name} of the elements have {len(labels)} values, and make no groups")
         return
-    # gmsh's physical groups have names, by number and dimension.
-    names = {(int(data[0]), int(data[1])): key for key, data in mesh.field_data.items() if len(data) == 2}
     dimension = {"tetra10": 3, "triangle6": 2}
     prefix = name.split(":")[-1]
     for label in labels:
-        rows = [np.flatnonzero(array == label) for array in arrays]
-        for number, of_block in enumerate(rows):
-            kind = groups.kind.get(number)
-            if kind is None or len(of_block) == 0 or (name in ("gmsh:physical", "cell_tags") and label == 0):
+        for number, array in enumerate(arrays):
+            kind, rows = groups.kind.get(number), np.flatnonzero(array == label)
+            if kind is None or len(rows) == 0 or (names is not None and label == 0):
                 continue
-            known = names.get((label, dimension[kind])) if name == "gmsh:physical" else None
-            only = [np.array([], dtype=int)] * len(rows)
-            only[number] = of_block
-            for group in families.get(label) or [known or f"{prefix}_{label}"]:
-                groups.add(np, group, only, len(rows))
+            known = (names or {}).get((label, dimension[kind])) or (names or {}).get(label)
+            only = [[] for _ in arrays]
+            only[number] = rows
+            for group in known or [f"{prefix}_{label}"]:
+                groups.add(np, group, only)
 
 
-def abaqus_surfaces(np, source, mesh, blocks, notes):
-    """Surfaces of element faces, which meshio leaves out: triangles of six nodes, by name."""
+def surfaces_of_faces(np, faces_of, blocks, notes):
+    """Triangles of six nodes of surfaces of element faces."""
     kinds = {number: (kind, nodes) for kind, nodes, number in blocks}
-    place, sets, surfaces = {}, {}, {}
-    keyword, options, block = "", {}, -1
-    expect = 0
-    with open(source, encoding="utf-8", errors="replace") as lines:
-        for line in lines:
-            line = line.strip()
-            if not line or line.startswith("**"):
-                continue
-            if line.startswith("*"):
-                parts = [part.strip() for part in line[1:].split(",")]
-                keyword = parts[0].upper()
-                options = {k.strip().upper(): v.strip() for k, _, v in (part.partition("=") for part in parts[1:])}
-                if keyword == "ELEMENT":
-                    block, row, expect = block + 1, 0, 0
-                    of_keyword = sets.setdefault(options["ELSET"].upper(), []) if "ELSET" in options else []
-                elif keyword == "SURFACE" and options.get("TYPE", "ELEMENT").upper() == "ELEMENT":
-                    surfaces[options.get("NAME", "")] = []
-                elif keyword == "SURFACE":
-                    notes.append(f"the surface {options.get('NAME', '')} is one of nodes, and is left out: name a node set")
-                elif keyword == "INCLUDE":
-                    notes.append("surfaces in included files are left out: put them into the file itself")
-                continue
-            numbers = [part.strip() for part in line.split(",") if part.strip()]
-            if keyword == "ELEMENT":
-                if expect <= 0:
-                    place[int(numbers[0])] = (block, row)
-                    of_keyword.append(int(numbers[0]))
-                    row += 1
-                    expect = mesh.cells[block].data.shape[1] + 1
-                expect -= len(numbers)
-            elif keyword == "ELSET":
-                ids = sets.setdefault(options["ELSET"].upper(), [])
-                if "GENERATE" in options:
-                    first, last, step = (list(map(int, numbers)) + [1])[:3]
-                    ids.extend(range(first, last + 1, step))
-                else:
-                    for number in numbers:
-                        ids.extend([int(number)] if number.isdigit() else sets.get(number.upper(), []))
-            elif keyword == "SURFACE" and options.get("TYPE", "ELEMENT").upper() == "ELEMENT":
-                ids = [int(numbers[0])] if numbers[0].isdigit() else sets.get(numbers[0].upper(), [])
-                surfaces[options.get("NAME", "")].extend((i, numbers[1].upper() if len(numbers) > 1 else "") for i in ids)
-    found = {}
     edge_of = {frozenset(edge): column for column, edge in enumerate(EDGES["tetra10"], start=4)}
-    for name, faces in surfaces.items():
+    found = {}
+    for name, faces in faces_of.items():
         triangles = []
-        for element, face in faces:
-            kind, nodes = kinds.get(place.get(element, (-1, 0))[0], (None, None))
+        for number, row, face in faces:
+            kind, nodes = kinds.get(number, (None, None))
             if kind != "tetra10" or face not in FACES:
                 continue
-            of_element = nodes[place[element][1]]
             a, b, c = FACES[face]
             middles = [edge_of[frozenset(pair)] for pair in ((a, b), (b, c), (a, c))]
-            triangles.append([of_element[k] for k in (a, b, c, *middles)])
+            triangles.append([nodes[row][k] for k in (a, b, c, *middles)])
         if len(triangles) < len(faces) or not faces:
             notes.append(f"of the surface {name}, {len(triangles)} of {len(faces)} faces are faces of tetrahedra")
         if triangles:
             found[name] = np.array(triangles)
     return found
+
+
+def plain(name):
+    """A name that MSH can hold."""
+    return " ".join(name.replace('"', "'").split())
 
 
 def write(np, target, points, blocks, groups, surfaces, point_sets):
@@ -313,7 +441,7 @@ def write(np, target, points, blocks, groups, surfaces, point_sets):
         names = [(d, t, name) for d in (0, 2, 3) for name, t in physical[d].items()]
         out.write(f"$PhysicalNames\n{len(names)}\n")
         for dimension, number, name in names:
-            out.write(f'{dimension} {number} "{name}"\n')
+            out.write(f'{dimension} {number} "{plain(name)}"\n')
         out.write("$EndPhysicalNames\n$Entities\n")
         out.write(f"{len(entities[0])} 0 {len(entities[2])} {len(entities[3])}\n")
         for dimension in (0, 2, 3):

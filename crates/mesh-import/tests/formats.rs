@@ -37,7 +37,7 @@ impl Formats {
         formats.gmsh(&["bar.msh", "-save", "-format", "msh22", "-o", "old.msh"]);
         formats.gmsh(&["bar.msh", "-save", "-format", "msh40", "-o", "old40.msh"]);
         formats.gmsh(&["bar.geo", "-3", "-format", "msh41", "-o", "linear.msh"]);
-        formats.gmsh(&["bar.geo", "-parse_and_exit", "-v", "0"]);
+        formats.gmsh(&["linear.msh", "-save", "-o", "linear.unv"]);
         // What gmsh does not write: a node set, sets of sets, and surfaces of element faces, as CalculiX has them.
         let inp = fs::read_to_string(formats.path("bar.inp")).unwrap();
         let element = inp.lines().skip_while(|line| !line.contains("C3D10")).nth(1).unwrap();
@@ -88,7 +88,7 @@ fn every_format_gives_the_same_elements_and_its_groups() {
     let both: Vec<&str> = names.iter().chain(&of_entities).copied().collect();
     // File; groups of volumes; of surfaces; of nodes.
     type Row<'a> = (&'a str, ImportSettings, Reader, &'a [&'a str], &'a [&'a str], &'a [&'a str]);
-    let table: [Row<'_>; 15] = [
+    let table: [Row<'_>; 16] = [
         ("bar.msh", AS_IT_IS, Reader::Own, &["bar"], &names, &[]),
         ("old.msh", AS_IT_IS, Reader::GmshConverter, &["bar"], &names, &[]),
         ("old40.msh", AS_IT_IS, Reader::GmshConverter, &["bar"], &names, &[]),
@@ -102,6 +102,7 @@ fn every_format_gives_the_same_elements_and_its_groups() {
         ("bar.xdmf", AS_IT_IS, Reader::Meshio, &["material_3"], &[], &[]),
         ("bar.med", AS_IT_IS, Reader::Meshio, &["all", "bar"], &["skin"], &["end"]),
         ("linear.msh", RAISED, Reader::GmshConverter, &["bar"], &names, &[]),
+        ("linear.unv", RAISED, Reader::GmshConverter, &["bar"], &names, &[]),
         ("linear.vtu", RAISED, Reader::Meshio, &[], &[], &[]),
         ("bar.inp", RAISED, Reader::Meshio, &["Volume1", "bar"], &both, &[]),
     ];
@@ -139,6 +140,73 @@ fn what_abaqus_calls_surfaces_and_node_sets_are_groups_and_the_rest_is_told() {
     assert!(notes[0].contains("the surface none is one of nodes") && notes[0].contains("name a node set"), "{notes:?}");
 }
 
+/// Element sets of every form are on their elements: two blocks of elements, apart, of which names are given in many ways.
+#[test]
+fn element_sets_of_abaqus_are_on_their_elements() {
+    let formats = formats();
+    let inp = fs::read_to_string(formats.path("bar.inp")).unwrap();
+    let nodes: Vec<&str> =
+        inp.lines().skip_while(|line| *line != "*NODE").take_while(|line| !line.starts_with("*ELE")).collect();
+    let mut elements: Vec<&str> = inp.lines().skip_while(|line| !line.contains("C3D10")).skip(1).collect();
+    elements.truncate(elements.iter().position(|line| line.starts_with('*')).unwrap());
+    let number = |line: &str| line.split(',').next().unwrap().trim().to_owned();
+    let (first, second) = elements.split_at(elements.len() / 3);
+    let numbers = |lines: &[&str]| lines.iter().map(|line| number(line)).collect::<Vec<_>>().join(",\n");
+    // Half of the nodes in a block of their own.
+    let (one, other) = nodes.split_at(nodes.len() / 2);
+    let text = |heads: [&str; 2], after: &str| {
+        let [a, b] = [first, second].map(|lines| lines.join("\n"));
+        let nodes = format!("{}\n*NODE\n{}", one.join("\n"), other.join("\n"));
+        format!("{nodes}\n*ELEMENT, {}\n{a}\n*Element, {}\n{b}\n{after}", heads[0], heads[1])
+    };
+    let volume_of = |mesh: &Mesh, name: &str| -> usize {
+        let group = mesh.groups().iter().position(|group| group == name).unwrap_or_else(|| panic!("{name}"));
+        (0..mesh.elements().len()).filter(|e| mesh.element_groups(*e).contains(&group)).count()
+    };
+    let listed = format!("*ELSET, ELSET=B\n{}\n", numbers(second));
+    for (name, text) in [
+        ("only the second has a name", text(["TYPE=C3D10", "type=c3d10, ELSET=B"], "")),
+        ("one name for both and a list", text(["TYPE=C3D10, ELSET=A", "TYPE=C3D10, ELSET=A"], &listed)),
+        ("a set of sets", text(["TYPE=C3D10, ELSET=A", "TYPE=C3D10, ELSET=\"in b\""], "*ELSET, ELSET=B\n\"in b\"\n")),
+        ("springs between", text(["TYPE=C3D10", "TYPE=C3D10, ELSET=B"], "*ELEMENT, TYPE=SPRINGA\n99999, 1, 2\n")),
+    ] {
+        let path = formats.path("sets.inp");
+        fs::write(&path, text).unwrap();
+        let Imported { mesh, .. } = read_mesh(&path, &AS_IT_IS).unwrap_or_else(|error| panic!("{name}: {error}"));
+        assert_eq!(mesh.elements().len(), elements.len(), "{name}");
+        assert_eq!(volume_of(&mesh, "B"), second.len(), "{name}");
+        // The elements keep the order of the file: the second block begins after the first.
+        let group = mesh.groups().iter().position(|group| group == "B").unwrap();
+        let corner = |e: usize| mesh.element_groups(e).contains(&group);
+        let members: Vec<usize> = (0..mesh.elements().len()).filter(|e| corner(*e)).collect();
+        let expected: BTreeSet<[u64; 4]> = second.iter().map(|line| corners(line)).collect();
+        let found: BTreeSet<[u64; 4]> = members.iter().map(|e| by_position(&mesh, *e, &nodes)).collect();
+        assert_eq!(found, expected, "{name}");
+    }
+}
+
+/// The four corners of an element's line, ascending.
+fn corners(line: &str) -> [u64; 4] {
+    let mut numbers: Vec<u64> = line.split(',').skip(1).take(4).map(|word| word.trim().parse().unwrap()).collect();
+    numbers.sort_unstable();
+    numbers.try_into().unwrap()
+}
+
+/// The same of an element of the mesh, whose nodes are found in the file by where they are.
+fn by_position(mesh: &Mesh, element: usize, nodes: &[&str]) -> [u64; 4] {
+    let number = |node: u32| -> u64 {
+        let at = mesh.positions()[node as usize];
+        let line = nodes.iter().find(|line| {
+            let words: Vec<f64> = line.split(',').skip(1).filter_map(|word| word.trim().parse().ok()).collect();
+            words == at
+        });
+        line.unwrap().split(',').next().unwrap().trim().parse().unwrap()
+    };
+    let mut found: [u64; 4] = std::array::from_fn(|corner| number(mesh.elements()[element][corner]));
+    found.sort_unstable();
+    found
+}
+
 #[test]
 fn what_cannot_be_read_is_said_with_its_cure() {
     let formats = formats();
@@ -146,6 +214,8 @@ fn what_cannot_be_read_is_said_with_its_cure() {
     fs::write(formats.path("text.vtu"), "a diary\n").unwrap();
     fs::write(formats.path("broken.step"), "a diary\n").unwrap();
     fs::write(formats.path("flat.geo"), "Point(1) = {0, 0, 0};\n").unwrap();
+    fs::write(formats.path("parts.inp"), "*NODE\n1, 0, 0, 0\n*NODE\n1, 5, 0, 0\n").unwrap();
+    fs::write(formats.path("strange.inp"), "*NODE\n*ELEMENT, TYPE=S3\n1, a, 2, 3\n").unwrap();
     // Two nodes on edges of the first element change places.
     let inp = fs::read_to_string(formats.path("bar.inp")).unwrap();
     let line = inp.lines().skip_while(|line| !line.contains("C3D10")).nth(1).unwrap();
@@ -156,6 +226,8 @@ fn what_cannot_be_read_is_said_with_its_cure() {
         ("linear.vtu", &["768 tetrahedra of first order", "raise_order = true"][..]),
         ("brick.inp", &["1 hexahedron", "ten-node tetrahedra"]),
         ("empty.inp", &["it has no nodes"]),
+        ("parts.inp", &["node 1 is there twice", "write one part"]),
+        ("strange.inp", &["line 3 of strange.inp", "in *ELEMENT"]),
         ("text.vtu", &["meshio cannot read it"]),
         ("swapped.inp", &["1 of its 768 tetra10 elements", "in another order", "mesh again"]),
         ("broken.step", &["broken.step", "gmsh"]),
@@ -176,7 +248,9 @@ fn geometry_is_meshed_as_fine_as_asked_and_what_it_follows_from_is_known() {
     fs::write(formats.path("block.geo"), box_).unwrap();
     formats.gmsh(&["block.geo", "-0", "-o", "block.brep", "-format", "brep"]);
     let sized = |mesh_size| ImportSettings { mesh_size: Some(mesh_size), raise_order: false };
-    for name in ["block.geo", "block.brep"] {
+    // A size in the geometry does not stand in the way of the one that is asked for.
+    fs::write(formats.path("sized.geo"), format!("{box_}Mesh.MeshSizeMax = 5;\n")).unwrap();
+    for name in ["block.geo", "block.brep", "sized.geo"] {
         let [coarse, fine] = [2.0, 1.0].map(|size| formats.read(name, sized(size)).unwrap().mesh);
         assert!(fine.elements().len() > 3 * coarse.elements().len(), "{name}");
         assert!((volume(&fine) / 2000.0 - 1.0).abs() < 1e-9, "{name}");

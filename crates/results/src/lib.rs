@@ -26,6 +26,7 @@ mod checkpoint;
 mod column;
 mod description;
 mod error;
+mod lock;
 mod metadata;
 mod paths;
 mod reader;

@@ -3,6 +3,7 @@
 use crate::checkpoint::{Sums, little_endian};
 use crate::column::present;
 use crate::description::Description;
+use crate::lock;
 use crate::room::Room;
 use crate::seal::Apart;
 use crate::{Column, FileError, Metadata, seal, structure};
@@ -52,7 +53,7 @@ impl Store {
             .map_err(|error| error.with_reason_from_system(place))?;
         let file = OpenOptions::new().read(true).write(true).open(place);
         let file = file.map_err(|error| FileError::system(path, "open the file for writing", &error))?;
-        lock(&file, path, File::try_lock)?;
+        locked(&file, path, File::try_lock)?;
         let described = description.to_json().len();
         Self::new(file, path, columns, description, described)
     }
@@ -81,7 +82,7 @@ impl Store {
             return Err(FileError::NoSeal { path: path.to_path_buf() });
         }
         let file = options.open(path).map_err(failed)?;
-        lock(&file, path, try_lock)?;
+        locked(&file, path, try_lock)?;
         let json = seal::description(&file, path)?;
         let store = Self::new(file, path, columns, Description::from_json(path, &json)?, json.len())?;
         seal::check(&store.file, path, &store.changing())?;
@@ -241,8 +242,8 @@ fn in_order<'s>(ranges: impl Iterator<Item = Apart<'s>>) -> Vec<Apart<'s>> {
 }
 
 /// Locks the file while it is open. Where files cannot be locked, nothing does.
-fn lock(file: &File, path: &Path, try_lock: fn(&File) -> Result<(), TryLockError>) -> Result<(), FileError> {
-    match try_lock(file) {
+fn locked(file: &File, path: &Path, try_lock: fn(&File) -> Result<(), TryLockError>) -> Result<(), FileError> {
+    match lock::try_lock(file, try_lock) {
         Err(TryLockError::WouldBlock) => Err(FileError::Busy { path: path.to_path_buf() }),
         _ => Ok(()),
     }

@@ -4,7 +4,9 @@ use std::path::Path;
 
 use flexframe::new_scene::{NewSceneError, new_scene};
 use flexframe::run::{self, RunSettings};
-use flexframe::scene::{Body, Scene};
+use flexframe::scene::{Body, ImportSettings, Scene};
+
+const AS_IT_IS: ImportSettings = ImportSettings { mesh_size: None, raise_order: false };
 
 #[test]
 fn it_names_groups_and_mass_and_runs() {
@@ -12,7 +14,8 @@ fn it_names_groups_and_mass_and_runs() {
     let mesh = folder.path().join("bar \"1\".msh");
     std::fs::copy(Path::new(env!("CARGO_MANIFEST_DIR")).join("../scene/tests/data/bar.msh"), &mesh).unwrap();
 
-    let path = new_scene(&mesh, None, false).unwrap();
+    let (path, notes) = new_scene(&mesh, &AS_IT_IS, None, false).unwrap();
+    assert!(notes.is_empty());
     assert_eq!(path, folder.path().join("bar \"1\".toml"));
     let text = std::fs::read_to_string(&path).unwrap();
     // 200 x 10 x 10 mm of steel.
@@ -26,7 +29,8 @@ fn it_names_groups_and_mass_and_runs() {
     assert!((model.body.mass / 1.57e-4 - 1.0).abs() < 1e-9, "{}", model.body.mass);
     assert!(report.balances.energy < 1e-3, "{:?}", report.balances.energy);
 
-    // The clamp in the comments is one, too.
+    // The clamp in the comments is one, too, once [initial] is removed as they say.
+    assert!(text.contains("remove [initial]"));
     let held: String = text
         .lines()
         .map(|line| match line.strip_prefix("# ") {
@@ -34,16 +38,20 @@ fn it_names_groups_and_mass_and_runs() {
             Some(key) if key.starts_with("at =") || key.starts_with("radius") => key,
             _ => line,
         })
-        .filter(|line| !line.starts_with("angular_velocity"))
+        .filter(|line| !line.starts_with("[initial]") && !line.starts_with("angular_velocity"))
         .collect::<Vec<_>>()
         .join("\n");
     assert!(held.contains("\n[[constraints]]"));
     Scene::parse(&held, &path).unwrap();
 
-    assert!(matches!(new_scene(&mesh, None, false), Err(NewSceneError::Exists { .. })));
-    new_scene(&mesh, None, true).unwrap();
+    assert!(matches!(new_scene(&mesh, &AS_IT_IS, None, false), Err(NewSceneError::Exists { .. })));
+    new_scene(&mesh, &AS_IT_IS, None, true).unwrap();
+    // The mesh is not replaced by its scene.
+    let before = std::fs::read(&mesh).unwrap();
+    assert!(matches!(new_scene(&mesh, &AS_IT_IS, Some(&mesh), true), Err(NewSceneError::Exists { .. })));
+    assert_eq!(std::fs::read(&mesh).unwrap(), before);
     let elsewhere = tempfile::tempdir().unwrap();
-    let path = new_scene(&mesh, Some(&elsewhere.path().join("a.toml")), false).unwrap();
+    let (path, _) = new_scene(&mesh, &AS_IT_IS, Some(&elsewhere.path().join("a.toml")), false).unwrap();
     let Body::Meshed(body) = Scene::read(path).unwrap().body else { panic!("it has a mesh") };
     assert_eq!(body.mesh, mesh.canonicalize().unwrap());
 }

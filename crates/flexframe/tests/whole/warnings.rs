@@ -9,7 +9,7 @@ use flexframe::scene::{Model, Scene};
 use flexframe::surface::Surface;
 use results::{Results, unfinished};
 
-const UNITS: &str = "title = \"x\"\nunits = { length = \"m\", mass = \"kg\", time = \"s\" }\n";
+const UNITS: &str = "title = \"x\"\nunits = { length = \"mm\", mass = \"Mg\", time = \"s\" }\n";
 
 fn scene(text: &str) -> Scene {
     Scene::parse(&format!("{UNITS}{text}"), "scene.toml").unwrap()
@@ -32,7 +32,7 @@ fn ring(young: f64, rest: &str) -> String {
     )
 }
 
-/// A rigid body of 1 kg under a force of 50 Hz, with rows on whole periods, where it stands still.
+/// A rigid body of mass 1 under a force of 50 Hz, with rows on whole periods, where it stands still.
 #[test]
 fn of_a_shaken_rigid_body() {
     let report = report(

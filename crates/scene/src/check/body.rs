@@ -70,8 +70,18 @@ impl Check<'_> {
             let found = format!("a body file of flexframe {}", origin.program_version);
             return Err(refuse(found, concat!("one of flexframe ", env!("CARGO_PKG_VERSION"))));
         }
+        if mesh.is_none()
+            && let Some(key) = ["mesh_size", "raise_order"].iter().find(|key| self.has(&join("body", key)))
+        {
+            return Err(self.document.place(&join("body", key)).refuse(
+                format!("`{key}` for a body file, whose mesh is there"),
+                "it beside `mesh`",
+                "remove it",
+            ));
+        }
         if let Some(mesh) = &mesh {
             let mesh = self.document.folder().join(self.mesh(mesh)?);
+            self.import(&mesh, &import)?;
             // The file does without the mesh.
             if let Some(hash) = hash_of_mesh(&mesh, &import)
                 && hash.to_string() != origin.mesh_hash
