@@ -110,9 +110,8 @@ fn add_rows<S: Simd, const N: usize>(
     x: &[f64],
     mut sums: [S::f64s; N],
 ) -> [S::f64s; N] {
-    let from_first = matrix.get(first..).unwrap_or_default();
-    for (column, x) in from_first.chunks(rows).zip(x) {
-        let Some(entries) = S::as_simd_f64s(column).0.first_chunk::<N>() else { break };
+    for (column, x) in matrix.chunks_exact(rows).zip(x) {
+        let (entries, _) = S::as_simd_f64s(&column[first..][..N * S::F64_LANES]);
         let x = simd.splat_f64s(*x);
         for (sum, entries) in sums.iter_mut().zip(entries) {
             *sum = simd.mul_add_e_f64s(*entries, x, *sum);
