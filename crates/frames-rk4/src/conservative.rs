@@ -599,7 +599,8 @@ impl ConservativeBody {
             e.spin = Vector3::new(speed, 0.0, 0.0);
         } else if !self.axes.is_empty() {
             let mut right = pi;
-            let (s, p) = if self.manifold.is_some() { (&e.forward_s[..], &e.modal_velocity[..]) } else { (self.s(e), p) };
+            let (s, p) =
+                if self.manifold.is_some() { (&e.forward_s[..], &e.modal_velocity[..]) } else { (self.s(e), p) };
             for (i, s) in s.chunks_exact(q.len().max(1)).enumerate() {
                 right[i] -= dot(s, p);
             }

@@ -466,7 +466,8 @@ impl ConservativeMotion {
         let values = next.modal_displacement.iter_mut().zip(&mut next.modal_momentum);
         let starts = blocks.modes.iter().zip(state.modes());
         for (((q, p), (block, start)), (((n1, n2), n3), n4)) in values.zip(starts).zip(rates) {
-            let value = apply(&block.full, start) + apply(&block.b1, n1) + apply(&block.b2, n2 + n3) + apply(&block.b4, n4);
+            let value =
+                apply(&block.full, start) + apply(&block.b1, n1) + apply(&block.b2, n2 + n3) + apply(&block.b4, n4);
             (*q, *p) = (value.x, value.y);
         }
         Ok(())
