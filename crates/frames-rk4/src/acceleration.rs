@@ -11,7 +11,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::column_major::dot;
+use crate::column_major::{add_product, dot, multiply};
 use crate::conservative::{ConservativeBody, Evaluation, Translation, get, part};
 use crate::error::RateError;
 use crate::symmetric;
@@ -51,7 +51,7 @@ impl ConservativeBody {
             Vector3::zeros()
         } else {
             let mut right = get(&e.slow, part::PI) - self.inertia_rate(e) * e.spin;
-            for (i, s) in self.momenta_of_turning(e).0.chunks_exact(modes.max(1)).enumerate() {
+            for (i, s) in self.s(e).chunks_exact(modes.max(1)).enumerate() {
                 right[i] -= dot(s, &e.acceleration);
             }
             for (i, s) in e.products[..self.s_rows].chunks_exact(nf.max(1)).enumerate() {
@@ -65,21 +65,25 @@ impl ConservativeBody {
 
     /// J' = 2 (c_ij + N_ij z)·ż
     fn inertia_rate(&self, e: &Evaluation) -> Matrix3<f64> {
-        let n_q = e.products[self.s_rows..].chunks_exact(self.coordinates().max(1));
+        let n_z = e.products[self.s_rows..].chunks_exact(self.coordinates().max(1));
         let mut inertia_rate = Matrix3::zeros();
-        for ((pair, first), n_q) in self.pairs.iter().zip(&self.first).zip(n_q) {
-            let rate: f64 = first.iter().zip(n_q).zip(&e.velocity).map(|((c, n), v)| 2.0 * (c + n) * v).sum();
-            symmetric::add(&mut inertia_rate, *pair, rate);
+        for (pair, n_z) in self.pairs.iter().zip(n_z) {
+            symmetric::add(&mut inertia_rate, *pair, 2.0 * dot(n_z, &e.velocity));
         }
         inertia_rate
     }
 
     /// q̈ −= M⁻¹ S ω'
     fn add_spin_rate(&self, spin_rate: &Vector3<f64>, e: &mut Evaluation) {
-        let solved = if self.manifold.is_some() { &e.solved_s } else { &e.products[..self.s_rows] };
-        for (s, w) in solved.chunks_exact(self.flexible().max(1)).zip(spin_rate.iter()) {
-            e.acceleration.iter_mut().zip(s).for_each(|(a, s)| *a -= s * w);
-        }
+        let modes = self.flexible();
+        let Some(manifold) = &self.manifold else {
+            add_product(&e.products[..self.s_rows], modes, (-spin_rate).as_slice(), &mut e.acceleration);
+            return;
+        };
+        let solved = &mut e.change[..modes];
+        multiply(&e.forward_s, modes, spin_rate.as_slice(), solved);
+        manifold.substitute_back(&e.place, solved);
+        e.acceleration.iter_mut().zip(solved).for_each(|(a, solved)| *a -= *solved);
     }
 
     /// Puts z̈ of q̈ into `e.change`.

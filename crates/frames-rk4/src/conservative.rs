@@ -47,7 +47,7 @@ use modal::ReducedBody;
 use nalgebra::{Matrix3, Vector3};
 use rigid_kin::{Attitude, f_inverse, transformation_matrix};
 
-use crate::column_major::{columns, dot, multiply};
+use crate::column_major::{add_product, columns, dot, multiply};
 use crate::effect::{Effect, EffectMap};
 use crate::error::{RateError, SetupError, StepError};
 use crate::initial::Initial;
@@ -94,15 +94,15 @@ pub struct ConservativeBody {
     /// ω_k of the flexible modes.
     pub(crate) circular_frequencies: Vec<f64>,
     pub(crate) damping_ratios: Vec<f64>,
+    /// Largest of ω_k and 2 ζ_k ω_k.
+    fastest_rate: f64,
     /// 2 ζ_k ω_k.
     damping: Vec<f64>,
     damped: bool,
     /// ij of the terms of the inertia that follow the deformation; empty where none does.
     pub(crate) pairs: Vec<(usize, usize)>,
-    /// c_ij of these.
-    pub(crate) first: Vec<Vec<f64>>,
-    /// b_i of driven axes (nf each).
-    coupling: Vec<Vec<f64>>,
+    /// S and c_ij + N_ij q of the undeformed body: b_i of driven axes or zeros (`s_rows`), then the c_ij of `pairs`.
+    undeformed: Vec<f64>,
     /// b of a driven translation (nf).
     pub(crate) sliding: Vec<f64>,
     /// Rows of S: nf for each axis, or none where it is zero.
@@ -147,7 +147,7 @@ pub(crate) struct Evaluation {
     pub displacement: Vec<f64>,
     /// p' + Λq + D p (nf).
     pub momentum: Vec<f64>,
-    /// S_i and N_ij q.
+    /// S_i and c_ij + N_ij z.
     pub products: Vec<f64>,
     /// G_i q̇.
     pub gyroscopic: Vec<f64>,
@@ -162,10 +162,11 @@ pub(crate) struct Evaluation {
     force: Vec<f64>,
     /// Momenta of the products in z.
     pub momenta_of_products: Vec<f64>,
-    /// The place on the manifold, and there S and M⁻¹S (a row for each axis) and b of a driven translation.
+    /// The place on the manifold. There, with the Cholesky factor M = L Lᵀ, are S and L⁻¹S (a row for each axis), and b of
+    /// a driven translation.
     pub place: ManifoldPoint,
     pub s: Vec<f64>,
-    pub solved_s: Vec<f64>,
+    pub forward_s: Vec<f64>,
     pub modal_sliding: Vec<f64>,
     /// q̈ and what it is made of.
     pub acceleration: Vec<f64>,
@@ -291,16 +292,18 @@ impl ConservativeBody {
             Some(e) => e.col_iter().map(|column| column.iter().zip(&list).map(|(e, x)| e * x).sum()).collect(),
             None => list,
         };
-        let first = pair_weights
-            .iter()
-            .map(|weights| {
-                let of_shape = |k: usize| weights.iter().zip(&body.inertia_first).map(|(w, c)| w * c[k]).sum();
-                list_on_coordinates((0..nf).map(of_shape).collect())
-            })
-            .collect();
         let along = |unit: &Vector3<f64>, of: &[Vec<f64>; 3]| -> Vec<f64> {
             list_on_coordinates((0..nf).map(|k| (0..3).map(|i| unit[i] * of[i][k]).sum()).collect())
         };
+        let mut undeformed = vec![0.0; s_rows];
+        if turn_driven {
+            undeformed = axes.iter().flat_map(|axis| along(axis, &body.rotation_first)).collect();
+        }
+        for weights in &pair_weights {
+            let of_shape = |k: usize| weights.iter().zip(&body.inertia_first).map(|(w, c)| w * c[k]).sum();
+            undeformed.extend(list_on_coordinates((0..nf).map(of_shape).collect()));
+        }
+        let rates = modes.circular_frequencies.iter().chain(&damping);
         Ok(Self {
             mass: body.mass,
             origin: body.origin,
@@ -309,15 +312,11 @@ impl ConservativeBody {
             inertia,
             circular_frequencies: modes.circular_frequencies.clone(),
             damping_ratios: damping_ratios.to_vec(),
+            fastest_rate: rates.copied().fold(0.0, f64::max),
             damped: damping.iter().any(|d| *d > 0.0),
             damping,
             pairs,
-            first,
-            coupling: if turn_driven {
-                axes.iter().map(|axis| along(axis, &body.rotation_first)).collect()
-            } else {
-                Vec::new()
-            },
+            undeformed,
             sliding: match translation {
                 Translation::Driven(direction) => along(&direction, &body.translation_first),
                 _ => Vec::new(),
@@ -387,7 +386,7 @@ impl ConservativeBody {
             curvature: on_manifold(nf),
             place: self.manifold.as_ref().map_or_else(ManifoldPoint::default, Manifold::place),
             s: on_manifold(s_axes * modes),
-            solved_s: on_manifold(s_axes * modes),
+            forward_s: on_manifold(s_axes * modes),
             modal_sliding: if self.sliding.is_empty() { Vec::new() } else { on_manifold(modes) },
             drive_stress: zeros(if self.drive_stiffness.is_empty() { 0 } else { modes }),
             spin: Vector3::zeros(),
@@ -533,47 +532,34 @@ impl ConservativeBody {
             multiply(&self.drive_stiffness, q.len(), q, &mut e.drive_stress);
         }
         let modes = q.len();
-        let q = &e.coordinates;
-        let nf = q.len();
-        if !self.stacked.is_empty() {
-            let rows = self.g_rows + self.pairs.len() * nf;
-            multiply(&self.stacked, rows, q, &mut e.products[self.s_rows - self.g_rows..]);
-        }
-        if self.g_rows > 0 {
-            for (s, b) in e.products.chunks_exact_mut(nf).zip(&self.coupling) {
-                s.iter_mut().zip(b).for_each(|(s, b)| *s += b);
-            }
-        } else {
-            for (s, b) in e.products.chunks_exact_mut(nf.max(1)).zip(&self.coupling) {
-                s.copy_from_slice(b);
-            }
-        }
-        if self.stacked.is_empty() && self.s_rows == 0 {
+        let z = &e.coordinates;
+        let nf = z.len();
+        if self.undeformed.is_empty() {
             return;
         }
-        let (s, n_q) = e.products.split_at(self.s_rows);
+        e.products.copy_from_slice(&self.undeformed);
+        let rows = self.g_rows + self.pairs.len() * nf;
+        add_product(&self.stacked, rows, z, &mut e.products[self.s_rows - self.g_rows..]);
+        let (s, n_z) = e.products.split_at(self.s_rows);
         let mut inertia = self.inertia;
-        for ((pair, first), n_q) in self.pairs.iter().zip(&self.first).zip(n_q.chunks_exact(nf.max(1))) {
-            let change: f64 = first.iter().zip(n_q).zip(q).map(|((c, n), q)| (2.0 * c + n) * q).sum();
-            symmetric::add(&mut inertia, *pair, change);
+        let first = self.undeformed[self.s_rows..].chunks_exact(nf.max(1));
+        for ((pair, first), n_z) in self.pairs.iter().zip(first).zip(n_z.chunks_exact(nf.max(1))) {
+            symmetric::add(&mut inertia, *pair, dot(first, z) + dot(n_z, z));
         }
         e.inertia = inertia;
         e.locked_inertia = inertia;
-        let (s, solved_s, size) = match &self.manifold {
-            Some(manifold) => {
-                let on_modes = e.s.chunks_exact_mut(modes.max(1)).zip(e.solved_s.chunks_exact_mut(modes.max(1)));
-                for (s, (on_modes, solved)) in s.chunks_exact(nf.max(1)).zip(on_modes) {
-                    on_modes.fill(0.0);
-                    manifold.add_projection(&e.place, s, on_modes);
-                    solved.copy_from_slice(on_modes);
-                    manifold.solve(&e.place, solved);
-                }
-                (&e.s[..], &e.solved_s[..], modes)
+        if let Some(manifold) = &self.manifold {
+            let on_modes = e.s.chunks_exact_mut(modes.max(1)).zip(e.forward_s.chunks_exact_mut(modes.max(1)));
+            for (s, (on_modes, forward)) in s.chunks_exact(nf.max(1)).zip(on_modes) {
+                on_modes.fill(0.0);
+                manifold.add_projection(&e.place, s, on_modes);
+                forward.copy_from_slice(on_modes);
+                manifold.substitute_forward(&e.place, forward);
             }
-            None => (s, s, nf),
-        };
-        for (i, a) in s.chunks_exact(size.max(1)).enumerate() {
-            for (j, b) in solved_s.chunks_exact(size.max(1)).enumerate().take(i + 1) {
+        }
+        let s = if self.manifold.is_some() { &e.forward_s[..] } else { s };
+        for (i, a) in s.chunks_exact(modes.max(1)).enumerate() {
+            for (j, b) in s.chunks_exact(modes.max(1)).enumerate().take(i + 1) {
                 symmetric::add(&mut e.locked_inertia, (i, j), -dot(a, b));
             }
         }
@@ -581,7 +567,7 @@ impl ConservativeBody {
 
     /// (J − SᵀS)⁻¹ x in the axes of rotation.
     pub(crate) fn solve_locked(&self, e: &Evaluation, x: &Vector3<f64>) -> Result<Vector3<f64>, RateError> {
-        if self.stacked.is_empty() && self.s_rows == 0 {
+        if self.undeformed.is_empty() {
             return Ok(self.inverse_inertia * x);
         }
         let inverse = if self.axes.len() == 1 {
@@ -607,12 +593,15 @@ impl ConservativeBody {
         let speed = self.drive.as_ref().map_or(0.0, |drive| drive.speed.at(t, branch_time));
         let driven_acceleration = self.drive.as_ref().map_or(0.0, |drive| drive.speed.rate(t, branch_time));
         e.driven_speed = speed;
+        self.start_velocities(p, speed, e);
         let pi = get(slow, part::PI);
         if self.turn_driven {
             e.spin = Vector3::new(speed, 0.0, 0.0);
         } else if !self.axes.is_empty() {
             let mut right = pi;
-            for (i, s) in self.momenta_of_turning(e).1.chunks_exact(q.len().max(1)).enumerate() {
+            let (s, p) =
+                if self.manifold.is_some() { (&e.forward_s[..], &e.modal_velocity[..]) } else { (self.s(e), p) };
+            for (i, s) in s.chunks_exact(q.len().max(1)).enumerate() {
                 right[i] -= dot(s, p);
             }
             e.spin = self.solve_locked(e, &right)?;
@@ -620,7 +609,7 @@ impl ConservativeBody {
         let w = e.spin;
         e.omega_body = self.axes.iter().zip(w.iter()).map(|(axis, w)| axis * *w).sum();
 
-        self.velocities(p, speed, e);
+        self.find_velocities(p, speed, e);
 
         let momentum = get(slow, part::MOMENTUM);
         let velocity = match self.translation {
@@ -719,25 +708,29 @@ impl ConservativeBody {
         Ok(())
     }
 
-    /// S and M⁻¹S on the modes, a row for each axis.
-    pub(crate) fn momenta_of_turning<'e>(&self, e: &'e Evaluation) -> (&'e [f64], &'e [f64]) {
-        if self.manifold.is_some() {
-            (&e.s, &e.solved_s)
-        } else {
-            (&e.products[..self.s_rows], &e.products[..self.s_rows])
+    /// S on the modes, a row for each axis.
+    pub(crate) fn s<'e>(&self, e: &'e Evaluation) -> &'e [f64] {
+        if self.manifold.is_some() { &e.s } else { &e.products[..self.s_rows] }
+    }
+
+    /// On a manifold, puts L⁻¹ (p − b v) into the place of q̇.
+    fn start_velocities(&self, p: &[f64], speed: f64, e: &mut Evaluation) {
+        let Some(manifold) = &self.manifold else { return };
+        e.modal_velocity.copy_from_slice(p);
+        if !self.sliding.is_empty() {
+            e.modal_sliding.fill(0.0);
+            manifold.add_projection(&e.place, &self.sliding, &mut e.modal_sliding);
+            e.modal_velocity.iter_mut().zip(&e.modal_sliding).for_each(|(v, b)| *v -= b * speed);
         }
+        manifold.substitute_forward(&e.place, &mut e.modal_velocity);
     }
 
     /// q̇ and ż, at the spin of `e`.
-    fn velocities(&self, p: &[f64], speed: f64, e: &mut Evaluation) {
+    fn find_velocities(&self, p: &[f64], speed: f64, e: &mut Evaluation) {
         let modes = p.len();
-        let w = e.spin;
-        e.displacement.fill(0.0);
-        let s = if self.manifold.is_some() { &e.s } else { &e.products[..self.s_rows] };
-        for (s, w) in s.chunks_exact(modes.max(1)).zip(w.iter()) {
-            e.displacement.iter_mut().zip(s).for_each(|(rate, s)| *rate -= s * w);
-        }
+        let negative = -e.spin;
         let Some(manifold) = &self.manifold else {
+            multiply(&e.products[..self.s_rows], modes, negative.as_slice(), &mut e.displacement);
             e.displacement.iter_mut().zip(&self.sliding).for_each(|(rate, b)| *rate -= b * speed);
             for ((v, p), rate) in e.velocity.iter_mut().zip(p).zip(&e.displacement) {
                 *v = p + rate;
@@ -745,15 +738,8 @@ impl ConservativeBody {
             e.modal_velocity.copy_from_slice(&e.velocity);
             return;
         };
-        if !self.sliding.is_empty() {
-            e.modal_sliding.fill(0.0);
-            manifold.add_projection(&e.place, &self.sliding, &mut e.modal_sliding);
-            e.displacement.iter_mut().zip(&e.modal_sliding).for_each(|(rate, b)| *rate -= b * speed);
-        }
-        for ((v, p), rate) in e.modal_velocity.iter_mut().zip(p).zip(&e.displacement) {
-            *v = p + rate;
-        }
-        manifold.solve(&e.place, &mut e.modal_velocity);
+        add_product(&e.forward_s, modes, negative.as_slice(), &mut e.modal_velocity);
+        manifold.substitute_back(&e.place, &mut e.modal_velocity);
         for ((rate, p), v) in e.displacement.iter_mut().zip(p).zip(&e.modal_velocity) {
             *rate = v - p;
         }
@@ -763,20 +749,14 @@ impl ConservativeBody {
     /// Σ ω_iω_j (c_ij + N_ij z) − Σ ω_i G_i ż
     fn inertia_forces(&self, e: &mut Evaluation, force: &mut [f64]) {
         let nf = force.len();
-        let w = e.spin;
-        let n_q = &e.products[self.s_rows..];
-        force.fill(0.0);
+        let mut squares = [0.0; 6];
+        for (square, pair) in squares.iter_mut().zip(&self.pairs) {
+            *square = spin_product(&e.spin, *pair);
+        }
+        multiply(&e.products[self.s_rows..], nf, &squares, force);
         if self.g_rows > 0 {
             multiply(&self.stacked, self.g_rows + self.pairs.len() * nf, &e.velocity, &mut e.gyroscopic);
-            for (g, w) in e.gyroscopic.chunks_exact(nf.max(1)).zip(w.iter()) {
-                force.iter_mut().zip(g).for_each(|(rate, g)| *rate -= w * g);
-            }
-        }
-        for ((pair, first), n_q) in self.pairs.iter().zip(&self.first).zip(n_q.chunks_exact(nf.max(1))) {
-            let square = spin_product(&w, *pair);
-            for ((rate, c), n) in force.iter_mut().zip(first).zip(n_q) {
-                *rate += square * (c + n);
-            }
+            add_product(&e.gyroscopic, nf, (-e.spin).as_slice(), force);
         }
     }
 

@@ -436,20 +436,25 @@ impl ConservativeMotion {
         self.start_from_state();
         self.evaluate_first(h)?;
         let time = self.state.time;
-        let nf = self.q.len();
         for (s, fraction) in [(1, 0.5), (2, 0.5), (3, 1.0)] {
             let Self { body, blocks, state, stages, q, p, .. } = self;
             let blocks = blocks.get(&body.circular_frequencies, &body.damping_ratios, h);
-            for k in 0..nf {
-                let block = &blocks.modes[k];
-                let start = (state.modal_displacement[k], state.modal_momentum[k]);
-                let n = |stage: usize| (stages[stage].displacement[k], stages[stage].momentum[k]);
-                let value = match s {
-                    1 => at(&block.half, start) + at(&block.a21, n(0)),
-                    2 => at(&block.half, start) + at(&block.a31, n(0)) + at(&block.a32, n(1)),
-                    _ => at(&block.full, start) + at(&block.a41, n(0)) + at(&block.a43, n(2)),
-                };
-                (q[k], p[k]) = (value.x, value.y);
+            let values = q.iter_mut().zip(p).zip(&blocks.modes).zip(state.modes());
+            let [first, second, third, _] = &*stages;
+            let first = first.of_modes();
+            match s {
+                1 => values.zip(first).for_each(|((((q, p), block), start), n1)| {
+                    let value = apply(&block.half, start) + apply(&block.a21, n1);
+                    (*q, *p) = (value.x, value.y);
+                }),
+                2 => values.zip(first).zip(second.of_modes()).for_each(|(((((q, p), block), start), n1), n2)| {
+                    let value = apply(&block.half, start) + apply(&block.a31, n1) + apply(&block.a32, n2);
+                    (*q, *p) = (value.x, value.y);
+                }),
+                _ => values.zip(first).zip(third.of_modes()).for_each(|(((((q, p), block), start), n1), n3)| {
+                    let value = apply(&block.full, start) + apply(&block.a41, n1) + apply(&block.a43, n3);
+                    (*q, *p) = (value.x, value.y);
+                }),
             }
             let slow = state.slow + stages[s - 1].slow * (fraction * h);
             self.evaluate(s, time + fraction * h, &slow, h)?;
@@ -457,22 +462,34 @@ impl ConservativeMotion {
         let Self { body, blocks, state, next, stages: [k1, k2, k3, k4], .. } = self;
         let blocks = blocks.get(&body.circular_frequencies, &body.damping_ratios, h);
         next.slow = state.slow + (k1.slow + (k2.slow + k3.slow) * 2.0 + k4.slow) * (h / 6.0);
-        for k in 0..nf {
-            let block = &blocks.modes[k];
-            let middle = (k2.displacement[k] + k3.displacement[k], k2.momentum[k] + k3.momentum[k]);
-            let value = at(&block.full, (state.modal_displacement[k], state.modal_momentum[k]))
-                + at(&block.b1, (k1.displacement[k], k1.momentum[k]))
-                + at(&block.b2, middle)
-                + at(&block.b4, (k4.displacement[k], k4.momentum[k]));
-            next.modal_displacement[k] = value.x;
-            next.modal_momentum[k] = value.y;
+        let rates = k1.of_modes().zip(k2.of_modes()).zip(k3.of_modes()).zip(k4.of_modes());
+        let values = next.modal_displacement.iter_mut().zip(&mut next.modal_momentum);
+        let starts = blocks.modes.iter().zip(state.modes());
+        for (((q, p), (block, start)), (((n1, n2), n3), n4)) in values.zip(starts).zip(rates) {
+            let value =
+                apply(&block.full, start) + apply(&block.b1, n1) + apply(&block.b2, n2 + n3) + apply(&block.b4, n4);
+            (*q, *p) = (value.x, value.y);
         }
         Ok(())
     }
 }
 
-fn at(block: &nalgebra::Matrix2<f64>, (q, p): (f64, f64)) -> Vector2<f64> {
-    apply(block, q, p)
+impl ConservativeState {
+    /// (q, p) of each mode.
+    fn modes(&self) -> impl Iterator<Item = Vector2<f64>> {
+        pairs_of(&self.modal_displacement, &self.modal_momentum)
+    }
+}
+
+impl Evaluation {
+    /// Rates of (q, p) of each mode, without the linear part.
+    fn of_modes(&self) -> impl Iterator<Item = Vector2<f64>> {
+        pairs_of(&self.displacement, &self.momentum)
+    }
+}
+
+fn pairs_of(a: &[f64], b: &[f64]) -> impl Iterator<Item = Vector2<f64>> {
+    a.iter().zip(b).map(|(a, b)| Vector2::new(*a, *b))
 }
 
 /// out = x + c·y

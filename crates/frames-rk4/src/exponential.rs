@@ -82,6 +82,6 @@ impl BlockStore {
 }
 
 /// Applies a block to the pair (q, p) of a mode.
-pub(crate) fn apply(block: &Matrix2<f64>, q: f64, p: f64) -> Vector2<f64> {
-    Vector2::new(block[(0, 0)] * q + block[(0, 1)] * p, block[(1, 0)] * q + block[(1, 1)] * p)
+pub(crate) fn apply(block: &Matrix2<f64>, pair: Vector2<f64>) -> Vector2<f64> {
+    block * pair
 }

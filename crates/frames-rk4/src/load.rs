@@ -250,6 +250,9 @@ impl<'a> Applied<'a> {
     /// Adds a force at a point, body components.
     pub fn force(&mut self, point: &PointShapes, force_body: &Vector3<f64>) {
         let force_body = force_body * self.weight;
+        if force_body == Vector3::zeros() {
+            return;
+        }
         let Coordinates { first, displacement, .. } = self.coordinates;
         let columns = &point.columns()[first..];
         let second_order = self.push(point.second_order(), &force_body);
@@ -262,6 +265,9 @@ impl<'a> Applied<'a> {
     /// Adds a moment, body components, at a place with these rotations in the modes.
     pub fn moment(&mut self, place: &RotationShapes, moment_body: &Vector3<f64>) {
         let moment_body = moment_body * self.weight;
+        if moment_body == Vector3::zeros() {
+            return;
+        }
         self.moment_body += moment_body;
         self.push(place.second_order(), &moment_body);
         let columns = &place.columns()[self.coordinates.first..];
@@ -271,6 +277,9 @@ impl<'a> Applied<'a> {
     /// Adds forces on many nodes, `factor` times a field that is fixed in body axes.
     pub fn field(&mut self, field: &BodyField, factor: f64) {
         let factor = factor * self.weight;
+        if factor == 0.0 {
+            return;
+        }
         let Coordinates { first, displacement, .. } = self.coordinates;
         let force_body = field.force_body * factor;
         let flexible = &displacement[6 - first..];
@@ -304,10 +313,9 @@ impl<'a> Applied<'a> {
         }
     }
 
-    /// Adds the modal force of a force or moment on a displacement or rotation of second order, which is returned; zero of a
-    /// load that does not act at this time, which does no work on it.
+    /// Adds the modal force of a force or moment on a displacement or rotation of second order, which is returned.
     fn push(&mut self, second_order: Option<&SecondOrder>, vector: &Vector3<f64>) -> Vector3<f64> {
-        let Some(second_order) = second_order.filter(|_| *vector != Vector3::zeros()) else { return Vector3::zeros() };
+        let Some(second_order) = second_order else { return Vector3::zeros() };
         let [q, rate] = self.coordinates.modes();
         let force = match &mut self.on_modes {
             Some(on_modes) => on_modes,
@@ -321,10 +329,12 @@ impl<'a> Applied<'a> {
     /// Adds the components of a force along the modes.
     fn project(&mut self, components: impl Iterator<Item = f64>) {
         let modes = self.modal_force.iter_mut().zip(self.coordinates.velocity);
+        let mut power = 0.0;
         for ((f, v), component) in modes.zip(components) {
             *f += component;
-            self.modal_power += component * v;
+            power += component * v;
         }
+        self.modal_power += power;
     }
 }
 

@@ -53,7 +53,7 @@ struct Constants {
     shapes_by_coordinates: Mat<f64>,
     /// T'ᵀE, column by column (pairs × (modes + pairs)): rows of the mass of the products in z.
     mass: Vec<f64>,
-    /// T_jk of the modes, by k column by column ((large modes j × modes) × large modes).
+    /// T_jk of the modes, by k column by column ((large modes j within modes) × large modes).
     slopes: Vec<f64>,
     /// What M leaves to the large modes beyond 1, by products, column by column (entries i ≥ j × pairs).
     locked: Vec<f64>,
@@ -67,9 +67,9 @@ pub(crate) struct ManifoldPoint {
     /// The large ones of q and q̇.
     displacement: [f64; MOST_LARGE],
     rate: [f64; MOST_LARGE],
-    /// Columns of T q of the modes, for the large ones.
+    /// Rows of T q of the modes, mode by mode with an entry for each large one.
     slopes: Vec<f64>,
-    /// Cholesky factor of what M leaves to the large modes: entries i ≥ j, row by row.
+    /// Cholesky factor of what M leaves to the large modes: entries i ≥ j, row by row, with the reciprocals of the diagonal.
     factor: Vec<f64>,
 }
 
@@ -143,9 +143,9 @@ impl Manifold {
                 follow([a, *j], [b, *k]) + both
             }));
         }
-        let of_modes = (0..count).flat_map(|k| (0..count).map(move |j| [j, k]));
+        let of_modes = (0..count).flat_map(|k| (0..*dynamic).flat_map(move |i| (0..count).map(move |j| [i, j, k])));
         Ok(Self(Arc::new(Constants {
-            slopes: of_modes.flat_map(|[j, k]| (0..*dynamic).map(move |i| slope(i, j, k))).collect(),
+            slopes: of_modes.map(|[i, j, k]| slope(i, j, k)).collect(),
             modes: *dynamic,
             large: large.clone(),
             shapes: columns(shapes),
@@ -227,7 +227,7 @@ impl Manifold {
                 for k in 0..j {
                     sum -= factor[entry(i, k)] * factor[entry(j, k)];
                 }
-                factor[entry(i, j)] = if i == j { sum.sqrt() } else { sum / factor[entry(j, j)] };
+                factor[entry(i, j)] = if i == j { sum.sqrt().recip() } else { sum * factor[entry(j, j)] };
             }
         }
     }
@@ -312,22 +312,36 @@ impl Manifold {
 
     /// M⁻¹ y in place (modes).
     pub(crate) fn solve(&self, place: &ManifoldPoint, y: &mut [f64]) {
-        let Constants { large, modes, .. } = &*self.0;
-        let count = large.len();
-        let ManifoldPoint { slopes, factor, .. } = place;
-        let mut x = [0.0; MOST_LARGE];
+        self.substitute_forward(place, y);
+        self.substitute_back(place, y);
+    }
+
+    /// L⁻¹ y in place (modes), of the Cholesky factor M = L Lᵀ that has the large modes last.
+    pub(crate) fn substitute_forward(&self, place: &ManifoldPoint, y: &mut [f64]) {
+        let large = &self.0.large;
+        let factor = &place.factor;
         // The slopes are zero along the large modes, so that these rows of y stay out of the products.
-        for ((x, mode), column) in x.iter_mut().zip(large).zip(slopes.chunks_exact(*modes)) {
-            *x = y[*mode] - dot(column, y);
+        let mut of_slopes = [0.0; MOST_LARGE];
+        multiply(&place.slopes, large.len(), y, &mut of_slopes[..large.len()]);
+        let mut x = [0.0; MOST_LARGE];
+        for (i, mode) in large.iter().enumerate() {
+            let before: f64 = x[..i].iter().zip(&factor[entry(i, 0)..]).map(|(x, factor)| x * factor).sum();
+            x[i] = (y[*mode] - of_slopes[i] - before) * factor[entry(i, i)];
+            y[*mode] = x[i];
         }
-        for i in 0..count {
-            x[i] = (x[i] - (0..i).map(|k| factor[entry(i, k)] * x[k]).sum::<f64>()) / factor[entry(i, i)];
+    }
+
+    /// L⁻ᵀ y in place.
+    pub(crate) fn substitute_back(&self, place: &ManifoldPoint, y: &mut [f64]) {
+        let large = &self.0.large;
+        let factor = &place.factor;
+        let mut x = [0.0; MOST_LARGE];
+        for (i, mode) in large.iter().enumerate().rev() {
+            let after: f64 = (i + 1..large.len()).map(|k| factor[entry(k, i)] * x[k]).sum();
+            x[i] = (y[*mode] - after) * factor[entry(i, i)];
         }
-        for i in (0..count).rev() {
-            x[i] = (x[i] - (i + 1..count).map(|k| factor[entry(k, i)] * x[k]).sum::<f64>()) / factor[entry(i, i)];
-        }
-        for (x, column) in x.iter().zip(slopes.chunks_exact(*modes)) {
-            y.iter_mut().zip(column).for_each(|(y, slope)| *y -= slope * x);
+        for (y, slopes) in y.iter_mut().zip(place.slopes.chunks_exact(large.len())) {
+            *y -= slopes.iter().zip(&x).map(|(slope, x)| slope * x).sum::<f64>();
         }
         for (x, mode) in x.iter().zip(large) {
             y[*mode] = *x;

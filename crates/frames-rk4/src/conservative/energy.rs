@@ -127,6 +127,6 @@ impl ConservativeBody {
 
     /// Largest of ω_k and 2 ζ_k ω_k.
     pub(crate) fn fastest_rate(&self) -> f64 {
-        self.circular_frequencies.iter().chain(&self.damping).copied().fold(0.0, f64::max)
+        self.fastest_rate
     }
 }
