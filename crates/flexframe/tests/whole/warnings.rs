@@ -276,7 +276,8 @@ fn of_a_mesh_that_was_not_read_whole() {
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| folder.path().join(name);
     let geometry = concat!(env!("CARGO_MANIFEST_DIR"), "/../scene/tests/data/bar.geo");
-    let gmsh = Command::new("gmsh").args(["-3", "-order", "2", "-v", "0", geometry, "-o"]).arg(path("bar.inp")).status();
+    let gmsh =
+        Command::new("gmsh").args(["-3", "-order", "2", "-v", "0", geometry, "-o"]).arg(path("bar.inp")).status();
     assert!(gmsh.unwrap().success());
     let mesh = std::fs::read_to_string(path("bar.inp")).unwrap();
     let more = "*NSET, NSET=some\n1, 2,\n3\n*SURFACE, NAME=none, TYPE=NODE\nsome,\n";

@@ -69,7 +69,8 @@ fn fourth_order(alpha: f64) -> f64 {
         for i in 0..points {
             let (first, second) = slopes_at((f64::from(i) + 0.5) * weight);
             let (slope, curvature) = (first.dot(&w), second.dot(&w));
-            force += weight * ((curvature * (1.0 + slope * slope)) * &second + (curvature * curvature * slope) * &first);
+            force +=
+                weight * ((curvature * (1.0 + slope * slope)) * &second + (curvature * curvature * slope) * &first);
             let both = &second * first.transpose();
             stiffness += weight
                 * ((1.0 + slope * slope) * &second * second.transpose()

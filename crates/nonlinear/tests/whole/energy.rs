@@ -87,7 +87,7 @@ fn the_plate_keeps_its_energy_for_ten_seconds_in_short_steps() {
 fn the_plate_keeps_its_energy_far_better_without_the_mode_that_stretches() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/spinning_plate.toml");
     let mut scene = Scene::read(path).unwrap();
-    scene.initial.angular_velocity = [0.0; 3].into();
+    scene.initial.angular_velocity = [0.0; 3];
     scene.time.end = 0.25;
     scene.time.control = StepControl::Fixed(1e-4);
     let [ten, seven] = [10, 7].map(|flexible| {

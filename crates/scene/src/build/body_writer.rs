@@ -124,7 +124,8 @@ fn without_store(scene: &Scene, folder: &Path) -> BuildError {
         let what = scene.cache.notes().warnings.join("; ");
         return BodyFileError::Damaged { path: folder.to_owned(), what }.into();
     }
-    let found = "a mesh file that includes others, or can be read only once: what the body is made of cannot be told later";
+    let found =
+        "a mesh file that includes others, or can be read only once: what the body is made of cannot be told later";
     let cure = "write it as one MSH 4.1 file first: gmsh -3 -order 2 -format msh41 BODY.geo -o BODY.msh";
     scene.refuse("body.mesh", found, "a mesh in one file", cure).into()
 }

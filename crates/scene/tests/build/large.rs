@@ -97,7 +97,11 @@ fn a_body_that_is_bent_beyond_what_fourth_order_holds_is_refused() {
 fn a_mode_that_others_draw_in_is_not_large_and_its_backbone_is_kept() {
     let model = |initial: &[f64]| {
         let initial = format!("[initial]\nmodal_displacement = {initial:?}\n[effects]\nrefuse = false\n");
-        build(&bar("flexible = 10\nstatic_correction = false", &format!("{CLAMPED}{initial}"), "end = 0.05\nstep = 1e-5"))
+        build(&bar(
+            "flexible = 10\nstatic_correction = false",
+            &format!("{CLAMPED}{initial}"),
+            "end = 0.05\nstep = 1e-5",
+        ))
     };
     let at_rest = model(&[0.0]);
     let rod = 0.25 * (YOUNG / DENSITY).sqrt() / LENGTH;
