@@ -73,7 +73,7 @@ stability:
 
 # Large deflection and stress against a nonlinear finite-element body, and the curves of docs/nonlinear.md (some minutes).
 nonlinear:
-    cargo test --release --quiet --package nonlinear -- --ignored --nocapture
+    cargo test --release --quiet --package nonlinear -- --include-ignored --nocapture
     mkdir -p docs/nonlinear
     cargo run --release --quiet --package nonlinear -- docs/nonlinear
 

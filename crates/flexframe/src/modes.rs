@@ -23,7 +23,7 @@ pub struct ModesReport {
     pub mesh: Option<MeshReport>,
     /// Mass properties and modes.
     pub body: BodyReport,
-    /// Values that no material has.
+    /// What of the mesh file was left out, and values that no material has.
     pub warnings: Vec<String>,
     /// Where the time went, seconds.
     pub times: Times,

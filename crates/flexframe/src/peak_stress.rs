@@ -1,7 +1,5 @@
 //! The largest von Mises stress of a run, over the whole body and all rows.
 
-use std::fmt;
-
 use faer::Col;
 use fem_tet10::{StressError, StressRecovery};
 use frames_rk4::Observation;
@@ -10,6 +8,7 @@ use serde::Serialize;
 
 use crate::json;
 use crate::report::quantity;
+use crate::units::UnitLabels;
 
 /// The largest von Mises stress of a run, and what is known of its error.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -82,22 +81,50 @@ impl Largest {
     }
 }
 
-impl fmt::Display for PeakStress {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+impl PeakStress {
+    /// Such as "largest von Mises stress 41.2 MPa at 0.01 s at (0, 5, 0) mm; the modes leave out …".
+    pub(crate) fn in_words(&self, units: &UnitLabels<'_>) -> String {
+        let (stress, UnitLabels { length, time, .. }) = (units.stress(), units);
         let [x, y, z] = self.at.map(quantity);
-        write!(
-            f,
-            "largest von Mises stress {} at time {} at ({x}, {y}, {z})",
+        let groups = if self.groups.is_empty() { String::new() } else { format!(" in {}", self.groups.join(", ")) };
+        let mesh_error = match self.mesh_error {
+            Some(error) => format!(", the mesh is {:.1} % off in the mean", 100.0 * error),
+            None => String::new(),
+        };
+        format!(
+            "largest von Mises stress {} {stress} at {} {time} at ({x}, {y}, {z}) {length}{groups}; the modes leave out \
+             {:.1e} {stress} there and {:.1e} {stress} at most anywhere{mesh_error}",
             quantity(self.von_mises),
-            quantity(self.time)
-        )?;
-        if !self.groups.is_empty() {
-            write!(f, " in {}", self.groups.join(", "))?;
-        }
-        write!(f, "; the modes leave out {:.1e} there and {:.1e} at most anywhere", self.left_out, self.most_left_out)?;
-        match self.mesh_error {
-            Some(error) => write!(f, ", the mesh is {:.1} % off in the mean", 100.0 * error),
-            None => Ok(()),
-        }
+            quantity(self.time),
+            self.left_out,
+            self.most_left_out
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_number_has_its_unit_behind_it() {
+        let stress = PeakStress {
+            von_mises: 41.25,
+            time: 0.5,
+            node: 7,
+            at: [0.0, 5.0, 10.0],
+            groups: vec!["root".to_owned()],
+            left_out: 0.125,
+            most_left_out: 0.25,
+            mesh_error: Some(0.03),
+        };
+        let words = stress.in_words(&UnitLabels { length: "mm", mass: "Mg", time: "s" });
+        let quantities = [41.25, 0.5, 5.0, 10.0].map(quantity);
+        let [peak, time, y, z] = &quantities;
+        let expected = [
+            format!("stress {peak} MPa at {time} s at (0, {y}, {z}) mm in root; "),
+            "leave out 1.2e-1 MPa there and 2.5e-1 MPa at most anywhere, the mesh is 3.0 % off".to_owned(),
+        ];
+        assert!(expected.iter().all(|part| words.contains(part)), "{words}");
     }
 }

@@ -1,4 +1,5 @@
-//! Values that can be computed with, but that no material has: mostly a slip of units.
+//! What is doubtful of a scene: values that can be computed with, but that no material has, mostly a slip of units; and what
+//! of its mesh file was left out.
 
 use fem_tet10::{Material, Materials};
 use scene::{Body, Model, Scene, Units};
@@ -10,11 +11,13 @@ const YOUNG_MODULI: [f64; 2] = [1e2, 2e12];
 /// Their densities, kg/m³: from aerogels to above osmium.
 const DENSITIES: [f64; 2] = [0.1, 3e4];
 
-/// What is doubtful of a scene and its modes, in sentences. Moduli and densities are only judged where the labels of all units
+/// What is doubtful of a scene, its mesh and its modes, in sentences. Moduli and densities are only judged where the labels of all units
 /// are known.
 pub(crate) fn doubts(scene: &Scene, model: &Model) -> Vec<String> {
     let mut doubts = Vec::new();
     if let Body::Meshed(body) = &scene.body {
+        let notes = model.meshed.iter().flat_map(|meshed| &meshed.mesh_notes);
+        doubts.extend(notes.map(|note| format!("{}: {note}", body.mesh.display())));
         match &body.materials {
             Materials::Uniform(material) => doubts.extend(of_material(material, "", &scene.units)),
             Materials::ByGroup(each) => doubts.extend(

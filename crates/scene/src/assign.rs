@@ -1,7 +1,7 @@
 //! Values of keys, set in the text of a scene from outside of it.
 
 use toml::Value;
-use toml_edit::{DocumentMut, Item, Table};
+use toml_edit::{DocumentMut, Item, Key, Table};
 
 /// A key that cannot be set.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -22,7 +22,7 @@ enum Step {
 }
 
 /// The text of a scene with other values of some keys, in their order. A key is a path such as `loads[0].amplitude`; tables
-/// that the text lacks are added. Comments and everything else stay.
+/// that the text lacks are added. Comments and everything else stay. Keys are written as in TOML: `points."left wing"`.
 ///
 /// A text that is no TOML stays as it is: [`Scene::parse`](crate::Scene::parse) refuses it and says where.
 ///
@@ -61,7 +61,12 @@ fn set(root: &mut Item, path: &str, value: &Value) -> Result<(), (String, String
         item = inner.ok_or(refused)?;
     }
     let new = format!("value = {value}").parse::<DocumentMut>().ok().and_then(|mut text| text.remove("value"));
-    *item = new.ok_or_else(|| (value.to_string(), "a value in TOML".to_owned()))?;
+    let mut new = new.ok_or_else(|| (value.to_string(), "a value in TOML".to_owned()))?;
+    // The comment behind the old value.
+    if let (Some(old), Some(new)) = (item.as_value(), new.as_value_mut()) {
+        *new.decor_mut() = old.decor().clone();
+    }
+    *item = new;
     Ok(())
 }
 
@@ -89,14 +94,9 @@ fn steps(path: &str) -> Option<Vec<Step>> {
     let mut steps = Vec::new();
     let mut rest = path;
     loop {
-        let (key, after) = match rest.strip_prefix('"') {
-            Some(quoted) => quoted.split_once('"')?,
-            None => rest.split_at(rest.find(['.', '[']).unwrap_or(rest.len())),
-        };
-        if key.is_empty() {
-            return None;
-        }
-        steps.push(Step::Key(key.to_owned()));
+        let (key, after) = rest.split_at(key_length(rest)?);
+        let [key] = Key::parse(key).ok()?.try_into().ok()?;
+        steps.push(Step::Key(key.get().to_owned()));
         rest = after;
         while let Some(list) = rest.strip_prefix('[') {
             let (index, after) = list.split_once(']')?;
@@ -108,6 +108,20 @@ fn steps(path: &str) -> Option<Vec<Step>> {
             None => return rest.is_empty().then_some(steps),
         }
     }
+}
+
+/// Bytes of the first key of a path, with its quotes. `None` where these have no end.
+fn key_length(path: &str) -> Option<usize> {
+    let Some(quote) = path.chars().next().filter(|first| ['"', '\''].contains(first)) else {
+        return Some(path.find(['.', '[']).unwrap_or(path.len()));
+    };
+    let mut is_escaped = false;
+    let end = path[1..].find(|c| {
+        let ends = c == quote && !is_escaped;
+        is_escaped = quote == '"' && c == '\\' && !is_escaped;
+        ends
+    })?;
+    Some(end + 2)
 }
 
 fn kind(item: &Item) -> &'static str {
@@ -148,12 +162,37 @@ mod tests {
     }
 
     #[test]
+    fn the_comment_behind_a_changed_value_stays() {
+        assert_eq!(one("title", "b").unwrap(), TEXT.replace("\"a\" # why", "\"b\" # why"));
+        let list = "list = [\n  1, # one\n  2 # two\n]\n";
+        let changed = assign(list, &[("list[1]".to_owned(), Value::from(3))]).unwrap();
+        assert_eq!(changed, list.replace("2 # two", "3 # two"));
+    }
+
+    #[test]
+    fn keys_in_either_quotes_are_those_of_toml() {
+        for (path, key) in [
+            (r#"points."a.b[0]""#, "a.b[0]"),
+            ("points.'a.b[0]'", "a.b[0]"),
+            (r#"points."a\"b""#, "a\"b"),
+            (r"points.'a\'", "a\\"),
+            ("'points'.c", "c"),
+        ] {
+            let table: toml::Table = one(path, 1).unwrap().parse().unwrap();
+            assert_eq!(table["points"][key].as_integer(), Some(1), "{path}");
+        }
+    }
+
+    #[test]
     fn a_path_that_leads_nowhere_is_told() {
         for (path, words) in [
             ("", "a path of keys"),
             ("a..b", "a path of keys"),
             ("loads[x].at", "a path of keys"),
             ("loads[0]at", "a path of keys"),
+            ("points.'a", "a path of keys"),
+            ("points.a b", "a path of keys"),
+            ("points.'a'b", "a path of keys"),
             ("title.end", "`end` in what is a text, expected a key of a table"),
             ("time[0]", "`time`, which is a table, expected a list"),
             ("points[0]", "`points`, which is not there, expected a list"),

@@ -18,6 +18,7 @@ use crate::modes::frequency_unit;
 use crate::report::{BodyReport, MeshReport, quantity};
 use crate::row::Row;
 use crate::surface;
+use crate::units::UnitLabels;
 
 /// All of it; `None` where the file has not got the columns that it needs.
 pub(super) fn contents(file: &Path, results: &Results, scene: &Scene, model: &Model) -> Option<Report> {
@@ -32,7 +33,7 @@ pub(super) fn contents(file: &Path, results: &Results, scene: &Scene, model: &Mo
         facts: facts(results, model, &body)?,
         surface: surface.as_ref().map(|surface| reference(surface, model)),
         shapes: shapes(surface.as_ref(), model, &body),
-        stress: surface.as_ref().and_then(|surface| stress(surface, results, model)),
+        stress: surface.as_ref().and_then(|surface| stress(surface, results, scene, model)),
         motion: motion(results, model)?,
         histories: COLUMNS.iter().flat_map(|column| histories(column, results, &body)).collect(),
         balances: balances(results)?,
@@ -110,7 +111,7 @@ fn shapes(surface: Option<&surface::Surface>, model: &Model, body: &BodyReport) 
 }
 
 /// The stress of each shape, and of each product of two large modes.
-fn stress(surface: &surface::Surface, results: &Results, model: &Model) -> Option<StressField> {
+fn stress(surface: &surface::Surface, results: &Results, scene: &Scene, model: &Model) -> Option<StressField> {
     let (body, large) = (model.stress.as_ref()?, model.large_modes());
     let shapes = extended(model).flexible();
     if shapes == 0 {
@@ -127,22 +128,11 @@ fn stress(surface: &surface::Surface, results: &Results, model: &Model) -> Optio
     let shape = |(k, factor): (usize, f64)| {
         of_nodes.iter().map(|shapes| shapes[k].map(|s| (factor * s) as f32)).collect::<Vec<_>>()
     };
-    let column = COLUMNS.iter().find(|column| column.path == "points/von_mises_stress")?;
     Some(StressField {
-        unit: stress_unit(&unit(column, results)),
+        unit: UnitLabels::from(&scene.units).stress(),
         shapes: std::iter::repeat_n(1.0, shapes).chain(factors).enumerate().map(shape).collect(),
         products: pairs.iter().map(|pair| pair.map(|i| large[i])).collect(),
     })
-}
-
-/// The name of a unit of stress that has one.
-fn stress_unit(unit: &str) -> String {
-    match unit {
-        "kg/(m s²)" => "Pa",
-        "Mg/(mm s²)" | "t/(mm s²)" => "MPa",
-        other => other,
-    }
-    .to_owned()
 }
 
 /// The body in all shapes that are drawn: with those that follow large modes.

@@ -141,7 +141,7 @@ impl fmt::Display for RunReport {
             unit = units.energy()
         )?;
         if let Some(stress) = &self.peak_stress {
-            writeln!(f, "  stress   {stress}, {}", units.stress())?;
+            writeln!(f, "  stress   {}", stress.in_words(&units))?;
         }
         let Balances { energy, linear_momentum, angular_momentum } = self.balances;
         let closed = if self.right_unsummed {

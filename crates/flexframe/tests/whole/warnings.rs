@@ -1,11 +1,14 @@
 //! A warning means something: a run that is right ends without one.
 
+use std::process::Command;
+
 use flexframe::advice::Refusal;
 use flexframe::advise::advise;
 use flexframe::columns::COLUMNS;
 use flexframe::frames_rk4::Rows;
+use flexframe::modes::{modes, reduce};
 use flexframe::run::{RunError, RunReport, RunSettings, results_path, run};
-use flexframe::scene::{Model, Scene};
+use flexframe::scene::{Cache, Model, Scene};
 use flexframe::surface::Surface;
 use results::{Results, unfinished};
 
@@ -264,4 +267,40 @@ fn the_surface_moves_as_the_points_do() {
     // It is drawn in by more than a tenth of what it bends by, which the mode alone does not show.
     let alone = surface.displacements(meshed, &now.modal_displacement)[tip];
     assert!(drawn.x < alone.x - 0.1 * alone.norm(), "{drawn} {alone}");
+}
+
+/// What of a mesh of another format was left out is a warning of all that is made of it: when it is read, when it comes from
+/// the cache, and when it comes from a body file. (Needs gmsh, and meshio in the Python that `FLEXFRAME_PYTHON` names.)
+#[test]
+fn of_a_mesh_that_was_not_read_whole() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    let geometry = concat!(env!("CARGO_MANIFEST_DIR"), "/../scene/tests/data/bar.geo");
+    let gmsh =
+        Command::new("gmsh").args(["-3", "-order", "2", "-v", "0", geometry, "-o"]).arg(path("bar.inp")).status();
+    assert!(gmsh.unwrap().success());
+    let mesh = std::fs::read_to_string(path("bar.inp")).unwrap();
+    let more = "*NSET, NSET=some\n1, 2,\n3\n*SURFACE, NAME=none, TYPE=NODE\nsome,\n";
+    std::fs::write(path("bar.inp"), mesh + more).unwrap();
+    let cache = Cache::new(path("cache"), 1 << 30);
+    let scene = |body: &str| {
+        let rest = "[modes]\nflexible = 2\n[time]\nend = 1e-4\nstep = 1e-5\n";
+        let units = UNITS.replace("\"m\"", "\"mm\"").replace("kg", "Mg");
+        let scene = Scene::parse(&format!("{units}[body]\n{body}\n{rest}"), path("bar.toml")).unwrap();
+        Scene { cache: cache.clone(), ..scene }
+    };
+    let material = "material = { young_modulus = 210e3, poisson_ratio = 0.3, density = 7.85e-9 }";
+    let imported = scene(&format!("mesh = \"bar.inp\"\n{material}"));
+    let is_told = |warnings: &[String]| {
+        let [warning] = warnings else { panic!("{warnings:?}") };
+        assert!(warning.contains("bar.inp: the surface none is one of nodes"), "{warning}");
+    };
+    is_told(&modes(&imported, |_| ()).unwrap().1.warnings);
+    is_told(&modes(&imported, |_| ()).unwrap().1.warnings);
+    is_told(&reduce(&imported, &path("bar.body.h5"), false, false, |_| ()).unwrap().warnings);
+    std::fs::remove_file(path("bar.inp")).unwrap();
+    let report = run(&scene("file = \"bar.body.h5\""), folder.path(), &RunSettings::default(), |_| ()).unwrap().1;
+    is_told(&report.warnings);
+    is_told(&Results::open(&report.results, &COLUMNS).unwrap().metadata.warnings);
+    assert!(cache.notes().warnings.is_empty(), "{:?}", cache.notes());
 }

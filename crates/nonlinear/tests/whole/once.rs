@@ -88,8 +88,7 @@ fn small_motions_of_the_examples_are_the_same_with_large_modes() {
 }
 
 /// Plates that spin, without what stretches them: a stretching mode, or a static shape, rings from the undeformed start. Large
-/// modes feel its stress as it swings, stiffening alone takes it as at rest, and that is no double count: at 60 rad/s the
-/// first frequency is 1.0e-3 higher, as of Hill's equation.
+/// modes feel its stress as it swings, stiffening alone takes it as at rest, and that is no double count.
 #[test]
 #[ignore = "minutes: just nonlinear"]
 fn spinning_plates_are_the_same_with_large_modes() {

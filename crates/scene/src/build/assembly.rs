@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use fem_tet10::{Matrices, Mesh};
 use frames_rk4::Drive;
+use mesh_import::Imported;
 use modal::Support;
 
 use super::error::BuildError;
@@ -27,6 +28,8 @@ pub(super) struct AssembledMesh {
     pub scene: Scene,
     pub body: MeshedBody,
     pub mesh: Arc<Mesh>,
+    /// What of the mesh file was left out.
+    pub mesh_notes: Vec<String>,
     /// Those that are needed: where answers are known, none are.
     matrices: OnceLock<(Matrices, Duration)>,
     pub support: Support,
@@ -54,11 +57,12 @@ impl Assembly {
             None => read_mesh(scene, &body),
         };
         let mut of_mesh = Duration::ZERO;
-        let mesh = Arc::new(timed(&mut of_mesh, read)?);
+        let Imported { mesh, notes: mesh_notes } = timed(&mut of_mesh, read)?;
+        let mesh = Arc::new(mesh);
         times.mesh += of_mesh;
         let (support, drive) = support(scene, Some(&mesh))?;
-        let assembled =
-            AssembledMesh { scene: scene.clone(), body, mesh, matrices: OnceLock::new(), support, drive, store, times };
+        let (scene, matrices) = (scene.clone(), OnceLock::new());
+        let assembled = AssembledMesh { scene, body, mesh, mesh_notes, matrices, support, drive, store, times };
         if assembled.store.is_none() {
             progress(BuildProgress::Assembly);
             assembled.matrices()?;

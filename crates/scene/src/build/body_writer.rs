@@ -73,18 +73,18 @@ impl Model {
         let scene = Scene { cache: Cache::new(folder, u64::MAX), ..scene.clone() };
         let scene = &if scene.output.any_stress() { scene.with_stress_field() } else { scene };
         let assembly = Assembly::new(scene, &mut progress)?;
+        if matches!(&assembly.0, Assembled::Meshed(assembled) if assembled.store.is_none()) {
+            return Err(without_store(scene, folder));
+        }
         let mut builder = assembly.builder()?;
         let model = builder.build(scene, &mut progress)?;
         let (Assembled::Meshed(assembled), Some(meshed), Some(solved)) = (&assembly.0, &model.meshed, builder.solved())
         else {
             return Ok(model);
         };
-        let Some(store) = &assembled.store else {
-            let what = scene.cache.notes().warnings.join("; ");
-            return Err(BodyFileError::Damaged { path: folder.to_owned(), what }.into());
-        };
+        let Some(store) = &assembled.store else { return Err(without_store(scene, folder)) };
 
-        let arrays = MeshArrays::new(&meshed.mesh);
+        let arrays = MeshArrays::new(&meshed.mesh, &meshed.mesh_notes);
         let mut named = Named { scene, datasets: Vec::new() };
         named.add_groups(&meshed.mesh);
         named.add_modes(&model, meshed);
@@ -101,8 +101,8 @@ impl Model {
             named.add_matrix("mass", matrices.mass());
         }
         let origin = origin(body, store.mesh_hash(), super::builder::requested(scene), solved.support_text());
-        let texts = BTreeMap::from([
-            arrays.text(),
+        let mut texts = BTreeMap::from(arrays.texts());
+        texts.extend([
             (ORIGIN.to_owned(), origin.to_json()),
             ("title".to_owned(), scene.title.clone()),
             ("scene".to_owned(), scene.source.clone()),
@@ -116,6 +116,18 @@ impl Model {
         write(path, texts, &arrays, &scene.units.length, &named, &store.files()?)?;
         Ok(model)
     }
+}
+
+/// Why no answers about the body can be kept in a `folder`, of which the file is made.
+fn without_store(scene: &Scene, folder: &Path) -> BuildError {
+    if scene.cache.is_closed() {
+        let what = scene.cache.notes().warnings.join("; ");
+        return BodyFileError::Damaged { path: folder.to_owned(), what }.into();
+    }
+    let found =
+        "a mesh file that includes others, or can be read only once: what the body is made of cannot be told later";
+    let cure = "write it as one MSH 4.1 file first: gmsh -3 -order 2 -format msh41 BODY.geo -o BODY.msh";
+    scene.refuse("body.mesh", found, "a mesh in one file", cure).into()
 }
 
 fn origin(body: &MeshedBody, mesh_hash: &Hash, modes: usize, support: String) -> Origin {

@@ -7,9 +7,8 @@ use super::error::{BuildError, refuse};
 use crate::scene::{MeshedBody, Scene};
 use crate::shorten::shorten;
 
-pub(super) fn read_mesh(scene: &Scene, body: &MeshedBody) -> Result<Mesh, BuildError> {
-    let read = mesh_import::read_mesh(&body.mesh, &body.import);
-    let Imported { mesh, notes } = read.map_err(|error| match error {
+pub(super) fn read_mesh(scene: &Scene, body: &MeshedBody) -> Result<Imported, BuildError> {
+    mesh_import::read_mesh(&body.mesh, &body.import).map_err(|error| match error {
         ImportError::Mesh(MeshError::Io { source_name, source: cause }) | ImportError::Io { source_name, cause } => {
             scene
                 .refuse(
@@ -22,11 +21,7 @@ pub(super) fn read_mesh(scene: &Scene, body: &MeshedBody) -> Result<Mesh, BuildE
         }
         ImportError::Mesh(error) => BuildError::from(error),
         other => other.into(),
-    })?;
-    for note in notes {
-        scene.cache.warn(format!("{}: {note}", body.mesh.display()));
-    }
-    Ok(mesh)
+    })
 }
 
 pub(super) fn matrices(scene: &Scene, body: &MeshedBody, mesh: &Mesh) -> Result<Matrices, BuildError> {

@@ -4,10 +4,13 @@ use std::collections::BTreeMap;
 
 use body_file::{Array, BodyFile, BodyFileError, Declared, Kind, Writer};
 use fem_tet10::{Mesh, MeshError, MeshParts, NodeGroup, SurfaceGroup};
+use mesh_import::Imported;
 use serde::{Deserialize, Serialize};
 
 /// The text with the names of the groups.
 const GROUPS: &str = "mesh_groups";
+/// The text with the sentences on what of the mesh file was left out.
+const NOTES: &str = "mesh_notes";
 
 /// What has no numbers.
 #[derive(Serialize, Deserialize)]
@@ -25,6 +28,7 @@ struct Groups {
 /// A mesh, ready to be written.
 pub(super) struct MeshArrays {
     groups: Groups,
+    notes: Vec<String>,
     positions: Vec<f64>,
     node_tags: Vec<u64>,
     tetrahedra: Vec<u32>,
@@ -40,7 +44,8 @@ pub(super) struct MeshArrays {
 }
 
 impl MeshArrays {
-    pub fn new(mesh: &Mesh) -> Self {
+    /// `notes` say what of the mesh file was left out.
+    pub fn new(mesh: &Mesh, notes: &[String]) -> Self {
         let parts = mesh.parts();
         let index_of: BTreeMap<u64, u32> = parts.node_tags.iter().copied().zip(0..).collect();
         let index = |tag: &u64| index_of.get(tag).copied().unwrap_or(u32::MAX);
@@ -69,15 +74,18 @@ impl MeshArrays {
                 surfaces: surfaces.iter().map(|s| s.name.clone()).collect(),
                 nodes: node_groups.iter().map(|group| (group.dimension, group.name.clone())).collect(),
             },
+            notes: notes.to_vec(),
             node_tags: parts.node_tags,
             tetrahedron_tags: parts.element_tags,
         }
     }
 
-    /// The text that goes with the arrays, and its name.
-    pub fn text(&self) -> (String, String) {
-        // All its keys are texts: it cannot fail.
-        (GROUPS.to_owned(), serde_json::to_string(&self.groups).unwrap_or_default())
+    /// The texts that go with the arrays, by name.
+    pub fn texts(&self) -> [(String, String); 2] {
+        // All their keys are texts: it cannot fail.
+        let groups = serde_json::to_string(&self.groups).unwrap_or_default();
+        let notes = serde_json::to_string(&self.notes).unwrap_or_default();
+        [(GROUPS.to_owned(), groups), (NOTES.to_owned(), notes)]
     }
 
     /// The arrays; lengths in the `unit` of the scene.
@@ -140,13 +148,17 @@ impl MeshArrays {
     }
 }
 
-/// The mesh in a file, called `source` in messages, checked as that of a mesh file is.
-pub(super) fn read(file: &BodyFile, source: String) -> Result<Mesh, BodyFileError> {
+/// The mesh in a file, called `source` in messages, checked as that of a mesh file is, and what was left out of it.
+pub(super) fn read(file: &BodyFile, source: String) -> Result<Imported, BodyFileError> {
     let damaged = |what: String| BodyFileError::Damaged { path: file.path().to_owned(), what };
     let groups: Groups = file
         .attribute(GROUPS)
         .and_then(|text| serde_json::from_str(text).ok())
         .ok_or_else(|| damaged("the names of the groups of its mesh cannot be read".to_owned()))?;
+    let notes: Vec<String> = file
+        .attribute(NOTES)
+        .and_then(|text| serde_json::from_str(text).ok())
+        .ok_or_else(|| damaged("the notes on its mesh cannot be read".to_owned()))?;
     let numbers = |name: &str| Ok::<_, BodyFileError>(file.read::<u64>(name)?.values);
     let node_tags = numbers("mesh/node_tags")?;
     let triangle_tags = numbers("mesh/group_triangle_tags")?;
@@ -188,5 +200,6 @@ pub(super) fn read(file: &BodyFile, source: String) -> Result<Mesh, BodyFileErro
         node_groups: groups.nodes.into_iter().zip(of_nodes).map(node_group).collect(),
         node_tags,
     };
-    Mesh::new(parts).map_err(|error: MeshError| damaged(error.to_string()))
+    let mesh = Mesh::new(parts).map_err(|error: MeshError| damaged(error.to_string()))?;
+    Ok(Imported { mesh, notes })
 }

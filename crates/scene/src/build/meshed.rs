@@ -93,7 +93,13 @@ pub(super) fn reduce(
         stress: body_stress,
         supports,
         body: reduced.body,
-        meshed: Some(Meshed { matrix_bytes: solved.matrix_bytes()?, mesh: Arc::clone(mesh), modes, following }),
+        meshed: Some(Meshed {
+            matrix_bytes: solved.matrix_bytes()?,
+            mesh: Arc::clone(mesh),
+            mesh_notes: assembled.mesh_notes.clone(),
+            modes,
+            following,
+        }),
     };
     let initial = model.initial(scene);
     model.refusal = buckling(stress.buckling_ratio);

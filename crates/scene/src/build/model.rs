@@ -27,6 +27,8 @@ const SMALL: f64 = 1e-3;
 pub struct Meshed {
     /// The mesh.
     pub mesh: Arc<Mesh>,
+    /// What of the mesh file was left out, in sentences.
+    pub mesh_notes: Vec<String>,
     /// Bytes that the mass and stiffness matrices took.
     pub matrix_bytes: usize,
     /// Rigid and flexible modes on the mesh.

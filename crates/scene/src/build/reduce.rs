@@ -47,14 +47,15 @@ impl Reduction {
             (modes, modal.with_stress_stiffness(model, stiffness)?, deflection)
         };
         let stress = Stress::new(model, &statics, &modes, &modal)?;
-        let large = &decision.large;
-        let (modal, stress, large) = if !large.is_empty() {
-            // The frequencies of these follow their amplitudes.
-            for (k, backbone) in backbones.iter_mut().enumerate() {
-                *backbone = backbone.take().filter(|_| !large.contains(&k));
-            }
+        let (modal, stress, large) = if !decision.large.is_empty() {
             let of_spin = modal.body.stress_stiffness.as_ref();
-            let large = LargeDeflection::new(model, &modes, large, &derivatives, &statics, of_spin)?;
+            let large = LargeDeflection::new(model, &modes, &decision.large, &derivatives, &statics, of_spin)?;
+            // The frequencies of these follow their amplitudes. What others draw in is none of them.
+            for k in large.manifold.large() {
+                if let Some(backbone) = backbones.get_mut(*k) {
+                    *backbone = None;
+                }
+            }
             let stress = large.stressed(model, &modes, &statics, stress)?;
             let modal = modal.with_stress(model, Some(large.manifold.body()), large.modes(), &stress.of_loads)?;
             (modal, stress, Some(large))

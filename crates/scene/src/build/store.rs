@@ -5,8 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 use body_file::{BodyFile, BodyFileError, Declared, Digest, Hash, Kind, Writer};
-use fem_tet10::Mesh;
-use mesh_import::hash_of_mesh;
+use mesh_import::{Imported, hash_of_mesh};
 
 use super::answer::{Answer, Kept, group};
 use super::error::BuildError;
@@ -71,27 +70,27 @@ impl Store {
         self.given.as_ref()
     }
 
-    /// The mesh of the body.
-    pub fn mesh(&self, scene: &Scene, body: &MeshedBody) -> Result<Mesh, BuildError> {
+    /// The mesh of the body, with what its file has that was left out.
+    pub fn mesh(&self, scene: &Scene, body: &MeshedBody) -> Result<Imported, BuildError> {
         let source = body.mesh.display().to_string();
         if let Some(file) = &self.given {
             return Ok(mesh_arrays::read(file, source)?);
         }
         let place = self.folder.as_ref().map(|folder| folder.join(MESH));
         let kept = place.as_ref().and_then(|place| self.read(place, |file| mesh_arrays::read(file, source.clone())));
-        if let Some(mesh) = kept {
-            return Ok(mesh);
+        if let Some(imported) = kept {
+            return Ok(imported);
         }
-        let mesh = read_mesh(scene, body)?;
+        let imported = read_mesh(scene, body)?;
         // It may have been changed since it was hashed.
         if let Some(place) = place.filter(|_| !self.cache.is_closed())
             && hash_of_mesh(&body.mesh, &body.import) == Some(self.mesh)
         {
-            let arrays = MeshArrays::new(&mesh);
-            let texts = BTreeMap::from([arrays.text()]);
+            let arrays = MeshArrays::new(&imported.mesh, &imported.notes);
+            let texts = BTreeMap::from(arrays.texts());
             self.write(&place, texts, &arrays.declared(&scene.units.length), |writer| arrays.write(writer));
         }
-        Ok(mesh)
+        Ok(imported)
     }
 
     /// The answer to a question, if it is known.

@@ -4,7 +4,7 @@ use advice::Refusal;
 use scene::Model;
 
 use crate::manifold::plate;
-use crate::{CLAMPED, bar, build, rigid};
+use crate::{CLAMPED, DENSITY, LENGTH, YOUNG, bar, build, rigid};
 
 const TIME: &str = "end = 0.25\nstep = 1e-4";
 
@@ -89,4 +89,33 @@ fn a_body_that_is_bent_beyond_what_fourth_order_holds_is_refused() {
     assert!((deflection - 0.9).abs() < 1e-9 && error > 0.25, "{refusal}");
     let text = refusal.to_string();
     assert!(text.contains("90.0 % of its length") && text.contains("of the forces"), "{text}");
+}
+
+/// A mode that stretches the bar moves far enough to be large by itself, but bending draws it in: it is not large, and its
+/// frequency goes with its amplitude as that of any mode that is not.
+#[test]
+fn a_mode_that_others_draw_in_is_not_large_and_its_backbone_is_kept() {
+    let model = |initial: &[f64]| {
+        let initial = format!("[initial]\nmodal_displacement = {initial:?}\n[effects]\nrefuse = false\n");
+        build(&bar(
+            "flexible = 10\nstatic_correction = false",
+            &format!("{CLAMPED}{initial}"),
+            "end = 0.05\nstep = 1e-5",
+        ))
+    };
+    let at_rest = model(&[0.0]);
+    let rod = 0.25 * (YOUNG / DENSITY).sqrt() / LENGTH;
+    let stretches = at_rest.natural_frequencies().iter().position(|f| (f / rod - 1.0).abs() < 1e-2).unwrap();
+    let at = |mode: usize, part: f64| {
+        let mut one = vec![0.0; 10];
+        one[mode] = 1.0;
+        part / at_rest.deflection(&one)
+    };
+    let mut far = vec![0.0; 10];
+    (far[0], far[stretches]) = (at(0, 0.1), at(stretches, 0.03));
+    let bent = model(&far);
+    println!("{stretches} {:?} {:?}", bent.large_modes(), bent.backbones());
+    assert!(bent.advice.large_modes(10).taken.contains(&stretches), "it is not advised");
+    assert!(bent.large_modes().contains(&0) && !bent.large_modes().contains(&stretches), "{:?}", bent.large_modes());
+    assert!(bent.backbones()[stretches].is_some() && bent.backbones()[0].is_none(), "{:?}", bent.backbones());
 }

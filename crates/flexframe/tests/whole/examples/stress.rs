@@ -70,7 +70,7 @@ fn a_spinning_bar_has_the_stress_of_the_closed_form() {
         assert!((principal[0] / expected - 1.0).abs() < 0.01 && principal[0] >= principal[1], "{principal:?}");
     }
     let peak = peak.unwrap();
-    println!("{peak}");
+    println!("{peak:?}");
     assert!((peak.at[0] - 0.5 * LENGTH).abs() < 15.0 && peak.groups == ["bar"], "{peak:?}");
     // It swings beyond the answer before it comes to rest, by less than a tenth with this damping.
     assert!((0.99..1.1).contains(&(peak.von_mises / BAR)), "{peak:?}");
@@ -81,7 +81,7 @@ fn a_spinning_bar_has_the_stress_of_the_closed_form() {
 fn what_modes_without_static_shapes_leave_out_is_said() {
     let (_, peak) = outcome(&spinning_bar(false));
     let peak = peak.unwrap();
-    println!("{peak}");
+    println!("{peak:?}");
     // Four bending modes have none of the tension.
     assert!(peak.von_mises < 1e-3 * BAR, "{peak:?}");
     assert!((peak.most_left_out / BAR - 1.0).abs() < 0.02, "{peak:?}");
@@ -95,7 +95,7 @@ fn a_spinning_disc_has_the_stress_of_the_closed_form() {
     let load = 2.7e-9 * SPIN * SPIN * 1e4;
     let stress = |name: &str| results.vectors::<6>(&format!("points/{name}/stress")).unwrap()[last];
     let (middle, half) = (stress("middle"), stress("half"));
-    println!("{middle:?} {half:?} {}", peak.as_ref().unwrap());
+    println!("{middle:?} {half:?} {peak:?}");
     for (found, expected) in [
         (middle[0], (3.0 + nu) / 8.0 * load),
         (middle[1], (3.0 + nu) / 8.0 * load),
