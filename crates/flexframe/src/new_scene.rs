@@ -178,7 +178,7 @@ damping_ratio = 0.01
 # kind = "clamp"
 # {region}
 
-# It spins, one turn a second.
+# It spins, about one turn a second.
 [initial]
 angular_velocity = {spin:?}
 
@@ -199,7 +199,7 @@ tolerance = 1e-4
 end = {end:?}
 "#,
         amplitude = short(0.5 * mass * gravity),
-        spin = spin.map(|axis| 6.28 * axis),
+        spin = spin.map(|axis| 6.3 * axis),
     );
     Ok(text)
 }

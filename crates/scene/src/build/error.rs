@@ -27,7 +27,7 @@ pub enum BuildError {
     Mesh(#[from] MeshError),
     /// The mesh cannot be imported.
     #[error(transparent)]
-    Import(#[from] ImportError),
+    Import(#[from] Box<ImportError>),
     /// The matrices cannot be assembled.
     #[error(transparent)]
     Assembly(#[from] AssemblyError),

@@ -20,7 +20,7 @@ pub(super) fn read_mesh(scene: &Scene, body: &MeshedBody) -> Result<Imported, Bu
                 .into()
         }
         ImportError::Mesh(error) => BuildError::from(error),
-        other => other.into(),
+        other => Box::new(other).into(),
     })
 }
 
