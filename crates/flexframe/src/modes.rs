@@ -8,7 +8,7 @@ use scene::{Body, BuildError, BuildProgress, Choice, Flexible, Meshed, Model, Sc
 use serde::Serialize;
 
 use crate::plausible;
-use crate::report::{BodyReport, MeshReport, Times, quantity, size_in_words};
+use crate::report::{BodyReport, MeshReport, Times, size_and_mass};
 
 /// What `flexframe modes` says.
 #[derive(Debug, Clone, Serialize)]
@@ -107,8 +107,7 @@ impl fmt::Display for ModesReport {
             writeln!(f, "  mesh   {mesh}")?;
         }
         let [length, mass, _] = &self.units;
-        let size = self.mesh.as_ref().map_or_else(String::new, |mesh| size_in_words(mesh.size, length));
-        writeln!(f, "  body   {size}{} {mass}", quantity(self.body.mass))?;
+        writeln!(f, "  body   {}", size_and_mass(self.mesh.as_ref(), &self.body, length, mass))?;
         writeln!(f, "\n  mode  frequency, {:<6}  damping  residual", self.frequency_unit)?;
         let body = &self.body;
         for (k, (frequency, damping)) in body.natural_frequencies.iter().zip(&body.damping_ratios).enumerate() {

@@ -5,8 +5,10 @@ use std::path::{Path, PathBuf};
 
 use fem_tet10::{AssemblyError, Material, Materials, Mesh, centroid_lumped_inertia};
 use mesh_import::{ImportError, ImportSettings, read_mesh};
-use whole_file::WholeFile;
+use whole_file::write_whole;
 
+use crate::scene_file::from_root;
+use crate::units::UnitLabels;
 use crate::write_error::WriteError;
 
 /// A scene that could not be made of a mesh.
@@ -33,8 +35,6 @@ pub enum NewSceneError {
 struct System {
     length: &'static str,
     mass: &'static str,
-    force: &'static str,
-    stress: &'static str,
     steel: Material,
     /// Standard gravity.
     gravity: f64,
@@ -48,8 +48,6 @@ const LONGEST_IN_METRES: f64 = 8.0;
 const METRES: System = System {
     length: "m",
     mass: "kg",
-    force: "N",
-    stress: "Pa",
     steel: Material { young_modulus: 210e9, poisson_ratio: 0.3, density: 7850.0 },
     gravity: 9.81,
     because: "A mesh has no units; its size looks like metres.",
@@ -58,8 +56,6 @@ const METRES: System = System {
 const MILLIMETRES: System = System {
     length: "mm",
     mass: "Mg",
-    force: "N",
-    stress: "MPa",
     steel: Material { young_modulus: 210e3, poisson_ratio: 0.3, density: 7.85e-9 },
     gravity: 9810.0,
     because: "A mesh has no units; its size looks like millimetres.",
@@ -84,19 +80,13 @@ pub fn new_scene(
     }
     let read = read_mesh(mesh, settings)?;
     let text = text(&read.mesh, settings, &from_folder_of(&path, mesh))?;
-    let written = WholeFile::create(&path)
-        .and_then(|mut file| std::io::Write::write_all(&mut file, text.as_bytes()).and_then(|()| file.finish()));
-    written.map_err(WriteError::of(&path))?;
+    write_whole(&path, text).map_err(WriteError::of(&path))?;
     Ok((path, read.notes))
 }
 
 /// How the scene names the mesh: relative to its folder where the mesh is in it, from the root otherwise.
 fn from_folder_of(scene: &Path, mesh: &Path) -> PathBuf {
-    let absolute = |path: &Path| {
-        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        folder.canonicalize().ok().zip(path.file_name()).map(|(folder, name)| folder.join(name))
-    };
-    let (Some(mesh_at), Some(scene_at)) = (absolute(mesh), absolute(scene)) else { return mesh.to_owned() };
+    let [scene_at, mesh_at] = [scene, mesh].map(from_root);
     match scene_at.parent().and_then(|folder| mesh_at.strip_prefix(folder).ok()) {
         Some(relative) => relative.to_owned(),
         None => mesh_at,
@@ -108,13 +98,12 @@ fn text(mesh: &Mesh, settings: &ImportSettings, mesh_path: &Path) -> Result<Stri
     let longest = (0..3).max_by(|&i, &j| size[i].total_cmp(&size[j])).unwrap_or(0);
     let thinnest = (0..3).min_by(|&i, &j| size[i].total_cmp(&size[j])).unwrap_or(2);
     let system = if size[longest] > LONGEST_IN_METRES { MILLIMETRES } else { METRES };
-    let System { length, mass: mass_unit, force, stress, steel, gravity, because } = system;
+    let System { length, mass: mass_unit, steel, gravity, because } = system;
+    let units = UnitLabels { length, mass: mass_unit, time: "s" };
     let mass = centroid_lumped_inertia(mesh, &Materials::Uniform(steel), &[])?.mass;
     let end = mesh.positions().iter().max_by(|a, b| a[longest].total_cmp(&b[longest])).copied().unwrap_or_default();
-    let mut push = [0.0; 3];
-    push[thinnest] = 1.0;
-    let mut spin = [0.0; 3];
-    spin[thinnest] = 1.0;
+    let mut across = [0.0; 3];
+    across[thinnest] = 1.0;
     let title = mesh_path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let parts = mesh.parts();
     let groups: Vec<String> = mesh.groups().iter().map(|name| quoted(name)).collect();
@@ -139,6 +128,8 @@ mesh = {mesh_path}
 {import}# Steel.
 material = {{ young_modulus = {young_modulus:?}, poisson_ratio = {poisson_ratio:?}, density = {density:?} }}
 "#,
+        force = units.force(),
+        stress = units.stress(),
         nodes = mesh.positions().len(),
         elements = mesh.elements().len(),
         title = quoted(&title),
@@ -186,7 +177,7 @@ angular_velocity = {spin:?}
 [[loads]]
 kind = "force"
 at = {end:?}
-direction = {push:?}
+direction = {across:?}
 amplitude = {amplitude}
 history = {{ kind = "half-sine", duration = 0.01 }}
 
@@ -199,7 +190,7 @@ tolerance = 1e-4
 end = {end:?}
 "#,
         amplitude = short(0.5 * mass * gravity),
-        spin = spin.map(|axis| 6.3 * axis),
+        spin = across.map(|axis| 6.3 * axis),
     );
     Ok(text)
 }

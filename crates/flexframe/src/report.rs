@@ -136,10 +136,13 @@ impl MeshReport {
     }
 }
 
-/// A size such as "1000 x 50 x 10 mm, ".
-pub(crate) fn size_in_words(size: [f64; 3], length: &str) -> String {
-    let [x, y, z] = size.map(quantity);
-    format!("{x} x {y} x {z} {length}, ")
+/// Size and mass, such as "1000 x 50 x 10 mm, 0.00935 Mg"; of a body without a mesh, its mass.
+pub(crate) fn size_and_mass(mesh: Option<&MeshReport>, body: &BodyReport, length: &str, mass: &str) -> String {
+    let size = mesh.map_or_else(String::new, |mesh| {
+        let [x, y, z] = mesh.size.map(quantity);
+        format!("{x} x {y} x {z} {length}, ")
+    });
+    format!("{size}{} {mass}", quantity(body.mass))
 }
 
 /// With what the allocator of the C library keeps of blocks that were given back: those below 32 MiB. Measured on bodies

@@ -10,15 +10,20 @@ const URL: &str = "file://";
 /// What such a path keeps as it is.
 const ENCODED: &AsciiSet = &NON_ALPHANUMERIC.remove(b'/').remove(b'.').remove(b'-').remove(b'_').remove(b'~');
 
-/// The path from the root of the file system, with neither `..` nor links in the name of its folder: one scene is at one
-/// place, by whatever name it was called. A path that is no UTF-8 becomes a `file:` URL.
-pub(crate) fn to_text(path: &Path) -> String {
+/// The path from the root of the file system, with neither `..` nor links in the name of its folder: one file is at one
+/// place, by whatever name it was called.
+pub(crate) fn from_root(path: &Path) -> PathBuf {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let place = match (folder.canonicalize(), path.file_name()) {
+    match (folder.canonicalize(), path.file_name()) {
         (Ok(folder), Some(name)) => folder.join(name),
         // A scene that a program has made is in no file.
         _ => std::path::absolute(path).unwrap_or_else(|_| path.to_owned()),
-    };
+    }
+}
+
+/// The path [`from_root`]; one that is no UTF-8 becomes a `file:` URL.
+pub(crate) fn to_text(path: &Path) -> String {
+    let place = from_root(path);
     match place.to_str() {
         Some(text) => text.to_owned(),
         None => format!("{URL}{}", percent_encode(place.as_os_str().as_encoded_bytes(), ENCODED)),

@@ -29,7 +29,7 @@ const THROUGH_MESHIO: [&str; 14] =
 
 /// Who reads a file, by the ending of its name; of `.msh`, by its version, too.
 pub fn reader_of(path: &Path, settings: &ImportSettings) -> Reader {
-    let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+    let ending = ending(path);
     let is_of = |endings: &[&str]| endings.contains(&ending.as_str());
     if is_of(&MESHED) {
         Reader::GmshMesher
@@ -40,6 +40,11 @@ pub fn reader_of(path: &Path, settings: &ImportSettings) -> Reader {
     } else {
         Reader::Own
     }
+}
+
+/// The ending of a file's name, in small letters.
+pub(crate) fn ending(path: &Path) -> String {
+    path.extension().unwrap_or_default().to_string_lossy().to_lowercase()
 }
 
 /// Whether a MSH file is of version 1, 2 or 4.0.
@@ -59,8 +64,7 @@ fn is_older_msh(path: &Path) -> bool {
 
 /// Whether a text file takes in others, which may change without it.
 pub(crate) fn includes_others(path: &Path) -> bool {
-    let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-    let words: &[&str] = match ending.as_str() {
+    let words: &[&str] = match ending(path).as_str() {
         "geo" | "geo_unrolled" => &["include", "merge", "shapefromfile", "systemcall", "filename"],
         "inp" => &["*include"],
         "bdf" | "nas" | "fem" => &["include"],

@@ -8,6 +8,7 @@ use std::process::{Command, Output, Stdio};
 use serde::Deserialize;
 
 use crate::error::ImportError;
+use crate::reader::ending;
 use crate::settings::ImportSettings;
 
 /// The program that meshio runs.
@@ -75,8 +76,7 @@ pub(crate) fn gmsh(
         command.args(["-3", "-order", "2"]);
     } else if settings.raise_order {
         // The option -order only acts on what is meshed.
-        let ending = source.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-        let copy = format!("first_order.{ending}");
+        let copy = format!("first_order.{}", ending(source));
         std::fs::copy(source, target.with_file_name(&copy)).map_err(io)?;
         let script = target.with_file_name("raise.geo");
         std::fs::write(&script, format!("Merge \"{copy}\";\nSetOrder 2;\n")).map_err(io)?;

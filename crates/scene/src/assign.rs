@@ -35,11 +35,7 @@ pub fn assign(text: &str, values: &[(String, Value)]) -> Result<String, AssignEr
     let Ok(mut document) = text.parse::<DocumentMut>() else { return Ok(text.to_owned()) };
     let mut root = Item::Table(std::mem::take(document.as_table_mut()));
     for (key, value) in values {
-        set(&mut root, key, value).map_err(|(found, expected)| AssignError {
-            key: key.clone(),
-            found,
-            expected: expected.to_owned(),
-        })?;
+        set(&mut root, key, value).map_err(|(found, expected)| AssignError { key: key.clone(), found, expected })?;
     }
     *document.as_table_mut() = root.into_table().unwrap_or_else(|_| Table::new());
     Ok(document.to_string())

@@ -123,14 +123,10 @@ fn stress(surface: &surface::Surface, results: &Results, scene: &Scene, model: &
     let of_nodes: Vec<&[[f64; 6]]> =
         surface.nodes.iter().filter_map(|node| body.of_most_stressed_material(*node, &rows)).collect();
     let pairs = SecondOrderShapes::pairs(large.len());
-    // The coordinate of a pair of two modes is twice their product.
-    let factors = pairs.iter().map(|[i, j]| if i == j { 1.0 } else { 2.0 });
-    let shape = |(k, factor): (usize, f64)| {
-        of_nodes.iter().map(|shapes| shapes[k].map(|s| (factor * s) as f32)).collect::<Vec<_>>()
-    };
+    let shape = |k: usize| of_nodes.iter().map(|shapes| shapes[k].map(|s| s as f32)).collect::<Vec<_>>();
     Some(StressField {
         unit: UnitLabels::from(&scene.units).stress(),
-        shapes: std::iter::repeat_n(1.0, shapes).chain(factors).enumerate().map(shape).collect(),
+        shapes: (0..shapes + pairs.len()).map(shape).collect(),
         products: pairs.iter().map(|pair| pair.map(|i| large[i])).collect(),
     })
 }

@@ -10,7 +10,7 @@ use crate::effects;
 use crate::json;
 use crate::modes::frequency_unit;
 use crate::peak_stress::PeakStress;
-use crate::report::{BodyReport, MeshReport, Times, quantity, size_in_words};
+use crate::report::{BodyReport, MeshReport, Times, quantity, size_and_mass};
 use crate::units::UnitLabels;
 
 /// What `flexframe run` says at its end.
@@ -107,12 +107,7 @@ impl fmt::Display for RunReport {
         if let Some(mesh) = &self.mesh {
             writeln!(f, "  mesh     {mesh}")?;
         }
-        write!(
-            f,
-            "  body     {}{} {mass}, ",
-            self.mesh.as_ref().map_or_else(String::new, |mesh| size_in_words(mesh.size, length)),
-            quantity(self.body.mass)
-        )?;
+        write!(f, "  body     {}, ", size_and_mass(self.mesh.as_ref(), &self.body, length, mass))?;
         writeln!(f, "{}", self.body.modes_in_words(&frequency_unit(time)))?;
         if !self.effects.is_empty() {
             writeln!(f, "  effects  {}", effects::in_words(&self.effects))?;

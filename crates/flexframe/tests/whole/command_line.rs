@@ -257,8 +257,8 @@ fn the_tumbling_plate_turns_and_swings() {
     assert!(peak > 1.0, "{peak}");
 }
 
-/// A scene that takes no time.
-const COIN: &str = r#"
+/// A rigid body: a scene that takes no time.
+pub const COIN: &str = r#"
 title = "Coin"
 units = { length = "m", mass = "kg", time = "s" }
 [body.rigid]

@@ -8,6 +8,8 @@ use flexframe::failure::Kind;
 use serde_json::Value;
 use tempfile::TempDir;
 
+use crate::command_line::COIN;
+
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").canonicalize().unwrap()
 }
@@ -168,18 +170,7 @@ fn a_refused_model_a_failed_run_and_a_file_in_the_way_differ() {
 #[test]
 fn a_body_without_modes_has_no_pictures_of_them() {
     let ring = Ring::new();
-    let coin = r#"
-title = "Coin"
-units = { length = "m", mass = "kg", time = "s" }
-[body.rigid]
-mass = 2.0
-center_of_mass = [0.0, 0.0, 0.0]
-inertia = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.8]]
-[time]
-end = 0.1
-step = 1e-2
-"#;
-    let coin = ring.file("coin.toml", coin);
+    let coin = ring.file("coin.toml", COIN);
     let stiff = ring.scene(&[("flexible = 6", "flexible = 0"), ("damping_ratio = 0.01", "")]);
     for (scene, key) in [(&coin, "body.rigid"), (&stiff, "modes.flexible")] {
         let object = failure(Kind::Input, &["modes", scene, "-o", &ring.out(), "--json"]);

@@ -5,7 +5,7 @@ use faer::{ColRef, Mat};
 use modal::{ModalError, Modes};
 
 use super::error::BuildError;
-use super::mesh_model::MeshModel;
+use super::mesh_model::{MeshModel, shapes_of};
 
 /// What is known of the modes that may bend the body far.
 pub(super) struct Backbones {
@@ -49,8 +49,7 @@ pub(super) fn backbones(model: &MeshModel<'_>, modes: &Modes, advice: &Advice) -
     if large.is_empty() {
         return Ok(Backbones { of_modes, derivatives: Derivatives::none() });
     }
-    let nodes = modes.shapes.nrows();
-    let shapes = Mat::from_fn(nodes, large.len(), |i, j| modes.shapes[(i, large[j])]);
+    let shapes = shapes_of(modes, &large);
     let pairs: Vec<[usize; 2]> = (0..large.len()).map(|j| [j, j]).collect();
     let quadruples: Vec<[usize; 4]> = (0..large.len()).map(|j| [j; 4]).collect();
     let forces = solver.second_order_forces(shapes.as_ref(), &pairs)?;

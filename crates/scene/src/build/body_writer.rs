@@ -10,6 +10,7 @@ use fem_tet10::{Materials, Mesh};
 use frames_rk4::Manifold;
 use modal::{Modes, SecondOrderShapes};
 
+use super::answer::by_columns;
 use super::assembly::{Assembled, Assembly};
 use super::error::BuildError;
 use super::mesh_arrays::MeshArrays;
@@ -254,7 +255,7 @@ impl Named<'_> {
             &unit,
             "mesh",
             description,
-            Numbers::F64(columns(rigid)),
+            Numbers::F64(by_columns(rigid)),
         );
     }
 
@@ -272,7 +273,7 @@ impl Named<'_> {
         let of_each = |quantity: &str| format!("{quantity} of each {what}");
         let of_shapes = of_each("displacement of each node in a unit of the modal coordinate");
         let unit = format!("{mass}^-0.5");
-        add("shapes", &[count, nodes, 3], &unit, "mesh", of_shapes, columns(shapes));
+        add("shapes", &[count, nodes, 3], &unit, "mesh", of_shapes, by_columns(shapes));
         add("frequencies", &[count], &hertz, "none", of_each("frequency"), frequencies);
         add("circular_frequencies", &[count], &format!("rad/{time}"), "none", of_each("circular frequency"), circular);
         let ratios = damping.get(which).unwrap_or_default().to_vec();
@@ -294,7 +295,7 @@ impl Named<'_> {
         };
         let rows = |matrix: &nalgebra::Matrix3<f64>| matrix.transpose().as_slice().to_vec();
         let matrices = |matrices: &mut dyn Iterator<Item = &Mat<f64>>| {
-            matrices.flat_map(|matrix| columns(matrix.transpose())).collect::<Vec<f64>>()
+            matrices.flat_map(|matrix| by_columns(matrix.transpose())).collect::<Vec<f64>>()
         };
         add("mass", &[], &mass, "none", "total mass m", vec![body.mass]);
         add("center_of_mass", &[3], &length, "mesh", "centre of mass", body.center_of_mass.as_slice().to_vec());
@@ -362,7 +363,7 @@ impl Named<'_> {
         let description =
             "displacement of each node in a unit of the coordinate of each shape that only follows large modes";
         let shape = [following.ncols(), following.nrows() / 3, 3];
-        add("shapes", &shape, &format!("{mass}^-0.5"), "mesh", description, Numbers::F64(columns(following)));
+        add("shapes", &shape, &format!("{mass}^-0.5"), "mesh", description, Numbers::F64(by_columns(following)));
     }
 
     /// The stress of each coordinate, and of each product of two large modes.
@@ -385,11 +386,7 @@ impl Named<'_> {
         let numbers = Numbers::F64(linear.concat());
         self.add("stress/shapes", &[linear.len(), sites, 6], &unit, "mesh", &description, numbers);
         if large > 0 {
-            let of_pair = |([j, k], stress): (&[usize; 2], &Vec<f64>)| {
-                let factor = if j == k { 1.0 } else { 2.0 };
-                stress.iter().map(move |s| factor * s).collect::<Vec<_>>()
-            };
-            let numbers = Numbers::F64(pairs.iter().zip(second).flat_map(of_pair).collect());
+            let numbers = Numbers::F64(second.concat());
             let description = format!("stress of a unit of q_j q_k of each of large_deflection/pairs: {order}");
             let (shape, unit) = ([second.len(), sites, 6], format!("{length}^-3 {time}^-2"));
             self.add("stress/products", &shape, &unit, "mesh", &description, numbers);
@@ -415,8 +412,4 @@ impl Named<'_> {
             words(starts),
         );
     }
-}
-
-fn columns(matrix: MatRef<'_, f64>) -> Vec<f64> {
-    matrix.col_iter().flat_map(|column| column.iter().copied()).collect()
 }

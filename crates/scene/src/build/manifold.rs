@@ -7,7 +7,7 @@ use modal::{Modes, SecondOrderShapes};
 
 use super::backbones::Derivatives;
 use super::error::{BuildError, modal};
-use super::mesh_model::MeshModel;
+use super::mesh_model::{MeshModel, shapes_of};
 use super::statics::Statics;
 use super::stress::{DRIVE, Stress};
 
@@ -47,7 +47,7 @@ impl LargeDeflection {
         of_spin: Option<&[Mat<f64>; 6]>,
     ) -> Result<Self, BuildError> {
         let solver = model.solver;
-        let of_large = columns_of(modes, large);
+        let of_large = shapes_of(modes, large);
         let pairs = SecondOrderShapes::pairs(large.len());
         // The energy is the same with the pairs in each other's place.
         let halves = (0..pairs.len()).flat_map(|a| (a..pairs.len()).map(move |b| [a, b]));
@@ -191,14 +191,10 @@ fn second_order_forces(
     Ok(found)
 }
 
-fn columns_of(modes: &Modes, large: &[usize]) -> Mat<f64> {
-    Mat::from_fn(modes.shapes.nrows(), large.len(), |i, j| modes.shapes[(i, large[j])])
-}
-
 impl LargeShapes {
     /// The geometric stiffness of each large mode in the `modes` of the motion.
     fn stiffness(&self, model: &MeshModel<'_>, modes: &Modes, terms: GeometricTerms) -> Result<OfLarge, BuildError> {
-        let of_large = columns_of(modes, &self.shapes.large);
+        let of_large = shapes_of(modes, &self.shapes.large);
         Ok(OfLarge { terms, stiffness: model.solver.stress_stiffness(of_large.as_ref(), modes, terms)? })
     }
 

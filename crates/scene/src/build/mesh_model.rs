@@ -1,8 +1,9 @@
 //! The finite-element model of a scene.
 
+use faer::Mat;
 use fem_tet10::Mesh;
 use frames_rk4::Drive;
-use modal::Support;
+use modal::{Modes, Support};
 
 use super::loads::MeshLoad;
 use super::structure::Structure;
@@ -17,4 +18,9 @@ pub(super) struct MeshModel<'a> {
     /// Those that may act.
     pub loads: Vec<MeshLoad>,
     pub drive: Option<Drive>,
+}
+
+/// The shapes (3n×k) of some modes, numbered from 0.
+pub(super) fn shapes_of(modes: &Modes, list: &[usize]) -> Mat<f64> {
+    Mat::from_fn(modes.shapes.nrows(), list.len(), |i, j| modes.shapes[(i, list[j])])
 }

@@ -16,7 +16,7 @@ use modal::{Modes, SecondOrderShapes};
 use nalgebra::Vector3;
 
 use super::error::{BuildError, refuse};
-use super::mesh_model::MeshModel;
+use super::mesh_model::{MeshModel, shapes_of};
 use super::site_stress::{SiteStress, combined};
 use super::stress_left_out::LeftOut;
 use super::structure::Structure;
@@ -154,7 +154,7 @@ impl BodyStress {
         let mut coordinates = vec![0.0; manifold.body().flexible()];
         manifold.coordinates(q, &mut coordinates);
         let large = manifold.large();
-        let product = |[i, j]: [usize; 2]| if i == j { 1.0 } else { 2.0 } * q[large[i]] * q[large[j]];
+        let product = |[i, j]: [usize; 2]| q[large[i]] * q[large[j]];
         coordinates.extend(SecondOrderShapes::pairs(large.len()).into_iter().map(product));
         coordinates
     }
@@ -174,10 +174,12 @@ fn of_coordinates(
     let Some((manifold, extended)) = large else { return solver.nodal_stress(modes.shapes.as_ref()) };
     let linear = solver.nodal_stress(extended.shapes.as_ref())?;
     let large = manifold.large();
-    let of_large = Mat::from_fn(modes.shapes.nrows(), large.len(), |i, j| modes.shapes[(i, large[j])]);
-    let second = solver.second_order_nodal_stress(of_large.as_ref(), &SecondOrderShapes::pairs(large.len()))?;
+    let pairs = SecondOrderShapes::pairs(large.len());
+    let second = solver.second_order_nodal_stress(shapes_of(modes, large).as_ref(), &pairs)?;
+    // A product of two modes stands for both orders of its pair.
+    let factor = |[j, k]: [usize; 2]| if j == k { 1.0 } else { 2.0 };
     let first = linear.ncols();
     Ok(Mat::from_fn(linear.nrows(), first + second.ncols(), |i, j| {
-        if j < first { linear[(i, j)] } else { second[(i, j - first)] }
+        if j < first { linear[(i, j)] } else { factor(pairs[j - first]) * second[(i, j - first)] }
     }))
 }
