@@ -104,7 +104,7 @@ impl From<StrainError> for LinearStrainRow {
 }
 
 /// How far the advice has come.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum AdviseProgress {
     /// A model is being built.
     Build(BuildProgress),

@@ -9,7 +9,8 @@ use flexframe::cost::CostProgress;
 use flexframe::run::RunProgress;
 use flexframe::sweep::SweepProgress;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use modal::Progress;
+use memory::Bytes;
+use modal::{Forecast, Progress};
 use scene::BuildProgress;
 
 /// Work shorter than this needs no bar.
@@ -21,7 +22,7 @@ const LINE_INTERVAL: Duration = Duration::from_secs(10);
 /// Shows how far the work is.
 pub struct Bar {
     started: Instant,
-    phase: &'static str,
+    phase: String,
     bar: ProgressBar,
     /// Where there is no terminal: lines, and the time from the start at which the next one is due.
     next_line: Option<Duration>,
@@ -32,14 +33,20 @@ impl Bar {
     pub fn new(silent: bool) -> Self {
         let lines = !silent && !io::stderr().is_terminal();
         let next_line = lines.then_some(LINE_INTERVAL);
-        Self { started: Instant::now(), phase: "", bar: ProgressBar::hidden(), next_line }
+        Self { started: Instant::now(), phase: String::new(), bar: ProgressBar::hidden(), next_line }
     }
 
     pub fn build(&mut self, progress: BuildProgress) {
         match progress {
             BuildProgress::Mesh => self.show("reading the mesh", None),
             BuildProgress::Assembly => self.show("assembling", None),
-            BuildProgress::Modes(Progress::Factorizing) => self.show("factoring K + sM", None),
+            BuildProgress::Modes(Progress::Ordering) => self.show("ordering the unknowns", None),
+            BuildProgress::Modes(Progress::Factorizing(forecast)) => {
+                if forecast.time.is_some_and(|time| time >= LINE_INTERVAL) {
+                    self.next_line = self.next_line.map(|_| Duration::ZERO);
+                }
+                self.show(&factoring(&forecast), None);
+            }
             BuildProgress::Modes(Progress::Lanczos { converged, requested }) => {
                 self.show("finding modes", Some((converged as u64, requested as u64)));
             }
@@ -82,7 +89,7 @@ impl Bar {
         }
     }
 
-    fn show(&mut self, phase: &'static str, done: Option<(u64, u64)>) {
+    fn show(&mut self, phase: &str, done: Option<(u64, u64)>) {
         if let Some(due) = self.next_line {
             let now = self.started.elapsed();
             if now >= due {
@@ -95,14 +102,14 @@ impl Bar {
         }
         if phase != self.phase {
             self.bar.finish_and_clear();
-            self.phase = phase;
+            self.phase = phase.to_owned();
             self.bar = match done {
                 Some((_, total)) => ProgressBar::with_draw_target(Some(total), ProgressDrawTarget::hidden())
                     .with_style(style("{msg} {wide_bar} {percent} %, {eta} left")),
                 None => ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden())
                     .with_style(style("{spinner} {msg}, {elapsed}")),
             }
-            .with_message(phase);
+            .with_message(phase.to_owned());
         }
         if self.bar.is_hidden() && self.started.elapsed() > PATIENCE {
             self.bar.set_draw_target(ProgressDrawTarget::stderr_with_hz(10));
@@ -120,6 +127,12 @@ impl Drop for Bar {
     fn drop(&mut self) {
         self.bar.finish_and_clear();
     }
+}
+
+/// Such as "factoring K + sM (1.5 GB at the most, about 40 s)".
+fn factoring(forecast: &Forecast) -> String {
+    let time = forecast.time.map_or_else(String::new, |time| format!(", about {:.0} s", time.as_secs_f64().max(1.0)));
+    format!("factoring K + sM ({} at the most{time})", Bytes(forecast.peak_bytes))
 }
 
 fn style(template: &str) -> ProgressStyle {

@@ -1,7 +1,13 @@
-//! The memory that a solution takes, foretold from sizes: by the symbolic factorisation before the numeric one.
+//! The memory and the time that a solution takes, foretold by the symbolic factorisation before the numeric one.
 
+use std::time::{Duration, Instant};
+
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::cholesky::llt::factor::{cholesky_in_place, cholesky_in_place_scratch};
 use faer::sparse::SparseColMatRef;
+use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
 use faer::sparse::linalg::cholesky::{SymbolicCholesky, SymbolicCholeskyRaw};
+use faer::{Mat, Par, Spec};
 
 /// Bytes of a number or an index.
 const WORD: usize = 8;
@@ -9,6 +15,62 @@ const WORD: usize = 8;
 const BLOCKS: usize = 5;
 /// What faer's products of matrices take as scratch where the processor does not tell the size of its caches.
 const CACHE: usize = 32 << 20;
+
+/// Factors of fewer multiplications take less than about a second: their time is not foretold.
+const SHORT: f64 = 5e9;
+/// Rows of the dense matrix whose factorisation tells how fast this machine is.
+const TRIAL: usize = 768;
+/// A sparse factor is made at this part of the speed of that dense one.
+const SPARSE_SPEED: f64 = 0.6;
+
+/// What the numeric factorisation is going to take, by the symbolic one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Forecast {
+    /// Entries of the factor.
+    pub factor_entries: usize,
+    /// Multiplications (each with an addition) that make it.
+    pub multiplications: f64,
+    /// Bytes that are held at the most until the modes are found, with K and M.
+    pub peak_bytes: usize,
+    /// Time of the factorisation, by a trial on this machine; only where it may come to a second and more.
+    pub time: Option<Duration>,
+}
+
+impl Forecast {
+    pub(crate) fn new(symbolic: &SymbolicCholesky<usize>, peak_bytes: usize, par: Par) -> Self {
+        let multiplications = match symbolic.raw() {
+            // Its columns are short, and it has no long ones by choice: a simplicial factor is never slow.
+            SymbolicCholeskyRaw::Simplicial(simplicial) => simplicial.len_val() as f64,
+            SymbolicCholeskyRaw::Supernodal(supernodal) => multiplications(supernodal),
+        };
+        let time = (multiplications > SHORT)
+            .then(|| Duration::try_from_secs_f64(multiplications / (SPARSE_SPEED * speed(par))).ok())
+            .flatten();
+        Self { factor_entries: symbolic.len_val(), multiplications, peak_bytes, time }
+    }
+}
+
+/// Of a factor: a column with c entries below its diagonal takes (c+1)²/2.
+fn multiplications(symbolic: &SymbolicSupernodalCholesky<usize>) -> f64 {
+    let of_supernode = |s: usize| -> f64 {
+        let width = symbolic.supernode_end()[s] - symbolic.supernode_begin()[s];
+        let below = symbolic.supernode(s).pattern().len();
+        (1..=width).map(|column| ((below + column) as f64).powi(2) / 2.0).sum()
+    };
+    (0..symbolic.n_supernodes()).map(of_supernode).sum()
+}
+
+/// Multiplications a second in the factorisation of a dense matrix.
+fn speed(par: Par) -> f64 {
+    let mut matrix = Mat::from_fn(TRIAL, TRIAL, |i, j| if i == j { TRIAL as f64 } else { 0.5 });
+    let scratch = cholesky_in_place_scratch::<f64>(TRIAL, par, Spec::default());
+    let Ok(mut scratch) = MemBuffer::try_new(scratch) else { return f64::INFINITY };
+    let started = Instant::now();
+    let done =
+        cholesky_in_place(matrix.as_mut(), Default::default(), par, MemStack::new(&mut scratch), Spec::default());
+    let time = started.elapsed().as_secs_f64();
+    if done.is_err() { f64::INFINITY } else { (TRIAL as f64).powi(3) / 6.0 / time }
+}
 
 /// Sizes of K and M, and what follows from them.
 #[derive(Debug, Clone, Copy)]
@@ -65,23 +127,27 @@ impl Foretold {
     }
 
     /// The search for modes with a basis of so many vectors, beside the factor.
-    pub(crate) fn of_basis(&self, vectors: usize, block: usize) -> usize {
+    fn of_basis(&self, vectors: usize, block: usize) -> usize {
         WORD * self.unknowns * (2 * vectors + BLOCKS * block)
     }
 
     /// Rayleigh–Ritz for so many shapes: them, as they come and go, and twice their products with K and M.
-    pub(crate) fn of_ritz(&self, shapes: usize) -> usize {
+    fn of_ritz(&self, shapes: usize) -> usize {
         of_vectors(self.unknowns, 6 * shapes)
     }
 
+    /// The search for so many modes with a basis of `size` vectors, and their reduction.
+    pub(crate) fn of_search(&self, size: usize, block: usize, shapes: usize) -> usize {
+        self.of_basis(size, block).max(self.of_ritz(shapes)).max(self.of_reduction(shapes))
+    }
+
     /// The reduction to so many shapes, which are there besides: they, their products with M, and both by axes.
-    pub(crate) fn of_reduction(&self, shapes: usize) -> usize {
+    fn of_reduction(&self, shapes: usize) -> usize {
         of_vectors(self.unknowns, 5 * shapes + 4 * REDUCED)
     }
 
-    /// The most that is held at a time where `size` vectors come up in the search for `shapes`.
-    pub(crate) fn peak(&self, size: usize, block: usize, shapes: usize) -> usize {
-        let search = self.of_basis(size, block).max(self.of_ritz(shapes)).max(self.of_reduction(shapes));
+    /// The most that is held at a time where the `search` for modes takes so many bytes beside the factor.
+    pub(crate) fn peak(&self, search: usize) -> usize {
         self.matrices + self.of_ordering().max(self.shifted + self.factor + self.scratch).max(self.factor + search)
     }
 }
@@ -101,4 +167,30 @@ pub(crate) fn of_dense_products(threads: usize) -> usize {
         text.trim().strip_suffix('K')?.parse::<usize>().ok()?.checked_mul(1024)
     };
     2 * threads * (0..4).filter_map(size).fold(CACHE, usize::max)
+}
+
+#[cfg(test)]
+mod tests {
+    use faer::Side;
+    use faer::sparse::SymbolicSparseColMat;
+    use faer::sparse::linalg::cholesky::{CholeskySymbolicParams, SymmetricOrdering, factorize_symbolic_cholesky};
+
+    use super::*;
+
+    #[test]
+    fn a_dense_factor_takes_a_sixth_of_the_cube_of_its_size() {
+        let n = 240;
+        let (start, rows) = ((0..=n).map(|j| n * j).collect(), (0..n * n).map(|entry| entry % n).collect());
+        let pattern = SymbolicSparseColMat::new_checked(n, n, start, None, rows);
+        let params = CholeskySymbolicParams::default();
+        let symbolic =
+            factorize_symbolic_cholesky(pattern.as_ref(), Side::Lower, SymmetricOrdering::Identity, params).unwrap();
+        assert!(matches!(symbolic.raw(), SymbolicCholeskyRaw::Supernodal(_)));
+        let forecast = Forecast::new(&symbolic, 0, Par::Seq);
+        let exact = (1..=n).map(|column| (column as f64).powi(2) / 2.0).sum::<f64>();
+        assert_eq!(forecast.multiplications, exact);
+        assert_eq!(forecast.time, None);
+        // 0.1 to 100 thousand million a second: anything else is a fault of the trial.
+        assert!((1e8..1e11).contains(&speed(Par::Seq)));
+    }
 }

@@ -52,6 +52,7 @@ mod turned;
 
 pub use error::ModalError;
 pub use fields::{acceleration_fields, centrifugal_fields, turning_field};
+pub use foretold::Forecast;
 pub use mass::NodalMass;
 pub use mass_matrix::{GeneralMass, MassMatrix};
 pub use reduced::{BodyPoint, Constants, ReducedBody};

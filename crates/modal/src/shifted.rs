@@ -19,7 +19,7 @@ use faer::{Accum, Conj, Mat, MatMut, Par, Side, Spec};
 use crate::constraints::Constraints;
 use crate::dense::whitening;
 use crate::error::ModalError;
-use crate::foretold::{Foretold, of_dense_products};
+use crate::foretold::{Forecast, Foretold, of_dense_products};
 use crate::ordering::nested_dissection;
 use crate::products::symmetric_product;
 use crate::tall;
@@ -52,12 +52,14 @@ pub(crate) struct Shifted {
 
 impl Shifted {
     /// Orders and factors `K + shift·M`, where there is memory for it and for what `search` says of what comes after.
+    /// `progress` hears what the factorisation is going to take.
     pub(crate) fn factor(
         stiffness: SparseColMatRef<'_, usize, f64>,
         mass: SparseColMatRef<'_, usize, f64>,
         shift: f64,
         constraints: &Constraints,
         search: impl Fn(&Foretold) -> usize,
+        progress: impl FnOnce(Forecast),
     ) -> Result<Self, ModalError> {
         let start = Instant::now();
         let size = stiffness.ncols();
@@ -79,13 +81,15 @@ impl Shifted {
         .map_err(|reason| failed(size, reason))?;
         let ordering_time = start.elapsed();
 
-        let start = Instant::now();
         let par = parallelism(&symbolic);
         let needed = symbolic.factorize_numeric_llt_scratch::<f64>(par, Spec::default());
         let memory = memory.with_factor(&symbolic, needed.unaligned_bytes_required());
         let is_dense = matches!(symbolic.raw(), SymbolicCholeskyRaw::Supernodal(_));
         let reserve = if is_dense { of_dense_products(par.degree()) } else { 0 };
-        memory::check_with_reserve(FACTOR, memory.of_factor(search(&memory)), reserve)?;
+        let search = search(&memory);
+        memory::check_with_reserve(FACTOR, memory.of_factor(search), reserve)?;
+        progress(Forecast::new(&symbolic, memory.peak(search), par));
+        let start = Instant::now();
         let mut values = memory::zeros(FACTOR, symbolic.len_val())?;
         let mut scratch = buffer(needed)?;
         symbolic

@@ -8,7 +8,7 @@ use faer::{ColRef, Mat};
 
 use crate::constraints::Constraints;
 use crate::error::ModalError;
-use crate::foretold::Foretold;
+use crate::foretold::{Forecast, Foretold};
 use crate::lanczos::{BLOCK, FIXED, largest_pairs, room};
 use crate::mass_matrix::{MassMatrix, freedoms};
 use crate::rigid::RigidModes;
@@ -73,10 +73,12 @@ pub struct SolveStats {
 }
 
 /// How far a solution has come.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Progress {
-    /// K + sM is being ordered and factored.
-    Factorizing,
+    /// An order of the unknowns is being sought in which the factor of K + sM has few entries.
+    Ordering,
+    /// K + sM is being factored.
+    Factorizing(Forecast),
     /// Modes that have converged, of those asked for.
     Lanczos {
         /// Converged.
@@ -196,18 +198,14 @@ impl<'a> Solver<'a> {
                 force_residuals: none(),
                 stats: SolveStats {
                     unknowns,
-                    peak_bytes: Foretold::new(self.stiffness, self.sparse_mass, FIXED).peak(0, 0, 0),
+                    peak_bytes: Foretold::new(self.stiffness, self.sparse_mass, FIXED).peak(0),
                     preparation_time: self.preparation_time,
                     ..SolveStats::default()
                 },
             });
         }
-        if self.factor.get().is_none() {
-            progress(Progress::Factorizing);
-        }
-        let factor = self.factor_for(|memory| {
-            memory.of_basis(FIXED + room(flexible, available), BLOCK).max(memory.of_reduction(flexible))
-        })?;
+        let basis = FIXED + room(flexible, available);
+        let factor = self.factor_for(|memory| memory.of_search(basis, BLOCK, flexible), &mut progress)?;
         let mut stats = SolveStats {
             shift: factor.shift,
             unknowns,
@@ -224,7 +222,7 @@ impl<'a> Solver<'a> {
         stats.preparation_time = self.preparation_time + factor.estimate_time;
         stats.block_solves = pairs.block_solves;
         stats.basis_size = pairs.basis_size;
-        stats.peak_bytes = factor.memory.peak(FIXED + pairs.basis_size, BLOCK, flexible);
+        stats.peak_bytes = factor.memory.peak(factor.memory.of_search(FIXED + pairs.basis_size, BLOCK, flexible));
         stats.lanczos_time = started.elapsed();
 
         let started = Instant::now();
@@ -239,18 +237,25 @@ impl<'a> Solver<'a> {
 
     /// K + sM, factored at the first call.
     pub(crate) fn factor(&self) -> Result<&Shifted, ModalError> {
-        self.factor_for(|memory| memory.of_basis(FIXED, BLOCK))
+        self.factor_for(|memory| memory.of_search(FIXED, BLOCK, 0), &mut |_| ())
     }
 
     /// The same, where there is memory for the `search` that follows.
-    fn factor_for(&self, search: impl Fn(&Foretold) -> usize) -> Result<&Shifted, ModalError> {
+    fn factor_for(
+        &self,
+        search: impl Fn(&Foretold) -> usize,
+        progress: &mut dyn FnMut(Progress),
+    ) -> Result<&Shifted, ModalError> {
         if let Some(factor) = self.factor.get() {
             return Ok(factor);
         }
+        progress(Progress::Ordering);
         let started = Instant::now();
         let shift = start::shift(self.stiffness, &self.mass, self.positions, &self.rigid)?;
         let estimate_time = started.elapsed();
-        let mut factor = Shifted::factor(self.stiffness, self.sparse_mass, shift, &self.constraints, search)?;
+        let mut factor = Shifted::factor(self.stiffness, self.sparse_mass, shift, &self.constraints, search, |forecast| {
+            progress(Progress::Factorizing(forecast));
+        })?;
         factor.estimate_time = estimate_time;
         Ok(self.factor.get_or_init(|| factor))
     }

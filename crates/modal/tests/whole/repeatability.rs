@@ -1,8 +1,26 @@
-//! Signs are fixed, and runs agree bit for bit on any number of threads.
+//! Signs are fixed, runs agree bit for bit on any number of threads, and what they take is told before.
 
-use modal::Modes;
+use modal::{Modes, Progress, Support};
 
 use crate::bodies::{block, mesh_file};
+
+#[test]
+fn the_factorisation_is_foretold_once_and_rightly() {
+    let body = block([40.0, 6.0, 6.0], [6, 2, 2]);
+    let solver = body.held(&Support::free());
+    let mut told = Vec::new();
+    let modes = solver.modes(4, |progress| told.push(progress)).unwrap();
+    let [Progress::Ordering, Progress::Factorizing(forecast), Progress::Lanczos { .. }, ..] = told[..] else {
+        panic!("{told:?}")
+    };
+    assert_eq!(forecast.factor_entries, modes.stats.factor_entries);
+    // The basis may become as large as there is room for, and mostly stays smaller.
+    assert!(forecast.peak_bytes >= modes.stats.peak_bytes, "{} < {}", forecast.peak_bytes, modes.stats.peak_bytes);
+    // The factor is there at the second call.
+    told.clear();
+    solver.modes(4, |progress| told.push(progress)).unwrap();
+    assert!(told.iter().all(|progress| matches!(progress, Progress::Lanczos { .. })), "{told:?}");
+}
 
 #[test]
 fn the_component_of_largest_magnitude_is_positive_and_the_first_node_breaks_ties() {

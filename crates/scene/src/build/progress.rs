@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 /// How far the building of a model has come.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum BuildProgress {
     /// The mesh is being read.
     Mesh,
