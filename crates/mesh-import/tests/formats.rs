@@ -1,5 +1,6 @@
 //! Each format with elements, groups, surfaces and node sets, in files of gmsh and meshio: what comes through, and what is
-//! said of the rest. Needs gmsh, and meshio in the Python that `FLEXFRAME_PYTHON` names (`./dev test` sees to both).
+//! said of the rest. Needs gmsh, meshio in the Python that `FLEXFRAME_PYTHON` names, and meshlane in that of
+//! `FLEXFRAME_MESHLANE` (`./dev test` sees to all).
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -9,6 +10,11 @@ use std::sync::OnceLock;
 
 use fem_tet10::{Material, Materials, Mesh, centroid_lumped_inertia};
 use mesh_import::{ImportError, ImportSettings, Imported, Reader, hash_of_mesh, read_mesh, reader_of};
+
+/// Names the Python that reads meshes.
+const PYTHON: &str = "FLEXFRAME_PYTHON";
+/// Names a Python with meshlane instead of meshio.
+const MESHLANE: &str = "FLEXFRAME_MESHLANE";
 
 const AS_IT_IS: ImportSettings = ImportSettings { mesh_size: None, raise_order: false };
 const RAISED: ImportSettings = ImportSettings { mesh_size: None, raise_order: true };
@@ -26,7 +32,8 @@ fn formats() -> &'static Formats {
 
 impl Formats {
     fn new() -> Self {
-        let formats = Self { folder: Path::new(env!("CARGO_TARGET_TMPDIR")).join("formats") };
+        let folder = if with_meshlane() { "formats_meshlane" } else { "formats" };
+        let formats = Self { folder: Path::new(env!("CARGO_TARGET_TMPDIR")).join(folder) };
         fs::create_dir_all(&formats.folder).unwrap();
         let geo = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scene/tests/data/bar.geo");
         fs::copy(geo, formats.path("bar.geo")).unwrap();
@@ -47,7 +54,7 @@ impl Formats {
              *SURFACE, NAME=whole, TYPE=ELEMENT\nbar, S2\n*SURFACE, NAME=none, TYPE=NODE\nsome,\n"
         );
         fs::write(formats.path("surfaces.inp"), inp + &more).unwrap();
-        let python = std::env::var_os("FLEXFRAME_PYTHON").unwrap_or_else(|| "python3".into());
+        let python = std::env::var_os(PYTHON).unwrap_or_else(|| "python3".into());
         let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/write_formats.py");
         let written =
             Command::new(python).arg(script).arg(formats.path("bar.msh")).arg(&formats.folder).output().unwrap();
@@ -67,6 +74,22 @@ impl Formats {
     fn read(&self, name: &str, settings: ImportSettings) -> Result<Imported, ImportError> {
         read_mesh(&self.path(name), &settings)
     }
+}
+
+/// Whether this process reads with meshlane.
+fn with_meshlane() -> bool {
+    std::env::var_os(MESHLANE).is_some_and(|python| std::env::var_os(PYTHON) == Some(python))
+}
+
+/// meshlane is the fork of meshio that is kept up: all tests of this file once more with it, in a process of their own.
+#[test]
+fn meshlane_reads_the_same() {
+    if with_meshlane() {
+        return;
+    }
+    let python = std::env::var_os(MESHLANE).expect("FLEXFRAME_MESHLANE names no Python with meshlane; use ./dev test");
+    let output = Command::new(std::env::current_exe().unwrap()).env(PYTHON, python).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stdout));
 }
 
 fn volume(mesh: &Mesh) -> f64 {
