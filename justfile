@@ -49,7 +49,7 @@ msrv:
 
 # The program, optimised: target/release/flexframe.
 build:
-    cargo build --release --quiet --package flexframe
+    cargo build --release --quiet
 
 # Make the meshes again from their .geo files (gmsh).
 mesh:
@@ -69,7 +69,7 @@ accuracy:
 stability:
     cargo run --release --quiet --package stability -- docs/stability.md
     FLEXFRAME_KILLS=200 cargo test --release --quiet --package results --test killed
-    FLEXFRAME_KILLS=40 cargo test --release --quiet --package flexframe --test faults
+    FLEXFRAME_KILLS=40 cargo test --release --quiet --test faults
 
 # Large deflection and stress against a nonlinear finite-element body, and the curves of docs/nonlinear.md (some minutes).
 nonlinear:
@@ -80,7 +80,7 @@ nonlinear:
 # Steps a second of every scheme on one core, and what each effect costs per step and in set-up.
 bench:
     cargo bench --quiet --package frames-rk4 --bench steps
-    cargo bench --quiet --package flexframe --bench effects
+    cargo bench --quiet --bench effects
 
 # Time `flexframe modes` against SciPy's eigsh with CHOLMOD on three meshes (some minutes; Python packages).
 bench-modes: build
@@ -93,10 +93,10 @@ h5py: build
     .tools/h5py/bin/pip install -q h5py
     .tools/h5py/bin/python crates/results/tests/read_with_h5py.py out/ring/ring.h5
     {{flexframe}} reduce examples/ring.toml -o out/ring/ring.body.h5 --matrices
-    {{flexframe}} run crates/flexframe/tests/bent_rod.toml -o out/bent --overwrite
-    {{flexframe}} reduce crates/flexframe/tests/bent_rod.toml -o out/bent/bent_rod.body.h5 --stress
+    {{flexframe}} run tests/bent_rod.toml -o out/bent --overwrite
+    {{flexframe}} reduce tests/bent_rod.toml -o out/bent/bent_rod.body.h5 --stress
     {{flexframe}} export out/bent/bent_rod.h5 --vtkhdf out/bent/bent_rod.vtkhdf --volume --overwrite
-    .tools/h5py/bin/python crates/flexframe/tests/read_body_with_h5py.py out/ring/ring.body.h5 out/ring/ring.h5 \
+    .tools/h5py/bin/python tests/read_body_with_h5py.py out/ring/ring.body.h5 out/ring/ring.h5 \
         out/bent/bent_rod.body.h5 out/bent/bent_rod.h5 out/bent/bent_rod.vtkhdf
 
 # Read exports with VTK's own readers, and compare them with the modes (Python packages, 150 MB).
@@ -107,7 +107,7 @@ paraview: build
     for cells in "" --volume; do \
         {{flexframe}} export out/paraview/ring.h5 --vtkhdf out/paraview/ring.vtkhdf --modes out/paraview/modes.vtkhdf \
             --vtu out/paraview/vtu --every 200 --overwrite $cells && \
-        .tools/paraview/bin/python crates/flexframe/tests/read_with_vtk.py \
+        .tools/paraview/bin/python tests/read_with_vtk.py \
             out/paraview/{ring.h5,ring.vtkhdf,modes.vtkhdf,vtu}; \
     done
 

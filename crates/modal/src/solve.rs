@@ -253,9 +253,10 @@ impl<'a> Solver<'a> {
         let started = Instant::now();
         let shift = start::shift(self.stiffness, &self.mass, self.positions, &self.rigid)?;
         let estimate_time = started.elapsed();
-        let mut factor = Shifted::factor(self.stiffness, self.sparse_mass, shift, &self.constraints, search, |forecast| {
-            progress(Progress::Factorizing(forecast));
-        })?;
+        let mut factor =
+            Shifted::factor(self.stiffness, self.sparse_mass, shift, &self.constraints, search, |forecast| {
+                progress(Progress::Factorizing(forecast));
+            })?;
         factor.estimate_time = estimate_time;
         Ok(self.factor.get_or_init(|| factor))
     }

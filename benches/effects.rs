@@ -3,7 +3,7 @@
 //!
 //! The last rows are the plate with ten modes, and with four of them large.
 //!
-//! `cargo bench -p flexframe --bench effects`. The time of a step is that of the loop alone on one core, the shortest of
+//! `cargo bench --bench effects`. The time of a step is that of the loop alone on one core, the shortest of
 //! several runs; set-up is what comes after mesh and matrices.
 
 use std::path::Path;

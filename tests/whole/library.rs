@@ -1,14 +1,14 @@
 //! The examples of library use, each held to its number.
 
-#[path = "../../../../examples/bounce.rs"]
+#[path = "../../examples/bounce.rs"]
 mod bounce;
-#[path = "../../../../examples/controller.rs"]
+#[path = "../../examples/controller.rs"]
 mod controller;
-#[path = "../../../../examples/own_integrator.rs"]
+#[path = "../../examples/own_integrator.rs"]
 mod own_integrator;
-#[path = "../../../../examples/own_matrices.rs"]
+#[path = "../../examples/own_matrices.rs"]
 mod own_matrices;
-#[path = "../../../../examples/spring_to_ground.rs"]
+#[path = "../../examples/spring_to_ground.rs"]
 mod spring_to_ground;
 
 #[test]

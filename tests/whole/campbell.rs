@@ -1,7 +1,7 @@
 //! `flexframe campbell` against rotating beams.
 
 use std::f64::consts::TAU;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::{Command, Output};
 
 use nalgebra::{DMatrix, DVector};
@@ -27,7 +27,7 @@ const THIN_BEAM: [(f64, [f64; 3], f64, Option<f64>); 8] = [
 ];
 
 fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
 }
 
 fn flexframe(arguments: &[&str]) -> Output {

@@ -9,13 +9,13 @@ mod spin;
 mod stress;
 mod top;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use flexframe::frames_rk4::Observation;
 use flexframe::scene::{Model, Scene};
 
 fn repository() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
 }
 
 /// The scene `examples/<name>.toml`.

@@ -9,7 +9,7 @@ use results::Results;
 use serde_json::Value;
 
 fn flexframe(arguments: &[&str], input: &str) -> Output {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut child = Command::new(env!("CARGO_BIN_EXE_flexframe"))
         .args(arguments)
         .current_dir(root)
@@ -44,7 +44,7 @@ fn values_are_set_from_the_command_line() {
 fn a_scene_comes_from_standard_input() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().to_str().unwrap();
-    let scene = include_str!("../../../../examples/heavy_top.toml");
+    let scene = include_str!("../../examples/heavy_top.toml");
     json(&flexframe(&["run", "-", "-o", out, "--json", "--set", "time.end=0.25"], scene));
     assert!(folder.path().join("stdin.h5").is_file());
     let broken = flexframe(&["run", "-", "-o", out], "title = 3\n");
