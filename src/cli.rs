@@ -13,7 +13,7 @@ use flexframe::export::{self, ExportRows, Exported, Motion};
 use flexframe::failure::{Details, Failure, FailureReport, Kind};
 use flexframe::figures::View;
 use flexframe::run::{RunProgress, RunSettings};
-use flexframe::sweep::SweepSettings;
+use flexframe::sweep::{Shard, SweepSettings};
 use flexframe::{advise, html_report, mode_shapes, modes, new_scene, paper, run, sweep};
 use scene::{BuildError, Cache, Flexible, ImportSettings, Scene, SceneError};
 
@@ -230,6 +230,15 @@ enum Command {
         /// The table to write [default: out/<name of the sweep file>.h5].
         #[arg(short, long, value_name = "FILE")]
         output: Option<PathBuf>,
+        /// Run a part of the rows only, such as 2/4: for several machines. Its table is <table>.2-of-4.h5.
+        #[arg(long, value_name = "I/N")]
+        shard: Option<Shard>,
+        /// Merge the tables of N shards into one.
+        #[arg(long, value_name = "N", conflicts_with_all = ["shard", "slurm"], value_parser = clap::value_parser!(u16).range(1..=10_000))]
+        merge: Option<u16>,
+        /// Print a script that runs the sweep as an array of N jobs of Slurm.
+        #[arg(long, value_name = "N", conflicts_with = "shard", value_parser = clap::value_parser!(u16).range(1..=10_000))]
+        slurm: Option<u16>,
         /// Replace the table, whatever is in it.
         #[arg(long)]
         overwrite: bool,
@@ -465,12 +474,22 @@ fn command(cli: Cli, json_errors: bool, cache: &Cache) -> Result<(), Box<dyn Fai
             drop(bar);
             output::list(&[output])
         }
-        Command::Sweep { sweep: file, output, overwrite, json } => {
+        Command::Sweep { sweep: file, output, shard, merge, slurm, overwrite, json } => {
             let output = output.unwrap_or_else(|| {
                 Path::new("out").join(file.file_stem().unwrap_or("sweep".as_ref())).with_extension("h5")
             });
-            let settings = SweepSettings { overwrite, threads: rayon::current_num_threads(), cache: cache.clone() };
-            let report = sweep::sweep(&file, &output, &settings, |p| bar.sweep(p))?;
+            if let Some(count) = slurm {
+                let script = sweep::slurm_script(&file, &output, count.into());
+                return Ok(output::written(write!(std::io::stdout(), "{script}"))?);
+            }
+            let report = match merge {
+                Some(count) => sweep::merge(&file, &output, count.into(), overwrite)?,
+                None => {
+                    let threads = rayon::current_num_threads();
+                    let settings = SweepSettings { overwrite, threads, cache: cache.clone(), shard };
+                    sweep::sweep(&file, &output, &settings, |p| bar.sweep(p))?
+                }
+            };
             drop(bar);
             output::print(&report, json)
         }

@@ -2,10 +2,11 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 use flexframe::run::{self, RunSettings};
 use flexframe::scene::{Cache, Scene};
-use flexframe::sweep::{SweepReport, SweepSettings, sweep};
+use flexframe::sweep::{Shard, SweepReport, SweepSettings, merge, sweep};
 
 const SCENE: &str = r#"
 title = "Blade"
@@ -57,7 +58,11 @@ impl Case {
     }
 
     fn run(&self, overwrite: bool) -> Result<SweepReport, String> {
-        let settings = SweepSettings { overwrite, threads: 3, cache: Cache::none() };
+        self.run_shard(overwrite, None)
+    }
+
+    fn run_shard(&self, overwrite: bool, shard: Option<Shard>) -> Result<SweepReport, String> {
+        let settings = SweepSettings { overwrite, threads: 3, cache: Cache::none(), shard };
         sweep(&self.path("sweep.toml"), &self.path("sweep.h5"), &settings, |_| ()).map_err(|error| error.to_string())
     }
 
@@ -133,6 +138,59 @@ fn rows_that_fail_are_marked_with_their_words_and_rows_that_are_done_are_kept() 
     let error = case.run(false).unwrap_err();
     assert!(error.contains("it is no table of a sweep"), "{error}");
     assert_eq!(fs::read(case.path("sweep.h5")).unwrap(), b"mine");
+}
+
+#[test]
+fn shards_of_a_sweep_merge_into_the_table_of_the_whole() {
+    let case = Case::new("[parameters]\n\"time.step\" = [1e-5, 2e-5, 1.0, 4e-5, 5e-5]");
+    let whole = case.run(false).unwrap();
+    let table = case.table("results/tip");
+    fs::remove_file(case.path("sweep.h5")).unwrap();
+
+    let shard = |text: &str| Some(text.parse::<Shard>().unwrap());
+    let first = case.run_shard(false, shard("1/3")).unwrap();
+    assert_eq!((first.rows, first.done, first.failures.len()), (2, 2, 0));
+    assert_eq!(first.output, case.path("sweep.1-of-3.h5"));
+    assert_eq!(case.run_shard(false, shard("3/3")).unwrap().failures.len(), 1);
+    let merged = |count| merge(&case.path("sweep.toml"), &case.path("sweep.h5"), count, false);
+    // The second has died before it wrote a table.
+    let report = merged(3).unwrap();
+    assert_eq!((report.done, report.unfinished), (2, vec!["2/3".parse().unwrap()]));
+    assert_eq!(case.table("status"), [1.0, 0.0, 2.0, 1.0, 0.0]);
+    // It is done again alone. What the others have done is not.
+    assert_eq!(case.run_shard(false, shard("2/3")).unwrap().done, 2);
+    let report = merged(3).unwrap();
+    assert_eq!((report.done, report.kept, report.unfinished), (4, 2, Vec::new()));
+    assert_eq!(report.failures, whole.failures);
+    let bits = |values: &[f64]| values.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
+    assert_eq!(bits(&case.table("results/tip")), bits(&table));
+    assert_eq!(case.run_shard(false, shard("1/3")).unwrap().kept, 2);
+    // Shards of another sweep are not taken.
+    case.write("[parameters]\n\"time.step\" = [1e-5]");
+    fs::remove_file(case.path("sweep.h5")).unwrap();
+    let error = merged(3).unwrap_err().to_string();
+    assert!(error.contains("sweep.1-of-3.h5") && error.contains("it is of another sweep"), "{error}");
+    assert!(!case.path("sweep.h5").exists());
+}
+
+#[test]
+fn the_script_for_slurm_runs_a_shard_for_each_number() {
+    let case = Case::new("[parameters]\n\"time.step\" = [1e-5, 2e-5]");
+    let program = Path::new(env!("CARGO_BIN_EXE_flexframe"));
+    let paths = format!("{}:{}", program.parent().unwrap().display(), std::env::var("PATH").unwrap());
+    let run = |command: &mut Command| {
+        let output = command.env("PATH", &paths).current_dir(case.folder.path()).output().unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        output.stdout
+    };
+    let script = run(Command::new(program).args(["sweep", "sweep.toml", "-o", "it's.h5", "--slurm", "2"]));
+    fs::write(case.path("job.sh"), script).unwrap();
+    for number in ["1", "2"] {
+        run(Command::new("bash").args(["job.sh"]).env("SLURM_ARRAY_TASK_ID", number));
+    }
+    let merged = run(Command::new(program).args(["sweep", "sweep.toml", "-o", "it's.h5", "--merge", "2", "--json"]));
+    let report: serde_json::Value = serde_json::from_slice(&merged).unwrap();
+    assert_eq!((&report["done"], &report["unfinished"]), (&2.into(), &serde_json::json!([])));
 }
 
 #[test]

@@ -5,6 +5,7 @@
 
 mod error;
 mod plan;
+mod shard;
 mod table;
 
 use std::collections::BTreeMap;
@@ -26,6 +27,7 @@ use plan::{Asked, Plan};
 use table::{RowState, Table};
 
 pub use error::SweepError;
+pub use shard::{Shard, slurm_script};
 
 /// The table is written again so often.
 const WRITE_INTERVAL: Duration = Duration::from_secs(1);
@@ -53,6 +55,8 @@ pub struct SweepSettings {
     pub threads: usize,
     /// Where bodies are kept from run to run.
     pub cache: Cache,
+    /// Only the rows of this part of the sweep, into a table of its own ([`Shard::table`]).
+    pub shard: Option<Shard>,
 }
 
 /// What `flexframe sweep` says at its end.
@@ -63,10 +67,12 @@ pub struct SweepReport {
     /// The table.
     #[serde(serialize_with = "json::path")]
     pub output: PathBuf,
-    /// Rows of the table.
+    /// Rows of the table; with a shard, those that are the shard's.
     pub rows: usize,
     /// Rows that are done, those of an earlier run of the sweep among them.
     pub done: usize,
+    /// Shards without a table or with rows that were not run, such as "2/4", where shards were merged.
+    pub unfinished: Vec<Shard>,
     /// Rows that were done before.
     pub kept: usize,
     /// Why rows have no results, by their number from 0.
@@ -75,7 +81,7 @@ pub struct SweepReport {
     pub reductions: usize,
 }
 
-/// Runs a sweep and writes its table to `output`. Rows that are in it already are kept.
+/// Runs a sweep and writes its table to `output`, or that of its shard beside it. Rows that are in it already are kept.
 ///
 /// # Errors
 /// [`SweepError`]; what fails in one row is in the table.
@@ -93,12 +99,16 @@ pub fn sweep(
     if let Some(folder) = output.parent().filter(|folder| !folder.as_os_str().is_empty()) {
         std::fs::create_dir_all(folder).map_err(WriteError::of(folder))?;
     }
+    let of_shard = settings.shard.map(|shard| shard.table(output));
+    let output = of_shard.as_deref().unwrap_or(output);
+    let is_mine = |row: usize| settings.shard.is_none_or(|shard| shard.has(row));
     let mut table = Table::open(output, &plan, settings.overwrite)?;
     let [kept, _] = table.counts();
+    let mine = (0..plan.rows.len()).filter(|row| is_mine(*row)).count();
     let mut groups: BTreeMap<String, Vec<usize>> = BTreeMap::new();
     for (i, row) in plan.rows.iter().enumerate() {
         match row {
-            _ if table.rows[i] != RowState::Open => {}
+            _ if table.rows[i] != RowState::Open || !is_mine(i) => {}
             Ok(scene) => groups.entry(body(scene)).or_default().push(i),
             Err(words) => table.rows[i] = RowState::Failed(words.clone()),
         }
@@ -124,7 +134,7 @@ pub fn sweep(
         run_rows(&plan, rows, &builder, temporary.path(), settings.threads, |row, outcome| {
             table.rows[row] = outcome;
             let [done, failed] = table.counts();
-            progress(SweepProgress::Rows { done: (done + failed) as u64, total: table.rows.len() as u64 });
+            progress(SweepProgress::Rows { done: (done + failed) as u64, total: mine as u64 });
             if written.elapsed() >= WRITE_INTERVAL {
                 table.write(output, &plan, false)?;
                 written = Instant::now();
@@ -137,11 +147,50 @@ pub fn sweep(
     Ok(SweepReport {
         title: plan.title,
         output: output.to_owned(),
-        rows: table.rows.len(),
+        rows: mine,
         done,
+        unfinished: Vec::new(),
         kept,
         failures: table.failures(),
         reductions: cache.notes().assembled,
+    })
+}
+
+/// Merges the tables of all `count` shards of a sweep into the table `output`. Rows that no shard has run stay open: a
+/// shard that was cut off is run again and merged again, or the sweep goes on without shards.
+///
+/// # Errors
+/// [`SweepError`]: the sweep cannot be read, or a table is of another one.
+pub fn merge(path: &Path, output: &Path, count: usize, overwrite: bool) -> Result<SweepReport, SweepError> {
+    let plan = Plan::read(path, &Cache::none())?;
+    // Rows that the table has already stay, and one of another sweep is not lost.
+    let mut table = Table::open(output, &plan, overwrite)?;
+    let [kept, _] = table.counts();
+    let mut unfinished = Vec::new();
+    for shard in Shard::all(count) {
+        let found = Table::read(&shard.table(output), &plan)?;
+        for (row, state) in table.rows.iter_mut().enumerate().filter(|(row, _)| shard.has(*row)) {
+            if *state == RowState::Open
+                && let Some(of_shard) = &found
+            {
+                *state = of_shard.rows[row].clone();
+            }
+            if *state == RowState::Open && unfinished.last() != Some(&shard) {
+                unfinished.push(shard);
+            }
+        }
+    }
+    table.write(output, &plan, true)?;
+    let [done, _] = table.counts();
+    Ok(SweepReport {
+        title: plan.title,
+        output: output.to_owned(),
+        rows: table.rows.len(),
+        done,
+        unfinished,
+        kept,
+        failures: table.failures(),
+        reductions: 0,
     })
 }
 
@@ -225,6 +274,12 @@ impl fmt::Display for SweepReport {
         }
         if self.failures.len() > 5 {
             writeln!(f, "           and {} more, see `failures` in the file", self.failures.len() - 5)?;
+        }
+        for shard in &self.unfinished {
+            writeln!(
+                f,
+                "  open     shard {shard} has rows that were not run: run it again (--shard {shard}), then merge again"
+            )?;
         }
         writeln!(f, "  body     matrices assembled and factored {} time(s)", self.reductions)?;
         write!(f, "  wrote    {}", self.output.display())

@@ -33,9 +33,18 @@ pub(super) struct Table {
 impl Table {
     /// The table in a file, or an empty one where there is none. Rows that failed are open again.
     pub fn open(path: &Path, plan: &Plan, overwrite: bool) -> Result<Self, SweepError> {
-        let empty = Self { rows: vec![RowState::Open; plan.rows.len()] };
-        if overwrite || !path.exists() {
-            return Ok(empty);
+        let found = if overwrite { None } else { Self::read(path, plan)? };
+        let mut table = found.unwrap_or_else(|| Self { rows: vec![RowState::Open; plan.rows.len()] });
+        for row in table.rows.iter_mut().filter(|row| matches!(row, RowState::Failed(_))) {
+            *row = RowState::Open;
+        }
+        Ok(table)
+    }
+
+    /// The table in a file, if there is one.
+    pub fn read(path: &Path, plan: &Plan) -> Result<Option<Self>, SweepError> {
+        if !path.exists() {
+            return Ok(None);
         }
         let other = |what: &str| SweepError::OtherTable { path: path.to_owned(), what: what.to_owned() };
         let file = BodyFile::open(path).map_err(|error| match error {
@@ -50,7 +59,9 @@ impl Table {
             return Err(other("it is of another sweep or scene, or of another version of flexframe"));
         }
         let status = file.read::<u32>("status").map_err(|_| other("it is damaged"))?.values;
-        let mut rows = empty.rows;
+        let words = file.attribute("failures").and_then(|text| serde_json::from_str(text).ok());
+        let words: BTreeMap<usize, String> = words.unwrap_or_default();
+        let mut rows = vec![RowState::Open; plan.rows.len()];
         let mut columns = Vec::new();
         for name in plan.results.keys() {
             let dataset = format!("results/{name}");
@@ -68,9 +79,11 @@ impl Table {
                     column.values.get(i * width..(i + 1) * width).map(<[f64]>::to_vec)
                 };
                 *row = columns.iter().map(of_row).collect::<Option<_>>().map_or(RowState::Open, RowState::Done);
+            } else if let Some(words) = words.get(&i) {
+                *row = RowState::Failed(words.clone());
             }
         }
-        Ok(Self { rows })
+        Ok(Some(Self { rows }))
     }
 
     /// How many rows are done, and how many failed.
