@@ -14,7 +14,7 @@ use flexframe::scene::{Model, Scene};
 
 /// Differences of the attitude in rad after the run, with steps of 4e-5 s and of 2e-5 s.
 pub fn run() -> Result<[f64; 2], Box<dyn Error>> {
-    let scene = Scene::read(concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/plate.toml"))?;
+    let scene = Scene::read(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/plate.toml"))?;
     let model = Model::build(&scene, |_| ())?;
     let reduced = &model.body.truncated(4);
     let (ratios, physics) = (vec![0.01; 4], Physics::default());

@@ -76,7 +76,7 @@ impl Case {
 fn a_blade_at_twenty_speeds_costs_one_reduction_and_each_row_is_that_of_its_own_run() {
     let case = Case::new("[parameters]\n\"initial.angular_velocity[2]\" = { from = 0, to = 1900, count = 20 }");
     let report = case.run(false).unwrap();
-    assert_eq!((report.rows, report.done, report.kept, report.reductions), (20, 20, 0, 1));
+    assert_eq!((report.rows, report.done, report.kept, report.reductions), (20, 20, 0, 1), "{:?}", report.failures);
     assert!(report.failures.is_empty(), "{:?}", report.failures);
     let speeds: Vec<f64> = (0..20).map(|i| 100.0 * f64::from(i)).collect();
     assert_eq!(case.table("parameters/initial.angular_velocity[2]"), speeds);
