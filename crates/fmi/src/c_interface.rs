@@ -6,7 +6,7 @@
 //! What C has to keep to, as the standard has it: a component is what [`fmi2Instantiate`] has returned and
 //! [`fmi2FreeInstance`] has not taken, and one thread at a time uses it; pointers are null, or point to as many entries as
 //! the count beside them says; texts end with a zero. This is what the `SAFETY` comments go by.
-#![allow(unsafe_code, non_camel_case_types, non_snake_case)]
+#![allow(unsafe_code, non_camel_case_types, non_snake_case, non_upper_case_globals)]
 
 use std::any::Any;
 use std::ffi::{CStr, CString, c_char, c_int, c_void};
@@ -416,7 +416,7 @@ pub unsafe extern "C" fn fmi2SetString(
 pub unsafe extern "C" fn fmi2GetFMUstate(c: fmi2Component, FMUstate: *mut fmi2FMUstate) -> fmi2Status {
     call(c, "fmi2GetFMUstate", |component| {
         // SAFETY: null, or a place for one pointer.
-        let [place] = (unsafe { room(FMUstate, 1, "FMUstate") }?) else { return Ok(fmi2Error) };
+        let [place] = unsafe { room(FMUstate, 1, "FMUstate") }? else { return Ok(fmi2Error) };
         let saved = component.instance.save()?;
         // SAFETY: null, or a state of this library, which only this thread uses now.
         match unsafe { place.cast::<Saved>().as_mut() } {
@@ -517,7 +517,7 @@ pub unsafe extern "C" fn fmi2DeSerializeFMUstate(
         // SAFETY: null, or as many bytes.
         let saved = Saved::from_bytes(unsafe { entries(serializedState, size, "serializedState") }?)?;
         // SAFETY: null, or a place for one pointer.
-        let [place] = (unsafe { room(FMUstate, 1, "FMUstate") }?) else { return Ok(fmi2Error) };
+        let [place] = unsafe { room(FMUstate, 1, "FMUstate") }? else { return Ok(fmi2Error) };
         *place = Box::into_raw(Box::new(saved)).cast();
         Ok(fmi2OK)
     })

@@ -5,7 +5,6 @@ use percent_encoding::{AsciiSet, CONTROLS, utf8_percent_encode};
 use results::{Column, Metadata, Values};
 use scene::{Load, Model, Scene};
 
-use super::si_unit::Powers;
 use crate::columns::COLUMNS;
 use crate::row::Row;
 

@@ -1,5 +1,5 @@
 //! An importing program: it unpacks an FMU and calls the functions of the standard.
-#![allow(unsafe_code)]
+#![allow(unsafe_code, non_upper_case_globals)]
 
 use std::ffi::{CString, c_char, c_int, c_void};
 use std::fs;
@@ -260,11 +260,4 @@ impl Instance {
         }
         said
     }
-}
-
-/// Largest difference of two rows over the largest number in the second of the same column, whose numbers are `places`.
-pub fn difference(a: &[f64], b: &[f64]) -> f64 {
-    let scale = b.iter().map(|b| b.abs()).fold(0.0, f64::max);
-    let off = a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-    if off == 0.0 { 0.0 } else { off / scale }
 }
