@@ -148,7 +148,8 @@ impl Motion {
             return Err(Error::Step { found: step, least, time });
         }
         let slack = ROUNDING * step;
-        if !((point - time).abs() <= slack) {
+        let is_here = (point - time).abs() <= slack;
+        if !is_here {
             return Err(Error::Point { found: point, time });
         }
         let mut target = point + step;

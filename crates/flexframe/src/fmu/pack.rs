@@ -5,7 +5,7 @@ use std::io::{self, Cursor, Write};
 use std::path::{Path, PathBuf};
 
 use body_file::BodyFile;
-use scene::{Body, BuildProgress, Cache, Model, Scene};
+use scene::{Body, BuildProgress, Cache, Flexible, Model, Scene};
 use serde::Serialize;
 use whole_file::write_whole;
 use zip::write::SimpleFileOptions;
@@ -100,6 +100,13 @@ pub fn pack(
     mut progress: impl FnMut(BuildProgress),
 ) -> Result<FmuReport, FmuError> {
     let library = Library::find(settings.library.as_deref())?;
+    if !matches!(scene.modes.flexible, Flexible::Count(_)) {
+        let cure = "give the number of modes to keep; `flexframe modes` shows their frequencies";
+        let found = "\"auto\", which goes by the loads of the scene";
+        return Err(scene
+            .refuse("modes.flexible", found, "a number, since nobody knows the forces from outside", cure)
+            .into());
+    }
     let is_rigid = matches!(scene.body, Body::Rigid(_));
     let temporary = tempfile::tempdir().map_err(WriteError::of(output))?;
     let resources = temporary.path();

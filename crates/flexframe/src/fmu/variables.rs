@@ -92,11 +92,14 @@ fn inputs(scene: &Scene, model: &Model, all: &mut Vec<Variable>) {
         add(format!("loads[{}].factor", i + 1), description, "1", Input::Factor(acting));
     }
     for (point, (name, _)) in model.points.iter().enumerate() {
-        for axis in 0..3 {
-            let of = |what: &str| format!("{what} on the point {name}, {} (global)", AXES[axis]);
-            let named = |what: &str| format!("points.{}.{what}[{}]", identifier(name), axis + 1);
-            add(named("force"), of("force"), "mass length/time^2", Input::Force(point, axis));
-            add(named("moment"), of("moment"), "mass length^2/time^2", Input::Moment(point, axis));
+        let name_of = |what: &str, axis: usize| format!("points.{}.{what}[{}]", identifier(name), axis + 1);
+        for (axis, letter) in AXES.iter().enumerate() {
+            let description = format!("force on the point {name}, {letter} (global)");
+            add(name_of("force", axis), description, "mass length/time^2", Input::Force(point, axis));
+        }
+        for (axis, letter) in AXES.iter().enumerate() {
+            let description = format!("moment on the point {name}, {letter} (global)");
+            add(name_of("moment", axis), description, "mass length^2/time^2", Input::Moment(point, axis));
         }
     }
     if let Some(drive) = &model.physics.drive {

@@ -37,7 +37,7 @@ fn an_fmu_is_packed_of_a_scene_or_of_its_body_file_and_is_the_same_each_time() {
     };
     let first = pack(scene, "ring.fmu");
     let inputs: Vec<&str> = first["inputs"].as_array().unwrap().iter().map(|name| name.as_str().unwrap()).collect();
-    assert_eq!(inputs[..3], ["loads[1].factor", "points.struck.force[1]", "points.struck.moment[1]"]);
+    assert_eq!(inputs[..3], ["loads[1].factor", "points.struck.force[1]", "points.struck.force[2]"]);
     assert_eq!(inputs.len(), 7);
     let bytes = fs::read(place("ring.fmu")).unwrap();
     assert_eq!(pack(scene, "ring.fmu")["guid"], first["guid"]);
@@ -82,6 +82,9 @@ fn what_cannot_be_packed_leaves_the_old_file() {
     assert!(failure["message"].as_str().unwrap().contains("no.h5"), "{failure}");
     let failure = refused(&library, &["fmu", scene, "-o", &old, "--set", "time.step=-1"], 3);
     assert_eq!(failure["key"], "time.step");
+    let auto = ["fmu", "examples/ring.toml", "-o", &old, "--set", "modes.flexible=auto"];
+    let failure = refused(&library, &auto, 3);
+    assert_eq!(failure["key"], "modes.flexible");
     let failure = refused(&library, &["fmu", scene, "-o", &place("nowhere/top.fmu")], 6);
     assert!(failure["message"].as_str().unwrap().contains("cannot be written"), "{failure}");
     assert_eq!(fs::read(old).unwrap(), b"old");

@@ -206,7 +206,7 @@ impl Instance {
     }
 
     pub fn restore(&mut self, state: fmi2FMUstate) -> Done {
-        // SAFETY: a state that `save` or `from_bytes` gave.
+        // SAFETY: a state that `save` or `deserialized` gave.
         let status = unsafe { fmi2SetFMUstate(self.component, state) };
         self.done(status)
     }
@@ -217,7 +217,7 @@ impl Instance {
         assert!(state.is_null());
     }
 
-    pub fn to_bytes(&mut self, state: fmi2FMUstate) -> Vec<u8> {
+    pub fn serialized(&mut self, state: fmi2FMUstate) -> Vec<u8> {
         let mut size = 0;
         // SAFETY: a state and a place for a number.
         assert_eq!(unsafe { fmi2SerializedFMUstateSize(self.component, state, &mut size) }, fmi2OK);
@@ -230,7 +230,7 @@ impl Instance {
         bytes
     }
 
-    pub fn from_bytes(&mut self, bytes: &[u8]) -> Result<fmi2FMUstate, String> {
+    pub fn deserialized(&mut self, bytes: &[u8]) -> Result<fmi2FMUstate, String> {
         let mut state = ptr::null_mut();
         // SAFETY: so many bytes, and a place for a state.
         let status = unsafe { fmi2DeSerializeFMUstate(self.component, bytes.as_ptr(), bytes.len(), &mut state) };

@@ -44,9 +44,9 @@ fn after_a_state_all_goes_on_as_before_bit_for_bit() {
         assert!(onward(&fmu, &mut instance, 0.03) == first);
 
         // Through bytes into an instance that has only been made, and over an old state.
-        let bytes = instance.to_bytes(state);
+        let bytes = instance.serialized(state);
         let mut other = fmu.instantiate().unwrap();
-        let same = other.from_bytes(&bytes).unwrap();
+        let same = other.deserialized(&bytes).unwrap();
         other.restore(same).unwrap();
         assert!(other.get(&references).unwrap() == at_state);
         assert!(onward(&fmu, &mut other, 0.03) == first);
@@ -62,20 +62,20 @@ fn what_is_no_state_of_this_fmu_is_refused_and_changes_nothing() {
     let mut instance = fmu.start();
     instance.step(0.0, 0.02).unwrap();
     let state = instance.save().unwrap();
-    let bytes = instance.to_bytes(state);
+    let bytes = instance.serialized(state);
     let (references, _) = fmu.of_row();
     let before = instance.get(&references).unwrap();
     for wrong in [&[][..], &bytes[..bytes.len() - 1], b"a state", &[0; 400]] {
-        let said = instance.from_bytes(wrong).unwrap_err();
+        let said = instance.deserialized(wrong).unwrap_err();
         assert!(said.contains("no state of this FMU"), "{said}");
     }
     for place in (0..bytes.len()).step_by(97) {
         let mut changed = bytes.clone();
         changed[place] ^= 4;
-        assert!(instance.from_bytes(&changed).is_err());
+        assert!(instance.deserialized(&changed).is_err());
     }
     let mut other = other_fmu.start();
-    let foreign = other.from_bytes(&bytes).unwrap();
+    let foreign = other.deserialized(&bytes).unwrap();
     let said = other.restore(foreign).unwrap_err();
     assert!(said.contains("States are of one FMU"), "{said}");
     other.step(0.0, 0.02).unwrap();
