@@ -62,8 +62,9 @@ fn a_drive_with_an_added_speed_is_one_by_a_table() {
     let unit = Vector3::new(2.0, -1.0, 2.0) / 3.0;
     for motion in [DrivenMotion::Turn { axis: unit }, DrivenMotion::Slide { direction: unit }] {
         let control = StepControl::Fixed(0.01);
-        let later = 0.5 + 0.8 * JUMP - 1.1 * (END - JUMP);
-        let table = Table::new(vec![0.0, JUMP, END], vec![0.5, 0.5 + 0.8 * JUMP, later]).unwrap();
+        let at = |time: f64| 0.5 + 0.8 * JUMP - 1.1 * (time - JUMP);
+        let (later, beyond) = (at(END), END + 1.0);
+        let table = Table::new(vec![0.0, JUMP, beyond], vec![0.5, at(JUMP), at(beyond)]).unwrap();
         let speed = DrivenSpeed { amplitude: 1.0, history: History::Table(table) };
         run.physics.drive = Some(Drive { motion, speed, added: None });
         let expected = run.start(EXPONENTIAL, control, Rows::Interval(END)).last().unwrap().unwrap();
