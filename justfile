@@ -47,9 +47,9 @@ msrv:
     cargo check --workspace --all-targets --quiet
     echo "msrv: builds with $(rustc --version)"
 
-# The program, optimised: target/release/flexframe.
+# The program, optimised: target/release/flexframe. Beside it the library that goes into FMUs.
 build:
-    cargo build --release --quiet
+    cargo build --release --quiet --package flexframe-cli --package fmi
 
 # Make the meshes again from their .geo files (gmsh).
 mesh:
@@ -98,6 +98,12 @@ h5py: build
     {{flexframe}} export out/bent/bent_rod.h5 --vtkhdf out/bent/bent_rod.vtkhdf --volume --overwrite
     .tools/h5py/bin/python tests/read_body_with_h5py.py out/ring/ring.body.h5 out/ring/ring.h5 \
         out/bent/bent_rod.body.h5 out/bent/bent_rod.h5 out/bent/bent_rod.vtkhdf
+
+# FMUs in FMPy: its validator, runs against the program's own, a controller outside (Python packages).
+fmu-test: build
+    python3 -m venv --upgrade-deps .tools/fmpy >/dev/null
+    .tools/fmpy/bin/pip install -q fmpy==0.3.32 h5py
+    .tools/fmpy/bin/python crates/fmi/tests/run_with_fmpy.py {{flexframe}}
 
 # Read exports with VTK's own readers, and compare them with the modes (Python packages, 150 MB).
 paraview: build

@@ -12,6 +12,7 @@ use flexframe::cost::{self, CostSettings};
 use flexframe::export::{self, ExportRows, Exported, Motion};
 use flexframe::failure::{Details, Failure, FailureReport, Kind};
 use flexframe::figures::View;
+use flexframe::fmu::{self, FmuSettings};
 use flexframe::run::{RunProgress, RunSettings};
 use flexframe::sweep::{Shard, SweepSettings};
 use flexframe::{advise, html_report, mode_shapes, modes, new_scene, paper, run, sweep};
@@ -95,6 +96,20 @@ enum Command {
         /// Write the stress of all nodes in each shape, too, as where the scene asks for stress.
         #[arg(long)]
         stress: bool,
+    },
+    /// Pack a scene as an FMU (FMI 2.0 for co-simulation), for Simulink, OpenModelica, Dymola, FMPy (docs/fmu.md).
+    ///
+    /// Inputs are forces and moments at the points of the output, factors on the loads and the acceleration of a drive;
+    /// outputs are the columns of a results file.
+    Fmu {
+        #[command(flatten)]
+        scene: SceneArgs,
+        /// The FMU to write.
+        #[arg(short, long, value_name = "FILE")]
+        output: PathBuf,
+        /// The library that goes into it [default: FLEXFRAME_FMU_LIBRARY, or libflexframe_fmi beside the program].
+        #[arg(long, value_name = "FILE")]
+        library: Option<PathBuf>,
     },
     /// Find natural frequencies and mode shapes of a scene's body.
     Modes {
@@ -379,6 +394,12 @@ fn command(cli: Cli, json_errors: bool, cache: &Cache) -> Result<(), Box<dyn Fai
             drop(bar);
             output::print(&report, json)?;
             if json { Ok(()) } else { output::list(&[output]) }
+        }
+        Command::Fmu { scene: SceneArgs { scene, json }, output, library } => {
+            let scene = scene.read_scene_or_body(cache)?;
+            let report = fmu::pack(&scene, &output, &FmuSettings { library }, |p| bar.build(p))?;
+            drop(bar);
+            output::print(&report, json)
         }
         Command::Modes { scene: SceneArgs { scene, json }, flexible, output } => {
             let mut scene = read(scene)?;

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use flexframe::failure::Failure;
+use flexframe::fmu::scene_of_body;
 use scene::{AssignError, Cache, Scene, assign, text_from, text_of};
 use toml::Value;
 
@@ -27,6 +28,16 @@ pub struct SceneInput {
 }
 
 impl SceneInput {
+    /// The same, of a body file, too: then it is the scene that it was made of.
+    pub fn read_scene_or_body(self, cache: &Cache) -> Result<Scene, Box<dyn Failure>> {
+        if !self.scene.extension().is_some_and(|extension| extension == "h5" || extension == "hdf5") {
+            return self.read(cache);
+        }
+        let scene = scene_of_body(&self.scene, cache)?;
+        let text = assigned(&scene.source, &self.set)?;
+        Ok(Scene { cache: cache.clone(), ..Scene::parse(&text, &self.scene)? })
+    }
+
     /// Reads the scene, sets the values, and checks it.
     pub fn read(self, cache: &Cache) -> Result<Scene, Box<dyn Failure>> {
         let (text, path) = if self.scene == Path::new(STANDARD_INPUT) {
@@ -35,14 +46,19 @@ impl SceneInput {
         } else {
             (text_of(&self.scene)?, self.scene)
         };
-        let text = assign(&text, &self.set).map_err(|AssignError { key, found, expected }| CliError::Option {
-            option: "--set",
-            found: format!("`{key}`, {found}"),
-            expected,
-            cure: "name the key as messages about the scene do; docs/scene.md lists them".to_owned(),
-        })?;
+        let text = assigned(&text, &self.set)?;
         Ok(Scene { cache: cache.clone(), ..Scene::parse(&text, path)? })
     }
+}
+
+/// The text of a scene with values set.
+fn assigned(text: &str, set: &[(String, Value)]) -> Result<String, CliError> {
+    assign(text, set).map_err(|AssignError { key, found, expected }| CliError::Option {
+        option: "--set",
+        found: format!("`{key}`, {found}"),
+        expected,
+        cure: "name the key as messages about the scene do; docs/scene.md lists them".to_owned(),
+    })
 }
 
 /// A key and its value.

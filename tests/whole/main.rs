@@ -9,6 +9,7 @@ mod cost;
 mod examples;
 mod export;
 mod failures;
+mod fmu;
 mod html_report;
 mod import;
 mod library;

@@ -11,14 +11,14 @@ const CURE: &str = "take an unchanged copy, or make it again: flexframe reduce S
 #[non_exhaustive]
 pub enum BodyFileError {
     /// The HDF5 library refused an operation.
-    #[error("{}: cannot {action}: {source}", path.display())]
+    #[error("{}: cannot {action}: {words}", path.display())]
     Hdf5 {
         /// The file.
         path: PathBuf,
         /// What was being done.
         action: String,
-        /// The library's own message.
-        source: hdf5::Error,
+        /// The library's own message; as text, so that a program that only reads needs no HDF5.
+        words: String,
     },
     /// The operating system refused an operation.
     #[error("{}: cannot {action}: {source}", path.display())]
@@ -125,6 +125,6 @@ impl BodyFileError {
 
     pub(crate) fn hdf5<A: Into<String>>(path: &Path, action: A) -> impl FnOnce(hdf5::Error) -> Self + use<A> {
         let (path, action) = (path.to_owned(), action.into());
-        move |source| Self::Hdf5 { path, action, source }
+        move |error: hdf5::Error| Self::Hdf5 { path, action, words: error.to_string() }
     }
 }

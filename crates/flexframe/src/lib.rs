@@ -29,6 +29,7 @@ pub mod cost;
 mod effects;
 pub mod export;
 pub mod failure;
+pub mod fmu;
 pub mod html_report;
 mod json;
 pub mod mode_shapes;

@@ -48,6 +48,11 @@ impl UnitLabels<'_> {
         Some(format!("{prefix}{name}"))
     }
 
+    /// Seconds in the unit of time.
+    pub(crate) fn seconds(&self) -> Option<f64> {
+        time(self.time).map(|ten| 10f64.powi(ten))
+    }
+
     /// The power of ten of a unit in m, kg and s, from the powers of length, mass and time that it has.
     pub(crate) fn tens(&self, powers: [i32; 3]) -> Option<i32> {
         let tens = [length(self.length)?, mass(self.mass)?, time(self.time)?];

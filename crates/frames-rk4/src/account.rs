@@ -64,6 +64,11 @@ impl EnergyAccount {
         self.of_loads
     }
 
+    /// Loads that have been changed would give the body this energy.
+    pub(crate) fn raise_of_loads(&mut self, energy: f64) {
+        self.of_loads = self.of_loads.max(energy);
+    }
+
     /// Refuses numbers that are not finite.
     pub(crate) fn check_saved(&self) -> Result<(), CheckpointError> {
         let Self { start, scale, largest_exchange, last, exchanged, done, of_loads } = self;

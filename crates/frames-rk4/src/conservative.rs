@@ -410,7 +410,7 @@ impl ConservativeBody {
         initial.check(self.flexible())?;
         let mut e = self.evaluation();
         self.deform(&initial.modal_displacement, &mut e);
-        let speed = self.drive.as_ref().map_or(0.0, |drive| drive.speed.at(0.0, 0.0));
+        let speed = self.drive.as_ref().map_or(0.0, |drive| drive.speed_at(0.0, 0.0));
         let mut spin = Vector3::zeros();
         for (w, axis) in spin.iter_mut().zip(&self.axes) {
             *w = if self.turn_driven { speed } else { axis.dot(&initial.omega) };
@@ -590,8 +590,8 @@ impl ConservativeBody {
         e: &mut Evaluation,
     ) -> Result<(), RateError> {
         self.deform(q, e);
-        let speed = self.drive.as_ref().map_or(0.0, |drive| drive.speed.at(t, branch_time));
-        let driven_acceleration = self.drive.as_ref().map_or(0.0, |drive| drive.speed.rate(t, branch_time));
+        let speed = self.drive.as_ref().map_or(0.0, |drive| drive.speed_at(t, branch_time));
+        let driven_acceleration = self.drive.as_ref().map_or(0.0, |drive| drive.acceleration_at(t, branch_time));
         e.driven_speed = speed;
         self.start_velocities(p, speed, e);
         let pi = get(slow, part::PI);

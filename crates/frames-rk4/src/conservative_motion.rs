@@ -129,6 +129,13 @@ impl Scheme for ConservativeMotion {
         body.pass_jump(state, ahead).map_err(|error| error.in_step(time, 0.0))
     }
 
+    fn loads_have_changed(&mut self, end: f64) -> f64 {
+        self.first_known = false;
+        let energy = self.body.energy_of_loads(end);
+        self.largest.energy = self.largest.energy.max(energy);
+        energy
+    }
+
     fn observe(&mut self, points: &[PointShapes], out: &mut Observation) -> Result<(), StepError> {
         let Self { body, initial_attitude, state, ahead, .. } = self;
         body.observe(state, initial_attitude, points, ahead, out).map_err(|error| error.in_step(state.time, 0.0))?;

@@ -24,7 +24,8 @@ impl ConservativeBody {
         self.evaluate([state.time, state.time], &state.attitude, &state.slow, q, p, e)?;
         let (kinetic, strain) = self.energies(state, e);
         self.add_linear(q, p, e);
-        let driven_acceleration = self.drive.as_ref().map_or(0.0, |drive| drive.speed.rate(state.time, state.time));
+        let driven_acceleration =
+            self.drive.as_ref().map_or(0.0, |drive| drive.acceleration_at(state.time, state.time));
         e.acceleration.copy_from_slice(&e.momentum);
         let spin_rate = self.accelerate(driven_acceleration, e)?;
         out.modal_acceleration.clone_from(&e.acceleration);

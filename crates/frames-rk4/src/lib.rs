@@ -61,6 +61,7 @@ mod reaction;
 mod scheme;
 mod second_order;
 mod setup;
+mod signal;
 mod simulation;
 mod spin_stiffness;
 mod state;
@@ -81,7 +82,8 @@ pub use events::{Crossing, Event};
 pub use history::{Expression, History, Table};
 pub use initial::Initial;
 pub use load::{
-    Applied, BodyField, FieldLoad, Kinematics, Load, LoadFn, LoadFrame, Pattern, PointForce, PointMoment, SharedLoad,
+    Applied, BodyField, FieldLoad, Kinematics, Load, LoadFn, LoadFrame, Pattern, PointForce, PointMoment, ScaledLoad,
+    SharedLoad,
 };
 pub use loaded::{LoadedError, LoadedMode};
 pub use manifold::{MOST_LARGE, Manifold};
@@ -99,6 +101,7 @@ pub use reaction::Reaction;
 pub use scheme::Scheme;
 pub use second_order::SecondOrder;
 pub use setup::{Method, Setup, StepLimit};
+pub use signal::Signal;
 pub use simulation::{Reached, Simulation, Stats};
 pub use state::{MotionState, State};
 pub use steady_spin::{EigenError, SpinMode, SteadySpin};

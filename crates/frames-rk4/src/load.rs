@@ -8,6 +8,7 @@ mod closure;
 mod field;
 mod force;
 mod moment;
+mod scaled;
 
 use std::any::Any;
 use std::fmt;
@@ -25,6 +26,7 @@ pub use closure::LoadFn;
 pub use field::FieldLoad;
 pub use force::PointForce;
 pub use moment::PointMoment;
+pub use scaled::ScaledLoad;
 
 /// Something that acts on the body.
 ///

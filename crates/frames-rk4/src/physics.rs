@@ -8,6 +8,7 @@ use crate::effect::EffectMap;
 use crate::error::SetupError;
 use crate::history::{Expression, History, Table, finite};
 use crate::manifold::Manifold;
+use crate::signal::Signal;
 
 /// A motion that something forces on the held part of a body. The body's own modes are those of the part held still
 /// ([`modal::RigidMotion::clamp`]).
@@ -17,6 +18,8 @@ pub struct Drive {
     pub motion: DrivenMotion,
     /// How fast.
     pub speed: DrivenSpeed,
+    /// A speed that a program adds from outside. It must not jump; its rate may.
+    pub added: Option<Signal>,
 }
 
 /// A speed over time: the amplitude times the history. As data, tables and expressions have other types `T` and `E` than
@@ -63,6 +66,16 @@ impl DrivenSpeed {
 }
 
 impl Drive {
+    /// Speed at a time, by the branch that holds at `branch_time`.
+    pub(crate) fn speed_at(&self, time: f64, branch_time: f64) -> f64 {
+        self.speed.at(time, branch_time) + self.added.as_ref().map_or(0.0, |added| added.at(time))
+    }
+
+    /// Its rate.
+    pub(crate) fn acceleration_at(&self, time: f64, branch_time: f64) -> f64 {
+        self.speed.rate(time, branch_time) + self.added.as_ref().map_or(0.0, Signal::rate)
+    }
+
     /// Refuses numbers that are not finite, and a direction that is no unit vector.
     pub(crate) fn check(&self) -> Result<(), SetupError> {
         let DrivenSpeed { amplitude, history } = &self.speed;

@@ -43,6 +43,13 @@ pub trait Scheme: fmt::Debug + Send + Sync + Any {
         Ok(())
     }
 
+    /// What acts has been changed from outside between two steps: rates that were found before no longer hold. Returns the
+    /// energy scale of the loads up to `end` as they are now, where the scheme's steps may be blind to their work.
+    fn loads_have_changed(&mut self, end: f64) -> f64 {
+        let _ = end;
+        0.0
+    }
+
     /// Fills `out` with the motion at the state, and that of `points`.
     ///
     /// # Errors

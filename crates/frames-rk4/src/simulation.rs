@@ -235,6 +235,14 @@ impl Simulation {
         self.go_on_from_here();
     }
 
+    /// Has to be told where a [`Signal`](crate::Signal), or what a load of one's own reads, has been set since the last
+    /// step: the next step then starts from the loads as they are, and has its full order. It allocates.
+    pub fn loads_have_changed(&mut self) {
+        let energy = self.scheme.loads_have_changed(self.end);
+        self.observers.energy.raise_of_loads(energy);
+        self.events.forget();
+    }
+
     /// Stops with [`Reached::Event`] where the event's function passes through zero, to rounding on the far side. The
     /// time is found by shorter steps, so it is as accurate as the scheme. Returns the event's number.
     ///

@@ -133,6 +133,11 @@ impl<S: FrameSteps> Scheme for TravellingFrame<S> {
         Ok(())
     }
 
+    fn loads_have_changed(&mut self, _end: f64) -> f64 {
+        self.steps.pass_corner();
+        0.0
+    }
+
     fn observe(&mut self, points: &[PointShapes], out: &mut Observation) -> Result<(), StepError> {
         let FrameMotion { motion, state, work, .. } = &self.body;
         motion.observe(state, work, points, out);

@@ -87,6 +87,11 @@ impl<R> Column<R> {
         }
     }
 
+    /// Whether the files of a run with this metadata have it.
+    pub fn is_in(&self, metadata: &Metadata) -> bool {
+        self.part.is_none_or(|part| metadata.parts.iter().any(|has| has == part))
+    }
+
     /// Values per row.
     pub(crate) fn width(&self, metadata: &Metadata) -> usize {
         match self.values {
@@ -110,7 +115,7 @@ impl<R> Column<R> {
     }
 
     /// Appends the values that a row has.
-    pub(crate) fn append(&self, row: &R, metadata: &Metadata, out: &mut Vec<f64>) {
+    pub fn append(&self, row: &R, metadata: &Metadata, out: &mut Vec<f64>) {
         let points = self.places(metadata).len();
         match self.values {
             Values::Number(value) => out.push(value(row)),
@@ -165,5 +170,5 @@ pub(crate) fn present<R>(
     columns: &'static [Column<R>],
     metadata: &Metadata,
 ) -> impl Iterator<Item = &'static Column<R>> + Clone {
-    columns.iter().filter(|column| column.part.is_none_or(|part| metadata.parts.iter().any(|has| has == part)))
+    columns.iter().filter(|column| column.is_in(metadata))
 }

@@ -21,6 +21,7 @@ mod meshed;
 mod modal_model;
 mod model;
 mod physics;
+mod point_rotations;
 mod points;
 mod progress;
 mod reduce;

@@ -5,13 +5,14 @@
 //! is about. A file is never changed: it appears whole, and is checked when it is read. So any number of programs may use the
 //! folder at once, and what has changed is not found.
 
+use std::collections::BTreeMap;
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::time::{SystemTime, UNIX_EPOCH};
 
-use body_file::{Digest, Hash};
+use body_file::{BodyFileError, Declared, Digest, Hash, Writer};
 
 /// Bytes that the user's cache may have.
 const LIMIT: u64 = 4 << 30;
@@ -29,6 +30,8 @@ pub struct Cache(Arc<Inner>);
 struct Inner {
     folder: Option<PathBuf>,
     limit: u64,
+    /// Makes a file. A program that has no cache, such as the library in FMUs, does without what makes files, which is HDF5.
+    create: Option<CreateFile>,
     read: AtomicUsize,
     computed: AtomicUsize,
     assembled: AtomicUsize,
@@ -39,6 +42,9 @@ struct Inner {
     computing: Mutex<bool>,
     computed_all: Condvar,
 }
+
+/// [`Writer::create`].
+type CreateFile = fn(&Path, BTreeMap<String, String>, &[Declared]) -> Result<Writer, BodyFileError>;
 
 /// What a cache was good for.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -61,7 +67,8 @@ impl Cache {
 
     /// In a folder, which is made if it does not exist, with so many bytes at most.
     pub fn new(folder: impl Into<PathBuf>, limit: u64) -> Self {
-        Self(Arc::new(Inner { folder: Some(folder.into()), limit, ..Inner::default() }))
+        let create: CreateFile = |path, texts, datasets| Writer::create(path, texts, datasets);
+        Self(Arc::new(Inner { folder: Some(folder.into()), limit, create: Some(create), ..Inner::default() }))
     }
 
     /// The user's: the folder `FLEXFRAME_CACHE`, or `flexframe` in `XDG_CACHE_HOME` or in `~/.cache`, with 4 GiB at most. None
@@ -82,6 +89,11 @@ impl Cache {
     /// Its folder.
     pub fn folder(&self) -> Option<&Path> {
         self.0.folder.as_deref()
+    }
+
+    /// What makes its files; none where nothing is kept.
+    pub(crate) fn create(&self) -> Option<CreateFile> {
+        self.0.create
     }
 
     /// What it was good for up to now.

@@ -142,7 +142,11 @@ fn estimates_are_above_what_an_effect_does_to_a_driven_plate() {
         ("gentle", nalgebra::Vector3::y(), 0.05),
     ] {
         let history = History::Ramp { start: 0.0, duration: 0.1 };
-        let drive = Drive { motion: DrivenMotion::Turn { axis }, speed: DrivenSpeed { amplitude: speed, history } };
+        let drive = Drive {
+            motion: DrivenMotion::Turn { axis },
+            speed: DrivenSpeed { amplitude: speed, history },
+            added: None,
+        };
         compare(name, &Case { drive: Some(&drive), ..clamped().case(&zeta, &[], &initial, 0.3) });
     }
 }

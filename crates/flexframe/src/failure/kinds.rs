@@ -16,6 +16,7 @@ use crate::animation::AnimationError;
 use crate::campbell::CampbellError;
 use crate::cost::CostError;
 use crate::export::ExportError;
+use crate::fmu::FmuError;
 use crate::html_report::HtmlReportError;
 use crate::mode_shapes::ShapesError;
 use crate::new_scene::NewSceneError;
@@ -60,6 +61,41 @@ impl Failure for MeshError {
             details.found = Some(found.clone());
         }
         details
+    }
+}
+
+impl Failure for FmuError {
+    fn kind(&self) -> Kind {
+        match self {
+            Self::Scene(error) => error.kind(),
+            Self::Build(error) => error.kind(),
+            Self::Start { source, .. } => source.kind(),
+            Self::Body(BodyFileError::System { .. } | BodyFileError::Hdf5 { .. })
+            | Self::Unreadable { .. }
+            | Self::Missing { .. }
+            | Self::Library { .. }
+            | Self::Write(_) => Kind::Io,
+            Self::Platform { .. } => Kind::Refused,
+            Self::Body(_) | Self::NoScene { .. } | Self::Text(_) | Self::Damaged { .. } | Self::Version { .. } => {
+                Kind::Input
+            }
+        }
+    }
+
+    fn details(&self) -> Details {
+        match self {
+            Self::Scene(error) => error.details(),
+            Self::Build(error) => error.details(),
+            Self::Start { scene, .. } => Details::of_file(scene),
+            Self::Body(error) => Details::of_file(error.path()),
+            Self::Write(error) => error.details(),
+            Self::Library { path, .. }
+            | Self::NoScene { path }
+            | Self::Unreadable { path, .. }
+            | Self::Missing { path, .. }
+            | Self::Damaged { path } => Details::of_file(path),
+            Self::Platform { .. } | Self::Text(_) | Self::Version { .. } => Details::default(),
+        }
     }
 }
 

@@ -164,7 +164,7 @@ fn a_clamp_gives_what_the_particles_need() {
 fn a_drive_gives_what_is_along_its_axis() {
     let history = History::Ramp { start: 0.0, duration: 0.02 };
     for motion in [DrivenMotion::Turn { axis: axis() }, DrivenMotion::Slide { direction: axis() }] {
-        let drive = Drive { motion, speed: DrivenSpeed { amplitude: 90.0, history: history.clone() } };
+        let drive = Drive { motion, speed: DrivenSpeed { amplitude: 90.0, history: history.clone() }, added: None };
         let now = held(RigidMotion::clamp(POINT)).check(Some(drive));
         let found = now.reaction;
         let (along, [way, speed]) = match motion {

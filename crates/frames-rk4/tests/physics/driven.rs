@@ -12,7 +12,7 @@ fn clamped() -> modal::ReducedBody {
 
 fn drive(motion: DrivenMotion) -> Drive {
     let history = History::HalfSine { start: -0.3, duration: 4.0 };
-    Drive { motion, speed: DrivenSpeed { amplitude: 1.2, history } }
+    Drive { motion, speed: DrivenSpeed { amplitude: 1.2, history }, added: None }
 }
 
 fn motions() -> [DrivenMotion; 2] {
@@ -71,7 +71,7 @@ fn a_driven_slide_is_a_base_acceleration() {
     run.initial.modal_displacement.fill(0.0);
     // v = a sin(π (t)/4): v' = a π/4 cos(π t/4) = a π/4 sin(π (t + 2)/4).
     let history = History::HalfSine { start: 0.0, duration: 4.0 };
-    run.physics.drive = Some(Drive { motion: slide, speed: DrivenSpeed { amplitude: 1.2, history } });
+    run.physics.drive = Some(Drive { motion: slide, speed: DrivenSpeed { amplitude: 1.2, history }, added: None });
     let [_, driven] = run.ends(EXPONENTIAL, 5e-3);
     run.physics.drive = None;
     let center = frames_rk4::PointShapes::new(
@@ -114,8 +114,11 @@ fn a_jump_of_the_driven_speed_does_its_work_at_once() {
     for motion in motions() {
         let body = clamped();
         let mut run = Run::new(&body, 3.0);
-        run.physics.drive =
-            Some(Drive { motion, speed: DrivenSpeed { amplitude: 1.2, history: History::Step { at: 1.25 } } });
+        run.physics.drive = Some(Drive {
+            motion,
+            speed: DrivenSpeed { amplitude: 1.2, history: History::Step { at: 1.25 } },
+            added: None,
+        });
         let gaps = [0.02, 0.01].map(|step| run.energy_gap(EXPONENTIAL, step));
         // Measured: 2.3e-9 (turn), 7.6e-9 (slide), and 15 times as much at twice the step.
         assert!(gaps[1] < 1e-6 && gaps[0] > 8.0 * gaps[1], "{motion:?}: {gaps:?}");

@@ -7,5 +7,6 @@ mod held;
 mod loads;
 mod open;
 mod sample;
+mod signal;
 mod steady;
 mod stress;

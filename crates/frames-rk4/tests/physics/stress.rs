@@ -64,7 +64,7 @@ fn clamped() -> ReducedBody {
 
 fn drive(motion: DrivenMotion) -> Drive {
     let history = History::HalfSine { start: 0.0, duration: 4.0 };
-    Drive { motion, speed: DrivenSpeed { amplitude: 1.2, history } }
+    Drive { motion, speed: DrivenSpeed { amplitude: 1.2, history }, added: None }
 }
 
 #[test]
@@ -148,7 +148,7 @@ fn a_jump_of_a_driven_speed_is_the_limit_of_steep_rises() {
         let mut run = Run::new(&body, 2.0);
         run.physics.drive_stiffness = Some(stiffness(0, 3));
         let mut end = |history: History| {
-            run.physics.drive = Some(Drive { motion, speed: DrivenSpeed { amplitude: 1.2, history } });
+            run.physics.drive = Some(Drive { motion, speed: DrivenSpeed { amplitude: 1.2, history }, added: None });
             let gap = run.energy_gap(EXPONENTIAL, 1e-3);
 
             assert!(gap < 1e-8, "{motion:?}: {gap:e}");

@@ -177,7 +177,8 @@ impl Store {
         datasets: &[Declared],
         write: impl FnOnce(&mut Writer) -> Result<(), BodyFileError>,
     ) {
-        let written = Writer::create(place, texts, datasets).and_then(|mut writer| {
+        let Some(create) = self.cache.create() else { return };
+        let written = create(place, texts, datasets).and_then(|mut writer| {
             write(&mut writer)?;
             writer.finish(false)
         });

@@ -33,7 +33,7 @@ pub(super) fn support(scene: &Scene, mesh: Option<&Mesh>) -> Result<(Support, Op
     };
     let driven = |speed: &crate::history::DrivenSpeed, motion: DrivenMotion| -> Result<Drive, BuildError> {
         let history = history(scene, "constraints[0].motion.history", &speed.history)?;
-        Ok(Drive { motion, speed: DrivenSpeed { amplitude: speed.amplitude, history } })
+        Ok(Drive { motion, speed: DrivenSpeed { amplitude: speed.amplitude, history }, added: None })
     };
     let mean = || {
         let of = |node: &u32| mesh.map_or(Vector3::zeros(), |mesh| mesh.positions()[*node as usize].into());

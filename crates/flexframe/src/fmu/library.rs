@@ -1,0 +1,47 @@
+//! The library that goes into every FMU.
+
+use std::env::consts::{ARCH, DLL_PREFIX, DLL_SUFFIX, OS};
+use std::path::{Path, PathBuf};
+
+use super::error::{FmuError, LIBRARY_VARIABLE};
+
+/// Bytes that the library of this version has in it, and no other file.
+pub const fn marker() -> &'static str {
+    concat!("flexframe library for FMI 2.0, version ", env!("CARGO_PKG_VERSION"), ";")
+}
+
+/// The library, and the folder and the ending that it gets in an FMU.
+pub(super) struct Library {
+    pub bytes: Vec<u8>,
+    pub folder: &'static str,
+    pub ending: &'static str,
+}
+
+impl Library {
+    /// Reads the library from `asked`, from where the environment says, or from beside the program.
+    pub fn find(asked: Option<&Path>) -> Result<Self, FmuError> {
+        let folder = match (OS, ARCH) {
+            ("linux", "x86_64") => "linux64",
+            ("windows", "x86_64") => "win64",
+            ("macos", "x86_64") => "darwin64",
+            _ => return Err(FmuError::Platform { machine: format!("{OS}, {ARCH}") }),
+        };
+        let named = std::env::var_os(LIBRARY_VARIABLE).filter(|name| !name.is_empty()).map(PathBuf::from);
+        let path = match asked.map(Path::to_owned).or(named) {
+            Some(path) => path,
+            None => {
+                let program = std::env::current_exe().unwrap_or_default();
+                program.with_file_name(format!("{DLL_PREFIX}flexframe_fmi{DLL_SUFFIX}"))
+            }
+        };
+        let refuse = |found: String| FmuError::Library { path: path.clone(), found };
+        let bytes =
+            std::fs::read(&path).map_err(|error| refuse(format!("the library for FMUs cannot be read ({error})")))?;
+        let marker = marker().as_bytes();
+        if !bytes.windows(marker.len()).any(|bytes| bytes == marker) {
+            let version = env!("CARGO_PKG_VERSION");
+            return Err(refuse(format!("this is not the library for FMUs of flexframe {version}")));
+        }
+        Ok(Self { bytes, folder, ending: DLL_SUFFIX })
+    }
+}

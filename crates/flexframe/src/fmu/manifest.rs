@@ -1,0 +1,63 @@
+//! What is in the resources of an FMU, so that what is missing or damaged is found.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use body_file::{Digest, Hash};
+use serde::{Deserialize, Serialize};
+
+use super::error::FmuError;
+
+/// Its name among the resources.
+pub const MANIFEST: &str = "manifest.json";
+
+/// The list of the resources of an FMU.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Manifest {
+    /// What `modelDescription.xml` calls the FMU, in braces.
+    pub guid: String,
+    /// The version of flexframe that has packed it.
+    pub program_version: String,
+    /// The BLAKE3 hash of every other file.
+    pub files: BTreeMap<String, String>,
+}
+
+impl Manifest {
+    /// Of the files in a folder; `names` are relative to it.
+    pub(super) fn of(folder: &Path, names: &[String]) -> Result<Self, FmuError> {
+        let mut files = BTreeMap::new();
+        let program_version = env!("CARGO_PKG_VERSION").to_owned();
+        let mut digest = Digest::new().text(&program_version);
+        for name in names {
+            let path = folder.join(name);
+            let hash = Hash::of_file(&path).map_err(|source| FmuError::Unreadable { path, source })?;
+            digest = digest.text(name).hash(&hash);
+            files.insert(name.clone(), hash.to_string());
+        }
+        let digits = digest.finish().to_string();
+        let part = |from: usize, to: usize| digits.get(from..to).unwrap_or_default();
+        let guid = format!("{{{}-{}-{}-{}-{}}}", part(0, 8), part(8, 12), part(12, 16), part(16, 20), part(20, 32));
+        Ok(Self { guid, program_version, files })
+    }
+
+    /// Reads the manifest of an unpacked FMU, and checks every file that it names.
+    ///
+    /// # Errors
+    /// [`FmuError`] for a folder without a manifest, an FMU of another version, and files that are missing or have changed.
+    pub fn checked(resources: &Path) -> Result<Self, FmuError> {
+        let path = resources.join(MANIFEST);
+        let text = std::fs::read_to_string(&path).map_err(|source| FmuError::Missing { path: path.clone(), source })?;
+        let manifest: Self = serde_json::from_str(&text).map_err(|_| FmuError::Damaged { path: path.clone() })?;
+        if manifest.program_version != env!("CARGO_PKG_VERSION") {
+            return Err(FmuError::Version { found: manifest.program_version });
+        }
+        for (name, expected) in &manifest.files {
+            let path = resources.join(name);
+            let found = Hash::of_file(&path).map_err(|source| FmuError::Missing { path: path.clone(), source })?;
+            if found.to_string() != *expected {
+                return Err(FmuError::Damaged { path });
+            }
+        }
+        Ok(manifest)
+    }
+}

@@ -1,0 +1,81 @@
+//! The text of a scene for an FMU, which names no file outside of it.
+
+use std::path::{Path, PathBuf};
+
+use toml::{Table, Value};
+
+use super::error::FmuError;
+
+/// The body file of the FMU.
+pub(super) const BODY: &str = "body.h5";
+/// The scene of the FMU.
+pub(super) const SCENE: &str = "scene.toml";
+
+/// A scene that finds everything in its own folder.
+pub(super) struct PackedScene {
+    pub text: String,
+    /// Tables of histories: where they are, and their names in the FMU.
+    pub tables: Vec<(PathBuf, String)>,
+}
+
+impl PackedScene {
+    /// Of a scene in a folder; a body with a mesh becomes that of the [`BODY`].
+    pub fn new(text: &str, folder: &Path, is_rigid: bool) -> Result<Self, FmuError> {
+        let mut scene: Table = toml::from_str(text).map_err(|error| FmuError::Text(error.to_string()))?;
+        if !is_rigid {
+            let body = Table::from_iter([("file".to_owned(), Value::from(BODY))]);
+            scene.insert("body".to_owned(), Value::Table(body));
+        }
+        let mut tables = Vec::new();
+        for (_, value) in scene.iter_mut().filter(|(key, _)| *key != "body") {
+            take_tables(value, folder, &mut tables);
+        }
+        let text = toml::to_string(&scene).map_err(|error| FmuError::Text(error.to_string()))?;
+        Ok(Self { text, tables })
+    }
+}
+
+/// Names the files of all histories of the kind "table" in `value` anew.
+fn take_tables(value: &mut Value, folder: &Path, tables: &mut Vec<(PathBuf, String)>) {
+    match value {
+        Value::Array(entries) => entries.iter_mut().for_each(|entry| take_tables(entry, folder, tables)),
+        Value::Table(table) => {
+            let is_table = table.get("kind").and_then(Value::as_str) == Some("table");
+            if let Some(Value::String(file)) = table.get_mut("file").filter(|_| is_table) {
+                let name = format!("table{}.csv", tables.len() + 1);
+                tables.push((folder.join(&*file), name.clone()));
+                *file = name;
+            }
+            table.iter_mut().for_each(|(_, value)| take_tables(value, folder, tables));
+        }
+        _ => {}
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_body_and_the_tables_are_those_of_the_fmu() {
+        let text = r#"
+            title = "t"
+            [body]
+            mesh = "../meshes/ring.msh"
+            material = { young_modulus = 1.0, poisson_ratio = 0.3, density = 1.0 }
+            [[loads]]
+            kind = "gravity"
+            history = { kind = "table", file = "a/gravity.csv" }
+            [[loads]]
+            kind = "force"
+            history = { kind = "product", factors = [{ kind = "step", at = 1.0 }, { kind = "table", file = "/b.csv" }] }
+        "#;
+        let packed = PackedScene::new(text, Path::new("scenes"), false).unwrap();
+        let scene: Table = toml::from_str(&packed.text).unwrap();
+        assert_eq!(scene["body"].as_table().unwrap(), &Table::from_iter([("file".to_owned(), Value::from("body.h5"))]));
+        assert_eq!(scene["loads"][0]["history"]["file"].as_str(), Some("table1.csv"));
+        assert_eq!(scene["loads"][1]["history"]["factors"][1]["file"].as_str(), Some("table2.csv"));
+        let from: Vec<&Path> = packed.tables.iter().map(|(path, _)| path.as_path()).collect();
+        assert_eq!(from, [Path::new("scenes/a/gravity.csv"), Path::new("/b.csv")]);
+    }
+}

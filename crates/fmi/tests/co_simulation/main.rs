@@ -1,0 +1,7 @@
+//! FMUs as an importing program meets them, by the functions of the standard.
+
+mod bad_input;
+mod importer;
+mod runs;
+mod scenes;
+mod states;

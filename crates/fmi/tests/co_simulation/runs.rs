@@ -1,0 +1,270 @@
+//! Runs of an FMU against runs of the library without one.
+
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex};
+
+use flexframe::fmu::{FmuModel, Source};
+use flexframe::frames_rk4::{LoadFn, Rows, Setup, SharedLoad, Simulation};
+use flexframe::nalgebra::Vector3;
+use flexframe::scene::Scene;
+use flexframe_fmi::c_interface::{fmi2EnterInitializationMode, fmi2ExitInitializationMode};
+
+use crate::importer::{Fmu, Instance};
+use crate::scenes::{END, FREE, LARGE, STEP, driven, own_run, rigid, scene, scene_in_steps};
+
+/// All that is to agree does so to this part of the largest number of its kind.
+const SAME: f64 = 1e-10;
+
+/// A run of the FMU in equal communication steps, seconds: at each point `control` sets inputs.
+fn run(fmu: &Fmu, count: usize, step: f64, mut control: impl FnMut(&mut Instance, f64)) -> Vec<Vec<f64>> {
+    let (references, _) = fmu.of_row();
+    let mut instance = fmu.start();
+    let mut rows = Vec::new();
+    for k in 0..=count {
+        rows.push(instance.get(&references).unwrap());
+        if k < count {
+            let time = k as f64 * step;
+            control(&mut instance, time);
+            instance.step(time, step).unwrap();
+        }
+    }
+    rows
+}
+
+/// Compares the variables of a run with rows, but for those that follow inputs at once where these jump.
+fn compare(fmu: &Fmu, rows: &[Vec<f64>], expected: &[Vec<f64>], inputs_jump: bool) {
+    assert_eq!(rows.len(), expected.len());
+    let (references, places) = fmu.of_row();
+    let group = |reference: u32| {
+        let name = &fmu.variables[reference as usize].name;
+        // What is left of a balance is compared with what it is of.
+        let kind = if name.starts_with("energy.") { "energy" } else { name.split('[').next().unwrap() };
+        kind.trim_end_matches("_balance").to_owned()
+    };
+    let mut worst: HashMap<String, [f64; 2]> = HashMap::new();
+    for (i, (reference, place)) in references.iter().zip(&places).enumerate() {
+        if inputs_jump && matches!(fmu.variables[*reference as usize].source, Source::Row { is_direct: true, .. }) {
+            continue;
+        }
+        let [off, scale] = worst.entry(group(*reference)).or_insert([0.0; 2]);
+        for (row, expected) in rows.iter().zip(expected) {
+            *off = off.max((row[i] - expected[*place]).abs());
+            *scale = scale.max(expected[*place].abs());
+        }
+    }
+    assert!(worst.len() > 10);
+    for (name, [off, scale]) in worst {
+        assert!(off <= SAME * scale, "{name}: off by {off:e} of {scale:e}");
+    }
+}
+
+#[test]
+fn a_run_is_that_of_the_program() {
+    let of_table = "{ amplitude = 1.0, history = { kind = \"half-sine\", duration = 0.4 } }";
+    for scene in [scene(FREE), scene(LARGE), scene(&driven(of_table)), rigid()] {
+        let fmu = Fmu::of(&scene);
+        let seconds = if scene.units.time == "ms" { 1e-3 } else { 1.0 };
+        let rows = run(&fmu, 10, scene.time.end / 10.0 * seconds, |_, _| ());
+        compare(&fmu, &rows, &own_run(&scene), false);
+    }
+}
+
+/// A damper outside: at each communication point it takes the velocity of the tip, and holds its force until the next.
+#[test]
+fn a_controller_outside_is_the_same_controller_inside() {
+    const GAIN: f64 = 15.0;
+    let (count, step) = (50, 2.0 * STEP);
+    let scene = scene(FREE);
+    let fmu = Fmu::of(&scene);
+    let along = |what: &str| [1, 2, 3].map(|i| fmu.reference(&format!("points.tip.{what}[{i}]")));
+    let (velocity, force) = (along("velocity"), along("force"));
+    let rows = run(&fmu, count, step, |instance, _| {
+        let held: Vec<f64> = instance.get(&velocity).unwrap().iter().map(|v| -GAIN * v).collect();
+        instance.set(&force, &held).unwrap();
+    });
+
+    let model = FmuModel::new(scene.clone(), |_| ()).unwrap();
+    let (model, tip) = (model.model, 1);
+    assert_eq!(model.points[tip].0, "tip");
+    let held = Arc::new(Mutex::new(Vector3::zeros()));
+    let (point, force) = (model.points[tip].1.clone(), Arc::clone(&held));
+    let damper: SharedLoad = Arc::new(LoadFn::new("damper", move |motion, applied| {
+        applied.force(&point, &(motion.body_from_global * *force.lock().unwrap()));
+    }));
+    let loads: Vec<SharedLoad> = model.loads().iter().cloned().chain([damper]).collect();
+    let points: Vec<_> = model.points.iter().map(|(_, point)| point.clone()).collect();
+    let initial = model.initial(&scene);
+    let rows_at = Rows::Interval(step);
+    let setup = Setup { loads: &loads, points: &points, rows: rows_at, ..model.setup(&scene, &initial) };
+    let mut simulation = Simulation::new(&setup).unwrap();
+    let place = |name: &str| fmu.of_row().0.iter().position(|reference| *reference == fmu.reference(name)).unwrap();
+    let tip_y = place("points.tip.displacement[2]");
+    let strain = place("energy.strain");
+    let mut freely = 0.0f64;
+    for row in &rows {
+        let now = simulation.next().unwrap().unwrap();
+        let (found, expected) = (row[tip_y], now.points[tip].displacement.y);
+        assert!((found - expected).abs() < SAME, "{found} {expected}");
+        assert!((row[strain] - now.strain_energy).abs() < SAME * (1.0 + now.strain_energy));
+        *held.lock().unwrap() = now.points[tip].velocity * -GAIN;
+        freely = freely.max(row[strain]);
+    }
+    // It does something: without it, the motion is another.
+    let alone = own_run(&scene);
+    let (last, at) = (rows.last().unwrap()[tip_y], fmu.of_row().1[tip_y]);
+    assert!((last - alone.last().unwrap()[at]).abs() > 1e-2);
+}
+
+/// Forces, moments and factors from outside are those of loads that the scene has.
+#[test]
+fn inputs_are_the_loads_of_a_scene() {
+    let load = |kind: &str, direction: &str, amplitude: f64, history: &str| {
+        let at = "at = [8.0, 0.0, 0.0]";
+        format!(
+            "[[loads]]\nkind = \"{kind}\"\n{at}\ndirection = {direction}\namplitude = {amplitude}\nhistory = {history}\n"
+        )
+    };
+    let effects =
+        "[effects]\ngeometric_stiffening = false\ncoriolis = true\ndeformed_inertia = true\nlarge_deflection = false\n";
+    let gravity = "[[loads]]\nkind = \"gravity\"\ndirection = [0.0, 0.0, -1.0]\namplitude = 9.81\n";
+    // From half of the run on there is a force, a moment that was there before is gone, and gravity is doubled.
+    let half = END / 2.0;
+    let step = format!("{{ kind = \"step\", at = {half} }}");
+    let expected = scene(
+        &[
+            effects,
+            gravity,
+            &gravity.replace("9.81", &format!("9.81\nhistory = {step}")),
+            &load("force", "[1.0, 2.0, 2.0]", 30.0, &step),
+            &load("moment", "[0.0, 1.0, 0.0]", 40.0, "\"constant\""),
+            &load("moment", "[0.0, 1.0, 0.0]", -40.0, &step),
+        ]
+        .concat(),
+    );
+    let fmu = Fmu::of(&scene(&[effects, gravity].concat()));
+    let reference = |name: &str| fmu.reference(name);
+    let rows = run(&fmu, 10, END / 10.0, |instance, time| {
+        let later = f64::from(u8::from(time > half - STEP));
+        let factor = reference("loads[1].factor");
+        instance.set(&[factor], &[1.0 + later]).unwrap();
+        let force = [1, 2, 3].map(|i| reference(&format!("points.tip.force[{i}]")));
+        instance.set(&force, &[10.0 * later, 20.0 * later, 20.0 * later]).unwrap();
+        instance.set(&[reference("points.tip.moment[2]")], &[40.0 * (1.0 - later)]).unwrap();
+        assert_eq!(instance.get(&[factor]).unwrap(), [1.0 + later]);
+    });
+    compare(&fmu, &rows, &own_run(&expected), true);
+}
+
+/// A drive whose acceleration is held is one whose speed is a table.
+#[test]
+fn a_drive_is_steered_by_its_acceleration() {
+    let accelerations = [4.0, -2.0, 0.0, 9.0, 1.0, -7.0, 0.0, 0.0, 3.0, 2.0];
+    let step = END / accelerations.len() as f64;
+    let (mut speed, mut points) = (0.5, vec![[0.0, 0.5]]);
+    for (k, acceleration) in accelerations.iter().enumerate() {
+        speed += acceleration * step;
+        points.push([(k + 1) as f64 * step, speed]);
+    }
+    let table = format!("{{ amplitude = 1.0, history = {{ kind = \"table\", points = {points:?} }} }}");
+    let fmu = Fmu::of(&scene(&driven("{ amplitude = 0.5, history = \"constant\" }")));
+    let mut next = accelerations.iter();
+    let rows = run(&fmu, accelerations.len(), step, |instance, _| {
+        instance.set(&[fmu.reference("drive.acceleration")], &[*next.next().unwrap()]).unwrap();
+    });
+    compare(&fmu, &rows, &own_run(&scene(&driven(&table))), true);
+}
+
+/// Between communication points the scheme keeps its order, whatever steps they are apart, fixed or under control.
+#[test]
+fn held_inputs_cost_no_order() {
+    let end = |step: &str| -> Vec<f64> {
+        let fmu = Fmu::of(&scene_in_steps(FREE, step));
+        let force = [1, 2, 3].map(|i| fmu.reference(&format!("points.tip.force[{i}]")));
+        let moved = [1, 2, 3].map(|i| fmu.reference(&format!("points.tip.displacement[{i}]")));
+        let mut instance = fmu.start();
+        // The steps do not divide these.
+        for k in 0..9 {
+            instance.set(&force, &[0.0, 100.0 * (k % 3) as f64, -50.0 * (k % 2) as f64]).unwrap();
+            instance.step(k as f64 * 0.021, 0.021).unwrap();
+        }
+        instance.get(&moved).unwrap()
+    };
+    let exact = end("step = 2e-4");
+    let off = |step: &str| -> f64 { end(step).iter().zip(&exact).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt() };
+    // Steps of a 4th and a 9th of 21 ms.
+    let order = (off("step = 6e-3") / off("step = 2.4e-3")).ln() / (9.0f64 / 4.0).ln();
+    assert!((3.6..4.6).contains(&order), "{order}");
+    let controlled = off("tolerance = 1e-7");
+    assert!(controlled < 1e-6, "{controlled}");
+}
+
+#[test]
+fn two_instances_know_nothing_of_each_other() {
+    let fmu = Fmu::of(&scene(FREE));
+    let (references, _) = fmu.of_row();
+    let force = [fmu.reference("points.tip.force[2]")];
+    let alone = run(&fmu, 5, 0.02, |_, _| ());
+    let [mut one, mut other] = [fmu.start(), fmu.start()];
+    for k in 0..5 {
+        other.set(&force, &[1e3]).unwrap();
+        one.step(f64::from(k) * 0.02, 0.02).unwrap();
+        other.step(f64::from(k) * 0.02, 0.02).unwrap();
+        assert_eq!(one.get(&references).unwrap(), alone[k as usize + 1]);
+    }
+    assert!(other.get(&references).unwrap() != one.get(&references).unwrap());
+}
+
+/// What `modelDescription.xml` says to follow the inputs at once does so, and nothing else.
+#[test]
+fn outputs_depend_on_inputs_as_described() {
+    let mut found = [false; 2];
+    for scene in [scene(FREE), scene(LARGE), scene(&driven("{ amplitude = 0.5, history = \"constant\" }"))] {
+        let fmu = Fmu::of(&scene);
+        let (references, _) = fmu.of_row();
+        let mut instance = fmu.instantiate().unwrap();
+        instance.set_up(0.0, None).unwrap();
+        instance.call(fmi2EnterInitializationMode).unwrap();
+        let before = instance.get(&references).unwrap();
+        let (inputs, _): (Vec<u32>, Vec<_>) = fmu.inputs().into_iter().unzip();
+        instance.set(&inputs, &vec![3.0; inputs.len()]).unwrap();
+        let after = instance.get(&references).unwrap();
+        for (i, reference) in references.iter().enumerate() {
+            let variable = &fmu.variables[*reference as usize];
+            let Source::Row { is_direct, is_output, .. } = variable.source else { unreachable!() };
+            let index = format!("<Unknown index=\"{}\"", reference + 1);
+            let expected = if is_direct { format!("{index}/>") } else { format!("{index} dependencies=\"\"/>") };
+            let times = fmu.description.matches(&expected).count();
+            assert_eq!(times, if is_output { 2 } else { 0 }, "{}", variable.name);
+            if !is_direct {
+                assert_eq!(before[i], after[i], "{}", variable.name);
+            } else if before[i] != after[i] {
+                found[usize::from(variable.name.starts_with("reaction"))] = true;
+            }
+        }
+        instance.call(fmi2ExitInitializationMode).unwrap();
+        instance.step(0.0, 0.02).unwrap();
+    }
+    assert_eq!(found, [true; 2]);
+}
+
+/// FMI counts time in seconds, the scene in milliseconds; other units are described by their powers of SI.
+#[test]
+fn time_is_in_seconds_and_units_are_described() {
+    let scene: Scene = rigid();
+    let fmu = Fmu::of(&scene);
+    let mut instance = fmu.start();
+    instance.step(0.0, 0.02).unwrap();
+    assert_eq!(instance.time(), 0.02);
+    assert_eq!(instance.get(&[fmu.reference("time")]).unwrap(), [0.02]);
+    let plain: String = fmu.description.split_whitespace().collect::<Vec<_>>().join(" ");
+    for part in [
+        "<DefaultExperiment startTime=\"0\" stopTime=\"0.2\" stepSize=\"0.02\"/>",
+        "<Unit name=\"s\"> <BaseUnit s=\"1\"/> </Unit>",
+        "<Unit name=\"mm/ms\"> <BaseUnit m=\"1\" s=\"-1\"/> </Unit>",
+        "<Unit name=\"Mg.mm/ms2\"> <BaseUnit kg=\"1\" m=\"1\" s=\"-2\" factor=\"1e6\"/> </Unit>",
+        "causality=\"input\" variability=\"continuous\"> <Real start=\"1\"/>",
+        "variableNamingConvention=\"structured\"",
+    ] {
+        assert!(plain.contains(part), "{part}\n{}", fmu.description);
+    }
+}

@@ -1,0 +1,136 @@
+//! Scenes on a slender beam of 8 m, and their runs by the library without an FMU.
+
+use std::path::{Path, PathBuf};
+
+use flexframe::fmu::FmuModel;
+use flexframe::row::Row;
+use flexframe::scene::Scene;
+
+const MATERIAL: &str = "material = { young_modulus = 6.8952e10, poisson_ratio = 0.3, density = 2766.7 }";
+pub const STEP: f64 = 2e-3;
+pub const END: f64 = 0.2;
+
+fn mesh() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../meshes/wu_haug_beam.msh")
+}
+
+/// A scene on the beam with two points, in steps of [`STEP`].
+pub fn scene(more: &str) -> Scene {
+    scene_in_steps(more, &format!("step = {STEP}"))
+}
+
+pub fn scene_in_steps(more: &str, step: &str) -> Scene {
+    let text = format!(
+        r#"
+        title = "a beam"
+        units = {{ length = "m", mass = "kg", time = "s" }}
+        [body]
+        mesh = {:?}
+        {MATERIAL}
+        [modes]
+        flexible = 5
+        damping_ratio = 0.01
+        static_correction = false
+        [time]
+        end = {END}
+        {step}
+        [output]
+        interval = 0.02
+        points = {{ tip = [8.0, 0.0, 0.0], "the middle" = [4.0, 0.0, 0.0] }}
+        stress = true
+        {more}
+        "#,
+        mesh()
+    );
+    Scene::parse(&text, "beam.toml").unwrap()
+}
+
+/// It flies, tumbles, and is struck.
+pub const FREE: &str = r#"
+    [initial]
+    angular_velocity = [0.5, 3.0, 1.0]
+    velocity = [1.0, 0.0, 2.0]
+    [[loads]]
+    kind = "force"
+    at = [8.0, 0.0, 0.0]
+    direction = [0.0, 1.0, 1.0]
+    frame = "body"
+    amplitude = 300.0
+    history = { kind = "half-sine", duration = 0.05 }
+    [[loads]]
+    kind = "gravity"
+    direction = [0.0, 0.0, -1.0]
+    amplitude = 9.81
+"#;
+
+/// A beam that bends far on a hinge.
+pub const LARGE: &str = r#"
+    [effects]
+    large_deflection = true
+    [[constraints]]
+    kind = "hinge"
+    at = [0.0, 0.0, 0.0]
+    axis = [0.0, 0.0, 1.0]
+    box = [[0.0, -0.1, -0.1], [0.0, 0.1, 0.1]]
+    [[loads]]
+    kind = "gravity"
+    direction = [0.0, -1.0, 0.0]
+    amplitude = 9.81
+"#;
+
+/// On a hinge that is driven at this speed.
+pub fn driven(speed: &str) -> String {
+    format!(
+        r#"
+        [[constraints]]
+        kind = "hinge"
+        at = [0.0, 0.0, 0.0]
+        axis = [0.0, 0.0, 1.0]
+        box = [[0.0, -0.1, -0.1], [0.0, 0.1, 0.1]]
+        motion = {speed}
+        "#
+    )
+}
+
+/// A body without a mesh, on a pin.
+pub fn rigid() -> Scene {
+    let text = r#"
+        title = "a top"
+        units = { length = "mm", mass = "Mg", time = "ms" }
+        [body]
+        rigid = { mass = 2e-3, center_of_mass = [0.0, 0.0, 50.0], inertia = [[4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [0.0, 0.0, 3.0]] }
+        [initial]
+        angular_velocity = [0.001, 0.0, 0.05]
+        [[constraints]]
+        kind = "pin"
+        at = [0.0, 0.0, 0.0]
+        [[loads]]
+        kind = "gravity"
+        direction = [0.0, 0.1, -1.0]
+        amplitude = 9.81e-3
+        [time]
+        end = 200.0
+        step = 0.5
+        [output]
+        interval = 20.0
+        points = { top = [0.0, 0.0, 100.0] }
+    "#;
+    Scene::parse(text, "top.toml").unwrap()
+}
+
+/// The rows of a run of the library, without an FMU.
+pub fn own_run(scene: &Scene) -> Vec<Vec<f64>> {
+    let fmu = FmuModel::new(scene.clone(), |_| ()).unwrap();
+    let mut row = Row::new(&fmu.model);
+    fmu.model
+        .start(&fmu.scene)
+        .unwrap()
+        .map(|now| {
+            row.motion = now.unwrap();
+            row.complete(&fmu.model);
+            let mut numbers = Vec::new();
+            fmu.numbers(&row, &mut numbers);
+            numbers
+        })
+        .collect()
+}

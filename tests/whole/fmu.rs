@@ -1,0 +1,91 @@
+//! `flexframe fmu`: what is packed, and what is refused. The crate `fmi` tests FMUs in motion.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use flexframe::fmu::marker;
+use serde_json::Value;
+
+fn root() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// The program without a library of the environment, unless there is one here.
+fn flexframe(library: &str, arguments: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_flexframe"));
+    command.args(arguments).current_dir(root()).env("FLEXFRAME_FMU_LIBRARY", library).output().unwrap()
+}
+
+fn refused(library: &str, arguments: &[&str], code: i32) -> Value {
+    let output = flexframe(library, &[arguments, &["--json"]].concat());
+    let text = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(code), "{text}");
+    serde_json::from_str(text.lines().last().unwrap()).unwrap()
+}
+
+#[test]
+fn an_fmu_is_packed_of_a_scene_or_of_its_body_file_and_is_the_same_each_time() {
+    let folder = tempfile::tempdir().unwrap();
+    let place = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    fs::write(place("library"), marker()).unwrap();
+    let scene = "examples/ring.toml";
+    let pack = |of: &str, name: &str| -> Value {
+        let output = flexframe(&place("library"), &["fmu", of, "-o", &place(name), "--json", "--set", "time.end=0.01"]);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        serde_json::from_slice(&output.stdout).unwrap()
+    };
+    let first = pack(scene, "ring.fmu");
+    let inputs: Vec<&str> = first["inputs"].as_array().unwrap().iter().map(|name| name.as_str().unwrap()).collect();
+    assert_eq!(inputs[..3], ["loads[1].factor", "points.struck.force[1]", "points.struck.force[2]"]);
+    assert_eq!(inputs.len(), 7);
+    let bytes = fs::read(place("ring.fmu")).unwrap();
+    assert_eq!(pack(scene, "ring.fmu")["guid"], first["guid"]);
+    assert!(fs::read(place("ring.fmu")).unwrap() == bytes);
+    let output = flexframe("", &["reduce", scene, "-o", &place("ring.body.h5")]);
+    assert!(output.status.success());
+    let of_body = pack(&place("ring.body.h5"), "of_body.fmu");
+    assert_eq!(of_body["inputs"], first["inputs"]);
+}
+
+#[test]
+fn without_its_library_nothing_is_packed() {
+    let folder = tempfile::tempdir().unwrap();
+    let place = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let (fmu, nothing, other) = (place("top.fmu"), place("nothing.so"), place("other.so"));
+    fs::write(&other, "no library").unwrap();
+    let arguments = ["fmu", "examples/pendulum.toml", "-o", &fmu];
+    for (library, found) in [(&nothing, "cannot be read"), (&other, "not the library for FMUs of flexframe")] {
+        for failure in
+            [refused(library, &arguments, 6), refused("", &[&arguments[..], &["--library", library]].concat(), 6)]
+        {
+            let message = failure["message"].as_str().unwrap();
+            for words in [found, "./dev build", "--library", "FLEXFRAME_FMU_LIBRARY"] {
+                assert!(message.contains(words), "{message}");
+            }
+            assert_eq!(failure["file"], library.as_str());
+        }
+    }
+    assert!(!Path::new(&fmu).exists());
+}
+
+#[test]
+fn what_cannot_be_packed_leaves_the_old_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let place = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    fs::write(place("library"), marker()).unwrap();
+    fs::write(place("old.fmu"), "old").unwrap();
+    fs::write(place("no.h5"), "no body file").unwrap();
+    let (library, old) = (place("library"), place("old.fmu"));
+    let scene = "examples/pendulum.toml";
+    let failure = refused(&library, &["fmu", &place("no.h5"), "-o", &old], 3);
+    assert!(failure["message"].as_str().unwrap().contains("no.h5"), "{failure}");
+    let failure = refused(&library, &["fmu", scene, "-o", &old, "--set", "time.step=-1"], 3);
+    assert_eq!(failure["key"], "time.step");
+    let auto = ["fmu", "examples/ring.toml", "-o", &old, "--set", "modes.flexible=auto"];
+    let failure = refused(&library, &auto, 3);
+    assert_eq!(failure["key"], "modes.flexible");
+    let failure = refused(&library, &["fmu", scene, "-o", &place("nowhere/top.fmu")], 6);
+    assert!(failure["message"].as_str().unwrap().contains("cannot be written"), "{failure}");
+    assert_eq!(fs::read(old).unwrap(), b"old");
+}
