@@ -41,7 +41,7 @@ impl Row {
     }
 
     /// Fills in what follows from the motion.
-    pub(crate) fn complete(&mut self, model: &Model) {
+    pub fn complete(&mut self, model: &Model) {
         if let Some(supports) = &model.supports {
             let to_global = |vectors: [_; 2]| vectors.map(|vector| self.motion.attitude.to_global(&vector).into());
             self.supports = supports.at(&self.motion).into_iter().map(to_global).collect();

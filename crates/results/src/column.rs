@@ -110,7 +110,7 @@ impl<R> Column<R> {
     }
 
     /// Appends the values that a row has.
-    pub(crate) fn append(&self, row: &R, metadata: &Metadata, out: &mut Vec<f64>) {
+    pub fn append(&self, row: &R, metadata: &Metadata, out: &mut Vec<f64>) {
         let points = self.places(metadata).len();
         match self.values {
             Values::Number(value) => out.push(value(row)),
@@ -161,7 +161,7 @@ pub(crate) fn of_point(path: &str, name: &str) -> String {
 }
 
 /// The columns of a table that a file with this metadata has.
-pub(crate) fn present<R>(
+pub fn present<R>(
     columns: &'static [Column<R>],
     metadata: &Metadata,
 ) -> impl Iterator<Item = &'static Column<R>> + Clone {
