@@ -86,6 +86,34 @@ bench:
 bench-modes: build
     crates/modal/benches/peer/run
 
+# The Python package: its wheel, with HDF5 inside, into target/wheels, and its tests in a fresh installation (Python packages).
+python profile="release":
+    #!/usr/bin/env bash
+    set -euo pipefail
+    target="${CARGO_TARGET_DIR:-$PWD/target}"
+    built="$target/{{ if profile == "dev" { "debug" } else { profile } }}"
+    # HDF5 wants a newer cmake than Debian has.
+    python3 -m venv .tools/python
+    .tools/python/bin/pip install -q "maturin>=1.9,<2" "cmake>=3.26"
+    export PATH="$PWD/.tools/python/bin:$PATH"
+    rm -f target/wheels/flexframe-*.whl
+    maturin build --quiet --locked --profile {{profile}} --manifest-path crates/python/Cargo.toml --out target/wheels
+    # With the features of the wheel, so that nothing is built twice.
+    cargo build --quiet --locked --profile {{profile}} --package flexframe-cli --package flexframe-python \
+        --features flexframe-python/static-hdf5 --bin flexframe --example controller --example spring_to_ground
+    rm -rf .tools/wheel
+    python3 -m venv .tools/wheel
+    .tools/wheel/bin/pip install -q target/wheels/flexframe-*.whl
+    library=$(cd / && "$OLDPWD/.tools/wheel/bin/python" -c "import flexframe._flexframe as library; print(library.__file__)")
+    if readelf --dynamic "$library" | grep NEEDED | grep -vE '\[(libc|libm|libgcc_s|libpthread|libdl|librt|ld-linux-[a-z0-9-]+)\.so'; then
+        echo "python: the wheel needs a library that a machine may not have" >&2
+        exit 1
+    fi
+    .tools/wheel/bin/pip install -q pytest matplotlib pandas pandas-stubs xarray h5py mypy
+    FLEXFRAME="$built/flexframe" FLEXFRAME_EXAMPLES="$built/examples" FLEXFRAME_FIGURES="$PWD/out/python" \
+        .tools/wheel/bin/python -m pytest -q -p no:cacheprovider crates/python
+    ls target/wheels/flexframe-*.whl
+
 # Read a results file and a body file with h5py, as a user would (Python packages).
 h5py: build
     {{flexframe}} run examples/ring.toml -o out/ring --overwrite

@@ -63,7 +63,7 @@ pub fn run() -> Result<Answer, Box<dyn Error>> {
 #[allow(dead_code)] // a test runs the example as a module
 fn main() -> Result<(), Box<dyn Error>> {
     let Answer { strain_energy_left, balance } = run()?;
-    println!("energy left by the controller: {:.4} of the free vibration's", strain_energy_left);
+    println!("energy left by the controller: {:?} of the free vibration's", strain_energy_left);
     println!("energy and work balance to {balance:.1e}");
     Ok(())
 }

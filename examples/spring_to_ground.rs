@@ -67,7 +67,7 @@ fn ends(body: &ReducedBody, load: impl Load, initial: Initial, end: f64) -> Resu
 #[allow(dead_code)] // a test runs the example as a module
 fn main() -> Result<(), Box<dyn Error>> {
     let Answer { after_a_period, energy, circled } = run()?;
-    println!("after a period the spring is at {after_a_period:.12} of its first stretch, the energy at {energy:.12}");
-    println!("the thrust has taken the body to {:.9}, in closed form {:.9}", circled[0], circled[1]);
+    println!("after a period the spring is at {after_a_period:?} of its first stretch, the energy at {energy:?}");
+    println!("the thrust has taken the body to {:?}, in closed form {:?}", circled[0], circled[1]);
     Ok(())
 }

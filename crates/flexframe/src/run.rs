@@ -5,6 +5,7 @@ mod error;
 mod recorder;
 mod report;
 mod settings;
+mod watch;
 
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -18,6 +19,7 @@ pub(crate) use balances::Monitor;
 pub use error::{RunError, RunFailure};
 pub use report::RunReport;
 pub use settings::{RunProgress, RunSettings};
+pub use watch::{Watch, Watched};
 
 use crate::columns::{COLUMNS, part};
 use crate::reopened::scene_of;
@@ -137,7 +139,7 @@ pub fn results_path(scene: &Scene, folder: &Path) -> PathBuf {
 }
 
 /// What the results file of a run says about it.
-pub(crate) fn metadata(scene: &Scene, model: &Model) -> Metadata {
+pub fn metadata(scene: &Scene, model: &Model) -> Metadata {
     let body = BodyReport::new(model);
     let method = scene.time.method;
     let (step, tolerance) = match scene.time.control {

@@ -166,7 +166,7 @@ pub(crate) fn of_point(path: &str, name: &str) -> String {
 }
 
 /// The columns of a table that a file with this metadata has.
-pub(crate) fn present<R>(
+pub fn present<R>(
     columns: &'static [Column<R>],
     metadata: &Metadata,
 ) -> impl Iterator<Item = &'static Column<R>> + Clone {

@@ -42,7 +42,7 @@ mod writer;
 #[cfg(test)]
 extern crate self as results; // for what the tests share
 
-pub use column::{Column, Values};
+pub use column::{Column, Values, present};
 pub use error::FileError;
 pub use metadata::{BodyProperties, Metadata, Units};
 pub use reader::{ColumnTable, Results};

@@ -147,6 +147,18 @@ impl Results {
         Some(table.values.as_chunks().0)
     }
 
+    /// All values of a column, row by row, as they are in its dataset: of a column with a value for each point, those of all
+    /// points of a row beside each other. Empty if the file does not have the column.
+    pub fn dataset<R>(&self, column: &Column<R>) -> Vec<f64> {
+        let names = column.places(&self.metadata);
+        if column.per_point() == 0 {
+            return self.table(column.path).map_or_else(Vec::new, |table| table.values.clone());
+        }
+        let tables: Vec<&ColumnTable> =
+            names.iter().filter_map(|name| self.table(&of_point(column.path, name))).collect();
+        (0..self.rows).flat_map(|i| tables.iter().filter_map(move |table| table.row(i)).flatten().copied()).collect()
+    }
+
     /// Whether row `i` is this one, to the last bit of every column.
     pub fn is_row<R>(&self, i: usize, columns: &'static [Column<R>], row: &R) -> bool {
         let mut values = Vec::new();

@@ -153,7 +153,7 @@ fn entry<'d>(document: &'d Document<'d>, path: &str, index: usize, value: &'d Sp
 }
 
 /// The path of `key` in the table at `path`; a key that TOML wants in quotes gets them.
-pub(crate) fn join(path: &str, key: &str) -> String {
+pub fn join(path: &str, key: &str) -> String {
     let bare = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
     let is_bare = !key.is_empty() && key.chars().all(bare);
     let key = if is_bare { key.to_owned() } else { format!("{key:?}") };

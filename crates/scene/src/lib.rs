@@ -63,6 +63,7 @@ pub use build::{
 };
 pub use cache::{Cache, CacheNotes};
 pub use constraint::{Constraint, HeldDirections, HingeLine, Region};
+pub use document::join as key_path;
 pub use effects::{Choice, Effects};
 pub use error::SceneError;
 pub use fem_tet10::{Material, Materials, PointMass};

@@ -3,50 +3,25 @@
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 
-use advice::{Review, StepEstimate};
 use frames_rk4::{Initial, Observation, Reached, Simulation, StepError};
 use nalgebra::Vector3;
 use results::{Results, Writer};
 use rigid_kin::Attitude;
-use scene::{BuildError, Model, Scene, StepControl};
+use scene::{Model, Scene, StepControl};
 
-use super::balances::{Conserved, Monitor};
+use super::balances::Conserved;
 use super::error::RunError;
 use super::report::RunReport;
 use super::settings::{RunProgress, RunSettings};
+use super::watch::{Watch, Watched};
 use crate::columns::COLUMNS;
 use crate::effects;
 use crate::peak_stress::Largest;
-use crate::plausible;
 use crate::report::{BodyReport, MeshReport, Times};
 use crate::row::Row;
 
-/// Energy balance from which on a run says that it is open.
-const OPEN: f64 = 1e-2;
-
-/// Estimated error from which on a run says that its steps are too long.
-const WRONG: f64 = 1e-2;
-
-/// Largest step times ω_max in which the stages see the work on the modes and their dissipation as they are.
-const RESOLVED: f64 = 0.5;
-
 /// Steps between two reports of progress, where no row comes first.
 const STEPS_PER_REPORT: u64 = 4096;
-
-fn open_balance(open: f64, flexible: usize) -> String {
-    let (work, cure) = match flexible {
-        0 => ("the work of the loads", "shorter steps"),
-        _ => ("the work on modes that are faster than the step", "shorter steps, or fewer modes,"),
-    };
-    format!(
-        "the energy balance is open by {open:.1e} of the energy that there was or that came and went: {work} is summed \
-         too coarsely, or the motion itself is; take {cure} until it does not matter to the answer"
-    )
-}
-
-fn long_steps(estimate: &StepEstimate, share: f64) -> String {
-    format!("{} Take shorter steps, or `tolerance` instead of `step`", estimate.in_words(share))
-}
 
 /// Follows a run, and turns its observations into rows of the results file.
 pub(super) struct Recorder<'a> {
@@ -54,13 +29,10 @@ pub(super) struct Recorder<'a> {
     model: &'a Model,
     row: Row,
     writer: Writer<Row>,
-    review: Review<'a>,
+    watch: Watch<'a>,
     rows: u64,
     peak_strain_energy: f64,
     peak_stress: Option<Largest>,
-    monitor: Monitor,
-    /// What fixed steps are expected to get wrong.
-    step: Option<StepEstimate>,
 }
 
 impl<'a> Recorder<'a> {
@@ -70,36 +42,16 @@ impl<'a> Recorder<'a> {
         initial: &'a Initial,
         writer: Writer<Row>,
     ) -> Result<Self, RunError> {
-        let step = model
-            .step_estimate(scene)
-            .map_err(|source| RunError::Setup { scene: scene.path.clone(), source: Box::new(source) })?;
         Ok(Self {
             scene,
             model,
             row: Row::new(model),
             writer,
-            review: Review::new(model.case(scene, initial), model.physics.effects, &model.advice),
+            watch: Watch::new(scene, model, initial, model.physics.effects)?,
             rows: 0,
             peak_strain_energy: 0.0,
             peak_stress: None,
-            monitor: Monitor::default(),
-            step,
         })
-    }
-
-    /// Whether the steps are known to be right though they are too long for the sum of work and dissipation.
-    fn is_right_unsummed(&self, longest_step: f64) -> bool {
-        if self.scene.time.method.is_of_paper() {
-            // The equations of the paper do not keep the energy in any steps.
-            return false;
-        }
-        let frequencies = self.model.body.circular_frequencies.iter().zip(self.model.damping_ratios());
-        let fastest = frequencies.map(|(omega, zeta)| omega * (2.0 * zeta).max(1.0)).fold(0.0, f64::max);
-        let resolved = fastest * longest_step <= RESOLVED;
-        match &self.step {
-            Some(step) => step.largest() < WRONG && (step.seen >= 1.0 || !resolved),
-            None => !resolved,
-        }
     }
 
     /// The first row, and a first checkpoint.
@@ -114,8 +66,7 @@ impl<'a> Recorder<'a> {
         let changed = |what| RunError::Changed { part: part.clone(), what };
         for row in 0..results.rows() {
             let past = restore(results, row, &mut self.row.motion).ok_or_else(|| changed("the columns"))?;
-            self.review.observe(&self.row).map_err(BuildError::from)?;
-            self.monitor.take(&past);
+            self.watch.take_up(&self.row, &past)?;
             self.peak_strain_energy = self.peak_strain_energy.max(self.row.strain_energy);
             Largest::watch(&mut self.peak_stress, self.model, &self.row);
         }
@@ -137,8 +88,8 @@ impl<'a> Recorder<'a> {
     ) -> Result<RunReport, RunError> {
         let before = simulation.stats().accepted;
         loop {
-            let review = &mut self.review;
-            let reached = simulation.advance_watched(STEPS_PER_REPORT, |moment| review.look(moment));
+            let watch = &mut self.watch;
+            let reached = simulation.advance_watched(STEPS_PER_REPORT, |moment| watch.look(moment));
             // A step that fails after the model has come to mean nothing fails for that.
             self.refuse()?;
             match reached.map_err(|source| self.failed(source))? {
@@ -168,13 +119,8 @@ impl<'a> Recorder<'a> {
         let time = started.elapsed();
         let stats = simulation.stats();
         let method = self.scene.time.method;
-        self.monitor.exchanged(simulation.exchanged());
-        let balances = self.monitor.balances();
-        let right_unsummed = balances.energy > OPEN && self.is_right_unsummed(stats.longest);
+        let Watched { balances, right_unsummed, left_out, warnings } = self.watch.finish(&simulation);
         let Self { scene, model, .. } = self;
-        let open =
-            (balances.energy > OPEN && !right_unsummed).then(|| open_balance(balances.energy, model.body.flexible()));
-        let wrong = self.step.as_ref().filter(|step| step.largest() >= WRONG);
         let last = &self.row;
         let mut report = RunReport {
             title: scene.title.clone(),
@@ -202,12 +148,8 @@ impl<'a> Recorder<'a> {
             right_unsummed,
             effects: effects::computed(scene, model),
             large_modes: model.large_modes().iter().map(|k| k + 1).collect(),
-            left_out: self.review.left_out(),
-            warnings: (plausible::doubts(scene, model).into_iter())
-                .chain(self.review.broken().iter().map(ToString::to_string))
-                .chain(wrong.map(|step| long_steps(step, scene.effects.tolerance)))
-                .chain(open)
-                .collect(),
+            left_out,
+            warnings,
             results: self.writer.path().to_path_buf(),
             times: Times::of_model(model),
         };
@@ -219,11 +161,11 @@ impl<'a> Recorder<'a> {
 
     /// Refuses to go on where the review has found that the model is wrong, unless the scene wants to.
     fn refuse(&self) -> Result<(), RunError> {
-        match self.review.stop() {
-            Some((time, refusal)) if self.scene.effects.refuse => {
+        match self.watch.refusal() {
+            Some((time, refusal)) => {
                 Err(RunError::Refused { results: self.writer.unfinished().to_path_buf(), time, refusal })
             }
-            _ => Ok(()),
+            None => Ok(()),
         }
     }
 
@@ -246,8 +188,7 @@ impl<'a> Recorder<'a> {
         self.writer.push(now)?;
         self.peak_strain_energy = self.peak_strain_energy.max(now.strain_energy);
         Largest::watch(&mut self.peak_stress, self.model, now);
-        self.monitor.watch(now);
-        self.review.observe(now).map_err(BuildError::from)?;
+        self.watch.observe(now)?;
         self.rows += 1;
         Ok(())
     }

@@ -1,0 +1,144 @@
+//! What is watched of a motion beside its rows: whether the assumptions of its model hold, and what should stay as it is.
+
+use advice::{Refusal, Review, StepEstimate};
+use frames_rk4::{EffectMap, Initial, Moment, Observation, Simulation};
+use scene::{BuildError, Model, Scene};
+
+use super::balances::{Balances, Conserved, Monitor};
+use super::error::RunError;
+use crate::plausible;
+
+/// Energy balance from which on a run says that it is open.
+const OPEN: f64 = 1e-2;
+
+/// Estimated error from which on a run says that its steps are too long.
+const WRONG: f64 = 1e-2;
+
+/// Largest step times ω_max in which the stages see the work on the modes and their dissipation as they are.
+const RESOLVED: f64 = 0.5;
+
+/// Watches a motion. Every moment goes to [`Self::look`], every row to [`Self::observe`].
+pub struct Watch<'a> {
+    scene: &'a Scene,
+    model: &'a Model,
+    review: Review<'a>,
+    monitor: Monitor,
+    /// What fixed steps are expected to get wrong.
+    step: Option<StepEstimate>,
+}
+
+/// What there is to say of a motion when it has come to its end.
+#[derive(Debug, Clone)]
+pub struct Watched {
+    /// How far the balances are from closed.
+    pub balances: Balances,
+    /// See [`RunReport::right_unsummed`](super::RunReport::right_unsummed).
+    pub right_unsummed: bool,
+    /// See [`RunReport::left_out`](super::RunReport::left_out).
+    pub left_out: Option<f64>,
+    /// Assumptions that did not hold, each a sentence or more.
+    pub warnings: Vec<String>,
+}
+
+impl<'a> Watch<'a> {
+    /// Of the motion of a scene that begins with `initial` and is computed with these effects.
+    ///
+    /// # Errors
+    /// [`RunError::Setup`].
+    pub fn new(
+        scene: &'a Scene,
+        model: &'a Model,
+        initial: &'a Initial,
+        effects: EffectMap<bool>,
+    ) -> Result<Self, RunError> {
+        let step = model
+            .step_estimate(scene)
+            .map_err(|source| RunError::Setup { scene: scene.path.clone(), source: Box::new(source) })?;
+        Ok(Self {
+            scene,
+            model,
+            review: Review::new(model.case(scene, initial), effects, &model.advice),
+            monitor: Monitor::default(),
+            step,
+        })
+    }
+
+    /// Sees a moment between rows.
+    pub fn look(&mut self, moment: &Moment) {
+        self.review.look(moment);
+    }
+
+    /// Sees a row.
+    ///
+    /// # Errors
+    /// [`RunError::Build`] where the assumptions cannot be checked.
+    pub fn observe(&mut self, now: &Observation) -> Result<(), RunError> {
+        self.monitor.watch(now);
+        self.review.observe(now).map_err(BuildError::from)?;
+        Ok(())
+    }
+
+    /// Sees a row of a run that is taken up again.
+    pub(super) fn take_up(&mut self, now: &Observation, past: &Conserved) -> Result<(), RunError> {
+        self.review.observe(now).map_err(BuildError::from)?;
+        self.monitor.take(past);
+        Ok(())
+    }
+
+    /// Why the motion is not to go on, and since when: the review has found that the model is wrong. Nothing where the scene
+    /// wants to go on all the same.
+    pub fn refusal(&self) -> Option<(f64, Refusal)> {
+        self.review.stop().filter(|_| self.scene.effects.refuse)
+    }
+
+    /// What there is to say when `simulation` has come to its end.
+    pub fn finish(&mut self, simulation: &Simulation) -> Watched {
+        let Self { scene, model, .. } = *self;
+        self.monitor.exchanged(simulation.exchanged());
+        let balances = self.monitor.balances();
+        let right_unsummed = balances.energy > OPEN && self.is_right_unsummed(simulation.stats().longest);
+        let open =
+            (balances.energy > OPEN && !right_unsummed).then(|| open_balance(balances.energy, model.body.flexible()));
+        let wrong = self.step.as_ref().filter(|step| step.largest() >= WRONG);
+        Watched {
+            balances,
+            right_unsummed,
+            left_out: self.review.left_out(),
+            warnings: (plausible::doubts(scene, model).into_iter())
+                .chain(self.review.broken().iter().map(ToString::to_string))
+                .chain(wrong.map(|step| long_steps(step, scene.effects.tolerance)))
+                .chain(open)
+                .collect(),
+        }
+    }
+
+    /// Whether the steps are known to be right though they are too long for the sum of work and dissipation.
+    fn is_right_unsummed(&self, longest_step: f64) -> bool {
+        if self.scene.time.method.is_of_paper() {
+            // The equations of the paper do not keep the energy in any steps.
+            return false;
+        }
+        let frequencies = self.model.body.circular_frequencies.iter().zip(self.model.damping_ratios());
+        let fastest = frequencies.map(|(omega, zeta)| omega * (2.0 * zeta).max(1.0)).fold(0.0, f64::max);
+        let resolved = fastest * longest_step <= RESOLVED;
+        match &self.step {
+            Some(step) => step.largest() < WRONG && (step.seen >= 1.0 || !resolved),
+            None => !resolved,
+        }
+    }
+}
+
+fn open_balance(open: f64, flexible: usize) -> String {
+    let (work, cure) = match flexible {
+        0 => ("the work of the loads", "shorter steps"),
+        _ => ("the work on modes that are faster than the step", "shorter steps, or fewer modes,"),
+    };
+    format!(
+        "the energy balance is open by {open:.1e} of the energy that there was or that came and went: {work} is summed \
+         too coarsely, or the motion itself is; take {cure} until it does not matter to the answer"
+    )
+}
+
+fn long_steps(estimate: &StepEstimate, share: f64) -> String {
+    format!("{} Take shorter steps, or `tolerance` instead of `step`", estimate.in_words(share))
+}

@@ -1,0 +1,54 @@
+"""flexframe: the motion of an elastic body that flies, tumbles and spins while it vibrates.
+
+    scene = flexframe.Scene("plate.toml")
+    body = flexframe.Body(scene)
+    results = flexframe.Simulation(body).run()
+    results["points/P1/displacement"]
+"""
+
+import os
+import sys
+
+from flexframe import _flexframe
+from flexframe._flexframe import (
+    Body,
+    Force,
+    ModalForce,
+    Motion,
+    Reached,
+    Row,
+    Scene,
+    Simulation,
+    read_results,
+    resume,
+    run,
+)
+from flexframe.errors import Error, FileError, InputError, RefusedError, RunError
+from flexframe.results import Column, Results
+
+__version__ = _flexframe.VERSION
+
+__all__ = [
+    "Body",
+    "Column",
+    "Error",
+    "FileError",
+    "Force",
+    "InputError",
+    "ModalForce",
+    "Motion",
+    "Reached",
+    "RefusedError",
+    "Results",
+    "Row",
+    "RunError",
+    "Scene",
+    "Simulation",
+    "read_results",
+    "resume",
+    "run",
+]
+
+# Meshes of other formats are read by meshio in a Python of its own: by default in this one.
+if sys.executable:
+    os.environ.setdefault("FLEXFRAME_PYTHON", sys.executable)

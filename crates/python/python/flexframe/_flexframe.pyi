@@ -1,0 +1,258 @@
+"""The compiled part of flexframe. Lengths, masses and times are in the units of the scene, angles in rad."""
+
+import os
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Any, Literal, final
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from flexframe.results import Results
+
+__all__ = [
+    "VERSION",
+    "Body",
+    "Force",
+    "ModalForce",
+    "Motion",
+    "Reached",
+    "Row",
+    "Scene",
+    "Simulation",
+    "read_results",
+    "resume",
+    "run",
+]
+
+VERSION: str
+
+_Path = str | os.PathLike[str]
+
+@final
+class Scene:
+    """A scene: what a scene file says about a run, read and checked.
+
+    From the path of a scene file; or from a dict with the sections and keys of one, such as
+    `{"title": "Bar", "units": {...}, "body": {"mesh": "bar.msh", ...}, ...}`. Its lists may be arrays of numpy. Paths in a
+    dict are relative to `base` (default: the current folder); `name` stands for it in messages and names its results file
+    (default: "scene").
+    """
+
+    def __new__(cls, source: _Path | dict[str, Any], *, base: _Path | None = None, name: str | None = None) -> Scene: ...
+    def with_values(self, values: dict[str, Any]) -> Scene:
+        """The scene with other values of some keys: `{"time.end": 0.5, "loads[0].amplitude": 20.0}`, as with `--set`."""
+    @property
+    def title(self) -> str:
+        """What the run is about."""
+    @property
+    def text(self) -> str:
+        """The text of the scene, TOML."""
+    @property
+    def path(self) -> os.PathLike[str]:
+        """The scene file, or `base` and `name` of a dict."""
+    @property
+    def end(self) -> float:
+        """Time at the end of the run."""
+    @property
+    def units(self) -> dict[str, str]:
+        """Labels of "length", "mass" and "time"."""
+
+@final
+class Body:
+    """The body of a scene: its mesh is read, its modes are found, and it is reduced.
+
+    Ctrl-C raises KeyboardInterrupt at once; a factorization that is under way goes on in its thread until it is done. What
+    is said to be a view is memory of the body: read-only, not copied, and valid as long as the array is (it keeps the body).
+    nf is the number of flexible modes plus that of the static shapes, which come after them.
+    """
+
+    def __new__(cls, scene: Scene) -> Body: ...
+    @property
+    def scene(self) -> Scene: ...
+    @property
+    def mass(self) -> float: ...
+    @property
+    def center_of_mass(self) -> NDArray[np.float64]:
+        """Centre of mass, mesh axes (3; view)."""
+    @property
+    def inertia(self) -> NDArray[np.float64]:
+        """Inertia of the undeformed body about its centre of mass (3x3)."""
+    @property
+    def origin(self) -> NDArray[np.float64]:
+        """Origin of the body frame, mesh axes (3; view): the centre of mass of a free body."""
+    @property
+    def frequencies(self) -> NDArray[np.float64]:
+        """Natural frequencies, cycles per time (nf); after them those of the static shapes, which are none."""
+    @property
+    def damping_ratios(self) -> NDArray[np.float64]:
+        """Damping ratio of each of them (nf; view)."""
+    @property
+    def kinds(self) -> list[str]:
+        """Whether each is a "natural mode" or a "static shape"."""
+    @property
+    def positions(self) -> NDArray[np.float64]:
+        """Nodes of the mesh (n x 3; view); none of a rigid body."""
+    @property
+    def tetrahedra(self) -> NDArray[np.uint32]:
+        """Nodes of the elements, from 0: corners, then mid-edges 01 12 02 03 23 13 (m x 10; view)."""
+    @property
+    def surface_triangles(self) -> NDArray[np.uint32]:
+        """Nodes of the faces on the surface, seen from outside: corners, then mid-edges 01 12 20 (t x 6)."""
+    @property
+    def shapes(self) -> NDArray[np.float64]:
+        """Mass-normalised modes, then static shapes: displacements of the nodes, mesh axes (nf x n x 3; view)."""
+    @property
+    def rigid_shapes(self) -> NDArray[np.float64]:
+        """Rigid modes, zero where the body has less (6 x n x 3; view)."""
+    @property
+    def constants(self) -> dict[str, Any]:
+        """Constants of the reduced body, by the names in docs/body.md (views; those of several indices in tuples)."""
+    @property
+    def points(self) -> dict[str, NDArray[np.float64]]:
+        """Where the points of the scene are in the undeformed body, mesh axes."""
+    def displacements(self, modal_displacement: ArrayLike) -> NDArray[np.float64]:
+        """Elastic displacement of each node, body axes (n x 3), with what follows large modes."""
+
+@final
+class Motion:
+    """What a law sees: the motion of the body at one time. Arrays are copies."""
+
+    @property
+    def time(self) -> float: ...
+    @property
+    def rotation(self) -> NDArray[np.float64]:
+        """Matrix that takes body components to global ones (3x3)."""
+    @property
+    def origin(self) -> NDArray[np.float64]:
+        """Position of the origin of the body frame, global (3)."""
+    @property
+    def origin_velocity(self) -> NDArray[np.float64]:
+        """Its velocity, global (3)."""
+    @property
+    def angular_velocity(self) -> NDArray[np.float64]:
+        """Angular velocity of the body frame, body axes (3)."""
+    @property
+    def modal_displacement(self) -> NDArray[np.float64]:
+        """Coordinates of the flexible modes and static shapes (nf)."""
+    @property
+    def modal_velocity(self) -> NDArray[np.float64]:
+        """Their rates (nf)."""
+    def position(self, point: str | None = None) -> NDArray[np.float64]:
+        """Position of a point of the scene, global (3); of that of the force, if none is named."""
+    def velocity(self, point: str | None = None) -> NDArray[np.float64]:
+        """Velocity of a point of the scene, global (3); of that of the force, if none is named."""
+
+@final
+class Force:
+    """A force at a point of the scene, by a law: a function of the motion that returns three components.
+
+    They are global, or in body axes with `frame="body"`. The law is evaluated several times a step, and must depend on
+    nothing but the motion. `corners` are times at which it or its rate jumps, so that steps end there; `longest_step` is
+    the longest step that sees it as it is.
+    """
+
+    def __new__(
+        cls,
+        point: str,
+        law: Callable[[Motion], ArrayLike],
+        *,
+        frame: Literal["global", "body"] = "global",
+        name: str | None = None,
+        corners: Sequence[float] = ...,
+        longest_step: float | None = None,
+    ) -> Force: ...
+
+@final
+class ModalForce:
+    """Forces on the modal coordinates, by a law that returns nf of them. They have no resultant. Otherwise as Force."""
+
+    def __new__(
+        cls,
+        law: Callable[[Motion], ArrayLike],
+        *,
+        name: str | None = None,
+        corners: Sequence[float] = ...,
+        longest_step: float | None = None,
+    ) -> ModalForce: ...
+
+@final
+class Row:
+    """The motion at one time: a number or an array for each column of a results file, by its path."""
+
+    @property
+    def time(self) -> float: ...
+    def keys(self) -> list[str]: ...
+    def __len__(self) -> int: ...
+    def __contains__(self, path: str, /) -> bool: ...
+    def __iter__(self) -> Iterator[str]: ...
+    def __getitem__(self, path: str, /) -> Any: ...
+
+@final
+class Reached:
+    """Where a simulation has come to: kind is "row", "event", "stop", "step" or "end"."""
+
+    @property
+    def kind(self) -> str: ...
+    @property
+    def event(self) -> str | None:
+        """Name of the event."""
+    @property
+    def time(self) -> float: ...
+
+@final
+class Simulation:
+    """A run of a body and its scene, with more loads. As an iterator it yields the rows from where it is.
+
+    An exception of a law ends the step: the simulation stays where it was before it, and may go on. One of an event ends the
+    run at the end of the step. Ctrl-C raises KeyboardInterrupt within some thousand steps, and the simulation may go on.
+    """
+
+    def __new__(cls, body: Body, loads: Sequence[Force | ModalForce] | None = None) -> Simulation: ...
+    @property
+    def body(self) -> Body: ...
+    @property
+    def time(self) -> float:
+        """Time that has been reached."""
+    @property
+    def end(self) -> float:
+        """Time at the end."""
+    @property
+    def done(self) -> bool:
+        """Whether the end has been reached."""
+    @property
+    def stats(self) -> dict[str, int]:
+        """What it has cost: "steps", "rejected_steps", "evaluations"."""
+    def run(self) -> Results:
+        """Goes on to the end, and gives the rows from here; events are passed, and listed. Where it fails, the rows before are
+        in the attribute `results` of the exception."""
+    def advance(self, steps: int | None = None) -> Reached:
+        """Goes on to the next row or event, or so many tries of a step."""
+    def advance_to(self, time: float) -> Reached:
+        """Goes on to a time, past rows, or to an event before it."""
+    def add_event(
+        self,
+        name: str,
+        function: Callable[[Row], float],
+        *,
+        crossing: Literal["rising", "falling", "any"] = "any",
+    ) -> None:
+        """Stops where a function of the row passes through zero, on the far side to rounding."""
+    def observe(self) -> Row:
+        """The motion at the time that has been reached."""
+    def state(self) -> dict[str, Any]:
+        """The state that has been reached: time, attitude (quaternion), origin, velocity of the origin, angular_velocity (body
+        axes), modal_displacement, modal_velocity."""
+    def set_state(self, state: Mapping[str, Any]) -> None:
+        """Goes on from another state; keys that are not given stay as they are. Work and balances are counted from there."""
+    def __iter__(self) -> Simulation: ...
+    def __next__(self) -> Row: ...
+
+def run(scene: Scene, folder: _Path, *, overwrite: bool = False) -> Results:
+    """Runs a scene as the program does, and writes its results to `<folder>/<name of the scene>.h5`. Until the end they are in
+    `<name>.part.h5` beside it, from which `resume` goes on after Ctrl-C or a crash."""
+
+def resume(file: _Path) -> Results:
+    """Goes on with a run that was cut off: the file is then the same as if it had not been, bit for bit."""
+
+def read_results(path: _Path) -> Results:
+    """Reads a results file, finished or not."""

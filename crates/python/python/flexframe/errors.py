@@ -1,0 +1,59 @@
+"""Exceptions. Their messages are those of the program `flexframe`."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from flexframe.results import Results
+
+
+class Error(Exception):
+    """What flexframe raises. What is known of the fault beside the message is in attributes, which are None where it is not."""
+
+    file: str | None
+    """The file that is at fault, or could not be read or written."""
+    line: int | None
+    """Line in it, from 1."""
+    key: str | None
+    """Path of keys in the scene, such as `loads[0].history.duration`, or the argument at fault."""
+    found: str | None
+    """What stands there."""
+    expected: str | None
+    """What should stand there."""
+    cure: str | None
+    """What to do about it."""
+    results: Results | None
+    """The rows before the fault, of a run in memory."""
+
+    def __init__(
+        self,
+        message: str,
+        *,
+        file: str | None = None,
+        line: int | None = None,
+        key: str | None = None,
+        found: str | None = None,
+        expected: str | None = None,
+        cure: str | None = None,
+    ) -> None:
+        super().__init__(message)
+        self.file, self.line, self.key = file, line, key
+        self.found, self.expected, self.cure = found, expected, cure
+        self.results = None
+
+
+class InputError(Error, ValueError):
+    """A scene, mesh, table, results file or argument says something that cannot be right."""
+
+
+class RefusedError(Error):
+    """The model is understood, but known to give wrong answers or none."""
+
+
+class RunError(Error, RuntimeError):
+    """The computation did not come to its end."""
+
+
+class FileError(Error, OSError):
+    """The system refused a file."""

@@ -1,0 +1,59 @@
+//! Errors as exceptions: of the class of their kind, with the message of the program.
+
+use flexframe::failure::{Details, Failure, Kind};
+use pyo3::exceptions::PyKeyboardInterrupt;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+/// The module of the exceptions, written in Python: they have two parents each.
+const MODULE: &str = "flexframe.errors";
+
+/// The exception of an error.
+pub(crate) fn exception(py: Python<'_>, failure: &dyn Failure) -> PyErr {
+    exception_of(py, failure.kind(), &failure.to_string(), &failure.details())
+}
+
+/// The exception of a kind.
+pub(crate) fn exception_of(py: Python<'_>, kind: Kind, message: &str, details: &Details) -> PyErr {
+    let class = match kind {
+        Kind::Usage | Kind::Input => "InputError",
+        Kind::Refused => "RefusedError",
+        Kind::Run => "RunError",
+        Kind::Io => "FileError",
+        Kind::Stopped => return PyKeyboardInterrupt::new_err(message.to_owned()),
+    };
+    made(py, class, message, details).unwrap_or_else(|error| error)
+}
+
+/// What was given to a function is not what it takes: what, what was found, what was expected, and the cure.
+pub(crate) fn wrong_input(py: Python<'_>, what: &str, found: &str, expected: &str, cure: &str) -> PyErr {
+    let message = format!("{what}: found {found}, expected {expected}\n = {cure}");
+    let text = |text: &str| Some(text.to_owned());
+    let details = Details {
+        key: text(what),
+        found: text(found),
+        expected: text(expected),
+        cure: text(cure),
+        ..Details::default()
+    };
+    exception_of(py, Kind::Input, &message, &details)
+}
+
+fn made(py: Python<'_>, class: &str, message: &str, details: &Details) -> PyResult<PyErr> {
+    let Details { file, line, key, found, expected, cure } = details;
+    let known = PyDict::new(py);
+    known.set_item("file", file)?;
+    known.set_item("line", line)?;
+    known.set_item("key", key)?;
+    known.set_item("found", found)?;
+    known.set_item("expected", expected)?;
+    known.set_item("cure", cure)?;
+    let error = py.import(MODULE)?.getattr(class)?.call((message,), Some(&known))?;
+    Ok(PyErr::from_value(error))
+}
+
+/// Adds a sentence that is shown below the exception, where Python knows notes (from 3.11 on).
+pub(crate) fn add_note(py: Python<'_>, error: &PyErr, note: &str) {
+    // An exception without the note tells nearly as much.
+    let _ = error.value(py).call_method1("add_note", (note,));
+}

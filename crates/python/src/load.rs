@@ -1,0 +1,197 @@
+//! The classes Force and ModalForce: loads whose law is a function of Python.
+
+use std::sync::Arc;
+
+use flexframe::frames_rk4::{Applied, Kinematics, LoadFn, SharedLoad};
+use flexframe::nalgebra::Vector3;
+use pyo3::exceptions::PyTypeError;
+use pyo3::prelude::*;
+
+use crate::errors::{add_note, wrong_input};
+use crate::faults::Faults;
+use crate::motion::{Motion, Points, point_number};
+use crate::numbers::{numbers, vector};
+
+/// A law: a function of the motion, and what steps must know of it.
+struct Law {
+    function: Py<PyAny>,
+    name: String,
+    corners: Vec<f64>,
+    longest_step: Option<f64>,
+}
+
+impl Law {
+    fn new(
+        function: &Bound<'_, PyAny>,
+        name: Option<String>,
+        corners: Vec<f64>,
+        longest_step: Option<f64>,
+    ) -> PyResult<Self> {
+        let py = function.py();
+        if !function.is_callable() {
+            let found = function.get_type().name()?;
+            return Err(PyTypeError::new_err(format!("a law is a function of the motion; found {found}")));
+        }
+        if let Some(corner) = corners.iter().find(|corner| !corner.is_finite()) {
+            let cure = "name the times at which the law or its rate jumps";
+            return Err(wrong_input(py, "corners", &corner.to_string(), "finite times", cure));
+        }
+        if let Some(step) = longest_step.filter(|step| !(*step > 0.0 && step.is_finite())) {
+            let cure = "name the longest step that sees the law as it is";
+            return Err(wrong_input(py, "longest_step", &step.to_string(), "a positive number", cure));
+        }
+        let name = match name {
+            Some(name) => name,
+            None => function.getattr("__name__").and_then(|name| name.extract()).unwrap_or_else(|_| "law".to_owned()),
+        };
+        Ok(Self { function: function.clone().unbind(), name, corners, longest_step })
+    }
+
+    /// The load whose law is `act`: it applies what the function gives, or keeps what it raises.
+    fn load(
+        &self,
+        py: Python<'_>,
+        faults: &Faults,
+        evaluate: impl Fn(&Bound<'_, PyAny>, &Kinematics<'_>) -> PyResult<Vec<f64>> + Send + Sync + 'static,
+        apply: impl Fn(Option<&[f64]>, &Kinematics<'_>, &mut Applied<'_>) + Send + Sync + 'static,
+    ) -> SharedLoad {
+        let (function, name, faults) = (self.function.clone_ref(py), self.name.clone(), faults.clone());
+        let law = move |motion: &Kinematics<'_>, applied: &mut Applied<'_>| {
+            if faults.any() {
+                return apply(None, motion, applied);
+            }
+            let value = Python::attach(|py| {
+                evaluate(function.bind(py), motion)
+                    .inspect_err(|error| add_note(py, error, &format!("in the load `{name}` at time {}", motion.time)))
+            });
+            match value {
+                Ok(value) => apply(Some(&value), motion, applied),
+                Err(error) => {
+                    faults.put(error);
+                    apply(None, motion, applied);
+                }
+            }
+        };
+        let load = LoadFn::new(self.name.clone(), law).with_corners(self.corners.clone());
+        match self.longest_step {
+            Some(step) => Arc::new(load.with_longest_step(step)),
+            None => Arc::new(load),
+        }
+    }
+}
+
+/// A force at a point of the body, by a law.
+#[pyclass(frozen, module = "flexframe")]
+pub(crate) struct Force {
+    point: String,
+    /// Whether the law gives body components, of a force that turns with the body frame.
+    follows: bool,
+    law: Law,
+}
+
+#[pymethods]
+impl Force {
+    #[new]
+    #[pyo3(signature = (point, law, *, frame="global", name=None, corners=Vec::new(), longest_step=None))]
+    fn new(
+        point: String,
+        law: &Bound<'_, PyAny>,
+        frame: &str,
+        name: Option<String>,
+        corners: Vec<f64>,
+        longest_step: Option<f64>,
+    ) -> PyResult<Self> {
+        let follows = match frame {
+            "global" => false,
+            "body" => true,
+            other => {
+                let (found, cure) = (format!("`{other}`"), "name the axes of the components that the law gives");
+                return Err(wrong_input(law.py(), "frame", &found, "`global` or `body`", cure));
+            }
+        };
+        Ok(Self { point, follows, law: Law::new(law, name, corners, longest_step)? })
+    }
+
+    fn __repr__(&self) -> String {
+        format!("Force({:?}, {})", self.point, self.law.name)
+    }
+}
+
+/// Forces on the modal coordinates, by a law.
+#[pyclass(frozen, module = "flexframe")]
+pub(crate) struct ModalForce {
+    law: Law,
+}
+
+#[pymethods]
+impl ModalForce {
+    #[new]
+    #[pyo3(signature = (law, *, name=None, corners=Vec::new(), longest_step=None))]
+    fn new(
+        law: &Bound<'_, PyAny>,
+        name: Option<String>,
+        corners: Vec<f64>,
+        longest_step: Option<f64>,
+    ) -> PyResult<Self> {
+        Ok(Self { law: Law::new(law, name, corners, longest_step)? })
+    }
+
+    fn __repr__(&self) -> String {
+        format!("ModalForce({})", self.law.name)
+    }
+}
+
+impl Force {
+    fn load(&self, py: Python<'_>, points: &Points, faults: &Faults) -> PyResult<SharedLoad> {
+        let number = point_number(py, points, &self.point)?;
+        let (seen, point, follows) = (points.clone(), points[number].1.clone(), self.follows);
+        let what = format!("the force of the law `{}`", self.law.name);
+        let evaluate = move |law: &Bound<'_, PyAny>, motion: &Kinematics<'_>| {
+            let force = law.call1((Motion::new(motion, &seen, Some(number)),))?;
+            Ok(vector(&force, &what)?.as_slice().to_vec())
+        };
+        let apply = move |force: Option<&[f64]>, motion: &Kinematics<'_>, applied: &mut Applied<'_>| {
+            let force = force.map_or_else(|| Vector3::repeat(f64::NAN), Vector3::from_column_slice);
+            let force_body = if follows { force } else { motion.body_from_global * force };
+            applied.force(&point, &force_body);
+        };
+        Ok(self.law.load(py, faults, evaluate, apply))
+    }
+}
+
+impl ModalForce {
+    fn load(&self, py: Python<'_>, points: &Points, flexible: usize, faults: &Faults) -> PyResult<SharedLoad> {
+        if flexible == 0 {
+            let cure = "take a Force at a point, or a body with modes";
+            return Err(wrong_input(py, "ModalForce", "a rigid body", "a body with flexible modes", cure));
+        }
+        let seen = points.clone();
+        let what = format!("the modal forces of the law `{}`", self.law.name);
+        let evaluate = move |law: &Bound<'_, PyAny>, motion: &Kinematics<'_>| {
+            numbers(&law.call1((Motion::new(motion, &seen, None),))?, flexible, &what)
+        };
+        let apply = move |forces: Option<&[f64]>, _: &Kinematics<'_>, applied: &mut Applied<'_>| match forces {
+            Some(forces) => forces.iter().enumerate().for_each(|(k, force)| applied.modal_force(k, *force)),
+            None => applied.modal_force(0, f64::NAN),
+        };
+        Ok(self.law.load(py, faults, evaluate, apply))
+    }
+}
+
+/// The load of a Force or a ModalForce on a body with such points and so many modes.
+pub(crate) fn load_of(
+    object: &Bound<'_, PyAny>,
+    points: &Points,
+    flexible: usize,
+    faults: &Faults,
+) -> PyResult<SharedLoad> {
+    let py = object.py();
+    if let Ok(force) = object.cast::<Force>() {
+        return force.get().load(py, points, faults);
+    }
+    if let Ok(force) = object.cast::<ModalForce>() {
+        return force.get().load(py, points, flexible, faults);
+    }
+    let found = object.get_type().name()?;
+    Err(PyTypeError::new_err(format!("a load is a Force or a ModalForce; found {found}")))
+}

@@ -1,0 +1,60 @@
+//! Runs that write a results file, as the program does.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use flexframe::run::{RunError, RunProgress, RunReport, RunSettings};
+use pyo3::prelude::*;
+
+use crate::errors::{add_note, exception};
+use crate::interrupt::{Stop, interruptible};
+use crate::results::read_results;
+use crate::scene::Scene;
+
+/// Runs a scene, and writes its results to `<folder>/<name of the scene>.h5`.
+#[pyfunction]
+#[pyo3(signature = (scene, folder, *, overwrite=false))]
+pub(crate) fn run(py: Python<'_>, scene: Py<Scene>, folder: PathBuf, overwrite: bool) -> PyResult<Bound<'_, PyAny>> {
+    let scene = scene.get().scene().clone();
+    followed(py, overwrite, move |settings, progress| {
+        flexframe::run::run(&scene, &folder, settings, progress).map(|(_, report)| report)
+    })
+}
+
+/// Goes on with a run that was cut off.
+#[pyfunction]
+pub(crate) fn resume(py: Python<'_>, file: PathBuf) -> PyResult<Bound<'_, PyAny>> {
+    followed(py, false, move |settings, progress| {
+        flexframe::run::resume(&file, settings, progress).map(|(_, _, report)| report)
+    })
+}
+
+fn followed<'py>(
+    py: Python<'py>,
+    overwrite: bool,
+    work: impl FnOnce(&RunSettings, &mut dyn FnMut(RunProgress)) -> Result<RunReport, RunError> + Send + 'static,
+) -> PyResult<Bound<'py, PyAny>> {
+    let stop = Stop::default();
+    let in_motion = Arc::new(AtomicBool::new(false));
+    let settings = RunSettings { overwrite, stop: stop.flag(), ..RunSettings::default() };
+    let (told, moves) = (stop.clone(), in_motion.clone());
+    let run = move || {
+        work(&settings, &mut |progress| match progress {
+            // Nothing is written yet.
+            RunProgress::Build(_) => told.check(),
+            RunProgress::Motion(_) => moves.store(true, Ordering::Relaxed),
+        })
+    };
+    // The motion stops by itself at its next row, and its rows are kept.
+    let (report, raised) = interruptible(py, &stop, || in_motion.load(Ordering::Relaxed), run)?;
+    match (raised, report) {
+        (Some(error), Err(stopped)) => {
+            add_note(py, &error, &stopped.to_string());
+            Err(error)
+        }
+        (Some(error), Ok(_)) => Err(error),
+        (None, Ok(report)) => read_results(py, report.results),
+        (None, Err(error)) => Err(exception(py, &error)),
+    }
+}

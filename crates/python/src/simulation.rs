@@ -1,0 +1,460 @@
+//! The class Simulation: a run, row by row or step by step.
+
+use std::sync::{Arc, Mutex, MutexGuard, TryLockError};
+
+use flexframe::failure::{Details, Kind};
+use flexframe::frames_rk4::{
+    self, Crossing, Effect, EffectMap, Event, Observation, Physics, Setup, SharedLoad, StepError,
+};
+use flexframe::results::Metadata;
+use flexframe::run::Watch;
+use flexframe::scene::{Choice, Model, StartError};
+use pyo3::exceptions::{PyRuntimeError, PyTypeError};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::body::Body;
+use crate::errors::{add_note, exception, exception_of, wrong_input};
+use crate::faults::Faults;
+use crate::load::load_of;
+use crate::motion::Points;
+use crate::numbers::described;
+use crate::results::{Occurred, Rows};
+use crate::row::Row;
+use crate::state::{changed, to_dict};
+
+/// Steps between two looks at signals.
+const STEPS_PER_LOOK: u64 = 4096;
+
+/// Where a simulation has come to.
+#[pyclass(frozen, get_all, module = "flexframe")]
+pub(crate) struct Reached {
+    kind: &'static str,
+    event: Option<String>,
+    time: f64,
+}
+
+#[pymethods]
+impl Reached {
+    fn __repr__(&self) -> String {
+        match &self.event {
+            Some(event) => format!("Reached(event {event:?} at {})", self.time),
+            None => format!("Reached({} at {})", self.kind, self.time),
+        }
+    }
+}
+
+/// A run in progress.
+#[pyclass(frozen, module = "flexframe")]
+pub(crate) struct Simulation {
+    body: Py<Body>,
+    metadata: Arc<Metadata>,
+    effects: EffectMap<bool>,
+    faults: Faults,
+    running: Mutex<Running>,
+}
+
+struct Running {
+    simulation: frames_rk4::Simulation,
+    /// Whether the row at the start has been given, or a step been tried.
+    begun: bool,
+    row: Observation,
+}
+
+impl Simulation {
+    /// The run, of which one thing is asked at a time.
+    fn running(&self) -> PyResult<MutexGuard<'_, Running>> {
+        self.running.try_lock().map_err(|error| match error {
+            TryLockError::WouldBlock => PyRuntimeError::new_err(
+                "the simulation is in the midst of a step; a law and an event see the motion that they are given, and \
+                 another thread waits until the step is done",
+            ),
+            TryLockError::Poisoned(_) => {
+                PyRuntimeError::new_err("the simulation has failed in the midst of a step; start another")
+            }
+        })
+    }
+
+    /// Goes on to the next row, event or stop, or so many tries of a step. Looks at signals now and then.
+    fn go_on(
+        &self,
+        py: Python<'_>,
+        running: &mut Running,
+        most_steps: u64,
+        mut watch: Option<&mut Watch<'_>>,
+    ) -> PyResult<frames_rk4::Reached> {
+        running.begun = true;
+        let mut left = most_steps;
+        loop {
+            let steps = left.min(STEPS_PER_LOOK);
+            let simulation = &mut running.simulation;
+            let reached = py.detach(|| match &mut watch {
+                Some(watch) => simulation.advance_watched(steps, |moment| watch.look(moment)),
+                None => simulation.advance(steps),
+            });
+            if reached.is_err() {
+                // The motion is where it was before the step: the next one is to start there.
+                simulation.set_stop_time(None);
+            }
+            let reached = self.or_fault(py, reached)?;
+            py.check_signals()?;
+            left -= steps;
+            if reached != frames_rk4::Reached::Between || left == 0 {
+                return Ok(reached);
+            }
+            if watch.as_ref().is_some_and(|watch| watch.refusal().is_some()) {
+                return Ok(reached);
+            }
+        }
+    }
+
+    /// What a law or an event has raised, or else the error of the step.
+    fn or_fault<T>(&self, py: Python<'_>, result: Result<T, StepError>) -> PyResult<T> {
+        match self.faults.take() {
+            Some(fault) => Err(fault),
+            None => result.map_err(|error| step_error(py, &error)),
+        }
+    }
+
+    /// The row of the time that has been reached.
+    fn row(&self, py: Python<'_>, running: &mut Running) -> PyResult<Row> {
+        let Running { simulation, row, .. } = running;
+        let observed = simulation.observe(row);
+        self.or_fault(py, observed)?;
+        Ok(Row::new(row, self.body.get().model(), &self.metadata))
+    }
+
+    fn reached(&self, running: &Running, reached: frames_rk4::Reached) -> Reached {
+        let simulation = &running.simulation;
+        let (kind, event) = match reached {
+            frames_rk4::Reached::Event(number) => {
+                ("event", simulation.event(number).map(|event| event.name().to_owned()))
+            }
+            frames_rk4::Reached::Stop => ("stop", None),
+            frames_rk4::Reached::Row => ("row", None),
+            frames_rk4::Reached::End => ("end", None),
+            _ => ("step", None),
+        };
+        Reached { kind, event, time: simulation.time() }
+    }
+
+    /// Refuses to go on from the end.
+    fn refuse_at_end(&self, py: Python<'_>, running: &Running) -> PyResult<()> {
+        if !is_done(running) {
+            return Ok(());
+        }
+        let message = format!(
+            "the run is at its end, time {}; take a scene with a later `time.end`, or set the state to an earlier time",
+            running.simulation.end()
+        );
+        Err(exception_of(py, Kind::Run, &message, &Details::default()))
+    }
+
+    /// All rows from here to the end, into `rows`.
+    fn follow(
+        &self,
+        py: Python<'_>,
+        running: &mut Running,
+        watch: &mut Watch<'_>,
+        rows: &mut Rows,
+        events: &mut Vec<Occurred>,
+    ) -> PyResult<()> {
+        let model = self.body.get().model();
+        let mut row = flexframe::row::Row::new(model);
+        let mut record = |running: &mut Running, watch: &mut Watch<'_>| -> PyResult<()> {
+            let observed = running.simulation.observe(&mut row.motion);
+            self.or_fault(py, observed)?;
+            row.complete(model);
+            rows.push(&row, &self.metadata);
+            watch.observe(&row).map_err(|error| exception(py, &error))
+        };
+        if !running.begun {
+            record(running, watch)?;
+        }
+        while !is_done(running) {
+            let reached = self.go_on(py, running, u64::MAX, Some(watch));
+            // A step that fails after the model has come to mean nothing fails for that.
+            if let Some((time, refusal)) = watch.refusal() {
+                let message = format!("at time {time:.6}: {refusal}");
+                return Err(exception_of(py, Kind::Refused, &message, &Details::default()));
+            }
+            match reached? {
+                frames_rk4::Reached::Row => record(running, watch)?,
+                frames_rk4::Reached::Event(number) => {
+                    let name =
+                        running.simulation.event(number).map_or_else(String::new, |event| event.name().to_owned());
+                    events.push((name, running.simulation.time()));
+                }
+                frames_rk4::Reached::End => break,
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+}
+
+/// What is computed. No estimate knows the laws: with them, what the scene leaves to the program is on where it needs nothing
+/// of the mesh.
+fn effects(model: &Model, scene: &flexframe::scene::Scene, has_laws: bool) -> EffectMap<bool> {
+    let mut effects = model.physics.effects;
+    if has_laws {
+        for effect in [Effect::Translation, Effect::Rotation, Effect::DeformedInertia, Effect::Coriolis] {
+            effects[effect] |= scene.effects.choices[effect] == Choice::Auto;
+        }
+    }
+    effects
+}
+
+fn is_done(running: &Running) -> bool {
+    running.simulation.time() >= running.simulation.end()
+}
+
+fn step_error(py: Python<'_>, error: &StepError) -> PyErr {
+    exception(py, &flexframe::run::RunFailure::Step(*error))
+}
+
+#[pymethods]
+impl Simulation {
+    #[new]
+    #[pyo3(signature = (body, loads=None))]
+    fn new(py: Python<'_>, body: Py<Body>, loads: Option<Vec<Bound<'_, PyAny>>>) -> PyResult<Self> {
+        let (model, scene) = (body.get().model().clone(), body.get().scene_of().clone());
+        let metadata = Arc::new(flexframe::run::metadata(&scene, &model));
+        let points: Points = Arc::new(model.points.clone());
+        let faults = Faults::default();
+        let mut all: Vec<SharedLoad> = model.loads().to_vec();
+        for load in loads.unwrap_or_default() {
+            all.push(load_of(&load, &points, model.body.flexible(), &faults)?);
+        }
+        let has_laws = all.len() > model.loads().len();
+        let physics = Physics { effects: effects(&model, &scene, has_laws), ..model.physics.clone() };
+        if let Some(refusal) = model.refusal.filter(|_| scene.effects.refuse) {
+            return Err(exception(py, &StartError::from(refusal)));
+        }
+        let simulation = py.detach(|| {
+            let observed: Vec<_> = points.iter().map(|(_, point)| point.clone()).collect();
+            let initial = model.initial(&scene);
+            frames_rk4::Simulation::new(&Setup {
+                loads: &all,
+                points: &observed,
+                physics: &physics,
+                ..model.setup(&scene, &initial)
+            })
+        });
+        if let Some(fault) = faults.take() {
+            return Err(fault);
+        }
+        let mut simulation = simulation.map_err(|error| {
+            let source = Box::new(StartError::from(error));
+            exception(py, &flexframe::run::RunError::Setup { scene: scene.path.clone(), source })
+        })?;
+        simulation.watch(Arc::new(Mutex::new(EndAtFault(faults.clone()))));
+        let row = Observation::new(model.body.flexible(), points.len());
+        let effects = physics.effects;
+        Ok(Self { body, metadata, effects, faults, running: Mutex::new(Running { simulation, begun: false, row }) })
+    }
+
+    #[getter]
+    fn body(&self, py: Python<'_>) -> Py<Body> {
+        self.body.clone_ref(py)
+    }
+
+    #[getter]
+    fn time(&self) -> PyResult<f64> {
+        Ok(self.running()?.simulation.time())
+    }
+
+    #[getter]
+    fn end(&self) -> PyResult<f64> {
+        Ok(self.running()?.simulation.end())
+    }
+
+    #[getter]
+    fn done(&self) -> PyResult<bool> {
+        Ok(is_done(&*self.running()?))
+    }
+
+    #[getter]
+    fn stats<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let stats = self.running()?.simulation.stats();
+        let out = PyDict::new(py);
+        out.set_item("steps", stats.accepted)?;
+        out.set_item("rejected_steps", stats.rejected)?;
+        out.set_item("evaluations", stats.evaluations)?;
+        Ok(out)
+    }
+
+    fn run<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let mut running = self.running()?;
+        self.refuse_at_end(py, &running)?;
+        let (model, scene) = (self.body.get().model(), self.body.get().scene_of());
+        let initial = model.initial(scene);
+        let mut watch = Watch::new(scene, model, &initial, self.effects).map_err(|error| exception(py, &error))?;
+        let (mut rows, mut events) = (Rows::new(&self.metadata), Vec::new());
+        let followed = self.follow(py, &mut running, &mut watch, &mut rows, &mut events);
+        match followed {
+            Ok(()) => {
+                let warnings = watch.finish(&running.simulation).warnings;
+                let metadata = Metadata { warnings, ..(*self.metadata).clone() };
+                rows.into_results(py, &metadata, true, &events)
+            }
+            Err(error) => {
+                // A class without room for it has it not.
+                let _ = error.value(py).setattr("results", rows.into_results(py, &self.metadata, false, &events)?);
+                Err(error)
+            }
+        }
+    }
+
+    #[pyo3(signature = (steps=None))]
+    fn advance(&self, py: Python<'_>, steps: Option<u64>) -> PyResult<Reached> {
+        let mut running = self.running()?;
+        self.refuse_at_end(py, &running)?;
+        if steps == Some(0) {
+            return Err(wrong_input(py, "steps", "0", "1 or more", "leave it out to go on to the next row"));
+        }
+        let reached = self.go_on(py, &mut running, steps.unwrap_or(u64::MAX), None)?;
+        Ok(self.reached(&running, reached))
+    }
+
+    fn advance_to(&self, py: Python<'_>, time: f64) -> PyResult<Reached> {
+        let mut running = self.running()?;
+        self.refuse_at_end(py, &running)?;
+        let (now, end) = (running.simulation.time(), running.simulation.end());
+        if !(time > now && time <= end) {
+            let expected = format!("a time after {now}, up to the end at {end}");
+            let cure = "name a time within the run; a later end is `time.end` of the scene";
+            return Err(wrong_input(py, "time", &time.to_string(), &expected, cure));
+        }
+        running.simulation.set_stop_time(Some(time));
+        let reached = loop {
+            match self.go_on(py, &mut running, u64::MAX, None) {
+                Ok(frames_rk4::Reached::Row) if !is_done(&running) => {}
+                other => break other,
+            }
+        };
+        if !matches!(reached, Ok(frames_rk4::Reached::Stop)) {
+            running.simulation.set_stop_time(None);
+        }
+        Ok(self.reached(&running, reached?))
+    }
+
+    #[pyo3(signature = (name, function, *, crossing="any"))]
+    fn add_event(&self, name: String, function: &Bound<'_, PyAny>, crossing: &str) -> PyResult<()> {
+        let py = function.py();
+        if !function.is_callable() {
+            let found = function.get_type().name()?;
+            return Err(PyTypeError::new_err(format!("an event is a function of a row; found {found}")));
+        }
+        let crossing = match crossing {
+            "rising" => Crossing::Rising,
+            "falling" => Crossing::Falling,
+            "any" => Crossing::Any,
+            other => {
+                let (found, expected) = (format!("`{other}`"), "`rising`, `falling` or `any`");
+                return Err(wrong_input(py, "crossing", &found, expected, "name the way through zero that counts"));
+            }
+        };
+        let mut running = self.running()?;
+        // One that cannot be evaluated is not added.
+        value_of_event(function, &name, self.row(py, &mut running)?)?;
+        let event = self.event(name, function, crossing);
+        let simulation = &mut running.simulation;
+        let added = py.detach(|| simulation.add_event(event));
+        self.or_fault(py, added).map(|_| ())
+    }
+
+    fn observe(&self, py: Python<'_>) -> PyResult<Row> {
+        self.row(py, &mut *self.running()?)
+    }
+
+    fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let state = self.running()?.simulation.state().map_err(|error| step_error(py, &error))?;
+        to_dict(py, &state)
+    }
+
+    fn set_state(&self, py: Python<'_>, state: &Bound<'_, PyDict>) -> PyResult<()> {
+        let mut running = self.running()?;
+        let now = running.simulation.state().map_err(|error| step_error(py, &error))?;
+        let state = changed(now, state)?;
+        let end = running.simulation.end();
+        if !(0.0..=end).contains(&state.time) {
+            let cure = "take a scene with a later `time.end`";
+            let expected = format!("a time from 0 to the end at {end}");
+            return Err(wrong_input(py, "state[\"time\"]", &state.time.to_string(), &expected, cure));
+        }
+        let simulation = &mut running.simulation;
+        let set = py.detach(|| simulation.set_state(&state));
+        if let Some(fault) = self.faults.take() {
+            return Err(fault);
+        }
+        set.map_err(|error| exception(py, &StartError::from(error)))
+    }
+
+    fn __iter__(slf: Py<Self>) -> Py<Self> {
+        slf
+    }
+
+    fn __next__(&self, py: Python<'_>) -> PyResult<Option<Row>> {
+        let mut running = self.running()?;
+        if !running.begun {
+            running.begun = true;
+            return self.row(py, &mut running).map(Some);
+        }
+        while !is_done(&running) {
+            if self.go_on(py, &mut running, u64::MAX, None)? == frames_rk4::Reached::Row {
+                return self.row(py, &mut running).map(Some);
+            }
+        }
+        Ok(None)
+    }
+
+    fn __repr__(&self) -> String {
+        match self.running() {
+            Ok(running) => format!("Simulation(time {} of {})", running.simulation.time(), running.simulation.end()),
+            Err(_) => "Simulation(in the midst of a step)".to_owned(),
+        }
+    }
+}
+
+impl Simulation {
+    fn event(&self, name: String, function: &Bound<'_, PyAny>, crossing: Crossing) -> Event {
+        let (body, metadata, faults) = (self.body.get().model().clone(), self.metadata.clone(), self.faults.clone());
+        let (function, known) = (function.clone().unbind(), name.clone());
+        Event::new(name, crossing, move |now: &Observation| {
+            if faults.any() {
+                return f64::NAN;
+            }
+            let row = Row::new(now, &body, &metadata);
+            let value = Python::attach(|py| value_of_event(function.bind(py), &known, row));
+            value.unwrap_or_else(|error| {
+                Python::attach(|py| add_note(py, &error, &format!("in the event `{known}` at time {}", now.time)));
+                faults.put(error);
+                f64::NAN
+            })
+        })
+    }
+}
+
+/// The value of an event's function.
+fn value_of_event(function: &Bound<'_, PyAny>, name: &str, row: Row) -> PyResult<f64> {
+    let value = function.call1((row,))?;
+    let refuse = |found: &str| {
+        let cure = "return a function of the row that passes through zero";
+        wrong_input(function.py(), &format!("the event `{name}`"), found, "a finite number", cure)
+    };
+    let number: f64 = value.extract().map_err(|_| refuse(&described(&value)))?;
+    if number.is_finite() { Ok(number) } else { Err(refuse(&number.to_string())) }
+}
+
+/// Ends a run at the end of a step in which a function of Python has raised.
+struct EndAtFault(Faults);
+
+impl frames_rk4::Observer for EndAtFault {
+    fn step(&mut self, now: &mut frames_rk4::StepEnd<'_>) -> Result<(), StepError> {
+        match self.0.any() {
+            true => Err(StepError::NotFinite { time: now.scheme().time(), what: "an event" }),
+            false => Ok(()),
+        }
+    }
+}

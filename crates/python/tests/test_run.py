@@ -1,0 +1,122 @@
+"""Runs: the numbers are those of the program's results file, to the last bit."""
+
+import h5py
+import numpy as np
+import pytest
+from conftest import EXAMPLES, RING
+
+import flexframe
+
+# Scenes, and values that make them short.
+SCENES = {
+    "ring.toml": {"time.end": 0.01},
+    "plate.toml": {"time.end": 0.002},  # the paper's scheme
+    "pendulum.toml": {"time.end": 0.2, "output": {"every": 10}},  # rigid, with a hinge
+    "thrown_plate.toml": {"time.end": 0.01},  # large deflection
+    "spin_up.toml": {"time.end": 0.05},  # a drive
+}
+
+
+def same_as_file(results, path):
+    with h5py.File(path) as file:
+        for name, column in results.columns.items():
+            dataset = file[name]
+            assert results[name].shape == dataset.shape, name
+            assert np.array_equal(results[name], dataset[()]), name
+            for attribute in ("unit", "frame", "description"):
+                assert dataset.attrs[attribute] == getattr(column, attribute), name
+        histories = []
+        file.visititems(lambda name, item: histories.append(name) if isinstance(item, h5py.Dataset) else None)
+        histories = {name for name in histories if not name.startswith("body/")}
+        about = {"points/names", "points/position", "supports/names", "checkpoint", "warnings"}
+        assert set(results) == histories - about
+        assert file.attrs["complete"] == 1
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_a_run_is_that_of_the_program_bit_for_bit(name, program, tmp_path):
+    (tmp_path / "meshes").symlink_to(EXAMPLES.parent / "meshes")
+    (tmp_path / "examples").mkdir()
+    path = tmp_path / "examples" / name
+    path.write_text(flexframe.Scene(EXAMPLES / name).with_values(SCENES[name]).text)
+    said = program("run", path, "-o", tmp_path, "--no-cache")
+    assert said.returncode == 0, said.stderr
+    file = (tmp_path / name).with_suffix(".h5")
+
+    body = flexframe.Body(flexframe.Scene(path))
+    results = flexframe.Simulation(body).run()
+    same_as_file(results, file)
+    read = flexframe.read_results(file)
+    same_as_file(read, file)
+    assert results.complete and read.complete
+    assert results.warnings == read.warnings
+    assert results.columns == read.columns
+    assert (results.points, results.title, results.scheme) == (read.points, read.title, read.scheme)
+
+    rows = list(flexframe.Simulation(body))
+    assert np.array_equal([row.time for row in rows], results["time"])
+    for path in results:
+        assert np.array_equal([row[path] for row in rows], results[path]), path
+
+
+def test_a_file_is_written_as_by_the_program(program, tmp_path):
+    scene = flexframe.Scene(RING, base=EXAMPLES, name="ring")
+    results = flexframe.run(scene, tmp_path)
+    assert [path.name for path in tmp_path.iterdir()] == ["ring.h5"]
+    same_as_file(results, tmp_path / "ring.h5")
+    in_memory = flexframe.Simulation(flexframe.Body(scene)).run()
+    for path in results:
+        assert np.array_equal(results[path], in_memory[path]), path
+    assert results.scene == scene.text
+
+
+def test_a_run_in_parts_is_the_run(ring):
+    whole = flexframe.Simulation(ring).run()
+    simulation = flexframe.Simulation(ring)
+    assert simulation.advance(steps=7).kind in ("row", "step")
+    while not simulation.done:
+        reached = simulation.advance()
+        assert reached.kind == "row" and reached.time == simulation.time
+    last = simulation.observe()
+    for path in whole:
+        assert np.array_equal(last[path], whole[path][-1]), path
+    assert np.array_equal(last["points/struck/velocity"], whole["points/struck/velocity"][-1])
+    assert simulation.stats["steps"] == 500
+
+
+def test_a_simulation_stops_at_times_and_goes_on_from_states(ring):
+    simulation = flexframe.Simulation(ring)
+    assert simulation.advance_to(0.00333).kind == "stop"
+    assert simulation.time == pytest.approx(0.00333, rel=1e-12)
+    state = simulation.state()
+    there = simulation.observe()
+    other = flexframe.Simulation(ring)
+    other.set_state(state)
+    assert other.time == simulation.time
+    for path in ("attitude", "position", "modal/displacement", "modal/velocity", "energy/strain"):
+        assert np.allclose(other.observe()[path], there[path], rtol=1e-11, atol=1e-11 * np.abs(there[path]).max()), path
+    state["velocity"] *= -1.0
+    other.set_state({"velocity": state["velocity"]})
+    assert np.array_equal(other.state()["velocity"], state["velocity"])
+
+
+def test_rows_become_a_dataset_and_a_table(ring, program, tmp_path):
+    xarray, pandas = pytest.importorskip("xarray"), pytest.importorskip("pandas")
+    results = flexframe.Simulation(ring).run()
+    dataset = results.to_xarray()
+    assert isinstance(dataset, xarray.Dataset)
+    velocity = dataset["points/velocity"]
+    assert velocity.dims == ("time", "point", "axis") and velocity.attrs["units"] == "mm/s"
+    assert np.array_equal(velocity.sel(point="struck", axis="z"), results["points/struck/velocity"][:, 2])
+    assert np.shares_memory(velocity.values, results["points/velocity"])
+    assert dataset["mode"].values.tolist() == [1, 2, 3, 4] and np.array_equal(dataset["time"], results["time"])
+
+    table = results.to_pandas()
+    path = tmp_path / "ring.toml"
+    path.write_text(ring.scene.with_values({"body.mesh": EXAMPLES.parent / "meshes/ring.msh"}).text)
+    assert program("run", path, "-o", tmp_path, "--no-cache").returncode == 0
+    assert program("export", tmp_path / "ring.h5", "--csv", tmp_path / "ring.csv").returncode == 0
+    exported = pandas.read_csv(tmp_path / "ring.csv", index_col=0)
+    assert [name.split(" [")[0] for name in exported.columns] == list(table.columns)
+    assert np.array_equal(exported.to_numpy(), table.to_numpy())
+    assert np.array_equal(table.index, results["time"])
