@@ -57,7 +57,7 @@ mod suggest;
 mod unit_vector;
 
 pub use assign::{AssignError, assign};
-pub use build::{
+pub use build::{MatrixChecks, 
     Assembly, BodyStress, BuildError, BuildProgress, BuildTimes, Meshed, Model, ModelBuilder, StartError, StressPeak,
     SupportRows,
 };
@@ -73,4 +73,5 @@ pub use load::{BaseAcceleration, Force, Gravity, Load, Moment, Pressure, Tractio
 pub use mesh_import::ImportSettings;
 pub use modes::{Damping, Flexible, Large, Modes, Rayleigh};
 pub use place::Place;
+pub use matrix_import::MatrixFiles;
 pub use scene::{Body, Frame, Initial, MeshedBody, Output, RigidBody, Scene, Time, Units};
