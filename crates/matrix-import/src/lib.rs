@@ -80,8 +80,9 @@ impl MatrixFiles {
             Source { which: Which::Stiffness, path: &self.stiffness },
         );
         let mut labelled = Rows::default();
-        let mass = Symmetric::read(&mass_source, &mut labelled)?;
-        let stiffness = Symmetric::read(&stiffness_source, &mut labelled)?;
+        let most = rows_of_dofs.as_ref().map_or(6 * nodes.labels.len(), Vec::len);
+        let mass = Symmetric::read(&mass_source, &mut labelled, most)?;
+        let stiffness = Symmetric::read(&stiffness_source, &mut labelled, most)?;
         let order = match (mass.form, stiffness.form, &rows_of_dofs, &dofs_source) {
             (Form::Labelled, Form::Labelled, None, _) => Order::of_rows(&stiffness_source, &labelled.list, &nodes)?,
             (Form::Labelled, Form::Labelled, Some(_), Some(source)) => {

@@ -29,12 +29,17 @@ pub(crate) struct Symmetric {
 }
 
 impl Symmetric {
-    /// Reads a file. Rows with labels are added to `rows`.
-    pub fn read(source: &Source<'_>, rows: &mut Rows) -> Result<Self, MatrixError> {
+    /// Reads a file. Rows with labels are added to `rows`; `most` rows can have numbers.
+    pub fn read(source: &Source<'_>, rows: &mut Rows, most: usize) -> Result<Self, MatrixError> {
         memory::check("the entries of a matrix file", BYTES.saturating_mul(source.length()?))?;
         let mut entries: Vec<Entry> = Vec::new();
         let mut size = 0;
-        let form = each_entry(source, |_, Written { row, column, value, .. }| {
+        let form = each_entry(source, |_, Written { line, row, column, value }| {
+            if let Some(number) = [row, column].into_iter().find_map(|index| beyond(index, most)) {
+                let expected = format!("rows and columns up to {most}: six for each node, or as many as `dofs` lists");
+                let cure = "give all nodes of the matrices, and the list of rows that was written with them";
+                return Err(source.refuse(Some(line), format!("row or column {number}"), expected, cure));
+            }
             let mut place = |index| match index {
                 Index::Number(number) => {
                     size = size.max(number);
@@ -67,6 +72,14 @@ impl Symmetric {
         SparseColMat::try_new_from_triplets(to.len(), to.len(), &triplets).map_err(|error| {
             source.refuse(None, format!("entries that make no matrix: {error:?}"), "a sparse matrix", "write it again")
         })
+    }
+}
+
+/// The number of a row that there cannot be.
+fn beyond(index: Index, most: usize) -> Option<u32> {
+    match index {
+        Index::Number(number) => Some(number).filter(|number| *number as usize > most),
+        Index::Of { .. } => None,
     }
 }
 

@@ -12,6 +12,7 @@ mod failures;
 mod html_report;
 mod import;
 mod library;
+mod matrices;
 mod memory;
 mod new_scene;
 mod peak_memory;
