@@ -8,8 +8,8 @@ use frames_rk4::{Observation, Reached, Simulation, StepError};
 use nalgebra::Vector3;
 use scene::{BuildError, Model, Scene};
 
-use crate::report::quantity;
 use crate::modes::require_surface;
+use crate::report::quantity;
 use crate::run::{RunError, RunProgress};
 use crate::surface::Surface;
 

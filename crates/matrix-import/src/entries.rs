@@ -133,9 +133,9 @@ fn first_line(source: &Source<'_>, line: usize, text: &str) -> Result<First, Mat
                 "general" => Ok(First::Header { symmetric: false }),
                 _ => refuse("write the symmetric matrix of a structure without damping and gyroscopic terms"),
             },
-            ["%%matrixmarket", "matrix", "array", ..] => {
-                refuse("write it as a sparse matrix: scipy.io.mmwrite(name, scipy.sparse.csc_matrix(A), symmetry=\"symmetric\")")
-            }
+            ["%%matrixmarket", "matrix", "array", ..] => refuse(
+                "write it as a sparse matrix: scipy.io.mmwrite(name, scipy.sparse.csc_matrix(A), symmetry=\"symmetric\")",
+            ),
             ["%%matrixmarket", "matrix", "coordinate", "complex" | "pattern", ..] => {
                 refuse("write a matrix of real numbers: scipy.io.mmwrite(name, A.real)")
             }
@@ -153,7 +153,9 @@ fn first_line(source: &Source<'_>, line: usize, text: &str) -> Result<First, Mat
 fn size_line(source: &Source<'_>, line: usize, text: &str) -> Result<(usize, usize), MatrixError> {
     let numbers: Option<Vec<usize>> = text.split_whitespace().map(|word| word.parse().ok()).collect();
     match numbers.as_deref() {
-        Some(&[rows, columns, entries]) if rows == columns && rows > 0 && u32::try_from(rows).is_ok() => Ok((rows, entries)),
+        Some(&[rows, columns, entries]) if rows == columns && rows > 0 && u32::try_from(rows).is_ok() => {
+            Ok((rows, entries))
+        }
         Some(&[rows, columns, _]) => Err(source.refuse(
             Some(line),
             format!("{rows} rows and {columns} columns"),
@@ -213,7 +215,10 @@ fn entry(source: &Source<'_>, form: Form, line: usize, text: &str) -> Result<Wri
     }
     if source.which == Which::Stiffness && row == column && value >= HELD {
         let cure = "remove *BOUNDARY from the model that writes the matrices, and hold the body by [[constraints]] in the scene";
-        return Err(refuse("the stiffness of a body that nothing holds: Abaqus writes 1e36 where *BOUNDARY holds it", cure));
+        return Err(refuse(
+            "the stiffness of a body that nothing holds: Abaqus writes 1e36 where *BOUNDARY holds it",
+            cure,
+        ));
     }
     Ok(Written { line, row, column, value })
 }

@@ -54,7 +54,8 @@ pub(crate) fn positions(
     extents.sort_by(f64::total_cmp);
     if size <= 0.0 || extents[1] <= LINE * LINE * extents[2] {
         return Err(refuse(
-            "nodes on a line, which several nodes of the matrices stand for: where these are cannot be found".to_owned(),
+            "nodes on a line, which several nodes of the matrices stand for: where these are cannot be found"
+                .to_owned(),
             "model a straight beam with solid elements; curved ones and shells can be read",
         ));
     }
@@ -119,7 +120,8 @@ fn null_space(stiffness: &SparseColMat<usize, f64>, first: Mat<f64>) -> Option<M
     let shift = SHIFT * diagonal.iter().sum::<f64>() / n as f64;
     let entries = stiffness.triplet_iter().map(|entry| Triplet::new(entry.row, entry.col, *entry.val));
     let entries: Vec<_> = entries.chain((0..n).map(|i| Triplet::new(i, i, shift))).collect();
-    let factor = SparseColMat::<usize, f64>::try_new_from_triplets(n, n, &entries).ok()?.sp_cholesky(Side::Lower).ok()?;
+    let factor =
+        SparseColMat::<usize, f64>::try_new_from_triplets(n, n, &entries).ok()?.sp_cholesky(Side::Lower).ok()?;
     let mut basis = first.qr().compute_thin_Q();
     let mut best = f64::INFINITY;
     for _ in 0..MOST {

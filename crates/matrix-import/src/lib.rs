@@ -107,7 +107,8 @@ impl MatrixFiles {
             _ => self.of_nodes(&[(&mass_source, &mass), (&stiffness_source, &stiffness)], &nodes)?,
         };
         let asymmetry = [mass.asymmetry, stiffness.asymmetry].into_iter().flatten().reduce(f64::max);
-        let (mass, stiffness) = (mass.permuted(&mass_source, &order.to)?, stiffness.permuted(&stiffness_source, &order.to)?);
+        let (mass, stiffness) =
+            (mass.permuted(&mass_source, &order.to)?, stiffness.permuted(&stiffness_source, &order.to)?);
         let given: Vec<[f64; 3]> = order.nodes.iter().map(|node| nodes.positions[*node as usize]).collect();
         let mut notes = Vec::new();
         let (labels, positions) = if order.is_expanded {
@@ -137,7 +138,11 @@ impl MatrixFiles {
         (0..).zip(&order.nodes).for_each(|(copy, node)| of_node[*node as usize].push(copy));
         let unused = of_node.iter().filter(|copies| copies.is_empty()).count();
         if unused > 0 {
-            notes.push(format!("{unused} of {} nodes of {} have no degree of freedom and are left out", nodes.labels.len(), self.nodes.display()));
+            notes.push(format!(
+                "{unused} of {} nodes of {} have no degree of freedom and are left out",
+                nodes.labels.len(),
+                self.nodes.display()
+            ));
         }
         let members = |group: &Vec<u32>| group.iter().flat_map(|node| &of_node[*node as usize]).copied().collect();
         let groups = nodes.groups.iter().map(|(name, group)| (name.clone(), members(group))).collect();
@@ -164,7 +169,8 @@ impl MatrixFiles {
         }
         let (source, _) = if mass.size == size { matrices[0] } else { matrices[1] };
         let is_calculix = [&self.mass, &self.stiffness].iter().any(|path| {
-            path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("mas") || ending.eq_ignore_ascii_case("sti"))
+            path.extension()
+                .is_some_and(|ending| ending.eq_ignore_ascii_case("mas") || ending.eq_ignore_ascii_case("sti"))
         });
         let cure = if is_calculix {
             "name the .dof file that CalculiX writes beside the matrices: `dofs = \"JOB.dof\"`"

@@ -56,7 +56,13 @@ fn read_table(source: &Source<'_>) -> Result<NodeFile, MatrixError> {
         if was_first && fields.first().is_some_and(|field| number(field).is_none()) {
             let names: Vec<String> = fields.iter().map(|name| name.trim_matches('"').to_lowercase()).collect();
             let names: Vec<&str> = names.iter().map(String::as_str).collect();
-            let coordinates = if let [_, rest @ ..] = &names[..] && names.len() > 3 { rest } else { &names[..] };
+            let coordinates = if let [_, rest @ ..] = &names[..]
+                && names.len() > 3
+            {
+                rest
+            } else {
+                &names[..]
+            };
             if !matches!(coordinates, ["x", "y", "z"] | ["x", "y", "z", "groups"]) {
                 let expected = "the columns `node, x, y, z`, or `node, x, y, z, groups`";
                 return Err(source.refuse(Some(line), shown(text), expected, CURE));
@@ -124,7 +130,8 @@ fn read_inp(source: &Source<'_>) -> Result<NodeFile, MatrixError> {
                 let refuse = || source.refuse(Some(line), shown(text), "`node, x, y, z`", CURE);
                 let (Some(label), 2..=4) = (fields[0].parse().ok(), fields.len()) else { return Err(refuse()) };
                 let field = |i: usize| fields.get(i).copied().unwrap_or_default();
-                let node = nodes.add(source, line, label, position(source, line, text, [field(1), field(2), field(3)])?)?;
+                let node =
+                    nodes.add(source, line, label, position(source, line, text, [field(1), field(2), field(3)])?)?;
                 if let Some(set) = set {
                     nodes.groups.entry(set.clone()).or_default().push(node);
                 }
@@ -154,7 +161,7 @@ fn keyword_block(source: &Source<'_>, line: usize, keyword: &str) -> Result<Bloc
     let parameters: Vec<(String, String)> = parts
         .map(|part| {
             let (key, value) = part.split_once('=').unwrap_or((part, ""));
-            (key.trim().to_uppercase(), value.trim().trim_matches('"').to_uppercase())
+            (key.trim().to_uppercase(), value.trim().trim_matches('"').to_owned())
         })
         .collect();
     let value = |key: &str| parameters.iter().find(|(name, _)| name == key).map(|(_, value)| value.clone());
@@ -207,7 +214,11 @@ fn members(
         match text.parse().ok().map(|label: u64| nodes.index_of(label)) {
             Some(Some(node)) => found.push(node),
             Some(None) => return Err(refuse()),
-            None => found.extend(nodes.groups.get(&text.to_uppercase()).ok_or_else(refuse)?),
+            // Names of sets are the same in capital letters.
+            None => {
+                let named = nodes.groups.iter().find(|(name, _)| name.eq_ignore_ascii_case(text));
+                found.extend(named.ok_or_else(refuse)?.1);
+            }
         }
     }
     Ok(found)

@@ -45,10 +45,7 @@ impl Source<'_> {
 
     /// Calls `read` with the number (from 1) and the text of each line that is not blank, until it says that this was
     /// the last.
-    pub fn each_line(
-        &self,
-        mut read: impl FnMut(usize, &str) -> Result<Next, MatrixError>,
-    ) -> Result<(), MatrixError> {
+    pub fn each_line(&self, mut read: impl FnMut(usize, &str) -> Result<Next, MatrixError>) -> Result<(), MatrixError> {
         if self.length()? == 0 {
             return Err(self.refuse(None, "an empty file", "a text with numbers", "write it again"));
         }
@@ -90,11 +87,7 @@ pub(crate) enum Next {
 
 /// The fields of a line: between commas where it has some, otherwise between blanks.
 pub(crate) fn fields(line: &str) -> Vec<&str> {
-    if line.contains(',') {
-        line.split(',').map(str::trim).collect()
-    } else {
-        line.split_whitespace().collect()
-    }
+    if line.contains(',') { line.split(',').map(str::trim).collect() } else { line.split_whitespace().collect() }
 }
 
 /// A number as any program writes it, also with Fortran's `D` for the power of ten.

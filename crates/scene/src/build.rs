@@ -46,8 +46,8 @@ use crate::scene::{Body, Scene};
 
 pub use assembly::Assembly;
 pub use builder::ModelBuilder;
-pub use given::MatrixChecks;
 pub use error::{BuildError, StartError};
+pub use given::MatrixChecks;
 pub use model::{Meshed, Model};
 pub use progress::{BuildProgress, BuildTimes};
 pub use stress_shapes::{BodyStress, StressPeak};

@@ -30,7 +30,11 @@ fn each_command_works_or_refuses_in_words() {
     let short = ["boom.toml", "--set", "time.end=0.2"];
     let with = |command: &'static str, more: &[&'static str]| [&[command], &short[..], more].concat();
     let checks = "6 degrees of freedom a node, symmetric as written, no stiffness against the six rigid motions";
-    works(folder, &["modes", "boom.toml"], &["9 nodes, matrices of another program, 54 unknowns", checks, "of the modal mass"]);
+    works(
+        folder,
+        &["modes", "boom.toml"],
+        &["9 nodes, matrices of another program, 54 unknowns", checks, "of the modal mass"],
+    );
     works(folder, &with("run", &["-o", "out"]), &[checks]);
     works(folder, &with("advise", &[]), &["the elements of a body of matrices are not known"]);
     works(folder, &["export", "out/boom.h5", "--csv", "boom.csv"], &[]);
@@ -39,7 +43,10 @@ fn each_command_works_or_refuses_in_words() {
         (&["reduce", "boom.toml", "-o", "boom.body.h5"][..], "a body of matrices"),
         (&["modes", "boom.toml", "-o", "pictures"], "elements and surface are not known"),
         (&["animate", "boom.toml", "-o", "boom.gif"], "elements and surface are not known"),
-        (&["export", "out/boom.h5", "--vtkhdf", "boom.vtkhdf"], "the elements and the surface of a body of matrices are not known"),
+        (
+            &["export", "out/boom.h5", "--vtkhdf", "boom.vtkhdf"],
+            "the elements and the surface of a body of matrices are not known",
+        ),
         (&["paper", "boom.toml", "-o", "paper"], "plate"),
     ] {
         let before = std::fs::read_dir(folder).unwrap().count();

@@ -58,13 +58,15 @@ impl Given {
 
 /// What a body of matrices follows from; `None` where a file cannot be read.
 pub(super) fn hash_of_matrices(files: &MatrixFiles) -> Option<Hash> {
-    files.list().try_fold(Digest::new(), |digest, (which, path)| {
-        // What is no ordinary file can be read only once. The ending says how nodes are read.
-        let file = Some(path).filter(|path| path.is_file()).and_then(|path| Hash::of_file(path).ok())?;
-        let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-        Some(digest.text(which.name()).text(&ending).hash(&file))
-    })
-    .map(Digest::finish)
+    files
+        .list()
+        .try_fold(Digest::new(), |digest, (which, path)| {
+            // What is no ordinary file can be read only once. The ending says how nodes are read.
+            let file = Some(path).filter(|path| path.is_file()).and_then(|path| Hash::of_file(path).ok())?;
+            let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+            Some(digest.text(which.name()).text(&ending).hash(&file))
+        })
+        .map(Digest::finish)
 }
 
 /// A file that cannot be used, at its key.
@@ -97,7 +99,9 @@ pub(super) fn refuse_matrix(scene: &Scene, files: &MatrixFiles, nodes: &Mesh, er
             let place = place.map_or_else(String::new, |[node, freedom]| {
                 format!(", as degree of freedom {} of node {} shows", freedom + 1, name(node))
             });
-            let found = format!("a mass that is not positive definite in {mass}: some motion has a negative kinetic energy{place}");
+            let found = format!(
+                "a mass that is not positive definite in {mass}: some motion has a negative kinetic energy{place}"
+            );
             let cure = "look for a negative density, an element that is turned inside out, or the stiffness in place of the mass";
             refused(scene, Which::Mass, found, "a mass that gives every motion a positive kinetic energy", cure)
         }
@@ -106,7 +110,8 @@ pub(super) fn refuse_matrix(scene: &Scene, files: &MatrixFiles, nodes: &Mesh, er
                 "a body with mass {total:.3e} and moments of inertia {:.3e}, {:.3e}, {:.3e} in {mass}",
                 inertia[0], inertia[1], inertia[2]
             );
-            let cure = "look for a density that is missing, or nodes in another unit of length or order than the matrices";
+            let cure =
+                "look for a density that is missing, or nodes in another unit of length or order than the matrices";
             refused(scene, Which::Mass, found, "a mass and moments of inertia that are positive", cure)
         }
         ModalError::NoRigidBodyMass { what, relative, limit } => refused(
@@ -126,7 +131,9 @@ pub(super) fn refuse_matrix(scene: &Scene, files: &MatrixFiles, nodes: &Mesh, er
         ModalError::NegativeStiffness { eigenvalue, .. } => refused(
             scene,
             Which::Stiffness,
-            format!("a stiffness that is not positive semi-definite in {stiffness}: its lowest eigenvalue is {eigenvalue:.3e}"),
+            format!(
+                "a stiffness that is not positive semi-definite in {stiffness}: its lowest eigenvalue is {eigenvalue:.3e}"
+            ),
             "a stiffness that resists every deformation",
             "write K of the model without preload, contact and negative springs",
         ),

@@ -152,7 +152,17 @@ pub(super) fn on_mesh(
             };
             let (follows, is_gravity) = (follows(load), is_gravity(load));
             let is_base_acceleration = matches!(load, Load::BaseAcceleration(_));
-            Ok(MeshLoad { name, action, history, follows, turning, freedoms, attitude, is_gravity, is_base_acceleration })
+            Ok(MeshLoad {
+                name,
+                action,
+                history,
+                follows,
+                turning,
+                freedoms,
+                attitude,
+                is_gravity,
+                is_base_acceleration,
+            })
         })
         .collect()
 }
@@ -254,13 +264,7 @@ fn follows(load: &Load) -> bool {
 }
 
 /// The rotation of the material at a point: of the node there where nodes have rotations, otherwise of the elements around it.
-fn rotation_at(
-    scene: &Scene,
-    mesh: &Mesh,
-    freedoms: usize,
-    key: &str,
-    at: [f64; 3],
-) -> Result<Rotation, BuildError> {
+fn rotation_at(scene: &Scene, mesh: &Mesh, freedoms: usize, key: &str, at: [f64; 3]) -> Result<Rotation, BuildError> {
     if mesh.has_elements() {
         return Ok(Rotation::Mean(mesh.mean_rotation(at, None).map_err(|error| refuse(scene, key, error))?));
     }

@@ -15,8 +15,9 @@ use super::stress::Stress;
 use super::structure::Structure;
 use super::survey::Survey;
 
-/// What is said of effects that need elements.
-const WITHOUT_ELEMENTS: &str = " It cannot be computed: the elements of a body of matrices are not known.";
+/// What is said of effects that may matter but need elements.
+const WITHOUT_ELEMENTS: &str =
+    "By a bound it may matter; it cannot be computed, since the elements of a body of matrices are not known.";
 
 /// A body in the modes that it keeps and its static shapes.
 pub(super) struct Reduction {
@@ -71,7 +72,10 @@ impl Reduction {
         let mut advice = advice.completed(findings);
         if !model.scene.body.has_elements() {
             for effect in [Effect::GeometricStiffening, Effect::LargeDeflection] {
-                advice.effects[effect].why += WITHOUT_ELEMENTS;
+                let row = &mut advice.effects[effect];
+                if row.on {
+                    row.why = WITHOUT_ELEMENTS.to_owned();
+                }
             }
         }
         Ok(Self { modes, modal, large, backbones, stress, advice })

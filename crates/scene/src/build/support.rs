@@ -119,12 +119,7 @@ fn require_left(
     Err(scene.refuse(key, format!("{value:?}"), expected, "give what is left of it, or change [[constraints]]").into())
 }
 
-fn held_nodes(
-    scene: &Scene,
-    mesh: &Mesh,
-    constraint: &Constraint,
-    freedoms: usize,
-) -> Result<Vec<u32>, BuildError> {
+fn held_nodes(scene: &Scene, mesh: &Mesh, constraint: &Constraint, freedoms: usize) -> Result<Vec<u32>, BuildError> {
     // A node with rotations holds the body by itself.
     let (fewest, fewest_on_axis) = if freedoms == 6 { (1, 1) } else { (FEWEST, 2) };
     let tolerance = ON * mesh.diagonal();

@@ -25,7 +25,8 @@ const EXCESS: f64 = 1e-3;
 
 impl Check<'_> {
     pub fn body(&self, section: BodySection) -> Result<Body, SceneError> {
-        let BodySection { mesh, file, matrices, mesh_size, raise_order, material, materials, point_masses, rigid } = section;
+        let BodySection { mesh, file, matrices, mesh_size, raise_order, material, materials, point_masses, rigid } =
+            section;
         if let Some(matrices) = matrices {
             return self.matrices(&matrices).map(Body::Matrices);
         }
@@ -56,14 +57,19 @@ impl Check<'_> {
     /// Matrices say all of a body but its shape.
     fn matrices(&self, section: &MatricesSection) -> Result<MatrixFiles, SceneError> {
         let others = ["mesh", "file", "mesh_size", "raise_order", "material", "materials", "rigid"];
-        for (key, cure) in others
-            .map(|key| (key, "keep `matrices`, or the other and what belongs to it"))
-            .into_iter()
-            .chain([("point_masses", "put the masses into the mass matrix: in CalculiX and Abaqus by elements of type MASS")])
+        for (key, cure) in
+            others.map(|key| (key, "keep `matrices`, or the other and what belongs to it")).into_iter().chain([(
+                "point_masses",
+                "put the masses into the mass matrix: in CalculiX and Abaqus by elements of type MASS",
+            )])
         {
             if self.has(&join("body", key)) {
                 let found = format!("both `matrices` and `{key}`");
-                return Err(self.document.place(&join("body", key)).refuse(found, "matrices, which stand for all of the body", cure));
+                return Err(self.document.place(&join("body", key)).refuse(
+                    found,
+                    "matrices, which stand for all of the body",
+                    cure,
+                ));
             }
         }
         let file = |key: &str, name: &str| -> Result<PathBuf, SceneError> {

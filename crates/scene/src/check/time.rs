@@ -164,7 +164,9 @@ impl Check<'_> {
                 key,
                 "a body with a mesh",
                 match body {
-                    Body::Matrices(_) => "remove the key: matrices say nothing of stress, which needs the elements of a mesh",
+                    Body::Matrices(_) => {
+                        "remove the key: matrices say nothing of stress, which needs the elements of a mesh"
+                    }
                     _ => "remove the key: a rigid body without a mesh has no stress",
                 },
             )?;

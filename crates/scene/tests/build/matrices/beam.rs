@@ -29,8 +29,7 @@ fn beam(elements: usize) -> Files {
         }
     };
     let polar = ABOUT_Y + ABOUT_Z;
-    for (rows, rigidity, inertia) in
-        [([0, 6], YOUNG * AREA, DENSITY * AREA), ([3, 9], SHEAR * polar, DENSITY * polar)]
+    for (rows, rigidity, inertia) in [([0, 6], YOUNG * AREA, DENSITY * AREA), ([3, 9], SHEAR * polar, DENSITY * polar)]
     {
         add(&rows, &|i, j| if i == j { rigidity / h } else { -rigidity / h }, &|i, j| {
             inertia * h / if i == j { 3.0 } else { 6.0 }
@@ -84,7 +83,8 @@ fn a_moment_at_a_node_with_rotations() {
 #[test]
 fn what_is_left_out_of_the_mass_is_told() {
     let left_out = |elements: usize| {
-        let scene = beam(elements).scene(MARKET, "flexible = 4", "", "end = 1.0\nstep = 1e-3");
+        let files = beam(elements);
+        let scene = files.scene(MARKET, "flexible = 4", "", "end = 1.0\nstep = 1e-3");
         let model = build(&scene);
         let checks = model.meshed.as_ref().and_then(|meshed| meshed.checks).unwrap();
         assert!(!checks.is_scalar_mass && checks.freedoms == 6, "{checks:?}");

@@ -40,8 +40,7 @@ const PLAIN: &str = "[effects]\ngeometric_stiffening = false\nlarge_deflection =
 fn compare(files: &Files, body: &str, rest: &str) {
     let modes = "flexible = 6\nstatic_correction = true\ndamping_ratio = 0.01";
     let rest = format!("{PLAIN}{rest}");
-    let (expected, found) =
-        (files.scene(&of_mesh(), modes, &rest, TIME), files.scene(body, modes, &rest, TIME));
+    let (expected, found) = (files.scene(&of_mesh(), modes, &rest, TIME), files.scene(body, modes, &rest, TIME));
     let (of_mesh, of_matrices) = (build(&expected), build(&found));
     assert_eq!(of_mesh.natural_frequencies().len(), of_matrices.natural_frequencies().len());
     for (a, b) in of_mesh.natural_frequencies().iter().zip(of_matrices.natural_frequencies()) {
@@ -101,8 +100,12 @@ fn in_the_form_of_abaqus() {
         mesh.group_nodes("root").unwrap().iter().map(|node| label(*node as usize).to_string()).collect();
     files.write("bar.inp", &format!("*HEADING\nbar\n*NODE\n{nodes}*NSET, NSET=root\n{}\n", root.join(",\n")));
     let body = "matrices = { mass = \"bar_MASS1.mtx\", stiffness = \"bar_STIF1.mtx\", nodes = \"bar.inp\" }";
-    compare(&files, body, "[[constraints]]\nkind = \"clamp\"\ngroup = \"ROOT\"\n[[loads]]\nkind = \"force\"\nat = [200.0, 0.0, 0.0]\n\
-        direction = [0, 1, 0]\namplitude = 5.0\nhistory = { kind = \"constant\" }\n");
+    compare(
+        &files,
+        body,
+        "[[constraints]]\nkind = \"clamp\"\ngroup = \"root\"\n[[loads]]\nkind = \"force\"\nat = [200.0, 0.0, 0.0]\n\
+        direction = [0, 1, 0]\namplitude = 5.0\nhistory = { kind = \"constant\" }\n",
+    );
 }
 
 #[test]
