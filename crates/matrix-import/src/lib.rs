@@ -93,7 +93,7 @@ impl MatrixFiles {
                     "remove `dofs`",
                 ));
             }
-            (Form::Labelled, _, ..) | (_, Form::Labelled, ..) => {
+            (Form::Labelled, ..) | (_, Form::Labelled, ..) => {
                 return Err(mass_source.refuse(
                     None,
                     "a mass and a stiffness that are written in different forms",

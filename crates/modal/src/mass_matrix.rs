@@ -5,11 +5,8 @@ use faer::{Mat, MatMut, MatRef, Side};
 
 use crate::error::ModalError;
 use crate::mass::NodalMass;
-use crate::products::{Packed, symmetric_product, symmetric_product_into};
-use crate::solve::Modes;
+use crate::products::{Packed, symmetric_product_into};
 use crate::symmetry::check_symmetric;
-use crate::tall::inner;
-use crate::turned::turned;
 
 /// An eigenvalue of M, scaled to a unit diagonal, that is below zero by less than this is rounding.
 const SEMIDEFINITE: f64 = 1e-10;
@@ -85,16 +82,6 @@ impl<'a> MassMatrix<'a> {
         }
     }
 
-    /// What [`crate::ReducedBody::new`] leaves out of the mass because it does not commute with rotations, relative to the
-    /// modal mass, which is 1: the largest entry of the symmetric parts of `Ψᵀ M (I⊗[e_i×]) Ψ` and of `Eᵀ M (I⊗[e_i×]) Ψ/√m`, E
-    /// the unit translations. Zero of a scalar mass for each pair of nodes.
-    pub fn left_out(&self, modes: &Modes) -> f64 {
-        match self {
-            Self::Nodal(_) => 0.0,
-            Self::General(mass) => mass.left_out(modes.shapes.as_ref(), modes.rigid.mass),
-        }
-    }
-
     /// Whether a degree of freedom has a mass at all.
     pub(crate) fn is_massive(&self, row: usize) -> bool {
         match self {
@@ -124,26 +111,6 @@ impl GeneralMass<'_> {
     /// A unit translation along each axis (N×3).
     pub(crate) fn translations(&self) -> Mat<f64> {
         Mat::from_fn(self.matrix.ncols(), 3, |i, axis| f64::from(i % self.freedoms == axis))
-    }
-
-    fn left_out(&self, shapes: MatRef<'_, f64>, total: f64) -> f64 {
-        let translations = self.translations();
-        let mut largest = 0.0_f64;
-        for axis in 0..3 {
-            let momenta = symmetric_product(self.matrix, turned(shapes, axis).as_ref());
-            let of_modes = inner(shapes, momenta.as_ref());
-            for (k, l) in (0..of_modes.nrows()).flat_map(|k| (0..of_modes.ncols()).map(move |l| (k, l))) {
-                largest = largest.max(0.5 * (of_modes[(k, l)] + of_modes[(l, k)]).abs());
-            }
-            let of_body = inner(translations.as_ref(), momenta.as_ref());
-            // What is left for a scalar mass is the momentum that the modes have along the axes.
-            let momentum = inner(translations.as_ref(), symmetric_product(self.matrix, shapes).as_ref());
-            let scalar = turned(momentum.as_ref(), axis);
-            for (i, k) in (0..3).flat_map(|i| (0..of_body.ncols()).map(move |k| (i, k))) {
-                largest = largest.max((of_body[(i, k)] - scalar[(i, k)]).abs() / total.sqrt());
-            }
-        }
-        largest
     }
 
     pub(crate) fn check_semidefinite(&self) -> Result<(), ModalError> {

@@ -28,7 +28,7 @@ pub struct MatrixChecks {
     pub rigid_stiffness: f64,
     /// Whether M is a scalar for each pair of nodes, as that of solid elements and point masses.
     pub is_scalar_mass: bool,
-    /// What the large rotation leaves out of M, relative to the modal mass ([`MassMatrix::left_out`]).
+    /// What the large rotation leaves out of M, relative to the modal mass ([`modal::mass_left_out`]).
     pub left_out: f64,
 }
 

@@ -11,7 +11,7 @@ use fem_tet10::{
 use frames_rk4::DrivenMotion;
 use modal::{
     ModalError, Modes, ReducedBody, SecondOrderShapes, Solver, Support, acceleration_fields, centrifugal_fields,
-    turning_field,
+    mass_left_out, turning_field,
 };
 
 use super::answer::{Answer, Kept};
@@ -59,7 +59,7 @@ impl<'a> Solved<'a> {
             return Ok(Some(checks));
         }
         let question = || with_modes(self.about_the_body("mass left out"), modes);
-        let found = self.ask_list(question, 1, || Ok(vec![self.solver()?.mass().left_out(modes)]))?;
+        let found = self.ask_list(question, 1, || Ok(vec![mass_left_out(self.solver()?.mass(), modes)]))?;
         Ok(Some(MatrixChecks { left_out: found.first().copied().unwrap_or_default(), ..checks }))
     }
 
