@@ -47,12 +47,14 @@ fn each_command_works_or_refuses_in_words() {
             &["export", "out/boom.h5", "--vtkhdf", "boom.vtkhdf"],
             "the elements and the surface of a body of matrices are not known",
         ),
-        (&["paper", "boom.toml", "-o", "paper"], "plate"),
+        (&["paper", "boom.toml", "-o", "paper"], "the paper has a free body with a mesh"),
     ] {
         let before = std::fs::read_dir(folder).unwrap().count();
         let output = flexframe(folder, arguments);
         let error = String::from_utf8_lossy(&output.stderr);
-        assert_eq!(output.status.code(), Some(3), "{arguments:?}: {error}");
+        // `paper` is for one body only: that is a fault of the use, the others of the scene.
+        let expected = if arguments[0] == "paper" { 2 } else { 3 };
+        assert_eq!(output.status.code(), Some(expected), "{arguments:?}: {error}");
         assert!(error.contains(says), "{arguments:?}: {error}");
         assert_eq!(std::fs::read_dir(folder).unwrap().count(), before, "{arguments:?} wrote something");
     }
