@@ -52,9 +52,7 @@ fn each_command_works_or_refuses_in_words() {
         let before = std::fs::read_dir(folder).unwrap().count();
         let output = flexframe(folder, arguments);
         let error = String::from_utf8_lossy(&output.stderr);
-        // `paper` is for one body only: that is a fault of the use, the others of the scene.
-        let expected = if arguments[0] == "paper" { 2 } else { 3 };
-        assert_eq!(output.status.code(), Some(expected), "{arguments:?}: {error}");
+        assert_eq!(output.status.code(), Some(3), "{arguments:?}: {error}");
         assert!(error.contains(says), "{arguments:?}: {error}");
         assert_eq!(std::fs::read_dir(folder).unwrap().count(), before, "{arguments:?} wrote something");
     }
