@@ -137,6 +137,13 @@ pub(super) fn refuse_matrix(scene: &Scene, files: &MatrixFiles, nodes: &Mesh, er
             "a stiffness that resists every deformation",
             "write K of the model without preload, contact and negative springs",
         ),
+        ModalError::Indefinite { .. } => refused(
+            scene,
+            Which::Stiffness,
+            format!("a stiffness that is not positive semi-definite in {stiffness}"),
+            "a stiffness that resists every deformation",
+            "write K of the model without preload, contact and negative springs",
+        ),
         other => modal(scene)(other),
     }
 }
