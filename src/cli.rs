@@ -406,6 +406,9 @@ fn command(cli: Cli, json_errors: bool, cache: &Cache) -> Result<(), Box<dyn Fai
             if let Some(count) = flexible {
                 scene.modes.flexible = Flexible::Count(count);
             }
+            if output.is_some() {
+                modes::require_surface(&scene)?;
+            }
             let (model, report) =
                 modes::modes(&scene, |p| bar.build(p)).map_err(|error| of_option(error.into(), flexible))?;
             drop(bar);

@@ -76,7 +76,7 @@ fn run(folder: &Path, text: &str) -> PathBuf {
 fn materials(scene: &Scene) -> Materials {
     match &scene.body {
         Body::Meshed(body) => body.materials.clone(),
-        Body::Rigid(_) => unreachable!("the body has a mesh"),
+        Body::Rigid(_) | Body::Matrices(_) => unreachable!("the body has a mesh"),
     }
 }
 

@@ -13,6 +13,7 @@ mod fmu;
 mod html_report;
 mod import;
 mod library;
+mod matrices;
 mod memory;
 mod new_scene;
 mod peak_memory;

@@ -11,7 +11,8 @@ use crate::tags::{index_nodes, resolve_tags};
 /// What is grouped, by its dimension.
 pub(crate) const KINDS: [&str; 4] = ["point", "curve", "surface", "volume"];
 
-/// A mesh of ten-node tetrahedra in one piece, every node in use and every element the right way round.
+/// A mesh of ten-node tetrahedra in one piece, every node in use and every element the right way round; or only the nodes of a
+/// body whose matrices come from elsewhere ([`Mesh::of_nodes`]).
 #[derive(Debug, Clone)]
 pub struct Mesh {
     source: String,
@@ -70,11 +71,7 @@ impl Mesh {
         if elements.is_empty() {
             return Err(MeshError::NoElements { source_name: source });
         }
-        if let Some((&node, &position)) =
-            node_tags.iter().zip(&positions).find(|(_, x)| x.iter().any(|c| !c.is_finite()))
-        {
-            return Err(MeshError::NotFinite { source_name: source, node, position });
-        }
+        refuse_not_finite(&source, &node_tags, &positions)?;
         if let Some((&region, &element)) =
             element_regions.iter().zip(&element_tags).find(|(region, _)| **region >= regions.len())
         {
@@ -107,6 +104,42 @@ impl Mesh {
         mesh.refuse_bad_jacobians()?;
         mesh.refuse_pieces()?;
         Ok(mesh)
+    }
+
+    /// Nodes without elements. What needs elements finds none: faces, surfaces, points between nodes.
+    ///
+    /// # Errors
+    /// Tags given twice, tags of groups that no node has, coordinates that are not finite.
+    pub fn of_nodes(
+        source: String,
+        node_tags: Vec<u64>,
+        positions: Vec<[f64; 3]>,
+        groups: Vec<NodeGroup>,
+    ) -> Result<Self, MeshError> {
+        if positions.len() != node_tags.len() {
+            let (expected, found) = (positions.len(), node_tags.len());
+            return Err(MeshError::Lengths { source_name: source, what: "node tags", expected, found });
+        }
+        refuse_not_finite(&source, &node_tags, &positions)?;
+        let index_of = index_nodes(&source, &node_tags)?;
+        let node_sets = resolve_node_groups(&source, &index_of, groups)?;
+        Ok(Self {
+            source,
+            node_tags,
+            positions,
+            element_tags: Vec::new(),
+            elements: Vec::new(),
+            groups: Vec::new(),
+            regions: Vec::new(),
+            element_regions: Vec::new(),
+            surfaces: Vec::new(),
+            node_sets,
+        })
+    }
+
+    /// Whether it has elements.
+    pub fn has_elements(&self) -> bool {
+        !self.elements.is_empty()
     }
 
     /// The parts that [`Mesh::new`] makes the same mesh of.
@@ -274,6 +307,13 @@ impl Mesh {
             sizes: pieces.iter().map(|(size, _)| *size).collect(),
             examples: pieces.iter().map(|(_, first)| self.element_tags[*first]).collect(),
         })
+    }
+}
+
+fn refuse_not_finite(source: &str, node_tags: &[u64], positions: &[[f64; 3]]) -> Result<(), MeshError> {
+    match node_tags.iter().zip(positions).find(|(_, x)| x.iter().any(|c| !c.is_finite())) {
+        Some((&node, &position)) => Err(MeshError::NotFinite { source_name: source.to_owned(), node, position }),
+        None => Ok(()),
     }
 }
 

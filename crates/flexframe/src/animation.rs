@@ -6,8 +6,9 @@ use std::path::{Path, PathBuf};
 use figures::{Animation, FigureError, Frame, View};
 use frames_rk4::{Observation, Reached, Simulation, StepError};
 use nalgebra::Vector3;
-use scene::{Model, Scene};
+use scene::{BuildError, Model, Scene};
 
+use crate::modes::require_surface;
 use crate::report::quantity;
 use crate::run::{RunError, RunProgress};
 use crate::surface::Surface;
@@ -94,6 +95,7 @@ pub fn animate(
     if !path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("gif")) {
         return Err(AnimationError::NotGif { path: path.to_owned() });
     }
+    require_surface(scene).map_err(|error| RunError::from(BuildError::from(error)))?;
     let end = scene.time.end;
     let (from, to) = (settings.from.unwrap_or(0.0), settings.to.unwrap_or(end));
     if !(0.0 <= from && from < to && to <= end) {

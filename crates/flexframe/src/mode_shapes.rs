@@ -6,7 +6,7 @@ use figures::{FigureError, Panel, ShapeGrid, View};
 use nalgebra::Vector3;
 use scene::{Meshed, Model, Scene, SceneError};
 
-use crate::modes::{frequency_unit, require_flexible};
+use crate::modes::{frequency_unit, require_flexible, require_surface};
 use crate::surface::Surface;
 
 /// Largest displacement drawn, as a fraction of the body's size.
@@ -30,6 +30,7 @@ pub enum ShapesError {
 /// # Errors
 /// [`ShapesError`], also where there are no flexible modes to draw.
 pub fn draw(scene: &Scene, model: &Model, stem: &Path) -> Result<[PathBuf; 3], ShapesError> {
+    require_surface(scene)?;
     let meshed = require_flexible(scene, model)?;
     let Meshed { mesh, modes, .. } = meshed;
     let surface = Surface::new(mesh);

@@ -86,13 +86,29 @@ pub(crate) fn require_flexible<'a>(scene: &Scene, model: &'a Model) -> Result<&'
     }
     let (key, cure) = match scene.body {
         Body::Rigid(_) => ("body.rigid", "give the body a mesh, and `flexible` in [modes]"),
-        Body::Meshed(_) if scene.effects.choices[Effect::Flexibility] == Choice::Off => {
+        Body::Meshed(_) | Body::Matrices(_) if scene.effects.choices[Effect::Flexibility] == Choice::Off => {
             ("effects.flexibility", "remove it, so that the body deforms")
         }
-        Body::Meshed(_) => ("modes.flexible", "keep flexible modes"),
+        Body::Meshed(_) | Body::Matrices(_) => ("modes.flexible", "keep flexible modes"),
     };
     let found = "a body without flexible modes, which has no natural frequencies";
     Err(scene.refuse(key, found, "one flexible mode or more", cure))
+}
+
+/// Refuses to draw a body whose surface is not known.
+///
+/// # Errors
+/// [`SceneError`] of a body of matrices.
+pub fn require_surface(scene: &Scene) -> Result<(), SceneError> {
+    match scene.body {
+        Body::Matrices(_) => Err(scene.refuse(
+            "body.matrices",
+            "a body of matrices, whose elements and surface are not known",
+            "a body with a mesh, to draw it",
+            "use the numbers: `flexframe modes` without -o, `flexframe run`, `flexframe export FILE --csv TABLE.csv`",
+        )),
+        Body::Meshed(_) | Body::Rigid(_) => Ok(()),
+    }
 }
 
 /// "Hz" where time is in seconds.
@@ -105,6 +121,9 @@ impl fmt::Display for ModesReport {
         writeln!(f, "{}", self.title)?;
         if let Some(mesh) = &self.mesh {
             writeln!(f, "  mesh   {mesh}")?;
+            if let Some(matrices) = &mesh.matrices {
+                writeln!(f, "  K, M   {matrices}")?;
+            }
         }
         let [length, mass, _] = &self.units;
         writeln!(f, "  body   {}", size_and_mass(self.mesh.as_ref(), &self.body, length, mass))?;

@@ -50,13 +50,16 @@ pub fn reproduce(
     settings: &RunSettings,
     progress: impl FnMut(RunProgress),
 ) -> Result<PaperReport, PaperError> {
+    let only_plates = || PaperError::NotThePlate { scene: scene.path.clone() };
+    if !scene.body.has_elements() {
+        return Err(only_plates());
+    }
     if !scene.output.points.contains_key(WATCHED_POINT) {
         return Err(PaperError::MissingPoint { scene: scene.path.clone(), point: WATCHED_POINT });
     }
     let (model, mut run) = run(scene, folder, settings, progress)?;
     let started = Instant::now();
     let results = Results::open(&run.results, &COLUMNS)?;
-    let only_plates = || PaperError::NotThePlate { scene: scene.path.clone() };
     let meshed = model.meshed.as_ref().ok_or_else(only_plates)?;
     let rigid = rigid_plate::histories(&model, &results)?.ok_or_else(only_plates)?;
     let lumped = scene.centroid_lumped_inertia(&meshed.mesh)?.ok_or_else(only_plates)?;

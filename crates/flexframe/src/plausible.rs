@@ -2,7 +2,8 @@
 //! of its mesh file was left out.
 
 use fem_tet10::{Material, Materials};
-use scene::{Body, Model, Scene, Units};
+use frames_rk4::Effect;
+use scene::{Body, Choice, Model, Scene, Units};
 
 use crate::units::UnitLabels;
 
@@ -15,6 +16,11 @@ const DENSITIES: [f64; 2] = [0.1, 3e4];
 /// are known.
 pub(crate) fn doubts(scene: &Scene, model: &Model) -> Vec<String> {
     let mut doubts = Vec::new();
+    if let Body::Matrices(files) = &scene.body {
+        let notes = model.meshed.iter().flat_map(|meshed| &meshed.mesh_notes);
+        doubts.extend(notes.map(|note| format!("{}: {note}", files.stiffness.display())));
+        doubts.extend(without_elements(scene, model));
+    }
     if let Body::Meshed(body) = &scene.body {
         let notes = model.meshed.iter().flat_map(|meshed| &meshed.mesh_notes);
         doubts.extend(notes.map(|note| format!("{}: {note}", body.mesh.display())));
@@ -37,6 +43,24 @@ pub(crate) fn doubts(scene: &Scene, model: &Model) -> Vec<String> {
         ));
     }
     doubts
+}
+
+/// What a motion of a body of matrices may lack.
+fn without_elements(scene: &Scene, model: &Model) -> impl Iterator<Item = String> {
+    let missing = |effect: Effect| {
+        let row = &model.advice.effects[effect];
+        let is_open = scene.effects.choices[effect] == Choice::Auto && !scene.time.method.is_of_paper();
+        (is_open && row.on).then(|| {
+            format!(
+                "{} may change the answer by up to {:.1e} (a bound), and is left out: the elements of a body of matrices are not \
+                 known. If it matters, give the body a mesh; `{} = false` in [effects] ends this warning",
+                effect.name(),
+                row.influence,
+                effect.name()
+            )
+        })
+    };
+    [Effect::GeometricStiffening, Effect::LargeDeflection].into_iter().filter_map(missing)
 }
 
 fn of_material(material: &Material, of: &str, units: &Units) -> Vec<String> {

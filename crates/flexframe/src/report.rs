@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use memory::Bytes;
 use nalgebra::Matrix3;
-use scene::{Meshed, Model};
+use scene::{MatrixChecks, Meshed, Model};
 use serde::{Serialize, Serializer};
 
 /// Times of the phases, seconds, in the order in which they were passed.
@@ -86,6 +86,8 @@ pub struct MeshReport {
     pub elements: usize,
     /// Degrees of freedom.
     pub unknowns: usize,
+    /// What the matrices of another program were found to be.
+    pub matrices: Option<MatricesReport>,
     /// Extent along the axes of the mesh.
     pub size: [f64; 3],
     /// Bytes of the mass and stiffness matrices.
@@ -94,6 +96,21 @@ pub struct MeshReport {
     pub factor_entries: usize,
     /// Bytes that the model takes while it is made, at the most at a time: matrices, factor, basis and scratch.
     pub peak_bytes: usize,
+}
+
+/// What the matrices of another program were found to be.
+#[derive(Debug, Clone, Serialize)]
+pub struct MatricesReport {
+    /// Degrees of freedom of a node: 3, or 6 with its rotations.
+    pub freedoms: usize,
+    /// Largest difference of the triangles, relative to the diagonal; none where the files have one triangle.
+    pub asymmetry: Option<f64>,
+    /// How much K resists a rigid motion, relative to its diagonal, at the most of the six.
+    pub rigid_stiffness: f64,
+    /// Whether the mass is a scalar for each pair of nodes: then the large rotation leaves out nothing of it.
+    pub is_scalar_mass: bool,
+    /// What the large rotation leaves out of the mass, relative to the modal mass.
+    pub left_out: f64,
 }
 
 /// Mass properties and modes.
@@ -122,17 +139,51 @@ pub struct BodyReport {
 impl MeshReport {
     /// Of a model; `None` for a rigid body without a mesh.
     pub fn new(model: &Model) -> Option<Self> {
-        let Meshed { mesh, modes, matrix_bytes, .. } = model.meshed.as_ref()?;
+        let Meshed { mesh, modes, matrix_bytes, checks, .. } = model.meshed.as_ref()?;
         Some(Self {
             file: mesh.source().to_owned(),
             nodes: mesh.positions().len(),
             elements: mesh.elements().len(),
-            unknowns: 3 * mesh.positions().len(),
+            unknowns: checks.map_or(3, |checks| checks.freedoms) * mesh.positions().len(),
+            matrices: checks.map(MatricesReport::from),
             size: mesh.size(),
             matrix_bytes: *matrix_bytes,
             factor_entries: modes.stats.factor_entries,
             peak_bytes: with_kept(modes.stats.peak_bytes),
         })
+    }
+}
+
+impl From<MatrixChecks> for MatricesReport {
+    fn from(checks: MatrixChecks) -> Self {
+        let MatrixChecks { freedoms, asymmetry, rigid_stiffness, is_scalar_mass, left_out } = checks;
+        Self { freedoms, asymmetry, rigid_stiffness, is_scalar_mass, left_out }
+    }
+}
+
+impl MeshReport {
+    /// "393 nodes, 40 elements", or "393 nodes, matrices of another program".
+    pub(crate) fn in_words(&self) -> String {
+        match self.matrices {
+            None => format!("{} nodes, {} elements", self.nodes, self.elements),
+            Some(_) => format!("{} nodes, matrices of another program", self.nodes),
+        }
+    }
+}
+
+impl fmt::Display for MatricesReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} degrees of freedom a node, ", self.freedoms)?;
+        match self.asymmetry {
+            Some(asymmetry) => write!(f, "symmetric to {asymmetry:.0e}, ")?,
+            None => write!(f, "symmetric as written, ")?,
+        }
+        write!(f, "no stiffness against the six rigid motions (to {:.0e}), mass positive; ", self.rigid_stiffness)?;
+        if self.is_scalar_mass {
+            write!(f, "the large rotation leaves out nothing of the mass")
+        } else {
+            write!(f, "the large rotation leaves out {:.1e} of the modal mass", self.left_out)
+        }
     }
 }
 
@@ -155,9 +206,8 @@ impl fmt::Display for MeshReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "{} nodes, {} elements, {} unknowns (memory {}: matrices {}, factor {} of it)",
-            self.nodes,
-            self.elements,
+            "{}, {} unknowns (memory {}: matrices {}, factor {} of it)",
+            self.in_words(),
             self.unknowns,
             Bytes(self.peak_bytes),
             Bytes(self.matrix_bytes),

@@ -1,6 +1,6 @@
 //! The mass matrix as a matrix over nodes: `M = M_s ⊗ I₃`.
 
-use faer::sparse::SparseColMatRef;
+use faer::sparse::{SparseColMatRef, Triplet};
 use faer::{Mat, MatMut, MatRef};
 use rayon::prelude::*;
 
@@ -94,6 +94,16 @@ impl NodalMass {
     /// Sums over the columns: the mass that each node stands for (n).
     pub fn row_sums(&self) -> Vec<f64> {
         self.start.windows(2).map(|range| self.values[range[0]..range[1]].iter().sum()).collect()
+    }
+
+    /// The entries of M_s.
+    pub(crate) fn entries(&self) -> impl Iterator<Item = Triplet<usize, usize, f64>> {
+        let columns = self.start.windows(2).enumerate();
+        columns
+            .flat_map(move |(column, range)| {
+                (range[0]..range[1]).map(move |entry| (self.nodes[entry] as usize, column, self.values[entry]))
+            })
+            .map(|(row, column, value)| Triplet::new(row, column, value))
     }
 
     /// Whether a node has a mass at all.

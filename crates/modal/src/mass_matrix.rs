@@ -91,10 +91,12 @@ impl<'a> MassMatrix<'a> {
     }
 
     /// Refuses a matrix that gives a motion a negative kinetic energy.
-    pub(crate) fn check_semidefinite(&self) -> Result<(), ModalError> {
+    ///
+    /// # Errors
+    /// [`ModalError::IndefiniteMass`], [`ModalError::Factorization`].
+    pub fn check_semidefinite(&self) -> Result<(), ModalError> {
         match self {
-            // Its motions along one axis are those of a scalar mass, which the Gram matrices of the search refuse.
-            Self::Nodal(_) => Ok(()),
+            Self::Nodal(mass) => check_semidefinite(|| mass.entries(), mass.node_count(), 1),
             Self::General(mass) => mass.check_semidefinite(),
         }
     }
@@ -111,34 +113,46 @@ impl GeneralMass<'_> {
         Mat::from_fn(self.matrix.ncols(), 3, |i, axis| f64::from(i % self.freedoms == axis))
     }
 
-    fn check_semidefinite(&self) -> Result<(), ModalError> {
-        let size = self.matrix.ncols();
-        let diagonal: Vec<f64> = (0..size).map(|i| self.matrix.get(i, i).copied().unwrap_or(0.0)).collect();
-        memory::check("the check of the mass matrix", 4 * 24 * self.matrix.row_idx().len())?;
-        let mut entries = Vec::with_capacity(self.matrix.row_idx().len() + size);
-        for entry in self.matrix.triplet_iter().filter(|entry| *entry.val != 0.0) {
-            let scale = (diagonal[entry.row] * diagonal[entry.col]).sqrt();
-            if scale.is_nan() || scale <= 0.0 {
-                let row = if diagonal[entry.row] > 0.0 { entry.col } else { entry.row };
-                return Err(self.negative(row));
-            }
-            entries.push(Triplet::new(entry.row, entry.col, entry.val / scale));
-        }
-        for (i, value) in diagonal.iter().enumerate() {
-            entries.push(Triplet::new(i, i, if *value > 0.0 { SEMIDEFINITE } else { 1.0 }));
-        }
-        let failed = |reason: String| ModalError::Factorization { size, reason };
-        let scaled = SparseColMat::<usize, f64>::try_new_from_triplets(size, size, &entries)
-            .map_err(|reason| failed(reason.to_string()))?;
-        match scaled.sp_cholesky(Side::Lower) {
-            Ok(_) => Ok(()),
-            Err(faer::sparse::linalg::LltError::Numeric(_)) => Err(ModalError::IndefiniteMass { place: None }),
-            Err(faer::sparse::linalg::LltError::Generic(reason)) => Err(failed(reason.to_string())),
+    pub(crate) fn check_semidefinite(&self) -> Result<(), ModalError> {
+        let entries = || self.matrix.triplet_iter().map(|entry| Triplet::new(entry.row, entry.col, *entry.val));
+        check_semidefinite(entries, self.matrix.ncols(), self.freedoms)
+    }
+}
+
+/// Refuses a symmetric matrix of this size that is not positive semi-definite; a node has `freedoms` rows of it.
+fn check_semidefinite<I: Iterator<Item = Triplet<usize, usize, f64>>>(
+    matrix: impl Fn() -> I,
+    size: usize,
+    freedoms: usize,
+) -> Result<(), ModalError> {
+    let mut diagonal = vec![0.0; size];
+    let mut count = 0;
+    for entry in matrix() {
+        count += 1;
+        if entry.row == entry.col {
+            diagonal[entry.row] = entry.val;
         }
     }
-
-    fn negative(&self, row: usize) -> ModalError {
-        ModalError::IndefiniteMass { place: Some([row / self.freedoms, row % self.freedoms]) }
+    memory::check("the check of the mass matrix", 4 * 24 * count)?;
+    let mut entries = Vec::with_capacity(count + size);
+    for entry in matrix().filter(|entry| entry.val != 0.0) {
+        let scale = (diagonal[entry.row] * diagonal[entry.col]).sqrt();
+        if scale.is_nan() || scale <= 0.0 {
+            let row = if diagonal[entry.row] > 0.0 { entry.col } else { entry.row };
+            return Err(ModalError::IndefiniteMass { place: Some([row / freedoms, row % freedoms]) });
+        }
+        entries.push(Triplet::new(entry.row, entry.col, entry.val / scale));
+    }
+    for (i, value) in diagonal.iter().enumerate() {
+        entries.push(Triplet::new(i, i, if *value > 0.0 { SEMIDEFINITE } else { 1.0 }));
+    }
+    let failed = |reason: String| ModalError::Factorization { size, reason };
+    let scaled = SparseColMat::<usize, f64>::try_new_from_triplets(size, size, &entries)
+        .map_err(|reason| failed(reason.to_string()))?;
+    match scaled.sp_cholesky(Side::Lower) {
+        Ok(_) => Ok(()),
+        Err(faer::sparse::linalg::LltError::Numeric(_)) => Err(ModalError::IndefiniteMass { place: None }),
+        Err(faer::sparse::linalg::LltError::Generic(reason)) => Err(failed(reason.to_string())),
     }
 }
 

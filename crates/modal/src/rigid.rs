@@ -101,20 +101,25 @@ impl RigidModes {
         Ok(Self { motion, mass: total, center_of_mass, origin, inertia, translation_basis, rotation_basis, shapes })
     }
 
-    /// Checks that K resists none of the rigid motions.
-    pub(crate) fn check_free(&self, stiffness: SparseColMatRef<'_, usize, f64>) -> Result<(), ModalError> {
+    /// Checks that K resists none of the rigid motions; returns the largest ‖K r‖/‖D r‖, D the diagonal of K.
+    ///
+    /// # Errors
+    /// [`ModalError::NotFree`] where it is no rounding.
+    pub fn check_free(&self, stiffness: SparseColMatRef<'_, usize, f64>) -> Result<f64, ModalError> {
         let forces = symmetric_product(stiffness, self.shapes.as_ref());
         let diagonal: Vec<f64> = (0..forces.nrows()).map(|i| stiffness.get(i, i).copied().unwrap_or(0.0)).collect();
         let scales = Mat::from_fn(forces.nrows(), 6, |i, mode| diagonal[i] * self.shapes[(i, mode)]);
         let is_there = |mode: &usize| self.shapes.col(*mode).iter().any(|u| *u != 0.0);
+        let mut largest = 0.0_f64;
         for mode in (0..6).filter(is_there) {
             let relative = forces.col(mode).norm_l2() / scales.col(mode).norm_l2();
             if relative.is_nan() || relative >= FREE {
                 let motion = self.motion.name(mode);
                 return Err(ModalError::NotFree { motion, relative, limit: FREE });
             }
+            largest = largest.max(relative);
         }
-        Ok(())
+        Ok(largest)
     }
 }
 

@@ -150,7 +150,10 @@ impl<'a> Solver<'a> {
         check_symmetric("stiffness", 1, stiffness.symbolic().col_ptr(), |entry| rows[entry], |entry| values[entry])?;
         let sparse_mass = mass;
         let mass = MassMatrix::new(mass, positions.len())?;
-        mass.check_semidefinite()?;
+        // A scalar mass is refused by the Gram matrices of the search.
+        if let MassMatrix::General(mass) = &mass {
+            mass.check_semidefinite()?;
+        }
         let constraints = Constraints::new(support, positions, mass.freedoms())?;
         let rigid = RigidModes::new(&mass, positions, support.motion)?;
         rigid.check_free(stiffness)?;

@@ -10,6 +10,8 @@ mod damping;
 mod decide;
 mod directed;
 mod error;
+mod fe_matrices;
+mod given;
 mod history;
 mod initial;
 mod loads;
@@ -46,6 +48,7 @@ use crate::scene::{Body, Scene};
 pub use assembly::Assembly;
 pub use builder::ModelBuilder;
 pub use error::{BuildError, StartError};
+pub use given::MatrixChecks;
 pub use model::{Meshed, Model};
 pub use progress::{BuildProgress, BuildTimes};
 pub use stress_shapes::{BodyStress, StressPeak};
@@ -72,7 +75,7 @@ impl Scene {
             Body::Meshed(body) => {
                 Ok(Some(fem_tet10::centroid_lumped_inertia(mesh, &body.materials, &body.point_masses)?))
             }
-            Body::Rigid(_) => Ok(None),
+            Body::Matrices(_) | Body::Rigid(_) => Ok(None),
         }
     }
 }

@@ -51,6 +51,7 @@ impl Scene {
         check.initial(&initial, &modes, constraint.as_ref())?;
         check.loads(&mut loads, &body, constraint.as_ref())?;
         check.effects(&effects, &modes, &initial, constraint.as_ref(), &loads)?;
+        check.effects_of_elements(&effects, &modes, &body)?;
         let time = check.time(&time)?;
         check.effects_of_paper(&effects, time.method)?;
         let output = check.output(output, &time, &body)?;

@@ -58,8 +58,8 @@ mod unit_vector;
 
 pub use assign::{AssignError, assign};
 pub use build::{
-    Assembly, BodyStress, BuildError, BuildProgress, BuildTimes, Meshed, Model, ModelBuilder, StartError, StressPeak,
-    SupportRows,
+    Assembly, BodyStress, BuildError, BuildProgress, BuildTimes, MatrixChecks, Meshed, Model, ModelBuilder, StartError,
+    StressPeak, SupportRows,
 };
 pub use cache::{Cache, CacheNotes};
 pub use constraint::{Constraint, HeldDirections, HingeLine, Region};
@@ -71,6 +71,7 @@ pub use file::{text_from, text_of};
 pub use frames_rk4::{Effect, EffectMap, LoadFrame, Method, Rows, StepControl};
 pub use history::{DrivenSpeed, Formula, History, TablePoints};
 pub use load::{BaseAcceleration, Force, Gravity, Load, Moment, Pressure, Traction};
+pub use matrix_import::MatrixFiles;
 pub use mesh_import::ImportSettings;
 pub use modes::{Damping, Flexible, Large, Modes, Rayleigh};
 pub use place::Place;

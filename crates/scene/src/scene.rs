@@ -9,6 +9,7 @@ use std::path::PathBuf;
 
 use fem_tet10::{Materials, PointMass};
 use frames_rk4::{Method, Rows, StepControl};
+use matrix_import::MatrixFiles;
 use mesh_import::ImportSettings;
 use serde::Deserialize;
 
@@ -63,13 +64,23 @@ pub struct Units {
     pub time: String,
 }
 
-/// The body: the scene has exactly one of the two keys.
+/// The body: the scene has exactly one of the keys.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Body {
     /// Key `mesh`: a body that can deform.
     Meshed(MeshedBody),
+    /// Key `matrices`: mass and stiffness of a body that can deform, from another program. The files are already resolved
+    /// against the folder of the scene file.
+    Matrices(MatrixFiles),
     /// Key `rigid`: mass properties without a mesh.
     Rigid(RigidBody),
+}
+
+impl Body {
+    /// Whether its elements are known, and with them stress and what follows from it.
+    pub fn has_elements(&self) -> bool {
+        matches!(self, Self::Meshed(_))
+    }
 }
 
 /// A body of finite elements.

@@ -42,6 +42,7 @@ pub(crate) struct Sections {
 pub(crate) struct BodySection {
     pub mesh: Option<String>,
     pub file: Option<String>,
+    pub matrices: Option<MatricesSection>,
     pub mesh_size: Option<f64>,
     pub raise_order: Option<bool>,
     pub material: Option<Material>,
@@ -49,6 +50,16 @@ pub(crate) struct BodySection {
     #[serde(default)]
     pub point_masses: Vec<PointMass>,
     pub rigid: Option<RigidSection>,
+}
+
+/// The files of a body of matrices as the scene names them.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct MatricesSection {
+    pub mass: String,
+    pub stiffness: String,
+    pub nodes: String,
+    pub dofs: Option<String>,
 }
 
 /// A rigid body as the file gives it.

@@ -1,6 +1,7 @@
 //! Every scene of `examples/` that shows a number, run through the library, against that number.
 
 mod beams;
+mod boom;
 mod effects;
 mod energy;
 mod nafems;

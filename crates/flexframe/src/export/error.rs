@@ -35,6 +35,15 @@ pub enum ExportError {
         /// The results file.
         path: PathBuf,
     },
+    /// The body has nodes, but no elements.
+    #[error(
+        "{}: the elements and the surface of a body of matrices are not known; export a table, --csv TABLE.csv, or give the body a mesh",
+        path.display()
+    )]
+    NoElements {
+        /// The results file.
+        path: PathBuf,
+    },
     /// The body has no modes.
     #[error("{}: the body has no flexible modes to export", path.display())]
     NoModes {

@@ -56,6 +56,9 @@ impl Motion {
         let Some(Meshed { mesh, .. }) = &model.meshed else {
             return Err(ExportError::NoMesh { path: file.to_owned() });
         };
+        if !mesh.has_elements() {
+            return Err(ExportError::NoElements { path: file.to_owned() });
+        }
         let (grid, nodes) = if volume {
             // VTK has the middles of 13 and 23 the other way round.
             let elements = mesh.elements().iter();

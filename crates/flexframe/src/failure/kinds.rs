@@ -359,7 +359,7 @@ impl Failure for ExportError {
             Self::File(error) => error.kind(),
             Self::Write(error) => error.kind(),
             Self::Reopen(error) => error.kind(),
-            Self::Changed { .. } | Self::NoMesh { .. } | Self::NoModes { .. } => Kind::Input,
+            Self::Changed { .. } | Self::NoMesh { .. } | Self::NoElements { .. } | Self::NoModes { .. } => Kind::Input,
             Self::NoRows { .. } | Self::NoColumn { .. } => Kind::Usage,
         }
     }
@@ -371,6 +371,7 @@ impl Failure for ExportError {
             Self::Reopen(error) => error.details(),
             Self::Changed { path }
             | Self::NoMesh { path }
+            | Self::NoElements { path }
             | Self::NoModes { path }
             | Self::NoRows { path, .. }
             | Self::NoColumn { path, .. } => Details::of_file(path),

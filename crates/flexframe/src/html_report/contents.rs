@@ -23,7 +23,8 @@ use crate::units::UnitLabels;
 /// All of it; `None` where the file has not got the columns that it needs.
 pub(super) fn contents(file: &Path, results: &Results, scene: &Scene, model: &Model) -> Option<Report> {
     let body = BodyReport::new(model);
-    let surface = model.meshed.as_ref().map(|meshed| surface::Surface::new(&meshed.mesh));
+    let with_elements = model.meshed.as_ref().filter(|meshed| meshed.mesh.has_elements());
+    let surface = with_elements.map(|meshed| surface::Surface::new(&meshed.mesh));
     let units = &results.metadata.units;
     Some(Report {
         title: results.metadata.title.clone(),
@@ -66,7 +67,7 @@ fn facts(results: &Results, model: &Model, body: &BodyReport) -> Option<Vec<Fact
     let fact = |label: &str, value: String| Fact { label: label.to_owned(), value };
     let mut facts = vec![fact("Mass", format!("{} {}", quantity(body.mass), units.mass))];
     if let Some(mesh) = MeshReport::new(model) {
-        facts.push(fact("Mesh", format!("{} nodes, {} elements", mesh.nodes, mesh.elements)));
+        facts.push(fact("Mesh", mesh.in_words()));
     }
     let fixed = body.static_shapes();
     let modes = body.natural_frequencies.len() - fixed;

@@ -106,6 +106,9 @@ impl fmt::Display for RunReport {
         writeln!(f, "{}", self.title)?;
         if let Some(mesh) = &self.mesh {
             writeln!(f, "  mesh     {mesh}")?;
+            if let Some(matrices) = &mesh.matrices {
+                writeln!(f, "  K, M     {matrices}")?;
+            }
         }
         write!(f, "  body     {}, ", size_and_mass(self.mesh.as_ref(), &self.body, length, mass))?;
         writeln!(f, "{}", self.body.modes_in_words(&frequency_unit(time)))?;

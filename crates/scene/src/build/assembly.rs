@@ -3,12 +3,15 @@
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
-use fem_tet10::{Matrices, Mesh};
+use fem_tet10::{Materials, Mesh};
 use frames_rk4::Drive;
+use matrix_import::MatrixFiles;
 use mesh_import::Imported;
 use modal::Support;
 
 use super::error::BuildError;
+use super::fe_matrices::FeMatrices;
+use super::given::{Given, MatrixChecks};
 use super::mesh::{matrices, read_mesh};
 use super::progress::{BuildProgress, BuildTimes, timed};
 use super::store::Store;
@@ -23,15 +26,23 @@ pub(super) enum Assembled {
     Rigid(RigidBody),
 }
 
+/// What the matrices of a body are made of.
+pub(super) enum MadeOf {
+    Elements(MeshedBody),
+    Files(MatrixFiles),
+}
+
 pub(super) struct AssembledMesh {
     /// For messages.
     pub scene: Scene,
-    pub body: MeshedBody,
+    pub body: MadeOf,
     pub mesh: Arc<Mesh>,
     /// What of the mesh file was left out.
     pub mesh_notes: Vec<String>,
     /// Those that are needed: where answers are known, none are.
-    matrices: OnceLock<(Matrices, Duration)>,
+    matrices: OnceLock<(FeMatrices, Duration)>,
+    /// Of matrices from another program.
+    pub checks: Option<MatrixChecks>,
     pub support: Support,
     pub drive: Option<Drive>,
     /// Where answers are kept from run to run.
@@ -47,6 +58,7 @@ impl Assembly {
     pub fn new(scene: &Scene, mut progress: impl FnMut(BuildProgress)) -> Result<Self, BuildError> {
         let body = match &scene.body {
             Body::Meshed(body) => body.clone(),
+            Body::Matrices(files) => return Self::of_matrices(scene, files, progress),
             Body::Rigid(body) => return Ok(Self(Assembled::Rigid(*body))),
         };
         let mut times = BuildTimes::default();
@@ -60,27 +72,67 @@ impl Assembly {
         let Imported { mesh, notes: mesh_notes } = timed(&mut of_mesh, read)?;
         let mesh = Arc::new(mesh);
         times.mesh += of_mesh;
-        let (support, drive) = support(scene, Some(&mesh))?;
-        let (scene, matrices) = (scene.clone(), OnceLock::new());
-        let assembled = AssembledMesh { scene, body, mesh, mesh_notes, matrices, support, drive, store, times };
+        let (support, drive) = support(scene, Some((&mesh, 3)))?;
+        let (scene, matrices, body) = (scene.clone(), OnceLock::new(), MadeOf::Elements(body));
+        let checks = None;
+        let assembled = AssembledMesh { scene, body, mesh, mesh_notes, matrices, checks, support, drive, store, times };
         if assembled.store.is_none() {
             progress(BuildProgress::Assembly);
             assembled.matrices()?;
         }
         Ok(Self(Assembled::Meshed(Box::new(assembled))))
     }
+
+    /// The same of matrices from another program, which are read each time.
+    fn of_matrices(
+        scene: &Scene,
+        files: &MatrixFiles,
+        mut progress: impl FnMut(BuildProgress),
+    ) -> Result<Self, BuildError> {
+        let mut times = BuildTimes::default();
+        progress(BuildProgress::Mesh);
+        let given = timed(&mut times.mesh, || Given::read(scene, files))?;
+        let Given { nodes, notes: mesh_notes, matrices, checks } = given;
+        let mesh = Arc::new(nodes);
+        let store = Store::of_matrices(scene, files);
+        let (support, drive) = support(scene, Some((&mesh, checks.freedoms)))?;
+        let (scene, body, checks) = (scene.clone(), MadeOf::Files(files.clone()), Some(checks));
+        let matrices = OnceLock::from((matrices, Duration::ZERO));
+        let assembled = AssembledMesh { scene, body, mesh, mesh_notes, matrices, checks, support, drive, store, times };
+        Ok(Self(Assembled::Meshed(Box::new(assembled))))
+    }
 }
 
 impl AssembledMesh {
     /// Mass and stiffness, assembled at the first call.
-    pub fn matrices(&self) -> Result<&Matrices, BuildError> {
+    pub fn matrices(&self) -> Result<&FeMatrices, BuildError> {
         if let Some((found, _)) = self.matrices.get() {
             return Ok(found);
         }
         let mut time = Duration::ZERO;
-        let assembled = timed(&mut time, || matrices(&self.scene, &self.body, &self.mesh))?;
+        let MadeOf::Elements(body) = &self.body else { return Err(self.without_elements()) };
+        let assembled = timed(&mut time, || matrices(&self.scene, body, &self.mesh))?;
         self.scene.cache.has_assembled();
-        Ok(&self.matrices.get_or_init(|| (assembled, time)).0)
+        Ok(&self.matrices.get_or_init(|| (FeMatrices::Assembled(assembled), time)).0)
+    }
+
+    /// Degrees of freedom of a node.
+    pub fn freedoms(&self) -> usize {
+        self.checks.map_or(3, |checks| checks.freedoms)
+    }
+
+    /// What the elements are made of.
+    pub fn materials(&self) -> Result<&Materials, BuildError> {
+        match &self.body {
+            MadeOf::Elements(body) => Ok(&body.materials),
+            MadeOf::Files(_) => Err(self.without_elements()),
+        }
+    }
+
+    /// The refusal of what needs elements.
+    fn without_elements(&self) -> BuildError {
+        let found = "a body of matrices, whose elements are not known";
+        self.scene.refuse("body.matrices", found, "a body with elements", "give the body a mesh and a material").into()
     }
 
     /// How long the assembly took.

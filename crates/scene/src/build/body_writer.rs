@@ -62,9 +62,16 @@ impl Model {
         matrices: bool,
         mut progress: impl FnMut(BuildProgress),
     ) -> Result<Self, BuildError> {
-        let Body::Meshed(body) = &scene.body else {
-            let cure = "run the scene as it is: a rigid body is reduced already";
-            return Err(scene.refuse("body.rigid", "a rigid body", "a body with a mesh", cure).into());
+        let body = match &scene.body {
+            Body::Meshed(body) => body,
+            Body::Rigid(_) => {
+                let cure = "run the scene as it is: a rigid body is reduced already";
+                return Err(scene.refuse("body.rigid", "a rigid body", "a body with a mesh", cure).into());
+            }
+            Body::Matrices(_) => {
+                let cure = "run the scene as it is: the cache keeps what is computed of the matrices, so that later runs are quick";
+                return Err(scene.refuse("body.matrices", "a body of matrices", "a body with a mesh", cure).into());
+            }
         };
         // The answers come by way of a cache, from which nothing is removed in the meantime.
         let failed =

@@ -73,6 +73,14 @@ pub(super) fn refuse(scene: &Scene, key: &str, error: AssemblyError) -> SceneErr
             // A coordinate that is zero but for rounding is shown as zero.
             let size = Vector3::from(position).norm();
             let shown = position.map(|c| if c.abs() < 1e-9 * size { 0.0 } else { c });
+            if !scene.body.has_elements() {
+                return scene.refuse(
+                    key,
+                    format!("a point without a node: the nearest one of {source_name} is {distance:.6} away"),
+                    "a node: the elements between the nodes of a body of matrices are not known",
+                    format!("use its node {node} at {shown:?}"),
+                );
+            }
             scene.refuse(
                 key,
                 format!("a point that is not on the body: the nearest node of {source_name} is {distance:.6} away"),
@@ -128,7 +136,7 @@ pub(super) fn too_many_modes(scene: &Scene, error: ModalError) -> BuildError {
             .refuse(
                 "modes.flexible",
                 requested.to_string(),
-                format!("at most {available}: three modes for each node that nothing holds, less the rigid ones"),
+                format!("at most {available}: a mode for each degree of freedom that has mass and that nothing holds, less the rigid ones"),
                 "ask for fewer modes, or use a finer mesh",
             )
             .into(),

@@ -33,7 +33,9 @@ pub(super) struct MeshLoad {
     /// Whether it keeps its direction in the body or in the material.
     pub follows: bool,
     /// How the material that its direction turns with is turned by the nodes.
-    turning: Option<MeanRotation>,
+    turning: Option<Rotation>,
+    /// Degrees of freedom of a node.
+    freedoms: usize,
     /// Attitude of the body at the beginning.
     attitude: Attitude,
     is_gravity: bool,
@@ -66,10 +68,18 @@ impl FromIterator<(SharedLoad, bool)> for BodyLoads {
 enum Action {
     /// A force at the weighted mean of nodes; the weights sum to one.
     Force { nodes: Vec<u32>, weights: Vec<f64>, force: Vector3<f64> },
-    /// A couple on the mean rotation of nodes.
-    Moment { patch: MeanRotation, moment: Vector3<f64> },
+    /// A couple on the rotation of the material at its place.
+    Moment { patch: Rotation, moment: Vector3<f64> },
     /// Forces on nodes that are fixed in the body.
     Field { nodes: Vec<u32>, forces: Vec<Vector3<f64>>, group: String, pressure: f64 },
+}
+
+/// A small rotation of the material at some place.
+enum Rotation {
+    /// The mean rotation of nodes, by their displacements.
+    Mean(MeanRotation),
+    /// The rotation of a node that has one.
+    OfNode(u32),
 }
 
 /// What a pressure on a surface becomes as the surface moves in each mode.
@@ -82,7 +92,12 @@ pub(super) struct FollowerChange {
 }
 
 /// The loads of a scene on its mesh. `nodal_mass` is the mass that each node stands for.
-pub(super) fn on_mesh(scene: &Scene, mesh: &Mesh, nodal_mass: &[f64]) -> Result<Vec<MeshLoad>, BuildError> {
+pub(super) fn on_mesh(
+    scene: &Scene,
+    mesh: &Mesh,
+    freedoms: usize,
+    nodal_mass: &[f64],
+) -> Result<Vec<MeshLoad>, BuildError> {
     let attitude = first_attitude(scene);
     acting(scene)
         .map(|(i, load)| {
@@ -104,9 +119,13 @@ pub(super) fn on_mesh(scene: &Scene, mesh: &Mesh, nodal_mass: &[f64]) -> Result<
                     }
                 }
                 Load::Moment(load) => Action::Moment {
-                    patch: mesh.mean_rotation(load.at, load.radius).map_err(|error| {
-                        refuse(scene, &key(if load.radius.is_some() { "radius" } else { "at" }), error)
-                    })?,
+                    patch: match load.radius {
+                        None => rotation_at(scene, mesh, freedoms, &key("at"), load.at)?,
+                        radius => {
+                            let mean = mesh.mean_rotation(load.at, radius);
+                            Rotation::Mean(mean.map_err(|error| refuse(scene, &key("radius"), error))?)
+                        }
+                    },
                     moment: Vector3::from(load.direction) * load.amplitude,
                 },
                 Load::Traction(load) => {
@@ -125,10 +144,25 @@ pub(super) fn on_mesh(scene: &Scene, mesh: &Mesh, nodal_mass: &[f64]) -> Result<
             };
             let history = history(scene, &key("history"), of(load))?;
             let name = name(i, load);
-            let turning = turning(mesh, load).map_err(|error| refuse(scene, &key("frame"), error))?;
+            let turning = match load {
+                Load::Force(load) if load.frame == LoadFrame::Material => {
+                    Some(rotation_at(scene, mesh, freedoms, &key("frame"), load.at)?)
+                }
+                _ => None,
+            };
             let (follows, is_gravity) = (follows(load), is_gravity(load));
             let is_base_acceleration = matches!(load, Load::BaseAcceleration(_));
-            Ok(MeshLoad { name, action, history, follows, turning, attitude, is_gravity, is_base_acceleration })
+            Ok(MeshLoad {
+                name,
+                action,
+                history,
+                follows,
+                turning,
+                freedoms,
+                attitude,
+                is_gravity,
+                is_base_acceleration,
+            })
         })
         .collect()
 }
@@ -229,12 +263,23 @@ fn follows(load: &Load) -> bool {
     }
 }
 
-/// The rotation of the nodes around a force whose direction turns with the material.
-fn turning(mesh: &Mesh, load: &Load) -> Result<Option<MeanRotation>, fem_tet10::AssemblyError> {
-    match load {
-        Load::Force(load) if load.frame == LoadFrame::Material => mesh.mean_rotation(load.at, None).map(Some),
-        _ => Ok(None),
+/// The rotation of the material at a point: of the node there where nodes have rotations, otherwise of the elements around it.
+fn rotation_at(scene: &Scene, mesh: &Mesh, freedoms: usize, key: &str, at: [f64; 3]) -> Result<Rotation, BuildError> {
+    if mesh.has_elements() {
+        return Ok(Rotation::Mean(mesh.mean_rotation(at, None).map_err(|error| refuse(scene, key, error))?));
     }
+    let Location { nodes, .. } = mesh.locate(at).map_err(|error| refuse(scene, key, error))?;
+    if freedoms == 6 {
+        return Ok(Rotation::OfNode(nodes[0]));
+    }
+    Err(scene
+        .refuse(
+            key,
+            "the rotation at a node of a body of matrices, whose nodes only have translations",
+            "a rotation that the matrices know",
+            "give a moment a `radius` with three nodes or more in it; give a force `frame = \"body\"`",
+        )
+        .into())
 }
 
 impl MeshLoad {
@@ -308,14 +353,19 @@ impl MeshLoad {
         let vector = vector.or(self.vector()).unwrap_or_default();
         let mut add = |node: u32, force: &Vector3<f64>| {
             for axis in 0..3 {
-                forces[3 * node as usize + axis] += force[axis];
+                forces[self.freedoms * node as usize + axis] += force[axis];
             }
         };
         match &self.action {
             Action::Force { nodes, weights, .. } => {
                 nodes.iter().zip(weights).for_each(|(node, w)| add(*node, &(vector * *w)));
             }
-            Action::Moment { patch, .. } => {
+            Action::Moment { patch: Rotation::OfNode(node), .. } => {
+                for axis in 0..3 {
+                    forces[self.freedoms * *node as usize + 3 + axis] += vector[axis];
+                }
+            }
+            Action::Moment { patch: Rotation::Mean(patch), .. } => {
                 for (node, turned) in patch.nodes.iter().zip(&patch.rotation_per_displacement) {
                     add(*node, &turned.tr_mul(&vector));
                 }
@@ -347,9 +397,9 @@ impl MeshLoad {
                 let added = added * *pressure;
                 let position = Vector3::from(mesh.positions()[*node as usize]) - body.origin;
                 change.force[k] += added;
-                change.moment[k] += shape(modes, *node, k).cross(force) + position.cross(&added);
+                change.moment[k] += self.shape(modes, *node, k).cross(force) + position.cross(&added);
                 for a in 0..nf {
-                    change.load_stiffness[(a, k)] += shape(modes, *node, a).dot(&added);
+                    change.load_stiffness[(a, k)] += self.shape(modes, *node, a).dot(&added);
                 }
             }
         }
@@ -386,12 +436,12 @@ impl MeshLoad {
                     Some(second_order) => point.with_second_order(second_order),
                     None => point,
                 };
-                let turning = self.turning.as_ref().map(|patch| rotations(patch, body, modes));
+                let turning = self.turning.as_ref().map(|patch| self.rotations(patch, body, modes));
                 let frame = if turning.is_some() { LoadFrame::Material } else { frame };
                 Arc::new(PointForce { point, force: *force, frame, turning, history })
             }
             Action::Moment { patch, moment } => {
-                let rotation = rotations(patch, body, modes);
+                let rotation = self.rotations(patch, body, modes);
                 let rotation = match second_order()? {
                     Some(second_order) => rotation.with_second_order(second_order),
                     None => rotation,
@@ -404,7 +454,7 @@ impl MeshLoad {
                 let force_body: Vector3<f64> = forces.iter().sum();
                 let moment_body: Vector3<f64> = acting().map(|(node, f)| position(node).cross(f)).sum();
                 let rigid = [body.translation_basis.tr_mul(&force_body), body.rotation_basis.tr_mul(&moment_body)];
-                let flexible = (0..nf).map(|k| acting().map(|(node, f)| shape(modes, node, k).dot(f)).sum());
+                let flexible = (0..nf).map(|k| acting().map(|(node, f)| self.shape(modes, node, k).dot(f)).sum());
                 let modal = rigid.iter().flat_map(|v| v.iter().copied()).chain(flexible).collect();
                 let change = self.follower_change(scene, mesh, body, modes)?;
                 let (load_stiffness, second_order) = match (&change, stress.first()) {
@@ -432,19 +482,26 @@ impl MeshLoad {
             }
         })
     }
-}
 
-/// How a patch of nodes is turned by the modes.
-fn rotations(patch: &MeanRotation, body: &ReducedBody, modes: &Modes) -> RotationShapes {
-    let of_mode = |k: usize| -> Vector3<f64> {
-        let of = patch.nodes.iter().zip(&patch.rotation_per_displacement);
-        of.map(|(node, a)| a * shape(modes, *node, k)).sum()
-    };
-    let turned: Vec<Vector3<f64>> = (0..body.flexible()).map(of_mode).collect();
-    RotationShapes::new(body, Mat::from_fn(3, turned.len(), |axis, k| turned[k][axis]).as_ref())
-}
+    /// How the material is turned by the modes.
+    fn rotations(&self, rotation: &Rotation, body: &ReducedBody, modes: &Modes) -> RotationShapes {
+        let of_mode = |k: usize| -> Vector3<f64> {
+            match rotation {
+                Rotation::Mean(patch) => {
+                    let of = patch.nodes.iter().zip(&patch.rotation_per_displacement);
+                    of.map(|(node, a)| a * self.shape(modes, *node, k)).sum()
+                }
+                Rotation::OfNode(node) => {
+                    Vector3::from_fn(|axis, _| modes.shapes[(self.freedoms * *node as usize + 3 + axis, k)])
+                }
+            }
+        };
+        let turned: Vec<Vector3<f64>> = (0..body.flexible()).map(of_mode).collect();
+        RotationShapes::new(body, Mat::from_fn(3, turned.len(), |axis, k| turned[k][axis]).as_ref())
+    }
 
-/// Displacement of a node in a flexible mode.
-fn shape(modes: &Modes, node: u32, k: usize) -> Vector3<f64> {
-    Vector3::from_fn(|axis, _| modes.shapes[(3 * node as usize + axis, k)])
+    /// Displacement of a node in a flexible mode.
+    fn shape(&self, modes: &Modes, node: u32, k: usize) -> Vector3<f64> {
+        Vector3::from_fn(|axis, _| modes.shapes[(self.freedoms * node as usize + axis, k)])
+    }
 }

@@ -13,6 +13,8 @@ use crate::scene::Scene;
 pub(super) struct MeshModel<'a> {
     pub scene: &'a Scene,
     pub mesh: &'a Mesh,
+    /// Degrees of freedom of a node: 3, or 6 with its rotations.
+    pub freedoms: usize,
     pub solver: &'a dyn Structure,
     pub support: &'a Support,
     /// Those that may act.

@@ -39,8 +39,15 @@ pub(super) fn reduce(
     progress: &mut dyn FnMut(BuildProgress),
 ) -> Result<Model, BuildError> {
     let AssembledMesh { mesh, support, drive, .. } = assembled;
-    let loads = loads::on_mesh(scene, mesh, &solved.nodal_masses()?)?;
-    let model = MeshModel { scene, mesh, solver: solved, support, loads, drive: drive.clone() };
+    let freedoms = assembled.freedoms();
+    let loads = loads::on_mesh(scene, mesh, freedoms, &solved.nodal_masses()?)?;
+    let model = MeshModel { scene, mesh, freedoms, solver: solved, support, loads, drive: drive.clone() };
+
+    if scene.time.method.is_of_paper() && assembled.checks.is_some_and(|checks| !checks.is_scalar_mass) {
+        let found = "a scheme of the paper's formulation, which knows no rotations of nodes, for a mass that is no scalar for each node";
+        let cure = "set `formulation = \"conservative\"`";
+        return Err(scene.refuse("time", found, "the conservative form", cure).into());
+    }
 
     let on_all_modes = timed(&mut times.reduction, || ModalModel::new(&model, &modes))?;
     let started = Instant::now();
@@ -97,6 +104,7 @@ pub(super) fn reduce(
             matrix_bytes: solved.matrix_bytes()?,
             mesh: Arc::clone(mesh),
             mesh_notes: assembled.mesh_notes.clone(),
+            checks: solved.checks(&modes)?,
             modes,
             following,
         }),

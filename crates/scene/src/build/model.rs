@@ -13,6 +13,7 @@ use modal::{Modes, ReducedBody};
 use nalgebra::Vector3;
 
 use super::error::StartError;
+use super::given::MatrixChecks;
 use super::initial::initial;
 use super::progress::BuildTimes;
 use super::stress_shapes::BodyStress;
@@ -29,6 +30,8 @@ pub struct Meshed {
     pub mesh: Arc<Mesh>,
     /// What of the mesh file was left out, in sentences.
     pub mesh_notes: Vec<String>,
+    /// What the matrices were found to be, of a body of matrices from another program.
+    pub checks: Option<MatrixChecks>,
     /// Bytes that the mass and stiffness matrices took.
     pub matrix_bytes: usize,
     /// Rigid and flexible modes on the mesh.

@@ -20,7 +20,9 @@ pub(super) fn may_spin(scene: &Scene, motion: RigidMotion, drive: Option<&Drive>
 
 /// Whether the stress of loads and drives may stiffen the body.
 pub(super) fn may_stress(scene: &Scene) -> bool {
-    scene.effects.choices[Effect::GeometricStiffening] != Choice::Off && !scene.time.method.is_of_paper()
+    scene.body.has_elements()
+        && scene.effects.choices[Effect::GeometricStiffening] != Choice::Off
+        && !scene.time.method.is_of_paper()
 }
 
 /// Whether a load stays as it is, seen from the body.
@@ -73,6 +75,7 @@ pub(super) fn large_modes(scene: &Scene, advice: &Advice, keep: usize) -> Vec<us
     let first = |count: usize| (0..keep.min(count)).collect();
     match (scene.effects.choices[Effect::LargeDeflection], &scene.modes.large) {
         (Choice::Off, _) => Vec::new(),
+        _ if !scene.body.has_elements() => Vec::new(),
         (Choice::Auto, _) if scene.time.method.is_of_paper() => Vec::new(),
         (_, Some(Large::Count(count))) => first(*count),
         (_, Some(Large::List(list))) => list.iter().map(|mode| mode - 1).filter(|k| *k < keep).collect(),

@@ -15,6 +15,10 @@ use super::stress::Stress;
 use super::structure::Structure;
 use super::survey::Survey;
 
+/// What is said of effects that may matter but need elements.
+const WITHOUT_ELEMENTS: &str =
+    "By a bound it may matter; it cannot be computed, since the elements of a body of matrices are not known.";
+
 /// A body in the modes that it keeps and its static shapes.
 pub(super) struct Reduction {
     pub modes: Modes,
@@ -65,7 +69,16 @@ impl Reduction {
             (modal, stress, None)
         };
         let findings = Findings { deflection, stress: stress.row.clone(), lacks_stretch: decision.lacks.is_some() };
-        Ok(Self { modes, modal, large, backbones, stress, advice: advice.completed(findings) })
+        let mut advice = advice.completed(findings);
+        if !model.scene.body.has_elements() {
+            for effect in [Effect::GeometricStiffening, Effect::LargeDeflection] {
+                let row = &mut advice.effects[effect];
+                if row.on {
+                    row.why = WITHOUT_ELEMENTS.to_owned();
+                }
+            }
+        }
+        Ok(Self { modes, modal, large, backbones, stress, advice })
     }
 }
 

@@ -5,19 +5,21 @@ use std::cell::{OnceCell, RefCell};
 use body_file::{BodyFileError, Digest, Hash};
 use faer::{ColRef, Mat, MatRef};
 use fem_tet10::{
-    AssemblyError, GeometricTerms, Matrices, StressRecovery, StressSites, geometric_stiffness_product,
+    AssemblyError, GeometricTerms, StressRecovery, StressSites, geometric_stiffness_product,
     reduced_geometric_stiffness, second_order_energies, second_order_forces,
 };
 use frames_rk4::DrivenMotion;
 use modal::{
     ModalError, Modes, ReducedBody, SecondOrderShapes, Solver, Support, acceleration_fields, centrifugal_fields,
-    turning_field,
+    mass_left_out, turning_field,
 };
 
 use super::answer::{Answer, Kept};
 use super::answers;
-use super::assembly::AssembledMesh;
+use super::assembly::{AssembledMesh, MadeOf};
 use super::error::{BuildError, modal, too_many_modes};
+use super::fe_matrices::FeMatrices;
+use super::given::{MatrixChecks, refuse_matrix};
 use super::progress::BuildProgress;
 use super::store::Store;
 use super::structure::{StaticForces, Structure};
@@ -49,12 +51,24 @@ impl<'a> Solved<'a> {
         self.ask_count(|| self.about_the_body("matrix bytes"), || Ok(self.matrices()?.bytes()))
     }
 
+    /// What the matrices were found to be, of a body of matrices from another program, with what the motion in these modes
+    /// leaves out of the mass.
+    pub fn checks(&self, modes: &Modes) -> Result<Option<MatrixChecks>, BuildError> {
+        let Some(checks) = self.assembled.checks else { return Ok(None) };
+        if checks.is_scalar_mass || modes.shapes.ncols() == 0 {
+            return Ok(Some(checks));
+        }
+        let question = || with_modes(self.about_the_body("mass left out"), modes);
+        let found = self.ask_list(question, 1, || Ok(vec![mass_left_out(self.solver()?.mass(), modes)]))?;
+        Ok(Some(MatrixChecks { left_out: found.first().copied().unwrap_or_default(), ..checks }))
+    }
+
     /// Number of flexible modes that there are.
     pub fn available(&self) -> Result<usize, BuildError> {
         self.ask_count(|| self.about_the_held_body("number of modes"), || Ok(self.solver()?.available()))
     }
 
-    fn matrices(&self) -> Result<&'a Matrices, BuildError> {
+    fn matrices(&self) -> Result<&'a FeMatrices, BuildError> {
         self.assembled.matrices()
     }
 
@@ -65,16 +79,24 @@ impl<'a> Solved<'a> {
         let AssembledMesh { mesh, support, .. } = self.assembled;
         let matrices = self.matrices()?;
         let solver = Solver::new(matrices.stiffness(), matrices.mass(), mesh.positions(), support)
-            .map_err(modal(&self.assembled.scene))?;
+            .map_err(|error| self.refuse(error))?;
         Ok(self.solver.get_or_init(|| solver))
+    }
+
+    /// What the modal analysis refuses, in words of the files where the matrices come from files.
+    fn refuse(&self, error: ModalError) -> BuildError {
+        let AssembledMesh { scene, body, mesh, .. } = self.assembled;
+        match body {
+            MadeOf::Elements(_) => modal(scene)(error),
+            MadeOf::Files(files) => refuse_matrix(scene, files, mesh, error),
+        }
     }
 
     fn recovery(&self) -> Result<&StressRecovery<'a>, BuildError> {
         if let Some(found) = self.recovery.get() {
             return Ok(found);
         }
-        let AssembledMesh { mesh, body, .. } = self.assembled;
-        let recovery = StressRecovery::new(mesh, &body.materials)?;
+        let recovery = StressRecovery::new(&self.assembled.mesh, self.assembled.materials()?)?;
         Ok(self.recovery.get_or_init(|| recovery))
     }
 
@@ -178,7 +200,7 @@ impl<'a> Solved<'a> {
     }
 
     fn rows(&self) -> usize {
-        3 * self.assembled.mesh.positions().len()
+        self.assembled.freedoms() * self.assembled.mesh.positions().len()
     }
 }
 
@@ -193,7 +215,10 @@ impl Structure for Solved<'_> {
                     progress(BuildProgress::Assembly);
                 }
                 let modes = self.solver()?.modes(flexible, |p| progress(BuildProgress::Modes(p)));
-                modes.map_err(|error| too_many_modes(&self.assembled.scene, error))
+                modes.map_err(|error| match error {
+                    ModalError::TooManyModes { .. } => too_many_modes(&self.assembled.scene, error),
+                    other => self.refuse(other),
+                })
             },
             answers::of_modes,
         )
@@ -328,7 +353,7 @@ impl Structure for Solved<'_> {
             || {
                 Ok(reduced_geometric_stiffness(
                     &self.assembled.mesh,
-                    &self.assembled.body.materials,
+                    self.assembled.materials()?,
                     displacements,
                     shapes,
                     terms,
@@ -342,7 +367,7 @@ impl Structure for Solved<'_> {
         let question =
             || with_matrix(self.about_the_body("forces of second order"), fields).text(&format!("{pairs:?}"));
         self.ask_fields(question, pairs.len(), || {
-            Ok(second_order_forces(&self.assembled.mesh, &self.assembled.body.materials, fields, pairs)?)
+            Ok(second_order_forces(&self.assembled.mesh, self.assembled.materials()?, fields, pairs)?)
         })
     }
 
@@ -354,7 +379,7 @@ impl Structure for Solved<'_> {
         let question =
             || with_matrix(self.about_the_body("energies of second order"), fields).text(&format!("{quadruples:?}"));
         self.ask_list(question, quadruples.len(), || {
-            Ok(second_order_energies(&self.assembled.mesh, &self.assembled.body.materials, fields, quadruples)?)
+            Ok(second_order_energies(&self.assembled.mesh, self.assembled.materials()?, fields, quadruples)?)
         })
     }
 
@@ -377,8 +402,9 @@ impl Structure for Solved<'_> {
         let shapes = modes.shapes.as_ref();
         let question = || with_matrix(with_matrix(self.about_the_held_body("buckling"), answer), shapes);
         let found = self.ask_list(question, 1, || {
+            let materials = self.assembled.materials()?;
             let product = |fields: MatRef<'_, f64>| -> Result<Mat<f64>, BucklingError> {
-                Ok(geometric_stiffness_product(&self.assembled.mesh, &self.assembled.body.materials, answer, fields)?)
+                Ok(geometric_stiffness_product(&self.assembled.mesh, materials, answer, fields)?)
             };
             match self.solver()?.lowest_buckling_ratio(shapes, product) {
                 Ok(lowest) => Ok(vec![lowest]),

@@ -5,10 +5,12 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 use body_file::{BodyFile, BodyFileError, Declared, Digest, Hash, Kind, Writer};
+use matrix_import::MatrixFiles;
 use mesh_import::{Imported, hash_of_mesh};
 
 use super::answer::{Answer, Kept, group};
 use super::error::BuildError;
+use super::given::hash_of_matrices;
 use super::mesh::read_mesh;
 use super::mesh_arrays::{self, MeshArrays};
 use crate::cache::{Cache, touch};
@@ -53,6 +55,16 @@ impl Store {
         let about = format!("{:?} {:?}", body.materials, body.point_masses);
         let body = Digest::new().hash(&mesh).text(&about);
         Ok(Some(Self { cache, given, folder, mesh, body, asked: Mutex::default() }))
+    }
+
+    /// The same for matrices from another program.
+    pub fn of_matrices(scene: &Scene, files: &MatrixFiles) -> Option<Self> {
+        let cache = scene.cache.clone();
+        cache.folder()?;
+        let mesh = hash_of_matrices(files)?;
+        let folder = Some(cache.of_mesh(&mesh)?);
+        let body = Digest::new().hash(&mesh).text("matrices");
+        Some(Self { cache, given: None, folder, mesh, body, asked: Mutex::default() })
     }
 
     /// The start of a question about the body.

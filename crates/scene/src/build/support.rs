@@ -21,16 +21,18 @@ const ALONG: f64 = 1e-6;
 /// Nodes of a region that hold it as a whole.
 const FEWEST: usize = 3;
 
-/// The support of a scene's body and its drive. `mesh` is `None` for a rigid body without one.
-pub(super) fn support(scene: &Scene, mesh: Option<&Mesh>) -> Result<(Support, Option<Drive>), BuildError> {
+/// The support of a scene's body and its drive. `mesh`, with the degrees of freedom of a node, is `None` for a rigid body
+/// without one.
+pub(super) fn support(scene: &Scene, mesh: Option<(&Mesh, usize)>) -> Result<(Support, Option<Drive>), BuildError> {
     let Some(constraint) = &scene.constraint else { return Ok((Support::free(), None)) };
-    if let (Constraint::Support { parts }, Some(mesh)) = (constraint, mesh) {
+    if let (Constraint::Support { parts }, Some((mesh, _))) = (constraint, mesh) {
         return Ok((held_directions(scene, mesh, parts)?, None));
     }
     let nodes = match mesh {
-        Some(mesh) => held_nodes(scene, mesh, constraint)?,
+        Some((mesh, freedoms)) => held_nodes(scene, mesh, constraint, freedoms)?,
         None => Vec::new(),
     };
+    let mesh = mesh.map(|(mesh, _)| mesh);
     let driven = |speed: &crate::history::DrivenSpeed, motion: DrivenMotion| -> Result<Drive, BuildError> {
         let history = history(scene, "constraints[0].motion.history", &speed.history)?;
         Ok(Drive { motion, speed: DrivenSpeed { amplitude: speed.amplitude, history }, added: None })
@@ -117,7 +119,9 @@ fn require_left(
     Err(scene.refuse(key, format!("{value:?}"), expected, "give what is left of it, or change [[constraints]]").into())
 }
 
-fn held_nodes(scene: &Scene, mesh: &Mesh, constraint: &Constraint) -> Result<Vec<u32>, BuildError> {
+fn held_nodes(scene: &Scene, mesh: &Mesh, constraint: &Constraint, freedoms: usize) -> Result<Vec<u32>, BuildError> {
+    // A node with rotations holds the body by itself.
+    let (fewest, fewest_on_axis) = if freedoms == 6 { (1, 1) } else { (FEWEST, 2) };
     let tolerance = ON * mesh.diagonal();
     let nearest = |key: &str, at: [f64; 3]| -> Result<u32, BuildError> {
         let (node, distance) = mesh.nearest_node(at);
@@ -137,14 +141,14 @@ fn held_nodes(scene: &Scene, mesh: &Mesh, constraint: &Constraint) -> Result<Vec
     match constraint {
         Constraint::Pin { at, radius: None } => Ok(vec![nearest("constraints[0].at", *at)?]),
         Constraint::Pin { at, radius: Some(radius) } => {
-            region_nodes(scene, mesh, &Region::Ball { at: *at, radius: *radius }, "constraints[0].radius", FEWEST)
+            region_nodes(scene, mesh, &Region::Ball { at: *at, radius: *radius }, "constraints[0].radius", fewest)
         }
         Constraint::Hinge { line: HingeLine::Points(points), shaft, .. } if shaft.is_empty() => {
             points.iter().map(|at| nearest("constraints[0].points", *at)).collect()
         }
         Constraint::Hinge { line, shaft, .. } if shaft.is_empty() => {
             let nodes = mesh.nodes_on_line(line.at(), line.direction(), tolerance);
-            if nodes.len() >= 2 {
+            if nodes.len() >= fewest_on_axis {
                 return Ok(nodes);
             }
             Err(scene
@@ -159,14 +163,14 @@ fn held_nodes(scene: &Scene, mesh: &Mesh, constraint: &Constraint) -> Result<Vec
         Constraint::Hinge { shaft, .. } => {
             let mut nodes = Vec::new();
             for region in shaft {
-                nodes.extend(region_nodes(scene, mesh, region, "constraints[0]", FEWEST)?);
+                nodes.extend(region_nodes(scene, mesh, region, "constraints[0]", fewest)?);
             }
             nodes.sort_unstable();
             nodes.dedup();
             Ok(nodes)
         }
         Constraint::Clamp { region } | Constraint::Slider { region: Some(region), .. } => {
-            region_nodes(scene, mesh, region, "constraints[0]", FEWEST)
+            region_nodes(scene, mesh, region, "constraints[0]", fewest)
         }
         Constraint::Slider { region: None, .. } | Constraint::Support { .. } => Ok(Vec::new()),
     }

@@ -46,7 +46,7 @@ impl SupportRows {
                 let moved = |node: u32| if component < 3 { axis } else { axis.cross(&(position(node) - center)) };
                 let column: Vec<(usize, f64)> = freedoms
                     .iter()
-                    .map(|(node, direction)| (3 * *node as usize + direction, moved(*node)[*direction]))
+                    .map(|(node, direction)| (model.freedoms * *node as usize + direction, moved(*node)[*direction]))
                     .filter(|(_, moved)| *moved != 0.0)
                     .collect();
                 if !column.is_empty() {

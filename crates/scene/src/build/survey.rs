@@ -71,7 +71,8 @@ impl Survey {
 /// Whether the stress of the spin may matter, and is to be computed.
 fn may_stiffen(model: &MeshModel<'_>, modal: &ModalModel) -> Result<bool, BuildError> {
     let &MeshModel { scene, support, .. } = model;
-    if modal.body.flexible() == 0 || scene.effects.choices[Effect::DeformedInertia] == Choice::Off {
+    let has_none = modal.body.flexible() == 0 || !scene.body.has_elements();
+    if has_none || scene.effects.choices[Effect::DeformedInertia] == Choice::Off {
         return Ok(false);
     }
     Ok(match scene.effects.choices[Effect::GeometricStiffening] {

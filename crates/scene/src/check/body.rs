@@ -1,10 +1,11 @@
 //! The rules on `[body]`.
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use body_file::BodyFile;
 use fem_tet10::{Material, Materials, PointMass};
+use matrix_import::MatrixFiles;
 use mesh_import::{ImportSettings, Reader, hash_of_mesh, reader_of};
 use nalgebra::{Matrix3, Vector3};
 
@@ -13,7 +14,7 @@ use crate::document::join;
 use crate::error::SceneError;
 use crate::origin::Origin;
 use crate::scene::{Body, MeshedBody, RigidBody};
-use crate::section::{BodySection, RigidSection};
+use crate::section::{BodySection, MatricesSection, RigidSection};
 
 /// Relative difference of entries of an inertia tensor that should be equal, still taken for rounding.
 const ASYMMETRY: f64 = 1e-6;
@@ -24,7 +25,11 @@ const EXCESS: f64 = 1e-3;
 
 impl Check<'_> {
     pub fn body(&self, section: BodySection) -> Result<Body, SceneError> {
-        let BodySection { mesh, file, mesh_size, raise_order, material, materials, point_masses, rigid } = section;
+        let BodySection { mesh, file, matrices, mesh_size, raise_order, material, materials, point_masses, rigid } =
+            section;
+        if let Some(matrices) = matrices {
+            return self.matrices(&matrices).map(Body::Matrices);
+        }
         let import = ImportSettings { mesh_size, raise_order: raise_order.unwrap_or_default() };
         let Some(rigid) = rigid else {
             if let Some(file) = file {
@@ -47,6 +52,37 @@ impl Check<'_> {
             }
         }
         self.rigid(&rigid).map(Body::Rigid)
+    }
+
+    /// Matrices say all of a body but its shape.
+    fn matrices(&self, section: &MatricesSection) -> Result<MatrixFiles, SceneError> {
+        let others = ["mesh", "file", "mesh_size", "raise_order", "material", "materials", "rigid"];
+        for (key, cure) in
+            others.map(|key| (key, "keep `matrices`, or the other and what belongs to it")).into_iter().chain([(
+                "point_masses",
+                "put the masses into the mass matrix: in CalculiX and Abaqus by elements of type MASS",
+            )])
+        {
+            if self.has(&join("body", key)) {
+                let found = format!("both `matrices` and `{key}`");
+                return Err(self.document.place(&join("body", key)).refuse(
+                    found,
+                    "matrices, which stand for all of the body",
+                    cure,
+                ));
+            }
+        }
+        let file = |key: &str, name: &str| -> Result<PathBuf, SceneError> {
+            let key = join("body.matrices", key);
+            self.require(!name.is_empty() && !name.contains('\0'), &key, "the name of a file", "see docs/matrices.md")?;
+            Ok(self.document.folder().join(name))
+        };
+        Ok(MatrixFiles {
+            mass: file("mass", &section.mass)?,
+            stiffness: file("stiffness", &section.stiffness)?,
+            nodes: file("nodes", &section.nodes)?,
+            dofs: section.dofs.as_ref().map(|name| file("dofs", name)).transpose()?,
+        })
     }
 
     /// The body of a body file. What the scene says besides must be what the file was made of.

@@ -77,7 +77,7 @@ impl Check<'_> {
                 }
                 let shaft: Vec<Region> = balls.into_iter().chain(region).collect();
                 let motion = self.motion(key, motion)?;
-                if motion.is_some() && shaft.is_empty() && matches!(body, Body::Meshed(_)) {
+                if motion.is_some() && shaft.is_empty() && !matches!(body, Body::Rigid(_)) {
                     return Err(self.document.place(&join(key, "motion")).refuse(
                         "a driven hinge without a shaft",
                         "nodes beside the line that the drive can turn",
@@ -105,7 +105,7 @@ impl Check<'_> {
                 let cure = "give the direction to slide along; its length does not matter";
                 self.normalise(&join(key, "direction"), &mut direction, cure)?;
                 let region = self.region(key, RegionKeys { at, radius, r#box, group }, body)?;
-                if region.is_none() && matches!(body, Body::Meshed(_)) {
+                if region.is_none() && !matches!(body, Body::Rigid(_)) {
                     return Err(self.no_region(key));
                 }
                 let motion = self.motion(key, motion)?;

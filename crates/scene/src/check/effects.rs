@@ -9,7 +9,7 @@ use crate::effects::{Choice, Effects};
 use crate::error::SceneError;
 use crate::load::Load;
 use crate::modes::{Flexible, Modes};
-use crate::scene::Initial;
+use crate::scene::{Body, Initial};
 
 impl Check<'_> {
     pub fn effects(
@@ -55,6 +55,23 @@ impl Check<'_> {
         self.not_off(effects, Effect::Translation, driven, motion)?;
         self.not_off(effects, Effect::Rotation, turns, "an initial `angular_velocity`")?;
         self.not_off(effects, Effect::Translation, initial.velocity != [0.0; 3], "an initial `velocity`")
+    }
+
+    /// The effects that need the elements of a body.
+    pub fn effects_of_elements(&self, effects: &Effects, modes: &Modes, body: &Body) -> Result<(), SceneError> {
+        let Body::Matrices(_) = body else { return Ok(()) };
+        let found = "a body of matrices, whose elements are not known";
+        let cure = "give the body a mesh and a material";
+        self.not_on(effects, Effect::GeometricStiffening, true, found, cure)?;
+        self.not_on(effects, Effect::LargeDeflection, true, found, cure)?;
+        if modes.large.is_none() {
+            return Ok(());
+        }
+        Err(self.document.place("modes.large").refuse(
+            format!("large modes of {found}"),
+            "modes that are small",
+            format!("remove it, or {cure}"),
+        ))
     }
 
     /// The effects of the paper's formulation are fixed.

@@ -17,7 +17,15 @@ impl Check<'_> {
         for (i, load) in loads.iter_mut().enumerate() {
             let key = format!("loads[{i}]");
             if let Load::Pressure(_) | Load::Traction(_) = load {
-                self.needs_mesh(&join(&key, "group"), body)?;
+                let key = join(&key, "group");
+                self.needs_mesh(&key, body)?;
+                if let Body::Matrices(_) = body {
+                    return Err(self.document.place(&key).refuse(
+                        "a surface of a body of matrices, which has no elements",
+                        "loads at nodes",
+                        "give the forces on nodes as loads `kind = \"force\"`, or give the body a mesh",
+                    ));
+                }
             }
             if let (Load::BaseAcceleration(_), None) = (&*load, constraint) {
                 return Err(self.document.place(&join(&key, "kind")).refuse(
@@ -75,7 +83,7 @@ impl Check<'_> {
     /// Refuses a key that speaks of nodes, on a body without a mesh.
     pub(super) fn needs_mesh(&self, key: &str, body: &Body) -> Result<(), SceneError> {
         match body {
-            Body::Meshed(_) => Ok(()),
+            Body::Meshed(_) | Body::Matrices(_) => Ok(()),
             Body::Rigid(_) => Err(self.document.place(key).refuse(
                 "a part of a mesh",
                 "none, since `rigid` in [body] has no mesh",

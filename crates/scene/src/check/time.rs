@@ -160,10 +160,15 @@ impl Check<'_> {
         }
         for (key, asked) in [("output.stress", stress), ("output.peak_stress", peak_stress)] {
             self.require(
-                !asked || matches!(body, Body::Meshed(_)),
+                !asked || body.has_elements(),
                 key,
                 "a body with a mesh",
-                "remove the key: a rigid body without a mesh has no stress",
+                match body {
+                    Body::Matrices(_) => {
+                        "remove the key: matrices say nothing of stress, which needs the elements of a mesh"
+                    }
+                    _ => "remove the key: a rigid body without a mesh has no stress",
+                },
             )?;
         }
         self.require(

@@ -10,6 +10,7 @@ mod histories;
 mod large;
 mod loads;
 mod manifold;
+mod matrices;
 mod off;
 mod statics;
 mod step;

@@ -1,0 +1,102 @@
+//! A text file that is read line by line.
+
+use std::fs::File;
+use std::io::{self, BufRead, BufReader};
+use std::path::Path;
+
+use crate::error::{MatrixError, Which};
+
+/// The longest part of a line that a message shows, in characters.
+const SHOWN: usize = 60;
+
+/// One of the files of a body.
+#[derive(Clone, Copy)]
+pub(crate) struct Source<'a> {
+    pub which: Which,
+    pub path: &'a Path,
+}
+
+impl Source<'_> {
+    /// The refusal of the file, or of a line of it.
+    pub fn refuse(
+        &self,
+        line: Option<usize>,
+        found: impl Into<String>,
+        expected: impl Into<String>,
+        cure: impl Into<String>,
+    ) -> MatrixError {
+        let (which, path) = (self.which, self.path.to_owned());
+        MatrixError::Refused { which, path, line, found: found.into(), expected: expected.into(), cure: cure.into() }
+    }
+
+    /// Bytes of the file.
+    pub fn length(&self) -> Result<usize, MatrixError> {
+        let found = std::fs::metadata(self.path).map_err(|cause| self.unreadable(&cause))?;
+        if !found.is_file() {
+            return Err(self.refuse(
+                None,
+                "a folder, a device or a pipe",
+                "an ordinary file",
+                "check its name; it is relative to the folder of the scene file",
+            ));
+        }
+        Ok(usize::try_from(found.len()).unwrap_or(usize::MAX))
+    }
+
+    /// Calls `read` with the number (from 1) and the text of each line that is not blank, until it says that this was
+    /// the last.
+    pub fn each_line(&self, mut read: impl FnMut(usize, &str) -> Result<Next, MatrixError>) -> Result<(), MatrixError> {
+        if self.length()? == 0 {
+            return Err(self.refuse(None, "an empty file", "a text with numbers", "write it again"));
+        }
+        let mut file = BufReader::new(File::open(self.path).map_err(|cause| self.unreadable(&cause))?);
+        let mut bytes = Vec::new();
+        for number in 1.. {
+            bytes.clear();
+            if file.read_until(b'\n', &mut bytes).map_err(|cause| self.unreadable(&cause))? == 0 {
+                break;
+            }
+            let Ok(line) = std::str::from_utf8(&bytes) else {
+                let cure = "export it as text; a binary file (.sim, .npz, .mat) is not read";
+                return Err(self.refuse(Some(number), "bytes that are no text", "a text with numbers", cure));
+            };
+            let line = line.trim();
+            if !line.is_empty() && read(number, line)? == Next::Stop {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    fn unreadable(&self, cause: &io::Error) -> MatrixError {
+        self.refuse(
+            None,
+            format!("a file that cannot be read: {cause}"),
+            "a file that is there, its path relative to the folder of the scene file",
+            "correct the path, or write the file: docs/matrices.md says how, from CalculiX, Abaqus and Python",
+        )
+    }
+}
+
+/// Whether further lines are wanted.
+#[derive(PartialEq, Eq)]
+pub(crate) enum Next {
+    Go,
+    Stop,
+}
+
+/// The fields of a line: between commas where it has some, otherwise between blanks.
+pub(crate) fn fields(line: &str) -> Vec<&str> {
+    if line.contains(',') { line.split(',').map(str::trim).collect() } else { line.split_whitespace().collect() }
+}
+
+/// A number as any program writes it, also with Fortran's `D` for the power of ten.
+pub(crate) fn number(text: &str) -> Option<f64> {
+    text.parse().ok().or_else(|| text.replace(['d', 'D'], "e").parse().ok())
+}
+
+/// The beginning of a line, in quotes.
+pub(crate) fn shown(line: &str) -> String {
+    let short: String = line.chars().take(SHOWN).collect();
+    if short.len() < line.len() { format!("`{short}…`") } else { format!("`{short}`") }
+}
