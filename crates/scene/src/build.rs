@@ -46,7 +46,7 @@ pub use assembly::Assembly;
 pub use builder::ModelBuilder;
 pub use error::{BuildError, StartError};
 pub use model::{Meshed, Model};
-pub use progress::{BuildProgress, BuildTimes};
+pub use progress::{BuildProgress, BuildTimes, BuildWork};
 pub use stress_shapes::{BodyStress, StressPeak};
 pub use support_reactions::SupportRows;
 

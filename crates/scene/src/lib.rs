@@ -58,7 +58,7 @@ mod unit_vector;
 
 pub use assign::{AssignError, assign};
 pub use build::{
-    Assembly, BodyStress, BuildError, BuildProgress, BuildTimes, Meshed, Model, ModelBuilder, StartError, StressPeak,
+    Assembly, BodyStress, BuildError, BuildProgress, BuildTimes, BuildWork, Meshed, Model, ModelBuilder, StartError, StressPeak,
     SupportRows,
 };
 pub use cache::{Cache, CacheNotes};

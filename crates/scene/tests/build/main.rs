@@ -18,6 +18,7 @@ mod stretch;
 mod supports;
 mod tolerance;
 mod turned;
+mod work;
 
 use std::path::Path;
 
