@@ -307,13 +307,12 @@ impl Manifold {
     fn add_products(&self, x: &[f64; MOST_LARGE], of_products: &[f64], out: &mut [f64]) {
         let large = &self.0.large;
         let mut sums = [0.0; MOST_LARGE];
-        for ((of_products, x), j) in rows(of_products, &x[..large.len()]).zip(0..) {
-            let mut of_first = 0.0;
-            for ((sum, y), other) in sums[j..].iter_mut().zip(of_products).zip(x) {
-                *sum += y * x[0];
-                of_first += y * other;
+        let mut of_products = of_products.iter();
+        for j in 0..large.len().min(MOST_LARGE) {
+            for (k, y) in (j..large.len().min(MOST_LARGE)).zip(&mut of_products) {
+                sums[j] += y * x[k];
+                sums[k] += y * x[j];
             }
-            sums[j] += of_first;
         }
         for (mode, sum) in large.iter().zip(sums) {
             out[*mode] += sum;
@@ -412,16 +411,6 @@ fn triangle(size: usize) -> impl Iterator<Item = [usize; 2]> {
 }
 
 /// The products j ≤ k of each large mode j with itself and those after it, and the list `x` of the large modes from j on.
-fn rows<'a>(products: &'a [f64], x: &'a [f64]) -> impl Iterator<Item = (&'a [f64], &'a [f64])> {
-    let mut rest = products;
-    (0..x.len()).map(move |j| {
-        let (row, after) = rest.split_at(x.len() - j);
-        rest = after;
-        (row, &x[j..])
-    })
-}
-
-/// The same, to be changed.
 fn rows_mut<'a>(products: &'a mut [f64], x: &'a [f64]) -> impl Iterator<Item = (&'a mut [f64], &'a [f64])> {
     let mut rest = products;
     (0..x.len()).map(move |j| {
