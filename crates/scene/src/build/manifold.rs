@@ -117,13 +117,14 @@ impl LargeDeflection {
     ) -> Result<Stress, BuildError> {
         // What is computed is what the stress of some load or drive has.
         let mut known: Vec<OfLarge> = Vec::new();
-        let mut extended = |answer: MatRef<'_, f64>, k: &Mat<f64>, terms: GeometricTerms| -> Result<Option<Mat<f64>>, BuildError> {
-            if !known.iter().any(|of_large| of_large.terms == terms) {
-                known.push(self.large.stiffness(model, modes, terms)?);
-            }
-            let of_large = known.iter().find(|of_large| of_large.terms == terms);
-            Ok(of_large.map(|of_large| self.large.extended(answer, k, of_large)))
-        };
+        let mut extended =
+            |answer: MatRef<'_, f64>, k: &Mat<f64>, terms: GeometricTerms| -> Result<Option<Mat<f64>>, BuildError> {
+                if !known.iter().any(|of_large| of_large.terms == terms) {
+                    known.push(self.large.stiffness(model, modes, terms)?);
+                }
+                let of_large = known.iter().find(|of_large| of_large.terms == terms);
+                Ok(of_large.map(|of_large| self.large.extended(answer, k, of_large)))
+            };
         if let Some(of_loads) = &statics.of_loads {
             for (i, directed) in stress.of_loads.iter_mut().enumerate() {
                 for (j, directed) in directed.iter_mut().enumerate() {
@@ -229,12 +230,7 @@ impl LargeShapes {
     /// The geometric stiffness `k` (nf × nf) of a static `answer` (3n × 1) in the extended shapes. Between two large modes
     /// it is zero, since the manifold has it. Between a large mode and another it is without that of the answer's parts along
     /// the large modes, which are coordinates that move, with the same terms.
-    fn extended(
-        &self,
-        answer: MatRef<'_, f64>,
-        k: &Mat<f64>,
-        of_large: &OfLarge,
-    ) -> Mat<f64> {
+    fn extended(&self, answer: MatRef<'_, f64>, k: &Mat<f64>, of_large: &OfLarge) -> Mat<f64> {
         let SecondOrderShapes { modes, large, dynamic, .. } = &self.shapes;
         let along: Vec<f64> = self.momenta.col_iter().map(|momentum| momentum.transpose() * answer.col(0)).collect();
         let extended = modes.shapes.ncols();
