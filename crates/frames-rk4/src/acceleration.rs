@@ -23,7 +23,8 @@ impl ConservativeBody {
         // Ḋ q̇ + S_ext' ω + b' v + b v', by −; then μ.
         let change = &mut e.change;
         change.fill(0.0);
-        for (g, w) in e.gyroscopic.chunks_exact(nf.max(1)).zip(e.spin.iter()) {
+        let gyroscopic = &e.products[self.rigid_products()..];
+        for (g, w) in gyroscopic.chunks_exact(nf.max(1)).zip(e.spin.iter()) {
             change.iter_mut().zip(g).for_each(|(c, g)| *c -= g * w);
         }
         change.iter_mut().zip(&self.sliding).for_each(|(c, b)| *c -= b * driven_acceleration);

@@ -9,7 +9,7 @@ pub(crate) fn columns(matrix: MatRef<'_, f64>) -> Vec<f64> {
 }
 
 /// aᵀb, as far as the shorter list goes. Four sums run side by side, so that none waits for the other.
-#[inline]
+#[inline(always)]
 pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     let length = a.len().min(b.len());
     let (a, a_rest) = a[..length].as_chunks::<4>();
@@ -58,64 +58,69 @@ impl WithSimd for Product<'_> {
             }
             return;
         }
-        // Where the rows fill no whole number of vectors, the last vector has rows of the one before once more.
+        // The last vector ends with the last row. Where the rows fill no whole number of vectors, it has rows of the one
+        // before once more, and begins with what y has there now.
         let last = length - S::F64_LANES;
-        let end = match S::as_simd_f64s(&y[last..]) {
-            ([start], _) if !length.is_multiple_of(S::F64_LANES) => {
-                let [sum] = add_rows(simd, matrix, rows, last, x, [*start]);
-                Some(sum)
-            }
-            _ => None,
-        };
-        let (vectors, _) = S::as_mut_simd_f64s(y);
-        // The sums of a block stay in registers over all columns.
-        let (blocks_of_8, vectors) = vectors.as_chunks_mut::<8>();
-        let (blocks_of_4, vectors) = vectors.as_chunks_mut::<4>();
-        let (blocks_of_2, vectors) = vectors.as_chunks_mut::<2>();
-        let (blocks_of_1, _) = vectors.as_chunks_mut::<1>();
-        let row = add_blocks(simd, matrix, rows, 0, x, blocks_of_8);
-        let row = add_blocks(simd, matrix, rows, row, x, blocks_of_4);
-        let row = add_blocks(simd, matrix, rows, row, x, blocks_of_2);
-        add_blocks(simd, matrix, rows, row, x, blocks_of_1);
-        if let (Some(sum), ([end], _)) = (end, S::as_mut_simd_f64s(&mut y[last..])) {
-            *end = sum;
+        let ([end], _) = S::as_simd_f64s(&y[last..]) else { return };
+        let end = (last, *end);
+        let mut row = 0;
+        while row + 8 * S::F64_LANES < length {
+            add_rows::<S, 8>(simd, matrix, rows, row, x, y);
+            row += 8 * S::F64_LANES;
+        }
+        match (last - row).div_ceil(S::F64_LANES) {
+            0 => add_last_rows::<S, 0>(simd, matrix, rows, row, x, end, y),
+            1 => add_last_rows::<S, 1>(simd, matrix, rows, row, x, end, y),
+            2 => add_last_rows::<S, 2>(simd, matrix, rows, row, x, end, y),
+            3 => add_last_rows::<S, 3>(simd, matrix, rows, row, x, end, y),
+            4 => add_last_rows::<S, 4>(simd, matrix, rows, row, x, end, y),
+            5 => add_last_rows::<S, 5>(simd, matrix, rows, row, x, end, y),
+            6 => add_last_rows::<S, 6>(simd, matrix, rows, row, x, end, y),
+            _ => add_last_rows::<S, 7>(simd, matrix, rows, row, x, end, y),
         }
     }
 }
 
-/// Adds the rows of a product from `row` on to blocks of N vectors. Returns the row after them.
+/// Adds the rows of a product from `row` on, as many as fill N vectors, whose sums stay in registers over all columns.
 #[inline(always)]
-fn add_blocks<S: Simd, const N: usize>(
-    simd: S,
-    matrix: &[f64],
-    rows: usize,
-    mut row: usize,
-    x: &[f64],
-    blocks: &mut [[S::f64s; N]],
-) -> usize {
-    for block in blocks {
-        *block = add_rows(simd, matrix, rows, row, x, *block);
-        row += N * S::F64_LANES;
-    }
-    row
-}
-
-/// Adds the rows of a product from `first`, as many as fill N vectors.
-#[inline(always)]
-fn add_rows<S: Simd, const N: usize>(
-    simd: S,
-    matrix: &[f64],
-    rows: usize,
-    first: usize,
-    x: &[f64],
-    mut sums: [S::f64s; N],
-) -> [S::f64s; N] {
+fn add_rows<S: Simd, const N: usize>(simd: S, matrix: &[f64], rows: usize, row: usize, x: &[f64], y: &mut [f64]) {
+    let (y, _) = S::as_mut_simd_f64s(&mut y[row..]);
+    let Some(y) = y.first_chunk_mut::<N>() else { return };
+    let mut sums = *y;
     for (column, x) in matrix.chunks_exact(rows).zip(x) {
-        let (entries, _) = S::as_simd_f64s(&column[first..][..N * S::F64_LANES]);
-        let x = simd.splat_f64s(*x);
-        for (sum, entries) in sums.iter_mut().zip(entries) {
-            *sum = simd.mul_add_e_f64s(*entries, x, *sum);
-        }
+        add_column(simd, column, row, simd.splat_f64s(*x), &mut sums);
     }
-    sums
+    *y = sums;
+}
+
+/// The same, and the last vector, with its first row and its sums so far.
+#[inline(always)]
+fn add_last_rows<S: Simd, const N: usize>(
+    simd: S,
+    matrix: &[f64],
+    rows: usize,
+    row: usize,
+    x: &[f64],
+    (last, end): (usize, S::f64s),
+    y: &mut [f64],
+) {
+    let Some(before) = S::as_mut_simd_f64s(&mut y[row..]).0.first_chunk_mut::<N>() else { return };
+    let (mut sums, mut end) = (*before, [end]);
+    for (column, x) in matrix.chunks_exact(rows).zip(x) {
+        let x = simd.splat_f64s(*x);
+        add_column(simd, column, row, x, &mut sums);
+        add_column(simd, column, last, x, &mut end);
+    }
+    *before = sums;
+    if let ([last], _) = S::as_mut_simd_f64s(&mut y[last..]) {
+        *last = end[0];
+    }
+}
+
+#[inline(always)]
+fn add_column<S: Simd, const N: usize>(simd: S, column: &[f64], row: usize, x: S::f64s, sums: &mut [S::f64s; N]) {
+    let (entries, _) = S::as_simd_f64s(&column[row..][..N * S::F64_LANES]);
+    for (sum, entries) in sums.iter_mut().zip(entries) {
+        *sum = simd.mul_add_e_f64s(*entries, x, *sum);
+    }
 }

@@ -47,6 +47,7 @@ use modal::ReducedBody;
 use nalgebra::{Matrix3, Vector3};
 use rigid_kin::{Attitude, f_inverse, transformation_matrix};
 
+use crate::blocked_matrix::BlockedMatrix;
 use crate::column_major::{add_product, columns, dot, multiply};
 use crate::effect::{Effect, EffectMap};
 use crate::error::{RateError, SetupError, StepError};
@@ -109,8 +110,10 @@ pub struct ConservativeBody {
     pub(crate) s_rows: usize,
     /// Rows of the G_i: as those of S, or none without Coriolis terms.
     pub(crate) g_rows: usize,
-    /// Column by column, G_i and N_ij, less by K_ij, one below another.
-    stacked: Vec<f64>,
+    /// The G_i, one below another.
+    gyroscopic: BlockedMatrix,
+    /// The N_ij, less by K_ij, one below another.
+    inertia_second: BlockedMatrix,
     /// Largest N_ij and G_i that couple each mode to itself and its like (nf).
     pub(crate) own_coupling: Vec<[f64; 2]>,
     /// K of a unit acceleration of what is driven in the modes, column by column, or empty.
@@ -147,10 +150,8 @@ pub(crate) struct Evaluation {
     pub displacement: Vec<f64>,
     /// p' + Λq + D p (nf).
     pub momentum: Vec<f64>,
-    /// S_i and c_ij + N_ij z.
+    /// S_i, c_ij + N_ij z and G_i ż.
     pub products: Vec<f64>,
-    /// G_i q̇.
-    pub gyroscopic: Vec<f64>,
     /// q̇ (nf).
     pub modal_velocity: Vec<f64>,
     /// z and ż: q and q̇ but on a manifold.
@@ -282,11 +283,9 @@ impl ConservativeBody {
             second
         };
         let turning = if g_rows > 0 { &axes[..] } else { &[] };
-        let mut matrices: Vec<Mat<f64>> = turning.iter().map(gyroscopic).collect();
-        matrices.extend(pair_weights.iter().map(second));
-        let stacked: Vec<f64> =
-            (0..size).flat_map(|j| matrices.iter().flat_map(move |matrix| matrix.col(j).iter().copied())).collect();
-        let coupling = own_coupling(&modes.circular_frequencies, size, &stacked, g_rows);
+        let gyroscopic: Vec<Mat<f64>> = turning.iter().map(gyroscopic).collect();
+        let second: Vec<Mat<f64>> = pair_weights.iter().map(second).collect();
+        let coupling = own_coupling(&modes.circular_frequencies, [&second, &gyroscopic]);
         // Eᵀ of a list.
         let list_on_coordinates = |list: Vec<f64>| match manifold.map(Manifold::shapes_by_coordinates) {
             Some(e) => e.col_iter().map(|column| column.iter().zip(&list).map(|(e, x)| e * x).sum()).collect(),
@@ -328,7 +327,8 @@ impl ConservativeBody {
             s_rows,
             g_rows,
             own_coupling: coupling,
-            stacked,
+            gyroscopic: below_one_another(&gyroscopic),
+            inertia_second: below_one_another(&second),
             drive_stiffness: drive_stiffness
                 .map_or_else(Vec::new, |k| columns(k.get(..modes.flexible(), ..modes.flexible()))),
             loads,
@@ -360,7 +360,7 @@ impl ConservativeBody {
     /// Numbers in the matrices that an evaluation reads: what an effect that is off does not cost.
     pub fn matrix_entries(&self) -> usize {
         let of_loads: usize = self.loads.iter().map(|load| load.matrix_entries()).sum();
-        self.stacked.len() + self.drive_stiffness.len() + of_loads
+        self.gyroscopic.len() + self.inertia_second.len() + self.drive_stiffness.len() + of_loads
     }
 
     pub(crate) fn evaluation(&self) -> Evaluation {
@@ -372,8 +372,7 @@ impl ConservativeBody {
             slow: Slow::zeros(),
             displacement: zeros(modes),
             momentum: zeros(modes),
-            products: zeros(self.s_rows + self.pairs.len() * nf),
-            gyroscopic: zeros(self.g_rows),
+            products: zeros(self.undeformed.len() + self.g_rows),
             modal_velocity: zeros(modes),
             coordinates: zeros(nf),
             velocity: zeros(nf),
@@ -537,10 +536,15 @@ impl ConservativeBody {
         if self.undeformed.is_empty() {
             return;
         }
-        e.products.copy_from_slice(&self.undeformed);
-        let rows = self.g_rows + self.pairs.len() * nf;
-        add_product(&self.stacked, rows, z, &mut e.products[self.s_rows - self.g_rows..]);
-        let (s, n_z) = e.products.split_at(self.s_rows);
+        let (products, _) = e.products.split_at_mut(self.undeformed.len());
+        products.copy_from_slice(&self.undeformed);
+        let (s, n_z) = products.split_at_mut(self.s_rows);
+        if self.g_rows > 0 {
+            self.gyroscopic.add_product(z, s);
+        }
+        if !self.pairs.is_empty() {
+            self.inertia_second.add_product(z, n_z);
+        }
         let mut inertia = self.inertia;
         let first = self.undeformed[self.s_rows..].chunks_exact(nf.max(1));
         for ((pair, first), n_z) in self.pairs.iter().zip(first).zip(n_z.chunks_exact(nf.max(1))) {
@@ -708,6 +712,11 @@ impl ConservativeBody {
         Ok(())
     }
 
+    /// How many numbers of `products` come before the G_i ż.
+    pub(crate) fn rigid_products(&self) -> usize {
+        self.undeformed.len()
+    }
+
     /// S on the modes, a row for each axis.
     pub(crate) fn s<'e>(&self, e: &'e Evaluation) -> &'e [f64] {
         if self.manifold.is_some() { &e.s } else { &e.products[..self.s_rows] }
@@ -749,15 +758,18 @@ impl ConservativeBody {
     /// Σ ω_iω_j (c_ij + N_ij z) − Σ ω_i G_i ż
     fn inertia_forces(&self, e: &mut Evaluation, force: &mut [f64]) {
         let nf = force.len();
-        let mut squares = [0.0; 6];
-        for (square, pair) in squares.iter_mut().zip(&self.pairs) {
+        let (pairs, turning) = (self.pairs.len(), self.g_rows.checked_div(nf).unwrap_or(0));
+        let mut factors = [0.0; 9];
+        for (square, pair) in factors.iter_mut().zip(&self.pairs) {
             *square = spin_product(&e.spin, *pair);
         }
-        multiply(&e.products[self.s_rows..], nf, &squares, force);
-        if self.g_rows > 0 {
-            multiply(&self.stacked, self.g_rows + self.pairs.len() * nf, &e.velocity, &mut e.gyroscopic);
-            add_product(&e.gyroscopic, nf, (-e.spin).as_slice(), force);
+        for (factor, w) in factors[pairs..pairs + turning].iter_mut().zip(e.spin.iter()) {
+            *factor = -w;
         }
+        if self.g_rows > 0 {
+            self.gyroscopic.multiply(&e.velocity, &mut e.products[self.undeformed.len()..]);
+        }
+        multiply(&e.products[self.s_rows..], nf, &factors[..pairs + turning], force);
     }
 
     /// p' without its linear part and damping: Dᵀ of the forces on z, Ḋᵀμ and −∂V_n/∂q.
@@ -863,6 +875,11 @@ fn degrees_of_freedom(
         if effects[Effect::Translation] || is_driven { translation } else { Translation::None },
         if effects[Effect::Rotation] || is_driven { axes } else { Vec::new() },
     )
+}
+
+fn below_one_another(matrices: &[Mat<f64>]) -> BlockedMatrix {
+    let parts: Vec<_> = matrices.iter().map(Mat::as_ref).collect();
+    BlockedMatrix::below_one_another(&parts)
 }
 
 /// A matrix in the axes of rotation, 1 on the diagonal of those that are missing.

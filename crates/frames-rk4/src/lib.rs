@@ -24,6 +24,7 @@
 mod acceleration;
 mod account;
 mod attitude_account;
+mod blocked_matrix;
 mod builder;
 mod checkpoint;
 mod column_major;

@@ -21,10 +21,11 @@
 
 use std::sync::Arc;
 
-use faer::Mat;
+use faer::{Mat, MatRef};
 use modal::{ReducedBody, SecondOrderShapes};
 
-use crate::column_major::{columns, dot, multiply};
+use crate::blocked_matrix::BlockedMatrix;
+use crate::column_major::{add_product, columns, dot, multiply};
 use crate::error::SetupError;
 
 /// Most modes that may be large.
@@ -47,18 +48,21 @@ struct Constants {
     large: Vec<usize>,
     /// Products j ≤ k of the large modes, numbered among these.
     pairs: Vec<[usize; 2]>,
-    /// T', column by column (extended shapes × pairs).
+    /// T', column by column (extended shapes × pairs), and ready for products with it and with its transpose.
     shapes: Vec<f64>,
+    to_shapes: BlockedMatrix,
+    from_shapes: BlockedMatrix,
     /// E, column by column (extended shapes × (modes + pairs)).
     shapes_by_coordinates: Mat<f64>,
-    /// T'ᵀE, column by column (pairs × (modes + pairs)): rows of the mass of the products in z.
-    mass: Vec<f64>,
-    /// T_jk of the modes, by k column by column ((large modes j within modes) × large modes).
-    slopes: Vec<f64>,
-    /// What M leaves to the large modes beyond 1, by products, column by column (entries i ≥ j × pairs).
-    locked: Vec<f64>,
-    /// Of ∂V_n/∂q: ½ Σ g_ijk q_j q_k, then the ½ Σ w_ijkl q_k q_l for i ≥ j, by products, column by column.
-    forces: Vec<f64>,
+    /// T'ᵀE (pairs × (modes + pairs)): rows of the mass of the products in z; and the same columns, by −.
+    mass: BlockedMatrix,
+    negative_mass: BlockedMatrix,
+    /// T_jk of the modes by large modes k: large modes j within modes, then modes within large modes j.
+    slopes: BlockedMatrix,
+    /// What M leaves to the large modes beyond 1, by products (entries i ≥ j × pairs).
+    locked: BlockedMatrix,
+    /// Of ∂V_n/∂q by products: ½ Σ g_ijk q_j q_k, then the ½ Σ w_ijkl q_k q_l for i ≥ j.
+    forces: BlockedMatrix,
 }
 
 /// The place on the manifold.
@@ -67,7 +71,7 @@ pub(crate) struct ManifoldPoint {
     /// The large ones of q and q̇.
     displacement: [f64; MOST_LARGE],
     rate: [f64; MOST_LARGE],
-    /// Rows of T q of the modes, mode by mode with an entry for each large one.
+    /// T q of the modes: large modes within modes, then modes within large modes.
     slopes: Vec<f64>,
     /// Cholesky factor of what M leaves to the large modes: entries i ≥ j, row by row, with the reciprocals of the diagonal.
     factor: Vec<f64>,
@@ -131,7 +135,7 @@ impl Manifold {
                 Some(a) => of_products(i, a),
             });
         let shapes = shapes_by_coordinates.get(.., *dynamic..);
-        let mass = columns((shapes.transpose() * &shapes_by_coordinates).as_ref());
+        let mass = shapes.transpose() * &shapes_by_coordinates;
         let slope = |i: usize, j: usize, k: usize| slopes[(i, pair(j, k))];
         let follow = |a: [usize; 2], b: [usize; 2]| -> f64 {
             (*dynamic..extended).map(|i| slope(i, a[0], a[1]) * slope(i, b[0], b[1])).sum()
@@ -143,15 +147,25 @@ impl Manifold {
                 follow([a, *j], [b, *k]) + both
             }));
         }
-        let of_modes = (0..count).flat_map(|k| (0..*dynamic).flat_map(move |i| (0..count).map(move |j| [i, j, k])));
+        let of_modes = (0..*dynamic).flat_map(|i| (0..count).map(move |j| [i, j]));
+        let by_modes = (0..count).flat_map(|j| (0..*dynamic).map(move |i| [i, j]));
+        let of_slopes: Vec<[usize; 2]> = of_modes.chain(by_modes).collect();
+        let by_products = |entries: &[f64]| {
+            BlockedMatrix::new(MatRef::from_column_major_slice(entries, entries.len() / pairs.len(), pairs.len()))
+        };
         Ok(Self(Arc::new(Constants {
-            slopes: of_modes.map(|[i, j, k]| slope(i, j, k)).collect(),
+            slopes: BlockedMatrix::new(
+                Mat::from_fn(of_slopes.len(), count, |row, k| slope(of_slopes[row][0], of_slopes[row][1], k)).as_ref(),
+            ),
             modes: *dynamic,
             large: large.clone(),
+            to_shapes: BlockedMatrix::new(shapes),
+            from_shapes: BlockedMatrix::new(shapes.transpose()),
             shapes: columns(shapes),
-            mass,
-            locked,
-            forces,
+            negative_mass: BlockedMatrix::new((-mass.transpose()).as_ref()),
+            mass: BlockedMatrix::new(mass.as_ref()),
+            locked: by_products(&locked),
+            forces: by_products(&forces),
             pairs,
             shapes_by_coordinates,
             body,
@@ -202,7 +216,7 @@ impl Manifold {
     pub(crate) fn place(&self) -> ManifoldPoint {
         let Constants { large, modes, .. } = &*self.0;
         ManifoldPoint {
-            slopes: vec![0.0; large.len() * modes],
+            slopes: vec![0.0; 2 * large.len() * modes],
             factor: vec![0.0; large.len() * (large.len() + 1) / 2],
             ..ManifoldPoint::default()
         }
@@ -210,17 +224,18 @@ impl Manifold {
 
     /// Goes to q: z there, and M.
     pub(crate) fn go(&self, q: &[f64], place: &mut ManifoldPoint, z: &mut [f64]) {
-        let Constants { large, pairs, modes, slopes, locked, .. } = &*self.0;
+        let Constants { large, modes, slopes, locked, .. } = &*self.0;
         let ManifoldPoint { displacement: x, slopes: at_q, factor, .. } = place;
         large_of(large, q, x);
         let (of_modes, products) = z.split_at_mut(*modes);
         of_modes.copy_from_slice(q);
-        for (product, [j, k]) in products.iter_mut().zip(pairs) {
-            *product = x[*j] * x[*k];
+        let x = &x[..large.len()];
+        for (products, x) in rows_mut(products, x) {
+            products.iter_mut().zip(x).for_each(|(product, other)| *product = x[0] * other);
         }
-        multiply(slopes, at_q.len(), &x[..large.len()], at_q);
+        slopes.multiply(x, at_q);
         // Of M, the modes that are not large leave to the large ones 1 + tᵀt of the shapes that only follow.
-        multiply(locked, factor.len(), products, factor);
+        locked.multiply(products, factor);
         for i in 0..large.len() {
             for j in 0..=i {
                 let mut sum = f64::from(u8::from(i == j)) + factor[entry(i, j)];
@@ -240,37 +255,41 @@ impl Manifold {
 
     /// ∂z/∂q x of modal velocities or accelerations x.
     pub(crate) fn extend(&self, place: &ManifoldPoint, x: &[f64], out: &mut [f64]) {
-        let Constants { large, pairs, modes, .. } = &*self.0;
-        let q = &place.displacement;
-        out[..*modes].copy_from_slice(x);
-        for (out, [j, k]) in out[*modes..].iter_mut().zip(pairs) {
-            *out = q[*j] * x[large[*k]] + q[*k] * x[large[*j]];
+        let Constants { large, modes, .. } = &*self.0;
+        let (of_modes, products) = out.split_at_mut(*modes);
+        of_modes.copy_from_slice(x);
+        let mut of_large = [0.0; MOST_LARGE];
+        large_of(large, x, &mut of_large);
+        for ((products, q), j) in rows_mut(products, &place.displacement[..large.len()]).zip(0..) {
+            let x = &of_large[j..];
+            for ((product, of_q), of_x) in products.iter_mut().zip(q).zip(x) {
+                *product = q[0] * of_x + of_q * x[0];
+            }
         }
     }
 
     /// Adds what z̈ has without q̈ to out, one number for each coordinate z.
     pub(crate) fn add_curvature(&self, place: &ManifoldPoint, out: &mut [f64]) {
-        let Constants { pairs, modes, .. } = &*self.0;
-        for (out, [j, k]) in out[*modes..].iter_mut().zip(pairs) {
-            *out += 2.0 * place.rate[*j] * place.rate[*k];
+        let Constants { large, modes, .. } = &*self.0;
+        for (out, rate) in rows_mut(&mut out[*modes..], &place.rate[..large.len()]) {
+            out.iter_mut().zip(rate).for_each(|(out, other)| *out += 2.0 * rate[0] * other);
         }
     }
 
     /// ξ or its rates, of z or its rates.
     pub(crate) fn in_shapes(&self, z: &[f64], xi: &mut [f64]) {
-        let Constants { modes, shapes, .. } = &*self.0;
-        multiply(shapes, xi.len(), &z[*modes..], xi);
-        xi.iter_mut().zip(&z[..*modes]).for_each(|(xi, q)| *xi += q);
+        let (of_modes, products) = z.split_at(self.0.modes);
+        let (xi_of_modes, following) = xi.split_at_mut(of_modes.len());
+        xi_of_modes.copy_from_slice(of_modes);
+        following.fill(0.0);
+        self.0.to_shapes.add_product(products, xi);
     }
 
     /// Adds the forces on z of forces in the extended shapes.
     pub(crate) fn add_from_shapes(&self, force: &[f64], out: &mut [f64]) {
-        let Constants { modes, shapes, .. } = &*self.0;
-        let (of_modes, products) = out.split_at_mut(*modes);
+        let (of_modes, products) = out.split_at_mut(self.0.modes);
         of_modes.iter_mut().zip(force).for_each(|(out, f)| *out += f);
-        for (out, shape) in products.iter_mut().zip(shapes.chunks_exact(force.len().max(1))) {
-            *out += dot(shape, force);
-        }
+        self.0.from_shapes.add_product(force, products);
     }
 
     /// Adds Dᵀ y of forces or momenta y on z, on the modes.
@@ -286,28 +305,28 @@ impl Manifold {
     }
 
     fn add_products(&self, x: &[f64; MOST_LARGE], of_products: &[f64], out: &mut [f64]) {
-        let Constants { large, pairs, .. } = &*self.0;
-        let mut sum = [0.0; MOST_LARGE];
-        for (y, [j, k]) in of_products.iter().zip(pairs) {
-            sum[*j] += y * x[*k];
-            sum[*k] += y * x[*j];
+        let large = &self.0.large;
+        let mut sums = [0.0; MOST_LARGE];
+        let mut of_products = of_products.iter();
+        for j in 0..large.len().min(MOST_LARGE) {
+            for (k, y) in (j..large.len().min(MOST_LARGE)).zip(&mut of_products) {
+                sums[j] += y * x[k];
+                sums[k] += y * x[j];
+            }
         }
-        for (mode, sum) in large.iter().zip(sum) {
+        for (mode, sum) in large.iter().zip(sums) {
             out[*mode] += sum;
         }
     }
 
     /// The momenta of the products at these ż, without spin.
     pub(crate) fn momenta_of_products(&self, z_rate: &[f64], momenta: &mut [f64]) {
-        multiply(&self.0.mass, momenta.len(), z_rate, momenta);
+        self.0.mass.multiply(z_rate, momenta);
     }
 
     /// Subtracts the mass of z times z̈ that only the products have.
     pub(crate) fn subtract_mass_of_products(&self, acceleration: &[f64], out: &mut [f64]) {
-        let products = &acceleration[self.0.modes..];
-        for (out, column) in out.iter_mut().zip(self.0.mass.chunks_exact(products.len().max(1))) {
-            *out -= dot(column, products);
-        }
+        self.0.negative_mass.add_product(&acceleration[self.0.modes..], out);
     }
 
     /// M⁻¹ y in place (modes).
@@ -322,7 +341,7 @@ impl Manifold {
         let factor = &place.factor;
         // The slopes are zero along the large modes, so that these rows of y stay out of the products.
         let mut of_slopes = [0.0; MOST_LARGE];
-        multiply(&place.slopes, large.len(), y, &mut of_slopes[..large.len()]);
+        multiply(&place.slopes[..large.len() * y.len()], large.len(), y, &mut of_slopes[..large.len()]);
         let mut x = [0.0; MOST_LARGE];
         for (i, mode) in large.iter().enumerate() {
             let before: f64 = x[..i].iter().zip(&factor[entry(i, 0)..]).map(|(x, factor)| x * factor).sum();
@@ -340,9 +359,8 @@ impl Manifold {
             let after: f64 = (i + 1..large.len()).map(|k| factor[entry(k, i)] * x[k]).sum();
             x[i] = (y[*mode] - after) * factor[entry(i, i)];
         }
-        for (y, slopes) in y.iter_mut().zip(place.slopes.chunks_exact(large.len())) {
-            *y -= slopes.iter().zip(&x).map(|(slope, x)| slope * x).sum::<f64>();
-        }
+        let negative = x.map(|x| -x);
+        add_product(&place.slopes[large.len() * y.len()..], y.len(), &negative[..large.len()], y);
         for (x, mode) in x.iter().zip(large) {
             y[*mode] = *x;
         }
@@ -373,7 +391,7 @@ impl Manifold {
         let count = self.0.large.len();
         let mut rows = [0.0; MOST_LARGE + MOST_PAIRS];
         let rows = &mut rows[..count + products.len()];
-        multiply(&self.0.forces, rows.len(), products, rows);
+        self.0.forces.multiply(products, rows);
         let (of_third, of_fourth) = rows.split_at(count);
         let [mut cubic, mut quartic] = [[0.0; MOST_LARGE]; 2];
         cubic[..count].copy_from_slice(of_third);
@@ -390,6 +408,16 @@ impl Manifold {
 /// The entries i ≥ j of a triangle, row by row.
 fn triangle(size: usize) -> impl Iterator<Item = [usize; 2]> {
     (0..size).flat_map(|i| (0..=i).map(move |j| [i, j]))
+}
+
+/// The products j ≤ k of each large mode j with itself and those after it, and the list `x` of the large modes from j on.
+fn rows_mut<'a>(products: &'a mut [f64], x: &'a [f64]) -> impl Iterator<Item = (&'a mut [f64], &'a [f64])> {
+    let mut rest = products;
+    (0..x.len()).map(move |j| {
+        let (row, after) = std::mem::take(&mut rest).split_at_mut(x.len() - j);
+        rest = after;
+        (row, &x[j..])
+    })
 }
 
 /// The large ones of q, then zeros.

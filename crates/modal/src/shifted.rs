@@ -4,6 +4,7 @@
 //! that they have in common (motions C) are eliminated as a block: with `E = C − A_f⁻¹ A C`, which is
 //! A-orthogonal to all displacements of the other rows, `x = A_f⁻¹ b + E (Eᵀ A E)⁻¹ Eᵀ b`.
 
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
@@ -39,6 +40,8 @@ pub(crate) struct Shifted {
     values: Vec<f64>,
     /// E, A-orthonormal.
     extensions: Mat<f64>,
+    /// Blocks and columns that were solved for.
+    solved: [AtomicUsize; 2],
     par: Par,
     /// The memory that it takes.
     pub memory: Foretold,
@@ -113,6 +116,7 @@ impl Shifted {
             symbolic,
             values,
             extensions,
+            solved: Default::default(),
             par,
             memory,
             estimate_time,
@@ -143,6 +147,11 @@ impl Shifted {
         self.values.len()
     }
 
+    /// Blocks and columns that were solved for up to now.
+    pub(crate) fn solved(&self) -> [usize; 2] {
+        self.solved.each_ref().map(|count| count.load(Ordering::Relaxed))
+    }
+
     /// Scratch memory for [`solve_in_place`](Self::solve_in_place) with up to `columns` columns.
     pub(crate) fn solve_scratch(&self, columns: usize) -> Result<MemBuffer, ModalError> {
         buffer(self.symbolic.solve_in_place_scratch::<f64>(columns, self.par))
@@ -150,6 +159,9 @@ impl Shifted {
 
     /// Replaces forces `x` by the displacements (K + sM)⁻¹ x that the support allows.
     pub(crate) fn solve_in_place(&self, mut x: MatMut<'_, f64>, scratch: &mut MemBuffer) {
+        for (solved, count) in self.solved.iter().zip([1, x.ncols()]) {
+            solved.fetch_add(count, Ordering::Relaxed);
+        }
         let extends = self.extensions.ncols() > 0;
         let motions = extends.then(|| tall::inner(self.extensions.as_ref(), x.rb()));
         self.constraints.clear(x.rb_mut());

@@ -264,6 +264,11 @@ impl<'a> Solver<'a> {
         Ok(self.factor.get_or_init(|| factor))
     }
 
+    /// How many blocks of columns, and columns, the factor of K + sM was used for up to now.
+    pub fn solved(&self) -> [usize; 2] {
+        self.factor.get().map_or([0; 2], Shifted::solved)
+    }
+
     /// Number of flexible modes that there are.
     pub fn available(&self) -> usize {
         let free = (0..self.stiffness.ncols())

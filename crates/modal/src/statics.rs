@@ -40,12 +40,24 @@ impl Solver<'_> {
     /// [`ModalError::Size`], [`ModalError::NotFinite`], [`ModalError::StaticNotConverged`], and what refuses the factor
     /// of K + sM.
     pub fn static_response(&self, forces: MatRef<'_, f64>) -> Result<Mat<f64>, ModalError> {
+        self.static_response_from(&self.modes(0, |_| ())?, forces)
+    }
+
+    /// The same, where natural `modes` are known: the answers begin with their parts along them, `Σ φ (φ·f)/λ`. What is left
+    /// is far stiffer than the shift, so that each iteration gives more digits.
+    ///
+    /// # Errors
+    /// As [`static_response`](Self::static_response).
+    pub fn static_response_from(&self, modes: &Modes, forces: MatRef<'_, f64>) -> Result<Mat<f64>, ModalError> {
         let expected = self.rigid.shapes.nrows();
         if forces.nrows() != expected {
             return Err(ModalError::Size { what: "forces", expected, found: forces.nrows() });
         }
+        if modes.shapes.nrows() != expected {
+            return Err(ModalError::Size { what: "mode shapes", expected, found: modes.shapes.nrows() });
+        }
         check_finite("forces", forces)?;
-        let mut statics = Statics::new(self, self.factor()?)?;
+        let mut statics = Statics::new(self, self.factor()?, modes)?;
         memory::check("static answers", of_vectors(expected, forces.ncols() + 10 * BLOCK))?;
         let mut answers = Mat::zeros(expected, forces.ncols());
         for first in (0..forces.ncols()).step_by(BLOCK) {
@@ -136,16 +148,17 @@ fn check_finite(what: &'static str, vectors: MatRef<'_, f64>) -> Result<(), Moda
 struct Statics<'a> {
     solver: &'a Solver<'a>,
     factor: &'a Shifted,
+    modes: &'a Modes,
     /// M R, as far as the support lets it act.
     m_rigid: Mat<f64>,
     scratch: MemBuffer,
 }
 
 impl<'a> Statics<'a> {
-    fn new(solver: &'a Solver<'_>, factor: &'a Shifted) -> Result<Self, ModalError> {
+    fn new(solver: &'a Solver<'_>, factor: &'a Shifted, modes: &'a Modes) -> Result<Self, ModalError> {
         let mut m_rigid = solver.mass.product(solver.rigid.shapes.as_ref());
         solver.constraints.project(m_rigid.as_mut());
-        Ok(Self { solver, factor, m_rigid, scratch: factor.solve_scratch(BLOCK)? })
+        Ok(Self { solver, factor, modes, m_rigid, scratch: factor.solve_scratch(BLOCK)? })
     }
 
     /// Answers to up to [`BLOCK`] forces, of which `first` is the number of the first.
@@ -158,8 +171,9 @@ impl<'a> Statics<'a> {
                 forces.col_mut(k).fill(0.0);
             }
         }
-        let mut residual = forces.clone();
-        let mut answer: Mat<f64> = Mat::zeros(forces.nrows(), forces.ncols());
+        let (mut answer, along) = self.along_modes(&forces);
+        let mut residual = &forces - self.stiff(&answer);
+        self.balance(&mut residual);
         let mut search: Mat<f64> = Mat::zeros(forces.nrows(), forces.ncols());
         let mut before: Vec<f64> = vec![f64::INFINITY; forces.ncols()];
         let mut scale: Vec<f64> = Vec::new();
@@ -168,7 +182,7 @@ impl<'a> Statics<'a> {
             let conditioned = self.precondition(&residual);
             let squared = dots(&residual, &conditioned);
             if iterations == 0 {
-                scale.clone_from(&squared);
+                scale = squared.iter().zip(&along).map(|(squared, along)| squared + along).collect();
             }
             let is_open = |k: usize| squared[k] > TOLERANCE * TOLERANCE * scale[k];
             if !(0..squared.len()).any(is_open) || iterations == MAX_ITERATIONS {
@@ -202,6 +216,20 @@ impl<'a> Statics<'a> {
             }
         }
         Ok(answer)
+    }
+
+    /// The answers to forces along the modes, and the square of each of these forces in the norm of (K + sM)⁻¹.
+    fn along_modes(&self, forces: &Mat<f64>) -> (Mat<f64>, Vec<f64>) {
+        let natural = self.modes.shapes.get(.., ..self.modes.natural());
+        let mut parts = tall::inner(natural, forces.as_ref());
+        let mut squared = vec![0.0; forces.ncols()];
+        for (part, squared) in parts.col_iter_mut().zip(&mut squared) {
+            for (part, lambda) in part.iter_mut().zip(&self.modes.eigenvalues) {
+                *squared += *part * *part / (lambda + self.factor.shift);
+                *part /= lambda;
+            }
+        }
+        (tall::product(natural, parts.as_ref()), squared)
     }
 
     /// Takes out of forces what the support's reactions and the inertia of the rigid motion balance.

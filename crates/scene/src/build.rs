@@ -50,7 +50,7 @@ pub use builder::ModelBuilder;
 pub use error::{BuildError, StartError};
 pub use given::MatrixChecks;
 pub use model::{Meshed, Model};
-pub use progress::{BuildProgress, BuildTimes};
+pub use progress::{BuildProgress, BuildTimes, BuildWork};
 pub use stress_shapes::{BodyStress, StressPeak};
 pub use support_reactions::SupportRows;
 

@@ -58,8 +58,8 @@ mod unit_vector;
 
 pub use assign::{AssignError, assign};
 pub use build::{
-    Assembly, BodyStress, BuildError, BuildProgress, BuildTimes, MatrixChecks, Meshed, Model, ModelBuilder, StartError,
-    StressPeak, SupportRows,
+    Assembly, BodyStress, BuildError, BuildProgress, BuildTimes, BuildWork, MatrixChecks, Meshed, Model, ModelBuilder,
+    StartError, StressPeak, SupportRows,
 };
 pub use cache::{Cache, CacheNotes};
 pub use constraint::{Constraint, HeldDirections, HingeLine, Region};

@@ -109,6 +109,28 @@ fn a_free_bar_answers_balanced_and_unbalanced_forces() {
 }
 
 #[test]
+fn from_the_modes_on_the_answers_are_the_same_and_take_fewer_solutions() {
+    let body = body();
+    let n = 3 * body.positions.len();
+    let forces = Mat::from_fn(n, 6, |i, j| ((7 + 2 * j) as f64 * i as f64).sin());
+    for (support, _) in supports(&body.positions) {
+        let solver = body.held(&support);
+        let modes = solver.modes(10, |_| ()).unwrap();
+        let solved = |answer: &dyn Fn() -> Mat<f64>| {
+            let [_, before] = solver.solved();
+            let answer = answer();
+            (answer, solver.solved()[1] - before)
+        };
+        let (without, many) = solved(&|| solver.static_response(forces.as_ref()).unwrap());
+        let (with, few) = solved(&|| solver.static_response_from(&modes, forces.as_ref()).unwrap());
+        let off = (&with - &without).norm_max() / without.norm_max();
+        println!("{:?}: {many} columns, {few} from the modes on, {off:e} apart", support.motion);
+        assert!(off < 1e-9, "{:?}: {off:e}", support.motion);
+        assert!(few < many, "{:?}: {many}, {few}", support.motion);
+    }
+}
+
+#[test]
 fn any_force_is_balanced_by_stress_reactions_and_inertia() {
     let body = body();
     let (k, m) = (body.matrices.stiffness(), body.matrices.mass());

@@ -8,7 +8,7 @@ use modal::Modes;
 use super::assembly::{Assembled, AssembledMesh, Assembly};
 use super::error::BuildError;
 use super::model::Model;
-use super::progress::{BuildProgress, BuildTimes, timed};
+use super::progress::{BuildProgress, BuildTimes, BuildWork, timed};
 use super::solved::Solved;
 use super::structure::Structure;
 use super::{meshed, rigid};
@@ -57,6 +57,11 @@ impl<'a> ModelBuilder<'a> {
             Builder::Meshed(builder) => builder.build(scene, &mut progress),
             Builder::Rigid(body) => rigid::build(scene, body),
         }
+    }
+
+    /// What of the mesh's size was done up to now; none without a mesh.
+    pub fn work(&self) -> BuildWork {
+        self.solved().map_or_else(BuildWork::default, Solved::work)
     }
 
     /// The finite-element model, of a body with a mesh.

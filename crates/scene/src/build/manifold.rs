@@ -27,9 +27,14 @@ pub(super) struct LargeDeflection {
 /// The shapes of second order of the large modes.
 struct LargeShapes {
     shapes: SecondOrderShapes,
+    /// M φ of each large mode (3n × …).
+    momenta: Mat<f64>,
+    /// The forces of second order of their pairs in the modes of the motion (nf × pairs).
+    of_pairs: Mat<f64>,
 }
 
-/// The geometric stiffness of each large mode in the modes (nf × nf), with some of its terms.
+/// The geometric stiffness of each large mode in the modes (nf × nf), with some of its terms; of interest between a large
+/// mode and another.
 struct OfLarge {
     terms: GeometricTerms,
     stiffness: Vec<Mat<f64>>,
@@ -63,7 +68,7 @@ impl LargeDeflection {
             energies[a * pairs.len() + b] = energy;
             energies[b * pairs.len() + a] = energy;
         }
-        let [forces, answers] = second_order_forces(model, of_large.as_ref(), large, &pairs, derivatives)?;
+        let [forces, answers] = second_order_forces(model, modes, large, &pairs, derivatives)?;
         let squares: Vec<f64> = large.iter().map(|k| modes.eigenvalues[*k]).collect();
         if let Some((follower, pair)) = drawn_in(of_large.as_ref(), &squares, forces.as_ref(), &energies) {
             let others: Vec<usize> = large.iter().copied().filter(|k| *k != large[follower]).collect();
@@ -72,16 +77,17 @@ impl LargeDeflection {
             }
             return Err(refuse_drawn_in(model, large[follower], pair.map(|j| large[j]), &others));
         }
+        let momenta = solver.mass_product(of_large.as_ref())?;
+        let of_pairs =
+            Mat::from_fn(modes.shapes.ncols(), pairs.len(), |a, b| modes.shapes.col(a).transpose() * forces.col(b));
         let shapes = solver.second_order_shapes(modes.clone(), large, forces.as_ref(), answers.as_ref())?;
-        let large = LargeShapes { shapes };
+        let large = LargeShapes { shapes, momenta, of_pairs };
         let extended = match (&statics.of_spin, of_spin) {
             (Some(answers), Some(k)) => {
                 let of_large = large.stiffness(model, modes, GeometricTerms::All)?;
-                let mut of_pairs = Vec::with_capacity(k.len());
-                for (pair, k) in k.iter().enumerate() {
-                    of_pairs.push(large.extended(model, answers.answers.subcols(pair, 1), k, &of_large)?);
-                }
-                of_pairs.try_into().ok()
+                let of_pair =
+                    |(pair, k): (usize, &Mat<f64>)| large.extended(answers.answers.subcols(pair, 1), k, &of_large);
+                k.iter().enumerate().map(of_pair).collect::<Vec<_>>().try_into().ok()
             }
             _ => None,
         };
@@ -111,13 +117,14 @@ impl LargeDeflection {
     ) -> Result<Stress, BuildError> {
         // What is computed is what the stress of some load or drive has.
         let mut known: Vec<OfLarge> = Vec::new();
-        let mut extended = |answer: MatRef<'_, f64>, k: &Mat<f64>, terms: GeometricTerms| -> Result<_, BuildError> {
-            if !known.iter().any(|of_large| of_large.terms == terms) {
-                known.push(self.large.stiffness(model, modes, terms)?);
-            }
-            let of_large = known.iter().find(|of_large| of_large.terms == terms);
-            of_large.map(|of_large| self.large.extended(model, answer, k, of_large)).transpose()
-        };
+        let mut extended =
+            |answer: MatRef<'_, f64>, k: &Mat<f64>, terms: GeometricTerms| -> Result<Option<Mat<f64>>, BuildError> {
+                if !known.iter().any(|of_large| of_large.terms == terms) {
+                    known.push(self.large.stiffness(model, modes, terms)?);
+                }
+                let of_large = known.iter().find(|of_large| of_large.terms == terms);
+                Ok(of_large.map(|of_large| self.large.extended(answer, k, of_large)))
+            };
         if let Some(of_loads) = &statics.of_loads {
             for (i, directed) in stress.of_loads.iter_mut().enumerate() {
                 for (j, directed) in directed.iter_mut().enumerate() {
@@ -171,15 +178,16 @@ fn refuse_drawn_in(model: &MeshModel<'_>, follower: usize, [j, k]: [usize; 2], o
 /// Forces of second order of pairs of large modes, and the static answers to them; those that are known are not computed.
 fn second_order_forces(
     model: &MeshModel<'_>,
-    of_large: MatRef<'_, f64>,
+    modes: &Modes,
     large: &[usize],
     pairs: &[[usize; 2]],
     derivatives: &Derivatives,
 ) -> Result<[Mat<f64>; 2], BuildError> {
+    let of_large = shapes_of(modes, large);
     let known = |[j, k]: [usize; 2]| derivatives.of_mode(large[j]).filter(|_| j == k);
     let missing: Vec<[usize; 2]> = pairs.iter().copied().filter(|pair| known(*pair).is_none()).collect();
-    let forces = model.solver.second_order_forces(of_large, &missing)?;
-    let answers = model.solver.static_response(forces.as_ref())?;
+    let forces = model.solver.second_order_forces(of_large.as_ref(), &missing)?;
+    let answers = model.solver.static_response(modes, forces.as_ref())?;
     let mut found = [(); 2].map(|()| Mat::zeros(of_large.nrows(), pairs.len()));
     let mut computed = forces.col_iter().zip(answers.col_iter());
     for (column, pair) in pairs.iter().enumerate() {
@@ -192,30 +200,41 @@ fn second_order_forces(
 }
 
 impl LargeShapes {
-    /// The geometric stiffness of each large mode in the `modes` of the motion.
+    /// The geometric stiffness of each large mode in the `modes` of the motion. With all terms `φ_a·K(φ_j)·φ_b` is
+    /// `φ_a·g_jb`, whichever of the three is large.
     fn stiffness(&self, model: &MeshModel<'_>, modes: &Modes, terms: GeometricTerms) -> Result<OfLarge, BuildError> {
-        let of_large = shapes_of(modes, &self.shapes.large);
-        Ok(OfLarge { terms, stiffness: model.solver.stress_stiffness(of_large.as_ref(), modes, terms)? })
+        let large = &self.shapes.large;
+        let stiffness = match terms {
+            GeometricTerms::InitialStress => {
+                model.solver.stress_stiffness(shapes_of(modes, large).as_ref(), modes, terms)?
+            }
+            GeometricTerms::All => {
+                let pairs = SecondOrderShapes::pairs(large.len());
+                let place = |mode: usize| large.iter().position(|k| *k == mode);
+                let of_pair = |mode: usize, j: usize, k: usize| {
+                    let pair = pairs.iter().position(|pair| *pair == [j.min(k), j.max(k)]);
+                    pair.map_or(0.0, |pair| self.of_pairs[(mode, pair)])
+                };
+                let of = |j: usize, a: usize, b: usize| match (place(a), place(b)) {
+                    (_, Some(k)) => of_pair(a, j, k),
+                    (Some(k), None) => of_pair(b, j, k),
+                    (None, None) => 0.0,
+                };
+                let count = modes.shapes.ncols();
+                (0..large.len()).map(|j| Mat::from_fn(count, count, |a, b| of(j, a, b))).collect()
+            }
+        };
+        Ok(OfLarge { terms, stiffness })
     }
 
     /// The geometric stiffness `k` (nf × nf) of a static `answer` (3n × 1) in the extended shapes. Between two large modes
     /// it is zero, since the manifold has it. Between a large mode and another it is without that of the answer's parts along
     /// the large modes, which are coordinates that move, with the same terms.
-    fn extended(
-        &self,
-        model: &MeshModel<'_>,
-        answer: MatRef<'_, f64>,
-        k: &Mat<f64>,
-        of_large: &OfLarge,
-    ) -> Result<Mat<f64>, BuildError> {
+    fn extended(&self, answer: MatRef<'_, f64>, k: &Mat<f64>, of_large: &OfLarge) -> Mat<f64> {
         let SecondOrderShapes { modes, large, dynamic, .. } = &self.shapes;
-        let momentum = model.solver.mass_product(answer)?;
-        let along: Vec<f64> = large
-            .iter()
-            .map(|j| (0..momentum.nrows()).map(|i| modes.shapes[(i, *j)] * momentum[(i, 0)]).sum())
-            .collect();
+        let along: Vec<f64> = self.momenta.col_iter().map(|momentum| momentum.transpose() * answer.col(0)).collect();
         let extended = modes.shapes.ncols();
-        Ok(Mat::from_fn(extended, extended, |a, b| {
+        Mat::from_fn(extended, extended, |a, b| {
             if a >= *dynamic || b >= *dynamic {
                 return 0.0;
             }
@@ -224,6 +243,6 @@ impl LargeShapes {
                 (false, false) => k[(a, b)],
                 _ => k[(a, b)] - along.iter().zip(&of_large.stiffness).map(|(part, of)| part * of[(a, b)]).sum::<f64>(),
             }
-        }))
+        })
     }
 }

@@ -30,6 +30,17 @@ pub struct BuildTimes {
     pub reduction: Duration,
 }
 
+/// What of the mesh's size was done.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct BuildWork {
+    /// Blocks of columns that the factor of K + sM was used for.
+    pub blocks: usize,
+    /// Columns of them all.
+    pub columns: usize,
+    /// Passes over the elements, beside that of the assembly.
+    pub element_passes: usize,
+}
+
 pub(super) fn timed<T>(time: &mut Duration, work: impl FnOnce() -> T) -> T {
     let started = Instant::now();
     let result = work();

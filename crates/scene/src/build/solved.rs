@@ -1,6 +1,6 @@
 //! The finite-element model of a body, which is assembled and solved where an answer is not known.
 
-use std::cell::{OnceCell, RefCell};
+use std::cell::{Cell, OnceCell, RefCell};
 
 use body_file::{BodyFileError, Digest, Hash};
 use faer::{ColRef, Mat, MatRef};
@@ -20,7 +20,7 @@ use super::assembly::{AssembledMesh, MadeOf};
 use super::error::{BuildError, modal, too_many_modes};
 use super::fe_matrices::FeMatrices;
 use super::given::{MatrixChecks, refuse_matrix};
-use super::progress::BuildProgress;
+use super::progress::{BuildProgress, BuildWork};
 use super::store::Store;
 use super::structure::{StaticForces, Structure};
 use crate::cache::Computing;
@@ -31,6 +31,7 @@ pub(super) struct Solved<'a> {
     assembled: &'a AssembledMesh,
     solver: OnceCell<Solver<'a>>,
     recovery: OnceCell<StressRecovery<'a>>,
+    element_passes: Cell<usize>,
     /// Held from the first answer that has to be computed on.
     computing: RefCell<Option<Computing>>,
 }
@@ -38,8 +39,13 @@ pub(super) struct Solved<'a> {
 impl<'a> Solved<'a> {
     /// What can be refused is refused at once where no answers are kept.
     pub fn new(assembled: &'a AssembledMesh) -> Result<Self, BuildError> {
-        let solved =
-            Self { assembled, solver: OnceCell::new(), recovery: OnceCell::new(), computing: RefCell::default() };
+        let solved = Self {
+            assembled,
+            solver: OnceCell::new(),
+            recovery: OnceCell::new(),
+            element_passes: Cell::default(),
+            computing: RefCell::default(),
+        };
         if assembled.store.is_none() {
             solved.solver()?;
         }
@@ -66,6 +72,16 @@ impl<'a> Solved<'a> {
     /// Number of flexible modes that there are.
     pub fn available(&self) -> Result<usize, BuildError> {
         self.ask_count(|| self.about_the_held_body("number of modes"), || Ok(self.solver()?.available()))
+    }
+
+    /// What of the mesh's size was done up to now.
+    pub fn work(&self) -> BuildWork {
+        let [blocks, columns] = self.solver.get().map_or([0; 2], Solver::solved);
+        BuildWork { blocks, columns, element_passes: self.element_passes.get() }
+    }
+
+    fn pass_elements(&self) {
+        self.element_passes.set(self.element_passes.get() + 1);
     }
 
     fn matrices(&self) -> Result<&'a FeMatrices, BuildError> {
@@ -239,18 +255,18 @@ impl Structure for Solved<'_> {
         self.ask_fields(question, fields.ncols(), || Ok(self.matrices()?.stiffness() * fields))
     }
 
-    fn static_response(&self, forces: MatRef<'_, f64>) -> Result<Mat<f64>, BuildError> {
-        let question = || with_matrix(self.about_the_held_body("static response"), forces);
+    fn static_response(&self, modes: &Modes, forces: MatRef<'_, f64>) -> Result<Mat<f64>, BuildError> {
+        let question = || with_matrix(with_natural(self.about_the_held_body("static response"), modes), forces);
         self.ask_fields(question, forces.ncols(), || {
-            self.solver()?.static_response(forces).map_err(modal(&self.assembled.scene))
+            self.solver()?.static_response_from(modes, forces).map_err(modal(&self.assembled.scene))
         })
     }
 
-    fn static_answers(&self, forces: &StaticForces) -> Result<Mat<f64>, BuildError> {
+    fn static_answers(&self, modes: &Modes, forces: &StaticForces) -> Result<Mat<f64>, BuildError> {
         let StaticForces { of_loads, spin, drive, origin } = forces;
         let question = || {
-            let question = with_matrix(self.about_the_held_body("static answers"), of_loads.as_ref());
-            question.text(&format!("{spin} {drive:?} {origin:?}"))
+            let question = with_natural(self.about_the_held_body("static answers"), modes);
+            with_matrix(question, of_loads.as_ref()).text(&format!("{spin} {drive:?} {origin:?}"))
         };
         self.ask_fields(question, forces.count(), || {
             let solver = self.solver()?;
@@ -272,7 +288,7 @@ impl Structure for Solved<'_> {
                 Some(DrivenMotion::Turn { axis }) => add(turning_field(mass, positions, origin, axis)),
                 None => {}
             }
-            solver.static_response(all.as_ref()).map_err(modal(&self.assembled.scene))
+            solver.static_response_from(modes, all.as_ref()).map_err(modal(&self.assembled.scene))
         })
     }
 
@@ -351,6 +367,7 @@ impl Structure for Solved<'_> {
             question,
             |kept| kept.matrices("stiffness", displacements.ncols(), shapes.ncols()),
             || {
+                self.pass_elements();
                 Ok(reduced_geometric_stiffness(
                     &self.assembled.mesh,
                     self.assembled.materials()?,
@@ -367,6 +384,7 @@ impl Structure for Solved<'_> {
         let question =
             || with_matrix(self.about_the_body("forces of second order"), fields).text(&format!("{pairs:?}"));
         self.ask_fields(question, pairs.len(), || {
+            self.pass_elements();
             Ok(second_order_forces(&self.assembled.mesh, self.assembled.materials()?, fields, pairs)?)
         })
     }
@@ -379,6 +397,7 @@ impl Structure for Solved<'_> {
         let question =
             || with_matrix(self.about_the_body("energies of second order"), fields).text(&format!("{quadruples:?}"));
         self.ask_list(question, quadruples.len(), || {
+            self.pass_elements();
             Ok(second_order_energies(&self.assembled.mesh, self.assembled.materials()?, fields, quadruples)?)
         })
     }
@@ -404,6 +423,7 @@ impl Structure for Solved<'_> {
         let found = self.ask_list(question, 1, || {
             let materials = self.assembled.materials()?;
             let product = |fields: MatRef<'_, f64>| -> Result<Mat<f64>, BucklingError> {
+                self.pass_elements();
                 Ok(geometric_stiffness_product(&self.assembled.mesh, materials, answer, fields)?)
             };
             match self.solver()?.lowest_buckling_ratio(shapes, product) {
@@ -437,4 +457,10 @@ fn with_matrix(question: Digest, matrix: MatRef<'_, f64>) -> Digest {
 /// A question with modes; the rigid ones follow from the body and its support.
 fn with_modes(question: Digest, modes: &Modes) -> Digest {
     with_matrix(question.numbers(&modes.eigenvalues), modes.shapes.as_ref())
+}
+
+/// A question with the natural ones of some modes.
+fn with_natural(question: Digest, modes: &Modes) -> Digest {
+    let natural = modes.natural();
+    with_matrix(question.numbers(&modes.eigenvalues[..natural]), modes.shapes.get(.., ..natural))
 }

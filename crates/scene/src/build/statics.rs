@@ -88,7 +88,7 @@ impl Statics {
                 load.add_nodal_forces(turned.get(column - range.start).copied(), forces);
             }
         }
-        let answers = solver.static_answers(&forces)?;
+        let answers = solver.static_answers(modes, &forces)?;
         let (driven, of_drive) = (usize::from(forces.drive.is_some()), count - usize::from(forces.drive.is_some()));
         let spins = of_drive - of_loads;
         let to = |first: usize, count: usize| answers.subcols(first, count).to_owned();

@@ -71,7 +71,7 @@ impl LeftOut {
                 drive: Some(DrivenMotion::Turn { axis }),
                 origin: *origin,
             };
-            columns.push(solver.static_answers(&forces)?);
+            columns.push(solver.static_answers(modes, &forces)?);
         }
         let mut stress = Mat::zeros(6 * solver.stress_sites()?.len(), columns.iter().map(Mat::ncols).sum());
         let mut first = 0;

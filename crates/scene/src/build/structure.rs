@@ -24,12 +24,12 @@ pub(super) trait Structure {
     /// K times fields (3n×k).
     fn stiffness_product(&self, fields: MatRef<'_, f64>) -> Result<Mat<f64>, BuildError>;
 
-    /// Static answers to forces (3n×k).
-    fn static_response(&self, forces: MatRef<'_, f64>) -> Result<Mat<f64>, BuildError>;
+    /// Static answers to forces (3n×k), from the natural ones of the modes on.
+    fn static_response(&self, modes: &Modes, forces: MatRef<'_, f64>) -> Result<Mat<f64>, BuildError>;
 
     /// Static answers to the forces of loads (3n×k), to the centrifugal field of each pair of spins, and to the inertia of a
-    /// driven motion, side by side.
-    fn static_answers(&self, forces: &StaticForces) -> Result<Mat<f64>, BuildError>;
+    /// driven motion, side by side, from the natural ones of the modes on.
+    fn static_answers(&self, modes: &Modes, forces: &StaticForces) -> Result<Mat<f64>, BuildError>;
 
     /// The modes, with shapes appended that make them span static answers (3n×k).
     fn with_static_shapes(&self, modes: Modes, answers: MatRef<'_, f64>) -> Result<Modes, BuildError>;

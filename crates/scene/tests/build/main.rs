@@ -19,6 +19,7 @@ mod stretch;
 mod supports;
 mod tolerance;
 mod turned;
+mod work;
 
 use std::path::Path;
 

@@ -1,0 +1,29 @@
+//! How much work of the mesh's size a body takes, so that it does not grow unseen.
+
+use scene::{Assembly, BuildWork};
+
+use super::bar;
+
+const SPIN: &str = "[initial]\nangular_velocity = [3.0, 5.0, 40.0]";
+
+fn work(modes: &str, effects: &str) -> BuildWork {
+    let scene = bar(modes, &format!("[effects]\n{effects}\n{SPIN}"), "end = 1e-4\nstep = 1e-5");
+    let assembly = Assembly::new(&scene, |_| ()).unwrap();
+    let mut builder = assembly.builder().unwrap();
+    builder.build(&scene, |_| ()).unwrap();
+    builder.work()
+}
+
+#[test]
+fn four_large_modes_and_the_stress_of_the_spin_take_so_much() {
+    let none = "geometric_stiffening = false\nlarge_deflection = false\nrefuse = false";
+    let plain = work("flexible = 10", none);
+    assert_eq!(plain.element_passes, 0);
+    let spin = "geometric_stiffening = true\ndeformed_inertia = true\nrefuse = false";
+    let large = work("flexible = 10\nlarge = [1, 2, 3, 4]", &format!("{spin}\nlarge_deflection = true"));
+    // Six fields of the spin and ten pairs of modes, and their stiffness, forces and energies.
+    println!("{plain:?}, {large:?}");
+    assert!(large.columns - plain.columns <= 80, "{plain:?}, {large:?}");
+    assert!(large.blocks - plain.blocks <= 15, "{plain:?}, {large:?}");
+    assert!(large.element_passes <= 4, "{large:?}");
+}
