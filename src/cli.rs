@@ -252,7 +252,7 @@ enum Command {
         #[arg(long, value_name = "N", conflicts_with_all = ["shard", "slurm"], value_parser = clap::value_parser!(u16).range(1..=10_000))]
         merge: Option<u16>,
         /// Print a script that runs the sweep as an array of N jobs of Slurm.
-        #[arg(long, value_name = "N", conflicts_with = "shard", value_parser = clap::value_parser!(u16).range(1..=10_000))]
+        #[arg(long, value_name = "N", conflicts_with_all = ["shard", "overwrite", "json"], value_parser = clap::value_parser!(u16).range(1..=10_000))]
         slurm: Option<u16>,
         /// Replace the table, whatever is in it.
         #[arg(long)]

@@ -153,6 +153,8 @@ fn shards_of_a_sweep_merge_into_the_table_of_the_whole() {
     assert_eq!(first.output, case.path("sweep.1-of-3.h5"));
     assert_eq!(case.run_shard(false, shard("3/3")).unwrap().failures.len(), 1);
     let merged = |count| merge(&case.path("sweep.toml"), &case.path("sweep.h5"), count, false);
+    let error = merged(2).unwrap_err().to_string();
+    assert!(error.contains("sweep.1-of-2.h5: there is no such table"), "{error}");
     // The second has died before it wrote a table.
     let report = merged(3).unwrap();
     assert_eq!((report.done, report.unfinished), (2, vec!["2/3".parse().unwrap()]));
@@ -165,6 +167,13 @@ fn shards_of_a_sweep_merge_into_the_table_of_the_whole() {
     let bits = |values: &[f64]| values.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
     assert_eq!(bits(&case.table("results/tip")), bits(&table));
     assert_eq!(case.run_shard(false, shard("1/3")).unwrap().kept, 2);
+    // Nor of this one with another mesh.
+    let mesh = case.path("bar.msh");
+    let with_comment = fs::read_to_string(&mesh).unwrap() + "$Comments\nanother\n$EndComments\n";
+    let original = fs::read(&mesh).unwrap();
+    fs::write(&mesh, with_comment).unwrap();
+    assert!(merged(3).unwrap_err().to_string().contains("it is of another sweep"));
+    fs::write(&mesh, original).unwrap();
     // Shards of another sweep are not taken.
     case.write("[parameters]\n\"time.step\" = [1e-5]");
     fs::remove_file(case.path("sweep.h5")).unwrap();

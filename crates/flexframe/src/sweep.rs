@@ -167,6 +167,10 @@ pub fn merge(path: &Path, output: &Path, count: usize, overwrite: bool) -> Resul
     let mut table = Table::open(output, &plan, overwrite)?;
     let [kept, _] = table.counts();
     let mut unfinished = Vec::new();
+    if Shard::all(count).all(|shard| !shard.table(output).exists()) {
+        let first = Shard::all(count).map(|shard| shard.table(output)).next().unwrap_or_default();
+        return Err(SweepError::NoShard { first, count });
+    }
     for shard in Shard::all(count) {
         let found = Table::read(&shard.table(output), &plan)?;
         for (row, state) in table.rows.iter_mut().enumerate().filter(|(row, _)| shard.has(*row)) {
@@ -281,7 +285,9 @@ impl fmt::Display for SweepReport {
                 "  open     shard {shard} has rows that were not run: run it again (--shard {shard}), then merge again"
             )?;
         }
-        writeln!(f, "  body     matrices assembled and factored {} time(s)", self.reductions)?;
+        if self.reductions > 0 {
+            writeln!(f, "  body     matrices assembled and factored {} time(s)", self.reductions)?;
+        }
         write!(f, "  wrote    {}", self.output.display())
     }
 }

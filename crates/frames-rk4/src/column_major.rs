@@ -64,7 +64,7 @@ impl WithSimd for Product<'_> {
         let ([end], _) = S::as_simd_f64s(&y[last..]) else { return };
         let end = (last, *end);
         let mut row = 0;
-        while row + 8 * S::F64_LANES < length {
+        while row + 8 * S::F64_LANES <= last {
             add_rows::<S, 8>(simd, matrix, rows, row, x, y);
             row += 8 * S::F64_LANES;
         }
@@ -76,7 +76,8 @@ impl WithSimd for Product<'_> {
             4 => add_last_rows::<S, 4>(simd, matrix, rows, row, x, end, y),
             5 => add_last_rows::<S, 5>(simd, matrix, rows, row, x, end, y),
             6 => add_last_rows::<S, 6>(simd, matrix, rows, row, x, end, y),
-            _ => add_last_rows::<S, 7>(simd, matrix, rows, row, x, end, y),
+            7 => add_last_rows::<S, 7>(simd, matrix, rows, row, x, end, y),
+            _ => add_last_rows::<S, 8>(simd, matrix, rows, row, x, end, y),
         }
     }
 }
@@ -122,5 +123,26 @@ fn add_column<S: Simd, const N: usize>(simd: S, column: &[f64], row: usize, x: S
     let (entries, _) = S::as_simd_f64s(&column[row..][..N * S::F64_LANES]);
     for (sum, entries) in sums.iter_mut().zip(entries) {
         *sum = simd.mul_add_e_f64s(*entries, x, *sum);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn products_of_any_length_have_all_their_rows() {
+        let x = [0.3, -1.1, 2.0];
+        for rows in 1..=130_usize {
+            let matrix: Vec<f64> = (0..3 * rows).map(|i| (i as f64).sin()).collect();
+            for asked in [rows, rows.div_ceil(2)] {
+                let mut y = vec![f64::NAN; asked];
+                multiply(&matrix, rows, &x, &mut y);
+                for (i, y) in y.iter().enumerate() {
+                    let expected: f64 = (0..3).map(|j| matrix[j * rows + i] * x[j]).sum();
+                    assert!((y - expected).abs() < 1e-14, "row {i} of {asked}, {rows} in all: {y} for {expected}");
+                }
+            }
+        }
     }
 }

@@ -123,11 +123,12 @@ fn lower_triangle(
                 if scale > 0.0 {
                     asymmetry = asymmetry.max((value - other).abs() / scale);
                 }
-                lower.push((place.0, place.1, 0.5 * (value + other)));
+                lower.push((place.0, place.1, 0.5 * value + 0.5 * other));
                 rest = &after[1..];
             }
             None => {
-                if row != column && value != 0.0 {
+                let scale = diagonal[row as usize].abs().max(diagonal[column as usize].abs());
+                if row != column && value.abs() > SYMMETRIC * scale {
                     alone = alone.or(Some(*first));
                 }
                 lower.push((place.0, place.1, value));

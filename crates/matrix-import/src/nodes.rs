@@ -172,6 +172,12 @@ fn keyword_block(source: &Source<'_>, line: usize, keyword: &str) -> Result<Bloc
             "the nodes in this file",
             "name a file that has them, or write a table of nodes",
         )),
+        "NODE" if value("SYSTEM").is_some_and(|system| !system.eq_ignore_ascii_case("R")) => Err(source.refuse(
+            Some(line),
+            "*NODE in cylindrical or spherical coordinates",
+            "x, y, z of each node",
+            "write a table of nodes: `node, x, y, z`",
+        )),
         "NODE" => Ok(Block::Nodes(value("NSET"))),
         "NSET" => Ok(match value("NSET") {
             Some(name) => Block::Set { name, generate: value("GENERATE").is_some() },

@@ -1,13 +1,15 @@
 //! A text file that is read line by line.
 
 use std::fs::File;
-use std::io::{self, BufRead, BufReader};
+use std::io::{self, BufRead, BufReader, Read};
 use std::path::Path;
 
 use crate::error::{MatrixError, Which};
 
 /// The longest part of a line that a message shows, in characters.
 const SHOWN: usize = 60;
+/// Bytes of a line that no such file has.
+const LONGEST_LINE: u64 = 1 << 20;
 
 /// One of the files of a body.
 #[derive(Clone, Copy)]
@@ -53,8 +55,19 @@ impl Source<'_> {
         let mut bytes = Vec::new();
         for number in 1.. {
             bytes.clear();
-            if file.read_until(b'\n', &mut bytes).map_err(|cause| self.unreadable(&cause))? == 0 {
+            let length = (&mut file).take(LONGEST_LINE).read_until(b'\n', &mut bytes);
+            let length = length.map_err(|cause| self.unreadable(&cause))? as u64;
+            if length == 0 {
                 break;
+            }
+            if length == LONGEST_LINE {
+                let found = format!("a line of {LONGEST_LINE} bytes and more");
+                return Err(self.refuse(
+                    Some(number),
+                    found,
+                    "a text with a few numbers in each line",
+                    "export it as text",
+                ));
             }
             let Ok(line) = std::str::from_utf8(&bytes) else {
                 let cure = "export it as text; a binary file (.sim, .npz, .mat) is not read";

@@ -137,7 +137,7 @@ fn check_semidefinite<I: Iterator<Item = Triplet<usize, usize, f64>>>(
     let mut entries = Vec::with_capacity(count + size);
     for entry in matrix().filter(|entry| entry.val != 0.0) {
         let scale = (diagonal[entry.row] * diagonal[entry.col]).sqrt();
-        if scale.is_nan() || scale <= 0.0 {
+        if !(diagonal[entry.row] > 0.0 && diagonal[entry.col] > 0.0) {
             let row = if diagonal[entry.row] > 0.0 { entry.col } else { entry.row };
             return Err(ModalError::IndefiniteMass { place: Some([row / freedoms, row % freedoms]) });
         }

@@ -59,7 +59,7 @@ mod unit_vector;
 pub use assign::{AssignError, assign};
 pub use build::{
     Assembly, BodyStress, BuildError, BuildProgress, BuildTimes, BuildWork, MatrixChecks, Meshed, Model, ModelBuilder,
-    StartError, StressPeak, SupportRows,
+    StartError, StressPeak, SupportRows, contents_of_body,
 };
 pub use cache::{Cache, CacheNotes};
 pub use constraint::{Constraint, HeldDirections, HingeLine, Region};

@@ -515,7 +515,11 @@ impl Failure for NewSceneError {
 impl Failure for SweepError {
     fn kind(&self) -> Kind {
         match self {
-            Self::Unreadable { .. } | Self::Write(_) | Self::Table(_) | Self::OtherTable { .. } => Kind::Io,
+            Self::Unreadable { .. }
+            | Self::Write(_)
+            | Self::Table(_)
+            | Self::OtherTable { .. }
+            | Self::NoShard { .. } => Kind::Io,
             Self::Invalid { .. } | Self::Form { .. } => Kind::Input,
             Self::Scene { source, .. } => source.kind(),
             Self::Build(error) => error.kind(),
@@ -524,9 +528,10 @@ impl Failure for SweepError {
 
     fn details(&self) -> Details {
         match self {
-            Self::Unreadable { path, .. } | Self::Form { path, .. } | Self::OtherTable { path, .. } => {
-                Details::of_file(path)
-            }
+            Self::Unreadable { path, .. }
+            | Self::Form { path, .. }
+            | Self::OtherTable { path, .. }
+            | Self::NoShard { first: path, .. } => Details::of_file(path),
             Self::Invalid { path, key, found, expected } => Details {
                 key: Some(key.clone()),
                 found: Some(found.clone()),

@@ -61,6 +61,17 @@ pub enum SweepError {
         /// What it is.
         what: String,
     },
+    /// There is nothing to merge.
+    #[error(
+        "{}: there is no such table, nor one of the other shards of {count}; run the shards first (--shard 1/{count} and so on), with \
+         the same -o, or merge as many as there are", first.display()
+    )]
+    NoShard {
+        /// The table of the first shard.
+        first: PathBuf,
+        /// As many shards were asked for.
+        count: usize,
+    },
     /// The table cannot be written.
     #[error(transparent)]
     Table(#[from] BodyFileError),

@@ -1,9 +1,9 @@
 //! What a sweep is: a scene, its parameters, and what is asked of each run.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-use scene::{AssignError, Cache, Scene, SceneError, assign};
+use scene::{AssignError, Body, Cache, Scene, SceneError, assign, contents_of_body};
 use serde::Deserialize;
 use toml::{Table, Value};
 
@@ -65,7 +65,7 @@ struct Range {
 /// A sweep, ready to be run.
 pub(super) struct Plan {
     pub title: String,
-    /// The text of its file and that of the scene, as one: what the table belongs to.
+    /// The text of its file, that of the scene, and what the files of its bodies hold: what the table belongs to.
     pub identity: String,
     /// Keys of the scene, in alphabetical order, and their values in each row.
     pub parameters: Vec<(String, Vec<Value>)>,
@@ -150,7 +150,11 @@ impl Plan {
             let source: SceneError = source;
             return Err(SweepError::Scene { key: Some(in_words(&parameters, row)), source });
         }
-        let identity = format!("{of_sweep}\n{}", scene.source);
+        // The files of each body, once.
+        let bodies: BTreeMap<String, &Body> =
+            rows.iter().flatten().map(|row| (format!("{:?}", row.body), &row.body)).collect();
+        let contents: BTreeSet<String> = bodies.into_values().map(contents_of_body).collect();
+        let identity = format!("{of_sweep}\n{}\n{contents:?}", scene.source);
         Ok(Self { title: scene.title, identity, parameters, results: file.results, rows })
     }
 }

@@ -113,8 +113,12 @@ pub(super) fn refuse(scene: &Scene, key: &str, error: AssemblyError) -> SceneErr
 /// A mesh error, such as a group that is not there, at its place in the scene file.
 pub(super) fn refuse_mesh(scene: &Scene, key: &str, error: &MeshError) -> BuildError {
     if let MeshError::NoGroup { kind, group, present, .. } = error {
-        let cure = "use one of these, or name it in the geometry and mesh again";
-        let found = format!("the physical {kind} \"{}\", which the mesh has not", shorten(group));
+        let (what, cure) = if scene.body.has_elements() {
+            ("mesh", "use one of these, or name it in the geometry and mesh again")
+        } else {
+            ("body", "use one of these, or add it to the groups in the table of nodes (*NSET in an .inp file)")
+        };
+        let found = format!("the physical {kind} \"{}\", which the {what} has not", shorten(group));
         return scene.refuse(key, found, one_of(present), cure).into();
     }
     scene

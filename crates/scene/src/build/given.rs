@@ -137,6 +137,16 @@ pub(super) fn refuse_matrix(scene: &Scene, files: &MatrixFiles, nodes: &Mesh, er
             "a stiffness that resists every deformation",
             "write K of the model without preload, contact and negative springs",
         ),
+        ModalError::Mechanism { count, node, .. } => refused(
+            scene,
+            Which::Stiffness,
+            format!(
+                "{count} motion(s) besides the rigid ones without stiffness in {stiffness}, the first of them largest at node {}",
+                name(node)
+            ),
+            "a stiffness that resists every deformation",
+            "join the parts of the model, or give its elements a stiffness against this motion (the drilling of shells, hinges of beams)",
+        ),
         ModalError::Indefinite { .. } => refused(
             scene,
             Which::Stiffness,

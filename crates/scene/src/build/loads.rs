@@ -68,10 +68,27 @@ impl FromIterator<(SharedLoad, bool)> for BodyLoads {
 enum Action {
     /// A force at the weighted mean of nodes; the weights sum to one.
     Force { nodes: Vec<u32>, weights: Vec<f64>, force: Vector3<f64> },
+    /// A force on every mass: M times an acceleration of the whole body.
+    Weight { unit: Arc<UnitWeight>, force: Vector3<f64> },
     /// A couple on the rotation of the material at its place.
     Moment { patch: Rotation, moment: Vector3<f64> },
     /// Forces on nodes that are fixed in the body.
     Field { nodes: Vec<u32>, forces: Vec<Vector3<f64>>, group: String, pressure: f64 },
+}
+
+/// What a unit acceleration of the whole body takes.
+pub(super) struct UnitWeight {
+    /// Forces on the unknowns, for an acceleration along each axis (N×3). In general they act on rotations, too.
+    pub forces: Mat<f64>,
+    pub mass: f64,
+}
+
+impl UnitWeight {
+    /// The centre of mass, which moves as the mean of all masses does.
+    fn point(&self, body: &ReducedBody, modes: &Modes) -> BodyPoint {
+        let shapes = self.forces.transpose() * modes.shapes.as_ref();
+        BodyPoint { position_body: body.center_of_mass - body.origin, shapes: shapes * faer::Scale(1.0 / self.mass) }
+    }
 }
 
 /// A small rotation of the material at some place.
@@ -91,12 +108,12 @@ pub(super) struct FollowerChange {
     pub load_stiffness: Mat<f64>,
 }
 
-/// The loads of a scene on its mesh. `nodal_mass` is the mass that each node stands for.
+/// The loads of a scene on its mesh.
 pub(super) fn on_mesh(
     scene: &Scene,
     mesh: &Mesh,
     freedoms: usize,
-    nodal_mass: &[f64],
+    weight: &Arc<UnitWeight>,
 ) -> Result<Vec<MeshLoad>, BuildError> {
     let attitude = first_attitude(scene);
     acting(scene)
@@ -138,8 +155,7 @@ pub(super) fn on_mesh(
                     Action::Field { nodes, forces, group: load.group.clone(), pressure: load.amplitude }
                 }
                 Load::Gravity(_) | Load::BaseAcceleration(_) => {
-                    let nodes = (0..nodal_mass.len() as u32).collect();
-                    spread(nodal_mass.to_vec(), nodes, acceleration(load))
+                    Action::Weight { unit: weight.clone(), force: acceleration(load) * weight.mass }
                 }
             };
             let history = history(scene, &key("history"), of(load))?;
@@ -301,7 +317,9 @@ impl MeshLoad {
     /// The force or moment in the first attitude, body axes, where the history is 1; none of a field.
     pub(super) fn vector(&self) -> Option<Vector3<f64>> {
         match &self.action {
-            Action::Force { force: vector, .. } | Action::Moment { moment: vector, .. } => {
+            Action::Force { force: vector, .. }
+            | Action::Weight { force: vector, .. }
+            | Action::Moment { moment: vector, .. } => {
                 Some(if self.follows { *vector } else { self.attitude.to_body(vector) })
             }
             Action::Field { .. } => None,
@@ -359,6 +377,14 @@ impl MeshLoad {
         match &self.action {
             Action::Force { nodes, weights, .. } => {
                 nodes.iter().zip(weights).for_each(|(node, w)| add(*node, &(vector * *w)));
+            }
+            Action::Weight { unit, .. } => {
+                for axis in 0..3 {
+                    let acceleration = vector[axis] / unit.mass;
+                    for row in 0..unit.forces.nrows() {
+                        forces[row] += acceleration * unit.forces[(row, axis)];
+                    }
+                }
             }
             Action::Moment { patch: Rotation::OfNode(node), .. } => {
                 for axis in 0..3 {
@@ -428,18 +454,22 @@ impl MeshLoad {
             };
             Ok(Some(SecondOrder::new(stress.iter().map(of_unit).collect())?))
         };
+        let at = |point: &BodyPoint, force: Vector3<f64>| -> Result<SharedLoad, BuildError> {
+            let point = PointShapes::new(body, point);
+            let point = match second_order()? {
+                Some(second_order) => point.with_second_order(second_order),
+                None => point,
+            };
+            let turning = self.turning.as_ref().map(|patch| self.rotations(patch, body, modes));
+            let frame = if turning.is_some() { LoadFrame::Material } else { frame };
+            Ok(Arc::new(PointForce { point, force, frame, turning, history: self.history.clone() }))
+        };
         Ok(match &self.action {
             Action::Force { nodes, weights, force } => {
                 let point = BodyPoint::new(modes, mesh.positions(), nodes, weights).map_err(modal(scene))?;
-                let point = PointShapes::new(body, &point);
-                let point = match second_order()? {
-                    Some(second_order) => point.with_second_order(second_order),
-                    None => point,
-                };
-                let turning = self.turning.as_ref().map(|patch| self.rotations(patch, body, modes));
-                let frame = if turning.is_some() { LoadFrame::Material } else { frame };
-                Arc::new(PointForce { point, force: *force, frame, turning, history })
+                at(&point, *force)?
             }
+            Action::Weight { unit, force } => at(&unit.point(body, modes), *force)?,
             Action::Moment { patch, moment } => {
                 let rotation = self.rotations(patch, body, modes);
                 let rotation = match second_order()? {

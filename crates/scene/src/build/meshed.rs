@@ -40,7 +40,7 @@ pub(super) fn reduce(
 ) -> Result<Model, BuildError> {
     let AssembledMesh { mesh, support, drive, .. } = assembled;
     let freedoms = assembled.freedoms();
-    let loads = loads::on_mesh(scene, mesh, freedoms, &solved.nodal_masses()?)?;
+    let loads = loads::on_mesh(scene, mesh, freedoms, &Arc::new(solved.unit_weight()?))?;
     let model = MeshModel { scene, mesh, freedoms, solver: solved, support, loads, drive: drive.clone() };
 
     if scene.time.method.is_of_paper() && assembled.checks.is_some_and(|checks| !checks.is_scalar_mass) {

@@ -20,6 +20,7 @@ use super::assembly::{AssembledMesh, MadeOf};
 use super::error::{BuildError, modal, too_many_modes};
 use super::fe_matrices::FeMatrices;
 use super::given::{MatrixChecks, refuse_matrix};
+use super::loads::UnitWeight;
 use super::progress::{BuildProgress, BuildWork};
 use super::store::Store;
 use super::structure::{StaticForces, Structure};
@@ -240,9 +241,20 @@ impl Structure for Solved<'_> {
         )
     }
 
-    fn nodal_masses(&self) -> Result<Vec<f64>, BuildError> {
+    fn unit_weight(&self) -> Result<UnitWeight, BuildError> {
+        let count = self.assembled.mesh.positions().len();
+        if let MadeOf::Files(_) = self.assembled.body {
+            let fields = || Ok(acceleration_fields(self.solver()?.mass()));
+            let forces = self.ask_fields(|| self.about_the_body("unit weight"), 3, fields)?;
+            let freedoms = self.assembled.freedoms();
+            let mass = (0..count).map(|node| forces[(freedoms * node, 0)]).sum();
+            return Ok(UnitWeight { forces, mass });
+        }
+        // Elements have a scalar mass for each pair of nodes, and one number for each node is kept.
         let masses = || Ok(self.solver()?.mass().row_sums());
-        self.ask_list(|| self.about_the_body("nodal masses"), self.assembled.mesh.positions().len(), masses)
+        let masses = self.ask_list(|| self.about_the_body("nodal masses"), count, masses)?;
+        let forces = Mat::from_fn(3 * count, 3, |row, axis| if row % 3 == axis { masses[row / 3] } else { 0.0 });
+        Ok(UnitWeight { forces, mass: masses.iter().sum() })
     }
 
     fn mass_product(&self, fields: MatRef<'_, f64>) -> Result<Mat<f64>, BuildError> {

@@ -15,7 +15,7 @@ use super::mesh::read_mesh;
 use super::mesh_arrays::{self, MeshArrays};
 use crate::cache::{Cache, touch};
 use crate::origin::Origin;
-use crate::scene::{MeshedBody, Scene};
+use crate::scene::{Body, MeshedBody, Scene};
 
 /// The name of the file of a mesh.
 const MESH: &str = "mesh.h5";
@@ -33,6 +33,17 @@ pub(super) struct Store {
     body: Digest,
     /// What was asked, for who writes a body file.
     asked: Mutex<BTreeSet<Hash>>,
+}
+
+/// What the files of a body hold, as a text that differs where they do; empty where they cannot be read.
+pub fn contents_of_body(body: &Body) -> String {
+    let hash = match body {
+        Body::Meshed(MeshedBody { file: Some(file), .. }) => Hash::of_file(file).ok(),
+        Body::Meshed(body) => hash_of_mesh(&body.mesh, &body.import),
+        Body::Matrices(files) => hash_of_matrices(files),
+        Body::Rigid(_) => None,
+    };
+    hash.map(|hash| hash.to_string()).unwrap_or_default()
 }
 
 impl Store {

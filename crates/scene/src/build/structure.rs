@@ -7,6 +7,7 @@ use modal::{Modes, ReducedBody, SecondOrderShapes};
 use nalgebra::Vector3;
 
 use super::error::BuildError;
+use super::loads::UnitWeight;
 use super::progress::BuildProgress;
 
 /// The finite-element model of a body: all that depends on its mesh and takes long. The functions of `modal` and `fem_tet10`
@@ -15,8 +16,8 @@ pub(super) trait Structure {
     /// The rigid and the `flexible` lowest other modes.
     fn modes(&self, flexible: usize, progress: &mut dyn FnMut(BuildProgress)) -> Result<Modes, BuildError>;
 
-    /// The mass that each node stands for (n).
-    fn nodal_masses(&self) -> Result<Vec<f64>, BuildError>;
+    /// What a unit acceleration of the whole body takes.
+    fn unit_weight(&self) -> Result<UnitWeight, BuildError>;
 
     /// M times fields (3n×k).
     fn mass_product(&self, fields: MatRef<'_, f64>) -> Result<Mat<f64>, BuildError>;

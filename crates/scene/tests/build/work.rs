@@ -23,6 +23,7 @@ fn four_large_modes_and_the_stress_of_the_spin_take_so_much() {
     let large = work("flexible = 10\nlarge = [1, 2, 3, 4]", &format!("{spin}\nlarge_deflection = true"));
     // Six fields of the spin and ten pairs of modes, and their stiffness, forces and energies.
     println!("{plain:?}, {large:?}");
+    assert!(plain.columns > 0 && large.columns > plain.columns && large.element_passes > 0, "{plain:?}, {large:?}");
     assert!(large.columns - plain.columns <= 80, "{plain:?}, {large:?}");
     assert!(large.blocks - plain.blocks <= 15, "{plain:?}, {large:?}");
     assert!(large.element_passes <= 4, "{large:?}");
