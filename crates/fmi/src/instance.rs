@@ -220,8 +220,8 @@ impl Instance {
         Ok(Saved { guid, phase, stop, motion: self.motion()?.state()? })
     }
 
-    /// Goes back, or on, to a state that was saved; of an instance that has not begun, too. After an error everything is as it
-    /// was.
+    /// Goes back, or on, to a state that was saved; of an instance that has not begun, too. After an error everything is
+    /// as it was.
     pub fn restore(&mut self, saved: &Saved) -> Result<(), Error> {
         if saved.guid != self.guid {
             return Err(Error::Bytes);
