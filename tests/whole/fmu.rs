@@ -17,6 +17,11 @@ fn flexframe(library: &str, arguments: &[&str]) -> Output {
     command.args(arguments).current_dir(root()).env("FLEXFRAME_FMU_LIBRARY", library).output().unwrap()
 }
 
+/// What passes for the library: its version, and a name that it exports.
+fn library_bytes() -> String {
+    format!("{} fmi2DoStep", marker())
+}
+
 fn refused(library: &str, arguments: &[&str], code: i32) -> Value {
     let output = flexframe(library, &[arguments, &["--json"]].concat());
     let text = String::from_utf8(output.stderr).unwrap();
@@ -28,7 +33,7 @@ fn refused(library: &str, arguments: &[&str], code: i32) -> Value {
 fn an_fmu_is_packed_of_a_scene_or_of_its_body_file_and_is_the_same_each_time() {
     let folder = tempfile::tempdir().unwrap();
     let place = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
-    fs::write(place("library"), marker()).unwrap();
+    fs::write(place("library"), library_bytes()).unwrap();
     let scene = "examples/ring.toml";
     let pack = |of: &str, name: &str| -> Value {
         let output = flexframe(&place("library"), &["fmu", of, "-o", &place(name), "--json", "--set", "time.end=0.01"]);
@@ -54,8 +59,12 @@ fn without_its_library_nothing_is_packed() {
     let place = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
     let (fmu, nothing, other) = (place("top.fmu"), place("nothing.so"), place("other.so"));
     fs::write(&other, "no library").unwrap();
+    // The program knows the version as the library does, and the static library has all its names.
+    let (program, archive) = (env!("CARGO_BIN_EXE_flexframe").to_owned(), place("library.rlib"));
+    fs::write(&archive, format!("!<arch>\n{}", library_bytes())).unwrap();
     let arguments = ["fmu", "examples/pendulum.toml", "-o", &fmu];
-    for (library, found) in [(&nothing, "cannot be read"), (&other, "not the library for FMUs of flexframe")] {
+    let not_it = "not the library for FMUs of flexframe";
+    for (library, found) in [(&nothing, "cannot be read"), (&other, not_it), (&program, not_it), (&archive, not_it)] {
         for failure in
             [refused(library, &arguments, 6), refused("", &[&arguments[..], &["--library", library]].concat(), 6)]
         {
@@ -73,7 +82,7 @@ fn without_its_library_nothing_is_packed() {
 fn what_cannot_be_packed_leaves_the_old_file() {
     let folder = tempfile::tempdir().unwrap();
     let place = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
-    fs::write(place("library"), marker()).unwrap();
+    fs::write(place("library"), library_bytes()).unwrap();
     fs::write(place("old.fmu"), "old").unwrap();
     fs::write(place("no.h5"), "no body file").unwrap();
     let (library, old) = (place("library"), place("old.fmu"));
@@ -85,6 +94,14 @@ fn what_cannot_be_packed_leaves_the_old_file() {
     let auto = ["fmu", "examples/ring.toml", "-o", &old, "--set", "modes.flexible=auto"];
     let failure = refused(&library, &auto, 3);
     assert_eq!(failure["key"], "modes.flexible");
+    let failure = refused("", &["fmu", "examples/boom.toml", "-o", &old], 3);
+    assert_eq!(failure["key"], "body.matrices");
+    assert!(failure["cure"].as_str().unwrap().contains("a mesh"), "{failure}");
+    // A step in which the body turns by 10 rad. It is found in the packed scene; the message names the one that was given.
+    let spun = ["--set", "time.step=1.0", "--set", "initial.angular_velocity=[0.0, 0.0, 10.0]"];
+    let failure = refused(&library, &[&["fmu", scene, "-o", &old][..], &spun].concat(), 4);
+    assert_eq!(failure["file"], scene);
+    assert!(failure["message"].as_str().unwrap().contains("examples/pendulum.toml: a step of"), "{failure}");
     let failure = refused(&library, &["fmu", scene, "-o", &place("nowhere/top.fmu")], 6);
     assert!(failure["message"].as_str().unwrap().contains("cannot be written"), "{failure}");
     assert_eq!(fs::read(old).unwrap(), b"old");

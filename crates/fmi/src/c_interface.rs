@@ -101,7 +101,8 @@ fn words_of(panic: &(dyn Any + Send)) -> String {
     text.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_else(|| "a panic without words".to_owned())
 }
 
-/// Calls `work` for a component; errors and panics go to the logger.
+/// Calls `work` for a component; errors and panics go to the logger. A broken instance can be reset and freed, and its
+/// saved states can be freed.
 fn call(
     component: fmi2Component,
     function: &'static str,
@@ -109,9 +110,10 @@ fn call(
 ) -> fmi2Status {
     // SAFETY: null, or a component that only this thread uses now.
     let Some(component) = (unsafe { component.cast::<Component>().as_mut() }) else { return fmi2Error };
-    let done = match component.is_broken && function != "fmi2Reset" {
-        true => Ok(Err(Error::Broken)),
-        false => catch_unwind(AssertUnwindSafe(|| work(component))),
+    let is_allowed = !component.is_broken || matches!(function, "fmi2Reset" | "fmi2FreeFMUstate");
+    let done = match is_allowed {
+        true => catch_unwind(AssertUnwindSafe(|| work(component))),
+        false => Ok(Err(Error::Broken)),
     };
     let error = match done {
         Ok(Ok(status)) => return status,
@@ -681,7 +683,7 @@ mod tests {
                     [body]\nrigid = { mass = 1, center_of_mass = [0, 0, 0], inertia = [[1, 0, 0], [0, 1, 0], [0, 0, 1]] }\n";
         let scene = Scene::parse(text, "ball.toml").unwrap();
         let library = folder.join("library");
-        std::fs::write(&library, MARKER).unwrap();
+        std::fs::write(&library, format!("{MARKER} fmi2DoStep")).unwrap();
         let report = pack(&scene, &folder.join("ball.fmu"), &FmuSettings { library: Some(library) }, |_| ()).unwrap();
         let zip = std::fs::File::open(folder.join("ball.fmu")).unwrap();
         zip::ZipArchive::new(zip).unwrap().extract(folder).unwrap();
@@ -699,17 +701,35 @@ mod tests {
         let logger = Logger { callback: Some(callback), environment, name: CString::default() };
         let mut component = Component { instance: instance(folder.path()), logger, is_broken: false };
         let c: fmi2Component = ptr::from_mut(&mut component).cast();
-        assert_eq!(call(c, "fmi2GetReal", |_| panic!("100% out of range")), fmi2Error);
-        // SAFETY: a component.
+        let mut state: fmi2FMUstate = ptr::null_mut();
+        // SAFETY: a component, and a place for a state.
         unsafe {
-            assert_eq!(fmi2EnterInitializationMode(c), fmi2Error);
+            assert_eq!(fmi2EnterInitializationMode(c), fmi2OK);
+            assert_eq!(fmi2GetFMUstate(c, &mut state), fmi2OK);
+        }
+        assert!(!state.is_null());
+        assert_eq!(call(c, "fmi2GetReal", |_| panic!("100% out of range")), fmi2Error);
+        // SAFETY: a component, and a state that nobody uses afterwards.
+        unsafe {
+            assert_eq!(fmi2ExitInitializationMode(c), fmi2Error);
+            assert_eq!(fmi2FreeFMUstate(c, &mut state), fmi2OK);
+            assert!(state.is_null());
             assert_eq!(fmi2Reset(c), fmi2OK);
             assert_eq!(fmi2EnterInitializationMode(c), fmi2OK);
             assert_eq!(fmi2EnterInitializationMode(ptr::null_mut()), fmi2Error);
             fmi2FreeInstance(ptr::null_mut());
         }
+        let lost = call(c, "fmi2SetFMUstate", |component| {
+            component.instance.lose();
+            panic!("the model is gone")
+        });
+        assert_eq!(lost, fmi2Error);
+        // SAFETY: a component.
+        assert_eq!(unsafe { fmi2Reset(c) }, fmi2Error);
         assert!(said[0].contains("a bug of flexframe, in fmi2GetReal: 100%% out of range"), "{said:?}");
         assert!(said[1].contains("fmi2Reset"), "{said:?}");
-        assert_eq!(said.len(), 2);
+        assert!(said[2].contains("in fmi2SetFMUstate: the model is gone"), "{said:?}");
+        assert!(said[3].contains("free the instance and make another"), "{said:?}");
+        assert_eq!(said.len(), 4);
     }
 }

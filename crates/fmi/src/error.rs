@@ -82,6 +82,8 @@ pub enum Error {
     Panic { function: &'static str, words: String },
     #[error("this instance has been stopped by a bug, which was reported before; free it, or call fmi2Reset")]
     Broken,
+    #[error("the model of this instance was lost by a fault in flexframe; free the instance and make another")]
+    Lost,
 }
 
 /// Why a motion cannot go on.

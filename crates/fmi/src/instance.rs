@@ -27,7 +27,7 @@ pub struct Instance {
 enum Body {
     Still(Box<FmuModel>),
     Moving(Box<Motion>),
-    /// Lost by a panic; [`Error::Broken`] is what callers get.
+    /// Lost by a panic; [`Error::Lost`] is what callers get.
     Lost,
 }
 
@@ -71,7 +71,8 @@ impl Instance {
     fn motion(&mut self) -> Result<&mut Motion, Error> {
         match &mut self.body {
             Body::Moving(motion) => Ok(motion),
-            Body::Still(_) | Body::Lost => Err(Error::Broken),
+            Body::Still(_) => Err(Error::Broken),
+            Body::Lost => Err(Error::Lost),
         }
     }
 
@@ -140,7 +141,7 @@ impl Instance {
             other => other,
         };
         if matches!(self.body, Body::Lost) {
-            return Err(Error::Broken);
+            return Err(Error::Lost);
         }
         self.starts.clear();
         (self.phase, self.stop) = (Phase::Instantiated, None);
@@ -219,26 +220,34 @@ impl Instance {
         Ok(Saved { guid, phase, stop, motion: self.motion()?.state()? })
     }
 
-    /// Goes back, or on, to a state that was saved; of an instance that has not begun, too.
+    /// Goes back, or on, to a state that was saved; of an instance that has not begun, too. After an error everything is
+    /// as it was.
     pub fn restore(&mut self, saved: &Saved) -> Result<(), Error> {
         if saved.guid != self.guid {
             return Err(Error::Bytes);
         }
-        let begun = self.phase != Phase::Instantiated;
-        if begun && saved.stop != self.stop {
+        if self.phase == Phase::Instantiated {
+            let before = (self.stop, self.starts.clone());
+            self.stop = saved.stop;
+            let done = self.begin().and_then(|()| self.motion()?.set_state(&saved.motion));
+            if let Err(error) = done {
+                self.reset()?;
+                (self.stop, self.starts) = before;
+                return Err(error);
+            }
+        } else if saved.stop == self.stop {
+            self.motion()?.set_state(&saved.motion)?;
+        } else {
             return Err(Error::Bytes);
         }
-        if !begun {
-            self.stop = saved.stop;
-            self.begin()?;
-        }
-        let done = self.motion()?.set_state(&saved.motion);
-        match done {
-            Ok(()) => self.phase = saved.phase,
-            Err(_) if !begun => self.reset()?,
-            Err(_) => {}
-        }
-        done
+        self.phase = saved.phase;
+        Ok(())
+    }
+
+    /// As a panic while the motion is made leaves it.
+    #[cfg(test)]
+    pub fn lose(&mut self) {
+        self.body = Body::Lost;
     }
 }
 

@@ -129,8 +129,11 @@ impl Scheme for ConservativeMotion {
         body.pass_jump(state, ahead).map_err(|error| error.in_step(time, 0.0))
     }
 
-    fn loads_have_changed(&mut self, end: f64) -> f64 {
+    fn loads_have_changed(&mut self) {
         self.first_known = false;
+    }
+
+    fn raise_energy_of_loads(&mut self, end: f64) -> f64 {
         let energy = self.body.energy_of_loads(end);
         self.largest.energy = self.largest.energy.max(energy);
         energy

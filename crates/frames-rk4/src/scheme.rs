@@ -43,9 +43,12 @@ pub trait Scheme: fmt::Debug + Send + Sync + Any {
         Ok(())
     }
 
-    /// What acts has been changed from outside between two steps: rates that were found before no longer hold. Returns the
-    /// energy scale of the loads up to `end` as they are now, where the scheme's steps may be blind to their work.
-    fn loads_have_changed(&mut self, end: f64) -> f64 {
+    /// What acts has been changed from outside between two steps: rates that were found before no longer hold.
+    fn loads_have_changed(&mut self) {}
+
+    /// Takes up the energy scale of the loads up to `end` as they are now, and returns it. Asked for after a change of the
+    /// loads, where steps may be blind to their work.
+    fn raise_energy_of_loads(&mut self, end: f64) -> f64 {
         let _ = end;
         0.0
     }

@@ -137,11 +137,17 @@ impl Setup<'_> {
 
     /// The same, of the body of this set-up.
     pub(crate) fn energy_of_loads_on(&self, body: &ConservativeBody) -> f64 {
+        if self.may_miss_work(body.fastest_rate()) { body.energy_of_loads(self.end) } else { 0.0 }
+    }
+
+    /// Whether steps may be blind to work of the loads: they do not resolve a mode of this rate, the largest of ω_k and
+    /// 2 ζ_k ω_k, or a formula rises from nothing within one.
+    pub(crate) fn may_miss_work(&self, fastest_rate: f64) -> bool {
         let is_resolved = match self.control {
-            StepControl::Fixed(step) => account::is_resolved(body.fastest_rate(), step),
+            StepControl::Fixed(step) => account::is_resolved(fastest_rate, step),
             StepControl::Tolerance(_) => false,
         };
-        if is_resolved && !self.has_formula() { 0.0 } else { body.energy_of_loads(self.end) }
+        !is_resolved || self.has_formula()
     }
 
     fn has_formula(&self) -> bool {

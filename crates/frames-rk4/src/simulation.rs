@@ -82,6 +82,8 @@ pub struct Simulation {
     /// Where events look at the motion.
     looked_at: Observation,
     observers: Observers,
+    /// Whether steps may be blind to work of the loads, whose energy scale is then known.
+    may_miss_work: bool,
 }
 
 /// The way through the segment of the moment.
@@ -176,6 +178,7 @@ impl Simulation {
         let account = EnergyAccount::new(scheme.energies(), energy_of_loads);
         Ok(Self {
             fingerprint: Fingerprint::of(setup),
+            may_miss_work: setup.may_miss_work(scheme.fastest_rate()),
             scheme,
             events: Events::default(),
             last_step: None,
@@ -238,8 +241,10 @@ impl Simulation {
     /// Has to be told where a [`Signal`](crate::Signal), or what a load of one's own reads, has been set since the last
     /// step: the next step then starts from the loads as they are, and has its full order. It allocates.
     pub fn loads_have_changed(&mut self) {
-        let energy = self.scheme.loads_have_changed(self.end);
-        self.observers.energy.raise_of_loads(energy);
+        self.scheme.loads_have_changed();
+        if self.may_miss_work {
+            self.observers.energy.raise_of_loads(self.scheme.raise_energy_of_loads(self.end));
+        }
         self.events.forget();
     }
 

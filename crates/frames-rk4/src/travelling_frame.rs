@@ -133,9 +133,8 @@ impl<S: FrameSteps> Scheme for TravellingFrame<S> {
         Ok(())
     }
 
-    fn loads_have_changed(&mut self, _end: f64) -> f64 {
+    fn loads_have_changed(&mut self) {
         self.steps.pass_corner();
-        0.0
     }
 
     fn observe(&mut self, points: &[PointShapes], out: &mut Observation) -> Result<(), StepError> {

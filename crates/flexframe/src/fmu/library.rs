@@ -5,10 +5,14 @@ use std::path::{Path, PathBuf};
 
 use super::error::{FmuError, LIBRARY_VARIABLE};
 
-/// Bytes that the library of this version has in it, and no other file.
+/// Bytes that tell which version the library is of. The program has them in it, too: what the library alone has is the name
+/// of a function of FMI.
 pub const fn marker() -> &'static str {
     concat!("flexframe library for FMI 2.0, version ", env!("CARGO_PKG_VERSION"), ";")
 }
+
+/// How a static library begins, such as the `.rlib` that is built beside the library.
+const ARCHIVE: &[u8] = b"!<arch>";
 
 /// The library, and the folder and the ending that it gets in an FMU.
 pub(super) struct Library {
@@ -37,8 +41,10 @@ impl Library {
         let refuse = |found: String| FmuError::Library { path: path.clone(), found };
         let bytes =
             std::fs::read(&path).map_err(|error| refuse(format!("the library for FMUs cannot be read ({error})")))?;
-        let marker = marker().as_bytes();
-        if !bytes.windows(marker.len()).any(|bytes| bytes == marker) {
+        let has = |text: &str| bytes.windows(text.len()).any(|bytes| bytes == text.as_bytes());
+        // Put together here, so that the program does not have the name in it.
+        let exported = "fmi2-DoStep".replace('-', "");
+        if bytes.starts_with(ARCHIVE) || !has(marker()) || !has(&exported) {
             let version = env!("CARGO_PKG_VERSION");
             return Err(refuse(format!("this is not the library for FMUs of flexframe {version}")));
         }

@@ -99,6 +99,11 @@ pub fn pack(
     settings: &FmuSettings,
     mut progress: impl FnMut(BuildProgress),
 ) -> Result<FmuReport, FmuError> {
+    if matches!(scene.body, Body::Matrices(_)) {
+        let (found, expected) =
+            ("a body of matrices, which no body file holds yet", "a body with a mesh, or a rigid one");
+        return Err(scene.refuse("body.matrices", found, expected, "give the body a mesh to pack it").into());
+    }
     let library = Library::find(settings.library.as_deref())?;
     if !matches!(scene.modes.flexible, Flexible::Count(_)) {
         let cure = "give the number of modes to keep; `flexframe modes` shows their frequencies";
@@ -122,8 +127,10 @@ pub fn pack(
         Model::write_body(&for_unknown_forces(scene.clone()), &resources.join(BODY), false, &mut progress)?;
         names.push(BODY.to_owned());
     }
-    // What is packed is what will be opened.
-    let fmu = FmuModel::new(Scene::read(resources.join(SCENE))?, progress)?;
+    // What is packed is what will be opened. Its files have been found by now; messages name the scene that was given.
+    let opened = Scene::read(resources.join(SCENE))?;
+    let named = Scene { path: scene.path.clone(), source: scene.source.clone(), ..opened };
+    let fmu = FmuModel::new(named, progress)?;
     let manifest = Manifest::of(resources, &names)?;
     let text = serde_json::to_string_pretty(&manifest).map_err(|error| FmuError::Text(error.to_string()))?;
     std::fs::write(resources.join(MANIFEST), text).map_err(WriteError::of(&resources.join(MANIFEST)))?;

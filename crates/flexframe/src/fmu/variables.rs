@@ -88,7 +88,7 @@ fn inputs(scene: &Scene, model: &Model, all: &mut Vec<Variable>) {
     };
     let acts = |load: &Load| model.physics.effects[Effect::Gravity] || !matches!(load, Load::Gravity(_));
     for (acting, (i, _)) in scene.loads.iter().enumerate().filter(|(_, load)| acts(load)).enumerate() {
-        let description = format!("factor on the load loads[{i}] of the scene, beside its own history");
+        let description = format!("factor on load {} of the scene, counted from 1, beside its own history", i + 1);
         add(format!("loads[{}].factor", i + 1), description, "1", Input::Factor(acting));
     }
     for (point, (name, _)) in model.points.iter().enumerate() {

@@ -25,7 +25,7 @@ impl Fmu {
         let folder = tempfile::tempdir().unwrap();
         let place = |name: &str| folder.path().join(name);
         // The functions are called in this process: the library in the FMU has only to be taken for it.
-        fs::write(place("library"), marker()).unwrap();
+        fs::write(place("library"), format!("{} fmi2DoStep", marker())).unwrap();
         let settings = FmuSettings { library: Some(place("library")) };
         let report = pack(scene, &place("beam.fmu"), &settings, |_| ()).unwrap();
         let mut zip = zip::ZipArchive::new(Cursor::new(fs::read(place("beam.fmu")).unwrap())).unwrap();

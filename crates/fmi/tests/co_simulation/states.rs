@@ -1,7 +1,9 @@
 //! States that are saved, restored, and taken through bytes.
 
+use flexframe_fmi::c_interface::{fmi2EnterInitializationMode, fmi2ExitInitializationMode};
+
 use crate::importer::{Fmu, Instance};
-use crate::scenes::{FREE, LARGE, driven, scene, scene_in_steps};
+use crate::scenes::{FREE, LARGE, driven, rigid, scene, scene_in_steps};
 
 /// Goes some steps of unequal length, with inputs that jump, and gives all outputs at each point.
 fn onward(fmu: &Fmu, instance: &mut Instance, from: f64) -> Vec<Vec<f64>> {
@@ -82,4 +84,33 @@ fn what_is_no_state_of_this_fmu_is_refused_and_changes_nothing() {
     other.free(foreign);
     assert_eq!(instance.get(&references).unwrap(), before);
     instance.free(state);
+}
+
+/// A stop time and an input that were set before the beginning hold after a state was refused.
+#[test]
+fn a_state_that_is_refused_leaves_an_instance_that_has_not_begun_as_it_was_set_up() {
+    let fmu = Fmu::of(&rigid());
+    let mut other = fmu.start();
+    let state = other.save().unwrap();
+    let mut bytes = other.serialized(state);
+    other.free(state);
+    // The last number of the last input, before the one byte that ends the state, is no number.
+    let last = bytes.len() - 9..bytes.len() - 1;
+    bytes[last].copy_from_slice(&f64::NAN.to_le_bytes());
+    let sum = crc32fast::hash(&bytes[4..]).to_le_bytes();
+    bytes[..4].copy_from_slice(&sum);
+
+    let mut instance = fmu.instantiate().unwrap();
+    let (factor, _) = fmu.inputs()[0];
+    instance.set_up(0.0, Some(0.3)).unwrap();
+    instance.set(&[factor], &[0.25]).unwrap();
+    let state = instance.deserialized(&bytes).unwrap();
+    let said = instance.restore(state).unwrap_err();
+    assert!(said.contains("no state of this FMU"), "{said}");
+    instance.free(state);
+    instance.call(fmi2EnterInitializationMode).unwrap();
+    assert_eq!(instance.get(&[factor]).unwrap(), [0.25]);
+    instance.call(fmi2ExitInitializationMode).unwrap();
+    // Beyond the end of the scene.
+    instance.step(0.0, 0.3).unwrap();
 }

@@ -79,3 +79,25 @@ fn a_drive_with_an_added_speed_is_one_by_a_table() {
         assert!((found.reaction.drive_power / found.reaction.drive - later).abs() < 1e-10);
     }
 }
+
+/// The account of the energy, which a checkpoint keeps, is without a scale of the loads where steps resolve the modes. A
+/// signal that was set does not give it one.
+#[test]
+fn a_signal_raises_the_energy_scale_only_where_steps_may_miss_work() {
+    let body = body(RigidMotion::free(), &[5.0, 8.0, 13.0]);
+    let mut run = Run::new(&body, END);
+    let factor = Signal::held(0.0);
+    let unit = dead_force(point(&body, [0.3, -0.2, 0.4]), Vector3::new(1.0, -2.0, 0.5), History::Constant);
+    let load: SharedLoad = Arc::new(ScaledLoad { load: unit, factor: factor.clone() });
+    run.loads = vec![load];
+    let controls =
+        [(StepControl::Fixed(0.01), false), (StepControl::Fixed(0.1), true), (StepControl::Tolerance(1e-6), true)];
+    for (control, is_raised) in controls {
+        factor.hold(0.0);
+        let mut simulation = run.start(EXPONENTIAL, control, Rows::EverySteps(u64::MAX));
+        let before = simulation.checkpoint().unwrap();
+        factor.hold(100.0);
+        simulation.loads_have_changed();
+        assert_eq!(simulation.checkpoint().unwrap() != before, is_raised, "{control:?}");
+    }
+}
