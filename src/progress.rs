@@ -57,6 +57,7 @@ impl Bar {
     pub fn run(&mut self, progress: RunProgress) {
         match progress {
             RunProgress::Build(progress) => self.build(progress),
+            RunProgress::Built => {}
             RunProgress::Motion(part) => self.show("stepping", Some(((10_000.0 * part) as u64, 10_000))),
         }
     }

@@ -44,6 +44,8 @@ pub fn run(
     let path = results_path(scene, folder);
     Writer::<Row>::check(&path, settings.overwrite)?;
     let model = Model::build(scene, |p| progress(RunProgress::Build(p)))?;
+    // Who is to stop may do so here, before there is an unfinished file: the last phase of the build may have been long.
+    progress(RunProgress::Built);
     let report = run_model(scene, &model, folder, settings, progress)?;
     Ok((model, report))
 }
@@ -87,6 +89,7 @@ pub fn resume(
     let part = writer.unfinished().to_path_buf();
     let scene = scene_of(&results, &settings.cache)?;
     let model = Model::build(&scene, |p| progress(RunProgress::Build(p)))?;
+    progress(RunProgress::Built);
     let started = Instant::now();
     let mut simulation = start(&scene, &model)?;
     let changed = |what| RunError::Changed { part: part.clone(), what };

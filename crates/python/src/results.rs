@@ -56,6 +56,7 @@ impl Rows {
         data.set_item("scene", scene_text)?;
         data.set_item("scene_file", scene_file)?;
         data.set_item("frequencies", metadata.body.frequencies.clone().into_pyarray(py))?;
+        data.set_item("damping_ratios", metadata.body.damping_ratios.clone().into_pyarray(py))?;
         data.set_item("kinds", metadata.body.kinds().collect::<Vec<_>>())?;
         data.set_item("points", &metadata.point_names)?;
         let positions = metadata.point_positions.as_flattened().to_vec();

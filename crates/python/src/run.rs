@@ -43,7 +43,12 @@ fn followed<'py>(
         work(&settings, &mut |progress| match progress {
             // Nothing is written yet.
             RunProgress::Build(_) => told.check(),
-            RunProgress::Motion(_) => moves.store(true, Ordering::Relaxed),
+            RunProgress::Built => {
+                // First said, then looked: who asks it to stop from here on waits for the file.
+                moves.store(true, Ordering::Relaxed);
+                told.check();
+            }
+            RunProgress::Motion(_) => {}
         })
     };
     // The motion stops by itself at its next row, and its rows are kept.

@@ -2,13 +2,12 @@
 
 use std::sync::{Arc, Mutex, MutexGuard, TryLockError};
 
+use flexframe::columns::part;
 use flexframe::failure::{Details, Kind};
-use flexframe::frames_rk4::{
-    self, Crossing, Effect, EffectMap, Event, Observation, Physics, Setup, SharedLoad, StepError,
-};
+use flexframe::frames_rk4::{self, Crossing, EffectMap, Event, Observation, Setup, StepError};
 use flexframe::results::Metadata;
 use flexframe::run::Watch;
-use flexframe::scene::{Choice, Model, StartError};
+use flexframe::scene::StartError;
 use pyo3::exceptions::{PyRuntimeError, PyTypeError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -25,6 +24,8 @@ use crate::state::{changed, to_dict};
 
 /// Steps between two looks at signals.
 const STEPS_PER_LOOK: u64 = 4096;
+/// Times closer than this part of the end are one.
+const SAME: f64 = 1e-12;
 
 /// Where a simulation has come to.
 #[pyclass(frozen, get_all, module = "flexframe")]
@@ -58,6 +59,8 @@ struct Running {
     simulation: frames_rk4::Simulation,
     /// Whether the row at the start has been given, or a step been tried.
     begun: bool,
+    /// Whether the state has been set since the last try of a step, and no run has given its row.
+    is_set: bool,
     row: Observation,
 }
 
@@ -83,9 +86,11 @@ impl Simulation {
         most_steps: u64,
         mut watch: Option<&mut Watch<'_>>,
     ) -> PyResult<frames_rk4::Reached> {
-        running.begun = true;
         let mut left = most_steps;
         loop {
+            // Before the steps: what they come to is then returned in any case, and no row or event is lost.
+            py.check_signals()?;
+            (running.begun, running.is_set) = (true, false);
             let steps = left.min(STEPS_PER_LOOK);
             let simulation = &mut running.simulation;
             let reached = py.detach(|| match &mut watch {
@@ -97,7 +102,6 @@ impl Simulation {
                 simulation.set_stop_time(None);
             }
             let reached = self.or_fault(py, reached)?;
-            py.check_signals()?;
             left -= steps;
             if reached != frames_rk4::Reached::Between || left == 0 {
                 return Ok(reached);
@@ -168,8 +172,9 @@ impl Simulation {
             rows.push(&row, &self.metadata);
             watch.observe(&row).map_err(|error| exception(py, &error))
         };
-        if !running.begun {
+        if !running.begun || running.is_set {
             record(running, watch)?;
+            (running.begun, running.is_set) = (true, false);
         }
         while !is_done(running) {
             let reached = self.go_on(py, running, u64::MAX, Some(watch));
@@ -193,18 +198,6 @@ impl Simulation {
     }
 }
 
-/// What is computed. No estimate knows the laws: with them, what the scene leaves to the program is on where it needs nothing
-/// of the mesh.
-fn effects(model: &Model, scene: &flexframe::scene::Scene, has_laws: bool) -> EffectMap<bool> {
-    let mut effects = model.physics.effects;
-    if has_laws {
-        for effect in [Effect::Translation, Effect::Rotation, Effect::DeformedInertia, Effect::Coriolis] {
-            effects[effect] |= scene.effects.choices[effect] == Choice::Auto;
-        }
-    }
-    effects
-}
-
 fn is_done(running: &Running) -> bool {
     running.simulation.time() >= running.simulation.end()
 }
@@ -219,15 +212,24 @@ impl Simulation {
     #[pyo3(signature = (body, loads=None))]
     fn new(py: Python<'_>, body: Py<Body>, loads: Option<Vec<Bound<'_, PyAny>>>) -> PyResult<Self> {
         let (model, scene) = (body.get().model().clone(), body.get().scene_of().clone());
-        let metadata = Arc::new(flexframe::run::metadata(&scene, &model));
+        let mut metadata = flexframe::run::metadata(&scene, &model);
         let points: Points = Arc::new(model.points.clone());
         let faults = Faults::default();
-        let mut all: Vec<SharedLoad> = model.loads().to_vec();
+        let mut laws = Vec::new();
         for load in loads.unwrap_or_default() {
-            all.push(load_of(&load, &points, model.body.flexible(), &faults)?);
+            laws.push(load_of(&load, &points, model.body.flexible(), &faults)?);
         }
-        let has_laws = all.len() > model.loads().len();
-        let physics = Physics { effects: effects(&model, &scene, has_laws), ..model.physics.clone() };
+        let (physics, mut all, damping_ratios) = if laws.is_empty() {
+            (model.physics.clone(), model.loads().to_vec(), model.damping_ratios().to_vec())
+        } else {
+            // What each of several supports does would have to know the laws.
+            metadata.parts.retain(|has| has != part::SUPPORTS);
+            metadata.support_names.clear();
+            model.under_unknown_forces(&scene)
+        };
+        all.extend(laws);
+        metadata.body.damping_ratios.clone_from(&damping_ratios);
+        let metadata = Arc::new(metadata);
         if let Some(refusal) = model.refusal.filter(|_| scene.effects.refuse) {
             return Err(exception(py, &StartError::from(refusal)));
         }
@@ -235,6 +237,7 @@ impl Simulation {
             let observed: Vec<_> = points.iter().map(|(_, point)| point.clone()).collect();
             let initial = model.initial(&scene);
             frames_rk4::Simulation::new(&Setup {
+                damping_ratios: &damping_ratios,
                 loads: &all,
                 points: &observed,
                 physics: &physics,
@@ -251,7 +254,8 @@ impl Simulation {
         simulation.watch(Arc::new(Mutex::new(EndAtFault(faults.clone()))));
         let row = Observation::new(model.body.flexible(), points.len());
         let effects = physics.effects;
-        Ok(Self { body, metadata, effects, faults, running: Mutex::new(Running { simulation, begun: false, row }) })
+        let running = Mutex::new(Running { simulation, begun: false, is_set: false, row });
+        Ok(Self { body, metadata, effects, faults, running })
     }
 
     #[getter]
@@ -299,8 +303,10 @@ impl Simulation {
                 rows.into_results(py, &metadata, true, &events)
             }
             Err(error) => {
-                // A class without room for it has it not.
-                let _ = error.value(py).setattr("results", rows.into_results(py, &self.metadata, false, &events)?);
+                // A class without room for them has them not; whatever fails here, the error is told.
+                if let Ok(results) = rows.into_results(py, &self.metadata, false, &events) {
+                    let _ = error.value(py).setattr("results", results);
+                }
                 Err(error)
             }
         }
@@ -321,7 +327,8 @@ impl Simulation {
         let mut running = self.running()?;
         self.refuse_at_end(py, &running)?;
         let (now, end) = (running.simulation.time(), running.simulation.end());
-        if !(time > now && time <= end) {
+        // The run knows no time between that it could stop at.
+        if !(time - now > SAME * end && time <= end) {
             let expected = format!("a time after {now}, up to the end at {end}");
             let cure = "name a time within the run; a later end is `time.end` of the scene";
             return Err(wrong_input(py, "time", &time.to_string(), &expected, cure));
@@ -388,7 +395,10 @@ impl Simulation {
         if let Some(fault) = self.faults.take() {
             return Err(fault);
         }
-        set.map_err(|error| exception(py, &StartError::from(error)))
+        set.map_err(|error| exception(py, &StartError::from(error)))?;
+        // An iteration goes on to the next row: it may set the state at every one.
+        running.is_set = true;
+        Ok(())
     }
 
     fn __iter__(slf: Py<Self>) -> Py<Self> {

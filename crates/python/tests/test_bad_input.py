@@ -202,7 +202,7 @@ def test_stepping_past_the_end(rigid):
             step()
     simulation.set_state({"time": 0.5})
     assert not simulation.done and simulation.advance().kind == "row"
-    for time in (0.2, 1.5, float("nan")):
+    for time in (0.2, 1.5, float("nan"), float(np.nextafter(simulation.time, 1.0))):
         with pytest.raises(InputError, match="expected a time after 0.6.*, up to the end at 1"):
             simulation.advance_to(time)
     with pytest.raises(InputError, match="steps: found 0, expected 1 or more"):

@@ -123,6 +123,44 @@ def test_what_is_left_to_the_program_is_on_with_a_law(rigid):
     assert flexframe.Simulation(fixed, [push]).run()["position"][-1, 0] == 0.0
 
 
+def test_a_mode_that_a_law_has_struck_decays_as_its_damping_says():
+    """e^(-zeta omega t) cos(omega sqrt(1 - zeta^2) t + phase), of a body that nothing moves but the law."""
+    zeta, duration = 0.05, 1e-3
+    still = {key: value for key, value in RING.items() if key not in ("initial", "loads")}
+    modes = {"flexible": 4, "damping_ratio": zeta, "static_correction": False}
+    body = flexframe.Body(flexframe.Scene({**still, "modes": modes}, base=EXAMPLES))
+    assert np.array_equal(body.damping_ratios, np.zeros(4))  # by the scene alone
+
+    def strike(motion):
+        force = np.sin(np.pi * motion.time / duration) if motion.time < duration else 0.0
+        return [force, 0.0, 0.0, 0.0]
+
+    results = flexframe.Simulation(body, [flexframe.ModalForce(strike, corners=[duration])]).run()
+    assert np.array_equal(results.damping_ratios, np.full(4, zeta))
+    free = results["time"] > 1.05 * duration
+    t = results["time"][free] - results["time"][free][0]
+    q, rate = results["modal/displacement"][free, 0], results["modal/velocity"][free, 0]
+    omega = 2 * np.pi * body.frequencies[0]
+    damped = omega * np.sqrt(1 - zeta**2)
+    phase = damped * t
+    expected = np.exp(-zeta * omega * t) * (q[0] * np.cos(phase) + (rate[0] + zeta * omega * q[0]) / damped * np.sin(phase))
+    assert zeta * omega * t[-1] > 0.3
+    assert np.abs(q - expected).max() < 1e-8 * np.abs(q).max()
+
+
+def test_gravity_that_a_force_of_the_scene_outweighs_acts_where_a_law_takes_the_force_away():
+    loads = [
+        {"kind": "gravity", "direction": [0.0, 0.0, -1.0], "amplitude": 1e-3},
+        {"kind": "force", "at": [0.0, 0.0, 0.0], "direction": [1.0, 0.0, 0.0], "amplitude": 10.0},
+    ]
+    body = flexframe.Body(flexframe.Scene({**RIGID, "loads": loads}))
+    assert flexframe.Simulation(body).run()["position"][-1, 2] == 0.0  # too little for the scene alone
+    against = flexframe.Force("center", lambda motion: [-10.0, 0.0, 0.0])
+    position = flexframe.Simulation(body, [against]).run()["position"][-1]
+    assert position[2] == pytest.approx(-0.5 * 1e-3, rel=1e-9)
+    assert abs(position[0]) < 1e-9
+
+
 def test_a_law_that_raised_may_be_mended_and_the_run_goes_on(rigid):
     broken = [False]
 

@@ -100,6 +100,28 @@ def test_a_simulation_stops_at_times_and_goes_on_from_states(ring):
     assert np.array_equal(other.state()["velocity"], state["velocity"])
 
 
+def test_a_run_from_a_set_state_begins_with_its_row(rigid):
+    nothing = flexframe.Force("center", lambda motion: [0.0, 0.0, 0.0])
+    simulation = flexframe.Simulation(rigid, [nothing])
+    simulation.run()
+    simulation.set_state({"time": 0.35, "velocity": [2.0, 0.0, 0.0], "origin": [1.0, 0.0, 0.0]})
+    results = simulation.run()
+    assert results["time"] == pytest.approx(np.append(0.35, np.linspace(0.4, 1.0, 7)), rel=1e-12)
+    assert np.array_equal(results["velocity"][0], [2.0, 0.0, 0.0])
+    assert results["position"][:, 0] == pytest.approx(1.0 + 2.0 * (results["time"] - 0.35), rel=1e-9)
+
+
+def test_an_iteration_goes_on_though_the_state_is_set_at_every_row(rigid):
+    simulation = flexframe.Simulation(rigid, [flexframe.Force("center", lambda motion: [0.0, 0.0, 0.0])])
+    times = []
+    for row in simulation:
+        times.append(row.time)
+        assert len(times) <= 11
+        if not simulation.done:
+            simulation.set_state({"velocity": [row.time, 0.0, 0.0]})
+    assert times == pytest.approx(np.linspace(0.0, 1.0, 11), rel=1e-12)
+
+
 def test_rows_become_a_dataset_and_a_table(ring, program, tmp_path):
     xarray, pandas = pytest.importorskip("xarray"), pytest.importorskip("pandas")
     results = flexframe.Simulation(ring).run()

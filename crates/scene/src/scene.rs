@@ -8,14 +8,14 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use fem_tet10::{Materials, PointMass};
-use frames_rk4::{Method, Rows, StepControl};
+use frames_rk4::{Effect, Method, Rows, StepControl};
 use matrix_import::MatrixFiles;
 use mesh_import::ImportSettings;
 use serde::Deserialize;
 
 use crate::cache::Cache;
 use crate::constraint::Constraint;
-use crate::effects::Effects;
+use crate::effects::{Choice, Effects};
 use crate::load::Load;
 use crate::modes::Modes;
 
@@ -189,7 +189,34 @@ impl Scene {
         (*stress, *peak_stress, *stress_field, *support_reactions) = (false, false, false, false);
         self
     }
+
+    /// The same, for forces from elsewhere that nobody knows while the body is built. Effects that would be left out since
+    /// the scene calls for none of them are on, as long as the scene does not say otherwise: translation, rotation, gravity,
+    /// and of a body with modes damping, deformed inertia and Coriolis. What each of several supports does is left out: it
+    /// would have to know these forces. So is the peak of the stress.
+    pub fn for_unknown_forces(mut self) -> Self {
+        (self.output.support_reactions, self.output.peak_stress) = (false, false);
+        for effect in self.on_under_unknown_forces() {
+            self.effects.choices[effect] = Choice::On;
+        }
+        self
+    }
+
+    /// The effects that are on under forces that nobody knows, of those that the scene leaves open.
+    pub(crate) fn on_under_unknown_forces(&self) -> Vec<Effect> {
+        let choices = &self.effects.choices;
+        let is_rigid = matches!(self.body, Body::Rigid(_))
+            || self.modes.flexible.most() == 0
+            || choices[Effect::Flexibility] == Choice::Off;
+        let of_modes: &[Effect] = if is_rigid { &[] } else { &OF_MODES };
+        let effects = OF_ANY_BODY.iter().chain(of_modes).copied();
+        effects.filter(|effect| choices[*effect] == Choice::Auto).collect()
+    }
 }
+
+/// What unknown forces may call for, and what they call for where there are modes.
+const OF_ANY_BODY: [Effect; 3] = [Effect::Translation, Effect::Rotation, Effect::Gravity];
+const OF_MODES: [Effect; 3] = [Effect::Damping, Effect::DeformedInertia, Effect::Coriolis];
 
 impl Output {
     /// Whether anything of the stress is wanted.

@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use frames_rk4::{Effect, RotationShapes};
+use frames_rk4::RotationShapes;
 use results::Metadata;
-use scene::{Body, BuildProgress, Choice, Model, Scene};
+use scene::{BuildProgress, Model, Scene};
 
 use super::error::FmuError;
 use super::si_unit::seconds;
@@ -35,7 +35,7 @@ impl FmuModel {
     /// # Errors
     /// [`FmuError`].
     pub fn new(scene: Scene, progress: impl FnMut(BuildProgress)) -> Result<Self, FmuError> {
-        let scene = for_unknown_forces(scene);
+        let scene = scene.for_unknown_forces();
         let model = Model::build(&scene, progress)?;
         model
             .start(&scene)
@@ -62,21 +62,3 @@ impl FmuModel {
         });
     }
 }
-
-/// The scene as its FMU has it. What would be left out since the scene calls for none of it is on, as long as the scene does not
-/// say otherwise: nobody knows the forces from outside. What each of several supports does is left out: it would have to know
-/// these forces.
-pub(super) fn for_unknown_forces(mut scene: Scene) -> Scene {
-    (scene.output.support_reactions, scene.output.peak_stress) = (false, false);
-    let flexible = scene.modes.flexible.most() > 0 && scene.effects.choices[Effect::Flexibility] != Choice::Off;
-    let of_modes = if matches!(scene.body, Body::Meshed(_)) && flexible { &OF_MODES[..] } else { &[] };
-    for effect in [Effect::Translation, Effect::Rotation, Effect::Gravity].iter().chain(of_modes) {
-        let choice = &mut scene.effects.choices[*effect];
-        if *choice == Choice::Auto {
-            *choice = Choice::On;
-        }
-    }
-    scene
-}
-
-const OF_MODES: [Effect; 3] = [Effect::Damping, Effect::DeformedInertia, Effect::Coriolis];

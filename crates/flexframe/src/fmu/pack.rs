@@ -15,7 +15,7 @@ use super::description::describe;
 use super::error::FmuError;
 use super::library::Library;
 use super::manifest::{MANIFEST, Manifest};
-use super::model::{FmuModel, for_unknown_forces};
+use super::model::FmuModel;
 use super::packed_scene::{BODY, PackedScene, SCENE};
 use super::variables::Source;
 use crate::json;
@@ -124,7 +124,7 @@ pub fn pack(
         names.push(name);
     }
     if !is_rigid {
-        Model::write_body(&for_unknown_forces(scene.clone()), &resources.join(BODY), false, &mut progress)?;
+        Model::write_body(&scene.clone().for_unknown_forces(), &resources.join(BODY), false, &mut progress)?;
         names.push(BODY.to_owned());
     }
     // What is packed is what will be opened. Its files have been found by now; messages name the scene that was given.

@@ -10,6 +10,8 @@ use scene::{BuildProgress, Cache};
 pub enum RunProgress {
     /// The model is being built.
     Build(BuildProgress),
+    /// The model is there, and the motion begins. A new run has written no file yet.
+    Built,
     /// Part of the time that has been passed, 0 to 1.
     Motion(f64),
 }

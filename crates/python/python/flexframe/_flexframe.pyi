@@ -1,7 +1,7 @@
 """The compiled part of flexframe. Lengths, masses and times are in the units of the scene, angles in rad."""
 
 import os
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any, Literal, final
 
 import numpy as np
@@ -85,7 +85,8 @@ class Body:
         """Natural frequencies, cycles per time (nf); after them those of the static shapes, which are none."""
     @property
     def damping_ratios(self) -> NDArray[np.float64]:
-        """Damping ratio of each of them (nf; view)."""
+        """Damping ratio of each of them (nf; view); zero where the scene alone calls for no damping. Under laws it is that of
+        the scene: see Results."""
     @property
     def kinds(self) -> list[str]:
         """Whether each is a "natural mode" or a "static shape"."""
@@ -100,10 +101,11 @@ class Body:
         """Nodes of the faces on the surface, seen from outside: corners, then mid-edges 01 12 20 (t x 6)."""
     @property
     def shapes(self) -> NDArray[np.float64]:
-        """Mass-normalised modes, then static shapes: displacements of the nodes, mesh axes (nf x n x 3; view)."""
+        """Mass-normalised modes, then static shapes: displacements of the nodes, mesh axes (nf x n x 3, or 6 with the
+        rotations of the nodes; view)."""
     @property
     def rigid_shapes(self) -> NDArray[np.float64]:
-        """Rigid modes, zero where the body has less (6 x n x 3; view)."""
+        """Rigid modes, zero where the body has less (6 x n x 3, or 6 with the rotations of the nodes; view)."""
     @property
     def constants(self) -> dict[str, Any]:
         """Constants of the reduced body, by the names in docs/body.md (views; those of several indices in tuples)."""
@@ -111,7 +113,8 @@ class Body:
     def points(self) -> dict[str, NDArray[np.float64]]:
         """Where the points of the scene are in the undeformed body, mesh axes."""
     def displacements(self, modal_displacement: ArrayLike) -> NDArray[np.float64]:
-        """Elastic displacement of each node, body axes (n x 3), with what follows large modes."""
+        """Elastic displacement of each node, body axes (n x 3, or 6 with the rotations of the nodes), with what follows large
+        modes."""
 
 @final
 class Motion:
@@ -205,6 +208,10 @@ class Simulation:
 
     An exception of a law ends the step: the simulation stays where it was before it, and may go on. One of an event ends the
     run at the end of the step. Ctrl-C raises KeyboardInterrupt within some thousand steps, and the simulation may go on.
+
+    With laws, the effects translation, rotation, gravity, damping, deformed inertia and Coriolis are on unless the scene
+    switches them off, and there are no reactions of single supports. `run` watches whether the motion leaves the range of the
+    model, such as a spin beyond the critical one, and raises RefusedError; `advance`, `advance_to` and iteration do not.
     """
 
     def __new__(cls, body: Body, loads: Sequence[Force | ModalForce] | None = None) -> Simulation: ...
@@ -228,7 +235,7 @@ class Simulation:
     def advance(self, steps: int | None = None) -> Reached:
         """Goes on to the next row or event, or so many tries of a step."""
     def advance_to(self, time: float) -> Reached:
-        """Goes on to a time, past rows, or to an event before it."""
+        """Goes on to a time, past rows, or to an event before it. The time is later than now by more than 1e-12 of the end."""
     def add_event(
         self,
         name: str,
@@ -242,8 +249,9 @@ class Simulation:
     def state(self) -> dict[str, Any]:
         """The state that has been reached: time, attitude (quaternion), origin, velocity of the origin, angular_velocity (body
         axes), modal_displacement, modal_velocity."""
-    def set_state(self, state: Mapping[str, Any]) -> None:
-        """Goes on from another state; keys that are not given stay as they are. Work and balances are counted from there."""
+    def set_state(self, state: dict[str, Any]) -> None:
+        """Goes on from another state; keys that are not given stay as they are. Work and balances are counted from there.
+        `run` then begins with the row of this state; an iteration goes on to the next row."""
     def __iter__(self) -> Simulation: ...
     def __next__(self) -> Row: ...
 

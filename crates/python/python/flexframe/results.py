@@ -58,6 +58,8 @@ class Results(Mapping[str, NDArray[np.float64]]):
     """Where it was."""
     frequencies: NDArray[np.float64]
     """Frequencies of the modes, cycles per time; after them those of static shapes, which are none."""
+    damping_ratios: NDArray[np.float64]
+    """The damping ratio of each of these in the run; zero where damping is left out."""
     kinds: list[str]
     """Whether each of these is of a "natural mode" or a "static shape"."""
     points: list[str]

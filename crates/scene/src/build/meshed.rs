@@ -87,12 +87,14 @@ pub(super) fn reduce(
         advice,
         refusal: None,
         times,
+        all_loads: reduced.loads.loads.clone(),
         loads: reduced.loads.acting(effects[Effect::Gravity]),
         damping_ratios: if effects[Effect::Damping] {
-            reduced.damping_ratios
+            reduced.damping_ratios.clone()
         } else {
             vec![0.0; reduced.body.flexible()]
         },
+        all_damping_ratios: reduced.damping_ratios,
         size: reduced.size,
         // Who switches static shapes off is not warned again.
         left_out: lacks.filter(|_| scene.modes.static_correction == Choice::Auto).unwrap_or_default(),

@@ -66,6 +66,10 @@ pub struct Model {
     pub supports: Option<SupportRows>,
     pub(super) loads: Vec<SharedLoad>,
     pub(super) damping_ratios: Vec<f64>,
+    /// All loads that the scene does not switch off, gravity that it does not call for among them.
+    pub(super) all_loads: Vec<SharedLoad>,
+    /// The damping that the scene does not switch off, where it does not call for it, too (nf).
+    pub(super) all_damping_ratios: Vec<f64>,
     pub(super) size: Size,
     /// What the modes leave out of the static answers to the spin (6), where that is to be watched.
     pub(super) left_out: Vec<f64>,
@@ -96,6 +100,16 @@ impl Model {
     /// The loads, at their points of the body.
     pub fn loads(&self) -> &[SharedLoad] {
         &self.loads
+    }
+
+    /// What acts in the run of its scene where forces are added that the estimates do not know: the physics, the loads and the
+    /// damping ratio of each flexible mode. The effects are those of [`Scene::for_unknown_forces`].
+    pub fn under_unknown_forces(&self, scene: &Scene) -> (Physics, Vec<SharedLoad>, Vec<f64>) {
+        let mut physics = self.physics.clone();
+        for effect in scene.on_under_unknown_forces() {
+            physics.effects[effect] = true;
+        }
+        (physics, self.all_loads.clone(), self.all_damping_ratios.clone())
     }
 
     /// Whether the stress of loads or of a drive stiffens the body.

@@ -56,6 +56,7 @@ pub(super) fn build(scene: &Scene, rigid: &RigidBody) -> Result<Model, BuildErro
     let effects = physics::effects(scene, &advice, &body, 0);
     Ok(Model {
         meshed: None,
+        all_loads: loads.loads.clone(),
         loads: loads.acting(effects[Effect::Gravity]),
         physics: Physics { effects, drive, ..Physics::default() },
         points,
@@ -64,6 +65,7 @@ pub(super) fn build(scene: &Scene, rigid: &RigidBody) -> Result<Model, BuildErro
         refusal: None,
         times: BuildTimes::default(),
         damping_ratios: Vec::new(),
+        all_damping_ratios: Vec::new(),
         size,
         body,
         left_out: Vec::new(),

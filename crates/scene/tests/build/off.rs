@@ -139,6 +139,30 @@ fn loads_of_gravity_that_are_off_are_not_there() {
 }
 
 #[test]
+fn under_unknown_forces_nothing_is_left_out_but_what_the_scene_switches_off() {
+    let faint = "[[loads]]\nkind = \"gravity\"\ndirection = [0.0, 0.0, -1.0]\namplitude = 1e-9\n\
+                 [[loads]]\nkind = \"force\"\nat = [200.0, 0.0, 0.0]\ndirection = [0.0, 0.0, 1.0]\namplitude = 9.0";
+    for (which, rest, loads, ratios) in [
+        ("", CLAMPED.to_owned(), [0, 0], [0.0, 0.01]),
+        ("", format!("{CLAMPED}{faint}"), [1, 2], [0.01, 0.01]),
+        ("damping = false\ngravity = false", format!("{CLAMPED}{faint}"), [1, 1], [0.0, 0.0]),
+    ] {
+        let scene = effects(which, &rest);
+        let alone = build(&scene);
+        assert_eq!(alone.loads().len(), loads[0], "{which} {rest}");
+        assert_eq!(alone.damping_ratios(), [ratios[0]; 6], "{which} {rest}");
+        let (physics, of_scene, damping_ratios) = alone.under_unknown_forces(&scene);
+        assert_eq!(of_scene.len(), loads[1], "{which} {rest}");
+        assert_eq!(damping_ratios, [ratios[1]; 6], "{which} {rest}");
+
+        let full = build(&scene.clone().for_unknown_forces());
+        assert_eq!(physics.effects, full.physics.effects, "{which} {rest}");
+        assert_eq!(of_scene.len(), full.loads().len(), "{which} {rest}");
+        assert_eq!(damping_ratios, full.damping_ratios(), "{which} {rest}");
+    }
+}
+
+#[test]
 fn gravity_is_found_by_its_kind_wherever_it_stands_among_the_loads() {
     let weight =
         |size: &str| format!("[[loads]]\nkind = \"gravity\"\ndirection = [0.0, 0.0, -1.0]\namplitude = {size}\n");
