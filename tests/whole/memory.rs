@@ -20,12 +20,12 @@ fn limited(kilobytes: usize, arguments: &[&str]) -> (Option<i32>, String) {
 fn little_memory_ends_in_words() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path().to_str().unwrap();
-    let (small, plate) = (example("bar/free.toml"), example("plate.toml"));
-    let (small, plate) = (small.to_str().unwrap(), plate.to_str().unwrap());
+    let (small, ring) = (example("bar/free.toml"), example("ring.toml"));
+    let (small, ring) = (small.to_str().unwrap(), ring.to_str().unwrap());
     let commands: [&[&str]; 4] = [
         &["modes", small, "--threads", "1"],
         &["modes", small, "--threads", "2", "-o", folder],
-        &["modes", plate, "--threads", "2"],
+        &["modes", ring, "--threads", "2"],
         &["run", small, "-o", folder, "--overwrite"],
     ];
     for arguments in commands {

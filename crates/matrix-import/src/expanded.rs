@@ -50,9 +50,15 @@ pub(crate) fn positions(
     };
     let at = |node: usize| (Vector3::from(positions[node]) - mean) / size;
     let second: Matrix3<f64> = used.iter().map(|node| at(*node) * at(*node).transpose()).sum();
+    if !second.iter().all(|entry| entry.is_finite()) {
+        return Err(refuse(
+            format!("nodes whose distance is {size:e}"),
+            "give each node its position, in a usual unit of length",
+        ));
+    }
     let mut extents: [f64; 3] = second.symmetric_eigenvalues().into();
     extents.sort_by(f64::total_cmp);
-    if size <= 0.0 || extents[1] <= LINE * LINE * extents[2] {
+    if extents[1] <= LINE * LINE * extents[2] {
         return Err(refuse(
             "nodes on a line, which several nodes of the matrices stand for: where these are cannot be found"
                 .to_owned(),
