@@ -29,7 +29,7 @@ use crate::{output, threads};
 /// A scene (a TOML file, see docs/scene.md) names a gmsh mesh of second-order tetrahedra, its material, the modes to
 /// keep, the loads, and the time. Start with `flexframe run examples/plate.toml`.
 #[derive(Debug, Parser)]
-#[command(version, max_term_width = 100, after_long_help = exit_codes(), after_help = "--help says more, exit codes too.")]
+#[command(name = "flexframe", version, max_term_width = 100, after_long_help = exit_codes(), after_help = "--help says more, exit codes too.")]
 struct Cli {
     /// Threads for meshes and modes; all cores if not given. The results are the same for any number.
     #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256))]

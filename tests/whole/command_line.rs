@@ -402,3 +402,9 @@ fn what_is_wrong_is_said_with_file_line_key_and_cure() {
     assert_eq!(missing.status.code(), Some(6));
     assert!(String::from_utf8_lossy(&missing.stderr).contains("no_such_scene.toml"));
 }
+
+#[test]
+fn it_says_its_name_and_version() {
+    let output = Command::new(env!("CARGO_BIN_EXE_flexframe")).arg("--version").output().unwrap();
+    assert_eq!(String::from_utf8(output.stdout).unwrap(), concat!("flexframe ", env!("CARGO_PKG_VERSION"), "\n"));
+}
