@@ -81,6 +81,23 @@ pub struct SweepReport {
     pub reductions: usize,
 }
 
+impl SweepReport {
+    /// Of a table of the whole sweep, of which so many rows were done before.
+    fn of(plan: Plan, output: &Path, table: &Table, kept: usize) -> Self {
+        let [done, _] = table.counts();
+        Self {
+            title: plan.title,
+            output: output.to_owned(),
+            rows: table.rows.len(),
+            done,
+            unfinished: Vec::new(),
+            kept,
+            failures: table.failures(),
+            reductions: 0,
+        }
+    }
+}
+
 /// Runs a sweep and writes its table to `output`, or that of its shard beside it. Rows that are in it already are kept.
 ///
 /// # Errors
@@ -143,17 +160,8 @@ pub fn sweep(
         })?;
     }
     table.write(output, &plan, true)?;
-    let [done, _] = table.counts();
-    Ok(SweepReport {
-        title: plan.title,
-        output: output.to_owned(),
-        rows: mine,
-        done,
-        unfinished: Vec::new(),
-        kept,
-        failures: table.failures(),
-        reductions: cache.notes().assembled,
-    })
+    let report = SweepReport::of(plan, output, &table, kept);
+    Ok(SweepReport { rows: mine, reductions: cache.notes().assembled, ..report })
 }
 
 /// Merges the tables of all `count` shards of a sweep into the table `output`. Rows that no shard has run stay open: a
@@ -167,12 +175,10 @@ pub fn merge(path: &Path, output: &Path, count: usize, overwrite: bool) -> Resul
     let mut table = Table::open(output, &plan, overwrite)?;
     let [kept, _] = table.counts();
     let mut unfinished = Vec::new();
-    if Shard::all(count).all(|shard| !shard.table(output).exists()) {
-        let first = Shard::all(count).map(|shard| shard.table(output)).next().unwrap_or_default();
-        return Err(SweepError::NoShard { first, count });
-    }
+    let mut has_tables = false;
     for shard in Shard::all(count) {
         let found = Table::read(&shard.table(output), &plan)?;
+        has_tables |= found.is_some();
         for (row, state) in table.rows.iter_mut().enumerate().filter(|(row, _)| shard.has(*row)) {
             if *state == RowState::Open
                 && let Some(of_shard) = &found
@@ -184,18 +190,12 @@ pub fn merge(path: &Path, output: &Path, count: usize, overwrite: bool) -> Resul
             }
         }
     }
+    if !has_tables {
+        let first = Shard::all(count).next().map(|shard| shard.table(output)).unwrap_or_default();
+        return Err(SweepError::NoShard { first, count });
+    }
     table.write(output, &plan, true)?;
-    let [done, _] = table.counts();
-    Ok(SweepReport {
-        title: plan.title,
-        output: output.to_owned(),
-        rows: table.rows.len(),
-        done,
-        unfinished,
-        kept,
-        failures: table.failures(),
-        reductions: 0,
-    })
+    Ok(SweepReport { unfinished, ..SweepReport::of(plan, output, &table, kept) })
 }
 
 /// What models share an assembly: all that it is made of.

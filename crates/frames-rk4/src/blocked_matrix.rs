@@ -85,7 +85,7 @@ impl<const ADDS: bool> WithSimd for Product<'_, ADDS> {
                 8 => block_product::<S, 8, ADDS>(simd, block, x, y),
                 10 => block_product::<S, 10, ADDS>(simd, block, x, y),
                 12 => block_product::<S, 12, ADDS>(simd, block, x, y),
-                // Processors without vectors.
+                // No vectors, or short ones: more than the registers hold.
                 _ => {
                     if !ADDS {
                         y.fill(0.0);

@@ -113,10 +113,10 @@ fn lower_triangle(
         let (row, column, value) = *first;
         let mirrored = after.first().filter(|next| row != column && (next.0, next.1) == (column, row));
         let place = (row.max(column), row.min(column));
+        let scale = diagonal[row as usize].abs().max(diagonal[column as usize].abs());
         match mirrored {
             Some((_, _, other)) => {
                 has_pairs = true;
-                let scale = diagonal[row as usize].abs().max(diagonal[column as usize].abs());
                 if (value - other).abs() > SYMMETRIC * scale {
                     return Err(not_symmetric(source, form, rows, *first, *other));
                 }
@@ -127,7 +127,6 @@ fn lower_triangle(
                 rest = &after[1..];
             }
             None => {
-                let scale = diagonal[row as usize].abs().max(diagonal[column as usize].abs());
                 if row != column && value.abs() > SYMMETRIC * scale {
                     alone = alone.or(Some(*first));
                 }

@@ -136,11 +136,11 @@ fn check_semidefinite<I: Iterator<Item = Triplet<usize, usize, f64>>>(
     memory::check("the check of the mass matrix", 4 * 24 * count)?;
     let mut entries = Vec::with_capacity(count + size);
     for entry in matrix().filter(|entry| entry.val != 0.0) {
-        let scale = (diagonal[entry.row] * diagonal[entry.col]).sqrt();
         if !(diagonal[entry.row] > 0.0 && diagonal[entry.col] > 0.0) {
             let row = if diagonal[entry.row] > 0.0 { entry.col } else { entry.row };
             return Err(ModalError::IndefiniteMass { place: Some([row / freedoms, row % freedoms]) });
         }
+        let scale = (diagonal[entry.row] * diagonal[entry.col]).sqrt();
         entries.push(Triplet::new(entry.row, entry.col, entry.val / scale));
     }
     for (i, value) in diagonal.iter().enumerate() {
