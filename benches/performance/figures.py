@@ -1,0 +1,113 @@
+"""The figures of docs/performance.md."""
+
+import loop as the_loop
+import matplotlib
+import modes as the_modes
+import summary
+
+matplotlib.use("svg")
+import matplotlib.pyplot as plot
+
+plot.rcParams.update({"font.size": 9, "svg.hashsalt": "performance", "axes.grid": True, "grid.alpha": 0.3})
+COLOURS = dict(
+    zip(
+        [the_modes.OURS, the_modes.OURS_2, the_modes.SCIPY, the_modes.SLEPC, the_modes.SLEPC_2, the_modes.CALCULIX],
+        ["#0b5fa5", "#6fa8dc", "#d9822b", "#5b8c3e", "#a3c585", "#9a3b3b"],
+    )
+)
+
+
+def save(figure, file):
+    figure.tight_layout()
+    figure.savefig(file, metadata={"Date": None})
+    plot.close(figure)
+
+
+def modes(cases, file):
+    """A bar for each program's median in each case, with its range and its ratio to flexframe on as many threads."""
+    figure, panels = plot.subplots(1, len(cases), figsize=(11, 3.2), sharey=True)
+    names = list(COLOURS)[::-1]
+    for panel, (name, programs) in zip(panels, cases.items()):
+        longest = max(run["seconds"] for runs in programs.values() for run in runs)
+        for row, program in enumerate(names):
+            runs = programs.get(program, [])
+            if not runs:
+                continue
+            times = [run["seconds"] for run in runs]
+            middle = summary.of(times)[0]
+            is_done = bool(runs[0]["frequencies"])
+            panel.barh(row, middle, color=COLOURS[program], hatch=None if is_done else "//", alpha=1 if is_done else 0.4)
+            panel.plot([min(times), max(times)], [row, row], color="black", linewidth=1.5)
+            ours = programs[the_modes.OURS_2 if program == the_modes.SLEPC_2 else the_modes.OURS]
+            factor = summary.ratios(times, [run["seconds"] for run in ours])[0]
+            words = f" {factor:.1f} ×" if is_done else f" > {factor:.0f} ×"
+            panel.text(max(times), row, "" if program == the_modes.OURS else words, va="center", fontsize=8)
+        panel.set_xscale("log")
+        panel.set_xlim(right=3 * longest)
+        unknowns = programs[the_modes.OURS][0]["mesh"]["unknowns"]
+        panel.set_title(f"{name.split()[0]}, {unknowns / 1000:.0f} 000 unknowns", fontsize=9)
+        panel.set_xlabel("whole process, s")
+        panel.set_yticks(range(len(names)), names)
+        panel.grid(axis="y", visible=False)
+    save(figure, file)
+
+
+def size(sizes, file):
+    """Time, and memory foretold and taken, against unknowns."""
+    figure, (left, right) = plot.subplots(1, 2, figsize=(9, 3.8))
+    for (shape, by_size), colour in zip(sizes.items(), ["#0b5fa5", "#d9822b"]):
+        unknowns = [runs[0]["mesh"]["unknowns"] for runs in by_size]
+        times = [[run["seconds"] for run in runs] for runs in by_size]
+        middle = [summary.of(values)[0] for values in times]
+        slope = summary.slope(zip(unknowns, middle)) if len(unknowns) > 1 else 0
+        left.plot(unknowns, middle, "o-", color=colour, label=f"{shape}, slope {slope:.2f}")
+        left.vlines(unknowns, [min(values) for values in times], [max(values) for values in times], color=colour)
+        taken = [summary.of(run["memory"] for run in runs)[0] / 1e9 for runs in by_size]
+        foretold = [runs[0]["mesh"]["peak_bytes"] / 1e9 for runs in by_size]
+        right.plot(unknowns, taken, "o-", color=colour, label=f"{shape}, taken")
+        right.plot(unknowns, foretold, "x--", color=colour, label=f"{shape}, foretold")
+    for panel, label in ((left, "whole process, s"), (right, "peak memory, GB")):
+        panel.set(xscale="log", yscale="log", xlabel="unknowns", ylabel=label)
+        panel.legend()
+    save(figure, file)
+
+
+def phases(sizes, file):
+    """Parts of the time of each phase, at each size."""
+    figure, panels = plot.subplots(1, len(sizes), figsize=(9, 3.4), sharey=True)
+    names = list(dict.fromkeys(name for by_size in sizes.values() for runs in by_size for name in runs[0]["times"]))
+    colours = plot.get_cmap("tab10").colors
+    for panel, (shape, by_size) in zip(panels, sizes.items()):
+        totals = [sum(summary.of(run["times"][name] for run in runs)[0] for name in runs[0]["times"]) for runs in by_size]
+        below = [0.0] * len(by_size)
+        for name, colour in zip(names, colours):
+            parts = [
+                100 * summary.of(run["times"].get(name, 0.0) for run in runs)[0] / total
+                for runs, total in zip(by_size, totals)
+            ]
+            panel.bar(range(len(by_size)), parts, bottom=below, color=colour, label=name, width=0.7)
+            below = [a + b for a, b in zip(below, parts)]
+        labels = [f"{runs[0]['mesh']['unknowns'] / 1000:.0f} 000" for runs in by_size]
+        panel.set_xticks(range(len(by_size)), labels)
+        panel.set(title=shape, xlabel="unknowns")
+        panel.grid(axis="x", visible=False)
+    panels[0].set_ylabel("part of the time, %")
+    panels[-1].legend(*(values[::-1] for values in panels[-1].get_legend_handles_labels()), loc="center left", bbox_to_anchor=(1, 0.5))
+    save(figure, file)
+
+
+def loop(results, speeds, file):
+    """Error of the attitude against processor time, for each number of modes."""
+    figure, panels = plot.subplots(1, len(the_loop.MODES), figsize=(9, 3.8), sharey=True)
+    styles = dict(zip(the_loop.FIRST, ["o-", "o--", "s-", "^-"]))
+    colours = dict(zip(the_loop.FIRST, ["#0b5fa5", "#6fa8dc", "#5b8c3e", "#d9822b"]))
+    for panel, count in zip(panels, the_loop.MODES):
+        for program in the_loop.FIRST:
+            step_seconds = summary.of(speeds[count][program])[0]
+            points = [(step_seconds / step, error) for step, error in the_loop.errors(results, count, program) if error == error]
+            label = program if "flexframe" in program else f"Exudyn, {program}"
+            panel.plot(*zip(*points), styles[program], color=colours[program], label=label, markersize=4)
+        panel.set(xscale="log", yscale="log", title=f"{count} modes", xlabel="processor seconds for a second of motion")
+    panels[0].set_ylabel(f"error of the attitude after {the_loop.END:g} s, rad")
+    panels[0].legend(fontsize=8)
+    save(figure, file)
