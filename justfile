@@ -82,9 +82,10 @@ bench:
     cargo bench --quiet --package frames-rk4 --bench steps
     cargo bench --quiet --bench effects
 
-# Time `flexframe modes` against SciPy's eigsh with CHOLMOD on three meshes (some minutes; Python packages).
-bench-modes: build
-    crates/modal/benches/peer/run
+# Time, memory and errors against SciPy, SLEPc, CalculiX and Exudyn: docs/performance.md. WHAT: how much, quick (a quarter of
+# an hour), usual or full (a million unknowns: 12 GB), and which parts, modes, size, loop or page (`./dev` installs the others).
+performance *what: build
+    .tools/performance/bin/python benches/performance/performance.py {{what}}
 
 # The Python package: its wheel, with HDF5 inside, into target/wheels, and its tests in a fresh installation (Python packages).
 python profile="release":

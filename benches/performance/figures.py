@@ -18,63 +18,67 @@ COLOURS = dict(
 
 
 def save(figure, file):
-    figure.tight_layout()
     figure.savefig(file, metadata={"Date": None})
     plot.close(figure)
 
 
 def modes(cases, file):
-    """A bar for each program's median in each case, with its range and its ratio to flexframe on as many threads."""
-    figure, panels = plot.subplots(1, len(cases), figsize=(11, 3.2), sharey=True)
+    """Time by that of flexframe on one thread: a bar for the median of each program, with its range."""
+    figure, panels = plot.subplots(1, len(cases), figsize=(11, 2.8), sharey=True, layout="constrained")
     names = list(COLOURS)[::-1]
     for panel, (name, programs) in zip(panels, cases.items()):
-        longest = max(run["seconds"] for runs in programs.values() for run in runs)
+        ours = [run["seconds"] for run in programs[the_modes.OURS]]
         for row, program in enumerate(names):
-            runs = programs.get(program, [])
+            runs = programs.get(program)
             if not runs:
                 continue
             times = [run["seconds"] for run in runs]
-            middle = summary.of(times)[0]
-            is_done = bool(runs[0]["frequencies"])
-            panel.barh(row, middle, color=COLOURS[program], hatch=None if is_done else "//", alpha=1 if is_done else 0.4)
-            panel.plot([min(times), max(times)], [row, row], color="black", linewidth=1.5)
-            ours = programs[the_modes.OURS_2 if program == the_modes.SLEPC_2 else the_modes.OURS]
-            factor = summary.ratios(times, [run["seconds"] for run in ours])[0]
-            words = f" {factor:.1f} ×" if is_done else f" > {factor:.0f} ×"
-            panel.text(max(times), row, "" if program == the_modes.OURS else words, va="center", fontsize=8)
-        panel.set_xscale("log")
-        panel.set_xlim(right=3 * longest)
+            middle, least, most = summary.ratios(times, ours)
+            is_stopped = the_modes.was_stopped(runs[0])
+            panel.barh(row, middle, color=COLOURS[program], alpha=0.4 if is_stopped else 1)
+            panel.plot([least, most], [row, row], color="black", linewidth=1.5)
+            words = f"  {'> ' if is_stopped else ''}{summary.of(times)[0]:.3g} s"
+            panel.text(most, row, words, va="center", fontsize=8)
+        panel.axvline(1, color="black", linewidth=0.8)
+        panel.set_xlim(right=1.3 * panel.get_xlim()[1])
         unknowns = programs[the_modes.OURS][0]["mesh"]["unknowns"]
         panel.set_title(f"{name.split()[0]}, {unknowns / 1000:.0f} 000 unknowns", fontsize=9)
-        panel.set_xlabel("whole process, s")
         panel.set_yticks(range(len(names)), names)
         panel.grid(axis="y", visible=False)
+    figure.supxlabel("time of the whole process ÷ that of flexframe on one thread", fontsize=9)
     save(figure, file)
 
 
-def size(sizes, file):
-    """Time, and memory foretold and taken, against unknowns."""
-    figure, (left, right) = plot.subplots(1, 2, figsize=(9, 3.8))
+def size(sizes, cases, file):
+    """Time, and memory foretold and taken, against unknowns; the peers where they ran."""
+    figure, (left, right) = plot.subplots(1, 2, figsize=(9, 3.8), layout="constrained")
     for (shape, by_size), colour in zip(sizes.items(), ["#0b5fa5", "#d9822b"]):
         unknowns = [runs[0]["mesh"]["unknowns"] for runs in by_size]
         times = [[run["seconds"] for run in runs] for runs in by_size]
         middle = [summary.of(values)[0] for values in times]
-        slope = summary.slope(zip(unknowns, middle)) if len(unknowns) > 1 else 0
+        slope = summary.slope(list(zip(unknowns, middle)))
         left.plot(unknowns, middle, "o-", color=colour, label=f"{shape}, slope {slope:.2f}")
         left.vlines(unknowns, [min(values) for values in times], [max(values) for values in times], color=colour)
         taken = [summary.of(run["memory"] for run in runs)[0] / 1e9 for runs in by_size]
         foretold = [runs[0]["mesh"]["peak_bytes"] / 1e9 for runs in by_size]
         right.plot(unknowns, taken, "o-", color=colour, label=f"{shape}, taken")
-        right.plot(unknowns, foretold, "x--", color=colour, label=f"{shape}, foretold")
+        right.plot(unknowns, foretold, "x:", color=colour, label=f"{shape}, foretold")
+        for program, marker in ((the_modes.SCIPY, "^"), (the_modes.SLEPC, "s")):
+            runs = [programs[program] for name, programs in cases.items() if name.startswith(shape)]
+            at = [programs[the_modes.OURS][0]["mesh"]["unknowns"] for name, programs in cases.items() if name.startswith(shape)]
+            for panel, what, unit in ((left, "seconds", 1), (right, "memory", 1e9)):
+                values = [summary.of(run[what] for run in of_case)[0] / unit for of_case in runs]
+                label = f"{shape}, {program}" if panel is left else None
+                panel.plot(at, values, marker, color=colour, markerfacecolor="none", label=label)
     for panel, label in ((left, "whole process, s"), (right, "peak memory, GB")):
         panel.set(xscale="log", yscale="log", xlabel="unknowns", ylabel=label)
-        panel.legend()
+        panel.legend(fontsize=8)
     save(figure, file)
 
 
 def phases(sizes, file):
     """Parts of the time of each phase, at each size."""
-    figure, panels = plot.subplots(1, len(sizes), figsize=(9, 3.4), sharey=True)
+    figure, panels = plot.subplots(1, len(sizes), figsize=(9, 3.4), sharey=True, layout="constrained")
     names = list(dict.fromkeys(name for by_size in sizes.values() for runs in by_size for name in runs[0]["times"]))
     colours = plot.get_cmap("tab10").colors
     for panel, (shape, by_size) in zip(panels, sizes.items()):
@@ -92,13 +96,14 @@ def phases(sizes, file):
         panel.set(title=shape, xlabel="unknowns")
         panel.grid(axis="x", visible=False)
     panels[0].set_ylabel("part of the time, %")
-    panels[-1].legend(*(values[::-1] for values in panels[-1].get_legend_handles_labels()), loc="center left", bbox_to_anchor=(1, 0.5))
+    handles, labels = panels[-1].get_legend_handles_labels()
+    figure.legend(handles[::-1], labels[::-1], loc="outside right center")
     save(figure, file)
 
 
 def loop(results, speeds, file):
     """Error of the attitude against processor time, for each number of modes."""
-    figure, panels = plot.subplots(1, len(the_loop.MODES), figsize=(9, 3.8), sharey=True)
+    figure, panels = plot.subplots(1, len(the_loop.MODES), figsize=(9, 4), sharey=True, layout="constrained")
     styles = dict(zip(the_loop.FIRST, ["o-", "o--", "s-", "^-"]))
     colours = dict(zip(the_loop.FIRST, ["#0b5fa5", "#6fa8dc", "#5b8c3e", "#d9822b"]))
     for panel, count in zip(panels, the_loop.MODES):
@@ -109,5 +114,5 @@ def loop(results, speeds, file):
             panel.plot(*zip(*points), styles[program], color=colours[program], label=label, markersize=4)
         panel.set(xscale="log", yscale="log", title=f"{count} modes", xlabel="processor seconds for a second of motion")
     panels[0].set_ylabel(f"error of the attitude after {the_loop.END:g} s, rad")
-    panels[0].legend(fontsize=8)
+    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=4, fontsize=8)
     save(figure, file)

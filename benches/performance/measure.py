@@ -1,12 +1,11 @@
 """Runs a program as a whole process: wall time, processor time, peak memory, output.
 
-The process that imports this stays small (no NumPy): on Linux a new process begins with the peak memory of the one
-that starts it.
+The process that imports this has to stay small (no NumPy): on Linux a new process begins with the peak memory of the
+one that starts it.
 """
 
 import os
 import platform
-import signal
 import subprocess
 import sys
 import tempfile
@@ -18,7 +17,6 @@ HERE = Path(__file__).parent
 FLEXFRAME = os.environ.get("FLEXFRAME", "target/release/flexframe")
 PYTHON = ".tools/performance/bin/python"
 PYTHON_OF_SLEPC = ".tools/performance-slepc/bin/python"
-GIGABYTE = 1e9
 
 
 class Run:
@@ -34,10 +32,9 @@ class Run:
                 stderr=errors,
                 cwd=folder,
                 env=os.environ | common_environment(threads) | environment,
-                start_new_session=True,
             )
             stopped = threading.Event()
-            timer = threading.Timer(patience or 1e6, lambda: (stopped.set(), os.killpg(process.pid, signal.SIGKILL)))
+            timer = threading.Timer(patience or 1e6, lambda: (stopped.set(), process.terminate()))
             timer.daemon = True
             timer.start()
             output = process.stdout.read().decode()

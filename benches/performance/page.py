@@ -31,7 +31,7 @@ def write():
     sizes = runs_by_size(of_size)
     speeds = speeds_by_modes(of_loop)
     figures.modes(cases, folder / "modes.svg")
-    figures.size(sizes, folder / "size.svg")
+    figures.size(sizes, cases, folder / "size.svg")
     figures.phases(sizes, folder / "phases.svg")
     figures.loop(of_loop, speeds, folder / "loop.svg")
     unknowns = [runs[0]["mesh"]["unknowns"] for by_size in sizes.values() for runs in by_size]
@@ -89,7 +89,8 @@ def about(parts):
     first = parts["modes"]
     machine, versions = first["machine"], first["versions"]
     names = ", ".join(f"{name} {version}" for name, version in versions.items())
-    programs = " and ".join(sorted({f"{part['version']} ({part['program']})" for part in parts.values()}))
+    builds = {part["program"] for part in parts.values()}
+    programs = first["version"] if len(builds) == 1 else f"{first['version']} (in {len(builds)} builds: not all parts by the same)"
     dates = " to ".join(sorted({part["date"] for part in parts.values()}))
     return (
         f"Measured {dates} with {programs} on {machine['processor']}, {machine['cores']} cores, "
@@ -107,7 +108,7 @@ def method(parts):
         f"and those that take longer than {patience} s are stopped. \"± s\" is the difference of the slowest and the fastest run, beside the median. "
         "A ratio is a run of the other program divided by the run of flexframe of the same turn: median, and least to largest. "
         "Above 1 flexframe is faster, or smaller. Each program runs on one thread unless it says otherwise. Memory is the peak of the whole process "
-        f"(of both ranks together). The load of the machine was {min(loads):.1f} to {max(loads):.1f}."
+        f"(of both ranks together). The load of the machine, these runs with it, was {min(loads):.1f} to {max(loads):.1f}."
     )
 
 
@@ -130,7 +131,7 @@ def against(programs, program, what):
 
 
 def ran(programs, program):
-    return program in programs and programs[program][0]["frequencies"]
+    return program in programs and not modes.was_stopped(programs[program][0])
 
 
 def heading(name, programs):
@@ -145,7 +146,7 @@ def table_of_case(name, programs):
         if program not in programs:
             continue
         runs = programs[program]
-        if not runs[0]["frequencies"]:
+        if modes.was_stopped(runs[0]):
             rows.append([program, f"more than {runs[0]['seconds']:.0f}", "–", "–", "–", "–", "–"])
             continue
         difference = max(modes.difference(run, programs[modes.OURS][0]) for run in runs)
@@ -161,7 +162,7 @@ def table_of_case(name, programs):
                 "" if is_reference else f"{difference:.0e}",
             ]
         )
-    head = ["program", "time, s", "processor, s", "time by flexframe's", "memory, MB", "memory by flexframe's", "frequencies differ"]
+    head = ["program", "time, s", "processor, s", "time ÷ flexframe's", "memory, MB", "memory ÷ flexframe's", "frequencies differ"]
     fastest = [fastest_phases(program, programs) for program in (modes.OURS, modes.SCIPY, modes.SLEPC) if ran(programs, program)]
     words = f"In the fastest run: {'; '.join(fastest)}."
     return f"**{heading(name, programs).capitalize()}**\n\n{table(head, rows)}\n\n{words}"
@@ -173,7 +174,7 @@ def fastest_phases(program, programs):
 
 
 def short(cases, speeds):
-    head = ["time by flexframe's", *modes.PEERS, "flexframe: one thread by two"]
+    head = ["time ÷ flexframe's", *modes.PEERS, "flexframe: one thread ÷ two"]
     rows = []
     for name, programs in cases.items():
         cells = [f"{against(programs, peer, 'seconds')[0]:.2f}" if ran(programs, peer) else "–" for peer in modes.PEERS]
@@ -197,17 +198,18 @@ def lost(cases, results, speeds):
     words = []
     for name, programs in cases.items():
         for peer in modes.PEERS:
-            for what, adjective in (("seconds", "faster"), ("memory", "smaller")):
+            for what, noun in (("seconds", "time"), ("memory", "memory")):
                 if ran(programs, peer) and against(programs, peer, what)[0] < 1:
-                    factor = 1 / against(programs, peer, what)[0]
-                    words.append(f"{heading(name, programs)}: {peer} is {factor:.2f} times {adjective}")
+                    part = against(programs, peer, what)[0]
+                    words.append(f"{heading(name, programs)}: {peer} takes {part:.2f} of flexframe's {noun}")
     for count in loop.MODES:
         for target in loop.TARGETS:
             costs = {program: cost(results, speeds, count, program, target)[1] for program in loop.FIRST}
             best = min((loop.ALPHA, loop.RK4), key=costs.get)
             for ours in (loop.OURS, loop.OURS_SAME):
                 if costs[best] < costs[ours]:
-                    words.append(f"{count} modes to {target:.0e} rad: Exudyn's {best} is {costs[ours] / costs[best]:.2f} times faster than {ours}")
+                    part = costs[best] / costs[ours]
+                    words.append(f"{count} modes to {target:.0e} rad: Exudyn's {best} takes {part:.2f} of the time of {ours}")
     return "; ".join(words) + "." if words else "None of the cases measured here."
 
 
@@ -241,7 +243,7 @@ def size_table(sizes):
                     f"{100 * (mesh['peak_bytes'] / taken - 1):+.0f} %",
                 ]
             )
-    head = ["body", "unknowns", "factor, 10⁶ entries", "time, s", "processor, s", "foretold, MB", "taken, MB", "foretold by taken"]
+    head = ["body", "unknowns", "factor, 10⁶ entries", "time, s", "processor, s", "foretold, MB", "taken, MB", "foretold ÷ taken − 1"]
     return table(head, rows)
 
 
@@ -299,7 +301,7 @@ def speed_table(speeds):
         rows.append(cells)
     head = ["steps a second"]
     for count in loop.MODES:
-        head += [f"{count} modes", "step by flexframe's"]
+        head += [f"{count} modes", "step ÷ flexframe's"]
     return table(head, rows)
 
 
@@ -308,7 +310,7 @@ def row_table(speeds):
     for count in loop.MODES:
         step, with_row = (summary.of(speeds[count][name])[0] for name in (loop.OURS, loop.WITH_ROWS))
         rows.append([count, f"{1e6 * step:.2f}", f"{1e6 * (with_row - step):.2f}", f"{100 * (with_row / step - 1):.0f} %"])
-    return table(["modes", "a step, µs", "a row, µs", "a row by a step"], rows, left=0)
+    return table(["modes", "a step, µs", "a row, µs", "row ÷ step"], rows, left=0)
 
 
 def cost(results, speeds, count, program, target):

@@ -1,7 +1,5 @@
 """Cost of `flexframe modes` against size, from thin to bulky: time by phase, memory foretold and taken."""
 
-import sys
-
 from cases import Case
 from modes import ours
 
@@ -18,5 +16,4 @@ def measure(store, effort):
                 first = store.results.get(f"{case.name}, 0")
                 if turn > 0 and first["seconds"] > effort.once:
                     continue
-                print(f"performance: {case.name}, turn {turn + 1} of {effort.runs}", file=sys.stderr)
                 store.once(f"{case.name}, {turn}", lambda: ours(case, 1))

@@ -5,6 +5,7 @@ import hashlib
 import json
 import os
 import subprocess
+import sys
 from pathlib import Path
 
 from measure import FLEXFRAME, machine, versions
@@ -18,15 +19,17 @@ class Store:
     def __init__(self, part, effort):
         FOLDER.mkdir(parents=True, exist_ok=True)
         self.file = FOLDER / f"{part}.json"
-        program = hashlib.sha256(Path(FLEXFRAME).read_bytes()).hexdigest()[:12]
+        with open(FLEXFRAME, "rb") as binary:
+            program = hashlib.file_digest(binary, "sha256").hexdigest()[:12]
         version = subprocess.run([FLEXFRAME, "--version"], capture_output=True, text=True, check=True).stdout.strip()
         old = json.loads(self.file.read_text()) if self.file.exists() else {}
         self.results = old["results"] if old.get("program") == program else {}
         self.about = {"program": program, "version": version, "effort": effort, "machine": machine(), "versions": versions()}
 
     def once(self, key, measure):
-        """The result of that key: kept, or measured now."""
+        """The result of that key: what is there, or measured now."""
         if key not in self.results:
+            print(f"performance: {key}", file=sys.stderr)
             self.results[key] = measure() | {"load": os.getloadavg()[0]}
             self.about["date"] = datetime.date.today().isoformat()
             text = json.dumps(self.about | {"results": self.results}, indent=1)
