@@ -36,9 +36,9 @@ class Case:
         geometry = {"plate": Path("meshes/plate.geo"), "block": HERE / "block.geo"}[shape].read_text()
         scene = {"plate": Path("examples/plate.toml").read_text(), "block": BLOCK}[shape]
         self.scene.write_text(re.sub("(?m)^mesh = .*", f'mesh = "{mesh.name}"', scene))
-        if not mesh.exists():
-            geo = mesh.with_suffix(".geo")
-            geo.write_text(re.sub("(MeshSize(Min|Max)) = .*;", rf"\1 = {size};", geometry))
+        geo, geometry = mesh.with_suffix(".geo"), re.sub("(MeshSize(Min|Max)) = .*;", rf"\1 = {size};", geometry)
+        if not mesh.exists() or geo.read_text() != geometry:
+            geo.write_text(geometry)
             part = mesh.with_suffix(".part.msh")
             subprocess.run(["gmsh", "-3", "-format", "msh41", "-v", "2", geo, "-o", part], check=True)
             part.replace(mesh)

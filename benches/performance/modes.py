@@ -72,8 +72,7 @@ def peer(command, patience):
 
 def calculix(case, patience):
     job = FOLDER / case.scene.stem
-    if not job.with_name(job.name + ".inp").exists():
-        Run([PYTHON, HERE / "peers/calculix_deck.py", case.scene, MODES, f"{job}.inp"])
+    Run([PYTHON, HERE / "peers/calculix_deck.py", case.scene, MODES, f"{job}.inp"])
     run = Run(["ccx", job.name], patience, folder=FOLDER)
     if run.output is None:
         return run.record(frequencies=None)

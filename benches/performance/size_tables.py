@@ -1,0 +1,58 @@
+"""What docs/performance.md shows of cost against size."""
+
+import summary
+from markdown import number, seconds, spread, table
+
+
+def runs_by_size(results):
+    """{shape: [[records by turn] by size]}."""
+    sizes = {}
+    for key, record in results.items():
+        shape = key.split()[0]
+        sizes.setdefault(shape, {}).setdefault(record["mesh"]["unknowns"], []).append(record)
+    return {shape: [by_size[unknowns] for unknowns in sorted(by_size)] for shape, by_size in sizes.items()}
+
+
+def size_table(sizes):
+    rows = []
+    for shape, by_size in sizes.items():
+        for runs in by_size:
+            mesh = runs[0]["mesh"]
+            taken = summary.of(run["memory"] for run in runs)[0]
+            rows.append(
+                [
+                    shape,
+                    number(mesh["unknowns"]),
+                    f"{mesh['factor_entries'] / 1e6:.1f}",
+                    spread([run["seconds"] for run in runs]),
+                    seconds(summary.of(run["processor"] for run in runs)[0]),
+                    f"{mesh['peak_bytes'] / 1e6:.0f}",
+                    f"{taken / 1e6:.0f}",
+                    f"{100 * (mesh['peak_bytes'] / taken - 1):+.0f} %",
+                ]
+            )
+    head = ["body", "unknowns", "factor, 10⁶ entries", "time, s", "processor, s", "foretold, MB", "taken, MB", "foretold ÷ taken − 1"]
+    return table(head, rows)
+
+
+def slopes(sizes):
+    words = []
+    for shape, by_size in sizes.items():
+        points = {
+            "time": [(runs[0]["mesh"]["unknowns"], summary.of(run["seconds"] for run in runs)[0]) for runs in by_size],
+            "memory": [(runs[0]["mesh"]["unknowns"], summary.of(run["memory"] for run in runs)[0]) for runs in by_size],
+            "factor": [(runs[0]["mesh"]["unknowns"], runs[0]["mesh"]["factor_entries"]) for runs in by_size],
+        }
+        powers = [f"{name} N^{summary.slope(values):.2f}" for name, values in points.items()]
+        words.append(f"{shape}: {', '.join(powers)}")
+    return f"Slopes in log-log over all sizes (N unknowns): {'; '.join(words)}."
+
+
+def phase_table(sizes):
+    names = list(dict.fromkeys(name for by_size in sizes.values() for runs in by_size for name in runs[0]["times"]))
+    rows = []
+    for shape, by_size in sizes.items():
+        for runs in by_size:
+            cells = [summary.of(run["times"].get(name, 0.0) for run in runs)[0] for name in names]
+            rows.append([shape, number(runs[0]["mesh"]["unknowns"]), *map(seconds, cells)])
+    return table(["body", "unknowns", *names], rows)
