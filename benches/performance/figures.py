@@ -1,9 +1,12 @@
 """The figures of docs/performance.md."""
 
+import math
+
 import loop as the_loop
 import matplotlib
 import modes as the_modes
 import summary
+from markdown import number
 
 matplotlib.use("svg")
 import matplotlib.pyplot as plot
@@ -15,6 +18,10 @@ COLOURS = dict(
         ["#0b5fa5", "#6fa8dc", "#d9822b", "#5b8c3e", "#a3c585", "#9a3b3b"],
     )
 )
+
+
+def thousands(value):
+    return number(round(value, -3))
 
 
 def save(figure, file):
@@ -42,7 +49,7 @@ def modes(cases, file):
         panel.axvline(1, color="black", linewidth=0.8)
         panel.set_xlim(right=1.3 * panel.get_xlim()[1])
         unknowns = programs[the_modes.OURS][0]["mesh"]["unknowns"]
-        panel.set_title(f"{name.split()[0]}, {unknowns / 1000:.0f} 000 unknowns", fontsize=9)
+        panel.set_title(f"{name.split()[0]}, {thousands(unknowns)} unknowns", fontsize=9)
         panel.set_yticks(range(len(names)), names)
         panel.grid(axis="y", visible=False)
     figure.supxlabel("time of the whole process ÷ that of flexframe on one thread", fontsize=9)
@@ -64,10 +71,11 @@ def size(sizes, cases, file):
         right.plot(unknowns, taken, "o-", color=colour, label=f"{shape}, taken")
         right.plot(unknowns, foretold, "x:", color=colour, label=f"{shape}, foretold")
         for program, marker in ((the_modes.SCIPY, "^"), (the_modes.SLEPC, "s")):
-            runs = [programs[program] for name, programs in cases.items() if name.startswith(shape)]
-            at = [programs[the_modes.OURS][0]["mesh"]["unknowns"] for name, programs in cases.items() if name.startswith(shape)]
+            of_shape = [programs for name, programs in cases.items() if name.startswith(shape)]
+            of_shape = [programs for programs in of_shape if not the_modes.was_stopped(programs[program][0])]
+            at = [programs[the_modes.OURS][0]["mesh"]["unknowns"] for programs in of_shape]
             for panel, what, unit in ((left, "seconds", 1), (right, "memory", 1e9)):
-                values = [summary.of(run[what] for run in of_case)[0] / unit for of_case in runs]
+                values = [summary.of(run[what] for run in programs[program])[0] / unit for programs in of_shape]
                 label = f"{shape}, {program}" if panel is left else None
                 panel.plot(at, values, marker, color=colour, markerfacecolor="none", label=label)
     for panel, label in ((left, "whole process, s"), (right, "peak memory, GB")):
@@ -82,7 +90,9 @@ def phases(sizes, file):
     names = list(dict.fromkeys(name for by_size in sizes.values() for runs in by_size for name in runs[0]["times"]))
     colours = plot.get_cmap("tab10").colors
     for panel, (shape, by_size) in zip(panels, sizes.items()):
-        totals = [sum(summary.of(run["times"][name] for run in runs)[0] for name in runs[0]["times"]) for runs in by_size]
+        totals = [
+            sum(summary.of(run["times"][name] for run in runs)[0] for name in runs[0]["times"]) for runs in by_size
+        ]
         below = [0.0] * len(by_size)
         for name, colour in zip(names, colours):
             parts = [
@@ -91,7 +101,7 @@ def phases(sizes, file):
             ]
             panel.bar(range(len(by_size)), parts, bottom=below, color=colour, label=name, width=0.7)
             below = [a + b for a, b in zip(below, parts)]
-        labels = [f"{runs[0]['mesh']['unknowns'] / 1000:.0f} 000" for runs in by_size]
+        labels = [thousands(runs[0]["mesh"]["unknowns"]) for runs in by_size]
         panel.set_xticks(range(len(by_size)), labels)
         panel.set(title=shape, xlabel="unknowns")
         panel.grid(axis="x", visible=False)
@@ -109,7 +119,8 @@ def loop(results, speeds, file):
     for panel, count in zip(panels, the_loop.MODES):
         for program in the_loop.FIRST:
             step_seconds = summary.of(speeds[count][program])[0]
-            points = [(step_seconds / step, error) for step, error in the_loop.errors(results, count, program) if error == error]
+            steps_and_errors = the_loop.errors(results, count, program)
+            points = [(step_seconds / step, error) for step, error in steps_and_errors if math.isfinite(error)]
             label = program if "flexframe" in program else f"Exudyn, {program}"
             panel.plot(*zip(*points), styles[program], color=colours[program], label=label, markersize=4)
         panel.set(xscale="log", yscale="log", title=f"{count} modes", xlabel="processor seconds for a second of motion")

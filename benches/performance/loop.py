@@ -94,7 +94,10 @@ def same_step(store, modes, turn, body):
 def our_speed(modes, arguments):
     most = OUR_STEPS[modes]
     long, short = (run_ours(modes, STEP, steps, *arguments) for steps in (most, most // 10))
-    return {"step_seconds": (long["seconds"] - short["seconds"]) / (most - most // 10), "coordinates": long["coordinates"]}
+    return {
+        "step_seconds": (long["seconds"] - short["seconds"]) / (most - most // 10),
+        "coordinates": long["coordinates"],
+    }
 
 
 def their_speed(modes, scheme, body):
@@ -112,7 +115,9 @@ def their_ladder(store, modes, scheme, body, seconds):
     """As long as a run takes no more than so many seconds."""
     k, took = FIRST[scheme], 0.0
     while 2 * took <= seconds and k <= 17:
-        took = store.once(f"end, {modes}, {scheme}, {k}", lambda: run_theirs(modes, scheme, END / 2**k, 2**k, body))["seconds"]
+        took = store.once(
+            f"end, {modes}, {scheme}, {k}", lambda: run_theirs(modes, scheme, END / 2**k, 2**k, body)
+        )["seconds"]
         k += 1
 
 

@@ -29,7 +29,9 @@ def speed_table(speeds):
         for count in loop.MODES:
             cells.append(steps_a_second(speeds[count][program]))
             is_reference = program == loop.OURS
-            cells.append("" if is_reference else ratio(summary.ratios(speeds[count][program], speeds[count][loop.OURS])))
+            cells.append(
+                "" if is_reference else ratio(summary.ratios(speeds[count][program], speeds[count][loop.OURS]))
+            )
         rows.append(cells)
     head = ["steps a second"]
     for count in loop.MODES:
@@ -41,7 +43,9 @@ def row_table(speeds):
     rows = []
     for count in loop.MODES:
         step, with_row = (summary.of(speeds[count][name])[0] for name in (loop.OURS, loop.WITH_ROWS))
-        rows.append([count, f"{1e6 * step:.2f}", f"{1e6 * (with_row - step):.2f}", f"{100 * (with_row / step - 1):.0f} %"])
+        rows.append(
+            [count, f"{1e6 * step:.2f}", f"{1e6 * (with_row - step):.2f}", f"{100 * (with_row / step - 1):.0f} %"]
+        )
     return table(["modes", "a step, µs", "a row, µs", "row ÷ step"], rows, left=0)
 
 
@@ -64,7 +68,11 @@ def error_table(results, speeds):
             ]
             factors = [f"{exudyn / found[ours][1]:.1f}" for ours in (loop.OURS, loop.OURS_SAME)]
             rows.append([count, f"{target:.0e}", *cells, *factors])
-    head = ["modes", "error, rad", *(program if "flexframe" in program else f"Exudyn, {program}" for program in loop.FIRST)]
+    head = [
+        "modes",
+        "error, rad",
+        *(program if "flexframe" in program else f"Exudyn, {program}" for program in loop.FIRST),
+    ]
     return table([*head, "ratio", "ratio (the same equations)"], rows, left=0)
 
 

@@ -15,7 +15,12 @@ TOLERANCE = {SCIPY: 1e-6, SLEPC: 1e-6, SLEPC_2: 1e-6, OURS_2: 1e-12, CALCULIX: 2
 
 # Mesh; what the peers are told of it: the first frequency (Hz), which flexframe finds for itself, and the ordering of
 # CHOLMOD's that takes the least time in all.
-CASES = [("plate", 10, 24.5, "amd"), ("plate", 6, 24.5, "amd"), ("plate", 4.2, 24.5, "amd"), ("block", 3.7, 13400, "metis")]
+CASES = [
+    ("plate", 10, 24.5, "amd"),
+    ("plate", 6, 24.5, "amd"),
+    ("plate", 4.2, 24.5, "amd"),
+    ("block", 3.7, 13400, "metis"),
+]
 
 
 def measure(store, effort):
@@ -99,7 +104,9 @@ def check(store, case):
             continue
         found = difference(record, reference)
         if not found <= TOLERANCE[program]:  # NaN too
-            sys.exit(f"performance: {key}: frequencies differ from flexframe's by {found:.1e}, more than {TOLERANCE[program]}")
+            sys.exit(
+                f"performance: {key}: frequencies differ from flexframe's by {found:.1e}, more than {TOLERANCE[program]}"
+            )
 
 
 def split(key):

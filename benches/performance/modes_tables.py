@@ -52,8 +52,20 @@ def table_of_case(name, programs):
                 "" if is_reference else f"{difference:.0e}",
             ]
         )
-    head = ["program", "time, s", "processor, s", "time ÷ flexframe's", "memory, MB", "memory ÷ flexframe's", "frequencies differ"]
-    fastest = [fastest_phases(program, programs) for program in (modes.OURS, modes.SCIPY, modes.SLEPC) if ran(programs, program)]
+    head = [
+        "program",
+        "time, s",
+        "processor, s",
+        "time ÷ flexframe's",
+        "memory, MB",
+        "memory ÷ flexframe's",
+        "frequencies differ",
+    ]
+    fastest = [
+        fastest_phases(program, programs)
+        for program in (modes.OURS, modes.SCIPY, modes.SLEPC)
+        if ran(programs, program)
+    ]
     words = f"In the fastest run: {'; '.join(fastest)}."
     return f"**{heading(name, programs).capitalize()}**\n\n{table(head, rows)}\n\n{words}"
 

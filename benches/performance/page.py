@@ -68,11 +68,14 @@ def about(parts):
     machine, versions = first["machine"], first["versions"]
     names = ", ".join(f"{name} {version}" for name, version in versions.items())
     builds = {part["program"] for part in parts.values()}
-    programs = first["version"] if len(builds) == 1 else f"{first['version']} (in {len(builds)} builds: not all parts by the same)"
+    programs = first["version"]
+    if len(builds) > 1:
+        programs += f" (in {len(builds)} builds: not all parts by the same)"
     dates = " to ".join(sorted({part["date"] for part in parts.values()}))
     return (
         f"Measured {dates} with {programs} on {machine['processor']}, {machine['cores']} cores, "
-        f"{machine['memory'] / 1e9:.0f} GB, {machine['system']}. `./dev performance` installs the others, measures again and writes this page.\n\n"
+        f"{machine['memory'] / 1e9:.0f} GB, {machine['system']}. "
+        "`./dev performance` installs the others, measures again and writes this page.\n\n"
         f"Versions: {names}; OpenBLAS kernels: {machine['openblas_kernels']}."
     )
 
@@ -82,11 +85,12 @@ def method(parts):
     efforts = {part["effort"]["runs"] for part in parts.values()}
     once, patience = parts["modes"]["effort"]["once"], parts["modes"]["effort"]["patience"]
     return (
-        f"**Method.** The programs run in turn, {' or '.join(map(str, sorted(efforts)))} times each; those that take longer than {once} s once, "
-        f"and those that take longer than {patience} s are stopped. \"± s\" is the difference of the slowest and the fastest run, beside the median. "
-        "A ratio is a run of the other program divided by the run of flexframe of the same turn: median, and least to largest. "
-        "Above 1 flexframe is faster, or smaller. Each program runs on one thread unless it says otherwise. Memory is the peak of the whole process "
-        f"(of both ranks together). The load of the machine, these runs with it, was {min(loads):.1f} to {max(loads):.1f}."
+        f"**Method.** The programs run in turn, {' or '.join(map(str, sorted(efforts)))} times each; those that take longer "
+        f"than {once} s once, and those that take longer than {patience} s are stopped. A time is the median; after ± comes "
+        "the difference of the slowest and the fastest run. A ratio is a run of the other program divided by the run of "
+        "flexframe of the same turn: median, and least to largest. Above 1 flexframe is faster, or smaller. Each program "
+        "runs on one thread unless it says otherwise. Memory is the peak of the whole process (of both ranks together). "
+        f"The load of the machine, these runs with it, was {min(loads):.1f} to {max(loads):.1f}."
     )
 
 
@@ -94,7 +98,10 @@ def short(cases, speeds):
     head = ["time ÷ flexframe's", *modes.PEERS, "flexframe: one thread ÷ two"]
     rows = []
     for name, programs in cases.items():
-        cells = [f"{modes_tables.against(programs, peer, 'seconds')[0]:.2f}" if modes_tables.ran(programs, peer) else "–" for peer in modes.PEERS]
+        cells = [
+            f"{modes_tables.against(programs, peer, 'seconds')[0]:.2f}" if modes_tables.ran(programs, peer) else "–"
+            for peer in modes.PEERS
+        ]
         two = summary.ratios(*([run["seconds"] for run in programs[which]] for which in (modes.OURS, modes.OURS_2)))
         rows.append([modes_tables.heading(name, programs), *cells, f"{two[0]:.2f}"])
     of_modes = table(head, rows)
@@ -113,7 +120,9 @@ def lost(cases, results, speeds):
             for what, noun in (("seconds", "time"), ("memory", "memory")):
                 if modes_tables.ran(programs, peer) and modes_tables.against(programs, peer, what)[0] < 1:
                     part = modes_tables.against(programs, peer, what)[0]
-                    words.append(f"{modes_tables.heading(name, programs)}: {peer} takes {part:.2f} of flexframe's {noun}")
+                    words.append(
+                        f"{modes_tables.heading(name, programs)}: {peer} takes {part:.2f} of flexframe's {noun}"
+                    )
     for count in loop.MODES:
         for target in loop.TARGETS:
             costs = {program: loop_tables.cost(results, speeds, count, program, target)[1] for program in loop.FIRST}
@@ -121,5 +130,6 @@ def lost(cases, results, speeds):
             for ours in (loop.OURS, loop.OURS_SAME):
                 if costs[best] < costs[ours]:
                     part = costs[best] / costs[ours]
-                    words.append(f"{count} modes to {target:.0e} rad: Exudyn's {best} takes {part:.2f} of the time of {ours}")
+                    error = f"{count} modes to {target:.0e} rad"
+                    words.append(f"{error}: Exudyn's {best} takes {part:.2f} of the time of {ours}")
     return "; ".join(words) + "." if words else "None of the cases measured here."

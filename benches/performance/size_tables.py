@@ -31,7 +31,16 @@ def size_table(sizes):
                     f"{100 * (mesh['peak_bytes'] / taken - 1):+.0f} %",
                 ]
             )
-    head = ["body", "unknowns", "factor, 10⁶ entries", "time, s", "processor, s", "foretold, MB", "taken, MB", "foretold ÷ taken − 1"]
+    head = [
+        "body",
+        "unknowns",
+        "factor, 10⁶ entries",
+        "time, s",
+        "processor, s",
+        "foretold, MB",
+        "taken, MB",
+        "foretold ÷ taken − 1",
+    ]
     return table(head, rows)
 
 

@@ -24,7 +24,13 @@ class Store:
         version = subprocess.run([FLEXFRAME, "--version"], capture_output=True, text=True, check=True).stdout.strip()
         old = json.loads(self.file.read_text()) if self.file.exists() else {}
         self.results = old["results"] if old.get("program") == program else {}
-        self.about = {"program": program, "version": version, "effort": effort, "machine": machine(), "versions": versions()}
+        self.about = {
+            "program": program,
+            "version": version,
+            "effort": effort,
+            "machine": machine(),
+            "versions": versions(),
+        }
 
     def once(self, key, measure):
         """The result of that key: what is there, or measured now."""

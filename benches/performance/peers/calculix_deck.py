@@ -16,7 +16,9 @@ with open(file, "w") as deck:
     deck.write("*ELEMENT, TYPE=C3D10, ELSET=SOLID\n")
     deck.writelines(f"{i},{','.join(map(str, nodes))}\n" for i, nodes in enumerate((body.tets + 1).tolist(), 1))
     for i, (node, mass) in enumerate(body.point_masses, 1):
-        deck.write(f"*ELEMENT, TYPE=MASS, ELSET=MASS{i}\n{len(body.tets) + i},{node + 1}\n*MASS, ELSET=MASS{i}\n{mass}\n")
+        deck.write(
+            f"*ELEMENT, TYPE=MASS, ELSET=MASS{i}\n{len(body.tets) + i},{node + 1}\n*MASS, ELSET=MASS{i}\n{mass}\n"
+        )
     material = body.material
     deck.write(f"*MATERIAL, NAME=MATERIAL\n*ELASTIC\n{material['young_modulus']},{material['poisson_ratio']}\n")
     deck.write(f"*DENSITY\n{material['density']}\n*SOLID SECTION, ELSET=SOLID, MATERIAL=MATERIAL\n")
