@@ -37,7 +37,7 @@ def table_of_case(name, programs):
             continue
         runs = programs[program]
         if modes.was_stopped(runs[0]):
-            rows.append([program, f"more than {runs[0]['seconds']:.0f}", "–", "–", "–", "–", "–"])
+            rows.append([program, f"more than {int(runs[0]['seconds'])}", "–", "–", "–", "–", "–"])
             continue
         difference = max(modes.difference(run, programs[modes.OURS][0]) for run in runs)
         is_reference = program == modes.OURS

@@ -26,8 +26,8 @@ class Effort:
 
 
 EFFORTS = {
-    "quick": Effort(runs=2, once=10, patience=90, sizes=3, loop_seconds=8),
-    "usual": Effort(runs=3, once=120, patience=900, sizes=4, loop_seconds=60),
+    "quick": Effort(runs=2, once=10, patience=120, sizes=3, loop_seconds=8),
+    "usual": Effort(runs=3, once=120, patience=1200, sizes=4, loop_seconds=60),
     "full": Effort(runs=3, once=120, patience=3600, sizes=5, loop_seconds=60),
 }
 PARTS = {"modes": modes.measure, "size": size.measure, "loop": loop.measure}

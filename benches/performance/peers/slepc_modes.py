@@ -1,6 +1,6 @@
 """The lowest flexible modes of a scene's free body with SLEPc's Krylov-Schur on MUMPS.
 
-Every rank assembles the rows of its own nodes; MUMPS factors K + sM by Cholesky.
+Every rank assembles the rows of its own nodes; MUMPS factors K + sM (symmetric, which SLEPc does not tell it to be definite: LDLᵀ).
 
 Usage: [mpirun -n RANKS] slepc_modes.py SCENE MODES FREQUENCY      (rank 0 prints JSON; s = (2π FREQUENCY)², in Hz)
 """
