@@ -82,8 +82,7 @@ bench:
     cargo bench --quiet --package frames-rk4 --bench steps
     cargo bench --quiet --bench effects
 
-# Time, memory and errors against SciPy, SLEPc, CalculiX and Exudyn: docs/performance.md. WHAT: how much, quick (a quarter of
-# an hour), usual or full (a million unknowns: 12 GB), and which parts, modes, size, loop or page (`./dev` installs the others).
+# docs/performance.md: against SciPy, SLEPc, CalculiX and Exudyn (`quick`: a quarter of an hour, `full`: up to a million unknowns; parts: `modes`, `size`, `loop`, `page`).
 performance *what: build
     .tools/performance/bin/python benches/performance/performance.py {{what}}
 
