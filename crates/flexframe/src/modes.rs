@@ -1,10 +1,10 @@
 //! `flexframe modes`: natural frequencies and mode shapes of a scene's body.
 
 use std::fmt;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use frames_rk4::Effect;
-use scene::{Body, BuildError, BuildProgress, Choice, Flexible, Meshed, Model, Scene, SceneError};
+use scene::{Assembly, Body, BuildError, BuildProgress, Choice, Flexible, Meshed, Model, Scene, SceneError};
 use serde::Serialize;
 
 use crate::plausible;
@@ -76,6 +76,19 @@ pub fn modes(scene: &Scene, progress: impl FnMut(BuildProgress)) -> Result<(Mode
     Ok((model, report))
 }
 
+/// Writes the modes that a scene asks for as a problem for SLEPc on so many ranks. Returns the files.
+///
+/// # Errors
+/// [`BuildError`].
+pub fn write_problem(
+    scene: &Scene,
+    folder: &Path,
+    ranks: usize,
+    progress: impl FnMut(BuildProgress),
+) -> Result<Vec<PathBuf>, BuildError> {
+    Assembly::new(scene, progress)?.builder()?.write_problem(scene, folder, ranks)
+}
+
 /// The mesh and the modes of a body that has flexible ones.
 ///
 /// # Errors
@@ -123,6 +136,9 @@ impl fmt::Display for ModesReport {
             writeln!(f, "  mesh   {mesh}")?;
             if let Some(matrices) = &mesh.matrices {
                 writeln!(f, "  K, M   {matrices}")?;
+            }
+            if let Some(engine) = &mesh.engine {
+                writeln!(f, "  modes  {engine}")?;
             }
         }
         let [length, mass, _] = &self.units;

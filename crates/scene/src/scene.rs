@@ -12,6 +12,7 @@ use frames_rk4::{Effect, Method, Rows, StepControl};
 use matrix_import::MatrixFiles;
 use mesh_import::ImportSettings;
 use serde::Deserialize;
+use slepc::Slepc;
 
 use crate::cache::Cache;
 use crate::constraint::Constraint;
@@ -50,6 +51,9 @@ pub struct Scene {
     pub source: String,
     /// Where the answers of the finite-element model are kept from run to run; nowhere, until the program says so.
     pub cache: Cache,
+    /// What finds modes and static answers in the place of this program; `None`, until the program says so. It is no part of
+    /// what is asked of a body: its answers are the same within rounding.
+    pub solver: Option<Slepc>,
 }
 
 /// Labels of the units. The program never converts: they are shown, not used.
