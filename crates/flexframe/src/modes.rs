@@ -67,6 +67,7 @@ pub fn reduce(
 pub fn modes(scene: &Scene, progress: impl FnMut(BuildProgress)) -> Result<(Model, ModesReport), BuildError> {
     // The modes as they are, whatever a motion of the scene would call for.
     let mut scene = scene.clone().without_rows();
+    scene.output.backbones = false;
     scene.modes.flexible = Flexible::Count(scene.modes.flexible.most());
     scene.modes.static_correction = Choice::Off;
     scene.effects.choices[Effect::Damping] = Choice::On;

@@ -177,6 +177,9 @@ pub struct Output {
     pub stress_field: bool,
     /// Whether each of several supports gets reactions of its own. No key of the scene file; [`Scene::without_rows`] clears it.
     pub support_reactions: bool,
+    /// Whether it is to be known how the frequencies of modes that bend the body far go with their amplitudes, which takes static
+    /// answers. No key of the scene file; who computes no motion clears it.
+    pub backbones: bool,
 }
 
 impl Scene {

@@ -48,26 +48,24 @@ def say(**line):
 
 
 def import_slepc():
-    try:
-        import slepc4py
-    except ImportError:
+    if sys.prefix == "/usr":
         # Without its development packages Debian keeps them outside of Python's path.
         for name in ("petsc", "slepc"):
             sys.path += sorted(glob.glob(f"/usr/lib/{name}dir/{name}*/*-real/lib/python3/dist-packages"), reverse=True)
-        try:
-            import slepc4py
-        except ImportError as error:
-            raise Refused(
-                f"{sys.executable} has no slepc4py ({error})",
-                "install SLEPc: apt-get install python3-slepc4py python3-petsc4py openmpi-bin (Debian, Ubuntu), or conda "
-                "install -c conda-forge slepc4py; name that Python in FLEXFRAME_MPI_PYTHON if it is not python3",
-                is_missing=True,
-            )
-    # No options from the command line.
-    slepc4py.init(sys.argv[:1])
-    from petsc4py import PETSc
-    from slepc4py import SLEPc
+    try:
+        import slepc4py
 
+        # No options from the command line.
+        slepc4py.init(sys.argv[:1])
+        from petsc4py import PETSc
+        from slepc4py import SLEPc
+    except Exception as error:
+        raise Refused(
+            f"{sys.executable} has no slepc4py that works ({error})",
+            "install SLEPc: apt-get install python3-slepc4py python3-petsc4py openmpi-bin (Debian, Ubuntu), or conda install -c "
+            "conda-forge slepc4py openmpi; name that Python in FLEXFRAME_MPI_PYTHON if it is not python3",
+            is_missing=True,
+        )
     found = f"PETSc with {PETSc.ScalarType.__name__} numbers and {PETSc.IntType.__name__} indices"
     if PETSc.ScalarType().dtype.str[1:] != "f8" or PETSc.IntType().dtype.str[1:] != "i4":
         raise Refused(found, "use a PETSc of real numbers in double precision and indices of 32 bits, as most packages are", True)
@@ -264,9 +262,17 @@ class Driver:
         vector, answer = self.K.createVecs()
         value = eps.getEigenpair(i, vector).real
         mu = 1.0 / (value + self.problem["shift"])
+        # SLEPc purifies vectors by the operator, which magnifies what rounding has left of the rigid motions.
+        self.take_out_rigid(vector)
         st.apply(vector, answer)
         answer.axpy(-mu, vector)
+        self.take_out_rigid(answer)
         return value, vector, self.norm(answer) / mu
+
+    def take_out_rigid(self, vector):
+        product = self.M * vector
+        for rigid in self.rigid:
+            vector.axpy(-rigid.dot(product), rigid)
 
     def norm(self, vector):
         return max(vector.dot(self.M * vector), 0.0) ** 0.5
