@@ -47,7 +47,11 @@ impl SolverInput {
     pub fn take(self, scene: &mut Scene, stop: &Stop) -> Result<Option<WriteOnly>, CliError> {
         let ranks = self.ranks.map(|ranks| ranks as usize);
         if self.solver != Some(Solver::Slepc) {
-            let ours = [("--ranks", ranks.is_some()), ("--write-only", self.write_only.is_some()), ("--read", self.read.is_some())];
+            let ours = [
+                ("--ranks", ranks.is_some()),
+                ("--write-only", self.write_only.is_some()),
+                ("--read", self.read.is_some()),
+            ];
             return match ours.iter().find(|(_, is_given)| *is_given) {
                 Some((option, _)) => Err(refused(option, "it beside --solver built-in", "--solver slepc")),
                 None => Ok(None),

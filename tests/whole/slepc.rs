@@ -48,12 +48,12 @@ fn two_ranks_find_the_modes_and_static_answers_that_this_program_finds() {
         assert_eq!(found.len(), expected.len(), "{name}");
         for (k, (found, expected)) in found.iter().zip(&expected).enumerate() {
             let off = (found / expected - 1.0).abs();
-            // Measured: 6e-11 at most.
+            // Measured: 8.3e-10 at most, the lowest of the clamped bar: what rounding in K leaves.
             assert!(off < 1e-8, "{name}, mode {k}: {found} {expected} {off:e}");
         }
         let angle = sine(&modes.shapes, &ours.shapes);
-        // Measured: 2e-8 at most.
-        assert!(angle < 1e-6, "{name}: {angle:e}");
+        // Measured: 2.8e-10 at most.
+        assert!(angle < 1e-7, "{name}: {angle:e}");
     }
 }
 
@@ -176,9 +176,11 @@ fn a_folder_goes_to_a_cluster_and_its_answers_come_back() {
     refuses(read(&["-n", "40"]), 3, &["where 40 are asked for", "--write-only"]);
     let density = ["--set", "body.material.density=7.9e-9"];
     refuses(read(&density), 3, &["those of other matrices than the scene's now"]);
-    let run = ["run", "bar.toml", "--solver", "slepc", "--read", "out put", "--set", "modes.static_correction=true"];
-    let loaded = ["--set", "initial.angular_velocity=[0,0,0]", "-o", "results"];
-    let _ = (run, loaded);
+    let loads =
+        "loads=[{kind=\"force\",at=[400.0,0.0,0.0],direction=[0.0,0.0,1.0],amplitude=1.0,history={kind=\"constant\"}}]";
+    let run = ["run", "bar.toml", "--solver", "slepc", "--read", "out put", "--set", loads];
+    let program = env!("CARGO_BIN_EXE_flexframe");
+    refuses(case.command(program, &run), 3, &["the scene asks for static answers", "--solver slepc --ranks N"]);
     let spoil = |name: &str, spoiled: &dyn Fn(Vec<u8>) -> Vec<u8>, code: i32, words: &[&str]| {
         let path = case.path("out put").join(name);
         let kept = fs::read(&path).unwrap();
@@ -217,7 +219,7 @@ fn what_is_missing_is_named_with_the_cure() {
     refuses(command, 6, &["has no slepc4py that works (none here)", install]);
     let mut command = case.modes(&["--solver", "slepc", "--ranks", "1000"]);
     command.env("OMPI_MCA_rmaps_base_oversubscribe", "0").env("OMPI_MCA_rmaps_base_mapping_policy", "");
-    refuses(command, 5, &["-n 1000", "not enough slots", "ask for as many ranks as there are cores at most"]);
+    refuses(command, 5, &["-n 1000", "ask for as many ranks as there are cores at most"]);
     for (arguments, words) in [
         (&["--solver", "slepc"][..], &["--solver: found slepc alone", "--ranks N or --read DIR"][..]),
         (&["--solver", "built-in", "--ranks", "2"], &["--ranks: found it beside --solver built-in"]),
@@ -243,7 +245,11 @@ fn a_rank_that_dies_is_told_with_the_last_words_of_mpirun() {
     refuses(command, 5, &["driver.py modes` failed (exit status: 137)", "signal 9 (Killed)", "for want of memory"]);
     // One that fails in Python leaves none of the others waiting.
     let broken = case.path("broken.py");
-    fs::write(&broken, "import os\nif os.environ['OMPI_COMM_WORLD_RANK'] == '1':\n    raise ValueError('a broken rank')\n").unwrap();
+    fs::write(
+        &broken,
+        "import os\nif os.environ['OMPI_COMM_WORLD_RANK'] == '1':\n    raise ValueError('a broken rank')\n",
+    )
+    .unwrap();
     let text = format!("exec {python} -c \"exec(open('{}').read() + open('$1').read())\" \"$@\"", broken.display());
     let mut command = case.modes(&SLEPC);
     command.env("FLEXFRAME_MPI_PYTHON", case.program("python", &text));

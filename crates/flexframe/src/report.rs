@@ -195,7 +195,10 @@ impl From<EngineStats> for EngineReport {
 impl fmt::Display for EngineReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { slepc, petsc, ranks, megabytes, below, counted } = self;
-        write!(f, "SLEPc {slepc} on PETSc {petsc} with MUMPS, {ranks} rank(s), {megabytes} MB in the largest factorization; ")?;
+        write!(
+            f,
+            "SLEPc {slepc} on PETSc {petsc} with MUMPS, {ranks} rank(s), {megabytes} MB in the largest factorization; "
+        )?;
         write!(f, "none is missing: {counted} eigenvalues below {below:.4e} by a count, with those of rigid motions")
     }
 }

@@ -288,7 +288,9 @@ pub enum ModalError {
     #[error(transparent)]
     Engine(EngineError),
     /// What an engine gave is not what it was asked for.
-    #[error("the answers of the engine are not those of this body: found {found}, expected {expected}; have it compute them again")]
+    #[error(
+        "the answers of the engine are not those of this body: found {found}, expected {expected}; have it compute them again"
+    )]
     WrongAnswers {
         /// What they are.
         found: String,

@@ -7,8 +7,8 @@ use faer::sparse::SparseColMatRef;
 use faer::{ColRef, Mat};
 
 use crate::constraints::Constraints;
-use crate::error::ModalError;
 use crate::engine::{Engine, EngineStats};
+use crate::error::ModalError;
 use crate::foretold::Foretold;
 use crate::held_problem::HeldProblem;
 use crate::lanczos::{BLOCK, FIXED, largest_pairs, room};

@@ -15,8 +15,8 @@ const CURES: [(&str, &str); 6] = [
         "run as root",
         "run it as another user, or set OMPI_ALLOW_RUN_AS_ROOT=1 and OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1, as in a container",
     ),
-    ("find an executable", INSTALL),
-    ("could not access or execute", INSTALL),
+    ("xecutable", INSTALL),
+    ("execve", INSTALL),
     ("No such file or directory", "let every machine see the folder of the files: set TMPDIR to one that they share"),
     (
         "signal 9",
@@ -29,5 +29,7 @@ pub(crate) fn cure(said: &str) -> &'static str {
     CURES
         .iter()
         .find(|(words, _)| said.contains(words))
-        .map_or("see what it said; options for PETSc and MUMPS go into PETSC_OPTIONS (docs/cluster.md)", |(_, cure)| cure)
+        .map_or("see what it said; options for PETSc and MUMPS go into PETSC_OPTIONS (docs/cluster.md)", |(_, cure)| {
+            cure
+        })
 }

@@ -26,8 +26,9 @@ const PYTHON: &str = "FLEXFRAME_MPI_PYTHON";
 const PATIENCE: Duration = Duration::from_millis(50);
 /// mpirun has so long to end its processes.
 const FAREWELL: Duration = Duration::from_secs(10);
-/// Lines that are kept of what it says.
-const LINES: usize = 12;
+/// Lines that are kept of what it says, and that are shown.
+const KEPT: usize = 60;
+const SHOWN: usize = 12;
 
 /// A line of the driver.
 #[derive(Deserialize)]
@@ -94,7 +95,7 @@ pub(crate) fn drive(
             }
             Ok(Line::Other(line)) => {
                 last.push_back(line);
-                if last.len() > LINES {
+                if last.len() > KEPT {
                     last.pop_front();
                 }
             }
@@ -121,8 +122,9 @@ fn outcome(
         Some((found, cure, false)) => Err(SlepcError::Refused { found, cure }),
         None if status.success() => Ok(()),
         None => {
-            let said = if last.is_empty() { "nothing".to_owned() } else { last.join("\n") };
-            let cure = cure(&said).to_owned();
+            let cure = cure(&last.join("\n")).to_owned();
+            let shown = &last[last.len().saturating_sub(SHOWN)..];
+            let said = if shown.is_empty() { "nothing".to_owned() } else { shown.join("\n") };
             Err(SlepcError::Failed { command, status: status.to_string(), said, cure })
         }
     }
