@@ -173,6 +173,17 @@ fn a_folder_goes_to_a_cluster_and_its_answers_come_back() {
     let told = said(case.modes(&["--solver", "slepc", "--read", "out put"])).out;
     assert!(told.contains("SLEPc 3.") && told.contains("none is missing"), "{told}");
 
+    // The cache has them from then on, for every command.
+    let cached = |mut command: Command| {
+        command.env("FLEXFRAME_CACHE", case.path("cache"));
+        frequencies(&said(command))
+    };
+    assert_eq!(cached(read(&[])), found);
+    fs::rename(case.path("out put"), case.path("elsewhere")).unwrap();
+    assert_eq!(cached(case.modes(&["--json"])), found);
+    assert_eq!(cached(read(&[])), found);
+    fs::rename(case.path("elsewhere"), case.path("out put")).unwrap();
+
     refuses(read(&["-n", "40"]), 3, &["where 40 are asked for", "--write-only"]);
     let density = ["--set", "body.material.density=7.9e-9"];
     refuses(read(&density), 3, &["those of other matrices than the scene's now"]);
