@@ -103,6 +103,14 @@ impl Case {
         self.command(env!("CARGO_BIN_EXE_flexframe"), &arguments)
     }
 
+    /// What Slurm does with the folder.
+    fn do_job(&self) {
+        let mut job = self.command("bash", &["job.sh"]);
+        job.current_dir(self.path("out put"));
+        let said = said(job);
+        assert_eq!(said.code, Some(0), "{}", said.error);
+    }
+
     /// A program that the shell runs.
     fn program(&self, name: &str, text: &str) -> PathBuf {
         let path = self.path(name);
@@ -157,13 +165,7 @@ fn a_folder_goes_to_a_cluster_and_its_answers_come_back() {
     fs::write(case.path("out put/driver.log"), "{\"phase\": \"load\"}\nslurmstepd: it was cancelled\n\n").unwrap();
     refuses(read(&[]), 6, &["driver.log ends with: slurmstepd: it was cancelled"]);
 
-    // What Slurm does with it.
-    let job = said({
-        let mut job = case.command("bash", &["job.sh"]);
-        job.current_dir(case.path("out put"));
-        job
-    });
-    assert_eq!(job.code, Some(0), "{}", job.error);
+    case.do_job();
     let found = frequencies(&said(read(&[])));
     let expected = frequencies(&said(case.modes(&["--json"])));
     assert_eq!(found.len(), 8);
@@ -187,11 +189,6 @@ fn a_folder_goes_to_a_cluster_and_its_answers_come_back() {
     refuses(read(&["-n", "40"]), 3, &["where 40 are asked for", "--write-only"]);
     let density = ["--set", "body.material.density=7.9e-9"];
     refuses(read(&density), 3, &["those of other matrices than the scene's now"]);
-    let loads =
-        "loads=[{kind=\"force\",at=[400.0,0.0,0.0],direction=[0.0,0.0,1.0],amplitude=1.0,history={kind=\"constant\"}}]";
-    let run = ["run", "bar.toml", "--solver", "slepc", "--read", "out put", "--set", loads];
-    let program = env!("CARGO_BIN_EXE_flexframe");
-    refuses(case.command(program, &run), 3, &["the scene asks for static answers", "--solver slepc --ranks N"]);
     let spoil = |name: &str, spoiled: &dyn Fn(Vec<u8>) -> Vec<u8>, code: i32, words: &[&str]| {
         let path = case.path("out put").join(name);
         let kept = fs::read(&path).unwrap();
@@ -213,6 +210,40 @@ fn a_folder_goes_to_a_cluster_and_its_answers_come_back() {
 }
 
 #[test]
+fn static_answers_of_a_run_come_back_from_the_folder_too() {
+    let case = Case::new();
+    let force = "{kind=\"force\",at=[400.0,0.0,0.0],direction=[0.0,0.0,1.0],amplitude=1.0,history={kind=\"constant\"}}";
+    let loads = format!("loads=[{force}]");
+    // The buckling load would be searched in jobs of its own.
+    const STIFFENING: &str = "effects.geometric_stiffening=false";
+    let run = |more: &[&str]| {
+        let arguments =
+            [&["run", "bar.toml", "--set", &loads, "--set", STIFFENING, "--overwrite", "--json"], more].concat();
+        case.command(env!("CARGO_BIN_EXE_flexframe"), &arguments)
+    };
+    let expected = frequencies(&said(run(&[])));
+    assert!(expected.len() > 8, "there are no static shapes");
+    assert_eq!(said(run(&["--solver", "slepc", "--ranks", "2", "--write-only", "out put"])).code, Some(0));
+    let mut jobs = 0;
+    let done = loop {
+        let said = said(run(&["--solver", "slepc", "--read", "out put"]));
+        if said.code == Some(0) {
+            break said;
+        }
+        assert!(jobs < 4 && said.code == Some(6) && said.error.contains("sbatch job.sh"), "{}", said.error);
+        assert_eq!(jobs > 0, said.error.contains("static answers: the scene asks"), "{}", said.error);
+        case.do_job();
+        jobs += 1;
+    };
+    assert!(jobs > 1, "no static answers were asked for");
+    let found = frequencies(&done);
+    assert_eq!(found.len(), expected.len());
+    for (found, expected) in found.iter().zip(&expected) {
+        assert!((found / expected - 1.0).abs() < 1e-8, "{found} {expected}");
+    }
+}
+
+#[test]
 fn what_is_missing_is_named_with_the_cure() {
     let case = Case::new();
     let install = "apt-get install python3-slepc4py python3-petsc4py openmpi-bin";
@@ -221,7 +252,7 @@ fn what_is_missing_is_named_with_the_cure() {
     refuses(command, 6, &["`no-such-mpirun` cannot be started", install]);
     let mut command = case.modes(&SLEPC);
     command.env("FLEXFRAME_MPI_PYTHON", "no-such-python");
-    refuses(command, 5, &["no-such-python driver.py modes` failed", install]);
+    refuses(command, 5, &["no-such-python driver.py` failed", install]);
     // A Python that has no SLEPc.
     fs::create_dir(case.path("hidden")).unwrap();
     fs::write(case.path("hidden/slepc4py.py"), "raise ImportError('none here')\n").unwrap();
@@ -253,7 +284,7 @@ fn a_rank_that_dies_is_told_with_the_last_words_of_mpirun() {
     let text = format!("if [ \"$OMPI_COMM_WORLD_RANK\" = 1 ]; then kill -9 $$; fi\nexec {python} \"$@\"");
     let mut command = case.modes(&SLEPC);
     command.env("FLEXFRAME_MPI_PYTHON", case.program("python", &text));
-    refuses(command, 5, &["driver.py modes` failed (exit status: 137)", "signal 9 (Killed)", "for want of memory"]);
+    refuses(command, 5, &["driver.py` failed (exit status: 137: signal 9 ended a rank)", "for want of memory"]);
     // One that fails in Python leaves none of the others waiting.
     let broken = case.path("broken.py");
     fs::write(

@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 use std::fs;
-use std::io;
 use std::path::Path;
 use std::time::Duration;
 
@@ -13,6 +12,7 @@ use serde::de::DeserializeOwned;
 use crate::binary::read_vectors;
 use crate::error::SlepcError;
 use crate::folder::LOG;
+use crate::json::json;
 
 /// `modes.json`.
 #[derive(Deserialize)]
@@ -31,9 +31,10 @@ struct Modes {
     times: BTreeMap<String, f64>,
 }
 
-/// `statics.json`.
+/// `statics-NAME.json`.
 #[derive(Deserialize)]
 struct Statics {
+    digest: String,
     unknowns: usize,
     iterations: Vec<usize>,
     residuals: Vec<f64>,
@@ -46,13 +47,7 @@ pub(crate) fn eigenpairs(
     unknowns: usize,
     requested: usize,
 ) -> Result<Eigenpairs, SlepcError> {
-    let path = folder.join("modes.json");
-    let found: Modes = match json(&path) {
-        Err(SlepcError::Io { source, .. }) if source.kind() == io::ErrorKind::NotFound && folder.is_dir() => {
-            return Err(SlepcError::NotFinished { folder: folder.to_owned(), said: last_line(&folder.join(LOG)) });
-        }
-        found => found?,
-    };
+    let found: Modes = finished(folder, "modes.json", "")?;
     if found.digest != digest || found.unknowns != unknowns {
         return Err(SlepcError::OtherMatrices { folder: folder.to_owned() });
     }
@@ -80,16 +75,31 @@ pub(crate) fn eigenpairs(
     Ok(Eigenpairs { eigenvalues: found.eigenvalues, vectors, residuals: found.residuals, stats })
 }
 
-/// The static answers in a folder.
-pub(crate) fn static_answers(folder: &Path) -> Result<StaticAnswers, SlepcError> {
-    let Statics { unknowns, iterations, residuals } = json(&folder.join("statics.json"))?;
-    let displacements = read_vectors(&folder.join("statics.petsc"), unknowns, residuals.len())?;
-    Ok(StaticAnswers { displacements, iterations, residuals })
+/// The static answers to the forces with this name in a folder, of the matrices with this digest and so many rows.
+pub(crate) fn static_answers(
+    folder: &Path,
+    name: &str,
+    digest: &str,
+    unknowns: usize,
+) -> Result<StaticAnswers, SlepcError> {
+    let asked = " (static answers: the scene asks for these, too, and their forces are written there now)";
+    let found: Statics = finished(folder, &format!("statics-{name}.json"), asked)?;
+    if found.digest != digest || found.unknowns != unknowns {
+        return Err(SlepcError::OtherMatrices { folder: folder.to_owned() });
+    }
+    let path = folder.join(format!("statics-{name}.petsc"));
+    let displacements = read_vectors(&path, unknowns, found.residuals.len())?;
+    Ok(StaticAnswers { displacements, iterations: found.iterations, residuals: found.residuals })
 }
 
-fn json<T: DeserializeOwned>(path: &Path) -> Result<T, SlepcError> {
-    let text = fs::read_to_string(path).map_err(SlepcError::io(path, "read it"))?;
-    serde_json::from_str(&text).map_err(|error| SlepcError::Damaged { path: path.to_owned(), what: error.to_string() })
+/// What the driver leaves last; `what` says what it is.
+fn finished<T: DeserializeOwned>(folder: &Path, name: &str, what: &'static str) -> Result<T, SlepcError> {
+    let path = folder.join(name);
+    if folder.is_dir() && !path.exists() {
+        let said = last_line(&folder.join(LOG));
+        return Err(SlepcError::NotFinished { folder: folder.to_owned(), name: name.to_owned(), what, said });
+    }
+    json(&path)
 }
 
 fn last_line(path: &Path) -> Option<String> {

@@ -1,17 +1,18 @@
 """Eigenpairs of K x = lambda M x, or static answers K u = f, by SLEPc, PETSc and MUMPS on any number of MPI ranks.
 
-    mpirun -n RANKS python3 driver.py [modes | statics]
+    mpirun -n RANKS python3 driver.py
 
 flexframe wrote this file and those beside it, and reads what it leaves there:
 
-    problem.json     sizes, the shift s, the tolerance, and the digest of K and M
-    K.petsc M.petsc  the matrices of the body as its supports leave it (PETSc's binary form, as all .petsc files)
-    rigid.petsc      its rigid motions, M-orthonormal, which K does not resist
-    forces.petsc     of `statics`: forces, with their number in forces.json
+    problem.json         sizes, the number of modes, the shift s, the tolerance, and the digest of K and M
+    K.petsc M.petsc      the matrices of the body as its supports leave it (PETSc's binary form, as all .petsc files)
+    rigid.petsc          its rigid motions, M-orthonormal, which K does not resist
+    forces-NAME.petsc    forces to which static answers are asked for, with their number in forces-NAME.json; any number of these
 
-    modes.petsc      the eigenvectors, and modes.json, which is there once they are complete
-    statics.petsc    the displacements, and statics.json
+    modes.petsc          the eigenvectors, and modes.json, which is there once they are complete
+    statics-NAME.petsc   the displacements, and statics-NAME.json
 
+What is answered already is not computed again.
 Every rank must see the folder. Options for PETSc and MUMPS are taken from the environment variable PETSC_OPTIONS.
 """
 
@@ -81,6 +82,10 @@ class Driver:
         self.times = {}
         self.factor_entries = self.megabytes = 0
         self.problem = json.loads((FOLDER / "problem.json").read_text())
+        # Before any rank answers anything.
+        self.asks_modes = self.problem["modes"] > 0 and not (FOLDER / "modes.json").exists()
+        names = sorted(path.stem.removeprefix("forces-") for path in FOLDER.glob("forces-*.json"))
+        self.asked_statics = [name for name in names if not (FOLDER / f"statics-{name}.json").exists()]
         with self.timed("load"):
             self.K, self.M = self.matrix("K.petsc"), self.matrix("M.petsc")
             self.rigid = self.vectors("rigid.petsc", self.problem["rigid"])
@@ -291,8 +296,6 @@ class Driver:
     def statics(self):
         """K u = f by conjugate gradients, the factor of K + sM before them. A force does no work on a rigid motion."""
         PETSc = self.PETSc
-        count = json.loads((FOLDER / "forces.json").read_text())["count"]
-        forces = self.vectors("forces.petsc", count)
         # PETSc wants them orthonormal.
         rigid = []
         for vector in self.rigid:
@@ -311,6 +314,12 @@ class Driver:
         with self.timed("factor"):
             ksp.setUp()
             self.check(ksp.getPC())
+        for name in self.asked_statics:
+            self.respond(ksp, name)
+
+    def respond(self, ksp, name):
+        count = json.loads((FOLDER / f"forces-{name}.json").read_text())["count"]
+        forces = self.vectors(f"forces-{name}.petsc", count)
         answers, iterations, residuals = [], [], []
         with self.timed("search"):
             for force in forces:
@@ -323,7 +332,7 @@ class Driver:
                 iterations.append(ksp.getIterationNumber())
                 residuals.append(after / before if before > 0.0 else 0.0)
                 self.say(converged=len(answers), of=count)
-        self.leave("statics", answers, iterations=iterations, residuals=residuals)
+        self.leave(f"statics-{name}", answers, iterations=iterations, residuals=residuals)
 
     def natural(self, ksp, force):
         """The norm of a force in (K + sM)^-1."""
@@ -344,10 +353,12 @@ class Timed:
 
 
 def main():
-    question = sys.argv[1] if len(sys.argv) > 1 else "modes"
     try:
         driver = Driver()
-        {"modes": driver.modes, "statics": driver.statics}[question]()
+        if driver.asks_modes:
+            driver.modes()
+        if driver.asked_statics:
+            driver.statics()
     except Refused as refused:
         say(error=str(refused), cure=refused.cure, is_missing=refused.is_missing)
     except BaseException:

@@ -9,7 +9,7 @@ use tempfile::TempDir;
 
 use crate::answers;
 use crate::error::SlepcError;
-use crate::folder::{digest, write_forces, write_matrices, write_problem};
+use crate::folder::{check_digest, digest, write_forces, write_matrices, write_problem};
 use crate::run::drive;
 use crate::stop::Stop;
 
@@ -29,7 +29,8 @@ impl Slepc {
         Self(Way::Run { ranks, stop })
     }
 
-    /// Takes the modes that the driver has left in a folder of [`write_folder`](crate::write_folder).
+    /// Takes what the driver has left in a folder of [`write_folder`](crate::write_folder). Forces to which static answers are asked
+    /// for are written there, for the driver to answer when it is run again.
     pub fn read(folder: impl Into<PathBuf>) -> Self {
         Self(Way::Read { folder: folder.into() })
     }
@@ -111,16 +112,16 @@ impl Engine for Runner {
         progress: &mut dyn FnMut(Progress),
     ) -> Result<Eigenpairs, EngineError> {
         self.ask(problem, count, progress, |Work { folder, digest }, progress| {
-            drive(folder.path(), self.ranks, "modes", &self.stop, progress)?;
+            drive(folder.path(), self.ranks, &self.stop, progress)?;
             answers::eigenpairs(folder.path(), digest, problem.stiffness.size(), count)
         })
     }
 
     fn static_answers(&self, problem: &HeldProblem<'_>, forces: MatRef<'_, f64>) -> Result<StaticAnswers, EngineError> {
-        self.ask(problem, 0, &mut |_| (), |Work { folder, .. }, progress| {
-            write_forces(forces, folder.path())?;
-            drive(folder.path(), self.ranks, "statics", &self.stop, progress)?;
-            answers::static_answers(folder.path())
+        self.ask(problem, 0, &mut |_| (), |Work { folder, digest }, progress| {
+            let name = write_forces(forces, folder.path())?;
+            drive(folder.path(), self.ranks, &self.stop, progress)?;
+            answers::static_answers(folder.path(), &name, digest, problem.stiffness.size())
         })
     }
 }
@@ -140,7 +141,10 @@ impl Engine for Reader {
         Ok(answers::eigenpairs(&self.folder, &digest(problem)?, problem.stiffness.size(), count)?)
     }
 
-    fn static_answers(&self, _: &HeldProblem<'_>, _: MatRef<'_, f64>) -> Result<StaticAnswers, EngineError> {
-        Err(SlepcError::NoStatics { folder: self.folder.clone() }.into())
+    fn static_answers(&self, problem: &HeldProblem<'_>, forces: MatRef<'_, f64>) -> Result<StaticAnswers, EngineError> {
+        let digest = digest(problem)?;
+        check_digest(&self.folder, &digest)?;
+        let name = write_forces(forces, &self.folder)?;
+        Ok(answers::static_answers(&self.folder, &name, &digest, problem.stiffness.size())?)
     }
 }

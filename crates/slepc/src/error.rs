@@ -51,16 +51,20 @@ pub enum SlepcError {
         /// Why.
         source: io::Error,
     },
-    /// The driver has left no answers yet.
+    /// The driver has not left its answers yet.
     #[error(
-        "{}: modes.json is not there: the driver has not come to its end{}\n = run it: `sbatch job.sh` in that folder, or `bash job.sh`; \
-         what it says is in driver.log",
+        "{}: {name} is not there{what}: the driver has not come to its end{}\n = `sbatch job.sh` in that folder, or `bash job.sh`, and then \
+         this command again; what the driver says is in driver.log",
         folder.display(),
         said.as_ref().map_or_else(String::new, |said| format!("; driver.log ends with: {said}"))
     )]
     NotFinished {
         /// The folder.
         folder: PathBuf,
+        /// The file that the driver leaves last.
+        name: String,
+        /// What it has, if that is not plain.
+        what: &'static str,
         /// The last line that it said.
         said: Option<String>,
     },
@@ -91,18 +95,6 @@ pub enum SlepcError {
         path: PathBuf,
         /// What is wrong with it.
         what: String,
-    },
-    /// Static answers are asked for where there are only modes.
-    #[error(
-        "{}: the scene asks for static answers (of its loads, its spin or its large modes), and the folder has modes only\n = give \
-         --solver slepc --ranks N where mpirun is at hand, such as in a job of the cluster, or run without --solver what fits into this \
-         machine: the modes are in the cache now. Without static answers: static_correction = false in [modes], geometric_stiffening = \
-         false and large_deflection = false in [effects]",
-        folder.display()
-    )]
-    NoStatics {
-        /// The folder.
-        folder: PathBuf,
     },
 }
 

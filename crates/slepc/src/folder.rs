@@ -6,11 +6,12 @@ use std::path::{Path, PathBuf};
 
 use faer::MatRef;
 use modal::{HeldMatrix, HeldProblem};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use whole_file::{WholeFile, write_whole};
 
 use crate::binary::{write_matrix, write_vectors};
 use crate::error::SlepcError;
+use crate::json::json;
 
 /// The program that every rank runs.
 const DRIVER: &str = include_str!("driver.py");
@@ -19,6 +20,15 @@ pub(crate) const DRIVER_FILE: &str = "driver.py";
 pub(crate) const LOG: &str = "driver.log";
 /// ‖(K + sM)⁻¹Mφ − μφ‖_M / μ of a pair that the driver accepts: that of the search in this program.
 const TOLERANCE: f64 = 1e-10;
+
+/// Digits of the names of forces.
+const NAME: usize = 16;
+
+/// What `problem.json` has of the matrices.
+#[derive(Deserialize)]
+struct Digest {
+    digest: String,
+}
 
 /// `problem.json`.
 #[derive(Serialize)]
@@ -51,7 +61,8 @@ pub(crate) fn write_matrices(problem: &HeldProblem<'_>, folder: &Path) -> Result
     Ok(digest)
 }
 
-/// Writes what the driver is asked for: so many modes, of the matrices with this digest.
+/// Writes what the driver is asked for: so many modes, of the matrices with this digest. Those that were asked for before are
+/// removed.
 pub(crate) fn write_problem(
     problem: &HeldProblem<'_>,
     digest: &str,
@@ -67,13 +78,44 @@ pub(crate) fn write_problem(
         shift: problem.shift,
         tolerance: TOLERANCE,
     };
+    let before = folder.join("modes.json");
+    if before.exists() {
+        fs::remove_file(&before).map_err(SlepcError::io(before, "remove what was there"))?;
+    }
     write(folder, "problem.json", |file| Ok(serde_json::to_writer_pretty(file, &problem)?))
 }
 
-/// Writes forces for static answers.
-pub(crate) fn write_forces(forces: MatRef<'_, f64>, folder: &Path) -> Result<(), SlepcError> {
-    write(folder, "forces.petsc", |file| write_vectors(forces, file))?;
-    write(folder, "forces.json", |file| writeln!(file, "{{\"count\": {}}}", forces.ncols()))
+/// Writes forces to which static answers are asked for. Returns their name, which follows from them.
+pub(crate) fn write_forces(forces: MatRef<'_, f64>, folder: &Path) -> Result<String, SlepcError> {
+    let mut hashed = Hashed { file: BufWriter::new(io::sink()), hasher: blake3::Hasher::new() };
+    write_vectors(forces, &mut hashed).map_err(SlepcError::io(folder, "write forces into it"))?;
+    let name = hashed.hasher.finalize().to_hex()[..NAME].to_owned();
+    if !folder.join(format!("forces-{name}.json")).exists() {
+        write(folder, &format!("forces-{name}.petsc"), |file| write_vectors(forces, file))?;
+        write(folder, &format!("forces-{name}.json"), |file| writeln!(file, "{{\"count\": {}}}", forces.ncols()))?;
+    }
+    Ok(name)
+}
+
+/// Refuses a folder that was written for other matrices than those with this digest.
+pub(crate) fn check_digest(folder: &Path, digest: &str) -> Result<(), SlepcError> {
+    let written: Digest = json(&folder.join("problem.json"))?;
+    if written.digest == digest { Ok(()) } else { Err(SlepcError::OtherMatrices { folder: folder.to_owned() }) }
+}
+
+/// Removes answers to questions that were asked before.
+fn remove_answers(folder: &Path) -> Result<(), SlepcError> {
+    let of_another = |name: &str| {
+        ["problem.json", "modes.json", "modes.petsc", LOG].contains(&name)
+            || name.starts_with("forces-")
+            || name.starts_with("statics-")
+    };
+    for entry in fs::read_dir(folder).map_err(SlepcError::io(folder, "list it"))?.flatten() {
+        if of_another(&entry.file_name().to_string_lossy()) {
+            fs::remove_file(entry.path()).map_err(SlepcError::io(entry.path(), "remove what was there"))?;
+        }
+    }
+    Ok(())
 }
 
 /// Leaves in a folder all that finds `modes` modes elsewhere: K and M, the driver, a script for Slurm with so many ranks, and what
@@ -89,15 +131,7 @@ pub fn write_folder(
     scene: &Path,
 ) -> Result<Vec<PathBuf>, SlepcError> {
     fs::create_dir_all(folder).map_err(SlepcError::io(folder, "make the folder"))?;
-    // What was there before is none of it.
-    for stale in ["problem.json", "modes.json", "modes.petsc", LOG] {
-        match fs::remove_file(folder.join(stale)) {
-            Err(source) if source.kind() != io::ErrorKind::NotFound => {
-                return Err(SlepcError::Io { path: folder.join(stale), action: "remove what was there", source });
-            }
-            _ => {}
-        }
-    }
+    remove_answers(folder)?;
     let digest = write_matrices(problem, folder)?;
     write_problem(problem, &digest, modes, folder)?;
     let script = script(ranks);
@@ -122,6 +156,7 @@ fn script(ranks: usize) -> String {
     format!(
         "#!/bin/bash
 # `sbatch job.sh` in this folder runs the driver on {ranks} ranks; so does `bash job.sh` without Slurm.
+# What is answered already is not computed again.
 #SBATCH --job-name=flexframe-modes
 #SBATCH --ntasks={ranks}
 #SBATCH --cpus-per-task=1

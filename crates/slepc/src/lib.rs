@@ -8,6 +8,7 @@ mod cures;
 mod engine;
 mod error;
 mod folder;
+mod json;
 mod run;
 mod stop;
 

@@ -47,25 +47,23 @@ enum Line {
     Other(String),
 }
 
-/// Runs the driver of a folder on so many ranks with a question, `modes` or `statics`.
+/// Runs the driver of a folder on so many ranks.
 pub(crate) fn drive(
     folder: &Path,
     ranks: usize,
-    question: &str,
     stop: &Stop,
     progress: &mut dyn FnMut(Progress),
 ) -> Result<(), SlepcError> {
     let named = |variable: &str, usual: &str| std::env::var_os(variable).unwrap_or_else(|| OsString::from(usual));
     let (mpirun, python) = (named(MPIRUN, "mpirun"), named(PYTHON, "python3"));
     let mut command = Command::new(&mpirun);
-    command.args(["-n", &ranks.to_string()]).arg(&python).arg(folder.join(DRIVER_FILE)).arg(question);
+    command.args(["-n", &ranks.to_string()]).arg(&python).arg(folder.join(DRIVER_FILE));
     if std::env::var_os("OMP_NUM_THREADS").is_none() {
         // The ranks are the parallelism.
         command.env("OMP_NUM_THREADS", "1");
     }
     command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
-    let words =
-        format!("{} -n {ranks} {} {DRIVER_FILE} {question}", mpirun.to_string_lossy(), python.to_string_lossy());
+    let words = format!("{} -n {ranks} {} {DRIVER_FILE}", mpirun.to_string_lossy(), python.to_string_lossy());
     progress(Progress::Engine(EnginePhase::Starting));
     let mut child = command.spawn().map_err(|cause| SlepcError::NotInstalled {
         found: format!("`{}` cannot be started: {cause}", mpirun.to_string_lossy()),
@@ -122,11 +120,20 @@ fn outcome(
         Some((found, cure, false)) => Err(SlepcError::Refused { found, cure }),
         None if status.success() => Ok(()),
         None => {
-            let cure = cure(&last.join("\n")).to_owned();
+            let status = in_words(status);
+            let cure = cure(&format!("{status}\n{}", last.join("\n"))).to_owned();
             let shown = &last[last.len().saturating_sub(SHOWN)..];
             let said = if shown.is_empty() { "nothing".to_owned() } else { shown.join("\n") };
-            Err(SlepcError::Failed { command, status: status.to_string(), said, cure })
+            Err(SlepcError::Failed { command, status, said, cure })
         }
+    }
+}
+
+/// The exit status, with the signal that mpirun tells by it: it does not always say so in words.
+fn in_words(status: ExitStatus) -> String {
+    match status.code() {
+        Some(code @ (137 | 139 | 143)) => format!("{status}: signal {} ended a rank", code - 128),
+        _ => status.to_string(),
     }
 }
 

@@ -158,10 +158,9 @@ impl Failure for SlepcError {
                 Details { found: Some(status.clone()), cure: Some(cure.clone()), ..Details::default() }
             }
             Self::Io { path, .. } | Self::Damaged { path, .. } => Details::of_file(path),
-            Self::NotFinished { folder, .. }
-            | Self::OtherMatrices { folder }
-            | Self::FewModes { folder, .. }
-            | Self::NoStatics { folder } => Details::of_file(folder),
+            Self::NotFinished { folder, .. } | Self::OtherMatrices { folder } | Self::FewModes { folder, .. } => {
+                Details::of_file(folder)
+            }
             _ => Details::default(),
         }
     }
