@@ -21,7 +21,7 @@ pub struct SolverInput {
     /// With slepc: only write K and M, the driver and a script for Slurm into a folder.
     #[arg(long, value_name = "DIR", requires = "ranks")]
     write_only: Option<PathBuf>,
-    /// With slepc: take the modes that the driver has left in the folder of --write-only.
+    /// With slepc: take what the driver has left in the folder of --write-only.
     #[arg(long, value_name = "DIR", requires = "solver", conflicts_with = "ranks")]
     read: Option<PathBuf>,
 }

@@ -262,6 +262,9 @@ fn what_is_missing_is_named_with_the_cure() {
     let mut command = case.modes(&["--solver", "slepc", "--ranks", "1000"]);
     command.env("OMPI_MCA_rmaps_base_oversubscribe", "0").env("OMPI_MCA_rmaps_base_mapping_policy", "");
     refuses(command, 5, &["-n 1000", "ask for as many ranks as there are cores at most"]);
+    let mut command = case.modes(&SLEPC);
+    command.env("PETSC_OPTIONS", "-mat_mumps_icntl_14 -95");
+    refuses(command, 5, &["MUMPS cannot factor the matrix: INFOG(1) = -9", "-mat_mumps_icntl_14 200"]);
     for (arguments, words) in [
         (&["--solver", "slepc"][..], &["--solver: found slepc alone", "--ranks N or --read DIR"][..]),
         (&["--solver", "built-in", "--ranks", "2"], &["--ranks: found it beside --solver built-in"]),

@@ -19,6 +19,7 @@ Every rank must see the folder. Options for PETSc and MUMPS are taken from the e
 import glob
 import json
 import os
+import re
 import sys
 import time
 import traceback
@@ -152,13 +153,21 @@ class Driver:
         pc.setType("cholesky")
         pc.setFactorSolverType("mumps")
 
-    def check(self, pc):
-        """The factor, if it is one."""
-        factor = pc.getFactorMatrix()
-        status = factor.getMumpsInfog(1)
+    def factored(self, pc, *set_up):
+        """The factor, once these functions have made it."""
+        try:
+            for step in set_up:
+                step()
+            factor = pc.getFactorMatrix()
+            status = factor.getMumpsInfog(1)
+        except self.PETSc.Error as error:
+            said = re.search(r"INFOG\(1\)=(-\d+)", str(error))
+            if not said:
+                raise
+            status = int(said[1])
         if status < 0:
             raise Refused(
-                f"MUMPS cannot factor the matrix: INFOG(1) = {status}, INFOG(2) = {factor.getMumpsInfog(2)}",
+                f"MUMPS cannot factor the matrix: INFOG(1) = {status}",
                 "-8 and -9: give it more room, PETSC_OPTIONS='-mat_mumps_icntl_14 200'; -13 and -19: there is not enough "
                 "memory, use more machines; -10: the body is a mechanism; others: see the manual of MUMPS",
             )
@@ -185,8 +194,7 @@ class Driver:
         # The root of the tree not by ScaLAPACK, which does not count; pivots that are zero are told apart.
         factor.setMumpsIcntl(13, 1)
         factor.setMumpsIcntl(24, 1)
-        pc.setUp()
-        negative, zero, _ = self.check(pc).getInertia()
+        negative, zero, _ = self.factored(pc, pc.setUp).getInertia()
         pc.destroy()
         if zero:
             raise Refused(f"{zero} pivots of K - {sigma:.6e} M that are zero", "ask for a mode more or less")
@@ -249,9 +257,7 @@ class Driver:
         already = len(found)
         eps.setMonitor(lambda _eps, _step, done, _values, _errors: self.say(converged=min(already + done, of), of=of))
         with self.timed("factor"):
-            eps.setUp()
-            ksp.setUp()
-            self.check(ksp.getPC())
+            self.factored(ksp.getPC(), eps.setUp, ksp.setUp)
         with self.timed("search"):
             eps.solve()
             if eps.getConverged() < count:
@@ -298,7 +304,8 @@ class Driver:
         PETSc = self.PETSc
         # PETSc wants them orthonormal.
         rigid = []
-        for vector in self.rigid:
+        for motion in self.rigid:
+            vector = motion.copy()
             for _ in range(2):
                 for other in rigid:
                     vector.axpy(-other.dot(vector), other)
@@ -312,8 +319,7 @@ class Driver:
         ksp.setTolerances(rtol=STATIC_TOLERANCE, atol=0.0, max_it=ITERATIONS)
         self.prepare(ksp.getPC())
         with self.timed("factor"):
-            ksp.setUp()
-            self.check(ksp.getPC())
+            self.factored(ksp.getPC(), ksp.setUp)
         for name in self.asked_statics:
             self.respond(ksp, name)
 
