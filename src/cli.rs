@@ -22,6 +22,7 @@ use crate::cli_error::CliError;
 use crate::progress::Bar;
 use crate::scene_input::SceneInput;
 use crate::signals::Signals;
+use crate::solver_input::{SolverInput, WriteOnly};
 use crate::{output, threads};
 
 /// Flexible-body dynamics: the motion of elastic bodies that fly, tumble and spin while they vibrate.
@@ -73,6 +74,8 @@ enum Command {
         output: Option<PathBuf>,
         #[command(flatten)]
         files: FileArgs,
+        #[command(flatten)]
+        solver: SolverInput,
     },
     /// Continue an interrupted run: the results are the same, bit for bit, as those of a run without interruption.
     Resume {
@@ -90,6 +93,8 @@ enum Command {
         /// The body file to write.
         #[arg(short, long, value_name = "FILE")]
         output: PathBuf,
+        #[command(flatten)]
+        solver: SolverInput,
         /// Write the mass and stiffness matrices, too.
         #[arg(long)]
         matrices: bool,
@@ -121,6 +126,8 @@ enum Command {
         /// Folder for a picture of the mode shapes (SVG, PDF and PNG) [default: no picture].
         #[arg(short, long, value_name = "DIR")]
         output: Option<PathBuf>,
+        #[command(flatten)]
+        solver: SolverInput,
     },
     /// Say which effects a scene calls for, and why.
     ///
@@ -370,8 +377,11 @@ fn command(cli: Cli, json_errors: bool, cache: &Cache) -> Result<(), Box<dyn Fai
             clap_complete::generate(shell, &mut Cli::command(), "flexframe", &mut script);
             Ok(output::written(std::io::stdout().write_all(&script))?)
         }
-        Command::Run { scene: SceneArgs { scene, json }, output, files } => {
-            let scene = read(scene)?;
+        Command::Run { scene: SceneArgs { scene, json }, output, files, solver } => {
+            let mut scene = read(scene)?;
+            if let Some(to) = solver.take(&mut scene, signals.slepc())? {
+                return write_only(&scene, &to, bar);
+            }
             let settings = settings(&signals, files.overwrite, cache);
             let (_, report) = run::run(&scene, &folder(&scene, output), &settings, |p| {
                 signals.heard(p);
@@ -388,8 +398,11 @@ fn command(cli: Cli, json_errors: bool, cache: &Cache) -> Result<(), Box<dyn Fai
             drop(bar);
             output::print(&report, json)
         }
-        Command::Reduce { scene: SceneArgs { scene, json }, output, matrices, stress } => {
-            let scene = read(scene)?;
+        Command::Reduce { scene: SceneArgs { scene, json }, output, solver, matrices, stress } => {
+            let mut scene = read(scene)?;
+            if let Some(to) = solver.take(&mut scene, signals.slepc())? {
+                return write_only(&scene, &to, bar);
+            }
             let report = modes::reduce(&scene, &output, matrices, stress, |p| bar.build(p))?;
             drop(bar);
             output::print(&report, json)?;
@@ -401,10 +414,13 @@ fn command(cli: Cli, json_errors: bool, cache: &Cache) -> Result<(), Box<dyn Fai
             drop(bar);
             output::print(&report, json)
         }
-        Command::Modes { scene: SceneArgs { scene, json }, flexible, output } => {
+        Command::Modes { scene: SceneArgs { scene, json }, flexible, output, solver } => {
             let mut scene = read(scene)?;
             if let Some(count) = flexible {
                 scene.modes.flexible = Flexible::Count(count);
+            }
+            if let Some(to) = solver.take(&mut scene, signals.slepc())? {
+                return write_only(&scene, &to, bar);
             }
             if output.is_some() {
                 modes::require_surface(&scene)?;
@@ -527,6 +543,13 @@ fn command(cli: Cli, json_errors: bool, cache: &Cache) -> Result<(), Box<dyn Fai
             output::warn(warning.as_deref())
         }
     }
+}
+
+/// Writes the modes that a scene asks for as a problem for SLEPc.
+fn write_only(scene: &Scene, to: &WriteOnly, mut bar: Bar) -> Result<(), Box<dyn Failure>> {
+    let files = modes::write_problem(scene, &to.folder, to.ranks, |p| bar.build(p))?;
+    drop(bar);
+    output::list(&files)
 }
 
 /// The exit codes as a part of the help.

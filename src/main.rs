@@ -7,6 +7,7 @@ mod output;
 mod progress;
 mod scene_input;
 mod signals;
+mod solver_input;
 mod threads;
 
 use std::process::ExitCode;

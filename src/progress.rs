@@ -10,7 +10,7 @@ use flexframe::run::RunProgress;
 use flexframe::sweep::SweepProgress;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use memory::Bytes;
-use modal::{Forecast, Progress};
+use modal::{EnginePhase, Forecast, Progress};
 use scene::BuildProgress;
 
 /// Work shorter than this needs no bar.
@@ -47,6 +47,7 @@ impl Bar {
                 }
                 self.show(&factoring(&forecast), None);
             }
+            BuildProgress::Modes(Progress::Engine(phase)) => self.show(in_words(phase), None),
             BuildProgress::Modes(Progress::Lanczos { converged, requested }) => {
                 self.show("finding modes", Some((converged as u64, requested as u64)));
             }
@@ -127,6 +128,15 @@ impl Bar {
 impl Drop for Bar {
     fn drop(&mut self) {
         self.bar.finish_and_clear();
+    }
+}
+
+fn in_words(phase: EnginePhase) -> &'static str {
+    match phase {
+        EnginePhase::Writing => "writing K and M",
+        EnginePhase::Starting => "starting SLEPc",
+        EnginePhase::Factorizing => "MUMPS factors K + sM",
+        EnginePhase::Counting => "MUMPS counts the modes",
     }
 }
 

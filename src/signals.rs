@@ -1,7 +1,7 @@
 //! What ctrl-C, and a request to terminate, do.
 //!
-//! Before the motion begins there is nothing to lose, and a signal ends the program at once. Then the first stops the run
-//! at its next row, and another that comes half a second later or more ends the program at once. A shell, a job scheduler
+//! Before the motion begins there is nothing to lose, and a signal ends the program at once; the processes of SLEPc are ended,
+//! and their files removed, before. Then the first stops the run at its next row, and another that comes half a second later or more ends the program at once. A shell, a job scheduler
 //! and a terminal may send several for one request, only milliseconds apart.
 
 use std::io;
@@ -14,6 +14,7 @@ use flexframe::failure::{Details, FailureReport, Kind};
 use flexframe::run::RunProgress;
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::{iterator, low_level};
+use slepc::Stop;
 
 use crate::output;
 
@@ -26,18 +27,21 @@ pub struct Signals {
     in_motion: Arc<AtomicBool>,
     /// Asks the motion to stop.
     stop: Arc<AtomicBool>,
+    /// Asks SLEPc to stop.
+    slepc: Stop,
 }
 
 impl Signals {
     /// Begins to listen; `json` is the form in which the end of the program is told.
     pub fn listen(json: bool) -> io::Result<Self> {
-        let ours = Self { in_motion: Arc::default(), stop: Arc::default() };
-        let (in_motion, stop) = (ours.in_motion.clone(), ours.stop.clone());
+        let ours = Self { in_motion: Arc::default(), stop: Arc::default(), slepc: Stop::default() };
+        let (in_motion, stop, slepc) = (ours.in_motion.clone(), ours.stop.clone(), ours.slepc.clone());
         let mut signals = iterator::Signals::new([SIGINT, SIGTERM])?;
         thread::Builder::new().name("signals".to_owned()).spawn(move || {
             let mut request = Request::default();
             for _ in signals.forever() {
-                match request.answer(in_motion.load(Ordering::SeqCst), Instant::now()) {
+                let can_stop = slepc.ask() || in_motion.load(Ordering::SeqCst);
+                match request.answer(can_stop, Instant::now()) {
                     Answer::Stop => stop.store(true, Ordering::SeqCst),
                     Answer::Wait => {}
                     Answer::End { told } => {
@@ -56,6 +60,11 @@ impl Signals {
     /// What stops a run.
     pub fn stop(&self) -> Arc<AtomicBool> {
         self.stop.clone()
+    }
+
+    /// What stops SLEPc.
+    pub fn slepc(&self) -> &Stop {
+        &self.slepc
     }
 
     /// Hears how far a run is.
@@ -77,7 +86,7 @@ struct Request {
 /// What a signal brings about.
 #[derive(Debug, PartialEq, Eq)]
 enum Answer {
-    /// The run is to stop at its next row.
+    /// The run is to stop at its next row, or SLEPc.
     Stop,
     /// Nothing more.
     Wait,
@@ -89,9 +98,9 @@ enum Answer {
 }
 
 impl Request {
-    fn answer(&mut self, in_motion: bool, now: Instant) -> Answer {
+    fn answer(&mut self, can_stop: bool, now: Instant) -> Answer {
         match self.first {
-            None if in_motion => {
+            None if can_stop => {
                 self.first = Some(now);
                 Answer::Stop
             }

@@ -19,6 +19,7 @@ mod new_scene;
 mod peak_memory;
 mod reactions;
 mod scene_input;
+mod slepc;
 mod spin_up;
 mod sweep;
 mod threads;

@@ -1,10 +1,10 @@
 //! `flexframe modes`: natural frequencies and mode shapes of a scene's body.
 
 use std::fmt;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use frames_rk4::Effect;
-use scene::{Body, BuildError, BuildProgress, Choice, Flexible, Meshed, Model, Scene, SceneError};
+use scene::{Assembly, Body, BuildError, BuildProgress, Choice, Flexible, Meshed, Model, Scene, SceneError};
 use serde::Serialize;
 
 use crate::plausible;
@@ -67,6 +67,7 @@ pub fn reduce(
 pub fn modes(scene: &Scene, progress: impl FnMut(BuildProgress)) -> Result<(Model, ModesReport), BuildError> {
     // The modes as they are, whatever a motion of the scene would call for.
     let mut scene = scene.clone().without_rows();
+    scene.output.backbones = false;
     scene.modes.flexible = Flexible::Count(scene.modes.flexible.most());
     scene.modes.static_correction = Choice::Off;
     scene.effects.choices[Effect::Damping] = Choice::On;
@@ -74,6 +75,19 @@ pub fn modes(scene: &Scene, progress: impl FnMut(BuildProgress)) -> Result<(Mode
     let model = Model::build(&scene, progress)?;
     let report = ModesReport::new(&scene, &model);
     Ok((model, report))
+}
+
+/// Writes the modes that a scene asks for as a problem for SLEPc on so many ranks. Returns the files.
+///
+/// # Errors
+/// [`BuildError`].
+pub fn write_problem(
+    scene: &Scene,
+    folder: &Path,
+    ranks: usize,
+    progress: impl FnMut(BuildProgress),
+) -> Result<Vec<PathBuf>, BuildError> {
+    Assembly::new(scene, progress)?.builder()?.write_problem(scene, folder, ranks)
 }
 
 /// The mesh and the modes of a body that has flexible ones.
@@ -123,6 +137,9 @@ impl fmt::Display for ModesReport {
             writeln!(f, "  mesh   {mesh}")?;
             if let Some(matrices) = &mesh.matrices {
                 writeln!(f, "  K, M   {matrices}")?;
+            }
+            if let Some(engine) = &mesh.engine {
+                writeln!(f, "  modes  {engine}")?;
             }
         }
         let [length, mass, _] = &self.units;

@@ -4,6 +4,7 @@ use std::fmt::{self, Write};
 use std::time::Duration;
 
 use memory::Bytes;
+use modal::EngineStats;
 use nalgebra::Matrix3;
 use scene::{MatrixChecks, Meshed, Model};
 use serde::{Serialize, Serializer};
@@ -21,9 +22,18 @@ impl Times {
         times.add("mesh", build.mesh);
         times.add("assembly", build.assembly);
         times.add("rigid modes", solve.preparation_time);
-        times.add("ordering", solve.ordering_time);
-        times.add("factor", solve.factor_time);
-        times.add("Lanczos", solve.lanczos_time);
+        match solve.engine {
+            Some(engine) => {
+                times.add("MUMPS", engine.factor_time);
+                times.add("SLEPc", engine.search_time);
+                times.add("count", engine.count_time);
+            }
+            None => {
+                times.add("ordering", solve.ordering_time);
+                times.add("factor", solve.factor_time);
+                times.add("Lanczos", solve.lanczos_time);
+            }
+        }
         times.add("Ritz", solve.ritz_time);
         if !build.statics.is_zero() {
             times.add("statics", build.statics);
@@ -96,6 +106,25 @@ pub struct MeshReport {
     pub factor_entries: usize,
     /// Bytes that the model takes while it is made, at the most at a time: matrices, factor, basis and scratch.
     pub peak_bytes: usize,
+    /// What SLEPc has done, where it found the modes.
+    pub engine: Option<EngineReport>,
+}
+
+/// What SLEPc has done.
+#[derive(Debug, Clone, Serialize)]
+pub struct EngineReport {
+    /// Its version.
+    pub slepc: String,
+    /// That of PETSc.
+    pub petsc: String,
+    /// Processes.
+    pub ranks: usize,
+    /// Megabytes that the largest factorisation took in all processes.
+    pub megabytes: usize,
+    /// Where the eigenvalues were counted, (rad/time)².
+    pub below: f64,
+    /// How many are below, with those of rigid motions.
+    pub counted: usize,
 }
 
 /// What the matrices of another program were found to be.
@@ -150,7 +179,27 @@ impl MeshReport {
             matrix_bytes: *matrix_bytes,
             factor_entries: modes.stats.factor_entries,
             peak_bytes: with_kept(modes.stats.peak_bytes),
+            engine: modes.stats.engine.map(EngineReport::from),
         })
+    }
+}
+
+impl From<EngineStats> for EngineReport {
+    fn from(stats: EngineStats) -> Self {
+        let EngineStats { slepc, petsc, ranks, megabytes, below, counted, .. } = stats;
+        let [slepc, petsc] = [slepc, petsc].map(|version| version.map(|number| number.to_string()).join("."));
+        Self { slepc, petsc, ranks, megabytes, below, counted }
+    }
+}
+
+impl fmt::Display for EngineReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { slepc, petsc, ranks, megabytes, below, counted } = self;
+        write!(
+            f,
+            "SLEPc {slepc} on PETSc {petsc} with MUMPS, {ranks} rank(s), {megabytes} MB in the largest factorization; "
+        )?;
+        write!(f, "none is missing: {counted} eigenvalues below {below:.4e} by a count, with those of rigid motions")
     }
 }
 
@@ -206,13 +255,16 @@ impl fmt::Display for MeshReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "{}, {} unknowns (memory {}: matrices {}, factor {} of it)",
+            "{}, {} unknowns (memory {}: matrices {}",
             self.in_words(),
             self.unknowns,
             Bytes(self.peak_bytes),
-            Bytes(self.matrix_bytes),
-            Bytes(8 * self.factor_entries)
-        )
+            Bytes(self.matrix_bytes)
+        )?;
+        match self.factor_entries {
+            0 => write!(f, " of it)"),
+            entries => write!(f, ", factor {} of it)", Bytes(8 * entries)),
+        }
     }
 }
 

@@ -8,8 +8,8 @@
 //! other nodes, one for each motion of the held ones), [`Constraints::project`] is `T Tᵀ`. It takes any displacement
 //! into the space, and takes out of a force what the support's reactions balance.
 
-use faer::reborrow::{Reborrow, ReborrowMut};
-use faer::{Mat, MatMut};
+use faer::reborrow::Reborrow;
+use faer::{Mat, MatMut, MatRef};
 use nalgebra::{DMatrix, Vector3};
 
 use crate::error::ModalError;
@@ -115,11 +115,40 @@ impl Constraints {
     }
 
     /// Replaces X by T Tᵀ X.
-    pub(crate) fn project(&self, mut x: MatMut<'_, f64>) {
+    pub(crate) fn project(&self, x: MatMut<'_, f64>) {
         if !self.is_empty() {
-            let coefficients = self.motions.transpose() * self.gather(x.rb_mut());
+            let coefficients = self.motions.transpose() * self.gather(x.rb());
             self.scatter(&(&self.motions * coefficients), x);
         }
+    }
+
+    /// The degrees of freedom that are not held, in rising order.
+    pub(crate) fn free_rows(&self) -> Vec<usize> {
+        (0..self.held.len()).filter(|row| !self.held[*row]).collect()
+    }
+
+    /// Tᵀ X, a row for each column of T.
+    pub(crate) fn reduced(&self, x: MatRef<'_, f64>) -> Mat<f64> {
+        let free = self.free_rows();
+        let motions = self.motions.transpose() * self.gather(x);
+        Mat::from_fn(free.len() + motions.nrows(), x.ncols(), |i, j| match free.get(i) {
+            Some(row) => x[(*row, j)],
+            None => motions[(i - free.len(), j)],
+        })
+    }
+
+    /// T Y.
+    pub(crate) fn expanded(&self, y: MatRef<'_, f64>) -> Mat<f64> {
+        let free = self.free_rows();
+        let mut x = Mat::zeros(self.held.len(), y.ncols());
+        for j in 0..y.ncols() {
+            for (i, row) in free.iter().enumerate() {
+                x[(*row, j)] = y[(i, j)];
+            }
+        }
+        let moved = &self.motions * y.subrows(free.len(), self.motion_count());
+        self.scatter(&moved, x.as_mut());
+        x
     }
 
     /// Sets the held rows to zero.
@@ -128,8 +157,7 @@ impl Constraints {
     }
 
     /// The held rows.
-    fn gather(&self, x: MatMut<'_, f64>) -> Mat<f64> {
-        let x = x.rb();
+    fn gather(&self, x: MatRef<'_, f64>) -> Mat<f64> {
         Mat::from_fn(self.rows.len(), x.ncols(), |i, j| x[(self.rows[i], j)])
     }
 

@@ -1,5 +1,10 @@
 //! Why modes could not be found.
 
+use std::error::Error;
+
+/// Why an engine failed, in its own words.
+pub type EngineError = Box<dyn Error + Send + Sync>;
+
 /// What can be wrong with the matrices, or with what is asked of them.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -278,6 +283,19 @@ pub enum ModalError {
         residual: f64,
         /// Residual asked for.
         tolerance: f64,
+    },
+    /// An engine failed.
+    #[error(transparent)]
+    Engine(EngineError),
+    /// What an engine gave is not what it was asked for.
+    #[error(
+        "the answers of the engine are not those of this body: found {found}, expected {expected}; have it compute them again"
+    )]
+    WrongAnswers {
+        /// What they are.
+        found: String,
+        /// What they should be.
+        expected: String,
     },
     /// A dense eigenvalue problem failed.
     #[error(

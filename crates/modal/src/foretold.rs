@@ -111,6 +111,11 @@ impl Foretold {
         self
     }
 
+    /// The most that is held here where an engine has the factor and the search, of so many shapes.
+    pub(crate) fn peak_beside_engine(&self, shapes: usize) -> usize {
+        self.matrices + self.of_ritz(shapes).max(self.of_reduction(shapes))
+    }
+
     /// K + sM, what orders it, and what finds the pattern of its factor.
     pub(crate) fn of_ordering(&self) -> usize {
         // The graph grows by doubling.

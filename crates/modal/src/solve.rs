@@ -7,10 +7,13 @@ use faer::sparse::SparseColMatRef;
 use faer::{ColRef, Mat};
 
 use crate::constraints::Constraints;
+use crate::engine::{Engine, EngineStats};
 use crate::error::ModalError;
-use crate::foretold::{Forecast, Foretold};
+use crate::foretold::Foretold;
+use crate::held_problem::HeldProblem;
 use crate::lanczos::{BLOCK, FIXED, largest_pairs, room};
 use crate::mass_matrix::{MassMatrix, freedoms};
+use crate::progress::Progress;
 use crate::rigid::RigidModes;
 use crate::ritz::{RitzPairs, rayleigh_ritz};
 use crate::shifted::Shifted;
@@ -36,7 +39,8 @@ pub struct Modes {
     /// Flexible mode shapes (N×nf), mass-normalised, the component of largest magnitude positive; then static shapes,
     /// which are K-orthogonal and M-orthonormal to the modes and to each other.
     pub shapes: Mat<f64>,
-    /// ‖(K + sM)⁻¹Mφ − μφ‖_M / μ for each natural mode, in the scale of the shifted problem, where rounding is small.
+    /// ‖(K + sM)⁻¹Mφ − μφ‖_M / μ for each natural mode, in the scale of the shifted problem, where rounding is small; as an
+    /// engine says them, of modes that it has found.
     pub residuals: Vec<f64>,
     /// ‖Kφ − λMφ‖ / ‖Kφ‖ for each natural mode, without the reactions of a support. Rounding in K leaves up to 1e-6 of
     /// this in the lowest modes of fine meshes.
@@ -52,9 +56,9 @@ pub struct SolveStats {
     pub shift: f64,
     /// Unknowns N.
     pub unknowns: usize,
-    /// Entries of the factor of K + sM.
+    /// Entries of the factor of K + sM; zero where an engine had it.
     pub factor_entries: usize,
-    /// Bytes that are held at the most, from K and M to the reduced body, foretold from the sizes of all that is large.
+    /// Bytes that are held here at the most, from K and M to the reduced body, foretold from the sizes of all that is large.
     pub peak_bytes: usize,
     /// Solutions with a block of vectors.
     pub block_solves: usize,
@@ -70,22 +74,8 @@ pub struct SolveStats {
     pub lanczos_time: Duration,
     /// Rayleigh–Ritz, residuals and signs.
     pub ritz_time: Duration,
-}
-
-/// How far a solution has come.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Progress {
-    /// An order of the unknowns is being sought in which the factor of K + sM has few entries.
-    Ordering,
-    /// K + sM is being factored.
-    Factorizing(Forecast),
-    /// Modes that have converged, of those asked for.
-    Lanczos {
-        /// Converged.
-        converged: usize,
-        /// Asked for.
-        requested: usize,
-    },
+    /// What the engine has done that found the modes; `None` where they were found here.
+    pub engine: Option<EngineStats>,
 }
 
 impl Modes {
@@ -124,6 +114,7 @@ pub struct Solver<'a> {
     pub(crate) rigid: RigidModes,
     pub(crate) constraints: Constraints,
     factor: OnceLock<Shifted>,
+    pub(crate) engine: Option<Box<dyn Engine>>,
     preparation_time: Duration,
 }
 
@@ -167,8 +158,15 @@ impl<'a> Solver<'a> {
             rigid,
             constraints,
             factor: OnceLock::new(),
+            engine: None,
             preparation_time,
         })
+    }
+
+    /// The same with an engine, which finds modes and static answers in the place of the factor of K + sM here.
+    #[must_use]
+    pub fn with_engine(self, engine: Box<dyn Engine>) -> Self {
+        Self { engine: Some(engine), ..self }
     }
 
     /// The mass matrix.
@@ -207,6 +205,9 @@ impl<'a> Solver<'a> {
                 },
             });
         }
+        if let Some(engine) = &self.engine {
+            return self.modes_by(engine.as_ref(), flexible, &mut progress);
+        }
         let basis = FIXED + room(flexible, available);
         let factor = self.factor_for(|memory| memory.of_search(basis, BLOCK, flexible), &mut progress)?;
         let mut stats = SolveStats {
@@ -231,8 +232,7 @@ impl<'a> Solver<'a> {
         let started = Instant::now();
         let RitzPairs { eigenvalues, shapes, force_residuals } =
             rayleigh_ritz(self.stiffness, &self.mass, &self.constraints, &pairs.vectors)?;
-        self.refuse_mechanism(&eigenvalues, &shapes, stats.shift)?;
-        self.refuse_hidden(eigenvalues[0], shapes.col(0))?;
+        self.refuse_soft(&eigenvalues, &shapes, stats.shift)?;
         stats.ritz_time = started.elapsed();
         let (rigid, residuals) = (self.rigid.clone(), pairs.residuals);
         Ok(Modes { rigid, eigenvalues, shapes, residuals, force_residuals, stats })
@@ -254,7 +254,7 @@ impl<'a> Solver<'a> {
         }
         progress(Progress::Ordering);
         let started = Instant::now();
-        let shift = start::shift(self.stiffness, &self.mass, self.positions, &self.rigid)?;
+        let shift = self.shift()?;
         let estimate_time = started.elapsed();
         let mut factor =
             Shifted::factor(self.stiffness, self.sparse_mass, shift, &self.constraints, search, |forecast| {
@@ -262,6 +262,20 @@ impl<'a> Solver<'a> {
             })?;
         factor.estimate_time = estimate_time;
         Ok(self.factor.get_or_init(|| factor))
+    }
+
+    /// The shift s.
+    pub(crate) fn shift(&self) -> Result<f64, ModalError> {
+        start::shift(self.stiffness, &self.mass, self.positions, &self.rigid)
+    }
+
+    /// K and M in the space of the displacements that the support allows.
+    ///
+    /// # Errors
+    /// [`ModalError::DenseEigen`], [`ModalError::Memory`].
+    pub fn held_problem(&self) -> Result<HeldProblem<'_>, ModalError> {
+        let (shift, available) = (self.shift()?, self.available());
+        HeldProblem::new(self.stiffness, self.sparse_mass, &self.constraints, &self.rigid, shift, available)
     }
 
     /// How many blocks of columns, and columns, the factor of K + sM was used for up to now.
@@ -275,6 +289,22 @@ impl<'a> Solver<'a> {
             .filter(|row| self.mass.is_massive(*row) && !self.constraints.holds(*row))
             .count();
         (free + self.constraints.motion_count()).saturating_sub(self.rigid.motion.count())
+    }
+
+    /// Bytes that are held at the most where an engine finds so many modes.
+    pub(crate) fn peak_beside_engine(&self, modes: usize) -> usize {
+        Foretold::new(self.stiffness, self.sparse_mass, FIXED).peak_beside_engine(modes)
+    }
+
+    /// Time of the checks.
+    pub(crate) fn preparation_time(&self) -> Duration {
+        self.preparation_time
+    }
+
+    /// Refuses modes without stiffness, and a lowest mode that may be rounding.
+    pub(crate) fn refuse_soft(&self, eigenvalues: &[f64], shapes: &Mat<f64>, shift: f64) -> Result<(), ModalError> {
+        self.refuse_mechanism(eigenvalues, shapes, shift)?;
+        self.refuse_hidden(eigenvalues[0], shapes.col(0))
     }
 
     fn refuse_mechanism(&self, eigenvalues: &[f64], shapes: &Mat<f64>, shift: f64) -> Result<(), ModalError> {
@@ -301,7 +331,7 @@ impl<'a> Solver<'a> {
     }
 
     /// What rounding of the entries of K may come to in the eigenvalue of a shape: ε |φ|ᵀ|K||φ|.
-    fn rounding(&self, shape: ColRef<'_, f64>) -> f64 {
+    pub(crate) fn rounding(&self, shape: ColRef<'_, f64>) -> f64 {
         let k = self.stiffness;
         let of_column = |j: usize| -> f64 {
             let products = k.row_idx_of_col(j).zip(k.val_of_col(j)).map(|(i, value)| (shape[i] * value).abs());

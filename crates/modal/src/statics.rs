@@ -12,7 +12,7 @@ use faer::{Accum, Col, Mat, MatRef, Scale};
 
 use crate::error::ModalError;
 use crate::foretold::of_vectors;
-use crate::products::symmetric_product;
+use crate::inertia_relief::InertiaRelief;
 use crate::ritz::{RitzPairs, rayleigh_ritz};
 use crate::shifted::Shifted;
 use crate::solve::{Modes, Solver};
@@ -22,13 +22,10 @@ use crate::tall;
 const TOLERANCE: f64 = 1e-13;
 /// The same of the answer in hand, evaluated anew, which is its error in the norm of the energy: what rounding in K may
 /// leave on slender bodies (9e-7 on a bar of 220 times its thickness).
-const ACCEPTED: f64 = 1e-5;
+pub(crate) const ACCEPTED: f64 = 1e-5;
 const MAX_ITERATIONS: usize = 300;
 /// Forces answered together.
 const BLOCK: usize = 8;
-/// A force that the inertia of the rigid motion balances to this part of itself, such as gravity on a free body,
-/// strains nothing: the rest is rounding.
-const BALANCED: f64 = 1e-11;
 /// What a static answer adds to the modes must be more than this part of it.
 const DEPENDENT: f64 = 1e-8;
 
@@ -57,6 +54,9 @@ impl Solver<'_> {
             return Err(ModalError::Size { what: "mode shapes", expected, found: modes.shapes.nrows() });
         }
         check_finite("forces", forces)?;
+        if let Some(engine) = &self.engine {
+            return self.static_response_by(engine.as_ref(), forces);
+        }
         let mut statics = Statics::new(self, self.factor()?, modes)?;
         memory::check("static answers", of_vectors(expected, forces.ncols() + 10 * BLOCK))?;
         let mut answers = Mat::zeros(expected, forces.ncols());
@@ -146,34 +146,23 @@ fn check_finite(what: &'static str, vectors: MatRef<'_, f64>) -> Result<(), Moda
 
 /// What the iterations share.
 struct Statics<'a> {
-    solver: &'a Solver<'a>,
     factor: &'a Shifted,
     modes: &'a Modes,
-    /// M R, as far as the support lets it act.
-    m_rigid: Mat<f64>,
+    relief: InertiaRelief<'a>,
     scratch: MemBuffer,
 }
 
 impl<'a> Statics<'a> {
     fn new(solver: &'a Solver<'_>, factor: &'a Shifted, modes: &'a Modes) -> Result<Self, ModalError> {
-        let mut m_rigid = solver.mass.product(solver.rigid.shapes.as_ref());
-        solver.constraints.project(m_rigid.as_mut());
-        Ok(Self { solver, factor, modes, m_rigid, scratch: factor.solve_scratch(BLOCK)? })
+        Ok(Self { factor, modes, relief: InertiaRelief::new(solver), scratch: factor.solve_scratch(BLOCK)? })
     }
 
     /// Answers to up to [`BLOCK`] forces, of which `first` is the number of the first.
     fn respond(&mut self, forces: MatRef<'_, f64>, first: usize) -> Result<Mat<f64>, ModalError> {
-        let applied = forces;
-        let mut forces = applied.to_owned();
-        self.balance(&mut forces);
-        for (k, applied) in applied.col_iter().enumerate() {
-            if forces.col(k).norm_l2() <= BALANCED * applied.norm_l2() {
-                forces.col_mut(k).fill(0.0);
-            }
-        }
+        let forces = self.relief.straining(forces);
         let (mut answer, along) = self.along_modes(&forces);
-        let mut residual = &forces - self.stiff(&answer);
-        self.balance(&mut residual);
+        let mut residual = &forces - self.relief.stiff(&answer);
+        self.relief.balance(&mut residual);
         let mut search: Mat<f64> = Mat::zeros(forces.nrows(), forces.ncols());
         let mut before: Vec<f64> = vec![f64::INFINITY; forces.ncols()];
         let mut scale: Vec<f64> = Vec::new();
@@ -193,7 +182,7 @@ impl<'a> Statics<'a> {
                 let direction = conditioned.col(k) + search.col(k) * Scale(squared[k] / before[k]);
                 search.col_mut(k).copy_from(direction);
             }
-            let stiff = self.stiff(&search);
+            let stiff = self.relief.stiff(&search);
             let curvature = dots(&search, &stiff);
             for k in (0..squared.len()).filter(|k| is_open(*k)) {
                 let step = Scale(squared[k] / curvature[k]);
@@ -201,12 +190,12 @@ impl<'a> Statics<'a> {
                 answer.col_mut(k).copy_from(moved);
                 residual.col_mut(k).copy_from(left);
             }
-            self.balance(&mut residual);
+            self.relief.balance(&mut residual);
             before = squared;
         }
-        self.unmove(&mut answer);
-        let mut residual = forces - self.stiff(&answer);
-        self.balance(&mut residual);
+        self.relief.unmove(&mut answer);
+        let mut residual = forces - self.relief.stiff(&answer);
+        self.relief.balance(&mut residual);
         let squared = dots(&residual, &self.precondition(&residual));
         for (k, (squared, scale)) in squared.iter().zip(&scale).enumerate() {
             let residual = (squared / scale).sqrt();
@@ -232,32 +221,12 @@ impl<'a> Statics<'a> {
         (tall::product(natural, parts.as_ref()), squared)
     }
 
-    /// Takes out of forces what the support's reactions and the inertia of the rigid motion balance.
-    fn balance(&self, forces: &mut Mat<f64>) {
-        self.solver.constraints.project(forces.as_mut());
-        let resultant = tall::inner(self.solver.rigid.shapes.as_ref(), forces.as_ref());
-        tall::multiply(forces.as_mut(), Accum::Add, self.m_rigid.as_ref(), resultant.as_ref(), -1.0);
-    }
-
-    /// Takes the rigid modes out of displacements.
-    fn unmove(&self, displacements: &mut Mat<f64>) {
-        let parts = tall::inner(self.m_rigid.as_ref(), displacements.as_ref());
-        tall::multiply(displacements.as_mut(), Accum::Add, self.solver.rigid.shapes.as_ref(), parts.as_ref(), -1.0);
-    }
-
     /// (K + sM)⁻¹ of forces.
     fn precondition(&mut self, forces: &Mat<f64>) -> Mat<f64> {
         let mut displacements = forces.clone();
         self.factor.solve_in_place(displacements.as_mut(), &mut self.scratch);
-        self.unmove(&mut displacements);
+        self.relief.unmove(&mut displacements);
         displacements
-    }
-
-    /// K u, without reactions.
-    fn stiff(&self, displacements: &Mat<f64>) -> Mat<f64> {
-        let mut forces = symmetric_product(self.solver.stiffness, displacements.as_ref());
-        self.solver.constraints.project(forces.as_mut());
-        forces
     }
 }
 

@@ -71,6 +71,7 @@ impl Scene {
             path: path.to_owned(),
             source: text.to_owned(),
             cache: Cache::none(),
+            solver: None,
         })
     }
 

@@ -12,6 +12,7 @@ use frames_rk4::{Effect, Method, Rows, StepControl};
 use matrix_import::MatrixFiles;
 use mesh_import::ImportSettings;
 use serde::Deserialize;
+use slepc::Slepc;
 
 use crate::cache::Cache;
 use crate::constraint::Constraint;
@@ -50,6 +51,9 @@ pub struct Scene {
     pub source: String,
     /// Where the answers of the finite-element model are kept from run to run; nowhere, until the program says so.
     pub cache: Cache,
+    /// What finds modes and static answers in the place of this program; `None`, until the program says so. It is no part of
+    /// what is asked of a body: its answers are the same within rounding.
+    pub solver: Option<Slepc>,
 }
 
 /// Labels of the units. The program never converts: they are shown, not used.
@@ -173,6 +177,9 @@ pub struct Output {
     pub stress_field: bool,
     /// Whether each of several supports gets reactions of its own. No key of the scene file; [`Scene::without_rows`] clears it.
     pub support_reactions: bool,
+    /// Whether it is to be known how the frequencies of modes that bend the body far go with their amplitudes, which takes static
+    /// answers. No key of the scene file; who computes no motion clears it.
+    pub backbones: bool,
 }
 
 impl Scene {

@@ -10,6 +10,7 @@ use modal::ModalError;
 use report::ReportError;
 use results::FileError;
 use scene::{BuildError, SceneError, StartError};
+use slepc::SlepcError;
 
 use super::{Details, Failure, Kind};
 use crate::animation::AnimationError;
@@ -119,12 +120,48 @@ impl Failure for ModalError {
                 Kind::Input
             }
             Self::Memory(_) => Kind::Io,
+            Self::Engine(source) => source.downcast_ref::<SlepcError>().map_or(Kind::Run, Failure::kind),
+            Self::WrongAnswers { .. } => Kind::Run,
             Self::Ordering { .. }
             | Self::Factorization { .. }
             | Self::NotConverged { .. }
             | Self::StaticNotConverged { .. }
             | Self::DenseEigen { .. } => Kind::Run,
             _ => Kind::Refused,
+        }
+    }
+
+    fn details(&self) -> Details {
+        match self {
+            Self::Engine(source) => source.downcast_ref::<SlepcError>().map_or_else(Details::default, Failure::details),
+            _ => Details::default(),
+        }
+    }
+}
+
+impl Failure for SlepcError {
+    fn kind(&self) -> Kind {
+        match self {
+            Self::NotInstalled { .. } | Self::Io { .. } | Self::NotFinished { .. } => Kind::Io,
+            Self::Refused { .. } | Self::Failed { .. } => Kind::Run,
+            Self::Stopped { .. } => Kind::Stopped,
+            _ => Kind::Input,
+        }
+    }
+
+    fn details(&self) -> Details {
+        match self {
+            Self::NotInstalled { found, cure } | Self::Refused { found, cure } => {
+                Details { found: Some(found.clone()), cure: Some(cure.clone()), ..Details::default() }
+            }
+            Self::Failed { status, cure, .. } => {
+                Details { found: Some(status.clone()), cure: Some(cure.clone()), ..Details::default() }
+            }
+            Self::Io { path, .. } | Self::Damaged { path, .. } => Details::of_file(path),
+            Self::NotFinished { folder, .. } | Self::OtherMatrices { folder } | Self::FewModes { folder, .. } => {
+                Details::of_file(folder)
+            }
+            _ => Details::default(),
         }
     }
 }
@@ -183,7 +220,10 @@ impl Failure for BuildError {
             Self::Mesh(error) => error.details(),
             Self::Import(error) => error.details(),
             Self::Assembly(error) => error.details(),
-            Self::Modal { scene, .. } => Details::of_file(scene),
+            Self::Modal { scene, source } => {
+                let details = source.details();
+                Details { file: details.file.clone().or(Details::of_file(scene).file), ..details }
+            }
             Self::Advice(error) => error.details(),
             Self::Load(error) => error.details(),
             Self::BodyFile(error) => Details::of_file(error.path()),

@@ -4,6 +4,7 @@ mod beam;
 mod bodies;
 mod closed_forms;
 mod convergence;
+mod engine;
 mod fields;
 mod general_mass;
 mod held;

@@ -46,7 +46,7 @@ pub(super) fn backbones(model: &MeshModel<'_>, modes: &Modes, advice: &Advice) -
     let may_matter = |k: &usize| advice.modes.get(*k).is_some_and(|mode| mode.strain_bound >= advice.tolerance);
     let large: Vec<usize> = (0..natural).filter(may_matter).collect();
     let mut of_modes = vec![None; natural];
-    if large.is_empty() || !model.scene.body.has_elements() {
+    if large.is_empty() || !model.scene.body.has_elements() || !model.scene.output.backbones {
         return Ok(Backbones { of_modes, derivatives: Derivatives::none() });
     }
     let shapes = shapes_of(modes, &large);

@@ -1,5 +1,6 @@
 //! Models of one body that differ in their effects and modes.
 
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use frames_rk4::Effect;
@@ -56,6 +57,22 @@ impl<'a> ModelBuilder<'a> {
         match &mut self.0 {
             Builder::Meshed(builder) => builder.build(scene, &mut progress),
             Builder::Rigid(body) => rigid::build(scene, body),
+        }
+    }
+
+    /// Writes the problem of the modes that a scene asks for into a folder, to be solved elsewhere by SLEPc on so many ranks
+    /// ([`slepc::write_folder`]). Returns the files.
+    ///
+    /// # Errors
+    /// As [`Assembly::builder`], and of a body without modes.
+    pub fn write_problem(&self, scene: &Scene, folder: &Path, ranks: usize) -> Result<Vec<PathBuf>, BuildError> {
+        match (self.solved(), requested(scene)) {
+            (Some(solved), modes @ 1..) => solved.write_problem(modes, folder, ranks),
+            (None, _) => {
+                let cure = "run the scene as it is: a rigid body has no modes";
+                Err(scene.refuse("body.rigid", "a rigid body", "a body with a mesh, or with matrices", cure).into())
+            }
+            (_, 0) => Err(scene.refuse("modes.flexible", "no modes", "one or more", "ask for modes").into()),
         }
     }
 

@@ -1,6 +1,7 @@
 //! The finite-element model of a body, which is assembled and solved where an answer is not known.
 
 use std::cell::{Cell, OnceCell, RefCell};
+use std::path::{Path, PathBuf};
 
 use body_file::{BodyFileError, Digest, Hash};
 use faer::{ColRef, Mat, MatRef};
@@ -13,6 +14,7 @@ use modal::{
     ModalError, Modes, ReducedBody, SecondOrderShapes, Solver, Support, acceleration_fields, centrifugal_fields,
     mass_left_out, turning_field,
 };
+use slepc::write_folder;
 
 use super::answer::{Answer, Kept};
 use super::answers;
@@ -75,6 +77,18 @@ impl<'a> Solved<'a> {
         self.ask_count(|| self.about_the_held_body("number of modes"), || Ok(self.solver()?.available()))
     }
 
+    /// Writes the problem of so many modes into a folder, to be solved elsewhere on so many ranks. Returns the files.
+    pub fn write_problem(&self, modes: usize, folder: &Path, ranks: usize) -> Result<Vec<PathBuf>, BuildError> {
+        let (scene, solver) = (&self.assembled.scene, self.solver()?);
+        let available = solver.available();
+        if modes > available {
+            return Err(too_many_modes(scene, ModalError::TooManyModes { requested: modes, available }));
+        }
+        let problem = solver.held_problem().map_err(|error| self.refuse(error))?;
+        write_folder(&problem, modes, folder, ranks, &scene.path)
+            .map_err(|source| modal(scene)(ModalError::Engine(source.into())))
+    }
+
     /// What of the mesh's size was done up to now.
     pub fn work(&self) -> BuildWork {
         let [blocks, columns] = self.solver.get().map_or([0; 2], Solver::solved);
@@ -97,6 +111,10 @@ impl<'a> Solved<'a> {
         let matrices = self.matrices()?;
         let solver = Solver::new(matrices.stiffness(), matrices.mass(), mesh.positions(), support)
             .map_err(|error| self.refuse(error))?;
+        let solver = match &self.assembled.scene.solver {
+            Some(slepc) => solver.with_engine(slepc.engine()),
+            None => solver,
+        };
         Ok(self.solver.get_or_init(|| solver))
     }
 

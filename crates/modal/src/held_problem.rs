@@ -1,0 +1,107 @@
+//! K and M in the space of the displacements that a support allows, row by row, for who solves them elsewhere.
+//!
+//! With T the basis of that space (see [`Constraints`]), the matrices are Tᵀ K T and Tᵀ M T: the rows of the degrees of freedom
+//! that are not held, in their order, then one for each motion of the held ones. Nothing is copied but the few rows of the
+//! motions.
+
+use faer::Mat;
+use faer::sparse::SparseColMatRef;
+
+use crate::constraints::Constraints;
+use crate::error::ModalError;
+use crate::foretold::of_vectors;
+use crate::products::symmetric_product;
+use crate::rigid::RigidModes;
+
+/// `K φ = λ M φ` of a body with its support.
+pub struct HeldProblem<'a> {
+    /// Tᵀ K T.
+    pub stiffness: HeldMatrix<'a>,
+    /// Tᵀ M T.
+    pub mass: HeldMatrix<'a>,
+    /// The rigid modes that the support leaves, M-orthonormal (unknowns × 0 to 6). K has nothing against them.
+    pub rigid: Mat<f64>,
+    /// The shift s, about the first eigenvalue, (rad/time)².
+    pub shift: f64,
+    /// Eigenpairs that there are beside the rigid modes.
+    pub available: usize,
+}
+
+/// One of the matrices. It is symmetric.
+pub struct HeldMatrix<'a> {
+    matrix: SparseColMatRef<'a, usize, f64>,
+    /// Degrees of freedom of the rows; the motions follow.
+    free: Vec<usize>,
+    /// The row of each degree of freedom, the number of unknowns for those that are held.
+    row_of: Vec<usize>,
+    /// A C (N×k), C the motions.
+    forces: Mat<f64>,
+    /// Cᵀ A C.
+    corner: Mat<f64>,
+}
+
+impl<'a> HeldProblem<'a> {
+    pub(crate) fn new(
+        stiffness: SparseColMatRef<'a, usize, f64>,
+        mass: SparseColMatRef<'a, usize, f64>,
+        constraints: &Constraints,
+        rigid: &RigidModes,
+        shift: f64,
+        available: usize,
+    ) -> Result<Self, ModalError> {
+        memory::check("the matrices of the held body", of_vectors(stiffness.ncols(), 16))?;
+        let is_there = |column: &usize| rigid.shapes.col(*column).iter().any(|u| *u != 0.0);
+        let moving: Vec<usize> = (0..rigid.shapes.ncols()).filter(is_there).collect();
+        let rigid = Mat::from_fn(rigid.shapes.nrows(), moving.len(), |i, j| rigid.shapes[(i, moving[j])]);
+        Ok(Self {
+            stiffness: HeldMatrix::new(stiffness, constraints),
+            mass: HeldMatrix::new(mass, constraints),
+            rigid: constraints.reduced(rigid.as_ref()),
+            shift,
+            available,
+        })
+    }
+}
+
+impl<'a> HeldMatrix<'a> {
+    fn new(matrix: SparseColMatRef<'a, usize, f64>, constraints: &Constraints) -> Self {
+        let motions = constraints.motions();
+        let forces = symmetric_product(matrix, motions.as_ref());
+        let free = constraints.free_rows();
+        let unknowns = free.len() + motions.ncols();
+        let mut row_of = vec![unknowns; matrix.ncols()];
+        free.iter().enumerate().for_each(|(row, freedom)| row_of[*freedom] = row);
+        let corner = motions.transpose() * &forces;
+        Self { matrix, free, row_of, forces, corner }
+    }
+
+    /// Rows and columns.
+    pub fn size(&self) -> usize {
+        self.free.len() + self.corner.ncols()
+    }
+
+    /// Calls `entry` with the column and the value of each entry of a row that is not zero, in the order of the columns.
+    pub fn for_each_in_row(&self, row: usize, mut entry: impl FnMut(usize, f64)) {
+        let (free, motions) = (self.free.len(), self.corner.ncols());
+        let mut not_zero = |column: usize, value: f64| {
+            if value != 0.0 {
+                entry(column, value);
+            }
+        };
+        match self.free.get(row) {
+            Some(freedom) => {
+                // A column of a symmetric matrix is its row.
+                let column = self.matrix.row_idx_of_col(*freedom).zip(self.matrix.val_of_col(*freedom));
+                for (other, value) in column.filter(|(other, _)| self.row_of[*other] < free) {
+                    not_zero(self.row_of[other], *value);
+                }
+                (0..motions).for_each(|motion| not_zero(free + motion, self.forces[(*freedom, motion)]));
+            }
+            None => {
+                let motion = row - free;
+                self.free.iter().enumerate().for_each(|(at, freedom)| not_zero(at, self.forces[(*freedom, motion)]));
+                (0..motions).for_each(|other| not_zero(free + other, self.corner[(motion, other)]));
+            }
+        }
+    }
+}

@@ -1,0 +1,34 @@
+//! How far a solution has come.
+
+use crate::foretold::Forecast;
+
+/// How far a solution has come.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Progress {
+    /// An order of the unknowns is being sought in which the factor of K + sM has few entries.
+    Ordering,
+    /// K + sM is being factored.
+    Factorizing(Forecast),
+    /// Modes that have converged, of those asked for.
+    Lanczos {
+        /// Converged.
+        converged: usize,
+        /// Asked for.
+        requested: usize,
+    },
+    /// What an [`Engine`](crate::Engine) does.
+    Engine(EnginePhase),
+}
+
+/// What an [`Engine`](crate::Engine) does. Its search for modes is [`Progress::Lanczos`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum EnginePhase {
+    /// K and M are written for it.
+    Writing,
+    /// It starts, and reads them.
+    Starting,
+    /// It factors K + sM.
+    Factorizing,
+    /// It counts the eigenvalues.
+    Counting,
+}

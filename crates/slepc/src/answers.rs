@@ -1,0 +1,109 @@
+//! What a driver leaves.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+use std::time::Duration;
+
+use modal::{Eigenpairs, EngineStats, StaticAnswers};
+use serde::Deserialize;
+use serde::de::DeserializeOwned;
+
+use crate::binary::read_vectors;
+use crate::error::SlepcError;
+use crate::folder::LOG;
+use crate::json::json;
+
+/// `modes.json`.
+#[derive(Deserialize)]
+struct Modes {
+    digest: String,
+    unknowns: usize,
+    eigenvalues: Vec<f64>,
+    residuals: Vec<f64>,
+    below: f64,
+    counted: usize,
+    ranks: usize,
+    petsc: [u32; 3],
+    slepc: [u32; 3],
+    factor_entries: usize,
+    megabytes: usize,
+    times: BTreeMap<String, f64>,
+}
+
+/// `statics-NAME.json`.
+#[derive(Deserialize)]
+struct Statics {
+    digest: String,
+    unknowns: usize,
+    iterations: Vec<usize>,
+    residuals: Vec<f64>,
+}
+
+/// The eigenpairs in a folder, of the matrices with this digest and so many rows, and as many as are asked for.
+pub(crate) fn eigenpairs(
+    folder: &Path,
+    digest: &str,
+    unknowns: usize,
+    requested: usize,
+) -> Result<Eigenpairs, SlepcError> {
+    let found: Modes = finished(folder, "modes.json", "")?;
+    if found.digest != digest || found.unknowns != unknowns {
+        return Err(SlepcError::OtherMatrices { folder: folder.to_owned() });
+    }
+    let count = found.eigenvalues.len();
+    if count < requested {
+        return Err(SlepcError::FewModes { folder: folder.to_owned(), found: count, requested });
+    }
+    let time = |phase: &str| {
+        let seconds = found.times.get(phase).copied().unwrap_or_default();
+        Duration::try_from_secs_f64(seconds).unwrap_or_default()
+    };
+    let stats = EngineStats {
+        below: found.below,
+        counted: found.counted,
+        ranks: found.ranks,
+        petsc: found.petsc,
+        slepc: found.slepc,
+        factor_entries: found.factor_entries,
+        megabytes: found.megabytes,
+        factor_time: time("factor"),
+        search_time: time("search"),
+        count_time: time("count"),
+    };
+    let vectors = read_vectors(&folder.join("modes.petsc"), unknowns, count)?;
+    Ok(Eigenpairs { eigenvalues: found.eigenvalues, vectors, residuals: found.residuals, stats })
+}
+
+/// The static answers to the forces with this name in a folder, of the matrices with this digest and so many rows.
+pub(crate) fn static_answers(
+    folder: &Path,
+    name: &str,
+    digest: &str,
+    unknowns: usize,
+) -> Result<StaticAnswers, SlepcError> {
+    let asked = " (static answers: the scene asks for these, too, and their forces are written there now)";
+    let found: Statics = finished(folder, &format!("statics-{name}.json"), asked)?;
+    if found.digest != digest || found.unknowns != unknowns {
+        return Err(SlepcError::OtherMatrices { folder: folder.to_owned() });
+    }
+    let path = folder.join(format!("statics-{name}.petsc"));
+    let displacements = read_vectors(&path, unknowns, found.residuals.len())?;
+    Ok(StaticAnswers { displacements, iterations: found.iterations, residuals: found.residuals })
+}
+
+/// What the driver leaves last; `what` says what it is.
+fn finished<T: DeserializeOwned>(folder: &Path, name: &str, what: &'static str) -> Result<T, SlepcError> {
+    let path = folder.join(name);
+    if folder.is_dir() && !path.exists() {
+        let said = last_line(&folder.join(LOG));
+        return Err(SlepcError::NotFinished { folder: folder.to_owned(), name: name.to_owned(), what, said });
+    }
+    json(&path)
+}
+
+fn last_line(path: &Path) -> Option<String> {
+    let text = fs::read(path).ok()?;
+    let text = String::from_utf8_lossy(&text);
+    text.lines().rev().map(str::trim).find(|line| !line.is_empty()).map(str::to_owned)
+}

@@ -1,0 +1,220 @@
+//! The folder that a driver works in.
+
+use std::fs;
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use faer::MatRef;
+use modal::{HeldMatrix, HeldProblem};
+use serde::{Deserialize, Serialize};
+use whole_file::{WholeFile, write_whole};
+
+use crate::binary::{write_matrix, write_vectors};
+use crate::error::SlepcError;
+use crate::json::json;
+
+/// The program that every rank runs.
+const DRIVER: &str = include_str!("driver.py");
+pub(crate) const DRIVER_FILE: &str = "driver.py";
+/// Where the script for Slurm sends what the driver says.
+pub(crate) const LOG: &str = "driver.log";
+/// ‖(K + sM)⁻¹Mφ − μφ‖_M / μ of a pair that the driver accepts: that of the search in this program.
+const TOLERANCE: f64 = 1e-10;
+
+/// Digits of the names of forces.
+const NAME: usize = 16;
+
+/// What `problem.json` has of the matrices.
+#[derive(Deserialize)]
+struct Digest {
+    digest: String,
+}
+
+/// `problem.json`.
+#[derive(Serialize)]
+struct Problem<'a> {
+    /// Of K and M.
+    digest: &'a str,
+    unknowns: usize,
+    /// That are asked for.
+    modes: usize,
+    /// That there are.
+    available: usize,
+    /// Rigid motions.
+    rigid: usize,
+    shift: f64,
+    tolerance: f64,
+}
+
+/// Writes K and M, the rigid motions, and the driver. Returns the digest of K and M.
+pub(crate) fn write_matrices(problem: &HeldProblem<'_>, folder: &Path) -> Result<String, SlepcError> {
+    let hashed = |name: &str, matrix: &HeldMatrix<'_>| {
+        write(folder, name, |file| {
+            let mut hashed = Hashed { file, hasher: blake3::Hasher::new() };
+            write_matrix(matrix, &mut hashed)?;
+            Ok(hashed.hasher.finalize())
+        })
+    };
+    let digest = joined(hashed("K.petsc", &problem.stiffness)?, hashed("M.petsc", &problem.mass)?);
+    write(folder, "rigid.petsc", |file| write_vectors(problem.rigid.as_ref(), file))?;
+    write(folder, DRIVER_FILE, |file| file.write_all(DRIVER.as_bytes()))?;
+    Ok(digest)
+}
+
+/// Writes what the driver is asked for: so many modes, of the matrices with this digest. Those that were asked for before are
+/// removed.
+pub(crate) fn write_problem(
+    problem: &HeldProblem<'_>,
+    digest: &str,
+    modes: usize,
+    folder: &Path,
+) -> Result<(), SlepcError> {
+    let problem = Problem {
+        digest,
+        unknowns: problem.stiffness.size(),
+        modes,
+        available: problem.available,
+        rigid: problem.rigid.ncols(),
+        shift: problem.shift,
+        tolerance: TOLERANCE,
+    };
+    let before = folder.join("modes.json");
+    if before.exists() {
+        fs::remove_file(&before).map_err(SlepcError::io(before, "remove what was there"))?;
+    }
+    write(folder, "problem.json", |file| Ok(serde_json::to_writer_pretty(file, &problem)?))
+}
+
+/// Writes forces to which static answers are asked for. Returns their name, which follows from them.
+pub(crate) fn write_forces(forces: MatRef<'_, f64>, folder: &Path) -> Result<String, SlepcError> {
+    let mut hashed = Hashed { file: BufWriter::new(io::sink()), hasher: blake3::Hasher::new() };
+    write_vectors(forces, &mut hashed).map_err(SlepcError::io(folder, "write forces into it"))?;
+    let name = hashed.hasher.finalize().to_hex()[..NAME].to_owned();
+    if !folder.join(format!("forces-{name}.json")).exists() {
+        write(folder, &format!("forces-{name}.petsc"), |file| write_vectors(forces, file))?;
+        write(folder, &format!("forces-{name}.json"), |file| writeln!(file, "{{\"count\": {}}}", forces.ncols()))?;
+    }
+    Ok(name)
+}
+
+/// Refuses a folder that was written for other matrices than those with this digest.
+pub(crate) fn check_digest(folder: &Path, digest: &str) -> Result<(), SlepcError> {
+    let written: Digest = json(&folder.join("problem.json"))?;
+    if written.digest == digest { Ok(()) } else { Err(SlepcError::OtherMatrices { folder: folder.to_owned() }) }
+}
+
+/// Removes answers to questions that were asked before.
+fn remove_answers(folder: &Path) -> Result<(), SlepcError> {
+    let of_another = |name: &str| {
+        ["problem.json", "modes.json", "modes.petsc", LOG].contains(&name)
+            || name.starts_with("forces-")
+            || name.starts_with("statics-")
+    };
+    for entry in fs::read_dir(folder).map_err(SlepcError::io(folder, "list it"))?.flatten() {
+        if of_another(&entry.file_name().to_string_lossy()) {
+            fs::remove_file(entry.path()).map_err(SlepcError::io(entry.path(), "remove what was there"))?;
+        }
+    }
+    Ok(())
+}
+
+/// Leaves in a folder all that finds `modes` modes elsewhere: K and M, the driver, a script for Slurm with so many ranks, and what
+/// to do. `scene` is the scene file. Returns the files.
+///
+/// # Errors
+/// [`SlepcError::Io`].
+pub fn write_folder(
+    problem: &HeldProblem<'_>,
+    modes: usize,
+    folder: &Path,
+    ranks: usize,
+    scene: &Path,
+) -> Result<Vec<PathBuf>, SlepcError> {
+    fs::create_dir_all(folder).map_err(SlepcError::io(folder, "make the folder"))?;
+    remove_answers(folder)?;
+    let digest = write_matrices(problem, folder)?;
+    write_problem(problem, &digest, modes, folder)?;
+    let script = script(ranks);
+    let readme = format!(
+        "{modes} modes of {}, {} unknowns: to be found by SLEPc on PETSc with MUMPS, for Python (slepc4py).\n\
+         Where they are installed: `cd` to this folder and `sbatch job.sh`, or `bash job.sh` without Slurm.\n\
+         Then: flexframe modes {} --solver slepc --read {}\n",
+        scene.display(),
+        problem.stiffness.size(),
+        quoted(scene),
+        quoted(folder)
+    );
+    for (name, text) in [("job.sh", &script), ("README.txt", &readme)] {
+        let path = folder.join(name);
+        write_whole(&path, text).map_err(SlepcError::io(path, "write it"))?;
+    }
+    let names = ["problem.json", "K.petsc", "M.petsc", "rigid.petsc", DRIVER_FILE, "job.sh", "README.txt"];
+    Ok(names.map(|name| folder.join(name)).to_vec())
+}
+
+fn script(ranks: usize) -> String {
+    format!(
+        "#!/bin/bash
+# `sbatch job.sh` in this folder runs the driver on {ranks} ranks; so does `bash job.sh` without Slurm.
+# What is answered already is not computed again.
+#SBATCH --job-name=flexframe-modes
+#SBATCH --ntasks={ranks}
+#SBATCH --cpus-per-task=1
+#SBATCH --output={LOG}
+set -euo pipefail
+export OMP_NUM_THREADS=1
+\"${{FLEXFRAME_MPIRUN:-mpirun}}\" -n \"${{SLURM_NTASKS:-{ranks}}}\" \"${{FLEXFRAME_MPI_PYTHON:-python3}}\" {DRIVER_FILE}
+"
+    )
+}
+
+/// As the shell reads it: one word, whatever is in it.
+fn quoted(path: &Path) -> String {
+    format!("'{}'", path.display().to_string().replace('\'', r"'\''"))
+}
+
+/// The digest of K and M.
+pub(crate) fn digest(problem: &HeldProblem<'_>) -> Result<String, SlepcError> {
+    let [stiffness, mass] = [&problem.stiffness, &problem.mass].map(|matrix: &HeldMatrix<'_>| {
+        let mut hashed = Hashed { file: BufWriter::new(io::sink()), hasher: blake3::Hasher::new() };
+        write_matrix(matrix, &mut hashed).map(|()| hashed.hasher.finalize())
+    });
+    let failed = || SlepcError::io("K.petsc", "write it");
+    Ok(joined(stiffness.map_err(failed())?, mass.map_err(failed())?))
+}
+
+fn joined(stiffness: blake3::Hash, mass: blake3::Hash) -> String {
+    blake3::Hasher::new().update(stiffness.as_bytes()).update(mass.as_bytes()).finalize().to_hex().to_string()
+}
+
+fn write<T>(
+    folder: &Path,
+    name: &str,
+    contents: impl FnOnce(&mut WholeFile) -> io::Result<T>,
+) -> Result<T, SlepcError> {
+    let path = folder.join(name);
+    let written = WholeFile::create(&path).and_then(|mut file| {
+        let done = contents(&mut file)?;
+        file.finish()?;
+        Ok(done)
+    });
+    written.map_err(SlepcError::io(path, "write it"))
+}
+
+/// Hashes what goes to a file.
+struct Hashed<W> {
+    file: W,
+    hasher: blake3::Hasher,
+}
+
+impl<W: Write> Write for Hashed<W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let written = self.file.write(bytes)?;
+        self.hasher.update(&bytes[..written]);
+        Ok(written)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
+    }
+}

@@ -1,0 +1,77 @@
+//! Who finds the modes of a body: this program, or SLEPc.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use scene::Scene;
+use slepc::{Slepc, Stop};
+
+use crate::cli_error::CliError;
+
+#[derive(Debug, Args)]
+pub struct SolverInput {
+    /// Who finds modes and static answers; slepc is SLEPc under mpirun, for bodies beyond one machine (docs/cluster.md).
+    ///
+    /// What the cache has is taken from there, whoever has computed it; --no-cache computes it anew.
+    #[arg(long, value_name = "SOLVER", value_enum)]
+    solver: Option<Solver>,
+    /// With slepc: number of processes, `mpirun -n N`.
+    #[arg(long, value_name = "N", requires = "solver", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    ranks: Option<u32>,
+    /// With slepc: only write K and M, the driver and a script for Slurm into a folder.
+    #[arg(long, value_name = "DIR", requires = "ranks")]
+    write_only: Option<PathBuf>,
+    /// With slepc: take what the driver has left in the folder of --write-only.
+    #[arg(long, value_name = "DIR", requires = "solver", conflicts_with = "ranks")]
+    read: Option<PathBuf>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Solver {
+    /// This program: Lanczos with the factor of K + sM.
+    BuiltIn,
+    /// SLEPc on PETSc with MUMPS.
+    Slepc,
+}
+
+/// Modes that are to be found elsewhere.
+pub struct WriteOnly {
+    /// The folder for the files.
+    pub folder: PathBuf,
+    /// Processes that will work on them.
+    pub ranks: usize,
+}
+
+impl SolverInput {
+    /// Gives the scene its solver, or says what is to be written instead; `stop` stops the solver.
+    pub fn take(self, scene: &mut Scene, stop: &Stop) -> Result<Option<WriteOnly>, CliError> {
+        let ranks = self.ranks.map(|ranks| ranks as usize);
+        if self.solver != Some(Solver::Slepc) {
+            let ours = [
+                ("--ranks", ranks.is_some()),
+                ("--write-only", self.write_only.is_some()),
+                ("--read", self.read.is_some()),
+            ];
+            return match ours.iter().find(|(_, is_given)| *is_given) {
+                Some((option, _)) => Err(refused(option, "it beside --solver built-in", "--solver slepc")),
+                None => Ok(None),
+            };
+        }
+        match (ranks, self.write_only, self.read) {
+            (Some(ranks), Some(folder), _) => return Ok(Some(WriteOnly { folder, ranks })),
+            (Some(ranks), None, _) => scene.solver = Some(Slepc::run(ranks, stop.clone())),
+            (None, _, Some(folder)) => scene.solver = Some(Slepc::read(folder)),
+            (None, ..) => return Err(refused("--solver", "slepc alone", "--ranks N or --read DIR beside it")),
+        }
+        Ok(None)
+    }
+}
+
+fn refused(option: &'static str, found: &str, expected: &str) -> CliError {
+    CliError::Option {
+        option,
+        found: found.to_owned(),
+        expected: expected.to_owned(),
+        cure: "`--solver slepc --ranks N` finds the modes here; docs/cluster.md shows how a cluster does".to_owned(),
+    }
+}
