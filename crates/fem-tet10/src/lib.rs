@@ -28,6 +28,7 @@ mod error;
 mod faces;
 mod geometric_stiffness;
 mod integration;
+mod lanes;
 mod locate;
 mod lumped;
 mod material;
