@@ -13,7 +13,7 @@
 //! *against the element's first node* count. With those, a translation of the element drops out exactly, and rounding is
 //! measured against the deformation and not against the motion.
 
-use faer::linalg::matmul::triangular::{self, BlockStructure};
+use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, MatRef, Par};
 use pulp::Arch;
 use rayon::prelude::*;
@@ -61,17 +61,40 @@ pub fn reduced_geometric_stiffness(
     shapes: MatRef<'_, f64>,
     terms: GeometricTerms,
 ) -> Result<Vec<Mat<f64>>, AssemblyError> {
+    extended_geometric_stiffness(mesh, materials, displacements, shapes, terms, &[])
+}
+
+/// The same where the matrices `known` of the first of the shapes are known, one for each displacement field; none for no
+/// shapes at all. Only what is new is computed.
+///
+/// # Errors
+/// As [`reduced_geometric_stiffness`].
+///
+/// # Panics
+/// Where `known` are not as many as the displacements, of one size, or larger than the shapes are many.
+pub fn extended_geometric_stiffness(
+    mesh: &Mesh,
+    materials: &Materials,
+    displacements: MatRef<'_, f64>,
+    shapes: MatRef<'_, f64>,
+    terms: GeometricTerms,
+    known: &[Mat<f64>],
+) -> Result<Vec<Mat<f64>>, AssemblyError> {
     check_field(mesh, "displacements", displacements)?;
     check_field(mesh, "shapes", shapes)?;
+    assert!(known.is_empty() || known.len() == displacements.ncols());
+    let first = known.first().map_or(0, Mat::ncols);
+    assert!(first <= shapes.ncols() && known.iter().all(|known| known.nrows() == first && known.ncols() == first));
     let materials = materials.of_elements(mesh)?;
     let f = shapes.ncols();
+    if f == first {
+        return Ok(if known.is_empty() { vec![Mat::zeros(0, 0); displacements.ncols()] } else { known.to_vec() });
+    }
     let bytes = f.saturating_mul(f).saturating_mul(8 * PARTS * displacements.ncols());
     let copies = 8 * shapes.nrows() * (f + displacements.ncols() + 2 * LANES);
     memory::check("the geometric stiffness", bytes.saturating_add(copies))?;
-    let zeros = || vec![Mat::<f64>::zeros(f, f); displacements.ncols()];
-    if f == 0 {
-        return Ok(zeros());
-    }
+    // The columns of the shapes that are new.
+    let zeros = || vec![Mat::<f64>::zeros(f, f - first); displacements.ncols()];
     let rules = Rules::new();
     let arch = Arch::new();
     let (shapes, displacements) = (Grouped::new(shapes), Grouped::new(displacements));
@@ -88,18 +111,10 @@ pub fn reduced_geometric_stiffness(
                 arch.dispatch(|| here.fill(mesh, &materials, &points, &shapes, &displacements));
                 products.resize(here.gradients.len(), [0.0; LANES]);
                 for (u, sum) in sums.iter_mut().enumerate() {
-                    arch.dispatch(|| here.products(u, terms, &mut products));
-                    triangular::matmul(
-                        sum.as_mut(),
-                        BlockStructure::TriangularLower,
-                        Accum::Add,
-                        matrix(&here.gradients, f).transpose(),
-                        BlockStructure::Rectangular,
-                        matrix(&products, f),
-                        BlockStructure::Rectangular,
-                        1.0,
-                        Par::Seq,
-                    );
+                    arch.dispatch(|| here.products(u, terms, first / LANES, &mut products));
+                    let (gradients, products) = (matrix(&here.gradients, f), matrix(&products, f));
+                    let new = products.subcols(first, f - first);
+                    matmul(sum.as_mut(), Accum::Add, gradients.transpose(), new, 1.0, Par::Seq);
                 }
             }
             sums
@@ -111,14 +126,19 @@ pub fn reduced_geometric_stiffness(
             *sum += part;
         }
     }
-    for sum in &mut sums {
-        for j in 0..f {
-            for i in 0..j {
-                sum[(i, j)] = sum[(j, i)];
+    let full = |(u, new): (usize, &Mat<f64>)| {
+        Mat::from_fn(f, f, |i, j| {
+            let (row, column) = (i.max(j), i.min(j));
+            if row < first {
+                known[u][(i, j)]
+            } else if column < first {
+                new[(column, row - first)]
+            } else {
+                new[(row, column - first)]
             }
-        }
-    }
-    Ok(sums)
+        })
+    };
+    Ok(sums.iter().enumerate().map(full).collect())
 }
 
 /// Rows of groups as a matrix of `columns` columns.
@@ -182,15 +202,15 @@ impl Block {
         }
     }
 
-    /// P_a of all shapes for the displacement `u`, laid out as the gradients.
+    /// P_a of the shapes from a group on for the displacement `u`, laid out as the gradients.
     #[inline(always)]
-    fn products(&self, u: usize, terms: GeometricTerms, out: &mut [Lanes]) {
+    fn products(&self, u: usize, terms: GeometricTerms, from: usize, out: &mut [Lanes]) {
         let points = out.chunks_exact_mut(9 * self.groups).zip(self.of_shapes.chunks_exact(self.groups));
         let displacements = self.of_displacements.chunks_exact(self.groups_of_displacements);
         for (((rows, of_shapes), of_displacements), lame) in points.zip(displacements).zip(&self.lame) {
             let [gradients, stresses] = &of_displacements[u / LANES];
             let (u, of_u) = (gradients.all_alike(u % LANES), stresses.all_alike(u % LANES));
-            for (group, [a, of_a]) in of_shapes.iter().enumerate() {
+            for (group, [a, of_a]) in of_shapes.iter().enumerate().skip(from) {
                 let initial_stress = a.times(&of_u);
                 let product = match terms {
                     GeometricTerms::InitialStress => initial_stress,

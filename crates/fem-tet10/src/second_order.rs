@@ -111,7 +111,7 @@ pub fn second_order_energies(
                 here.go_to(point, lame);
                 strains.clear();
                 for pairs in &groups {
-                    let [[a, _], [b, _]] = here.pairs(pairs);
+                    let (a, b) = (here.gathered(pairs, 0, GRADIENT), here.gathered(pairs, 1, GRADIENT));
                     strains.push(a.second_strain(&b));
                 }
                 for (pair, row) in rows.chunks_exact_mut(groups.len()).enumerate() {
@@ -139,6 +139,9 @@ pub fn second_order_energies(
     Ok(products.iter().map(energy).collect())
 }
 
+const GRADIENT: usize = 0;
+const STRESS: usize = 1;
+
 /// Pairs of fields in groups; the last group is filled up with its last pair.
 struct Pairs {
     groups: Vec<[[usize; 2]; LANES]>,
@@ -154,7 +157,7 @@ impl Pairs {
 /// The fields of an element at one of its points.
 struct AtPoint {
     relative: Vec<[[Lanes; 3]; OTHERS]>,
-    /// ∇u and C:ε(u) of each group.
+    /// ∇u and C:ε(u) of each group, by [`GRADIENT`] and [`STRESS`].
     of_groups: Vec<[Matrices; 2]>,
 }
 
@@ -175,17 +178,15 @@ impl AtPoint {
         }
     }
 
-    /// The first and the second fields of four pairs.
+    /// ∇u or C:ε(u) of the first or of the second field of each of four pairs.
     #[inline(always)]
-    fn pairs(&self, pairs: &[[usize; 2]; LANES]) -> [[Matrices; 2]; 2] {
-        let mut found = [[Matrices::ZERO; 2]; 2];
+    fn gathered(&self, pairs: &[[usize; 2]; LANES], which: usize, what: usize) -> Matrices {
+        let mut found = Matrices::ZERO;
         for (lane, pair) in pairs.iter().enumerate() {
-            for (found, field) in found.iter_mut().zip(pair) {
-                for (to, from) in found.iter_mut().zip(&self.of_groups[field / LANES]) {
-                    for (to, from) in to.0.as_flattened_mut().iter_mut().zip(from.0.as_flattened()) {
-                        to[lane] = from[field % LANES];
-                    }
-                }
+            let field = pair[which];
+            let from = &self.of_groups[field / LANES][what];
+            for (to, from) in found.0.as_flattened_mut().iter_mut().zip(from.0.as_flattened()) {
+                to[lane] = from[field % LANES];
             }
         }
         found
@@ -228,7 +229,8 @@ fn element_forces(
                 let lame = materials[e].lame();
                 here.go_to(point, lame);
                 for (group, pairs) in groups.iter().enumerate() {
-                    let [a, b] = here.pairs(pairs);
+                    let a = [here.gathered(pairs, 0, GRADIENT), here.gathered(pairs, 0, STRESS)];
+                    let b = [here.gathered(pairs, 1, GRADIENT), here.gathered(pairs, 1, STRESS)];
                     let Matrices(force) = force(&a, &b, lame).scaled(point.volume);
                     for (sums, gradient) in sums.chunks_exact_mut(3 * groups.len()).zip(&point.gradients[1..]) {
                         for (axis, force) in force.iter().enumerate() {

@@ -8,19 +8,18 @@
 //! (inertia relief). The factor of K + sM preconditions: the spectrum is λ/(λ + s), between about a half and one.
 
 use faer::dyn_stack::MemBuffer;
-use faer::{Accum, Col, Mat, MatRef, Scale};
+use faer::{Accum, Col, ColMut, ColRef, Mat, MatRef, Scale};
 
 use crate::error::ModalError;
 use crate::foretold::of_vectors;
-use crate::products::symmetric_product;
+use crate::products::{Packed, symmetric_product};
 use crate::ritz::{RitzPairs, rayleigh_ritz};
 use crate::shifted::Shifted;
 use crate::solve::{Modes, Solver};
 use crate::tall;
 
-/// Residual in the norm of (K + sM)⁻¹, relative to that of the force, at which the iteration ends. A last solution with
-/// the residual of the answer in hand, evaluated anew, then takes out the half of what is left at the least, and most of
-/// it where modes are known.
+/// The norm of (K + sM)⁻¹ of the residual, relative to that of the force, that an answer is to have. The iteration ends
+/// where a last solution, with the residual evaluated anew, will get there by what the steps before it have gained.
 const TOLERANCE: f64 = 1e-11;
 /// The norm of that residual, which is the error of the answer in the norm of the energy: what rounding in K may leave on
 /// slender bodies (9e-7 on a bar of 220 times its thickness).
@@ -156,13 +155,14 @@ struct Statics<'a> {
     /// M R, as far as the support lets it act.
     m_rigid: Mat<f64>,
     scratch: MemBuffer,
+    packed: Vec<Packed>,
 }
 
 impl<'a> Statics<'a> {
     fn new(solver: &'a Solver<'_>, factor: &'a Shifted, modes: &'a Modes) -> Result<Self, ModalError> {
         let mut m_rigid = solver.mass.product(solver.rigid.shapes.as_ref());
         solver.constraints.project(m_rigid.as_mut());
-        Ok(Self { solver, factor, modes, m_rigid, scratch: factor.solve_scratch(BLOCK)? })
+        Ok(Self { solver, factor, modes, m_rigid, scratch: factor.solve_scratch(BLOCK)?, packed: Vec::new() })
     }
 
     /// Answers to up to [`BLOCK`] forces, of which `first` is the number of the first.
@@ -181,11 +181,12 @@ impl<'a> Statics<'a> {
         let zeros = || Mat::<f64>::zeros(forces.nrows(), forces.ncols());
         // Directions p, and (K + sM) p, which are residuals, and so need no product: K p = (K + sM) p − s M p.
         let (mut search, mut shifted) = (zeros(), zeros());
+        let (mut conditioned, mut stiff) = (zeros(), zeros());
         let mut before: Vec<f64> = vec![f64::INFINITY; forces.ncols()];
         let mut scale: Vec<f64> = Vec::new();
         let mut iterations = 0;
         loop {
-            let conditioned = self.precondition(&residual);
+            self.precondition(&residual, &mut conditioned);
             let squared = dots(&residual, &conditioned);
             if iterations == 0 {
                 scale = squared.iter().zip(&along).map(|(squared, along)| squared + along).collect();
@@ -197,22 +198,20 @@ impl<'a> Statics<'a> {
             }
             iterations += 1;
             for k in &open {
-                let part = Scale(squared[*k] / before[*k]);
-                let direction = conditioned.col(*k) + search.col(*k) * part;
-                let force = residual.col(*k) + shifted.col(*k) * part;
-                search.col_mut(*k).copy_from(direction);
-                shifted.col_mut(*k).copy_from(force);
+                let part = squared[*k] / before[*k];
+                follow(search.as_mut().col_mut(*k), part, conditioned.col(*k));
+                follow(shifted.as_mut().col_mut(*k), part, residual.col(*k));
             }
-            let stiff = self.unshifted(&search, &shifted);
+            self.unshift(&search, &shifted, &mut stiff);
             let curvature = dots(&search, &stiff);
             for k in &open {
-                let step = Scale(squared[*k] / curvature[*k]);
-                let (moved, left) = (answer.col(*k) + search.col(*k) * step, residual.col(*k) - stiff.col(*k) * step);
-                answer.col_mut(*k).copy_from(moved);
-                residual.col_mut(*k).copy_from(left);
+                let step = squared[*k] / curvature[*k];
+                add(answer.as_mut().col_mut(*k), step, search.col(*k));
+                add(residual.as_mut().col_mut(*k), -step, stiff.col(*k));
             }
-            // If the step that was made has gained as much as the one before it, the next solution would find nothing to do.
-            if open.iter().all(|k| before[*k].is_finite() && !is_open(squared[*k] * squared[*k] / before[*k], *k)) {
+            // This step and the last solution gain about as much each as the step before.
+            let gain = |k: usize| squared[k] / before[k];
+            if open.iter().all(|k| iterations > 1 && !is_open(squared[*k] * gain(*k) * gain(*k), *k)) {
                 break;
             }
             self.balance(&mut residual);
@@ -220,7 +219,7 @@ impl<'a> Statics<'a> {
         }
         let mut residual = forces - self.stiff(&answer);
         self.balance(&mut residual);
-        let conditioned = self.precondition(&residual);
+        self.precondition(&residual, &mut conditioned);
         for (k, (squared, scale)) in dots(&residual, &conditioned).iter().zip(&scale).enumerate() {
             let residual = (squared / scale).sqrt();
             if *scale > 0.0 && (residual.is_nan() || residual >= ACCEPTED) {
@@ -261,18 +260,18 @@ impl<'a> Statics<'a> {
     }
 
     /// (K + sM)⁻¹ of forces.
-    fn precondition(&mut self, forces: &Mat<f64>) -> Mat<f64> {
-        let mut displacements = forces.clone();
+    fn precondition(&mut self, forces: &Mat<f64>, displacements: &mut Mat<f64>) {
+        displacements.copy_from(forces);
         self.factor.solve_in_place(displacements.as_mut(), &mut self.scratch);
-        self.unmove(&mut displacements);
-        displacements
     }
 
     /// K u of displacements for which (K + sM) u is known, without reactions.
-    fn unshifted(&self, displacements: &Mat<f64>, shifted: &Mat<f64>) -> Mat<f64> {
-        let mut momenta = self.solver.mass.product(displacements.as_ref());
-        self.solver.constraints.project(momenta.as_mut());
-        shifted - momenta * Scale(self.factor.shift)
+    fn unshift(&mut self, displacements: &Mat<f64>, shifted: &Mat<f64>, forces: &mut Mat<f64>) {
+        self.solver.mass.product_into(displacements.as_ref(), forces.as_mut(), &mut self.packed);
+        self.solver.constraints.project(forces.as_mut());
+        for (force, shifted) in forces.col_iter_mut().zip(shifted.col_iter()) {
+            follow(force, -self.factor.shift, shifted);
+        }
     }
 
     /// K u, without reactions.
@@ -280,6 +279,20 @@ impl<'a> Statics<'a> {
         let mut forces = symmetric_product(self.solver.stiffness, displacements.as_ref());
         self.solver.constraints.project(forces.as_mut());
         forces
+    }
+}
+
+/// y ← x + part·y.
+fn follow(y: ColMut<'_, f64>, part: f64, x: ColRef<'_, f64>) {
+    for (y, x) in y.iter_mut().zip(x.iter()) {
+        *y = x + part * *y;
+    }
+}
+
+/// y ← y + part·x.
+fn add(y: ColMut<'_, f64>, part: f64, x: ColRef<'_, f64>) {
+    for (y, x) in y.iter_mut().zip(x.iter()) {
+        *y += part * x;
     }
 }
 
