@@ -3,7 +3,6 @@
 //! The whole basis V is kept and every new block is made M-orthogonal to it twice, so T = Vᵀ M (K + sM)⁻¹ M V is
 //! known to rounding and no ghost eigenvalue appears.
 
-use faer::dyn_stack::MemBuffer;
 use faer::{Accum, Mat, MatRef};
 
 use crate::dense::symmetric_eigen;
@@ -11,7 +10,7 @@ use crate::error::ModalError;
 use crate::foretold::of_vectors;
 use crate::mass_matrix::MassMatrix;
 use crate::products::Packed;
-use crate::shifted::Shifted;
+use crate::shifted::{Shifted, SolveScratch};
 use crate::tall;
 
 /// Columns of the rigid modes, zero for those that are missing.
@@ -57,7 +56,7 @@ pub(crate) fn largest_pairs(
     let mut projected: Mat<f64> = Mat::zeros(0, 0);
 
     let mut seed = 1;
-    let mut begin = |columns: usize, scratch: &mut MemBuffer| {
+    let mut begin = |columns: usize, scratch: &mut SolveScratch| {
         let mut block = random_block(n, columns, &mut seed);
         operator.constraints.project(block.as_mut());
         if let MassMatrix::General(_) = mass {

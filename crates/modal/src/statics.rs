@@ -7,14 +7,13 @@
 //! R are the rigid modes that the support leaves: the force is balanced by the inertia of the motion that it causes
 //! (inertia relief). The factor of K + sM preconditions: the spectrum is λ/(λ + s), between about a half and one.
 
-use faer::dyn_stack::MemBuffer;
 use faer::{Accum, Col, ColMut, ColRef, Mat, MatRef, Scale};
 
 use crate::error::ModalError;
 use crate::foretold::of_vectors;
 use crate::products::{Packed, symmetric_product};
 use crate::ritz::{RitzPairs, rayleigh_ritz};
-use crate::shifted::Shifted;
+use crate::shifted::{Shifted, SolveScratch};
 use crate::solve::{Modes, Solver};
 use crate::tall;
 
@@ -154,7 +153,7 @@ struct Statics<'a> {
     modes: &'a Modes,
     /// M R, as far as the support lets it act.
     m_rigid: Mat<f64>,
-    scratch: MemBuffer,
+    scratch: SolveScratch,
     packed: Vec<Packed>,
 }
 
