@@ -214,9 +214,7 @@ impl Block {
                 let initial_stress = a.times(&of_u);
                 let product = match terms {
                     GeometricTerms::InitialStress => initial_stress,
-                    GeometricTerms::All => {
-                        initial_stress.plus(&u.times(of_a)).plus(&u.second_strain(a).stress(*lame))
-                    }
+                    GeometricTerms::All => initial_stress.plus(&u.times(of_a)).plus(&u.second_strain(a).stress(*lame)),
                 };
                 product.store(rows, self.groups, group);
             }

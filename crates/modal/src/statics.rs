@@ -57,8 +57,8 @@ impl Solver<'_> {
             return Err(ModalError::Size { what: "mode shapes", expected, found: modes.shapes.nrows() });
         }
         check_finite("forces", forces)?;
+        memory::check("static answers", of_vectors(expected, modes.natural() + forces.ncols() + 10 * BLOCK))?;
         let mut statics = Statics::new(self, self.factor()?, modes)?;
-        memory::check("static answers", of_vectors(expected, forces.ncols() + 10 * BLOCK))?;
         let mut answers = Mat::zeros(expected, forces.ncols());
         let blocks = forces.ncols().div_ceil(BLOCK);
         let at_once = forces.ncols().div_ceil(blocks.max(1)).max(1);
@@ -153,6 +153,8 @@ struct Statics<'a> {
     modes: &'a Modes,
     /// M R, as far as the support lets it act.
     m_rigid: Mat<f64>,
+    /// M φ of the natural modes.
+    m_natural: Mat<f64>,
     scratch: SolveScratch,
     packed: Vec<Packed>,
 }
@@ -161,7 +163,10 @@ impl<'a> Statics<'a> {
     fn new(solver: &'a Solver<'_>, factor: &'a Shifted, modes: &'a Modes) -> Result<Self, ModalError> {
         let mut m_rigid = solver.mass.product(solver.rigid.shapes.as_ref());
         solver.constraints.project(m_rigid.as_mut());
-        Ok(Self { solver, factor, modes, m_rigid, scratch: factor.solve_scratch(BLOCK)?, packed: Vec::new() })
+        let mut m_natural = solver.mass.product(modes.shapes.get(.., ..modes.natural()));
+        solver.constraints.project(m_natural.as_mut());
+        let (scratch, packed) = (factor.solve_scratch(BLOCK)?, Vec::new());
+        Ok(Self { solver, factor, modes, m_rigid, m_natural, scratch, packed })
     }
 
     /// Answers to up to [`BLOCK`] forces, of which `first` is the number of the first.
@@ -174,8 +179,7 @@ impl<'a> Statics<'a> {
                 forces.col_mut(k).fill(0.0);
             }
         }
-        let (mut answer, along) = self.along_modes(&forces);
-        let mut residual = &forces - self.stiff(&answer);
+        let (mut answer, mut residual, along) = self.along_modes(&forces);
         self.balance(&mut residual);
         let zeros = || Mat::<f64>::zeros(forces.nrows(), forces.ncols());
         // Directions p, and (K + sM) p, which are residuals, and so need no product: K p = (K + sM) p − s M p.
@@ -231,10 +235,13 @@ impl<'a> Statics<'a> {
         Ok(answer)
     }
 
-    /// The answers to forces along the modes, and the square of each of these forces in the norm of (K + sM)⁻¹.
-    fn along_modes(&self, forces: &Mat<f64>) -> (Mat<f64>, Vec<f64>) {
+    /// The answers to forces along the modes, what is left of the forces, and the square of what is not in the norm of
+    /// (K + sM)⁻¹.
+    fn along_modes(&self, forces: &Mat<f64>) -> (Mat<f64>, Mat<f64>, Vec<f64>) {
         let natural = self.modes.shapes.get(.., ..self.modes.natural());
         let mut parts = tall::inner(natural, forces.as_ref());
+        let mut left = forces.clone();
+        tall::multiply(left.as_mut(), Accum::Add, self.m_natural.as_ref(), parts.as_ref(), -1.0);
         let mut squared = vec![0.0; forces.ncols()];
         for (part, squared) in parts.col_iter_mut().zip(&mut squared) {
             for (part, lambda) in part.iter_mut().zip(&self.modes.eigenvalues) {
@@ -242,7 +249,7 @@ impl<'a> Statics<'a> {
                 *part /= lambda;
             }
         }
-        (tall::product(natural, parts.as_ref()), squared)
+        (tall::product(natural, parts.as_ref()), left, squared)
     }
 
     /// Takes out of forces what the support's reactions and the inertia of the rigid motion balance.

@@ -175,12 +175,7 @@ impl<'a> Supernode<'a> {
     }
 
     #[inline(always)]
-    fn backward_columns<const K: usize, const W: usize>(
-        &self,
-        first: usize,
-        own: &mut [[f64; W]],
-        below: &[[f64; W]],
-    ) {
+    fn backward_columns<const K: usize, const W: usize>(&self, first: usize, own: &mut [[f64; W]], below: &[[f64; W]]) {
         let (here, after) = own[first..].split_at_mut(K);
         let (columns_own, columns_below) = self.columns::<K>(first);
         let mut sums = [[0.0; W]; K];
@@ -271,8 +266,7 @@ mod tests {
             supernodal_params: SymbolicSupernodalParams { relax: None },
             ..CholeskySymbolicParams::default()
         };
-        let symbolic =
-            factorize_symbolic_cholesky(a.symbolic(), Side::Lower, SymmetricOrdering::Amd, params).unwrap();
+        let symbolic = factorize_symbolic_cholesky(a.symbolic(), Side::Lower, SymmetricOrdering::Amd, params).unwrap();
         let SymbolicCholeskyRaw::Supernodal(supernodal) = symbolic.raw() else { panic!() };
         let mut values = vec![0.0; symbolic.len_val()];
         let needed = symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Spec::default());
@@ -288,7 +282,8 @@ mod tests {
             Spec::default(),
         );
         factor.unwrap();
-        let widths = (0..supernodal.n_supernodes()).map(|s| supernodal.supernode_end()[s] - supernodal.supernode_begin()[s]);
+        let widths =
+            (0..supernodal.n_supernodes()).map(|s| supernodal.supernode_end()[s] - supernodal.supernode_begin()[s]);
         assert!(widths.clone().any(|width| width > COLUMNS) && widths.clone().any(|width| width < COLUMNS));
         for columns in [1, 3, 8, 17] {
             let b = Mat::from_fn(n, columns, |i, j| ((i * 7 + j * 13) as f64).cos());
