@@ -13,15 +13,16 @@
 //! *against the element's first node* count. With those, a translation of the element drops out exactly, and rounding is
 //! measured against the deformation and not against the motion.
 
-use faer::linalg::matmul::triangular::{self, BlockStructure};
-use faer::{Accum, ColRef, Mat, MatRef, Par};
-use nalgebra::Matrix3;
+use faer::linalg::matmul::matmul;
+use faer::{Accum, Mat, MatRef, Par};
+use pulp::Arch;
 use rayon::prelude::*;
 
-use crate::deformation::{check_field, second_strain, strain, stress};
+use crate::deformation::check_field;
 use crate::error::AssemblyError;
 use crate::integration::{IntegrationPoint, Rules};
-use crate::material::Materials;
+use crate::lanes::{Grouped, LANES, Lanes, Matrices, gradient};
+use crate::material::{Material, Materials};
 use crate::mesh::Mesh;
 
 /// The elements are cut into so many parts, whatever the number of threads, and the parts are summed in their order.
@@ -60,71 +61,60 @@ pub fn reduced_geometric_stiffness(
     shapes: MatRef<'_, f64>,
     terms: GeometricTerms,
 ) -> Result<Vec<Mat<f64>>, AssemblyError> {
+    extended_geometric_stiffness(mesh, materials, displacements, shapes, terms, &[])
+}
+
+/// The same where the matrices `known` of the first of the shapes are known, one for each displacement field; none for no
+/// shapes at all. Only what is new is computed.
+///
+/// # Errors
+/// As [`reduced_geometric_stiffness`].
+///
+/// # Panics
+/// Where `known` are not as many as the displacements, of one size, or larger than the shapes are many.
+pub fn extended_geometric_stiffness(
+    mesh: &Mesh,
+    materials: &Materials,
+    displacements: MatRef<'_, f64>,
+    shapes: MatRef<'_, f64>,
+    terms: GeometricTerms,
+    known: &[Mat<f64>],
+) -> Result<Vec<Mat<f64>>, AssemblyError> {
     check_field(mesh, "displacements", displacements)?;
     check_field(mesh, "shapes", shapes)?;
+    assert!(known.is_empty() || known.len() == displacements.ncols());
+    let first = known.first().map_or(0, Mat::ncols);
+    assert!(first <= shapes.ncols() && known.iter().all(|known| known.nrows() == first && known.ncols() == first));
     let materials = materials.of_elements(mesh)?;
     let f = shapes.ncols();
-    memory::check("the geometric stiffness", f.saturating_mul(f).saturating_mul(8 * PARTS * displacements.ncols()))?;
-    let zeros = || vec![Mat::<f64>::zeros(f, f); displacements.ncols()];
+    if f == first {
+        return Ok(if known.is_empty() { vec![Mat::zeros(0, 0); displacements.ncols()] } else { known.to_vec() });
+    }
+    let bytes = f.saturating_mul(f).saturating_mul(8 * PARTS * displacements.ncols());
+    let copies = 8 * shapes.nrows() * (f + displacements.ncols() + 2 * LANES);
+    memory::check("the geometric stiffness", bytes.saturating_add(copies))?;
+    // The columns of the shapes that are new.
+    let zeros = || vec![Mat::<f64>::zeros(f, f - first); displacements.ncols()];
     let rules = Rules::new();
+    let arch = Arch::new();
+    let (shapes, displacements) = (Grouped::new(shapes), Grouped::new(displacements));
     let elements: Vec<usize> = (0..mesh.elements().len()).collect();
     let parts: Vec<Vec<Mat<f64>>> = elements
         .par_chunks(elements.len().div_ceil(PARTS))
         .map(|part| {
             let mut sums = zeros();
+            let mut here = Block::default();
+            let mut products: Vec<Lanes> = Vec::new();
             for block in part.chunks(BLOCK) {
-                let points: Vec<(usize, IntegrationPoint)> = block
-                    .iter()
-                    .flat_map(|e| {
-                        rules.cubic_points(&mesh.element_positions(*e)).into_iter().map(move |point| (*e, point))
-                    })
-                    .collect();
-                let of_shapes: Vec<[[f64; 3]; 3]> =
-                    shapes.col_iter().flat_map(|shape| gradients(shape, mesh, &points)).collect();
-                let stresses: Vec<Matrix3<f64>> = match terms {
-                    GeometricTerms::InitialStress => Vec::new(),
-                    GeometricTerms::All => {
-                        let of_points = of_shapes.iter().zip(points.iter().cycle());
-                        of_points.map(|(a, (e, _))| stress(&materials[*e], &strain(&Matrix3::from(*a)))).collect()
-                    }
-                };
-                let mut products = vec![[[0.0; 3]; 3]; of_shapes.len()];
-                for (sum, u) in sums.iter_mut().zip(displacements.col_iter()) {
-                    let of_u: Vec<(Matrix3<f64>, Matrix3<f64>)> = gradients(u, mesh, &points)
-                        .zip(&points)
-                        .map(|(gradient, (e, point))| {
-                            let gradient = Matrix3::from(gradient) * point.volume;
-                            (gradient, stress(&materials[*e], &strain(&gradient)))
-                        })
-                        .collect();
-                    let here = || of_u.iter().zip(&points).cycle();
-                    let of_both = products.iter_mut().zip(&of_shapes);
-                    match terms {
-                        GeometricTerms::InitialStress => {
-                            for ((product, a), ((_, of_u), _)) in of_both.zip(here()) {
-                                *product = (Matrix3::from(*a) * of_u).into();
-                            }
-                        }
-                        GeometricTerms::All => {
-                            for (((product, a), of_a), ((u, of_u), (e, _))) in of_both.zip(&stresses).zip(here()) {
-                                let a = Matrix3::from(*a);
-                                let of_second = stress(&materials[*e], &second_strain(u, &a));
-                                *product = (a * of_u + u * of_a + of_second).into();
-                            }
-                        }
-                    }
-                    let rows = 9 * points.len();
-                    triangular::matmul(
-                        sum.as_mut(),
-                        BlockStructure::TriangularLower,
-                        Accum::Add,
-                        MatRef::from_column_major_slice(of_shapes.as_flattened().as_flattened(), rows, f).transpose(),
-                        BlockStructure::Rectangular,
-                        MatRef::from_column_major_slice(products.as_flattened().as_flattened(), rows, f),
-                        BlockStructure::Rectangular,
-                        1.0,
-                        Par::Seq,
-                    );
+                let of_element = |e: &usize| (*e, rules.cubic_points(&mesh.element_positions(*e)));
+                let points: Vec<(usize, Vec<IntegrationPoint>)> = block.iter().map(of_element).collect();
+                arch.dispatch(|| here.fill(mesh, &materials, &points, &shapes, &displacements));
+                products.resize(here.gradients.len(), [0.0; LANES]);
+                for (u, sum) in sums.iter_mut().enumerate() {
+                    arch.dispatch(|| here.products(u, terms, first / LANES, &mut products));
+                    let (gradients, products) = (matrix(&here.gradients, f), matrix(&products, f));
+                    let new = products.subcols(first, f - first);
+                    matmul(sum.as_mut(), Accum::Add, gradients.transpose(), new, 1.0, Par::Seq);
                 }
             }
             sums
@@ -136,33 +126,98 @@ pub fn reduced_geometric_stiffness(
             *sum += part;
         }
     }
-    for sum in &mut sums {
-        for j in 0..f {
-            for i in 0..j {
-                sum[(i, j)] = sum[(j, i)];
+    let full = |(u, new): (usize, &Mat<f64>)| {
+        Mat::from_fn(f, f, |i, j| {
+            let (row, column) = (i.max(j), i.min(j));
+            if row < first {
+                known[u][(i, j)]
+            } else if column < first {
+                new[(column, row - first)]
+            } else {
+                new[(row, column - first)]
             }
-        }
-    }
-    Ok(sums)
+        })
+    };
+    Ok(sums.iter().enumerate().map(full).collect())
 }
 
-/// ∇u of a field at points of elements, column by column; displacements count against the element's first node.
-fn gradients<'a>(
-    field: ColRef<'a, f64>,
-    mesh: &'a Mesh,
-    points: &'a [(usize, IntegrationPoint)],
-) -> impl Iterator<Item = [[f64; 3]; 3]> + 'a {
-    points.iter().map(move |(e, point)| {
-        let nodes = mesh.elements()[*e].map(|node| 3 * node as usize);
-        let mut sum = [[0.0; 3]; 3];
-        for (node, gradient) in nodes[1..].iter().zip(&point.gradients[1..]) {
-            let u: [f64; 3] = std::array::from_fn(|axis| field[node + axis] - field[nodes[0] + axis]);
-            for (sum, gradient) in sum.iter_mut().zip(gradient) {
-                for (sum, u) in sum.iter_mut().zip(u) {
-                    *sum += u * gradient;
+/// Rows of groups as a matrix of `columns` columns.
+fn matrix(groups: &[Lanes], columns: usize) -> MatRef<'_, f64> {
+    let width = LANES * columns.div_ceil(LANES);
+    let numbers = groups.as_flattened();
+    MatRef::from_row_major_slice(numbers, numbers.len() / width, width).subcols(0, columns)
+}
+
+/// The fields at the points of a few elements.
+#[derive(Default)]
+struct Block {
+    /// Lamé's λ and μ at each point.
+    lame: Vec<(f64, f64)>,
+    /// Groups of shapes.
+    groups: usize,
+    /// ∇a of the shapes: nine rows for each point, a column for each group.
+    gradients: Vec<Lanes>,
+    /// ∇a and C:ε(a): for each point those of all groups.
+    of_shapes: Vec<[Matrices; 2]>,
+    /// Groups of displacements.
+    groups_of_displacements: usize,
+    /// ∇u and C:ε(u), times the volume of the point: for each point those of all groups.
+    of_displacements: Vec<[Matrices; 2]>,
+}
+
+impl Block {
+    #[inline(always)]
+    fn fill(
+        &mut self,
+        mesh: &Mesh,
+        materials: &[Material],
+        elements: &[(usize, Vec<IntegrationPoint>)],
+        shapes: &Grouped,
+        displacements: &Grouped,
+    ) {
+        let count: usize = elements.iter().map(|(_, points)| points.len()).sum();
+        (self.groups, self.groups_of_displacements) = (shapes.groups, displacements.groups);
+        self.lame.clear();
+        self.of_shapes.clear();
+        self.of_displacements.clear();
+        self.gradients.resize(9 * count * shapes.groups, [0.0; LANES]);
+        let mut rows = self.gradients.chunks_exact_mut(9 * shapes.groups);
+        let (mut of_shapes, mut of_displacements) = (Vec::new(), Vec::new());
+        for (e, points) in elements {
+            let lame = materials[*e].lame();
+            shapes.relative(&mesh.elements()[*e], &mut of_shapes);
+            displacements.relative(&mesh.elements()[*e], &mut of_displacements);
+            for (point, rows) in points.iter().zip(&mut rows) {
+                self.lame.push(lame);
+                for (group, relative) in of_shapes.iter().enumerate() {
+                    let gradient = gradient(relative, point);
+                    gradient.store(rows, shapes.groups, group);
+                    self.of_shapes.push([gradient, gradient.strain().stress(lame)]);
+                }
+                for relative in &of_displacements {
+                    let gradient = gradient(relative, point).scaled(point.volume);
+                    self.of_displacements.push([gradient, gradient.strain().stress(lame)]);
                 }
             }
         }
-        sum
-    })
+    }
+
+    /// P_a of the shapes from a group on for the displacement `u`, laid out as the gradients.
+    #[inline(always)]
+    fn products(&self, u: usize, terms: GeometricTerms, from: usize, out: &mut [Lanes]) {
+        let points = out.chunks_exact_mut(9 * self.groups).zip(self.of_shapes.chunks_exact(self.groups));
+        let displacements = self.of_displacements.chunks_exact(self.groups_of_displacements);
+        for (((rows, of_shapes), of_displacements), lame) in points.zip(displacements).zip(&self.lame) {
+            let [gradients, stresses] = &of_displacements[u / LANES];
+            let (u, of_u) = (gradients.all_alike(u % LANES), stresses.all_alike(u % LANES));
+            for (group, [a, of_a]) in of_shapes.iter().enumerate().skip(from) {
+                let initial_stress = a.times(&of_u);
+                let product = match terms {
+                    GeometricTerms::InitialStress => initial_stress,
+                    GeometricTerms::All => initial_stress.plus(&u.times(of_a)).plus(&u.second_strain(a).stress(*lame)),
+                };
+                product.store(rows, self.groups, group);
+            }
+        }
+    }
 }

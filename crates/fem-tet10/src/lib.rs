@@ -28,6 +28,7 @@ mod error;
 mod faces;
 mod geometric_stiffness;
 mod integration;
+mod lanes;
 mod locate;
 mod lumped;
 mod material;
@@ -48,7 +49,7 @@ pub use assembly::{Matrices, assemble};
 pub use error::{AssemblyError, FilePosition, MeshError};
 /// The crate whose types are in the interface.
 pub use faer;
-pub use geometric_stiffness::{GeometricTerms, reduced_geometric_stiffness};
+pub use geometric_stiffness::{GeometricTerms, extended_geometric_stiffness, reduced_geometric_stiffness};
 pub use locate::Location;
 pub use lumped::{LumpedInertia, centroid_lumped_inertia};
 pub use material::{Material, Materials};

@@ -10,15 +10,14 @@
 //! geometric stiffness, displacements count against the element's first node, whose force is what balances the others.
 
 use faer::{Mat, MatRef};
-use nalgebra::{Matrix3, Vector3};
+use pulp::Arch;
 use rayon::prelude::*;
 
-use crate::deformation::{
-    OTHERS, check_field, displacement_gradients, relative_displacements, second_strain, strain, stress,
-};
+use crate::deformation::{OTHERS, check_field};
 use crate::error::AssemblyError;
-use crate::integration::Rules;
-use crate::material::{Material, Materials};
+use crate::integration::{IntegrationPoint, Rules};
+use crate::lanes::{Grouped, LANES, Lanes, Matrices, gradient};
+use crate::material::Materials;
 use crate::mesh::Mesh;
 
 /// Elements whose forces are held at once, before they are added in the order of the elements: the sums are the same for
@@ -42,14 +41,9 @@ pub fn second_order_forces(
     fields: MatRef<'_, f64>,
     pairs: &[[usize; 2]],
 ) -> Result<Mat<f64>, AssemblyError> {
-    let forces =
-        |Deformation { gradients, stresses }: &Deformation, material: &Material, out: &mut Vec<Matrix3<f64>>| {
-            for [a, b] in pairs {
-                let of_second = stress(material, &second_strain(&gradients[*a], &gradients[*b]));
-                out.push(of_second + gradients[*b] * stresses[*a] + gradients[*a] * stresses[*b]);
-            }
-        };
-    element_forces(mesh, materials, fields, pairs.len(), forces)
+    element_forces(mesh, materials, fields, pairs, |[a, of_a], [b, of_b], lame| {
+        a.second_strain(b).stress(lame).plus(&b.times(of_a)).plus(&a.times(of_b))
+    })
 }
 
 /// `K(u) V` (N×k, force) for the columns V of `fields` (N×k, length), where K(u) is the initial stress of `displacement`
@@ -68,10 +62,8 @@ pub fn geometric_stiffness_product(
     let columns = fields.ncols();
     let column = |i: usize, j: usize| if j < columns { fields[(i, j)] } else { displacement[(i, 0)] };
     let all = Mat::from_fn(fields.nrows(), columns + 1, column);
-    let forces = |Deformation { gradients, stresses }: &Deformation, _: &Material, out: &mut Vec<Matrix3<f64>>| {
-        out.extend(gradients[..columns].iter().map(|gradient| gradient * stresses[columns]));
-    };
-    element_forces(mesh, materials, all.as_ref(), columns, forces)
+    let pairs: Vec<[usize; 2]> = (0..columns).map(|field| [field, columns]).collect();
+    element_forces(mesh, materials, all.as_ref(), &pairs, |[a, _], [_, of_u], _| a.times(of_u))
 }
 
 /// `∫ ε₂(a,b) : C : ε₂(c,d) dV` (energy, one for each of `quadruples`) of columns a, b, c, d of `fields` (N×k, length).
@@ -92,6 +84,9 @@ pub fn second_order_energies(
 ) -> Result<Vec<f64>, AssemblyError> {
     check_field(mesh, "fields", fields)?;
     let materials = materials.of_elements(mesh)?;
+    if quadruples.is_empty() {
+        return Ok(Vec::new());
+    }
     let rules = Rules::new();
     // The strain and the stress of a pair are found once at a point, in how many quadruples it may be.
     let mut pairs: Vec<[usize; 2]> = Vec::new();
@@ -103,90 +98,173 @@ pub fn second_order_energies(
         })
     };
     let products: Vec<[usize; 2]> = quadruples.iter().map(|[a, b, c, d]| [number(*a, *b), number(*c, *d)]).collect();
-    let of_element = |e: usize| -> Vec<f64> {
-        let relative = relative_displacements(fields, &mesh.elements()[e]);
-        let mut gradients = Vec::with_capacity(fields.ncols());
-        let mut of_pairs = Vec::with_capacity(pairs.len());
-        let mut energies = vec![0.0; quadruples.len()];
-        for point in rules.fine_points(&mesh.element_positions(e)) {
-            displacement_gradients(&relative, &point, fields.ncols(), &mut gradients);
-            of_pairs.clear();
-            of_pairs.extend(pairs.iter().map(|[a, b]| {
-                let strain = second_strain(&gradients[*a], &gradients[*b]);
-                (strain, stress(&materials[e], &strain) * point.volume)
-            }));
-            for (energy, [first, second]) in energies.iter_mut().zip(&products) {
-                *energy += of_pairs[*first].1.dot(&of_pairs[*second].0);
+    let (arch, fields, groups) = (Arch::new(), Grouped::new(fields), Pairs::new(&pairs).groups);
+    // A row for each pair, with the products of its stress and the strains of all pairs.
+    let of_element = |e: usize| -> Vec<Lanes> {
+        let points = rules.fine_points(&mesh.element_positions(e));
+        let mut rows = vec![[0.0; LANES]; LANES * groups.len() * groups.len()];
+        arch.dispatch(|| {
+            let mut here = AtPoint::new(&fields, &mesh.elements()[e]);
+            let mut strains = Vec::with_capacity(groups.len());
+            for point in &points {
+                let lame = materials[e].lame();
+                here.go_to(point, lame);
+                strains.clear();
+                for pairs in &groups {
+                    let (a, b) = (here.gathered(pairs, 0, GRADIENT), here.gathered(pairs, 1, GRADIENT));
+                    strains.push(a.second_strain(&b));
+                }
+                for (pair, row) in rows.chunks_exact_mut(groups.len()).enumerate() {
+                    let strain = strains[pair / LANES].all_alike(pair % LANES);
+                    let stress = strain.stress(lame).scaled(point.volume);
+                    for (sums, strain) in row.iter_mut().zip(&strains) {
+                        add_dots(sums, &stress, strain);
+                    }
+                }
             }
-        }
-        energies
+        });
+        rows
     };
-    let mut sums = vec![0.0; quadruples.len()];
+    let mut sums = vec![[0.0; LANES]; LANES * groups.len() * groups.len()];
     let elements: Vec<usize> = (0..mesh.elements().len()).collect();
     for block in elements.chunks(BLOCK) {
-        let parts: Vec<Vec<f64>> = block.par_iter().map(|e| of_element(*e)).collect();
+        let parts: Vec<Vec<Lanes>> = block.par_iter().map(|e| of_element(*e)).collect();
         for part in parts {
-            sums.iter_mut().zip(part).for_each(|(sum, energy)| *sum += energy);
+            for (sum, part) in sums.as_flattened_mut().iter_mut().zip(part.as_flattened()) {
+                *sum += part;
+            }
         }
     }
-    Ok(sums)
+    let energy = |[first, second]: &[usize; 2]| sums[first * groups.len() + second / LANES][second % LANES];
+    Ok(products.iter().map(energy).collect())
 }
 
-/// The fields at a point: ∇u and C:ε(u) of each.
-struct Deformation {
-    gradients: Vec<Matrix3<f64>>,
-    stresses: Vec<Matrix3<f64>>,
+const GRADIENT: usize = 0;
+const STRESS: usize = 1;
+
+/// Pairs of fields in groups; the last group is filled up with its last pair.
+struct Pairs {
+    groups: Vec<[[usize; 2]; LANES]>,
 }
 
-/// Forces (N×outputs) whose virtual work is `Σ ∫ ∇v : P dV`; `forces` gives the `outputs` matrices P of a point, which are
-/// products of two gradients, from the fields there.
+impl Pairs {
+    fn new(pairs: &[[usize; 2]]) -> Self {
+        let group = |pairs: &[[usize; 2]]| std::array::from_fn(|lane| pairs[lane.min(pairs.len() - 1)]);
+        Self { groups: pairs.chunks(LANES).map(group).collect() }
+    }
+}
+
+/// The fields of an element at one of its points.
+struct AtPoint {
+    relative: Vec<[[Lanes; 3]; OTHERS]>,
+    /// ∇u and C:ε(u) of each group, by [`GRADIENT`] and [`STRESS`].
+    of_groups: Vec<[Matrices; 2]>,
+}
+
+impl AtPoint {
+    #[inline(always)]
+    fn new(fields: &Grouped, nodes: &[u32; 10]) -> Self {
+        let mut relative = Vec::with_capacity(fields.groups);
+        fields.relative(nodes, &mut relative);
+        Self { of_groups: Vec::with_capacity(relative.len()), relative }
+    }
+
+    #[inline(always)]
+    fn go_to(&mut self, point: &IntegrationPoint, lame: (f64, f64)) {
+        self.of_groups.clear();
+        for relative in &self.relative {
+            let gradient = gradient(relative, point);
+            self.of_groups.push([gradient, gradient.strain().stress(lame)]);
+        }
+    }
+
+    /// ∇u or C:ε(u) of the first or of the second field of each of four pairs.
+    #[inline(always)]
+    fn gathered(&self, pairs: &[[usize; 2]; LANES], which: usize, what: usize) -> Matrices {
+        let mut found = Matrices::ZERO;
+        for (lane, pair) in pairs.iter().enumerate() {
+            let field = pair[which];
+            let from = &self.of_groups[field / LANES][what];
+            for (to, from) in found.0.as_flattened_mut().iter_mut().zip(from.0.as_flattened()) {
+                to[lane] = from[field % LANES];
+            }
+        }
+        found
+    }
+}
+
+/// Adds A:B of the one matrix `a` and of the four in `b` in a row of `sums`.
+#[inline(always)]
+fn add_dots(sums: &mut Lanes, a: &Matrices, b: &Matrices) {
+    for (a, b) in a.0.as_flattened().iter().zip(b.0.as_flattened()) {
+        for (sum, (a, b)) in sums.iter_mut().zip(a.iter().zip(b)) {
+            *sum += a * b;
+        }
+    }
+}
+
+/// Forces (N×pairs) whose virtual work is `Σ ∫ ∇v : P dV`; `force` gives the matrix P of a pair of fields, which is a sum of
+/// products of two gradients, from ∇u and C:ε(u) of the first and of the second field and from Lamé's λ and μ.
 fn element_forces(
     mesh: &Mesh,
     materials: &Materials,
     fields: MatRef<'_, f64>,
-    outputs: usize,
-    forces: impl Fn(&Deformation, &Material, &mut Vec<Matrix3<f64>>) + Sync,
+    pairs: &[[usize; 2]],
+    force: impl Fn(&[Matrices; 2], &[Matrices; 2], (f64, f64)) -> Matrices + Sync,
 ) -> Result<Mat<f64>, AssemblyError> {
     check_field(mesh, "fields", fields)?;
     let materials = materials.of_elements(mesh)?;
+    if pairs.is_empty() {
+        return Ok(Mat::zeros(fields.nrows(), 0));
+    }
     let rules = Rules::new();
-    // By output, then node but the first.
-    let of_element = |e: usize| -> Vec<Vector3<f64>> {
-        let relative = relative_displacements(fields, &mesh.elements()[e]);
-        let mut fields_here = Deformation { gradients: Vec::new(), stresses: Vec::new() };
-        let mut matrices = Vec::with_capacity(outputs);
-        let mut sums = vec![Vector3::zeros(); outputs * OTHERS];
-        for point in rules.cubic_points(&mesh.element_positions(e)) {
-            let Deformation { gradients, stresses } = &mut fields_here;
-            displacement_gradients(&relative, &point, fields.ncols(), gradients);
-            stresses.clear();
-            stresses.extend(gradients.iter().map(|gradient| stress(&materials[e], &strain(gradient))));
-            matrices.clear();
-            forces(&fields_here, &materials[e], &mut matrices);
-            for (sums, matrix) in sums.chunks_exact_mut(OTHERS).zip(&matrices) {
-                let matrix = matrix * point.volume;
-                for (sum, gradient) in sums.iter_mut().zip(&point.gradients[1..]) {
-                    *sum += matrix * Vector3::from(*gradient);
+    let (arch, fields, groups) = (Arch::new(), Grouped::new(fields), Pairs::new(pairs).groups);
+    // By node but the first, then axis, then group of pairs.
+    let of_element = |e: usize| -> Vec<Lanes> {
+        let points = rules.cubic_points(&mesh.element_positions(e));
+        let mut sums = vec![[0.0; LANES]; 3 * OTHERS * groups.len()];
+        arch.dispatch(|| {
+            let mut here = AtPoint::new(&fields, &mesh.elements()[e]);
+            for point in &points {
+                let lame = materials[e].lame();
+                here.go_to(point, lame);
+                for (group, pairs) in groups.iter().enumerate() {
+                    let a = [here.gathered(pairs, 0, GRADIENT), here.gathered(pairs, 0, STRESS)];
+                    let b = [here.gathered(pairs, 1, GRADIENT), here.gathered(pairs, 1, STRESS)];
+                    let Matrices(force) = force(&a, &b, lame).scaled(point.volume);
+                    for (sums, gradient) in sums.chunks_exact_mut(3 * groups.len()).zip(&point.gradients[1..]) {
+                        for (axis, force) in force.iter().enumerate() {
+                            let sum = &mut sums[axis * groups.len() + group];
+                            for (force, gradient) in force.iter().zip(gradient) {
+                                for lane in 0..LANES {
+                                    sum[lane] += force[lane] * gradient;
+                                }
+                            }
+                        }
+                    }
                 }
             }
-        }
+        });
         sums
     };
-    let mut result = Mat::zeros(fields.nrows(), outputs);
+    let rows = 3 * mesh.positions().len();
+    let mut result = vec![[0.0; LANES]; rows * groups.len()];
     let elements: Vec<usize> = (0..mesh.elements().len()).collect();
     for block in elements.chunks(BLOCK) {
-        let parts: Vec<Vec<Vector3<f64>>> = block.par_iter().map(|e| of_element(*e)).collect();
+        let parts: Vec<Vec<Lanes>> = block.par_iter().map(|e| of_element(*e)).collect();
         for (e, sums) in block.iter().zip(parts) {
             let nodes = &mesh.elements()[*e];
-            for (output, sums) in sums.chunks_exact(OTHERS).enumerate() {
-                for (node, force) in nodes[1..].iter().zip(sums) {
-                    for axis in 0..3 {
-                        result[(3 * *node as usize + axis, output)] += force[axis];
-                        result[(3 * nodes[0] as usize + axis, output)] -= force[axis];
+            for (node, forces) in nodes[1..].iter().zip(sums.chunks_exact(3 * groups.len())) {
+                for (k, force) in forces.iter().enumerate() {
+                    for (node, sign) in [(*node, 1.0), (nodes[0], -1.0)] {
+                        let sum = &mut result[3 * groups.len() * node as usize + k];
+                        for lane in 0..LANES {
+                            sum[lane] += sign * force[lane];
+                        }
                     }
                 }
             }
         }
     }
-    Ok(result)
+    Ok(Mat::from_fn(rows, pairs.len(), |row, pair| result[row * groups.len() + pair / LANES][pair % LANES]))
 }

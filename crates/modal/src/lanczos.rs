@@ -1,9 +1,8 @@
 //! Block Lanczos for `(K + sM)⁻¹ M φ = μ φ` in the M-product, away from the rigid modes.
 //!
-//! The whole basis V is kept and every new block is made M-orthogonal to it twice, so T = Vᵀ M (K + sM)⁻¹ M V is
-//! known to rounding and no ghost eigenvalue appears.
+//! The whole basis V is kept and every new block is made M-orthogonal to all of it, after it was made so to the last two
+//! blocks, so T = Vᵀ M (K + sM)⁻¹ M V is known nearly to rounding and no ghost eigenvalue appears.
 
-use faer::dyn_stack::MemBuffer;
 use faer::{Accum, Mat, MatRef};
 
 use crate::dense::symmetric_eigen;
@@ -11,7 +10,7 @@ use crate::error::ModalError;
 use crate::foretold::of_vectors;
 use crate::mass_matrix::MassMatrix;
 use crate::products::Packed;
-use crate::shifted::Shifted;
+use crate::shifted::{Shifted, SolveScratch};
 use crate::tall;
 
 /// Columns of the rigid modes, zero for those that are missing.
@@ -22,9 +21,12 @@ pub(crate) const BLOCK: usize = 8;
 const TOLERANCE: f64 = 1e-10;
 /// Directions of a new block below this, relative to the block before orthogonalisation, are rounding.
 const DEPENDENT: f64 = 1e-13;
+/// Where all eigenvalues of the Gram matrix of a new block, scaled to a unit diagonal, are above this, one round leaves it
+/// orthonormal to 2e-12, which is enough for the residuals that are asked for.
+const INDEPENDENT: f64 = 1e-4;
 /// The most that one round stretches a direction is the inverse of this; its Gram matrix is blind below.
 const STRETCH: f64 = 1e-7;
-/// Rounds of orthogonalisation: two as a rule, a third where directions had to be stretched.
+/// Rounds of orthogonalisation: one or two as a rule, a third where directions had to be stretched.
 const MAX_ROUNDS: usize = 4;
 /// More block steps than this (each mode wanted adds its share) mean that something is wrong.
 const SPARE_STEPS: usize = 60;
@@ -57,7 +59,7 @@ pub(crate) fn largest_pairs(
     let mut projected: Mat<f64> = Mat::zeros(0, 0);
 
     let mut seed = 1;
-    let mut begin = |columns: usize, scratch: &mut MemBuffer| {
+    let mut begin = |columns: usize, scratch: &mut SolveScratch| {
         let mut block = random_block(n, columns, &mut seed);
         operator.constraints.project(block.as_mut());
         if let MassMatrix::General(_) = mass {
@@ -68,14 +70,15 @@ pub(crate) fn largest_pairs(
         block
     };
     let mut w = begin(BLOCK.min(available), &mut scratch);
-    let mut last = basis.extend(&mut w)?.columns;
+    let mut last = basis.extend(&mut w, 0)?.columns;
+    let mut before = 0;
     let (mut converged, mut residual) = (0, f64::INFINITY);
     for block_solves in 1..=max_steps {
         let size = basis.size();
         w.resize_with(n, last, |_, _| 0.0);
         w.copy_from(basis.m_vectors.subcols(FIXED + size - last, last));
         operator.solve_in_place(w.as_mut(), &mut scratch);
-        let extension = basis.extend(&mut w)?;
+        let extension = basis.extend(&mut w, last + before)?;
         // Columns of T for the block that the operator was applied to.
         let mut grown = Mat::zeros(size, size);
         grown.as_mut().submatrix_mut(0, 0, projected.nrows(), projected.ncols()).copy_from(&projected);
@@ -109,11 +112,13 @@ pub(crate) fn largest_pairs(
             let vectors = tall::product(basis.vectors.subcols(FIXED, size), coefficients.as_ref());
             return Ok(LanczosPairs { vectors, residuals, block_solves, basis_size: size });
         }
+        before = last;
         last = extension.columns;
         if last == 0 {
             // The basis spans an invariant subspace: go on from elsewhere, uncoupled from it.
             w = begin(BLOCK.min(available - size), &mut scratch);
-            last = basis.extend(&mut w)?.columns;
+            last = basis.extend(&mut w, 0)?.columns;
+            before = 0;
         }
     }
     Err(ModalError::NotConverged { converged, requested: count, steps: max_steps, residual, tolerance: TOLERANCE })
@@ -168,22 +173,30 @@ impl<'a> Basis<'a> {
 
     /// Makes `w` M-orthogonal to the basis and M-orthonormal, and appends it; `w` is used up.
     /// Directions smaller than [`DEPENDENT`] times the block are dropped.
-    fn extend(&mut self, w: &mut Mat<f64>) -> Result<Extension, ModalError> {
+    ///
+    /// In exact arithmetic a block that comes of the last one has parts along the last two only, `near` vectors. These are
+    /// taken out first; what is left along all others is rounding, and one round takes it out as a rule.
+    fn extend(&mut self, w: &mut Mat<f64>, near: usize) -> Result<Extension, ModalError> {
         let size = self.size();
         let mut coefficients = Mat::zeros(FIXED + size, w.ncols());
         let mut coupling = Mat::identity(w.ncols(), w.ncols());
+        let from = FIXED + size - near.min(size);
+        let columns = from..FIXED + size;
+        let h = tall::inner(self.m_vectors.get(.., columns.clone()), w.as_ref());
+        tall::multiply(w.as_mut(), Accum::Add, self.vectors.get(.., columns), h.as_ref(), -1.0);
+        coefficients.as_mut().subrows_mut(from, h.nrows()).copy_from(&h);
         for round in 0..MAX_ROUNDS {
             let h = tall::inner(self.m_vectors.as_ref(), w.as_ref());
             tall::multiply(w.as_mut(), Accum::Add, self.vectors.as_ref(), h.as_ref(), -1.0);
             self.m_w.resize_with(w.nrows(), w.ncols(), |_, _| 0.0);
             self.mass.product_into(w.as_ref(), self.m_w.as_mut(), &mut self.packed);
             let gram = tall::inner(w.as_ref(), self.m_w.as_ref());
-            let svqb = if round == 0 { Svqb::first(&gram, &h)? } else { Svqb::again(&gram)? };
+            let svqb = if round == 0 { Svqb::first(&gram, &h, &(&coefficients + &h))? } else { Svqb::again(&gram)? };
             coefficients += h * &coupling;
             coupling = svqb.inverse * coupling;
             times(w, &svqb.transform, &mut self.spare);
             // The last round is as good as it gets; M·W has to be that of W in any case.
-            if round > 0 && svqb.well_conditioned || round + 1 == MAX_ROUNDS {
+            if svqb.well_conditioned || round + 1 == MAX_ROUNDS {
                 times(&mut self.m_w, &svqb.transform, &mut self.spare);
                 break;
             }
@@ -206,28 +219,32 @@ fn times(block: &mut Mat<f64>, transform: &Mat<f64>, spare: &mut Mat<f64>) {
 struct Svqb {
     transform: Mat<f64>,
     inverse: Mat<f64>,
-    /// The block was so far from dependent that W·transform is orthonormal to rounding.
+    /// The block was so far from dependent that W·transform is orthonormal, to rounding or nearly so.
     well_conditioned: bool,
 }
 
 impl Svqb {
-    /// For a block out of which the `coefficients` were taken. Nothing counts that is rounding of what was taken out.
+    /// For a block out of which the `coefficients` were taken, the `last` of them in this round. Nothing counts that is
+    /// rounding of what was taken out.
     ///
     /// The Gram matrix does not see directions below 1e-8 of the block. They are not dropped, which would lose
     /// eigenvectors, but stretched as far as is safe: the next round sees them.
-    fn first(gram: &Mat<f64>, coefficients: &Mat<f64>) -> Result<Self, ModalError> {
+    fn first(gram: &Mat<f64>, last: &Mat<f64>, coefficients: &Mat<f64>) -> Result<Self, ModalError> {
         let norms: Vec<f64> = (0..gram.nrows()).map(|i| gram[(i, i)].max(0.0).sqrt()).collect();
         let before = (0..norms.len()).map(|j| norms[j].hypot(coefficients.col(j).norm_l2())).fold(0.0, f64::max);
-        Self::new(gram, &norms, |_, length| length > DEPENDENT * before)
+        let mut first = Self::new(gram, &norms, INDEPENDENT, |_, length| length > DEPENDENT * before)?;
+        first.well_conditioned &= (0..norms.len()).all(|j| last.col(j).norm_l2() <= norms[j]);
+        Ok(first)
     }
 
     /// For a block that [`first`](Self::first) has scaled: what is still small is rounding.
     fn again(gram: &Mat<f64>) -> Result<Self, ModalError> {
-        Self::new(gram, &vec![1.0; gram.nrows()], |value, _| value > DEPENDENT)
+        Self::new(gram, &vec![1.0; gram.nrows()], 0.5, |value, _| value > DEPENDENT)
     }
 
-    /// `norms` scale the columns; `keep` is asked with each eigenvalue of the scaled Gram matrix and its length in W.
-    fn new(gram: &Mat<f64>, norms: &[f64], keep: impl Fn(f64, f64) -> bool) -> Result<Self, ModalError> {
+    /// `norms` scale the columns; `keep` is asked with each eigenvalue of the scaled Gram matrix and its length in W. The block
+    /// is well conditioned where all of them are above `well`.
+    fn new(gram: &Mat<f64>, norms: &[f64], well: f64, keep: impl Fn(f64, f64) -> bool) -> Result<Self, ModalError> {
         let size = gram.nrows();
         let unit = |i: usize| if norms[i] > 0.0 { 1.0 / norms[i] } else { 0.0 };
         let scaled = Mat::from_fn(size, size, |i, j| 0.5 * (gram[(i, j)] + gram[(j, i)]) * unit(i) * unit(j));
@@ -238,7 +255,7 @@ impl Svqb {
         Ok(Self {
             transform: Mat::from_fn(size, kept.len(), |i, j| unit(i) * u[(i, kept[j])] / root(kept[j])),
             inverse: Mat::from_fn(kept.len(), size, |i, j| root(kept[i]) * u[(j, kept[i])] * norms[j]),
-            well_conditioned: kept.iter().all(|k| values[*k] > 0.5),
+            well_conditioned: kept.iter().all(|k| values[*k] > well),
         })
     }
 }

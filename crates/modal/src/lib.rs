@@ -51,6 +51,7 @@ mod shifted;
 mod solve;
 mod start;
 mod statics;
+mod substitution;
 mod support;
 mod symmetry;
 mod tall;

@@ -134,10 +134,17 @@ impl ReducedBody {
         mass: SparseColMatRef<'_, usize, f64>,
         positions: &[[f64; 3]],
     ) -> Result<Self, ModalError> {
+        Self::of_mass(modes, &MassMatrix::new(mass, positions.len())?, positions)
+    }
+
+    /// The same, with the mass matrix of a [`crate::Solver`].
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn of_mass(modes: &Modes, mass: &MassMatrix<'_>, positions: &[[f64; 3]]) -> Result<Self, ModalError> {
         let rigid = &modes.rigid;
         let n = positions.len();
         let nf = modes.shapes.ncols();
-        let mass = MassMatrix::new(mass, n)?;
         check_size("the rows of the mode shapes", modes.shapes.nrows(), mass.freedoms() * n)?;
         check_size("the rows of the rigid mode shapes", rigid.shapes.nrows(), mass.freedoms() * n)?;
         check_size("the list of eigenvalues", modes.eigenvalues.len(), nf)?;
@@ -150,8 +157,8 @@ impl ReducedBody {
             translation_first,
             rotation_first,
         } = match mass {
-            MassMatrix::Nodal(mass) => nodal_products(modes, &mass, positions)?,
-            MassMatrix::General(mass) => general_products(modes, &mass, positions)?,
+            MassMatrix::Nodal(mass) => nodal_products(modes, mass, positions)?,
+            MassMatrix::General(mass) => general_products(modes, mass, positions)?,
         };
         Self::from_constants(Constants {
             mass: rigid.mass,

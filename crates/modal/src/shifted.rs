@@ -9,7 +9,9 @@ use std::time::{Duration, Instant};
 
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::linalg::cholesky::llt::factor::LltError as PivotError;
+use faer::perm::PermRef;
 use faer::reborrow::{Reborrow, ReborrowMut};
+use faer::sparse::linalg::cholesky::supernodal::SupernodalLltRef;
 use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, LltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
     factorize_symbolic_cholesky,
@@ -23,7 +25,7 @@ use crate::error::ModalError;
 use crate::foretold::{Forecast, Foretold, of_dense_products};
 use crate::ordering::nested_dissection;
 use crate::products::symmetric_product;
-use crate::tall;
+use crate::{substitution, tall};
 
 /// What the memory is for.
 const FACTOR: &str = "the factor of K + sM and the search for modes";
@@ -51,6 +53,12 @@ pub(crate) struct Shifted {
     pub ordering_time: Duration,
     /// Time of the numeric factorisation.
     pub factor_time: Duration,
+}
+
+/// Scratch memory of a solution, which can be used again.
+pub(crate) struct SolveScratch {
+    groups: Vec<substitution::Scratch>,
+    by_faer: MemBuffer,
 }
 
 impl Shifted {
@@ -153,24 +161,44 @@ impl Shifted {
     }
 
     /// Scratch memory for [`solve_in_place`](Self::solve_in_place) with up to `columns` columns.
-    pub(crate) fn solve_scratch(&self, columns: usize) -> Result<MemBuffer, ModalError> {
-        buffer(self.symbolic.solve_in_place_scratch::<f64>(columns, self.par))
+    pub(crate) fn solve_scratch(&self, columns: usize) -> Result<SolveScratch, ModalError> {
+        let by_faer = match self.dense_columns() {
+            Some(_) => {
+                memory::check(FACTOR, 8 * substitution::scratch(self.symbolic.nrows(), columns))?;
+                StackReq::EMPTY
+            }
+            None => self.symbolic.solve_in_place_scratch::<f64>(columns, self.par),
+        };
+        Ok(SolveScratch { groups: Vec::new(), by_faer: buffer(by_faer)? })
+    }
+
+    /// The factor where it has dense columns, and its order; a small one has none.
+    fn dense_columns(&self) -> Option<(SupernodalLltRef<'_, usize, f64>, PermRef<'_, usize>)> {
+        match self.symbolic.raw() {
+            SymbolicCholeskyRaw::Supernodal(symbolic) => {
+                Some((SupernodalLltRef::new(symbolic, &self.values), self.symbolic.perm()?))
+            }
+            SymbolicCholeskyRaw::Simplicial(_) => None,
+        }
     }
 
     /// Replaces forces `x` by the displacements (K + sM)⁻¹ x that the support allows.
-    pub(crate) fn solve_in_place(&self, mut x: MatMut<'_, f64>, scratch: &mut MemBuffer) {
+    pub(crate) fn solve_in_place(&self, mut x: MatMut<'_, f64>, scratch: &mut SolveScratch) {
         for (solved, count) in self.solved.iter().zip([1, x.ncols()]) {
             solved.fetch_add(count, Ordering::Relaxed);
         }
         let extends = self.extensions.ncols() > 0;
         let motions = extends.then(|| tall::inner(self.extensions.as_ref(), x.rb()));
         self.constraints.clear(x.rb_mut());
-        LltRef::new(&self.symbolic, &self.values).solve_in_place_with_conj(
-            Conj::No,
-            x.rb_mut(),
-            self.par,
-            MemStack::new(scratch),
-        );
+        match self.dense_columns() {
+            Some((factor, order)) => substitution::solve(factor, order, x.rb_mut(), &mut scratch.groups),
+            None => LltRef::new(&self.symbolic, &self.values).solve_in_place_with_conj(
+                Conj::No,
+                x.rb_mut(),
+                self.par,
+                MemStack::new(&mut scratch.by_faer),
+            ),
+        }
         if let Some(motions) = motions {
             tall::multiply(x, Accum::Add, self.extensions.as_ref(), motions.as_ref(), 1.0);
         }

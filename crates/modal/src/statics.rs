@@ -7,25 +7,26 @@
 //! R are the rigid modes that the support leaves: the force is balanced by the inertia of the motion that it causes
 //! (inertia relief). The factor of K + sM preconditions: the spectrum is λ/(λ + s), between about a half and one.
 
-use faer::dyn_stack::MemBuffer;
-use faer::{Accum, Col, Mat, MatRef, Scale};
+use faer::{Accum, Col, ColMut, ColRef, Mat, MatRef, Scale};
 
 use crate::error::ModalError;
 use crate::foretold::of_vectors;
 use crate::inertia_relief::InertiaRelief;
+use crate::products::Packed;
 use crate::ritz::{RitzPairs, rayleigh_ritz};
-use crate::shifted::Shifted;
+use crate::shifted::{Shifted, SolveScratch};
 use crate::solve::{Modes, Solver};
 use crate::tall;
 
-/// Residual in the norm of (K + sM)⁻¹, relative to that of the force, at which the iteration ends.
-const TOLERANCE: f64 = 1e-13;
-/// The same of the answer in hand, evaluated anew, which is its error in the norm of the energy: what rounding in K may
-/// leave on slender bodies (9e-7 on a bar of 220 times its thickness).
+/// The norm of (K + sM)⁻¹ of the residual, relative to that of the force, that an answer is to have. The iteration ends
+/// where a last solution, with the residual evaluated anew, will get there by what the steps before it have gained.
+const TOLERANCE: f64 = 1e-11;
+/// The norm of that residual, which is the error of the answer in the norm of the energy: what rounding in K may leave on
+/// slender bodies (9e-7 on a bar of 220 times its thickness).
 pub(crate) const ACCEPTED: f64 = 1e-5;
 const MAX_ITERATIONS: usize = 300;
-/// Forces answered together.
-const BLOCK: usize = 8;
+/// Forces answered together at the most: the factor is read once for all of them.
+const BLOCK: usize = 16;
 /// What a static answer adds to the modes must be more than this part of it.
 const DEPENDENT: f64 = 1e-8;
 
@@ -57,11 +58,13 @@ impl Solver<'_> {
         if let Some(engine) = &self.engine {
             return self.static_response_by(engine.as_ref(), forces);
         }
+        memory::check("static answers", of_vectors(expected, modes.natural() + forces.ncols() + 10 * BLOCK))?;
         let mut statics = Statics::new(self, self.factor()?, modes)?;
-        memory::check("static answers", of_vectors(expected, forces.ncols() + 10 * BLOCK))?;
         let mut answers = Mat::zeros(expected, forces.ncols());
-        for first in (0..forces.ncols()).step_by(BLOCK) {
-            let width = BLOCK.min(forces.ncols() - first);
+        let blocks = forces.ncols().div_ceil(BLOCK);
+        let at_once = forces.ncols().div_ceil(blocks.max(1)).max(1);
+        for first in (0..forces.ncols()).step_by(at_once) {
+            let width = at_once.min(forces.ncols() - first);
             let block = statics.respond(forces.subcols(first, width), first)?;
             answers.as_mut().subcols_mut(first, width).copy_from(&block);
         }
@@ -146,71 +149,90 @@ fn check_finite(what: &'static str, vectors: MatRef<'_, f64>) -> Result<(), Moda
 
 /// What the iterations share.
 struct Statics<'a> {
+    solver: &'a Solver<'a>,
     factor: &'a Shifted,
     modes: &'a Modes,
     relief: InertiaRelief<'a>,
-    scratch: MemBuffer,
+    /// M φ of the natural modes.
+    m_natural: Mat<f64>,
+    scratch: SolveScratch,
+    packed: Vec<Packed>,
 }
 
 impl<'a> Statics<'a> {
     fn new(solver: &'a Solver<'_>, factor: &'a Shifted, modes: &'a Modes) -> Result<Self, ModalError> {
-        Ok(Self { factor, modes, relief: InertiaRelief::new(solver), scratch: factor.solve_scratch(BLOCK)? })
+        let mut m_natural = solver.mass.product(modes.shapes.get(.., ..modes.natural()));
+        solver.constraints.project(m_natural.as_mut());
+        let (relief, scratch, packed) = (InertiaRelief::new(solver), factor.solve_scratch(BLOCK)?, Vec::new());
+        Ok(Self { solver, factor, modes, relief, m_natural, scratch, packed })
     }
 
     /// Answers to up to [`BLOCK`] forces, of which `first` is the number of the first.
     fn respond(&mut self, forces: MatRef<'_, f64>, first: usize) -> Result<Mat<f64>, ModalError> {
         let forces = self.relief.straining(forces);
-        let (mut answer, along) = self.along_modes(&forces);
-        let mut residual = &forces - self.relief.stiff(&answer);
+        let (mut answer, mut residual, along) = self.along_modes(&forces);
         self.relief.balance(&mut residual);
-        let mut search: Mat<f64> = Mat::zeros(forces.nrows(), forces.ncols());
+        let zeros = || Mat::<f64>::zeros(forces.nrows(), forces.ncols());
+        // Directions p, and (K + sM) p, which are residuals, and so need no product: K p = (K + sM) p − s M p.
+        let (mut search, mut shifted) = (zeros(), zeros());
+        let (mut conditioned, mut stiff) = (zeros(), zeros());
         let mut before: Vec<f64> = vec![f64::INFINITY; forces.ncols()];
         let mut scale: Vec<f64> = Vec::new();
         let mut iterations = 0;
         loop {
-            let conditioned = self.precondition(&residual);
+            self.precondition(&residual, &mut conditioned);
             let squared = dots(&residual, &conditioned);
             if iterations == 0 {
                 scale = squared.iter().zip(&along).map(|(squared, along)| squared + along).collect();
             }
-            let is_open = |k: usize| squared[k] > TOLERANCE * TOLERANCE * scale[k];
-            if !(0..squared.len()).any(is_open) || iterations == MAX_ITERATIONS {
+            let is_open = |squared: f64, k: usize| squared > TOLERANCE * TOLERANCE * scale[k];
+            let open: Vec<usize> = (0..squared.len()).filter(|k| is_open(squared[*k], *k)).collect();
+            if open.is_empty() || iterations == MAX_ITERATIONS {
                 break;
             }
             iterations += 1;
-            for k in (0..squared.len()).filter(|k| is_open(*k)) {
-                let direction = conditioned.col(k) + search.col(k) * Scale(squared[k] / before[k]);
-                search.col_mut(k).copy_from(direction);
+            for k in &open {
+                let part = squared[*k] / before[*k];
+                follow(search.as_mut().col_mut(*k), part, conditioned.col(*k));
+                follow(shifted.as_mut().col_mut(*k), part, residual.col(*k));
             }
-            let stiff = self.relief.stiff(&search);
+            self.unshift(&search, &shifted, &mut stiff);
             let curvature = dots(&search, &stiff);
-            for k in (0..squared.len()).filter(|k| is_open(*k)) {
-                let step = Scale(squared[k] / curvature[k]);
-                let (moved, left) = (answer.col(k) + search.col(k) * step, residual.col(k) - stiff.col(k) * step);
-                answer.col_mut(k).copy_from(moved);
-                residual.col_mut(k).copy_from(left);
+            for k in &open {
+                let step = squared[*k] / curvature[*k];
+                add(answer.as_mut().col_mut(*k), step, search.col(*k));
+                add(residual.as_mut().col_mut(*k), -step, stiff.col(*k));
+            }
+            // This step and the last solution gain about as much each as the step before.
+            let gain = |k: usize| squared[k] / before[k];
+            if open.iter().all(|k| iterations > 1 && !is_open(squared[*k] * gain(*k) * gain(*k), *k)) {
+                break;
             }
             self.relief.balance(&mut residual);
             before = squared;
         }
-        self.relief.unmove(&mut answer);
         let mut residual = forces - self.relief.stiff(&answer);
         self.relief.balance(&mut residual);
-        let squared = dots(&residual, &self.precondition(&residual));
-        for (k, (squared, scale)) in squared.iter().zip(&scale).enumerate() {
+        self.precondition(&residual, &mut conditioned);
+        for (k, (squared, scale)) in dots(&residual, &conditioned).iter().zip(&scale).enumerate() {
             let residual = (squared / scale).sqrt();
             if *scale > 0.0 && (residual.is_nan() || residual >= ACCEPTED) {
                 let column = first + k;
                 return Err(ModalError::StaticNotConverged { column, iterations, residual, tolerance: ACCEPTED });
             }
         }
+        answer += conditioned;
+        self.relief.unmove(&mut answer);
         Ok(answer)
     }
 
-    /// The answers to forces along the modes, and the square of each of these forces in the norm of (K + sM)⁻¹.
-    fn along_modes(&self, forces: &Mat<f64>) -> (Mat<f64>, Vec<f64>) {
+    /// The answers to forces along the modes, what is left of the forces, and the square of what is not in the norm of
+    /// (K + sM)⁻¹.
+    fn along_modes(&self, forces: &Mat<f64>) -> (Mat<f64>, Mat<f64>, Vec<f64>) {
         let natural = self.modes.shapes.get(.., ..self.modes.natural());
         let mut parts = tall::inner(natural, forces.as_ref());
+        let mut left = forces.clone();
+        tall::multiply(left.as_mut(), Accum::Add, self.m_natural.as_ref(), parts.as_ref(), -1.0);
         let mut squared = vec![0.0; forces.ncols()];
         for (part, squared) in parts.col_iter_mut().zip(&mut squared) {
             for (part, lambda) in part.iter_mut().zip(&self.modes.eigenvalues) {
@@ -218,15 +240,36 @@ impl<'a> Statics<'a> {
                 *part /= lambda;
             }
         }
-        (tall::product(natural, parts.as_ref()), squared)
+        (tall::product(natural, parts.as_ref()), left, squared)
     }
 
     /// (K + sM)⁻¹ of forces.
-    fn precondition(&mut self, forces: &Mat<f64>) -> Mat<f64> {
-        let mut displacements = forces.clone();
+    fn precondition(&mut self, forces: &Mat<f64>, displacements: &mut Mat<f64>) {
+        displacements.copy_from(forces);
         self.factor.solve_in_place(displacements.as_mut(), &mut self.scratch);
-        self.relief.unmove(&mut displacements);
-        displacements
+    }
+
+    /// K u of displacements for which (K + sM) u is known, without reactions.
+    fn unshift(&mut self, displacements: &Mat<f64>, shifted: &Mat<f64>, forces: &mut Mat<f64>) {
+        self.solver.mass.product_into(displacements.as_ref(), forces.as_mut(), &mut self.packed);
+        self.solver.constraints.project(forces.as_mut());
+        for (force, shifted) in forces.col_iter_mut().zip(shifted.col_iter()) {
+            follow(force, -self.factor.shift, shifted);
+        }
+    }
+}
+
+/// y ← x + part·y.
+fn follow(y: ColMut<'_, f64>, part: f64, x: ColRef<'_, f64>) {
+    for (y, x) in y.iter_mut().zip(x.iter()) {
+        *y = x + part * *y;
+    }
+}
+
+/// y ← y + part·x.
+fn add(y: ColMut<'_, f64>, part: f64, x: ColRef<'_, f64>) {
+    for (y, x) in y.iter_mut().zip(x.iter()) {
+        *y += part * x;
     }
 }
 

@@ -206,7 +206,7 @@ impl LargeShapes {
         let large = &self.shapes.large;
         let stiffness = match terms {
             GeometricTerms::InitialStress => {
-                model.solver.stress_stiffness(shapes_of(modes, large).as_ref(), modes, terms)?
+                model.solver.stress_stiffness(shapes_of(modes, large).as_ref(), modes, terms, &[])?
             }
             GeometricTerms::All => {
                 let pairs = SecondOrderShapes::pairs(large.len());

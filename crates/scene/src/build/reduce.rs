@@ -45,9 +45,11 @@ impl Reduction {
             (modes, modal.with_stress_stiffness(model, stiffness)?, advice.deflection)
         } else {
             let modes = basis(model.solver, &modes, &statics, decision)?;
+            let of_kept = modal.body.truncated(decision.keep);
             let modal = ModalModel::new(model, &modes)?;
             let deflection = advise(&modal.case(model), tolerance)?.deflection;
-            let stiffness = if stiffens { statics.stress_stiffness(model, &modes)? } else { None };
+            let known = of_kept.stress_stiffness.as_ref().map_or(&[][..], |known| known);
+            let stiffness = if stiffens { statics.stress_stiffness(model, &modes, known)? } else { None };
             (modes, modal.with_stress_stiffness(model, stiffness)?, deflection)
         };
         let stress = Stress::new(model, &statics, &modes, &modal)?;

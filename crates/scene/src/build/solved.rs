@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use body_file::{BodyFileError, Digest, Hash};
 use faer::{ColRef, Mat, MatRef};
 use fem_tet10::{
-    AssemblyError, GeometricTerms, StressRecovery, StressSites, geometric_stiffness_product,
-    reduced_geometric_stiffness, second_order_energies, second_order_forces,
+    AssemblyError, GeometricTerms, StressRecovery, StressSites, extended_geometric_stiffness,
+    geometric_stiffness_product, second_order_energies, second_order_forces,
 };
 use frames_rk4::DrivenMotion;
 use modal::{
@@ -363,7 +363,7 @@ impl Structure for Solved<'_> {
             || with_modes(self.about_the_held_body("reduced body"), modes),
             |kept| answers::reduced_body(kept, modes),
             || {
-                ReducedBody::new(modes, self.matrices()?.mass(), self.assembled.mesh.positions())
+                ReducedBody::of_mass(modes, self.solver()?.mass(), self.assembled.mesh.positions())
                     .map_err(modal(&self.assembled.scene))
             },
             answers::of_reduced_body,
@@ -387,6 +387,7 @@ impl Structure for Solved<'_> {
         displacements: MatRef<'_, f64>,
         modes: &Modes,
         terms: GeometricTerms,
+        known: &[Mat<f64>],
     ) -> Result<Vec<Mat<f64>>, BuildError> {
         let shapes = modes.shapes.as_ref();
         let question = || {
@@ -398,12 +399,13 @@ impl Structure for Solved<'_> {
             |kept| kept.matrices("stiffness", displacements.ncols(), shapes.ncols()),
             || {
                 self.pass_elements();
-                Ok(reduced_geometric_stiffness(
+                Ok(extended_geometric_stiffness(
                     &self.assembled.mesh,
                     self.assembled.materials()?,
                     displacements,
                     shapes,
                     terms,
+                    known,
                 )?)
             },
             |stiffness| Answer::default().with_matrices("stiffness", stiffness),

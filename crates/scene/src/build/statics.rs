@@ -114,10 +114,17 @@ impl Statics {
         self.of_loads.is_some() || self.of_spin.is_some() || self.of_drive.is_some()
     }
 
-    /// K_ij of each pair of spins in the modes; none where the answers to the spin are not known.
-    pub fn stress_stiffness(&self, model: &MeshModel<'_>, modes: &Modes) -> Result<Option<[Mat<f64>; 6]>, BuildError> {
+    /// K_ij of each pair of spins in the modes; none where the answers to the spin are not known. `known` are those in the
+    /// first of the modes, or none.
+    pub fn stress_stiffness(
+        &self,
+        model: &MeshModel<'_>,
+        modes: &Modes,
+        known: &[Mat<f64>],
+    ) -> Result<Option<[Mat<f64>; 6]>, BuildError> {
         let Some(of_spin) = &self.of_spin else { return Ok(None) };
-        Ok(model.solver.stress_stiffness(of_spin.answers.as_ref(), modes, GeometricTerms::All)?.try_into().ok())
+        let answers = of_spin.answers.as_ref();
+        Ok(model.solver.stress_stiffness(answers, modes, GeometricTerms::All, known)?.try_into().ok())
     }
 
     /// The answer to all dead loads together that stay as they are, seen from the body (3n × 1).

@@ -51,7 +51,7 @@ impl Stress {
                     continue;
                 }
                 let (stiffness, terms) = if load.is_base_acceleration {
-                    (model.solver.stress_stiffness(answers, modes, DRIVE)?, DRIVE)
+                    (model.solver.stress_stiffness(answers, modes, DRIVE, &[])?, DRIVE)
                 } else {
                     of_load(model, answers, modes, load.history.largest(model.scene.time.end))?
                 };
@@ -70,7 +70,7 @@ impl Stress {
         }
         if let Some(answer) = &statics.of_drive {
             names.push((StressSource::Drive, "the acceleration of the drive".to_owned()));
-            found.of_drive = model.solver.stress_stiffness(answer.as_ref(), modes, DRIVE)?.pop();
+            found.of_drive = model.solver.stress_stiffness(answer.as_ref(), modes, DRIVE, &[])?.pop();
             shown.extend(found.of_drive.clone());
         }
         found.decided(model, body, &names, &shown)
@@ -120,8 +120,8 @@ fn of_load(
     modes: &Modes,
     largest: f64,
 ) -> Result<(Vec<Mat<f64>>, GeometricTerms), BuildError> {
-    let all = model.solver.stress_stiffness(answers, modes, GeometricTerms::All)?;
-    let stress = model.solver.stress_stiffness(answers, modes, GeometricTerms::InitialStress)?;
+    let all = model.solver.stress_stiffness(answers, modes, GeometricTerms::All, &[])?;
+    let stress = model.solver.stress_stiffness(answers, modes, GeometricTerms::InitialStress, &[])?;
     let is_small = all.iter().zip(&stress).all(|(all, stress)| {
         (0..all.ncols()).all(|l| {
             (0..=l).all(|k| {

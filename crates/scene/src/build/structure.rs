@@ -50,12 +50,14 @@ pub(super) trait Structure {
     /// What each of the static answers (6) has beside the modes: √(uᵀMu − Σ(Φ_kᵀMu)²).
     fn remainders(&self, modes: &Modes, answers: MatRef<'_, f64>) -> Result<Vec<f64>, BuildError>;
 
-    /// Stiffness in the modes (nf×nf) by the stress of each displacement field (3n×k).
+    /// Stiffness in the modes (nf×nf) by the stress of each displacement field (3n×k). `known` are those in the first of the
+    /// modes, one for each field, or none.
     fn stress_stiffness(
         &self,
         displacements: MatRef<'_, f64>,
         modes: &Modes,
         terms: GeometricTerms,
+        known: &[Mat<f64>],
     ) -> Result<Vec<Mat<f64>>, BuildError>;
 
     /// The forces of second order (3n×p) of pairs of fields (3n×k).

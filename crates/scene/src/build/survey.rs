@@ -46,7 +46,7 @@ impl Survey {
         }
         let statics = Statics::new(model, &modes, &modal.body.origin, asked)?;
         let modal = if stiffens {
-            let stiffness = statics.stress_stiffness(model, &modes)?;
+            let stiffness = statics.stress_stiffness(model, &modes, &[])?;
             modal.with_stress_stiffness(model, stiffness)?
         } else {
             modal
