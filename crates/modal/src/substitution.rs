@@ -10,10 +10,10 @@ use faer::sparse::linalg::cholesky::supernodal::SupernodalLltRef;
 use pulp::Arch;
 use rayon::prelude::*;
 
-/// Vectors of a group.
-const WIDTH: usize = 8;
-/// Vectors of a group where threads share the work.
-const NARROW: usize = 4;
+/// Vectors of a group at the most.
+const MOST: usize = 16;
+/// Vectors of a group are a multiple of this, which is filled up.
+const STEP: usize = 4;
 /// Columns of the factor that are applied in one pass over the rows below them.
 const COLUMNS: usize = 4;
 
@@ -26,7 +26,7 @@ pub(crate) struct Scratch {
 
 /// How many numbers [`solve`] takes as scratch for so many rows and columns.
 pub(crate) fn scratch(rows: usize, columns: usize) -> usize {
-    2 * rows * columns.next_multiple_of(WIDTH)
+    2 * rows * columns.next_multiple_of(STEP)
 }
 
 /// Replaces `x` (N×k) by A⁻¹ x. `scratch` can be used again. The result does not depend on the number of threads.
@@ -36,9 +36,9 @@ pub(crate) fn solve(
     mut x: MatMut<'_, f64>,
     scratch: &mut Vec<Scratch>,
 ) {
-    let is_shared = rayon::current_num_threads() > 1;
-    let width = if is_shared { NARROW } else { WIDTH };
-    let groups = x.ncols().div_ceil(width);
+    // Threads share the vectors; one alone reads the factor as seldom as may be.
+    let groups = x.ncols().div_ceil(if rayon::current_num_threads() > 1 { STEP } else { MOST });
+    let width = x.ncols().div_ceil(groups.max(1)).next_multiple_of(STEP).max(STEP);
     scratch.resize_with(scratch.len().max(groups), Scratch::default);
     let arch = Arch::new();
     let (to, _) = order.arrays();
@@ -49,12 +49,11 @@ pub(crate) fn solve(
                 row[c] = column[*from];
             }
         }
-        arch.dispatch(|| {
-            if is_shared {
-                substitute::<NARROW>(factor, rows, below);
-            } else {
-                substitute::<WIDTH>(factor, rows, below);
-            }
+        arch.dispatch(|| match width {
+            4 => substitute::<4>(factor, rows, below),
+            8 => substitute::<8>(factor, rows, below),
+            12 => substitute::<12>(factor, rows, below),
+            _ => substitute::<MOST>(factor, rows, below),
         });
         for (c, column) in x.rb_mut().col_iter_mut().enumerate() {
             let mut column = column;
@@ -285,7 +284,7 @@ mod tests {
         let widths =
             (0..supernodal.n_supernodes()).map(|s| supernodal.supernode_end()[s] - supernodal.supernode_begin()[s]);
         assert!(widths.clone().any(|width| width > COLUMNS) && widths.clone().any(|width| width < COLUMNS));
-        for columns in [1, 3, 8, 17] {
+        for columns in [1, 3, 8, 10, 17, 40] {
             let b = Mat::from_fn(n, columns, |i, j| ((i * 7 + j * 13) as f64).cos());
             let mut expected = b.clone();
             let mut scratch = MemBuffer::new(symbolic.solve_in_place_scratch::<f64>(columns, Par::Seq));
