@@ -24,6 +24,9 @@ const DEPENDENT: f64 = 1e-13;
 /// Where all eigenvalues of the Gram matrix of a new block, scaled to a unit diagonal, are above this, one round leaves it
 /// orthonormal to 2e-12, which is enough for the residuals that are asked for.
 const INDEPENDENT: f64 = 1e-4;
+/// A round that takes out less than this of a block leaves no more than rounding: the next would take out as small a part
+/// of that.
+const SETTLED: f64 = 1e-6;
 /// The most that one round stretches a direction is the inverse of this; its Gram matrix is blind below.
 const STRETCH: f64 = 1e-7;
 /// Rounds of orthogonalisation: one or two as a rule, a third where directions had to be stretched.
@@ -175,16 +178,17 @@ impl<'a> Basis<'a> {
     /// Directions smaller than [`DEPENDENT`] times the block are dropped.
     ///
     /// In exact arithmetic a block that comes of the last one has parts along the last two only, `near` vectors. These are
-    /// taken out first; what is left along all others is rounding, and one round takes it out as a rule.
+    /// taken out first, and the rigid modes, which rounding brings in most. What is left is rounding, and one round takes it
+    /// out as a rule.
     fn extend(&mut self, w: &mut Mat<f64>, near: usize) -> Result<Extension, ModalError> {
         let size = self.size();
         let mut coefficients = Mat::zeros(FIXED + size, w.ncols());
         let mut coupling = Mat::identity(w.ncols(), w.ncols());
-        let from = FIXED + size - near.min(size);
-        let columns = from..FIXED + size;
-        let h = tall::inner(self.m_vectors.get(.., columns.clone()), w.as_ref());
-        tall::multiply(w.as_mut(), Accum::Add, self.vectors.get(.., columns), h.as_ref(), -1.0);
-        coefficients.as_mut().subrows_mut(from, h.nrows()).copy_from(&h);
+        for columns in [0..FIXED, FIXED + size - near.min(size)..FIXED + size] {
+            let h = tall::inner(self.m_vectors.get(.., columns.clone()), w.as_ref());
+            tall::multiply(w.as_mut(), Accum::Add, self.vectors.get(.., columns.clone()), h.as_ref(), -1.0);
+            coefficients.as_mut().subrows_mut(columns.start, h.nrows()).copy_from(&h);
+        }
         for round in 0..MAX_ROUNDS {
             let h = tall::inner(self.m_vectors.as_ref(), w.as_ref());
             tall::multiply(w.as_mut(), Accum::Add, self.vectors.as_ref(), h.as_ref(), -1.0);
@@ -233,7 +237,7 @@ impl Svqb {
         let norms: Vec<f64> = (0..gram.nrows()).map(|i| gram[(i, i)].max(0.0).sqrt()).collect();
         let before = (0..norms.len()).map(|j| norms[j].hypot(coefficients.col(j).norm_l2())).fold(0.0, f64::max);
         let mut first = Self::new(gram, &norms, INDEPENDENT, |_, length| length > DEPENDENT * before)?;
-        first.well_conditioned &= (0..norms.len()).all(|j| last.col(j).norm_l2() <= norms[j]);
+        first.well_conditioned &= (0..norms.len()).all(|j| last.col(j).norm_l2() <= SETTLED * norms[j]);
         Ok(first)
     }
 
