@@ -43,65 +43,68 @@ impl BlockedMatrix {
 
     /// y = M x
     pub(crate) fn multiply(&self, x: &[f64], y: &mut [f64]) {
-        self.product::<false>(x, y);
+        debug_assert_eq!(y.len(), self.rows, "rows of a product");
+        self.each_block(x, |first, rows| y[first..first + rows.len()].copy_from_slice(rows));
     }
 
     /// y += M x
     pub(crate) fn add_product(&self, x: &[f64], y: &mut [f64]) {
-        self.product::<true>(x, y);
+        debug_assert_eq!(y.len(), self.rows, "rows of a product");
+        self.each_block(x, |first, rows| y[first..].iter_mut().zip(rows).for_each(|(y, row)| *y += row));
     }
 
-    fn product<const ADDS: bool>(&self, x: &[f64], y: &mut [f64]) {
-        debug_assert_eq!((x.len(), y.len()), (self.columns, self.rows), "sizes of a product");
-        Arch::new().dispatch(Product::<ADDS> { matrix: self, x, y });
+    /// M x block by block: hands over the first row of each, and what its rows come to.
+    pub(crate) fn each_block(&self, x: &[f64], take: impl FnMut(usize, &[f64])) {
+        debug_assert_eq!(x.len(), self.columns, "columns of a product");
+        Arch::new().dispatch(Product { matrix: self, x, take });
     }
 }
 
 /// A product, in the widest vectors that the processor has.
-struct Product<'a, const ADDS: bool> {
+struct Product<'a, F> {
     matrix: &'a BlockedMatrix,
     x: &'a [f64],
-    y: &'a mut [f64],
+    take: F,
 }
 
-impl<const ADDS: bool> WithSimd for Product<'_, ADDS> {
+impl<F: FnMut(usize, &[f64])> WithSimd for Product<'_, F> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let Self { matrix: BlockedMatrix { columns, entries, .. }, x, y } = self;
+        let Self { matrix: BlockedMatrix { rows, columns, entries }, x, mut take } = self;
         let mut entries = &entries[..];
-        for y in y.chunks_mut(HEIGHT) {
-            let height = y.len().next_multiple_of(GROUP);
+        for first in (0..*rows).step_by(HEIGHT) {
+            let count = HEIGHT.min(rows - first);
+            let height = count.next_multiple_of(GROUP);
             let Some((block, rest)) = entries.split_at_checked(height * columns) else { return };
             entries = rest;
+            let mut sums = [0.0; HEIGHT];
             match height / S::F64_LANES {
-                1 => block_product::<S, 1, ADDS>(simd, block, x, y),
-                2 => block_product::<S, 2, ADDS>(simd, block, x, y),
-                3 => block_product::<S, 3, ADDS>(simd, block, x, y),
-                4 => block_product::<S, 4, ADDS>(simd, block, x, y),
-                5 => block_product::<S, 5, ADDS>(simd, block, x, y),
-                6 => block_product::<S, 6, ADDS>(simd, block, x, y),
-                8 => block_product::<S, 8, ADDS>(simd, block, x, y),
-                10 => block_product::<S, 10, ADDS>(simd, block, x, y),
-                12 => block_product::<S, 12, ADDS>(simd, block, x, y),
+                1 => block_product::<S, 1>(simd, block, x, &mut sums),
+                2 => block_product::<S, 2>(simd, block, x, &mut sums),
+                3 => block_product::<S, 3>(simd, block, x, &mut sums),
+                4 => block_product::<S, 4>(simd, block, x, &mut sums),
+                5 => block_product::<S, 5>(simd, block, x, &mut sums),
+                6 => block_product::<S, 6>(simd, block, x, &mut sums),
+                8 => block_product::<S, 8>(simd, block, x, &mut sums),
+                10 => block_product::<S, 10>(simd, block, x, &mut sums),
+                12 => block_product::<S, 12>(simd, block, x, &mut sums),
                 // No vectors, or short ones: more than the registers hold.
                 _ => {
-                    if !ADDS {
-                        y.fill(0.0);
-                    }
                     for (column, x) in block.chunks_exact(height).zip(x) {
-                        y.iter_mut().zip(column).for_each(|(y, entry)| *y += entry * x);
+                        sums.iter_mut().zip(column).for_each(|(sum, entry)| *sum += entry * x);
                     }
                 }
             }
+            take(first, &sums[..count]);
         }
     }
 }
 
 /// The product of a block of N vectors a column.
 #[inline(always)]
-fn block_product<S: Simd, const N: usize, const ADDS: bool>(simd: S, block: &[f64], x: &[f64], y: &mut [f64]) {
+fn block_product<S: Simd, const N: usize>(simd: S, block: &[f64], x: &[f64], out: &mut [f64; HEIGHT]) {
     let mut sums = [simd.splat_f64s(0.0); N];
     let (vectors, _) = S::as_simd_f64s(block);
     let (columns, _) = vectors.as_chunks::<N>();
@@ -111,9 +114,7 @@ fn block_product<S: Simd, const N: usize, const ADDS: bool>(simd: S, block: &[f6
             *sum = simd.mul_add_e_f64s(*entries, x, *sum);
         }
     }
-    for (y, sum) in y.iter_mut().zip(bytemuck::cast_slice::<_, f64>(&sums)) {
-        *y = if ADDS { *y + sum } else { *sum };
-    }
+    out.iter_mut().zip(bytemuck::cast_slice::<_, f64>(&sums)).for_each(|(out, sum)| *out = *sum);
 }
 
 #[cfg(test)]

@@ -2,7 +2,6 @@
 
 use std::any::Any;
 
-use nalgebra::Vector2;
 use rigid_kin::Attitude;
 use serde::{Deserialize, Serialize};
 
@@ -11,7 +10,7 @@ use crate::conservative::{ConservativeBody, ConservativeState, Evaluation, Slow,
 use crate::energies::Energies;
 use crate::error::{SetupError, StepError};
 use crate::error_size::Sizes;
-use crate::exponential::{BlockStore, apply};
+use crate::exponential::{BlockStore, Pairs, sum_of_blocks};
 use crate::initial::Initial;
 use crate::moment::Moment;
 use crate::motion::PointShapes;
@@ -448,58 +447,40 @@ impl ConservativeMotion {
         let time = self.state.time;
         for (s, fraction) in [(1, 0.5), (2, 0.5), (3, 1.0)] {
             let Self { body, blocks, state, stages, q, p, .. } = self;
-            let blocks = blocks.get(&body.circular_frequencies, &body.damping_ratios, h);
-            let values = q.iter_mut().zip(p).zip(&blocks.modes).zip(state.modes());
-            let [first, second, third, _] = &*stages;
-            let first = first.of_modes();
+            let block = blocks.get(&body.circular_frequencies, &body.damping_ratios, h);
+            let (start, out) = (state.modes(), [&mut q[..], &mut p[..]]);
+            let [n1, n2, n3, _] = stages.each_ref().map(Evaluation::of_modes);
             match s {
-                1 => values.zip(first).for_each(|((((q, p), block), start), n1)| {
-                    let value = apply(&block.half, start) + apply(&block.a21, n1);
-                    (*q, *p) = (value.x, value.y);
-                }),
-                2 => values.zip(first).zip(second.of_modes()).for_each(|(((((q, p), block), start), n1), n2)| {
-                    let value = apply(&block.half, start) + apply(&block.a31, n1) + apply(&block.a32, n2);
-                    (*q, *p) = (value.x, value.y);
-                }),
-                _ => values.zip(first).zip(third.of_modes()).for_each(|(((((q, p), block), start), n1), n3)| {
-                    let value = apply(&block.full, start) + apply(&block.a41, n1) + apply(&block.a43, n3);
-                    (*q, *p) = (value.x, value.y);
-                }),
+                1 => sum_of_blocks([(&block.half, start), (&block.a21, n1)], out),
+                2 => sum_of_blocks([(&block.half, start), (&block.a31, n1), (&block.a32, n2)], out),
+                _ => sum_of_blocks([(&block.full, start), (&block.a41, n1), (&block.a43, n3)], out),
             }
             let slow = state.slow + stages[s - 1].slow * (fraction * h);
             self.evaluate(s, time + fraction * h, &slow, h)?;
         }
-        let Self { body, blocks, state, next, stages: [k1, k2, k3, k4], .. } = self;
-        let blocks = blocks.get(&body.circular_frequencies, &body.damping_ratios, h);
-        next.slow = state.slow + (k1.slow + (k2.slow + k3.slow) * 2.0 + k4.slow) * (h / 6.0);
-        let rates = k1.of_modes().zip(k2.of_modes()).zip(k3.of_modes()).zip(k4.of_modes());
-        let values = next.modal_displacement.iter_mut().zip(&mut next.modal_momentum);
-        let starts = blocks.modes.iter().zip(state.modes());
-        for (((q, p), (block, start)), (((n1, n2), n3), n4)) in values.zip(starts).zip(rates) {
-            let value =
-                apply(&block.full, start) + apply(&block.b1, n1) + apply(&block.b2, n2 + n3) + apply(&block.b4, n4);
-            (*q, *p) = (value.x, value.y);
-        }
+        let Self { body, blocks, state, next, stages, .. } = self;
+        let block = blocks.get(&body.circular_frequencies, &body.damping_ratios, h);
+        let [k1, k2, k3, k4] = stages.each_ref().map(|stage| &stage.slow);
+        next.slow = state.slow + (k1 + (k2 + k3) * 2.0 + k4) * (h / 6.0);
+        let [n1, n2, n3, n4] = stages.each_ref().map(Evaluation::of_modes);
+        let terms = [(&block.full, state.modes()), (&block.b1, n1), (&block.b2, n2), (&block.b2, n3), (&block.b4, n4)];
+        sum_of_blocks(terms, [&mut next.modal_displacement, &mut next.modal_momentum]);
         Ok(())
     }
 }
 
 impl ConservativeState {
-    /// (q, p) of each mode.
-    fn modes(&self) -> impl Iterator<Item = Vector2<f64>> {
-        pairs_of(&self.modal_displacement, &self.modal_momentum)
+    /// q and p.
+    fn modes(&self) -> Pairs<'_> {
+        [&self.modal_displacement, &self.modal_momentum]
     }
 }
 
 impl Evaluation {
-    /// Rates of (q, p) of each mode, without the linear part.
-    fn of_modes(&self) -> impl Iterator<Item = Vector2<f64>> {
-        pairs_of(&self.displacement, &self.momentum)
+    /// Rates of q and p, without the linear part.
+    fn of_modes(&self) -> Pairs<'_> {
+        [&self.displacement, &self.momentum]
     }
-}
-
-fn pairs_of(a: &[f64], b: &[f64]) -> impl Iterator<Item = Vector2<f64>> {
-    a.iter().zip(b).map(|(a, b)| Vector2::new(*a, *b))
 }
 
 /// out = x + c·y
