@@ -73,38 +73,48 @@ impl<F: FnMut(usize, &[f64])> WithSimd for Product<'_, F> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let Self { matrix: BlockedMatrix { rows, columns, entries }, x, mut take } = self;
-        let mut entries = &entries[..];
-        for first in (0..*rows).step_by(HEIGHT) {
-            let count = HEIGHT.min(rows - first);
-            let height = count.next_multiple_of(GROUP);
-            let Some((block, rest)) = entries.split_at_checked(height * columns) else { return };
-            entries = rest;
-            let mut sums = [0.0; HEIGHT];
-            match height / S::F64_LANES {
-                1 => block_product::<S, 1>(simd, block, x, &mut sums),
-                2 => block_product::<S, 2>(simd, block, x, &mut sums),
-                3 => block_product::<S, 3>(simd, block, x, &mut sums),
-                4 => block_product::<S, 4>(simd, block, x, &mut sums),
-                5 => block_product::<S, 5>(simd, block, x, &mut sums),
-                6 => block_product::<S, 6>(simd, block, x, &mut sums),
-                8 => block_product::<S, 8>(simd, block, x, &mut sums),
-                10 => block_product::<S, 10>(simd, block, x, &mut sums),
-                12 => block_product::<S, 12>(simd, block, x, &mut sums),
-                // No vectors, or short ones: more than the registers hold.
-                _ => {
-                    for (column, x) in block.chunks_exact(height).zip(x) {
-                        sums.iter_mut().zip(column).for_each(|(sum, entry)| *sum += entry * x);
-                    }
-                }
+        let (full, rest) = entries.split_at(rows / HEIGHT * HEIGHT * columns);
+        let mut first = 0;
+        for block in full.chunks_exact((HEIGHT * columns).max(1)) {
+            match S::F64_LANES {
+                4 => take(first, block_product::<S, 12>(simd, block, x).all()),
+                8 => take(first, block_product::<S, 6>(simd, block, x).all()),
+                _ => take(first, &plain_product(HEIGHT, block, x)),
             }
-            take(first, &sums[..count]);
+            first += HEIGHT;
         }
+        let count = rows - first;
+        let height = count.next_multiple_of(GROUP);
+        let mut take = |rows: &[f64]| take(first, &rows[..count]);
+        match height / S::F64_LANES {
+            0 => {}
+            1 => take(block_product::<S, 1>(simd, rest, x).all()),
+            2 => take(block_product::<S, 2>(simd, rest, x).all()),
+            3 => take(block_product::<S, 3>(simd, rest, x).all()),
+            4 => take(block_product::<S, 4>(simd, rest, x).all()),
+            5 => take(block_product::<S, 5>(simd, rest, x).all()),
+            6 => take(block_product::<S, 6>(simd, rest, x).all()),
+            8 => take(block_product::<S, 8>(simd, rest, x).all()),
+            10 => take(block_product::<S, 10>(simd, rest, x).all()),
+            // No vectors, or short ones: more than the registers hold.
+            _ => take(&plain_product(height, rest, x)),
+        }
+    }
+}
+
+/// What the rows of a block come to, in N vectors.
+struct Rows<S: Simd, const N: usize>([S::f64s; N]);
+
+impl<S: Simd, const N: usize> Rows<S, N> {
+    #[inline(always)]
+    fn all(&self) -> &[f64] {
+        bytemuck::cast_slice(&self.0)
     }
 }
 
 /// The product of a block of N vectors a column.
 #[inline(always)]
-fn block_product<S: Simd, const N: usize>(simd: S, block: &[f64], x: &[f64], out: &mut [f64; HEIGHT]) {
+fn block_product<S: Simd, const N: usize>(simd: S, block: &[f64], x: &[f64]) -> Rows<S, N> {
     let mut sums = [simd.splat_f64s(0.0); N];
     let (vectors, _) = S::as_simd_f64s(block);
     let (columns, _) = vectors.as_chunks::<N>();
@@ -114,7 +124,17 @@ fn block_product<S: Simd, const N: usize>(simd: S, block: &[f64], x: &[f64], out
             *sum = simd.mul_add_e_f64s(*entries, x, *sum);
         }
     }
-    out.iter_mut().zip(bytemuck::cast_slice::<_, f64>(&sums)).for_each(|(out, sum)| *out = *sum);
+    Rows(sums)
+}
+
+/// The product of a block of `height` rows without vectors.
+#[inline(always)]
+fn plain_product(height: usize, block: &[f64], x: &[f64]) -> [f64; HEIGHT] {
+    let mut sums = [0.0; HEIGHT];
+    for (column, x) in block.chunks_exact(height).zip(x) {
+        sums.iter_mut().zip(column).for_each(|(sum, entry)| *sum += entry * x);
+    }
+    sums
 }
 
 #[cfg(test)]

@@ -3,6 +3,8 @@
 use nalgebra::Vector3;
 use pulp::{Arch, Simd, WithSimd};
 
+use crate::column_major::dot;
+
 /// x, y and z of a vector for each mode, a list each.
 #[derive(Debug, Clone)]
 pub(crate) struct Components([Vec<f64>; 3]);
@@ -30,7 +32,7 @@ impl ComponentsFrom<'_> {
         sum
     }
 
-    /// The same of several lists: each shape is read once.
+    /// The same of several lists.
     pub fn sums<const N: usize>(self, coordinates: [&[f64]; N]) -> [Vector3<f64>; N] {
         Arch::new().dispatch(Sums { shapes: self, coordinates })
     }
@@ -47,29 +49,11 @@ impl ComponentsFrom<'_> {
     }
 }
 
-/// Modes that are taken side by side.
+/// Modes that are taken side by side, whatever the vectors of the processor.
 const WIDTH: usize = 4;
 
-type Lanes = [f64; WIDTH];
-
-/// The lanes that begin with mode k; zeros beyond the end.
 #[inline(always)]
-fn lanes(list: &[f64], k: usize) -> Lanes {
-    match list[k..].first_chunk() {
-        Some(lanes) => *lanes,
-        None => std::array::from_fn(|i| list.get(k + i).copied().unwrap_or(0.0)),
-    }
-}
-
-#[inline(always)]
-fn add_product(sum: &mut Lanes, a: Lanes, b: Lanes) {
-    for i in 0..WIDTH {
-        sum[i] += a[i] * b[i];
-    }
-}
-
-#[inline(always)]
-fn total(sums: Lanes) -> f64 {
+fn total(sums: [f64; WIDTH]) -> f64 {
     (sums[0] + sums[2]) + (sums[1] + sums[3])
 }
 
@@ -84,17 +68,8 @@ impl<const N: usize> WithSimd for Sums<'_, N> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) -> Self::Output {
-        let Self { shapes: ComponentsFrom(shapes), coordinates } = self;
-        let mut sums = [[[0.0; WIDTH]; 3]; N];
-        for k in (0..coordinates[0].len().min(shapes[0].len())).step_by(WIDTH) {
-            for (sums, coordinates) in sums.iter_mut().zip(&coordinates) {
-                let c = lanes(coordinates, k);
-                for (sum, shapes) in sums.iter_mut().zip(&shapes) {
-                    add_product(sum, lanes(shapes, k), c);
-                }
-            }
-        }
-        sums.map(|[x, y, z]| Vector3::new(total(x), total(y), total(z)))
+        let Self { shapes: ComponentsFrom([x, y, z]), coordinates } = self;
+        coordinates.map(|c| Vector3::new(dot(x, c), dot(y, c), dot(z, c)))
     }
 }
 
@@ -112,24 +87,26 @@ impl WithSimd for Push<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) -> Self::Output {
-        let Self { shapes: ComponentsFrom(shapes), force, coordinates, velocity, modal_force } = self;
-        let (mut displacement, mut power) = ([[0.0; WIDTH]; 3], [0.0; WIDTH]);
-        for k in (0..coordinates.len().min(shapes[0].len())).step_by(WIDTH) {
-            let c = lanes(coordinates, k);
-            let mut along = [0.0; WIDTH];
-            for (i, shapes) in shapes.iter().enumerate() {
-                let shapes = lanes(shapes, k);
-                add_product(&mut displacement[i], shapes, c);
-                add_product(&mut along, shapes, [force[i]; WIDTH]);
-            }
-            add_product(&mut power, along, lanes(velocity, k));
-            match modal_force[k..].first_chunk_mut::<WIDTH>() {
-                Some(modal_force) => add_product(modal_force, along, [1.0; WIDTH]),
-                None => modal_force[k..].iter_mut().zip(along).for_each(|(f, along)| *f += along),
+        let Self { shapes: ComponentsFrom([x, y, z]), force, coordinates, velocity, modal_force } = self;
+        let displacement = Vector3::new(dot(x, coordinates), dot(y, coordinates), dot(z, coordinates));
+        let modes = modal_force.len().min(velocity.len()).min(x.len());
+        let (modal_force, f_rest) = modal_force[..modes].as_chunks_mut::<WIDTH>();
+        let ((x, x_rest), (y, y_rest)) = (x[..modes].as_chunks::<WIDTH>(), y[..modes].as_chunks::<WIDTH>());
+        let ((z, z_rest), (v, v_rest)) = (z[..modes].as_chunks::<WIDTH>(), velocity[..modes].as_chunks::<WIDTH>());
+        let mut power = [0.0; WIDTH];
+        for ((((f, x), y), z), v) in modal_force.iter_mut().zip(x).zip(y).zip(z).zip(v) {
+            for i in 0..WIDTH {
+                let along = x[i] * force.x + y[i] * force.y + z[i] * force.z;
+                f[i] += along;
+                power[i] += along * v[i];
             }
         }
-        let [x, y, z] = displacement;
-        (Vector3::new(total(x), total(y), total(z)), total(power))
+        for (i, f) in f_rest.iter_mut().enumerate() {
+            let along = x_rest[i] * force.x + y_rest[i] * force.y + z_rest[i] * force.z;
+            *f += along;
+            power[i] += along * v_rest[i];
+        }
+        (displacement, total(power))
     }
 }
 

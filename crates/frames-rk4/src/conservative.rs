@@ -57,7 +57,7 @@ use pulp::{Arch, Simd, WithSimd};
 use rigid_kin::{Attitude, f_inverse, transformation_matrix};
 
 use crate::blocked_matrix::BlockedMatrix;
-use crate::column_major::{add_product, columns, dot, multiply};
+use crate::column_major::{add_product, columns, dot, dot_of_sum, multiply};
 use crate::effect::{Effect, EffectMap};
 use crate::error::{RateError, SetupError, StepError};
 use crate::initial::Initial;
@@ -591,7 +591,7 @@ impl ConservativeBody {
         let mut inertia = self.inertia;
         let first = self.undeformed[self.s_rows..].chunks_exact(nf.max(1));
         for ((pair, first), n_z) in self.pairs.iter().zip(first).zip(n_z.chunks_exact(nf.max(1))) {
-            symmetric::add(&mut inertia, *pair, dot(first, z) + dot(n_z, z));
+            symmetric::add(&mut inertia, *pair, dot_of_sum(first, n_z, z));
         }
         if let Some(manifold) = &self.manifold {
             let modes = q.len();
