@@ -5,6 +5,8 @@ use pulp::{Arch, Simd, WithSimd, bytemuck};
 
 /// Rows of a block: its sums stay in registers over all columns.
 const HEIGHT: usize = 48;
+/// As many rows of two products.
+const HALF: usize = HEIGHT / 2;
 /// Rows come in groups of so many, which fill whole vectors of any processor.
 const GROUP: usize = 8;
 
@@ -53,6 +55,13 @@ impl BlockedMatrix {
         self.each_block(x, |first, rows| y[first..].iter_mut().zip(rows).for_each(|(y, row)| *y += row));
     }
 
+    /// y += M x of two lists at once: the matrix is read once.
+    pub(crate) fn add_products(&self, x: [&[f64]; 2], y: [&mut [f64]; 2]) {
+        debug_assert!(x.iter().all(|x| x.len() == self.columns), "columns of a product");
+        debug_assert!(y.iter().all(|y| y.len() == self.rows), "rows of a product");
+        Arch::new().dispatch(TwoProducts { matrix: self, x, y });
+    }
+
     /// M x block by block: hands over the first row of each, and what its rows come to.
     pub(crate) fn each_block(&self, x: &[f64], take: impl FnMut(usize, &[f64])) {
         debug_assert_eq!(x.len(), self.columns, "columns of a product");
@@ -99,6 +108,72 @@ impl<F: FnMut(usize, &[f64])> WithSimd for Product<'_, F> {
             // No vectors, or short ones: more than the registers hold.
             _ => take(&plain_product(height, rest, x)),
         }
+    }
+}
+
+/// Two products with one matrix, in the widest vectors that the processor has.
+struct TwoProducts<'a> {
+    matrix: &'a BlockedMatrix,
+    x: [&'a [f64]; 2],
+    y: [&'a mut [f64]; 2],
+}
+
+impl WithSimd for TwoProducts<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Self { matrix: BlockedMatrix { columns, entries, .. }, x, y: [y1, y2] } = self;
+        let mut entries = &entries[..];
+        for (y1, y2) in y1.chunks_mut(HEIGHT).zip(y2.chunks_mut(HEIGHT)) {
+            let height = y1.len().next_multiple_of(GROUP);
+            let Some((block, rest)) = entries.split_at_checked(height * columns) else { return };
+            entries = rest;
+            let mut first = 0;
+            while first < height {
+                // The sums of as many rows, twice, stay in registers.
+                let rows = (height - first).min(HALF);
+                let y = [&mut y1[first..], &mut y2[first..]];
+                match rows / S::F64_LANES {
+                    2 => two_products::<S, 2>(simd, block, height, first, x, y),
+                    4 => two_products::<S, 4>(simd, block, height, first, x, y),
+                    6 => two_products::<S, 6>(simd, block, height, first, x, y),
+                    _ => {
+                        for (x, y) in x.iter().zip(y) {
+                            for (column, x) in block.chunks_exact(height).zip(*x) {
+                                y.iter_mut().zip(&column[first..][..rows]).for_each(|(y, entry)| *y += entry * x);
+                            }
+                        }
+                    }
+                }
+                first += HALF;
+            }
+        }
+    }
+}
+
+/// Two products with the rows from `first` on of a block of `height` rows, N vectors a column.
+#[inline(always)]
+fn two_products<S: Simd, const N: usize>(
+    simd: S,
+    block: &[f64],
+    height: usize,
+    first: usize,
+    [x1, x2]: [&[f64]; 2],
+    y: [&mut [f64]; 2],
+) {
+    let mut sums = [[simd.splat_f64s(0.0); N]; 2];
+    for ((column, x1), x2) in block.chunks_exact(height).zip(x1).zip(x2) {
+        let Some(column) = S::as_simd_f64s(&column[first..]).0.first_chunk::<N>() else { return };
+        let [x1, x2] = [simd.splat_f64s(*x1), simd.splat_f64s(*x2)];
+        for k in 0..N {
+            sums[0][k] = simd.mul_add_e_f64s(column[k], x1, sums[0][k]);
+            sums[1][k] = simd.mul_add_e_f64s(column[k], x2, sums[1][k]);
+        }
+    }
+    for (y, sums) in y.into_iter().zip(&sums) {
+        let sums: &[f64] = bytemuck::cast_slice(sums);
+        y.iter_mut().zip(sums).for_each(|(y, sum)| *y += sum);
     }
 }
 
@@ -156,10 +231,16 @@ mod tests {
                 let (mut product, mut sum) = (vec![f64::NAN; rows], start.clone());
                 blocked.multiply(&x, &mut product);
                 blocked.add_product(&x, &mut sum);
+                let mut two = [start.clone(), vec![0.0; rows]];
+                let twice: Vec<f64> = x.iter().map(|x| 2.0 * x).collect();
+                let [first, second] = &mut two;
+                blocked.add_products([&x, &twice], [first, second]);
                 for i in 0..rows {
                     let expected: f64 = (0..columns).map(|j| matrix[(i, j)] * x[j]).sum();
                     assert!((product[i] - expected).abs() < 1e-13, "{rows} x {columns}");
                     assert!((sum[i] - start[i] - expected).abs() < 1e-13, "{rows} x {columns}");
+                    assert!((two[0][i] - start[i] - expected).abs() < 1e-13, "{rows} x {columns}");
+                    assert!((two[1][i] - 2.0 * expected).abs() < 1e-13, "{rows} x {columns}");
                 }
             }
         }

@@ -451,7 +451,7 @@ impl ConservativeBody {
     pub fn start(&self, initial: &Initial) -> Result<ConservativeState, SetupError> {
         initial.check(self.flexible())?;
         let mut e = self.evaluation();
-        self.deform(&initial.modal_displacement, &mut e);
+        self.deform(&initial.modal_displacement, None, &mut e);
         let speed = self.drive.as_ref().map_or(0.0, |drive| drive.speed_at(0.0, 0.0));
         let mut spin = Vector3::zeros();
         for (w, axis) in spin.iter_mut().zip(&self.axes) {
@@ -564,9 +564,9 @@ impl ConservativeBody {
         }
     }
 
-    /// z, and there S, c_ij + N_ij z, K q and the locked inertia.
+    /// z, and there S, c_ij + N_ij z, K q and the locked inertia; of a locked body with momenta, G_i p as well.
     #[inline(always)]
-    fn deform(&self, q: &[f64], e: &mut Evaluation) {
+    fn deform(&self, q: &[f64], p: Option<&[f64]>, e: &mut Evaluation) {
         match &self.manifold {
             Some(manifold) => manifold.go(q, &mut e.place, &mut e.coordinates),
             None => e.coordinates.copy_from_slice(q),
@@ -579,11 +579,17 @@ impl ConservativeBody {
         if self.undeformed.is_empty() {
             return;
         }
-        let (products, _) = e.products.split_at_mut(self.undeformed.len());
+        let (products, turned) = e.products.split_at_mut(self.undeformed.len());
         products.copy_from_slice(&self.undeformed);
         let (s, n_z) = products.split_at_mut(self.s_rows);
         if self.g_rows > 0 {
-            self.gyroscopic.add_product(z, s);
+            match p {
+                Some(p) if self.locked => {
+                    turned.fill(0.0);
+                    self.gyroscopic.add_products([z, p], [s, turned]);
+                }
+                _ => self.gyroscopic.add_product(z, s),
+            }
         }
         if !self.pairs.is_empty() {
             self.inertia_second.add_product(z, n_z);
@@ -665,7 +671,7 @@ impl ConservativeBody {
         p: &[f64],
         e: &mut Evaluation,
     ) -> Result<(), RateError> {
-        self.deform(q, e);
+        self.deform(q, Some(p), e);
         let speed = self.drive.as_ref().map_or(0.0, |drive| drive.speed_at(t, branch_time));
         let driven_acceleration = self.drive.as_ref().map_or(0.0, |drive| drive.acceleration_at(t, branch_time));
         e.driven_speed = speed;
@@ -699,7 +705,7 @@ impl ConservativeBody {
             if turning { f_inverse(&theta, &e.omega_body).map_err(RateError::Turn)? } else { Vector3::zeros() };
         // Forces on z are gathered in a list that is put back below: nothing may fail in between.
         let mut modal_force = std::mem::take(if self.manifold.is_some() { &mut e.force } else { &mut e.momentum });
-        self.inertia_forces(p, e, &mut modal_force);
+        self.inertia_forces(e, &mut modal_force);
         let mut pi_rate = if self.axes.len() == 3 { pi.cross(&w) } else { Vector3::zeros() };
         let mut power = 0.0;
         let (mut force, mut angular_impulse) = (Vector3::zeros(), Vector3::zeros());
@@ -826,7 +832,7 @@ impl ConservativeBody {
 
     /// Σ ω_iω_j (c_ij + N_ij z) − Σ ω_i G_i ż, which of a locked body has p for ż.
     #[inline(always)]
-    fn inertia_forces(&self, p: &[f64], e: &mut Evaluation, force: &mut [f64]) {
+    fn inertia_forces(&self, e: &mut Evaluation, force: &mut [f64]) {
         let nf = force.len();
         let (pairs, turning) = (self.pairs.len(), self.g_rows.checked_div(nf).unwrap_or(0));
         let mut factors = [0.0; 9];
@@ -836,9 +842,8 @@ impl ConservativeBody {
         for (factor, w) in factors[pairs..pairs + turning].iter_mut().zip(e.spin.iter()) {
             *factor = -w;
         }
-        if self.g_rows > 0 {
-            let turned = if self.locked { p } else { &e.velocity };
-            self.gyroscopic.multiply(turned, &mut e.products[self.undeformed.len()..]);
+        if self.g_rows > 0 && !self.locked {
+            self.gyroscopic.multiply(&e.velocity, &mut e.products[self.undeformed.len()..]);
         }
         multiply(&e.products[self.s_rows..], nf, &factors[..pairs + turning], force);
     }
