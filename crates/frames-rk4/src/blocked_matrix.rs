@@ -1,22 +1,25 @@
 //! Products with constant matrices, which are stored so that the processor reads them from end to end.
 
-use faer::MatRef;
+use faer::{Mat, MatRef};
 use pulp::{Arch, Simd, WithSimd, bytemuck};
 
 /// Rows of a block: its sums stay in registers over all columns.
 const HEIGHT: usize = 48;
 /// As many rows of two products.
 const HALF: usize = HEIGHT / 2;
+/// Numbers that the fastest cache holds besides all else: a matrix of fewer is read twice sooner than it serves two lists.
+const IN_CACHE: usize = 2048;
 /// Rows come in groups of so many, which fill whole vectors of any processor.
 const GROUP: usize = 8;
 
 /// A matrix in blocks of [`HEIGHT`] rows, the last one of fewer, each column by column. Rows are added to a multiple of
 /// [`GROUP`], with zeros.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub(crate) struct BlockedMatrix {
     rows: usize,
     columns: usize,
-    entries: Vec<f64>,
+    /// In one column, which begins at the start of a line of the cache, so that no vector lies across two.
+    entries: Mat<f64>,
 }
 
 impl BlockedMatrix {
@@ -35,7 +38,12 @@ impl BlockedMatrix {
                 entries.extend((0..height).map(|i| block.get(i).map_or(0.0, |row| row[j])));
             }
         }
-        Self { rows: rows.len(), columns, entries }
+        Self { rows: rows.len(), columns, entries: Mat::from_fn(entries.len(), 1, |k, _| entries[k]) }
+    }
+
+    /// Blocks one after another.
+    fn entries(&self) -> &[f64] {
+        if self.entries.ncols() > 0 { self.entries.col_as_slice(0) } else { &[] }
     }
 
     /// Numbers of the matrix itself.
@@ -55,10 +63,15 @@ impl BlockedMatrix {
         self.each_block(x, |first, rows| y[first..].iter_mut().zip(rows).for_each(|(y, row)| *y += row));
     }
 
-    /// y += M x of two lists at once: the matrix is read once.
-    pub(crate) fn add_products(&self, x: [&[f64]; 2], y: [&mut [f64]; 2]) {
+    /// y₁ += M x₁ and y₂ = M x₂: a large matrix is read once for both.
+    pub(crate) fn two_products(&self, x: [&[f64]; 2], y: [&mut [f64]; 2]) {
         debug_assert!(x.iter().all(|x| x.len() == self.columns), "columns of a product");
         debug_assert!(y.iter().all(|y| y.len() == self.rows), "rows of a product");
+        if self.entries.nrows() < IN_CACHE {
+            let ([x1, x2], [y1, y2]) = (x, y);
+            self.add_product(x1, y1);
+            return self.multiply(x2, y2);
+        }
         Arch::new().dispatch(TwoProducts { matrix: self, x, y });
     }
 
@@ -81,8 +94,9 @@ impl<F: FnMut(usize, &[f64])> WithSimd for Product<'_, F> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let Self { matrix: BlockedMatrix { rows, columns, entries }, x, mut take } = self;
-        let (full, rest) = entries.split_at(rows / HEIGHT * HEIGHT * columns);
+        let Self { matrix, x, mut take } = self;
+        let BlockedMatrix { rows, columns, .. } = matrix;
+        let (full, rest) = matrix.entries().split_at(rows / HEIGHT * HEIGHT * columns);
         let mut first = 0;
         for block in full.chunks_exact((HEIGHT * columns).max(1)) {
             match S::F64_LANES {
@@ -123,8 +137,8 @@ impl WithSimd for TwoProducts<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let Self { matrix: BlockedMatrix { columns, entries, .. }, x, y: [y1, y2] } = self;
-        let mut entries = &entries[..];
+        let Self { matrix, x, y: [y1, y2] } = self;
+        let (columns, mut entries) = (matrix.columns, matrix.entries());
         for (y1, y2) in y1.chunks_mut(HEIGHT).zip(y2.chunks_mut(HEIGHT)) {
             let height = y1.len().next_multiple_of(GROUP);
             let Some((block, rest)) = entries.split_at_checked(height * columns) else { return };
@@ -133,12 +147,14 @@ impl WithSimd for TwoProducts<'_> {
             while first < height {
                 // The sums of as many rows, twice, stay in registers.
                 let rows = (height - first).min(HALF);
-                let y = [&mut y1[first..], &mut y2[first..]];
+                let ends = [y1.len(), y2.len()].map(|length| length.min(first + rows));
+                let y = [&mut y1[first.min(ends[0])..ends[0]], &mut y2[first.min(ends[1])..ends[1]]];
                 match rows / S::F64_LANES {
                     2 => two_products::<S, 2>(simd, block, height, first, x, y),
                     4 => two_products::<S, 4>(simd, block, height, first, x, y),
                     6 => two_products::<S, 6>(simd, block, height, first, x, y),
                     _ => {
+                        y[1].fill(0.0);
                         for (x, y) in x.iter().zip(y) {
                             for (column, x) in block.chunks_exact(height).zip(*x) {
                                 y.iter_mut().zip(&column[first..][..rows]).for_each(|(y, entry)| *y += entry * x);
@@ -171,10 +187,9 @@ fn two_products<S: Simd, const N: usize>(
             sums[1][k] = simd.mul_add_e_f64s(column[k], x2, sums[1][k]);
         }
     }
-    for (y, sums) in y.into_iter().zip(&sums) {
-        let sums: &[f64] = bytemuck::cast_slice(sums);
-        y.iter_mut().zip(sums).for_each(|(y, sum)| *y += sum);
-    }
+    let ([y1, y2], sums): (_, [&[f64]; 2]) = (y, sums.each_ref().map(|sums| bytemuck::cast_slice(sums)));
+    y1.iter_mut().zip(sums[0]).for_each(|(y, sum)| *y += sum);
+    y2.iter_mut().zip(sums[1]).for_each(|(y, sum)| *y = *sum);
 }
 
 /// What the rows of a block come to, in N vectors.
@@ -214,13 +229,13 @@ fn plain_product(height: usize, block: &[f64], x: &[f64]) -> [f64; HEIGHT] {
 
 #[cfg(test)]
 mod tests {
-    use faer::Mat;
-
     use super::*;
 
     #[test]
     fn products_equal_the_dense_ones_for_any_size() {
-        for (rows, columns) in [(1, 1), (7, 3), (8, 2), (29, 29), (48, 5), (50, 4), (95, 6), (261, 29)] {
+        for (rows, columns) in
+            [(1, 1), (7, 3), (8, 2), (29, 29), (48, 5), (50, 4), (95, 6), (261, 29), (147, 49), (120, 40)]
+        {
             let matrix = Mat::from_fn(rows, columns, |i, j| ((i * 7 + j * 13) as f64).sin());
             let x: Vec<f64> = (0..columns).map(|j| (j as f64).cos()).collect();
             let start: Vec<f64> = (0..rows).map(|i| i as f64).collect();
@@ -231,10 +246,10 @@ mod tests {
                 let (mut product, mut sum) = (vec![f64::NAN; rows], start.clone());
                 blocked.multiply(&x, &mut product);
                 blocked.add_product(&x, &mut sum);
-                let mut two = [start.clone(), vec![0.0; rows]];
+                let mut two = [start.clone(), vec![f64::NAN; rows]];
                 let twice: Vec<f64> = x.iter().map(|x| 2.0 * x).collect();
                 let [first, second] = &mut two;
-                blocked.add_products([&x, &twice], [first, second]);
+                blocked.two_products([&x, &twice], [first, second]);
                 for i in 0..rows {
                     let expected: f64 = (0..columns).map(|j| matrix[(i, j)] * x[j]).sum();
                     assert!((product[i] - expected).abs() < 1e-13, "{rows} x {columns}");

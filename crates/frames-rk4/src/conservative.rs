@@ -584,10 +584,7 @@ impl ConservativeBody {
         let (s, n_z) = products.split_at_mut(self.s_rows);
         if self.g_rows > 0 {
             match p {
-                Some(p) if self.locked => {
-                    turned.fill(0.0);
-                    self.gyroscopic.add_products([z, p], [s, turned]);
-                }
+                Some(p) if self.locked => self.gyroscopic.two_products([z, p], [s, turned]),
                 _ => self.gyroscopic.add_product(z, s),
             }
         }
