@@ -75,9 +75,9 @@ impl BlockedMatrix {
         Arch::new().dispatch(TwoProducts { matrix: self, x, y });
     }
 
-    /// M x block by block: hands over the first row of each, and what its rows come to.
+    /// M x block by block, of the first columns where x is shorter: hands over the first row of each, and what its rows come to.
     pub(crate) fn each_block(&self, x: &[f64], take: impl FnMut(usize, &[f64])) {
-        debug_assert_eq!(x.len(), self.columns, "columns of a product");
+        debug_assert!(x.len() <= self.columns, "columns of a product");
         Arch::new().dispatch(Product { matrix: self, x, take });
     }
 }

@@ -91,7 +91,7 @@ impl SecondOrder {
     fn of(&self, q: &[f64], x: &[f64]) -> Vector3<f64> {
         let mut sum = Vector3::zeros();
         for Term { direction, blocked, .. } in self.terms.iter() {
-            blocked.each_block(q, |first, k_q| sum -= direction * dot(k_q, &x[first..]));
+            blocked.each_block(q, |first, k_q| sum -= direction * dot(k_q, &x[first.min(q.len())..]));
         }
         sum
     }
@@ -109,7 +109,9 @@ impl SecondOrder {
             let along = direction.dot(vector);
             let mut bent = 0.0;
             blocked.each_block(q, |first, k_q| {
-                modal_force[first..].iter_mut().zip(k_q).for_each(|(force, k_q)| *force -= along * k_q);
+                // The load may know more modes than the run has.
+                let first = first.min(q.len());
+                modal_force[first..q.len()].iter_mut().zip(k_q).for_each(|(force, k_q)| *force -= along * k_q);
                 power -= along * dot(k_q, &velocity[first..]);
                 bent += dot(k_q, &q[first..]);
             });
