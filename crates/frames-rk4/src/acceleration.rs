@@ -20,18 +20,19 @@ impl ConservativeBody {
     /// Turns `e.acceleration` from the whole of p' into the q̈ that there would be without ω'.
     fn without_spin_rate(&self, driven_acceleration: f64, e: &mut Evaluation) {
         let nf = self.coordinates();
+        let spin = e.spin;
+        let (coupling_rate, change) = self.coupling_rate(e);
         // Ḋ q̇ + S_ext' ω + b' v + b v', by −; then μ.
-        let change = &mut e.change;
         change.fill(0.0);
-        let gyroscopic = &e.products[self.rigid_products()..];
-        for (g, w) in gyroscopic.chunks_exact(nf.max(1)).zip(e.spin.iter()) {
+        for (g, w) in coupling_rate.chunks_exact(nf.max(1)).zip(spin.iter()) {
             change.iter_mut().zip(g).for_each(|(c, g)| *c -= g * w);
         }
         change.iter_mut().zip(&self.sliding).for_each(|(c, b)| *c -= b * driven_acceleration);
         let Some(manifold) = &self.manifold else {
-            e.acceleration.iter_mut().zip(change).for_each(|(a, c)| *a += *c);
+            e.acceleration.iter_mut().zip(&e.change).for_each(|(a, c)| *a += *c);
             return;
         };
+        let change = &mut e.change;
         e.curvature.fill(0.0);
         manifold.add_curvature(&e.place, &mut e.curvature);
         manifold.subtract_mass_of_products(&e.curvature, change);
@@ -64,12 +65,20 @@ impl ConservativeBody {
         Ok(spin_rate)
     }
 
-    /// J' = 2 (c_ij + N_ij z)·ż
+    /// J' = 2 (c_ij + N_ij z)·ż, and of a locked body S'ᵀS + SᵀS' besides, which its N_ij have not got. S' is in `e`.
     fn inertia_rate(&self, e: &Evaluation) -> Matrix3<f64> {
         let n_z = e.products[self.s_rows..].chunks_exact(self.coordinates().max(1));
         let mut inertia_rate = Matrix3::zeros();
         for (pair, n_z) in self.pairs.iter().zip(n_z) {
             symmetric::add(&mut inertia_rate, *pair, 2.0 * dot(n_z, &e.velocity));
+        }
+        let modes = self.flexible().max(1);
+        for (i, rate) in e.coupling_rate.chunks_exact(modes).enumerate() {
+            for (j, s) in self.s(e).chunks_exact(modes).enumerate() {
+                let both = dot(rate, s);
+                inertia_rate[(i, j)] += both;
+                inertia_rate[(j, i)] += both;
+            }
         }
         inertia_rate
     }
@@ -127,7 +136,7 @@ impl ConservativeBody {
             return;
         }
         let s = &e.products[..nf];
-        let (inertia, inertia_rate) = (e.inertia[(0, 0)], self.inertia_rate(e)[(0, 0)]);
+        let (inertia, inertia_rate) = (self.deformed_inertia(e)[(0, 0)], self.inertia_rate(e)[(0, 0)]);
         // G ν does no work on ν.
         changing += dot(s, &e.change);
         e.driven_momentum = inertia * speed + dot(s, &e.velocity) - stressed;

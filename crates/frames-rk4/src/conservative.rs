@@ -10,6 +10,14 @@
 //! energy = P²/2m + ½ π·ω + ½ p·q̇ + ½ q·Λq
 //! ```
 //!
+//! Of a body that turns freely, S and the G_i leave J and q̇ for the locked inertia and p: q̇ = p − S ω need not be known
+//! for its forces, and one pass through the matrices gives all that a state is asked for.
+//!
+//! ```text
+//! 𝕁 = J − SᵀS = J0 + 2 c_ij·q + qᵀ N̂_ij q,      N̂_ij = N_ij + ½ (G_iG_j + G_jG_i)
+//! Σ_ij ω_i ω_j (c_ij + N_ij q) − Σ_i ω_i G_i q̇ = Σ_ij ω_i ω_j (c_ij + N̂_ij q) − Σ_i ω_i G_i p
+//! ```
+//!
 //! Hamiltonian without damping and loads: energy and `Aᵀπ` are constants of the motion for any number of modes.
 //! The part of q' and p' that is linear in the modes, `q' = p, p' = −Λq − Dp`, is left to the integrators.
 //!
@@ -45,10 +53,11 @@ mod state;
 use faer::Mat;
 use modal::ReducedBody;
 use nalgebra::{Matrix3, Vector3};
+use pulp::{Arch, Simd, WithSimd};
 use rigid_kin::{Attitude, f_inverse, transformation_matrix};
 
 use crate::blocked_matrix::BlockedMatrix;
-use crate::column_major::{add_product, columns, dot, multiply};
+use crate::column_major::{add_product, columns, dot, dot_of_sum, multiply};
 use crate::effect::{Effect, EffectMap};
 use crate::error::{RateError, SetupError, StepError};
 use crate::initial::Initial;
@@ -102,6 +111,9 @@ pub struct ConservativeBody {
     damped: bool,
     /// ij of the terms of the inertia that follow the deformation; empty where none does.
     pub(crate) pairs: Vec<(usize, usize)>,
+    /// Whether the equations are those of the locked inertia, which only momenta enter: of a body that turns freely, with
+    /// Coriolis terms and no large modes.
+    locked: bool,
     /// S and c_ij + N_ij q of the undeformed body: b_i of driven axes or zeros (`s_rows`), then the c_ij of `pairs`.
     undeformed: Vec<f64>,
     /// b of a driven translation (nf).
@@ -112,7 +124,7 @@ pub struct ConservativeBody {
     pub(crate) g_rows: usize,
     /// The G_i, one below another.
     gyroscopic: BlockedMatrix,
-    /// The N_ij, less by K_ij, one below another.
+    /// The N_ij, less by K_ij and of a `locked` body more by ½ (G_iG_j + G_jG_i), one below another.
     inertia_second: BlockedMatrix,
     /// Largest N_ij and G_i that couple each mode to itself and its like (nf).
     pub(crate) own_coupling: Vec<[f64; 2]>,
@@ -150,8 +162,10 @@ pub(crate) struct Evaluation {
     pub displacement: Vec<f64>,
     /// p' + Λq + D p (nf).
     pub momentum: Vec<f64>,
-    /// S_i, c_ij + N_ij z and G_i ż.
+    /// S_i, c_ij + N_ij z, and G_i ż or, of a locked body, G_i p.
     pub products: Vec<f64>,
+    /// G_i ż of a locked body: for its accelerations only.
+    pub coupling_rate: Vec<f64>,
     /// q̇ (nf).
     pub modal_velocity: Vec<f64>,
     /// z and ż: q and q̇ but on a manifold.
@@ -188,9 +202,29 @@ pub(crate) struct Evaluation {
     /// Resultants of the loads about the origin, body components.
     pub load_force: Vector3<f64>,
     pub load_moment: Vector3<f64>,
-    /// J(q) and J − SᵀS.
-    pub inertia: Matrix3<f64>,
+    /// J − SᵀS.
     pub locked_inertia: Matrix3<f64>,
+}
+
+/// The rates of a state, in the widest vectors that the processor has.
+struct Rates<'a> {
+    body: &'a ConservativeBody,
+    times: [f64; 2],
+    attitude: &'a Attitude,
+    slow: &'a Slow,
+    q: &'a [f64],
+    p: &'a [f64],
+    e: &'a mut Evaluation,
+}
+
+impl WithSimd for Rates<'_> {
+    type Output = Result<(), RateError>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> Self::Output {
+        let Self { body, times, attitude, slow, q, p, e } = self;
+        body.find_rates(times, attitude, slow, q, p, e)
+    }
 }
 
 impl ConservativeBody {
@@ -238,13 +272,14 @@ impl ConservativeBody {
             modes.circular_frequencies.iter().zip(damping_ratios).map(|(omega, zeta)| 2.0 * zeta * omega).collect();
         let inertia = along_axes(&axes, &body.inertia);
 
+        let manifold = large_deflection.as_ref();
+        let locked = effects[Effect::Coriolis] && !turn_driven && manifold.is_none();
+        let follows = effects[Effect::DeformedInertia];
         let pairs: Vec<(usize, usize)> = match axes.len() {
-            3 => ReducedBody::PAIRS.to_vec(),
-            1 => vec![(0, 0)],
+            3 if nf > 0 && (follows || locked) => ReducedBody::PAIRS.to_vec(),
+            1 if nf > 0 && (follows || locked) => vec![(0, 0)],
             _ => Vec::new(),
         };
-        let pairs = if effects[Effect::DeformedInertia] && nf > 0 { pairs } else { Vec::new() };
-        let manifold = large_deflection.as_ref();
         let size = manifold.map_or(nf, Manifold::size);
         let g_rows = if effects[Effect::Coriolis] { axes.len() * size } else { 0 };
         let s_rows = if effects[Effect::Coriolis] || turn_driven { axes.len() * size } else { 0 };
@@ -269,7 +304,8 @@ impl ConservativeBody {
         let of = |matrices: &[Mat<f64>; 6], weights: &[f64; 6], i: usize, j: usize| -> f64 {
             matrices.iter().zip(weights).map(|(m, w)| w * m[(i, j)]).sum()
         };
-        let pair_weights: Vec<[f64; 6]> = pairs.iter().map(|pair| weights(*pair)).collect();
+        let weights_where_it_follows = |pair: &(usize, usize)| if follows { weights(*pair) } else { [0.0; 6] };
+        let pair_weights: Vec<[f64; 6]> = pairs.iter().map(weights_where_it_follows).collect();
         let second = |weights: &[f64; 6]| {
             let mut second = on_coordinates(Mat::from_fn(nf, nf, |i, j| {
                 of(&body.inertia_second, weights, i, j)
@@ -284,8 +320,14 @@ impl ConservativeBody {
         };
         let turning = if g_rows > 0 { &axes[..] } else { &[] };
         let gyroscopic: Vec<Mat<f64>> = turning.iter().map(gyroscopic).collect();
-        let second: Vec<Mat<f64>> = pair_weights.iter().map(second).collect();
+        let mut second: Vec<Mat<f64>> = pair_weights.iter().map(second).collect();
         let coupling = own_coupling(&modes.circular_frequencies, [&second, &gyroscopic]);
+        if locked {
+            for (second, (i, j)) in second.iter_mut().zip(&pairs) {
+                let product = &gyroscopic[*i] * &gyroscopic[*j];
+                *second += (&product + product.transpose()) * faer::Scale(0.5);
+            }
+        }
         // Eᵀ of a list.
         let list_on_coordinates = |list: Vec<f64>| match manifold.map(Manifold::shapes_by_coordinates) {
             Some(e) => e.col_iter().map(|column| column.iter().zip(&list).map(|(e, x)| e * x).sum()).collect(),
@@ -315,6 +357,7 @@ impl ConservativeBody {
             damped: damping.iter().any(|d| *d > 0.0),
             damping,
             pairs,
+            locked,
             undeformed,
             sliding: match translation {
                 Translation::Driven(direction) => along(&direction, &body.translation_first),
@@ -373,6 +416,7 @@ impl ConservativeBody {
             displacement: zeros(modes),
             momentum: zeros(modes),
             products: zeros(self.undeformed.len() + self.g_rows),
+            coupling_rate: zeros(if self.locked { self.g_rows } else { 0 }),
             modal_velocity: zeros(modes),
             coordinates: zeros(nf),
             velocity: zeros(nf),
@@ -395,7 +439,6 @@ impl ConservativeBody {
             drive_effort: 0.0,
             load_force: Vector3::zeros(),
             load_moment: Vector3::zeros(),
-            inertia: self.inertia,
             locked_inertia: self.inertia,
         }
     }
@@ -408,14 +451,14 @@ impl ConservativeBody {
     pub fn start(&self, initial: &Initial) -> Result<ConservativeState, SetupError> {
         initial.check(self.flexible())?;
         let mut e = self.evaluation();
-        self.deform(&initial.modal_displacement, &mut e);
+        self.deform(&initial.modal_displacement, None, &mut e);
         let speed = self.drive.as_ref().map_or(0.0, |drive| drive.speed_at(0.0, 0.0));
         let mut spin = Vector3::zeros();
         for (w, axis) in spin.iter_mut().zip(&self.axes) {
             *w = if self.turn_driven { speed } else { axis.dot(&initial.omega) };
         }
         self.extend_rate(&initial.modal_velocity, &mut e);
-        let mut pi: Vector3<f64> = e.inertia * spin;
+        let mut pi: Vector3<f64> = self.deformed_inertia(&e) * spin;
         for (i, s) in e.products[..self.s_rows].chunks_exact(self.coordinates().max(1)).enumerate() {
             pi[i] += dot(s, &e.velocity);
         }
@@ -521,8 +564,9 @@ impl ConservativeBody {
         }
     }
 
-    /// z, and there S, N_ij, K q and J.
-    fn deform(&self, q: &[f64], e: &mut Evaluation) {
+    /// z, and there S, c_ij + N_ij z, K q and the locked inertia; of a locked body with momenta, G_i p as well.
+    #[inline(always)]
+    fn deform(&self, q: &[f64], p: Option<&[f64]>, e: &mut Evaluation) {
         match &self.manifold {
             Some(manifold) => manifold.go(q, &mut e.place, &mut e.coordinates),
             None => e.coordinates.copy_from_slice(q),
@@ -530,17 +574,19 @@ impl ConservativeBody {
         if !self.drive_stiffness.is_empty() {
             multiply(&self.drive_stiffness, q.len(), q, &mut e.drive_stress);
         }
-        let modes = q.len();
         let z = &e.coordinates;
         let nf = z.len();
         if self.undeformed.is_empty() {
             return;
         }
-        let (products, _) = e.products.split_at_mut(self.undeformed.len());
+        let (products, turned) = e.products.split_at_mut(self.undeformed.len());
         products.copy_from_slice(&self.undeformed);
         let (s, n_z) = products.split_at_mut(self.s_rows);
         if self.g_rows > 0 {
-            self.gyroscopic.add_product(z, s);
+            match p {
+                Some(p) if self.locked => self.gyroscopic.two_products([z, p], [s, turned]),
+                _ => self.gyroscopic.add_product(z, s),
+            }
         }
         if !self.pairs.is_empty() {
             self.inertia_second.add_product(z, n_z);
@@ -548,11 +594,10 @@ impl ConservativeBody {
         let mut inertia = self.inertia;
         let first = self.undeformed[self.s_rows..].chunks_exact(nf.max(1));
         for ((pair, first), n_z) in self.pairs.iter().zip(first).zip(n_z.chunks_exact(nf.max(1))) {
-            symmetric::add(&mut inertia, *pair, dot(first, z) + dot(n_z, z));
+            symmetric::add(&mut inertia, *pair, dot_of_sum(first, n_z, z));
         }
-        e.inertia = inertia;
-        e.locked_inertia = inertia;
         if let Some(manifold) = &self.manifold {
+            let modes = q.len();
             let on_modes = e.s.chunks_exact_mut(modes.max(1)).zip(e.forward_s.chunks_exact_mut(modes.max(1)));
             for (s, (on_modes, forward)) in s.chunks_exact(nf.max(1)).zip(on_modes) {
                 on_modes.fill(0.0);
@@ -561,12 +606,29 @@ impl ConservativeBody {
                 manifold.substitute_forward(&e.place, forward);
             }
         }
-        let s = if self.manifold.is_some() { &e.forward_s[..] } else { s };
-        for (i, a) in s.chunks_exact(modes.max(1)).enumerate() {
-            for (j, b) in s.chunks_exact(modes.max(1)).enumerate().take(i + 1) {
-                symmetric::add(&mut e.locked_inertia, (i, j), -dot(a, b));
+        e.locked_inertia = inertia;
+        if !self.locked {
+            e.locked_inertia -= self.inertia_of_modes(e);
+        }
+    }
+
+    /// SᵀM⁻¹S
+    #[inline(always)]
+    fn inertia_of_modes(&self, e: &Evaluation) -> Matrix3<f64> {
+        let s = if self.manifold.is_some() { &e.forward_s[..] } else { &e.products[..self.s_rows] };
+        let modes = self.flexible().max(1);
+        let mut sum = Matrix3::zeros();
+        for (i, a) in s.chunks_exact(modes).enumerate() {
+            for (j, b) in s.chunks_exact(modes).enumerate().take(i + 1) {
+                symmetric::add(&mut sum, (i, j), dot(a, b));
             }
         }
+        sum
+    }
+
+    /// J(q) where `e` is.
+    pub(crate) fn deformed_inertia(&self, e: &Evaluation) -> Matrix3<f64> {
+        e.locked_inertia + self.inertia_of_modes(e)
     }
 
     /// (J − SᵀS)⁻¹ x in the axes of rotation.
@@ -586,6 +648,19 @@ impl ConservativeBody {
     /// hold at `branch_time`.
     pub(crate) fn evaluate(
         &self,
+        times: [f64; 2],
+        attitude: &Attitude,
+        slow: &Slow,
+        q: &[f64],
+        p: &[f64],
+        e: &mut Evaluation,
+    ) -> Result<(), RateError> {
+        Arch::new().dispatch(Rates { body: self, times, attitude, slow, q, p, e })
+    }
+
+    #[inline(always)]
+    fn find_rates(
+        &self,
         [t, branch_time]: [f64; 2],
         attitude: &Attitude,
         slow: &Slow,
@@ -593,7 +668,7 @@ impl ConservativeBody {
         p: &[f64],
         e: &mut Evaluation,
     ) -> Result<(), RateError> {
-        self.deform(q, e);
+        self.deform(q, Some(p), e);
         let speed = self.drive.as_ref().map_or(0.0, |drive| drive.speed_at(t, branch_time));
         let driven_acceleration = self.drive.as_ref().map_or(0.0, |drive| drive.acceleration_at(t, branch_time));
         e.driven_speed = speed;
@@ -712,17 +787,13 @@ impl ConservativeBody {
         Ok(())
     }
 
-    /// How many numbers of `products` come before the G_i ż.
-    pub(crate) fn rigid_products(&self) -> usize {
-        self.undeformed.len()
-    }
-
     /// S on the modes, a row for each axis.
     pub(crate) fn s<'e>(&self, e: &'e Evaluation) -> &'e [f64] {
         if self.manifold.is_some() { &e.s } else { &e.products[..self.s_rows] }
     }
 
     /// On a manifold, puts L⁻¹ (p − b v) into the place of q̇.
+    #[inline(always)]
     fn start_velocities(&self, p: &[f64], speed: f64, e: &mut Evaluation) {
         let Some(manifold) = &self.manifold else { return };
         e.modal_velocity.copy_from_slice(p);
@@ -735,6 +806,7 @@ impl ConservativeBody {
     }
 
     /// q̇ and ż, at the spin of `e`.
+    #[inline(always)]
     fn find_velocities(&self, p: &[f64], speed: f64, e: &mut Evaluation) {
         let modes = p.len();
         let negative = -e.spin;
@@ -755,7 +827,8 @@ impl ConservativeBody {
         manifold.go_along(&e.modal_velocity, &mut e.place, &mut e.velocity);
     }
 
-    /// Σ ω_iω_j (c_ij + N_ij z) − Σ ω_i G_i ż
+    /// Σ ω_iω_j (c_ij + N_ij z) − Σ ω_i G_i ż, which of a locked body has p for ż.
+    #[inline(always)]
     fn inertia_forces(&self, e: &mut Evaluation, force: &mut [f64]) {
         let nf = force.len();
         let (pairs, turning) = (self.pairs.len(), self.g_rows.checked_div(nf).unwrap_or(0));
@@ -766,13 +839,22 @@ impl ConservativeBody {
         for (factor, w) in factors[pairs..pairs + turning].iter_mut().zip(e.spin.iter()) {
             *factor = -w;
         }
-        if self.g_rows > 0 {
+        if self.g_rows > 0 && !self.locked {
             self.gyroscopic.multiply(&e.velocity, &mut e.products[self.undeformed.len()..]);
         }
         multiply(&e.products[self.s_rows..], nf, &factors[..pairs + turning], force);
     }
 
+    /// Finds S' = G_i ż, a row for each axis.
+    pub(crate) fn coupling_rate<'e>(&self, e: &'e mut Evaluation) -> (&'e [f64], &'e mut Vec<f64>) {
+        if self.locked && self.g_rows > 0 {
+            self.gyroscopic.multiply(&e.velocity, &mut e.coupling_rate);
+        }
+        (if self.locked { &e.coupling_rate } else { &e.products[self.undeformed.len()..] }, &mut e.change)
+    }
+
     /// p' without its linear part and damping: Dᵀ of the forces on z, Ḋᵀμ and −∂V_n/∂q.
+    #[inline(always)]
     fn project_forces(&self, speed: f64, force: Vec<f64>, e: &mut Evaluation) {
         let Some(manifold) = &self.manifold else {
             e.momentum = force;
@@ -786,6 +868,7 @@ impl ConservativeBody {
     }
 
     /// μ of the products.
+    #[inline(always)]
     fn find_momenta_of_products(&self, speed: f64, e: &mut Evaluation) {
         let Some(manifold) = &self.manifold else { return };
         let momenta = &mut e.momenta_of_products;
@@ -798,6 +881,7 @@ impl ConservativeBody {
     }
 
     /// On a manifold, finds ξ and ν.
+    #[inline(always)]
     pub(crate) fn find_in_shapes(&self, e: &mut Evaluation) {
         let Some(manifold) = &self.manifold else { return };
         let [xi, nu, _] = &mut e.in_shapes;

@@ -2,7 +2,6 @@
 
 use std::any::Any;
 
-use nalgebra::Vector2;
 use rigid_kin::Attitude;
 use serde::{Deserialize, Serialize};
 
@@ -11,7 +10,7 @@ use crate::conservative::{ConservativeBody, ConservativeState, Evaluation, Slow,
 use crate::energies::Energies;
 use crate::error::{SetupError, StepError};
 use crate::error_size::Sizes;
-use crate::exponential::{BlockStore, apply};
+use crate::exponential::{BlockStore, Pairs, sum_of_blocks};
 use crate::initial::Initial;
 use crate::moment::Moment;
 use crate::motion::PointShapes;
@@ -41,10 +40,14 @@ pub struct ConservativeMotion {
     before: ConservativeState,
     coarse: ConservativeState,
     stages: [Evaluation; 4],
-    /// Under step control, the evaluation at `next`.
+    /// Under step control, the evaluation at `next`; for rows, that at `state`.
     ahead: Evaluation,
     /// Whether `stages[0]` is that of `state`.
     first_known: bool,
+    /// Whether `ahead` is that of `state`: a row's evaluation is the first of the next step.
+    row_known: bool,
+    /// Whether a load or a drive may jump at `state`: a row is on neither side of the jump.
+    at_corner: bool,
     /// Where the stages start from in the modes; for Strang, the state after half a step of the modes alone.
     start_q: Vec<f64>,
     start_p: Vec<f64>,
@@ -113,7 +116,8 @@ impl Scheme for ConservativeMotion {
     fn step(&mut self, h: f64, end: f64) -> Result<(), StepError> {
         self.attempt(h, end)?;
         std::mem::swap(&mut self.state, &mut self.next);
-        self.first_known = false;
+        self.forget_rates();
+        self.at_corner = false;
         Ok(())
     }
 
@@ -123,14 +127,15 @@ impl Scheme for ConservativeMotion {
 
     /// The rates at the end of the last step are not those of the next one's beginning, and a drive may jump.
     fn pass_corner(&mut self) -> Result<(), StepError> {
-        self.first_known = false;
+        self.forget_rates();
+        self.at_corner = true;
         let Self { body, state, ahead, .. } = self;
         let time = state.time;
         body.pass_jump(state, ahead).map_err(|error| error.in_step(time, 0.0))
     }
 
     fn loads_have_changed(&mut self) {
-        self.first_known = false;
+        self.forget_rates();
     }
 
     fn raise_energy_of_loads(&mut self, end: f64) -> f64 {
@@ -140,8 +145,11 @@ impl Scheme for ConservativeMotion {
     }
 
     fn observe(&mut self, points: &[PointShapes], out: &mut Observation) -> Result<(), StepError> {
-        let Self { body, initial_attitude, state, ahead, .. } = self;
-        body.observe(state, initial_attitude, points, ahead, out).map_err(|error| error.in_step(state.time, 0.0))?;
+        let Self { body, initial_attitude, state, ahead, row_known, .. } = self;
+        let is_evaluated = std::mem::take(row_known);
+        body.observe(state, initial_attitude, points, ahead, is_evaluated, out)
+            .map_err(|error| error.in_step(state.time, 0.0))?;
+        *row_known = true;
         let (q, p) = (&state.modal_displacement, &state.modal_momentum);
         self.energies = body.energies_of(state.time, &state.slow, q, p, ahead);
         Ok(())
@@ -160,7 +168,8 @@ impl Scheme for ConservativeMotion {
     fn copy_state(&mut self, from: &dyn Scheme) {
         let Some(from) = (from as &dyn Any).downcast_ref::<Self>() else { return };
         self.state.copy_from(&from.state);
-        self.first_known = false;
+        self.forget_rates();
+        self.at_corner = true;
         self.evaluations = from.evaluations;
         self.largest = from.largest;
         self.energies = from.energies;
@@ -223,6 +232,7 @@ impl Scheme for ConservativeMotion {
         largest.check()?;
         let first = &mut self.stages[0];
         (first.slow, first.displacement, first.momentum) = (slow, displacement, momentum);
+        (self.row_known, self.at_corner) = (false, true);
         (self.state, self.energies, self.first_known) = (state, energies, first_known);
         (self.evaluations, self.largest) = (evaluations, largest);
         Ok(())
@@ -252,6 +262,8 @@ impl ConservativeMotion {
             stages: std::array::from_fn(|_| evaluation.clone()),
             ahead: evaluation,
             first_known: false,
+            row_known: false,
+            at_corner: true,
             start_q: vec![0.0; nf],
             start_p: vec![0.0; nf],
             q: vec![0.0; nf],
@@ -276,7 +288,8 @@ impl ConservativeMotion {
     pub fn set_momentum_state(&mut self, to: &ConservativeState) -> Result<(), SetupError> {
         to.check(self.body.flexible())?;
         self.state.copy_from(to);
-        self.first_known = false;
+        self.forget_rates();
+        self.at_corner = true;
         self.energies = None;
         Ok(())
     }
@@ -314,10 +327,11 @@ impl ConservativeMotion {
                 // The evaluation at the end is the first of the next step.
                 std::mem::swap(&mut self.stages[0], &mut self.ahead);
                 self.first_known = true;
+                self.at_corner = false;
             }
             _ => {
                 self.state.copy_from(&self.before);
-                self.first_known = false;
+                self.forget_rates();
             }
         }
         estimate
@@ -387,15 +401,26 @@ impl ConservativeMotion {
             .map_err(|error| error.in_step(state.time, h))
     }
 
-    /// Evaluates the first stage at the start of the stages, unless the last step already has.
+    /// No evaluation is that of the state.
+    fn forget_rates(&mut self) {
+        (self.first_known, self.row_known) = (false, false);
+    }
+
+    /// Evaluates the first stage at the start of the stages, unless the last step or a row already has.
     fn evaluate_first(&mut self, h: f64) -> Result<(), StepError> {
+        let row_known = std::mem::take(&mut self.row_known);
         if self.first_known {
             return Ok(());
         }
         self.q.copy_from_slice(&self.start_q);
         self.p.copy_from_slice(&self.start_p);
         let slow = self.state.slow;
-        self.evaluate(0, self.state.time, &slow, h)?;
+        if row_known && !self.at_corner {
+            std::mem::swap(&mut self.stages[0], &mut self.ahead);
+            self.evaluations += 1;
+        } else {
+            self.evaluate(0, self.state.time, &slow, h)?;
+        }
         let Self { body, state, stages, q, p, .. } = self;
         self.energies = body.energies_of(state.time, &slow, q, p, &stages[0]);
         if self.scheme == Stepping::Rkmk4 {
@@ -448,58 +473,40 @@ impl ConservativeMotion {
         let time = self.state.time;
         for (s, fraction) in [(1, 0.5), (2, 0.5), (3, 1.0)] {
             let Self { body, blocks, state, stages, q, p, .. } = self;
-            let blocks = blocks.get(&body.circular_frequencies, &body.damping_ratios, h);
-            let values = q.iter_mut().zip(p).zip(&blocks.modes).zip(state.modes());
-            let [first, second, third, _] = &*stages;
-            let first = first.of_modes();
+            let block = blocks.get(&body.circular_frequencies, &body.damping_ratios, h);
+            let (start, out) = (state.modes(), [&mut q[..], &mut p[..]]);
+            let [n1, n2, n3, _] = stages.each_ref().map(Evaluation::of_modes);
             match s {
-                1 => values.zip(first).for_each(|((((q, p), block), start), n1)| {
-                    let value = apply(&block.half, start) + apply(&block.a21, n1);
-                    (*q, *p) = (value.x, value.y);
-                }),
-                2 => values.zip(first).zip(second.of_modes()).for_each(|(((((q, p), block), start), n1), n2)| {
-                    let value = apply(&block.half, start) + apply(&block.a31, n1) + apply(&block.a32, n2);
-                    (*q, *p) = (value.x, value.y);
-                }),
-                _ => values.zip(first).zip(third.of_modes()).for_each(|(((((q, p), block), start), n1), n3)| {
-                    let value = apply(&block.full, start) + apply(&block.a41, n1) + apply(&block.a43, n3);
-                    (*q, *p) = (value.x, value.y);
-                }),
+                1 => sum_of_blocks([(&block.half, start), (&block.a21, n1)], out),
+                2 => sum_of_blocks([(&block.half, start), (&block.a31, n1), (&block.a32, n2)], out),
+                _ => sum_of_blocks([(&block.full, start), (&block.a41, n1), (&block.a43, n3)], out),
             }
             let slow = state.slow + stages[s - 1].slow * (fraction * h);
             self.evaluate(s, time + fraction * h, &slow, h)?;
         }
-        let Self { body, blocks, state, next, stages: [k1, k2, k3, k4], .. } = self;
-        let blocks = blocks.get(&body.circular_frequencies, &body.damping_ratios, h);
-        next.slow = state.slow + (k1.slow + (k2.slow + k3.slow) * 2.0 + k4.slow) * (h / 6.0);
-        let rates = k1.of_modes().zip(k2.of_modes()).zip(k3.of_modes()).zip(k4.of_modes());
-        let values = next.modal_displacement.iter_mut().zip(&mut next.modal_momentum);
-        let starts = blocks.modes.iter().zip(state.modes());
-        for (((q, p), (block, start)), (((n1, n2), n3), n4)) in values.zip(starts).zip(rates) {
-            let value =
-                apply(&block.full, start) + apply(&block.b1, n1) + apply(&block.b2, n2 + n3) + apply(&block.b4, n4);
-            (*q, *p) = (value.x, value.y);
-        }
+        let Self { body, blocks, state, next, stages, .. } = self;
+        let block = blocks.get(&body.circular_frequencies, &body.damping_ratios, h);
+        let [k1, k2, k3, k4] = stages.each_ref().map(|stage| &stage.slow);
+        next.slow = state.slow + (k1 + (k2 + k3) * 2.0 + k4) * (h / 6.0);
+        let [n1, n2, n3, n4] = stages.each_ref().map(Evaluation::of_modes);
+        let terms = [(&block.full, state.modes()), (&block.b1, n1), (&block.b2, n2), (&block.b2, n3), (&block.b4, n4)];
+        sum_of_blocks(terms, [&mut next.modal_displacement, &mut next.modal_momentum]);
         Ok(())
     }
 }
 
 impl ConservativeState {
-    /// (q, p) of each mode.
-    fn modes(&self) -> impl Iterator<Item = Vector2<f64>> {
-        pairs_of(&self.modal_displacement, &self.modal_momentum)
+    /// q and p.
+    fn modes(&self) -> Pairs<'_> {
+        [&self.modal_displacement, &self.modal_momentum]
     }
 }
 
 impl Evaluation {
-    /// Rates of (q, p) of each mode, without the linear part.
-    fn of_modes(&self) -> impl Iterator<Item = Vector2<f64>> {
-        pairs_of(&self.displacement, &self.momentum)
+    /// Rates of q and p, without the linear part.
+    fn of_modes(&self) -> Pairs<'_> {
+        [&self.displacement, &self.momentum]
     }
-}
-
-fn pairs_of(a: &[f64], b: &[f64]) -> impl Iterator<Item = Vector2<f64>> {
-    a.iter().zip(b).map(|(a, b)| Vector2::new(*a, *b))
 }
 
 /// out = x + c·y

@@ -11,22 +11,26 @@ use crate::reaction::HeldMotion;
 use crate::work::Work;
 
 impl ConservativeBody {
-    /// Reads the motion off a state. `e` is overwritten.
+    /// Reads the motion off a state, with its rates in `e`, unless they are there.
     pub(crate) fn observe(
         &self,
         state: &ConservativeState,
         initial_attitude: &Attitude,
         points: &[PointShapes],
         e: &mut Evaluation,
+        is_evaluated: bool,
         out: &mut Observation,
     ) -> Result<(), RateError> {
         let (q, p) = (&state.modal_displacement, &state.modal_momentum);
-        self.evaluate([state.time, state.time], &state.attitude, &state.slow, q, p, e)?;
+        if !is_evaluated {
+            self.evaluate([state.time, state.time], &state.attitude, &state.slow, q, p, e)?;
+        }
         let (kinetic, strain) = self.energies(state, e);
-        self.add_linear(q, p, e);
         let driven_acceleration =
             self.drive.as_ref().map_or(0.0, |drive| drive.acceleration_at(state.time, state.time));
-        e.acceleration.copy_from_slice(&e.momentum);
+        for (k, rate) in e.acceleration.iter_mut().enumerate() {
+            *rate = e.momentum[k] + self.linear_rate(k, q[k], p[k]);
+        }
         let spin_rate = self.accelerate(driven_acceleration, e)?;
         out.modal_acceleration.clone_from(&e.acceleration);
         let alpha = self.axes.iter().zip(spin_rate.iter()).map(|(axis, a)| axis * *a).sum::<Vector3<f64>>();

@@ -7,54 +7,122 @@
 //! b1 = φ1 − 3φ2 + 4φ3     b2 = b3 = 2φ2 − 4φ3     b4 = 4φ3 − φ2
 //! ```
 
-use nalgebra::{Matrix2, Vector2};
+use nalgebra::Matrix2;
+use pulp::{Arch, Simd, WithSimd, bytemuck};
 
 use crate::phi::{Phis, oscillator_phis};
 
-/// The 2×2 blocks of one mode for one step, h included.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct ModeBlocks {
-    pub half: Matrix2<f64>,
-    pub full: Matrix2<f64>,
-    pub a21: Matrix2<f64>,
-    pub a31: Matrix2<f64>,
-    pub a32: Matrix2<f64>,
-    pub a41: Matrix2<f64>,
-    pub a43: Matrix2<f64>,
-    pub b1: Matrix2<f64>,
-    pub b2: Matrix2<f64>,
-    pub b4: Matrix2<f64>,
+/// A 2×2 block for each mode, entry by entry: what (q, p) of the mode give q and p.
+#[derive(Debug, Clone)]
+pub(crate) struct Blocks {
+    q_of_q: Vec<f64>,
+    q_of_p: Vec<f64>,
+    p_of_q: Vec<f64>,
+    p_of_p: Vec<f64>,
 }
 
-/// The blocks of all modes for one step.
+impl Blocks {
+    fn new(modes: &[Matrix2<f64>]) -> Self {
+        let [q_of_q, q_of_p, p_of_q, p_of_p] =
+            [(0, 0), (0, 1), (1, 0), (1, 1)].map(|entry| modes.iter().map(|block| block[entry]).collect());
+        Self { q_of_q, q_of_p, p_of_q, p_of_p }
+    }
+}
+
+/// The blocks of all modes for one step, h included.
 #[derive(Debug, Clone)]
 pub(crate) struct StepBlocks {
     pub step: f64,
-    pub modes: Vec<ModeBlocks>,
+    pub half: Blocks,
+    pub full: Blocks,
+    pub a21: Blocks,
+    pub a31: Blocks,
+    pub a32: Blocks,
+    pub a41: Blocks,
+    pub a43: Blocks,
+    pub b1: Blocks,
+    pub b2: Blocks,
+    pub b4: Blocks,
 }
 
 impl StepBlocks {
     pub(crate) fn new(circular_frequencies: &[f64], damping_ratios: &[f64], h: f64) -> Self {
-        let blocks = |omega: f64, zeta: f64| {
-            let [half, half_1, half_2, _]: Phis = oscillator_phis(omega, zeta, 0.5 * h);
-            let [full, phi_1, phi_2, phi_3]: Phis = oscillator_phis(omega, zeta, h);
-            ModeBlocks {
-                half,
-                full,
-                a21: half_1 * (0.5 * h),
-                a31: (half_1 * 0.5 - half_2) * h,
-                a32: half_2 * h,
-                a41: (phi_1 - phi_2 * 2.0) * h,
-                a43: phi_2 * (2.0 * h),
-                b1: (phi_1 - phi_2 * 3.0 + phi_3 * 4.0) * h,
-                b2: (phi_2 * 2.0 - phi_3 * 4.0) * h,
-                b4: (phi_3 * 4.0 - phi_2) * h,
-            }
+        let phis = |h: f64| -> Vec<Phis> {
+            let modes = circular_frequencies.iter().zip(damping_ratios);
+            modes.map(|(omega, zeta)| oscillator_phis(*omega, *zeta, h)).collect()
         };
-        let modes =
-            circular_frequencies.iter().zip(damping_ratios).map(|(omega, zeta)| blocks(*omega, *zeta)).collect();
-        Self { step: h, modes }
+        let (of_half, of_full) = (phis(0.5 * h), phis(h));
+        let from = |phis: &[Phis], block: fn(&Phis) -> Matrix2<f64>, factor: f64| {
+            Blocks::new(&phis.iter().map(|phis| block(phis) * factor).collect::<Vec<_>>())
+        };
+        Self {
+            step: h,
+            half: from(&of_half, |phi| phi[0], 1.0),
+            full: from(&of_full, |phi| phi[0], 1.0),
+            a21: from(&of_half, |phi| phi[1], 0.5 * h),
+            a31: from(&of_half, |phi| phi[1] * 0.5 - phi[2], h),
+            a32: from(&of_half, |phi| phi[2], h),
+            a41: from(&of_full, |phi| phi[1] - phi[2] * 2.0, h),
+            a43: from(&of_full, |phi| phi[2], 2.0 * h),
+            b1: from(&of_full, |phi| phi[1] - phi[2] * 3.0 + phi[3] * 4.0, h),
+            b2: from(&of_full, |phi| phi[2] * 2.0 - phi[3] * 4.0, h),
+            b4: from(&of_full, |phi| phi[3] * 4.0 - phi[2], h),
+        }
     }
+}
+
+/// q and p, a list each.
+pub(crate) type Pairs<'a> = [&'a [f64]; 2];
+
+/// The sum of blocks times (q, p), mode by mode.
+pub(crate) fn sum_of_blocks<const N: usize>(terms: [(&Blocks, Pairs<'_>); N], out: [&mut [f64]; 2]) {
+    Arch::new().dispatch(SumOfBlocks { terms, out });
+}
+
+/// Such a sum, in the widest vectors that the processor has.
+struct SumOfBlocks<'a, const N: usize> {
+    terms: [(&'a Blocks, Pairs<'a>); N],
+    out: [&'a mut [f64]; 2],
+}
+
+impl<const N: usize> WithSimd for SumOfBlocks<'_, N> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Self { terms, out: [q, p] } = self;
+        let length = q.len();
+        let Some(last) = length.checked_sub(S::F64_LANES) else {
+            for k in 0..length {
+                let sums = sum_at(simd, &terms, |list| simd.splat_f64s(list[k]));
+                [q[k], p[k]] = sums.map(|sum| bytemuck::cast_slice(&[sum])[0]);
+            }
+            return;
+        };
+        // The last vector ends with the last mode, and has modes of the one before once more.
+        let mut first = 0;
+        while first < length {
+            let at = first.min(last)..first.min(last) + S::F64_LANES;
+            let sums = sum_at(simd, &terms, |list| S::as_simd_f64s(&list[at.clone()]).0[0]);
+            S::as_mut_simd_f64s(&mut q[at.clone()]).0[0] = sums[0];
+            S::as_mut_simd_f64s(&mut p[at]).0[0] = sums[1];
+            first += S::F64_LANES;
+        }
+    }
+}
+
+/// The sum for the modes that are loaded.
+#[inline(always)]
+fn sum_at<S: Simd>(simd: S, terms: &[(&Blocks, Pairs<'_>)], load: impl Fn(&[f64]) -> S::f64s) -> [S::f64s; 2] {
+    let [mut q_sum, mut p_sum] = [simd.splat_f64s(0.0); 2];
+    for (block, [q, p]) in terms {
+        let (q, p) = (load(q), load(p));
+        q_sum = simd.mul_add_e_f64s(load(&block.q_of_q), q, q_sum);
+        q_sum = simd.mul_add_e_f64s(load(&block.q_of_p), p, q_sum);
+        p_sum = simd.mul_add_e_f64s(load(&block.p_of_q), q, p_sum);
+        p_sum = simd.mul_add_e_f64s(load(&block.p_of_p), p, p_sum);
+    }
+    [q_sum, p_sum]
 }
 
 /// Blocks of the steps that have been taken lately, so that a step that comes back costs nothing.
@@ -79,9 +147,4 @@ impl BlockStore {
         }
         &self.stored[0]
     }
-}
-
-/// Applies a block to the pair (q, p) of a mode.
-pub(crate) fn apply(block: &Matrix2<f64>, pair: Vector2<f64>) -> Vector2<f64> {
-    block * pair
 }

@@ -28,6 +28,7 @@ mod blocked_matrix;
 mod builder;
 mod checkpoint;
 mod column_major;
+mod components;
 mod conservative;
 mod conservative_motion;
 mod conservative_observation;

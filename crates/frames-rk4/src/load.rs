@@ -166,7 +166,7 @@ impl Kinematics<'_> {
     /// Velocity of a point, global components.
     pub fn velocity_global(&self, point: &PointShapes) -> Vector3<f64> {
         let Coordinates { first, velocity, .. } = self.coordinates;
-        let mut modal = sum(&point.columns()[first..], velocity);
+        let mut modal = point.components(first).sum(velocity);
         if let Some(second_order) = point.second_order() {
             let [q, rate] = self.coordinates.modes();
             modal += second_order.velocity(q, rate);
@@ -203,7 +203,7 @@ impl Kinematics<'_> {
         let Coordinates { first, displacement, .. } = self.coordinates;
         let second_order = |second: &SecondOrder| second.displacement(self.coordinates.modes()[0]);
         point.position_body()
-            + sum(&point.columns()[first..], displacement)
+            + point.components(first).sum(displacement)
             + point.second_order().map_or_else(Vector3::zeros, second_order)
     }
 }
@@ -255,13 +255,13 @@ impl<'a> Applied<'a> {
         if force_body == Vector3::zeros() {
             return;
         }
-        let Coordinates { first, displacement, .. } = self.coordinates;
-        let columns = &point.columns()[first..];
+        let Coordinates { first, displacement, velocity, .. } = self.coordinates;
         let second_order = self.push(point.second_order(), &force_body);
-        let arm = point.position_body() + sum(columns, displacement) + second_order - self.center_body;
+        let (moved, power) = point.components(first).push(&force_body, displacement, velocity, self.modal_force);
+        let arm = point.position_body() + moved + second_order - self.center_body;
         self.force_body += force_body;
         self.moment_body += arm.cross(&force_body);
-        self.project(columns.iter().map(|shape| shape.dot(&force_body)));
+        self.modal_power += power;
     }
 
     /// Adds a moment, body components, at a place with these rotations in the modes.

@@ -25,7 +25,7 @@ use faer::{Mat, MatRef};
 use modal::{ReducedBody, SecondOrderShapes};
 
 use crate::blocked_matrix::BlockedMatrix;
-use crate::column_major::{add_product, columns, dot, multiply};
+use crate::column_major::{add_product, columns, dot};
 use crate::error::SetupError;
 
 /// Most modes that may be large.
@@ -33,6 +33,22 @@ pub const MOST_LARGE: usize = 8;
 
 /// Most products of them.
 const MOST_PAIRS: usize = MOST_LARGE * (MOST_LARGE + 1) / 2;
+
+/// A call of a function for as many large modes as there are: their number is known to the compiler in it.
+macro_rules! by_count {
+    ($count:expr, $name:ident($($argument:expr),*)) => {
+        match $count {
+            1 => $name::<1>($($argument),*),
+            2 => $name::<2>($($argument),*),
+            3 => $name::<3>($($argument),*),
+            4 => $name::<4>($($argument),*),
+            5 => $name::<5>($($argument),*),
+            6 => $name::<6>($($argument),*),
+            7 => $name::<7>($($argument),*),
+            _ => $name::<MOST_LARGE>($($argument),*),
+        }
+    };
+}
 
 /// The manifold that a body with large modes moves on.
 #[derive(Debug, Clone)]
@@ -229,22 +245,11 @@ impl Manifold {
         large_of(large, q, x);
         let (of_modes, products) = z.split_at_mut(*modes);
         of_modes.copy_from_slice(q);
-        let x = &x[..large.len()];
-        for (products, x) in rows_mut(products, x) {
-            products.iter_mut().zip(x).for_each(|(product, other)| *product = x[0] * other);
-        }
-        slopes.multiply(x, at_q);
+        by_count!(large.len(), find_products(x, products));
+        slopes.multiply(&x[..large.len()], at_q);
         // Of M, the modes that are not large leave to the large ones 1 + tᵀt of the shapes that only follow.
         locked.multiply(products, factor);
-        for i in 0..large.len() {
-            for j in 0..=i {
-                let mut sum = f64::from(u8::from(i == j)) + factor[entry(i, j)];
-                for k in 0..j {
-                    sum -= factor[entry(i, k)] * factor[entry(j, k)];
-                }
-                factor[entry(i, j)] = if i == j { sum.sqrt().recip() } else { sum * factor[entry(j, j)] };
-            }
-        }
+        by_count!(large.len(), factorize(factor));
     }
 
     /// Goes along with q̇: ż.
@@ -306,14 +311,7 @@ impl Manifold {
 
     fn add_products(&self, x: &[f64; MOST_LARGE], of_products: &[f64], out: &mut [f64]) {
         let large = &self.0.large;
-        let mut sums = [0.0; MOST_LARGE];
-        let mut of_products = of_products.iter();
-        for j in 0..large.len().min(MOST_LARGE) {
-            for (k, y) in (j..large.len().min(MOST_LARGE)).zip(&mut of_products) {
-                sums[j] += y * x[k];
-                sums[k] += y * x[j];
-            }
-        }
+        let sums = by_count!(large.len(), sums_of_products(x, of_products));
         for (mode, sum) in large.iter().zip(sums) {
             out[*mode] += sum;
         }
@@ -338,27 +336,13 @@ impl Manifold {
     /// L⁻¹ y in place (modes), of the Cholesky factor M = L Lᵀ that has the large modes last.
     pub(crate) fn substitute_forward(&self, place: &ManifoldPoint, y: &mut [f64]) {
         let large = &self.0.large;
-        let factor = &place.factor;
-        // The slopes are zero along the large modes, so that these rows of y stay out of the products.
-        let mut of_slopes = [0.0; MOST_LARGE];
-        multiply(&place.slopes[..large.len() * y.len()], large.len(), y, &mut of_slopes[..large.len()]);
-        let mut x = [0.0; MOST_LARGE];
-        for (i, mode) in large.iter().enumerate() {
-            let before: f64 = x[..i].iter().zip(&factor[entry(i, 0)..]).map(|(x, factor)| x * factor).sum();
-            x[i] = (y[*mode] - of_slopes[i] - before) * factor[entry(i, i)];
-            y[*mode] = x[i];
-        }
+        by_count!(large.len(), forward(large, &place.slopes, &place.factor, y));
     }
 
     /// L⁻ᵀ y in place.
     pub(crate) fn substitute_back(&self, place: &ManifoldPoint, y: &mut [f64]) {
         let large = &self.0.large;
-        let factor = &place.factor;
-        let mut x = [0.0; MOST_LARGE];
-        for (i, mode) in large.iter().enumerate().rev() {
-            let after: f64 = (i + 1..large.len()).map(|k| factor[entry(k, i)] * x[k]).sum();
-            x[i] = (y[*mode] - after) * factor[entry(i, i)];
-        }
+        let x = by_count!(large.len(), backward(large, &place.factor, y));
         let negative = x.map(|x| -x);
         add_product(&place.slopes[large.len() * y.len()..], y.len(), &negative[..large.len()], y);
         for (x, mode) in x.iter().zip(large) {
@@ -393,15 +377,9 @@ impl Manifold {
         let rows = &mut rows[..count + products.len()];
         self.0.forces.multiply(products, rows);
         let (of_third, of_fourth) = rows.split_at(count);
-        let [mut cubic, mut quartic] = [[0.0; MOST_LARGE]; 2];
+        let mut cubic = [0.0; MOST_LARGE];
         cubic[..count].copy_from_slice(of_third);
-        for ([i, j], force) in triangle(count).zip(of_fourth) {
-            quartic[i] += force * x[j];
-            if i != j {
-                quartic[j] += force * x[i];
-            }
-        }
-        [cubic, quartic]
+        [cubic, by_count!(count, symmetric_product(of_fourth, x))]
     }
 }
 
@@ -418,6 +396,93 @@ fn rows_mut<'a>(products: &'a mut [f64], x: &'a [f64]) -> impl Iterator<Item = (
         rest = after;
         (row, &x[j..])
     })
+}
+
+/// The products j ≤ k of large modes.
+fn find_products<const C: usize>(x: &[f64; MOST_LARGE], products: &mut [f64]) {
+    let products = &mut products[..C * (C + 1) / 2];
+    let mut a = 0;
+    for j in 0..C {
+        for k in j..C {
+            products[a] = x[j] * x[k];
+            a += 1;
+        }
+    }
+}
+
+/// Bᵀ y of a number for each product.
+fn sums_of_products<const C: usize>(x: &[f64; MOST_LARGE], of_products: &[f64]) -> [f64; MOST_LARGE] {
+    let y = &of_products[..C * (C + 1) / 2];
+    let (mut sums, mut a) = ([0.0; MOST_LARGE], 0);
+    for j in 0..C {
+        for k in j..C {
+            sums[j] += y[a] * x[k];
+            sums[k] += y[a] * x[j];
+            a += 1;
+        }
+    }
+    sums
+}
+
+/// Turns the entries i ≥ j of M − 1 into those of the Cholesky factor of M, with the reciprocals of the diagonal.
+fn factorize<const C: usize>(factor: &mut [f64]) {
+    let factor = &mut factor[..C * (C + 1) / 2];
+    for i in 0..C {
+        for j in 0..=i {
+            let mut sum = f64::from(u8::from(i == j)) + factor[entry(i, j)];
+            for k in 0..j {
+                sum -= factor[entry(i, k)] * factor[entry(j, k)];
+            }
+            factor[entry(i, j)] = if i == j { sum.sqrt().recip() } else { sum * factor[entry(j, j)] };
+        }
+    }
+}
+
+/// L⁻¹ y in place, by the slopes of the large modes within all modes and the factor of what M leaves to the large ones.
+fn forward<const C: usize>(large: &[usize], slopes: &[f64], factor: &[f64], y: &mut [f64]) {
+    let (slopes, factor) = (slopes.as_chunks::<C>().0, &factor[..C * (C + 1) / 2]);
+    // The slopes are zero along the large modes, so that these rows of y stay out of the sums.
+    let mut sums = [0.0; C];
+    for (slopes, y) in slopes.iter().zip(y.iter()) {
+        sums.iter_mut().zip(slopes).for_each(|(sum, slope)| *sum += slope * y);
+    }
+    let mut x = [0.0; C];
+    for i in 0..C {
+        let mut rest = y[large[i]] - sums[i];
+        for k in 0..i {
+            rest -= factor[entry(i, k)] * x[k];
+        }
+        x[i] = rest * factor[entry(i, i)];
+    }
+    large.iter().zip(x).for_each(|(mode, x)| y[*mode] = x);
+}
+
+/// L⁻ᵀ y along the large modes, of the factor of what M leaves to them.
+fn backward<const C: usize>(large: &[usize], factor: &[f64], y: &[f64]) -> [f64; MOST_LARGE] {
+    let factor = &factor[..C * (C + 1) / 2];
+    let mut x = [0.0; MOST_LARGE];
+    for i in (0..C).rev() {
+        let mut rest = y[large[i]];
+        for k in i + 1..C {
+            rest -= factor[entry(k, i)] * x[k];
+        }
+        x[i] = rest * factor[entry(i, i)];
+    }
+    x
+}
+
+/// A x, of a symmetric matrix by its entries i ≥ j, row by row.
+fn symmetric_product<const C: usize>(entries: &[f64], x: &[f64; MOST_LARGE]) -> [f64; MOST_LARGE] {
+    let entries = &entries[..C * (C + 1) / 2];
+    let mut product = [0.0; MOST_LARGE];
+    for i in 0..C {
+        for j in 0..i {
+            product[i] += entries[entry(i, j)] * x[j];
+            product[j] += entries[entry(i, j)] * x[i];
+        }
+        product[i] += entries[entry(i, i)] * x[i];
+    }
+    product
 }
 
 /// The large ones of q, then zeros.

@@ -6,6 +6,7 @@ use nalgebra::{Matrix3, Vector3};
 use rigid_kin::{Attitude, Inertia, InertiaError, euler_angular_acceleration};
 
 use crate::attitude_account::AttitudeAccount;
+use crate::components::{Components, ComponentsFrom};
 use crate::energies::Energies;
 use crate::error::{SetupError, StepError};
 use crate::observation::{Observation, PointMotion};
@@ -19,6 +20,8 @@ pub struct PointShapes {
     position_body: Vector3<f64>,
     /// Column k is the displacement of the point in mode k (6+nf columns).
     columns: Vec<Vector3<f64>>,
+    /// The same by components, a list of all modes each.
+    components: Components,
     second_order: Option<SecondOrder>,
 }
 
@@ -30,7 +33,11 @@ impl PointShapes {
             .map(|k| rigid.column(k).into())
             .chain(point.shapes.col_iter().map(|c| Vector3::new(c[0], c[1], c[2])))
             .collect();
-        Self { position_body: point.position_body, columns, second_order: None }
+        Self::of_columns(point.position_body, columns)
+    }
+
+    fn of_columns(position_body: Vector3<f64>, columns: Vec<Vector3<f64>>) -> Self {
+        Self { position_body, components: Components::new(&columns), columns, second_order: None }
     }
 
     /// The point with its displacement to second order: a load on it then stiffens the body.
@@ -58,29 +65,27 @@ impl PointShapes {
     pub fn truncated(&self, flexible: usize) -> Self {
         let kept = self.columns.len().min(6 + flexible);
         let second_order = self.second_order.as_ref().map(|second_order| second_order.truncated(flexible));
-        Self { position_body: self.position_body, columns: self.columns[..kept].to_vec(), second_order }
+        Self { second_order, ..Self::of_columns(self.position_body, self.columns[..kept].to_vec()) }
     }
 
     /// Modal expansion at the point, (28): Σ_k Ψ_k c_k.
     pub(crate) fn expand(&self, coordinates: &[f64]) -> Vector3<f64> {
-        self.columns.iter().zip(coordinates).map(|(shape, c)| shape * *c).sum()
+        self.components.from(0).sum(coordinates)
     }
 
     /// Φ q of the flexible modes: displacement of the point in the body frame.
     pub(crate) fn deformation(&self, flexible: &[f64]) -> Vector3<f64> {
-        self.columns[6..].iter().zip(flexible).map(|(shape, c)| shape * *c).sum()
+        self.components.from(6).sum(flexible)
     }
 
     /// [`Self::deformation`] of three lists at once: each shape is read once.
     pub(crate) fn deformations(&self, flexible: [&[f64]; 3]) -> [Vector3<f64>; 3] {
-        let [a, b, c] = flexible;
-        let mut sums = [Vector3::zeros(); 3];
-        for (((shape, a), b), c) in self.columns[6..].iter().zip(a).zip(b).zip(c) {
-            sums[0] += shape * *a;
-            sums[1] += shape * *b;
-            sums[2] += shape * *c;
-        }
-        sums
+        self.components.from(6).sums(flexible)
+    }
+
+    /// The components of all shapes from mode `first` on, the rigid ones counted.
+    pub(crate) fn components(&self, first: usize) -> ComponentsFrom<'_> {
+        self.components.from(first)
     }
 
     /// Columns of all modes, rigid and flexible (6+nf).

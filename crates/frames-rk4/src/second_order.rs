@@ -10,10 +10,11 @@
 
 use std::sync::Arc;
 
-use faer::{Mat, MatRef};
+use faer::Mat;
 use nalgebra::Vector3;
 
-use crate::column_major::{columns, dot};
+use crate::blocked_matrix::BlockedMatrix;
+use crate::column_major::dot;
 use crate::error::SetupError;
 use crate::physics::check_unit;
 
@@ -28,8 +29,10 @@ pub struct SecondOrder {
 #[derive(Debug)]
 struct Term {
     direction: Vector3<f64>,
-    /// K_d, column by column (nf × nf).
-    stiffness: Vec<f64>,
+    /// K_d (nf × nf).
+    stiffness: Mat<f64>,
+    /// The same, ready for products.
+    blocked: BlockedMatrix,
 }
 
 impl SecondOrder {
@@ -54,11 +57,7 @@ impl SecondOrder {
                 return Err(SetupError::Value { what, found, expected: "a finite number" });
             }
         }
-        let term = |(direction, stiffness): (Vector3<f64>, Mat<f64>)| Term {
-            direction,
-            stiffness: columns(stiffness.as_ref()),
-        };
-        Ok(Self { terms: terms.into_iter().map(term).collect(), modes })
+        Ok(Self { terms: terms.into_iter().map(Term::new).collect(), modes })
     }
 
     /// Number of flexible modes.
@@ -74,32 +73,25 @@ impl SecondOrder {
     /// The same in the first `modes` modes only.
     pub(crate) fn truncated(&self, modes: usize) -> Self {
         let modes = modes.min(self.modes);
-        let leading = |term: &Term| Term {
-            direction: term.direction,
-            stiffness: columns(
-                MatRef::from_column_major_slice(&term.stiffness, self.modes, self.modes).get(..modes, ..modes),
-            ),
-        };
+        let leading = |term: &Term| Term::new((term.direction, term.stiffness.get(..modes, ..modes).to_owned()));
         Self { terms: self.terms.iter().map(leading).collect(), modes }
     }
 
     /// u₂.
     pub(crate) fn displacement(&self, q: &[f64]) -> Vector3<f64> {
-        self.of(q, |k_q| 0.5 * dot(k_q, q))
+        self.of(q, q) * 0.5
     }
 
     /// Its rate.
     pub(crate) fn velocity(&self, q: &[f64], velocity: &[f64]) -> Vector3<f64> {
-        self.of(q, |k_q| dot(k_q, velocity))
+        self.of(q, velocity)
     }
 
-    fn of(&self, q: &[f64], value: impl Fn(&[f64]) -> f64) -> Vector3<f64> {
+    /// −Σ_d d (xᵀ K_d q)
+    fn of(&self, q: &[f64], x: &[f64]) -> Vector3<f64> {
         let mut sum = Vector3::zeros();
-        for Term { direction, stiffness } in self.terms.iter() {
-            // Symmetric, so that a column is a row: Σ_l q_l value(K_l) is the value of K q.
-            let along: f64 =
-                stiffness.chunks_exact(self.modes.max(1)).zip(q).map(|(column, q)| q * value(column)).sum();
-            sum -= direction * along;
+        for Term { direction, blocked, .. } in self.terms.iter() {
+            blocked.each_block(q, |first, k_q| sum -= direction * dot(k_q, &x[first.min(q.len())..]));
         }
         sum
     }
@@ -113,17 +105,24 @@ impl SecondOrder {
         modal_force: &mut [f64],
     ) -> (Vector3<f64>, f64) {
         let (mut displacement, mut power) = (Vector3::zeros(), 0.0);
-        for Term { direction, stiffness } in self.terms.iter() {
+        for Term { direction, blocked, .. } in self.terms.iter() {
             let along = direction.dot(vector);
             let mut bent = 0.0;
-            for (l, column) in stiffness.chunks_exact(self.modes.max(1)).enumerate().take(q.len()) {
-                let k_q = dot(column, q);
-                modal_force[l] -= along * k_q;
-                power -= along * k_q * velocity[l];
-                bent += k_q * q[l];
-            }
+            blocked.each_block(q, |first, k_q| {
+                // The load may know more modes than the run has.
+                let first = first.min(q.len());
+                modal_force[first..q.len()].iter_mut().zip(k_q).for_each(|(force, k_q)| *force -= along * k_q);
+                power -= along * dot(k_q, &velocity[first..]);
+                bent += dot(k_q, &q[first..]);
+            });
             displacement -= direction * (0.5 * bent);
         }
         (displacement, power)
+    }
+}
+
+impl Term {
+    fn new((direction, stiffness): (Vector3<f64>, Mat<f64>)) -> Self {
+        Self { direction, blocked: BlockedMatrix::new(stiffness.as_ref()), stiffness }
     }
 }
