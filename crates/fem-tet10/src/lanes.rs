@@ -158,10 +158,10 @@ impl Grouped {
 pub(crate) fn gradient(relative: &[[Lanes; 3]; OTHERS], point: &IntegrationPoint) -> Matrices {
     let mut sum = Matrices::ZERO;
     for (u, gradient) in relative.iter().zip(&point.gradients[1..]) {
-        for a in 0..3 {
-            for b in 0..3 {
-                for lane in 0..LANES {
-                    sum.0[a][b][lane] += u[a][lane] * gradient[b];
+        for (sum, u) in sum.0.iter_mut().zip(u) {
+            for (sum, gradient) in sum.iter_mut().zip(gradient) {
+                for (sum, u) in sum.iter_mut().zip(u) {
+                    *sum += u * gradient;
                 }
             }
         }

@@ -10,8 +10,9 @@
 //! energy = P²/2m + ½ π·ω + ½ p·q̇ + ½ q·Λq
 //! ```
 //!
-//! Of a body that turns freely, S and the G_i leave J and q̇ for the locked inertia and p: q̇ = p − S ω need not be known
-//! for its forces, and one pass through the matrices gives all that a state is asked for.
+//! Of a body that turns freely and whose inertia follows its deformation, S and the G_i leave J and q̇ for the locked
+//! inertia and p: q̇ = p − S ω need not be known for its forces, and one pass through the matrices gives all that a state
+//! is asked for.
 //!
 //! ```text
 //! 𝕁 = J − SᵀS = J0 + 2 c_ij·q + qᵀ N̂_ij q,      N̂_ij = N_ij + ½ (G_iG_j + G_jG_i)
@@ -112,7 +113,7 @@ pub struct ConservativeBody {
     /// ij of the terms of the inertia that follow the deformation; empty where none does.
     pub(crate) pairs: Vec<(usize, usize)>,
     /// Whether the equations are those of the locked inertia, which only momenta enter: of a body that turns freely, with
-    /// Coriolis terms and no large modes.
+    /// Coriolis terms, inertia that follows its deformation, and no large modes.
     locked: bool,
     /// S and c_ij + N_ij q of the undeformed body: b_i of driven axes or zeros (`s_rows`), then the c_ij of `pairs`.
     undeformed: Vec<f64>,
@@ -273,11 +274,12 @@ impl ConservativeBody {
         let inertia = along_axes(&axes, &body.inertia);
 
         let manifold = large_deflection.as_ref();
-        let locked = effects[Effect::Coriolis] && !turn_driven && manifold.is_none();
         let follows = effects[Effect::DeformedInertia];
+        // It needs the N_ij: where they are off, it would cost more than it saves.
+        let locked = effects[Effect::Coriolis] && follows && !turn_driven && manifold.is_none();
         let pairs: Vec<(usize, usize)> = match axes.len() {
-            3 if nf > 0 && (follows || locked) => ReducedBody::PAIRS.to_vec(),
-            1 if nf > 0 && (follows || locked) => vec![(0, 0)],
+            3 if nf > 0 && follows => ReducedBody::PAIRS.to_vec(),
+            1 if nf > 0 && follows => vec![(0, 0)],
             _ => Vec::new(),
         };
         let size = manifold.map_or(nf, Manifold::size);
@@ -304,8 +306,7 @@ impl ConservativeBody {
         let of = |matrices: &[Mat<f64>; 6], weights: &[f64; 6], i: usize, j: usize| -> f64 {
             matrices.iter().zip(weights).map(|(m, w)| w * m[(i, j)]).sum()
         };
-        let weights_where_it_follows = |pair: &(usize, usize)| if follows { weights(*pair) } else { [0.0; 6] };
-        let pair_weights: Vec<[f64; 6]> = pairs.iter().map(weights_where_it_follows).collect();
+        let pair_weights: Vec<[f64; 6]> = pairs.iter().map(|pair| weights(*pair)).collect();
         let second = |weights: &[f64; 6]| {
             let mut second = on_coordinates(Mat::from_fn(nf, nf, |i, j| {
                 of(&body.inertia_second, weights, i, j)

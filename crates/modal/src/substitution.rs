@@ -146,8 +146,8 @@ impl<'a> Supernode<'a> {
         let mut x = [[0.0; W]; K];
         for k in 0..K {
             let (column, _) = self.column(first + k, first);
-            for c in 0..W {
-                here[k][c] /= column[k];
+            for x in &mut here[k] {
+                *x /= column[k];
             }
             x[k] = here[k];
             for i in k + 1..K {
