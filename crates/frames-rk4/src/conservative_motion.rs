@@ -40,14 +40,10 @@ pub struct ConservativeMotion {
     before: ConservativeState,
     coarse: ConservativeState,
     stages: [Evaluation; 4],
-    /// Under step control, the evaluation at `next`; for rows, that at `state`.
+    /// Under step control, the evaluation at `next`.
     ahead: Evaluation,
     /// Whether `stages[0]` is that of `state`.
     first_known: bool,
-    /// Whether `ahead` is that of `state`: a row's evaluation is the first of the next step.
-    row_known: bool,
-    /// Whether a load or a drive may jump at `state`: a row is on neither side of the jump.
-    at_corner: bool,
     /// Where the stages start from in the modes; for Strang, the state after half a step of the modes alone.
     start_q: Vec<f64>,
     start_p: Vec<f64>,
@@ -116,8 +112,7 @@ impl Scheme for ConservativeMotion {
     fn step(&mut self, h: f64, end: f64) -> Result<(), StepError> {
         self.attempt(h, end)?;
         std::mem::swap(&mut self.state, &mut self.next);
-        self.forget_rates();
-        self.at_corner = false;
+        self.first_known = false;
         Ok(())
     }
 
@@ -127,15 +122,14 @@ impl Scheme for ConservativeMotion {
 
     /// The rates at the end of the last step are not those of the next one's beginning, and a drive may jump.
     fn pass_corner(&mut self) -> Result<(), StepError> {
-        self.forget_rates();
-        self.at_corner = true;
+        self.first_known = false;
         let Self { body, state, ahead, .. } = self;
         let time = state.time;
         body.pass_jump(state, ahead).map_err(|error| error.in_step(time, 0.0))
     }
 
     fn loads_have_changed(&mut self) {
-        self.forget_rates();
+        self.first_known = false;
     }
 
     fn raise_energy_of_loads(&mut self, end: f64) -> f64 {
@@ -145,11 +139,9 @@ impl Scheme for ConservativeMotion {
     }
 
     fn observe(&mut self, points: &[PointShapes], out: &mut Observation) -> Result<(), StepError> {
-        let Self { body, initial_attitude, state, ahead, row_known, .. } = self;
-        let is_evaluated = std::mem::take(row_known);
-        body.observe(state, initial_attitude, points, ahead, is_evaluated, out)
-            .map_err(|error| error.in_step(state.time, 0.0))?;
-        *row_known = true;
+        // A row has an evaluation of its own: a load may be another by the time of the next step.
+        let Self { body, initial_attitude, state, ahead, .. } = self;
+        body.observe(state, initial_attitude, points, ahead, out).map_err(|error| error.in_step(state.time, 0.0))?;
         let (q, p) = (&state.modal_displacement, &state.modal_momentum);
         self.energies = body.energies_of(state.time, &state.slow, q, p, ahead);
         Ok(())
@@ -168,8 +160,7 @@ impl Scheme for ConservativeMotion {
     fn copy_state(&mut self, from: &dyn Scheme) {
         let Some(from) = (from as &dyn Any).downcast_ref::<Self>() else { return };
         self.state.copy_from(&from.state);
-        self.forget_rates();
-        self.at_corner = true;
+        self.first_known = false;
         self.evaluations = from.evaluations;
         self.largest = from.largest;
         self.energies = from.energies;
@@ -232,7 +223,6 @@ impl Scheme for ConservativeMotion {
         largest.check()?;
         let first = &mut self.stages[0];
         (first.slow, first.displacement, first.momentum) = (slow, displacement, momentum);
-        (self.row_known, self.at_corner) = (false, true);
         (self.state, self.energies, self.first_known) = (state, energies, first_known);
         (self.evaluations, self.largest) = (evaluations, largest);
         Ok(())
@@ -262,8 +252,6 @@ impl ConservativeMotion {
             stages: std::array::from_fn(|_| evaluation.clone()),
             ahead: evaluation,
             first_known: false,
-            row_known: false,
-            at_corner: true,
             start_q: vec![0.0; nf],
             start_p: vec![0.0; nf],
             q: vec![0.0; nf],
@@ -288,8 +276,7 @@ impl ConservativeMotion {
     pub fn set_momentum_state(&mut self, to: &ConservativeState) -> Result<(), SetupError> {
         to.check(self.body.flexible())?;
         self.state.copy_from(to);
-        self.forget_rates();
-        self.at_corner = true;
+        self.first_known = false;
         self.energies = None;
         Ok(())
     }
@@ -327,11 +314,10 @@ impl ConservativeMotion {
                 // The evaluation at the end is the first of the next step.
                 std::mem::swap(&mut self.stages[0], &mut self.ahead);
                 self.first_known = true;
-                self.at_corner = false;
             }
             _ => {
                 self.state.copy_from(&self.before);
-                self.forget_rates();
+                self.first_known = false;
             }
         }
         estimate
@@ -401,26 +387,15 @@ impl ConservativeMotion {
             .map_err(|error| error.in_step(state.time, h))
     }
 
-    /// No evaluation is that of the state.
-    fn forget_rates(&mut self) {
-        (self.first_known, self.row_known) = (false, false);
-    }
-
-    /// Evaluates the first stage at the start of the stages, unless the last step or a row already has.
+    /// Evaluates the first stage at the start of the stages, unless the last step already has.
     fn evaluate_first(&mut self, h: f64) -> Result<(), StepError> {
-        let row_known = std::mem::take(&mut self.row_known);
         if self.first_known {
             return Ok(());
         }
         self.q.copy_from_slice(&self.start_q);
         self.p.copy_from_slice(&self.start_p);
         let slow = self.state.slow;
-        if row_known && !self.at_corner {
-            std::mem::swap(&mut self.stages[0], &mut self.ahead);
-            self.evaluations += 1;
-        } else {
-            self.evaluate(0, self.state.time, &slow, h)?;
-        }
+        self.evaluate(0, self.state.time, &slow, h)?;
         let Self { body, state, stages, q, p, .. } = self;
         self.energies = body.energies_of(state.time, &slow, q, p, &stages[0]);
         if self.scheme == Stepping::Rkmk4 {

@@ -11,20 +11,17 @@ use crate::reaction::HeldMotion;
 use crate::work::Work;
 
 impl ConservativeBody {
-    /// Reads the motion off a state, with its rates in `e`, unless they are there.
+    /// Reads the motion off a state. `e` is overwritten.
     pub(crate) fn observe(
         &self,
         state: &ConservativeState,
         initial_attitude: &Attitude,
         points: &[PointShapes],
         e: &mut Evaluation,
-        is_evaluated: bool,
         out: &mut Observation,
     ) -> Result<(), RateError> {
         let (q, p) = (&state.modal_displacement, &state.modal_momentum);
-        if !is_evaluated {
-            self.evaluate([state.time, state.time], &state.attitude, &state.slow, q, p, e)?;
-        }
+        self.evaluate([state.time, state.time], &state.attitude, &state.slow, q, p, e)?;
         let (kinetic, strain) = self.energies(state, e);
         let driven_acceleration =
             self.drive.as_ref().map_or(0.0, |drive| drive.acceleration_at(state.time, state.time));

@@ -172,7 +172,6 @@ fn fixed_steps_cost_four_evaluations_each() {
     }
 }
 
-/// The evaluation that a row is made of is the first of the next step, but where a load jumps.
 #[test]
 fn rows_change_no_bit_of_the_motion() {
     let mut run = tumbling(plate());
