@@ -3,6 +3,8 @@
 //! The whole basis V is kept and every new block is made M-orthogonal to all of it, after it was made so to the last two
 //! blocks, so T = Vᵀ M (K + sM)⁻¹ M V is known nearly to rounding and no ghost eigenvalue appears.
 
+use std::ops::Range;
+
 use faer::{Accum, Mat, MatRef};
 
 use crate::dense::symmetric_eigen;
@@ -112,7 +114,8 @@ pub(crate) fn largest_pairs(
         report(converged);
         if wanted.len() == count && (converged == count || exhausted) {
             let coefficients = Mat::from_fn(size, count, |i, j| eigenvectors[(i, wanted[j])]);
-            let vectors = tall::product(basis.vectors.subcols(FIXED, size), coefficients.as_ref());
+            let mut vectors = tall::product(basis.vectors.subcols(FIXED, size), coefficients.as_ref());
+            basis.take_out(0..FIXED, &mut vectors);
             return Ok(LanczosPairs { vectors, residuals, block_solves, basis_size: size });
         }
         before = last;
@@ -174,6 +177,13 @@ impl<'a> Basis<'a> {
         self.vectors.ncols() - FIXED
     }
 
+    /// Takes out of `w` what it has along some vectors of the basis, and tells that.
+    fn take_out(&self, columns: Range<usize>, w: &mut Mat<f64>) -> Mat<f64> {
+        let h = tall::inner(self.m_vectors.get(.., columns.clone()), w.as_ref());
+        tall::multiply(w.as_mut(), Accum::Add, self.vectors.get(.., columns), h.as_ref(), -1.0);
+        h
+    }
+
     /// Makes `w` M-orthogonal to the basis and M-orthonormal, and appends it; `w` is used up.
     /// Directions smaller than [`DEPENDENT`] times the block are dropped.
     ///
@@ -185,13 +195,11 @@ impl<'a> Basis<'a> {
         let mut coefficients = Mat::zeros(FIXED + size, w.ncols());
         let mut coupling = Mat::identity(w.ncols(), w.ncols());
         for columns in [0..FIXED, FIXED + size - near.min(size)..FIXED + size] {
-            let h = tall::inner(self.m_vectors.get(.., columns.clone()), w.as_ref());
-            tall::multiply(w.as_mut(), Accum::Add, self.vectors.get(.., columns.clone()), h.as_ref(), -1.0);
+            let h = self.take_out(columns.clone(), w);
             coefficients.as_mut().subrows_mut(columns.start, h.nrows()).copy_from(&h);
         }
         for round in 0..MAX_ROUNDS {
-            let h = tall::inner(self.m_vectors.as_ref(), w.as_ref());
-            tall::multiply(w.as_mut(), Accum::Add, self.vectors.as_ref(), h.as_ref(), -1.0);
+            let h = self.take_out(0..FIXED + size, w);
             self.m_w.resize_with(w.nrows(), w.ncols(), |_, _| 0.0);
             self.mass.product_into(w.as_ref(), self.m_w.as_mut(), &mut self.packed);
             let gram = tall::inner(w.as_ref(), self.m_w.as_ref());
