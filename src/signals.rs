@@ -1,8 +1,9 @@
 //! What ctrl-C, and a request to terminate, do.
 //!
-//! Before the motion begins there is nothing to lose, and a signal ends the program at once; the processes of SLEPc are ended,
-//! and their files removed, before. Then the first stops the run at its next row, and another that comes half a second later or more ends the program at once. A shell, a job scheduler
-//! and a terminal may send several for one request, only milliseconds apart.
+//! Before the motion begins there is nothing to lose, and a signal ends the program at once; the processes of SLEPc are
+//! ended, and their files removed, before. Then the first stops the run at its next row, and another that comes half a
+//! second later or more ends the program at once. A shell, a job scheduler and a terminal may send several for one
+//! request, only milliseconds apart.
 
 use std::io;
 use std::sync::Arc;

@@ -21,7 +21,7 @@ use rayon::prelude::*;
 use crate::deformation::check_field;
 use crate::error::AssemblyError;
 use crate::integration::{IntegrationPoint, Rules};
-use crate::lanes::{Grouped, LANES, Lanes, Matrices, gradient};
+use crate::lanes::{Grouped, LANES, Lanes, Tensors, gradient};
 use crate::material::{Material, Materials};
 use crate::mesh::Mesh;
 
@@ -158,11 +158,11 @@ struct Block {
     /// ∇a of the shapes: nine rows for each point, a column for each group.
     gradients: Vec<Lanes>,
     /// ∇a and C:ε(a): for each point those of all groups.
-    of_shapes: Vec<[Matrices; 2]>,
+    of_shapes: Vec<[Tensors; 2]>,
     /// Groups of displacements.
     groups_of_displacements: usize,
     /// ∇u and C:ε(u), times the volume of the point: for each point those of all groups.
-    of_displacements: Vec<[Matrices; 2]>,
+    of_displacements: Vec<[Tensors; 2]>,
 }
 
 impl Block {
@@ -192,11 +192,10 @@ impl Block {
                 for (group, relative) in of_shapes.iter().enumerate() {
                     let gradient = gradient(relative, point);
                     gradient.store(rows, shapes.groups, group);
-                    self.of_shapes.push([gradient, gradient.strain().stress(lame)]);
+                    self.of_shapes.push(gradient.with_stress(lame));
                 }
                 for relative in &of_displacements {
-                    let gradient = gradient(relative, point).scaled(point.volume);
-                    self.of_displacements.push([gradient, gradient.strain().stress(lame)]);
+                    self.of_displacements.push(gradient(relative, point).scaled(point.volume).with_stress(lame));
                 }
             }
         }

@@ -16,10 +16,10 @@ pub(crate) type Lanes = [f64; LANES];
 
 /// A 3×3 matrix of each field of a group: row, column, field.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Matrices(pub [[Lanes; 3]; 3]);
+pub(crate) struct Tensors(pub [[Lanes; 3]; 3]);
 
 // Plain loops: closures, as those of `array::from_fn`, are compiled apart, without the vector instructions.
-impl Matrices {
+impl Tensors {
     pub const ZERO: Self = Self([[[0.0; LANES]; 3]; 3]);
 
     /// One field's matrix for all four.
@@ -105,6 +105,12 @@ impl Matrices {
         stress
     }
 
+    /// Of a gradient ∇u: it, and C:ε(u).
+    #[inline(always)]
+    pub fn with_stress(self, lame: (f64, f64)) -> [Self; 2] {
+        [self, self.strain().stress(lame)]
+    }
+
     /// Puts the matrix of a group into the nine rows of a point (9 × groups).
     #[inline(always)]
     pub fn store(&self, rows: &mut [Lanes], groups: usize, group: usize) {
@@ -155,8 +161,8 @@ impl Grouped {
 
 /// ∇u at a point, `(∇u)_ab = ∂u_a/∂x_b`, by the displacements of an element's nodes against its first.
 #[inline(always)]
-pub(crate) fn gradient(relative: &[[Lanes; 3]; OTHERS], point: &IntegrationPoint) -> Matrices {
-    let mut sum = Matrices::ZERO;
+pub(crate) fn gradient(relative: &[[Lanes; 3]; OTHERS], point: &IntegrationPoint) -> Tensors {
+    let mut sum = Tensors::ZERO;
     for (u, gradient) in relative.iter().zip(&point.gradients[1..]) {
         for (sum, u) in sum.0.iter_mut().zip(u) {
             for (sum, gradient) in sum.iter_mut().zip(gradient) {

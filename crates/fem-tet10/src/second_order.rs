@@ -16,7 +16,7 @@ use rayon::prelude::*;
 use crate::deformation::{OTHERS, check_field};
 use crate::error::AssemblyError;
 use crate::integration::{IntegrationPoint, Rules};
-use crate::lanes::{Grouped, LANES, Lanes, Matrices, gradient};
+use crate::lanes::{Grouped, LANES, Lanes, Tensors, gradient};
 use crate::material::Materials;
 use crate::mesh::Mesh;
 
@@ -98,7 +98,7 @@ pub fn second_order_energies(
         })
     };
     let products: Vec<[usize; 2]> = quadruples.iter().map(|[a, b, c, d]| [number(*a, *b), number(*c, *d)]).collect();
-    let (arch, fields, groups) = (Arch::new(), Grouped::new(fields), Pairs::new(&pairs).groups);
+    let (arch, fields, groups) = (Arch::new(), Grouped::new(fields), in_groups(&pairs));
     // A row for each pair, with the products of its stress and the strains of all pairs.
     let of_element = |e: usize| -> Vec<Lanes> {
         let points = rules.fine_points(&mesh.element_positions(e));
@@ -143,22 +143,16 @@ const GRADIENT: usize = 0;
 const STRESS: usize = 1;
 
 /// Pairs of fields in groups; the last group is filled up with its last pair.
-struct Pairs {
-    groups: Vec<[[usize; 2]; LANES]>,
-}
-
-impl Pairs {
-    fn new(pairs: &[[usize; 2]]) -> Self {
-        let group = |pairs: &[[usize; 2]]| std::array::from_fn(|lane| pairs[lane.min(pairs.len() - 1)]);
-        Self { groups: pairs.chunks(LANES).map(group).collect() }
-    }
+fn in_groups(pairs: &[[usize; 2]]) -> Vec<[[usize; 2]; LANES]> {
+    let group = |pairs: &[[usize; 2]]| std::array::from_fn(|lane| pairs[lane.min(pairs.len() - 1)]);
+    pairs.chunks(LANES).map(group).collect()
 }
 
 /// The fields of an element at one of its points.
 struct AtPoint {
     relative: Vec<[[Lanes; 3]; OTHERS]>,
     /// ∇u and C:ε(u) of each group, by [`GRADIENT`] and [`STRESS`].
-    of_groups: Vec<[Matrices; 2]>,
+    of_groups: Vec<[Tensors; 2]>,
 }
 
 impl AtPoint {
@@ -173,15 +167,14 @@ impl AtPoint {
     fn go_to(&mut self, point: &IntegrationPoint, lame: (f64, f64)) {
         self.of_groups.clear();
         for relative in &self.relative {
-            let gradient = gradient(relative, point);
-            self.of_groups.push([gradient, gradient.strain().stress(lame)]);
+            self.of_groups.push(gradient(relative, point).with_stress(lame));
         }
     }
 
     /// ∇u or C:ε(u) of the first or of the second field of each of four pairs.
     #[inline(always)]
-    fn gathered(&self, pairs: &[[usize; 2]; LANES], which: usize, what: usize) -> Matrices {
-        let mut found = Matrices::ZERO;
+    fn gathered(&self, pairs: &[[usize; 2]; LANES], which: usize, what: usize) -> Tensors {
+        let mut found = Tensors::ZERO;
         for (lane, pair) in pairs.iter().enumerate() {
             let field = pair[which];
             let from = &self.of_groups[field / LANES][what];
@@ -195,7 +188,7 @@ impl AtPoint {
 
 /// Adds A:B of the one matrix `a` and of the four in `b` in a row of `sums`.
 #[inline(always)]
-fn add_dots(sums: &mut Lanes, a: &Matrices, b: &Matrices) {
+fn add_dots(sums: &mut Lanes, a: &Tensors, b: &Tensors) {
     for (a, b) in a.0.as_flattened().iter().zip(b.0.as_flattened()) {
         for (sum, (a, b)) in sums.iter_mut().zip(a.iter().zip(b)) {
             *sum += a * b;
@@ -210,7 +203,7 @@ fn element_forces(
     materials: &Materials,
     fields: MatRef<'_, f64>,
     pairs: &[[usize; 2]],
-    force: impl Fn(&[Matrices; 2], &[Matrices; 2], (f64, f64)) -> Matrices + Sync,
+    force: impl Fn(&[Tensors; 2], &[Tensors; 2], (f64, f64)) -> Tensors + Sync,
 ) -> Result<Mat<f64>, AssemblyError> {
     check_field(mesh, "fields", fields)?;
     let materials = materials.of_elements(mesh)?;
@@ -218,7 +211,7 @@ fn element_forces(
         return Ok(Mat::zeros(fields.nrows(), 0));
     }
     let rules = Rules::new();
-    let (arch, fields, groups) = (Arch::new(), Grouped::new(fields), Pairs::new(pairs).groups);
+    let (arch, fields, groups) = (Arch::new(), Grouped::new(fields), in_groups(pairs));
     // By node but the first, then axis, then group of pairs.
     let of_element = |e: usize| -> Vec<Lanes> {
         let points = rules.cubic_points(&mesh.element_positions(e));
@@ -231,7 +224,7 @@ fn element_forces(
                 for (group, pairs) in groups.iter().enumerate() {
                     let a = [here.gathered(pairs, 0, GRADIENT), here.gathered(pairs, 0, STRESS)];
                     let b = [here.gathered(pairs, 1, GRADIENT), here.gathered(pairs, 1, STRESS)];
-                    let Matrices(force) = force(&a, &b, lame).scaled(point.volume);
+                    let Tensors(force) = force(&a, &b, lame).scaled(point.volume);
                     for (sums, gradient) in sums.chunks_exact_mut(3 * groups.len()).zip(&point.gradients[1..]) {
                         for (axis, force) in force.iter().enumerate() {
                             let sum = &mut sums[axis * groups.len() + group];

@@ -23,6 +23,12 @@ pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     for ((sum, a), b) in sums.iter_mut().zip(a_rest).zip(b_rest) {
         *sum += a * b;
     }
+    total(sums)
+}
+
+/// The sum of four.
+#[inline(always)]
+pub(crate) fn total(sums: [f64; 4]) -> f64 {
     (sums[0] + sums[2]) + (sums[1] + sums[3])
 }
 
@@ -41,7 +47,7 @@ pub(crate) fn dot_of_sum(a: &[f64], b: &[f64], x: &[f64]) -> f64 {
     for (i, x) in x_rest.iter().enumerate() {
         sums[i] += (a_rest[i] + b_rest[i]) * x;
     }
-    (sums[0] + sums[2]) + (sums[1] + sums[3])
+    total(sums)
 }
 
 /// The first `y.len()` rows of M x, for M with `rows` rows, column by column.

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use pulp::{Arch, Simd, WithSimd};
 
-use crate::column_major::dot;
+use crate::column_major::{dot, total};
 
 /// x, y and z of a vector for each mode, a list each.
 #[derive(Debug, Clone)]
@@ -51,11 +51,6 @@ impl ComponentsFrom<'_> {
 
 /// Modes that are taken side by side, whatever the vectors of the processor.
 const WIDTH: usize = 4;
-
-#[inline(always)]
-fn total(sums: [f64; WIDTH]) -> f64 {
-    (sums[0] + sums[2]) + (sums[1] + sums[3])
-}
 
 /// Sums over all modes, in the widest vectors that the processor has.
 struct Sums<'a, const N: usize> {

@@ -1,6 +1,6 @@
 //! Forces without what the inertia of the rigid motion and the reactions of the support balance.
 
-use faer::{Accum, Mat, MatRef};
+use faer::{Mat, MatRef};
 
 use crate::products::symmetric_product;
 use crate::solve::Solver;
@@ -39,14 +39,12 @@ impl<'a> InertiaRelief<'a> {
     /// Takes out of forces what the support's reactions and the inertia of the rigid motion balance.
     pub(crate) fn balance(&self, forces: &mut Mat<f64>) {
         self.solver.constraints.project(forces.as_mut());
-        let resultant = tall::inner(self.solver.rigid.shapes.as_ref(), forces.as_ref());
-        tall::multiply(forces.as_mut(), Accum::Add, self.m_rigid.as_ref(), resultant.as_ref(), -1.0);
+        tall::take_out(forces, self.m_rigid.as_ref(), self.solver.rigid.shapes.as_ref());
     }
 
     /// Takes the rigid modes out of displacements.
     pub(crate) fn unmove(&self, displacements: &mut Mat<f64>) {
-        let parts = tall::inner(self.m_rigid.as_ref(), displacements.as_ref());
-        tall::multiply(displacements.as_mut(), Accum::Add, self.solver.rigid.shapes.as_ref(), parts.as_ref(), -1.0);
+        tall::take_out(displacements, self.solver.rigid.shapes.as_ref(), self.m_rigid.as_ref());
     }
 
     /// K u, without reactions.

@@ -179,9 +179,7 @@ impl<'a> Basis<'a> {
 
     /// Takes out of `w` what it has along some vectors of the basis, and tells that.
     fn take_out(&self, columns: Range<usize>, w: &mut Mat<f64>) -> Mat<f64> {
-        let h = tall::inner(self.m_vectors.get(.., columns.clone()), w.as_ref());
-        tall::multiply(w.as_mut(), Accum::Add, self.vectors.get(.., columns), h.as_ref(), -1.0);
-        h
+        tall::take_out(w, self.vectors.get(.., columns.clone()), self.m_vectors.get(.., columns))
     }
 
     /// Makes `w` M-orthogonal to the basis and M-orthonormal, and appends it; `w` is used up.

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use faer::{Accum, Mat, MatRef};
+use faer::{Mat, MatRef};
 
 use crate::engine::{Eigenpairs, Engine, StaticAnswers};
 use crate::error::ModalError;
@@ -13,7 +13,6 @@ use crate::progress::Progress;
 use crate::ritz::{RitzPairs, rayleigh_ritz};
 use crate::solve::{Modes, SolveStats, Solver};
 use crate::statics::ACCEPTED;
-use crate::tall;
 
 /// Largest residual ‖(K + sM)⁻¹Mφ − μφ‖_M that an engine may say of a pair, relative to 1/s, the largest μ that there can be.
 const RESIDUAL: f64 = 1e-8;
@@ -58,7 +57,9 @@ impl Solver<'_> {
                 (format!("a residual of {residual:.1e} of mode {}", k + 1), format!("{allowed:.0e} or less"))
             })?;
         }
-        let vectors = self.without_rigid(self.constraints.expanded(vectors.as_ref()))?;
+        let mut vectors = self.constraints.expanded(vectors.as_ref());
+        memory::check("the eigenvectors", of_vectors(vectors.nrows(), vectors.ncols() + 6))?;
+        InertiaRelief::new(self).unmove(&mut vectors);
         let RitzPairs { eigenvalues, shapes, force_residuals } =
             rayleigh_ritz(self.stiffness, &self.mass, &self.constraints, &vectors).map_err(dependent)?;
         drop(vectors);
@@ -95,15 +96,6 @@ impl Solver<'_> {
         };
         let rigid = self.rigid.clone();
         Ok(Modes { rigid, eigenvalues, shapes, residuals, force_residuals, stats }.truncated(flexible))
-    }
-
-    /// Displacements without the rigid modes.
-    fn without_rigid(&self, mut vectors: Mat<f64>) -> Result<Mat<f64>, ModalError> {
-        memory::check("the eigenvectors", of_vectors(vectors.nrows(), vectors.ncols() + 6))?;
-        let rigid = self.rigid.shapes.as_ref();
-        let parts = tall::inner(self.mass.product(rigid).as_ref(), vectors.as_ref());
-        tall::multiply(vectors.as_mut(), Accum::Add, rigid, parts.as_ref(), -1.0);
-        Ok(vectors)
     }
 
     /// What rounding leaves of the product Kφ with each shape, relative to it.

@@ -114,6 +114,7 @@ pub struct Solver<'a> {
     pub(crate) rigid: RigidModes,
     pub(crate) constraints: Constraints,
     factor: OnceLock<Shifted>,
+    shift: OnceLock<f64>,
     pub(crate) engine: Option<Box<dyn Engine>>,
     preparation_time: Duration,
 }
@@ -158,6 +159,7 @@ impl<'a> Solver<'a> {
             rigid,
             constraints,
             factor: OnceLock::new(),
+            shift: OnceLock::new(),
             engine: None,
             preparation_time,
         })
@@ -264,9 +266,13 @@ impl<'a> Solver<'a> {
         Ok(self.factor.get_or_init(|| factor))
     }
 
-    /// The shift s.
-    pub(crate) fn shift(&self) -> Result<f64, ModalError> {
-        start::shift(self.stiffness, &self.mass, self.positions, &self.rigid)
+    /// The shift s, estimated at the first call.
+    fn shift(&self) -> Result<f64, ModalError> {
+        if let Some(shift) = self.shift.get() {
+            return Ok(*shift);
+        }
+        let shift = start::shift(self.stiffness, &self.mass, self.positions, &self.rigid)?;
+        Ok(*self.shift.get_or_init(|| shift))
     }
 
     /// K and M in the space of the displacements that the support allows.

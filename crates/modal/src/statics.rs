@@ -7,7 +7,7 @@
 //! R are the rigid modes that the support leaves: the force is balanced by the inertia of the motion that it causes
 //! (inertia relief). The factor of K + sM preconditions: the spectrum is λ/(λ + s), between about a half and one.
 
-use faer::{Accum, Col, ColMut, ColRef, Mat, MatRef, Scale};
+use faer::{Col, ColMut, ColRef, Mat, MatRef, Scale};
 
 use crate::error::ModalError;
 use crate::foretold::of_vectors;
@@ -115,8 +115,7 @@ impl Solver<'_> {
         let mut wholes: Vec<f64> = dots(&rests, &self.mass.product(answers)).into_iter().map(f64::sqrt).collect();
         // What is left of an answer may be small: a second round takes out what rounding has left in it.
         for _ in 0..2 {
-            let parts = tall::inner(m_basis.as_ref(), rests.as_ref());
-            tall::multiply(rests.as_mut(), Accum::Add, basis.as_ref(), parts.as_ref(), -1.0);
+            tall::take_out(&mut rests, basis.as_ref(), m_basis.as_ref());
             let m_rests = self.mass.product(rests.as_ref());
             let mut unit: Vec<[Col<f64>; 2]> = Vec::with_capacity(rests.ncols());
             for (k, whole) in wholes.iter().enumerate() {
@@ -230,9 +229,8 @@ impl<'a> Statics<'a> {
     /// (K + sM)⁻¹.
     fn along_modes(&self, forces: &Mat<f64>) -> (Mat<f64>, Mat<f64>, Vec<f64>) {
         let natural = self.modes.shapes.get(.., ..self.modes.natural());
-        let mut parts = tall::inner(natural, forces.as_ref());
         let mut left = forces.clone();
-        tall::multiply(left.as_mut(), Accum::Add, self.m_natural.as_ref(), parts.as_ref(), -1.0);
+        let mut parts = tall::take_out(&mut left, self.m_natural.as_ref(), natural);
         let mut squared = vec![0.0; forces.ncols()];
         for (part, squared) in parts.col_iter_mut().zip(&mut squared) {
             for (part, lambda) in part.iter_mut().zip(&self.modes.eigenvalues) {

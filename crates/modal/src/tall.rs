@@ -74,6 +74,13 @@ pub(crate) fn product(a: MatRef<'_, f64>, h: MatRef<'_, f64>) -> Mat<f64> {
     y
 }
 
+/// Takes out of X what it has along the columns of A, X ← X − A·H with H = BᵀX. Returns H.
+pub(crate) fn take_out(x: &mut Mat<f64>, a: MatRef<'_, f64>, b: MatRef<'_, f64>) -> Mat<f64> {
+    let h = inner(b, x.as_ref());
+    multiply(x.as_mut(), Accum::Add, a, h.as_ref(), -1.0);
+    h
+}
+
 /// The columns as slices; copies, should they not lie side by side.
 fn columns(a: MatRef<'_, f64>) -> Vec<Cow<'_, [f64]>> {
     let slice = |j: usize| match a.col(j).try_as_col_major() {

@@ -1,7 +1,7 @@
 //! The folder that a driver works in.
 
 use std::fs;
-use std::io::{self, BufWriter, Write};
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use faer::MatRef;
@@ -48,14 +48,10 @@ struct Problem<'a> {
 
 /// Writes K and M, the rigid motions, and the driver. Returns the digest of K and M.
 pub(crate) fn write_matrices(problem: &HeldProblem<'_>, folder: &Path) -> Result<String, SlepcError> {
-    let hashed = |name: &str, matrix: &HeldMatrix<'_>| {
-        write(folder, name, |file| {
-            let mut hashed = Hashed { file, hasher: blake3::Hasher::new() };
-            write_matrix(matrix, &mut hashed)?;
-            Ok(hashed.hasher.finalize())
-        })
+    let written = |name: &str, matrix: &HeldMatrix<'_>| {
+        write(folder, name, |file| hashed(file, |file| write_matrix(matrix, file)))
     };
-    let digest = joined(hashed("K.petsc", &problem.stiffness)?, hashed("M.petsc", &problem.mass)?);
+    let digest = joined(written("K.petsc", &problem.stiffness)?, written("M.petsc", &problem.mass)?);
     write(folder, "rigid.petsc", |file| write_vectors(problem.rigid.as_ref(), file))?;
     write(folder, DRIVER_FILE, |file| file.write_all(DRIVER.as_bytes()))?;
     Ok(digest)
@@ -87,9 +83,8 @@ pub(crate) fn write_problem(
 
 /// Writes forces to which static answers are asked for. Returns their name, which follows from them.
 pub(crate) fn write_forces(forces: MatRef<'_, f64>, folder: &Path) -> Result<String, SlepcError> {
-    let mut hashed = Hashed { file: BufWriter::new(io::sink()), hasher: blake3::Hasher::new() };
-    write_vectors(forces, &mut hashed).map_err(SlepcError::io(folder, "write forces into it"))?;
-    let name = hashed.hasher.finalize().to_hex()[..NAME].to_owned();
+    let hash = hashed(io::sink(), |file| write_vectors(forces, file));
+    let name = hash.map_err(SlepcError::io(folder, "write forces into it"))?.to_hex()[..NAME].to_owned();
     if !folder.join(format!("forces-{name}.json")).exists() {
         write(folder, &format!("forces-{name}.petsc"), |file| write_vectors(forces, file))?;
         write(folder, &format!("forces-{name}.json"), |file| writeln!(file, "{{\"count\": {}}}", forces.ncols()))?;
@@ -175,10 +170,8 @@ fn quoted(path: &Path) -> String {
 
 /// The digest of K and M.
 pub(crate) fn digest(problem: &HeldProblem<'_>) -> Result<String, SlepcError> {
-    let [stiffness, mass] = [&problem.stiffness, &problem.mass].map(|matrix: &HeldMatrix<'_>| {
-        let mut hashed = Hashed { file: BufWriter::new(io::sink()), hasher: blake3::Hasher::new() };
-        write_matrix(matrix, &mut hashed).map(|()| hashed.hasher.finalize())
-    });
+    let [stiffness, mass] = [&problem.stiffness, &problem.mass]
+        .map(|matrix: &HeldMatrix<'_>| hashed(io::sink(), |file| write_matrix(matrix, file)));
     let failed = || SlepcError::io("K.petsc", "write it");
     Ok(joined(stiffness.map_err(failed())?, mass.map_err(failed())?))
 }
@@ -199,6 +192,13 @@ fn write<T>(
         Ok(done)
     });
     written.map_err(SlepcError::io(path, "write it"))
+}
+
+/// Writes to a file. Returns the hash of what went there.
+fn hashed<W: Write>(file: W, contents: impl FnOnce(&mut Hashed<W>) -> io::Result<()>) -> io::Result<blake3::Hash> {
+    let mut hashed = Hashed { file, hasher: blake3::Hasher::new() };
+    contents(&mut hashed)?;
+    Ok(hashed.hasher.finalize())
 }
 
 /// Hashes what goes to a file.
