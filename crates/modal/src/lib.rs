@@ -52,6 +52,7 @@ mod solve;
 mod start;
 mod statics;
 mod substitution;
+mod subtrees;
 mod support;
 mod symmetry;
 mod tall;

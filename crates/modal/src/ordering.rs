@@ -1,11 +1,14 @@
 //! Nested dissection of the graph of the nodes, by METIS.
 //!
-//! The three degrees of freedom of a node stay together, so the graph to order is a ninth of the matrix.
+//! The three degrees of freedom of a node stay together, so the graph to order is a ninth of the matrix. Of that graph METIS
+//! orders the part that leads, of second-order tetrahedra the corners: a sixth of the nodes.
 
 use std::sync::{Mutex, PoisonError};
 
 use faer::perm::Perm;
 use faer::sparse::SymbolicSparseColMatRef;
+
+use metis_sys::idx_t;
 
 use crate::error::ModalError;
 use crate::symmetry::check_symmetric;
@@ -17,21 +20,21 @@ const ORDERING_PER_NEIGHBOUR: usize = 24;
 /// A fill-reducing ordering of the degrees of freedom of a matrix with 3×3 blocks.
 pub(crate) fn nested_dissection(pattern: SymbolicSparseColMatRef<'_, usize>) -> Result<Perm<usize>, ModalError> {
     let n = pattern.ncols() / 3;
-    let mut start: Vec<metis_sys::idx_t> = Vec::with_capacity(n + 1);
-    let mut neighbours: Vec<metis_sys::idx_t> = Vec::new();
+    let mut start: Vec<idx_t> = Vec::with_capacity(n + 1);
+    let mut neighbours: Vec<idx_t> = Vec::new();
     start.push(0);
     for node in 0..n {
         let begin = neighbours.len();
         for column in 3 * node..3 * node + 3 {
-            neighbours.extend(pattern.row_idx_of_col_raw(column).iter().map(|row| (row / 3) as metis_sys::idx_t));
+            neighbours.extend(pattern.row_idx_of_col_raw(column).iter().map(|row| (row / 3) as idx_t));
         }
         let mut of_node = neighbours.split_off(begin);
         of_node.sort_unstable();
         of_node.dedup();
         neighbours.extend(of_node.into_iter().filter(|other| *other as usize != node));
-        start.push(neighbours.len() as metis_sys::idx_t);
+        start.push(neighbours.len() as idx_t);
     }
-    if neighbours.len() > metis_sys::idx_t::MAX as usize {
+    if neighbours.len() > idx_t::MAX as usize {
         let reason = "the graph of the nodes is too large for METIS".to_owned();
         return Err(ModalError::Factorization { size: 3 * n, reason });
     }
@@ -44,13 +47,91 @@ pub(crate) fn nested_dissection(pattern: SymbolicSparseColMatRef<'_, usize>) -> 
         |entry| neighbours[entry] as usize,
         |_| 0.0,
     )?;
-    let (mut order, mut place) = (vec![0; n], vec![0; n]);
-    dissect(&mut start, &mut neighbours, &mut order, &mut place)?;
+    let order = order_nodes(&start, &neighbours)?;
+    let mut place = vec![0; n];
+    for (new, old) in order.iter().enumerate() {
+        place[*old as usize] = new as idx_t;
+    }
 
-    let expand = |nodes: Vec<metis_sys::idx_t>| -> Box<[usize]> {
+    let expand = |nodes: Vec<idx_t>| -> Box<[usize]> {
         nodes.into_iter().flat_map(|node| (0..3).map(move |axis| 3 * node as usize + axis)).collect()
     };
     Ok(Perm::new_checked(expand(order), expand(place), 3 * n))
+}
+
+/// An order of the nodes of a graph that keeps the fill low: `order[new] = old`.
+///
+/// METIS orders the leading nodes alone, with the edges between them. A node follows another one where its neighbours
+/// are all neighbours of the other, as those of a mid-edge node are of both corners of its edge: then no separator parts
+/// it from what it is coupled to, if it comes just before the first of the nodes that it follows.
+fn order_nodes(start: &[idx_t], neighbours: &[idx_t]) -> Result<Vec<idx_t>, ModalError> {
+    let n = start.len() - 1;
+    let graph = Graph { start, neighbours };
+    let pairs = graph.pairs();
+    let mut leads = vec![true; n];
+    pairs.iter().for_each(|[follower, _]| leads[*follower] = false);
+    let leading: Vec<usize> = (0..n).filter(|node| leads[*node]).collect();
+    let mut number = vec![None; n];
+    leading.iter().enumerate().for_each(|(i, node)| number[*node] = Some(i));
+
+    let (mut start, mut neighbours) = (vec![0], Vec::new());
+    for node in &leading {
+        neighbours.extend(graph.of(*node).iter().filter_map(|other| number[*other as usize]).map(|i| i as idx_t));
+        start.push(neighbours.len() as idx_t);
+    }
+    let (mut order, mut place) = (vec![0; leading.len()], vec![0; leading.len()]);
+    dissect(&mut start, &mut neighbours, &mut order, &mut place)?;
+
+    // What follows a node that follows another follows that one, too: so each has a leading one among its own.
+    let mut first = vec![usize::MAX; n];
+    for [follower, other] in pairs {
+        if let Some(i) = number[other] {
+            first[follower] = first[follower].min(place[i] as usize);
+        }
+    }
+    let mut followers = vec![Vec::new(); leading.len()];
+    (0..n).filter(|node| !leads[*node]).for_each(|node| followers[first[node]].push(node));
+    let mut nodes = Vec::with_capacity(n);
+    for (followers, leader) in followers.iter_mut().zip(order) {
+        followers.sort_by_key(|node| graph.of(*node).len());
+        nodes.extend(followers.iter().map(|node| *node as idx_t));
+        nodes.push(leading[leader as usize] as idx_t);
+    }
+    Ok(nodes)
+}
+
+/// A graph in compressed rows, no node its own neighbour.
+struct Graph<'a> {
+    start: &'a [idx_t],
+    neighbours: &'a [idx_t],
+}
+
+impl Graph<'_> {
+    /// The neighbours of a node.
+    fn of(&self, node: usize) -> &[idx_t] {
+        &self.neighbours[self.start[node] as usize..self.start[node + 1] as usize]
+    }
+
+    /// Pairs of a node and one that it follows: all neighbours of the first are the second or neighbours of it. Of two that
+    /// have the same neighbours the later follows.
+    fn pairs(&self) -> Vec<[usize; 2]> {
+        let n = self.start.len() - 1;
+        let mut marked_by = vec![usize::MAX; n];
+        let mut pairs = Vec::new();
+        for node in 0..n {
+            let own = self.of(node);
+            marked_by[node] = node;
+            own.iter().for_each(|other| marked_by[*other as usize] = node);
+            for other in own.iter().map(|other| *other as usize) {
+                let of_other = self.of(other);
+                let may = of_other.len() < own.len() || of_other.len() == own.len() && node < other;
+                if may && of_other.iter().all(|third| marked_by[*third as usize] == node) {
+                    pairs.push([other, node]);
+                }
+            }
+        }
+        pairs
+    }
 }
 
 /// METIS has one random number generator for the whole process: two calls at a time would race for it, and the
@@ -63,19 +144,19 @@ static METIS: Mutex<()> = Mutex::new(());
 /// works: a request to stop would end as an error of METIS, and the handlers of the program would be put back without
 /// their flags. What METIS_NodeND catches them for is memory that runs out, so room is made sure of before.
 fn dissect(
-    start: &mut [metis_sys::idx_t],
-    neighbours: &mut [metis_sys::idx_t],
-    order: &mut [metis_sys::idx_t],
-    place: &mut [metis_sys::idx_t],
+    start: &mut [idx_t],
+    neighbours: &mut [idx_t],
+    order: &mut [idx_t],
+    place: &mut [idx_t],
 ) -> Result<(), ModalError> {
     if neighbours.is_empty() {
         // METIS wants an edge; without any, every order is as good.
         for (i, (order, place)) in order.iter_mut().zip(place).enumerate() {
-            (*order, *place) = (i as metis_sys::idx_t, i as metis_sys::idx_t);
+            (*order, *place) = (i as idx_t, i as idx_t);
         }
         return Ok(());
     }
-    let n = order.len() as metis_sys::idx_t;
+    let n = order.len() as idx_t;
     // METIS gives the sizes of the top separators, 2 processors − 1 of them.
     let mut sizes = [0];
     // A poisoned lock is as good: METIS seeds its generator anew in every call.
@@ -135,6 +216,31 @@ mod tests {
             }
         }
         SymbolicSparseColMat::new_checked(3 * side.pow(3), 3 * side.pow(3), start, None, rows)
+    }
+
+    #[test]
+    fn what_is_coupled_to_neighbours_of_another_alone_comes_just_before_it() {
+        // A chain of corners 0 to 4 with a node between each two of them, 5 to 8.
+        let edges = [[0, 1], [1, 2], [2, 3], [3, 4], [0, 5], [1, 5], [1, 6], [2, 6], [2, 7], [3, 7], [3, 8], [4, 8]];
+        let of = |node: idx_t| edges.iter().filter(move |e| e.contains(&node)).map(move |e| e[0] + e[1] - node);
+        let (mut start, mut neighbours) = (vec![0], Vec::new());
+        for node in 0..9 {
+            neighbours.extend(of(node));
+            start.push(neighbours.len() as idx_t);
+        }
+        let order = order_nodes(&start, &neighbours).unwrap();
+        let place = |node: idx_t| order.iter().position(|other| *other == node).unwrap();
+        let mut sorted = order.clone();
+        sorted.sort_unstable();
+        assert_eq!(sorted, (0..9).collect::<Vec<_>>());
+        for node in 5..9 {
+            let mut leading = of(node).filter(|corner| (1..4).contains(corner));
+            assert!(leading.all(|corner| place(node) < place(corner)), "{order:?}");
+        }
+        // The ends of the chain follow their neighbours, too: three corners lead.
+        let pairs = Graph { start: &start, neighbours: &neighbours }.pairs();
+        let leads = |node: usize| pairs.iter().all(|[follower, _]| *follower != node);
+        assert_eq!((0..9).filter(|node| leads(*node)).collect::<Vec<_>>(), [1, 2, 3]);
     }
 
     #[test]

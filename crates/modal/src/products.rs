@@ -6,6 +6,7 @@
 use faer::reborrow::ReborrowMut;
 use faer::sparse::SparseColMatRef;
 use faer::{Mat, MatMut, MatRef};
+use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
 /// Vectors handled in one pass over the matrix.
@@ -15,6 +16,12 @@ const NODES_PER_TASK: usize = 128;
 
 /// One row of a packed block.
 pub(crate) type Packed = [f64; WIDTH];
+
+/// A matrix by the rows of its nodes.
+trait NodeRows: Sync {
+    /// The three rows of a node in the product with a packed block.
+    fn product(&self, node: usize, packed: &[Packed]) -> [Packed; 3];
+}
 
 /// A·X for a symmetric A (3n×3n) with both triangles stored.
 pub(crate) fn symmetric_product(a: SparseColMatRef<'_, usize, f64>, x: MatRef<'_, f64>) -> Mat<f64> {
@@ -30,18 +37,50 @@ pub(crate) fn symmetric_product_into(
     y: MatMut<'_, f64>,
     packed: &mut Vec<Packed>,
 ) {
-    let (col_ptr, row_idx, values) = (a.symbolic().col_ptr(), a.symbolic().row_idx(), a.val());
-    blocked(x, y, packed, |node, packed| {
-        std::array::from_fn(|axis| {
-            // A column of a symmetric matrix is its row.
-            let column = 3 * node + axis;
-            let mut sum = [0.0; WIDTH];
-            for entry in col_ptr[column]..col_ptr[column + 1] {
-                add_scaled(&mut sum, values[entry], &packed[row_idx[entry]]);
+    blocked(x, y, packed, &Symmetric { start: a.symbolic().col_ptr(), rows: a.symbolic().row_idx(), values: a.val() });
+}
+
+/// A symmetric matrix with both triangles stored: a column is a row.
+struct Symmetric<'a> {
+    start: &'a [usize],
+    rows: &'a [usize],
+    values: &'a [f64],
+}
+
+impl Symmetric<'_> {
+    #[inline(always)]
+    fn column(&self, column: usize) -> (&[usize], &[f64]) {
+        let entries = self.start[column]..self.start[column + 1];
+        (&self.rows[entries.clone()], &self.values[entries])
+    }
+}
+
+impl NodeRows for Symmetric<'_> {
+    #[inline(always)]
+    fn product(&self, node: usize, packed: &[Packed]) -> [Packed; 3] {
+        let mut sums = [[0.0; WIDTH]; 3];
+        let [(rows, x), (rows_y, y), (rows_z, z)] =
+            [self.column(3 * node), self.column(3 * node + 1), self.column(3 * node + 2)];
+        if rows == rows_y && rows == rows_z {
+            let (y, z) = (&y[..x.len()], &z[..x.len()]);
+            for (entry, row) in rows.iter().enumerate().take(x.len()) {
+                let row = packed[*row];
+                for c in 0..WIDTH {
+                    sums[0][c] += x[entry] * row[c];
+                    sums[1][c] += y[entry] * row[c];
+                    sums[2][c] += z[entry] * row[c];
+                }
             }
-            sum
-        })
-    });
+        } else {
+            for (axis, sum) in sums.iter_mut().enumerate() {
+                let (rows, values) = self.column(3 * node + axis);
+                for (row, value) in rows.iter().zip(values) {
+                    add_scaled(sum, *value, &packed[*row]);
+                }
+            }
+        }
+        sums
+    }
 }
 
 /// Y = (A ⊗ I₃)·X for a symmetric matrix A over nodes, in compressed rows. `packed` is scratch.
@@ -53,31 +92,40 @@ pub(crate) fn nodal_product(
     y: MatMut<'_, f64>,
     packed: &mut Vec<Packed>,
 ) {
-    blocked(x, y, packed, |node, packed| {
+    blocked(x, y, packed, &Nodal { start, nodes, values });
+}
+
+/// A ⊗ I₃ for a symmetric matrix A over nodes.
+struct Nodal<'a> {
+    start: &'a [usize],
+    nodes: &'a [u32],
+    values: &'a [f64],
+}
+
+impl NodeRows for Nodal<'_> {
+    #[inline(always)]
+    fn product(&self, node: usize, packed: &[Packed]) -> [Packed; 3] {
         let mut sums = [[0.0; WIDTH]; 3];
-        for entry in start[node]..start[node + 1] {
-            let rows = &packed[3 * nodes[entry] as usize..];
-            for (sum, x) in sums.iter_mut().zip(rows) {
-                add_scaled(sum, values[entry], x);
+        for entry in self.start[node]..self.start[node + 1] {
+            let first = 3 * self.nodes[entry] as usize;
+            for (sum, x) in sums.iter_mut().zip(&packed[first..first + 3]) {
+                add_scaled(sum, self.values[entry], x);
             }
         }
         sums
-    });
-}
-
-fn add_scaled(sum: &mut Packed, value: f64, x: &Packed) {
-    for (s, x) in sum.iter_mut().zip(x) {
-        *s += value * x;
     }
 }
 
-/// Applies `node_sums`, which gives the three rows of a node in the product, to each run of [`WIDTH`] columns of `x`.
-fn blocked(
-    x: MatRef<'_, f64>,
-    mut y: MatMut<'_, f64>,
-    packed: &mut Vec<Packed>,
-    node_sums: impl Fn(usize, &[Packed]) -> [Packed; 3] + Sync,
-) {
+#[inline(always)]
+fn add_scaled(sum: &mut Packed, value: f64, x: &Packed) {
+    for c in 0..WIDTH {
+        sum[c] += value * x[c];
+    }
+}
+
+/// Y = A·X, for each run of [`WIDTH`] columns of X.
+fn blocked(x: MatRef<'_, f64>, mut y: MatMut<'_, f64>, packed: &mut Vec<Packed>, matrix: &impl NodeRows) {
+    let arch = Arch::new();
     packed.resize(x.nrows(), [0.0; WIDTH]);
     for first in (0..x.ncols()).step_by(WIDTH) {
         let width = WIDTH.min(x.ncols() - first);
@@ -90,19 +138,37 @@ fn blocked(
                 }
             }
         });
-        y.rb_mut().subcols_mut(first, width).par_row_chunks_mut(3 * NODES_PER_TASK).enumerate().for_each(
-            |(task, mut rows)| {
-                let mut sums = [[0.0; WIDTH]; 3 * NODES_PER_TASK];
-                for (i, sums) in sums[..rows.nrows()].chunks_exact_mut(3).enumerate() {
-                    sums.copy_from_slice(&node_sums(NODES_PER_TASK * task + i, packed));
-                }
-                for (c, column) in rows.rb_mut().col_iter_mut().enumerate() {
-                    for (value, sums) in column.iter_mut().zip(&sums) {
-                        *value = sums[c];
-                    }
-                }
-            },
-        );
+        let y = y.rb_mut().subcols_mut(first, width);
+        y.par_row_chunks_mut(3 * NODES_PER_TASK).enumerate().for_each(|(task, y)| {
+            arch.dispatch(SomeRows { matrix, first: NODES_PER_TASK * task, packed, y });
+        });
+    }
+}
+
+/// Rows of a product from those of a first node on. A type rather than a closure: what a closure calls is compiled without
+/// the vector instructions.
+struct SomeRows<'a, R> {
+    matrix: &'a R,
+    first: usize,
+    packed: &'a [Packed],
+    y: MatMut<'a, f64>,
+}
+
+impl<R: NodeRows> WithSimd for SomeRows<'_, R> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _simd: S) {
+        let Self { matrix, first, packed, mut y } = self;
+        let mut sums = [[0.0; WIDTH]; 3 * NODES_PER_TASK];
+        for node in 0..y.nrows() / 3 {
+            sums[3 * node..3 * node + 3].copy_from_slice(&matrix.product(first + node, packed));
+        }
+        for (c, column) in y.rb_mut().col_iter_mut().enumerate() {
+            for (value, sums) in column.iter_mut().zip(&sums) {
+                *value = sums[c];
+            }
+        }
     }
 }
 

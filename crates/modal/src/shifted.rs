@@ -25,6 +25,7 @@ use crate::error::ModalError;
 use crate::foretold::{Forecast, Foretold, of_dense_products};
 use crate::ordering::nested_dissection;
 use crate::products::symmetric_product;
+use crate::subtrees::Subtrees;
 use crate::{substitution, tall};
 
 /// What the memory is for.
@@ -39,6 +40,7 @@ pub(crate) struct Shifted {
     /// The shift s.
     pub shift: f64,
     symbolic: SymbolicCholesky<usize>,
+    subtrees: Option<Subtrees>,
     values: Vec<f64>,
     /// E, A-orthonormal.
     extensions: Mat<f64>,
@@ -57,7 +59,7 @@ pub(crate) struct Shifted {
 
 /// Scratch memory of a solution, which can be used again.
 pub(crate) struct SolveScratch {
-    groups: Vec<substitution::Scratch>,
+    dense: substitution::Scratch,
     by_faer: MemBuffer,
 }
 
@@ -90,6 +92,10 @@ impl Shifted {
             CholeskySymbolicParams::default(),
         )
         .map_err(|reason| failed(size, reason))?;
+        let subtrees = match symbolic.raw() {
+            SymbolicCholeskyRaw::Supernodal(factor) => Some(Subtrees::new(factor)),
+            SymbolicCholeskyRaw::Simplicial(_) => None,
+        };
         let ordering_time = start.elapsed();
 
         let par = parallelism(&symbolic);
@@ -122,6 +128,7 @@ impl Shifted {
             constraints,
             shift,
             symbolic,
+            subtrees,
             values,
             extensions,
             solved: Default::default(),
@@ -169,14 +176,15 @@ impl Shifted {
             }
             None => self.symbolic.solve_in_place_scratch::<f64>(columns, self.par),
         };
-        Ok(SolveScratch { groups: Vec::new(), by_faer: buffer(by_faer)? })
+        Ok(SolveScratch { dense: Default::default(), by_faer: buffer(by_faer)? })
     }
 
-    /// The factor where it has dense columns, and its order; a small one has none.
-    fn dense_columns(&self) -> Option<(SupernodalLltRef<'_, usize, f64>, PermRef<'_, usize>)> {
+    /// The factor where it has dense columns, its parts, and its order; a small one has none.
+    fn dense_columns(&self) -> Option<(SupernodalLltRef<'_, usize, f64>, &Subtrees, PermRef<'_, usize>)> {
         match self.symbolic.raw() {
             SymbolicCholeskyRaw::Supernodal(symbolic) => {
-                Some((SupernodalLltRef::new(symbolic, &self.values), self.symbolic.perm()?))
+                let factor = SupernodalLltRef::new(symbolic, &self.values);
+                Some((factor, self.subtrees.as_ref()?, self.symbolic.perm()?))
             }
             SymbolicCholeskyRaw::Simplicial(_) => None,
         }
@@ -191,7 +199,9 @@ impl Shifted {
         let motions = extends.then(|| tall::inner(self.extensions.as_ref(), x.rb()));
         self.constraints.clear(x.rb_mut());
         match self.dense_columns() {
-            Some((factor, order)) => substitution::solve(factor, order, x.rb_mut(), &mut scratch.groups),
+            Some((factor, subtrees, order)) => {
+                substitution::solve(factor, subtrees, order, x.rb_mut(), &mut scratch.dense)
+            }
             None => LltRef::new(&self.symbolic, &self.values).solve_in_place_with_conj(
                 Conj::No,
                 x.rb_mut(),

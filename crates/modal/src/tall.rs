@@ -9,7 +9,7 @@
 use std::borrow::Cow;
 
 use faer::{Accum, Mat, MatMut, MatRef};
-use pulp::Arch;
+use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
 /// Rows that one task computes.
@@ -33,7 +33,7 @@ pub(crate) fn inner(a: MatRef<'_, f64>, b: MatRef<'_, f64>) -> Mat<f64> {
         .map(|(a, b)| {
             let (a, b) = (columns(a), columns(b));
             let mut part = zero();
-            arch.dispatch(|| add_inner(part.as_mut(), &a, &b));
+            arch.dispatch(AddInner { sums: part.as_mut(), a: &a, b: &b });
             part
         })
         .collect();
@@ -54,7 +54,7 @@ pub(crate) fn multiply(mut y: MatMut<'_, f64>, beta: Accum, a: MatRef<'_, f64>, 
                 let rows = STRIP.min(y.nrows() - start);
                 let mut sums = [[0.0; STRIP]; WIDTH];
                 for (a, h) in a.chunks(DEPTH).zip(rows_of_h.chunks(DEPTH)) {
-                    arch.dispatch(|| add_products(&mut sums, a, start, rows, h));
+                    arch.dispatch(AddProducts { sums: &mut sums, a, start, rows, h });
                 }
                 for (c, sums) in sums.iter().enumerate().take(width) {
                     let y = y.as_mut().col_mut(c).subrows_mut(start, rows);
@@ -91,6 +91,23 @@ fn columns(a: MatRef<'_, f64>) -> Vec<Cow<'_, [f64]>> {
 }
 
 /// Adds AᵀB: four columns of A and two of B at a time, strip by strip.
+///
+/// A type rather than a closure: what a closure calls is compiled without the vector instructions.
+struct AddInner<'a> {
+    sums: MatMut<'a, f64>,
+    a: &'a [Cow<'a, [f64]>],
+    b: &'a [Cow<'a, [f64]>],
+}
+
+impl WithSimd for AddInner<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _simd: S) {
+        add_inner(self.sums, self.a, self.b);
+    }
+}
+
 #[inline(always)]
 fn add_inner(mut sums: MatMut<'_, f64>, a: &[Cow<'_, [f64]>], b: &[Cow<'_, [f64]>]) {
     let length = a.first().map_or(0, |column| column.len());
@@ -145,6 +162,23 @@ fn split<const N: usize>(columns: [&[f64]; N]) -> ([&[[f64; LANES]]; N], [&[f64]
 }
 
 /// Adds the products of some columns of A, `rows` of them from `start`, with as many rows of H.
+struct AddProducts<'a> {
+    sums: &'a mut [[f64; STRIP]; WIDTH],
+    a: &'a [Cow<'a, [f64]>],
+    start: usize,
+    rows: usize,
+    h: &'a [[f64; WIDTH]],
+}
+
+impl WithSimd for AddProducts<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _simd: S) {
+        add_products(self.sums, self.a, self.start, self.rows, self.h);
+    }
+}
+
 #[inline(always)]
 fn add_products(sums: &mut [[f64; STRIP]; WIDTH], a: &[Cow<'_, [f64]>], start: usize, rows: usize, h: &[[f64; WIDTH]]) {
     let whole = rows - rows % LANES;
