@@ -37,13 +37,13 @@ pub struct Forecast {
 }
 
 impl Forecast {
-    pub(crate) fn new(symbolic: &SymbolicCholesky<usize>, peak_bytes: usize, par: Par) -> Self {
+    pub(crate) fn new(symbolic: &SymbolicCholesky<usize>, peak_bytes: usize, threads: usize) -> Self {
         let multiplications = match symbolic.raw() {
             // Its columns are short, and it has no long ones by choice: a simplicial factor is never slow.
             SymbolicCholeskyRaw::Simplicial(simplicial) => simplicial.len_val() as f64,
             SymbolicCholeskyRaw::Supernodal(supernodal) => multiplications(supernodal),
         };
-        let speed = if multiplications > SHORT { speed(par) } else { None };
+        let speed = if multiplications > SHORT { speed(threads) } else { None };
         let time = speed.and_then(|speed| Duration::try_from_secs_f64(multiplications / (SPARSE_SPEED * speed)).ok());
         Self { factor_entries: symbolic.len_val(), multiplications, peak_bytes, time }
     }
@@ -60,7 +60,8 @@ fn multiplications(symbolic: &SymbolicSupernodalCholesky<usize>) -> f64 {
 }
 
 /// Multiplications a second in the factorisation of a dense matrix.
-fn speed(par: Par) -> Option<f64> {
+fn speed(threads: usize) -> Option<f64> {
+    let par = if threads == 1 { Par::Seq } else { Par::rayon(threads) };
     let mut matrix = Mat::from_fn(TRIAL, TRIAL, |i, j| if i == j { TRIAL as f64 } else { 0.5 });
     let scratch = cholesky_in_place_scratch::<f64>(TRIAL, par, Spec::default());
     let mut scratch = MemBuffer::try_new(scratch).ok()?;
@@ -78,7 +79,7 @@ pub(crate) struct Foretold {
     matrices: usize,
     /// The factor of K + sM, with its pattern.
     factor: usize,
-    /// K + sM itself.
+    /// K + sM itself, where it is put together.
     shifted: usize,
     /// Scratch of the numeric factorisation.
     scratch: usize,
@@ -97,13 +98,16 @@ impl Foretold {
         // A nodal index has four bytes, and a node has nine entries of K for one of M.
         let nodal = (WORD + 4) * entries / 9 + WORD * unknowns / 3;
         let matrices = of(entries, entries) + of_mass + nodal + WORD * rigid * unknowns;
-        Self { unknowns, entries, matrices, factor: 0, shifted: of(entries, entries), scratch: 0 }
+        Self { unknowns, entries, matrices, factor: 0, shifted: 0, scratch: 0 }
     }
 
     /// With the factor, of which the numeric factorisation takes so many bytes of scratch.
     pub(crate) fn with_factor(mut self, symbolic: &SymbolicCholesky<usize>, scratch: usize) -> Self {
         let pattern = match symbolic.raw() {
-            SymbolicCholeskyRaw::Simplicial(simplicial) => simplicial.len_val() + self.unknowns,
+            SymbolicCholeskyRaw::Simplicial(simplicial) => {
+                self.shifted = WORD * (2 * self.entries + self.unknowns);
+                simplicial.len_val() + self.unknowns
+            }
             SymbolicCholeskyRaw::Supernodal(supernodal) => supernodal.row_idx().len() + 3 * supernodal.n_supernodes(),
         };
         self.factor = WORD * (symbolic.len_val() + pattern + 2 * self.unknowns);
@@ -116,16 +120,16 @@ impl Foretold {
         self.matrices + self.of_ritz(shapes).max(self.of_reduction(shapes))
     }
 
-    /// K + sM, what orders it, and what finds the pattern of its factor.
+    /// What orders K + sM, and what finds the pattern of its factor.
     pub(crate) fn of_ordering(&self) -> usize {
         // The graph grows by doubling.
         let graph = crate::ordering::ordering_bytes(self.unknowns / 3, self.entries / 9) + 2 * 4 * self.entries / 9;
-        self.shifted + graph.max(WORD * (self.entries + 5 * self.unknowns))
+        graph.max(WORD * (self.entries + 5 * self.unknowns))
     }
 
-    /// From the numeric factorisation on, beside K, M and K + sM: the factor, and what comes with it or after it.
+    /// From the numeric factorisation on, beside K and M: the factor, and what comes with it or after it.
     pub(crate) fn of_factor(&self, search: usize) -> usize {
-        self.factor + self.scratch.max(search.saturating_sub(self.shifted))
+        self.factor + (self.shifted + self.scratch).max(search)
     }
 
     /// The search for modes with a basis of so many vectors, beside the factor.
@@ -188,10 +192,10 @@ mod tests {
         let symbolic =
             factorize_symbolic_cholesky(pattern.as_ref(), Side::Lower, SymmetricOrdering::Identity, params).unwrap();
         assert!(matches!(symbolic.raw(), SymbolicCholeskyRaw::Supernodal(_)));
-        let forecast = Forecast::new(&symbolic, 0, Par::Seq);
+        let forecast = Forecast::new(&symbolic, 0, 1);
         let exact = (1..=n).map(|column| (column as f64).powi(2) / 2.0).sum::<f64>();
         assert_eq!(forecast.multiplications, exact);
         assert_eq!(forecast.time, None);
-        assert!(speed(Par::Seq).is_some());
+        assert!(speed(1).is_some());
     }
 }

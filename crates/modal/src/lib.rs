@@ -20,6 +20,7 @@
 #![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable))]
 
 mod buckling;
+mod cholesky;
 mod constraints;
 mod dense;
 mod engine;
@@ -48,6 +49,7 @@ mod rigid_fields;
 mod ritz;
 mod second_order;
 mod shifted;
+mod shifted_matrix;
 mod solve;
 mod start;
 mod statics;

@@ -16,22 +16,21 @@ use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, LltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
     factorize_symbolic_cholesky,
 };
-use faer::sparse::{FaerError, SparseColMat, SparseColMatRef};
+use faer::sparse::{FaerError, SparseColMatRef};
 use faer::{Accum, Conj, Mat, MatMut, Par, Side, Spec};
 
+use crate::cholesky::NotPositive;
 use crate::constraints::Constraints;
 use crate::dense::whitening;
 use crate::error::ModalError;
 use crate::foretold::{Forecast, Foretold, of_dense_products};
 use crate::ordering::nested_dissection;
-use crate::products::symmetric_product;
+use crate::shifted_matrix::ShiftedMatrix;
 use crate::subtrees::Subtrees;
-use crate::{substitution, tall};
+use crate::{cholesky, substitution, tall};
 
 /// What the memory is for.
 const FACTOR: &str = "the factor of K + sM and the search for modes";
-/// Entries of a factor that is small.
-const SMALL: usize = 500_000;
 
 /// The factor of K + sM.
 pub(crate) struct Shifted {
@@ -46,7 +45,6 @@ pub(crate) struct Shifted {
     extensions: Mat<f64>,
     /// Blocks and columns that were solved for.
     solved: [AtomicUsize; 2],
-    par: Par,
     /// The memory that it takes.
     pub memory: Foretold,
     /// Time that it took to choose the shift.
@@ -78,15 +76,13 @@ impl Shifted {
         let size = stiffness.ncols();
         let memory = Foretold::new(stiffness, mass, 6);
         memory::check("ordering K + sM", memory.of_ordering())?;
-        let mut shifted = sum(stiffness, mass, shift).map_err(|reason| failed(size, reason))?;
         let motions = constraints.motions();
-        let a_motions = symmetric_product(shifted.as_ref(), motions.as_ref());
-        if !constraints.is_empty() {
-            hold_out(&mut shifted, constraints);
-        }
-        let ordering = nested_dissection(shifted.symbolic())?;
+        let matrix = ShiftedMatrix { stiffness, mass, shift, constraints };
+        let a_motions = matrix.product_with_held(motions.as_ref());
+        let pattern = matrix.pattern().map_err(|reason| failed(size, reason))?;
+        let ordering = nested_dissection(pattern.as_ref())?;
         let symbolic = factorize_symbolic_cholesky(
-            shifted.symbolic(),
+            pattern.as_ref(),
             Side::Lower,
             SymmetricOrdering::Custom(ordering.as_ref()),
             CholeskySymbolicParams::default(),
@@ -98,29 +94,44 @@ impl Shifted {
         };
         let ordering_time = start.elapsed();
 
-        let par = parallelism(&symbolic);
-        let needed = symbolic.factorize_numeric_llt_scratch::<f64>(par, Spec::default());
-        let memory = memory.with_factor(&symbolic, needed.unaligned_bytes_required());
-        let is_dense = matches!(symbolic.raw(), SymbolicCholeskyRaw::Supernodal(_));
-        let reserve = if is_dense { of_dense_products(par.degree()) } else { 0 };
+        let threads = rayon::current_num_threads();
+        let (needed, reserve) = match symbolic.raw() {
+            SymbolicCholeskyRaw::Supernodal(factor) => {
+                (cholesky::scratch_bytes(factor, threads), of_dense_products(threads))
+            }
+            SymbolicCholeskyRaw::Simplicial(_) => {
+                let scratch = symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Spec::default());
+                (scratch.unaligned_bytes_required(), 0)
+            }
+        };
+        let memory = memory.with_factor(&symbolic, needed);
         let search = search(&memory);
         memory::check_with_reserve(FACTOR, memory.of_factor(search), reserve)?;
-        progress(Forecast::new(&symbolic, memory.peak(search), par));
+        progress(Forecast::new(&symbolic, memory.peak(search), threads));
         let start = Instant::now();
         let mut values = memory::zeros(FACTOR, symbolic.len_val())?;
-        let mut scratch = buffer(needed)?;
-        symbolic
-            .factorize_numeric_llt(
-                &mut values,
-                shifted.as_ref(),
-                Side::Lower,
-                Default::default(),
-                par,
-                MemStack::new(&mut scratch),
-                Spec::default(),
-            )
-            .map_err(|PivotError::NonPositivePivot { index }| ModalError::Indefinite { pivot: index, shift })?;
-        drop(scratch);
+        match (symbolic.raw(), &subtrees, symbolic.perm()) {
+            (SymbolicCholeskyRaw::Supernodal(factor), Some(subtrees), Some(order)) => {
+                let problem = cholesky::Problem { symbolic: factor, subtrees, order, matrix: &matrix };
+                problem.factor(&mut values).map_err(|NotPositive(pivot)| ModalError::Indefinite { pivot, shift })?;
+            }
+            _ => {
+                let assembled = matrix.assembled(&pattern).map_err(|reason| failed(size, reason))?;
+                let mut scratch = buffer(symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Spec::default()))?;
+                let stack = MemStack::new(&mut scratch);
+                symbolic
+                    .factorize_numeric_llt(
+                        &mut values,
+                        assembled.as_ref(),
+                        Side::Lower,
+                        Default::default(),
+                        Par::Seq,
+                        stack,
+                        Spec::default(),
+                    )
+                    .map_err(|PivotError::NonPositivePivot { index }| ModalError::Indefinite { pivot: index, shift })?;
+            }
+        }
         let extensions = Mat::zeros(size, 0);
         let constraints = constraints.clone();
         let estimate_time = Duration::ZERO;
@@ -132,7 +143,6 @@ impl Shifted {
             values,
             extensions,
             solved: Default::default(),
-            par,
             memory,
             estimate_time,
             ordering_time,
@@ -174,7 +184,7 @@ impl Shifted {
                 memory::check(FACTOR, 8 * substitution::scratch(self.symbolic.nrows(), columns))?;
                 StackReq::EMPTY
             }
-            None => self.symbolic.solve_in_place_scratch::<f64>(columns, self.par),
+            None => self.symbolic.solve_in_place_scratch::<f64>(columns, Par::Seq),
         };
         Ok(SolveScratch { dense: Default::default(), by_faer: buffer(by_faer)? })
     }
@@ -205,7 +215,7 @@ impl Shifted {
             None => LltRef::new(&self.symbolic, &self.values).solve_in_place_with_conj(
                 Conj::No,
                 x.rb_mut(),
-                self.par,
+                Par::Seq,
                 MemStack::new(&mut scratch.by_faer),
             ),
         }
@@ -215,45 +225,11 @@ impl Shifted {
     }
 }
 
-/// Replaces held rows and columns by those of the identity.
-fn hold_out(matrix: &mut SparseColMat<usize, f64>, constraints: &Constraints) {
-    let (symbolic, values) = matrix.parts_mut();
-    for column in 0..symbolic.ncols() {
-        let column_is_held = constraints.holds(column);
-        for entry in symbolic.col_range(column) {
-            let row = symbolic.row_idx()[entry];
-            if column_is_held || constraints.holds(row) {
-                values[entry] = if row == column { 1.0 } else { 0.0 };
-            }
-        }
-    }
-}
-
-/// faer's parallelism on the rayon pool that the caller runs in. A small factor is made by one thread, which is as fast
-/// and takes the scratch of one.
-fn parallelism(symbolic: &SymbolicCholesky<usize>) -> Par {
-    if rayon::current_num_threads() == 1 || symbolic.len_val() < SMALL { Par::Seq } else { Par::rayon(0) }
-}
-
 fn buffer(needed: StackReq) -> Result<MemBuffer, ModalError> {
     let bytes = needed.unaligned_bytes_required();
     memory::check(FACTOR, bytes)?;
     let left = memory::Left::Unknown;
     Ok(MemBuffer::try_new(needed).map_err(|_| memory::OutOfMemory { what: FACTOR, wanted: bytes, left })?)
-}
-
-/// K + shift·M, on the pattern of both; zeros that are stored stay stored.
-fn sum(
-    stiffness: SparseColMatRef<'_, usize, f64>,
-    mass: SparseColMatRef<'_, usize, f64>,
-    shift: f64,
-) -> Result<SparseColMat<usize, f64>, FaerError> {
-    let same_pattern = stiffness.col_ptr() == mass.col_ptr() && stiffness.row_idx() == mass.row_idx();
-    if same_pattern {
-        let values = stiffness.val().iter().zip(mass.val()).map(|(k, m)| k + shift * m).collect();
-        return Ok(SparseColMat::new(stiffness.symbolic().to_owned()?, values));
-    }
-    faer::sparse::ops::binary_op(stiffness, mass, |k, m| k.copied().unwrap_or(0.0) + shift * m.copied().unwrap_or(0.0))
 }
 
 fn failed(size: usize, reason: FaerError) -> ModalError {

@@ -1,0 +1,295 @@
+//! The numeric Cholesky factorisation of K + sM by supernodes, `L Lᵀ = P A Pᵀ`, on all threads.
+//!
+//! Left-looking, as in CHOLMOD (Chen, Davis, Hager, Rajamanickam 2008): a supernode takes its columns of A, subtracts what
+//! the supernodes before it give to them, and is factored as a dense matrix. The subtrees of the elimination tree are done
+//! side by side, then the supernodes above them, each by strips of rows. The numbers do not depend on the number of threads.
+
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::cholesky::llt::factor::{LltError, cholesky_in_place, cholesky_in_place_scratch};
+use faer::linalg::matmul::matmul;
+use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
+use faer::perm::PermRef;
+use faer::reborrow::{Reborrow, ReborrowMut};
+use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
+use faer::{Accum, MatMut, MatRef, Par, Spec};
+use rayon::prelude::*;
+
+use crate::shifted_matrix::ShiftedMatrix;
+use crate::subtrees::Subtrees;
+
+/// Rows that one task updates. Fixed, so that the numbers are.
+const STRIP: usize = 256;
+/// No supernode.
+const NONE: u32 = u32::MAX;
+
+/// A pivot that is not positive: its place in the order of the factor.
+pub(crate) struct NotPositive(pub usize);
+
+/// What is to be factored, and its pattern.
+pub(crate) struct Problem<'a> {
+    pub symbolic: &'a SymbolicSupernodalCholesky<usize>,
+    pub subtrees: &'a Subtrees,
+    pub order: PermRef<'a, usize>,
+    pub matrix: &'a ShiftedMatrix<'a>,
+}
+
+/// Bytes that [`Problem::factor`] takes as scratch on so many threads, without what products of dense matrices take.
+pub(crate) fn scratch_bytes(symbolic: &SymbolicSupernodalCholesky<usize>, threads: usize) -> usize {
+    let widest =
+        (0..symbolic.n_supernodes()).map(|s| symbolic.supernode_end()[s] - symbolic.supernode_begin()[s]).max();
+    4 * (symbolic.nrows() + 3 * symbolic.n_supernodes()) * (threads + 1) + 8 * STRIP * widest.unwrap_or(0) * threads
+}
+
+impl Problem<'_> {
+    /// Fills the zeros in `values` with the entries of L.
+    pub(crate) fn factor(&self, values: &mut [f64]) -> Result<(), NotPositive> {
+        let of_row = self.supernode_of_each_row();
+        let starts = self.symbolic.col_ptr_for_val();
+        let mut parts = Vec::with_capacity(self.subtrees.parts.len());
+        let (mut rest, mut passed) = (&mut *values, 0);
+        for part in &self.subtrees.parts {
+            let (_, from_first) = rest.split_at_mut(starts[part.start] - passed);
+            let (own, after) = from_first.split_at_mut(starts[part.end] - starts[part.start]);
+            parts.push((part.clone(), own));
+            (rest, passed) = (after, starts[part.end]);
+        }
+        let given: Vec<Vec<Given>> = parts
+            .into_par_iter()
+            .map_init(
+                || Work::new(self.symbolic),
+                |work, (part, values)| {
+                    let mut to_top = Vec::new();
+                    for s in part.clone() {
+                        self.supernode(s, starts[part.start], values, &of_row, work)?;
+                    }
+                    for s in part.clone() {
+                        let target = work.queue.target[s];
+                        if target != NONE {
+                            to_top.push(Given { by: s, from: work.queue.from[s] as usize });
+                        }
+                    }
+                    for given in &to_top {
+                        let target = work.queue.target[given.by];
+                        work.queue.head[target as usize] = NONE;
+                        work.queue.target[given.by] = NONE;
+                    }
+                    Ok(to_top)
+                },
+            )
+            .collect::<Result<_, _>>()?;
+        let mut work = Work::new(self.symbolic);
+        for given in given.iter().flatten() {
+            let row = self.symbolic.supernode(given.by).pattern()[given.from];
+            work.queue.push(of_row[row], *given);
+        }
+        for s in &self.subtrees.top {
+            self.supernode(*s, 0, values, &of_row, &mut work)?;
+        }
+        Ok(())
+    }
+
+    fn supernode_of_each_row(&self) -> Vec<u32> {
+        let mut of_row = vec![0; self.symbolic.nrows()];
+        for s in 0..self.symbolic.n_supernodes() {
+            of_row[self.symbolic.supernode_begin()[s]..self.symbolic.supernode_end()[s]].fill(s as u32);
+        }
+        of_row
+    }
+
+    /// Makes the columns of a supernode. `values` has those of all that give to it, from the entry `base` of the factor on.
+    fn supernode(
+        &self,
+        s: usize,
+        base: usize,
+        values: &mut [f64],
+        of_row: &[u32],
+        work: &mut Work,
+    ) -> Result<(), NotPositive> {
+        let Work { place, queue, updates, sums, dense } = work;
+        let starts = self.symbolic.col_ptr_for_val();
+        let (start, end) = (self.symbolic.supernode_begin()[s], self.symbolic.supernode_end()[s]);
+        let pattern = self.symbolic.supernode(s).pattern();
+        let width = end - start;
+        let rows = width + pattern.len();
+        for (i, row) in (start..end).chain(pattern.iter().copied()).enumerate() {
+            place[row] = i as u32;
+        }
+        let (before, own) = values.split_at_mut(starts[s] - base);
+        let own = &mut own[..rows * width];
+        let (old, new) = self.order.arrays();
+        for (column, own) in own.chunks_exact_mut(rows).enumerate() {
+            self.matrix.add_column(old[start + column], |row, value| {
+                if new[row] >= start + column {
+                    own[place[new[row]] as usize] += value;
+                }
+            });
+        }
+
+        queue.take(s, updates);
+        for update in &mut *updates {
+            let pattern = self.symbolic.supernode(update.by).pattern();
+            let next = update.from + pattern[update.from..].partition_point(|row| *row < end);
+            if next < pattern.len() {
+                queue.push(of_row[pattern[next]], Given { by: update.by, from: next });
+            }
+        }
+        if let Some(row) = pattern.first() {
+            queue.push(of_row[*row], Given { by: s, from: 0 });
+        }
+
+        let before = Before { symbolic: self.symbolic, values: before, base, place, updates, end };
+        let mut own = MatMut::from_column_major_slice_mut(own, rows, width);
+        if rows <= STRIP {
+            before.subtract(own.rb_mut(), 0, sums);
+        } else {
+            own.rb_mut().par_row_chunks_mut(STRIP).enumerate().for_each_init(Sums::default, |sums, (strip, own)| {
+                before.subtract(own, STRIP * strip, sums);
+            });
+        }
+
+        let (mut diagonal, below) = own.split_at_row_mut(width);
+        dense.grow(width);
+        let stack = MemStack::new(&mut dense.0);
+        cholesky_in_place(diagonal.rb_mut(), Default::default(), Par::Seq, stack, Spec::default())
+            .map_err(|LltError::NonPositivePivot { index }| NotPositive(start + index))?;
+        let diagonal = diagonal.rb();
+        let solve = |below: MatMut<'_, f64>| solve_lower_triangular_in_place(diagonal, below.transpose_mut(), Par::Seq);
+        if below.nrows() <= STRIP {
+            solve(below);
+        } else {
+            below.par_row_chunks_mut(STRIP).for_each(solve);
+        }
+        Ok(())
+    }
+}
+
+/// What a supernode gives to others, from one of the rows below it on.
+#[derive(Clone, Copy)]
+struct Given {
+    by: usize,
+    from: usize,
+}
+
+/// Which supernodes give to which next: lists that share two arrays.
+struct Queue {
+    /// The first that gives to a supernode.
+    head: Vec<u32>,
+    /// The one after a supernode in its list.
+    next: Vec<u32>,
+    /// The supernode that one gives to next.
+    target: Vec<u32>,
+    /// The row of its pattern from which on it does.
+    from: Vec<u32>,
+}
+
+impl Queue {
+    fn push(&mut self, to: u32, given: Given) {
+        self.next[given.by] = self.head[to as usize];
+        self.head[to as usize] = given.by as u32;
+        self.target[given.by] = to;
+        self.from[given.by] = given.from as u32;
+    }
+
+    /// Empties the list of a supernode.
+    fn take(&mut self, s: usize, list: &mut Vec<Given>) {
+        list.clear();
+        let mut by = std::mem::replace(&mut self.head[s], NONE);
+        while by != NONE {
+            self.target[by as usize] = NONE;
+            list.push(Given { by: by as usize, from: self.from[by as usize] as usize });
+            by = self.next[by as usize];
+        }
+    }
+}
+
+/// Scratch of a thread.
+struct Work {
+    /// The place of each row in the supernode at hand.
+    place: Vec<u32>,
+    queue: Queue,
+    updates: Vec<Given>,
+    sums: Sums,
+    dense: Dense,
+}
+
+impl Work {
+    fn new(symbolic: &SymbolicSupernodalCholesky<usize>) -> Self {
+        let none = || vec![NONE; symbolic.n_supernodes()];
+        Self {
+            place: vec![0; symbolic.nrows()],
+            queue: Queue { head: none(), next: none(), target: none(), from: none() },
+            updates: Vec::new(),
+            sums: Sums::default(),
+            dense: Dense(MemBuffer::new(cholesky_in_place_scratch::<f64>(1, Par::Seq, Spec::default())), 1),
+        }
+    }
+}
+
+/// Scratch of a dense factorisation of so many rows.
+struct Dense(MemBuffer, usize);
+
+impl Dense {
+    fn grow(&mut self, rows: usize) {
+        if rows > self.1 {
+            *self = Self(MemBuffer::new(cholesky_in_place_scratch::<f64>(rows, Par::Seq, Spec::default())), rows);
+        }
+    }
+}
+
+/// Scratch of an update.
+#[derive(Default)]
+struct Sums {
+    products: Vec<f64>,
+    places: Vec<usize>,
+}
+
+/// The supernodes that give to the one at hand, which ends before the row `end`.
+struct Before<'a> {
+    symbolic: &'a SymbolicSupernodalCholesky<usize>,
+    values: &'a [f64],
+    base: usize,
+    place: &'a [u32],
+    updates: &'a [Given],
+    end: usize,
+}
+
+impl Before<'_> {
+    /// Takes from rows of the supernode at hand, `own` from the row `first` on, what the others give to them.
+    fn subtract(&self, mut own: MatMut<'_, f64>, first: usize, sums: &mut Sums) {
+        let Sums { products, places } = sums;
+        let starts = self.symbolic.col_ptr_for_val();
+        for given in self.updates {
+            let pattern = &self.symbolic.supernode(given.by).pattern()[given.from..];
+            let below = |row: usize| pattern.partition_point(|other| (self.place[*other] as usize) < row);
+            let (low, high) = (below(first), below(first + own.nrows()));
+            if low == high {
+                continue;
+            }
+            // Entries above the diagonal are left out as far as that is for nothing.
+            let columns = pattern.partition_point(|row| *row < self.end).min(high);
+            let width = self.symbolic.supernode_end()[given.by] - self.symbolic.supernode_begin()[given.by];
+            let of_it = &self.values[starts[given.by] - self.base..starts[given.by + 1] - self.base];
+            let of_it = MatRef::from_column_major_slice(of_it, of_it.len() / width, width);
+            let of_it = of_it.subrows(width + given.from, pattern.len());
+
+            places.clear();
+            places.extend(pattern[..high].iter().map(|row| self.place[*row] as usize));
+            products.resize(products.len().max((high - low) * columns), 0.0);
+            let products = &mut products[..(high - low) * columns];
+            matmul(
+                MatMut::from_column_major_slice_mut(products, high - low, columns),
+                Accum::Replace,
+                of_it.subrows(low, high - low),
+                of_it.subrows(0, columns).transpose(),
+                1.0,
+                Par::Seq,
+            );
+            for (products, column) in products.chunks_exact(high - low).zip(&*places) {
+                let mut own = own.rb_mut().col_mut(*column);
+                for (product, row) in products.iter().zip(&places[low..]) {
+                    own[row - first] -= product;
+                }
+            }
+        }
+    }
+}
