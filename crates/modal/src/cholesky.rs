@@ -293,3 +293,67 @@ impl Before<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use faer::Side;
+    use faer::sparse::linalg::cholesky::SymbolicCholeskyRaw;
+    use faer::sparse::{SparseColMat, Triplet};
+
+    use super::*;
+    use crate::constraints::Constraints;
+    use crate::substitution::tests::{grid, supernodal};
+    use crate::support::Support;
+
+    /// The factor of A + shift·1 by this module on one thread and on three, and by faer; entries above the diagonal are zero.
+    fn factors(a: &SparseColMat<usize, f64>, shift: f64) -> [Option<Vec<f64>>; 3] {
+        let n = a.ncols();
+        let ones: Vec<_> = (0..n).map(|i| Triplet::new(i, i, 1.0)).collect();
+        let ones = SparseColMat::try_new_from_triplets(n, n, &ones).unwrap();
+        let positions: Vec<[f64; 3]> = (0..n / 3).map(|i| [i as f64, (i * i % 7) as f64, (i % 5) as f64]).collect();
+        let constraints = Constraints::new(&Support::free(), &positions, 3).unwrap();
+        let matrix = ShiftedMatrix::new(a.as_ref(), ones.as_ref(), shift, &constraints);
+        let assembled = matrix.assembled(&matrix.pattern().unwrap()).unwrap();
+        let symbolic = supernodal(&assembled);
+        let SymbolicCholeskyRaw::Supernodal(factor) = symbolic.raw() else { panic!() };
+        let subtrees = Subtrees::new(factor);
+        assert!(subtrees.parts.len() > 3 && !subtrees.top.is_empty());
+        let lower = |mut values: Vec<f64>| {
+            for (s, start) in factor.col_ptr_for_val()[..factor.n_supernodes()].iter().enumerate() {
+                let width = factor.supernode_end()[s] - factor.supernode_begin()[s];
+                let rows = width + factor.supernode(s).pattern().len();
+                (0..width).for_each(|k| values[start + k * rows..][..k].fill(0.0));
+            }
+            values
+        };
+
+        let order = symbolic.perm().unwrap();
+        let problem = Problem { symbolic: factor, subtrees: &subtrees, order, matrix: &matrix };
+        let on = |threads: usize| {
+            let mut values = vec![0.0; symbolic.len_val()];
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| problem.factor(&mut values)).ok().map(|()| lower(values))
+        };
+        let mut values = vec![0.0; symbolic.len_val()];
+        let (side, par, spec) = (Side::Lower, Par::Seq, Spec::default());
+        let mut scratch = MemBuffer::new(symbolic.factorize_numeric_llt_scratch::<f64>(par, spec));
+        let stack = MemStack::new(&mut scratch);
+        let spec = Spec::default();
+        let by_faer =
+            symbolic.factorize_numeric_llt(&mut values, assembled.as_ref(), side, Default::default(), par, stack, spec);
+        let is_definite = by_faer.is_ok();
+        [on(1), on(3), is_definite.then(|| lower(values))]
+    }
+
+    #[test]
+    fn the_factor_is_that_of_faer_and_the_same_on_any_number_of_threads() {
+        let [one, three, expected] = factors(&grid(15), 2.0).map(Option::unwrap);
+        assert_eq!(one, three);
+        assert!(one.iter().zip(&expected).all(|(l, expected)| (l - expected).abs() < 1e-13));
+    }
+
+    #[test]
+    fn a_matrix_that_is_not_definite_has_no_factor() {
+        assert!(factors(&grid(15), -25.0).iter().all(Option::is_none));
+    }
+}

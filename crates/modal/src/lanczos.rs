@@ -132,7 +132,7 @@ pub(crate) fn largest_pairs(
 
 /// Vectors that a search for `count` of the `available` ones has room for.
 pub(crate) fn room(count: usize, available: usize) -> usize {
-    available.min(4 * count + 4 * BLOCK)
+    available.min(2 * count + 8 * BLOCK)
 }
 
 /// An M-orthonormal basis. Its first [`FIXED`] vectors are the rigid modes, which the search stays away from.

@@ -77,7 +77,7 @@ impl Shifted {
         let memory = Foretold::new(stiffness, mass, 6);
         memory::check("ordering K + sM", memory.of_ordering())?;
         let motions = constraints.motions();
-        let matrix = ShiftedMatrix { stiffness, mass, shift, constraints };
+        let matrix = ShiftedMatrix::new(stiffness, mass, shift, constraints);
         let a_motions = matrix.product_with_held(motions.as_ref());
         let pattern = matrix.pattern().map_err(|reason| failed(size, reason))?;
         let ordering = nested_dissection(pattern.as_ref())?;

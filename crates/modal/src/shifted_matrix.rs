@@ -9,10 +9,12 @@ use crate::products::symmetric_product;
 
 /// K + sM; held rows and columns are those of the identity.
 pub(crate) struct ShiftedMatrix<'a> {
-    pub stiffness: SparseColMatRef<'a, usize, f64>,
-    pub mass: SparseColMatRef<'a, usize, f64>,
-    pub shift: f64,
-    pub constraints: &'a Constraints,
+    stiffness: SparseColMatRef<'a, usize, f64>,
+    mass: SparseColMatRef<'a, usize, f64>,
+    shift: f64,
+    constraints: &'a Constraints,
+    /// The entries of K and M are at the same places.
+    is_one_pattern: bool,
 }
 
 /// Where the entries of K + sM are.
@@ -33,31 +35,43 @@ impl Pattern<'_> {
 }
 
 impl<'a> ShiftedMatrix<'a> {
+    pub(crate) fn new(
+        stiffness: SparseColMatRef<'a, usize, f64>,
+        mass: SparseColMatRef<'a, usize, f64>,
+        shift: f64,
+        constraints: &'a Constraints,
+    ) -> Self {
+        // The matrices of an assembly share one pattern: nothing has to be compared.
+        let same = |k: &[usize], m: &[usize]| std::ptr::eq(k, m) || k == m;
+        let is_one_pattern = same(stiffness.col_ptr(), mass.col_ptr()) && same(stiffness.row_idx(), mass.row_idx());
+        Self { stiffness, mass, shift, constraints, is_one_pattern }
+    }
+
     /// Its pattern; zeros that are stored stay stored.
     pub(crate) fn pattern(&self) -> Result<Pattern<'a>, FaerError> {
         let (k, m) = (self.stiffness.symbolic(), self.mass.symbolic());
-        if k.col_ptr() == m.col_ptr() && k.row_idx() == m.row_idx() {
+        if self.is_one_pattern {
             return Ok(Pattern::OfStiffness(k));
         }
         Ok(Pattern::OfBoth(faer::sparse::ops::union_symbolic(k, m)?))
     }
 
-    /// Calls `add` with the row and the value of each entry of a column, some rows twice.
+    /// Calls `add` with the row and the value of each entry of a column; a row may come twice.
     pub(crate) fn add_column(&self, column: usize, mut add: impl FnMut(usize, f64)) {
         if self.constraints.holds(column) {
             return add(column, 1.0);
         }
         let free = |row: usize| !self.constraints.holds(row);
-        for (row, value) in self.stiffness.row_idx_of_col(column).zip(self.stiffness.val_of_col(column)) {
-            if free(row) {
-                add(row, *value);
+        let k = self.stiffness.row_idx_of_col(column).zip(self.stiffness.val_of_col(column));
+        if self.is_one_pattern {
+            for ((row, k), m) in k.zip(self.mass.val_of_col(column)).filter(|((row, _), _)| free(*row)) {
+                add(row, k + self.shift * m);
             }
+            return;
         }
-        for (row, value) in self.mass.row_idx_of_col(column).zip(self.mass.val_of_col(column)) {
-            if free(row) {
-                add(row, self.shift * value);
-            }
-        }
+        let m = self.mass.row_idx_of_col(column).zip(self.mass.val_of_col(column));
+        k.filter(|(row, _)| free(*row)).for_each(|(row, k)| add(row, *k));
+        m.filter(|(row, _)| free(*row)).for_each(|(row, m)| add(row, self.shift * m));
     }
 
     /// (K + sM)·X, the held rows and columns with it.

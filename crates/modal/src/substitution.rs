@@ -431,10 +431,11 @@ fn multiply_add<S: Simd>(a: f64, b: f64, c: f64) -> f64 {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use faer::dyn_stack::{MemBuffer, MemStack};
     use faer::sparse::linalg::cholesky::{
-        CholeskySymbolicParams, LltRef, SymbolicCholeskyRaw, SymmetricOrdering, factorize_symbolic_cholesky,
+        CholeskySymbolicParams, LltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
+        factorize_symbolic_cholesky,
     };
     use faer::sparse::linalg::{SupernodalThreshold, SymbolicSupernodalParams};
     use faer::sparse::{SparseColMat, Triplet};
@@ -443,7 +444,7 @@ mod tests {
     use super::*;
 
     /// A grid of `side`³ nodes, each coupled to its neighbours.
-    fn grid(side: usize) -> SparseColMat<usize, f64> {
+    pub(crate) fn grid(side: usize) -> SparseColMat<usize, f64> {
         let n = side.pow(3);
         let place = |i: usize| [i % side, i / side % side, i / side.pow(2)];
         let near = |i: usize, j: usize| (0..3).all(|axis| place(i)[axis].abs_diff(place(j)[axis]) <= 1);
@@ -453,16 +454,21 @@ mod tests {
         SparseColMat::try_new_from_triplets(n, n, &entries).unwrap()
     }
 
-    #[test]
-    fn it_gives_what_faer_gives_for_any_number_of_columns_and_threads() {
-        let a = grid(16);
-        let n = a.ncols();
+    /// The pattern of the factor of a matrix, by supernodes.
+    pub(crate) fn supernodal(a: &SparseColMat<usize, f64>) -> SymbolicCholesky<usize> {
         let params = CholeskySymbolicParams {
             supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
             supernodal_params: SymbolicSupernodalParams { relax: None },
             ..CholeskySymbolicParams::default()
         };
-        let symbolic = factorize_symbolic_cholesky(a.symbolic(), Side::Lower, SymmetricOrdering::Amd, params).unwrap();
+        factorize_symbolic_cholesky(a.symbolic(), Side::Lower, SymmetricOrdering::Amd, params).unwrap()
+    }
+
+    #[test]
+    fn it_gives_what_faer_gives_for_any_number_of_columns_and_threads() {
+        let a = grid(16);
+        let n = a.ncols();
+        let symbolic = supernodal(&a);
         let SymbolicCholeskyRaw::Supernodal(supernodal) = symbolic.raw() else { panic!() };
         let subtrees = Subtrees::new(supernodal);
         let mut values = vec![0.0; symbolic.len_val()];

@@ -5,7 +5,7 @@ use std::ops::Range;
 use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
 
 /// Stored entries that are worth a part of their own.
-const GRAIN: usize = 200_000;
+const GRAIN: usize = 50_000;
 /// Parts at the most, or hardly more: the entries of one are at most this part of all.
 const MOST: usize = 12;
 
@@ -80,5 +80,38 @@ impl Subtrees {
             }
         }
         Self { parts, top, place, top_rows }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use faer::sparse::linalg::cholesky::SymbolicCholeskyRaw;
+
+    use super::*;
+    use crate::substitution::tests::{grid, supernodal};
+
+    #[test]
+    fn parts_touch_their_own_rows_and_those_of_the_top_alone() {
+        let symbolic = supernodal(&grid(16));
+        let SymbolicCholeskyRaw::Supernodal(factor) = symbolic.raw() else { panic!() };
+        let Subtrees { parts, top, place, top_rows } = Subtrees::new(factor);
+        assert!(parts.len() > 3 && !top.is_empty());
+        let mut all: Vec<usize> = parts.iter().cloned().flatten().chain(top.iter().copied()).collect();
+        all.sort_unstable();
+        assert_eq!(all, (0..factor.n_supernodes()).collect::<Vec<_>>());
+        let rows = |s: &usize| factor.supernode_begin()[*s]..factor.supernode_end()[*s];
+        let of_top: Vec<usize> = top.iter().flat_map(rows).collect();
+        assert_eq!(of_top.len(), top_rows);
+        assert!(of_top.iter().enumerate().all(|(i, row)| place[*row] as usize == i));
+        for part in &parts {
+            let own = factor.supernode_begin()[part.start]..factor.supernode_end()[part.end - 1];
+            for s in part.clone() {
+                let pattern = factor.supernode(s).pattern();
+                assert!(pattern.iter().all(|row| own.contains(row) || of_top.binary_search(row).is_ok()));
+            }
+        }
+        // None is larger than its share, which is what threads wait for.
+        let entries = |part: &Range<usize>| factor.col_ptr_for_val()[part.end] - factor.col_ptr_for_val()[part.start];
+        assert!(parts.iter().all(|part| entries(part) <= factor.len_val() / 3));
     }
 }
