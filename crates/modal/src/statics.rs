@@ -7,8 +7,8 @@
 //! R are the rigid modes that the support leaves: the force is balanced by the inertia of the motion that it causes
 //! (inertia relief). The factor of K + sM preconditions: the spectrum is λ/(λ + s), between about a half and one.
 
-use faer::reborrow::Reborrow;
-use faer::{Accum, ColMut, ColRef, Mat, MatRef, Scale};
+use faer::reborrow::{Reborrow, ReborrowMut};
+use faer::{Accum, ColMut, ColRef, Mat, MatRef, Scale, unzip, zip};
 
 use crate::error::ModalError;
 use crate::foretold::of_vectors;
@@ -153,8 +153,10 @@ fn orthonormalize(vectors: [&mut Mat<f64>; 2], wholes: &[f64], least: f64) -> us
     for (k, whole) in wholes.iter().enumerate() {
         let parts = tall::inner(momenta.subcols(0, count), vectors.subcols(k, 1));
         for list in [&mut *vectors, &mut *momenta] {
-            let (before, from) = list.as_mut().split_at_col_mut(count);
-            tall::multiply(from.subcols_mut(k - count, 1), Accum::Add, before.rb(), parts.as_ref(), -1.0);
+            let (before, mut from) = list.as_mut().split_at_col_mut(count);
+            for (part, unit) in parts.col(0).iter().zip(before.rb().col_iter()) {
+                add(from.as_mut().col_mut(k - count), -part, unit);
+            }
         }
         let norm = (vectors.col(k).transpose() * momenta.col(k)).max(0.0).sqrt();
         if norm > least * whole {
@@ -297,17 +299,13 @@ impl<'a> Statics<'a> {
 }
 
 /// y ← x + part·y.
-fn follow(y: ColMut<'_, f64>, part: f64, x: ColRef<'_, f64>) {
-    for (y, x) in y.iter_mut().zip(x.iter()) {
-        *y = x + part * *y;
-    }
+fn follow(mut y: ColMut<'_, f64>, part: f64, x: ColRef<'_, f64>) {
+    zip!(y.rb_mut(), x).for_each(|unzip!(y, x)| *y = x + part * *y);
 }
 
 /// y ← y + part·x.
-fn add(y: ColMut<'_, f64>, part: f64, x: ColRef<'_, f64>) {
-    for (y, x) in y.iter_mut().zip(x.iter()) {
-        *y += part * x;
-    }
+fn add(mut y: ColMut<'_, f64>, part: f64, x: ColRef<'_, f64>) {
+    zip!(y.rb_mut(), x).for_each(|unzip!(y, x)| *y += part * x);
 }
 
 /// Products of the columns with each other.
