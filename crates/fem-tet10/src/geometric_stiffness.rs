@@ -15,20 +15,18 @@
 
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, MatRef, Par};
-use pulp::Arch;
 use rayon::prelude::*;
 
 use crate::deformation::check_field;
 use crate::error::AssemblyError;
-use crate::integration::{IntegrationPoint, Rules};
-use crate::lanes::{Grouped, LANES, Lanes, Tensors, gradient};
+use crate::integration::Rules;
+use crate::lanes::{Group, GroupPoint, LANES, Lame, Lanes, PARTS, Rows, Tensors};
 use crate::material::{Material, Materials};
 use crate::mesh::Mesh;
+use crate::vectorized::vectorized;
 
-/// The elements are cut into so many parts, whatever the number of threads, and the parts are summed in their order.
-const PARTS: usize = 64;
-/// Elements that are multiplied at once.
-const BLOCK: usize = 8;
+/// Groups of elements that are multiplied at once.
+const BLOCK: usize = 2;
 
 /// Which terms of K(u) are computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -91,30 +89,32 @@ pub fn extended_geometric_stiffness(
         return Ok(if known.is_empty() { vec![Mat::zeros(0, 0); displacements.ncols()] } else { known.to_vec() });
     }
     let bytes = f.saturating_mul(f).saturating_mul(8 * PARTS * displacements.ncols());
-    let copies = 8 * shapes.nrows() * (f + displacements.ncols() + 2 * LANES);
+    let copies = 8 * shapes.nrows() * (f + displacements.ncols());
     memory::check("the geometric stiffness", bytes.saturating_add(copies))?;
     // The columns of the shapes that are new.
     let zeros = || vec![Mat::<f64>::zeros(f, f - first); displacements.ncols()];
     let rules = Rules::new();
-    let arch = Arch::new();
-    let (shapes, displacements) = (Grouped::new(shapes), Grouped::new(displacements));
-    let elements: Vec<usize> = (0..mesh.elements().len()).collect();
-    let parts: Vec<Vec<Mat<f64>>> = elements
-        .par_chunks(elements.len().div_ceil(PARTS))
+    let (shapes, displacements) = (Rows::new(shapes), Rows::new(displacements));
+    let groups = Group::all(mesh);
+    let parts: Vec<Vec<Mat<f64>>> = groups
+        .par_chunks(groups.len().div_ceil(PARTS))
         .map(|part| {
             let mut sums = zeros();
             let mut here = Block::default();
-            let mut products: Vec<Lanes> = Vec::new();
-            for block in part.chunks(BLOCK) {
-                let of_element = |e: &usize| (*e, rules.cubic_points(&mesh.element_positions(*e)));
-                let points: Vec<(usize, Vec<IntegrationPoint>)> = block.iter().map(of_element).collect();
-                arch.dispatch(|| here.fill(mesh, &materials, &points, &shapes, &displacements));
-                products.resize(here.gradients.len(), [0.0; LANES]);
+            let mut products = Vec::new();
+            for groups in part.chunks(BLOCK) {
+                vectorized(
+                    #[inline(always)]
+                    || here.fill(mesh, &materials, &rules, groups, &shapes, &displacements),
+                );
                 for (u, sum) in sums.iter_mut().enumerate() {
-                    arch.dispatch(|| here.products(u, terms, first / LANES, &mut products));
-                    let (gradients, products) = (matrix(&here.gradients, f), matrix(&products, f));
-                    let new = products.subcols(first, f - first);
-                    matmul(sum.as_mut(), Accum::Add, gradients.transpose(), new, 1.0, Par::Seq);
+                    vectorized(
+                        #[inline(always)]
+                        || here.products(u, terms, first, &mut products),
+                    );
+                    let rows = here.lame.len();
+                    let (gradients, products) = (matrix(&here.gradients, rows), matrix(&products, rows));
+                    matmul(sum.as_mut(), Accum::Add, gradients.transpose(), products, 1.0, Par::Seq);
                 }
             }
             sums
@@ -141,27 +141,21 @@ pub fn extended_geometric_stiffness(
     Ok(sums.iter().enumerate().map(full).collect())
 }
 
-/// Rows of groups as a matrix of `columns` columns.
-fn matrix(groups: &[Lanes], columns: usize) -> MatRef<'_, f64> {
-    let width = LANES * columns.div_ceil(LANES);
-    let numbers = groups.as_flattened();
-    MatRef::from_row_major_slice(numbers, numbers.len() / width, width).subcols(0, columns)
+/// Matrices at some points as columns of their numbers.
+fn matrix(tensors: &[[[Lanes; 3]; 3]], points: usize) -> MatRef<'_, f64> {
+    let numbers = tensors.as_flattened().as_flattened().as_flattened();
+    MatRef::from_column_major_slice(numbers, 9 * LANES * points, tensors.len() / points)
 }
 
-/// The fields at the points of a few elements.
+/// The fields at the points of a few groups of elements. All lists of matrices are by field, then point.
 #[derive(Default)]
 struct Block {
-    /// Lamé's λ and μ at each point.
-    lame: Vec<(f64, f64)>,
-    /// Groups of shapes.
-    groups: usize,
-    /// ∇a of the shapes: nine rows for each point, a column for each group.
-    gradients: Vec<Lanes>,
-    /// ∇a and C:ε(a): for each point those of all groups.
-    of_shapes: Vec<[Tensors; 2]>,
-    /// Groups of displacements.
-    groups_of_displacements: usize,
-    /// ∇u and C:ε(u), times the volume of the point: for each point those of all groups.
+    /// At each point.
+    lame: Vec<Lame>,
+    /// ∇a and C:ε(a) of the shapes.
+    gradients: Vec<[[Lanes; 3]; 3]>,
+    stresses: Vec<Tensors>,
+    /// ∇u and C:ε(u) of the displacements, times the volume of the point.
     of_displacements: Vec<[Tensors; 2]>,
 }
 
@@ -171,51 +165,56 @@ impl Block {
         &mut self,
         mesh: &Mesh,
         materials: &[Material],
-        elements: &[(usize, Vec<IntegrationPoint>)],
-        shapes: &Grouped,
-        displacements: &Grouped,
+        rules: &Rules,
+        groups: &[Group],
+        shapes: &Rows,
+        displacements: &Rows,
     ) {
-        let count: usize = elements.iter().map(|(_, points)| points.len()).sum();
-        (self.groups, self.groups_of_displacements) = (shapes.groups, displacements.groups);
+        let count: usize = groups.iter().map(|group| group.cubic_points(rules).len()).sum();
         self.lame.clear();
-        self.of_shapes.clear();
-        self.of_displacements.clear();
-        self.gradients.resize(9 * count * shapes.groups, [0.0; LANES]);
-        let mut rows = self.gradients.chunks_exact_mut(9 * shapes.groups);
+        self.gradients.resize(count * shapes.columns, Tensors::ZERO.0);
+        self.stresses.resize(count * shapes.columns, Tensors::ZERO);
+        self.of_displacements.resize(count * displacements.columns, [Tensors::ZERO; 2]);
         let (mut of_shapes, mut of_displacements) = (Vec::new(), Vec::new());
-        for (e, points) in elements {
-            let lame = materials[*e].lame();
-            shapes.relative(&mesh.elements()[*e], &mut of_shapes);
-            displacements.relative(&mesh.elements()[*e], &mut of_displacements);
-            for (point, rows) in points.iter().zip(&mut rows) {
+        for group in groups {
+            let (lame, positions) = (group.lame(materials), group.positions(mesh));
+            shapes.relative(mesh, group, &mut of_shapes);
+            displacements.relative(mesh, group, &mut of_displacements);
+            for rule in group.cubic_points(rules) {
+                let point = GroupPoint::new(&positions, rule, group.count);
+                let row = self.lame.len();
+                for (a, relative) in of_shapes.iter().enumerate() {
+                    let [gradient, stress] = point.gradient(relative).with_stress(&lame);
+                    self.gradients[count * a + row] = gradient.0;
+                    self.stresses[count * a + row] = stress;
+                }
+                for (u, relative) in of_displacements.iter().enumerate() {
+                    self.of_displacements[count * u + row] =
+                        point.gradient(relative).scaled(&point.volume).with_stress(&lame);
+                }
                 self.lame.push(lame);
-                for (group, relative) in of_shapes.iter().enumerate() {
-                    let gradient = gradient(relative, point);
-                    gradient.store(rows, shapes.groups, group);
-                    self.of_shapes.push(gradient.with_stress(lame));
-                }
-                for relative in &of_displacements {
-                    self.of_displacements.push(gradient(relative, point).scaled(point.volume).with_stress(lame));
-                }
             }
         }
     }
 
-    /// P_a of the shapes from a group on for the displacement `u`, laid out as the gradients.
+    /// P_a of the shapes from `first` on for the displacement `u`, laid out as the gradients.
     #[inline(always)]
-    fn products(&self, u: usize, terms: GeometricTerms, from: usize, out: &mut [Lanes]) {
-        let points = out.chunks_exact_mut(9 * self.groups).zip(self.of_shapes.chunks_exact(self.groups));
-        let displacements = self.of_displacements.chunks_exact(self.groups_of_displacements);
-        for (((rows, of_shapes), of_displacements), lame) in points.zip(displacements).zip(&self.lame) {
-            let [gradients, stresses] = &of_displacements[u / LANES];
-            let (u, of_u) = (gradients.all_alike(u % LANES), stresses.all_alike(u % LANES));
-            for (group, [a, of_a]) in of_shapes.iter().enumerate().skip(from) {
-                let initial_stress = a.times(&of_u);
+    fn products(&self, u: usize, terms: GeometricTerms, first: usize, out: &mut Vec<[[Lanes; 3]; 3]>) {
+        let count = self.lame.len();
+        let of_u = &self.of_displacements[count * u..][..count];
+        out.resize(self.gradients.len() - count * first, Tensors::ZERO.0);
+        let shapes = self.gradients.chunks_exact(count).zip(self.stresses.chunks_exact(count)).skip(first);
+        for (out, (gradients, stresses)) in out.chunks_exact_mut(count).zip(shapes) {
+            for (row, out) in out.iter_mut().enumerate() {
+                let (a, of_a, [u, of_u]) = (&Tensors(gradients[row]), &stresses[row], &of_u[row]);
+                let initial_stress = a.times(of_u);
                 let product = match terms {
                     GeometricTerms::InitialStress => initial_stress,
-                    GeometricTerms::All => initial_stress.plus(&u.times(of_a)).plus(&u.second_strain(a).stress(*lame)),
+                    GeometricTerms::All => {
+                        initial_stress.plus(&u.times(of_a)).plus(&u.second_strain(a).stress(&self.lame[row]))
+                    }
                 };
-                product.store(rows, self.groups, group);
+                *out = product.0;
             }
         }
     }

@@ -20,23 +20,26 @@ pub(crate) struct IntegrationPoint {
     pub volume: f64,
 }
 
-/// The rules that all elements share, with the gradients of the shape functions at their points.
+/// A point of a rule in the reference element.
+#[derive(Debug)]
+pub(crate) struct RulePoint {
+    pub point: Point,
+    /// Gradients of the ten shape functions there.
+    pub gradients: [[f64; 3]; 10],
+}
+
+/// The rules that all elements share.
 #[derive(Debug)]
 pub(crate) struct Rules {
-    straight: Vec<(Point, [[f64; 3]; 10])>,
-    straight_cubic: Vec<(Point, [[f64; 3]; 10])>,
-    curved: Vec<(Point, [[f64; 3]; 10])>,
+    straight: Vec<RulePoint>,
+    straight_cubic: Vec<RulePoint>,
+    curved: Vec<RulePoint>,
 }
 
 impl Rules {
     pub(crate) fn new() -> Self {
         let with_gradients = |rule: Vec<Point>| {
-            rule.into_iter()
-                .map(|p| {
-                    let dn = shape_gradients(p.at);
-                    (p, dn)
-                })
-                .collect()
+            rule.into_iter().map(|point| RulePoint { point, gradients: shape_gradients(point.at) }).collect()
         };
         Self {
             straight: with_gradients(quadrature::degree_2()),
@@ -50,25 +53,25 @@ impl Rules {
         in_space(if is_straight(positions) { &self.straight } else { &self.curved }, positions)
     }
 
-    /// Integration points for products of three gradients: five where the element is straight, which are exact then, fourteen
+    /// The rule for products of three gradients: five points where the element is straight, which are exact then, fourteen
     /// where it is curved.
-    pub(crate) fn cubic_points(&self, positions: &[[f64; 3]; 10]) -> Vec<IntegrationPoint> {
-        in_space(if is_straight(positions) { &self.straight_cubic } else { &self.curved }, positions)
+    pub(crate) fn cubic(&self, is_straight: bool) -> &[RulePoint] {
+        if is_straight { &self.straight_cubic } else { &self.curved }
     }
 
-    /// Reference coordinates of [`fine_points`](Self::fine_points).
-    pub(crate) fn fine_rule(&self) -> impl Iterator<Item = [f64; 3]> + '_ {
-        self.curved.iter().map(|(point, _)| point.at)
+    /// The rule of fourteen points whatever the element: exact to degree 5 where it is straight.
+    pub(crate) fn fine(&self) -> &[RulePoint] {
+        &self.curved
     }
 
-    /// Fourteen integration points whatever the element: exact to degree 5 where it is straight.
+    /// The integration points of [`fine`](Self::fine).
     pub(crate) fn fine_points(&self, positions: &[[f64; 3]; 10]) -> Vec<IntegrationPoint> {
         in_space(&self.curved, positions)
     }
 }
 
-fn in_space(rule: &[(Point, [[f64; 3]; 10])], positions: &[[f64; 3]; 10]) -> Vec<IntegrationPoint> {
-    rule.iter().map(|(point, dn)| IntegrationPoint::new(positions, dn, point.weight)).collect()
+fn in_space(rule: &[RulePoint], positions: &[[f64; 3]; 10]) -> Vec<IntegrationPoint> {
+    rule.iter().map(|rule| IntegrationPoint::new(positions, &rule.gradients, rule.point.weight)).collect()
 }
 
 impl IntegrationPoint {

@@ -44,6 +44,7 @@ mod shape;
 mod stress;
 mod surface;
 mod tags;
+mod vectorized;
 
 pub use assembly::{Matrices, assemble};
 pub use error::{AssemblyError, FilePosition, MeshError};

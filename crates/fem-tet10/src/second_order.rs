@@ -9,20 +9,21 @@
 //! All integrands are sums of products of ∇v with a matrix P, so a force on a node is `∫ P ∇N_i dV`. As in the reduced
 //! geometric stiffness, displacements count against the element's first node, whose force is what balances the others.
 
-use faer::{Mat, MatRef};
-use pulp::Arch;
+use faer::linalg::matmul::matmul;
+use faer::{Accum, Mat, MatRef, Par};
 use rayon::prelude::*;
 
 use crate::deformation::{OTHERS, check_field};
 use crate::error::AssemblyError;
-use crate::integration::{IntegrationPoint, Rules};
-use crate::lanes::{Grouped, LANES, Lanes, Tensors, gradient};
+use crate::integration::Rules;
+use crate::lanes::{Group, GroupPoint, LANES, Lame, Lanes, PARTS, Rows, Tensors};
 use crate::material::Materials;
 use crate::mesh::Mesh;
+use crate::vectorized::vectorized;
 
-/// Elements whose forces are held at once, before they are added in the order of the elements: the sums are the same for
-/// any number of threads.
-const BLOCK: usize = 1024;
+/// Groups of elements whose forces are held at once, before they are added in the order of the groups: the sums are the same
+/// for any number of threads.
+const BLOCK: usize = 256;
 
 /// The forces g_ab (N×p, force per squared unit of the fields) of each pair (a, b) of columns of `fields` (N×k, length,
 /// row `3·node + axis`): the second derivatives of the internal forces of a St. Venant–Kirchhoff body at rest.
@@ -87,7 +88,6 @@ pub fn second_order_energies(
     if quadruples.is_empty() {
         return Ok(Vec::new());
     }
-    let rules = Rules::new();
     // The strain and the stress of a pair are found once at a point, in how many quadruples it may be.
     let mut pairs: Vec<[usize; 2]> = Vec::new();
     let mut number = |a: usize, b: usize| {
@@ -98,102 +98,46 @@ pub fn second_order_energies(
         })
     };
     let products: Vec<[usize; 2]> = quadruples.iter().map(|[a, b, c, d]| [number(*a, *b), number(*c, *d)]).collect();
-    let (arch, fields, groups) = (Arch::new(), Grouped::new(fields), in_groups(&pairs));
-    // A row for each pair, with the products of its stress and the strains of all pairs.
-    let of_element = |e: usize| -> Vec<Lanes> {
-        let points = rules.fine_points(&mesh.element_positions(e));
-        let mut rows = vec![[0.0; LANES]; LANES * groups.len() * groups.len()];
-        arch.dispatch(|| {
-            let mut here = AtPoint::new(&fields, &mesh.elements()[e]);
-            let mut strains = Vec::with_capacity(groups.len());
-            for point in &points {
-                let lame = materials[e].lame();
-                here.go_to(point, lame);
-                strains.clear();
-                for pairs in &groups {
-                    let (a, b) = (here.gathered(pairs, 0, GRADIENT), here.gathered(pairs, 1, GRADIENT));
-                    strains.push(a.second_strain(&b));
-                }
-                for (pair, row) in rows.chunks_exact_mut(groups.len()).enumerate() {
-                    let strain = strains[pair / LANES].all_alike(pair % LANES);
-                    let stress = strain.stress(lame).scaled(point.volume);
-                    for (sums, strain) in row.iter_mut().zip(&strains) {
-                        add_dots(sums, &stress, strain);
+    let (rules, fields, groups) = (Rules::new(), Rows::new(fields), Group::all(mesh));
+    let points = rules.fine();
+    let zero = || Mat::<f64>::zeros(pairs.len(), pairs.len());
+    let of_part = |part: &[Group]| -> Mat<f64> {
+        let mut sum = zero();
+        let (mut relative, mut gradients) = (Vec::new(), Vec::new());
+        // By pair, then point.
+        let [mut strains, mut stresses] = [(); 2].map(|()| vec![[[0.0; LANES]; 6]; points.len() * pairs.len()]);
+        for group in part {
+            vectorized(
+                #[inline(always)]
+                || {
+                    let (lame, positions) = (group.lame(&materials), group.positions(mesh));
+                    fields.relative(mesh, group, &mut relative);
+                    for (row, rule) in points.iter().enumerate() {
+                        let point = GroupPoint::new(&positions, rule, group.count);
+                        gradients.clear();
+                        for relative in &relative {
+                            gradients.push(point.gradient(relative));
+                        }
+                        for (pair, [a, b]) in pairs.iter().enumerate() {
+                            let strain = gradients[*a].second_strain(&gradients[*b]);
+                            let place = points.len() * pair + row;
+                            strains[place] = strain.upper(1.0);
+                            stresses[place] = strain.stress(&lame).scaled(&point.volume).upper(2.0);
+                        }
                     }
-                }
-            }
-        });
-        rows
+                },
+            );
+            let [strains, stresses] = [&strains, &stresses].map(|numbers| {
+                let numbers = numbers.as_flattened().as_flattened();
+                MatRef::from_column_major_slice(numbers, 6 * LANES * points.len(), pairs.len())
+            });
+            matmul(sum.as_mut(), Accum::Add, stresses.transpose(), strains, 1.0, Par::Seq);
+        }
+        sum
     };
-    let mut sums = vec![[0.0; LANES]; LANES * groups.len() * groups.len()];
-    let elements: Vec<usize> = (0..mesh.elements().len()).collect();
-    for block in elements.chunks(BLOCK) {
-        let parts: Vec<Vec<Lanes>> = block.par_iter().map(|e| of_element(*e)).collect();
-        for part in parts {
-            for (sum, part) in sums.as_flattened_mut().iter_mut().zip(part.as_flattened()) {
-                *sum += part;
-            }
-        }
-    }
-    let energy = |[first, second]: &[usize; 2]| sums[first * groups.len() + second / LANES][second % LANES];
-    Ok(products.iter().map(energy).collect())
-}
-
-const GRADIENT: usize = 0;
-const STRESS: usize = 1;
-
-/// Pairs of fields in groups; the last group is filled up with its last pair.
-fn in_groups(pairs: &[[usize; 2]]) -> Vec<[[usize; 2]; LANES]> {
-    let group = |pairs: &[[usize; 2]]| std::array::from_fn(|lane| pairs[lane.min(pairs.len() - 1)]);
-    pairs.chunks(LANES).map(group).collect()
-}
-
-/// The fields of an element at one of its points.
-struct AtPoint {
-    relative: Vec<[[Lanes; 3]; OTHERS]>,
-    /// ∇u and C:ε(u) of each group, by [`GRADIENT`] and [`STRESS`].
-    of_groups: Vec<[Tensors; 2]>,
-}
-
-impl AtPoint {
-    #[inline(always)]
-    fn new(fields: &Grouped, nodes: &[u32; 10]) -> Self {
-        let mut relative = Vec::with_capacity(fields.groups);
-        fields.relative(nodes, &mut relative);
-        Self { of_groups: Vec::with_capacity(relative.len()), relative }
-    }
-
-    #[inline(always)]
-    fn go_to(&mut self, point: &IntegrationPoint, lame: (f64, f64)) {
-        self.of_groups.clear();
-        for relative in &self.relative {
-            self.of_groups.push(gradient(relative, point).with_stress(lame));
-        }
-    }
-
-    /// ∇u or C:ε(u) of the first or of the second field of each of four pairs.
-    #[inline(always)]
-    fn gathered(&self, pairs: &[[usize; 2]; LANES], which: usize, what: usize) -> Tensors {
-        let mut found = Tensors::ZERO;
-        for (lane, pair) in pairs.iter().enumerate() {
-            let field = pair[which];
-            let from = &self.of_groups[field / LANES][what];
-            for (to, from) in found.0.as_flattened_mut().iter_mut().zip(from.0.as_flattened()) {
-                to[lane] = from[field % LANES];
-            }
-        }
-        found
-    }
-}
-
-/// Adds A:B of the one matrix `a` and of the four in `b` in a row of `sums`.
-#[inline(always)]
-fn add_dots(sums: &mut Lanes, a: &Tensors, b: &Tensors) {
-    for (a, b) in a.0.as_flattened().iter().zip(b.0.as_flattened()) {
-        for (sum, (a, b)) in sums.iter_mut().zip(a.iter().zip(b)) {
-            *sum += a * b;
-        }
-    }
+    let parts: Vec<Mat<f64>> = groups.par_chunks(groups.len().div_ceil(PARTS)).map(of_part).collect();
+    let sum = parts.into_iter().fold(zero(), |sum, part| sum + part);
+    Ok(products.iter().map(|[first, second]| sum[(*first, *second)]).collect())
 }
 
 /// Forces (N×pairs) whose virtual work is `Σ ∫ ∇v : P dV`; `force` gives the matrix P of a pair of fields, which is a sum of
@@ -203,61 +147,58 @@ fn element_forces(
     materials: &Materials,
     fields: MatRef<'_, f64>,
     pairs: &[[usize; 2]],
-    force: impl Fn(&[Tensors; 2], &[Tensors; 2], (f64, f64)) -> Tensors + Sync,
+    force: impl Fn(&[Tensors; 2], &[Tensors; 2], &Lame) -> Tensors + Sync,
 ) -> Result<Mat<f64>, AssemblyError> {
     check_field(mesh, "fields", fields)?;
     let materials = materials.of_elements(mesh)?;
+    let rows = fields.nrows();
     if pairs.is_empty() {
-        return Ok(Mat::zeros(fields.nrows(), 0));
+        return Ok(Mat::zeros(rows, 0));
     }
-    let rules = Rules::new();
-    let (arch, fields, groups) = (Arch::new(), Grouped::new(fields), in_groups(pairs));
-    // By node but the first, then axis, then group of pairs.
-    let of_element = |e: usize| -> Vec<Lanes> {
-        let points = rules.cubic_points(&mesh.element_positions(e));
-        let mut sums = vec![[0.0; LANES]; 3 * OTHERS * groups.len()];
-        arch.dispatch(|| {
-            let mut here = AtPoint::new(&fields, &mesh.elements()[e]);
-            for point in &points {
-                let lame = materials[e].lame();
-                here.go_to(point, lame);
-                for (group, pairs) in groups.iter().enumerate() {
-                    let a = [here.gathered(pairs, 0, GRADIENT), here.gathered(pairs, 0, STRESS)];
-                    let b = [here.gathered(pairs, 1, GRADIENT), here.gathered(pairs, 1, STRESS)];
-                    let Tensors(force) = force(&a, &b, lame).scaled(point.volume);
-                    for (sums, gradient) in sums.chunks_exact_mut(3 * groups.len()).zip(&point.gradients[1..]) {
-                        for (axis, force) in force.iter().enumerate() {
-                            let sum = &mut sums[axis * groups.len() + group];
-                            for (force, gradient) in force.iter().zip(gradient) {
-                                for lane in 0..LANES {
-                                    sum[lane] += force[lane] * gradient;
-                                }
-                            }
-                        }
+    let (rules, fields, groups) = (Rules::new(), Rows::new(fields), Group::all(mesh));
+    // By pair, then node but the first, then axis.
+    let of_group = |group: &Group| -> Vec<[[Lanes; 3]; OTHERS]> {
+        let mut sums = vec![[[[0.0; LANES]; 3]; OTHERS]; pairs.len()];
+        vectorized(
+            #[inline(always)]
+            || {
+                let (lame, positions) = (group.lame(&materials), group.positions(mesh));
+                let (mut relative, mut of_fields) = (Vec::new(), Vec::with_capacity(fields.columns));
+                fields.relative(mesh, group, &mut relative);
+                for rule in group.cubic_points(&rules) {
+                    let point = GroupPoint::new(&positions, rule, group.count);
+                    of_fields.clear();
+                    for relative in &relative {
+                        of_fields.push(point.gradient(relative).with_stress(&lame));
+                    }
+                    for ([a, b], sums) in pairs.iter().zip(&mut sums) {
+                        let force = force(&of_fields[*a], &of_fields[*b], &lame).scaled(&point.volume);
+                        point.add_forces(&force, sums);
                     }
                 }
-            }
-        });
+            },
+        );
         sums
     };
-    let rows = 3 * mesh.positions().len();
-    let mut result = vec![[0.0; LANES]; rows * groups.len()];
-    let elements: Vec<usize> = (0..mesh.elements().len()).collect();
-    for block in elements.chunks(BLOCK) {
-        let parts: Vec<Vec<Lanes>> = block.par_iter().map(|e| of_element(*e)).collect();
-        for (e, sums) in block.iter().zip(parts) {
-            let nodes = &mesh.elements()[*e];
-            for (node, forces) in nodes[1..].iter().zip(sums.chunks_exact(3 * groups.len())) {
-                for (k, force) in forces.iter().enumerate() {
-                    for (node, sign) in [(*node, 1.0), (nodes[0], -1.0)] {
-                        let sum = &mut result[3 * groups.len() * node as usize + k];
-                        for lane in 0..LANES {
-                            sum[lane] += sign * force[lane];
+    let mut result = vec![0.0; rows * pairs.len()];
+    let mut add = |node: u32, axis: usize, pair: usize, force: f64| {
+        result[pairs.len() * (3 * node as usize + axis) + pair] += force;
+    };
+    for block in groups.chunks(BLOCK) {
+        let parts: Vec<Vec<[[Lanes; 3]; OTHERS]>> = block.par_iter().map(of_group).collect();
+        for (group, sums) in block.iter().zip(parts) {
+            for (lane, element) in group.elements[..group.count].iter().enumerate() {
+                let nodes = &mesh.elements()[*element];
+                for (place, node) in nodes[1..].iter().enumerate() {
+                    for axis in 0..3 {
+                        for (pair, sums) in sums.iter().enumerate() {
+                            add(*node, axis, pair, sums[place][axis][lane]);
+                            add(nodes[0], axis, pair, -sums[place][axis][lane]);
                         }
                     }
                 }
             }
         }
     }
-    Ok(Mat::from_fn(rows, pairs.len(), |row, pair| result[row * groups.len() + pair / LANES][pair % LANES]))
+    Ok(Mat::from_fn(rows, pairs.len(), |row, pair| result[row * pairs.len() + pair]))
 }

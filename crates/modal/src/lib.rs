@@ -73,6 +73,7 @@ pub use reduced::{BodyPoint, Constants, ReducedBody};
 pub use rigid::RigidModes;
 pub use second_order::SecondOrderShapes;
 pub use solve::{Modes, SolveStats, Solver};
+pub use statics::StaticAccuracy;
 pub use support::{RigidMotion, Support, Twist};
 /// Crates whose types are in the interface.
 pub use {faer, nalgebra};

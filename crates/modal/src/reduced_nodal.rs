@@ -1,6 +1,6 @@
 //! The constants of a body whose mass is a scalar for each pair of nodes: it commutes with rotations, and all are exact.
 
-use faer::Mat;
+use faer::{Mat, MatRef};
 use nalgebra::Vector3;
 
 use crate::error::ModalError;
@@ -18,22 +18,23 @@ pub(crate) fn nodal_products(modes: &Modes, nodal: &NodalMass, positions: &[[f64
     // Ψ, X and 1 side by side: all constants are products of their rows on one axis with M_s times those on another.
     let columns = 6 + nf + 2;
     memory::check("the reduced body", of_vectors(3 * n, 4 * columns))?;
-    let mut all = Mat::zeros(3 * n, columns);
-    all.as_mut().subcols_mut(0, 6).copy_from(&rigid.shapes);
-    all.as_mut().subcols_mut(6, nf).copy_from(&modes.shapes);
+    let mut geometry = Mat::zeros(3 * n, 2);
     for (node, x) in positions.iter().enumerate() {
         let offset = Vector3::from(*x) - rigid.origin;
         for axis in 0..3 {
-            all[(3 * node + axis, columns - 2)] = offset[axis];
-            all[(3 * node + axis, columns - 1)] = 1.0;
+            geometry[(3 * node + axis, 0)] = offset[axis];
+            geometry[(3 * node + axis, 1)] = 1.0;
         }
     }
-    let m_all = nodal.product(all.as_ref());
-    let on_axis = |matrix: &Mat<f64>, axis: usize| Mat::from_fn(n, columns, |i, j| matrix[(3 * i + axis, j)]);
-    let rows: [Mat<f64>; 3] = std::array::from_fn(|axis| on_axis(&all, axis));
-    let m_rows: [Mat<f64>; 3] = std::array::from_fn(|axis| on_axis(&m_all, axis));
-    let products: [[Mat<f64>; 3]; 3] =
-        std::array::from_fn(|a| std::array::from_fn(|b| tall::inner(rows[a].as_ref(), m_rows[b].as_ref())));
+    let parts = [rigid.shapes.as_ref(), modes.shapes.as_ref(), geometry.as_ref()];
+    let rows = by_axis(&parts);
+    let m_parts = parts.map(|part| nodal.product(part));
+    let m_rows = by_axis(&m_parts.each_ref().map(Mat::as_ref));
+    let product = |a: usize, b: usize| tall::inner(rows[a].as_ref(), m_rows[b].as_ref());
+    // M_s is symmetric.
+    let [xy, yz, zx] = [product(0, 1), product(1, 2), product(2, 0)];
+    let [yx, zy, xz] = [&xy, &yz, &zx].map(|product| product.transpose().to_owned());
+    let products = [[product(0, 0), xy, xz], [yx, product(1, 1), yz], [zx, zy, product(2, 2)]];
 
     let modal = 6 + nf;
     let is_free = rigid.motion.is_free();
@@ -88,4 +89,18 @@ pub(crate) fn nodal_products(modes: &Modes, nodal: &NodalMass, positions: &[[f64
         translation_first,
         rotation_first,
     })
+}
+
+/// Fields (3n×k) side by side, their rows on each axis (n×k).
+fn by_axis(fields: &[MatRef<'_, f64>]) -> [Mat<f64>; 3] {
+    let (n, columns) = (fields[0].nrows() / 3, fields.iter().map(|part| part.ncols()).sum());
+    let mut rows: [Mat<f64>; 3] = std::array::from_fn(|_| Mat::zeros(n, columns));
+    for (k, field) in fields.iter().flat_map(|part| part.col_iter()).enumerate() {
+        for (axis, rows) in rows.iter_mut().enumerate() {
+            for (row, value) in rows.col_mut(k).iter_mut().zip(field.iter().skip(axis).step_by(3)) {
+                *row = *value;
+            }
+        }
+    }
+    rows
 }

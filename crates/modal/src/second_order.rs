@@ -76,22 +76,24 @@ impl Solver<'_> {
         memory::check("shapes of second order", of_vectors(size, 3 * (dynamic + pairs.len())))?;
         let follow = self.beside(&modes, answers, DEPENDENT)?;
         let extended = dynamic + follow.ncols();
-        let shapes =
-            Mat::from_fn(
-                size,
-                extended,
-                |i, j| {
-                    if j < dynamic { modes.shapes[(i, j)] } else { follow[(i, j - dynamic)] }
-                },
-            );
-        let stiff = symmetric_product(self.stiffness, shapes.as_ref());
-        let stiffness = tall::inner(shapes.as_ref(), stiff.as_ref());
+        let shapes = tall::side_by_side(modes.shapes.as_ref(), follow.as_ref());
+        // The modes and static shapes are Rayleigh–Ritz vectors.
+        let stiff = tall::inner(shapes.as_ref(), symmetric_product(self.stiffness, follow.as_ref()).as_ref());
+        let stiffness = |i: usize, j: usize| match (i.min(j), i.max(j)) {
+            (_, column) if column < dynamic => {
+                if i == j {
+                    modes.eigenvalues[i]
+                } else {
+                    0.0
+                }
+            }
+            (row, column) if row < dynamic => stiff[(row, column - dynamic)],
+            (row, column) => 0.5 * (stiff[(row, column - dynamic)] + stiff[(column, row - dynamic)]),
+        };
         let along = tall::inner(shapes.as_ref(), forces);
         let others: Vec<usize> = (0..extended).filter(|a| !large.contains(a)).collect();
         let (k, g) = (
-            Mat::from_fn(others.len(), others.len(), |i, j| {
-                0.5 * (stiffness[(others[i], others[j])] + stiffness[(others[j], others[i])])
-            }),
+            Mat::from_fn(others.len(), others.len(), |i, j| stiffness(others[i], others[j])),
             Mat::from_fn(others.len(), pairs.len(), |i, j| along[(others[i], j)]),
         );
         let factor = k.llt(Side::Lower).map_err(|_| ModalError::DenseEigen { size: others.len() })?;
@@ -102,8 +104,9 @@ impl Solver<'_> {
                 slopes[(*a, j)] = -answer[(i, j)];
             }
         }
+        let of_follow: Vec<f64> = (dynamic..extended).map(|a| stiffness(a, a)).collect();
         let mut modes = modes;
-        modes.eigenvalues.extend((dynamic..extended).map(|a| stiffness[(a, a)]));
+        modes.eigenvalues.extend(of_follow);
         modes.shapes = shapes;
         Ok(SecondOrderShapes {
             modes,

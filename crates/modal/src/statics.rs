@@ -7,7 +7,8 @@
 //! R are the rigid modes that the support leaves: the force is balanced by the inertia of the motion that it causes
 //! (inertia relief). The factor of K + sM preconditions: the spectrum is λ/(λ + s), between about a half and one.
 
-use faer::{Col, ColMut, ColRef, Mat, MatRef, Scale};
+use faer::reborrow::{Reborrow, ReborrowMut};
+use faer::{Accum, ColMut, ColRef, Mat, MatRef, Scale, unzip, zip};
 
 use crate::error::ModalError;
 use crate::foretold::of_vectors;
@@ -18,17 +19,35 @@ use crate::shifted::{Shifted, SolveScratch};
 use crate::solve::{Modes, Solver};
 use crate::tall;
 
-/// The norm of (K + sM)⁻¹ of the residual, relative to that of the force, that an answer is to have. The iteration ends
-/// where a last solution, with the residual evaluated anew, will get there by what the steps before it have gained.
-const TOLERANCE: f64 = 1e-11;
-/// The norm of that residual, which is the error of the answer in the norm of the energy: what rounding in K may leave on
-/// slender bodies (9e-7 on a bar of 220 times its thickness).
+/// The norm of (K + sM)⁻¹ of the residual, relative to that of the force: the error of an answer in the norm of the energy
+/// that is accepted. It is what rounding in K may leave on slender bodies (9e-7 on a bar of 220 times its thickness).
 pub(crate) const ACCEPTED: f64 = 1e-5;
 const MAX_ITERATIONS: usize = 300;
 /// Forces answered together at the most: the factor is read once for all of them.
 const BLOCK: usize = 16;
 /// What a static answer adds to the modes must be more than this part of it.
 const DEPENDENT: f64 = 1e-8;
+
+/// How well static answers are to balance their forces.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum StaticAccuracy {
+    /// To rounding.
+    Full,
+    /// As well as shapes need that are made of the answers, and whose coordinates come from the forces anew, as those of
+    /// [`SecondOrderShapes`](crate::SecondOrderShapes): what is missing of the answers counts with its square.
+    Shapes,
+}
+
+impl StaticAccuracy {
+    /// The norm of (K + sM)⁻¹ of the residual, relative to that of the force, that an answer is to have. The iteration ends
+    /// where a last solution, with the residual evaluated anew, will get there by what the steps before it have gained.
+    fn tolerance(self) -> f64 {
+        match self {
+            Self::Full => 1e-11,
+            Self::Shapes => ACCEPTED,
+        }
+    }
+}
 
 impl Solver<'_> {
     /// Static answers u (N×k) to the forces f (N×k), relative to the rigid motion that f causes: M-orthogonal to the
@@ -38,7 +57,7 @@ impl Solver<'_> {
     /// [`ModalError::Size`], [`ModalError::NotFinite`], [`ModalError::StaticNotConverged`], and what refuses the factor
     /// of K + sM.
     pub fn static_response(&self, forces: MatRef<'_, f64>) -> Result<Mat<f64>, ModalError> {
-        self.static_response_from(&self.modes(0, |_| ())?, forces)
+        self.static_response_from(&self.modes(0, |_| ())?, forces, StaticAccuracy::Full)
     }
 
     /// The same, where natural `modes` are known: the answers begin with their parts along them, `Σ φ (φ·f)/λ`. What is left
@@ -46,7 +65,12 @@ impl Solver<'_> {
     ///
     /// # Errors
     /// As [`static_response`](Self::static_response).
-    pub fn static_response_from(&self, modes: &Modes, forces: MatRef<'_, f64>) -> Result<Mat<f64>, ModalError> {
+    pub fn static_response_from(
+        &self,
+        modes: &Modes,
+        forces: MatRef<'_, f64>,
+        accuracy: StaticAccuracy,
+    ) -> Result<Mat<f64>, ModalError> {
         let expected = self.rigid.shapes.nrows();
         if forces.nrows() != expected {
             return Err(ModalError::Size { what: "forces", expected, found: forces.nrows() });
@@ -65,7 +89,7 @@ impl Solver<'_> {
         let at_once = forces.ncols().div_ceil(blocks.max(1)).max(1);
         for first in (0..forces.ncols()).step_by(at_once) {
             let width = at_once.min(forces.ncols() - first);
-            let block = statics.respond(forces.subcols(first, width), first)?;
+            let block = statics.respond(forces.subcols(first, width), first, accuracy.tolerance())?;
             answers.as_mut().subcols_mut(first, width).copy_from(&block);
         }
         Ok(answers)
@@ -82,18 +106,15 @@ impl Solver<'_> {
     pub fn with_static_shapes(&self, modes: Modes, answers: MatRef<'_, f64>) -> Result<Modes, ModalError> {
         let added = self.beside(&modes, answers, DEPENDENT)?;
         // Static shapes are no eigenvectors: what is M-orthogonal to them is not K-orthogonal, unless all are combined.
-        let (expected, natural) = (modes.shapes.nrows(), modes.natural());
+        let natural = modes.natural();
         let before = modes.shapes.ncols() - natural;
-        let added = Mat::from_fn(expected, before + added.ncols(), |i, j| {
-            if j < before { modes.shapes[(i, natural + j)] } else { added[(i, j - before)] }
-        });
+        let added = tall::side_by_side(modes.shapes.subcols(natural, before), added.as_ref());
         let RitzPairs { eigenvalues, shapes, .. } =
             rayleigh_ritz(self.stiffness, &self.mass, &self.constraints, &added)?;
         let mut modes = modes;
         modes.eigenvalues.truncate(natural);
         modes.eigenvalues.extend(eigenvalues);
-        modes.shapes.truncate(expected, natural);
-        modes.shapes.resize_with(expected, natural + shapes.ncols(), |i, j| shapes[(i, j - natural)]);
+        modes.shapes = tall::side_by_side(modes.shapes.get(.., ..natural), shapes.as_ref());
         Ok(modes)
     }
 
@@ -105,36 +126,50 @@ impl Solver<'_> {
             return Err(ModalError::Size { what: "static answers", expected, found });
         }
         check_finite("static answers", answers)?;
-        let (rigid, flexible) = (6, modes.shapes.ncols());
-        memory::check("static shapes", of_vectors(expected, 2 * (rigid + flexible + answers.ncols()) + flexible))?;
-        let mut basis = Mat::zeros(expected, rigid + flexible);
-        basis.as_mut().subcols_mut(0, rigid).copy_from(&self.rigid.shapes);
-        basis.as_mut().subcols_mut(rigid, flexible).copy_from(&modes.shapes);
-        let m_basis = self.mass.product(basis.as_ref());
+        memory::check("static shapes", of_vectors(expected, modes.shapes.ncols() + 4 * answers.ncols()))?;
         let mut rests = answers.to_owned();
-        let mut wholes: Vec<f64> = dots(&rests, &self.mass.product(answers)).into_iter().map(f64::sqrt).collect();
+        let mut m_rests = self.mass.product(answers);
+        let mut wholes: Vec<f64> = dots(&rests, &m_rests).into_iter().map(f64::sqrt).collect();
         // What is left of an answer may be small: a second round takes out what rounding has left in it.
         for _ in 0..2 {
-            tall::take_out(&mut rests, basis.as_ref(), m_basis.as_ref());
-            let m_rests = self.mass.product(rests.as_ref());
-            let mut unit: Vec<[Col<f64>; 2]> = Vec::with_capacity(rests.ncols());
-            for (k, whole) in wholes.iter().enumerate() {
-                let [mut rest, mut momentum] = [rests.col(k).to_owned(), m_rests.col(k).to_owned()];
-                for [other, m_other] in &unit {
-                    let part = Scale(m_other.transpose() * &rest);
-                    rest -= other * part;
-                    momentum -= m_other * part;
-                }
-                let norm = (rest.transpose() * &momentum).max(0.0).sqrt();
-                if norm > least * whole {
-                    unit.push([rest, momentum].map(|list| list * Scale(1.0 / norm)));
-                }
+            for basis in [self.rigid.shapes.as_ref(), modes.shapes.as_ref()] {
+                let parts = tall::inner(basis, m_rests.as_ref());
+                tall::multiply(rests.as_mut(), Accum::Add, basis, parts.as_ref(), -1.0);
             }
-            rests = Mat::from_fn(expected, unit.len(), |i, j| unit[j][0][i]);
-            wholes = vec![1.0; unit.len()];
+            m_rests = self.mass.product(rests.as_ref());
+            let count = orthonormalize([&mut rests, &mut m_rests], &wholes, least);
+            wholes = vec![1.0; count];
         }
         Ok(rests)
     }
+}
+
+/// Makes vectors, given with M times them, M-orthonormal one after the other, and leaves out those of which not more than
+/// `least` of their `wholes` is left. Returns how many there are.
+fn orthonormalize(vectors: [&mut Mat<f64>; 2], wholes: &[f64], least: f64) -> usize {
+    let [vectors, momenta] = vectors;
+    let size = vectors.nrows();
+    let mut count = 0;
+    for (k, whole) in wholes.iter().enumerate() {
+        let parts = tall::inner(momenta.subcols(0, count), vectors.subcols(k, 1));
+        for list in [&mut *vectors, &mut *momenta] {
+            let (before, mut from) = list.as_mut().split_at_col_mut(count);
+            for (part, unit) in parts.col(0).iter().zip(before.rb().col_iter()) {
+                add(from.as_mut().col_mut(k - count), -part, unit);
+            }
+        }
+        let norm = (vectors.col(k).transpose() * momenta.col(k)).max(0.0).sqrt();
+        if norm > least * whole {
+            for list in [&mut *vectors, &mut *momenta] {
+                let unit = list.col(k) * Scale(1.0 / norm);
+                list.col_mut(count).copy_from(unit);
+            }
+            count += 1;
+        }
+    }
+    vectors.truncate(size, count);
+    momenta.truncate(size, count);
+    count
 }
 
 fn check_finite(what: &'static str, vectors: MatRef<'_, f64>) -> Result<(), ModalError> {
@@ -167,7 +202,7 @@ impl<'a> Statics<'a> {
     }
 
     /// Answers to up to [`BLOCK`] forces, of which `first` is the number of the first.
-    fn respond(&mut self, forces: MatRef<'_, f64>, first: usize) -> Result<Mat<f64>, ModalError> {
+    fn respond(&mut self, forces: MatRef<'_, f64>, first: usize, tolerance: f64) -> Result<Mat<f64>, ModalError> {
         let forces = self.relief.straining(forces);
         let (mut answer, mut residual, along) = self.along_modes(&forces);
         self.relief.balance(&mut residual);
@@ -177,6 +212,9 @@ impl<'a> Statics<'a> {
         let (mut conditioned, mut stiff) = (zeros(), zeros());
         let mut before: Vec<f64> = vec![f64::INFINITY; forces.ncols()];
         let mut scale: Vec<f64> = Vec::new();
+        // Along a mode that is not known, (K + sM)⁻¹ K is more than 1 − s/λ of the last that is, and 1 at most.
+        let known = self.modes.eigenvalues[..self.modes.natural()].last();
+        let of_first = known.map_or(f64::INFINITY, |lambda| (self.factor.shift / lambda).powi(2));
         let mut iterations = 0;
         loop {
             self.precondition(&residual, &mut conditioned);
@@ -184,7 +222,7 @@ impl<'a> Statics<'a> {
             if iterations == 0 {
                 scale = squared.iter().zip(&along).map(|(squared, along)| squared + along).collect();
             }
-            let is_open = |squared: f64, k: usize| squared > TOLERANCE * TOLERANCE * scale[k];
+            let is_open = |squared: f64, k: usize| squared > tolerance * tolerance * scale[k];
             let open: Vec<usize> = (0..squared.len()).filter(|k| is_open(squared[*k], *k)).collect();
             if open.is_empty() || iterations == MAX_ITERATIONS {
                 break;
@@ -203,18 +241,21 @@ impl<'a> Statics<'a> {
                 add(residual.as_mut().col_mut(*k), -step, stiff.col(*k));
             }
             // This step and the last solution gain about as much each as the step before.
-            let gain = |k: usize| squared[k] / before[k];
-            if open.iter().all(|k| iterations > 1 && !is_open(squared[*k] * gain(*k) * gain(*k), *k)) {
+            let gain = |k: usize| if iterations == 1 { of_first } else { squared[k] / before[k] };
+            let ends = open.iter().all(|k| !is_open(squared[*k] * gain(*k) * gain(*k), *k));
+            before = squared;
+            if ends {
                 break;
             }
             self.relief.balance(&mut residual);
-            before = squared;
         }
         let mut residual = forces - self.relief.stiff(&answer);
         self.relief.balance(&mut residual);
         self.precondition(&residual, &mut conditioned);
         for (k, (squared, scale)) in dots(&residual, &conditioned).iter().zip(&scale).enumerate() {
-            let residual = (squared / scale).sqrt();
+            // The last solution gains as much as the step before it, or nothing where rounding is reached.
+            let gain = (squared / before[k]).min(1.0);
+            let residual = (squared * gain / scale).sqrt();
             if *scale > 0.0 && (residual.is_nan() || residual >= ACCEPTED) {
                 let column = first + k;
                 return Err(ModalError::StaticNotConverged { column, iterations, residual, tolerance: ACCEPTED });
@@ -258,17 +299,13 @@ impl<'a> Statics<'a> {
 }
 
 /// y ← x + part·y.
-fn follow(y: ColMut<'_, f64>, part: f64, x: ColRef<'_, f64>) {
-    for (y, x) in y.iter_mut().zip(x.iter()) {
-        *y = x + part * *y;
-    }
+fn follow(mut y: ColMut<'_, f64>, part: f64, x: ColRef<'_, f64>) {
+    zip!(y.rb_mut(), x).for_each(|unzip!(y, x)| *y = x + part * *y);
 }
 
 /// y ← y + part·x.
-fn add(y: ColMut<'_, f64>, part: f64, x: ColRef<'_, f64>) {
-    for (y, x) in y.iter_mut().zip(x.iter()) {
-        *y += part * x;
-    }
+fn add(mut y: ColMut<'_, f64>, part: f64, x: ColRef<'_, f64>) {
+    zip!(y.rb_mut(), x).for_each(|unzip!(y, x)| *y += part * x);
 }
 
 /// Products of the columns with each other.

@@ -81,6 +81,15 @@ pub(crate) fn take_out(x: &mut Mat<f64>, a: MatRef<'_, f64>, b: MatRef<'_, f64>)
     h
 }
 
+/// The columns of A, then those of B.
+pub(crate) fn side_by_side(a: MatRef<'_, f64>, b: MatRef<'_, f64>) -> Mat<f64> {
+    let mut all = Mat::zeros(a.nrows(), a.ncols() + b.ncols());
+    let (mut first, mut second) = all.as_mut().split_at_col_mut(a.ncols());
+    first.copy_from(a);
+    second.copy_from(b);
+    all
+}
+
 /// The columns as slices; copies, should they not lie side by side.
 fn columns(a: MatRef<'_, f64>) -> Vec<Cow<'_, [f64]>> {
     let slice = |j: usize| match a.col(j).try_as_col_major() {

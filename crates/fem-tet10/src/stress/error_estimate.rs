@@ -57,7 +57,7 @@ impl StressRecovery<'_> {
         let relative = relative_displacements(displacement, &self.mesh.elements()[e]);
         let mut gradients = Vec::with_capacity(1);
         let points = self.rules.fine_points(&self.mesh.element_positions(e));
-        let shapes = self.rules.fine_rule().map(shape_functions);
+        let shapes = self.rules.fine().iter().map(|rule| shape_functions(rule.point.at));
         let of_point = |(point, shapes): (&_, [f64; 10])| {
             displacement_gradients(&relative, point, 1, &mut gradients);
             let raw = stress(&self.materials[e], &strain(&gradients[0]));

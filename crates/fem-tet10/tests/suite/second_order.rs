@@ -2,8 +2,8 @@
 
 use faer::Mat;
 use fem_tet10::{
-    GeometricTerms, Mesh, assemble, geometric_stiffness_product, reduced_geometric_stiffness, second_order_energies,
-    second_order_forces,
+    GeometricTerms, Material, Materials, Mesh, assemble, geometric_stiffness_product, quadrature,
+    reduced_geometric_stiffness, second_order_energies, second_order_forces, shape_gradients,
 };
 use nalgebra::{Matrix3, Vector3};
 
@@ -107,5 +107,71 @@ fn the_product_with_the_geometric_stiffness_is_the_reduced_one() {
                 assert!((found[(i, j)] - reduced[(i, j)]).abs() < 1e-12 * reduced.norm_max());
             }
         }
+    }
+}
+
+/// `∫ ε₂(a,b) : C : ε₂(c,d) dV` in plain loops, element by element, by the rule of degree 5.
+fn energy_written_out(mesh: &Mesh, [a, b, c, d]: [&[f64]; 4]) -> f64 {
+    let (lambda, mu) = ALUMINIUM.lame();
+    let mut energy = 0.0;
+    for nodes in mesh.elements() {
+        for point in quadrature::degree_5() {
+            let reference = shape_gradients(point.at);
+            let sum = |of_node: &dyn Fn(usize) -> Vector3<f64>| -> Matrix3<f64> {
+                (0..10).map(|k| of_node(nodes[k] as usize) * Vector3::from(reference[k]).transpose()).sum()
+            };
+            let jacobian = sum(&|node| Vector3::from(mesh.positions()[node]));
+            let inverse = jacobian.try_inverse().unwrap();
+            let slopes = |u: &[f64]| sum(&|node| Vector3::new(u[3 * node], u[3 * node + 1], u[3 * node + 2])) * inverse;
+            let strain = |a: &[f64], b: &[f64]| {
+                let product = slopes(a).transpose() * slopes(b);
+                0.5 * (product + product.transpose())
+            };
+            let (first, second) = (strain(a, b), strain(c, d));
+            let product = lambda * first.trace() * second.trace() + 2.0 * mu * first.dot(&second);
+            energy += point.weight * jacobian.determinant() * product;
+        }
+    }
+    energy
+}
+
+#[test]
+fn energies_are_the_sums_in_plain_loops() {
+    // The quarter of a cylinder has curved elements at its surface.
+    for name in ["cube.msh", "quarter.msh"] {
+        let mesh = data_mesh(name);
+        let fields = [
+            smooth(&mesh),
+            field(&mesh, |[x, y, z]| [1e-3 * y * z, -1e-3 * x * x, 2e-3 * x * y]),
+            field(&mesh, |[x, y, z]| [(1e-2 * x).sin(), 1e-3 * z * z, (2e-2 * y).cos()]),
+        ];
+        let quadruples = [[0, 1, 2, 2], [2, 1, 0, 0], [1, 1, 1, 1], [2, 0, 1, 2], [0, 2, 2, 1]];
+        let found = second_order_energies(&mesh, &aluminium(), columns(&fields).as_ref(), &quadruples).unwrap();
+        for (quadruple, found) in quadruples.iter().zip(&found) {
+            let expected = energy_written_out(&mesh, quadruple.map(|k| &fields[k][..]));
+            assert_close("ε₂:C:ε₂", *found, expected, 1e-12);
+        }
+    }
+}
+
+/// All are sums over the elements, each with its own material.
+#[test]
+fn each_element_has_its_own_material() {
+    let mesh = data_mesh("two_materials.msh");
+    let fields = columns(&[smooth(&mesh), field(&mesh, |[x, y, z]| [y * z, x * x, x * y])]);
+    let found = |factors: [f64; 2]| -> Vec<f64> {
+        let scaled = |factor: f64| Material { young_modulus: factor * ALUMINIUM.young_modulus, ..ALUMINIUM };
+        let by_group = mesh.groups().iter().cloned().zip(factors.map(scaled)).collect();
+        let materials = Materials::ByGroup(by_group);
+        let u = fields.subcols(0, 1);
+        let k = reduced_geometric_stiffness(&mesh, &materials, u, fields.as_ref(), GeometricTerms::All).unwrap();
+        let forces = second_order_forces(&mesh, &materials, fields.as_ref(), &[[0, 1]]).unwrap();
+        let energies = second_order_energies(&mesh, &materials, fields.as_ref(), &[[0, 0, 1, 1]]).unwrap();
+        vec![k[0][(0, 1)], (fields.col(0).transpose() * forces.col(0)), energies[0]]
+    };
+    let (one, other, both) = (found([2.0, 1.0]), found([1.0, 2.0]), found([1.0, 1.0]));
+    for ((one, other), both) in one.iter().zip(&other).zip(&both) {
+        assert_close("the sum of both", one + other, 3.0 * both, 1e-12);
+        assert!((one - 1.5 * both).abs() > 1e-3 * both.abs(), "the test can fail");
     }
 }

@@ -2,7 +2,7 @@
 
 use advice::{Advice, Backbone};
 use faer::{ColRef, Mat};
-use modal::{ModalError, Modes};
+use modal::{ModalError, Modes, StaticAccuracy};
 
 use super::error::BuildError;
 use super::mesh_model::{MeshModel, shapes_of};
@@ -54,7 +54,7 @@ pub(super) fn backbones(model: &MeshModel<'_>, modes: &Modes, advice: &Advice) -
     let quadruples: Vec<[usize; 4]> = (0..large.len()).map(|j| [j; 4]).collect();
     let forces = solver.second_order_forces(shapes.as_ref(), &pairs)?;
     let energies = solver.second_order_energies(shapes.as_ref(), &quadruples)?;
-    let answers = match solver.static_response(modes, forces.as_ref()) {
+    let answers = match solver.static_response(modes, forces.as_ref(), StaticAccuracy::Shapes) {
         Ok(answers) => answers,
         // The run can do without.
         Err(BuildError::Modal { source: ModalError::StaticNotConverged { .. }, .. }) => {

@@ -3,7 +3,7 @@
 use faer::{Mat, MatRef};
 use fem_tet10::GeometricTerms;
 use frames_rk4::Manifold;
-use modal::{Modes, SecondOrderShapes};
+use modal::{Modes, SecondOrderShapes, StaticAccuracy};
 
 use super::backbones::Derivatives;
 use super::error::{BuildError, modal};
@@ -187,7 +187,7 @@ fn second_order_forces(
     let known = |[j, k]: [usize; 2]| derivatives.of_mode(large[j]).filter(|_| j == k);
     let missing: Vec<[usize; 2]> = pairs.iter().copied().filter(|pair| known(*pair).is_none()).collect();
     let forces = model.solver.second_order_forces(of_large.as_ref(), &missing)?;
-    let answers = model.solver.static_response(modes, forces.as_ref())?;
+    let answers = model.solver.static_response(modes, forces.as_ref(), StaticAccuracy::Shapes)?;
     let mut found = [(); 2].map(|()| Mat::zeros(of_large.nrows(), pairs.len()));
     let mut computed = forces.col_iter().zip(answers.col_iter());
     for (column, pair) in pairs.iter().enumerate() {

@@ -11,8 +11,8 @@ use fem_tet10::{
 };
 use frames_rk4::DrivenMotion;
 use modal::{
-    ModalError, Modes, ReducedBody, SecondOrderShapes, Solver, Support, acceleration_fields, centrifugal_fields,
-    mass_left_out, turning_field,
+    ModalError, Modes, ReducedBody, SecondOrderShapes, Solver, StaticAccuracy, Support, acceleration_fields,
+    centrifugal_fields, mass_left_out, turning_field,
 };
 use slepc::write_folder;
 
@@ -285,10 +285,18 @@ impl Structure for Solved<'_> {
         self.ask_fields(question, fields.ncols(), || Ok(self.matrices()?.stiffness() * fields))
     }
 
-    fn static_response(&self, modes: &Modes, forces: MatRef<'_, f64>) -> Result<Mat<f64>, BuildError> {
-        let question = || with_matrix(with_natural(self.about_the_held_body("static response"), modes), forces);
+    fn static_response(
+        &self,
+        modes: &Modes,
+        forces: MatRef<'_, f64>,
+        accuracy: StaticAccuracy,
+    ) -> Result<Mat<f64>, BuildError> {
+        let question = || {
+            let question = self.about_the_held_body("static response").text(&format!("{accuracy:?}"));
+            with_matrix(with_natural(question, modes), forces)
+        };
         self.ask_fields(question, forces.ncols(), || {
-            self.solver()?.static_response_from(modes, forces).map_err(modal(&self.assembled.scene))
+            self.solver()?.static_response_from(modes, forces, accuracy).map_err(modal(&self.assembled.scene))
         })
     }
 
@@ -318,7 +326,7 @@ impl Structure for Solved<'_> {
                 Some(DrivenMotion::Turn { axis }) => add(turning_field(mass, positions, origin, axis)),
                 None => {}
             }
-            solver.static_response_from(modes, all.as_ref()).map_err(modal(&self.assembled.scene))
+            solver.static_response_from(modes, all.as_ref(), StaticAccuracy::Full).map_err(modal(&self.assembled.scene))
         })
     }
 

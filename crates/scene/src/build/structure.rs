@@ -3,7 +3,7 @@
 use faer::{Mat, MatRef};
 use fem_tet10::{GeometricTerms, StressSites};
 use frames_rk4::DrivenMotion;
-use modal::{Modes, ReducedBody, SecondOrderShapes};
+use modal::{Modes, ReducedBody, SecondOrderShapes, StaticAccuracy};
 use nalgebra::Vector3;
 
 use super::error::BuildError;
@@ -26,7 +26,12 @@ pub(super) trait Structure {
     fn stiffness_product(&self, fields: MatRef<'_, f64>) -> Result<Mat<f64>, BuildError>;
 
     /// Static answers to forces (3n×k), from the natural ones of the modes on.
-    fn static_response(&self, modes: &Modes, forces: MatRef<'_, f64>) -> Result<Mat<f64>, BuildError>;
+    fn static_response(
+        &self,
+        modes: &Modes,
+        forces: MatRef<'_, f64>,
+        accuracy: StaticAccuracy,
+    ) -> Result<Mat<f64>, BuildError>;
 
     /// Static answers to the forces of loads (3n×k), to the centrifugal field of each pair of spins, and to the inertia of a
     /// driven motion, side by side, from the natural ones of the modes on.

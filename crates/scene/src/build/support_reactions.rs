@@ -2,7 +2,7 @@
 
 use faer::Mat;
 use frames_rk4::{EffectMap, Manifold, Observation, SupportReactions};
-use modal::Modes;
+use modal::{Modes, StaticAccuracy};
 use nalgebra::Vector3;
 
 use super::directed::Directed;
@@ -61,7 +61,7 @@ impl SupportRows {
             column.iter().for_each(|(row, moved)| motions[(*row, c)] = *moved);
         }
         let forces = solver.stiffness_product(motions.as_ref())? * faer::Scale(-1.0);
-        let followed = solver.static_response(modes, forces.as_ref())?;
+        let followed = solver.static_response(modes, forces.as_ref(), StaticAccuracy::Full)?;
         let motions = motions + followed;
         let mut extended = modes.clone();
         // They have no frequency; the equations of motion do not meet them.
