@@ -206,19 +206,22 @@ impl GroupPoint {
         // The inverse times the determinant, by the cross products of the columns.
         let mut adjugate = Tensors::ZERO;
         let (mut determinant, mut volume) = ([0.0; LANES], [0.0; LANES]);
-        for row in 0..3 {
+        for (row, adjugate) in adjugate.0.iter_mut().enumerate() {
             let (b, c) = ((row + 1) % 3, (row + 2) % 3);
-            for column in 0..3 {
+            for (column, entry) in adjugate.iter_mut().enumerate() {
                 let (m, n) = ((column + 1) % 3, (column + 2) % 3);
-                for lane in 0..LANES {
-                    adjugate.0[row][column][lane] = j[m][b][lane] * j[n][c][lane] - j[n][b][lane] * j[m][c][lane];
+                let [[mb, mc], [nb, nc]] = [[&j[m][b], &j[m][c]], [&j[n][b], &j[n][c]]];
+                for (lane, entry) in entry.iter_mut().enumerate() {
+                    *entry = mb[lane] * nc[lane] - nb[lane] * mc[lane];
                 }
             }
         }
-        for lane in 0..LANES {
-            for i in 0..3 {
-                determinant[lane] += adjugate.0[0][i][lane] * j[i][0][lane];
+        for (adjugate, j) in adjugate.0[0].iter().zip(j) {
+            for lane in 0..LANES {
+                determinant[lane] += adjugate[lane] * j[0][lane];
             }
+        }
+        for lane in 0..LANES {
             if lane < count {
                 volume[lane] = rule.point.weight * determinant[lane];
             }
