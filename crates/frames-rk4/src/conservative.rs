@@ -626,11 +626,6 @@ impl ConservativeBody {
         }
     }
 
-    /// z.
-    pub(crate) fn place_of_coordinates<'e>(&self, e: &'e Evaluation) -> &'e Padded {
-        if self.manifold.is_some() { &e.coordinates } else { &e.q }
-    }
-
     /// ż.
     pub(crate) fn velocity_of_coordinates<'e>(&self, e: &'e Evaluation) -> &'e Padded {
         if self.manifold.is_some() { &e.velocity } else { &e.modal_velocity }
@@ -660,9 +655,8 @@ impl ConservativeBody {
             self.matrices.multiply(simd, z, start, Places { groups: products, width, first: fixed });
         }
         let first = Lists { groups: &self.undeformed, width: self.lists_of_undeformed(), first: self.s_count };
-        e.locked_inertia = self.inertia
-            + self.pair_products(simd, self.pair_lists(products), z)
-            + self.pair_products(simd, first, z);
+        e.locked_inertia =
+            self.inertia + self.pair_products(simd, self.pair_lists(products), z) + self.pair_products(simd, first, z);
         if let Some(manifold) = &self.manifold {
             for (k, (s, forward)) in e.s.iter_mut().zip(&mut e.forward_s).enumerate() {
                 self.s_lists(products).copy(k, e.change.groups_mut());
@@ -869,11 +863,20 @@ impl ConservativeBody {
     #[inline(always)]
     fn find_velocities<S: Simd>(&self, simd: S, speed: f64, e: &mut Evaluation) -> f64 {
         let Some(manifold) = &self.manifold else {
+            if self.sliding.is_empty() {
+                return match self.s_count {
+                    0 => self.find_modal_velocities::<S, 0>(simd, e),
+                    1 => self.find_modal_velocities::<S, 1>(simd, e),
+                    _ => self.find_modal_velocities::<S, 3>(simd, e),
+                };
+            }
             let factors = -e.spin;
             let displacement = e.displacement.groups_mut();
             combine(simd, self.s_lists(&e.products), &factors.as_slice()[..self.s_count], displacement);
             e.displacement.iter_mut().zip(&self.sliding).for_each(|(rate, b)| *rate -= b * speed);
-            for ((v, p), rate) in e.modal_velocity.groups_mut().iter_mut().zip(e.p.groups()).zip(e.displacement.groups()) {
+            for ((v, p), rate) in
+                e.modal_velocity.groups_mut().iter_mut().zip(e.p.groups()).zip(e.displacement.groups())
+            {
                 Four::load(simd, p).add(simd, Four::load(simd, rate)).store(v);
             }
             return self.damp(simd, e);
@@ -891,6 +894,34 @@ impl ConservativeBody {
         }
         manifold.go_along(&e.modal_velocity, &mut e.place, &mut e.velocity);
         self.damp(simd, e)
+    }
+
+    /// q̇ with M lists of S, and as much of p' as [`Self::damp`] finds.
+    #[inline(always)]
+    fn find_modal_velocities<S: Simd, const M: usize>(&self, simd: S, e: &mut Evaluation) -> f64 {
+        let (zero, mut dissipation, mut factors) =
+            (Four::splat(simd, 0.0), Four::splat(simd, 0.0), [Four::splat(simd, 0.0); M]);
+        for (factor, w) in factors.iter_mut().zip(e.spin.iter()) {
+            *factor = Four::splat(simd, -w);
+        }
+        let Evaluation { products, p, displacement, modal_velocity, momentum, .. } = e;
+        let mut lists = self.s_lists(products).rows();
+        let rates = displacement.groups_mut().iter_mut().zip(modal_velocity.groups_mut());
+        let given = p.groups().iter().zip(self.damping.groups());
+        for (((rate, v), momentum), (p, damping)) in rates.zip(momentum.groups_mut()).zip(given) {
+            let mut sum = zero;
+            if let Some(row) = lists.next().and_then(|row| row.first_chunk::<M>()) {
+                for k in 0..M {
+                    sum = Four::load(simd, &row[k]).mul_add(simd, factors[k], sum);
+                }
+            }
+            let (velocity, damping) = (Four::load(simd, p).add(simd, sum), Four::load(simd, damping));
+            sum.store(rate);
+            velocity.store(v);
+            zero.sub(simd, damping.mul(simd, sum)).store(momentum);
+            dissipation = damping.mul(simd, velocity).mul_add(simd, velocity, dissipation);
+        }
+        dissipation.sum()
     }
 
     /// p' = −D (q̇ − p): the rest of −D q̇ is in the linear part. Returns q̇ᵀD q̇.

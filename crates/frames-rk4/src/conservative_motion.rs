@@ -376,7 +376,14 @@ impl ConservativeMotion {
     }
 
     /// Evaluates stage `s` at its q and p, the stage values `slow` and time `t`.
-    fn evaluate(&mut self, s: usize, t: f64, first_attitude: &Matrix3<f64>, slow: &Slow, h: f64) -> Result<(), StepError> {
+    fn evaluate(
+        &mut self,
+        s: usize,
+        t: f64,
+        first_attitude: &Matrix3<f64>,
+        slow: &Slow,
+        h: f64,
+    ) -> Result<(), StepError> {
         let Self { body, state, stages, .. } = self;
         self.evaluations += 1;
         let branch_time = state.time + 0.5 * h;
@@ -435,11 +442,7 @@ impl ConservativeMotion {
             match s {
                 1 => sum_of_blocks([(&block.half, start), (&block.a21, first.rates_of_modes())], second.modes_mut()),
                 2 => sum_of_blocks(
-                    [
-                        (&block.half, start),
-                        (&block.a31, first.rates_of_modes()),
-                        (&block.a32, second.rates_of_modes()),
-                    ],
+                    [(&block.half, start), (&block.a31, first.rates_of_modes()), (&block.a32, second.rates_of_modes())],
                     third.modes_mut(),
                 ),
                 _ => sum_of_blocks(

@@ -21,17 +21,31 @@ impl<'a> Lists<'a> {
 
     /// The lists that count of each four rows, and those after them.
     #[inline(always)]
-    pub(crate) fn rows(self) -> impl Iterator<Item = &'a [Group]> {
-        let Self { groups, width, first } = self;
-        groups.chunks_exact(width.max(1)).map(move |row| &row[first..])
+    pub(crate) fn rows(self) -> Rows<'a> {
+        Rows(self)
     }
 
     /// A copy of list k.
     #[inline(always)]
     pub(crate) fn copy(self, k: usize, out: &mut [Group]) {
-        for (row, out) in self.groups.chunks_exact(self.width.max(1)).zip(out) {
-            *out = row[self.first + k];
+        for (row, out) in self.rows().zip(out) {
+            *out = row[k];
         }
+    }
+}
+
+/// Of each four rows, the lists that count and those after them. The standard library's chunks would divide.
+pub(crate) struct Rows<'a>(Lists<'a>);
+
+impl<'a> Iterator for Rows<'a> {
+    type Item = &'a [Group];
+
+    #[inline(always)]
+    fn next(&mut self) -> Option<&'a [Group]> {
+        let Lists { groups, width, first } = self.0;
+        let (row, rest) = groups.split_at_checked(width)?;
+        self.0.groups = rest;
+        row.get(first..)
     }
 }
 

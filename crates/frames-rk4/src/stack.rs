@@ -78,10 +78,12 @@ impl Stack {
         let x = &x.as_flattened()[..self.columns];
         let (entries, _) = self.groups().as_chunks::<K>();
         let mut start = start.rows();
-        let mut rows = entries.chunks_exact(self.columns.max(1)).zip(out.groups.chunks_exact_mut(out.width));
+        let (mut entries, Places { mut groups, width, first }) = (entries, out);
         // Few sums do not keep the processor busy: those of twice as many rows at once.
-        while K < 4 && rows.len() > 1 {
-            let (Some((a, out_a)), Some((b, out_b))) = (rows.next(), rows.next()) else { return };
+        while K < 4 && entries.len() > self.columns {
+            let (a, rest) = entries.split_at(self.columns);
+            let (b, rest) = rest.split_at(self.columns);
+            entries = rest;
             let mut sums: [[Four<S>; K]; 2] = [sums_from(simd, start.next()), sums_from(simd, start.next())];
             for ((a, b), x) in a.iter().zip(b).zip(x) {
                 let x = Four::splat(simd, *x);
@@ -90,13 +92,16 @@ impl Stack {
                     sums[1][k] = Four::load(simd, &b[k]).mul_add(simd, x, sums[1][k]);
                 }
             }
-            store_all(&sums[0], &mut out_a[out.first..]);
-            store_all(&sums[1], &mut out_b[out.first..]);
+            for sums in &sums {
+                store_all(sums, &mut groups[first..]);
+                groups = &mut groups[width..];
+            }
         }
         let (x, _) = x.as_chunks::<TURN>();
-        for (entries, groups) in rows {
+        while let Some((row, rest)) = entries.split_at_checked(self.columns) {
+            entries = rest;
             let mut sums: [Four<S>; K] = sums_from(simd, start.next());
-            for (entries, x) in entries.as_chunks::<TURN>().0.iter().zip(x) {
+            for (entries, x) in row.as_chunks::<TURN>().0.iter().zip(x) {
                 for turn in 0..TURN {
                     let x = Four::splat(simd, x[turn]);
                     for k in 0..K {
@@ -104,7 +109,8 @@ impl Stack {
                     }
                 }
             }
-            store_all(&sums, &mut groups[out.first..]);
+            store_all(&sums, &mut groups[first..]);
+            groups = &mut groups[width..];
         }
     }
 
@@ -128,12 +134,13 @@ impl Stack {
     ) {
         let [x, y] = [&x.as_flattened()[..self.columns], &y.as_flattened()[..self.columns]];
         let ((x, _), (y, _)) = (x.as_chunks::<TURN>(), y.as_chunks::<TURN>());
-        let (entries, _) = self.groups().as_chunks::<K>();
-        let rows = entries.chunks_exact(self.columns.max(1)).zip(start.as_chunks::<K>().0);
-        for ((entries, start), out) in rows.zip(out.as_chunks_mut::<BOTH>().0) {
+        let (mut entries, _) = self.groups().as_chunks::<K>();
+        for (start, out) in start.as_chunks::<K>().0.iter().zip(out.as_chunks_mut::<BOTH>().0) {
+            let Some((row, rest)) = entries.split_at_checked(self.columns) else { return };
+            entries = rest;
             let mut sums: [Four<S>; K] = sums_from(simd, Some(start));
             let mut second = [Four::splat(simd, 0.0); L];
-            for ((entries, x), y) in entries.as_chunks::<TURN>().0.iter().zip(x).zip(y) {
+            for ((entries, x), y) in row.as_chunks::<TURN>().0.iter().zip(x).zip(y) {
                 for turn in 0..TURN {
                     let (x, y) = (Four::splat(simd, x[turn]), Four::splat(simd, y[turn]));
                     for k in 0..L {
@@ -168,5 +175,100 @@ fn sums_from<S: Simd, const K: usize>(simd: S, start: Option<&[Group]>) -> [Four
 fn store_all<S: Simd, const K: usize>(all: &[Four<S>; K], groups: &mut [Group]) {
     for (four, group) in all.iter().zip(groups) {
         four.store(group);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use pulp::{Arch, Scalar, WithSimd};
+
+    use super::*;
+    use crate::four::Padded;
+    use crate::side_by_side::{add_combined, combine, dots, mixed_products, own_products, side_by_side};
+
+    /// Products of `count` matrices, in some vectors.
+    struct Products {
+        count: usize,
+        size: usize,
+    }
+
+    impl WithSimd for Products {
+        type Output = ();
+
+        fn with_simd<S: Simd>(self, simd: S) {
+            let Self { count, size } = self;
+            let entry = |k: usize, i: usize, j: usize| ((k * 31 + i * 7 + j * 13) as f64).sin();
+            let matrices: Vec<_> = (0..count).map(|k| Mat::from_fn(size, size, |i, j| entry(k, i, j))).collect();
+            let stack = Stack::new(&matrices);
+            assert_eq!(stack.len(), count * size * size);
+            let list = |phase: f64| -> Vec<f64> { (0..size).map(|j| (j as f64 + phase).cos()).collect() };
+            let (x, y) = (list(0.1), list(0.7));
+            let [x_groups, y_groups] = [&x, &y].map(|list| Padded::from_slice(list));
+            let start: Vec<Vec<f64>> = (0..count).map(|k| list(k as f64)).collect();
+            let start_groups = side_by_side(&start);
+            let expected = |k: usize, i: usize, x: &[f64]| (0..size).map(|j| entry(k, i, j) * x[j]).sum::<f64>();
+            let check = |groups: &[Group], width: usize, first: usize, second: usize| {
+                let at = |list: usize, i: usize| groups[i / WIDTH * width + list][i % WIDTH];
+                for i in 0..size {
+                    for k in 0..count {
+                        let error = at(first + k, i) - start[k][i] - expected(k, i, &x);
+                        assert!(error.abs() < 1e-13, "{count} of size {size}");
+                    }
+                    for k in 0..second {
+                        assert!((at(count + k, i) - expected(k, i, &y)).abs() < 1e-13, "{count} of size {size}");
+                    }
+                }
+            };
+            let width = count + 2;
+            let mut out = vec![[f64::NAN; WIDTH]; width * size.div_ceil(WIDTH)];
+            let lists = Lists { groups: &start_groups, width: count, first: 0 };
+            stack.multiply(simd, x_groups.groups(), lists, Places { groups: &mut out, width, first: 2 });
+            check(&out, width, 2, 0);
+            if let Some(second) = [(2, 1), (9, 3)].into_iter().find_map(|(of, second)| (of == count).then_some(second))
+            {
+                let mut out = vec![[f64::NAN; WIDTH]; (count + second) * size.div_ceil(WIDTH)];
+                stack.multiply_two(simd, [x_groups.groups(), y_groups.groups()], &start_groups, &mut out);
+                check(&out, count + second, 0, second);
+            }
+        }
+    }
+
+    #[test]
+    fn products_equal_the_dense_ones_for_any_size() {
+        for count in [1, 2, 3, 6, 9] {
+            for size in [1, 2, 3, 4, 5, 7, 8, 13, 16, 29, 46] {
+                Arch::new().dispatch(Products { count, size });
+                Products { count, size }.with_simd(Scalar::new());
+            }
+        }
+    }
+
+    #[test]
+    fn sums_of_lists_side_by_side_are_those_of_the_lists() {
+        let lists: Vec<Vec<f64>> = (0..9).map(|k| (0..10).map(|i| ((k * 10 + i) as f64).sin()).collect()).collect();
+        let groups = side_by_side(&lists);
+        let all = Lists { groups: &groups, width: 9, first: 0 };
+        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let simd = Scalar::new();
+        let x = Padded::from_slice(&lists[7]);
+        for (k, found) in dots::<_, 3>(simd, Lists { first: 2, ..all }, x.groups()).into_iter().enumerate() {
+            assert!((found - dot(&lists[k + 2], &lists[7])).abs() < 1e-14);
+        }
+        let (own, mixed) =
+            (own_products::<_, 3>(simd, all), mixed_products::<_, 3>(simd, all, Lists { first: 3, ..all }));
+        for (j, k) in (0..3).flat_map(|j| (0..3).map(move |k| (j, k))) {
+            assert!((own[j.max(k)][j.min(k)] - dot(&lists[j], &lists[k])).abs() < 1e-14);
+            assert!((mixed[j][k] - dot(&lists[j], &lists[k + 3])).abs() < 1e-14);
+        }
+        for count in [0, 1, 2, 3, 6, 9] {
+            let factors: Vec<f64> = (0..count).map(|k| k as f64 - 1.5).collect();
+            let (mut sum, mut more) = (Padded::from_slice(&[f64::NAN; 10]), Padded::from_slice(&lists[0]));
+            combine(simd, all, &factors, sum.groups_mut());
+            add_combined(simd, all, &factors, more.groups_mut());
+            for i in 0..10 {
+                let expected: f64 = factors.iter().zip(&lists).map(|(factor, list)| factor * list[i]).sum();
+                assert!((sum[i] - expected).abs() < 1e-14 && (more[i] - lists[0][i] - expected).abs() < 1e-14);
+            }
+        }
     }
 }

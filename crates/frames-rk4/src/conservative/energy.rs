@@ -16,7 +16,8 @@ impl ConservativeBody {
         if self.drive.is_some() {
             return None;
         }
-        let internal = 0.5 * (get(slow, part::PI).dot(&e.spin) + dot(&e.p, &e.modal_velocity)) + self.strain_energy(&e.q);
+        let internal =
+            0.5 * (get(slow, part::PI).dot(&e.spin) + dot(&e.p, &e.modal_velocity)) + self.strain_energy(&e.q);
         let translation = 0.5 * get(slow, part::MOMENTUM).norm_squared() / self.mass;
         let (work, dissipation) = (slow[part::WORK], slow[part::DISSIPATION]);
         Some(Energies { time, internal, translation, work, dissipation })
