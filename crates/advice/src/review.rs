@@ -312,11 +312,11 @@ impl<'a> Review<'a> {
         for (first, (swings, (q, v))) in self.swings.iter_mut().zip(pairs).enumerate() {
             let reach = swings.look(passed, q, v);
             let mut beyond = false;
-            for i in 0..SIDE_BY_SIDE {
-                sums[0][i] += reach[i] * swings.bend[i];
-                sums[1][i] += reach[i] * swings.large_bend[i];
-                sums[2][i] += reach[i] * reach[i];
-                beyond |= reach[i] > swings.most[i];
+            for (i, reach) in reach.into_iter().enumerate() {
+                sums[0][i] += reach * swings.bend[i];
+                sums[1][i] += reach * swings.large_bend[i];
+                sums[2][i] += reach * reach;
+                beyond |= reach > swings.most[i];
             }
             if beyond && stopped.is_none() {
                 let case = &self.case;

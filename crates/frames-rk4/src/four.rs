@@ -27,6 +27,7 @@ impl<S: Simd> Four<S> {
     }
 
     #[inline(always)]
+    #[expect(clippy::manual_memcpy, reason = "a copy of slices would leave the registers")]
     pub(crate) fn load(simd: S, from: &Group) -> Self {
         let mut group = Self::splat(simd, 0.0);
         let (vectors, _) = S::as_simd_f64s(from);
@@ -37,6 +38,7 @@ impl<S: Simd> Four<S> {
     }
 
     #[inline(always)]
+    #[expect(clippy::manual_memcpy, reason = "a copy of slices would leave the registers")]
     pub(crate) fn store(self, to: &mut Group) {
         let (vectors, _) = S::as_mut_simd_f64s(to);
         for i in 0..Self::VECTORS {

@@ -150,6 +150,7 @@ fn by_count<S: Simd, const ADD: bool>(simd: S, lists: Lists<'_>, factors: &[f64]
 #[inline(always)]
 fn sum<S: Simd, const M: usize, const ADD: bool>(simd: S, lists: Lists<'_>, factors: &[f64], out: &mut [Group]) {
     let mut splat = [Four::splat(simd, 0.0); M];
+    let Some(factors) = factors.first_chunk::<M>() else { return };
     for (splat, factor) in splat.iter_mut().zip(factors) {
         *splat = Four::splat(simd, *factor);
     }

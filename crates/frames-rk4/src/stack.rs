@@ -163,7 +163,8 @@ impl Stack {
 #[inline(always)]
 fn sums_from<S: Simd, const K: usize>(simd: S, start: Option<&[Group]>) -> [Four<S>; K] {
     let mut sums = [Four::splat(simd, 0.0); K];
-    if let Some(start) = start {
+    // Of known length, so that the sums stay in registers.
+    if let Some(start) = start.and_then(|start| start.first_chunk::<K>()) {
         for (sum, start) in sums.iter_mut().zip(start) {
             *sum = Four::load(simd, start);
         }
@@ -173,6 +174,7 @@ fn sums_from<S: Simd, const K: usize>(simd: S, start: Option<&[Group]>) -> [Four
 
 #[inline(always)]
 fn store_all<S: Simd, const K: usize>(all: &[Four<S>; K], groups: &mut [Group]) {
+    let Some(groups) = groups.first_chunk_mut::<K>() else { return };
     for (four, group) in all.iter().zip(groups) {
         four.store(group);
     }
@@ -195,6 +197,7 @@ mod tests {
     impl WithSimd for Products {
         type Output = ();
 
+        #[expect(clippy::needless_range_loop, reason = "lists and rows by their numbers")]
         fn with_simd<S: Simd>(self, simd: S) {
             let Self { count, size } = self;
             let entry = |k: usize, i: usize, j: usize| ((k * 31 + i * 7 + j * 13) as f64).sin();
