@@ -161,19 +161,48 @@ impl Passed {
     }
 }
 
-/// What a mode has done so far.
+/// What some modes have done so far, side by side: the number of the mode over [`SIDE_BY_SIDE`] says which.
 #[derive(Debug, Clone, Copy, Default)]
-struct Swing {
+struct Swings {
+    /// 1/ω, and ω.
+    inverse: [f64; SIDE_BY_SIDE],
+    omega: [f64; SIDE_BY_SIDE],
+    /// Deflection over the length of the body at q = 1; the same of those whose strain is that of large deflection.
+    bend: [f64; SIDE_BY_SIDE],
+    large_bend: [f64; SIDE_BY_SIDE],
     /// At the last look: q̇, and q² + (q̇/ω)².
-    rate: f64,
-    square: f64,
+    rate: [f64; SIDE_BY_SIDE],
+    square: [f64; SIDE_BY_SIDE],
     /// Largest |q|, and that beyond which the frequency is out by too much.
-    largest: f64,
-    most: f64,
+    largest: [f64; SIDE_BY_SIDE],
+    most: [f64; SIDE_BY_SIDE],
     /// ∫ (q² + (q̇/ω)²) dt.
-    integral: f64,
-    /// Whether its strain is that of large deflection.
-    is_large: bool,
+    integral: [f64; SIDE_BY_SIDE],
+}
+
+/// Modes that are gone through together.
+const SIDE_BY_SIDE: usize = 4;
+
+impl Swings {
+    /// Looks at q and q̇ after so much time; returns how far the modes have swung since.
+    #[inline(always)]
+    fn look(&mut self, passed: f64, q: &[f64; SIDE_BY_SIDE], v: &[f64; SIDE_BY_SIDE]) -> [f64; SIDE_BY_SIDE] {
+        let mut reach = [0.0; SIDE_BY_SIDE];
+        for i in 0..SIDE_BY_SIDE {
+            let scaled = v[i] * self.inverse[i];
+            let square = q[i] * q[i] + scaled * scaled;
+            let turned = (v[i] * self.rate[i] < 0.0) | (self.omega[i] * passed >= std::f64::consts::PI);
+            let furthest = if square > self.square[i] { square } else { self.square[i] };
+            reach[i] = if (passed > 0.0) & turned { furthest } else { q[i] * q[i] };
+            self.integral[i] += 0.5 * passed * (square + self.square[i]);
+            (self.rate[i], self.square[i]) = (v[i], square);
+        }
+        for i in 0..SIDE_BY_SIDE {
+            reach[i] = reach[i].sqrt();
+            self.largest[i] = if reach[i] > self.largest[i] { reach[i] } else { self.largest[i] };
+        }
+        reach
+    }
 }
 
 /// Watches a run: [`Self::look`] at every step, [`Self::observe`] at every row.
@@ -184,7 +213,7 @@ pub struct Review<'a> {
     spin: f64,
     deflection: f64,
     tolerance: f64,
-    swings: Vec<Swing>,
+    swings: Vec<Swings>,
     /// Time of the last look.
     time: f64,
     /// Largest |ω| since the last row, and when.
@@ -224,8 +253,18 @@ impl<'a> Review<'a> {
             _ => f64::INFINITY,
         };
         let is_large = |k: usize| case.manifold.is_some_and(|manifold| manifold.large().contains(&k));
-        let swings =
-            (0..case.peaks.len()).map(|k| Swing { is_large: is_large(k), most: most(k), ..Swing::default() }).collect();
+        let mut swings = vec![
+            Swings { most: [f64::INFINITY; SIDE_BY_SIDE], ..Swings::default() };
+            case.peaks.len().div_ceil(SIDE_BY_SIDE)
+        ];
+        for (k, peak) in case.peaks.iter().enumerate() {
+            let (swings, i) = (&mut swings[k / SIDE_BY_SIDE], k % SIDE_BY_SIDE);
+            swings.omega[i] = case.body.circular_frequencies[k];
+            swings.inverse[i] = swings.omega[i].recip();
+            swings.bend[i] = peak / case.length;
+            swings.large_bend[i] = if is_large(k) { swings.bend[i] } else { 0.0 };
+            swings.most[i] = most(k);
+        }
         Self {
             case,
             effects,
@@ -257,32 +296,35 @@ impl<'a> Review<'a> {
     /// between them is longer than half its period.
     pub fn look(&mut self, moment: &Moment) {
         let Moment { time, omega_body, modal_displacement: q, modal_velocity: v } = *moment;
-        if q.len() != self.swings.len() || v.len() != self.swings.len() {
+        if q.len() != self.case.peaks.len() || v.len() != self.case.peaks.len() {
             return;
         }
         let passed = time - self.time;
         self.time = time;
-        let (mut deflection, mut of_large, mut deformation) = (0.0, 0.0, 0.0);
+        let mut sums = [[0.0; SIDE_BY_SIDE]; 3];
         let mut stopped = None;
-        let case = &self.case;
-        for (k, swing) in self.swings.iter_mut().enumerate() {
-            let omega = case.body.circular_frequencies[k];
-            let square = q[k] * q[k] + (v[k] / omega) * (v[k] / omega);
-            let turned = passed > 0.0 && (v[k] * swing.rate < 0.0 || omega * passed >= std::f64::consts::PI);
-            let reach = if turned { square.max(swing.square).sqrt() } else { q[k].abs() };
-            swing.integral += 0.5 * passed * (square + swing.square);
-            (swing.rate, swing.square) = (v[k], square);
-            swing.largest = swing.largest.max(reach);
-            if reach > swing.most && stopped.is_none() {
-                stopped = detuned(case, k, reach);
+        let (whole_q, rest_of_q) = q.as_chunks::<SIDE_BY_SIDE>();
+        let (whole_v, rest_of_v) = v.as_chunks::<SIDE_BY_SIDE>();
+        let mut rest = [[0.0; SIDE_BY_SIDE]; 2];
+        rest[0][..rest_of_q.len()].copy_from_slice(rest_of_q);
+        rest[1][..rest_of_v.len()].copy_from_slice(rest_of_v);
+        let pairs = whole_q.iter().zip(whole_v).chain(std::iter::once((&rest[0], &rest[1])));
+        for (first, (swings, (q, v))) in self.swings.iter_mut().zip(pairs).enumerate() {
+            let reach = swings.look(passed, q, v);
+            let mut beyond = false;
+            for (i, reach) in reach.into_iter().enumerate() {
+                sums[0][i] += reach * swings.bend[i];
+                sums[1][i] += reach * swings.large_bend[i];
+                sums[2][i] += reach * reach;
+                beyond |= reach > swings.most[i];
             }
-            let bent = reach * case.peaks[k] / case.length;
-            deflection += bent;
-            if swing.is_large {
-                of_large += bent;
+            if beyond && stopped.is_none() {
+                let case = &self.case;
+                let mut far = (0..SIDE_BY_SIDE).filter(|i| reach[*i] > swings.most[*i]);
+                stopped = far.find_map(|i| detuned(case, SIDE_BY_SIDE * first + i, reach[i]));
             }
-            deformation += reach * reach;
         }
+        let [deflection, of_large, deformation] = sums.map(|sums| (sums[0] + sums[2]) + (sums[1] + sums[3]));
         if let Some((order, worst)) = &mut self.order {
             let error = order.error(q);
             stopped = stopped.or_else(|| beyond(error, of_large));
@@ -303,7 +345,7 @@ impl<'a> Review<'a> {
             self.fastest = (speed, omega_body);
         }
         if self.something_is_off() {
-            if speed > MARGIN * self.spin + ROUNDING / case.end {
+            if speed > MARGIN * self.spin + ROUNDING / self.case.end {
                 Passed::note(&mut self.spun_above, time, speed);
             }
             if deflection > MARGIN * self.deflection + ROUNDING {
@@ -398,14 +440,16 @@ impl<'a> Review<'a> {
     fn detunings(&self) -> Vec<Detuning> {
         let case = &self.case;
         let of = |(k, backbone): (usize, &Option<crate::Backbone>)| {
-            let (swing, omega) = (self.swings.get(k)?, case.body.circular_frequencies[k]);
+            let (swings, i, omega) =
+                (self.swings.get(k / SIDE_BY_SIDE)?, k % SIDE_BY_SIDE, case.body.circular_frequencies[k]);
+            let (largest, integral) = (swings.largest[i], swings.integral[i]);
             let backbone = backbone.as_ref()?;
             let turns = omega / std::f64::consts::TAU;
             let detuning = Detuning {
                 mode: k + 1,
-                deflection: swing.largest * case.peaks[k] / case.length,
-                shift: backbone.shift(swing.largest),
-                phase: backbone.curvature() * swing.integral * turns,
+                deflection: largest * case.peaks[k] / case.length,
+                shift: backbone.shift(largest),
+                phase: backbone.curvature() * integral * turns,
                 periods: self.time * turns,
             };
             let matters = detuning.shift.abs() >= SHIFTED || detuning.phase.abs() >= OUT_OF_PHASE;

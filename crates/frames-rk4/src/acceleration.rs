@@ -10,26 +10,24 @@
 //! D is 1, and Ḋ is zero, but on a manifold. Of what is driven v or ω is given.
 
 use nalgebra::{Matrix3, Vector3};
+use pulp::Simd;
 
-use crate::column_major::{add_product, dot, multiply};
+use crate::column_major::dot;
 use crate::conservative::{ConservativeBody, Evaluation, Translation, get, part};
 use crate::error::RateError;
-use crate::symmetric;
+use crate::side_by_side::{Lists, add_combined, combine, mixed_products};
 
 impl ConservativeBody {
     /// Turns `e.acceleration` from the whole of p' into the q̈ that there would be without ω'.
-    fn without_spin_rate(&self, driven_acceleration: f64, e: &mut Evaluation) {
-        let nf = self.coordinates();
-        let spin = e.spin;
-        let (coupling_rate, change) = self.coupling_rate(e);
+    #[inline(always)]
+    fn without_spin_rate<S: Simd>(&self, simd: S, driven_acceleration: f64, e: &mut Evaluation) {
+        let factors = -e.spin;
+        let (coupling_rate, change) = self.coupling_rate(simd, e);
         // Ḋ q̇ + S_ext' ω + b' v + b v', by −; then μ.
-        change.fill(0.0);
-        for (g, w) in coupling_rate.chunks_exact(nf.max(1)).zip(spin.iter()) {
-            change.iter_mut().zip(g).for_each(|(c, g)| *c -= g * w);
-        }
+        combine(simd, coupling_rate, &factors.as_slice()[..self.g_count], change.groups_mut());
         change.iter_mut().zip(&self.sliding).for_each(|(c, b)| *c -= b * driven_acceleration);
         let Some(manifold) = &self.manifold else {
-            e.acceleration.iter_mut().zip(&e.change).for_each(|(a, c)| *a += *c);
+            e.acceleration.iter_mut().zip(&*e.change).for_each(|(a, c)| *a += *c);
             return;
         };
         let change = &mut e.change;
@@ -44,56 +42,70 @@ impl ConservativeBody {
     }
 
     /// Turns `e.acceleration` from the whole of p' into q̈, and gives the rate of the spin. `e` has the rates of the state.
-    pub(crate) fn accelerate(&self, driven_acceleration: f64, e: &mut Evaluation) -> Result<Vector3<f64>, RateError> {
-        let (modes, nf) = (self.flexible(), self.coordinates());
-        self.without_spin_rate(driven_acceleration, e);
+    #[inline(always)]
+    pub(crate) fn accelerate<S: Simd>(
+        &self,
+        simd: S,
+        driven_acceleration: f64,
+        e: &mut Evaluation,
+    ) -> Result<Vector3<f64>, RateError> {
+        self.without_spin_rate(simd, driven_acceleration, e);
         let spin_rate = if self.turn_driven {
             Vector3::new(driven_acceleration, 0.0, 0.0)
         } else if self.axes.is_empty() {
             Vector3::zeros()
         } else {
-            let mut right = get(&e.slow, part::PI) - self.inertia_rate(e) * e.spin;
-            for (i, s) in self.s(e).chunks_exact(modes.max(1)).enumerate() {
-                right[i] -= dot(s, &e.acceleration);
-            }
-            for (i, s) in e.products[..self.s_rows].chunks_exact(nf.max(1)).enumerate() {
-                right[i] -= dot(s, &e.curvature);
+            let mut right = get(&e.slow, part::PI) - self.inertia_rate(simd, e) * e.spin;
+            if self.manifold.is_some() {
+                for (i, s) in e.s.iter().enumerate() {
+                    right[i] -= dot(s, &e.acceleration);
+                }
+                right -= self.s_products(simd, &e.products, e.curvature.groups());
+            } else {
+                right -= self.s_products(simd, &e.products, e.acceleration.groups());
             }
             self.solve_locked(e, &right)?
         };
-        self.add_spin_rate(&spin_rate, e);
+        self.add_spin_rate(simd, &spin_rate, e);
         Ok(spin_rate)
     }
 
     /// J' = 2 (c_ij + N_ij z)·ż, and of a locked body S'ᵀS + SᵀS' besides, which its N_ij have not got. S' is in `e`.
-    fn inertia_rate(&self, e: &Evaluation) -> Matrix3<f64> {
-        let n_z = e.products[self.s_rows..].chunks_exact(self.coordinates().max(1));
-        let mut inertia_rate = Matrix3::zeros();
-        for (pair, n_z) in self.pairs.iter().zip(n_z) {
-            symmetric::add(&mut inertia_rate, *pair, 2.0 * dot(n_z, &e.velocity));
-        }
-        let modes = self.flexible().max(1);
-        for (i, rate) in e.coupling_rate.chunks_exact(modes).enumerate() {
-            for (j, s) in self.s(e).chunks_exact(modes).enumerate() {
-                let both = dot(rate, s);
-                inertia_rate[(i, j)] += both;
-                inertia_rate[(j, i)] += both;
+    #[inline(always)]
+    fn inertia_rate<S: Simd>(&self, simd: S, e: &Evaluation) -> Matrix3<f64> {
+        let rate = self.velocity_of_coordinates(e).groups();
+        let mut inertia_rate = self.pair_products(simd, self.pair_lists(&e.products), rate) * 2.0;
+        if self.locked {
+            let (s, s_rate) = (self.s_lists(&e.products), &e.coupling_rate);
+            let s_rate = Lists { groups: s_rate, width: self.g_count, first: 0 };
+            match self.g_count {
+                0 => {}
+                1 => inertia_rate[(0, 0)] += 2.0 * mixed_products::<S, 1>(simd, s, s_rate)[0][0],
+                _ => {
+                    let both = mixed_products::<S, 3>(simd, s, s_rate);
+                    inertia_rate += Matrix3::from_fn(|i, j| both[i][j] + both[j][i]);
+                }
             }
         }
         inertia_rate
     }
 
     /// q̈ −= M⁻¹ S ω'
-    fn add_spin_rate(&self, spin_rate: &Vector3<f64>, e: &mut Evaluation) {
-        let modes = self.flexible();
+    #[inline(always)]
+    fn add_spin_rate<S: Simd>(&self, simd: S, spin_rate: &Vector3<f64>, e: &mut Evaluation) {
+        let factors = -spin_rate;
         let Some(manifold) = &self.manifold else {
-            add_product(&e.products[..self.s_rows], modes, (-spin_rate).as_slice(), &mut e.acceleration);
+            let factors = &factors.as_slice()[..self.s_count];
+            add_combined(simd, self.s_lists(&e.products), factors, e.acceleration.groups_mut());
             return;
         };
-        let solved = &mut e.change[..modes];
-        multiply(&e.forward_s, modes, spin_rate.as_slice(), solved);
+        let solved = &mut e.change[..self.flexible()];
+        solved.fill(0.0);
+        for (s, factor) in e.forward_s.iter().zip(&factors) {
+            solved.iter_mut().zip(&**s).for_each(|(solved, s)| *solved += factor * s);
+        }
         manifold.substitute_back(&e.place, solved);
-        e.acceleration.iter_mut().zip(solved).for_each(|(a, solved)| *a -= *solved);
+        e.acceleration.iter_mut().zip(solved).for_each(|(a, solved)| *a += *solved);
     }
 
     /// Puts z̈ of q̈ into `e.change`.
@@ -101,45 +113,46 @@ impl ConservativeBody {
         match &self.manifold {
             Some(manifold) => {
                 manifold.extend(&e.place, &e.acceleration, &mut e.change);
-                e.change.iter_mut().zip(&e.curvature).for_each(|(a, curvature)| *a += curvature);
+                e.change.iter_mut().zip(&*e.curvature).for_each(|(a, curvature)| *a += curvature);
             }
             None => e.change.copy_from_slice(&e.acceleration),
         }
     }
 
     /// Finds the torque π' − M or the force P' − F of what drives the body: with π = J ω + S·ν and P = m v + b·ν along the
-    /// driven axis, both less (K q)·q̇. `e` has all other rates, its momentum without the linear part at q and p.
-    pub(crate) fn drive_effort(
+    /// driven axis, both less (K q)·q̇. `e` has all other rates, its momentum without the linear part.
+    #[inline(always)]
+    pub(crate) fn drive_effort<S: Simd>(
         &self,
+        simd: S,
         acceleration: f64,
-        [q, p]: [&[f64]; 2],
         force_body: &Vector3<f64>,
         moment: f64,
         e: &mut Evaluation,
     ) {
-        let (speed, nf) = (e.driven_speed, self.coordinates());
+        let speed = e.driven_speed;
         for (k, rate) in e.acceleration.iter_mut().enumerate() {
-            *rate = e.momentum[k] + self.linear_rate(k, q[k], p[k]);
+            *rate = e.momentum[k] + self.linear_rate(k, e.q[k], e.p[k]);
         }
-        self.without_spin_rate(acceleration, e);
+        self.without_spin_rate(simd, acceleration, e);
         if self.turn_driven {
-            self.add_spin_rate(&Vector3::new(acceleration, 0.0, 0.0), e);
+            self.add_spin_rate(simd, &Vector3::new(acceleration, 0.0, 0.0), e);
         }
         self.extend_acceleration(e);
         // (K q)·q̇ and its rate.
         let stressed = dot(&e.drive_stress, &e.modal_velocity);
         let mut changing = -dot(&e.drive_stress, &e.acceleration) - self.drive_stress_power(&e.modal_velocity);
         if let Translation::Driven(direction) = self.translation {
-            e.driven_momentum = self.mass * speed + dot(&self.sliding, &e.velocity) - stressed;
+            e.driven_momentum = self.mass * speed + dot(&self.sliding, self.velocity_of_coordinates(e)) - stressed;
             changing += dot(&self.sliding, &e.change);
             e.drive_effort = self.mass * acceleration + changing - direction.dot(force_body);
             return;
         }
-        let s = &e.products[..nf];
-        let (inertia, inertia_rate) = (self.deformed_inertia(e)[(0, 0)], self.inertia_rate(e)[(0, 0)]);
+        let (inertia, inertia_rate) = (self.deformed_inertia(simd, e)[(0, 0)], self.inertia_rate(simd, e)[(0, 0)]);
         // G ν does no work on ν.
-        changing += dot(s, &e.change);
-        e.driven_momentum = inertia * speed + dot(s, &e.velocity) - stressed;
+        changing += self.s_products(simd, &e.products, e.change.groups())[0];
+        let velocity = self.velocity_of_coordinates(e).groups();
+        e.driven_momentum = inertia * speed + self.s_products(simd, &e.products, velocity)[0] - stressed;
         e.drive_effort = inertia_rate * speed + inertia * acceleration + changing - moment;
     }
 

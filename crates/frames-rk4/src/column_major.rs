@@ -32,24 +32,6 @@ pub(crate) fn total(sums: [f64; 4]) -> f64 {
     (sums[0] + sums[2]) + (sums[1] + sums[3])
 }
 
-/// (a + b)ᵀx, of lists of one length.
-#[inline(always)]
-pub(crate) fn dot_of_sum(a: &[f64], b: &[f64], x: &[f64]) -> f64 {
-    let (a, a_rest) = a[..x.len()].as_chunks::<4>();
-    let (b, b_rest) = b[..x.len()].as_chunks::<4>();
-    let (x, x_rest) = x.as_chunks::<4>();
-    let mut sums = [0.0; 4];
-    for ((a, b), x) in a.iter().zip(b).zip(x) {
-        for (i, sum) in sums.iter_mut().enumerate() {
-            *sum += (a[i] + b[i]) * x[i];
-        }
-    }
-    for (i, x) in x_rest.iter().enumerate() {
-        sums[i] += (a_rest[i] + b_rest[i]) * x;
-    }
-    total(sums)
-}
-
 /// The first `y.len()` rows of M x, for M with `rows` rows, column by column.
 pub(crate) fn multiply(matrix: &[f64], rows: usize, x: &[f64], y: &mut [f64]) {
     y.fill(0.0);

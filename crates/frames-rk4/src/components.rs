@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use pulp::{Arch, Simd, WithSimd};
 
-use crate::column_major::{dot, total};
+use crate::four::{Four, WIDTH};
 
 /// x, y and z of a vector for each mode, a list each.
 #[derive(Debug, Clone)]
@@ -49,9 +49,6 @@ impl ComponentsFrom<'_> {
     }
 }
 
-/// Modes that are taken side by side, whatever the vectors of the processor.
-const WIDTH: usize = 4;
-
 /// Sums over all modes, in the widest vectors that the processor has.
 struct Sums<'a, const N: usize> {
     shapes: ComponentsFrom<'a>,
@@ -62,10 +59,32 @@ impl<const N: usize> WithSimd for Sums<'_, N> {
     type Output = [Vector3<f64>; N];
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) -> Self::Output {
-        let Self { shapes: ComponentsFrom([x, y, z]), coordinates } = self;
-        coordinates.map(|c| Vector3::new(dot(x, c), dot(y, c), dot(z, c)))
+    fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
+        let Self { shapes: ComponentsFrom(shapes), coordinates } = self;
+        let mut sums = [Vector3::zeros(); N];
+        for (sum, c) in sums.iter_mut().zip(coordinates) {
+            for (sum, shape) in sum.iter_mut().zip(shapes) {
+                *sum = dot_product(simd, shape, c);
+            }
+        }
+        sums
     }
+}
+
+/// aᵀb, as far as the shorter list goes.
+#[inline(always)]
+fn dot_product<S: Simd>(simd: S, a: &[f64], b: &[f64]) -> f64 {
+    let length = a.len().min(b.len());
+    let ((a, a_rest), (b, b_rest)) = (a[..length].as_chunks::<WIDTH>(), b[..length].as_chunks::<WIDTH>());
+    let mut sum = Four::splat(simd, 0.0);
+    for (a, b) in a.iter().zip(b) {
+        sum = Four::load(simd, a).mul_add(simd, Four::load(simd, b), sum);
+    }
+    let mut rest = 0.0;
+    for (a, b) in a_rest.iter().zip(b_rest) {
+        rest += a * b;
+    }
+    sum.sum() + rest
 }
 
 /// A force on a place, in the widest vectors that the processor has.
@@ -81,27 +100,34 @@ impl WithSimd for Push<'_> {
     type Output = (Vector3<f64>, f64);
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) -> Self::Output {
+    fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
         let Self { shapes: ComponentsFrom([x, y, z]), force, coordinates, velocity, modal_force } = self;
-        let displacement = Vector3::new(dot(x, coordinates), dot(y, coordinates), dot(z, coordinates));
-        let modes = modal_force.len().min(velocity.len()).min(x.len());
-        let (modal_force, f_rest) = modal_force[..modes].as_chunks_mut::<WIDTH>();
+        let modes = modal_force.len().min(velocity.len()).min(coordinates.len()).min(x.len());
         let ((x, x_rest), (y, y_rest)) = (x[..modes].as_chunks::<WIDTH>(), y[..modes].as_chunks::<WIDTH>());
-        let ((z, z_rest), (v, v_rest)) = (z[..modes].as_chunks::<WIDTH>(), velocity[..modes].as_chunks::<WIDTH>());
-        let mut power = [0.0; WIDTH];
-        for ((((f, x), y), z), v) in modal_force.iter_mut().zip(x).zip(y).zip(z).zip(v) {
-            for i in 0..WIDTH {
-                let along = x[i] * force.x + y[i] * force.y + z[i] * force.z;
-                f[i] += along;
-                power[i] += along * v[i];
-            }
+        let ((z, z_rest), (q, q_rest)) = (z[..modes].as_chunks::<WIDTH>(), coordinates[..modes].as_chunks::<WIDTH>());
+        let (v, v_rest) = velocity[..modes].as_chunks::<WIDTH>();
+        let (f, f_rest) = modal_force[..modes].as_chunks_mut::<WIDTH>();
+        let (zero, along) = (Four::splat(simd, 0.0), [force.x, force.y, force.z]);
+        let along = [Four::splat(simd, along[0]), Four::splat(simd, along[1]), Four::splat(simd, along[2])];
+        let (mut moved, mut power) = ([zero; 3], zero);
+        for (((((x, y), z), q), v), f) in x.iter().zip(y).zip(z).zip(q).zip(v).zip(f) {
+            let (x, y, z) = (Four::load(simd, x), Four::load(simd, y), Four::load(simd, z));
+            let q = Four::load(simd, q);
+            moved = [x.mul_add(simd, q, moved[0]), y.mul_add(simd, q, moved[1]), z.mul_add(simd, q, moved[2])];
+            let modal = z.mul_add(simd, along[2], y.mul_add(simd, along[1], x.mul(simd, along[0])));
+            power = modal.mul_add(simd, Four::load(simd, v), power);
+            Four::load(simd, f).add(simd, modal).store(f);
         }
+        let mut displacement = Vector3::new(moved[0].sum(), moved[1].sum(), moved[2].sum());
+        let mut power = power.sum();
         for (i, f) in f_rest.iter_mut().enumerate() {
-            let along = x_rest[i] * force.x + y_rest[i] * force.y + z_rest[i] * force.z;
-            *f += along;
-            power[i] += along * v_rest[i];
+            let shape = Vector3::new(x_rest[i], y_rest[i], z_rest[i]);
+            let modal = shape.dot(force);
+            *f += modal;
+            power += modal * v_rest[i];
+            displacement += shape * q_rest[i];
         }
-        (displacement, total(power))
+        (displacement, power)
     }
 }
 

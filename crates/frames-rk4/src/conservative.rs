@@ -55,12 +55,12 @@ use faer::Mat;
 use modal::ReducedBody;
 use nalgebra::{Matrix3, Vector3};
 use pulp::{Arch, Simd, WithSimd};
-use rigid_kin::{Attitude, f_inverse, transformation_matrix};
+use rigid_kin::{f_inverse, transformation_matrix};
 
-use crate::blocked_matrix::BlockedMatrix;
-use crate::column_major::{add_product, columns, dot, dot_of_sum, multiply};
+use crate::column_major::{columns, dot, multiply};
 use crate::effect::{Effect, EffectMap};
 use crate::error::{RateError, SetupError, StepError};
+use crate::four::{Four, Group, Padded, WIDTH};
 use crate::initial::Initial;
 use crate::load::{Applied, Coordinates, Kinematics, SharedLoad};
 use crate::manifold::{Manifold, ManifoldPoint};
@@ -68,7 +68,9 @@ use crate::motion::CenterOfMass;
 use crate::own_coupling::own_coupling;
 use crate::physics::{Drive, DrivenMotion, Physics};
 use crate::reaction::Held;
+use crate::side_by_side::{Lists, add_combined, combine, dots, own_products, side_by_side};
 use crate::spin_stiffness::SpinStiffness;
+use crate::stack::{Places, Stack};
 use crate::state::MotionState;
 use crate::symmetric;
 pub use state::ConservativeState;
@@ -96,6 +98,8 @@ pub struct ConservativeBody {
     pub(crate) translation: Translation,
     /// Unit vectors that the body turns about: three, one or none.
     pub(crate) axes: Vec<Vector3<f64>>,
+    /// They as columns; zeros for those that are missing.
+    pub(crate) axis_columns: Matrix3<f64>,
     /// Whether the turning is driven.
     pub(crate) turn_driven: bool,
     pub(crate) drive: Option<Drive>,
@@ -108,25 +112,25 @@ pub struct ConservativeBody {
     /// Largest of ω_k and 2 ζ_k ω_k.
     fastest_rate: f64,
     /// 2 ζ_k ω_k.
-    damping: Vec<f64>,
+    damping: Padded,
     damped: bool,
     /// ij of the terms of the inertia that follow the deformation; empty where none does.
     pub(crate) pairs: Vec<(usize, usize)>,
     /// Whether the equations are those of the locked inertia, which only momenta enter: of a body that turns freely, with
     /// Coriolis terms, inertia that follows its deformation, and no large modes.
-    locked: bool,
-    /// S and c_ij + N_ij q of the undeformed body: b_i of driven axes or zeros (`s_rows`), then the c_ij of `pairs`.
-    undeformed: Vec<f64>,
+    pub(crate) locked: bool,
+    /// S and c_ij + N_ij q of the undeformed body, side by side: b_i of driven axes or zeros, then the c_ij of `pairs`.
+    undeformed: Vec<Group>,
     /// b of a driven translation (nf).
     pub(crate) sliding: Vec<f64>,
-    /// Rows of S: nf for each axis, or none where it is zero.
-    pub(crate) s_rows: usize,
-    /// Rows of the G_i: as those of S, or none without Coriolis terms.
-    pub(crate) g_rows: usize,
-    /// The G_i, one below another.
-    gyroscopic: BlockedMatrix,
-    /// The N_ij, less by K_ij and of a `locked` body more by ½ (G_iG_j + G_jG_i), one below another.
-    inertia_second: BlockedMatrix,
+    /// Lists of S: one for each axis, or none where it is zero.
+    pub(crate) s_count: usize,
+    /// Number of the G_i: as that of the lists of S, or none without Coriolis terms.
+    pub(crate) g_count: usize,
+    /// The G_i.
+    gyroscopic: Stack,
+    /// The G_i, then the N_ij, less by K_ij and of a `locked` body more by ½ (G_iG_j + G_jG_i).
+    matrices: Stack,
     /// Largest N_ij and G_i that couple each mode to itself and its like (nf).
     pub(crate) own_coupling: Vec<[f64; 2]>,
     /// K of a unit acceleration of what is driven in the modes, column by column, or empty.
@@ -155,40 +159,43 @@ pub struct ConservativeRates {
     pub modal_force: Vec<f64>,
 }
 
-/// Rates without the linear part of the modes, and what was found on the way to them.
+/// Where the rates are asked for, the rates without the linear part of the modes, and what was found on the way to them.
 #[derive(Debug, Clone)]
 pub(crate) struct Evaluation {
+    /// q and p (nf).
+    pub q: Padded,
+    pub p: Padded,
     pub slow: Slow,
     /// q' − p = −S ω (nf).
-    pub displacement: Vec<f64>,
+    pub displacement: Padded,
     /// p' + Λq + D p (nf).
-    pub momentum: Vec<f64>,
-    /// S_i, c_ij + N_ij z, and G_i ż or, of a locked body, G_i p.
-    pub products: Vec<f64>,
-    /// G_i ż of a locked body: for its accelerations only.
-    pub coupling_rate: Vec<f64>,
+    pub momentum: Padded,
+    /// S_i, c_ij + N_ij z, and G_i ż or, of a locked body, G_i p: side by side.
+    pub products: Vec<Group>,
+    /// G_i ż of a locked body, side by side: for its accelerations only.
+    pub coupling_rate: Vec<Group>,
     /// q̇ (nf).
-    pub modal_velocity: Vec<f64>,
-    /// z and ż: q and q̇ but on a manifold.
-    pub coordinates: Vec<f64>,
-    pub velocity: Vec<f64>,
+    pub modal_velocity: Padded,
+    /// On a manifold, z and ż: else they are q and q̇.
+    coordinates: Padded,
+    velocity: Padded,
     /// On a manifold, ξ, ν and ν' in the extended shapes, and forces there and on z.
     pub in_shapes: [Vec<f64>; 3],
     force_in_shapes: Vec<f64>,
-    force: Vec<f64>,
+    force: Padded,
     /// Momenta of the products in z.
     pub momenta_of_products: Vec<f64>,
-    /// The place on the manifold. There, with the Cholesky factor M = L Lᵀ, are S and L⁻¹S (a row for each axis), and b of
-    /// a driven translation.
+    /// The place on the manifold. There, with the Cholesky factor M = L Lᵀ, are S and L⁻¹S (a list for each axis), and b of a
+    /// driven translation.
     pub place: ManifoldPoint,
-    pub s: Vec<f64>,
-    pub forward_s: Vec<f64>,
+    pub s: Vec<Padded>,
+    pub forward_s: Vec<Padded>,
     pub modal_sliding: Vec<f64>,
     /// q̈ and what it is made of.
-    pub acceleration: Vec<f64>,
-    pub change: Vec<f64>,
+    pub acceleration: Padded,
+    pub change: Padded,
     /// What z̈ has without q̈, on a manifold.
-    pub curvature: Vec<f64>,
+    pub curvature: Padded,
     /// K q of the stiffness of what is driven (nf).
     pub drive_stress: Vec<f64>,
     /// Angular velocity, one component for each axis.
@@ -211,10 +218,8 @@ pub(crate) struct Evaluation {
 struct Rates<'a> {
     body: &'a ConservativeBody,
     times: [f64; 2],
-    attitude: &'a Attitude,
+    first_attitude: &'a Matrix3<f64>,
     slow: &'a Slow,
-    q: &'a [f64],
-    p: &'a [f64],
     e: &'a mut Evaluation,
 }
 
@@ -222,9 +227,9 @@ impl WithSimd for Rates<'_> {
     type Output = Result<(), RateError>;
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) -> Self::Output {
-        let Self { body, times, attitude, slow, q, p, e } = self;
-        body.find_rates(times, attitude, slow, q, p, e)
+    fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
+        let Self { body, times, first_attitude, slow, e } = self;
+        body.find_rates(simd, times, first_attitude, slow, e)
     }
 }
 
@@ -283,8 +288,9 @@ impl ConservativeBody {
             _ => Vec::new(),
         };
         let size = manifold.map_or(nf, Manifold::size);
-        let g_rows = if effects[Effect::Coriolis] { axes.len() * size } else { 0 };
-        let s_rows = if effects[Effect::Coriolis] || turn_driven { axes.len() * size } else { 0 };
+        let turning = if size > 0 { axes.len() } else { 0 };
+        let g_count = if effects[Effect::Coriolis] { turning } else { 0 };
+        let s_count = if effects[Effect::Coriolis] || turn_driven { turning } else { 0 };
         let stiffness = body.stress_stiffness.as_ref().filter(|_| effects[Effect::GeometricStiffening]);
         let stiffness = stiffness.map(|stiffness| SpinStiffness::new(stiffness, manifold));
         // Weights of the constants of PAIRS in those of a pair of axes.
@@ -319,8 +325,7 @@ impl ConservativeBody {
             }
             second
         };
-        let turning = if g_rows > 0 { &axes[..] } else { &[] };
-        let gyroscopic: Vec<Mat<f64>> = turning.iter().map(gyroscopic).collect();
+        let gyroscopic: Vec<Mat<f64>> = axes[..g_count].iter().map(gyroscopic).collect();
         let mut second: Vec<Mat<f64>> = pair_weights.iter().map(second).collect();
         let coupling = own_coupling(&modes.circular_frequencies, [&second, &gyroscopic]);
         if locked {
@@ -337,14 +342,16 @@ impl ConservativeBody {
         let along = |unit: &Vector3<f64>, of: &[Vec<f64>; 3]| -> Vec<f64> {
             list_on_coordinates((0..nf).map(|k| (0..3).map(|i| unit[i] * of[i][k]).sum()).collect())
         };
-        let mut undeformed = vec![0.0; s_rows];
-        if turn_driven {
-            undeformed = axes.iter().flat_map(|axis| along(axis, &body.rotation_first)).collect();
-        }
-        for weights in &pair_weights {
+        let of_axis = |axis: &Vector3<f64>| match turn_driven {
+            true => along(axis, &body.rotation_first),
+            false => vec![0.0; size],
+        };
+        let of_pair = |weights: &[f64; 6]| {
             let of_shape = |k: usize| weights.iter().zip(&body.inertia_first).map(|(w, c)| w * c[k]).sum();
-            undeformed.extend(list_on_coordinates((0..nf).map(of_shape).collect()));
-        }
+            list_on_coordinates((0..nf).map(of_shape).collect())
+        };
+        let undeformed: Vec<Vec<f64>> =
+            axes[..s_count].iter().map(of_axis).chain(pair_weights.iter().map(of_pair)).collect();
         let rates = modes.circular_frequencies.iter().chain(&damping);
         Ok(Self {
             mass: body.mass,
@@ -356,23 +363,24 @@ impl ConservativeBody {
             damping_ratios: damping_ratios.to_vec(),
             fastest_rate: rates.copied().fold(0.0, f64::max),
             damped: damping.iter().any(|d| *d > 0.0),
-            damping,
+            damping: Padded::from_slice(&damping),
             pairs,
             locked,
-            undeformed,
+            undeformed: side_by_side(&undeformed),
             sliding: match translation {
                 Translation::Driven(direction) => along(&direction, &body.translation_first),
                 _ => Vec::new(),
             },
             translation,
+            axis_columns: Matrix3::from_fn(|i, k| axes.get(k).map_or(0.0, |axis| axis[i])),
             axes,
             turn_driven,
             drive: drive.clone(),
-            s_rows,
-            g_rows,
+            s_count,
+            g_count,
             own_coupling: coupling,
-            gyroscopic: below_one_another(&gyroscopic),
-            inertia_second: below_one_another(&second),
+            matrices: Stack::new(&gyroscopic.iter().chain(&second).cloned().collect::<Vec<_>>()),
+            gyroscopic: Stack::new(&gyroscopic),
             drive_stiffness: drive_stiffness
                 .map_or_else(Vec::new, |k| columns(k.get(..modes.flexible(), ..modes.flexible()))),
             loads,
@@ -404,35 +412,45 @@ impl ConservativeBody {
     /// Numbers in the matrices that an evaluation reads: what an effect that is off does not cost.
     pub fn matrix_entries(&self) -> usize {
         let of_loads: usize = self.loads.iter().map(|load| load.matrix_entries()).sum();
-        self.gyroscopic.len() + self.inertia_second.len() + self.drive_stiffness.len() + of_loads
+        self.matrices.len() + self.drive_stiffness.len() + of_loads
     }
 
     pub(crate) fn evaluation(&self) -> Evaluation {
         let (modes, nf) = (self.flexible(), self.coordinates());
-        let zeros = |n: usize| vec![0.0; n];
-        let on_manifold = |n: usize| if self.manifold.is_some() { zeros(n) } else { Vec::new() };
-        let s_axes = self.s_rows.checked_div(nf).unwrap_or(0);
+        let lists = Padded::zeros;
+        let on_manifold = |n: usize| if self.manifold.is_some() { n } else { 0 };
+        let groups = |lists: usize, n: usize| vec![[0.0; WIDTH]; lists * n.div_ceil(WIDTH)];
+        let mut products = groups(self.lists(), nf);
+        // S stays as it is without Coriolis terms.
+        for (products, undeformed) in products
+            .chunks_exact_mut(self.lists().max(1))
+            .zip(self.undeformed.chunks_exact(self.lists_of_undeformed().max(1)))
+        {
+            products[..undeformed.len()].copy_from_slice(undeformed);
+        }
         Evaluation {
+            q: lists(modes),
+            p: lists(modes),
             slow: Slow::zeros(),
-            displacement: zeros(modes),
-            momentum: zeros(modes),
-            products: zeros(self.undeformed.len() + self.g_rows),
-            coupling_rate: zeros(if self.locked { self.g_rows } else { 0 }),
-            modal_velocity: zeros(modes),
-            coordinates: zeros(nf),
-            velocity: zeros(nf),
-            in_shapes: std::array::from_fn(|_| on_manifold(self.extended())),
-            force_in_shapes: on_manifold(self.extended()),
-            force: on_manifold(nf),
-            momenta_of_products: on_manifold(nf - modes),
-            acceleration: zeros(modes),
-            change: zeros(nf),
-            curvature: on_manifold(nf),
+            displacement: lists(modes),
+            momentum: lists(modes),
+            products,
+            coupling_rate: groups(if self.locked { self.g_count } else { 0 }, nf),
+            modal_velocity: lists(modes),
+            coordinates: lists(on_manifold(nf)),
+            velocity: lists(on_manifold(nf)),
+            in_shapes: std::array::from_fn(|_| vec![0.0; on_manifold(self.extended())]),
+            force_in_shapes: vec![0.0; on_manifold(self.extended())],
+            force: lists(on_manifold(nf)),
+            momenta_of_products: vec![0.0; on_manifold(nf - modes)],
+            acceleration: lists(modes),
+            change: lists(nf),
+            curvature: lists(on_manifold(nf)),
             place: self.manifold.as_ref().map_or_else(ManifoldPoint::default, Manifold::place),
-            s: on_manifold(s_axes * modes),
-            forward_s: on_manifold(s_axes * modes),
-            modal_sliding: if self.sliding.is_empty() { Vec::new() } else { on_manifold(modes) },
-            drive_stress: zeros(if self.drive_stiffness.is_empty() { 0 } else { modes }),
+            s: vec![lists(modes); on_manifold(self.s_count)],
+            forward_s: vec![lists(modes); on_manifold(self.s_count)],
+            modal_sliding: vec![0.0; if self.sliding.is_empty() { 0 } else { on_manifold(modes) }],
+            drive_stress: vec![0.0; if self.drive_stiffness.is_empty() { 0 } else { modes }],
             spin: Vector3::zeros(),
             omega_body: Vector3::zeros(),
             driven_speed: 0.0,
@@ -452,17 +470,17 @@ impl ConservativeBody {
     pub fn start(&self, initial: &Initial) -> Result<ConservativeState, SetupError> {
         initial.check(self.flexible())?;
         let mut e = self.evaluation();
-        self.deform(&initial.modal_displacement, None, &mut e);
+        e.q.copy_from_slice(&initial.modal_displacement);
+        let scalar = pulp::Scalar::new();
+        self.deform(scalar, &mut e);
         let speed = self.drive.as_ref().map_or(0.0, |drive| drive.speed_at(0.0, 0.0));
         let mut spin = Vector3::zeros();
         for (w, axis) in spin.iter_mut().zip(&self.axes) {
             *w = if self.turn_driven { speed } else { axis.dot(&initial.omega) };
         }
         self.extend_rate(&initial.modal_velocity, &mut e);
-        let mut pi: Vector3<f64> = self.deformed_inertia(&e) * spin;
-        for (i, s) in e.products[..self.s_rows].chunks_exact(self.coordinates().max(1)).enumerate() {
-            pi[i] += dot(s, &e.velocity);
-        }
+        let s_by_velocity = self.s_products(scalar, &e.products, self.velocity_of_coordinates(&e).groups());
+        let pi: Vector3<f64> = self.deformed_inertia(scalar, &e) * spin + s_by_velocity;
         let mut mu = match &self.manifold {
             Some(manifold) => {
                 let Evaluation { velocity, in_shapes: [_, in_shapes, _], .. } = &mut e;
@@ -471,9 +489,12 @@ impl ConservativeBody {
                 manifold.add_from_shapes(in_shapes, &mut mu);
                 mu
             }
-            None => e.velocity.clone(),
+            None => e.modal_velocity.to_vec(),
         };
-        self.add_rigid_momenta(&e.products[..self.s_rows], &spin, speed, &mut mu);
+        let mut s_by_spin = Padded::zeros(mu.len());
+        combine(scalar, self.s_lists(&e.products), &spin.as_slice()[..self.s_count], s_by_spin.groups_mut());
+        mu.iter_mut().zip(&*s_by_spin).for_each(|(mu, s)| *mu += s);
+        mu.iter_mut().zip(&self.sliding).for_each(|(mu, b)| *mu += b * speed);
         let momentum = match &self.manifold {
             Some(manifold) => {
                 let mut momentum = vec![0.0; self.flexible()];
@@ -482,9 +503,7 @@ impl ConservativeBody {
             }
             None => mu,
         };
-        for k in self.axes.len()..3 {
-            pi[k] = 0.0;
-        }
+        let pi = Vector3::from_fn(|k, _| if k < self.axes.len() { pi[k] } else { 0.0 });
         let mut slow = Slow::zeros();
         set(&mut slow, part::POSITION, &self.origin);
         let velocity = match self.translation {
@@ -507,16 +526,15 @@ impl ConservativeBody {
     /// A state in quantities that every formulation has.
     pub(crate) fn motion_state(&self, state: &ConservativeState) -> Result<MotionState, RateError> {
         let mut e = self.evaluation();
-        let (q, p) = (&state.modal_displacement, &state.modal_momentum);
-        self.evaluate([state.time, state.time], &state.attitude, &state.slow, q, p, &mut e)?;
+        self.evaluate_at(state, state.time, &mut e)?;
         Ok(MotionState {
             time: state.time,
             attitude: state.attitude,
             origin_global: state.origin_global(),
             velocity_global: get(&e.slow, part::POSITION),
             omega_body: e.omega_body,
-            modal_displacement: q.clone(),
-            modal_velocity: e.modal_velocity,
+            modal_displacement: state.modal_displacement.clone(),
+            modal_velocity: e.modal_velocity.to_vec(),
         })
     }
 
@@ -542,238 +560,277 @@ impl ConservativeBody {
     /// [`StepError`] where the inertia of the deformed body is singular.
     pub fn rates(&self, state: &ConservativeState, branch_time: f64) -> Result<ConservativeRates, StepError> {
         let mut e = self.evaluation();
-        let (q, p) = (&state.modal_displacement, &state.modal_momentum);
-        self.evaluate([state.time, branch_time], &state.attitude, &state.slow, q, p, &mut e)
-            .map_err(|error| error.in_step(state.time, 0.0))?;
-        self.add_linear(q, p, &mut e);
+        self.evaluate_at(state, branch_time, &mut e).map_err(|error| error.in_step(state.time, 0.0))?;
+        self.add_linear(&mut e);
         Ok(ConservativeRates {
             omega_body: e.omega_body,
             velocity_global: get(&e.slow, part::POSITION),
             force_global: get(&e.slow, part::MOMENTUM),
             moment_body: get(&e.slow, part::PI),
-            modal_velocity: e.displacement,
-            modal_force: e.momentum,
+            modal_velocity: e.displacement.to_vec(),
+            modal_force: e.momentum.to_vec(),
         })
     }
 
     /// q̇ and ż.
     fn extend_rate(&self, rate: &[f64], e: &mut Evaluation) {
         e.modal_velocity.copy_from_slice(rate);
-        match &self.manifold {
-            Some(manifold) => manifold.go_along(rate, &mut e.place, &mut e.velocity),
-            None => e.velocity.copy_from_slice(rate),
+        if let Some(manifold) = &self.manifold {
+            manifold.go_along(rate, &mut e.place, &mut e.velocity);
         }
     }
 
-    /// z, and there S, c_ij + N_ij z, K q and the locked inertia; of a locked body with momenta, G_i p as well.
+    /// Number of the lists of products.
+    pub(crate) fn lists(&self) -> usize {
+        self.lists_of_undeformed() + self.g_count
+    }
+
+    /// Number of the lists of products that the undeformed body has.
+    fn lists_of_undeformed(&self) -> usize {
+        self.s_count + self.pairs.len()
+    }
+
+    /// S among the products.
+    pub(crate) fn s_lists<'e>(&self, products: &'e [Group]) -> Lists<'e> {
+        Lists { groups: products, width: self.lists(), first: 0 }
+    }
+
+    /// c_ij + N_ij z among the products.
+    pub(crate) fn pair_lists<'e>(&self, products: &'e [Group]) -> Lists<'e> {
+        Lists { first: self.s_count, ..self.s_lists(products) }
+    }
+
+    /// Sᵀx, with S on z.
     #[inline(always)]
-    fn deform(&self, q: &[f64], p: Option<&[f64]>, e: &mut Evaluation) {
-        match &self.manifold {
-            Some(manifold) => manifold.go(q, &mut e.place, &mut e.coordinates),
-            None => e.coordinates.copy_from_slice(q),
+    pub(crate) fn s_products<S: Simd>(&self, simd: S, products: &[Group], x: &[Group]) -> Vector3<f64> {
+        match self.s_count {
+            0 => Vector3::zeros(),
+            1 => Vector3::new(dots::<S, 1>(simd, self.s_lists(products), x)[0], 0.0, 0.0),
+            _ => Vector3::from(dots::<S, 3>(simd, self.s_lists(products), x)),
         }
-        if !self.drive_stiffness.is_empty() {
-            multiply(&self.drive_stiffness, q.len(), q, &mut e.drive_stress);
-        }
-        let z = &e.coordinates;
-        let nf = z.len();
-        if self.undeformed.is_empty() {
-            return;
-        }
-        let (products, turned) = e.products.split_at_mut(self.undeformed.len());
-        products.copy_from_slice(&self.undeformed);
-        let (s, n_z) = products.split_at_mut(self.s_rows);
-        if self.g_rows > 0 {
-            match p {
-                Some(p) if self.locked => self.gyroscopic.two_products([z, p], [s, turned]),
-                _ => self.gyroscopic.add_product(z, s),
+    }
+
+    /// Σ_ij list_ijᵀx in the entries ij and ji, of lists for each pair.
+    #[inline(always)]
+    pub(crate) fn pair_products<S: Simd>(&self, simd: S, lists: Lists<'_>, x: &[Group]) -> Matrix3<f64> {
+        match self.pairs.len() {
+            0 => Matrix3::zeros(),
+            1 => Matrix3::from_diagonal(&Vector3::new(dots::<S, 1>(simd, lists, x)[0], 0.0, 0.0)),
+            _ => {
+                let mut sum = Matrix3::zeros();
+                for (pair, entry) in ReducedBody::PAIRS.into_iter().zip(dots::<S, 6>(simd, lists, x)) {
+                    symmetric::add(&mut sum, pair, entry);
+                }
+                sum
             }
         }
-        if !self.pairs.is_empty() {
-            self.inertia_second.add_product(z, n_z);
-        }
-        let mut inertia = self.inertia;
-        let first = self.undeformed[self.s_rows..].chunks_exact(nf.max(1));
-        for ((pair, first), n_z) in self.pairs.iter().zip(first).zip(n_z.chunks_exact(nf.max(1))) {
-            symmetric::add(&mut inertia, *pair, dot_of_sum(first, n_z, z));
-        }
+    }
+
+    /// ż.
+    pub(crate) fn velocity_of_coordinates<'e>(&self, e: &'e Evaluation) -> &'e Padded {
+        if self.manifold.is_some() { &e.velocity } else { &e.modal_velocity }
+    }
+
+    /// z, and there S, c_ij + N_ij z, K q and the locked inertia; of a locked body G_i p as well.
+    #[inline(always)]
+    fn deform<S: Simd>(&self, simd: S, e: &mut Evaluation) {
         if let Some(manifold) = &self.manifold {
-            let modes = q.len();
-            let on_modes = e.s.chunks_exact_mut(modes.max(1)).zip(e.forward_s.chunks_exact_mut(modes.max(1)));
-            for (s, (on_modes, forward)) in s.chunks_exact(nf.max(1)).zip(on_modes) {
-                on_modes.fill(0.0);
-                manifold.add_projection(&e.place, s, on_modes);
-                forward.copy_from_slice(on_modes);
+            manifold.go(&e.q, &mut e.place, &mut e.coordinates);
+        }
+        if !self.drive_stiffness.is_empty() {
+            multiply(&self.drive_stiffness, e.q.len(), &e.q, &mut e.drive_stress);
+        }
+        let Evaluation { products, coordinates, q, p, .. } = e;
+        if products.is_empty() {
+            return;
+        }
+        let z = if self.manifold.is_some() { coordinates.groups() } else { q.groups() };
+        let width = self.lists();
+        if self.locked {
+            self.matrices.multiply_two(simd, [z, p.groups()], &self.undeformed, products);
+        } else {
+            // Without Coriolis terms S is that of the undeformed body.
+            let fixed = self.s_count - self.g_count;
+            let start = Lists { groups: &self.undeformed, width: self.lists_of_undeformed(), first: fixed };
+            self.matrices.multiply(simd, z, start, Places { groups: products, width, first: fixed });
+        }
+        let first = Lists { groups: &self.undeformed, width: self.lists_of_undeformed(), first: self.s_count };
+        e.locked_inertia =
+            self.inertia + self.pair_products(simd, self.pair_lists(products), z) + self.pair_products(simd, first, z);
+        if let Some(manifold) = &self.manifold {
+            for (k, (s, forward)) in e.s.iter_mut().zip(&mut e.forward_s).enumerate() {
+                self.s_lists(products).copy(k, e.change.groups_mut());
+                s.fill(0.0);
+                manifold.add_projection(&e.place, &e.change, s);
+                forward.copy_from_slice(s);
                 manifold.substitute_forward(&e.place, forward);
             }
         }
-        e.locked_inertia = inertia;
         if !self.locked {
-            e.locked_inertia -= self.inertia_of_modes(e);
+            e.locked_inertia -= self.inertia_of_modes(simd, e);
         }
     }
 
     /// SᵀM⁻¹S
     #[inline(always)]
-    fn inertia_of_modes(&self, e: &Evaluation) -> Matrix3<f64> {
-        let s = if self.manifold.is_some() { &e.forward_s[..] } else { &e.products[..self.s_rows] };
-        let modes = self.flexible().max(1);
+    fn inertia_of_modes<S: Simd>(&self, simd: S, e: &Evaluation) -> Matrix3<f64> {
         let mut sum = Matrix3::zeros();
-        for (i, a) in s.chunks_exact(modes).enumerate() {
-            for (j, b) in s.chunks_exact(modes).enumerate().take(i + 1) {
-                symmetric::add(&mut sum, (i, j), dot(a, b));
+        if self.manifold.is_some() {
+            for (i, a) in e.forward_s.iter().enumerate() {
+                for (j, b) in e.forward_s.iter().enumerate().take(i + 1) {
+                    symmetric::add(&mut sum, (i, j), dot(a, b));
+                }
+            }
+            return sum;
+        }
+        match self.s_count {
+            0 => {}
+            1 => sum[(0, 0)] = own_products::<S, 1>(simd, self.s_lists(&e.products))[0][0],
+            _ => {
+                let rows = own_products::<S, 3>(simd, self.s_lists(&e.products));
+                sum = Matrix3::from_fn(|i, j| rows[i.max(j)][i.min(j)]);
             }
         }
         sum
     }
 
     /// J(q) where `e` is.
-    pub(crate) fn deformed_inertia(&self, e: &Evaluation) -> Matrix3<f64> {
-        e.locked_inertia + self.inertia_of_modes(e)
+    #[inline(always)]
+    pub(crate) fn deformed_inertia<S: Simd>(&self, simd: S, e: &Evaluation) -> Matrix3<f64> {
+        e.locked_inertia + self.inertia_of_modes(simd, e)
     }
 
     /// (J − SᵀS)⁻¹ x in the axes of rotation.
+    #[inline(always)]
     pub(crate) fn solve_locked(&self, e: &Evaluation, x: &Vector3<f64>) -> Result<Vector3<f64>, RateError> {
-        if self.undeformed.is_empty() {
+        if e.products.is_empty() {
             return Ok(self.inverse_inertia * x);
         }
-        let inverse = if self.axes.len() == 1 {
-            Matrix3::from_diagonal(&Vector3::new(1.0 / e.locked_inertia[(0, 0)], 1.0, 1.0))
-        } else {
-            e.locked_inertia.try_inverse().ok_or(RateError::Inertia)?
-        };
-        if inverse.iter().all(|x| x.is_finite()) { Ok(inverse * x) } else { Err(RateError::Inertia) }
+        let solution = symmetric::solve(&e.locked_inertia, x);
+        if solution.sum().is_finite() { Ok(solution) } else { Err(RateError::Inertia) }
     }
 
-    /// All rates at time `t`, with the rotation vector counted from `attitude`. Loads and drives follow the branches of their histories that
-    /// hold at `branch_time`.
+    /// All rates at time `t` and the q and p of `e`, with the rotation vector counted from the attitude of which this is the
+    /// transformation matrix. Loads and drives follow the branches of their histories that hold at `branch_time`.
     pub(crate) fn evaluate(
         &self,
         times: [f64; 2],
-        attitude: &Attitude,
+        first_attitude: &Matrix3<f64>,
         slow: &Slow,
-        q: &[f64],
-        p: &[f64],
         e: &mut Evaluation,
     ) -> Result<(), RateError> {
-        Arch::new().dispatch(Rates { body: self, times, attitude, slow, q, p, e })
+        Arch::new().dispatch(Rates { body: self, times, first_attitude, slow, e })
+    }
+
+    /// All rates of a state.
+    pub(crate) fn evaluate_at(
+        &self,
+        state: &ConservativeState,
+        branch_time: f64,
+        e: &mut Evaluation,
+    ) -> Result<(), RateError> {
+        e.q.copy_from_slice(&state.modal_displacement);
+        e.p.copy_from_slice(&state.modal_momentum);
+        self.evaluate([state.time, branch_time], &state.attitude.global_to_body(), &state.slow, e)
     }
 
     #[inline(always)]
-    fn find_rates(
+    fn find_rates<S: Simd>(
         &self,
+        simd: S,
         [t, branch_time]: [f64; 2],
-        attitude: &Attitude,
+        first_attitude: &Matrix3<f64>,
         slow: &Slow,
-        q: &[f64],
-        p: &[f64],
         e: &mut Evaluation,
     ) -> Result<(), RateError> {
-        self.deform(q, Some(p), e);
-        let speed = self.drive.as_ref().map_or(0.0, |drive| drive.speed_at(t, branch_time));
-        let driven_acceleration = self.drive.as_ref().map_or(0.0, |drive| drive.acceleration_at(t, branch_time));
+        self.deform(simd, e);
+        let (mut speed, mut driven_acceleration) = (0.0, 0.0);
+        if let Some(drive) = &self.drive {
+            (speed, driven_acceleration) = (drive.speed_at(t, branch_time), drive.acceleration_at(t, branch_time));
+        }
         e.driven_speed = speed;
-        self.start_velocities(p, speed, e);
+        self.start_velocities(speed, e);
         let pi = get(slow, part::PI);
         if self.turn_driven {
             e.spin = Vector3::new(speed, 0.0, 0.0);
         } else if !self.axes.is_empty() {
             let mut right = pi;
-            let (s, p) =
-                if self.manifold.is_some() { (&e.forward_s[..], &e.modal_velocity[..]) } else { (self.s(e), p) };
-            for (i, s) in s.chunks_exact(q.len().max(1)).enumerate() {
-                right[i] -= dot(s, p);
+            if self.manifold.is_some() {
+                for (i, s) in e.forward_s.iter().enumerate() {
+                    right[i] -= dot(s, &e.modal_velocity);
+                }
+            } else {
+                right -= self.s_products(simd, &e.products, e.p.groups());
             }
             e.spin = self.solve_locked(e, &right)?;
         }
         let w = e.spin;
-        e.omega_body = self.axes.iter().zip(w.iter()).map(|(axis, w)| axis * *w).sum();
-
-        self.find_velocities(p, speed, e);
+        e.omega_body = self.axis_columns * w;
+        let dissipation = self.find_velocities(simd, speed, e);
 
         let momentum = get(slow, part::MOMENTUM);
         let velocity = match self.translation {
             Translation::None => Vector3::zeros(),
             Translation::Free | Translation::Along(_) => momentum / self.mass,
-            Translation::Driven(direction) => attitude.to_global(&direction) * speed,
+            Translation::Driven(direction) => first_attitude.tr_mul(&direction) * speed,
         };
         let theta = get(slow, part::THETA);
         let turning = !self.axes.is_empty();
         let theta_rate =
             if turning { f_inverse(&theta, &e.omega_body).map_err(RateError::Turn)? } else { Vector3::zeros() };
-        // Forces on z are gathered in a list that is put back below: nothing may fail in between.
-        let mut modal_force = std::mem::take(if self.manifold.is_some() { &mut e.force } else { &mut e.momentum });
-        self.inertia_forces(e, &mut modal_force);
+        self.inertia_forces(simd, e);
         let mut pi_rate = if self.axes.len() == 3 { pi.cross(&w) } else { Vector3::zeros() };
         let mut power = 0.0;
         let (mut force, mut angular_impulse) = (Vector3::zeros(), Vector3::zeros());
-        if self.manifold.is_some() {
-            e.momentum.fill(0.0);
-        }
         if !self.loads.is_empty() {
-            let first_attitude = attitude.global_to_body();
             let body_from_global =
-                if turning { transformation_matrix(&theta) * first_attitude } else { first_attitude };
+                if turning { transformation_matrix(&theta) * first_attitude } else { *first_attitude };
             self.find_in_shapes(e);
-            let on_manifold = self.manifold.as_ref().map(|_| [q, &e.modal_velocity[..]]);
-            let (xi, nu, on_shapes) = match &self.manifold {
-                Some(_) => {
-                    let [xi, nu, _] = &e.in_shapes;
-                    e.force_in_shapes.fill(0.0);
-                    (xi, nu, &mut e.force_in_shapes)
-                }
-                None => (&e.coordinates, &e.velocity, &mut modal_force),
-            };
-            let coordinates = Coordinates { first: 6, displacement: xi, velocity: nu, on_manifold };
+            let omega_body = e.omega_body;
+            let Evaluation { q, modal_velocity, in_shapes: [xi, nu, _], force_in_shapes, momentum, .. } = &mut *e;
+            let (coordinates, mut applied);
+            let (first, on_manifold) = (6, Some([&**q, &**modal_velocity]));
+            if self.manifold.is_some() {
+                force_in_shapes.fill(0.0);
+                coordinates = Coordinates { first, displacement: xi, velocity: nu, on_manifold };
+                applied = Applied::new(coordinates, Vector3::zeros(), force_in_shapes).on_manifold(momentum);
+            } else {
+                coordinates = Coordinates { first, displacement: q, velocity: modal_velocity, on_manifold: None };
+                applied = Applied::new(coordinates, Vector3::zeros(), momentum);
+            }
             let motion = Kinematics {
                 time: t,
                 branch_time,
                 body_from_global: &body_from_global,
                 origin_global: get(slow, part::POSITION),
                 velocity_global: velocity,
-                omega_body: e.omega_body,
+                omega_body,
                 coordinates,
                 unit: false,
             };
-            let mut applied = Applied::new(coordinates, Vector3::zeros(), on_shapes);
-            if self.manifold.is_some() {
-                applied = applied.on_manifold(&mut e.momentum);
-            }
             self.loads.iter().for_each(|load| load.apply(&motion, &mut applied));
-            let moment = applied.moment_body;
-            (e.load_force, e.load_moment) = (applied.force_body, moment);
-            power = applied.modal_power + moment.dot(&e.omega_body);
-            force = body_from_global.tr_mul(&applied.force_body);
-            let mut left = Vector3::zeros();
-            for (i, axis) in self.axes.iter().enumerate() {
-                let component = axis.dot(&moment);
-                pi_rate[i] += component;
-                left += axis * component;
-            }
-            angular_impulse = body_from_global.tr_mul(&left);
+            let Applied { force_body, moment_body: moment, modal_power, .. } = applied;
+            (e.load_force, e.load_moment) = (force_body, moment);
+            power = modal_power + moment.dot(&omega_body);
+            force = body_from_global.tr_mul(&force_body);
+            let components = self.axis_columns.tr_mul(&moment);
+            pi_rate += components;
+            angular_impulse = body_from_global.tr_mul(&(self.axis_columns * components));
             power += force.dot(&velocity);
             if let Some(manifold) = &self.manifold {
-                manifold.add_from_shapes(&e.force_in_shapes, &mut modal_force);
+                manifold.add_from_shapes(&e.force_in_shapes, &mut e.force);
             }
         }
-        self.project_forces(speed, modal_force, e);
+        self.project_forces(speed, e);
         e.momentum.iter_mut().zip(&e.drive_stress).for_each(|(rate, k_q)| *rate += driven_acceleration * k_q);
-        let mut dissipation = 0.0;
-        if self.damped {
-            for k in 0..q.len() {
-                // −D q̇ = −D p + D (p − q̇); the first term is in the linear part.
-                e.momentum[k] -= self.damping[k] * e.displacement[k];
-                dissipation += self.damping[k] * e.modal_velocity[k] * e.modal_velocity[k];
-            }
-        }
         let force_rate = match self.translation {
             Translation::Free => force,
-            Translation::Along(direction) => along(&attitude.to_global(&direction), &force),
+            Translation::Along(direction) => along(&first_attitude.tr_mul(&direction), &force),
             Translation::None | Translation::Driven(_) => Vector3::zeros(),
         };
         if self.drive.is_some() {
-            let force_body = attitude.to_body(&force);
-            self.drive_effort(driven_acceleration, [q, p], &force_body, pi_rate[0], e);
+            let force_body = first_attitude * force;
+            self.drive_effort(simd, driven_acceleration, &force_body, pi_rate[0], e);
             power += e.drive_effort * speed;
             pi_rate = Vector3::zeros();
         }
@@ -788,16 +845,11 @@ impl ConservativeBody {
         Ok(())
     }
 
-    /// S on the modes, a row for each axis.
-    pub(crate) fn s<'e>(&self, e: &'e Evaluation) -> &'e [f64] {
-        if self.manifold.is_some() { &e.s } else { &e.products[..self.s_rows] }
-    }
-
     /// On a manifold, puts L⁻¹ (p − b v) into the place of q̇.
     #[inline(always)]
-    fn start_velocities(&self, p: &[f64], speed: f64, e: &mut Evaluation) {
+    fn start_velocities(&self, speed: f64, e: &mut Evaluation) {
         let Some(manifold) = &self.manifold else { return };
-        e.modal_velocity.copy_from_slice(p);
+        e.modal_velocity.copy_from_slice(&e.p);
         if !self.sliding.is_empty() {
             e.modal_sliding.fill(0.0);
             manifold.add_projection(&e.place, &self.sliding, &mut e.modal_sliding);
@@ -806,63 +858,136 @@ impl ConservativeBody {
         manifold.substitute_forward(&e.place, &mut e.modal_velocity);
     }
 
-    /// q̇ and ż, at the spin of `e`.
+    /// q̇ and ż, at the spin of `e`; starts p' with what damping takes beside −D p, which is in the linear part. Returns the
+    /// dissipation.
     #[inline(always)]
-    fn find_velocities(&self, p: &[f64], speed: f64, e: &mut Evaluation) {
-        let modes = p.len();
-        let negative = -e.spin;
+    fn find_velocities<S: Simd>(&self, simd: S, speed: f64, e: &mut Evaluation) -> f64 {
         let Some(manifold) = &self.manifold else {
-            multiply(&e.products[..self.s_rows], modes, negative.as_slice(), &mut e.displacement);
-            e.displacement.iter_mut().zip(&self.sliding).for_each(|(rate, b)| *rate -= b * speed);
-            for ((v, p), rate) in e.velocity.iter_mut().zip(p).zip(&e.displacement) {
-                *v = p + rate;
+            if self.sliding.is_empty() {
+                return match self.s_count {
+                    0 => self.find_modal_velocities::<S, 0>(simd, e),
+                    1 => self.find_modal_velocities::<S, 1>(simd, e),
+                    _ => self.find_modal_velocities::<S, 3>(simd, e),
+                };
             }
-            e.modal_velocity.copy_from_slice(&e.velocity);
-            return;
+            let factors = -e.spin;
+            let displacement = e.displacement.groups_mut();
+            combine(simd, self.s_lists(&e.products), &factors.as_slice()[..self.s_count], displacement);
+            e.displacement.iter_mut().zip(&self.sliding).for_each(|(rate, b)| *rate -= b * speed);
+            for ((v, p), rate) in
+                e.modal_velocity.groups_mut().iter_mut().zip(e.p.groups()).zip(e.displacement.groups())
+            {
+                Four::load(simd, p).add(simd, Four::load(simd, rate)).store(v);
+            }
+            return self.damp(simd, e);
         };
-        add_product(&e.forward_s, modes, negative.as_slice(), &mut e.modal_velocity);
+        let w = e.spin;
+        for (s, w) in e.forward_s.iter().zip(w.iter()) {
+            let factor = Four::splat(simd, -w);
+            for (v, s) in e.modal_velocity.groups_mut().iter_mut().zip(s.groups()) {
+                Four::load(simd, s).mul_add(simd, factor, Four::load(simd, v)).store(v);
+            }
+        }
         manifold.substitute_back(&e.place, &mut e.modal_velocity);
-        for ((rate, p), v) in e.displacement.iter_mut().zip(p).zip(&e.modal_velocity) {
-            *rate = v - p;
+        for ((rate, p), v) in e.displacement.groups_mut().iter_mut().zip(e.p.groups()).zip(e.modal_velocity.groups()) {
+            Four::load(simd, v).sub(simd, Four::load(simd, p)).store(rate);
         }
         manifold.go_along(&e.modal_velocity, &mut e.place, &mut e.velocity);
+        self.damp(simd, e)
     }
 
-    /// Σ ω_iω_j (c_ij + N_ij z) − Σ ω_i G_i ż, which of a locked body has p for ż.
+    /// q̇ with M lists of S, and as much of p' as [`Self::damp`] finds.
     #[inline(always)]
-    fn inertia_forces(&self, e: &mut Evaluation, force: &mut [f64]) {
-        let nf = force.len();
-        let (pairs, turning) = (self.pairs.len(), self.g_rows.checked_div(nf).unwrap_or(0));
-        let mut factors = [0.0; 9];
-        for (square, pair) in factors.iter_mut().zip(&self.pairs) {
-            *square = spin_product(&e.spin, *pair);
+    fn find_modal_velocities<S: Simd, const M: usize>(&self, simd: S, e: &mut Evaluation) -> f64 {
+        let (zero, mut dissipation, mut factors) =
+            (Four::splat(simd, 0.0), Four::splat(simd, 0.0), [Four::splat(simd, 0.0); M]);
+        for (factor, w) in factors.iter_mut().zip(e.spin.iter()) {
+            *factor = Four::splat(simd, -w);
         }
-        for (factor, w) in factors[pairs..pairs + turning].iter_mut().zip(e.spin.iter()) {
+        let Evaluation { products, p, displacement, modal_velocity, momentum, .. } = e;
+        let mut lists = self.s_lists(products).rows();
+        let rates = displacement.groups_mut().iter_mut().zip(modal_velocity.groups_mut());
+        let given = p.groups().iter().zip(self.damping.groups());
+        for (((rate, v), momentum), (p, damping)) in rates.zip(momentum.groups_mut()).zip(given) {
+            let mut sum = zero;
+            if let Some(row) = lists.next().and_then(|row| row.first_chunk::<M>()) {
+                for k in 0..M {
+                    sum = Four::load(simd, &row[k]).mul_add(simd, factors[k], sum);
+                }
+            }
+            let (velocity, damping) = (Four::load(simd, p).add(simd, sum), Four::load(simd, damping));
+            sum.store(rate);
+            velocity.store(v);
+            zero.sub(simd, damping.mul(simd, sum)).store(momentum);
+            dissipation = damping.mul(simd, velocity).mul_add(simd, velocity, dissipation);
+        }
+        dissipation.sum()
+    }
+
+    /// p' = −D (q̇ − p): the rest of −D q̇ is in the linear part. Returns q̇ᵀD q̇.
+    #[inline(always)]
+    fn damp<S: Simd>(&self, simd: S, e: &mut Evaluation) -> f64 {
+        let Evaluation { momentum, displacement, modal_velocity, .. } = e;
+        if !self.damped {
+            momentum.fill(0.0);
+            return 0.0;
+        }
+        let (zero, mut dissipation) = (Four::splat(simd, 0.0), Four::splat(simd, 0.0));
+        let rates = displacement.groups().iter().zip(modal_velocity.groups());
+        for ((momentum, (rate, v)), damping) in momentum.groups_mut().iter_mut().zip(rates).zip(self.damping.groups()) {
+            let [damping, v] = [damping, v].map(|group| Four::load(simd, group));
+            let of_rate = damping.mul(simd, Four::load(simd, rate));
+            zero.sub(simd, of_rate).store(momentum);
+            dissipation = damping.mul(simd, v).mul_add(simd, v, dissipation);
+        }
+        dissipation.sum()
+    }
+
+    /// Adds Σ ω_iω_j (c_ij + N_ij z) − Σ ω_i G_i ż, which of a locked body has p for ż, to p' or, on a manifold, puts it
+    /// into the forces on z.
+    #[inline(always)]
+    fn inertia_forces<S: Simd>(&self, simd: S, e: &mut Evaluation) {
+        let width = self.lists();
+        if self.g_count > 0 && !self.locked {
+            let Evaluation { products, velocity, modal_velocity, .. } = &mut *e;
+            let rate = if self.manifold.is_some() { velocity.groups() } else { modal_velocity.groups() };
+            let places = Places { groups: products, width, first: self.lists_of_undeformed() };
+            self.gyroscopic.multiply(simd, rate, Lists::ZEROS, places);
+        }
+        let (pairs, w) = (self.pairs.len(), e.spin);
+        let mut factors = [0.0; 9];
+        for (factor, pair) in factors.iter_mut().zip(&self.pairs) {
+            *factor = spin_product(&w, *pair);
+        }
+        for (factor, w) in factors[pairs..].iter_mut().zip(&w.as_slice()[..self.g_count]) {
             *factor = -w;
         }
-        if self.g_rows > 0 && !self.locked {
-            self.gyroscopic.multiply(&e.velocity, &mut e.products[self.undeformed.len()..]);
+        let factors = &factors[..pairs + self.g_count];
+        let lists = self.pair_lists(&e.products);
+        if self.manifold.is_some() {
+            combine(simd, lists, factors, e.force.groups_mut());
+        } else {
+            add_combined(simd, lists, factors, e.momentum.groups_mut());
         }
-        multiply(&e.products[self.s_rows..], nf, &factors[..pairs + turning], force);
     }
 
-    /// Finds S' = G_i ż, a row for each axis.
-    pub(crate) fn coupling_rate<'e>(&self, e: &'e mut Evaluation) -> (&'e [f64], &'e mut Vec<f64>) {
-        if self.locked && self.g_rows > 0 {
-            self.gyroscopic.multiply(&e.velocity, &mut e.coupling_rate);
-        }
-        (if self.locked { &e.coupling_rate } else { &e.products[self.undeformed.len()..] }, &mut e.change)
-    }
-
-    /// p' without its linear part and damping: Dᵀ of the forces on z, Ḋᵀμ and −∂V_n/∂q.
+    /// Finds S' = G_i ż, the lists side by side.
     #[inline(always)]
-    fn project_forces(&self, speed: f64, force: Vec<f64>, e: &mut Evaluation) {
-        let Some(manifold) = &self.manifold else {
-            e.momentum = force;
-            return;
-        };
-        manifold.add_projection(&e.place, &force, &mut e.momentum);
-        e.force = force;
+    pub(crate) fn coupling_rate<'e, S: Simd>(&self, simd: S, e: &'e mut Evaluation) -> (Lists<'e>, &'e mut Padded) {
+        if self.locked && self.g_count > 0 {
+            let places = Places { groups: &mut e.coupling_rate, width: self.g_count, first: 0 };
+            self.gyroscopic.multiply(simd, e.modal_velocity.groups(), Lists::ZEROS, places);
+            return (Lists { groups: &e.coupling_rate, width: self.g_count, first: 0 }, &mut e.change);
+        }
+        let first = self.lists_of_undeformed();
+        (Lists { groups: &e.products, width: self.lists(), first }, &mut e.change)
+    }
+
+    /// On a manifold, adds Dᵀ of the forces on z, Ḋᵀμ and −∂V_n/∂q to p'.
+    #[inline(always)]
+    fn project_forces(&self, speed: f64, e: &mut Evaluation) {
+        let Some(manifold) = &self.manifold else { return };
+        manifold.add_projection(&e.place, &e.force, &mut e.momentum);
         self.find_momenta_of_products(speed, e);
         manifold.add_projected_rate(&e.place, &e.momenta_of_products, &mut e.momentum);
         manifold.subtract_force(&e.place, &e.coordinates, &mut e.momentum);
@@ -873,10 +998,14 @@ impl ConservativeBody {
     fn find_momenta_of_products(&self, speed: f64, e: &mut Evaluation) {
         let Some(manifold) = &self.manifold else { return };
         let momenta = &mut e.momenta_of_products;
-        let (modes, size) = (e.modal_velocity.len(), e.velocity.len());
+        let modes = e.modal_velocity.len();
         manifold.momenta_of_products(&e.velocity, momenta);
-        for (s, w) in e.products[..self.s_rows].chunks_exact(size).zip(e.spin.iter()) {
-            momenta.iter_mut().zip(&s[modes..]).for_each(|(mu, s)| *mu += s * w);
+        for (i, mu) in momenta.iter_mut().enumerate() {
+            let (group, lane) = ((modes + i) / WIDTH, (modes + i) % WIDTH);
+            let s = &e.products[group * self.lists()..][..self.s_count];
+            for (s, w) in s.iter().zip(e.spin.iter()) {
+                *mu += s[lane] * w;
+            }
         }
         momenta.iter_mut().zip(self.sliding.iter().skip(modes)).for_each(|(mu, b)| *mu += b * speed);
     }
@@ -890,14 +1019,6 @@ impl ConservativeBody {
         manifold.in_shapes(&e.velocity, nu);
     }
 
-    /// Adds S ω + b v.
-    fn add_rigid_momenta(&self, s_ext: &[f64], spin: &Vector3<f64>, speed: f64, mu: &mut [f64]) {
-        for (s, w) in s_ext.chunks_exact(mu.len().max(1)).zip(spin.iter()) {
-            mu.iter_mut().zip(s).for_each(|(mu, s)| *mu += s * w);
-        }
-        mu.iter_mut().zip(&self.sliding).for_each(|(mu, b)| *mu += b * speed);
-    }
-
     /// Takes a state past a jump of the speed of the drive at its time. The drive does its impulse times the mean of the
     /// speeds.
     pub(crate) fn pass_jump(&self, state: &mut ConservativeState, e: &mut Evaluation) -> Result<(), RateError> {
@@ -908,8 +1029,7 @@ impl ConservativeBody {
         let aside = 1e-12 * state.time.abs();
         let on_side =
             |state: &ConservativeState, branch_time: f64, e: &mut Evaluation| -> Result<[f64; 2], RateError> {
-                let (q, p) = (&state.modal_displacement, &state.modal_momentum);
-                self.evaluate([state.time, branch_time], &state.attitude, &state.slow, q, p, e)?;
+                self.evaluate_at(state, branch_time, e)?;
                 Ok([e.driven_speed, e.driven_momentum])
             };
         let [after, _] = on_side(state, state.time + aside, e)?;
@@ -923,10 +1043,10 @@ impl ConservativeBody {
     }
 
     /// Adds the linear part of the modes to an evaluation: q' += p, p' −= Λq + Dp.
-    pub(crate) fn add_linear(&self, q: &[f64], p: &[f64], e: &mut Evaluation) {
-        for k in 0..q.len() {
-            e.displacement[k] += p[k];
-            e.momentum[k] += self.linear_rate(k, q[k], p[k]);
+    pub(crate) fn add_linear(&self, e: &mut Evaluation) {
+        for k in 0..e.q.len() {
+            e.displacement[k] += e.p[k];
+            e.momentum[k] += self.linear_rate(k, e.q[k], e.p[k]);
         }
     }
 
@@ -960,11 +1080,6 @@ fn degrees_of_freedom(
         if effects[Effect::Translation] || is_driven { translation } else { Translation::None },
         if effects[Effect::Rotation] || is_driven { axes } else { Vec::new() },
     )
-}
-
-fn below_one_another(matrices: &[Mat<f64>]) -> BlockedMatrix {
-    let parts: Vec<_> = matrices.iter().map(Mat::as_ref).collect();
-    BlockedMatrix::below_one_another(&parts)
 }
 
 /// A matrix in the axes of rotation, 1 on the diagonal of those that are missing.

@@ -2,6 +2,7 @@
 
 use std::any::Any;
 
+use nalgebra::Matrix3;
 use rigid_kin::Attitude;
 use serde::{Deserialize, Serialize};
 
@@ -11,6 +12,7 @@ use crate::energies::Energies;
 use crate::error::{SetupError, StepError};
 use crate::error_size::Sizes;
 use crate::exponential::{BlockStore, Pairs, sum_of_blocks};
+use crate::four::{Group, Padded, all_finite};
 use crate::initial::Initial;
 use crate::moment::Moment;
 use crate::motion::PointShapes;
@@ -44,12 +46,8 @@ pub struct ConservativeMotion {
     ahead: Evaluation,
     /// Whether `stages[0]` is that of `state`.
     first_known: bool,
-    /// Where the stages start from in the modes; for Strang, the state after half a step of the modes alone.
-    start_q: Vec<f64>,
-    start_p: Vec<f64>,
-    /// Stage values of the modes.
-    q: Vec<f64>,
-    p: Vec<f64>,
+    /// q and p at the end of the step.
+    end_of_modes: [Padded; 2],
     blocks: BlockStore,
     evaluations: u64,
     /// Under step control, the largest sizes so far; the energy not less than what the loads are to give.
@@ -142,8 +140,7 @@ impl Scheme for ConservativeMotion {
         // A row has an evaluation of its own: a load may be another by the time of the next step.
         let Self { body, initial_attitude, state, ahead, .. } = self;
         body.observe(state, initial_attitude, points, ahead, out).map_err(|error| error.in_step(state.time, 0.0))?;
-        let (q, p) = (&state.modal_displacement, &state.modal_momentum);
-        self.energies = body.energies_of(state.time, &state.slow, q, p, ahead);
+        self.energies = body.energies_of(state.time, &state.slow, ahead);
         Ok(())
     }
 
@@ -177,7 +174,7 @@ impl Scheme for ConservativeMotion {
         let (time, q) = match self.first_known {
             true => (self.state.time, &self.state.modal_displacement),
             // The states have changed places at the end of the step.
-            false => (self.next.time, &self.start_q),
+            false => (self.next.time, &self.next.modal_displacement),
         };
         Moment { time, omega_body: *omega_body, modal_displacement: q, modal_velocity }
     }
@@ -205,7 +202,7 @@ impl Scheme for ConservativeMotion {
             state: self.state.clone(),
             energies: self.energies,
             first_known: self.first_known,
-            rates: (slow, displacement, momentum),
+            rates: (slow, displacement.to_vec(), momentum.to_vec()),
             evaluations: self.evaluations,
             largest: self.largest,
         })
@@ -222,7 +219,15 @@ impl Scheme for ConservativeMotion {
         counts(&[evaluations])?;
         largest.check()?;
         let first = &mut self.stages[0];
-        (first.slow, first.displacement, first.momentum) = (slow, displacement, momentum);
+        first.slow = slow;
+        for (list, saved) in [
+            (&mut first.displacement, &displacement),
+            (&mut first.momentum, &momentum),
+            (&mut first.q, &state.modal_displacement),
+            (&mut first.p, &state.modal_momentum),
+        ] {
+            list.copy_from_slice(saved);
+        }
         (self.state, self.energies, self.first_known) = (state, energies, first_known);
         (self.evaluations, self.largest) = (evaluations, largest);
         Ok(())
@@ -252,10 +257,7 @@ impl ConservativeMotion {
             stages: std::array::from_fn(|_| evaluation.clone()),
             ahead: evaluation,
             first_known: false,
-            start_q: vec![0.0; nf],
-            start_p: vec![0.0; nf],
-            q: vec![0.0; nf],
-            p: vec![0.0; nf],
+            end_of_modes: std::array::from_fn(|_| Padded::zeros(nf)),
             blocks: BlockStore::default(),
             evaluations: 0,
             largest: Sizes::default(),
@@ -304,11 +306,10 @@ impl ConservativeMotion {
         match estimate {
             Ok(estimate) if estimate <= tolerance => {
                 self.largest = self.body.sizes(&self.next, &self.ahead).max(self.largest);
-                let ConservativeState { time, slow, modal_displacement, modal_momentum, .. } = &self.next;
-                self.energies = self.body.energies_of(*time, slow, modal_displacement, modal_momentum, &self.ahead);
+                let ConservativeState { time, slow, .. } = &self.next;
+                self.energies = self.body.energies_of(*time, slow, &self.ahead);
                 if self.scheme == Stepping::Rkmk4 {
-                    let (q, p) = (&self.next.modal_displacement, &self.next.modal_momentum);
-                    self.body.add_linear(q, p, &mut self.ahead);
+                    self.body.add_linear(&mut self.ahead);
                 }
                 std::mem::swap(&mut self.state, &mut self.next);
                 // The evaluation at the end is the first of the next step.
@@ -334,15 +335,7 @@ impl ConservativeMotion {
         self.step(h, time + h)?;
         self.attempt(h, end)?;
         let Self { body, next, coarse, ahead, .. } = self;
-        body.evaluate(
-            [end, time + 1.5 * h],
-            &next.attitude,
-            &next.slow,
-            &next.modal_displacement,
-            &next.modal_momentum,
-            ahead,
-        )
-        .map_err(|error| error.in_step(time, h))?;
+        body.evaluate_at(next, time + 1.5 * h, ahead).map_err(|error| error.in_step(time, h))?;
         self.evaluations += 1;
         let motion = body.sizes(next, ahead).max(self.largest);
         let relative = body.sizes_of_difference(next, coarse).relative_to(motion, body.lowest_frequency());
@@ -356,11 +349,15 @@ impl ConservativeMotion {
 
     /// Computes `next` from `state`.
     fn attempt(&mut self, h: f64, end: f64) -> Result<(), StepError> {
+        let first_attitude = self.state.attitude.global_to_body();
+        self.evaluate_first(&first_attitude, h)?;
         match self.scheme {
-            Stepping::Rkmk4 => self.rkmk4(h)?,
-            Stepping::Exponential => self.exponential(h)?,
+            Stepping::Rkmk4 => self.rkmk4(&first_attitude, h)?,
+            Stepping::Exponential => self.exponential(&first_attitude, h)?,
         }
-        let Self { body, state, next, .. } = self;
+        let Self { body, state, next, end_of_modes: [q, p], .. } = self;
+        next.modal_displacement.copy_from_slice(q);
+        next.modal_momentum.copy_from_slice(p);
         let theta = get(&next.slow, part::THETA);
         next.attitude = state.attitude.advanced_by(&theta);
         if let [axis] = body.axes[..] {
@@ -369,118 +366,118 @@ impl ConservativeMotion {
         next.slow.fixed_rows_mut::<3>(part::THETA).fill(0.0);
         next.time = end;
         let infinite = |what| Err(StepError::NotFinite { time: state.time, what });
-        if !next.slow.iter().all(|x| x.is_finite()) {
+        if !all_finite(next.slow.as_slice()) {
             return infinite("a momentum, the position or the work");
         }
-        if !next.modal_displacement.iter().chain(&next.modal_momentum).all(|x| x.is_finite()) {
+        if !(all_finite(q) && all_finite(p)) {
             return infinite("a modal coordinate");
         }
         Ok(())
     }
 
-    /// Evaluates stage `s` at the stage values `slow`, q, p and time `t`.
-    fn evaluate(&mut self, s: usize, t: f64, slow: &Slow, h: f64) -> Result<(), StepError> {
-        let Self { body, state, stages, q, p, .. } = self;
+    /// Evaluates stage `s` at its q and p, the stage values `slow` and time `t`.
+    fn evaluate(
+        &mut self,
+        s: usize,
+        t: f64,
+        first_attitude: &Matrix3<f64>,
+        slow: &Slow,
+        h: f64,
+    ) -> Result<(), StepError> {
+        let Self { body, state, stages, .. } = self;
         self.evaluations += 1;
         let branch_time = state.time + 0.5 * h;
-        body.evaluate([t, branch_time], &state.attitude, slow, q, p, &mut stages[s])
+        body.evaluate([t, branch_time], first_attitude, slow, &mut stages[s])
             .map_err(|error| error.in_step(state.time, h))
     }
 
-    /// Evaluates the first stage at the start of the stages, unless the last step already has.
-    fn evaluate_first(&mut self, h: f64) -> Result<(), StepError> {
+    /// Evaluates the first stage at the state, unless the last step already has.
+    fn evaluate_first(&mut self, first_attitude: &Matrix3<f64>, h: f64) -> Result<(), StepError> {
         if self.first_known {
             return Ok(());
         }
-        self.q.copy_from_slice(&self.start_q);
-        self.p.copy_from_slice(&self.start_p);
-        let slow = self.state.slow;
-        self.evaluate(0, self.state.time, &slow, h)?;
-        let Self { body, state, stages, q, p, .. } = self;
-        self.energies = body.energies_of(state.time, &slow, q, p, &stages[0]);
+        let Self { state, stages: [first, ..], .. } = self;
+        first.q.copy_from_slice(&state.modal_displacement);
+        first.p.copy_from_slice(&state.modal_momentum);
+        let slow = state.slow;
+        self.evaluate(0, self.state.time, first_attitude, &slow, h)?;
+        self.energies = self.body.energies_of(self.state.time, &slow, &self.stages[0]);
         if self.scheme == Stepping::Rkmk4 {
-            self.body.add_linear(&self.q, &self.p, &mut self.stages[0]);
+            self.body.add_linear(&mut self.stages[0]);
         }
         Ok(())
     }
 
-    /// The stages start from the state.
-    fn start_from_state(&mut self) {
-        self.start_q.copy_from_slice(&self.state.modal_displacement);
-        self.start_p.copy_from_slice(&self.state.modal_momentum);
-    }
-
-    fn rkmk4(&mut self, h: f64) -> Result<(), StepError> {
-        self.start_from_state();
-        self.evaluate_first(h)?;
-        self.runge_kutta(h, true)
-    }
-
-    /// Stages 2 to 4 of classical RK4 and the sum, into `next`; with or without the linear part of the modes.
-    fn runge_kutta(&mut self, h: f64, with_linear: bool) -> Result<(), StepError> {
+    /// Stages 2 to 4 of classical RK4 and the sum.
+    fn rkmk4(&mut self, first_attitude: &Matrix3<f64>, h: f64) -> Result<(), StepError> {
         let time = self.state.time;
         for (s, fraction) in [(1, 0.5), (2, 0.5), (3, 1.0)] {
-            let before = &self.stages[s - 1];
-            let c = fraction * h;
-            add_scaled(&self.start_q, c, &before.displacement, &mut self.q);
-            add_scaled(&self.start_p, c, &before.momentum, &mut self.p);
+            let (before, now) = self.stages.split_at_mut(s);
+            let (before, now, c) = (&before[s - 1], &mut now[0], fraction * h);
+            add_scaled(&self.state.modal_displacement, c, &before.displacement, &mut now.q);
+            add_scaled(&self.state.modal_momentum, c, &before.momentum, &mut now.p);
             let slow = self.state.slow + before.slow * c;
-            self.evaluate(s, time + c, &slow, h)?;
-            if with_linear {
-                self.body.add_linear(&self.q, &self.p, &mut self.stages[s]);
-            }
+            self.evaluate(s, time + c, first_attitude, &slow, h)?;
+            self.body.add_linear(&mut self.stages[s]);
         }
-        let Self { state, next, stages: [k1, k2, k3, k4], start_q, start_p, .. } = self;
+        let Self { state, next, stages: [k1, k2, k3, k4], end_of_modes: [q, p], .. } = self;
         let w = h / 6.0;
         next.slow = state.slow + (k1.slow + (k2.slow + k3.slow) * 2.0 + k4.slow) * w;
-        for k in 0..next.modal_displacement.len() {
+        for k in 0..q.len() {
             let sum =
                 |part: fn(&Evaluation) -> &[f64]| w * (part(k1)[k] + 2.0 * (part(k2)[k] + part(k3)[k]) + part(k4)[k]);
-            next.modal_displacement[k] = start_q[k] + sum(|e| &e.displacement);
-            next.modal_momentum[k] = start_p[k] + sum(|e| &e.momentum);
+            q[k] = state.modal_displacement[k] + sum(|e| &e.displacement);
+            p[k] = state.modal_momentum[k] + sum(|e| &e.momentum);
         }
         Ok(())
     }
 
-    fn exponential(&mut self, h: f64) -> Result<(), StepError> {
-        self.start_from_state();
-        self.evaluate_first(h)?;
+    fn exponential(&mut self, first_attitude: &Matrix3<f64>, h: f64) -> Result<(), StepError> {
         let time = self.state.time;
         for (s, fraction) in [(1, 0.5), (2, 0.5), (3, 1.0)] {
-            let Self { body, blocks, state, stages, q, p, .. } = self;
+            let Self { body, blocks, state, stages, .. } = self;
             let block = blocks.get(&body.circular_frequencies, &body.damping_ratios, h);
-            let (start, out) = (state.modes(), [&mut q[..], &mut p[..]]);
-            let [n1, n2, n3, _] = stages.each_ref().map(Evaluation::of_modes);
+            let [first, second, third, fourth] = stages;
+            let start = first.place_of_modes();
             match s {
-                1 => sum_of_blocks([(&block.half, start), (&block.a21, n1)], out),
-                2 => sum_of_blocks([(&block.half, start), (&block.a31, n1), (&block.a32, n2)], out),
-                _ => sum_of_blocks([(&block.full, start), (&block.a41, n1), (&block.a43, n3)], out),
+                1 => sum_of_blocks([(&block.half, start), (&block.a21, first.rates_of_modes())], second.modes_mut()),
+                2 => sum_of_blocks(
+                    [(&block.half, start), (&block.a31, first.rates_of_modes()), (&block.a32, second.rates_of_modes())],
+                    third.modes_mut(),
+                ),
+                _ => sum_of_blocks(
+                    [(&block.full, start), (&block.a41, first.rates_of_modes()), (&block.a43, third.rates_of_modes())],
+                    fourth.modes_mut(),
+                ),
             }
-            let slow = state.slow + stages[s - 1].slow * (fraction * h);
-            self.evaluate(s, time + fraction * h, &slow, h)?;
+            let slow = state.slow + self.stages[s - 1].slow * (fraction * h);
+            self.evaluate(s, time + fraction * h, first_attitude, &slow, h)?;
         }
-        let Self { body, blocks, state, next, stages, .. } = self;
+        let Self { body, blocks, state, next, stages, end_of_modes: [q, p], .. } = self;
         let block = blocks.get(&body.circular_frequencies, &body.damping_ratios, h);
         let [k1, k2, k3, k4] = stages.each_ref().map(|stage| &stage.slow);
         next.slow = state.slow + (k1 + (k2 + k3) * 2.0 + k4) * (h / 6.0);
-        let [n1, n2, n3, n4] = stages.each_ref().map(Evaluation::of_modes);
-        let terms = [(&block.full, state.modes()), (&block.b1, n1), (&block.b2, n2), (&block.b2, n3), (&block.b4, n4)];
-        sum_of_blocks(terms, [&mut next.modal_displacement, &mut next.modal_momentum]);
+        let [n1, n2, n3, n4] = stages.each_ref().map(Evaluation::rates_of_modes);
+        let start = stages[0].place_of_modes();
+        let terms = [(&block.full, start), (&block.b1, n1), (&block.b2, n2), (&block.b2, n3), (&block.b4, n4)];
+        sum_of_blocks(terms, [q.groups_mut(), p.groups_mut()]);
         Ok(())
-    }
-}
-
-impl ConservativeState {
-    /// q and p.
-    fn modes(&self) -> Pairs<'_> {
-        [&self.modal_displacement, &self.modal_momentum]
     }
 }
 
 impl Evaluation {
+    /// q and p.
+    fn place_of_modes(&self) -> Pairs<'_> {
+        [self.q.groups(), self.p.groups()]
+    }
+
+    fn modes_mut(&mut self) -> [&mut [Group]; 2] {
+        [self.q.groups_mut(), self.p.groups_mut()]
+    }
+
     /// Rates of q and p, without the linear part.
-    fn of_modes(&self) -> Pairs<'_> {
-        [&self.displacement, &self.momentum]
+    fn rates_of_modes(&self) -> Pairs<'_> {
+        [self.displacement.groups(), self.momentum.groups()]
     }
 }
 

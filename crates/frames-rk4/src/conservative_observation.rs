@@ -1,6 +1,7 @@
 //! The motion that a state of the conservative form stands for.
 
 use nalgebra::Vector3;
+use pulp::{Arch, Simd, WithSimd};
 use rigid_kin::Attitude;
 
 use crate::conservative::{ConservativeBody, ConservativeState, Evaluation, Translation, get, part};
@@ -9,6 +10,22 @@ use crate::motion::PointShapes;
 use crate::observation::{Observation, PointMotion};
 use crate::reaction::HeldMotion;
 use crate::work::Work;
+
+/// The rates of a motion made accelerations, in the widest vectors that the processor has.
+struct Accelerate<'a> {
+    body: &'a ConservativeBody,
+    driven_acceleration: f64,
+    e: &'a mut Evaluation,
+}
+
+impl WithSimd for Accelerate<'_> {
+    type Output = Result<Vector3<f64>, RateError>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
+        self.body.accelerate(simd, self.driven_acceleration, self.e)
+    }
+}
 
 impl ConservativeBody {
     /// Reads the motion off a state. `e` is overwritten.
@@ -20,17 +37,16 @@ impl ConservativeBody {
         e: &mut Evaluation,
         out: &mut Observation,
     ) -> Result<(), RateError> {
-        let (q, p) = (&state.modal_displacement, &state.modal_momentum);
-        self.evaluate([state.time, state.time], &state.attitude, &state.slow, q, p, e)?;
+        self.evaluate_at(state, state.time, e)?;
         let (kinetic, strain) = self.energies(state, e);
         let driven_acceleration =
             self.drive.as_ref().map_or(0.0, |drive| drive.acceleration_at(state.time, state.time));
         for (k, rate) in e.acceleration.iter_mut().enumerate() {
-            *rate = e.momentum[k] + self.linear_rate(k, q[k], p[k]);
+            *rate = e.momentum[k] + self.linear_rate(k, e.q[k], e.p[k]);
         }
-        let spin_rate = self.accelerate(driven_acceleration, e)?;
-        out.modal_acceleration.clone_from(&e.acceleration);
-        let alpha = self.axes.iter().zip(spin_rate.iter()).map(|(axis, a)| axis * *a).sum::<Vector3<f64>>();
+        let spin_rate = Arch::new().dispatch(Accelerate { body: self, driven_acceleration, e })?;
+        out.modal_acceleration.copy_from_slice(&e.acceleration);
+        let alpha = self.axis_columns * spin_rate;
         let omega = e.omega_body;
 
         let global = |v_body: Vector3<f64>| state.attitude.to_global(&v_body);
@@ -49,7 +65,7 @@ impl ConservativeBody {
         let e = &*e;
         let shapes = match &self.manifold {
             Some(_) => e.in_shapes.each_ref().map(Vec::as_slice),
-            None => [&e.coordinates, &e.velocity, &e.change].map(Vec::as_slice),
+            None => [&*e.q, &*e.modal_velocity, &*e.change],
         };
         let center = self.center.position_body(shapes[0]);
         out.time = state.time;
@@ -60,8 +76,8 @@ impl ConservativeBody {
         out.velocity_global = velocity_of_origin + global(omega.cross(&center) + self.center.deformation(shapes[1]));
         out.omega_body = omega;
         out.alpha_body = alpha;
-        out.modal_displacement.clone_from(q);
-        out.modal_velocity.clone_from(&e.modal_velocity);
+        out.modal_displacement.copy_from_slice(&e.q);
+        out.modal_velocity.copy_from_slice(&e.modal_velocity);
         out.kinetic_energy = kinetic;
         out.strain_energy = strain;
         self.observe_momenta(state, e, out);

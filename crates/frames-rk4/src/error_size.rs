@@ -63,7 +63,7 @@ impl ConservativeBody {
         let (force, moment) = (get(&e.slow, part::MOMENTUM), get(&e.slow, part::PI));
         // Tangential accelerations by π' ≈ J₀ α, and those towards the axis.
         let rigid = 2.0 * self.rigid_energy(&force, &moment)
-            + e.spin.norm_squared() * e.spin.dot(&(self.deformed_inertia(e) * e.spin));
+            + e.spin.norm_squared() * e.spin.dot(&(self.deformed_inertia(pulp::Scalar::new(), e) * e.spin));
         let (q, p) = (&state.modal_displacement, &state.modal_momentum);
         let modal: f64 = (0..q.len()).map(|k| (e.momentum[k] + self.linear_rate(k, q[k], p[k])).powi(2)).sum();
         Sizes {

@@ -8,24 +8,23 @@
 //! ```
 
 use nalgebra::Matrix2;
-use pulp::{Arch, Simd, WithSimd, bytemuck};
+use pulp::{Arch, Simd, WithSimd};
 
+use crate::four::{Four, Group, WIDTH};
 use crate::phi::{Phis, oscillator_phis};
 
-/// A 2×2 block for each mode, entry by entry: what (q, p) of the mode give q and p.
+/// A 2×2 block for each mode: what (q, p) of the mode give q and p. For each four modes, what q gives q, p gives q, q gives
+/// p and p gives p.
 #[derive(Debug, Clone)]
-pub(crate) struct Blocks {
-    q_of_q: Vec<f64>,
-    q_of_p: Vec<f64>,
-    p_of_q: Vec<f64>,
-    p_of_p: Vec<f64>,
-}
+pub(crate) struct Blocks(Vec<[Group; 4]>);
 
 impl Blocks {
     fn new(modes: &[Matrix2<f64>]) -> Self {
-        let [q_of_q, q_of_p, p_of_q, p_of_p] =
-            [(0, 0), (0, 1), (1, 0), (1, 1)].map(|entry| modes.iter().map(|block| block[entry]).collect());
-        Self { q_of_q, q_of_p, p_of_q, p_of_p }
+        let of_four = |modes: &[Matrix2<f64>]| {
+            let entry = |lane: usize, at: (usize, usize)| modes.get(lane).map_or(0.0, |block| block[at]);
+            [(0, 0), (0, 1), (1, 0), (1, 1)].map(|at| std::array::from_fn(|lane| entry(lane, at)))
+        };
+        Self(modes.chunks(WIDTH).map(of_four).collect())
     }
 }
 
@@ -71,18 +70,18 @@ impl StepBlocks {
     }
 }
 
-/// q and p, a list each.
-pub(crate) type Pairs<'a> = [&'a [f64]; 2];
+/// q and p, a list in groups each.
+pub(crate) type Pairs<'a> = [&'a [Group]; 2];
 
 /// The sum of blocks times (q, p), mode by mode.
-pub(crate) fn sum_of_blocks<const N: usize>(terms: [(&Blocks, Pairs<'_>); N], out: [&mut [f64]; 2]) {
+pub(crate) fn sum_of_blocks<const N: usize>(terms: [(&Blocks, Pairs<'_>); N], out: [&mut [Group]; 2]) {
     Arch::new().dispatch(SumOfBlocks { terms, out });
 }
 
 /// Such a sum, in the widest vectors that the processor has.
 struct SumOfBlocks<'a, const N: usize> {
     terms: [(&'a Blocks, Pairs<'a>); N],
-    out: [&'a mut [f64]; 2],
+    out: [&'a mut [Group]; 2],
 }
 
 impl<const N: usize> WithSimd for SumOfBlocks<'_, N> {
@@ -90,39 +89,27 @@ impl<const N: usize> WithSimd for SumOfBlocks<'_, N> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let Self { terms, out: [q, p] } = self;
-        let length = q.len();
-        let Some(last) = length.checked_sub(S::F64_LANES) else {
-            for k in 0..length {
-                let sums = sum_at(simd, &terms, |list| simd.splat_f64s(list[k]));
-                [q[k], p[k]] = sums.map(|sum| bytemuck::cast_slice(&[sum])[0]);
+        let Self { terms, out: [q_out, p_out] } = self;
+        let groups = q_out.len();
+        let p_out = &mut p_out[..groups];
+        let mut lists = [([].as_slice(), [].as_slice(), [].as_slice()); N];
+        for (list, (Blocks(blocks), [q, p])) in lists.iter_mut().zip(terms) {
+            *list = (&blocks[..groups], &q[..groups], &p[..groups]);
+        }
+        for i in 0..groups {
+            let [mut q_sum, mut p_sum] = [Four::splat(simd, 0.0); 2];
+            for (blocks, q, p) in lists {
+                let [q, p] = [Four::load(simd, &q[i]), Four::load(simd, &p[i])];
+                let [q_of_q, q_of_p, p_of_q, p_of_p] = &blocks[i];
+                q_sum = Four::load(simd, q_of_q).mul_add(simd, q, q_sum);
+                q_sum = Four::load(simd, q_of_p).mul_add(simd, p, q_sum);
+                p_sum = Four::load(simd, p_of_q).mul_add(simd, q, p_sum);
+                p_sum = Four::load(simd, p_of_p).mul_add(simd, p, p_sum);
             }
-            return;
-        };
-        // The last vector ends with the last mode, and has modes of the one before once more.
-        let mut first = 0;
-        while first < length {
-            let at = first.min(last)..first.min(last) + S::F64_LANES;
-            let sums = sum_at(simd, &terms, |list| S::as_simd_f64s(&list[at.clone()]).0[0]);
-            S::as_mut_simd_f64s(&mut q[at.clone()]).0[0] = sums[0];
-            S::as_mut_simd_f64s(&mut p[at]).0[0] = sums[1];
-            first += S::F64_LANES;
+            q_sum.store(&mut q_out[i]);
+            p_sum.store(&mut p_out[i]);
         }
     }
-}
-
-/// The sum for the modes that are loaded.
-#[inline(always)]
-fn sum_at<S: Simd>(simd: S, terms: &[(&Blocks, Pairs<'_>)], load: impl Fn(&[f64]) -> S::f64s) -> [S::f64s; 2] {
-    let [mut q_sum, mut p_sum] = [simd.splat_f64s(0.0); 2];
-    for (block, [q, p]) in terms {
-        let (q, p) = (load(q), load(p));
-        q_sum = simd.mul_add_e_f64s(load(&block.q_of_q), q, q_sum);
-        q_sum = simd.mul_add_e_f64s(load(&block.q_of_p), p, q_sum);
-        p_sum = simd.mul_add_e_f64s(load(&block.p_of_q), q, p_sum);
-        p_sum = simd.mul_add_e_f64s(load(&block.p_of_p), p, p_sum);
-    }
-    [q_sum, p_sum]
 }
 
 /// Blocks of the steps that have been taken lately, so that a step that comes back costs nothing.

@@ -3,6 +3,7 @@
 use nalgebra::Vector3;
 use rigid_kin::Attitude;
 
+use crate::four::all_finite;
 use crate::reaction::Reaction;
 use crate::work::Work;
 
@@ -115,8 +116,7 @@ impl Observation {
             reaction,
             points,
         } = self;
-        let numbers = [time, kinetic_energy, strain_energy, work, dissipation];
-        let modal = [modal_displacement, modal_velocity, modal_acceleration].into_iter().flatten();
+        let modal = [modal_displacement, modal_velocity, modal_acceleration];
         let vectors =
             [origin_global, origin_acceleration_global, position_global, velocity_global, omega_body, alpha_body];
         let momenta = [impulse_global, angular_impulse_global, linear_momentum_global, angular_momentum_global];
@@ -129,13 +129,16 @@ impl Observation {
                 elastic_displacement_body,
                 elastic_displacement_global,
             } = *point;
-            let elastic = [elastic_displacement_body, elastic_displacement_global];
-            let motion = [displacement, velocity, acceleration, rigid_acceleration];
-            motion.iter().chain(&elastic).flatten().all(|x| x.is_finite())
+            let elastic = elastic_displacement_body + elastic_displacement_global;
+            (displacement + velocity + acceleration + rigid_acceleration + elastic).sum()
         };
-        numbers.into_iter().chain(reaction.numbers()).chain(modal).chain(&attitude.wxyz()).all(|x| x.is_finite())
-            && vectors.into_iter().chain(momenta).flatten().all(|x| x.is_finite())
-            && points.iter().all(of_points)
+        // A sum is finite only if all its terms are.
+        let [w, x, y, z] = attitude.wxyz();
+        let sum = (time + kinetic_energy + strain_energy + work + dissipation + (w + x + y + z))
+            + reaction.numbers().sum::<f64>()
+            + vectors.into_iter().chain(momenta).sum::<Vector3<f64>>().sum()
+            + points.iter().map(of_points).sum::<f64>();
+        sum.is_finite() && modal.into_iter().all(|list| all_finite(list))
     }
 
     /// Kinetic + strain energy.

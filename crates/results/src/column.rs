@@ -115,13 +115,14 @@ impl<R> Column<R> {
     }
 
     /// Appends the values that a row has.
+    #[inline]
     pub fn append(&self, row: &R, metadata: &Metadata, out: &mut Vec<f64>) {
         let points = self.places(metadata).len();
         match self.values {
             Values::Number(value) => out.push(value(row)),
             Values::Vector(values) => out.extend(values(row)),
             Values::Quaternion(values) => out.extend(values(row)),
-            Values::Modal(values) => out.extend(values(row)),
+            Values::Modal(values) => out.extend_from_slice(values(row)),
             Values::Points(values) | Values::Supports(values) => {
                 (0..points).map_while(|point| values(row, point)).for_each(|v| out.extend(v))
             }

@@ -35,8 +35,14 @@ pub struct Expected {
     pub overwrite: bool,
 }
 
-/// Columns, and the values of each that wait to be written.
-type Buffers<R> = Vec<(&'static Column<R>, Vec<f64>)>;
+/// A column, and its values that wait to be written.
+#[derive(Debug)]
+struct Buffer<R: 'static> {
+    column: &'static Column<R>,
+    /// Values per row.
+    width: usize,
+    values: Vec<f64>,
+}
 
 /// Appends rows of type `R` to an HDF5 file whose datasets are those of a table of [`Column`]s.
 ///
@@ -51,7 +57,7 @@ pub struct Writer<R: 'static> {
     columns: &'static [Column<R>],
     store: Store,
     /// Values of the rows that have not been written, by column.
-    buffers: Buffers<R>,
+    buffers: Vec<Buffer<R>>,
     rows_per_write: usize,
     /// Of the rows that have been written.
     sums: Sums,
@@ -187,10 +193,12 @@ impl<R> Writer<R> {
     /// [`FileError::WrongLength`] and [`FileError::NotFinite`] leave the row out and everything before
     /// it in; [`FileError::System`] and [`FileError::Hdf5`] if the file cannot be written.
     pub fn push(&mut self, row: &R) -> Result<(), FileError> {
-        self.buffers.iter_mut().for_each(|(column, buffer)| column.append(row, &self.metadata, buffer));
+        for Buffer { column, values, .. } in &mut self.buffers {
+            column.append(row, &self.metadata, values);
+        }
         if let Err(error) = self.check_last(row) {
-            for (column, buffer) in &mut self.buffers {
-                buffer.truncate(self.rows_buffered * column.width(&self.metadata));
+            for Buffer { width, values, .. } in &mut self.buffers {
+                values.truncate(self.rows_buffered * *width);
             }
             return Err(error);
         }
@@ -207,11 +215,13 @@ impl<R> Writer<R> {
             return check_length(path, what, places, places + 1);
         }
         let mut time = None;
-        for (column, buffer) in &self.buffers {
-            let width = column.width(metadata);
-            let values = &buffer[self.rows_buffered * width..];
-            check_length(path, column.path, width, values.len())?;
+        for Buffer { column, width, values } in &self.buffers {
+            let values = &values[self.rows_buffered * width..];
+            check_length(path, column.path, *width, values.len())?;
             let time = *time.get_or_insert(values.first().copied().unwrap_or(f64::NAN));
+            if are_finite(values) {
+                continue;
+            }
             if let Some(index) = values.iter().position(|value| !value.is_finite()) {
                 let quantity = column.quantity(metadata, index);
                 return Err(FileError::NotFinite { path: path.clone(), time, quantity, value: values[index] });
@@ -274,13 +284,13 @@ impl<R> Writer<R> {
         let rows = self.rows_written..self.rows_written + self.rows_buffered;
         let room = if rows.end > self.store.rows() { self.grow(rows.end) } else { Ok(()) };
         let outcome = room.and_then(|()| {
-            let values = || self.buffers.iter().map(|(_, buffer)| buffer.as_slice());
+            let values = || self.buffers.iter().map(|buffer| buffer.values.as_slice());
             self.store.write(&self.place.part, rows.clone(), values())?;
             self.sums.add(values());
             Ok(())
         });
         // Should it fail, the rows are given up, and no later call takes others for them.
-        self.buffers.iter_mut().for_each(|(_, buffer)| buffer.clear());
+        self.buffers.iter_mut().for_each(|buffer| buffer.values.clear());
         self.rows_buffered = 0;
         if outcome.is_ok() {
             self.rows_written = rows.end;
@@ -303,11 +313,27 @@ impl<R> Writer<R> {
 }
 
 /// Empty buffers of the columns that a file has, and how many numbers make a row.
-fn buffers<R>(columns: &'static [Column<R>], metadata: &Metadata) -> (Buffers<R>, usize) {
+fn buffers<R>(columns: &'static [Column<R>], metadata: &Metadata) -> (Vec<Buffer<R>>, usize) {
     let numbers_per_row = present(columns, metadata).map(|column| column.width(metadata)).sum();
     let rows = rows_per_write(numbers_per_row);
-    let room = |column: &Column<R>| Vec::with_capacity(rows * column.width(metadata));
-    (present(columns, metadata).map(|column| (column, room(column))).collect(), numbers_per_row)
+    let buffer = |column: &'static Column<R>| {
+        let width = column.width(metadata);
+        Buffer { column, width, values: Vec::with_capacity(rows * width) }
+    };
+    (present(columns, metadata).map(buffer).collect(), numbers_per_row)
+}
+
+/// Whether all are finite numbers.
+fn are_finite(values: &[f64]) -> bool {
+    let (groups, rest) = values.as_chunks::<4>();
+    let mut zeros = [0.0; 4];
+    for group in groups {
+        for (zero, value) in zeros.iter_mut().zip(group) {
+            // Zero, but of infinity and NaN.
+            *zero += value * 0.0;
+        }
+    }
+    zeros.iter().all(|zero| *zero == 0.0) && rest.iter().all(|value| value.is_finite())
 }
 
 fn rows_per_write(numbers_per_row: usize) -> usize {

@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
-use crate::rotation::{NotARotation, quaternion_body_to_global, sinc};
+use crate::rotation::{NotARotation, SMALL, quaternion_body_to_global, sinc, small_cos, small_sinc};
 
 /// Four numbers that are not a rotation.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -119,8 +119,13 @@ impl Attitude {
     /// so rounding does not accumulate in its length.
     pub fn advanced_by(&self, rotation_vector_body: &Vector3<f64>) -> Self {
         let half = 0.5 * rotation_vector_body;
-        let half_angle = half.norm();
-        let turn = Quaternion::from_parts(half_angle.cos(), sinc(half_angle) * half);
+        let square = half.norm_squared();
+        let turn = if square < SMALL {
+            Quaternion::from_parts(small_cos(square), small_sinc(square) * half)
+        } else {
+            let half_angle = square.sqrt();
+            Quaternion::from_parts(half_angle.cos(), sinc(half_angle) * half)
+        };
         Self { body_to_global: UnitQuaternion::new_normalize(self.body_to_global.quaternion() * turn) }
     }
 

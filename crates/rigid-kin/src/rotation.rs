@@ -40,11 +40,33 @@ pub fn cross_matrix(v: &Vector3<f64>) -> Matrix3<f64> {
 ///
 /// `rotation_vector` is axis times angle (rad) of the turn that carries the global axes onto the
 /// body axes; any angle is allowed. The form `I − (sin θ/θ)[θ×] + ½(sin(θ/2)/(θ/2))²[θ×]²` has no
-/// cancellation, so it holds full relative accuracy down to θ = 0 without a switch of formula.
+/// cancellation, so it holds full relative accuracy down to θ = 0. Both factors are summed as series where few terms do.
 pub fn transformation_matrix(rotation_vector: &Vector3<f64>) -> Matrix3<f64> {
-    let angle = rotation_vector.norm();
-    let cross = cross_matrix(rotation_vector);
-    Matrix3::identity() - sinc(angle) * cross + 0.5 * sinc(0.5 * angle).powi(2) * cross * cross
+    let square = rotation_vector.norm_squared();
+    let (sine, cosine) = if square < SMALL {
+        (
+            small_sinc(square),
+            0.5 - square * (1.0 / 24.0) * (1.0 - square * (1.0 / 30.0) * (1.0 - square * (1.0 / 56.0))),
+        )
+    } else {
+        let angle = square.sqrt();
+        (sinc(angle), 0.5 * sinc(0.5 * angle).powi(2))
+    };
+    let (linear, quadratic) = (rotation_vector * sine, rotation_vector * cosine);
+    let [x, y, z] = (*rotation_vector).into();
+    let [xx, yy, zz] = [quadratic.x * x, quadratic.y * y, quadratic.z * z];
+    let [xy, xz, yz] = [quadratic.x * y, quadratic.x * z, quadratic.y * z];
+    Matrix3::new(
+        1.0 - (yy + zz),
+        xy + linear.z,
+        xz - linear.y,
+        xy - linear.z,
+        1.0 - (xx + zz),
+        yz + linear.x,
+        xz + linear.y,
+        yz - linear.x,
+        1.0 - (xx + yy),
+    )
 }
 
 /// The rotation vector θ, with angle in [0, π], of A = exp(−[θ×]); inverse of
@@ -90,12 +112,31 @@ pub(crate) fn quaternion_body_to_global(global_to_body: &Matrix3<f64>) -> Result
 /// # Errors
 /// [`BeyondFullTurn`] from 2π on, where (22) is singular, and for vectors that are not finite.
 pub fn f_inverse(rotation_vector: &Vector3<f64>, omega_body: &Vector3<f64>) -> Result<Vector3<f64>, BeyondFullTurn> {
-    let angle = rotation_vector.norm();
-    if angle.is_nan() || angle >= TAU {
-        return Err(BeyondFullTurn { angle });
-    }
+    let square = rotation_vector.norm_squared();
+    let factor = if square < SMALL {
+        SERIES[..4].iter().rev().fold(0.0, |sum, term| sum * square + term)
+    } else {
+        let angle = rotation_vector.norm();
+        if angle.is_nan() || angle >= TAU {
+            return Err(BeyondFullTurn { angle });
+        }
+        half_cotangent_factor(angle)
+    };
     let turn = rotation_vector.cross(omega_body);
-    Ok(omega_body + 0.5 * turn + half_cotangent_factor(angle) * rotation_vector.cross(&turn))
+    Ok(omega_body + 0.5 * turn + factor * rotation_vector.cross(&turn))
+}
+
+/// Square of an angle, rad², below which four terms of a series hold to rounding.
+pub(crate) const SMALL: f64 = 1e-3;
+
+/// sin x / x of a small x, by its square.
+pub(crate) fn small_sinc(square: f64) -> f64 {
+    1.0 - square * (1.0 / 6.0) * (1.0 - square * (1.0 / 20.0) * (1.0 - square * (1.0 / 42.0)))
+}
+
+/// cos x of a small x, by its square.
+pub(crate) fn small_cos(square: f64) -> f64 {
+    1.0 - square * 0.5 * (1.0 - square * (1.0 / 12.0) * (1.0 - square * (1.0 / 30.0)))
 }
 
 /// sin x / x.
@@ -103,22 +144,23 @@ pub(crate) fn sinc(x: f64) -> f64 {
     if x == 0.0 { 1.0 } else { x.sin() / x }
 }
 
+/// |B_2k|/(2k)! for k = 1 … 10, with the Bernoulli numbers B: coefficients of (1 − (θ/2) cot(θ/2))/θ². The next term is
+/// below one rounding at θ = 1.
+const SERIES: [f64; 10] = [
+    1.0 / 12.0,
+    1.0 / 720.0,
+    1.0 / 30_240.0,
+    1.0 / 1_209_600.0,
+    1.0 / 47_900_160.0,
+    691.0 / 1_307_674_368_000.0,
+    1.0 / 74_724_249_600.0,
+    3_617.0 / 10_670_622_842_880_000.0,
+    43_867.0 / 5_109_094_217_170_944_000.0,
+    174_611.0 / 802_857_662_698_291_200_000.0,
+];
+
 /// (1 − (θ/2) cot(θ/2))/θ² for 0 ≤ θ < 2π.
 fn half_cotangent_factor(angle: f64) -> f64 {
-    // |B_2k|/(2k)! for k = 1 … 10, with the Bernoulli numbers B; the next term is below one
-    // rounding at θ = 1.
-    const SERIES: [f64; 10] = [
-        1.0 / 12.0,
-        1.0 / 720.0,
-        1.0 / 30_240.0,
-        1.0 / 1_209_600.0,
-        1.0 / 47_900_160.0,
-        691.0 / 1_307_674_368_000.0,
-        1.0 / 74_724_249_600.0,
-        3_617.0 / 10_670_622_842_880_000.0,
-        43_867.0 / 5_109_094_217_170_944_000.0,
-        174_611.0 / 802_857_662_698_291_200_000.0,
-    ];
     if angle < 1.0 {
         SERIES.iter().rev().fold(0.0, |sum, term| sum * angle * angle + term)
     } else {

@@ -12,11 +12,12 @@ use crate::load::{Applied, Coordinates, Kinematics, SharedLoad};
 impl ConservativeBody {
     /// The energies of a motion whose rates are in `e`; none of a driven body, to which a jump of its drive gives energy
     /// at an instant.
-    pub(crate) fn energies_of(&self, time: f64, slow: &Slow, q: &[f64], p: &[f64], e: &Evaluation) -> Option<Energies> {
+    pub(crate) fn energies_of(&self, time: f64, slow: &Slow, e: &Evaluation) -> Option<Energies> {
         if self.drive.is_some() {
             return None;
         }
-        let internal = 0.5 * (get(slow, part::PI).dot(&e.spin) + dot(p, &e.modal_velocity)) + self.strain_energy(q);
+        let internal =
+            0.5 * (get(slow, part::PI).dot(&e.spin) + dot(&e.p, &e.modal_velocity)) + self.strain_energy(&e.q);
         let translation = 0.5 * get(slow, part::MOMENTUM).norm_squared() / self.mass;
         let (work, dissipation) = (slow[part::WORK], slow[part::DISSIPATION]);
         Some(Energies { time, internal, translation, work, dissipation })
