@@ -74,8 +74,8 @@ impl Subtrees {
         let mut place = vec![0; factor.ncols()];
         let mut top_rows = 0;
         for s in &top {
-            for row in begin[*s]..end[*s] {
-                place[row] = top_rows as u32;
+            for place in &mut place[begin[*s]..end[*s]] {
+                *place = top_rows as u32;
                 top_rows += 1;
             }
         }
