@@ -197,9 +197,9 @@ impl Swings {
             self.integral[i] += 0.5 * passed * (square + self.square[i]);
             (self.rate[i], self.square[i]) = (v[i], square);
         }
-        for i in 0..SIDE_BY_SIDE {
-            reach[i] = reach[i].sqrt();
-            self.largest[i] = if reach[i] > self.largest[i] { reach[i] } else { self.largest[i] };
+        for (reach, largest) in reach.iter_mut().zip(&mut self.largest) {
+            *reach = reach.sqrt();
+            *largest = if *reach > *largest { *reach } else { *largest };
         }
         reach
     }
