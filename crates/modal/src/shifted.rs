@@ -25,7 +25,7 @@ use crate::dense::whitening;
 use crate::error::ModalError;
 use crate::foretold::{Forecast, Foretold, of_dense_products};
 use crate::ordering::nested_dissection;
-use crate::shifted_matrix::ShiftedMatrix;
+use crate::shifted_matrix::{Pattern, ShiftedMatrix};
 use crate::subtrees::Subtrees;
 use crate::{cholesky, substitution, tall};
 
@@ -94,7 +94,8 @@ impl Shifted {
         };
         let ordering_time = start.elapsed();
 
-        let threads = rayon::current_num_threads();
+        let is_parted = subtrees.as_ref().is_some_and(Subtrees::is_parted);
+        let threads = if is_parted { rayon::current_num_threads() } else { 1 };
         let (needed, reserve) = match symbolic.raw() {
             SymbolicCholeskyRaw::Supernodal(factor) => {
                 (cholesky::scratch_bytes(factor, threads), of_dense_products(threads))
@@ -110,28 +111,7 @@ impl Shifted {
         progress(Forecast::new(&symbolic, memory.peak(search), threads));
         let start = Instant::now();
         let mut values = memory::zeros(FACTOR, symbolic.len_val())?;
-        match (symbolic.raw(), &subtrees, symbolic.perm()) {
-            (SymbolicCholeskyRaw::Supernodal(factor), Some(subtrees), Some(order)) => {
-                let problem = cholesky::Problem { symbolic: factor, subtrees, order, matrix: &matrix };
-                problem.factor(&mut values).map_err(|NotPositive(pivot)| ModalError::Indefinite { pivot, shift })?;
-            }
-            _ => {
-                let assembled = matrix.assembled(&pattern).map_err(|reason| failed(size, reason))?;
-                let mut scratch = buffer(symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Spec::default()))?;
-                let stack = MemStack::new(&mut scratch);
-                symbolic
-                    .factorize_numeric_llt(
-                        &mut values,
-                        assembled.as_ref(),
-                        Side::Lower,
-                        Default::default(),
-                        Par::Seq,
-                        stack,
-                        Spec::default(),
-                    )
-                    .map_err(|PivotError::NonPositivePivot { index }| ModalError::Indefinite { pivot: index, shift })?;
-            }
-        }
+        make(&matrix, &pattern, &symbolic, subtrees.as_ref(), &mut values)?;
         let extensions = Mat::zeros(size, 0);
         let constraints = constraints.clone();
         let estimate_time = Duration::ZERO;
@@ -222,6 +202,38 @@ impl Shifted {
         if let Some(motions) = motions {
             tall::multiply(x, Accum::Add, self.extensions.as_ref(), motions.as_ref(), 1.0);
         }
+    }
+}
+
+/// Fills the zeros in `values` with the entries of the factor.
+fn make(
+    matrix: &ShiftedMatrix<'_>,
+    pattern: &Pattern<'_>,
+    symbolic: &SymbolicCholesky<usize>,
+    subtrees: Option<&Subtrees>,
+    values: &mut [f64],
+) -> Result<(), ModalError> {
+    let shift = matrix.shift();
+    if let (SymbolicCholeskyRaw::Supernodal(symbolic), Some(subtrees), Some(order)) =
+        (symbolic.raw(), subtrees, symbolic.perm())
+    {
+        let problem = cholesky::Problem { symbolic, subtrees, order, matrix };
+        return problem.factor(values).map_err(|NotPositive(pivot)| ModalError::Indefinite { pivot, shift });
+    }
+    let assembled = matrix.assembled(pattern).map_err(|reason| failed(symbolic.nrows(), reason))?;
+    let mut scratch = buffer(symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Spec::default()))?;
+    let (lower, stack) = (assembled.as_ref(), MemStack::new(&mut scratch));
+    match symbolic.factorize_numeric_llt(
+        values,
+        lower,
+        Side::Lower,
+        Default::default(),
+        Par::Seq,
+        stack,
+        Spec::default(),
+    ) {
+        Ok(_) => Ok(()),
+        Err(PivotError::NonPositivePivot { index }) => Err(ModalError::Indefinite { pivot: index, shift }),
     }
 }
 

@@ -47,6 +47,11 @@ impl<'a> ShiftedMatrix<'a> {
         Self { stiffness, mass, shift, constraints, is_one_pattern }
     }
 
+    /// The shift s.
+    pub(crate) fn shift(&self) -> f64 {
+        self.shift
+    }
+
     /// Its pattern; zeros that are stored stay stored.
     pub(crate) fn pattern(&self) -> Result<Pattern<'a>, FaerError> {
         let (k, m) = (self.stiffness.symbolic(), self.mass.symbolic());

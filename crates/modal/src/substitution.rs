@@ -466,7 +466,7 @@ pub(crate) mod tests {
 
     #[test]
     fn it_gives_what_faer_gives_for_any_number_of_columns_and_threads() {
-        let a = grid(16);
+        let a = grid(18);
         let n = a.ncols();
         let symbolic = supernodal(&a);
         let SymbolicCholeskyRaw::Supernodal(supernodal) = symbolic.raw() else { panic!() };

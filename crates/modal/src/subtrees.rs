@@ -4,8 +4,8 @@ use std::ops::Range;
 
 use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
 
-/// Stored entries that are worth a part of their own.
-const GRAIN: usize = 50_000;
+/// A factor with fewer entries is not parted: one thread makes it, and takes the scratch of one.
+const SMALL: usize = 500_000;
 /// Parts at the most, or hardly more: the entries of one are at most this part of all.
 const MOST: usize = 12;
 
@@ -22,6 +22,11 @@ pub(crate) struct Subtrees {
 }
 
 impl Subtrees {
+    /// Whether there is work for more than one thread.
+    pub(crate) fn is_parted(&self) -> bool {
+        !self.top.is_empty()
+    }
+
     /// Parts the supernodes of a factor.
     pub(crate) fn new(factor: &SymbolicSupernodalCholesky<usize>) -> Self {
         let (begin, end, values) = (factor.supernode_begin(), factor.supernode_end(), factor.col_ptr_for_val());
@@ -43,7 +48,7 @@ impl Subtrees {
             }
         }
         let whole = values[count] - values[0];
-        let limit = whole / (whole / GRAIN).clamp(1, MOST);
+        let limit = if whole < SMALL { whole } else { whole / MOST };
         let is_part = |s: usize| entries[s] <= limit && size[s] == s + 1 - first[s];
 
         let (mut parts, mut top): (Vec<Range<usize>>, Vec<usize>) = Default::default();
@@ -92,7 +97,7 @@ mod tests {
 
     #[test]
     fn parts_touch_their_own_rows_and_those_of_the_top_alone() {
-        let symbolic = supernodal(&grid(16));
+        let symbolic = supernodal(&grid(18));
         let SymbolicCholeskyRaw::Supernodal(factor) = symbolic.raw() else { panic!() };
         let Subtrees { parts, top, place, top_rows } = Subtrees::new(factor);
         assert!(parts.len() > 3 && !top.is_empty());
