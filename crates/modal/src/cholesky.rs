@@ -5,6 +5,8 @@
 //! side by side, then the supernodes above them, each by strips of rows. The numbers do not depend on the number of threads.
 
 use faer::dyn_stack::{MemBuffer, MemStack};
+use std::ops::Range;
+
 use faer::linalg::cholesky::llt::factor::{LltError, cholesky_in_place, cholesky_in_place_scratch};
 use faer::linalg::matmul::matmul;
 use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
@@ -45,35 +47,15 @@ impl Problem<'_> {
     pub(crate) fn factor(&self, values: &mut [f64]) -> Result<(), NotPositive> {
         let of_row = self.supernode_of_each_row();
         let starts = self.symbolic.col_ptr_for_val();
-        let mut parts = Vec::with_capacity(self.subtrees.parts.len());
-        let (mut rest, mut passed) = (&mut *values, 0);
-        for part in &self.subtrees.parts {
-            let (_, from_first) = rest.split_at_mut(starts[part.start] - passed);
-            let (own, after) = from_first.split_at_mut(starts[part.end] - starts[part.start]);
-            parts.push((part.clone(), own));
-            (rest, passed) = (after, starts[part.end]);
-        }
-        let given: Vec<Vec<Given>> = parts
+        let given: Vec<Vec<Given>> = self
+            .subtrees
+            .split(values, |part| starts[part.start]..starts[part.end])
             .into_par_iter()
             .map_init(
                 || Work::new(self.symbolic),
-                |work, (part, values)| {
-                    let mut to_top = Vec::new();
-                    for s in part.clone() {
-                        self.supernode(s, starts[part.start], values, &of_row, work)?;
-                    }
-                    for s in part.clone() {
-                        let target = work.queue.target[s];
-                        if target != NONE {
-                            to_top.push(Given { by: s, from: work.queue.from[s] as usize });
-                        }
-                    }
-                    for given in &to_top {
-                        let target = work.queue.target[given.by];
-                        work.queue.head[target as usize] = NONE;
-                        work.queue.target[given.by] = NONE;
-                    }
-                    Ok(to_top)
+                |work, (part, range, values)| {
+                    part.clone().try_for_each(|s| self.supernode(s, range.start, values, &of_row, work))?;
+                    Ok(work.queue.clear(part))
                 },
             )
             .collect::<Result<_, _>>()?;
@@ -189,6 +171,19 @@ impl Queue {
         self.head[to as usize] = given.by as u32;
         self.target[given.by] = to;
         self.from[given.by] = given.from as u32;
+    }
+
+    /// Empties all lists; what is in them is given by some supernodes.
+    fn clear(&mut self, by: Range<usize>) -> Vec<Given> {
+        let mut all = Vec::new();
+        for by in by {
+            let target = std::mem::replace(&mut self.target[by], NONE);
+            if target != NONE {
+                self.head[target as usize] = NONE;
+                all.push(Given { by, from: self.from[by] as usize });
+            }
+        }
+        all
     }
 
     /// Empties the list of a supernode.

@@ -134,19 +134,13 @@ impl Problem<'_> {
     }
 
     /// The parts, each with its own rows.
-    fn split<'b, const W: usize>(&self, mut rows: &'b mut [[f64; W]]) -> Vec<Part<'b, W>> {
+    fn split<'b, const W: usize>(&self, rows: &'b mut [[f64; W]]) -> Vec<Part<'b, W>> {
         let symbolic = self.factor.symbolic();
-        let mut passed = 0;
-        let mut parts = Vec::with_capacity(self.subtrees.parts.len());
-        for supernodes in &self.subtrees.parts {
-            let first = symbolic.supernode_begin()[supernodes.start];
-            let end = symbolic.supernode_end()[supernodes.end - 1];
-            let (_, from_first) = rows.split_at_mut(first - passed);
-            let (own, rest) = from_first.split_at_mut(end - first);
-            parts.push(Part { supernodes: supernodes.clone(), first, rows: own });
-            (rows, passed) = (rest, end);
-        }
-        parts
+        let of_part =
+            |part: &Range<usize>| symbolic.supernode_begin()[part.start]..symbolic.supernode_end()[part.end - 1];
+        let part =
+            |(supernodes, range, rows): (Range<usize>, Range<usize>, _)| Part { supernodes, first: range.start, rows };
+        self.subtrees.split(rows, of_part).into_iter().map(part).collect()
     }
 }
 
@@ -176,22 +170,9 @@ impl<const W: usize> WithSimd for Forward<'_, W> {
             self;
         for s in supernodes {
             let supernode = Supernode::new(factor, s);
-            let below = room(below, supernode.pattern.len());
-            let (within, beyond) =
-                supernode.pattern.split_at(supernode.pattern.partition_point(|row| *row < first + rows.len()));
-            for (below, row) in below.iter_mut().zip(within) {
-                *below = rows[row - first];
-            }
-            for (below, row) in below[within.len()..].iter_mut().zip(beyond) {
-                *below = outside[subtrees.place[*row] as usize];
-            }
+            let below = supernode.gather(rows, first, outside, &subtrees.place, below);
             supernode.forward::<W, S>(&mut rows[supernode.start - first..][..supernode.width], below);
-            for (below, row) in below.iter().zip(within) {
-                rows[row - first] = *below;
-            }
-            for (below, row) in below[within.len()..].iter().zip(beyond) {
-                outside[subtrees.place[*row] as usize] = *below;
-            }
+            supernode.scatter(below, rows, first, outside, &subtrees.place);
         }
     }
 }
@@ -209,25 +190,21 @@ impl<const W: usize> WithSimd for Top<'_, W> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, _simd: S) {
         let Self { problem: Problem { factor, subtrees }, rows, below } = self;
-        let place = |row: usize| subtrees.place[row] as usize;
+        let place = &subtrees.place;
+        let own = |supernode: &Supernode<'_>| {
+            let first = place[supernode.start] as usize;
+            first..first + supernode.width
+        };
         for s in &subtrees.top {
             let supernode = Supernode::new(factor, *s);
-            let below = room(below, supernode.pattern.len());
-            for (below, row) in below.iter_mut().zip(supernode.pattern) {
-                *below = rows[place(*row)];
-            }
-            supernode.forward::<W, S>(&mut rows[place(supernode.start)..][..supernode.width], below);
-            for (below, row) in below.iter().zip(supernode.pattern) {
-                rows[place(*row)] = *below;
-            }
+            let below = supernode.gather(&[], 0, rows, place, below);
+            supernode.forward::<W, S>(&mut rows[own(&supernode)], below);
+            supernode.scatter(below, &mut [], 0, rows, place);
         }
         for s in subtrees.top.iter().rev() {
             let supernode = Supernode::new(factor, *s);
-            let below = room(below, supernode.pattern.len());
-            for (below, row) in below.iter_mut().zip(supernode.pattern) {
-                *below = rows[place(*row)];
-            }
-            supernode.backward::<W, S>(&mut rows[place(supernode.start)..][..supernode.width], below);
+            let below = supernode.gather(&[], 0, rows, place, below);
+            supernode.backward::<W, S>(&mut rows[own(&supernode)], below);
         }
     }
 }
@@ -248,25 +225,10 @@ impl<const W: usize> WithSimd for Backward<'_, W> {
         let Self { problem: Problem { factor, subtrees }, part: Part { supernodes, first, rows }, top, below } = self;
         for s in supernodes.rev() {
             let supernode = Supernode::new(factor, s);
-            let below = room(below, supernode.pattern.len());
-            let (within, beyond) =
-                supernode.pattern.split_at(supernode.pattern.partition_point(|row| *row < first + rows.len()));
-            for (below, row) in below.iter_mut().zip(within) {
-                *below = rows[row - first];
-            }
-            for (below, row) in below[within.len()..].iter_mut().zip(beyond) {
-                *below = top[subtrees.place[*row] as usize];
-            }
+            let below = supernode.gather(rows, first, top, &subtrees.place, below);
             supernode.backward::<W, S>(&mut rows[supernode.start - first..][..supernode.width], below);
         }
     }
-}
-
-/// Room for so many rows.
-#[inline(always)]
-fn room<const W: usize>(below: &mut Vec<f64>, rows: usize) -> &mut [[f64; W]] {
-    below.resize(below.len().max(W * rows), 0.0);
-    below[..W * rows].as_chunks_mut().0
 }
 
 /// Columns of L with the same rows below them.
@@ -287,6 +249,53 @@ impl<'a> Supernode<'a> {
         let range = symbolic.col_ptr_for_val()[s]..symbolic.col_ptr_for_val()[s + 1];
         let pattern = symbolic.supernode(s).pattern();
         Self { start, width: end - start, pattern, values: &factor.values()[range] }
+    }
+
+    /// The rows below: first those among `rows`, which begin with row `first`, then those of the top.
+    #[inline(always)]
+    fn gather<'b, const W: usize>(
+        &self,
+        rows: &[[f64; W]],
+        first: usize,
+        top: &[[f64; W]],
+        place: &[u32],
+        below: &'b mut Vec<f64>,
+    ) -> &'b mut [[f64; W]] {
+        below.resize(below.len().max(W * self.pattern.len()), 0.0);
+        let (below, _) = below[..W * self.pattern.len()].as_chunks_mut();
+        let (within, beyond) = self.parted(first + rows.len());
+        for (below, row) in below.iter_mut().zip(within) {
+            *below = rows[row - first];
+        }
+        for (below, row) in below[within.len()..].iter_mut().zip(beyond) {
+            *below = top[place[*row] as usize];
+        }
+        below
+    }
+
+    /// Puts the rows below back to where they were gathered.
+    #[inline(always)]
+    fn scatter<const W: usize>(
+        &self,
+        below: &[[f64; W]],
+        rows: &mut [[f64; W]],
+        first: usize,
+        top: &mut [[f64; W]],
+        place: &[u32],
+    ) {
+        let (within, beyond) = self.parted(first + rows.len());
+        for (below, row) in below.iter().zip(within) {
+            rows[row - first] = *below;
+        }
+        for (below, row) in below[within.len()..].iter().zip(beyond) {
+            top[place[*row] as usize] = *below;
+        }
+    }
+
+    /// The rows below that come before a row, and the others.
+    #[inline(always)]
+    fn parted(&self, row: usize) -> (&'a [usize], &'a [usize]) {
+        self.pattern.split_at(self.pattern.partition_point(|other| *other < row))
     }
 
     /// The rows of a column from `first` on, own ones and those below.

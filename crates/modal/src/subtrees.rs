@@ -27,6 +27,24 @@ impl Subtrees {
         !self.top.is_empty()
     }
 
+    /// The parts, each with its own range of a list, and the numbers in it.
+    pub(crate) fn split<'a, T>(
+        &self,
+        mut list: &'a mut [T],
+        range: impl Fn(&Range<usize>) -> Range<usize>,
+    ) -> Vec<(Range<usize>, Range<usize>, &'a mut [T])> {
+        let mut passed = 0;
+        let mut parts = Vec::with_capacity(self.parts.len());
+        for part in &self.parts {
+            let range = range(part);
+            let (_, from_first) = list.split_at_mut(range.start - passed);
+            let (own, rest) = from_first.split_at_mut(range.len());
+            (list, passed) = (rest, range.end);
+            parts.push((part.clone(), range, own));
+        }
+        parts
+    }
+
     /// Parts the supernodes of a factor.
     pub(crate) fn new(factor: &SymbolicSupernodalCholesky<usize>) -> Self {
         let (begin, end, values) = (factor.supernode_begin(), factor.supernode_end(), factor.col_ptr_for_val());
