@@ -74,16 +74,15 @@ pub(crate) fn largest_pairs(
         }
         block
     };
-    let mut w = begin(BLOCK.min(available), &mut scratch);
-    let mut last = basis.extend(&mut w, 0)?.columns;
-    let mut before = 0;
+    let w = begin(BLOCK.min(available), &mut scratch);
+    let mut last = basis.extend(w, 0)?.columns;
+    let mut near = 1;
     let (mut converged, mut residual) = (0, f64::INFINITY);
     for block_solves in 1..=max_steps {
         let size = basis.size();
-        w.resize_with(n, last, |_, _| 0.0);
-        w.copy_from(basis.m_vectors.subcols(FIXED + size - last, last));
+        let mut w = basis.last_times_mass();
         operator.solve_in_place(w.as_mut(), &mut scratch);
-        let extension = basis.extend(&mut w, last + before)?;
+        let extension = basis.extend(w, near)?;
         // Columns of T for the block that the operator was applied to.
         let mut grown = Mat::zeros(size, size);
         grown.as_mut().submatrix_mut(0, 0, projected.nrows(), projected.ncols()).copy_from(&projected);
@@ -114,17 +113,16 @@ pub(crate) fn largest_pairs(
         report(converged);
         if wanted.len() == count && (converged == count || exhausted) {
             let coefficients = Mat::from_fn(size, count, |i, j| eigenvectors[(i, wanted[j])]);
-            let mut vectors = tall::product(basis.vectors.subcols(FIXED, size), coefficients.as_ref());
-            basis.take_out(0..FIXED, &mut vectors);
+            let vectors = basis.combine(coefficients.as_ref());
             return Ok(LanczosPairs { vectors, residuals, block_solves, basis_size: size });
         }
-        before = last;
+        near = 2;
         last = extension.columns;
         if last == 0 {
             // The basis spans an invariant subspace: go on from elsewhere, uncoupled from it.
-            w = begin(BLOCK.min(available - size), &mut scratch);
-            last = basis.extend(&mut w, 0)?.columns;
-            before = 0;
+            let w = begin(BLOCK.min(available - size), &mut scratch);
+            last = basis.extend(w, 0)?.columns;
+            near = 1;
         }
     }
     Err(ModalError::NotConverged { converged, requested: count, steps: max_steps, residual, tolerance: TOLERANCE })
@@ -135,13 +133,12 @@ pub(crate) fn room(count: usize, available: usize) -> usize {
     available.min(2 * count + 8 * BLOCK)
 }
 
-/// An M-orthonormal basis. Its first [`FIXED`] vectors are the rigid modes, which the search stays away from.
+/// An M-orthonormal basis, block by block: the rigid modes, which the search stays away from, then a block for each step.
 struct Basis<'a> {
     mass: &'a MassMatrix<'a>,
-    vectors: Mat<f64>,
-    m_vectors: Mat<f64>,
+    blocks: Vec<Mat<f64>>,
+    m_blocks: Vec<Mat<f64>>,
     // Scratch of a block's size, used again for each block.
-    m_w: Mat<f64>,
     spare: Mat<f64>,
     packed: Vec<Packed>,
 }
@@ -156,17 +153,11 @@ struct Extension {
 
 impl<'a> Basis<'a> {
     fn new(mass: &'a MassMatrix<'a>, rigid: MatRef<'_, f64>, room: usize) -> Result<Self, ModalError> {
-        memory::check("the Lanczos basis", of_vectors(rigid.nrows(), 2 * (FIXED + room) + 4 * BLOCK))?;
-        let with_room = |columns: MatRef<'_, f64>| {
-            let mut matrix = Mat::with_capacity(columns.nrows(), FIXED + room);
-            append(&mut matrix, columns);
-            matrix
-        };
+        check_memory(rigid.nrows(), 2 * (FIXED + room) + 4 * BLOCK)?;
         Ok(Self {
             mass,
-            vectors: with_room(rigid),
-            m_vectors: with_room(mass.product(rigid).as_ref()),
-            m_w: Mat::new(),
+            blocks: vec![rigid.to_owned()],
+            m_blocks: vec![mass.product(rigid)],
             spare: Mat::new(),
             packed: Vec::new(),
         })
@@ -174,47 +165,79 @@ impl<'a> Basis<'a> {
 
     /// Vectors beside the rigid modes.
     fn size(&self) -> usize {
-        self.vectors.ncols() - FIXED
+        columns(&self.blocks[1..])
     }
 
-    /// Takes out of `w` what it has along some vectors of the basis, and tells that.
-    fn take_out(&self, columns: Range<usize>, w: &mut Mat<f64>) -> Mat<f64> {
-        tall::take_out(w, self.vectors.get(.., columns.clone()), self.m_vectors.get(.., columns))
+    /// M times the last block.
+    fn last_times_mass(&self) -> Mat<f64> {
+        self.m_blocks[self.m_blocks.len() - 1].clone()
     }
 
-    /// Makes `w` M-orthogonal to the basis and M-orthonormal, and appends it; `w` is used up.
+    /// Takes out of `w` what it has along some blocks of the basis, and tells that.
+    fn take_out(&self, blocks: Range<usize>, w: &mut Mat<f64>) -> Mat<f64> {
+        let h = tall::inner_of_blocks(&views(&self.m_blocks[blocks.clone()]), w.as_ref());
+        tall::multiply_blocks(w.as_mut(), Accum::Add, &views(&self.blocks[blocks]), h.as_ref(), -1.0);
+        h
+    }
+
+    /// The vectors of the basis times `coefficients`, without what rounding has left of the rigid modes in that.
+    fn combine(&self, coefficients: MatRef<'_, f64>) -> Mat<f64> {
+        let mut vectors = Mat::zeros(self.blocks[0].nrows(), coefficients.ncols());
+        tall::multiply_blocks(vectors.as_mut(), Accum::Replace, &views(&self.blocks[1..]), coefficients, 1.0);
+        self.take_out(0..1, &mut vectors);
+        vectors
+    }
+
+    /// Makes `w` M-orthogonal to the basis and M-orthonormal, and appends it.
     /// Directions smaller than [`DEPENDENT`] times the block are dropped.
     ///
-    /// In exact arithmetic a block that comes of the last one has parts along the last two only, `near` vectors. These are
-    /// taken out first, and the rigid modes, which rounding brings in most. What is left is rounding, and one round takes it
-    /// out as a rule.
-    fn extend(&mut self, w: &mut Mat<f64>, near: usize) -> Result<Extension, ModalError> {
-        let size = self.size();
+    /// In exact arithmetic a block that comes of the last one has parts along the last two only; `near` tells how many of
+    /// the last blocks that are. These are taken out first, and the rigid modes, which rounding brings in most. What is left
+    /// is rounding, and one round takes it out as a rule.
+    fn extend(&mut self, mut w: Mat<f64>, near: usize) -> Result<Extension, ModalError> {
+        let (size, count) = (self.size(), self.blocks.len());
+        check_memory(w.nrows(), 2 * w.ncols())?;
         let mut coefficients = Mat::zeros(FIXED + size, w.ncols());
         let mut coupling = Mat::identity(w.ncols(), w.ncols());
-        for columns in [0..FIXED, FIXED + size - near.min(size)..FIXED + size] {
-            let h = self.take_out(columns.clone(), w);
-            coefficients.as_mut().subrows_mut(columns.start, h.nrows()).copy_from(&h);
+        for blocks in [0..1, count - near..count] {
+            let h = self.take_out(blocks.clone(), &mut w);
+            let first = columns(&self.blocks[..blocks.start]);
+            coefficients.as_mut().subrows_mut(first, h.nrows()).copy_from(&h);
         }
+        let mut m_w = Mat::zeros(w.nrows(), w.ncols());
         for round in 0..MAX_ROUNDS {
-            let h = self.take_out(0..FIXED + size, w);
-            self.m_w.resize_with(w.nrows(), w.ncols(), |_, _| 0.0);
-            self.mass.product_into(w.as_ref(), self.m_w.as_mut(), &mut self.packed);
-            let gram = tall::inner(w.as_ref(), self.m_w.as_ref());
+            let h = self.take_out(0..count, &mut w);
+            m_w.resize_with(w.nrows(), w.ncols(), |_, _| 0.0);
+            self.mass.product_into(w.as_ref(), m_w.as_mut(), &mut self.packed);
+            let gram = tall::inner(w.as_ref(), m_w.as_ref());
             let svqb = if round == 0 { Svqb::first(&gram, &h, &(&coefficients + &h))? } else { Svqb::again(&gram)? };
             coefficients += h * &coupling;
             coupling = svqb.inverse * coupling;
-            times(w, &svqb.transform, &mut self.spare);
+            times(&mut w, &svqb.transform, &mut self.spare);
             // The last round is as good as it gets; M·W has to be that of W in any case.
             if svqb.well_conditioned || round + 1 == MAX_ROUNDS {
-                times(&mut self.m_w, &svqb.transform, &mut self.spare);
+                times(&mut m_w, &svqb.transform, &mut self.spare);
                 break;
             }
         }
-        append(&mut self.vectors, w.as_ref());
-        append(&mut self.m_vectors, self.m_w.as_ref());
-        Ok(Extension { coefficients: coefficients.subrows(FIXED, size).to_owned(), coupling, columns: w.ncols() })
+        let coefficients = coefficients.subrows(FIXED, size).to_owned();
+        let extension = Extension { coefficients, coupling, columns: w.ncols() };
+        self.blocks.push(w);
+        self.m_blocks.push(m_w);
+        Ok(extension)
     }
+}
+
+fn check_memory(rows: usize, vectors: usize) -> Result<(), ModalError> {
+    Ok(memory::check("the Lanczos basis", of_vectors(rows, vectors))?)
+}
+
+fn columns(blocks: &[Mat<f64>]) -> usize {
+    blocks.iter().map(Mat::ncols).sum()
+}
+
+fn views(blocks: &[Mat<f64>]) -> Vec<MatRef<'_, f64>> {
+    blocks.iter().map(Mat::as_ref).collect()
 }
 
 /// Replaces `block` by `block·transform`.
@@ -268,12 +291,6 @@ impl Svqb {
             well_conditioned: kept.iter().all(|k| values[*k] > well),
         })
     }
-}
-
-/// Puts `right` beside the columns of `left`.
-fn append(left: &mut Mat<f64>, right: MatRef<'_, f64>) {
-    let columns = left.ncols();
-    left.resize_with(right.nrows(), columns + right.ncols(), |i, j| right[(i, j - columns)]);
 }
 
 /// Numbers in (−1, 1) from a 64-bit linear congruential generator: the same on every run and machine.

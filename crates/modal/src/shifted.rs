@@ -218,7 +218,9 @@ fn make(
         (symbolic.raw(), subtrees, symbolic.perm())
     {
         let problem = cholesky::Problem { symbolic, subtrees, order, matrix };
-        return problem.factor(values).map_err(|NotPositive(pivot)| ModalError::Indefinite { pivot, shift });
+        problem.factor(values).map_err(|NotPositive(pivot)| ModalError::Indefinite { pivot, shift })?;
+        substitution::interleave(symbolic, subtrees, values);
+        return Ok(());
     }
     let assembled = matrix.assembled(pattern).map_err(|reason| failed(symbolic.nrows(), reason))?;
     let mut scratch = buffer(symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Spec::default()))?;

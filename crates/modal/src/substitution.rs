@@ -3,12 +3,13 @@
 //! The numbers of a row lie side by side. So the factor, which is far larger than the processor's cache, is read once for
 //! all vectors of a group, and a row of them is one run of memory wherever it is.
 
+use std::iter::StepBy;
 use std::ops::Range;
 
 use faer::MatMut;
 use faer::perm::PermRef;
 use faer::reborrow::{Reborrow, ReborrowMut};
-use faer::sparse::linalg::cholesky::supernodal::SupernodalLltRef;
+use faer::sparse::linalg::cholesky::supernodal::{SupernodalLltRef, SymbolicSupernodalCholesky};
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
@@ -22,6 +23,10 @@ const STEP: usize = 4;
 const ROWS: usize = 4096;
 /// Columns of the factor that are applied in one pass over the rows below them.
 const COLUMNS: usize = 6;
+/// Rows below a supernode that are taken together: they stay in the processor's first cache.
+const STRIP: usize = 128;
+/// Numbers of the factor that are asked for ahead of their use.
+const AHEAD: usize = 384;
 /// Columns of a node with three degrees of freedom.
 const NODE: usize = 3;
 
@@ -49,7 +54,7 @@ pub(crate) fn scratch(rows: usize, columns: usize) -> usize {
     2 * rows * columns.next_multiple_of(STEP).min(MOST)
 }
 
-/// Replaces `x` (N×k) by A⁻¹ x. The result does not depend on the number of threads.
+/// Replaces `x` (N×k) by A⁻¹ x, where the factor is [interleaved](interleave). The result does not depend on the number of threads.
 pub(crate) fn solve(
     factor: SupernodalLltRef<'_, usize, f64>,
     subtrees: &Subtrees,
@@ -165,14 +170,13 @@ impl<const W: usize> WithSimd for Forward<'_, W> {
     type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _simd: S) {
+    fn with_simd<S: Simd>(self, simd: S) {
         let Self { problem: Problem { factor, subtrees }, part: Part { supernodes, first, rows }, outside, below } =
             self;
         for s in supernodes {
             let supernode = Supernode::new(factor, s);
-            let below = supernode.gather(rows, first, outside, &subtrees.place, below);
-            supernode.forward::<W, S>(&mut rows[supernode.start - first..][..supernode.width], below);
-            supernode.scatter(below, rows, first, outside, &subtrees.place);
+            let taken = supernode.forward(simd, &mut rows[supernode.start - first..][..supernode.width], below);
+            supernode.take(taken, rows, first, outside, &subtrees.place);
         }
     }
 }
@@ -188,7 +192,7 @@ impl<const W: usize> WithSimd for Top<'_, W> {
     type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _simd: S) {
+    fn with_simd<S: Simd>(self, simd: S) {
         let Self { problem: Problem { factor, subtrees }, rows, below } = self;
         let place = &subtrees.place;
         let own = |supernode: &Supernode<'_>| {
@@ -197,14 +201,13 @@ impl<const W: usize> WithSimd for Top<'_, W> {
         };
         for s in &subtrees.top {
             let supernode = Supernode::new(factor, *s);
-            let below = supernode.gather(&[], 0, rows, place, below);
-            supernode.forward::<W, S>(&mut rows[own(&supernode)], below);
-            supernode.scatter(below, &mut [], 0, rows, place);
+            let taken = supernode.forward(simd, &mut rows[own(&supernode)], below);
+            supernode.take(taken, &mut [], 0, rows, place);
         }
         for s in subtrees.top.iter().rev() {
             let supernode = Supernode::new(factor, *s);
-            let below = supernode.gather(&[], 0, rows, place, below);
-            supernode.backward::<W, S>(&mut rows[own(&supernode)], below);
+            let minus_below = supernode.gather(&[], 0, rows, place, below);
+            supernode.backward(simd, &mut rows[own(&supernode)], minus_below);
         }
     }
 }
@@ -221,12 +224,12 @@ impl<const W: usize> WithSimd for Backward<'_, W> {
     type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _simd: S) {
+    fn with_simd<S: Simd>(self, simd: S) {
         let Self { problem: Problem { factor, subtrees }, part: Part { supernodes, first, rows }, top, below } = self;
         for s in supernodes.rev() {
             let supernode = Supernode::new(factor, s);
-            let below = supernode.gather(rows, first, top, &subtrees.place, below);
-            supernode.backward::<W, S>(&mut rows[supernode.start - first..][..supernode.width], below);
+            let minus_below = supernode.gather(rows, first, top, &subtrees.place, below);
+            supernode.backward(simd, &mut rows[supernode.start - first..][..supernode.width], minus_below);
         }
     }
 }
@@ -237,7 +240,7 @@ struct Supernode<'a> {
     width: usize,
     /// The rows below.
     pattern: &'a [usize],
-    /// Its columns one after the other, each with its own rows, then those below.
+    /// Its columns in the order of [`interleave`], with the own rows, then those below.
     values: &'a [f64],
 }
 
@@ -251,7 +254,14 @@ impl<'a> Supernode<'a> {
         Self { start, width: end - start, pattern, values: &factor.values()[range] }
     }
 
-    /// The rows below: first those among `rows`, which begin with row `first`, then those of the top.
+    /// Room for the rows below.
+    #[inline(always)]
+    fn below<'b, const W: usize>(&self, scratch: &'b mut Vec<f64>) -> &'b mut [[f64; W]] {
+        scratch.resize(scratch.len().max(W * self.pattern.len()), 0.0);
+        scratch[..W * self.pattern.len()].as_chunks_mut().0
+    }
+
+    /// The negative of the rows below: first those among `rows`, which begin with row `first`, then those of the top.
     #[inline(always)]
     fn gather<'b, const W: usize>(
         &self,
@@ -259,36 +269,35 @@ impl<'a> Supernode<'a> {
         first: usize,
         top: &[[f64; W]],
         place: &[u32],
-        below: &'b mut Vec<f64>,
-    ) -> &'b mut [[f64; W]] {
-        below.resize(below.len().max(W * self.pattern.len()), 0.0);
-        let (below, _) = below[..W * self.pattern.len()].as_chunks_mut();
+        scratch: &'b mut Vec<f64>,
+    ) -> &'b [[f64; W]] {
+        let below = self.below(scratch);
         let (within, beyond) = self.parted(first + rows.len());
         for (below, row) in below.iter_mut().zip(within) {
-            *below = rows[row - first];
+            *below = rows[row - first].map(|x| -x);
         }
         for (below, row) in below[within.len()..].iter_mut().zip(beyond) {
-            *below = top[place[*row] as usize];
+            *below = top[place[*row] as usize].map(|x| -x);
         }
         below
     }
 
-    /// Puts the rows below back to where they were gathered.
+    /// Subtracts from the rows below.
     #[inline(always)]
-    fn scatter<const W: usize>(
+    fn take<const W: usize>(
         &self,
-        below: &[[f64; W]],
+        taken: &[[f64; W]],
         rows: &mut [[f64; W]],
         first: usize,
         top: &mut [[f64; W]],
         place: &[u32],
     ) {
         let (within, beyond) = self.parted(first + rows.len());
-        for (below, row) in below.iter().zip(within) {
-            rows[row - first] = *below;
+        for (taken, row) in taken.iter().zip(within) {
+            rows[row - first].iter_mut().zip(taken).for_each(|(x, taken)| *x -= taken);
         }
-        for (below, row) in below[within.len()..].iter().zip(beyond) {
-            top[place[*row] as usize] = *below;
+        for (taken, row) in taken[within.len()..].iter().zip(beyond) {
+            top[place[*row] as usize].iter_mut().zip(taken).for_each(|(x, taken)| *x -= taken);
         }
     }
 
@@ -298,145 +307,277 @@ impl<'a> Supernode<'a> {
         self.pattern.split_at(self.pattern.partition_point(|other| *other < row))
     }
 
-    /// The rows of a column from `first` on, own ones and those below.
+    /// The numbers of the own rows, then strips of those below with the number of their first row.
     #[inline(always)]
-    fn column(&self, column: usize, first: usize) -> (&'a [f64], &'a [f64]) {
-        let rows = self.width + self.pattern.len();
-        let (own, below) = self.values[column * rows..(column + 1) * rows].split_at(self.width);
-        (&own[first..], below)
+    fn strips(&self) -> (Strip<'a>, impl Iterator<Item = (usize, Strip<'a>)>) {
+        let Self { width, values, .. } = *self;
+        let rows = self.pattern.len();
+        let (own, below) = values.split_at(width * width);
+        let strip = move |first: usize| {
+            let count = STRIP.min(rows - first);
+            (first, Strip { rows: count, values: &below[width * first..width * (first + count)] })
+        };
+        (Strip { rows: width, values: own }, (0..rows).step_by(STRIP).map(strip))
     }
 
-    /// x ← L⁻¹ x in the own rows, and what that takes from the rows below.
+    /// x ← L⁻¹ x in the own rows; returns what that takes from the rows below.
     #[inline(always)]
-    fn forward<const W: usize, S: Simd>(&self, own: &mut [[f64; W]], below: &mut [[f64; W]]) {
-        let mut first = 0;
-        while first < self.width {
-            first += match self.width - first {
-                COLUMNS.. => self.forward_columns::<COLUMNS, W, S>(first, own, below),
-                NODE.. => self.forward_columns::<NODE, W, S>(first, own, below),
-                _ => self.forward_columns::<1, W, S>(first, own, below),
-            };
-        }
-    }
-
-    #[inline(always)]
-    fn forward_columns<const K: usize, const W: usize, S: Simd>(
+    fn forward<'b, const W: usize, S: Simd>(
         &self,
-        first: usize,
+        simd: S,
         own: &mut [[f64; W]],
-        below: &mut [[f64; W]],
-    ) -> usize {
-        let (here, after) = own[first..].split_at_mut(K);
-        let mut x = [[0.0; W]; K];
-        for k in 0..K {
-            let (column, _) = self.column(first + k, first);
-            for x in &mut here[k] {
-                *x /= column[k];
-            }
-            x[k] = here[k];
-            for i in k + 1..K {
-                for c in 0..W {
-                    here[i][c] -= column[i] * x[k][c];
-                }
-            }
+        scratch: &'b mut Vec<f64>,
+    ) -> &'b [[f64; W]] {
+        let taken = self.below(scratch);
+        taken.fill([0.0; W]);
+        let [most, nodes, single] = passes(self.width);
+        let (diagonal, strips) = self.strips();
+        diagonal.forward::<COLUMNS, W, S>(simd, most.clone(), own);
+        diagonal.forward::<NODE, W, S>(simd, nodes.clone(), own);
+        diagonal.forward::<1, W, S>(simd, single.clone(), own);
+        for (first, strip) in strips {
+            let taken = &mut taken[first..][..strip.rows];
+            strip.add_to_rows::<COLUMNS, W, S>(simd, most.clone(), own, taken);
+            strip.add_to_rows::<NODE, W, S>(simd, nodes.clone(), own, taken);
+            strip.add_to_rows::<1, W, S>(simd, single.clone(), own, taken);
         }
-        let (columns_own, columns_below) = self.columns::<K>(first);
-        take_products::<K, W, S>(after, columns_own, &x);
-        take_products::<K, W, S>(below, columns_below, &x);
-        K
+        taken
     }
 
     /// x ← L⁻ᵀ x in the own rows, where the rows below are known.
     #[inline(always)]
-    fn backward<const W: usize, S: Simd>(&self, own: &mut [[f64; W]], below: &[[f64; W]]) {
-        let mut end = self.width;
-        while end > 0 {
-            end -= match end {
-                COLUMNS.. => self.backward_columns::<COLUMNS, W, S>(end - COLUMNS, own, below),
-                NODE.. => self.backward_columns::<NODE, W, S>(end - NODE, own, below),
-                _ => self.backward_columns::<1, W, S>(end - 1, own, below),
-            };
+    fn backward<const W: usize, S: Simd>(&self, simd: S, own: &mut [[f64; W]], minus_below: &[[f64; W]]) {
+        let [most, nodes, single] = passes(self.width);
+        let (diagonal, strips) = self.strips();
+        for (first, strip) in strips {
+            let rows = &minus_below[first..][..strip.rows];
+            strip.add_to_columns::<COLUMNS, W, S>(simd, most.clone(), rows, own);
+            strip.add_to_columns::<NODE, W, S>(simd, nodes.clone(), rows, own);
+            strip.add_to_columns::<1, W, S>(simd, single.clone(), rows, own);
         }
-    }
-
-    #[inline(always)]
-    fn backward_columns<const K: usize, const W: usize, S: Simd>(
-        &self,
-        first: usize,
-        own: &mut [[f64; W]],
-        below: &[[f64; W]],
-    ) -> usize {
-        let (here, after) = own[first..].split_at_mut(K);
-        let (columns_own, columns_below) = self.columns::<K>(first);
-        let mut sums = [[0.0; W]; K];
-        add_products::<K, W, S>(&mut sums, columns_own, after);
-        add_products::<K, W, S>(&mut sums, columns_below, below);
-        for k in (0..K).rev() {
-            let (column, _) = self.column(first + k, first);
-            for c in 0..W {
-                let mut x = here[k][c] - sums[k][c];
-                for i in k + 1..K {
-                    x -= column[i] * here[i][c];
-                }
-                here[k][c] = x / column[k];
-            }
-        }
-        K
-    }
-
-    /// K columns from `first` on, without their rows on the diagonal block: the own rows after it, and those below.
-    #[inline(always)]
-    fn columns<const K: usize>(&self, first: usize) -> ([&'a [f64]; K], [&'a [f64]; K]) {
-        let mut found: ([&[f64]; K], [&[f64]; K]) = ([&[]; K], [&[]; K]);
-        for k in 0..K {
-            (found.0[k], found.1[k]) = self.column(first + k, first + K);
-        }
-        found
+        diagonal.backward::<1, W, S>(simd, single, own);
+        diagonal.backward::<NODE, W, S>(simd, nodes, own);
+        diagonal.backward::<COLUMNS, W, S>(simd, most, own);
     }
 }
 
-/// rows −= columns · x.
-#[inline(always)]
-fn take_products<const K: usize, const W: usize, S: Simd>(
-    rows: &mut [[f64; W]],
-    columns: [&[f64]; K],
-    x: &[[f64; W]; K],
-) {
-    let columns = columns.map(|column| &column[..rows.len()]);
-    for i in 0..rows.len() {
-        let mut row = rows[i];
-        for k in 0..K {
-            for c in 0..W {
-                row[c] = multiply_add::<S>(-columns[k][i], x[k][c], row[c]);
+/// Some rows of a supernode, in the order of [`interleave`].
+#[derive(Clone, Copy)]
+struct Strip<'a> {
+    rows: usize,
+    values: &'a [f64],
+}
+
+impl<'a> Strip<'a> {
+    /// K columns from `first` on, row by row.
+    #[inline(always)]
+    fn columns<const K: usize>(&self, first: usize) -> &'a [[f64; K]] {
+        self.values[first * self.rows..(first + K) * self.rows].as_chunks().0
+    }
+
+    /// Of the rows on the diagonal: x ← L⁻¹ x by passes over K columns.
+    #[inline(always)]
+    fn forward<const K: usize, const W: usize, S: Simd>(&self, simd: S, passes: Passes, x: &mut [[f64; W]]) {
+        for first in passes {
+            let (here, after) = x[first..].split_at_mut(K);
+            let (diagonal, columns) = self.columns::<K>(first)[first..].split_at(K);
+            let mut minus_x = [[0.0; W]; K];
+            for k in 0..K {
+                for x in &mut here[k] {
+                    *x /= diagonal[k][k];
+                }
+                minus_x[k] = here[k].map(|x| -x);
+                for i in k + 1..K {
+                    for c in 0..W {
+                        here[i][c] += diagonal[i][k] * minus_x[k][c];
+                    }
+                }
+            }
+            add_combinations(simd, after, columns, &minus_x);
+        }
+    }
+
+    /// Of the rows on the diagonal: x ← L⁻ᵀ x by passes over K columns, the last first.
+    #[inline(always)]
+    fn backward<const K: usize, const W: usize, S: Simd>(&self, simd: S, passes: Passes, x: &mut [[f64; W]]) {
+        for first in passes.rev() {
+            let (here, after) = x[first..].split_at_mut(K);
+            let (diagonal, columns) = self.columns::<K>(first)[first..].split_at(K);
+            let mut sums = [[0.0; W]; K];
+            add_products(simd, &mut sums, columns, after);
+            for k in (0..K).rev() {
+                for c in 0..W {
+                    let mut x = here[k][c] - sums[k][c];
+                    for i in k + 1..K {
+                        x -= diagonal[i][k] * here[i][c];
+                    }
+                    here[k][c] = x / diagonal[k][k];
+                }
             }
         }
-        rows[i] = row;
+    }
+
+    /// rows += columns · x.
+    #[inline(always)]
+    fn add_to_rows<const K: usize, const W: usize, S: Simd>(
+        &self,
+        simd: S,
+        passes: Passes,
+        x: &[[f64; W]],
+        rows: &mut [[f64; W]],
+    ) {
+        for first in passes {
+            if let Some((x, _)) = x[first..].split_first_chunk::<K>() {
+                add_combinations(simd, rows, self.columns(first), x);
+            }
+        }
+    }
+
+    /// x += columnsᵀ · rows.
+    #[inline(always)]
+    fn add_to_columns<const K: usize, const W: usize, S: Simd>(
+        &self,
+        simd: S,
+        passes: Passes,
+        rows: &[[f64; W]],
+        x: &mut [[f64; W]],
+    ) {
+        for first in passes {
+            if let Some((x, _)) = x[first..].split_first_chunk_mut::<K>() {
+                add_products(simd, x, self.columns(first), rows);
+            }
+        }
+    }
+}
+
+/// The first columns of the passes over a supernode.
+type Passes = StepBy<Range<usize>>;
+
+/// The passes over [`COLUMNS`], over [`NODE`] and over single columns.
+#[inline(always)]
+fn passes(width: usize) -> [Passes; 3] {
+    let of_most = width - width % COLUMNS;
+    let of_nodes = width - (width - of_most) % NODE;
+    [(0..of_most).step_by(COLUMNS), (of_most..of_nodes).step_by(NODE), (of_nodes..width).step_by(1)]
+}
+
+/// Puts the numbers of a factor, which stand column by column in each supernode, into the order in which they are read: the
+/// own rows, then strips of the rows below; in each the columns of a pass after those of another, row by row. So a solution
+/// reads the factor as one run of memory.
+pub(crate) fn interleave(symbolic: &SymbolicSupernodalCholesky<usize>, subtrees: &Subtrees, values: &mut [f64]) {
+    let starts = symbolic.col_ptr_for_val();
+    let supernode = |s: usize, values: &mut [f64], scratch: &mut Vec<f64>| {
+        scratch.clear();
+        scratch.extend_from_slice(values);
+        let width = symbolic.supernode_end()[s] - symbolic.supernode_begin()[s];
+        interleave_supernode(width, scratch, values);
+    };
+    subtrees.split(values, |part| starts[part.start]..starts[part.end]).into_par_iter().for_each_init(
+        Vec::new,
+        |scratch, (part, range, values)| {
+            for s in part {
+                supernode(s, &mut values[starts[s] - range.start..starts[s + 1] - range.start], scratch);
+            }
+        },
+    );
+    let mut scratch = Vec::new();
+    for s in &subtrees.top {
+        supernode(*s, &mut values[starts[*s]..starts[*s + 1]], &mut scratch);
+    }
+}
+
+/// Writes the columns `from` in the new order.
+fn interleave_supernode(width: usize, from: &[f64], mut to: &mut [f64]) {
+    let rows = from.len() / width;
+    let below = (width..rows).step_by(STRIP).map(|first| first..rows.min(first + STRIP));
+    for strip in std::iter::once(0..width).chain(below) {
+        let (of_strip, rest) = to.split_at_mut(width * strip.len());
+        to = rest;
+        let [most, nodes, single] = passes(width);
+        interleave_columns::<COLUMNS>(most, from, rows, &strip, of_strip);
+        interleave_columns::<NODE>(nodes, from, rows, &strip, of_strip);
+        interleave_columns::<1>(single, from, rows, &strip, of_strip);
+    }
+}
+
+fn interleave_columns<const K: usize>(passes: Passes, from: &[f64], rows: usize, strip: &Range<usize>, to: &mut [f64]) {
+    for first in passes {
+        let columns: [&[f64]; K] = std::array::from_fn(|k| &from[(first + k) * rows..][strip.clone()]);
+        let to = &mut to[first * strip.len()..(first + K) * strip.len()];
+        for (i, to) in to.as_chunks_mut::<K>().0.iter_mut().enumerate() {
+            *to = std::array::from_fn(|k| columns[k][i]);
+        }
+    }
+}
+
+/// Asks for numbers of the factor that are due soon. The processor does not look as far ahead by itself.
+#[inline(always)]
+#[expect(unsafe_code, reason = "the instruction of the processor has no safe name")]
+fn prefetch<const K: usize>(row: &[f64; K]) {
+    #[cfg(target_arch = "x86_64")]
+    // SAFETY: a hint, which reads nothing: any address will do. All processors of the kind have it.
+    unsafe {
+        use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
+        _mm_prefetch::<_MM_HINT_T0>(row.as_ptr().wrapping_add(AHEAD).cast());
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    let _ = row;
+}
+
+/// rows += columns · x.
+#[inline(always)]
+fn add_combinations<const K: usize, const W: usize, S: Simd>(
+    simd: S,
+    rows: &mut [[f64; W]],
+    columns: &[[f64; K]],
+    x: &[[f64; W]; K],
+) {
+    let x = x.each_ref().map(|x| S::as_simd_f64s(x));
+    for (row, factors) in rows.iter_mut().zip(columns) {
+        prefetch(factors);
+        let (vectors, rest) = S::as_mut_simd_f64s(row);
+        for (v, vector) in vectors.iter_mut().enumerate() {
+            let mut sum = *vector;
+            for k in 0..K {
+                sum = simd.mul_add_e_f64s(simd.splat_f64s(factors[k]), x[k].0[v], sum);
+            }
+            *vector = sum;
+        }
+        for (c, sum) in rest.iter_mut().enumerate() {
+            for k in 0..K {
+                *sum += factors[k] * x[k].1[c];
+            }
+        }
     }
 }
 
 /// sums += columnsᵀ · rows.
 #[inline(always)]
 fn add_products<const K: usize, const W: usize, S: Simd>(
+    simd: S,
     sums: &mut [[f64; W]; K],
-    columns: [&[f64]; K],
+    columns: &[[f64; K]],
     rows: &[[f64; W]],
 ) {
-    let columns = columns.map(|column| &column[..rows.len()]);
-    let mut found = *sums;
-    for (i, row) in rows.iter().enumerate() {
+    let mut found = [[simd.splat_f64s(0.0); W]; K];
+    for (row, factors) in rows.iter().zip(columns) {
+        prefetch(factors);
+        let (vectors, rest) = S::as_simd_f64s(row);
         for k in 0..K {
-            for c in 0..W {
-                found[k][c] = multiply_add::<S>(columns[k][i], row[c], found[k][c]);
+            let factor = simd.splat_f64s(factors[k]);
+            for (sum, vector) in found[k].iter_mut().zip(vectors) {
+                *sum = simd.mul_add_e_f64s(factor, *vector, *sum);
+            }
+            for (sum, value) in sums[k][W - rest.len()..].iter_mut().zip(rest) {
+                *sum += factors[k] * value;
             }
         }
     }
-    *sums = found;
-}
-
-/// a·b + c, in one instruction where the processor has it.
-#[inline(always)]
-fn multiply_add<S: Simd>(a: f64, b: f64, c: f64) -> f64 {
-    if S::F64_LANES > 1 { a.mul_add(b, c) } else { a * b + c }
+    for (sums, found) in sums.iter_mut().zip(&found) {
+        for (sum, found) in S::as_mut_simd_f64s(sums).0.iter_mut().zip(found) {
+            *sum = simd.add_f64s(*sum, *found);
+        }
+    }
 }
 
 #[cfg(test)]
@@ -494,6 +635,8 @@ pub(crate) mod tests {
             Spec::default(),
         );
         factor.unwrap();
+        let mut interleaved = values.clone();
+        interleave(supernodal, &subtrees, &mut interleaved);
         let widths =
             (0..supernodal.n_supernodes()).map(|s| supernodal.supernode_end()[s] - supernodal.supernode_begin()[s]);
         assert!(subtrees.parts.len() > 3 && !subtrees.top.is_empty());
@@ -507,7 +650,7 @@ pub(crate) mod tests {
             let on_threads = |threads: usize| {
                 let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
                 let mut x = b.clone();
-                let factor = SupernodalLltRef::new(supernodal, &values);
+                let factor = SupernodalLltRef::new(supernodal, &interleaved);
                 let order = symbolic.perm().unwrap();
                 pool.install(|| solve(factor, &subtrees, order, x.as_mut(), &mut Scratch::default()));
                 x

@@ -1,7 +1,7 @@
 //! Products of tall matrices: N rows, few columns.
 //!
 //! The rows are cut at fixed places and sums are taken in a fixed order, so the result does not depend, to the last
-//! bit, on the number of threads, nor on the vector instructions of the processor.
+//! bit, on the number of threads.
 //!
 //! The loops are our own: faer's product of matrices takes twice the size of the processor's last cache as scratch, for
 //! each thread, to multiply matrices of any size. That is more than a small body needs in all.
@@ -16,22 +16,25 @@ use rayon::prelude::*;
 const ROWS: usize = 4096;
 /// Rows that stay in the processor's first cache.
 const STRIP: usize = 256;
-/// Columns of the left factor that are taken together.
-const DEPTH: usize = 32;
+/// Columns of the left factor that are taken together: few, so that the processor foresees what is read next of each.
+const DEPTH: usize = 4;
 /// Columns of the product that are made together.
 const WIDTH: usize = 8;
-/// Numbers that an instruction handles.
-const LANES: usize = 4;
 
 /// AᵀB.
 pub(crate) fn inner(a: MatRef<'_, f64>, b: MatRef<'_, f64>) -> Mat<f64> {
+    inner_of_blocks(&[a], b)
+}
+
+/// AᵀB, where A consists of blocks beside each other.
+pub(crate) fn inner_of_blocks(a: &[MatRef<'_, f64>], b: MatRef<'_, f64>) -> Mat<f64> {
     let arch = Arch::new();
-    let zero = || Mat::zeros(a.ncols(), b.ncols());
-    let parts: Vec<Mat<f64>> = a
+    let zero = || Mat::zeros(a.iter().map(|a| a.ncols()).sum(), b.ncols());
+    let parts: Vec<Mat<f64>> = b
         .par_row_chunks(ROWS)
-        .zip(b.par_row_chunks(ROWS))
-        .map(|(a, b)| {
-            let (a, b) = (columns(a), columns(b));
+        .enumerate()
+        .map(|(task, b)| {
+            let (a, b) = (rows(a, ROWS * task, b.nrows()), columns(b));
             let mut part = zero();
             arch.dispatch(AddInner { sums: part.as_mut(), a: &a, b: &b });
             part
@@ -41,15 +44,26 @@ pub(crate) fn inner(a: MatRef<'_, f64>, b: MatRef<'_, f64>) -> Mat<f64> {
 }
 
 /// Y = A·H, or Y += `factor`·A·H.
-pub(crate) fn multiply(mut y: MatMut<'_, f64>, beta: Accum, a: MatRef<'_, f64>, h: MatRef<'_, f64>, factor: f64) {
+pub(crate) fn multiply(y: MatMut<'_, f64>, beta: Accum, a: MatRef<'_, f64>, h: MatRef<'_, f64>, factor: f64) {
+    multiply_blocks(y, beta, &[a], h, factor);
+}
+
+/// The same, where A consists of blocks beside each other.
+pub(crate) fn multiply_blocks(
+    mut y: MatMut<'_, f64>,
+    beta: Accum,
+    a: &[MatRef<'_, f64>],
+    h: MatRef<'_, f64>,
+    factor: f64,
+) {
     let arch = Arch::new();
     for first in (0..y.ncols()).step_by(WIDTH) {
         let width = WIDTH.min(y.ncols() - first);
         let entry = |k: usize, c: usize| if c < width { factor * h[(k, first + c)] } else { 0.0 };
         let rows_of_h: Vec<[f64; WIDTH]> = (0..h.nrows()).map(|k| std::array::from_fn(|c| entry(k, c))).collect();
         let block = y.as_mut().subcols_mut(first, width);
-        block.par_row_chunks_mut(ROWS).zip(a.par_row_chunks(ROWS)).for_each(|(mut y, a)| {
-            let a = columns(a);
+        block.par_row_chunks_mut(ROWS).enumerate().for_each(|(task, mut y)| {
+            let a = rows(a, ROWS * task, y.nrows());
             for start in (0..y.nrows()).step_by(STRIP) {
                 let rows = STRIP.min(y.nrows() - start);
                 let mut sums = [[0.0; STRIP]; WIDTH];
@@ -90,6 +104,11 @@ pub(crate) fn side_by_side(a: MatRef<'_, f64>, b: MatRef<'_, f64>) -> Mat<f64> {
     all
 }
 
+/// Some rows of all columns of blocks beside each other.
+fn rows<'a>(blocks: &[MatRef<'a, f64>], first: usize, count: usize) -> Vec<Cow<'a, [f64]>> {
+    blocks.iter().flat_map(|block| columns(block.subrows(first, count))).collect()
+}
+
 /// The columns as slices; copies, should they not lie side by side.
 fn columns(a: MatRef<'_, f64>) -> Vec<Cow<'_, [f64]>> {
     let slice = |j: usize| match a.col(j).try_as_col_major() {
@@ -112,25 +131,21 @@ impl WithSimd for AddInner<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _simd: S) {
-        add_inner(self.sums, self.a, self.b);
-    }
-}
-
-#[inline(always)]
-fn add_inner(mut sums: MatMut<'_, f64>, a: &[Cow<'_, [f64]>], b: &[Cow<'_, [f64]>]) {
-    let length = a.first().map_or(0, |column| column.len());
-    for start in (0..length).step_by(STRIP) {
-        let strip = start..(start + STRIP).min(length);
-        for (i, a) in a.chunks(4).enumerate() {
-            // The last column again where there are not four; its sums are not asked for.
-            let left: [&[f64]; 4] = std::array::from_fn(|k| &a[k.min(a.len() - 1)][strip.clone()]);
-            for (j, b) in b.chunks(2).enumerate() {
-                let right: [&[f64]; 2] = std::array::from_fn(|k| &b[k.min(b.len() - 1)][strip.clone()]);
-                let dots = dots(left, right);
-                for (k, dots) in dots.iter().enumerate().take(a.len()) {
-                    for (l, dot) in dots.iter().enumerate().take(b.len()) {
-                        sums[(4 * i + k, 2 * j + l)] += dot;
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Self { mut sums, a, b } = self;
+        let length = a.first().map_or(0, |column| column.len());
+        for start in (0..length).step_by(STRIP) {
+            let strip = start..(start + STRIP).min(length);
+            for (i, a) in a.chunks(4).enumerate() {
+                // The last column again where there are not four; its sums are not asked for.
+                let left: [&[f64]; 4] = std::array::from_fn(|k| &a[k.min(a.len() - 1)][strip.clone()]);
+                for (j, b) in b.chunks(2).enumerate() {
+                    let right: [&[f64]; 2] = std::array::from_fn(|k| &b[k.min(b.len() - 1)][strip.clone()]);
+                    let dots = dots(simd, left, right);
+                    for (k, dots) in dots.iter().enumerate().take(a.len()) {
+                        for (l, dot) in dots.iter().enumerate().take(b.len()) {
+                            sums[(4 * i + k, 2 * j + l)] += dot;
+                        }
                     }
                 }
             }
@@ -139,35 +154,25 @@ fn add_inner(mut sums: MatMut<'_, f64>, a: &[Cow<'_, [f64]>], b: &[Cow<'_, [f64]
 }
 
 #[inline(always)]
-fn dots(left: [&[f64]; 4], right: [&[f64]; 2]) -> [[f64; 2]; 4] {
-    let mut sums = [[[0.0; LANES]; 2]; 4];
-    let (left, left_rest) = split(left);
-    let (right, right_rest) = split(right);
-    for r in 0..left[0].len().min(right[0].len()) {
-        let x: [[f64; LANES]; 4] = std::array::from_fn(|k| left[k][r]);
-        let y: [[f64; LANES]; 2] = std::array::from_fn(|k| right[k][r]);
-        for (sums, x) in sums.iter_mut().zip(&x) {
-            for (sum, y) in sums.iter_mut().zip(&y) {
-                for lane in 0..LANES {
-                    sum[lane] += x[lane] * y[lane];
-                }
+fn dots<S: Simd>(simd: S, left: [&[f64]; 4], right: [&[f64]; 2]) -> [[f64; 2]; 4] {
+    let left = left.map(S::as_simd_f64s);
+    let right = right.map(S::as_simd_f64s);
+    let whole = left[0].0.len();
+    let (x, y) = (left.map(|(x, _)| &x[..whole]), right.map(|(y, _)| &y[..whole]));
+    let mut sums = [[simd.splat_f64s(0.0); 2]; 4];
+    for r in 0..whole {
+        for k in 0..4 {
+            for l in 0..2 {
+                sums[k][l] = simd.mul_add_e_f64s(x[k][r], y[l][r], sums[k][l]);
             }
         }
     }
     std::array::from_fn(|k| {
         std::array::from_fn(|l| {
-            let rest: f64 = left_rest[k].iter().zip(right_rest[l]).map(|(x, y)| x * y).sum();
-            sums[k][l].iter().sum::<f64>() + rest
+            let rest: f64 = left[k].1.iter().zip(right[l].1).map(|(x, y)| x * y).sum();
+            simd.reduce_sum_f64s(sums[k][l]) + rest
         })
     })
-}
-
-/// Whole groups of [`LANES`] numbers, cut to one length, and what is left.
-#[inline(always)]
-fn split<const N: usize>(columns: [&[f64]; N]) -> ([&[[f64; LANES]]; N], [&[f64]; N]) {
-    let parts = columns.map(|column| column.as_chunks());
-    let groups = parts[0].0.len();
-    (parts.map(|(whole, _)| &whole[..groups]), parts.map(|(_, rest)| rest))
 }
 
 /// Adds the products of some columns of A, `rows` of them from `start`, with as many rows of H.
@@ -183,34 +188,31 @@ impl WithSimd for AddProducts<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _simd: S) {
-        add_products(self.sums, self.a, self.start, self.rows, self.h);
-    }
-}
-
-#[inline(always)]
-fn add_products(sums: &mut [[f64; STRIP]; WIDTH], a: &[Cow<'_, [f64]>], start: usize, rows: usize, h: &[[f64; WIDTH]]) {
-    let whole = rows - rows % LANES;
-    for row in (0..whole).step_by(LANES) {
-        let mut tile = [[0.0; LANES]; WIDTH];
-        for (a, h) in a.iter().zip(h) {
-            let mut x = [0.0; LANES];
-            x.copy_from_slice(&a[start + row..start + row + LANES]);
-            for (sums, h) in tile.iter_mut().zip(h) {
-                for lane in 0..LANES {
-                    sums[lane] += x[lane] * h;
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Self { sums, a, start, rows, h } = self;
+        let mut parts: [(&[S::f64s], &[f64]); DEPTH] = [(&[], &[]); DEPTH];
+        for (part, a) in parts.iter_mut().zip(a) {
+            *part = S::as_simd_f64s(&a[start..start + rows]);
+        }
+        let parts = &parts[..a.len()];
+        let whole = rows / S::F64_LANES;
+        for r in 0..whole {
+            let mut tile = [simd.splat_f64s(0.0); WIDTH];
+            for ((x, _), h) in parts.iter().zip(h) {
+                let x = x[r];
+                for (sum, h) in tile.iter_mut().zip(h) {
+                    *sum = simd.mul_add_e_f64s(x, simd.splat_f64s(*h), *sum);
                 }
             }
-        }
-        for (sums, tile) in sums.iter_mut().zip(&tile) {
-            for (sum, tile) in sums[row..row + LANES].iter_mut().zip(tile) {
-                *sum += tile;
+            for (sums, tile) in sums.iter_mut().zip(tile) {
+                let sum = &mut S::as_mut_simd_f64s(sums).0[r];
+                *sum = simd.add_f64s(*sum, tile);
             }
         }
-    }
-    for row in whole..rows {
-        for (c, sums) in sums.iter_mut().enumerate() {
-            sums[row] += a.iter().zip(h).map(|(a, h)| a[start + row] * h[c]).sum::<f64>();
+        for row in whole * S::F64_LANES..rows {
+            for (c, sums) in sums.iter_mut().enumerate() {
+                sums[row] += a.iter().zip(h).map(|(a, h)| a[start + row] * h[c]).sum::<f64>();
+            }
         }
     }
 }
