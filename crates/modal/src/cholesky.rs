@@ -236,7 +236,25 @@ impl Dense {
 #[derive(Default)]
 struct Sums {
     products: Vec<f64>,
-    places: Vec<usize>,
+    runs: Vec<Run>,
+}
+
+/// Rows of an update that are neighbours in the supernode at hand, too.
+struct Run {
+    first: usize,
+    place: usize,
+    rows: usize,
+}
+
+/// Cuts rows with these places into runs.
+fn cut(places: impl Iterator<Item = usize>, runs: &mut Vec<Run>) {
+    runs.clear();
+    for (row, place) in places.enumerate() {
+        match runs.last_mut() {
+            Some(last) if last.place + last.rows == place => last.rows += 1,
+            _ => runs.push(Run { first: row, place, rows: 1 }),
+        }
+    }
 }
 
 /// The supernodes that give to the one at hand, which ends before the row `end`.
@@ -252,7 +270,7 @@ struct Before<'a> {
 impl Before<'_> {
     /// Takes from rows of the supernode at hand, `own` from the row `first` on, what the others give to them.
     fn subtract(&self, mut own: MatMut<'_, f64>, first: usize, sums: &mut Sums) {
-        let Sums { products, places } = sums;
+        let Sums { products, runs } = sums;
         let starts = self.symbolic.col_ptr_for_val();
         for given in self.updates {
             let pattern = &self.symbolic.supernode(given.by).pattern()[given.from..];
@@ -268,8 +286,7 @@ impl Before<'_> {
             let of_it = MatRef::from_column_major_slice(of_it, of_it.len() / width, width);
             let of_it = of_it.subrows(width + given.from, pattern.len());
 
-            places.clear();
-            places.extend(pattern[..high].iter().map(|row| self.place[*row] as usize));
+            cut(pattern[low..high].iter().map(|row| self.place[*row] as usize - first), runs);
             products.resize(products.len().max((high - low) * columns), 0.0);
             let products = &mut products[..(high - low) * columns];
             matmul(
@@ -280,10 +297,11 @@ impl Before<'_> {
                 1.0,
                 Par::Seq,
             );
-            for (products, column) in products.chunks_exact(high - low).zip(&*places) {
-                let mut own = own.rb_mut().col_mut(*column);
-                for (product, row) in products.iter().zip(&places[low..]) {
-                    own[row - first] -= product;
+            for (products, row) in products.chunks_exact(high - low).zip(pattern) {
+                let mut own = own.rb_mut().col_mut(self.place[*row] as usize);
+                for Run { first, place, rows } in &*runs {
+                    let own = own.rb_mut().subrows_mut(*place, *rows);
+                    own.iter_mut().zip(&products[*first..first + rows]).for_each(|(own, product)| *own -= product);
                 }
             }
         }

@@ -65,16 +65,14 @@ pub(crate) fn solve(
     let groups = x.ncols().div_ceil(MOST);
     let width = x.ncols().div_ceil(groups.max(1)).next_multiple_of(STEP).max(STEP);
     let problem = Problem { factor, subtrees };
-    let (to, _) = order.arrays();
+    let (old, new) = order.arrays();
     for first in (0..x.ncols()).step_by(width) {
         let columns = width.min(x.ncols() - first);
-        let x = x.rb_mut().subcols_mut(first, columns);
+        let mut x = x.rb_mut().subcols_mut(first, columns);
         scratch.rows.resize(width * x.nrows(), 0.0);
-        scratch.rows.par_chunks_mut(width * ROWS).zip(to.par_chunks(ROWS)).for_each(|(rows, to)| {
-            for (c, column) in x.rb().col_iter().enumerate() {
-                for (row, from) in rows.chunks_exact_mut(width).zip(to) {
-                    row[c] = column[*from];
-                }
+        scratch.rows.par_chunks_mut(width * ROWS).zip(old.par_chunks(ROWS)).for_each(|(rows, old)| {
+            for (row, old) in rows.chunks_exact_mut(width).zip(old) {
+                row.iter_mut().zip(x.rb().row(*old).iter()).for_each(|(to, from)| *to = *from);
             }
         });
         match width {
@@ -84,9 +82,9 @@ pub(crate) fn solve(
             _ => problem.solve::<MOST>(scratch),
         }
         let rows = &scratch.rows;
-        x.par_col_chunks_mut(1).enumerate().for_each(|(c, mut column)| {
-            for (row, from) in rows.chunks_exact(width).zip(to) {
-                column[(*from, 0)] = row[c];
+        x.rb_mut().par_row_chunks_mut(ROWS).zip(new.par_chunks(ROWS)).for_each(|(x, new)| {
+            for (x, new) in x.row_iter_mut().zip(new) {
+                x.iter_mut().zip(&rows[width * new..]).for_each(|(to, from)| *to = *from);
             }
         });
     }
