@@ -530,20 +530,23 @@ fn add_combinations<const K: usize, const W: usize, S: Simd>(
     columns: &[[f64; K]],
     x: &[[f64; W]; K],
 ) {
-    let x = x.each_ref().map(|x| S::as_simd_f64s(x));
-    for (row, factors) in rows.iter_mut().zip(columns) {
-        prefetch(factors);
-        let (vectors, rest) = S::as_mut_simd_f64s(row);
-        for (v, vector) in vectors.iter_mut().enumerate() {
-            let mut sum = *vector;
-            for k in 0..K {
-                sum = simd.mul_add_e_f64s(simd.splat_f64s(factors[k]), x[k].0[v], sum);
+    let parts = x.each_ref().map(|x| S::as_simd_f64s(x));
+    for v in 0..W / S::F64_LANES {
+        let x: [S::f64s; K] = std::array::from_fn(|k| parts[k].0[v]);
+        for (row, factors) in rows.iter_mut().zip(columns) {
+            if v == 0 {
+                prefetch(factors);
             }
-            *vector = sum;
-        }
-        for (c, sum) in rest.iter_mut().enumerate() {
+            let sum = &mut S::as_mut_simd_f64s(row).0[v];
             for k in 0..K {
-                *sum += factors[k] * x[k].1[c];
+                *sum = simd.mul_add_e_f64s(simd.splat_f64s(factors[k]), x[k], *sum);
+            }
+        }
+    }
+    for (row, factors) in rows.iter_mut().zip(columns) {
+        for (c, sum) in S::as_mut_simd_f64s(row).1.iter_mut().enumerate() {
+            for k in 0..K {
+                *sum += factors[k] * parts[k].1[c];
             }
         }
     }
