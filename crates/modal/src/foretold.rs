@@ -131,9 +131,9 @@ impl Foretold {
         self.factor + (self.shifted + self.scratch).max(search)
     }
 
-    /// The search for modes with a basis of so many vectors, beside the factor.
-    fn of_basis(&self, vectors: usize, block: usize) -> usize {
-        WORD * self.unknowns * (2 * vectors + BLOCKS * block)
+    /// The search for modes with a basis of so many vectors, beside the factor, and the `shapes` that come of it at its end.
+    fn of_basis(&self, vectors: usize, block: usize, shapes: usize) -> usize {
+        WORD * self.unknowns * (2 * vectors + BLOCKS * block + shapes)
     }
 
     /// Rayleigh–Ritz for so many shapes: them, as they come and go, and their products with K and M.
@@ -143,7 +143,7 @@ impl Foretold {
 
     /// The search for so many modes with a basis of `size` vectors, and their reduction.
     pub(crate) fn of_search(&self, size: usize, block: usize, shapes: usize) -> usize {
-        self.of_basis(size, block).max(self.of_ritz(shapes)).max(self.of_reduction(shapes))
+        self.of_basis(size, block, shapes).max(self.of_ritz(shapes)).max(self.of_reduction(shapes))
     }
 
     /// The reduction to so many shapes, which are there besides: they, their products with M, and both by axes.

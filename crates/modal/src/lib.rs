@@ -39,6 +39,7 @@ mod node_pairs;
 mod ordering;
 mod outside;
 mod pairs;
+mod pattern;
 mod polynomials;
 mod products;
 mod progress;

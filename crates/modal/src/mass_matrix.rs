@@ -5,8 +5,8 @@ use faer::{Mat, MatMut, MatRef, Side};
 
 use crate::error::ModalError;
 use crate::mass::NodalMass;
+use crate::pattern::Pattern;
 use crate::products::{Packed, symmetric_product_into};
-use crate::shifted_matrix::Pattern;
 use crate::symmetry::check_symmetric;
 
 /// An eigenvalue of M, scaled to a unit diagonal, that is below zero by less than this is rounding.

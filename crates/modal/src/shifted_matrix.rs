@@ -3,12 +3,13 @@
 use faer::Mat;
 use faer::MatRef;
 use faer::perm::Perm;
-use faer::sparse::{FaerError, SparseColMat, SymbolicSparseColMat, SymbolicSparseColMatRef};
+use faer::sparse::{FaerError, SparseColMat};
 
 use crate::constraints::Constraints;
 use crate::error::ModalError;
 use crate::mass_matrix::MassMatrix;
 use crate::ordering::{nested_dissection, nested_dissection_of_nodes};
+use crate::pattern::Pattern;
 use crate::stiffness::StiffnessMatrix;
 
 /// K + sM; held rows and columns are those of the identity.
@@ -17,23 +18,6 @@ pub(crate) struct ShiftedMatrix<'a> {
     mass: &'a MassMatrix<'a>,
     shift: f64,
     constraints: &'a Constraints,
-}
-
-/// Where the entries of a matrix are.
-pub(crate) enum Pattern<'a> {
-    /// As they are kept.
-    Given(SymbolicSparseColMatRef<'a, usize>),
-    /// Made for the purpose.
-    Made(SymbolicSparseColMat<usize>),
-}
-
-impl Pattern<'_> {
-    pub(crate) fn as_ref(&self) -> SymbolicSparseColMatRef<'_, usize> {
-        match self {
-            Self::Given(pattern) => *pattern,
-            Self::Made(pattern) => pattern.as_ref(),
-        }
-    }
 }
 
 impl<'a> ShiftedMatrix<'a> {

@@ -7,8 +7,8 @@ use rayon::prelude::*;
 
 use crate::error::ModalError;
 use crate::node_pairs::NodePairs;
+use crate::pattern::Pattern;
 use crate::products::{NodeBlocks, Packed, blocks_product, symmetric_product_into};
-use crate::shifted_matrix::Pattern;
 use crate::symmetry::check_symmetric_blocks;
 
 /// The symmetric stiffness matrix of a body.
