@@ -50,7 +50,12 @@ impl Rules {
 
     /// Integration points of an element: four where it is straight (K is then exact), fourteen where it is curved.
     pub(crate) fn points(&self, positions: &[[f64; 3]; 10]) -> Vec<IntegrationPoint> {
-        in_space(if is_straight(positions) { &self.straight } else { &self.curved }, positions)
+        in_space(self.quadratic(is_straight(positions)), positions)
+    }
+
+    /// The rule for products of two gradients.
+    pub(crate) fn quadratic(&self, is_straight: bool) -> &[RulePoint] {
+        if is_straight { &self.straight } else { &self.curved }
     }
 
     /// The rule for products of three gradients: five points where the element is straight, which are exact then, fourteen

@@ -10,7 +10,7 @@
 //! * [`PointMass`]es sit anywhere on the body; [`Mesh::locate`] turns a point into nodes and weights.
 //! * Physical groups of surfaces carry loads, see [`Mesh::surface_weights`] and [`Mesh::surface_pressure`]; groups of any
 //!   dimension, boxes, balls and lines pick nodes, see [`Mesh::group_nodes`]; [`Mesh::mean_rotation`] carries a moment.
-//! * [`assemble`] fills K and M in parallel into one sparsity pattern. Nothing of size N×N is ever dense.
+//! * [`assemble`] fills K and M in parallel over the pairs of coupled nodes. Nothing of size N×N is ever dense.
 //! * [`reduced_geometric_stiffness`] gives the stress stiffness of displacement fields, reduced to a few shapes;
 //!   [`second_order_forces`] and [`second_order_energies`] what displacements of second order meet in a St. Venant–Kirchhoff
 //!   body.
@@ -23,7 +23,9 @@
 #![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable))]
 
 mod assembly;
+mod coupling;
 mod deformation;
+mod element_columns;
 mod error;
 mod faces;
 mod geometric_stiffness;

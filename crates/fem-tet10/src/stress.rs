@@ -17,7 +17,7 @@ use faer::{Mat, MatRef};
 use nalgebra::Matrix3;
 use rayon::prelude::*;
 
-use crate::assembly::Incidence;
+use crate::coupling::Incidence;
 use crate::deformation::{check_field, displacement_gradients, relative_displacements, second_strain, strain, stress};
 use crate::error::AssemblyError;
 use crate::integration::{IntegrationPoint, Rules};

@@ -13,7 +13,6 @@ use faer::{Accum, Mat, MatRef};
 use crate::dense::symmetric_eigen;
 use crate::error::ModalError;
 use crate::lanczos::random_block;
-use crate::products::symmetric_product;
 use crate::solve::Solver;
 use crate::tall;
 
@@ -79,7 +78,7 @@ impl Solver<'_> {
             let mut vector = block.subcols(column, 1).to_owned();
             let mut whole = 0.0;
             for round in 0..3 {
-                let stiff = symmetric_product(self.stiffness, vector.as_ref());
+                let stiff = self.stiffness.product(vector.as_ref());
                 let norm = tall::inner(vector.as_ref(), stiff.as_ref())[(0, 0)].max(0.0).sqrt();
                 if round == 0 {
                     whole = norm;

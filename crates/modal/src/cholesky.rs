@@ -316,6 +316,7 @@ mod tests {
 
     use super::*;
     use crate::constraints::Constraints;
+    use crate::mass_matrix::MassMatrix;
     use crate::substitution::tests::{grid, supernodal};
     use crate::support::Support;
 
@@ -326,7 +327,8 @@ mod tests {
         let ones = SparseColMat::try_new_from_triplets(n, n, &ones).unwrap();
         let positions: Vec<[f64; 3]> = (0..n / 3).map(|i| [i as f64, (i * i % 7) as f64, (i % 5) as f64]).collect();
         let constraints = Constraints::new(&Support::free(), &positions, 3).unwrap();
-        let matrix = ShiftedMatrix::new(a.as_ref(), ones.as_ref(), shift, &constraints);
+        let ones = MassMatrix::new(ones.as_ref(), n / 3).unwrap();
+        let matrix = ShiftedMatrix::new(a.as_ref().into(), &ones, shift, &constraints);
         let assembled = matrix.assembled(&matrix.pattern().unwrap()).unwrap();
         let symbolic = supernodal(&assembled);
         let SymbolicCholeskyRaw::Supernodal(factor) = symbolic.raw() else { panic!() };

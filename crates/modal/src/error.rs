@@ -134,6 +134,12 @@ pub enum ModalError {
         /// Its value.
         value: f64,
     },
+    /// A list of coupled nodes that does not rise.
+    #[error("the nodes that node {node} (counted from 0) is coupled to are not in rising order")]
+    Unsorted {
+        /// Index of the node.
+        node: usize,
+    },
     /// A node that is not there.
     #[error("node {node} (counted from 0) is not there; the mesh has {count} nodes")]
     NoNode {

@@ -4,10 +4,11 @@ use std::time::{Duration, Instant};
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::{cholesky_in_place, cholesky_in_place_scratch};
-use faer::sparse::SparseColMatRef;
 use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
 use faer::sparse::linalg::cholesky::{SymbolicCholesky, SymbolicCholeskyRaw};
 use faer::{Mat, Par, Spec};
+
+use crate::stiffness::StiffnessMatrix;
 
 /// Bytes of a number or an index.
 const WORD: usize = 8;
@@ -75,8 +76,10 @@ fn speed(threads: usize) -> Option<f64> {
 pub(crate) struct Foretold {
     unknowns: usize,
     entries: usize,
-    /// K, M, M over nodes, rigid modes.
+    /// K, M, rigid modes.
     matrices: usize,
+    /// The lower half of the pattern of K by degrees of freedom, where it is made for the ordering.
+    pattern: usize,
     /// The factor of K + sM, with its pattern.
     factor: usize,
     /// K + sM itself, where it is put together.
@@ -86,19 +89,15 @@ pub(crate) struct Foretold {
 }
 
 impl Foretold {
-    pub(crate) fn new(
-        stiffness: SparseColMatRef<'_, usize, f64>,
-        mass: SparseColMatRef<'_, usize, f64>,
-        rigid: usize,
-    ) -> Self {
-        let (unknowns, entries) = (stiffness.ncols(), stiffness.row_idx().len());
-        let of = |indices: usize, values: usize| WORD * (indices + values + unknowns);
-        let shared = std::ptr::eq(stiffness.row_idx(), mass.row_idx());
-        let of_mass = if shared { WORD * mass.val().len() } else { of(mass.row_idx().len(), mass.val().len()) };
-        // A nodal index has four bytes, and a node has nine entries of K for one of M.
-        let nodal = (WORD + 4) * entries / 9 + WORD * unknowns / 3;
-        let matrices = of(entries, entries) + of_mass + nodal + WORD * rigid * unknowns;
-        Self { unknowns, entries, matrices, factor: 0, shifted: 0, scratch: 0 }
+    /// K and M take so many bytes.
+    pub(crate) fn new(stiffness: StiffnessMatrix<'_>, matrices: usize, rigid: usize) -> Self {
+        let (unknowns, entries) = (stiffness.ncols(), stiffness.entries());
+        let matrices = matrices + WORD * rigid * unknowns;
+        let pattern = match stiffness {
+            StiffnessMatrix::Nodal(_) => WORD * (entries / 2 + 3 * unknowns),
+            StiffnessMatrix::General(_) => 0,
+        };
+        Self { unknowns, entries, matrices, pattern, factor: 0, shifted: 0, scratch: 0 }
     }
 
     /// With the factor, of which the numeric factorisation takes so many bytes of scratch.
@@ -124,7 +123,7 @@ impl Foretold {
     pub(crate) fn of_ordering(&self) -> usize {
         // The graph grows by doubling.
         let graph = crate::ordering::ordering_bytes(self.unknowns / 3, self.entries / 9) + 2 * 4 * self.entries / 9;
-        graph.max(WORD * (self.entries + 5 * self.unknowns))
+        self.pattern + graph.max(WORD * (self.entries + 5 * self.unknowns))
     }
 
     /// From the numeric factorisation on, beside K and M: the factor, and what comes with it or after it.
@@ -132,19 +131,19 @@ impl Foretold {
         self.factor + (self.shifted + self.scratch).max(search)
     }
 
-    /// The search for modes with a basis of so many vectors, beside the factor.
-    fn of_basis(&self, vectors: usize, block: usize) -> usize {
-        WORD * self.unknowns * (2 * vectors + BLOCKS * block)
+    /// The search for modes with a basis of so many vectors, beside the factor, and the `shapes` that come of it at its end.
+    fn of_basis(&self, vectors: usize, block: usize, shapes: usize) -> usize {
+        WORD * self.unknowns * (2 * vectors + BLOCKS * block + shapes)
     }
 
-    /// Rayleigh–Ritz for so many shapes: them, as they come and go, and twice their products with K and M.
+    /// Rayleigh–Ritz for so many shapes: them, as they come and go, and their products with K and M.
     fn of_ritz(&self, shapes: usize) -> usize {
-        of_vectors(self.unknowns, 6 * shapes)
+        of_vectors(self.unknowns, 4 * shapes)
     }
 
     /// The search for so many modes with a basis of `size` vectors, and their reduction.
     pub(crate) fn of_search(&self, size: usize, block: usize, shapes: usize) -> usize {
-        self.of_basis(size, block).max(self.of_ritz(shapes)).max(self.of_reduction(shapes))
+        self.of_basis(size, block, shapes).max(self.of_ritz(shapes)).max(self.of_reduction(shapes))
     }
 
     /// The reduction to so many shapes, which are there besides: they, their products with M, and both by axes.

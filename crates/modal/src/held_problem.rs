@@ -4,14 +4,14 @@
 //! that are not held, in their order, then one for each motion of the held ones. Nothing is copied but the few rows of the
 //! motions.
 
-use faer::Mat;
-use faer::sparse::SparseColMatRef;
+use faer::{Mat, MatRef};
 
 use crate::constraints::Constraints;
 use crate::error::ModalError;
 use crate::foretold::of_vectors;
-use crate::products::symmetric_product;
+use crate::mass_matrix::MassMatrix;
 use crate::rigid::RigidModes;
+use crate::stiffness::StiffnessMatrix;
 
 /// `K φ = λ M φ` of a body with its support.
 pub struct HeldProblem<'a> {
@@ -29,7 +29,7 @@ pub struct HeldProblem<'a> {
 
 /// One of the matrices. It is symmetric.
 pub struct HeldMatrix<'a> {
-    matrix: SparseColMatRef<'a, usize, f64>,
+    matrix: Symmetric<'a>,
     /// Degrees of freedom of the rows; the motions follow.
     free: Vec<usize>,
     /// The row of each degree of freedom, the number of unknowns for those that are held.
@@ -40,10 +40,32 @@ pub struct HeldMatrix<'a> {
     corner: Mat<f64>,
 }
 
+/// The matrix of the body that a held one comes from.
+enum Symmetric<'a> {
+    Stiffness(StiffnessMatrix<'a>),
+    Mass(&'a MassMatrix<'a>),
+}
+
+impl Symmetric<'_> {
+    fn product(&self, x: MatRef<'_, f64>) -> Mat<f64> {
+        match self {
+            Self::Stiffness(matrix) => matrix.product(x),
+            Self::Mass(matrix) => matrix.product(x),
+        }
+    }
+
+    fn for_each_in_column(&self, column: usize, entry: impl FnMut(usize, f64)) {
+        match self {
+            Self::Stiffness(matrix) => matrix.for_each_in_column(column, entry),
+            Self::Mass(matrix) => matrix.for_each_in_column(column, entry),
+        }
+    }
+}
+
 impl<'a> HeldProblem<'a> {
     pub(crate) fn new(
-        stiffness: SparseColMatRef<'a, usize, f64>,
-        mass: SparseColMatRef<'a, usize, f64>,
+        stiffness: StiffnessMatrix<'a>,
+        mass: &'a MassMatrix<'a>,
         constraints: &Constraints,
         rigid: &RigidModes,
         shift: f64,
@@ -54,8 +76,8 @@ impl<'a> HeldProblem<'a> {
         let moving: Vec<usize> = (0..rigid.shapes.ncols()).filter(is_there).collect();
         let rigid = Mat::from_fn(rigid.shapes.nrows(), moving.len(), |i, j| rigid.shapes[(i, moving[j])]);
         Ok(Self {
-            stiffness: HeldMatrix::new(stiffness, constraints),
-            mass: HeldMatrix::new(mass, constraints),
+            stiffness: HeldMatrix::new(Symmetric::Stiffness(stiffness), constraints),
+            mass: HeldMatrix::new(Symmetric::Mass(mass), constraints),
             rigid: constraints.reduced(rigid.as_ref()),
             shift,
             available,
@@ -64,12 +86,12 @@ impl<'a> HeldProblem<'a> {
 }
 
 impl<'a> HeldMatrix<'a> {
-    fn new(matrix: SparseColMatRef<'a, usize, f64>, constraints: &Constraints) -> Self {
+    fn new(matrix: Symmetric<'a>, constraints: &Constraints) -> Self {
         let motions = constraints.motions();
-        let forces = symmetric_product(matrix, motions.as_ref());
+        let forces = matrix.product(motions.as_ref());
         let free = constraints.free_rows();
         let unknowns = free.len() + motions.ncols();
-        let mut row_of = vec![unknowns; matrix.ncols()];
+        let mut row_of = vec![unknowns; forces.nrows()];
         free.iter().enumerate().for_each(|(row, freedom)| row_of[*freedom] = row);
         let corner = motions.transpose() * &forces;
         Self { matrix, free, row_of, forces, corner }
@@ -91,10 +113,11 @@ impl<'a> HeldMatrix<'a> {
         match self.free.get(row) {
             Some(freedom) => {
                 // A column of a symmetric matrix is its row.
-                let column = self.matrix.row_idx_of_col(*freedom).zip(self.matrix.val_of_col(*freedom));
-                for (other, value) in column.filter(|(other, _)| self.row_of[*other] < free) {
-                    not_zero(self.row_of[other], *value);
-                }
+                self.matrix.for_each_in_column(*freedom, |other, value| {
+                    if self.row_of[other] < free {
+                        not_zero(self.row_of[other], value);
+                    }
+                });
                 (0..motions).for_each(|motion| not_zero(free + motion, self.forces[(*freedom, motion)]));
             }
             None => {

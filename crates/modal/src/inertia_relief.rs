@@ -2,7 +2,6 @@
 
 use faer::{Mat, MatRef};
 
-use crate::products::symmetric_product;
 use crate::solve::Solver;
 use crate::tall;
 
@@ -49,7 +48,7 @@ impl<'a> InertiaRelief<'a> {
 
     /// K u, without reactions.
     pub(crate) fn stiff(&self, displacements: &Mat<f64>) -> Mat<f64> {
-        let mut forces = symmetric_product(self.solver.stiffness, displacements.as_ref());
+        let mut forces = self.solver.stiffness.product(displacements.as_ref());
         self.solver.constraints.project(forces.as_mut());
         forces
     }

@@ -1,10 +1,13 @@
 //! The mass matrix as a matrix over nodes: `M = M_s ⊗ I₃`.
 
+use std::borrow::Cow;
+
 use faer::sparse::{SparseColMatRef, Triplet};
 use faer::{Mat, MatMut, MatRef};
 use rayon::prelude::*;
 
 use crate::error::ModalError;
+use crate::node_pairs::NodePairs;
 use crate::products::{Packed, nodal_product};
 use crate::symmetry::check_symmetric;
 
@@ -15,13 +18,33 @@ const ISOTROPY: f64 = 1e-12;
 ///
 /// That is what solid elements and point masses give; it is a ninth of the stored entries of M.
 #[derive(Debug, Clone)]
-pub struct NodalMass {
-    start: Vec<usize>,
-    nodes: Vec<u32>,
-    values: Vec<f64>,
+pub struct NodalMass<'a> {
+    start: Cow<'a, [usize]>,
+    nodes: Cow<'a, [u32]>,
+    values: Cow<'a, [f64]>,
 }
 
-impl NodalMass {
+impl<'a> NodalMass<'a> {
+    /// `M_s` in compressed columns: `nodes[start[j]..start[j + 1]]` are the nodes that node j is coupled to, itself too, in
+    /// rising order, and `values` their entries.
+    ///
+    /// # Errors
+    /// [`ModalError::Length`], [`ModalError::Unsorted`] and [`ModalError::NoNode`] where the lists do not fit together;
+    /// [`ModalError::NotFinite`], [`ModalError::NotSymmetric`].
+    pub fn of_nodes(start: &'a [usize], nodes: &'a [u32], values: &'a [f64]) -> Result<Self, ModalError> {
+        NodePairs::new(start, nodes)?;
+        if values.len() != nodes.len() {
+            let what = "the entries of the mass matrix over nodes";
+            return Err(ModalError::Length { what, found: values.len(), expected: nodes.len() });
+        }
+        if let Some(entry) = values.iter().position(|value| !value.is_finite()) {
+            let index = 3 * (start.partition_point(|first| *first <= entry) - 1);
+            return Err(ModalError::NotFinite { what: "mass", index, value: values[entry] });
+        }
+        check_symmetric("mass", 3, start, |entry| nodes[entry] as usize, |entry| values[entry])?;
+        Ok(Self { start: start.into(), nodes: nodes.into(), values: values.into() })
+    }
+
     /// Takes `M_s` out of M (3n×3n, both triangles stored).
     ///
     /// # Errors
@@ -76,7 +99,7 @@ impl NodalMass {
             start.push(nodes.len());
         }
         check_symmetric("mass", 3, &start, |entry| nodes[entry] as usize, |entry| values[entry])?;
-        Ok(Self { start, nodes, values })
+        Ok(Self { start: start.into(), nodes: nodes.into(), values: values.into() })
     }
 
     /// M·X for X with 3n rows.
@@ -108,7 +131,19 @@ impl NodalMass {
 
     /// Whether a node has a mass at all.
     pub(crate) fn is_massive(&self, node: usize) -> bool {
-        self.start[node] < self.start[node + 1]
+        self.values[self.start[node]..self.start[node + 1]].iter().any(|value| *value != 0.0)
+    }
+
+    /// The pairs of nodes that have an entry.
+    pub(crate) fn pairs(&self) -> NodePairs<'_> {
+        NodePairs { start: &self.start, nodes: &self.nodes }
+    }
+
+    /// The nodes that a node is coupled to, and the entries.
+    #[inline(always)]
+    pub(crate) fn column(&self, node: usize) -> impl Iterator<Item = (usize, f64)> {
+        let range = self.start[node]..self.start[node + 1];
+        self.nodes[range.clone()].iter().zip(&self.values[range]).map(|(node, value)| (*node as usize, *value))
     }
 
     /// Number of nodes n.

@@ -5,6 +5,7 @@ use faer::{Mat, MatMut, MatRef, Side};
 
 use crate::error::ModalError;
 use crate::mass::NodalMass;
+use crate::pattern::Pattern;
 use crate::products::{Packed, symmetric_product_into};
 use crate::symmetry::check_symmetric;
 
@@ -15,7 +16,7 @@ const SEMIDEFINITE: f64 = 1e-10;
 #[derive(Debug, Clone)]
 pub enum MassMatrix<'a> {
     /// `M_s ⊗ I₃`: three degrees of freedom a node, and the same mass along every axis.
-    Nodal(NodalMass),
+    Nodal(NodalMass<'a>),
     /// Any symmetric positive semi-definite matrix, with three or six degrees of freedom a node.
     General(GeneralMass<'a>),
 }
@@ -87,6 +88,43 @@ impl<'a> MassMatrix<'a> {
         match self {
             Self::Nodal(mass) => mass.is_massive(row / 3),
             Self::General(mass) => mass.matrix.val_of_col(row).iter().any(|value| *value != 0.0),
+        }
+    }
+
+    /// Columns.
+    pub(crate) fn ncols(&self) -> usize {
+        match self {
+            Self::Nodal(mass) => 3 * mass.node_count(),
+            Self::General(mass) => mass.matrix.ncols(),
+        }
+    }
+
+    /// Memory held, bytes.
+    pub(crate) fn bytes(&self) -> usize {
+        match self {
+            Self::Nodal(mass) => mass.pairs().bytes() + 8 * mass.pairs().nodes.len(),
+            Self::General(mass) => 16 * mass.matrix.row_idx().len() + 8 * mass.matrix.ncols(),
+        }
+    }
+
+    /// Calls `entry` with the row and the value of each entry of a column.
+    #[inline(always)]
+    pub(crate) fn for_each_in_column(&self, column: usize, mut entry: impl FnMut(usize, f64)) {
+        match self {
+            Self::Nodal(mass) => mass.column(column / 3).for_each(|(node, value)| entry(3 * node + column % 3, value)),
+            Self::General(mass) => {
+                let column = mass.matrix.row_idx_of_col(column).zip(mass.matrix.val_of_col(column));
+                column.for_each(|(row, value)| entry(row, *value));
+            }
+        }
+    }
+
+    /// Where its entries on and below the diagonal are, with the rest of their 3×3 blocks where it is a scalar for each pair
+    /// of nodes; of a general one, also those above.
+    pub(crate) fn pattern(&self) -> Pattern<'_> {
+        match self {
+            Self::Nodal(mass) => Pattern::Made(mass.pairs().lower()),
+            Self::General(mass) => Pattern::Given(mass.matrix.symbolic()),
         }
     }
 

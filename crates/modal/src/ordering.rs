@@ -11,6 +11,7 @@ use faer::sparse::SymbolicSparseColMatRef;
 use metis_sys::idx_t;
 
 use crate::error::ModalError;
+use crate::node_pairs::NodePairs;
 use crate::symmetry::check_symmetric;
 
 /// What METIS allocates at most, bytes: its own weights, and the coarser graphs.
@@ -34,6 +35,23 @@ pub(crate) fn nested_dissection(pattern: SymbolicSparseColMatRef<'_, usize>) -> 
         neighbours.extend(of_node.into_iter().filter(|other| *other as usize != node));
         start.push(neighbours.len() as idx_t);
     }
+    dissection(start, neighbours)
+}
+
+/// The same by the pairs of coupled nodes.
+pub(crate) fn nested_dissection_of_nodes(pairs: &NodePairs<'_>) -> Result<Perm<usize>, ModalError> {
+    let (mut start, mut neighbours) = (Vec::with_capacity(pairs.count() + 1), Vec::with_capacity(pairs.nodes.len()));
+    start.push(0);
+    for node in 0..pairs.count() {
+        neighbours.extend(pairs.of(node).iter().filter(|other| **other as usize != node).map(|other| *other as idx_t));
+        start.push(neighbours.len() as idx_t);
+    }
+    dissection(start, neighbours)
+}
+
+/// The order of the degrees of freedom by that of the nodes of a graph.
+fn dissection(start: Vec<idx_t>, neighbours: Vec<idx_t>) -> Result<Perm<usize>, ModalError> {
+    let n = start.len() - 1;
     if neighbours.len() > idx_t::MAX as usize {
         let reason = "the graph of the nodes is too large for METIS".to_owned();
         return Err(ModalError::Factorization { size: 3 * n, reason });

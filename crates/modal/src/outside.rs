@@ -8,7 +8,6 @@ use crate::engine::{Eigenpairs, Engine, StaticAnswers};
 use crate::error::ModalError;
 use crate::foretold::of_vectors;
 use crate::inertia_relief::InertiaRelief;
-use crate::products::symmetric_product;
 use crate::progress::Progress;
 use crate::ritz::{RitzPairs, rayleigh_ritz};
 use crate::solve::{Modes, SolveStats, Solver};
@@ -101,13 +100,10 @@ impl Solver<'_> {
     /// What rounding leaves of the product Kφ with each shape, relative to it.
     fn rounding_of_products(&self, shapes: &Mat<f64>) -> Vec<f64> {
         let k = self.stiffness;
-        let products = symmetric_product(k, shapes.as_ref());
+        let products = k.product(shapes.as_ref());
         let of_shape = |column: usize| {
             let shape = shapes.col(column);
-            let of_row = |row: usize| -> f64 {
-                k.row_idx_of_col(row).zip(k.val_of_col(row)).map(|(i, value)| (shape[i] * value).abs()).sum()
-            };
-            let squared: f64 = (0..k.ncols()).map(|row| of_row(row).powi(2)).sum();
+            let squared: f64 = k.absolute_product(shape).iter().map(|force| force.powi(2)).sum();
             ROUNDINGS * f64::EPSILON * squared.sqrt() / products.col(column).norm_l2()
         };
         (0..shapes.ncols()).map(of_shape).collect()

@@ -83,6 +83,44 @@ impl NodeRows for Symmetric<'_> {
     }
 }
 
+/// A symmetric matrix (3n×3n) of 3×3 blocks, by pairs of nodes in compressed columns.
+#[derive(Clone, Copy)]
+pub(crate) struct NodeBlocks<'a> {
+    pub start: &'a [usize],
+    pub nodes: &'a [u32],
+    /// The three columns of each node, in each the rows of the nodes that it is coupled to.
+    pub values: &'a [f64],
+}
+
+impl NodeRows for NodeBlocks<'_> {
+    #[inline(always)]
+    fn product(&self, node: usize, packed: &[Packed]) -> [Packed; 3] {
+        let mut sums = [[0.0; WIDTH]; 3];
+        let range = self.start[node]..self.start[node + 1];
+        let nodes = &self.nodes[range.clone()];
+        let values = &self.values[9 * range.start..9 * range.end];
+        let (x, yz) = values.split_at(3 * nodes.len());
+        let (y, z) = yz.split_at(3 * nodes.len());
+        let (x, y, z) = (x.as_chunks::<3>().0, y.as_chunks::<3>().0, z.as_chunks::<3>().0);
+        for (((other, x), y), z) in nodes.iter().zip(x).zip(y).zip(z) {
+            let first = 3 * *other as usize;
+            for (axis, row) in packed[first..first + 3].iter().enumerate() {
+                for c in 0..WIDTH {
+                    sums[0][c] += x[axis] * row[c];
+                    sums[1][c] += y[axis] * row[c];
+                    sums[2][c] += z[axis] * row[c];
+                }
+            }
+        }
+        sums
+    }
+}
+
+/// Y = A·X for a matrix of blocks; `packed` is scratch.
+pub(crate) fn blocks_product(a: NodeBlocks<'_>, x: MatRef<'_, f64>, y: MatMut<'_, f64>, packed: &mut Vec<Packed>) {
+    blocked(x, y, packed, &a);
+}
+
 /// Y = (A ⊗ I₃)·X for a symmetric matrix A over nodes, in compressed rows. `packed` is scratch.
 pub(crate) fn nodal_product(
     start: &[usize],
@@ -188,6 +226,11 @@ mod tests {
         let expanded: Vec<_> =
             scalar.iter().flat_map(|t| (0..3).map(|k| Triplet::new(3 * t.row + k, 3 * t.col + k, t.val))).collect();
         let a3 = SparseColMat::try_new_from_triplets(3 * nodes, 3 * nodes, &expanded).unwrap();
+        // The blocks of the same, zeros beside their diagonals.
+        let blocks: Vec<f64> = (0..3 * nodes)
+            .flat_map(|j| a.row_idx_of_col(j / 3).flat_map(move |i| (0..3).map(move |axis| (3 * i + axis, j))))
+            .map(|(i, j)| a3.get(i, j).copied().unwrap_or(0.0))
+            .collect();
         for columns in [1, 7, 8, 19] {
             let x = Mat::from_fn(3 * nodes, columns, |i, j| ((i * 7 + j * 13) as f64).cos());
             let expected = a3.to_dense() * &x;
@@ -197,6 +240,10 @@ mod tests {
             nodal_product(a.col_ptr(), &indices, a.val(), x.as_ref(), nodal.as_mut(), &mut Vec::new());
             assert!((&general - &expected).norm_max() < 1e-13);
             assert!((&nodal - &expected).norm_max() < 1e-13);
+            let blocks = NodeBlocks { start: a.col_ptr(), nodes: &indices, values: &blocks };
+            let mut by_blocks = Mat::zeros(3 * nodes, columns);
+            blocks_product(blocks, x.as_ref(), by_blocks.as_mut(), &mut Vec::new());
+            assert!((&by_blocks - &expected).norm_max() < 1e-13);
         }
     }
 }

@@ -12,7 +12,11 @@ use crate::solve::Modes;
 use crate::tall;
 
 /// The products of the modes, whose shapes and positions fit the mass.
-pub(crate) fn nodal_products(modes: &Modes, nodal: &NodalMass, positions: &[[f64; 3]]) -> Result<Products, ModalError> {
+pub(crate) fn nodal_products(
+    modes: &Modes,
+    nodal: &NodalMass<'_>,
+    positions: &[[f64; 3]],
+) -> Result<Products, ModalError> {
     let rigid = &modes.rigid;
     let (n, nf) = (positions.len(), modes.shapes.ncols());
     // Ψ, X and 1 side by side: all constants are products of their rows on one axis with M_s times those on another.

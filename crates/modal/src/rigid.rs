@@ -1,14 +1,14 @@
 //! The rigid modes that a body has, from its geometry alone.
 
 use faer::Mat;
-use faer::sparse::SparseColMatRef;
 use nalgebra::{Matrix3, Vector3};
 
 use crate::dense::whitening;
 use crate::error::ModalError;
 use crate::mass_matrix::MassMatrix;
-use crate::products::symmetric_product;
+use crate::polynomials::{Field, rigid_field};
 use crate::rigid_fields::{General, rigid_fields};
+use crate::stiffness::StiffnessMatrix;
 use crate::support::RigidMotion;
 use crate::tall;
 
@@ -105,14 +105,23 @@ impl RigidModes {
     ///
     /// # Errors
     /// [`ModalError::NotFree`] where it is no rounding.
-    pub fn check_free(&self, stiffness: SparseColMatRef<'_, usize, f64>) -> Result<f64, ModalError> {
-        let forces = symmetric_product(stiffness, self.shapes.as_ref());
-        let diagonal: Vec<f64> = (0..forces.nrows()).map(|i| stiffness.get(i, i).copied().unwrap_or(0.0)).collect();
+    pub fn check_free<'a>(&self, stiffness: impl Into<StiffnessMatrix<'a>>) -> Result<f64, ModalError> {
+        let stiffness = stiffness.into();
+        let forces = stiffness.product(self.shapes.as_ref());
+        let diagonal = stiffness.diagonal();
         let scales = Mat::from_fn(forces.nrows(), 6, |i, mode| diagonal[i] * self.shapes[(i, mode)]);
-        let is_there = |mode: &usize| self.shapes.col(*mode).iter().any(|u| *u != 0.0);
+        let of_mode = |mode: usize| [forces.col(mode).norm_l2(), scales.col(mode).norm_l2()];
+        self.refuse_resistance((0..6).map(of_mode))
+    }
+
+    /// Refuses ‖K r‖ that are no rounding, by them and the ‖D r‖ of each mode; returns the largest of their ratios.
+    pub(crate) fn refuse_resistance(&self, norms: impl Iterator<Item = [f64; 2]>) -> Result<f64, ModalError> {
         let mut largest = 0.0_f64;
-        for mode in (0..6).filter(is_there) {
-            let relative = forces.col(mode).norm_l2() / scales.col(mode).norm_l2();
+        for (mode, [force, scale]) in norms.enumerate() {
+            if !self.shapes.col(mode).iter().any(|u| *u != 0.0) {
+                continue;
+            }
+            let relative = force / scale;
             if relative.is_nan() || relative >= FREE {
                 let motion = self.motion.name(mode);
                 return Err(ModalError::NotFree { motion, relative, limit: FREE });
@@ -120,6 +129,18 @@ impl RigidModes {
             largest = largest.max(relative);
         }
         Ok(largest)
+    }
+
+    /// The modes as polynomials in the positions from the centre of mass; none where the motions are of another kind.
+    pub(crate) fn fields(&self) -> Option<Vec<Field>> {
+        if !self.motion.others().is_empty() {
+            return None;
+        }
+        let arm = self.center_of_mass - self.origin;
+        let none = Vector3::zeros();
+        let translations = self.translation_basis.column_iter().map(|t| rigid_field(&t.into(), &none));
+        let rotations = self.rotation_basis.column_iter().map(|b| rigid_field(&b.cross(&arm), &b.into()));
+        Some(translations.chain(rotations).collect())
     }
 }
 

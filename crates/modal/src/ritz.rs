@@ -1,15 +1,14 @@
 //! Rayleigh–Ritz: the best eigenpairs of (K, M) among the combinations of given vectors.
 
-use faer::Mat;
 use faer::reborrow::Reborrow;
-use faer::sparse::SparseColMatRef;
+use faer::{Accum, Mat};
 
 use crate::constraints::Constraints;
 use crate::dense::{symmetric_eigen, whitening};
 use crate::error::ModalError;
 use crate::foretold::of_vectors;
 use crate::mass_matrix::MassMatrix;
-use crate::products::symmetric_product;
+use crate::stiffness::StiffnessMatrix;
 use crate::tall;
 
 /// Components this close to the largest magnitude share it; the first of them gives the sign.
@@ -26,14 +25,17 @@ pub(crate) struct RitzPairs {
 
 /// Rayleigh–Ritz of (K, M) on the span of `vectors`.
 pub(crate) fn rayleigh_ritz(
-    stiffness: SparseColMatRef<'_, usize, f64>,
+    stiffness: StiffnessMatrix<'_>,
     mass: &MassMatrix<'_>,
     constraints: &Constraints,
     vectors: &Mat<f64>,
 ) -> Result<RitzPairs, ModalError> {
-    memory::check("the mode shapes and their products with K and M", of_vectors(vectors.nrows(), 5 * vectors.ncols()))?;
-    let m_vectors = mass.product(vectors.as_ref());
-    let k_vectors = symmetric_product(stiffness, vectors.as_ref());
+    memory::check("the mode shapes and their products with K and M", of_vectors(vectors.nrows(), 4 * vectors.ncols()))?;
+    let zeros = || Mat::zeros(vectors.nrows(), vectors.ncols());
+    let (mut m_vectors, mut k_vectors, mut packed) = (zeros(), zeros(), Vec::new());
+    mass.product_into(vectors.as_ref(), m_vectors.as_mut(), &mut packed);
+    stiffness.product_into(vectors.as_ref(), k_vectors.as_mut(), &mut packed);
+    drop(packed);
     let gram = tall::inner(vectors.as_ref(), m_vectors.as_ref());
     // Cholesky of the Gram matrix turns the pencil into an ordinary problem: C = L⁻¹ (VᵀKV) L⁻ᵀ.
     let whitening = whitening(&gram).map_err(|_| ModalError::DenseEigen { size: gram.nrows() })?;
@@ -41,18 +43,16 @@ pub(crate) fn rayleigh_ritz(
     let (eigenvalues, vectors_of_projected) = symmetric_eigen(&projected)?;
     let transform = &whitening * vectors_of_projected;
 
-    let mut k_shapes = tall::product(k_vectors.as_ref(), transform.as_ref());
-    let mut m_shapes = tall::product(m_vectors.as_ref(), transform.as_ref());
-    constraints.project(k_shapes.as_mut());
-    constraints.project(m_shapes.as_mut());
-    let force_residuals = eigenvalues
-        .iter()
-        .enumerate()
-        .map(|(k, lambda)| {
-            (k_shapes.col(k) - m_shapes.col(k) * faer::Scale(*lambda)).norm_l2() / k_shapes.col(k).norm_l2()
-        })
-        .collect();
-    let mut shapes = tall::product(vectors.as_ref(), transform.as_ref());
+    // Kφ, from which λMφ is taken in place.
+    constraints.project(k_vectors.as_mut());
+    constraints.project(m_vectors.as_mut());
+    let mut forces = tall::product(k_vectors.as_ref(), transform.as_ref());
+    let norms: Vec<f64> = forces.col_iter().map(|force| force.norm_l2()).collect();
+    let scaled = Mat::from_fn(transform.nrows(), transform.ncols(), |i, k| eigenvalues[k] * transform[(i, k)]);
+    tall::multiply(forces.as_mut(), Accum::Add, m_vectors.as_ref(), scaled.as_ref(), -1.0);
+    let force_residuals = forces.col_iter().zip(norms).map(|(rest, norm)| rest.norm_l2() / norm).collect();
+    let mut shapes = forces;
+    tall::multiply(shapes.as_mut(), Accum::Replace, vectors.as_ref(), transform.as_ref(), 1.0);
     fix_signs(&mut shapes);
     Ok(RitzPairs { eigenvalues, shapes, force_residuals })
 }

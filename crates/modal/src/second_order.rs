@@ -14,7 +14,6 @@ use faer::{Mat, MatRef, Side};
 
 use crate::error::ModalError;
 use crate::foretold::of_vectors;
-use crate::products::symmetric_product;
 use crate::solve::{Modes, Solver};
 use crate::tall;
 
@@ -78,7 +77,7 @@ impl Solver<'_> {
         let extended = dynamic + follow.ncols();
         let shapes = tall::side_by_side(modes.shapes.as_ref(), follow.as_ref());
         // The modes and static shapes are Rayleigh–Ritz vectors.
-        let stiff = tall::inner(shapes.as_ref(), symmetric_product(self.stiffness, follow.as_ref()).as_ref());
+        let stiff = tall::inner(shapes.as_ref(), self.stiffness.product(follow.as_ref()).as_ref());
         let stiffness = |i: usize, j: usize| match (i.min(j), i.max(j)) {
             (_, column) if column < dynamic => {
                 if i == j {

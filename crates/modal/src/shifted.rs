@@ -11,12 +11,12 @@ use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::linalg::cholesky::llt::factor::LltError as PivotError;
 use faer::perm::PermRef;
 use faer::reborrow::{Reborrow, ReborrowMut};
+use faer::sparse::FaerError;
 use faer::sparse::linalg::cholesky::supernodal::SupernodalLltRef;
 use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, LltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
     factorize_symbolic_cholesky,
 };
-use faer::sparse::{FaerError, SparseColMatRef};
 use faer::{Accum, Conj, Mat, MatMut, Par, Side, Spec};
 
 use crate::cholesky::NotPositive;
@@ -24,8 +24,10 @@ use crate::constraints::Constraints;
 use crate::dense::whitening;
 use crate::error::ModalError;
 use crate::foretold::{Forecast, Foretold, of_dense_products};
-use crate::ordering::nested_dissection;
-use crate::shifted_matrix::{Pattern, ShiftedMatrix};
+use crate::mass_matrix::MassMatrix;
+use crate::pattern::Pattern;
+use crate::shifted_matrix::ShiftedMatrix;
+use crate::stiffness::StiffnessMatrix;
 use crate::subtrees::Subtrees;
 use crate::{cholesky, substitution, tall};
 
@@ -65,22 +67,22 @@ impl Shifted {
     /// Orders and factors `K + shift·M`, where there is memory for it and for what `search` says of what comes after.
     /// `progress` hears what the factorisation is going to take.
     pub(crate) fn factor(
-        stiffness: SparseColMatRef<'_, usize, f64>,
-        mass: SparseColMatRef<'_, usize, f64>,
+        stiffness: StiffnessMatrix<'_>,
+        mass: &MassMatrix<'_>,
         shift: f64,
         constraints: &Constraints,
+        memory: Foretold,
         search: impl Fn(&Foretold) -> usize,
         progress: impl FnOnce(Forecast),
     ) -> Result<Self, ModalError> {
         let start = Instant::now();
         let size = stiffness.ncols();
-        let memory = Foretold::new(stiffness, mass, 6);
         memory::check("ordering K + sM", memory.of_ordering())?;
         let motions = constraints.motions();
         let matrix = ShiftedMatrix::new(stiffness, mass, shift, constraints);
         let a_motions = matrix.product_with_held(motions.as_ref());
         let pattern = matrix.pattern().map_err(|reason| failed(size, reason))?;
-        let ordering = nested_dissection(pattern.as_ref())?;
+        let ordering = matrix.order(&pattern)?;
         let symbolic = factorize_symbolic_cholesky(
             pattern.as_ref(),
             Side::Lower,
@@ -111,7 +113,7 @@ impl Shifted {
         progress(Forecast::new(&symbolic, memory.peak(search), threads));
         let start = Instant::now();
         let mut values = memory::zeros(FACTOR, symbolic.len_val())?;
-        make(&matrix, &pattern, &symbolic, subtrees.as_ref(), &mut values)?;
+        make(&matrix, pattern, &symbolic, subtrees.as_ref(), &mut values)?;
         let extensions = Mat::zeros(size, 0);
         let constraints = constraints.clone();
         let estimate_time = Duration::ZERO;
@@ -208,7 +210,7 @@ impl Shifted {
 /// Fills the zeros in `values` with the entries of the factor.
 fn make(
     matrix: &ShiftedMatrix<'_>,
-    pattern: &Pattern<'_>,
+    pattern: Pattern<'_>,
     symbolic: &SymbolicCholesky<usize>,
     subtrees: Option<&Subtrees>,
     values: &mut [f64],
@@ -217,12 +219,13 @@ fn make(
     if let (SymbolicCholeskyRaw::Supernodal(symbolic), Some(subtrees), Some(order)) =
         (symbolic.raw(), subtrees, symbolic.perm())
     {
+        drop(pattern);
         let problem = cholesky::Problem { symbolic, subtrees, order, matrix };
         problem.factor(values).map_err(|NotPositive(pivot)| ModalError::Indefinite { pivot, shift })?;
         substitution::interleave(symbolic, subtrees, values);
         return Ok(());
     }
-    let assembled = matrix.assembled(pattern).map_err(|reason| failed(symbolic.nrows(), reason))?;
+    let assembled = matrix.assembled(&pattern).map_err(|reason| failed(symbolic.nrows(), reason))?;
     let mut scratch = buffer(symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Spec::default()))?;
     let (lower, stack) = (assembled.as_ref(), MemStack::new(&mut scratch));
     match symbolic.factorize_numeric_llt(

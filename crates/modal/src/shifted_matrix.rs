@@ -2,49 +2,32 @@
 
 use faer::Mat;
 use faer::MatRef;
-use faer::sparse::{FaerError, SparseColMat, SparseColMatRef, SymbolicSparseColMat, SymbolicSparseColMatRef};
+use faer::perm::Perm;
+use faer::sparse::{FaerError, SparseColMat};
 
 use crate::constraints::Constraints;
-use crate::products::symmetric_product;
+use crate::error::ModalError;
+use crate::mass_matrix::MassMatrix;
+use crate::ordering::{nested_dissection, nested_dissection_of_nodes};
+use crate::pattern::Pattern;
+use crate::stiffness::StiffnessMatrix;
 
 /// K + sM; held rows and columns are those of the identity.
 pub(crate) struct ShiftedMatrix<'a> {
-    stiffness: SparseColMatRef<'a, usize, f64>,
-    mass: SparseColMatRef<'a, usize, f64>,
+    stiffness: StiffnessMatrix<'a>,
+    mass: &'a MassMatrix<'a>,
     shift: f64,
     constraints: &'a Constraints,
-    /// The entries of K and M are at the same places.
-    is_one_pattern: bool,
-}
-
-/// Where the entries of K + sM are.
-pub(crate) enum Pattern<'a> {
-    /// Where those of K are.
-    OfStiffness(SymbolicSparseColMatRef<'a, usize>),
-    /// Where K or M have some.
-    OfBoth(SymbolicSparseColMat<usize>),
-}
-
-impl Pattern<'_> {
-    pub(crate) fn as_ref(&self) -> SymbolicSparseColMatRef<'_, usize> {
-        match self {
-            Self::OfStiffness(pattern) => *pattern,
-            Self::OfBoth(pattern) => pattern.as_ref(),
-        }
-    }
 }
 
 impl<'a> ShiftedMatrix<'a> {
     pub(crate) fn new(
-        stiffness: SparseColMatRef<'a, usize, f64>,
-        mass: SparseColMatRef<'a, usize, f64>,
+        stiffness: StiffnessMatrix<'a>,
+        mass: &'a MassMatrix<'a>,
         shift: f64,
         constraints: &'a Constraints,
     ) -> Self {
-        // The matrices of an assembly share one pattern: nothing has to be compared.
-        let same = |k: &[usize], m: &[usize]| std::ptr::eq(k, m) || k == m;
-        let is_one_pattern = same(stiffness.col_ptr(), mass.col_ptr()) && same(stiffness.row_idx(), mass.row_idx());
-        Self { stiffness, mass, shift, constraints, is_one_pattern }
+        Self { stiffness, mass, shift, constraints }
     }
 
     /// The shift s.
@@ -52,39 +35,62 @@ impl<'a> ShiftedMatrix<'a> {
         self.shift
     }
 
-    /// Its pattern; zeros that are stored stay stored.
+    /// Its pattern on and below the diagonal, and above as the case may be; zeros that are stored stay stored.
     pub(crate) fn pattern(&self) -> Result<Pattern<'a>, FaerError> {
-        let (k, m) = (self.stiffness.symbolic(), self.mass.symbolic());
-        if self.is_one_pattern {
-            return Ok(Pattern::OfStiffness(k));
+        let k = self.stiffness.pattern();
+        if self.stiffness_covers_mass() {
+            return Ok(k);
         }
-        Ok(Pattern::OfBoth(faer::sparse::ops::union_symbolic(k, m)?))
+        Ok(Pattern::Made(faer::sparse::ops::union_symbolic(k.as_ref(), self.mass.pattern().as_ref())?))
+    }
+
+    /// A fill-reducing order of its rows, by its pattern.
+    pub(crate) fn order(&self, pattern: &Pattern<'_>) -> Result<Perm<usize>, ModalError> {
+        match &self.stiffness {
+            StiffnessMatrix::Nodal(k) if self.stiffness_covers_mass() => nested_dissection_of_nodes(&k.pairs()),
+            _ => nested_dissection(pattern.as_ref()),
+        }
+    }
+
+    /// Whether K has an entry wherever M has one.
+    fn stiffness_covers_mass(&self) -> bool {
+        if let (StiffnessMatrix::Nodal(k), MassMatrix::Nodal(m)) = (&self.stiffness, self.mass) {
+            // The matrices of an assembly share one pattern: nothing has to be compared.
+            if std::ptr::eq(k.pairs().nodes, m.pairs().nodes) {
+                return true;
+            }
+        }
+        let covers = |column: usize| {
+            let mut rows = Vec::new();
+            self.stiffness.for_each_in_column(column, |row, _| rows.push(row));
+            let mut all = true;
+            self.mass.for_each_in_column(column, |row, _| all &= rows.binary_search(&row).is_ok());
+            all
+        };
+        (0..self.stiffness.ncols()).all(covers)
     }
 
     /// Calls `add` with the row and the value of each entry of a column; a row may come twice.
+    #[inline(always)]
     pub(crate) fn add_column(&self, column: usize, mut add: impl FnMut(usize, f64)) {
         if self.constraints.holds(column) {
             return add(column, 1.0);
         }
-        let free = |row: usize| !self.constraints.holds(row);
-        let k = self.stiffness.row_idx_of_col(column).zip(self.stiffness.val_of_col(column));
-        if self.is_one_pattern {
-            for ((row, k), m) in k.zip(self.mass.val_of_col(column)).filter(|((row, _), _)| free(*row)) {
-                add(row, k + self.shift * m);
+        let mut add_free = |row: usize, value: f64| {
+            if !self.constraints.holds(row) {
+                add(row, value);
             }
-            return;
-        }
-        let m = self.mass.row_idx_of_col(column).zip(self.mass.val_of_col(column));
-        k.filter(|(row, _)| free(*row)).for_each(|(row, k)| add(row, *k));
-        m.filter(|(row, _)| free(*row)).for_each(|(row, m)| add(row, self.shift * m));
+        };
+        self.stiffness.for_each_in_column(column, &mut add_free);
+        self.mass.for_each_in_column(column, |row, value| add_free(row, self.shift * value));
     }
 
     /// (K + sM)·X, the held rows and columns with it.
     pub(crate) fn product_with_held(&self, x: MatRef<'_, f64>) -> Mat<f64> {
-        symmetric_product(self.stiffness, x) + faer::Scale(self.shift) * symmetric_product(self.mass, x)
+        self.stiffness.product(x) + faer::Scale(self.shift) * self.mass.product(x)
     }
 
-    /// Itself, on a pattern that has all its entries.
+    /// Its entries on and below the diagonal, on a pattern that has them all.
     pub(crate) fn assembled(&self, pattern: &Pattern<'_>) -> Result<SparseColMat<usize, f64>, FaerError> {
         let mut matrix = SparseColMat::new(pattern.as_ref().to_owned()?, vec![0.0; pattern.as_ref().row_idx().len()]);
         let (symbolic, values) = matrix.parts_mut();
@@ -92,7 +98,11 @@ impl<'a> ShiftedMatrix<'a> {
             let range = symbolic.col_range(column);
             let rows = &symbolic.row_idx()[range.clone()];
             let values = &mut values[range];
-            self.add_column(column, |row, value| values[rows.partition_point(|other| *other < row)] += value);
+            self.add_column(column, |row, value| {
+                if row >= column {
+                    values[rows.partition_point(|other| *other < row)] += value;
+                }
+            });
         }
         Ok(matrix)
     }

@@ -12,12 +12,15 @@ use crate::error::ModalError;
 use crate::foretold::Foretold;
 use crate::held_problem::HeldProblem;
 use crate::lanczos::{BLOCK, FIXED, largest_pairs, room};
+use crate::mass::NodalMass;
 use crate::mass_matrix::{MassMatrix, freedoms};
+use crate::polynomials::Polynomials;
 use crate::progress::Progress;
 use crate::rigid::RigidModes;
 use crate::ritz::{RitzPairs, rayleigh_ritz};
 use crate::shifted::Shifted;
 use crate::start;
+use crate::stiffness::{NodalStiffness, StiffnessMatrix};
 use crate::support::Support;
 use crate::symmetry::check_symmetric;
 
@@ -107,14 +110,17 @@ impl Modes {
 
 /// A body, what holds it, and (from the first question on) the factor of K + sM that its answers come from.
 pub struct Solver<'a> {
-    pub(crate) stiffness: SparseColMatRef<'a, usize, f64>,
-    sparse_mass: SparseColMatRef<'a, usize, f64>,
+    pub(crate) stiffness: StiffnessMatrix<'a>,
     positions: &'a [[f64; 3]],
     pub(crate) mass: MassMatrix<'a>,
+    /// Bytes of K and M, in all the forms that are there.
+    matrix_bytes: usize,
     pub(crate) rigid: RigidModes,
     pub(crate) constraints: Constraints,
     factor: OnceLock<Shifted>,
     shift: OnceLock<f64>,
+    /// What tells the shift, of matrices over nodes.
+    polynomials: Option<Polynomials>,
     pub(crate) engine: Option<Box<dyn Engine>>,
     preparation_time: Duration,
 }
@@ -140,26 +146,76 @@ impl<'a> Solver<'a> {
         check_input(stiffness, mass, positions)?;
         let (rows, values) = (stiffness.symbolic().row_idx(), stiffness.val());
         check_symmetric("stiffness", 1, stiffness.symbolic().col_ptr(), |entry| rows[entry], |entry| values[entry])?;
-        let sparse_mass = mass;
+        let stiffness = StiffnessMatrix::General(stiffness);
+        let given = mass;
         let mass = MassMatrix::new(mass, positions.len())?;
+        let of_given = match &mass {
+            MassMatrix::Nodal(_) => 16 * given.row_idx().len() + 8 * given.ncols(),
+            MassMatrix::General(_) => 0,
+        };
+        Self::of_checked(started, stiffness, mass, of_given, positions, support)
+    }
+
+    /// The same of matrices over pairs of nodes, which take a fraction of the memory: `K` of 3×3 blocks, `M = M_s ⊗ I₃`.
+    ///
+    /// # Errors
+    /// See [`ModalError`].
+    pub fn of_nodes(
+        stiffness: NodalStiffness<'a>,
+        mass: NodalMass<'a>,
+        positions: &'a [[f64; 3]],
+        support: &Support,
+    ) -> Result<Self, ModalError> {
+        let started = Instant::now();
+        let (stiffness, mass) = (StiffnessMatrix::Nodal(stiffness), MassMatrix::Nodal(mass));
+        check_sizes([("stiffness", [stiffness.ncols(); 2]), ("mass", [mass.ncols(); 2])], 3 * positions.len())?;
+        check_positions(positions)?;
+        Self::of_checked(started, stiffness, mass, 0, positions, support)
+    }
+
+    /// Of matrices of the right sizes, a general K checked; so many bytes are kept of them besides.
+    fn of_checked(
+        started: Instant,
+        stiffness: StiffnessMatrix<'a>,
+        mass: MassMatrix<'a>,
+        kept: usize,
+        positions: &'a [[f64; 3]],
+        support: &Support,
+    ) -> Result<Self, ModalError> {
         // A scalar mass is refused by the Gram matrices of the search.
         if let MassMatrix::General(mass) = &mass {
             mass.check_semidefinite()?;
         }
         let constraints = Constraints::new(support, positions, mass.freedoms())?;
         let rigid = RigidModes::new(&mass, positions, support.motion)?;
-        rigid.check_free(stiffness)?;
+        let polynomials = match (&stiffness, &mass, rigid.fields()) {
+            (StiffnessMatrix::Nodal(k), MassMatrix::Nodal(m), Some(fields)) => {
+                Some(Polynomials::new(k, m, positions, &rigid.center_of_mass, &fields))
+            }
+            _ => None,
+        };
+        match (&polynomials, &stiffness) {
+            (Some(found), _) if found.is_symmetric() => {}
+            (_, StiffnessMatrix::Nodal(stiffness)) => stiffness.check()?,
+            (_, StiffnessMatrix::General(_)) => {}
+        }
+        match &polynomials {
+            Some(found) => rigid.refuse_resistance(found.resistance.iter().copied())?,
+            None => rigid.check_free(stiffness)?,
+        };
         check_loose(stiffness, &mass, &constraints)?;
+        let matrix_bytes = stiffness.bytes() + mass.bytes() + kept;
         let preparation_time = started.elapsed();
         Ok(Self {
             stiffness,
-            sparse_mass,
+            matrix_bytes,
             positions,
             mass,
             rigid,
             constraints,
             factor: OnceLock::new(),
             shift: OnceLock::new(),
+            polynomials,
             engine: None,
             preparation_time,
         })
@@ -201,7 +257,7 @@ impl<'a> Solver<'a> {
                 force_residuals: none(),
                 stats: SolveStats {
                     unknowns,
-                    peak_bytes: Foretold::new(self.stiffness, self.sparse_mass, FIXED).peak(0),
+                    peak_bytes: self.foretold().peak(0),
                     preparation_time: self.preparation_time,
                     ..SolveStats::default()
                 },
@@ -258,10 +314,17 @@ impl<'a> Solver<'a> {
         let started = Instant::now();
         let shift = self.shift()?;
         let estimate_time = started.elapsed();
-        let mut factor =
-            Shifted::factor(self.stiffness, self.sparse_mass, shift, &self.constraints, search, |forecast| {
+        let mut factor = Shifted::factor(
+            self.stiffness,
+            &self.mass,
+            shift,
+            &self.constraints,
+            self.foretold(),
+            search,
+            |forecast| {
                 progress(Progress::Factorizing(forecast));
-            })?;
+            },
+        )?;
         factor.estimate_time = estimate_time;
         Ok(self.factor.get_or_init(|| factor))
     }
@@ -271,7 +334,10 @@ impl<'a> Solver<'a> {
         if let Some(shift) = self.shift.get() {
             return Ok(*shift);
         }
-        let shift = start::shift(self.stiffness, &self.mass, self.positions, &self.rigid)?;
+        let shift = match &self.polynomials {
+            Some(polynomials) => start::shift_of(polynomials, &self.rigid.motion)?,
+            None => start::shift(self.stiffness, &self.mass, self.positions, &self.rigid)?,
+        };
         Ok(*self.shift.get_or_init(|| shift))
     }
 
@@ -281,7 +347,7 @@ impl<'a> Solver<'a> {
     /// [`ModalError::DenseEigen`], [`ModalError::Memory`].
     pub fn held_problem(&self) -> Result<HeldProblem<'_>, ModalError> {
         let (shift, available) = (self.shift()?, self.available());
-        HeldProblem::new(self.stiffness, self.sparse_mass, &self.constraints, &self.rigid, shift, available)
+        HeldProblem::new(self.stiffness, &self.mass, &self.constraints, &self.rigid, shift, available)
     }
 
     /// How many blocks of columns, and columns, the factor of K + sM was used for up to now.
@@ -299,7 +365,12 @@ impl<'a> Solver<'a> {
 
     /// Bytes that are held at the most where an engine finds so many modes.
     pub(crate) fn peak_beside_engine(&self, modes: usize) -> usize {
-        Foretold::new(self.stiffness, self.sparse_mass, FIXED).peak_beside_engine(modes)
+        self.foretold().peak_beside_engine(modes)
+    }
+
+    /// The memory that the matrices take, and what follows from their sizes.
+    fn foretold(&self) -> Foretold {
+        Foretold::new(self.stiffness, self.matrix_bytes, FIXED)
     }
 
     /// Time of the checks.
@@ -338,12 +409,8 @@ impl<'a> Solver<'a> {
 
     /// What rounding of the entries of K may come to in the eigenvalue of a shape: ε |φ|ᵀ|K||φ|.
     pub(crate) fn rounding(&self, shape: ColRef<'_, f64>) -> f64 {
-        let k = self.stiffness;
-        let of_column = |j: usize| -> f64 {
-            let products = k.row_idx_of_col(j).zip(k.val_of_col(j)).map(|(i, value)| (shape[i] * value).abs());
-            products.sum::<f64>() * shape[j].abs()
-        };
-        f64::EPSILON * (0..k.ncols()).map(of_column).sum::<f64>()
+        let forces = self.stiffness.absolute_product(shape);
+        f64::EPSILON * forces.iter().zip(shape.iter()).map(|(force, u)| force * u.abs()).sum::<f64>()
     }
 }
 
@@ -354,16 +421,25 @@ fn check_input(
 ) -> Result<(), ModalError> {
     let expected = positions.len() * freedoms("stiffness", stiffness.ncols(), positions.len())?;
     for (what, matrix) in [("stiffness", stiffness), ("mass", mass)] {
-        for found in [matrix.nrows(), matrix.ncols()] {
-            if found != expected || found == 0 {
-                return Err(ModalError::Size { what, expected, found });
-            }
-        }
+        check_sizes([(what, [matrix.nrows(), matrix.ncols()])], expected)?;
         if let Some(index) = (0..matrix.ncols()).find(|j| matrix.val_of_col(*j).iter().any(|v| !v.is_finite())) {
             let value = matrix.val_of_col(index).iter().copied().find(|v| !v.is_finite()).unwrap_or(f64::NAN);
             return Err(ModalError::NotFinite { what, index, value });
         }
     }
+    check_positions(positions)
+}
+
+/// Refuses matrices that have not so many rows and columns, and those that have none.
+fn check_sizes<const N: usize>(found: [(&'static str, [usize; 2]); N], expected: usize) -> Result<(), ModalError> {
+    let sizes = found.into_iter().flat_map(|(what, sizes)| sizes.map(|found| (what, found)));
+    match sizes.into_iter().find(|(_, found)| *found != expected || *found == 0) {
+        Some((what, found)) => Err(ModalError::Size { what, expected, found }),
+        None => Ok(()),
+    }
+}
+
+fn check_positions(positions: &[[f64; 3]]) -> Result<(), ModalError> {
     match positions.iter().enumerate().find_map(|(i, x)| x.iter().find(|c| !c.is_finite()).map(|c| (i, *c))) {
         Some((index, value)) => Err(ModalError::NotFinite { what: "positions", index, value }),
         None => Ok(()),
@@ -372,13 +448,14 @@ fn check_input(
 
 /// Refuses a free degree of freedom that has neither stiffness nor mass.
 fn check_loose(
-    stiffness: SparseColMatRef<'_, usize, f64>,
+    stiffness: StiffnessMatrix<'_>,
     mass: &MassMatrix<'_>,
     constraints: &Constraints,
 ) -> Result<(), ModalError> {
     let MassMatrix::General(_) = mass else { return Ok(()) };
     let is_loose = |row: &usize| {
-        let resists = stiffness.val_of_col(*row).iter().any(|value| *value != 0.0);
+        let mut resists = false;
+        stiffness.for_each_in_column(*row, |_, value| resists |= value != 0.0);
         !resists && !mass.is_massive(*row) && !constraints.holds(*row)
     };
     match (0..stiffness.ncols()).find(is_loose) {

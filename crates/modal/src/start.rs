@@ -4,16 +4,16 @@
 //! from above (bending of a slender body is nearly quadratic). That gives the shift its scale, whatever the units.
 
 use faer::Mat;
-use faer::sparse::SparseColMatRef;
 use nalgebra::Vector3;
 
 use crate::dense::symmetric_eigen;
 use crate::error::ModalError;
 use crate::mass_matrix::MassMatrix;
 use crate::pairs::PAIRS;
-use crate::products::symmetric_product;
+use crate::polynomials::{Field, Polynomials, rigid_field, straining_fields};
 use crate::rigid::RigidModes;
 use crate::rigid_fields::rigid_fields;
+use crate::stiffness::StiffnessMatrix;
 use crate::support::RigidMotion;
 use crate::tall;
 
@@ -27,7 +27,7 @@ const HELD: f64 = 0.02;
 
 /// The shift s: about the first flexible eigenvalue, whatever holds the body.
 pub(crate) fn shift(
-    stiffness: SparseColMatRef<'_, usize, f64>,
+    stiffness: StiffnessMatrix<'_>,
     mass: &MassMatrix<'_>,
     positions: &[[f64; 3]],
     rigid: &RigidModes,
@@ -67,24 +67,43 @@ fn independent(gram: &Mat<f64>) -> Result<Mat<f64>, ModalError> {
 
 /// The lowest Rayleigh–Ritz value of the polynomial fields, of the body without supports.
 fn eigenvalue_estimate(
-    stiffness: SparseColMatRef<'_, usize, f64>,
+    stiffness: StiffnessMatrix<'_>,
     mass: &MassMatrix<'_>,
     positions: &[[f64; 3]],
     center: &Vector3<f64>,
     rigid: &Mat<f64>,
 ) -> Result<f64, ModalError> {
     let fields = polynomial_fields(positions, center, mass.freedoms());
-    let k_fields = symmetric_product(stiffness, fields.as_ref());
+    let k_fields = stiffness.product(fields.as_ref());
     let m_fields = mass.product(fields.as_ref());
     let stiffness = tall::inner(fields.as_ref(), k_fields.as_ref());
     let gram = tall::inner(fields.as_ref(), m_fields.as_ref());
     let coupling = tall::inner(rigid.as_ref(), m_fields.as_ref());
+    lowest(&stiffness, gram, &coupling)
+}
 
+/// The same from the polynomials themselves, of positions from the centre of mass.
+pub(crate) fn shift_of(polynomials: &Polynomials, motion: &RigidMotion) -> Result<f64, ModalError> {
+    let fields = straining_fields();
+    let unit = |axis: usize| Vector3::ith(axis, 1.0);
+    let motions: [Field; 6] = std::array::from_fn(|k| {
+        if k < 3 { rigid_field(&unit(k), &Vector3::zeros()) } else { rigid_field(&Vector3::zeros(), &unit(k - 3)) }
+    });
+    let orthonormal = independent(&polynomials.mass_of(&motions, &motions))?;
+    let coupling = orthonormal.transpose() * polynomials.mass_of(&motions, &fields);
+    let gram = polynomials.mass_of(&fields, &fields);
+    let estimate = lowest(&polynomials.stiffness_of(&fields), gram, &coupling)?;
+    Ok(if motion.is_free() { estimate } else { HELD * estimate })
+}
+
+/// The lowest Rayleigh–Ritz value of fields with these matrices, `coupling` their products with an orthonormal basis of the
+/// rigid motions.
+fn lowest(stiffness: &Mat<f64>, gram: Mat<f64>, coupling: &Mat<f64>) -> Result<f64, ModalError> {
     // Rigid parts are taken out of the Gram matrix; K has none of them to begin with.
-    let gram = gram - coupling.transpose() * &coupling;
+    let gram = gram - coupling.transpose() * coupling;
     let unit = |i: usize| if gram[(i, i)] > 0.0 { 1.0 / gram[(i, i)].sqrt() } else { 0.0 };
     let scaled = |matrix: &Mat<f64>| Mat::from_fn(FIELDS, FIELDS, |i, j| matrix[(i, j)] * unit(i) * unit(j));
-    let (stiffness, gram) = (scaled(&stiffness), scaled(&gram));
+    let (stiffness, gram) = (scaled(stiffness), scaled(&gram));
     let (values, vectors) = symmetric_eigen(&gram)?;
     let largest = values.iter().copied().fold(0.0, f64::max);
     let kept: Vec<usize> = (0..values.len()).filter(|i| values[*i] > DEPENDENT * largest).collect();

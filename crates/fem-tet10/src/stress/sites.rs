@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::assembly::Incidence;
+use crate::coupling::Incidence;
 use crate::locate::Location;
 use crate::material::Material;
 use crate::mesh::Mesh;

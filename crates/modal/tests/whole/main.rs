@@ -2,6 +2,7 @@
 
 mod beam;
 mod bodies;
+mod by_nodes;
 mod closed_forms;
 mod convergence;
 mod engine;

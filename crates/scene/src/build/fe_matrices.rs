@@ -2,6 +2,7 @@
 
 use faer::sparse::{SparseColMat, SparseColMatRef};
 use fem_tet10::Matrices;
+use modal::{ModalError, NodalMass, NodalStiffness, Solver, Support};
 
 /// K and M (N×N).
 pub(super) enum FeMatrices {
@@ -23,6 +24,19 @@ impl FeMatrices {
         match self {
             Self::Assembled(matrices) => matrices.mass(),
             Self::Given { mass, .. } => mass.as_ref(),
+        }
+    }
+
+    /// What answers questions of modes and statics.
+    pub fn solver<'a>(&'a self, positions: &'a [[f64; 3]], support: &Support) -> Result<Solver<'a>, ModalError> {
+        match self {
+            Self::Assembled(matrices) => {
+                let (start, nodes) = (matrices.start(), matrices.nodes());
+                let stiffness = NodalStiffness::new(start, nodes, matrices.stiffness_by_nodes())?;
+                let mass = NodalMass::of_nodes(start, nodes, matrices.mass_by_nodes())?;
+                Solver::of_nodes(stiffness, mass, positions, support)
+            }
+            Self::Given { stiffness, mass } => Solver::new(stiffness.as_ref(), mass.as_ref(), positions, support),
         }
     }
 

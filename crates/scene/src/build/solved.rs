@@ -109,8 +109,7 @@ impl<'a> Solved<'a> {
         }
         let AssembledMesh { mesh, support, .. } = self.assembled;
         let matrices = self.matrices()?;
-        let solver = Solver::new(matrices.stiffness(), matrices.mass(), mesh.positions(), support)
-            .map_err(|error| self.refuse(error))?;
+        let solver = matrices.solver(mesh.positions(), support).map_err(|error| self.refuse(error))?;
         let solver = match &self.assembled.scene.solver {
             Some(slepc) => solver.with_engine(slepc.engine()),
             None => solver,
