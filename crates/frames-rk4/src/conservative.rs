@@ -409,6 +409,12 @@ impl ConservativeBody {
         &self.loads
     }
 
+    /// Whether what acts on the body does the same at a time by the branches that hold at two branch times, whenever it is
+    /// asked.
+    pub(crate) fn acts_alike(&self, time: f64, branch_times: [f64; 2]) -> bool {
+        self.drive.is_none() && self.loads.iter().all(|load| load.is_same(time, branch_times))
+    }
+
     /// Numbers in the matrices that an evaluation reads: what an effect that is off does not cost.
     pub fn matrix_entries(&self) -> usize {
         let of_loads: usize = self.loads.iter().map(|load| load.matrix_entries()).sum();
@@ -603,10 +609,16 @@ impl ConservativeBody {
     /// Sᵀx, with S on z.
     #[inline(always)]
     pub(crate) fn s_products<S: Simd>(&self, simd: S, products: &[Group], x: &[Group]) -> Vector3<f64> {
+        self.axis_products(simd, self.s_lists(products), x)
+    }
+
+    /// list_iᵀx in the entry i, of lists for each axis.
+    #[inline(always)]
+    pub(crate) fn axis_products<S: Simd>(&self, simd: S, lists: Lists<'_>, x: &[Group]) -> Vector3<f64> {
         match self.s_count {
             0 => Vector3::zeros(),
-            1 => Vector3::new(dots::<S, 1>(simd, self.s_lists(products), x)[0], 0.0, 0.0),
-            _ => Vector3::from(dots::<S, 3>(simd, self.s_lists(products), x)),
+            1 => Vector3::new(dots::<S, 1>(simd, lists, x)[0], 0.0, 0.0),
+            _ => Vector3::from(dots::<S, 3>(simd, lists, x)),
         }
     }
 

@@ -101,26 +101,6 @@ pub(crate) fn own_products<S: Simd, const M: usize>(simd: S, lists: Lists<'_>) -
     products
 }
 
-/// a_jᵀb_k of the first M lists of each.
-#[inline(always)]
-pub(crate) fn mixed_products<S: Simd, const M: usize>(simd: S, a: Lists<'_>, b: Lists<'_>) -> [[f64; M]; M] {
-    let mut sums = [[Four::splat(simd, 0.0); M]; M];
-    for (a, b) in a.rows().zip(b.rows()) {
-        let (Some(a), Some(b)) = (a.first_chunk::<M>(), b.first_chunk::<M>()) else { break };
-        for j in 0..M {
-            let list = Four::load(simd, &a[j]);
-            for k in 0..M {
-                sums[j][k] = Four::load(simd, &b[k]).mul_add(simd, list, sums[j][k]);
-            }
-        }
-    }
-    let mut products = [[0.0; M]; M];
-    for (products, sums) in products.iter_mut().zip(sums) {
-        *products = totals(sums);
-    }
-    products
-}
-
 /// out = Σ factor_k list_k
 #[inline(always)]
 pub(crate) fn combine<S: Simd>(simd: S, lists: Lists<'_>, factors: &[f64], out: &mut [Group]) {
