@@ -478,11 +478,11 @@ impl ConservativeMotion {
     }
 
     fn exponential(&mut self, first_attitude: &Matrix3<f64>, h: f64) -> Result<(), StepError> {
-        let time = self.state.time;
+        let Self { body, blocks, state, next, stages, end_of_modes: [q, p], evaluations, .. } = self;
+        let block = blocks.get(&body.circular_frequencies, &body.damping_ratios, h);
+        let branch_time = state.time + 0.5 * h;
         for (s, fraction) in [(1, 0.5), (2, 0.5), (3, 1.0)] {
-            let Self { body, blocks, state, stages, .. } = self;
-            let block = blocks.get(&body.circular_frequencies, &body.damping_ratios, h);
-            let [first, second, third, fourth] = stages;
+            let [first, second, third, fourth] = &mut *stages;
             let start = first.place_of_modes();
             match s {
                 1 => sum_of_blocks([(&block.half, start), (&block.a21, first.rates_of_modes())], second.modes_mut()),
@@ -495,11 +495,11 @@ impl ConservativeMotion {
                     fourth.modes_mut(),
                 ),
             }
-            let slow = state.slow + self.stages[s - 1].slow * (fraction * h);
-            self.evaluate(s, time + fraction * h, first_attitude, &slow, h)?;
+            let slow = state.slow + stages[s - 1].slow * (fraction * h);
+            *evaluations += 1;
+            body.evaluate([state.time + fraction * h, branch_time], first_attitude, &slow, &mut stages[s])
+                .map_err(|error| error.in_step(state.time, h))?;
         }
-        let Self { body, blocks, state, next, stages, end_of_modes: [q, p], .. } = self;
-        let block = blocks.get(&body.circular_frequencies, &body.damping_ratios, h);
         let [k1, k2, k3, k4] = stages.each_ref().map(|stage| &stage.slow);
         next.slow = state.slow + (k1 + (k2 + k3) * 2.0 + k4) * (h / 6.0);
         let [n1, n2, n3, n4] = stages.each_ref().map(Evaluation::rates_of_modes);
