@@ -24,6 +24,8 @@ pub struct Bar {
     started: Instant,
     phase: String,
     bar: ProgressBar,
+    /// Whether the bar has been given to the terminal, if there is one.
+    is_given: bool,
     /// Where there is no terminal: lines, and the time from the start at which the next one is due.
     next_line: Option<Duration>,
 }
@@ -33,7 +35,7 @@ impl Bar {
     pub fn new(silent: bool) -> Self {
         let lines = !silent && !io::stderr().is_terminal();
         let next_line = lines.then_some(LINE_INTERVAL);
-        Self { started: Instant::now(), phase: String::new(), bar: ProgressBar::hidden(), next_line }
+        Self { started: Instant::now(), phase: String::new(), bar: ProgressBar::hidden(), is_given: false, next_line }
     }
 
     pub fn build(&mut self, progress: BuildProgress) {
@@ -105,6 +107,7 @@ impl Bar {
         if phase != self.phase {
             self.bar.finish_and_clear();
             self.phase = phase.to_owned();
+            self.is_given = false;
             self.bar = match done {
                 Some((_, total)) => ProgressBar::with_draw_target(Some(total), ProgressDrawTarget::hidden())
                     .with_style(style("{msg} {wide_bar} {percent} %, {eta} left")),
@@ -113,7 +116,8 @@ impl Bar {
             }
             .with_message(phase.to_owned());
         }
-        if self.bar.is_hidden() && self.started.elapsed() > PATIENCE {
+        if !self.is_given && self.started.elapsed() > PATIENCE {
+            self.is_given = true;
             self.bar.set_draw_target(ProgressDrawTarget::stderr_with_hz(10));
             if done.is_none() {
                 self.bar.enable_steady_tick(Duration::from_millis(200));

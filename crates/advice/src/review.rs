@@ -4,13 +4,14 @@ use std::fmt;
 
 use frames_rk4::{Effect, EffectMap, Moment, Observation};
 use nalgebra::Vector3;
+use pulp::{Arch, Simd, WithSimd};
 
 use crate::case::{AdviceError, Case};
 use crate::fourth_order::{FourthOrder, STATED};
 use crate::limits::{LINEAR, LeftOut, Refusal, SOFTENED, beyond, deflected, detuned, refusal};
 use crate::number::Number;
 use crate::relative::relative;
-use crate::table::{Advice, held};
+use crate::table::{Advice, held, left_out};
 
 /// An assumption that has broken.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -173,6 +174,8 @@ struct Swings {
     /// At the last look: q̇, and q² + (q̇/ω)².
     rate: [f64; SIDE_BY_SIDE],
     square: [f64; SIDE_BY_SIDE],
+    /// How far they swung between the last two looks.
+    reach: [f64; SIDE_BY_SIDE],
     /// Largest |q|, and that beyond which the frequency is out by too much.
     largest: [f64; SIDE_BY_SIDE],
     most: [f64; SIDE_BY_SIDE],
@@ -184,9 +187,9 @@ struct Swings {
 const SIDE_BY_SIDE: usize = 4;
 
 impl Swings {
-    /// Looks at q and q̇ after so much time; returns how far the modes have swung since.
+    /// Looks at q and q̇ after so much time.
     #[inline(always)]
-    fn look(&mut self, passed: f64, q: &[f64; SIDE_BY_SIDE], v: &[f64; SIDE_BY_SIDE]) -> [f64; SIDE_BY_SIDE] {
+    fn look(&mut self, passed: f64, q: &[f64; SIDE_BY_SIDE], v: &[f64; SIDE_BY_SIDE]) {
         let mut reach = [0.0; SIDE_BY_SIDE];
         for i in 0..SIDE_BY_SIDE {
             let scaled = v[i] * self.inverse[i];
@@ -201,7 +204,60 @@ impl Swings {
             *reach = reach.sqrt();
             *largest = if *reach > *largest { *reach } else { *largest };
         }
-        reach
+        self.reach = reach;
+    }
+}
+
+/// A look at all modes, with the instructions that the processor has.
+struct Look<'s> {
+    swings: &'s mut [Swings],
+    passed: f64,
+    q: &'s [f64],
+    v: &'s [f64],
+}
+
+/// What a look has found.
+struct LookedAt {
+    /// Deflection, that of large modes, and the square of the modes' reach, summed side by side.
+    sums: [[f64; SIDE_BY_SIDE]; 3],
+    /// Whether a mode has gone too far.
+    beyond: bool,
+}
+
+impl WithSimd for Look<'_> {
+    type Output = LookedAt;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> LookedAt {
+        let Self { swings, passed, q, v } = self;
+        let mut found = LookedAt { sums: [[0.0; SIDE_BY_SIDE]; 3], beyond: false };
+        let (whole_q, rest_of_q) = q.as_chunks::<SIDE_BY_SIDE>();
+        let (whole_v, rest_of_v) = v.as_chunks::<SIDE_BY_SIDE>();
+        let mut rest = [[0.0; SIDE_BY_SIDE]; 2];
+        rest[0][..rest_of_q.len()].copy_from_slice(rest_of_q);
+        rest[1][..rest_of_v.len()].copy_from_slice(rest_of_v);
+        let (whole, others) = swings.split_at_mut(whole_q.len());
+        for (swings, (q, v)) in whole.iter_mut().zip(whole_q.iter().zip(whole_v)) {
+            swings.look(passed, q, v);
+            found.add(swings);
+        }
+        if let [swings] = others {
+            swings.look(passed, &rest[0], &rest[1]);
+            found.add(swings);
+        }
+        found
+    }
+}
+
+impl LookedAt {
+    #[inline(always)]
+    fn add(&mut self, swings: &Swings) {
+        for (i, reach) in swings.reach.into_iter().enumerate() {
+            self.sums[0][i] += reach * swings.bend[i];
+            self.sums[1][i] += reach * swings.large_bend[i];
+            self.sums[2][i] += reach * reach;
+            self.beyond |= reach > swings.most[i];
+        }
     }
 }
 
@@ -214,14 +270,18 @@ pub struct Review<'a> {
     deflection: f64,
     tolerance: f64,
     swings: Vec<Swings>,
-    /// Time of the last look.
+    /// Time of the last look, and of the last row.
     time: f64,
+    row: Option<f64>,
     /// Largest |ω| since the last row, and when.
     fastest: (f64, Vector3<f64>),
     /// The last |ω| whose limit was looked up, and its direction.
     looked_up: (f64, Vector3<f64>),
     /// The most that the modes left out of the static answer to the spin, when, and the part of it.
     left_out: (f64, f64, f64),
+    /// Lowest natural frequency, rad per time. The centrifugal force takes at most Ω² from the stiffness of a mode, so
+    /// that below it nothing can be lost.
+    lowest: f64,
     /// Largest √(qᵀq).
     deformation: f64,
     /// Of large modes, with the largest error, when it was, and their deflection over the length then.
@@ -273,9 +333,11 @@ impl<'a> Review<'a> {
             tolerance: advice.tolerance,
             swings,
             time: 0.0,
+            row: None,
             fastest: (0.0, Vector3::zeros()),
             looked_up: (0.0, Vector3::zeros()),
             left_out: (0.0, 0.0, 0.0),
+            lowest: case.body.circular_frequencies.iter().copied().fold(f64::INFINITY, f64::min),
             deformation: 0.0,
             order: case
                 .manifold
@@ -295,34 +357,23 @@ impl<'a> Review<'a> {
     /// Between two looks a mode swings as far as √(q² + (q̇/ω)²) of the larger of both, if it turns there or the time
     /// between them is longer than half its period.
     pub fn look(&mut self, moment: &Moment) {
+        // The start of the step after a row is the motion of the row.
+        if self.row == Some(moment.time) {
+            return;
+        }
         let Moment { time, omega_body, modal_displacement: q, modal_velocity: v } = *moment;
         if q.len() != self.case.peaks.len() || v.len() != self.case.peaks.len() {
             return;
         }
         let passed = time - self.time;
         self.time = time;
-        let mut sums = [[0.0; SIDE_BY_SIDE]; 3];
+        let LookedAt { sums, beyond: is_beyond } =
+            Arch::new().dispatch(Look { swings: &mut self.swings, passed, q, v });
         let mut stopped = None;
-        let (whole_q, rest_of_q) = q.as_chunks::<SIDE_BY_SIDE>();
-        let (whole_v, rest_of_v) = v.as_chunks::<SIDE_BY_SIDE>();
-        let mut rest = [[0.0; SIDE_BY_SIDE]; 2];
-        rest[0][..rest_of_q.len()].copy_from_slice(rest_of_q);
-        rest[1][..rest_of_v.len()].copy_from_slice(rest_of_v);
-        let pairs = whole_q.iter().zip(whole_v).chain(std::iter::once((&rest[0], &rest[1])));
-        for (first, (swings, (q, v))) in self.swings.iter_mut().zip(pairs).enumerate() {
-            let reach = swings.look(passed, q, v);
-            let mut beyond = false;
-            for (i, reach) in reach.into_iter().enumerate() {
-                sums[0][i] += reach * swings.bend[i];
-                sums[1][i] += reach * swings.large_bend[i];
-                sums[2][i] += reach * reach;
-                beyond |= reach > swings.most[i];
-            }
-            if beyond && stopped.is_none() {
-                let case = &self.case;
-                let mut far = (0..SIDE_BY_SIDE).filter(|i| reach[*i] > swings.most[*i]);
-                stopped = far.find_map(|i| detuned(case, SIDE_BY_SIDE * first + i, reach[i]));
-            }
+        if is_beyond {
+            let each = self.swings.iter().flat_map(|swings| swings.reach.into_iter().zip(swings.most)).enumerate();
+            let mut far = each.filter(|(_, (reach, most))| reach > most);
+            stopped = far.find_map(|(k, (reach, _))| detuned(&self.case, k, reach));
         }
         let [deflection, of_large, deformation] = sums.map(|sums| (sums[0] + sums[2]) + (sums[1] + sums[3]));
         if let Some((order, worst)) = &mut self.order {
@@ -369,21 +420,24 @@ impl<'a> Review<'a> {
                 return Err(AdviceError::Length { what, found, expected });
             }
         }
+        self.row = None;
         self.look(&Moment {
             time: observation.time,
             omega_body: observation.omega_body,
             modal_displacement: &observation.modal_displacement,
             modal_velocity: &observation.modal_velocity,
         });
+        self.row = Some(observation.time);
         let between = std::mem::replace(&mut self.fastest, (0.0, Vector3::zeros()));
         for (speed, omega_body) in [between, (observation.omega_body.norm(), observation.omega_body)] {
             if self.effects[Effect::DeformedInertia] && !self.case.centrifugal_remainders.is_empty() {
-                let (held, left) = held(&self.case, &(omega_body * omega_body.transpose()));
-                if left > self.left_out.0 {
+                let squares = omega_body * omega_body.transpose();
+                if left_out(&self.case, &squares) > self.left_out.0 {
+                    let (held, left) = held(&self.case, &squares);
                     self.left_out = (left, observation.time, (1.0 - held * held).max(0.0).sqrt());
                 }
             }
-            if speed >= SOFTENED * self.lowest() && !self.is_known(&omega_body, speed) {
+            if speed >= SOFTENED * self.lowest && !self.is_known(&omega_body, speed) {
                 let axis = omega_body / speed;
                 self.looked_up = (speed, axis);
                 if let Some(refusal) = refusal(&self.case, &axis, speed, &self.effects)? {
@@ -474,12 +528,6 @@ impl<'a> Review<'a> {
     fn off(&self) -> String {
         let off = OF_TURNING.into_iter().filter(|effect| !self.effects[*effect]);
         off.map(Effect::name).collect::<Vec<_>>().join(" = true, ")
-    }
-
-    /// Lowest natural frequency, rad per time. The centrifugal force takes at most Ω² from the stiffness of a mode, so
-    /// that below it nothing can be lost.
-    fn lowest(&self) -> f64 {
-        self.case.body.circular_frequencies.iter().copied().fold(f64::INFINITY, f64::min)
     }
 
     /// Whether a limit has broken, or was looked up for about this spin: it costs an eigenvalue problem.

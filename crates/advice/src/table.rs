@@ -298,15 +298,24 @@ fn stretch(case: &Case, spin: &Spin, response: &Response) -> f64 {
 /// Part of the static answer to a spin that the modes hold, and how much they leave out: √(uᵀMu) of the answer u.
 /// `squares` are ω_iω_j.
 pub(crate) fn held(case: &Case, squares: &Matrix3<f64>) -> (f64, f64) {
-    let times = |(i, j): (usize, usize)| if i == j { squares[(i, i)] } else { 2.0 * squares[(i, j)] };
-    let pairs = || ReducedBody::PAIRS.into_iter().map(times).enumerate();
-    let left: f64 = pairs().zip(case.centrifugal_remainders).map(|((_, times), r)| times.abs() * r).sum();
+    let left = left_out(case, squares);
     let answer = |k: usize, omega: &f64| {
-        pairs().map(|(pair, times)| times * case.body.inertia_first[pair][k]).sum::<f64>() / (omega * omega)
+        let fields = times_of_pairs(squares).zip(&case.body.inertia_first);
+        fields.map(|(times, first)| times * first[k]).sum::<f64>() / (omega * omega)
     };
     let carried: Vec<f64> = case.body.circular_frequencies.iter().enumerate().map(|(k, w)| answer(k, w)).collect();
     let carried = norm(&carried);
     (if left > 0.0 { carried / carried.hypot(left) } else { 1.0 }, left)
+}
+
+/// What the modes leave out of the static answer to the spin, at most; see [`held`].
+pub(crate) fn left_out(case: &Case, squares: &Matrix3<f64>) -> f64 {
+    times_of_pairs(squares).zip(case.centrifugal_remainders).map(|(times, r)| times.abs() * r).sum()
+}
+
+/// How many times the field of each pair of axes acts.
+fn times_of_pairs(squares: &Matrix3<f64>) -> impl Iterator<Item = f64> {
+    ReducedBody::PAIRS.into_iter().map(|(i, j)| if i == j { squares[(i, i)] } else { 2.0 * squares[(i, j)] })
 }
 
 /// Bounds of what the modes leave out of the static answers to the centrifugal fields, as

@@ -8,6 +8,12 @@
 //! ```
 //!
 //! D is 1, and Ḋ is zero, but on a manifold. Of what is driven v or ω is given.
+//!
+//! Of a locked body the rate of `𝕁 ω = π − Sᵀp` gives ω' from what its forces were found with. The G_i are skew:
+//!
+//! ```text
+//! 𝕁 ω' = π' − 𝕁' ω + (G_i p)·q̇ − Sᵀp',      𝕁' = 2 (c_ij + N̂_ij q)·q̇
+//! ```
 
 use nalgebra::{Matrix3, Vector3};
 use pulp::Simd;
@@ -15,7 +21,7 @@ use pulp::Simd;
 use crate::column_major::dot;
 use crate::conservative::{ConservativeBody, Evaluation, Translation, get, part};
 use crate::error::RateError;
-use crate::side_by_side::{Lists, add_combined, combine, mixed_products};
+use crate::side_by_side::{Lists, add_combined, combine};
 
 impl ConservativeBody {
     /// Turns `e.acceleration` from the whole of p' into the q̈ that there would be without ω'.
@@ -49,8 +55,14 @@ impl ConservativeBody {
         driven_acceleration: f64,
         e: &mut Evaluation,
     ) -> Result<Vector3<f64>, RateError> {
+        let locked_spin_rate = match self.locked {
+            true => Some(self.locked_spin_rate(simd, e)?),
+            false => None,
+        };
         self.without_spin_rate(simd, driven_acceleration, e);
-        let spin_rate = if self.turn_driven {
+        let spin_rate = if let Some(spin_rate) = locked_spin_rate {
+            spin_rate
+        } else if self.turn_driven {
             Vector3::new(driven_acceleration, 0.0, 0.0)
         } else if self.axes.is_empty() {
             Vector3::zeros()
@@ -70,24 +82,21 @@ impl ConservativeBody {
         Ok(spin_rate)
     }
 
-    /// J' = 2 (c_ij + N_ij z)·ż, and of a locked body S'ᵀS + SᵀS' besides, which its N_ij have not got. S' is in `e`.
+    /// ω' of a locked body, with the whole of p' in `e.acceleration`.
+    #[inline(always)]
+    fn locked_spin_rate<S: Simd>(&self, simd: S, e: &Evaluation) -> Result<Vector3<f64>, RateError> {
+        let of_momenta = Lists { first: self.lists() - self.g_count, ..self.s_lists(&e.products) };
+        let right = get(&e.slow, part::PI) - self.inertia_rate(simd, e) * e.spin
+            + self.axis_products(simd, of_momenta, e.modal_velocity.groups())
+            - self.s_products(simd, &e.products, e.acceleration.groups());
+        self.solve_locked(e, &right)
+    }
+
+    /// J' = 2 (c_ij + N_ij z)·ż, or 𝕁' of a locked body.
     #[inline(always)]
     fn inertia_rate<S: Simd>(&self, simd: S, e: &Evaluation) -> Matrix3<f64> {
         let rate = self.velocity_of_coordinates(e).groups();
-        let mut inertia_rate = self.pair_products(simd, self.pair_lists(&e.products), rate) * 2.0;
-        if self.locked {
-            let (s, s_rate) = (self.s_lists(&e.products), &e.coupling_rate);
-            let s_rate = Lists { groups: s_rate, width: self.g_count, first: 0 };
-            match self.g_count {
-                0 => {}
-                1 => inertia_rate[(0, 0)] += 2.0 * mixed_products::<S, 1>(simd, s, s_rate)[0][0],
-                _ => {
-                    let both = mixed_products::<S, 3>(simd, s, s_rate);
-                    inertia_rate += Matrix3::from_fn(|i, j| both[i][j] + both[j][i]);
-                }
-            }
-        }
-        inertia_rate
+        self.pair_products(simd, self.pair_lists(&e.products), rate) * 2.0
     }
 
     /// q̈ −= M⁻¹ S ω'

@@ -5,19 +5,20 @@ use pulp::{Arch, Simd, WithSimd};
 
 use crate::four::{Four, WIDTH};
 
-/// x, y and z of a vector for each mode, a list each.
+/// x, y and z of a vector for each mode, a list each, as far as the last mode that is not zero.
 #[derive(Debug, Clone)]
 pub(crate) struct Components([Vec<f64>; 3]);
 
 impl Components {
     pub fn new(columns: &[Vector3<f64>]) -> Self {
-        Self(std::array::from_fn(|i| columns.iter().map(|column| column[i]).collect()))
+        let moving = columns.iter().rposition(|column| *column != Vector3::zeros()).map_or(0, |last| last + 1);
+        Self(std::array::from_fn(|i| columns[..moving].iter().map(|column| column[i]).collect()))
     }
 
     /// Those of the modes from `first` on.
     pub fn from(&self, first: usize) -> ComponentsFrom<'_> {
-        let Self([x, y, z]) = self;
-        ComponentsFrom([&x[first..], &y[first..], &z[first..]])
+        let Self(all) = self;
+        ComponentsFrom(all.each_ref().map(|list| list.get(first..).unwrap_or_default()))
     }
 }
 
@@ -45,6 +46,9 @@ impl ComponentsFrom<'_> {
         velocity: &[f64],
         modal_force: &mut [f64],
     ) -> (Vector3<f64>, f64) {
+        if self.0[0].is_empty() {
+            return (Vector3::zeros(), 0.0);
+        }
         Arch::new().dispatch(Push { shapes: self, force, coordinates, velocity, modal_force })
     }
 }
@@ -152,6 +156,10 @@ mod tests {
             for (k, f) in modal_force.iter().enumerate() {
                 assert!((f - 1.0 - columns[k + 2].dot(&force)).abs() < 1e-13, "mode {k} of {modes}");
             }
+            // A place that only rigid modes move.
+            let still = Components::new(&[&columns[..2], &vec![Vector3::zeros(); modes]].concat());
+            assert_eq!(still.from(2).push(&force, &q, &v, &mut modal_force), (Vector3::zeros(), 0.0));
+            assert_eq!((still.from(2).sum(&q), still.from(0).sum(&[1.0, 0.0])), (Vector3::zeros(), columns[0]));
         }
     }
 }

@@ -68,7 +68,7 @@ use crate::motion::CenterOfMass;
 use crate::own_coupling::own_coupling;
 use crate::physics::{Drive, DrivenMotion, Physics};
 use crate::reaction::Held;
-use crate::side_by_side::{Lists, add_combined, combine, dots, own_products, side_by_side};
+use crate::side_by_side::{Lists, add_combined, combine, dots, locked_dots, own_products, side_by_side};
 use crate::spin_stiffness::SpinStiffness;
 use crate::stack::{Places, Stack};
 use crate::state::MotionState;
@@ -109,6 +109,8 @@ pub struct ConservativeBody {
     /// ω_k of the flexible modes.
     pub(crate) circular_frequencies: Vec<f64>,
     pub(crate) damping_ratios: Vec<f64>,
+    /// Λ, the squares of ω_k.
+    pub(crate) stiffness: Vec<f64>,
     /// Largest of ω_k and 2 ζ_k ω_k.
     fastest_rate: f64,
     /// 2 ζ_k ω_k.
@@ -212,6 +214,8 @@ pub(crate) struct Evaluation {
     pub load_moment: Vector3<f64>,
     /// J − SᵀS.
     pub locked_inertia: Matrix3<f64>,
+    /// Sᵀp of a locked body.
+    s_by_momentum: Vector3<f64>,
 }
 
 /// The rates of a state, in the widest vectors that the processor has.
@@ -361,6 +365,7 @@ impl ConservativeBody {
             inertia,
             circular_frequencies: modes.circular_frequencies.clone(),
             damping_ratios: damping_ratios.to_vec(),
+            stiffness: modes.circular_frequencies.iter().map(|omega| omega * omega).collect(),
             fastest_rate: rates.copied().fold(0.0, f64::max),
             damped: damping.iter().any(|d| *d > 0.0),
             damping: Padded::from_slice(&damping),
@@ -407,6 +412,12 @@ impl ConservativeBody {
     /// The loads.
     pub fn loads(&self) -> &[SharedLoad] {
         &self.loads
+    }
+
+    /// Whether what acts on the body does the same at a time by the branches that hold at two branch times, whenever it is
+    /// asked.
+    pub(crate) fn acts_alike(&self, time: f64, branch_times: [f64; 2]) -> bool {
+        self.drive.is_none() && self.loads.iter().all(|load| load.is_same(time, branch_times))
     }
 
     /// Numbers in the matrices that an evaluation reads: what an effect that is off does not cost.
@@ -459,6 +470,7 @@ impl ConservativeBody {
             load_force: Vector3::zeros(),
             load_moment: Vector3::zeros(),
             locked_inertia: self.inertia,
+            s_by_momentum: Vector3::zeros(),
         }
     }
 
@@ -603,10 +615,16 @@ impl ConservativeBody {
     /// Sᵀx, with S on z.
     #[inline(always)]
     pub(crate) fn s_products<S: Simd>(&self, simd: S, products: &[Group], x: &[Group]) -> Vector3<f64> {
+        self.axis_products(simd, self.s_lists(products), x)
+    }
+
+    /// list_iᵀx in the entry i, of lists for each axis.
+    #[inline(always)]
+    pub(crate) fn axis_products<S: Simd>(&self, simd: S, lists: Lists<'_>, x: &[Group]) -> Vector3<f64> {
         match self.s_count {
             0 => Vector3::zeros(),
-            1 => Vector3::new(dots::<S, 1>(simd, self.s_lists(products), x)[0], 0.0, 0.0),
-            _ => Vector3::from(dots::<S, 3>(simd, self.s_lists(products), x)),
+            1 => Vector3::new(dots::<S, 1>(simd, lists, x)[0], 0.0, 0.0),
+            _ => Vector3::from(dots::<S, 3>(simd, lists, x)),
         }
     }
 
@@ -616,13 +634,7 @@ impl ConservativeBody {
         match self.pairs.len() {
             0 => Matrix3::zeros(),
             1 => Matrix3::from_diagonal(&Vector3::new(dots::<S, 1>(simd, lists, x)[0], 0.0, 0.0)),
-            _ => {
-                let mut sum = Matrix3::zeros();
-                for (pair, entry) in ReducedBody::PAIRS.into_iter().zip(dots::<S, 6>(simd, lists, x)) {
-                    symmetric::add(&mut sum, pair, entry);
-                }
-                sum
-            }
+            _ => symmetric::of_pairs(&dots::<S, 6>(simd, lists, x)),
         }
     }
 
@@ -631,7 +643,7 @@ impl ConservativeBody {
         if self.manifold.is_some() { &e.velocity } else { &e.modal_velocity }
     }
 
-    /// z, and there S, c_ij + N_ij z, K q and the locked inertia; of a locked body G_i p as well.
+    /// z, and there S, c_ij + N_ij z, K q and the locked inertia; of a locked body G_i p and Sᵀp as well.
     #[inline(always)]
     fn deform<S: Simd>(&self, simd: S, e: &mut Evaluation) {
         if let Some(manifold) = &self.manifold {
@@ -647,13 +659,22 @@ impl ConservativeBody {
         let z = if self.manifold.is_some() { coordinates.groups() } else { q.groups() };
         let width = self.lists();
         if self.locked {
-            self.matrices.multiply_two(simd, [z, p.groups()], &self.undeformed, products);
-        } else {
-            // Without Coriolis terms S is that of the undeformed body.
-            let fixed = self.s_count - self.g_count;
-            let start = Lists { groups: &self.undeformed, width: self.lists_of_undeformed(), first: fixed };
-            self.matrices.multiply(simd, z, start, Places { groups: products, width, first: fixed });
+            let both = [z, p.groups()];
+            self.matrices.multiply_two(simd, both, &self.undeformed, products);
+            if self.pairs.len() == 1 {
+                let ([s], [pair]) = locked_dots::<S, 1, 1, 2, 3>(simd, products, &self.undeformed, both);
+                (e.s_by_momentum.x, e.locked_inertia) = (s, self.inertia);
+                e.locked_inertia[(0, 0)] += pair;
+            } else {
+                let (s, pairs) = locked_dots::<S, 3, 6, 9, 12>(simd, products, &self.undeformed, both);
+                (e.s_by_momentum, e.locked_inertia) = (s.into(), self.inertia + symmetric::of_pairs(&pairs));
+            }
+            return;
         }
+        // Without Coriolis terms S is that of the undeformed body.
+        let fixed = self.s_count - self.g_count;
+        let start = Lists { groups: &self.undeformed, width: self.lists_of_undeformed(), first: fixed };
+        self.matrices.multiply(simd, z, start, Places { groups: products, width, first: fixed });
         let first = Lists { groups: &self.undeformed, width: self.lists_of_undeformed(), first: self.s_count };
         e.locked_inertia =
             self.inertia + self.pair_products(simd, self.pair_lists(products), z) + self.pair_products(simd, first, z);
@@ -666,9 +687,7 @@ impl ConservativeBody {
                 manifold.substitute_forward(&e.place, forward);
             }
         }
-        if !self.locked {
-            e.locked_inertia -= self.inertia_of_modes(simd, e);
-        }
+        e.locked_inertia -= self.inertia_of_modes(simd, e);
     }
 
     /// SᵀM⁻¹S
@@ -759,6 +778,8 @@ impl ConservativeBody {
                 for (i, s) in e.forward_s.iter().enumerate() {
                     right[i] -= dot(s, &e.modal_velocity);
                 }
+            } else if self.locked {
+                right -= e.s_by_momentum;
             } else {
                 right -= self.s_products(simd, &e.products, e.p.groups());
             }
@@ -956,8 +977,11 @@ impl ConservativeBody {
         }
         let (pairs, w) = (self.pairs.len(), e.spin);
         let mut factors = [0.0; 9];
-        for (factor, pair) in factors.iter_mut().zip(&self.pairs) {
-            *factor = spin_product(&w, *pair);
+        if pairs == 6 {
+            // By constant numbers, which are not checked one by one.
+            factors[..6].copy_from_slice(&ReducedBody::PAIRS.map(|pair| spin_product(&w, pair)));
+        } else if pairs == 1 {
+            factors[0] = w.x * w.x;
         }
         for (factor, w) in factors[pairs..].iter_mut().zip(&w.as_slice()[..self.g_count]) {
             *factor = -w;

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use crate::checkpoint::{CheckpointError, counts, decode, encode, equal_room, expect, finite};
 use crate::conservative::{ConservativeBody, ConservativeState, Evaluation, Slow, get, part};
 use crate::energies::Energies;
-use crate::error::{SetupError, StepError};
+use crate::error::{RateError, SetupError, StepError};
 use crate::error_size::Sizes;
 use crate::exponential::{BlockStore, Pairs, sum_of_blocks};
 use crate::four::{Group, Padded, all_finite};
@@ -46,6 +46,8 @@ pub struct ConservativeMotion {
     ahead: Evaluation,
     /// Whether `stages[0]` is that of `state`.
     first_known: bool,
+    /// Where it is so or a row has made it so, and with all that was found on the way to the rates, the branch time.
+    branch_of_first: Option<f64>,
     /// q and p at the end of the step.
     end_of_modes: [Padded; 2],
     blocks: BlockStore,
@@ -110,7 +112,7 @@ impl Scheme for ConservativeMotion {
     fn step(&mut self, h: f64, end: f64) -> Result<(), StepError> {
         self.attempt(h, end)?;
         std::mem::swap(&mut self.state, &mut self.next);
-        self.first_known = false;
+        self.forget_first();
         Ok(())
     }
 
@@ -120,14 +122,14 @@ impl Scheme for ConservativeMotion {
 
     /// The rates at the end of the last step are not those of the next one's beginning, and a drive may jump.
     fn pass_corner(&mut self) -> Result<(), StepError> {
-        self.first_known = false;
+        self.forget_first();
         let Self { body, state, ahead, .. } = self;
         let time = state.time;
         body.pass_jump(state, ahead).map_err(|error| error.in_step(time, 0.0))
     }
 
     fn loads_have_changed(&mut self) {
-        self.first_known = false;
+        self.forget_first();
     }
 
     fn raise_energy_of_loads(&mut self, end: f64) -> f64 {
@@ -137,10 +139,11 @@ impl Scheme for ConservativeMotion {
     }
 
     fn observe(&mut self, points: &[PointShapes], out: &mut Observation) -> Result<(), StepError> {
-        // A row has an evaluation of its own: a load may be another by the time of the next step.
-        let Self { body, initial_attitude, state, ahead, .. } = self;
-        body.observe(state, initial_attitude, points, ahead, out).map_err(|error| error.in_step(state.time, 0.0))?;
-        self.energies = body.energies_of(state.time, &state.slow, ahead);
+        let in_first = self.evaluate_for_row().map_err(|error| error.in_step(self.state.time, 0.0))?;
+        let Self { body, initial_attitude, state, stages: [first, ..], ahead, .. } = self;
+        let e = if in_first { first } else { ahead };
+        body.observe(state, initial_attitude, points, e, out).map_err(|error| error.in_step(state.time, 0.0))?;
+        self.energies = body.energies_of(state.time, &state.slow, e);
         Ok(())
     }
 
@@ -157,7 +160,7 @@ impl Scheme for ConservativeMotion {
     fn copy_state(&mut self, from: &dyn Scheme) {
         let Some(from) = (from as &dyn Any).downcast_ref::<Self>() else { return };
         self.state.copy_from(&from.state);
-        self.first_known = false;
+        self.forget_first();
         self.evaluations = from.evaluations;
         self.largest = from.largest;
         self.energies = from.energies;
@@ -168,10 +171,10 @@ impl Scheme for ConservativeMotion {
         self.energies
     }
 
-    /// Where the rates were last found: at the state under step control, else at the start of the last step.
+    /// Where the rates were last found: at the state under step control or after a row, else at the start of the last step.
     fn moment(&self) -> Moment<'_> {
         let Evaluation { omega_body, modal_velocity, .. } = &self.stages[0];
-        let (time, q) = match self.first_known {
+        let (time, q) = match self.first_known || self.branch_of_first.is_some() {
             true => (self.state.time, &self.state.modal_displacement),
             // The states have changed places at the end of the step.
             false => (self.next.time, &self.next.modal_displacement),
@@ -228,7 +231,7 @@ impl Scheme for ConservativeMotion {
         ] {
             list.copy_from_slice(saved);
         }
-        (self.state, self.energies, self.first_known) = (state, energies, first_known);
+        (self.state, self.energies, self.first_known, self.branch_of_first) = (state, energies, first_known, None);
         (self.evaluations, self.largest) = (evaluations, largest);
         Ok(())
     }
@@ -257,6 +260,7 @@ impl ConservativeMotion {
             stages: std::array::from_fn(|_| evaluation.clone()),
             ahead: evaluation,
             first_known: false,
+            branch_of_first: None,
             end_of_modes: std::array::from_fn(|_| Padded::zeros(nf)),
             blocks: BlockStore::default(),
             evaluations: 0,
@@ -278,7 +282,7 @@ impl ConservativeMotion {
     pub fn set_momentum_state(&mut self, to: &ConservativeState) -> Result<(), SetupError> {
         to.check(self.body.flexible())?;
         self.state.copy_from(to);
-        self.first_known = false;
+        self.forget_first();
         self.energies = None;
         Ok(())
     }
@@ -302,23 +306,23 @@ impl ConservativeMotion {
     /// [`StepError`], where even the attempt fails; the state stays.
     pub(crate) fn controlled_steps(&mut self, h: f64, end: f64, tolerance: f64) -> Result<f64, StepError> {
         self.before.copy_from(&self.state);
+        // Of the second of two steps: where the rates at its end are found.
+        let branch_time = self.state.time + 1.5 * h;
         let estimate = self.two_steps(h, end, tolerance);
         match estimate {
             Ok(estimate) if estimate <= tolerance => {
                 self.largest = self.body.sizes(&self.next, &self.ahead).max(self.largest);
                 let ConservativeState { time, slow, .. } = &self.next;
                 self.energies = self.body.energies_of(*time, slow, &self.ahead);
-                if self.scheme == Stepping::Rkmk4 {
-                    self.body.add_linear(&mut self.ahead);
-                }
                 std::mem::swap(&mut self.state, &mut self.next);
                 // The evaluation at the end is the first of the next step.
                 std::mem::swap(&mut self.stages[0], &mut self.ahead);
-                self.first_known = true;
+                (self.first_known, self.branch_of_first) = (true, Some(branch_time));
+                self.finish_first();
             }
             _ => {
                 self.state.copy_from(&self.before);
-                self.first_known = false;
+                self.forget_first();
             }
         }
         estimate
@@ -391,21 +395,62 @@ impl ConservativeMotion {
             .map_err(|error| error.in_step(state.time, h))
     }
 
-    /// Evaluates the first stage at the state, unless the last step already has.
+    /// Evaluates the first stage at the state, unless the last step already has, or a row with the same loads.
     fn evaluate_first(&mut self, first_attitude: &Matrix3<f64>, h: f64) -> Result<(), StepError> {
         if self.first_known {
             return Ok(());
         }
+        if self.first_holds_at(self.state.time + 0.5 * h) {
+            // It counts as without the row.
+            self.evaluations += 1;
+            self.finish_first();
+            return Ok(());
+        }
+        self.branch_of_first = None;
         let Self { state, stages: [first, ..], .. } = self;
         first.q.copy_from_slice(&state.modal_displacement);
         first.p.copy_from_slice(&state.modal_momentum);
         let slow = state.slow;
         self.evaluate(0, self.state.time, first_attitude, &slow, h)?;
         self.energies = self.body.energies_of(self.state.time, &slow, &self.stages[0]);
+        self.finish_first();
+        Ok(())
+    }
+
+    /// The stages of RK4 take the linear part from the rates, which rows must not see.
+    fn finish_first(&mut self) {
         if self.scheme == Stepping::Rkmk4 {
             self.body.add_linear(&mut self.stages[0]);
+            self.branch_of_first = None;
         }
-        Ok(())
+    }
+
+    /// The state, or what acts on it, is another.
+    fn forget_first(&mut self) {
+        (self.first_known, self.branch_of_first) = (false, None);
+    }
+
+    /// Whether `stages[0]` is the whole evaluation at the state, and the same by the branches that hold at a time.
+    fn first_holds_at(&self, branch_time: f64) -> bool {
+        let Self { body, state, branch_of_first, .. } = self;
+        branch_of_first.is_some_and(|branch| body.acts_alike(state.time, [branch, branch_time]))
+    }
+
+    /// Evaluates the rates at the state for a row: in `stages[0]`, where the next step may find them, unless there are those
+    /// that it needs; then in `ahead`. Whether it is the former.
+    fn evaluate_for_row(&mut self) -> Result<bool, RateError> {
+        let time = self.state.time;
+        if self.first_holds_at(time) {
+            return Ok(true);
+        }
+        if self.first_known {
+            self.body.evaluate_at(&self.state, time, &mut self.ahead)?;
+            return Ok(false);
+        }
+        self.branch_of_first = None;
+        self.body.evaluate_at(&self.state, time, &mut self.stages[0])?;
+        self.branch_of_first = Some(time);
+        Ok(true)
     }
 
     /// Stages 2 to 4 of classical RK4 and the sum.
@@ -433,11 +478,11 @@ impl ConservativeMotion {
     }
 
     fn exponential(&mut self, first_attitude: &Matrix3<f64>, h: f64) -> Result<(), StepError> {
-        let time = self.state.time;
+        let Self { body, blocks, state, next, stages, end_of_modes: [q, p], evaluations, .. } = self;
+        let block = blocks.get(&body.circular_frequencies, &body.damping_ratios, h);
+        let branch_time = state.time + 0.5 * h;
         for (s, fraction) in [(1, 0.5), (2, 0.5), (3, 1.0)] {
-            let Self { body, blocks, state, stages, .. } = self;
-            let block = blocks.get(&body.circular_frequencies, &body.damping_ratios, h);
-            let [first, second, third, fourth] = stages;
+            let [first, second, third, fourth] = &mut *stages;
             let start = first.place_of_modes();
             match s {
                 1 => sum_of_blocks([(&block.half, start), (&block.a21, first.rates_of_modes())], second.modes_mut()),
@@ -450,11 +495,11 @@ impl ConservativeMotion {
                     fourth.modes_mut(),
                 ),
             }
-            let slow = state.slow + self.stages[s - 1].slow * (fraction * h);
-            self.evaluate(s, time + fraction * h, first_attitude, &slow, h)?;
+            let slow = state.slow + stages[s - 1].slow * (fraction * h);
+            *evaluations += 1;
+            body.evaluate([state.time + fraction * h, branch_time], first_attitude, &slow, &mut stages[s])
+                .map_err(|error| error.in_step(state.time, h))?;
         }
-        let Self { body, blocks, state, next, stages, end_of_modes: [q, p], .. } = self;
-        let block = blocks.get(&body.circular_frequencies, &body.damping_ratios, h);
         let [k1, k2, k3, k4] = stages.each_ref().map(|stage| &stage.slow);
         next.slow = state.slow + (k1 + (k2 + k3) * 2.0 + k4) * (h / 6.0);
         let [n1, n2, n3, n4] = stages.each_ref().map(Evaluation::rates_of_modes);

@@ -28,7 +28,7 @@ impl WithSimd for Accelerate<'_> {
 }
 
 impl ConservativeBody {
-    /// Reads the motion off a state. `e` is overwritten.
+    /// Reads the motion off a state whose rates are in `e`, and leaves these as they are.
     pub(crate) fn observe(
         &self,
         state: &ConservativeState,
@@ -37,7 +37,6 @@ impl ConservativeBody {
         e: &mut Evaluation,
         out: &mut Observation,
     ) -> Result<(), RateError> {
-        self.evaluate_at(state, state.time, e)?;
         let (kinetic, strain) = self.energies(state, e);
         let driven_acceleration =
             self.drive.as_ref().map_or(0.0, |drive| drive.acceleration_at(state.time, state.time));

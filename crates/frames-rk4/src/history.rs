@@ -147,6 +147,12 @@ impl History {
         }
     }
 
+    /// Whether the factor at a time is the same, bit for bit, by the branches that hold at two branch times.
+    pub(crate) fn is_same(&self, time: f64, branch_times: [f64; 2]) -> bool {
+        let [a, b] = branch_times;
+        matches!(self, Self::Constant) || a == b || self.at(time, a).to_bits() == self.at(time, b).to_bits()
+    }
+
     /// The factor's rate at a time, by the branch that holds at `branch_time`; per time.
     ///
     /// It is the exact derivative. Allocates nothing.

@@ -59,6 +59,13 @@ pub trait Load: fmt::Debug + Send + Sync + Any {
         None
     }
 
+    /// Whether it does the same to the same motion at a time by the branches that hold at two branch times, whenever it is
+    /// asked: what has been found with one then holds with the other. Not so what something outside sets between steps.
+    fn is_same(&self, time: f64, branch_times: [f64; 2]) -> bool {
+        let _ = (time, branch_times);
+        false
+    }
+
     /// Numbers in the matrices that an evaluation reads for it.
     fn matrix_entries(&self) -> usize {
         0

@@ -71,6 +71,30 @@ pub(crate) fn dots<S: Simd, const M: usize>(simd: S, lists: Lists<'_>, x: &[Grou
     totals(sums)
 }
 
+/// Of lists in rows of W, the sums that a locked body asks for: the first A by y, and the P after them, each with a list of
+/// `start` besides, by x. The rows of `start` have L lists, and those that count begin at A, too.
+#[inline(always)]
+pub(crate) fn locked_dots<S: Simd, const A: usize, const P: usize, const L: usize, const W: usize>(
+    simd: S,
+    lists: &[Group],
+    start: &[Group],
+    [x, y]: [&[Group]; 2],
+) -> ([f64; A], [f64; P]) {
+    let (mut by_y, mut by_x) = ([Four::splat(simd, 0.0); A], [Four::splat(simd, 0.0); P]);
+    let rows = lists.as_chunks::<W>().0.iter().zip(start.as_chunks::<L>().0);
+    for ((row, start), (x, y)) in rows.zip(x.iter().zip(y)) {
+        let (x, y) = (Four::load(simd, x), Four::load(simd, y));
+        for k in 0..A {
+            by_y[k] = Four::load(simd, &row[k]).mul_add(simd, y, by_y[k]);
+        }
+        for k in 0..P {
+            let both = Four::load(simd, &row[A + k]).add(simd, Four::load(simd, &start[A + k]));
+            by_x[k] = both.mul_add(simd, x, by_x[k]);
+        }
+    }
+    (totals(by_y), totals(by_x))
+}
+
 /// The totals of sums that run side by side.
 #[inline(always)]
 pub(crate) fn totals<S: Simd, const M: usize>(sums: [Four<S>; M]) -> [f64; M] {
@@ -91,26 +115,6 @@ pub(crate) fn own_products<S: Simd, const M: usize>(simd: S, lists: Lists<'_>) -
             let list = Four::load(simd, &row[j]);
             for k in 0..=j {
                 sums[j][k] = Four::load(simd, &row[k]).mul_add(simd, list, sums[j][k]);
-            }
-        }
-    }
-    let mut products = [[0.0; M]; M];
-    for (products, sums) in products.iter_mut().zip(sums) {
-        *products = totals(sums);
-    }
-    products
-}
-
-/// a_jᵀb_k of the first M lists of each.
-#[inline(always)]
-pub(crate) fn mixed_products<S: Simd, const M: usize>(simd: S, a: Lists<'_>, b: Lists<'_>) -> [[f64; M]; M] {
-    let mut sums = [[Four::splat(simd, 0.0); M]; M];
-    for (a, b) in a.rows().zip(b.rows()) {
-        let (Some(a), Some(b)) = (a.first_chunk::<M>(), b.first_chunk::<M>()) else { break };
-        for j in 0..M {
-            let list = Four::load(simd, &a[j]);
-            for k in 0..M {
-                sums[j][k] = Four::load(simd, &b[k]).mul_add(simd, list, sums[j][k]);
             }
         }
     }

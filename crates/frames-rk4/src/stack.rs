@@ -186,7 +186,7 @@ mod tests {
 
     use super::*;
     use crate::four::Padded;
-    use crate::side_by_side::{add_combined, combine, dots, mixed_products, own_products, side_by_side};
+    use crate::side_by_side::{add_combined, combine, dots, locked_dots, own_products, side_by_side};
 
     /// Products of `count` matrices, in some vectors.
     struct Products {
@@ -257,11 +257,16 @@ mod tests {
         for (k, found) in dots::<_, 3>(simd, Lists { first: 2, ..all }, x.groups()).into_iter().enumerate() {
             assert!((found - dot(&lists[k + 2], &lists[7])).abs() < 1e-14);
         }
-        let (own, mixed) =
-            (own_products::<_, 3>(simd, all), mixed_products::<_, 3>(simd, all, Lists { first: 3, ..all }));
+        // Two lists by y, and three with others besides by x.
+        let start: Vec<Vec<f64>> = lists.iter().rev().take(5).cloned().collect();
+        let [x, y] = [&lists[7], &lists[8]].map(|list| Padded::from_slice(list));
+        let five = side_by_side(&lists[..5]);
+        let (by_y, by_x) = locked_dots::<_, 2, 3, 5, 5>(simd, &five, &side_by_side(&start), [x.groups(), y.groups()]);
+        assert!((0..2).all(|k| (by_y[k] - dot(&lists[k], &y)).abs() < 1e-14));
+        assert!((0..3).all(|k| (by_x[k] - dot(&lists[2 + k], &x) - dot(&start[2 + k], &x)).abs() < 1e-14));
+        let own = own_products::<_, 3>(simd, all);
         for (j, k) in (0..3).flat_map(|j| (0..3).map(move |k| (j, k))) {
             assert!((own[j.max(k)][j.min(k)] - dot(&lists[j], &lists[k])).abs() < 1e-14);
-            assert!((mixed[j][k] - dot(&lists[j], &lists[k + 3])).abs() < 1e-14);
         }
         for count in [0, 1, 2, 3, 6, 9] {
             let factors: Vec<f64> = (0..count).map(|k| k as f64 - 1.5).collect();

@@ -1,5 +1,6 @@
 //! Symmetric 3×3 matrices, entry by entry.
 
+use modal::ReducedBody;
 use nalgebra::{Matrix3, Vector3};
 
 /// Adds to the entries ij and ji, which are one on the diagonal.
@@ -8,6 +9,16 @@ pub(crate) fn add(matrix: &mut Matrix3<f64>, (i, j): (usize, usize), entry: f64)
     if i != j {
         matrix[(j, i)] += entry;
     }
+}
+
+/// The matrix with these entries at [`ReducedBody::PAIRS`].
+#[inline(always)]
+pub(crate) fn of_pairs(entries: &[f64; 6]) -> Matrix3<f64> {
+    let mut matrix = Matrix3::zeros();
+    for (pair, entry) in ReducedBody::PAIRS.into_iter().zip(entries) {
+        add(&mut matrix, pair, *entry);
+    }
+    matrix
 }
 
 /// A⁻¹ x by cofactors; not finite where A is singular.

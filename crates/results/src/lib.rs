@@ -22,6 +22,7 @@
 #![deny(unsafe_code)] // not `forbid`, since a macro of ndarray allows it within itself
 #![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable))]
 
+mod block;
 mod checkpoint;
 mod column;
 mod description;

@@ -1,5 +1,6 @@
 //! Streams rows into an HDF5 file while a run goes on.
 
+use crate::block::Block;
 use crate::checkpoint::{self, Checkpoint, Sums};
 use crate::column::present;
 use crate::paths::ResultsPaths;
@@ -35,15 +36,6 @@ pub struct Expected {
     pub overwrite: bool,
 }
 
-/// A column, and its values that wait to be written.
-#[derive(Debug)]
-struct Buffer<R: 'static> {
-    column: &'static Column<R>,
-    /// Values per row.
-    width: usize,
-    values: Vec<f64>,
-}
-
 /// Appends rows of type `R` to an HDF5 file whose datasets are those of a table of [`Column`]s.
 ///
 /// While the run goes on, the rows are in an unfinished file beside the place of the results ([`unfinished`]), which is
@@ -56,8 +48,10 @@ pub struct Writer<R: 'static> {
     metadata: Metadata,
     columns: &'static [Column<R>],
     store: Store,
-    /// Values of the rows that have not been written, by column.
-    buffers: Vec<Buffer<R>>,
+    /// The columns that the file has, and their values per row.
+    present: Vec<(&'static Column<R>, usize)>,
+    /// The rows that have not been written.
+    waiting: Block,
     rows_per_write: usize,
     /// Of the rows that have been written.
     sums: Sums,
@@ -104,7 +98,8 @@ impl<R> Writer<R> {
         metadata.check(&place.path)?;
         place.check(expected.overwrite)?;
 
-        let (buffers, numbers_per_row) = buffers(columns, metadata);
+        let present = with_widths(columns, metadata);
+        let numbers_per_row = present.iter().map(|(_, width)| width).sum();
         let rows_per_write = rows_per_write(numbers_per_row);
         let rows = expected.rows.min(FIRST_ROOM / numbers_per_row.max(1)).max(rows_per_write);
         let checkpoint = vec![0; checkpoint::FRAME + expected.checkpoint];
@@ -116,8 +111,9 @@ impl<R> Writer<R> {
             metadata: metadata.clone(),
             columns,
             store,
-            sums: Sums::new(buffers.len()),
-            buffers,
+            sums: Sums::new(present.len()),
+            waiting: waiting(&present, rows_per_write),
+            present,
             rows_per_write,
             rows_written: 0,
             rows_buffered: 0,
@@ -159,14 +155,16 @@ impl<R> Writer<R> {
             None => (0, 0, vec![0; store.checkpoint_words()], None, Sums::new(store.widths().count())),
         };
         results.truncate(rows);
-        let (buffers, numbers_per_row) = buffers(columns, &results.metadata);
+        let present = with_widths(columns, &results.metadata);
+        let rows_per_write = rows_per_write(present.iter().map(|(_, width)| width).sum());
         let writer = Self {
             metadata: results.metadata.clone(),
             columns,
             place,
             store,
-            buffers,
-            rows_per_write: rows_per_write(numbers_per_row),
+            waiting: waiting(&present, rows_per_write),
+            present,
+            rows_per_write,
             sums,
             rows_written: rows,
             rows_buffered: 0,
@@ -193,35 +191,36 @@ impl<R> Writer<R> {
     /// [`FileError::WrongLength`] and [`FileError::NotFinite`] leave the row out and everything before
     /// it in; [`FileError::System`] and [`FileError::Hdf5`] if the file cannot be written.
     pub fn push(&mut self, row: &R) -> Result<(), FileError> {
-        for Buffer { column, values, .. } in &mut self.buffers {
-            column.append(row, &self.metadata, values);
+        let Self { present, waiting: Block { values, .. }, metadata, .. } = self;
+        let before = values.len();
+        let mut is_whole = true;
+        for (column, width) in &*present {
+            let first = values.len();
+            column.append(row, metadata, values);
+            is_whole &= values.len() == first + width && !column.has_more(row, metadata);
         }
-        if let Err(error) = self.check_last(row) {
-            for Buffer { width, values, .. } in &mut self.buffers {
-                values.truncate(self.rows_buffered * *width);
-            }
-            return Err(error);
+        if !(is_whole && are_finite(&values[before..])) {
+            self.waiting.truncate(self.rows_buffered);
+            return self.refuse(row);
         }
         self.rows_buffered += 1;
-        if self.rows_buffered >= self.rows_per_write { self.write_buffers() } else { Ok(()) }
+        if self.rows_buffered >= self.rows_per_write { self.write_waiting() } else { Ok(()) }
     }
 
-    /// Refuses the row whose values are the last in the buffers where it lacks a value, or has one that is not finite.
-    fn check_last(&self, row: &R) -> Result<(), FileError> {
+    /// Refuses a row that lacks a value, has more than there are places for, or one that is not finite.
+    fn refuse(&self, row: &R) -> Result<(), FileError> {
         let (path, metadata) = (&self.place.part, &self.metadata);
-        if let Some(column) = self.columns.iter().find(|column| column.has_more(row, metadata)) {
+        if let Some((column, _)) = self.present.iter().find(|(column, _)| column.has_more(row, metadata)) {
             let places = column.places(metadata).len();
             let what = if matches!(column.values, Values::Supports(_)) { "supports" } else { "points" };
             return check_length(path, what, places, places + 1);
         }
-        let mut time = None;
-        for Buffer { column, width, values } in &self.buffers {
-            let values = &values[self.rows_buffered * width..];
-            check_length(path, column.path, *width, values.len())?;
+        let (mut values, mut time) = (Vec::new(), None);
+        for (column, width) in &self.present {
+            values.clear();
+            column.append(row, metadata, &mut values);
             let time = *time.get_or_insert(values.first().copied().unwrap_or(f64::NAN));
-            if are_finite(values) {
-                continue;
-            }
+            check_length(path, column.path, *width, values.len())?;
             if let Some(index) = values.iter().position(|value| !value.is_finite()) {
                 let quantity = column.quantity(metadata, index);
                 return Err(FileError::NotFinite { path: path.clone(), time, quantity, value: values[index] });
@@ -244,7 +243,7 @@ impl<R> Writer<R> {
         let path = &self.place.part;
         let expected = self.checkpoint.len().saturating_sub(checkpoint::FRAME);
         check_length(path, "the checkpoint", expected, checkpoint.len())?;
-        self.write_buffers()?;
+        self.write_waiting()?;
         let path = &self.place.part;
         self.serial = self.serial.saturating_add(1); // a forged file may have any
         let (rows, sum_of_rows) = (self.rows_written, self.sums.total());
@@ -265,7 +264,7 @@ impl<R> Writer<R> {
     /// # Errors
     /// [`FileError::System`] and [`FileError::Hdf5`] if the file cannot be written; the unfinished file stays.
     pub fn finish(mut self) -> Result<(), FileError> {
-        self.write_buffers()?;
+        self.write_waiting()?;
         let room = Room { rows: self.rows_written, checkpoint_words: None };
         let file = self.place.temporary()?;
         let path = &self.place.path;
@@ -277,20 +276,20 @@ impl<R> Writer<R> {
         self.place.remove_part()
     }
 
-    fn write_buffers(&mut self) -> Result<(), FileError> {
+    fn write_waiting(&mut self) -> Result<(), FileError> {
         if self.rows_buffered == 0 {
             return Ok(());
         }
         let rows = self.rows_written..self.rows_written + self.rows_buffered;
         let room = if rows.end > self.store.rows() { self.grow(rows.end) } else { Ok(()) };
         let outcome = room.and_then(|()| {
-            let values = || self.buffers.iter().map(|buffer| buffer.values.as_slice());
-            self.store.write(&self.place.part, rows.clone(), values())?;
-            self.sums.add(values());
+            let columns = self.waiting.columns();
+            self.store.write(&self.place.part, rows.clone(), columns.clone())?;
+            self.sums.add(columns);
             Ok(())
         });
         // Should it fail, the rows are given up, and no later call takes others for them.
-        self.buffers.iter_mut().for_each(|buffer| buffer.values.clear());
+        self.waiting.truncate(0);
         self.rows_buffered = 0;
         if outcome.is_ok() {
             self.rows_written = rows.end;
@@ -312,15 +311,14 @@ impl<R> Writer<R> {
     }
 }
 
-/// Empty buffers of the columns that a file has, and how many numbers make a row.
-fn buffers<R>(columns: &'static [Column<R>], metadata: &Metadata) -> (Vec<Buffer<R>>, usize) {
-    let numbers_per_row = present(columns, metadata).map(|column| column.width(metadata)).sum();
-    let rows = rows_per_write(numbers_per_row);
-    let buffer = |column: &'static Column<R>| {
-        let width = column.width(metadata);
-        Buffer { column, width, values: Vec::with_capacity(rows * width) }
-    };
-    (present(columns, metadata).map(buffer).collect(), numbers_per_row)
+/// The columns that a file has, and their values per row.
+fn with_widths<R>(columns: &'static [Column<R>], metadata: &Metadata) -> Vec<(&'static Column<R>, usize)> {
+    present(columns, metadata).map(|column| (column, column.width(metadata))).collect()
+}
+
+/// Room for rows that wait.
+fn waiting<R>(present: &[(&Column<R>, usize)], rows: usize) -> Block {
+    Block::new(present.iter().map(|(_, width)| *width).collect(), rows)
 }
 
 /// Whether all are finite numbers.
@@ -356,7 +354,7 @@ fn make_room<R>(
 impl<R> Drop for Writer<R> {
     fn drop(&mut self) {
         // Best effort: there is nobody left to tell. After `finish` there is nothing to do.
-        let _ = self.write_buffers();
+        let _ = self.write_waiting();
     }
 }
 

@@ -3,7 +3,7 @@
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 
-use frames_rk4::{Initial, Observation, Reached, Simulation, StepError};
+use frames_rk4::{Initial, Observation, Reached, Simulation, Stats, StepError};
 use nalgebra::Vector3;
 use results::{Results, Writer};
 use rigid_kin::Attitude;
@@ -22,6 +22,9 @@ use crate::row::Row;
 
 /// Steps between two reports of progress, where no row comes first.
 const STEPS_PER_REPORT: u64 = 4096;
+
+/// Steps from one row with a report of progress and a look at the clock to the next: a row may cost less than these.
+const STEPS_PER_LOOK: u64 = 64;
 
 /// Follows a run, and turns its observations into rows of the results file.
 pub(super) struct Recorder<'a> {
@@ -87,6 +90,7 @@ impl<'a> Recorder<'a> {
         mut progress: impl FnMut(RunProgress),
     ) -> Result<RunReport, RunError> {
         let before = simulation.stats().accepted;
+        let mut looked_at = 0;
         loop {
             let watch = &mut self.watch;
             let reached = simulation.advance_watched(STEPS_PER_REPORT, |moment| watch.look(moment));
@@ -96,6 +100,11 @@ impl<'a> Recorder<'a> {
                 Reached::Row => {
                     self.record(&mut simulation)?;
                     let stop = settings.stop.load(Ordering::Relaxed) && simulation.time() < simulation.end();
+                    let Stats { accepted, rejected, .. } = simulation.stats();
+                    if !stop && accepted + rejected < looked_at + STEPS_PER_LOOK {
+                        continue;
+                    }
+                    looked_at = accepted + rejected;
                     if stop || self.writer.flush_is_due() {
                         self.flush(&mut simulation)?;
                     }

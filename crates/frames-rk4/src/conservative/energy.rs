@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::{ConservativeBody, Evaluation, Translation, along};
-use crate::column_major::dot;
+use crate::column_major::{dot, weighted_squares};
 use crate::conservative::state::{ConservativeState, Slow, get, part};
 use crate::energies::Energies;
 use crate::history::History;
@@ -117,8 +117,7 @@ impl ConservativeBody {
 
     /// ½ qᵀΛq + V_n
     fn strain_energy(&self, q: &[f64]) -> f64 {
-        let linear: f64 = q.iter().enumerate().map(|(k, q)| self.modal_energy(k, *q, 0.0)).sum();
-        linear + self.manifold.as_ref().map_or(0.0, |manifold| manifold.energy(q))
+        0.5 * weighted_squares(&self.stiffness, q) + self.manifold.as_ref().map_or(0.0, |manifold| manifold.energy(q))
     }
 
     /// Lowest ω_k; infinite without modes.

@@ -24,6 +24,10 @@ impl Load for FieldLoad {
         Some(&self.history)
     }
 
+    fn is_same(&self, time: f64, branch_times: [f64; 2]) -> bool {
+        self.history.is_same(time, branch_times)
+    }
+
     fn pattern(&self) -> Option<Pattern> {
         let columns = self.field.modal.iter().map(|f| Vector3::x() * *f).collect();
         Some(Pattern { columns, vector: Vector3::x(), frame: LoadFrame::Body, local: false })

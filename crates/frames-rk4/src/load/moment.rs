@@ -30,6 +30,10 @@ impl Load for PointMoment {
         Some(&self.history)
     }
 
+    fn is_same(&self, time: f64, branch_times: [f64; 2]) -> bool {
+        self.history.is_same(time, branch_times)
+    }
+
     fn pattern(&self) -> Option<Pattern> {
         let columns = self.rotation.columns().to_vec();
         Some(Pattern { columns, vector: self.moment, frame: self.frame, local: true })

@@ -16,5 +16,6 @@ mod order;
 mod pulse;
 mod reaction;
 mod rigid;
+mod rows;
 mod run;
 mod table;

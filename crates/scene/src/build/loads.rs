@@ -84,10 +84,14 @@ pub(super) struct UnitWeight {
 }
 
 impl UnitWeight {
-    /// The centre of mass, which moves as the mean of all masses does.
+    /// The centre of mass, which moves as the mean of all masses does: in a free body not at all.
     fn point(&self, body: &ReducedBody, modes: &Modes) -> BodyPoint {
+        let position_body = body.center_of_mass - body.origin;
+        if body.motion.is_free() {
+            return BodyPoint { position_body, shapes: Mat::zeros(3, modes.shapes.ncols()) };
+        }
         let shapes = self.forces.transpose() * modes.shapes.as_ref();
-        BodyPoint { position_body: body.center_of_mass - body.origin, shapes: shapes * faer::Scale(1.0 / self.mass) }
+        BodyPoint { position_body, shapes: shapes * faer::Scale(1.0 / self.mass) }
     }
 }
 
