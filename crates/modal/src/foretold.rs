@@ -12,8 +12,11 @@ use crate::stiffness::StiffnessMatrix;
 
 /// Bytes of a number or an index.
 const WORD: usize = 8;
-/// Blocks of vectors beside the basis: the new one, its product with M, a spare, a packed one and scratch of the solver.
-const BLOCKS: usize = 5;
+/// Rigid modes at the most.
+const RIGID: usize = 6;
+/// Blocks of vectors beside the basis: the new one, products with M of it and of two more, a packed one and scratch of the
+/// solver.
+const BLOCKS: usize = 6;
 /// What faer's products of matrices take as scratch where the processor does not tell the size of its caches.
 const CACHE: usize = 32 << 20;
 
@@ -133,7 +136,7 @@ impl Foretold {
 
     /// The search for modes with a basis of so many vectors, beside the factor, and the `shapes` that come of it at its end.
     fn of_basis(&self, vectors: usize, block: usize, shapes: usize) -> usize {
-        WORD * self.unknowns * (2 * vectors + BLOCKS * block + shapes)
+        WORD * self.unknowns * (vectors + RIGID + BLOCKS * block + shapes)
     }
 
     /// Rayleigh–Ritz for so many shapes: them, as they come and go, and their products with K and M.

@@ -3,7 +3,7 @@
 //! The whole basis V is kept and every new block is made M-orthogonal to all of it, after it was made so to the last two
 //! blocks, so T = Vᵀ M (K + sM)⁻¹ M V is known nearly to rounding and no ghost eigenvalue appears.
 
-use std::ops::Range;
+use std::collections::VecDeque;
 
 use faer::{Accum, Mat, MatRef};
 
@@ -21,6 +21,8 @@ pub(crate) const FIXED: usize = 6;
 pub(crate) const BLOCK: usize = 8;
 /// ‖(K + sM)⁻¹Mφ − μφ‖_M / μ of a pair that is accepted.
 const TOLERANCE: f64 = 1e-10;
+/// The last blocks that a new one has parts along.
+const NEAR: usize = 2;
 /// Directions of a new block below this, relative to the block before orthogonalisation, are rounding.
 const DEPENDENT: f64 = 1e-13;
 /// Where all eigenvalues of the Gram matrix of a new block, scaled to a unit diagonal, are above this, one round leaves it
@@ -113,10 +115,11 @@ pub(crate) fn largest_pairs(
         report(converged);
         if wanted.len() == count && (converged == count || exhausted) {
             let coefficients = Mat::from_fn(size, count, |i, j| eigenvectors[(i, wanted[j])]);
+            drop(scratch);
             let vectors = basis.combine(coefficients.as_ref());
             return Ok(LanczosPairs { vectors, residuals, block_solves, basis_size: size });
         }
-        near = 2;
+        near = NEAR;
         last = extension.columns;
         if last == 0 {
             // The basis spans an invariant subspace: go on from elsewhere, uncoupled from it.
@@ -134,12 +137,17 @@ pub(crate) fn room(count: usize, available: usize) -> usize {
 }
 
 /// An M-orthonormal basis, block by block: the rigid modes, which the search stays away from, then a block for each step.
+///
+/// M times the basis is kept of few blocks only: another product with M takes less time than that memory.
 struct Basis<'a> {
     mass: &'a MassMatrix<'a>,
     blocks: Vec<Mat<f64>>,
-    m_blocks: Vec<Mat<f64>>,
+    /// M times the rigid modes.
+    m_rigid: Mat<f64>,
+    /// M times the last [`NEAR`] blocks.
+    m_near: VecDeque<Mat<f64>>,
     // Scratch of a block's size, used again for each block.
-    spare: Mat<f64>,
+    m_w: Mat<f64>,
     packed: Vec<Packed>,
 }
 
@@ -153,12 +161,13 @@ struct Extension {
 
 impl<'a> Basis<'a> {
     fn new(mass: &'a MassMatrix<'a>, rigid: MatRef<'_, f64>, room: usize) -> Result<Self, ModalError> {
-        check_memory(rigid.nrows(), 2 * (FIXED + room) + 4 * BLOCK)?;
+        check_memory(rigid.nrows(), 2 * FIXED + room + 6 * BLOCK)?;
         Ok(Self {
             mass,
             blocks: vec![rigid.to_owned()],
-            m_blocks: vec![mass.product(rigid)],
-            spare: Mat::new(),
+            m_rigid: mass.product(rigid),
+            m_near: VecDeque::new(),
+            m_w: Mat::new(),
             packed: Vec::new(),
         })
     }
@@ -170,21 +179,16 @@ impl<'a> Basis<'a> {
 
     /// M times the last block.
     fn last_times_mass(&self) -> Mat<f64> {
-        self.m_blocks[self.m_blocks.len() - 1].clone()
-    }
-
-    /// Takes out of `w` what it has along some blocks of the basis, and tells that.
-    fn take_out(&self, blocks: Range<usize>, w: &mut Mat<f64>) -> Mat<f64> {
-        let h = tall::inner_of_blocks(&views(&self.m_blocks[blocks.clone()]), w.as_ref());
-        tall::multiply_blocks(w.as_mut(), Accum::Add, &views(&self.blocks[blocks]), h.as_ref(), -1.0);
-        h
+        self.m_near.back().map_or_else(Mat::new, Mat::clone)
     }
 
     /// The vectors of the basis times `coefficients`, without what rounding has left of the rigid modes in that.
-    fn combine(&self, coefficients: MatRef<'_, f64>) -> Mat<f64> {
-        let mut vectors = Mat::zeros(self.blocks[0].nrows(), coefficients.ncols());
-        tall::multiply_blocks(vectors.as_mut(), Accum::Replace, &views(&self.blocks[1..]), coefficients, 1.0);
-        self.take_out(0..1, &mut vectors);
+    fn combine(self, coefficients: MatRef<'_, f64>) -> Mat<f64> {
+        let Self { blocks, m_rigid, m_near, m_w, packed, .. } = self;
+        drop((m_near, m_w, packed));
+        let mut vectors = Mat::zeros(m_rigid.nrows(), coefficients.ncols());
+        tall::multiply_blocks(vectors.as_mut(), Accum::Replace, &views(&blocks[1..]), coefficients, 1.0);
+        tall::take_out(&mut vectors, blocks[0].as_ref(), m_rigid.as_ref());
         vectors
     }
 
@@ -195,37 +199,65 @@ impl<'a> Basis<'a> {
     /// the last blocks that are. These are taken out first, and the rigid modes, which rounding brings in most. What is left
     /// is rounding, and one round takes it out as a rule.
     fn extend(&mut self, mut w: Mat<f64>, near: usize) -> Result<Extension, ModalError> {
-        let (size, count) = (self.size(), self.blocks.len());
-        check_memory(w.nrows(), 2 * w.ncols())?;
+        let size = self.size();
+        check_memory(w.nrows(), w.ncols())?;
         let mut coefficients = Mat::zeros(FIXED + size, w.ncols());
         let mut coupling = Mat::identity(w.ncols(), w.ncols());
-        for blocks in [0..1, count - near..count] {
-            let h = self.take_out(blocks.clone(), &mut w);
-            let first = columns(&self.blocks[..blocks.start]);
-            coefficients.as_mut().subrows_mut(first, h.nrows()).copy_from(&h);
-        }
-        let mut m_w = Mat::zeros(w.nrows(), w.ncols());
+        let of_rigid = tall::take_out(&mut w, self.blocks[0].as_ref(), self.m_rigid.as_ref());
+        coefficients.as_mut().subrows_mut(0, FIXED).copy_from(&of_rigid);
+        let (_, last) = self.blocks.split_at(self.blocks.len() - near);
+        let m_last = self.m_near.iter().skip(self.m_near.len() - near).map(Mat::as_ref).collect::<Vec<_>>();
+        let of_near = tall::inner_of_blocks(&m_last, w.as_ref());
+        tall::multiply_blocks(w.as_mut(), Accum::Add, &views(last), of_near.as_ref(), -1.0);
+        coefficients.as_mut().subrows_mut(FIXED + size - of_near.nrows(), of_near.nrows()).copy_from(&of_near);
+
         for round in 0..MAX_ROUNDS {
-            let h = self.take_out(0..count, &mut w);
-            m_w.resize_with(w.nrows(), w.ncols(), |_, _| 0.0);
-            self.mass.product_into(w.as_ref(), m_w.as_mut(), &mut self.packed);
-            let gram = tall::inner(w.as_ref(), m_w.as_ref());
+            self.multiply_by_mass(&w);
+            let blocks = views(&self.blocks);
+            let h = tall::inner_of_blocks(&blocks, self.m_w.as_ref());
+            let mut gram = tall::inner(w.as_ref(), self.m_w.as_ref());
+            tall::multiply_blocks(w.as_mut(), Accum::Add, &blocks, h.as_ref(), -1.0);
+            if is_settled(&h, &norms(&gram)) {
+                gram -= h.transpose() * &h;
+            } else {
+                // The difference would be one of nearly equal numbers.
+                self.multiply_by_mass(&w);
+                gram = tall::inner(w.as_ref(), self.m_w.as_ref());
+            }
             let svqb = if round == 0 { Svqb::first(&gram, &h, &(&coefficients + &h))? } else { Svqb::again(&gram)? };
             coefficients += h * &coupling;
             coupling = svqb.inverse * coupling;
-            times(&mut w, &svqb.transform, &mut self.spare);
-            // The last round is as good as it gets; M·W has to be that of W in any case.
-            if svqb.well_conditioned || round + 1 == MAX_ROUNDS {
-                times(&mut m_w, &svqb.transform, &mut self.spare);
+            // M·W is not needed any more: room for the product.
+            times(&mut w, &svqb.transform, &mut self.m_w);
+            if svqb.well_conditioned {
                 break;
             }
         }
+        self.multiply_by_mass(&w);
         let coefficients = coefficients.subrows(FIXED, size).to_owned();
         let extension = Extension { coefficients, coupling, columns: w.ncols() };
         self.blocks.push(w);
-        self.m_blocks.push(m_w);
+        let no_longer_near = if self.m_near.len() < NEAR { None } else { self.m_near.pop_front() };
+        let scratch = no_longer_near.unwrap_or_else(Mat::new);
+        self.m_near.push_back(std::mem::replace(&mut self.m_w, scratch));
         Ok(extension)
     }
+
+    /// The scratch ← M·W.
+    fn multiply_by_mass(&mut self, w: &Mat<f64>) {
+        self.m_w.resize_with(w.nrows(), w.ncols(), |_, _| 0.0);
+        self.mass.product_into(w.as_ref(), self.m_w.as_mut(), &mut self.packed);
+    }
+}
+
+/// Lengths of the columns that have a Gram matrix.
+fn norms(gram: &Mat<f64>) -> Vec<f64> {
+    (0..gram.nrows()).map(|i| gram[(i, i)].max(0.0).sqrt()).collect()
+}
+
+/// Whether a round took out of columns of these lengths no more than rounding.
+fn is_settled(taken_out: &Mat<f64>, norms: &[f64]) -> bool {
+    norms.iter().enumerate().all(|(j, norm)| taken_out.col(j).norm_l2() <= SETTLED * norm)
 }
 
 fn check_memory(rows: usize, vectors: usize) -> Result<(), ModalError> {
@@ -263,10 +295,10 @@ impl Svqb {
     /// The Gram matrix does not see directions below 1e-8 of the block. They are not dropped, which would lose
     /// eigenvectors, but stretched as far as is safe: the next round sees them.
     fn first(gram: &Mat<f64>, last: &Mat<f64>, coefficients: &Mat<f64>) -> Result<Self, ModalError> {
-        let norms: Vec<f64> = (0..gram.nrows()).map(|i| gram[(i, i)].max(0.0).sqrt()).collect();
+        let norms = norms(gram);
         let before = (0..norms.len()).map(|j| norms[j].hypot(coefficients.col(j).norm_l2())).fold(0.0, f64::max);
         let mut first = Self::new(gram, &norms, INDEPENDENT, |_, length| length > DEPENDENT * before)?;
-        first.well_conditioned &= (0..norms.len()).all(|j| last.col(j).norm_l2() <= SETTLED * norms[j]);
+        first.well_conditioned &= is_settled(last, &norms);
         Ok(first)
     }
 
