@@ -16,6 +16,7 @@ use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
 use faer::{Accum, MatMut, MatRef, Par, Spec};
 use rayon::prelude::*;
 
+use crate::factor_layout::{Layout, of_own_rows, width, write_own_rows};
 use crate::shifted_matrix::ShiftedMatrix;
 use crate::subtrees::Subtrees;
 
@@ -30,6 +31,7 @@ pub(crate) struct NotPositive(pub usize);
 /// What is to be factored, and its pattern.
 pub(crate) struct Problem<'a> {
     pub symbolic: &'a SymbolicSupernodalCholesky<usize>,
+    pub layout: &'a Layout,
     pub subtrees: &'a Subtrees,
     pub order: PermRef<'a, usize>,
     pub matrix: &'a ShiftedMatrix<'a>,
@@ -37,19 +39,17 @@ pub(crate) struct Problem<'a> {
 
 /// Bytes that [`Problem::factor`] takes as scratch on so many threads, without what products of dense matrices take.
 pub(crate) fn scratch_bytes(symbolic: &SymbolicSupernodalCholesky<usize>, threads: usize) -> usize {
-    let widest =
-        (0..symbolic.n_supernodes()).map(|s| symbolic.supernode_end()[s] - symbolic.supernode_begin()[s]).max();
-    4 * (symbolic.nrows() + 3 * symbolic.n_supernodes()) * (threads + 1) + 8 * STRIP * widest.unwrap_or(0) * threads
+    let widest = (0..symbolic.n_supernodes()).map(|s| width(symbolic, s)).max().unwrap_or(0);
+    4 * (symbolic.nrows() + 3 * symbolic.n_supernodes()) * (threads + 1) + 8 * widest * (STRIP * threads + widest)
 }
 
 impl Problem<'_> {
-    /// Fills the zeros in `values` with the entries of L.
+    /// Fills the zeros in `values` with the entries of L, the rows below a supernode column by column.
     pub(crate) fn factor(&self, values: &mut [f64]) -> Result<(), NotPositive> {
         let of_row = self.supernode_of_each_row();
-        let starts = self.symbolic.col_ptr_for_val();
         let given: Vec<Vec<Given>> = self
             .subtrees
-            .split(values, |part| starts[part.start]..starts[part.end])
+            .split(values, |part| self.layout.range(part))
             .into_par_iter()
             .map_init(
                 || Work::new(self.symbolic),
@@ -87,22 +87,25 @@ impl Problem<'_> {
         of_row: &[u32],
         work: &mut Work,
     ) -> Result<(), NotPositive> {
-        let Work { place, queue, updates, sums, dense } = work;
-        let starts = self.symbolic.col_ptr_for_val();
+        let Work { place, queue, updates, sums, own, dense } = work;
         let (start, end) = (self.symbolic.supernode_begin()[s], self.symbolic.supernode_end()[s]);
         let pattern = self.symbolic.supernode(s).pattern();
         let width = end - start;
-        let rows = width + pattern.len();
         for (i, row) in (start..end).chain(pattern.iter().copied()).enumerate() {
             place[row] = i as u32;
         }
-        let (before, own) = values.split_at_mut(starts[s] - base);
-        let own = &mut own[..rows * width];
+        let range = self.layout.range(&(s..s + 1));
+        let (before, values) = values.split_at_mut(range.start - base);
+        let (packed, below) = values[..range.len()].split_at_mut(of_own_rows(width));
+        own.clear();
+        own.resize(width * width, 0.0);
         let (old, new) = self.order.arrays();
-        for (column, own) in own.chunks_exact_mut(rows).enumerate() {
+        for (column, own) in own.chunks_exact_mut(width).enumerate() {
+            let below = &mut below[column * pattern.len()..][..pattern.len()];
             self.matrix.add_column(old[start + column], |row, value| {
                 if new[row] >= start + column {
-                    own[place[new[row]] as usize] += value;
+                    let place = place[new[row]] as usize;
+                    *if place < width { &mut own[place] } else { &mut below[place - width] } += value;
                 }
             });
         }
@@ -119,18 +122,20 @@ impl Problem<'_> {
             queue.push(of_row[*row], Given { by: s, from: 0 });
         }
 
-        let before = Before { symbolic: self.symbolic, values: before, base, place, updates, end };
-        let mut own = MatMut::from_column_major_slice_mut(own, rows, width);
+        let before = Before { problem: self, values: before, base, place, updates, end };
+        let mut diagonal = MatMut::from_column_major_slice_mut(own, width, width);
+        let mut below = MatMut::from_column_major_slice_mut(below, pattern.len(), width);
         let alone = !self.subtrees.is_parted();
-        if alone || rows <= STRIP {
-            before.subtract(own.rb_mut(), 0, sums);
-        } else {
-            own.rb_mut().par_row_chunks_mut(STRIP).enumerate().for_each_init(Sums::default, |sums, (strip, own)| {
-                before.subtract(own, STRIP * strip, sums);
-            });
+        for (rows, first) in [(diagonal.rb_mut(), 0), (below.rb_mut(), width)] {
+            if alone || rows.nrows() <= STRIP {
+                before.subtract(rows, first, sums);
+            } else {
+                rows.par_row_chunks_mut(STRIP).enumerate().for_each_init(Sums::default, |sums, (strip, rows)| {
+                    before.subtract(rows, first + STRIP * strip, sums);
+                });
+            }
         }
 
-        let (mut diagonal, below) = own.split_at_row_mut(width);
         dense.grow(width);
         let stack = MemStack::new(&mut dense.0);
         cholesky_in_place(diagonal.rb_mut(), Default::default(), Par::Seq, stack, Spec::default())
@@ -142,6 +147,7 @@ impl Problem<'_> {
         } else {
             below.par_row_chunks_mut(STRIP).for_each(solve);
         }
+        write_own_rows(width, own, packed);
         Ok(())
     }
 }
@@ -205,6 +211,8 @@ struct Work {
     queue: Queue,
     updates: Vec<Given>,
     sums: Sums,
+    /// The own rows of the supernode at hand, column by column.
+    own: Vec<f64>,
     dense: Dense,
 }
 
@@ -216,6 +224,7 @@ impl Work {
             queue: Queue { head: none(), next: none(), target: none(), from: none() },
             updates: Vec::new(),
             sums: Sums::default(),
+            own: Vec::new(),
             dense: Dense(MemBuffer::new(cholesky_in_place_scratch::<f64>(1, Par::Seq, Spec::default())), 1),
         }
     }
@@ -259,7 +268,7 @@ fn cut(places: impl Iterator<Item = usize>, runs: &mut Vec<Run>) {
 
 /// The supernodes that give to the one at hand, which ends before the row `end`.
 struct Before<'a> {
-    symbolic: &'a SymbolicSupernodalCholesky<usize>,
+    problem: &'a Problem<'a>,
     values: &'a [f64],
     base: usize,
     place: &'a [u32],
@@ -271,9 +280,11 @@ impl Before<'_> {
     /// Takes from rows of the supernode at hand, `own` from the row `first` on, what the others give to them.
     fn subtract(&self, mut own: MatMut<'_, f64>, first: usize, sums: &mut Sums) {
         let Sums { products, runs } = sums;
-        let starts = self.symbolic.col_ptr_for_val();
+        let Problem { symbolic, layout, .. } = self.problem;
         for given in self.updates {
-            let pattern = &self.symbolic.supernode(given.by).pattern()[given.from..];
+            let pattern = symbolic.supernode(given.by).pattern();
+            let height = pattern.len();
+            let pattern = &pattern[given.from..];
             let below = |row: usize| pattern.partition_point(|other| (self.place[*other] as usize) < row);
             let (low, high) = (below(first), below(first + own.nrows()));
             if low == high {
@@ -281,10 +292,10 @@ impl Before<'_> {
             }
             // Entries above the diagonal are left out as far as that is for nothing.
             let columns = pattern.partition_point(|row| *row < self.end).min(high);
-            let width = self.symbolic.supernode_end()[given.by] - self.symbolic.supernode_begin()[given.by];
-            let of_it = &self.values[starts[given.by] - self.base..starts[given.by + 1] - self.base];
-            let of_it = MatRef::from_column_major_slice(of_it, of_it.len() / width, width);
-            let of_it = of_it.subrows(width + given.from, pattern.len());
+            let width = width(symbolic, given.by);
+            let range = layout.range(&(given.by..given.by + 1));
+            let of_it = &self.values[range.start + of_own_rows(width) - self.base..range.end - self.base];
+            let of_it = MatRef::from_column_major_slice(of_it, height, width).subrows(given.from, pattern.len());
 
             cut(pattern[low..high].iter().map(|row| self.place[*row] as usize - first), runs);
             products.resize(products.len().max((high - low) * columns), 0.0);
@@ -316,11 +327,12 @@ mod tests {
 
     use super::*;
     use crate::constraints::Constraints;
+    use crate::factor_layout::tests::of_faer;
     use crate::mass_matrix::MassMatrix;
     use crate::substitution::tests::{grid, supernodal};
     use crate::support::Support;
 
-    /// The factor of A + shift·1 by this module on one thread and on three, and by faer; entries above the diagonal are zero.
+    /// The factor of A + shift·1 by this module on one thread and on three, and by faer.
     fn factors(a: &SparseColMat<usize, f64>, shift: f64) -> [Option<Vec<f64>>; 3] {
         let n = a.ncols();
         let ones: Vec<_> = (0..n).map(|i| Triplet::new(i, i, 1.0)).collect();
@@ -332,23 +344,16 @@ mod tests {
         let assembled = matrix.assembled(&matrix.pattern().unwrap()).unwrap();
         let symbolic = supernodal(&assembled);
         let SymbolicCholeskyRaw::Supernodal(factor) = symbolic.raw() else { panic!() };
+        let layout = Layout::new(factor);
         let subtrees = Subtrees::new(factor);
         assert!(subtrees.parts.len() > 3 && !subtrees.top.is_empty());
-        let lower = |mut values: Vec<f64>| {
-            for (s, start) in factor.col_ptr_for_val()[..factor.n_supernodes()].iter().enumerate() {
-                let width = factor.supernode_end()[s] - factor.supernode_begin()[s];
-                let rows = width + factor.supernode(s).pattern().len();
-                (0..width).for_each(|k| values[start + k * rows..][..k].fill(0.0));
-            }
-            values
-        };
 
         let order = symbolic.perm().unwrap();
-        let problem = Problem { symbolic: factor, subtrees: &subtrees, order, matrix: &matrix };
+        let problem = Problem { symbolic: factor, layout: &layout, subtrees: &subtrees, order, matrix: &matrix };
         let on = |threads: usize| {
-            let mut values = vec![0.0; symbolic.len_val()];
+            let mut values = vec![0.0; layout.entries()];
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            pool.install(|| problem.factor(&mut values)).ok().map(|()| lower(values))
+            pool.install(|| problem.factor(&mut values)).ok().map(|()| values)
         };
         let mut values = vec![0.0; symbolic.len_val()];
         let (side, par, spec) = (Side::Lower, Par::Seq, Spec::default());
@@ -358,7 +363,7 @@ mod tests {
         let by_faer =
             symbolic.factorize_numeric_llt(&mut values, assembled.as_ref(), side, Default::default(), par, stack, spec);
         let is_definite = by_faer.is_ok();
-        [on(1), on(3), is_definite.then(|| lower(values))]
+        [on(1), on(3), is_definite.then(|| of_faer(factor, &values))]
     }
 
     #[test]

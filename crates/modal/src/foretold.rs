@@ -41,7 +41,12 @@ pub struct Forecast {
 }
 
 impl Forecast {
-    pub(crate) fn new(symbolic: &SymbolicCholesky<usize>, peak_bytes: usize, threads: usize) -> Self {
+    pub(crate) fn new(
+        symbolic: &SymbolicCholesky<usize>,
+        factor_entries: usize,
+        peak_bytes: usize,
+        threads: usize,
+    ) -> Self {
         let multiplications = match symbolic.raw() {
             // Its columns are short, and it has no long ones by choice: a simplicial factor is never slow.
             SymbolicCholeskyRaw::Simplicial(simplicial) => simplicial.len_val() as f64,
@@ -49,7 +54,7 @@ impl Forecast {
         };
         let speed = if multiplications > SHORT { speed(threads) } else { None };
         let time = speed.and_then(|speed| Duration::try_from_secs_f64(multiplications / (SPARSE_SPEED * speed)).ok());
-        Self { factor_entries: symbolic.len_val(), multiplications, peak_bytes, time }
+        Self { factor_entries, multiplications, peak_bytes, time }
     }
 }
 
@@ -103,8 +108,8 @@ impl Foretold {
         Self { unknowns, entries, matrices, pattern, factor: 0, shifted: 0, scratch: 0 }
     }
 
-    /// With the factor, of which the numeric factorisation takes so many bytes of scratch.
-    pub(crate) fn with_factor(mut self, symbolic: &SymbolicCholesky<usize>, scratch: usize) -> Self {
+    /// With the factor of so many entries, of which the numeric factorisation takes so many bytes of scratch.
+    pub(crate) fn with_factor(mut self, symbolic: &SymbolicCholesky<usize>, entries: usize, scratch: usize) -> Self {
         let pattern = match symbolic.raw() {
             SymbolicCholeskyRaw::Simplicial(simplicial) => {
                 self.shifted = WORD * (2 * self.entries + self.unknowns);
@@ -112,7 +117,7 @@ impl Foretold {
             }
             SymbolicCholeskyRaw::Supernodal(supernodal) => supernodal.row_idx().len() + 3 * supernodal.n_supernodes(),
         };
-        self.factor = WORD * (symbolic.len_val() + pattern + 2 * self.unknowns);
+        self.factor = WORD * (entries + pattern + 2 * self.unknowns);
         self.scratch = scratch;
         self
     }
@@ -194,7 +199,7 @@ mod tests {
         let symbolic =
             factorize_symbolic_cholesky(pattern.as_ref(), Side::Lower, SymmetricOrdering::Identity, params).unwrap();
         assert!(matches!(symbolic.raw(), SymbolicCholeskyRaw::Supernodal(_)));
-        let forecast = Forecast::new(&symbolic, 0, 1);
+        let forecast = Forecast::new(&symbolic, n * n, 0, 1);
         let exact = (1..=n).map(|column| (column as f64).powi(2) / 2.0).sum::<f64>();
         assert_eq!(forecast.multiplications, exact);
         assert_eq!(forecast.time, None);

@@ -25,6 +25,7 @@ mod constraints;
 mod dense;
 mod engine;
 mod error;
+mod factor_layout;
 mod fields;
 mod foretold;
 mod held_freedoms;

@@ -12,7 +12,6 @@ use faer::linalg::cholesky::llt::factor::LltError as PivotError;
 use faer::perm::PermRef;
 use faer::reborrow::{Reborrow, ReborrowMut};
 use faer::sparse::FaerError;
-use faer::sparse::linalg::cholesky::supernodal::SupernodalLltRef;
 use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, LltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
     factorize_symbolic_cholesky,
@@ -23,6 +22,7 @@ use crate::cholesky::NotPositive;
 use crate::constraints::Constraints;
 use crate::dense::whitening;
 use crate::error::ModalError;
+use crate::factor_layout::{Layout, interleave};
 use crate::foretold::{Forecast, Foretold, of_dense_products};
 use crate::mass_matrix::MassMatrix;
 use crate::pattern::Pattern;
@@ -41,7 +41,8 @@ pub(crate) struct Shifted {
     /// The shift s.
     pub shift: f64,
     symbolic: SymbolicCholesky<usize>,
-    subtrees: Option<Subtrees>,
+    /// Of a factor with supernodes; a small one has none.
+    supernodes: Option<(Layout, Subtrees)>,
     values: Vec<f64>,
     /// E, A-orthonormal.
     extensions: Mat<f64>,
@@ -90,13 +91,14 @@ impl Shifted {
             CholeskySymbolicParams::default(),
         )
         .map_err(|reason| failed(size, reason))?;
-        let subtrees = match symbolic.raw() {
-            SymbolicCholeskyRaw::Supernodal(factor) => Some(Subtrees::new(factor)),
+        let supernodes = match symbolic.raw() {
+            SymbolicCholeskyRaw::Supernodal(factor) => Some((Layout::new(factor), Subtrees::new(factor))),
             SymbolicCholeskyRaw::Simplicial(_) => None,
         };
+        let entries = supernodes.as_ref().map_or(symbolic.len_val(), |(layout, _)| layout.entries());
         let ordering_time = start.elapsed();
 
-        let is_parted = subtrees.as_ref().is_some_and(Subtrees::is_parted);
+        let is_parted = supernodes.as_ref().is_some_and(|(_, subtrees)| subtrees.is_parted());
         let threads = if is_parted { rayon::current_num_threads() } else { 1 };
         let (needed, reserve) = match symbolic.raw() {
             SymbolicCholeskyRaw::Supernodal(factor) => {
@@ -107,13 +109,13 @@ impl Shifted {
                 (scratch.unaligned_bytes_required(), 0)
             }
         };
-        let memory = memory.with_factor(&symbolic, needed);
+        let memory = memory.with_factor(&symbolic, entries, needed);
         let search = search(&memory);
         memory::check_with_reserve(FACTOR, memory.of_factor(search), reserve)?;
-        progress(Forecast::new(&symbolic, memory.peak(search), threads));
+        progress(Forecast::new(&symbolic, entries, memory.peak(search), threads));
         let start = Instant::now();
-        let mut values = memory::zeros(FACTOR, symbolic.len_val())?;
-        make(&matrix, pattern, &symbolic, subtrees.as_ref(), &mut values)?;
+        let mut values = memory::zeros(FACTOR, entries)?;
+        make(&matrix, pattern, &symbolic, supernodes.as_ref(), &mut values)?;
         let extensions = Mat::zeros(size, 0);
         let constraints = constraints.clone();
         let estimate_time = Duration::ZERO;
@@ -121,7 +123,7 @@ impl Shifted {
             constraints,
             shift,
             symbolic,
-            subtrees,
+            supernodes,
             values,
             extensions,
             solved: Default::default(),
@@ -161,7 +163,7 @@ impl Shifted {
 
     /// Scratch memory for [`solve_in_place`](Self::solve_in_place) with up to `columns` columns.
     pub(crate) fn solve_scratch(&self, columns: usize) -> Result<SolveScratch, ModalError> {
-        let by_faer = match self.dense_columns() {
+        let by_faer = match self.by_supernodes() {
             Some(_) => {
                 memory::check(FACTOR, 8 * substitution::scratch(self.symbolic.nrows(), columns))?;
                 StackReq::EMPTY
@@ -171,15 +173,11 @@ impl Shifted {
         Ok(SolveScratch { dense: Default::default(), by_faer: buffer(by_faer)? })
     }
 
-    /// The factor where it has dense columns, its parts, and its order; a small one has none.
-    fn dense_columns(&self) -> Option<(SupernodalLltRef<'_, usize, f64>, &Subtrees, PermRef<'_, usize>)> {
-        match self.symbolic.raw() {
-            SymbolicCholeskyRaw::Supernodal(symbolic) => {
-                let factor = SupernodalLltRef::new(symbolic, &self.values);
-                Some((factor, self.subtrees.as_ref()?, self.symbolic.perm()?))
-            }
-            SymbolicCholeskyRaw::Simplicial(_) => None,
-        }
+    /// The factor where it has supernodes, and its order.
+    fn by_supernodes(&self) -> Option<(substitution::Factor<'_>, PermRef<'_, usize>)> {
+        let SymbolicCholeskyRaw::Supernodal(symbolic) = self.symbolic.raw() else { return None };
+        let (layout, subtrees) = self.supernodes.as_ref()?;
+        Some((substitution::Factor { symbolic, layout, subtrees, values: &self.values }, self.symbolic.perm()?))
     }
 
     /// Replaces forces `x` by the displacements (K + sM)⁻¹ x that the support allows.
@@ -190,10 +188,8 @@ impl Shifted {
         let extends = self.extensions.ncols() > 0;
         let motions = extends.then(|| tall::inner(self.extensions.as_ref(), x.rb()));
         self.constraints.clear(x.rb_mut());
-        match self.dense_columns() {
-            Some((factor, subtrees, order)) => {
-                substitution::solve(factor, subtrees, order, x.rb_mut(), &mut scratch.dense)
-            }
+        match self.by_supernodes() {
+            Some((factor, order)) => substitution::solve(factor, order, x.rb_mut(), &mut scratch.dense),
             None => LltRef::new(&self.symbolic, &self.values).solve_in_place_with_conj(
                 Conj::No,
                 x.rb_mut(),
@@ -212,17 +208,17 @@ fn make(
     matrix: &ShiftedMatrix<'_>,
     pattern: Pattern<'_>,
     symbolic: &SymbolicCholesky<usize>,
-    subtrees: Option<&Subtrees>,
+    supernodes: Option<&(Layout, Subtrees)>,
     values: &mut [f64],
 ) -> Result<(), ModalError> {
     let shift = matrix.shift();
-    if let (SymbolicCholeskyRaw::Supernodal(symbolic), Some(subtrees), Some(order)) =
-        (symbolic.raw(), subtrees, symbolic.perm())
+    if let (SymbolicCholeskyRaw::Supernodal(symbolic), Some((layout, subtrees)), Some(order)) =
+        (symbolic.raw(), supernodes, symbolic.perm())
     {
         drop(pattern);
-        let problem = cholesky::Problem { symbolic, subtrees, order, matrix };
+        let problem = cholesky::Problem { symbolic, layout, subtrees, order, matrix };
         problem.factor(values).map_err(|NotPositive(pivot)| ModalError::Indefinite { pivot, shift })?;
-        substitution::interleave(symbolic, subtrees, values);
+        interleave(symbolic, layout, subtrees, values);
         return Ok(());
     }
     let assembled = matrix.assembled(&pattern).map_err(|reason| failed(symbolic.nrows(), reason))?;

@@ -3,16 +3,16 @@
 //! The numbers of a row lie side by side. So the factor, which is far larger than the processor's cache, is read once for
 //! all vectors of a group, and a row of them is one run of memory wherever it is.
 
-use std::iter::StepBy;
 use std::ops::Range;
 
 use faer::MatMut;
 use faer::perm::PermRef;
 use faer::reborrow::{Reborrow, ReborrowMut};
-use faer::sparse::linalg::cholesky::supernodal::{SupernodalLltRef, SymbolicSupernodalCholesky};
+use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
+use crate::factor_layout::{COLUMNS, Layout, NODE, Passes, STRIP, of_own_rows, passes};
 use crate::subtrees::Subtrees;
 
 /// Vectors of a group at the most.
@@ -21,14 +21,8 @@ const MOST: usize = 16;
 const STEP: usize = 4;
 /// Rows that are put into the order of the factor in one task.
 const ROWS: usize = 4096;
-/// Columns of the factor that are applied in one pass over the rows below them.
-const COLUMNS: usize = 6;
-/// Rows below a supernode that are taken together: they stay in the processor's first cache.
-const STRIP: usize = 128;
 /// Numbers of the factor that are asked for ahead of their use.
 const AHEAD: usize = 384;
-/// Columns of a node with three degrees of freedom.
-const NODE: usize = 3;
 
 /// Scratch of [`solve`], which can be used again.
 #[derive(Default)]
@@ -54,17 +48,19 @@ pub(crate) fn scratch(rows: usize, columns: usize) -> usize {
     2 * rows * columns.next_multiple_of(STEP).min(MOST)
 }
 
-/// Replaces `x` (N×k) by A⁻¹ x, where the factor is [interleaved](interleave). The result does not depend on the number of threads.
-pub(crate) fn solve(
-    factor: SupernodalLltRef<'_, usize, f64>,
-    subtrees: &Subtrees,
-    order: PermRef<'_, usize>,
-    mut x: MatMut<'_, f64>,
-    scratch: &mut Scratch,
-) {
+/// A factor with supernodes, [interleaved](crate::factor_layout::interleave), and its parts.
+#[derive(Clone, Copy)]
+pub(crate) struct Factor<'a> {
+    pub symbolic: &'a SymbolicSupernodalCholesky<usize>,
+    pub layout: &'a Layout,
+    pub subtrees: &'a Subtrees,
+    pub values: &'a [f64],
+}
+
+/// Replaces `x` (N×k) by A⁻¹ x. The result does not depend on the number of threads.
+pub(crate) fn solve(factor: Factor<'_>, order: PermRef<'_, usize>, mut x: MatMut<'_, f64>, scratch: &mut Scratch) {
     let groups = x.ncols().div_ceil(MOST);
     let width = x.ncols().div_ceil(groups.max(1)).next_multiple_of(STEP).max(STEP);
-    let problem = Problem { factor, subtrees };
     let (old, new) = order.arrays();
     for first in (0..x.ncols()).step_by(width) {
         let columns = width.min(x.ncols() - first);
@@ -76,10 +72,10 @@ pub(crate) fn solve(
             }
         });
         match width {
-            4 => problem.solve::<4>(scratch),
-            8 => problem.solve::<8>(scratch),
-            12 => problem.solve::<12>(scratch),
-            _ => problem.solve::<MOST>(scratch),
+            4 => factor.solve::<4>(scratch),
+            8 => factor.solve::<8>(scratch),
+            12 => factor.solve::<12>(scratch),
+            _ => factor.solve::<MOST>(scratch),
         }
         let rows = &scratch.rows;
         x.rb_mut().par_row_chunks_mut(ROWS).zip(new.par_chunks(ROWS)).for_each(|(x, new)| {
@@ -90,14 +86,7 @@ pub(crate) fn solve(
     }
 }
 
-/// A factor and its parts.
-#[derive(Clone, Copy)]
-struct Problem<'a> {
-    factor: SupernodalLltRef<'a, usize, f64>,
-    subtrees: &'a Subtrees,
-}
-
-impl Problem<'_> {
+impl Factor<'_> {
     /// Replaces rows x by (L Lᵀ)⁻¹ x: forward through the parts side by side, through the top and back, and backward
     /// through the parts.
     fn solve<const W: usize>(self, scratch: &mut Scratch) {
@@ -114,10 +103,9 @@ impl Problem<'_> {
             scratch.outside.clear();
             scratch.outside.resize(W * top_rows, 0.0);
             let (outside, _) = scratch.outside.as_chunks_mut();
-            arch.dispatch(Forward { problem: self, part, outside, below: &mut scratch.below });
+            arch.dispatch(Forward { factor: self, part, outside, below: &mut scratch.below });
         });
-        let of_top =
-            |s: &usize| self.factor.symbolic().supernode_begin()[*s]..self.factor.symbolic().supernode_end()[*s];
+        let of_top = |s: &usize| self.symbolic.supernode_begin()[*s]..self.symbolic.supernode_end()[*s];
         for row in top.iter().flat_map(of_top) {
             let sum = &mut rows_of_top[place[row] as usize];
             *sum = rows[row];
@@ -126,21 +114,21 @@ impl Problem<'_> {
                 sum.iter_mut().zip(added).for_each(|(sum, added)| *sum += added);
             }
         }
-        arch.dispatch(Top { problem: self, rows: rows_of_top, below: top_below });
+        arch.dispatch(Top { factor: self, rows: rows_of_top, below: top_below });
         for row in top.iter().flat_map(of_top) {
             rows[row] = rows_of_top[place[row] as usize];
         }
         let rows_of_top = &*rows_of_top;
         self.split(rows).into_par_iter().zip(of_parts).for_each(|(part, scratch)| {
-            arch.dispatch(Backward { problem: self, part, top: rows_of_top, below: &mut scratch.below });
+            arch.dispatch(Backward { factor: self, part, top: rows_of_top, below: &mut scratch.below });
         });
     }
 
     /// The parts, each with its own rows.
     fn split<'b, const W: usize>(&self, rows: &'b mut [[f64; W]]) -> Vec<Part<'b, W>> {
-        let symbolic = self.factor.symbolic();
-        let of_part =
-            |part: &Range<usize>| symbolic.supernode_begin()[part.start]..symbolic.supernode_end()[part.end - 1];
+        let of_part = |part: &Range<usize>| {
+            self.symbolic.supernode_begin()[part.start]..self.symbolic.supernode_end()[part.end - 1]
+        };
         let part =
             |(supernodes, range, rows): (Range<usize>, Range<usize>, _)| Part { supernodes, first: range.start, rows };
         self.subtrees.split(rows, of_part).into_iter().map(part).collect()
@@ -158,7 +146,7 @@ struct Part<'a, const W: usize> {
 /// Forward through a part: x ← L⁻¹ x in its rows, and what that takes from the rows of the top. A type rather than a closure:
 /// what a closure calls is compiled without the vector instructions.
 struct Forward<'a, const W: usize> {
-    problem: Problem<'a>,
+    factor: Factor<'a>,
     part: Part<'a, W>,
     outside: &'a mut [[f64; W]],
     below: &'a mut Vec<f64>,
@@ -169,19 +157,19 @@ impl<const W: usize> WithSimd for Forward<'_, W> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let Self { problem: Problem { factor, subtrees }, part: Part { supernodes, first, rows }, outside, below } =
-            self;
+        let Self { factor, part: Part { supernodes, first, rows }, outside, below } = self;
+        let place = &factor.subtrees.place;
         for s in supernodes {
             let supernode = Supernode::new(factor, s);
             let taken = supernode.forward(simd, &mut rows[supernode.start - first..][..supernode.width], below);
-            supernode.take(taken, rows, first, outside, &subtrees.place);
+            supernode.take(taken, rows, first, outside, place);
         }
     }
 }
 
 /// Forward and backward through the top.
 struct Top<'a, const W: usize> {
-    problem: Problem<'a>,
+    factor: Factor<'a>,
     rows: &'a mut [[f64; W]],
     below: &'a mut Vec<f64>,
 }
@@ -191,18 +179,18 @@ impl<const W: usize> WithSimd for Top<'_, W> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let Self { problem: Problem { factor, subtrees }, rows, below } = self;
-        let place = &subtrees.place;
+        let Self { factor, rows, below } = self;
+        let Subtrees { top, place, .. } = factor.subtrees;
         let own = |supernode: &Supernode<'_>| {
             let first = place[supernode.start] as usize;
             first..first + supernode.width
         };
-        for s in &subtrees.top {
+        for s in top {
             let supernode = Supernode::new(factor, *s);
             let taken = supernode.forward(simd, &mut rows[own(&supernode)], below);
             supernode.take(taken, &mut [], 0, rows, place);
         }
-        for s in subtrees.top.iter().rev() {
+        for s in top.iter().rev() {
             let supernode = Supernode::new(factor, *s);
             let minus_below = supernode.gather(&[], 0, rows, place, below);
             supernode.backward(simd, &mut rows[own(&supernode)], minus_below);
@@ -212,7 +200,7 @@ impl<const W: usize> WithSimd for Top<'_, W> {
 
 /// Backward through a part, where the rows of the top are known.
 struct Backward<'a, const W: usize> {
-    problem: Problem<'a>,
+    factor: Factor<'a>,
     part: Part<'a, W>,
     top: &'a [[f64; W]],
     below: &'a mut Vec<f64>,
@@ -223,10 +211,11 @@ impl<const W: usize> WithSimd for Backward<'_, W> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let Self { problem: Problem { factor, subtrees }, part: Part { supernodes, first, rows }, top, below } = self;
+        let Self { factor, part: Part { supernodes, first, rows }, top, below } = self;
+        let place = &factor.subtrees.place;
         for s in supernodes.rev() {
             let supernode = Supernode::new(factor, s);
-            let minus_below = supernode.gather(rows, first, top, &subtrees.place, below);
+            let minus_below = supernode.gather(rows, first, top, place, below);
             supernode.backward(simd, &mut rows[supernode.start - first..][..supernode.width], minus_below);
         }
     }
@@ -238,18 +227,20 @@ struct Supernode<'a> {
     width: usize,
     /// The rows below.
     pattern: &'a [usize],
-    /// Its columns in the order of [`interleave`], with the own rows, then those below.
-    values: &'a [f64],
+    /// The numbers of the own rows.
+    own: &'a [f64],
+    /// Those of the rows below, by strips.
+    below: &'a [f64],
 }
 
 impl<'a> Supernode<'a> {
     #[inline(always)]
-    fn new(factor: SupernodalLltRef<'a, usize, f64>, s: usize) -> Self {
-        let symbolic = factor.symbolic();
+    fn new(factor: Factor<'a>, s: usize) -> Self {
+        let symbolic = factor.symbolic;
         let (start, end) = (symbolic.supernode_begin()[s], symbolic.supernode_end()[s]);
-        let range = symbolic.col_ptr_for_val()[s]..symbolic.col_ptr_for_val()[s + 1];
-        let pattern = symbolic.supernode(s).pattern();
-        Self { start, width: end - start, pattern, values: &factor.values()[range] }
+        let width = end - start;
+        let (own, below) = factor.values[factor.layout.range(&(s..s + 1))].split_at(of_own_rows(width));
+        Self { start, width, pattern: symbolic.supernode(s).pattern(), own, below }
     }
 
     /// Room for the rows below.
@@ -305,17 +296,15 @@ impl<'a> Supernode<'a> {
         self.pattern.split_at(self.pattern.partition_point(|other| *other < row))
     }
 
-    /// The numbers of the own rows, then strips of those below with the number of their first row.
+    /// Strips of the rows below, with the number of the first row of each.
     #[inline(always)]
-    fn strips(&self) -> (Strip<'a>, impl Iterator<Item = (usize, Strip<'a>)>) {
-        let Self { width, values, .. } = *self;
-        let rows = self.pattern.len();
-        let (own, below) = values.split_at(width * width);
-        let strip = move |first: usize| {
+    fn strips(&self) -> impl Iterator<Item = (usize, Strip<'a>)> {
+        let Self { width, below, pattern, .. } = *self;
+        let rows = pattern.len();
+        (0..rows).step_by(STRIP).map(move |first| {
             let count = STRIP.min(rows - first);
             (first, Strip { rows: count, values: &below[width * first..width * (first + count)] })
-        };
-        (Strip { rows: width, values: own }, (0..rows).step_by(STRIP).map(strip))
+        })
     }
 
     /// x ← L⁻¹ x in the own rows; returns what that takes from the rows below.
@@ -329,11 +318,11 @@ impl<'a> Supernode<'a> {
         let taken = self.below(scratch);
         taken.fill([0.0; W]);
         let [most, nodes, single] = passes(self.width);
-        let (diagonal, strips) = self.strips();
-        diagonal.forward::<COLUMNS, W, S>(simd, most.clone(), own);
-        diagonal.forward::<NODE, W, S>(simd, nodes.clone(), own);
-        diagonal.forward::<1, W, S>(simd, single.clone(), own);
-        for (first, strip) in strips {
+        let mut diagonal = self.own;
+        forward::<COLUMNS, W, S>(simd, &mut diagonal, most.clone(), own);
+        forward::<NODE, W, S>(simd, &mut diagonal, nodes.clone(), own);
+        forward::<1, W, S>(simd, &mut diagonal, single.clone(), own);
+        for (first, strip) in self.strips() {
             let taken = &mut taken[first..][..strip.rows];
             strip.add_to_rows::<COLUMNS, W, S>(simd, most.clone(), own, taken);
             strip.add_to_rows::<NODE, W, S>(simd, nodes.clone(), own, taken);
@@ -346,20 +335,20 @@ impl<'a> Supernode<'a> {
     #[inline(always)]
     fn backward<const W: usize, S: Simd>(&self, simd: S, own: &mut [[f64; W]], minus_below: &[[f64; W]]) {
         let [most, nodes, single] = passes(self.width);
-        let (diagonal, strips) = self.strips();
-        for (first, strip) in strips {
+        for (first, strip) in self.strips() {
             let rows = &minus_below[first..][..strip.rows];
             strip.add_to_columns::<COLUMNS, W, S>(simd, most.clone(), rows, own);
             strip.add_to_columns::<NODE, W, S>(simd, nodes.clone(), rows, own);
             strip.add_to_columns::<1, W, S>(simd, single.clone(), rows, own);
         }
-        diagonal.backward::<1, W, S>(simd, single, own);
-        diagonal.backward::<NODE, W, S>(simd, nodes, own);
-        diagonal.backward::<COLUMNS, W, S>(simd, most, own);
+        let mut diagonal = self.own;
+        backward::<1, W, S>(simd, &mut diagonal, single, own);
+        backward::<NODE, W, S>(simd, &mut diagonal, nodes, own);
+        backward::<COLUMNS, W, S>(simd, &mut diagonal, most, own);
     }
 }
 
-/// Some rows of a supernode, in the order of [`interleave`].
+/// Some of the rows below a supernode.
 #[derive(Clone, Copy)]
 struct Strip<'a> {
     rows: usize,
@@ -371,48 +360,6 @@ impl<'a> Strip<'a> {
     #[inline(always)]
     fn columns<const K: usize>(&self, first: usize) -> &'a [[f64; K]] {
         self.values[first * self.rows..(first + K) * self.rows].as_chunks().0
-    }
-
-    /// Of the rows on the diagonal: x ← L⁻¹ x by passes over K columns.
-    #[inline(always)]
-    fn forward<const K: usize, const W: usize, S: Simd>(&self, simd: S, passes: Passes, x: &mut [[f64; W]]) {
-        for first in passes {
-            let (here, after) = x[first..].split_at_mut(K);
-            let (diagonal, columns) = self.columns::<K>(first)[first..].split_at(K);
-            let mut minus_x = [[0.0; W]; K];
-            for k in 0..K {
-                for x in &mut here[k] {
-                    *x /= diagonal[k][k];
-                }
-                minus_x[k] = here[k].map(|x| -x);
-                for i in k + 1..K {
-                    for c in 0..W {
-                        here[i][c] += diagonal[i][k] * minus_x[k][c];
-                    }
-                }
-            }
-            add_combinations(simd, after, columns, &minus_x);
-        }
-    }
-
-    /// Of the rows on the diagonal: x ← L⁻ᵀ x by passes over K columns, the last first.
-    #[inline(always)]
-    fn backward<const K: usize, const W: usize, S: Simd>(&self, simd: S, passes: Passes, x: &mut [[f64; W]]) {
-        for first in passes.rev() {
-            let (here, after) = x[first..].split_at_mut(K);
-            let (diagonal, columns) = self.columns::<K>(first)[first..].split_at(K);
-            let mut sums = [[0.0; W]; K];
-            add_products(simd, &mut sums, columns, after);
-            for k in (0..K).rev() {
-                for c in 0..W {
-                    let mut x = here[k][c] - sums[k][c];
-                    for i in k + 1..K {
-                        x -= diagonal[i][k] * here[i][c];
-                    }
-                    here[k][c] = x / diagonal[k][k];
-                }
-            }
-        }
     }
 
     /// rows += columns · x.
@@ -448,62 +395,53 @@ impl<'a> Strip<'a> {
     }
 }
 
-/// The first columns of the passes over a supernode.
-type Passes = StepBy<Range<usize>>;
-
-/// The passes over [`COLUMNS`], over [`NODE`] and over single columns.
+/// x ← L⁻¹ x in own rows by passes over K columns, whose numbers are the first of `numbers`; leaves the rest there.
 #[inline(always)]
-fn passes(width: usize) -> [Passes; 3] {
-    let of_most = width - width % COLUMNS;
-    let of_nodes = width - (width - of_most) % NODE;
-    [(0..of_most).step_by(COLUMNS), (of_most..of_nodes).step_by(NODE), (of_nodes..width).step_by(1)]
-}
-
-/// Puts the numbers of a factor, which stand column by column in each supernode, into the order in which they are read: the
-/// own rows, then strips of the rows below; in each the columns of a pass after those of another, row by row. So a solution
-/// reads the factor as one run of memory.
-pub(crate) fn interleave(symbolic: &SymbolicSupernodalCholesky<usize>, subtrees: &Subtrees, values: &mut [f64]) {
-    let starts = symbolic.col_ptr_for_val();
-    let supernode = |s: usize, values: &mut [f64], scratch: &mut Vec<f64>| {
-        scratch.clear();
-        scratch.extend_from_slice(values);
-        let width = symbolic.supernode_end()[s] - symbolic.supernode_begin()[s];
-        interleave_supernode(width, scratch, values);
-    };
-    subtrees.split(values, |part| starts[part.start]..starts[part.end]).into_par_iter().for_each_init(
-        Vec::new,
-        |scratch, (part, range, values)| {
-            for s in part {
-                supernode(s, &mut values[starts[s] - range.start..starts[s + 1] - range.start], scratch);
-            }
-        },
-    );
-    let mut scratch = Vec::new();
-    for s in &subtrees.top {
-        supernode(*s, &mut values[starts[*s]..starts[*s + 1]], &mut scratch);
-    }
-}
-
-/// Writes the columns `from` in the new order.
-fn interleave_supernode(width: usize, from: &[f64], mut to: &mut [f64]) {
-    let rows = from.len() / width;
-    let below = (width..rows).step_by(STRIP).map(|first| first..rows.min(first + STRIP));
-    for strip in std::iter::once(0..width).chain(below) {
-        let (of_strip, rest) = to.split_at_mut(width * strip.len());
-        to = rest;
-        let [most, nodes, single] = passes(width);
-        interleave_columns::<COLUMNS>(most, from, rows, &strip, of_strip);
-        interleave_columns::<NODE>(nodes, from, rows, &strip, of_strip);
-        interleave_columns::<1>(single, from, rows, &strip, of_strip);
-    }
-}
-
-fn interleave_columns<const K: usize>(passes: Passes, from: &[f64], rows: usize, strip: &Range<usize>, to: &mut [f64]) {
+fn forward<const K: usize, const W: usize, S: Simd>(simd: S, numbers: &mut &[f64], passes: Passes, x: &mut [[f64; W]]) {
     for first in passes {
-        let columns: [&[f64]; K] = std::array::from_fn(|k| &from[(first + k) * rows..][strip.clone()]);
-        let to = &mut to[first * strip.len()..(first + K) * strip.len()];
-        for (i, to) in to.as_chunks_mut::<K>().0.iter_mut().enumerate() {
-            *to = std::array::from_fn(|k| columns[k][i]);
+        let (of_pass, rest) = numbers.split_at(K * (x.len() - first));
+        *numbers = rest;
+        let (here, after) = x[first..].split_at_mut(K);
+        let (diagonal, columns) = of_pass.as_chunks::<K>().0.split_at(K);
+        let mut minus_x = [[0.0; W]; K];
+        for k in 0..K {
+            for x in &mut here[k] {
+                *x /= diagonal[k][k];
+            }
+            minus_x[k] = here[k].map(|x| -x);
+            for i in k + 1..K {
+                for c in 0..W {
+                    here[i][c] += diagonal[i][k] * minus_x[k][c];
+                }
+            }
+        }
+        add_combinations(simd, after, columns, &minus_x);
+    }
+}
+
+/// x ← L⁻ᵀ x in own rows by passes over K columns, the last first, whose numbers are the last of `numbers`; leaves the rest there.
+#[inline(always)]
+fn backward<const K: usize, const W: usize, S: Simd>(
+    simd: S,
+    numbers: &mut &[f64],
+    passes: Passes,
+    x: &mut [[f64; W]],
+) {
+    for first in passes.rev() {
+        let (rest, of_pass) = numbers.split_at(numbers.len() - K * (x.len() - first));
+        *numbers = rest;
+        let (here, after) = x[first..].split_at_mut(K);
+        let (diagonal, columns) = of_pass.as_chunks::<K>().0.split_at(K);
+        let mut sums = [[0.0; W]; K];
+        add_products(simd, &mut sums, columns, after);
+        for k in (0..K).rev() {
+            for c in 0..W {
+                let mut x = here[k][c] - sums[k][c];
+                for i in k + 1..K {
+                    x -= diagonal[i][k] * here[i][c];
+                }
+                here[k][c] = x / diagonal[k][k];
+            }
         }
     }
 }
@@ -593,6 +531,8 @@ pub(crate) mod tests {
     use faer::{Conj, Mat, Par, Side, Spec};
 
     use super::*;
+    use crate::factor_layout::interleave;
+    use crate::factor_layout::tests::of_faer;
 
     /// A grid of `side`³ nodes, each coupled to its neighbours.
     pub(crate) fn grid(side: usize) -> SparseColMat<usize, f64> {
@@ -636,8 +576,9 @@ pub(crate) mod tests {
             Spec::default(),
         );
         factor.unwrap();
-        let mut interleaved = values.clone();
-        interleave(supernodal, &subtrees, &mut interleaved);
+        let layout = Layout::new(supernodal);
+        let mut interleaved = of_faer(supernodal, &values);
+        interleave(supernodal, &layout, &subtrees, &mut interleaved);
         let widths =
             (0..supernodal.n_supernodes()).map(|s| supernodal.supernode_end()[s] - supernodal.supernode_begin()[s]);
         assert!(subtrees.parts.len() > 3 && !subtrees.top.is_empty());
@@ -651,9 +592,10 @@ pub(crate) mod tests {
             let on_threads = |threads: usize| {
                 let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
                 let mut x = b.clone();
-                let factor = SupernodalLltRef::new(supernodal, &interleaved);
+                let factor =
+                    Factor { symbolic: supernodal, layout: &layout, subtrees: &subtrees, values: &interleaved };
                 let order = symbolic.perm().unwrap();
-                pool.install(|| solve(factor, &subtrees, order, x.as_mut(), &mut Scratch::default()));
+                pool.install(|| solve(factor, order, x.as_mut(), &mut Scratch::default()));
                 x
             };
             let (one, three) = (on_threads(1), on_threads(3));
