@@ -39,6 +39,7 @@ mod mass_matrix;
 mod node_pairs;
 mod ordering;
 mod outside;
+mod packed_rows;
 mod pairs;
 mod pattern;
 mod polynomials;

@@ -115,7 +115,7 @@ fn order_nodes(start: &[idx_t], neighbours: &[idx_t]) -> Result<Vec<idx_t>, Moda
         nodes.extend(followers.iter().map(|node| *node as idx_t));
         nodes.push(leading[leader as usize] as idx_t);
     }
-    Ok(nodes)
+    Ok(graph.postorder(&nodes))
 }
 
 /// A graph in compressed rows, no node its own neighbour.
@@ -149,6 +149,40 @@ impl Graph<'_> {
             }
         }
         pairs
+    }
+
+    /// An order with the same fill in which each subtree of the elimination tree is a run: METIS leaves those of its smallest
+    /// parts mixed, and a factor has more and smaller supernodes by that.
+    fn postorder(&self, order: &[idx_t]) -> Vec<idx_t> {
+        let n = order.len();
+        let mut place = vec![0; n];
+        order.iter().enumerate().for_each(|(i, node)| place[*node as usize] = i);
+        // Elimination tree, with n as the root of all: Liu (1990), algorithm 4.2.
+        let (mut parent, mut ancestor) = (vec![n; n], vec![n; n]);
+        for (i, node) in order.iter().enumerate() {
+            for other in self.of(*node as usize) {
+                let mut j = place[*other as usize];
+                while j < i {
+                    let next = std::mem::replace(&mut ancestor[j], i);
+                    if next == n {
+                        parent[j] = i;
+                    }
+                    j = next;
+                }
+            }
+        }
+        let mut size = vec![1; n + 1];
+        (0..n).for_each(|j| size[parent[j]] += size[j]);
+        // From the last down, each subtree takes the end of what its parent has left before itself.
+        let mut end = vec![n; n + 1];
+        let mut sorted = vec![0; n];
+        for j in (0..n).rev() {
+            let last = end[parent[j]] - 1;
+            end[parent[j]] -= size[j];
+            end[j] = last;
+            sorted[last] = order[j];
+        }
+        sorted
     }
 }
 
@@ -208,6 +242,7 @@ pub(crate) fn ordering_bytes(nodes: usize, neighbours: usize) -> usize {
 
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeSet;
     use std::sync::Arc;
     use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
@@ -259,6 +294,56 @@ mod tests {
         let pairs = Graph { start: &start, neighbours: &neighbours }.pairs();
         let leads = |node: usize| pairs.iter().all(|[follower, _]| *follower != node);
         assert_eq!((0..9).filter(|node| leads(*node)).collect::<Vec<_>>(), [1, 2, 3]);
+    }
+
+    #[test]
+    fn subtrees_become_runs_and_the_fill_stays() {
+        // Cells of a square, each coupled to the four beside it, in an order that mixes them.
+        let side = 13_usize;
+        let n = side * side;
+        let (mut start, mut neighbours) = (vec![0], Vec::new());
+        for node in 0..n {
+            let beside =
+                |other: &usize| (node % side).abs_diff(other % side) + (node / side).abs_diff(other / side) == 1;
+            neighbours.extend((0..n).filter(beside).map(|other| other as idx_t));
+            start.push(neighbours.len() as idx_t);
+        }
+        let graph = Graph { start: &start, neighbours: &neighbours };
+        // The rows below the diagonal of each column of the factor, by elimination.
+        let columns = |order: &[idx_t]| {
+            let mut place = vec![0; n];
+            order.iter().enumerate().for_each(|(i, node)| place[*node as usize] = i);
+            let mut columns: Vec<BTreeSet<usize>> = vec![BTreeSet::new(); n];
+            for i in 0..n {
+                columns[i].extend(graph.of(order[i] as usize).iter().map(|other| place[*other as usize]));
+                columns[i].retain(|row| *row > i);
+            }
+            for i in 0..n {
+                let column = columns[i].clone();
+                if let Some(parent) = column.first() {
+                    columns[*parent].extend(column.iter().filter(|row| *row > parent));
+                }
+            }
+            columns
+        };
+        let order: Vec<idx_t> = (0..n).map(|i| (i * 50 % n) as idx_t).collect();
+        let sorted = graph.postorder(&order);
+        let [before, after] = [&order, &sorted].map(|order| columns(order));
+        let fill = |columns: &[BTreeSet<usize>]| columns.iter().map(BTreeSet::len).sum::<usize>();
+        assert_eq!(fill(&before), fill(&after));
+        // Those below a node in the tree stand just before it.
+        let are_runs = |columns: &[BTreeSet<usize>]| {
+            let mut first: Vec<usize> = (0..n).collect();
+            let mut size = vec![1; n];
+            for i in 0..n {
+                if let Some(parent) = columns[i].first() {
+                    first[*parent] = first[*parent].min(first[i]);
+                    size[*parent] += size[i];
+                }
+            }
+            (0..n).all(|i| size[i] == i + 1 - first[i])
+        };
+        assert!(!are_runs(&before) && are_runs(&after));
     }
 
     #[test]

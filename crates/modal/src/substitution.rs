@@ -13,6 +13,7 @@ use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
 use crate::factor_layout::{COLUMNS, Layout, NODE, Passes, STRIP, of_own_rows, passes};
+use crate::packed_rows::{add_multiple, prefetch, scale, subtract};
 use crate::subtrees::Subtrees;
 
 /// Vectors of a group at the most.
@@ -162,7 +163,7 @@ impl<const W: usize> WithSimd for Forward<'_, W> {
         for s in supernodes {
             let supernode = Supernode::new(factor, s);
             let taken = supernode.forward(simd, &mut rows[supernode.start - first..][..supernode.width], below);
-            supernode.take(taken, rows, first, outside, place);
+            supernode.take(simd, taken, rows, first, outside, place);
         }
     }
 }
@@ -188,7 +189,7 @@ impl<const W: usize> WithSimd for Top<'_, W> {
         for s in top {
             let supernode = Supernode::new(factor, *s);
             let taken = supernode.forward(simd, &mut rows[own(&supernode)], below);
-            supernode.take(taken, &mut [], 0, rows, place);
+            supernode.take(simd, taken, &mut [], 0, rows, place);
         }
         for s in top.iter().rev() {
             let supernode = Supernode::new(factor, *s);
@@ -261,44 +262,39 @@ impl<'a> Supernode<'a> {
         scratch: &'b mut Vec<f64>,
     ) -> &'b [[f64; W]] {
         let below = self.below(scratch);
-        let (within, beyond) = self.parted(first + rows.len());
-        for (below, row) in below.iter_mut().zip(within) {
-            *below = rows[row - first].map(|x| -x);
-        }
-        for (below, row) in below[within.len()..].iter_mut().zip(beyond) {
-            *below = top[place[*row] as usize].map(|x| -x);
+        for (below, row) in below.iter_mut().zip(self.pattern) {
+            let row = match rows.get(row - first) {
+                Some(row) => row,
+                None => &top[place[*row] as usize],
+            };
+            *below = row.map(|x| -x);
         }
         below
     }
 
     /// Subtracts from the rows below.
     #[inline(always)]
-    fn take<const W: usize>(
+    fn take<const W: usize, S: Simd>(
         &self,
+        simd: S,
         taken: &[[f64; W]],
         rows: &mut [[f64; W]],
         first: usize,
         top: &mut [[f64; W]],
         place: &[u32],
     ) {
-        let (within, beyond) = self.parted(first + rows.len());
-        for (taken, row) in taken.iter().zip(within) {
-            rows[row - first].iter_mut().zip(taken).for_each(|(x, taken)| *x -= taken);
+        for (taken, row) in taken.iter().zip(self.pattern) {
+            let row = match rows.get_mut(row - first) {
+                Some(row) => row,
+                None => &mut top[place[*row] as usize],
+            };
+            subtract(simd, row, taken);
         }
-        for (taken, row) in taken[within.len()..].iter().zip(beyond) {
-            top[place[*row] as usize].iter_mut().zip(taken).for_each(|(x, taken)| *x -= taken);
-        }
-    }
-
-    /// The rows below that come before a row, and the others.
-    #[inline(always)]
-    fn parted(&self, row: usize) -> (&'a [usize], &'a [usize]) {
-        self.pattern.split_at(self.pattern.partition_point(|other| *other < row))
     }
 
     /// Strips of the rows below, with the number of the first row of each.
     #[inline(always)]
-    fn strips(&self) -> impl Iterator<Item = (usize, Strip<'a>)> {
+    fn strips(&self) -> impl DoubleEndedIterator<Item = (usize, Strip<'a>)> {
         let Self { width, below, pattern, .. } = *self;
         let rows = pattern.len();
         (0..rows).step_by(STRIP).map(move |first| {
@@ -335,11 +331,12 @@ impl<'a> Supernode<'a> {
     #[inline(always)]
     fn backward<const W: usize, S: Simd>(&self, simd: S, own: &mut [[f64; W]], minus_below: &[[f64; W]]) {
         let [most, nodes, single] = passes(self.width);
-        for (first, strip) in self.strips() {
+        // From the last number to the first: one run of memory, as the way forward.
+        for (first, strip) in self.strips().rev() {
             let rows = &minus_below[first..][..strip.rows];
-            strip.add_to_columns::<COLUMNS, W, S>(simd, most.clone(), rows, own);
-            strip.add_to_columns::<NODE, W, S>(simd, nodes.clone(), rows, own);
             strip.add_to_columns::<1, W, S>(simd, single.clone(), rows, own);
+            strip.add_to_columns::<NODE, W, S>(simd, nodes.clone(), rows, own);
+            strip.add_to_columns::<COLUMNS, W, S>(simd, most.clone(), rows, own);
         }
         let mut diagonal = self.own;
         backward::<1, W, S>(simd, &mut diagonal, single, own);
@@ -387,7 +384,7 @@ impl<'a> Strip<'a> {
         rows: &[[f64; W]],
         x: &mut [[f64; W]],
     ) {
-        for first in passes {
+        for first in passes.rev() {
             if let Some((x, _)) = x[first..].split_first_chunk_mut::<K>() {
                 add_products(simd, x, self.columns(first), rows);
             }
@@ -405,14 +402,11 @@ fn forward<const K: usize, const W: usize, S: Simd>(simd: S, numbers: &mut &[f64
         let (diagonal, columns) = of_pass.as_chunks::<K>().0.split_at(K);
         let mut minus_x = [[0.0; W]; K];
         for k in 0..K {
-            for x in &mut here[k] {
-                *x /= diagonal[k][k];
-            }
-            minus_x[k] = here[k].map(|x| -x);
-            for i in k + 1..K {
-                for c in 0..W {
-                    here[i][c] += diagonal[i][k] * minus_x[k][c];
-                }
+            let (known, unknown) = here.split_at_mut(k + 1);
+            scale(simd, &mut known[k], 1.0 / diagonal[k][k]);
+            minus_x[k] = known[k].map(|x| -x);
+            for (x, row) in unknown.iter_mut().zip(&diagonal[k + 1..]) {
+                add_multiple(simd, x, row[k], &minus_x[k]);
             }
         }
         add_combinations(simd, after, columns, &minus_x);
@@ -435,29 +429,14 @@ fn backward<const K: usize, const W: usize, S: Simd>(
         let mut sums = [[0.0; W]; K];
         add_products(simd, &mut sums, columns, after);
         for k in (0..K).rev() {
-            for c in 0..W {
-                let mut x = here[k][c] - sums[k][c];
-                for i in k + 1..K {
-                    x -= diagonal[i][k] * here[i][c];
-                }
-                here[k][c] = x / diagonal[k][k];
+            let (unknown, known) = here.split_at_mut(k + 1);
+            for (x, row) in known.iter().zip(&diagonal[k + 1..]) {
+                add_multiple(simd, &mut sums[k], row[k], x);
             }
+            subtract(simd, &mut unknown[k], &sums[k]);
+            scale(simd, &mut unknown[k], 1.0 / diagonal[k][k]);
         }
     }
-}
-
-/// Asks for numbers of the factor that are due soon. The processor does not look as far ahead by itself.
-#[inline(always)]
-#[expect(unsafe_code, reason = "the instruction of the processor has no safe name")]
-fn prefetch<const K: usize>(row: &[f64; K]) {
-    #[cfg(target_arch = "x86_64")]
-    // SAFETY: a hint, which reads nothing: any address will do. All processors of the kind have it.
-    unsafe {
-        use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
-        _mm_prefetch::<_MM_HINT_T0>(row.as_ptr().wrapping_add(AHEAD).cast());
-    }
-    #[cfg(not(target_arch = "x86_64"))]
-    let _ = row;
 }
 
 /// rows += columns · x.
@@ -469,16 +448,33 @@ fn add_combinations<const K: usize, const W: usize, S: Simd>(
     x: &[[f64; W]; K],
 ) {
     let parts = x.each_ref().map(|x| S::as_simd_f64s(x));
-    for v in 0..W / S::F64_LANES {
-        let x: [S::f64s; K] = std::array::from_fn(|k| parts[k].0[v]);
+    let whole = W / S::F64_LANES;
+    for v in (0..whole - whole % 2).step_by(2) {
+        let x: [[S::f64s; 2]; K] = std::array::from_fn(|k| [parts[k].0[v], parts[k].0[v + 1]]);
         for (row, factors) in rows.iter_mut().zip(columns) {
             if v == 0 {
-                prefetch(factors);
+                prefetch(factors.as_ptr().wrapping_add(AHEAD));
             }
-            let sum = &mut S::as_mut_simd_f64s(row).0[v];
+            let row = S::as_mut_simd_f64s(row).0;
+            // Sums of their own: in the row, each addition would be written to memory.
+            let (mut one, mut two) = (row[v], row[v + 1]);
             for k in 0..K {
-                *sum = simd.mul_add_e_f64s(simd.splat_f64s(factors[k]), x[k], *sum);
+                let factor = simd.splat_f64s(factors[k]);
+                one = simd.mul_add_e_f64s(factor, x[k][0], one);
+                two = simd.mul_add_e_f64s(factor, x[k][1], two);
             }
+            (row[v], row[v + 1]) = (one, two);
+        }
+    }
+    if whole % 2 == 1 {
+        let x: [S::f64s; K] = std::array::from_fn(|k| parts[k].0[whole - 1]);
+        for (row, factors) in rows.iter_mut().zip(columns) {
+            let row = &mut S::as_mut_simd_f64s(row).0[whole - 1];
+            let mut sum = *row;
+            for k in 0..K {
+                sum = simd.mul_add_e_f64s(simd.splat_f64s(factors[k]), x[k], sum);
+            }
+            *row = sum;
         }
     }
     for (row, factors) in rows.iter_mut().zip(columns) {
@@ -499,8 +495,8 @@ fn add_products<const K: usize, const W: usize, S: Simd>(
     rows: &[[f64; W]],
 ) {
     let mut found = [[simd.splat_f64s(0.0); W]; K];
-    for (row, factors) in rows.iter().zip(columns) {
-        prefetch(factors);
+    for (row, factors) in rows.iter().zip(columns).rev() {
+        prefetch(factors.as_ptr().wrapping_sub(AHEAD));
         let (vectors, rest) = S::as_simd_f64s(row);
         for k in 0..K {
             let factor = simd.splat_f64s(factors[k]);
