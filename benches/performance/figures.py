@@ -45,7 +45,9 @@ def modes(cases, file):
             panel.barh(row, middle, color=COLOURS[program], alpha=0.4 if is_stopped else 1)
             panel.plot([least, most], [row, row], color="black", linewidth=1.5)
             words = f"  {'> ' if is_stopped else ''}{summary.of(times)[0]:.3g} s"
-            panel.text(most, row, words, va="center", fontsize=8)
+            # On white: the line of flexframe may pass behind it.
+            white = {"facecolor": "white", "edgecolor": "none", "pad": 0}
+            panel.text(most, row, words, va="center", fontsize=8, bbox=white)
         panel.axvline(1, color="black", linewidth=0.8)
         panel.set_xlim(right=1.3 * panel.get_xlim()[1])
         unknowns = programs[the_modes.OURS][0]["mesh"]["unknowns"]
