@@ -145,12 +145,26 @@ fn listen(stream: impl Read + Send + 'static, send: mpsc::Sender<Line>) -> threa
             if line.trim_matches('-').is_empty() {
                 continue;
             }
-            let line = serde_json::from_str(&line).map_or(Line::Other(line), Line::Said);
-            if send.send(line).is_err() {
+            if !lines_in(&line).into_iter().all(|line| send.send(line).is_ok()) {
                 return;
             }
         }
     })
+}
+
+/// The lines in one that mpirun has forwarded: it may join those of two ranks, their ends behind both.
+fn lines_in(text: &str) -> Vec<Line> {
+    let mut lines = Vec::new();
+    let mut values = serde_json::Deserializer::from_str(text).into_iter();
+    let mut rest = text;
+    while let Some(Ok(said)) = values.next() {
+        lines.push(Line::Said(said));
+        rest = &text[values.byte_offset()..];
+    }
+    if !rest.trim().is_empty() {
+        lines.push(Line::Other(rest.to_owned()));
+    }
+    lines
 }
 
 /// Ends mpirun, which ends its processes.
@@ -167,4 +181,33 @@ fn end(child: &mut Child) {
     }
     let _ = child.kill();
     let _ = child.wait();
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_that_mpirun_has_joined_are_taken_apart() {
+        let refused = r#"{"error": "none {here}", "cure": "install it", "is_missing": true}"#;
+        let shown = |text: &str| -> Vec<String> {
+            let name = |line| match line {
+                Line::Said(Said::Refused { error, .. }) => format!("refused: {error}"),
+                Line::Said(Said::Phase { phase }) => format!("phase: {phase}"),
+                Line::Said(Said::Converged { converged, of }) => format!("{converged} of {of}"),
+                Line::Other(text) => format!("other: {text}"),
+            };
+            lines_in(text).into_iter().map(name).collect()
+        };
+        assert_eq!(shown(refused), ["refused: none {here}"]);
+        assert_eq!(shown(&refused.repeat(2)), ["refused: none {here}"; 2]);
+        assert_eq!(
+            shown(&format!(r#"{{"phase": "factor"}} {refused}Primary job ended"#)),
+            ["phase: factor", "refused: none {here}", "other: Primary job ended"]
+        );
+        assert_eq!(shown(r#"{"converged": 2, "of": 8}"#), ["2 of 8"]);
+        for other in ["Primary job", r#"{"unknown": 1}"#, r#"{"phase": "#, "12"] {
+            assert_eq!(shown(other), [format!("other: {other}")]);
+        }
+    }
 }
