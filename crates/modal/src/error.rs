@@ -233,6 +233,16 @@ pub enum ModalError {
         /// Largest rounding with which the mode is taken for one.
         limit: f64,
     },
+    /// A lowest mode whose mass is not known well for rounding in M.
+    #[error(
+        "rounding hides the mass of the body's motion: the rounding of the entries of M may come to {rounding:.1e} of the mass of its lowest flexible mode (it may be up to {limit:.1e}). Is a point mass or a density many powers of ten larger than the rest? Make it smaller, or hold the body there by a support"
+    )]
+    MassHiddenByRounding {
+        /// ε |φ|ᵀ|M||φ| of the mode, whose mass is 1.
+        rounding: f64,
+        /// Largest rounding with which its frequency is taken for one.
+        limit: f64,
+    },
     /// K + sM is not positive definite.
     #[error(
         "the stiffness matrix is not positive semi-definite (pivot {pivot} of K + {shift:.3e} M): a material constant or an element must be wrong"
@@ -262,7 +272,7 @@ pub enum ModalError {
     },
     /// The search did not end.
     #[error(
-        "only {converged} of {requested} modes converged within {steps} block steps (residual {residual:.3e}, wanted {tolerance:e})"
+        "only {converged} of {requested} modes converged within {steps} block steps (residual {residual:.3e}, wanted {tolerance:.1e}): do masses or stiffnesses within the body differ by many powers of ten?"
     )]
     NotConverged {
         /// Modes that converged.

@@ -8,6 +8,7 @@ use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
 use faer::sparse::linalg::cholesky::{SymbolicCholesky, SymbolicCholeskyRaw};
 use faer::{Mat, Par, Spec};
 
+use crate::columns::Columns;
 use crate::stiffness::StiffnessMatrix;
 
 /// Bytes of a number or an index.

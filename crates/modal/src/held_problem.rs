@@ -6,6 +6,7 @@
 
 use faer::{Mat, MatRef};
 
+use crate::columns::Columns;
 use crate::constraints::Constraints;
 use crate::error::ModalError;
 use crate::foretold::of_vectors;

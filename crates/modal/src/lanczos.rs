@@ -21,6 +21,8 @@ pub(crate) const FIXED: usize = 6;
 pub(crate) const BLOCK: usize = 8;
 /// ‖(K + sM)⁻¹Mφ − μφ‖_M / μ of a pair that is accepted.
 const TOLERANCE: f64 = 1e-10;
+/// The same at the most where masses differ so much that rounding leaves more: eigenvalues err with its square.
+const LARGEST_TOLERANCE: f64 = 1e-6;
 /// The last blocks that a new one has parts along.
 const NEAR: usize = 2;
 /// Directions of a new block below this, relative to the block before orthogonalisation, are rounding.
@@ -79,7 +81,13 @@ pub(crate) fn largest_pairs(
     let w = begin(BLOCK.min(available), &mut scratch);
     let mut last = basis.extend(w, 0)?.columns;
     let mut near = 1;
-    let (mut converged, mut residual) = (0, f64::INFINITY);
+    let mut failed = ModalError::NotConverged {
+        converged: 0,
+        requested: count,
+        steps: 0,
+        residual: f64::INFINITY,
+        tolerance: TOLERANCE,
+    };
     for block_solves in 1..=max_steps {
         let size = basis.size();
         let mut w = basis.last_times_mass();
@@ -110,8 +118,9 @@ pub(crate) fn largest_pairs(
                 (&extension.coupling * tail).norm_l2() / mu.abs()
             })
             .collect();
-        converged = residuals.iter().take_while(|r| **r < TOLERANCE).count();
-        residual = residuals.iter().copied().fold(0.0, f64::max);
+        // No residual falls below what rounding leaves in the operator's answers.
+        let tolerance = |mu: f64| (basis.rounding / mu.abs()).clamp(TOLERANCE, LARGEST_TOLERANCE);
+        let converged = residuals.iter().zip(&mu).take_while(|(residual, mu)| **residual < tolerance(**mu)).count();
         report(converged);
         if wanted.len() == count && (converged == count || exhausted) {
             let coefficients = Mat::from_fn(size, count, |i, j| eigenvectors[(i, wanted[j])]);
@@ -119,16 +128,26 @@ pub(crate) fn largest_pairs(
             let vectors = basis.combine(coefficients.as_ref());
             return Ok(LanczosPairs { vectors, residuals, block_solves, basis_size: size });
         }
-        near = NEAR;
-        last = extension.columns;
+        failed = ModalError::NotConverged {
+            converged,
+            requested: count,
+            steps: block_solves,
+            residual: residuals.iter().copied().fold(0.0, f64::max),
+            tolerance: mu.last().map_or(TOLERANCE, |mu| tolerance(*mu)),
+        };
+        let mut is_orthonormal = extension.is_orthonormal;
+        (near, last) = (NEAR, extension.columns);
         if last == 0 {
             // The basis spans an invariant subspace: go on from elsewhere, uncoupled from it.
-            let w = begin(BLOCK.min(available - size), &mut scratch);
-            last = basis.extend(w, 0)?.columns;
-            near = 1;
+            let begun = basis.extend(begin(BLOCK.min(available - size), &mut scratch), 0)?;
+            is_orthonormal &= begun.is_orthonormal;
+            (near, last) = (1, begun.columns);
+        }
+        if !is_orthonormal {
+            break;
         }
     }
-    Err(ModalError::NotConverged { converged, requested: count, steps: max_steps, residual, tolerance: TOLERANCE })
+    Err(failed)
 }
 
 /// Vectors that a search for `count` of the `available` ones has room for.
@@ -146,6 +165,8 @@ struct Basis<'a> {
     m_rigid: Mat<f64>,
     /// M times the last [`NEAR`] blocks.
     m_near: VecDeque<Mat<f64>>,
+    /// The largest part along the basis that blocks had after those along the last ones were taken out.
+    rounding: f64,
     // Scratch of a block's size, used again for each block.
     m_w: Mat<f64>,
     packed: Vec<Packed>,
@@ -157,6 +178,8 @@ struct Extension {
     coupling: Mat<f64>,
     /// Columns of Q that were new.
     columns: usize,
+    /// Whether Q is M-orthonormal: not where little but rounding was left of W.
+    is_orthonormal: bool,
 }
 
 impl<'a> Basis<'a> {
@@ -167,6 +190,7 @@ impl<'a> Basis<'a> {
             blocks: vec![rigid.to_owned()],
             m_rigid: mass.product(rigid),
             m_near: VecDeque::new(),
+            rounding: 0.0,
             m_w: Mat::new(),
             packed: Vec::new(),
         })
@@ -211,12 +235,16 @@ impl<'a> Basis<'a> {
         tall::multiply_blocks(w.as_mut(), Accum::Add, &views(last), of_near.as_ref(), -1.0);
         coefficients.as_mut().subrows_mut(FIXED + size - of_near.nrows(), of_near.nrows()).copy_from(&of_near);
 
+        let mut is_orthonormal = false;
         for round in 0..MAX_ROUNDS {
             self.multiply_by_mass(&w);
             let blocks = views(&self.blocks);
             let h = tall::inner_of_blocks(&blocks, self.m_w.as_ref());
             let mut gram = tall::inner(w.as_ref(), self.m_w.as_ref());
             tall::multiply_blocks(w.as_mut(), Accum::Add, &blocks, h.as_ref(), -1.0);
+            if round == 0 && near > 0 {
+                self.rounding = self.rounding.max(h.norm_max());
+            }
             if is_settled(&h, &norms(&gram)) {
                 gram -= h.transpose() * &h;
             } else {
@@ -229,13 +257,14 @@ impl<'a> Basis<'a> {
             coupling = svqb.inverse * coupling;
             // M·W is not needed any more: room for the product.
             times(&mut w, &svqb.transform, &mut self.m_w);
-            if svqb.well_conditioned {
+            is_orthonormal = svqb.well_conditioned;
+            if is_orthonormal {
                 break;
             }
         }
         self.multiply_by_mass(&w);
         let coefficients = coefficients.subrows(FIXED, size).to_owned();
-        let extension = Extension { coefficients, coupling, columns: w.ncols() };
+        let extension = Extension { coefficients, coupling, columns: w.ncols(), is_orthonormal };
         self.blocks.push(w);
         let no_longer_near = if self.m_near.len() < NEAR { None } else { self.m_near.pop_front() };
         let scratch = no_longer_near.unwrap_or_else(Mat::new);

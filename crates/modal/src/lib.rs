@@ -21,6 +21,7 @@
 
 mod buckling;
 mod cholesky;
+mod columns;
 mod constraints;
 mod dense;
 mod engine;

@@ -3,6 +3,7 @@
 use faer::sparse::{SparseColMat, SparseColMatRef, Triplet};
 use faer::{Mat, MatMut, MatRef, Side};
 
+use crate::columns::Columns;
 use crate::error::ModalError;
 use crate::mass::NodalMass;
 use crate::pattern::Pattern;
@@ -91,31 +92,11 @@ impl<'a> MassMatrix<'a> {
         }
     }
 
-    /// Columns.
-    pub(crate) fn ncols(&self) -> usize {
-        match self {
-            Self::Nodal(mass) => 3 * mass.node_count(),
-            Self::General(mass) => mass.matrix.ncols(),
-        }
-    }
-
     /// Memory held, bytes.
     pub(crate) fn bytes(&self) -> usize {
         match self {
             Self::Nodal(mass) => mass.pairs().bytes() + 8 * mass.pairs().nodes.len(),
             Self::General(mass) => 16 * mass.matrix.row_idx().len() + 8 * mass.matrix.ncols(),
-        }
-    }
-
-    /// Calls `entry` with the row and the value of each entry of a column.
-    #[inline(always)]
-    pub(crate) fn for_each_in_column(&self, column: usize, mut entry: impl FnMut(usize, f64)) {
-        match self {
-            Self::Nodal(mass) => mass.column(column / 3).for_each(|(node, value)| entry(3 * node + column % 3, value)),
-            Self::General(mass) => {
-                let column = mass.matrix.row_idx_of_col(column).zip(mass.matrix.val_of_col(column));
-                column.for_each(|(row, value)| entry(row, *value));
-            }
         }
     }
 
@@ -136,6 +117,26 @@ impl<'a> MassMatrix<'a> {
         match self {
             Self::Nodal(mass) => check_semidefinite(|| mass.entries(), mass.node_count(), 1),
             Self::General(mass) => mass.check_semidefinite(),
+        }
+    }
+}
+
+impl Columns for MassMatrix<'_> {
+    fn ncols(&self) -> usize {
+        match self {
+            Self::Nodal(mass) => 3 * mass.node_count(),
+            Self::General(mass) => mass.matrix.ncols(),
+        }
+    }
+
+    #[inline(always)]
+    fn for_each_in_column(&self, column: usize, mut entry: impl FnMut(usize, f64)) {
+        match self {
+            Self::Nodal(mass) => mass.column(column / 3).for_each(|(node, value)| entry(3 * node + column % 3, value)),
+            Self::General(mass) => {
+                let column = mass.matrix.row_idx_of_col(column).zip(mass.matrix.val_of_col(column));
+                column.for_each(|(row, value)| entry(row, *value));
+            }
         }
     }
 }

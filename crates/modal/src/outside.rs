@@ -4,6 +4,7 @@ use std::time::Instant;
 
 use faer::{Mat, MatRef};
 
+use crate::columns::Columns;
 use crate::engine::{Eigenpairs, Engine, StaticAnswers};
 use crate::error::ModalError;
 use crate::foretold::of_vectors;
@@ -66,7 +67,7 @@ impl Solver<'_> {
         let rounding = self.rounding_of_products(&shapes);
         for (k, (lambda, said)) in eigenvalues.iter().zip(&said).enumerate() {
             let of_mu = ROUNDED * f64::EPSILON * (lambda + shift).powi(2) / shift;
-            let allowed = SAME * lambda.abs() + self.rounding(shapes.col(k)) + of_mu;
+            let allowed = SAME * lambda.abs() + self.stiffness.rounding(shapes.col(k)) + of_mu;
             expect((lambda - said).abs() <= allowed, || {
                 (format!("mode {} with the eigenvalue {said:.12e}", k + 1), format!("{lambda:.12e}, as its shape has"))
             })?;

@@ -19,6 +19,7 @@ use faer::sparse::linalg::cholesky::{
 use faer::{Accum, Conj, Mat, MatMut, Par, Side, Spec};
 
 use crate::cholesky::NotPositive;
+use crate::columns::Columns;
 use crate::constraints::Constraints;
 use crate::dense::whitening;
 use crate::error::ModalError;

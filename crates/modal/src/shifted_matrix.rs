@@ -5,6 +5,7 @@ use faer::MatRef;
 use faer::perm::Perm;
 use faer::sparse::{FaerError, SparseColMat};
 
+use crate::columns::Columns;
 use crate::constraints::Constraints;
 use crate::error::ModalError;
 use crate::mass_matrix::MassMatrix;

@@ -1,10 +1,9 @@
 //! The stiffness matrix of a body: by pairs of nodes where it comes as that, in compressed columns otherwise.
 
 use faer::sparse::SparseColMatRef;
-use faer::{ColRef, Mat, MatMut, MatRef};
+use faer::{Mat, MatMut, MatRef};
 
-use rayon::prelude::*;
-
+use crate::columns::Columns;
 use crate::error::ModalError;
 use crate::node_pairs::NodePairs;
 use crate::pattern::Pattern;
@@ -95,14 +94,6 @@ impl<'a> From<NodalStiffness<'a>> for StiffnessMatrix<'a> {
 }
 
 impl<'a> StiffnessMatrix<'a> {
-    /// Columns.
-    pub(crate) fn ncols(&self) -> usize {
-        match self {
-            Self::Nodal(matrix) => 3 * matrix.pairs.count(),
-            Self::General(matrix) => matrix.ncols(),
-        }
-    }
-
     /// Stored entries.
     pub(crate) fn entries(&self) -> usize {
         match self {
@@ -134,27 +125,6 @@ impl<'a> StiffnessMatrix<'a> {
         }
     }
 
-    /// Calls `entry` with the row and the value of each entry of a column.
-    #[inline(always)]
-    pub(crate) fn for_each_in_column(&self, column: usize, mut entry: impl FnMut(usize, f64)) {
-        match self {
-            Self::Nodal(matrix) => {
-                let (nodes, values) = matrix.column(column / 3, column % 3);
-                for (node, values) in nodes.iter().zip(values) {
-                    for (axis, value) in values.iter().enumerate() {
-                        entry(3 * *node as usize + axis, *value);
-                    }
-                }
-            }
-            Self::General(matrix) => {
-                matrix
-                    .row_idx_of_col(column)
-                    .zip(matrix.val_of_col(column))
-                    .for_each(|(row, value)| entry(row, *value));
-            }
-        }
-    }
-
     /// Where its entries on and below the diagonal are; of a general one, also those above.
     pub(crate) fn pattern(&self) -> Pattern<'a> {
         match self {
@@ -176,16 +146,33 @@ impl<'a> StiffnessMatrix<'a> {
         };
         (0..self.ncols()).map(of_column).collect()
     }
+}
 
-    /// |K||φ|, which tells what rounding may leave of Kφ.
-    pub(crate) fn absolute_product(&self, shape: ColRef<'_, f64>) -> Vec<f64> {
-        let magnitudes: Vec<f64> = shape.iter().map(|u| u.abs()).collect();
-        let of_row = |row: usize| {
-            let mut sum = 0.0;
-            // A column of a symmetric matrix is its row.
-            self.for_each_in_column(row, |i, value| sum += magnitudes[i] * value.abs());
-            sum
-        };
-        (0..self.ncols()).into_par_iter().map(of_row).collect()
+impl Columns for StiffnessMatrix<'_> {
+    fn ncols(&self) -> usize {
+        match self {
+            Self::Nodal(matrix) => 3 * matrix.pairs.count(),
+            Self::General(matrix) => matrix.ncols(),
+        }
+    }
+
+    #[inline(always)]
+    fn for_each_in_column(&self, column: usize, mut entry: impl FnMut(usize, f64)) {
+        match self {
+            Self::Nodal(matrix) => {
+                let (nodes, values) = matrix.column(column / 3, column % 3);
+                for (node, values) in nodes.iter().zip(values) {
+                    for (axis, value) in values.iter().enumerate() {
+                        entry(3 * *node as usize + axis, *value);
+                    }
+                }
+            }
+            Self::General(matrix) => {
+                matrix
+                    .row_idx_of_col(column)
+                    .zip(matrix.val_of_col(column))
+                    .for_each(|(row, value)| entry(row, *value));
+            }
+        }
     }
 }
