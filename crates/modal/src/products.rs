@@ -9,7 +9,7 @@ use faer::{Mat, MatMut, MatRef};
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
-use crate::packed_rows::prefetch;
+use crate::packed_rows::{add_multiple, prefetch};
 
 /// Vectors handled in one pass over the matrix.
 pub(crate) const WIDTH: usize = 8;
@@ -24,7 +24,7 @@ pub(crate) type Packed = [f64; WIDTH];
 /// A matrix by the rows of its nodes.
 trait NodeRows: Sync {
     /// The three rows of a node in the product with a packed block.
-    fn product(&self, node: usize, packed: &[Packed]) -> [Packed; 3];
+    fn product<S: Simd>(&self, simd: S, node: usize, packed: &[Packed]) -> [Packed; 3];
 }
 
 /// A·X for a symmetric A (3n×3n) with both triangles stored.
@@ -61,25 +61,22 @@ impl Symmetric<'_> {
 
 impl NodeRows for Symmetric<'_> {
     #[inline(always)]
-    fn product(&self, node: usize, packed: &[Packed]) -> [Packed; 3] {
+    fn product<S: Simd>(&self, simd: S, node: usize, packed: &[Packed]) -> [Packed; 3] {
         let mut sums = [[0.0; WIDTH]; 3];
         let [(rows, x), (rows_y, y), (rows_z, z)] =
             [self.column(3 * node), self.column(3 * node + 1), self.column(3 * node + 2)];
         if rows == rows_y && rows == rows_z {
             let (y, z) = (&y[..x.len()], &z[..x.len()]);
             for (entry, row) in rows.iter().enumerate().take(x.len()) {
-                let row = packed[*row];
-                for c in 0..WIDTH {
-                    sums[0][c] += x[entry] * row[c];
-                    sums[1][c] += y[entry] * row[c];
-                    sums[2][c] += z[entry] * row[c];
+                for (sum, values) in sums.iter_mut().zip([x, y, z]) {
+                    add_multiple(simd, sum, values[entry], &packed[*row]);
                 }
             }
         } else {
             for (axis, sum) in sums.iter_mut().enumerate() {
                 let (rows, values) = self.column(3 * node + axis);
                 for (row, value) in rows.iter().zip(values) {
-                    add_scaled(sum, *value, &packed[*row]);
+                    add_multiple(simd, sum, *value, &packed[*row]);
                 }
             }
         }
@@ -98,7 +95,7 @@ pub(crate) struct NodeBlocks<'a> {
 
 impl NodeRows for NodeBlocks<'_> {
     #[inline(always)]
-    fn product(&self, node: usize, packed: &[Packed]) -> [Packed; 3] {
+    fn product<S: Simd>(&self, simd: S, node: usize, packed: &[Packed]) -> [Packed; 3] {
         let mut sums = [[0.0; WIDTH]; 3];
         let range = self.start[node]..self.start[node + 1];
         let nodes = &self.nodes[range.clone()];
@@ -109,10 +106,8 @@ impl NodeRows for NodeBlocks<'_> {
         for (((other, x), y), z) in nodes.iter().zip(x).zip(y).zip(z) {
             let first = 3 * *other as usize;
             for (axis, row) in packed[first..first + 3].iter().enumerate() {
-                for c in 0..WIDTH {
-                    sums[0][c] += x[axis] * row[c];
-                    sums[1][c] += y[axis] * row[c];
-                    sums[2][c] += z[axis] * row[c];
+                for (sum, values) in sums.iter_mut().zip([x, y, z]) {
+                    add_multiple(simd, sum, values[axis], row);
                 }
             }
         }
@@ -146,27 +141,21 @@ struct Nodal<'a> {
 
 impl NodeRows for Nodal<'_> {
     #[inline(always)]
-    fn product(&self, node: usize, packed: &[Packed]) -> [Packed; 3] {
+    fn product<S: Simd>(&self, simd: S, node: usize, packed: &[Packed]) -> [Packed; 3] {
         let mut sums = [[0.0; WIDTH]; 3];
-        for entry in self.start[node]..self.start[node + 1] {
+        let range = self.start[node]..self.start[node + 1];
+        for (entry, (other, value)) in range.clone().zip(self.nodes[range.clone()].iter().zip(&self.values[range])) {
             if let Some(soon) = self.nodes.get(entry + AHEAD) {
                 for row in packed[3 * *soon as usize..].iter().take(3) {
                     prefetch(row.as_ptr());
                 }
             }
-            let first = 3 * self.nodes[entry] as usize;
+            let first = 3 * *other as usize;
             for (sum, x) in sums.iter_mut().zip(&packed[first..first + 3]) {
-                add_scaled(sum, self.values[entry], x);
+                add_multiple(simd, sum, *value, x);
             }
         }
         sums
-    }
-}
-
-#[inline(always)]
-fn add_scaled(sum: &mut Packed, value: f64, x: &Packed) {
-    for c in 0..WIDTH {
-        sum[c] += value * x[c];
     }
 }
 
@@ -205,11 +194,11 @@ impl<R: NodeRows> WithSimd for SomeRows<'_, R> {
     type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _simd: S) {
+    fn with_simd<S: Simd>(self, simd: S) {
         let Self { matrix, first, packed, mut y } = self;
         let mut sums = [[0.0; WIDTH]; 3 * NODES_PER_TASK];
         for node in 0..y.nrows() / 3 {
-            sums[3 * node..3 * node + 3].copy_from_slice(&matrix.product(first + node, packed));
+            sums[3 * node..3 * node + 3].copy_from_slice(&matrix.product(simd, first + node, packed));
         }
         for (c, column) in y.rb_mut().col_iter_mut().enumerate() {
             for (value, sums) in column.iter_mut().zip(&sums) {
