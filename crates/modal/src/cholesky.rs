@@ -12,13 +12,13 @@ use faer::linalg::matmul::matmul;
 use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
 use faer::perm::PermRef;
 use faer::reborrow::{Reborrow, ReborrowMut};
-use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
 use faer::{Accum, MatMut, MatRef, Par, Spec};
 use rayon::prelude::*;
 
-use crate::factor_layout::{Layout, of_own_rows, width, write_own_rows};
+use crate::factor_layout::{of_own_rows, write_own_rows};
 use crate::shifted_matrix::ShiftedMatrix;
 use crate::subtrees::Subtrees;
+use crate::supernodes::Supernodes;
 
 /// Rows that one task updates. Fixed, so that the numbers are.
 const STRIP: usize = 256;
@@ -30,52 +30,43 @@ pub(crate) struct NotPositive(pub usize);
 
 /// What is to be factored, and its pattern.
 pub(crate) struct Problem<'a> {
-    pub symbolic: &'a SymbolicSupernodalCholesky<usize>,
-    pub layout: &'a Layout,
+    pub supernodes: &'a Supernodes,
     pub subtrees: &'a Subtrees,
     pub order: PermRef<'a, usize>,
     pub matrix: &'a ShiftedMatrix<'a>,
 }
 
 /// Bytes that [`Problem::factor`] takes as scratch on so many threads, without what products of dense matrices take.
-pub(crate) fn scratch_bytes(symbolic: &SymbolicSupernodalCholesky<usize>, threads: usize) -> usize {
-    let widest = (0..symbolic.n_supernodes()).map(|s| width(symbolic, s)).max().unwrap_or(0);
-    4 * (symbolic.nrows() + 3 * symbolic.n_supernodes()) * (threads + 1) + 8 * widest * (STRIP * threads + widest)
+pub(crate) fn scratch_bytes(supernodes: &Supernodes, threads: usize) -> usize {
+    let widest = (0..supernodes.count()).map(|s| supernodes.width(s)).max().unwrap_or(0);
+    4 * (supernodes.unknowns() + 3 * supernodes.count()) * (threads + 1) + 8 * widest * (STRIP * threads + widest)
 }
 
 impl Problem<'_> {
     /// Fills the zeros in `values` with the entries of L, the rows below a supernode column by column.
     pub(crate) fn factor(&self, values: &mut [f64]) -> Result<(), NotPositive> {
-        let of_row = self.supernode_of_each_row();
+        let of_row = self.supernodes.of_columns();
         let given: Vec<Vec<Given>> = self
             .subtrees
-            .split(values, |part| self.layout.range(part))
+            .split(values, |part| self.supernodes.entries_of(part))
             .into_par_iter()
             .map_init(
-                || Work::new(self.symbolic),
+                || Work::new(self.supernodes),
                 |work, (part, range, values)| {
                     part.clone().try_for_each(|s| self.supernode(s, range.start, values, &of_row, work))?;
                     Ok(work.queue.clear(part))
                 },
             )
             .collect::<Result<_, _>>()?;
-        let mut work = Work::new(self.symbolic);
+        let mut work = Work::new(self.supernodes);
         for given in given.iter().flatten() {
-            let row = self.symbolic.supernode(given.by).pattern()[given.from];
-            work.queue.push(of_row[row], *given);
+            let row = self.supernodes.below(given.by)[given.from];
+            work.queue.push(of_row[row as usize], *given);
         }
         for s in &self.subtrees.top {
             self.supernode(*s, 0, values, &of_row, &mut work)?;
         }
         Ok(())
-    }
-
-    fn supernode_of_each_row(&self) -> Vec<u32> {
-        let mut of_row = vec![0; self.symbolic.nrows()];
-        for s in 0..self.symbolic.n_supernodes() {
-            of_row[self.symbolic.supernode_begin()[s]..self.symbolic.supernode_end()[s]].fill(s as u32);
-        }
-        of_row
     }
 
     /// Makes the columns of a supernode. `values` has those of all that give to it, from the entry `base` of the factor on.
@@ -88,13 +79,13 @@ impl Problem<'_> {
         work: &mut Work,
     ) -> Result<(), NotPositive> {
         let Work { place, queue, updates, sums, own, dense } = work;
-        let (start, end) = (self.symbolic.supernode_begin()[s], self.symbolic.supernode_end()[s]);
-        let pattern = self.symbolic.supernode(s).pattern();
+        let Range { start, end } = self.supernodes.columns(s);
+        let pattern = self.supernodes.below(s);
         let width = end - start;
-        for (i, row) in (start..end).chain(pattern.iter().copied()).enumerate() {
+        for (i, row) in (start..end).chain(pattern.iter().map(|row| *row as usize)).enumerate() {
             place[row] = i as u32;
         }
-        let range = self.layout.range(&(s..s + 1));
+        let range = self.supernodes.entries(s);
         let (before, values) = values.split_at_mut(range.start - base);
         let (packed, below) = values[..range.len()].split_at_mut(of_own_rows(width));
         own.clear();
@@ -112,14 +103,14 @@ impl Problem<'_> {
 
         queue.take(s, updates);
         for update in &mut *updates {
-            let pattern = self.symbolic.supernode(update.by).pattern();
-            let next = update.from + pattern[update.from..].partition_point(|row| *row < end);
+            let pattern = self.supernodes.below(update.by);
+            let next = update.from + pattern[update.from..].partition_point(|row| (*row as usize) < end);
             if next < pattern.len() {
-                queue.push(of_row[pattern[next]], Given { by: update.by, from: next });
+                queue.push(of_row[pattern[next] as usize], Given { by: update.by, from: next });
             }
         }
         if let Some(row) = pattern.first() {
-            queue.push(of_row[*row], Given { by: s, from: 0 });
+            queue.push(of_row[*row as usize], Given { by: s, from: 0 });
         }
 
         let before = Before { problem: self, values: before, base, place, updates, end };
@@ -217,10 +208,10 @@ struct Work {
 }
 
 impl Work {
-    fn new(symbolic: &SymbolicSupernodalCholesky<usize>) -> Self {
-        let none = || vec![NONE; symbolic.n_supernodes()];
+    fn new(supernodes: &Supernodes) -> Self {
+        let none = || vec![NONE; supernodes.count()];
         Self {
-            place: vec![0; symbolic.nrows()],
+            place: vec![0; supernodes.unknowns()],
             queue: Queue { head: none(), next: none(), target: none(), from: none() },
             updates: Vec::new(),
             sums: Sums::default(),
@@ -280,24 +271,24 @@ impl Before<'_> {
     /// Takes from rows of the supernode at hand, `own` from the row `first` on, what the others give to them.
     fn subtract(&self, mut own: MatMut<'_, f64>, first: usize, sums: &mut Sums) {
         let Sums { products, runs } = sums;
-        let Problem { symbolic, layout, .. } = self.problem;
+        let Problem { supernodes, .. } = self.problem;
         for given in self.updates {
-            let pattern = symbolic.supernode(given.by).pattern();
+            let pattern = supernodes.below(given.by);
             let height = pattern.len();
             let pattern = &pattern[given.from..];
-            let below = |row: usize| pattern.partition_point(|other| (self.place[*other] as usize) < row);
+            let place = |row: u32| self.place[row as usize] as usize;
+            let below = |row: usize| pattern.partition_point(|other| place(*other) < row);
             let (low, high) = (below(first), below(first + own.nrows()));
             if low == high {
                 continue;
             }
             // Entries above the diagonal are left out as far as that is for nothing.
-            let columns = pattern.partition_point(|row| *row < self.end).min(high);
-            let width = width(symbolic, given.by);
-            let range = layout.range(&(given.by..given.by + 1));
+            let columns = pattern.partition_point(|row| (*row as usize) < self.end).min(high);
+            let (width, range) = (supernodes.width(given.by), supernodes.entries(given.by));
             let of_it = &self.values[range.start + of_own_rows(width) - self.base..range.end - self.base];
             let of_it = MatRef::from_column_major_slice(of_it, height, width).subrows(given.from, pattern.len());
 
-            cut(pattern[low..high].iter().map(|row| self.place[*row] as usize - first), runs);
+            cut(pattern[low..high].iter().map(|row| place(*row) - first), runs);
             products.resize(products.len().max((high - low) * columns), 0.0);
             let products = &mut products[..(high - low) * columns];
             matmul(
@@ -309,7 +300,7 @@ impl Before<'_> {
                 Par::Seq,
             );
             for (products, row) in products.chunks_exact(high - low).zip(pattern) {
-                let mut own = own.rb_mut().col_mut(self.place[*row] as usize);
+                let mut own = own.rb_mut().col_mut(place(*row));
                 for Run { first, place, rows } in &*runs {
                     let own = own.rb_mut().subrows_mut(*place, *rows);
                     own.iter_mut().zip(&products[*first..first + rows]).for_each(|(own, product)| *own -= product);
@@ -344,14 +335,14 @@ mod tests {
         let assembled = matrix.assembled(&matrix.pattern().unwrap()).unwrap();
         let symbolic = supernodal(&assembled);
         let SymbolicCholeskyRaw::Supernodal(factor) = symbolic.raw() else { panic!() };
-        let layout = Layout::new(factor);
-        let subtrees = Subtrees::new(factor);
+        let supernodes = Supernodes::new(factor, 1);
+        let subtrees = Subtrees::new(&supernodes);
         assert!(subtrees.parts.len() > 3 && !subtrees.top.is_empty());
 
         let order = symbolic.perm().unwrap();
-        let problem = Problem { symbolic: factor, layout: &layout, subtrees: &subtrees, order, matrix: &matrix };
+        let problem = Problem { supernodes: &supernodes, subtrees: &subtrees, order, matrix: &matrix };
         let on = |threads: usize| {
-            let mut values = vec![0.0; layout.entries()];
+            let mut values = vec![0.0; supernodes.factor_entries()];
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| problem.factor(&mut values)).ok().map(|()| values)
         };

@@ -7,10 +7,10 @@
 use std::iter::StepBy;
 use std::ops::Range;
 
-use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
 use rayon::prelude::*;
 
 use crate::subtrees::Subtrees;
+use crate::supernodes::Supernodes;
 
 /// Columns of the factor that are applied in one pass over the rows below them.
 pub(crate) const COLUMNS: usize = 6;
@@ -28,42 +28,6 @@ pub(crate) fn passes(width: usize) -> [Passes; 3] {
     let of_most = width - width % COLUMNS;
     let of_nodes = width - (width - of_most) % NODE;
     [(0..of_most).step_by(COLUMNS), (of_most..of_nodes).step_by(NODE), (of_nodes..width).step_by(1)]
-}
-
-/// Where each supernode begins.
-pub(crate) struct Layout {
-    starts: Vec<usize>,
-}
-
-impl Layout {
-    pub(crate) fn new(symbolic: &SymbolicSupernodalCholesky<usize>) -> Self {
-        let mut starts = Vec::with_capacity(symbolic.n_supernodes() + 1);
-        let mut start = 0;
-        starts.push(start);
-        for s in 0..symbolic.n_supernodes() {
-            let width = width(symbolic, s);
-            start += of_own_rows(width) + width * symbolic.supernode(s).pattern().len();
-            starts.push(start);
-        }
-        Self { starts }
-    }
-
-    /// Entries of the factor.
-    pub(crate) fn entries(&self) -> usize {
-        self.starts.last().copied().unwrap_or(0)
-    }
-
-    /// Of some supernodes, one after another.
-    #[inline(always)]
-    pub(crate) fn range(&self, supernodes: &Range<usize>) -> Range<usize> {
-        self.starts[supernodes.start]..self.starts[supernodes.end]
-    }
-}
-
-/// Columns of a supernode.
-#[inline(always)]
-pub(crate) fn width(symbolic: &SymbolicSupernodalCholesky<usize>, s: usize) -> usize {
-    symbolic.supernode_end()[s] - symbolic.supernode_begin()[s]
 }
 
 /// Entries of the own rows of a supernode of so many columns.
@@ -100,31 +64,26 @@ fn write_own_pass<'a, const K: usize>(from: &[f64], width: usize, first: usize, 
 }
 
 /// Puts the rows below all supernodes, which stand column by column, into the order in which they are read: by strips.
-pub(crate) fn interleave(
-    symbolic: &SymbolicSupernodalCholesky<usize>,
-    layout: &Layout,
-    subtrees: &Subtrees,
-    values: &mut [f64],
-) {
+pub(crate) fn interleave(supernodes: &Supernodes, subtrees: &Subtrees, values: &mut [f64]) {
     let supernode = |s: usize, values: &mut [f64], scratch: &mut Vec<f64>| {
-        let width = width(symbolic, s);
+        let width = supernodes.width(s);
         let below = &mut values[of_own_rows(width)..];
         scratch.clear();
         scratch.extend_from_slice(below);
         write_strips(width, scratch, below);
     };
-    subtrees.split(values, |part| layout.range(part)).into_par_iter().for_each_init(
+    subtrees.split(values, |part| supernodes.entries_of(part)).into_par_iter().for_each_init(
         Vec::new,
         |scratch, (part, range, values)| {
             for s in part {
-                let of_it = layout.range(&(s..s + 1));
+                let of_it = supernodes.entries(s);
                 supernode(s, &mut values[of_it.start - range.start..of_it.end - range.start], scratch);
             }
         },
     );
     let mut scratch = Vec::new();
     for s in &subtrees.top {
-        supernode(*s, &mut values[layout.range(&(*s..s + 1))], &mut scratch);
+        supernode(*s, &mut values[supernodes.entries(*s)], &mut scratch);
     }
 }
 
@@ -163,13 +122,15 @@ fn write_pass<'a, const K: usize>(
 
 #[cfg(test)]
 pub(crate) mod tests {
+    use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
+
     use super::*;
 
     /// A factor of faer's in this layout, as it is before it is interleaved.
     pub(crate) fn of_faer(symbolic: &SymbolicSupernodalCholesky<usize>, values: &[f64]) -> Vec<f64> {
         let mut all = Vec::new();
         for s in 0..symbolic.n_supernodes() {
-            let width = width(symbolic, s);
+            let width = symbolic.supernode_end()[s] - symbolic.supernode_begin()[s];
             let rows = width + symbolic.supernode(s).pattern().len();
             let columns = || values[symbolic.col_ptr_for_val()[s]..].chunks(rows).take(width);
             let own: Vec<f64> = columns().flat_map(|column| &column[..width]).copied().collect();

@@ -4,12 +4,11 @@ use std::time::{Duration, Instant};
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::{cholesky_in_place, cholesky_in_place_scratch};
-use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
-use faer::sparse::linalg::cholesky::{SymbolicCholesky, SymbolicCholeskyRaw};
 use faer::{Mat, Par, Spec};
 
 use crate::columns::Columns;
 use crate::stiffness::StiffnessMatrix;
+use crate::symbolic::{Supernodal, Symbolic};
 
 /// Bytes of a number or an index.
 const WORD: usize = 8;
@@ -42,31 +41,12 @@ pub struct Forecast {
 }
 
 impl Forecast {
-    pub(crate) fn new(
-        symbolic: &SymbolicCholesky<usize>,
-        factor_entries: usize,
-        peak_bytes: usize,
-        threads: usize,
-    ) -> Self {
-        let multiplications = match symbolic.raw() {
-            // Its columns are short, and it has no long ones by choice: a simplicial factor is never slow.
-            SymbolicCholeskyRaw::Simplicial(simplicial) => simplicial.len_val() as f64,
-            SymbolicCholeskyRaw::Supernodal(supernodal) => multiplications(supernodal),
-        };
+    pub(crate) fn new(symbolic: &Symbolic, peak_bytes: usize, threads: usize) -> Self {
+        let (factor_entries, multiplications) = (symbolic.entries(), symbolic.multiplications());
         let speed = if multiplications > SHORT { speed(threads) } else { None };
         let time = speed.and_then(|speed| Duration::try_from_secs_f64(multiplications / (SPARSE_SPEED * speed)).ok());
         Self { factor_entries, multiplications, peak_bytes, time }
     }
-}
-
-/// Of a factor: a column with c entries below its diagonal takes (c+1)²/2.
-fn multiplications(symbolic: &SymbolicSupernodalCholesky<usize>) -> f64 {
-    let of_supernode = |s: usize| -> f64 {
-        let width = symbolic.supernode_end()[s] - symbolic.supernode_begin()[s];
-        let below = symbolic.supernode(s).pattern().len();
-        (1..=width).map(|column| ((below + column) as f64).powi(2) / 2.0).sum()
-    };
-    (0..symbolic.n_supernodes()).map(of_supernode).sum()
 }
 
 /// Multiplications a second in the factorisation of a dense matrix.
@@ -87,7 +67,7 @@ pub(crate) struct Foretold {
     entries: usize,
     /// K, M, rigid modes.
     matrices: usize,
-    /// The lower half of the pattern of K by degrees of freedom, where it is made for the ordering.
+    /// Entries of the pattern that the factor's is found by.
     pattern: usize,
     /// The factor of K + sM, with its pattern.
     factor: usize,
@@ -103,22 +83,22 @@ impl Foretold {
         let (unknowns, entries) = (stiffness.ncols(), stiffness.entries());
         let matrices = matrices + WORD * rigid * unknowns;
         let pattern = match stiffness {
-            StiffnessMatrix::Nodal(_) => WORD * (entries / 2 + 3 * unknowns),
-            StiffnessMatrix::General(_) => 0,
+            StiffnessMatrix::Nodal(_) => entries / 9,
+            StiffnessMatrix::General(_) => entries,
         };
         Self { unknowns, entries, matrices, pattern, factor: 0, shifted: 0, scratch: 0 }
     }
 
-    /// With the factor of so many entries, of which the numeric factorisation takes so many bytes of scratch.
-    pub(crate) fn with_factor(mut self, symbolic: &SymbolicCholesky<usize>, entries: usize, scratch: usize) -> Self {
-        let pattern = match symbolic.raw() {
-            SymbolicCholeskyRaw::Simplicial(simplicial) => {
+    /// With the factor, of which the numeric factorisation takes so many bytes of scratch.
+    pub(crate) fn with_factor(mut self, symbolic: &Symbolic, scratch: usize) -> Self {
+        let pattern = match symbolic {
+            Symbolic::Simplicial(simplicial) => {
                 self.shifted = WORD * (2 * self.entries + self.unknowns);
-                simplicial.len_val() + self.unknowns
+                WORD * (simplicial.len_val() + 3 * self.unknowns)
             }
-            SymbolicCholeskyRaw::Supernodal(supernodal) => supernodal.row_idx().len() + 3 * supernodal.n_supernodes(),
+            Symbolic::Supernodal(Supernodal { supernodes, .. }) => supernodes.bytes() + (WORD * 2 + 4) * self.unknowns,
         };
-        self.factor = WORD * (entries + pattern + 2 * self.unknowns);
+        self.factor = WORD * symbolic.entries() + pattern;
         self.scratch = scratch;
         self
     }
@@ -132,7 +112,7 @@ impl Foretold {
     pub(crate) fn of_ordering(&self) -> usize {
         // The graph grows by doubling.
         let graph = crate::ordering::ordering_bytes(self.unknowns / 3, self.entries / 9) + 2 * 4 * self.entries / 9;
-        self.pattern + graph.max(WORD * (self.entries + 5 * self.unknowns))
+        graph.max(2 * WORD * (self.pattern + 3 * self.unknowns))
     }
 
     /// From the numeric factorisation on, beside K and M: the factor, and what comes with it or after it.
@@ -186,10 +166,14 @@ pub(crate) fn of_dense_products(threads: usize) -> usize {
 #[cfg(test)]
 mod tests {
     use faer::Side;
+    use faer::perm::Perm;
     use faer::sparse::SymbolicSparseColMat;
-    use faer::sparse::linalg::cholesky::{CholeskySymbolicParams, SymmetricOrdering, factorize_symbolic_cholesky};
+    use faer::sparse::linalg::cholesky::{
+        CholeskySymbolicParams, SymbolicCholeskyRaw, SymmetricOrdering, factorize_symbolic_cholesky,
+    };
 
     use super::*;
+    use crate::supernodes::Supernodes;
 
     #[test]
     fn a_dense_factor_takes_a_sixth_of_the_cube_of_its_size() {
@@ -199,8 +183,10 @@ mod tests {
         let params = CholeskySymbolicParams::default();
         let symbolic =
             factorize_symbolic_cholesky(pattern.as_ref(), Side::Lower, SymmetricOrdering::Identity, params).unwrap();
-        assert!(matches!(symbolic.raw(), SymbolicCholeskyRaw::Supernodal(_)));
-        let forecast = Forecast::new(&symbolic, n * n, 0, 1);
+        let SymbolicCholeskyRaw::Supernodal(symbolic) = symbolic.raw() else { panic!() };
+        let identity: Box<[usize]> = (0..n).collect();
+        let order = Perm::new_checked(identity.clone(), identity, n);
+        let forecast = Forecast::new(&Symbolic::supernodal(order, Supernodes::new(symbolic, 1)), 0, 1);
         let exact = (1..=n).map(|column| (column as f64).powi(2) / 2.0).sum::<f64>();
         assert_eq!(forecast.multiplications, exact);
         assert_eq!(forecast.time, None);

@@ -104,7 +104,7 @@ impl<'a> MassMatrix<'a> {
     /// of nodes; of a general one, also those above.
     pub(crate) fn pattern(&self) -> Pattern<'_> {
         match self {
-            Self::Nodal(mass) => Pattern::Made(mass.pairs().lower()),
+            Self::Nodal(mass) => Pattern::Made(mass.pairs().lower(3)),
             Self::General(mass) => Pattern::Given(mass.matrix.symbolic()),
         }
     }

@@ -49,18 +49,19 @@ impl<'a> NodePairs<'a> {
         4 * self.nodes.len() + 8 * self.start.len()
     }
 
-    /// The diagonal and what is below it of the same over degrees of freedom, a 3×3 block for each pair.
-    pub fn lower(&self) -> SymbolicSparseColMat<usize> {
-        let size = 3 * self.count();
-        let entries = 9 * (self.nodes.len() + self.count()) / 2;
+    /// The diagonal and what is below it of the same over degrees of freedom, so many of them `alike` in each node.
+    pub fn lower(&self, alike: usize) -> SymbolicSparseColMat<usize> {
+        let size = alike * self.count();
+        let entries = alike * alike * (self.nodes.len() + self.count()) / 2;
         let (mut start, mut rows) = (Vec::with_capacity(size + 1), Vec::with_capacity(entries));
         start.push(0);
         for node in 0..self.count() {
             let nodes = self.of(node);
             let below = &nodes[nodes.partition_point(|other| *other as usize <= node)..];
-            for column in 3 * node..3 * node + 3 {
-                rows.extend(column..3 * node + 3);
-                rows.extend(below.iter().flat_map(|other| 3 * *other as usize..3 * *other as usize + 3));
+            let of_node = |node: usize| alike * node..alike * (node + 1);
+            for column in of_node(node) {
+                rows.extend(column..of_node(node).end);
+                rows.extend(below.iter().flat_map(|other| of_node(*other as usize)));
                 start.push(rows.len());
             }
         }

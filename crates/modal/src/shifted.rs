@@ -9,13 +9,9 @@ use std::time::{Duration, Instant};
 
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::linalg::cholesky::llt::factor::LltError as PivotError;
-use faer::perm::PermRef;
 use faer::reborrow::{Reborrow, ReborrowMut};
 use faer::sparse::FaerError;
-use faer::sparse::linalg::cholesky::{
-    CholeskySymbolicParams, LltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
-    factorize_symbolic_cholesky,
-};
+use faer::sparse::linalg::cholesky::{LltRef, SymbolicCholesky};
 use faer::{Accum, Conj, Mat, MatMut, Par, Side, Spec};
 
 use crate::cholesky::NotPositive;
@@ -23,13 +19,12 @@ use crate::columns::Columns;
 use crate::constraints::Constraints;
 use crate::dense::whitening;
 use crate::error::ModalError;
-use crate::factor_layout::{Layout, interleave};
+use crate::factor_layout::interleave;
 use crate::foretold::{Forecast, Foretold, of_dense_products};
 use crate::mass_matrix::MassMatrix;
-use crate::pattern::Pattern;
 use crate::shifted_matrix::ShiftedMatrix;
 use crate::stiffness::StiffnessMatrix;
-use crate::subtrees::Subtrees;
+use crate::symbolic::{Supernodal, Symbolic};
 use crate::{cholesky, substitution, tall};
 
 /// What the memory is for.
@@ -41,9 +36,7 @@ pub(crate) struct Shifted {
     pub constraints: Constraints,
     /// The shift s.
     pub shift: f64,
-    symbolic: SymbolicCholesky<usize>,
-    /// Of a factor with supernodes; a small one has none.
-    supernodes: Option<(Layout, Subtrees)>,
+    symbolic: Symbolic,
     values: Vec<f64>,
     /// E, A-orthonormal.
     extensions: Mat<f64>,
@@ -83,40 +76,26 @@ impl Shifted {
         let motions = constraints.motions();
         let matrix = ShiftedMatrix::new(stiffness, mass, shift, constraints);
         let a_motions = matrix.product_with_held(motions.as_ref());
-        let pattern = matrix.pattern().map_err(|reason| failed(size, reason))?;
-        let ordering = matrix.order(&pattern)?;
-        let symbolic = factorize_symbolic_cholesky(
-            pattern.as_ref(),
-            Side::Lower,
-            SymmetricOrdering::Custom(ordering.as_ref()),
-            CholeskySymbolicParams::default(),
-        )
-        .map_err(|reason| failed(size, reason))?;
-        let supernodes = match symbolic.raw() {
-            SymbolicCholeskyRaw::Supernodal(factor) => Some((Layout::new(factor), Subtrees::new(factor))),
-            SymbolicCholeskyRaw::Simplicial(_) => None,
-        };
-        let entries = supernodes.as_ref().map_or(symbolic.len_val(), |(layout, _)| layout.entries());
+        let symbolic = Symbolic::new(&matrix)?;
         let ordering_time = start.elapsed();
 
-        let is_parted = supernodes.as_ref().is_some_and(|(_, subtrees)| subtrees.is_parted());
-        let threads = if is_parted { rayon::current_num_threads() } else { 1 };
-        let (needed, reserve) = match symbolic.raw() {
-            SymbolicCholeskyRaw::Supernodal(factor) => {
-                (cholesky::scratch_bytes(factor, threads), of_dense_products(threads))
+        let threads = if symbolic.is_parted() { rayon::current_num_threads() } else { 1 };
+        let (needed, reserve) = match &symbolic {
+            Symbolic::Supernodal(Supernodal { supernodes, .. }) => {
+                (cholesky::scratch_bytes(supernodes, threads), of_dense_products(threads))
             }
-            SymbolicCholeskyRaw::Simplicial(_) => {
+            Symbolic::Simplicial(symbolic) => {
                 let scratch = symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Spec::default());
                 (scratch.unaligned_bytes_required(), 0)
             }
         };
-        let memory = memory.with_factor(&symbolic, entries, needed);
+        let memory = memory.with_factor(&symbolic, needed);
         let search = search(&memory);
         memory::check_with_reserve(FACTOR, memory.of_factor(search), reserve)?;
-        progress(Forecast::new(&symbolic, entries, memory.peak(search), threads));
+        progress(Forecast::new(&symbolic, memory.peak(search), threads));
         let start = Instant::now();
-        let mut values = memory::zeros(FACTOR, entries)?;
-        make(&matrix, pattern, &symbolic, supernodes.as_ref(), &mut values)?;
+        let mut values = memory::zeros(FACTOR, symbolic.entries())?;
+        make(&matrix, &symbolic, &mut values)?;
         let extensions = Mat::zeros(size, 0);
         let constraints = constraints.clone();
         let estimate_time = Duration::ZERO;
@@ -124,7 +103,6 @@ impl Shifted {
             constraints,
             shift,
             symbolic,
-            supernodes,
             values,
             extensions,
             solved: Default::default(),
@@ -147,7 +125,7 @@ impl Shifted {
         self.solve_in_place(answers.as_mut(), &mut self.solve_scratch(motions.ncols())?);
         let extensions = motions - answers;
         let whitening = whitening(&tall::inner(extensions.as_ref(), a_motions.as_ref()))
-            .map_err(|_| ModalError::Indefinite { pivot: self.symbolic.ncols(), shift: self.shift })?;
+            .map_err(|_| ModalError::Indefinite { pivot: extensions.nrows(), shift: self.shift })?;
         self.extensions = tall::product(extensions.as_ref(), whitening.as_ref());
         Ok(())
     }
@@ -164,21 +142,14 @@ impl Shifted {
 
     /// Scratch memory for [`solve_in_place`](Self::solve_in_place) with up to `columns` columns.
     pub(crate) fn solve_scratch(&self, columns: usize) -> Result<SolveScratch, ModalError> {
-        let by_faer = match self.by_supernodes() {
-            Some(_) => {
-                memory::check(FACTOR, 8 * substitution::scratch(self.symbolic.nrows(), columns))?;
+        let by_faer = match &self.symbolic {
+            Symbolic::Supernodal(Supernodal { supernodes, .. }) => {
+                memory::check(FACTOR, 8 * substitution::scratch(supernodes.unknowns(), columns))?;
                 StackReq::EMPTY
             }
-            None => self.symbolic.solve_in_place_scratch::<f64>(columns, Par::Seq),
+            Symbolic::Simplicial(symbolic) => symbolic.solve_in_place_scratch::<f64>(columns, Par::Seq),
         };
         Ok(SolveScratch { dense: Default::default(), by_faer: buffer(by_faer)? })
-    }
-
-    /// The factor where it has supernodes, and its order.
-    fn by_supernodes(&self) -> Option<(substitution::Factor<'_>, PermRef<'_, usize>)> {
-        let SymbolicCholeskyRaw::Supernodal(symbolic) = self.symbolic.raw() else { return None };
-        let (layout, subtrees) = self.supernodes.as_ref()?;
-        Some((substitution::Factor { symbolic, layout, subtrees, values: &self.values }, self.symbolic.perm()?))
     }
 
     /// Replaces forces `x` by the displacements (K + sM)⁻¹ x that the support allows.
@@ -189,9 +160,12 @@ impl Shifted {
         let extends = self.extensions.ncols() > 0;
         let motions = extends.then(|| tall::inner(self.extensions.as_ref(), x.rb()));
         self.constraints.clear(x.rb_mut());
-        match self.by_supernodes() {
-            Some((factor, order)) => substitution::solve(factor, order, x.rb_mut(), &mut scratch.dense),
-            None => LltRef::new(&self.symbolic, &self.values).solve_in_place_with_conj(
+        match &self.symbolic {
+            Symbolic::Supernodal(Supernodal { order, supernodes, subtrees }) => {
+                let factor = substitution::Factor { supernodes, subtrees, values: &self.values };
+                substitution::solve(factor, order.as_ref(), x.rb_mut(), &mut scratch.dense);
+            }
+            Symbolic::Simplicial(symbolic) => LltRef::new(symbolic, &self.values).solve_in_place_with_conj(
                 Conj::No,
                 x.rb_mut(),
                 Par::Seq,
@@ -205,37 +179,36 @@ impl Shifted {
 }
 
 /// Fills the zeros in `values` with the entries of the factor.
-fn make(
+fn make(matrix: &ShiftedMatrix<'_>, symbolic: &Symbolic, values: &mut [f64]) -> Result<(), ModalError> {
+    match symbolic {
+        Symbolic::Supernodal(Supernodal { order, supernodes, subtrees }) => {
+            let problem = cholesky::Problem { supernodes, subtrees, order: order.as_ref(), matrix };
+            let indefinite = |NotPositive(pivot)| ModalError::Indefinite { pivot, shift: matrix.shift() };
+            problem.factor(values).map_err(indefinite)?;
+            interleave(supernodes, subtrees, values);
+            Ok(())
+        }
+        Symbolic::Simplicial(symbolic) => make_by_columns(matrix, symbolic, values),
+    }
+}
+
+/// The same without supernodes.
+fn make_by_columns(
     matrix: &ShiftedMatrix<'_>,
-    pattern: Pattern<'_>,
     symbolic: &SymbolicCholesky<usize>,
-    supernodes: Option<&(Layout, Subtrees)>,
     values: &mut [f64],
 ) -> Result<(), ModalError> {
-    let shift = matrix.shift();
-    if let (SymbolicCholeskyRaw::Supernodal(symbolic), Some((layout, subtrees)), Some(order)) =
-        (symbolic.raw(), supernodes, symbolic.perm())
+    let refused = |reason| failed(symbolic.nrows(), reason);
+    let assembled = matrix.pattern().and_then(|pattern| matrix.assembled(&pattern)).map_err(refused)?;
+    let (par, spec) = (Par::Seq, Spec::default());
+    let mut scratch = buffer(symbolic.factorize_numeric_llt_scratch::<f64>(par, spec))?;
+    let (side, regularization, stack) = (Side::Lower, Default::default(), MemStack::new(&mut scratch));
+    match symbolic.factorize_numeric_llt(values, assembled.as_ref(), side, regularization, par, stack, Spec::default())
     {
-        drop(pattern);
-        let problem = cholesky::Problem { symbolic, layout, subtrees, order, matrix };
-        problem.factor(values).map_err(|NotPositive(pivot)| ModalError::Indefinite { pivot, shift })?;
-        interleave(symbolic, layout, subtrees, values);
-        return Ok(());
-    }
-    let assembled = matrix.assembled(&pattern).map_err(|reason| failed(symbolic.nrows(), reason))?;
-    let mut scratch = buffer(symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Spec::default()))?;
-    let (lower, stack) = (assembled.as_ref(), MemStack::new(&mut scratch));
-    match symbolic.factorize_numeric_llt(
-        values,
-        lower,
-        Side::Lower,
-        Default::default(),
-        Par::Seq,
-        stack,
-        Spec::default(),
-    ) {
         Ok(_) => Ok(()),
-        Err(PivotError::NonPositivePivot { index }) => Err(ModalError::Indefinite { pivot: index, shift }),
+        Err(PivotError::NonPositivePivot { index }) => {
+            Err(ModalError::Indefinite { pivot: index, shift: matrix.shift() })
+        }
     }
 }
 
@@ -246,7 +219,8 @@ fn buffer(needed: StackReq) -> Result<MemBuffer, ModalError> {
     Ok(MemBuffer::try_new(needed).map_err(|_| memory::OutOfMemory { what: FACTOR, wanted: bytes, left })?)
 }
 
-fn failed(size: usize, reason: FaerError) -> ModalError {
+/// What faer refuses of a matrix with so many rows.
+pub(crate) fn failed(size: usize, reason: FaerError) -> ModalError {
     match reason {
         FaerError::OutOfMemory => {
             // At least a row and a value of each column were asked for.

@@ -2,14 +2,12 @@
 
 use faer::Mat;
 use faer::MatRef;
-use faer::perm::Perm;
 use faer::sparse::{FaerError, SparseColMat};
 
 use crate::columns::Columns;
 use crate::constraints::Constraints;
-use crate::error::ModalError;
 use crate::mass_matrix::MassMatrix;
-use crate::ordering::{nested_dissection, nested_dissection_of_nodes};
+use crate::node_pairs::NodePairs;
 use crate::pattern::Pattern;
 use crate::stiffness::StiffnessMatrix;
 
@@ -31,6 +29,11 @@ impl<'a> ShiftedMatrix<'a> {
         Self { stiffness, mass, shift, constraints }
     }
 
+    /// Its rows.
+    pub(crate) fn size(&self) -> usize {
+        self.stiffness.ncols()
+    }
+
     /// The shift s.
     pub(crate) fn shift(&self) -> f64 {
         self.shift
@@ -45,11 +48,11 @@ impl<'a> ShiftedMatrix<'a> {
         Ok(Pattern::Made(faer::sparse::ops::union_symbolic(k.as_ref(), self.mass.pattern().as_ref())?))
     }
 
-    /// A fill-reducing order of its rows, by its pattern.
-    pub(crate) fn order(&self, pattern: &Pattern<'_>) -> Result<Perm<usize>, ModalError> {
+    /// The pairs of coupled nodes, where they tell its pattern.
+    pub(crate) fn node_pairs(&self) -> Option<NodePairs<'a>> {
         match &self.stiffness {
-            StiffnessMatrix::Nodal(k) if self.stiffness_covers_mass() => nested_dissection_of_nodes(&k.pairs()),
-            _ => nested_dissection(pattern.as_ref()),
+            StiffnessMatrix::Nodal(k) if self.stiffness_covers_mass() => Some(k.pairs()),
+            _ => None,
         }
     }
 

@@ -128,7 +128,7 @@ impl<'a> StiffnessMatrix<'a> {
     /// Where its entries on and below the diagonal are; of a general one, also those above.
     pub(crate) fn pattern(&self) -> Pattern<'a> {
         match self {
-            Self::Nodal(matrix) => Pattern::Made(matrix.pairs.lower()),
+            Self::Nodal(matrix) => Pattern::Made(matrix.pairs.lower(3)),
             Self::General(matrix) => Pattern::Given(matrix.symbolic()),
         }
     }

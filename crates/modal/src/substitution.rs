@@ -8,13 +8,13 @@ use std::ops::Range;
 use faer::MatMut;
 use faer::perm::PermRef;
 use faer::reborrow::{Reborrow, ReborrowMut};
-use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
-use crate::factor_layout::{COLUMNS, Layout, NODE, Passes, STRIP, of_own_rows, passes};
+use crate::factor_layout::{COLUMNS, NODE, Passes, STRIP, of_own_rows, passes};
 use crate::packed_rows::{add_multiple, prefetch, scale, subtract};
 use crate::subtrees::Subtrees;
+use crate::supernodes::Supernodes;
 
 /// Vectors of a group at the most.
 const MOST: usize = 16;
@@ -52,8 +52,7 @@ pub(crate) fn scratch(rows: usize, columns: usize) -> usize {
 /// A factor with supernodes, [interleaved](crate::factor_layout::interleave), and its parts.
 #[derive(Clone, Copy)]
 pub(crate) struct Factor<'a> {
-    pub symbolic: &'a SymbolicSupernodalCholesky<usize>,
-    pub layout: &'a Layout,
+    pub supernodes: &'a Supernodes,
     pub subtrees: &'a Subtrees,
     pub values: &'a [f64],
 }
@@ -106,7 +105,7 @@ impl Factor<'_> {
             let (outside, _) = scratch.outside.as_chunks_mut();
             arch.dispatch(Forward { factor: self, part, outside, below: &mut scratch.below });
         });
-        let of_top = |s: &usize| self.symbolic.supernode_begin()[*s]..self.symbolic.supernode_end()[*s];
+        let of_top = |s: &usize| self.supernodes.columns(*s);
         for row in top.iter().flat_map(of_top) {
             let sum = &mut rows_of_top[place[row] as usize];
             *sum = rows[row];
@@ -127,12 +126,9 @@ impl Factor<'_> {
 
     /// The parts, each with its own rows.
     fn split<'b, const W: usize>(&self, rows: &'b mut [[f64; W]]) -> Vec<Part<'b, W>> {
-        let of_part = |part: &Range<usize>| {
-            self.symbolic.supernode_begin()[part.start]..self.symbolic.supernode_end()[part.end - 1]
-        };
         let part =
             |(supernodes, range, rows): (Range<usize>, Range<usize>, _)| Part { supernodes, first: range.start, rows };
-        self.subtrees.split(rows, of_part).into_iter().map(part).collect()
+        self.subtrees.split(rows, |part| self.supernodes.columns_of(part)).into_iter().map(part).collect()
     }
 }
 
@@ -227,7 +223,7 @@ struct Supernode<'a> {
     start: usize,
     width: usize,
     /// The rows below.
-    pattern: &'a [usize],
+    pattern: &'a [u32],
     /// The numbers of the own rows.
     own: &'a [f64],
     /// Those of the rows below, by strips.
@@ -237,11 +233,10 @@ struct Supernode<'a> {
 impl<'a> Supernode<'a> {
     #[inline(always)]
     fn new(factor: Factor<'a>, s: usize) -> Self {
-        let symbolic = factor.symbolic;
-        let (start, end) = (symbolic.supernode_begin()[s], symbolic.supernode_end()[s]);
-        let width = end - start;
-        let (own, below) = factor.values[factor.layout.range(&(s..s + 1))].split_at(of_own_rows(width));
-        Self { start, width, pattern: symbolic.supernode(s).pattern(), own, below }
+        let supernodes = factor.supernodes;
+        let (start, width) = (supernodes.columns(s).start, supernodes.width(s));
+        let (own, below) = factor.values[supernodes.entries(s)].split_at(of_own_rows(width));
+        Self { start, width, pattern: supernodes.below(s), own, below }
     }
 
     /// Room for the rows below.
@@ -262,10 +257,10 @@ impl<'a> Supernode<'a> {
         scratch: &'b mut Vec<f64>,
     ) -> &'b [[f64; W]] {
         let below = self.below(scratch);
-        for (below, row) in below.iter_mut().zip(self.pattern) {
+        for (below, row) in below.iter_mut().zip(self.pattern.iter().map(|row| *row as usize)) {
             let row = match rows.get(row - first) {
                 Some(row) => row,
-                None => &top[place[*row] as usize],
+                None => &top[place[row] as usize],
             };
             *below = row.map(|x| -x);
         }
@@ -283,10 +278,10 @@ impl<'a> Supernode<'a> {
         top: &mut [[f64; W]],
         place: &[u32],
     ) {
-        for (taken, row) in taken.iter().zip(self.pattern) {
+        for (taken, row) in taken.iter().zip(self.pattern.iter().map(|row| *row as usize)) {
             let row = match rows.get_mut(row - first) {
                 Some(row) => row,
-                None => &mut top[place[*row] as usize],
+                None => &mut top[place[row] as usize],
             };
             subtract(simd, row, taken);
         }
@@ -557,7 +552,8 @@ pub(crate) mod tests {
         let n = a.ncols();
         let symbolic = supernodal(&a);
         let SymbolicCholeskyRaw::Supernodal(supernodal) = symbolic.raw() else { panic!() };
-        let subtrees = Subtrees::new(supernodal);
+        let supernodes = Supernodes::new(supernodal, 1);
+        let subtrees = Subtrees::new(&supernodes);
         let mut values = vec![0.0; symbolic.len_val()];
         let needed = symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Spec::default());
         let mut scratch = MemBuffer::new(needed);
@@ -572,11 +568,9 @@ pub(crate) mod tests {
             Spec::default(),
         );
         factor.unwrap();
-        let layout = Layout::new(supernodal);
         let mut interleaved = of_faer(supernodal, &values);
-        interleave(supernodal, &layout, &subtrees, &mut interleaved);
-        let widths =
-            (0..supernodal.n_supernodes()).map(|s| supernodal.supernode_end()[s] - supernodal.supernode_begin()[s]);
+        interleave(&supernodes, &subtrees, &mut interleaved);
+        let widths = (0..supernodes.count()).map(|s| supernodes.width(s));
         assert!(subtrees.parts.len() > 3 && !subtrees.top.is_empty());
         assert!(widths.clone().any(|width| width > COLUMNS) && widths.clone().any(|width| width < COLUMNS));
         for columns in [1, 3, 8, 10, 17, 40] {
@@ -588,8 +582,7 @@ pub(crate) mod tests {
             let on_threads = |threads: usize| {
                 let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
                 let mut x = b.clone();
-                let factor =
-                    Factor { symbolic: supernodal, layout: &layout, subtrees: &subtrees, values: &interleaved };
+                let factor = Factor { supernodes: &supernodes, subtrees: &subtrees, values: &interleaved };
                 let order = symbolic.perm().unwrap();
                 pool.install(|| solve(factor, order, x.as_mut(), &mut Scratch::default()));
                 x

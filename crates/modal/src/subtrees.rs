@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
+use crate::supernodes::Supernodes;
 
 /// A factor with fewer entries is not parted: one thread makes it, and takes the scratch of one.
 const SMALL: usize = 500_000;
@@ -46,16 +46,13 @@ impl Subtrees {
     }
 
     /// Parts the supernodes of a factor.
-    pub(crate) fn new(factor: &SymbolicSupernodalCholesky<usize>) -> Self {
-        let (begin, end, values) = (factor.supernode_begin(), factor.supernode_end(), factor.col_ptr_for_val());
-        let count = factor.n_supernodes();
+    pub(crate) fn new(supernodes: &Supernodes) -> Self {
+        let count = supernodes.count();
+        let of_columns = supernodes.of_columns();
         // The supernode above each: that of the first row below it.
-        let parent = |s: usize| {
-            let row = factor.supernode(s).pattern().first()?;
-            Some(begin.partition_point(|first| first <= row) - 1)
-        };
+        let parent = |s: usize| supernodes.below(s).first().map(|row| of_columns[*row as usize] as usize);
         let parents: Vec<Option<usize>> = (0..count).map(parent).collect();
-        let mut entries: Vec<usize> = values.windows(2).map(|range| range[1] - range[0]).collect();
+        let mut entries: Vec<usize> = (0..count).map(|s| supernodes.entries(s).len()).collect();
         let mut first: Vec<usize> = (0..count).collect();
         let mut size = vec![1; count];
         for (s, parent) in parents.iter().enumerate() {
@@ -65,7 +62,7 @@ impl Subtrees {
                 size[parent] += size[s];
             }
         }
-        let whole = values[count] - values[0];
+        let whole = supernodes.factor_entries();
         let limit = if whole < SMALL { whole } else { whole / MOST };
         let is_part = |s: usize| entries[s] <= limit && size[s] == s + 1 - first[s];
 
@@ -94,10 +91,10 @@ impl Subtrees {
         }
         parts.reverse();
         top.reverse();
-        let mut place = vec![0; factor.ncols()];
+        let mut place = vec![0; supernodes.unknowns()];
         let mut top_rows = 0;
         for s in &top {
-            for place in &mut place[begin[*s]..end[*s]] {
+            for place in &mut place[supernodes.columns(*s)] {
                 *place = top_rows as u32;
                 top_rows += 1;
             }
@@ -117,24 +114,24 @@ mod tests {
     fn parts_touch_their_own_rows_and_those_of_the_top_alone() {
         let symbolic = supernodal(&grid(18));
         let SymbolicCholeskyRaw::Supernodal(factor) = symbolic.raw() else { panic!() };
-        let Subtrees { parts, top, place, top_rows } = Subtrees::new(factor);
+        let supernodes = Supernodes::new(factor, 1);
+        let Subtrees { parts, top, place, top_rows } = Subtrees::new(&supernodes);
         assert!(parts.len() > 3 && !top.is_empty());
         let mut all: Vec<usize> = parts.iter().cloned().flatten().chain(top.iter().copied()).collect();
         all.sort_unstable();
-        assert_eq!(all, (0..factor.n_supernodes()).collect::<Vec<_>>());
-        let rows = |s: &usize| factor.supernode_begin()[*s]..factor.supernode_end()[*s];
+        assert_eq!(all, (0..supernodes.count()).collect::<Vec<_>>());
+        let rows = |s: &usize| supernodes.columns(*s);
         let of_top: Vec<usize> = top.iter().flat_map(rows).collect();
         assert_eq!(of_top.len(), top_rows);
         assert!(of_top.iter().enumerate().all(|(i, row)| place[*row] as usize == i));
         for part in &parts {
-            let own = factor.supernode_begin()[part.start]..factor.supernode_end()[part.end - 1];
+            let own = supernodes.columns_of(part);
             for s in part.clone() {
-                let pattern = factor.supernode(s).pattern();
-                assert!(pattern.iter().all(|row| own.contains(row) || of_top.binary_search(row).is_ok()));
+                let mut rows = supernodes.below(s).iter().map(|row| *row as usize);
+                assert!(rows.all(|row| own.contains(&row) || of_top.binary_search(&row).is_ok()));
             }
         }
         // None is larger than its share, which is what threads wait for.
-        let entries = |part: &Range<usize>| factor.col_ptr_for_val()[part.end] - factor.col_ptr_for_val()[part.start];
-        assert!(parts.iter().all(|part| entries(part) <= factor.len_val() / 3));
+        assert!(parts.iter().all(|part| supernodes.entries_of(part).len() <= supernodes.factor_entries() / 3));
     }
 }

@@ -1,0 +1,110 @@
+//! The pattern of a factor by supernodes: runs of columns that have the same rows below them.
+
+use std::ops::Range;
+
+use faer::Index;
+use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
+
+use crate::factor_layout::of_own_rows;
+
+/// The supernodes of a factor, and where their numbers stand ([`factor_layout`](crate::factor_layout)).
+pub(crate) struct Supernodes {
+    /// The first column of each, then the number of columns.
+    columns: Vec<usize>,
+    /// Where each begins in `rows`, then their number.
+    starts: Vec<usize>,
+    rows: Vec<u32>,
+    /// Where each begins in the factor, then the number of its entries.
+    entries: Vec<usize>,
+}
+
+impl Supernodes {
+    /// Takes the pattern of a factor, each column and row of it for so many that are coupled alike.
+    pub(crate) fn new<I: Index>(symbolic: &SymbolicSupernodalCholesky<I>, alike: usize) -> Self {
+        let count = symbolic.n_supernodes();
+        let (mut columns, mut starts, mut entries) = (vec![0], vec![0], vec![0]);
+        let mut rows = Vec::with_capacity(alike * symbolic.row_idx().len());
+        let mut end = 0;
+        for s in 0..count {
+            let columns_end = alike * symbolic.supernode_end()[s].zx();
+            let pattern = symbolic.supernode(s).pattern();
+            rows.extend(pattern.iter().flat_map(|row| (0..alike).map(|k| (alike * row.zx() + k) as u32)));
+            let width = columns_end - columns[s];
+            end += of_own_rows(width) + width * alike * pattern.len();
+            columns.push(columns_end);
+            starts.push(rows.len());
+            entries.push(end);
+        }
+        Self { columns, starts, rows, entries }
+    }
+
+    /// How many there are.
+    pub(crate) fn count(&self) -> usize {
+        self.columns.len() - 1
+    }
+
+    /// Columns of the factor.
+    pub(crate) fn unknowns(&self) -> usize {
+        self.columns.last().copied().unwrap_or(0)
+    }
+
+    /// Entries of the factor.
+    pub(crate) fn factor_entries(&self) -> usize {
+        self.entries.last().copied().unwrap_or(0)
+    }
+
+    /// Columns of a supernode.
+    #[inline(always)]
+    pub(crate) fn columns(&self, s: usize) -> Range<usize> {
+        self.columns_of(&(s..s + 1))
+    }
+
+    /// Columns of some supernodes, one after another.
+    #[inline(always)]
+    pub(crate) fn columns_of(&self, supernodes: &Range<usize>) -> Range<usize> {
+        self.columns[supernodes.start]..self.columns[supernodes.end]
+    }
+
+    /// Number of columns of a supernode.
+    #[inline(always)]
+    pub(crate) fn width(&self, s: usize) -> usize {
+        self.columns(s).len()
+    }
+
+    /// Rows below a supernode, in rising order.
+    #[inline(always)]
+    pub(crate) fn below(&self, s: usize) -> &[u32] {
+        &self.rows[self.starts[s]..self.starts[s + 1]]
+    }
+
+    /// Where the numbers of a supernode stand.
+    #[inline(always)]
+    pub(crate) fn entries(&self, s: usize) -> Range<usize> {
+        self.entries_of(&(s..s + 1))
+    }
+
+    /// Those of some supernodes, one after another.
+    #[inline(always)]
+    pub(crate) fn entries_of(&self, supernodes: &Range<usize>) -> Range<usize> {
+        self.entries[supernodes.start]..self.entries[supernodes.end]
+    }
+
+    /// The supernode of each column.
+    pub(crate) fn of_columns(&self) -> Vec<u32> {
+        (0..self.count()).flat_map(|s| self.columns(s).map(move |_| s as u32)).collect()
+    }
+
+    /// Multiplications that make the factor: a column with c entries below its diagonal takes (c+1)²/2.
+    pub(crate) fn multiplications(&self) -> f64 {
+        let of_supernode = |s: usize| -> f64 {
+            let below = self.below(s).len();
+            (1..=self.width(s)).map(|column| ((below + column) as f64).powi(2) / 2.0).sum()
+        };
+        (0..self.count()).map(of_supernode).sum()
+    }
+
+    /// Memory held, bytes.
+    pub(crate) fn bytes(&self) -> usize {
+        4 * self.rows.len() + 8 * (self.columns.len() + self.starts.len() + self.entries.len())
+    }
+}
