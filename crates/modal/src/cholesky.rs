@@ -93,10 +93,12 @@ impl Problem<'_> {
         let (old, new) = self.order.arrays();
         for (column, own) in own.chunks_exact_mut(width).enumerate() {
             let below = &mut below[column * pattern.len()..][..pattern.len()];
-            self.matrix.add_column(old[start + column], |row, value| {
-                if new[row] >= start + column {
+            self.matrix.add_column(old[start + column], |row, run| {
+                // The rows of a node stay together. Above the diagonal nothing is read.
+                if new[row] + run.len() > start + column {
                     let place = place[new[row]] as usize;
-                    *if place < width { &mut own[place] } else { &mut below[place - width] } += value;
+                    let rows = if place < width { &mut own[place..] } else { &mut below[place - width..] };
+                    rows.iter_mut().zip(run).for_each(|(sum, value)| *sum += value);
                 }
             });
         }

@@ -74,19 +74,25 @@ impl<'a> ShiftedMatrix<'a> {
         (0..self.stiffness.ncols()).all(covers)
     }
 
-    /// Calls `add` with the row and the value of each entry of a column; a row may come twice.
+    /// Calls `add` with the entries of a column, those of a node's rows together where K has them so: the first row, and the
+    /// values. A row may come twice.
     #[inline(always)]
-    pub(crate) fn add_column(&self, column: usize, mut add: impl FnMut(usize, f64)) {
+    pub(crate) fn add_column(&self, column: usize, mut add: impl FnMut(usize, &[f64])) {
         if self.constraints.holds(column) {
-            return add(column, 1.0);
+            return add(column, &[1.0]);
         }
-        let mut add_free = |row: usize, value: f64| {
-            if !self.constraints.holds(row) {
-                add(row, value);
+        let free = |row: usize, value: f64| if self.constraints.holds(row) { 0.0 } else { value };
+        match &self.stiffness {
+            StiffnessMatrix::Nodal(matrix) => {
+                let (nodes, values) = matrix.column(column / 3, column % 3);
+                for (node, [x, y, z]) in nodes.iter().zip(values) {
+                    let first = 3 * *node as usize;
+                    add(first, &[free(first, *x), free(first + 1, *y), free(first + 2, *z)]);
+                }
             }
-        };
-        self.stiffness.for_each_in_column(column, &mut add_free);
-        self.mass.for_each_in_column(column, |row, value| add_free(row, self.shift * value));
+            general => general.for_each_in_column(column, |row, value| add(row, &[free(row, value)])),
+        }
+        self.mass.for_each_in_column(column, |row, value| add(row, &[free(row, self.shift * value)]));
     }
 
     /// (K + sM)·X, the held rows and columns with it.
@@ -102,8 +108,8 @@ impl<'a> ShiftedMatrix<'a> {
             let range = symbolic.col_range(column);
             let rows = &symbolic.row_idx()[range.clone()];
             let values = &mut values[range];
-            self.add_column(column, |row, value| {
-                if row >= column {
+            self.add_column(column, |first, run| {
+                for (row, value) in (first..).zip(run).filter(|(row, _)| *row >= column) {
                     values[rows.partition_point(|other| *other < row)] += value;
                 }
             });
