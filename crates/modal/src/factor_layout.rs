@@ -7,11 +7,6 @@
 use std::iter::StepBy;
 use std::ops::Range;
 
-use rayon::prelude::*;
-
-use crate::subtrees::Subtrees;
-use crate::supernodes::Supernodes;
-
 /// Columns of the factor that are applied in one pass over the rows below them.
 pub(crate) const COLUMNS: usize = 6;
 /// Columns of a node with three degrees of freedom.
@@ -63,32 +58,8 @@ fn write_own_pass<'a, const K: usize>(from: &[f64], width: usize, first: usize, 
     rest
 }
 
-/// Puts the rows below all supernodes, which stand column by column, into the order in which they are read: by strips.
-pub(crate) fn interleave(supernodes: &Supernodes, subtrees: &Subtrees, values: &mut [f64]) {
-    let supernode = |s: usize, values: &mut [f64], scratch: &mut Vec<f64>| {
-        let width = supernodes.width(s);
-        let below = &mut values[of_own_rows(width)..];
-        scratch.clear();
-        scratch.extend_from_slice(below);
-        write_strips(width, scratch, below);
-    };
-    subtrees.split(values, |part| supernodes.entries_of(part)).into_par_iter().for_each_init(
-        Vec::new,
-        |scratch, (part, range, values)| {
-            for s in part {
-                let of_it = supernodes.entries(s);
-                supernode(s, &mut values[of_it.start - range.start..of_it.end - range.start], scratch);
-            }
-        },
-    );
-    let mut scratch = Vec::new();
-    for s in &subtrees.top {
-        supernode(*s, &mut values[supernodes.entries(*s)], &mut scratch);
-    }
-}
-
 /// Writes rows, which stand column by column in `from`, by strips.
-fn write_strips(width: usize, from: &[f64], mut to: &mut [f64]) {
+pub(crate) fn write_strips(width: usize, from: &[f64], mut to: &mut [f64]) {
     let rows = from.len() / width;
     for strip in (0..rows).step_by(STRIP).map(|first| first..rows.min(first + STRIP)) {
         let [most, nodes, single] = passes(width);

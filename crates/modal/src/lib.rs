@@ -33,6 +33,7 @@ mod held_freedoms;
 mod held_problem;
 mod inertia_products;
 mod inertia_relief;
+mod interleave;
 mod lanczos;
 mod mass;
 mod mass_left_out;

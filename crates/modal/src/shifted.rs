@@ -10,7 +10,6 @@ use std::time::{Duration, Instant};
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::linalg::cholesky::llt::factor::LltError as PivotError;
 use faer::reborrow::{Reborrow, ReborrowMut};
-use faer::sparse::FaerError;
 use faer::sparse::linalg::cholesky::{LltRef, SymbolicCholesky};
 use faer::{Accum, Conj, Mat, MatMut, Par, Side, Spec};
 
@@ -19,12 +18,12 @@ use crate::columns::Columns;
 use crate::constraints::Constraints;
 use crate::dense::whitening;
 use crate::error::ModalError;
-use crate::factor_layout::interleave;
 use crate::foretold::{Forecast, Foretold, of_dense_products};
+use crate::interleave::interleave;
 use crate::mass_matrix::MassMatrix;
 use crate::shifted_matrix::ShiftedMatrix;
 use crate::stiffness::StiffnessMatrix;
-use crate::symbolic::{Supernodal, Symbolic};
+use crate::symbolic::{Supernodal, Symbolic, failed};
 use crate::{cholesky, substitution, tall};
 
 /// What the memory is for.
@@ -217,15 +216,4 @@ fn buffer(needed: StackReq) -> Result<MemBuffer, ModalError> {
     memory::check(FACTOR, bytes)?;
     let left = memory::Left::Unknown;
     Ok(MemBuffer::try_new(needed).map_err(|_| memory::OutOfMemory { what: FACTOR, wanted: bytes, left })?)
-}
-
-/// What faer refuses of a matrix with so many rows.
-pub(crate) fn failed(size: usize, reason: FaerError) -> ModalError {
-    match reason {
-        FaerError::OutOfMemory => {
-            // At least a row and a value of each column were asked for.
-            memory::OutOfMemory { what: FACTOR, wanted: 16 * size, left: memory::Left::Unknown }.into()
-        }
-        other => ModalError::Factorization { size, reason: other.to_string() },
-    }
 }

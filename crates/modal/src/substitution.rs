@@ -49,7 +49,7 @@ pub(crate) fn scratch(rows: usize, columns: usize) -> usize {
     2 * rows * columns.next_multiple_of(STEP).min(MOST)
 }
 
-/// A factor with supernodes, [interleaved](crate::factor_layout::interleave), and its parts.
+/// A factor with supernodes, [interleaved](crate::interleave), and its parts.
 #[derive(Clone, Copy)]
 pub(crate) struct Factor<'a> {
     pub supernodes: &'a Supernodes,
@@ -522,8 +522,8 @@ pub(crate) mod tests {
     use faer::{Conj, Mat, Par, Side, Spec};
 
     use super::*;
-    use crate::factor_layout::interleave;
     use crate::factor_layout::tests::of_faer;
+    use crate::interleave::interleave;
 
     /// A grid of `side`³ nodes, each coupled to its neighbours.
     pub(crate) fn grid(side: usize) -> SparseColMat<usize, f64> {
@@ -538,12 +538,21 @@ pub(crate) mod tests {
 
     /// The pattern of the factor of a matrix, by supernodes.
     pub(crate) fn supernodal(a: &SparseColMat<usize, f64>) -> SymbolicCholesky<usize> {
+        ordered(a, SymmetricOrdering::Amd)
+    }
+
+    /// The same in the order of the matrix.
+    pub(crate) fn supernodal_in_order(a: &SparseColMat<usize, f64>) -> SymbolicCholesky<usize> {
+        ordered(a, SymmetricOrdering::Identity)
+    }
+
+    fn ordered(a: &SparseColMat<usize, f64>, order: SymmetricOrdering<'_, usize>) -> SymbolicCholesky<usize> {
         let params = CholeskySymbolicParams {
             supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
             supernodal_params: SymbolicSupernodalParams { relax: None },
             ..CholeskySymbolicParams::default()
         };
-        factorize_symbolic_cholesky(a.symbolic(), Side::Lower, SymmetricOrdering::Amd, params).unwrap()
+        factorize_symbolic_cholesky(a.symbolic(), Side::Lower, order, params).unwrap()
     }
 
     #[test]

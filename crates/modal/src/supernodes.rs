@@ -108,3 +108,50 @@ impl Supernodes {
         4 * self.rows.len() + 8 * (self.columns.len() + self.starts.len() + self.entries.len())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use faer::sparse::linalg::cholesky::SymbolicCholeskyRaw;
+    use faer::sparse::{SparseColMat, Triplet};
+
+    use super::*;
+    use crate::substitution::tests::{grid, supernodal, supernodal_in_order};
+
+    /// The rows on and below the diagonal of each column.
+    fn columns(supernodes: &Supernodes) -> Vec<Vec<usize>> {
+        let of = |s: usize, column: usize| {
+            let own = column..supernodes.columns(s).end;
+            own.chain(supernodes.below(s).iter().map(|row| *row as usize)).collect()
+        };
+        (0..supernodes.count()).flat_map(|s| supernodes.columns(s).map(move |column| of(s, column))).collect()
+    }
+
+    #[test]
+    fn the_pattern_of_nodes_is_that_of_their_degrees_of_freedom() {
+        let nodes = grid(7);
+        let expanded = |k: usize| 3 * k..3 * k + 3;
+        let entries = nodes.triplet_iter().flat_map(|entry| {
+            expanded(entry.row).flat_map(move |i| expanded(entry.col).map(move |j| Triplet::new(i, j, *entry.val)))
+        });
+        let size = 3 * nodes.ncols();
+        let freedoms = SparseColMat::try_new_from_triplets(size, size, &entries.collect::<Vec<_>>()).unwrap();
+        let of_nodes = supernodal(&nodes);
+        let order = of_nodes.perm().unwrap().arrays().0.iter().flat_map(|node| expanded(*node)).collect::<Vec<_>>();
+        // The same order for both.
+        let mut place = vec![0; size];
+        order.iter().enumerate().for_each(|(new, old)| place[*old] = new);
+        let moved: Vec<_> = freedoms.triplet_iter().map(|e| Triplet::new(place[e.row], place[e.col], *e.val)).collect();
+        let moved = SparseColMat::try_new_from_triplets(size, size, &moved).unwrap();
+        let of_freedoms = supernodal_in_order(&moved);
+        let (SymbolicCholeskyRaw::Supernodal(a), SymbolicCholeskyRaw::Supernodal(b)) =
+            (of_nodes.raw(), of_freedoms.raw())
+        else {
+            panic!()
+        };
+        let (a, b) = (Supernodes::new(a, 3), Supernodes::new(b, 1));
+        assert!(a.unknowns() == size && columns(&a) == columns(&b));
+        assert_eq!(a.multiplications(), b.multiplications());
+        let sum: usize = (0..a.count()).map(|s| of_own_rows(a.width(s)) + a.width(s) * a.below(s).len()).sum();
+        assert_eq!([a.factor_entries(), a.entries_of(&(0..a.count())).len()], [sum; 2]);
+    }
+}

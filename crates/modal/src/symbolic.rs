@@ -10,7 +10,6 @@ use faer::sparse::{FaerError, SymbolicSparseColMatRef};
 
 use crate::error::ModalError;
 use crate::ordering::{nested_dissection, nested_dissection_of_nodes};
-use crate::shifted::failed;
 use crate::shifted_matrix::ShiftedMatrix;
 use crate::subtrees::Subtrees;
 use crate::supernodes::Supernodes;
@@ -104,5 +103,16 @@ fn factor(
 ) -> Result<SymbolicCholesky<usize>, ModalError> {
     let order = SymmetricOrdering::Custom(order.as_ref());
     let symbolic = factorize_symbolic_cholesky(pattern, Side::Lower, order, params);
-    symbolic.map_err(|reason: FaerError| failed(pattern.ncols(), reason))
+    symbolic.map_err(|reason| failed(pattern.ncols(), reason))
+}
+
+/// What faer refuses of a matrix with so many rows.
+pub(crate) fn failed(size: usize, reason: FaerError) -> ModalError {
+    match reason {
+        FaerError::OutOfMemory => {
+            // At least a row and a value of each column were asked for.
+            memory::OutOfMemory { what: "the factor of K + sM", wanted: 16 * size, left: memory::Left::Unknown }.into()
+        }
+        other => ModalError::Factorization { size, reason: other.to_string() },
+    }
 }
