@@ -118,8 +118,10 @@ pub(crate) fn largest_pairs(
                 (&extension.coupling * tail).norm_l2() / mu.abs()
             })
             .collect();
-        // No residual falls below what rounding leaves in the operator's answers.
-        let tolerance = |mu: f64| (basis.rounding / mu.abs()).clamp(TOLERANCE, LARGEST_TOLERANCE);
+        // No residual falls below what rounding leaves in the operator's answers, as a rule far less than is asked for.
+        let is_rough = mu.first().is_some_and(|mu| basis.rounding > TOLERANCE * mu);
+        let rounding = if is_rough { basis.rounding } else { 0.0 };
+        let tolerance = |mu: f64| (rounding / mu.abs()).clamp(TOLERANCE, LARGEST_TOLERANCE);
         let converged = residuals.iter().zip(&mu).take_while(|(residual, mu)| **residual < tolerance(**mu)).count();
         report(converged);
         if wanted.len() == count && (converged == count || exhausted) {
