@@ -1,9 +1,9 @@
 //! Where a results file and its unfinished forerunner are, and how they get there in one go.
 
-use crate::lock::try_lock;
+use crate::lock::Locked;
 use crate::{FileError, seal};
 use std::ffi::OsStr;
-use std::fs::{File, TryLockError};
+use std::fs::File;
 use std::io;
 use std::path::{Path, PathBuf};
 use tempfile::TempPath;
@@ -140,8 +140,7 @@ fn refuse_link(path: &Path) -> Result<(), FileError> {
 
 /// Whether another process writes the file: it has it locked.
 pub(crate) fn is_busy(path: &Path) -> bool {
-    path.is_file()
-        && File::open(path).is_ok_and(|file| matches!(try_lock(&file, File::try_lock), Err(TryLockError::WouldBlock)))
+    path.is_file() && File::open(path).is_ok_and(|file| Locked::new(file, File::try_lock).is_none())
 }
 
 /// Whether something claims to be a file of ours. A pipe is not opened, which might never end.

@@ -3,7 +3,7 @@
 use crate::checkpoint::{Sums, little_endian};
 use crate::column::present;
 use crate::description::Description;
-use crate::lock;
+use crate::lock::Locked;
 use crate::room::Room;
 use crate::seal::Apart;
 use crate::{Column, FileError, Metadata, seal, structure};
@@ -22,7 +22,7 @@ const NUMBER: usize = size_of::<f64>();
 /// rows are written without a change to the structure of the file: it is a whole HDF5 file at any moment.
 #[derive(Debug)]
 pub(crate) struct Store {
-    file: File,
+    file: Locked,
     description: Description,
     /// Bytes of the histories and their values per row.
     columns: Vec<(Range<u64>, usize)>,
@@ -53,7 +53,7 @@ impl Store {
             .map_err(|error| error.with_reason_from_system(place))?;
         let file = OpenOptions::new().read(true).write(true).open(place);
         let file = file.map_err(|error| FileError::system(path, "open the file for writing", &error))?;
-        locked(&file, path, File::try_lock)?;
+        let file = locked(file, path, File::try_lock)?;
         let described = description.to_json().len();
         Self::new(file, path, columns, description, described)
     }
@@ -82,7 +82,7 @@ impl Store {
             return Err(FileError::NoSeal { path: path.to_path_buf() });
         }
         let file = options.open(path).map_err(failed)?;
-        locked(&file, path, try_lock)?;
+        let file = locked(file, path, try_lock)?;
         let json = seal::description(&file, path)?;
         let store = Self::new(file, path, columns, Description::from_json(path, &json)?, json.len())?;
         seal::check(&store.file, path, &store.changing())?;
@@ -93,7 +93,7 @@ impl Store {
 
     /// A description may be any: what it claims must be within the file after it, each in a place of its own.
     fn new<R>(
-        file: File,
+        file: Locked,
         path: &Path,
         columns: &'static [Column<R>],
         description: Description,
@@ -203,13 +203,13 @@ impl Store {
     }
 
     fn write_at(&self, start: u64, bytes: &[u8]) -> io::Result<()> {
-        let mut file = &self.file;
+        let mut file = &*self.file;
         file.seek(SeekFrom::Start(start))?;
         file.write_all(bytes)
     }
 
     fn read_words<T>(&self, bytes: &Range<u64>, from_bits: impl Fn(u64) -> T) -> io::Result<Vec<T>> {
-        let mut file = &self.file;
+        let mut file = &*self.file;
         let mut rest = (bytes.end - bytes.start) as usize;
         let mut words = Vec::new();
         words.try_reserve_exact(rest / NUMBER).map_err(|_| io::ErrorKind::OutOfMemory)?;
@@ -225,9 +225,10 @@ impl Store {
     }
 
     fn copy(&self, to: u64, other: &Self, from: u64, bytes: u64) -> io::Result<()> {
-        (&other.file).seek(SeekFrom::Start(from))?;
-        (&self.file).seek(SeekFrom::Start(to))?;
-        match io::copy(&mut (&other.file).take(bytes), &mut &self.file)? {
+        let (mut to_file, mut from_file) = (&*self.file, &*other.file);
+        from_file.seek(SeekFrom::Start(from))?;
+        to_file.seek(SeekFrom::Start(to))?;
+        match io::copy(&mut from_file.take(bytes), &mut to_file)? {
             copied if copied == bytes => Ok(()),
             _ => Err(io::ErrorKind::UnexpectedEof.into()),
         }
@@ -241,10 +242,6 @@ fn in_order<'s>(ranges: impl Iterator<Item = Apart<'s>>) -> Vec<Apart<'s>> {
     ranges
 }
 
-/// Locks the file while it is open. Where files cannot be locked, nothing does.
-fn locked(file: &File, path: &Path, try_lock: fn(&File) -> Result<(), TryLockError>) -> Result<(), FileError> {
-    match lock::try_lock(file, try_lock) {
-        Err(TryLockError::WouldBlock) => Err(FileError::Busy { path: path.to_path_buf() }),
-        _ => Ok(()),
-    }
+fn locked(file: File, path: &Path, try_lock: fn(&File) -> Result<(), TryLockError>) -> Result<Locked, FileError> {
+    Locked::new(file, try_lock).ok_or_else(|| FileError::Busy { path: path.to_path_buf() })
 }
