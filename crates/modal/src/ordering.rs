@@ -36,21 +36,30 @@ impl NodeOrder {
     }
 }
 
-/// A fill-reducing order of the nodes of a matrix with 3×3 blocks.
+/// A fill-reducing order of the nodes of a symmetric matrix with 3×3 blocks, by its pattern on one side of the diagonal or both.
 pub(crate) fn nested_dissection(pattern: SymbolicSparseColMatRef<'_, usize>) -> Result<NodeOrder, ModalError> {
     let n = pattern.ncols() / 3;
+    let mut coupled: Vec<Vec<idx_t>> = vec![Vec::new(); n];
+    let mut rows = Vec::new();
+    for node in 0..n {
+        rows.clear();
+        for column in 3 * node..3 * node + 3 {
+            rows.extend(pattern.row_idx_of_col_raw(column).iter().map(|row| row / 3));
+        }
+        rows.sort_unstable();
+        rows.dedup();
+        for other in rows.iter().filter(|other| **other != node) {
+            coupled[node].push(*other as idx_t);
+            coupled[*other].push(node as idx_t);
+        }
+    }
     let mut start: Vec<idx_t> = Vec::with_capacity(n + 1);
     let mut neighbours: Vec<idx_t> = Vec::new();
     start.push(0);
-    for node in 0..n {
-        let begin = neighbours.len();
-        for column in 3 * node..3 * node + 3 {
-            neighbours.extend(pattern.row_idx_of_col_raw(column).iter().map(|row| (row / 3) as idx_t));
-        }
-        let mut of_node = neighbours.split_off(begin);
+    for mut of_node in coupled {
         of_node.sort_unstable();
         of_node.dedup();
-        neighbours.extend(of_node.into_iter().filter(|other| *other as usize != node));
+        neighbours.extend(of_node);
         start.push(neighbours.len() as idx_t);
     }
     dissection(start, neighbours)

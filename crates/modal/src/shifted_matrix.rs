@@ -17,6 +17,8 @@ pub(crate) struct ShiftedMatrix<'a> {
     mass: &'a MassMatrix<'a>,
     shift: f64,
     constraints: &'a Constraints,
+    /// The pairs of coupled nodes, where K and M are over nodes and M couples some that K does not.
+    union: Option<(Vec<usize>, Vec<u32>)>,
 }
 
 impl<'a> ShiftedMatrix<'a> {
@@ -26,7 +28,14 @@ impl<'a> ShiftedMatrix<'a> {
         shift: f64,
         constraints: &'a Constraints,
     ) -> Self {
-        Self { stiffness, mass, shift, constraints }
+        let mut union = None;
+        if let (StiffnessMatrix::Nodal(k), MassMatrix::Nodal(m)) = (&stiffness, mass) {
+            // The matrices of an assembly share one pattern: nothing has to be compared.
+            if !std::ptr::eq(k.pairs().nodes, m.pairs().nodes) && !k.pairs().covers(&m.pairs()) {
+                union = Some(k.pairs().union(&m.pairs()));
+            }
+        }
+        Self { stiffness, mass, shift, constraints, union }
     }
 
     /// Its rows.
@@ -41,6 +50,9 @@ impl<'a> ShiftedMatrix<'a> {
 
     /// Its pattern on and below the diagonal, and above as the case may be; zeros that are stored stay stored.
     pub(crate) fn pattern(&self) -> Result<Pattern<'a>, FaerError> {
+        if let Some(pairs) = self.node_pairs() {
+            return Ok(Pattern::Made(pairs.lower(3)));
+        }
         let k = self.stiffness.pattern();
         if self.stiffness_covers_mass() {
             return Ok(k);
@@ -49,21 +61,16 @@ impl<'a> ShiftedMatrix<'a> {
     }
 
     /// The pairs of coupled nodes, where they tell its pattern.
-    pub(crate) fn node_pairs(&self) -> Option<NodePairs<'a>> {
-        match &self.stiffness {
-            StiffnessMatrix::Nodal(k) if self.stiffness_covers_mass() => Some(k.pairs()),
+    pub(crate) fn node_pairs(&self) -> Option<NodePairs<'_>> {
+        match (&self.union, &self.stiffness, self.mass) {
+            (Some((start, nodes)), ..) => Some(NodePairs { start, nodes }),
+            (None, StiffnessMatrix::Nodal(k), MassMatrix::Nodal(_)) => Some(k.pairs()),
             _ => None,
         }
     }
 
     /// Whether K has an entry wherever M has one.
     fn stiffness_covers_mass(&self) -> bool {
-        if let (StiffnessMatrix::Nodal(k), MassMatrix::Nodal(m)) = (&self.stiffness, self.mass) {
-            // The matrices of an assembly share one pattern: nothing has to be compared.
-            if std::ptr::eq(k.pairs().nodes, m.pairs().nodes) {
-                return true;
-            }
-        }
         let covers = |column: usize| {
             let mut rows = Vec::new();
             self.stiffness.for_each_in_column(column, |row, _| rows.push(row));

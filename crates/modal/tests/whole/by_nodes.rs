@@ -1,5 +1,6 @@
 //! Matrices over pairs of nodes against the same ones in compressed columns.
 
+use faer::sparse::{SparseColMat, Triplet};
 use modal::{ModalError, Modes, NodalMass, NodalStiffness, RigidMotion, Solver, Support};
 use nalgebra::Vector3;
 
@@ -52,6 +53,50 @@ fn they_give_the_same_modes_from_the_same_shift() {
         }
         assert!((&found.shapes - &expected.shapes).norm_max() < 1e-8 * expected.shapes.norm_max());
         assert!(found.stats.peak_bytes < expected.stats.peak_bytes);
+    }
+}
+
+#[test]
+fn mass_may_couple_nodes_that_stiffness_does_not() {
+    let body = block([10.0, 8.0, 6.0], [6, 5, 4]);
+    let count = body.positions.len();
+    let heavy = body.matrices.mass_by_nodes().iter().copied().fold(0.0, f64::max);
+    // The first node with some that are far from it, as a mass that moves with the mean of them.
+    let far: Vec<usize> = (0..count).filter(|node| node % 97 == 0).collect();
+    let added: Vec<_> = far.iter().flat_map(|i| far.iter().map(|j| (*i, *j, 20.0 * heavy))).collect();
+    let csc = |size: usize, entries: Vec<Triplet<usize, usize, f64>>| {
+        SparseColMat::<usize, f64>::try_new_from_triplets(size, size, &entries).unwrap()
+    };
+    let (start, nodes) = (body.matrices.start(), body.matrices.nodes());
+    let own = body.matrices.mass_by_nodes();
+    let of_column = |j: usize| (start[j]..start[j + 1]).map(move |k| Triplet::new(nodes[k] as usize, j, own[k]));
+    let scalar = (0..count).flat_map(of_column).chain(added.iter().map(|(i, j, m)| Triplet::new(*i, *j, *m)));
+    let scalar = csc(count, scalar.collect());
+    let along = |i, j, m: f64| (0..3).map(move |axis| Triplet::new(3 * i + axis, 3 * j + axis, m));
+    let mass = csc(3 * count, scalar.triplet_iter().flat_map(|e| along(e.row, e.col, *e.val)).collect());
+    let stiffness = body.matrices.stiffness();
+    // Zeros where M has more: one pattern, as an assembly has it.
+    let zeros = added.iter().flat_map(|(i, j, _)| along(*i, *j, 0.0));
+    let entries = stiffness.triplet_iter().map(|e| Triplet::new(e.row, e.col, *e.val)).chain(zeros);
+    let with_zeros = csc(3 * count, entries.collect());
+    assert!(with_zeros.row_idx().len() > stiffness.row_idx().len());
+
+    let of_nodes = scalar.row_idx().iter().map(|node| *node as u32).collect::<Vec<_>>();
+    let of_nodes = NodalMass::of_nodes(scalar.col_ptr(), &of_nodes, scalar.val()).unwrap();
+    let by_nodes = NodalStiffness::new(start, nodes, body.matrices.stiffness_by_nodes()).unwrap();
+    let free = Support::free();
+    let expected = Solver::new(with_zeros.as_ref(), mass.as_ref(), &body.positions, &free).unwrap();
+    let expected = expected.modes(6, |_| ()).unwrap();
+    let lowest = body.modes(1).eigenvalues[0];
+    assert!(expected.eigenvalues[0] < 0.9 * lowest, "{} {lowest}", expected.eigenvalues[0]);
+    let by_columns = Solver::new(stiffness, mass.as_ref(), &body.positions, &free).unwrap();
+    let by_nodes = Solver::of_nodes(by_nodes, of_nodes, &body.positions, &free).unwrap();
+    for solver in [by_columns, by_nodes] {
+        let found = solver.modes(6, |_| ()).unwrap();
+        for (a, b) in found.eigenvalues.iter().zip(&expected.eigenvalues) {
+            assert!((a / b - 1.0).abs() < 1e-10, "{a} {b}");
+        }
+        assert!((&found.shapes - &expected.shapes).norm_max() < 1e-7 * expected.shapes.norm_max());
     }
 }
 
