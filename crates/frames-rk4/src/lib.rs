@@ -21,7 +21,6 @@
 #![forbid(unsafe_code)]
 #![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable))]
 
-mod acceleration;
 mod account;
 mod attitude_account;
 mod blocked_matrix;
@@ -31,7 +30,6 @@ mod column_major;
 mod components;
 mod conservative;
 mod conservative_motion;
-mod conservative_observation;
 mod effect;
 mod energies;
 mod error;

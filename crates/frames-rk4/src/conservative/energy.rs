@@ -2,8 +2,9 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::{ConservativeBody, Evaluation, Translation, along};
 use crate::column_major::{dot, weighted_squares};
+use crate::conservative::body::{ConservativeBody, Translation, along};
+use crate::conservative::evaluation::Evaluation;
 use crate::conservative::state::{ConservativeState, Slow, get, part};
 use crate::energies::Energies;
 use crate::history::History;

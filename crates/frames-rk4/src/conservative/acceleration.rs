@@ -19,7 +19,9 @@ use nalgebra::{Matrix3, Vector3};
 use pulp::Simd;
 
 use crate::column_major::dot;
-use crate::conservative::{ConservativeBody, Evaluation, Translation, get, part};
+use crate::conservative::body::{ConservativeBody, Translation};
+use crate::conservative::evaluation::Evaluation;
+use crate::conservative::state::{get, part};
 use crate::error::RateError;
 use crate::side_by_side::{Lists, add_combined, combine};
 

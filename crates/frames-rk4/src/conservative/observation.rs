@@ -4,7 +4,9 @@ use nalgebra::Vector3;
 use pulp::{Arch, Simd, WithSimd};
 use rigid_kin::Attitude;
 
-use crate::conservative::{ConservativeBody, ConservativeState, Evaluation, Translation, get, part};
+use crate::conservative::body::{ConservativeBody, Translation};
+use crate::conservative::evaluation::Evaluation;
+use crate::conservative::state::{ConservativeState, get, part};
 use crate::error::RateError;
 use crate::motion::PointShapes;
 use crate::observation::{Observation, PointMotion};

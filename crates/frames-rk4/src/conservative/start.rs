@@ -1,0 +1,137 @@
+//! The state that a motion stands for, at the beginning and where a drive jumps.
+
+use nalgebra::Vector3;
+
+use crate::conservative::body::{ConservativeBody, Translation, along};
+use crate::conservative::evaluation::Evaluation;
+use crate::conservative::state::{ConservativeState, Slow, get, part, set};
+use crate::error::{RateError, SetupError};
+use crate::four::Padded;
+use crate::initial::Initial;
+use crate::side_by_side::combine;
+use crate::state::MotionState;
+
+impl ConservativeBody {
+    /// The state at the beginning: π = J ω + Sᵀ q̇, p = q̇ + S ω. Parts of the velocities that the body has not got are
+    /// left out; driven ones are as they are driven.
+    ///
+    /// # Errors
+    /// [`SetupError`] for lists of the wrong length and numbers that are not finite.
+    pub fn start(&self, initial: &Initial) -> Result<ConservativeState, SetupError> {
+        initial.check(self.flexible())?;
+        let mut e = self.evaluation();
+        e.q.copy_from_slice(&initial.modal_displacement);
+        let scalar = pulp::Scalar::new();
+        self.deform(scalar, &mut e);
+        let speed = self.drive.as_ref().map_or(0.0, |drive| drive.speed_at(0.0, 0.0));
+        let mut spin = Vector3::zeros();
+        for (w, axis) in spin.iter_mut().zip(&self.axes) {
+            *w = if self.turn_driven { speed } else { axis.dot(&initial.omega) };
+        }
+        self.extend_rate(&initial.modal_velocity, &mut e);
+        let s_by_velocity = self.s_products(scalar, &e.products, self.velocity_of_coordinates(&e).groups());
+        let pi: Vector3<f64> = self.deformed_inertia(scalar, &e) * spin + s_by_velocity;
+        let mut mu = match &self.manifold {
+            Some(manifold) => {
+                let Evaluation { velocity, in_shapes: [_, in_shapes, _], .. } = &mut e;
+                manifold.in_shapes(velocity, in_shapes);
+                let mut mu = vec![0.0; velocity.len()];
+                manifold.add_from_shapes(in_shapes, &mut mu);
+                mu
+            }
+            None => e.modal_velocity.to_vec(),
+        };
+        let mut s_by_spin = Padded::zeros(mu.len());
+        combine(scalar, self.s_lists(&e.products), &spin.as_slice()[..self.s_count], s_by_spin.groups_mut());
+        mu.iter_mut().zip(&*s_by_spin).for_each(|(mu, s)| *mu += s);
+        mu.iter_mut().zip(&self.sliding).for_each(|(mu, b)| *mu += b * speed);
+        let momentum = match &self.manifold {
+            Some(manifold) => {
+                let mut momentum = vec![0.0; self.flexible()];
+                manifold.add_projection(&e.place, &mu, &mut momentum);
+                momentum
+            }
+            None => mu,
+        };
+        let pi = Vector3::from_fn(|k, _| if k < self.axes.len() { pi[k] } else { 0.0 });
+        let mut slow = Slow::zeros();
+        set(&mut slow, part::POSITION, &self.origin);
+        let velocity = match self.translation {
+            Translation::Free => initial.velocity,
+            Translation::Along(direction) => along(&initial.attitude.to_global(&direction), &initial.velocity),
+            Translation::None | Translation::Driven(_) => Vector3::zeros(),
+        };
+        set(&mut slow, part::MOMENTUM, &(velocity * self.mass));
+        set(&mut slow, part::PI, &pi);
+        Ok(ConservativeState {
+            time: 0.0,
+            attitude: initial.attitude,
+            slow,
+            turned: 0.0,
+            modal_displacement: initial.modal_displacement.clone(),
+            modal_momentum: momentum,
+        })
+    }
+
+    /// A state in quantities that every formulation has.
+    pub(crate) fn motion_state(&self, state: &ConservativeState) -> Result<MotionState, RateError> {
+        let mut e = self.evaluation();
+        self.evaluate_at(state, state.time, &mut e)?;
+        Ok(MotionState {
+            time: state.time,
+            attitude: state.attitude,
+            origin_global: state.origin_global(),
+            velocity_global: get(&e.slow, part::POSITION),
+            omega_body: e.omega_body,
+            modal_displacement: state.modal_displacement.clone(),
+            modal_velocity: e.modal_velocity.to_vec(),
+        })
+    }
+
+    /// The momenta of a motion. Work and impulses are counted from it anew.
+    pub(crate) fn state_of(&self, motion: &MotionState) -> Result<ConservativeState, SetupError> {
+        motion.check(self.flexible())?;
+        let initial = Initial {
+            attitude: motion.attitude,
+            velocity: motion.velocity_global,
+            omega: motion.omega_body,
+            modal_displacement: motion.modal_displacement.clone(),
+            modal_velocity: motion.modal_velocity.clone(),
+        };
+        let mut state = self.start(&initial)?;
+        state.time = motion.time;
+        state.set_origin_global(&motion.origin_global);
+        Ok(state)
+    }
+
+    /// q̇ and ż.
+    fn extend_rate(&self, rate: &[f64], e: &mut Evaluation) {
+        e.modal_velocity.copy_from_slice(rate);
+        if let Some(manifold) = &self.manifold {
+            manifold.go_along(rate, &mut e.place, &mut e.velocity);
+        }
+    }
+
+    /// Takes a state past a jump of the speed of the drive at its time. The drive does its impulse times the mean of the
+    /// speeds.
+    pub(crate) fn pass_jump(&self, state: &mut ConservativeState, e: &mut Evaluation) -> Result<(), RateError> {
+        if self.drive.is_none() {
+            return Ok(());
+        }
+        // The corner itself is where it is but for rounding.
+        let aside = 1e-12 * state.time.abs();
+        let on_side =
+            |state: &ConservativeState, branch_time: f64, e: &mut Evaluation| -> Result<[f64; 2], RateError> {
+                self.evaluate_at(state, branch_time, e)?;
+                Ok([e.driven_speed, e.driven_momentum])
+            };
+        let [after, _] = on_side(state, state.time + aside, e)?;
+        let [before, held] = on_side(state, state.time - aside, e)?;
+        let jump = after - before;
+        let push = state.modal_momentum.iter_mut().zip(&e.drive_stress);
+        push.for_each(|(p, k_q)| *p += jump * k_q);
+        let [_, given] = on_side(state, state.time + aside, e)?;
+        state.slow[part::WORK] += 0.5 * (before + after) * (given - held);
+        Ok(())
+    }
+}
