@@ -51,6 +51,7 @@
 mod acceleration;
 mod body;
 mod build;
+mod coordinates;
 mod deformation;
 mod energy;
 mod evaluation;

@@ -6,6 +6,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::column_major::columns;
 use crate::conservative::body::{ConservativeBody, Translation};
+use crate::conservative::coordinates::{InCoordinates, pair_weights};
 use crate::effect::{Effect, EffectMap};
 use crate::error::SetupError;
 use crate::four::Padded;
@@ -13,7 +14,7 @@ use crate::load::SharedLoad;
 use crate::manifold::Manifold;
 use crate::motion::CenterOfMass;
 use crate::own_coupling::own_coupling;
-use crate::physics::{DrivenMotion, Physics};
+use crate::physics::{Drive, DrivenMotion, Physics};
 use crate::reaction::Held;
 use crate::side_by_side::side_by_side;
 use crate::spin_stiffness::SpinStiffness;
@@ -34,37 +35,19 @@ impl ConservativeBody {
         crate::model::check_motion(body)?;
         crate::model::check_damping(damping_ratios, body.flexible())?;
         let Physics { effects, drive, drive_stiffness, large_deflection } = physics;
-        let modes = body;
-        let body = large_deflection.as_ref().map_or(modes, Manifold::body);
-        if let Some(found) = large_deflection.as_ref().map(Manifold::modes).filter(|found| *found != modes.flexible()) {
-            let what = "the modes of the manifold of large deflection";
-            return Err(SetupError::Length { what, expected: modes.flexible(), found });
-        }
+        let (modes, manifold) = (body, large_deflection.as_ref());
+        let body = manifold.map_or(modes, Manifold::body);
         let nf = body.flexible();
         loads.iter().try_for_each(|load| load.check(nf))?;
         let drive_stiffness = drive_stiffness.as_ref().filter(|_| drive.is_some());
-        let mut sizes = drive_stiffness.iter().flat_map(|k| [k.nrows(), k.ncols()]);
-        if let Some(found) = sizes.find(|found| *found != nf) {
-            let what = "a row or column of the geometric stiffness of the drive";
-            return Err(SetupError::Length { what, expected: nf, found });
-        }
-        let driven = match drive {
-            Some(drive) => {
-                drive.check()?;
-                if body.motion.count() > 0 {
-                    return Err(SetupError::DriveOfFreeBody { motion: Box::new(body.motion) });
-                }
-                Some(drive.motion)
-            }
-            None => None,
-        };
+        check_lengths(modes, manifold, drive_stiffness, nf)?;
+        let driven = drive.as_ref().map(|drive| driven_motion(drive, body)).transpose()?;
         let (translation, axes) = degrees_of_freedom(body, effects, driven);
         let turn_driven = matches!(driven, Some(DrivenMotion::Turn { .. }));
         let damping: Vec<f64> =
             modes.circular_frequencies.iter().zip(damping_ratios).map(|(omega, zeta)| 2.0 * zeta * omega).collect();
         let inertia = along_axes(&axes, &body.inertia);
 
-        let manifold = large_deflection.as_ref();
         let follows = effects[Effect::DeformedInertia];
         // It needs the N_ij: where they are off, it would cost more than it saves.
         let locked = effects[Effect::Coriolis] && follows && !turn_driven && manifold.is_none();
@@ -79,40 +62,11 @@ impl ConservativeBody {
         let s_count = if effects[Effect::Coriolis] || turn_driven { turning } else { 0 };
         let stiffness = body.stress_stiffness.as_ref().filter(|_| effects[Effect::GeometricStiffening]);
         let stiffness = stiffness.map(|stiffness| SpinStiffness::new(stiffness, manifold));
-        // Weights of the constants of PAIRS in those of a pair of axes.
-        let weights = |(i, j): (usize, usize)| {
-            ReducedBody::PAIRS.map(|(k, l)| {
-                let product = axes[i][k] * axes[j][l];
-                if k == l { product } else { product + axes[i][l] * axes[j][k] }
-            })
-        };
-        let on_coordinates = |matrix: Mat<f64>| match manifold.map(Manifold::shapes_by_coordinates) {
-            Some(e) => e.transpose() * matrix * e,
-            None => matrix,
-        };
-        let gyroscopic = |axis: &Vector3<f64>| {
-            on_coordinates(Mat::from_fn(nf, nf, |i, j| {
-                axis.iter().zip(&body.gyroscopic).map(|(a, g)| a * g[(i, j)]).sum()
-            }))
-        };
-        let of = |matrices: &[Mat<f64>; 6], weights: &[f64; 6], i: usize, j: usize| -> f64 {
-            matrices.iter().zip(weights).map(|(m, w)| w * m[(i, j)]).sum()
-        };
-        let pair_weights: Vec<[f64; 6]> = pairs.iter().map(|pair| weights(*pair)).collect();
-        let second = |weights: &[f64; 6]| {
-            let mut second = on_coordinates(Mat::from_fn(nf, nf, |i, j| {
-                of(&body.inertia_second, weights, i, j)
-                    - stiffness.as_ref().map_or(0.0, |stiffness| of(&stiffness.on_shapes, weights, i, j))
-            }));
-            if let Some(on_modes) = stiffness.as_ref().and_then(|stiffness| stiffness.on_modes.as_ref()) {
-                for (i, j) in (0..modes.flexible()).flat_map(|j| (0..modes.flexible()).map(move |i| (i, j))) {
-                    second[(i, j)] -= of(on_modes, weights, i, j);
-                }
-            }
-            second
-        };
-        let gyroscopic: Vec<Mat<f64>> = axes[..g_count].iter().map(gyroscopic).collect();
-        let mut second: Vec<Mat<f64>> = pair_weights.iter().map(second).collect();
+        let constants = InCoordinates { body, manifold };
+        let pair_weights: Vec<[f64; 6]> = pairs.iter().map(|(i, j)| pair_weights([&axes[*i], &axes[*j]])).collect();
+        let gyroscopic: Vec<Mat<f64>> = axes[..g_count].iter().map(|axis| constants.gyroscopic(axis)).collect();
+        let mut second: Vec<Mat<f64>> =
+            pair_weights.iter().map(|weights| constants.inertia_second(weights, stiffness.as_ref())).collect();
         let coupling = own_coupling(&modes.circular_frequencies, [&second, &gyroscopic]);
         if locked {
             for (second, (i, j)) in second.iter_mut().zip(&pairs) {
@@ -120,24 +74,12 @@ impl ConservativeBody {
                 *second += (&product + product.transpose()) * faer::Scale(0.5);
             }
         }
-        // Eᵀ of a list.
-        let list_on_coordinates = |list: Vec<f64>| match manifold.map(Manifold::shapes_by_coordinates) {
-            Some(e) => e.col_iter().map(|column| column.iter().zip(&list).map(|(e, x)| e * x).sum()).collect(),
-            None => list,
-        };
-        let along = |unit: &Vector3<f64>, of: &[Vec<f64>; 3]| -> Vec<f64> {
-            list_on_coordinates((0..nf).map(|k| (0..3).map(|i| unit[i] * of[i][k]).sum()).collect())
-        };
         let of_axis = |axis: &Vector3<f64>| match turn_driven {
-            true => along(axis, &body.rotation_first),
+            true => constants.along(axis, &body.rotation_first),
             false => vec![0.0; size],
         };
-        let of_pair = |weights: &[f64; 6]| {
-            let of_shape = |k: usize| weights.iter().zip(&body.inertia_first).map(|(w, c)| w * c[k]).sum();
-            list_on_coordinates((0..nf).map(of_shape).collect())
-        };
-        let undeformed: Vec<Vec<f64>> =
-            axes[..s_count].iter().map(of_axis).chain(pair_weights.iter().map(of_pair)).collect();
+        let of_pairs = pair_weights.iter().map(|weights| constants.inertia_first(weights));
+        let undeformed: Vec<Vec<f64>> = axes[..s_count].iter().map(of_axis).chain(of_pairs).collect();
         let rates = modes.circular_frequencies.iter().chain(&damping);
         Ok(Self {
             mass: body.mass,
@@ -155,7 +97,7 @@ impl ConservativeBody {
             locked,
             undeformed: side_by_side(&undeformed),
             sliding: match translation {
-                Translation::Driven(direction) => along(&direction, &body.translation_first),
+                Translation::Driven(direction) => constants.along(&direction, &body.translation_first),
                 _ => Vec::new(),
             },
             translation,
@@ -175,6 +117,36 @@ impl ConservativeBody {
             held: Held::new(body, stiffness.as_ref(), effects),
         })
     }
+}
+
+/// Refuses a manifold of other modes, and a stiffness of other shapes than `nf`.
+fn check_lengths(
+    modes: &ReducedBody,
+    manifold: Option<&Manifold>,
+    drive_stiffness: Option<&Mat<f64>>,
+    nf: usize,
+) -> Result<(), SetupError> {
+    if let Some(found) = manifold.map(Manifold::modes).filter(|found| *found != modes.flexible()) {
+        let what = "the modes of the manifold of large deflection";
+        return Err(SetupError::Length { what, expected: modes.flexible(), found });
+    }
+    let mut sizes = drive_stiffness.into_iter().flat_map(|k| [k.nrows(), k.ncols()]);
+    match sizes.find(|found| *found != nf) {
+        Some(found) => {
+            let what = "a row or column of the geometric stiffness of the drive";
+            Err(SetupError::Length { what, expected: nf, found })
+        }
+        None => Ok(()),
+    }
+}
+
+/// What drives a body, which must be clamped.
+fn driven_motion(drive: &Drive, body: &ReducedBody) -> Result<DrivenMotion, SetupError> {
+    drive.check()?;
+    if body.motion.count() > 0 {
+        return Err(SetupError::DriveOfFreeBody { motion: Box::new(body.motion) });
+    }
+    Ok(drive.motion)
 }
 
 /// How the origin moves, and what the body turns about.

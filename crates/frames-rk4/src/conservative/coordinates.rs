@@ -1,0 +1,79 @@
+//! The constants of a body in its coordinates z: those of its shapes, ξ = z, but on a manifold of large deflection, ξ = E z.
+
+use faer::Mat;
+use modal::ReducedBody;
+use nalgebra::Vector3;
+
+use crate::manifold::Manifold;
+use crate::spin_stiffness::SpinStiffness;
+
+/// The body whose shapes ξ counts, and what leads from z to ξ.
+pub(super) struct InCoordinates<'a> {
+    pub body: &'a ReducedBody,
+    pub manifold: Option<&'a Manifold>,
+}
+
+impl InCoordinates<'_> {
+    /// G of an axis (n × n).
+    pub fn gyroscopic(&self, axis: &Vector3<f64>) -> Mat<f64> {
+        let shapes = self.body.flexible();
+        self.matrix(Mat::from_fn(shapes, shapes, |i, j| {
+            axis.iter().zip(&self.body.gyroscopic).map(|(a, g)| a * g[(i, j)]).sum()
+        }))
+    }
+
+    /// Σ weight · (N − K) (n × n), with K of the stress of the spin.
+    pub fn inertia_second(&self, weights: &[f64; 6], stiffness: Option<&SpinStiffness>) -> Mat<f64> {
+        let shapes = self.body.flexible();
+        let mut second = self.matrix(Mat::from_fn(shapes, shapes, |i, j| {
+            weighted(&self.body.inertia_second, weights, i, j)
+                - stiffness.map_or(0.0, |stiffness| weighted(&stiffness.on_shapes, weights, i, j))
+        }));
+        if let Some(on_modes) = stiffness.and_then(|stiffness| stiffness.on_modes.as_ref()) {
+            let modes = on_modes[0].nrows();
+            for (i, j) in (0..modes).flat_map(|j| (0..modes).map(move |i| (i, j))) {
+                second[(i, j)] -= weighted(on_modes, weights, i, j);
+            }
+        }
+        second
+    }
+
+    /// Σ weight · c (n).
+    pub fn inertia_first(&self, weights: &[f64; 6]) -> Vec<f64> {
+        let of_shape = |k: usize| weights.iter().zip(&self.body.inertia_first).map(|(w, c)| w * c[k]).sum();
+        self.list((0..self.body.flexible()).map(of_shape).collect())
+    }
+
+    /// The momenta of a motion along or about a unit vector (n), by those along or about x, y and z.
+    pub fn along(&self, unit: &Vector3<f64>, momenta: &[Vec<f64>; 3]) -> Vec<f64> {
+        self.list((0..self.body.flexible()).map(|k| (0..3).map(|i| unit[i] * momenta[i][k]).sum()).collect())
+    }
+
+    /// Eᵀ A E
+    fn matrix(&self, a: Mat<f64>) -> Mat<f64> {
+        match self.manifold.map(Manifold::shapes_by_coordinates) {
+            Some(e) => e.transpose() * a * e,
+            None => a,
+        }
+    }
+
+    /// Eᵀ x
+    fn list(&self, x: Vec<f64>) -> Vec<f64> {
+        match self.manifold.map(Manifold::shapes_by_coordinates) {
+            Some(e) => e.col_iter().map(|column| column.iter().zip(&x).map(|(e, x)| e * x).sum()).collect(),
+            None => x,
+        }
+    }
+}
+
+/// Weights of the constants of [`ReducedBody::PAIRS`] in those of a pair of axes.
+pub(super) fn pair_weights([a, b]: [&Vector3<f64>; 2]) -> [f64; 6] {
+    ReducedBody::PAIRS.map(|(k, l)| {
+        let product = a[k] * b[l];
+        if k == l { product } else { product + a[l] * b[k] }
+    })
+}
+
+fn weighted(matrices: &[Mat<f64>; 6], weights: &[f64; 6], i: usize, j: usize) -> f64 {
+    matrices.iter().zip(weights).map(|(m, w)| w * m[(i, j)]).sum()
+}
