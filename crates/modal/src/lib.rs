@@ -63,6 +63,7 @@ mod statics;
 mod stiffness;
 mod substitution;
 mod subtrees;
+mod supernode;
 mod supernodes;
 mod support;
 mod symbolic;

@@ -11,9 +11,8 @@ use faer::reborrow::{Reborrow, ReborrowMut};
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
-use crate::factor_layout::{COLUMNS, NODE, Passes, STRIP, of_own_rows, passes};
-use crate::packed_rows::{add_multiple, prefetch, scale, subtract};
 use crate::subtrees::Subtrees;
+use crate::supernode::Supernode;
 use crate::supernodes::Supernodes;
 
 /// Vectors of a group at the most.
@@ -22,8 +21,6 @@ const MOST: usize = 16;
 const STEP: usize = 4;
 /// Rows that are put into the order of the factor in one task.
 const ROWS: usize = 4096;
-/// Numbers of the factor that are asked for ahead of their use.
-const AHEAD: usize = 384;
 
 /// Scratch of [`solve`], which can be used again.
 #[derive(Default)]
@@ -86,7 +83,12 @@ pub(crate) fn solve(factor: Factor<'_>, order: PermRef<'_, usize>, mut x: MatMut
     }
 }
 
-impl Factor<'_> {
+impl<'a> Factor<'a> {
+    #[inline(always)]
+    fn supernode(self, s: usize) -> Supernode<'a> {
+        Supernode::new(self.supernodes, self.values, s)
+    }
+
     /// Replaces rows x by (L Lᵀ)⁻¹ x: forward through the parts side by side, through the top and back, and backward
     /// through the parts.
     fn solve<const W: usize>(self, scratch: &mut Scratch) {
@@ -157,7 +159,7 @@ impl<const W: usize> WithSimd for Forward<'_, W> {
         let Self { factor, part: Part { supernodes, first, rows }, outside, below } = self;
         let place = &factor.subtrees.place;
         for s in supernodes {
-            let supernode = Supernode::new(factor, s);
+            let supernode = factor.supernode(s);
             let taken = supernode.forward(simd, &mut rows[supernode.start - first..][..supernode.width], below);
             supernode.take(simd, taken, rows, first, outside, place);
         }
@@ -183,12 +185,12 @@ impl<const W: usize> WithSimd for Top<'_, W> {
             first..first + supernode.width
         };
         for s in top {
-            let supernode = Supernode::new(factor, *s);
+            let supernode = factor.supernode(*s);
             let taken = supernode.forward(simd, &mut rows[own(&supernode)], below);
             supernode.take(simd, taken, &mut [], 0, rows, place);
         }
         for s in top.iter().rev() {
-            let supernode = Supernode::new(factor, *s);
+            let supernode = factor.supernode(*s);
             let minus_below = supernode.gather(&[], 0, rows, place, below);
             supernode.backward(simd, &mut rows[own(&supernode)], minus_below);
         }
@@ -211,301 +213,9 @@ impl<const W: usize> WithSimd for Backward<'_, W> {
         let Self { factor, part: Part { supernodes, first, rows }, top, below } = self;
         let place = &factor.subtrees.place;
         for s in supernodes.rev() {
-            let supernode = Supernode::new(factor, s);
+            let supernode = factor.supernode(s);
             let minus_below = supernode.gather(rows, first, top, place, below);
             supernode.backward(simd, &mut rows[supernode.start - first..][..supernode.width], minus_below);
-        }
-    }
-}
-
-/// Columns of L with the same rows below them.
-struct Supernode<'a> {
-    start: usize,
-    width: usize,
-    /// The rows below.
-    pattern: &'a [u32],
-    /// The numbers of the own rows.
-    own: &'a [f64],
-    /// Those of the rows below, by strips.
-    below: &'a [f64],
-}
-
-impl<'a> Supernode<'a> {
-    #[inline(always)]
-    fn new(factor: Factor<'a>, s: usize) -> Self {
-        let supernodes = factor.supernodes;
-        let (start, width) = (supernodes.columns(s).start, supernodes.width(s));
-        let (own, below) = factor.values[supernodes.entries(s)].split_at(of_own_rows(width));
-        Self { start, width, pattern: supernodes.below(s), own, below }
-    }
-
-    /// Room for the rows below.
-    #[inline(always)]
-    fn below<'b, const W: usize>(&self, scratch: &'b mut Vec<f64>) -> &'b mut [[f64; W]] {
-        scratch.resize(scratch.len().max(W * self.pattern.len()), 0.0);
-        scratch[..W * self.pattern.len()].as_chunks_mut().0
-    }
-
-    /// The negative of the rows below: first those among `rows`, which begin with row `first`, then those of the top.
-    #[inline(always)]
-    fn gather<'b, const W: usize>(
-        &self,
-        rows: &[[f64; W]],
-        first: usize,
-        top: &[[f64; W]],
-        place: &[u32],
-        scratch: &'b mut Vec<f64>,
-    ) -> &'b [[f64; W]] {
-        let below = self.below(scratch);
-        for (below, row) in below.iter_mut().zip(self.pattern.iter().map(|row| *row as usize)) {
-            let row = match rows.get(row - first) {
-                Some(row) => row,
-                None => &top[place[row] as usize],
-            };
-            *below = row.map(|x| -x);
-        }
-        below
-    }
-
-    /// Subtracts from the rows below.
-    #[inline(always)]
-    fn take<const W: usize, S: Simd>(
-        &self,
-        simd: S,
-        taken: &[[f64; W]],
-        rows: &mut [[f64; W]],
-        first: usize,
-        top: &mut [[f64; W]],
-        place: &[u32],
-    ) {
-        for (taken, row) in taken.iter().zip(self.pattern.iter().map(|row| *row as usize)) {
-            let row = match rows.get_mut(row - first) {
-                Some(row) => row,
-                None => &mut top[place[row] as usize],
-            };
-            subtract(simd, row, taken);
-        }
-    }
-
-    /// Strips of the rows below, with the number of the first row of each.
-    #[inline(always)]
-    fn strips(&self) -> impl DoubleEndedIterator<Item = (usize, Strip<'a>)> {
-        let Self { width, below, pattern, .. } = *self;
-        let rows = pattern.len();
-        (0..rows).step_by(STRIP).map(move |first| {
-            let count = STRIP.min(rows - first);
-            (first, Strip { rows: count, values: &below[width * first..width * (first + count)] })
-        })
-    }
-
-    /// x ← L⁻¹ x in the own rows; returns what that takes from the rows below.
-    #[inline(always)]
-    fn forward<'b, const W: usize, S: Simd>(
-        &self,
-        simd: S,
-        own: &mut [[f64; W]],
-        scratch: &'b mut Vec<f64>,
-    ) -> &'b [[f64; W]] {
-        let taken = self.below(scratch);
-        taken.fill([0.0; W]);
-        let [most, nodes, single] = passes(self.width);
-        let mut diagonal = self.own;
-        forward::<COLUMNS, W, S>(simd, &mut diagonal, most.clone(), own);
-        forward::<NODE, W, S>(simd, &mut diagonal, nodes.clone(), own);
-        forward::<1, W, S>(simd, &mut diagonal, single.clone(), own);
-        for (first, strip) in self.strips() {
-            let taken = &mut taken[first..][..strip.rows];
-            strip.add_to_rows::<COLUMNS, W, S>(simd, most.clone(), own, taken);
-            strip.add_to_rows::<NODE, W, S>(simd, nodes.clone(), own, taken);
-            strip.add_to_rows::<1, W, S>(simd, single.clone(), own, taken);
-        }
-        taken
-    }
-
-    /// x ← L⁻ᵀ x in the own rows, where the rows below are known.
-    #[inline(always)]
-    fn backward<const W: usize, S: Simd>(&self, simd: S, own: &mut [[f64; W]], minus_below: &[[f64; W]]) {
-        let [most, nodes, single] = passes(self.width);
-        // From the last number to the first: one run of memory, as the way forward.
-        for (first, strip) in self.strips().rev() {
-            let rows = &minus_below[first..][..strip.rows];
-            strip.add_to_columns::<1, W, S>(simd, single.clone(), rows, own);
-            strip.add_to_columns::<NODE, W, S>(simd, nodes.clone(), rows, own);
-            strip.add_to_columns::<COLUMNS, W, S>(simd, most.clone(), rows, own);
-        }
-        let mut diagonal = self.own;
-        backward::<1, W, S>(simd, &mut diagonal, single, own);
-        backward::<NODE, W, S>(simd, &mut diagonal, nodes, own);
-        backward::<COLUMNS, W, S>(simd, &mut diagonal, most, own);
-    }
-}
-
-/// Some of the rows below a supernode.
-#[derive(Clone, Copy)]
-struct Strip<'a> {
-    rows: usize,
-    values: &'a [f64],
-}
-
-impl<'a> Strip<'a> {
-    /// K columns from `first` on, row by row.
-    #[inline(always)]
-    fn columns<const K: usize>(&self, first: usize) -> &'a [[f64; K]] {
-        self.values[first * self.rows..(first + K) * self.rows].as_chunks().0
-    }
-
-    /// rows += columns · x.
-    #[inline(always)]
-    fn add_to_rows<const K: usize, const W: usize, S: Simd>(
-        &self,
-        simd: S,
-        passes: Passes,
-        x: &[[f64; W]],
-        rows: &mut [[f64; W]],
-    ) {
-        for first in passes {
-            if let Some((x, _)) = x[first..].split_first_chunk::<K>() {
-                add_combinations(simd, rows, self.columns(first), x);
-            }
-        }
-    }
-
-    /// x += columnsᵀ · rows.
-    #[inline(always)]
-    fn add_to_columns<const K: usize, const W: usize, S: Simd>(
-        &self,
-        simd: S,
-        passes: Passes,
-        rows: &[[f64; W]],
-        x: &mut [[f64; W]],
-    ) {
-        for first in passes.rev() {
-            if let Some((x, _)) = x[first..].split_first_chunk_mut::<K>() {
-                add_products(simd, x, self.columns(first), rows);
-            }
-        }
-    }
-}
-
-/// x ← L⁻¹ x in own rows by passes over K columns, whose numbers are the first of `numbers`; leaves the rest there.
-#[inline(always)]
-fn forward<const K: usize, const W: usize, S: Simd>(simd: S, numbers: &mut &[f64], passes: Passes, x: &mut [[f64; W]]) {
-    for first in passes {
-        let (of_pass, rest) = numbers.split_at(K * (x.len() - first));
-        *numbers = rest;
-        let (here, after) = x[first..].split_at_mut(K);
-        let (diagonal, columns) = of_pass.as_chunks::<K>().0.split_at(K);
-        let mut minus_x = [[0.0; W]; K];
-        for k in 0..K {
-            let (known, unknown) = here.split_at_mut(k + 1);
-            scale(simd, &mut known[k], 1.0 / diagonal[k][k]);
-            minus_x[k] = known[k].map(|x| -x);
-            for (x, row) in unknown.iter_mut().zip(&diagonal[k + 1..]) {
-                add_multiple(simd, x, row[k], &minus_x[k]);
-            }
-        }
-        add_combinations(simd, after, columns, &minus_x);
-    }
-}
-
-/// x ← L⁻ᵀ x in own rows by passes over K columns, the last first, whose numbers are the last of `numbers`; leaves the rest there.
-#[inline(always)]
-fn backward<const K: usize, const W: usize, S: Simd>(
-    simd: S,
-    numbers: &mut &[f64],
-    passes: Passes,
-    x: &mut [[f64; W]],
-) {
-    for first in passes.rev() {
-        let (rest, of_pass) = numbers.split_at(numbers.len() - K * (x.len() - first));
-        *numbers = rest;
-        let (here, after) = x[first..].split_at_mut(K);
-        let (diagonal, columns) = of_pass.as_chunks::<K>().0.split_at(K);
-        let mut sums = [[0.0; W]; K];
-        add_products(simd, &mut sums, columns, after);
-        for k in (0..K).rev() {
-            let (unknown, known) = here.split_at_mut(k + 1);
-            for (x, row) in known.iter().zip(&diagonal[k + 1..]) {
-                add_multiple(simd, &mut sums[k], row[k], x);
-            }
-            subtract(simd, &mut unknown[k], &sums[k]);
-            scale(simd, &mut unknown[k], 1.0 / diagonal[k][k]);
-        }
-    }
-}
-
-/// rows += columns · x.
-#[inline(always)]
-fn add_combinations<const K: usize, const W: usize, S: Simd>(
-    simd: S,
-    rows: &mut [[f64; W]],
-    columns: &[[f64; K]],
-    x: &[[f64; W]; K],
-) {
-    let parts = x.each_ref().map(|x| S::as_simd_f64s(x));
-    let whole = W / S::F64_LANES;
-    for v in (0..whole - whole % 2).step_by(2) {
-        let x: [[S::f64s; 2]; K] = std::array::from_fn(|k| [parts[k].0[v], parts[k].0[v + 1]]);
-        for (row, factors) in rows.iter_mut().zip(columns) {
-            if v == 0 {
-                prefetch(factors.as_ptr().wrapping_add(AHEAD));
-            }
-            let row = S::as_mut_simd_f64s(row).0;
-            // Sums of their own: in the row, each addition would be written to memory.
-            let (mut one, mut two) = (row[v], row[v + 1]);
-            for k in 0..K {
-                let factor = simd.splat_f64s(factors[k]);
-                one = simd.mul_add_e_f64s(factor, x[k][0], one);
-                two = simd.mul_add_e_f64s(factor, x[k][1], two);
-            }
-            (row[v], row[v + 1]) = (one, two);
-        }
-    }
-    if whole % 2 == 1 {
-        let x: [S::f64s; K] = std::array::from_fn(|k| parts[k].0[whole - 1]);
-        for (row, factors) in rows.iter_mut().zip(columns) {
-            let row = &mut S::as_mut_simd_f64s(row).0[whole - 1];
-            let mut sum = *row;
-            for k in 0..K {
-                sum = simd.mul_add_e_f64s(simd.splat_f64s(factors[k]), x[k], sum);
-            }
-            *row = sum;
-        }
-    }
-    for (row, factors) in rows.iter_mut().zip(columns) {
-        for (c, sum) in S::as_mut_simd_f64s(row).1.iter_mut().enumerate() {
-            for k in 0..K {
-                *sum += factors[k] * parts[k].1[c];
-            }
-        }
-    }
-}
-
-/// sums += columnsᵀ · rows.
-#[inline(always)]
-fn add_products<const K: usize, const W: usize, S: Simd>(
-    simd: S,
-    sums: &mut [[f64; W]; K],
-    columns: &[[f64; K]],
-    rows: &[[f64; W]],
-) {
-    let mut found = [[simd.splat_f64s(0.0); W]; K];
-    for (row, factors) in rows.iter().zip(columns).rev() {
-        prefetch(factors.as_ptr().wrapping_sub(AHEAD));
-        let (vectors, rest) = S::as_simd_f64s(row);
-        for k in 0..K {
-            let factor = simd.splat_f64s(factors[k]);
-            for (sum, vector) in found[k].iter_mut().zip(vectors) {
-                *sum = simd.mul_add_e_f64s(factor, *vector, *sum);
-            }
-            for (sum, value) in sums[k][W - rest.len()..].iter_mut().zip(rest) {
-                *sum += factors[k] * value;
-            }
-        }
-    }
-    for (sums, found) in sums.iter_mut().zip(&found) {
-        for (sum, found) in S::as_mut_simd_f64s(sums).0.iter_mut().zip(found) {
-            *sum = simd.add_f64s(*sum, *found);
         }
     }
 }
@@ -522,6 +232,7 @@ pub(crate) mod tests {
     use faer::{Conj, Mat, Par, Side, Spec};
 
     use super::*;
+    use crate::factor_layout::COLUMNS;
     use crate::factor_layout::tests::of_faer;
     use crate::interleave::interleave;
 
