@@ -36,7 +36,7 @@ pub enum SetupError {
     },
     /// Times that do not rise.
     #[error(
-        "{what}: time {found} of row {row} comes after {previous}; the times of a table rise from row to row (a jump is two tables, each multiplied by a step)"
+        "{what}: the time {found} in row {row} is not later than {previous} in the row before; the times of a table rise from row to row (a jump is two tables, each multiplied by a step)"
     )]
     NotRising {
         /// Which list.
@@ -116,7 +116,7 @@ pub enum SetupError {
         step: f64,
         /// Longest step.
         limit: f64,
-        /// |ω| at the beginning.
+        /// Largest spin known before the run: |ω| at the beginning or the driven speed, rad/time.
         spin: f64,
     },
     /// A tolerance for a method that does not estimate its error.

@@ -38,6 +38,13 @@ impl Event {
         Self { name: name.into(), crossing, function: Arc::new(function) }
     }
 
+    /// What its function says of a motion.
+    fn value(&self, now: &Observation) -> Result<f64, StepError> {
+        let value = (self.function)(now);
+        let not_finite = StepError::NotFinite { time: now.time, what: "the value of an event function" };
+        if value.is_finite() { Ok(value) } else { Err(not_finite) }
+    }
+
     /// Its name.
     pub fn name(&self) -> &str {
         &self.name
@@ -137,11 +144,11 @@ impl Events {
     }
 
     /// Adds an event, and returns its number.
-    pub(crate) fn add(&mut self, event: Event, now: &Observation) -> usize {
-        self.values.push((event.function)(now));
+    pub(crate) fn add(&mut self, event: Event, now: &Observation) -> Result<usize, StepError> {
+        self.values.push(event.value(now)?);
         self.after.push(0.0);
         self.list.push(event);
-        self.list.len() - 1
+        Ok(self.list.len() - 1)
     }
 
     pub(crate) fn get(&self, number: usize) -> Option<&Event> {
@@ -159,11 +166,12 @@ impl Events {
     }
 
     /// Finds the values of the events at a motion.
-    pub(crate) fn reset(&mut self, now: &Observation) {
+    pub(crate) fn reset(&mut self, now: &Observation) -> Result<(), StepError> {
         for (value, event) in self.values.iter_mut().zip(&self.list) {
-            *value = (event.function)(now);
+            *value = event.value(now)?;
         }
         self.stale = false;
+        Ok(())
     }
 
     /// The first event that is passed in the last step, at whose end the motion is `now`: its number and time. The probe
@@ -177,7 +185,7 @@ impl Events {
         let [start, end] = step.span();
         let mut first: Option<(usize, f64)> = None;
         for (k, event) in self.list.iter().enumerate() {
-            self.after[k] = (event.function)(now);
+            self.after[k] = event.value(now)?;
             if !event.is_passed(self.values[k], self.after[k]) {
                 continue;
             }
@@ -190,7 +198,7 @@ impl Events {
             Some((_, time)) => {
                 let there = step.at(time, points)?;
                 for (value, event) in self.values.iter_mut().zip(&self.list) {
-                    *value = (event.function)(there);
+                    *value = event.value(there)?;
                 }
             }
             None => self.values.copy_from_slice(&self.after),
@@ -216,7 +224,7 @@ fn locate(
         }
         let secant = to - (to - from) * (after / (after - before));
         let time = secant.clamp(from + 0.5 * spacing, to - 0.5 * spacing);
-        let value = (event.function)(step.at(time, points)?);
+        let value = event.value(step.at(time, points)?)?;
         if event.is_passed(before, value) {
             (to, after) = (time, value);
             if stayed == 1 {

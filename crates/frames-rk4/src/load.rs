@@ -122,8 +122,8 @@ pub struct Kinematics<'a> {
     pub body_from_global: &'a Matrix3<f64>,
     /// Position of the body's origin, global components.
     pub origin_global: Vector3<f64>,
-    /// Velocity of the body's origin, global components.
-    pub velocity_global: Vector3<f64>,
+    /// Velocity of the body's origin, global components; zero where rigid modes, which have it, are among the coordinates.
+    pub(crate) origin_velocity_global: Vector3<f64>,
     /// Angular velocity of the body frame, body components.
     pub omega_body: Vector3<f64>,
     pub(crate) coordinates: Coordinates<'a>,
@@ -179,7 +179,7 @@ impl Kinematics<'_> {
             modal += second_order.velocity(q, rate);
         }
         let turning = if first > 0 { self.omega_body.cross(&self.arm_body(point)) } else { Vector3::zeros() };
-        let of_origin = if first > 0 { self.velocity_global } else { Vector3::zeros() };
+        let of_origin = if first > 0 { self.origin_velocity_global } else { Vector3::zeros() };
         of_origin + self.body_from_global.tr_mul(&(turning + modal))
     }
 

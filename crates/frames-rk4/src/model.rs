@@ -75,13 +75,13 @@ impl ModalModel {
         let mut applied = Applied::new(coordinates, center_body, acceleration);
         applied.weight = 1.0 / times.len() as f64;
         for time in times {
-            let (time, velocity_global, unit) = (*time, Vector3::zeros(), false);
+            let (time, origin_velocity_global, unit) = (*time, Vector3::zeros(), false);
             let motion = Kinematics {
                 time,
                 branch_time,
                 body_from_global,
                 origin_global,
-                velocity_global,
+                origin_velocity_global,
                 omega_body,
                 coordinates,
                 unit,

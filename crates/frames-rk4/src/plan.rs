@@ -109,6 +109,16 @@ impl Plan {
         self.stop.is_some_and(|stop| stop <= time + self.same())
     }
 
+    /// Whether two times are one but for rounding.
+    pub(crate) fn are_same(&self, a: f64, b: f64) -> bool {
+        (a - b).abs() <= self.same()
+    }
+
+    /// Whether a time is the end, or beyond it.
+    pub(crate) fn is_over(&self, time: f64) -> bool {
+        time >= self.end - self.same()
+    }
+
     /// The segments to come start at this time.
     pub(crate) fn go_to(&mut self, time: f64) {
         let same = self.same();
@@ -125,7 +135,7 @@ impl Plan {
     /// The next segment; `None` at the end.
     pub(crate) fn next_segment(&mut self) -> Option<Segment> {
         let same = self.same();
-        if self.reached >= self.end {
+        if self.is_over(self.reached) {
             return None;
         }
         let output = self.interval.map_or(f64::INFINITY, |interval| (self.outputs + 1) as f64 * interval);

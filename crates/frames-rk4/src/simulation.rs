@@ -28,11 +28,11 @@ use crate::state::MotionState;
 pub struct Stats {
     /// Steps taken.
     pub accepted: u64,
-    /// Steps tried in vain.
+    /// Steps tried in vain: two for each try, under step control.
     pub rejected: u64,
     /// Evaluations of the rates.
     pub evaluations: u64,
-    /// Length of the shortest step taken.
+    /// Length of the shortest step taken; infinite before the first.
     pub shortest: f64,
     /// Length of the longest step taken.
     pub longest: f64,
@@ -68,6 +68,8 @@ pub struct Simulation {
     rows: Rows,
     end: f64,
     steps_since_row: u64,
+    /// Whether the motion is to be observed where it is, after the event or the stop there.
+    row_due: bool,
     /// Whether the segment ends at a corner that has not been passed.
     corner_ahead: bool,
     points: Vec<PointShapes>,
@@ -128,6 +130,7 @@ struct Saved {
     walk: Walk,
     #[serde(with = "postcard::fixint::le")]
     steps_since_row: u64,
+    row_due: bool,
     corner_ahead: bool,
     begun: bool,
     account: EnergyAccount,
@@ -192,6 +195,7 @@ impl Simulation {
             rows: setup.rows,
             end: setup.end,
             steps_since_row: 0,
+            row_due: false,
             corner_ahead: false,
             points: setup.points.to_vec(),
             stats: Stats { accepted: 0, rejected: 0, evaluations: 0, shortest: f64::INFINITY, longest: 0.0 },
@@ -218,6 +222,7 @@ impl Simulation {
     /// # Errors
     /// [`SetupError`] for lists of the wrong length and numbers that are not finite.
     pub fn set_state(&mut self, state: &MotionState) -> Result<(), SetupError> {
+        self.row_due &= self.plan.are_same(state.time, self.time());
         self.scheme.set_state(state)?;
         let account = &mut self.observers.energy;
         *account = EnergyAccount::new(self.scheme.energies(), account.of_loads());
@@ -238,7 +243,7 @@ impl Simulation {
         self.go_on_from_here();
     }
 
-    /// Has to be told where a [`Signal`](crate::Signal), or what a load of one's own reads, has been set since the last
+    /// Call this after a [`Signal`](crate::Signal), or anything that a load of one's own reads, was changed since the last
     /// step: the next step then starts from the loads as they are, and has its full order. It allocates.
     pub fn loads_have_changed(&mut self) {
         self.scheme.loads_have_changed();
@@ -252,11 +257,11 @@ impl Simulation {
     /// time is found by shorter steps, so it is as accurate as the scheme. Returns the event's number.
     ///
     /// # Errors
-    /// [`StepError`] where the motion cannot be observed.
+    /// [`StepError`] where the motion cannot be observed, and where the event's function gives no finite number.
     pub fn add_event(&mut self, event: Event) -> Result<usize, StepError> {
         self.keep_last_step();
         self.scheme.observe(&self.points, &mut self.looked_at)?;
-        Ok(self.events.add(event, &self.looked_at))
+        self.events.add(event, &self.looked_at)
     }
 
     /// An event by its number.
@@ -288,7 +293,7 @@ impl Simulation {
             return self.scheme.observe(&self.points, out);
         }
         match &mut self.last_step {
-            Some(step) if (from..=to.max(now)).contains(&time) => {
+            Some(step) if (from..=to.min(now)).contains(&time) => {
                 out.clone_from(step.at(time, &self.points)?);
                 Ok(())
             }
@@ -332,6 +337,11 @@ impl Simulation {
             self.go_on_from_here();
         }
         Ok(passed.map(|(number, _)| number))
+    }
+
+    /// Whether there is nothing more to come, neither a step nor a row.
+    pub fn is_over(&self) -> bool {
+        !self.row_due && self.plan.is_over(self.time())
     }
 
     /// Time at which the run ends.
@@ -384,6 +394,7 @@ impl Simulation {
             plan: self.plan.progress(),
             walk: self.walk.clone(),
             steps_since_row: self.steps_since_row,
+            row_due: self.row_due,
             corner_ahead: self.corner_ahead,
             begun: self.begun,
             account: self.observers.energy,
@@ -414,7 +425,7 @@ impl Simulation {
         self.plan.set_progress(&saved.plan)?;
         self.stats = Stats { accepted, rejected, shortest, longest, ..self.stats };
         (self.walk, self.observers.energy, self.steps_since_row) = (saved.walk, saved.account, steps_since_row);
-        (self.corner_ahead, self.begun) = (saved.corner_ahead, saved.begun);
+        (self.row_due, self.corner_ahead, self.begun) = (saved.row_due, saved.corner_ahead, saved.begun);
         Ok(self)
     }
 
@@ -423,7 +434,8 @@ impl Simulation {
         Stats { evaluations: self.scheme.evaluations(), ..self.stats }
     }
 
-    /// Goes on to the next row, or as far as `most_steps` tries lead. Allocates nothing once each length of step has
+    /// Goes on to the next row, event or stop, or as far as `most_steps` tries lead. Where a row falls on an event or the stop
+    /// time, it comes next, without a step. Allocates nothing once each length of step has
     /// occurred.
     ///
     /// # Errors
@@ -438,9 +450,12 @@ impl Simulation {
     /// As [`Self::advance`].
     pub fn advance_watched(&mut self, most_steps: u64, mut watch: impl FnMut(&Moment)) -> Result<Reached, StepError> {
         self.begun = true;
+        if std::mem::take(&mut self.row_due) {
+            return Ok(Reached::Row);
+        }
         if self.events.is_stale() {
             self.scheme.observe(&self.points, &mut self.looked_at)?;
-            self.events.reset(&self.looked_at);
+            self.events.reset(&self.looked_at)?;
         }
         for _ in 0..most_steps {
             match self.next_step() {
@@ -459,20 +474,25 @@ impl Simulation {
                     self.stats.accepted += count;
                     self.stats.shortest = self.stats.shortest.min(length);
                     self.stats.longest = self.stats.longest.max(length);
-                    if let Some(number) = self.look_at_step()? {
+                    self.steps_since_row += count;
+                    let ends_at_row = row_at_end && self.segment_is_done();
+                    let event = self.look_at_step()?;
+                    // An event may have cut the step short.
+                    self.row_due = match self.rows {
+                        Rows::EverySteps(steps) => self.steps_since_row >= steps || self.plan.is_over(self.time()),
+                        Rows::Interval(_) => ends_at_row && self.plan.are_same(self.time(), end),
+                    };
+                    if self.row_due {
+                        self.steps_since_row = 0;
+                    }
+                    if let Some(number) = event {
                         return Ok(Reached::Event(number));
                     }
-                    self.steps_since_row += count;
                     if self.plan.is_at_stop(self.time()) {
                         self.plan.set_stop(None);
                         return Ok(Reached::Stop);
                     }
-                    let at_row = match self.rows {
-                        Rows::EverySteps(steps) => self.steps_since_row >= steps || end >= self.end,
-                        Rows::Interval(_) => row_at_end && self.segment_is_done(),
-                    };
-                    if at_row {
-                        self.steps_since_row = 0;
+                    if std::mem::take(&mut self.row_due) {
                         return Ok(Reached::Row);
                     }
                 }
@@ -546,7 +566,7 @@ impl Simulation {
                     *longest_try = longest_try.max(steps.length());
                     return Ok(true);
                 }
-                self.stats.rejected += 1;
+                self.stats.rejected += 2;
                 if steps.reject(error) {
                     *longest_try = steps.length();
                     Ok(false)

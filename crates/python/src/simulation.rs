@@ -144,7 +144,7 @@ impl Simulation {
 
     /// Refuses to go on from the end.
     fn refuse_at_end(&self, py: Python<'_>, running: &Running) -> PyResult<()> {
-        if !is_done(running) {
+        if !running.simulation.is_over() {
             return Ok(());
         }
         let message = format!(
@@ -176,7 +176,7 @@ impl Simulation {
             record(running, watch)?;
             (running.begun, running.is_set) = (true, false);
         }
-        while !is_done(running) {
+        while !running.simulation.is_over() {
             let reached = self.go_on(py, running, u64::MAX, Some(watch));
             // A step that fails after the model has come to mean nothing fails for that.
             if let Some((time, refusal)) = watch.refusal() {
@@ -411,7 +411,7 @@ impl Simulation {
             running.begun = true;
             return self.row(py, &mut running).map(Some);
         }
-        while !is_done(&running) {
+        while !running.simulation.is_over() {
             if self.go_on(py, &mut running, u64::MAX, None)? == frames_rk4::Reached::Row {
                 return self.row(py, &mut running).map(Some);
             }

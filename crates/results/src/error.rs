@@ -75,14 +75,16 @@ pub enum FileError {
         /// The unfinished file that is not there.
         part: PathBuf,
     },
-    /// A point's name cannot be the name of an HDF5 group, or occurs twice.
+    /// The name of an output point or a support that cannot be part of a path, or occurs twice.
     #[error(
-        "{path}: the output point \"{name}\" cannot be stored: {reason}; give it another name",
+        "{path}: the {kind} \"{name}\" cannot be stored: {reason}; give it another name",
         path = .path.display()
     )]
-    PointName {
+    PlaceName {
         /// The results file.
         path: PathBuf,
+        /// "output point" or "support".
+        kind: &'static str,
         /// The name as given.
         name: String,
         /// Why it is refused.
@@ -96,7 +98,7 @@ pub enum FileError {
         /// The attribute that was to hold the text.
         attribute: String,
     },
-    /// A sample or the metadata have a list of the wrong length.
+    /// A row or the metadata have a list of the wrong length.
     #[error("{path}: {quantity} has {found} values where {expected} are expected", path = .path.display())]
     WrongLength {
         /// The results file.
@@ -108,16 +110,16 @@ pub enum FileError {
         /// The length given.
         found: usize,
     },
-    /// A NaN or an infinity in a sample; the sample is not stored, those before it are.
+    /// A NaN or an infinity in a row; the row is not stored, those before it are.
     #[error(
         "{path}: {quantity} is {value} at time {time}: the run has become unstable there; \
-         use a smaller step (the samples before it are in the file)",
+         use a smaller step (the rows before it are in the file)",
         path = .path.display()
     )]
     NotFinite {
         /// The results file.
         path: PathBuf,
-        /// Time of the sample, in the run's unit of time.
+        /// Time of the row, in the run's unit of time.
         time: f64,
         /// Name of the dataset that was to hold the value.
         quantity: String,
@@ -199,7 +201,7 @@ impl FileError {
             | Self::NotResults { path, .. }
             | Self::Complete { path, .. }
             | Self::NothingToResume { path, .. }
-            | Self::PointName { path, .. }
+            | Self::PlaceName { path, .. }
             | Self::NulInText { path, .. }
             | Self::WrongLength { path, .. }
             | Self::NotFinite { path, .. }

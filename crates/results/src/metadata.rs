@@ -52,7 +52,7 @@ pub struct Metadata {
     pub scheme: String,
     /// Length of its steps, where they have one.
     pub step: Option<f64>,
-    /// Relative error allowed in a step, where that sets its length.
+    /// What the estimated relative errors of all steps may sum to, where that sets their lengths.
     pub tolerance: Option<f64>,
     /// Version of the program that made the run.
     pub program_version: String,
@@ -87,7 +87,7 @@ impl BodyProperties {
 impl Metadata {
     /// Refuses what a file cannot hold; `path` is named in messages.
     pub(crate) fn check(&self, path: &Path) -> Result<(), FileError> {
-        self.check_point_names(path)?;
+        self.check_names(path)?;
         let BodyProperties { mass, center_of_mass, inertia, origin, frequencies, damping_ratios, static_shapes } =
             &self.body;
         for (quantity, expected, found) in [
@@ -118,10 +118,10 @@ impl Metadata {
         Ok(())
     }
 
-    fn check_point_names(&self, path: &Path) -> Result<(), FileError> {
+    fn check_names(&self, path: &Path) -> Result<(), FileError> {
         let mut before = HashSet::new();
-        let points = self.point_names.iter().map(|name| ("points", name));
-        for (kind, name) in points.chain(self.support_names.iter().map(|name| ("supports", name))) {
+        let points = self.point_names.iter().map(|name| ("output point", name));
+        for (kind, name) in points.chain(self.support_names.iter().map(|name| ("support", name))) {
             let reason = match name.as_str() {
                 "" => "it is empty",
                 name if name.contains('/') => "it holds a /, which separates the parts of a path",
@@ -129,7 +129,7 @@ impl Metadata {
                 name if !before.insert((kind, name)) => "it occurs twice",
                 _ => continue,
             };
-            return Err(FileError::PointName { path: path.to_path_buf(), name: name.clone(), reason });
+            return Err(FileError::PlaceName { path: path.to_path_buf(), kind, name: name.clone(), reason });
         }
         Ok(())
     }

@@ -61,9 +61,18 @@ impl VtkHdf {
     /// Writes a field of a step, point by point; both are numbered from 0.
     ///
     /// # Errors
-    /// [`FileError::Hdf5`], also for a list of another length than points times components.
+    /// [`FileError::WrongLength`] for a field that there is not; [`FileError::Hdf5`], also for a list of another length than
+    /// points times components, and for a step that there is not.
     pub fn write(&self, step: usize, field: usize, values: &[f64]) -> Result<(), FileError> {
-        let Some(dataset) = self.datasets.get(field) else { return Ok(()) };
+        let Some(dataset) = self.datasets.get(field) else {
+            let (expected, found) = (field + 1, self.datasets.len());
+            return Err(FileError::WrongLength {
+                path: self.path.clone(),
+                quantity: "the fields".into(),
+                expected,
+                found,
+            });
+        };
         let rows = step * self.points..(step + 1) * self.points;
         let written = match values.len() / self.points.max(1) {
             1 => dataset.write_slice(ArrayView1::from(values), s![rows]),

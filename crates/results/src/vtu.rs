@@ -13,7 +13,8 @@ use std::path::Path;
 /// Writes the fields of one step, each point by point.
 ///
 /// # Errors
-/// [`FileError::Exists`] and [`FileError::System`].
+/// [`FileError::WrongLength`] for a field of another length than points times components; [`FileError::Exists`] and
+/// [`FileError::System`].
 pub fn write_vtu(
     path: impl AsRef<Path>,
     grid: &Grid,
@@ -21,6 +22,13 @@ pub fn write_vtu(
     overwrite: bool,
 ) -> Result<(), FileError> {
     let path = path.as_ref();
+    for (field, values) in fields {
+        let (expected, found) = (grid.points.len() * field.components, values.len());
+        if found != expected {
+            let quantity = field.name.clone();
+            return Err(FileError::WrongLength { path: path.to_owned(), quantity, expected, found });
+        }
+    }
     let place = temporary(path, overwrite)?;
     let written = File::create(&place).map(BufWriter::new).and_then(|mut file| {
         write_grid(&mut file, grid, fields)?;

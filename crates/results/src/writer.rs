@@ -83,8 +83,7 @@ impl<R> Writer<R> {
     /// Begins the results file `path` with the metadata and empty histories.
     ///
     /// # Errors
-    /// [`FileError::PointName`] for a name that is empty, ".", "..", contains "/" or NUL or occurs
-    /// twice, [`FileError::WrongLength`] if there are not as many damping ratios as frequencies,
+    /// [`FileError::PlaceName`] for a name that is empty, contains "/" or NUL or occurs twice, [`FileError::WrongLength`] if there are not as many damping ratios as frequencies,
     /// [`FileError::ConstantNotFinite`], [`FileError::NulInText`]; [`FileError::Busy`] if another process writes it,
     /// [`FileError::Unfinished`], [`FileError::NotResults`] and [`FileError::Link`] for what would be lost;
     /// [`FileError::NameNotUtf8`], [`FileError::System`] and [`FileError::Hdf5`] if the file cannot be written.
@@ -188,9 +187,12 @@ impl<R> Writer<R> {
     /// Adds a row. It reaches the file with the next block of rows, flush, or at the end.
     ///
     /// # Errors
-    /// [`FileError::WrongLength`] and [`FileError::NotFinite`] leave the row out and everything before
-    /// it in; [`FileError::System`] and [`FileError::Hdf5`] if the file cannot be written.
+    /// All leave the row out and everything before it in: [`FileError::WrongLength`], [`FileError::NotFinite`], and
+    /// [`FileError::System`] and [`FileError::Hdf5`] if the rows before it cannot be written. Those wait for another try.
     pub fn push(&mut self, row: &R) -> Result<(), FileError> {
+        if self.rows_buffered >= self.rows_per_write {
+            self.write_waiting()?;
+        }
         let Self { present, waiting: Block { values, .. }, metadata, .. } = self;
         let before = values.len();
         let mut is_whole = true;
@@ -204,7 +206,7 @@ impl<R> Writer<R> {
             return self.refuse(row);
         }
         self.rows_buffered += 1;
-        if self.rows_buffered >= self.rows_per_write { self.write_waiting() } else { Ok(()) }
+        Ok(())
     }
 
     /// Refuses a row that lacks a value, has more than there are places for, or one that is not finite.
@@ -281,20 +283,17 @@ impl<R> Writer<R> {
             return Ok(());
         }
         let rows = self.rows_written..self.rows_written + self.rows_buffered;
-        let room = if rows.end > self.store.rows() { self.grow(rows.end) } else { Ok(()) };
-        let outcome = room.and_then(|()| {
-            let columns = self.waiting.columns();
-            self.store.write(&self.place.part, rows.clone(), columns.clone())?;
-            self.sums.add(columns);
-            Ok(())
-        });
-        // Should it fail, the rows are given up, and no later call takes others for them.
+        // Should any of this fail, the rows wait on for the next call.
+        if rows.end > self.store.rows() {
+            self.grow(rows.end)?;
+        }
+        let columns = self.waiting.columns();
+        self.store.write(&self.place.part, rows.clone(), columns.clone())?;
+        self.sums.add(columns);
         self.waiting.truncate(0);
         self.rows_buffered = 0;
-        if outcome.is_ok() {
-            self.rows_written = rows.end;
-        }
-        outcome
+        self.rows_written = rows.end;
+        Ok(())
     }
 
     /// Goes over to a file with room for `rows` rows or more, by another one that takes the name.

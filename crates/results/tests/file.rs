@@ -96,6 +96,48 @@ fn a_sample_that_is_not_finite_is_refused_and_those_before_it_stay() {
 }
 
 #[test]
+fn rows_that_could_not_be_written_wait_for_another_try() {
+    let (folder, path) = folder();
+    let place = path.parent().unwrap().to_owned();
+    let away = folder.path().with_extension("away");
+    let mut writer = Writer::create(&path, &metadata(2, &["P1"]), &COLUMNS, Expected::default()).unwrap();
+    let rows = 2000;
+    let mut refused = 0;
+    for i in 0..rows {
+        let row = Row::new(i, 2, 1);
+        // A larger file has no place to be made in.
+        std::fs::rename(&place, &away).unwrap();
+        let pushed = writer.push(&row);
+        std::fs::rename(&away, &place).unwrap();
+        if let Err(error) = pushed {
+            assert!(matches!(error, FileError::System { .. }), "{error}");
+            refused += 1;
+            writer.push(&row).unwrap();
+        }
+    }
+    assert!(refused > 0);
+    writer.finish().unwrap();
+    assert_rows(&Results::open(&path, &COLUMNS).unwrap(), rows);
+}
+
+#[test]
+fn fields_that_do_not_fit_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let grid = Grid { points: vec![[0.0; 3]; 3], connectivity: vec![0, 1, 2], cells: CellKind::Triangle };
+    let field = Field { name: "velocity".into(), components: 3 };
+    let path = folder.path().join("field.vtu");
+    let error = write_vtu(&path, &grid, &[(&field, &[0.0; 2])], false).unwrap_err();
+    assert!(matches!(error, FileError::WrongLength { expected: 9, found: 2, .. }), "{error}");
+    assert!(!path.exists());
+    write_vtu(&path, &grid, &[(&field, &[0.0; 9])], false).unwrap();
+    let out = VtkHdf::create(folder.path().join("field.vtkhdf"), &grid, None, &[field], false).unwrap();
+    assert!(matches!(out.write(0, 1, &[0.0; 9]), Err(FileError::WrongLength { expected: 2, found: 1, .. })));
+    assert!(matches!(out.write(0, 0, &[0.0; 2]), Err(FileError::Hdf5 { .. })));
+    assert!(matches!(out.write(1, 0, &[0.0; 9]), Err(FileError::Hdf5 { .. })));
+    out.write(0, 0, &[0.0; 9]).unwrap();
+}
+
+#[test]
 fn wrong_lengths_and_names_are_refused() {
     let (_folder, path) = folder();
     let mut writer = write(&path, 2, &metadata(2, &["P1"]));
@@ -117,7 +159,7 @@ fn wrong_lengths_and_names_are_refused() {
 
     for names in [[""].as_slice(), &["a/b"], &["a\0"], &["a", "a"]] {
         let error = Writer::create(&path, &metadata(1, names), &COLUMNS, Expected::default()).unwrap_err();
-        assert!(matches!(error, FileError::PointName { .. }), "{names:?}: {error}");
+        assert!(matches!(error, FileError::PlaceName { .. }), "{names:?}: {error}");
     }
     let mut unequal = metadata(2, &[]);
     unequal.body.damping_ratios.pop();

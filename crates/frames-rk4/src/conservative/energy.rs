@@ -54,7 +54,7 @@ impl ConservativeBody {
             branch_time: 0.0,
             body_from_global: &Matrix3::identity(),
             origin_global: self.origin,
-            velocity_global: Vector3::zeros(),
+            origin_velocity_global: Vector3::zeros(),
             omega_body: Vector3::zeros(),
             coordinates,
             unit: true,

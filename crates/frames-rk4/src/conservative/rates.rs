@@ -161,7 +161,7 @@ impl ConservativeBody {
                 branch_time,
                 body_from_global: &body_from_global,
                 origin_global: get(slow, part::POSITION),
-                velocity_global: velocity,
+                origin_velocity_global: velocity,
                 omega_body,
                 coordinates,
                 unit: false,

@@ -43,7 +43,7 @@ impl Load for FieldLoad {
             ("the load stiffness of a field of forces", load_stiffness.len(), modes * modes),
         ] {
             if found != 0 && found != expected {
-                return Err(SetupError::Length { what, expected, found });
+                return Err(SetupError::Entries { what, found, expected: expected.to_string() });
             }
         }
         let vectors = force_change.iter().chain(moment_change).chain([moment_body]).flat_map(|vector| vector.iter());

@@ -3,8 +3,8 @@
 use std::sync::{Arc, Mutex};
 
 use frames_rk4::{
-    History, Initial, LoadFrame, Method, Observation, PointForce, Reached, Rows, SetupError, SharedLoad, Simulation,
-    StepControl,
+    Crossing, Event, History, Initial, LoadFrame, Method, Observation, PointForce, Reached, Rows, SetupError,
+    SharedLoad, Simulation, StepControl, StepError,
 };
 use modal::RigidMotion;
 use nalgebra::Vector3;
@@ -143,6 +143,74 @@ fn a_stop_time_ends_a_step_and_the_run_goes_on() {
         let expected = [&rows[..1], &[(Reached::Stop, 0.4321)], &rows[1..], &[(Reached::End, 1.0)]].concat();
         assert_eq!(reached, expected, "{control:?}");
     }
+}
+
+#[test]
+fn a_row_comes_after_the_stop_or_the_event_that_it_falls_on() {
+    let body = body(RigidMotion::free(), &OMEGA);
+    let run = Run::new(&body, 1.0);
+    let event_at = |time: f64| Event::new("clock", Crossing::Any, move |now: &Observation| now.time - time);
+    for control in [StepControl::Fixed(1e-2), StepControl::Tolerance(1e-8)] {
+        for (met, is_event) in [(0.5, false), (1.0, false), (0.5, true), (1.0, true)] {
+            let mut simulation = run.start(EXPONENTIAL, control, Rows::Interval(0.25));
+            let special = if is_event {
+                Reached::Event(simulation.add_event(event_at(met)).unwrap())
+            } else {
+                simulation.set_stop_time(Some(met));
+                Reached::Stop
+            };
+            let mut reached = Vec::new();
+            while reached.last().is_none_or(|(what, _)| *what != Reached::End) {
+                assert!(reached.len() < 9, "{reached:?}");
+                assert!(!simulation.is_over() || reached.len() == 5);
+                let what = simulation.advance(u64::MAX).unwrap();
+                reached.push((what, simulation.time()));
+                if what == special {
+                    // The row that is due is part of the state.
+                    let saved = simulation.checkpoint().unwrap();
+                    let mut again = run.start(EXPONENTIAL, control, Rows::Interval(0.25)).restored(&saved).unwrap();
+                    assert_eq!(again.advance(u64::MAX).unwrap(), Reached::Row);
+                    assert_eq!(again.time(), simulation.time());
+                }
+            }
+            let mut expected: Vec<_> = [0.25, 0.5, 0.75, 1.0].map(|time| (Reached::Row, time)).into();
+            expected.insert((4.0 * met) as usize - 1, (special, met));
+            expected.push((Reached::End, 1.0));
+            for ((what, time), (expected_what, expected_time)) in reached.iter().zip(&expected) {
+                assert!(
+                    what == expected_what && (time - expected_time).abs() < 1e-12,
+                    "{control:?} {met}: {reached:?}"
+                );
+            }
+            assert_eq!(reached.len(), expected.len(), "{control:?} {met}: {reached:?}");
+        }
+    }
+}
+
+#[test]
+fn an_event_function_that_is_no_number_ends_the_run() {
+    let body = body(RigidMotion::free(), &OMEGA);
+    let run = Run::new(&body, 1.0);
+    let start = || run.start(EXPONENTIAL, StepControl::Fixed(1e-2), Rows::Interval(1.0));
+    let root = |now: &Observation| (0.5 - now.time).sqrt() - 0.1;
+    let mut simulation = start();
+    simulation.add_event(Event::new("root", Crossing::Rising, root)).unwrap();
+    assert!(
+        matches!(simulation.advance(u64::MAX), Err(StepError::NotFinite { time, .. }) if (time - 0.51).abs() < 1e-12)
+    );
+    let added = start().add_event(Event::new("none", Crossing::Any, |_: &Observation| f64::NAN));
+    assert!(matches!(added, Err(StepError::NotFinite { time: 0.0, .. })));
+}
+
+#[test]
+fn no_time_after_an_event_is_inside_the_last_step() {
+    let body = body(RigidMotion::free(), &OMEGA);
+    let mut simulation = Run::new(&body, 1.0).start(EXPONENTIAL, StepControl::Fixed(1e-2), Rows::Interval(1.0));
+    simulation.add_event(Event::new("clock", Crossing::Any, |now: &Observation| now.time - 0.503)).unwrap();
+    assert_eq!(simulation.advance(u64::MAX).unwrap(), Reached::Event(0));
+    let mut out = simulation.observation().unwrap();
+    assert!(simulation.interpolate(0.502, &mut out).is_ok());
+    assert!(matches!(simulation.interpolate(0.508, &mut out), Err(StepError::OutsideLastStep { .. })));
 }
 
 #[test]

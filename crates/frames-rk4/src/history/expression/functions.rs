@@ -63,9 +63,9 @@ pub(super) static FUNCTIONS: [(&str, Function); 26] = [
     ("sqrt", unary(f64::sqrt, |x| 0.5 / x.sqrt())),
     ("cbrt", unary(f64::cbrt, |x| 1.0 / (3.0 * x.cbrt() * x.cbrt()))),
     ("abs", unary(f64::abs, |x| if x == 0.0 { 0.0 } else { x.signum() })),
-    ("sign", unary(f64::signum, |_| 0.0)),
-    ("min", Function::Repeated(Binary { value: f64::min, derivatives: |x, y| first_if(x < y, x == y) })),
-    ("max", Function::Repeated(Binary { value: f64::max, derivatives: |x, y| first_if(x > y, x == y) })),
+    ("sign", unary(|x| if x == 0.0 { 1.0 } else { x.signum() }, |_| 0.0)),
+    ("min", Function::Repeated(Binary { value: least, derivatives: |x, y| first_if(x < y, x == y) })),
+    ("max", Function::Repeated(Binary { value: greatest, derivatives: |x, y| first_if(x > y, x == y) })),
     ("hypot", Function::Binary(Binary { value: f64::hypot, derivatives: toward })),
     ("floor", unary(f64::floor, |_| 0.0)),
     ("ceil", unary(f64::ceil, |_| 0.0)),
@@ -76,6 +76,16 @@ pub(super) static FUNCTIONS: [(&str, Function); 26] = [
 
 const fn unary(value: fn(f64) -> f64, derivative: fn(f64) -> f64) -> Function {
     Function::Unary(Unary { value, derivative })
+}
+
+/// The smaller of two numbers; of what is no number, none.
+fn least(x: f64, y: f64) -> f64 {
+    if x.is_nan() || y.is_nan() { f64::NAN } else { x.min(y) }
+}
+
+/// The larger of two numbers; of what is no number, none.
+fn greatest(x: f64, y: f64) -> f64 {
+    if x.is_nan() || y.is_nan() { f64::NAN } else { x.max(y) }
 }
 
 /// The unit vector along (x, y); zero at the origin, where √(x² + y²) has its kink.
