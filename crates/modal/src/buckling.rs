@@ -34,13 +34,18 @@ impl Solver<'_> {
     /// `product` gives `K_σ V` (N×k) for V (N×k). `start` (N×k) are displacements to begin with, such as vibration modes.
     ///
     /// # Errors
-    /// What `product` returns, and of the static answers [`Solver::static_response`].
+    /// [`ModalError::Size`] for displacements of another body, what `product` returns, and of the static answers
+    /// [`Solver::static_response`].
     pub fn lowest_buckling_ratio<E: From<ModalError>>(
         &self,
         start: MatRef<'_, f64>,
         mut product: impl FnMut(MatRef<'_, f64>) -> Result<Mat<f64>, E>,
     ) -> Result<f64, E> {
         let size = self.rigid.shapes.nrows();
+        if start.nrows() != size {
+            let what = "the displacements to begin with";
+            return Err(ModalError::Size { what, expected: size, found: start.nrows() }.into());
+        }
         // What the given vectors have nothing of, such as the other half of a symmetric body, is in a random one.
         let mut seed = 1;
         let random = self.static_response(self.mass.product(random_block(size, 1, &mut seed).as_ref()).as_ref())?;

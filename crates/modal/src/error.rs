@@ -14,7 +14,7 @@ pub enum ModalError {
         "{what} has {found} rows or columns; expected {expected}, three for each of the nodes (or six, with rotations)"
     )]
     Size {
-        /// "stiffness", "mass" or "forces".
+        /// Which matrix: "stiffness", "mass", "forces", "static answers", …
         what: &'static str,
         /// Degrees of freedom of all nodes.
         expected: usize,
@@ -22,11 +22,13 @@ pub enum ModalError {
         found: usize,
     },
     /// An entry or a position that is NaN or infinite.
-    #[error("{what} holds {value} (at column, axis or node {index}); every number must be finite")]
+    #[error("{what}: {value} in {place} {index} (counted from 0); every number must be finite")]
     NotFinite {
         /// "stiffness", "mass", "positions", …
         what: &'static str,
-        /// Column, node or axis.
+        /// What the index counts: "column", "node", "axis" or "entry".
+        place: &'static str,
+        /// Its number.
         index: usize,
         /// The number.
         value: f64,
@@ -148,6 +150,20 @@ pub enum ModalError {
         /// Nodes of the mesh.
         count: usize,
     },
+    /// Numbers of large modes that do not rise, or of modes that there are not.
+    #[error("the large modes are {found:?}; expected rising numbers below {count}, the number of shapes")]
+    LargeModes {
+        /// The numbers, counted from 0.
+        found: Vec<usize>,
+        /// Modes and static shapes that there are.
+        count: usize,
+    },
+    /// Weights of a point that do not sum to one.
+    #[error("the weights of a point sum to {sum}; expected 1, as of shape functions")]
+    Weights {
+        /// Their sum.
+        sum: f64,
+    },
     /// A held node that is not there.
     #[error("the support holds node {node} (counted from 0); the mesh has {count} nodes")]
     NoSuchNode {
@@ -262,12 +278,12 @@ pub enum ModalError {
     /// Not enough memory.
     #[error(transparent)]
     Memory(#[from] memory::OutOfMemory),
-    /// An index that is too large.
+    /// A factorisation or its ordering that the libraries refuse, as where an index would be too large.
     #[error("the factorisation of {size} unknowns failed: {reason}; use a coarser mesh")]
     Factorization {
         /// Unknowns.
         size: usize,
-        /// faer's reason.
+        /// The reason that is given.
         reason: String,
     },
     /// The search did not end.

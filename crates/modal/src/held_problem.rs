@@ -103,7 +103,8 @@ impl<'a> HeldMatrix<'a> {
         self.free.len() + self.corner.ncols()
     }
 
-    /// Calls `entry` with the column and the value of each entry of a row that is not zero, in the order of the columns.
+    /// Calls `entry` with the column and the value of each entry of a row that is not zero, in the order of the columns;
+    /// of a row that there is not, none.
     pub fn for_each_in_row(&self, row: usize, mut entry: impl FnMut(usize, f64)) {
         let (free, motions) = (self.free.len(), self.corner.ncols());
         let mut not_zero = |column: usize, value: f64| {
@@ -121,6 +122,7 @@ impl<'a> HeldMatrix<'a> {
                 });
                 (0..motions).for_each(|motion| not_zero(free + motion, self.forces[(*freedom, motion)]));
             }
+            None if row >= self.size() => {}
             None => {
                 let motion = row - free;
                 self.free.iter().enumerate().for_each(|(at, freedom)| not_zero(at, self.forces[(*freedom, motion)]));

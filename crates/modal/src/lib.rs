@@ -45,6 +45,7 @@ mod packed_rows;
 mod pairs;
 mod pattern;
 mod polynomials;
+mod positions;
 mod products;
 mod progress;
 mod reduced;

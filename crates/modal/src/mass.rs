@@ -24,6 +24,19 @@ pub struct NodalMass<'a> {
     values: Cow<'a, [f64]>,
 }
 
+/// Refuses a mass matrix (N×N, with N = `expected`) of another size, and entries that are not finite.
+pub(crate) fn check(mass: SparseColMatRef<'_, usize, f64>, expected: usize) -> Result<(), ModalError> {
+    if let Some(found) = [mass.ncols(), mass.nrows()].into_iter().find(|found| *found != expected) {
+        return Err(ModalError::Size { what: "mass", expected, found });
+    }
+    for index in 0..mass.ncols() {
+        if let Some(value) = mass.val_of_col(index).iter().copied().find(|value| !value.is_finite()) {
+            return Err(ModalError::NotFinite { what: "mass", place: "column", index, value });
+        }
+    }
+    Ok(())
+}
+
 impl<'a> NodalMass<'a> {
     /// `M_s` in compressed columns: `nodes[start[j]..start[j + 1]]` are the nodes that node j is coupled to, itself too, in
     /// rising order, and `values` their entries.
@@ -39,7 +52,7 @@ impl<'a> NodalMass<'a> {
         }
         if let Some(entry) = values.iter().position(|value| !value.is_finite()) {
             let index = 3 * (start.partition_point(|first| *first <= entry) - 1);
-            return Err(ModalError::NotFinite { what: "mass", index, value: values[entry] });
+            return Err(ModalError::NotFinite { what: "mass", place: "column", index, value: values[entry] });
         }
         check_symmetric("mass", 3, start, |entry| nodes[entry] as usize, |entry| values[entry])?;
         Ok(Self { start: start.into(), nodes: nodes.into(), values: values.into() })
@@ -48,9 +61,11 @@ impl<'a> NodalMass<'a> {
     /// Takes `M_s` out of M (3n×3n, both triangles stored).
     ///
     /// # Errors
+    /// [`ModalError::Size`] where M is not square with three rows for each node, [`ModalError::NotFinite`],
     /// [`ModalError::AnisotropicMass`] where M is not `M_s ⊗ I₃`, [`ModalError::NotSymmetric`] where M_s is not symmetric.
     pub fn new(mass: SparseColMatRef<'_, usize, f64>) -> Result<Self, ModalError> {
         let n = mass.ncols() / 3;
+        check(mass, if mass.ncols() == 3 * n { 3 * n } else { 3 * n + 3 })?;
         // A column of each node, which grows by doubling, and then all of them in one.
         memory::check("the mass matrix over nodes", 48 * mass.row_idx().len() / 9)?;
         let entry = |row: usize, column: usize| mass.get(row, column).copied().unwrap_or(0.0);

@@ -5,7 +5,7 @@ use faer::{Mat, MatMut, MatRef, Side};
 
 use crate::columns::Columns;
 use crate::error::ModalError;
-use crate::mass::NodalMass;
+use crate::mass::{NodalMass, check};
 use crate::pattern::Pattern;
 use crate::products::{Packed, symmetric_product_into};
 use crate::symmetry::check_symmetric;
@@ -34,9 +34,10 @@ impl<'a> MassMatrix<'a> {
     /// Takes M (3n×3n or 6n×6n, both triangles stored) of `nodes` nodes.
     ///
     /// # Errors
-    /// [`ModalError::Size`], [`ModalError::NotSymmetric`].
+    /// [`ModalError::Size`], [`ModalError::NotFinite`], [`ModalError::NotSymmetric`].
     pub fn new(mass: SparseColMatRef<'a, usize, f64>, nodes: usize) -> Result<Self, ModalError> {
         let freedoms = freedoms("mass", mass.ncols(), nodes)?;
+        check(mass, freedoms * nodes)?;
         if freedoms == 3 {
             match NodalMass::new(mass) {
                 Err(ModalError::AnisotropicMass { .. }) => {}
@@ -46,6 +47,14 @@ impl<'a> MassMatrix<'a> {
         let (rows, values) = (mass.symbolic().row_idx(), mass.val());
         check_symmetric("mass", 1, mass.symbolic().col_ptr(), |entry| rows[entry], |entry| values[entry])?;
         Ok(Self::General(GeneralMass { matrix: mass, freedoms }))
+    }
+
+    /// Number of nodes n.
+    pub(crate) fn nodes(&self) -> usize {
+        match self {
+            Self::Nodal(mass) => mass.node_count(),
+            Self::General(mass) => mass.nodes(),
+        }
     }
 
     /// Degrees of freedom of a node: 3 or 6.

@@ -248,6 +248,9 @@ impl Constants {
     }
 }
 
+/// Weights of a point sum to one but for this.
+const WEIGHTS: f64 = 1e-6;
+
 /// Refuses a list of another length.
 fn check_size(what: &'static str, found: usize, expected: usize) -> Result<(), ModalError> {
     if found == expected { Ok(()) } else { Err(ModalError::Length { what, found, expected }) }
@@ -255,7 +258,7 @@ fn check_size(what: &'static str, found: usize, expected: usize) -> Result<(), M
 
 fn finite(what: &'static str, values: impl IntoIterator<Item = f64>) -> Result<(), ModalError> {
     match values.into_iter().enumerate().find(|(_, value)| !value.is_finite()) {
-        Some((index, value)) => Err(ModalError::NotFinite { what, index, value }),
+        Some((index, value)) => Err(ModalError::NotFinite { what, place: "entry", index, value }),
         None => Ok(()),
     }
 }
@@ -265,13 +268,17 @@ impl BodyPoint {
     ///
     /// # Errors
     /// [`ModalError::NoNode`] for a node that the mesh does not have, [`ModalError::Length`] for lists of other lengths,
-    /// [`ModalError::NotFinite`].
+    /// [`ModalError::NotFinite`], [`ModalError::Weights`].
     pub fn new(modes: &Modes, positions: &[[f64; 3]], nodes: &[u32], weights: &[f64]) -> Result<Self, ModalError> {
         let count = positions.len();
         check_size("the list of weights", weights.len(), nodes.len())?;
         let freedoms = if modes.shapes.nrows() == 6 * count { 6 } else { 3 };
         check_size("the rows of the mode shapes", modes.shapes.nrows(), freedoms * count)?;
         finite("weight", weights.iter().copied())?;
+        let sum = weights.iter().sum::<f64>();
+        if (sum - 1.0).abs() > WEIGHTS {
+            return Err(ModalError::Weights { sum });
+        }
         if let Some(node) = nodes.iter().copied().find(|node| *node as usize >= count) {
             return Err(ModalError::NoNode { node, count });
         }

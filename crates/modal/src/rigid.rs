@@ -7,6 +7,7 @@ use crate::dense::whitening;
 use crate::error::ModalError;
 use crate::mass_matrix::MassMatrix;
 use crate::polynomials::{Field, rigid_field};
+use crate::positions::check_count;
 use crate::rigid_fields::{General, rigid_fields};
 use crate::stiffness::StiffnessMatrix;
 use crate::support::RigidMotion;
@@ -39,7 +40,7 @@ pub struct RigidModes {
     /// B (3×3): columns are the angular velocities of the rotation modes; L⁻ᵀ of a free or pinned body, J₀ = L Lᵀ,
     /// and a/√(aᵀJ₀a) first of a hinge.
     pub rotation_basis: Matrix3<f64>,
-    /// The modes (3n×6).
+    /// The modes (3n×6, or 6n×6 of nodes with rotations).
     pub shapes: Mat<f64>,
 }
 
@@ -47,9 +48,10 @@ impl RigidModes {
     /// Mass properties and rigid modes of the nodes at `positions` (n×3) with the mass matrix `mass`.
     ///
     /// # Errors
-    /// [`ModalError::NoInertia`] where a motion meets neither mass nor inertia; [`ModalError::NotUnit`];
+    /// [`ModalError::Length`] where there are not as many positions as nodes, or none; [`ModalError::NoInertia`] where a motion meets neither mass nor inertia; [`ModalError::NotUnit`];
     /// [`ModalError::NoRigidBodyMass`] of a body that moves.
     pub fn new(mass: &MassMatrix<'_>, positions: &[[f64; 3]], motion: RigidMotion) -> Result<Self, ModalError> {
+        check_count(positions, mass.nodes())?;
         // Measured from the first node, so that a body far from the mesh's origin loses no digits.
         let first = Vector3::from(positions[0]);
         let (total, moment) = match mass {

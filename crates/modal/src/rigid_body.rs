@@ -24,12 +24,13 @@ impl ReducedBody {
         motion: RigidMotion,
     ) -> Result<Self, ModalError> {
         let inertia = inertia_about_origin;
-        let what = "center of mass or inertia";
-        for (index, column) in
-            [&center_of_mass].into_iter().copied().chain(inertia.column_iter().map(Into::into)).enumerate()
-        {
-            if let Some(value) = column.iter().copied().find(|value| !value.is_finite()) {
-                return Err(ModalError::NotFinite { what, index, value });
+        let not_finite = |numbers: &[f64]| numbers.iter().copied().enumerate().find(|(_, value)| !value.is_finite());
+        for (what, place, found) in [
+            ("the center of mass", "axis", not_finite(center_of_mass.as_slice())),
+            ("the inertia", "entry", not_finite(inertia.as_slice())),
+        ] {
+            if let Some((index, value)) = found {
+                return Err(ModalError::NotFinite { what, place, index, value });
             }
         }
         for (row, column) in [(1, 0), (2, 0), (2, 1)] {

@@ -15,6 +15,7 @@ use faer::{Mat, MatRef, Side};
 use crate::error::ModalError;
 use crate::foretold::of_vectors;
 use crate::solve::{Modes, Solver};
+use crate::statics::check_finite;
 use crate::tall;
 
 /// What a static answer adds to the modes must be more than this part of it: less is rounding.
@@ -50,7 +51,8 @@ impl Solver<'_> {
     /// [`static_response`](Self::static_response) to them.
     ///
     /// # Errors
-    /// [`ModalError::Size`], [`ModalError::NotFinite`].
+    /// [`ModalError::Length`], [`ModalError::Size`], [`ModalError::NotFinite`], [`ModalError::LargeModes`];
+    /// [`ModalError::Memory`] and [`ModalError::DenseEigen`] where the numbers cannot be had.
     pub fn second_order_shapes(
         &self,
         modes: Modes,
@@ -60,17 +62,17 @@ impl Solver<'_> {
     ) -> Result<SecondOrderShapes, ModalError> {
         let (size, dynamic) = (modes.shapes.nrows(), modes.shapes.ncols());
         let pairs = SecondOrderShapes::pairs(large.len());
-        for (what, found) in [("forces of second order", forces.ncols()), ("answers to them", answers.ncols())] {
-            if found != pairs.len() {
-                return Err(ModalError::Size { what, expected: pairs.len(), found });
+        for (what, vectors) in [("forces of second order", forces), ("the answers to them", answers)] {
+            if vectors.ncols() != pairs.len() {
+                return Err(ModalError::Length { what, expected: pairs.len(), found: vectors.ncols() });
             }
+            if vectors.nrows() != size {
+                return Err(ModalError::Size { what, expected: size, found: vectors.nrows() });
+            }
+            check_finite(what, vectors)?;
         }
-        if let Some(found) = large.last().copied().filter(|last| *last >= dynamic) {
-            return Err(ModalError::Size {
-                what: "modes up to the last large one",
-                expected: dynamic,
-                found: found + 1,
-            });
+        if !(large.is_sorted_by(|a, b| a < b) && large.last().is_none_or(|last| *last < dynamic)) {
+            return Err(ModalError::LargeModes { found: large.to_vec(), count: dynamic });
         }
         memory::check("shapes of second order", of_vectors(size, 3 * (dynamic + pairs.len())))?;
         let follow = self.beside(&modes, answers, DEPENDENT)?;

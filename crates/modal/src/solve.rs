@@ -16,6 +16,7 @@ use crate::lanczos::{BLOCK, FIXED, largest_pairs, room};
 use crate::mass::NodalMass;
 use crate::mass_matrix::{MassMatrix, freedoms};
 use crate::polynomials::Polynomials;
+use crate::positions::check_finite;
 use crate::progress::Progress;
 use crate::rigid::RigidModes;
 use crate::ritz::{RitzPairs, rayleigh_ritz};
@@ -174,7 +175,7 @@ impl<'a> Solver<'a> {
         let started = Instant::now();
         let (stiffness, mass) = (StiffnessMatrix::Nodal(stiffness), MassMatrix::Nodal(mass));
         check_sizes([("stiffness", [stiffness.ncols(); 2]), ("mass", [mass.ncols(); 2])], 3 * positions.len())?;
-        check_positions(positions)?;
+        check_finite(positions)?;
         Self::of_checked(started, stiffness, mass, 0, positions, support)
     }
 
@@ -428,10 +429,10 @@ fn check_input(
         check_sizes([(what, [matrix.nrows(), matrix.ncols()])], expected)?;
         if let Some(index) = (0..matrix.ncols()).find(|j| matrix.val_of_col(*j).iter().any(|v| !v.is_finite())) {
             let value = matrix.val_of_col(index).iter().copied().find(|v| !v.is_finite()).unwrap_or(f64::NAN);
-            return Err(ModalError::NotFinite { what, index, value });
+            return Err(ModalError::NotFinite { what, place: "column", index, value });
         }
     }
-    check_positions(positions)
+    check_finite(positions)
 }
 
 /// Refuses matrices that have not so many rows and columns, and those that have none.
@@ -439,13 +440,6 @@ fn check_sizes<const N: usize>(found: [(&'static str, [usize; 2]); N], expected:
     let sizes = found.into_iter().flat_map(|(what, sizes)| sizes.map(|found| (what, found)));
     match sizes.into_iter().find(|(_, found)| *found != expected || *found == 0) {
         Some((what, found)) => Err(ModalError::Size { what, expected, found }),
-        None => Ok(()),
-    }
-}
-
-fn check_positions(positions: &[[f64; 3]]) -> Result<(), ModalError> {
-    match positions.iter().enumerate().find_map(|(i, x)| x.iter().find(|c| !c.is_finite()).map(|c| (i, *c))) {
-        Some((index, value)) => Err(ModalError::NotFinite { what: "positions", index, value }),
         None => Ok(()),
     }
 }

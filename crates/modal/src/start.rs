@@ -101,14 +101,8 @@ pub(crate) fn shift_of(polynomials: &Polynomials, motion: &RigidMotion) -> Resul
 fn lowest(stiffness: &Mat<f64>, gram: Mat<f64>, coupling: &Mat<f64>) -> Result<f64, ModalError> {
     // Rigid parts are taken out of the Gram matrix; K has none of them to begin with.
     let gram = gram - coupling.transpose() * coupling;
-    let unit = |i: usize| if gram[(i, i)] > 0.0 { 1.0 / gram[(i, i)].sqrt() } else { 0.0 };
-    let scaled = |matrix: &Mat<f64>| Mat::from_fn(FIELDS, FIELDS, |i, j| matrix[(i, j)] * unit(i) * unit(j));
-    let (stiffness, gram) = (scaled(stiffness), scaled(&gram));
-    let (values, vectors) = symmetric_eigen(&gram)?;
-    let largest = values.iter().copied().fold(0.0, f64::max);
-    let kept: Vec<usize> = (0..values.len()).filter(|i| values[*i] > DEPENDENT * largest).collect();
-    let whitened = Mat::from_fn(gram.nrows(), kept.len(), |i, j| vectors[(i, kept[j])] / values[kept[j]].sqrt());
-    let projected = whitened.transpose() * &stiffness * &whitened;
+    let whitened = independent(&gram)?;
+    let projected = whitened.transpose() * stiffness * &whitened;
     let (ritz, _) = symmetric_eigen(&projected)?;
     // A mechanism may hide among the polynomials with no energy at all; the scale is that of those with some.
     let scale = ritz.iter().copied().fold(0.0, f64::max);

@@ -172,10 +172,10 @@ fn orthonormalize(vectors: [&mut Mat<f64>; 2], wholes: &[f64], least: f64) -> us
     count
 }
 
-fn check_finite(what: &'static str, vectors: MatRef<'_, f64>) -> Result<(), ModalError> {
+pub(crate) fn check_finite(what: &'static str, vectors: MatRef<'_, f64>) -> Result<(), ModalError> {
     for (index, vector) in vectors.col_iter().enumerate() {
         if let Some(value) = vector.iter().copied().find(|value| !value.is_finite()) {
-            return Err(ModalError::NotFinite { what, index, value });
+            return Err(ModalError::NotFinite { what, place: "column", index, value });
         }
     }
     Ok(())

@@ -50,7 +50,7 @@ impl<'a> NodalStiffness<'a> {
             // The last node whose blocks begin at the entry or before it.
             let node = start.partition_point(|first| 9 * first <= entry) - 1;
             let index = 3 * node + (entry - 9 * start[node]) / (3 * (start[node + 1] - start[node]));
-            return Err(ModalError::NotFinite { what: "stiffness", index, value: self.values[entry] });
+            return Err(ModalError::NotFinite { what: "stiffness", place: "column", index, value: self.values[entry] });
         }
         check_symmetric_blocks("stiffness", start, nodes, self.values)
     }

@@ -269,7 +269,7 @@ impl RigidMotion {
     pub(crate) fn check(&self) -> Result<(), ModalError> {
         let point = self.fixed_point().unwrap_or_default();
         if let Some((index, value)) = point.iter().enumerate().find(|(_, c)| !c.is_finite()) {
-            return Err(ModalError::NotFinite { what: "the support's point", index, value: *value });
+            return Err(ModalError::NotFinite { what: "the support's point", place: "axis", index, value: *value });
         }
         let is_unit = |direction: &Vector3<f64>| (direction.norm() - 1.0).abs() < UNIT;
         match self.translations().iter().chain(self.rotations()).find(|direction| !is_unit(direction)) {

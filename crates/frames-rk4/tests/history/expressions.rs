@@ -57,6 +57,13 @@ fn formulas_mean_what_they_mean_in_mathematics() {
 }
 
 #[test]
+fn the_sign_of_zero_is_one_whatever_its_sign() {
+    for text in ["sign(t)", "sign(-t)", "sign(0*t)"] {
+        assert_eq!(at(&formula(text), 0.0), 1.0, "{text}");
+    }
+}
+
+#[test]
 fn corners_that_are_named_split_the_law() {
     let saw = Expression::new("10*t - floor(10*t)", vec![0.3, 0.2, 0.1, 0.2]).unwrap();
     assert_eq!((saw.text(), saw.corners()), ("10*t - floor(10*t)", &[0.1, 0.2, 0.3][..]));

@@ -192,7 +192,9 @@ fn spoiled_formulas() {
 #[test]
 fn an_expression_that_is_no_number_somewhere() {
     let cases = [("1/t", 0.0, f64::INFINITY), ("0/t", 0.0, f64::NAN), ("sqrt(0.5 - t)", 0.5, f64::NAN)];
-    for (text, near, value) in cases {
+    // A bound does not hide it.
+    let bounded = [("max(0, sqrt(0.5 - t))", 0.5, f64::NAN), ("min(sqrt(0.5 - t), 1)", 0.5, f64::NAN)];
+    for (text, near, value) in cases.into_iter().chain(bounded) {
         for history in [formula(text), History::Product { factors: vec![History::Constant, formula(text)] }] {
             match history.check_over(2.0) {
                 Err(SetupError::HistoryNotFinite { time, found }) => {

@@ -108,7 +108,7 @@ fn what_is_wrong_with_them_is_named() {
     let count = start[2] - start[1];
     let (entry, row) = (9 * start[1] + 3 * (count - 1) + 1, 3 * nodes[start[2] - 1] as usize + 1);
     match with_entry(&body, entry, |_| f64::NAN) {
-        Err(ModalError::NotFinite { what: "stiffness", index: 3, value }) => assert!(value.is_nan()),
+        Err(ModalError::NotFinite { what: "stiffness", place: "column", index: 3, value }) => assert!(value.is_nan()),
         other => panic!("{other:?}"),
     }
     // Much less than the largest entry on the diagonal, and still no rounding.

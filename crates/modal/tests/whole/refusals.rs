@@ -1,7 +1,8 @@
 //! What is refused, and in what words.
 
+use faer::Mat;
 use faer::sparse::{SparseColMat, SparseColMatRef, Triplet};
-use modal::{ModalError, Modes, RigidMotion, Solver, Support};
+use modal::{BodyPoint, MassMatrix, ModalError, Modes, NodalMass, RigidModes, RigidMotion, Solver, Support};
 use nalgebra::Vector3;
 
 use crate::bodies::{Body, CORNER, block, free_modes, tetrahedra};
@@ -267,5 +268,45 @@ fn a_support_that_is_not_there() {
             let error = with_support(motion, &[0, 1, 3]).unwrap();
             assert!(matches!(error, ModalError::NotUnit { .. }), "{error}");
         }
+    }
+}
+
+#[test]
+fn what_does_not_fit_is_refused_wherever_it_is_given() {
+    let body = small();
+    let (nodes, positions) = (body.positions.len(), &body.positions[..]);
+    let zeros = |rows: usize, columns: usize| Sparse::try_new_from_triplets(rows, columns, &[]).unwrap();
+    for (rows, columns) in [(6, 3), (3, 6), (4, 4)] {
+        let error = NodalMass::new(zeros(rows, columns).as_ref()).err().unwrap();
+        assert!(matches!(error, ModalError::Size { what: "mass", .. }), "{error}");
+    }
+    assert!(matches!(MassMatrix::new(zeros(6, 3).as_ref(), 1), Err(ModalError::Size { expected: 3, found: 6, .. })));
+    let nan = changed(body.matrices.mass(), |i, j, m| Some(if i == 7 && j == 7 { f64::NAN } else { m }));
+    let error = MassMatrix::new(nan.as_ref(), nodes).unwrap_err();
+    assert!(error.to_string().contains("mass: NaN in column 7 (counted from 0)"), "{error}");
+
+    let mass = MassMatrix::new(body.matrices.mass(), nodes).unwrap();
+    for few in [0, nodes - 1] {
+        let error = RigidModes::new(&mass, &positions[..few], RigidMotion::free()).unwrap_err();
+        assert!(matches!(error, ModalError::Length { what: "the list of positions", .. }), "{error}");
+    }
+    let solver = body.held(&Support::free());
+    let modes = solver.modes(3, |_| ()).unwrap();
+    let buckling =
+        |rows: usize| solver.lowest_buckling_ratio::<ModalError>(Mat::zeros(rows, 1).as_ref(), |v| Ok(v.to_owned()));
+    assert!(matches!(buckling(3 * nodes - 1), Err(ModalError::Size { .. })));
+    let point = |weights: [f64; 2]| BodyPoint::new(&modes, positions, &[0, 1], &weights);
+    assert!(matches!(point([1.0, 1.0]), Err(ModalError::Weights { sum: 2.0 })));
+    assert!(point([-0.5, 1.5]).is_ok());
+
+    let second = |large: &[usize], rows: usize, pairs: usize, number: f64| {
+        let forces = Mat::from_fn(rows, pairs, |_, _| number);
+        solver.second_order_shapes(modes.clone(), large, forces.as_ref(), Mat::zeros(3 * nodes, pairs).as_ref())
+    };
+    assert!(matches!(second(&[0], 3 * nodes, 2, 0.0), Err(ModalError::Length { expected: 1, found: 2, .. })));
+    assert!(matches!(second(&[0], 3 * nodes + 1, 1, 0.0), Err(ModalError::Size { .. })));
+    assert!(matches!(second(&[0], 3 * nodes, 1, f64::NAN), Err(ModalError::NotFinite { place: "column", .. })));
+    for large in [[90, 1], [1, 0], [1, 1], [0, 3]] {
+        assert!(matches!(second(&large, 3 * nodes, 3, 0.0), Err(ModalError::LargeModes { count: 3, .. })), "{large:?}");
     }
 }
