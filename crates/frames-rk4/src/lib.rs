@@ -1,4 +1,11 @@
-//! Motion of a flexible body in a sequence of inertial frames that travel with its rigid motion, after X. Liu.
+//! The motion of a flexible body that has been reduced to modes.
+//!
+//! Begin with [`Simulation::builder`]. Two formulations can be stepped:
+//!
+//! * the conservative form in the mean-axis frame ([`ConservativeMotion`]), the default: momenta are its state, so energy
+//!   and angular momentum are constants of the motion for any number of modes. Its equations are those of
+//!   [`ConservativeBody`], and stand at the head of `conservative.rs`;
+//! * the paper's ([`PaperScheme`]): inertial frames that travel with the rigid motion, after X. Liu.
 //!
 //! One step of [`PaperScheme`] is Eqs. (36) to (40) of the paper: the linear modal model
 //!
