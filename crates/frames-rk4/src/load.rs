@@ -122,10 +122,13 @@ pub struct Kinematics<'a> {
     pub body_from_global: &'a Matrix3<f64>,
     /// Position of the body's origin, global components.
     pub origin_global: Vector3<f64>,
-    /// Velocity of the body's origin, global components; zero where rigid modes, which have it, are among the coordinates.
-    pub(crate) origin_velocity_global: Vector3<f64>,
+    /// Velocity of the body's origin, global components.
+    pub origin_velocity_global: Vector3<f64>,
     /// Angular velocity of the body frame, body components.
     pub omega_body: Vector3<f64>,
+    /// Origin of the frame in which the coordinates are displacements, global components: without rigid modes among them,
+    /// the body's.
+    pub(crate) frame_origin_global: Vector3<f64>,
     pub(crate) coordinates: Coordinates<'a>,
     /// Whether histories are taken as 1.
     pub(crate) unit: bool,
@@ -167,7 +170,7 @@ impl Kinematics<'_> {
 
     /// Position of a point, global components.
     pub fn position_global(&self, point: &PointShapes) -> Vector3<f64> {
-        self.origin_global + self.body_from_global.tr_mul(&self.arm_body(point))
+        self.frame_origin_global + self.body_from_global.tr_mul(&self.arm_body(point))
     }
 
     /// Velocity of a point, global components.

@@ -20,8 +20,11 @@ pub(crate) struct LinearMotion<'a> {
     pub origin_global: Vector3<f64>,
     /// Angular velocity, body components.
     pub omega_body: Vector3<f64>,
-    /// The point that moments are about: where the centre of mass is, body components.
+    /// The point that moments are about: where the centre of mass, which is the body's origin, is in the frame, body
+    /// components.
     pub center_body: Vector3<f64>,
+    /// Its velocity in the frame, body components.
+    pub center_velocity_body: Vector3<f64>,
 }
 
 /// Modal stiffness, damping and loads of mass-normalised modes: `q̈ = f_q − Λ q − D q̇`.
@@ -63,8 +66,17 @@ impl ModalModel {
     /// q̈ of (35) into `acceleration`, and the rates of the loads' work, of the dissipation and of the impulses. The loads
     /// are the mean of those at the given `times`.
     pub(crate) fn rates(&self, frame: &LinearMotion, times: &[f64], acceleration: &mut [f64]) -> Work {
-        let LinearMotion { coordinates, branch_time, body_from_global, origin_global, omega_body, center_body } =
-            *frame;
+        let LinearMotion {
+            coordinates,
+            branch_time,
+            body_from_global,
+            origin_global: frame_origin_global,
+            omega_body,
+            center_body,
+            center_velocity_body,
+        } = *frame;
+        let origin_global = frame_origin_global + body_from_global.tr_mul(&center_body);
+        let origin_velocity_global = body_from_global.tr_mul(&center_velocity_body);
         let Coordinates { displacement, velocity, .. } = coordinates;
         let mut dissipation = 0.0;
         let modes = displacement.iter().zip(velocity).zip(self.stiffness.iter().zip(&self.damping));
@@ -75,7 +87,7 @@ impl ModalModel {
         let mut applied = Applied::new(coordinates, center_body, acceleration);
         applied.weight = 1.0 / times.len() as f64;
         for time in times {
-            let (time, origin_velocity_global, unit) = (*time, Vector3::zeros(), false);
+            let (time, unit) = (*time, false);
             let motion = Kinematics {
                 time,
                 branch_time,
@@ -83,6 +95,7 @@ impl ModalModel {
                 origin_global,
                 origin_velocity_global,
                 omega_body,
+                frame_origin_global,
                 coordinates,
                 unit,
             };

@@ -143,6 +143,7 @@ impl FrameSteps for LimitSteps {
             origin_global: state.origin_global,
             omega_body: state.omega_body,
             center_body: motion.of_origin(q),
+            center_velocity_body: motion.of_origin(y),
         };
         model.rates(&linear, &[state.time], &mut state.modal_acceleration);
         let mut turned = Vector3::zeros();
@@ -178,6 +179,7 @@ impl LimitSteps {
             origin_global: state.origin_global,
             omega_body: omega,
             center_body: motion.of_origin(q),
+            center_velocity_body: motion.of_origin(y),
         };
         rates.work = model.rates(&linear, &[t], &mut rates.velocity);
 

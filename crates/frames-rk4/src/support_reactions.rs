@@ -128,6 +128,7 @@ impl SupportReactions {
             branch_time: now.time,
             body_from_global: &now.attitude.global_to_body(),
             origin_global: now.origin_global,
+            frame_origin_global: now.origin_global,
             origin_velocity_global: Vector3::zeros(),
             omega_body: now.omega_body,
             coordinates,

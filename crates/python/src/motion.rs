@@ -48,7 +48,7 @@ impl Motion {
             time: now.time,
             body_from_global: *now.body_from_global,
             origin: now.origin_global,
-            origin_velocity: now.velocity_global,
+            origin_velocity: now.origin_velocity_global,
             omega_body: now.omega_body,
             modal_displacement: now.modal_displacement().to_vec(),
             modal_velocity: now.modal_velocity().to_vec(),

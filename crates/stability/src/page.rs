@@ -9,15 +9,15 @@ use crate::{Expected, Extent, HardCase, Outcome, schemes, sections};
 pub fn page(extent: Extent, mut progress: impl FnMut(&str)) -> (String, Vec<String>) {
     let mut page = String::from(
         "# Hard cases\n\n\
-         Made by `just stability`, which runs every case with every scheme. A scheme either comes to its end with the \
-         error or drift given, or it is refused or stops at its first bad step, in its own words below the table. In \
-         brackets: the bound that a test holds it to (the tests of `crates/stability` run the same cases, the longest \
-         of them shortened; a refusal is held to its words). Errors and drifts are the largest of the whole run. \
-         Nothing ends in NaN. What stops a run that has gone wrong is an account of the energy: where the start, the \
+         Made by `./dev stability`, which runs every case with every scheme. A scheme either comes to its end with the \
+         error or drift given, or it is refused or stops at its first bad step; its message is then below the table. \
+         In brackets: the bound that a test asserts (the tests of `crates/stability` run the same cases, the longest \
+         of them shortened; of a refusal they check the message). Errors and drifts are the largest of the whole run. \
+         Nothing ends in NaN. A run that has gone wrong is stopped by an account of the energy: where the start, the \
          loads and the damping do not account for half of it, the run ends with the time, the energy and a cure. The \
          formulation of the paper does not keep the angular momentum, and so loses the attitude before the energy: its \
-         runs keep an account of the turns that momentum from nowhere makes, and end where these come to 1 rad. A body \
-         that is refused before it moves is refused by every scheme, in the same words.\n",
+         runs keep an account of the rotation caused by spurious angular momentum, and end where it reaches 1 rad. A \
+         body that is refused before it moves is refused by every scheme, with the same message.\n",
     );
     let mut broken = Vec::new();
     for (title, cases) in sections() {

@@ -54,6 +54,7 @@ impl ConservativeBody {
             branch_time: 0.0,
             body_from_global: &Matrix3::identity(),
             origin_global: self.origin,
+            frame_origin_global: self.origin,
             origin_velocity_global: Vector3::zeros(),
             omega_body: Vector3::zeros(),
             coordinates,

@@ -161,6 +161,7 @@ impl ConservativeBody {
                 branch_time,
                 body_from_global: &body_from_global,
                 origin_global: get(slow, part::POSITION),
+                frame_origin_global: get(slow, part::POSITION),
                 origin_velocity_global: velocity,
                 omega_body,
                 coordinates,

@@ -2,11 +2,12 @@
 
 use std::sync::{Arc, Mutex};
 
+use faer::Mat;
 use frames_rk4::{
-    Crossing, Event, History, Initial, LoadFrame, Method, Observation, PointForce, Reached, Rows, SetupError,
-    SharedLoad, Simulation, StepControl, StepError,
+    Applied, Crossing, Event, History, Initial, Kinematics, LoadFn, LoadFrame, Method, Observation, PointForce,
+    PointShapes, Reached, Rows, SetupError, SharedLoad, Simulation, StepControl, StepError,
 };
-use modal::RigidMotion;
+use modal::{BodyPoint, RigidMotion};
 use nalgebra::Vector3;
 use rigid_kin::Attitude;
 
@@ -278,4 +279,28 @@ fn a_builder_starts_what_a_setup_does_and_refuses_what_it_refuses() {
     assert!(matches!(refused, Err(SetupError::Length { found: 1, .. })));
     let refused = Simulation::builder(&body, StepControl::Fixed(-1.0), 1.0).build();
     assert!(matches!(refused, Err(SetupError::Value { what: "the step", .. })));
+}
+
+#[test]
+fn a_load_sees_the_origin_where_and_as_fast_as_it_is_with_every_scheme() {
+    let body = body(RigidMotion::free(), &OMEGA);
+    let shapes = BodyPoint { position_body: Vector3::zeros(), shapes: Mat::zeros(3, OMEGA.len()) };
+    let origin = PointShapes::new(&body, &shapes);
+    for method in Method::ALL {
+        let seen = Arc::new(Mutex::new(Vec::new()));
+        let (speeds, place) = (Arc::clone(&seen), origin.clone());
+        let law = move |motion: &Kinematics, applied: &mut Applied| {
+            assert!((motion.origin_global - motion.position_global(&place)).norm() < 1e-14);
+            assert!((motion.origin_velocity_global - motion.velocity_global(&place)).norm() < 1e-14);
+            speeds.lock().unwrap().push(motion.origin_velocity_global.norm());
+            applied.force(&place, &Vector3::new(0.1, 0.0, 0.2));
+        };
+        let mut run = Run::new(&body, 0.02);
+        run.loads = vec![Arc::new(LoadFn::new("look", law))];
+        // The paper's schemes turn with products that this body has not got: a step, whatever it comes to, is enough.
+        let _ = run.start(method, StepControl::Fixed(1e-3), Rows::Interval(0.02)).advance(1);
+        // At a start beside the run it is at rest.
+        let moving = seen.lock().unwrap().iter().filter(|speed| **speed > 0.3).count();
+        assert!(moving >= 2, "{method:?} {moving}");
+    }
 }
