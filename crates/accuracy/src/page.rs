@@ -211,15 +211,20 @@ fn write_row(out: &mut String, line: &Line, row: &LadderRun) -> std::fmt::Result
 fn paper_in_words(report: &CostReport) -> String {
     let is_paper = |line: &&Line| line.scheme == "paper";
     let paper: Vec<Line> = report.lines.iter().filter(is_paper).cloned().collect();
-    let mut words = String::new();
-    if let Some(errors) = report.paper_limit.as_ref().and_then(|limit| limit.errors) {
-        let parts: Vec<String> = errors.named().map(|(name, error)| format!("{name} {error:.1e}")).collect();
-        let _ = write!(
-            words,
-            "**The paper's scheme.** However short its steps, the paper's formulation stays away from the conservative \
-             one: {}.",
-            parts.join(", ")
-        );
+    let mut words = "**The paper's scheme.** ".to_owned();
+    match report.paper_limit.as_ref().and_then(|limit| limit.errors) {
+        Some(errors) => {
+            let parts: Vec<String> = errors.named().map(|(name, error)| format!("{name} {error:.1e}")).collect();
+            let _ = write!(
+                words,
+                "However short its steps, the paper's formulation stays away from the conservative one: {}.",
+                parts.join(", ")
+            );
+        }
+        None if limit_fails(report) => words.push_str(
+            "In the limit of short steps the paper's formulation loses the attitude before the end of this run.",
+        ),
+        None => words.push_str("Its limit of short steps was not found."),
     }
     let reached: Vec<(i32, Found, Found)> = DECADES
         .filter_map(|k| Some((k, cheapest(measured(&paper), k)?, cheapest(measured(&report.lines), k)?)))
@@ -245,9 +250,16 @@ fn paper_in_words(report: &CostReport) -> String {
     }
     let closest = measured(&paper).map(|(_, _, m)| m.error).fold(f64::INFINITY, f64::min);
     if closest.is_finite() {
-        let _ = write!(words, " The closest of its runs is {closest:.1e} off; for less it is not enough.");
+        let _ = write!(words, " The smallest error of its runs is {closest:.1e}.");
     }
     words
+}
+
+/// Whether the paper's formulation fails even in the shortest steps that were tried.
+fn limit_fails(report: &CostReport) -> bool {
+    let is_limit = |line: &&Line| line.formulation == "paper" && line.scheme == "rkmk4";
+    let shortest = report.lines.iter().find(is_limit).and_then(|line| line.rows.last());
+    shortest.is_some_and(|row| matches!(row.outcome, Outcome::Failed(_)))
 }
 
 fn write_modes(out: &mut String, report: &CostReport) -> std::fmt::Result {
@@ -296,10 +308,10 @@ fn write_spin(out: &mut String, report: &CostReport, rows: &[SpinRow]) -> std::f
     writeln!(out, "\n## Spin that the paper's scheme gains or loses\n")?;
     writeln!(
         out,
-        "In steady spin its first-order error changes |ω| at the relative rate of about ω²Δt/2: down, or up once a mode is kept \
-         that the centrifugal field stretches. Measured over the {} {time} of \"{}\", as ln(|ω|end/|ω|start) per \
-         {time}; the limit is that of short steps, where the paper's formulation itself does not hold the spin of a \
-         body that is stretched.\n",
+        "In steady spin the first-order error of the scheme changes |ω| at the relative rate of about ω²Δt/2: |ω| \
+         falls, or rises if the centrifugal field stretches one of the modes. Measured over the {} {time} of \"{}\", as \
+         ln(|ω|end/|ω|start) per {time}. The limit is that of short steps, where the paper's formulation itself does \
+         not keep the spin of a body that is stretched.\n",
         report.end, report.title
     )?;
     writeln!(

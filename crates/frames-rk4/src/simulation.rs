@@ -339,6 +339,11 @@ impl Simulation {
         Ok(passed.map(|(number, _)| number))
     }
 
+    /// Whether a row falls on the event or the stop that has been reached, and comes next.
+    pub fn row_is_due(&self) -> bool {
+        self.row_due
+    }
+
     /// Whether there is nothing more to come, neither a step nor a row.
     pub fn is_over(&self) -> bool {
         !self.row_due && self.plan.is_over(self.time())

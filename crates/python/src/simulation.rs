@@ -397,7 +397,8 @@ impl Simulation {
         }
         set.map_err(|error| exception(py, &StartError::from(error)))?;
         // An iteration goes on to the next row: it may set the state at every one.
-        running.is_set = true;
+        // A row that is due here shows the new state.
+        running.is_set = !running.simulation.row_is_due();
         Ok(())
     }
 

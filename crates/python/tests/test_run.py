@@ -100,6 +100,23 @@ def test_a_simulation_stops_at_times_and_goes_on_from_states(ring):
     assert np.array_equal(other.state()["velocity"], state["velocity"])
 
 
+def test_rows_on_stops_and_events_are_kept(rigid):
+    rows = np.linspace(0.0, 1.0, 11)
+    for stop in (0.5, 1.0):
+        simulation = flexframe.Simulation(rigid)
+        assert simulation.advance_to(stop).kind == "stop"
+        if stop == 0.5:
+            simulation.set_state({"velocity": [1.0, 0.0, 0.0]})
+        found = simulation.run()
+        assert found["time"] == pytest.approx(rows[rows > stop - 0.01], rel=1e-12)
+    simulation = flexframe.Simulation(rigid)
+    simulation.add_event("half", lambda row: row.time - 0.5)
+    simulation.add_event("end", lambda row: row.time - 1.0)
+    results = simulation.run()
+    assert results["time"] == pytest.approx(rows, rel=1e-12)
+    assert [name for name, _ in results.events] == ["half", "end"]
+
+
 def test_a_run_from_a_set_state_begins_with_its_row(rigid):
     nothing = flexframe.Force("center", lambda motion: [0.0, 0.0, 0.0])
     simulation = flexframe.Simulation(rigid, [nothing])
