@@ -27,7 +27,7 @@ pub fn run() -> Result<Answer, Box<dyn Error>> {
     let tip = model.points[0].1.clone();
     let gain = 0.2;
     let controller: SharedLoad = Arc::new(LoadFn::new("tip damper", move |motion, applied| {
-        let velocity: Vector3<f64> = motion.velocity_global(&tip) - motion.velocity_global;
+        let velocity: Vector3<f64> = motion.velocity_global(&tip) - motion.origin_velocity_global;
         applied.force(&tip, &(motion.body_from_global * velocity * -gain));
     }));
 

@@ -48,6 +48,7 @@ def write():
         "modes": "\n\n".join(modes_tables.table_of_case(name, programs) for name, programs in cases.items()),
         "least": number(min(unknowns)),
         "most": number(max(unknowns)),
+        "between": f"{size_tables.between_series(sizes, cases):.2f}",
         "size": size_tables.size_table(sizes),
         "slopes": size_tables.slopes(sizes),
         "phases": size_tables.phase_table(sizes),

@@ -1,5 +1,6 @@
 """What docs/performance.md shows of cost against size."""
 
+import modes
 import summary
 from markdown import number, seconds, spread, table
 
@@ -55,6 +56,19 @@ def slopes(sizes):
         powers = [f"{name} N^{summary.slope(values):.2f}" for name, values in points.items()]
         words.append(f"{shape}: {', '.join(powers)}")
     return f"Slopes in log-log over all sizes (N unknowns): {'; '.join(words)}."
+
+
+def between_series(sizes, cases):
+    """How many times as long the same command took in this series as in that of the modes, or the other way round."""
+    runs_of = {runs[0]["mesh"]["unknowns"]: runs for by_size in sizes.values() for runs in by_size}
+    factors = [1.0]
+    for programs in cases.values():
+        there = programs[modes.OURS]
+        here = runs_of.get(there[0]["mesh"]["unknowns"])
+        if here:
+            factor = summary.of(run["seconds"] for run in there)[0] / summary.of(run["seconds"] for run in here)[0]
+            factors += [factor, 1 / factor]
+    return max(factors)
 
 
 def phase_table(sizes):

@@ -30,6 +30,7 @@ mod reduce;
 mod rigid;
 mod site_stress;
 mod solved;
+mod spin_stress;
 mod statics;
 mod store;
 mod stress;

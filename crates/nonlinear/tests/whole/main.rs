@@ -5,6 +5,7 @@ mod energy;
 mod l;
 mod once;
 mod oracle;
+mod pinned;
 mod plate;
 mod pressure;
 mod rods;

@@ -8,6 +8,7 @@ use modal::{Modes, SecondOrderShapes, StaticAccuracy};
 use super::backbones::Derivatives;
 use super::error::{BuildError, modal};
 use super::mesh_model::{MeshModel, shapes_of};
+use super::spin_stress;
 use super::statics::Statics;
 use super::stress::{DRIVE, Stress};
 
@@ -22,6 +23,8 @@ const STIFFER: f64 = 4.0;
 pub(super) struct LargeDeflection {
     pub manifold: Manifold,
     large: LargeShapes,
+    /// What is known of the geometric stiffness of the large modes.
+    known: Vec<OfLarge>,
 }
 
 /// The shapes of second order of the large modes.
@@ -35,6 +38,7 @@ struct LargeShapes {
 
 /// The geometric stiffness of each large mode in the modes (nf × nf), with some of its terms; of interest between a large
 /// mode and another.
+#[derive(Clone)]
 struct OfLarge {
     terms: GeometricTerms,
     stiffness: Vec<Mat<f64>>,
@@ -82,9 +86,13 @@ impl LargeDeflection {
             Mat::from_fn(modes.shapes.ncols(), pairs.len(), |a, b| modes.shapes.col(a).transpose() * forces.col(b));
         let shapes = solver.second_order_shapes(modes.clone(), large, forces.as_ref(), answers.as_ref())?;
         let large = LargeShapes { shapes, momenta, of_pairs };
+        let mut known = Vec::new();
         let extended = match (&statics.of_spin, of_spin) {
             (Some(answers), Some(k)) => {
-                let of_large = large.stiffness(model, modes, GeometricTerms::All)?;
+                let all = large.stiffness(model, modes, GeometricTerms::All, &mut known)?.to_vec();
+                let stress = large.stiffness(model, modes, GeometricTerms::InitialStress, &mut known)?;
+                let of_mode = |(all, stress)| spin_stress::of_spin(all, stress, &modes.eigenvalues);
+                let of_large: Vec<_> = all.iter().zip(stress).map(of_mode).collect();
                 let of_pair =
                     |(pair, k): (usize, &Mat<f64>)| large.extended(answers.answers.subcols(pair, 1), k, &of_large);
                 k.iter().enumerate().map(of_pair).collect::<Vec<_>>().try_into().ok()
@@ -93,7 +101,7 @@ impl LargeDeflection {
         };
         let shapes = &large.shapes;
         let body = solver.reduced_body(&shapes.modes)?.with_stress_stiffness(extended).map_err(modal(model.scene))?;
-        Ok(Self { manifold: Manifold::new(body, shapes, &energies)?, large })
+        Ok(Self { manifold: Manifold::new(body, shapes, &energies)?, large, known })
     }
 
     /// The extended shapes.
@@ -116,27 +124,21 @@ impl LargeDeflection {
         mut stress: Stress,
     ) -> Result<Stress, BuildError> {
         // What is computed is what the stress of some load or drive has.
-        let mut known: Vec<OfLarge> = Vec::new();
+        let mut known = self.known.clone();
         let mut extended =
-            |answer: MatRef<'_, f64>, k: &Mat<f64>, terms: GeometricTerms| -> Result<Option<Mat<f64>>, BuildError> {
-                if !known.iter().any(|of_large| of_large.terms == terms) {
-                    known.push(self.large.stiffness(model, modes, terms)?);
-                }
-                let of_large = known.iter().find(|of_large| of_large.terms == terms);
-                Ok(of_large.map(|of_large| self.large.extended(answer, k, of_large)))
+            |answer: MatRef<'_, f64>, k: &Mat<f64>, terms: GeometricTerms| -> Result<Mat<f64>, BuildError> {
+                Ok(self.large.extended(answer, k, self.large.stiffness(model, modes, terms, &mut known)?))
             };
         if let Some(of_loads) = &statics.of_loads {
             for (i, directed) in stress.of_loads.iter_mut().enumerate() {
                 for (j, directed) in directed.iter_mut().enumerate() {
                     let answer = of_loads.answers_to(i).subcols(j, 1);
-                    if let Some(stiffness) = extended(answer, &directed.stiffness, directed.terms)? {
-                        directed.stiffness = stiffness;
-                    }
+                    directed.stiffness = extended(answer, &directed.stiffness, directed.terms)?;
                 }
             }
         }
         if let (Some(answer), Some(k)) = (&statics.of_drive, stress.of_drive.take()) {
-            stress.of_drive = extended(answer.as_ref(), &k, DRIVE)?;
+            stress.of_drive = Some(extended(answer.as_ref(), &k, DRIVE)?);
         }
         Ok(stress)
     }
@@ -200,11 +202,33 @@ fn second_order_forces(
 }
 
 impl LargeShapes {
-    /// The geometric stiffness of each large mode in the `modes` of the motion. With all terms `φ_a·K(φ_j)·φ_b` is
+    /// The geometric stiffness of each large mode in the `modes` of the motion, where it is not `known`. With all terms `φ_a·K(φ_j)·φ_b` is
     /// `φ_a·g_jb`, whichever of the three is large.
-    fn stiffness(&self, model: &MeshModel<'_>, modes: &Modes, terms: GeometricTerms) -> Result<OfLarge, BuildError> {
+    fn stiffness<'k>(
+        &self,
+        model: &MeshModel<'_>,
+        modes: &Modes,
+        terms: GeometricTerms,
+        known: &'k mut Vec<OfLarge>,
+    ) -> Result<&'k [Mat<f64>], BuildError> {
+        let place = match known.iter().position(|of_large| of_large.terms == terms) {
+            Some(place) => place,
+            None => {
+                known.push(OfLarge { terms, stiffness: self.computed(model, modes, terms)? });
+                known.len() - 1
+            }
+        };
+        Ok(&known[place].stiffness)
+    }
+
+    fn computed(
+        &self,
+        model: &MeshModel<'_>,
+        modes: &Modes,
+        terms: GeometricTerms,
+    ) -> Result<Vec<Mat<f64>>, BuildError> {
         let large = &self.shapes.large;
-        let stiffness = match terms {
+        Ok(match terms {
             GeometricTerms::InitialStress => {
                 model.solver.stress_stiffness(shapes_of(modes, large).as_ref(), modes, terms, &[])?
             }
@@ -223,14 +247,13 @@ impl LargeShapes {
                 let count = modes.shapes.ncols();
                 (0..large.len()).map(|j| Mat::from_fn(count, count, |a, b| of(j, a, b))).collect()
             }
-        };
-        Ok(OfLarge { terms, stiffness })
+        })
     }
 
     /// The geometric stiffness `k` (nf × nf) of a static `answer` (3n × 1) in the extended shapes. Between two large modes
     /// it is zero, since the manifold has it. Between a large mode and another it is without that of the answer's parts along
     /// the large modes, which are coordinates that move, with the same terms.
-    fn extended(&self, answer: MatRef<'_, f64>, k: &Mat<f64>, of_large: &OfLarge) -> Mat<f64> {
+    fn extended(&self, answer: MatRef<'_, f64>, k: &Mat<f64>, of_large: &[Mat<f64>]) -> Mat<f64> {
         let SecondOrderShapes { modes, large, dynamic, .. } = &self.shapes;
         let along: Vec<f64> = self.momenta.col_iter().map(|momentum| momentum.transpose() * answer.col(0)).collect();
         let extended = modes.shapes.ncols();
@@ -241,7 +264,7 @@ impl LargeShapes {
             match (large.contains(&a), large.contains(&b)) {
                 (true, true) => 0.0,
                 (false, false) => k[(a, b)],
-                _ => k[(a, b)] - along.iter().zip(&of_large.stiffness).map(|(part, of)| part * of[(a, b)]).sum::<f64>(),
+                _ => k[(a, b)] - along.iter().zip(of_large).map(|(part, of)| part * of[(a, b)]).sum::<f64>(),
             }
         })
     }

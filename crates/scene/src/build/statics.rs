@@ -11,6 +11,7 @@ use nalgebra::Vector3;
 use super::error::{BuildError, modal};
 use super::loads::MeshLoad;
 use super::mesh_model::MeshModel;
+use super::spin_stress;
 use super::structure::StaticForces;
 use super::{physics, turning};
 
@@ -123,8 +124,10 @@ impl Statics {
         known: &[Mat<f64>],
     ) -> Result<Option<[Mat<f64>; 6]>, BuildError> {
         let Some(of_spin) = &self.of_spin else { return Ok(None) };
-        let answers = of_spin.answers.as_ref();
-        Ok(model.solver.stress_stiffness(answers, modes, GeometricTerms::All, known)?.try_into().ok())
+        let by = |terms| model.solver.stress_stiffness(of_spin.answers.as_ref(), modes, terms, known);
+        let (all, stress) = (by(GeometricTerms::All)?, by(GeometricTerms::InitialStress)?);
+        let of_pair = |(all, stress)| spin_stress::of_spin(all, stress, &modes.eigenvalues);
+        Ok(all.iter().zip(&stress).map(of_pair).collect::<Vec<_>>().try_into().ok())
     }
 
     /// The answer to all dead loads together that stay as they are, seen from the body (3n × 1).

@@ -22,10 +22,11 @@ fn four_large_modes_and_the_stress_of_the_spin_take_so_much() {
     let spin = "geometric_stiffening = true\ndeformed_inertia = true\nrefuse = false";
     let large = work("flexible = 10\nlarge = [1, 2, 3, 4]", &format!("{spin}\nlarge_deflection = true"));
     // The spin has its static answers in both. Ten pairs of modes take three solutions each (a plate takes two). Of the
-    // elements: the stiffness of the spin in the modes, then in the static shapes, the forces and the energies of the pairs.
+    // elements: the stiffness of the spin in the modes, then in the static shapes, each by all terms and by the initial
+    // stress; that of the large modes by the initial stress; the forces and the energies of the pairs.
     println!("{plain:?}, {large:?}");
     assert!(plain.columns > 0 && large.columns > plain.columns && large.element_passes > 0, "{plain:?}, {large:?}");
     assert!(large.columns - plain.columns <= 30, "{plain:?}, {large:?}");
     assert!(large.blocks - plain.blocks <= 3, "{plain:?}, {large:?}");
-    assert!(large.element_passes <= 4, "{large:?}");
+    assert!(large.element_passes <= 7, "{large:?}");
 }
