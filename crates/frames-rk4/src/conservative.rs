@@ -39,8 +39,8 @@
 //! and another act on ξ, which is of third order.
 //!
 //! With large deflection the equations are those of the extended shapes, with coordinates ξ(q) and their slopes D on a
-//! curved manifold ([`Manifold`]). The constants are those of the coordinates z by which ξ = E z, the modes and the products
-//! of the large ones; D is E ∂z/∂q:
+//! curved manifold ([`Manifold`](crate::manifold::Manifold)). The constants are those of the coordinates z by which
+//! ξ = E z, the modes and the products of the large ones; D is E ∂z/∂q:
 //!
 //! ```text
 //! S = Dᵀ S_ext(ξ),  M = DᵀD:      p = M q̇ + S ω,   π = J(ξ) ω + Sᵀ q̇,   ν = D q̇,   μ = ν + S_ext ω
