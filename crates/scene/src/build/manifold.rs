@@ -8,7 +8,7 @@ use modal::{Modes, SecondOrderShapes, StaticAccuracy};
 use super::backbones::Derivatives;
 use super::error::{BuildError, modal};
 use super::mesh_model::{MeshModel, shapes_of};
-use super::spin_stress;
+use super::spin_stress::SpinStress;
 use super::statics::Statics;
 use super::stress::{DRIVE, Stress};
 
@@ -45,7 +45,7 @@ struct OfLarge {
 }
 
 impl LargeDeflection {
-    /// Of some `large` ones of the modes, of which some `derivatives` are known. `of_spin` (6 of nf × nf) is the stress
+    /// Of some `large` ones of the modes, of which some `derivatives` are known. `spin` is the stress
     /// stiffness by the static answers to the spin.
     pub fn new(
         model: &MeshModel<'_>,
@@ -53,7 +53,7 @@ impl LargeDeflection {
         large: &[usize],
         derivatives: &Derivatives,
         statics: &Statics,
-        of_spin: Option<&[Mat<f64>; 6]>,
+        spin: Option<&SpinStress>,
     ) -> Result<Self, BuildError> {
         let solver = model.solver;
         let of_large = shapes_of(modes, large);
@@ -77,7 +77,7 @@ impl LargeDeflection {
         if let Some((follower, pair)) = drawn_in(of_large.as_ref(), &squares, forces.as_ref(), &energies) {
             let others: Vec<usize> = large.iter().copied().filter(|k| *k != large[follower]).collect();
             if model.scene.modes.large.is_none() {
-                return Self::new(model, modes, &others, derivatives, statics, of_spin);
+                return Self::new(model, modes, &others, derivatives, statics, spin);
             }
             return Err(refuse_drawn_in(model, large[follower], pair.map(|j| large[j]), &others));
         }
@@ -87,15 +87,16 @@ impl LargeDeflection {
         let shapes = solver.second_order_shapes(modes.clone(), large, forces.as_ref(), answers.as_ref())?;
         let large = LargeShapes { shapes, momenta, of_pairs };
         let mut known = Vec::new();
-        let extended = match (&statics.of_spin, of_spin) {
-            (Some(answers), Some(k)) => {
+        let extended = match (&statics.of_spin, spin) {
+            (Some(answers), Some(spin)) => {
                 let all = large.stiffness(model, modes, GeometricTerms::All, &mut known)?.to_vec();
-                let stress = large.stiffness(model, modes, GeometricTerms::InitialStress, &mut known)?;
-                let of_mode = |(all, stress)| spin_stress::of_spin(all, stress, &modes.eigenvalues);
-                let of_large: Vec<_> = all.iter().zip(stress).map(of_mode).collect();
-                let of_pair =
-                    |(pair, k): (usize, &Mat<f64>)| large.extended(answers.answers.subcols(pair, 1), k, &of_large);
-                k.iter().enumerate().map(of_pair).collect::<Vec<_>>().try_into().ok()
+                let initial = large.stiffness(model, modes, GeometricTerms::InitialStress, &mut known)?;
+                let of_pair = |(pair, k): (usize, &Mat<f64>)| {
+                    let of_mode = |(all, initial)| spin.settled(pair, all, initial);
+                    let of_large: Vec<_> = all.iter().zip(initial).map(of_mode).collect();
+                    large.extended(answers.answers.subcols(pair, 1), k, &of_large)
+                };
+                spin.stiffness().iter().enumerate().map(of_pair).collect::<Vec<_>>().try_into().ok()
             }
             _ => None,
         };

@@ -1,7 +1,6 @@
 //! A body and its loads in the coordinates of some modes.
 
 use advice::Case;
-use faer::Mat;
 use frames_rk4::Initial;
 use modal::{Modes, ReducedBody};
 use nalgebra::Vector3;
@@ -13,6 +12,7 @@ use super::initial::initial;
 use super::loads::{BodyLoads, MeshLoad};
 use super::mesh_model::MeshModel;
 use super::model::Size;
+use super::spin_stress::SpinStress;
 
 /// A body and its loads in the coordinates of some modes.
 pub(super) struct ModalModel {
@@ -43,7 +43,8 @@ impl ModalModel {
     }
 
     /// The same model with a stress stiffness of the spin, or without any.
-    pub fn with_stress_stiffness(self, model: &MeshModel<'_>, k: Option<[Mat<f64>; 6]>) -> Result<Self, BuildError> {
+    pub fn with_stress_stiffness(self, model: &MeshModel<'_>, spin: Option<&SpinStress>) -> Result<Self, BuildError> {
+        let k = spin.and_then(|spin| spin.stiffness().try_into().ok());
         let body = self.body.with_stress_stiffness(k).map_err(modal(model.scene))?;
         Ok(Self { body, ..self })
     }

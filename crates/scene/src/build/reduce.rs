@@ -34,28 +34,26 @@ pub(super) struct Reduction {
 
 impl Reduction {
     pub fn new(model: &MeshModel<'_>, survey: Survey, decision: &Decision) -> Result<Self, BuildError> {
-        let Survey { modes, modal, statics, backbones, advice } = survey;
+        let Survey { modes, modal, spin, statics, backbones, advice } = survey;
         let Backbones { of_modes: mut backbones, derivatives } = backbones;
         let tolerance = model.scene.effects.tolerance;
         backbones.truncate(decision.keep);
         let stiffens = decision.effects[Effect::GeometricStiffening];
         let has_all = decision.keep == modal.body.flexible() && !decision.has_static_shapes;
-        let (modes, modal, deflection) = if has_all {
-            let stiffness = modal.body.stress_stiffness.clone().filter(|_| stiffens);
-            (modes, modal.with_stress_stiffness(model, stiffness)?, advice.deflection)
+        let (modes, modal, spin, deflection) = if has_all {
+            (modes, modal, spin.filter(|_| stiffens), advice.deflection)
         } else {
             let modes = basis(model.solver, &modes, &statics, decision)?;
-            let of_kept = modal.body.truncated(decision.keep);
             let modal = ModalModel::new(model, &modes)?;
             let deflection = advise(&modal.case(model), tolerance)?.deflection;
-            let known = of_kept.stress_stiffness.as_ref().map_or(&[][..], |known| known);
-            let stiffness = if stiffens { statics.stress_stiffness(model, &modes, known)? } else { None };
-            (modes, modal.with_stress_stiffness(model, stiffness)?, deflection)
+            let known = spin.map_or_else(Default::default, |spin| spin.of_first(decision.keep));
+            let spin = if stiffens { statics.stress_stiffness(model, &modes, &known)? } else { None };
+            (modes, modal, spin, deflection)
         };
+        let modal = modal.with_stress_stiffness(model, spin.as_ref())?;
         let stress = Stress::new(model, &statics, &modes, &modal)?;
         let (modal, stress, large) = if !decision.large.is_empty() {
-            let of_spin = modal.body.stress_stiffness.as_ref();
-            let large = LargeDeflection::new(model, &modes, &decision.large, &derivatives, &statics, of_spin)?;
+            let large = LargeDeflection::new(model, &modes, &decision.large, &derivatives, &statics, spin.as_ref())?;
             // The frequencies of these follow their amplitudes. What others draw in is none of them.
             for k in large.manifold.large() {
                 if let Some(backbone) = backbones.get_mut(*k) {

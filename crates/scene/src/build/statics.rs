@@ -11,7 +11,7 @@ use nalgebra::Vector3;
 use super::error::{BuildError, modal};
 use super::loads::MeshLoad;
 use super::mesh_model::MeshModel;
-use super::spin_stress;
+use super::spin_stress::SpinStress;
 use super::structure::StaticForces;
 use super::{physics, turning};
 
@@ -116,18 +116,17 @@ impl Statics {
     }
 
     /// K_ij of each pair of spins in the modes; none where the answers to the spin are not known. `known` are those in the
-    /// first of the modes, or none.
+    /// first of the modes, by all terms and by the initial stress.
     pub fn stress_stiffness(
         &self,
         model: &MeshModel<'_>,
         modes: &Modes,
-        known: &[Mat<f64>],
-    ) -> Result<Option<[Mat<f64>; 6]>, BuildError> {
+        known: &[Vec<Mat<f64>>; 2],
+    ) -> Result<Option<SpinStress>, BuildError> {
         let Some(of_spin) = &self.of_spin else { return Ok(None) };
-        let by = |terms| model.solver.stress_stiffness(of_spin.answers.as_ref(), modes, terms, known);
-        let (all, stress) = (by(GeometricTerms::All)?, by(GeometricTerms::InitialStress)?);
-        let of_pair = |(all, stress)| spin_stress::of_spin(all, stress, &modes.eigenvalues);
-        Ok(all.iter().zip(&stress).map(of_pair).collect::<Vec<_>>().try_into().ok())
+        let by = |terms, known| model.solver.stress_stiffness(of_spin.answers.as_ref(), modes, terms, known);
+        let by_terms = [by(GeometricTerms::All, &known[0])?, by(GeometricTerms::InitialStress, &known[1])?];
+        Ok(Some(SpinStress::new(by_terms, &modes.eigenvalues)))
     }
 
     /// The answer to all dead loads together that stay as they are, seen from the body (3n × 1).

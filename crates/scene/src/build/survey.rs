@@ -10,6 +10,7 @@ use super::mesh_model::MeshModel;
 use super::modal_model::ModalModel;
 use super::physics;
 use super::progress::BuildProgress;
+use super::spin_stress::SpinStress;
 use super::statics::{Asked, Statics};
 use crate::effects::Choice;
 
@@ -18,6 +19,8 @@ pub(super) struct Survey {
     pub modes: Modes,
     /// With the stress stiffness of the spin where it may matter.
     pub modal: ModalModel,
+    /// That stiffness.
+    pub spin: Option<SpinStress>,
     pub statics: Statics,
     pub backbones: Backbones,
     /// On all of the modes.
@@ -45,9 +48,10 @@ impl Survey {
             progress(BuildProgress::Statics);
         }
         let statics = Statics::new(model, &modes, &modal.body.origin, asked)?;
+        let mut spin = None;
         let modal = if stiffens {
-            let stiffness = statics.stress_stiffness(model, &modes, &[])?;
-            modal.with_stress_stiffness(model, stiffness)?
+            spin = statics.stress_stiffness(model, &modes, &Default::default())?;
+            modal.with_stress_stiffness(model, spin.as_ref())?
         } else {
             modal
         };
@@ -64,7 +68,7 @@ impl Survey {
         } else {
             first
         };
-        Ok(Self { modes, modal, statics, backbones, advice })
+        Ok(Self { modes, modal, spin, statics, backbones, advice })
     }
 }
 
