@@ -11,7 +11,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-page = (Path(__file__).parents[3] / "docs/body.md").read_text()
+page = (Path(__file__).parents[1] / "docs/body.md").read_text()
 first, second = re.findall(r"```python\n(.*?)```", page, re.S)
 first = first.replace("ring.body.h5", sys.argv[1]).replace("out/ring/ring.h5", sys.argv[2])
 names = {}
