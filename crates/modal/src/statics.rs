@@ -215,50 +215,62 @@ impl<'a> Statics<'a> {
         // Along a mode that is not known, (K + sM)⁻¹ K is more than 1 − s/λ of the last that is, and 1 at most.
         let known = self.modes.eigenvalues[..self.modes.natural()].last();
         let of_first = known.map_or(f64::INFINITY, |lambda| (self.factor.shift / lambda).powi(2));
-        let mut iterations = 0;
+        let (mut iterations, mut may_end_early) = (0, true);
         loop {
+            let ended_early = loop {
+                self.precondition(&residual, &mut conditioned);
+                let squared = dots(&residual, &conditioned);
+                if iterations == 0 {
+                    scale = squared.iter().zip(&along).map(|(squared, along)| squared + along).collect();
+                }
+                let is_open = |squared: f64, k: usize| squared > tolerance * tolerance * scale[k];
+                let open: Vec<usize> = (0..squared.len()).filter(|k| is_open(squared[*k], *k)).collect();
+                if open.is_empty() || iterations == MAX_ITERATIONS {
+                    break false;
+                }
+                iterations += 1;
+                for k in &open {
+                    let part = squared[*k] / before[*k];
+                    follow(search.as_mut().col_mut(*k), part, conditioned.col(*k));
+                    follow(shifted.as_mut().col_mut(*k), part, residual.col(*k));
+                }
+                self.unshift(&search, &shifted, &mut stiff);
+                let curvature = dots(&search, &stiff);
+                for k in &open {
+                    let step = squared[*k] / curvature[*k];
+                    add(answer.as_mut().col_mut(*k), step, search.col(*k));
+                    add(residual.as_mut().col_mut(*k), -step, stiff.col(*k));
+                }
+                // This step and the last solution gain about as much each as the step before.
+                let gain = |k: usize| if iterations == 1 { of_first } else { squared[k] / before[k] };
+                let ends = open.iter().all(|k| !is_open(squared[*k] * gain(*k) * gain(*k), *k));
+                before = squared;
+                if ends && may_end_early {
+                    break true;
+                }
+                self.relief.balance(&mut residual);
+            };
+            residual = &forces - self.relief.stiff(&answer);
+            self.relief.balance(&mut residual);
             self.precondition(&residual, &mut conditioned);
             let squared = dots(&residual, &conditioned);
-            if iterations == 0 {
-                scale = squared.iter().zip(&along).map(|(squared, along)| squared + along).collect();
-            }
-            let is_open = |squared: f64, k: usize| squared > tolerance * tolerance * scale[k];
-            let open: Vec<usize> = (0..squared.len()).filter(|k| is_open(squared[*k], *k)).collect();
-            if open.is_empty() || iterations == MAX_ITERATIONS {
-                break;
-            }
-            iterations += 1;
-            for k in &open {
-                let part = squared[*k] / before[*k];
-                follow(search.as_mut().col_mut(*k), part, conditioned.col(*k));
-                follow(shifted.as_mut().col_mut(*k), part, residual.col(*k));
-            }
-            self.unshift(&search, &shifted, &mut stiff);
-            let curvature = dots(&search, &stiff);
-            for k in &open {
-                let step = squared[*k] / curvature[*k];
-                add(answer.as_mut().col_mut(*k), step, search.col(*k));
-                add(residual.as_mut().col_mut(*k), -step, stiff.col(*k));
-            }
-            // This step and the last solution gain about as much each as the step before.
-            let gain = |k: usize| if iterations == 1 { of_first } else { squared[k] / before[k] };
-            let ends = open.iter().all(|k| !is_open(squared[*k] * gain(*k) * gain(*k), *k));
-            before = squared;
-            if ends {
-                break;
-            }
-            self.relief.balance(&mut residual);
-        }
-        let mut residual = forces - self.relief.stiff(&answer);
-        self.relief.balance(&mut residual);
-        self.precondition(&residual, &mut conditioned);
-        for (k, (squared, scale)) in dots(&residual, &conditioned).iter().zip(&scale).enumerate() {
-            // The last solution gains as much as the step before it, or nothing where rounding is reached.
-            let gain = (squared / before[k]).min(1.0);
-            let residual = (squared * gain / scale).sqrt();
-            if *scale > 0.0 && (residual.is_nan() || residual >= ACCEPTED) {
-                let column = first + k;
-                return Err(ModalError::StaticNotConverged { column, iterations, residual, tolerance: ACCEPTED });
+            let left = |k: usize| {
+                // The last solution gains as much as the step before it, or nothing where rounding is reached.
+                let gain = (squared[k] / before[k]).min(1.0);
+                (squared[k] * gain / scale[k]).sqrt()
+            };
+            let is_refused = |k: &usize| scale[*k] > 0.0 && (left(*k).is_nan() || left(*k) >= ACCEPTED);
+            match (0..squared.len()).find(is_refused) {
+                None => break,
+                // The last step has gained less than those before it: go on from here.
+                Some(_) if ended_early => {
+                    may_end_early = false;
+                    before.fill(f64::INFINITY);
+                }
+                Some(k) => {
+                    let (column, residual) = (first + k, left(k));
+                    return Err(ModalError::StaticNotConverged { column, iterations, residual, tolerance: ACCEPTED });
+                }
             }
         }
         answer += conditioned;

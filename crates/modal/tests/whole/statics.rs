@@ -1,11 +1,11 @@
 //! Static answers.
 
 use faer::Mat;
-use fem_tet10::Material;
+use fem_tet10::{Material, Materials, second_order_forces};
 use modal::{ModalError, RigidMotion, StaticAccuracy, Support};
 use nalgebra::Vector3;
 
-use crate::bodies::{Body, STEEL, block_mesh};
+use crate::bodies::{Body, STEEL, block_mesh, mesh_file};
 use crate::supports::{allowed, body, nodes, supports};
 
 /// A bar along x without Poisson effect.
@@ -185,4 +185,21 @@ fn forces_of_another_size_or_without_a_number_are_refused() {
     let modes = solver.modes(1, |_| ()).unwrap();
     let error = solver.with_static_shapes(modes, forces.as_ref()).unwrap_err();
     assert!(matches!(error, ModalError::NotFinite { what: "static answers", index: 1, .. }), "{error}");
+}
+
+/// Answers for shapes end where the steps so far promise enough. Where a step gains less, they go on.
+#[test]
+fn forces_of_second_order_of_a_ring_are_answered() {
+    let mesh = mesh_file("ring.msh");
+    let body = Body::new(&mesh, STEEL);
+    let solver = body.held(&Support::free());
+    let modes = solver.modes(4, |_| ()).unwrap();
+    let large = modes.shapes.get(.., ..2);
+    let forces = second_order_forces(&mesh, &Materials::Uniform(STEEL), large, &[[0, 0], [0, 1], [1, 1]]).unwrap();
+    let answer = |accuracy| solver.static_response_from(&modes, forces.as_ref(), accuracy).unwrap();
+    let (shapes, full) = (answer(StaticAccuracy::Shapes), answer(StaticAccuracy::Full));
+    for (found, expected) in shapes.col_iter().zip(full.col_iter()) {
+        let off = (found - expected).norm_l2() / expected.norm_l2();
+        assert!(off < 1e-4, "{off:e}");
+    }
 }
