@@ -212,19 +212,16 @@ fn paper_in_words(report: &CostReport) -> String {
     let is_paper = |line: &&Line| line.scheme == "paper";
     let paper: Vec<Line> = report.lines.iter().filter(is_paper).cloned().collect();
     let mut words = "**The paper's scheme.** ".to_owned();
-    match report.paper_limit.as_ref().and_then(|limit| limit.errors) {
-        Some(errors) => {
-            let parts: Vec<String> = errors.named().map(|(name, error)| format!("{name} {error:.1e}")).collect();
-            let _ = write!(
-                words,
-                "However short its steps, the paper's formulation stays away from the conservative one: {}.",
-                parts.join(", ")
-            );
-        }
-        None if limit_fails(report) => words.push_str(
-            "In the limit of short steps the paper's formulation loses the attitude before the end of this run.",
-        ),
-        None => words.push_str("Its limit of short steps was not found."),
+    if let Some(errors) = report.paper_limit.as_ref().and_then(|limit| limit.errors) {
+        let parts: Vec<String> = errors.named().map(|(name, error)| format!("{name} {error:.1e}")).collect();
+        let _ = write!(
+            words,
+            "However short its steps, the paper's formulation stays away from the conservative one: {}.",
+            parts.join(", ")
+        );
+    }
+    if let Some(why) = &report.paper_limit_failure {
+        let _ = write!(words, "The limit of the paper's formulation for short steps was not found, {why}.");
     }
     let reached: Vec<(i32, Found, Found)> = DECADES
         .filter_map(|k| Some((k, cheapest(measured(&paper), k)?, cheapest(measured(&report.lines), k)?)))
@@ -253,13 +250,6 @@ fn paper_in_words(report: &CostReport) -> String {
         let _ = write!(words, " The smallest error of its runs is {closest:.1e}.");
     }
     words
-}
-
-/// Whether the paper's formulation fails even in the shortest steps that were tried.
-fn limit_fails(report: &CostReport) -> bool {
-    let is_limit = |line: &&Line| line.formulation == "paper" && line.scheme == "rkmk4";
-    let shortest = report.lines.iter().find(is_limit).and_then(|line| line.rows.last());
-    shortest.is_some_and(|row| matches!(row.outcome, Outcome::Failed(_)))
 }
 
 fn write_modes(out: &mut String, report: &CostReport) -> std::fmt::Result {

@@ -102,7 +102,10 @@ pub fn price_list(
         .map_err(|(steps, failure)| CostError::Reference { scene: scene.path.clone(), steps, failure })?;
     step(1);
     // The paper's formulation has a limit of its own, to which its schemes converge.
-    let paper_limit = converge(&case, Method::PAPER_RKMK4, settings.budget(5), 0.0).ok();
+    let (paper_limit, paper_limit_failure) = match converge(&case, Method::PAPER_RKMK4, settings.budget(5), 0.0) {
+        Ok(limit) => (Some(limit), None),
+        Err((steps, failure)) => (None, Some(format!("in {steps} steps: {failure}"))),
+    };
     step(1);
     let judge = Judge { reference: &reference, paper_limit: paper_limit.as_ref(), settings };
     let own = own_setting(scene);
@@ -133,6 +136,7 @@ pub fn price_list(
         points: model.points.len(),
         reference: reference.report(),
         paper_limit: paper_limit.as_ref().map(|limit| limit.report_against(&reference, case.scales())),
+        paper_limit_failure,
         answer: settings.target.map(|target| Answer::new(target, scene, &lines, &modes, flexible)),
         lines,
         modes,

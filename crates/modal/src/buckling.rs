@@ -12,6 +12,7 @@ use faer::{Accum, Mat, MatRef};
 
 use crate::dense::symmetric_eigen;
 use crate::error::ModalError;
+use crate::input::check_rows;
 use crate::lanczos::random_block;
 use crate::solve::Solver;
 use crate::tall;
@@ -42,10 +43,7 @@ impl Solver<'_> {
         mut product: impl FnMut(MatRef<'_, f64>) -> Result<Mat<f64>, E>,
     ) -> Result<f64, E> {
         let size = self.rigid.shapes.nrows();
-        if start.nrows() != size {
-            let what = "the displacements to begin with";
-            return Err(ModalError::Size { what, expected: size, found: start.nrows() }.into());
-        }
+        check_rows("the displacements to begin with", start.nrows(), size)?;
         // What the given vectors have nothing of, such as the other half of a symmetric body, is in a random one.
         let mut seed = 1;
         let random = self.static_response(self.mass.product(random_block(size, 1, &mut seed).as_ref()).as_ref())?;

@@ -8,7 +8,7 @@ use nalgebra::{DMatrix, Matrix3, Vector3};
 
 use crate::constraints::{NEGLIGIBLE, extent};
 use crate::error::ModalError;
-use crate::positions::check_finite;
+use crate::input::check_finite_positions;
 use crate::support::{RigidMotion, Support, Twist};
 
 /// A component of a unit vector below this is rounding.
@@ -47,7 +47,7 @@ fn motion_left(positions: &[[f64; 3]], freedoms: &[(u32, usize)]) -> Result<Rigi
     if let Some(&(node, freedom)) = freedoms.iter().find(|(_, freedom)| *freedom >= 6) {
         return Err(ModalError::NoSuchFreedom { node, freedom, count: 6 });
     }
-    check_finite(positions)?;
+    check_finite_positions(positions)?;
     let at = |node: u32| Vector3::from(positions[node as usize]);
     let (_, length) = extent(positions);
     let origin = freedoms.iter().map(|(node, _)| at(*node)).sum::<Vector3<f64>>() / freedoms.len().max(1) as f64;

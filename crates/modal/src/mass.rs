@@ -7,6 +7,7 @@ use faer::{Mat, MatMut, MatRef};
 use rayon::prelude::*;
 
 use crate::error::ModalError;
+use crate::input::check_matrix;
 use crate::node_pairs::NodePairs;
 use crate::products::{Packed, nodal_product};
 use crate::symmetry::check_symmetric;
@@ -22,19 +23,6 @@ pub struct NodalMass<'a> {
     start: Cow<'a, [usize]>,
     nodes: Cow<'a, [u32]>,
     values: Cow<'a, [f64]>,
-}
-
-/// Refuses a mass matrix (N×N, with N = `expected`) of another size, and entries that are not finite.
-pub(crate) fn check(mass: SparseColMatRef<'_, usize, f64>, expected: usize) -> Result<(), ModalError> {
-    if let Some(found) = [mass.ncols(), mass.nrows()].into_iter().find(|found| *found != expected) {
-        return Err(ModalError::Size { what: "mass", expected, found });
-    }
-    for index in 0..mass.ncols() {
-        if let Some(value) = mass.val_of_col(index).iter().copied().find(|value| !value.is_finite()) {
-            return Err(ModalError::NotFinite { what: "mass", place: "column", index, value });
-        }
-    }
-    Ok(())
 }
 
 impl<'a> NodalMass<'a> {
@@ -64,8 +52,13 @@ impl<'a> NodalMass<'a> {
     /// [`ModalError::Size`] where M is not square with three rows for each node, [`ModalError::NotFinite`],
     /// [`ModalError::AnisotropicMass`] where M is not `M_s ⊗ I₃`, [`ModalError::NotSymmetric`] where M_s is not symmetric.
     pub fn new(mass: SparseColMatRef<'_, usize, f64>) -> Result<Self, ModalError> {
+        check_matrix("mass", mass, mass.ncols().next_multiple_of(3))?;
+        Self::of_checked(mass)
+    }
+
+    /// The same where size and numbers are checked.
+    pub(crate) fn of_checked(mass: SparseColMatRef<'_, usize, f64>) -> Result<Self, ModalError> {
         let n = mass.ncols() / 3;
-        check(mass, if mass.ncols() == 3 * n { 3 * n } else { 3 * n + 3 })?;
         // A column of each node, which grows by doubling, and then all of them in one.
         memory::check("the mass matrix over nodes", 48 * mass.row_idx().len() / 9)?;
         let entry = |row: usize, column: usize| mass.get(row, column).copied().unwrap_or(0.0);

@@ -5,7 +5,8 @@ use faer::{Mat, MatMut, MatRef, Side};
 
 use crate::columns::Columns;
 use crate::error::ModalError;
-use crate::mass::{NodalMass, check};
+use crate::input::check_matrix;
+use crate::mass::NodalMass;
 use crate::pattern::Pattern;
 use crate::products::{Packed, symmetric_product_into};
 use crate::symmetry::check_symmetric;
@@ -36,10 +37,18 @@ impl<'a> MassMatrix<'a> {
     /// # Errors
     /// [`ModalError::Size`], [`ModalError::NotFinite`], [`ModalError::NotSymmetric`].
     pub fn new(mass: SparseColMatRef<'a, usize, f64>, nodes: usize) -> Result<Self, ModalError> {
-        let freedoms = freedoms("mass", mass.ncols(), nodes)?;
-        check(mass, freedoms * nodes)?;
+        Self::of_freedoms(mass, nodes, freedoms("mass", mass.ncols(), nodes)?)
+    }
+
+    /// The same with so many degrees of freedom of a node.
+    pub(crate) fn of_freedoms(
+        mass: SparseColMatRef<'a, usize, f64>,
+        nodes: usize,
+        freedoms: usize,
+    ) -> Result<Self, ModalError> {
+        check_matrix("mass", mass, freedoms * nodes)?;
         if freedoms == 3 {
-            match NodalMass::new(mass) {
+            match NodalMass::of_checked(mass) {
                 Err(ModalError::AnisotropicMass { .. }) => {}
                 nodal => return nodal.map(Self::Nodal),
             }

@@ -49,12 +49,6 @@ impl<'a> NodePairs<'a> {
         4 * self.nodes.len() + 8 * self.start.len()
     }
 
-    /// Whether all pairs of another pattern of as many nodes are here.
-    pub fn covers(&self, other: &NodePairs<'_>) -> bool {
-        let has = |node: usize, coupled: &u32| self.of(node).binary_search(coupled).is_ok();
-        (0..self.count()).all(|node| other.of(node).iter().all(|coupled| has(node, coupled)))
-    }
-
     /// The pairs that are here or in another pattern of as many nodes: where each column begins, and its nodes.
     pub fn union(&self, other: &NodePairs<'_>) -> (Vec<usize>, Vec<u32>) {
         let (mut start, mut nodes) = (vec![0], Vec::with_capacity(self.nodes.len()));

@@ -36,19 +36,20 @@ impl NodeOrder {
     }
 }
 
-/// A fill-reducing order of the nodes of a symmetric matrix with 3×3 blocks, by its pattern on one side of the diagonal or both.
+/// A fill-reducing order of the nodes of a symmetric matrix with 3×3 blocks, by its pattern on and below the diagonal.
 pub(crate) fn nested_dissection(pattern: SymbolicSparseColMatRef<'_, usize>) -> Result<NodeOrder, ModalError> {
     let n = pattern.ncols() / 3;
     let mut coupled: Vec<Vec<idx_t>> = vec![Vec::new(); n];
-    let mut rows = Vec::new();
+    let mut below = Vec::new();
     for node in 0..n {
-        rows.clear();
+        below.clear();
         for column in 3 * node..3 * node + 3 {
-            rows.extend(pattern.row_idx_of_col_raw(column).iter().map(|row| row / 3));
+            let rows = pattern.row_idx_of_col_raw(column).iter();
+            below.extend(rows.map(|row| row / 3).filter(|other| *other > node));
         }
-        rows.sort_unstable();
-        rows.dedup();
-        for other in rows.iter().filter(|other| **other != node) {
+        below.sort_unstable();
+        below.dedup();
+        for other in &below {
             coupled[node].push(*other as idx_t);
             coupled[*other].push(node as idx_t);
         }
@@ -56,9 +57,7 @@ pub(crate) fn nested_dissection(pattern: SymbolicSparseColMatRef<'_, usize>) -> 
     let mut start: Vec<idx_t> = Vec::with_capacity(n + 1);
     let mut neighbours: Vec<idx_t> = Vec::new();
     start.push(0);
-    for mut of_node in coupled {
-        of_node.sort_unstable();
-        of_node.dedup();
+    for of_node in coupled {
         neighbours.extend(of_node);
         start.push(neighbours.len() as idx_t);
     }
@@ -67,6 +66,9 @@ pub(crate) fn nested_dissection(pattern: SymbolicSparseColMatRef<'_, usize>) -> 
 
 /// The same by the pairs of coupled nodes.
 pub(crate) fn nested_dissection_of_nodes(pairs: &NodePairs<'_>) -> Result<NodeOrder, ModalError> {
+    // METIS takes it for granted; zeros that are stored on one side only would break it.
+    let what = "stored pattern of the shifted stiffness";
+    check_symmetric(what, 3, pairs.start, |entry| pairs.nodes[entry] as usize, |_| 0.0)?;
     let (mut start, mut neighbours) = (Vec::with_capacity(pairs.count() + 1), Vec::with_capacity(pairs.nodes.len()));
     start.push(0);
     for node in 0..pairs.count() {
@@ -83,15 +85,6 @@ fn dissection(start: Vec<idx_t>, neighbours: Vec<idx_t>) -> Result<NodeOrder, Mo
         let reason = "the graph of the nodes is too large for METIS".to_owned();
         return Err(ModalError::Factorization { size: 3 * n, reason });
     }
-    // METIS takes it for granted; zeros that are stored on one side only would break it.
-    let offsets: Vec<usize> = start.iter().map(|s| *s as usize).collect();
-    check_symmetric(
-        "stored pattern of the shifted stiffness",
-        3,
-        &offsets,
-        |entry| neighbours[entry] as usize,
-        |_| 0.0,
-    )?;
     Ok(NodeOrder(order_nodes(&start, &neighbours)?))
 }
 

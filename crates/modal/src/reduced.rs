@@ -20,6 +20,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::error::ModalError;
 use crate::inertia_products::Products;
+use crate::input::check_finite_entries;
 use crate::mass_matrix::MassMatrix;
 use crate::pairs::PAIRS;
 use crate::reduced_general::general_products;
@@ -219,19 +220,19 @@ impl Constants {
         let square = |what, matrix: &Mat<f64>, size: usize| -> Result<(), ModalError> {
             check_size(what, matrix.nrows(), size)?;
             check_size(what, matrix.ncols(), size)?;
-            finite(what, matrix.col_iter().flat_map(|column| column.iter()).copied())
+            check_finite_entries(what, matrix.col_iter().flat_map(|column| column.iter()).copied())
         };
         let list = |what, values: &[f64], size: usize| -> Result<(), ModalError> {
             check_size(what, values.len(), size)?;
-            finite(what, values.iter().copied())
+            check_finite_entries(what, values.iter().copied())
         };
         self.motion.check()?;
-        finite("mass", [self.mass])?;
-        finite("center of mass", self.center_of_mass.iter().copied())?;
-        finite("origin", self.origin.iter().copied())?;
-        finite("inertia", self.inertia.iter().copied())?;
-        finite("translation basis", self.translation_basis.iter().copied())?;
-        finite("rotation basis", self.rotation_basis.iter().copied())?;
+        check_finite_entries("mass", [self.mass])?;
+        check_finite_entries("center of mass", self.center_of_mass.iter().copied())?;
+        check_finite_entries("origin", self.origin.iter().copied())?;
+        check_finite_entries("inertia", self.inertia.iter().copied())?;
+        check_finite_entries("translation basis", self.translation_basis.iter().copied())?;
+        check_finite_entries("rotation basis", self.rotation_basis.iter().copied())?;
         if let Some(value) =
             self.circular_frequencies.iter().copied().find(|omega| !(*omega > 0.0 && omega.is_finite()))
         {
@@ -256,13 +257,6 @@ fn check_size(what: &'static str, found: usize, expected: usize) -> Result<(), M
     if found == expected { Ok(()) } else { Err(ModalError::Length { what, found, expected }) }
 }
 
-fn finite(what: &'static str, values: impl IntoIterator<Item = f64>) -> Result<(), ModalError> {
-    match values.into_iter().enumerate().find(|(_, value)| !value.is_finite()) {
-        Some((index, value)) => Err(ModalError::NotFinite { what, place: "entry", index, value }),
-        None => Ok(()),
-    }
-}
-
 impl BodyPoint {
     /// The point that moves as `Σ weights_i u(nodes_i)`, where the weights sum to one. Rotations of nodes do not move it.
     ///
@@ -274,7 +268,7 @@ impl BodyPoint {
         check_size("the list of weights", weights.len(), nodes.len())?;
         let freedoms = if modes.shapes.nrows() == 6 * count { 6 } else { 3 };
         check_size("the rows of the mode shapes", modes.shapes.nrows(), freedoms * count)?;
-        finite("weight", weights.iter().copied())?;
+        check_finite_entries("weight", weights.iter().copied())?;
         let sum = weights.iter().sum::<f64>();
         if (sum - 1.0).abs() > WEIGHTS {
             return Err(ModalError::Weights { sum });

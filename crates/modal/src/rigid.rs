@@ -7,7 +7,6 @@ use crate::dense::whitening;
 use crate::error::ModalError;
 use crate::mass_matrix::MassMatrix;
 use crate::polynomials::{Field, rigid_field};
-use crate::positions::check_count;
 use crate::rigid_fields::{General, rigid_fields};
 use crate::stiffness::StiffnessMatrix;
 use crate::support::RigidMotion;
@@ -51,7 +50,10 @@ impl RigidModes {
     /// [`ModalError::Length`] where there are not as many positions as nodes, or none; [`ModalError::NoInertia`] where a motion meets neither mass nor inertia; [`ModalError::NotUnit`];
     /// [`ModalError::NoRigidBodyMass`] of a body that moves.
     pub fn new(mass: &MassMatrix<'_>, positions: &[[f64; 3]], motion: RigidMotion) -> Result<Self, ModalError> {
-        check_count(positions, mass.nodes())?;
+        if positions.len() != mass.nodes() || positions.is_empty() {
+            let what = "the list of positions";
+            return Err(ModalError::Length { what, found: positions.len(), expected: mass.nodes().max(1) });
+        }
         // Measured from the first node, so that a body far from the mesh's origin loses no digits.
         let first = Vector3::from(positions[0]);
         let (total, moment) = match mass {

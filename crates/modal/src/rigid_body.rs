@@ -4,6 +4,7 @@ use faer::Mat;
 use nalgebra::{Matrix3, Vector3};
 
 use crate::error::ModalError;
+use crate::input::check_finite_entries;
 use crate::reduced::{Constants, ReducedBody};
 use crate::support::RigidMotion;
 
@@ -24,15 +25,7 @@ impl ReducedBody {
         motion: RigidMotion,
     ) -> Result<Self, ModalError> {
         let inertia = inertia_about_origin;
-        let not_finite = |numbers: &[f64]| numbers.iter().copied().enumerate().find(|(_, value)| !value.is_finite());
-        for (what, place, found) in [
-            ("the center of mass", "axis", not_finite(center_of_mass.as_slice())),
-            ("the inertia", "entry", not_finite(inertia.as_slice())),
-        ] {
-            if let Some((index, value)) = found {
-                return Err(ModalError::NotFinite { what, place, index, value });
-            }
-        }
+        check_finite_entries("inertia", inertia.iter().copied())?;
         for (row, column) in [(1, 0), (2, 0), (2, 1)] {
             let (value, mirrored) = (inertia[(row, column)], inertia[(column, row)]);
             if (value - mirrored).abs() > SYMMETRY * inertia.norm() {

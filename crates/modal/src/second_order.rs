@@ -14,8 +14,8 @@ use faer::{Mat, MatRef, Side};
 
 use crate::error::ModalError;
 use crate::foretold::of_vectors;
+use crate::input::{check_finite_columns, check_rows};
 use crate::solve::{Modes, Solver};
-use crate::statics::check_finite;
 use crate::tall;
 
 /// What a static answer adds to the modes must be more than this part of it: less is rounding.
@@ -66,10 +66,8 @@ impl Solver<'_> {
             if vectors.ncols() != pairs.len() {
                 return Err(ModalError::Length { what, expected: pairs.len(), found: vectors.ncols() });
             }
-            if vectors.nrows() != size {
-                return Err(ModalError::Size { what, expected: size, found: vectors.nrows() });
-            }
-            check_finite(what, vectors)?;
+            check_rows(what, vectors.nrows(), size)?;
+            check_finite_columns(what, vectors)?;
         }
         if !(large.is_sorted_by(|a, b| a < b) && large.last().is_none_or(|last| *last < dynamic)) {
             return Err(ModalError::LargeModes { found: large.to_vec(), count: dynamic });

@@ -31,7 +31,7 @@ impl<'a> ShiftedMatrix<'a> {
         let mut union = None;
         if let (StiffnessMatrix::Nodal(k), MassMatrix::Nodal(m)) = (&stiffness, mass) {
             // The matrices of an assembly share one pattern: nothing has to be compared.
-            if !std::ptr::eq(k.pairs().nodes, m.pairs().nodes) && !k.pairs().covers(&m.pairs()) {
+            if !std::ptr::eq(k.pairs().nodes, m.pairs().nodes) && !covers(&stiffness, mass) {
                 union = Some(k.pairs().union(&m.pairs()));
             }
         }
@@ -54,7 +54,7 @@ impl<'a> ShiftedMatrix<'a> {
             return Ok(Pattern::Made(pairs.lower(3)));
         }
         let k = self.stiffness.pattern();
-        if self.stiffness_covers_mass() {
+        if covers(&self.stiffness, self.mass) {
             return Ok(k);
         }
         Ok(Pattern::Made(faer::sparse::ops::union_symbolic(k.as_ref(), self.mass.pattern().as_ref())?))
@@ -67,18 +67,6 @@ impl<'a> ShiftedMatrix<'a> {
             (None, StiffnessMatrix::Nodal(k), MassMatrix::Nodal(_)) => Some(k.pairs()),
             _ => None,
         }
-    }
-
-    /// Whether K has an entry wherever M has one.
-    fn stiffness_covers_mass(&self) -> bool {
-        let covers = |column: usize| {
-            let mut rows = Vec::new();
-            self.stiffness.for_each_in_column(column, |row, _| rows.push(row));
-            let mut all = true;
-            self.mass.for_each_in_column(column, |row, _| all &= rows.binary_search(&row).is_ok());
-            all
-        };
-        (0..self.stiffness.ncols()).all(covers)
     }
 
     /// Calls `add` with the entries of a column, those of a node's rows together where K has them so: the first row, and the
@@ -123,4 +111,16 @@ impl<'a> ShiftedMatrix<'a> {
         }
         Ok(matrix)
     }
+}
+
+/// Whether K has an entry wherever M has one.
+fn covers(stiffness: &StiffnessMatrix<'_>, mass: &MassMatrix<'_>) -> bool {
+    let covers = |column: usize| {
+        let mut rows = Vec::new();
+        stiffness.for_each_in_column(column, |row, _| rows.push(row));
+        let mut all = true;
+        mass.for_each_in_column(column, |row, _| all &= rows.binary_search(&row).is_ok());
+        all
+    };
+    (0..stiffness.ncols()).all(covers)
 }

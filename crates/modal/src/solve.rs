@@ -12,11 +12,11 @@ use crate::engine::{Engine, EngineStats};
 use crate::error::ModalError;
 use crate::foretold::Foretold;
 use crate::held_problem::HeldProblem;
+use crate::input::{check_finite_positions, check_matrix, check_rows};
 use crate::lanczos::{BLOCK, FIXED, largest_pairs, room};
 use crate::mass::NodalMass;
 use crate::mass_matrix::{MassMatrix, freedoms};
 use crate::polynomials::Polynomials;
-use crate::positions::check_finite;
 use crate::progress::Progress;
 use crate::rigid::RigidModes;
 use crate::ritz::{RitzPairs, rayleigh_ritz};
@@ -149,12 +149,14 @@ impl<'a> Solver<'a> {
         support: &Support,
     ) -> Result<Self, ModalError> {
         let started = Instant::now();
-        check_input(stiffness, mass, positions)?;
+        let freedoms = freedoms("stiffness", stiffness.ncols(), positions.len())?;
+        check_matrix("stiffness", stiffness, freedoms * positions.len())?;
+        check_finite_positions(positions)?;
         let (rows, values) = (stiffness.symbolic().row_idx(), stiffness.val());
         check_symmetric("stiffness", 1, stiffness.symbolic().col_ptr(), |entry| rows[entry], |entry| values[entry])?;
         let stiffness = StiffnessMatrix::General(stiffness);
         let given = mass;
-        let mass = MassMatrix::new(mass, positions.len())?;
+        let mass = MassMatrix::of_freedoms(mass, positions.len(), freedoms)?;
         let of_given = match &mass {
             MassMatrix::Nodal(_) => 16 * given.row_idx().len() + 8 * given.ncols(),
             MassMatrix::General(_) => 0,
@@ -174,8 +176,9 @@ impl<'a> Solver<'a> {
     ) -> Result<Self, ModalError> {
         let started = Instant::now();
         let (stiffness, mass) = (StiffnessMatrix::Nodal(stiffness), MassMatrix::Nodal(mass));
-        check_sizes([("stiffness", [stiffness.ncols(); 2]), ("mass", [mass.ncols(); 2])], 3 * positions.len())?;
-        check_finite(positions)?;
+        check_rows("stiffness", stiffness.ncols(), 3 * positions.len())?;
+        check_rows("mass", mass.ncols(), 3 * positions.len())?;
+        check_finite_positions(positions)?;
         Self::of_checked(started, stiffness, mass, 0, positions, support)
     }
 
@@ -416,31 +419,6 @@ impl<'a> Solver<'a> {
             return Err(ModalError::MassHiddenByRounding { rounding, limit: MASS_ROUNDING });
         }
         Ok(())
-    }
-}
-
-fn check_input(
-    stiffness: SparseColMatRef<'_, usize, f64>,
-    mass: SparseColMatRef<'_, usize, f64>,
-    positions: &[[f64; 3]],
-) -> Result<(), ModalError> {
-    let expected = positions.len() * freedoms("stiffness", stiffness.ncols(), positions.len())?;
-    for (what, matrix) in [("stiffness", stiffness), ("mass", mass)] {
-        check_sizes([(what, [matrix.nrows(), matrix.ncols()])], expected)?;
-        if let Some(index) = (0..matrix.ncols()).find(|j| matrix.val_of_col(*j).iter().any(|v| !v.is_finite())) {
-            let value = matrix.val_of_col(index).iter().copied().find(|v| !v.is_finite()).unwrap_or(f64::NAN);
-            return Err(ModalError::NotFinite { what, place: "column", index, value });
-        }
-    }
-    check_finite(positions)
-}
-
-/// Refuses matrices that have not so many rows and columns, and those that have none.
-fn check_sizes<const N: usize>(found: [(&'static str, [usize; 2]); N], expected: usize) -> Result<(), ModalError> {
-    let sizes = found.into_iter().flat_map(|(what, sizes)| sizes.map(|found| (what, found)));
-    match sizes.into_iter().find(|(_, found)| *found != expected || *found == 0) {
-        Some((what, found)) => Err(ModalError::Size { what, expected, found }),
-        None => Ok(()),
     }
 }
 

@@ -13,6 +13,7 @@ use faer::{Accum, ColMut, ColRef, Mat, MatRef, Scale, unzip, zip};
 use crate::error::ModalError;
 use crate::foretold::of_vectors;
 use crate::inertia_relief::InertiaRelief;
+use crate::input::{check_finite_columns, check_rows};
 use crate::products::Packed;
 use crate::ritz::{RitzPairs, rayleigh_ritz};
 use crate::shifted::{Shifted, SolveScratch};
@@ -72,13 +73,9 @@ impl Solver<'_> {
         accuracy: StaticAccuracy,
     ) -> Result<Mat<f64>, ModalError> {
         let expected = self.rigid.shapes.nrows();
-        if forces.nrows() != expected {
-            return Err(ModalError::Size { what: "forces", expected, found: forces.nrows() });
-        }
-        if modes.shapes.nrows() != expected {
-            return Err(ModalError::Size { what: "mode shapes", expected, found: modes.shapes.nrows() });
-        }
-        check_finite("forces", forces)?;
+        check_rows("forces", forces.nrows(), expected)?;
+        check_rows("mode shapes", modes.shapes.nrows(), expected)?;
+        check_finite_columns("forces", forces)?;
         if let Some(engine) = &self.engine {
             return self.static_response_by(engine.as_ref(), forces);
         }
@@ -121,11 +118,9 @@ impl Solver<'_> {
     /// What `answers` (N×k) have beside the rigid modes and `modes`, M-orthonormal; without those that add less than
     /// `least` of themselves.
     pub(crate) fn beside(&self, modes: &Modes, answers: MatRef<'_, f64>, least: f64) -> Result<Mat<f64>, ModalError> {
-        let (expected, found) = (modes.shapes.nrows(), answers.nrows());
-        if found != expected {
-            return Err(ModalError::Size { what: "static answers", expected, found });
-        }
-        check_finite("static answers", answers)?;
+        let expected = modes.shapes.nrows();
+        check_rows("static answers", answers.nrows(), expected)?;
+        check_finite_columns("static answers", answers)?;
         memory::check("static shapes", of_vectors(expected, modes.shapes.ncols() + 4 * answers.ncols()))?;
         let mut rests = answers.to_owned();
         let mut m_rests = self.mass.product(answers);
@@ -172,15 +167,6 @@ fn orthonormalize(vectors: [&mut Mat<f64>; 2], wholes: &[f64], least: f64) -> us
     count
 }
 
-pub(crate) fn check_finite(what: &'static str, vectors: MatRef<'_, f64>) -> Result<(), ModalError> {
-    for (index, vector) in vectors.col_iter().enumerate() {
-        if let Some(value) = vector.iter().copied().find(|value| !value.is_finite()) {
-            return Err(ModalError::NotFinite { what, place: "column", index, value });
-        }
-    }
-    Ok(())
-}
-
 /// What the iterations share.
 struct Statics<'a> {
     solver: &'a Solver<'a>,
@@ -211,18 +197,15 @@ impl<'a> Statics<'a> {
         let (mut search, mut shifted) = (zeros(), zeros());
         let (mut conditioned, mut stiff) = (zeros(), zeros());
         let mut before: Vec<f64> = vec![f64::INFINITY; forces.ncols()];
-        let mut scale: Vec<f64> = Vec::new();
+        self.precondition(&residual, &mut conditioned);
+        let mut squared = dots(&residual, &conditioned);
+        let scale: Vec<f64> = squared.iter().zip(&along).map(|(squared, along)| squared + along).collect();
         // Along a mode that is not known, (K + sM)⁻¹ K is more than 1 − s/λ of the last that is, and 1 at most.
         let known = self.modes.eigenvalues[..self.modes.natural()].last();
         let of_first = known.map_or(f64::INFINITY, |lambda| (self.factor.shift / lambda).powi(2));
         let (mut iterations, mut may_end_early) = (0, true);
         loop {
             let ended_early = loop {
-                self.precondition(&residual, &mut conditioned);
-                let squared = dots(&residual, &conditioned);
-                if iterations == 0 {
-                    scale = squared.iter().zip(&along).map(|(squared, along)| squared + along).collect();
-                }
                 let is_open = |squared: f64, k: usize| squared > tolerance * tolerance * scale[k];
                 let open: Vec<usize> = (0..squared.len()).filter(|k| is_open(squared[*k], *k)).collect();
                 if open.is_empty() || iterations == MAX_ITERATIONS {
@@ -244,16 +227,18 @@ impl<'a> Statics<'a> {
                 // This step and the last solution gain about as much each as the step before.
                 let gain = |k: usize| if iterations == 1 { of_first } else { squared[k] / before[k] };
                 let ends = open.iter().all(|k| !is_open(squared[*k] * gain(*k) * gain(*k), *k));
-                before = squared;
+                open.iter().for_each(|k| before[*k] = squared[*k]);
                 if ends && may_end_early {
                     break true;
                 }
                 self.relief.balance(&mut residual);
+                self.precondition(&residual, &mut conditioned);
+                squared = dots(&residual, &conditioned);
             };
             residual = &forces - self.relief.stiff(&answer);
             self.relief.balance(&mut residual);
             self.precondition(&residual, &mut conditioned);
-            let squared = dots(&residual, &conditioned);
+            squared = dots(&residual, &conditioned);
             let left = |k: usize| {
                 // The last solution gains as much as the step before it, or nothing where rounding is reached.
                 let gain = (squared[k] / before[k]).min(1.0);
@@ -263,10 +248,7 @@ impl<'a> Statics<'a> {
             match (0..squared.len()).find(is_refused) {
                 None => break,
                 // The last step has gained less than those before it: go on from here.
-                Some(_) if ended_early => {
-                    may_end_early = false;
-                    before.fill(f64::INFINITY);
-                }
+                Some(_) if ended_early => may_end_early = false,
                 Some(k) => {
                     let (column, residual) = (first + k, left(k));
                     return Err(ModalError::StaticNotConverged { column, iterations, residual, tolerance: ACCEPTED });

@@ -3,6 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use crate::error::ModalError;
+use crate::input::check_finite;
 
 /// How far from 1 the length of a direction may be.
 const UNIT: f64 = 1e-9;
@@ -268,9 +269,7 @@ impl RigidMotion {
     /// Refuses points that are not finite and directions that are not unit vectors.
     pub(crate) fn check(&self) -> Result<(), ModalError> {
         let point = self.fixed_point().unwrap_or_default();
-        if let Some((index, value)) = point.iter().enumerate().find(|(_, c)| !c.is_finite()) {
-            return Err(ModalError::NotFinite { what: "the support's point", place: "axis", index, value: *value });
-        }
+        check_finite("the support's point", "axis", point.iter().map(|c| [*c]))?;
         let is_unit = |direction: &Vector3<f64>| (direction.norm() - 1.0).abs() < UNIT;
         match self.translations().iter().chain(self.rotations()).find(|direction| !is_unit(direction)) {
             Some(direction) => Err(ModalError::NotUnit { direction: (*direction).into() }),

@@ -46,6 +46,9 @@ impl CostReport {
                 errors.largest()
             )?;
         }
+        if let Some(why) = &self.paper_limit_failure {
+            writeln!(f, "  paper      no limit for short steps, {why}")?;
+        }
         writeln!(
             f,
             "\n     {:<17} {:>9}  {:>9} {:>9} {:>9} {:>9} {:>9}  {:>9} {:>9}  {:>8} {:>9}  {:>10} {:>6}",

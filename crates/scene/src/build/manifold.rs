@@ -1,5 +1,7 @@
 //! Large deflection: the manifold that the large modes of a body move on.
 
+use std::cell::OnceCell;
+
 use faer::{Mat, MatRef};
 use fem_tet10::GeometricTerms;
 use frames_rk4::Manifold;
@@ -9,7 +11,7 @@ use super::backbones::Derivatives;
 use super::error::{BuildError, modal};
 use super::mesh_model::{MeshModel, shapes_of};
 use super::spin_stress::SpinStress;
-use super::statics::Statics;
+use super::statics::{OfSpin, Statics};
 use super::stress::{DRIVE, Stress};
 
 /// A mode that relieves more than this part of the strain energy of second order of others is drawn in by them. Measured: 0.17
@@ -23,25 +25,18 @@ const STIFFER: f64 = 4.0;
 pub(super) struct LargeDeflection {
     pub manifold: Manifold,
     large: LargeShapes,
-    /// What is known of the geometric stiffness of the large modes.
-    known: Vec<OfLarge>,
 }
 
-/// The shapes of second order of the large modes.
+/// The shapes of second order of the large modes, and the geometric stiffness of each large mode in the modes of the motion
+/// (nf × nf); of interest is that between a large mode and another.
 struct LargeShapes {
     shapes: SecondOrderShapes,
     /// M φ of each large mode (3n × …).
     momenta: Mat<f64>,
-    /// The forces of second order of their pairs in the modes of the motion (nf × pairs).
-    of_pairs: Mat<f64>,
-}
-
-/// The geometric stiffness of each large mode in the modes (nf × nf), with some of its terms; of interest between a large
-/// mode and another.
-#[derive(Clone)]
-struct OfLarge {
-    terms: GeometricTerms,
-    stiffness: Vec<Mat<f64>>,
+    /// The stiffness by all terms.
+    by_all_terms: Vec<Mat<f64>>,
+    /// By the initial stress alone; it takes a pass over the elements.
+    by_initial_stress: OnceCell<Vec<Mat<f64>>>,
 }
 
 impl LargeDeflection {
@@ -82,27 +77,26 @@ impl LargeDeflection {
             return Err(refuse_drawn_in(model, large[follower], pair.map(|j| large[j]), &others));
         }
         let momenta = solver.mass_product(of_large.as_ref())?;
-        let of_pairs =
-            Mat::from_fn(modes.shapes.ncols(), pairs.len(), |a, b| modes.shapes.col(a).transpose() * forces.col(b));
+        let by_all_terms = stiffness_by_pairs(modes, large, &pairs, forces.as_ref());
         let shapes = solver.second_order_shapes(modes.clone(), large, forces.as_ref(), answers.as_ref())?;
-        let large = LargeShapes { shapes, momenta, of_pairs };
-        let mut known = Vec::new();
+        let large = LargeShapes { shapes, momenta, by_all_terms, by_initial_stress: OnceCell::new() };
         let extended = match (&statics.of_spin, spin) {
-            (Some(answers), Some(spin)) => {
-                let all = large.stiffness(model, modes, GeometricTerms::All, &mut known)?.to_vec();
-                let initial = large.stiffness(model, modes, GeometricTerms::InitialStress, &mut known)?;
-                let of_pair = |(pair, k): (usize, &Mat<f64>)| {
-                    let of_mode = |(all, initial)| spin.settled(pair, all, initial);
-                    let of_large: Vec<_> = all.iter().zip(initial).map(of_mode).collect();
-                    large.extended(answers.answers.subcols(pair, 1), k, &of_large)
+            (Some(OfSpin { answers, .. }), Some(spin)) => {
+                let all = large.stiffness(model, modes, GeometricTerms::All)?;
+                let of_large = if spin.is_by_all_terms() {
+                    all.to_vec()
+                } else {
+                    let initial = large.stiffness(model, modes, GeometricTerms::InitialStress)?;
+                    all.iter().zip(initial).map(|(all, initial)| spin.settled(all, initial)).collect()
                 };
-                spin.stiffness().iter().enumerate().map(of_pair).collect::<Vec<_>>().try_into().ok()
+                let k = spin.stiffness();
+                Some(std::array::from_fn(|pair| large.extended(answers.subcols(pair, 1), &k[pair], &of_large)))
             }
             _ => None,
         };
         let shapes = &large.shapes;
         let body = solver.reduced_body(&shapes.modes)?.with_stress_stiffness(extended).map_err(modal(model.scene))?;
-        Ok(Self { manifold: Manifold::new(body, shapes, &energies)?, large, known })
+        Ok(Self { manifold: Manifold::new(body, shapes, &energies)?, large })
     }
 
     /// The extended shapes.
@@ -124,12 +118,9 @@ impl LargeDeflection {
         statics: &Statics,
         mut stress: Stress,
     ) -> Result<Stress, BuildError> {
-        // What is computed is what the stress of some load or drive has.
-        let mut known = self.known.clone();
-        let mut extended =
-            |answer: MatRef<'_, f64>, k: &Mat<f64>, terms: GeometricTerms| -> Result<Mat<f64>, BuildError> {
-                Ok(self.large.extended(answer, k, self.large.stiffness(model, modes, terms, &mut known)?))
-            };
+        let extended = |answer: MatRef<'_, f64>, k: &Mat<f64>, terms| -> Result<Mat<f64>, BuildError> {
+            Ok(self.large.extended(answer, k, self.large.stiffness(model, modes, terms)?))
+        };
         if let Some(of_loads) = &statics.of_loads {
             for (i, directed) in stress.of_loads.iter_mut().enumerate() {
                 for (j, directed) in directed.iter_mut().enumerate() {
@@ -202,53 +193,41 @@ fn second_order_forces(
     Ok(found)
 }
 
-impl LargeShapes {
-    /// The geometric stiffness of each large mode in the `modes` of the motion, where it is not `known`. With all terms `φ_a·K(φ_j)·φ_b` is
-    /// `φ_a·g_jb`, whichever of the three is large.
-    fn stiffness<'k>(
-        &self,
-        model: &MeshModel<'_>,
-        modes: &Modes,
-        terms: GeometricTerms,
-        known: &'k mut Vec<OfLarge>,
-    ) -> Result<&'k [Mat<f64>], BuildError> {
-        let place = match known.iter().position(|of_large| of_large.terms == terms) {
-            Some(place) => place,
-            None => {
-                known.push(OfLarge { terms, stiffness: self.computed(model, modes, terms)? });
-                known.len() - 1
-            }
-        };
-        Ok(&known[place].stiffness)
-    }
+/// The geometric stiffness by all terms of each large mode in the `modes` of the motion, between a large mode and another:
+/// `φ_a·K(φ_j)·φ_b` is `φ_a·g_jb`, whichever of the three is large, with the `forces` g of second order of the pairs.
+fn stiffness_by_pairs(modes: &Modes, large: &[usize], pairs: &[[usize; 2]], forces: MatRef<'_, f64>) -> Vec<Mat<f64>> {
+    let count = modes.shapes.ncols();
+    let along = Mat::from_fn(count, pairs.len(), |a, b| modes.shapes.col(a).transpose() * forces.col(b));
+    let place = |mode: usize| large.iter().position(|k| *k == mode);
+    let of_pair = |mode: usize, j: usize, k: usize| {
+        let pair = pairs.iter().position(|pair| *pair == [j.min(k), j.max(k)]);
+        pair.map_or(0.0, |pair| along[(mode, pair)])
+    };
+    let of = |j: usize, a: usize, b: usize| match (place(a), place(b)) {
+        (_, Some(k)) => of_pair(a, j, k),
+        (Some(k), None) => of_pair(b, j, k),
+        (None, None) => 0.0,
+    };
+    (0..large.len()).map(|j| Mat::from_fn(count, count, |a, b| of(j, a, b))).collect()
+}
 
-    fn computed(
+impl LargeShapes {
+    /// The geometric stiffness of each large mode in the `modes` of the motion.
+    fn stiffness(
         &self,
         model: &MeshModel<'_>,
         modes: &Modes,
         terms: GeometricTerms,
-    ) -> Result<Vec<Mat<f64>>, BuildError> {
-        let large = &self.shapes.large;
-        Ok(match terms {
-            GeometricTerms::InitialStress => {
-                model.solver.stress_stiffness(shapes_of(modes, large).as_ref(), modes, terms, &[])?
+    ) -> Result<&[Mat<f64>], BuildError> {
+        match (terms, self.by_initial_stress.get()) {
+            (GeometricTerms::All, _) => Ok(&self.by_all_terms),
+            (GeometricTerms::InitialStress, Some(known)) => Ok(known),
+            (GeometricTerms::InitialStress, None) => {
+                let large = shapes_of(modes, &self.shapes.large);
+                let found = model.solver.stress_stiffness(large.as_ref(), modes, terms, &[])?;
+                Ok(self.by_initial_stress.get_or_init(|| found))
             }
-            GeometricTerms::All => {
-                let pairs = SecondOrderShapes::pairs(large.len());
-                let place = |mode: usize| large.iter().position(|k| *k == mode);
-                let of_pair = |mode: usize, j: usize, k: usize| {
-                    let pair = pairs.iter().position(|pair| *pair == [j.min(k), j.max(k)]);
-                    pair.map_or(0.0, |pair| self.of_pairs[(mode, pair)])
-                };
-                let of = |j: usize, a: usize, b: usize| match (place(a), place(b)) {
-                    (_, Some(k)) => of_pair(a, j, k),
-                    (Some(k), None) => of_pair(b, j, k),
-                    (None, None) => 0.0,
-                };
-                let count = modes.shapes.ncols();
-                (0..large.len()).map(|j| Mat::from_fn(count, count, |a, b| of(j, a, b))).collect()
-            }
-        })
+        }
     }
 
     /// The geometric stiffness `k` (nf × nf) of a static `answer` (3n × 1) in the extended shapes. Between two large modes

@@ -44,8 +44,7 @@ impl ModalModel {
 
     /// The same model with a stress stiffness of the spin, or without any.
     pub fn with_stress_stiffness(self, model: &MeshModel<'_>, spin: Option<&SpinStress>) -> Result<Self, BuildError> {
-        let k = spin.and_then(|spin| spin.stiffness().try_into().ok());
-        let body = self.body.with_stress_stiffness(k).map_err(modal(model.scene))?;
+        let body = self.body.with_stress_stiffness(spin.map(SpinStress::stiffness)).map_err(modal(model.scene))?;
         Ok(Self { body, ..self })
     }
 

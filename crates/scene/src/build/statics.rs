@@ -125,8 +125,9 @@ impl Statics {
     ) -> Result<Option<SpinStress>, BuildError> {
         let Some(of_spin) = &self.of_spin else { return Ok(None) };
         let by = |terms, known| model.solver.stress_stiffness(of_spin.answers.as_ref(), modes, terms, known);
-        let by_terms = [by(GeometricTerms::All, &known[0])?, by(GeometricTerms::InitialStress, &known[1])?];
-        Ok(Some(SpinStress::new(by_terms, &modes.eigenvalues)))
+        let all = by(GeometricTerms::All, &known[0])?.try_into().ok();
+        let initial = by(GeometricTerms::InitialStress, &known[1])?.try_into().ok();
+        Ok(all.zip(initial).map(|(all, initial)| SpinStress::new([all, initial], &modes.eigenvalues)))
     }
 
     /// The answer to all dead loads together that stay as they are, seen from the body (3n × 1).

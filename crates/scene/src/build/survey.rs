@@ -48,13 +48,8 @@ impl Survey {
             progress(BuildProgress::Statics);
         }
         let statics = Statics::new(model, &modes, &modal.body.origin, asked)?;
-        let mut spin = None;
-        let modal = if stiffens {
-            spin = statics.stress_stiffness(model, &modes, &Default::default())?;
-            modal.with_stress_stiffness(model, spin.as_ref())?
-        } else {
-            modal
-        };
+        let spin = if stiffens { statics.stress_stiffness(model, &modes, &Default::default())? } else { None };
+        let modal = modal.with_stress_stiffness(model, spin.as_ref())?;
 
         let case = Case {
             static_compliances: if has_shapes { statics.compliances() } else { &[] },

@@ -1,0 +1,54 @@
+//! Checks of what is given: sizes, and numbers that are not finite.
+
+use faer::MatRef;
+use faer::sparse::SparseColMatRef;
+
+use crate::error::ModalError;
+
+/// Refuses numbers that are not finite, in groups that are counted as `place`s.
+pub(crate) fn check_finite<I: IntoIterator<Item = f64>>(
+    what: &'static str,
+    place: &'static str,
+    groups: impl IntoIterator<Item = I>,
+) -> Result<(), ModalError> {
+    for (index, group) in groups.into_iter().enumerate() {
+        if let Some(value) = group.into_iter().find(|value| !value.is_finite()) {
+            return Err(ModalError::NotFinite { what, place, index, value });
+        }
+    }
+    Ok(())
+}
+
+/// The same of numbers that are counted one by one.
+pub(crate) fn check_finite_entries(
+    what: &'static str,
+    values: impl IntoIterator<Item = f64>,
+) -> Result<(), ModalError> {
+    check_finite(what, "entry", values.into_iter().map(|value| [value]))
+}
+
+/// The same of vectors (N×k).
+pub(crate) fn check_finite_columns(what: &'static str, vectors: MatRef<'_, f64>) -> Result<(), ModalError> {
+    check_finite(what, "column", vectors.col_iter().map(|vector| vector.iter().copied()))
+}
+
+/// The same of the positions of nodes.
+pub(crate) fn check_finite_positions(positions: &[[f64; 3]]) -> Result<(), ModalError> {
+    check_finite("positions", "node", positions.iter().copied())
+}
+
+/// Refuses another number of rows than expected, and none.
+pub(crate) fn check_rows(what: &'static str, found: usize, expected: usize) -> Result<(), ModalError> {
+    if found == expected && found > 0 { Ok(()) } else { Err(ModalError::Size { what, expected, found }) }
+}
+
+/// Refuses a matrix (N×N, with N = `expected`) of another size, and entries that are not finite.
+pub(crate) fn check_matrix(
+    what: &'static str,
+    matrix: SparseColMatRef<'_, usize, f64>,
+    expected: usize,
+) -> Result<(), ModalError> {
+    check_rows(what, matrix.nrows(), expected)?;
+    check_rows(what, matrix.ncols(), expected)?;
+    check_finite(what, "column", (0..expected).map(|column| matrix.val_of_col(column).iter().copied()))
+}
