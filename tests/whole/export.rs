@@ -204,8 +204,10 @@ fn a_results_file_becomes_a_table_and_fields() {
     }
     let text = refused(&["export", file, "--csv", &at("new.csv"), "--columns", "points/nose"], 2);
     assert!(text.contains("no column \"points/nose\"") && text.contains("points/tip/displacement"), "{text}");
-    let text = refused(&["export", file, "--vtkhdf", &at("new.vtkhdf"), "--from", "7"], 2);
-    assert!(text.contains("no row") && text.contains("from time 0 to 0.2"), "{text}");
+    for to in [["--vtkhdf", &at("new.vtkhdf")], ["--csv", &at("new.csv")]] {
+        let text = refused(&[&["export", file, "--from", "7"][..], &to].concat(), 2);
+        assert!(text.contains("no row") && text.contains("from time 0 to 0.2"), "{text}");
+    }
     refused(&["export", file], 2);
     assert!(!Path::new(&at("new.csv")).exists() && !Path::new(&at("new.vtkhdf")).exists());
 }

@@ -141,6 +141,21 @@ fn rows_that_fail_are_marked_with_their_words_and_rows_that_are_done_are_kept() 
 }
 
 #[test]
+fn warnings_of_rows_are_kept_and_failures_name_no_file_that_is_gone() {
+    let parameters = "combine = \"zip\"\n[parameters]\n\"loads[0].amplitude\" = [1.0, 4e5, 4e5]\n\
+                      \"effects.refuse\" = [false, false, true]";
+    let case = Case::new(parameters);
+    let report = case.run(false).unwrap();
+    assert_eq!((report.done, report.failures.len()), (2, 1), "{:?}", report.failures);
+    let failure = &report.failures[&2];
+    assert!(failure.contains("at time 0.0") && !failure.contains(".h5"), "{failure}");
+    assert_eq!(report.warnings.keys().collect::<Vec<_>>(), [&1], "{:?}", report.warnings);
+    assert!(report.to_string().contains(&format!("warning  row 1: {}", report.warnings[&1][0])), "{report}");
+    // They are in the table.
+    assert_eq!(case.run(false).unwrap().warnings, report.warnings);
+}
+
+#[test]
 fn shards_of_a_sweep_merge_into_the_table_of_the_whole() {
     let case = Case::new("[parameters]\n\"time.step\" = [1e-5, 2e-5, 1.0, 4e-5, 5e-5]");
     let whole = case.run(false).unwrap();

@@ -153,7 +153,8 @@ fn make(
     let mut builder = hdf5::File::with_options();
     // Without times of creation, so that equal bodies give equal files.
     builder.with_fcpl(|plist| plist.obj_track_times(false).userblock(description.user_block()));
-    builder.with_fapl(|plist| plist.alignment(1, 8));
+    // HDF5 would lock the file, and a process that is started meanwhile would keep the lock to its end.
+    builder.with_fapl(|plist| plist.alignment(1, 8).file_locking(false));
     let file = builder.create(place).map_err(BodyFileError::hdf5(path, "create the file"))?;
     for (name, text) in &description.attributes {
         write_text(&file, name, text).map_err(BodyFileError::hdf5(path, format!("write the attribute {name}")))?;

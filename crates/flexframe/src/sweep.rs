@@ -24,13 +24,16 @@ use crate::json;
 use crate::run::{self, RunSettings};
 use crate::write_error::WriteError;
 use plan::{Asked, Plan};
-use table::{RowState, Table};
+use table::{Done, RowState, Table};
 
 pub use error::SweepError;
 pub use shard::{Shard, slurm_script};
 
 /// The table is written again so often.
 const WRITE_INTERVAL: Duration = Duration::from_secs(1);
+
+/// Rows that the summary names of those that failed, and of those with warnings.
+const SHOWN: usize = 5;
 
 /// How far a sweep has come.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -77,6 +80,8 @@ pub struct SweepReport {
     pub kept: usize,
     /// Why rows have no results, by their number from 0.
     pub failures: BTreeMap<usize, String>,
+    /// What should be known of rows that are done, by their number.
+    pub warnings: BTreeMap<usize, Vec<String>>,
     /// How often matrices were assembled and factored.
     pub reductions: usize,
 }
@@ -93,6 +98,7 @@ impl SweepReport {
             unfinished: Vec::new(),
             kept,
             failures: table.failures(),
+            warnings: table.warnings(),
             reductions: 0,
         }
     }
@@ -241,18 +247,14 @@ fn run_rows(
 }
 
 /// The results of a row, or why there are none.
-fn run_row(
-    scene: &Scene,
-    plan: &Plan,
-    builder: &Mutex<ModelBuilder<'_>>,
-    folder: &Path,
-) -> Result<Vec<Vec<f64>>, String> {
+fn run_row(scene: &Scene, plan: &Plan, builder: &Mutex<ModelBuilder<'_>>, folder: &Path) -> Result<Done, String> {
     let model: Model = {
         let mut builder = builder.lock().unwrap_or_else(PoisonError::into_inner);
         builder.build(scene, |_| ()).map_err(|error| error.to_string())?
     };
     let folder = tempfile::tempdir_in(folder).map_err(|error| error.to_string())?;
-    run::run_model(scene, &model, folder.path(), &RunSettings::default(), |_| ()).map_err(|error| error.to_string())?;
+    let run = run::run_model(scene, &model, folder.path(), &RunSettings::default(), |_| ());
+    let warnings = run.map_err(|error| error.without_files())?.warnings;
     let results =
         Results::open(run::results_path(scene, folder.path()), &COLUMNS).map_err(|error| error.to_string())?;
     let value = |asked: &Asked| {
@@ -266,18 +268,25 @@ fn run_row(
         };
         row.ok_or_else(|| format!("the column {column} has no rows"))
     };
-    plan.results.values().map(value).collect()
+    let results = plan.results.values().map(value).collect::<Result<_, _>>()?;
+    Ok(Done { results, warnings })
 }
 
 impl fmt::Display for SweepReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{}", self.title)?;
         writeln!(f, "  rows     {} done ({} of them before), {} failed", self.done, self.kept, self.failures.len())?;
-        for (row, words) in self.failures.iter().take(5) {
+        for (row, words) in self.failures.iter().take(SHOWN) {
             writeln!(f, "  failed   row {row}: {}", words.lines().next().unwrap_or_default())?;
         }
-        if self.failures.len() > 5 {
-            writeln!(f, "           and {} more, see `failures` in the file", self.failures.len() - 5)?;
+        if self.failures.len() > SHOWN {
+            writeln!(f, "           and {} more, see `failures` in the file", self.failures.len() - SHOWN)?;
+        }
+        for (row, words) in self.warnings.iter().take(SHOWN) {
+            writeln!(f, "  warning  row {row}: {}", words.join("; "))?;
+        }
+        if self.warnings.len() > SHOWN {
+            writeln!(f, "           and {} more, see `warnings` in the file", self.warnings.len() - SHOWN)?;
         }
         for shard in &self.unfinished {
             writeln!(

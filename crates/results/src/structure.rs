@@ -25,8 +25,9 @@ pub(crate) fn make<R>(
     let mut builder = hdf5::File::with_options();
     // Without times of creation, so that equal runs give equal files; the seal goes into the user block.
     builder.with_fcpl(|plist| plist.obj_track_times(false).userblock(user_block));
-    // Numbers do not straddle the pages of the file, which may be written one by one.
-    builder.with_fapl(|plist| plist.alignment(1, 8));
+    // Numbers do not straddle the pages of the file, which may be written one by one. HDF5 would lock the file, and a process
+    // that is started meanwhile would keep the lock to its end.
+    builder.with_fapl(|plist| plist.alignment(1, 8).file_locking(false));
     let file = builder.create(place).map_err(FileError::hdf5(path, "create the file"))?;
     write_root_attributes(path, &file, metadata, room.checkpoint_words.is_none())?;
     write_body(path, &file, metadata)?;

@@ -37,7 +37,10 @@ impl VtkHdf {
         let path = path.as_ref();
         let place = temporary(path, overwrite)?;
         let failed = |what: &str| FileError::hdf5(path, format!("write {what}"));
-        let file = hdf5::File::create(&place).map_err(FileError::hdf5(path, "create the file"))?;
+        let mut builder = hdf5::File::with_options();
+        // HDF5 would lock the file, and a process that is started meanwhile would keep the lock to its end.
+        builder.with_fapl(|plist| plist.file_locking(false));
+        let file = builder.create(&place).map_err(FileError::hdf5(path, "create the file"))?;
         let group = file.create_group("VTKHDF").map_err(failed("VTKHDF"))?;
         write_head(&group, grid).map_err(failed("the mesh"))?;
         let steps = times.map_or(1, <[f64]>::len);

@@ -29,7 +29,7 @@ struct Part {
 pub fn export_csv(file: &Path, to: &Path, columns: &[String], rows: &ExportRows) -> Result<Exported, ExportError> {
     let results = Results::open(file, &COLUMNS)?;
     let parts = chosen(file, &results, columns)?;
-    let chosen_rows = rows.of(&results);
+    let chosen_rows = rows.of(file, &results)?;
     let path = if to.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("csv")) {
         to.to_owned()
     } else {

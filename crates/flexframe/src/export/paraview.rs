@@ -17,11 +17,7 @@ impl Motion {
     /// The rows to export and their times.
     fn chosen(&self, file: &Path, rows: &ExportRows) -> Result<(Vec<usize>, Vec<f64>), ExportError> {
         let times = self.results.numbers("time").unwrap_or_default();
-        let chosen = rows.of(&self.results);
-        if chosen.is_empty() {
-            let times = [times.first(), times.last()].map(|time| time.copied().unwrap_or_default());
-            return Err(ExportError::NoRows { path: file.to_owned(), times });
-        }
+        let chosen = rows.of(file, &self.results)?;
         let times = chosen.iter().map(|row| times[*row]).collect();
         Ok((chosen, times))
     }

@@ -1,6 +1,10 @@
 //! Which rows of a results file are exported.
 
+use std::path::Path;
+
 use results::Results;
+
+use super::error::ExportError;
 
 /// Every so many of the rows from one time to another.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -23,15 +27,20 @@ impl Default for ExportRows {
 }
 
 impl ExportRows {
-    /// Their numbers.
-    pub(super) fn of(&self, results: &Results) -> Vec<usize> {
+    /// Their numbers, one at least.
+    pub(super) fn of(&self, file: &Path, results: &Results) -> Result<Vec<usize>, ExportError> {
         let times = results.numbers("time").unwrap_or_default();
         // Times of rows are sums of steps.
         let slack = 1e-9 * times.last().copied().unwrap_or_default().abs();
         let from = self.from.map_or(f64::NEG_INFINITY, |from| from - slack);
         let to = self.to.map_or(f64::INFINITY, |to| to + slack);
         let within = (0..times.len()).filter(|row| (from..=to).contains(&times[*row]));
-        within.step_by(self.every.max(1)).collect()
+        let chosen: Vec<usize> = within.step_by(self.every.max(1)).collect();
+        if chosen.is_empty() {
+            let times = [times.first(), times.last()].map(|time| time.copied().unwrap_or_default());
+            return Err(ExportError::NoRows { path: file.to_owned(), times });
+        }
+        Ok(chosen)
     }
 
     /// What should be known of an export of these results.

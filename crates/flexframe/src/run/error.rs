@@ -90,6 +90,17 @@ pub enum RunError {
     },
 }
 
+impl RunError {
+    /// The error without the files of the run, for those who do not keep them.
+    pub(crate) fn without_files(&self) -> String {
+        match self {
+            Self::Step { source, .. } => source.to_string(),
+            Self::Refused { time, refusal, .. } => format!("at time {time:.6}: {refusal}"),
+            other => other.to_string(),
+        }
+    }
+}
+
 /// Why a run did not come to its end.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum RunFailure {

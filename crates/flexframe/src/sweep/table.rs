@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use body_file::{BodyFile, BodyFileError, Declared, Digest, Kind, Writer};
+use serde::de::DeserializeOwned;
 use toml::Value;
 
 use super::error::SweepError;
@@ -19,10 +20,19 @@ const FAILED: u32 = 2;
 pub(super) enum RowState {
     /// It has not been run.
     Open,
-    /// The numbers of each result, in the order of the plan.
-    Done(Vec<Vec<f64>>),
+    /// It came to its end.
+    Done(Done),
     /// Why there are none.
     Failed(String),
+}
+
+/// A row that came to its end.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Done {
+    /// The numbers of each result, in the order of the plan.
+    pub results: Vec<Vec<f64>>,
+    /// What should be known of its run.
+    pub warnings: Vec<String>,
 }
 
 /// The rows of a sweep.
@@ -59,8 +69,8 @@ impl Table {
             return Err(other("it is of another sweep or scene, or of another version of flexframe"));
         }
         let status = file.read::<u32>("status").map_err(|_| other("it is damaged"))?.values;
-        let words = file.attribute("failures").and_then(|text| serde_json::from_str(text).ok());
-        let words: BTreeMap<usize, String> = words.unwrap_or_default();
+        let words: BTreeMap<usize, String> = by_row(&file, "failures");
+        let mut warnings: BTreeMap<usize, Vec<String>> = by_row(&file, "warnings");
         let mut rows = vec![RowState::Open; plan.rows.len()];
         let mut columns = Vec::new();
         for name in plan.results.keys() {
@@ -78,7 +88,9 @@ impl Table {
                     let width = column.shape.get(1).copied()?;
                     column.values.get(i * width..(i + 1) * width).map(<[f64]>::to_vec)
                 };
-                *row = columns.iter().map(of_row).collect::<Option<_>>().map_or(RowState::Open, RowState::Done);
+                if let Some(results) = columns.iter().map(of_row).collect() {
+                    *row = RowState::Done(Done { results, warnings: warnings.remove(&i).unwrap_or_default() });
+                }
             } else if let Some(words) = words.get(&i) {
                 *row = RowState::Failed(words.clone());
             }
@@ -99,6 +111,15 @@ impl Table {
             _ => None,
         };
         self.rows.iter().enumerate().filter_map(failed).collect()
+    }
+
+    /// The rows that came to their end with warnings, and these.
+    pub fn warnings(&self) -> BTreeMap<usize, Vec<String>> {
+        let warned = |(i, row): (usize, &RowState)| match row {
+            RowState::Done(done) if !done.warnings.is_empty() => Some((i, done.warnings.clone())),
+            _ => None,
+        };
+        self.rows.iter().enumerate().filter_map(warned).collect()
     }
 
     /// Writes the file anew.
@@ -133,7 +154,7 @@ impl Table {
         }
         for (i, (name, asked)) in plan.results.iter().enumerate() {
             let done = |row: &RowState| match row {
-                RowState::Done(values) => Some(values[i].len()),
+                RowState::Done(done) => Some(done.results[i].len()),
                 _ => None,
             };
             let Some(width) = self.rows.iter().filter_map(done).max() else { continue };
@@ -145,8 +166,8 @@ impl Table {
             datasets.push(declared(path.clone(), Kind::F64, &[count, width], words));
             let mut numbers = vec![f64::NAN; count * width];
             for (row, place) in self.rows.iter().zip(numbers.chunks_mut(width.max(1))) {
-                if let RowState::Done(values) = row {
-                    place.iter_mut().zip(&values[i]).for_each(|(place, value)| *place = *value);
+                if let RowState::Done(done) = row {
+                    place.iter_mut().zip(&done.results[i]).for_each(|(place, value)| *place = *value);
                 }
             }
             columns.push((path, numbers));
@@ -160,6 +181,7 @@ impl Table {
             ("program_version".to_owned(), env!("CARGO_PKG_VERSION").to_owned()),
             ("parameters".to_owned(), json(serde_json::to_string(&parameters))),
             ("failures".to_owned(), json(serde_json::to_string(&self.failures()))),
+            ("warnings".to_owned(), json(serde_json::to_string(&self.warnings()))),
         ]);
         let mut writer = Writer::create(path, texts, &datasets)?;
         writer.write("status", &status)?;
@@ -168,6 +190,11 @@ impl Table {
         }
         Ok(writer.finish(durable)?)
     }
+}
+
+/// Words of some rows, by their number.
+fn by_row<T: DeserializeOwned>(file: &BodyFile, attribute: &str) -> BTreeMap<usize, T> {
+    file.attribute(attribute).and_then(|text| serde_json::from_str(text).ok()).unwrap_or_default()
 }
 
 /// What the table belongs to.
