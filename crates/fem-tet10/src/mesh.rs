@@ -6,6 +6,7 @@ use crate::error::MeshError;
 use crate::faces::{self, Surface};
 use crate::integration::{self, BadJacobian};
 use crate::parts::{MeshParts, NodeGroup, SurfaceGroup};
+use crate::shape::EDGES;
 use crate::tags::{index_nodes, resolve_tags};
 
 /// What is grouped, by its dimension.
@@ -187,6 +188,17 @@ impl Mesh {
     /// Node indices of each element, in gmsh's order: corners, then mid-edges 01 12 02 03 23 13.
     pub fn elements(&self) -> &[[u32; 10]] {
         &self.elements
+    }
+
+    /// For each node the two nodes at the ends of the edge that it is in the middle of, and twice itself for a corner.
+    pub fn edge_ends(&self) -> Vec<[u32; 2]> {
+        let mut ends: Vec<[u32; 2]> = (0..self.positions.len() as u32).map(|node| [node; 2]).collect();
+        for nodes in &self.elements {
+            for ([a, b], middle) in EDGES.iter().zip(&nodes[4..]) {
+                ends[*middle as usize] = [nodes[*a], nodes[*b]];
+            }
+        }
+        ends
     }
 
     /// Tags of the elements in the file's numbering.

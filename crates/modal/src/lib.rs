@@ -21,8 +21,10 @@
 
 mod buckling;
 mod cholesky;
+mod coarse;
 mod columns;
 mod constraints;
+mod davidson;
 mod dense;
 mod engine;
 mod error;
@@ -39,6 +41,7 @@ mod lanczos;
 mod mass;
 mod mass_left_out;
 mod mass_matrix;
+mod multigrid;
 mod node_pairs;
 mod ordering;
 mod outside;
@@ -71,6 +74,7 @@ mod symbolic;
 mod symmetry;
 mod tall;
 mod turned;
+mod without_factor;
 
 pub use engine::{Eigenpairs, Engine, EngineStats, StaticAnswers};
 pub use error::{EngineError, ModalError};

@@ -7,6 +7,7 @@ use faer::sparse::SparseColMatRef;
 use faer::{ColRef, Mat};
 
 use crate::columns::Columns;
+use crate::coarse::Corners;
 use crate::constraints::Constraints;
 use crate::engine::{Engine, EngineStats};
 use crate::error::ModalError;
@@ -128,6 +129,8 @@ pub struct Solver<'a> {
     /// What tells the shift, of matrices over nodes.
     polynomials: Option<Polynomials>,
     pub(crate) engine: Option<Box<dyn Engine>>,
+    /// The corners of second-order elements, where they are known.
+    pub(crate) corners: Option<Corners>,
     preparation_time: Duration,
 }
 
@@ -226,6 +229,7 @@ impl<'a> Solver<'a> {
             shift: OnceLock::new(),
             polynomials,
             engine: None,
+            corners: None,
             preparation_time,
         })
     }
@@ -234,6 +238,14 @@ impl<'a> Solver<'a> {
     #[must_use]
     pub fn with_engine(self, engine: Box<dyn Engine>) -> Self {
         Self { engine: Some(engine), ..self }
+    }
+
+    /// The same of second-order elements: for each node the two nodes at the ends of the edge that it is in the middle of, and
+    /// twice itself for a corner. Modes of a body whose factor of K + sM takes long are then found without it, where that is
+    /// faster.
+    #[must_use]
+    pub fn with_edge_ends(self, edge_ends: &[[u32; 2]]) -> Self {
+        Self { corners: Some(Corners::new(edge_ends)), ..self }
     }
 
     /// The mass matrix.
@@ -274,6 +286,9 @@ impl<'a> Solver<'a> {
         }
         if let Some(engine) = &self.engine {
             return self.modes_by(engine.as_ref(), flexible, &mut progress);
+        }
+        if let Some(found) = self.modes_without_factor(flexible, &mut progress)? {
+            return Ok(found);
         }
         let basis = FIXED + room(flexible, available);
         let factor = self.factor_for(|memory| memory.of_search(basis, BLOCK, flexible), &mut progress)?;
@@ -338,8 +353,13 @@ impl<'a> Solver<'a> {
         Ok(self.factor.get_or_init(|| factor))
     }
 
+    /// The positions of the nodes.
+    pub(crate) fn positions(&self) -> &[[f64; 3]] {
+        self.positions
+    }
+
     /// The shift s, estimated at the first call.
-    fn shift(&self) -> Result<f64, ModalError> {
+    pub(crate) fn shift(&self) -> Result<f64, ModalError> {
         if let Some(shift) = self.shift.get() {
             return Ok(*shift);
         }
