@@ -98,7 +98,7 @@ impl Simulation {
                 None => simulation.advance(steps),
             });
             if reached.is_err() {
-                // The motion is where it was before the step: the next one is to start there.
+                // The next step is to start where the motion is.
                 simulation.set_stop_time(None);
             }
             let reached = self.or_fault(py, reached)?;
@@ -198,10 +198,6 @@ impl Simulation {
     }
 }
 
-fn is_done(running: &Running) -> bool {
-    running.simulation.time() >= running.simulation.end()
-}
-
 fn step_error(py: Python<'_>, error: &StepError) -> PyErr {
     exception(py, &flexframe::run::RunFailure::Step(*error))
 }
@@ -275,7 +271,7 @@ impl Simulation {
 
     #[getter]
     fn done(&self) -> PyResult<bool> {
-        Ok(is_done(&*self.running()?))
+        Ok(self.running()?.simulation.is_over())
     }
 
     #[getter]
@@ -336,7 +332,7 @@ impl Simulation {
         running.simulation.set_stop_time(Some(time));
         let reached = loop {
             match self.go_on(py, &mut running, u64::MAX, None) {
-                Ok(frames_rk4::Reached::Row) if !is_done(&running) => {}
+                Ok(frames_rk4::Reached::Row) => {}
                 other => break other,
             }
         };
@@ -363,8 +359,6 @@ impl Simulation {
             }
         };
         let mut running = self.running()?;
-        // One that cannot be evaluated is not added.
-        value_of_event(function, &name, self.row(py, &mut running)?)?;
         let event = self.event(name, function, crossing);
         let simulation = &mut running.simulation;
         let added = py.detach(|| simulation.add_event(event));
