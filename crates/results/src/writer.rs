@@ -3,6 +3,7 @@
 use crate::block::Block;
 use crate::checkpoint::{self, Checkpoint, Sums};
 use crate::column::present;
+use crate::error::check_length;
 use crate::paths::ResultsPaths;
 use crate::reader::Results;
 use crate::room::Room;
@@ -356,11 +357,4 @@ impl<R> Drop for Writer<R> {
         // Best effort: there is nobody left to tell. After `finish` there is nothing to do.
         let _ = self.write_waiting();
     }
-}
-
-fn check_length(path: &Path, quantity: &str, expected: usize, found: usize) -> Result<(), FileError> {
-    if expected == found {
-        return Ok(());
-    }
-    Err(FileError::WrongLength { path: path.to_path_buf(), quantity: quantity.into(), expected, found })
 }
