@@ -452,13 +452,14 @@ fn value_of_event(function: &Bound<'_, PyAny>, name: &str, row: Row) -> PyResult
     if number.is_finite() { Ok(number) } else { Err(refuse(&number.to_string())) }
 }
 
-/// Ends a run at the end of a step in which a function of Python has raised.
+/// Ends a run at the end of a step in which a law has raised, so that no row is lost: where a drive jumps, laws are asked
+/// once more when the step itself is done.
 struct EndAtFault(Faults);
 
 impl frames_rk4::Observer for EndAtFault {
     fn step(&mut self, now: &mut frames_rk4::StepEnd<'_>) -> Result<(), StepError> {
         match self.0.any() {
-            true => Err(StepError::NotFinite { time: now.scheme().time(), what: "an event" }),
+            true => Err(StepError::NotFinite { time: now.scheme().time(), what: "a law" }),
             false => Ok(()),
         }
     }
