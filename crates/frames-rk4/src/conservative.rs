@@ -63,6 +63,7 @@ mod state;
 mod velocities;
 
 pub use body::ConservativeBody;
+pub(crate) use coordinates::{InCoordinates, pair_weights};
 pub(crate) use evaluation::Evaluation;
 pub use rates::ConservativeRates;
 pub use state::ConservativeState;

@@ -227,6 +227,16 @@ pub enum StepError {
         /// Its end.
         to: f64,
     },
+    /// An event's function that gives no finite number.
+    #[error(
+        "at time {time}: the function of an event gives {found}; let it give a finite number at every time, which passes through zero at the event"
+    )]
+    EventFunction {
+        /// Time of the motion that it was asked about.
+        time: f64,
+        /// What it gives.
+        found: f64,
+    },
     /// A NaN or an overflow.
     #[error(
         "at time {time}: {what} is no longer a finite number; the motion has blown up: take a smaller step, and check loads and initial velocities"

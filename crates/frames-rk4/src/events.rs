@@ -41,8 +41,7 @@ impl Event {
     /// What its function says of a motion.
     fn value(&self, now: &Observation) -> Result<f64, StepError> {
         let value = (self.function)(now);
-        let not_finite = StepError::NotFinite { time: now.time, what: "the value of an event function" };
-        if value.is_finite() { Ok(value) } else { Err(not_finite) }
+        if value.is_finite() { Ok(value) } else { Err(StepError::EventFunction { time: now.time, found: value }) }
     }
 
     /// Its name.
@@ -76,8 +75,8 @@ pub(crate) struct LastStep {
     /// Where times inside the step are tried.
     probe: Box<dyn Scheme>,
     observation: Observation,
-    /// Length of the step; 0 before the first.
-    length: f64,
+    /// Time at its end, to the last bit that of the scheme there.
+    end: f64,
     /// Whether it was taken in two halves, as under step control.
     halved: bool,
 }
@@ -86,19 +85,19 @@ impl LastStep {
     pub(crate) fn new(scheme: &dyn Scheme, points: usize) -> Self {
         let observation = Observation::new(scheme.flexible(), points);
         let (before, probe) = (scheme.boxed_clone(), scheme.boxed_clone());
-        Self { before, probe, observation, length: 0.0, halved: false }
+        Self { before, probe, observation, end: scheme.time(), halved: false }
     }
 
-    /// Keeps the state before a step.
-    pub(crate) fn begin(&mut self, scheme: &dyn Scheme, length: f64, halved: bool) {
+    /// Keeps the state before a step that ends at a time.
+    pub(crate) fn begin(&mut self, scheme: &dyn Scheme, end: f64, halved: bool) {
         self.before.copy_state(scheme);
-        self.length = length;
+        self.end = end;
         self.halved = halved;
     }
 
     /// Start and end of the step.
     pub(crate) fn span(&self) -> [f64; 2] {
-        [self.before.time(), self.before.time() + self.length]
+        [self.before.time(), self.end]
     }
 
     /// The motion at a time inside the step: by a shorter step from its start, so that it is as accurate as the scheme.
@@ -123,6 +122,14 @@ impl LastStep {
     pub(crate) fn probe(&self) -> &dyn Scheme {
         &*self.probe
     }
+}
+
+/// An event that is passed in a step.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Passed {
+    pub number: usize,
+    /// Whether it is at the end of the step but for rounding; if not, the probe of the step is there.
+    pub at_end: bool,
 }
 
 /// The events of a run, with their values at the start of the step.
@@ -174,14 +181,15 @@ impl Events {
         Ok(())
     }
 
-    /// The first event that is passed in the last step, at whose end the motion is `now`: its number and time. The probe
-    /// of the step is then there, on the far side of the crossing to rounding.
+    /// The first event that is passed in the last step, at whose end the motion is `now`, on the far side of the crossing to
+    /// rounding. Times closer than `same` are one.
     pub(crate) fn first_passed(
         &mut self,
         step: &mut LastStep,
         now: &Observation,
         points: &[PointShapes],
-    ) -> Result<Option<(usize, f64)>, StepError> {
+        same: f64,
+    ) -> Result<Option<Passed>, StepError> {
         let [start, end] = step.span();
         let mut first: Option<(usize, f64)> = None;
         for (k, event) in self.list.iter().enumerate() {
@@ -194,16 +202,24 @@ impl Events {
                 first = Some((k, time));
             }
         }
-        match first {
-            Some((_, time)) => {
-                let there = step.at(time, points)?;
-                for (value, event) in self.values.iter_mut().zip(&self.list) {
-                    *value = event.value(there)?;
-                }
+        let Some((number, time)) = first else {
+            self.values.copy_from_slice(&self.after);
+            return Ok(None);
+        };
+        let at_end = end - time <= same;
+        if !at_end {
+            let there = step.at(time, points)?;
+            for (after, event) in self.after.iter_mut().zip(&self.list) {
+                *after = event.value(there)?;
             }
-            None => self.values.copy_from_slice(&self.after),
         }
-        Ok(first)
+        for (k, event) in self.list.iter().enumerate() {
+            // Of several at one time the others come next: they are still before their crossing.
+            if k == number || !event.is_passed(self.values[k], self.after[k]) {
+                self.values[k] = self.after[k];
+            }
+        }
+        Ok(Some(Passed { number, at_end }))
     }
 }
 
@@ -216,6 +232,10 @@ fn locate(
     step: &mut LastStep,
     points: &[PointShapes],
 ) -> Result<f64, StepError> {
+    // At the start of the step is what has waited for another event there.
+    if event.is_passed(before, event.value(step.at(from, points)?)?) {
+        return Ok(from);
+    }
     let mut stayed = 0;
     for _ in 0..MOST_TRIES {
         let spacing = 2.0 * f64::EPSILON * to.abs().max(to - from);

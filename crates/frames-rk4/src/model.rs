@@ -5,6 +5,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::error::SetupError;
 use crate::load::{Applied, Coordinates, Kinematics, SharedLoad};
+use crate::motion::BodyMotion;
 use crate::work::Work;
 
 /// A motion in an inertial frame, as the linear modal model sees it.
@@ -20,11 +21,8 @@ pub(crate) struct LinearMotion<'a> {
     pub origin_global: Vector3<f64>,
     /// Angular velocity, body components.
     pub omega_body: Vector3<f64>,
-    /// The point that moments are about: where the centre of mass, which is the body's origin, is in the frame, body
-    /// components.
-    pub center_body: Vector3<f64>,
-    /// Its velocity in the frame, body components.
-    pub center_velocity_body: Vector3<f64>,
+    /// What finds the motion of the centre of mass in the frame.
+    pub motion: &'a BodyMotion,
 }
 
 /// Modal stiffness, damping and loads of mass-normalised modes: `q̈ = f_q − Λ q − D q̇`.
@@ -72,12 +70,13 @@ impl ModalModel {
             body_from_global,
             origin_global: frame_origin_global,
             omega_body,
-            center_body,
-            center_velocity_body,
+            motion,
         } = *frame;
-        let origin_global = frame_origin_global + body_from_global.tr_mul(&center_body);
-        let origin_velocity_global = body_from_global.tr_mul(&center_velocity_body);
         let Coordinates { displacement, velocity, .. } = coordinates;
+        // The centre of mass, which is the body's origin, and the point that moments are about.
+        let center_body = motion.of_origin(displacement);
+        let origin_global = frame_origin_global + body_from_global.tr_mul(&center_body);
+        let origin_velocity_global = body_from_global.tr_mul(&motion.of_origin(velocity));
         let mut dissipation = 0.0;
         let modes = displacement.iter().zip(velocity).zip(self.stiffness.iter().zip(&self.damping));
         for (a, ((q, v), (lambda, d))) in acceleration.iter_mut().zip(modes) {

@@ -155,8 +155,7 @@ impl FrameSteps for PaperSteps {
                 body_from_global: &(turn * global_to_body),
                 origin_global: state.origin_global,
                 omega_body: omega,
-                center_body: motion.of_origin(next_displacement),
-                center_velocity_body: motion.of_origin(next_velocity),
+                motion,
             };
             model.rates(&linear, load_times, acceleration);
 
@@ -210,8 +209,7 @@ impl FrameSteps for PaperSteps {
             body_from_global: &global_to_body,
             origin_global: state.origin_global,
             omega_body: state.omega_body,
-            center_body: motion.of_origin(&state.modal_displacement),
-            center_velocity_body: motion.of_origin(&state.modal_velocity),
+            motion,
         };
         self.power = model.rates(&linear, &[state.time], &mut state.modal_acceleration);
         let [a_p, a_q] = kinematics.relative(&state.modal_acceleration);

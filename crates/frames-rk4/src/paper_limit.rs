@@ -142,8 +142,7 @@ impl FrameSteps for LimitSteps {
             body_from_global: &global_to_body,
             origin_global: state.origin_global,
             omega_body: state.omega_body,
-            center_body: motion.of_origin(q),
-            center_velocity_body: motion.of_origin(y),
+            motion,
         };
         model.rates(&linear, &[state.time], &mut state.modal_acceleration);
         let mut turned = Vector3::zeros();
@@ -178,8 +177,7 @@ impl LimitSteps {
             body_from_global: &global_to_body,
             origin_global: state.origin_global,
             omega_body: omega,
-            center_body: motion.of_origin(q),
-            center_velocity_body: motion.of_origin(y),
+            motion,
         };
         rates.work = model.rates(&linear, &[t], &mut rates.velocity);
 

@@ -128,7 +128,7 @@ impl Plan {
     }
 
     /// Times closer than rounding makes them are one.
-    fn same(&self) -> f64 {
+    pub(crate) fn same(&self) -> f64 {
         1e-13 * self.end
     }
 

@@ -222,8 +222,9 @@ impl Simulation {
     /// # Errors
     /// [`SetupError`] for lists of the wrong length and numbers that are not finite.
     pub fn set_state(&mut self, state: &MotionState) -> Result<(), SetupError> {
-        self.row_due &= self.plan.are_same(state.time, self.time());
+        let stays = self.plan.are_same(state.time, self.time());
         self.scheme.set_state(state)?;
+        self.row_due &= stays;
         let account = &mut self.observers.energy;
         *account = EnergyAccount::new(self.scheme.energies(), account.of_loads());
         self.events.forget();
@@ -237,7 +238,8 @@ impl Simulation {
         &*self.scheme
     }
 
-    /// Ends a step at this time and stops there with [`Reached::Stop`], once. `None` takes it back.
+    /// Ends a step at this time and stops there with [`Reached::Stop`], once; an event or an error there comes in its place.
+    /// `None` takes it back.
     pub fn set_stop_time(&mut self, time: Option<f64>) {
         self.plan.set_stop(time);
         self.go_on_from_here();
@@ -259,9 +261,10 @@ impl Simulation {
     /// # Errors
     /// [`StepError`] where the motion cannot be observed, and where the event's function gives no finite number.
     pub fn add_event(&mut self, event: Event) -> Result<usize, StepError> {
-        self.keep_last_step();
         self.scheme.observe(&self.points, &mut self.looked_at)?;
-        self.events.add(event, &self.looked_at)
+        let number = self.events.add(event, &self.looked_at)?;
+        self.keep_last_step();
+        Ok(number)
     }
 
     /// An event by its number.
@@ -311,32 +314,33 @@ impl Simulation {
         self.corner_ahead = false;
     }
 
-    /// Finds the first event in a step, and shows the end of the step, which may be there, to the observers.
+    /// Goes back to the first event in a step, and shows the step's end, which may be there, to the observers.
     fn look_at_step(&mut self) -> Result<Option<usize>, StepError> {
-        let Self { scheme, events, last_step, looked_at, points, observers, stats, .. } = self;
-        let has_events = !events.is_empty();
-        let mut passed = None;
-        if has_events {
-            scheme.observe(points, looked_at)?;
-            if let Some(step) = last_step {
-                passed = events.first_passed(step, looked_at, points)?;
-                if passed.is_some() {
-                    scheme.copy_state(step.probe());
-                    scheme.observe(points, looked_at)?;
-                }
-            }
-        }
+        let passed = self.go_to_event()?;
+        let Self { scheme, events, looked_at, points, observers, stats, .. } = self;
         observers.step(&mut StepEnd {
             scheme: &mut **scheme,
             points,
             longest_step: stats.longest,
             observation: looked_at,
-            is_observed: has_events,
+            is_observed: !events.is_empty(),
         })?;
-        if passed.is_some() {
+        Ok(passed)
+    }
+
+    /// Finds the first event in a step, and goes back there. Where there are events, the motion is then observed.
+    fn go_to_event(&mut self) -> Result<Option<usize>, StepError> {
+        let Self { scheme, events, last_step, looked_at, points, plan, .. } = self;
+        let Some(step) = last_step.as_mut().filter(|_| !events.is_empty()) else { return Ok(None) };
+        scheme.observe(points, looked_at)?;
+        let Some(passed) = events.first_passed(step, looked_at, points, plan.same())? else { return Ok(None) };
+        // At the end the motion is there already, and beyond the corner that may be there.
+        if !passed.at_end {
+            scheme.copy_state(step.probe());
             self.go_on_from_here();
+            self.scheme.observe(&self.points, &mut self.looked_at)?;
         }
-        Ok(passed.map(|(number, _)| number))
+        Ok(Some(passed.number))
     }
 
     /// Whether a row falls on the event or the stop that has been reached, and comes next.
@@ -444,7 +448,8 @@ impl Simulation {
     /// occurred.
     ///
     /// # Errors
-    /// [`StepError`]; the motion stays where it was before the step that failed, or where its energy was found wrong.
+    /// [`StepError`]; the motion stays where it was before the step that failed, or at the end of the step where its energy was
+    /// found wrong, or the function of an event or an observer failed. A row that is due there comes next.
     pub fn advance(&mut self, most_steps: u64) -> Result<Reached, StepError> {
         self.advance_watched(most_steps, |_| ())
     }
@@ -481,8 +486,8 @@ impl Simulation {
                     self.stats.longest = self.stats.longest.max(length);
                     self.steps_since_row += count;
                     let ends_at_row = row_at_end && self.segment_is_done();
-                    let event = self.look_at_step()?;
-                    // An event may have cut the step short.
+                    let event = self.look_at_step();
+                    // An event may have cut the step short; where one has failed, the step is done all the same.
                     self.row_due = match self.rows {
                         Rows::EverySteps(steps) => self.steps_since_row >= steps || self.plan.is_over(self.time()),
                         Rows::Interval(_) => ends_at_row && self.plan.are_same(self.time(), end),
@@ -490,11 +495,14 @@ impl Simulation {
                     if self.row_due {
                         self.steps_since_row = 0;
                     }
-                    if let Some(number) = event {
+                    let stopped = self.plan.is_at_stop(self.time());
+                    if stopped {
+                        self.plan.set_stop(None);
+                    }
+                    if let Some(number) = event? {
                         return Ok(Reached::Event(number));
                     }
-                    if self.plan.is_at_stop(self.time()) {
-                        self.plan.set_stop(None);
+                    if stopped {
                         return Ok(Reached::Stop);
                     }
                     if std::mem::take(&mut self.row_due) {
@@ -552,7 +560,7 @@ impl Simulation {
         let time = self.time();
         let halved = self.is_controlled();
         if let Some(step) = &mut self.last_step {
-            step.begin(&*self.scheme, h, halved);
+            step.begin(&*self.scheme, end, halved);
         }
         match &mut self.walk {
             Walk::Halved { tolerance, longest_try, steps: Some((steps, _)) } => {

@@ -11,7 +11,9 @@ use faer::{Mat, Side, c64};
 use modal::ReducedBody;
 use nalgebra::Vector3;
 
+use crate::conservative::{InCoordinates, pair_weights};
 use crate::effect::{Effect, EffectMap};
+use crate::spin_stiffness::SpinStiffness;
 
 /// The constants of the vibrations of a body that spins about an axis.
 #[derive(Debug, Clone)]
@@ -49,24 +51,15 @@ impl SteadySpin {
     /// Spin about `axis`, a unit vector in body axes, with the effects that are on.
     pub fn new(body: &ReducedBody, axis: &Vector3<f64>, effects: &EffectMap<bool>) -> Self {
         let nf = body.flexible();
-        let weight = |(i, j): (usize, usize)| if i == j { axis[i] * axis[i] } else { 2.0 * axis[i] * axis[j] };
-        let projected = |matrices: &[Mat<f64>; 6]| {
-            let terms = matrices.iter().zip(ReducedBody::PAIRS.map(weight));
-            terms.fold(Mat::zeros(nf, nf), |sum, (matrix, w)| sum + matrix * faer::Scale(w))
+        let constants = InCoordinates { body, manifold: None };
+        let stiffness = body.stress_stiffness.as_ref().filter(|_| effects[Effect::GeometricStiffening]);
+        let stiffness = stiffness.map(|stiffness| SpinStiffness::new(stiffness, None));
+        let softening = if effects[Effect::DeformedInertia] {
+            constants.inertia_second(&pair_weights([axis, axis]), stiffness.as_ref())
+        } else {
+            Mat::zeros(nf, nf)
         };
-        let mut softening = Mat::zeros(nf, nf);
-        if effects[Effect::DeformedInertia] {
-            softening += projected(&body.inertia_second);
-            if let Some(stiffness) = body.stress_stiffness.as_ref().filter(|_| effects[Effect::GeometricStiffening]) {
-                softening -= projected(stiffness);
-            }
-        }
-        let mut gyroscopic = Mat::zeros(nf, nf);
-        if effects[Effect::Coriolis] {
-            for (matrix, a) in body.gyroscopic.iter().zip(axis.iter()) {
-                gyroscopic += matrix * faer::Scale(*a);
-            }
-        }
+        let gyroscopic = if effects[Effect::Coriolis] { constants.gyroscopic(axis) } else { Mat::zeros(nf, nf) };
         Self { circular_frequencies: body.circular_frequencies.clone(), gyroscopic, softening }
     }
 

@@ -98,7 +98,7 @@ impl Simulation {
                 None => simulation.advance(steps),
             });
             if reached.is_err() {
-                // The motion is where it was before the step: the next one is to start there.
+                // The next step is to start where the motion is.
                 simulation.set_stop_time(None);
             }
             let reached = self.or_fault(py, reached)?;
@@ -198,10 +198,6 @@ impl Simulation {
     }
 }
 
-fn is_done(running: &Running) -> bool {
-    running.simulation.time() >= running.simulation.end()
-}
-
 fn step_error(py: Python<'_>, error: &StepError) -> PyErr {
     exception(py, &flexframe::run::RunFailure::Step(*error))
 }
@@ -275,7 +271,7 @@ impl Simulation {
 
     #[getter]
     fn done(&self) -> PyResult<bool> {
-        Ok(is_done(&*self.running()?))
+        Ok(self.running()?.simulation.is_over())
     }
 
     #[getter]
@@ -336,7 +332,7 @@ impl Simulation {
         running.simulation.set_stop_time(Some(time));
         let reached = loop {
             match self.go_on(py, &mut running, u64::MAX, None) {
-                Ok(frames_rk4::Reached::Row) if !is_done(&running) => {}
+                Ok(frames_rk4::Reached::Row) => {}
                 other => break other,
             }
         };
@@ -363,8 +359,6 @@ impl Simulation {
             }
         };
         let mut running = self.running()?;
-        // One that cannot be evaluated is not added.
-        value_of_event(function, &name, self.row(py, &mut running)?)?;
         let event = self.event(name, function, crossing);
         let simulation = &mut running.simulation;
         let added = py.detach(|| simulation.add_event(event));
@@ -458,13 +452,14 @@ fn value_of_event(function: &Bound<'_, PyAny>, name: &str, row: Row) -> PyResult
     if number.is_finite() { Ok(number) } else { Err(refuse(&number.to_string())) }
 }
 
-/// Ends a run at the end of a step in which a function of Python has raised.
+/// Ends a run at the end of a step in which a law has raised, so that no row is lost: where a drive jumps, laws are asked
+/// once more when the step itself is done.
 struct EndAtFault(Faults);
 
 impl frames_rk4::Observer for EndAtFault {
     fn step(&mut self, now: &mut frames_rk4::StepEnd<'_>) -> Result<(), StepError> {
         match self.0.any() {
-            true => Err(StepError::NotFinite { time: now.scheme().time(), what: "an event" }),
+            true => Err(StepError::NotFinite { time: now.scheme().time(), what: "a law" }),
             false => Ok(()),
         }
     }

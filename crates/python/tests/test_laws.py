@@ -185,6 +185,27 @@ def test_a_law_that_raised_may_be_mended_and_the_run_goes_on(rigid):
     assert np.array_equal(after["energy/balance"], whole["energy/balance"][6:])
 
 
+def test_a_row_where_a_drive_jumps_comes_after_a_law_that_raised_there():
+    jump = {"amplitude": 0.5, "history": {"kind": "step", "at": 0.1}}
+    hinge = {"kind": "hinge", "at": [0.0, 0.0, 0.0], "axis": [0.0, 0.0, 1.0], "motion": jump}
+    body = flexframe.Body(flexframe.Scene({**RIGID, "constraints": [hinge]}))
+    asked, fails_at = [0], [None]
+
+    def law(motion):
+        asked[0] += 1
+        if asked[0] == fails_at[0]:
+            raise LookupError("the table of the actuator has no such time")
+        return [0.0, 0.0, 0.0]
+
+    simulation = flexframe.Simulation(body, [flexframe.Force("corner", law)])
+    simulation.advance()
+    fails_at[0], asked[0] = asked[0], 0
+    simulation = flexframe.Simulation(body, [flexframe.Force("corner", law)])
+    with pytest.raises(LookupError):
+        simulation.advance()
+    assert simulation.time == simulation.advance().time == pytest.approx(0.1, rel=1e-12)
+
+
 def test_a_body_bounces_at_an_event():
     """A corner falls to a plane, and is thrown back: closed forms, as in examples/bounce.rs."""
     height, gravity = 1.5, 9.81

@@ -117,6 +117,39 @@ def test_rows_on_stops_and_events_are_kept(rigid):
     assert [name for name, _ in results.events] == ["half", "end"]
 
 
+@pytest.mark.parametrize("end, step", [(1.0, 1e-3), (2.99, 0.01)])
+def test_done_is_when_neither_a_step_nor_a_row_is_to_come(rigid, end, step):
+    body = flexframe.Body(rigid.scene.with_values({"time": {"end": end, "step": step}}))
+    for time in (end, np.nextafter(end, 0.0)):
+        simulation = flexframe.Simulation(body)
+        simulation.add_event("end", lambda row: row.time - time)
+        reached = []
+        while not simulation.done:
+            reached.append(simulation.advance())
+        assert [now.kind for now in reached] == ["row"] * (len(reached) - 2) + ["event", "row"]
+        rows = np.array([now.time for now in reached if now.kind == "row"])
+        assert rows == pytest.approx(np.append(np.arange(0.1, end - 0.05, 0.1), end), rel=1e-12)
+
+
+def test_a_row_at_which_an_event_raised_comes_when_it_is_mended(rigid):
+    broken, asked = [True], []
+
+    def function(row):
+        asked.append(row.time)
+        if broken[0] and row.time > 0.5 - 1e-9:
+            raise LookupError("the table has no such time")
+        return 1.0
+
+    simulation = flexframe.Simulation(rigid)
+    simulation.add_event("event", function)
+    assert asked == [0.0]
+    with pytest.raises(LookupError, match="no such time") as raised:
+        simulation.run()
+    assert raised.value.results["time"] == pytest.approx(np.linspace(0.0, 0.4, 5), abs=1e-12)
+    broken[0] = False
+    assert simulation.run()["time"] == pytest.approx(np.linspace(0.5, 1.0, 6), rel=1e-12)
+
+
 def test_a_run_from_a_set_state_begins_with_its_row(rigid):
     nothing = flexframe.Force("center", lambda motion: [0.0, 0.0, 0.0])
     simulation = flexframe.Simulation(rigid, [nothing])

@@ -189,6 +189,14 @@ pub enum FileError {
     },
 }
 
+/// Refuses a list of the wrong length.
+pub(crate) fn check_length(path: &Path, quantity: &str, expected: usize, found: usize) -> Result<(), FileError> {
+    if expected == found {
+        return Ok(());
+    }
+    Err(FileError::WrongLength { path: path.to_path_buf(), quantity: quantity.into(), expected, found })
+}
+
 impl FileError {
     /// The file.
     pub fn path(&self) -> &Path {

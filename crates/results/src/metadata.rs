@@ -1,6 +1,7 @@
 //! What a results file says about the run as a whole.
 
 use crate::FileError;
+use crate::error::check_length;
 use serde::{Deserialize, Serialize};
 use std::collections::HashSet;
 use std::path::Path;
@@ -95,10 +96,7 @@ impl Metadata {
             ("body/kinds", frequencies.len(), frequencies.len().max(*static_shapes)),
             ("points/position", self.point_names.len(), self.point_positions.len()),
         ] {
-            if expected != found {
-                let quantity = quantity.into();
-                return Err(FileError::WrongLength { path: path.to_path_buf(), quantity, expected, found });
-            }
+            check_length(path, quantity, expected, found)?;
         }
         for (quantity, values) in [
             ("body/mass", &[*mass][..]),

@@ -4,6 +4,7 @@
 //! each step are. ParaView then keeps the mesh while time goes on. Steps are written one by one.
 
 use crate::FileError;
+use crate::error::check_length;
 use crate::vtk::{Field, Grid};
 use hdf5::types::FixedAscii;
 use hdf5::{Group, H5Type};
@@ -67,15 +68,9 @@ impl VtkHdf {
     /// [`FileError::WrongLength`] for a field that there is not; [`FileError::Hdf5`], also for a list of another length than
     /// points times components, and for a step that there is not.
     pub fn write(&self, step: usize, field: usize, values: &[f64]) -> Result<(), FileError> {
-        let Some(dataset) = self.datasets.get(field) else {
-            let (expected, found) = (field + 1, self.datasets.len());
-            return Err(FileError::WrongLength {
-                path: self.path.clone(),
-                quantity: "the fields".into(),
-                expected,
-                found,
-            });
-        };
+        let count = self.datasets.len();
+        check_length(&self.path, "the fields", count.max(field + 1), count)?;
+        let dataset = &self.datasets[field];
         let rows = step * self.points..(step + 1) * self.points;
         let written = match values.len() / self.points.max(1) {
             1 => dataset.write_slice(ArrayView1::from(values), s![rows]),

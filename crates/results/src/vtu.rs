@@ -3,6 +3,7 @@
 //! A VTU file has one step, and its mesh.
 
 use crate::FileError;
+use crate::error::check_length;
 use crate::vtk::{Field, Grid};
 use crate::vtkhdf::{put, temporary};
 use std::fmt::Write as _;
@@ -23,11 +24,7 @@ pub fn write_vtu(
 ) -> Result<(), FileError> {
     let path = path.as_ref();
     for (field, values) in fields {
-        let (expected, found) = (grid.points.len() * field.components, values.len());
-        if found != expected {
-            let quantity = field.name.clone();
-            return Err(FileError::WrongLength { path: path.to_owned(), quantity, expected, found });
-        }
+        check_length(path, &field.name, grid.points.len() * field.components, values.len())?;
     }
     let place = temporary(path, overwrite)?;
     let written = File::create(&place).map(BufWriter::new).and_then(|mut file| {

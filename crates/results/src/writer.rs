@@ -3,6 +3,7 @@
 use crate::block::Block;
 use crate::checkpoint::{self, Checkpoint, Sums};
 use crate::column::present;
+use crate::error::check_length;
 use crate::paths::ResultsPaths;
 use crate::reader::Results;
 use crate::room::Room;
@@ -247,11 +248,12 @@ impl<R> Writer<R> {
         check_length(path, "the checkpoint", expected, checkpoint.len())?;
         self.write_waiting()?;
         let path = &self.place.part;
-        self.serial = self.serial.saturating_add(1); // a forged file may have any
+        let serial = self.serial.saturating_add(1); // a forged file may have any
         let (rows, sum_of_rows) = (self.rows_written, self.sums.total());
-        self.checkpoint = Checkpoint { serial: self.serial, rows, sum_of_rows, state: checkpoint.to_vec() }.words();
-        // In turns, so that one of the two is whole at any moment.
-        self.store.write_checkpoint(path, (self.serial % 2) as usize, &self.checkpoint)?;
+        let words = Checkpoint { serial, rows, sum_of_rows, state: checkpoint.to_vec() }.words();
+        // In turns, so that one of the two is whole at any moment: after a failure it is this one's turn again.
+        self.store.write_checkpoint(path, (serial % 2) as usize, &words)?;
+        (self.serial, self.checkpoint) = (serial, words);
         self.last_flush = Instant::now();
         Ok(())
     }
@@ -355,11 +357,4 @@ impl<R> Drop for Writer<R> {
         // Best effort: there is nobody left to tell. After `finish` there is nothing to do.
         let _ = self.write_waiting();
     }
-}
-
-fn check_length(path: &Path, quantity: &str, expected: usize, found: usize) -> Result<(), FileError> {
-    if expected == found {
-        return Ok(());
-    }
-    Err(FileError::WrongLength { path: path.to_path_buf(), quantity: quantity.into(), expected, found })
 }

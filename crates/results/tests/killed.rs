@@ -113,6 +113,47 @@ fn a_file_is_whole_whenever_its_writer_is_killed() {
     }
 }
 
+/// Not a test of its own: cannot write beyond the middle of the last checkpoint, and tries it twice.
+#[test]
+#[ignore = "run by another test"]
+fn child_whose_checkpoints_fail() {
+    let Some(path) = std::env::var_os("RESULTS_TEST_CHILD") else { return };
+    let Resumed { mut writer, .. } = Writer::resume(Path::new(&path), &COLUMNS).unwrap();
+    for state in [3, 4] {
+        assert!(matches!(writer.flush(&[state; STATE]), Err(FileError::System { .. })));
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn checkpoints_that_fail_leave_the_last_whole_one() {
+    let _alone = ALONE.lock();
+    let (_folder, path) = folder();
+    let expected = Expected { checkpoint: STATE, ..Expected::default() };
+    let mut writer = Writer::create(&path, &metadata(2, &["P1"]), &COLUMNS, expected).unwrap();
+    for i in 0..2 {
+        writer.push(&Row::new(i, 2, 1)).unwrap();
+        writer.flush(&[0x55aa + i as u64; STATE]).unwrap();
+    }
+    drop(writer);
+    let last = [0x55ab_u64.to_le_bytes(); STATE];
+    let bytes = std::fs::read(unfinished(&path)).unwrap();
+    let start = bytes.windows(8 * STATE).position(|bytes| bytes == last.as_flattened()).unwrap();
+    // A signal that is ignored is so in the programs after it, too.
+    let status = Command::new("sh")
+        .args(["-c", "trap '' XFSZ; exec prlimit \"$@\"", "sh"])
+        .arg(format!("--fsize={}", start + 4 * STATE))
+        .arg(std::env::current_exe().unwrap())
+        .args(["--exact", "child_whose_checkpoints_fail", "--ignored"])
+        .env("RESULTS_TEST_CHILD", &path)
+        .status()
+        .unwrap();
+    assert!(status.success());
+    let Resumed { results, checkpoint, .. } = Writer::resume(&path, &COLUMNS).unwrap();
+    assert_rows(&results, 2);
+    assert_eq!(checkpoint, Some(vec![0x55ab; STATE]));
+}
+
 /// To open a pipe is to wait for who writes into it.
 #[cfg(unix)]
 #[test]

@@ -51,7 +51,7 @@ impl ConservativeBody {
 
     /// Turns `e.acceleration` from the whole of p' into q̈, and gives the rate of the spin. `e` has the rates of the state.
     #[inline(always)]
-    pub(crate) fn accelerate<S: Simd>(
+    pub(super) fn accelerate<S: Simd>(
         &self,
         simd: S,
         driven_acceleration: f64,
@@ -120,7 +120,7 @@ impl ConservativeBody {
     }
 
     /// Puts z̈ of q̈ into `e.change`.
-    pub(crate) fn extend_acceleration(&self, e: &mut Evaluation) {
+    pub(super) fn extend_acceleration(&self, e: &mut Evaluation) {
         match &self.manifold {
             Some(manifold) => {
                 manifold.extend(&e.place, &e.acceleration, &mut e.change);
@@ -133,7 +133,7 @@ impl ConservativeBody {
     /// Finds the torque π' − M or the force P' − F of what drives the body: with π = J ω + S·ν and P = m v + b·ν along the
     /// driven axis, both less (K q)·q̇. `e` has all other rates, its momentum without the linear part.
     #[inline(always)]
-    pub(crate) fn drive_effort<S: Simd>(
+    pub(super) fn drive_effort<S: Simd>(
         &self,
         simd: S,
         acceleration: f64,

@@ -13,7 +13,7 @@ use crate::stack::Stack;
 
 /// How the origin moves.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Translation {
+pub(super) enum Translation {
     /// It does not.
     None,
     /// As the momentum takes it.
@@ -27,17 +27,17 @@ pub(crate) enum Translation {
 /// A body with its loads in the conservative form.
 #[derive(Debug, Clone)]
 pub struct ConservativeBody {
-    pub(crate) mass: f64,
-    pub(crate) origin: Vector3<f64>,
-    pub(crate) center: CenterOfMass,
-    pub(crate) translation: Translation,
+    pub(super) mass: f64,
+    pub(super) origin: Vector3<f64>,
+    pub(super) center: CenterOfMass,
+    pub(super) translation: Translation,
     /// Unit vectors that the body turns about: three, one or none.
     pub(crate) axes: Vec<Vector3<f64>>,
     /// They as columns; zeros for those that are missing.
-    pub(crate) axis_columns: Matrix3<f64>,
+    pub(super) axis_columns: Matrix3<f64>,
     /// Whether the turning is driven.
-    pub(crate) turn_driven: bool,
-    pub(crate) drive: Option<Drive>,
+    pub(super) turn_driven: bool,
+    pub(super) drive: Option<Drive>,
     /// J₀ in the axes of rotation; 1 on the diagonal of axes that are missing.
     pub(super) inertia: Matrix3<f64>,
     pub(super) inverse_inertia: Matrix3<f64>,
@@ -45,25 +45,25 @@ pub struct ConservativeBody {
     pub(crate) circular_frequencies: Vec<f64>,
     pub(crate) damping_ratios: Vec<f64>,
     /// Λ, the squares of ω_k.
-    pub(crate) stiffness: Vec<f64>,
+    pub(super) stiffness: Vec<f64>,
     /// Largest of ω_k and 2 ζ_k ω_k.
     pub(super) fastest_rate: f64,
     /// 2 ζ_k ω_k.
     pub(super) damping: Padded,
     pub(super) damped: bool,
     /// ij of the terms of the inertia that follow the deformation; empty where none does.
-    pub(crate) pairs: Vec<(usize, usize)>,
+    pub(super) pairs: Vec<(usize, usize)>,
     /// Whether the equations are those of the locked inertia, which only momenta enter: of a body that turns freely, with
     /// Coriolis terms, inertia that follows its deformation, and no large modes.
-    pub(crate) locked: bool,
+    pub(super) locked: bool,
     /// S and c_ij + N_ij q of the undeformed body, side by side: b_i of driven axes or zeros, then the c_ij of `pairs`.
     pub(super) undeformed: Vec<Group>,
     /// b of a driven translation (nf).
-    pub(crate) sliding: Vec<f64>,
+    pub(super) sliding: Vec<f64>,
     /// Lists of S: one for each axis, or none where it is zero.
-    pub(crate) s_count: usize,
+    pub(super) s_count: usize,
     /// Number of the G_i: as that of the lists of S, or none without Coriolis terms.
-    pub(crate) g_count: usize,
+    pub(super) g_count: usize,
     /// The G_i.
     pub(super) gyroscopic: Stack,
     /// The G_i, then the N_ij, less by K_ij and of a `locked` body more by ½ (G_iG_j + G_jG_i).
@@ -71,12 +71,12 @@ pub struct ConservativeBody {
     /// Largest N_ij and G_i that couple each mode to itself and its like (nf).
     pub(crate) own_coupling: Vec<[f64; 2]>,
     /// K of a unit acceleration of what is driven in the modes, column by column, or empty.
-    pub(crate) drive_stiffness: Vec<f64>,
+    pub(super) drive_stiffness: Vec<f64>,
     pub(super) loads: Vec<SharedLoad>,
     /// Of a body with large modes.
     pub(crate) manifold: Option<Manifold>,
     /// Of a body that something holds.
-    pub(crate) held: Option<Held>,
+    pub(super) held: Option<Held>,
 }
 
 impl ConservativeBody {
@@ -86,12 +86,12 @@ impl ConservativeBody {
     }
 
     /// Number of coordinates z: that of the modes, but on a manifold.
-    pub(crate) fn coordinates(&self) -> usize {
+    pub(super) fn coordinates(&self) -> usize {
         self.manifold.as_ref().map_or(self.flexible(), Manifold::size)
     }
 
     /// Number of extended shapes: that of the modes, but on a manifold.
-    pub(crate) fn extended(&self) -> usize {
+    pub(super) fn extended(&self) -> usize {
         self.manifold.as_ref().map_or(self.flexible(), |manifold| manifold.body().flexible())
     }
 
@@ -113,7 +113,7 @@ impl ConservativeBody {
     }
 
     /// Number of the lists of products.
-    pub(crate) fn lists(&self) -> usize {
+    pub(super) fn lists(&self) -> usize {
         self.lists_of_undeformed() + self.g_count
     }
 
@@ -123,12 +123,12 @@ impl ConservativeBody {
     }
 
     /// S among the products.
-    pub(crate) fn s_lists<'e>(&self, products: &'e [Group]) -> Lists<'e> {
+    pub(super) fn s_lists<'e>(&self, products: &'e [Group]) -> Lists<'e> {
         Lists { groups: products, width: self.lists(), first: 0 }
     }
 
     /// c_ij + N_ij z among the products.
-    pub(crate) fn pair_lists<'e>(&self, products: &'e [Group]) -> Lists<'e> {
+    pub(super) fn pair_lists<'e>(&self, products: &'e [Group]) -> Lists<'e> {
         Lists { first: self.s_count, ..self.s_lists(products) }
     }
 }

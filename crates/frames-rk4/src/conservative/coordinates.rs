@@ -8,7 +8,7 @@ use crate::manifold::Manifold;
 use crate::spin_stiffness::SpinStiffness;
 
 /// The body whose shapes ξ counts, and what leads from z to ξ.
-pub(super) struct InCoordinates<'a> {
+pub(crate) struct InCoordinates<'a> {
     pub body: &'a ReducedBody,
     pub manifold: Option<&'a Manifold>,
 }
@@ -67,7 +67,7 @@ impl InCoordinates<'_> {
 }
 
 /// Weights of the constants of [`ReducedBody::PAIRS`] in those of a pair of axes.
-pub(super) fn pair_weights([a, b]: [&Vector3<f64>; 2]) -> [f64; 6] {
+pub(crate) fn pair_weights([a, b]: [&Vector3<f64>; 2]) -> [f64; 6] {
     ReducedBody::PAIRS.map(|(k, l)| {
         let product = a[k] * b[l];
         if k == l { product } else { product + a[l] * b[k] }

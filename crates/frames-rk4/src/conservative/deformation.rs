@@ -91,7 +91,7 @@ impl ConservativeBody {
 
     /// (J − SᵀS)⁻¹ x in the axes of rotation.
     #[inline(always)]
-    pub(crate) fn solve_locked(&self, e: &Evaluation, x: &Vector3<f64>) -> Result<Vector3<f64>, RateError> {
+    pub(super) fn solve_locked(&self, e: &Evaluation, x: &Vector3<f64>) -> Result<Vector3<f64>, RateError> {
         if e.products.is_empty() {
             return Ok(self.inverse_inertia * x);
         }
@@ -101,13 +101,13 @@ impl ConservativeBody {
 
     /// Sᵀx, with S on z.
     #[inline(always)]
-    pub(crate) fn s_products<S: Simd>(&self, simd: S, products: &[Group], x: &[Group]) -> Vector3<f64> {
+    pub(super) fn s_products<S: Simd>(&self, simd: S, products: &[Group], x: &[Group]) -> Vector3<f64> {
         self.axis_products(simd, self.s_lists(products), x)
     }
 
     /// list_iᵀx in the entry i, of lists for each axis.
     #[inline(always)]
-    pub(crate) fn axis_products<S: Simd>(&self, simd: S, lists: Lists<'_>, x: &[Group]) -> Vector3<f64> {
+    pub(super) fn axis_products<S: Simd>(&self, simd: S, lists: Lists<'_>, x: &[Group]) -> Vector3<f64> {
         match self.s_count {
             0 => Vector3::zeros(),
             1 => Vector3::new(dots::<S, 1>(simd, lists, x)[0], 0.0, 0.0),
@@ -117,7 +117,7 @@ impl ConservativeBody {
 
     /// Σ_ij list_ijᵀx in the entries ij and ji, of lists for each pair.
     #[inline(always)]
-    pub(crate) fn pair_products<S: Simd>(&self, simd: S, lists: Lists<'_>, x: &[Group]) -> Matrix3<f64> {
+    pub(super) fn pair_products<S: Simd>(&self, simd: S, lists: Lists<'_>, x: &[Group]) -> Matrix3<f64> {
         match self.pairs.len() {
             0 => Matrix3::zeros(),
             1 => Matrix3::from_diagonal(&Vector3::new(dots::<S, 1>(simd, lists, x)[0], 0.0, 0.0)),

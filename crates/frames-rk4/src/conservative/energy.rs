@@ -94,13 +94,13 @@ impl ConservativeBody {
     }
 
     /// ½ (ω_k² q² + p²)
-    pub(crate) fn modal_energy(&self, k: usize, q: f64, p: f64) -> f64 {
+    fn modal_energy(&self, k: usize, q: f64, p: f64) -> f64 {
         let omega_q = self.circular_frequencies[k] * q;
         0.5 * (omega_q * omega_q + p * p)
     }
 
     /// Energies of a state whose rates are in `e`: (kinetic, strain).
-    pub(crate) fn energies(&self, state: &ConservativeState, e: &Evaluation) -> (f64, f64) {
+    pub(super) fn energies(&self, state: &ConservativeState, e: &Evaluation) -> (f64, f64) {
         let q = &state.modal_displacement;
         let moving = match (&self.drive, self.translation) {
             (Some(_), Translation::Driven(direction)) => {

@@ -114,7 +114,7 @@ impl ConservativeBody {
     }
 
     /// ż.
-    pub(crate) fn velocity_of_coordinates<'e>(&self, e: &'e Evaluation) -> &'e Padded {
+    pub(super) fn velocity_of_coordinates<'e>(&self, e: &'e Evaluation) -> &'e Padded {
         if self.manifold.is_some() { &e.velocity } else { &e.modal_velocity }
     }
 }

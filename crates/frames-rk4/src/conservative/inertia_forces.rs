@@ -44,7 +44,7 @@ impl ConservativeBody {
 
     /// Finds S' = G_i ż, the lists side by side.
     #[inline(always)]
-    pub(crate) fn coupling_rate<'e, S: Simd>(&self, simd: S, e: &'e mut Evaluation) -> (Lists<'e>, &'e mut Padded) {
+    pub(super) fn coupling_rate<'e, S: Simd>(&self, simd: S, e: &'e mut Evaluation) -> (Lists<'e>, &'e mut Padded) {
         if self.locked && self.g_count > 0 {
             let places = Places { groups: &mut e.coupling_rate, width: self.g_count, first: 0 };
             self.gyroscopic.multiply(simd, e.modal_velocity.groups(), Lists::ZEROS, places);
@@ -83,7 +83,7 @@ impl ConservativeBody {
 
     /// On a manifold, finds ξ and ν.
     #[inline(always)]
-    pub(crate) fn find_in_shapes(&self, e: &mut Evaluation) {
+    pub(super) fn find_in_shapes(&self, e: &mut Evaluation) {
         let Some(manifold) = &self.manifold else { return };
         let [xi, nu, _] = &mut e.in_shapes;
         manifold.in_shapes(&e.coordinates, xi);

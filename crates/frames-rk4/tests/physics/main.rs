@@ -3,6 +3,7 @@
 
 mod driven;
 mod effects;
+mod events;
 mod held;
 mod loads;
 mod open;

@@ -189,21 +189,6 @@ fn a_row_comes_after_the_stop_or_the_event_that_it_falls_on() {
 }
 
 #[test]
-fn an_event_function_that_is_no_number_ends_the_run() {
-    let body = body(RigidMotion::free(), &OMEGA);
-    let run = Run::new(&body, 1.0);
-    let start = || run.start(EXPONENTIAL, StepControl::Fixed(1e-2), Rows::Interval(1.0));
-    let root = |now: &Observation| (0.5 - now.time).sqrt() - 0.1;
-    let mut simulation = start();
-    simulation.add_event(Event::new("root", Crossing::Rising, root)).unwrap();
-    assert!(
-        matches!(simulation.advance(u64::MAX), Err(StepError::NotFinite { time, .. }) if (time - 0.51).abs() < 1e-12)
-    );
-    let added = start().add_event(Event::new("none", Crossing::Any, |_: &Observation| f64::NAN));
-    assert!(matches!(added, Err(StepError::NotFinite { time: 0.0, .. })));
-}
-
-#[test]
 fn no_time_after_an_event_is_inside_the_last_step() {
     let body = body(RigidMotion::free(), &OMEGA);
     let mut simulation = Run::new(&body, 1.0).start(EXPONENTIAL, StepControl::Fixed(1e-2), Rows::Interval(1.0));

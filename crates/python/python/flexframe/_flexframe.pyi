@@ -225,7 +225,7 @@ class Simulation:
         """Time at the end."""
     @property
     def done(self) -> bool:
-        """Whether the end has been reached."""
+        """Whether there is nothing more to come, neither a step nor a row."""
     @property
     def stats(self) -> dict[str, int]:
         """What it has cost: "steps", "rejected_steps", "evaluations"."""
