@@ -160,9 +160,9 @@ pub(crate) fn room(count: usize, available: usize) -> usize {
 /// An M-orthonormal basis, block by block: the rigid modes, which the search stays away from, then a block for each step.
 ///
 /// M times the basis is kept of few blocks only: another product with M takes less time than that memory.
-pub(crate) struct Basis<'a> {
+struct Basis<'a> {
     mass: &'a MassMatrix<'a>,
-    pub blocks: Vec<Mat<f64>>,
+    blocks: Vec<Mat<f64>>,
     /// M times the rigid modes.
     m_rigid: Mat<f64>,
     /// M times the last [`NEAR`] blocks.
@@ -175,17 +175,17 @@ pub(crate) struct Basis<'a> {
 }
 
 /// What a new block looks like in the basis: `W = V·coefficients + Q·coupling`.
-pub(crate) struct Extension {
+struct Extension {
     coefficients: Mat<f64>,
     coupling: Mat<f64>,
     /// Columns of Q that were new.
-    pub columns: usize,
+    columns: usize,
     /// Whether Q is M-orthonormal: not where little but rounding was left of W.
     is_orthonormal: bool,
 }
 
 impl<'a> Basis<'a> {
-    pub(crate) fn new(mass: &'a MassMatrix<'a>, rigid: MatRef<'_, f64>, room: usize) -> Result<Self, ModalError> {
+    fn new(mass: &'a MassMatrix<'a>, rigid: MatRef<'_, f64>, room: usize) -> Result<Self, ModalError> {
         check_memory(rigid.nrows(), 2 * FIXED + room + 6 * BLOCK)?;
         Ok(Self {
             mass,
@@ -199,7 +199,7 @@ impl<'a> Basis<'a> {
     }
 
     /// Vectors beside the rigid modes.
-    pub(crate) fn size(&self) -> usize {
+    fn size(&self) -> usize {
         columns(&self.blocks[1..])
     }
 
@@ -209,7 +209,7 @@ impl<'a> Basis<'a> {
     }
 
     /// The vectors of the basis times `coefficients`, without what rounding has left of the rigid modes in that.
-    pub(crate) fn combine(self, coefficients: MatRef<'_, f64>) -> Mat<f64> {
+    fn combine(self, coefficients: MatRef<'_, f64>) -> Mat<f64> {
         let Self { blocks, m_rigid, m_near, m_w, packed, .. } = self;
         drop((m_near, m_w, packed));
         let mut vectors = Mat::zeros(m_rigid.nrows(), coefficients.ncols());
@@ -224,7 +224,7 @@ impl<'a> Basis<'a> {
     /// In exact arithmetic a block that comes of the last one has parts along the last two only; `near` tells how many of
     /// the last blocks that are. These are taken out first, and the rigid modes, which rounding brings in most. What is left
     /// is rounding, and one round takes it out as a rule.
-    pub(crate) fn extend(&mut self, mut w: Mat<f64>, near: usize) -> Result<Extension, ModalError> {
+    fn extend(&mut self, mut w: Mat<f64>, near: usize) -> Result<Extension, ModalError> {
         let size = self.size();
         check_memory(w.nrows(), w.ncols())?;
         let mut coefficients = Mat::zeros(FIXED + size, w.ncols());
@@ -299,7 +299,7 @@ fn columns(blocks: &[Mat<f64>]) -> usize {
     blocks.iter().map(Mat::ncols).sum()
 }
 
-pub(crate) fn views(blocks: &[Mat<f64>]) -> Vec<MatRef<'_, f64>> {
+fn views(blocks: &[Mat<f64>]) -> Vec<MatRef<'_, f64>> {
     blocks.iter().map(Mat::as_ref).collect()
 }
 

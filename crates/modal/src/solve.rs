@@ -6,8 +6,8 @@ use std::time::{Duration, Instant};
 use faer::sparse::SparseColMatRef;
 use faer::{ColRef, Mat};
 
-use crate::columns::Columns;
 use crate::coarse::Corners;
+use crate::columns::Columns;
 use crate::constraints::Constraints;
 use crate::engine::{Engine, EngineStats};
 use crate::error::ModalError;
@@ -21,7 +21,7 @@ use crate::polynomials::Polynomials;
 use crate::progress::Progress;
 use crate::rigid::RigidModes;
 use crate::ritz::{RitzPairs, rayleigh_ritz};
-use crate::shifted::Shifted;
+use crate::shifted::{Ordered, Shifted};
 use crate::start;
 use crate::stiffness::{NodalStiffness, StiffnessMatrix};
 use crate::support::Support;
@@ -66,21 +66,24 @@ pub struct SolveStats {
     pub shift: f64,
     /// Unknowns N.
     pub unknowns: usize,
-    /// Entries of the factor of K + sM; zero where an engine had it.
+    /// Entries of the factor of K + sM, or of that on the corners of the elements where `cycles` are not zero; zero where an
+    /// engine had it.
     pub factor_entries: usize,
     /// Bytes that are held here at the most, from K and M to the reduced body, foretold from the sizes of all that is large.
     pub peak_bytes: usize,
     /// Solutions with a block of vectors.
     pub block_solves: usize,
-    /// Vectors in the Lanczos basis at the end.
+    /// Vectors in the basis of the search at the end.
     pub basis_size: usize,
+    /// Blocks of multigrid cycles that found the modes without the factor of K + sM.
+    pub cycles: usize,
     /// Rigid modes, the check of K, and the first guess.
     pub preparation_time: Duration,
     /// Ordering and symbolic factorisation.
     pub ordering_time: Duration,
     /// Numeric factorisation.
     pub factor_time: Duration,
-    /// Lanczos.
+    /// The search for modes.
     pub lanczos_time: Duration,
     /// Rayleigh–Ritz, residuals and signs.
     pub ritz_time: Duration,
@@ -118,10 +121,10 @@ impl Modes {
 /// A body, what holds it, and (from the first question on) the factor of K + sM that its answers come from.
 pub struct Solver<'a> {
     pub(crate) stiffness: StiffnessMatrix<'a>,
-    positions: &'a [[f64; 3]],
+    pub(crate) positions: &'a [[f64; 3]],
     pub(crate) mass: MassMatrix<'a>,
     /// Bytes of K and M, in all the forms that are there.
-    matrix_bytes: usize,
+    pub(crate) matrix_bytes: usize,
     pub(crate) rigid: RigidModes,
     pub(crate) constraints: Constraints,
     factor: OnceLock<Shifted>,
@@ -287,11 +290,18 @@ impl<'a> Solver<'a> {
         if let Some(engine) = &self.engine {
             return self.modes_by(engine.as_ref(), flexible, &mut progress);
         }
-        if let Some(found) = self.modes_without_factor(flexible, &mut progress)? {
-            return Ok(found);
-        }
         let basis = FIXED + room(flexible, available);
-        let factor = self.factor_for(|memory| memory.of_search(basis, BLOCK, flexible), &mut progress)?;
+        let search = |memory: &Foretold| memory.of_search(basis, BLOCK, flexible);
+        let factor = match self.factor.get() {
+            Some(factor) => factor,
+            None => {
+                let (ordered, estimate_time) = self.ordered(&mut progress)?;
+                if let Some(modes) = self.modes_without_factor(flexible, &ordered, &mut progress)? {
+                    return Ok(modes);
+                }
+                self.factor_of(ordered, estimate_time, search, &mut progress)?
+            }
+        };
         let mut stats = SolveStats {
             shift: factor.shift,
             unknowns,
@@ -322,40 +332,36 @@ impl<'a> Solver<'a> {
 
     /// K + sM, factored at the first call.
     pub(crate) fn factor(&self) -> Result<&Shifted, ModalError> {
-        self.factor_for(|memory| memory.of_search(FIXED, BLOCK, 0), &mut |_| ())
-    }
-
-    /// The same, where there is memory for the `search` that follows.
-    fn factor_for(
-        &self,
-        search: impl Fn(&Foretold) -> usize,
-        progress: &mut dyn FnMut(Progress),
-    ) -> Result<&Shifted, ModalError> {
         if let Some(factor) = self.factor.get() {
             return Ok(factor);
         }
+        let (ordered, estimate_time) = self.ordered(&mut |_| ())?;
+        self.factor_of(ordered, estimate_time, |memory| memory.of_search(FIXED, BLOCK, 0), &mut |_| ())
+    }
+
+    /// K + sM with an order of its unknowns, and the time that it took to choose the shift.
+    fn ordered(&self, progress: &mut dyn FnMut(Progress)) -> Result<(Ordered<'_>, Duration), ModalError> {
         progress(Progress::Ordering);
         let started = Instant::now();
         let shift = self.shift()?;
         let estimate_time = started.elapsed();
-        let mut factor = Shifted::factor(
-            self.stiffness,
-            &self.mass,
-            shift,
-            &self.constraints,
-            self.foretold(),
-            search,
-            |forecast| {
-                progress(Progress::Factorizing(forecast));
-            },
-        )?;
-        factor.estimate_time = estimate_time;
-        Ok(self.factor.get_or_init(|| factor))
+        let ordered = Ordered::new(self.stiffness, &self.mass, shift, &self.constraints, &self.foretold())?;
+        Ok((ordered, estimate_time))
     }
 
-    /// The positions of the nodes.
-    pub(crate) fn positions(&self) -> &[[f64; 3]] {
-        self.positions
+    /// The factor, where there is memory for the `search` that follows.
+    fn factor_of(
+        &self,
+        ordered: Ordered<'_>,
+        estimate_time: Duration,
+        search: impl Fn(&Foretold) -> usize,
+        progress: &mut dyn FnMut(Progress),
+    ) -> Result<&Shifted, ModalError> {
+        let mut factor = Shifted::factor(ordered, &self.constraints, self.foretold(), search, |forecast| {
+            progress(Progress::Factorizing(forecast));
+        })?;
+        factor.estimate_time = estimate_time;
+        Ok(self.factor.get_or_init(|| factor))
     }
 
     /// The shift s, estimated at the first call.
@@ -398,7 +404,7 @@ impl<'a> Solver<'a> {
     }
 
     /// The memory that the matrices take, and what follows from their sizes.
-    fn foretold(&self) -> Foretold {
+    pub(crate) fn foretold(&self) -> Foretold {
         Foretold::new(self.stiffness, self.matrix_bytes, FIXED)
     }
 

@@ -1,28 +1,42 @@
-//! Modes of a bulky body without the factor of K + sM.
+//! The modes of a bulky body without the factor of K + sM.
+//!
+//! The factor of a thin body has few entries; that of a bulky one has so many that the search by multigrid cycles takes half
+//! the time and a fifth of the memory.
 
 use std::time::Instant;
 
-use faer::Mat;
-
+use crate::columns::Columns;
 use crate::constraints::Constraints;
 use crate::davidson;
 use crate::error::ModalError;
-use crate::foretold::Foretold;
-use crate::lanczos::{FIXED, largest_pairs};
+use crate::foretold::{Foretold, of_vectors};
+use crate::lanczos::{FIXED, largest_pairs, random_block};
 use crate::mass_matrix::MassMatrix;
 use crate::multigrid::Multigrid;
+use crate::products::WIDTH;
 use crate::progress::Progress;
 use crate::ritz::{RitzPairs, rayleigh_ritz};
-use crate::shifted::Shifted;
+use crate::shifted::{Ordered, Shifted};
 use crate::solve::{Modes, SolveStats, Solver};
 use crate::stiffness::StiffnessMatrix;
 use crate::support::Support;
 
+/// Multiplications from which on the factor of K + sM takes longer.
+const LONG: f64 = 1.5e11;
+/// Modes at the most: the basis of the search grows with them.
+const MOST_MODES: usize = 40;
+/// What a cycle leaves of the strain energy of an error at the most, and the cycles by which that is found. On compact elements
+/// it leaves 0.2 to 0.5; of flat or stretched ones 0.95, and the search would take longer than the factor.
+const LEFT_BY_CYCLE: f64 = 0.75;
+const TRIAL_CYCLES: usize = 4;
+
 impl Solver<'_> {
-    /// Modes by the multigrid cycle; none where the body is not for it.
+    /// The modes by multigrid cycles, or none where the factor of K + sM is the better way: of thin bodies, of those that
+    /// something holds, of flat elements, for many modes.
     pub(crate) fn modes_without_factor(
         &self,
         flexible: usize,
+        ordered: &Ordered<'_>,
         progress: &mut dyn FnMut(Progress),
     ) -> Result<Option<Modes>, ModalError> {
         let (Some(corners), StiffnessMatrix::Nodal(stiffness), MassMatrix::Nodal(mass)) =
@@ -30,39 +44,87 @@ impl Solver<'_> {
         else {
             return Ok(None);
         };
-        if !self.constraints.is_empty() || std::env::var("MG").is_err() {
+        let is_for_it = self.constraints.is_empty() && flexible <= MOST_MODES && ordered.multiplications() > LONG;
+        if !is_for_it || davidson::start(flexible) > 3 * corners.count() / 2 {
             return Ok(None);
         }
-        let t = Instant::now();
-        let matrices = corners.matrices(stiffness, mass);
-        eprintln!("rap {:?}", t.elapsed());
-        let positions: Vec<[f64; 3]> = corners.nodes.iter().map(|node| self.positions()[*node as usize]).collect();
-        let coarse_stiffness = StiffnessMatrix::Nodal(matrices.stiffness());
-        let coarse_mass = MassMatrix::Nodal(matrices.mass());
+
+        let started = Instant::now();
+        let coarse = corners.matrices(stiffness, mass);
+        let positions: Vec<[f64; 3]> = corners.nodes.iter().map(|node| self.positions[*node as usize]).collect();
         let constraints = Constraints::new(&Support::free(), &positions, 3)?;
-        let foretold = Foretold::new(coarse_stiffness, matrices.bytes(), FIXED);
-        let shift = self.shift()?;
-        let factor =
-            Shifted::factor(coarse_stiffness, &coarse_mass, shift, &constraints, foretold, |_| 0, |_| ())?;
-        eprintln!("factor {:?} shift {shift:e}", t.elapsed());
-        let rigid = corners.at_corners(self.rigid.shapes.as_ref());
-        let begin = flexible + flexible / 2 + 8;
-        let pairs = largest_pairs(&factor, &coarse_mass, rigid.as_ref(), begin, 3 * corners.count() - 6, |_| ())?;
-        eprintln!("coarse modes {:?}", t.elapsed());
-        let start = corners.prolonged(pairs.vectors.as_ref());
+        let (coarse_stiffness, coarse_mass) =
+            (StiffnessMatrix::Nodal(coarse.stiffness()), MassMatrix::Nodal(coarse.mass()));
+        let memory = Foretold::new(coarse_stiffness, coarse.bytes(), FIXED);
+        let on_corners = Ordered::new(coarse_stiffness, &coarse_mass, self.shift()?, &constraints, &memory)?;
+        let ordering_time = ordered.time() + on_corners.time();
+        let nodes = self.positions.len();
+        let beside = self.matrix_bytes
+            + Multigrid::bytes(nodes, corners.count())
+            + of_vectors(3 * nodes, FIXED + davidson::room(flexible) + davidson::BESIDE);
+        let factor = Shifted::factor(
+            on_corners,
+            &constraints,
+            memory,
+            |_| beside,
+            |forecast| {
+                progress(Progress::Factorizing(forecast));
+            },
+        )?;
         let Some(mut multigrid) = Multigrid::new(stiffness, corners, &factor)? else { return Ok(None) };
-        eprintln!("multigrid {:?}", t.elapsed());
-        let rigid = self.rigid.shapes.as_ref();
-        let pairs = davidson::lowest_pairs(self.stiffness, &self.mass, rigid, &mut multigrid, start, flexible, |converged| {
-            eprintln!("{:?} converged {converged}", t.elapsed());
+        if left_by_cycle(self.stiffness, &mut multigrid) > LEFT_BY_CYCLE {
+            return Ok(None);
+        }
+        let factor_time = started.elapsed().saturating_sub(ordering_time);
+
+        let started = Instant::now();
+        let rigid = corners.at_corners(self.rigid.shapes.as_ref());
+        let available = 3 * corners.count() - rigid.ncols();
+        let pairs = largest_pairs(&factor, &coarse_mass, rigid.as_ref(), davidson::start(flexible), available, |_| ())?;
+        let start = corners.prolonged(pairs.vectors.as_ref());
+        let (rigid, report) = (self.rigid.shapes.as_ref(), |converged| {
             progress(Progress::Lanczos { converged, requested: flexible });
-        })?;
+        });
+        let pairs = davidson::lowest_pairs(self.stiffness, &self.mass, rigid, &mut multigrid, start, flexible, report)?;
         let Some(pairs) = pairs else { return Ok(None) };
+        let lanczos_time = started.elapsed();
+
+        let started = Instant::now();
         let RitzPairs { eigenvalues, shapes, force_residuals } =
             rayleigh_ritz(self.stiffness, &self.mass, &self.constraints, &pairs.vectors)?;
-        eprintln!("{:?} {eigenvalues:?} {force_residuals:?} basis {}", t.elapsed(), pairs.basis_size);
-        let stats = SolveStats { shift, unknowns: shapes.nrows(), factor_entries: factor.entries(), ..SolveStats::default() };
-        let _ = Mat::<f64>::new();
-        Ok(Some(Modes { rigid: self.rigid.clone(), eigenvalues, shapes, residuals: pairs.residuals, force_residuals, stats }))
+        self.refuse_soft(&eigenvalues, &shapes, factor.shift)?;
+        let stats = SolveStats {
+            shift: factor.shift,
+            unknowns: shapes.nrows(),
+            factor_entries: factor.entries(),
+            peak_bytes: factor.memory.peak(beside),
+            block_solves: pairs.block_solves,
+            basis_size: pairs.basis_size,
+            cycles: pairs.block_solves,
+            preparation_time: self.preparation_time(),
+            ordering_time,
+            factor_time,
+            lanczos_time,
+            ritz_time: started.elapsed(),
+            engine: None,
+        };
+        let (rigid, residuals) = (self.rigid.clone(), pairs.residuals);
+        Ok(Some(Modes { rigid, eigenvalues, shapes, residuals, force_residuals, stats }))
     }
+}
+
+/// The largest part of the strain energy of random displacements that a cycle leaves, after a few of them.
+fn left_by_cycle(stiffness: StiffnessMatrix<'_>, multigrid: &mut Multigrid<'_>) -> f64 {
+    let mut error = random_block(stiffness.ncols(), WIDTH, &mut 1);
+    let mut before = vec![f64::INFINITY; error.ncols()];
+    let mut left = 0.0;
+    for _ in 0..=TRIAL_CYCLES {
+        let mut forces = stiffness.product(error.as_ref());
+        let energies: Vec<f64> = error.col_iter().zip(forces.col_iter()).map(|(e, f)| e.transpose() * f).collect();
+        left = energies.iter().zip(&before).map(|(now, before)| now / before).fold(0.0, f64::max);
+        before = energies;
+        multigrid.apply(forces.as_mut());
+        error -= forces;
+    }
+    left
 }
