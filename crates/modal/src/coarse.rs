@@ -61,26 +61,21 @@ impl Corners {
         std::iter::once((a as usize, weight)).chain((a != b).then_some((b as usize, weight)))
     }
 
-    /// Y = P·X, row by row.
-    pub(crate) fn prolong<const W: usize>(&self, x: &[[f64; W]], y: &mut [[f64; W]]) {
-        let (x, (y, _)) = (x.as_chunks::<3>().0, y.as_chunks_mut::<3>());
-        y.par_iter_mut().zip(&self.ends).with_min_len(PER_TASK).for_each(|(y, [a, b])| {
-            let [a, b] = [&x[*a as usize], &x[*b as usize]];
-            for axis in 0..3 {
-                y[axis] = std::array::from_fn(|c| 0.5 * (a[axis][c] + b[axis][c]));
-            }
+    /// Y = P·X, where a node has so many numbers.
+    pub(crate) fn prolong(&self, of_node: usize, x: &[f32], y: &mut [f32]) {
+        let at = |corner: &u32| &x[of_node * *corner as usize..][..of_node];
+        y.par_chunks_exact_mut(of_node).zip(&self.ends).with_min_len(PER_TASK).for_each(|(y, [a, b])| {
+            y.iter_mut().zip(at(a).iter().zip(at(b))).for_each(|(y, (a, b))| *y = 0.5 * (a + b));
         });
     }
 
-    /// Y = Pᵀ·X, row by row.
-    pub(crate) fn restrict<const W: usize>(&self, x: &[[f64; W]], y: &mut [[f64; W]]) {
-        let (x, (y, _)) = (x.as_chunks::<3>().0, y.as_chunks_mut::<3>());
-        y.fill([[0.0; W]; 3]);
-        for (x, ends) in x.iter().zip(&self.ends) {
+    /// Y = Pᵀ·X, likewise.
+    pub(crate) fn restrict(&self, of_node: usize, x: &[f32], y: &mut [f32]) {
+        y.fill(0.0);
+        for (x, ends) in x.chunks_exact(of_node).zip(&self.ends) {
             for corner in ends {
-                for (y, x) in y[*corner as usize].as_flattened_mut().iter_mut().zip(x.as_flattened()) {
-                    *y += 0.5 * x;
-                }
+                let y = &mut y[of_node * *corner as usize..][..of_node];
+                y.iter_mut().zip(x).for_each(|(y, x)| *y += 0.5 * x);
             }
         }
     }

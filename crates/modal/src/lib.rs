@@ -61,6 +61,7 @@ mod ritz;
 mod second_order;
 mod shifted;
 mod shifted_matrix;
+mod smoother;
 mod solve;
 mod start;
 mod statics;
