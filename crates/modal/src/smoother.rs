@@ -332,11 +332,7 @@ pub(crate) fn pack(columns: MatRef<'_, f64>, factors: [f64; MOST_COLUMNS], rows:
 }
 
 /// And the sums of blocks of rows back.
-pub(crate) fn unpack<const K: usize>(
-    blocks: [&[f32]; K],
-    factors: [f64; MOST_COLUMNS],
-    columns: MatMut<'_, f64>,
-) {
+pub(crate) fn unpack<const K: usize>(blocks: [&[f32]; K], factors: [f64; MOST_COLUMNS], columns: MatMut<'_, f64>) {
     let width = columns.ncols().next_multiple_of(LANES);
     columns.par_row_chunks_mut(3 * NODES_PER_TASK).enumerate().for_each(|(task, columns)| {
         let blocks = blocks.map(|rows| &rows[3 * NODES_PER_TASK * task * width..]);

@@ -22,7 +22,7 @@ use crate::stiffness::StiffnessMatrix;
 use crate::support::Support;
 
 /// Multiplications from which on the factor of K + sM takes longer.
-const LONG: f64 = 1.5e11;
+const LONG: f64 = 6e10;
 /// Modes at the most: the basis of the search grows with them.
 const MOST_MODES: usize = 40;
 /// What a cycle leaves of the strain energy of an error at the most, and the cycles by which that is found. On compact elements
@@ -60,7 +60,7 @@ impl Solver<'_> {
         let ordering_time = ordered.time() + on_corners.time();
         let nodes = self.positions.len();
         let beside = self.matrix_bytes
-            + Multigrid::bytes(nodes, corners.count())
+            + Multigrid::bytes(&stiffness.pairs(), corners.count())
             + of_vectors(3 * nodes, FIXED + davidson::room(flexible) + davidson::BESIDE);
         let factor = Shifted::factor(
             on_corners,
