@@ -271,12 +271,13 @@ fn take_product<S: Simd, const V: usize, const L: usize>(
     d: &[Rows<S::f32s, V, L>],
 ) {
     let range = pairs.start[node]..pairs.start[node + 1];
-    // Sums of their own stay in the processor's vectors.
+    // Sums of their own: these stay in the processor's vectors.
     let mut sums = *left;
-    let soon = pairs.nodes[range.start..].iter().skip(AHEAD).chain(std::iter::repeat(&0));
-    for ((other, block), soon) in pairs.nodes[range.clone()].iter().zip(&blocks[range]).zip(soon) {
-        let soon: *const f32 = d[*soon as usize].as_ptr().cast();
-        (0..3 * V * LANES).step_by(LINE).for_each(|number| prefetch(soon.wrapping_add(number)));
+    for (entry, (other, block)) in range.clone().zip(pairs.nodes[range.clone()].iter().zip(&blocks[range])) {
+        if let Some(soon) = pairs.nodes.get(entry + AHEAD) {
+            let soon: *const f32 = d[*soon as usize].as_ptr().cast();
+            (0..3 * V * LANES).step_by(LINE).for_each(|number| prefetch(soon.wrapping_add(number)));
+        }
         let rows = &d[*other as usize];
         for (j, row) in rows.iter().enumerate() {
             for (sum, factors) in sums.iter_mut().zip(block) {
@@ -342,4 +343,51 @@ pub(crate) fn unpack<const K: usize>(blocks: [&[f32]; K], factors: [f64; MOST_CO
             }
         }
     });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use faer::Mat;
+
+    /// Blocks of a chain in which each node is coupled to the next three.
+    fn chain(nodes: usize) -> (Vec<usize>, Vec<u32>, Vec<f64>) {
+        let (mut start, mut coupled, mut values) = (vec![0], Vec::new(), Vec::new());
+        for node in 0..nodes {
+            let near = node.saturating_sub(3)..(node + 4).min(nodes);
+            for axis in 0..3 {
+                values
+                    .extend(near.clone().flat_map(|other| (0..3).map(move |i| entry(3 * node + axis, 3 * other + i))));
+            }
+            coupled.extend(near.map(|other| other as u32));
+            start.push(coupled.len());
+        }
+        (start, coupled, values)
+    }
+
+    fn entry(i: usize, j: usize) -> f64 {
+        if i == j { 3e11 } else { 1e10 * ((i.min(j) * 7 + i.max(j) * 13) as f64).cos() }
+    }
+
+    #[test]
+    fn a_smoothing_is_symmetric_and_leaves_what_it_says() {
+        let nodes = 2 * NODES_PER_TASK + 11;
+        let (start, coupled, values) = chain(nodes);
+        let stiffness = NodalStiffness::of_checked(&start, &coupled, &values);
+        let k = Mat::from_fn(3 * nodes, 3 * nodes, |i, j| if (i / 3).abs_diff(j / 3) <= 3 { entry(i, j) } else { 0.0 });
+        let mut smoother = Smoother::new(stiffness).unwrap();
+        for columns in [1, 8, 13, 24] {
+            let forces = Mat::from_fn(3 * nodes, columns, |i, j| 1e6 * ((i * 3 + j * 11) as f64).sin());
+            let units = smoother.begin(forces.as_ref());
+            smoother.smooth(false);
+            let mut answers = Mat::zeros(3 * nodes, columns);
+            smoother.end(units, answers.as_mut());
+            smoother.take_in();
+            let mut left = Mat::zeros(3 * nodes, columns);
+            unpack([&smoother.r[..3 * nodes * smoother.width]], units, left.as_mut());
+            assert!((&forces - &k * &answers - left).norm_max() < 1e-5 * forces.norm_max());
+            let works = forces.transpose() * &answers;
+            assert!((&works - works.transpose()).norm_max() < 1e-6 * works.norm_max());
+        }
+    }
 }
