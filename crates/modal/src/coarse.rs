@@ -390,7 +390,7 @@ pub(crate) mod tests {
             let found = corners.matrices(block.stiffness(), &block.mass());
             let [k, m] = dense(&found, 3 * corners.count());
             for (found, of_nodes) in [(k, matrices.stiffness()), (m, matrices.mass())] {
-                // Measured: 9e-16 at worst.
+                // Measured: 7.5e-16 at worst.
                 assert!(off(&found, &(p.transpose() * (of_nodes * &p))) < 1e-14);
             }
             // Rows that rise, both triangles alike.
@@ -411,6 +411,7 @@ pub(crate) mod tests {
         let forces = &k * &of_corners;
         for (motion, force) in of_corners.col_iter().zip(forces.col_iter()) {
             let relative = force.norm_l2() / (k.norm_l2() * motion.norm_l2());
+            // Measured: 1.9e-17 at worst.
             assert!(relative < 1e-15, "{relative:e}");
         }
         // Mass, centre of mass and inertia.
