@@ -42,6 +42,8 @@ mod mass;
 mod mass_left_out;
 mod mass_matrix;
 mod multigrid;
+#[cfg(test)]
+mod multigrid_tests;
 mod node_pairs;
 mod ordering;
 mod outside;
