@@ -294,26 +294,26 @@ pub(crate) mod tests {
     /// Columns that stand side by side in rows.
     const SIDE_BY_SIDE: usize = 4;
 
-    fn rows(x: &Mat<f64>) -> Vec<[f64; SIDE_BY_SIDE]> {
-        (0..x.nrows()).map(|i| std::array::from_fn(|k| x[(i, k)])).collect()
+    fn rows(x: &Mat<f64>) -> Vec<f32> {
+        (0..x.nrows()).flat_map(|i| (0..SIDE_BY_SIDE).map(move |k| x[(i, k)] as f32)).collect()
     }
 
-    fn columns(x: &[[f64; SIDE_BY_SIDE]]) -> Mat<f64> {
-        Mat::from_fn(x.len(), SIDE_BY_SIDE, |i, k| x[i][k])
+    fn columns(x: &[f32]) -> Mat<f64> {
+        Mat::from_fn(x.len() / SIDE_BY_SIDE, SIDE_BY_SIDE, |i, k| f64::from(x[SIDE_BY_SIDE * i + k]))
     }
 
     /// P X by rows.
     fn prolong(corners: &Corners, x: &Mat<f64>) -> Mat<f64> {
         // What is there before must not be added to.
-        let mut y = vec![[7.0; SIDE_BY_SIDE]; 3 * corners.ends.len()];
-        corners.prolong(&rows(x), &mut y);
+        let mut y = vec![7.0; SIDE_BY_SIDE * 3 * corners.ends.len()];
+        corners.prolong(3 * SIDE_BY_SIDE, &rows(x), &mut y);
         columns(&y)
     }
 
     /// Pᵀ X by rows.
     fn restrict(corners: &Corners, x: &Mat<f64>) -> Mat<f64> {
-        let mut y = vec![[7.0; SIDE_BY_SIDE]; 3 * corners.count()];
-        corners.restrict(&rows(x), &mut y);
+        let mut y = vec![7.0; SIDE_BY_SIDE * 3 * corners.count()];
+        corners.restrict(3 * SIDE_BY_SIDE, &rows(x), &mut y);
         columns(&y)
     }
 
@@ -348,15 +348,14 @@ pub(crate) mod tests {
         let (px, pty) = (prolong(corners, &x), restrict(corners, &y));
         for k in 0..SIDE_BY_SIDE {
             let [work, of_corners] = [px.col(k).transpose() * y.col(k), x.col(k).transpose() * pty.col(k)];
-            assert!(
-                (work - of_corners).abs() < 1e-13 * px.col(k).norm_l2() * y.col(k).norm_l2(),
-                "{work} {of_corners}"
-            );
+            assert!((work - of_corners).abs() < 1e-6 * px.col(k).norm_l2() * y.col(k).norm_l2(), "{work} {of_corners}");
         }
-        assert!(off(&px, &(&p * &x)) < 1e-15);
-        assert!(off(&pty, &(p.transpose() * &y)) < 1e-15);
-        assert_eq!(corners.prolonged(x.as_ref()), px);
-        assert_eq!(corners.at_corners(px.as_ref()), x);
+        // Rows are in single precision.
+        assert!(off(&px, &(&p * &x)) < 1e-6);
+        assert!(off(&pty, &(p.transpose() * &y)) < 1e-6);
+        let in_double = corners.prolonged(x.as_ref());
+        assert!(off(&in_double, &(&p * &x)) < 1e-15);
+        assert_eq!(corners.at_corners(in_double.as_ref()), x);
     }
 
     #[test]
@@ -371,7 +370,7 @@ pub(crate) mod tests {
             })
         };
         let (everywhere, of_corners) = (field(block.mesh.positions()), field(&block.corner_positions()));
-        assert!(off(&prolong(&block.corners, &of_corners), &everywhere) < 1e-15);
+        assert!(off(&prolong(&block.corners, &of_corners), &everywhere) < 1e-6);
         assert!(off(&block.corners.prolonged(of_corners.as_ref()), &everywhere) < 1e-15);
         assert_eq!(block.corners.at_corners(everywhere.as_ref()), of_corners);
     }

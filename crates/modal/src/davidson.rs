@@ -18,10 +18,6 @@ use crate::stiffness::StiffnessMatrix;
 
 /// √(rᵀBr/λ) of a pair that is accepted: its λ errs by the square.
 const TOLERANCE: f64 = 1e-9;
-/// Corrections at a time.
-const BLOCK: usize = 16;
-/// Vectors beside the basis: of a block, its products with K and M, the corrections and two blocks of scratch.
-pub(crate) const BESIDE: usize = 6 * BLOCK;
 /// What is left of a vector beside the basis is orthogonal to it, to rounding by the inverse of this part.
 const LEFT: f64 = 1e-3;
 /// Directions of a block below this are rounding; its Gram matrix is blind below the square of it.
@@ -59,10 +55,8 @@ pub(crate) fn lowest_pairs(
             return Ok(None);
         }
 
-        // Those that have converged stay so: the basis only grows. Of the others the farthest from it come first.
-        let mut open: Vec<usize> = (0..count).filter(|k| residuals[*k] > TOLERANCE).collect();
-        open.sort_by(|a, b| residuals[*b].total_cmp(&residuals[*a]));
-        open.truncate(BLOCK);
+        // Those that have converged stay so: the basis only grows.
+        let open: Vec<usize> = (0..count).filter(|k| residuals[*k] > TOLERANCE).collect();
         let of_open = Mat::from_fn(coefficients.nrows(), open.len(), |i, k| coefficients[(i, open[k])]);
         let shapes = product(basis.vectors(), of_open.as_ref());
         let mut forces = stiffness.product(shapes.as_ref());
@@ -92,7 +86,12 @@ pub(crate) fn lowest_pairs(
 
 /// Vectors that a search for `count` pairs has room for.
 pub(crate) fn room(count: usize) -> usize {
-    start(count) + 16 * count + 2 * BLOCK
+    start(count) + 20 * count
+}
+
+/// Vectors beside the basis: a block, its products with K and M, the corrections and two blocks of scratch.
+pub(crate) fn beside(count: usize) -> usize {
+    6 * start(count)
 }
 
 /// Vectors that a search for `count` pairs begins with.
@@ -123,7 +122,7 @@ struct Basis<'a> {
 impl<'a> Basis<'a> {
     fn new(mass: &'a MassMatrix<'a>, rigid: MatRef<'_, f64>, room: usize) -> Result<Self, ModalError> {
         let count = rigid.ncols();
-        memory::check("the search for modes", of_vectors(rigid.nrows(), count + room + BESIDE))?;
+        memory::check("the search for modes", of_vectors(rigid.nrows(), count + room))?;
         let mut columns = Mat::zeros(rigid.nrows(), count + room);
         columns.as_mut().subcols_mut(0, count).copy_from(rigid);
         Ok(Self { mass, rigid: count, columns, size: 0, packed: Vec::new() })

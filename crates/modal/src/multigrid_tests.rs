@@ -11,7 +11,7 @@ use crate::lanczos::random_block;
 use crate::mass_matrix::MassMatrix;
 use crate::multigrid::Multigrid;
 use crate::rigid_fields::rigid_fields;
-use crate::shifted::Shifted;
+use crate::shifted::{Ordered, Shifted};
 use crate::solve::Solver;
 use crate::stiffness::StiffnessMatrix;
 use crate::support::Support;
@@ -49,7 +49,8 @@ impl Levels {
         let constraints = Constraints::new(&Support::free(), &self.block.corner_positions(), 3).unwrap();
         let memory = Foretold::new(stiffness, 0, 0);
         let mass = MassMatrix::Nodal(mass);
-        Shifted::factor(stiffness, &mass, self.shift, &constraints, memory, |_| 0, |_| ()).unwrap()
+        let ordered = Ordered::new(stiffness, &mass, self.shift, &constraints, &memory).unwrap();
+        Shifted::factor(ordered, &constraints, memory, |_| 0, |_| ()).unwrap()
     }
 
     fn cycle<'a>(&'a self, factor: &'a Shifted) -> Multigrid<'a> {
@@ -150,5 +151,22 @@ fn the_cycle_is_near_to_the_inverse_for_any_size_of_the_elements() {
             // Measured: 0.63 at worst, where a mode is damped by s/(λ + s) and by little else.
             assert!(left.iter().all(|left| *left < 0.7), "{cells:?}, {part_of_shift}: {left:?}");
         }
+    }
+}
+
+#[test]
+fn modes_without_the_factor_are_those_with_it() {
+    let block = Block::new([6, 5, 4]);
+    let solver =
+        || Solver::of_nodes(block.stiffness(), block.mass(), block.mesh.positions(), &Support::free()).unwrap();
+    let expected = solver().modes(20, |_| ()).unwrap();
+    let found = solver().with_edge_ends(&block.mesh.edge_ends()).modes_by_cycles(20, &mut |_| ()).unwrap().unwrap();
+    for (found, expected) in found.eigenvalues.iter().zip(&expected.eigenvalues) {
+        assert!((found / expected - 1.0).abs() < 1e-11, "{found} instead of {expected}");
+    }
+    let momenta = solver().mass().product(expected.shapes.as_ref());
+    let cosines = tall::inner(found.shapes.as_ref(), momenta.as_ref());
+    for k in 0..20 {
+        assert!((cosines[(k, k)] - 1.0).abs() < 1e-12, "mode {k}: {}", cosines[(k, k)] - 1.0);
     }
 }

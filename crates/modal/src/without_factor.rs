@@ -24,7 +24,7 @@ use crate::support::Support;
 /// Multiplications from which on the factor of K + sM takes longer.
 const LONG: f64 = 6e10;
 /// Modes at the most: the basis of the search grows with them.
-const MOST_MODES: usize = 40;
+const MOST_MODES: usize = 24;
 /// What a cycle leaves of the strain energy of an error at the most, and the cycles by which that is found. On compact elements
 /// it leaves 0.2 to 0.5; of flat or stretched ones 0.95, and the search would take longer than the factor.
 const LEFT_BY_CYCLE: f64 = 0.75;
@@ -39,13 +39,26 @@ impl Solver<'_> {
         ordered: &Ordered<'_>,
         progress: &mut dyn FnMut(Progress),
     ) -> Result<Option<Modes>, ModalError> {
+        let is_for_it = flexible <= MOST_MODES && ordered.multiplications() > LONG;
+        let found = if is_for_it { self.modes_by_cycles(flexible, progress)? } else { None };
+        Ok(found.map(|mut modes| {
+            modes.stats.ordering_time += ordered.time();
+            modes
+        }))
+    }
+
+    /// The same of a body of any size.
+    pub(crate) fn modes_by_cycles(
+        &self,
+        flexible: usize,
+        progress: &mut dyn FnMut(Progress),
+    ) -> Result<Option<Modes>, ModalError> {
         let (Some(corners), StiffnessMatrix::Nodal(stiffness), MassMatrix::Nodal(mass)) =
             (&self.corners, self.stiffness, &self.mass)
         else {
             return Ok(None);
         };
-        let is_for_it = self.constraints.is_empty() && flexible <= MOST_MODES && ordered.multiplications() > LONG;
-        if !is_for_it || davidson::start(flexible) > 3 * corners.count() / 2 {
+        if !self.constraints.is_empty() || davidson::start(flexible) > 3 * corners.count() / 2 {
             return Ok(None);
         }
 
@@ -57,11 +70,11 @@ impl Solver<'_> {
             (StiffnessMatrix::Nodal(coarse.stiffness()), MassMatrix::Nodal(coarse.mass()));
         let memory = Foretold::new(coarse_stiffness, coarse.bytes(), FIXED);
         let on_corners = Ordered::new(coarse_stiffness, &coarse_mass, self.shift()?, &constraints, &memory)?;
-        let ordering_time = ordered.time() + on_corners.time();
+        let ordering_time = on_corners.time();
         let nodes = self.positions.len();
         let beside = self.matrix_bytes
             + Multigrid::bytes(&stiffness.pairs(), corners.count())
-            + of_vectors(3 * nodes, FIXED + davidson::room(flexible) + davidson::BESIDE);
+            + of_vectors(3 * nodes, FIXED + davidson::room(flexible) + davidson::beside(flexible));
         let factor = Shifted::factor(
             on_corners,
             &constraints,
