@@ -50,7 +50,7 @@ pub(super) struct Budget {
 /// apart, the finer is d/15 from the limit, if d has fallen as it does for fourth order; else d is taken.
 ///
 /// # Errors
-/// Steps of the last try and its failure, where none came to its end.
+/// Steps of a try and its failure, where none came to its end: the last one, but for one that ran out of time.
 pub(super) fn converge(
     case: &PreparedScene<'_>,
     method: Method,
@@ -59,15 +59,19 @@ pub(super) fn converge(
 ) -> Result<Reference, (u64, RunFailure)> {
     let started = Instant::now();
     let left = || budget.time.saturating_sub(started.elapsed());
-    let mut steps = FIRST;
+    let (mut steps, mut before) = (FIRST, None);
     let coarse = loop {
         match follow(case, method, steps, left()) {
             Ok(run) => break run,
-            Err(failure @ RunFailure::OutOfPatience { .. }) => return Err((steps, failure)),
+            // What longer steps have failed for says more than that there is no time for shorter ones.
+            Err(failure @ RunFailure::OutOfPatience { .. }) => return Err(before.unwrap_or((steps, failure))),
             Err(failure) if started.elapsed() > budget.time || 2 * steps > budget.steps => {
                 return Err((steps, failure));
             }
-            Err(_) => steps *= 2,
+            Err(failure) => {
+                before = Some((steps, failure));
+                steps *= 2;
+            }
         }
     };
     let reference = |trajectory, steps, error| Reference { trajectory, step: case.end() / steps as f64, steps, error };
