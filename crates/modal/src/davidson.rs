@@ -5,7 +5,9 @@
 //! of eigensolvers for large-scale 3D modal analysis using AMG-preconditioned iterative methods" (2005).
 
 use faer::linalg::matmul::matmul;
-use faer::{Accum, Mat, MatMut, MatRef, Par};
+use faer::reborrow::{Reborrow, ReborrowMut};
+use faer::{Accum, ColRef, Mat, MatMut, MatRef, Par, unzip, zip};
+use rayon::prelude::*;
 
 use crate::dense::symmetric_eigen;
 use crate::error::ModalError;
@@ -15,6 +17,7 @@ use crate::mass_matrix::MassMatrix;
 use crate::multigrid::Multigrid;
 use crate::products::Packed;
 use crate::stiffness::StiffnessMatrix;
+use crate::tall;
 
 /// √(rᵀBr/λ) of a pair that is accepted: its λ errs by the square.
 const TOLERANCE: f64 = 1e-9;
@@ -24,9 +27,15 @@ const LEFT: f64 = 1e-3;
 const DEPENDENT: f64 = 1e-7;
 /// Rounds of orthogonalisation.
 const MAX_ROUNDS: usize = 4;
+/// Steps at the most: with cycles that are good for something it takes 12 to 20.
+const MOST_STEPS: usize = 30;
+/// Steps that the basis has room for after a restart.
+const STEPS_IN_ROOM: usize = 5;
+/// Rows that one task combines.
+const ROWS: usize = 1024;
 
-/// The `count` pairs with the lowest λ that are M-orthogonal to `rigid`, from the vectors of `start` on, or none where a basis
-/// of [`room`] vectors does not hold them.
+/// The `count` pairs with the lowest λ that are M-orthogonal to `rigid`, from the vectors of `start` on, or none where they are
+/// not found in so many steps.
 ///
 /// `report` is called after each step with the number of pairs that have converged.
 pub(crate) fn lowest_pairs(
@@ -34,73 +43,192 @@ pub(crate) fn lowest_pairs(
     mass: &MassMatrix<'_>,
     rigid: MatRef<'_, f64>,
     multigrid: &mut Multigrid<'_>,
-    start: Mat<f64>,
+    start: MatRef<'_, f64>,
     count: usize,
     mut report: impl FnMut(usize),
 ) -> Result<Option<LanczosPairs>, ModalError> {
-    let mut basis = Basis::new(mass, rigid, room(count))?;
-    let mut projected: Mat<f64> = Mat::zeros(0, 0);
-    let mut block = start;
+    let mut search = Search::new(stiffness, mass, rigid, count)?;
+    for first in (0..start.ncols()).step_by(count) {
+        let columns = start.subcols(first, count.min(start.ncols() - first));
+        search.next(columns.ncols()).copy_from(columns);
+        search.extend(columns.ncols())?;
+    }
+    // Coefficients of the pairs a step ago.
+    let mut before: Mat<f64> = Mat::zeros(0, 0);
     let mut residuals = vec![f64::INFINITY; count];
-    let mut block_solves = 0;
-    while basis.size() + block.ncols() <= room(count) {
-        let from = basis.size();
-        if basis.extend(block)? == 0 {
-            return Ok(None);
-        }
-        let new = basis.vectors().subcols(from, basis.size() - from);
-        projected = grown(&projected, &inner(basis.vectors(), stiffness.product(new).as_ref()), from);
-        let (eigenvalues, coefficients) = symmetric_eigen(&projected)?;
+    for step in 1..=MOST_STEPS {
+        let (mut eigenvalues, mut coefficients) = symmetric_eigen(&search.projected)?;
         if eigenvalues.len() < count {
             return Ok(None);
         }
-
-        // Those that have converged stay so: the basis only grows.
+        // Those that have converged stay so: what is kept of the basis has them.
         let open: Vec<usize> = (0..count).filter(|k| residuals[*k] > TOLERANCE).collect();
+        if search.size + open.len() > room(count) {
+            search.restart(&coefficients, &before)?;
+            (eigenvalues, coefficients) = symmetric_eigen(&search.projected)?;
+        }
+        let lambdas: Vec<f64> = open.iter().map(|k| eigenvalues[*k]).collect();
         let of_open = Mat::from_fn(coefficients.nrows(), open.len(), |i, k| coefficients[(i, open[k])]);
-        let shapes = product(basis.vectors(), of_open.as_ref());
-        let mut forces = stiffness.product(shapes.as_ref());
-        let momenta = mass.product(shapes.as_ref());
-        for (k, (force, momentum)) in open.iter().zip(forces.col_iter_mut().zip(momenta.col_iter())) {
-            force.iter_mut().zip(momentum.iter()).for_each(|(force, m)| *force -= eigenvalues[*k] * m);
-        }
-        let mut corrections = forces.clone();
-        multigrid.apply(corrections.as_mut());
-        block_solves += 1;
-        for (k, (force, correction)) in open.iter().zip(forces.col_iter().zip(corrections.col_iter())) {
-            residuals[*k] = ((force.transpose() * correction).max(0.0) / eigenvalues[*k]).sqrt();
-        }
+        let squared = search.correct(&lambdas, of_open.as_ref(), multigrid);
+        open.iter().zip(squared).for_each(|(k, squared)| residuals[*k] = squared.max(0.0).sqrt());
 
         let converged = residuals.iter().filter(|residual| **residual <= TOLERANCE).count();
         report(converged);
         if converged == count {
-            let basis_size = basis.size();
-            let vectors = product(basis.vectors(), coefficients.subcols(0, count));
-            return Ok(Some(LanczosPairs { vectors, residuals, block_solves, basis_size }));
+            let basis_size = search.most;
+            let vectors = product(search.basis(), coefficients.subcols(0, count));
+            return Ok(Some(LanczosPairs { vectors, residuals, block_solves: step, basis_size }));
         }
         let still: Vec<usize> = (0..open.len()).filter(|k| residuals[open[*k]] > TOLERANCE).collect();
-        block = Mat::from_fn(corrections.nrows(), still.len(), |i, k| corrections[(i, still[k])]);
+        let mut next = search.next(open.len());
+        for (to, from) in still.iter().enumerate().filter(|(to, from)| to < *from) {
+            let (left, right) = next.rb_mut().split_at_col_mut(*from);
+            left.col_mut(to).copy_from(right.col(0));
+        }
+        if search.extend(still.len())? == 0 {
+            return Ok(None);
+        }
+        before = coefficients.subcols(0, count).to_owned();
     }
     Ok(None)
 }
 
 /// Vectors that a search for `count` pairs has room for.
 pub(crate) fn room(count: usize) -> usize {
-    start(count) + 20 * count
+    start(count) + (STEPS_IN_ROOM + 1) * count
 }
 
-/// Vectors beside the basis: a block, its products with K and M, the corrections and two blocks of scratch.
+/// Vectors beside the basis: shapes, and their products with K and M.
 pub(crate) fn beside(count: usize) -> usize {
-    6 * start(count)
+    3 * count
 }
 
-/// Vectors that a search for `count` pairs begins with.
+/// Vectors that a search for `count` pairs begins with, and is left with at a restart.
 pub(crate) fn start(count: usize) -> usize {
     count + count / 2 + 8
 }
 
-/// The projection with rows and columns of new vectors, from the number `from` on.
-fn grown(projected: &Mat<f64>, new: &Mat<f64>, from: usize) -> Mat<f64> {
+/// A basis, M-orthonormal and M-orthogonal to the rigid modes, and what is done with it.
+struct Search<'a> {
+    stiffness: StiffnessMatrix<'a>,
+    mass: &'a MassMatrix<'a>,
+    rigid: usize,
+    /// The rigid modes, the basis, and room for more of it.
+    columns: Mat<f64>,
+    size: usize,
+    /// The largest size that it had.
+    most: usize,
+    /// Vᵀ K V.
+    projected: Mat<f64>,
+    shapes: Mat<f64>,
+    forces: Mat<f64>,
+    momenta: Mat<f64>,
+    packed: Vec<Packed>,
+}
+
+impl<'a> Search<'a> {
+    fn new(
+        stiffness: StiffnessMatrix<'a>,
+        mass: &'a MassMatrix<'a>,
+        rigid: MatRef<'_, f64>,
+        count: usize,
+    ) -> Result<Self, ModalError> {
+        let (rows, fixed) = (rigid.nrows(), rigid.ncols());
+        memory::check("the search for modes", of_vectors(rows, fixed + room(count) + beside(count)))?;
+        let mut columns = Mat::zeros(rows, fixed + room(count));
+        columns.as_mut().subcols_mut(0, fixed).copy_from(rigid);
+        let zeros = || Mat::zeros(rows, count);
+        let (shapes, forces, momenta) = (zeros(), zeros(), zeros());
+        let (projected, packed) = (Mat::zeros(0, 0), Vec::new());
+        Ok(Self { stiffness, mass, rigid: fixed, columns, size: 0, most: 0, projected, shapes, forces, momenta, packed })
+    }
+
+    fn basis(&self) -> MatRef<'_, f64> {
+        self.columns.subcols(self.rigid, self.size)
+    }
+
+    /// The place of so many vectors that come next.
+    fn next(&mut self, count: usize) -> MatMut<'_, f64> {
+        self.columns.as_mut().subcols_mut(self.rigid + self.size, count)
+    }
+
+    /// Makes `B (K φ − λ M φ)` of shapes φ with these coefficients the next vectors. Returns rᵀBr/λ of each.
+    fn correct(&mut self, lambdas: &[f64], coefficients: MatRef<'_, f64>, multigrid: &mut Multigrid<'_>) -> Vec<f64> {
+        let Self { stiffness, mass, columns, shapes, forces, momenta, packed, .. } = self;
+        let (basis, next) = columns.as_mut().subcols_mut(self.rigid, self.size + lambdas.len()).split_at_col_mut(self.size);
+        let [mut shapes, mut forces, mut momenta] =
+            [shapes, forces, momenta].map(|block| block.as_mut().subcols_mut(0, lambdas.len()));
+        matmul(shapes.rb_mut(), Accum::Replace, basis.rb(), coefficients, 1.0, parallel());
+        stiffness.product_into(shapes.rb(), forces.rb_mut(), packed);
+        mass.product_into(shapes.rb(), momenta.rb_mut(), packed);
+        for (lambda, (force, momentum)) in lambdas.iter().zip(forces.rb_mut().col_iter_mut().zip(momenta.rb().col_iter())) {
+            zip!(force, momentum).for_each(|unzip!(force, m)| *force -= lambda * m);
+        }
+        let mut next = next;
+        next.copy_from(&forces);
+        multigrid.apply(next.rb_mut());
+        let squared = |(lambda, (force, correction)): (&f64, (ColRef<'_, f64>, ColRef<'_, f64>))| {
+            force.transpose() * correction / lambda
+        };
+        lambdas.iter().zip(forces.rb().col_iter().zip(next.rb().col_iter())).map(squared).collect()
+    }
+
+    /// Takes the next vectors in: M-orthogonal to the basis and M-orthonormal. Returns how many there is something new in.
+    fn extend(&mut self, count: usize) -> Result<usize, ModalError> {
+        let Self { stiffness, mass, columns, forces, momenta, packed, .. } = self;
+        let known = self.rigid + self.size;
+        let (all, mut new) = columns.as_mut().subcols_mut(0, known + count).split_at_col_mut(known);
+        let mut width = count;
+        for _ in 0..MAX_ROUNDS {
+            let mut block = new.rb_mut().subcols_mut(0, width);
+            let mut momenta = momenta.as_mut().subcols_mut(0, width);
+            mass.product_into(block.rb(), momenta.rb_mut(), packed);
+            let along = inner(all.rb(), momenta.rb());
+            matmul(block.rb_mut(), Accum::Add, all.rb(), along.as_ref(), -1.0, parallel());
+            mass.product_into(block.rb(), momenta.rb_mut(), packed);
+            let gram = inner(block.rb(), momenta.rb());
+            let left = |k: usize| gram[(k, k)].max(0.0).sqrt();
+            let part = |k: usize| left(k) / left(k).hypot(along.col(k).norm_l2());
+            let is_left = (0..width).all(|k| part(k) > LEFT);
+            let (transform, is_independent) = orthonormal(&gram)?;
+            combine(block, transform.as_ref());
+            width = transform.ncols();
+            if width == 0 || is_left && is_independent {
+                break;
+            }
+        }
+        let mut forces = forces.as_mut().subcols_mut(0, width);
+        stiffness.product_into(new.rb().subcols(0, width), forces.rb_mut(), packed);
+        self.size += width;
+        self.most = self.most.max(self.size);
+        let basis = self.columns.subcols(self.rigid, self.size);
+        self.projected = grown(&self.projected, &inner(basis, self.forces.subcols(0, width)));
+        Ok(width)
+    }
+
+    /// Leaves of the basis the lowest pairs, of which these are the coefficients, and the pairs of the step before: the way
+    /// that they go is not lost (Stathopoulos and Saad 1998).
+    fn restart(&mut self, coefficients: &Mat<f64>, before: &Mat<f64>) -> Result<(), ModalError> {
+        let lowest = coefficients.subcols(0, start(before.ncols()).min(coefficients.ncols()));
+        let mut last = Mat::zeros(self.size, before.ncols());
+        last.as_mut().subrows_mut(0, before.nrows()).copy_from(before);
+        for _ in 0..2 {
+            let along = lowest.transpose() * &last;
+            last -= lowest * along;
+            let (transform, _) = orthonormal(&(last.transpose() * &last))?;
+            last = last * transform;
+        }
+        let kept = tall::side_by_side(lowest, last.as_ref());
+        self.projected = kept.transpose() * &self.projected * &kept;
+        combine(self.columns.as_mut().subcols_mut(self.rigid, self.size), kept.as_ref());
+        self.size = kept.ncols();
+        Ok(())
+    }
+}
+
+/// The projection with the rows and columns of new vectors, the last ones.
+fn grown(projected: &Mat<f64>, new: &Mat<f64>) -> Mat<f64> {
+    let from = projected.nrows();
     let entry = |i: usize, j: usize| match (i.min(j), i.max(j)) {
         (row, column) if row >= from => 0.5 * (new[(row, column - from)] + new[(column, row - from)]),
         (row, column) if column >= from => new[(row, column - from)],
@@ -109,58 +237,13 @@ fn grown(projected: &Mat<f64>, new: &Mat<f64>, from: usize) -> Mat<f64> {
     Mat::from_fn(new.nrows(), new.nrows(), entry)
 }
 
-/// An M-orthonormal basis, M-orthogonal to the rigid modes, which come before it.
-struct Basis<'a> {
-    mass: &'a MassMatrix<'a>,
-    rigid: usize,
-    /// Rigid modes and vectors, and room for more.
-    columns: Mat<f64>,
-    size: usize,
-    packed: Vec<Packed>,
-}
-
-impl<'a> Basis<'a> {
-    fn new(mass: &'a MassMatrix<'a>, rigid: MatRef<'_, f64>, room: usize) -> Result<Self, ModalError> {
-        let count = rigid.ncols();
-        memory::check("the search for modes", of_vectors(rigid.nrows(), count + room))?;
-        let mut columns = Mat::zeros(rigid.nrows(), count + room);
-        columns.as_mut().subcols_mut(0, count).copy_from(rigid);
-        Ok(Self { mass, rigid: count, columns, size: 0, packed: Vec::new() })
-    }
-
-    fn size(&self) -> usize {
-        self.size
-    }
-
-    fn vectors(&self) -> MatRef<'_, f64> {
-        self.columns.subcols(self.rigid, self.size)
-    }
-
-    /// Makes a block M-orthogonal to the basis and M-orthonormal, and appends what is new in it: so many vectors.
-    fn extend(&mut self, mut block: Mat<f64>) -> Result<usize, ModalError> {
-        let mut momenta = Mat::zeros(block.nrows(), block.ncols());
-        for _ in 0..MAX_ROUNDS {
-            let all = self.columns.subcols(0, self.rigid + self.size);
-            self.mass.product_into(block.as_ref(), momenta.as_mut(), &mut self.packed);
-            let along = inner(all, momenta.as_ref());
-            add_product(block.as_mut(), all, along.as_ref(), -1.0);
-            self.mass.product_into(block.as_ref(), momenta.as_mut(), &mut self.packed);
-            let gram = inner(block.as_ref(), momenta.as_ref());
-            let left = |k: usize| gram[(k, k)].max(0.0).sqrt();
-            let part = |k: usize| left(k) / left(k).hypot(along.col(k).norm_l2());
-            let is_left = (0..block.ncols()).all(|k| part(k) > LEFT);
-            let (transform, is_independent) = orthonormal(&gram)?;
-            block = product(block.as_ref(), transform.as_ref());
-            momenta.resize_with(block.nrows(), block.ncols(), |_, _| 0.0);
-            if block.ncols() == 0 || is_left && is_independent {
-                break;
-            }
-        }
-        let place = self.rigid + self.size;
-        self.columns.as_mut().subcols_mut(place, block.ncols()).copy_from(&block);
-        self.size += block.ncols();
-        Ok(block.ncols())
-    }
+/// X·H in the first columns of X.
+fn combine(x: MatMut<'_, f64>, h: MatRef<'_, f64>) {
+    x.par_row_chunks_mut(ROWS).for_each(|x| {
+        let mut combined = Mat::zeros(x.nrows(), h.ncols());
+        matmul(combined.as_mut(), Accum::Replace, x.rb(), h, 1.0, Par::Seq);
+        x.subcols_mut(0, h.ncols()).copy_from(combined);
+    });
 }
 
 /// What makes a block with this Gram matrix orthonormal, without what is rounding in it; and whether none of it is near to that.
@@ -186,11 +269,6 @@ fn product(a: MatRef<'_, f64>, h: MatRef<'_, f64>) -> Mat<f64> {
     let mut y = Mat::zeros(a.nrows(), h.ncols());
     matmul(y.as_mut(), Accum::Replace, a, h, 1.0, parallel());
     y
-}
-
-/// Y += factor·A·H.
-fn add_product(y: MatMut<'_, f64>, a: MatRef<'_, f64>, h: MatRef<'_, f64>, factor: f64) {
-    matmul(y, Accum::Add, a, h, factor, parallel());
 }
 
 fn parallel() -> Par {

@@ -65,6 +65,7 @@ mod shifted;
 mod shifted_matrix;
 mod smoother;
 mod solve;
+mod spatial_order;
 mod start;
 mod statics;
 mod stiffness;

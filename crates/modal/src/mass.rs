@@ -152,6 +152,11 @@ impl<'a> NodalMass<'a> {
         NodePairs { start: &self.start, nodes: &self.nodes }
     }
 
+    /// Their entries.
+    pub(crate) fn values(&self) -> &[f64] {
+        &self.values
+    }
+
     /// The nodes that a node is coupled to, and the entries.
     #[inline(always)]
     pub(crate) fn column(&self, node: usize) -> impl Iterator<Item = (usize, f64)> {

@@ -160,7 +160,7 @@ fn modes_without_the_factor_are_those_with_it() {
     let solver =
         || Solver::of_nodes(block.stiffness(), block.mass(), block.mesh.positions(), &Support::free()).unwrap();
     let expected = solver().modes(20, |_| ()).unwrap();
-    let found = solver().with_edge_ends(&block.mesh.edge_ends()).modes_by_cycles(20, &mut |_| ()).unwrap().unwrap();
+    let found = solver().with_edge_ends(block.mesh.edge_ends()).modes_by_cycles(20, &mut |_| ()).unwrap().unwrap();
     for (found, expected) in found.eigenvalues.iter().zip(&expected.eigenvalues) {
         assert!((found / expected - 1.0).abs() < 1e-11, "{found} instead of {expected}");
     }

@@ -6,7 +6,6 @@ use std::time::{Duration, Instant};
 use faer::sparse::SparseColMatRef;
 use faer::{ColRef, Mat};
 
-use crate::coarse::Corners;
 use crate::columns::Columns;
 use crate::constraints::Constraints;
 use crate::engine::{Engine, EngineStats};
@@ -132,8 +131,8 @@ pub struct Solver<'a> {
     /// What tells the shift, of matrices over nodes.
     polynomials: Option<Polynomials>,
     pub(crate) engine: Option<Box<dyn Engine>>,
-    /// The corners of second-order elements, where they are known.
-    pub(crate) corners: Option<Corners>,
+    /// Of second-order elements: the nodes at the ends of the edge that each node is in the middle of.
+    pub(crate) edge_ends: Option<Vec<[u32; 2]>>,
     preparation_time: Duration,
 }
 
@@ -232,7 +231,7 @@ impl<'a> Solver<'a> {
             shift: OnceLock::new(),
             polynomials,
             engine: None,
-            corners: None,
+            edge_ends: None,
             preparation_time,
         })
     }
@@ -247,8 +246,8 @@ impl<'a> Solver<'a> {
     /// twice itself for a corner. Modes of a body whose factor of K + sM takes long are then found without it, where that is
     /// faster.
     #[must_use]
-    pub fn with_edge_ends(self, edge_ends: &[[u32; 2]]) -> Self {
-        Self { corners: Some(Corners::new(edge_ends)), ..self }
+    pub fn with_edge_ends(self, edge_ends: Vec<[u32; 2]>) -> Self {
+        Self { edge_ends: Some(edge_ends), ..self }
     }
 
     /// The mass matrix.

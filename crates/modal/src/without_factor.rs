@@ -6,6 +6,7 @@
 use std::time::Instant;
 
 use crate::columns::Columns;
+use crate::coarse::Corners;
 use crate::constraints::Constraints;
 use crate::davidson;
 use crate::error::ModalError;
@@ -18,6 +19,7 @@ use crate::progress::Progress;
 use crate::ritz::{RitzPairs, rayleigh_ritz};
 use crate::shifted::{Ordered, Shifted};
 use crate::solve::{Modes, SolveStats, Solver};
+use crate::spatial_order::SpatialOrder;
 use crate::stiffness::StiffnessMatrix;
 use crate::support::Support;
 
@@ -53,18 +55,28 @@ impl Solver<'_> {
         flexible: usize,
         progress: &mut dyn FnMut(Progress),
     ) -> Result<Option<Modes>, ModalError> {
-        let (Some(corners), StiffnessMatrix::Nodal(stiffness), MassMatrix::Nodal(mass)) =
-            (&self.corners, self.stiffness, &self.mass)
+        let (Some(edge_ends), StiffnessMatrix::Nodal(stiffness), MassMatrix::Nodal(mass)) =
+            (&self.edge_ends, self.stiffness, &self.mass)
         else {
             return Ok(None);
         };
-        if !self.constraints.is_empty() || davidson::start(flexible) > 3 * corners.count() / 2 {
+        if !self.constraints.is_empty() {
             return Ok(None);
         }
 
         let started = Instant::now();
-        let coarse = corners.matrices(stiffness, mass);
-        let positions: Vec<[f64; 3]> = corners.nodes.iter().map(|node| self.positions[*node as usize]).collect();
+        let order = SpatialOrder::new(self.positions);
+        let ends = order.sorted(edge_ends).into_iter().map(|ends| ends.map(|node| order.place(node)));
+        let corners = &Corners::new(&ends.collect::<Vec<_>>());
+        if davidson::start(flexible) > 3 * corners.count() / 2 {
+            return Ok(None);
+        }
+        memory::check("the matrices in spatial order", self.matrix_bytes)?;
+        let reordered = order.matrices(stiffness, mass);
+        let (stiffness, mass) = (reordered.stiffness(), reordered.mass());
+        let coarse = corners.matrices(stiffness, &mass);
+        let positions = order.sorted(self.positions);
+        let positions: Vec<[f64; 3]> = corners.nodes.iter().map(|node| positions[*node as usize]).collect();
         let constraints = Constraints::new(&Support::free(), &positions, 3)?;
         let (coarse_stiffness, coarse_mass) =
             (StiffnessMatrix::Nodal(coarse.stiffness()), MassMatrix::Nodal(coarse.mass()));
@@ -72,7 +84,7 @@ impl Solver<'_> {
         let on_corners = Ordered::new(coarse_stiffness, &coarse_mass, self.shift()?, &constraints, &memory)?;
         let ordering_time = on_corners.time();
         let nodes = self.positions.len();
-        let beside = self.matrix_bytes
+        let beside = 2 * self.matrix_bytes
             + Multigrid::bytes(&stiffness.pairs(), corners.count())
             + of_vectors(3 * nodes, FIXED + davidson::room(flexible) + davidson::beside(flexible));
         let factor = Shifted::factor(
@@ -85,26 +97,29 @@ impl Solver<'_> {
             },
         )?;
         let Some(mut multigrid) = Multigrid::new(stiffness, corners, &factor)? else { return Ok(None) };
-        if left_by_cycle(self.stiffness, &mut multigrid) > LEFT_BY_CYCLE {
+        let (stiffness, mass) = (StiffnessMatrix::Nodal(stiffness), MassMatrix::Nodal(mass));
+        if left_by_cycle(stiffness, &mut multigrid) > LEFT_BY_CYCLE {
             return Ok(None);
         }
         let factor_time = started.elapsed().saturating_sub(ordering_time);
 
         let started = Instant::now();
-        let rigid = corners.at_corners(self.rigid.shapes.as_ref());
-        let available = 3 * corners.count() - rigid.ncols();
-        let pairs = largest_pairs(&factor, &coarse_mass, rigid.as_ref(), davidson::start(flexible), available, |_| ())?;
+        let rigid = order.rows(self.rigid.shapes.as_ref());
+        let at_corners = corners.at_corners(rigid.as_ref());
+        let (wanted, available) = (davidson::start(flexible), 3 * corners.count() - rigid.ncols());
+        let pairs = largest_pairs(&factor, &coarse_mass, at_corners.as_ref(), wanted, available, |_| ())?;
         let start = corners.prolonged(pairs.vectors.as_ref());
-        let (rigid, report) = (self.rigid.shapes.as_ref(), |converged| {
+        let (rigid, start) = (rigid.as_ref(), start.as_ref());
+        let pairs = davidson::lowest_pairs(stiffness, &mass, rigid, &mut multigrid, start, flexible, |converged| {
             progress(Progress::Lanczos { converged, requested: flexible });
-        });
-        let pairs = davidson::lowest_pairs(self.stiffness, &self.mass, rigid, &mut multigrid, start, flexible, report)?;
+        })?;
         let Some(pairs) = pairs else { return Ok(None) };
+        let vectors = order.rows_of_nodes(pairs.vectors.as_ref());
         let lanczos_time = started.elapsed();
 
         let started = Instant::now();
         let RitzPairs { eigenvalues, shapes, force_residuals } =
-            rayleigh_ritz(self.stiffness, &self.mass, &self.constraints, &pairs.vectors)?;
+            rayleigh_ritz(self.stiffness, &self.mass, &self.constraints, &vectors)?;
         self.refuse_soft(&eigenvalues, &shapes, factor.shift)?;
         let stats = SolveStats {
             shift: factor.shift,

@@ -110,7 +110,7 @@ impl<'a> Solved<'a> {
         let AssembledMesh { mesh, support, .. } = self.assembled;
         let matrices = self.matrices()?;
         let solver = matrices.solver(mesh.positions(), support).map_err(|error| self.refuse(error))?;
-        let solver = if mesh.has_elements() { solver.with_edge_ends(&mesh.edge_ends()) } else { solver };
+        let solver = if mesh.has_elements() { solver.with_edge_ends(mesh.edge_ends()) } else { solver };
         let solver = match &self.assembled.scene.solver {
             Some(slepc) => solver.with_engine(slepc.engine()),
             None => solver,
