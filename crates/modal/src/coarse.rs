@@ -53,6 +53,11 @@ impl Corners {
         self.nodes.len()
     }
 
+    /// Number of all nodes.
+    pub(crate) fn nodes_in_all(&self) -> usize {
+        self.ends.len()
+    }
+
     /// What a node takes of its corners, each with its weight.
     #[inline(always)]
     fn weights(&self, node: usize) -> impl Iterator<Item = (usize, f64)> {
@@ -208,6 +213,11 @@ pub(crate) mod tests {
 
     impl Block {
         pub(crate) fn new(cells: [usize; 3]) -> Self {
+            Self::stretched(cells, [1.0; 3])
+        }
+
+        /// The same, stretched along the axes.
+        pub(crate) fn stretched(cells: [usize; 3], stretch: [f64; 3]) -> Self {
             let points = cells.map(|cells| 2 * cells + 1);
             let all = |[x, y, z]: [usize; 3]| (0..x * y * z).map(move |i| [i % x, i / x % y, i / (x * y)]);
             let number = |[i, j, k]: [usize; 3]| (i + points[0] * (j + points[1] * k)) as u64;
@@ -219,7 +229,7 @@ pub(crate) mod tests {
             // Corners have even places on the grid; at an odd one an edge goes through along the axes where it is odd.
             let position = |at: [usize; 3]| {
                 let [a, b] = [corner(at.map(|i| i - i % 2)), corner(at.map(|i| i + i % 2))];
-                [0, 1, 2].map(|axis| 0.5 * (a[axis] + b[axis]))
+                [0, 1, 2].map(|axis| 0.5 * stretch[axis] * (a[axis] + b[axis]))
             };
             // From one corner of a cell to the opposite one, an axis at a time; every other order is a mirror image.
             let orders = [[0, 1, 2], [0, 2, 1], [1, 2, 0], [1, 0, 2], [2, 0, 1], [2, 1, 0]];

@@ -15,7 +15,7 @@ use crate::foretold::of_vectors;
 use crate::lanczos::LanczosPairs;
 use crate::mass_matrix::MassMatrix;
 use crate::multigrid::Multigrid;
-use crate::products::Packed;
+use crate::products::{Packed, WIDTH};
 use crate::stiffness::StiffnessMatrix;
 use crate::tall;
 
@@ -43,7 +43,7 @@ pub(crate) fn lowest_pairs(
     mass: &MassMatrix<'_>,
     rigid: MatRef<'_, f64>,
     multigrid: &mut Multigrid<'_>,
-    start: MatRef<'_, f64>,
+    start: Mat<f64>,
     count: usize,
     mut report: impl FnMut(usize),
 ) -> Result<Option<LanczosPairs>, ModalError> {
@@ -53,6 +53,7 @@ pub(crate) fn lowest_pairs(
         search.next(columns.ncols()).copy_from(columns);
         search.extend(columns.ncols())?;
     }
+    drop(start);
     // Coefficients of the pairs a step ago.
     let mut before: Mat<f64> = Mat::zeros(0, 0);
     let mut residuals = vec![f64::INFINITY; count];
@@ -98,9 +99,9 @@ pub(crate) fn room(count: usize) -> usize {
     start(count) + (STEPS_IN_ROOM + 1) * count
 }
 
-/// Vectors beside the basis: shapes, and their products with K and M.
+/// Vectors beside the basis: shapes, their products with K and M, those that are found, and a packed block.
 pub(crate) fn beside(count: usize) -> usize {
-    3 * count
+    4 * count + WIDTH
 }
 
 /// Vectors that a search for `count` pairs begins with, and is left with at a restart.
@@ -140,7 +141,19 @@ impl<'a> Search<'a> {
         let zeros = || Mat::zeros(rows, count);
         let (shapes, forces, momenta) = (zeros(), zeros(), zeros());
         let (projected, packed) = (Mat::zeros(0, 0), Vec::new());
-        Ok(Self { stiffness, mass, rigid: fixed, columns, size: 0, most: 0, projected, shapes, forces, momenta, packed })
+        Ok(Self {
+            stiffness,
+            mass,
+            rigid: fixed,
+            columns,
+            size: 0,
+            most: 0,
+            projected,
+            shapes,
+            forces,
+            momenta,
+            packed,
+        })
     }
 
     fn basis(&self) -> MatRef<'_, f64> {
@@ -155,13 +168,16 @@ impl<'a> Search<'a> {
     /// Makes `B (K φ − λ M φ)` of shapes φ with these coefficients the next vectors. Returns rᵀBr/λ of each.
     fn correct(&mut self, lambdas: &[f64], coefficients: MatRef<'_, f64>, multigrid: &mut Multigrid<'_>) -> Vec<f64> {
         let Self { stiffness, mass, columns, shapes, forces, momenta, packed, .. } = self;
-        let (basis, next) = columns.as_mut().subcols_mut(self.rigid, self.size + lambdas.len()).split_at_col_mut(self.size);
+        let (basis, next) =
+            columns.as_mut().subcols_mut(self.rigid, self.size + lambdas.len()).split_at_col_mut(self.size);
         let [mut shapes, mut forces, mut momenta] =
             [shapes, forces, momenta].map(|block| block.as_mut().subcols_mut(0, lambdas.len()));
         matmul(shapes.rb_mut(), Accum::Replace, basis.rb(), coefficients, 1.0, parallel());
         stiffness.product_into(shapes.rb(), forces.rb_mut(), packed);
         mass.product_into(shapes.rb(), momenta.rb_mut(), packed);
-        for (lambda, (force, momentum)) in lambdas.iter().zip(forces.rb_mut().col_iter_mut().zip(momenta.rb().col_iter())) {
+        for (lambda, (force, momentum)) in
+            lambdas.iter().zip(forces.rb_mut().col_iter_mut().zip(momenta.rb().col_iter()))
+        {
             zip!(force, momentum).for_each(|unzip!(force, m)| *force -= lambda * m);
         }
         let mut next = next;

@@ -38,9 +38,11 @@ mod inertia_relief;
 mod input;
 mod interleave;
 mod lanczos;
+mod levels;
 mod mass;
 mod mass_left_out;
 mod mass_matrix;
+mod modes_by_cycles;
 mod multigrid;
 #[cfg(test)]
 mod multigrid_tests;
@@ -78,7 +80,6 @@ mod symbolic;
 mod symmetry;
 mod tall;
 mod turned;
-mod without_factor;
 
 pub use engine::{Eigenpairs, Engine, EngineStats, StaticAnswers};
 pub use error::{EngineError, ModalError};

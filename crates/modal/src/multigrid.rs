@@ -14,14 +14,12 @@ use faer::{Mat, MatMut};
 
 use crate::coarse::Corners;
 use crate::error::ModalError;
-use crate::node_pairs::NodePairs;
 use crate::shifted::{Shifted, SolveScratch};
-use crate::smoother::{MOST_COLUMNS, Smoother, pack, unpack};
-use crate::stiffness::NodalStiffness;
+use crate::smoother::{MOST_COLUMNS, Smoother, Smoothing, pack, unpack};
 
 /// The cycle.
 pub(crate) struct Multigrid<'a> {
-    smoother: Smoother<'a>,
+    smoothing: Smoothing<'a>,
     corners: &'a Corners,
     factor: &'a Shifted,
     /// Rows and columns of the corners, and scratch for their solution, which are used again.
@@ -31,28 +29,23 @@ pub(crate) struct Multigrid<'a> {
 }
 
 impl<'a> Multigrid<'a> {
-    /// With the factor of the matrices over corners. None where a diagonal block has no inverse.
-    pub(crate) fn new(
-        stiffness: NodalStiffness<'a>,
-        corners: &'a Corners,
-        factor: &'a Shifted,
-    ) -> Result<Option<Self>, ModalError> {
-        memory::check("the multigrid cycle", Self::bytes(&stiffness.pairs(), corners.count()))?;
-        let Some(smoother) = Smoother::new(stiffness) else { return Ok(None) };
+    /// With the factor of the matrices over corners.
+    pub(crate) fn new(smoother: &'a Smoother, corners: &'a Corners, factor: &'a Shifted) -> Result<Self, ModalError> {
+        memory::check("the multigrid cycle", Self::bytes(corners.nodes_in_all(), corners.count()))?;
         let unknowns = 3 * corners.count();
-        Ok(Some(Self {
-            smoother,
+        Ok(Self {
+            smoothing: Smoothing::new(smoother, MOST_COLUMNS),
             corners,
             factor,
             rows: vec![0.0; unknowns * MOST_COLUMNS],
             columns: Mat::zeros(unknowns, MOST_COLUMNS),
             solve: factor.solve_scratch(MOST_COLUMNS)?,
-        }))
+        })
     }
 
     /// Memory held, bytes.
-    pub(crate) fn bytes(pairs: &NodePairs<'_>, corners: usize) -> usize {
-        Smoother::bytes(pairs) + 3 * corners * MOST_COLUMNS * (size_of::<f32>() + size_of::<f64>())
+    pub(crate) fn bytes(nodes: usize, corners: usize) -> usize {
+        Smoothing::bytes(nodes) + 3 * corners * MOST_COLUMNS * (size_of::<f32>() + size_of::<f64>())
     }
 
     /// Replaces forces (3n×k) by displacements.
@@ -60,24 +53,24 @@ impl<'a> Multigrid<'a> {
         for first in (0..forces.ncols()).step_by(MOST_COLUMNS) {
             let count = MOST_COLUMNS.min(forces.ncols() - first);
             let mut columns = forces.as_mut().subcols_mut(first, count);
-            let units = self.smoother.begin(columns.as_ref());
-            self.smoother.smooth(false);
-            self.smoother.take_in();
+            let units = self.smoothing.begin(columns.as_ref());
+            self.smoothing.smooth(false);
+            self.smoothing.take_in();
             self.solve_for_corners(count);
-            self.smoother.smooth(true);
-            self.smoother.end(units, columns.as_mut());
+            self.smoothing.smooth(true);
+            self.smoothing.end(units, columns.as_mut());
         }
     }
 
     /// Makes d the answer of the corners to r.
     fn solve_for_corners(&mut self, count: usize) {
-        let Self { smoother: Smoother { width, unit, r, d, .. }, corners, factor, rows, columns, solve } = self;
+        let Self { smoothing: Smoothing { smoother, width, r, d, .. }, corners, factor, rows, columns, solve } = self;
         let rows = &mut rows[..3 * corners.count() * *width];
         let mut columns = columns.as_mut().subcols_mut(0, count);
         corners.restrict(3 * *width, r, rows);
         unpack([&*rows], [1.0; MOST_COLUMNS], columns.as_mut());
         factor.solve_in_place(columns.as_mut(), solve);
-        pack(columns.as_ref(), [*unit; MOST_COLUMNS], rows);
+        pack(columns.as_ref(), [smoother.unit; MOST_COLUMNS], rows);
         corners.prolong(3 * *width, rows, d);
     }
 }

@@ -12,7 +12,9 @@ use crate::mass_matrix::MassMatrix;
 use crate::multigrid::Multigrid;
 use crate::rigid_fields::rigid_fields;
 use crate::shifted::{Ordered, Shifted};
+use crate::smoother::Smoother;
 use crate::solve::Solver;
+use crate::statics::StaticAccuracy;
 use crate::stiffness::StiffnessMatrix;
 use crate::support::Support;
 use crate::tall;
@@ -27,6 +29,7 @@ struct Levels {
     block: Block,
     coarse: CoarseMatrices,
     shift: f64,
+    smoother: Smoother,
     /// An orthonormal basis of the rigid motions.
     rigid: Mat<f64>,
 }
@@ -40,7 +43,8 @@ impl Levels {
         let solver = Solver::of_nodes(block.stiffness(), block.mass(), positions, &Support::free()).unwrap();
         let shift = part_of_shift * solver.shift().unwrap();
         let rigid = rigid_fields(positions, &Vector3::from(positions[0]), 3).qr().compute_thin_Q();
-        Self { block, coarse, shift, rigid }
+        let smoother = Smoother::new(block.stiffness()).unwrap();
+        Self { block, coarse, shift, smoother, rigid }
     }
 
     /// The factor of K_c + sM_c.
@@ -54,7 +58,7 @@ impl Levels {
     }
 
     fn cycle<'a>(&'a self, factor: &'a Shifted) -> Multigrid<'a> {
-        Multigrid::new(self.block.stiffness(), &self.block.corners, factor).unwrap().unwrap()
+        Multigrid::new(&self.smoother, &self.block.corners, factor).unwrap()
     }
 
     fn random(&self, seed: u64) -> Mat<f64> {
@@ -154,19 +158,74 @@ fn the_cycle_is_near_to_the_inverse_for_any_size_of_the_elements() {
     }
 }
 
+fn solver(block: &Block) -> Solver<'_> {
+    Solver::of_nodes(block.stiffness(), block.mass(), block.mesh.positions(), &Support::free()).unwrap()
+}
+
+/// One that has its answers from cycles, in spite of the few unknowns.
+fn solver_by_cycles(block: &Block) -> Solver<'_> {
+    let solver = solver(block).with_edge_ends(block.mesh.edge_ends());
+    let levels = solver.make_levels(20, &mut |_| ()).unwrap().unwrap();
+    assert!(solver.levels.set(levels).is_ok());
+    solver
+}
+
 #[test]
-fn modes_without_the_factor_are_those_with_it() {
+fn modes_by_cycles_are_those_by_the_factor() {
     let block = Block::new([6, 5, 4]);
-    let solver =
-        || Solver::of_nodes(block.stiffness(), block.mass(), block.mesh.positions(), &Support::free()).unwrap();
-    let expected = solver().modes(20, |_| ()).unwrap();
-    let found = solver().with_edge_ends(block.mesh.edge_ends()).modes_by_cycles(20, &mut |_| ()).unwrap().unwrap();
+    let expected = solver(&block).modes(20, |_| ()).unwrap();
+    let found = solver_by_cycles(&block).modes(20, |_| ()).unwrap();
+    assert_eq!(expected.stats.cycles, 0);
+    assert!(found.stats.cycles > 0);
     for (found, expected) in found.eigenvalues.iter().zip(&expected.eigenvalues) {
         assert!((found / expected - 1.0).abs() < 1e-11, "{found} instead of {expected}");
     }
-    let momenta = solver().mass().product(expected.shapes.as_ref());
+    let momenta = solver(&block).mass().product(expected.shapes.as_ref());
     let cosines = tall::inner(found.shapes.as_ref(), momenta.as_ref());
     for k in 0..20 {
         assert!((cosines[(k, k)] - 1.0).abs() < 1e-12, "mode {k}: {}", cosines[(k, k)] - 1.0);
     }
+}
+
+#[test]
+fn static_answers_by_cycles_are_those_by_the_factor() {
+    let block = Block::new([6, 5, 4]);
+    let (by_factor, by_cycles) = (solver(&block), solver_by_cycles(&block));
+    // A force at a node, and one that is spread.
+    let rows = 3 * block.mesh.positions().len();
+    let forces = Mat::from_fn(rows, 2, |row, k| if k == 0 { f64::from(row == 100) } else { (row as f64).sin() });
+    let known = by_factor.modes(6, |_| ()).unwrap();
+    let none = by_factor.modes(0, |_| ()).unwrap();
+    for modes in [&known, &none] {
+        for (accuracy, part) in [(StaticAccuracy::Full, 1e-10), (StaticAccuracy::Shapes, 1e-4)] {
+            let respond = |solver: &Solver<'_>| solver.static_response_from(modes, forces.as_ref(), accuracy).unwrap();
+            let (found, expected) = (respond(&by_cycles), respond(&by_factor));
+            for k in 0..forces.ncols() {
+                let off = (found.col(k) - expected.col(k)).norm_l2() / expected.col(k).norm_l2();
+                assert!(off < part, "{accuracy:?}, force {k}: {off:e}");
+            }
+        }
+    }
+    assert!(by_cycles.solved()[0] > 0);
+}
+
+#[test]
+fn cycles_are_left_where_they_are_no_help() {
+    let levels = |solver: Solver<'_>, block: &Block, modes| {
+        solver.with_edge_ends(block.mesh.edge_ends()).make_levels(modes, &mut |_| ()).unwrap()
+    };
+    let block = Block::new([6, 5, 4]);
+    assert!(levels(solver(&block), &block, 20).is_some());
+    // So many modes are not to be had from the corners.
+    assert!(levels(solver(&block), &block, 250).is_none());
+    // Something holds it.
+    let support = Support { nodes: vec![0, 1, 2, 3], ..Support::free() };
+    let held = Solver::of_nodes(block.stiffness(), block.mass(), block.mesh.positions(), &support).unwrap();
+    assert!(levels(held, &block, 20).is_none());
+    // The corners alone are far too stiff where elements are flat.
+    let flat = Block::stretched([6, 5, 4], [1.0, 1.0, 0.05]);
+    assert!(levels(solver(&flat), &flat, 20).is_none());
+    // The factor of a small body takes no time.
+    let solver = solver(&block).with_edge_ends(block.mesh.edge_ends());
+    assert_eq!(solver.modes(4, |_| ()).unwrap().stats.cycles, 0);
 }

@@ -37,9 +37,10 @@ const POWER_STEPS: usize = 10;
 
 type Block = [[f32; 3]; 3];
 
-/// A smoothing, and the rows that it works on.
-pub(crate) struct Smoother<'a> {
-    pairs: NodePairs<'a>,
+/// What smooths.
+pub(crate) struct Smoother {
+    start: Vec<usize>,
+    nodes: Vec<u32>,
     /// K by the rows of each node: a block for each of the nodes that it is coupled to.
     blocks: Vec<Block>,
     /// D⁻¹, node by node.
@@ -48,6 +49,42 @@ pub(crate) struct Smoother<'a> {
     pub unit: f64,
     /// α and β of each step of a smoothing.
     factors: [[f32; 2]; DEGREE],
+}
+
+impl Smoother {
+    /// None where a diagonal block has no inverse.
+    pub(crate) fn new(stiffness: NodalStiffness<'_>) -> Option<Self> {
+        let pairs = stiffness.pairs();
+        let diagonal: Vec<Matrix3<f64>> =
+            (0..pairs.count()).map(|node| diagonal_block(stiffness, node)).collect::<Option<_>>()?;
+        let unit = diagonal.iter().fold(0.0, |most: f64, block| most.max(block.amax()));
+        let inverse = |block: &Matrix3<f64>| block.try_inverse().map(|inverse| single(|i, j| unit * inverse[(i, j)]));
+        let mut smoother = Self {
+            start: pairs.start.to_vec(),
+            nodes: pairs.nodes.to_vec(),
+            blocks: blocks(stiffness, unit),
+            inverse_diagonal: diagonal.iter().map(inverse).collect::<Option<_>>()?,
+            unit,
+            factors: [[0.0; 2]; DEGREE],
+        };
+        let largest = Smoothing::new(&smoother, LANES).largest_eigenvalue();
+        smoother.factors = chebyshev(SAFETY * largest);
+        Some(smoother)
+    }
+
+    fn pairs(&self) -> NodePairs<'_> {
+        NodePairs { start: &self.start, nodes: &self.nodes }
+    }
+
+    /// Memory held, bytes.
+    pub(crate) fn bytes(&self) -> usize {
+        self.pairs().bytes() + (self.blocks.len() + self.inverse_diagonal.len()) * size_of::<Block>()
+    }
+}
+
+/// The rows that a smoother works on.
+pub(crate) struct Smoothing<'a> {
+    pub smoother: &'a Smoother,
     /// Numbers in a row.
     pub width: usize,
     pub r: Vec<f32>,
@@ -56,35 +93,16 @@ pub(crate) struct Smoother<'a> {
     next: Vec<f32>,
 }
 
-impl<'a> Smoother<'a> {
-    /// None where a diagonal block has no inverse.
-    pub(crate) fn new(stiffness: NodalStiffness<'a>) -> Option<Self> {
-        let pairs = stiffness.pairs();
-        let diagonal: Vec<Matrix3<f64>> =
-            (0..pairs.count()).map(|node| diagonal_block(stiffness, node)).collect::<Option<_>>()?;
-        let unit = diagonal.iter().fold(0.0, |most: f64, block| most.max(block.amax()));
-        let inverse = |block: &Matrix3<f64>| block.try_inverse().map(|inverse| single(|i, j| unit * inverse[(i, j)]));
-        let numbers = 3 * pairs.count() * MOST_COLUMNS;
-        let mut smoother = Self {
-            pairs,
-            blocks: blocks(stiffness, unit),
-            inverse_diagonal: diagonal.iter().map(inverse).collect::<Option<_>>()?,
-            unit,
-            factors: [[0.0; 2]; DEGREE],
-            width: LANES,
-            r: vec![0.0; numbers],
-            x: vec![0.0; numbers],
-            d: vec![0.0; numbers],
-            next: vec![0.0; numbers],
-        };
-        smoother.factors = chebyshev(SAFETY * smoother.largest_eigenvalue());
-        Some(smoother)
+impl<'a> Smoothing<'a> {
+    /// Of rows of so many numbers at the most.
+    pub(crate) fn new(smoother: &'a Smoother, width: usize) -> Self {
+        let zeros = || vec![0.0; 3 * smoother.pairs().count() * width];
+        Self { smoother, width, r: zeros(), x: zeros(), d: zeros(), next: zeros() }
     }
 
     /// Memory held, bytes.
-    pub(crate) fn bytes(pairs: &NodePairs<'_>) -> usize {
-        let of_rows = 4 * 3 * MOST_COLUMNS * size_of::<f32>();
-        pairs.nodes.len() * size_of::<Block>() + pairs.count() * (size_of::<Block>() + of_rows)
+    pub(crate) fn bytes(nodes: usize) -> usize {
+        4 * 3 * MOST_COLUMNS * size_of::<f32>() * nodes
     }
 
     /// Takes columns of forces for r, each divided by the number that is returned for it; x is zero.
@@ -95,7 +113,7 @@ impl<'a> Smoother<'a> {
             largest => largest,
         };
         let units: [f64; MOST_COLUMNS] = std::array::from_fn(|c| if c < forces.ncols() { largest(c) } else { 1.0 });
-        let used = 3 * self.pairs.count() * self.width;
+        let used = self.used();
         pack(forces, units.map(|unit| 1.0 / unit), &mut self.r[..used]);
         self.x[..used].par_chunks_mut(3 * NODES_PER_TASK * self.width).for_each(|x| x.fill(0.0));
         units
@@ -103,7 +121,7 @@ impl<'a> Smoother<'a> {
 
     /// The steps of a smoothing. The d before them is taken in, should there be one; the last d is left to be.
     pub(crate) fn smooth(&mut self, takes_first: bool) {
-        for (k, factors) in self.factors.into_iter().enumerate() {
+        for (k, factors) in self.smoother.factors.into_iter().enumerate() {
             self.step(takes_first || k > 0, Some(factors));
         }
     }
@@ -115,8 +133,12 @@ impl<'a> Smoother<'a> {
 
     /// x + d for forces that were divided by `units`.
     pub(crate) fn end(&self, units: [f64; MOST_COLUMNS], displacements: MatMut<'_, f64>) {
-        let used = 3 * self.pairs.count() * self.width;
-        unpack([&self.x[..used], &self.d[..used]], units.map(|unit| unit / self.unit), displacements);
+        let used = self.used();
+        unpack([&self.x[..used], &self.d[..used]], units.map(|unit| unit / self.smoother.unit), displacements);
+    }
+
+    fn used(&self) -> usize {
+        3 * self.smoother.pairs().count() * self.width
     }
 
     fn step(&mut self, takes_in: bool, factors: Option<[f32; 2]>) {
@@ -129,7 +151,9 @@ impl<'a> Smoother<'a> {
 
     /// A step with rows of V times [`LANES`].
     fn step_of<const V: usize>(&mut self, takes_in: bool, factors: Option<[f32; 2]>) {
-        let Self { pairs, blocks, inverse_diagonal, x, r, d, next, .. } = self;
+        let Self { smoother, x, r, d, next, .. } = self;
+        let Smoother { blocks, inverse_diagonal, .. } = *smoother;
+        let pairs = &smoother.pairs();
         let (of_node, arch) = (3 * V * LANES, Arch::new());
         let (used, of_task) = (of_node * pairs.count(), of_node * NODES_PER_TASK);
         let d = &d[..used];
@@ -146,7 +170,7 @@ impl<'a> Smoother<'a> {
 
     /// The largest eigenvalue of D⁻¹K by the power method, from below.
     fn largest_eigenvalue(&mut self) -> f64 {
-        let used = 3 * self.pairs.count() * self.width;
+        let used = self.used();
         let mut seed = 7_u64;
         for x in &mut self.d[..used] {
             seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
@@ -375,7 +399,8 @@ mod tests {
         let (start, coupled, values) = chain(nodes);
         let stiffness = NodalStiffness::of_checked(&start, &coupled, &values);
         let k = Mat::from_fn(3 * nodes, 3 * nodes, |i, j| if (i / 3).abs_diff(j / 3) <= 3 { entry(i, j) } else { 0.0 });
-        let mut smoother = Smoother::new(stiffness).unwrap();
+        let smoother = Smoother::new(stiffness).unwrap();
+        let mut smoother = Smoothing::new(&smoother, MOST_COLUMNS);
         for columns in [1, 8, 13, 24] {
             let forces = Mat::from_fn(3 * nodes, columns, |i, j| 1e6 * ((i * 3 + j * 11) as f64).sin());
             let units = smoother.begin(forces.as_ref());

@@ -14,6 +14,7 @@ use crate::foretold::Foretold;
 use crate::held_problem::HeldProblem;
 use crate::input::{check_finite_positions, check_matrix, check_rows};
 use crate::lanczos::{BLOCK, FIXED, largest_pairs, room};
+use crate::levels::Levels;
 use crate::mass::NodalMass;
 use crate::mass_matrix::{MassMatrix, freedoms};
 use crate::polynomials::Polynomials;
@@ -117,6 +118,14 @@ impl Modes {
     }
 }
 
+/// What the answers of a body come from.
+pub(crate) enum Inverse<'a> {
+    /// The factor of K + sM.
+    Factor(&'a Shifted),
+    /// Multigrid cycles.
+    Cycles(&'a Levels),
+}
+
 /// A body, what holds it, and (from the first question on) the factor of K + sM that its answers come from.
 pub struct Solver<'a> {
     pub(crate) stiffness: StiffnessMatrix<'a>,
@@ -127,6 +136,7 @@ pub struct Solver<'a> {
     pub(crate) rigid: RigidModes,
     pub(crate) constraints: Constraints,
     factor: OnceLock<Shifted>,
+    pub(crate) levels: OnceLock<Levels>,
     shift: OnceLock<f64>,
     /// What tells the shift, of matrices over nodes.
     polynomials: Option<Polynomials>,
@@ -228,6 +238,7 @@ impl<'a> Solver<'a> {
             rigid,
             constraints,
             factor: OnceLock::new(),
+            levels: OnceLock::new(),
             shift: OnceLock::new(),
             polynomials,
             engine: None,
@@ -291,15 +302,12 @@ impl<'a> Solver<'a> {
         }
         let basis = FIXED + room(flexible, available);
         let search = |memory: &Foretold| memory.of_search(basis, BLOCK, flexible);
-        let factor = match self.factor.get() {
-            Some(factor) => factor,
-            None => {
-                let (ordered, estimate_time) = self.ordered(&mut progress)?;
-                if let Some(modes) = self.modes_without_factor(flexible, &ordered, &mut progress)? {
-                    return Ok(modes);
-                }
-                self.factor_of(ordered, estimate_time, search, &mut progress)?
-            }
+        let factor = match self.inverse(flexible, search, &mut progress)? {
+            Inverse::Factor(factor) => factor,
+            Inverse::Cycles(levels) => match self.modes_by_cycles(levels, flexible, &mut progress)? {
+                Some(modes) => return Ok(modes),
+                None => self.factor(search, &mut progress)?,
+            },
         };
         let mut stats = SolveStats {
             shift: factor.shift,
@@ -329,13 +337,33 @@ impl<'a> Solver<'a> {
         Ok(Modes { rigid, eigenvalues, shapes, residuals, force_residuals, stats })
     }
 
-    /// K + sM, factored at the first call.
-    pub(crate) fn factor(&self) -> Result<&Shifted, ModalError> {
-        if let Some(factor) = self.factor.get() {
-            return Ok(factor);
+    /// What answers come from, made at the first call: for so many modes, where there is memory for the `search` that follows.
+    pub(crate) fn inverse(
+        &self,
+        modes: usize,
+        search: impl Fn(&Foretold) -> usize,
+        progress: &mut dyn FnMut(Progress),
+    ) -> Result<Inverse<'_>, ModalError> {
+        match (self.factor.get(), self.levels.get()) {
+            (Some(factor), _) => return Ok(Inverse::Factor(factor)),
+            (None, Some(levels)) => return Ok(Inverse::Cycles(levels)),
+            (None, None) => {}
         }
-        let (ordered, estimate_time) = self.ordered(&mut |_| ())?;
-        self.factor_of(ordered, estimate_time, |memory| memory.of_search(FIXED, BLOCK, 0), &mut |_| ())
+        let (ordered, estimate_time) = self.ordered(progress)?;
+        if let Some(levels) = self.levels_for(modes, &ordered, progress)? {
+            return Ok(Inverse::Cycles(self.levels.get_or_init(|| levels)));
+        }
+        Ok(Inverse::Factor(self.factor_of(ordered, estimate_time, search, progress)?))
+    }
+
+    /// The factor, of a body of any kind.
+    fn factor(
+        &self,
+        search: impl Fn(&Foretold) -> usize,
+        progress: &mut dyn FnMut(Progress),
+    ) -> Result<&Shifted, ModalError> {
+        let (ordered, estimate_time) = self.ordered(progress)?;
+        self.factor_of(ordered, estimate_time, search, progress)
     }
 
     /// K + sM with an order of its unknowns, and the time that it took to choose the shift.
@@ -384,9 +412,10 @@ impl<'a> Solver<'a> {
         HeldProblem::new(self.stiffness, &self.mass, &self.constraints, &self.rigid, shift, available)
     }
 
-    /// How many blocks of columns, and columns, the factor of K + sM was used for up to now.
+    /// How many blocks of columns, and columns, the factor was used for up to now: of K + sM, or of its corners in the cycles.
     pub fn solved(&self) -> [usize; 2] {
-        self.factor.get().map_or([0; 2], Shifted::solved)
+        let factor = self.factor.get().or(self.levels.get().map(|levels| &levels.factor));
+        factor.map_or([0; 2], Shifted::solved)
     }
 
     /// Number of flexible modes that there are.

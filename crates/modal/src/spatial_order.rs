@@ -41,9 +41,9 @@ impl SpatialOrder {
         let steps = f64::from((1_u32 << BITS) - 1) / length.max(f64::MIN_POSITIVE);
         let on_curve = |at: &[f64; 3]| {
             let cell: [u64; 3] = std::array::from_fn(|axis| ((at[axis] - corner[axis]) * steps) as u64);
-            (0..BITS).flat_map(|bit| (0..3).map(move |axis| (bit, axis))).fold(0, |place: u64, (bit, axis)| {
-                place | (cell[axis] >> bit & 1) << (3 * bit + axis as u32)
-            })
+            (0..BITS)
+                .flat_map(|bit| (0..3).map(move |axis| (bit, axis)))
+                .fold(0, |place: u64, (bit, axis)| place | (cell[axis] >> bit & 1) << (3 * bit + axis as u32))
         };
         let mut sorted: Vec<(u64, u32)> = positions.iter().zip(0..).map(|(at, node)| (on_curve(at), node)).collect();
         sorted.sort_unstable();
