@@ -6,6 +6,7 @@ use nalgebra::Vector3;
 use crate::coarse::CoarseMatrices;
 use crate::coarse::tests::Block;
 use crate::constraints::Constraints;
+use crate::error::ModalError;
 use crate::foretold::Foretold;
 use crate::lanczos::random_block;
 use crate::mass_matrix::MassMatrix;
@@ -164,7 +165,7 @@ fn solver(block: &Block) -> Solver<'_> {
 
 /// One that has its answers from cycles, in spite of the few unknowns.
 fn solver_by_cycles(block: &Block) -> Solver<'_> {
-    let solver = solver(block).with_edge_ends(block.mesh.edge_ends());
+    let solver = solver(block).with_edge_ends(block.ends()).unwrap();
     let levels = solver.make_levels(20, &mut |_| ()).unwrap().unwrap();
     assert!(solver.levels.set(levels).is_ok());
     solver
@@ -212,7 +213,7 @@ fn static_answers_by_cycles_are_those_by_the_factor() {
 #[test]
 fn cycles_are_left_where_they_are_no_help() {
     let levels = |solver: Solver<'_>, block: &Block, modes| {
-        solver.with_edge_ends(block.mesh.edge_ends()).make_levels(modes, &mut |_| ()).unwrap()
+        solver.with_edge_ends(block.ends()).unwrap().make_levels(modes, &mut |_| ()).unwrap()
     };
     let block = Block::new([6, 5, 4]);
     assert!(levels(solver(&block), &block, 20).is_some());
@@ -223,9 +224,23 @@ fn cycles_are_left_where_they_are_no_help() {
     let held = Solver::of_nodes(block.stiffness(), block.mass(), block.mesh.positions(), &support).unwrap();
     assert!(levels(held, &block, 20).is_none());
     // The corners alone are far too stiff where elements are flat.
-    let flat = Block::stretched([6, 5, 4], [1.0, 1.0, 0.05]);
+    let flat = Block::stretched([8, 8, 1], [1.0, 1.0, 0.02]);
     assert!(levels(solver(&flat), &flat, 20).is_none());
     // The factor of a small body takes no time.
-    let solver = solver(&block).with_edge_ends(block.mesh.edge_ends());
+    let solver = solver(&block).with_edge_ends(block.ends()).unwrap();
     assert_eq!(solver.modes(4, |_| ()).unwrap().stats.cycles, 0);
+}
+
+#[test]
+fn ends_of_edges_that_do_not_fit_are_refused() {
+    let block = Block::new([2, 2, 2]);
+    let refused = |change: &dyn Fn(&mut Vec<[u32; 2]>)| {
+        let mut ends = block.ends();
+        change(&mut ends);
+        solver(&block).with_edge_ends(ends).err().unwrap()
+    };
+    let middle = block.ends().iter().zip(0..).find(|(ends, _)| ends[0] != ends[1]).unwrap().1;
+    assert!(matches!(refused(&|ends| ends.truncate(124)), ModalError::Length { expected: 125, found: 124, .. }));
+    assert!(matches!(refused(&|ends| ends[3] = [0, 125]), ModalError::NoNode { node: 125, count: 125 }));
+    assert!(matches!(refused(&|ends| ends[3] = [middle, 0]), ModalError::NoCorner { node: 3, end } if end == middle));
 }

@@ -12,7 +12,7 @@ use crate::engine::{Engine, EngineStats};
 use crate::error::ModalError;
 use crate::foretold::Foretold;
 use crate::held_problem::HeldProblem;
-use crate::input::{check_finite_positions, check_matrix, check_rows};
+use crate::input::{check_edge_ends, check_finite_positions, check_matrix, check_rows};
 use crate::lanczos::{BLOCK, FIXED, largest_pairs, room};
 use crate::levels::Levels;
 use crate::mass::NodalMass;
@@ -49,8 +49,9 @@ pub struct Modes {
     /// Flexible mode shapes (N×nf), mass-normalised, the component of largest magnitude positive; then static shapes,
     /// which are K-orthogonal and M-orthonormal to the modes and to each other.
     pub shapes: Mat<f64>,
-    /// ‖(K + sM)⁻¹Mφ − μφ‖_M / μ for each natural mode, in the scale of the shifted problem, where rounding is small; as an
-    /// engine says them, of modes that it has found.
+    /// ‖(K + sM)⁻¹Mφ − μφ‖_M / μ for each natural mode, in the scale of the shifted problem, where rounding is small; of modes
+    /// by multigrid cycles B, √(rᵀBr/λ) with r = Kφ − λMφ, by the square of which λ errs; as an engine says them, of modes that
+    /// it has found.
     pub residuals: Vec<f64>,
     /// ‖Kφ − λMφ‖ / ‖Kφ‖ for each natural mode, without the reactions of a support. Rounding in K leaves up to 1e-6 of
     /// this in the lowest modes of fine meshes.
@@ -256,9 +257,12 @@ impl<'a> Solver<'a> {
     /// The same of second-order elements: for each node the two nodes at the ends of the edge that it is in the middle of, and
     /// twice itself for a corner. Modes of a body whose factor of K + sM takes long are then found without it, where that is
     /// faster.
-    #[must_use]
-    pub fn with_edge_ends(self, edge_ends: Vec<[u32; 2]>) -> Self {
-        Self { edge_ends: Some(edge_ends), ..self }
+    ///
+    /// # Errors
+    /// [`ModalError::Length`], [`ModalError::NoNode`], [`ModalError::NoCorner`].
+    pub fn with_edge_ends(self, edge_ends: Vec<[u32; 2]>) -> Result<Self, ModalError> {
+        check_edge_ends(&edge_ends, self.positions.len())?;
+        Ok(Self { edge_ends: Some(edge_ends), ..self })
     }
 
     /// The mass matrix.
@@ -302,12 +306,25 @@ impl<'a> Solver<'a> {
         }
         let basis = FIXED + room(flexible, available);
         let search = |memory: &Foretold| memory.of_search(basis, BLOCK, flexible);
-        let factor = match self.inverse(flexible, search, &mut progress)? {
-            Inverse::Factor(factor) => factor,
-            Inverse::Cycles(levels) => match self.modes_by_cycles(levels, flexible, &mut progress)? {
+        let mut tried = Duration::ZERO;
+        let factor = match (self.factor.get(), self.levels.get()) {
+            (Some(factor), _) => factor,
+            (None, Some(levels)) => match self.modes_by_cycles(levels, flexible, &mut progress)? {
                 Some(modes) => return Ok(modes),
                 None => self.factor(search, &mut progress)?,
             },
+            (None, None) => {
+                let (ordered, estimate_time) = self.ordered(&mut progress)?;
+                let started = Instant::now();
+                if let Some(levels) = self.levels_for(flexible, &ordered, &mut progress)?
+                    && let Some(modes) = self.modes_by_cycles(&levels, flexible, &mut progress)?
+                {
+                    self.levels.get_or_init(|| levels);
+                    return Ok(modes);
+                }
+                tried = started.elapsed();
+                self.factor_of(ordered, estimate_time, search, &mut progress)?
+            }
         };
         let mut stats = SolveStats {
             shift: factor.shift,
@@ -326,7 +343,7 @@ impl<'a> Solver<'a> {
         stats.block_solves = pairs.block_solves;
         stats.basis_size = pairs.basis_size;
         stats.peak_bytes = factor.memory.peak(factor.memory.of_search(FIXED + pairs.basis_size, BLOCK, flexible));
-        stats.lanczos_time = started.elapsed();
+        stats.lanczos_time = tried + started.elapsed();
 
         let started = Instant::now();
         let RitzPairs { eigenvalues, shapes, force_residuals } =
@@ -337,7 +354,7 @@ impl<'a> Solver<'a> {
         Ok(Modes { rigid, eigenvalues, shapes, residuals, force_residuals, stats })
     }
 
-    /// What answers come from, made at the first call: for so many modes, where there is memory for the `search` that follows.
+    /// What static answers come from, made at the first call: beside so many modes, where there is memory for the `search` that follows.
     pub(crate) fn inverse(
         &self,
         modes: usize,
@@ -357,7 +374,7 @@ impl<'a> Solver<'a> {
     }
 
     /// The factor, of a body of any kind.
-    fn factor(
+    pub(crate) fn factor(
         &self,
         search: impl Fn(&Foretold) -> usize,
         progress: &mut dyn FnMut(Progress),

@@ -28,6 +28,8 @@ use crate::tall;
 /// that is accepted. It is what rounding in K may leave on slender bodies (9e-7 on a bar of 220 times its thickness).
 pub(crate) const ACCEPTED: f64 = 1e-5;
 const MAX_ITERATIONS: usize = 300;
+/// The same with cycles: where these do not do, the factor does.
+const MAX_ITERATIONS_BY_CYCLES: usize = 100;
 /// Forces answered together at the most: the factor is read once for all of them.
 const BLOCK: usize = 16;
 /// What a static answer adds to the modes must be more than this part of it.
@@ -85,8 +87,29 @@ impl Solver<'_> {
         }
         memory::check("static answers", of_vectors(expected, modes.natural() + forces.ncols() + 10 * BLOCK))?;
         let search = |memory: &Foretold| memory.of_search(FIXED, BLOCK, 0);
-        let inverse = self.inverse(modes.natural(), search, &mut |_| ())?;
+        match self.inverse(modes.natural(), search, &mut |_| ())? {
+            Inverse::Cycles(levels) => {
+                match self.static_response_with(Inverse::Cycles(levels), modes, forces, accuracy) {
+                    Err(ModalError::StaticNotConverged { .. }) => {
+                        let factor = self.factor(search, &mut |_| ())?;
+                        self.static_response_with(Inverse::Factor(factor), modes, forces, accuracy)
+                    }
+                    answers => answers,
+                }
+            }
+            factor => self.static_response_with(factor, modes, forces, accuracy),
+        }
+    }
+
+    fn static_response_with(
+        &self,
+        inverse: Inverse<'_>,
+        modes: &Modes,
+        forces: MatRef<'_, f64>,
+        accuracy: StaticAccuracy,
+    ) -> Result<Mat<f64>, ModalError> {
         let mut statics = Statics::new(self, Preconditioner::new(inverse)?, modes)?;
+        let expected = forces.nrows();
         let mut answers = Mat::zeros(expected, forces.ncols());
         let blocks = forces.ncols().div_ceil(BLOCK);
         let at_once = forces.ncols().div_ceil(blocks.max(1)).max(1);
@@ -214,7 +237,7 @@ impl<'a> Statics<'a> {
             let ended_early = loop {
                 let is_open = |squared: f64, k: usize| squared > tolerance * tolerance * scale[k];
                 let open: Vec<usize> = (0..squared.len()).filter(|k| is_open(squared[*k], *k)).collect();
-                if open.is_empty() || iterations == MAX_ITERATIONS {
+                if open.is_empty() || iterations == self.preconditioner.max_iterations() {
                     break false;
                 }
                 iterations += 1;
@@ -315,7 +338,7 @@ enum Preconditioner<'a> {
     /// Of a body that nothing holds.
     Cycles {
         levels: &'a Levels,
-        multigrid: Multigrid<'a>,
+        multigrid: Box<Multigrid<'a>>,
     },
 }
 
@@ -323,7 +346,7 @@ impl<'a> Preconditioner<'a> {
     fn new(inverse: Inverse<'a>) -> Result<Self, ModalError> {
         Ok(match inverse {
             Inverse::Factor(factor) => Self::Factor { factor, scratch: factor.solve_scratch(BLOCK)? },
-            Inverse::Cycles(levels) => Self::Cycles { levels, multigrid: levels.multigrid()? },
+            Inverse::Cycles(levels) => Self::Cycles { levels, multigrid: Box::new(levels.multigrid()?) },
         })
     }
 
@@ -331,6 +354,13 @@ impl<'a> Preconditioner<'a> {
         match self {
             Self::Factor { factor, .. } => factor.shift,
             Self::Cycles { levels, .. } => levels.factor.shift,
+        }
+    }
+
+    fn max_iterations(&self) -> usize {
+        match self {
+            Self::Factor { .. } => MAX_ITERATIONS,
+            Self::Cycles { .. } => MAX_ITERATIONS_BY_CYCLES,
         }
     }
 
