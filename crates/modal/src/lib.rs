@@ -39,6 +39,7 @@ mod input;
 mod interleave;
 mod lanczos;
 mod levels;
+mod make_levels;
 mod mass;
 mod mass_left_out;
 mod mass_matrix;
