@@ -28,7 +28,7 @@ pub struct SolverInput {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Solver {
-    /// This program: Lanczos with the factor of K + sM.
+    /// This program: Lanczos with the factor of K + sM, or multigrid cycles for bulky bodies.
     BuiltIn,
     /// SLEPc on PETSc with MUMPS.
     Slepc,

@@ -6,6 +6,7 @@ use crate::error::MeshError;
 use crate::faces::{self, Surface};
 use crate::integration::{self, BadJacobian};
 use crate::parts::{MeshParts, NodeGroup, SurfaceGroup};
+use crate::shape::EDGES;
 use crate::tags::{index_nodes, resolve_tags};
 
 /// What is grouped, by its dimension.
@@ -187,6 +188,23 @@ impl Mesh {
     /// Node indices of each element, in gmsh's order: corners, then mid-edges 01 12 02 03 23 13.
     pub fn elements(&self) -> &[[u32; 10]] {
         &self.elements
+    }
+
+    /// For each node the two nodes at the ends of the edge that it is in the middle of, and twice itself for a corner. None
+    /// where a node is a corner of one element and in the middle of an edge of another, or in the middle of two edges.
+    pub fn edge_ends(&self) -> Option<Vec<[u32; 2]>> {
+        let mut ends: Vec<[u32; 2]> = (0..self.positions.len() as u32).map(|node| [node; 2]).collect();
+        for nodes in &self.elements {
+            for ([a, b], middle) in EDGES.iter().zip(&nodes[4..]) {
+                let (found, edge) = (&mut ends[*middle as usize], [nodes[*a].min(nodes[*b]), nodes[*a].max(nodes[*b])]);
+                if *found != [*middle; 2] && *found != edge {
+                    return None;
+                }
+                *found = edge;
+            }
+        }
+        let is_corner = |node: &u32| ends[*node as usize] == [*node; 2];
+        ends.iter().flatten().all(is_corner).then_some(ends)
     }
 
     /// Tags of the elements in the file's numbering.

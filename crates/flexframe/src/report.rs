@@ -159,7 +159,7 @@ pub struct BodyReport {
     pub kinds: Vec<&'static str>,
     /// Damping ratios.
     pub damping_ratios: Vec<f64>,
-    /// Lanczos residual of each mode, in the shifted scale.
+    /// Residual of each mode in the search for it, in the scale of the shifted problem.
     pub residuals: Vec<f64>,
     /// ‖Kφ − λMφ‖/‖Kφ‖ of each mode.
     pub force_residuals: Vec<f64>,

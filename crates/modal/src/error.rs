@@ -150,6 +150,16 @@ pub enum ModalError {
         /// Nodes of the mesh.
         count: usize,
     },
+    /// A node at the end of an edge that is in the middle of another one.
+    #[error(
+        "node {node} (counted from 0) has node {end} at an end of its edge, which is no corner: a corner has itself twice"
+    )]
+    NoCorner {
+        /// Index of the node.
+        node: usize,
+        /// Index of the end.
+        end: u32,
+    },
     /// Numbers of large modes that do not rise, or of modes that there are not.
     #[error("the large modes are {found:?}; expected rising numbers below {count}, the number of shapes")]
     LargeModes {

@@ -37,6 +37,24 @@ pub(crate) fn check_finite_positions(positions: &[[f64; 3]]) -> Result<(), Modal
     check_finite("positions", "node", positions.iter().copied())
 }
 
+/// Refuses ends of edges for another number of nodes, and ends that are no corners.
+pub(crate) fn check_edge_ends(edge_ends: &[[u32; 2]], nodes: usize) -> Result<(), ModalError> {
+    if edge_ends.len() != nodes {
+        let what = "the ends of the edges of nodes";
+        return Err(ModalError::Length { what, found: edge_ends.len(), expected: nodes });
+    }
+    for (node, ends) in edge_ends.iter().enumerate() {
+        for end in ends {
+            match edge_ends.get(*end as usize) {
+                None => return Err(ModalError::NoNode { node: *end, count: nodes }),
+                Some(of_end) if *of_end != [*end; 2] => return Err(ModalError::NoCorner { node, end: *end }),
+                Some(_) => {}
+            }
+        }
+    }
+    Ok(())
+}
+
 /// Refuses another number of rows than expected, and none.
 pub(crate) fn check_rows(what: &'static str, found: usize, expected: usize) -> Result<(), ModalError> {
     if found == expected && found > 0 { Ok(()) } else { Err(ModalError::Size { what, expected, found }) }

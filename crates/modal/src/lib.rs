@@ -21,8 +21,10 @@
 
 mod buckling;
 mod cholesky;
+mod coarse;
 mod columns;
 mod constraints;
+mod davidson;
 mod dense;
 mod engine;
 mod error;
@@ -36,9 +38,15 @@ mod inertia_relief;
 mod input;
 mod interleave;
 mod lanczos;
+mod levels;
+mod make_levels;
 mod mass;
 mod mass_left_out;
 mod mass_matrix;
+mod modes_by_cycles;
+mod multigrid;
+#[cfg(test)]
+mod multigrid_tests;
 mod node_pairs;
 mod ordering;
 mod outside;
@@ -58,7 +66,9 @@ mod ritz;
 mod second_order;
 mod shifted;
 mod shifted_matrix;
+mod smoother;
 mod solve;
+mod spatial_order;
 mod start;
 mod statics;
 mod stiffness;

@@ -46,6 +46,11 @@ impl<'a> NodalMass<'a> {
         Ok(Self { start: start.into(), nodes: nodes.into(), values: values.into() })
     }
 
+    /// Of lists that fit together.
+    pub(crate) fn of_checked_nodes(start: &'a [usize], nodes: &'a [u32], values: &'a [f64]) -> Self {
+        Self { start: start.into(), nodes: nodes.into(), values: values.into() }
+    }
+
     /// Takes `M_s` out of M (3n×3n, both triangles stored).
     ///
     /// # Errors
@@ -145,6 +150,11 @@ impl<'a> NodalMass<'a> {
     /// The pairs of nodes that have an entry.
     pub(crate) fn pairs(&self) -> NodePairs<'_> {
         NodePairs { start: &self.start, nodes: &self.nodes }
+    }
+
+    /// Their entries.
+    pub(crate) fn values(&self) -> &[f64] {
+        &self.values
     }
 
     /// The nodes that a node is coupled to, and the entries.

@@ -16,13 +16,13 @@ pub(crate) const WIDTH: usize = 8;
 /// Neighbours of a node whose rows are asked for ahead of their use.
 const AHEAD: usize = 12;
 /// Nodes that one task computes.
-const NODES_PER_TASK: usize = 128;
+pub(crate) const NODES_PER_TASK: usize = 128;
 
 /// One row of a packed block.
 pub(crate) type Packed = [f64; WIDTH];
 
 /// A matrix by the rows of its nodes.
-trait NodeRows: Sync {
+pub(crate) trait NodeRows: Sync {
     /// The three rows of a node in the product with a packed block.
     fn product<S: Simd>(&self, simd: S, node: usize, packed: &[Packed]) -> [Packed; 3];
 }

@@ -7,9 +7,10 @@ use crate::foretold::Forecast;
 pub enum Progress {
     /// An order of the unknowns is being sought in which the factor of K + sM has few entries.
     Ordering,
-    /// K + sM is being factored.
+    /// K + sM is being factored, or the problem on the corners of the elements where multigrid cycles take its place.
     Factorizing(Forecast),
-    /// Modes that have converged, of those asked for.
+    /// Modes that have converged, of those asked for. Where multigrid cycles find them, all come nearer together: so many
+    /// modes have the digits that all have together.
     Lanczos {
         /// Converged.
         converged: usize,

@@ -14,7 +14,6 @@ use faer::sparse::linalg::cholesky::{LltRef, SymbolicCholesky};
 use faer::{Accum, Conj, Mat, MatMut, Par, Side, Spec};
 
 use crate::cholesky::NotPositive;
-use crate::columns::Columns;
 use crate::constraints::Constraints;
 use crate::dense::whitening;
 use crate::error::ModalError;
@@ -51,6 +50,40 @@ pub(crate) struct Shifted {
     pub factor_time: Duration,
 }
 
+/// K + sM with an order of its unknowns, and with the pattern of the factor.
+pub(crate) struct Ordered<'a> {
+    matrix: ShiftedMatrix<'a>,
+    symbolic: Symbolic,
+    time: Duration,
+}
+
+impl<'a> Ordered<'a> {
+    /// Orders `K + shift·M`.
+    pub(crate) fn new(
+        stiffness: StiffnessMatrix<'a>,
+        mass: &'a MassMatrix<'a>,
+        shift: f64,
+        constraints: &'a Constraints,
+        memory: &Foretold,
+    ) -> Result<Self, ModalError> {
+        let started = Instant::now();
+        memory::check("ordering K + sM", memory.of_ordering())?;
+        let matrix = ShiftedMatrix::new(stiffness, mass, shift, constraints);
+        let symbolic = Symbolic::new(&matrix)?;
+        Ok(Self { matrix, symbolic, time: started.elapsed() })
+    }
+
+    /// Multiplications (each with an addition) that make the factor.
+    pub(crate) fn multiplications(&self) -> f64 {
+        self.symbolic.multiplications()
+    }
+
+    /// Time that it took.
+    pub(crate) fn time(&self) -> Duration {
+        self.time
+    }
+}
+
 /// Scratch memory of a solution, which can be used again.
 pub(crate) struct SolveScratch {
     dense: substitution::Scratch,
@@ -58,26 +91,19 @@ pub(crate) struct SolveScratch {
 }
 
 impl Shifted {
-    /// Orders and factors `K + shift·M`, where there is memory for it and for what `search` says of what comes after.
-    /// `progress` hears what the factorisation is going to take.
+    /// Factors `K + sM`, where there is memory for it and for what `search` says of what comes after. `progress` hears what
+    /// the factorisation is going to take.
     pub(crate) fn factor(
-        stiffness: StiffnessMatrix<'_>,
-        mass: &MassMatrix<'_>,
-        shift: f64,
+        ordered: Ordered<'_>,
         constraints: &Constraints,
         memory: Foretold,
         search: impl Fn(&Foretold) -> usize,
         progress: impl FnOnce(Forecast),
     ) -> Result<Self, ModalError> {
-        let start = Instant::now();
-        let size = stiffness.ncols();
-        memory::check("ordering K + sM", memory.of_ordering())?;
+        let Ordered { matrix, symbolic, time: ordering_time } = ordered;
+        let (size, shift) = (matrix.size(), matrix.shift());
         let motions = constraints.motions();
-        let matrix = ShiftedMatrix::new(stiffness, mass, shift, constraints);
         let a_motions = matrix.product_with_held(motions.as_ref());
-        let symbolic = Symbolic::new(&matrix)?;
-        let ordering_time = start.elapsed();
-
         let threads = if symbolic.is_parted() { rayon::current_num_threads() } else { 1 };
         let (needed, reserve) = match &symbolic {
             Symbolic::Supernodal(Supernodal { supernodes, .. }) => {

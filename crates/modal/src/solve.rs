@@ -12,15 +12,16 @@ use crate::engine::{Engine, EngineStats};
 use crate::error::ModalError;
 use crate::foretold::Foretold;
 use crate::held_problem::HeldProblem;
-use crate::input::{check_finite_positions, check_matrix, check_rows};
+use crate::input::{check_edge_ends, check_finite_positions, check_matrix, check_rows};
 use crate::lanczos::{BLOCK, FIXED, largest_pairs, room};
+use crate::levels::Levels;
 use crate::mass::NodalMass;
 use crate::mass_matrix::{MassMatrix, freedoms};
 use crate::polynomials::Polynomials;
 use crate::progress::Progress;
 use crate::rigid::RigidModes;
 use crate::ritz::{RitzPairs, rayleigh_ritz};
-use crate::shifted::Shifted;
+use crate::shifted::{Ordered, Shifted};
 use crate::start;
 use crate::stiffness::{NodalStiffness, StiffnessMatrix};
 use crate::support::Support;
@@ -48,8 +49,9 @@ pub struct Modes {
     /// Flexible mode shapes (N×nf), mass-normalised, the component of largest magnitude positive; then static shapes,
     /// which are K-orthogonal and M-orthonormal to the modes and to each other.
     pub shapes: Mat<f64>,
-    /// ‖(K + sM)⁻¹Mφ − μφ‖_M / μ for each natural mode, in the scale of the shifted problem, where rounding is small; as an
-    /// engine says them, of modes that it has found.
+    /// ‖(K + sM)⁻¹Mφ − μφ‖_M / μ for each natural mode, in the scale of the shifted problem, where rounding is small; of modes
+    /// by multigrid cycles B, √(rᵀBr/λ) with r = Kφ − λMφ, by the square of which λ errs; as an engine says them, of modes that
+    /// it has found.
     pub residuals: Vec<f64>,
     /// ‖Kφ − λMφ‖ / ‖Kφ‖ for each natural mode, without the reactions of a support. Rounding in K leaves up to 1e-6 of
     /// this in the lowest modes of fine meshes.
@@ -65,21 +67,24 @@ pub struct SolveStats {
     pub shift: f64,
     /// Unknowns N.
     pub unknowns: usize,
-    /// Entries of the factor of K + sM; zero where an engine had it.
+    /// Entries of the factor of K + sM, or of that on the corners of the elements where `cycles` are not zero; zero where an
+    /// engine had it.
     pub factor_entries: usize,
     /// Bytes that are held here at the most, from K and M to the reduced body, foretold from the sizes of all that is large.
     pub peak_bytes: usize,
     /// Solutions with a block of vectors.
     pub block_solves: usize,
-    /// Vectors in the Lanczos basis at the end.
+    /// Vectors in the basis of the search at the end.
     pub basis_size: usize,
+    /// Blocks of multigrid cycles that found the modes without the factor of K + sM.
+    pub cycles: usize,
     /// Rigid modes, the check of K, and the first guess.
     pub preparation_time: Duration,
     /// Ordering and symbolic factorisation.
     pub ordering_time: Duration,
     /// Numeric factorisation.
     pub factor_time: Duration,
-    /// Lanczos.
+    /// The search for modes.
     pub lanczos_time: Duration,
     /// Rayleigh–Ritz, residuals and signs.
     pub ritz_time: Duration,
@@ -114,20 +119,31 @@ impl Modes {
     }
 }
 
+/// What the answers of a body come from.
+pub(crate) enum Inverse<'a> {
+    /// The factor of K + sM.
+    Factor(&'a Shifted),
+    /// Multigrid cycles.
+    Cycles(&'a Levels),
+}
+
 /// A body, what holds it, and (from the first question on) the factor of K + sM that its answers come from.
 pub struct Solver<'a> {
     pub(crate) stiffness: StiffnessMatrix<'a>,
-    positions: &'a [[f64; 3]],
+    pub(crate) positions: &'a [[f64; 3]],
     pub(crate) mass: MassMatrix<'a>,
     /// Bytes of K and M, in all the forms that are there.
-    matrix_bytes: usize,
+    pub(crate) matrix_bytes: usize,
     pub(crate) rigid: RigidModes,
     pub(crate) constraints: Constraints,
     factor: OnceLock<Shifted>,
+    pub(crate) levels: OnceLock<Levels>,
     shift: OnceLock<f64>,
     /// What tells the shift, of matrices over nodes.
     polynomials: Option<Polynomials>,
     pub(crate) engine: Option<Box<dyn Engine>>,
+    /// Of second-order elements: the nodes at the ends of the edge that each node is in the middle of.
+    pub(crate) edge_ends: Option<Vec<[u32; 2]>>,
     preparation_time: Duration,
 }
 
@@ -223,9 +239,11 @@ impl<'a> Solver<'a> {
             rigid,
             constraints,
             factor: OnceLock::new(),
+            levels: OnceLock::new(),
             shift: OnceLock::new(),
             polynomials,
             engine: None,
+            edge_ends: None,
             preparation_time,
         })
     }
@@ -234,6 +252,17 @@ impl<'a> Solver<'a> {
     #[must_use]
     pub fn with_engine(self, engine: Box<dyn Engine>) -> Self {
         Self { engine: Some(engine), ..self }
+    }
+
+    /// The same of second-order elements: for each node the two nodes at the ends of the edge that it is in the middle of, and
+    /// twice itself for a corner. Modes of a body whose factor of K + sM takes long are then found without it, where that is
+    /// faster.
+    ///
+    /// # Errors
+    /// [`ModalError::Length`], [`ModalError::NoNode`], [`ModalError::NoCorner`].
+    pub fn with_edge_ends(self, edge_ends: Vec<[u32; 2]>) -> Result<Self, ModalError> {
+        check_edge_ends(&edge_ends, self.positions.len())?;
+        Ok(Self { edge_ends: Some(edge_ends), ..self })
     }
 
     /// The mass matrix.
@@ -276,7 +305,27 @@ impl<'a> Solver<'a> {
             return self.modes_by(engine.as_ref(), flexible, &mut progress);
         }
         let basis = FIXED + room(flexible, available);
-        let factor = self.factor_for(|memory| memory.of_search(basis, BLOCK, flexible), &mut progress)?;
+        let search = |memory: &Foretold| memory.of_search(basis, BLOCK, flexible);
+        let mut tried = Duration::ZERO;
+        let factor = match (self.factor.get(), self.levels.get()) {
+            (Some(factor), _) => factor,
+            (None, Some(levels)) => match self.modes_by_cycles(levels, flexible, &mut progress)? {
+                Some(modes) => return Ok(modes),
+                None => self.factor(search, &mut progress)?,
+            },
+            (None, None) => {
+                let (ordered, estimate_time) = self.ordered(&mut progress)?;
+                let started = Instant::now();
+                if let Some(levels) = self.levels_for(flexible, &ordered, &mut progress)?
+                    && let Some(modes) = self.modes_by_cycles(&levels, flexible, &mut progress)?
+                {
+                    self.levels.get_or_init(|| levels);
+                    return Ok(modes);
+                }
+                tried = started.elapsed();
+                self.factor_of(ordered, estimate_time, search, &mut progress)?
+            }
+        };
         let mut stats = SolveStats {
             shift: factor.shift,
             unknowns,
@@ -294,7 +343,7 @@ impl<'a> Solver<'a> {
         stats.block_solves = pairs.block_solves;
         stats.basis_size = pairs.basis_size;
         stats.peak_bytes = factor.memory.peak(factor.memory.of_search(FIXED + pairs.basis_size, BLOCK, flexible));
-        stats.lanczos_time = started.elapsed();
+        stats.lanczos_time = tried + started.elapsed();
 
         let started = Instant::now();
         let RitzPairs { eigenvalues, shapes, force_residuals } =
@@ -305,41 +354,62 @@ impl<'a> Solver<'a> {
         Ok(Modes { rigid, eigenvalues, shapes, residuals, force_residuals, stats })
     }
 
-    /// K + sM, factored at the first call.
-    pub(crate) fn factor(&self) -> Result<&Shifted, ModalError> {
-        self.factor_for(|memory| memory.of_search(FIXED, BLOCK, 0), &mut |_| ())
+    /// What static answers come from, made at the first call: beside so many modes, where there is memory for the `search` that follows.
+    pub(crate) fn inverse(
+        &self,
+        modes: usize,
+        search: impl Fn(&Foretold) -> usize,
+        progress: &mut dyn FnMut(Progress),
+    ) -> Result<Inverse<'_>, ModalError> {
+        match (self.factor.get(), self.levels.get()) {
+            (Some(factor), _) => return Ok(Inverse::Factor(factor)),
+            (None, Some(levels)) => return Ok(Inverse::Cycles(levels)),
+            (None, None) => {}
+        }
+        let (ordered, estimate_time) = self.ordered(progress)?;
+        if let Some(levels) = self.levels_for(modes, &ordered, progress)? {
+            return Ok(Inverse::Cycles(self.levels.get_or_init(|| levels)));
+        }
+        Ok(Inverse::Factor(self.factor_of(ordered, estimate_time, search, progress)?))
     }
 
-    /// The same, where there is memory for the `search` that follows.
-    fn factor_for(
+    /// The factor, of a body of any kind.
+    pub(crate) fn factor(
         &self,
         search: impl Fn(&Foretold) -> usize,
         progress: &mut dyn FnMut(Progress),
     ) -> Result<&Shifted, ModalError> {
-        if let Some(factor) = self.factor.get() {
-            return Ok(factor);
-        }
+        let (ordered, estimate_time) = self.ordered(progress)?;
+        self.factor_of(ordered, estimate_time, search, progress)
+    }
+
+    /// K + sM with an order of its unknowns, and the time that it took to choose the shift.
+    fn ordered(&self, progress: &mut dyn FnMut(Progress)) -> Result<(Ordered<'_>, Duration), ModalError> {
         progress(Progress::Ordering);
         let started = Instant::now();
         let shift = self.shift()?;
         let estimate_time = started.elapsed();
-        let mut factor = Shifted::factor(
-            self.stiffness,
-            &self.mass,
-            shift,
-            &self.constraints,
-            self.foretold(),
-            search,
-            |forecast| {
-                progress(Progress::Factorizing(forecast));
-            },
-        )?;
+        let ordered = Ordered::new(self.stiffness, &self.mass, shift, &self.constraints, &self.foretold())?;
+        Ok((ordered, estimate_time))
+    }
+
+    /// The factor, where there is memory for the `search` that follows.
+    fn factor_of(
+        &self,
+        ordered: Ordered<'_>,
+        estimate_time: Duration,
+        search: impl Fn(&Foretold) -> usize,
+        progress: &mut dyn FnMut(Progress),
+    ) -> Result<&Shifted, ModalError> {
+        let mut factor = Shifted::factor(ordered, &self.constraints, self.foretold(), search, |forecast| {
+            progress(Progress::Factorizing(forecast));
+        })?;
         factor.estimate_time = estimate_time;
         Ok(self.factor.get_or_init(|| factor))
     }
 
     /// The shift s, estimated at the first call.
-    fn shift(&self) -> Result<f64, ModalError> {
+    pub(crate) fn shift(&self) -> Result<f64, ModalError> {
         if let Some(shift) = self.shift.get() {
             return Ok(*shift);
         }
@@ -359,9 +429,10 @@ impl<'a> Solver<'a> {
         HeldProblem::new(self.stiffness, &self.mass, &self.constraints, &self.rigid, shift, available)
     }
 
-    /// How many blocks of columns, and columns, the factor of K + sM was used for up to now.
+    /// How many blocks of columns, and columns, the factor was used for up to now: of K + sM, or of its corners in the cycles.
     pub fn solved(&self) -> [usize; 2] {
-        self.factor.get().map_or([0; 2], Shifted::solved)
+        let factor = self.factor.get().or(self.levels.get().map(|levels| &levels.factor));
+        factor.map_or([0; 2], Shifted::solved)
     }
 
     /// Number of flexible modes that there are.
@@ -378,7 +449,7 @@ impl<'a> Solver<'a> {
     }
 
     /// The memory that the matrices take, and what follows from their sizes.
-    fn foretold(&self) -> Foretold {
+    pub(crate) fn foretold(&self) -> Foretold {
         Foretold::new(self.stiffness, self.matrix_bytes, FIXED)
     }
 

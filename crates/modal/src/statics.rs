@@ -5,25 +5,31 @@
 //! ```
 //!
 //! R are the rigid modes that the support leaves: the force is balanced by the inertia of the motion that it causes
-//! (inertia relief). The factor of K + sM preconditions: the spectrum is λ/(λ + s), between about a half and one.
+//! (inertia relief). The factor of K + sM preconditions: the spectrum is λ/(λ + s), between about a half and one. Of bulky bodies
+//! multigrid cycles take its place, of which most of the spectrum is between a half and one as well.
 
 use faer::reborrow::{Reborrow, ReborrowMut};
 use faer::{Accum, ColMut, ColRef, Mat, MatRef, Scale, unzip, zip};
 
 use crate::error::ModalError;
-use crate::foretold::of_vectors;
+use crate::foretold::{Foretold, of_vectors};
 use crate::inertia_relief::InertiaRelief;
 use crate::input::{check_finite_columns, check_rows};
+use crate::lanczos::FIXED;
+use crate::levels::Levels;
+use crate::multigrid::Multigrid;
 use crate::products::Packed;
 use crate::ritz::{RitzPairs, rayleigh_ritz};
 use crate::shifted::{Shifted, SolveScratch};
-use crate::solve::{Modes, Solver};
+use crate::solve::{Inverse, Modes, Solver};
 use crate::tall;
 
 /// The norm of (K + sM)⁻¹ of the residual, relative to that of the force: the error of an answer in the norm of the energy
 /// that is accepted. It is what rounding in K may leave on slender bodies (9e-7 on a bar of 220 times its thickness).
 pub(crate) const ACCEPTED: f64 = 1e-5;
 const MAX_ITERATIONS: usize = 300;
+/// The same with cycles: where these do not do, the factor does.
+const MAX_ITERATIONS_BY_CYCLES: usize = 100;
 /// Forces answered together at the most: the factor is read once for all of them.
 const BLOCK: usize = 16;
 /// What a static answer adds to the modes must be more than this part of it.
@@ -80,7 +86,30 @@ impl Solver<'_> {
             return self.static_response_by(engine.as_ref(), forces);
         }
         memory::check("static answers", of_vectors(expected, modes.natural() + forces.ncols() + 10 * BLOCK))?;
-        let mut statics = Statics::new(self, self.factor()?, modes)?;
+        let search = |memory: &Foretold| memory.of_search(FIXED, BLOCK, 0);
+        match self.inverse(modes.natural(), search, &mut |_| ())? {
+            Inverse::Cycles(levels) => {
+                match self.static_response_with(Inverse::Cycles(levels), modes, forces, accuracy) {
+                    Err(ModalError::StaticNotConverged { .. }) => {
+                        let factor = self.factor(search, &mut |_| ())?;
+                        self.static_response_with(Inverse::Factor(factor), modes, forces, accuracy)
+                    }
+                    answers => answers,
+                }
+            }
+            factor => self.static_response_with(factor, modes, forces, accuracy),
+        }
+    }
+
+    fn static_response_with(
+        &self,
+        inverse: Inverse<'_>,
+        modes: &Modes,
+        forces: MatRef<'_, f64>,
+        accuracy: StaticAccuracy,
+    ) -> Result<Mat<f64>, ModalError> {
+        let mut statics = Statics::new(self, Preconditioner::new(inverse)?, modes)?;
+        let expected = forces.nrows();
         let mut answers = Mat::zeros(expected, forces.ncols());
         let blocks = forces.ncols().div_ceil(BLOCK);
         let at_once = forces.ncols().div_ceil(blocks.max(1)).max(1);
@@ -170,21 +199,20 @@ fn orthonormalize(vectors: [&mut Mat<f64>; 2], wholes: &[f64], least: f64) -> us
 /// What the iterations share.
 struct Statics<'a> {
     solver: &'a Solver<'a>,
-    factor: &'a Shifted,
+    preconditioner: Preconditioner<'a>,
     modes: &'a Modes,
     relief: InertiaRelief<'a>,
     /// M φ of the natural modes.
     m_natural: Mat<f64>,
-    scratch: SolveScratch,
     packed: Vec<Packed>,
 }
 
 impl<'a> Statics<'a> {
-    fn new(solver: &'a Solver<'_>, factor: &'a Shifted, modes: &'a Modes) -> Result<Self, ModalError> {
+    fn new(solver: &'a Solver<'_>, preconditioner: Preconditioner<'a>, modes: &'a Modes) -> Result<Self, ModalError> {
         let mut m_natural = solver.mass.product(modes.shapes.get(.., ..modes.natural()));
         solver.constraints.project(m_natural.as_mut());
-        let (relief, scratch, packed) = (InertiaRelief::new(solver), factor.solve_scratch(BLOCK)?, Vec::new());
-        Ok(Self { solver, factor, modes, relief, m_natural, scratch, packed })
+        let (relief, packed) = (InertiaRelief::new(solver), Vec::new());
+        Ok(Self { solver, preconditioner, modes, relief, m_natural, packed })
     }
 
     /// Answers to up to [`BLOCK`] forces, of which `first` is the number of the first.
@@ -202,13 +230,14 @@ impl<'a> Statics<'a> {
         let scale: Vec<f64> = squared.iter().zip(&along).map(|(squared, along)| squared + along).collect();
         // Along a mode that is not known, (K + sM)⁻¹ K is more than 1 − s/λ of the last that is, and 1 at most.
         let known = self.modes.eigenvalues[..self.modes.natural()].last();
-        let of_first = known.map_or(f64::INFINITY, |lambda| (self.factor.shift / lambda).powi(2));
-        let (mut iterations, mut may_end_early) = (0, true);
+        let of_first = known.map_or(f64::INFINITY, |lambda| (self.preconditioner.shift() / lambda).powi(2));
+        // What a last cycle gains is not told by the step before it.
+        let (mut iterations, mut may_end_early) = (0, matches!(self.preconditioner, Preconditioner::Factor { .. }));
         loop {
             let ended_early = loop {
                 let is_open = |squared: f64, k: usize| squared > tolerance * tolerance * scale[k];
                 let open: Vec<usize> = (0..squared.len()).filter(|k| is_open(squared[*k], *k)).collect();
-                if open.is_empty() || iterations == MAX_ITERATIONS {
+                if open.is_empty() || iterations == self.preconditioner.max_iterations() {
                     break false;
                 }
                 iterations += 1;
@@ -217,7 +246,7 @@ impl<'a> Statics<'a> {
                     follow(search.as_mut().col_mut(*k), part, conditioned.col(*k));
                     follow(shifted.as_mut().col_mut(*k), part, residual.col(*k));
                 }
-                self.unshift(&search, &shifted, &mut stiff);
+                self.stiff(&search, &shifted, &mut stiff);
                 let curvature = dots(&search, &stiff);
                 for k in &open {
                     let step = squared[*k] / curvature[*k];
@@ -269,25 +298,81 @@ impl<'a> Statics<'a> {
         let mut squared = vec![0.0; forces.ncols()];
         for (part, squared) in parts.col_iter_mut().zip(&mut squared) {
             for (part, lambda) in part.iter_mut().zip(&self.modes.eigenvalues) {
-                *squared += *part * *part / (lambda + self.factor.shift);
+                *squared += *part * *part / (lambda + self.preconditioner.shift());
                 *part /= lambda;
             }
         }
         (tall::product(natural, parts.as_ref()), left, squared)
     }
 
-    /// (K + sM)⁻¹ of forces.
+    /// About (K + sM)⁻¹ of forces.
     fn precondition(&mut self, forces: &Mat<f64>, displacements: &mut Mat<f64>) {
         displacements.copy_from(forces);
-        self.factor.solve_in_place(displacements.as_mut(), &mut self.scratch);
+        self.preconditioner.apply(displacements);
     }
 
-    /// K u of displacements for which (K + sM) u is known, without reactions.
-    fn unshift(&mut self, displacements: &Mat<f64>, shifted: &Mat<f64>, forces: &mut Mat<f64>) {
-        self.solver.mass.product_into(displacements.as_ref(), forces.as_mut(), &mut self.packed);
-        self.solver.constraints.project(forces.as_mut());
-        for (force, shifted) in forces.col_iter_mut().zip(shifted.col_iter()) {
-            follow(force, -self.factor.shift, shifted);
+    /// K u, without reactions, of displacements for which (K + sM) u is known where there is its factor.
+    fn stiff(&mut self, displacements: &Mat<f64>, shifted: &Mat<f64>, forces: &mut Mat<f64>) {
+        let Self { solver, preconditioner, packed, .. } = self;
+        match preconditioner {
+            Preconditioner::Factor { factor, .. } => {
+                solver.mass.product_into(displacements.as_ref(), forces.as_mut(), packed);
+                solver.constraints.project(forces.as_mut());
+                for (force, shifted) in forces.col_iter_mut().zip(shifted.col_iter()) {
+                    follow(force, -factor.shift, shifted);
+                }
+            }
+            Preconditioner::Cycles { .. } => {
+                solver.stiffness.product_into(displacements.as_ref(), forces.as_mut(), packed);
+            }
+        }
+    }
+}
+
+/// What stands for (K + sM)⁻¹.
+enum Preconditioner<'a> {
+    Factor {
+        factor: &'a Shifted,
+        scratch: SolveScratch,
+    },
+    /// Of a body that nothing holds.
+    Cycles {
+        levels: &'a Levels,
+        multigrid: Box<Multigrid<'a>>,
+    },
+}
+
+impl<'a> Preconditioner<'a> {
+    fn new(inverse: Inverse<'a>) -> Result<Self, ModalError> {
+        Ok(match inverse {
+            Inverse::Factor(factor) => Self::Factor { factor, scratch: factor.solve_scratch(BLOCK)? },
+            Inverse::Cycles(levels) => Self::Cycles { levels, multigrid: Box::new(levels.multigrid()?) },
+        })
+    }
+
+    fn shift(&self) -> f64 {
+        match self {
+            Self::Factor { factor, .. } => factor.shift,
+            Self::Cycles { levels, .. } => levels.factor.shift,
+        }
+    }
+
+    fn max_iterations(&self) -> usize {
+        match self {
+            Self::Factor { .. } => MAX_ITERATIONS,
+            Self::Cycles { .. } => MAX_ITERATIONS_BY_CYCLES,
+        }
+    }
+
+    /// Replaces forces by displacements.
+    fn apply(&mut self, x: &mut Mat<f64>) {
+        match self {
+            Self::Factor { factor, scratch } => factor.solve_in_place(x.as_mut(), scratch),
+            Self::Cycles { levels: Levels { order, .. }, multigrid } => {
+                let mut in_order = order.rows(x.as_ref());
+                multigrid.apply(in_order.as_mut());
+                *x = order.rows_of_nodes(in_order.as_ref());
+            }
         }
     }
 }

@@ -43,6 +43,11 @@ impl<'a> NodalStiffness<'a> {
         Ok(Self { pairs, values })
     }
 
+    /// Of lists that fit together.
+    pub(crate) fn of_checked(start: &'a [usize], nodes: &'a [u32], values: &'a [f64]) -> Self {
+        Self { pairs: NodePairs { start, nodes }, values }
+    }
+
     /// Refuses entries that are not finite, and triangles that differ.
     pub(crate) fn check(&self) -> Result<(), ModalError> {
         let NodePairs { start, nodes } = self.pairs;
@@ -68,7 +73,8 @@ impl<'a> NodalStiffness<'a> {
         (nodes, self.values[first..first + 3 * nodes.len()].as_chunks().0)
     }
 
-    fn blocks(&self) -> NodeBlocks<'a> {
+    /// The same, for products.
+    pub(crate) fn blocks(&self) -> NodeBlocks<'a> {
         NodeBlocks { start: self.pairs.start, nodes: self.pairs.nodes, values: self.values }
     }
 }

@@ -2,6 +2,7 @@
 
 mod ball;
 mod curved;
+mod edge_ends;
 mod fixtures;
 mod geometric_stiffness;
 mod locate;

@@ -110,6 +110,11 @@ impl<'a> Solved<'a> {
         let AssembledMesh { mesh, support, .. } = self.assembled;
         let matrices = self.matrices()?;
         let solver = matrices.solver(mesh.positions(), support).map_err(|error| self.refuse(error))?;
+        let edge_ends = if mesh.has_elements() { mesh.edge_ends() } else { None };
+        let solver = match edge_ends {
+            Some(edge_ends) => solver.with_edge_ends(edge_ends).map_err(|error| self.refuse(error))?,
+            None => solver,
+        };
         let solver = match &self.assembled.scene.solver {
             Some(slepc) => solver.with_engine(slepc.engine()),
             None => solver,

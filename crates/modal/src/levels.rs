@@ -1,0 +1,36 @@
+//! The two levels of the cycles that take the place of the factor of K + sM.
+
+use std::time::Duration;
+
+use crate::coarse::{CoarseMatrices, Corners};
+use crate::error::ModalError;
+use crate::multigrid::Multigrid;
+use crate::shifted::Shifted;
+use crate::smoother::Smoother;
+use crate::spatial_order::{Reordered, SpatialOrder};
+
+/// Both levels, with the nodes in spatial order.
+pub(crate) struct Levels {
+    pub order: SpatialOrder,
+    /// K and M.
+    pub matrices: Reordered,
+    pub smoother: Smoother,
+    pub corners: Corners,
+    /// K_c and M_c of the corners.
+    pub coarse: CoarseMatrices,
+    /// The factor of K_c + sM_c.
+    pub factor: Shifted,
+    /// The most that is held, bytes.
+    pub peak_bytes: usize,
+    /// Time of the orderings, of K + sM as well.
+    pub ordering_time: Duration,
+    /// Time of the rest of them.
+    pub time: Duration,
+}
+
+impl Levels {
+    /// The cycle.
+    pub(crate) fn multigrid(&self) -> Result<Multigrid<'_>, ModalError> {
+        Multigrid::new(&self.smoother, &self.corners, &self.factor)
+    }
+}

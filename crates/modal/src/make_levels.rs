@@ -1,0 +1,130 @@
+//! The bodies whose modes and static answers come by cycles, and the levels for them.
+//!
+//! The factor of a thin body has few entries; that of a bulky one has so many that the cycles take less than half of the time
+//! and of the memory.
+
+use std::time::{Duration, Instant};
+
+use crate::coarse::Corners;
+use crate::columns::Columns;
+use crate::constraints::Constraints;
+use crate::davidson;
+use crate::error::ModalError;
+use crate::foretold::{Foretold, of_vectors};
+use crate::lanczos::{FIXED, random_block};
+use crate::levels::Levels;
+use crate::mass_matrix::MassMatrix;
+use crate::multigrid::Multigrid;
+use crate::products::WIDTH;
+use crate::progress::Progress;
+use crate::shifted::{Ordered, Shifted};
+use crate::smoother::Smoother;
+use crate::solve::Solver;
+use crate::spatial_order::SpatialOrder;
+use crate::stiffness::StiffnessMatrix;
+use crate::support::Support;
+
+/// Multiplications in the factor of K + sM, for each unknown and mode, from which on it takes longer than the cycles: of
+/// blocks, with 80 000 unknowns and twenty modes.
+const LONG: f64 = 1.2e4;
+/// Cycles for fewer modes than this take nearly as long as for so many.
+const FEW: usize = 16;
+/// What a cycle leaves of the strain energy of an error at the most, and the cycles by which that is found. On compact elements
+/// it leaves 0.3, of elements five times as long as thick 0.5; of those ten times as long the search does not end.
+const LEFT_BY_CYCLE: f64 = 0.75;
+const TRIAL_CYCLES: usize = 4;
+
+impl Solver<'_> {
+    /// The levels, should cycles for so many modes be better than the factor of K + sM: not for thin bodies, for those that
+    /// something holds, for flat elements.
+    pub(crate) fn levels_for(
+        &self,
+        modes: usize,
+        ordered: &Ordered<'_>,
+        progress: &mut dyn FnMut(Progress),
+    ) -> Result<Option<Levels>, ModalError> {
+        let long = LONG * self.stiffness.ncols() as f64 * modes.max(FEW) as f64;
+        if ordered.multiplications() <= long {
+            return Ok(None);
+        }
+        let levels = self.make_levels(modes, progress)?;
+        Ok(levels.map(|levels| Levels { ordering_time: levels.ordering_time + ordered.time(), ..levels }))
+    }
+
+    /// The same of a body of any size.
+    pub(crate) fn make_levels(
+        &self,
+        modes: usize,
+        progress: &mut dyn FnMut(Progress),
+    ) -> Result<Option<Levels>, ModalError> {
+        let (Some(edge_ends), StiffnessMatrix::Nodal(stiffness), MassMatrix::Nodal(mass)) =
+            (&self.edge_ends, self.stiffness, &self.mass)
+        else {
+            return Ok(None);
+        };
+        if !self.constraints.is_empty() {
+            return Ok(None);
+        }
+        let started = Instant::now();
+        let order = SpatialOrder::new(self.positions);
+        let ends: Vec<[u32; 2]> =
+            order.sorted(edge_ends).into_iter().map(|ends| ends.map(|node| order.place(node))).collect();
+        let corners = Corners::new(&ends);
+        if davidson::start(modes) > 3 * corners.count() / 2 {
+            return Ok(None);
+        }
+        memory::check("K and M with the nodes in spatial order", self.matrix_bytes)?;
+        let matrices = order.matrices(stiffness, mass);
+        let Some(smoother) = Smoother::new(matrices.stiffness()) else { return Ok(None) };
+
+        let coarse = corners.matrices(matrices.stiffness(), &matrices.mass());
+        let positions = order.sorted(self.positions);
+        let positions: Vec<[f64; 3]> = corners.nodes.iter().map(|node| positions[*node as usize]).collect();
+        let constraints = Constraints::new(&Support::free(), &positions, 3)?;
+        let stiffness = StiffnessMatrix::Nodal(coarse.stiffness());
+        let mass = MassMatrix::Nodal(coarse.mass());
+        let memory = Foretold::new(stiffness, coarse.bytes(), FIXED);
+        let on_corners = Ordered::new(stiffness, &mass, self.shift()?, &constraints, &memory)?;
+        let search = FIXED + davidson::room(modes) + davidson::beside(modes);
+        let beside = 2 * self.matrix_bytes
+            + smoother.bytes()
+            + Multigrid::bytes(self.positions.len(), corners.count())
+            + of_vectors(self.stiffness.ncols(), FIXED + search);
+        let mut peak_bytes = 0;
+        let factor = Shifted::factor(
+            on_corners,
+            &constraints,
+            memory,
+            |_| beside,
+            |forecast| {
+                peak_bytes = forecast.peak_bytes;
+                progress(Progress::Factorizing(forecast));
+            },
+        )?;
+        let (ordering_time, time) = (factor.ordering_time, Duration::ZERO);
+        let levels = Levels { order, matrices, smoother, corners, coarse, factor, peak_bytes, ordering_time, time };
+        let is_near = left_by_cycle(&levels)? <= LEFT_BY_CYCLE;
+        let time = started.elapsed().saturating_sub(ordering_time);
+        Ok(is_near.then_some(Levels { time, ..levels }))
+    }
+}
+
+/// The largest part of the strain energy of an error that a cycle leaves, after a few of them.
+fn left_by_cycle(levels: &Levels) -> Result<f64, ModalError> {
+    let stiffness = StiffnessMatrix::Nodal(levels.matrices.stiffness());
+    let mut multigrid = levels.multigrid()?;
+    let mut error = random_block(stiffness.ncols(), WIDTH, &mut 1);
+    // By random forces: smooth, and with that what a cycle does least about.
+    multigrid.apply(error.as_mut());
+    let mut before = vec![f64::INFINITY; error.ncols()];
+    let mut left = 0.0;
+    for _ in 0..=TRIAL_CYCLES {
+        let mut forces = stiffness.product(error.as_ref());
+        let energies: Vec<f64> = error.col_iter().zip(forces.col_iter()).map(|(e, f)| e.transpose() * f).collect();
+        left = energies.iter().zip(&before).map(|(now, before)| now / before).fold(0.0, f64::max);
+        before = energies;
+        multigrid.apply(forces.as_mut());
+        error -= forces;
+    }
+    Ok(left)
+}

@@ -1,0 +1,65 @@
+//! The modes of a bulky body without the factor of K + sM.
+
+use std::time::Instant;
+
+use crate::columns::Columns;
+use crate::davidson;
+use crate::error::ModalError;
+use crate::lanczos::largest_pairs;
+use crate::levels::Levels;
+use crate::mass_matrix::MassMatrix;
+use crate::progress::Progress;
+use crate::ritz::{RitzPairs, rayleigh_ritz};
+use crate::solve::{Modes, SolveStats, Solver};
+use crate::stiffness::StiffnessMatrix;
+
+impl Solver<'_> {
+    /// The modes by multigrid cycles, or none where these do not find them.
+    pub(crate) fn modes_by_cycles(
+        &self,
+        levels: &Levels,
+        flexible: usize,
+        progress: &mut dyn FnMut(Progress),
+    ) -> Result<Option<Modes>, ModalError> {
+        let started = Instant::now();
+        let Levels { order, matrices, corners, coarse, factor, peak_bytes, .. } = levels;
+        let rigid = order.rows(self.rigid.shapes.as_ref());
+        let at_corners = corners.at_corners(rigid.as_ref());
+        let (wanted, available) = (davidson::start(flexible), 3 * corners.count() - rigid.ncols());
+        let mass = MassMatrix::Nodal(coarse.mass());
+        let guess = largest_pairs(factor, &mass, at_corners.as_ref(), wanted, available, |_| ())?;
+        let guess = corners.prolonged(guess.vectors.as_ref());
+        let (stiffness, mass) = (StiffnessMatrix::Nodal(matrices.stiffness()), MassMatrix::Nodal(matrices.mass()));
+        let mut multigrid = levels.multigrid()?;
+        let pairs =
+            davidson::lowest_pairs(stiffness, &mass, rigid.as_ref(), &mut multigrid, guess, flexible, |converged| {
+                progress(Progress::Lanczos { converged, requested: flexible });
+            })?;
+        drop(multigrid);
+        let Some(pairs) = pairs else { return Ok(None) };
+        let vectors = order.rows_of_nodes(pairs.vectors.as_ref());
+        let lanczos_time = started.elapsed();
+
+        let started = Instant::now();
+        let RitzPairs { eigenvalues, shapes, force_residuals } =
+            rayleigh_ritz(self.stiffness, &self.mass, &self.constraints, &vectors)?;
+        self.refuse_soft(&eigenvalues, &shapes, factor.shift)?;
+        let stats = SolveStats {
+            shift: factor.shift,
+            unknowns: self.stiffness.ncols(),
+            factor_entries: factor.entries(),
+            peak_bytes: *peak_bytes,
+            block_solves: pairs.block_solves,
+            basis_size: pairs.basis_size,
+            cycles: pairs.block_solves,
+            preparation_time: self.preparation_time(),
+            ordering_time: levels.ordering_time,
+            factor_time: levels.time,
+            lanczos_time,
+            ritz_time: started.elapsed(),
+            engine: None,
+        };
+        let (rigid, residuals) = (self.rigid.clone(), pairs.residuals);
+        Ok(Some(Modes { rigid, eigenvalues, shapes, residuals, force_residuals, stats }))
+    }
+}
