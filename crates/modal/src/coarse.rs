@@ -53,6 +53,11 @@ impl Corners {
         self.nodes.len()
     }
 
+    /// Whether so many vectors over corners can be told from each other.
+    pub(crate) fn are_enough_for(&self, vectors: usize) -> bool {
+        2 * vectors <= 3 * self.count()
+    }
+
     /// Number of all nodes.
     pub(crate) fn nodes_in_all(&self) -> usize {
         self.ends.len()
@@ -107,12 +112,14 @@ impl Corners {
         }
         let parts: Vec<Columns> = takers
             .par_chunks(PER_TASK)
-            .map(|takers| {
-                let mut place = vec![u32::MAX; self.count()];
-                let mut columns = Columns::default();
-                takers.iter().for_each(|takers| self.add_column(takers, stiffness, mass, &mut place, &mut columns));
-                columns
-            })
+            .map_init(
+                || vec![u32::MAX; self.count()],
+                |place, takers| {
+                    let mut columns = Columns::default();
+                    takers.iter().for_each(|takers| self.add_column(takers, stiffness, mass, place, &mut columns));
+                    columns
+                },
+            )
             .collect();
         let mut all = CoarseMatrices { start: vec![0], nodes: Vec::new(), stiffness: Vec::new(), mass: Vec::new() };
         for part in parts {

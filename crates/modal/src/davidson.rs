@@ -7,11 +7,12 @@
 use faer::linalg::matmul::matmul;
 use faer::reborrow::{Reborrow, ReborrowMut};
 use faer::{Accum, ColRef, Mat, MatMut, MatRef, Par, unzip, zip};
+use rayon::current_num_threads;
 use rayon::prelude::*;
 
 use crate::dense::symmetric_eigen;
 use crate::error::ModalError;
-use crate::foretold::of_vectors;
+use crate::foretold::{of_dense_products, of_vectors};
 use crate::lanczos::LanczosPairs;
 use crate::mass_matrix::MassMatrix;
 use crate::multigrid::Multigrid;
@@ -21,7 +22,8 @@ use crate::tall;
 
 /// √(rᵀBr/λ) of a pair that is accepted: its λ errs by the square.
 const TOLERANCE: f64 = 1e-9;
-/// What is left of a vector beside the basis is orthogonal to it, to rounding by the inverse of this part.
+/// A round leaves a vector orthogonal to the basis to rounding by the inverse of this part, which is left of it at the least, and a
+/// block orthonormal to rounding by its inverse square.
 const LEFT: f64 = 1e-3;
 /// Directions of a block below this are rounding; its Gram matrix is blind below the square of it.
 const DEPENDENT: f64 = 1e-7;
@@ -40,7 +42,7 @@ const ROWS: usize = 4096;
 /// The `count` pairs with the lowest λ that are M-orthogonal to `rigid`, from the vectors of `start` on, or none where they are
 /// not found in so many steps.
 ///
-/// `report` is called after each step with the number of pairs that have the digits which all have together.
+/// `report` is called after each step with how far it has come, as a number of pairs.
 pub(crate) fn lowest_pairs(
     stiffness: StiffnessMatrix<'_>,
     mass: &MassMatrix<'_>,
@@ -65,7 +67,7 @@ pub(crate) fn lowest_pairs(
         if eigenvalues.len() < count {
             return Ok(None);
         }
-        // Those that have converged stay so: what is kept of the basis has them.
+        // Those that have converged wait for the others: what is kept of the basis has them.
         let open: Vec<usize> = (0..count).filter(|k| residuals[*k] > TOLERANCE).collect();
         if search.size + open.len() > room(count) {
             search.restart(&coefficients, &before)?;
@@ -74,12 +76,22 @@ pub(crate) fn lowest_pairs(
         let lambdas: Vec<f64> = open.iter().map(|k| eigenvalues[*k]).collect();
         let of_open = Mat::from_fn(coefficients.nrows(), open.len(), |i, k| coefficients[(i, open[k])]);
         let squared = search.correct(&lambdas, of_open.as_ref(), multigrid);
-        open.iter().zip(squared).for_each(|(k, squared)| residuals[*k] = squared.max(0.0).sqrt());
+        // B is positive; where it is not, it is no help.
+        if !squared.iter().all(|squared| *squared >= 0.0) {
+            return Ok(None);
+        }
+        open.iter().zip(squared).for_each(|(k, squared)| residuals[*k] = squared.sqrt());
 
         // All pairs come nearer together: the digits that are found tell how far they have come.
         let found = residuals.iter().map(|residual| (residual.ln() / TOLERANCE.ln()).clamp(0.0, 1.0)).sum::<f64>();
         report(found as usize);
-        if residuals.iter().all(|residual| *residual <= TOLERANCE) {
+        let is_found = residuals.iter().all(|residual| *residual <= TOLERANCE);
+        if is_found && open.len() < count {
+            // A pair that was found late has moved the others on: all are looked at together.
+            residuals.fill(f64::INFINITY);
+            continue;
+        }
+        if is_found {
             let basis_size = search.most;
             let vectors = product(search.basis(), coefficients.subcols(0, count));
             return Ok(Some(LanczosPairs { vectors, residuals, block_solves: step, basis_size }));
@@ -142,7 +154,9 @@ impl<'a> Search<'a> {
         count: usize,
     ) -> Result<Self, ModalError> {
         let (rows, fixed) = (rigid.nrows(), rigid.ncols());
-        memory::check("the search for modes", of_vectors(rows, fixed + room(count) + beside(count)))?;
+        let (needed, reserve) =
+            (of_vectors(rows, fixed + room(count) + beside(count)), of_dense_products(current_num_threads()));
+        memory::check_with_reserve("the search for modes", needed, reserve)?;
         let mut columns = Mat::zeros(rows, fixed + room(count));
         columns.as_mut().subcols_mut(0, fixed).copy_from(rigid);
         let zeros = || Mat::zeros(rows, count);
@@ -196,12 +210,14 @@ impl<'a> Search<'a> {
         lambdas.iter().zip(forces.rb().col_iter().zip(next.rb().col_iter())).map(squared).collect()
     }
 
-    /// Takes the next vectors in: M-orthogonal to the basis and M-orthonormal. Returns how many there is something new in.
+    /// Takes the next vectors in: M-orthogonal to the basis and M-orthonormal, without those that are rounding. Returns how many
+    /// there are; none where they do not become orthonormal.
     fn extend(&mut self, count: usize) -> Result<usize, ModalError> {
         let Self { stiffness, mass, columns, forces, momenta, packed, .. } = self;
         let known = self.rigid + self.size;
         let (all, mut new) = columns.as_mut().subcols_mut(0, known + count).split_at_col_mut(known);
         let mut width = count;
+        let mut is_done = false;
         for _ in 0..MAX_ROUNDS {
             let mut block = new.rb_mut().subcols_mut(0, width);
             let mut momenta = momenta.as_mut().subcols_mut(0, width);
@@ -216,9 +232,13 @@ impl<'a> Search<'a> {
             let (transform, is_independent) = orthonormal(&gram)?;
             combine(block, transform.as_ref());
             width = transform.ncols();
-            if width == 0 || is_left && is_independent {
+            is_done = is_left && is_independent;
+            if width == 0 || is_done {
                 break;
             }
+        }
+        if !is_done {
+            return Ok(0);
         }
         let mut forces = forces.as_mut().subcols_mut(0, width);
         stiffness.product_into(new.rb().subcols(0, width), forces.rb_mut(), packed);

@@ -3,7 +3,10 @@
 use std::time::Duration;
 
 use crate::coarse::{CoarseMatrices, Corners};
+use crate::davidson;
 use crate::error::ModalError;
+use crate::foretold::of_vectors;
+use crate::lanczos::FIXED;
 use crate::multigrid::Multigrid;
 use crate::shifted::Shifted;
 use crate::smoother::Smoother;
@@ -20,8 +23,6 @@ pub(crate) struct Levels {
     pub coarse: CoarseMatrices,
     /// The factor of K_c + sM_c.
     pub factor: Shifted,
-    /// The most that is held, bytes.
-    pub peak_bytes: usize,
     /// Time of the orderings, of K + sM as well.
     pub ordering_time: Duration,
     /// Time of the rest of them.
@@ -33,4 +34,10 @@ impl Levels {
     pub(crate) fn multigrid(&self) -> Result<Multigrid<'_>, ModalError> {
         Multigrid::new(&self.smoother, &self.corners, &self.factor)
     }
+}
+
+/// What the search for so many modes takes beside the levels, bytes.
+pub(crate) fn modes_beside(modes: usize, nodes: usize, corners: &Corners) -> usize {
+    let vectors = FIXED + davidson::room(modes) + davidson::beside(modes);
+    Multigrid::bytes(nodes, corners.count()) + of_vectors(3 * nodes, vectors)
 }

@@ -5,6 +5,8 @@
 
 use std::time::{Duration, Instant};
 
+use faer::Mat;
+
 use crate::coarse::Corners;
 use crate::columns::Columns;
 use crate::constraints::Constraints;
@@ -12,9 +14,8 @@ use crate::davidson;
 use crate::error::ModalError;
 use crate::foretold::{Foretold, of_vectors};
 use crate::lanczos::{FIXED, random_block};
-use crate::levels::Levels;
+use crate::levels::{Levels, modes_beside};
 use crate::mass_matrix::MassMatrix;
-use crate::multigrid::Multigrid;
 use crate::products::WIDTH;
 use crate::progress::Progress;
 use crate::shifted::{Ordered, Shifted};
@@ -35,20 +36,21 @@ const LEFT_BY_CYCLE: f64 = 0.75;
 const TRIAL_CYCLES: usize = 4;
 
 impl Solver<'_> {
-    /// The levels, should cycles for so many modes be better than the factor of K + sM: not for thin bodies, for those that
-    /// something holds, for flat elements.
+    /// The levels, should cycles for so many modes be better than the factor of K + sM. None for thin bodies, bodies that something
+    /// holds, flat elements.
     pub(crate) fn levels_for(
         &self,
         modes: usize,
         ordered: &Ordered<'_>,
         progress: &mut dyn FnMut(Progress),
-    ) -> Result<Option<Levels>, ModalError> {
+    ) -> Option<Levels> {
         let long = LONG * self.stiffness.ncols() as f64 * modes.max(FEW) as f64;
         if ordered.multiplications() <= long {
-            return Ok(None);
+            return None;
         }
-        let levels = self.make_levels(modes, progress)?;
-        Ok(levels.map(|levels| Levels { ordering_time: levels.ordering_time + ordered.time(), ..levels }))
+        // What refuses them is no reason to refuse the body.
+        let levels = self.make_levels(modes, progress).ok().flatten();
+        levels.map(|levels| Levels { ordering_time: levels.ordering_time + ordered.time(), ..levels })
     }
 
     /// The same of a body of any size.
@@ -70,10 +72,10 @@ impl Solver<'_> {
         let ends: Vec<[u32; 2]> =
             order.sorted(edge_ends).into_iter().map(|ends| ends.map(|node| order.place(node))).collect();
         let corners = Corners::new(&ends);
-        if davidson::start(modes) > 3 * corners.count() / 2 {
+        if !corners.are_enough_for(davidson::start(modes)) || 2 * corners.count() > self.positions.len() {
             return Ok(None);
         }
-        memory::check("K and M with the nodes in spatial order", self.matrix_bytes)?;
+        memory::check("K and M with the nodes in spatial order", 2 * self.matrix_bytes)?;
         let matrices = order.matrices(stiffness, mass);
         let Some(smoother) = Smoother::new(matrices.stiffness()) else { return Ok(None) };
 
@@ -83,48 +85,51 @@ impl Solver<'_> {
         let constraints = Constraints::new(&Support::free(), &positions, 3)?;
         let stiffness = StiffnessMatrix::Nodal(coarse.stiffness());
         let mass = MassMatrix::Nodal(coarse.mass());
-        let memory = Foretold::new(stiffness, coarse.bytes(), FIXED);
+        let held =
+            2 * self.matrix_bytes + smoother.bytes() + coarse.bytes() + of_vectors(self.stiffness.ncols(), FIXED);
+        let memory = Foretold::new(stiffness, held, FIXED);
         let on_corners = Ordered::new(stiffness, &mass, self.shift()?, &constraints, &memory)?;
-        let search = FIXED + davidson::room(modes) + davidson::beside(modes);
-        let beside = 2 * self.matrix_bytes
-            + smoother.bytes()
-            + Multigrid::bytes(self.positions.len(), corners.count())
-            + of_vectors(self.stiffness.ncols(), FIXED + search);
-        let mut peak_bytes = 0;
+        let beside = modes_beside(modes, self.positions.len(), &corners);
         let factor = Shifted::factor(
             on_corners,
             &constraints,
             memory,
             |_| beside,
             |forecast| {
-                peak_bytes = forecast.peak_bytes;
                 progress(Progress::Factorizing(forecast));
             },
         )?;
         let (ordering_time, time) = (factor.ordering_time, Duration::ZERO);
-        let levels = Levels { order, matrices, smoother, corners, coarse, factor, peak_bytes, ordering_time, time };
-        let is_near = left_by_cycle(&levels)? <= LEFT_BY_CYCLE;
+        let levels = Levels { order, matrices, smoother, corners, coarse, factor, ordering_time, time };
+        let is_near = is_near(&levels)?;
         let time = started.elapsed().saturating_sub(ordering_time);
         Ok(is_near.then_some(Levels { time, ..levels }))
     }
 }
 
-/// The largest part of the strain energy of an error that a cycle leaves, after a few of them.
-fn left_by_cycle(levels: &Levels) -> Result<f64, ModalError> {
+/// Whether a cycle leaves little enough of the strain energy of an error, after a few of them.
+fn is_near(levels: &Levels) -> Result<bool, ModalError> {
     let stiffness = StiffnessMatrix::Nodal(levels.matrices.stiffness());
     let mut multigrid = levels.multigrid()?;
     let mut error = random_block(stiffness.ncols(), WIDTH, &mut 1);
     // By random forces: smooth, and with that what a cycle does least about.
     multigrid.apply(error.as_mut());
-    let mut before = vec![f64::INFINITY; error.ncols()];
-    let mut left = 0.0;
-    for _ in 0..=TRIAL_CYCLES {
-        let mut forces = stiffness.product(error.as_ref());
-        let energies: Vec<f64> = error.col_iter().zip(forces.col_iter()).map(|(e, f)| e.transpose() * f).collect();
-        left = energies.iter().zip(&before).map(|(now, before)| now / before).fold(0.0, f64::max);
-        before = energies;
+    let mut forces = stiffness.product(error.as_ref());
+    let energies = |error: &Mat<f64>, forces: &Mat<f64>| -> Vec<f64> {
+        error.col_iter().zip(forces.col_iter()).map(|(e, f)| e.transpose() * f).collect()
+    };
+    let mut before = energies(&error, &forces);
+    for cycle in 1..=TRIAL_CYCLES {
         multigrid.apply(forces.as_mut());
-        error -= forces;
+        error -= &forces;
+        forces = stiffness.product(error.as_ref());
+        let now = energies(&error, &forces);
+        // No number is no part, either.
+        let most = if cycle == TRIAL_CYCLES { LEFT_BY_CYCLE } else { 1.0 };
+        if !now.iter().zip(&before).all(|(now, before)| now / before <= most) {
+            return Ok(false);
+        }
+        before = now;
     }
-    Ok(left)
+    Ok(true)
 }

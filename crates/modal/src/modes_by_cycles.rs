@@ -5,8 +5,8 @@ use std::time::Instant;
 use crate::columns::Columns;
 use crate::davidson;
 use crate::error::ModalError;
-use crate::lanczos::largest_pairs;
-use crate::levels::Levels;
+use crate::lanczos::{LanczosPairs, largest_pairs};
+use crate::levels::{Levels, modes_beside};
 use crate::mass_matrix::MassMatrix;
 use crate::progress::Progress;
 use crate::ritz::{RitzPairs, rayleigh_ritz};
@@ -22,21 +22,9 @@ impl Solver<'_> {
         progress: &mut dyn FnMut(Progress),
     ) -> Result<Option<Modes>, ModalError> {
         let started = Instant::now();
-        let Levels { order, matrices, corners, coarse, factor, peak_bytes, .. } = levels;
-        let rigid = order.rows(self.rigid.shapes.as_ref());
-        let at_corners = corners.at_corners(rigid.as_ref());
-        let (wanted, available) = (davidson::start(flexible), 3 * corners.count() - rigid.ncols());
-        let mass = MassMatrix::Nodal(coarse.mass());
-        let guess = largest_pairs(factor, &mass, at_corners.as_ref(), wanted, available, |_| ())?;
-        let guess = corners.prolonged(guess.vectors.as_ref());
-        let (stiffness, mass) = (StiffnessMatrix::Nodal(matrices.stiffness()), MassMatrix::Nodal(matrices.mass()));
-        let mut multigrid = levels.multigrid()?;
-        let pairs =
-            davidson::lowest_pairs(stiffness, &mass, rigid.as_ref(), &mut multigrid, guess, flexible, |converged| {
-                progress(Progress::Lanczos { converged, requested: flexible });
-            })?;
-        drop(multigrid);
-        let Some(pairs) = pairs else { return Ok(None) };
+        let Levels { order, factor, corners, .. } = levels;
+        // What ends the search is no reason to refuse the body: the factor may find its modes.
+        let Some(pairs) = self.pairs_by_cycles(levels, flexible, progress).ok().flatten() else { return Ok(None) };
         let vectors = order.rows_of_nodes(pairs.vectors.as_ref());
         let lanczos_time = started.elapsed();
 
@@ -48,7 +36,7 @@ impl Solver<'_> {
             shift: factor.shift,
             unknowns: self.stiffness.ncols(),
             factor_entries: factor.entries(),
-            peak_bytes: *peak_bytes,
+            peak_bytes: factor.memory.peak(modes_beside(flexible, self.positions.len(), corners)),
             block_solves: pairs.block_solves,
             basis_size: pairs.basis_size,
             cycles: pairs.block_solves,
@@ -61,5 +49,28 @@ impl Solver<'_> {
         };
         let (rigid, residuals) = (self.rigid.clone(), pairs.residuals);
         Ok(Some(Modes { rigid, eigenvalues, shapes, residuals, force_residuals, stats }))
+    }
+
+    fn pairs_by_cycles(
+        &self,
+        levels: &Levels,
+        flexible: usize,
+        progress: &mut dyn FnMut(Progress),
+    ) -> Result<Option<LanczosPairs>, ModalError> {
+        let Levels { order, matrices, corners, coarse, factor, .. } = levels;
+        let rigid = order.rows(self.rigid.shapes.as_ref());
+        let at_corners = corners.at_corners(rigid.as_ref());
+        let (wanted, available) = (davidson::start(flexible), 3 * corners.count() - rigid.ncols());
+        if !corners.are_enough_for(wanted) {
+            return Ok(None);
+        }
+        let mass = MassMatrix::Nodal(coarse.mass());
+        let guess = largest_pairs(factor, &mass, at_corners.as_ref(), wanted, available, |_| ())?;
+        let guess = corners.prolonged(guess.vectors.as_ref());
+        let (stiffness, mass) = (StiffnessMatrix::Nodal(matrices.stiffness()), MassMatrix::Nodal(matrices.mass()));
+        let mut multigrid = levels.multigrid()?;
+        davidson::lowest_pairs(stiffness, &mass, rigid.as_ref(), &mut multigrid, guess, flexible, |converged| {
+            progress(Progress::Lanczos { converged, requested: flexible });
+        })
     }
 }

@@ -9,8 +9,8 @@ pub enum Progress {
     Ordering,
     /// K + sM is being factored, or the problem on the corners of the elements where multigrid cycles take its place.
     Factorizing(Forecast),
-    /// Modes that have converged, of those asked for. Where multigrid cycles find them, all come nearer together: so many
-    /// modes have the digits that all have together.
+    /// Modes that have converged, of those asked for. Where multigrid cycles find them, all converge together: then it is how
+    /// far they have come, as a number of modes.
     Lanczos {
         /// Converged.
         converged: usize,

@@ -10,7 +10,7 @@
 
 use faer::{MatMut, MatRef};
 use nalgebra::Matrix3;
-use pulp::{Arch, Simd, WithSimd};
+use pulp::{Arch, Scalar, Simd, WithSimd};
 use rayon::prelude::*;
 
 use crate::node_pairs::NodePairs;
@@ -52,7 +52,7 @@ pub(crate) struct Smoother {
 }
 
 impl Smoother {
-    /// None where a diagonal block has no inverse.
+    /// None where a diagonal block has no inverse in single precision.
     pub(crate) fn new(stiffness: NodalStiffness<'_>) -> Option<Self> {
         let pairs = stiffness.pairs();
         let diagonal: Vec<Matrix3<f64>> =
@@ -67,9 +67,13 @@ impl Smoother {
             unit,
             factors: [[0.0; 2]; DEGREE],
         };
+        let is_finite = |blocks: &[Block]| blocks.iter().flatten().flatten().all(|entry| entry.is_finite());
+        if !is_finite(&smoother.blocks) || !is_finite(&smoother.inverse_diagonal) {
+            return None;
+        }
         let largest = Smoothing::new(&smoother, LANES).largest_eigenvalue();
         smoother.factors = chebyshev(SAFETY * largest);
-        Some(smoother)
+        largest.is_normal().then_some(smoother)
     }
 
     fn pairs(&self) -> NodePairs<'_> {
@@ -241,7 +245,7 @@ impl<const V: usize> WithSimd for Step<'_, V> {
         match LANES / S::F32_LANES {
             1 => self.of_vectors::<S, 1>(simd),
             2 => self.of_vectors::<S, 2>(simd),
-            _ => self.of_vectors::<S, LANES>(simd),
+            _ => self.of_vectors::<Scalar, LANES>(Scalar),
         }
     }
 }

@@ -127,7 +127,7 @@ pub(crate) enum Inverse<'a> {
     Cycles(&'a Levels),
 }
 
-/// A body, what holds it, and (from the first question on) the factor of K + sM that its answers come from.
+/// A body, what holds it, and (from the first question on) what its answers come from: the factor of K + sM, or multigrid cycles.
 pub struct Solver<'a> {
     pub(crate) stiffness: StiffnessMatrix<'a>,
     pub(crate) positions: &'a [[f64; 3]],
@@ -255,8 +255,8 @@ impl<'a> Solver<'a> {
     }
 
     /// The same of second-order elements: for each node the two nodes at the ends of the edge that it is in the middle of, and
-    /// twice itself for a corner. Modes of a body whose factor of K + sM takes long are then found without it, where that is
-    /// faster.
+    /// twice itself for a corner. Modes and static answers of a body whose factor of K + sM takes long are then found without it,
+    /// where that is faster.
     ///
     /// # Errors
     /// [`ModalError::Length`], [`ModalError::NoNode`], [`ModalError::NoCorner`].
@@ -309,14 +309,18 @@ impl<'a> Solver<'a> {
         let mut tried = Duration::ZERO;
         let factor = match (self.factor.get(), self.levels.get()) {
             (Some(factor), _) => factor,
-            (None, Some(levels)) => match self.modes_by_cycles(levels, flexible, &mut progress)? {
-                Some(modes) => return Ok(modes),
-                None => self.factor(search, &mut progress)?,
-            },
+            (None, Some(levels)) => {
+                let started = Instant::now();
+                if let Some(modes) = self.modes_by_cycles(levels, flexible, &mut progress)? {
+                    return Ok(modes);
+                }
+                tried = started.elapsed();
+                self.factor(search, &mut progress)?
+            }
             (None, None) => {
                 let (ordered, estimate_time) = self.ordered(&mut progress)?;
                 let started = Instant::now();
-                if let Some(levels) = self.levels_for(flexible, &ordered, &mut progress)?
+                if let Some(levels) = self.levels_for(flexible, &ordered, &mut progress)
                     && let Some(modes) = self.modes_by_cycles(&levels, flexible, &mut progress)?
                 {
                     self.levels.get_or_init(|| levels);
@@ -367,7 +371,7 @@ impl<'a> Solver<'a> {
             (None, None) => {}
         }
         let (ordered, estimate_time) = self.ordered(progress)?;
-        if let Some(levels) = self.levels_for(modes, &ordered, progress)? {
+        if let Some(levels) = self.levels_for(modes, &ordered, progress) {
             return Ok(Inverse::Cycles(self.levels.get_or_init(|| levels)));
         }
         Ok(Inverse::Factor(self.factor_of(ordered, estimate_time, search, progress)?))
