@@ -82,7 +82,7 @@ bench:
     cargo bench --quiet --package frames-rk4 --bench steps
     cargo bench --quiet --bench effects
 
-# docs/performance.md: against SciPy, SLEPc, CalculiX and Exudyn (`quick`: a quarter of an hour, `full`: up to a million unknowns; parts: `modes`, `size`, `loop`, `page`).
+# docs/performance.md: against SciPy, SLEPc, CalculiX and Exudyn (`quick`: twenty minutes, `full`: hours, with all peers to their ends; parts: `modes`, `size`, `loop`, `page`).
 performance *what: build
     .tools/performance/bin/python benches/performance/performance.py {{what}}
 

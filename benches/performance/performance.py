@@ -21,14 +21,13 @@ class Effort:
     runs: int  # of each program
     once: float  # a program that takes longer than so many seconds is run only once
     patience: float  # a peer that takes longer than so many seconds is stopped and left out
-    sizes: int  # of each shape in the part `size`
     loop_seconds: float  # the longest run of Exudyn
 
 
 EFFORTS = {
-    "quick": Effort(runs=2, once=10, patience=120, sizes=3, loop_seconds=8),
-    "usual": Effort(runs=3, once=120, patience=1200, sizes=4, loop_seconds=60),
-    "full": Effort(runs=3, once=120, patience=3600, sizes=5, loop_seconds=60),
+    "quick": Effort(runs=2, once=20, patience=120, loop_seconds=8),
+    "usual": Effort(runs=3, once=120, patience=1200, loop_seconds=60),
+    "full": Effort(runs=3, once=120, patience=3600, loop_seconds=60),
 }
 PARTS = {"modes": modes.measure, "size": size.measure, "loop": loop.measure}
 

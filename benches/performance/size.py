@@ -11,7 +11,7 @@ def measure(store, effort):
     """Each size `effort.runs` times in turn; those that take longer than `effort.once` seconds only once."""
     for turn in range(effort.runs):
         for shape, sizes in SIZES.items():
-            for size in sizes[: effort.sizes]:
+            for size in sizes:
                 case = Case(shape, size)
                 first = store.results.get(f"{case.name}, 0")
                 if turn > 0 and first["seconds"] > effort.once:
