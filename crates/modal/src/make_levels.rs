@@ -33,6 +33,7 @@ const FEW: usize = 16;
 /// What a cycle leaves of the strain energy of an error at the most, and the cycles by which that is found. On compact elements
 /// it leaves 0.3, of elements five times as long as thick 0.5; of those ten times as long the search does not end.
 const LEFT_BY_CYCLE: f64 = 0.75;
+const LEFT_ON_BLOCKS: f64 = 0.35;
 const TRIAL_CYCLES: usize = 4;
 
 impl Solver<'_> {
@@ -49,8 +50,11 @@ impl Solver<'_> {
             return None;
         }
         // What refuses them is no reason to refuse the body.
-        let levels = self.make_levels(modes, progress).ok().flatten();
-        levels.map(|levels| Levels { ordering_time: levels.ordering_time + ordered.time(), ..levels })
+        let levels = self.make_levels(modes, progress).ok().flatten()?;
+        // Cycles that leave more have to be more.
+        let more = LEFT_ON_BLOCKS.ln() / levels.left.max(LEFT_ON_BLOCKS).ln();
+        let is_worth_it = ordered.multiplications() > long * more;
+        is_worth_it.then(|| Levels { ordering_time: levels.ordering_time + ordered.time(), ..levels })
     }
 
     /// The same of a body of any size.
@@ -100,15 +104,16 @@ impl Solver<'_> {
             },
         )?;
         let (ordering_time, time) = (factor.ordering_time, Duration::ZERO);
-        let levels = Levels { order, matrices, smoother, corners, coarse, factor, ordering_time, time };
-        let is_near = is_near(&levels)?;
+        let levels = Levels { order, matrices, smoother, corners, coarse, factor, left: 1.0, ordering_time, time };
+        let left = left_by_cycle(&levels)?;
         let time = started.elapsed().saturating_sub(ordering_time);
-        Ok(is_near.then_some(Levels { time, ..levels }))
+        Ok(left.filter(|left| *left <= LEFT_BY_CYCLE).map(|left| Levels { left, time, ..levels }))
     }
 }
 
-/// Whether a cycle leaves little enough of the strain energy of an error, after a few of them.
-fn is_near(levels: &Levels) -> Result<bool, ModalError> {
+/// The largest part of the strain energy of an error that a cycle leaves, after a few of them. None where one leaves more than
+/// there was.
+fn left_by_cycle(levels: &Levels) -> Result<Option<f64>, ModalError> {
     let stiffness = StiffnessMatrix::Nodal(levels.matrices.stiffness());
     let mut multigrid = levels.multigrid()?;
     let mut error = random_block(stiffness.ncols(), WIDTH, &mut 1);
@@ -119,17 +124,19 @@ fn is_near(levels: &Levels) -> Result<bool, ModalError> {
         error.col_iter().zip(forces.col_iter()).map(|(e, f)| e.transpose() * f).collect()
     };
     let mut before = energies(&error, &forces);
-    for cycle in 1..=TRIAL_CYCLES {
+    let mut left = 0.0;
+    for _ in 0..TRIAL_CYCLES {
         multigrid.apply(forces.as_mut());
         error -= &forces;
         forces = stiffness.product(error.as_ref());
         let now = energies(&error, &forces);
-        // No number is no part, either.
-        let most = if cycle == TRIAL_CYCLES { LEFT_BY_CYCLE } else { 1.0 };
-        if !now.iter().zip(&before).all(|(now, before)| now / before <= most) {
-            return Ok(false);
+        let parts: Vec<f64> = now.iter().zip(&before).map(|(now, before)| now / before).collect();
+        // What is no number is not within these, either.
+        if !parts.iter().all(|part| (0.0..=1.0).contains(part)) {
+            return Ok(None);
         }
+        left = parts.into_iter().fold(0.0, f64::max);
         before = now;
     }
-    Ok(true)
+    Ok(Some(left))
 }
