@@ -100,7 +100,7 @@ impl Corners {
 
     /// The rows of a block at the corners.
     pub(crate) fn at_corners(&self, x: MatRef<'_, f64>) -> Mat<f64> {
-        Mat::from_fn(3 * self.count(), x.ncols(), |row, k| x[(3 * self.nodes[row / 3] as usize + row % 3, k)])
+        rows_at(&self.nodes, x)
     }
 
     /// PᵀKP and PᵀMP.
@@ -178,6 +178,11 @@ impl Corners {
         }
         columns.mass.extend(found.iter().map(|(.., mass)| mass));
     }
+}
+
+/// The rows of these nodes, in their order.
+pub(crate) fn rows_at(nodes: &[u32], x: MatRef<'_, f64>) -> Mat<f64> {
+    Mat::from_fn(3 * nodes.len(), x.ncols(), |row, k| x[(3 * nodes[row / 3] as usize + row % 3, k)])
 }
 
 impl CoarseMatrices {

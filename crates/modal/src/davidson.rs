@@ -18,6 +18,7 @@ use crate::mass_matrix::MassMatrix;
 use crate::multigrid::Multigrid;
 use crate::products::{Packed, WIDTH};
 use crate::stiffness::StiffnessMatrix;
+use crate::svqb::{Svqb, norms};
 use crate::tall;
 
 /// √(rᵀBr/λ) of a pair that is accepted: its λ errs by the square.
@@ -226,13 +227,12 @@ impl<'a> Search<'a> {
             multiply(block.rb_mut(), Accum::Add, all.rb(), along.as_ref(), -1.0);
             mass.product_into(block.rb(), momenta.rb_mut(), packed);
             let gram = inner(block.rb(), momenta.rb());
-            let left = |k: usize| gram[(k, k)].max(0.0).sqrt();
-            let part = |k: usize| left(k) / left(k).hypot(along.col(k).norm_l2());
-            let is_left = (0..width).all(|k| part(k) > LEFT);
-            let (transform, is_independent) = orthonormal(&gram)?;
+            let part = |(k, left): (usize, f64)| left / left.hypot(along.col(k).norm_l2());
+            let is_left = norms(&gram).into_iter().enumerate().map(part).all(|part| part > LEFT);
+            let Svqb { transform, well_conditioned, .. } = orthonormal(&gram)?;
             combine(block, transform.as_ref());
             width = transform.ncols();
-            is_done = is_left && is_independent;
+            is_done = is_left && well_conditioned;
             if width == 0 || is_done {
                 break;
             }
@@ -258,7 +258,7 @@ impl<'a> Search<'a> {
         for _ in 0..2 {
             let along = inner(lowest, last.as_ref());
             multiply(last.as_mut(), Accum::Add, lowest, along.as_ref(), -1.0);
-            let (transform, _) = orthonormal(&inner(last.as_ref(), last.as_ref()))?;
+            let Svqb { transform, .. } = orthonormal(&inner(last.as_ref(), last.as_ref()))?;
             last = product(last.as_ref(), transform.as_ref());
         }
         let kept = tall::side_by_side(lowest, last.as_ref());
@@ -290,15 +290,9 @@ fn combine(x: MatMut<'_, f64>, h: MatRef<'_, f64>) {
     });
 }
 
-/// What makes a block with this Gram matrix orthonormal, without what is rounding in it; and whether none of it is near to that.
-fn orthonormal(gram: &Mat<f64>) -> Result<(Mat<f64>, bool), ModalError> {
-    let count = gram.nrows();
-    let unit = |k: usize| if gram[(k, k)] > 0.0 { 1.0 / gram[(k, k)].sqrt() } else { 0.0 };
-    let scaled = Mat::from_fn(count, count, |i, j| 0.5 * (gram[(i, j)] + gram[(j, i)]) * unit(i) * unit(j));
-    let (values, vectors) = symmetric_eigen(&scaled)?;
-    let kept: Vec<usize> = (0..count).filter(|k| values[*k] > DEPENDENT * DEPENDENT).collect();
-    let transform = Mat::from_fn(count, kept.len(), |i, k| unit(i) * vectors[(i, kept[k])] / values[kept[k]].sqrt());
-    Ok((transform, kept.iter().all(|k| values[*k] > LEFT * LEFT)))
+/// What makes a block with this Gram matrix orthonormal, without what is rounding in it.
+fn orthonormal(gram: &Mat<f64>) -> Result<Svqb, ModalError> {
+    Svqb::new(gram, &norms(gram), LEFT * LEFT, |value, _| value > DEPENDENT * DEPENDENT)
 }
 
 /// AᵀB. As with [`tall`], rows are cut at fixed places, so that the result is the same for any number of threads; these products

@@ -13,6 +13,7 @@ use crate::foretold::of_vectors;
 use crate::mass_matrix::MassMatrix;
 use crate::products::Packed;
 use crate::shifted::{Shifted, SolveScratch};
+use crate::svqb::{Svqb, norms};
 use crate::tall;
 
 /// Columns of the rigid modes, zero for those that are missing.
@@ -33,8 +34,6 @@ const INDEPENDENT: f64 = 1e-4;
 /// A round that takes out less than this of a block leaves no more than rounding: the next would take out as small a part
 /// of that.
 const SETTLED: f64 = 1e-6;
-/// The most that one round stretches a direction is the inverse of this; its Gram matrix is blind below.
-const STRETCH: f64 = 1e-7;
 /// Rounds of orthogonalisation: one or two as a rule, a third where directions had to be stretched.
 const MAX_ROUNDS: usize = 4;
 /// More block steps than this (each mode wanted adds its share) mean that something is wrong.
@@ -281,11 +280,6 @@ impl<'a> Basis<'a> {
     }
 }
 
-/// Lengths of the columns that have a Gram matrix.
-fn norms(gram: &Mat<f64>) -> Vec<f64> {
-    (0..gram.nrows()).map(|i| gram[(i, i)].max(0.0).sqrt()).collect()
-}
-
 /// Whether a round took out of columns of these lengths no more than rounding.
 fn is_settled(taken_out: &Mat<f64>, norms: &[f64]) -> bool {
     norms.iter().enumerate().all(|(j, norm)| taken_out.col(j).norm_l2() <= SETTLED * norm)
@@ -310,15 +304,6 @@ fn times(block: &mut Mat<f64>, transform: &Mat<f64>, spare: &mut Mat<f64>) {
     std::mem::swap(block, spare);
 }
 
-/// Orthonormalisation of a block from its Gram matrix WᵀMW: W·transform is closer to orthonormal than W, and
-/// W = (W·transform)·inverse up to what is dropped.
-struct Svqb {
-    transform: Mat<f64>,
-    inverse: Mat<f64>,
-    /// The block was so far from dependent that W·transform is orthonormal, to rounding or nearly so.
-    well_conditioned: bool,
-}
-
 impl Svqb {
     /// For a block out of which the `coefficients` were taken, the `last` of them in this round. Nothing counts that is
     /// rounding of what was taken out.
@@ -336,23 +321,6 @@ impl Svqb {
     /// For a block that [`first`](Self::first) has scaled: what is still small is rounding.
     fn again(gram: &Mat<f64>) -> Result<Self, ModalError> {
         Self::new(gram, &vec![1.0; gram.nrows()], 0.5, |value, _| value > DEPENDENT)
-    }
-
-    /// `norms` scale the columns; `keep` is asked with each eigenvalue of the scaled Gram matrix and its length in W. The block
-    /// is well conditioned where all of them are above `well`.
-    fn new(gram: &Mat<f64>, norms: &[f64], well: f64, keep: impl Fn(f64, f64) -> bool) -> Result<Self, ModalError> {
-        let size = gram.nrows();
-        let unit = |i: usize| if norms[i] > 0.0 { 1.0 / norms[i] } else { 0.0 };
-        let scaled = Mat::from_fn(size, size, |i, j| 0.5 * (gram[(i, j)] + gram[(j, i)]) * unit(i) * unit(j));
-        let (values, u) = symmetric_eigen(&scaled)?;
-        let root = |k: usize| values[k].max(STRETCH * STRETCH).sqrt();
-        let length = |k: usize| root(k) * (0..size).map(|i| (u[(i, k)] * norms[i]).powi(2)).sum::<f64>().sqrt();
-        let kept: Vec<usize> = (0..size).filter(|k| keep(values[*k], length(*k))).collect();
-        Ok(Self {
-            transform: Mat::from_fn(size, kept.len(), |i, j| unit(i) * u[(i, kept[j])] / root(kept[j])),
-            inverse: Mat::from_fn(kept.len(), size, |i, j| root(kept[i]) * u[(j, kept[i])] * norms[j]),
-            well_conditioned: kept.iter().all(|k| values[*k] > well),
-        })
     }
 }
 

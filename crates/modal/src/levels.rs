@@ -39,7 +39,7 @@ impl Levels {
 }
 
 /// What the search for so many modes takes beside the levels, bytes.
-pub(crate) fn modes_beside(modes: usize, nodes: usize, corners: &Corners) -> usize {
+pub(crate) fn modes_beside(modes: usize, corners: &Corners) -> usize {
     let vectors = FIXED + davidson::room(modes) + davidson::beside(modes);
-    Multigrid::bytes(nodes, corners.count()) + of_vectors(3 * nodes, vectors)
+    Multigrid::bytes(corners) + of_vectors(3 * corners.nodes_in_all(), vectors)
 }

@@ -77,6 +77,7 @@ mod subtrees;
 mod supernode;
 mod supernodes;
 mod support;
+mod svqb;
 mod symbolic;
 mod symmetry;
 mod tall;

@@ -3,7 +3,7 @@
 //! The factor of a thin body has few entries; that of a bulky one has so many that the cycles take less than half of the time
 //! and of the memory.
 
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use faer::Mat;
 
@@ -16,6 +16,7 @@ use crate::foretold::{Foretold, of_vectors};
 use crate::lanczos::{FIXED, random_block};
 use crate::levels::{Levels, modes_beside};
 use crate::mass_matrix::MassMatrix;
+use crate::multigrid::Multigrid;
 use crate::products::WIDTH;
 use crate::progress::Progress;
 use crate::shifted::{Ordered, Shifted};
@@ -30,10 +31,12 @@ use crate::support::Support;
 const LONG: f64 = 1.2e4;
 /// Cycles for fewer modes than this take nearly as long as for so many.
 const FEW: usize = 16;
-/// What a cycle leaves of the strain energy of an error at the most, and the cycles by which that is found. On compact elements
-/// it leaves 0.3, of elements five times as long as thick 0.5; of those ten times as long the search does not end.
+/// What a cycle leaves of the strain energy of an error at the most: 0.5 on elements five times as long as thick; on those ten
+/// times as long, 0.8, the search does not end.
 const LEFT_BY_CYCLE: f64 = 0.75;
+/// The same on the compact elements of blocks, for which [`LONG`] is.
 const LEFT_ON_BLOCKS: f64 = 0.35;
+/// The cycles by which it is found.
 const TRIAL_CYCLES: usize = 4;
 
 impl Solver<'_> {
@@ -51,7 +54,7 @@ impl Solver<'_> {
         }
         // What refuses them is no reason to refuse the body.
         let levels = self.make_levels(modes, progress).ok().flatten()?;
-        // Cycles that leave more have to be more.
+        // Where a cycle leaves more, the search takes more steps.
         let more = LEFT_ON_BLOCKS.ln() / levels.left.max(LEFT_ON_BLOCKS).ln();
         let is_worth_it = ordered.multiplications() > long * more;
         is_worth_it.then(|| Levels { ordering_time: levels.ordering_time + ordered.time(), ..levels })
@@ -93,7 +96,7 @@ impl Solver<'_> {
             2 * self.matrix_bytes + smoother.bytes() + coarse.bytes() + of_vectors(self.stiffness.ncols(), FIXED);
         let memory = Foretold::new(stiffness, held, FIXED);
         let on_corners = Ordered::new(stiffness, &mass, self.shift()?, &constraints, &memory)?;
-        let beside = modes_beside(modes, self.positions.len(), &corners);
+        let beside = modes_beside(modes, &corners);
         let factor = Shifted::factor(
             on_corners,
             &constraints,
@@ -103,19 +106,18 @@ impl Solver<'_> {
                 progress(Progress::Factorizing(forecast));
             },
         )?;
-        let (ordering_time, time) = (factor.ordering_time, Duration::ZERO);
-        let levels = Levels { order, matrices, smoother, corners, coarse, factor, left: 1.0, ordering_time, time };
-        let left = left_by_cycle(&levels)?;
+        let multigrid = Multigrid::new(&smoother, &corners, &factor)?;
+        let left = left_by_cycle(StiffnessMatrix::Nodal(matrices.stiffness()), multigrid);
+        let Some(left) = left.filter(|left| *left <= LEFT_BY_CYCLE) else { return Ok(None) };
+        let ordering_time = factor.ordering_time;
         let time = started.elapsed().saturating_sub(ordering_time);
-        Ok(left.filter(|left| *left <= LEFT_BY_CYCLE).map(|left| Levels { left, time, ..levels }))
+        Ok(Some(Levels { order, matrices, smoother, corners, coarse, factor, left, ordering_time, time }))
     }
 }
 
 /// The largest part of the strain energy of an error that a cycle leaves, after a few of them. None where one leaves more than
 /// there was.
-fn left_by_cycle(levels: &Levels) -> Result<Option<f64>, ModalError> {
-    let stiffness = StiffnessMatrix::Nodal(levels.matrices.stiffness());
-    let mut multigrid = levels.multigrid()?;
+fn left_by_cycle(stiffness: StiffnessMatrix<'_>, mut multigrid: Multigrid<'_>) -> Option<f64> {
     let mut error = random_block(stiffness.ncols(), WIDTH, &mut 1);
     // By random forces: smooth, and with that what a cycle does least about.
     multigrid.apply(error.as_mut());
@@ -133,10 +135,10 @@ fn left_by_cycle(levels: &Levels) -> Result<Option<f64>, ModalError> {
         let parts: Vec<f64> = now.iter().zip(&before).map(|(now, before)| now / before).collect();
         // What is no number is not within these, either.
         if !parts.iter().all(|part| (0.0..=1.0).contains(part)) {
-            return Ok(None);
+            return None;
         }
         left = parts.into_iter().fold(0.0, f64::max);
         before = now;
     }
-    Ok(Some(left))
+    Some(left)
 }

@@ -36,7 +36,7 @@ impl Solver<'_> {
             shift: factor.shift,
             unknowns: self.stiffness.ncols(),
             factor_entries: factor.entries(),
-            peak_bytes: factor.memory.peak(modes_beside(flexible, self.positions.len(), corners)),
+            peak_bytes: factor.memory.peak(modes_beside(flexible, corners)),
             block_solves: pairs.block_solves,
             basis_size: pairs.basis_size,
             cycles: pairs.block_solves,

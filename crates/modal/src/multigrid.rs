@@ -31,7 +31,7 @@ pub(crate) struct Multigrid<'a> {
 impl<'a> Multigrid<'a> {
     /// With the factor of the matrices over corners.
     pub(crate) fn new(smoother: &'a Smoother, corners: &'a Corners, factor: &'a Shifted) -> Result<Self, ModalError> {
-        memory::check("the multigrid cycle", Self::bytes(corners.nodes_in_all(), corners.count()))?;
+        memory::check("the multigrid cycle", Self::bytes(corners))?;
         let unknowns = 3 * corners.count();
         Ok(Self {
             smoothing: Smoothing::new(smoother, MOST_COLUMNS),
@@ -44,8 +44,9 @@ impl<'a> Multigrid<'a> {
     }
 
     /// Memory held, bytes.
-    pub(crate) fn bytes(nodes: usize, corners: usize) -> usize {
-        Smoothing::bytes(nodes) + 3 * corners * MOST_COLUMNS * (size_of::<f32>() + size_of::<f64>())
+    pub(crate) fn bytes(corners: &Corners) -> usize {
+        Smoothing::bytes(corners.nodes_in_all())
+            + 3 * corners.count() * MOST_COLUMNS * (size_of::<f32>() + size_of::<f64>())
     }
 
     /// Replaces forces (3n×k) by displacements.

@@ -120,6 +120,7 @@ impl Modes {
 }
 
 /// What the answers of a body come from.
+#[derive(Clone, Copy)]
 pub(crate) enum Inverse<'a> {
     /// The factor of K + sM.
     Factor(&'a Shifted),
@@ -307,9 +308,9 @@ impl<'a> Solver<'a> {
         let basis = FIXED + room(flexible, available);
         let search = |memory: &Foretold| memory.of_search(basis, BLOCK, flexible);
         let mut tried = Duration::ZERO;
-        let factor = match (self.factor.get(), self.levels.get()) {
-            (Some(factor), _) => factor,
-            (None, Some(levels)) => {
+        let factor = match self.made() {
+            Some(Inverse::Factor(factor)) => factor,
+            Some(Inverse::Cycles(levels)) => {
                 let started = Instant::now();
                 if let Some(modes) = self.modes_by_cycles(levels, flexible, &mut progress)? {
                     return Ok(modes);
@@ -317,7 +318,7 @@ impl<'a> Solver<'a> {
                 tried = started.elapsed();
                 self.factor(search, &mut progress)?
             }
-            (None, None) => {
+            None => {
                 let (ordered, estimate_time) = self.ordered(&mut progress)?;
                 let started = Instant::now();
                 if let Some(levels) = self.levels_for(flexible, &ordered, &mut progress)
@@ -358,6 +359,12 @@ impl<'a> Solver<'a> {
         Ok(Modes { rigid, eigenvalues, shapes, residuals, force_residuals, stats })
     }
 
+    /// What answers come from, as far as it is made: the factor where cycles were no help.
+    fn made(&self) -> Option<Inverse<'_>> {
+        let levels = || self.levels.get().map(Inverse::Cycles);
+        self.factor.get().map(Inverse::Factor).or_else(levels)
+    }
+
     /// What static answers come from, made at the first call: beside so many modes, where there is memory for the `search` that follows.
     pub(crate) fn inverse(
         &self,
@@ -365,10 +372,8 @@ impl<'a> Solver<'a> {
         search: impl Fn(&Foretold) -> usize,
         progress: &mut dyn FnMut(Progress),
     ) -> Result<Inverse<'_>, ModalError> {
-        match (self.factor.get(), self.levels.get()) {
-            (Some(factor), _) => return Ok(Inverse::Factor(factor)),
-            (None, Some(levels)) => return Ok(Inverse::Cycles(levels)),
-            (None, None) => {}
+        if let Some(made) = self.made() {
+            return Ok(made);
         }
         let (ordered, estimate_time) = self.ordered(progress)?;
         if let Some(levels) = self.levels_for(modes, &ordered, progress) {
@@ -435,8 +440,10 @@ impl<'a> Solver<'a> {
 
     /// How many blocks of columns, and columns, the factor was used for up to now: of K + sM, or of its corners in the cycles.
     pub fn solved(&self) -> [usize; 2] {
-        let factor = self.factor.get().or(self.levels.get().map(|levels| &levels.factor));
-        factor.map_or([0; 2], Shifted::solved)
+        match self.made() {
+            Some(Inverse::Factor(factor) | Inverse::Cycles(Levels { factor, .. })) => factor.solved(),
+            None => [0; 2],
+        }
     }
 
     /// Number of flexible modes that there are.

@@ -5,6 +5,7 @@
 
 use faer::{Mat, MatRef};
 
+use crate::coarse::rows_at;
 use crate::mass::NodalMass;
 use crate::node_pairs::NodePairs;
 use crate::stiffness::NodalStiffness;
@@ -65,12 +66,12 @@ impl SpatialOrder {
 
     /// The rows (3n×k) of nodes, in this order.
     pub(crate) fn rows(&self, x: MatRef<'_, f64>) -> Mat<f64> {
-        Mat::from_fn(x.nrows(), x.ncols(), |row, k| x[(3 * self.nodes[row / 3] as usize + row % 3, k)])
+        rows_at(&self.nodes, x)
     }
 
     /// Rows in this order, in that of the nodes.
     pub(crate) fn rows_of_nodes(&self, x: MatRef<'_, f64>) -> Mat<f64> {
-        Mat::from_fn(x.nrows(), x.ncols(), |row, k| x[(3 * self.places[row / 3] as usize + row % 3, k)])
+        rows_at(&self.places, x)
     }
 
     /// K and M in this order.

@@ -30,7 +30,7 @@ pub(crate) const ACCEPTED: f64 = 1e-5;
 /// The same at the least with cycles, which bulky bodies have: there rounding leaves less.
 const ACCEPTED_BY_CYCLES: f64 = 1e-9;
 const MAX_ITERATIONS: usize = 300;
-/// The same with cycles: where these do not do, the factor does.
+/// The same with cycles.
 const MAX_ITERATIONS_BY_CYCLES: usize = 100;
 /// Forces answered together at the most: the factor is read once for all of them.
 const BLOCK: usize = 16;
@@ -89,17 +89,15 @@ impl Solver<'_> {
         }
         memory::check("static answers", of_vectors(expected, modes.natural() + forces.ncols() + 10 * BLOCK))?;
         let search = |memory: &Foretold| memory.of_search(FIXED, BLOCK, 0);
-        match self.inverse(modes.natural(), search, &mut |_| ())? {
-            Inverse::Cycles(levels) => {
-                match self.static_response_with(Inverse::Cycles(levels), modes, forces, accuracy) {
-                    Err(_) => {
-                        let factor = self.factor(search, &mut |_| ())?;
-                        self.static_response_with(Inverse::Factor(factor), modes, forces, accuracy)
-                    }
-                    answers => answers,
-                }
+        let inverse = self.inverse(modes.natural(), search, &mut |_| ())?;
+        let answers = self.static_response_with(inverse, modes, forces, accuracy);
+        match (inverse, &answers) {
+            // Where cycles do not do, the factor does.
+            (Inverse::Cycles(_), Err(_)) => {
+                let factor = Inverse::Factor(self.factor(search, &mut |_| ())?);
+                self.static_response_with(factor, modes, forces, accuracy)
             }
-            factor => self.static_response_with(factor, modes, forces, accuracy),
+            _ => answers,
         }
     }
 
