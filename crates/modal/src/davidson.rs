@@ -23,6 +23,9 @@ use crate::tall;
 
 /// √(rᵀBr/λ) of a pair that is accepted: its λ errs by the square.
 const TOLERANCE: f64 = 1e-9;
+/// Of the lowest modes of a slender body, whose λ is far below the largest of the mesh, rounding leaves more than [`TOLERANCE`]. A
+/// pair as near as this that comes no nearer in a step has come to that.
+const NEAR: f64 = 1e-7;
 /// A round leaves a vector orthogonal to the basis to rounding by the inverse of this part, which is left of it at the least, and a
 /// block orthonormal to rounding by its inverse square.
 const LEFT: f64 = 1e-3;
@@ -63,13 +66,14 @@ pub(crate) fn lowest_pairs(
     // Coefficients of the pairs a step ago.
     let mut before: Mat<f64> = Mat::zeros(0, 0);
     let mut residuals = vec![f64::INFINITY; count];
+    let mut tolerance = TOLERANCE;
     for step in 1..=MOST_STEPS {
         let (mut eigenvalues, mut coefficients) = symmetric_eigen(&search.projected)?;
         if eigenvalues.len() < count {
             return Ok(None);
         }
         // Those that have converged wait for the others: what is kept of the basis has them.
-        let open: Vec<usize> = (0..count).filter(|k| residuals[*k] > TOLERANCE).collect();
+        let open: Vec<usize> = (0..count).filter(|k| residuals[*k] > tolerance).collect();
         if search.size + open.len() > room(count) {
             search.restart(&coefficients, &before)?;
             (eigenvalues, coefficients) = symmetric_eigen(&search.projected)?;
@@ -81,12 +85,18 @@ pub(crate) fn lowest_pairs(
         if !squared.iter().all(|squared| *squared >= 0.0) {
             return Ok(None);
         }
-        open.iter().zip(squared).for_each(|(k, squared)| residuals[*k] = squared.sqrt());
+        for (k, squared) in open.iter().zip(squared) {
+            let residual = squared.sqrt();
+            if (residuals[*k]..=NEAR).contains(&residual) {
+                tolerance = tolerance.max(2.0 * residual);
+            }
+            residuals[*k] = residual;
+        }
 
         // All pairs come nearer together: the digits that are found tell how far they have come.
-        let found = residuals.iter().map(|residual| (residual.ln() / TOLERANCE.ln()).clamp(0.0, 1.0)).sum::<f64>();
+        let found = residuals.iter().map(|residual| (residual.ln() / tolerance.ln()).clamp(0.0, 1.0)).sum::<f64>();
         report(found as usize);
-        let is_found = residuals.iter().all(|residual| *residual <= TOLERANCE);
+        let is_found = residuals.iter().all(|residual| *residual <= tolerance);
         if is_found && open.len() < count {
             // A pair that was found late has moved the others on: all are looked at together.
             residuals.fill(f64::INFINITY);
@@ -100,7 +110,7 @@ pub(crate) fn lowest_pairs(
         if step >= FIRST_STEPS && found * (MOST_STEPS as f64) < (count * step) as f64 {
             return Ok(None);
         }
-        let still: Vec<usize> = (0..open.len()).filter(|k| residuals[open[*k]] > TOLERANCE).collect();
+        let still: Vec<usize> = (0..open.len()).filter(|k| residuals[open[*k]] > tolerance).collect();
         let mut next = search.next(open.len());
         for (to, from) in still.iter().enumerate().filter(|(to, from)| to < *from) {
             let (left, right) = next.rb_mut().split_at_col_mut(*from);

@@ -23,8 +23,6 @@ pub(crate) struct Levels {
     pub coarse: CoarseMatrices,
     /// The factor of K_c + sM_c.
     pub factor: Shifted,
-    /// The part of the strain energy of an error that a cycle leaves.
-    pub left: f64,
     /// Time of the orderings, of K + sM as well.
     pub ordering_time: Duration,
     /// Time of the rest of them.

@@ -14,7 +14,7 @@ use crate::multigrid::Multigrid;
 use crate::rigid_fields::rigid_fields;
 use crate::shifted::{Ordered, Shifted};
 use crate::smoother::Smoother;
-use crate::solve::Solver;
+use crate::solve::{Inverse, Solver};
 use crate::statics::StaticAccuracy;
 use crate::stiffness::StiffnessMatrix;
 use crate::support::Support;
@@ -208,6 +208,26 @@ fn static_answers_by_cycles_are_those_by_the_factor() {
         }
     }
     assert!(by_cycles.solved()[0] > 0);
+}
+
+/// Rounding in K, of a body of 400 times its thickness.
+const ROUNDING_IN_K: f64 = 1e-6;
+
+#[test]
+fn cycles_end_where_rounding_leaves_no_more() {
+    let block = Block::new([400, 1, 1]);
+    let (by_factor, by_cycles) = (solver(&block), solver_by_cycles(&block));
+    let (expected, found) = (by_factor.modes(20, |_| ()).unwrap(), by_cycles.modes(20, |_| ()).unwrap());
+    for (found, expected) in found.eigenvalues.iter().zip(&expected.eigenvalues) {
+        assert!((found / expected - 1.0).abs() < ROUNDING_IN_K, "{found} instead of {expected}");
+    }
+    let forces = Mat::from_fn(3 * block.mesh.positions().len(), 1, |row, _| f64::from(row == 100));
+    let respond =
+        |solver: &Solver<'_>, modes| solver.static_response_from(modes, forces.as_ref(), StaticAccuracy::Full).unwrap();
+    let (found, expected) = (respond(&by_cycles, &found), respond(&by_factor, &expected));
+    assert!((&found - &expected).norm_l2() < ROUNDING_IN_K * expected.norm_l2());
+    // The factor did not have to help.
+    assert!(matches!(by_cycles.inverse(1, |_| 0, &mut |_| ()), Ok(Inverse::Cycles(_))));
 }
 
 #[test]

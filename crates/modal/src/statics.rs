@@ -27,8 +27,6 @@ use crate::tall;
 /// The norm of (K + sM)⁻¹ of the residual, relative to that of the force: the error of an answer in the norm of the energy
 /// that is accepted. It is what rounding in K may leave on slender bodies (9e-7 on a bar of 220 times its thickness).
 pub(crate) const ACCEPTED: f64 = 1e-5;
-/// The same at the least with cycles, which bulky bodies have: there rounding leaves less.
-const ACCEPTED_BY_CYCLES: f64 = 1e-9;
 const MAX_ITERATIONS: usize = 300;
 /// The same with cycles.
 const MAX_ITERATIONS_BY_CYCLES: usize = 100;
@@ -234,11 +232,14 @@ impl<'a> Statics<'a> {
         // What a last cycle gains is not told by the step before it.
         let (mut iterations, mut may_end_early) = (0, matches!(self.preconditioner, Preconditioner::Factor { .. }));
         loop {
-            let ended_early = loop {
+            let end = loop {
                 let is_open = |squared: f64, k: usize| squared > tolerance * tolerance * scale[k];
                 let open: Vec<usize> = (0..squared.len()).filter(|k| is_open(squared[*k], *k)).collect();
-                if open.is_empty() || iterations == self.preconditioner.max_iterations() {
-                    break false;
+                if open.is_empty() {
+                    break End::Converged;
+                }
+                if iterations == self.preconditioner.max_iterations() {
+                    break End::Iterations;
                 }
                 iterations += 1;
                 for k in &open {
@@ -258,7 +259,7 @@ impl<'a> Statics<'a> {
                 let ends = open.iter().all(|k| !is_open(squared[*k] * gain(*k) * gain(*k), *k));
                 open.iter().for_each(|k| before[*k] = squared[*k]);
                 if ends && may_end_early {
-                    break true;
+                    break End::Early;
                 }
                 self.relief.balance(&mut residual);
                 self.precondition(&residual, &mut conditioned);
@@ -273,12 +274,12 @@ impl<'a> Statics<'a> {
                 let gain = (squared[k] / before[k]).min(1.0);
                 (squared[k] * gain / scale[k]).sqrt()
             };
-            let accepted = self.preconditioner.accepted(tolerance);
+            let accepted = self.preconditioner.accepted(end, tolerance);
             let is_refused = |k: &usize| scale[*k] > 0.0 && (left(*k).is_nan() || left(*k) >= accepted);
             match (0..squared.len()).find(is_refused) {
                 None => break,
                 // The last step has gained less than those before it: go on from here.
-                Some(_) if ended_early => may_end_early = false,
+                Some(_) if end == End::Early => may_end_early = false,
                 Some(k) => {
                     let (column, residual) = (first + k, left(k));
                     return Err(ModalError::StaticNotConverged { column, iterations, residual, tolerance: accepted });
@@ -330,6 +331,17 @@ impl<'a> Statics<'a> {
     }
 }
 
+/// Why an iteration has ended.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum End {
+    /// By the residuals that it carries along, all answers are as good as was asked.
+    Converged,
+    /// A last solution will make them so.
+    Early,
+    /// No more iterations are allowed.
+    Iterations,
+}
+
 /// What stands for (K + sM)⁻¹, and gives the norm of what is left of forces.
 enum Preconditioner<'a> {
     Factor {
@@ -366,10 +378,11 @@ impl<'a> Preconditioner<'a> {
     }
 
     /// The error of an answer that is accepted, where `tolerance` was asked for.
-    fn accepted(&self, tolerance: f64) -> f64 {
-        match self {
-            Self::Factor { .. } => ACCEPTED,
-            Self::Cycles { .. } => tolerance.max(ACCEPTED_BY_CYCLES),
+    fn accepted(&self, end: End, tolerance: f64) -> f64 {
+        match (self, end) {
+            // What is left is rounding.
+            (Self::Factor { .. }, _) | (Self::Cycles { .. }, End::Converged) => ACCEPTED,
+            (Self::Cycles { .. }, _) => tolerance,
         }
     }
 
