@@ -13,6 +13,7 @@ use faer::{Mat, MatMut, MatRef};
 use nalgebra::{DMatrix, Vector3};
 
 use crate::error::ModalError;
+use crate::renumbering::Renumbering;
 use crate::support::{RigidMotion, Support};
 
 /// A motion that moves the held nodes by less than this, relative to the size of the body, does not move them.
@@ -21,7 +22,7 @@ pub(crate) const NEGLIGIBLE: f64 = 1e-7;
 /// What the held degrees of freedom may do.
 #[derive(Clone)]
 pub(crate) struct Constraints {
-    /// Held degrees of freedom, in rising order.
+    /// Held degrees of freedom.
     rows: Vec<usize>,
     /// Whether each degree of freedom is held.
     held: Vec<bool>,
@@ -90,6 +91,15 @@ impl Constraints {
         let mut held = vec![false; freedoms * count];
         rows.iter().for_each(|row| held[*row] = true);
         Ok(Self { rows, held, motions: Mat::from_fn(allowed.nrows(), allowed.ncols(), |i, j| allowed[(i, j)]) })
+    }
+
+    /// The same of vectors that have the rows of the nodes, three each, in another order.
+    pub(crate) fn reordered(&self, order: &Renumbering) -> Self {
+        let place = |row: &usize| 3 * order.place((row / 3) as u32) as usize + row % 3;
+        let rows: Vec<usize> = self.rows.iter().map(place).collect();
+        let mut held = vec![false; self.held.len()];
+        rows.iter().for_each(|row| held[*row] = true);
+        Self { rows, held, motions: self.motions.clone() }
     }
 
     /// Number of unknowns of the held rows.

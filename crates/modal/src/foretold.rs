@@ -17,6 +17,8 @@ const RIGID: usize = 6;
 /// Blocks of vectors beside the basis: the new one, products with M of it and of two more, a packed one and scratch of the
 /// solver.
 const BLOCKS: usize = 6;
+/// Columns of a packed block.
+const PACKED: usize = 8;
 /// What faer's products of matrices take as scratch where the processor does not tell the size of its caches.
 const CACHE: usize = 32 << 20;
 
@@ -120,14 +122,16 @@ impl Foretold {
         self.factor + (self.shifted + self.scratch).max(search)
     }
 
-    /// The search for modes with a basis of so many vectors, beside the factor, and the `shapes` that come of it at its end.
+    /// The search for modes with a basis of so many vectors, beside the factor, the `shapes` that come of it at its end, and a
+    /// mass matrix over nodes in the order of the factor with the rigid modes in it.
     fn of_basis(&self, vectors: usize, block: usize, shapes: usize) -> usize {
-        WORD * self.unknowns * (vectors + RIGID + BLOCKS * block + shapes)
+        let in_order = 12 * self.entries / 9 + of_vectors(self.unknowns, RIGID);
+        of_vectors(self.unknowns, vectors + RIGID + BLOCKS * block + shapes) + in_order
     }
 
-    /// Rayleigh–Ritz for so many shapes: them, as they come and go, and their products with K and M.
+    /// Rayleigh–Ritz for so many shapes: them, their products with K and M, and a packed block.
     fn of_ritz(&self, shapes: usize) -> usize {
-        of_vectors(self.unknowns, 4 * shapes)
+        of_vectors(self.unknowns, 3 * shapes + PACKED)
     }
 
     /// The search for so many modes with a basis of `size` vectors, and their reduction.
@@ -135,9 +139,9 @@ impl Foretold {
         self.of_basis(size, block, shapes).max(self.of_ritz(shapes)).max(self.of_reduction(shapes))
     }
 
-    /// The reduction to so many shapes, which are there besides: they, their products with M, and both by axes.
+    /// The reduction to so many shapes: they, the columns beside them, products of all with M, and a packed block.
     fn of_reduction(&self, shapes: usize) -> usize {
-        of_vectors(self.unknowns, 5 * shapes + 4 * REDUCED)
+        of_vectors(self.unknowns, 2 * (shapes + REDUCED) + PACKED)
     }
 
     /// The most that is held at a time where the `search` for modes takes so many bytes beside the factor.

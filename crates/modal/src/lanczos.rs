@@ -12,7 +12,7 @@ use crate::error::ModalError;
 use crate::foretold::of_vectors;
 use crate::mass_matrix::MassMatrix;
 use crate::products::Packed;
-use crate::shifted::{Shifted, SolveScratch};
+use crate::shifted::{Inverted, Shifted, SolveScratch};
 use crate::svqb::{Svqb, norms};
 use crate::tall;
 
@@ -52,7 +52,29 @@ pub(crate) struct LanczosPairs {
 ///
 /// `report` is called after each step with the number of pairs that have converged.
 pub(crate) fn largest_pairs(
-    operator: &Shifted,
+    factor: &Shifted,
+    mass: &MassMatrix<'_>,
+    rigid: MatRef<'_, f64>,
+    count: usize,
+    available: usize,
+    report: impl FnMut(usize),
+) -> Result<LanczosPairs, ModalError> {
+    // In the factor's order neighbours are near to each other in memory, which the products with M want, too.
+    if let MassMatrix::Nodal(mass) = mass
+        && let Some((order, inverted)) = factor.in_own_order()
+    {
+        let mass = order.mass(mass);
+        let (mass, rigid) = (MassMatrix::Nodal(mass.as_mass()), order.rows(rigid));
+        let mut pairs = search(&inverted, &mass, rigid.as_ref(), count, available, report)?;
+        order.restore(&mut pairs.vectors);
+        return Ok(pairs);
+    }
+    search(&factor.in_order_of_nodes(), mass, rigid, count, available, report)
+}
+
+/// The same, with all rows in the same order.
+fn search(
+    operator: &Inverted<'_>,
     mass: &MassMatrix<'_>,
     rigid: MatRef<'_, f64>,
     count: usize,

@@ -8,13 +8,13 @@ use crate::error::ModalError;
 use crate::foretold::of_vectors;
 use crate::lanczos::FIXED;
 use crate::multigrid::Multigrid;
+use crate::renumbering::{Renumbering, Reordered};
 use crate::shifted::Shifted;
 use crate::smoother::Smoother;
-use crate::spatial_order::{Reordered, SpatialOrder};
 
 /// Both levels, with the nodes in spatial order.
 pub(crate) struct Levels {
-    pub order: SpatialOrder,
+    pub order: Renumbering,
     /// K and M.
     pub matrices: Reordered,
     pub smoother: Smoother,

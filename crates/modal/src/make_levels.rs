@@ -22,7 +22,7 @@ use crate::progress::Progress;
 use crate::shifted::{Ordered, Shifted};
 use crate::smoother::Smoother;
 use crate::solve::Solver;
-use crate::spatial_order::SpatialOrder;
+use crate::spatial_order::spatial_order;
 use crate::stiffness::StiffnessMatrix;
 use crate::support::Support;
 
@@ -71,7 +71,7 @@ impl Solver<'_> {
             return Ok(None);
         }
         let started = Instant::now();
-        let order = SpatialOrder::new(self.positions);
+        let order = spatial_order(self.positions);
         let ends: Vec<[u32; 2]> =
             order.sorted(edge_ends).into_iter().map(|ends| ends.map(|node| order.place(node))).collect();
         let corners = Corners::new(&ends);

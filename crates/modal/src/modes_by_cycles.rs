@@ -24,13 +24,13 @@ impl Solver<'_> {
         let started = Instant::now();
         let Levels { order, factor, corners, .. } = levels;
         // What ends the search is no reason to refuse the body: the factor may find its modes.
-        let Some(pairs) = self.pairs_by_cycles(levels, flexible, progress).ok().flatten() else { return Ok(None) };
-        let vectors = order.rows_of_nodes(pairs.vectors.as_ref());
+        let Some(mut pairs) = self.pairs_by_cycles(levels, flexible, progress).ok().flatten() else { return Ok(None) };
+        order.restore(&mut pairs.vectors);
         let lanczos_time = started.elapsed();
 
         let started = Instant::now();
         let RitzPairs { eigenvalues, shapes, force_residuals } =
-            rayleigh_ritz(self.stiffness, &self.mass, &self.constraints, &vectors)?;
+            rayleigh_ritz(self.stiffness, &self.mass, &self.constraints, pairs.vectors)?;
         self.refuse_soft(&eigenvalues, &shapes, factor.shift)?;
         let stats = SolveStats {
             shift: factor.shift,

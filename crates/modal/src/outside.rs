@@ -61,8 +61,7 @@ impl Solver<'_> {
         memory::check("the eigenvectors", of_vectors(vectors.nrows(), vectors.ncols() + 6))?;
         InertiaRelief::new(self).unmove(&mut vectors);
         let RitzPairs { eigenvalues, shapes, force_residuals } =
-            rayleigh_ritz(self.stiffness, &self.mass, &self.constraints, &vectors).map_err(dependent)?;
-        drop(vectors);
+            rayleigh_ritz(self.stiffness, &self.mass, &self.constraints, vectors).map_err(dependent)?;
         self.refuse_soft(&eigenvalues, &shapes, shift)?;
         let rounding = self.rounding_of_products(&shapes);
         for (k, (lambda, said)) in eigenvalues.iter().zip(&said).enumerate() {

@@ -2,6 +2,7 @@
 
 use faer::{Mat, MatRef};
 use nalgebra::Vector3;
+use rayon::prelude::*;
 
 use crate::error::ModalError;
 use crate::foretold::of_vectors;
@@ -10,6 +11,11 @@ use crate::mass::NodalMass;
 use crate::pairs::PAIRS;
 use crate::solve::Modes;
 use crate::tall;
+
+/// Nodes that are worked on together: so few that all their rows stay in the processor's cache.
+const NODES: usize = 512;
+/// Columns that a product with M takes as scratch, and those of X and 1 themselves.
+const SCRATCH: usize = 10;
 
 /// The products of the modes, whose shapes and positions fit the mass.
 pub(crate) fn nodal_products(
@@ -21,7 +27,7 @@ pub(crate) fn nodal_products(
     let (n, nf) = (positions.len(), modes.shapes.ncols());
     // Ψ, X and 1 side by side: all constants are products of their rows on one axis with M_s times those on another.
     let columns = 6 + nf + 2;
-    memory::check("the reduced body", of_vectors(3 * n, 4 * columns))?;
+    memory::check("the reduced body", of_vectors(3 * n, columns + SCRATCH))?;
     let mut geometry = Mat::zeros(3 * n, 2);
     for (node, x) in positions.iter().enumerate() {
         let offset = Vector3::from(*x) - rigid.origin;
@@ -31,14 +37,25 @@ pub(crate) fn nodal_products(
         }
     }
     let parts = [rigid.shapes.as_ref(), modes.shapes.as_ref(), geometry.as_ref()];
-    let rows = by_axis(&parts);
     let m_parts = parts.map(|part| nodal.product(part));
-    let m_rows = by_axis(&m_parts.each_ref().map(Mat::as_ref));
-    let product = |a: usize, b: usize| tall::inner(rows[a].as_ref(), m_rows[b].as_ref());
-    // M_s is symmetric.
-    let [xy, yz, zx] = [product(0, 1), product(1, 2), product(2, 0)];
+    let m_parts = m_parts.each_ref().map(Mat::as_ref);
+    let of_nodes = |first: &usize| {
+        let some = |fields: [MatRef<'_, f64>; 3]| {
+            by_axis(&fields.map(|field| field.subrows(3 * first, 3 * NODES.min(n - first))))
+        };
+        let (rows, m_rows) = (some(parts), some(m_parts));
+        // M_s is symmetric.
+        [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0)].map(|(a, b)| tall::inner(rows[a].as_ref(), m_rows[b].as_ref()))
+    };
+    let tasks: Vec<usize> = (0..n).step_by(NODES).collect();
+    let of_all: Vec<[Mat<f64>; 6]> = tasks.par_iter().map(of_nodes).collect();
+    let zeros = std::array::from_fn(|_| Mat::zeros(columns, columns));
+    let [xx, yy, zz, xy, yz, zx] = of_all.into_iter().fold(zeros, |mut sums: [Mat<f64>; 6], products| {
+        sums.iter_mut().zip(products).for_each(|(sum, product)| *sum += product);
+        sums
+    });
     let [yx, zy, xz] = [&xy, &yz, &zx].map(|product| product.transpose().to_owned());
-    let products = [[product(0, 0), xy, xz], [yx, product(1, 1), yz], [zx, zy, product(2, 2)]];
+    let products = [[xx, xy, xz], [yx, yy, yz], [zx, zy, zz]];
 
     let modal = 6 + nf;
     let is_free = rigid.motion.is_free();

@@ -1,7 +1,8 @@
 //! Rayleigh–Ritz: the best eigenpairs of (K, M) among the combinations of given vectors.
 
 use faer::reborrow::Reborrow;
-use faer::{Accum, Mat};
+use faer::{Accum, Mat, MatMut};
+use rayon::prelude::*;
 
 use crate::constraints::Constraints;
 use crate::dense::{symmetric_eigen, whitening};
@@ -23,14 +24,17 @@ pub(crate) struct RitzPairs {
     pub force_residuals: Vec<f64>,
 }
 
+/// Rows that are worked on together: so few that all columns of them stay in the processor's cache.
+const ROWS: usize = 1024;
+
 /// Rayleigh–Ritz of (K, M) on the span of `vectors`.
 pub(crate) fn rayleigh_ritz(
     stiffness: StiffnessMatrix<'_>,
     mass: &MassMatrix<'_>,
     constraints: &Constraints,
-    vectors: &Mat<f64>,
+    vectors: Mat<f64>,
 ) -> Result<RitzPairs, ModalError> {
-    memory::check("the mode shapes and their products with K and M", of_vectors(vectors.nrows(), 4 * vectors.ncols()))?;
+    memory::check("the products of the mode shapes with K and M", of_vectors(vectors.nrows(), 2 * vectors.ncols()))?;
     let zeros = || Mat::zeros(vectors.nrows(), vectors.ncols());
     let (mut m_vectors, mut k_vectors, mut packed) = (zeros(), zeros(), Vec::new());
     mass.product_into(vectors.as_ref(), m_vectors.as_mut(), &mut packed);
@@ -43,16 +47,24 @@ pub(crate) fn rayleigh_ritz(
     let (eigenvalues, vectors_of_projected) = symmetric_eigen(&projected)?;
     let transform = &whitening * vectors_of_projected;
 
-    // Kφ, from which λMφ is taken in place.
     constraints.project(k_vectors.as_mut());
     constraints.project(m_vectors.as_mut());
-    let mut forces = tall::product(k_vectors.as_ref(), transform.as_ref());
-    let norms: Vec<f64> = forces.col_iter().map(|force| force.norm_l2()).collect();
     let scaled = Mat::from_fn(transform.nrows(), transform.ncols(), |i, k| eigenvalues[k] * transform[(i, k)]);
-    tall::multiply(forces.as_mut(), Accum::Add, m_vectors.as_ref(), scaled.as_ref(), -1.0);
-    let force_residuals = forces.col_iter().zip(norms).map(|(rest, norm)| rest.norm_l2() / norm).collect();
-    let mut shapes = forces;
-    tall::multiply(shapes.as_mut(), Accum::Replace, vectors.as_ref(), transform.as_ref(), 1.0);
+    let mut shapes = vectors;
+    // Of each part of the rows: the shapes, in the place of the vectors, and the lengths of Kφ and Kφ − λMφ.
+    let of_part = |(task, mut shapes): (usize, MatMut<'_, f64>)| -> Vec<[f64; 2]> {
+        let [k_vectors, m_vectors] = [&k_vectors, &m_vectors].map(|of| of.subrows(ROWS * task, shapes.nrows()));
+        let mut forces = tall::product(k_vectors, transform.as_ref());
+        let lengths: Vec<f64> = forces.col_iter().map(|force| force.norm_l2()).collect();
+        tall::multiply(forces.as_mut(), Accum::Add, m_vectors, scaled.as_ref(), -1.0);
+        let mut rotated = forces.clone();
+        tall::multiply(rotated.as_mut(), Accum::Replace, shapes.rb(), transform.as_ref(), 1.0);
+        shapes.copy_from(&rotated);
+        lengths.into_iter().zip(forces.col_iter()).map(|(length, rest)| [length, rest.norm_l2()]).collect()
+    };
+    let parts: Vec<_> = shapes.par_row_chunks_mut(ROWS).enumerate().map(of_part).collect();
+    let length = |k: usize, i: usize| parts.iter().fold(0.0, |length: f64, part| length.hypot(part[k][i]));
+    let force_residuals = (0..eigenvalues.len()).map(|k| length(k, 1) / length(k, 0)).collect();
     fix_signs(&mut shapes);
     Ok(RitzPairs { eigenvalues, shapes, force_residuals })
 }

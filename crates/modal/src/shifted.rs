@@ -4,6 +4,7 @@
 //! that they have in common (motions C) are eliminated as a block: with `E = C − A_f⁻¹ A C`, which is
 //! A-orthogonal to all displacements of the other rows, `x = A_f⁻¹ b + E (Eᵀ A E)⁻¹ Eᵀ b`.
 
+use std::borrow::Cow;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
@@ -20,6 +21,7 @@ use crate::error::ModalError;
 use crate::foretold::{Forecast, Foretold, of_dense_products};
 use crate::interleave::interleave;
 use crate::mass_matrix::MassMatrix;
+use crate::renumbering::Renumbering;
 use crate::shifted_matrix::ShiftedMatrix;
 use crate::stiffness::StiffnessMatrix;
 use crate::symbolic::{Supernodal, Symbolic, failed};
@@ -178,19 +180,67 @@ impl Shifted {
     }
 
     /// Replaces forces `x` by the displacements (K + sM)⁻¹ x that the support allows.
+    pub(crate) fn solve_in_place(&self, x: MatMut<'_, f64>, scratch: &mut SolveScratch) {
+        self.in_order_of_nodes().solve_in_place(x, scratch);
+    }
+
+    /// The same for vectors of which the rows are those of the nodes, one after the other.
+    pub(crate) fn in_order_of_nodes(&self) -> Inverted<'_> {
+        Inverted {
+            factor: self,
+            is_in_own_order: false,
+            constraints: Cow::Borrowed(&self.constraints),
+            extensions: Cow::Borrowed(&self.extensions),
+        }
+    }
+
+    /// The same for vectors of which the rows are in the factor's own order, and that order: a search that keeps its vectors so
+    /// need not put them into it for each solution. A factor without supernodes has none.
+    pub(crate) fn in_own_order(&self) -> Option<(Renumbering, Inverted<'_>)> {
+        let Symbolic::Supernodal(Supernodal { order, .. }) = &self.symbolic else { return None };
+        // The rows of a node stay together.
+        let order = Renumbering::new(order.arrays().0.iter().step_by(3).map(|row| (row / 3) as u32).collect());
+        let inverted = Inverted {
+            factor: self,
+            is_in_own_order: true,
+            constraints: Cow::Owned(self.constraints.reordered(&order)),
+            extensions: Cow::Owned(order.rows(self.extensions.as_ref())),
+        };
+        Some((order, inverted))
+    }
+}
+
+/// (K + sM)⁻¹ in the space that the support allows, for vectors of which the rows are in one of two orders.
+pub(crate) struct Inverted<'a> {
+    factor: &'a Shifted,
+    is_in_own_order: bool,
+    /// What the held degrees of freedom may do.
+    pub constraints: Cow<'a, Constraints>,
+    extensions: Cow<'a, Mat<f64>>,
+}
+
+impl Inverted<'_> {
+    /// Scratch memory for [`solve_in_place`](Self::solve_in_place) with up to `columns` columns.
+    pub(crate) fn solve_scratch(&self, columns: usize) -> Result<SolveScratch, ModalError> {
+        self.factor.solve_scratch(columns)
+    }
+
+    /// Replaces forces `x` by the displacements (K + sM)⁻¹ x that the support allows.
     pub(crate) fn solve_in_place(&self, mut x: MatMut<'_, f64>, scratch: &mut SolveScratch) {
-        for (solved, count) in self.solved.iter().zip([1, x.ncols()]) {
+        let Shifted { symbolic, values, solved, .. } = self.factor;
+        for (solved, count) in solved.iter().zip([1, x.ncols()]) {
             solved.fetch_add(count, Ordering::Relaxed);
         }
         let extends = self.extensions.ncols() > 0;
-        let motions = extends.then(|| tall::inner(self.extensions.as_ref(), x.rb()));
+        let motions = extends.then(|| tall::inner(self.extensions.as_ref().as_ref(), x.rb()));
         self.constraints.clear(x.rb_mut());
-        match &self.symbolic {
+        match symbolic {
             Symbolic::Supernodal(Supernodal { order, supernodes, subtrees }) => {
-                let factor = substitution::Factor { supernodes, subtrees, values: &self.values };
-                substitution::solve(factor, order.as_ref(), x.rb_mut(), &mut scratch.dense);
+                let factor = substitution::Factor { supernodes, subtrees, values };
+                let order = (!self.is_in_own_order).then(|| order.as_ref());
+                substitution::solve(factor, order, x.rb_mut(), &mut scratch.dense);
             }
-            Symbolic::Simplicial(symbolic) => LltRef::new(symbolic, &self.values).solve_in_place_with_conj(
+            Symbolic::Simplicial(symbolic) => LltRef::new(symbolic, values).solve_in_place_with_conj(
                 Conj::No,
                 x.rb_mut(),
                 Par::Seq,
@@ -198,7 +248,7 @@ impl Shifted {
             ),
         }
         if let Some(motions) = motions {
-            tall::multiply(x, Accum::Add, self.extensions.as_ref(), motions.as_ref(), 1.0);
+            tall::multiply(x, Accum::Add, self.extensions.as_ref().as_ref(), motions.as_ref(), 1.0);
         }
     }
 }
@@ -242,4 +292,44 @@ fn buffer(needed: StackReq) -> Result<MemBuffer, ModalError> {
     memory::check(FACTOR, bytes)?;
     let left = memory::Left::Unknown;
     Ok(MemBuffer::try_new(needed).map_err(|_| memory::OutOfMemory { what: FACTOR, wanted: bytes, left })?)
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Vector3;
+
+    use super::*;
+    use crate::coarse::tests::Block;
+    use crate::lanczos::random_block;
+    use crate::support::{RigidMotion, Support};
+
+    /// Of a block on a hinge, which gives the held rows an unknown of their own.
+    #[test]
+    fn answers_in_the_factor_s_own_order_are_those_of_the_nodes() {
+        let block = Block::new([6, 5, 4]);
+        let (stiffness, mass) = (StiffnessMatrix::Nodal(block.stiffness()), MassMatrix::Nodal(block.mass()));
+        let held = (0..).zip(block.mesh.positions()).filter(|(_, x)| x[2] < 1e-9).map(|(node, _)| node).collect();
+        let hinge = Support::new(RigidMotion::hinge(Vector3::zeros(), Vector3::x()), held);
+        let constraints = Constraints::new(&hinge, block.mesh.positions(), 3).unwrap();
+        let memory = Foretold::new(stiffness, 0, 6);
+        let ordered = Ordered::new(stiffness, &mass, 1e8, &constraints, &memory).unwrap();
+        let factor = Shifted::factor(ordered, &constraints, memory, |_| 0, |_| ()).unwrap();
+        let (order, in_own_order) = factor.in_own_order().expect("a factor with supernodes");
+        assert!(factor.extensions.ncols() == 1 && !constraints.is_empty());
+
+        let forces = random_block(3 * block.mesh.positions().len(), 5, &mut 3);
+        let mut expected = forces.clone();
+        factor.solve_in_place(expected.as_mut(), &mut factor.solve_scratch(5).unwrap());
+        let mut found = order.rows(forces.as_ref());
+        in_own_order.solve_in_place(found.as_mut(), &mut in_own_order.solve_scratch(5).unwrap());
+        assert!((&found - order.rows(expected.as_ref())).norm_max() < 1e-14 * expected.norm_max());
+
+        let mut expected = forces.clone();
+        factor.constraints.project(expected.as_mut());
+        assert_ne!(expected, forces);
+        let mut found = order.rows(forces.as_ref());
+        in_own_order.constraints.project(found.as_mut());
+        order.restore(&mut found);
+        assert!((found - &expected).norm_max() < 1e-14);
+    }
 }

@@ -352,7 +352,7 @@ impl<'a> Solver<'a> {
 
         let started = Instant::now();
         let RitzPairs { eigenvalues, shapes, force_residuals } =
-            rayleigh_ritz(self.stiffness, &self.mass, &self.constraints, &pairs.vectors)?;
+            rayleigh_ritz(self.stiffness, &self.mass, &self.constraints, pairs.vectors)?;
         self.refuse_soft(&eigenvalues, &shapes, stats.shift)?;
         stats.ritz_time = started.elapsed();
         let (rigid, residuals) = (self.rigid.clone(), pairs.residuals);

@@ -134,7 +134,7 @@ impl Solver<'_> {
         let before = modes.shapes.ncols() - natural;
         let added = tall::side_by_side(modes.shapes.subcols(natural, before), added.as_ref());
         let RitzPairs { eigenvalues, shapes, .. } =
-            rayleigh_ritz(self.stiffness, &self.mass, &self.constraints, &added)?;
+            rayleigh_ritz(self.stiffness, &self.mass, &self.constraints, added)?;
         let mut modes = modes;
         modes.eigenvalues.truncate(natural);
         modes.eigenvalues.extend(eigenvalues);
@@ -393,7 +393,8 @@ impl<'a> Preconditioner<'a> {
             Self::Cycles { levels: Levels { order, .. }, multigrid } => {
                 let mut in_order = order.rows(x.as_ref());
                 multigrid.apply(in_order.as_mut());
-                *x = order.rows_of_nodes(in_order.as_ref());
+                order.restore(&mut in_order);
+                *x = in_order;
             }
         }
     }

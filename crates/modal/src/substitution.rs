@@ -54,18 +54,26 @@ pub(crate) struct Factor<'a> {
     pub values: &'a [f64],
 }
 
-/// Replaces `x` (N×k) by A⁻¹ x. The result does not depend on the number of threads.
-pub(crate) fn solve(factor: Factor<'_>, order: PermRef<'_, usize>, mut x: MatMut<'_, f64>, scratch: &mut Scratch) {
+/// Replaces `x` (N×k) by A⁻¹ x; without an order, its rows are in that of the factor. The result does not depend on the number
+/// of threads.
+pub(crate) fn solve(
+    factor: Factor<'_>,
+    order: Option<PermRef<'_, usize>>,
+    mut x: MatMut<'_, f64>,
+    scratch: &mut Scratch,
+) {
     let groups = x.ncols().div_ceil(MOST);
     let width = x.ncols().div_ceil(groups.max(1)).next_multiple_of(STEP).max(STEP);
-    let (old, new) = order.arrays();
+    let order = order.map(PermRef::arrays);
+    let old = |row: usize| order.map_or(row, |(old, _)| old[row]);
+    let new = |row: usize| order.map_or(row, |(_, new)| new[row]);
     for first in (0..x.ncols()).step_by(width) {
         let columns = width.min(x.ncols() - first);
         let mut x = x.rb_mut().subcols_mut(first, columns);
         scratch.rows.resize(width * x.nrows(), 0.0);
-        scratch.rows.par_chunks_mut(width * ROWS).zip(old.par_chunks(ROWS)).for_each(|(rows, old)| {
-            for (row, old) in rows.chunks_exact_mut(width).zip(old) {
-                row.iter_mut().zip(x.rb().row(*old).iter()).for_each(|(to, from)| *to = *from);
+        scratch.rows.par_chunks_mut(width * ROWS).enumerate().for_each(|(task, rows)| {
+            for (row, place) in rows.chunks_exact_mut(width).zip(ROWS * task..) {
+                row.iter_mut().zip(x.rb().row(old(place)).iter()).for_each(|(to, from)| *to = *from);
             }
         });
         match width {
@@ -75,9 +83,9 @@ pub(crate) fn solve(factor: Factor<'_>, order: PermRef<'_, usize>, mut x: MatMut
             _ => factor.solve::<MOST>(scratch),
         }
         let rows = &scratch.rows;
-        x.rb_mut().par_row_chunks_mut(ROWS).zip(new.par_chunks(ROWS)).for_each(|(x, new)| {
-            for (x, new) in x.row_iter_mut().zip(new) {
-                x.iter_mut().zip(&rows[width * new..]).for_each(|(to, from)| *to = *from);
+        x.rb_mut().par_row_chunks_mut(ROWS).enumerate().for_each(|(task, x)| {
+            for (x, row) in x.row_iter_mut().zip(ROWS * task..) {
+                x.iter_mut().zip(&rows[width * new(row)..]).for_each(|(to, from)| *to = *from);
             }
         });
     }
@@ -304,7 +312,7 @@ pub(crate) mod tests {
                 let mut x = b.clone();
                 let factor = Factor { supernodes: &supernodes, subtrees: &subtrees, values: &interleaved };
                 let order = symbolic.perm().unwrap();
-                pool.install(|| solve(factor, order, x.as_mut(), &mut Scratch::default()));
+                pool.install(|| solve(factor, Some(order), x.as_mut(), &mut Scratch::default()));
                 x
             };
             let (one, three) = (on_threads(1), on_threads(3));
