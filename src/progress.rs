@@ -144,10 +144,11 @@ fn in_words(phase: EnginePhase) -> &'static str {
     }
 }
 
-/// Such as "factoring K + sM (1.5 GB at the most, about 40 s)".
+/// Such as "factoring K + sM (1.5 GB at the most, about 40 s)". The memory is that of the whole search.
 fn factoring(forecast: &Forecast) -> String {
     let time = forecast.time.map_or_else(String::new, |time| format!(", about {:.0} s", time.as_secs_f64().max(1.0)));
-    format!("factoring K + sM ({} at the most{time})", Bytes(forecast.peak_bytes))
+    let what = if forecast.on_corners { "K + sM on the corners" } else { "K + sM" };
+    format!("factoring {what} ({} at the most{time})", Bytes(forecast.peak_bytes))
 }
 
 fn style(template: &str) -> ProgressStyle {

@@ -22,7 +22,7 @@ pub(crate) const NEGLIGIBLE: f64 = 1e-7;
 /// What the held degrees of freedom may do.
 #[derive(Clone)]
 pub(crate) struct Constraints {
-    /// Held degrees of freedom.
+    /// Held degrees of freedom, in the order of the rows of `motions`.
     rows: Vec<usize>,
     /// Whether each degree of freedom is held.
     held: Vec<bool>,

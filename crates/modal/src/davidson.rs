@@ -24,7 +24,8 @@ use crate::tall;
 /// √(rᵀBr/λ) of a pair that is accepted: its λ errs by the square.
 const TOLERANCE: f64 = 1e-9;
 /// Of the lowest modes of a slender body, whose λ is far below the largest of the mesh, rounding leaves more than [`TOLERANCE`]. A
-/// pair as near as this that comes no nearer in a step has come to that.
+/// pair as near as this that comes no nearer in a step has come to that. Twice its residual is then enough for all pairs: the
+/// others need not be better than the worst.
 const NEAR: f64 = 1e-7;
 /// A round leaves a vector orthogonal to the basis to rounding by the inverse of this part, which is left of it at the least, and a
 /// block orthonormal to rounding by its inverse square.
@@ -129,9 +130,9 @@ pub(crate) fn room(count: usize) -> usize {
     start(count) + (STEPS_IN_ROOM + 1) * count
 }
 
-/// Vectors beside the basis: shapes, their products with K and M, those that are found, and a packed block.
+/// Vectors beside the basis: shapes, their products with K and M, those that it begins with or finds, and a packed block.
 pub(crate) fn beside(count: usize) -> usize {
-    4 * count + WIDTH
+    3 * count + start(count) + WIDTH
 }
 
 /// Vectors that a search for `count` pairs begins with, and is left with at a restart.

@@ -3,10 +3,15 @@
 use faer::Mat;
 use nalgebra::Vector3;
 
+use crate::error::ModalError;
+use crate::input::check_rows;
 use crate::mass_matrix::MassMatrix;
 use crate::reduced::ReducedBody;
 use crate::rigid_fields::rigid_fields;
 use crate::turned::turned;
+
+/// What is counted.
+const POSITIONS: &str = "positions";
 
 /// f_ij (N×6, pairs as in [`ReducedBody::PAIRS`]): `−M (I⊗sym([e_i×][e_j×])) X`, X from `origin`, mesh axes. With a mass that
 /// is not a scalar for each pair of nodes, `−sym((I⊗[e_j×]) M H_i)` with the unit rotations `H_i = [e_i × X; e_i]`, which is
@@ -14,15 +19,23 @@ use crate::turned::turned;
 ///
 /// A body that spins at ω about the origin meets the centrifugal force `Σ ω_iω_j f_ij` over all nine ij, so each of the
 /// last three columns counts twice. `Ψ_fᵀ f_ij` is [`crate::Constants::inertia_first`].
-pub fn centrifugal_fields(mass: &MassMatrix<'_>, positions: &[[f64; 3]], origin: &Vector3<f64>) -> Mat<f64> {
+///
+/// # Errors
+/// [`ModalError::Size`] where there are more or fewer positions than nodes.
+pub fn centrifugal_fields(
+    mass: &MassMatrix<'_>,
+    positions: &[[f64; 3]],
+    origin: &Vector3<f64>,
+) -> Result<Mat<f64>, ModalError> {
+    check_rows(POSITIONS, positions.len(), mass.nodes())?;
     if let MassMatrix::General(general) = mass {
         let fields = rigid_fields(positions, origin, general.freedoms);
         let momenta = mass.product(fields.subcols(3, 3));
         let forces: [Mat<f64>; 3] = std::array::from_fn(|axis| turned(momenta.as_ref(), axis));
-        return Mat::from_fn(momenta.nrows(), ReducedBody::PAIRS.len(), |row, pair| {
+        return Ok(Mat::from_fn(momenta.nrows(), ReducedBody::PAIRS.len(), |row, pair| {
             let (i, j) = ReducedBody::PAIRS[pair];
             -0.5 * (forces[j][(row, i)] + forces[i][(row, j)])
-        });
+        }));
     }
     let mut fields = Mat::zeros(3 * positions.len(), ReducedBody::PAIRS.len());
     for (node, position) in positions.iter().enumerate() {
@@ -37,7 +50,7 @@ pub fn centrifugal_fields(mass: &MassMatrix<'_>, positions: &[[f64; 3]], origin:
             }
         }
     }
-    mass.product(fields.as_ref())
+    Ok(mass.product(fields.as_ref()))
 }
 
 /// `M (1⊗e_i)` (N×3): the weight of a unit acceleration of gravity along each axis of the mesh.
@@ -50,16 +63,16 @@ pub fn acceleration_fields(mass: &MassMatrix<'_>) -> Mat<f64> {
 }
 
 /// `M (I⊗[a×]) X` (N×1), X from `origin`: minus the Euler force of a unit angular acceleration about `axis` (a).
+///
+/// # Errors
+/// [`ModalError::Size`] where there are more or fewer positions than nodes.
 pub fn turning_field(
     mass: &MassMatrix<'_>,
     positions: &[[f64; 3]],
     origin: &Vector3<f64>,
     axis: &Vector3<f64>,
-) -> Mat<f64> {
-    let freedoms = match mass {
-        MassMatrix::Nodal(_) => 3,
-        MassMatrix::General(general) => general.freedoms,
-    };
-    let rotations = rigid_fields(positions, origin, freedoms).subcols(3, 3).to_owned();
-    mass.product((rotations * Mat::from_fn(3, 1, |i, _| axis[i])).as_ref())
+) -> Result<Mat<f64>, ModalError> {
+    check_rows(POSITIONS, positions.len(), mass.nodes())?;
+    let rotations = rigid_fields(positions, origin, mass.freedoms()).subcols(3, 3).to_owned();
+    Ok(mass.product((rotations * Mat::from_fn(3, 1, |i, _| axis[i])).as_ref()))
 }

@@ -7,6 +7,9 @@ use faer::linalg::cholesky::llt::factor::{cholesky_in_place, cholesky_in_place_s
 use faer::{Mat, Par, Spec};
 
 use crate::columns::Columns;
+use crate::mass_matrix::MassMatrix;
+use crate::products::WIDTH;
+use crate::reduced_nodal::products_bytes;
 use crate::stiffness::StiffnessMatrix;
 use crate::symbolic::{Supernodal, Symbolic};
 
@@ -17,8 +20,6 @@ const RIGID: usize = 6;
 /// Blocks of vectors beside the basis: the new one, products with M of it and of two more, a packed one and scratch of the
 /// solver.
 const BLOCKS: usize = 6;
-/// Columns of a packed block.
-const PACKED: usize = 8;
 /// What faer's products of matrices take as scratch where the processor does not tell the size of its caches.
 const CACHE: usize = 32 << 20;
 
@@ -38,6 +39,8 @@ pub struct Forecast {
     pub multiplications: f64,
     /// Bytes that are held at the most until the modes are found, with K and M.
     pub peak_bytes: usize,
+    /// Whether it is that of the problem on the corners of the elements, which multigrid cycles use.
+    pub on_corners: bool,
     /// Time of the factorisation, by a trial on this machine; only where it may come to a second and more.
     pub time: Option<Duration>,
 }
@@ -47,7 +50,7 @@ impl Forecast {
         let (factor_entries, multiplications) = (symbolic.entries(), symbolic.multiplications());
         let speed = if multiplications > SHORT { speed(threads) } else { None };
         let time = speed.and_then(|speed| Duration::try_from_secs_f64(multiplications / (SPARSE_SPEED * speed)).ok());
-        Self { factor_entries, multiplications, peak_bytes, time }
+        Self { factor_entries, multiplications, peak_bytes, on_corners: false, time }
     }
 }
 
@@ -69,6 +72,10 @@ pub(crate) struct Foretold {
     entries: usize,
     /// K, M, rigid modes.
     matrices: usize,
+    /// A mass matrix over nodes; none of a general one.
+    nodal_mass: Option<usize>,
+    /// What a search keeps in the order of a factor with supernodes: the mass matrix and the rigid modes.
+    in_order: usize,
     /// Entries of the pattern that the factor's is found by.
     pattern: usize,
     /// The factor of K + sM, with its pattern.
@@ -81,14 +88,18 @@ pub(crate) struct Foretold {
 
 impl Foretold {
     /// K and M take so many bytes.
-    pub(crate) fn new(stiffness: StiffnessMatrix<'_>, matrices: usize, rigid: usize) -> Self {
+    pub(crate) fn new(stiffness: StiffnessMatrix<'_>, mass: &MassMatrix<'_>, matrices: usize, rigid: usize) -> Self {
         let (unknowns, entries) = (stiffness.ncols(), stiffness.entries());
         let matrices = matrices + WORD * rigid * unknowns;
         let pattern = match stiffness {
             StiffnessMatrix::Nodal(_) => entries / 9,
             StiffnessMatrix::General(_) => entries,
         };
-        Self { unknowns, entries, matrices, pattern, factor: 0, shifted: 0, scratch: 0 }
+        let nodal_mass = match mass {
+            MassMatrix::Nodal(_) => Some(mass.bytes()),
+            MassMatrix::General(_) => None,
+        };
+        Self { unknowns, entries, matrices, nodal_mass, in_order: 0, pattern, factor: 0, shifted: 0, scratch: 0 }
     }
 
     /// With the factor, of which the numeric factorisation takes so many bytes of scratch.
@@ -98,7 +109,10 @@ impl Foretold {
                 self.shifted = WORD * (2 * self.entries + self.unknowns);
                 WORD * (simplicial.len_val() + 3 * self.unknowns)
             }
-            Symbolic::Supernodal(Supernodal { supernodes, .. }) => supernodes.bytes() + (WORD * 2 + 4) * self.unknowns,
+            Symbolic::Supernodal(Supernodal { supernodes, .. }) => {
+                self.in_order = self.nodal_mass.map_or(0, |mass| mass + of_vectors(self.unknowns, RIGID));
+                supernodes.bytes() + (WORD * 2 + 4) * self.unknowns
+            }
         };
         self.factor = WORD * symbolic.entries() + pattern;
         self.scratch = scratch;
@@ -122,16 +136,16 @@ impl Foretold {
         self.factor + (self.shifted + self.scratch).max(search)
     }
 
-    /// The search for modes with a basis of so many vectors, beside the factor, the `shapes` that come of it at its end, and a
-    /// mass matrix over nodes in the order of the factor with the rigid modes in it.
+    /// The search for modes with a basis of so many vectors, beside the factor, the `shapes` that come of it at its end, and, in
+    /// the order of the factor, the mass matrix and the rigid modes. Static answers have no shapes here, and no such order.
     fn of_basis(&self, vectors: usize, block: usize, shapes: usize) -> usize {
-        let in_order = 12 * self.entries / 9 + of_vectors(self.unknowns, RIGID);
+        let in_order = if shapes > 0 { self.in_order } else { 0 };
         of_vectors(self.unknowns, vectors + RIGID + BLOCKS * block + shapes) + in_order
     }
 
     /// Rayleigh–Ritz for so many shapes: them, their products with K and M, and a packed block.
     fn of_ritz(&self, shapes: usize) -> usize {
-        of_vectors(self.unknowns, 3 * shapes + PACKED)
+        of_vectors(self.unknowns, 3 * shapes + WIDTH)
     }
 
     /// The search for so many modes with a basis of `size` vectors, and their reduction.
@@ -139,9 +153,15 @@ impl Foretold {
         self.of_basis(size, block, shapes).max(self.of_ritz(shapes)).max(self.of_reduction(shapes))
     }
 
-    /// The reduction to so many shapes: they, the columns beside them, products of all with M, and a packed block.
+    /// The reduction to so many shapes. By a mass over nodes: they, the columns beside them, products of all with M, and a packed
+    /// block. By a general one, they, their rotations about three axes, products of all, and their rows by axes.
     fn of_reduction(&self, shapes: usize) -> usize {
-        of_vectors(self.unknowns, 2 * (shapes + REDUCED) + PACKED)
+        match self.nodal_mass {
+            Some(_) => {
+                of_vectors(self.unknowns, 2 * (shapes + REDUCED) + WIDTH) + products_bytes(self.unknowns / 3, shapes)
+            }
+            None => of_vectors(self.unknowns, 11 * shapes + 42 + WIDTH),
+        }
     }
 
     /// The most that is held at a time where the `search` for modes takes so many bytes beside the factor.

@@ -60,10 +60,12 @@ pub(crate) fn largest_pairs(
     report: impl FnMut(usize),
 ) -> Result<LanczosPairs, ModalError> {
     // In the factor's order neighbours are near to each other in memory, which the products with M want, too.
-    if let MassMatrix::Nodal(mass) = mass
+    if let MassMatrix::Nodal(nodal) = mass
         && let Some((order, inverted)) = factor.in_own_order()
     {
-        let mass = order.mass(mass);
+        let vectors = rigid.ncols() + factor.constraints.motion_count();
+        memory::check("the search in the order of the factor", mass.bytes() + of_vectors(rigid.nrows(), vectors))?;
+        let mass = order.mass(nodal);
         let (mass, rigid) = (MassMatrix::Nodal(mass.as_mass()), order.rows(rigid));
         let mut pairs = search(&inverted, &mass, rigid.as_ref(), count, available, report)?;
         order.restore(&mut pairs.vectors);

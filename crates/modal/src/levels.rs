@@ -38,6 +38,7 @@ impl Levels {
 
 /// What the search for so many modes takes beside the levels, bytes.
 pub(crate) fn modes_beside(modes: usize, corners: &Corners) -> usize {
-    let vectors = FIXED + davidson::room(modes) + davidson::beside(modes);
+    // The rigid modes twice: in the basis, and in the order of the levels.
+    let vectors = 2 * FIXED + davidson::room(modes) + davidson::beside(modes);
     Multigrid::bytes(corners) + of_vectors(3 * corners.nodes_in_all(), vectors)
 }

@@ -1,7 +1,7 @@
 //! The bodies whose modes and static answers come by cycles, and the levels for them.
 //!
-//! The factor of a thin body has few entries; that of a bulky one has so many that the cycles take less than half of the time
-//! and of the memory.
+//! The factor of a thin body has few entries for each unknown; that of a bulky one, and of a very large thin one, has so many
+//! that the cycles take less time and memory.
 
 use std::time::Instant;
 
@@ -12,7 +12,7 @@ use crate::columns::Columns;
 use crate::constraints::Constraints;
 use crate::davidson;
 use crate::error::ModalError;
-use crate::foretold::{Foretold, of_vectors};
+use crate::foretold::{Forecast, Foretold, of_vectors};
 use crate::lanczos::{FIXED, random_block};
 use crate::levels::{Levels, modes_beside};
 use crate::mass_matrix::MassMatrix;
@@ -39,8 +39,8 @@ const LEFT_BY_CYCLE: f64 = 0.75;
 const TRIAL_CYCLES: usize = 4;
 
 impl Solver<'_> {
-    /// The levels, should cycles for so many modes be better than the factor of K + sM. None for thin bodies, bodies that something
-    /// holds, flat elements.
+    /// The levels, should cycles for so many modes be better than the factor of K + sM. None for bodies whose factor is soon made,
+    /// bodies that something holds, flat elements.
     pub(crate) fn levels_for(
         &self,
         modes: usize,
@@ -90,7 +90,7 @@ impl Solver<'_> {
         let mass = MassMatrix::Nodal(coarse.mass());
         let held =
             2 * self.matrix_bytes + smoother.bytes() + coarse.bytes() + of_vectors(self.stiffness.ncols(), FIXED);
-        let memory = Foretold::new(stiffness, held, FIXED);
+        let memory = Foretold::new(stiffness, &mass, held, FIXED);
         let on_corners = Ordered::new(stiffness, &mass, self.shift()?, &constraints, &memory)?;
         let beside = modes_beside(modes, &corners);
         let factor = Shifted::factor(
@@ -99,7 +99,7 @@ impl Solver<'_> {
             memory,
             |_| beside,
             |forecast| {
-                progress(Progress::Factorizing(forecast));
+                progress(Progress::Factorizing(Forecast { on_corners: true, ..forecast }));
             },
         )?;
         let multigrid = Multigrid::new(&smoother, &corners, &factor)?;

@@ -1,4 +1,4 @@
-//! The modes of a bulky body without the factor of K + sM.
+//! The modes of a free body without the factor of K + sM.
 
 use std::time::Instant;
 
@@ -65,8 +65,9 @@ impl Solver<'_> {
             return Ok(None);
         }
         let mass = MassMatrix::Nodal(coarse.mass());
-        let guess = largest_pairs(factor, &mass, at_corners.as_ref(), wanted, available, |_| ())?;
-        let guess = corners.prolonged(guess.vectors.as_ref());
+        let on_corners = largest_pairs(factor, &mass, at_corners.as_ref(), wanted, available, |_| ())?.vectors;
+        let guess = corners.prolonged(on_corners.as_ref());
+        drop((at_corners, on_corners));
         let (stiffness, mass) = (StiffnessMatrix::Nodal(matrices.stiffness()), MassMatrix::Nodal(matrices.mass()));
         let mut multigrid = levels.multigrid()?;
         davidson::lowest_pairs(stiffness, &mass, rigid.as_ref(), &mut multigrid, guess, flexible, |converged| {

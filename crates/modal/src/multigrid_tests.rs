@@ -50,10 +50,10 @@ impl Levels {
 
     /// The factor of K_c + sM_c.
     fn factor(&self) -> Shifted {
-        let (stiffness, mass) = (StiffnessMatrix::Nodal(self.coarse.stiffness()), self.coarse.mass());
+        let stiffness = StiffnessMatrix::Nodal(self.coarse.stiffness());
+        let mass = MassMatrix::Nodal(self.coarse.mass());
         let constraints = Constraints::new(&Support::free(), &self.block.corner_positions(), 3).unwrap();
-        let memory = Foretold::new(stiffness, 0, 0);
-        let mass = MassMatrix::Nodal(mass);
+        let memory = Foretold::new(stiffness, &mass, 0, 0);
         let ordered = Ordered::new(stiffness, &mass, self.shift, &constraints, &memory).unwrap();
         Shifted::factor(ordered, &constraints, memory, |_| 0, |_| ()).unwrap()
     }

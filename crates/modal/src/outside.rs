@@ -57,11 +57,12 @@ impl Solver<'_> {
                 (format!("a residual of {residual:.1e} of mode {}", k + 1), format!("{allowed:.0e} or less"))
             })?;
         }
-        let mut vectors = self.constraints.expanded(vectors.as_ref());
-        memory::check("the eigenvectors", of_vectors(vectors.nrows(), vectors.ncols() + 6))?;
-        InertiaRelief::new(self).unmove(&mut vectors);
+        let mut shapes = self.constraints.expanded(vectors.as_ref());
+        drop(vectors);
+        memory::check("the eigenvectors", of_vectors(shapes.nrows(), shapes.ncols() + 6))?;
+        InertiaRelief::new(self).unmove(&mut shapes);
         let RitzPairs { eigenvalues, shapes, force_residuals } =
-            rayleigh_ritz(self.stiffness, &self.mass, &self.constraints, vectors).map_err(dependent)?;
+            rayleigh_ritz(self.stiffness, &self.mass, &self.constraints, shapes).map_err(dependent)?;
         self.refuse_soft(&eigenvalues, &shapes, shift)?;
         let rounding = self.rounding_of_products(&shapes);
         for (k, (lambda, said)) in eigenvalues.iter().zip(&said).enumerate() {

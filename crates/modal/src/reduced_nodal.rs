@@ -9,13 +9,16 @@ use crate::foretold::of_vectors;
 use crate::inertia_products::{Products, set_translations};
 use crate::mass::NodalMass;
 use crate::pairs::PAIRS;
+use crate::products::WIDTH;
 use crate::solve::Modes;
 use crate::tall;
 
+/// Columns beside those of the modes: X and 1.
+const GEOMETRY: usize = 2;
 /// Nodes that are worked on together: so few that all their rows stay in the processor's cache.
 const NODES: usize = 512;
-/// Columns that a product with M takes as scratch, and those of X and 1 themselves.
-const SCRATCH: usize = 10;
+/// Such pieces of a task, whose products are added up one after the other.
+const PIECES: usize = 16;
 
 /// The products of the modes, whose shapes and positions fit the mass.
 pub(crate) fn nodal_products(
@@ -26,9 +29,9 @@ pub(crate) fn nodal_products(
     let rigid = &modes.rigid;
     let (n, nf) = (positions.len(), modes.shapes.ncols());
     // Ψ, X and 1 side by side: all constants are products of their rows on one axis with M_s times those on another.
-    let columns = 6 + nf + 2;
-    memory::check("the reduced body", of_vectors(3 * n, columns + SCRATCH))?;
-    let mut geometry = Mat::zeros(3 * n, 2);
+    let columns = 6 + nf + GEOMETRY;
+    memory::check("the reduced body", of_vectors(3 * n, columns + GEOMETRY + WIDTH) + products_bytes(n, nf))?;
+    let mut geometry = Mat::zeros(3 * n, GEOMETRY);
     for (node, x) in positions.iter().enumerate() {
         let offset = Vector3::from(*x) - rigid.origin;
         for axis in 0..3 {
@@ -39,7 +42,7 @@ pub(crate) fn nodal_products(
     let parts = [rigid.shapes.as_ref(), modes.shapes.as_ref(), geometry.as_ref()];
     let m_parts = parts.map(|part| nodal.product(part));
     let m_parts = m_parts.each_ref().map(Mat::as_ref);
-    let of_nodes = |first: &usize| {
+    let of_nodes = |first: usize| {
         let some = |fields: [MatRef<'_, f64>; 3]| {
             by_axis(&fields.map(|field| field.subrows(3 * first, 3 * NODES.min(n - first))))
         };
@@ -47,13 +50,18 @@ pub(crate) fn nodal_products(
         // M_s is symmetric.
         [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0)].map(|(a, b)| tall::inner(rows[a].as_ref(), m_rows[b].as_ref()))
     };
-    let tasks: Vec<usize> = (0..n).step_by(NODES).collect();
-    let of_all: Vec<[Mat<f64>; 6]> = tasks.par_iter().map(of_nodes).collect();
-    let zeros = std::array::from_fn(|_| Mat::zeros(columns, columns));
-    let [xx, yy, zz, xy, yz, zx] = of_all.into_iter().fold(zeros, |mut sums: [Mat<f64>; 6], products| {
+    let zeros = || std::array::from_fn(|_| Mat::zeros(columns, columns));
+    let sum = |mut sums: [Mat<f64>; 6], products: [Mat<f64>; 6]| {
         sums.iter_mut().zip(products).for_each(|(sum, product)| *sum += product);
         sums
-    });
+    };
+    let of_task = |first: &usize| {
+        let end = n.min(first + NODES * PIECES);
+        (*first..end).step_by(NODES).map(of_nodes).fold(zeros(), sum)
+    };
+    let tasks: Vec<usize> = (0..n).step_by(NODES * PIECES).collect();
+    let of_tasks: Vec<[Mat<f64>; 6]> = tasks.par_iter().map(of_task).collect();
+    let [xx, yy, zz, xy, yz, zx] = of_tasks.into_iter().fold(zeros(), sum);
     let [yx, zy, xz] = [&xy, &yz, &zx].map(|product| product.transpose().to_owned());
     let products = [[xx, xy, xz], [yx, yy, yz], [zx, zy, zz]];
 
@@ -110,6 +118,13 @@ pub(crate) fn nodal_products(
         translation_first,
         rotation_first,
     })
+}
+
+/// Bytes of the products of so many flexible shapes while they are added up.
+pub(crate) fn products_bytes(nodes: usize, flexible: usize) -> usize {
+    let columns = 6 + flexible + GEOMETRY;
+    // Each of six products once for each task, their sum, and the transposes.
+    8 * columns * columns * (6 * nodes.div_ceil(NODES * PIECES) + 9)
 }
 
 /// Fields (3n×k) side by side, their rows on each axis (n×k).

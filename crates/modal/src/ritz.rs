@@ -57,8 +57,7 @@ pub(crate) fn rayleigh_ritz(
         let mut forces = tall::product(k_vectors, transform.as_ref());
         let lengths: Vec<f64> = forces.col_iter().map(|force| force.norm_l2()).collect();
         tall::multiply(forces.as_mut(), Accum::Add, m_vectors, scaled.as_ref(), -1.0);
-        let mut rotated = forces.clone();
-        tall::multiply(rotated.as_mut(), Accum::Replace, shapes.rb(), transform.as_ref(), 1.0);
+        let rotated = tall::product(shapes.rb(), transform.as_ref());
         shapes.copy_from(&rotated);
         lengths.into_iter().zip(forces.col_iter()).map(|(length, rest)| [length, rest.norm_l2()]).collect()
     };

@@ -195,7 +195,8 @@ impl Shifted {
     }
 
     /// The same for vectors of which the rows are in the factor's own order, and that order: a search that keeps its vectors so
-    /// need not put them into it for each solution. A factor without supernodes has none.
+    /// need not put them into it for each solution. None for a factor without supernodes, whose order is not used
+    /// so.
     pub(crate) fn in_own_order(&self) -> Option<(Renumbering, Inverted<'_>)> {
         let Symbolic::Supernodal(Supernodal { order, .. }) = &self.symbolic else { return None };
         // The rows of a node stay together.
@@ -311,7 +312,7 @@ mod tests {
         let held = (0..).zip(block.mesh.positions()).filter(|(_, x)| x[2] < 1e-9).map(|(node, _)| node).collect();
         let hinge = Support::new(RigidMotion::hinge(Vector3::zeros(), Vector3::x()), held);
         let constraints = Constraints::new(&hinge, block.mesh.positions(), 3).unwrap();
-        let memory = Foretold::new(stiffness, 0, 6);
+        let memory = Foretold::new(stiffness, &mass, 0, 6);
         let ordered = Ordered::new(stiffness, &mass, 1e8, &constraints, &memory).unwrap();
         let factor = Shifted::factor(ordered, &constraints, memory, |_| 0, |_| ()).unwrap();
         let (order, in_own_order) = factor.in_own_order().expect("a factor with supernodes");

@@ -461,7 +461,7 @@ impl<'a> Solver<'a> {
 
     /// The memory that the matrices take, and what follows from their sizes.
     pub(crate) fn foretold(&self) -> Foretold {
-        Foretold::new(self.stiffness, self.matrix_bytes, FIXED)
+        Foretold::new(self.stiffness, &self.mass, self.matrix_bytes, FIXED)
     }
 
     /// Time of the checks.

@@ -55,7 +55,7 @@ impl Plate {
         let solver = Solver::new(k, m, mesh.positions(), &support(mesh.positions())).unwrap();
         let modes = solver.modes(10, |_| ()).unwrap();
         let body = ReducedBody::new(&modes, m, mesh.positions()).unwrap();
-        let fields = centrifugal_fields(solver.mass(), mesh.positions(), &body.origin);
+        let fields = centrifugal_fields(solver.mass(), mesh.positions(), &body.origin).unwrap();
         let answers = solver.static_response(fields.as_ref()).unwrap();
         let reduced =
             reduced_geometric_stiffness(&mesh, &material, answers.as_ref(), modes.shapes.as_ref(), GeometricTerms::All)

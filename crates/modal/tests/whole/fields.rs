@@ -1,7 +1,7 @@
 //! The forces of rigid motions on the nodes.
 
 use faer::Mat;
-use modal::{ReducedBody, Support, acceleration_fields, centrifugal_fields};
+use modal::{ModalError, ReducedBody, Support, acceleration_fields, centrifugal_fields, turning_field};
 use nalgebra::Vector3;
 
 use crate::bodies::STEEL;
@@ -23,7 +23,7 @@ fn centrifugal_fields_make_the_centrifugal_force_of_any_spin() {
     let solver = body.held(&Support::free());
     let origin = Vector3::new(3.0, -8.0, 2.0);
     let omega = Vector3::new(0.7, -1.1, 2.3);
-    let fields = centrifugal_fields(solver.mass(), &body.positions, &origin);
+    let fields = centrifugal_fields(solver.mass(), &body.positions, &origin).unwrap();
     let acceleration = Mat::from_fn(3 * body.positions.len(), 1, |i, _| {
         -omega.cross(&omega.cross(&(Vector3::from(body.positions[i / 3]) - origin)))[i % 3]
     });
@@ -50,7 +50,7 @@ fn the_modes_meet_centrifugal_fields_as_c_ij() {
         let solver = body.held(&support);
         let modes = solver.modes(6, |_| ()).unwrap();
         let reduced = ReducedBody::new(&modes, body.matrices.mass(), &body.positions).unwrap();
-        let fields = centrifugal_fields(solver.mass(), &body.positions, &reduced.origin);
+        let fields = centrifugal_fields(solver.mass(), &body.positions, &reduced.origin).unwrap();
         let found = modes.shapes.transpose() * fields;
         let scale = reduced.inertia.norm().sqrt();
         for (pair, expected) in reduced.inertia_first.iter().enumerate() {
@@ -74,7 +74,7 @@ fn a_spinning_rod_stretches_as_the_closed_form_says() {
         let expected = |x: f64| pull * (reach.powi(2) * x / 2.0 - x.powi(3) / 6.0);
         let origin = Vector3::new(origin, 0.0, 0.0);
         let solver = bar.body.held(&support);
-        let fields = centrifugal_fields(solver.mass(), &bar.body.positions, &origin);
+        let fields = centrifugal_fields(solver.mass(), &bar.body.positions, &origin).unwrap();
         let answers = solver.static_response(fields.as_ref()).unwrap();
         let stretch = of_spin(&answers, &omega);
         let tip = bar.traction(1.0, 0);
@@ -106,4 +106,15 @@ fn a_hanging_rod_stretches_exactly() {
         // 9.1e-13 at most.
         assert!(off < 1e-9, "{off:e}");
     }
+}
+
+#[test]
+fn positions_for_other_nodes_are_refused() {
+    let body = body();
+    let solver = body.held(&Support::free());
+    let (few, origin) = (&body.positions[1..], Vector3::zeros());
+    let is_refused =
+        |found: Result<Mat<f64>, ModalError>| matches!(found, Err(ModalError::Size { what: "positions", .. }));
+    assert!(is_refused(centrifugal_fields(solver.mass(), few, &origin)));
+    assert!(is_refused(turning_field(solver.mass(), few, &origin, &Vector3::z())));
 }

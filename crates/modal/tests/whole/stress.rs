@@ -173,7 +173,7 @@ const SPIN: f64 = 300.0;
 fn spinning(mesh: Mesh, material: Material, axis_pair: &[usize]) -> Answer {
     Answer::new(mesh, material, &Support::free(), |mesh, body| {
         let solver = body.held(&Support::free());
-        let fields = centrifugal_fields(solver.mass(), mesh.positions(), &Vector3::zeros());
+        let fields = centrifugal_fields(solver.mass(), mesh.positions(), &Vector3::zeros()).unwrap();
         Mat::from_fn(fields.nrows(), 1, |i, _| axis_pair.iter().map(|k| fields[(i, *k)]).sum::<f64>() * SPIN * SPIN)
     })
 }

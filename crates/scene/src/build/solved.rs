@@ -313,6 +313,7 @@ impl Structure for Solved<'_> {
         self.ask_fields(question, forces.count(), || {
             let solver = self.solver()?;
             let (mass, positions) = (solver.mass(), self.assembled.mesh.positions());
+            let refused = |error| modal(&self.assembled.scene)(error);
             let mut all = Mat::zeros(of_loads.nrows(), forces.count());
             all.as_mut().subcols_mut(0, of_loads.ncols()).copy_from(of_loads);
             let mut next = of_loads.ncols();
@@ -321,13 +322,15 @@ impl Structure for Solved<'_> {
                 next += fields.ncols();
             };
             if *spin {
-                add(centrifugal_fields(mass, positions, origin));
+                add(centrifugal_fields(mass, positions, origin).map_err(refused)?);
             }
             match drive {
                 Some(DrivenMotion::Slide { direction }) => {
                     add(acceleration_fields(mass) * Mat::from_fn(3, 1, |i, _| direction[i]));
                 }
-                Some(DrivenMotion::Turn { axis }) => add(turning_field(mass, positions, origin, axis)),
+                Some(DrivenMotion::Turn { axis }) => {
+                    add(turning_field(mass, positions, origin, axis).map_err(refused)?);
+                }
                 None => {}
             }
             solver.static_response_from(modes, all.as_ref(), StaticAccuracy::Full).map_err(modal(&self.assembled.scene))
