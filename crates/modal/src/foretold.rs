@@ -9,7 +9,7 @@ use faer::{Mat, Par, Spec};
 use crate::columns::Columns;
 use crate::mass_matrix::MassMatrix;
 use crate::products::WIDTH;
-use crate::reduced_nodal::products_bytes;
+use crate::reduction_parts::products_bytes;
 use crate::stiffness::StiffnessMatrix;
 use crate::symbolic::{Supernodal, Symbolic};
 

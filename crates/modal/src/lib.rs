@@ -59,6 +59,7 @@ mod progress;
 mod reduced;
 mod reduced_general;
 mod reduced_nodal;
+mod reduction_parts;
 mod renumbering;
 mod rigid;
 mod rigid_body;

@@ -10,15 +10,9 @@ use crate::inertia_products::{Products, set_translations};
 use crate::mass::NodalMass;
 use crate::pairs::PAIRS;
 use crate::products::WIDTH;
+use crate::reduction_parts::{GEOMETRY, NODES, PIECES, products_bytes};
 use crate::solve::Modes;
 use crate::tall;
-
-/// Columns beside those of the modes: X and 1.
-const GEOMETRY: usize = 2;
-/// Nodes that are worked on together: so few that all their rows stay in the processor's cache.
-const NODES: usize = 512;
-/// Such pieces of a task, whose products are added up one after the other.
-const PIECES: usize = 16;
 
 /// The products of the modes, whose shapes and positions fit the mass.
 pub(crate) fn nodal_products(
@@ -118,13 +112,6 @@ pub(crate) fn nodal_products(
         translation_first,
         rotation_first,
     })
-}
-
-/// Bytes of the products of so many flexible shapes while they are added up.
-pub(crate) fn products_bytes(nodes: usize, flexible: usize) -> usize {
-    let columns = 6 + flexible + GEOMETRY;
-    // Each of six products once for each task, their sum, and the transposes.
-    8 * columns * columns * (6 * nodes.div_ceil(NODES * PIECES) + 9)
 }
 
 /// Fields (3n×k) side by side, their rows on each axis (n×k).
