@@ -9,7 +9,7 @@ use faer::{Mat, Par, Spec};
 use crate::columns::Columns;
 use crate::mass_matrix::MassMatrix;
 use crate::products::WIDTH;
-use crate::reduction_parts::products_bytes;
+use crate::reduction_parts::{general_vectors, nodal_vectors, products_bytes};
 use crate::stiffness::StiffnessMatrix;
 use crate::symbolic::{Supernodal, Symbolic};
 
@@ -153,15 +153,13 @@ impl Foretold {
         self.of_basis(size, block, shapes).max(self.of_ritz(shapes)).max(self.of_reduction(shapes))
     }
 
-    /// The reduction to so many shapes. By a mass over nodes: they, the columns beside them, products of all with M, and a packed
-    /// block. By a general one, they, their rotations about three axes, products of all, and their rows by axes.
+    /// The reduction to so many shapes: they and the rigid modes, and what is held beside them.
     fn of_reduction(&self, shapes: usize) -> usize {
-        match self.nodal_mass {
-            Some(_) => {
-                of_vectors(self.unknowns, 2 * (shapes + REDUCED) + WIDTH) + products_bytes(self.unknowns / 3, shapes)
-            }
-            None => of_vectors(self.unknowns, 11 * shapes + 42 + WIDTH),
-        }
+        let (beside, sums) = match self.nodal_mass {
+            Some(_) => (nodal_vectors(shapes), products_bytes(self.unknowns / 3, shapes)),
+            None => (general_vectors(shapes), 0),
+        };
+        of_vectors(self.unknowns, shapes + RIGID + beside) + sums
     }
 
     /// The most that is held at a time where the `search` for modes takes so many bytes beside the factor.
@@ -169,9 +167,6 @@ impl Foretold {
         self.matrices + self.of_ordering().max(self.shifted + self.factor + self.scratch).max(self.factor + search)
     }
 }
-
-/// Columns beside the flexible shapes in the reduction: six rigid ones, X and 1.
-const REDUCED: usize = 8;
 
 /// Bytes of so many vectors.
 pub(crate) fn of_vectors(unknowns: usize, vectors: usize) -> usize {

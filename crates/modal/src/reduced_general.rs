@@ -20,8 +20,8 @@ use crate::foretold::of_vectors;
 use crate::inertia_products::{Products, set_translations};
 use crate::mass_matrix::GeneralMass;
 use crate::pairs::PAIRS;
-use crate::products::WIDTH;
 use crate::products::symmetric_product;
+use crate::reduction_parts::general_vectors;
 use crate::rigid_fields::{General, rigid_fields};
 use crate::solve::Modes;
 use crate::tall::inner;
@@ -36,7 +36,7 @@ pub(crate) fn general_products(
     let rigid = &modes.rigid;
     let (size, nf) = (modes.shapes.nrows(), modes.shapes.ncols());
     General::new(mass, positions, &rigid.center_of_mass).check_rigid_body()?;
-    memory::check("the reduced body", of_vectors(size, 10 * nf + 36 + WIDTH))?;
+    memory::check("the reduced body", of_vectors(size, general_vectors(nf)))?;
     let matrix: SparseColMatRef<'_, usize, f64> = mass.matrix;
 
     let all = Mat::from_fn(size, 6 + nf, |i, k| if k < 6 { rigid.shapes[(i, k)] } else { modes.shapes[(i, k - 6)] });

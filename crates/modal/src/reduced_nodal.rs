@@ -9,8 +9,7 @@ use crate::foretold::of_vectors;
 use crate::inertia_products::{Products, set_translations};
 use crate::mass::NodalMass;
 use crate::pairs::PAIRS;
-use crate::products::WIDTH;
-use crate::reduction_parts::{GEOMETRY, NODES, PIECES, products_bytes};
+use crate::reduction_parts::{GEOMETRY, NODES, PIECES, nodal_vectors, products_bytes};
 use crate::solve::Modes;
 use crate::tall;
 
@@ -24,7 +23,7 @@ pub(crate) fn nodal_products(
     let (n, nf) = (positions.len(), modes.shapes.ncols());
     // Ψ, X and 1 side by side: all constants are products of their rows on one axis with M_s times those on another.
     let columns = 6 + nf + GEOMETRY;
-    memory::check("the reduced body", of_vectors(3 * n, columns + GEOMETRY + WIDTH) + products_bytes(n, nf))?;
+    memory::check("the reduced body", of_vectors(3 * n, nodal_vectors(nf)) + products_bytes(n, nf))?;
     let mut geometry = Mat::zeros(3 * n, GEOMETRY);
     for (node, x) in positions.iter().enumerate() {
         let offset = Vector3::from(*x) - rigid.origin;

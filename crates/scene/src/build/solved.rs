@@ -333,7 +333,7 @@ impl Structure for Solved<'_> {
                 }
                 None => {}
             }
-            solver.static_response_from(modes, all.as_ref(), StaticAccuracy::Full).map_err(modal(&self.assembled.scene))
+            solver.static_response_from(modes, all.as_ref(), StaticAccuracy::Full).map_err(refused)
         })
     }
 
