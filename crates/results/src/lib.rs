@@ -11,9 +11,10 @@
 //! file's text), `scene_file` (where it was), `formulation`, `scheme`, `step` or `tolerance`, `program_version`,
 //! `units_length`, `units_mass`, `units_time` and `complete`: 1, or 0 in an unfinished file.
 //!
-//! In an unfinished file, T is the number of rows that there is room for. Those that have not been written are NaN. It
-//! has the dataset `checkpoint` besides (2×words): two places for the state of the run, written in turns, each with
-//! its number, the rows before it, their check sum, the words of the state, and a check sum of itself.
+//! In an unfinished file, T is the number of rows that there is room for. The time of those that have not been written is
+//! NaN, and what stands beside it means nothing. It has the dataset `checkpoint` besides (2×words): two places for the
+//! state of the run, written in turns, each with its number, the rows before it, their check sum, the words of the state,
+//! and a check sum of itself.
 //!
 //! For ParaView there are [`VtkHdf`], and [`write_vtu`] with [`write_pvd`] for versions before 5.12.
 //!

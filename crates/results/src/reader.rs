@@ -80,15 +80,7 @@ impl Results {
     ) -> Result<(Self, Option<(Checkpoint, Sums)>), FileError> {
         let metadata = store.metadata().clone();
         let complete = store.is_complete();
-        let mut rows = store.rows();
-        let columns = store.read(path)?;
-        if !complete {
-            // What has not been written is NaN; no run writes what is not finite.
-            for (width, column) in store.widths().zip(&columns) {
-                let whole = column.iter().position(|value| !value.is_finite()).unwrap_or(usize::MAX);
-                rows = rows.min(whole / width.max(1));
-            }
-        }
+        let (rows, columns) = store.read(path)?;
         // Whole ones, the last first.
         let places = store.read_checkpoints(path)?;
         let mut checkpoints: Vec<Checkpoint> =

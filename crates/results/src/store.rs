@@ -18,8 +18,8 @@ const BLOCK: usize = 1 << 14;
 /// Bytes of a number.
 const NUMBER: usize = size_of::<f64>();
 
-/// The open file, locked. All its room is there from the beginning, NaN where nothing has been written yet, so that
-/// rows are written without a change to the structure of the file: it is a whole HDF5 file at any moment.
+/// The open file, locked. All its room is there from the beginning, so that rows are written without a change to the
+/// structure of the file: it is a whole HDF5 file at any moment. The time of a row is NaN until the whole row is there.
 #[derive(Debug)]
 pub(crate) struct Store {
     file: Locked,
@@ -54,6 +54,9 @@ impl Store {
         let file = OpenOptions::new().read(true).write(true).open(place);
         let file = file.map_err(|error| FileError::system(path, "open the file for writing", &error))?;
         let file = locked(file, path, File::try_lock)?;
+        if room.checkpoint_words.is_some() {
+            reserve(&file).map_err(|error| FileError::system(path, "make room for the rows", &error))?;
+        }
         let described = description.to_json().len();
         Self::new(file, path, columns, description, described)
     }
@@ -159,14 +162,16 @@ impl Store {
         self.description.checkpoint_words.unwrap_or(0)
     }
 
-    /// Writes rows of all histories.
+    /// Writes rows of all histories, the time last: whoever finds it finds the rest of the row.
     pub(crate) fn write<'a>(
         &self,
         path: &Path,
         rows: Range<usize>,
         values: impl Iterator<Item = &'a [f64]>,
     ) -> Result<(), FileError> {
-        for ((bytes, width), values) in self.columns.iter().zip(values) {
+        let mut histories = self.columns.iter().zip(values);
+        let time = histories.next();
+        for ((bytes, width), values) in histories.chain(time) {
             let start = bytes.start + (rows.start * width * NUMBER) as u64;
             self.write_at(start, &little_endian(values))
                 .map_err(|error| FileError::system(path, format!("write rows {rows:?}"), &error))?;
@@ -174,10 +179,23 @@ impl Store {
         Ok(())
     }
 
-    /// The numbers of all histories.
-    pub(crate) fn read(&self, path: &Path) -> Result<Vec<Vec<f64>>, FileError> {
-        let columns = self.columns.iter().map(|(bytes, _)| self.read_words(bytes, f64::from_bits));
-        columns.collect::<io::Result<_>>().map_err(|error| FileError::system(path, "read the histories", &error))
+    /// The number of rows, and the numbers of all histories in these, or in more of them. Of an unfinished file, the rows
+    /// before the first number that is not finite: no run writes one.
+    pub(crate) fn read(&self, path: &Path) -> Result<(usize, Vec<Vec<f64>>), FileError> {
+        let mut rows = self.rows();
+        let columns = self.columns.iter().map(|(bytes, width)| {
+            // The time comes first, so that the room for rows to come is not read.
+            let bytes = bytes.start..bytes.start + (rows * width * NUMBER) as u64;
+            let column = self.read_words(&bytes, f64::from_bits)?;
+            if !self.is_complete() {
+                let finite = column.iter().position(|value| !value.is_finite()).unwrap_or(usize::MAX);
+                rows = rows.min(finite / (*width).max(1));
+            }
+            Ok(column)
+        });
+        let columns = columns.collect::<io::Result<_>>();
+        let columns = columns.map_err(|error| FileError::system(path, "read the histories", &error))?;
+        Ok((rows, columns))
     }
 
     /// The two places for a checkpoint.
@@ -233,6 +251,23 @@ impl Store {
             _ => Err(io::ErrorKind::UnexpectedEof.into()),
         }
     }
+}
+
+/// Reserves the room that a file has on the disk, where the file system can: a disk without it is found out now.
+#[cfg(target_os = "linux")]
+fn reserve(file: &File) -> io::Result<()> {
+    use rustix::fs::{FallocateFlags, fallocate};
+    use rustix::io::Errno;
+
+    match fallocate(file, FallocateFlags::empty(), 0, file.metadata()?.len()) {
+        Err(Errno::OPNOTSUPP | Errno::NOSYS) => Ok(()),
+        outcome => Ok(outcome?),
+    }
+}
+
+#[cfg(not(target_os = "linux"))]
+fn reserve(_: &File) -> io::Result<()> {
+    Ok(())
 }
 
 /// Those that are not empty, in the order of the file.

@@ -45,7 +45,8 @@ pub(crate) fn make<R>(
     let warnings = metadata.warnings.iter().map(String::as_str);
     write_texts(path, &file, "warnings", warnings, "what should be known of the run; empty in an unfinished file")?;
     let mut datasets = present(columns, metadata)
-        .map(|column| create_history(path, &file, column, metadata, room))
+        .enumerate()
+        .map(|(i, column)| create_history(path, &file, column, metadata, room, i == 0))
         .collect::<Result<Vec<_>, _>>()?;
     if let Some(words) = room.checkpoint_words {
         let checkpoint = file
@@ -66,13 +67,15 @@ pub(crate) fn make<R>(
     Ok(starts)
 }
 
-/// Room for rows, NaN where nothing has been written. A finished file gets all its rows at once, and is not filled before.
+/// Room for rows. Where no row has been written, the time of an unfinished file is NaN: it is the first history, and says
+/// which rows there are. The others are left as the operating system makes a longer file, zeros that nobody has to write.
 fn create_history<R>(
     path: &Path,
     file: &hdf5::File,
     column: &Column<R>,
     metadata: &Metadata,
     room: Room,
+    is_time: bool,
 ) -> Result<hdf5::Dataset, FileError> {
     let name = column.path;
     let shape: Vec<usize> = std::iter::once(room.rows).chain(column.row_shape(metadata)).collect();
@@ -80,7 +83,7 @@ fn create_history<R>(
         .new_dataset::<f64>()
         .layout(Layout::Contiguous)
         .alloc_time(Some(AllocTime::Early))
-        .fill_time(if room.checkpoint_words.is_some() { FillTime::Alloc } else { FillTime::Never })
+        .fill_time(if is_time && room.checkpoint_words.is_some() { FillTime::Alloc } else { FillTime::Never })
         .fill_value(f64::NAN)
         .obj_track_times(false);
     let dataset = builder.shape(shape).create(name).map_err(FileError::hdf5(path, format!("make room for {name}")))?;
