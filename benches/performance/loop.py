@@ -23,6 +23,8 @@ ALPHA, RK4 = "generalized-alpha", "RK4"
 # of its steps, for some tenths of a second: both runs are longer than that.
 OUR_STEPS = {10: 400_000, 40: 200_000}
 THEIR_STEPS = {10: 40_000, 40: 4_000}
+# Runs for speed take a second or two each: as many for one of a long run, since a machine that others share is uneven.
+TURNS = 3
 # The ladder of steps is END / 2^k from here on.
 FIRST = {OURS: 5, OURS_SAME: 5, ALPHA: 8, RK4: 9}
 FINEST = 15  # of flexframe's ladder, where the error is below the least target
@@ -45,7 +47,7 @@ def measure(store, effort):
     for modes in MODES:
         for arguments in SETTINGS.values():
             run_ours(modes, STEP, 10, *arguments)  # fills the cache
-    for turn in range(effort.runs):
+    for turn in range(TURNS * effort.runs):
         for modes in MODES:
             same_step(store, modes, turn, body)
     for modes in MODES:

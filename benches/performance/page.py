@@ -86,8 +86,9 @@ def method(parts):
     efforts = {part["effort"]["runs"] for part in parts.values()}
     once, patience = parts["modes"]["effort"]["once"], parts["modes"]["effort"]["patience"]
     return (
-        f"**Method.** The programs run in turn, {' or '.join(map(str, sorted(efforts)))} times each; those that take longer "
-        f"than {once} s once, and those that take longer than {patience} s are stopped. A time is the median; after ± comes "
+        f"**Method.** The programs run in turn, {' or '.join(map(str, sorted(efforts)))} times each, the loop at the same "
+        f"step {loop.TURNS} times as often; those that take longer than {once} s once, and those that take longer than "
+        f"{patience} s are stopped. A time is the median; after ± comes "
         "the difference of the slowest and the fastest run. A ratio is a run of the other program divided by the run of "
         "flexframe of the same turn: median, and least to largest. Above 1 flexframe is faster, or smaller. Each program "
         "runs on one thread unless it says otherwise. Memory is the peak of the whole process (of both ranks together). "
