@@ -34,17 +34,17 @@ impl Constraints {
     /// `freedoms` is the number of degrees of freedom of a node, 3 or 6.
     ///
     /// # Errors
-    /// [`ModalError::NoSuchNode`], [`ModalError::NoSuchFreedom`], [`ModalError::Underheld`], and what
+    /// [`ModalError::HeldNode`], [`ModalError::HeldFreedom`], [`ModalError::Underheld`], and what
     /// [`RigidMotion::check`] refuses.
     pub(crate) fn new(support: &Support, positions: &[[f64; 3]], freedoms: usize) -> Result<Self, ModalError> {
         support.motion.check()?;
         let count = positions.len();
         let nodes = support.nodes.iter().copied().chain(support.freedoms.iter().map(|(node, _)| *node));
         if let Some(node) = nodes.clone().find(|node| *node as usize >= count) {
-            return Err(ModalError::NoSuchNode { node, count });
+            return Err(ModalError::HeldNode { node, count });
         }
         if let Some(&(node, freedom)) = support.freedoms.iter().find(|(_, freedom)| *freedom >= freedoms) {
-            return Err(ModalError::NoSuchFreedom { node, freedom, count: freedoms });
+            return Err(ModalError::HeldFreedom { node, freedom, count: freedoms });
         }
         let of_nodes = support.nodes.iter().flat_map(|node| (0..freedoms).map(move |freedom| (*node, freedom)));
         let mut rows: Vec<usize> = of_nodes

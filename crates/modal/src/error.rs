@@ -176,7 +176,7 @@ pub enum ModalError {
     },
     /// A held node that is not there.
     #[error("the support holds node {node} (counted from 0); the mesh has {count} nodes")]
-    NoSuchNode {
+    HeldNode {
         /// Index of the node.
         node: u32,
         /// Nodes of the mesh.
@@ -187,7 +187,7 @@ pub enum ModalError {
         "the support holds degree of freedom {freedom} of node {node} (both counted from 0); a node has {count}: translations along x, y and z{}",
         if *count == 6 { ", then rotations about them" } else { "" }
     )]
-    NoSuchFreedom {
+    HeldFreedom {
         /// Index of the node.
         node: u32,
         /// Degree of freedom.
@@ -338,6 +338,16 @@ pub enum ModalError {
         found: String,
         /// What they should be.
         expected: String,
+    },
+    /// A projected mass or stiffness matrix without a Cholesky factor.
+    #[error(
+        "the {matrix} matrix on {size} vectors is not positive definite in rounded numbers: the vectors depend on each other, or masses or stiffnesses of the body are many powers of ten apart"
+    )]
+    NotPositiveDefinite {
+        /// Mass or stiffness.
+        matrix: &'static str,
+        /// Number of vectors.
+        size: usize,
     },
     /// A dense eigenvalue problem failed.
     #[error(

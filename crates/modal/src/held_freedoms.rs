@@ -29,7 +29,7 @@ impl Support {
     /// ```
     ///
     /// # Errors
-    /// [`ModalError::NoSuchNode`], [`ModalError::NoSuchFreedom`], [`ModalError::NotFinite`].
+    /// [`ModalError::HeldNode`], [`ModalError::HeldFreedom`], [`ModalError::NotFinite`].
     pub fn of_freedoms(positions: &[[f64; 3]], freedoms: &[(u32, usize)]) -> Result<Self, ModalError> {
         Ok(Self { motion: motion_left(positions, freedoms)?, nodes: Vec::new(), freedoms: freedoms.to_vec() })
     }
@@ -38,14 +38,14 @@ impl Support {
 /// The motion that holding `freedoms` (pairs of a node and a degree of freedom, 0 to 5) leaves a body.
 ///
 /// # Errors
-/// [`ModalError::NoSuchNode`], [`ModalError::NoSuchFreedom`], [`ModalError::NotFinite`].
+/// [`ModalError::HeldNode`], [`ModalError::HeldFreedom`], [`ModalError::NotFinite`].
 fn motion_left(positions: &[[f64; 3]], freedoms: &[(u32, usize)]) -> Result<RigidMotion, ModalError> {
     let count = positions.len();
     if let Some((node, _)) = freedoms.iter().find(|(node, _)| *node as usize >= count) {
-        return Err(ModalError::NoSuchNode { node: *node, count });
+        return Err(ModalError::HeldNode { node: *node, count });
     }
     if let Some(&(node, freedom)) = freedoms.iter().find(|(_, freedom)| *freedom >= 6) {
-        return Err(ModalError::NoSuchFreedom { node, freedom, count: 6 });
+        return Err(ModalError::HeldFreedom { node, freedom, count: 6 });
     }
     check_finite_positions(positions)?;
     let at = |node: u32| Vector3::from(positions[node as usize]);

@@ -150,7 +150,7 @@ impl Solver<'_> {
 /// Vectors without a Gram matrix that is one.
 fn dependent(error: ModalError) -> ModalError {
     match error {
-        ModalError::DenseEigen { size } => ModalError::WrongAnswers {
+        ModalError::NotPositiveDefinite { size, .. } => ModalError::WrongAnswers {
             found: format!("{size} vectors that depend on each other or on the rigid motions"),
             expected: "independent ones".to_owned(),
         },

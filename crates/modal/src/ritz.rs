@@ -42,7 +42,8 @@ pub(crate) fn rayleigh_ritz(
     drop(packed);
     let gram = tall::inner(vectors.as_ref(), m_vectors.as_ref());
     // Cholesky of the Gram matrix turns the pencil into an ordinary problem: C = L⁻¹ (VᵀKV) L⁻ᵀ.
-    let whitening = whitening(&gram).map_err(|_| ModalError::DenseEigen { size: gram.nrows() })?;
+    let whitening =
+        whitening(&gram).map_err(|_| ModalError::NotPositiveDefinite { matrix: "mass", size: gram.nrows() })?;
     let projected = whitening.transpose() * tall::inner(vectors.as_ref(), k_vectors.as_ref()) * &whitening;
     let (eigenvalues, vectors_of_projected) = symmetric_eigen(&projected)?;
     let transform = &whitening * vectors_of_projected;

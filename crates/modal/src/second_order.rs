@@ -52,7 +52,8 @@ impl Solver<'_> {
     ///
     /// # Errors
     /// [`ModalError::Length`], [`ModalError::Size`], [`ModalError::NotFinite`], [`ModalError::LargeModes`];
-    /// [`ModalError::Memory`] and [`ModalError::DenseEigen`] where the numbers cannot be had.
+    /// [`ModalError::Memory`], [`ModalError::NotPositiveDefinite`] and [`ModalError::DenseEigen`] where the numbers
+    /// cannot be had.
     pub fn second_order_shapes(
         &self,
         modes: Modes,
@@ -95,7 +96,9 @@ impl Solver<'_> {
             Mat::from_fn(others.len(), others.len(), |i, j| stiffness(others[i], others[j])),
             Mat::from_fn(others.len(), pairs.len(), |i, j| along[(others[i], j)]),
         );
-        let factor = k.llt(Side::Lower).map_err(|_| ModalError::DenseEigen { size: others.len() })?;
+        let factor = k
+            .llt(Side::Lower)
+            .map_err(|_| ModalError::NotPositiveDefinite { matrix: "stiffness", size: others.len() })?;
         let answer = factor.solve(&g);
         let mut slopes = Mat::zeros(extended, pairs.len());
         for (i, a) in others.iter().enumerate() {

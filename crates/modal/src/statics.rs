@@ -126,7 +126,7 @@ impl Solver<'_> {
     /// with the static shapes that `modes` has already; answers that add less than 1e-8 of themselves add nothing.
     ///
     /// # Errors
-    /// [`ModalError::Size`], [`ModalError::NotFinite`], [`ModalError::DenseEigen`].
+    /// [`ModalError::Size`], [`ModalError::NotFinite`], [`ModalError::NotPositiveDefinite`], [`ModalError::DenseEigen`].
     pub fn with_static_shapes(&self, modes: Modes, answers: MatRef<'_, f64>) -> Result<Modes, ModalError> {
         let added = self.beside(&modes, answers, DEPENDENT)?;
         // Static shapes are no eigenvectors: what is M-orthogonal to them is not K-orthogonal, unless all are combined.

@@ -116,7 +116,7 @@ impl Failure for AssemblyError {
 impl Failure for ModalError {
     fn kind(&self) -> Kind {
         match self {
-            Self::TooManyModes { .. } | Self::NoSuchNode { .. } | Self::NoSuchFreedom { .. } | Self::NotUnit { .. } => {
+            Self::TooManyModes { .. } | Self::HeldNode { .. } | Self::HeldFreedom { .. } | Self::NotUnit { .. } => {
                 Kind::Input
             }
             Self::Memory(_) => Kind::Io,
@@ -126,6 +126,7 @@ impl Failure for ModalError {
             | Self::Factorization { .. }
             | Self::NotConverged { .. }
             | Self::StaticNotConverged { .. }
+            | Self::NotPositiveDefinite { .. }
             | Self::DenseEigen { .. } => Kind::Run,
             _ => Kind::Refused,
         }

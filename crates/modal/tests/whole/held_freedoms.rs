@@ -177,13 +177,13 @@ fn one_node_with_rotations_clamps_pins_or_hinges_a_beam() {
 fn degrees_of_freedom_that_are_not_there_are_refused() {
     let positions = &body().positions;
     let error = Support::of_freedoms(positions, &[(1000, 0)]).unwrap_err();
-    assert!(matches!(error, ModalError::NoSuchNode { node: 1000, .. }), "{error}");
+    assert!(matches!(error, ModalError::HeldNode { node: 1000, .. }), "{error}");
     let error = Support::of_freedoms(positions, &[(1, 6)]).unwrap_err();
-    assert!(matches!(error, ModalError::NoSuchFreedom { node: 1, freedom: 6, count: 6 }), "{error}");
+    assert!(matches!(error, ModalError::HeldFreedom { node: 1, freedom: 6, count: 6 }), "{error}");
     // A rotation of a node that has none.
     let support = Support::of_freedoms(positions, &[(1, 4)]).unwrap();
     let body = body();
     let error = modal::Solver::new(body.matrices.stiffness(), body.matrices.mass(), positions, &support).err().unwrap();
-    assert!(matches!(error, ModalError::NoSuchFreedom { node: 1, freedom: 4, count: 3 }), "{error}");
+    assert!(matches!(error, ModalError::HeldFreedom { node: 1, freedom: 4, count: 3 }), "{error}");
     assert!(error.to_string().contains("translations along x, y and z"));
 }

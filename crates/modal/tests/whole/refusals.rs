@@ -260,7 +260,7 @@ fn a_support_that_holds_too_little() {
 fn a_support_that_is_not_there() {
     let clamp = RigidMotion::clamp(Vector3::zeros());
     let error = with_support(clamp, &[0, 1, 27]).unwrap();
-    assert!(matches!(error, ModalError::NoSuchNode { node: 27, count: 27 }), "{error}");
+    assert!(matches!(error, ModalError::HeldNode { node: 27, count: 27 }), "{error}");
     let error = with_support(RigidMotion::pin(Vector3::new(0.0, f64::NAN, 0.0)), &[0]).unwrap();
     assert!(matches!(error, ModalError::NotFinite { what: "the support's point", index: 1, .. }), "{error}");
     for axis in [Vector3::new(1.0, 1.0, 0.0), Vector3::zeros(), Vector3::new(f64::NAN, 0.0, 0.0)] {
@@ -309,4 +309,9 @@ fn what_does_not_fit_is_refused_wherever_it_is_given() {
     for large in [[90, 1], [1, 0], [1, 1], [0, 3]] {
         assert!(matches!(second(&large, 3 * nodes, 3, 0.0), Err(ModalError::LargeModes { count: 3, .. })), "{large:?}");
     }
+    let mut unstable = modes.clone();
+    unstable.eigenvalues[2] *= -1.0;
+    let none = Mat::zeros(3 * nodes, 1);
+    let error = solver.second_order_shapes(unstable, &[0], none.as_ref(), none.as_ref()).unwrap_err();
+    assert!(matches!(error, ModalError::NotPositiveDefinite { matrix: "stiffness", size: 2 }), "{error}");
 }
