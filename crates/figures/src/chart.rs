@@ -36,8 +36,9 @@ pub struct Reference {
     pub value: f64,
 }
 
-/// A chart of lines over two axes. Colours are chosen by the order of the series; a series of a few
-/// points shows each of them as a dot. Where all happens within a tenth of a linear x axis, an inset shows that part.
+/// A chart of lines over two axes. Colours are chosen by the order of the series; one without points keeps its colour, so
+/// that charts of the same series have the same colours, and is not in the legend. A series of a few points shows each of
+/// them as a dot. Where all happens within a tenth of a linear x axis, an inset shows that part.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LineChart {
     /// Title; may be empty.
@@ -85,8 +86,9 @@ impl LineChart {
     /// Draws the legend in columns at the top of an area and returns the rest. plotters' own legend would hide a part of
     /// the lines, so it is not used.
     fn draw_legend<DB: DrawingBackend>(&self, area: Area<DB>, unit: Unit) -> Result<Area<DB>, FigureError> {
-        let named = |(_, series): &(usize, &Series)| !series.label.is_empty() && series.stroke != Stroke::Guide;
-        let entries: Vec<_> = self.series.iter().enumerate().filter(named).collect();
+        let listed =
+            |series: &Series| !series.label.is_empty() && !series.points.is_empty() && series.stroke != Stroke::Guide;
+        let entries: Vec<_> = self.series.iter().enumerate().filter(|(_, series)| listed(series)).collect();
         let text = unit.text(TICK_EM, HPos::Left, VPos::Center);
         let mut width = 1;
         for (_, series) in &entries {

@@ -64,6 +64,16 @@ fn coinciding_series_are_both_drawn() {
 }
 
 #[test]
+fn a_series_without_points_keeps_its_colour_and_is_not_in_the_legend() {
+    let line = |label: &str, n: usize| series(label, Stroke::Solid, times(50).take(n).map(|t| (t, t * t)));
+    let chart = chart("", vec![line("first", 50), line("second", 0), line("third", 50)]);
+    let [svg, ..] = chart.save(folder().join("no points")).unwrap();
+    assert_eq!(["first", "second", "third"].map(|label| count(&svg, label)), [1, 0, 1]);
+    let text = std::fs::read_to_string(&svg).unwrap();
+    assert_eq!(["#0072B2", "#D55E00", "#009E73"].map(|colour| text.contains(colour)), [true, false, true]);
+}
+
+#[test]
 fn a_long_history_keeps_its_peak_and_a_small_file() {
     let n = 200_000;
     let spike = 123_457;

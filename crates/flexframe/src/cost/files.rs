@@ -106,6 +106,7 @@ fn write_failure(csv: &mut String, why: &str) -> std::fmt::Result {
 
 /// Draws time against error, a line a scheme, to `<stem>.svg`, `<stem>.pdf` and `<stem>.png`; nothing where there is nothing to draw.
 pub(super) fn draw(report: &CostReport, stem: &Path) -> Result<Vec<PathBuf>, FigureError> {
+    // A scheme whose runs all failed stays in the list, so that the others have the same colours in every scene.
     let series: Vec<Series> = report.lines.iter().map(series).collect();
     if series.iter().all(|series| series.points.is_empty()) {
         return Ok(Vec::new());
@@ -122,20 +123,17 @@ pub(super) fn draw(report: &CostReport, stem: &Path) -> Result<Vec<PathBuf>, Fig
     Ok(chart.save(stem)?.to_vec())
 }
 
-/// Without points it has no name, and so is not in the legend: it keeps its place, and with it the colours of the
-/// schemes after it, which are then the same in the figures of all scenes.
 fn series(line: &Line) -> Series {
-    let points: Vec<_> = line
-        .rows
-        .iter()
-        .filter_map(|row| row.measured())
-        .filter(|measured| measured.error > 0.0 && measured.error <= DRAWN)
-        .map(|measured| (measured.error, measured.seconds))
-        .collect();
     let slope = line.measured_order.map_or_else(String::new, |order| format!(": error ~ step^{order:.2}"));
     Series {
-        label: if points.is_empty() { String::new() } else { format!("{}{slope}", line.name()) },
-        points,
+        label: format!("{}{slope}", line.name()),
+        points: line
+            .rows
+            .iter()
+            .filter_map(|row| row.measured())
+            .filter(|measured| measured.error > 0.0 && measured.error <= DRAWN)
+            .map(|measured| (measured.error, measured.seconds))
+            .collect(),
         stroke: if line.controlled { Stroke::Dashed } else { Stroke::Solid },
     }
 }
