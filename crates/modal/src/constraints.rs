@@ -13,6 +13,7 @@ use faer::{Mat, MatMut, MatRef};
 use nalgebra::{DMatrix, Vector3};
 
 use crate::error::ModalError;
+use crate::input::check_held;
 use crate::renumbering::Renumbering;
 use crate::support::{RigidMotion, Support};
 
@@ -38,14 +39,7 @@ impl Constraints {
     /// [`RigidMotion::check`] refuses.
     pub(crate) fn new(support: &Support, positions: &[[f64; 3]], freedoms: usize) -> Result<Self, ModalError> {
         support.motion.check()?;
-        let count = positions.len();
-        let nodes = support.nodes.iter().copied().chain(support.freedoms.iter().map(|(node, _)| *node));
-        if let Some(node) = nodes.clone().find(|node| *node as usize >= count) {
-            return Err(ModalError::HeldNode { node, count });
-        }
-        if let Some(&(node, freedom)) = support.freedoms.iter().find(|(_, freedom)| *freedom >= freedoms) {
-            return Err(ModalError::HeldFreedom { node, freedom, count: freedoms });
-        }
+        check_held(&support.nodes, &support.freedoms, positions.len(), freedoms)?;
         let of_nodes = support.nodes.iter().flat_map(|node| (0..freedoms).map(move |freedom| (*node, freedom)));
         let mut rows: Vec<usize> = of_nodes
             .chain(support.freedoms.iter().copied())
@@ -88,7 +82,7 @@ impl Constraints {
             }
             allowed = range(allowed, 0.0);
         }
-        let mut held = vec![false; freedoms * count];
+        let mut held = vec![false; freedoms * positions.len()];
         rows.iter().for_each(|row| held[*row] = true);
         Ok(Self { rows, held, motions: Mat::from_fn(allowed.nrows(), allowed.ncols(), |i, j| allowed[(i, j)]) })
     }

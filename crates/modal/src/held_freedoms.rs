@@ -8,7 +8,7 @@ use nalgebra::{DMatrix, Matrix3, Vector3};
 
 use crate::constraints::{NEGLIGIBLE, extent};
 use crate::error::ModalError;
-use crate::input::check_finite_positions;
+use crate::input::{check_finite_positions, check_held};
 use crate::support::{RigidMotion, Support, Twist};
 
 /// A component of a unit vector below this is rounding.
@@ -40,13 +40,7 @@ impl Support {
 /// # Errors
 /// [`ModalError::HeldNode`], [`ModalError::HeldFreedom`], [`ModalError::NotFinite`].
 fn motion_left(positions: &[[f64; 3]], freedoms: &[(u32, usize)]) -> Result<RigidMotion, ModalError> {
-    let count = positions.len();
-    if let Some((node, _)) = freedoms.iter().find(|(node, _)| *node as usize >= count) {
-        return Err(ModalError::HeldNode { node: *node, count });
-    }
-    if let Some(&(node, freedom)) = freedoms.iter().find(|(_, freedom)| *freedom >= 6) {
-        return Err(ModalError::HeldFreedom { node, freedom, count: 6 });
-    }
+    check_held(&[], freedoms, positions.len(), 6)?;
     check_finite_positions(positions)?;
     let at = |node: u32| Vector3::from(positions[node as usize]);
     let (_, length) = extent(positions);

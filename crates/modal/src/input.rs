@@ -37,6 +37,24 @@ pub(crate) fn check_finite_positions(positions: &[[f64; 3]]) -> Result<(), Modal
     check_finite("positions", "node", positions.iter().copied())
 }
 
+/// Refuses held nodes, and degrees of freedom (pairs of a node and its degree of freedom), that are not there: of `count`
+/// nodes with `freedoms_of_node` each.
+pub(crate) fn check_held(
+    nodes: &[u32],
+    freedoms: &[(u32, usize)],
+    count: usize,
+    freedoms_of_node: usize,
+) -> Result<(), ModalError> {
+    let mut held = nodes.iter().copied().chain(freedoms.iter().map(|(node, _)| *node));
+    if let Some(node) = held.find(|node| *node as usize >= count) {
+        return Err(ModalError::HeldNode { node, count });
+    }
+    if let Some(&(node, freedom)) = freedoms.iter().find(|(_, freedom)| *freedom >= freedoms_of_node) {
+        return Err(ModalError::HeldFreedom { node, freedom, count: freedoms_of_node });
+    }
+    Ok(())
+}
+
 /// Refuses ends of edges for another number of nodes, and ends that are no corners.
 pub(crate) fn check_edge_ends(edge_ends: &[[u32; 2]], nodes: usize) -> Result<(), ModalError> {
     if edge_ends.len() != nodes {
