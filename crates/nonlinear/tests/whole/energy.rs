@@ -29,7 +29,6 @@ fn gap(rows: &[Observation]) -> f64 {
 }
 
 #[test]
-#[ignore = "a hundred thousand steps: just nonlinear"]
 fn energy_is_kept_for_ten_seconds() {
     let found = gap(&rod("", 1e-4, 10.0));
     println!("{found:e}");
@@ -65,7 +64,6 @@ fn the_motion_is_of_fourth_order_with_large_amplitudes() {
 /// The plate of examples/spinning_plate.toml. What limits the step is the mode that the large ones draw in, at 537 Hz:
 /// it rings from the beginning, and is coupled to them by its inertia.
 #[test]
-#[ignore = "350 000 steps: just nonlinear"]
 fn the_plate_keeps_its_energy_for_ten_seconds_in_short_steps() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/spinning_plate.toml");
     let mut scene = Scene::read(path).unwrap();
@@ -82,7 +80,6 @@ fn the_plate_keeps_its_energy_for_ten_seconds_in_short_steps() {
 
 /// What rings of that plate is its eighth mode, which stretches: without it, and without the spin, there is little to keep.
 #[test]
-#[ignore = "a minute: just nonlinear"]
 fn the_plate_keeps_its_energy_far_better_without_the_mode_that_stretches() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/spinning_plate.toml");
     let mut scene = Scene::read(path).unwrap();
