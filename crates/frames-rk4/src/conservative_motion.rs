@@ -10,14 +10,15 @@ use crate::checkpoint::{CheckpointError, counts, decode, encode, equal_room, exp
 use crate::conservative::{ConservativeBody, ConservativeState, Evaluation, Slow, get, part};
 use crate::energies::Energies;
 use crate::error::{RateError, SetupError, StepError};
-use crate::error_size::Sizes;
+use crate::error_size::{ErrorSize, ORDER_GAIN, Sizes, StepEnd};
 use crate::exponential::{BlockStore, Pairs, sum_of_blocks};
 use crate::four::{Group, Padded, all_finite};
 use crate::initial::Initial;
 use crate::moment::Moment;
 use crate::motion::PointShapes;
 use crate::observation::Observation;
-use crate::scheme::Scheme;
+use crate::plan::StepControl;
+use crate::scheme::{ErrorEstimate, Scheme};
 use crate::setup::{Beginning, Method, Setup, StepLimit};
 use crate::state::MotionState;
 
@@ -52,8 +53,10 @@ pub struct ConservativeMotion {
     end_of_modes: [Padded; 2],
     blocks: BlockStore,
     evaluations: u64,
-    /// Under step control, the largest sizes so far; the energy not less than what the loads are to give.
+    /// Under step control, the largest sizes so far, not less than what the loads are to give.
     largest: Sizes,
+    /// Under step control, what measures the errors of steps.
+    error: ErrorSize,
     /// Energies at the start of the last step; none of a driven body, whose drive may jump.
     energies: Option<Energies>,
 }
@@ -100,7 +103,10 @@ fn begin(setup: &Setup, scheme: Stepping) -> Result<Beginning, SetupError> {
     let body = ConservativeBody::new(setup.body, setup.damping_ratios, setup.loads.to_vec(), setup.physics)?;
     let energy_of_loads = setup.energy_of_loads_on(&body);
     let mut motion = ConservativeMotion::new(body, scheme, setup.initial)?;
-    motion.largest.energy = energy_of_loads;
+    if let StepControl::Tolerance(_) = setup.control {
+        motion.largest = motion.body.sizes_of_loads(setup.end);
+        motion.error = ErrorSize::new(&motion.body, setup.end);
+    }
     Ok(Beginning { scheme: Box::new(motion), energy_of_loads })
 }
 
@@ -116,7 +122,7 @@ impl Scheme for ConservativeMotion {
         Ok(())
     }
 
-    fn controlled_step(&mut self, h: f64, end: f64, tolerance: f64) -> Result<f64, StepError> {
+    fn controlled_step(&mut self, h: f64, end: f64, tolerance: f64) -> Result<ErrorEstimate, StepError> {
         self.controlled_steps(0.5 * h, end, tolerance)
     }
 
@@ -133,9 +139,9 @@ impl Scheme for ConservativeMotion {
     }
 
     fn raise_energy_of_loads(&mut self, end: f64) -> f64 {
-        let energy = self.body.energy_of_loads(end);
-        self.largest.energy = self.largest.energy.max(energy);
-        energy
+        let sizes = self.body.sizes_of_loads(end);
+        self.largest = self.largest.max(sizes);
+        sizes.energy
     }
 
     fn observe(&mut self, points: &[PointShapes], out: &mut Observation) -> Result<(), StepError> {
@@ -265,6 +271,7 @@ impl ConservativeMotion {
             blocks: BlockStore::default(),
             evaluations: 0,
             largest: Sizes::default(),
+            error: ErrorSize::default(),
             energies: None,
             body,
         })
@@ -299,18 +306,18 @@ impl ConservativeMotion {
     /// single step would be cheaper, but all answers of third order weigh a pure function of time by Simpson's rule as
     /// the fourth-order one does: such an estimate is blind to loads, and to modes faster than the step.
     ///
-    /// The size of the error is the angle in the attitude or the largest of [`Sizes`], whichever is larger; the energy of
-    /// the motion counts as not less than what the impulses of the loads would give the rigid body.
+    /// The size of the error is the angle in the attitude or the largest of [`Sizes`], whichever is larger; the motion counts
+    /// as not less than what the loads are to give it.
     ///
     /// # Errors
     /// [`StepError`], where even the attempt fails; the state stays.
-    pub(crate) fn controlled_steps(&mut self, h: f64, end: f64, tolerance: f64) -> Result<f64, StepError> {
+    fn controlled_steps(&mut self, h: f64, end: f64, tolerance: f64) -> Result<ErrorEstimate, StepError> {
         self.before.copy_from(&self.state);
         // Of the second of two steps: where the rates at its end are found.
         let branch_time = self.state.time + 1.5 * h;
-        let estimate = self.two_steps(h, end, tolerance);
+        let estimate = self.two_steps(h, end);
         match estimate {
-            Ok(estimate) if estimate <= tolerance => {
+            Ok(estimate) if estimate.step <= tolerance => {
                 self.largest = self.body.sizes(&self.next, &self.ahead).max(self.largest);
                 let ConservativeState { time, slow, .. } = &self.next;
                 self.energies = self.body.energies_of(*time, slow, &self.ahead);
@@ -328,9 +335,8 @@ impl ConservativeMotion {
         estimate
     }
 
-    /// Goes to `end` by one step of twice `h` and by two of `h`, the latter's end in `next`, and estimates its error. The
-    /// estimate is not below half the `tolerance` where steps of twice the length would leave out more than they may.
-    fn two_steps(&mut self, h: f64, end: f64, tolerance: f64) -> Result<f64, StepError> {
+    /// Goes to `end` by one step of twice `h` and by two of `h`, the latter's end in `next`, and estimates its error.
+    fn two_steps(&mut self, h: f64, end: f64) -> Result<ErrorEstimate, StepError> {
         let time = self.state.time;
         self.attempt(2.0 * h, end)?;
         self.coarse.copy_from(&self.next);
@@ -338,17 +344,18 @@ impl ConservativeMotion {
         self.first_known = true;
         self.step(h, time + h)?;
         self.attempt(h, end)?;
-        let Self { body, next, coarse, ahead, .. } = self;
+        let Self { body, next, coarse, ahead, stages, error, .. } = self;
         body.evaluate_at(next, time + 1.5 * h, ahead).map_err(|error| error.in_step(time, h))?;
         self.evaluations += 1;
         let motion = body.sizes(next, ahead).max(self.largest);
-        let relative = body.sizes_of_difference(next, coarse).relative_to(motion, body.lowest_frequency());
+        let relative = |sizes: Sizes| sizes.relative_to(motion, body.lowest_frequency());
+        let seen = relative(error.of_difference(body, next, coarse, 2.0 * h));
         let angle = next.attitude.angle_to(&coarse.attitude);
-        let unseen = |step: f64| body.unseen(step, next, ahead).relative_to(motion, body.lowest_frequency());
+        let end = StepEnd { state: next, e: ahead, force_before: &stages[0].momentum, since: h };
+        let unseen = |step: f64| relative(error.unseen(body, step, &end));
         // A NaN stays one, and is rejected.
-        let estimate = if relative <= angle { angle } else { relative } / 15.0 + unseen(2.0 * h);
-        let keeps_its_length = estimate < 0.5 * tolerance && unseen(4.0 * h) > 2.0 * tolerance;
-        Ok(if keeps_its_length { 0.5 * tolerance } else { estimate })
+        let seen = if seen <= angle { angle } else { seen } / ORDER_GAIN;
+        Ok(ErrorEstimate { step: seen + unseen(2.0 * h), doubled: 32.0 * seen + unseen(4.0 * h) })
     }
 
     /// Computes `next` from `state`.

@@ -29,6 +29,7 @@
 #![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable))]
 
 mod account;
+mod allowance;
 mod attitude_account;
 mod blocked_matrix;
 mod builder;
@@ -108,7 +109,7 @@ pub use paper_limit::PaperLimit;
 pub use physics::{Drive, DrivenMotion, DrivenSpeed, Physics};
 pub use plan::{Rows, StepControl};
 pub use reaction::Reaction;
-pub use scheme::Scheme;
+pub use scheme::{ErrorEstimate, Scheme};
 pub use second_order::SecondOrder;
 pub use setup::{Method, Setup, StepLimit};
 pub use signal::Signal;

@@ -1,4 +1,4 @@
-//! How strongly the spin couples modes of like frequency.
+//! Coupling of modes of like frequency, by the spin and by the stress of loads.
 
 use faer::Mat;
 
@@ -9,10 +9,16 @@ const ALIKE: f64 = 0.2;
 /// The modes are the first rows and columns of each.
 pub(crate) fn own_coupling(circular_frequencies: &[f64], matrices: [&[Mat<f64>]; 2]) -> Vec<[f64; 2]> {
     let coupled = |k: usize, matrices: &[Mat<f64>]| {
-        let a = circular_frequencies[k];
-        let alike = circular_frequencies.iter().enumerate().filter(|(_, b)| (a - **b).abs() <= ALIKE * a);
-        let entries = alike.flat_map(|(l, _)| matrices.iter().map(move |matrix| matrix[(k, l)].abs()));
-        entries.fold(0.0, f64::max)
+        largest_alike(circular_frequencies, k, |l| {
+            matrices.iter().map(|matrix| matrix[(k, l)].abs()).fold(0.0, f64::max)
+        })
     };
     (0..circular_frequencies.len()).map(|k| matrices.map(|matrices| coupled(k, matrices))).collect()
+}
+
+/// The largest `entry` of a row k at k itself and at modes of like frequency.
+pub(crate) fn largest_alike(circular_frequencies: &[f64], k: usize, entry: impl Fn(usize) -> f64) -> f64 {
+    let a = circular_frequencies[k];
+    let alike = circular_frequencies.iter().enumerate().filter(|(_, b)| (a - **b).abs() <= ALIKE * a);
+    alike.map(|(l, _)| entry(l)).fold(0.0, f64::max)
 }

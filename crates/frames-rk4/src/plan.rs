@@ -262,12 +262,10 @@ impl HalvedSteps {
         self.segment.length / (1u64 << self.level) as f64
     }
 
-    /// The step was taken; with an `error` (as a fraction of the tolerance) small enough, the next is twice as long.
-    pub(crate) fn accept(&mut self, error: f64) {
+    /// The step was taken; the next may be twice as long where that is allowed and ends with the segment.
+    pub(crate) fn accept(&mut self, may_double: bool) {
         self.done += 1;
-        // The estimate goes with the fifth power of the step and its share of the tolerance with the first; half of the
-        // share is kept in hand.
-        if error * 16.0 < 0.5 && self.level > self.lowest_level && self.done.is_multiple_of(2) {
+        if may_double && self.level > self.lowest_level && self.done.is_multiple_of(2) {
             self.level -= 1;
             self.done /= 2;
         }
@@ -332,7 +330,7 @@ mod tests {
             } else {
                 assert!((end - time - h).abs() < 1e-15);
                 time = end;
-                steps.accept(error);
+                steps.accept(32.0 * error <= 1.0);
             }
         }
         assert_eq!(time, 1.3);

@@ -11,6 +11,15 @@ use crate::motion::PointShapes;
 use crate::observation::Observation;
 use crate::state::MotionState;
 
+/// Estimated errors under step control, relative to the motion.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ErrorEstimate {
+    /// Error of the step that was tried.
+    pub step: f64,
+    /// Error to be expected of a step twice as long.
+    pub doubled: f64,
+}
+
 /// A body in motion: a formulation of its equations with a time integration of them.
 ///
 /// [`Simulation`](crate::Simulation) decides where steps end and asks for them one by one. Between steps a scheme holds
@@ -26,11 +35,11 @@ pub trait Scheme: fmt::Debug + Send + Sync + Any {
     fn step(&mut self, h: f64, end: f64) -> Result<(), StepError>;
 
     /// Tries to go on by `h` to `end`, and does so where its estimate of the error is at most `tolerance`. Returns the
-    /// estimate.
+    /// estimate, and that of a step twice as long.
     ///
     /// # Errors
     /// [`StepError`] where even the try fails; the state stays. A scheme without an estimate always fails.
-    fn controlled_step(&mut self, h: f64, end: f64, tolerance: f64) -> Result<f64, StepError> {
+    fn controlled_step(&mut self, h: f64, end: f64, tolerance: f64) -> Result<ErrorEstimate, StepError> {
         let _ = (h, end, tolerance);
         Err(StepError::NoErrorEstimate { time: self.time() })
     }

@@ -137,7 +137,7 @@ impl Setup<'_> {
 
     /// The same, of the body of this set-up.
     pub(crate) fn energy_of_loads_on(&self, body: &ConservativeBody) -> f64 {
-        if self.may_miss_work(body.fastest_rate()) { body.energy_of_loads(self.end) } else { 0.0 }
+        if self.may_miss_work(body.fastest_rate()) { body.sizes_of_loads(self.end).energy } else { 0.0 }
     }
 
     /// Whether steps may be blind to work of the loads: they do not resolve a mode of this rate, the largest of ω_k and

@@ -5,6 +5,7 @@ use std::sync::{Arc, Mutex};
 use serde::{Deserialize, Serialize};
 
 use crate::account::EnergyAccount;
+use crate::allowance::Allowance;
 use crate::checkpoint::{CheckpointError, counts, decode, encode, equal_room, expect, from_words, to_words};
 use crate::error::{SetupError, StepError};
 use crate::events::{Event, Events, LastStep};
@@ -18,7 +19,7 @@ use crate::observation::Observation;
 use crate::observer::{Observer, StepEnd};
 use crate::observers::Observers;
 use crate::plan::{EqualSteps, HalvedSteps, Plan, Progress, Rows, StepControl};
-use crate::scheme::Scheme;
+use crate::scheme::{ErrorEstimate, Scheme};
 use crate::setup::{Beginning, Setup};
 use crate::state::MotionState;
 
@@ -98,6 +99,7 @@ enum Walk {
     },
     Halved {
         tolerance: f64,
+        allowance: Allowance,
         longest_try: f64,
         #[serde(with = "equal_room")]
         steps: Option<(HalvedSteps, bool)>,
@@ -112,8 +114,9 @@ impl Walk {
                 expect("the step", step == found)?;
                 steps.iter().try_for_each(|(steps, _)| steps.check())
             }
-            (Self::Halved { tolerance, .. }, Self::Halved { tolerance: found, longest_try, steps }) => {
+            (Self::Halved { tolerance, .. }, Self::Halved { tolerance: found, allowance, longest_try, steps }) => {
                 expect("the tolerance", tolerance == found)?;
+                allowance.check()?;
                 expect("the longest step to try", *longest_try > 0.0)?;
                 steps.iter().try_for_each(|(steps, _)| steps.check())
             }
@@ -167,9 +170,10 @@ impl Simulation {
     fn begin(scheme: Box<dyn Scheme>, energy_of_loads: f64, setup: &Setup) -> Result<Self, SetupError> {
         let (step, walk) = match setup.control {
             StepControl::Fixed(step) => (Some(step), Walk::Equal { step, steps: None }),
-            StepControl::Tolerance(tolerance) => {
-                (None, Walk::Halved { tolerance, longest_try: f64::INFINITY, steps: None })
-            }
+            StepControl::Tolerance(tolerance) => (
+                None,
+                Walk::Halved { tolerance, allowance: Allowance::default(), longest_try: f64::INFINITY, steps: None },
+            ),
         };
         let drive = setup.physics.drive.as_ref().map(|drive| drive.speed.history.clone());
         let of_loads = setup.loads.iter().filter_map(|load| load.history());
@@ -563,24 +567,24 @@ impl Simulation {
             step.begin(&*self.scheme, end, halved);
         }
         match &mut self.walk {
-            Walk::Halved { tolerance, longest_try, steps: Some((steps, _)) } => {
-                // Each step may take its share of the tolerance, so that the estimates of all steps sum to it. Where the
-                // share is below rounding, a shorter step would be no better.
-                let allowed = (*tolerance * h / self.end).max(f64::EPSILON);
-                let error = match self.scheme.controlled_step(h, end, allowed) {
-                    Ok(estimate) => estimate / allowed,
+            Walk::Halved { tolerance, allowance, longest_try, steps: Some((steps, _)) } => {
+                let allowed = allowance.of_step(*tolerance, h / self.end);
+                let estimate = match self.scheme.controlled_step(h, end, allowed) {
+                    Ok(estimate) => estimate,
                     Err(error @ StepError::NoErrorEstimate { .. }) => return Err(error),
                     // A step so long that it cannot even be tried.
-                    Err(_) => f64::INFINITY,
+                    Err(_) => ErrorEstimate { step: f64::INFINITY, doubled: f64::INFINITY },
                 };
-                if error <= 1.0 {
-                    steps.accept(error);
+                if estimate.step <= allowed {
+                    allowance.accept(end);
+                    steps.accept(Allowance::may_double(&estimate, allowed));
                     // A step that only the segment's end made short says nothing about the next segment.
                     *longest_try = longest_try.max(steps.length());
                     return Ok(true);
                 }
                 self.stats.rejected += 2;
-                if steps.reject(error) {
+                allowance.reject(time, end);
+                if steps.reject(estimate.step / allowed) {
                     *longest_try = steps.length();
                     Ok(false)
                 } else {

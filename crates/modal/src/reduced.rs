@@ -63,6 +63,8 @@ pub struct Constants {
     pub rotation_basis: Matrix3<f64>,
     /// Circular natural frequencies of the flexible modes, rad per time (nf).
     pub circular_frequencies: Vec<f64>,
+    /// Number of natural modes among the flexible ones: they come first, static shapes after them.
+    pub natural_modes: usize,
     /// E_ab (3×3 matrices of 6+nf × 6+nf).
     pub rotation_products: [[Mat<f64>; 3]; 3],
     /// E^X_ab = `Ψᵀ M (e_a e_bᵀ) X` (3×3 vectors of 6+nf).
@@ -170,6 +172,7 @@ impl ReducedBody {
             translation_basis: rigid.translation_basis,
             rotation_basis: rigid.rotation_basis,
             circular_frequencies: modes.eigenvalues.iter().map(|lambda| lambda.sqrt()).collect(),
+            natural_modes: modes.natural(),
             rotation_products,
             position_products,
             inertia_first,
@@ -192,6 +195,7 @@ impl ReducedBody {
         let leading = |matrix: &Mat<f64>, size: usize| matrix.get(..size, ..size).to_owned();
         Self(Constants {
             circular_frequencies: self.circular_frequencies[..nf].to_vec(),
+            natural_modes: self.natural_modes.min(nf),
             rotation_products: self.rotation_products.each_ref().map(|r| r.each_ref().map(|m| leading(m, 6 + nf))),
             position_products: self.position_products.each_ref().map(|r| r.each_ref().map(|v| v[..6 + nf].to_vec())),
             inertia_first: self.inertia_first.each_ref().map(|v| v[..nf].to_vec()),
@@ -237,6 +241,9 @@ impl Constants {
             self.circular_frequencies.iter().copied().find(|omega| !(*omega > 0.0 && omega.is_finite()))
         {
             return Err(ModalError::NotPositive { what: "circular frequency", value });
+        }
+        if self.natural_modes > nf {
+            return Err(ModalError::Length { what: "the natural modes", found: self.natural_modes, expected: nf });
         }
         self.rotation_products.iter().flatten().try_for_each(|m| square("rotation products", m, 6 + nf))?;
         self.position_products.iter().flatten().try_for_each(|v| list("position products", v, 6 + nf))?;

@@ -54,6 +54,7 @@ impl ReducedBody {
             translation_basis,
             rotation_basis,
             circular_frequencies: Vec::new(),
+            natural_modes: 0,
             rotation_products: std::array::from_fn(|a| {
                 std::array::from_fn(|b| Mat::from_fn(6, 6, |k, l| with_shape(k, l)[(a, b)]))
             }),

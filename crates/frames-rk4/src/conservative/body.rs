@@ -44,6 +44,8 @@ pub struct ConservativeBody {
     /// ω_k of the flexible modes.
     pub(crate) circular_frequencies: Vec<f64>,
     pub(crate) damping_ratios: Vec<f64>,
+    /// Number of natural modes; the coordinates after them are those of static shapes.
+    pub(crate) natural_modes: usize,
     /// Λ, the squares of ω_k.
     pub(super) stiffness: Vec<f64>,
     /// Largest of ω_k and 2 ζ_k ω_k.

@@ -89,6 +89,7 @@ impl ConservativeBody {
             inertia,
             circular_frequencies: modes.circular_frequencies.clone(),
             damping_ratios: damping_ratios.to_vec(),
+            natural_modes: modes.natural_modes,
             stiffness: modes.circular_frequencies.iter().map(|omega| omega * omega).collect(),
             fastest_rate: rates.copied().fold(0.0, f64::max),
             damped: damping.iter().any(|d| *d > 0.0),

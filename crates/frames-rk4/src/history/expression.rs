@@ -1,5 +1,6 @@
 //! Histories given by a formula in t.
 
+mod discontinuities;
 mod functions;
 mod law;
 mod syntax;
@@ -13,13 +14,14 @@ use law::Law;
 
 /// The longest formula, in bytes: sums and products are evaluated by recursion, one level a term.
 const LONGEST: usize = 1000;
+/// A discontinuity within this part of the run from a corner that is named is that corner.
+const SAME: f64 = 1e-12;
 
 /// A formula in t, one smooth law between the corners named with it.
 ///
 /// Operators are `+ - * / % ^` as in mathematics: `-t^2` is −(t²), and a power of a power needs parentheses. `2 t` and
-/// `t (t + 1)` are products. Constants are `pi` and `e`, angles are in radians. Kinks (as of `abs`, `min`, `max`) and
-/// jumps (as of `floor`, `sign`) are best named as corners: fixed steps then end there, instead of enclosing them in
-/// shorter steps.
+/// `t (t + 1)` are products. Constants are `pi` and `e`, angles are in radians. Kinks (as of `abs`, `min`, `max`) and jumps
+/// (as of `floor`, `sign`) are to be corners, so that steps end there: [`Self::with_discontinuities_until`] finds them.
 #[derive(Clone)]
 pub struct Expression {
     text: Arc<str>,
@@ -47,6 +49,19 @@ impl Expression {
             SetupError::Expression { text: text.to_owned(), position, problem }
         })?;
         Ok(Self { text: text.into(), corners, law: Arc::new(law) })
+    }
+
+    /// The same formula, with the kinks and jumps of its functions (`abs`, `min`, `floor`, `sign`, …) between time 0 and
+    /// `end` named as corners. They are found by sampling: two within a 16 384th of the time may be missed.
+    #[must_use]
+    pub fn with_discontinuities_until(mut self, end: f64) -> Self {
+        let named = std::mem::take(&mut self.corners);
+        let is_named = |time: f64| named.iter().any(|corner| (corner - time).abs() <= SAME * end);
+        self.corners = discontinuities::discontinuities(&self.law, end);
+        self.corners.retain(|time| !is_named(*time));
+        self.corners.extend(&named);
+        self.corners.sort_by(f64::total_cmp);
+        self
     }
 
     /// The formula.

@@ -46,6 +46,7 @@ pub fn body(motion: RigidMotion, circular_frequencies: &[f64]) -> ReducedBody {
         translation_basis: Matrix3::identity() / MASS.sqrt(),
         rotation_basis: inertia.cholesky().unwrap().l().transpose().try_inverse().unwrap(),
         circular_frequencies: circular_frequencies.to_vec(),
+        natural_modes: nf,
         rotation_products: std::array::from_fn(|_| std::array::from_fn(|_| Mat::zeros(6 + nf, 6 + nf))),
         position_products: std::array::from_fn(|_| std::array::from_fn(|_| vec![0.0; 6 + nf])),
         inertia_first: std::array::from_fn(|pair| (0..nf).map(|k| 0.2 * noise(100 + 13 * pair + k)).collect()),

@@ -167,6 +167,7 @@ pub(super) fn reduced_body(kept: &Kept<'_>, modes: &Modes) -> Result<ReducedBody
         translation_basis: rigid.translation_basis,
         rotation_basis: rigid.rotation_basis,
         circular_frequencies: modes.eigenvalues.iter().map(|lambda| lambda.sqrt()).collect(),
+        natural_modes: modes.natural(),
         rotation_products: std::array::from_fn(|a| std::array::from_fn(|b| rotation_products[3 * a + b].clone())),
         position_products: std::array::from_fn(|a| std::array::from_fn(|b| position_products[3 * a + b].clone())),
         inertia_first: lists("inertia_first", 6, nf)?.try_into().map_err(|_| unfit())?,

@@ -25,7 +25,9 @@ pub(super) fn history(scene: &Scene, key: &str, history: &History) -> Result<fra
             let (times, values) = points.iter().map(|[t, v]| (*t, *v)).unzip();
             Table::new(times, values)
         };
-        let expression = |Formula { formula, corners }: &Formula| Expression::new(formula, corners.clone());
+        let expression = |Formula { formula, corners }: &Formula| {
+            Ok(Expression::new(formula, corners.clone())?.with_discontinuities_until(scene.time.end))
+        };
         history.try_map(&table, &expression).map_err(refused)?
     };
     made.check_over(scene.time.end).map_err(refused)?;

@@ -137,7 +137,7 @@ impl Model {
 
     /// How many static shapes follow the natural modes.
     pub fn static_shapes(&self) -> usize {
-        self.meshed.as_ref().map_or(0, |meshed| meshed.modes.eigenvalues.len() - meshed.modes.natural())
+        self.body.flexible() - self.body.natural_modes
     }
 
     /// Which modes are large, numbered from 0; none without large deflection.

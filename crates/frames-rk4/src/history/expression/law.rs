@@ -57,4 +57,36 @@ impl Law {
             }
         }
     }
+
+    /// Whether the law has kinks or jumps.
+    pub fn has_pieces(&self) -> bool {
+        match self {
+            Self::Number(_) | Self::Time => false,
+            Self::Unary(function, of) => function.piece.is_some() || of.has_pieces(),
+            Self::Binary(function, of) => function.piece.is_some() || of.iter().any(Self::has_pieces),
+        }
+    }
+
+    /// The value at a time; `see` is shown the number of the smooth piece of each function that has several, in an order
+    /// that is always the same.
+    pub fn value_and_pieces(&self, time: f64, see: &mut impl FnMut(i64)) -> f64 {
+        match self {
+            Self::Number(x) => *x,
+            Self::Time => time,
+            Self::Unary(function, of) => {
+                let x = of.value_and_pieces(time, see);
+                if let Some(piece) = function.piece {
+                    see(piece(x));
+                }
+                (function.value)(x)
+            }
+            Self::Binary(function, of) => {
+                let (x, y) = (of[0].value_and_pieces(time, see), of[1].value_and_pieces(time, see));
+                if let Some(piece) = function.piece {
+                    see(piece(x, y));
+                }
+                (function.value)(x, y)
+            }
+        }
+    }
 }
