@@ -21,6 +21,10 @@ const HALVINGS: [i32; 2] = [2, 10];
 const SAMPLES: f64 = 256.0;
 /// Fewest steps that are compared.
 const FEWEST: f64 = 8.0;
+/// The comparison ends where it has cost this many times what it may.
+const OVERRUN: f64 = 4.0;
+/// Steps between two looks at what it has cost.
+const STEPS_AT_ONCE: u64 = 1000;
 /// Growth of an error with time that is carried on to the end of the run, as a power.
 const STEEPEST: f64 = 2.0;
 /// Times 1/(ζ_k ω_k) after which an error that a mode has made is gone.
@@ -117,7 +121,8 @@ impl StepEstimate {
     }
 }
 
-/// Estimates what the steps of a run get wrong; nothing under step control, which sees to it itself.
+/// Estimates what the steps of a run get wrong; nothing under step control, which sees to it itself, and where a load makes the
+/// steps so short that the comparison would take long.
 ///
 /// The run is made in its own steps and in steps so short that every mode is resolved. Where that would cost more than
 /// some tenths of a second, its beginning stands for it: errors go on growing as they grew in the second half of what was
@@ -137,7 +142,8 @@ pub fn step_estimate(setup: &Setup) -> Result<Option<StepEstimate>, SetupError> 
     let halvings = (step * highest / RESOLVED).log2().ceil().max(f64::from(HALVINGS[0])).min(f64::from(HALVINGS[1]));
     let finer = halvings.exp2();
     let modes = omega.len() as f64;
-    let cost = f64::from(setup.method.evaluations_per_step) * (9.0 * modes * modes + BESIDE);
+    let of_evaluation = 9.0 * modes * modes + BESIDE;
+    let cost = f64::from(setup.method.evaluations_per_step) * of_evaluation;
     let steps = setup.end / step;
     let compared = (PRODUCTS / (cost * (1.0 + finer))).max(FEWEST).min(steps);
     let each = (compared / SAMPLES).ceil();
@@ -153,7 +159,12 @@ pub fn step_estimate(setup: &Setup) -> Result<Option<StepEstimate>, SetupError> 
         })
     };
     let mut comparison = Comparison::new(setup);
-    let failure = comparison.follow(begin(step)?, begin(step / finer)?, samples).err();
+    // Loads may ask for steps far shorter than those of the run.
+    let most_evaluations = (OVERRUN * PRODUCTS.max(FEWEST * (1.0 + finer) * cost) / of_evaluation) as u64;
+    let failure = comparison.follow(begin(step)?, begin(step / finer)?, samples, most_evaluations).err();
+    if comparison.times.is_empty() && failure.is_none() {
+        return Ok(None);
+    }
     Ok(Some(comparison.estimate(setup, step, finer, failure)))
 }
 
@@ -185,13 +196,19 @@ impl Comparison {
         }
     }
 
-    /// Follows both until the end, or for so many `samples`.
-    fn follow(&mut self, mut a: Simulation, mut b: Simulation, samples: usize) -> Result<(), StepError> {
+    /// Follows both until the end, for so many `samples`, or for so many evaluations of the rates.
+    fn follow(
+        &mut self,
+        mut a: Simulation,
+        mut b: Simulation,
+        samples: usize,
+        most_evaluations: u64,
+    ) -> Result<(), StepError> {
         let (mut of_a, mut of_b) = (a.observation()?, b.observation()?);
         let start = of_a.position_global;
-        while self.times.len() < samples && next_row(&mut a, &mut of_a)? {
+        while self.times.len() < samples && next_row(&mut a, &mut of_a, most_evaluations)? {
             // That the shorter steps fail says nothing about those of the run.
-            if !next_row(&mut b, &mut of_b).unwrap_or(false) {
+            if !next_row(&mut b, &mut of_b, most_evaluations).unwrap_or(false) {
                 break;
             }
             self.add(&of_a, &of_b);
@@ -264,10 +281,10 @@ impl Comparison {
     }
 }
 
-/// Goes on to the next row; `false` at the end.
-fn next_row(simulation: &mut Simulation, out: &mut Observation) -> Result<bool, StepError> {
-    loop {
-        match simulation.advance(u64::MAX)? {
+/// Goes on to the next row; `false` at the end, and where all evaluations have been made.
+fn next_row(simulation: &mut Simulation, out: &mut Observation, most_evaluations: u64) -> Result<bool, StepError> {
+    while simulation.stats().evaluations < most_evaluations {
+        match simulation.advance(STEPS_AT_ONCE)? {
             Reached::Row => {
                 simulation.observe(out)?;
                 return Ok(true);
@@ -276,4 +293,5 @@ fn next_row(simulation: &mut Simulation, out: &mut Observation) -> Result<bool, 
             _ => {}
         }
     }
+    Ok(false)
 }
