@@ -122,3 +122,16 @@ fn model_sees_less_than_all(scene: &mut Scene) -> bool {
     let estimate = model.step_estimate(scene).unwrap().unwrap();
     estimate.seen < 1.0 && estimate.in_words(1e-3).contains("carried on")
 }
+
+/// A load at 50 kHz asks for steps of a microsecond, eight hundred million of them.
+#[test]
+fn of_a_load_far_faster_than_the_steps_only_the_beginning_is_compared() {
+    let mut scene = example("ring");
+    (scene.time.end, scene.time.control) = (1000.0, StepControl::Fixed(0.01));
+    scene.output.rows = scene::Rows::Interval(1.0);
+    let scene::Load::Force(force) = &mut scene.loads[0] else { panic!("no force") };
+    force.history = scene::History::Sine { frequency: 5e4, phase: 0.0, start: 0.0, duration: None };
+    let model = Model::build(&scene, |_| ()).unwrap();
+    let seen = model.step_estimate(&scene).unwrap().map_or(0.0, |estimate| estimate.seen);
+    assert!(seen < 0.01, "{seen}");
+}
