@@ -1,7 +1,7 @@
 //! What ctrl-C, and a request to terminate, do.
 //!
-//! Before the motion begins there is nothing to lose, and a signal ends the program at once; the processes of SLEPc are
-//! ended, and their files removed, before. Then the first stops the run at its next row, and another that comes half a
+//! Before the motion begins there is nothing to lose, and a signal ends the program at once, with the programs that it has
+//! started and its temporary files; the processes of SLEPc are ended before. Then the first stops the run at its next row, and another that comes half a
 //! second later or more ends the program at once. A shell, a job scheduler and a terminal may send several for one
 //! request, only milliseconds apart.
 
@@ -16,6 +16,7 @@ use flexframe::run::RunProgress;
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::{iterator, low_level};
 use slepc::Stop;
+use whole_file::remove_temporaries;
 
 use crate::output;
 
@@ -49,6 +50,7 @@ impl Signals {
                         if !told {
                             output::report(&FailureReport::new(Kind::Stopped, "stopped", Details::default()), json);
                         }
+                        let _none = remove_temporaries();
                         // Without handlers at exit, which would close files that others are writing.
                         low_level::exit(Kind::Stopped.exit_code().into());
                     }

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use hdf5::dataset::Layout;
 use hdf5::plist::dataset_create::{AllocTime, FillTime};
 use hdf5::types::VarLenUnicode;
-use tempfile::TempPath;
+use whole_file::TemporaryFile;
 
 use crate::array::{Kind, Number};
 use crate::digest::Hash;
@@ -34,7 +34,7 @@ pub struct Declared {
 #[derive(Debug)]
 pub struct Writer {
     path: PathBuf,
-    place: TempPath,
+    place: TemporaryFile,
     file: File,
     description: Description,
     /// Datasets that have not been written, and second names.
@@ -58,12 +58,8 @@ impl Writer {
         if folder.to_str().is_none() {
             return Err(BodyFileError::NameNotUtf8 { path: folder.to_owned() });
         }
-        let mut builder = tempfile::Builder::new();
-        builder.prefix(".flexframe-").suffix(".h5");
-        #[cfg(unix)]
-        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666)); // less the user's mask
-        let place = builder.tempfile_in(folder).map_err(BodyFileError::system(&path, "create the file"))?;
-        let place = place.into_temp_path();
+        let made = TemporaryFile::beside(&path, ".h5");
+        let (_, place) = made.map_err(BodyFileError::system(&path, "create the file"))?;
 
         let longest = |declared: &Declared| StoredArray {
             kind: declared.kind,
@@ -137,8 +133,8 @@ impl Writer {
         let written = if durable { written.and_then(|()| self.file.sync_all()) } else { written };
         written.map_err(BodyFileError::system(&self.path, "write the file"))?;
         drop(self.file);
-        let put = self.place.persist(&self.path);
-        put.map_err(|failure| BodyFileError::system(&self.path, "put the file into its place")(failure.error))
+        let put = self.place.put(&self.path, true);
+        put.map_err(BodyFileError::system(&self.path, "put the file into its place"))
     }
 }
 

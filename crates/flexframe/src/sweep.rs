@@ -18,6 +18,7 @@ use std::time::{Duration, Instant};
 use results::Results;
 use scene::{Assembly, BuildProgress, Cache, Constraint, Model, ModelBuilder, Scene};
 use serde::Serialize;
+use whole_file::TemporaryFolder;
 
 use crate::columns::COLUMNS;
 use crate::json;
@@ -114,10 +115,14 @@ pub fn sweep(
     settings: &SweepSettings,
     mut progress: impl FnMut(SweepProgress),
 ) -> Result<SweepReport, SweepError> {
-    let temporary = tempfile::tempdir().map_err(WriteError::of(output))?;
+    let temporary = TemporaryFolder::new().map_err(WriteError::of(output))?;
     // Rows find what earlier rows have asked of the mesh.
     let folder = settings.cache.folder().map_or_else(|| temporary.path().join("cache"), Path::to_owned);
-    let cache = if settings.cache.folder().is_some() { settings.cache.clone() } else { Cache::new(folder, u64::MAX) };
+    let cache = if settings.cache.folder().is_some() {
+        settings.cache.clone()
+    } else {
+        settings.cache.elsewhere(folder, u64::MAX)
+    };
     let plan = Plan::read(path, &cache)?;
     if let Some(folder) = output.parent().filter(|folder| !folder.as_os_str().is_empty()) {
         std::fs::create_dir_all(folder).map_err(WriteError::of(folder))?;
@@ -252,7 +257,7 @@ fn run_row(scene: &Scene, plan: &Plan, builder: &Mutex<ModelBuilder<'_>>, folder
         let mut builder = builder.lock().unwrap_or_else(PoisonError::into_inner);
         builder.build(scene, |_| ()).map_err(|error| error.to_string())?
     };
-    let folder = tempfile::tempdir_in(folder).map_err(|error| error.to_string())?;
+    let folder = TemporaryFolder::inside(folder).map_err(|error| error.to_string())?;
     let run = run::run_model(scene, &model, folder.path(), &RunSettings::default(), |_| ());
     let warnings = run.map_err(|error| error.without_files())?.warnings;
     let results =

@@ -6,7 +6,7 @@ use std::ffi::OsStr;
 use std::fs::File;
 use std::io;
 use std::path::{Path, PathBuf};
-use tempfile::TempPath;
+use whole_file::TemporaryFile;
 
 /// The ending of an unfinished file.
 const PART: &str = ".part.h5";
@@ -77,45 +77,38 @@ impl ResultsPaths {
     }
 
     /// A file of another name in the same folder, which is removed if it gets no other name.
-    pub(crate) fn temporary(&self) -> Result<TempPath, FileError> {
+    pub(crate) fn temporary(&self) -> Result<TemporaryFile, FileError> {
         // HDF5 is given names as text.
         if self.folder().to_str().is_none() {
             return Err(FileError::NameNotUtf8 { path: self.folder().to_owned() });
         }
-        let mut builder = tempfile::Builder::new();
-        builder.prefix(".flexframe-").suffix(".h5");
-        #[cfg(unix)]
-        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666)); // less the user's mask
-        let file = builder
-            .tempfile_in(self.folder())
-            .map_err(|error| FileError::system(&self.path, "create the file", &error))?;
-        Ok(file.into_temp_path())
+        let made = TemporaryFile::beside(&self.path, ".h5");
+        Ok(made.map_err(|error| FileError::system(&self.path, "create the file", &error))?.1)
     }
 
     /// Makes a file the unfinished one; an older one is in the way unless it is to be replaced.
-    pub(crate) fn put_part(&self, file: TempPath, replace: bool) -> Result<(), FileError> {
+    pub(crate) fn put_part(&self, file: TemporaryFile, replace: bool) -> Result<(), FileError> {
         let _alone = lock(self.folder());
         // Another run may have begun since it was looked at first.
         if is_busy(&self.part) {
             return Err(FileError::Busy { path: self.part.clone() });
         }
-        let outcome = if replace { file.persist(&self.part) } else { file.persist_noclobber(&self.part) };
-        outcome.map_err(|failure| match failure.error.kind() {
+        file.put(&self.part, replace).map_err(|error| match error.kind() {
             io::ErrorKind::AlreadyExists => FileError::Unfinished { path: self.part.clone() },
-            _ => FileError::system(&self.part, "create the file", &failure.error),
+            _ => FileError::system(&self.part, "create the file", &error),
         })
     }
 
     /// Puts a file into the place of the unfinished one, which is the caller's own.
-    pub(crate) fn exchange_part(&self, file: TempPath) -> Result<(), FileError> {
-        file.persist(&self.part).map_err(|failure| FileError::system(&self.part, "create the file", &failure.error))
+    pub(crate) fn exchange_part(&self, file: TemporaryFile) -> Result<(), FileError> {
+        file.put(&self.part, true).map_err(|error| FileError::system(&self.part, "create the file", &error))
     }
 
     /// Makes a file the results file, once it is safe on the disk.
-    pub(crate) fn put_results(&self, file: TempPath) -> Result<(), FileError> {
+    pub(crate) fn put_results(&self, file: TemporaryFile) -> Result<(), FileError> {
         let failed = |error: &io::Error| FileError::system(&self.path, "write the file", error);
         File::open(&file).and_then(|file| file.sync_all()).map_err(|error| failed(&error))?;
-        file.persist(&self.path).map_err(|failure| failed(&failure.error))
+        file.put(&self.path, true).map_err(|error| failed(&error))
     }
 
     pub(crate) fn remove_part(&self) -> Result<(), FileError> {

@@ -10,13 +10,13 @@ use hdf5::types::FixedAscii;
 use hdf5::{Group, H5Type};
 use ndarray::{ArrayView, ArrayView1, ArrayView2, Dimension, s};
 use std::path::{Path, PathBuf};
-use tempfile::TempPath;
+use whole_file::TemporaryFile;
 
 /// A file that is being written. It takes its place in [`VtkHdf::finish`]; if it is dropped before, nothing has happened.
 #[derive(Debug)]
 pub struct VtkHdf {
     file: hdf5::File,
-    place: TempPath,
+    place: TemporaryFile,
     path: PathBuf,
     points: usize,
     datasets: Vec<hdf5::Dataset>,
@@ -93,27 +93,21 @@ impl VtkHdf {
 }
 
 /// The place of a file that is not there yet, in the same folder.
-pub(crate) fn temporary(path: &Path, overwrite: bool) -> Result<TempPath, FileError> {
+pub(crate) fn temporary(path: &Path, overwrite: bool) -> Result<TemporaryFile, FileError> {
     if !overwrite && path.symlink_metadata().is_ok() {
         return Err(FileError::Exists { path: path.to_owned() });
     }
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".flexframe-").suffix(".tmp");
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666)); // less the user's mask
-    let file = builder.tempfile_in(folder).map_err(|error| FileError::system(path, "create the file", &error))?;
-    Ok(file.into_temp_path())
+    let made = TemporaryFile::beside(path, ".tmp");
+    Ok(made.map_err(|error| FileError::system(path, "create the file", &error))?.1)
 }
 
 /// Puts a file that is complete into its place.
-pub(crate) fn put(place: TempPath, path: &Path, overwrite: bool) -> Result<(), FileError> {
+pub(crate) fn put(place: TemporaryFile, path: &Path, overwrite: bool) -> Result<(), FileError> {
     let failed = |error| FileError::system(path, "write the file", &error);
     std::fs::File::open(&place).and_then(|file| file.sync_all()).map_err(failed)?;
-    let put = if overwrite { place.persist(path) } else { place.persist_noclobber(path) };
-    put.map_err(|failure| match failure.error.kind() {
+    place.put(path, overwrite).map_err(|error| match error.kind() {
         std::io::ErrorKind::AlreadyExists => FileError::Exists { path: path.to_owned() },
-        _ => failed(failure.error),
+        _ => failed(error),
     })
 }
 

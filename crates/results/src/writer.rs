@@ -11,7 +11,7 @@ use crate::store::Store;
 use crate::{Column, FileError, Metadata, Values};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
-use tempfile::TempPath;
+use whole_file::TemporaryFile;
 
 /// Most rows that are gathered before they are written. A row at a time costs about nine times as much.
 const ROWS_PER_WRITE: usize = 512;
@@ -345,7 +345,7 @@ fn make_room<R>(
     metadata: &Metadata,
     columns: &'static [Column<R>],
     room: Room,
-) -> Result<(TempPath, Store), FileError> {
+) -> Result<(TemporaryFile, Store), FileError> {
     let file = place.temporary()?;
     let store = Store::create(&file, &place.part, metadata, columns, room)?;
     store.seal(&place.part, None)?;

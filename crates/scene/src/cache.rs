@@ -37,7 +37,9 @@ struct Inner {
     assembled: AtomicUsize,
     /// Whether nothing can be written.
     is_closed: AtomicBool,
-    warnings: Mutex<Vec<String>>,
+    /// Of what those made by [`Cache::elsewhere`] say, too.
+    warnings: Arc<Mutex<Vec<String>>>,
+    trusts_geometry: AtomicBool,
     /// Whether a thread computes.
     computing: Mutex<bool>,
     computed_all: Condvar,
@@ -55,7 +57,7 @@ pub struct CacheNotes {
     pub computed: usize,
     /// How often matrices were assembled.
     pub assembled: usize,
-    /// What could not be read or written.
+    /// What could not be read or written, and what else the user should know of how files were read.
     pub warnings: Vec<String>,
 }
 
@@ -69,6 +71,26 @@ impl Cache {
     pub fn new(folder: impl Into<PathBuf>, limit: u64) -> Self {
         let create: CreateFile = |path, texts, datasets| Writer::create(path, texts, datasets);
         Self(Arc::new(Inner { folder: Some(folder.into()), limit, create: Some(create), ..Inner::default() }))
+    }
+
+    /// One in another folder for the same user: it trusts what this one does, and says what there is to say through this one.
+    pub fn elsewhere(&self, folder: impl Into<PathBuf>, limit: u64) -> Self {
+        let Self(mut inner) = Self::new(folder, limit);
+        if let Some(inner) = Arc::get_mut(&mut inner) {
+            inner.warnings = self.0.warnings.clone();
+            inner.trusts_geometry = AtomicBool::new(self.trusts_geometry());
+        }
+        Self(inner)
+    }
+
+    /// From here on, gmsh may do all that geometry says which is read for this user
+    /// ([`ImportSettings::trust_geometry`](crate::ImportSettings::trust_geometry)).
+    pub fn trust_geometry(&self) {
+        self.0.trusts_geometry.store(true, Ordering::Relaxed);
+    }
+
+    pub(crate) fn trusts_geometry(&self) -> bool {
+        self.0.trusts_geometry.load(Ordering::Relaxed)
     }
 
     /// The user's: the folder `FLEXFRAME_CACHE`, or `flexframe` in `XDG_CACHE_HOME` or in `~/.cache`, with 4 GiB at most. None

@@ -1,10 +1,11 @@
 //! What a driver leaves.
 
 use std::collections::BTreeMap;
-use std::fs;
+use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
 use std::time::Duration;
 
+use foreign_program::open_ordinary;
 use modal::{Eigenpairs, EngineStats, StaticAnswers};
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
@@ -13,6 +14,9 @@ use crate::binary::read_vectors;
 use crate::error::SlepcError;
 use crate::folder::LOG;
 use crate::json::json;
+
+/// Bytes at the end of the log in which its last line is looked for.
+const TAIL: u64 = 8192;
 
 /// `modes.json`.
 #[derive(Deserialize)]
@@ -102,8 +106,13 @@ fn finished<T: DeserializeOwned>(folder: &Path, name: &str, what: &'static str) 
     json(&path)
 }
 
+/// The last line of a file, which may be long.
 fn last_line(path: &Path) -> Option<String> {
-    let text = fs::read(path).ok()?;
+    let mut file = open_ordinary(path).ok()?;
+    let size = file.metadata().ok()?.len();
+    file.seek(SeekFrom::Start(size.saturating_sub(TAIL))).ok()?;
+    let mut text = Vec::new();
+    file.take(TAIL).read_to_end(&mut text).ok()?;
     let text = String::from_utf8_lossy(&text);
     text.lines().rev().map(str::trim).find(|line| !line.is_empty()).map(str::to_owned)
 }

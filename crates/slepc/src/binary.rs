@@ -7,6 +7,7 @@ use std::io::{self, BufReader, Read, Write};
 use std::path::Path;
 
 use faer::{Mat, MatRef};
+use foreign_program::open_ordinary;
 use modal::HeldMatrix;
 
 use crate::error::SlepcError;
@@ -62,9 +63,15 @@ pub(crate) fn write_vectors(vectors: MatRef<'_, f64>, file: &mut impl Write) -> 
 
 /// Reads so many vectors of so many rows.
 pub(crate) fn read_vectors(path: &Path, rows: usize, count: usize) -> Result<Mat<f64>, SlepcError> {
-    let file = std::fs::File::open(path).map_err(SlepcError::io(path, "open it"))?;
-    let mut file = BufReader::new(file);
+    let file = open_ordinary(path).map_err(SlepcError::io(path, "open it"))?;
     let damaged = |what: String| SlepcError::Damaged { path: path.to_owned(), what };
+    // Before any memory is taken for what a file merely claims.
+    let found = file.metadata().map_err(SlepcError::io(path, "open it"))?.len();
+    let whole = (rows as u64).saturating_mul(8).saturating_add(8);
+    if found < whole.saturating_mul(count as u64) {
+        return Err(damaged(format!("it ends in vector {} of {count}", found / whole + 1)));
+    }
+    let mut file = BufReader::new(file);
     let mut vectors = Mat::zeros(rows, count);
     for k in 0..count {
         let cut = |_| damaged(format!("it ends in vector {} of {count}", k + 1));

@@ -16,16 +16,21 @@ What is answered already is not computed again.
 Every rank must see the folder. Options for PETSc and MUMPS are taken from the environment variable PETSC_OPTIONS.
 """
 
+import os
+import sys
+
+FOLDER = os.path.dirname(os.path.realpath(__file__))
+# Modules come from where Python has them. A file of others in this folder, such as a json.py, is none of them.
+sys.path = [place for place in sys.path if place and os.path.realpath(place) != FOLDER]
+
 import glob
 import json
-import os
 import re
-import sys
 import time
 import traceback
 from pathlib import Path
 
-FOLDER = Path(__file__).resolve().parent
+FOLDER = Path(FOLDER)
 # Eigenpairs beside those that are asked for: the count of eigenvalues is taken in the widest gap between them, which is no gap
 # below this part of the eigenvalue.
 SPARE = 4
@@ -57,8 +62,8 @@ def import_slepc():
     try:
         import slepc4py
 
-        # No options from the command line.
-        slepc4py.init(sys.argv[:1])
+        # No options from the command line, nor from a .petscrc.
+        slepc4py.init([*sys.argv[:1], "-skip_petscrc"])
         from petsc4py import PETSc
         from slepc4py import SLEPc
     except Exception as error:

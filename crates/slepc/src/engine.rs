@@ -5,7 +5,7 @@ use std::sync::{Mutex, PoisonError};
 
 use faer::MatRef;
 use modal::{Eigenpairs, Engine, EngineError, EnginePhase, HeldProblem, Progress, StaticAnswers};
-use tempfile::TempDir;
+use whole_file::TemporaryFolder;
 
 use crate::answers;
 use crate::error::SlepcError;
@@ -65,13 +65,13 @@ struct Runner {
 
 /// A temporary folder with the matrices.
 struct Work {
-    folder: TempDir,
+    folder: TemporaryFolder,
     digest: String,
 }
 
 impl Work {
     fn new(problem: &HeldProblem<'_>) -> Result<Self, SlepcError> {
-        let folder = tempfile::Builder::new().prefix("flexframe-slepc-").tempdir();
+        let folder = TemporaryFolder::new();
         let folder = folder.map_err(SlepcError::io(std::env::temp_dir(), "make a folder in it"))?;
         let digest = write_matrices(problem, folder.path())?;
         Ok(Self { folder, digest })

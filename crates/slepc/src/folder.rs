@@ -5,6 +5,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use faer::MatRef;
+use foreign_program::shell_word;
 use modal::{HeldMatrix, HeldProblem};
 use serde::{Deserialize, Serialize};
 use whole_file::{WholeFile, write_whole};
@@ -134,10 +135,10 @@ pub fn write_folder(
         "{modes} modes of {}, {} unknowns: to be found by SLEPc on PETSc with MUMPS, for Python (slepc4py).\n\
          Where they are installed: `cd` to this folder and `sbatch job.sh`, or `bash job.sh` without Slurm.\n\
          Then: flexframe modes {} --solver slepc --read {}\n",
-        scene.display(),
+        shell_word(scene),
         problem.stiffness.size(),
-        quoted(scene),
-        quoted(folder)
+        shell_word(scene),
+        shell_word(folder)
     );
     for (name, text) in [("job.sh", &script), ("README.txt", &readme)] {
         let path = folder.join(name);
@@ -161,11 +162,6 @@ export OMP_NUM_THREADS=1
 \"${{FLEXFRAME_MPIRUN:-mpirun}}\" -n \"${{SLURM_NTASKS:-{ranks}}}\" \"${{FLEXFRAME_MPI_PYTHON:-python3}}\" {DRIVER_FILE}
 "
     )
-}
-
-/// As the shell reads it: one word, whatever is in it.
-fn quoted(path: &Path) -> String {
-    format!("'{}'", path.display().to_string().replace('\'', r"'\''"))
 }
 
 /// The digest of K and M.

@@ -1,14 +1,18 @@
 //! JSON files.
 
-use std::fs;
 use std::path::Path;
 
+use foreign_program::read_at_most;
 use serde::de::DeserializeOwned;
 
 use crate::error::SlepcError;
 
+/// Bytes that a file of the driver may have: some numbers for each mode.
+const MOST: u64 = 64 << 20;
+
 /// What a file has.
 pub(crate) fn json<T: DeserializeOwned>(path: &Path) -> Result<T, SlepcError> {
-    let text = fs::read_to_string(path).map_err(SlepcError::io(path, "read it"))?;
-    serde_json::from_str(&text).map_err(|error| SlepcError::Damaged { path: path.to_owned(), what: error.to_string() })
+    let text = read_at_most(path, MOST).map_err(SlepcError::io(path, "read it"))?;
+    serde_json::from_slice(&text)
+        .map_err(|error| SlepcError::Damaged { path: path.to_owned(), what: error.to_string() })
 }

@@ -1,16 +1,11 @@
 //! Runs a driver under mpirun.
 
 use std::collections::VecDeque;
-use std::ffi::OsString;
-use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
-use std::process::{Child, Command, ExitStatus, Stdio};
-use std::sync::mpsc::{self, RecvTimeoutError};
-use std::thread;
-use std::time::{Duration, Instant};
+use std::process::ExitStatus;
 
+use foreign_program::{ForeignProgram, Limits, ProgramError, named};
 use modal::{EnginePhase, Progress};
-use rustix::process::{Pid, Signal, kill_process};
 use serde::Deserialize;
 
 use crate::cures::{INSTALL, cure};
@@ -22,13 +17,11 @@ use crate::stop::Stop;
 const MPIRUN: &str = "FLEXFRAME_MPIRUN";
 /// Names Python, where it is not `python3`.
 const PYTHON: &str = "FLEXFRAME_MPI_PYTHON";
-/// Whether to stop is looked at so often.
-const PATIENCE: Duration = Duration::from_millis(50);
-/// mpirun has so long to end its processes.
-const FAREWELL: Duration = Duration::from_secs(10);
 /// Lines that are kept of what it says, and that are shown.
 const KEPT: usize = 60;
 const SHOWN: usize = 12;
+/// Bytes that are kept of a line.
+const LONGEST: usize = 2000;
 
 /// A line of the driver.
 #[derive(Deserialize)]
@@ -54,56 +47,50 @@ pub(crate) fn drive(
     stop: &Stop,
     progress: &mut dyn FnMut(Progress),
 ) -> Result<(), SlepcError> {
-    let named = |variable: &str, usual: &str| std::env::var_os(variable).unwrap_or_else(|| OsString::from(usual));
     let (mpirun, python) = (named(MPIRUN, "mpirun"), named(PYTHON, "python3"));
-    let mut command = Command::new(&mpirun);
-    command.args(["-n", &ranks.to_string()]).arg(&python).arg(folder.join(DRIVER_FILE));
+    let mut program = ForeignProgram::new(&mpirun, folder).args(["-n", &ranks.to_string()]).arg(&python);
+    program = program.arg(folder.join(DRIVER_FILE));
     if std::env::var_os("OMP_NUM_THREADS").is_none() {
         // The ranks are the parallelism.
-        command.env("OMP_NUM_THREADS", "1");
+        program = program.env("OMP_NUM_THREADS", "1");
     }
-    command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
     let words = format!("{} -n {ranks} {} {DRIVER_FILE}", mpirun.to_string_lossy(), python.to_string_lossy());
     progress(Progress::Engine(EnginePhase::Starting));
-    let mut child = command.spawn().map_err(|cause| SlepcError::NotInstalled {
-        found: format!("`{}` cannot be started: {cause}", mpirun.to_string_lossy()),
-        cure: INSTALL.to_owned(),
-    })?;
-    let (send, receive) = mpsc::channel();
-    let readers = [
-        child.stdout.take().map(|stream| listen(stream, send.clone())),
-        child.stderr.take().map(|stream| listen(stream, send)),
-    ];
 
     let (mut last, mut refusal) = (VecDeque::new(), None);
-    loop {
-        if stop.is_asked() {
-            end(&mut child);
-            return Err(SlepcError::Stopped { command: words });
-        }
-        match receive.recv_timeout(PATIENCE) {
-            Ok(Line::Said(Said::Refused { error, cure, is_missing })) => refusal = Some((error, cure, is_missing)),
-            Ok(Line::Said(Said::Phase { phase })) => match phase.as_str() {
-                "factor" => progress(Progress::Engine(EnginePhase::Factorizing)),
-                "count" => progress(Progress::Engine(EnginePhase::Counting)),
-                _ => {}
-            },
-            Ok(Line::Said(Said::Converged { converged, of })) => {
-                progress(Progress::Lanczos { converged, requested: of });
+    let mut take = |line| match line {
+        Line::Said(Said::Refused { error, cure, is_missing }) => refusal = Some((error, cure, is_missing)),
+        Line::Said(Said::Phase { phase }) => match phase.as_str() {
+            "factor" => progress(Progress::Engine(EnginePhase::Factorizing)),
+            "count" => progress(Progress::Engine(EnginePhase::Counting)),
+            _ => {}
+        },
+        Line::Said(Said::Converged { converged, of }) => progress(Progress::Lanczos { converged, requested: of }),
+        Line::Other(line) => {
+            last.push_back(line.chars().take(LONGEST).collect());
+            if last.len() > KEPT {
+                last.pop_front();
             }
-            Ok(Line::Other(line)) => {
-                last.push_back(line);
-                if last.len() > KEPT {
-                    last.pop_front();
-                }
-            }
-            Err(RecvTimeoutError::Timeout) => {}
-            Err(RecvTimeoutError::Disconnected) => break,
         }
+    };
+    let hear = |_, line: String| {
+        // Rules and empty lines say nothing.
+        if !line.trim_matches('-').is_empty() {
+            lines_in(&line).into_iter().for_each(&mut take);
+        }
+    };
+    match program.run(Limits::default(), || stop.is_asked(), hear) {
+        Ok(status) => outcome(status, refusal, Vec::from(last), words, stop),
+        Err(ProgramError::Stopped) => Err(SlepcError::Stopped { command: words }),
+        Err(ProgramError::Start(cause)) => Err(SlepcError::NotInstalled {
+            found: format!("`{}` cannot be started: {cause}", mpirun.to_string_lossy()),
+            cure: INSTALL.to_owned(),
+        }),
+        Err(error) => Err(SlepcError::Refused {
+            found: format!("`{words}`: {error}"),
+            cure: "see what the system lacks; docs/cluster.md says how to run the driver by hand".to_owned(),
+        }),
     }
-    let status = child.wait().map_err(SlepcError::io(folder, "wait for mpirun"))?;
-    readers.into_iter().flatten().for_each(|reader| drop(reader.join()));
-    outcome(status, refusal, Vec::from(last), words, stop)
 }
 
 fn outcome(
@@ -137,21 +124,6 @@ fn in_words(status: ExitStatus) -> String {
     }
 }
 
-/// Sends the lines of a stream, but for rules and empty ones.
-fn listen(stream: impl Read + Send + 'static, send: mpsc::Sender<Line>) -> thread::JoinHandle<()> {
-    thread::spawn(move || {
-        for line in BufReader::new(stream).split(b'\n').map_while(Result::ok) {
-            let line = String::from_utf8_lossy(&line).trim_end().to_owned();
-            if line.trim_matches('-').is_empty() {
-                continue;
-            }
-            if !lines_in(&line).into_iter().all(|line| send.send(line).is_ok()) {
-                return;
-            }
-        }
-    })
-}
-
 /// The lines in one that mpirun has forwarded: it may join those of two ranks, their ends behind both.
 fn lines_in(text: &str) -> Vec<Line> {
     let mut lines = Vec::new();
@@ -165,22 +137,6 @@ fn lines_in(text: &str) -> Vec<Line> {
         lines.push(Line::Other(rest.to_owned()));
     }
     lines
-}
-
-/// Ends mpirun, which ends its processes.
-fn end(child: &mut Child) {
-    let started = Instant::now();
-    if let Some(pid) = i32::try_from(child.id()).ok().and_then(Pid::from_raw) {
-        let _ = kill_process(pid, Signal::TERM);
-    }
-    while started.elapsed() < FAREWELL {
-        if !matches!(child.try_wait(), Ok(None)) {
-            return;
-        }
-        thread::sleep(PATIENCE);
-    }
-    let _ = child.kill();
-    let _ = child.wait();
 }
 
 #[cfg(test)]

@@ -8,16 +8,19 @@
 //! * A file that may not be written is not replaced.
 //! * A symbolic link stays: the file that it points to is replaced. A link that points to nothing is an error.
 //! * A device or a pipe, such as /dev/stdout, cannot be replaced and is written in place.
-//! * A program that is killed while it writes leaves its temporary file, `.flexframe-` and six letters.
+//! * A program that is killed (SIGKILL) while it writes leaves its temporary file, `.flexframe-` and six letters. One that a
+//!   signal is to end removes its temporary files by [`remove_temporaries`].
 
 #![forbid(unsafe_code)]
 #![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable))]
+
+mod temporary;
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use tempfile::TempPath;
+pub use temporary::{TemporaryFile, TemporaryFolder, remove_temporaries};
 
 /// Writes `bytes` to `path`, whole or not at all.
 ///
@@ -35,7 +38,7 @@ pub fn write_whole(path: impl AsRef<Path>, bytes: impl AsRef<[u8]>) -> io::Resul
 pub struct WholeFile {
     file: BufWriter<File>,
     /// The temporary file, and whose place it takes; none for what is written in place.
-    place: Option<(TempPath, PathBuf)>,
+    place: Option<(TemporaryFile, PathBuf)>,
 }
 
 impl WholeFile {
@@ -56,12 +59,7 @@ impl WholeFile {
             Err(error) if error.kind() == io::ErrorKind::NotFound && !path.is_symlink() => (path.to_owned(), None),
             Err(error) => return Err(error),
         };
-        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        let mut builder = tempfile::Builder::new();
-        builder.prefix(".flexframe-");
-        #[cfg(unix)]
-        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666)); // less the user's mask
-        let (file, temporary) = builder.tempfile_in(folder).map_err(without_a_path)?.into_parts();
+        let (file, temporary) = TemporaryFile::beside(&path, "")?;
         if let Some(permissions) = permissions {
             file.set_permissions(permissions)?;
         }
@@ -76,7 +74,7 @@ impl WholeFile {
         self.file.flush()?;
         if let Some((temporary, path)) = self.place {
             self.file.get_ref().sync_all()?;
-            temporary.persist(path).map_err(|failure| failure.error)?;
+            temporary.put(&path, true)?;
         }
         Ok(())
     }
@@ -89,15 +87,6 @@ impl Write for WholeFile {
 
     fn flush(&mut self) -> io::Result<()> {
         self.file.flush()
-    }
-}
-
-/// An error without the path of the temporary file, which tells the reader nothing.
-fn without_a_path(error: io::Error) -> io::Error {
-    let reason = error.to_string();
-    match reason.split_once(" at path ") {
-        Some((reason, _)) => io::Error::new(error.kind(), reason),
-        None => error,
     }
 }
 

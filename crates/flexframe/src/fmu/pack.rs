@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use body_file::BodyFile;
 use scene::{Body, BuildProgress, Cache, Flexible, Model, Scene};
 use serde::Serialize;
-use whole_file::write_whole;
+use whole_file::{TemporaryFolder, write_whole};
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipWriter};
 
@@ -113,7 +113,7 @@ pub fn pack(
             .into());
     }
     let is_rigid = matches!(scene.body, Body::Rigid(_));
-    let temporary = tempfile::tempdir().map_err(WriteError::of(output))?;
+    let temporary = TemporaryFolder::new().map_err(WriteError::of(output))?;
     let resources = temporary.path();
     let packed = PackedScene::new(&scene.source, scene.path.parent().unwrap_or(Path::new("")), is_rigid)?;
     let mut names = vec![SCENE.to_owned()];

@@ -4,6 +4,7 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
+use foreign_program::shell_word;
 use serde::{Serialize, Serializer};
 
 /// More parts than these are a mistake.
@@ -68,7 +69,7 @@ impl Serialize for Shard {
 
 /// A script for Slurm: an array of `count` jobs, each a shard of the sweep. Its head says how to merge them.
 pub fn slurm_script(sweep: &Path, output: &Path, count: usize) -> String {
-    let [sweep, output] = [sweep, output].map(quoted);
+    let [sweep, output] = [sweep, output].map(shell_word);
     format!(
         "#!/bin/bash
 # sbatch THIS_FILE runs the sweep as {count} jobs. When they have ended:
@@ -81,11 +82,6 @@ set -euo pipefail
 flexframe --threads \"${{SLURM_CPUS_PER_TASK:-2}}\" sweep {sweep} -o {output} --shard \"$SLURM_ARRAY_TASK_ID/{count}\"
 "
     )
-}
-
-/// As the shell reads it: one word, whatever is in it.
-fn quoted(path: &Path) -> String {
-    format!("'{}'", path.display().to_string().replace('\'', r"'\''"))
 }
 
 #[cfg(test)]

@@ -9,6 +9,7 @@ use faer::{Mat, MatRef};
 use fem_tet10::{Materials, Mesh};
 use frames_rk4::Manifold;
 use modal::{Modes, SecondOrderShapes};
+use whole_file::TemporaryFolder;
 
 use super::answer::by_columns;
 use super::assembly::{Assembled, Assembly};
@@ -17,7 +18,6 @@ use super::mesh_arrays::MeshArrays;
 use super::model::{Meshed, Model};
 use super::progress::BuildProgress;
 use super::stress_shapes::BodyStress;
-use crate::cache::Cache;
 use crate::origin::{ORIGIN, Origin};
 use crate::scene::{Body, MeshedBody, Scene};
 
@@ -76,9 +76,9 @@ impl Model {
         // The answers come by way of a cache, from which nothing is removed in the meantime.
         let failed =
             |source| BodyFileError::System { path: path.to_owned(), action: "make a temporary folder", source };
-        let temporary = tempfile::tempdir().map_err(failed)?;
+        let temporary = TemporaryFolder::new().map_err(failed)?;
         let folder = scene.cache.folder().filter(|_| !scene.cache.is_closed()).unwrap_or(temporary.path());
-        let scene = Scene { cache: Cache::new(folder, u64::MAX), ..scene.clone() };
+        let scene = Scene { cache: scene.cache.elsewhere(folder, u64::MAX), ..scene.clone() };
         let scene = &if scene.output.any_stress() { scene.with_stress_field() } else { scene };
         let assembly = Assembly::new(scene, &mut progress)?;
         if matches!(&assembly.0, Assembled::Meshed(assembled) if assembled.store.is_none()) {

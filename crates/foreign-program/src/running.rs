@@ -1,0 +1,77 @@
+//! A program that runs, in a process group of its own.
+
+use std::os::unix::process::CommandExt;
+use std::path::Path;
+use std::process::{Child, Command, ExitStatus};
+
+use rustix::io::Errno;
+use rustix::process::{Pid, Signal, WaitId, WaitIdOptions, kill_process_group, waitid};
+
+use crate::error::ProgramError;
+use crate::guard::Guard;
+
+/// A program and its guard.
+#[derive(Debug)]
+pub(crate) struct Running {
+    child: Child,
+    /// Of the program and of its group; none once it is reaped.
+    id: Option<Pid>,
+    guard: Guard,
+}
+
+impl Running {
+    pub(crate) fn start(command: &mut Command, folder: &Path) -> Result<Self, ProgramError> {
+        let mut child = command.process_group(0).spawn().map_err(ProgramError::Start)?;
+        match Guard::over(child.id(), folder) {
+            Ok(guard) => Ok(Self { id: i32::try_from(child.id()).ok().and_then(Pid::from_raw), child, guard }),
+            Err(error) => {
+                let _ = child.kill();
+                let _ = child.wait();
+                Err(error)
+            }
+        }
+    }
+
+    pub(crate) fn child(&mut self) -> &mut Child {
+        &mut self.child
+    }
+
+    /// Whether it has ended. It stays what its group is named after.
+    pub(crate) fn has_ended(&self) -> Result<bool, ProgramError> {
+        let Some(id) = self.id else { return Ok(true) };
+        let options = WaitIdOptions::EXITED | WaitIdOptions::NOHANG | WaitIdOptions::NOWAIT;
+        match waitid(WaitId::Pid(id), options) {
+            Ok(status) => Ok(status.is_some()),
+            Err(Errno::INTR) => Ok(false),
+            Err(error) => Err(ProgramError::Wait(error.into())),
+        }
+    }
+
+    /// Ends what is left of its group, when it has ended itself.
+    pub(crate) fn end_group(&self) {
+        if let Some(id) = self.id {
+            let _ = kill_process_group(id, Signal::KILL);
+        }
+    }
+
+    /// How it has ended. What it has left running is ended.
+    pub(crate) fn finish(mut self) -> Result<ExitStatus, ProgramError> {
+        self.end_group();
+        self.id = None;
+        let status = self.child.wait().map_err(ProgramError::Wait);
+        self.guard.has_ended();
+        self.guard.wait();
+        status
+    }
+}
+
+/// Ends it, with all that it has started, unless it has been finished.
+impl Drop for Running {
+    fn drop(&mut self) {
+        if self.id.take().is_some() {
+            self.guard.begin_the_end();
+            let _ = self.child.wait();
+            self.guard.wait();
+        }
+    }
+}

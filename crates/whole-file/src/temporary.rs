@@ -1,0 +1,199 @@
+//! Temporary files and folders that do not outlive the program, also where a signal ends it.
+//!
+//! A temporary file is removed when it is dropped. A signal ends a program without dropping anything, so all that are there are
+//! listed here, and [`remove_temporaries`] removes them.
+
+use std::fs::{self, File};
+use std::io;
+use std::ops::Deref;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError, TryLockError};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use tempfile::{Builder, PathPersistError, TempDir, TempPath};
+
+/// The start of the names of temporary files.
+const PREFIX: &str = ".flexframe-";
+/// A thread that makes a file has so long to come to its end.
+const PATIENCE: Duration = Duration::from_secs(1);
+
+/// What is there now.
+static THERE: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+fn there() -> MutexGuard<'static, Vec<PathBuf>> {
+    THERE.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Lists what was made while the list is held, so that it is never there unlisted.
+fn listed<T>(made: io::Result<T>, path: impl Fn(&T) -> &Path, there: &mut Vec<PathBuf>) -> io::Result<T> {
+    let made = made?;
+    there.push(path(&made).to_owned());
+    Ok(made)
+}
+
+fn unlist(path: &Path, there: &mut Vec<PathBuf>) {
+    if let Some(place) = there.iter().position(|other| other == path) {
+        there.swap_remove(place);
+    }
+}
+
+/// Removes all temporary files and folders of this program. None is made, or put into its place, until what is returned is
+/// dropped: for a program that is about to end. A thread that is making one is waited for, but not for ever.
+#[must_use = "temporary files may be made again once it is dropped"]
+pub fn remove_temporaries() -> NoTemporaries {
+    let started = Instant::now();
+    let mut there = loop {
+        match THERE.try_lock() {
+            Ok(there) => break there,
+            Err(TryLockError::Poisoned(poisoned)) => break poisoned.into_inner(),
+            Err(TryLockError::WouldBlock) if started.elapsed() < PATIENCE => sleep(Duration::from_millis(5)),
+            Err(TryLockError::WouldBlock) => return NoTemporaries { _alone: None },
+        }
+    };
+    for path in there.drain(..) {
+        let _ = if path.is_dir() { fs::remove_dir_all(&path) } else { fs::remove_file(&path) };
+    }
+    NoTemporaries { _alone: Some(there) }
+}
+
+/// While this is there, no temporary file is made.
+#[derive(Debug)]
+pub struct NoTemporaries {
+    _alone: Option<MutexGuard<'static, Vec<PathBuf>>>,
+}
+
+/// The path of a temporary file, which is removed when this is dropped.
+#[derive(Debug)]
+pub struct TemporaryFile(Option<TempPath>);
+
+impl TemporaryFile {
+    /// Makes a file in the folder of `path`, whose place it is to take, with the permissions of any new file. Its name is
+    /// `.flexframe-`, six letters and `suffix`.
+    ///
+    /// # Errors
+    /// Those of the system.
+    pub fn beside(path: &Path, suffix: &str) -> io::Result<(File, Self)> {
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let mut builder = Builder::new();
+        builder.prefix(PREFIX).suffix(suffix);
+        #[cfg(unix)]
+        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666)); // less the user's mask
+        let mut there = there();
+        let made = builder.tempfile_in(folder).map_err(without_a_path);
+        let (file, path) = listed(made, |made| made.path(), &mut there)?.into_parts();
+        Ok((file, Self(Some(path))))
+    }
+
+    /// Puts the file into a place, where it stays. What was there before is replaced, or else, unless `replace`, in the way.
+    ///
+    /// # Errors
+    /// Those of the system; the file is removed then.
+    pub fn put(mut self, place: &Path, replace: bool) -> io::Result<()> {
+        let mut there = there();
+        let Some(path) = self.0.take() else { return Ok(()) };
+        unlist(&path, &mut there);
+        let put = if replace { path.persist(place) } else { path.persist_noclobber(place) };
+        put.map_err(|PathPersistError { error, .. }| error)
+    }
+}
+
+impl Deref for TemporaryFile {
+    type Target = Path;
+
+    fn deref(&self) -> &Path {
+        self.0.as_deref().unwrap_or(Path::new(""))
+    }
+}
+
+impl AsRef<Path> for TemporaryFile {
+    fn as_ref(&self) -> &Path {
+        self
+    }
+}
+
+impl Drop for TemporaryFile {
+    fn drop(&mut self) {
+        if let Some(path) = self.0.take() {
+            let mut there = there();
+            unlist(&path, &mut there);
+            drop(path);
+        }
+    }
+}
+
+/// A temporary folder that only its owner may enter. It is removed, with all that is in it, when this is dropped.
+#[derive(Debug)]
+pub struct TemporaryFolder(Option<TempDir>);
+
+impl TemporaryFolder {
+    /// Makes a folder in that of temporary files (`TMPDIR`). Its name is `flexframe-`, six letters.
+    ///
+    /// # Errors
+    /// Those of the system.
+    pub fn new() -> io::Result<Self> {
+        Self::inside(&std::env::temp_dir())
+    }
+
+    /// Makes a folder in another one.
+    ///
+    /// # Errors
+    /// Those of the system.
+    pub fn inside(folder: &Path) -> io::Result<Self> {
+        // Programs that work in another folder are told of it, too.
+        let folder = std::path::absolute(folder)?;
+        let mut there = there();
+        let made = Builder::new().prefix("flexframe-").tempdir_in(folder).map_err(without_a_path);
+        Ok(Self(Some(listed(made, |made| made.path(), &mut there)?)))
+    }
+
+    /// Its path, from the root.
+    pub fn path(&self) -> &Path {
+        self.0.as_ref().map_or(Path::new(""), |folder| folder.path())
+    }
+}
+
+impl Drop for TemporaryFolder {
+    fn drop(&mut self) {
+        if let Some(folder) = self.0.take() {
+            let path = folder.path().to_owned();
+            // It may be large: others are not kept waiting while it is removed.
+            drop(folder);
+            unlist(&path, &mut there());
+        }
+    }
+}
+
+/// An error without the path of the temporary file, which tells the reader nothing.
+fn without_a_path(error: io::Error) -> io::Error {
+    let reason = error.to_string();
+    match reason.split_once(" at path ") {
+        Some((reason, _)) => io::Error::new(error.kind(), reason),
+        None => error,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_there_is_listed_and_what_has_its_place_is_not() {
+        let folder = tempfile::tempdir().unwrap();
+        let place = folder.path().join("page");
+        let (_, put) = TemporaryFile::beside(&place, "").unwrap();
+        put.put(&place, true).unwrap();
+        let (_, in_the_way) = TemporaryFile::beside(&place, ".h5").unwrap();
+        assert_eq!(in_the_way.put(&place, false).unwrap_err().kind(), io::ErrorKind::AlreadyExists);
+        let (_, file) = TemporaryFile::beside(&place, ".h5").unwrap();
+        let inner = TemporaryFolder::inside(folder.path()).unwrap();
+        fs::write(inner.path().join("mesh"), "some").unwrap();
+        let [file_path, inner_path] = [file.to_path_buf(), inner.path().to_owned()];
+        assert!(file_path.is_file() && inner_path.is_dir());
+        let names: Vec<_> = there().clone();
+        assert!(names.contains(&file_path) && names.contains(&inner_path) && !names.contains(&place));
+        drop((file, inner));
+        assert!(!file_path.exists() && !inner_path.exists() && place.is_file());
+        assert!(there().iter().all(|path| !path.starts_with(folder.path())));
+    }
+}
