@@ -38,6 +38,10 @@ struct Cli {
     /// Neither read nor keep what was computed of a mesh before (in $XDG_CACHE_HOME/flexframe or ~/.cache/flexframe).
     #[arg(long, global = true)]
     no_cache: bool,
+    /// Let gmsh do all that geometry (.geo) says: it is a program, and may run others, and write and read files. Without this,
+    /// geometry with such commands is refused.
+    #[arg(long, global = true)]
+    trust_geometry: bool,
     #[command(subcommand)]
     command: Command,
 }
@@ -353,6 +357,9 @@ fn settings(signals: &Signals, overwrite: bool, cache: &Cache) -> RunSettings {
 
 fn execute(cli: Cli, json: bool) -> Result<(), Box<dyn Failure>> {
     let cache = if cli.no_cache { Cache::none() } else { Cache::of_user() };
+    if cli.trust_geometry {
+        cache.trust_geometry();
+    }
     let done = command(cli, json, &cache);
     if !json {
         output::notes(&cache.notes());
@@ -367,7 +374,7 @@ fn command(cli: Cli, json_errors: bool, cache: &Cache) -> Result<(), Box<dyn Fai
     let mut bar = Bar::new(json_errors);
     match cli.command {
         Command::New { mesh, output, mesh_size, raise_order, overwrite } => {
-            let settings = ImportSettings { mesh_size, raise_order };
+            let settings = ImportSettings { mesh_size, raise_order, trust_geometry: cli.trust_geometry };
             let (scene, notes) = new_scene::new_scene(&mesh, &settings, output.as_deref(), overwrite)?;
             output::list(&[scene])?;
             notes.iter().try_for_each(|note| output::warn(Some(note)))

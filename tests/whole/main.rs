@@ -4,6 +4,7 @@
 mod advise;
 mod body;
 mod campbell;
+mod children;
 mod command_line;
 mod cost;
 mod examples;

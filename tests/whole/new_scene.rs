@@ -6,7 +6,7 @@ use flexframe::new_scene::{NewSceneError, new_scene};
 use flexframe::run::{self, RunSettings};
 use flexframe::scene::{Body, ImportSettings, Scene};
 
-const AS_IT_IS: ImportSettings = ImportSettings { mesh_size: None, raise_order: false };
+const AS_IT_IS: ImportSettings = ImportSettings { mesh_size: None, raise_order: false, trust_geometry: false };
 
 #[test]
 fn it_names_groups_and_mass_and_runs() {

@@ -123,7 +123,7 @@ impl Case {
     fn is_clean(&self) -> bool {
         // mpirun keeps an empty folder of its own.
         let left = fs::read_dir(self.path("temporary")).unwrap().map(|entry| entry.unwrap().file_name());
-        left.filter(|name| name.to_string_lossy().contains("flexframe")).count() == 0
+        left.filter(|name| name.to_string_lossy().starts_with("flexframe-")).count() == 0
     }
 }
 
@@ -329,5 +329,89 @@ fn a_signal_ends_the_processes_and_removes_the_files() {
             assert!(!command.contains("sleep"), "rank {rank} is still there");
         }
         assert!(case.is_clean());
+    }
+}
+
+/// Modules and options of others, in the folder of the driver and in that of the user.
+#[test]
+fn files_of_others_in_the_folder_are_not_run() {
+    let case = Case::new();
+    let mark = case.path("mark");
+    fs::create_dir(case.path("out put")).unwrap();
+    for folder in [case.path(""), case.path("out put")] {
+        for module in ["json", "glob", "re", "time", "traceback", "slepc4py", "numpy"] {
+            fs::write(folder.join(format!("{module}.py")), format!("open({mark:?}, 'w')\n")).unwrap();
+        }
+        fs::write(folder.join(".petscrc"), format!("-info {}\n", mark.display())).unwrap();
+    }
+    let mut command = case.modes(&[&SLEPC[..], &["--json"]].concat());
+    command.env("PYTHONPATH", ":");
+    let found = frequencies(&said(command));
+    let written = said(case.modes(&["--solver", "slepc", "--ranks", "2", "--write-only", "out put"]));
+    assert_eq!(written.code, Some(0), "{}", written.error);
+    case.do_job();
+    let read = frequencies(&said(case.modes(&["--solver", "slepc", "--read", "out put", "--json"])));
+    assert_eq!((found.len(), read.len()), (8, 8));
+    let left: Vec<_> = fs::read_dir(case.path("")).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    assert!(left.iter().all(|name| !name.to_string_lossy().starts_with("mark")), "{left:?}");
+}
+
+#[test]
+fn pipes_and_devices_in_the_folder_are_refused() {
+    let case = Case::new();
+    let written = said(case.modes(&["--solver", "slepc", "--ranks", "2", "--write-only", "out put"]));
+    assert_eq!(written.code, Some(0), "{}", written.error);
+    case.do_job();
+    let read = || case.modes(&["--solver", "slepc", "--read", "out put"]);
+    for name in ["modes.json", "modes.petsc"] {
+        let (path, kept) = (case.path("out put").join(name), case.path("kept"));
+        fs::rename(&path, &kept).unwrap();
+        assert!(Command::new("mkfifo").arg(&path).status().unwrap().success());
+        refuses(read(), 6, &[name, "a device or a pipe"]);
+        fs::remove_file(&path).unwrap();
+        std::os::unix::fs::symlink("/dev/zero", &path).unwrap();
+        refuses(read(), 6, &[name, "a device or a pipe"]);
+        fs::remove_file(&path).unwrap();
+        fs::rename(&kept, &path).unwrap();
+    }
+    // The log, of which the last line is shown, and an answer that claims more than there is.
+    fs::rename(case.path("out put/modes.json"), case.path("kept")).unwrap();
+    let _ = fs::remove_file(case.path("out put/driver.log"));
+    assert!(Command::new("mkfifo").arg(case.path("out put/driver.log")).status().unwrap().success());
+    refuses(read(), 6, &["modes.json is not there"]);
+    let mut answer: Value = serde_json::from_slice(&fs::read(case.path("kept")).unwrap()).unwrap();
+    answer["eigenvalues"] = vec![1.0; 1_000_000].into();
+    fs::write(case.path("out put/modes.json"), answer.to_string()).unwrap();
+    refuses(read(), 3, &["modes.petsc", "it ends in vector 10 of 1000000"]);
+}
+
+/// Also where the program has no time to end them itself.
+#[test]
+fn the_ranks_end_with_the_program_whatever_ends_it() {
+    let case = Case::new();
+    let pids = case.path("pids");
+    let text = format!("echo $$ >> {}\nexec sleep 600", pids.display());
+    for signals in [&["KILL"][..], &["TERM", "TERM"], &["INT", "KILL"]] {
+        let _ = fs::remove_file(&pids);
+        let mut command = case.modes(&SLEPC);
+        let mut child = command.env("FLEXFRAME_MPI_PYTHON", case.program("python", &text)).spawn().unwrap();
+        let ranks = || fs::read_to_string(&pids).unwrap_or_default().lines().map(str::to_owned).collect::<Vec<_>>();
+        let is_alive =
+            |rank: &String| fs::read_to_string(format!("/proc/{rank}/cmdline")).unwrap_or_default().contains("sleep");
+        let started = Instant::now();
+        let until = |what: &str, is_so: &dyn Fn() -> bool| {
+            while !is_so() {
+                assert!(started.elapsed() < Duration::from_secs(120), "{signals:?}: {what}");
+                std::thread::sleep(Duration::from_millis(20));
+            }
+        };
+        until("the ranks have not started", &|| ranks().len() == 2);
+        for (i, signal) in signals.iter().enumerate() {
+            std::thread::sleep(Duration::from_millis(if i > 0 { 600 } else { 0 }));
+            let _ = Command::new("kill").args([&format!("-{signal}"), &child.id().to_string()]).output().unwrap();
+        }
+        child.wait().unwrap();
+        until("a rank is still there", &|| !ranks().iter().any(is_alive));
+        until("the files are still there", &|| case.is_clean());
     }
 }

@@ -217,6 +217,28 @@ fn the_script_for_slurm_runs_a_shard_for_each_number() {
     assert_eq!((&report["done"], &report["unfinished"]), (&2.into(), &serde_json::json!([])));
 }
 
+/// The script names the table in a comment, too.
+#[test]
+fn a_line_in_a_name_is_no_line_of_the_script() {
+    let case = Case::new("[parameters]\n\"time.step\" = [1e-5, 2e-5]");
+    let program = Path::new(env!("CARGO_BIN_EXE_flexframe"));
+    let paths = format!("{}:{}", program.parent().unwrap().display(), std::env::var("PATH").unwrap());
+    let run = |command: &mut Command| {
+        let output = command.env("PATH", &paths).current_dir(case.folder.path()).output().unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        output.stdout
+    };
+    let name = "a\ntouch mark\n# it's.h5";
+    let script = run(Command::new(program).args(["sweep", "sweep.toml", "-o", name, "--slurm", "2"]));
+    fs::write(case.path("job.sh"), script).unwrap();
+    for number in ["1", "2"] {
+        run(Command::new("bash").args(["job.sh"]).env("SLURM_ARRAY_TASK_ID", number));
+    }
+    assert!(!case.path("mark").exists());
+    run(Command::new(program).args(["sweep", "sweep.toml", "-o", name, "--merge", "2"]));
+    assert!(case.path(name).is_file());
+}
+
 #[test]
 fn what_a_sweep_cannot_be_is_refused() {
     let case = Case::new("");

@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use fem_tet10::{AssemblyError, Material, Materials, Mesh, centroid_lumped_inertia};
-use mesh_import::{ImportError, ImportSettings, read_mesh};
+use mesh_import::{ImportError, ImportSettings, read_mesh, remark};
 use whole_file::write_whole;
 
 use crate::scene_file::from_root;
@@ -63,7 +63,7 @@ const MILLIMETRES: System = System {
 
 /// Reads a mesh and writes a scene of it, which can be run as it is: a body of steel, free in space, that spins and gets a
 /// push. Groups, size and mass are read off the mesh. Returns the path of the scene (`scene`, or that of the mesh with
-/// `.toml`), and what of the mesh was left out.
+/// `.toml`), and what of the mesh was left out or should be known of it.
 ///
 /// # Errors
 /// [`NewSceneError`].
@@ -78,7 +78,8 @@ pub fn new_scene(
     if is_mesh || (path.exists() && !overwrite) {
         return Err(NewSceneError::Exists { path });
     }
-    let read = read_mesh(mesh, settings)?;
+    let mut read = read_mesh(mesh, settings)?;
+    read.notes.extend(remark(mesh, settings));
     let text = text(&read.mesh, settings, &from_folder_of(&path, mesh))?;
     write_whole(&path, text).map_err(WriteError::of(&path))?;
     Ok((path, read.notes))
@@ -197,19 +198,43 @@ end = {end:?}
 
 /// The keys of how a mesh is read, a line each.
 fn import_keys(settings: &ImportSettings) -> String {
-    let ImportSettings { mesh_size, raise_order } = settings;
+    let ImportSettings { mesh_size, raise_order, trust_geometry: _ } = settings;
     let size = mesh_size.map(|size| format!("mesh_size = {size:?}\n"));
     let raise = raise_order.then(|| "raise_order = true\n".to_owned());
     size.into_iter().chain(raise).collect()
 }
 
-/// A text as TOML has it.
+/// A text as TOML has it, on one line, so that it may stand in a comment, too.
 fn quoted(text: &str) -> String {
-    toml::Value::from(text).to_string()
+    let mut quoted = "\"".to_owned();
+    for letter in text.chars() {
+        // Writing to a string does not fail.
+        let _ = match letter {
+            '"' | '\\' => write!(quoted, "\\{letter}"),
+            _ if letter.is_control() => write!(quoted, "\\u{:04x}", u32::from(letter)),
+            _ => write!(quoted, "{letter}"),
+        };
+    }
+    quoted + "\""
 }
 
 /// A number with three digits, as TOML has it.
 fn short(value: f64) -> String {
     let rounded: f64 = format!("{value:.2e}").parse().unwrap_or(value);
     format!("{rounded:?}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_quoted_text_is_one_line_and_read_back_as_it_was() {
+        for text in ["plain", "it's \"quoted\"", "a\nb = 1", "\r\t\u{7f}\u{85}\\n", "é"] {
+            let quoted = quoted(text);
+            assert_eq!(quoted.lines().count(), 1, "{quoted}");
+            let read: toml::Table = toml::from_str(&format!("# {quoted}\na = {quoted}\n")).unwrap();
+            assert_eq!(read.get("a").and_then(toml::Value::as_str), Some(text));
+        }
+    }
 }

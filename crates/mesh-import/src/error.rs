@@ -3,6 +3,7 @@
 use std::io;
 
 use fem_tet10::MeshError;
+use foreign_program::ProgramError;
 
 /// A mesh that could not be read.
 #[derive(Debug, thiserror::Error)]
@@ -49,6 +50,18 @@ pub enum ImportError {
         /// What to do.
         cure: &'static str,
     },
+    /// A program that reads this format took too much, and was ended.
+    #[error("{source_name}: `{program}` cannot read it: {cause}\n = {cure}")]
+    TooMuch {
+        /// The mesh file.
+        source_name: String,
+        /// The program.
+        program: String,
+        /// Of what.
+        cause: ProgramError,
+        /// What to do.
+        cure: &'static str,
+    },
     /// A file could not be read, or a temporary one not be written.
     #[error("{source_name}: {cause}")]
     Io {
@@ -67,6 +80,7 @@ impl ImportError {
             Self::NoReader { source_name, .. }
             | Self::Refused { source_name, .. }
             | Self::Failed { source_name, .. }
+            | Self::TooMuch { source_name, .. }
             | Self::Io { source_name, .. } => source_name,
         }
     }

@@ -2,7 +2,10 @@
 #![forbid(unsafe_code)]
 #![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable))]
 
+mod copy;
 mod error;
+mod format;
+mod geometry;
 mod reader;
 mod run;
 mod settings;
@@ -11,6 +14,7 @@ use std::path::Path;
 
 use body_file::{Digest, Hash};
 use fem_tet10::{Mesh, parse_msh, read_msh};
+use whole_file::TemporaryFolder;
 
 pub use error::ImportError;
 pub use reader::{Reader, reader_of};
@@ -36,11 +40,7 @@ pub fn read_mesh(path: &Path, settings: &ImportSettings) -> Result<Imported, Imp
     }
     let source_name = path.display().to_string();
     let io = |cause| ImportError::Io { source_name: source_name.clone(), cause };
-    // What the programs say of a file that is not there is said worse.
-    if let Err(error) = std::fs::File::open(path) {
-        return Err(io(error));
-    }
-    let folder = tempfile::tempdir().map_err(io)?;
+    let folder = TemporaryFolder::new().map_err(io)?;
     let target = folder.path().join("mesh.msh");
     let notes = match reader {
         Reader::Own => Vec::new(),
@@ -52,6 +52,15 @@ pub fn read_mesh(path: &Path, settings: &ImportSettings) -> Result<Imported, Imp
     Ok(Imported { mesh: parse_msh(&bytes, &source_name)?, notes })
 }
 
+/// Who reads the mesh should know that its file is a program: what to say of it, and of how far it is trusted.
+pub fn remark(path: &Path, settings: &ImportSettings) -> Option<String> {
+    let trust = match settings.trust_geometry {
+        true => "gmsh is free to do all that it says (--trust-geometry)",
+        false => "its commands that run others or write files are refused",
+    };
+    reader::is_program(path).then(|| format!("{} is a program, which gmsh runs: {trust}", path.display()))
+}
+
 /// What a mesh follows from: its file, and how it is read. `None` where the file cannot be read or includes others.
 pub fn hash_of_mesh(path: &Path, settings: &ImportSettings) -> Option<Hash> {
     // What is no ordinary file can be read only once.
@@ -59,6 +68,10 @@ pub fn hash_of_mesh(path: &Path, settings: &ImportSettings) -> Option<Hash> {
     match reader_of(path, settings) {
         Reader::Own => Some(file),
         _ if reader::includes_others(path) => None,
-        reader => Some(Digest::new().hash(&file).text(&format!("{reader:?} {settings:?}")).finish()),
+        reader => {
+            // Whoever wrote it is trusted or not, the mesh is the same.
+            let settings = ImportSettings { trust_geometry: false, ..*settings };
+            Some(Digest::new().hash(&file).text(&format!("{reader:?} {settings:?}")).finish())
+        }
     }
 }

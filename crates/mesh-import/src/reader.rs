@@ -1,9 +1,11 @@
 //! Who reads a file.
 
 use std::fs::File;
-use std::io::{BufRead, BufReader, Read};
+use std::io::{BufRead, BufReader};
 use std::path::Path;
 
+use crate::copy::opened;
+use crate::format::ending;
 use crate::settings::ImportSettings;
 
 /// Who reads a file.
@@ -42,24 +44,21 @@ pub fn reader_of(path: &Path, settings: &ImportSettings) -> Reader {
     }
 }
 
-/// The ending of a file's name, in small letters.
-pub(crate) fn ending(path: &Path) -> String {
-    path.extension().unwrap_or_default().to_string_lossy().to_lowercase()
-}
-
 /// Whether a MSH file is of version 1, 2 or 4.0.
 fn is_older_msh(path: &Path) -> bool {
-    let Some(file) = Some(path).filter(|path| path.is_file()).and_then(|path| File::open(path).ok()) else {
-        return false;
-    };
-    let mut head = Vec::new();
-    let _ = file.take(200).read_to_end(&mut head);
+    // What does not begin as a MSH file is refused by who reads it.
+    let Ok((head, _)) = opened(path) else { return false };
     let head = String::from_utf8_lossy(&head);
     let mut lines = head.lines().map(str::trim).skip_while(|line| *line != "$MeshFormat");
     match lines.nth(1) {
         Some(format) => ["1", "2", "2.1", "2.2", "4", "4.0"].iter().any(|old| format.split(' ').next() == Some(old)),
         None => head.starts_with("$NOD"),
     }
+}
+
+/// Whether a file is a program for gmsh.
+pub(crate) fn is_program(path: &Path) -> bool {
+    ["geo", "geo_unrolled"].contains(&ending(path).as_str())
 }
 
 /// Whether a text file takes in others, which may change without it.

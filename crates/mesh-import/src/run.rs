@@ -1,14 +1,19 @@
 //! The programs that read other formats.
 
-use std::ffi::OsString;
-use std::io::Write;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::collections::VecDeque;
+use std::ffi::OsStr;
+use std::path::Path;
+use std::process::ExitStatus;
+use std::time::Duration;
 
+use foreign_program::{ForeignProgram, Limits, ProgramError, Stream, named};
 use serde::Deserialize;
 
+use crate::copy::{copied, opened};
 use crate::error::ImportError;
-use crate::reader::ending;
+use crate::format::ending;
+use crate::geometry::{Copies, copied_geometry};
+use crate::reader::is_program;
 use crate::settings::ImportSettings;
 
 /// The program that meshio runs.
@@ -18,6 +23,12 @@ const PYTHON: &str = "FLEXFRAME_PYTHON";
 /// Names gmsh, where it is not `gmsh`.
 const GMSH: &str = "FLEXFRAME_GMSH";
 
+/// A mesh that takes longer, or is larger, is none for which anybody waits here.
+const LIMITS: Limits = Limits { time: Some(Duration::from_secs(12 * 3600)), bytes: Some(64 << 30) };
+const TOO_MUCH: &str = "mesh it yourself with gmsh -3 -order 2 -format msh41, and name that mesh";
+/// Lines that are kept of what a program says.
+const KEPT: usize = 100;
+
 const GMSH_CURE: &str = "install gmsh (Debian: apt install gmsh; or pip install gmsh), or name it in FLEXFRAME_GMSH";
 const PYTHON_CURE: &str = "install Python 3 with meshio (pip install meshio h5py), name that Python in FLEXFRAME_PYTHON, or \
                            write the mesh as MSH 4.1";
@@ -25,106 +36,157 @@ const PYTHON_CURE: &str = "install Python 3 with meshio (pip install meshio h5py
 /// What the program says in one line of JSON.
 #[derive(Deserialize)]
 #[serde(untagged)]
-enum Said {
+enum Answer {
     Done { notes: Vec<String> },
     Refused { error: String, cure: String },
 }
 
-/// Lets meshio read `source` and write it to `target` as MSH 4.1. Returns what was left out.
+/// Lets meshio read `source` and write it to `target`, in a private folder, as MSH 4.1. Returns what was left out.
 pub(crate) fn meshio(source: &Path, target: &Path, settings: &ImportSettings) -> Result<Vec<String>, ImportError> {
-    let source_name = source.display().to_string();
-    let python = std::env::var_os(PYTHON).unwrap_or_else(|| "python3".into());
-    let mut command = Command::new(&python);
-    command.arg("-").arg(not_an_option(source)).arg(target);
-    if settings.raise_order {
-        command.arg("raise");
-    }
-    let no_reader = |cause| ImportError::NoReader {
-        source_name: source_name.clone(),
-        reader: "meshio",
-        program: python.to_string_lossy().into_owned(),
-        cause,
-        cure: PYTHON_CURE,
+    let (folder, io) = (folder_of(target), of(source));
+    let python = named(PYTHON, "python3");
+    let program = folder.join("with_meshio.py");
+    std::fs::write(&program, WITH_MESHIO).map_err(io)?;
+    let copies = if ["inp", "xdmf", "xmf"].contains(&ending(source).as_str()) {
+        // They may name others, which are found beside them.
+        in_place(source)?
+    } else {
+        Copies(vec![(source.to_owned(), copied(source, folder, "source")?)])
     };
-    let output = fed(command, WITH_MESHIO).map_err(no_reader)?;
-    match last_line(&output.stdout).and_then(|line| serde_json::from_str(&line).ok()) {
-        Some(Said::Done { notes }) if output.status.success() => Ok(notes),
-        Some(Said::Refused { error, cure }) => Err(ImportError::Refused { source_name, found: error, cure }),
-        _ => Err(failed(source_name, &python, &output, "check the file, or write the mesh as MSH 4.1")),
+    let mut command = ForeignProgram::new(&python, folder).arg(&program).arg(copies.first()).arg(target);
+    if settings.raise_order {
+        command = command.arg("raise");
+    }
+    let said = Said::by(command, source, &python, ("meshio", PYTHON_CURE))?;
+    match said.last(Stream::Output).and_then(|line| serde_json::from_str(line).ok()) {
+        Some(Answer::Done { notes }) if said.status.success() => Ok(notes),
+        Some(Answer::Refused { error, cure }) => {
+            let source_name = source.display().to_string();
+            Err(ImportError::Refused { source_name, found: copies.translated(&error), cure })
+        }
+        _ => Err(said.failed(source, &python, &copies, "check the file, or write the mesh as MSH 4.1")),
     }
 }
 
-/// Lets gmsh write `source` to `target` as MSH 4.1: geometry, `meshed` on the way, or another mesh.
+/// Lets gmsh write `source` to `target`, in a private folder, as MSH 4.1: geometry, `meshed` on the way, or another mesh.
 pub(crate) fn gmsh(
     source: &Path,
     target: &Path,
     settings: &ImportSettings,
     meshed: bool,
 ) -> Result<Vec<String>, ImportError> {
-    let source_name = source.display().to_string();
-    let gmsh = std::env::var_os(GMSH).unwrap_or_else(|| "gmsh".into());
-    let io = |cause| ImportError::Io { source_name: source_name.clone(), cause };
-    let mut command = Command::new(&gmsh);
+    let folder = folder_of(target);
+    let gmsh = named(GMSH, "gmsh");
+    let is_trusted = is_program(source) && settings.trust_geometry;
+    let copies = match is_program(source) {
+        true if is_trusted => in_place(source)?,
+        true => copied_geometry(source, folder)?,
+        false => Copies(vec![(source.to_owned(), copied(source, folder, "source")?)]),
+    };
+    // The user's options of gmsh are for a mesh that he looks at; they are not read here.
+    let mut command = ForeignProgram::new(&gmsh, folder).env("GMSH_HOME", folder);
+    command = if is_trusted { command.in_folder(folder_of(copies.first())) } else { command.env("HOME", folder) };
     if meshed {
-        command.arg(not_an_option(source));
+        command = command.arg(copies.first());
         if let Some(size) = settings.mesh_size {
             // After the geometry, which may set a size of its own; the option -clmax comes before it.
-            let file = target.with_file_name("size.geo");
-            std::fs::write(&file, format!("Mesh.MeshSizeMax = {size:e};\n")).map_err(io)?;
-            command.arg(file);
+            let file = folder.join("size.geo");
+            std::fs::write(&file, format!("Mesh.MeshSizeMax = {size:e};\n")).map_err(of(source))?;
+            command = command.arg(file);
         }
-        command.args(["-3", "-order", "2"]);
+        command = command.args(["-3", "-order", "2"]);
     } else if settings.raise_order {
         // The option -order only acts on what is meshed.
-        let copy = format!("first_order.{}", ending(source));
-        std::fs::copy(source, target.with_file_name(&copy)).map_err(io)?;
-        let script = target.with_file_name("raise.geo");
-        std::fs::write(&script, format!("Merge \"{copy}\";\nSetOrder 2;\n")).map_err(io)?;
-        command.arg(script).arg("-save");
+        let script = folder.join("raise.geo");
+        let text = format!("Merge \"source.{}\";\nSetOrder 2;\n", ending(source));
+        std::fs::write(&script, text).map_err(of(source))?;
+        command = command.arg(script).arg("-save");
     } else {
-        command.arg(not_an_option(source)).arg("-save");
+        command = command.arg(copies.first()).arg("-save");
     }
-    command.args(["-v", "2", "-format", "msh41", "-o"]).arg(target);
-    let output = fed(command, "").map_err(|cause| ImportError::NoReader {
-        source_name: source_name.clone(),
-        reader: "gmsh",
-        program: gmsh.to_string_lossy().into_owned(),
-        cause,
-        cure: GMSH_CURE,
-    })?;
-    if !output.status.success() || !target.is_file() {
-        return Err(failed(source_name, &gmsh, &output, "open it in gmsh and see what is wrong with it"));
+    command = command.args(["-v", "2", "-format", "msh41", "-o"]).arg(target);
+    let said = Said::by(command, source, &gmsh, ("gmsh", GMSH_CURE))?;
+    if !said.status.success() || !target.is_file() {
+        return Err(said.failed(source, &gmsh, &copies, "open it in gmsh and see what is wrong with it"));
     }
     Ok(Vec::new())
 }
 
-/// Runs a command with a text on its standard input.
-fn fed(mut command: Command, text: &str) -> std::io::Result<Output> {
-    let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn()?;
-    if let Some(mut input) = child.stdin.take() {
-        // A program that does not read it says why.
-        let _ = input.write_all(text.as_bytes());
+/// What a program has said, and how it has ended.
+struct Said {
+    status: ExitStatus,
+    /// The last lines that are not empty.
+    lines: VecDeque<(Stream, String)>,
+}
+
+impl Said {
+    fn by(
+        command: ForeignProgram,
+        source: &Path,
+        program: &OsStr,
+        (reader, cure): (&'static str, &'static str),
+    ) -> Result<Self, ImportError> {
+        let mut lines = VecDeque::new();
+        let hear = |stream, line: String| {
+            if line.trim().is_empty() {
+                return;
+            }
+            if lines.len() == KEPT {
+                lines.pop_front();
+            }
+            lines.push_back((stream, line.trim().to_owned()));
+        };
+        let [source_name, program] = [source.as_os_str(), program].map(|name| name.to_string_lossy().into_owned());
+        match command.run(LIMITS, || false, hear) {
+            Ok(status) => Ok(Self { status, lines }),
+            Err(ProgramError::Start(cause)) => Err(ImportError::NoReader { source_name, reader, program, cause, cure }),
+            Err(cause) => Err(ImportError::TooMuch { source_name, program, cause, cure: TOO_MUCH }),
+        }
     }
-    child.wait_with_output()
-}
 
-fn failed(source_name: String, program: &OsString, output: &Output, cure: &'static str) -> ImportError {
-    let said = last_line(&output.stderr).or_else(|| last_line(&output.stdout));
-    ImportError::Failed {
-        source_name,
-        program: program.to_string_lossy().into_owned(),
-        status: output.status.to_string(),
-        said: said.unwrap_or_else(|| "it says nothing".to_owned()),
-        cure,
+    /// The last line of a stream.
+    fn last(&self, stream: Stream) -> Option<&str> {
+        self.lines.iter().rev().find(|(of, _)| *of == stream).map(|(_, line)| line.as_str())
+    }
+
+    fn failed(&self, source: &Path, program: &OsStr, copies: &Copies, cure: &'static str) -> ImportError {
+        let said = self.last(Stream::Error).or_else(|| self.last(Stream::Output)).unwrap_or("it says nothing");
+        ImportError::Failed {
+            source_name: source.display().to_string(),
+            program: program.to_string_lossy().into_owned(),
+            status: self.status.to_string(),
+            said: copies.translated(said),
+            cure,
+        }
     }
 }
 
-fn last_line(bytes: &[u8]) -> Option<String> {
-    let text = String::from_utf8_lossy(bytes);
-    text.lines().rev().map(str::trim).find(|line| !line.is_empty()).map(str::to_owned)
+/// A file that is read where it is.
+fn in_place(source: &Path) -> Result<Copies, ImportError> {
+    opened(source)?;
+    Ok(Copies(vec![(source.to_owned(), std::path::absolute(source).map_err(of(source))?)]))
 }
 
-/// A path that no program takes for an option.
-fn not_an_option(path: &Path) -> PathBuf {
-    if path.is_absolute() { path.to_owned() } else { Path::new(".").join(path) }
+impl Copies {
+    /// The file that a program is given.
+    fn first(&self) -> &Path {
+        self.0.first().map_or(Path::new(""), |(_, copy)| copy)
+    }
+
+    /// What a program says of the copies, as if it said it of the files.
+    fn translated(&self, said: &str) -> String {
+        // The last first: their names are the longest.
+        self.0.iter().rev().fold(said.to_owned(), |said, (file, copy)| {
+            said.replace(&copy.display().to_string(), &file.display().to_string())
+        })
+    }
+}
+
+fn of(source: &Path) -> impl Fn(std::io::Error) -> ImportError + use<> {
+    let source_name = source.display().to_string();
+    move |cause| ImportError::Io { source_name: source_name.clone(), cause }
+}
+
+fn folder_of(path: &Path) -> &Path {
+    path.parent().unwrap_or(Path::new(""))
 }

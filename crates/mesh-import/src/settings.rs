@@ -7,4 +7,7 @@ pub struct ImportSettings {
     pub mesh_size: Option<f64>,
     /// Whether straight edges of first-order elements get a node in their middle.
     pub raise_order: bool,
+    /// Whether gmsh does all that geometry says. A `.geo` file is a program, which may run others; without this, one with such
+    /// commands is refused. No scene file can set it.
+    pub trust_geometry: bool,
 }

@@ -196,6 +196,8 @@ class Abaqus:
     def lines(self, path, around):
         if path in around:
             raise Refused(f"{path} includes itself", "check its *INCLUDE")
+        if path.exists() and not path.is_file():
+            raise Refused(f"{path} is a folder, a device or a pipe", "check the name in *INCLUDE: it must be a file")
         try:
             text = path.read_text(encoding="utf-8", errors="replace")
         except OSError as error:

@@ -16,8 +16,8 @@ const PYTHON: &str = "FLEXFRAME_PYTHON";
 /// Names a Python with meshlane instead of meshio.
 const MESHLANE: &str = "FLEXFRAME_MESHLANE";
 
-const AS_IT_IS: ImportSettings = ImportSettings { mesh_size: None, raise_order: false };
-const RAISED: ImportSettings = ImportSettings { mesh_size: None, raise_order: true };
+const AS_IT_IS: ImportSettings = ImportSettings { mesh_size: None, raise_order: false, trust_geometry: false };
+const RAISED: ImportSettings = ImportSettings { raise_order: true, ..AS_IT_IS };
 
 /// The bar of 200 x 10 x 10, in every format.
 struct Formats {
@@ -235,7 +235,9 @@ fn what_cannot_be_read_is_said_with_its_cure() {
     let formats = formats();
     fs::write(formats.path("empty.inp"), "*HEADING\n").unwrap();
     fs::write(formats.path("text.vtu"), "a diary\n").unwrap();
-    fs::write(formats.path("broken.step"), "a diary\n").unwrap();
+    fs::write(formats.path("marked.vtu"), "<a diary>\n").unwrap();
+    fs::write(formats.path("broken.step"), "ISO-10303-21; a diary\n").unwrap();
+    fs::write(formats.path("diary.step"), "a diary\n").unwrap();
     fs::write(formats.path("flat.geo"), "Point(1) = {0, 0, 0};\n").unwrap();
     fs::write(formats.path("parts.inp"), "*NODE\n1, 0, 0, 0\n*NODE\n1, 5, 0, 0\n").unwrap();
     fs::write(formats.path("strange.inp"), "*NODE\n*ELEMENT, TYPE=S3\n1, a, 2, 3\n").unwrap();
@@ -251,9 +253,11 @@ fn what_cannot_be_read_is_said_with_its_cure() {
         ("empty.inp", &["it has no nodes"]),
         ("parts.inp", &["node 1 is there twice", "write one part"]),
         ("strange.inp", &["line 3 of strange.inp", "in *ELEMENT"]),
-        ("text.vtu", &["meshio cannot read it"]),
+        ("text.vtu", &["begin as .vtu files do", "expected XML"]),
+        ("marked.vtu", &["marked.vtu", "meshio cannot read it"]),
         ("swapped.inp", &["1 of its 768 tetra10 elements", "in another order", "mesh again"]),
         ("broken.step", &["broken.step", "gmsh"]),
+        ("diary.step", &["diary.step", "expected ISO-10303-21"]),
         ("flat.geo", &["flat.geo", "tetrahedra"]),
         ("absent.inp", &["absent.inp", "No such file"]),
     ] {
@@ -270,7 +274,7 @@ fn geometry_is_meshed_as_fine_as_asked_and_what_it_follows_from_is_known() {
     let box_ = "SetFactory(\"OpenCASCADE\");\nBox(1) = {0, 0, 0, 20, 10, 10};\nPhysical Volume(\"block\") = {1};\n";
     fs::write(formats.path("block.geo"), box_).unwrap();
     formats.gmsh(&["block.geo", "-0", "-o", "block.brep", "-format", "brep"]);
-    let sized = |mesh_size| ImportSettings { mesh_size: Some(mesh_size), raise_order: false };
+    let sized = |mesh_size| ImportSettings { mesh_size: Some(mesh_size), ..AS_IT_IS };
     // A size in the geometry does not stand in the way of the one that is asked for.
     fs::write(formats.path("sized.geo"), format!("{box_}Mesh.MeshSizeMax = 5;\n")).unwrap();
     for name in ["block.geo", "block.brep", "sized.geo"] {

@@ -1,14 +1,19 @@
 //! The mesh of a scene and its matrices.
 
 use fem_tet10::{AssemblyError, Matrices, Mesh, MeshError, assemble};
-use mesh_import::{ImportError, Imported};
+use mesh_import::{ImportError, ImportSettings, Imported};
 
 use super::error::{BuildError, refuse};
 use crate::scene::{MeshedBody, Scene};
 use crate::shorten::shorten;
 
 pub(super) fn read_mesh(scene: &Scene, body: &MeshedBody) -> Result<Imported, BuildError> {
-    mesh_import::read_mesh(&body.mesh, &body.import).map_err(|error| match error {
+    let trust_geometry = body.import.trust_geometry || scene.cache.trusts_geometry();
+    let settings = ImportSettings { trust_geometry, ..body.import };
+    if let Some(remark) = mesh_import::remark(&body.mesh, &settings) {
+        scene.cache.warn(remark);
+    }
+    mesh_import::read_mesh(&body.mesh, &settings).map_err(|error| match error {
         ImportError::Mesh(MeshError::Io { source_name, source: cause }) | ImportError::Io { source_name, cause } => {
             scene
                 .refuse(

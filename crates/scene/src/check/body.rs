@@ -30,7 +30,7 @@ impl Check<'_> {
         if let Some(matrices) = matrices {
             return self.matrices(&matrices).map(Body::Matrices);
         }
-        let import = ImportSettings { mesh_size, raise_order: raise_order.unwrap_or_default() };
+        let import = ImportSettings { mesh_size, raise_order: raise_order.unwrap_or_default(), trust_geometry: false };
         let Some(rigid) = rigid else {
             if let Some(file) = file {
                 return self.reduced(&file, mesh, import, material, materials, point_masses).map(Body::Meshed);
