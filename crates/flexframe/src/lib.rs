@@ -30,6 +30,7 @@ mod effects;
 pub mod export;
 pub mod failure;
 pub mod fmu;
+pub mod forked;
 pub mod html_report;
 mod json;
 pub mod mode_shapes;

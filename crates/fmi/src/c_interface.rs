@@ -13,6 +13,8 @@ use std::ffi::{CStr, CString, c_char, c_int, c_void};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::ptr;
 
+use flexframe::forked::in_this_process;
+
 use crate::error::Error;
 use crate::instance::{Instance, Saved};
 
@@ -101,6 +103,24 @@ fn words_of(panic: &(dyn Any + Send)) -> String {
     text.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_else(|| "a panic without words".to_owned())
 }
 
+/// What one thread hands to another, and waits until that is done with it.
+struct Handed<T>(T);
+
+// SAFETY: only `in_pool` makes one, whose thread waits: one thread at a time uses what is in it.
+unsafe impl<T> Send for Handed<T> {}
+
+impl<T> Handed<T> {
+    fn take(self) -> T {
+        self.0
+    }
+}
+
+/// Does work in the pool of this process: it may have been forked from one that has used this library.
+fn in_pool<T>(work: impl FnOnce() -> T) -> Result<T, Error> {
+    let work = Handed(work);
+    Ok(in_this_process(move || Handed(work.take()()))?.take())
+}
+
 /// Calls `work` for a component; errors and panics go to the logger. A broken instance can be reset and freed, and its
 /// saved states can be freed.
 fn call(
@@ -112,7 +132,7 @@ fn call(
     let Some(component) = (unsafe { component.cast::<Component>().as_mut() }) else { return fmi2Error };
     let is_allowed = !component.is_broken || matches!(function, "fmi2Reset" | "fmi2FreeFMUstate");
     let done = match is_allowed {
-        true => catch_unwind(AssertUnwindSafe(|| work(component))),
+        true => catch_unwind(AssertUnwindSafe(|| in_pool(|| work(component))?)),
         false => Ok(Err(Error::Broken)),
     };
     let error = match done {
@@ -212,7 +232,7 @@ pub unsafe extern "C" fn fmi2Instantiate(
         let location = unsafe { text(fmuResourceLocation, "the location of the resources") }?;
         Instance::new(guid, location)
     };
-    let made = catch_unwind(AssertUnwindSafe(make))
+    let made = catch_unwind(AssertUnwindSafe(|| in_pool(make)?))
         .unwrap_or_else(|panic| Err(Error::Panic { function: "fmi2Instantiate", words: words_of(&*panic) }));
     match made {
         Ok(instance) => Box::into_raw(Box::new(Component { instance, logger, is_broken: false })).cast(),

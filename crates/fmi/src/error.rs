@@ -2,6 +2,7 @@
 
 use flexframe::advice::AdviceError;
 use flexframe::fmu::FmuError;
+use flexframe::forked::NoThreads;
 use flexframe::frames_rk4::{CheckpointError, StepError};
 
 use crate::phase::Phase;
@@ -11,6 +12,8 @@ use crate::phase::Phase;
 pub enum Error {
     #[error(transparent)]
     Fmu(#[from] FmuError),
+    #[error(transparent)]
+    Threads(#[from] NoThreads),
     #[error(
         "the resource location {found:?} is no folder of this machine; give the URI of the unpacked folder resources, such as \
          file:///tmp/blade/resources"

@@ -11,6 +11,8 @@ use std::time::Duration;
 use pyo3::exceptions::{PyKeyboardInterrupt, PyOSError};
 use pyo3::prelude::*;
 
+use crate::threads::in_pool;
+
 /// Time between two looks at signals.
 const LOOK: Duration = Duration::from_millis(50);
 /// That of the first thread of a program.
@@ -50,7 +52,7 @@ pub(crate) fn interruptible<T: Send + 'static>(
     let (sender, mut receiver) = channel();
     let run = move || {
         // Where nobody waits any longer, nobody wants the result.
-        let _ = sender.send(work());
+        let _ = sender.send(in_pool(work));
     };
     let thread = thread::Builder::new().name("flexframe".to_owned()).stack_size(STACK).spawn(run);
     let thread = thread.map_err(|error| PyOSError::new_err(format!("no thread can be started: {error}")))?;
@@ -58,7 +60,7 @@ pub(crate) fn interruptible<T: Send + 'static>(
     loop {
         let receiver = &mut receiver;
         match py.detach(move || receiver.recv_timeout(LOOK)) {
-            Ok(result) => return Ok((result, raised)),
+            Ok(result) => return Ok((result?, raised)),
             Err(RecvTimeoutError::Disconnected) => return Err(ended(raised, py.detach(|| thread.join()))),
             Err(RecvTimeoutError::Timeout) => {}
         }

@@ -6,7 +6,7 @@
 //! `load`, `motion` and `faults` let Python functions act on a body;
 //! `columns`, `row` and `results` give rows under the names of the columns of a results file;
 //! `arrays` has the only unsafe code: numpy arrays that look into a body without a copy;
-//! `interrupt` lets Ctrl-C stop long work; `errors` turns errors into exceptions with the same words.
+//! `interrupt` lets Ctrl-C stop long work; `threads` lets it be done in a forked process; `errors` turns errors into exceptions with the same words.
 
 #![deny(unsafe_code)]
 #![warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable)]
@@ -30,10 +30,13 @@ mod run;
 mod scene;
 mod simulation;
 mod state;
+mod threads;
 
 /// The compiled part of the package flexframe.
 #[pymodule]
 mod _flexframe {
+    use pyo3::prelude::*;
+
     #[pymodule_export]
     use super::body::Body;
     #[pymodule_export]
@@ -52,4 +55,10 @@ mod _flexframe {
     use super::simulation::{Reached, Simulation};
     #[pymodule_export]
     const VERSION: &str = env!("CARGO_PKG_VERSION");
+
+    #[pymodule_init]
+    fn init(_module: &Bound<'_, PyModule>) -> PyResult<()> {
+        flexframe::forked::loaded();
+        Ok(())
+    }
 }

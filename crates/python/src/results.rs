@@ -12,6 +12,7 @@ use pyo3::types::{PyDict, PyList};
 use crate::columns::{dimensions, of_run, shaped};
 use crate::errors::exception;
 use crate::scene::units;
+use crate::threads::detached;
 
 /// The module of the class.
 const MODULE: &str = "flexframe.results";
@@ -82,7 +83,7 @@ impl Rows {
 /// Reads a results file, finished or not.
 #[pyfunction]
 pub(crate) fn read_results(py: Python<'_>, path: PathBuf) -> PyResult<Bound<'_, PyAny>> {
-    let read = py.detach(|| Results::open(&path, &COLUMNS)).map_err(|error| exception(py, &error))?;
+    let read = detached(py, || Results::open(&path, &COLUMNS))?.map_err(|error| exception(py, &error))?;
     let metadata = &read.metadata;
     let columns = present(&COLUMNS, metadata).map(|column| (column, read.dataset(column))).collect();
     Rows { columns, count: read.rows() }.into_results(py, metadata, read.complete, &[])

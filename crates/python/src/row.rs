@@ -9,6 +9,7 @@ use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 
 use crate::columns::{of_row, of_run};
+use crate::threads::in_pool;
 
 /// The motion at one time.
 #[pyclass(frozen, mapping, module = "flexframe")]
@@ -18,11 +19,11 @@ pub(crate) struct Row {
 }
 
 impl Row {
-    pub(crate) fn new(motion: &Observation, model: &Model, metadata: &Arc<Metadata>) -> Self {
+    pub(crate) fn new(motion: &Observation, model: &Model, metadata: &Arc<Metadata>) -> PyResult<Self> {
         let mut row = flexframe::row::Row::new(model);
         row.motion.clone_from(motion);
-        row.complete(model);
-        Self { row, metadata: metadata.clone() }
+        in_pool(|| row.complete(model))?;
+        Ok(Self { row, metadata: metadata.clone() })
     }
 }
 

@@ -10,6 +10,7 @@ use pyo3::types::PyDict;
 
 use crate::dict::{to_text, to_toml};
 use crate::errors::{exception, wrong_input};
+use crate::threads::detached;
 
 /// What a dict is called where it gets no name.
 const NAME: &str = "scene";
@@ -25,7 +26,7 @@ impl Scene {
 
     fn parsed(py: Python<'_>, text: &str, path: PathBuf) -> PyResult<Self> {
         // Tables of histories are read, too.
-        let scene = py.detach(|| flexframe::scene::Scene::parse(text, path));
+        let scene = detached(py, || flexframe::scene::Scene::parse(text, path))?;
         scene.map(|scene| Self(Arc::new(scene))).map_err(|error| exception(py, &error))
     }
 }

@@ -21,6 +21,7 @@ use crate::numbers::described;
 use crate::results::{Occurred, Rows};
 use crate::row::Row;
 use crate::state::{changed, to_dict};
+use crate::threads::{detached, in_pool};
 
 /// Steps between two looks at signals.
 const STEPS_PER_LOOK: u64 = 4096;
@@ -93,10 +94,10 @@ impl Simulation {
             (running.begun, running.is_set) = (true, false);
             let steps = left.min(STEPS_PER_LOOK);
             let simulation = &mut running.simulation;
-            let reached = py.detach(|| match &mut watch {
+            let reached = detached(py, || match &mut watch {
                 Some(watch) => simulation.advance_watched(steps, |moment| watch.look(moment)),
                 None => simulation.advance(steps),
-            });
+            })?;
             if reached.is_err() {
                 // The next step is to start where the motion is.
                 simulation.set_stop_time(None);
@@ -123,9 +124,9 @@ impl Simulation {
     /// The row of the time that has been reached.
     fn row(&self, py: Python<'_>, running: &mut Running) -> PyResult<Row> {
         let Running { simulation, row, .. } = running;
-        let observed = simulation.observe(row);
+        let observed = detached(py, || simulation.observe(row))?;
         self.or_fault(py, observed)?;
-        Ok(Row::new(row, self.body.get().model(), &self.metadata))
+        Row::new(row, self.body.get().model(), &self.metadata)
     }
 
     fn reached(&self, running: &Running, reached: frames_rk4::Reached) -> Reached {
@@ -166,9 +167,9 @@ impl Simulation {
         let model = self.body.get().model();
         let mut row = flexframe::row::Row::new(model);
         let mut record = |running: &mut Running, watch: &mut Watch<'_>| -> PyResult<()> {
-            let observed = running.simulation.observe(&mut row.motion);
+            let observed = detached(py, || running.simulation.observe(&mut row.motion))?;
             self.or_fault(py, observed)?;
-            row.complete(model);
+            in_pool(|| row.complete(model))?;
             rows.push(&row, &self.metadata);
             watch.observe(&row).map_err(|error| exception(py, &error))
         };
@@ -221,7 +222,7 @@ impl Simulation {
             // What each of several supports does would have to know the laws.
             metadata.parts.retain(|has| has != part::SUPPORTS);
             metadata.support_names.clear();
-            model.under_unknown_forces(&scene)
+            in_pool(|| model.under_unknown_forces(&scene))?
         };
         all.extend(laws);
         metadata.body.damping_ratios.clone_from(&damping_ratios);
@@ -229,7 +230,7 @@ impl Simulation {
         if let Some(refusal) = model.refusal.filter(|_| scene.effects.refuse) {
             return Err(exception(py, &StartError::from(refusal)));
         }
-        let simulation = py.detach(|| {
+        let simulation = detached(py, || {
             let observed: Vec<_> = points.iter().map(|(_, point)| point.clone()).collect();
             let initial = model.initial(&scene);
             frames_rk4::Simulation::new(&Setup {
@@ -239,7 +240,7 @@ impl Simulation {
                 physics: &physics,
                 ..model.setup(&scene, &initial)
             })
-        });
+        })?;
         if let Some(fault) = faults.take() {
             return Err(fault);
         }
@@ -361,7 +362,7 @@ impl Simulation {
         let mut running = self.running()?;
         let event = self.event(name, function, crossing);
         let simulation = &mut running.simulation;
-        let added = py.detach(|| simulation.add_event(event));
+        let added = detached(py, || simulation.add_event(event))?;
         self.or_fault(py, added).map(|_| ())
     }
 
@@ -385,7 +386,7 @@ impl Simulation {
             return Err(wrong_input(py, "state[\"time\"]", &state.time.to_string(), &expected, cure));
         }
         let simulation = &mut running.simulation;
-        let set = py.detach(|| simulation.set_state(&state));
+        let set = detached(py, || simulation.set_state(&state))?;
         if let Some(fault) = self.faults.take() {
             return Err(fault);
         }
@@ -430,8 +431,8 @@ impl Simulation {
             if faults.any() {
                 return f64::NAN;
             }
-            let row = Row::new(now, &body, &metadata);
-            let value = Python::attach(|py| value_of_event(function.bind(py), &known, row));
+            let value = Row::new(now, &body, &metadata)
+                .and_then(|row| Python::attach(|py| value_of_event(function.bind(py), &known, row)));
             value.unwrap_or_else(|error| {
                 Python::attach(|py| add_note(py, &error, &format!("in the event `{known}` at time {}", now.time)));
                 faults.put(error);
