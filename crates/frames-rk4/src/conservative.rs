@@ -66,7 +66,6 @@ mod velocities;
 pub use body::ConservativeBody;
 pub(crate) use coordinates::{InCoordinates, pair_weights};
 pub(crate) use evaluation::Evaluation;
-pub(crate) use load_scale::LoadCoupling;
 pub use rates::ConservativeRates;
 pub use state::ConservativeState;
 pub(crate) use state::{Slow, get, part};

@@ -7,7 +7,8 @@
 use serde::{Deserialize, Serialize};
 
 use crate::checkpoint::{CheckpointError, finite};
-use crate::conservative::{ConservativeBody, ConservativeState, Evaluation, LoadCoupling, get, part};
+use crate::conservative::{ConservativeBody, ConservativeState, Evaluation, get, part};
+use crate::own_coupling::LoadCoupling;
 
 /// Squares of the sizes of a motion, or of the difference of two states.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]

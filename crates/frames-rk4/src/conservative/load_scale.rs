@@ -6,22 +6,7 @@ use crate::conservative::body::{ConservativeBody, Translation, along};
 use crate::error_size::Sizes;
 use crate::history::History;
 use crate::load::{Applied, Coordinates, Kinematics, Load, SharedLoad};
-use crate::own_coupling::largest_alike;
-
-/// The stress of a load couples each mode to itself and to modes of like frequency.
-#[derive(Debug, Clone)]
-pub(crate) struct LoadCoupling {
-    history: History,
-    /// Largest stiffness for each mode where the history is 1 (nf).
-    of_modes: Vec<f64>,
-}
-
-impl LoadCoupling {
-    /// Largest stiffness by which a mode is coupled at a time.
-    pub(crate) fn stiffness(&self, mode: usize, time: f64) -> f64 {
-        self.history.at(time, time).abs() * self.of_modes[mode]
-    }
-}
+use crate::own_coupling::{LoadCoupling, largest_alike};
 
 impl ConservativeBody {
     /// Sizes of the motions that the loads, one by one, would cause from rest until `end`: the scale of a motion that begins
@@ -77,7 +62,7 @@ impl ConservativeBody {
                 .collect();
             let omega = &self.circular_frequencies;
             let of_modes = (0..nf).map(|k| largest_alike(omega, k, |l| columns[k][l].max(columns[l][k]))).collect();
-            LoadCoupling { history: history.clone(), of_modes }
+            LoadCoupling::new(history.clone(), of_modes)
         };
         stressed.map(coupling).collect()
     }
