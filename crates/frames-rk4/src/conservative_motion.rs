@@ -17,7 +17,6 @@ use crate::initial::Initial;
 use crate::moment::Moment;
 use crate::motion::PointShapes;
 use crate::observation::Observation;
-use crate::own_coupling::LoadCoupling;
 use crate::plan::StepControl;
 use crate::scheme::{ErrorEstimate, Scheme};
 use crate::setup::{Beginning, Method, Setup, StepLimit};
