@@ -12,7 +12,7 @@ use rayon::prelude::*;
 
 use crate::dense::symmetric_eigen;
 use crate::error::ModalError;
-use crate::foretold::{of_dense_products, of_vectors};
+use crate::foretold::{of_vectors, reserve_of_dense_products};
 use crate::lanczos::LanczosPairs;
 use crate::mass_matrix::MassMatrix;
 use crate::multigrid::Multigrid;
@@ -167,7 +167,7 @@ impl<'a> Search<'a> {
     ) -> Result<Self, ModalError> {
         let (rows, fixed) = (rigid.nrows(), rigid.ncols());
         let (needed, reserve) =
-            (of_vectors(rows, fixed + room(count) + beside(count)), of_dense_products(current_num_threads()));
+            (of_vectors(rows, fixed + room(count) + beside(count)), reserve_of_dense_products(current_num_threads()));
         memory::check_with_reserve("the search for modes", needed, reserve)?;
         let mut columns = Mat::zeros(rows, fixed + room(count));
         columns.as_mut().subcols_mut(0, fixed).copy_from(rigid);

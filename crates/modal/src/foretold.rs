@@ -1,5 +1,7 @@
 //! The memory and the time that a solution takes, foretold by the symbolic factorisation before the numeric one.
 
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use faer::dyn_stack::{MemBuffer, MemStack};
@@ -173,13 +175,26 @@ pub(crate) fn of_vectors(unknowns: usize, vectors: usize) -> usize {
     WORD.saturating_mul(unknowns).saturating_mul(vectors)
 }
 
-/// The address space that faer's products of dense matrices reserve for each thread: twice the processor's last cache.
-pub(crate) fn of_dense_products(threads: usize) -> usize {
-    let size = |index: usize| {
-        let text = std::fs::read_to_string(format!("/sys/devices/system/cpu/cpu0/cache/index{index}/size")).ok()?;
-        text.trim().strip_suffix('K')?.parse::<usize>().ok()?.checked_mul(1024)
+/// The address space that faer's products of dense matrices reserve for each thread that makes some: twice the last-level
+/// caches of the machine.
+pub fn reserve_of_dense_products(threads: usize) -> usize {
+    2 * threads * last_level_caches(Path::new("/sys/devices/system/cpu")).max(CACHE)
+}
+
+/// Bytes of all caches of the last level, each counted once however many processors share it; 0 where the system does not
+/// tell.
+fn last_level_caches(processors: &Path) -> usize {
+    let folders = |folder: &Path| std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
+    let cache = |folder: PathBuf| {
+        let text = |name: &str| std::fs::read_to_string(folder.join(name)).ok();
+        let level: usize = text("level")?.trim().parse().ok()?;
+        let kibibytes: usize = text("size")?.trim().strip_suffix('K')?.parse().ok()?;
+        Some((level, text("shared_cpu_list")?, kibibytes.checked_mul(1024)?))
     };
-    2 * threads * (0..4).filter_map(size).fold(CACHE, usize::max)
+    let caches: BTreeSet<_> =
+        folders(processors).flat_map(|one| folders(&one.join("cache"))).filter_map(cache).collect();
+    let last = caches.iter().map(|(level, ..)| *level).max();
+    caches.iter().filter(|(level, ..)| Some(*level) == last).map(|(.., bytes)| bytes).sum()
 }
 
 #[cfg(test)]
@@ -210,5 +225,26 @@ mod tests {
         assert_eq!(forecast.multiplications, exact);
         assert_eq!(forecast.time, None);
         assert!(speed(1).is_some());
+    }
+
+    #[test]
+    fn every_cache_of_the_last_level_counts_once() {
+        let machine = tempfile::tempdir().unwrap();
+        // Four processors, of which two share a cache of 32 MiB each.
+        for processor in 0..4 {
+            for (index, level, size, shared) in [
+                (0, 1, "48K", format!("{processor}")),
+                (1, 2, "2048K", format!("{processor}")),
+                (2, 3, "32768K", format!("{}-{}", processor / 2 * 2, processor / 2 * 2 + 1)),
+            ] {
+                let folder = machine.path().join(format!("cpu{processor}/cache/index{index}"));
+                std::fs::create_dir_all(&folder).unwrap();
+                for (name, text) in [("level", level.to_string()), ("size", size.into()), ("shared_cpu_list", shared)] {
+                    std::fs::write(folder.join(name), text + "\n").unwrap();
+                }
+            }
+        }
+        assert_eq!(last_level_caches(machine.path()), 2 * (32 << 20));
+        assert_eq!(last_level_caches(&machine.path().join("nothing")), 0);
     }
 }

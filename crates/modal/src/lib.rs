@@ -88,7 +88,7 @@ mod turned;
 pub use engine::{Eigenpairs, Engine, EngineStats, StaticAnswers};
 pub use error::{EngineError, ModalError};
 pub use fields::{acceleration_fields, centrifugal_fields, turning_field};
-pub use foretold::Forecast;
+pub use foretold::{Forecast, reserve_of_dense_products};
 pub use held_problem::{HeldMatrix, HeldProblem};
 pub use mass::NodalMass;
 pub use mass_left_out::mass_left_out;

@@ -18,7 +18,7 @@ use crate::cholesky::NotPositive;
 use crate::constraints::Constraints;
 use crate::dense::whitening;
 use crate::error::ModalError;
-use crate::foretold::{Forecast, Foretold, of_dense_products};
+use crate::foretold::{Forecast, Foretold, reserve_of_dense_products};
 use crate::interleave::interleave;
 use crate::mass_matrix::MassMatrix;
 use crate::renumbering::Renumbering;
@@ -109,7 +109,7 @@ impl Shifted {
         let threads = if symbolic.is_parted() { rayon::current_num_threads() } else { 1 };
         let (needed, reserve) = match &symbolic {
             Symbolic::Supernodal(Supernodal { supernodes, .. }) => {
-                (cholesky::scratch_bytes(supernodes, threads), of_dense_products(threads))
+                (cholesky::scratch_bytes(supernodes, threads), reserve_of_dense_products(threads))
             }
             Symbolic::Simplicial(symbolic) => {
                 let scratch = symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Spec::default());
