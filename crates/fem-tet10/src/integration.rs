@@ -127,26 +127,41 @@ pub(crate) struct BadJacobian {
     pub expected: f64,
 }
 
+/// The determinants of the Jacobian at the nodes and the integration points of an element.
+struct Determinants {
+    at_nodes: [[[f64; 3]; 10]; 10],
+    inside: Vec<[[f64; 3]; 10]>,
+}
+
+impl Determinants {
+    fn new() -> Self {
+        let inside = quadrature::degree_5().iter().map(|p| shape_gradients(p.at)).collect();
+        Self { at_nodes: NODES.map(shape_gradients), inside }
+    }
+
+    /// The smallest of them.
+    fn least(&self, positions: &[[f64; 3]; 10]) -> f64 {
+        if is_straight(positions) {
+            return jacobian(positions, &self.at_nodes[0]).determinant();
+        }
+        self.at_nodes
+            .iter()
+            .chain(&self.inside)
+            .map(|dn| jacobian(positions, dn).determinant())
+            // NaN, from coordinates near the end of the range, is kept, where `f64::min` would drop it.
+            .fold(f64::INFINITY, |least, det| if least.is_nan() || least <= det { least } else { det })
+    }
+}
+
 /// The first of `count` elements that is inverted or has no volume at a node or at an integration point.
 pub(crate) fn first_bad_jacobian(
     count: usize,
     positions: impl Fn(usize) -> [[f64; 3]; 10] + Sync,
 ) -> Option<BadJacobian> {
-    let at_nodes = NODES.map(shape_gradients);
-    let inside: Vec<_> = quadrature::degree_5().iter().map(|p| shape_gradients(p.at)).collect();
+    let determinants = Determinants::new();
     (0..count).into_par_iter().find_map_first(|e| {
         let positions = positions(e);
-        let regular = regular_determinant(&positions);
-        let smallest = if is_straight(&positions) {
-            jacobian(&positions, &at_nodes[0]).determinant()
-        } else {
-            at_nodes
-                .iter()
-                .chain(&inside)
-                .map(|dn| jacobian(&positions, dn).determinant())
-                // NaN, from coordinates near the end of the range, is kept, where `f64::min` would drop it.
-                .fold(f64::INFINITY, |least, det| if least.is_nan() || least <= det { least } else { det })
-        };
+        let (regular, smallest) = (regular_determinant(&positions), determinants.least(&positions));
         let good = smallest > DEGENERATE * regular;
         (!good).then_some(BadJacobian {
             element: e,
@@ -157,6 +172,18 @@ pub(crate) fn first_bad_jacobian(
     })
 }
 
+/// The smallest determinant of each of `count` elements over that of the straight element with the same corners: of all,
+/// the smallest.
+pub(crate) fn least_scaled_jacobian(count: usize, positions: impl Fn(usize) -> [[f64; 3]; 10] + Sync) -> f64 {
+    let determinants = Determinants::new();
+    let of_element = |e: usize| {
+        let positions = positions(e);
+        let [a, b, c, d] = std::array::from_fn(|corner| Vector3::from(positions[corner]));
+        determinants.least(&positions) / Matrix3::from_columns(&[b - a, c - a, d - a]).determinant()
+    };
+    (0..count).into_par_iter().map(of_element).reduce(|| 1.0, f64::min)
+}
+
 /// Determinant of the Jacobian of a regular tetrahedron with the longest edge of this one: h³/√2.
 fn regular_determinant(positions: &[[f64; 3]; 10]) -> f64 {
     let longest = EDGES
@@ -164,4 +191,25 @@ fn regular_determinant(positions: &[[f64; 3]; 10]) -> f64 {
         .map(|[a, b]| (Vector3::from(positions[a]) - Vector3::from(positions[b])).norm())
         .fold(0.0, f64::max);
     longest.powi(3) / 2.0_f64.sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The node on the edge from corner 0 to corner 1 moves along it by δ: there J = I − 4δ e_x (1, 1, 1)ᵀ at corner 1.
+    #[test]
+    fn a_node_that_slides_along_its_edge_scales_the_jacobian_as_in_closed_form() {
+        let straight = NODES;
+        assert_eq!(least_scaled_jacobian(1, |_| straight), 1.0);
+        for shift in [0.1, 0.2, 0.3] {
+            let slid = |element: usize| {
+                let mut positions = straight.map(|x| [3.0 * x[0], 2.0 * x[1], x[2]]);
+                positions[4][0] += 3.0 * shift * element as f64;
+                positions
+            };
+            let found = least_scaled_jacobian(2, slid);
+            assert!((found - (1.0 - 4.0 * shift)).abs() < 1e-12, "{shift}: {found}");
+        }
+    }
 }

@@ -256,6 +256,12 @@ impl Mesh {
         self.size().iter().map(|edge| edge * edge).sum::<f64>().sqrt()
     }
 
+    /// How much the worst element is distorted by its curved edges: its smallest Jacobian determinant over that of the
+    /// straight element with the same corners. It is 1 where all edges are straight; an element near 0 is nearly inverted.
+    pub fn least_scaled_jacobian(&self) -> f64 {
+        integration::least_scaled_jacobian(self.elements.len(), |e| self.element_positions(e))
+    }
+
     /// The Jacobians are looked at later: two elements with the same corners fill the same space.
     fn refuse_same_elements(&self) -> Result<(), MeshError> {
         let corners = |nodes: &[u32; 10]| {

@@ -6,6 +6,7 @@ mod copy;
 mod error;
 mod format;
 mod geometry;
+mod gmsh_errors;
 mod reader;
 mod run;
 mod settings;
@@ -13,12 +14,14 @@ mod settings;
 use std::path::Path;
 
 use body_file::{Digest, Hash};
-use fem_tet10::{Mesh, parse_msh, read_msh};
+use fem_tet10::{Mesh, MeshError, parse_msh, read_msh};
 use whole_file::TemporaryFolder;
 
 pub use error::ImportError;
 pub use reader::{Reader, reader_of};
 pub use settings::ImportSettings;
+
+use run::GmshTask;
 
 /// A mesh, and what of its file was left out, in sentences.
 #[derive(Debug)]
@@ -42,14 +45,35 @@ pub fn read_mesh(path: &Path, settings: &ImportSettings) -> Result<Imported, Imp
     let io = |cause| ImportError::Io { source_name: source_name.clone(), cause };
     let folder = TemporaryFolder::new().map_err(io)?;
     let target = folder.path().join("mesh.msh");
-    let notes = match reader {
-        Reader::Own => Vec::new(),
-        Reader::GmshMesher => run::gmsh(path, &target, settings, true)?,
-        Reader::GmshConverter => run::gmsh(path, &target, settings, false)?,
-        Reader::Meshio => run::meshio(path, &target, settings)?,
-    };
-    let bytes = std::fs::read(&target).map_err(io)?;
-    Ok(Imported { mesh: parse_msh(&bytes, &source_name)?, notes })
+    let parsed = || -> Result<Mesh, ImportError> { Ok(parse_msh(&std::fs::read(&target).map_err(io)?, &source_name)?) };
+    match reader {
+        Reader::Own => {}
+        Reader::GmshMesher => {
+            run::gmsh(path, &target, settings, GmshTask::Mesh)?;
+            let first = parsed();
+            if !is_badly_curved(&first) {
+                return Ok(Imported { mesh: first?, notes: Vec::new() });
+            }
+            run::gmsh(path, &target, settings, GmshTask::MeshAndOptimize)?;
+        }
+        Reader::GmshConverter => run::gmsh(path, &target, settings, GmshTask::Convert)?,
+        Reader::Meshio => {
+            let notes = run::meshio(path, &target, settings)?;
+            return Ok(Imported { mesh: parsed()?, notes });
+        }
+    }
+    Ok(Imported { mesh: parsed()?, notes: Vec::new() })
+}
+
+/// A smaller scaled Jacobian is what gmsh's optimisation takes for bad (Mesh.HighOrderThresholdMin).
+const BADLY_CURVED: f64 = 0.1;
+
+/// Whether the edges of elements on curved surfaces run through their other faces, or nearly so.
+fn is_badly_curved(mesh: &Result<Mesh, ImportError>) -> bool {
+    match mesh {
+        Ok(mesh) => mesh.least_scaled_jacobian() < BADLY_CURVED,
+        Err(error) => matches!(error, ImportError::Mesh(MeshError::Jacobian { .. })),
+    }
 }
 
 /// Who reads the mesh should know that its file is a program: what to say of it, and of how far it is trusted.

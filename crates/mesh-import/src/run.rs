@@ -13,6 +13,7 @@ use crate::copy::{copied, opened};
 use crate::error::ImportError;
 use crate::format::ending;
 use crate::geometry::{Copies, copied_geometry};
+use crate::gmsh_errors::error_in;
 use crate::reader::is_program;
 use crate::settings::ImportSettings;
 
@@ -68,13 +69,24 @@ pub(crate) fn meshio(source: &Path, target: &Path, settings: &ImportSettings) ->
     }
 }
 
-/// Lets gmsh write `source` to `target`, in a private folder, as MSH 4.1: geometry, `meshed` on the way, or another mesh.
+/// What gmsh does on the way from a file to MSH 4.1.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum GmshTask {
+    /// Nothing: the file is a mesh.
+    Convert,
+    /// It meshes geometry.
+    Mesh,
+    /// After that it moves nodes until no element is inverted by its curved edges; several times the work.
+    MeshAndOptimize,
+}
+
+/// Lets gmsh write `source` to `target`, in a private folder, as MSH 4.1.
 pub(crate) fn gmsh(
     source: &Path,
     target: &Path,
     settings: &ImportSettings,
-    meshed: bool,
-) -> Result<Vec<String>, ImportError> {
+    task: GmshTask,
+) -> Result<(), ImportError> {
     let folder = folder_of(target);
     let gmsh = named(GMSH, "gmsh");
     let is_trusted = is_program(source) && settings.trust_geometry;
@@ -86,7 +98,7 @@ pub(crate) fn gmsh(
     // The user's options of gmsh are for a mesh that he looks at; they are not read here.
     let mut command = ForeignProgram::new(&gmsh, folder).env("GMSH_HOME", folder);
     command = if is_trusted { command.in_folder(folder_of(copies.first())) } else { command.env("HOME", folder) };
-    if meshed {
+    if task != GmshTask::Convert {
         command = command.arg(copies.first());
         if let Some(size) = settings.mesh_size {
             // After the geometry, which may set a size of its own; the option -clmax comes before it.
@@ -95,6 +107,9 @@ pub(crate) fn gmsh(
             command = command.arg(file);
         }
         command = command.args(["-3", "-order", "2"]);
+        if task == GmshTask::MeshAndOptimize {
+            command = command.arg("-optimize_ho");
+        }
     } else if settings.raise_order {
         // The option -order only acts on what is meshed.
         let script = folder.join("raise.geo");
@@ -107,14 +122,22 @@ pub(crate) fn gmsh(
     command = command.args(["-v", "2", "-format", "msh41", "-o"]).arg(target);
     let said = Said::by(command, source, &gmsh, ("gmsh", GMSH_CURE))?;
     if !said.status.success() || !target.is_file() {
-        return Err(said.failed(source, &gmsh, &copies, "open it in gmsh and see what is wrong with it"));
+        let cure = match task {
+            GmshTask::Convert => "open it in gmsh, and see what is wrong with it",
+            GmshTask::Mesh | GmshTask::MeshAndOptimize => {
+                "try a smaller mesh_size, or open it in gmsh, and see what is wrong with it"
+            }
+        };
+        return Err(said.failed(source, &gmsh, &copies, cure));
     }
-    Ok(Vec::new())
+    Ok(())
 }
 
 /// What a program has said, and how it has ended.
 struct Said {
     status: ExitStatus,
+    /// The first error of gmsh.
+    first_error: Option<String>,
     /// The last lines that are not empty.
     lines: VecDeque<(Stream, String)>,
 }
@@ -127,10 +150,12 @@ impl Said {
         (reader, cure): (&'static str, &'static str),
     ) -> Result<Self, ImportError> {
         let mut lines = VecDeque::new();
+        let mut first_error = None;
         let hear = |stream, line: String| {
             if line.trim().is_empty() {
                 return;
             }
+            first_error = first_error.take().or_else(|| error_in(&line));
             if lines.len() == KEPT {
                 lines.pop_front();
             }
@@ -138,7 +163,7 @@ impl Said {
         };
         let [source_name, program] = [source.as_os_str(), program].map(|name| name.to_string_lossy().into_owned());
         match command.run(LIMITS, || false, hear) {
-            Ok(status) => Ok(Self { status, lines }),
+            Ok(status) => Ok(Self { status, first_error, lines }),
             Err(ProgramError::Start(cause)) => Err(ImportError::NoReader { source_name, reader, program, cause, cure }),
             Err(cause) => Err(ImportError::TooMuch { source_name, program, cause, cure: TOO_MUCH }),
         }
@@ -150,7 +175,8 @@ impl Said {
     }
 
     fn failed(&self, source: &Path, program: &OsStr, copies: &Copies, cure: &'static str) -> ImportError {
-        let said = self.last(Stream::Error).or_else(|| self.last(Stream::Output)).unwrap_or("it says nothing");
+        let last = || self.last(Stream::Error).or_else(|| self.last(Stream::Output));
+        let said = self.first_error.as_deref().or_else(last).unwrap_or("it says nothing");
         ImportError::Failed {
             source_name: source.display().to_string(),
             program: program.to_string_lossy().into_owned(),
