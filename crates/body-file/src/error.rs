@@ -5,13 +5,15 @@ use std::path::{Path, PathBuf};
 
 /// What helps where the file is not as it was written.
 const CURE: &str = "take an unchanged copy, or make it again: flexframe reduce SCENE -o FILE";
+/// What helps where the system refuses.
+const SYSTEM_CURE: &str = "check its name, its folder and the room on its disk";
 
 /// An error of the writer or the reader.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum BodyFileError {
     /// The HDF5 library refused an operation.
-    #[error("{}: cannot {action}: {words}", path.display())]
+    #[error("{}: cannot {action}: {words}; {SYSTEM_CURE}", path.display())]
     Hdf5 {
         /// The file.
         path: PathBuf,
@@ -21,7 +23,7 @@ pub enum BodyFileError {
         words: String,
     },
     /// The operating system refused an operation.
-    #[error("{}: cannot {action}: {source}", path.display())]
+    #[error("{}: cannot {action}: {source}; {SYSTEM_CURE}", path.display())]
     System {
         /// The file.
         path: PathBuf,

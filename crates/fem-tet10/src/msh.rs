@@ -31,8 +31,8 @@ const FACTOR: usize = 4;
 
 const REMESH: &str = "mesh with -order 2 (or `Mesh.ElementOrder = 2;`), or set raise_order = true in [body] of the scene for \
                       straight edges with nodes in their middle";
-const TETRAHEDRA_ONLY: &str =
-    "mesh with tetrahedra (gmsh: no Recombine, no Transfinite Volume with Recombine) and -order 2";
+const TETRAHEDRA_ONLY: &str = "mesh with tetrahedra (gmsh: no Recombine, no Transfinite Volume with Recombine) and -order 2, or give mass and stiffness of \
+     any elements in place of the mesh: `matrices` in [body] (docs/matrices.md)";
 
 /// Reads a MSH 4.1 file and checks the mesh.
 ///
@@ -154,6 +154,9 @@ fn elements(
             let (found, cure) = match kind {
                 TET4 => ("a four-node tetrahedron".to_owned(), REMESH),
                 29..=31 => (format!("a tetrahedron of order {}", kind - 26), REMESH),
+                5 | 12 | 17 | 92..=98 => (format!("a hexahedron (gmsh's element type {kind})"), TETRAHEDRA_ONLY),
+                6 | 13 | 18 => (format!("a prism (gmsh's element type {kind})"), TETRAHEDRA_ONLY),
+                7 | 14 | 19 => (format!("a pyramid (gmsh's element type {kind})"), TETRAHEDRA_ONLY),
                 _ => (format!("of gmsh's element type {kind}"), TETRAHEDRA_ONLY),
             };
             return Err(MeshError::ElementType { source_name: parts.source.clone(), element, found, cure });

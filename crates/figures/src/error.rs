@@ -18,7 +18,7 @@ pub enum FigureError {
         reason: String,
     },
     /// The drawing library failed on a picture held in memory.
-    #[error("cannot draw the figure: {reason}")]
+    #[error("cannot draw the figure: {reason}; its numbers are in the tables that come with it: please report this")]
     Draw {
         /// The message of the drawing library.
         reason: String,

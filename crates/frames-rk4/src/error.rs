@@ -49,10 +49,7 @@ pub enum SetupError {
         previous: f64,
     },
     /// A text that is not an expression in t.
-    #[error(
-        "the expression \"{text}\" at character {position}: {problem}; an expression has t, numbers, pi and e, + - * / % ^ and parentheses, and functions like {functions}",
-        functions = crate::history::function_names()
-    )]
+    #[error("the expression \"{text}\" at character {position}: {problem}; {cure}")]
     Expression {
         /// The expression.
         text: String,
@@ -60,6 +57,8 @@ pub enum SetupError {
         position: usize,
         /// What is wrong there.
         problem: String,
+        /// What to write there.
+        cure: String,
     },
     /// An expression that is too long.
     #[error(
@@ -130,14 +129,16 @@ pub enum SetupError {
         scheme: &'static str,
     },
     /// A drive of a body whose modes are not those of the driven part held still.
-    #[error("a drive needs the modes of a clamped body; this one has the rigid motions {motion:?}")]
+    #[error(
+        "a drive moves a body whose modes are those of a clamped one; what holds this one leaves it {motion}: hold it altogether, or remove the drive"
+    )]
     DriveOfFreeBody {
         /// Its rigid motions.
         motion: Box<modal::RigidMotion>,
     },
     /// Rigid motions that there are no equations for.
     #[error(
-        "what holds the body leaves it {motion}; a run needs a body that is free, turns about a point (3 rotations) or an axis (1 rotation), slides along a line (1 translation), or is held altogether; hold more directions or fewer (its modes are there as it is)"
+        "what holds the body leaves it {motion}; a run needs a body that is free, turns about a point (3 rotations) or an axis (1 rotation), slides along a line (1 translation), or is held altogether: let [[constraints]] hold more directions, or fewer (`flexframe modes` finds its modes as it is)"
     )]
     MotionLeft {
         /// Its rigid motions.

@@ -7,7 +7,6 @@ mod table;
 use std::f64::consts::{PI, TAU};
 
 pub use expression::Expression;
-pub(crate) use expression::function_names;
 use serde::Deserialize;
 pub use table::Table;
 

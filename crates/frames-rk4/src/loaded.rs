@@ -53,7 +53,9 @@ pub enum LoadedError {
     #[error(transparent)]
     Setup(#[from] crate::error::SetupError),
     /// A body with large modes does not come to rest under its loads.
-    #[error("the large modes find no rest under the steady loads: these bend the body further than fourth order holds")]
+    #[error(
+        "the large modes find no rest under the steady loads, which bend the body further than a motion of fourth order holds; make the loads smaller or the body stiffer"
+    )]
     NoRest,
 }
 

@@ -41,7 +41,10 @@ pub struct SpinMode {
 
 /// An eigenvalue problem that the linear algebra could not solve.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-#[error("the eigenvalues of a matrix of size {size} could not be found; check the modes for numbers that are no use")]
+#[error(
+    "the vibrations of the spinning body cannot be found: the eigenvalues of a matrix of size {size} did not converge; see by \
+     `flexframe modes` whether its frequencies are as expected, and check material, units and spin speed"
+)]
 pub struct EigenError {
     /// Its size.
     pub size: usize,

@@ -63,7 +63,9 @@ pub enum ImportError {
         cure: &'static str,
     },
     /// A file could not be read, or a temporary one not be written.
-    #[error("{source_name}: {cause}")]
+    #[error(
+        "{source_name}: the mesh cannot be read: {cause}\n = check its name and its permissions, and the room in the temporary folder"
+    )]
     Io {
         /// The file.
         source_name: String,

@@ -38,10 +38,19 @@ pub struct Imported {
 /// [`ImportError`]: the file cannot be read, no program is there to read it, or it is not a mesh of second-order tetrahedra.
 pub fn read_mesh(path: &Path, settings: &ImportSettings) -> Result<Imported, ImportError> {
     let reader = reader_of(path, settings);
-    if reader == Reader::Own {
-        return Ok(Imported { mesh: read_msh(path)?, notes: Vec::new() });
-    }
     let source_name = path.display().to_string();
+    if reader == Reader::Own {
+        let refused = |found: &str, cure: &str| ImportError::Refused {
+            source_name: source_name.clone(),
+            found: found.to_owned(),
+            cure: cure.to_owned(),
+        };
+        return match read_msh(path) {
+            Err(MeshError::Version { .. }) if reader::is_surface(path) => Err(refused(SURFACE, SURFACE_CURE)),
+            Err(MeshError::Version { .. }) if format::ending(path) != "msh" => Err(refused(UNKNOWN, UNKNOWN_CURE)),
+            read => Ok(Imported { mesh: read?, notes: Vec::new() }),
+        };
+    }
     let io = |cause| ImportError::Io { source_name: source_name.clone(), cause };
     let folder = TemporaryFolder::new().map_err(io)?;
     let target = folder.path().join("mesh.msh");
@@ -64,6 +73,12 @@ pub fn read_mesh(path: &Path, settings: &ImportSettings) -> Result<Imported, Imp
     }
     Ok(Imported { mesh: parsed()?, notes: Vec::new() })
 }
+
+const SURFACE: &str = "a surface of triangles, which encloses a volume but has no elements in it";
+const SURFACE_CURE: &str = "give the part as STEP, which gmsh meshes, or fill the surface with tetrahedra in gmsh: Merge \"SURFACE.stl\"; \
+                            Surface Loop(1) = {1}; Volume(1) = {1};";
+const UNKNOWN: &str = "no mesh or geometry of a format that is read here";
+const UNKNOWN_CURE: &str = "save it as .msh, .inp, .bdf, .med, .vtu, .unv or .step; docs/meshes.md has all formats";
 
 /// A smaller scaled Jacobian is what gmsh's optimisation takes for bad (Mesh.HighOrderThresholdMin).
 const BADLY_CURVED: f64 = 0.1;

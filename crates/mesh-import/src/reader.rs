@@ -44,6 +44,11 @@ pub fn reader_of(path: &Path, settings: &ImportSettings) -> Reader {
     }
 }
 
+/// Whether a file has the name of a surface of triangles.
+pub(crate) fn is_surface(path: &Path) -> bool {
+    ["stl", "obj", "ply", "off"].contains(&ending(path).as_str())
+}
+
 /// Whether a MSH file is of version 1, 2 or 4.0.
 fn is_older_msh(path: &Path) -> bool {
     // What does not begin as a MSH file is refused by who reads it.

@@ -248,9 +248,13 @@ fn what_cannot_be_read_is_said_with_its_cure() {
     let mut nodes: Vec<&str> = line.split(',').collect();
     nodes.swap(5, 7);
     fs::write(formats.path("swapped.inp"), inp.replace(line, &nodes.join(","))).unwrap();
+    fs::write(formats.path("part.stl"), "solid x\nendsolid x\n").unwrap();
+    fs::write(formats.path("part.abc"), "a diary\n").unwrap();
     for (name, words) in [
-        ("linear.vtu", &["768 tetrahedra of first order", "raise_order = true"][..]),
-        ("brick.inp", &["1 hexahedron", "ten-node tetrahedra"]),
+        ("part.stl", &["a surface of triangles", "give the part as STEP"][..]),
+        ("part.abc", &["no mesh or geometry of a format that is read", ".step"]),
+        ("linear.vtu", &["768 tetrahedra of first order", "raise_order = true"]),
+        ("brick.inp", &["1 hexahedron", "ten-node tetrahedra", "`matrices` in [body]"]),
         ("empty.inp", &["it has no nodes"]),
         ("parts.inp", &["node 1 is there twice", "write one part"]),
         ("strange.inp", &["line 3 of strange.inp", "in *ELEMENT"]),

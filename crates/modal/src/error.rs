@@ -84,7 +84,7 @@ pub enum ModalError {
     },
     /// K lets some motion set energy free.
     #[error(
-        "the stiffness matrix is not positive semi-definite: its lowest eigenvalue against the mass is {eigenvalue:.3e} (shift {shift:.3e}); a material constant or an element must be wrong"
+        "the stiffness matrix is not positive semi-definite: its lowest eigenvalue against the mass is {eigenvalue:.3e} (shift {shift:.3e}); a material constant or an element is wrong: check Young's moduli and Poisson's ratios, or the matrices"
     )]
     NegativeStiffness {
         /// Lowest eigenvalue, (rad/time)².
@@ -271,7 +271,7 @@ pub enum ModalError {
     },
     /// K + sM is not positive definite.
     #[error(
-        "the stiffness matrix is not positive semi-definite (pivot {pivot} of K + {shift:.3e} M): a material constant or an element must be wrong"
+        "the stiffness matrix is not positive semi-definite (pivot {pivot} of K + {shift:.3e} M): a material constant or an element is wrong: check Young's moduli and Poisson's ratios, or the matrices"
     )]
     Indefinite {
         /// Position of the pivot in the elimination.
@@ -280,7 +280,9 @@ pub enum ModalError {
         shift: f64,
     },
     /// METIS failed.
-    #[error("the fill-reducing ordering failed (METIS status {status})")]
+    #[error(
+        "the unknowns cannot be ordered for the factorization (METIS status {status}); use a coarser mesh, and please report this"
+    )]
     Ordering {
         /// METIS's own code.
         status: i32,

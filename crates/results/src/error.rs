@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 #[non_exhaustive]
 pub enum FileError {
     /// The HDF5 library refused an operation.
-    #[error("{path}: cannot {action}: {source}", path = .path.display())]
+    #[error("{path}: cannot {action}: {source}; check its folder and the room on its disk", path = .path.display())]
     Hdf5 {
         /// The results file.
         path: PathBuf,

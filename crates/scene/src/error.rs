@@ -196,6 +196,10 @@ fn show_unknown(at: &Place, what: &str, found: &str, known: &[&str]) -> String {
 fn unknown_cure(found: &str, known: &[&str]) -> String {
     match nearest(found, known) {
         Some(near) => format!("rename it to `{near}` (possible here: {})", list(known)),
+        None if known.contains(&"expression") => format!(
+            "possible here: {}; a formula in the time t is {{ kind = \"expression\", formula = \"t^2\" }}",
+            list(known)
+        ),
         None => format!("possible here: {}", list(known)),
     }
 }

@@ -2,7 +2,45 @@
 
 use crate::shorten::shorten;
 
-/// The name in `known` that `found` most likely means: a few letters away, or one the beginning
+/// Names that other programs and textbooks have for ours.
+const SYNONYMS: [(&str, &str); 34] = [
+    ("e", "young_modulus"),
+    ("youngs", "young_modulus"),
+    ("elastic_modulus", "young_modulus"),
+    ("nu", "poisson_ratio"),
+    ("rho", "density"),
+    ("fixed", "clamp"),
+    ("fix", "clamp"),
+    ("encastre", "clamp"),
+    ("built-in", "clamp"),
+    ("ball", "pin"),
+    ("spherical", "pin"),
+    ("revolute", "hinge"),
+    ("prismatic", "slider"),
+    ("roller", "support"),
+    ("torque", "moment"),
+    ("couple", "moment"),
+    ("weight", "gravity"),
+    ("position", "at"),
+    ("point", "at"),
+    ("location", "at"),
+    ("where", "at"),
+    ("value", "amplitude"),
+    ("force", "amplitude"),
+    ("function", "expression"),
+    ("formula", "expression"),
+    ("expression", "formula"),
+    ("equation", "formula"),
+    ("dt", "step"),
+    ("time_step", "step"),
+    ("duration", "end"),
+    ("rk4", "rkmk4"),
+    ("n_modes", "flexible"),
+    ("modes", "flexible"),
+    ("omega", "angular_velocity"),
+];
+
+/// The name in `known` that `found` most likely means: that of the same thing, one a few letters away, or one the beginning
 /// of the other.
 pub(crate) fn nearest<'a>(found: &str, known: &[&'a str]) -> Option<&'a str> {
     const LONGEST_NAME: usize = 64;
@@ -10,6 +48,10 @@ pub(crate) fn nearest<'a>(found: &str, known: &[&'a str]) -> Option<&'a str> {
         return None;
     }
     let found = found.to_lowercase();
+    let mut same = SYNONYMS.iter().filter(|(other, _)| *other == found).map(|(_, ours)| *ours);
+    if let Some(same) = same.find_map(|ours| known.iter().copied().find(|name| *name == ours)) {
+        return Some(same);
+    }
     let distance = |name: &str| strsim::damerau_levenshtein(&found, &name.to_lowercase());
     let near = known.iter().copied().min_by_key(|name| distance(name))?;
     if distance(near) <= 1 + found.chars().count() / 4 && distance(near) < near.len() {
@@ -52,6 +94,14 @@ mod tests {
         ] {
             assert_eq!(nearest(found, &known), Some(meant), "{found}");
         }
+    }
+
+    #[test]
+    fn what_others_call_it_finds_our_name_where_that_can_stand() {
+        for (found, ours) in SYNONYMS {
+            assert_eq!(nearest(&found.to_uppercase(), &["center_of_mass", ours]), Some(ours), "{found}");
+        }
+        assert_eq!(nearest("fixed", &["center_of_mass"]), None);
     }
 
     #[test]

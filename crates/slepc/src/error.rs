@@ -42,7 +42,7 @@ pub enum SlepcError {
         command: String,
     },
     /// A file cannot be read or written.
-    #[error("{}: cannot {action}: {source}", path.display())]
+    #[error("{}: cannot {action}: {source}\n = check its name, its folder and the room on its disk", path.display())]
     Io {
         /// The file.
         path: PathBuf,

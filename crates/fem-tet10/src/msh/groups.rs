@@ -134,6 +134,10 @@ impl PhysicalGroups {
                 for group in indices {
                     let group = &mut groups[*group];
                     if let (true, Some(element)) = (block.kind != TRI6, block.tags.first()) {
+                        if parts.elements.is_empty() {
+                            // A mesh of the surface alone: no order of its triangles would help.
+                            return Err(MeshError::NoElements { source_name: parts.source.clone() });
+                        }
                         return Err(MeshError::NotAFace {
                             source_name: parts.source.clone(),
                             group: group.name.clone(),

@@ -248,6 +248,17 @@ fn a_mesh_without_tetrahedra_is_refused() {
     );
 }
 
+/// `gmsh -2` of a body with named surfaces: its triangles have three nodes, which is not what is wrong with it.
+#[test]
+fn a_mesh_of_the_surface_alone_has_no_tetrahedra() {
+    let text = "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n2 1 \"root\"\n$EndPhysicalNames\n\
+                $Entities\n0 0 1 0\n1 0 0 0 1 1 0 1 1 0\n$EndEntities\n\
+                $Nodes\n1 3 1 3\n2 1 0 3\n1\n2\n3\n0 0 0\n1 0 0\n0 1 0\n$EndNodes\n\
+                $Elements\n1 1 1 1\n2 1 2 1\n1 1 2 3\n$EndElements\n";
+    let error = fem_tet10::parse_msh(text.as_bytes(), "surface.msh").unwrap_err();
+    assert!(matches!(error, MeshError::NoElements { .. }), "{error}");
+}
+
 #[test]
 fn parts_that_do_not_fit_together_are_refused() {
     refusal(|m| _ = m.node_tags.pop(), &["node tags, found"]);

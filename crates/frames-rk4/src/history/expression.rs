@@ -9,7 +9,7 @@ use std::fmt;
 use std::sync::Arc;
 
 use crate::error::SetupError;
-pub(crate) use functions::function_names;
+use functions::function_names;
 use law::Law;
 
 /// The longest formula, in bytes: sums and products are evaluated by recursion, one level a term.
@@ -44,9 +44,9 @@ impl Expression {
         if text.len() > LONGEST {
             return Err(SetupError::LongExpression { found: text.len(), most: LONGEST });
         }
-        let law = syntax::read(text).map_err(|syntax::Refusal { byte, problem }| {
+        let law = syntax::read(text).map_err(|syntax::Refusal { byte, problem, cure }| {
             let position = text.char_indices().take_while(|(at, _)| *at < byte).count() + 1;
-            SetupError::Expression { text: text.to_owned(), position, problem }
+            SetupError::Expression { text: text.to_owned(), position, problem, cure }
         })?;
         Ok(Self { text: text.into(), corners, law: Arc::new(law) })
     }

@@ -70,15 +70,22 @@ fn formulas_that_are_none_with_the_place() {
         ("sin(t) + omega*t", 10, "`omega` is not known"),
         ("foo(t)", 1, "`foo` is not known"),
         ("2*x + y", 3, "`x` is not known"),
-        ("T", 1, "`T` is not known"),
+        ("T", 1, "`T` is not known; write t"),
         ("log(t)", 1, "`log` means two things; write ln or log10"),
         ("1 + t^2^3", 8, "a power of a power"),
         ("t^-2^2", 5, "a power of a power"),
-        ("2*π*t", 3, "`π` is not known"),
+        ("2*π*t", 3, "`π` is not known; write pi"),
         ("2 * \0", 5, "`\\0` is not known"),
-        ("t > 1", 3, "`>` is not known"),
+        ("t > 1", 3, "`>` is not known; a formula has no conditions"),
         ("3!", 2, "`!` is not known"),
-        ("t**2", 3, "`*` cannot stand here"),
+        ("t**2", 2, "`**` is not an operator; write a power with ^"),
+        ("t*", 3, "it ends too early"),
+        ("2 * * t", 5, "`*` cannot stand here"),
+        ("t²", 2, "`²` is not known; write a power with ^"),
+        ("Sin(t)", 1, "`Sin` is not known; write sin, in small letters"),
+        ("np.sin(t)", 1, "write functions without a module"),
+        ("if(t, 1, 0)", 1, "a formula has no conditions"),
+        ("1 − t", 3, "the minus sign of the keyboard"),
         ("t)", 2, "`)` cannot stand here"),
         ("()", 2, "`)` cannot stand here"),
         ("", 1, "it ends too early"),
@@ -89,27 +96,31 @@ fn formulas_that_are_none_with_the_place() {
         ("1e999", 1, "`1e999` is too large"),
         ("2 3", 3, "a number right after a factor; write `*` between them"),
         ("t 2", 3, "a number right after a factor; write `*` between them"),
-        ("sin t", 1, "`sin` needs parentheses after it, as in sin(t)"),
+        ("sin t", 1, "`sin` needs parentheses after it; write them, as in sin(t)"),
         ("2 + sin(1, 2)", 5, "`sin` takes one argument, found 2"),
         ("atan2(t)", 1, "`atan2` takes two arguments, found 1"),
         ("hypot(t, 1, 2)", 1, "`hypot` takes two arguments, found 3"),
         ("max()", 5, "`)` cannot stand here"),
-        ("1,5*t", 2, "decimals have a point"),
-        ("(1, 2)", 3, "decimals have a point"),
+        ("1,5*t", 2, "decimals with a point"),
+        ("(1, 2)", 3, "decimals with a point"),
     ];
     for (text, place, what) in cases {
         match Expression::new(text, vec![]) {
-            Err(SetupError::Expression { text: found, position, problem }) => {
-                assert!(found == text && position == place && problem.contains(what), "{text}: {position} {problem}");
+            Err(SetupError::Expression { text: found, position, problem, cure }) => {
+                let said = format!("{problem}; {cure}");
+                assert!(found == text && position == place && said.contains(what), "{text}: {position} {said}");
             }
             other => panic!("{text}: {other:?}"),
         }
     }
     let message = Expression::new("1 + omega", vec![]).unwrap_err().to_string();
     assert!(message.starts_with(
-        "the expression \"1 + omega\" at character 5: `omega` is not known; an expression has t, numbers"
+        "the expression \"1 + omega\" at character 5: `omega` is not known; a formula has the time t, numbers"
     ));
-    assert!(message.contains("sin, cos, tan, asin,") && message.ends_with("trunc, fract"), "{message}");
+    assert!(
+        message.contains("sin, cos, tan, asin,") && message.ends_with("fract; write other quantities as numbers"),
+        "{message}"
+    );
     assert!(matches!(Expression::new("t", vec![0.0, f64::NAN]), Err(SetupError::Value { .. })));
 }
 

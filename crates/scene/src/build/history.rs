@@ -3,6 +3,7 @@
 use frames_rk4::{Expression, SetupError, Table};
 
 use super::error::BuildError;
+use crate::document::join;
 use crate::history::{Formula, History, TablePoints};
 use crate::scene::Scene;
 
@@ -14,7 +15,12 @@ pub(super) fn history(scene: &Scene, key: &str, history: &History) -> Result<fra
             let cure = "write it so that it has a value at all times, e.g. without a division by zero";
             return scene.refuse(key, found, "finite numbers through the whole run", cure).into();
         }
-        scene.refuse(key, error.to_string(), "a history that can be evaluated", "correct it").into()
+        if let SetupError::Expression { position, problem, cure, .. } = error {
+            let found = format!("a formula in which {problem} (character {position})");
+            return scene.refuse(&join(key, "formula"), found, "a formula in the time t", cure).into();
+        }
+        let cure = "correct it; docs/scene.md has the rules of each kind of history";
+        scene.refuse(key, error.to_string(), "a history that can be evaluated", cure).into()
     };
     let made = if let History::Product { factors } = history {
         let factors = factors.iter().enumerate();

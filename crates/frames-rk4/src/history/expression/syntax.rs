@@ -19,10 +19,11 @@ use super::law::Law;
 /// overflow, which ends the program.
 const DEEPEST: usize = 100;
 
-/// Why a text is no formula, and at which byte.
+/// Why a text is no formula, at which byte, and what to write there.
 pub(super) struct Refusal {
     pub byte: usize,
     pub problem: String,
+    pub cure: String,
 }
 
 /// The formula of a text.
@@ -79,8 +80,8 @@ impl<'a> Reader<'a> {
         let negative = self.signs();
         let exponent = self.atom()?;
         if self.next() == Some('^') {
-            let problem = "a power of a power is read in two ways; put parentheses: (a^b)^c or a^(b^c)";
-            return Err(self.refusal(self.at, problem));
+            let cure = "put parentheses: (a^b)^c or a^(b^c)";
+            return Err(refusal(self.at, "a power of a power is read in two ways", cure));
         }
         let exponent = if negative { Law::unary(&NEGATIVE, exponent) } else { exponent };
         Ok(Law::binary(&POWER, base, exponent))
@@ -102,8 +103,8 @@ impl<'a> Reader<'a> {
 
     fn open(&mut self) -> Result<(), Refusal> {
         if self.depth == DEEPEST {
-            let problem = format!("it has more than {DEEPEST} parentheses within each other; write it flatter");
-            return Err(self.refusal(self.at, problem));
+            let problem = format!("it has more than {DEEPEST} parentheses within each other");
+            return Err(refusal(self.at, problem, "write it flatter"));
         }
         self.at += 1;
         self.depth += 1;
@@ -131,8 +132,8 @@ impl<'a> Reader<'a> {
         let found = &self.text[start..self.at];
         match found.parse::<f64>() {
             Ok(number) if number.is_finite() => Ok(Law::Number(number)),
-            Ok(_) => Err(self.refusal(start, format!("`{found}` is too large, above 1.8e308"))),
-            Err(_) => Err(self.refusal(start, format!("`{found}` is not a number"))),
+            Ok(_) => Err(refusal(start, format!("`{found}` is too large, above 1.8e308"), "write a smaller number")),
+            Err(_) => Err(refusal(start, format!("`{found}` is not a number"), "write it like 1.5 or 1.5e-3")),
         }
     }
 
@@ -144,14 +145,15 @@ impl<'a> Reader<'a> {
             "t" => return Ok(Law::Time),
             "pi" => return Ok(Law::Number(PI)),
             "e" => return Ok(Law::Number(E)),
-            "log" => return Err(self.refusal(start, "`log` means two things; write ln or log10")),
+            "log" => return Err(refusal(start, "`log` means two things", "write ln or log10")),
             _ => {}
         }
         let Some((_, function)) = FUNCTIONS.iter().find(|(known, _)| *known == name) else {
-            return Err(self.refusal(start, format!("`{name}` is not known")));
+            return Err(refusal(start, format!("`{name}` is not known"), unknown_name(name, self.next() == Some('.'))));
         };
         if self.next() != Some('(') {
-            return Err(self.refusal(start, format!("`{name}` needs parentheses after it, as in {name}(t)")));
+            let problem = format!("`{name}` needs parentheses after it");
+            return Err(refusal(start, problem, format!("write them, as in {name}(t)")));
         }
         self.open()?;
         let mut arguments = vec![self.sum()?];
@@ -160,7 +162,10 @@ impl<'a> Reader<'a> {
         }
         self.close()?;
         let found = arguments.len();
-        let takes = |expected: &str| Err(self.refusal(start, format!("`{name}` takes {expected}, found {found}")));
+        let takes = |expected: &str| {
+            let cure = format!("give `{name}` {expected}, with commas between several");
+            Err(refusal(start, format!("`{name}` takes {expected}, found {found}"), cure))
+        };
         let mut arguments = arguments.into_iter();
         match (function, arguments.next(), arguments.next(), arguments.next()) {
             (Function::Unary(function), Some(x), None, _) => Ok(Law::unary(function, x)),
@@ -212,19 +217,60 @@ impl<'a> Reader<'a> {
 
     /// What is said of the next character where it cannot stand.
     fn unexpected(&mut self) -> Refusal {
-        let problem = match self.next() {
-            None if self.depth > 0 => "it ends too early: `)` is missing".to_owned(),
-            None => "it ends too early".to_owned(),
-            Some(',') => "`,` stands only between the arguments of a function; decimals have a point".to_owned(),
-            Some('0'..='9' | '.') => "a number right after a factor; write `*` between them".to_owned(),
-            Some(c @ ('+' | '-' | '*' | '/' | '%' | '^' | '(' | ')')) => format!("`{c}` cannot stand here"),
-            Some(c) => format!("`{}` is not known", c.escape_debug()),
+        let next = self.next();
+        if next == Some('*') && self.text[..self.at].ends_with('*') {
+            return refusal(self.at - 1, "`**` is not an operator", "write a power with ^, as in t^2");
+        }
+        let (problem, cure) = match next {
+            None if self.depth > 0 => ("it ends too early: `)` is missing".to_owned(), "close each `(`"),
+            None => ("it ends too early".to_owned(), "complete it, e.g. sin(2*pi*50*t)"),
+            Some(',') => (
+                "`,` stands only between the arguments of a function".to_owned(),
+                "write decimals with a point, as in 2.5",
+            ),
+            Some('0'..='9' | '.') => ("a number right after a factor".to_owned(), "write `*` between them"),
+            Some(c @ ('+' | '-' | '*' | '/' | '%' | '^' | '(' | ')')) => {
+                (format!("`{c}` cannot stand here"), "write a number, t, a function or `(` before it, or remove it")
+            }
+            Some(c) => (format!("`{}` is not known", c.escape_debug()), unknown_character(c)),
         };
-        self.refusal(self.at, problem)
+        refusal(self.at, problem, cure)
     }
+}
 
-    fn refusal(&self, byte: usize, problem: impl Into<String>) -> Refusal {
-        Refusal { byte, problem: problem.into() }
+fn refusal(byte: usize, problem: impl Into<String>, cure: impl Into<String>) -> Refusal {
+    Refusal { byte, problem: problem.into(), cure: cure.into() }
+}
+
+/// What to write in place of a name that is not known; it may be that of a module.
+fn unknown_name(name: &str, is_module: bool) -> String {
+    let small = name.to_lowercase();
+    let same =
+        ["t", "pi", "e"].into_iter().chain(FUNCTIONS.iter().map(|(known, _)| *known)).find(|known| *known == small);
+    match (same, small.as_str()) {
+        (Some(same), _) => format!("write {same}, in small letters"),
+        _ if is_module => "write functions without a module, as in sin(t)".to_owned(),
+        (None, "if" | "heaviside" | "h" | "step" | "where" | "and" | "or") => CONDITIONS.to_owned(),
+        _ => format!(
+            "a formula has the time t, numbers, pi and e, + - * / % ^ and parentheses, and the functions {}; write other \
+             quantities as numbers",
+            super::function_names()
+        ),
+    }
+}
+
+const CONDITIONS: &str = "a formula has no conditions: use a history of kind `step`, `ramp`, `half-sine` or `table`, or a \
+                          `product` of such with a formula";
+
+fn unknown_character(c: char) -> &'static str {
+    match c {
+        '<' | '>' | '=' | '?' | '!' | '&' | '|' => CONDITIONS,
+        '²' | '³' => "write a power with ^, as in t^2",
+        'π' => "write pi",
+        '·' | '×' | '∙' | '⋅' => "write a product with *, as in 2*t",
+        '−' | '–' | '—' => "write the minus sign of the keyboard, -",
+        '[' | '{' | ']' | '}' => "write parentheses, ( and )",
+        _ => "remove it: a formula has t, numbers, names, + - * / % ^ , and parentheses",
     }
 }
 
