@@ -109,6 +109,10 @@ python profile="release":
         echo "python: the wheel needs a library that a machine may not have" >&2
         exit 1
     fi
+    if [ {{profile}} = release ] && readelf --sections --wide "$library" | grep -q '\.debug_info'; then
+        echo "python: the library in the wheel has debugging information" >&2
+        exit 1
+    fi
     .tools/wheel/bin/pip install -q pytest matplotlib pandas pandas-stubs xarray h5py mypy
     FLEXFRAME="$built/flexframe" FLEXFRAME_EXAMPLES="$built/examples" FLEXFRAME_FIGURES="$PWD/out/python" \
         .tools/wheel/bin/python -m pytest -q -p no:cacheprovider crates/python

@@ -6,16 +6,17 @@ use std::process::ExitCode;
 use std::time::Duration;
 
 use clap::{Args, CommandFactory, Parser, Subcommand};
-use flexframe::animation::{AnimationSettings, MOST_FRAMES, animate};
+use flexframe::animation::{AnimationSettings, MOST_FRAMES, animate, animate_results};
 use flexframe::campbell::{CampbellError, CampbellSettings, Speeds, campbell};
 use flexframe::cost::{self, CostSettings};
 use flexframe::export::{self, ExportRows, Exported, Motion};
 use flexframe::failure::{Details, Failure, FailureReport, Kind};
 use flexframe::figures::View;
 use flexframe::fmu::{self, FmuSettings};
+use flexframe::given_file::GivenFile;
 use flexframe::run::{RunProgress, RunSettings};
 use flexframe::sweep::{Shard, SweepSettings};
-use flexframe::{advise, html_report, mode_shapes, modes, new_scene, paper, run, sweep};
+use flexframe::{advise, html_report, mode_shapes, modes, new_scene, paper, plausible, run, sweep};
 use scene::{BuildError, Cache, Flexible, ImportSettings, Scene, SceneError};
 
 use crate::cli_error::CliError;
@@ -53,7 +54,7 @@ enum Command {
         /// The mesh file.
         #[arg(value_name = "MESH")]
         mesh: PathBuf,
-        /// The scene file to write [default: the mesh file's name with .toml].
+        /// The scene file to write, or - for standard output [default: the mesh file's name with .toml].
         #[arg(short, long, value_name = "FILE")]
         output: Option<PathBuf>,
         /// Largest size of an element, where geometry is meshed.
@@ -125,7 +126,7 @@ enum Command {
         #[command(flatten)]
         scene: SceneArgs,
         /// Number of flexible modes, instead of the scene's.
-        #[arg(short = 'n', long, value_name = "N")]
+        #[arg(short = 'n', long, value_name = "N", value_parser = mode_count, allow_hyphen_values = true)]
         flexible: Option<usize>,
         /// Folder for a picture of the mode shapes (SVG, PDF and PNG) [default: no picture].
         #[arg(short, long, value_name = "DIR")]
@@ -170,7 +171,7 @@ enum Command {
         )]
         orders: Vec<f64>,
         /// Number of flexible modes, instead of the scene's.
-        #[arg(short = 'n', long, value_name = "N")]
+        #[arg(short = 'n', long, value_name = "N", value_parser = mode_count, allow_hyphen_values = true)]
         flexible: Option<usize>,
         /// Folder for campbell.csv, critical_speeds.csv and the diagram [default: out/<name of the scene file>].
         #[arg(short, long, value_name = "DIR")]
@@ -206,7 +207,7 @@ enum Command {
         /// The results file, such as out/plate/plate.h5, or the unfinished one of a run.
         #[arg(value_name = "FILE")]
         file: PathBuf,
-        /// Table of the columns, with units in the heads: a file that ends in .csv, or a folder.
+        /// Table of the columns, with units in the heads: a file that ends in .csv, a folder, or - for standard output.
         #[arg(long, value_name = "FILE|DIR", group = "what")]
         csv: Option<PathBuf>,
         /// Columns of the table, or what their paths begin with, such as energy,points/P1 [default: all].
@@ -242,7 +243,7 @@ enum Command {
         /// The results file; an unfinished one is shown up to its last row, and marked.
         #[arg(value_name = "FILE")]
         file: PathBuf,
-        /// The page to write [default: the results file's name with .html].
+        /// The page to write, or - for standard output [default: the results file's name with .html].
         #[arg(short, long, value_name = "FILE")]
         output: Option<PathBuf>,
     },
@@ -279,9 +280,9 @@ enum Command {
         /// The shell.
         shell: clap_complete::Shell,
     },
-    /// Run a scene and draw it as an animated GIF.
+    /// Draw a scene or a results file as an animated GIF.
     ///
-    /// Colours are the displacement by deformation, from 0 to the largest of the frames that are shown. A warning says
+    /// A scene is run for it; of a results file (.h5) each frame is a row, and the mesh is looked for where it was. Colours are the displacement by deformation, from 0 to the largest of the frames that are shown. A warning says
     /// where the frames are too few to show how the body turns.
     Animate {
         #[command(flatten)]
@@ -295,7 +296,7 @@ enum Command {
         /// Time of the first frame [default: 0].
         #[arg(long, value_name = "TIME", value_parser = finite, allow_hyphen_values = true)]
         from: Option<f64>,
-        /// Time of the last frame [default: the end of the scene].
+        /// Time of the last frame [default: the end of the scene or of the results].
         #[arg(long, value_name = "TIME", value_parser = finite, allow_hyphen_values = true)]
         to: Option<f64>,
         /// From where the body is seen: from x, y or z, or by the angles of the viewer in degrees, about z from x and above
@@ -368,13 +369,25 @@ fn execute(cli: Cli, json: bool) -> Result<(), Box<dyn Failure>> {
 }
 
 fn command(cli: Cli, json_errors: bool, cache: &Cache) -> Result<(), Box<dyn Failure>> {
-    let read = |input: SceneInput| input.read(cache);
+    let read = |input: SceneInput| -> Result<Scene, Box<dyn Failure>> {
+        let scene = input.read(cache)?;
+        if !json_errors {
+            output::doubts(plausible::doubts_of_scene(&scene));
+        }
+        Ok(scene)
+    };
     let signals = Signals::listen(json_errors).map_err(CliError::Signals)?;
     threads::start(cli.threads)?;
     let mut bar = Bar::new(json_errors);
     match cli.command {
         Command::New { mesh, output, mesh_size, raise_order, overwrite } => {
             let settings = ImportSettings { mesh_size, raise_order, trust_geometry: cli.trust_geometry };
+            GivenFile::expect(&mesh, &[GivenFile::Mesh], "a mesh or geometry")?;
+            if output.as_deref().is_some_and(output::is_standard) {
+                let (scene, notes) = new_scene::scene_text(&mesh, &settings)?;
+                output::doubts(notes);
+                return Ok(output::text(&scene)?);
+            }
             let (scene, notes) = new_scene::new_scene(&mesh, &settings, output.as_deref(), overwrite)?;
             output::list(&[scene])?;
             notes.iter().try_for_each(|note| output::warn(Some(note)))
@@ -385,6 +398,7 @@ fn command(cli: Cli, json_errors: bool, cache: &Cache) -> Result<(), Box<dyn Fai
             Ok(output::written(std::io::stdout().write_all(&script))?)
         }
         Command::Run { scene: SceneArgs { scene, json }, output, files, solver } => {
+            output::require_file("--output", output.as_deref())?;
             let mut scene = read(scene)?;
             if let Some(to) = solver.take(&mut scene, signals.slepc())? {
                 return write_only(&scene, &to, bar);
@@ -398,6 +412,7 @@ fn command(cli: Cli, json_errors: bool, cache: &Cache) -> Result<(), Box<dyn Fai
             output::print(&report, json)
         }
         Command::Resume { file, json } => {
+            GivenFile::expect(&file, &[GivenFile::Results], "the unfinished results file of a run")?;
             let (_, _, report) = run::resume(&file, &settings(&signals, false, cache), |p| {
                 signals.heard(p);
                 bar.run(p);
@@ -406,6 +421,7 @@ fn command(cli: Cli, json_errors: bool, cache: &Cache) -> Result<(), Box<dyn Fai
             output::print(&report, json)
         }
         Command::Reduce { scene: SceneArgs { scene, json }, output, solver, matrices, stress } => {
+            output::require_file("--output", Some(&output))?;
             let mut scene = read(scene)?;
             if let Some(to) = solver.take(&mut scene, signals.slepc())? {
                 return write_only(&scene, &to, bar);
@@ -416,12 +432,17 @@ fn command(cli: Cli, json_errors: bool, cache: &Cache) -> Result<(), Box<dyn Fai
             if json { Ok(()) } else { output::list(&[output]) }
         }
         Command::Fmu { scene: SceneArgs { scene, json }, output, library } => {
+            output::require_file("--output", Some(&output))?;
             let scene = scene.read_scene_or_body(cache)?;
+            if !json {
+                output::doubts(plausible::doubts_of_scene(&scene));
+            }
             let report = fmu::pack(&scene, &output, &FmuSettings { library }, |p| bar.build(p))?;
             drop(bar);
             output::print(&report, json)
         }
         Command::Modes { scene: SceneArgs { scene, json }, flexible, output, solver } => {
+            output::require_file("--output", output.as_deref())?;
             let mut scene = read(scene)?;
             if let Some(count) = flexible {
                 scene.modes.flexible = Flexible::Count(count);
@@ -462,6 +483,7 @@ fn command(cli: Cli, json_errors: bool, cache: &Cache) -> Result<(), Box<dyn Fai
             flexible,
             output,
         } => {
+            output::require_file("--output", output.as_deref())?;
             let mut scene = read(scene)?;
             if let Some(count) = flexible {
                 scene.modes.flexible = Flexible::Count(count);
@@ -473,6 +495,7 @@ fn command(cli: Cli, json_errors: bool, cache: &Cache) -> Result<(), Box<dyn Fai
             output::print(&report, json)
         }
         Command::Paper { scene: SceneArgs { scene, json }, output, files } => {
+            output::require_file("--output", output.as_deref())?;
             let scene = read(scene)?;
             let settings = settings(&signals, files.overwrite, cache);
             let report = paper::reproduce(&scene, &folder(&scene, output), &settings, |p| {
@@ -483,6 +506,7 @@ fn command(cli: Cli, json_errors: bool, cache: &Cache) -> Result<(), Box<dyn Fai
             output::print(&report, json)
         }
         Command::Cost { scene: SceneArgs { scene, json }, output, target, patience } => {
+            output::require_file("--output", output.as_deref())?;
             let scene = read(scene)?;
             let settings = CostSettings { target, ..CostSettings::with_patience(patience) };
             let report = cost::price_list(&scene, &folder(&scene, output), settings, |p| bar.cost(p))?;
@@ -490,9 +514,19 @@ fn command(cli: Cli, json_errors: bool, cache: &Cache) -> Result<(), Box<dyn Fai
             output::print(&report, json)
         }
         Command::Export { file, csv, columns, vtkhdf, vtu, modes, volume, from, to, every, overwrite } => {
+            GivenFile::expect(&file, &[GivenFile::Results], RESULTS)?;
+            output::require_file("--vtkhdf", vtkhdf.as_deref())?;
+            output::require_file("--vtu", vtu.as_deref())?;
+            output::require_file("--modes", modes.as_deref())?;
             let rows = ExportRows { from, to, every: usize::try_from(every).unwrap_or(usize::MAX), overwrite };
             let mut done = Vec::new();
-            if let Some(csv) = csv {
+            let to_standard = csv.as_deref().is_some_and(output::is_standard);
+            if to_standard {
+                let (table, warning) = export::csv_text(&file, &columns, &rows)?;
+                output::doubts(warning);
+                output::text(&table)?;
+            }
+            if let Some(csv) = csv.filter(|_| !to_standard) {
                 done.push(export::export_csv(&file, &csv, &columns, &rows)?);
             }
             if vtkhdf.is_some() || vtu.is_some() || modes.is_some() {
@@ -516,12 +550,20 @@ fn command(cli: Cli, json_errors: bool, cache: &Cache) -> Result<(), Box<dyn Fai
             Ok(())
         }
         Command::Report { file, output } => {
+            GivenFile::expect(&file, &[GivenFile::Results], RESULTS)?;
+            if output.as_deref().is_some_and(output::is_standard) {
+                let page = html_report::page(&file, cache, |p| bar.build(p))?;
+                drop(bar);
+                return Ok(output::text(&page)?);
+            }
             let output = output.unwrap_or_else(|| file.with_extension("html"));
             html_report::write(&file, &output, cache, |p| bar.build(p))?;
             drop(bar);
             output::list(&[output])
         }
         Command::Sweep { sweep: file, output, shard, merge, slurm, overwrite, json } => {
+            GivenFile::expect(&file, &[GivenFile::Sweep], "the file of a sweep (docs/cli.md)")?;
+            output::require_file("--output", output.as_deref())?;
             let output = output.unwrap_or_else(|| {
                 Path::new("out").join(file.file_stem().unwrap_or("sweep".as_ref())).with_extension("h5")
             });
@@ -541,10 +583,13 @@ fn command(cli: Cli, json_errors: bool, cache: &Cache) -> Result<(), Box<dyn Fai
             output::print(&report, json)
         }
         Command::Animate { scene, output, frames, from, to, view, magnify } => {
-            let scene = read(scene)?;
+            output::require_file("--output", Some(&output))?;
             let view = view.unwrap_or_default();
             let settings = AnimationSettings { frames, magnification: magnify, from, to, view };
-            let warning = animate(&scene.without_rows(), &output, settings, |p| bar.run(p))?;
+            let warning = match scene.results()? {
+                Some(file) => animate_results(file, &output, settings, cache, |p| bar.run(p))?,
+                None => animate(&read(scene)?.without_rows(), &output, settings, |p| bar.run(p))?,
+            };
             drop(bar);
             output::list(&[output])?;
             output::warn(warning.as_deref())
@@ -564,6 +609,15 @@ fn exit_codes() -> String {
     let line = |kind: &Kind| format!("\n  {:>3}  {}", kind.exit_code(), kind.meaning());
     let codes: String = Kind::ALL.iter().map(line).collect();
     format!("Exit codes:\n    0  done{codes}")
+}
+
+/// What export and report take.
+const RESULTS: &str = "a results file of `flexframe run`";
+
+/// A number of modes.
+fn mode_count(text: &str) -> Result<usize, String> {
+    let count = text.parse().ok().filter(|count| *count > 0);
+    count.ok_or_else(|| "expected a whole number, 1 or more, such as 10".to_owned())
 }
 
 /// A finite number.

@@ -32,7 +32,7 @@ pub enum CliError {
     )]
     Output(#[source] io::Error),
     /// The summary has no form in JSON.
-    #[error("the summary cannot be written as JSON: {0}")]
+    #[error("the summary cannot be written as JSON: {0}\n = leave --json out, and please report this")]
     Json(#[from] serde_json::Error),
 }
 

@@ -2,7 +2,7 @@
 
 use std::fmt::Display;
 use std::io::{self, ErrorKind, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use flexframe::failure::{Failure, FailureReport};
 use scene::CacheNotes;
@@ -14,6 +14,40 @@ use crate::cli_error::CliError;
 pub fn print<R: Serialize + Display>(report: &R, json: bool) -> Result<(), Box<dyn Failure>> {
     let text = if json { serde_json::to_string_pretty(report).map_err(CliError::from)? } else { report.to_string() };
     Ok(line(&text)?)
+}
+
+/// Stands for standard output, where a file is written that is text.
+const STANDARD_OUTPUT: &str = "-";
+
+/// Whether a file is to go to standard output.
+pub fn is_standard(file: &Path) -> bool {
+    file == Path::new(STANDARD_OUTPUT)
+}
+
+/// Refuses standard output for what is not a text: a folder, or a file of bytes.
+pub fn require_file(option: &'static str, file: Option<&Path>) -> Result<(), CliError> {
+    match file {
+        Some(file) if is_standard(file) => Err(CliError::Option {
+            option,
+            found: "-, which stands for standard output".to_owned(),
+            expected: "the name of a file or folder: only texts can go to standard output".to_owned(),
+            cure: "name it (./- is a file of that name)".to_owned(),
+        }),
+        _ => Ok(()),
+    }
+}
+
+/// Prints a text as it is.
+pub fn text(text: &str) -> Result<(), CliError> {
+    written(write!(io::stdout(), "{text}"))
+}
+
+/// Tells on standard error what is doubtful, before the work.
+pub fn doubts(doubts: impl IntoIterator<Item = impl Display>) {
+    for doubt in doubts {
+        // Where it cannot be written, nothing is lost: the summary has it, too.
+        let _ = writeln!(io::stderr(), "warning: {doubt}");
+    }
 }
 
 /// Prints the names of files.

@@ -13,6 +13,8 @@ use memory::Bytes;
 use modal::{EnginePhase, Forecast, Progress};
 use scene::BuildProgress;
 
+use crate::output;
+
 /// Work shorter than this needs no bar.
 const PATIENCE: Duration = Duration::from_secs(1);
 
@@ -26,21 +28,34 @@ pub struct Bar {
     bar: ProgressBar,
     /// Whether the bar has been given to the terminal, if there is one.
     is_given: bool,
+    /// Whether nothing but errors goes to standard error.
+    is_silent: bool,
     /// Where there is no terminal: lines, and the time from the start at which the next one is due.
     next_line: Option<Duration>,
 }
 
 impl Bar {
-    /// `silent`: without a terminal, nothing is shown. (Scripts that ask for JSON read errors from the same stream.)
-    pub fn new(silent: bool) -> Self {
-        let lines = !silent && !io::stderr().is_terminal();
+    /// `is_silent`: without a terminal, nothing is shown. (Scripts that ask for JSON read errors from the same stream.)
+    pub fn new(is_silent: bool) -> Self {
+        let lines = !is_silent && !io::stderr().is_terminal();
         let next_line = lines.then_some(LINE_INTERVAL);
-        Self { started: Instant::now(), phase: String::new(), bar: ProgressBar::hidden(), is_given: false, next_line }
+        Self {
+            started: Instant::now(),
+            phase: String::new(),
+            bar: ProgressBar::hidden(),
+            is_given: false,
+            is_silent,
+            next_line,
+        }
     }
 
     pub fn build(&mut self, progress: BuildProgress) {
         match progress {
             BuildProgress::Mesh => self.show("reading the mesh", None),
+            BuildProgress::Doubt(doubt) if !self.is_silent => {
+                self.bar.suspend(|| output::doubts([doubt]));
+            }
+            BuildProgress::Doubt(_) => {}
             BuildProgress::Assembly => self.show("assembling", None),
             BuildProgress::Modes(Progress::Ordering) => self.show("ordering the unknowns", None),
             BuildProgress::Modes(Progress::Factorizing(forecast)) => {

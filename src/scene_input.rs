@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use flexframe::failure::Failure;
 use flexframe::fmu::scene_of_body;
+use flexframe::given_file::GivenFile;
 use scene::{AssignError, Cache, Scene, assign, text_from, text_of};
 use toml::Value;
 
@@ -33,9 +34,24 @@ impl SceneInput {
         if !self.scene.extension().is_some_and(|extension| extension == "h5" || extension == "hdf5") {
             return self.read(cache);
         }
+        GivenFile::expect(&self.scene, &[GivenFile::Scene, GivenFile::Body], "a scene file or a body file")?;
         let scene = scene_of_body(&self.scene, cache)?;
         let text = assigned(&scene.source, &self.set)?;
         Ok(Scene { cache: cache.clone(), ..Scene::parse(&text, &self.scene)? })
+    }
+
+    /// The results file that was given in the place of a scene, if one was. It has a scene of its own, which is not to be changed.
+    pub fn results(&self) -> Result<Option<&Path>, CliError> {
+        match (GivenFile::of(&self.scene), &self.set[..]) {
+            (Some(GivenFile::Results), []) => Ok(Some(&self.scene)),
+            (Some(GivenFile::Results), _) => Err(CliError::Option {
+                option: "--set",
+                found: "a results file, whose motion has been computed".to_owned(),
+                expected: "a scene".to_owned(),
+                cure: "leave --set out, or give the scene file".to_owned(),
+            }),
+            _ => Ok(None),
+        }
     }
 
     /// Reads the scene, sets the values, and checks it.
@@ -44,6 +60,7 @@ impl SceneInput {
             let path = PathBuf::from(NAME);
             (text_from(std::io::stdin().lock(), &path)?, path)
         } else {
+            GivenFile::expect(&self.scene, &[GivenFile::Scene], "a scene file")?;
             (text_of(&self.scene)?, self.scene)
         };
         let text = assigned(&text, &self.set)?;

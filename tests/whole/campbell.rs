@@ -254,5 +254,5 @@ fn what_is_no_axis_no_range_of_speeds_and_no_order_is_refused() {
     refused("z", "0:inf:5", &[], &["0 ≤ start < end"]);
     refused("z", "0:200:1", &[], &["a count of 2"]);
     refused("z", "0:200:5", &["--orders", "1,-2"], &["--orders", "positive"]);
-    refused("z", "0:200:5", &["-n", "0"], &["--flexible", "without flexible modes", "keep flexible modes"]);
+    refused("z", "0:200:5", &["-n", "0"], &["--flexible", "a whole number, 1 or more"]);
 }

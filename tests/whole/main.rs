@@ -17,6 +17,7 @@ mod library;
 mod matrices;
 mod memory;
 mod new_scene;
+mod newcomer;
 mod peak_memory;
 mod reactions;
 mod scene_input;

@@ -1,4 +1,4 @@
-//! `flexframe animate`: a scene as a moving picture.
+//! `flexframe animate`: a scene or a results file as a moving picture.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::path::{Path, PathBuf};
@@ -6,11 +6,14 @@ use std::path::{Path, PathBuf};
 use figures::{Animation, FigureError, Frame, View};
 use frames_rk4::{Observation, Reached, Simulation, StepError};
 use nalgebra::Vector3;
-use scene::{BuildError, Model, Scene};
+use rigid_kin::Attitude;
+use scene::{BuildError, Cache, Meshed, Model, Scene};
 
+use crate::export::ExportError;
 use crate::modes::require_surface;
+use crate::reopened::Reopened;
 use crate::report::quantity;
-use crate::run::{RunError, RunProgress};
+use crate::run::{RunError, RunProgress, metadata};
 use crate::surface::Surface;
 
 /// An animation has no more frames.
@@ -76,6 +79,9 @@ pub enum AnimationError {
         /// End of the run.
         end: f64,
     },
+    /// The results file cannot be shown.
+    #[error(transparent)]
+    Export(#[from] ExportError),
     /// The picture could not be drawn.
     #[error(transparent)]
     Figure(#[from] FigureError),
@@ -92,60 +98,152 @@ pub fn animate(
     settings: AnimationSettings,
     mut progress: impl FnMut(RunProgress),
 ) -> Result<Option<String>, AnimationError> {
-    if !path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("gif")) {
-        return Err(AnimationError::NotGif { path: path.to_owned() });
-    }
+    require_gif(path)?;
     require_surface(scene).map_err(|error| RunError::from(BuildError::from(error)))?;
-    let end = scene.time.end;
-    let (from, to) = (settings.from.unwrap_or(0.0), settings.to.unwrap_or(end));
-    if !(0.0 <= from && from < to && to <= end) {
-        return Err(AnimationError::Times { from, to, end });
-    }
+    let [from, to] = settings.times(scene.time.end)?;
     let model = Model::build(scene, |p| progress(RunProgress::Build(p))).map_err(RunError::from)?;
     let mut simulation =
         model.start(scene).map_err(|source| RunError::Setup { scene: scene.path.clone(), source: Box::new(source) })?;
-    let Some(meshed) = &model.meshed else {
-        return Err(AnimationError::NoMesh { scene: scene.path.clone() });
-    };
     simulation.keep_last_step();
-    let surface = Surface::new(&meshed.mesh);
     let last = settings.frames.clamp(2, MOST_FRAMES) - 1;
-    let time_unit = &scene.units.time;
-    let decimals = decimals((to - from) / last as f64);
-    let mut frames = Vec::new();
-    let mut fastest = 0.0_f64;
+    let mut picture = Picture::new(scene, &model, settings, (to - from) / last as f64)
+        .ok_or_else(|| AnimationError::NoMesh { scene: scene.path.clone() })?;
     for frame in 0..=last {
         let part = frame as f64 / last as f64;
         let due = from * (1.0 - part) + to * part;
         let now = observed_at(&mut simulation, due)
             .map_err(|source| AnimationError::Step { scene: scene.path.clone(), source })?;
-        fastest = fastest.max(now.omega_body.norm());
-        let u = surface.displacements(meshed, &model.coordinates(&now.modal_displacement));
-        let drawn: Vec<Vector3<f64>> = u.iter().map(|u| u * settings.magnification).collect();
-        frames.push(Frame {
-            points: surface.placed(&model, &now.origin_global, &now.attitude, &drawn),
-            values: u.iter().map(Vector3::norm).collect(),
-            caption: format!("t = {due:.decimals$} {time_unit}"),
-        });
+        picture.add(due, &now.origin_global, &now.attitude, &now.modal_displacement, &now.omega_body);
         progress(RunProgress::Motion(simulation.time() / to));
     }
-    let factor = match settings.magnification {
-        1.0 => String::new(),
-        factor => format!(" (drawn {factor} times as large)"),
-    };
-    Animation {
-        title: scene.title.clone(),
-        value_label: format!("displacement by deformation, {}{factor}", scene.units.length),
-        triangles: &surface.triangles,
-        edges: &surface.edges,
-        frames: &frames,
-        frame_milliseconds: 50,
-        view: settings.view,
-        ground: true,
-        traced_point: None,
+    picture.save(path)
+}
+
+/// Draws the rows of a results file, finished or not, as [`animate`] draws a scene. Each frame is a row: there are as many
+/// as asked for, or as there are rows. The mesh is looked for where it was.
+///
+/// # Errors
+/// [`AnimationError`].
+pub fn animate_results(
+    file: &Path,
+    path: &Path,
+    settings: AnimationSettings,
+    cache: &Cache,
+    mut progress: impl FnMut(RunProgress),
+) -> Result<Option<String>, AnimationError> {
+    require_gif(path)?;
+    let Reopened { results, scene, model } =
+        Reopened::open(file, cache, |p| progress(RunProgress::Build(p))).map_err(ExportError::from)?;
+    require_surface(&scene).map_err(|error| RunError::from(BuildError::from(error)))?;
+    if metadata(&scene, &model).body != results.metadata.body {
+        return Err(ExportError::Changed { path: file.to_owned() }.into());
     }
-    .save_gif(path)?;
-    Ok(aliased((to - from) / last as f64, last, fastest, time_unit))
+    let times = results.numbers("time").unwrap_or_default();
+    let [from, to] = settings.times(times.last().copied().unwrap_or_default())?;
+    let slack = 1e-9 * to;
+    let rows: Vec<usize> = (0..times.len()).filter(|row| (from - slack..=to + slack).contains(&times[*row])).collect();
+    let last = rows.len().min(settings.frames.clamp(2, MOST_FRAMES) as usize).saturating_sub(1);
+    if last == 0 {
+        let times = [times.first(), times.last()].map(|time| time.copied().unwrap_or_default());
+        return Err(ExportError::NoRows { path: file.to_owned(), times }.into());
+    }
+    let chosen: Vec<usize> = (0..=last).map(|frame| rows[(frame * (rows.len() - 1) + last / 2) / last]).collect();
+    let interval = chosen.windows(2).map(|pair| times[pair[1]] - times[pair[0]]).fold(0.0, f64::max);
+    let mut picture = Picture::new(&scene, &model, settings, interval)
+        .ok_or_else(|| AnimationError::NoMesh { scene: scene.path.clone() })?;
+    for (frame, row) in chosen.into_iter().enumerate() {
+        let history = |path: &str| results.table(path).and_then(|table| table.row(row)).unwrap_or_default();
+        let vector = |path: &str| Vector3::from_iterator(history(path).iter().copied().chain([0.0; 3]));
+        let attitude = history("attitude").try_into().ok().and_then(|wxyz| Attitude::from_wxyz(wxyz).ok());
+        let attitude = attitude.unwrap_or(Attitude::identity());
+        let (origin, omega) = (vector("origin"), vector("angular_velocity"));
+        picture.add(times[row], &origin, &attitude, history("modal/displacement"), &omega);
+        progress(RunProgress::Motion(frame as f64 / last as f64));
+    }
+    picture.save(path)
+}
+
+fn require_gif(path: &Path) -> Result<(), AnimationError> {
+    match path.extension() {
+        Some(ending) if ending.eq_ignore_ascii_case("gif") => Ok(()),
+        _ => Err(AnimationError::NotGif { path: path.to_owned() }),
+    }
+}
+
+impl AnimationSettings {
+    /// Times of the first and the last frame of a run to this end.
+    fn times(&self, end: f64) -> Result<[f64; 2], AnimationError> {
+        let (from, to) = (self.from.unwrap_or(0.0), self.to.unwrap_or(end));
+        if 0.0 <= from && from < to && to <= end {
+            Ok([from, to])
+        } else {
+            Err(AnimationError::Times { from, to, end })
+        }
+    }
+}
+
+/// A moving picture in the making.
+struct Picture<'a> {
+    scene: &'a Scene,
+    model: &'a Model,
+    meshed: &'a Meshed,
+    surface: Surface,
+    settings: AnimationSettings,
+    /// Longest time from frame to frame.
+    interval: f64,
+    frames: Vec<Frame>,
+    /// Largest spin at a frame.
+    fastest: f64,
+}
+
+impl<'a> Picture<'a> {
+    /// Without frames; `None` of a body without a mesh.
+    fn new(scene: &'a Scene, model: &'a Model, settings: AnimationSettings, interval: f64) -> Option<Self> {
+        let meshed = model.meshed.as_ref()?;
+        let surface = Surface::new(&meshed.mesh);
+        Some(Self { scene, model, meshed, surface, settings, interval, frames: Vec::new(), fastest: 0.0 })
+    }
+
+    fn add(
+        &mut self,
+        time: f64,
+        origin_global: &Vector3<f64>,
+        attitude: &Attitude,
+        modal_displacement: &[f64],
+        omega_body: &Vector3<f64>,
+    ) {
+        self.fastest = self.fastest.max(omega_body.norm());
+        let u = self.surface.displacements(self.meshed, &self.model.coordinates(modal_displacement));
+        let drawn: Vec<Vector3<f64>> = u.iter().map(|u| u * self.settings.magnification).collect();
+        let decimals = decimals(self.interval);
+        self.frames.push(Frame {
+            points: self.surface.placed(self.model, origin_global, attitude, &drawn),
+            values: u.iter().map(Vector3::norm).collect(),
+            caption: format!("t = {time:.decimals$} {}", self.scene.units.time),
+        });
+    }
+
+    /// Writes it. Returns a warning where the frames are too few to show the spin.
+    fn save(self, path: &Path) -> Result<Option<String>, AnimationError> {
+        let Self { scene, surface, settings, interval, frames, fastest, .. } = self;
+        let factor = match settings.magnification {
+            1.0 => String::new(),
+            factor => format!(" (drawn {factor} times as large)"),
+        };
+        Animation {
+            title: scene.title.clone(),
+            value_label: format!("displacement by deformation, {}{factor}", scene.units.length),
+            triangles: &surface.triangles,
+            edges: &surface.edges,
+            frames: &frames,
+            frame_milliseconds: 50,
+            view: settings.view,
+            ground: true,
+            traced_point: None,
+        }
+        .save_gif(path)?;
+        Ok(aliased(interval, frames.len() as u64 - 1, fastest, &scene.units.time))
+    }
 }
 
 /// The motion at a time that has not been passed yet.

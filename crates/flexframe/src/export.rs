@@ -9,7 +9,7 @@ mod rows;
 
 use std::path::PathBuf;
 
-pub use csv::export_csv;
+pub use csv::{csv_text, export_csv};
 pub use error::ExportError;
 pub use motion::Motion;
 pub use paraview::{export_modes, export_vtkhdf, export_vtu};

@@ -4,7 +4,7 @@ mod contents;
 
 use std::path::{Path, PathBuf};
 
-use report::ReportError;
+use report::{Report, ReportError};
 use scene::{BuildProgress, Cache};
 
 use crate::reopened::{ReopenError, Reopened};
@@ -43,6 +43,18 @@ pub fn write(
     cache: &Cache,
     progress: impl FnMut(BuildProgress),
 ) -> Result<(), HtmlReportError> {
+    Ok(report::write(&contents_of(file, cache, progress)?, path)?)
+}
+
+/// The same page as a text.
+///
+/// # Errors
+/// [`HtmlReportError`].
+pub fn page(file: &Path, cache: &Cache, progress: impl FnMut(BuildProgress)) -> Result<String, HtmlReportError> {
+    Ok(report::html(&contents_of(file, cache, progress)?)?)
+}
+
+fn contents_of(file: &Path, cache: &Cache, progress: impl FnMut(BuildProgress)) -> Result<Report, HtmlReportError> {
     let Reopened { results, scene, model } = Reopened::open(file, cache, progress)?;
     let changed = |what| HtmlReportError::Changed { results: file.to_owned(), what };
     let now = run::metadata(&scene, &model);
@@ -52,6 +64,5 @@ pub fn write(
     if now.body != results.metadata.body {
         return Err(changed("the body"));
     }
-    let contents = contents::contents(file, &results, &scene, &model).ok_or_else(|| changed("the set of columns"))?;
-    Ok(report::write(&contents, path)?)
+    contents::contents(file, &results, &scene, &model).ok_or_else(|| changed("the set of columns"))
 }

@@ -144,8 +144,18 @@ impl fmt::Display for ModesReport {
         }
         let [length, mass, _] = &self.units;
         writeln!(f, "  body   {}", size_and_mass(self.mesh.as_ref(), &self.body, length, mass))?;
-        writeln!(f, "\n  mode  frequency, {:<6}  damping  residual", self.frequency_unit)?;
         let body = &self.body;
+        if body.natural_frequencies.is_empty() {
+            let why = match self.mesh {
+                Some(_) => {
+                    "none, as the scene has it: `flexible = 0` in [modes], or `flexibility = false` in [effects]"
+                }
+                None => "none: a rigid body without a mesh has no natural frequencies",
+            };
+            writeln!(f, "  modes  {why}")?;
+        } else {
+            writeln!(f, "\n  mode  frequency, {:<6}  damping  residual", self.frequency_unit)?;
+        }
         for (k, (frequency, damping)) in body.natural_frequencies.iter().zip(&body.damping_ratios).enumerate() {
             let kind = body.kinds.get(k).copied().unwrap_or_default();
             let residual = body.residuals.get(k).map_or_else(|| kind.to_owned(), |r| format!("{r:.0e}"));

@@ -21,7 +21,7 @@ pub enum NewSceneError {
     #[error(transparent)]
     Assembly(#[from] AssemblyError),
     /// A file with the name of the scene is there.
-    #[error("{}: a file of this name is there; choose another one with -o, or replace it with --overwrite (not the mesh itself)", path.display())]
+    #[error("{}: a file of this name is there\n = choose another one with -o, or replace it with --overwrite (not the mesh itself)", path.display())]
     Exists {
         /// The file.
         path: PathBuf,
@@ -73,6 +73,10 @@ pub fn new_scene(
     scene: Option<&Path>,
     overwrite: bool,
 ) -> Result<(PathBuf, Vec<String>), NewSceneError> {
+    if !mesh.is_file() {
+        // Before a file is refused that has the name of the scene.
+        read_mesh(mesh, settings)?;
+    }
     let path = scene.map_or_else(|| mesh.with_extension("toml"), Path::to_owned);
     let is_mesh = path.canonicalize().is_ok_and(|path| mesh.canonicalize().is_ok_and(|mesh| mesh == path));
     if is_mesh || (path.exists() && !overwrite) {
@@ -83,6 +87,16 @@ pub fn new_scene(
     let text = text(&read.mesh, settings, &from_folder_of(&path, mesh))?;
     write_whole(&path, text).map_err(WriteError::of(&path))?;
     Ok((path, read.notes))
+}
+
+/// The same scene as a text, for whoever reads it from standard input in this folder; and what of the mesh was left out.
+///
+/// # Errors
+/// [`NewSceneError`].
+pub fn scene_text(mesh: &Path, settings: &ImportSettings) -> Result<(String, Vec<String>), NewSceneError> {
+    let read = read_mesh(mesh, settings)?;
+    let text = text(&read.mesh, settings, &from_folder_of(Path::new("stdin"), mesh))?;
+    Ok((text, read.notes))
 }
 
 /// How the scene names the mesh: relative to its folder where the mesh is in it, from the root otherwise.

@@ -1,9 +1,12 @@
 //! What is doubtful of a scene: values that can be computed with, but that no material has, mostly a slip of units; and what
 //! of its mesh file was left out.
+//!
+//! None of it is refused: labels of units are shown, not used, and a scene whose numbers fit each other is computed rightly
+//! whatever its labels say.
 
 use fem_tet10::{Material, Materials};
 use frames_rk4::Effect;
-use scene::{Body, Choice, Model, Scene, Units};
+use scene::{Body, Choice, Doubt, Load, Model, Scene, Units};
 
 use crate::units::UnitLabels;
 
@@ -12,10 +15,37 @@ const YOUNG_MODULI: [f64; 2] = [1e2, 2e12];
 /// Their densities, kg/m³: from aerogels to above osmium.
 const DENSITIES: [f64; 2] = [0.1, 3e4];
 
-/// What is doubtful of a scene, its mesh and its modes, in sentences. Moduli and densities are only judged where the labels of all units
-/// are known.
-pub(crate) fn doubts(scene: &Scene, model: &Model) -> Vec<String> {
+/// Speeds of sound √(E/ρ), m/s: below those of the softest gels, and above those of diamond and of graphite along its layers.
+const SPEEDS_OF_SOUND: [f64; 2] = [0.3, 3e4];
+/// Metals, ceramics and rocks begin at this density, kg/m³, and are never as slow as this, m/s (lead: 1190; rubbers that are
+/// filled with metal may be).
+const DENSE: f64 = 2500.0;
+const SLOWEST_DENSE: f64 = 300.0;
+/// Standard gravity, m/s², and its number in the usual units: m, cm, mm; in, ft.
+const GRAVITY: f64 = 9.80665;
+const DECIMAL_GRAVITIES: [f64; 3] = [9.81, 981.0, 9810.0];
+const IMPERIAL_GRAVITIES: [f64; 2] = [386.09, 32.174];
+
+/// What is doubtful of a scene by itself, in sentences: materials and gravity. They are only judged where the labels of all
+/// units are known.
+pub fn doubts_of_scene(scene: &Scene) -> Vec<String> {
     let mut doubts = Vec::new();
+    if let Body::Meshed(body) = &scene.body {
+        match &body.materials {
+            Materials::Uniform(material) => doubts.extend(of_material(material, "", &scene.units)),
+            Materials::ByGroup(each) => doubts.extend(
+                each.iter()
+                    .flat_map(|(group, material)| of_material(material, &format!(" of {group:?}"), &scene.units)),
+            ),
+        }
+    }
+    doubts.extend(scene.loads.iter().enumerate().filter_map(|(load, acts)| of_acceleration(load, acts, &scene.units)));
+    doubts
+}
+
+/// What is doubtful of a scene, its mesh and its modes, in sentences.
+pub(crate) fn doubts(scene: &Scene, model: &Model) -> Vec<String> {
+    let mut doubts = doubts_of_scene(scene);
     if let Body::Matrices(files) = &scene.body {
         let notes = model.meshed.iter().flat_map(|meshed| &meshed.mesh_notes);
         doubts.extend(notes.map(|note| format!("{}: {note}", files.stiffness.display())));
@@ -24,13 +54,8 @@ pub(crate) fn doubts(scene: &Scene, model: &Model) -> Vec<String> {
     if let Body::Meshed(body) = &scene.body {
         let notes = model.meshed.iter().flat_map(|meshed| &meshed.mesh_notes);
         doubts.extend(notes.map(|note| format!("{}: {note}", body.mesh.display())));
-        match &body.materials {
-            Materials::Uniform(material) => doubts.extend(of_material(material, "", &scene.units)),
-            Materials::ByGroup(each) => doubts.extend(
-                each.iter()
-                    .flat_map(|(group, material)| of_material(material, &format!(" of {group:?}"), &scene.units)),
-            ),
-        }
+        let of_mesh = model.meshed.iter().flat_map(|meshed| scene::doubts(scene, &meshed.mesh));
+        doubts.extend(of_mesh.map(|doubt: Doubt| doubt.to_string()));
     }
     let ratios = &model.damping_ratios()[..model.body.flexible() - model.static_shapes()];
     let over: Vec<f64> = ratios.iter().copied().filter(|ratio| *ratio > 1.0).collect();
@@ -69,7 +94,7 @@ fn of_material(material: &Material, of: &str, units: &Units) -> Vec<String> {
     let stress = (material.young_modulus, [-1, 1, -2], "Pa", YOUNG_MODULI, 2.1e11, "Young's modulus", labels.stress());
     let density = (material.density, [-3, 1, 0], "kg/m³", DENSITIES, 7850.0, "density", format!("{mass}/{length}³"));
     let doubt = |(value, powers, si, [least, most], steel, name, unit): (f64, _, _, [f64; 2], f64, _, String)| {
-        let factor = 10_f64.powi(labels.tens(powers)?);
+        let factor = labels.in_si(powers)?;
         let in_si = value * factor;
         (!(least..=most).contains(&in_si)).then(|| {
             format!(
@@ -79,11 +104,78 @@ fn of_material(material: &Material, of: &str, units: &Units) -> Vec<String> {
             )
         })
     };
-    [stress, density].into_iter().filter_map(doubt).collect()
+    let doubts: Vec<String> = [stress, density].into_iter().filter_map(doubt).collect();
+    if doubts.is_empty() { of_sound(material, of, &labels).into_iter().collect() } else { doubts }
+}
+
+/// The units in which handbooks have them, in SI.
+const UNITS_OF_STRESS: [(&str, f64); 5] =
+    [("Pa", 1.0), ("MPa", 1e6), ("GPa", 1e9), ("psi", 6894.757), ("ksi", 6.894757e6)];
+const UNITS_OF_DENSITY: [(&str, f64); 4] = [("kg/m³", 1.0), ("g/cm³", 1e3), ("Mg/mm³", 1e12), ("lb/in³", 27_679.9)];
+
+/// What is doubtful of the speed of sound of a material.
+fn of_sound(material: &Material, of: &str, labels: &UnitLabels<'_>) -> Option<String> {
+    let &Material { young_modulus, density, .. } = material;
+    let (pascals, kilograms) = (labels.in_si([-1, 1, -2])?, labels.in_si([-3, 1, 0])?);
+    let (e, rho) = (young_modulus * pascals, density * kilograms);
+    let [least, most] = SPEEDS_OF_SOUND;
+    let least = if rho > DENSE { SLOWEST_DENSE } else { least };
+    let speed = (e / rho).sqrt();
+    if (least..=most).contains(&speed) {
+        return None;
+    }
+    // The slip of one unit that explains it.
+    let is_common = |e: f64, rho: f64| {
+        (1e6..=1.2e12).contains(&e) && (10.0..=2.3e4).contains(&rho) && (300.0..=1.4e4).contains(&(e / rho).sqrt())
+    };
+    let modulus = UNITS_OF_STRESS.iter().find(|(_, unit)| is_common(young_modulus * unit, rho)).map(|(name, unit)| {
+        format!("if {young_modulus:?} is in {name}, write young_modulus = {:.4e}", young_modulus * unit / pascals)
+    });
+    let other = || {
+        UNITS_OF_DENSITY.iter().find(|(_, unit)| is_common(e, density * unit)).map(|(name, unit)| {
+            format!("if {density:?} is in {name}, write density = {:.4e}", density * unit / kilograms)
+        })
+    };
+    let cure = modulus.or_else(other).unwrap_or_else(|| "check both against the units of the scene".to_owned());
+    Some(format!(
+        "body: Young's modulus and density{of} give a speed of sound √(E/ρ) of {speed:.3e} m/s, where {} from {least} to {most:e}: {cure} \
+         (steel: young_modulus = {:.4e}, density = {:.4e})",
+        if rho > DENSE { "materials of this density have one" } else { "materials have one" },
+        2.1e11 / pascals,
+        7850.0 / kilograms
+    ))
+}
+
+/// What is doubtful of gravity, or of an acceleration of the base: the number of standard gravity in other units than those of
+/// the scene.
+fn of_acceleration(load: usize, acts: &Load, units: &Units) -> Option<String> {
+    let (name, amplitude) = match acts {
+        Load::Gravity(gravity) => ("gravity", gravity.amplitude.abs()),
+        Load::BaseAcceleration(base) => ("base-acceleration", base.amplitude.abs()),
+        _ => return None,
+    };
+    let labels = UnitLabels::from(units);
+    let unit = labels.in_si([1, 0, -2])?;
+    let is_number_of = |gravity: &f64| (amplitude / gravity - 1.0).abs() < 5e-3;
+    let part = amplitude * unit / GRAVITY;
+    // A load of 10 or 100 times gravity may be meant; a shock of the base of 1000 times, too.
+    let is_other = part < 0.5 || (part > 500.0 && name == "gravity");
+    let is_slip = (DECIMAL_GRAVITIES.iter().any(is_number_of) && is_other)
+        || (IMPERIAL_GRAVITIES.iter().any(is_number_of) && (part - 1.0).abs() > 1e-2);
+    is_slip.then(|| {
+        format!(
+            "loads[{load}]: {name} of {amplitude} {unit} is {part:.1e} times the gravity of the Earth, which is {:.5e} {unit}: \
+             check it against the units of the scene",
+            GRAVITY / labels.in_si([1, 0, -2]).unwrap_or(1.0),
+            unit = labels.acceleration()
+        )
+    })
 }
 
 #[cfg(test)]
 mod tests {
+    use scene::{BaseAcceleration, Gravity, History};
+
     use super::*;
 
     fn units(length: &str, mass: &str) -> Units {
@@ -109,5 +201,104 @@ mod tests {
         assert!(of_material(&steel(210e-3, 7850.0), "", &units("m", "kg"))[0].contains("2.1e-1 Pa"));
         // Units that are not known say nothing.
         assert!(of_material(&steel(210e9, 7850.0), "", &units("cubit", "Mg")).is_empty());
+    }
+
+    /// Real materials from gels to diamond in SI: no false alarm.
+    #[test]
+    fn real_materials_are_not_doubted() {
+        for (name, young_modulus, density) in [
+            ("steel", 2.1e11, 7850.0),
+            ("aluminium", 7e10, 2700.0),
+            ("lead", 1.6e10, 11_340.0),
+            ("gold", 7.8e10, 19_300.0),
+            ("osmium", 5.6e11, 22_590.0),
+            ("beryllium", 2.87e11, 1850.0),
+            ("diamond", 1.22e12, 3515.0),
+            ("carbon fibre, along it", 9.35e11, 2200.0),
+            ("wood", 1.1e10, 500.0),
+            ("balsa across the grain", 5e7, 120.0),
+            ("concrete", 3e10, 2400.0),
+            ("polyethylene", 2e8, 920.0),
+            ("natural rubber", 1.5e6, 930.0),
+            ("soft silicone", 5e4, 1070.0),
+            ("gelatine", 3e3, 1010.0),
+            ("foam of polyurethane", 1e5, 30.0),
+            ("foam of polystyrene", 5e6, 20.0),
+            ("aerogel of silica", 1e6, 100.0),
+            ("honeycomb of aluminium, along it", 1e9, 50.0),
+            ("soil", 2e7, 1900.0),
+            ("steel with the mass of a fuselage smeared over it", 2.1e11, 1e5 / 4.0),
+        ] {
+            let material = Material { young_modulus, poisson_ratio: 0.3, density };
+            assert_eq!(of_material(&material, "", &units("m", "kg")), [""; 0], "{name}");
+            let in_mm = Material { young_modulus: young_modulus * 1e-6, density: density * 1e-12, ..material };
+            assert_eq!(of_material(&in_mm, "", &units("mm", "Mg")), [""; 0], "{name}");
+        }
+        let slinches = Material { young_modulus: 3e7, poisson_ratio: 0.3, density: 7.345e-4 };
+        assert_eq!(of_material(&slinches, "", &units("in", "lbf s²/in")), [""; 0]);
+    }
+
+    #[test]
+    fn slips_of_units_in_steel_and_aluminium_are_told_with_the_number_to_write() {
+        for (young_modulus, density, length, mass, words) in [
+            // g/cm³ for kg/m³: frequencies thirty times too high.
+            (210e9, 7.85, "m", "kg", ["1.636e5 m/s", "if 7.85 is in g/cm³, write density = 7.8500e3"]),
+            // GPa for MPa and for Pa.
+            (210.0, 7.85e-9, "mm", "Mg", ["1.636e2 m/s", "if 210.0 is in GPa, write young_modulus = 2.1000e5"]),
+            (70.0, 2.7e-9, "mm", "t", ["1.610e2 m/s", "if 70.0 is in GPa, write young_modulus = 7.0000e4"]),
+            (210e3, 7850.0, "m", "kg", ["5.172e0 m/s", "if 210000.0 is in MPa, write young_modulus = 2.1000e11"]),
+            (3e7, 7850.0, "m", "kg", ["6.182e1 m/s", "if 30000000.0 is in psi, write young_modulus = 2.0684e11"]),
+            (210.0, 7850.0, "m", "kg", ["1.636e-1 m/s", "if 210.0 is in GPa, write young_modulus = 2.1000e11"]),
+        ] {
+            let material = Material { young_modulus, poisson_ratio: 0.3, density };
+            let doubts = of_material(&material, "", &units(length, mass));
+            assert_eq!(doubts.len(), 1, "{doubts:?}");
+            for word in words {
+                assert!(doubts[0].contains(word), "{word}: {}", doubts[0]);
+            }
+        }
+    }
+
+    #[test]
+    fn gravity_in_other_units_than_the_scenes_is_told() {
+        let gravity = |kind: &str, amplitude: f64| -> Load {
+            let (direction, history) = ([0.0, 0.0, -1.0], History::Constant);
+            match kind {
+                "gravity" => Load::Gravity(Gravity { direction, amplitude, history }),
+                _ => Load::BaseAcceleration(BaseAcceleration { direction, amplitude, history }),
+            }
+        };
+        let told = |kind: &str, amplitude: f64, length: &str| {
+            of_acceleration(
+                1,
+                &gravity(kind, amplitude),
+                &Units { length: length.into(), mass: "kg".into(), time: "s".into() },
+            )
+        };
+        for (length, right) in [("m", 9.81), ("cm", 981.0), ("mm", 9810.0), ("in", 386.1), ("ft", 32.2)] {
+            for number in [9.81, 981.0, 9810.0, 386.1, 32.17] {
+                let told = told("gravity", number, length);
+                let may_be_meant = matches!(
+                    (length, number),
+                    ("m", 981.0) | ("cm", 9810.0) | ("ft", 981.0 | 9810.0) | ("in", 981.0 | 9810.0)
+                );
+                assert_eq!(
+                    told.is_none(),
+                    number / right == 1.0 || (number / right - 1.0).abs() < 1e-2 || may_be_meant,
+                    "{length} {number} {told:?}"
+                );
+            }
+            // The Moon, Jupiter, ten times gravity.
+            for factor in [0.166, 2.53, 10.0] {
+                assert_eq!(told("gravity", factor * right, length), None, "{length} {factor}");
+            }
+        }
+        let words = told("gravity", 9.81, "mm").unwrap();
+        assert!(
+            words.contains("loads[1]: gravity of 9.81 mm/s² is 1.0e-3 times") && words.contains("9.80665e3 mm/s²"),
+            "{words}"
+        );
+        assert!(told("base-acceleration", 9.81, "mm").is_some() && told("base-acceleration", 9810.0, "m").is_none());
+        assert_eq!(told("gravity", 9.81, "furlong"), None);
     }
 }

@@ -5,6 +5,7 @@ mod error;
 mod recorder;
 mod report;
 mod settings;
+mod turn;
 mod watch;
 
 use std::path::{Path, PathBuf};

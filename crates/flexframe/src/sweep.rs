@@ -27,6 +27,7 @@ use crate::write_error::WriteError;
 use plan::{Asked, Plan};
 use table::{Done, RowState, Table};
 
+pub(crate) use error::SWEEP_CURE;
 pub use error::SweepError;
 pub use shard::{Shard, slurm_script};
 
@@ -264,7 +265,7 @@ fn run_row(scene: &Scene, plan: &Plan, builder: &Mutex<ModelBuilder<'_>>, folder
         Results::open(run::results_path(scene, folder.path()), &COLUMNS).map_err(|error| error.to_string())?;
     let value = |asked: &Asked| {
         let column = asked.column();
-        let table = results.table(column).ok_or_else(|| format!("the results have no column {column}"))?;
+        let table = results.table(column).ok_or_else(|| format!("the results have no column {column}: docs/results.md lists them, and those of points are points/NAME/displacement and so on"))?;
         let row = match asked {
             Asked::Final(_) => table.rows().checked_sub(1).and_then(|last| table.row(last)).map(<[f64]>::to_vec),
             Asked::Peak(_) => (0..table.width())

@@ -53,6 +53,22 @@ impl UnitLabels<'_> {
         time(self.time).map(|ten| 10f64.powi(ten))
     }
 
+    /// A unit in m, kg and s, from the powers of length, mass and time that it has; inches and pounds are known, too.
+    pub(crate) fn in_si(&self, powers: [i32; 3]) -> Option<f64> {
+        let ten = |power: i32| 10_f64.powi(power);
+        let factors = [
+            length(self.length).map(ten).or_else(|| imperial_length(self.length))?,
+            mass(self.mass).map(ten).or_else(|| imperial_mass(self.mass))?,
+            time(self.time).map(ten)?,
+        ];
+        Some(factors.iter().zip(powers).map(|(factor, power)| factor.powi(power)).product())
+    }
+
+    /// "mm/s²".
+    pub(crate) fn acceleration(&self) -> String {
+        format!("{}/{}²", self.length, self.time)
+    }
+
     /// The power of ten of a unit in m, kg and s, from the powers of length, mass and time that it has.
     pub(crate) fn tens(&self, powers: [i32; 3]) -> Option<i32> {
         let tens = [length(self.length)?, mass(self.mass)?, time(self.time)?];
@@ -68,6 +84,27 @@ fn length(label: &str) -> Option<i32> {
         "cm" => Some(-2),
         "mm" => Some(-3),
         "um" | "µm" | "μm" => Some(-6),
+        _ => None,
+    }
+}
+
+/// In metres.
+fn imperial_length(label: &str) -> Option<f64> {
+    match label {
+        "in" | "inch" => Some(0.0254),
+        "ft" => Some(0.3048),
+        _ => None,
+    }
+}
+
+/// In kilograms: a pound, and the masses that a force of one pound accelerates by 1 ft/s² and by 1 in/s².
+fn imperial_mass(label: &str) -> Option<f64> {
+    const POUND: f64 = 0.453_592_37;
+    const POUND_FORCE: f64 = 9.806_65 * POUND;
+    match label {
+        "lb" | "lbm" => Some(POUND),
+        "slug" => Some(POUND_FORCE / 0.3048),
+        "slinch" | "blob" | "lbf s²/in" | "lbf s^2/in" | "lbf·s²/in" | "lbf*s^2/in" => Some(POUND_FORCE / 0.0254),
         _ => None,
     }
 }
@@ -113,6 +150,35 @@ mod tests {
         ] {
             let units = UnitLabels { length, mass, time };
             assert_eq!([units.force(), units.energy(), units.stress()], expected, "{units:?}");
+        }
+    }
+
+    /// Each row of docs/units.md, to its four digits.
+    #[test]
+    fn the_table_of_units_is_right() {
+        let table = include_str!("../../../docs/units.md");
+        let rows: Vec<Vec<&str>> = (table.lines().skip_while(|line| !line.starts_with("|---")).skip(1))
+            .take_while(|line| line.starts_with('|'))
+            .map(|line| line.trim_matches('|').split('|').map(str::trim).collect())
+            .collect();
+        assert_eq!(rows.len(), 9);
+        for row in rows {
+            let [length, mass, time, force, stress, energy, numbers @ ..] = &row[..] else { panic!("{row:?}") };
+            let units = UnitLabels { length, mass, time };
+            let [pascals, kilograms, gravity] =
+                [[-1, 1, -2], [-3, 1, 0], [1, 0, -2]].map(|of| units.in_si(of).unwrap());
+            let expected =
+                [2.1e11 / pascals, 7850.0 / kilograms, 7e10 / pascals, 2700.0 / kilograms, 9.80665 / gravity];
+            assert_eq!(numbers.len(), expected.len(), "{row:?}");
+            for (number, expected) in numbers.iter().zip(expected) {
+                let number: f64 = number.parse().unwrap();
+                assert!((number / expected - 1.0).abs() < 5e-4, "{row:?}: {number} {expected}");
+            }
+            if units.tens([1, 1, -2]).is_some_and(|ten| ten % 3 == 0)
+                && units.tens([2, 1, -2]).is_some_and(|ten| ten >= -9)
+            {
+                assert_eq!([units.force(), units.stress(), units.energy()], [*force, *stress, *energy], "{row:?}");
+            }
         }
     }
 }

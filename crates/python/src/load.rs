@@ -12,6 +12,18 @@ use crate::faults::Faults;
 use crate::motion::{Motion, Points, point_number};
 use crate::numbers::{numbers, vector};
 
+/// The entries of a list of loads.
+pub(crate) fn listed(loads: Option<Bound<'_, PyAny>>) -> PyResult<Vec<Bound<'_, PyAny>>> {
+    let Some(loads) = loads else { return Ok(Vec::new()) };
+    let found = loads.get_type().name()?;
+    loads.extract().map_err(|_| {
+        PyTypeError::new_err(format!(
+            "loads: found an object of type {found}, expected a list of Force and ModalForce\n = write one load as a list of one: \
+             Simulation(body, [load])"
+        ))
+    })
+}
+
 /// A law: a function of the motion, and what steps must know of it.
 struct Law {
     function: Py<PyAny>,

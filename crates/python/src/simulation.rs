@@ -15,7 +15,7 @@ use pyo3::types::PyDict;
 use crate::body::Body;
 use crate::errors::{add_note, exception, exception_of, wrong_input};
 use crate::faults::Faults;
-use crate::load::load_of;
+use crate::load::{listed, load_of};
 use crate::motion::Points;
 use crate::numbers::described;
 use crate::results::{Occurred, Rows};
@@ -207,13 +207,13 @@ fn step_error(py: Python<'_>, error: &StepError) -> PyErr {
 impl Simulation {
     #[new]
     #[pyo3(signature = (body, loads=None))]
-    fn new(py: Python<'_>, body: Py<Body>, loads: Option<Vec<Bound<'_, PyAny>>>) -> PyResult<Self> {
+    fn new(py: Python<'_>, body: Py<Body>, loads: Option<Bound<'_, PyAny>>) -> PyResult<Self> {
         let (model, scene) = (body.get().model().clone(), body.get().scene_of().clone());
         let mut metadata = flexframe::run::metadata(&scene, &model);
         let points: Points = Arc::new(model.points.clone());
         let faults = Faults::default();
         let mut laws = Vec::new();
-        for load in loads.unwrap_or_default() {
+        for load in listed(loads)? {
             laws.push(load_of(&load, &points, model.body.flexible(), &faults)?);
         }
         let (physics, mut all, damping_ratios) = if laws.is_empty() {

@@ -9,6 +9,7 @@ mod builder;
 mod damping;
 mod decide;
 mod directed;
+mod doubt;
 mod error;
 mod fe_matrices;
 mod given;
@@ -48,6 +49,7 @@ use crate::scene::{Body, Scene};
 
 pub use assembly::Assembly;
 pub use builder::ModelBuilder;
+pub use doubt::{Doubt, doubts};
 pub use error::{BuildError, StartError};
 pub use given::MatrixChecks;
 pub use model::{Meshed, Model};

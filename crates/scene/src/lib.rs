@@ -58,8 +58,8 @@ mod unit_vector;
 
 pub use assign::{AssignError, assign};
 pub use build::{
-    Assembly, BodyStress, BuildError, BuildProgress, BuildTimes, BuildWork, MatrixChecks, Meshed, Model, ModelBuilder,
-    StartError, StressPeak, SupportRows, contents_of_body,
+    Assembly, BodyStress, BuildError, BuildProgress, BuildTimes, BuildWork, Doubt, MatrixChecks, Meshed, Model,
+    ModelBuilder, StartError, StressPeak, SupportRows, contents_of_body, doubts,
 };
 pub use cache::{Cache, CacheNotes};
 pub use constraint::{Constraint, HeldDirections, HingeLine, Region};

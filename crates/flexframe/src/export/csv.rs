@@ -27,9 +27,7 @@ struct Part {
 /// # Errors
 /// [`ExportError`].
 pub fn export_csv(file: &Path, to: &Path, columns: &[String], rows: &ExportRows) -> Result<Exported, ExportError> {
-    let results = Results::open(file, &COLUMNS)?;
-    let parts = chosen(file, &results, columns)?;
-    let chosen_rows = rows.of(file, &results)?;
+    let table = Table::new(file, columns, rows)?;
     let path = if to.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("csv")) {
         to.to_owned()
     } else {
@@ -39,27 +37,61 @@ pub fn export_csv(file: &Path, to: &Path, columns: &[String], rows: &ExportRows)
     if !rows.overwrite && path.symlink_metadata().is_ok() {
         return Err(results::FileError::Exists { path }.into());
     }
-    let warning = ExportRows::warning(&results);
     let write = || {
-        let mut table = WholeFile::create(&path)?;
-        if let Some(warning) = &warning {
-            writeln!(table, "# {warning}")?;
-        }
-        let heads = parts.iter().flat_map(|part| &part.heads).map(|head| quoted(head));
-        writeln!(table, "{}", heads.collect::<Vec<_>>().join(","))?;
-        let tables: Vec<_> = parts.iter().filter_map(|part| results.table(&part.path)).collect();
-        for row in chosen_rows {
-            let values = tables.iter().filter_map(|table| table.row(row)).flatten();
-            for (i, value) in values.enumerate() {
-                // The shortest text that is read back as the same number.
-                write!(table, "{}{value:?}", if i == 0 { "" } else { "," })?;
-            }
-            writeln!(table)?;
-        }
-        table.finish()
+        let mut out = WholeFile::create(&path)?;
+        table.write(&mut out)?;
+        out.finish()
     };
     write().map_err(WriteError::of(&path))?;
-    Ok(Exported { files: vec![path], warning })
+    Ok(Exported { files: vec![path], warning: table.warning })
+}
+
+/// The same table as a text, and what should be known of it.
+///
+/// # Errors
+/// [`ExportError`].
+pub fn csv_text(file: &Path, columns: &[String], rows: &ExportRows) -> Result<(String, Option<String>), ExportError> {
+    let table = Table::new(file, columns, rows)?;
+    let mut text = Vec::new();
+    table.write(&mut text).map_err(WriteError::of(file))?;
+    Ok((String::from_utf8_lossy(&text).into_owned(), table.warning))
+}
+
+/// The columns and rows that were chosen of a results file.
+struct Table {
+    results: Results,
+    parts: Vec<Part>,
+    rows: Vec<usize>,
+    /// That the run is unfinished.
+    warning: Option<String>,
+}
+
+impl Table {
+    fn new(file: &Path, columns: &[String], rows: &ExportRows) -> Result<Self, ExportError> {
+        let results = Results::open(file, &COLUMNS)?;
+        let parts = chosen(file, &results, columns)?;
+        let rows = rows.of(file, &results)?;
+        let warning = ExportRows::warning(&results);
+        Ok(Self { results, parts, rows, warning })
+    }
+
+    fn write(&self, out: &mut impl Write) -> std::io::Result<()> {
+        if let Some(warning) = &self.warning {
+            writeln!(out, "# {warning}")?;
+        }
+        let heads = self.parts.iter().flat_map(|part| &part.heads).map(|head| quoted(head));
+        writeln!(out, "{}", heads.collect::<Vec<_>>().join(","))?;
+        let tables: Vec<_> = self.parts.iter().filter_map(|part| self.results.table(&part.path)).collect();
+        for row in &self.rows {
+            let values = tables.iter().filter_map(|table| table.row(*row)).flatten();
+            for (i, value) in values.enumerate() {
+                // The shortest text that is read back as the same number.
+                write!(out, "{}{value:?}", if i == 0 { "" } else { "," })?;
+            }
+            writeln!(out)?;
+        }
+        Ok(())
+    }
 }
 
 fn chosen(file: &Path, results: &Results, columns: &[String]) -> Result<Vec<Part>, ExportError> {

@@ -45,13 +45,17 @@ pub enum ExportError {
         path: PathBuf,
     },
     /// The body has no modes.
-    #[error("{}: the body has no flexible modes to export", path.display())]
+    #[error(
+        "{}: the body has no flexible modes to export; leave --modes out, or run its scene again with flexible modes ([modes] \
+         flexible = 10)",
+        path.display()
+    )]
     NoModes {
         /// The results file.
         path: PathBuf,
     },
     /// No row is within the times asked for.
-    #[error("{}: no row is within the times asked for; its rows are from time {} to {}", path.display(), times[0], times[1])]
+    #[error("{}: no row is within the times asked for; its rows are from time {} to {}: give --from and --to within them, or leave them out", path.display(), times[0], times[1])]
     NoRows {
         /// The results file.
         path: PathBuf,
@@ -59,7 +63,11 @@ pub enum ExportError {
         times: [f64; 2],
     },
     /// A column that is not in the file.
-    #[error("{}: there is no column \"{found}\"; the file has {}", path.display(), columns.join(", "))]
+    #[error(
+        "{}: there is no column \"{found}\"\n = name some of these, or what their paths begin with: {}",
+        path.display(),
+        columns.join(", ")
+    )]
     NoColumn {
         /// The results file.
         path: PathBuf,

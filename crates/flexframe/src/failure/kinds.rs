@@ -4,7 +4,7 @@ use advice::AdviceError;
 use body_file::BodyFileError;
 use fem_tet10::{AssemblyError, MeshError};
 use figures::FigureError;
-use frames_rk4::{EigenError, SetupError};
+use frames_rk4::{EigenError, LoadedError, SetupError};
 use mesh_import::ImportError;
 use modal::ModalError;
 use report::ReportError;
@@ -18,13 +18,14 @@ use crate::campbell::CampbellError;
 use crate::cost::CostError;
 use crate::export::ExportError;
 use crate::fmu::FmuError;
+use crate::given_file::OtherFile;
 use crate::html_report::HtmlReportError;
 use crate::mode_shapes::ShapesError;
 use crate::new_scene::NewSceneError;
 use crate::paper::PaperError;
 use crate::reopened::ReopenError;
 use crate::run::{RunError, RunFailure};
-use crate::sweep::SweepError;
+use crate::sweep::{SWEEP_CURE, SweepError};
 use crate::write_error::WriteError;
 
 impl Failure for SceneError {
@@ -211,6 +212,7 @@ impl Failure for BuildError {
             Self::Load(error) => error.kind(),
             Self::BodyFile(BodyFileError::System { .. } | BodyFileError::Hdf5 { .. }) => Kind::Io,
             Self::BodyFile(_) => Kind::Input,
+            Self::Loaded { source, .. } => source.kind(),
             _ => Kind::Run,
         }
     }
@@ -228,7 +230,19 @@ impl Failure for BuildError {
             Self::Advice(error) => error.details(),
             Self::Load(error) => error.details(),
             Self::BodyFile(error) => Details::of_file(error.path()),
+            Self::Loaded { scene, .. } => Details::of_file(scene),
             _ => Details::default(),
+        }
+    }
+}
+
+impl Failure for LoadedError {
+    fn kind(&self) -> Kind {
+        match self {
+            Self::Setup(error) => error.kind(),
+            Self::Eigen(error) => error.kind(),
+            Self::NoRest => Kind::Refused,
+            Self::Rates(_) => Kind::Run,
         }
     }
 }
@@ -239,6 +253,7 @@ impl Failure for SetupError {
             Self::FormulaTooFast { .. }
             | Self::StepBeyondLimit { .. }
             | Self::StepBeyondSpin { .. }
+            | Self::MotionLeft { .. }
             | Self::CollinearPoints(_)
             | Self::Inertia(_) => Kind::Refused,
             _ => Kind::Input,
@@ -356,6 +371,7 @@ impl Failure for AnimationError {
             Self::Step { .. } => Kind::Run,
             Self::NoMesh { .. } => Kind::Input,
             Self::NotGif { .. } | Self::Times { .. } => Kind::Usage,
+            Self::Export(error) => error.kind(),
             Self::Figure(error) => error.kind(),
         }
     }
@@ -371,6 +387,7 @@ impl Failure for AnimationError {
                 expected: Some(format!("a part of 0 to {end}")),
                 ..Details::default()
             },
+            Self::Export(error) => error.details(),
             Self::Figure(error) => error.details(),
         }
     }
@@ -553,6 +570,21 @@ impl Failure for NewSceneError {
     }
 }
 
+impl Failure for OtherFile {
+    fn kind(&self) -> Kind {
+        Kind::Input
+    }
+
+    fn details(&self) -> Details {
+        Details {
+            found: Some(self.found.in_words().to_owned()),
+            expected: Some(self.expected.to_owned()),
+            cure: Some(self.found.taken_by(&self.path)),
+            ..Details::of_file(&self.path)
+        }
+    }
+}
+
 impl Failure for SweepError {
     fn kind(&self) -> Kind {
         match self {
@@ -577,6 +609,7 @@ impl Failure for SweepError {
                 key: Some(key.clone()),
                 found: Some(found.clone()),
                 expected: Some(expected.clone()),
+                cure: Some(SWEEP_CURE.to_owned()),
                 ..Details::of_file(path)
             },
             Self::Scene { source, .. } => source.details(),

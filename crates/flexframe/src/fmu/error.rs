@@ -38,7 +38,9 @@ pub enum FmuError {
         path: PathBuf,
     },
     /// There are no binaries of FMUs for this machine.
-    #[error("FMI 2.0 has no name for this machine ({machine}); pack the FMU on 64-bit Linux, Windows or macOS on x86")]
+    #[error(
+        "FMI 2.0 has no name for this machine ({machine}); pack it on 64-bit Linux, Windows or macOS, with a processor of the x86 family"
+    )]
     Platform {
         /// System and processor.
         machine: String,
@@ -55,10 +57,12 @@ pub enum FmuError {
         found: String,
     },
     /// The text of the scene could not be changed to what the FMU holds.
-    #[error("the scene cannot be written for the FMU: {0}")]
+    #[error(
+        "the scene cannot be written for the FMU: {0}\n = run it by `flexframe run`, and correct what that says; if it runs, please report this"
+    )]
     Text(String),
     /// A file cannot be read.
-    #[error("{}: cannot be read: {source}", path.display())]
+    #[error("{}: cannot be read: {source}\n = check its name and its permissions", path.display())]
     Unreadable {
         /// It.
         path: PathBuf,

@@ -8,6 +8,7 @@ use scene::BuildError;
 
 use crate::mode_shapes::ShapesError;
 use crate::run::RunError;
+use crate::write_error::cure_of_writing;
 
 /// A reproduction that could not be made.
 #[derive(Debug, thiserror::Error)]
@@ -45,7 +46,7 @@ pub enum PaperError {
         scene: PathBuf,
     },
     /// The report cannot be written.
-    #[error("{}: cannot write the report: {source}", path.display())]
+    #[error("{}: cannot write the report: {source}\n = {}", path.display(), cure_of_writing(source))]
     Report {
         /// The report.
         path: PathBuf,

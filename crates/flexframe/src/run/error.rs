@@ -7,6 +7,8 @@ use frames_rk4::{CheckpointError, StepError};
 use results::FileError;
 use scene::{BuildError, SceneError, StartError};
 
+use crate::write_error::cure_of_writing;
+
 /// A run that could not be done.
 #[derive(Debug, thiserror::Error)]
 pub enum RunError {
@@ -81,7 +83,7 @@ pub enum RunError {
         what: &'static str,
     },
     /// The output folder cannot be made.
-    #[error("{}: cannot make the output folder: {source}", folder.display())]
+    #[error("{}: cannot make the output folder: {source}\n = {}", folder.display(), cure_of_writing(source))]
     Folder {
         /// The folder.
         folder: PathBuf,

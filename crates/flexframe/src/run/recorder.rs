@@ -36,6 +36,7 @@ pub(super) struct Recorder<'a> {
     rows: u64,
     peak_strain_energy: f64,
     peak_stress: Option<Largest>,
+    first_attitude: Attitude,
 }
 
 impl<'a> Recorder<'a> {
@@ -54,6 +55,7 @@ impl<'a> Recorder<'a> {
             rows: 0,
             peak_strain_energy: 0.0,
             peak_stress: None,
+            first_attitude: initial.attitude,
         })
     }
 
@@ -128,7 +130,7 @@ impl<'a> Recorder<'a> {
         let time = started.elapsed();
         let stats = simulation.stats();
         let method = self.scene.time.method;
-        let Watched { balances, right_unsummed, left_out, warnings } = self.watch.finish(&simulation);
+        let Watched { balances, right_unsummed, left_out, turned, warnings } = self.watch.finish(&simulation);
         let Self { scene, model, .. } = self;
         let last = &self.row;
         let mut report = RunReport {
@@ -148,7 +150,8 @@ impl<'a> Recorder<'a> {
             steps_per_second: (stats.accepted - before) as f64 / time.as_secs_f64(),
             mesh: MeshReport::new(model),
             body: BodyReport::new(model),
-            turned: Attitude::identity().angle_to(&last.attitude),
+            turned: if model.body.motion.rotations().len() == 1 { last.reaction.turned } else { turned },
+            turned_from_start: self.first_attitude.angle_to(&last.attitude),
             moved: (last.position_global - model.body.center_of_mass).into(),
             peak_strain_energy: self.peak_strain_energy,
             peak_stress: self.peak_stress.as_ref().and_then(|peak| peak.report(scene, model)),

@@ -1,5 +1,6 @@
 //! What `flexframe run` says at its end.
 
+use std::f64::consts::{PI, TAU};
 use std::fmt;
 use std::path::PathBuf;
 
@@ -47,8 +48,10 @@ pub struct RunReport {
     pub mesh: Option<MeshReport>,
     /// Mass properties and modes.
     pub body: BodyReport,
-    /// Angle between first and last attitude, rad (0 to π).
+    /// Angle that the body has turned by, rad: of a hinge about its axis, with its sign; else along its way, ∫|ω| dt.
     pub turned: f64,
+    /// Angle between first and last attitude, rad (0 to π).
+    pub turned_from_start: f64,
     /// Displacement of the centre of mass, global.
     pub moved: [f64; 3],
     /// Largest strain energy among the rows.
@@ -99,6 +102,20 @@ impl RunReport {
     }
 }
 
+impl RunReport {
+    /// "turned by 300 rad (47.7 turns), to an attitude 1.59 rad from the first".
+    fn turned_in_words(&self) -> String {
+        let Self { turned, turned_from_start: from_start, .. } = *self;
+        let turned_by = format!("turned by {} rad", quantity(turned));
+        if turned.abs() <= PI {
+            return turned_by;
+        }
+        let turns = quantity(format!("{:.3e}", turned / TAU).parse().unwrap_or(turned / TAU));
+        let from_start = quantity(format!("{from_start:.3e}").parse().unwrap_or(from_start));
+        format!("{turned_by} ({turns} turns), to an attitude {from_start} rad from the first")
+    }
+}
+
 impl fmt::Display for RunReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [length, mass, time] = &self.units;
@@ -126,11 +143,7 @@ impl fmt::Display for RunReport {
         }
         writeln!(f, "  motion   {}, {:.0} steps per second", self.steps_in_words(), self.steps_per_second)?;
         let [x, y, z] = self.moved.map(quantity);
-        writeln!(
-            f,
-            "  end      turned by {} rad, centre of mass moved by ({x}, {y}, {z}) {length}",
-            quantity(self.turned)
-        )?;
+        writeln!(f, "  end      {}, centre of mass moved by ({x}, {y}, {z}) {length}", self.turned_in_words())?;
         writeln!(
             f,
             "  energy   {} {unit} at the end, largest strain energy {} {unit}",
@@ -143,7 +156,7 @@ impl fmt::Display for RunReport {
         }
         let Balances { energy, linear_momentum, angular_momentum } = self.balances;
         let closed = if self.right_unsummed {
-            format!("known to {energy:.1e} only, by modes faster than the steps")
+            format!("summed to {energy:.1e} only, by modes faster than the steps (the motion itself is right)")
         } else {
             format!("closed to {energy:.1e}")
         };

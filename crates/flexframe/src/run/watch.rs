@@ -2,10 +2,11 @@
 
 use advice::{Refusal, Review, StepEstimate};
 use frames_rk4::{EffectMap, Initial, Moment, Observation, Simulation};
-use scene::{BuildError, Model, Scene};
+use scene::{BuildError, Load, Model, Scene};
 
 use super::balances::{Balances, Conserved, Monitor};
 use super::error::RunError;
+use super::turn::Turn;
 use crate::plausible;
 
 /// Energy balance from which on a run says that it is open.
@@ -23,6 +24,7 @@ pub struct Watch<'a> {
     model: &'a Model,
     review: Review<'a>,
     monitor: Monitor,
+    turn: Turn,
     /// What fixed steps are expected to get wrong.
     step: Option<StepEstimate>,
 }
@@ -36,6 +38,8 @@ pub struct Watched {
     pub right_unsummed: bool,
     /// See [`RunReport::left_out`](super::RunReport::left_out).
     pub left_out: Option<f64>,
+    /// Angle along the way of the attitude, ∫|ω| dt, rad.
+    pub turned: f64,
     /// Assumptions that did not hold, each a sentence or more.
     pub warnings: Vec<String>,
 }
@@ -59,6 +63,7 @@ impl<'a> Watch<'a> {
             model,
             review: Review::new(model.case(scene, initial), effects, &model.advice),
             monitor: Monitor::default(),
+            turn: Turn::default(),
             step,
         })
     }
@@ -66,6 +71,7 @@ impl<'a> Watch<'a> {
     /// Sees a moment between rows.
     pub fn look(&mut self, moment: &Moment) {
         self.review.look(moment);
+        self.turn.see(moment.time, &moment.omega_body);
     }
 
     /// Sees a row.
@@ -74,6 +80,7 @@ impl<'a> Watch<'a> {
     /// [`RunError::Build`] where the assumptions cannot be checked.
     pub fn observe(&mut self, now: &Observation) -> Result<(), RunError> {
         self.monitor.watch(now);
+        self.turn.see(now.time, &now.omega_body);
         self.review.observe(now).map_err(BuildError::from)?;
         Ok(())
     }
@@ -82,6 +89,7 @@ impl<'a> Watch<'a> {
     pub(super) fn take_up(&mut self, now: &Observation, past: &Conserved) -> Result<(), RunError> {
         self.review.observe(now).map_err(BuildError::from)?;
         self.monitor.take(past);
+        self.turn.see(now.time, &now.omega_body);
         Ok(())
     }
 
@@ -99,15 +107,18 @@ impl<'a> Watch<'a> {
         let right_unsummed = balances.energy > OPEN && self.is_right_unsummed(simulation.stats().longest);
         let open =
             (balances.energy > OPEN && !right_unsummed).then(|| open_balance(balances.energy, model.body.flexible()));
+        let moments = right_unsummed.then(|| pointed_moments(scene)).flatten();
         let wrong = self.step.as_ref().filter(|step| step.largest() >= WRONG);
         Watched {
             balances,
             right_unsummed,
             left_out: self.review.left_out(),
+            turned: self.turn.angle(),
             warnings: (plausible::doubts(scene, model).into_iter())
                 .chain(self.review.broken().iter().map(ToString::to_string))
                 .chain(wrong.map(|step| long_steps(step, scene.effects.tolerance)))
                 .chain(open)
+                .chain(moments)
                 .collect(),
         }
     }
@@ -126,6 +137,17 @@ impl<'a> Watch<'a> {
             None => !resolved,
         }
     }
+}
+
+/// Moments at points of a mesh, which twist the element there alone: that excites shapes faster than any step.
+fn pointed_moments(scene: &Scene) -> Option<String> {
+    let is_pointed = |load: &Load| matches!(load, Load::Moment(moment) if moment.radius.is_none());
+    let load = scene.loads.iter().position(is_pointed).filter(|_| scene.body.has_elements())?;
+    Some(format!(
+        "loads[{load}]: this moment has no `radius`, so that it twists the one element at its point, by an angle that depends on the \
+         mesh. Most of its work goes into shapes that are faster than the steps, and the energy is not summed closely. Give it the \
+         radius of the part that takes it, such as that of a shaft or a flange"
+    ))
 }
 
 fn open_balance(open: f64, flexible: usize) -> String {

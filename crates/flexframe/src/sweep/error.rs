@@ -7,11 +7,14 @@ use scene::{BuildError, SceneError};
 
 use crate::write_error::WriteError;
 
+/// What to do about the file of a sweep.
+pub(crate) const SWEEP_CURE: &str = "correct it: docs/cli.md, \"Sweeps\", has an example with all its keys";
+
 /// A sweep that could not be made. What fails in a row of it is in its table.
 #[derive(Debug, thiserror::Error)]
 pub enum SweepError {
     /// The file of the sweep cannot be read.
-    #[error("{}: cannot be read: {source}", path.display())]
+    #[error("{}: the file of the sweep cannot be read: {source}\n = check its name; it is relative to the folder you are in", path.display())]
     Unreadable {
         /// The file.
         path: PathBuf,
@@ -19,7 +22,7 @@ pub enum SweepError {
         source: std::io::Error,
     },
     /// The file of the sweep says something that cannot be right.
-    #[error("{}: `{key}`: found {found}, expected {expected}", path.display())]
+    #[error("{}: `{key}`: found {found}, expected {expected}\n = {SWEEP_CURE}", path.display())]
     Invalid {
         /// The file.
         path: PathBuf,
@@ -31,7 +34,7 @@ pub enum SweepError {
         expected: String,
     },
     /// The file of the sweep is not TOML, or has another form.
-    #[error("{}: {message}", path.display())]
+    #[error("{}: {message}\n = {SWEEP_CURE}", path.display())]
     Form {
         /// The file.
         path: PathBuf,

@@ -62,6 +62,8 @@ struct Range {
     count: usize,
 }
 
+const SCENE_CURE: &str = "correct `scene` in the file of the sweep; its path is relative to the folder of that file";
+
 /// A sweep, ready to be run.
 pub(super) struct Plan {
     pub title: String,
@@ -83,7 +85,12 @@ impl Plan {
         let form = |error: toml::de::Error| SweepError::Form { path: path.to_owned(), message: error.to_string() };
         let file: File = toml::from_str(&of_sweep).map_err(form)?;
         let scene_path = path.parent().unwrap_or(Path::new("")).join(&file.scene);
-        let scene = Scene::read(&scene_path).map_err(|source| SweepError::Scene { key: None, source })?;
+        let of_scene = |error: SceneError| match error {
+            SceneError::Unreadable { path, cause, .. } => SceneError::Unreadable { path, cause, cure: SCENE_CURE },
+            other => other,
+        };
+        let scene =
+            Scene::read(&scene_path).map_err(|error| SweepError::Scene { key: None, source: of_scene(error) })?;
 
         let invalid = |key: &str, found: String, expected: &str| SweepError::Invalid {
             path: path.to_owned(),

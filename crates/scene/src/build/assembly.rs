@@ -9,6 +9,7 @@ use matrix_import::MatrixFiles;
 use mesh_import::Imported;
 use modal::Support;
 
+use super::doubt::doubts;
 use super::error::BuildError;
 use super::fe_matrices::FeMatrices;
 use super::given::{Given, MatrixChecks};
@@ -72,6 +73,7 @@ impl Assembly {
         let Imported { mesh, notes: mesh_notes } = timed(&mut of_mesh, read)?;
         let mesh = Arc::new(mesh);
         times.mesh += of_mesh;
+        doubts(scene, &mesh).into_iter().for_each(|doubt| progress(BuildProgress::Doubt(doubt)));
         let (support, drive) = support(scene, Some((&mesh, 3)))?;
         let (scene, matrices, body) = (scene.clone(), OnceLock::new(), MadeOf::Elements(body));
         let checks = None;

@@ -49,8 +49,13 @@ pub enum BuildError {
     #[error(transparent)]
     Load(#[from] SetupError),
     /// The vibrations under steady loads are not known.
-    #[error(transparent)]
-    Loaded(#[from] LoadedError),
+    #[error("{}: {source}", scene.display())]
+    Loaded {
+        /// The scene file.
+        scene: PathBuf,
+        /// Why.
+        source: LoadedError,
+    },
 }
 
 /// A motion that cannot start.

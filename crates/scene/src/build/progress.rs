@@ -2,11 +2,15 @@
 
 use std::time::{Duration, Instant};
 
+use super::doubt::Doubt;
+
 /// How far the building of a model has come.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum BuildProgress {
     /// The mesh is being read.
     Mesh,
+    /// Something of the scene and its mesh is doubtful, and is told before the work.
+    Doubt(Doubt),
     /// Mass and stiffness are being assembled.
     Assembly,
     /// The modes are being searched.
