@@ -10,7 +10,7 @@ use crate::scene::{Body, MeshedBody, Scene};
 /// Added mass over the mass of the mesh from which on it is told: a satellite's bus on its panels is below.
 const HEAVY: f64 = 100.0;
 /// Deflection over length from which on it is told.
-const FAR: f64 = 1.0;
+const FAR: f64 = 5.0;
 
 /// A sentence about a scene and its mesh, which can be computed with all the same.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -23,7 +23,7 @@ pub enum Doubt {
         /// The mass of the mesh.
         own: f64,
     },
-    /// A load would bend a bar of the body's size by more than its length.
+    /// A load would bend a bar of the body's size by several times its length.
     Deflection {
         /// Number of the load in the scene, from 0.
         load: usize,
