@@ -96,7 +96,11 @@ pub(crate) fn gmsh(
         false => Copies(vec![(source.to_owned(), copied(source, folder, "source")?)]),
     };
     // The user's options of gmsh are for a mesh that he looks at; they are not read here.
-    let mut command = ForeignProgram::new(&gmsh, folder).env("GMSH_HOME", folder);
+    let mut command = match task {
+        GmshTask::MeshAndOptimize if has_fixed_addresses(folder) => with_fixed_addresses(folder).arg(&gmsh),
+        _ => ForeignProgram::new(&gmsh, folder),
+    };
+    command = command.env("GMSH_HOME", folder);
     command = if is_trusted { command.in_folder(folder_of(copies.first())) } else { command.env("HOME", folder) };
     if task != GmshTask::Convert {
         command = command.arg(copies.first());
@@ -131,6 +135,18 @@ pub(crate) fn gmsh(
         return Err(said.failed(source, &gmsh, &copies, cure));
     }
     Ok(())
+}
+
+/// Runs the program that is named after it without a random layout of its addresses. gmsh's optimization takes elements in the
+/// order of their addresses: else it would give another mesh each time, and a run could not be resumed.
+fn with_fixed_addresses(folder: &Path) -> ForeignProgram {
+    ForeignProgram::new("setarch".as_ref(), folder).arg("-R")
+}
+
+/// Whether the system has that, and allows it.
+fn has_fixed_addresses(folder: &Path) -> bool {
+    let nothing = with_fixed_addresses(folder).arg("true");
+    nothing.run(LIMITS, || false, |_, _| ()).is_ok_and(|status| status.success())
 }
 
 /// What a program has said, and how it has ended.
