@@ -100,6 +100,16 @@ def test_a_point_off_the_body_and_a_refused_model(program):
         flexframe.Simulation(flexframe.Body(long_steps))
 
 
+def test_a_load_that_stands_in_no_list():
+    body = flexframe.Body(flexframe.Scene(RIGID))
+    force = flexframe.Force("corner", lambda motion: [0.0, 0.0, 0.0])
+    for loads, found in [(force, "Force"), (lambda motion: [0.0] * 3, "function"), (3, "int")]:
+        with pytest.raises(TypeError, match=f"of type {found}, expected a list of Force and ModalForce") as raised:
+            flexframe.Simulation(body, loads)
+        assert "Simulation(body, [load])" in str(raised.value)
+    flexframe.Simulation(body, (force,))
+
+
 LAWS = {
     "a wrong shape": (lambda motion: [1.0, 2.0], InputError, ["the force of the law `law`", "found 2 numbers", "3 finite numbers"]),
     "a table": (lambda motion: np.ones((3, 3)), InputError, ["found an array of shape [3, 3]"]),
