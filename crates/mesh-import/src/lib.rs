@@ -52,26 +52,36 @@ pub fn read_mesh(path: &Path, settings: &ImportSettings) -> Result<Imported, Imp
         };
     }
     let io = |cause| ImportError::Io { source_name: source_name.clone(), cause };
-    let folder = TemporaryFolder::new().map_err(io)?;
-    let target = folder.path().join("mesh.msh");
-    let parsed = || -> Result<Mesh, ImportError> { Ok(parse_msh(&std::fs::read(&target).map_err(io)?, &source_name)?) };
-    match reader {
-        Reader::Own => {}
+    // Each pass of gmsh has a private folder of its own.
+    let by_gmsh = |task| -> Result<Mesh, ImportError> {
+        let folder = TemporaryFolder::new().map_err(io)?;
+        let target = folder.path().join(TARGET);
+        run::gmsh(path, &target, settings, task)?;
+        parsed(&target, &source_name)
+    };
+    let (mesh, notes) = match reader {
+        Reader::Own => (read_msh(path)?, Vec::new()),
         Reader::GmshMesher => {
-            run::gmsh(path, &target, settings, GmshTask::Mesh)?;
-            let first = parsed();
-            if !is_badly_curved(&first) {
-                return Ok(Imported { mesh: first?, notes: Vec::new() });
-            }
-            run::gmsh(path, &target, settings, GmshTask::MeshAndOptimize)?;
+            let first = by_gmsh(GmshTask::Mesh);
+            (if is_badly_curved(&first) { by_gmsh(GmshTask::MeshAndOptimize)? } else { first? }, Vec::new())
         }
-        Reader::GmshConverter => run::gmsh(path, &target, settings, GmshTask::Convert)?,
+        Reader::GmshConverter => (by_gmsh(GmshTask::Convert)?, Vec::new()),
         Reader::Meshio => {
+            let folder = TemporaryFolder::new().map_err(io)?;
+            let target = folder.path().join(TARGET);
             let notes = run::meshio(path, &target, settings)?;
-            return Ok(Imported { mesh: parsed()?, notes });
+            (parsed(&target, &source_name)?, notes)
         }
-    }
-    Ok(Imported { mesh: parsed()?, notes: Vec::new() })
+    };
+    Ok(Imported { mesh, notes })
+}
+
+/// The mesh that a program has written, in its private folder.
+const TARGET: &str = "mesh.msh";
+
+fn parsed(target: &Path, source_name: &str) -> Result<Mesh, ImportError> {
+    let io = |cause| ImportError::Io { source_name: source_name.to_owned(), cause };
+    Ok(parse_msh(&std::fs::read(target).map_err(io)?, source_name)?)
 }
 
 const SURFACE: &str = "a surface of triangles, which encloses a volume but has no elements in it";

@@ -8,6 +8,7 @@ use std::time::Duration;
 
 use foreign_program::{ForeignProgram, Limits, ProgramError, Stream, named};
 use serde::Deserialize;
+use whole_file::TemporaryFolder;
 
 use crate::copy::{copied, opened};
 use crate::error::ImportError;
@@ -81,12 +82,7 @@ pub(crate) enum GmshTask {
 }
 
 /// Lets gmsh write `source` to `target`, in a private folder, as MSH 4.1.
-pub(crate) fn gmsh(
-    source: &Path,
-    target: &Path,
-    settings: &ImportSettings,
-    task: GmshTask,
-) -> Result<(), ImportError> {
+pub(crate) fn gmsh(source: &Path, target: &Path, settings: &ImportSettings, task: GmshTask) -> Result<(), ImportError> {
     let folder = folder_of(target);
     let gmsh = named(GMSH, "gmsh");
     let is_trusted = is_program(source) && settings.trust_geometry;
@@ -97,7 +93,7 @@ pub(crate) fn gmsh(
     };
     // The user's options of gmsh are for a mesh that he looks at; they are not read here.
     let mut command = match task {
-        GmshTask::MeshAndOptimize if has_fixed_addresses(folder) => with_fixed_addresses(folder).arg(&gmsh),
+        GmshTask::MeshAndOptimize if has_fixed_addresses() => with_fixed_addresses(folder).arg(&gmsh),
         _ => ForeignProgram::new(&gmsh, folder),
     };
     command = command.env("GMSH_HOME", folder);
@@ -144,16 +140,18 @@ fn with_fixed_addresses(folder: &Path) -> ForeignProgram {
 }
 
 /// Whether the system has that, and allows it.
-fn has_fixed_addresses(folder: &Path) -> bool {
-    let nothing = with_fixed_addresses(folder).arg("true");
+fn has_fixed_addresses() -> bool {
+    // Where it cannot be started, its private folder is removed.
+    let Ok(folder) = TemporaryFolder::new() else { return false };
+    let nothing = with_fixed_addresses(folder.path()).arg("true");
     nothing.run(LIMITS, || false, |_, _| ()).is_ok_and(|status| status.success())
 }
 
 /// What a program has said, and how it has ended.
 struct Said {
     status: ExitStatus,
-    /// The first error of gmsh.
-    first_error: Option<String>,
+    /// The first error of gmsh on standard output, where Open CASCADE says more of it, and on standard error.
+    first_errors: [Option<String>; 2],
     /// The last lines that are not empty.
     lines: VecDeque<(Stream, String)>,
 }
@@ -166,12 +164,13 @@ impl Said {
         (reader, cure): (&'static str, &'static str),
     ) -> Result<Self, ImportError> {
         let mut lines = VecDeque::new();
-        let mut first_error = None;
+        let mut first_errors = [None, None];
         let hear = |stream, line: String| {
             if line.trim().is_empty() {
                 return;
             }
-            first_error = first_error.take().or_else(|| error_in(&line));
+            let first = &mut first_errors[usize::from(stream == Stream::Error)];
+            *first = first.take().or_else(|| error_in(&line));
             if lines.len() == KEPT {
                 lines.pop_front();
             }
@@ -179,7 +178,7 @@ impl Said {
         };
         let [source_name, program] = [source.as_os_str(), program].map(|name| name.to_string_lossy().into_owned());
         match command.run(LIMITS, || false, hear) {
-            Ok(status) => Ok(Self { status, first_error, lines }),
+            Ok(status) => Ok(Self { status, first_errors, lines }),
             Err(ProgramError::Start(cause)) => Err(ImportError::NoReader { source_name, reader, program, cause, cure }),
             Err(cause) => Err(ImportError::TooMuch { source_name, program, cause, cure: TOO_MUCH }),
         }
@@ -192,7 +191,8 @@ impl Said {
 
     fn failed(&self, source: &Path, program: &OsStr, copies: &Copies, cure: &'static str) -> ImportError {
         let last = || self.last(Stream::Error).or_else(|| self.last(Stream::Output));
-        let said = self.first_error.as_deref().or_else(last).unwrap_or("it says nothing");
+        let said =
+            self.first_errors.iter().flatten().next().map(String::as_str).or_else(last).unwrap_or("it says nothing");
         ImportError::Failed {
             source_name: source.display().to_string(),
             program: program.to_string_lossy().into_owned(),

@@ -314,7 +314,7 @@ fn curved_elements_that_would_be_inverted_are_optimized() {
         formats.gmsh(&["tube.step", "tube_size.geo", "-3", "-order", "2", "-format", "msh41", "-o", "tube.msh"]);
         let plain = formats.read("tube.msh", AS_IT_IS);
         assert_eq!(plain.is_err(), is_inverted, "{size}: {plain:?}");
-        let settings = ImportSettings { mesh_size: Some(size), raise_order: false };
+        let settings = ImportSettings { mesh_size: Some(size), ..AS_IT_IS };
         let Imported { mesh, notes } =
             formats.read("tube.step", settings).unwrap_or_else(|error| panic!("{size}: {error}"));
         // Else a run of it could not be resumed.
