@@ -52,13 +52,13 @@ pub enum SetupError {
     #[error("the expression \"{text}\" at character {position}: {problem}; {cure}")]
     Expression {
         /// The expression.
-        text: String,
+        text: Box<str>,
         /// Where, in characters from 1.
         position: usize,
         /// What is wrong there.
-        problem: String,
+        problem: Box<str>,
         /// What to write there.
-        cure: String,
+        cure: Box<str>,
     },
     /// An expression that is too long.
     #[error(

@@ -46,7 +46,7 @@ impl Expression {
         }
         let law = syntax::read(text).map_err(|syntax::Refusal { byte, problem, cure }| {
             let position = text.char_indices().take_while(|(at, _)| *at < byte).count() + 1;
-            SetupError::Expression { text: text.to_owned(), position, problem, cure }
+            SetupError::Expression { text: text.into(), position, problem, cure }
         })?;
         Ok(Self { text: text.into(), corners, law: Arc::new(law) })
     }

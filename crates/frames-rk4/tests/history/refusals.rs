@@ -108,7 +108,7 @@ fn formulas_that_are_none_with_the_place() {
         match Expression::new(text, vec![]) {
             Err(SetupError::Expression { text: found, position, problem, cure }) => {
                 let said = format!("{problem}; {cure}");
-                assert!(found == text && position == place && said.contains(what), "{text}: {position} {said}");
+                assert!(&*found == text && position == place && said.contains(what), "{text}: {position} {said}");
             }
             other => panic!("{text}: {other:?}"),
         }

@@ -54,7 +54,7 @@ pub enum BuildError {
         /// The scene file.
         scene: PathBuf,
         /// Why.
-        source: LoadedError,
+        source: Box<LoadedError>,
     },
 }
 

@@ -119,7 +119,7 @@ pub(super) fn reduce(
             Ok(modes) => unsteady(&modes, least),
             // How far the run bends is watched while it runs.
             Err(LoadedError::NoRest) => None,
-            Err(source) => return Err(BuildError::Loaded { scene: scene.path.clone(), source }),
+            Err(source) => return Err(BuildError::Loaded { scene: scene.path.clone(), source: Box::new(source) }),
         };
     }
     if model.refusal.is_none() {

@@ -22,8 +22,8 @@ const DEEPEST: usize = 100;
 /// Why a text is no formula, at which byte, and what to write there.
 pub(super) struct Refusal {
     pub byte: usize,
-    pub problem: String,
-    pub cure: String,
+    pub problem: Box<str>,
+    pub cure: Box<str>,
 }
 
 /// The formula of a text.
@@ -238,7 +238,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-fn refusal(byte: usize, problem: impl Into<String>, cure: impl Into<String>) -> Refusal {
+fn refusal(byte: usize, problem: impl Into<Box<str>>, cure: impl Into<Box<str>>) -> Refusal {
     Refusal { byte, problem: problem.into(), cure: cure.into() }
 }
 
