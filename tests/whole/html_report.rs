@@ -124,3 +124,67 @@ fn follows_the_point(scene: &str, point: &str, place: [f64; 3]) {
 fn the_page_moves_a_free_body_as_the_run_did() {
     follows_the_point("plate", "P3", [500.0, 25.0, 0.0]);
 }
+
+#[test]
+fn the_page_opens_on_the_motion_of_a_point_in_units_of_si() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().to_str().unwrap();
+    let short = ["--set", "time.end=0.004", "--set", "output.stress=true", "-o", out];
+    succeed(&[&["run", "examples/ring.toml"], &short[..]].concat());
+    let file = folder.path().join("ring.h5");
+    succeed(&["report", file.to_str().unwrap()]);
+    let page = data(&file.with_extension("html"));
+
+    let histories = page["histories"].as_array().unwrap();
+    let text = |history: &Value, key: &str| history[key].as_str().unwrap().to_owned();
+    assert_eq!(text(&histories[0], "group"), "point struck");
+    assert_eq!(text(&histories[0], "name"), "displacement (global)");
+    assert!(text(histories.last().unwrap(), "name").starts_with("attitude"), "{:?}", histories.last());
+    let unit_of = |name: &str| {
+        let history = histories.iter().find(|history| text(history, "name") == name);
+        text(history.unwrap_or_else(|| panic!("{name} in {histories:?}")), "unit")
+    };
+    assert_eq!(unit_of("von mises stress"), page["stress"]["unit"]);
+    assert_eq!(["kinetic", "linear (global)", "angular (global)"].map(unit_of), ["mJ", "N s", "N mm s"]);
+    let balances = page["balances"].as_array().unwrap();
+    assert_eq!(balances.iter().map(|balance| text(balance, "unit")).collect::<Vec<_>>(), ["mJ", "N s", "N mm s"]);
+
+    // An axis is longer than rounding and shorter than what moves.
+    for history in histories.iter().filter(|history| !history["unit"].as_str().unwrap().is_empty()) {
+        let greatest = |history: &Value| {
+            let components = history["components"].as_array().unwrap().iter();
+            components.flat_map(|component| numbers(&component["values"])).fold(0.0, |most, x| x.abs().max(most))
+        };
+        let alike = histories.iter().filter(|other| other["unit"] == history["unit"]).map(greatest).fold(0.0, f64::max);
+        let least = history["least_range"].as_f64().unwrap();
+        assert!(least >= 0.99e-12 * alike && least < 1e-8 * alike, "{}: {least} {alike}", history["name"]);
+    }
+}
+
+/// Its nodes may turn, so that a node has six numbers in a shape.
+#[test]
+fn a_body_of_matrices_is_drawn_by_its_nodes_which_move_as_the_run_did() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().to_str().unwrap();
+    succeed(&["run", "examples/boom.toml", "--set", "time.end=1.0", "-o", out]);
+    let file = folder.path().join("boom.h5");
+    succeed(&["report", file.to_str().unwrap()]);
+    let page = data(&file.with_extension("html"));
+
+    let vertices: Vec<[f64; 3]> = vectors(&page["surface"]["vertices"]);
+    assert_eq!(vertices.len(), 9);
+    assert_eq!(page["surface"]["triangles"]["base64"], "");
+    let camera = vertices.iter().position(|x| *x == [6.0, 0.0, 0.0]).unwrap();
+    let shapes: Vec<Vec<[f64; 3]>> =
+        page["shapes"].as_array().unwrap().iter().map(|shape| vectors(&shape["displacement"])).collect();
+    let coordinates = numbers(&page["motion"]["coordinates"]);
+    let results = Results::open(&file, &COLUMNS).unwrap();
+    let elastic = results.vectors::<3>("points/camera/elastic_displacement_body").unwrap();
+    assert_eq!(coordinates.len(), elastic.len() * shapes.len());
+    let greatest = elastic.iter().map(|u| Vector3::from(*u).norm()).fold(0.0, f64::max);
+    for (q, expected) in coordinates.chunks(shapes.len()).zip(elastic) {
+        let u: Vector3<f64> = shapes.iter().zip(q).map(|(shape, q)| Vector3::from(shape[camera]) * *q).sum();
+        assert!((u - Vector3::from(*expected)).norm() < 1e-4 * greatest, "{u} {expected:?}");
+    }
+    assert!(greatest > 1e-3);
+}

@@ -1,7 +1,7 @@
 //! Figures: line charts, deformed bodies and animations, as SVG, PDF, PNG and GIF.
 //!
 //! * [`LineChart`], [`ChartGrid`], [`ShapeGrid`] and [`Animation`] draw figures and write their files.
-//! * [`boundary_triangles`] and [`sharp_edges`] turn a mesh into what the figures draw.
+//! * [`facets`] and [`sharp_edges`] turn the surface of a mesh into what the figures draw.
 //!
 //! The crate knows plain data only: no mesh, no mode, no results file.
 
@@ -38,5 +38,5 @@ pub use chart_grid::ChartGrid;
 pub use error::FigureError;
 pub use series::{Series, Stroke};
 pub use shapes::{Panel, ShapeGrid};
-pub use surface::{boundary_triangles, sharp_edges};
+pub use surface::{facets, sharp_edges};
 pub use view::View;

@@ -1,57 +1,56 @@
-//! The surface of a mesh and its sharp edges.
+//! The surface of a body of second-order faces: its facets and its sharp edges.
+//!
+//! A face has six nodes: three corners, counter-clockwise seen from outside, and the middles between the first and second,
+//! second and third, third and first.
 
-use nalgebra::Vector3;
 use std::collections::HashMap;
 
-/// The faces of a tetrahedron by its nodes in gmsh's order (corners 0 to 3, then the middles of the
-/// edges 01, 12, 02, 03, 23, 13): three corners, counter-clockwise seen from outside, and the middles
-/// between the first and second, second and third, third and first.
-const FACES: [[usize; 6]; 4] = [[0, 2, 1, 6, 5, 4], [0, 1, 3, 4, 9, 7], [1, 2, 3, 5, 8, 9], [0, 3, 2, 7, 8, 6]];
+use nalgebra::Vector3;
 
-/// The surface of a mesh of ten-node tetrahedra as triangles, oriented outwards.
-///
-/// Faces that belong to one element only are split into four triangles each with the nodes in the
-/// middle of their edges. Elements are in gmsh's node order with a positive Jacobian.
-pub fn boundary_triangles(tetrahedra: &[[u32; 10]]) -> Vec<[u32; 3]> {
-    let faces = || tetrahedra.iter().flat_map(|nodes| FACES.map(|face| face.map(|i| nodes[i])));
-    let corners = |face: &[u32; 6]| {
-        let mut corners = [face[0], face[1], face[2]];
-        corners.sort_unstable();
-        corners
-    };
-    let mut elements_of_face = HashMap::new();
-    for face in faces() {
-        *elements_of_face.entry(corners(&face)).or_insert(0_u32) += 1;
-    }
-    faces()
-        .filter(|face| elements_of_face[&corners(face)] == 1)
-        .flat_map(|[a, b, c, ab, bc, ca]| [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]])
-        .collect()
+/// The faces as triangles, four for each, with the nodes in the middle of the edges.
+pub fn facets(faces: &[[u32; 6]]) -> Vec<[u32; 3]> {
+    faces.iter().flat_map(|&[a, b, c, ab, bc, ca]| [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]).collect()
 }
 
-/// The edges at which the surface turns by more than 30°, and those of one triangle only: what a
-/// draughtsman would draw of the body. Pairs of points, the smaller index first.
+/// The edges at which the surface turns by more than 30°, and those of one face only: what a draughtsman would draw of the
+/// body. Pairs of points, the smaller index first, two for each edge.
 ///
-/// Triangles that name points beyond `points` are left out.
-pub fn sharp_edges(points: &[[f64; 3]], triangles: &[[u32; 3]]) -> Vec<[u32; 2]> {
+/// The angle is that between the curved faces in the middle of their edge, so that a coarse mesh of a round body shows no
+/// edges that the body has not got. Faces that name points beyond `points` are left out.
+pub fn sharp_edges(points: &[[f64; 3]], faces: &[[u32; 6]]) -> Vec<[u32; 2]> {
     let least_cosine = 30_f64.to_radians().cos();
-    let mut edges: HashMap<[u32; 2], Vec<Vector3<f64>>> = HashMap::new();
-    for &triangle in triangles {
-        let corner = |i: usize| points.get(triangle[i] as usize).copied().map(Vector3::from);
-        let (Some(a), Some(b), Some(c)) = (corner(0), corner(1), corner(2)) else { continue };
-        let normal = (b - a).cross(&(c - a)).normalize();
-        for (i, j) in [(0, 1), (1, 2), (2, 0)] {
-            let (i, j) = (triangle[i], triangle[j]);
-            edges.entry([i.min(j), i.max(j)]).or_default().push(normal);
+    // By its corners: its middle, and the normals of its faces there.
+    let mut edges: HashMap<[u32; 2], (u32, Vec<Vector3<f64>>)> = HashMap::new();
+    for &[a, b, c, ab, bc, ca] in faces {
+        for turned in [[a, b, c, ab, bc, ca], [b, c, a, bc, ca, ab], [c, a, b, ca, ab, bc]] {
+            let [start, end, _, middle, ..] = turned;
+            let Some(normal) = normal_at_first_edge(points, turned) else { continue };
+            let edge = edges.entry([start.min(end), start.max(end)]).or_insert((middle, Vec::new()));
+            edge.1.push(normal);
         }
     }
     let is_sharp = |normals: &[Vector3<f64>]| match normals {
         [one, two] => one.dot(two) < least_cosine,
         _ => true,
     };
-    let mut sharp: Vec<_> = edges.into_iter().filter(|(_, normals)| is_sharp(normals)).map(|edge| edge.0).collect();
+    let halves = |([start, end], (middle, _)): ([u32; 2], (u32, _))| {
+        [start, end].map(|corner| [corner.min(middle), corner.max(middle)])
+    };
+    let mut sharp: Vec<_> = edges.into_iter().filter(|(_, (_, normals))| is_sharp(normals)).flat_map(halves).collect();
     sharp.sort_unstable();
     sharp
+}
+
+/// Outward unit normal of a curved face in the middle of the edge between its first two corners.
+fn normal_at_first_edge(points: &[[f64; 3]], face: [u32; 6]) -> Option<Vector3<f64>> {
+    let mut places = [Vector3::zeros(); 6];
+    for (place, node) in places.iter_mut().zip(face) {
+        *place = Vector3::from(*points.get(node as usize)?);
+    }
+    let [a, b, c, ab, bc, ca] = places;
+    // Derivatives of the shape functions there: along the edge, and away from it.
+    let inwards = 2.0 * (bc + ca - ab) - 0.5 * (a + b) - c;
+    Some((b - a).cross(&inwards).normalize())
 }
 
 #[cfg(test)]
@@ -66,7 +65,7 @@ mod tests {
     #[test]
     fn the_surface_of_a_block_is_closed_and_encloses_its_volume() {
         let block = Block::new([10.0, 4.0, 3.0], [5, 2, 3]);
-        let triangles = boundary_triangles(&block.tetrahedra);
+        let triangles = facets(&block.outer_faces());
         // Two triangles per square of the faces, each split into four.
         assert_eq!(triangles.len(), 2 * 4 * 2 * (5 * 2 + 2 * 3 + 5 * 3));
         let (mut area, mut vector_area, mut volume) = (0.0, Vector3::zeros(), 0.0);
@@ -84,19 +83,9 @@ mod tests {
     }
 
     #[test]
-    fn an_element_alone_has_sixteen_triangles_through_all_its_nodes() {
-        let triangles = boundary_triangles(&[[0, 1, 2, 3, 4, 5, 6, 7, 8, 9]]);
-        let mut nodes: Vec<_> = triangles.iter().flatten().copied().collect();
-        nodes.sort_unstable();
-        nodes.dedup();
-        assert_eq!((triangles.len(), nodes.len()), (16, 10));
-        assert!(boundary_triangles(&[]).is_empty());
-    }
-
-    #[test]
     fn the_sharp_edges_of_a_block_are_its_twelve() {
         let block = Block::new([10.0, 4.0, 3.0], [5, 2, 3]);
-        let edges = sharp_edges(&block.points, &boundary_triangles(&block.tetrahedra));
+        let edges = sharp_edges(&block.points, &block.outer_faces());
         let length: f64 = edges
             .iter()
             .map(|edge| {
@@ -106,5 +95,39 @@ mod tests {
             .sum();
         assert_eq!(edges.len(), 4 * 2 * (5 + 2 + 3));
         assert!((length - 4.0 * (10.0 + 4.0 + 3.0)).abs() < 1e-10, "{length}");
+    }
+
+    /// The wall of a tube of so many faces around and two along, with its two open ends.
+    fn tube(around: usize, is_curved: bool) -> (Vec<[f64; 3]>, Vec<[u32; 6]>) {
+        let (rings, seats) = (5, 2 * around);
+        let step = std::f64::consts::TAU / seats as f64;
+        let place = |ring: usize, seat: usize| {
+            let (sin, cos) = (step * seat as f64).sin_cos();
+            let inwards = if is_curved || seat.is_multiple_of(2) { 1.0 } else { step.cos() };
+            [inwards * cos, inwards * sin, ring as f64]
+        };
+        let points = (0..rings).flat_map(|ring| (0..seats).map(move |seat| place(ring, seat))).collect();
+        let node = |ring: usize, seat: usize| (ring * seats + seat % seats) as u32;
+        let mut faces = Vec::new();
+        for (ring, seat) in [0, 2].into_iter().flat_map(|ring| (0..around).map(move |face| (ring, 2 * face))) {
+            let at = |up: usize, on: usize| node(ring + up, seat + on);
+            faces.push([at(0, 0), at(0, 2), at(2, 2), at(0, 1), at(1, 2), at(1, 1)]);
+            faces.push([at(0, 0), at(2, 2), at(2, 0), at(1, 1), at(2, 1), at(1, 0)]);
+        }
+        (points, faces)
+    }
+
+    #[test]
+    fn a_coarse_tube_has_no_edges_but_its_rims() {
+        for around in [4, 5, 6, 8, 12] {
+            let (points, faces) = tube(around, true);
+            let edges = sharp_edges(&points, &faces);
+            assert_eq!(edges.len(), 2 * 2 * around, "{around} faces around: {edges:?}");
+            let is_of_a_rim = |edge: &[u32; 2]| edge.iter().all(|i| [0.0, 4.0].contains(&points[*i as usize][2]));
+            assert!(edges.iter().all(is_of_a_rim), "{edges:?}");
+        }
+        // With straight edges it is a prism, and looks like one.
+        let (points, faces) = tube(6, false);
+        assert_eq!(sharp_edges(&points, &faces).len(), 2 * (2 * 6 + 2 * 6));
     }
 }

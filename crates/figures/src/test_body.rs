@@ -1,6 +1,7 @@
 //! A block of ten-node tetrahedra for the tests.
 
 use std::array::from_fn;
+use std::collections::HashMap;
 
 /// A block with edges along the axes and its middle at the origin.
 pub(crate) struct Block {
@@ -45,5 +46,21 @@ impl Block {
             }
         }
         Self { points, tetrahedra }
+    }
+
+    /// The faces that one element alone has, seen from outside: corners, then the middles of their edges.
+    pub(crate) fn outer_faces(&self) -> Vec<[u32; 6]> {
+        let of_element = [[0, 2, 1, 6, 5, 4], [0, 1, 3, 4, 9, 7], [1, 2, 3, 5, 8, 9], [0, 3, 2, 7, 8, 6]];
+        let faces = || self.tetrahedra.iter().flat_map(|nodes| of_element.map(|face| face.map(|i| nodes[i])));
+        let corners = |face: &[u32; 6]| {
+            let mut corners = [face[0], face[1], face[2]];
+            corners.sort_unstable();
+            corners
+        };
+        let mut elements_of_face = HashMap::new();
+        for face in faces() {
+            *elements_of_face.entry(corners(&face)).or_insert(0_u32) += 1;
+        }
+        faces().filter(|face| elements_of_face[&corners(face)] == 1).collect()
     }
 }

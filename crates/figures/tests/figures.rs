@@ -310,16 +310,16 @@ fn grid<'a>(block: &'a Block, triangles: &'a [[u32; 3]], edges: &'a [[u32; 2]], 
 #[test]
 fn mode_shapes_fill_their_panels() {
     let block = Block::new([1000.0, 50.0, 10.0], [100, 5, 1]);
-    let triangles = boundary_triangles(&block.tetrahedra);
-    let edges = sharp_edges(&block.points, &triangles);
+    let triangles = facets(&block.outer_faces());
+    let edges = sharp_edges(&block.points, &block.outer_faces());
     assert_eq!(triangles.len(), 2 * 4 * 2 * (500 + 100 + 5));
     let figure = grid(&block, &triangles, &edges, 60.0);
     let [svg, _, png] = figure.save(folder().join("modes")).unwrap();
     assert!(size_of(&svg) < 2_000_000 && size_of(&png) < 1_000_000, "{} {}", size_of(&svg), size_of(&png));
 
     let cube = Block::new([100.0, 80.0, 60.0], [4, 4, 4]);
-    let triangles = boundary_triangles(&cube.tetrahedra);
-    let edges = sharp_edges(&cube.points, &triangles);
+    let triangles = facets(&cube.outer_faces());
+    let edges = sharp_edges(&cube.points, &cube.outer_faces());
     let mut figure = grid(&cube, &triangles, &edges, 0.0);
     figure.panels.truncate(3);
     figure.columns = 3;
@@ -331,8 +331,8 @@ fn mode_shapes_fill_their_panels() {
 fn small_bodies_are_vectors_and_large_ones_pictures() {
     let draw = |name: &str, cells: [usize; 3]| {
         let block = Block::new([1000.0, 200.0, 100.0], cells);
-        let triangles = boundary_triangles(&block.tetrahedra);
-        let edges = sharp_edges(&block.points, &triangles);
+        let triangles = facets(&block.outer_faces());
+        let edges = sharp_edges(&block.points, &block.outer_faces());
         let mut figure = grid(&block, &triangles, &edges, 60.0);
         figure.panels.truncate(4);
         let [svg, pdf, _] = figure.save(folder().join(name)).unwrap();
@@ -386,7 +386,7 @@ fn areas_that_cannot_be_painted_one_after_another_are_a_picture() {
 #[test]
 fn shapes_refuse_what_does_not_fit_together() {
     let block = Block::new([4.0, 2.0, 1.0], [2, 1, 1]);
-    let triangles = boundary_triangles(&block.tetrahedra);
+    let triangles = facets(&block.outer_faces());
     let good = grid(&block, &triangles, &[], 0.1);
     let save = |figure: ShapeGrid| figure.save(folder().join("never")).unwrap_err();
 
@@ -408,8 +408,8 @@ fn shapes_refuse_what_does_not_fit_together() {
 #[test]
 fn a_tumbling_plate_is_a_small_animation() {
     let block = Block::new([1000.0, 50.0, 10.0], [100, 5, 1]);
-    let triangles = boundary_triangles(&block.tetrahedra);
-    let edges = sharp_edges(&block.points, &triangles);
+    let triangles = facets(&block.outer_faces());
+    let edges = sharp_edges(&block.points, &block.outer_faces());
     let frames: Vec<Frame> = (0..60)
         .map(|i| {
             let time = i as f64 / 60.0;

@@ -1,6 +1,7 @@
 //! `flexframe report`: a results file as one HTML page.
 
 mod contents;
+mod quantities;
 
 use std::path::{Path, PathBuf};
 

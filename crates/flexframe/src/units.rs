@@ -33,6 +33,34 @@ impl UnitLabels<'_> {
         self.named("Pa", [-1, 1, -2]).unwrap_or_else(|| format!("{mass}/({length} {time}²)"))
     }
 
+    /// "N mm".
+    pub(crate) fn moment(&self) -> String {
+        self.times_force(&[self.length]).unwrap_or_else(|| format!("{} {}²/{}²", self.mass, self.length, self.time))
+    }
+
+    /// "mW".
+    pub(crate) fn power(&self) -> String {
+        let Self { length, mass, time } = self;
+        self.named("W", [2, 1, -3]).unwrap_or_else(|| format!("{mass} {length}²/{time}³"))
+    }
+
+    /// "N s".
+    pub(crate) fn momentum(&self) -> String {
+        self.times_force(&[self.time]).unwrap_or_else(|| format!("{} {}/{}", self.mass, self.length, self.time))
+    }
+
+    /// "N mm s".
+    pub(crate) fn angular_momentum(&self) -> String {
+        let Self { length, mass, time } = self;
+        self.times_force(&[length, time]).unwrap_or_else(|| format!("{mass} {length}²/{time}"))
+    }
+
+    /// The unit of force where it has a name, times other units.
+    fn times_force(&self, others: &[&str]) -> Option<String> {
+        let force = self.named("N", [1, 1, -2])?;
+        Some([&[force.as_str()], others].concat().join(" "))
+    }
+
     /// A unit of SI with its prefix, from the powers of length, mass and time that it has in m, kg and s.
     fn named(&self, name: &str, powers: [i32; 3]) -> Option<String> {
         let prefix = match self.tens(powers)? {
@@ -136,6 +164,15 @@ mod tests {
 
     #[test]
     fn derived_units_have_their_names_where_they_are_of_si() {
+        for (length, mass, time, expected) in [
+            ("mm", "Mg", "s", ["mW", "N mm", "N s", "N mm s"]),
+            ("mm", "g", "ms", ["W", "N mm", "N ms", "N mm ms"]),
+            ("in", "lb", "s", ["lb in²/s³", "lb in²/s²", "lb in/s", "lb in²/s"]),
+        ] {
+            let units = UnitLabels { length, mass, time };
+            let found = [units.power(), units.moment(), units.momentum(), units.angular_momentum()];
+            assert_eq!(found, expected, "{units:?}");
+        }
         for (length, mass, time, expected) in [
             ("mm", "Mg", "s", ["N", "mJ", "MPa"]),
             ("mm", "t", "s", ["N", "mJ", "MPa"]),

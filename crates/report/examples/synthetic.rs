@@ -3,7 +3,8 @@
 //!     cargo run -p report --example synthetic -- KIND FILE
 //!
 //! `small` is a struck plate, `large` one of 60 000 vertices and 40 modes, `unfinished` a run that was stopped, `rigid` a
-//! body without a surface, and `patch` a square whose displacement and stress are the same everywhere.
+//! body without a surface, `hinged` a plate that turns about one end, `nodes` one of which only the nodes are known, and
+//! `patch` a square whose displacement and stress are the same everywhere.
 
 use std::error::Error;
 use std::f64::consts::{PI, TAU};
@@ -24,11 +25,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let [kind, path] = arguments.as_slice() else { return Err("expected: KIND FILE".into()) };
     let mut report = match kind.as_str() {
-        "small" | "unfinished" => plate(120, 8, 6, 5001, "Free plate, 50 N end pulse"),
+        "small" | "unfinished" | "hinged" | "nodes" => plate(120, 8, 6, 5001, "Free plate, 50 N end pulse"),
         "large" => plate(1000, 26, 40, 5001, "Plate of 60 000 vertices and 40 modes"),
         "rigid" => plate(4, 2, 0, 500, "Rigid body without a mesh"),
         "patch" => patch(),
-        _ => return Err(format!("{kind}: expected small, large, unfinished, rigid or patch").into()),
+        _ => return Err(format!("{kind}: expected small, large, unfinished, rigid, hinged, nodes or patch").into()),
     };
     if kind == "unfinished" {
         let words = "This run stopped at 0.5 s of 0.8 s. Continue it with `flexframe resume plate.part.h5`.";
@@ -39,6 +40,14 @@ fn main() -> Result<(), Box<dyn Error>> {
     match kind.as_str() {
         "rigid" => report.surface = None,
         "large" => report.stress = None, // as in most runs
+        "hinged" => hinge(&mut report),
+        "nodes" => {
+            report.stress = None;
+            if let Some(surface) = &mut report.surface {
+                surface.triangles.clear();
+                surface.edges.clear();
+            }
+        }
         _ => {}
     }
     report::write(&report, Path::new(path))?;
@@ -75,6 +84,14 @@ fn surface(along: usize, across: usize) -> Surface {
     sheet(across, 2, &|a, b| [l / 2.0, w * (a - 0.5), t * (b - 0.5)]);
     sheet(across, 2, &|a, b| [-l / 2.0, w * (0.5 - a), t * (b - 0.5)]);
     Surface { vertices, triangles, edges }
+}
+
+/// Lays the origin into the end of the plate and leaves it there, so that the middle of the plate goes around it.
+fn hinge(report: &mut Report) {
+    for [x, ..] in report.surface.iter_mut().flat_map(|surface| &mut surface.vertices) {
+        *x += LENGTH as f32 / 2.0;
+    }
+    report.motion.origins.fill([0.0; 3]);
 }
 
 /// A square with two shapes: one moves it by (3, 4, 0) under tension in x, one by (0, 0, 2) under shear.
@@ -154,6 +171,7 @@ fn plate(along: usize, across: usize, modes: usize, rows: usize, title: &str) ->
         group: group.to_owned(),
         name: name.to_owned(),
         unit: unit.to_owned(),
+        least_range: 1e-12,
         components: ["x", "y", "z"].iter().enumerate().map(|(i, axis)| course(axis, &|t| value(t)[i])).collect(),
     };
     let bending = |t: f64| (0..modes).map(|k| coordinate(k, t)).sum::<f64>();
@@ -182,6 +200,7 @@ fn plate(along: usize, across: usize, modes: usize, rows: usize, title: &str) ->
             name: "Energy".into(),
             law: "kinetic + strain energy − work of the loads + dissipation is constant".into(),
             unit: "mJ".into(),
+            least_range: 6e-11,
             terms: vec![course("kinetic", &|t| 60.0 - strain(t)), course("strain", &strain), course("work", &|_| 60.0)],
             errors: vec![course("", &|t| 2e-9 * (400.0 * t).sin())],
         },
@@ -189,6 +208,7 @@ fn plate(along: usize, across: usize, modes: usize, rows: usize, title: &str) ->
             name: "Linear momentum".into(),
             law: "momentum − impulse of the loads is constant".into(),
             unit: "N s".into(),
+            least_range: 4e-12,
             terms: ["x", "y", "z"].iter().map(|axis| course(axis, &|t| 4.0 * (t * 3.0).sin())).collect(),
             errors: ["x", "y", "z"].iter().map(|axis| course(axis, &|t| 1e-14 * (900.0 * t).cos())).collect(),
         },

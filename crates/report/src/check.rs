@@ -25,9 +25,11 @@ pub(crate) fn check(report: &Report) -> Result<(), ReportError> {
     let rows = report.motion.times.len();
     for history in &report.histories {
         let what = format!("history \"{}: {}\"", history.group, history.name);
+        least_range(&what, history.least_range)?;
         check_components(&what, &history.components, rows)?;
     }
     for balance in &report.balances {
+        least_range(&format!("balance \"{}\"", balance.name), balance.least_range)?;
         check_components(&format!("balance \"{}\", terms", balance.name), &balance.terms, rows)?;
         check_components(&format!("balance \"{}\", errors", balance.name), &balance.errors, rows)?;
     }
@@ -62,8 +64,8 @@ fn check_motion(motion: &Motion, shapes: usize) -> Result<(), ReportError> {
 
 fn check_surface(surface: &Surface) -> Result<(), ReportError> {
     let count = surface.vertices.len();
-    if surface.triangles.is_empty() {
-        return Err(ReportError::Empty { what: "triangles".to_owned() });
+    if surface.vertices.is_empty() {
+        return Err(ReportError::Empty { what: "vertices".to_owned() });
     }
     finite("vertices", surface.vertices.as_flattened().iter().map(|x| f64::from(*x)))?;
     let outside = |indices: &[u32]| indices.iter().copied().find(|index| *index as usize >= count);
@@ -121,6 +123,10 @@ fn length(what: &str, found: usize, expected: usize) -> Result<(), ReportError> 
         return Ok(());
     }
     Err(ReportError::WrongLength { what: what.to_owned(), found, expected })
+}
+
+fn least_range(what: &str, least: f64) -> Result<(), ReportError> {
+    finite(&format!("{what}, least range"), [least].into_iter())
 }
 
 /// Numbers are written in single precision, where those beyond 3e38 are infinite.

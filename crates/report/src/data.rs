@@ -84,6 +84,7 @@ struct HistoryData<'a> {
     group: &'a str,
     name: &'a str,
     unit: &'a str,
+    least_range: f64,
     components: Vec<ComponentData<'a>>,
 }
 
@@ -98,6 +99,7 @@ struct BalanceData<'a> {
     name: &'a str,
     law: &'a str,
     unit: &'a str,
+    least_range: f64,
     /// Greatest magnitude of an error, and of a term, over all rows.
     error_peak: f64,
     term_peak: f64,
@@ -138,6 +140,7 @@ impl<'a> Data<'a> {
                     group: &history.group,
                     name: &history.name,
                     unit: &history.unit,
+                    least_range: history.least_range,
                     components: components(&history.components, thinning.as_ref()),
                 })
                 .collect(),
@@ -148,6 +151,7 @@ impl<'a> Data<'a> {
                     name: &balance.name,
                     law: &balance.law,
                     unit: &balance.unit,
+                    least_range: balance.least_range,
                     error_peak: greatest(&balance.errors),
                     term_peak: greatest(&balance.terms),
                     terms: components(&balance.terms, thinning.as_ref()),

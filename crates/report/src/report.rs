@@ -13,7 +13,7 @@ pub struct Report {
     pub units: Units,
     /// Lines for the top of the page, such as the mass and the size of the mesh.
     pub facts: Vec<Fact>,
-    /// Surface of the undeformed body; none for a rigid body without a mesh.
+    /// Surface or nodes of the undeformed body; none for a rigid body without a mesh.
     pub surface: Option<Surface>,
     /// Shapes of the body, in the order of the coordinates.
     pub shapes: Vec<Shape>,
@@ -62,7 +62,7 @@ pub struct Fact {
     pub value: String,
 }
 
-/// Surface of the undeformed body.
+/// Surface of the undeformed body, or its nodes alone where nothing is known of a surface: then there are no triangles.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Surface {
     /// Vertices in the reference shape, body axes, from the origin of the body frame.
@@ -134,6 +134,8 @@ pub struct History {
     pub name: String,
     /// Unit; empty for a plain number.
     pub unit: String,
+    /// The axis of its plot is at least so long: what is less may be rounding. 0 where that is not known.
+    pub least_range: f64,
     /// Its components, at least one.
     pub components: Vec<Component>,
 }
@@ -156,6 +158,8 @@ pub struct Balance {
     pub law: String,
     /// Unit of the terms and of the error.
     pub unit: String,
+    /// The axes of its plots are at least so long: what is less may be rounding. 0 where that is not known.
+    pub least_range: f64,
     /// The terms.
     pub terms: Vec<Component>,
     /// What is left over: zero in exact motion. More than one for a vector.

@@ -23,6 +23,7 @@ fn strip(vertices: usize, modes: usize, rows: usize, components: usize) -> Repor
         group: format!("point {i}"),
         name: "displacement".to_owned(),
         unit: "mm".to_owned(),
+        least_range: 1e-9,
         components: vec![course("x")],
     };
     Report {
@@ -55,6 +56,7 @@ fn strip(vertices: usize, modes: usize, rows: usize, components: usize) -> Repor
             name: "energy".to_owned(),
             law: "constant".to_owned(),
             unit: "mJ".to_owned(),
+            least_range: 1e-12,
             terms: vec![course("kinetic")],
             errors: vec![course("")],
         }],

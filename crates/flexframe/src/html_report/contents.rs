@@ -10,22 +10,29 @@ use report::{
     Surface, Units,
 };
 use results::{Column, Results, Values};
-use scene::{Model, Scene};
+use scene::{Meshed, Model, Scene};
 
 use crate::columns::COLUMNS;
 use crate::effects::is_on;
+use crate::html_report::quantities::Quantities;
 use crate::modes::frequency_unit;
 use crate::report::{BodyReport, MeshReport, quantity};
 use crate::row::Row;
 use crate::surface;
 use crate::units::UnitLabels;
 
+/// A body without elements is drawn by so many of its nodes at the most.
+const MOST_NODES: usize = 20_000;
+
 /// All of it; `None` where the file has not got the columns that it needs.
 pub(super) fn contents(file: &Path, results: &Results, scene: &Scene, model: &Model) -> Option<Report> {
     let body = BodyReport::new(model);
-    let with_elements = model.meshed.as_ref().filter(|meshed| meshed.mesh.has_elements());
-    let surface = with_elements.map(|meshed| surface::Surface::new(&meshed.mesh));
+    let surface = model.meshed.as_ref().map(|Meshed { mesh, .. }| match mesh.has_elements() {
+        true => surface::Surface::new(mesh),
+        false => surface::Surface::of_nodes(mesh, MOST_NODES),
+    });
     let units = &results.metadata.units;
+    let quantities = Quantities::new(results, model);
     Some(Report {
         title: results.metadata.title.clone(),
         program: format!("flexframe {}", results.metadata.program_version),
@@ -36,8 +43,8 @@ pub(super) fn contents(file: &Path, results: &Results, scene: &Scene, model: &Mo
         shapes: shapes(surface.as_ref(), model, &body),
         stress: surface.as_ref().and_then(|surface| stress(surface, results, scene, model)),
         motion: motion(results, model)?,
-        histories: COLUMNS.iter().flat_map(|column| histories(column, results, &body)).collect(),
-        balances: balances(results)?,
+        histories: in_order().flat_map(|column| histories(column, results, &body, &quantities)).collect(),
+        balances: balances(results, &quantities)?,
         effects: effects(scene, model),
         scene: SceneText {
             file: scene.path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
@@ -45,6 +52,17 @@ pub(super) fn contents(file: &Path, results: &Results, scene: &Scene, model: &Mo
         },
         warnings: warnings(results, model),
     })
+}
+
+/// The columns in the order in which they are looked at: first the motion of the points, last the quaternion.
+fn in_order() -> impl Iterator<Item = &'static Column<Row>> {
+    let mut columns: Vec<_> = COLUMNS.iter().collect();
+    columns.sort_by_key(|column| match column.values {
+        Values::Points(_) | Values::PointNumbers(..) => 0,
+        Values::Quaternion(_) => 2,
+        _ => 1,
+    });
+    columns.into_iter()
 }
 
 fn state(file: &Path, results: &Results, scene: &Scene) -> Option<RunState> {
@@ -149,8 +167,8 @@ fn motion(results: &Results, model: &Model) -> Option<Motion> {
 }
 
 /// A column as histories: one, or one for each point. The time is none.
-fn histories(column: &Column<Row>, results: &Results, body: &BodyReport) -> Vec<History> {
-    let unit = unit(column, results);
+fn histories(column: &Column<Row>, results: &Results, body: &BodyReport, quantities: &Quantities<'_>) -> Vec<History> {
+    let (unit, least_range) = (quantities.unit(column), quantities.least_range(column));
     let frame = if column.frame == "none" { String::new() } else { format!(" ({})", column.frame) };
     let history = |group: String, name: &str, path: &str| {
         let table = results.table(path)?;
@@ -161,7 +179,7 @@ fn histories(column: &Column<Row>, results: &Results, body: &BodyReport) -> Vec<
             })
             .collect::<Vec<_>>();
         let name = format!("{}{frame}", name.replace('_', " "));
-        (!components.is_empty()).then(|| History { group, name, unit: unit.clone(), components })
+        (!components.is_empty()).then(|| History { group, name, unit: unit.clone(), least_range, components })
     };
     let path = column.path;
     if path == "time" {
@@ -198,13 +216,8 @@ fn component_name(column: &Column<Row>, k: usize, width: usize, body: &BodyRepor
     }
 }
 
-fn unit(column: &Column<Row>, results: &Results) -> String {
-    let unit = column.unit(&results.metadata.units).replace("^2", "²");
-    if unit == "1" { String::new() } else { unit }
-}
-
 /// The three balances, each with its terms and with its change since the first row.
-fn balances(results: &Results) -> Option<Vec<Balance>> {
+fn balances(results: &Results, quantities: &Quantities<'_>) -> Option<Vec<Balance>> {
     let balance = |name: &str, law: &str, terms: &[(&str, &str)], error: &str| {
         let column = COLUMNS.iter().find(|column| column.path == error)?;
         let components = |path: &str, name: &str, from_first: bool| -> Option<Vec<Component>> {
@@ -223,7 +236,8 @@ fn balances(results: &Results) -> Option<Vec<Balance>> {
         Some(Balance {
             name: name.to_owned(),
             law: law.to_owned(),
-            unit: unit(column, results),
+            unit: quantities.unit(column),
+            least_range: quantities.least_range(column),
             terms: terms.into_iter().flatten().collect(),
             errors: components(error, "", true)?,
         })

@@ -20,6 +20,7 @@ uniform highp isampler2DArray shearStresses;
 uniform vec4 stressWeights[STRESS_GROUPS];
 #endif
 uniform float peak;
+uniform float pointSize;
 out vec3 seen;
 out float level;
 
@@ -46,6 +47,7 @@ void main() {
     vec4 place = modelViewMatrix * vec4(position + exaggeration * u, 1.0);
     seen = place.xyz;
     gl_Position = projectionMatrix * place;
+    gl_PointSize = pointSize;
 }`;
 
 const FRAGMENT = /* glsl */ `
@@ -57,9 +59,14 @@ in float level;
 out vec4 colour;
 
 void main() {
+#ifdef NODES
+    if (length(gl_PointCoord - 0.5) > 0.5) discard;
+    float light = 1.0;
+#else
     // Flat facets: the normal of the deformed triangle, which faces the viewer.
     vec3 normal = normalize(cross(dFdx(seen), dFdy(seen)));
     float light = 0.62 + 0.3 * max(dot(normal, normalize(vec3(-0.35, 0.6, 0.72))), 0.0) + 0.12 * normal.z;
+#endif
     float x = clamp(level, 0.0, 1.0) * float(${SCALE.length - 1});
     int below = min(int(x), ${SCALE.length - 2});
     vec3 base = coloured ? mix(scale[below], scale[below + 1], x - float(below)) : plain;
@@ -115,7 +122,9 @@ export class Body {
     readonly stressPeaks: number[] | null = null;
     private readonly uniforms: Record<string, THREE.IUniform>;
     private readonly materials = new Map<string, THREE.ShaderMaterial>();
-    private readonly surface: THREE.Mesh;
+    /// The facets, or the nodes where no facets are known.
+    private readonly surface: THREE.Mesh | THREE.Points;
+    readonly hasFacets: boolean;
     private readonly factors: number[];
     private readonly stressFactors: number[] = [];
     private readonly products: [number, number][] = [];
@@ -138,6 +147,7 @@ export class Body {
             weights: { value: vectors() },
             exaggeration: { value: 1 },
             peak: { value: 1 },
+            pointSize: { value: 1 },
             stressWeights: { value: [] },
             scale: { value: SCALE.map((hex) => new THREE.Vector3(...rgb(hex))) },
             plain: { value: new THREE.Vector3(0.6, 0.66, 0.72) },
@@ -154,10 +164,13 @@ export class Body {
         }
         const geometry = new THREE.BufferGeometry();
         geometry.setAttribute("position", new THREE.BufferAttribute(positions, 3));
-        geometry.setIndex(new THREE.BufferAttribute(indices(surface.triangles), 1));
+        const triangles = indices(surface.triangles);
+        this.hasFacets = triangles.length > 0;
+        if (this.hasFacets) geometry.setIndex(new THREE.BufferAttribute(triangles, 1));
         geometry.computeBoundingSphere();
         this.bounds = geometry.boundingSphere!;
-        this.surface = new THREE.Mesh(geometry, this.material("plain"));
+        const material = this.material("plain");
+        this.surface = this.hasFacets ? new THREE.Mesh(geometry, material) : new THREE.Points(geometry, material);
         const lines = new THREE.BufferGeometry();
         lines.setAttribute("position", geometry.getAttribute("position"));
         lines.setIndex(new THREE.BufferAttribute(indices(surface.edges), 1));
@@ -173,7 +186,7 @@ export class Body {
     }
 
     private defines() {
-        return { GROUPS: groups(this.count), SHAPES: this.count };
+        return { GROUPS: groups(this.count), SHAPES: this.count, ...(this.hasFacets ? {} : { NODES: 1 }) };
     }
 
     private material(kind: "plain" | "stress"): THREE.ShaderMaterial {
@@ -196,6 +209,11 @@ export class Body {
             glslVersion: THREE.GLSL3, vertexShader: VERTEX, fragmentShader: LINE_FRAGMENT,
             uniforms: { ...uniforms, line: { value: new THREE.Vector4(0, 0, 0, opacity) } }, defines: this.defines(), transparent: true,
         });
+    }
+
+    /// Diameter of nodes, in pixels of the picture.
+    setPointSize(pixels: number) {
+        this.uniforms.pointSize.value = pixels;
     }
 
     setLineColours(edge: THREE.Color, outline: THREE.Color) {

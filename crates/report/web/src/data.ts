@@ -2,9 +2,9 @@
 
 export interface Numbers { type: "f64" | "f32" | "i16" | "u16" | "u32"; factor: number; base64: string }
 export interface Component { name: string; values: Numbers }
-export interface History { group: string; name: string; unit: string; components: Component[] }
+export interface History { group: string; name: string; unit: string; least_range: number; components: Component[] }
 export interface Balance {
-    name: string; law: string; unit: string; error_peak: number; term_peak: number;
+    name: string; law: string; unit: string; least_range: number; error_peak: number; term_peak: number;
     terms: Component[]; errors: Component[];
 }
 export interface Shape {

@@ -6,6 +6,7 @@ import { Clock } from "./clock";
 import { readReport, type Report } from "./data";
 import { Motion } from "./motion";
 import { panels } from "./panels";
+import { listenToPrinter } from "./print";
 import { Viewer } from "./viewer";
 
 function header(report: Report) {
@@ -68,7 +69,7 @@ header(report);
 const motion = new Motion(report);
 const clock = new Clock(motion);
 const viewer = new Viewer(report, motion, clock);
-panels(report, clock, viewer);
+listenToPrinter(viewer, panels(report, clock, viewer));
 keyboard(clock, viewer);
 // For the test of the page.
 Object.assign(window, { reportPage: { clock, viewer } });

@@ -60,7 +60,7 @@ function thinned(report: Report, points: number, sentence: string): HTMLElement[
     return points < report.rows ? [make("p", `${points} of ${report.rows} rows. ${sentence}`, "muted")] : [];
 }
 
-function histories(panel: HTMLElement, report: Report, clock: Clock, times: Float64Array) {
+function histories(panel: HTMLElement, report: Report, clock: Clock, times: Float64Array): PlotGroup {
     const group = new PlotGroup(clock, times);
     onSchemeChange(() => group.recolour());
     const names = [...new Set(report.histories.map((history) => history.group))];
@@ -70,8 +70,8 @@ function histories(panel: HTMLElement, report: Report, clock: Clock, times: Floa
     const draw = () => {
         group.clear();
         plots.replaceChildren();
-        for (const { name, unit, components } of report.histories.filter((history) => history.group === select.value))
-            new Plot(plots, group, name, unit, courses(components));
+        for (const { name, unit, least_range, components } of report.histories.filter((history) => history.group === select.value))
+            new Plot(plots, group, name, unit, least_range, courses(components));
     };
     select.addEventListener("change", draw);
     const bar = make("div", "", "bar");
@@ -81,9 +81,10 @@ function histories(panel: HTMLElement, report: Report, clock: Clock, times: Floa
     panel.append(bar, plots);
     panel.append(...thinned(report, times.length, "Each range of rows shows its least and its greatest value, so no peak is lost."));
     draw();
+    return group;
 }
 
-function balances(panel: HTMLElement, report: Report, clock: Clock, times: Float64Array) {
+function balances(panel: HTMLElement, report: Report, clock: Clock, times: Float64Array): PlotGroup {
     const rows = report.balances.map(({ name, unit, error_peak, term_peak }) => [
         name, withUnit(number(error_peak, 3), unit), withUnit(number(term_peak, 3), unit),
         term_peak > 0 ? number(error_peak / term_peak, 2) : "–",
@@ -94,13 +95,14 @@ function balances(panel: HTMLElement, report: Report, clock: Clock, times: Float
     const bar = make("div", "", "bar");
     bar.append(make("span"), zoomButtons(group, report.units.time));
     panel.append(bar);
-    for (const { name, law, unit, terms, errors } of report.balances) {
+    for (const { name, law, unit, least_range, terms, errors } of report.balances) {
         const part = make("section");
         part.append(make("h3", name), make("p", law, "muted"));
         panel.append(part);
-        new Plot(part, group, "Terms", unit, courses(terms));
-        new Plot(part, group, "Error", unit, courses(errors));
+        new Plot(part, group, "Terms", unit, least_range, courses(terms));
+        new Plot(part, group, "Error", unit, least_range, courses(errors));
     }
+    return group;
 }
 
 function shapes(panel: HTMLElement, report: Report, viewer: Viewer, coordinates: Float32Array) {
@@ -152,10 +154,17 @@ function scene(panel: HTMLElement, report: Report) {
     panel.append(bar, listing);
 }
 
+export interface Panels {
+    /// Makes all of them ready for paper, where there are no tabs, with plots so wide.
+    print(width: number): void;
+    /// Back to the screen.
+    restore(): void;
+}
+
 /// Tabs; each is filled when it is first shown.
-export function panels(report: Report, clock: Clock, viewer: Viewer) {
+export function panels(report: Report, clock: Clock, viewer: Viewer): Panels {
     const times = double(report.history_times);
-    const parts: [string, boolean, (panel: HTMLElement) => void][] = [
+    const parts: [string, boolean, (panel: HTMLElement) => PlotGroup | void][] = [
         ["Histories", report.histories.length > 0, (panel) => histories(panel, report, clock, times)],
         ["Balances", report.balances.length > 0, (panel) => balances(panel, report, clock, times)],
         ["Shapes", report.shapes.length > 0, (panel) => shapes(panel, report, viewer, clock.motion.coordinates)],
@@ -172,16 +181,19 @@ export function panels(report: Report, clock: Clock, viewer: Viewer) {
         panel.setAttribute("aria-labelledby", tab.id);
         list.append(tab);
         list.parentElement!.append(panel);
-        return { tab, panel, fill, filled: false };
+        panel.append(make("h2", name, "printed"));
+        return { tab, panel, fill, filled: false, plots: undefined as PlotGroup | void };
     });
+    const fill = (part: (typeof shown)[number]) => {
+        if (part.filled) return;
+        part.filled = true;
+        part.plots = part.fill(part.panel);
+    };
     const select = (chosen: number) => shown.forEach((part, i) => {
         part.tab.setAttribute("aria-selected", String(i === chosen));
         part.tab.tabIndex = i === chosen ? 0 : -1;
         part.panel.hidden = i !== chosen;
-        if (i === chosen && !part.filled) {
-            part.filled = true;
-            part.fill(part.panel);
-        }
+        if (i === chosen) fill(part);
     });
     shown.forEach(({ tab }, i) => tab.addEventListener("click", () => select(i)));
     list.addEventListener("keydown", (event) => {
@@ -196,4 +208,15 @@ export function panels(report: Report, clock: Clock, viewer: Viewer) {
     if (shown.length > 0) select(0);
     const motionRows = clock.motion.times.length;
     document.getElementById("viewer")!.append(...thinned(report, motionRows, "The motion between the rows that are shown is interpolated."));
+    const resize = (width?: number) => shown.forEach(({ plots }) => {
+        plots?.setWidth(width);
+        plots?.recolour();
+    });
+    return {
+        print(width) {
+            shown.forEach(fill);
+            resize(width);
+        },
+        restore: () => resize(),
+    };
 }

@@ -8,6 +8,9 @@ import { rowAt } from "./motion";
 
 export interface Course { name: string; values: Float32Array }
 
+/// Values that differ by less than such a part of the greatest differ by the rounding of single precision.
+const SINGLE = 1e-6;
+
 const HEIGHT = 170;
 const COLOURS = 6; // of the style sheet: course-0 and so on
 /// A press and release nearer than this is a click, not a zoom.
@@ -23,6 +26,8 @@ export class PlotGroup {
     add(plot: Plot) { this.plots.push(plot); }
     clear() { this.plots.splice(0).forEach((plot) => plot.destroy()); }
     recolour() { this.plots.forEach((plot) => plot.chart.redraw(false)); }
+    /// Makes the plots so wide; as wide as their place without a width.
+    setWidth(width?: number) { this.plots.forEach((plot) => plot.setWidth(width)); }
 
     passRange(from: uPlot, min: number, max: number) {
         if (this.passing) return;
@@ -54,9 +59,10 @@ export class Plot {
     private readonly readings: HTMLElement[] = [];
     private readonly observer: ResizeObserver;
 
+    /// The axis of the values is at least as long as `leastRange`, so that rounding does not look like a motion.
     constructor(
-        parent: HTMLElement, private readonly group: PlotGroup, title: string, private readonly unit: string,
-        private readonly courses: Course[],
+        private readonly parent: HTMLElement, private readonly group: PlotGroup, title: string, private readonly unit: string,
+        leastRange: number, private readonly courses: Course[],
     ) {
         const figure = document.createElement("figure");
         figure.className = "plot";
@@ -85,7 +91,7 @@ export class Plot {
         this.chart = new uPlot({
             width: Math.max(200, parent.clientWidth), height: HEIGHT,
             legend: { show: false },
-            scales: { x: { time: false } },
+            scales: { x: { time: false }, y: { range: (_, min, max) => rangeOf(min, max, leastRange) } },
             axes: [
                 { ...axis, values: (_, ticks) => ticks.map((tick) => number(tick)), size: 28, gap: 3 },
                 { ...axis, values: (_, ticks) => ticks.map((tick) => number(tick)), size: 68, gap: 4 },
@@ -109,13 +115,14 @@ export class Plot {
         this.now.className = "now";
         this.chart.over.append(this.now);
         this.listen();
-        this.observer = new ResizeObserver(() => {
-            const width = parent.clientWidth;
-            if (width > 0 && width !== this.chart.width) this.chart.setSize({ width, height: HEIGHT });
-        });
+        this.observer = new ResizeObserver(() => this.setWidth());
         this.observer.observe(parent);
         group.add(this);
         this.mark();
+    }
+
+    setWidth(width = this.parent.clientWidth) {
+        if (width > 0 && width !== this.chart.width) this.chart.setSize({ width, height: HEIGHT });
     }
 
     private listen() {
@@ -154,4 +161,14 @@ export class Plot {
         this.observer.disconnect();
         this.chart.destroy();
     }
+}
+
+/// Ends of the axis of values between two numbers.
+function rangeOf(min: number | null, max: number | null, leastRange: number): [number | null, number | null] {
+    if (min == null || max == null) return [null, null];
+    if (min === 0 && max === 0) return [-1, 1];
+    const least = Math.max(leastRange, SINGLE * Math.max(Math.abs(min), Math.abs(max)));
+    if (max - min >= least || least === 0) return uPlot.rangeNum(min, max, 0.1, true) as [number, number];
+    const middle = (min + max) / 2;
+    return [middle - least / 2, middle + least / 2];
 }

@@ -10,6 +10,8 @@ import type { Motion } from "./motion";
 import { Triad } from "./triad";
 
 const DIRECTION = new THREE.Vector3(0.55, -0.9, 0.5).normalize(); // from the body to the camera, at first
+const NODE_PIXELS = 5;
+const PRINT_RATIO = 2; // pixels of a print in one of the screen
 const AXIS_COLOURS = ["axis-x", "axis-y", "axis-z"];
 
 export class Stage {
@@ -23,10 +25,15 @@ export class Stage {
     private readonly controls: OrbitControls;
     private readonly triad: Triad;
     private readonly ground: THREE.GridHelper;
+    /// Middle of the undeformed body, from the origin of its frame in body axes.
+    private readonly middle: THREE.Vector3;
+    /// Where that is in space.
     private readonly center = new THREE.Vector3();
     private readonly moved = new THREE.Vector3();
     /// Radius of the body about its middle.
     readonly radius: number;
+    /// Radius of all that the camera was last set to look at.
+    private inView: number;
 
     /// Throws where the browser has no WebGL 2.
     constructor(private readonly canvas: HTMLCanvasElement, report: Report, motion: Motion, onChange: () => void) {
@@ -38,7 +45,10 @@ export class Stage {
         this.body = report.surface ? new Body(report) : null;
         const path = new THREE.Box3().setFromArray(motion.origins);
         const extent = path.getSize(new THREE.Vector3()).length();
-        this.radius = this.body?.bounds.radius ?? (extent > 0 ? extent / 8 : 1);
+        const size = this.body?.bounds.radius ?? 0;
+        this.radius = size > 0 ? size : extent > 0 ? extent / 8 : 1;
+        this.inView = this.radius;
+        this.middle = this.body?.bounds.center.clone() ?? new THREE.Vector3();
 
         this.path = new THREE.Line(new THREE.BufferGeometry(), new THREE.LineBasicMaterial());
         this.path.geometry.setAttribute("position", new THREE.BufferAttribute(motion.origins, 3));
@@ -55,14 +65,17 @@ export class Stage {
         this.recolour();
     }
 
+    /// How far the body reaches from the origin of its frame.
+    private get reach() { return this.radius + this.middle.length(); }
+
     private makeGround(path: THREE.Box3, extent: number): THREE.GridHelper {
-        const reach = extent + 6 * this.radius;
-        const step = roundStep(Math.max(this.radius / 3, reach / 120));
-        const count = 2 * Math.ceil(reach / step / 2);
+        const across = extent + 6 * this.reach;
+        const step = roundStep(Math.max(this.radius / 3, across / 120));
+        const count = 2 * Math.ceil(across / step / 2);
         const ground = new THREE.GridHelper(count * step, count);
         const middle = path.getCenter(new THREE.Vector3());
         ground.rotation.x = Math.PI / 2; // into the plane of x and y
-        ground.position.set(Math.round(middle.x / step) * step, Math.round(middle.y / step) * step, path.min.z - 1.15 * this.radius);
+        ground.position.set(Math.round(middle.x / step) * step, Math.round(middle.y / step) * step, path.min.z - 1.15 * this.reach);
         (ground.material as THREE.Material).transparent = true;
         (ground.material as THREE.Material).depthWrite = false;
         return ground;
@@ -89,7 +102,8 @@ export class Stage {
             object.position.set(origin[0], origin[1], origin[2]);
             object.quaternion.set(attitude[0], attitude[1], attitude[2], attitude[3]);
         }
-        this.center.set(origin[0], origin[1], origin[2]);
+        // The body turns about the origin of its frame, which may be far from its middle or stand still.
+        this.center.copy(this.middle).applyQuaternion(placed.quaternion).add(placed.position);
         if (this.following) {
             const shift = from.subVectors(this.center, from);
             this.camera.position.add(shift);
@@ -103,38 +117,48 @@ export class Stage {
         this.path.visible = shown && path;
     }
 
-    /// Looks at the whole body, or at a box around the path of the origin.
+    /// Looks at the whole body, or at a sphere around all that it may reach along the path of the origin.
     lookAt(motion: Motion | null) {
         const sphere = new THREE.Sphere(new THREE.Vector3(), this.radius);
         if (motion) {
             new THREE.Box3().setFromArray(motion.origins).getBoundingSphere(sphere);
-            sphere.radius += this.radius;
+            sphere.radius += this.reach;
         } else {
-            const offset = this.body?.bounds.center.clone().applyQuaternion(this.body.group.quaternion) ?? new THREE.Vector3();
-            sphere.center.copy(this.center).add(offset);
+            sphere.center.copy(this.center);
         }
         const narrow = Math.min(1, this.camera.aspect);
         const distance = (1.02 * sphere.radius) / Math.sin((this.camera.fov * Math.PI) / 360) / narrow;
+        this.inView = sphere.radius;
         this.controls.target.copy(sphere.center);
         this.camera.position.copy(sphere.center).addScaledVector(DIRECTION, distance);
         this.controls.update();
     }
 
-    resize() {
+    resize(ratio = Math.min(devicePixelRatio, 2)) {
         const { clientWidth: width, clientHeight: height } = this.canvas;
         if (width === 0 || height === 0) return;
-        this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+        this.renderer.setPixelRatio(ratio);
         this.renderer.setSize(width, height, false);
+        this.body?.setPointSize(NODE_PIXELS * ratio);
         this.camera.aspect = width / height;
         this.camera.updateProjectionMatrix();
     }
 
     draw() {
         const distance = this.camera.position.distanceTo(this.controls.target);
-        this.camera.near = Math.max(distance - 4 * this.radius, distance / 200);
-        this.camera.far = distance + 1000 * this.radius;
+        this.camera.near = Math.max(distance - 4 * this.inView, distance / 200);
+        this.camera.far = distance + 1000 * this.inView;
         this.camera.updateProjectionMatrix();
         this.renderer.render(this.scene, this.camera);
         this.triad.draw(this.camera);
+    }
+
+    /// Draws the picture into a plain canvas, too, which a printer can see: that of the graphics processor is empty by then.
+    drawInto(plain: HTMLCanvasElement) {
+        this.resize(PRINT_RATIO);
+        this.draw();
+        [plain.width, plain.height] = [this.canvas.width, this.canvas.height];
+        plain.getContext("2d")!.drawImage(this.canvas, 0, 0);
+        this.resize();
     }
 }

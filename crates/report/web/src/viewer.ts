@@ -141,8 +141,14 @@ export class Viewer {
         };
         const { stage } = this;
         if (!stage) return;
-        element<HTMLInputElement>("axes").checked = !stage.body;
+        element<HTMLInputElement>("axes").checked = !stage.body?.hasFacets;
         for (const part of document.querySelectorAll<HTMLElement>(".of-surface")) part.hidden = !stage.body;
+        element("outline").parentElement!.hidden = !stage.body?.hasFacets;
+        const without = element("no-surface");
+        without.hidden = stage.body?.hasFacets ?? false;
+        without.textContent = stage.body
+            ? "This body comes from matrices: its nodes are shown, for it has no elements and so no surface."
+            : "This body has no mesh: its axes are shown.";
         check("follow", (on) => {
             stage.following = on;
             if (this.frames > 0) this.resetView();
@@ -154,10 +160,19 @@ export class Viewer {
             stage.resize();
             this.changed = true;
         }).observe(element("canvas"));
-        onSchemeChange(() => {
-            stage.recolour();
-            this.changed = true;
-        });
+        onSchemeChange(() => this.recolour());
+    }
+
+    recolour() {
+        this.stage?.recolour();
+        this.changed = true;
+    }
+
+    /// Draws the picture that paper shows.
+    print() {
+        this.recolour();
+        this.prepare();
+        this.stage?.drawInto(element<HTMLCanvasElement>("printed-picture"));
     }
 
     private showSurroundings() {

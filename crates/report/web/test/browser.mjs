@@ -38,7 +38,8 @@ export function frame(page) {
     return page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done()))));
 }
 
-/// The pixels of the picture at a time of the run: how many are covered, a sum that tells pictures apart, the middle one.
+/// The pixels of the picture at a time of the run: how many are covered, a sum that tells pictures apart, the middle one, and
+/// the part of the picture that is coloured, by the body, with its middle (-1 to 1 across and up).
 export function pixels(page, time) {
     return page.evaluate((time) => new Promise((done) => {
         if (time !== null) window.reportPage.clock.seek(time);
@@ -50,12 +51,21 @@ export function pixels(page, time) {
             gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, bytes);
             let covered = 0;
             let sum = 0;
+            let [coloured, across, up] = [0, 0, 0];
             for (let i = 0; i < bytes.length; i += 4) {
                 if (bytes[i + 3] > 0) covered++;
+                if (Math.max(bytes[i], bytes[i + 1], bytes[i + 2]) - Math.min(bytes[i], bytes[i + 1], bytes[i + 2]) > 40) {
+                    coloured++;
+                    across += ((i / 4) % width) / width;
+                    up += Math.floor(i / 4 / width) / height;
+                }
                 sum = (31 * sum + bytes[i] + 256 * bytes[i + 1] + 65536 * bytes[i + 2]) % 1000003;
             }
             const middle = 4 * (Math.floor(height / 2) * width + Math.floor(width / 2) + 8);
-            done({ part: covered / (width * height), sum, middle: [...bytes.slice(middle, middle + 3)] });
+            done({
+                part: covered / (width * height), sum, middle: [...bytes.slice(middle, middle + 3)],
+                body: { part: coloured / (width * height), middle: [across, up].map((x) => (2 * x) / coloured - 1) },
+            });
         });
     }), time ?? null);
 }

@@ -167,6 +167,83 @@ test("an unfinished run says so in words, and texts are shown as texts", async (
     assert.match(await page.textContent("#panel-4 pre"), /flexible = 10 # <all>/);
 });
 
+test("the camera follows a body that turns about its end", async (t) => {
+    const page = await open(t, browser, "hinged");
+    for (const moment of [0, 0.1, 0.2, 0.3, 0.4, 0.5]) {
+        const { body } = await pixels(page, moment);
+        assert.ok(body.part > 0.003, `${body.part} of the picture at ${moment}`);
+        assert.ok(Math.max(...body.middle.map(Math.abs)) < 0.3, `the body is at ${body.middle} at ${moment}`);
+    }
+});
+
+test("a body of which only nodes are known is drawn by them, and the page says so", async (t) => {
+    const page = await open(t, browser, "nodes");
+    const [first, later] = [await pixels(page, 0.02), await pixels(page, 0.06)];
+    assert.ok(first.body.part > 0.005, `${first.body.part}`);
+    assert.notEqual(first.sum, later.sum);
+    assert.match(await page.textContent("#no-surface"), /nodes are shown/);
+    assert.ok(await page.isVisible("#colour"));
+    assert.ok(!(await page.isVisible("#outline")));
+    await page.selectOption("#subject", "0");
+    assert.ok((await pixels(page)).body.part > 0.005, "a shape alone");
+});
+
+/// Pixels of a plot that are coloured: how many, and from which to which part of its height.
+const curve = (plot) => plot.locator("canvas").evaluate((canvas) => {
+    const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+    const rows = [];
+    for (let i = 0; i < data.length; i += 4) {
+        const rgb = [data[i], data[i + 1], data[i + 2]];
+        if (data[i + 3] > 100 && Math.max(...rgb) - Math.min(...rgb) > 60) rows.push(Math.floor(i / 4 / canvas.width) / canvas.height);
+    }
+    return { count: rows.length, least: Math.min(...rows), greatest: Math.max(...rows) };
+});
+
+test("rounding does not fill the axis of a plot, an error does", async (t) => {
+    const page = await open(t, browser, "small");
+    await page.click("#tab-1");
+    await frame(page);
+    const [, energy, , momentum] = await page.locator("#panel-1 .plot").all();
+    const [error, rounding] = [await curve(energy), await curve(momentum)];
+    assert.ok(error.greatest - error.least > 0.5, JSON.stringify(error));
+    assert.ok(rounding.count > 100 && rounding.greatest - rounding.least < 0.05, JSON.stringify(rounding));
+});
+
+test("paper shows the picture, all parts and whole plots, in light colours", async (t) => {
+    const page = await open(t, browser, "small", { colorScheme: "dark" });
+    await pixels(page, 0.06);
+    await page.setViewportSize({ width: 690, height: 980 }); // A4 between its margins
+    await page.emulateMedia({ media: "print" });
+    await page.evaluate(() => dispatchEvent(new Event("beforeprint")));
+    await frame(page);
+    const printed = await page.locator("#printed-picture").evaluate((canvas) => {
+        const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+        let coloured = 0;
+        for (let i = 0; i < data.length; i += 4)
+            if (Math.max(data[i], data[i + 1], data[i + 2]) - Math.min(data[i], data[i + 1], data[i + 2]) > 40) coloured++;
+        return coloured / (canvas.width * canvas.height);
+    });
+    assert.ok(printed > 0.01, `${printed} of the printed picture is the body`);
+    assert.ok(await page.isVisible("#printed-picture"));
+    assert.ok(!(await page.isVisible("#canvas")));
+    for (const tab of [0, 1, 2, 3, 4]) assert.ok(await page.isVisible(`#panel-${tab}`), `part ${tab}`);
+    for (const plot of await page.locator(".plot canvas").all()) {
+        const { x, width } = await plot.boundingBox();
+        assert.ok(width > 500 && x >= 0 && x + width <= 690, `${x} ${width}`);
+        assert.ok((await curve(plot.locator(".."))).count > 0);
+    }
+    const ground = await page.evaluate(() => getComputedStyle(document.querySelector(".stage")).backgroundColor.match(/\d+/g).map(Number));
+    assert.ok(Math.min(...ground) > 200, `${ground}`);
+    await page.emulateMedia({ media: "screen" });
+    await page.setViewportSize({ width: 1440, height: 900 });
+    await page.evaluate(() => dispatchEvent(new Event("afterprint")));
+    await frame(page);
+    assert.ok(!(await page.isVisible("#panel-1")));
+    const plot = await page.locator("#panel-0 .plot canvas").first().boundingBox();
+    const panel = await page.locator("#panel-0").boundingBox();
+    assert.ok(Math.abs(plot.width - panel.width) < 2, `${plot.width} in ${panel.width}`);
+});
+
 test("a rigid body without a surface is drawn by its axes", async (t) => {
     const page = await open(t, browser, "rigid");
     const [first, later] = [await pixels(page, 0), await pixels(page, 0.25)];
