@@ -13,6 +13,8 @@ mod left;
 pub use bytes::Bytes;
 pub use left::Left;
 
+/// A piece of what many threads reserve, bytes.
+const PIECE: usize = 1 << 30;
 /// Less than this is not worth asking for.
 const SMALL: usize = 1 << 20;
 
@@ -40,7 +42,7 @@ pub fn check(what: &'static str, bytes: usize) -> Result<(), OutOfMemory> {
     check_with_reserve(what, bytes, 0)
 }
 
-/// As [`check`], for work that besides `bytes` reserves so much address space without using it.
+/// As [`check`], for work that besides `bytes` reserves so much address space, in many places, without using it.
 ///
 /// # Errors
 /// As [`check`].
@@ -52,11 +54,17 @@ pub fn check_with_reserve(what: &'static str, bytes: usize, reserve: usize) -> R
     if let Some(left) = Left::of_machine().filter(|left| left.bytes().is_some_and(|left| left < bytes)) {
         return Err(OutOfMemory { what, wanted: bytes, left });
     }
-    // Nothing is touched, so nothing but address space is taken, and that is given back at once.
-    if Vec::<u8>::new().try_reserve_exact(wanted).is_err() {
-        return Err(OutOfMemory { what, wanted, left: Left::of_process() });
+    // Nothing is touched, so nothing but address space is taken, and that is given back at once. Linux refuses one piece that is
+    // larger than the machine, and not many.
+    let pieces = std::iter::repeat_n(PIECE, reserve / PIECE).chain([bytes, reserve % PIECE]);
+    let taken = |piece: usize| {
+        let mut place = Vec::<u8>::new();
+        place.try_reserve_exact(piece).map(|()| place)
+    };
+    match pieces.map(taken).collect::<Result<Vec<_>, _>>() {
+        Ok(_) => Ok(()),
+        Err(_) => Err(OutOfMemory { what, wanted, left: Left::of_process() }),
     }
-    Ok(())
 }
 
 /// An array of `length` zeros.
