@@ -436,7 +436,8 @@ impl MeshLoad {
         Ok(Some(change))
     }
 
-    /// The load on the modes of a body, with the stiffness by its stress.
+    /// The load on the modes of a body, with the stiffness by its stress. A pressure turns with its surface: its resultant does
+    /// always, what it does along the modes where `has_load_stiffness` says so.
     pub(super) fn reduced(
         &self,
         scene: &Scene,
@@ -444,6 +445,7 @@ impl MeshLoad {
         body: &ReducedBody,
         modes: &Modes,
         stress: &[Directed],
+        has_load_stiffness: bool,
     ) -> Result<SharedLoad, BuildError> {
         let frame = if self.follows { LoadFrame::Body } else { LoadFrame::Global };
         let nf = body.flexible();
@@ -491,14 +493,11 @@ impl MeshLoad {
                 let flexible = (0..nf).map(|k| acting().map(|(node, f)| self.shape(modes, node, k).dot(f)).sum());
                 let modal = rigid.iter().flat_map(|v| v.iter().copied()).chain(flexible).collect();
                 let change = self.follower_change(scene, mesh, body, modes)?;
-                let (load_stiffness, second_order) = match (&change, stress.first()) {
-                    (Some(FollowerChange { load_stiffness, .. }), Some(directed)) => {
-                        let entries = load_stiffness.col_iter().flat_map(|c| c.iter().copied().collect::<Vec<_>>());
-                        let second_order = SecondOrder::new(vec![(Vector3::x(), directed.stiffness.clone())])?;
-                        (entries.collect(), Some(second_order))
-                    }
-                    _ => (Vec::new(), None),
-                };
+                let load_stiffness = change.as_ref().filter(|_| has_load_stiffness).map_or(Vec::new(), |change| {
+                    change.load_stiffness.col_iter().flat_map(|c| c.iter().copied().collect::<Vec<_>>()).collect()
+                });
+                let of_field = |directed: &Directed| SecondOrder::new(vec![(Vector3::x(), directed.stiffness.clone())]);
+                let second_order = stress.first().map(of_field).transpose()?;
                 let (force_change, moment_change) = match change {
                     Some(change) => (change.force, change.moment),
                     None => (Vec::new(), vec![Vector3::zeros(); nf]),

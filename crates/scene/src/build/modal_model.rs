@@ -89,7 +89,8 @@ fn loads(
 ) -> Result<BodyLoads, BuildError> {
     let reduced = |(i, load): (usize, &MeshLoad)| {
         let of_load = stress.get(i).map_or(&[][..], |of_load| of_load);
-        Ok((load.reduced(model.scene, model.mesh, body, modes, of_load)?, load.is_gravity()))
+        let has_load_stiffness = !of_load.is_empty();
+        Ok((load.reduced(model.scene, model.mesh, body, modes, of_load, has_load_stiffness)?, load.is_gravity()))
     };
     model.loads.iter().enumerate().map(reduced).collect()
 }

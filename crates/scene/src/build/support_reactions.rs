@@ -5,7 +5,6 @@ use frames_rk4::{EffectMap, Manifold, Observation, SupportReactions};
 use modal::{Modes, StaticAccuracy};
 use nalgebra::Vector3;
 
-use super::directed::Directed;
 use super::error::BuildError;
 use super::mesh_model::MeshModel;
 use super::support::held_parts;
@@ -71,10 +70,9 @@ impl SupportRows {
         });
         let body = solver.reduced_body(&extended)?;
         let acting = model.loads.iter().filter(|load| has_gravity || !load.is_gravity());
-        let without_stress: &[Directed] = &[];
-        let loads = acting
-            .map(|load| load.reduced(scene, mesh, &body, &extended, without_stress))
-            .collect::<Result<Vec<_>, _>>()?;
+        // No stress, but the turn of a pressure with its surface, which the reaction of all supports has, too.
+        let loads =
+            acting.map(|load| load.reduced(scene, mesh, &body, &extended, &[], true)).collect::<Result<Vec<_>, _>>()?;
         let reactions = SupportReactions::new(&body, shapes, loads, manifold.cloned(), effects);
         Ok(Some(Self { names: (1..=parts.len()).map(|i| i.to_string()).collect(), components, reactions }))
     }
