@@ -55,3 +55,58 @@ fn it_names_groups_and_mass_and_runs() {
     let Body::Meshed(body) = Scene::read(path).unwrap().body else { panic!("it has a mesh") };
     assert_eq!(body.mesh, mesh.canonicalize().unwrap());
 }
+
+/// A bracket of aluminium does not become one of steel.
+#[test]
+fn the_materials_of_a_deck_are_those_of_its_scene_and_another_one_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let geometry = "SetFactory(\"OpenCASCADE\");\nBox(1) = {0, 0, 0, 5, 2, 1};\nBox(2) = {5, 0, 0, 1, 2, 1};\nCoherence;\n\
+                    Physical Volume(\"arm\") = {1};\nPhysical Volume(\"head\") = {2};\n";
+    std::fs::write(folder.path().join("bracket.geo"), geometry).unwrap();
+    let mut gmsh = std::process::Command::new("gmsh");
+    gmsh.args(["bracket.geo", "-3", "-order", "2", "-o", "bracket.inp"]).current_dir(folder.path());
+    assert!(gmsh.output().unwrap().status.success());
+    let mesh = folder.path().join("bracket.inp");
+    let deck = std::fs::read_to_string(&mesh).unwrap();
+    let alloy = "*MATERIAL, NAME=AW 6082\n*ELASTIC\n70e3, 0.33\n*DENSITY\n2.7e-9\n";
+    let of = |sections: &str| {
+        std::fs::write(&mesh, format!("{deck}{alloy}{sections}")).unwrap();
+        let (path, notes) = new_scene(&mesh, &AS_IT_IS, None, true).unwrap();
+        let text = std::fs::read_to_string(&path).unwrap();
+        let scene = Scene::parse(&text, &path).unwrap();
+        (text, flexframe::scene::Model::build(&scene, |_| ()).unwrap(), notes)
+    };
+    let both = "*SOLID SECTION, ELSET=arm, MATERIAL=AW 6082\n*SOLID SECTION, ELSET=head, MATERIAL=AW 6082\n";
+    let (text, model, notes) = of(both);
+    // 6 mm would look like metres: the density says more.
+    for words in ["densities of its file look like millimetres", "\"AW 6082\"", "material = { young_modulus = 70000.0"]
+    {
+        assert!(text.contains(words), "{words}: {text}");
+    }
+    assert!((model.body.mass / (12.0 * 2.7e-9) - 1.0).abs() < 1e-9 && notes.is_empty(), "{notes:?}");
+    assert!(model.meshed.unwrap().mesh_notes.is_empty());
+
+    // Two materials.
+    let steel =
+        "*MATERIAL, NAME=steel\n*ELASTIC\n210e3, 0.3\n*DENSITY\n7.85e-9\n*SOLID SECTION, ELSET=head, MATERIAL=steel\n";
+    let arm = "*SOLID SECTION, ELSET=arm, MATERIAL=AW 6082\n";
+    let (text, model, notes) = of(&format!("{steel}{arm}"));
+    assert!(text.contains("[body.materials]\n\"arm\" = { young_modulus = 70000.0"), "{text}");
+    assert!((model.body.mass / (10.0 * 2.7e-9 + 2.0 * 7.85e-9) - 1.0).abs() < 1e-9 && notes.is_empty(), "{notes:?}");
+
+    // A scene with one of its own keeps it, and says so.
+    let own = text.replacen("density = 2.7e-9", "density = 2.8e-9", 1);
+    let scene = Scene::parse(&own, folder.path().join("own.toml")).unwrap();
+    let model = flexframe::scene::Model::build(&scene, |_| ()).unwrap();
+    let notes = &model.meshed.as_ref().unwrap().mesh_notes;
+    assert!((model.body.mass / (10.0 * 2.8e-9 + 2.0 * 7.85e-9) - 1.0).abs() < 1e-9);
+    assert_eq!(notes.len(), 1, "{notes:?}");
+    for words in ["gives arm the material AW 6082", "density = 2.7e-9", "density = 2.8e-9", "which is used"] {
+        assert!(notes[0].contains(words), "{words}: {notes:?}");
+    }
+
+    // Elements without a material.
+    let (text, _, notes) = of(arm);
+    assert!(text.contains("# Steel.") && notes.len() == 1, "{text} {notes:?}");
+    assert!(notes[0].contains("AW 6082") && notes[0].contains("not used, but steel"), "{notes:?}");
+}

@@ -31,15 +31,7 @@ impl Hash {
     /// # Errors
     /// Those of the system.
     pub fn of_file(path: &Path) -> io::Result<Self> {
-        let mut hasher = blake3::Hasher::new();
-        let mut file = File::open(path)?;
-        let mut block = vec![0; BLOCK];
-        loop {
-            match file.read(&mut block)? {
-                0 => return Ok(Self(*hasher.finalize().as_bytes())),
-                count => update(&mut hasher, &block[..count]),
-            }
-        }
+        HashedReader::new(File::open(path)?).finish()
     }
 
     /// Its bytes.
@@ -61,6 +53,38 @@ impl FromStr for Hash {
 impl fmt::Display for Hash {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&blake3::Hash::from_bytes(self.0).to_hex())
+    }
+}
+
+/// Hashes what is read through it: what is known of a file is of the bytes that were read, whatever becomes of the file.
+#[derive(Debug)]
+pub struct HashedReader<R> {
+    reader: R,
+    hasher: Box<blake3::Hasher>,
+}
+
+impl<R: Read> HashedReader<R> {
+    /// Around a reader of which nothing has been read yet.
+    pub fn new(reader: R) -> Self {
+        Self { reader, hasher: Box::default() }
+    }
+
+    /// Reads what is left. Returns the hash of all.
+    ///
+    /// # Errors
+    /// Those of the reader.
+    pub fn finish(mut self) -> io::Result<Hash> {
+        let mut block = vec![0; BLOCK];
+        while self.read(&mut block)? > 0 {}
+        Ok(Hash(*self.hasher.finalize().as_bytes()))
+    }
+}
+
+impl<R: Read> Read for HashedReader<R> {
+    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+        let count = self.reader.read(bytes)?;
+        update(&mut self.hasher, &bytes[..count]);
+        Ok(count)
     }
 }
 

@@ -17,7 +17,7 @@ mod reader;
 mod writer;
 
 pub use array::{Array, Kind, Number};
-pub use digest::{Digest, Hash};
+pub use digest::{Digest, Hash, HashedReader};
 pub use error::BodyFileError;
 pub use reader::BodyFile;
 pub use writer::{Declared, Writer};

@@ -58,7 +58,7 @@ pub use lumped::{LumpedInertia, centroid_lumped_inertia};
 pub use material::{Material, Materials};
 pub use mean_rotation::MeanRotation;
 pub use mesh::Mesh;
-pub use msh::{parse_msh, read_msh};
+pub use msh::{msh_bytes, parse_msh, read_msh};
 pub use parts::{MeshParts, NodeGroup, SurfaceGroup};
 pub use point_mass::PointMass;
 pub use second_order::{geometric_stiffness_product, second_order_energies, second_order_forces};

@@ -61,7 +61,7 @@ impl Materials {
     /// # Errors
     /// A constant outside its range, a named group that the mesh does not have, an element without a material or
     /// with two different ones.
-    pub(crate) fn of_elements(&self, mesh: &Mesh) -> Result<Vec<Material>, AssemblyError> {
+    pub fn of_elements(&self, mesh: &Mesh) -> Result<Vec<Material>, AssemblyError> {
         match self {
             Self::Uniform(material) => {
                 material.check("the whole mesh")?;

@@ -39,13 +39,19 @@ const TETRAHEDRA_ONLY: &str = "mesh with tetrahedra (gmsh: no Recombine, no Tran
 /// # Errors
 /// See [`MeshError`]: unreadable file, wrong format, wrong elements, and all that [`Mesh::new`] refuses.
 pub fn read_msh(path: impl AsRef<Path>) -> Result<Mesh, MeshError> {
-    let source_name = path.as_ref().display().to_string();
-    let size = std::fs::metadata(path.as_ref()).map_or(0, |found| usize::try_from(found.len()).unwrap_or(usize::MAX));
+    parse_msh(&msh_bytes(path.as_ref())?, &path.as_ref().display().to_string())
+}
+
+/// The contents of a MSH file, for [`parse_msh`].
+///
+/// # Errors
+/// [`MeshError::Io`], and [`MeshError::Memory`] where its mesh would not fit into the memory.
+pub fn msh_bytes(path: &Path) -> Result<Vec<u8>, MeshError> {
+    let source_name = path.display().to_string();
+    let size = std::fs::metadata(path).map_or(0, |found| usize::try_from(found.len()).unwrap_or(usize::MAX));
     memory::check("the mesh", size.saturating_mul(FACTOR))
         .map_err(|source| MeshError::Memory { source_name: source_name.clone(), source })?;
-    let bytes =
-        read_ordinary(path.as_ref()).map_err(|source| MeshError::Io { source_name: source_name.clone(), source })?;
-    parse_msh(&bytes, &source_name)
+    read_ordinary(path).map_err(|source| MeshError::Io { source_name, source })
 }
 
 /// A device or a pipe might never end, or never begin.

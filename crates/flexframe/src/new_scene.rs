@@ -1,10 +1,11 @@
 //! `flexframe new`: a first scene of a mesh, with comments, to be changed by its user.
 
+use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use fem_tet10::{AssemblyError, Material, Materials, Mesh, centroid_lumped_inertia};
-use mesh_import::{ImportError, ImportSettings, read_mesh, remark};
+use fem_tet10::{AssemblyError, Material, Materials, centroid_lumped_inertia};
+use mesh_import::{ImportError, ImportSettings, Imported, MeshFile};
 use whole_file::write_whole;
 
 use crate::scene_file::from_root;
@@ -34,31 +35,32 @@ pub enum NewSceneError {
 /// Consistent units, and steel in them.
 struct System {
     length: &'static str,
+    length_in_words: &'static str,
     mass: &'static str,
     steel: Material,
     /// Standard gravity.
     gravity: f64,
-    /// Why these.
-    because: &'static str,
 }
 
 /// A mesh has no units. A body of more than this is taken to be in millimetres, a smaller one in metres.
 const LONGEST_IN_METRES: f64 = 8.0;
+/// A solid of less than this, kg/m³, is none: its density is in Mg/mm³.
+const LIGHTEST_IN_METRES: f64 = 1e-3;
 
 const METRES: System = System {
     length: "m",
+    length_in_words: "metres",
     mass: "kg",
     steel: Material { young_modulus: 210e9, poisson_ratio: 0.3, density: 7850.0 },
     gravity: 9.81,
-    because: "A mesh has no units; its size looks like metres.",
 };
 
 const MILLIMETRES: System = System {
     length: "mm",
+    length_in_words: "millimetres",
     mass: "Mg",
     steel: Material { young_modulus: 210e3, poisson_ratio: 0.3, density: 7.85e-9 },
     gravity: 9810.0,
-    because: "A mesh has no units; its size looks like millimetres.",
 };
 
 /// Reads a mesh and writes a scene of it, which can be run as it is: a body of steel, free in space, that spins and gets a
@@ -73,18 +75,16 @@ pub fn new_scene(
     scene: Option<&Path>,
     overwrite: bool,
 ) -> Result<(PathBuf, Vec<String>), NewSceneError> {
-    if !mesh.is_file() {
-        // Before a file is refused that has the name of the scene.
-        read_mesh(mesh, settings)?;
-    }
+    // Before a file is refused that has the name of the scene.
+    let file = MeshFile::read(mesh, settings)?;
     let path = scene.map_or_else(|| mesh.with_extension("toml"), Path::to_owned);
     let is_mesh = path.canonicalize().is_ok_and(|path| mesh.canonicalize().is_ok_and(|mesh| mesh == path));
     if is_mesh || (path.exists() && !overwrite) {
         return Err(NewSceneError::Exists { path });
     }
-    let mut read = read_mesh(mesh, settings)?;
-    read.notes.extend(remark(mesh, settings));
-    let text = text(&read.mesh, settings, &from_folder_of(&path, mesh))?;
+    let mut read = file.mesh()?;
+    read.notes.extend(file.remark());
+    let text = text(&mut read, settings, &from_folder_of(&path, mesh))?;
     write_whole(&path, text).map_err(WriteError::of(&path))?;
     Ok((path, read.notes))
 }
@@ -94,8 +94,8 @@ pub fn new_scene(
 /// # Errors
 /// [`NewSceneError`].
 pub fn scene_text(mesh: &Path, settings: &ImportSettings) -> Result<(String, Vec<String>), NewSceneError> {
-    let read = read_mesh(mesh, settings)?;
-    let text = text(&read.mesh, settings, &from_folder_of(Path::new("stdin"), mesh))?;
+    let mut read = MeshFile::read(mesh, settings)?.mesh()?;
+    let text = text(&mut read, settings, &from_folder_of(Path::new("stdin"), mesh))?;
     Ok((text, read.notes))
 }
 
@@ -108,14 +108,23 @@ fn from_folder_of(scene: &Path, mesh: &Path) -> PathBuf {
     }
 }
 
-fn text(mesh: &Mesh, settings: &ImportSettings, mesh_path: &Path) -> Result<String, AssemblyError> {
+/// The text of the scene; what should be known of its materials is added to the notes.
+fn text(read: &mut Imported, settings: &ImportSettings, mesh_path: &Path) -> Result<String, AssemblyError> {
+    let given = given_materials(read);
+    let mesh = &read.mesh;
     let size = mesh.size();
     let longest = (0..3).max_by(|&i, &j| size[i].total_cmp(&size[j])).unwrap_or(0);
     let thinnest = (0..3).min_by(|&i, &j| size[i].total_cmp(&size[j])).unwrap_or(2);
-    let system = if size[longest] > LONGEST_IN_METRES { MILLIMETRES } else { METRES };
-    let System { length, mass: mass_unit, steel, gravity, because } = system;
+    let heaviest = given.iter().flat_map(|given| given.materials.values()).map(|material| material.density);
+    let (is_in_millimetres, guessed_by) = match heaviest.reduce(f64::max) {
+        Some(density) => (density < LIGHTEST_IN_METRES, "the densities of its file look"),
+        None => (size[longest] > LONGEST_IN_METRES, "its size looks"),
+    };
+    let system = if is_in_millimetres { MILLIMETRES } else { METRES };
+    let System { length, length_in_words, mass: mass_unit, steel, gravity } = system;
     let units = UnitLabels { length, mass: mass_unit, time: "s" };
-    let mass = centroid_lumped_inertia(mesh, &Materials::Uniform(steel), &[])?.mass;
+    let materials = given.as_ref().map_or(Materials::Uniform(steel), GivenMaterials::all);
+    let mass = centroid_lumped_inertia(mesh, &materials, &[])?.mass;
     let end = mesh.positions().iter().max_by(|a, b| a[longest].total_cmp(&b[longest])).copied().unwrap_or_default();
     let mut across = [0.0; 3];
     across[thinnest] = 1.0;
@@ -123,7 +132,19 @@ fn text(mesh: &Mesh, settings: &ImportSettings, mesh_path: &Path) -> Result<Stri
     let parts = mesh.parts();
     let groups: Vec<String> = mesh.groups().iter().map(|name| quoted(name)).collect();
     let faces: Vec<String> = parts.surfaces.iter().map(|surface| quoted(&surface.name)).collect();
-    let Material { young_modulus, poisson_ratio, density } = steel;
+    let material = match &given {
+        Some(given) => format!(
+            "# As the mesh file has it: {}.\n",
+            given.names.iter().map(|name| quoted(name)).collect::<Vec<_>>().join(", ")
+        ),
+        None => "# Steel.\n".to_owned(),
+    } + &match &materials {
+        Materials::Uniform(material) => format!("material = {}\n", inline(material)),
+        Materials::ByGroup(of_groups) => {
+            let each = of_groups.iter().map(|(group, material)| format!("{} = {}\n", quoted(group), inline(material)));
+            format!("[body.materials]\n{}", each.collect::<String>())
+        }
+    };
 
     let mut text = String::new();
     // Writing to a string does not fail.
@@ -133,16 +154,14 @@ fn text(mesh: &Mesh, settings: &ImportSettings, mesh_path: &Path) -> Result<Stri
 #     flexframe run THIS_FILE
 # Every key is described in docs/scene.md; `flexframe advise` says which effects the scene calls for.
 title = {title}
-# {because} Nothing is converted: these are labels, and all numbers
+# A mesh has no units; {guessed_by} like {length_in_words}. Nothing is converted: these are labels, and all numbers
 # of the scene are in these units (forces in {force}, stresses in {stress}).
 units = {{ length = "{length}", mass = "{mass_unit}", time = "s" }}
 
 # {dx} x {dy} x {dz} {length}. Its mass, of this material, is {mass} {mass_unit}.
 [body]
 mesh = {mesh_path}
-{import}# Steel.
-material = {{ young_modulus = {young_modulus:?}, poisson_ratio = {poisson_ratio:?}, density = {density:?} }}
-"#,
+{import}{material}"#,
         force = units.force(),
         stress = units.stress(),
         nodes = mesh.positions().len(),
@@ -155,7 +174,7 @@ material = {{ young_modulus = {young_modulus:?}, poisson_ratio = {poisson_ratio:
         import = import_keys(settings),
         mesh_path = quoted(&mesh_path.to_string_lossy()),
     );
-    if !groups.is_empty() {
+    if !groups.is_empty() && matches!(materials, Materials::Uniform(_)) {
         let each: Vec<String> = groups.iter().map(|group| format!("{group} = {{ … }}")).collect();
         let _ = writeln!(text, "# Or a material for each group of the mesh: materials = {{ {} }}", each.join(", "));
     }
@@ -208,6 +227,48 @@ end = {end:?}
         spin = across.map(|axis| 6.3 * axis),
     );
     Ok(text)
+}
+
+/// The materials that a mesh file gives to all elements.
+struct GivenMaterials {
+    /// By group.
+    materials: BTreeMap<String, Material>,
+    /// Those in the file.
+    names: Vec<String>,
+}
+
+impl GivenMaterials {
+    /// One for the whole body where they are the same.
+    fn all(&self) -> Materials {
+        let mut materials = self.materials.values();
+        match materials.next() {
+            Some(first) if materials.all(|other| other == first) => Materials::Uniform(*first),
+            _ => Materials::ByGroup(self.materials.clone()),
+        }
+    }
+}
+
+/// The materials of a mesh file, if they are those of all elements; a note says it where they are not.
+fn given_materials(read: &mut Imported) -> Option<GivenMaterials> {
+    let Imported { mesh, notes, materials: of_file } = read;
+    let materials = of_file.iter().map(|deck| (deck.group.clone(), deck.material)).collect();
+    let mut names: Vec<String> = of_file.iter().map(|deck| deck.name.clone()).collect();
+    names.sort();
+    names.dedup();
+    if names.is_empty() {
+        return None;
+    }
+    if let Err(error) = Materials::ByGroup(BTreeMap::clone(&materials)).of_elements(mesh) {
+        notes.push(format!("the materials {} of the mesh file are not used, but steel: {error}", names.join(", ")));
+        return None;
+    }
+    Some(GivenMaterials { materials, names })
+}
+
+/// A material as a table on one line.
+fn inline(material: &Material) -> String {
+    let Material { young_modulus, poisson_ratio, density } = material;
+    format!("{{ young_modulus = {young_modulus:?}, poisson_ratio = {poisson_ratio:?}, density = {density:?} }}")
 }
 
 /// The keys of how a mesh is read, a line each.

@@ -13,6 +13,7 @@ mod source;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use body_file::{Digest, Hash};
 use faer::sparse::SparseColMat;
 
 use dofs::{Order, read_dofs};
@@ -53,6 +54,8 @@ pub struct BodyMatrices {
     pub mass: SparseColMat<usize, f64>,
     /// Largest difference of the triangles of K or M, relative to the diagonal; `None` where the files have one triangle.
     pub asymmetry: Option<f64>,
+    /// Of all bytes that were read, and of how: what the matrices follow from.
+    pub hash: Hash,
     /// What is to be known of them, in sentences.
     pub notes: Vec<String>,
 }
@@ -65,20 +68,31 @@ impl MatrixFiles {
         three.into_iter().chain(of_rows)
     }
 
+    /// The hash that [`BodyMatrices`] have of the files as they are now, which are looked at for nothing else.
+    ///
+    /// # Errors
+    /// [`MatrixError`]: a file that cannot be read.
+    pub fn hash(&self) -> Result<Hash, MatrixError> {
+        let digest = self.list().try_fold(Digest::new(), |digest, (which, path)| {
+            let source = Source::new(which, path);
+            source.skim()?;
+            Ok::<_, MatrixError>(source.identify(digest))
+        });
+        digest.map(Digest::finish)
+    }
+
     /// Reads them.
     ///
     /// # Errors
     /// [`MatrixError`]: a file that cannot be read or is not what it should be, sizes that do not fit together, a matrix that is
     /// not symmetric. Whether K and M are those of a free body that has mass is not looked at.
     pub fn read(&self) -> Result<BodyMatrices, MatrixError> {
-        let nodes_source = Source { which: Which::Nodes, path: &self.nodes };
+        let nodes_source = Source::new(Which::Nodes, &self.nodes);
         let nodes = NodeFile::read(&nodes_source)?;
-        let dofs_source = self.dofs.as_ref().map(|path| Source { which: Which::Dofs, path });
+        let dofs_source = self.dofs.as_ref().map(|path| Source::new(Which::Dofs, path));
         let rows_of_dofs = dofs_source.as_ref().map(read_dofs).transpose()?;
-        let (mass_source, stiffness_source) = (
-            Source { which: Which::Mass, path: &self.mass },
-            Source { which: Which::Stiffness, path: &self.stiffness },
-        );
+        let mass_source = Source::new(Which::Mass, &self.mass);
+        let stiffness_source = Source::new(Which::Stiffness, &self.stiffness);
         let mut labelled = Rows::default();
         let most = rows_of_dofs.as_ref().map_or(6 * nodes.labels.len(), Vec::len);
         let mass = Symmetric::read(&mass_source, &mut labelled, most)?;
@@ -146,7 +160,10 @@ impl MatrixFiles {
         }
         let members = |group: &Vec<u32>| group.iter().flat_map(|node| &of_node[*node as usize]).copied().collect();
         let groups = nodes.groups.iter().map(|(name, group)| (name.clone(), members(group))).collect();
-        Ok(BodyMatrices { labels, positions, groups, freedoms: order.freedoms, stiffness, mass, asymmetry, notes })
+        let sources = [&mass_source, &stiffness_source, &nodes_source].into_iter().chain(&dofs_source);
+        let hash = sources.fold(Digest::new(), |digest, source| source.identify(digest)).finish();
+        let freedoms = order.freedoms;
+        Ok(BodyMatrices { labels, positions, groups, freedoms, stiffness, mass, asymmetry, hash, notes })
     }
 
     /// Rows in the order of the nodes, 3 or 6 each.
@@ -207,4 +224,65 @@ fn of_dofs(
         }
     }
     Order::of_rows(source, rows, nodes)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+
+    use super::*;
+
+    /// A file may be replaced while others are read, or after: what is known is of the bytes that were read.
+    #[test]
+    fn matrices_are_known_by_what_was_read_of_their_files() {
+        let folder = tempfile::tempdir().unwrap();
+        let place = |name: &str| folder.path().join(name);
+        let matrix = |value: f64| {
+            let rows: Vec<String> = (1..=9).map(|i| format!("{i} {i} {value}\n")).collect();
+            format!("%%MatrixMarket matrix coordinate real symmetric\n9 9 9\n{}", rows.concat())
+        };
+        fs::write(place("k.mtx"), matrix(2.0)).unwrap();
+        fs::write(place("m.mtx"), matrix(1.0)).unwrap();
+        fs::write(place("nodes.csv"), "1, 0, 0, 0\n2, 1, 0, 0\n3, 0, 1, 0\n").unwrap();
+        let [stiffness, mass, nodes] = ["k.mtx", "m.mtx", "nodes.csv"].map(place);
+        let files = MatrixFiles { mass, stiffness, nodes, dofs: None };
+        let read = files.read().unwrap();
+        assert_eq!(read.hash, files.hash().unwrap());
+        for name in ["k.mtx", "m.mtx", "nodes.csv"] {
+            let before = fs::read_to_string(place(name)).unwrap();
+            fs::write(place(name), before.replace("9 9 ", "9 9 0") + "\n").unwrap();
+            assert_ne!(files.hash().unwrap(), read.hash, "{name}");
+            fs::write(place(name), before).unwrap();
+            assert_eq!(files.read().unwrap().hash, read.hash, "{name}");
+        }
+        // A pipe gives its bytes once.
+        let pipe = place("pipe.csv");
+        assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+        assert!(MatrixFiles { nodes: pipe, ..files }.hash().is_err());
+    }
+
+    /// The hash is made while the lines are read, and not by another look at the file.
+    #[test]
+    fn a_file_that_is_replaced_while_it_is_read_is_known_by_what_was_read() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("nodes.csv");
+        let lines: String = (1..5000).map(|i| format!("{i}, {i}, 0, 0\n")).collect();
+        fs::write(&path, &lines).unwrap();
+        let source = Source::new(Which::Nodes, &path);
+        let mut count = 0;
+        let read = source.each_line(|_, _| {
+            count += 1;
+            if count == 1 {
+                // Another file of this name; the open one is what it was.
+                fs::remove_file(&path).unwrap();
+                fs::write(&path, "1, 9, 9, 9\n").unwrap();
+            }
+            Ok(source::Next::Go)
+        });
+        read.unwrap();
+        let known = |bytes: &str| {
+            Digest::new().text(Which::Nodes.name()).text("csv").hash(&Hash::of(bytes.as_bytes())).finish()
+        };
+        assert_eq!((count, source.identify(Digest::new()).finish()), (4999, known(&lines)));
+    }
 }

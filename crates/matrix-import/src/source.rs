@@ -1,8 +1,11 @@
 //! A text file that is read line by line.
 
+use std::cell::OnceCell;
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read};
 use std::path::Path;
+
+use body_file::{Digest, Hash, HashedReader};
 
 use crate::error::{MatrixError, Which};
 
@@ -12,13 +15,25 @@ const SHOWN: usize = 60;
 const LONGEST_LINE: u64 = 1 << 20;
 
 /// One of the files of a body.
-#[derive(Clone, Copy)]
 pub(crate) struct Source<'a> {
     pub which: Which,
     pub path: &'a Path,
+    /// Of the bytes that were read.
+    hash: OnceCell<Hash>,
 }
 
-impl Source<'_> {
+impl<'a> Source<'a> {
+    pub fn new(which: Which, path: &'a Path) -> Self {
+        Self { which, path, hash: OnceCell::new() }
+    }
+
+    /// With what was read of the file, and how: the ending says how nodes are read.
+    pub fn identify(&self, digest: Digest) -> Digest {
+        let ending = self.path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+        let digest = digest.text(self.which.name()).text(&ending);
+        self.hash.get().into_iter().fold(digest, Digest::hash)
+    }
+
     /// The refusal of the file, or of a line of it.
     pub fn refuse(
         &self,
@@ -46,12 +61,13 @@ impl Source<'_> {
     }
 
     /// Calls `read` with the number (from 1) and the text of each line that is not blank, until it says that this was
-    /// the last.
+    /// the last. What is known of the file ([`Source::identify`]) is of the same bytes.
     pub fn each_line(&self, mut read: impl FnMut(usize, &str) -> Result<Next, MatrixError>) -> Result<(), MatrixError> {
         if self.length()? == 0 {
             return Err(self.refuse(None, "an empty file", "a text with numbers", "write it again"));
         }
-        let mut file = BufReader::new(File::open(self.path).map_err(|cause| self.unreadable(&cause))?);
+        let file = File::open(self.path).map_err(|cause| self.unreadable(&cause))?;
+        let mut file = BufReader::new(HashedReader::new(file));
         let mut bytes = Vec::new();
         for number in 1.. {
             bytes.clear();
@@ -78,6 +94,17 @@ impl Source<'_> {
                 break;
             }
         }
+        let hash = file.into_inner().finish().map_err(|cause| self.unreadable(&cause))?;
+        self.hash.get_or_init(|| hash);
+        Ok(())
+    }
+
+    /// Reads it to be known, and for nothing else.
+    pub fn skim(&self) -> Result<(), MatrixError> {
+        self.length()?;
+        let hash = File::open(self.path).and_then(|file| HashedReader::new(file).finish());
+        let hash = hash.map_err(|cause| self.unreadable(&cause))?;
+        self.hash.get_or_init(|| hash);
         Ok(())
     }
 

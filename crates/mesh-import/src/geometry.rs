@@ -6,20 +6,17 @@
 //! they are, in texts, too, and as the end of other words: wherever gmsh begins to read, it cannot read one. Comments are
 //! blanked before, so that they may have these words, and gmsh gets what was looked at and no comments.
 
-use std::fs;
 use std::os::unix::ffi::OsStrExt;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use foreign_program::read_at_most;
 
-use crate::copy::copied;
+use crate::contents::{MOST_FILES, ReadFile, contents};
 use crate::error::ImportError;
 use crate::format::ending;
 
 /// Bytes that a text may have.
 const LARGEST: u64 = 256 << 20;
-/// Files that one may include, together.
-const MOST_FILES: usize = 1000;
 /// gmsh reads a line in parts of 8192 bytes, and jumps to the beginning of a part. Longer lines are broken.
 const LONGEST_LINE: usize = 8000;
 /// Lines are broken at the first place after so many bytes.
@@ -74,52 +71,48 @@ const INCLUDES: [(&str, Includes); 5] = [
 /// Formats, other than programs, that gmsh knows by the ending.
 const OTHERS: [&str; 8] = ["step", "stp", "iges", "igs", "brep", "unv", "msh", "stl"];
 
-/// Files and their copies, the first one first.
-#[derive(Debug, Default)]
-pub(crate) struct Copies(pub(crate) Vec<(PathBuf, PathBuf)>);
-
-/// Copies a program with all that it includes to a private folder.
+/// Reads a program with all that it includes, as gmsh may have them.
 ///
 /// # Errors
 /// [`ImportError::Refused`] where it has a command that is refused, [`ImportError::Io`].
-pub(crate) fn copied_geometry(path: &Path, folder: &Path) -> Result<Copies, ImportError> {
-    let mut copier = Copier { folder, copies: Copies::default() };
-    copier.program(path)?;
-    Ok(copier.copies)
+pub(crate) fn geometry(path: &Path) -> Result<Vec<ReadFile>, ImportError> {
+    let mut reader = GeometryReader::default();
+    reader.program(path)?;
+    Ok(reader.files)
 }
 
-struct Copier<'a> {
-    folder: &'a Path,
-    copies: Copies,
+#[derive(Default)]
+struct GeometryReader {
+    files: Vec<ReadFile>,
 }
 
-impl Copier<'_> {
-    /// The copy of a file, if there is one already.
+impl GeometryReader {
+    /// The name of the copy of a file, if it has been read already.
     fn known(&self, path: &Path, ending: &str) -> Option<String> {
-        let same = |(other, copy): &&(PathBuf, PathBuf)| other == path && copy.extension().is_some_and(|e| e == ending);
-        let (_, copy) = self.copies.0.iter().find(same)?;
-        Some(copy.file_name()?.to_string_lossy().into_owned())
+        let same =
+            |file: &&ReadFile| file.path == path && Path::new(&file.name).extension().is_some_and(|e| e == ending);
+        self.files.iter().find(same).map(|file| file.name.clone())
     }
 
-    /// A new name for the copy of a file.
-    fn named(&mut self, path: &Path, ending: &str) -> Result<String, ImportError> {
-        let number = self.copies.0.len();
+    /// A file that is to be read. Returns its number, and the name of its copy.
+    fn begin(&mut self, path: &Path, ending: &str) -> Result<(usize, String), ImportError> {
+        let number = self.files.len();
         if number >= MOST_FILES {
             return Err(refused(path, None, &format!("more than {MOST_FILES} files that include each other")));
         }
         let name = format!("{number}.{ending}");
-        self.copies.0.push((path.to_owned(), self.folder.join(&name)));
-        Ok(name)
+        self.files.push(ReadFile { path: path.to_owned(), name: name.clone(), bytes: None });
+        Ok((number, name))
     }
 
-    /// Copies a program. Returns the name of the copy.
+    /// Reads a program. Returns the name of its copy.
     fn program(&mut self, path: &Path) -> Result<String, ImportError> {
         if let Some(name) = self.known(path, "geo") {
             return Ok(name);
         }
         let io = |cause| ImportError::Io { source_name: path.display().to_string(), cause };
         let bytes = read_at_most(path, LARGEST).map_err(io)?;
-        let name = self.named(path, "geo")?;
+        let (number, name) = self.begin(path, "geo")?;
         let text = without_comments(&bytes).map_err(|(at, found)| refused(path, Some(line(&bytes, at)), found))?;
         if let Some((at, found)) = forbidden(&text) {
             return Err(refused(path, Some(line(&text, at)), &found));
@@ -152,11 +145,11 @@ impl Copier<'_> {
         let Some(broken) = with_short_lines(&edited) else {
             return Err(refused(path, None, &format!("a line of more than {LONGEST_LINE} bytes without a comma")));
         };
-        fs::write(self.folder.join(&name), broken).map_err(io)?;
+        self.files[number].bytes = Some(broken);
         Ok(name)
     }
 
-    /// Copies what is included. Returns the name of the copy.
+    /// Reads what is included. Returns the name of its copy.
     fn included(&mut self, path: &Path, kind: Includes) -> Result<String, ImportError> {
         let ending = ending(path);
         let ending = match kind {
@@ -169,19 +162,15 @@ impl Copier<'_> {
         }
         if !path.try_exists().unwrap_or(true) {
             // gmsh says so, if it comes to it.
-            return self.named(path, ending);
+            return self.begin(path, ending).map(|(_, name)| name);
         }
         if ending == "geo" {
             return self.program(path);
         }
-        let name = self.named(path, ending)?;
-        if ending == "txt" {
-            let io = |cause| ImportError::Io { source_name: path.display().to_string(), cause };
-            let bytes = read_at_most(path, LARGEST).map_err(io)?;
-            fs::write(self.folder.join(&name), bytes).map_err(io)?;
-        } else {
-            copied(path, self.folder, name.trim_end_matches(ending).trim_end_matches('.'))?;
-        }
+        let (number, name) = self.begin(path, ending)?;
+        let io = |cause| ImportError::Io { source_name: path.display().to_string(), cause };
+        let bytes = if ending == "txt" { read_at_most(path, LARGEST).map_err(io)? } else { contents(path)? };
+        self.files[number].bytes = Some(bytes);
         Ok(name)
     }
 }

@@ -1,10 +1,8 @@
 //! Who reads a file.
 
-use std::fs::File;
-use std::io::{BufRead, BufReader};
 use std::path::Path;
 
-use crate::copy::opened;
+use crate::contents::opened;
 use crate::format::ending;
 use crate::settings::ImportSettings;
 
@@ -66,19 +64,9 @@ pub(crate) fn is_program(path: &Path) -> bool {
     ["geo", "geo_unrolled"].contains(&ending(path).as_str())
 }
 
-/// Whether a text file takes in others, which may change without it.
-pub(crate) fn includes_others(path: &Path) -> bool {
-    let words: &[&str] = match ending(path).as_str() {
-        "geo" | "geo_unrolled" => &["include", "merge", "shapefromfile", "systemcall", "filename"],
-        "inp" => &["*include"],
-        "bdf" | "nas" | "fem" => &["include"],
-        // Data in files beside it.
-        "xdmf" | "xmf" => &["hdf", "binary", "include"],
-        _ => return false,
-    };
-    let Ok(file) = File::open(path) else { return true };
-    BufReader::new(file).split(b'\n').any(|line| {
-        let line = line.map(|line| String::from_utf8_lossy(&line).to_lowercase()).unwrap_or_default();
-        words.iter().any(|word| line.contains(word))
-    })
+/// Whether a file has its data in others beside it.
+pub(crate) fn names_others(path: &Path, bytes: &[u8]) -> bool {
+    let text = || String::from_utf8_lossy(bytes).to_lowercase();
+    ["xdmf", "xmf"].contains(&ending(path).as_str())
+        && ["hdf", "binary", "include"].iter().any(|word| text().contains(word))
 }

@@ -10,12 +10,10 @@ use foreign_program::{ForeignProgram, Limits, ProgramError, Stream, named};
 use serde::Deserialize;
 use whole_file::TemporaryFolder;
 
-use crate::copy::{copied, opened};
+use crate::contents::Copies;
+use crate::deck_material::DeckMaterial;
 use crate::error::ImportError;
-use crate::format::ending;
-use crate::geometry::{Copies, copied_geometry};
 use crate::gmsh_errors::error_in;
-use crate::reader::is_program;
 use crate::settings::ImportSettings;
 
 /// The program that meshio runs.
@@ -39,34 +37,42 @@ const PYTHON_CURE: &str = "install Python 3 with meshio (pip install meshio h5py
 #[derive(Deserialize)]
 #[serde(untagged)]
 enum Answer {
-    Done { notes: Vec<String> },
+    Done { notes: Vec<String>, materials: Vec<DeckMaterial> },
     Refused { error: String, cure: String },
 }
 
-/// Lets meshio read `source` and write it to `target`, in a private folder, as MSH 4.1. Returns what was left out.
-pub(crate) fn meshio(source: &Path, target: &Path, settings: &ImportSettings) -> Result<Vec<String>, ImportError> {
-    let (folder, io) = (folder_of(target), of(source));
+/// A mesh file that another program is to read.
+pub(crate) struct Job<'a> {
+    /// Its name in messages.
+    pub(crate) source: &'a Path,
+    pub(crate) settings: &'a ImportSettings,
+    /// What the program is given.
+    pub(crate) copies: &'a Copies,
+    /// What it is to write, in a private folder, as MSH 4.1.
+    pub(crate) target: &'a Path,
+    /// Whether the file is a program that may do what it likes.
+    pub(crate) is_free: bool,
+}
+
+/// Lets meshio do a job. Returns what was left out, and the materials of sets.
+pub(crate) fn meshio(job: &Job<'_>) -> Result<(Vec<String>, Vec<DeckMaterial>), ImportError> {
+    let &Job { source, settings, copies, target, .. } = job;
+    let folder = folder_of(target);
     let python = named(PYTHON, "python3");
     let program = folder.join("with_meshio.py");
-    std::fs::write(&program, WITH_MESHIO).map_err(io)?;
-    let copies = if ["inp", "xdmf", "xmf"].contains(&ending(source).as_str()) {
-        // They may name others, which are found beside them.
-        in_place(source)?
-    } else {
-        Copies(vec![(source.to_owned(), copied(source, folder, "source")?)])
-    };
+    std::fs::write(&program, WITH_MESHIO).map_err(of(source))?;
     let mut command = ForeignProgram::new(&python, folder).arg(&program).arg(copies.first()).arg(target);
     if settings.raise_order {
         command = command.arg("raise");
     }
     let said = Said::by(command, source, &python, ("meshio", PYTHON_CURE))?;
     match said.last(Stream::Output).and_then(|line| serde_json::from_str(line).ok()) {
-        Some(Answer::Done { notes }) if said.status.success() => Ok(notes),
+        Some(Answer::Done { notes, materials }) if said.status.success() => Ok((notes, materials)),
         Some(Answer::Refused { error, cure }) => {
             let source_name = source.display().to_string();
             Err(ImportError::Refused { source_name, found: copies.translated(&error), cure })
         }
-        _ => Err(said.failed(source, &python, &copies, "check the file, or write the mesh as MSH 4.1")),
+        _ => Err(said.failed(source, &python, copies, "check the file, or write the mesh as MSH 4.1")),
     }
 }
 
@@ -81,23 +87,18 @@ pub(crate) enum GmshTask {
     MeshAndOptimize,
 }
 
-/// Lets gmsh write `source` to `target`, in a private folder, as MSH 4.1.
-pub(crate) fn gmsh(source: &Path, target: &Path, settings: &ImportSettings, task: GmshTask) -> Result<(), ImportError> {
+/// Lets gmsh do a job.
+pub(crate) fn gmsh(job: &Job<'_>, task: GmshTask) -> Result<(), ImportError> {
+    let &Job { source, settings, copies, target, is_free } = job;
     let folder = folder_of(target);
     let gmsh = named(GMSH, "gmsh");
-    let is_trusted = is_program(source) && settings.trust_geometry;
-    let copies = match is_program(source) {
-        true if is_trusted => in_place(source)?,
-        true => copied_geometry(source, folder)?,
-        false => Copies(vec![(source.to_owned(), copied(source, folder, "source")?)]),
-    };
     // The user's options of gmsh are for a mesh that he looks at; they are not read here.
     let mut command = match task {
         GmshTask::MeshAndOptimize if has_fixed_addresses() => with_fixed_addresses(folder).arg(&gmsh),
         _ => ForeignProgram::new(&gmsh, folder),
     };
     command = command.env("GMSH_HOME", folder);
-    command = if is_trusted { command.in_folder(folder_of(copies.first())) } else { command.env("HOME", folder) };
+    command = if is_free { command.in_folder(folder_of(copies.first())) } else { command.env("HOME", folder) };
     if task != GmshTask::Convert {
         command = command.arg(copies.first());
         if let Some(size) = settings.mesh_size {
@@ -113,7 +114,8 @@ pub(crate) fn gmsh(source: &Path, target: &Path, settings: &ImportSettings, task
     } else if settings.raise_order {
         // The option -order only acts on what is meshed.
         let script = folder.join("raise.geo");
-        let text = format!("Merge \"source.{}\";\nSetOrder 2;\n", ending(source));
+        let name = copies.first().file_name().unwrap_or_default().display();
+        let text = format!("Merge \"{name}\";\nSetOrder 2;\n");
         std::fs::write(&script, text).map_err(of(source))?;
         command = command.arg(script).arg("-save");
     } else {
@@ -128,7 +130,7 @@ pub(crate) fn gmsh(source: &Path, target: &Path, settings: &ImportSettings, task
                 "try a smaller mesh_size, or open it in gmsh, and see what is wrong with it"
             }
         };
-        return Err(said.failed(source, &gmsh, &copies, cure));
+        return Err(said.failed(source, &gmsh, copies, cure));
     }
     Ok(())
 }
@@ -200,27 +202,6 @@ impl Said {
             said: copies.translated(said),
             cure,
         }
-    }
-}
-
-/// A file that is read where it is.
-fn in_place(source: &Path) -> Result<Copies, ImportError> {
-    opened(source)?;
-    Ok(Copies(vec![(source.to_owned(), std::path::absolute(source).map_err(of(source))?)]))
-}
-
-impl Copies {
-    /// The file that a program is given.
-    fn first(&self) -> &Path {
-        self.0.first().map_or(Path::new(""), |(_, copy)| copy)
-    }
-
-    /// What a program says of the copies, as if it said it of the files.
-    fn translated(&self, said: &str) -> String {
-        // The last first: their names are the longest.
-        self.0.iter().rev().fold(said.to_owned(), |said, (file, copy)| {
-            said.replace(&copy.display().to_string(), &file.display().to_string())
-        })
     }
 }
 

@@ -4,7 +4,7 @@ Abaqus and CalculiX files are read here: meshio puts element sets on wrong eleme
 *NODE blocks, and has no surfaces.
 
 Arguments: the mesh file, the MSH file to write, and "raise" if first-order tetrahedra are to get mid-edge nodes.
-Prints a line of JSON: what was left out ("notes"), or what is wrong ("error", with "cure").
+Prints a line of JSON: what was left out ("notes") and the materials of sets ("materials"), or what is wrong ("error", with "cure").
 """
 
 import contextlib
@@ -21,6 +21,8 @@ EDGES = {
 }
 RAISED = {"tetra": "tetra10", "triangle": "triangle6"}
 CORNERS = {"tetra10": 4, "triangle6": 3}
+# Endings of Nastran's files.
+NASTRAN = (".bdf", ".nas", ".fem")
 # Abaqus' faces of a tetrahedron.
 FACES = {"S1": (0, 1, 2), "S2": (0, 3, 1), "S3": (1, 3, 2), "S4": (2, 3, 0)}
 CURE = "install it (pip install meshio h5py), or name a Python that has it in FLEXFRAME_PYTHON"
@@ -43,6 +45,7 @@ class File:
         self.labels = {}  # name: whole numbers of each block
         self.names_of_labels = {}  # label array: {(number, dimension) or number: names}
         self.faces = {}  # surface: (block, row, face) of elements
+        self.materials = []  # of sets of elements
 
 
 def main(source, target, raise_order):
@@ -54,7 +57,7 @@ def main(source, target, raise_order):
     if Path(source).suffix.lower() == ".inp":
         file = Abaqus(notes).read(np, Path(source))
     else:
-        file = with_meshio(np, source, Path(target))
+        file = with_meshio(np, source, Path(target), notes)
     points = file.points
     if len(points) == 0:
         raise Refused("it has no nodes", "check the file")
@@ -97,7 +100,17 @@ def main(source, target, raise_order):
     tell(notes, "element set", "no tetrahedra and no triangles of six nodes", groups.without)
     tell(notes, "node set", "no nodes", [name for name in file.node_sets if name not in point_sets])
     write(np, target, points, blocks, groups, surfaces, point_sets)
-    return notes
+    return {"notes": notes, "materials": file.materials}
+
+
+def add_material(materials, notes, group, name, young, poisson, density):
+    """An isotropic material of a set of elements, unless its numbers are none of one."""
+    if young > 0 and -1 < poisson < 0.5 and density > 0:
+        numbers = {"young_modulus": young, "poisson_ratio": poisson, "density": density}
+        materials.append({"group": plain(group), "name": name, **numbers})
+    else:
+        found = f"Young's modulus {young:g}, Poisson's ratio {poisson:g}, density {density:g}"
+        notes.append(f"the material {name} of {group} is not read: {found}")
 
 
 def tell(notes, kind, what, names):
@@ -106,7 +119,7 @@ def tell(notes, kind, what, names):
         notes.append(f"the {kind} {shown} has {what}" if len(names) == 1 else f"the {kind}s {shown} have {what}")
 
 
-def with_meshio(np, source, target):
+def with_meshio(np, source, target, notes):
     try:
         import meshio
     except ImportError:
@@ -120,6 +133,8 @@ def with_meshio(np, source, target):
         # meshio prints its reasons.
         with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
             mesh = meshio.read(prepared(source, target))
+    except Refused:
+        raise
     except (SystemExit, Exception) as error:
         reason = f"{type(error).__name__}: {error}" if not isinstance(error, SystemExit) else ""
         words = " ".join([*said.getvalue().split(), *reason.split()])
@@ -137,6 +152,8 @@ def with_meshio(np, source, target):
     file.labels = {name: arrays for name, arrays in mesh.cell_data.items() if name != "gmsh:geometrical"}
     # gmsh's physical groups have names by number and dimension, MED's families by number.
     physical = {(int(data[0]), int(data[1])): [name] for name, data in mesh.field_data.items() if len(data) == 2}
+    if Path(source).suffix.lower() in NASTRAN:
+        file.materials = nastran_materials(Path(source).read_text(encoding="utf-8", errors="replace"), notes)
     file.names_of_labels = {"gmsh:physical": physical, "cell_tags": getattr(mesh, "cell_tags", {})}
     return file
 
@@ -144,13 +161,73 @@ def with_meshio(np, source, target):
 def prepared(source, target):
     """What meshio can read of the file: it wants heads that gmsh leaves out."""
     ending = Path(source).suffix.lower()
-    if ending in (".bdf", ".nas", ".fem"):
+    if ending in NASTRAN:
         text = Path(source).read_text(encoding="utf-8", errors="replace")
+        if any(line.strip().upper().startswith(("INCLUDE ", "INCLUDE'", 'INCLUDE"')) for line in text.splitlines()):
+            raise Refused("it includes other files by INCLUDE, which meshio leaves out", "write it as one file")
         if "BEGIN BULK" not in text.upper():
             whole = target.with_suffix(ending)
             whole.write_text("BEGIN BULK\n" + text + "\nENDDATA\n", encoding="utf-8")
             return str(whole)
     return source
+
+
+def nastran_materials(text, notes):
+    """What MAT1 gives to the elements of each PSOLID, whose numbers are the names of groups."""
+    isotropic, others, of_property, mass_of_weight = {}, {}, {}, 1.0
+    for card, fields in nastran_cards(text):
+        try:
+            if card == "MAT1":
+                young, shear, poisson, density = (number(field) for field in fields[1:5])
+                isotropic[int(fields[0])] = (young, shear, poisson, density)
+            elif card in ("MAT9", "MAT10", "MAT11"):
+                others[int(fields[0])] = card
+            elif card == "PSOLID":
+                of_property[int(fields[0])] = int(fields[1])
+            elif card == "PARAM" and fields[0].upper() == "WTMASS":
+                mass_of_weight = number(fields[1])
+        except ValueError:
+            notes.append(f"a card {card} is not read: {', '.join(fields)}")
+    materials = []
+    for pid, mid in of_property.items():
+        group = f"ref_{pid}"
+        if mid not in isotropic:
+            found = f"it is of kind {others[mid]}, and only MAT1 is" if mid in others else "there is none of that number"
+            notes.append(f"the material {mid} of {group} is not read: {found}")
+            continue
+        young, shear, poisson, density = isotropic[mid]
+        if poisson is None and young and shear:
+            poisson = young / (2 * shear) - 1
+        if young is None and poisson is not None and shear:
+            young = 2 * shear * (1 + poisson)
+        add_material(materials, notes, group, f"MAT1 {mid}", young or 0.0, poisson or 0.0, (density or 0.0) * mass_of_weight)
+    return materials
+
+
+def nastran_cards(text):
+    """Names and the first eight fields of cards: free, of 8 letters or of 16."""
+    lines = [line.expandtabs(8).rstrip() for line in text.splitlines() if line.strip() and not line.startswith("$")]
+    for at, line in enumerate(lines):
+        if "," in line:
+            name, *fields = [field.strip() for field in line.split(",")]
+        elif line[:8].strip().endswith("*"):
+            name, fields = line[:8].strip(), [line[start : start + 16].strip() for start in range(8, 72, 16)]
+            more = lines[at + 1] if at + 1 < len(lines) and lines[at + 1].startswith("*") else ""
+            fields += [more[start : start + 16].strip() for start in range(8, 72, 16)]
+        else:
+            name, fields = line[:8].strip(), [line[start : start + 8].strip() for start in range(8, 72, 8)]
+        yield name.rstrip("*").upper(), (fields + [""] * 8)[:8]
+
+
+def number(field):
+    """A number as Nastran writes it, such as 7.+4; none of an empty field."""
+    if not field:
+        return None
+    field = field.upper().replace("D", "E")
+    head, tail = field[:1], field[1:]
+    if "E" not in field:
+        tail = tail.replace("+", "E+").replace("-", "E-")
+    return float(head + tail)
 
 
 class Abaqus:
@@ -172,10 +249,13 @@ class Abaqus:
         self.sets = {"NSET": {}, "ELSET": {}}  # by name in capitals: numbers
         self.surfaces = {}
         self.parts = Counter()
+        self.material = {"name": "", "ELASTIC": [], "DENSITY": [], "why": ""}
+        self.materials = {}  # by name in capitals: the name, lines of numbers by keyword, and why it is not read
+        self.sections = []  # name of a set, name of its material
 
     def read(self, np, path):
         keyword, options, waiting = "", {}, []
-        for where, line in self.lines(path, []):
+        for where, line in self.lines(path):
             if line.startswith("*"):
                 first, *others = [part.strip() for part in line[1:].split(",")]
                 keyword = " ".join(first.upper().split())
@@ -197,24 +277,18 @@ class Abaqus:
             waiting = []
         return self.file(np)
 
-    def lines(self, path, around):
-        if path in around:
-            raise Refused(f"{path} includes itself", "check its *INCLUDE")
-        if path.exists() and not path.is_file():
-            raise Refused(f"{path} is a folder, a device or a pipe", "check the name in *INCLUDE: it must be a file")
-        try:
-            text = path.read_text(encoding="utf-8", errors="replace")
-        except OSError as error:
-            raise Refused(f"{path} cannot be read: {error}", "check the name in *INCLUDE, relative to the file")
-        for number, line in enumerate(text.splitlines(), start=1):
+    def lines(self, path):
+        """The lines that are no comments. What includes a file has been given this keyword: there is nothing else to be read."""
+        # Not `splitlines`, which knows more ends of lines than decks do.
+        lines = path.read_text(encoding="utf-8", errors="replace").split("\n")
+        for number, line in enumerate(lines, start=1):
             line = line.strip()
             if not line or line.startswith("**"):
                 continue
-            if line.upper().replace(" ", "").startswith("*INCLUDE"):
-                name = line.partition("=")[2].strip().strip('"')
-                yield from self.lines(path.parent / name, [*around, path])
+            if line.startswith("*FLEXFRAME INCLUDE="):
+                yield from self.lines(path.parent / Path(line.partition("=")[2]).name)
             else:
-                yield f"line {number} of {path.name}", line
+                yield f"line {number} of {path}", line
 
     def begin(self, keyword, options):
         if keyword in ("PART", "INSTANCE"):
@@ -224,6 +298,13 @@ class Abaqus:
         for kind in ("NSET", "ELSET"):
             if kind in options and keyword in ("NODE", "ELEMENT", kind):
                 self.set(kind, options[kind])
+        if keyword == "MATERIAL":
+            self.material = {"name": options.get("NAME", ""), "ELASTIC": [], "DENSITY": [], "why": ""}
+            self.materials[options.get("NAME", "").upper()] = self.material
+        elif keyword == "SOLID SECTION":
+            self.sections.append((options.get("ELSET", ""), options.get("MATERIAL", "")))
+        elif keyword == "ELASTIC" and options.get("TYPE", "ISOTROPIC").upper() not in ("ISO", "ISOTROPIC"):
+            self.material["why"] = f"its *ELASTIC is of TYPE={options['TYPE']}, and only isotropic ones are"
         if keyword == "SURFACE" and options.get("TYPE", "ELEMENT").upper() == "ELEMENT":
             self.surfaces[options.get("NAME", "")] = []
         elif keyword == "SURFACE":
@@ -244,6 +325,9 @@ class Abaqus:
             self.elements[number] = (kind, nodes)
             if "ELSET" in options:
                 self.set("ELSET", options["ELSET"]).append(number)
+        elif keyword in ("ELASTIC", "DENSITY"):
+            if not self.material["why"]:
+                self.material[keyword].append([float(word) for word in words])
         elif keyword in ("NSET", "ELSET"):
             members = self.set(keyword, options[keyword])
             if "GENERATE" in options:
@@ -274,6 +358,28 @@ class Abaqus:
             raise Refused(f"the set {word} is named, but not there", "check the sets of the file")
         return list(self.sets[kind][word.upper()])
 
+    def materials_of_sets(self):
+        materials = []
+        for group, name in self.sections:
+            material = self.materials.get(name.upper(), {"why": "there is no *MATERIAL of this name"})
+            why = material["why"]
+            for keyword, count in (("ELASTIC", 2), ("DENSITY", 1)):
+                lines = material.get(keyword, [])
+                if not why and (not lines or len(lines[0]) < count):
+                    why = f"it has no *{keyword} with numbers"
+                elif not why and len(lines) > 1:
+                    why = f"its *{keyword} is a table over temperature"
+            if why:
+                self.notes.append(f"the material {name} of {group} is not read: {why}")
+                continue
+            group = self.names["ELSET"].get(group.upper(), group)
+            [[young, poisson, *_]], [[density, *_]] = material["ELASTIC"], material["DENSITY"]
+            add_material(materials, self.notes, group, material["name"], young, poisson, density)
+        used = {name.upper() for _, name in self.sections}
+        for name in self.materials.keys() - used:
+            self.notes.append(f"the material {self.materials[name]['name']} is not read: no *SOLID SECTION names it")
+        return materials
+
     def file(self, np):
         index = {number: i for i, number in enumerate(self.nodes)}
         blocks, place = {}, {}
@@ -297,6 +403,7 @@ class Abaqus:
         for name, faces in self.surfaces.items():
             at = [(place.get(number), face) for number, face in faces]
             file.faces[name] = [(number_of[p[0]], p[1], face) if p else (-1, 0, face) for p, face in at]
+        file.materials = self.materials_of_sets()
         return file
 
 
@@ -476,6 +583,6 @@ def write(np, target, points, blocks, groups, surfaces, point_sets):
 
 
 try:
-    print(json.dumps({"notes": main(sys.argv[1], sys.argv[2], "raise" in sys.argv[3:])}))
+    print(json.dumps(main(sys.argv[1], sys.argv[2], "raise" in sys.argv[3:])))
 except Refused as refused:
     print(json.dumps({"error": str(refused), "cure": refused.cure}))

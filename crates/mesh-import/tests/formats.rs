@@ -9,7 +9,7 @@ use std::process::Command;
 use std::sync::OnceLock;
 
 use fem_tet10::{Material, Materials, Mesh, centroid_lumped_inertia};
-use mesh_import::{ImportError, ImportSettings, Imported, Reader, hash_of_mesh, read_mesh, reader_of};
+use mesh_import::{ImportError, ImportSettings, Imported, MeshFile, Reader, read_mesh, reader_of};
 
 /// Names the Python that reads meshes.
 const PYTHON: &str = "FLEXFRAME_PYTHON";
@@ -131,7 +131,8 @@ fn every_format_gives_the_same_elements_and_its_groups() {
     ];
     for (name, settings, reader, volumes, faces, nodes) in table {
         assert_eq!(reader_of(&formats.path(name), &settings), reader, "{name}");
-        let Imported { mesh, notes } = formats.read(name, settings).unwrap_or_else(|error| panic!("{name}: {error}"));
+        let Imported { mesh, notes, .. } =
+            formats.read(name, settings).unwrap_or_else(|error| panic!("{name}: {error}"));
         assert!(notes.is_empty(), "{name}: {notes:?}");
         assert_eq!(mesh.elements().len(), direct.elements().len(), "{name}");
         assert_eq!(mesh.positions().len(), direct.positions().len(), "{name}");
@@ -151,7 +152,7 @@ fn every_format_gives_the_same_elements_and_its_groups() {
 #[test]
 fn what_abaqus_calls_surfaces_and_node_sets_are_groups_and_the_rest_is_told() {
     let formats = formats();
-    let Imported { mesh, notes } = formats.read("surfaces.inp", AS_IT_IS).unwrap();
+    let Imported { mesh, notes, .. } = formats.read("surfaces.inp", AS_IT_IS).unwrap();
     let parts = mesh.parts();
     let triangles = |name: &str| parts.surfaces.iter().find(|surface| surface.name == name).map(|s| s.triangles.len());
     assert_eq!(triangles("faces"), Some(2));
@@ -257,7 +258,7 @@ fn what_cannot_be_read_is_said_with_its_cure() {
         ("brick.inp", &["1 hexahedron", "ten-node tetrahedra", "`matrices` in [body]"]),
         ("empty.inp", &["it has no nodes"]),
         ("parts.inp", &["node 1 is there twice", "write one part"]),
-        ("strange.inp", &["line 3 of strange.inp", "in *ELEMENT"]),
+        ("strange.inp", &["line 3 of /", "strange.inp: in *ELEMENT"]),
         ("text.vtu", &["begin as .vtu files do", "expected XML"]),
         ("marked.vtu", &["marked.vtu", "meshio cannot read it"]),
         ("swapped.inp", &["1 of its 768 tetra10 elements", "in another order", "mesh again"]),
@@ -288,13 +289,9 @@ fn geometry_is_meshed_as_fine_as_asked_and_what_it_follows_from_is_known() {
         assert!(fine.elements().len() > 3 * coarse.elements().len(), "{name}");
         assert!((volume(&fine) / 2000.0 - 1.0).abs() < 1e-9, "{name}");
     }
-    let path = formats.path("block.geo");
-    let hash = hash_of_mesh(&path, &sized(4.0)).unwrap();
-    assert_eq!(hash_of_mesh(&path, &sized(4.0)), Some(hash));
-    assert_ne!(hash_of_mesh(&path, &sized(5.0)), Some(hash));
-    // A file that takes in others may give another mesh without a change of its own.
-    fs::write(&path, format!("{box_}Include \"other.geo\";\n")).unwrap();
-    assert_eq!(hash_of_mesh(&path, &sized(4.0)), None);
+    let hash = |size| MeshFile::read(&formats.path("block.geo"), &sized(size)).unwrap().hash().unwrap();
+    assert_eq!(hash(4.0), hash(4.0));
+    assert_ne!(hash(4.0), hash(5.0));
 }
 
 /// A tube of STEP with two elements across its wall and few around it: their curved edges run through their other faces.
@@ -315,7 +312,7 @@ fn curved_elements_that_would_be_inverted_are_optimized() {
         let plain = formats.read("tube.msh", AS_IT_IS);
         assert_eq!(plain.is_err(), is_inverted, "{size}: {plain:?}");
         let settings = ImportSettings { mesh_size: Some(size), ..AS_IT_IS };
-        let Imported { mesh, notes } =
+        let Imported { mesh, notes, .. } =
             formats.read("tube.step", settings).unwrap_or_else(|error| panic!("{size}: {error}"));
         // Else a run of it could not be resumed.
         assert_eq!(formats.read("tube.step", settings).unwrap().mesh.positions(), mesh.positions(), "{size}");

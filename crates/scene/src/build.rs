@@ -23,6 +23,7 @@ mod mesh_model;
 mod meshed;
 mod modal_model;
 mod model;
+mod other_materials;
 mod physics;
 mod point_rotations;
 mod points;

@@ -13,7 +13,8 @@ use super::doubt::doubts;
 use super::error::BuildError;
 use super::fe_matrices::FeMatrices;
 use super::given::{Given, MatrixChecks};
-use super::mesh::{matrices, read_mesh};
+use super::mesh::{matrices, mesh_file, mesh_in};
+use super::other_materials::other_materials;
 use super::progress::{BuildProgress, BuildTimes, timed};
 use super::store::Store;
 use super::support::support;
@@ -64,15 +65,23 @@ impl Assembly {
         };
         let mut times = BuildTimes::default();
         progress(BuildProgress::Mesh);
-        let store = timed(&mut times.mesh, || Store::open(scene, &body))?;
-        let read = || match &store {
-            Some(store) => store.mesh(scene, &body),
-            None => read_mesh(scene, &body),
+        let read = || {
+            // It is read once: the answers that are kept and the mesh are of the same bytes.
+            let file = if body.file.is_none() { Some(mesh_file(scene, &body)?) } else { None };
+            let store = Store::open(scene, &body, file.as_ref())?;
+            let made = || match &file {
+                Some(file) => mesh_in(scene, file),
+                None => mesh_in(scene, &mesh_file(scene, &body)?),
+            };
+            let imported = match &store {
+                Some(store) => store.mesh(scene, &body, made)?,
+                None => made()?,
+            };
+            Ok::<_, BuildError>((store, imported))
         };
-        let mut of_mesh = Duration::ZERO;
-        let Imported { mesh, notes: mesh_notes } = timed(&mut of_mesh, read)?;
+        let (store, Imported { mesh, notes: mut mesh_notes, materials }) = timed(&mut times.mesh, read)?;
+        mesh_notes.extend(other_materials(&mesh, &materials, &body.materials));
         let mesh = Arc::new(mesh);
-        times.mesh += of_mesh;
         doubts(scene, &mesh).into_iter().for_each(|doubt| progress(BuildProgress::Doubt(doubt)));
         let (support, drive) = support(scene, Some((&mesh, 3)))?;
         let (scene, matrices, body) = (scene.clone(), OnceLock::new(), MadeOf::Elements(body));
@@ -94,9 +103,9 @@ impl Assembly {
         let mut times = BuildTimes::default();
         progress(BuildProgress::Mesh);
         let given = timed(&mut times.mesh, || Given::read(scene, files))?;
-        let Given { nodes, notes: mesh_notes, matrices, checks } = given;
+        let Given { nodes, hash, notes: mesh_notes, matrices, checks } = given;
         let mesh = Arc::new(nodes);
-        let store = Store::of_matrices(scene, files);
+        let store = Store::of_matrices(scene, hash);
         let (support, drive) = support(scene, Some((&mesh, checks.freedoms)))?;
         let (scene, body, checks) = (scene.clone(), MadeOf::Files(files.clone()), Some(checks));
         let matrices = OnceLock::from((matrices, Duration::ZERO));

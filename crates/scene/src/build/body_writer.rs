@@ -92,7 +92,7 @@ impl Model {
         };
         let Some(store) = &assembled.store else { return Err(without_store(scene, folder)) };
 
-        let arrays = MeshArrays::new(&meshed.mesh, &meshed.mesh_notes);
+        let arrays = MeshArrays::new(&meshed.mesh, &meshed.mesh_notes, &[]);
         let mut named = Named { scene, datasets: Vec::new() };
         named.add_groups(&meshed.mesh);
         named.add_modes(&model, meshed);
@@ -133,7 +133,7 @@ fn without_store(scene: &Scene, folder: &Path) -> BuildError {
         return BodyFileError::Damaged { path: folder.to_owned(), what }.into();
     }
     let found =
-        "a mesh file that includes others, or can be read only once: what the body is made of cannot be told later";
+        "a mesh file that names others which cannot be known before: what the body is made of cannot be told later";
     let cure = "write it as one MSH 4.1 file first: gmsh -3 -order 2 -format msh41 BODY.geo -o BODY.msh";
     scene.refuse("body.mesh", found, "a mesh in one file", cure).into()
 }

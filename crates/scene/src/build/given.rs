@@ -1,6 +1,6 @@
 //! A body of mass and stiffness matrices from another program.
 
-use body_file::{Digest, Hash};
+use body_file::Hash;
 use fem_tet10::{Mesh, NodeGroup};
 use matrix_import::{BodyMatrices, MatrixError, MatrixFiles, Which};
 use modal::{MassMatrix, ModalError, RigidModes, RigidMotion};
@@ -12,6 +12,8 @@ use crate::scene::Scene;
 /// The nodes and the matrices of a body, and what was found when they were checked.
 pub(super) struct Given {
     pub nodes: Mesh,
+    /// Of what was read of the files.
+    pub hash: Hash,
     pub notes: Vec<String>,
     pub matrices: FeMatrices,
     pub checks: MatrixChecks,
@@ -35,7 +37,7 @@ pub struct MatrixChecks {
 impl Given {
     /// Reads the files and checks what a free body must have, whatever holds it in the scene.
     pub fn read(scene: &Scene, files: &MatrixFiles) -> Result<Self, BuildError> {
-        let BodyMatrices { labels, positions, groups, freedoms, stiffness, mass, asymmetry, notes } =
+        let BodyMatrices { labels, positions, groups, freedoms, stiffness, mass, asymmetry, hash, notes } =
             files.read().map_err(|error| refuse_file(scene, error))?;
         let of_group = |(name, nodes): (String, Vec<u32>)| NodeGroup {
             name,
@@ -52,21 +54,8 @@ impl Given {
         let rigid = RigidModes::new(&as_mass, nodes.positions(), RigidMotion::free()).map_err(refuse)?;
         let rigid_stiffness = rigid.check_free(stiffness.as_ref()).map_err(refuse)?;
         let checks = MatrixChecks { freedoms, asymmetry, rigid_stiffness, is_scalar_mass, left_out: 0.0 };
-        Ok(Self { nodes, notes, matrices: FeMatrices::Given { stiffness, mass }, checks })
+        Ok(Self { nodes, hash, notes, matrices: FeMatrices::Given { stiffness, mass }, checks })
     }
-}
-
-/// What a body of matrices follows from; `None` where a file cannot be read.
-pub(super) fn hash_of_matrices(files: &MatrixFiles) -> Option<Hash> {
-    files
-        .list()
-        .try_fold(Digest::new(), |digest, (which, path)| {
-            // What is no ordinary file can be read only once. The ending says how nodes are read.
-            let file = Some(path).filter(|path| path.is_file()).and_then(|path| Hash::of_file(path).ok())?;
-            let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-            Some(digest.text(which.name()).text(&ending).hash(&file))
-        })
-        .map(Digest::finish)
 }
 
 /// A file that cannot be used, at its key.

@@ -1,19 +1,29 @@
 //! The mesh of a scene and its matrices.
 
 use fem_tet10::{AssemblyError, Matrices, Mesh, MeshError, assemble};
-use mesh_import::{ImportError, ImportSettings, Imported};
+use mesh_import::{ImportError, ImportSettings, Imported, MeshFile};
 
 use super::error::{BuildError, refuse};
 use crate::scene::{MeshedBody, Scene};
 use crate::shorten::shorten;
 
-pub(super) fn read_mesh(scene: &Scene, body: &MeshedBody) -> Result<Imported, BuildError> {
+/// The mesh file of a body, as it is now.
+pub(super) fn mesh_file(scene: &Scene, body: &MeshedBody) -> Result<MeshFile, BuildError> {
     let trust_geometry = body.import.trust_geometry || scene.cache.trusts_geometry();
     let settings = ImportSettings { trust_geometry, ..body.import };
-    if let Some(remark) = mesh_import::remark(&body.mesh, &settings) {
+    MeshFile::read(&body.mesh, &settings).map_err(refused(scene))
+}
+
+/// The mesh in that file.
+pub(super) fn mesh_in(scene: &Scene, file: &MeshFile) -> Result<Imported, BuildError> {
+    if let Some(remark) = file.remark() {
         scene.cache.warn(remark);
     }
-    mesh_import::read_mesh(&body.mesh, &settings).map_err(|error| match error {
+    file.mesh().map_err(refused(scene))
+}
+
+fn refused(scene: &Scene) -> impl Fn(ImportError) -> BuildError {
+    |error| match error {
         ImportError::Mesh(MeshError::Io { source_name, source: cause }) | ImportError::Io { source_name, cause } => {
             scene
                 .refuse(
@@ -26,7 +36,7 @@ pub(super) fn read_mesh(scene: &Scene, body: &MeshedBody) -> Result<Imported, Bu
         }
         ImportError::Mesh(error) => BuildError::from(error),
         other => Box::new(other).into(),
-    })
+    }
 }
 
 pub(super) fn matrices(scene: &Scene, body: &MeshedBody, mesh: &Mesh) -> Result<Matrices, BuildError> {

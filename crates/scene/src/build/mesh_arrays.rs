@@ -4,13 +4,15 @@ use std::collections::BTreeMap;
 
 use body_file::{Array, BodyFile, BodyFileError, Declared, Kind, Writer};
 use fem_tet10::{Mesh, MeshError, MeshParts, NodeGroup, SurfaceGroup};
-use mesh_import::Imported;
+use mesh_import::{DeckMaterial, Imported};
 use serde::{Deserialize, Serialize};
 
 /// The text with the names of the groups.
 const GROUPS: &str = "mesh_groups";
 /// The text with the sentences on what of the mesh file was left out.
 const NOTES: &str = "mesh_notes";
+/// The text with the materials that the mesh file gives to groups; a body file has none, but what was made of them.
+const MATERIALS: &str = "mesh_materials";
 
 /// What has no numbers.
 #[derive(Serialize, Deserialize)]
@@ -29,6 +31,7 @@ struct Groups {
 pub(super) struct MeshArrays {
     groups: Groups,
     notes: Vec<String>,
+    materials: Vec<DeckMaterial>,
     positions: Vec<f64>,
     node_tags: Vec<u64>,
     tetrahedra: Vec<u32>,
@@ -44,8 +47,8 @@ pub(super) struct MeshArrays {
 }
 
 impl MeshArrays {
-    /// `notes` say what of the mesh file was left out.
-    pub fn new(mesh: &Mesh, notes: &[String]) -> Self {
+    /// `notes` say what of the mesh file was left out, `materials` are those that it gives to groups.
+    pub fn new(mesh: &Mesh, notes: &[String], materials: &[DeckMaterial]) -> Self {
         let parts = mesh.parts();
         let index_of: BTreeMap<u64, u32> = parts.node_tags.iter().copied().zip(0..).collect();
         let index = |tag: &u64| index_of.get(tag).copied().unwrap_or(u32::MAX);
@@ -75,17 +78,19 @@ impl MeshArrays {
                 nodes: node_groups.iter().map(|group| (group.dimension, group.name.clone())).collect(),
             },
             notes: notes.to_vec(),
+            materials: materials.to_vec(),
             node_tags: parts.node_tags,
             tetrahedron_tags: parts.element_tags,
         }
     }
 
     /// The texts that go with the arrays, by name.
-    pub fn texts(&self) -> [(String, String); 2] {
+    pub fn texts(&self) -> [(String, String); 3] {
         // All their keys are texts: it cannot fail.
         let groups = serde_json::to_string(&self.groups).unwrap_or_default();
         let notes = serde_json::to_string(&self.notes).unwrap_or_default();
-        [(GROUPS.to_owned(), groups), (NOTES.to_owned(), notes)]
+        let materials = serde_json::to_string(&self.materials).unwrap_or_default();
+        [(GROUPS.to_owned(), groups), (NOTES.to_owned(), notes), (MATERIALS.to_owned(), materials)]
     }
 
     /// The arrays; lengths in the `unit` of the scene.
@@ -155,10 +160,11 @@ pub(super) fn read(file: &BodyFile, source: String) -> Result<Imported, BodyFile
         .attribute(GROUPS)
         .and_then(|text| serde_json::from_str(text).ok())
         .ok_or_else(|| damaged("the names of the groups of its mesh cannot be read".to_owned()))?;
-    let notes: Vec<String> = file
-        .attribute(NOTES)
-        .and_then(|text| serde_json::from_str(text).ok())
-        .ok_or_else(|| damaged("the notes on its mesh cannot be read".to_owned()))?;
+    let unread = |what: &str| damaged(format!("the {what} of its mesh cannot be read"));
+    let notes =
+        file.attribute(NOTES).and_then(|text| serde_json::from_str(text).ok()).ok_or_else(|| unread("notes"))?;
+    let materials = file.attribute(MATERIALS).and_then(|text| serde_json::from_str(text).ok());
+    let materials = materials.ok_or_else(|| unread("materials"))?;
     let numbers = |name: &str| Ok::<_, BodyFileError>(file.read::<u64>(name)?.values);
     let node_tags = numbers("mesh/node_tags")?;
     let triangle_tags = numbers("mesh/group_triangle_tags")?;
@@ -201,5 +207,5 @@ pub(super) fn read(file: &BodyFile, source: String) -> Result<Imported, BodyFile
         node_tags,
     };
     let mesh = Mesh::new(parts).map_err(|error: MeshError| damaged(error.to_string()))?;
-    Ok(Imported { mesh, notes })
+    Ok(Imported { mesh, notes, materials })
 }

@@ -5,13 +5,10 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 use body_file::{BodyFile, BodyFileError, Declared, Digest, Hash, Kind, Writer};
-use matrix_import::MatrixFiles;
-use mesh_import::{Imported, hash_of_mesh};
+use mesh_import::{Imported, MeshFile};
 
 use super::answer::{Answer, Kept, group};
 use super::error::BuildError;
-use super::given::hash_of_matrices;
-use super::mesh::read_mesh;
 use super::mesh_arrays::{self, MeshArrays};
 use crate::cache::{Cache, touch};
 use crate::origin::Origin;
@@ -27,7 +24,7 @@ pub(super) struct Store {
     given: Option<BodyFile>,
     /// The folder of the mesh in the cache.
     folder: Option<PathBuf>,
-    /// The hash of the mesh file.
+    /// The hash of what was read of the mesh, or of the matrices.
     mesh: Hash,
     /// The start of all questions about the body.
     body: Digest,
@@ -39,23 +36,22 @@ pub(super) struct Store {
 pub fn contents_of_body(body: &Body) -> String {
     let hash = match body {
         Body::Meshed(MeshedBody { file: Some(file), .. }) => Hash::of_file(file).ok(),
-        Body::Meshed(body) => hash_of_mesh(&body.mesh, &body.import),
-        Body::Matrices(files) => hash_of_matrices(files),
+        Body::Meshed(body) => MeshFile::read(&body.mesh, &body.import).ok().and_then(|file| file.hash()),
+        Body::Matrices(files) => files.hash().ok(),
         Body::Rigid(_) => None,
     };
     hash.map(|hash| hash.to_string()).unwrap_or_default()
 }
 
 impl Store {
-    /// None where nothing is kept.
-    pub fn open(scene: &Scene, body: &MeshedBody) -> Result<Option<Self>, BuildError> {
+    /// The answers about the mesh in a file, or in the body file that the scene names. None where nothing is kept.
+    pub fn open(scene: &Scene, body: &MeshedBody, file: Option<&MeshFile>) -> Result<Option<Self>, BuildError> {
         let cache = scene.cache.clone();
         let given = body.file.as_ref().map(BodyFile::open).transpose()?;
         let mesh = match &given {
             Some(file) => Origin::read(file)?.mesh_hash.parse().ok(),
             None if cache.folder().is_none() => return Ok(None),
-            // What cannot be read is refused elsewhere.
-            None => hash_of_mesh(&body.mesh, &body.import),
+            None => file.and_then(MeshFile::hash),
         };
         let Some(mesh) = mesh else { return Ok(None) };
         let folder = cache.of_mesh(&mesh);
@@ -68,11 +64,9 @@ impl Store {
         Ok(Some(Self { cache, given, folder, mesh, body, asked: Mutex::default() }))
     }
 
-    /// The same for matrices from another program.
-    pub fn of_matrices(scene: &Scene, files: &MatrixFiles) -> Option<Self> {
+    /// The same for matrices from another program, with the hash of what was read of them.
+    pub fn of_matrices(scene: &Scene, mesh: Hash) -> Option<Self> {
         let cache = scene.cache.clone();
-        cache.folder()?;
-        let mesh = hash_of_matrices(files)?;
         let folder = Some(cache.of_mesh(&mesh)?);
         let body = Digest::new().hash(&mesh).text("matrices");
         Some(Self { cache, given: None, folder, mesh, body, asked: Mutex::default() })
@@ -93,8 +87,13 @@ impl Store {
         self.given.as_ref()
     }
 
-    /// The mesh of the body, with what its file has that was left out.
-    pub fn mesh(&self, scene: &Scene, body: &MeshedBody) -> Result<Imported, BuildError> {
+    /// The mesh of the body, with what its file has that was left out; `made` of the file where it is not kept.
+    pub fn mesh(
+        &self,
+        scene: &Scene,
+        body: &MeshedBody,
+        made: impl FnOnce() -> Result<Imported, BuildError>,
+    ) -> Result<Imported, BuildError> {
         let source = body.mesh.display().to_string();
         if let Some(file) = &self.given {
             return Ok(mesh_arrays::read(file, source)?);
@@ -104,12 +103,9 @@ impl Store {
         if let Some(imported) = kept {
             return Ok(imported);
         }
-        let imported = read_mesh(scene, body)?;
-        // It may have been changed since it was hashed.
-        if let Some(place) = place.filter(|_| !self.cache.is_closed())
-            && hash_of_mesh(&body.mesh, &body.import) == Some(self.mesh)
-        {
-            let arrays = MeshArrays::new(&imported.mesh, &imported.notes);
+        let imported = made()?;
+        if let Some(place) = place.filter(|_| !self.cache.is_closed()) {
+            let arrays = MeshArrays::new(&imported.mesh, &imported.notes, &imported.materials);
             let texts = BTreeMap::from(arrays.texts());
             self.write(&place, texts, &arrays.declared(&scene.units.length), |writer| arrays.write(writer));
         }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use body_file::BodyFile;
 use fem_tet10::{Material, Materials, PointMass};
 use matrix_import::MatrixFiles;
-use mesh_import::{ImportSettings, Reader, hash_of_mesh, reader_of};
+use mesh_import::{ImportSettings, MeshFile, Reader, reader_of};
 use nalgebra::{Matrix3, Vector3};
 
 use super::Check;
@@ -119,7 +119,7 @@ impl Check<'_> {
             let mesh = self.document.folder().join(self.mesh(mesh)?);
             self.import(&mesh, &import)?;
             // The file does without the mesh.
-            if let Some(hash) = hash_of_mesh(&mesh, &import)
+            if let Some(hash) = MeshFile::read(&mesh, &import).ok().and_then(|file| file.hash())
                 && hash.to_string() != origin.mesh_hash
             {
                 return Err(refuse(

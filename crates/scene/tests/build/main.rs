@@ -12,6 +12,7 @@ mod loads;
 mod manifold;
 mod matrices;
 mod off;
+mod pools;
 mod quasi_static;
 mod statics;
 mod step;

@@ -1,0 +1,180 @@
+//! A mesh file that is read once.
+
+use std::path::{Path, PathBuf};
+
+use body_file::{Digest, Hash};
+use fem_tet10::{Mesh, MeshError, msh_bytes, parse_msh};
+use whole_file::TemporaryFolder;
+
+use crate::contents::{Copies, ReadFile, contents, opened};
+use crate::deck::deck;
+use crate::deck_material::DeckMaterial;
+use crate::error::ImportError;
+use crate::format::ending;
+use crate::geometry::geometry;
+use crate::reader::{Reader, is_program, is_surface, names_others, reader_of};
+use crate::run::{self, GmshTask, Job};
+use crate::settings::ImportSettings;
+
+/// A mesh, and what of its file was left out, in sentences.
+#[derive(Debug)]
+pub struct Imported {
+    /// The mesh, with the name of its own file.
+    pub mesh: Mesh,
+    /// Such as "the element set A has no tetrahedra and no triangles".
+    pub notes: Vec<String>,
+    /// The materials that the file gives to groups of the mesh, in its own units.
+    pub materials: Vec<DeckMaterial>,
+}
+
+/// A mesh file with all that it includes, as they were when they were read. Its hash and its mesh follow from the same bytes,
+/// whatever becomes of the files.
+#[derive(Debug)]
+pub struct MeshFile {
+    path: PathBuf,
+    settings: ImportSettings,
+    reader: Reader,
+    held: Held,
+}
+
+/// What another program is given, or what flexframe reads itself.
+#[derive(Debug)]
+enum Held {
+    /// Contents, the first file first.
+    Files(Vec<ReadFile>),
+    /// A file that is read where it is, with others that cannot be told before.
+    InPlace,
+}
+
+impl MeshFile {
+    /// Reads the file and what it includes. No other program is run.
+    ///
+    /// # Errors
+    /// [`ImportError`]: a file cannot be read, or is not what its name says.
+    pub fn read(path: &Path, settings: &ImportSettings) -> Result<Self, ImportError> {
+        let reader = reader_of(path, settings);
+        let one = |bytes, name| Held::Files(vec![ReadFile { path: path.to_owned(), name, bytes: Some(bytes) }]);
+        let held = match reader {
+            Reader::Own => one(msh_bytes(path)?, String::new()),
+            Reader::GmshMesher if is_program(path) => match geometry(path) {
+                Err(ImportError::Refused { .. }) if settings.trust_geometry => Held::InPlace,
+                read => Held::Files(read?),
+            },
+            Reader::Meshio if ending(path) == "inp" => Held::Files(deck(path)?),
+            _ => match contents(path)? {
+                bytes if names_others(path, &bytes) => Held::InPlace,
+                bytes => one(bytes, format!("source.{}", ending(path))),
+            },
+        };
+        Ok(Self { path: path.to_owned(), settings: *settings, reader, held })
+    }
+
+    /// What the mesh follows from: all bytes that were read, and how. `None` where another program reads what it likes.
+    pub fn hash(&self) -> Option<Hash> {
+        let Held::Files(files) = &self.held else { return None };
+        if let (Reader::Own, [ReadFile { bytes: Some(bytes), .. }]) = (self.reader, &files[..]) {
+            return Some(Hash::of(bytes));
+        }
+        // Whoever wrote it is trusted or not, the mesh is the same.
+        let settings = ImportSettings { trust_geometry: false, ..self.settings };
+        let start = Digest::new().text(&format!("{:?} {settings:?}", self.reader));
+        let with = |digest: Digest, file: &ReadFile| match &file.bytes {
+            Some(bytes) => digest.text(&file.name).numbers(bytes),
+            None => digest,
+        };
+        Some(files.iter().fold(start, with).finish())
+    }
+
+    /// Who reads the mesh should know that its file is a program: what to say of it, and of how far it is trusted.
+    pub fn remark(&self) -> Option<String> {
+        let trust = match self.settings.trust_geometry {
+            true => "gmsh is free to do all that it says (--trust-geometry)",
+            false => "its commands that run others or write files are refused",
+        };
+        is_program(&self.path).then(|| format!("{} is a program, which gmsh runs: {trust}", self.path.display()))
+    }
+
+    /// Makes the mesh, through another program where that is needed.
+    ///
+    /// # Errors
+    /// [`ImportError`]: no program is there to read it, or it is not a mesh of second-order tetrahedra.
+    pub fn mesh(&self) -> Result<Imported, ImportError> {
+        let mesh = match self.reader {
+            Reader::Own => self.own()?,
+            Reader::GmshMesher => match self.by_gmsh(GmshTask::Mesh) {
+                first if is_badly_curved(&first) => self.by_gmsh(GmshTask::MeshAndOptimize)?,
+                first => first?,
+            },
+            Reader::GmshConverter => self.by_gmsh(GmshTask::Convert)?,
+            Reader::Meshio => {
+                let (mesh, (notes, mut materials)) = self.by_another(run::meshio)?;
+                // The others are of elements that are left out.
+                materials.retain(|material| mesh.groups().contains(&material.group));
+                return Ok(Imported { mesh, notes, materials });
+            }
+        };
+        Ok(Imported { mesh, notes: Vec::new(), materials: Vec::new() })
+    }
+
+    fn own(&self) -> Result<Mesh, ImportError> {
+        let path = &self.path;
+        let refused = |found: &str, cure: &str| ImportError::Refused {
+            source_name: path.display().to_string(),
+            found: found.to_owned(),
+            cure: cure.to_owned(),
+        };
+        let bytes = match &self.held {
+            Held::Files(files) => files.first().and_then(|file| file.bytes.as_deref()),
+            Held::InPlace => None,
+        };
+        match parse_msh(bytes.unwrap_or_default(), &path.display().to_string()) {
+            Err(MeshError::Version { .. }) if is_surface(path) => Err(refused(SURFACE, SURFACE_CURE)),
+            Err(MeshError::Version { .. }) if ending(path) != "msh" => Err(refused(UNKNOWN, UNKNOWN_CURE)),
+            read => Ok(read?),
+        }
+    }
+
+    fn by_gmsh(&self, task: GmshTask) -> Result<Mesh, ImportError> {
+        self.by_another(|job| run::gmsh(job, task)).map(|(mesh, ())| mesh)
+    }
+
+    /// Has another program write the mesh, in a private folder of its own.
+    fn by_another<T>(&self, run: impl FnOnce(&Job<'_>) -> Result<T, ImportError>) -> Result<(Mesh, T), ImportError> {
+        let source_name = self.path.display().to_string();
+        let io = |cause| ImportError::Io { source_name: source_name.clone(), cause };
+        let folder = TemporaryFolder::new().map_err(io)?;
+        let (copies, is_free) = match &self.held {
+            Held::Files(files) => (Copies::of(files, folder.path()).map_err(io)?, false),
+            Held::InPlace => {
+                opened(&self.path)?;
+                let place = std::path::absolute(&self.path).map_err(io)?;
+                (Copies(vec![(self.path.clone(), place)]), is_program(&self.path))
+            }
+        };
+        let target = folder.path().join(TARGET);
+        let (source, settings) = (&*self.path, &self.settings);
+        let said = run(&Job { source, settings, copies: &copies, target: &target, is_free })?;
+        let mesh = parse_msh(&std::fs::read(target).map_err(io)?, &source_name)?;
+        Ok((mesh, said))
+    }
+}
+
+/// The mesh that a program has written, in its private folder.
+const TARGET: &str = "mesh.msh";
+
+const SURFACE: &str = "a surface of triangles, which encloses a volume but has no elements in it";
+const SURFACE_CURE: &str = "give the part as STEP, which gmsh meshes, or fill the surface with tetrahedra in gmsh: Merge \"SURFACE.stl\"; \
+                            Surface Loop(1) = {1}; Volume(1) = {1};";
+const UNKNOWN: &str = "no mesh or geometry of a format that is read here";
+const UNKNOWN_CURE: &str = "save it as .msh, .inp, .bdf, .med, .vtu, .unv or .step; docs/meshes.md has all formats";
+
+/// A smaller scaled Jacobian is what gmsh's optimisation takes for bad (Mesh.HighOrderThresholdMin).
+const BADLY_CURVED: f64 = 0.1;
+
+/// Whether the edges of elements on curved surfaces run through their other faces, or nearly so.
+fn is_badly_curved(mesh: &Result<Mesh, ImportError>) -> bool {
+    match mesh {
+        Ok(mesh) => mesh.least_scaled_jacobian() < BADLY_CURVED,
+        Err(error) => matches!(error, ImportError::Mesh(MeshError::Jacobian { .. })),
+    }
+}
