@@ -72,7 +72,7 @@ impl fmt::Display for Times {
 }
 
 /// A quantity for people to read: seven digits, with a power of ten where it is very large or small.
-pub(crate) fn quantity(value: f64) -> String {
+pub fn quantity(value: f64) -> String {
     let magnitude = value.abs();
     if magnitude == 0.0 {
         return "0".to_owned();
@@ -276,7 +276,7 @@ impl BodyReport {
 
     /// How many there are and their frequencies, such as "10 flexible modes from 24.53 to 582.1 Hz and 4 static shapes"; of a
     /// rigid body, "rigid".
-    pub(crate) fn modes_in_words(&self, frequency_unit: &str) -> String {
+    pub fn modes_in_words(&self, frequency_unit: &str) -> String {
         let shapes = self.static_shapes();
         let natural = &self.natural_frequencies[..self.natural_frequencies.len() - shapes];
         let (Some(first), Some(last)) = (natural.first(), natural.last()) else { return "rigid".to_owned() };

@@ -16,7 +16,7 @@ use std::sync::{Mutex, PoisonError, mpsc};
 use std::time::{Duration, Instant};
 
 use results::Results;
-use scene::{Assembly, BuildProgress, Cache, Constraint, Model, ModelBuilder, Scene};
+use scene::{Assembly, BuildProgress, Cache, Model, ModelBuilder, Scene};
 use serde::Serialize;
 use whole_file::TemporaryFolder;
 
@@ -138,7 +138,7 @@ pub fn sweep(
     for (i, row) in plan.rows.iter().enumerate() {
         match row {
             _ if table.rows[i] != RowState::Open || !is_mine(i) => {}
-            Ok(scene) => groups.entry(body(scene)).or_default().push(i),
+            Ok(scene) => groups.entry(Assembly::made_of(scene)).or_default().push(i),
             Err(words) => table.rows[i] = RowState::Failed(words.clone()),
         }
     }
@@ -208,14 +208,6 @@ pub fn merge(path: &Path, output: &Path, count: usize, overwrite: bool) -> Resul
     }
     table.write(output, &plan, true)?;
     Ok(SweepReport { unfinished, ..SweepReport::of(plan, output, &table, kept) })
-}
-
-/// What models share an assembly: all that it is made of.
-fn body(scene: &Scene) -> String {
-    let flexibility = scene.effects.choices[frames_rk4::Effect::Flexibility];
-    // Such a support is checked against what the scene begins with.
-    let initial = matches!(scene.constraint, Some(Constraint::Support { .. })).then_some(&scene.initial);
-    format!("{:?} {:?} {:?} {flexibility:?} {initial:?}", scene.body, scene.constraint, scene.modes.flexible)
 }
 
 /// Runs some rows of one body, and tells what became of each.

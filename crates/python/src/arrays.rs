@@ -30,24 +30,13 @@ pub(crate) fn view<'py, T: Element, D: Dimension>(
     Ok(array)
 }
 
-/// A matrix as it is.
-pub(crate) fn matrix(matrix: MatRef<'_, f64>) -> ArrayView2<'_, f64> {
-    let shape = (matrix.nrows(), matrix.ncols());
-    let strides = (matrix.row_stride().unsigned_abs(), matrix.col_stride().unsigned_abs());
-    // SAFETY: that is where faer says that the entries are; those of a matrix that owns them have positive strides.
-    #[allow(unsafe_code)]
-    unsafe {
-        ArrayView2::from_shape_ptr(shape.strides(strides), matrix.as_ptr())
-    }
-}
-
 /// A matrix whose columns are fields over `nodes`: columns × nodes × numbers at each node.
 pub(crate) fn fields(matrix: MatRef<'_, f64>, nodes: usize) -> ArrayView3<'_, f64> {
     let each = matrix.nrows().checked_div(nodes).unwrap_or(0);
     let (row, column) = (matrix.row_stride().unsigned_abs(), matrix.col_stride().unsigned_abs());
     let shape = (matrix.ncols(), nodes, each);
-    // SAFETY: as above; entry (k, i, axis) is in row each·i + axis, of which there are no more than the matrix has, and in
-    // column k.
+    // SAFETY: that is where faer says that the entries are; those of a matrix that owns them have positive strides. Entry
+    // (k, i, axis) is in row each·i + axis, of which there are no more than the matrix has, and in column k.
     #[allow(unsafe_code)]
     unsafe {
         ArrayView3::from_shape_ptr(shape.strides((column, each * row, row)), matrix.as_ptr())

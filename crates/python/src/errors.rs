@@ -1,7 +1,9 @@
 //! Errors as exceptions: of the class of their kind, with the message of the program.
 
+use std::ffi::CString;
+
 use flexframe::failure::{Details, Failure, Kind};
-use pyo3::exceptions::PyKeyboardInterrupt;
+use pyo3::exceptions::{PyKeyboardInterrupt, PyUserWarning};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -50,6 +52,17 @@ fn made(py: Python<'_>, class: &str, message: &str, details: &Details) -> PyResu
     known.set_item("cure", cure)?;
     let error = py.import(MODULE)?.getattr(class)?.call((message,), Some(&known))?;
     Ok(PyErr::from_value(error))
+}
+
+/// Tells sentences as warnings of Python, which may be switched off or made errors.
+pub(crate) fn warn(py: Python<'_>, sentences: impl IntoIterator<Item = String>) -> PyResult<()> {
+    let category = py.get_type::<PyUserWarning>();
+    for sentence in sentences {
+        // A text of a user may have a zero, which C ends at.
+        let text = CString::new(sentence.replace('\0', "")).unwrap_or_default();
+        PyErr::warn(py, &category, &text, 1)?;
+    }
+    Ok(())
 }
 
 /// Adds a sentence that is shown below the exception, where Python knows notes (from 3.11 on).

@@ -4,6 +4,7 @@
 //! `dict` makes the text of a scene from a dict;
 //! `scene`, `body` and `simulation` are the classes of these names;
 //! `load`, `motion` and `faults` let Python functions act on a body;
+//! `cache` keeps what was computed, `html` writes for notebooks;
 //! `columns`, `row` and `results` give rows under the names of the columns of a results file;
 //! `arrays` has the only unsafe code: numpy arrays that look into a body without a copy;
 //! `interrupt` lets Ctrl-C stop long work; `threads` lets it be done in a forked process; `errors` turns errors into exceptions with the same words.
@@ -15,11 +16,13 @@ use pyo3::prelude::*;
 
 mod arrays;
 mod body;
+mod cache;
 mod columns;
 mod constants;
 mod dict;
 mod errors;
 mod faults;
+mod html;
 mod interrupt;
 mod load;
 mod motion;
@@ -50,7 +53,7 @@ mod _flexframe {
     #[pymodule_export]
     use super::run::{resume, run};
     #[pymodule_export]
-    use super::scene::Scene;
+    use super::scene::{Scene, unpickled};
     #[pymodule_export]
     use super::simulation::{Reached, Simulation};
     #[pymodule_export]

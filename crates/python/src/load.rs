@@ -92,7 +92,11 @@ impl Law {
     }
 }
 
-/// A force at a point of the body, by a law.
+/// A force at a point of the scene, by a law: a function of the motion that returns three components.
+///
+/// They are global, or in body axes with `frame="body"`. The law is evaluated several times a step, and must depend on
+/// nothing but the motion. `corners` are times at which it or its rate jumps, so that steps end there; `longest_step`
+/// is the longest step that sees it as it is.
 #[pyclass(frozen, module = "flexframe")]
 pub(crate) struct Force {
     point: String,
@@ -129,7 +133,7 @@ impl Force {
     }
 }
 
-/// Forces on the modal coordinates, by a law.
+/// Forces on the modal coordinates, by a law that returns nf of them. They have no resultant. Otherwise as Force.
 #[pyclass(frozen, module = "flexframe")]
 pub(crate) struct ModalForce {
     law: Law,

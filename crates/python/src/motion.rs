@@ -23,9 +23,10 @@ pub(crate) fn point_number(py: Python<'_>, points: &Points, name: &str) -> PyRes
     })
 }
 
-/// The motion of the body that a law sees, at one time.
+/// What a law sees: the motion of the body at one time. Arrays are copies.
 #[pyclass(frozen, module = "flexframe")]
 pub(crate) struct Motion {
+    /// Time.
     #[pyo3(get)]
     time: f64,
     body_from_global: Matrix3<f64>,
@@ -73,6 +74,7 @@ impl Motion {
 
 #[pymethods]
 impl Motion {
+    /// Matrix that takes body components to global ones (3x3).
     #[getter]
     fn rotation<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
         // By columns, the entries of A are by rows those of its transpose.
@@ -80,36 +82,43 @@ impl Motion {
         PyArray2::from_array(py, &ArrayView2::from(&rows))
     }
 
+    /// Position of the origin of the body frame, global (3).
     #[getter]
     fn origin<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         PyArray1::from_slice(py, self.origin.as_slice())
     }
 
+    /// Its velocity, global (3).
     #[getter]
     fn origin_velocity<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         PyArray1::from_slice(py, self.origin_velocity.as_slice())
     }
 
+    /// Angular velocity of the body frame, body axes (3).
     #[getter]
     fn angular_velocity<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         PyArray1::from_slice(py, self.omega_body.as_slice())
     }
 
+    /// Coordinates of the flexible modes and static shapes (nf).
     #[getter]
     fn modal_displacement<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         PyArray1::from_slice(py, &self.modal_displacement)
     }
 
+    /// Their rates (nf).
     #[getter]
     fn modal_velocity<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         PyArray1::from_slice(py, &self.modal_velocity)
     }
 
+    /// Position of a point of the scene, global (3); of that of the force, if none is named.
     #[pyo3(signature = (point=None))]
     fn position<'py>(&self, py: Python<'py>, point: Option<&str>) -> PyResult<Bound<'py, PyArray1<f64>>> {
         self.of_point(py, point, 0)
     }
 
+    /// Velocity of a point of the scene, global (3); of that of the force, if none is named.
     #[pyo3(signature = (point=None))]
     fn velocity<'py>(&self, py: Python<'py>, point: Option<&str>) -> PyResult<Bound<'py, PyArray1<f64>>> {
         self.of_point(py, point, 1)

@@ -11,7 +11,7 @@ use pyo3::prelude::*;
 use crate::columns::{of_row, of_run};
 use crate::threads::in_pool;
 
-/// The motion at one time.
+/// The motion at one time: a number or an array for each column of a results file, by its path.
 #[pyclass(frozen, mapping, module = "flexframe")]
 pub(crate) struct Row {
     row: flexframe::row::Row,
@@ -29,11 +29,13 @@ impl Row {
 
 #[pymethods]
 impl Row {
+    /// Time.
     #[getter]
     fn time(&self) -> f64 {
         self.row.time
     }
 
+    /// Paths of its columns.
     fn keys(&self) -> Vec<&'static str> {
         of_run(&self.metadata).map(|column| column.path).collect()
     }
@@ -70,6 +72,6 @@ impl Row {
     }
 
     fn __repr__(&self) -> String {
-        format!("Row(time {})", self.row.time)
+        format!("Row(time {} {})", self.row.time, self.metadata.units.time)
     }
 }

@@ -5,27 +5,32 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use flexframe::run::{RunError, RunProgress, RunReport, RunSettings};
+use flexframe::scene::Cache;
 use pyo3::prelude::*;
 
-use crate::errors::{add_note, exception};
+use crate::cache::cache;
+use crate::errors::{add_note, exception, warn};
 use crate::interrupt::{Stop, interruptible};
 use crate::results::read_results;
 use crate::scene::Scene;
 
-/// Runs a scene, and writes its results to `<folder>/<name of the scene>.h5`.
+/// Runs a scene as the program does, and writes its results to `<folder>/<name of the scene>.h5`. Until the end they
+/// are in `<name>.part.h5` beside it, from which `resume` goes on after Ctrl-C or a crash.
 #[pyfunction]
 #[pyo3(signature = (scene, folder, *, overwrite=false))]
 pub(crate) fn run(py: Python<'_>, scene: Py<Scene>, folder: PathBuf, overwrite: bool) -> PyResult<Bound<'_, PyAny>> {
     let scene = scene.get().scene().clone();
-    followed(py, overwrite, move |settings, progress| {
+    followed(py, overwrite, scene.cache.clone(), move |settings, progress| {
         flexframe::run::run(&scene, &folder, settings, progress).map(|(_, report)| report)
     })
 }
 
-/// Goes on with a run that was cut off.
+/// Goes on with a run that was cut off: the file is then the same as if it had not been, bit for bit. `trust_geometry`
+/// is that of Scene.
 #[pyfunction]
-pub(crate) fn resume(py: Python<'_>, file: PathBuf) -> PyResult<Bound<'_, PyAny>> {
-    followed(py, false, move |settings, progress| {
+#[pyo3(signature = (file, *, trust_geometry=false))]
+pub(crate) fn resume(py: Python<'_>, file: PathBuf, trust_geometry: bool) -> PyResult<Bound<'_, PyAny>> {
+    followed(py, false, cache(py, trust_geometry)?, move |settings, progress| {
         flexframe::run::resume(&file, settings, progress).map(|(_, _, report)| report)
     })
 }
@@ -33,11 +38,12 @@ pub(crate) fn resume(py: Python<'_>, file: PathBuf) -> PyResult<Bound<'_, PyAny>
 fn followed<'py>(
     py: Python<'py>,
     overwrite: bool,
+    cache: Cache,
     work: impl FnOnce(&RunSettings, &mut dyn FnMut(RunProgress)) -> Result<RunReport, RunError> + Send + 'static,
 ) -> PyResult<Bound<'py, PyAny>> {
     let stop = Stop::default();
     let in_motion = Arc::new(AtomicBool::new(false));
-    let settings = RunSettings { overwrite, stop: stop.flag(), ..RunSettings::default() };
+    let settings = RunSettings { overwrite, stop: stop.flag(), cache: cache.clone() };
     let (told, moves) = (stop.clone(), in_motion.clone());
     let run = move || {
         work(&settings, &mut |progress| match progress {
@@ -53,6 +59,7 @@ fn followed<'py>(
     };
     // The motion stops by itself at its next row, and its rows are kept.
     let (report, raised) = interruptible(py, &stop, || in_motion.load(Ordering::Relaxed), run)?;
+    warn(py, cache.notes().warnings)?;
     match (raised, report) {
         (Some(error), Err(stopped)) => {
             add_note(py, &error, &stopped.to_string());

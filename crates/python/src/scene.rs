@@ -3,44 +3,64 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use flexframe::scene::{AssignError, assign};
+use flexframe::scene::{AssignError, Cache, assign};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyTuple};
 
+use crate::cache::{MODULE, cache};
 use crate::dict::{to_text, to_toml};
 use crate::errors::{exception, wrong_input};
+use crate::html::{escaped, heading};
 use crate::threads::detached;
 
 /// What a dict is called where it gets no name.
 const NAME: &str = "scene";
 
-/// A scene: what the scene file says about a run, read and checked.
+/// A scene: what a scene file says about a run, read and checked.
+///
+/// From the path of a scene file; or from a dict with the sections and keys of one, such as `{"title": "Bar", "units":
+/// {...}, "body": {"mesh": "bar.msh", ...}, ...}`. Its lists may be arrays of numpy. Paths in a dict are relative to
+/// `base` (default: the current folder); `name` stands for it in messages and names its results file (default:
+/// "scene"). With `trust_geometry`, gmsh may do all that a `.geo` file says which the scene names; otherwise one that
+/// runs other programs or writes files is refused.
+///
+/// A scene can be pickled and copied. The files that it names are read where it is unpickled.
 #[pyclass(frozen, module = "flexframe")]
 pub(crate) struct Scene(Arc<flexframe::scene::Scene>);
+
+/// The function that unpickles scenes.
+const UNPICKLE: &str = "_scene";
 
 impl Scene {
     pub(crate) fn scene(&self) -> &Arc<flexframe::scene::Scene> {
         &self.0
     }
 
-    fn parsed(py: Python<'_>, text: &str, path: PathBuf) -> PyResult<Self> {
+    fn parsed(py: Python<'_>, text: &str, path: PathBuf, cache: Cache) -> PyResult<Self> {
         // Tables of histories are read, too.
         let scene = detached(py, || flexframe::scene::Scene::parse(text, path))?;
-        scene.map(|scene| Self(Arc::new(scene))).map_err(|error| exception(py, &error))
+        let scene = scene.map_err(|error| exception(py, &error))?;
+        Ok(Self(Arc::new(flexframe::scene::Scene { cache, ..scene })))
     }
 }
 
 #[pymethods]
 impl Scene {
     #[new]
-    #[pyo3(signature = (source, *, base=None, name=None))]
-    fn new(source: &Bound<'_, PyAny>, base: Option<PathBuf>, name: Option<String>) -> PyResult<Self> {
+    #[pyo3(signature = (source, *, base=None, name=None, trust_geometry=false))]
+    fn new(
+        source: &Bound<'_, PyAny>,
+        base: Option<PathBuf>,
+        name: Option<String>,
+        trust_geometry: bool,
+    ) -> PyResult<Self> {
         let py = source.py();
+        let cache = cache(py, trust_geometry)?;
         if let Ok(dict) = source.cast::<PyDict>() {
             let name = name.as_deref().unwrap_or(NAME);
             let text = to_text(dict, name)?;
-            return Self::parsed(py, &text, base.unwrap_or_default().join(name));
+            return Self::parsed(py, &text, base.unwrap_or_default().join(name), cache);
         }
         let Ok(path) = source.extract::<PathBuf>() else {
             let found = source.get_type().name()?;
@@ -52,9 +72,16 @@ impl Scene {
             return Err(PyTypeError::new_err(message));
         }
         let text = py.detach(|| flexframe::scene::text_of(&path)).map_err(|error| exception(py, &error))?;
-        Self::parsed(py, &text, path)
+        Self::parsed(py, &text, path, cache)
     }
 
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+        let unpickle = py.import(MODULE)?.getattr(UNPICKLE)?;
+        let state = (&self.0.source, &self.0.path, self.0.cache.trusts_geometry());
+        Ok((unpickle, state.into_pyobject(py)?))
+    }
+
+    /// The scene with other values of some keys: `{"time.end": 0.5, "loads[0].amplitude": 20.0}`, as with `--set`.
     fn with_values(&self, py: Python<'_>, values: &Bound<'_, PyDict>) -> PyResult<Self> {
         let mut assigned = Vec::new();
         for (key, value) in values {
@@ -67,29 +94,34 @@ impl Scene {
             wrong_input(py, &format!("`{key}`"), &found, &expected, cure)
         };
         let text = assign(&self.0.source, &assigned).map_err(refused)?;
-        Self::parsed(py, &text, self.0.path.clone())
+        Self::parsed(py, &text, self.0.path.clone(), self.0.cache.clone())
     }
 
+    /// What the run is about.
     #[getter]
     fn title(&self) -> &str {
         &self.0.title
     }
 
+    /// The text of the scene, TOML.
     #[getter]
     fn text(&self) -> &str {
         &self.0.source
     }
 
+    /// The scene file, or `base` and `name` of a dict.
     #[getter]
     fn path(&self) -> &PathBuf {
         &self.0.path
     }
 
+    /// Time at the end of the run.
     #[getter]
     fn end(&self) -> f64 {
         self.0.time.end
     }
 
+    /// Labels of "length", "mass" and "time".
     #[getter]
     fn units<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         units(py, &self.0.units.length, &self.0.units.mass, &self.0.units.time)
@@ -98,6 +130,18 @@ impl Scene {
     fn __repr__(&self) -> String {
         format!("Scene({:?}, {:?})", self.0.path.display().to_string(), self.0.title)
     }
+
+    /// The title and the text.
+    fn _repr_html_(&self) -> String {
+        let file = self.0.path.display().to_string();
+        heading(&self.0.title, &file) + &format!("<pre>{}</pre>", escaped(&self.0.source))
+    }
+}
+
+/// The scene that was pickled.
+#[pyfunction(name = "_scene")]
+pub(crate) fn unpickled(py: Python<'_>, text: &str, path: PathBuf, trust_geometry: bool) -> PyResult<Scene> {
+    Scene::parsed(py, text, path, cache(py, trust_geometry)?)
 }
 
 /// The labels of the units.

@@ -20,6 +20,7 @@ use crate::motion::Points;
 use crate::numbers::described;
 use crate::results::{Occurred, Rows};
 use crate::row::Row;
+use crate::scene::Scene;
 use crate::state::{changed, to_dict};
 use crate::threads::{detached, in_pool};
 
@@ -29,24 +30,46 @@ const STEPS_PER_LOOK: u64 = 4096;
 const SAME: f64 = 1e-12;
 
 /// Where a simulation has come to.
-#[pyclass(frozen, get_all, module = "flexframe")]
+#[pyclass(frozen, module = "flexframe")]
 pub(crate) struct Reached {
+    /// A "row" that is due, an "event", the "stop" of `advance_to`, the end of a "step", or the "end" of the run.
+    #[pyo3(get)]
     kind: &'static str,
+    /// Name of the event.
+    #[pyo3(get)]
     event: Option<String>,
+    /// Time.
+    #[pyo3(get)]
     time: f64,
+    /// That of the time.
+    unit: String,
 }
 
 #[pymethods]
 impl Reached {
     fn __repr__(&self) -> String {
         match &self.event {
-            Some(event) => format!("Reached(event {event:?} at {})", self.time),
-            None => format!("Reached({} at {})", self.kind, self.time),
+            Some(event) => format!("Reached(event {event:?} at {} {})", self.time, self.unit),
+            None => format!("Reached({} at {} {})", self.kind, self.time, self.unit),
         }
     }
 }
 
-/// A run in progress.
+/// A run of a body and its scene, with more loads. As an iterator it yields the rows from where it is.
+///
+/// An exception of a law ends the step: the simulation stays where it was before it, and may go on. One of an event
+/// ends the run at the end of the step. Ctrl-C raises KeyboardInterrupt within some thousand steps, and the simulation
+/// may go on.
+///
+/// With laws, the effects translation, rotation, gravity, damping, deformed inertia and Coriolis are on unless the
+/// scene switches them off, and there are no reactions of single supports. `run` watches whether the motion leaves the
+/// range of the model, such as a spin beyond the critical one, and raises RefusedError; `advance`, `advance_to` and
+/// iteration do not.
+///
+/// With `scene`, the run is of this scene in the place of the body's own: other loads, another start, other effects or
+/// steps of the same body, whose modes are not searched again. What follows from the loads, such as static shapes, is
+/// solved for where it is not in the cache. A scene of another body, or one that holds it otherwise or asks for other
+/// modes, raises InputError.
 #[pyclass(frozen, module = "flexframe")]
 pub(crate) struct Simulation {
     body: Py<Body>,
@@ -140,7 +163,7 @@ impl Simulation {
             frames_rk4::Reached::End => ("end", None),
             _ => ("step", None),
         };
-        Reached { kind, event, time: simulation.time() }
+        Reached { kind, event, time: simulation.time(), unit: self.metadata.units.time.clone() }
     }
 
     /// Refuses to go on from the end.
@@ -206,8 +229,17 @@ fn step_error(py: Python<'_>, error: &StepError) -> PyErr {
 #[pymethods]
 impl Simulation {
     #[new]
-    #[pyo3(signature = (body, loads=None))]
-    fn new(py: Python<'_>, body: Py<Body>, loads: Option<Bound<'_, PyAny>>) -> PyResult<Self> {
+    #[pyo3(signature = (body, loads=None, *, scene=None))]
+    fn new(
+        py: Python<'_>,
+        body: Py<Body>,
+        loads: Option<Bound<'_, PyAny>>,
+        scene: Option<Py<Scene>>,
+    ) -> PyResult<Self> {
+        let body = match scene {
+            Some(scene) => Py::new(py, body.get().of_scene(py, scene)?)?,
+            None => body,
+        };
         let (model, scene) = (body.get().model().clone(), body.get().scene_of().clone());
         let mut metadata = flexframe::run::metadata(&scene, &model);
         let points: Points = Arc::new(model.points.clone());
@@ -255,26 +287,31 @@ impl Simulation {
         Ok(Self { body, metadata, effects, faults, running })
     }
 
+    /// The body, with the scene that is run.
     #[getter]
     fn body(&self, py: Python<'_>) -> Py<Body> {
         self.body.clone_ref(py)
     }
 
+    /// Time that has been reached.
     #[getter]
     fn time(&self) -> PyResult<f64> {
         Ok(self.running()?.simulation.time())
     }
 
+    /// Time at the end.
     #[getter]
     fn end(&self) -> PyResult<f64> {
         Ok(self.running()?.simulation.end())
     }
 
+    /// Whether there is nothing more to come, neither a step nor a row.
     #[getter]
     fn done(&self) -> PyResult<bool> {
         Ok(self.running()?.simulation.is_over())
     }
 
+    /// What it has cost: "steps", "rejected_steps", "evaluations".
     #[getter]
     fn stats<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let stats = self.running()?.simulation.stats();
@@ -285,6 +322,8 @@ impl Simulation {
         Ok(out)
     }
 
+    /// Goes on to the end, and gives the rows from here; events are passed, and listed. Where it fails, the rows before
+    /// are in the attribute `results` of the exception.
     fn run<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let mut running = self.running()?;
         self.refuse_at_end(py, &running)?;
@@ -309,6 +348,7 @@ impl Simulation {
         }
     }
 
+    /// Goes on to the next row or event, or so many tries of a step.
     #[pyo3(signature = (steps=None))]
     fn advance(&self, py: Python<'_>, steps: Option<u64>) -> PyResult<Reached> {
         let mut running = self.running()?;
@@ -320,6 +360,8 @@ impl Simulation {
         Ok(self.reached(&running, reached))
     }
 
+    /// Goes on to a time, past rows, or to an event before it. The time is later than now by more than 1e-12 of the
+    /// end.
     fn advance_to(&self, py: Python<'_>, time: f64) -> PyResult<Reached> {
         let mut running = self.running()?;
         self.refuse_at_end(py, &running)?;
@@ -343,6 +385,7 @@ impl Simulation {
         Ok(self.reached(&running, reached?))
     }
 
+    /// Stops where a function of the row passes through zero, on the far side to rounding.
     #[pyo3(signature = (name, function, *, crossing="any"))]
     fn add_event(&self, name: String, function: &Bound<'_, PyAny>, crossing: &str) -> PyResult<()> {
         let py = function.py();
@@ -366,15 +409,20 @@ impl Simulation {
         self.or_fault(py, added).map(|_| ())
     }
 
+    /// The motion at the time that has been reached.
     fn observe(&self, py: Python<'_>) -> PyResult<Row> {
         self.row(py, &mut *self.running()?)
     }
 
+    /// The state that has been reached: time, attitude (quaternion), origin, velocity of the origin, angular_velocity
+    /// (body axes), modal_displacement, modal_velocity.
     fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let state = self.running()?.simulation.state().map_err(|error| step_error(py, &error))?;
         to_dict(py, &state)
     }
 
+    /// Goes on from another state; keys that are not given stay as they are. Work and balances are counted from there.
+    /// `run` then begins with the row of this state; an iteration goes on to the next row.
     fn set_state(&self, py: Python<'_>, state: &Bound<'_, PyDict>) -> PyResult<()> {
         let mut running = self.running()?;
         let now = running.simulation.state().map_err(|error| step_error(py, &error))?;
@@ -417,7 +465,10 @@ impl Simulation {
 
     fn __repr__(&self) -> String {
         match self.running() {
-            Ok(running) => format!("Simulation(time {} of {})", running.simulation.time(), running.simulation.end()),
+            Ok(running) => {
+                let (now, end) = (running.simulation.time(), running.simulation.end());
+                format!("Simulation({:?}: time {now} of {end} {})", self.metadata.title, self.metadata.units.time)
+            }
             Err(_) => "Simulation(in the midst of a step)".to_owned(),
         }
     }

@@ -8,6 +8,9 @@ import pytest
 
 import flexframe
 
+# Each body is computed, whatever was computed before.
+os.environ["FLEXFRAME_CACHE"] = ""
+
 ROOT = Path(__file__).parents[3]
 EXAMPLES = ROOT / "examples"
 

@@ -1,6 +1,7 @@
 """Scenes from files and dicts."""
 
 import json
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -58,3 +59,27 @@ def test_messages_and_what_is_known_are_those_of_the_program(program, tmp_path):
     for name in ("file", "line", "key", "found", "expected", "cure"):
         assert getattr(error, name) == told.get(name), name
     assert isinstance(error, flexframe.Error) and isinstance(error, ValueError)
+
+
+def test_what_is_doubtful_is_a_warning_before_the_work():
+    steel = {**RING["body"]["material"], "young_modulus": 210.0}
+    scene = flexframe.Scene({**RING, "body": {**RING["body"], "material": steel}}, base=EXAMPLES)
+    with pytest.warns(UserWarning, match="speed of sound"):
+        flexframe.Body(scene)
+
+
+@pytest.mark.skipif(shutil.which("gmsh") is None, reason="gmsh is not there")
+def test_geometry_that_runs_programs_is_refused_unless_it_is_trusted(tmp_path):
+    evidence = tmp_path / "ran"
+    (tmp_path / "box.geo").write_text(
+        f'SetFactory("OpenCASCADE");\nBox(1) = {{0, 0, 0, 30, 10, 10}};\nSystemCall "touch {evidence}";\n'
+    )
+    made = {**RING, "body": {"mesh": "box.geo", "mesh_size": 10.0, "material": RING["body"]["material"]}, "loads": [],
+            "output": {}}
+    with pytest.warns(UserWarning, match="is a program"), pytest.raises(flexframe.InputError, match="trust-geometry"):
+        flexframe.Body(flexframe.Scene(made, base=tmp_path))
+    assert not evidence.exists()
+    scene = flexframe.Scene(made, base=tmp_path, trust_geometry=True)
+    with pytest.warns(UserWarning, match="gmsh is free to do all"):
+        body = flexframe.Body(scene.with_values({"title": "Trusted"}))
+    assert evidence.exists() and body.mass == pytest.approx(3000.0 * 7.85e-9)

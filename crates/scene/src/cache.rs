@@ -30,6 +30,8 @@ pub struct Cache(Arc<Inner>);
 struct Inner {
     folder: Option<PathBuf>,
     limit: u64,
+    /// The file of the program, where that is not the one that runs.
+    program: Option<PathBuf>,
     /// Makes a file. A program that has no cache, such as the library in FMUs, does without what makes files, which is HDF5.
     create: Option<CreateFile>,
     read: AtomicUsize,
@@ -78,9 +80,23 @@ impl Cache {
         let Self(mut inner) = Self::new(folder, limit);
         if let Some(inner) = Arc::get_mut(&mut inner) {
             inner.warnings = self.0.warnings.clone();
+            inner.program = self.0.program.clone();
             inner.trusts_geometry = AtomicBool::new(self.trusts_geometry());
         }
         Self(inner)
+    }
+
+    /// The same for the user of a program that is in another file than the one that runs: in a library of Python.
+    pub fn of_program(self, file: impl Into<PathBuf>) -> Self {
+        let inner = &*self.0;
+        Self(Arc::new(Inner {
+            folder: inner.folder.clone(),
+            limit: inner.limit,
+            program: Some(file.into()),
+            create: inner.create,
+            trusts_geometry: AtomicBool::new(self.trusts_geometry()),
+            ..Inner::default()
+        }))
     }
 
     /// From here on, gmsh may do all that geometry says which is read for this user
@@ -89,7 +105,8 @@ impl Cache {
         self.0.trusts_geometry.store(true, Ordering::Relaxed);
     }
 
-    pub(crate) fn trusts_geometry(&self) -> bool {
+    /// Whether it may.
+    pub fn trusts_geometry(&self) -> bool {
         self.0.trusts_geometry.load(Ordering::Relaxed)
     }
 
@@ -130,7 +147,7 @@ impl Cache {
 
     /// The folder of a mesh, by the hash of its file; made if it does not exist.
     pub(crate) fn of_mesh(&self, mesh: &Hash) -> Option<PathBuf> {
-        let folder = self.folder()?.join(program()).join(mesh.to_string());
+        let folder = self.folder()?.join(program(self.0.program.as_deref())).join(mesh.to_string());
         match fs::create_dir_all(&folder) {
             Ok(()) => Some(folder),
             Err(error) => {
@@ -253,9 +270,9 @@ fn entries(folder: &Path) -> impl Iterator<Item = fs::DirEntry> {
 
 /// The program and the machine, whose answers are the same to the last bit: the version, the size and the time of the file
 /// of the program, and what its processor can do.
-fn program() -> String {
-    let file = std::env::current_exe().and_then(fs::metadata);
-    let built = file.map(|file| (file.len(), file.modified().ok()));
+fn program(file: Option<&Path>) -> String {
+    let file = file.map_or_else(std::env::current_exe, |file| Ok(file.to_owned()));
+    let built = file.and_then(fs::metadata).map(|file| (file.len(), file.modified().ok()));
     let text = format!("{} {} {built:?} {}", env!("CARGO_PKG_VERSION"), std::env::consts::ARCH, features());
     let digits = Digest::new().text(&text).finish().to_string();
     digits[..PROGRAM_DIGITS].to_owned()

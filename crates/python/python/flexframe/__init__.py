@@ -24,6 +24,7 @@ from flexframe._flexframe import (
     run,
 )
 from flexframe.errors import Error, FileError, InputError, RefusedError, RunError
+from flexframe.mesh import write_mesh
 from flexframe.results import Column, Results
 
 __version__ = _flexframe.VERSION
@@ -47,6 +48,7 @@ __all__ = [
     "read_results",
     "resume",
     "run",
+    "write_mesh",
 ]
 
 # Meshes of other formats are read by meshio in a Python of its own: by default in this one.

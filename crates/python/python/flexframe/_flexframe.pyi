@@ -19,6 +19,7 @@ __all__ = [
     "Row",
     "Scene",
     "Simulation",
+    "_scene",
     "read_results",
     "resume",
     "run",
@@ -35,10 +36,21 @@ class Scene:
     From the path of a scene file; or from a dict with the sections and keys of one, such as
     `{"title": "Bar", "units": {...}, "body": {"mesh": "bar.msh", ...}, ...}`. Its lists may be arrays of numpy. Paths in a
     dict are relative to `base` (default: the current folder); `name` stands for it in messages and names its results file
-    (default: "scene").
+    (default: "scene"). With `trust_geometry`, gmsh may do all that a `.geo` file says which the scene names; otherwise one that
+    runs other programs or writes files is refused.
+
+    A scene can be pickled and copied. The files that it names are read where it is unpickled.
     """
 
-    def __new__(cls, source: _Path | dict[str, Any], *, base: _Path | None = None, name: str | None = None) -> Scene: ...
+    def __new__(
+        cls,
+        source: _Path | dict[str, Any],
+        *,
+        base: _Path | None = None,
+        name: str | None = None,
+        trust_geometry: bool = False,
+    ) -> Scene: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
     def with_values(self, values: dict[str, Any]) -> Scene:
         """The scene with other values of some keys: `{"time.end": 0.5, "loads[0].amplitude": 20.0}`, as with `--set`."""
     @property
@@ -61,16 +73,22 @@ class Scene:
 class Body:
     """The body of a scene: its mesh is read, its modes are found, and it is reduced.
 
+    What is computed of a mesh is kept in the user's cache, as by the program: the same body is there at once the next time, also in
+    another process. So a body that is pickled is its scene, and is made again from the cache where it is unpickled.
+
     Ctrl-C raises KeyboardInterrupt at once; a factorization that is under way goes on in its thread until it is done. What
     is said to be a view is memory of the body: read-only, not copied, and valid as long as the array is (it keeps the body).
     nf is the number of flexible modes plus that of the static shapes, which come after them.
     """
 
     def __new__(cls, scene: Scene) -> Body: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
     @property
-    def scene(self) -> Scene: ...
+    def scene(self) -> Scene:
+        """The scene that it was made for."""
     @property
-    def mass(self) -> float: ...
+    def mass(self) -> float:
+        """Mass, point masses among it."""
     @property
     def center_of_mass(self) -> NDArray[np.float64]:
         """Centre of mass, mesh axes (3; view)."""
@@ -108,7 +126,8 @@ class Body:
         """Rigid modes, zero where the body has less (6 x n x 3, or 6 with the rotations of the nodes; view)."""
     @property
     def constants(self) -> dict[str, Any]:
-        """Constants of the reduced body, by the names in docs/body.md (views; those of several indices in tuples)."""
+        """Constants of the reduced body, by the names in docs/body.md: "mass" is a number, the others are read-only arrays with the
+        shapes given there. Those without an index of their own are views."""
     @property
     def points(self) -> dict[str, NDArray[np.float64]]:
         """Where the points of the scene are in the undeformed body, mesh axes."""
@@ -121,7 +140,8 @@ class Motion:
     """What a law sees: the motion of the body at one time. Arrays are copies."""
 
     @property
-    def time(self) -> float: ...
+    def time(self) -> float:
+        """Time."""
     @property
     def rotation(self) -> NDArray[np.float64]:
         """Matrix that takes body components to global ones (3x3)."""
@@ -183,8 +203,10 @@ class Row:
     """The motion at one time: a number or an array for each column of a results file, by its path."""
 
     @property
-    def time(self) -> float: ...
-    def keys(self) -> list[str]: ...
+    def time(self) -> float:
+        """Time."""
+    def keys(self) -> list[str]:
+        """Paths of its columns."""
     def __len__(self) -> int: ...
     def __contains__(self, path: str, /) -> bool: ...
     def __iter__(self) -> Iterator[str]: ...
@@ -192,15 +214,17 @@ class Row:
 
 @final
 class Reached:
-    """Where a simulation has come to: kind is "row", "event", "stop", "step" or "end"."""
+    """Where a simulation has come to."""
 
     @property
-    def kind(self) -> str: ...
+    def kind(self) -> str:
+        """A "row" that is due, an "event", the "stop" of `advance_to`, the end of a "step", or the "end" of the run."""
     @property
     def event(self) -> str | None:
         """Name of the event."""
     @property
-    def time(self) -> float: ...
+    def time(self) -> float:
+        """Time."""
 
 @final
 class Simulation:
@@ -212,11 +236,18 @@ class Simulation:
     With laws, the effects translation, rotation, gravity, damping, deformed inertia and Coriolis are on unless the scene
     switches them off, and there are no reactions of single supports. `run` watches whether the motion leaves the range of the
     model, such as a spin beyond the critical one, and raises RefusedError; `advance`, `advance_to` and iteration do not.
+
+    With `scene`, the run is of this scene in the place of the body's own: other loads, another start, other effects or steps of the
+    same body, whose modes are not searched again. What follows from the loads, such as static shapes, is solved for where it is
+    not in the cache. A scene of another body, or one that holds it otherwise or asks for other modes, raises InputError.
     """
 
-    def __new__(cls, body: Body, loads: Sequence[Force | ModalForce] | None = None) -> Simulation: ...
+    def __new__(
+        cls, body: Body, loads: Sequence[Force | ModalForce] | None = None, *, scene: Scene | None = None
+    ) -> Simulation: ...
     @property
-    def body(self) -> Body: ...
+    def body(self) -> Body:
+        """The body, with the scene that is run."""
     @property
     def time(self) -> float:
         """Time that has been reached."""
@@ -259,8 +290,12 @@ def run(scene: Scene, folder: _Path, *, overwrite: bool = False) -> Results:
     """Runs a scene as the program does, and writes its results to `<folder>/<name of the scene>.h5`. Until the end they are in
     `<name>.part.h5` beside it, from which `resume` goes on after Ctrl-C or a crash."""
 
-def resume(file: _Path) -> Results:
-    """Goes on with a run that was cut off: the file is then the same as if it had not been, bit for bit."""
+def resume(file: _Path, *, trust_geometry: bool = False) -> Results:
+    """Goes on with a run that was cut off: the file is then the same as if it had not been, bit for bit. `trust_geometry` is that of
+    Scene."""
+
+def _scene(text: str, path: _Path, trust_geometry: bool) -> Scene:
+    """The scene that was pickled."""
 
 def read_results(path: _Path) -> Results:
     """Reads a results file, finished or not."""

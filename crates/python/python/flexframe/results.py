@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from html import escape
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -105,7 +106,27 @@ class Results(Mapping[str, NDArray[np.float64]]):
 
     def __repr__(self) -> str:
         end = "" if self.complete else ", unfinished"
-        return f"Results({self.title!r}, {len(self['time'])} rows, {len(self)} columns{end})"
+        times = self["time"]
+        reach = f" to {times[-1]:.6g} {self.units['time']}" if len(times) else ""
+        return f"Results({self.title!r}, {len(times)} rows{reach}, {len(self)} columns{end})"
+
+    def _repr_html_(self) -> str:
+        """The title, and a table of the columns with their units and ranges."""
+        rows = []
+        for path, column in self.columns.items():
+            array = self._arrays[path]
+            ends = f"{array.min():.4g} to {array.max():.4g}" if array.size else ""
+            unit = "" if column.unit == "1" else column.unit
+            rows.append([path, " x ".join(map(str, array.shape)), ends, unit, column.frame, column.description])
+        head = ["column", "shape", "range", "unit", "frame", ""]
+
+        def cells(tag: str, texts: list[str]) -> str:
+            return "<tr>" + "".join(f"<{tag}>{escape(text)}</{tag}>" for text in texts) + "</tr>"
+
+        body = "".join(cells("td", row) for row in rows)
+        told = "".join(f"<li>{escape(warning)}</li>" for warning in self.warnings)
+        warnings = f"<ul>{told}</ul>" if told else ""
+        return f"<b>{escape(repr(self))}</b>{warnings}<table><thead>{cells('th', head)}</thead><tbody>{body}</tbody></table>"
 
     def _places(self, path: str) -> list[str]:
         dimensions = self.columns[path].dimensions if path in self.columns else ()

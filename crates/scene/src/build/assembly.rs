@@ -4,7 +4,7 @@ use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
 use fem_tet10::{Materials, Mesh};
-use frames_rk4::Drive;
+use frames_rk4::{Drive, Effect};
 use matrix_import::MatrixFiles;
 use mesh_import::Imported;
 use modal::Support;
@@ -18,6 +18,7 @@ use super::other_materials::other_materials;
 use super::progress::{BuildProgress, BuildTimes, timed};
 use super::store::Store;
 use super::support::support;
+use crate::constraint::Constraint;
 use crate::scene::{Body, MeshedBody, RigidBody, Scene};
 
 /// The mesh and the matrices of the body of a scene, and what holds it.
@@ -92,6 +93,24 @@ impl Assembly {
             assembled.matrices()?;
         }
         Ok(Self(Assembled::Meshed(Box::new(assembled))))
+    }
+
+    /// All that the assembly of a scene is made of, as a text: scenes with the same may share it.
+    pub fn made_of(scene: &Scene) -> String {
+        let flexibility = scene.effects.choices[Effect::Flexibility];
+        // Such a support is checked against what the scene begins with.
+        let initial = matches!(scene.constraint, Some(Constraint::Support { .. })).then_some(&scene.initial);
+        format!("{:?} {:?} {:?} {flexibility:?} {initial:?}", scene.body, scene.constraint, scene.modes.flexible)
+    }
+
+    /// The same without the matrices, which are assembled again where they are needed, for who keeps it for long.
+    pub fn without_matrices(mut self) -> Self {
+        if let Assembled::Meshed(assembled) = &mut self.0
+            && let MadeOf::Elements(_) = assembled.body
+        {
+            assembled.matrices.take();
+        }
+        self
     }
 
     /// The same of matrices from another program, which are read each time.
