@@ -11,7 +11,7 @@ default:
 # The paper's plate, from mesh to table, figures and a page to look at, into out/plate.
 plate: build
     {{flexframe}} paper examples/plate.toml -o out/plate --overwrite
-    {{flexframe}} report out/plate/plate.h5
+    {{flexframe}} report out/plate/plate.h5 --overwrite
 
 # Every test.
 test:
@@ -58,16 +58,16 @@ mesh:
 # The moving picture of the README; its motion has to be within the range of the model.
 picture: build
     if {{flexframe}} run examples/thrown_plate.toml -o out/picture --overwrite | grep '^  warning'; then exit 1; fi
-    {{flexframe}} animate examples/thrown_plate.toml -o docs/thrown_plate.gif --frames 80
+    {{flexframe}} animate examples/thrown_plate.toml -o docs/thrown_plate.gif --frames 80 --overwrite
 
 # What accuracy costs: docs/accuracy.md and its diagrams from real runs of three scenes (some minutes).
 accuracy:
-    cargo run --release --quiet --package accuracy -- docs/accuracy.md examples/accuracy/{pulse,tumbling,spin}.toml
+    cargo run --release --quiet --package accuracy -- docs/accuracy.md examples/accuracy/{pulse,tumbling,spin}.toml --overwrite
 
 # What hard cases come to with every scheme: docs/stability.md; then kills of many runs (some minutes). Fails where a
 # bound is broken or a row is lost.
 stability:
-    cargo run --release --quiet --package stability -- docs/stability.md
+    cargo run --release --quiet --package stability -- docs/stability.md --overwrite
     FLEXFRAME_KILLS=200 cargo test --release --quiet --package results --test killed
     FLEXFRAME_KILLS=40 cargo test --release --quiet --test faults
 
@@ -75,7 +75,7 @@ stability:
 nonlinear:
     cargo test --release --quiet --package nonlinear -- --include-ignored --nocapture
     mkdir -p docs/nonlinear
-    cargo run --release --quiet --package nonlinear -- docs/nonlinear
+    cargo run --release --quiet --package nonlinear -- docs/nonlinear --overwrite
 
 # Steps a second of every scheme on one core, and what each effect costs per step and in set-up.
 bench:
@@ -124,9 +124,9 @@ h5py: build
     python3 -m venv --upgrade-deps .tools/h5py >/dev/null
     .tools/h5py/bin/pip install -q h5py
     .tools/h5py/bin/python crates/results/tests/read_with_h5py.py out/ring/ring.h5
-    {{flexframe}} reduce examples/ring.toml -o out/ring/ring.body.h5 --matrices
+    {{flexframe}} reduce examples/ring.toml -o out/ring/ring.body.h5 --matrices --overwrite
     {{flexframe}} run tests/bent_rod.toml -o out/bent --overwrite
-    {{flexframe}} reduce tests/bent_rod.toml -o out/bent/bent_rod.body.h5 --stress
+    {{flexframe}} reduce tests/bent_rod.toml -o out/bent/bent_rod.body.h5 --stress --overwrite
     {{flexframe}} export out/bent/bent_rod.h5 --vtkhdf out/bent/bent_rod.vtkhdf --volume --overwrite
     .tools/h5py/bin/python tests/read_body_with_h5py.py out/ring/ring.body.h5 out/ring/ring.h5 \
         out/bent/bent_rod.body.h5 out/bent/bent_rod.h5 out/bent/bent_rod.vtkhdf

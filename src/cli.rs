@@ -7,17 +7,19 @@ use std::time::Duration;
 
 use clap::{Args, CommandFactory, Parser, Subcommand};
 use flexframe::animation::{AnimationSettings, MOST_FRAMES, animate, animate_results};
-use flexframe::campbell::{CampbellError, CampbellSettings, Speeds, campbell};
+use flexframe::campbell::{self, CampbellError, CampbellSettings, Speeds};
 use flexframe::cost::{self, CostSettings};
 use flexframe::export::{self, ExportRows, Exported, Motion};
 use flexframe::failure::{Details, Failure, FailureReport, Kind};
-use flexframe::figures::View;
+use flexframe::figures::{self, View};
 use flexframe::fmu::{self, FmuSettings};
 use flexframe::given_file::GivenFile;
+use flexframe::outputs::{outputs_of_results, outputs_of_scene};
 use flexframe::run::{RunProgress, RunSettings};
 use flexframe::sweep::{Shard, SweepSettings};
 use flexframe::{advise, html_report, mode_shapes, modes, new_scene, paper, plausible, run, sweep};
 use scene::{BuildError, Cache, Flexible, ImportSettings, Scene, SceneError};
+use slepc::files_of_folder;
 
 use crate::cli_error::CliError;
 use crate::progress::Bar;
@@ -63,9 +65,8 @@ enum Command {
         /// Give first-order elements a node in the middle of each edge.
         #[arg(long)]
         raise_order: bool,
-        /// Replace a scene file of this name.
-        #[arg(long)]
-        overwrite: bool,
+        #[command(flatten)]
+        files: FileArgs,
     },
     /// Run a scene and write its motion to an HDF5 file.
     ///
@@ -79,6 +80,9 @@ enum Command {
         output: Option<PathBuf>,
         #[command(flatten)]
         files: FileArgs,
+        /// Allow a results file of more than 1 GB.
+        #[arg(long)]
+        large: bool,
         #[command(flatten)]
         solver: SolverInput,
     },
@@ -87,6 +91,8 @@ enum Command {
         /// The unfinished file, such as out/plate/plate.part.h5, or the name of its results file.
         #[arg(value_name = "FILE")]
         file: PathBuf,
+        #[command(flatten)]
+        files: FileArgs,
         /// Print the summary as JSON, for scripts, and errors as JSON on standard error.
         #[arg(long)]
         json: bool,
@@ -98,6 +104,8 @@ enum Command {
         /// The body file to write.
         #[arg(short, long, value_name = "FILE")]
         output: PathBuf,
+        #[command(flatten)]
+        files: FileArgs,
         #[command(flatten)]
         solver: SolverInput,
         /// Write the mass and stiffness matrices, too.
@@ -117,6 +125,8 @@ enum Command {
         /// The FMU to write.
         #[arg(short, long, value_name = "FILE")]
         output: PathBuf,
+        #[command(flatten)]
+        files: FileArgs,
         /// The library that goes into it [default: FLEXFRAME_FMU_LIBRARY, or libflexframe_fmi beside the program].
         #[arg(long, value_name = "FILE")]
         library: Option<PathBuf>,
@@ -131,6 +141,8 @@ enum Command {
         /// Folder for a picture of the mode shapes (SVG, PDF and PNG) [default: no picture].
         #[arg(short, long, value_name = "DIR")]
         output: Option<PathBuf>,
+        #[command(flatten)]
+        files: FileArgs,
         #[command(flatten)]
         solver: SolverInput,
     },
@@ -176,6 +188,8 @@ enum Command {
         /// Folder for campbell.csv, critical_speeds.csv and the diagram [default: out/<name of the scene file>].
         #[arg(short, long, value_name = "DIR")]
         output: Option<PathBuf>,
+        #[command(flatten)]
+        files: FileArgs,
     },
     /// Run the paper's plate and compare it with the paper: every figure, and a report.
     Paper {
@@ -194,6 +208,8 @@ enum Command {
         /// Folder for cost.csv and the diagram [default: out/<name of the scene file>].
         #[arg(short, long, value_name = "DIR")]
         output: Option<PathBuf>,
+        #[command(flatten)]
+        files: FileArgs,
         /// Find the cheapest setting within this error, ready for the scene.
         #[arg(long, value_name = "ERROR", value_parser = positive)]
         target: Option<f64>,
@@ -234,9 +250,8 @@ enum Command {
         /// One row of so many.
         #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..))]
         every: u64,
-        /// Replace files that are there.
-        #[arg(long)]
-        overwrite: bool,
+        #[command(flatten)]
+        files: FileArgs,
     },
     /// Write one HTML page about a run: the moving body in 3-D, shapes, histories, balances. It needs no network.
     Report {
@@ -246,6 +261,8 @@ enum Command {
         /// The page to write, or - for standard output [default: the results file's name with .html].
         #[arg(short, long, value_name = "FILE")]
         output: Option<PathBuf>,
+        #[command(flatten)]
+        files: FileArgs,
     },
     /// Run a scene with many values of its keys, and write a table of parameters and results (docs/cli.md).
     ///
@@ -264,11 +281,13 @@ enum Command {
         #[arg(long, value_name = "N", conflicts_with_all = ["shard", "slurm"], value_parser = clap::value_parser!(u16).range(1..=10_000))]
         merge: Option<u16>,
         /// Print a script that runs the sweep as an array of N jobs of Slurm.
-        #[arg(long, value_name = "N", conflicts_with_all = ["shard", "overwrite", "json"], value_parser = clap::value_parser!(u16).range(1..=10_000))]
+        #[arg(long, value_name = "N", conflicts_with_all = ["shard", "overwrite", "large", "json"], value_parser = clap::value_parser!(u16).range(1..=10_000))]
         slurm: Option<u16>,
-        /// Replace the table, whatever is in it.
-        #[arg(long)]
-        overwrite: bool,
+        #[command(flatten)]
+        files: FileArgs,
+        /// Allow runs whose results are more than 1 GB, which are temporary.
+        #[arg(long, conflicts_with = "merge")]
+        large: bool,
         /// Print the summary as JSON, for scripts, and errors as JSON on standard error.
         #[arg(long)]
         json: bool,
@@ -290,6 +309,8 @@ enum Command {
         /// The GIF to write.
         #[arg(short, long, value_name = "FILE")]
         output: PathBuf,
+        #[command(flatten)]
+        files: FileArgs,
         /// Number of frames.
         #[arg(long, default_value_t = 60, value_parser = clap::value_parser!(u64).range(2..=MOST_FRAMES))]
         frames: u64,
@@ -320,7 +341,8 @@ struct SceneArgs {
 
 #[derive(Debug, Args)]
 struct FileArgs {
-    /// Throw an unfinished run of the same name away. (A complete one is always replaced, once the new one is complete.)
+    /// Replace what is there, once the new file is complete; of a run, an unfinished one at once. A file that the command reads
+    /// is never replaced.
     #[arg(long)]
     overwrite: bool,
 }
@@ -353,7 +375,7 @@ pub fn main() -> ExitCode {
 }
 
 fn settings(signals: &Signals, overwrite: bool, cache: &Cache) -> RunSettings {
-    RunSettings { overwrite, stop: signals.stop(), cache: cache.clone() }
+    RunSettings { overwrite, large: false, stop: signals.stop(), cache: cache.clone() }
 }
 
 fn execute(cli: Cli, json: bool) -> Result<(), Box<dyn Failure>> {
@@ -380,7 +402,7 @@ fn command(cli: Cli, json_errors: bool, cache: &Cache) -> Result<(), Box<dyn Fai
     threads::start(cli.threads)?;
     let mut bar = Bar::new(json_errors);
     match cli.command {
-        Command::New { mesh, output, mesh_size, raise_order, overwrite } => {
+        Command::New { mesh, output, mesh_size, raise_order, files } => {
             let settings = ImportSettings { mesh_size, raise_order, trust_geometry: cli.trust_geometry };
             GivenFile::expect(&mesh, &[GivenFile::Mesh], "a mesh or geometry")?;
             if output.as_deref().is_some_and(output::is_standard) {
@@ -388,7 +410,7 @@ fn command(cli: Cli, json_errors: bool, cache: &Cache) -> Result<(), Box<dyn Fai
                 output::doubts(notes);
                 return Ok(output::text(&scene)?);
             }
-            let (scene, notes) = new_scene::new_scene(&mesh, &settings, output.as_deref(), overwrite)?;
+            let (scene, notes) = new_scene::new_scene(&mesh, &settings, output.as_deref(), files.overwrite)?;
             output::list(&[scene])?;
             notes.iter().try_for_each(|note| output::warn(Some(note)))
         }
@@ -397,13 +419,13 @@ fn command(cli: Cli, json_errors: bool, cache: &Cache) -> Result<(), Box<dyn Fai
             clap_complete::generate(shell, &mut Cli::command(), "flexframe", &mut script);
             Ok(output::written(std::io::stdout().write_all(&script))?)
         }
-        Command::Run { scene: SceneArgs { scene, json }, output, files, solver } => {
+        Command::Run { scene: SceneArgs { scene, json }, output, files, large, solver } => {
             output::require_file("--output", output.as_deref())?;
             let mut scene = read(scene)?;
             if let Some(to) = solver.take(&mut scene, signals.slepc())? {
-                return write_only(&scene, &to, bar);
+                return write_only(&scene, &to, files.overwrite, bar);
             }
-            let settings = settings(&signals, files.overwrite, cache);
+            let settings = RunSettings { large, ..settings(&signals, files.overwrite, cache) };
             let (_, report) = run::run(&scene, &folder(&scene, output), &settings, |p| {
                 signals.heard(p);
                 bar.run(p);
@@ -411,58 +433,63 @@ fn command(cli: Cli, json_errors: bool, cache: &Cache) -> Result<(), Box<dyn Fai
             drop(bar);
             output::print(&report, json)
         }
-        Command::Resume { file, json } => {
+        Command::Resume { file, files, json } => {
             GivenFile::expect(&file, &[GivenFile::Results], "the unfinished results file of a run")?;
-            let (_, _, report) = run::resume(&file, &settings(&signals, false, cache), |p| {
+            let (_, _, report) = run::resume(&file, &settings(&signals, files.overwrite, cache), |p| {
                 signals.heard(p);
                 bar.run(p);
             })?;
             drop(bar);
             output::print(&report, json)
         }
-        Command::Reduce { scene: SceneArgs { scene, json }, output, solver, matrices, stress } => {
+        Command::Reduce { scene: SceneArgs { scene, json }, output, files, solver, matrices, stress } => {
             output::require_file("--output", Some(&output))?;
             let mut scene = read(scene)?;
             if let Some(to) = solver.take(&mut scene, signals.slepc())? {
-                return write_only(&scene, &to, bar);
+                return write_only(&scene, &to, files.overwrite, bar);
             }
+            outputs_of_scene(&scene, files.overwrite).claim(&[&output])?;
             let report = modes::reduce(&scene, &output, matrices, stress, |p| bar.build(p))?;
             drop(bar);
             output::print(&report, json)?;
             if json { Ok(()) } else { output::list(&[output]) }
         }
-        Command::Fmu { scene: SceneArgs { scene, json }, output, library } => {
+        Command::Fmu { scene: SceneArgs { scene, json }, output, files, library } => {
             output::require_file("--output", Some(&output))?;
             let scene = scene.read_scene_or_body(cache)?;
             if !json {
                 output::doubts(plausible::doubts_of_scene(&scene));
             }
+            let outputs = outputs_of_scene(&scene, files.overwrite);
+            outputs.and_input(&fmu::library_path(library.as_deref())).claim(&[&output])?;
             let report = fmu::pack(&scene, &output, &FmuSettings { library }, |p| bar.build(p))?;
             drop(bar);
             output::print(&report, json)
         }
-        Command::Modes { scene: SceneArgs { scene, json }, flexible, output, solver } => {
+        Command::Modes { scene: SceneArgs { scene, json }, flexible, output, files, solver } => {
             output::require_file("--output", output.as_deref())?;
             let mut scene = read(scene)?;
             if let Some(count) = flexible {
                 scene.modes.flexible = Flexible::Count(count);
             }
             if let Some(to) = solver.take(&mut scene, signals.slepc())? {
-                return write_only(&scene, &to, bar);
+                return write_only(&scene, &to, files.overwrite, bar);
             }
-            if output.is_some() {
+            let picture = output.as_ref().map(|folder| folder.join("modes"));
+            if let Some(picture) = &picture {
                 modes::require_surface(&scene)?;
+                outputs_of_scene(&scene, files.overwrite).claim(&figures::files(picture))?;
             }
             let (model, report) =
                 modes::modes(&scene, |p| bar.build(p)).map_err(|error| of_option(error.into(), flexible))?;
             drop(bar);
-            let pictures = match output {
-                Some(folder) => {
+            let pictures = match (output, picture) {
+                (Some(folder), Some(picture)) => {
                     std::fs::create_dir_all(&folder)
                         .map_err(|source| run::RunError::Folder { folder: folder.clone(), source })?;
-                    mode_shapes::draw(&scene, &model, &folder.join("modes"))?.to_vec()
+                    mode_shapes::draw(&scene, &model, &picture)?.to_vec()
                 }
-                None => Vec::new(),
+                _ => Vec::new(),
             };
             output::print(&report, json)?;
             if !json {
@@ -482,6 +509,7 @@ fn command(cli: Cli, json_errors: bool, cache: &Cache) -> Result<(), Box<dyn Fai
             orders,
             flexible,
             output,
+            files,
         } => {
             output::require_file("--output", output.as_deref())?;
             let mut scene = read(scene)?;
@@ -489,7 +517,9 @@ fn command(cli: Cli, json_errors: bool, cache: &Cache) -> Result<(), Box<dyn Fai
                 scene.modes.flexible = Flexible::Count(count);
             }
             let settings = CampbellSettings { axis, speeds, orders };
-            let report = campbell(&scene, &folder(&scene, output), &settings, |p| bar.campbell(p))
+            let folder = folder(&scene, output);
+            outputs_of_scene(&scene, files.overwrite).claim(&campbell::files(&folder))?;
+            let report = campbell::campbell(&scene, &folder, &settings, |p| bar.campbell(p))
                 .map_err(|error| of_option(error, flexible))?;
             drop(bar);
             output::print(&report, json)
@@ -498,27 +528,36 @@ fn command(cli: Cli, json_errors: bool, cache: &Cache) -> Result<(), Box<dyn Fai
             output::require_file("--output", output.as_deref())?;
             let scene = read(scene)?;
             let settings = settings(&signals, files.overwrite, cache);
-            let report = paper::reproduce(&scene, &folder(&scene, output), &settings, |p| {
+            let folder = folder(&scene, output);
+            outputs_of_scene(&scene, files.overwrite).claim(&paper::files(&folder))?;
+            let report = paper::reproduce(&scene, &folder, &settings, |p| {
                 signals.heard(p);
                 bar.run(p);
             })?;
             drop(bar);
             output::print(&report, json)
         }
-        Command::Cost { scene: SceneArgs { scene, json }, output, target, patience } => {
+        Command::Cost { scene: SceneArgs { scene, json }, output, files, target, patience } => {
             output::require_file("--output", output.as_deref())?;
             let scene = read(scene)?;
             let settings = CostSettings { target, ..CostSettings::with_patience(patience) };
-            let report = cost::price_list(&scene, &folder(&scene, output), settings, |p| bar.cost(p))?;
+            let folder = folder(&scene, output);
+            outputs_of_scene(&scene, files.overwrite).claim(&cost::files(&folder))?;
+            let report = cost::price_list(&scene, &folder, settings, |p| bar.cost(p))?;
             drop(bar);
             output::print(&report, json)
         }
-        Command::Export { file, csv, columns, vtkhdf, vtu, modes, volume, from, to, every, overwrite } => {
+        Command::Export { file, csv, columns, vtkhdf, vtu, modes, volume, from, to, every, files } => {
             GivenFile::expect(&file, &[GivenFile::Results], RESULTS)?;
             output::require_file("--vtkhdf", vtkhdf.as_deref())?;
             output::require_file("--vtu", vtu.as_deref())?;
             output::require_file("--modes", modes.as_deref())?;
-            let rows = ExportRows { from, to, every: usize::try_from(every).unwrap_or(usize::MAX), overwrite };
+            let rows = ExportRows {
+                from,
+                to,
+                every: usize::try_from(every).unwrap_or(usize::MAX),
+                overwrite: files.overwrite,
+            };
             let mut done = Vec::new();
             let to_standard = csv.as_deref().is_some_and(output::is_standard);
             if to_standard {
@@ -549,7 +588,7 @@ fn command(cli: Cli, json_errors: bool, cache: &Cache) -> Result<(), Box<dyn Fai
             }
             Ok(())
         }
-        Command::Report { file, output } => {
+        Command::Report { file, output, files } => {
             GivenFile::expect(&file, &[GivenFile::Results], RESULTS)?;
             if output.as_deref().is_some_and(output::is_standard) {
                 let page = html_report::page(&file, cache, |p| bar.build(p))?;
@@ -557,11 +596,12 @@ fn command(cli: Cli, json_errors: bool, cache: &Cache) -> Result<(), Box<dyn Fai
                 return Ok(output::text(&page)?);
             }
             let output = output.unwrap_or_else(|| file.with_extension("html"));
+            outputs_of_results(&file, files.overwrite).claim(&[&output])?;
             html_report::write(&file, &output, cache, |p| bar.build(p))?;
             drop(bar);
             output::list(&[output])
         }
-        Command::Sweep { sweep: file, output, shard, merge, slurm, overwrite, json } => {
+        Command::Sweep { sweep: file, output, shard, merge, slurm, files: FileArgs { overwrite }, large, json } => {
             GivenFile::expect(&file, &[GivenFile::Sweep], "the file of a sweep (docs/cli.md)")?;
             output::require_file("--output", output.as_deref())?;
             let output = output.unwrap_or_else(|| {
@@ -575,20 +615,28 @@ fn command(cli: Cli, json_errors: bool, cache: &Cache) -> Result<(), Box<dyn Fai
                 Some(count) => sweep::merge(&file, &output, count.into(), overwrite)?,
                 None => {
                     let threads = rayon::current_num_threads();
-                    let settings = SweepSettings { overwrite, threads, cache: cache.clone(), shard };
+                    let settings = SweepSettings { overwrite, large, threads, cache: cache.clone(), shard };
                     sweep::sweep(&file, &output, &settings, |p| bar.sweep(p))?
                 }
             };
             drop(bar);
-            output::print(&report, json)
+            output::print(&report, json)?;
+            Ok(report.require_a_row()?)
         }
-        Command::Animate { scene, output, frames, from, to, view, magnify } => {
+        Command::Animate { scene, output, files, frames, from, to, view, magnify } => {
             output::require_file("--output", Some(&output))?;
             let view = view.unwrap_or_default();
             let settings = AnimationSettings { frames, magnification: magnify, from, to, view };
             let warning = match scene.results()? {
-                Some(file) => animate_results(file, &output, settings, cache, |p| bar.run(p))?,
-                None => animate(&read(scene)?.without_rows(), &output, settings, |p| bar.run(p))?,
+                Some(file) => {
+                    outputs_of_results(file, files.overwrite).claim(&[&output])?;
+                    animate_results(file, &output, settings, cache, |p| bar.run(p))?
+                }
+                None => {
+                    let scene = read(scene)?.without_rows();
+                    outputs_of_scene(&scene, files.overwrite).claim(&[&output])?;
+                    animate(&scene, &output, settings, |p| bar.run(p))?
+                }
             };
             drop(bar);
             output::list(&[output])?;
@@ -598,7 +646,8 @@ fn command(cli: Cli, json_errors: bool, cache: &Cache) -> Result<(), Box<dyn Fai
 }
 
 /// Writes the modes that a scene asks for as a problem for SLEPc.
-fn write_only(scene: &Scene, to: &WriteOnly, mut bar: Bar) -> Result<(), Box<dyn Failure>> {
+fn write_only(scene: &Scene, to: &WriteOnly, overwrite: bool, mut bar: Bar) -> Result<(), Box<dyn Failure>> {
+    outputs_of_scene(scene, overwrite).claim(&files_of_folder(&to.folder))?;
     let files = modes::write_problem(scene, &to.folder, to.ranks, |p| bar.build(p))?;
     drop(bar);
     output::list(&files)

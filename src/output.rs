@@ -5,6 +5,7 @@ use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use flexframe::failure::{Failure, FailureReport};
+use flexframe::run::Foretold;
 use scene::CacheNotes;
 use serde::Serialize;
 
@@ -48,6 +49,12 @@ pub fn doubts(doubts: impl IntoIterator<Item = impl Display>) {
         // Where it cannot be written, nothing is lost: the summary has it, too.
         let _ = writeln!(io::stderr(), "warning: {doubt}");
     }
+}
+
+/// Tells on standard error what a run will come to.
+pub fn foretell(foretold: &Foretold) {
+    // Where it cannot be written, nothing is lost but words.
+    let _ = writeln!(io::stderr(), "run: {foretold}");
 }
 
 /// Prints the names of files.

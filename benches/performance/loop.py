@@ -42,7 +42,7 @@ SETTINGS = {
 def measure(store, effort):
     FOLDER.mkdir(parents=True, exist_ok=True)
     body = FOLDER / "tumbling.body.h5"
-    arguments = ["--set", f"modes.flexible={max(MODES)}", "--matrices", "-o", body]
+    arguments = ["--set", f"modes.flexible={max(MODES)}", "--matrices", "-o", body, "--overwrite"]
     flexframe("reduce", SCENE, *arguments, cache=cache())
     for modes in MODES:
         for arguments in SETTINGS.values():

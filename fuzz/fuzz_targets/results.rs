@@ -39,7 +39,7 @@ fuzz_target!(|bytes: &[u8]| {
     }
     drop(file);
     open(part);
-    if let Err(error) = Writer::resume(part, &COLUMNS) {
+    if let Err(error) = Writer::resume(part, &COLUMNS, false) {
         assert!(matches!(error, FileError::NoSeal { .. } | FileError::Damaged { .. }), "{error}");
     }
 });

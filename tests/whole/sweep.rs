@@ -62,7 +62,7 @@ impl Case {
     }
 
     fn run_shard(&self, overwrite: bool, shard: Option<Shard>) -> Result<SweepReport, String> {
-        let settings = SweepSettings { overwrite, threads: 3, cache: Cache::none(), shard };
+        let settings = SweepSettings { overwrite, large: false, threads: 3, cache: Cache::none(), shard };
         sweep(&self.path("sweep.toml"), &self.path("sweep.h5"), &settings, |_| ()).map_err(|error| error.to_string())
     }
 
@@ -182,12 +182,22 @@ fn shards_of_a_sweep_merge_into_the_table_of_the_whole() {
     let bits = |values: &[f64]| values.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
     assert_eq!(bits(&case.table("results/tip")), bits(&table));
     assert_eq!(case.run_shard(false, shard("1/3")).unwrap().kept, 2);
-    // Nor of this one with another mesh.
+    // Rows of another mesh are not mixed with rows of this one.
     let mesh = case.path("bar.msh");
     let with_comment = fs::read_to_string(&mesh).unwrap() + "$Comments\nanother\n$EndComments\n";
     let original = fs::read(&mesh).unwrap();
     fs::write(&mesh, with_comment).unwrap();
-    assert!(merged(3).unwrap_err().to_string().contains("it is of another sweep"));
+    let before = fs::read(case.path("sweep.h5")).unwrap();
+    let error = merged(3).unwrap_err().to_string();
+    assert!(
+        error.contains("sweep.1-of-3.h5: 2 of its rows were computed from files that have changed since"),
+        "{error}"
+    );
+    assert!(fs::read(case.path("sweep.h5")).unwrap() == before);
+    let again = case.run_shard(false, shard("1/3")).unwrap();
+    assert_eq!((again.done, again.kept, again.stale), (2, 0, 2));
+    let error = merged(3).unwrap_err().to_string();
+    assert!(error.contains("sweep.2-of-3.h5"), "{error}");
     fs::write(&mesh, original).unwrap();
     // Shards of another sweep are not taken.
     case.write("[parameters]\n\"time.step\" = [1e-5]");
@@ -271,4 +281,61 @@ fn what_a_sweep_cannot_be_is_refused() {
     .unwrap();
     let report = case.run(false).unwrap();
     assert!(report.failures[&0].contains("the results have no column points/nose/displacement"), "{report:?}");
+}
+
+/// A load table that is read for each row, and changed between two runs of the sweep.
+#[test]
+fn rows_of_an_old_table_are_computed_again() {
+    let case = Case::new("[parameters]\n\"loads[0].history.file\" = [\"a.csv\", \"b.csv\"]");
+    let scene = SCENE.replace("kind = \"half-sine\", duration = 1e-3", "kind = \"table\", file = \"a.csv\"");
+    fs::write(case.path("blade.toml"), scene).unwrap();
+    let write = |name: &str, factor: f64| fs::write(case.path(name), format!("0, 0\n1e-4, {factor}\n")).unwrap();
+    write("a.csv", 1.0);
+    write("b.csv", 1.0);
+    assert_eq!(case.run(false).unwrap().done, 2);
+    let before = case.table("results/tip");
+    write("b.csv", 3.0);
+    let report = case.run(false).unwrap();
+    assert_eq!((report.done, report.kept, report.stale), (2, 1, 1));
+    let now = case.table("results/tip");
+    assert_eq!(now[..3], before[..3]);
+    assert!((now[4] / before[4] - 3.0).abs() < 0.1, "{before:?} {now:?}");
+    assert_eq!(case.run(false).unwrap().kept, 2);
+}
+
+#[test]
+fn two_sweeps_do_not_write_one_table() {
+    let case = Case::new("[parameters]\n\"time.step\" = [1e-5, 2e-5]");
+    let lock = whole_file::FileLock::of(&case.path("sweep.h5")).unwrap().unwrap();
+    let error = case.run(false).unwrap_err();
+    assert!(error.contains("sweep.h5: another sweep is writing this table"), "{error}");
+    let error = merge(&case.path("sweep.toml"), &case.path("sweep.h5"), 2, true).unwrap_err().to_string();
+    assert!(error.contains("another sweep is writing this table"), "{error}");
+    assert!(!case.path("sweep.h5").exists());
+    // A shard has a table of its own.
+    assert_eq!(case.run_shard(false, Some("1/2".parse().unwrap())).unwrap().done, 1);
+    drop(lock);
+    assert_eq!(case.run(false).unwrap().done, 2);
+    let left: Vec<_> = fs::read_dir(case.folder.path()).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    assert!(left.iter().all(|name| !name.to_string_lossy().contains("lock")), "{left:?}");
+}
+
+#[test]
+fn a_sweep_none_of_whose_rows_is_done_has_failed() {
+    let case = Case::new("[parameters]\n\"loads[0].amplitude\" = [1.0, 2.0]");
+    let sweep = fs::read_to_string(case.path("sweep.toml")).unwrap().replace("tip/displacement", "nose/displacement");
+    let run = |text: &str| {
+        fs::write(case.path("sweep.toml"), text).unwrap();
+        let mut command = Command::new(env!("CARGO_BIN_EXE_flexframe"));
+        command.args(["sweep", "sweep.toml", "--overwrite"]).current_dir(case.folder.path()).output().unwrap()
+    };
+    let output = run(&sweep);
+    let text = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(5), "{text}");
+    assert!(text.contains("all rows that were run have failed; row 0: the results have no column"), "{text}");
+    assert!(case.path("out/sweep.h5").is_file());
+    let output = run(
+        "scene = \"blade.toml\"\n[parameters]\n\"time.step\" = [1e-5, 1.0]\n[results]\na = { final = \"position\" }\n",
+    );
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
 }

@@ -1,4 +1,4 @@
-//! `accuracy FILE SCENE...`: measures the scenes and writes the page FILE, with its diagrams in a folder of the same name.
+//! `accuracy FILE SCENE... [--overwrite]`: measures the scenes and writes the page FILE, with its diagrams in a folder of the same name.
 
 use std::error::Error;
 use std::path::Path;
@@ -11,12 +11,13 @@ use flexframe::scene::Scene;
 const PATIENCE: Duration = Duration::from_secs(1);
 
 fn main() -> ExitCode {
-    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let (options, arguments): (Vec<String>, Vec<String>) =
+        std::env::args().skip(1).partition(|argument| argument == "--overwrite");
     let [page, scenes @ ..] = arguments.as_slice() else {
-        eprintln!("usage: accuracy FILE SCENE...");
+        eprintln!("usage: accuracy FILE SCENE... [--overwrite]");
         return ExitCode::FAILURE;
     };
-    match write(page, scenes) {
+    match write(page, scenes, !options.is_empty()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("error: {error}");
@@ -25,9 +26,9 @@ fn main() -> ExitCode {
     }
 }
 
-fn write(page: &str, scenes: &[String]) -> Result<(), Box<dyn Error>> {
+fn write(page: &str, scenes: &[String], overwrite: bool) -> Result<(), Box<dyn Error>> {
     let scenes = scenes.iter().map(Scene::read).collect::<Result<Vec<_>, _>>()?;
-    for file in accuracy::accuracy_page(&scenes, page.as_ref(), Path::new("out/accuracy"), PATIENCE)? {
+    for file in accuracy::accuracy_page(&scenes, page.as_ref(), Path::new("out/accuracy"), PATIENCE, overwrite)? {
         println!("{}", file.display());
     }
     Ok(())

@@ -5,10 +5,11 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use flexframe::cost::{
-    CostError, CostReport, CostSettings, LadderRun, Line, Measured, Outcome, duration, modes_warning, price_list,
+    self, CostError, CostReport, CostSettings, LadderRun, Line, Measured, Outcome, duration, modes_warning, price_list,
     setting,
 };
 use flexframe::modes::frequency_unit;
+use flexframe::outputs::outputs_of_scene;
 use flexframe::scene::Scene;
 use flexframe::write_error::WriteError;
 use whole_file::write_whole;
@@ -21,7 +22,8 @@ const DECADES: std::ops::RangeInclusive<i32> = 1..=10;
 const ROWS_SHOWN: usize = 5;
 
 /// Measures the scenes and writes a page about them to `path`, with its diagrams in a folder of the same name; the whole
-/// lists go to folders in `lists`. A page that was there before stays until everything has been measured.
+/// lists go to folders in `lists`. What was there before is only replaced with `overwrite`, and the page stays until everything has been
+/// measured.
 ///
 /// # Errors
 /// [`CostError`].
@@ -30,8 +32,15 @@ pub fn accuracy_page(
     path: &Path,
     lists: &Path,
     patience: Duration,
+    overwrite: bool,
 ) -> Result<Vec<PathBuf>, CostError> {
     let pictures = path.with_extension("");
+    let picture_of = |scene: &Path| pictures.join(format!("{}.svg", name_of(scene)));
+    for scene in scenes {
+        let mut files = cost::files(&lists.join(name_of(&scene.path)));
+        files.extend([path.to_owned(), picture_of(&scene.path)]);
+        outputs_of_scene(scene, overwrite).claim(&files)?;
+    }
     let mut reports = Vec::new();
     for scene in scenes {
         let folder = lists.join(name_of(&scene.path));
@@ -45,7 +54,7 @@ pub fn accuracy_page(
     std::fs::create_dir_all(&pictures).map_err(WriteError::of(&pictures))?;
     let mut files = Vec::new();
     for (_, report) in &reports {
-        let picture = pictures.join(format!("{}.svg", name_of(&report.scene)));
+        let picture = picture_of(&report.scene);
         if let Some(drawn) = report.files.iter().find(|file| file.extension() == Some("svg".as_ref())) {
             std::fs::read(drawn).and_then(|svg| write_whole(&picture, svg)).map_err(WriteError::of(&picture))?;
             files.push(picture);

@@ -18,7 +18,7 @@ fn the_page_has_its_tables_and_its_pictures() {
             .unwrap();
     let (docs, lists) = (folder.path().join("docs"), folder.path().join("lists"));
     std::fs::create_dir(&docs).unwrap();
-    accuracy_page(&[scene], &docs.join("accuracy.md"), &lists, Duration::from_millis(100)).unwrap();
+    accuracy_page(&[scene], &docs.join("accuracy.md"), &lists, Duration::from_millis(100), false).unwrap();
     let page = std::fs::read_to_string(folder.path().join("docs/accuracy.md")).unwrap();
     for words in ["# What accuracy costs", "## Ring", "**The paper's scheme.**", "What the modes cost", "ω²Δt/2"] {
         assert!(page.contains(words), "{words} in {page}");

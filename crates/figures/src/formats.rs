@@ -16,14 +16,19 @@ const SMOOTHING: u32 = 2;
 /// Dots per pixel of a PNG.
 const DOTS: u32 = 2;
 
-/// Writes `<stem>.svg`, `<stem>.pdf` and `<stem>.png` and returns the three paths.
-pub(crate) fn save(figure: &impl Figure, stem: &Path) -> Result<[PathBuf; 3], FigureError> {
-    let paths = ["svg", "pdf", "png"].map(|extension| {
+/// The three files of a figure: `<stem>.svg`, `<stem>.pdf` and `<stem>.png`.
+pub fn files(stem: &Path) -> [PathBuf; 3] {
+    ["svg", "pdf", "png"].map(|extension| {
         let mut name = stem.as_os_str().to_owned();
         name.push(".");
         name.push(extension);
         PathBuf::from(name)
-    });
+    })
+}
+
+/// Writes the three [`files`] and returns their paths.
+pub(crate) fn save(figure: &impl Figure, stem: &Path) -> Result<[PathBuf; 3], FigureError> {
+    let paths = files(stem);
     let files = [svg(figure)?.into_bytes(), pdf(figure)?, png(figure)?];
     for (path, bytes) in paths.iter().zip(files) {
         write(path, &bytes)?;

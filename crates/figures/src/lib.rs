@@ -36,6 +36,7 @@ pub use axis::Scale;
 pub use chart::{LineChart, Reference};
 pub use chart_grid::ChartGrid;
 pub use error::FigureError;
+pub use formats::files;
 pub use series::{Series, Stroke};
 pub use shapes::{Panel, ShapeGrid};
 pub use surface::{facets, sharp_edges};

@@ -22,6 +22,7 @@ use scene::{BuildError, BuildProgress, Choice, Flexible, Model, Scene};
 pub use branches::Branch;
 pub use critical::Critical;
 pub use error::CampbellError;
+pub use files::files;
 pub use report::{CampbellReport, SpinEffects};
 
 use crate::modes::{frequency_unit, require_flexible};

@@ -27,6 +27,7 @@ use scene::{Assembly, BuildProgress, Flexible, Scene};
 
 pub use answer::Answer;
 pub use error::CostError;
+pub use files::files;
 pub use ladder::{LadderRun, Line, Measured, Outcome, Stopped};
 pub use machine::Machine;
 pub use modes::{ModesRow, modes_warning};

@@ -15,7 +15,7 @@ mod si_unit;
 mod variables;
 
 pub use error::FmuError;
-pub use library::marker;
+pub use library::{library_path, marker};
 pub use manifest::{MANIFEST, Manifest};
 pub use model::FmuModel;
 pub use pack::{FmuReport, FmuSettings, pack, scene_of_body};

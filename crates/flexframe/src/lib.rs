@@ -37,6 +37,7 @@ mod json;
 pub mod mode_shapes;
 pub mod modes;
 pub mod new_scene;
+pub mod outputs;
 pub mod paper;
 pub mod peak_stress;
 pub mod plausible;

@@ -8,6 +8,7 @@ use fem_tet10::{AssemblyError, Material, Materials, centroid_lumped_inertia};
 use mesh_import::{ImportError, ImportSettings, Imported, MeshFile};
 use whole_file::write_whole;
 
+use crate::outputs::{OutputError, outputs_of_mesh};
 use crate::scene_file::from_root;
 use crate::units::UnitLabels;
 use crate::write_error::WriteError;
@@ -22,11 +23,8 @@ pub enum NewSceneError {
     #[error(transparent)]
     Assembly(#[from] AssemblyError),
     /// A file with the name of the scene is there.
-    #[error("{}: a file of this name is there\n = choose another one with -o, or replace it with --overwrite (not the mesh itself)", path.display())]
-    Exists {
-        /// The file.
-        path: PathBuf,
-    },
+    #[error(transparent)]
+    Output(#[from] OutputError),
     /// The scene cannot be written.
     #[error(transparent)]
     Write(#[from] WriteError),
@@ -78,10 +76,7 @@ pub fn new_scene(
     // Before a file is refused that has the name of the scene.
     let file = MeshFile::read(mesh, settings)?;
     let path = scene.map_or_else(|| mesh.with_extension("toml"), Path::to_owned);
-    let is_mesh = path.canonicalize().is_ok_and(|path| mesh.canonicalize().is_ok_and(|mesh| mesh == path));
-    if is_mesh || (path.exists() && !overwrite) {
-        return Err(NewSceneError::Exists { path });
-    }
+    outputs_of_mesh(mesh, overwrite).claim(&[&path])?;
     let mut read = file.mesh()?;
     read.notes.extend(file.remark());
     let text = text(&mut read, settings, &from_folder_of(&path, mesh))?;

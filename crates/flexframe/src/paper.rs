@@ -39,6 +39,15 @@ pub struct PaperReport {
     pub comparison: Comparison,
 }
 
+/// The page, beside the figures.
+const PAGE: &str = "report.md";
+
+/// The files that [`reproduce`] writes to a folder beside the results file.
+pub fn files(folder: &Path) -> Vec<PathBuf> {
+    let figures = figures::NAMES.iter().flat_map(|name| ::figures::files(&folder.join(name)));
+    std::iter::once(folder.join(PAGE)).chain(figures).collect()
+}
+
 /// Runs the scene of the paper's plate, draws every figure of the paper that can be made, and writes `report.md`
 /// beside them.
 ///
@@ -66,7 +75,7 @@ pub fn reproduce(
     let comparison = Comparison::new(&run, &results, &rigid, &lumped);
     let figures = figures::draw(scene, &model, &results, &rigid, folder)?;
     run.times.add("figures", started.elapsed());
-    let path = folder.join("report.md");
+    let path = folder.join(PAGE);
     write_whole(&path, page::page(scene, &run, &comparison))
         .map_err(|source| PaperError::Report { path: path.clone(), source })?;
     Ok(PaperReport { run, report: path, figures, comparison })

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use results::{FileError, Results};
+use results::{FileError, Metadata, Results};
 use scene::{BuildError, BuildProgress, Cache, Model, Scene, SceneError};
 
 use crate::columns::COLUMNS;
@@ -43,6 +43,10 @@ impl Reopened {
 
 /// The scene in a results file.
 pub(crate) fn scene_of(results: &Results, cache: &Cache) -> Result<Scene, SceneError> {
-    let scene = Scene::parse(&results.metadata.scene_text, scene_file::to_path(&results.metadata.scene_file))?;
-    Ok(Scene { cache: cache.clone(), ..scene })
+    Ok(Scene { cache: cache.clone(), ..scene_in(&results.metadata)? })
+}
+
+/// The same, without a cache.
+pub(crate) fn scene_in(metadata: &Metadata) -> Result<Scene, SceneError> {
+    Scene::parse(&metadata.scene_text, scene_file::to_path(&metadata.scene_file))
 }

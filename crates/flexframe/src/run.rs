@@ -2,6 +2,7 @@
 
 mod balances;
 mod error;
+mod foretold;
 mod recorder;
 mod report;
 mod settings;
@@ -12,21 +13,24 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use frames_rk4::{DrivenMotion, Simulation};
-use results::{BodyProperties, Expected, Metadata, Resumed, Units, Writer};
-use scene::{Model, Rows, Scene, StepControl};
+use results::{BodyProperties, Expected, Metadata, Resumed, Units, Writer, unfinished};
+use scene::{Model, Scene, StepControl};
 
 pub use balances::Balances;
 pub(crate) use balances::Monitor;
 pub use error::{RunError, RunFailure};
+pub use foretold::Foretold;
 pub use report::RunReport;
 pub use settings::{RunProgress, RunSettings};
 pub use watch::{Watch, Watched};
 
 use crate::columns::{COLUMNS, part};
+use crate::outputs::outputs_of_scene;
 use crate::reopened::scene_of;
 use crate::report::BodyReport;
 use crate::row::Row;
 use crate::scene_file;
+use foretold::LARGE;
 use recorder::Recorder;
 
 /// Runs a scene and writes its results to `<folder>/<name of the scene file>.h5`; until the end they are in an
@@ -41,8 +45,11 @@ pub fn run(
     settings: &RunSettings,
     mut progress: impl FnMut(RunProgress),
 ) -> Result<(Model, RunReport), RunError> {
-    std::fs::create_dir_all(folder).map_err(|source| RunError::Folder { folder: folder.to_owned(), source })?;
     let path = results_path(scene, folder);
+    let outputs = outputs_of_scene(scene, settings.overwrite);
+    outputs.spare(&path)?;
+    outputs.spare(&unfinished(&path))?;
+    std::fs::create_dir_all(folder).map_err(|source| RunError::Folder { folder: folder.to_owned(), source })?;
     Writer::<Row>::check(&path, settings.overwrite)?;
     let model = Model::build(scene, |p| progress(RunProgress::Build(p)))?;
     // Who is to stop may do so here, before there is an unfinished file: the last phase of the build may have been long.
@@ -66,11 +73,19 @@ pub fn run_model(
     let started = Instant::now();
     let mut simulation = start(scene, model)?;
     let checkpoint = simulation.checkpoint().map_err(|source| RunError::Restore { part: path.clone(), source })?.len();
-    let expected = Expected { rows: expected_rows(scene), checkpoint, overwrite: settings.overwrite };
-    let writer = Writer::create(&path, &metadata(scene, model), &COLUMNS, expected)?;
+    let metadata = metadata(scene, model);
+    let foretold = Foretold::of_rows(scene, &metadata);
+    if foretold.bytes > LARGE && !settings.large {
+        return Err(RunError::Large { scene: scene.path.clone(), foretold });
+    }
+    let foretold = foretold.with_seconds(&simulation, &settings.stop);
+    progress(RunProgress::Foretold(foretold));
+    let rows = usize::try_from(foretold.rows).unwrap_or(usize::MAX);
+    let writer =
+        Writer::create(&path, &metadata, &COLUMNS, Expected { rows, checkpoint, overwrite: settings.overwrite })?;
     progress(RunProgress::Motion(0.0));
     let initial = model.initial(scene);
-    let mut recorder = Recorder::new(scene, model, &initial, writer)?;
+    let mut recorder = Recorder::new(scene, model, &initial, writer, foretold)?;
     recorder.begin(&mut simulation)?;
     recorder.follow(simulation, started, settings, progress)
 }
@@ -86,9 +101,11 @@ pub fn resume(
     settings: &RunSettings,
     mut progress: impl FnMut(RunProgress),
 ) -> Result<(Scene, Model, RunReport), RunError> {
-    let Resumed { writer, results, checkpoint } = Writer::resume(file, &COLUMNS)?;
+    let Resumed { writer, results, checkpoint } = Writer::resume(file, &COLUMNS, settings.overwrite)?;
     let part = writer.unfinished().to_path_buf();
     let scene = scene_of(&results, &settings.cache)?;
+    outputs_of_scene(&scene, settings.overwrite).spare(writer.path())?;
+    let foretold = Foretold::of_rows(&scene, &results.metadata);
     let model = Model::build(&scene, |p| progress(RunProgress::Build(p)))?;
     progress(RunProgress::Built);
     let started = Instant::now();
@@ -108,12 +125,12 @@ pub fn resume(
         Some(checkpoint) => {
             simulation =
                 simulation.restored(&checkpoint).map_err(|source| RunError::Restore { part: part.clone(), source })?;
-            let mut recorder = Recorder::new(&scene, &model, &initial, writer)?;
+            let mut recorder = Recorder::new(&scene, &model, &initial, writer, foretold)?;
             recorder.take_up(&mut simulation, &results)?;
             recorder.follow(simulation, started, settings, progress)?
         }
         None => {
-            let mut recorder = Recorder::new(&scene, &model, &initial, writer)?;
+            let mut recorder = Recorder::new(&scene, &model, &initial, writer, foretold)?;
             recorder.begin(&mut simulation)?;
             recorder.follow(simulation, started, settings, progress)?
         }
@@ -123,16 +140,6 @@ pub fn resume(
 
 fn start(scene: &Scene, model: &Model) -> Result<Simulation, RunError> {
     model.start(scene).map_err(|source| RunError::Setup { scene: scene.path.clone(), source: Box::new(source) })
-}
-
-/// Rows that a run will have, but for corners of loads between them; 0 where its steps are not known.
-fn expected_rows(scene: &Scene) -> usize {
-    let spacing = match (scene.output.rows, scene.time.control) {
-        (Rows::Interval(interval), _) => interval,
-        (Rows::EverySteps(steps), StepControl::Fixed(step)) => steps as f64 * step,
-        (Rows::EverySteps(_), StepControl::Tolerance(_)) => return 0,
-    };
-    ((scene.time.end / spacing * (1.0 - 1e-12)).ceil() as usize).saturating_add(1)
 }
 
 /// The results file of a scene in a folder.

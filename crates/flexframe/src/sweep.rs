@@ -18,10 +18,11 @@ use std::time::{Duration, Instant};
 use results::Results;
 use scene::{Assembly, BuildProgress, Cache, Model, ModelBuilder, Scene};
 use serde::Serialize;
-use whole_file::TemporaryFolder;
+use whole_file::{FileLock, TemporaryFolder};
 
 use crate::columns::COLUMNS;
 use crate::json;
+use crate::outputs::Outputs;
 use crate::run::{self, RunSettings};
 use crate::write_error::WriteError;
 use plan::{Asked, Plan};
@@ -56,6 +57,8 @@ pub enum SweepProgress {
 pub struct SweepSettings {
     /// Throws a table of another sweep away that is in the way, and the rows of this one.
     pub overwrite: bool,
+    /// Allows runs whose results are more than 1 GB; they are temporary.
+    pub large: bool,
     /// Runs at once.
     pub threads: usize,
     /// Where bodies are kept from run to run.
@@ -80,6 +83,8 @@ pub struct SweepReport {
     pub unfinished: Vec<Shard>,
     /// Rows that were done before.
     pub kept: usize,
+    /// Rows that were computed before from files that have changed since, and were open again.
+    pub stale: usize,
     /// Why rows have no results, by their number from 0.
     pub failures: BTreeMap<usize, String>,
     /// What should be known of rows that are done, by their number.
@@ -89,6 +94,19 @@ pub struct SweepReport {
 }
 
 impl SweepReport {
+    /// The failure of a sweep none of whose rows is done, though some were run.
+    ///
+    /// # Errors
+    /// [`SweepError::AllFailed`].
+    pub fn require_a_row(&self) -> Result<(), SweepError> {
+        match self.failures.iter().next() {
+            Some((row, words)) if self.done == 0 => {
+                Err(SweepError::AllFailed { path: self.output.clone(), row: *row, words: words.clone() })
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// Of a table of the whole sweep, of which so many rows were done before.
     fn of(plan: Plan, output: &Path, table: &Table, kept: usize) -> Self {
         let [done, _] = table.counts();
@@ -99,6 +117,7 @@ impl SweepReport {
             done,
             unfinished: Vec::new(),
             kept,
+            stale: table.stale,
             failures: table.failures(),
             warnings: table.warnings(),
             reductions: 0,
@@ -125,11 +144,13 @@ pub fn sweep(
         settings.cache.elsewhere(folder, u64::MAX)
     };
     let plan = Plan::read(path, &cache)?;
+    let of_shard = settings.shard.map(|shard| shard.table(output));
+    let output = of_shard.as_deref().unwrap_or(output);
+    outputs(&plan, path, settings.overwrite).spare(output)?;
     if let Some(folder) = output.parent().filter(|folder| !folder.as_os_str().is_empty()) {
         std::fs::create_dir_all(folder).map_err(WriteError::of(folder))?;
     }
-    let of_shard = settings.shard.map(|shard| shard.table(output));
-    let output = of_shard.as_deref().unwrap_or(output);
+    let _alone = lock(output)?;
     let is_mine = |row: usize| settings.shard.is_none_or(|shard| shard.has(row));
     let mut table = Table::open(output, &plan, settings.overwrite)?;
     let [kept, _] = table.counts();
@@ -146,21 +167,28 @@ pub fn sweep(
     let mut written = Instant::now();
     for rows in groups.values() {
         let Some(Ok(first)) = rows.first().map(|row| &plan.rows[*row]) else { continue };
+        let mut all_failed =
+            |words: &str| rows.iter().for_each(|row| table.rows[*row] = RowState::Failed(words.to_owned()));
         let assembly = match Assembly::new(first, |p| progress(SweepProgress::Build(p))) {
             Ok(assembly) => assembly,
             Err(error) => {
-                rows.iter().for_each(|row| table.rows[*row] = RowState::Failed(error.to_string()));
+                all_failed(&error.to_string());
                 continue;
             }
         };
         let builder = match assembly.builder() {
             Ok(builder) => Mutex::new(builder),
             Err(error) => {
-                rows.iter().for_each(|row| table.rows[*row] = RowState::Failed(error.to_string()));
+                all_failed(&error.to_string());
                 continue;
             }
         };
-        run_rows(&plan, rows, &builder, temporary.path(), settings.threads, |row, outcome| {
+        if plan.has_changed(rows[0]) {
+            all_failed(CHANGED);
+            continue;
+        }
+        let of_run = RunSettings { large: settings.large, ..RunSettings::default() };
+        run_rows(&plan, rows, &builder, temporary.path(), (settings.threads, &of_run), |row, outcome| {
             table.rows[row] = outcome;
             let [done, failed] = table.counts();
             progress(SweepProgress::Rows { done: (done + failed) as u64, total: mine as u64 });
@@ -170,6 +198,9 @@ pub fn sweep(
             }
             Ok(())
         })?;
+        if plan.has_changed(rows[0]) {
+            rows.iter().for_each(|row| table.rows[*row] = RowState::Failed(CHANGED.to_owned()));
+        }
     }
     table.write(output, &plan, true)?;
     let report = SweepReport::of(plan, output, &table, kept);
@@ -183,6 +214,9 @@ pub fn sweep(
 /// [`SweepError`]: the sweep cannot be read, or a table is of another one.
 pub fn merge(path: &Path, output: &Path, count: usize, overwrite: bool) -> Result<SweepReport, SweepError> {
     let plan = Plan::read(path, &Cache::none())?;
+    let shards = Shard::all(count).map(|shard| shard.table(output));
+    shards.fold(outputs(&plan, path, overwrite), |outputs, shard| outputs.and_input(&shard)).spare(output)?;
+    let _alone = lock(output)?;
     // Rows that the table has already stay, and one of another sweep is not lost.
     let mut table = Table::open(output, &plan, overwrite)?;
     let [kept, _] = table.counts();
@@ -191,6 +225,9 @@ pub fn merge(path: &Path, output: &Path, count: usize, overwrite: bool) -> Resul
     for shard in Shard::all(count) {
         let found = Table::read(&shard.table(output), &plan)?;
         has_tables |= found.is_some();
+        if let Some(Table { stale: rows @ 1.., .. }) = found {
+            return Err(SweepError::OtherFiles { path: shard.table(output), rows });
+        }
         for (row, state) in table.rows.iter_mut().enumerate().filter(|(row, _)| shard.has(*row)) {
             if *state == RowState::Open
                 && let Some(of_shard) = &found
@@ -210,13 +247,31 @@ pub fn merge(path: &Path, output: &Path, count: usize, overwrite: bool) -> Resul
     Ok(SweepReport { unfinished, ..SweepReport::of(plan, output, &table, kept) })
 }
 
+/// Why rows fail whose files did not stay what they were.
+const CHANGED: &str = "a file of the body was changed while the sweep ran\n = run it again";
+
+/// What a sweep may not write over: all that it reads.
+fn outputs(plan: &Plan, sweep: &Path, overwrite: bool) -> Outputs {
+    // Rows with the same body and histories have the same files.
+    let same = |scene: &Scene| format!("{:?} {:?} {:?}", scene.body, scene.loads, scene.constraint);
+    let scenes: BTreeMap<String, &Scene> = plan.rows.iter().flatten().map(|scene| (same(scene), scene)).collect();
+    let files = scenes.into_values().flat_map(Scene::files);
+    Outputs::new(std::iter::once(sweep.to_owned()).chain(files).collect(), overwrite)
+}
+
+/// Keeps other sweeps from writing the table.
+fn lock(table: &Path) -> Result<FileLock, SweepError> {
+    let lock = FileLock::of(table).map_err(WriteError::of(table))?;
+    lock.ok_or_else(|| SweepError::Busy { path: table.to_owned() })
+}
+
 /// Runs some rows of one body, and tells what became of each.
 fn run_rows(
     plan: &Plan,
     rows: &[usize],
     builder: &Mutex<ModelBuilder<'_>>,
     folder: &Path,
-    threads: usize,
+    (threads, settings): (usize, &RunSettings),
     mut tell: impl FnMut(usize, RowState) -> Result<(), SweepError>,
 ) -> Result<(), SweepError> {
     let next = AtomicUsize::new(0);
@@ -227,9 +282,8 @@ fn run_rows(
             scope.spawn(move || {
                 while let Some(row) = rows.get(next.fetch_add(1, Ordering::Relaxed)) {
                     let outcome = match &plan.rows[*row] {
-                        Ok(scene) => {
-                            run_row(scene, plan, builder, folder).map_or_else(RowState::Failed, RowState::Done)
-                        }
+                        Ok(scene) => run_row(scene, plan, builder, folder, settings)
+                            .map_or_else(RowState::Failed, RowState::Done),
                         Err(words) => RowState::Failed(words.clone()),
                     };
                     // Where nobody listens any longer, the table could not be written.
@@ -245,13 +299,19 @@ fn run_rows(
 }
 
 /// The results of a row, or why there are none.
-fn run_row(scene: &Scene, plan: &Plan, builder: &Mutex<ModelBuilder<'_>>, folder: &Path) -> Result<Done, String> {
+fn run_row(
+    scene: &Scene,
+    plan: &Plan,
+    builder: &Mutex<ModelBuilder<'_>>,
+    folder: &Path,
+    settings: &RunSettings,
+) -> Result<Done, String> {
     let model: Model = {
         let mut builder = builder.lock().unwrap_or_else(PoisonError::into_inner);
         builder.build(scene, |_| ()).map_err(|error| error.to_string())?
     };
     let folder = TemporaryFolder::inside(folder).map_err(|error| error.to_string())?;
-    let run = run::run_model(scene, &model, folder.path(), &RunSettings::default(), |_| ());
+    let run = run::run_model(scene, &model, folder.path(), settings, |_| ());
     let warnings = run.map_err(|error| error.without_files())?.warnings;
     let results =
         Results::open(run::results_path(scene, folder.path()), &COLUMNS).map_err(|error| error.to_string())?;
@@ -274,6 +334,9 @@ impl fmt::Display for SweepReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{}", self.title)?;
         writeln!(f, "  rows     {} done ({} of them before), {} failed", self.done, self.kept, self.failures.len())?;
+        if self.stale > 0 {
+            writeln!(f, "  stale    {} rows were computed before from files that have changed since", self.stale)?;
+        }
         for (row, words) in self.failures.iter().take(SHOWN) {
             writeln!(f, "  failed   row {row}: {}", words.lines().next().unwrap_or_default())?;
         }

@@ -9,6 +9,7 @@ mod error;
 mod format;
 mod geometry;
 mod gmsh_errors;
+mod included;
 mod mesh_file;
 mod reader;
 mod run;
@@ -18,6 +19,7 @@ use std::path::Path;
 
 pub use deck_material::DeckMaterial;
 pub use error::ImportError;
+pub use included::files_of_mesh;
 pub use mesh_file::{Imported, MeshFile};
 pub use reader::{Reader, reader_of};
 pub use settings::ImportSettings;

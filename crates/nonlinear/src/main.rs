@@ -1,6 +1,6 @@
 //! The curves of docs/nonlinear.md: flexframe against the nonlinear body.
 //!
-//! `nonlinear DIRECTORY` writes them there as SVG.
+//! `nonlinear DIRECTORY [--overwrite]` writes them there as SVG.
 
 use std::error::Error;
 use std::path::Path;
@@ -8,15 +8,18 @@ use std::process::ExitCode;
 
 use figures::{LineChart, Scale, Series, Stroke};
 use nonlinear::cases::{Course, pendulum, spinning_l};
+use whole_file::Outputs;
 
 const STIFFENED: &str = "[effects]\nlarge_deflection = false\nrefuse = false";
 
 fn main() -> ExitCode {
-    let Some(directory) = std::env::args().nth(1) else {
-        eprintln!("nonlinear: give the directory for the curves");
+    let (options, arguments): (Vec<String>, Vec<String>) =
+        std::env::args().skip(1).partition(|argument| argument == "--overwrite");
+    let [directory] = arguments.as_slice() else {
+        eprintln!("usage: nonlinear DIRECTORY [--overwrite]");
         return ExitCode::FAILURE;
     };
-    match curves(Path::new(&directory)) {
+    match curves(Path::new(directory), !options.is_empty()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("nonlinear: {error}");
@@ -25,17 +28,19 @@ fn main() -> ExitCode {
     }
 }
 
-fn curves(directory: &Path) -> Result<(), Box<dyn Error>> {
+fn curves(directory: &Path, overwrite: bool) -> Result<(), Box<dyn Error>> {
+    let [spinning, soft] = ["spinning_l.svg", "soft_rod.svg"].map(|name| directory.join(name));
+    Outputs::new(Vec::new(), overwrite).claim(&[&spinning, &soft])?;
     let stiffened = format!("static_correction = false\n{STIFFENED}");
     let manifold = "static_correction = false\nlarge = [IN_PLANE]\n[effects]\nlarge_deflection = true\nrefuse = false";
     let (_, courses) = spinning_l(0.3, 6.0, &[&stiffened, manifold])?;
     let title = "Free L that spins at 0.3 of its first frequency, from the undeformed state";
-    save(&directory.join("spinning_l.svg"), title, "First modal coordinate", &courses)?;
+    save(&spinning, title, "First modal coordinate", &courses)?;
     let stiffened = format!("[modes]\nflexible = 8\n{STIFFENED}");
     let manifold = "[modes]\nflexible = 8\nlarge = 4\n[effects]\nlarge_deflection = true\nrefuse = false";
     let courses = pendulum(2e7, 1.0, 800, &[&stiffened, manifold])?;
     let title = "Soft rod that falls from the horizontal about its hinge";
-    save(&directory.join("soft_rod.svg"), title, "Deflection of the tip over the length", &courses)?;
+    save(&soft, title, "Deflection of the tip over the length", &courses)?;
     Ok(())
 }
 

@@ -15,35 +15,47 @@ use crate::results::read_results;
 use crate::scene::Scene;
 
 /// Runs a scene as the program does, and writes its results to `<folder>/<name of the scene>.h5`. Until the end they
-/// are in `<name>.part.h5` beside it, from which `resume` goes on after Ctrl-C or a crash.
+/// are in `<name>.part.h5` beside it, from which `resume` goes on after Ctrl-C or a crash. What is there is replaced only
+/// with `overwrite`, and what the scene reads never; results of more than 1 GB are written only with `large`.
 #[pyfunction]
-#[pyo3(signature = (scene, folder, *, overwrite=false))]
-pub(crate) fn run(py: Python<'_>, scene: Py<Scene>, folder: PathBuf, overwrite: bool) -> PyResult<Bound<'_, PyAny>> {
+#[pyo3(signature = (scene, folder, *, overwrite=false, large=false))]
+pub(crate) fn run(
+    py: Python<'_>,
+    scene: Py<Scene>,
+    folder: PathBuf,
+    overwrite: bool,
+    large: bool,
+) -> PyResult<Bound<'_, PyAny>> {
     let scene = scene.get().scene().clone();
-    followed(py, overwrite, scene.cache.clone(), move |settings, progress| {
+    followed(py, (overwrite, large), scene.cache.clone(), move |settings, progress| {
         flexframe::run::run(&scene, &folder, settings, progress).map(|(_, report)| report)
     })
 }
 
-/// Goes on with a run that was cut off: the file is then the same as if it had not been, bit for bit. `trust_geometry`
-/// is that of Scene.
+/// Goes on with a run that was cut off: the file is then the same as if it had not been, bit for bit. Another
+/// results file in its place is replaced only with `overwrite`. `trust_geometry` is that of Scene.
 #[pyfunction]
-#[pyo3(signature = (file, *, trust_geometry=false))]
-pub(crate) fn resume(py: Python<'_>, file: PathBuf, trust_geometry: bool) -> PyResult<Bound<'_, PyAny>> {
-    followed(py, false, cache(py, trust_geometry)?, move |settings, progress| {
+#[pyo3(signature = (file, *, overwrite=false, trust_geometry=false))]
+pub(crate) fn resume(
+    py: Python<'_>,
+    file: PathBuf,
+    overwrite: bool,
+    trust_geometry: bool,
+) -> PyResult<Bound<'_, PyAny>> {
+    followed(py, (overwrite, false), cache(py, trust_geometry)?, move |settings, progress| {
         flexframe::run::resume(&file, settings, progress).map(|(_, _, report)| report)
     })
 }
 
 fn followed<'py>(
     py: Python<'py>,
-    overwrite: bool,
+    (overwrite, large): (bool, bool),
     cache: Cache,
     work: impl FnOnce(&RunSettings, &mut dyn FnMut(RunProgress)) -> Result<RunReport, RunError> + Send + 'static,
 ) -> PyResult<Bound<'py, PyAny>> {
     let stop = Stop::default();
     let in_motion = Arc::new(AtomicBool::new(false));
-    let settings = RunSettings { overwrite, stop: stop.flag(), cache: cache.clone() };
+    let settings = RunSettings { overwrite, large, stop: stop.flag(), cache: cache.clone() };
     let (told, moves) = (stop.clone(), in_motion.clone());
     let run = move || {
         work(&settings, &mut |progress| match progress {
@@ -54,7 +66,7 @@ fn followed<'py>(
                 moves.store(true, Ordering::Relaxed);
                 told.check();
             }
-            RunProgress::Motion(_) => {}
+            RunProgress::Foretold(_) | RunProgress::Motion(_) => {}
         })
     };
     // The motion stops by itself at its next row, and its rows are kept.

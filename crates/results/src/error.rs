@@ -149,8 +149,8 @@ pub enum FileError {
         /// What it names.
         target: PathBuf,
     },
-    /// A file is where an export would go.
-    #[error("{path}: this file is there already; choose another name, or replace it with --overwrite", path = .path.display())]
+    /// A file is where a results file or an export would go.
+    #[error("{path}: this file is there already; choose another name or folder, or replace it with --overwrite", path = .path.display())]
     Exists {
         /// It.
         path: PathBuf,

@@ -51,4 +51,4 @@ pub use reader::{ColumnTable, Results};
 pub use vtk::{CellKind, Field, Grid};
 pub use vtkhdf::VtkHdf;
 pub use vtu::{write_pvd, write_vtu};
-pub use writer::{Expected, Resumed, Writer, unfinished};
+pub use writer::{Expected, Resumed, Writer, bytes_per_row, unfinished};

@@ -53,22 +53,29 @@ impl ResultsPaths {
                 return Err(FileError::Unfinished { path: self.part.clone() });
             }
         }
-        if self.path.is_dir() || self.path.exists() && !overwrite && !is_ours(&self.path) {
-            return Err(FileError::NotResults { path: self.path.clone() });
+        self.check_results(overwrite)
+    }
+
+    /// Refuses to make a results file where another file would be lost.
+    fn check_results(&self, overwrite: bool) -> Result<(), FileError> {
+        let path = self.path.clone();
+        match self.path.exists() {
+            true if self.path.is_dir() || !overwrite && !is_ours(&self.path) => Err(FileError::NotResults { path }),
+            true if !overwrite => Err(FileError::Exists { path }),
+            _ => Ok(()),
         }
-        Ok(())
     }
 
     /// Refuses to go on where there is nothing to go on from, or no results file could be made in the end.
-    pub(crate) fn check_resumable(&self) -> Result<(), FileError> {
+    pub(crate) fn check_resumable(&self, overwrite: bool) -> Result<(), FileError> {
         refuse_link(&self.part)?;
         if self.part.is_file() {
             refuse_link(&self.path)?;
-            return if is_busy(&self.part) {
-                Err(FileError::Busy { path: self.part.clone() })
-            } else {
-                self.temporary().map(drop)
-            };
+            if is_busy(&self.part) {
+                return Err(FileError::Busy { path: self.part.clone() });
+            }
+            self.check_results(overwrite)?;
+            return self.temporary().map(drop);
         }
         if is_ours(&self.path) {
             return Err(FileError::Complete { path: self.path.clone() });
@@ -104,11 +111,14 @@ impl ResultsPaths {
         file.put(&self.part, true).map_err(|error| FileError::system(&self.part, "create the file", &error))
     }
 
-    /// Makes a file the results file, once it is safe on the disk.
-    pub(crate) fn put_results(&self, file: TemporaryFile) -> Result<(), FileError> {
+    /// Makes a file the results file, once it is safe on the disk; another one is in the way unless it is to be replaced.
+    pub(crate) fn put_results(&self, file: TemporaryFile, replace: bool) -> Result<(), FileError> {
         let failed = |error: &io::Error| FileError::system(&self.path, "write the file", error);
         File::open(&file).and_then(|file| file.sync_all()).map_err(|error| failed(&error))?;
-        file.put(&self.path, true).map_err(|error| failed(&error))
+        file.put(&self.path, replace).map_err(|error| match error.kind() {
+            io::ErrorKind::AlreadyExists => FileError::Exists { path: self.path.clone() },
+            _ => failed(&error),
+        })
     }
 
     pub(crate) fn remove_part(&self) -> Result<(), FileError> {

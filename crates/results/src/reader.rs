@@ -2,9 +2,11 @@
 
 use crate::checkpoint::{Checkpoint, Sums};
 use crate::column::{of_point, present};
+use crate::description::Description;
 use crate::store::Store;
-use crate::{Column, FileError, Metadata};
+use crate::{Column, FileError, Metadata, seal};
 use std::collections::BTreeMap;
+use std::fs::File;
 use std::path::Path;
 
 /// A results file in memory; rows are output times.
@@ -70,6 +72,22 @@ impl Results {
     pub fn open<R>(path: impl AsRef<Path>, columns: &'static [Column<R>]) -> Result<Self, FileError> {
         let path = path.as_ref();
         Ok(Self::read_with_checkpoint(&Store::open(path, columns)?, path, columns)?.0)
+    }
+
+    /// What a file says of its run, without a look at its rows.
+    ///
+    /// # Errors
+    /// [`FileError::NoSeal`], [`FileError::Damaged`] and [`FileError::System`], as [`Results::open`].
+    pub fn metadata_of(path: impl AsRef<Path>) -> Result<Metadata, FileError> {
+        let path = path.as_ref();
+        // To open a pipe is to wait for who writes into it.
+        if path.exists() && !path.is_file() {
+            return Err(FileError::NoSeal { path: path.to_path_buf() });
+        }
+        let file = File::open(path).map_err(|error| FileError::system(path, "open the file", &error))?;
+        let metadata = Description::from_json(path, &seal::description(&file, path)?)?.metadata;
+        metadata.check(path)?;
+        Ok(metadata)
     }
 
     /// With the last checkpoint of an unfinished file whose rows are as they were then, and their sums.

@@ -23,8 +23,8 @@ const NUMBERS_PER_WRITE: usize = 1 << 18;
 /// What the kill of a process can lose.
 const FLUSH_INTERVAL: Duration = Duration::from_secs(1);
 
-/// Room that is made at once for a run whose rows are expected to need more, in numbers (512 MiB).
-const FIRST_ROOM: usize = 64 << 20;
+/// Room that is made at once for a run whose rows are expected to need more, in numbers (64 MiB).
+const FIRST_ROOM: usize = 8 << 20;
 
 /// What a [`Writer`] should know of the run before it begins.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -33,7 +33,7 @@ pub struct Expected {
     pub rows: usize,
     /// Words of each checkpoint.
     pub checkpoint: usize,
-    /// Whether an unfinished run of the same name, or a file that is not a results file, may be thrown away.
+    /// Whether what is there may be replaced: a results file or another, and an unfinished run of the same name.
     pub overwrite: bool,
 }
 
@@ -46,6 +46,7 @@ pub struct Expected {
 #[derive(Debug)]
 pub struct Writer<R: 'static> {
     place: ResultsPaths,
+    overwrite: bool,
     metadata: Metadata,
     columns: &'static [Column<R>],
     store: Store,
@@ -86,7 +87,7 @@ impl<R> Writer<R> {
     /// # Errors
     /// [`FileError::PlaceName`] for a name that is empty, contains "/" or NUL or occurs twice, [`FileError::WrongLength`] if there are not as many damping ratios as frequencies,
     /// [`FileError::ConstantNotFinite`], [`FileError::NulInText`]; [`FileError::Busy`] if another process writes it,
-    /// [`FileError::Unfinished`], [`FileError::NotResults`] and [`FileError::Link`] for what would be lost;
+    /// [`FileError::Unfinished`], [`FileError::Exists`], [`FileError::NotResults`] and [`FileError::Link`] for what would be lost;
     /// [`FileError::NameNotUtf8`], [`FileError::System`] and [`FileError::Hdf5`] if the file cannot be written.
     pub fn create(
         path: impl AsRef<Path>,
@@ -108,6 +109,7 @@ impl<R> Writer<R> {
         place.put_part(file, expected.overwrite)?;
         Ok(Self {
             place,
+            overwrite: expected.overwrite,
             metadata: metadata.clone(),
             columns,
             store,
@@ -126,7 +128,7 @@ impl<R> Writer<R> {
     /// Whether [`Writer::create`] would begin, for those who have long work to do before.
     ///
     /// # Errors
-    /// [`FileError::Busy`], [`FileError::Unfinished`], [`FileError::NotResults`], [`FileError::Link`], and
+    /// [`FileError::Busy`], [`FileError::Unfinished`], [`FileError::Exists`], [`FileError::NotResults`], [`FileError::Link`], and
     /// [`FileError::NameNotUtf8`] or [`FileError::System`] if no file can be made in the folder.
     pub fn check(path: impl AsRef<Path>, overwrite: bool) -> Result<(), FileError> {
         let place = ResultsPaths::of(path.as_ref());
@@ -135,15 +137,20 @@ impl<R> Writer<R> {
     }
 
     /// Opens an unfinished file, by its own name or that of the results file that it would become, to go on from its
-    /// last checkpoint. Rows after that are written anew.
+    /// last checkpoint. Rows after that are written anew. With `overwrite`, a results file that is there is replaced in the end.
     ///
     /// # Errors
     /// [`FileError::Complete`] and [`FileError::NothingToResume`] if there is no unfinished file, [`FileError::Link`],
+    /// [`FileError::Exists`] and [`FileError::NotResults`] for what would be lost,
     /// [`FileError::Busy`] if its run goes on, [`FileError::NameNotUtf8`] or [`FileError::System`] if no file can be made
     /// in the folder, and those of [`Results::open`].
-    pub fn resume(path: impl AsRef<Path>, columns: &'static [Column<R>]) -> Result<Resumed<R>, FileError> {
+    pub fn resume(
+        path: impl AsRef<Path>,
+        columns: &'static [Column<R>],
+        overwrite: bool,
+    ) -> Result<Resumed<R>, FileError> {
         let place = ResultsPaths::of(path.as_ref());
-        place.check_resumable()?;
+        place.check_resumable(overwrite)?;
         let part = &place.part;
         let store = Store::open_to_write(part, columns)?;
         if store.is_complete() {
@@ -161,6 +168,7 @@ impl<R> Writer<R> {
             metadata: results.metadata.clone(),
             columns,
             place,
+            overwrite,
             store,
             waiting: waiting(&present, rows_per_write),
             present,
@@ -263,10 +271,10 @@ impl<R> Writer<R> {
         self.metadata.warnings = warnings;
     }
 
-    /// Writes the results file, puts it into its place, where an older one is replaced, and removes the unfinished one.
+    /// Writes the results file, puts it into its place, and removes the unfinished one.
     ///
     /// # Errors
-    /// [`FileError::System`] and [`FileError::Hdf5`] if the file cannot be written; the unfinished file stays.
+    /// [`FileError::Exists`] where a file has come there meanwhile that may not be replaced; [`FileError::System`] and [`FileError::Hdf5`] if the file cannot be written; the unfinished file stays.
     pub fn finish(mut self) -> Result<(), FileError> {
         self.write_waiting()?;
         let room = Room { rows: self.rows_written, checkpoint_words: None };
@@ -276,7 +284,7 @@ impl<R> Writer<R> {
         store.copy_rows(path, &self.store, self.rows_written)?;
         store.seal(path, Some(&self.sums))?;
         drop(store);
-        self.place.put_results(file)?;
+        self.place.put_results(file, self.overwrite)?;
         self.place.remove_part()
     }
 
@@ -310,6 +318,12 @@ impl<R> Writer<R> {
         self.store = store;
         Ok(())
     }
+}
+
+/// Bytes of the numbers of a row.
+pub fn bytes_per_row<R>(columns: &'static [Column<R>], metadata: &Metadata) -> u64 {
+    let numbers: usize = with_widths(columns, metadata).iter().map(|(_, width)| width).sum();
+    (numbers * size_of::<f64>()) as u64
 }
 
 /// The columns that a file has, and their values per row.

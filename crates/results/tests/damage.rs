@@ -136,7 +136,7 @@ fn every_damage_is_found() {
             Ok(results) => assert!(results.numbers("time").unwrap().iter().all(|time| time.is_finite())),
             Err(error) => assert!(matches!(error, FileError::Damaged { .. }), "{error}"),
         }
-        match Writer::resume(&place, &COLUMNS) {
+        match Writer::resume(&place, &COLUMNS, false) {
             Ok(Resumed { results, checkpoint: Some(state), .. }) => {
                 assert_rows(&results, ROWS);
                 assert_eq!(state, [1, 2, 3, 4]);

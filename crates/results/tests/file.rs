@@ -250,7 +250,7 @@ fn a_finished_file_is_the_same_byte_for_byte_whatever_way_led_to_it() {
     writer.flush(&[7, 8]).unwrap();
     push(&mut writer, 700..1500);
     drop(writer);
-    let Resumed { mut writer, results, checkpoint } = Writer::resume(&path, &COLUMNS).unwrap();
+    let Resumed { mut writer, results, checkpoint } = Writer::resume(&path, &COLUMNS, false).unwrap();
     assert_eq!(checkpoint, Some(vec![7, 8]));
     assert_rows(&results, 700);
     push(&mut writer, 700..2000);
@@ -274,7 +274,7 @@ fn of_two_checkpoints_the_last_whole_one_counts() {
     }
     assert!(matches!(writer.flush(&[1, 2]), Err(FileError::WrongLength { expected: 3, found: 2, .. })));
     drop(writer);
-    let resumed = || Writer::resume(&path, &COLUMNS).unwrap();
+    let resumed = || Writer::resume(&path, &COLUMNS, false).unwrap();
     let rows_and_state = |resumed: Resumed| (resumed.results.rows(), resumed.checkpoint);
     assert_eq!(rows_and_state(resumed()), (40, Some(vec![39, 1, 2])));
     // The fourth is in place 0; a torn one differs in a word.
@@ -300,9 +300,9 @@ fn nothing_is_overwritten_that_a_user_would_miss() {
     let (folder, path) = folder();
     let metadata = metadata(1, &[]);
     let create = |overwrite| Writer::create(&path, &metadata, &COLUMNS, Expected { overwrite, ..Expected::default() });
-    assert!(matches!(Writer::resume(&path, &COLUMNS), Err(FileError::NothingToResume { .. })));
+    assert!(matches!(Writer::resume(&path, &COLUMNS, false), Err(FileError::NothingToResume { .. })));
     write(&path, 5, &metadata).finish().unwrap();
-    assert!(matches!(Writer::resume(&path, &COLUMNS), Err(FileError::Complete { .. })));
+    assert!(matches!(Writer::resume(&path, &COLUMNS, false), Err(FileError::Complete { .. })));
     // A complete file stays until another one is complete.
     drop(create(false).unwrap());
     assert_rows(&Results::open(&path, &COLUMNS).unwrap(), 5);
@@ -315,7 +315,7 @@ fn nothing_is_overwritten_that_a_user_would_miss() {
     for overwrite in [false, true] {
         assert!(matches!(create(overwrite), Err(FileError::Busy { .. })));
     }
-    assert!(matches!(Writer::resume(unfinished(&path), &COLUMNS), Err(FileError::Busy { .. })));
+    assert!(matches!(Writer::resume(unfinished(&path), &COLUMNS, false), Err(FileError::Busy { .. })));
     writer.finish().unwrap();
     assert_rows(&Results::open(&path, &COLUMNS).unwrap(), 0);
     // What is none of ours.
@@ -506,7 +506,7 @@ fn nothing_is_written_through_a_link_or_in_its_place() {
                 refused(Writer::create(&path, &metadata, &COLUMNS, expected).map(drop), &link);
             }
             if link != path {
-                refused(Writer::resume(&path, &COLUMNS).map(drop), &link);
+                refused(Writer::resume(&path, &COLUMNS, false).map(drop), &link);
             }
             assert_eq!(std::fs::read_link(&link).unwrap(), target);
             assert_eq!(std::fs::read(&target).ok().as_deref(), content);

@@ -45,7 +45,7 @@ fn a_killed_run_can_be_read_up_to_its_last_flush() {
     assert!(!results.complete);
     assert!(results.rows() >= 701, "{}", results.rows());
     assert_rows(&results, results.rows());
-    let Resumed { results, checkpoint, .. } = Writer::resume(&path, &COLUMNS).unwrap();
+    let Resumed { results, checkpoint, .. } = Writer::resume(&path, &COLUMNS, false).unwrap();
     assert_rows(&results, 701);
     assert_eq!(checkpoint, Some(vec![4711]));
 }
@@ -57,7 +57,7 @@ fn child_that_flushes_at_every_row() {
     let Some(path) = std::env::var_os("RESULTS_TEST_CHILD") else { return };
     let path = Path::new(&path);
     let (mut writer, done) = if unfinished(path).exists() {
-        let Resumed { writer, results, checkpoint } = Writer::resume(path, &COLUMNS).unwrap();
+        let Resumed { writer, results, checkpoint } = Writer::resume(path, &COLUMNS, false).unwrap();
         let rows = results.rows();
         assert_eq!(checkpoint.map_or(0, |state| state[0]), rows as u64);
         assert_rows(&results, rows);
@@ -118,7 +118,7 @@ fn a_file_is_whole_whenever_its_writer_is_killed() {
 #[ignore = "run by another test"]
 fn child_whose_checkpoints_fail() {
     let Some(path) = std::env::var_os("RESULTS_TEST_CHILD") else { return };
-    let Resumed { mut writer, .. } = Writer::resume(Path::new(&path), &COLUMNS).unwrap();
+    let Resumed { mut writer, .. } = Writer::resume(Path::new(&path), &COLUMNS, false).unwrap();
     for state in [3, 4] {
         assert!(matches!(writer.flush(&[state; STATE]), Err(FileError::System { .. })));
     }
@@ -149,7 +149,7 @@ fn checkpoints_that_fail_leave_the_last_whole_one() {
         .status()
         .unwrap();
     assert!(status.success());
-    let Resumed { results, checkpoint, .. } = Writer::resume(&path, &COLUMNS).unwrap();
+    let Resumed { results, checkpoint, .. } = Writer::resume(&path, &COLUMNS, false).unwrap();
     assert_rows(&results, 2);
     assert_eq!(checkpoint, Some(vec![0x55ab; STATE]));
 }
@@ -163,7 +163,7 @@ fn a_pipe_is_refused_without_being_opened() {
     for pipe in [path.clone(), unfinished(&path)] {
         assert!(Command::new("mkfifo").arg(&pipe).status().unwrap().success());
         assert!(matches!(Writer::check(&path, false), Err(FileError::NotResults { path }) if path == pipe));
-        assert!(matches!(Writer::resume(&path, &COLUMNS), Err(FileError::NothingToResume { .. })));
+        assert!(matches!(Writer::resume(&path, &COLUMNS, false), Err(FileError::NothingToResume { .. })));
         std::fs::remove_file(pipe).unwrap();
     }
 }

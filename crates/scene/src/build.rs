@@ -55,7 +55,6 @@ pub use error::{BuildError, StartError};
 pub use given::MatrixChecks;
 pub use model::{Meshed, Model};
 pub use progress::{BuildProgress, BuildTimes, BuildWork};
-pub use store::contents_of_body;
 pub use stress_shapes::{BodyStress, StressPeak};
 pub use support_reactions::SupportRows;
 

@@ -43,6 +43,7 @@ mod effects;
 mod error;
 mod example;
 mod file;
+mod files;
 mod history;
 mod load;
 mod modes;
@@ -59,7 +60,7 @@ mod unit_vector;
 pub use assign::{AssignError, assign};
 pub use build::{
     Assembly, BodyStress, BuildError, BuildProgress, BuildTimes, BuildWork, Doubt, MatrixChecks, Meshed, Model,
-    ModelBuilder, StartError, StressPeak, SupportRows, contents_of_body, doubts,
+    ModelBuilder, StartError, StressPeak, SupportRows, doubts,
 };
 pub use cache::{Cache, CacheNotes};
 pub use constraint::{Constraint, HeldDirections, HingeLine, Region};

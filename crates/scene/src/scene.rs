@@ -161,8 +161,9 @@ pub struct Time {
 /// What is written out.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Output {
-    /// When a state is written, besides the first and the last: key `every`, after so many steps (default 1), or `interval`,
-    /// at the multiples of this time. With a tolerance the default is a 500th of the end.
+    /// When a state is written, besides the first and the last: key `every`, after so many steps, or `interval`, at the
+    /// multiples of this time. By default after each step, or after as many as give 5000 rows; with a tolerance, at each 500th
+    /// of the end.
     pub rows: Rows,
     /// Points whose motion is written: name, and position (length, mesh axes); default none.
     /// A name is not empty, `.` or `..` and has no `/` and no control character, since it names

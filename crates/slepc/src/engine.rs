@@ -9,7 +9,7 @@ use whole_file::TemporaryFolder;
 
 use crate::answers;
 use crate::error::SlepcError;
-use crate::folder::{check_digest, digest, write_forces, write_matrices, write_problem};
+use crate::folder::{check_digest, digest, files_of_folder, write_forces, write_matrices, write_problem};
 use crate::run::drive;
 use crate::stop::Stop;
 
@@ -33,6 +33,14 @@ impl Slepc {
     /// for are written there, for the driver to answer when it is run again.
     pub fn read(folder: impl Into<PathBuf>) -> Self {
         Self(Way::Read { folder: folder.into() })
+    }
+
+    /// The files of the folder that it reads.
+    pub fn files(&self) -> Vec<PathBuf> {
+        match &self.0 {
+            Way::Run { .. } => Vec::new(),
+            Way::Read { folder } => files_of_folder(folder),
+        }
     }
 
     /// The engine of one body.

@@ -22,6 +22,9 @@ pub(crate) const LOG: &str = "driver.log";
 /// ‖(K + sM)⁻¹Mφ − μφ‖_M / μ of a pair that the driver accepts: that of the search in this program.
 const TOLERANCE: f64 = 1e-10;
 
+/// What a folder has at first.
+const WRITTEN: [&str; 7] = ["problem.json", "K.petsc", "M.petsc", "rigid.petsc", DRIVER_FILE, "job.sh", "README.txt"];
+
 /// Digits of the names of forces.
 const NAME: usize = 16;
 
@@ -99,19 +102,23 @@ pub(crate) fn check_digest(folder: &Path, digest: &str) -> Result<(), SlepcError
     if written.digest == digest { Ok(()) } else { Err(SlepcError::OtherMatrices { folder: folder.to_owned() }) }
 }
 
-/// Removes answers to questions that were asked before.
-fn remove_answers(folder: &Path) -> Result<(), SlepcError> {
-    let of_another = |name: &str| {
+/// The answers to questions that were asked before, by the names that this program and the driver give them.
+fn answers(folder: &Path) -> Vec<PathBuf> {
+    let is_answer = |name: &str| {
+        let of_forces = name.strip_prefix("forces-").or_else(|| name.strip_prefix("statics-"));
+        let of_forces = of_forces.and_then(|rest| rest.strip_suffix(".petsc").or_else(|| rest.strip_suffix(".json")));
         ["problem.json", "modes.json", "modes.petsc", LOG].contains(&name)
-            || name.starts_with("forces-")
-            || name.starts_with("statics-")
+            || of_forces.is_some_and(|name| name.len() == NAME && name.bytes().all(|byte| byte.is_ascii_hexdigit()))
     };
-    for entry in fs::read_dir(folder).map_err(SlepcError::io(folder, "list it"))?.flatten() {
-        if of_another(&entry.file_name().to_string_lossy()) {
-            fs::remove_file(entry.path()).map_err(SlepcError::io(entry.path(), "remove what was there"))?;
-        }
-    }
-    Ok(())
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    entries.filter(|entry| is_answer(&entry.file_name().to_string_lossy())).map(|entry| entry.path()).collect()
+}
+
+/// The files that [`write_folder`] writes to a folder, and those that it removes there: answers to other questions.
+pub fn files_of_folder(folder: &Path) -> Vec<PathBuf> {
+    let mut files = WRITTEN.map(|name| folder.join(name)).to_vec();
+    files.extend(answers(folder).into_iter().filter(|path| path.file_name() != Some("problem.json".as_ref())));
+    files
 }
 
 /// Leaves in a folder all that finds `modes` modes elsewhere: K and M, the driver, a script for Slurm with so many ranks, and what
@@ -127,7 +134,9 @@ pub fn write_folder(
     scene: &Path,
 ) -> Result<Vec<PathBuf>, SlepcError> {
     fs::create_dir_all(folder).map_err(SlepcError::io(folder, "make the folder"))?;
-    remove_answers(folder)?;
+    for before in answers(folder) {
+        fs::remove_file(&before).map_err(SlepcError::io(before, "remove what was there"))?;
+    }
     let digest = write_matrices(problem, folder)?;
     write_problem(problem, &digest, modes, folder)?;
     let script = script(ranks);
@@ -144,8 +153,7 @@ pub fn write_folder(
         let path = folder.join(name);
         write_whole(&path, text).map_err(SlepcError::io(path, "write it"))?;
     }
-    let names = ["problem.json", "K.petsc", "M.petsc", "rigid.petsc", DRIVER_FILE, "job.sh", "README.txt"];
-    Ok(names.map(|name| folder.join(name)).to_vec())
+    Ok(WRITTEN.map(|name| folder.join(name)).to_vec())
 }
 
 fn script(ranks: usize) -> String {

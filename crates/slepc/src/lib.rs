@@ -14,5 +14,5 @@ mod stop;
 
 pub use engine::Slepc;
 pub use error::SlepcError;
-pub use folder::write_folder;
+pub use folder::{files_of_folder, write_folder};
 pub use stop::Stop;

@@ -14,12 +14,16 @@
 #![forbid(unsafe_code)]
 #![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable))]
 
+mod lock;
+mod outputs;
 mod temporary;
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
+pub use lock::FileLock;
+pub use outputs::{OutputError, Outputs};
 pub use temporary::{TemporaryFile, TemporaryFolder, remove_temporaries};
 
 /// Writes `bytes` to `path`, whole or not at all.

@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 use tempfile::{Builder, PathPersistError, TempDir, TempPath};
 
 /// The start of the names of temporary files.
-const PREFIX: &str = ".flexframe-";
+pub(crate) const PREFIX: &str = ".flexframe-";
 /// A thread that makes a file has so long to come to its end.
 const PATIENCE: Duration = Duration::from_secs(1);
 
@@ -32,7 +32,17 @@ fn listed<T>(made: io::Result<T>, path: impl Fn(&T) -> &Path, there: &mut Vec<Pa
     Ok(made)
 }
 
-fn unlist(path: &Path, there: &mut Vec<PathBuf>) {
+/// Lists a file that is to be removed when the program ends.
+pub(crate) fn list(path: &Path) {
+    there().push(path.to_owned());
+}
+
+/// Takes it from the list.
+pub(crate) fn unlist(path: &Path) {
+    strike(path, &mut there());
+}
+
+fn strike(path: &Path, there: &mut Vec<PathBuf>) {
     if let Some(place) = there.iter().position(|other| other == path) {
         there.swap_remove(place);
     }
@@ -92,7 +102,7 @@ impl TemporaryFile {
     pub fn put(mut self, place: &Path, replace: bool) -> io::Result<()> {
         let mut there = there();
         let Some(path) = self.0.take() else { return Ok(()) };
-        unlist(&path, &mut there);
+        strike(&path, &mut there);
         let put = if replace { path.persist(place) } else { path.persist_noclobber(place) };
         put.map_err(|PathPersistError { error, .. }| error)
     }
@@ -116,7 +126,7 @@ impl Drop for TemporaryFile {
     fn drop(&mut self) {
         if let Some(path) = self.0.take() {
             let mut there = there();
-            unlist(&path, &mut there);
+            strike(&path, &mut there);
             drop(path);
         }
     }
@@ -159,7 +169,7 @@ impl Drop for TemporaryFolder {
             let path = folder.path().to_owned();
             // It may be large: others are not kept waiting while it is removed.
             drop(folder);
-            unlist(&path, &mut there());
+            unlist(&path);
         }
     }
 }

@@ -10,16 +10,26 @@ use super::error::CampbellError;
 use super::report::CampbellReport;
 use crate::write_error::WriteError;
 
+const BRANCHES: &str = "campbell.csv";
+const CRITICAL_SPEEDS: &str = "critical_speeds.csv";
+const DIAGRAM: &str = "campbell";
+
+/// The files that [`campbell`](super::campbell) writes to a folder.
+pub fn files(folder: &Path) -> Vec<PathBuf> {
+    let tables = [BRANCHES, CRITICAL_SPEEDS].map(|name| folder.join(name));
+    tables.into_iter().chain(figures::files(&folder.join(DIAGRAM))).collect()
+}
+
 /// Writes `campbell.csv`, `critical_speeds.csv`, and `campbell` as SVG, PDF and PNG.
 pub(super) fn write(report: &CampbellReport, folder: &Path, orders: &[f64]) -> Result<Vec<PathBuf>, CampbellError> {
     std::fs::create_dir_all(folder).map_err(WriteError::of(folder))?;
     let mut files = Vec::new();
-    for (name, text) in [("campbell.csv", branches(report)), ("critical_speeds.csv", critical_speeds(report))] {
+    for (name, text) in [(BRANCHES, branches(report)), (CRITICAL_SPEEDS, critical_speeds(report))] {
         let path = folder.join(name);
         write_whole(&path, text).map_err(WriteError::of(&path))?;
         files.push(path);
     }
-    files.extend(draw(report, orders, &folder.join("campbell"))?);
+    files.extend(draw(report, orders, &folder.join(DIAGRAM))?);
     Ok(files)
 }
 

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use figures::FigureError;
 use scene::BuildError;
 
+use crate::outputs::OutputError;
 use crate::run::RunFailure;
 use crate::write_error::WriteError;
 
@@ -34,4 +35,7 @@ pub enum CostError {
     /// A file cannot be written.
     #[error(transparent)]
     Write(#[from] WriteError),
+    /// What is there may not be replaced.
+    #[error(transparent)]
+    Output(#[from] OutputError),
 }

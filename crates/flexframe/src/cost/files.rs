@@ -12,6 +12,9 @@ use super::report::CostReport;
 use super::setting::Setting;
 use crate::write_error::WriteError;
 
+const TABLE: &str = "cost.csv";
+const DIAGRAM: &str = "work_precision";
+
 /// The names of the columns of `cost.csv`.
 const COLUMNS: [&str; 24] = [
     "formulation",
@@ -42,13 +45,18 @@ const COLUMNS: [&str; 24] = [
 /// Runs further off than this are not drawn.
 const DRAWN: f64 = 1.0;
 
+/// The files that [`price_list`](super::price_list) writes to a folder.
+pub fn files(folder: &Path) -> Vec<PathBuf> {
+    std::iter::once(folder.join(TABLE)).chain(figures::files(&folder.join(DIAGRAM))).collect()
+}
+
 /// Writes `cost.csv`, and `work_precision` as SVG, PDF and PNG.
 pub(super) fn write(report: &CostReport, folder: &Path) -> Result<Vec<PathBuf>, CostError> {
     std::fs::create_dir_all(folder).map_err(WriteError::of(folder))?;
-    let path = folder.join("cost.csv");
+    let path = folder.join(TABLE);
     write_whole(&path, csv(report)).map_err(WriteError::of(&path))?;
     let mut files = vec![path];
-    files.extend(draw(report, &folder.join("work_precision"))?);
+    files.extend(draw(report, &folder.join(DIAGRAM))?);
     Ok(files)
 }
 

@@ -10,6 +10,7 @@ use super::Exported;
 use super::error::ExportError;
 use super::rows::ExportRows;
 use crate::columns::COLUMNS;
+use crate::outputs::outputs_of_results;
 use crate::write_error::WriteError;
 
 /// A history in the table, and the heads of its values.
@@ -28,14 +29,13 @@ struct Part {
 /// [`ExportError`].
 pub fn export_csv(file: &Path, to: &Path, columns: &[String], rows: &ExportRows) -> Result<Exported, ExportError> {
     let table = Table::new(file, columns, rows)?;
-    let path = if to.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("csv")) {
-        to.to_owned()
-    } else {
-        std::fs::create_dir_all(to).map_err(WriteError::of(to))?;
-        to.join(Path::new(file.file_name().unwrap_or("results".as_ref())).with_extension("csv"))
+    let (path, folder) = match to.extension() {
+        Some(extension) if extension.eq_ignore_ascii_case("csv") => (to.to_owned(), None),
+        _ => (to.join(Path::new(file.file_name().unwrap_or("results".as_ref())).with_extension("csv")), Some(to)),
     };
-    if !rows.overwrite && path.symlink_metadata().is_ok() {
-        return Err(results::FileError::Exists { path }.into());
+    outputs_of_results(file, rows.overwrite).claim(&[&path])?;
+    if let Some(folder) = folder {
+        std::fs::create_dir_all(folder).map_err(WriteError::of(folder))?;
     }
     let write = || {
         let mut out = WholeFile::create(&path)?;

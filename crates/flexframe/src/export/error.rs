@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use results::FileError;
 
+use crate::outputs::OutputError;
 use crate::reopened::ReopenError;
 use crate::write_error::WriteError;
 
@@ -16,6 +17,9 @@ pub enum ExportError {
     /// A table cannot be written.
     #[error(transparent)]
     Write(#[from] WriteError),
+    /// What is there may not be replaced.
+    #[error(transparent)]
+    Output(#[from] OutputError),
     /// The results file cannot be read, or its body not be made again.
     #[error(transparent)]
     Reopen(#[from] ReopenError),

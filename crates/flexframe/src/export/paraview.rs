@@ -11,6 +11,7 @@ use super::fields::{FIELDS, described};
 use super::motion::{Motion, Placed};
 use super::rows::ExportRows;
 use crate::modes::frequency_unit;
+use crate::outputs::outputs_of_results;
 use crate::write_error::WriteError;
 
 impl Motion {
@@ -35,6 +36,7 @@ pub fn export_vtkhdf(
     mut progress: impl FnMut(f64),
 ) -> Result<Exported, ExportError> {
     let (chosen, times) = motion.chosen(file, rows)?;
+    outputs_of_results(file, rows.overwrite).claim(&[to])?;
     let out = VtkHdf::create(to, &motion.grid, Some(&times), &described(), rows.overwrite)?;
     let mut placed = Placed::default();
     for (step, row) in chosen.iter().enumerate() {
@@ -61,9 +63,10 @@ pub fn export_vtu(
     let (chosen, times) = motion.chosen(file, rows)?;
     let stem = file.file_stem().unwrap_or("results".as_ref()).to_string_lossy().into_owned();
     let list = folder.join(format!("{stem}.pvd"));
-    if !rows.overwrite && list.symlink_metadata().is_ok() {
-        return Err(results::FileError::Exists { path: list }.into());
-    }
+    let name = |step: usize| format!("{stem}_{step:06}.vtu");
+    let all: Vec<_> =
+        (0..chosen.len()).map(|step| folder.join(name(step))).chain(std::iter::once(list.clone())).collect();
+    outputs_of_results(file, rows.overwrite).claim(&all)?;
     std::fs::create_dir_all(folder).map_err(WriteError::of(folder))?;
     let described = described();
     let mut placed = Placed::default();
@@ -72,7 +75,7 @@ pub fn export_vtu(
         motion.place(*row, &mut placed);
         let fields: Vec<(&Field, &[f64])> =
             described.iter().zip(&FIELDS).map(|(described, field)| (described, (field.values)(&placed))).collect();
-        let name = format!("{stem}_{step:06}.vtu");
+        let name = name(step);
         write_vtu(folder.join(&name), &motion.grid, &fields, rows.overwrite)?;
         files.push((time, name));
         progress((step + 1) as f64 / chosen.len() as f64);
@@ -101,6 +104,7 @@ pub fn export_modes(file: &Path, motion: &Motion, to: &Path, rows: &ExportRows) 
     let shapes: Vec<Field> = names.map(|name| Field { name, components: 3 }).collect();
     let stress = |shape: &Field| Field { name: format!("stress of {}", shape.name), components: 6 };
     let fields: Vec<Field> = shapes.iter().cloned().chain(shapes.iter().map(stress)).collect();
+    outputs_of_results(file, rows.overwrite).claim(&[to])?;
     let out = VtkHdf::create(to, &motion.grid, None, &fields, rows.overwrite)?;
     for (k, shape) in modes.shapes.col_iter().enumerate() {
         let mut values = vec![0.0; 3 * motion.grid.points.len()];

@@ -22,6 +22,7 @@ use crate::given_file::OtherFile;
 use crate::html_report::HtmlReportError;
 use crate::mode_shapes::ShapesError;
 use crate::new_scene::NewSceneError;
+use crate::outputs::OutputError;
 use crate::paper::PaperError;
 use crate::reopened::ReopenError;
 use crate::run::{RunError, RunFailure};
@@ -292,6 +293,8 @@ impl Failure for RunError {
             Self::Scene(error) => error.kind(),
             Self::Restore { .. } | Self::Changed { .. } => Kind::Input,
             Self::Folder { .. } => Kind::Io,
+            Self::Output(error) => error.kind(),
+            Self::Large { .. } => Kind::Refused,
         }
     }
 
@@ -306,6 +309,14 @@ impl Failure for RunError {
             }
             Self::Scene(error) => error.details(),
             Self::Folder { folder, .. } => Details::of_file(folder),
+            Self::Output(error) => error.details(),
+            Self::Large { scene, foretold } => Details {
+                key: Some("output.interval".to_owned()),
+                found: Some(foretold.to_string()),
+                expected: Some("1 GB at the most".to_owned()),
+                cure: Some("name fewer rows in [output], or allow it with --large".to_owned()),
+                ..Details::of_file(scene)
+            },
         }
     }
 }
@@ -416,6 +427,7 @@ impl Failure for ExportError {
         match self {
             Self::File(error) => error.kind(),
             Self::Write(error) => error.kind(),
+            Self::Output(error) => error.kind(),
             Self::Reopen(error) => error.kind(),
             Self::Changed { .. } | Self::NoMesh { .. } | Self::NoElements { .. } | Self::NoModes { .. } => Kind::Input,
             Self::NoRows { .. } | Self::NoColumn { .. } => Kind::Usage,
@@ -426,6 +438,7 @@ impl Failure for ExportError {
         match self {
             Self::File(error) => error.details(),
             Self::Write(error) => error.details(),
+            Self::Output(error) => error.details(),
             Self::Reopen(error) => error.details(),
             Self::Changed { path }
             | Self::NoMesh { path }
@@ -481,6 +494,21 @@ impl Failure for WriteError {
     }
 }
 
+impl Failure for OutputError {
+    fn kind(&self) -> Kind {
+        match self {
+            Self::IsInput { .. } => Kind::Usage,
+            Self::Exists { .. } => Kind::Io,
+        }
+    }
+
+    fn details(&self) -> Details {
+        match self {
+            Self::IsInput { path, .. } | Self::Exists { path } => Details::of_file(path),
+        }
+    }
+}
+
 impl Failure for CampbellError {
     fn kind(&self) -> Kind {
         match self {
@@ -510,6 +538,7 @@ impl Failure for CostError {
             Self::Reference { failure, .. } => failure.kind(),
             Self::Figure(error) => error.kind(),
             Self::Write(error) => error.kind(),
+            Self::Output(error) => error.kind(),
         }
     }
 
@@ -519,6 +548,7 @@ impl Failure for CostError {
             Self::Reference { scene, .. } => Details::of_file(scene),
             Self::Figure(error) => error.details(),
             Self::Write(error) => error.details(),
+            Self::Output(error) => error.details(),
         }
     }
 }
@@ -555,7 +585,7 @@ impl Failure for NewSceneError {
         match self {
             Self::Mesh(error) => error.kind(),
             Self::Assembly(error) => error.kind(),
-            Self::Exists { .. } => Kind::Usage,
+            Self::Output(error) => error.kind(),
             Self::Write(error) => error.kind(),
         }
     }
@@ -564,7 +594,7 @@ impl Failure for NewSceneError {
         match self {
             Self::Mesh(error) => error.details(),
             Self::Assembly(error) => error.details(),
-            Self::Exists { path } => Details::of_file(path),
+            Self::Output(error) => error.details(),
             Self::Write(error) => error.details(),
         }
     }
@@ -592,7 +622,11 @@ impl Failure for SweepError {
             | Self::Write(_)
             | Self::Table(_)
             | Self::OtherTable { .. }
+            | Self::OtherFiles { .. }
+            | Self::Busy { .. }
             | Self::NoShard { .. } => Kind::Io,
+            Self::Output(error) => error.kind(),
+            Self::AllFailed { .. } => Kind::Run,
             Self::Invalid { .. } | Self::Form { .. } => Kind::Input,
             Self::Scene { source, .. } => source.kind(),
             Self::Build(error) => error.kind(),
@@ -604,6 +638,9 @@ impl Failure for SweepError {
             Self::Unreadable { path, .. }
             | Self::Form { path, .. }
             | Self::OtherTable { path, .. }
+            | Self::OtherFiles { path, .. }
+            | Self::Busy { path }
+            | Self::AllFailed { path, .. }
             | Self::NoShard { first: path, .. } => Details::of_file(path),
             Self::Invalid { path, key, found, expected } => Details {
                 key: Some(key.clone()),
@@ -616,6 +653,7 @@ impl Failure for SweepError {
             Self::Build(error) => error.details(),
             Self::Table(error) => Details::of_file(error.path()),
             Self::Write(error) => Details::of_file(&error.path),
+            Self::Output(error) => error.details(),
         }
     }
 }

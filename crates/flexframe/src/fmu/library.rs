@@ -14,6 +14,15 @@ pub const fn marker() -> &'static str {
 /// How a static library begins, such as the `.rlib` that is built beside the library.
 const ARCHIVE: &[u8] = b"!<arch>";
 
+/// Where the library is: `asked`, what the environment says, or beside the program.
+pub fn library_path(asked: Option<&Path>) -> PathBuf {
+    let named = std::env::var_os(LIBRARY_VARIABLE).filter(|name| !name.is_empty()).map(PathBuf::from);
+    asked.map(Path::to_owned).or(named).unwrap_or_else(|| {
+        let program = std::env::current_exe().unwrap_or_default();
+        program.with_file_name(format!("{DLL_PREFIX}flexframe_fmi{DLL_SUFFIX}"))
+    })
+}
+
 /// The library, and the folder and the ending that it gets in an FMU.
 pub(super) struct Library {
     pub bytes: Vec<u8>,
@@ -22,7 +31,7 @@ pub(super) struct Library {
 }
 
 impl Library {
-    /// Reads the library from `asked`, from where the environment says, or from beside the program.
+    /// Reads the library at its [`library_path`].
     pub fn find(asked: Option<&Path>) -> Result<Self, FmuError> {
         let folder = match (OS, ARCH) {
             ("linux", "x86_64") => "linux64",
@@ -30,14 +39,7 @@ impl Library {
             ("macos", "x86_64") => "darwin64",
             _ => return Err(FmuError::Platform { machine: format!("{OS}, {ARCH}") }),
         };
-        let named = std::env::var_os(LIBRARY_VARIABLE).filter(|name| !name.is_empty()).map(PathBuf::from);
-        let path = match asked.map(Path::to_owned).or(named) {
-            Some(path) => path,
-            None => {
-                let program = std::env::current_exe().unwrap_or_default();
-                program.with_file_name(format!("{DLL_PREFIX}flexframe_fmi{DLL_SUFFIX}"))
-            }
-        };
+        let path = library_path(asked);
         let refuse = |found: String| FmuError::Library { path: path.clone(), found };
         let bytes =
             std::fs::read(&path).map_err(|error| refuse(format!("the library for FMUs cannot be read ({error})")))?;

@@ -12,6 +12,21 @@ use super::rigid_plate::{RigidHistories, WATCHED_POINT, dead_force};
 use crate::mode_shapes::{self, ShapesError};
 use crate::units::UnitLabels;
 
+/// The names of the figures, in the order of the paper.
+pub(super) const NAMES: [&str; 11] = [
+    "fig03_mode_shapes",
+    "fig04_force",
+    "fig05_angular_acceleration_13",
+    "fig06_angular_velocity_13",
+    "fig07_displacement_2",
+    "fig08_angular_acceleration_2",
+    "fig09_angular_velocity_2",
+    "fig10_rigid_acceleration_1",
+    "fig11_rigid_acceleration_3",
+    "fig12_acceleration_1",
+    "fig13_acceleration_3",
+];
+
 /// Draws all figures into `folder` and returns their files.
 pub(super) fn draw(
     scene: &Scene,

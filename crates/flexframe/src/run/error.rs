@@ -7,6 +7,8 @@ use frames_rk4::{CheckpointError, StepError};
 use results::FileError;
 use scene::{BuildError, SceneError, StartError};
 
+use super::foretold::Foretold;
+use crate::outputs::OutputError;
 use crate::write_error::cure_of_writing;
 
 /// A run that could not be done.
@@ -53,12 +55,14 @@ pub enum RunError {
         failure: Box<RunFailure>,
     },
     /// The run was asked to stop. The states up to there are in the unfinished file.
-    #[error("stopped at time {time}; go on with: flexframe resume {}", part.display())]
+    #[error("stopped at time {time}; go on with: flexframe resume {}{}", part.display(), if *replaces { " --overwrite" } else { "" })]
     Stopped {
         /// The unfinished file.
         part: PathBuf,
         /// The time that was reached.
         time: f64,
+        /// Whether another results file is there that it may replace.
+        replaces: bool,
     },
     /// The scene in an unfinished file is invalid.
     #[error(transparent)]
@@ -81,6 +85,21 @@ pub enum RunError {
         part: PathBuf,
         /// What has changed.
         what: &'static str,
+    },
+    /// The results would go where a file is that the run reads.
+    #[error(transparent)]
+    Output(#[from] OutputError),
+    /// The results file would be larger than anybody wants unasked.
+    #[error(
+        "{}: the run would write {} rows, {}\n = name fewer rows in [output], such as `interval = …`, or leave `every` and \
+         `interval` out; if you want a file of more than 1 GB, allow it with --large",
+        scene.display(), foretold.rows, memory::Bytes(usize::try_from(foretold.bytes).unwrap_or(usize::MAX))
+    )]
+    Large {
+        /// The scene file.
+        scene: PathBuf,
+        /// What it would come to.
+        foretold: Foretold,
     },
     /// The output folder cannot be made.
     #[error("{}: cannot make the output folder: {source}\n = {}", folder.display(), cure_of_writing(source))]

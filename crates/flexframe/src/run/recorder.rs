@@ -11,6 +11,7 @@ use scene::{Model, Scene, StepControl};
 
 use super::balances::Conserved;
 use super::error::RunError;
+use super::foretold::Foretold;
 use super::report::RunReport;
 use super::settings::{RunProgress, RunSettings};
 use super::watch::{Watch, Watched};
@@ -37,6 +38,7 @@ pub(super) struct Recorder<'a> {
     peak_strain_energy: f64,
     peak_stress: Option<Largest>,
     first_attitude: Attitude,
+    foretold: Foretold,
 }
 
 impl<'a> Recorder<'a> {
@@ -45,6 +47,7 @@ impl<'a> Recorder<'a> {
         model: &'a Model,
         initial: &'a Initial,
         writer: Writer<Row>,
+        foretold: Foretold,
     ) -> Result<Self, RunError> {
         Ok(Self {
             scene,
@@ -56,6 +59,7 @@ impl<'a> Recorder<'a> {
             peak_strain_energy: 0.0,
             peak_stress: None,
             first_attitude: initial.attitude,
+            foretold,
         })
     }
 
@@ -111,14 +115,12 @@ impl<'a> Recorder<'a> {
                         self.flush(&mut simulation)?;
                     }
                     if stop {
-                        let part = self.writer.unfinished().to_path_buf();
-                        return Err(RunError::Stopped { part, time: simulation.time() });
+                        return Err(self.stopped(&simulation, settings));
                     }
                 }
                 // What has come since the last flush is computed again.
                 Reached::Between if settings.stop.load(Ordering::Relaxed) => {
-                    let part = self.writer.unfinished().to_path_buf();
-                    return Err(RunError::Stopped { part, time: simulation.time() });
+                    return Err(self.stopped(&simulation, settings));
                 }
                 Reached::End => break,
                 _ => {}
@@ -137,6 +139,7 @@ impl<'a> Recorder<'a> {
             title: scene.title.clone(),
             units: [&scene.units.length, &scene.units.mass, &scene.units.time].map(Clone::clone),
             rows: self.rows,
+            foretold: self.foretold,
             formulation: method.formulation.to_owned(),
             scheme: method.scheme.to_owned(),
             tolerance: match scene.time.control {
@@ -179,6 +182,11 @@ impl<'a> Recorder<'a> {
             }
             None => Ok(()),
         }
+    }
+
+    fn stopped(&self, simulation: &Simulation, settings: &RunSettings) -> RunError {
+        let replaces = settings.overwrite && self.writer.path().exists();
+        RunError::Stopped { part: self.writer.unfinished().to_path_buf(), time: simulation.time(), replaces }
     }
 
     fn failed(&self, source: StepError) -> RunError {

@@ -7,6 +7,7 @@ use std::path::PathBuf;
 use serde::Serialize;
 
 use super::balances::Balances;
+use super::foretold::Foretold;
 use crate::effects;
 use crate::json;
 use crate::modes::frequency_unit;
@@ -26,6 +27,8 @@ pub struct RunReport {
     pub results: PathBuf,
     /// Rows in it.
     pub rows: u64,
+    /// What was foretold of it.
+    pub foretold: Foretold,
     /// Formulation.
     pub formulation: String,
     /// Scheme.

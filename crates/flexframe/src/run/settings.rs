@@ -5,6 +5,8 @@ use std::sync::atomic::AtomicBool;
 
 use scene::{BuildProgress, Cache};
 
+use super::foretold::Foretold;
+
 /// How far a run has come.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum RunProgress {
@@ -12,6 +14,8 @@ pub enum RunProgress {
     Build(BuildProgress),
     /// The model is there, and the motion begins. A new run has written no file yet.
     Built,
+    /// What the run will come to. Nothing is written yet.
+    Foretold(Foretold),
     /// Part of the time that has been passed, 0 to 1.
     Motion(f64),
 }
@@ -19,8 +23,10 @@ pub enum RunProgress {
 /// How a run treats files, and how it is stopped.
 #[derive(Debug, Clone, Default)]
 pub struct RunSettings {
-    /// Throws an unfinished run away that is in the way.
+    /// Replaces what is there: a results file, and an unfinished run that is in the way.
     pub overwrite: bool,
+    /// Allows a results file of more than 1 GB.
+    pub large: bool,
     /// Set from elsewhere, stops the run at its next row, or before where that is some thousand steps away.
     pub stop: Arc<AtomicBool>,
     /// Where a run that is resumed finds what was computed of its mesh before; a scene that is run knows its own.

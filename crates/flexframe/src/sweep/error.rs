@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use body_file::BodyFileError;
 use scene::{BuildError, SceneError};
 
+use crate::outputs::OutputError;
 use crate::write_error::WriteError;
 
 /// What to do about the file of a sweep.
@@ -63,6 +64,37 @@ pub enum SweepError {
         path: PathBuf,
         /// What it is.
         what: String,
+    },
+    /// The table would go where a file is that the sweep reads.
+    #[error(transparent)]
+    Output(#[from] OutputError),
+    /// Another sweep writes the table.
+    #[error("{}: another sweep is writing this table\n = wait for its end, or choose another file with -o", path.display())]
+    Busy {
+        /// The table.
+        path: PathBuf,
+    },
+    /// A shard has rows of other files than there are now.
+    #[error(
+        "{}: {rows} of its rows were computed from files that have changed since: a mesh, what it includes, or a table of a load\n = \
+         run this shard again, which computes them anew, and then merge",
+        path.display()
+    )]
+    OtherFiles {
+        /// The table of the shard.
+        path: PathBuf,
+        /// So many.
+        rows: usize,
+    },
+    /// No row is done.
+    #[error("{}: all rows that were run have failed; row {row}: {words}", path.display())]
+    AllFailed {
+        /// The table.
+        path: PathBuf,
+        /// The first of them.
+        row: usize,
+        /// Why it failed.
+        words: String,
     },
     /// There is nothing to merge.
     #[error(

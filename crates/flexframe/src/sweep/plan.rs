@@ -1,9 +1,10 @@
 //! What a sweep is: a scene, its parameters, and what is asked of each run.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use scene::{AssignError, Body, Cache, Scene, SceneError, assign, contents_of_body};
+use body_file::{Digest, Hash};
+use scene::{AssignError, Body, Cache, Scene, SceneError, assign};
 use serde::Deserialize;
 use toml::{Table, Value};
 
@@ -67,13 +68,15 @@ const SCENE_CURE: &str = "correct `scene` in the file of the sweep; its path is 
 /// A sweep, ready to be run.
 pub(super) struct Plan {
     pub title: String,
-    /// The text of its file, that of the scene, and what the files of its bodies hold: what the table belongs to.
+    /// The text of its file and that of the scene: what the table belongs to.
     pub identity: String,
     /// Keys of the scene, in alphabetical order, and their values in each row.
     pub parameters: Vec<(String, Vec<Value>)>,
     pub results: BTreeMap<String, Asked>,
     /// The scene of each row, or why it is none.
     pub rows: Vec<Result<Scene, String>>,
+    /// What each row follows from: its scene and the bytes of all files that are read for it.
+    pub identities: Vec<u64>,
 }
 
 impl Plan {
@@ -157,13 +160,49 @@ impl Plan {
             let source: SceneError = source;
             return Err(SweepError::Scene { key: Some(in_words(&parameters, row)), source });
         }
-        // The files of each body, once.
-        let bodies: BTreeMap<String, &Body> =
-            rows.iter().flatten().map(|row| (format!("{:?}", row.body), &row.body)).collect();
-        let contents: BTreeSet<String> = bodies.into_values().map(contents_of_body).collect();
-        let identity = format!("{of_sweep}\n{}\n{contents:?}", scene.source);
-        Ok(Self { title: scene.title, identity, parameters, results: file.results, rows })
+        let identity = format!("{of_sweep}\n{}", scene.source);
+        let identities = identities(&rows);
+        Ok(Self { title: scene.title, identity, parameters, results: file.results, rows, identities })
     }
+
+    /// Whether the files of the body of a row are no longer what they were when the sweep was read.
+    pub fn has_changed(&self, row: usize) -> bool {
+        self.rows[row].as_ref().is_ok_and(|scene| identity(scene, &contents(&scene.body)) != self.identities[row])
+    }
+}
+
+/// What each row follows from.
+fn identities(rows: &[Result<Scene, String>]) -> Vec<u64> {
+    // The files of each body are read once.
+    let mut bodies: BTreeMap<String, Hash> = BTreeMap::new();
+    let of_row = |row: &Result<Scene, String>| match row {
+        Ok(scene) => {
+            let body = bodies.entry(format!("{:?}", scene.body)).or_insert_with(|| contents(&scene.body));
+            identity(scene, body)
+        }
+        Err(_) => 0,
+    };
+    rows.iter().map(of_row).collect()
+}
+
+/// A number for the text of a scene, the tables as they were read, and what its body is read from.
+fn identity(scene: &Scene, body: &Hash) -> u64 {
+    // Written out, numbers are what they are to the last bit.
+    let tables = format!("{:?} {:?}", scene.loads, scene.constraint);
+    let digits = Digest::new().text(&scene.source).text(&tables).hash(body).finish().to_string();
+    u64::from_str_radix(&digits[..16], 16).unwrap_or(0)
+}
+
+/// What the files of a body hold.
+fn contents(body: &Body) -> Hash {
+    let files = body.files();
+    let digest = files.iter().fold(Digest::new(), |digest, path| {
+        // What is no ordinary file can be read only once; what cannot be read fails in its row.
+        let hash = Some(path).filter(|path| path.is_file()).and_then(|path| Hash::of_file(path).ok());
+        let hash = hash.map_or_else(String::new, |hash| hash.to_string());
+        digest.text(&path.to_string_lossy()).text(&hash)
+    });
+    digest.finish()
 }
 
 /// The values of the parameters in a row.
@@ -204,4 +243,54 @@ fn grid(lists: &[(String, Vec<Value>)]) -> Option<Vec<(String, Vec<Value>)>> {
         (key.clone(), (0..rows).map(|row| values[row / each % values.len()].clone()).collect())
     };
     Some(lists.iter().map(column).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What a geometry includes, and a table: each changes what the rows are.
+    #[test]
+    fn a_row_follows_from_every_file_that_is_read_for_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        let scene = r#"
+            title = "a"
+            units = { length = "m", mass = "kg", time = "s" }
+            body = { mesh = "part.geo", material = { young_modulus = 1e9, poisson_ratio = 0.3, density = 1e3 } }
+            modes = { flexible = 1 }
+            time = { end = 1.0, step = 0.1 }
+            [[loads]]
+            kind = "gravity"
+            direction = [0, 0, -1]
+            amplitude = 9.81
+            history = { kind = "table", file = "table.csv" }
+        "#;
+        let files = [
+            ("scene.toml", scene),
+            ("part.geo", "Include \"size.geo\";"),
+            ("size.geo", "h = 1;"),
+            ("table.csv", "0, 0\n1, 1\n"),
+            (
+                "sweep.toml",
+                "scene = \"scene.toml\"\nparameters = { title = [\"a\", \"b\"] }\nresults = { a = { final = \"time\" } }",
+            ),
+        ];
+        let write = |(name, text): (&str, &str)| std::fs::write(at(name), text).unwrap();
+        files.into_iter().for_each(write);
+        let plan = || Plan::read(&at("sweep.toml"), &Cache::none()).unwrap();
+        let first = plan();
+        assert!(first.identities[0] != first.identities[1] && !first.has_changed(0));
+        for (name, text) in
+            [("part.geo", "Include \"size.geo\"; "), ("size.geo", "h = 2;"), ("table.csv", "0, 0\n1, 2\n")]
+        {
+            write((name, text));
+            let now = plan();
+            assert!(now.identities[0] != first.identities[0], "{name}");
+            assert!(now.identity == first.identity);
+            assert_eq!(first.has_changed(0), name != "table.csv");
+            files.into_iter().for_each(write);
+            assert_eq!(plan().identities, first.identities);
+        }
+    }
 }

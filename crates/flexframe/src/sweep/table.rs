@@ -15,6 +15,9 @@ const OPEN: u32 = 0;
 const DONE: u32 = 1;
 const FAILED: u32 = 2;
 
+/// The dataset of what rows follow from.
+const ROW_IDENTITY: &str = "row_identity";
+
 /// What has become of a row.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum RowState {
@@ -38,13 +41,15 @@ pub(super) struct Done {
 /// The rows of a sweep.
 pub(super) struct Table {
     pub rows: Vec<RowState>,
+    /// How many rows of the file were computed from files that have changed since; they are open again.
+    pub stale: usize,
 }
 
 impl Table {
     /// The table in a file, or an empty one where there is none. Rows that failed are open again.
     pub fn open(path: &Path, plan: &Plan, overwrite: bool) -> Result<Self, SweepError> {
         let found = if overwrite { None } else { Self::read(path, plan)? };
-        let mut table = found.unwrap_or_else(|| Self { rows: vec![RowState::Open; plan.rows.len()] });
+        let mut table = found.unwrap_or_else(|| Self { rows: vec![RowState::Open; plan.rows.len()], stale: 0 });
         for row in table.rows.iter_mut().filter(|row| matches!(row, RowState::Failed(_))) {
             *row = RowState::Open;
         }
@@ -69,6 +74,7 @@ impl Table {
             return Err(other("it is of another sweep or scene, or of another version of flexframe"));
         }
         let status = file.read::<u32>("status").map_err(|_| other("it is damaged"))?.values;
+        let identities = file.read::<u64>(ROW_IDENTITY).map_err(|_| other("it is damaged"))?.values;
         let words: BTreeMap<usize, String> = by_row(&file, "failures");
         let mut warnings: BTreeMap<usize, Vec<String>> = by_row(&file, "warnings");
         let mut rows = vec![RowState::Open; plan.rows.len()];
@@ -81,8 +87,11 @@ impl Table {
                 false => None,
             });
         }
+        let mut stale = 0;
         for (i, row) in rows.iter_mut().enumerate() {
-            if status.get(i) == Some(&DONE) {
+            if status.get(i).is_some_and(|status| *status != OPEN) && identities.get(i) != Some(&plan.identities[i]) {
+                stale += 1;
+            } else if status.get(i) == Some(&DONE) {
                 let of_row = |column: &Option<body_file::Array<f64>>| {
                     let column = column.as_ref()?;
                     let width = column.shape.get(1).copied()?;
@@ -95,7 +104,7 @@ impl Table {
                 *row = RowState::Failed(words.clone());
             }
         }
-        Ok(Some(Self { rows }))
+        Ok(Some(Self { rows, stale }))
     }
 
     /// How many rows are done, and how many failed.
@@ -143,6 +152,8 @@ impl Table {
             .collect();
         let mut datasets =
             vec![declared("status".into(), Kind::U32, &[count], "0 not run, 1 done, 2 failed (see `failures`)".into())];
+        let description = "what each row was computed from: its scene and the files that were read for it";
+        datasets.push(declared(ROW_IDENTITY.into(), Kind::U64, &[count], description.into()));
         let mut columns = Vec::new();
         for (key, values) in &plan.parameters {
             let numbers: Option<Vec<f64>> = values.iter().map(number).collect();
@@ -185,6 +196,7 @@ impl Table {
         ]);
         let mut writer = Writer::create(path, texts, &datasets)?;
         writer.write("status", &status)?;
+        writer.write(ROW_IDENTITY, &plan.identities)?;
         for (path, numbers) in &columns {
             writer.write(path, numbers)?;
         }

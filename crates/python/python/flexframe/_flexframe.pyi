@@ -286,13 +286,14 @@ class Simulation:
     def __iter__(self) -> Simulation: ...
     def __next__(self) -> Row: ...
 
-def run(scene: Scene, folder: _Path, *, overwrite: bool = False) -> Results:
+def run(scene: Scene, folder: _Path, *, overwrite: bool = False, large: bool = False) -> Results:
     """Runs a scene as the program does, and writes its results to `<folder>/<name of the scene>.h5`. Until the end they are in
-    `<name>.part.h5` beside it, from which `resume` goes on after Ctrl-C or a crash."""
+    `<name>.part.h5` beside it, from which `resume` goes on after Ctrl-C or a crash. What is there is replaced only with
+    `overwrite`, and what the scene reads never; results of more than 1 GB are written only with `large`."""
 
-def resume(file: _Path, *, trust_geometry: bool = False) -> Results:
-    """Goes on with a run that was cut off: the file is then the same as if it had not been, bit for bit. `trust_geometry` is that of
-    Scene."""
+def resume(file: _Path, *, overwrite: bool = False, trust_geometry: bool = False) -> Results:
+    """Goes on with a run that was cut off: the file is then the same as if it had not been, bit for bit. Another results
+    file in its place is replaced only with `overwrite`. `trust_geometry` is that of Scene."""
 
 def _scene(text: str, path: _Path, trust_geometry: bool) -> Scene:
     """The scene that was pickled."""

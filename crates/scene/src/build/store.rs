@@ -12,7 +12,7 @@ use super::error::BuildError;
 use super::mesh_arrays::{self, MeshArrays};
 use crate::cache::{Cache, touch};
 use crate::origin::Origin;
-use crate::scene::{Body, MeshedBody, Scene};
+use crate::scene::{MeshedBody, Scene};
 
 /// The name of the file of a mesh.
 const MESH: &str = "mesh.h5";
@@ -30,17 +30,6 @@ pub(super) struct Store {
     body: Digest,
     /// What was asked, for who writes a body file.
     asked: Mutex<BTreeSet<Hash>>,
-}
-
-/// What the files of a body hold, as a text that differs where they do; empty where they cannot be read.
-pub fn contents_of_body(body: &Body) -> String {
-    let hash = match body {
-        Body::Meshed(MeshedBody { file: Some(file), .. }) => Hash::of_file(file).ok(),
-        Body::Meshed(body) => MeshFile::read(&body.mesh, &body.import).ok().and_then(|file| file.hash()),
-        Body::Matrices(files) => files.hash().ok(),
-        Body::Rigid(_) => None,
-    };
-    hash.map(|hash| hash.to_string()).unwrap_or_default()
 }
 
 impl Store {

@@ -9,8 +9,10 @@ use crate::scene::{Body, Output, Time};
 use crate::section::{Formulation, OutputSection, Scheme, TimeSection};
 use crate::shorten::shorten;
 
-/// Intervals between rows where the scene gives a tolerance and no interval.
+/// Intervals between rows where the scene gives a tolerance and names no rows.
 const DEFAULT_ROWS: f64 = 500.0;
+/// Most intervals between rows where it gives a step and names no rows: a row after every step, or after as many as it takes.
+const MOST_DEFAULT_ROWS: f64 = 5000.0;
 
 /// Shortest step, interval, duration and distance of times, over the end of the run: times closer than a tenth of this are one to the stepper.
 const LEAST_PART: f64 = 1e-12;
@@ -143,7 +145,9 @@ impl Check<'_> {
                 self.part_of_the_run("output.interval", interval, time.end, "interval")?;
                 Rows::Interval(interval)
             }
-            (None, None, StepControl::Fixed(_)) => Rows::EverySteps(1),
+            (None, None, StepControl::Fixed(step)) => {
+                Rows::EverySteps((time.end / step / MOST_DEFAULT_ROWS * (1.0 - 1e-12)).ceil() as u64)
+            }
             (None, None, StepControl::Tolerance(_)) => Rows::Interval(time.end / DEFAULT_ROWS),
         };
         let cure = "keep the points that you look at";

@@ -1,0 +1,91 @@
+//! Locks of files that are written again and again, each time as another file.
+
+use std::fs::{self, File, OpenOptions, TryLockError};
+use std::io;
+use std::path::{Path, PathBuf};
+
+use same_file::Handle;
+
+use crate::temporary::{PREFIX, list, unlist};
+
+/// Keeps other programs from writing a file until it is dropped, by a file beside it: `.flexframe-NAME.lock`. The system
+/// unlocks it when the program ends, however that comes. Where files cannot be locked, nothing is.
+#[derive(Debug)]
+pub struct FileLock {
+    file: File,
+    path: PathBuf,
+}
+
+impl FileLock {
+    /// Locks the file at `path`, which need not be there; `None` where another program has it locked.
+    ///
+    /// # Errors
+    /// Those of the system.
+    pub fn of(path: &Path) -> io::Result<Option<Self>> {
+        let mut name = std::ffi::OsString::from(PREFIX);
+        name.push(path.file_name().unwrap_or_default());
+        name.push(".lock");
+        let path = path.with_file_name(name);
+        loop {
+            let file = OpenOptions::new().create(true).truncate(false).write(true).open(&path)?;
+            if let Err(TryLockError::WouldBlock) = file.try_lock() {
+                return Ok(None);
+            }
+            // Who had it before may have removed it meanwhile.
+            let there = Handle::from_path(&path);
+            if there.is_ok_and(|there| file.try_clone().and_then(Handle::from_file).is_ok_and(|ours| ours == there)) {
+                list(&path);
+                return Ok(Some(Self { file, path }));
+            }
+        }
+    }
+}
+
+impl Drop for FileLock {
+    fn drop(&mut self) {
+        let _ = fs::remove_file(&self.path);
+        unlist(&self.path);
+        // A process that was just started has the file open, too, until it has become another program.
+        let _ = self.file.unlock();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
+    use super::*;
+
+    #[test]
+    fn only_one_has_it_and_nothing_is_left() {
+        let folder = tempfile::tempdir().unwrap();
+        let table = folder.path().join("table.h5");
+        let lock = FileLock::of(&table).unwrap().unwrap();
+        assert!(FileLock::of(&table).unwrap().is_none());
+        assert!(FileLock::of(&folder.path().join("other.h5")).unwrap().is_some());
+        drop(lock);
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+        assert!(FileLock::of(&table).unwrap().is_some());
+    }
+
+    #[test]
+    fn many_that_want_it_have_it_one_after_the_other() {
+        let folder = tempfile::tempdir().unwrap();
+        let table = folder.path().join("table.h5");
+        let (inside, had) = (AtomicUsize::new(0), AtomicUsize::new(0));
+        std::thread::scope(|scope| {
+            for _ in 0..4 {
+                scope.spawn(|| {
+                    while had.load(Ordering::SeqCst) < 200 {
+                        if let Some(_lock) = FileLock::of(&table).unwrap() {
+                            assert_eq!(inside.fetch_add(1, Ordering::SeqCst), 0);
+                            had.fetch_add(1, Ordering::SeqCst);
+                            inside.fetch_sub(1, Ordering::SeqCst);
+                        }
+                    }
+                });
+            }
+        });
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+    }
+}

@@ -1,0 +1,111 @@
+//! The rule for all commands that write files: none is written over a file that the command reads, and what is there is
+//! replaced only where the user has said so.
+//!
+//! A command asks before its work, with the files that it reads and those that it will write.
+
+use std::path::{Path, PathBuf};
+
+use same_file::is_same_file;
+
+/// A file that is not written, since something would be lost.
+#[derive(Debug, thiserror::Error)]
+pub enum OutputError {
+    /// The command reads it.
+    #[error("{}: this file is read by the command, as {}: it is never written over\n = give the output another name", path.display(), input.display())]
+    IsInput {
+        /// What was to be written.
+        path: PathBuf,
+        /// What is read, as it was named.
+        input: PathBuf,
+    },
+    /// It is there.
+    #[error("{}: this file is there already\n = choose another name or folder, or replace it with --overwrite", path.display())]
+    Exists {
+        /// It.
+        path: PathBuf,
+    },
+}
+
+/// What a command may write.
+#[derive(Debug, Clone)]
+pub struct Outputs {
+    inputs: Vec<PathBuf>,
+    overwrite: bool,
+}
+
+impl Outputs {
+    /// Of a command that reads these files; `overwrite` lets it replace others that are there.
+    pub fn new(inputs: Vec<PathBuf>, overwrite: bool) -> Self {
+        Self { inputs, overwrite }
+    }
+
+    /// The same of a command that reads another file, too.
+    #[must_use]
+    pub fn and_input(mut self, file: &Path) -> Self {
+        self.inputs.push(file.to_owned());
+        self
+    }
+
+    /// Refuses files of which one is read, or is there without the leave to replace it. What is no file, such as /dev/null or a
+    /// folder, is left to who writes.
+    ///
+    /// # Errors
+    /// [`OutputError`].
+    pub fn claim(&self, files: &[impl AsRef<Path>]) -> Result<(), OutputError> {
+        for path in files.iter().map(AsRef::as_ref) {
+            self.spare(path)?;
+            if !self.overwrite && path.is_file() {
+                return Err(OutputError::Exists { path: path.to_owned() });
+            }
+        }
+        Ok(())
+    }
+
+    /// Refuses a file that is read, by whatever path or link.
+    ///
+    /// # Errors
+    /// [`OutputError::IsInput`].
+    pub fn spare(&self, path: &Path) -> Result<(), OutputError> {
+        // What cannot be looked at is not there.
+        let is = |input: &&PathBuf| path.is_file() && is_same_file(path, input).unwrap_or(false);
+        match self.inputs.iter().find(is) {
+            Some(input) => Err(OutputError::IsInput { path: path.to_owned(), input: input.clone() }),
+            None => Ok(()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+
+    use super::*;
+
+    #[test]
+    fn an_input_is_known_by_any_name() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        fs::create_dir(at("folder")).unwrap();
+        fs::write(at("input"), "mine").unwrap();
+        fs::write(at("other"), "old").unwrap();
+        fs::hard_link(at("input"), at("hard")).unwrap();
+        let outputs = |overwrite| Outputs::new(vec![at("nowhere"), at("input")], overwrite);
+        #[cfg(unix)]
+        {
+            std::os::unix::fs::symlink("input", at("soft")).unwrap();
+            assert!(matches!(outputs(true).claim(&[at("soft")]), Err(OutputError::IsInput { .. })));
+            outputs(false).claim(&["/dev/null"]).unwrap();
+        }
+        for name in ["input", "hard", "folder/../input"] {
+            for overwrite in [false, true] {
+                let refused = outputs(overwrite).claim(&[at("new"), at(name)]);
+                assert!(matches!(refused, Err(OutputError::IsInput { input, .. }) if input == at("input")), "{name}");
+            }
+        }
+        outputs(true).claim(&[at("other"), at("new"), at("folder")]).unwrap();
+        outputs(false).claim(&[at("new"), at("nowhere")]).unwrap();
+        assert!(matches!(outputs(false).claim(&[at("other")]), Err(OutputError::Exists { .. })));
+        let also = outputs(true).and_input(&at("other"));
+        assert!(matches!(also.spare(&at("other")), Err(OutputError::IsInput { .. })));
+    }
+}
