@@ -134,7 +134,8 @@ fn a_run_that_is_killed_again_and_again_ends_in_the_same_file() {
     let (mut done, mut rounds, mut kept) = (0, 0, 0);
     while done < kills {
         // From the start of the process, so that reading, building and taking up are hit too.
-        let command = if part.exists() { scene.resume("killed") } else { scene.run("killed") };
+        let mut command = if part.exists() { scene.resume("killed") } else { scene.run("killed") };
+        command.arg("--overwrite");
         let mut child = spawn(command);
         std::thread::sleep(Duration::from_secs_f64(2.5 * random()));
         child.kill().unwrap();
@@ -164,7 +165,9 @@ fn a_run_that_is_killed_again_and_again_ends_in_the_same_file() {
         }
     }
     if part.exists() {
-        succeed(scene.resume("killed"));
+        let mut resume = scene.resume("killed");
+        resume.arg("--overwrite");
+        succeed(resume);
         assert!(std::fs::read(scene.results("killed")).unwrap() == expected);
         assert!(!part.exists());
     }
@@ -207,13 +210,13 @@ fn pictures_and_tables_are_the_old_or_the_new_ones_when_a_command_is_killed() {
     let folder = |name: &str| scene.folder.path().join(name);
     std::fs::create_dir(folder("gif")).unwrap();
     let kept = kill_while_it_writes(&folder("gif"), &folder("gif-killed"), |folder| {
-        let mut animate = flexframe(&["animate", "--frames", "12", "-o"]);
+        let mut animate = flexframe(&["animate", "--overwrite", "--frames", "12", "-o"]);
         animate.arg(folder.join("ring.gif")).arg(&scene.path);
         animate
     });
     println!("animate: {kept:?} old and new files");
     let kept = kill_while_it_writes(&folder("tables"), &folder("tables-killed"), |folder| {
-        let mut campbell = flexframe(&["campbell", "--axis", "z", "--speeds", "0:3000:40", "-o"]);
+        let mut campbell = flexframe(&["campbell", "--overwrite", "--axis", "z", "--speeds", "0:3000:40", "-o"]);
         campbell.arg(folder).arg(&scene.path);
         campbell
     });
@@ -228,7 +231,7 @@ fn a_full_disk_leaves_the_old_picture() {
     // The shell's limit on the size of a file stands for a full disk.
     let mut limited = Command::new("sh");
     limited.args(["-c", "trap '' XFSZ; ulimit -f 20; exec \"$@\"", "sh", env!("CARGO_BIN_EXE_flexframe"), "animate"]);
-    limited.arg(&scene.path).arg("-o").arg(&path);
+    limited.arg(&scene.path).arg("--overwrite").arg("-o").arg(&path);
     assert_has(&io_failure(limited), &["ring.gif", "File too large", "make room"]);
     assert_eq!(std::fs::read(&path).unwrap(), b"old");
     // The scene and the picture, and nothing half-written.
@@ -334,8 +337,11 @@ fn what_is_there_is_not_lost_unasked() {
     assert_has(&io_failure(scene.run("out")), &["unfinished run", "flexframe resume", "--overwrite"]);
     succeed(scene.resume("out"));
     let whole = std::fs::read(scene.results("out")).unwrap();
-    // A complete file stays until the new one is complete.
-    let mut second = scene.start(scene.run("out"), "out");
+    // A complete file is replaced only when asked, and stays until the new one is complete.
+    assert_has(&io_failure(scene.run("out")), &["long.h5", "is there already", "--overwrite"]);
+    let mut again = scene.run("out");
+    again.arg("--overwrite");
+    let mut second = scene.start(again, "out");
     assert!(std::fs::read(scene.results("out")).unwrap() == whole);
     second.kill().unwrap();
     second.wait().unwrap();
@@ -429,7 +435,7 @@ fn one_scene_gives_one_file_by_whatever_name_it_is_called() {
         ("first", "../first/../long.toml"),
         ("", "link/long.toml"),
     ] {
-        let mut run = flexframe(&["run", path, "-o"]);
+        let mut run = flexframe(&["run", path, "--overwrite", "-o"]);
         run.arg(root.join("again")).current_dir(root.join(folder));
         succeed(run);
         assert!(std::fs::read(scene.results("again")).unwrap() == first, "{path} in {folder}");

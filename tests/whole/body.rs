@@ -45,7 +45,9 @@ fn the_cache_is_used_by_itself_and_the_results_are_the_same_to_the_last_byte() {
     let results = |name: &str, more: &[&str]| {
         let out = folder.path().join(name);
         let (_, notes) = succeeds(cache, &[&["run", &scene, "-o", out.to_str().unwrap()], more].concat());
-        (fs::read(out.join("ring.h5")).unwrap(), notes)
+        let (foretold, notes) = notes.split_once('\n').unwrap();
+        assert!(foretold.starts_with("run: 21 rows, "), "{foretold}");
+        (fs::read(out.join("ring.h5")).unwrap(), notes.to_owned())
     };
     let (direct, notes) = results("direct", &["--no-cache"]);
     assert_eq!(notes, "");

@@ -218,7 +218,9 @@ fn a_scene_flies_as_a_moving_picture() {
     let gif = folder.path().join("ring.gif");
     let animate = |frames: &str, more: &[&str]| {
         let gif = gif.to_str().unwrap();
-        let output = flexframe(&[&["animate", "examples/ring.toml", "-o", gif, "--frames", frames], more].concat());
+        let output = flexframe(
+            &[&["animate", "examples/ring.toml", "--overwrite", "-o", gif, "--frames", frames], more].concat(),
+        );
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
         (std::fs::read(gif).unwrap(), String::from_utf8(output.stdout).unwrap())
     };
@@ -235,7 +237,7 @@ fn a_scene_flies_as_a_moving_picture() {
 
     for times in [["--from", "0.1", "--to", "0.1"], ["--from", "-0.1", "--to", "0.1"], ["--from", "0", "--to", "0.3"]] {
         let gif = gif.to_str().unwrap();
-        let message = refused(2, &[&["animate", "examples/ring.toml", "-o", gif], &times[..]].concat());
+        let message = refused(2, &[&["animate", "examples/ring.toml", "--overwrite", "-o", gif], &times[..]].concat());
         assert_says(&message, &["--from", times[3], "from 0 to 0.2"]);
     }
 }
@@ -303,7 +305,7 @@ fn a_dot_in_the_name_of_a_scene_stays_in_those_of_its_results() {
     std::fs::write(place("coin.v2.part.h5"), "").unwrap();
     let message = refused(6, &["run", &place("coin.v2.toml"), "-o", folder.path().to_str().unwrap()]);
     assert_says(&message, &["coin.v2.part.h5"]);
-    assert_says(&refused(3, &["resume", &place("coin.v2.h5")]), &["coin.v2.part.h5"]);
+    assert_says(&refused(3, &["resume", "--overwrite", &place("coin.v2.h5")]), &["coin.v2.part.h5"]);
 }
 
 #[test]
@@ -314,8 +316,8 @@ fn an_animation_replaces_no_file_that_is_no_gif_and_says_what_keeps_it_from_bein
     let scene = folder.path().join("self.toml");
     std::fs::write(&scene, &text).unwrap();
     let scene = scene.to_str().unwrap();
-    for output in [scene, "scene", "scene.png"] {
-        assert_says(&refused(2, &["animate", scene, "-o", output]), &[output, "ends in .gif"]);
+    for (output, words) in [(scene, "read by the command"), ("scene", "ends in .gif"), ("scene.png", "ends in .gif")] {
+        assert_says(&refused(2, &["animate", scene, "-o", output]), &[output, words]);
     }
     assert_eq!(std::fs::read_to_string(scene).unwrap(), text);
     let nowhere = folder.path().join("no_folder/ring.GIF");

@@ -301,7 +301,7 @@ fn the_command_prints_the_list_or_the_answer() {
     let first = text.lines().next().unwrap();
     assert!(first.starts_with("formulation = \"conservative\", scheme = "), "{first}");
     assert!(text.contains("[time]") && folder.path().join("here/work_precision.svg").exists());
-    let json = flexframe(folder.path(), &["cost", "ring.toml", "--patience", "0.002", "--json"]);
+    let json = flexframe(folder.path(), &["cost", "ring.toml", "--patience", "0.002", "--json", "--overwrite"]);
     let value: serde_json::Value = serde_json::from_slice(&json.stdout).unwrap();
     assert_eq!(value["lines"].as_array().unwrap().len(), 6);
     assert!(value["lines"][0]["rows"][0]["outcome"]["ran"]["error"].as_f64().unwrap() > 0.0);

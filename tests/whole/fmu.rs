@@ -23,7 +23,7 @@ fn library_bytes() -> String {
 }
 
 fn refused(library: &str, arguments: &[&str], code: i32) -> Value {
-    let output = flexframe(library, &[arguments, &["--json"]].concat());
+    let output = flexframe(library, &[arguments, &["--json", "--overwrite"]].concat());
     let text = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(code), "{text}");
     serde_json::from_str(text.lines().last().unwrap()).unwrap()
@@ -36,7 +36,8 @@ fn an_fmu_is_packed_of_a_scene_or_of_its_body_file_and_is_the_same_each_time() {
     fs::write(place("library"), library_bytes()).unwrap();
     let scene = "examples/ring.toml";
     let pack = |of: &str, name: &str| -> Value {
-        let output = flexframe(&place("library"), &["fmu", of, "-o", &place(name), "--json", "--set", "time.end=0.01"]);
+        let more = ["--json", "--overwrite", "--set", "time.end=0.01"];
+        let output = flexframe(&place("library"), &[&["fmu", of, "-o", &place(name)][..], &more].concat());
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
         serde_json::from_slice(&output.stdout).unwrap()
     };

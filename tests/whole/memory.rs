@@ -29,7 +29,7 @@ fn little_memory_ends_in_words() {
     let (small, ring) = (small.to_str().unwrap(), ring.to_str().unwrap());
     let commands: [(usize, &[&str]); 4] = [
         (1, &["modes", small, "--threads", "1"]),
-        (2, &["modes", small, "--threads", "2", "-o", folder]),
+        (2, &["modes", small, "--threads", "2", "-o", folder, "--overwrite"]),
         (2, &["modes", ring, "--threads", "2"]),
         (2, &["run", small, "--threads", "2", "-o", folder, "--overwrite"]),
     ];

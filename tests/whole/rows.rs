@@ -13,7 +13,7 @@ use flexframe::scene::Scene;
 const SCENE: &str = r#"
 title = "Top"
 units = { length = "m", mass = "kg", time = "s" }
-body = { rigid = { mass = 1.0, center_of_mass = [0, 0, 0], inertia = [1.0, 2.0, 2.5] } }
+body = { rigid = { mass = 1.0, center_of_mass = [0, 0, 0], inertia = [[1.0, 0, 0], [0, 2.0, 0], [0, 0, 2.5]] } }
 initial = { angular_velocity = [0.0, 0.0, 1e-3] }
 "#;
 

@@ -21,7 +21,7 @@ const ROWS: usize = 30;
 fn files(path: &Path) -> [Vec<u8>; 2] {
     let metadata = Metadata { scene_text: "title = \"ω₂\"".into(), ..metadata(2, &["P1"]) };
     let begin = || {
-        let expected = Expected { checkpoint: 4, ..Expected::default() };
+        let expected = Expected { checkpoint: 4, overwrite: true, ..Expected::default() };
         let mut writer = Writer::create(path, &metadata, &COLUMNS, expected).unwrap();
         (0..ROWS).for_each(|i| writer.push(&Row::new(i, 2, 1)).unwrap());
         writer.flush(&[1, 2, 3, 4]).unwrap();
@@ -136,7 +136,7 @@ fn every_damage_is_found() {
             Ok(results) => assert!(results.numbers("time").unwrap().iter().all(|time| time.is_finite())),
             Err(error) => assert!(matches!(error, FileError::Damaged { .. }), "{error}"),
         }
-        match Writer::resume(&place, &COLUMNS, false) {
+        match Writer::resume(&place, &COLUMNS, true) {
             Ok(Resumed { results, checkpoint: Some(state), .. }) => {
                 assert_rows(&results, ROWS);
                 assert_eq!(state, [1, 2, 3, 4]);

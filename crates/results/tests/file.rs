@@ -8,7 +8,8 @@ use rows::{COLUMNS, Resumed, Row, Writer, assert_rows, folder, metadata};
 use std::path::Path;
 
 fn write(path: &Path, rows: usize, metadata: &Metadata) -> Writer {
-    let mut writer = Writer::create(path, metadata, &COLUMNS, Expected::default()).unwrap();
+    let expected = Expected { overwrite: true, ..Expected::default() };
+    let mut writer = Writer::create(path, metadata, &COLUMNS, expected).unwrap();
     for i in 0..rows {
         writer.push(&Row::new(i, metadata.body.frequencies.len(), metadata.point_names.len())).unwrap();
     }
@@ -181,7 +182,8 @@ fn wrong_lengths_and_names_are_refused() {
     ));
     let mut nul = metadata(2, &[]);
     nul.scene_text = "a\0b".into();
-    assert!(matches!(Writer::create(&path, &nul, &COLUMNS, Expected::default()), Err(FileError::NulInText { .. })));
+    let fresh = path.with_file_name("fresh.h5");
+    assert!(matches!(Writer::create(&fresh, &nul, &COLUMNS, Expected::default()), Err(FileError::NulInText { .. })));
 }
 
 #[test]
@@ -235,7 +237,8 @@ fn a_finished_file_is_the_same_byte_for_byte_whatever_way_led_to_it() {
         rows.for_each(|i| writer.push(&Row::new(i, 3, 1)).unwrap());
     };
     let mut files = Vec::new();
-    for expected in [Expected::default(), Expected { rows: 3000, checkpoint: 5, overwrite: false }] {
+    let overwrite = Expected { overwrite: true, ..Expected::default() };
+    for expected in [overwrite, Expected { rows: 3000, checkpoint: 5, ..overwrite }] {
         let mut writer = Writer::create(&path, &metadata, &COLUMNS, expected).unwrap();
         push(&mut writer, 0..2000);
         writer.finish().unwrap();
@@ -244,13 +247,12 @@ fn a_finished_file_is_the_same_byte_for_byte_whatever_way_led_to_it() {
         // The clock of HDF5 files has a second's resolution.
         std::thread::sleep(std::time::Duration::from_millis(1100));
     }
-    let mut writer =
-        Writer::create(&path, &metadata, &COLUMNS, Expected { checkpoint: 2, ..Expected::default() }).unwrap();
+    let mut writer = Writer::create(&path, &metadata, &COLUMNS, Expected { checkpoint: 2, ..overwrite }).unwrap();
     push(&mut writer, 0..700);
     writer.flush(&[7, 8]).unwrap();
     push(&mut writer, 700..1500);
     drop(writer);
-    let Resumed { mut writer, results, checkpoint } = Writer::resume(&path, &COLUMNS, false).unwrap();
+    let Resumed { mut writer, results, checkpoint } = Writer::resume(&path, &COLUMNS, true).unwrap();
     assert_eq!(checkpoint, Some(vec![7, 8]));
     assert_rows(&results, 700);
     push(&mut writer, 700..2000);
@@ -303,9 +305,12 @@ fn nothing_is_overwritten_that_a_user_would_miss() {
     assert!(matches!(Writer::resume(&path, &COLUMNS, false), Err(FileError::NothingToResume { .. })));
     write(&path, 5, &metadata).finish().unwrap();
     assert!(matches!(Writer::resume(&path, &COLUMNS, false), Err(FileError::Complete { .. })));
-    // A complete file stays until another one is complete.
-    drop(create(false).unwrap());
+    // A complete file is replaced only when asked, and stays until another one is complete.
+    assert!(matches!(create(false), Err(FileError::Exists { .. })));
+    assert!(matches!(Writer::check(&path, false), Err(FileError::Exists { .. })));
+    drop(create(true).unwrap());
     assert_rows(&Results::open(&path, &COLUMNS).unwrap(), 5);
+    assert!(matches!(Writer::resume(&path, &COLUMNS, false), Err(FileError::Exists { .. })));
     // Which is not resumed, nor thrown away unasked.
     let error = create(false).unwrap_err();
     assert!(matches!(error, FileError::Unfinished { .. }));
@@ -318,6 +323,17 @@ fn nothing_is_overwritten_that_a_user_would_miss() {
     assert!(matches!(Writer::resume(unfinished(&path), &COLUMNS, false), Err(FileError::Busy { .. })));
     writer.finish().unwrap();
     assert_rows(&Results::open(&path, &COLUMNS).unwrap(), 0);
+    // One that has come there meanwhile is not replaced by who was not asked to.
+    let kept = std::fs::read(&path).unwrap();
+    std::fs::remove_file(&path).unwrap();
+    let mut writer = create(false).unwrap();
+    writer.push(&Row::new(0, 1, 0)).unwrap();
+    writer.flush(&[]).unwrap();
+    std::fs::write(&path, &kept).unwrap();
+    assert!(matches!(writer.finish(), Err(FileError::Exists { .. })));
+    assert!(std::fs::read(&path).unwrap() == kept);
+    Writer::resume(&path, &COLUMNS, true).unwrap().writer.finish().unwrap();
+    assert_rows(&Results::open(&path, &COLUMNS).unwrap(), 1);
     // What is none of ours.
     std::fs::write(&path, "a diary").unwrap();
     assert!(matches!(create(false), Err(FileError::NotResults { .. })));

@@ -22,7 +22,8 @@ fn push(writer: &mut Writer, rows: std::ops::Range<usize>) {
 fn files(path: &Path) -> [Vec<u8>; 2] {
     let metadata = Metadata { scene_text: "title = \"ω₂\"".into(), ..metadata(2, &["P1"]) };
     let mut writer =
-        Writer::create(path, &metadata, &COLUMNS, Expected { checkpoint: 4, ..Expected::default() }).unwrap();
+        Writer::create(path, &metadata, &COLUMNS, Expected { checkpoint: 4, overwrite: true, ..Expected::default() })
+            .unwrap();
     push(&mut writer, 0..ROWS);
     writer.flush(&[1, 2, 3, 4]).unwrap();
     let part = std::fs::read(writer.unfinished()).unwrap();
@@ -35,7 +36,7 @@ fn files(path: &Path) -> [Vec<u8>; 2] {
 
 /// Goes on with the unfinished file to its end.
 fn go_on(part: &Path) -> Result<(), FileError> {
-    let mut writer = Writer::resume(part, &COLUMNS, false)?.writer;
+    let mut writer = Writer::resume(part, &COLUMNS, true)?.writer;
     push(&mut writer, ROWS..2 * ROWS);
     writer.finish()
 }
@@ -191,7 +192,7 @@ fn a_description_that_does_not_fit_the_file_is_refused() {
         );
         // An empty name takes 24 bytes for three; a list that grows is held twice for a moment.
         assert!(memory < 40 * json.len().max(part.len() / 10), "{memory} bytes for {}: {shown}", json.len());
-        assert!(Writer::resume(&place, &COLUMNS, false).is_err(), "{shown}");
+        assert!(Writer::resume(&place, &COLUMNS, true).is_err(), "{shown}");
     }
     // Text that is no UTF-8.
     let at = sealed::description(&part).start + sound.to_string().find("platten").unwrap();
@@ -234,7 +235,7 @@ fn changed_bytes_under_a_right_seal_do_no_harm() {
                 refused += 1;
             }
         }
-        if to_the_end && let Ok(Resumed { writer, .. }) = Writer::resume(&place, &COLUMNS, false) {
+        if to_the_end && let Ok(Resumed { writer, .. }) = Writer::resume(&place, &COLUMNS, true) {
             // Only a text that HDF5 cannot hold keeps it from its end.
             match writer.finish() {
                 Ok(()) => finished += 1,

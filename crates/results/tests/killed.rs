@@ -19,7 +19,7 @@ static ALONE: Mutex<()> = Mutex::new(());
 fn child_that_is_killed() {
     let Some(path) = std::env::var_os("RESULTS_TEST_CHILD") else { return };
     let metadata = metadata(2, &["P1"]);
-    let expected = Expected { checkpoint: 1, ..Expected::default() };
+    let expected = Expected { checkpoint: 1, overwrite: true, ..Expected::default() };
     let mut writer = Writer::create(Path::new(&path), &metadata, &COLUMNS, expected).unwrap();
     for i in 0..801 {
         writer.push(&Row::new(i, 2, 1)).unwrap();
@@ -45,7 +45,7 @@ fn a_killed_run_can_be_read_up_to_its_last_flush() {
     assert!(!results.complete);
     assert!(results.rows() >= 701, "{}", results.rows());
     assert_rows(&results, results.rows());
-    let Resumed { results, checkpoint, .. } = Writer::resume(&path, &COLUMNS, false).unwrap();
+    let Resumed { results, checkpoint, .. } = Writer::resume(&path, &COLUMNS, true).unwrap();
     assert_rows(&results, 701);
     assert_eq!(checkpoint, Some(vec![4711]));
 }
@@ -57,13 +57,13 @@ fn child_that_flushes_at_every_row() {
     let Some(path) = std::env::var_os("RESULTS_TEST_CHILD") else { return };
     let path = Path::new(&path);
     let (mut writer, done) = if unfinished(path).exists() {
-        let Resumed { writer, results, checkpoint } = Writer::resume(path, &COLUMNS, false).unwrap();
+        let Resumed { writer, results, checkpoint } = Writer::resume(path, &COLUMNS, true).unwrap();
         let rows = results.rows();
         assert_eq!(checkpoint.map_or(0, |state| state[0]), rows as u64);
         assert_rows(&results, rows);
         (writer, rows)
     } else {
-        let expected = Expected { checkpoint: STATE, ..Expected::default() };
+        let expected = Expected { checkpoint: STATE, overwrite: true, ..Expected::default() };
         (Writer::create(path, &metadata(2, &["P1"]), &COLUMNS, expected).unwrap(), 0)
     };
     for i in done..ROWS {
@@ -118,7 +118,7 @@ fn a_file_is_whole_whenever_its_writer_is_killed() {
 #[ignore = "run by another test"]
 fn child_whose_checkpoints_fail() {
     let Some(path) = std::env::var_os("RESULTS_TEST_CHILD") else { return };
-    let Resumed { mut writer, .. } = Writer::resume(Path::new(&path), &COLUMNS, false).unwrap();
+    let Resumed { mut writer, .. } = Writer::resume(Path::new(&path), &COLUMNS, true).unwrap();
     for state in [3, 4] {
         assert!(matches!(writer.flush(&[state; STATE]), Err(FileError::System { .. })));
     }
@@ -129,7 +129,7 @@ fn child_whose_checkpoints_fail() {
 fn checkpoints_that_fail_leave_the_last_whole_one() {
     let _alone = ALONE.lock();
     let (_folder, path) = folder();
-    let expected = Expected { checkpoint: STATE, ..Expected::default() };
+    let expected = Expected { checkpoint: STATE, overwrite: true, ..Expected::default() };
     let mut writer = Writer::create(&path, &metadata(2, &["P1"]), &COLUMNS, expected).unwrap();
     for i in 0..2 {
         writer.push(&Row::new(i, 2, 1)).unwrap();
@@ -149,7 +149,7 @@ fn checkpoints_that_fail_leave_the_last_whole_one() {
         .status()
         .unwrap();
     assert!(status.success());
-    let Resumed { results, checkpoint, .. } = Writer::resume(&path, &COLUMNS, false).unwrap();
+    let Resumed { results, checkpoint, .. } = Writer::resume(&path, &COLUMNS, true).unwrap();
     assert_rows(&results, 2);
     assert_eq!(checkpoint, Some(vec![0x55ab; STATE]));
 }
@@ -163,7 +163,7 @@ fn a_pipe_is_refused_without_being_opened() {
     for pipe in [path.clone(), unfinished(&path)] {
         assert!(Command::new("mkfifo").arg(&pipe).status().unwrap().success());
         assert!(matches!(Writer::check(&path, false), Err(FileError::NotResults { path }) if path == pipe));
-        assert!(matches!(Writer::resume(&path, &COLUMNS, false), Err(FileError::NothingToResume { .. })));
+        assert!(matches!(Writer::resume(&path, &COLUMNS, true), Err(FileError::NothingToResume { .. })));
         std::fs::remove_file(pipe).unwrap();
     }
 }
