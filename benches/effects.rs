@@ -9,7 +9,7 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use flexframe::frames_rk4::{ConservativeBody, Reached, Rows, StepControl};
+use flexframe::dynamics::{ConservativeBody, Reached, Rows, StepControl};
 use flexframe::scene::{Choice, Effect, Flexible, Large, Model, Scene};
 
 const STEP: f64 = 1e-4;

@@ -6,9 +6,7 @@
 
 use std::error::Error;
 
-use flexframe::frames_rk4::{
-    Crossing, Event, History, PointForce, PointShapes, Reached, Rows, Simulation, StepControl,
-};
+use flexframe::dynamics::{Crossing, Event, History, PointForce, PointShapes, Reached, Rows, Simulation, StepControl};
 use flexframe::modal::{BodyPoint, ReducedBody, RigidMotion};
 use flexframe::nalgebra::{Matrix3, Vector3};
 

@@ -6,7 +6,7 @@
 use std::error::Error;
 use std::sync::Arc;
 
-use flexframe::frames_rk4::{
+use flexframe::dynamics::{
     Initial, LoadFn, Method, Observation, Physics, Rows, Setup, SharedLoad, Simulation, StepControl,
 };
 use flexframe::nalgebra::Vector3;

@@ -5,7 +5,7 @@
 
 use std::error::Error;
 
-use flexframe::frames_rk4::{
+use flexframe::dynamics::{
     ConservativeBody, ConservativeRates, ConservativeState, Initial, Method, Physics, Rows, Setup, Simulation,
     StepControl,
 };

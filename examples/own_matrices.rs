@@ -5,8 +5,8 @@
 
 use std::error::Error;
 
+use flexframe::dynamics::{Initial, Method, Observation, Physics, Rows, Setup, Simulation, StepControl};
 use flexframe::faer::sparse::{SparseColMat, Triplet};
-use flexframe::frames_rk4::{Initial, Method, Observation, Physics, Rows, Setup, Simulation, StepControl};
 use flexframe::modal::{ReducedBody, Solver, Support};
 use flexframe::nalgebra::Vector3;
 

@@ -5,7 +5,7 @@
 
 use std::error::Error;
 
-use flexframe::frames_rk4::{Initial, Load, LoadFn, Observation, PointShapes, Rows, Simulation, StepControl};
+use flexframe::dynamics::{Initial, Load, LoadFn, Observation, PointShapes, Rows, Simulation, StepControl};
 use flexframe::modal::{BodyPoint, ReducedBody, RigidMotion};
 use flexframe::nalgebra::{Matrix3, Vector3};
 

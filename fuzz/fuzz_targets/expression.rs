@@ -1,7 +1,7 @@
 //! Formulas in t: read, and evaluated where they were taken.
 #![no_main]
 
-use frames_rk4::{Expression, History};
+use dynamics::{Expression, History};
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|text: &str| {

@@ -5,8 +5,8 @@ use std::process::{Command, Output};
 use std::sync::OnceLock;
 use std::time::Duration;
 
+use dynamics::{Method, Observation, Rows, StepControl};
 use flexframe::cost::{CostReport, CostSettings, LadderRun, Line, Measured, Outcome, Setting, price_list};
-use frames_rk4::{Method, Observation, Rows, StepControl};
 use scene::{Model, Scene};
 
 const TARGET: f64 = 1e-4;
@@ -121,7 +121,7 @@ fn the_answer_reaches_the_target_when_the_scene_is_run_with_it() {
 
     let pasted = scene(&answer.lines.join("\n"));
     let model = Model::build(&pasted, |_| ()).unwrap();
-    let all = |simulation: frames_rk4::Simulation| -> Vec<Observation> { simulation.map(Result::unwrap).collect() };
+    let all = |simulation: dynamics::Simulation| -> Vec<Observation> { simulation.map(Result::unwrap).collect() };
     let found = all(model.start(&pasted).unwrap());
     // Another scheme at a step that is short enough.
     let rkmk4 = Method::RKMK4;

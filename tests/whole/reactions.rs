@@ -1,7 +1,7 @@
 //! Reactions, drives and angles against closed forms: statics, a pendulum, a spinning bar, a spin-up.
 
 use flexframe::columns::COLUMNS;
-use flexframe::frames_rk4::Observation;
+use flexframe::dynamics::Observation;
 use flexframe::nalgebra::Vector3;
 use flexframe::results::Results;
 use flexframe::run::{RunSettings, run};

@@ -5,7 +5,7 @@ use std::process::Command;
 use flexframe::advice::Refusal;
 use flexframe::advise::advise;
 use flexframe::columns::COLUMNS;
-use flexframe::frames_rk4::Rows;
+use flexframe::dynamics::Rows;
 use flexframe::modes::{modes, reduce};
 use flexframe::run::{RunError, RunReport, RunSettings, results_path, run};
 use flexframe::scene::{Cache, Model, Scene};

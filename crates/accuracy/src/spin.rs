@@ -1,6 +1,6 @@
 //! The spin that the paper's scheme makes or loses in steady rotation.
 
-use flexframe::frames_rk4::{Method, Rows, StepControl};
+use flexframe::dynamics::{Method, Rows, StepControl};
 use flexframe::scene::{Assembly, BuildError, Flexible, Scene};
 
 /// Steps of the runs.

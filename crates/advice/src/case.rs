@@ -1,6 +1,6 @@
 //! What is known before a run.
 
-use frames_rk4::{Drive, History, Initial, Manifold, SharedLoad};
+use dynamics::{Drive, History, Initial, Manifold, SharedLoad};
 use modal::ReducedBody;
 use nalgebra::Vector3;
 
@@ -73,7 +73,7 @@ pub enum AdviceError {
     },
     /// An eigenvalue problem without an answer.
     #[error(transparent)]
-    Eigen(#[from] frames_rk4::EigenError),
+    Eigen(#[from] dynamics::EigenError),
 }
 
 impl Case<'_> {

@@ -1,6 +1,6 @@
 //! The advice with what is found out after the modes to keep have been chosen.
 
-use frames_rk4::Effect;
+use dynamics::Effect;
 
 use crate::row::Row;
 use crate::table::Advice;

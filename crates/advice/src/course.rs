@@ -1,6 +1,6 @@
 //! A history in samples, and how far it swings an oscillator.
 
-use frames_rk4::History;
+use dynamics::History;
 use nalgebra::Complex;
 
 /// A history from 0 to the end of the run as straight lines between samples.
@@ -241,7 +241,7 @@ mod tests {
         for corners in [3000, 300_000] {
             let times: Vec<f64> = (0..corners).map(f64::from).collect();
             let values = (0..corners).map(|k| f64::from(k % 2)).collect();
-            let table = frames_rk4::Table::new(times, values).unwrap();
+            let table = dynamics::Table::new(times, values).unwrap();
             let course = Course::new(&History::Table(table), f64::from(corners), 1);
             let samples: usize = course.pieces.iter().map(|piece| piece.samples.len()).sum();
             // The straight lines of a table are followed by however few. Measured: 195 000 and 4 200 000.
@@ -253,7 +253,7 @@ mod tests {
     #[test]
     fn long_formulas_share_few_samples_and_fall_back_to_the_bound() {
         let text = format!("fract(9e5*sin(7e4*t)){}", " + 0*t*t*t*t*t".repeat(60));
-        let history = History::Expression(frames_rk4::Expression::new(&text, vec![]).unwrap());
+        let history = History::Expression(dynamics::Expression::new(&text, vec![]).unwrap());
         for (among, most) in [(1, 2_000), (20, 100)] {
             let course = Course::new(&history, 1.0, among);
             let samples: usize = course.pieces.iter().map(|piece| piece.samples.len()).sum();

@@ -1,7 +1,7 @@
 //! What acts on the rigid motions and on each mode, in modal coordinates: with mass-normalised shapes, forces and motions
 //! of all of them are on one scale.
 
-use frames_rk4::{DrivenMotion, History, LoadFrame, Pattern, SharedLoad};
+use dynamics::{DrivenMotion, History, LoadFrame, Pattern, SharedLoad};
 use nalgebra::{Matrix3, Matrix3xX, Vector3};
 
 use crate::case::{Case, StaticCompliance};

@@ -11,7 +11,7 @@
 //! bent. Where the first orders left out are of a size e beside the linear ones, the next are of a size e μ. The factor is that
 //! of the elastica: see `docs/nonlinear.md`.
 
-use frames_rk4::Manifold;
+use dynamics::Manifold;
 
 /// Error of the forces up to which a motion is taken as right.
 pub(crate) const STATED: f64 = 0.01;

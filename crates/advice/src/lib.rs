@@ -20,7 +20,7 @@
 //! ```
 //! use advice::{Case, Review, advise, limits, screen};
 //! use fem_tet10::{Material, Materials, assemble, read_msh};
-//! use frames_rk4::{Effect, EffectMap, Initial};
+//! use dynamics::{Effect, EffectMap, Initial};
 //! use modal::{ReducedBody, Solver, Support};
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -97,4 +97,4 @@ pub use strain_error::StrainError;
 pub use stress::{StressField, StressInfluence, StressSource, stress, stress_row};
 pub use table::{Advice, advise, screen};
 /// Crates whose types are in the interface.
-pub use {frames_rk4, modal};
+pub use {dynamics, modal};

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use frames_rk4::{DrivenMotion, Effect, EffectMap, LoadedMode, SteadySpin};
+use dynamics::{DrivenMotion, Effect, EffectMap, LoadedMode, SteadySpin};
 use nalgebra::Vector3;
 
 use crate::backbone::DETUNED;

@@ -1,6 +1,6 @@
 //! How far each mode is moved, bounded above, and how a small force from one mode on another moves it.
 
-use frames_rk4::DrivenMotion;
+use dynamics::DrivenMotion;
 
 use crate::case::Case;
 use crate::course::{Course, Swing};

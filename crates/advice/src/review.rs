@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use frames_rk4::{Effect, EffectMap, Moment, Observation};
+use dynamics::{Effect, EffectMap, Moment, Observation};
 use nalgebra::Vector3;
 use pulp::{Arch, Simd, WithSimd};
 
@@ -519,7 +519,7 @@ impl<'a> Review<'a> {
 
     /// Whether the body can turn: if not, nothing of turning is left out, whatever is off.
     fn turns(&self) -> bool {
-        let is_turned = |drive: &frames_rk4::Drive| matches!(drive.motion, frames_rk4::DrivenMotion::Turn { .. });
+        let is_turned = |drive: &dynamics::Drive| matches!(drive.motion, dynamics::DrivenMotion::Turn { .. });
         self.case.drive.is_some_and(is_turned)
             || self.effects[Effect::Rotation] && !self.case.body.motion.rotations().is_empty()
     }

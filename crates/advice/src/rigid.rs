@@ -60,7 +60,7 @@ pub(crate) fn gravity(case: &Case, sources: &[Source], response: &Response) -> E
 pub(crate) fn translation(case: &Case, sources: &[Source]) -> Estimate {
     let pushed: f64 = sources.iter().map(|s| s.translation * s.impulse()).sum();
     let start = (case.body.translation_basis.transpose() * case.initial.velocity * case.body.mass).norm();
-    let driven = matches!(case.drive.map(|d| d.motion), Some(frames_rk4::DrivenMotion::Slide { .. }));
+    let driven = matches!(case.drive.map(|d| d.motion), Some(dynamics::DrivenMotion::Slide { .. }));
     // All or nothing: whatever moves the body moves all of its points.
     let value = f64::from(u8::from(driven || pushed + start > 0.0));
     let why = match (value > 0.0, case.body.translation_basis.iter().all(|x| *x == 0.0)) {
@@ -72,7 +72,7 @@ pub(crate) fn translation(case: &Case, sources: &[Source]) -> Estimate {
 }
 
 pub(crate) fn rotation(case: &Case, spin: &Spin, sources: &[Source], response: &Response) -> Estimate {
-    let driven = matches!(case.drive.map(|d| d.motion), Some(frames_rk4::DrivenMotion::Turn { .. }));
+    let driven = matches!(case.drive.map(|d| d.motion), Some(dynamics::DrivenMotion::Turn { .. }));
     if driven || spin.certain > 0.0 {
         return Estimate { value: 1.0, influence: 1.0, why: "The body turns from the beginning, or is driven.".into() };
     }

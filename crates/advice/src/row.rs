@@ -1,6 +1,6 @@
 //! What a row of the table says.
 
-use frames_rk4::Effect;
+use dynamics::Effect;
 
 use crate::strain_error::StrainError;
 

@@ -5,7 +5,7 @@ use faer::MatRef;
 use crate::case::{AdviceError, Case};
 use crate::row::Row;
 
-/// The row of [`Effect::GeometricStiffening`](frames_rk4::Effect) by the stress of steady loads, whose stiffness in the modes of the case is
+/// The row of [`Effect::GeometricStiffening`](dynamics::Effect) by the stress of steady loads, whose stiffness in the modes of the case is
 /// `stiffness` (nf × nf, K_kl). Its value is the largest |K_kl|/(ω_k ω_l); its influence is the phase that a mode is out
 /// by at the end of the time that it rings.
 ///

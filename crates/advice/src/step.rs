@@ -4,7 +4,7 @@
 //! formula in the step, the spin and the frequencies tells how wrong, and the balance of energy does not either: a mode
 //! that swings with the wrong phase has the right energy.
 
-use frames_rk4::{Observation, Reached, Rows, Setup, SetupError, Simulation, StepControl, StepError};
+use dynamics::{Observation, Reached, Rows, Setup, SetupError, Simulation, StepControl, StepError};
 
 use crate::relative::relative;
 use crate::row::Row;

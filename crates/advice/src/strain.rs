@@ -3,7 +3,7 @@
 //! With the mode's [`Backbone`] that is known; without it, it is that of a slender bar or arch: a free bar bent by u at its
 //! ends has its frequency lower by about 20 (u/L)², and the force that holds an L in another shape differs by about u/L.
 
-use frames_rk4::MOST_LARGE;
+use dynamics::MOST_LARGE;
 
 use crate::backbone::Backbone;
 use crate::case::Case;
@@ -81,7 +81,7 @@ pub(crate) fn large_modes(modes: &[Worth], keep: usize, tolerance: f64) -> Large
     LargeModes { taken: wanted, left_out }
 }
 
-/// The row of [`frames_rk4::Effect::LargeDeflection`].
+/// The row of [`dynamics::Effect::LargeDeflection`].
 pub(crate) fn large_deflection(modes: &[Worth], large: &LargeModes, deflection: f64) -> Estimate {
     let worst = modes.iter().enumerate().filter_map(|(k, mode)| Some((k, mode.strain?, mode.strain_influence())));
     let worst = worst.max_by(|a, b| a.2.total_cmp(&b.2));

@@ -91,7 +91,7 @@ fn amplitude(case: &Case, source: StressSource) -> Amplitude {
     }
 }
 
-/// The row of [`frames_rk4::Effect::GeometricStiffening`] of the field with the largest influence; none without fields.
+/// The row of [`dynamics::Effect::GeometricStiffening`] of the field with the largest influence; none without fields.
 pub fn stress_row(fields: &[StressField<'_>], influences: &[StressInfluence], tolerance: f64) -> Option<Row> {
     let larger = |a: &(_, &StressInfluence), b: &(_, &StressInfluence)| a.1.influence.total_cmp(&b.1.influence);
     let (field, &StressInfluence { value, influence }) = fields.iter().zip(influences).max_by(larger)?;

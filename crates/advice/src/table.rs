@@ -1,7 +1,7 @@
 //! The table: a row for each effect, and for what else a run goes by.
 
+use dynamics::{Effect, EffectMap};
 use faer::Mat;
-use frames_rk4::{Effect, EffectMap};
 use modal::ReducedBody;
 use nalgebra::Matrix3;
 

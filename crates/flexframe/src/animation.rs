@@ -3,8 +3,8 @@
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::path::{Path, PathBuf};
 
+use dynamics::{Observation, Reached, Simulation, StepError};
 use figures::{Animation, FigureError, Frame, View};
-use frames_rk4::{Observation, Reached, Simulation, StepError};
 use nalgebra::Vector3;
 use rigid_kin::Attitude;
 use scene::{BuildError, Cache, Meshed, Model, Scene};

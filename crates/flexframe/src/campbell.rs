@@ -15,7 +15,7 @@ mod table;
 
 use std::path::Path;
 
-use frames_rk4::{Effect, SteadySpin};
+use dynamics::{Effect, SteadySpin};
 use nalgebra::Vector3;
 use scene::{BuildError, BuildProgress, Choice, Flexible, Model, Scene};
 

@@ -1,6 +1,6 @@
 //! The columns of a results file of `flexframe run`.
 //!
-//! To add a quantity, compute it in [`Observation`](frames_rk4::Observation) or in [`Row`] and give it a line here. Writing, reading, the check that numbers are
+//! To add a quantity, compute it in [`Observation`](dynamics::Observation) or in [`Row`] and give it a line here. Writing, reading, the check that numbers are
 //! finite, and the attributes in the file follow from the line; a test says what to put into `docs/results.md`.
 
 use results::Column;

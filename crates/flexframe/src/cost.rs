@@ -22,7 +22,7 @@ mod table;
 use std::path::Path;
 
 use advice::Subject;
-use frames_rk4::{Method, StepControl};
+use dynamics::{Method, StepControl};
 use scene::{Assembly, BuildProgress, Flexible, Scene};
 
 pub use answer::Answer;

@@ -1,7 +1,7 @@
 //! Which effects a run has.
 
 use advice::Subject;
-use frames_rk4::{DrivenMotion, Effect};
+use dynamics::{DrivenMotion, Effect};
 use scene::{Load, Model, Scene};
 
 /// The effects and static shapes that can be on or off in a run of the conservative form, and whether they are; none for

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-use frames_rk4::Effect;
+use dynamics::Effect;
 use scene::{Assembly, Body, BuildError, BuildProgress, Choice, Flexible, Meshed, Model, Scene, SceneError};
 use serde::Serialize;
 

@@ -1,8 +1,8 @@
 //! The largest von Mises stress of a run, over the whole body and all rows.
 
+use dynamics::Observation;
 use faer::Col;
 use fem_tet10::{StressError, StressRecovery};
-use frames_rk4::Observation;
 use scene::{Body, Meshed, Model, Scene, StressPeak};
 use serde::Serialize;
 

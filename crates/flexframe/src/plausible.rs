@@ -4,8 +4,8 @@
 //! None of it is refused: labels of units are shown, not used, and a scene whose numbers fit each other is computed rightly
 //! whatever its labels say.
 
+use dynamics::Effect;
 use fem_tet10::{Material, Materials};
-use frames_rk4::Effect;
 use scene::{Body, Choice, Doubt, Load, Model, Scene, Units};
 
 use crate::units::UnitLabels;

@@ -2,8 +2,8 @@
 
 use std::ops::Deref;
 
+use dynamics::Observation;
 use fem_tet10::{principal_stresses, von_mises};
-use frames_rk4::Observation;
 use scene::Model;
 
 /// A row of a results file: the motion, and what was asked for besides.

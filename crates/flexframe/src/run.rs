@@ -12,7 +12,7 @@ mod watch;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use frames_rk4::{DrivenMotion, Simulation};
+use dynamics::{DrivenMotion, Simulation};
 use results::{BodyProperties, Expected, Metadata, Resumed, Units, Writer, unfinished};
 use scene::{Model, Scene, StepControl};
 

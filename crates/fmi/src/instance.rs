@@ -1,7 +1,7 @@
 //! An instance of an FMU, and what may be called in each phase of its life.
 
+use flexframe::dynamics::{decode, encode};
 use flexframe::fmu::{FmuModel, Manifest, Source, Variable};
-use flexframe::frames_rk4::{decode, encode};
 use serde::{Deserialize, Serialize};
 
 use crate::error::Error;

@@ -3,11 +3,11 @@
 use std::sync::Arc;
 
 use flexframe::advice::Review;
-use flexframe::fmu::{FmuModel, Input, Source};
-use flexframe::frames_rk4::{
+use flexframe::dynamics::{
     History, Initial, LoadFrame, Physics, PointForce, PointMoment, PointShapes, Reached, Rows, ScaledLoad, Setup,
     SharedLoad, Signal, Simulation,
 };
+use flexframe::fmu::{FmuModel, Input, Source};
 use flexframe::nalgebra::Vector3;
 use flexframe::row::Row;
 use self_cell::self_cell;

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
+use dynamics::Observation;
 use fem_tet10::Material;
-use frames_rk4::Observation;
 use nalgebra::Vector3;
 use scene::{Model, Scene};
 

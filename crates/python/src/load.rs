@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use flexframe::frames_rk4::{Applied, Kinematics, LoadFn, SharedLoad};
+use flexframe::dynamics::{Applied, Kinematics, LoadFn, SharedLoad};
 use flexframe::nalgebra::Vector3;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use flexframe::frames_rk4::{Kinematics, PointShapes};
+use flexframe::dynamics::{Kinematics, PointShapes};
 use flexframe::nalgebra::{Matrix3, Vector3};
 use numpy::ndarray::ArrayView2;
 use numpy::{PyArray1, PyArray2};

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use flexframe::frames_rk4::Observation;
+use flexframe::dynamics::Observation;
 use flexframe::results::Metadata;
 use flexframe::scene::Model;
 use pyo3::exceptions::PyKeyError;

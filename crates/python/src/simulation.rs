@@ -3,8 +3,8 @@
 use std::sync::{Arc, Mutex, MutexGuard, TryLockError};
 
 use flexframe::columns::part;
+use flexframe::dynamics::{self, Crossing, EffectMap, Event, Observation, Setup, StepError};
 use flexframe::failure::{Details, Kind};
-use flexframe::frames_rk4::{self, Crossing, EffectMap, Event, Observation, Setup, StepError};
 use flexframe::results::Metadata;
 use flexframe::run::Watch;
 use flexframe::scene::StartError;
@@ -80,7 +80,7 @@ pub(crate) struct Simulation {
 }
 
 struct Running {
-    simulation: frames_rk4::Simulation,
+    simulation: dynamics::Simulation,
     /// Whether the row at the start has been given, or a step been tried.
     begun: bool,
     /// Whether the state has been set since the last try of a step, and no run has given its row.
@@ -109,7 +109,7 @@ impl Simulation {
         running: &mut Running,
         most_steps: u64,
         mut watch: Option<&mut Watch<'_>>,
-    ) -> PyResult<frames_rk4::Reached> {
+    ) -> PyResult<dynamics::Reached> {
         let mut left = most_steps;
         loop {
             // Before the steps: what they come to is then returned in any case, and no row or event is lost.
@@ -127,7 +127,7 @@ impl Simulation {
             }
             let reached = self.or_fault(py, reached)?;
             left -= steps;
-            if reached != frames_rk4::Reached::Between || left == 0 {
+            if reached != dynamics::Reached::Between || left == 0 {
                 return Ok(reached);
             }
             if watch.as_ref().is_some_and(|watch| watch.refusal().is_some()) {
@@ -152,15 +152,15 @@ impl Simulation {
         Row::new(row, self.body.get().model(), &self.metadata)
     }
 
-    fn reached(&self, running: &Running, reached: frames_rk4::Reached) -> Reached {
+    fn reached(&self, running: &Running, reached: dynamics::Reached) -> Reached {
         let simulation = &running.simulation;
         let (kind, event) = match reached {
-            frames_rk4::Reached::Event(number) => {
+            dynamics::Reached::Event(number) => {
                 ("event", simulation.event(number).map(|event| event.name().to_owned()))
             }
-            frames_rk4::Reached::Stop => ("stop", None),
-            frames_rk4::Reached::Row => ("row", None),
-            frames_rk4::Reached::End => ("end", None),
+            dynamics::Reached::Stop => ("stop", None),
+            dynamics::Reached::Row => ("row", None),
+            dynamics::Reached::End => ("end", None),
             _ => ("step", None),
         };
         Reached { kind, event, time: simulation.time(), unit: self.metadata.units.time.clone() }
@@ -208,13 +208,13 @@ impl Simulation {
                 return Err(exception_of(py, Kind::Refused, &message, &Details::default()));
             }
             match reached? {
-                frames_rk4::Reached::Row => record(running, watch)?,
-                frames_rk4::Reached::Event(number) => {
+                dynamics::Reached::Row => record(running, watch)?,
+                dynamics::Reached::Event(number) => {
                     let name =
                         running.simulation.event(number).map_or_else(String::new, |event| event.name().to_owned());
                     events.push((name, running.simulation.time()));
                 }
-                frames_rk4::Reached::End => break,
+                dynamics::Reached::End => break,
                 _ => {}
             }
         }
@@ -265,7 +265,7 @@ impl Simulation {
         let simulation = detached(py, || {
             let observed: Vec<_> = points.iter().map(|(_, point)| point.clone()).collect();
             let initial = model.initial(&scene);
-            frames_rk4::Simulation::new(&Setup {
+            dynamics::Simulation::new(&Setup {
                 damping_ratios: &damping_ratios,
                 loads: &all,
                 points: &observed,
@@ -375,11 +375,11 @@ impl Simulation {
         running.simulation.set_stop_time(Some(time));
         let reached = loop {
             match self.go_on(py, &mut running, u64::MAX, None) {
-                Ok(frames_rk4::Reached::Row) => {}
+                Ok(dynamics::Reached::Row) => {}
                 other => break other,
             }
         };
-        if !matches!(reached, Ok(frames_rk4::Reached::Stop)) {
+        if !matches!(reached, Ok(dynamics::Reached::Stop)) {
             running.simulation.set_stop_time(None);
         }
         Ok(self.reached(&running, reached?))
@@ -456,7 +456,7 @@ impl Simulation {
             return self.row(py, &mut running).map(Some);
         }
         while !running.simulation.is_over() {
-            if self.go_on(py, &mut running, u64::MAX, None)? == frames_rk4::Reached::Row {
+            if self.go_on(py, &mut running, u64::MAX, None)? == dynamics::Reached::Row {
                 return self.row(py, &mut running).map(Some);
             }
         }
@@ -508,8 +508,8 @@ fn value_of_event(function: &Bound<'_, PyAny>, name: &str, row: Row) -> PyResult
 /// once more when the step itself is done.
 struct EndAtFault(Faults);
 
-impl frames_rk4::Observer for EndAtFault {
-    fn step(&mut self, now: &mut frames_rk4::StepEnd<'_>) -> Result<(), StepError> {
+impl dynamics::Observer for EndAtFault {
+    fn step(&mut self, now: &mut dynamics::StepEnd<'_>) -> Result<(), StepError> {
         match self.0.any() {
             true => Err(StepError::NotFinite { time: now.scheme().time(), what: "a law" }),
             false => Ok(()),

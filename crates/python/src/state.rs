@@ -1,6 +1,6 @@
 //! A state as a dict.
 
-use flexframe::frames_rk4::MotionState;
+use flexframe::dynamics::MotionState;
 use flexframe::rigid_kin::Attitude;
 use numpy::{IntoPyArray, PyArray1};
 use pyo3::prelude::*;

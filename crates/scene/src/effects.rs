@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use frames_rk4::{Effect, EffectMap};
+use dynamics::{Effect, EffectMap};
 use serde::de::{Error, MapAccess, Unexpected, Visitor};
 use serde::{Deserialize, Deserializer};
 

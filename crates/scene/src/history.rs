@@ -5,10 +5,10 @@ use std::path::PathBuf;
 use serde::Deserialize;
 
 /// A factor on an amplitude over time, chosen by its key `kind`: the name of the variant.
-pub type History = frames_rk4::History<TablePoints, Formula>;
+pub type History = dynamics::History<TablePoints, Formula>;
 
 /// A velocity given over time: radians per time of a hinge, length per time of a slider.
-pub type DrivenSpeed = frames_rk4::DrivenSpeed<TablePoints, Formula>;
+pub type DrivenSpeed = dynamics::DrivenSpeed<TablePoints, Formula>;
 
 /// A table: straight lines between points, the first and the last value held before and after them.
 #[derive(Clone, Debug, PartialEq, Deserialize)]

@@ -27,7 +27,7 @@
 //! `check` has the rules on their values;
 //! `assign` sets values in the text of a scene from outside of it.
 //! A new kind of load is a new variant in `load`, of constraint in `section` and `constraint`; its rules are in `check`.
-//! The kinds of histories, the effects and the schemes are those of `frames_rk4`; `check` has the rules on histories.
+//! The kinds of histories, the effects and the schemes are those of `dynamics`; `check` has the rules on histories.
 
 #![forbid(unsafe_code)]
 #![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable))]
@@ -65,11 +65,11 @@ pub use build::{
 pub use cache::{Cache, CacheNotes};
 pub use constraint::{Constraint, HeldDirections, HingeLine, Region};
 pub use document::join as key_path;
+pub use dynamics::{Effect, EffectMap, LoadFrame, Method, Rows, StepControl};
 pub use effects::{Choice, Effects};
 pub use error::SceneError;
 pub use fem_tet10::{Material, Materials, PointMass};
 pub use file::{text_from, text_of};
-pub use frames_rk4::{Effect, EffectMap, LoadFrame, Method, Rows, StepControl};
 pub use history::{DrivenSpeed, Formula, History, TablePoints};
 pub use load::{BaseAcceleration, Force, Gravity, Load, Moment, Pressure, Traction};
 pub use matrix_import::MatrixFiles;

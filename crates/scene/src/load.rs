@@ -1,6 +1,6 @@
 //! The loads of a scene: what acts, and where.
 
-use frames_rk4::LoadFrame;
+use dynamics::LoadFrame;
 use serde::Deserialize;
 
 use crate::history::History;

@@ -7,8 +7,8 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
+use dynamics::{Effect, Method, Rows, StepControl};
 use fem_tet10::{Materials, PointMass};
-use frames_rk4::{Effect, Method, Rows, StepControl};
 use matrix_import::MatrixFiles;
 use mesh_import::ImportSettings;
 use serde::Deserialize;

@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
+use dynamics::Method;
 use fem_tet10::{Material, PointMass};
-use frames_rk4::Method;
 use serde::de::value::SeqAccessDeserializer;
 use serde::de::{DeserializeSeed, EnumAccess, Error, SeqAccess, VariantAccess, Visitor};
 use serde::{Deserialize, Deserializer};

@@ -4,7 +4,7 @@
 use std::fmt::Display;
 use std::path::Path;
 
-use frames_rk4::{Observation, Reached};
+use dynamics::{Observation, Reached};
 use scene::{Model, Scene};
 
 const UNITS: &str = "title = \"t\"\nunits = { length = \"m\", mass = \"kg\", time = \"s\" }\n";

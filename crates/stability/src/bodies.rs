@@ -1,7 +1,7 @@
 //! Bodies made in code: rigid ones, and point masses joined by springs.
 
+use dynamics::{Initial, PointShapes};
 use faer::sparse::{SparseColMat, Triplet};
-use frames_rk4::{Initial, PointShapes};
 use modal::{BodyPoint, Constants, Modes, ReducedBody, RigidMotion, Solver, Support};
 use nalgebra::{Matrix3, Vector3};
 

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use frames_rk4::Method;
+use dynamics::Method;
 use modal::ReducedBody;
 
 /// The schemes whose bounds are written down, in the order of [`HardCase::expected`].

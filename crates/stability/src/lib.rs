@@ -14,7 +14,7 @@ pub mod structure;
 pub mod time;
 pub mod trial;
 
-use frames_rk4::Method;
+use dynamics::Method;
 
 pub use case::{BOUNDED, BodyCheck, Expected, Extent, HardCase, Outcome};
 

@@ -1,8 +1,8 @@
 //! Mesh and material: slivers, curved elements, extreme materials and units, one element, any numbering, symmetry, and
 //! meshes that are no body.
 
+use dynamics::Method;
 use fem_tet10::{Material, Materials, Mesh, MeshParts, PointMass, assemble};
-use frames_rk4::Method;
 
 use crate::Expected::{Refused, Within};
 use crate::bodies::Elastic;

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use frames_rk4::{Initial, Method};
+use dynamics::{Initial, Method};
 use modal::ReducedBody;
 use nalgebra::Vector3;
 use rigid_kin::{Attitude, Inertia, TorqueFreeMotion, euler_angular_acceleration};

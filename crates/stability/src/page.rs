@@ -87,7 +87,7 @@ fn cell(outcome: &Outcome, expected: Option<&Expected>, refusals: &mut Vec<Strin
     }
 }
 
-fn name(method: frames_rk4::Method) -> String {
+fn name(method: dynamics::Method) -> String {
     match method.formulation {
         "paper" if method.scheme == "rkmk4" => "paper rkmk4".to_owned(),
         _ => method.scheme.to_owned(),

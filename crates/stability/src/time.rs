@@ -6,7 +6,7 @@
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-use frames_rk4::{
+use dynamics::{
     BodyField, Expression, FieldLoad, History, Initial, LoadFrame, Method, PointForce, SetupError, SharedLoad, Table,
 };
 use modal::ReducedBody;

@@ -1,8 +1,6 @@
 //! A run of a case, and its largest error.
 
-use frames_rk4::{
-    Initial, Method, Observation, Physics, PointShapes, Rows, Setup, SharedLoad, Simulation, StepControl,
-};
+use dynamics::{Initial, Method, Observation, Physics, PointShapes, Rows, Setup, SharedLoad, Simulation, StepControl};
 use modal::ReducedBody;
 use nalgebra::Vector3;
 use rigid_kin::{Attitude, Inertia, TorqueFreeMotion};

@@ -1,6 +1,6 @@
 //! One body with everything, with nothing but its rigid motion, and with nothing but translation.
 
-use flexframe::frames_rk4::{ConservativeBody, Stats};
+use flexframe::dynamics::{ConservativeBody, Stats};
 use flexframe::scene::{Model, Scene};
 
 use crate::examples::{build, scene};

@@ -12,7 +12,7 @@ mod top;
 
 use std::path::PathBuf;
 
-use flexframe::frames_rk4::Observation;
+use flexframe::dynamics::Observation;
 use flexframe::scene::{Model, Scene};
 
 fn repository() -> PathBuf {

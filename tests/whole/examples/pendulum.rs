@@ -1,6 +1,6 @@
 //! Compound pendulums on a hinge under gravity, against the elliptic integral.
 
-use flexframe::frames_rk4::Observation;
+use flexframe::dynamics::Observation;
 use flexframe::scene::{Body, Choice, Effect, Materials, MeshedBody, Model, Scene};
 use nalgebra::Vector3;
 

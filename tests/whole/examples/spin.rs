@@ -1,7 +1,7 @@
 //! The paper's plate spinning across and along its first bending, without stiffening.
 
 use flexframe::advice::Refusal;
-use flexframe::frames_rk4::{Effect, EffectMap, SteadySpin};
+use flexframe::dynamics::{Effect, EffectMap, SteadySpin};
 use nalgebra::Vector3;
 
 use crate::examples::{build, rows, scene};

@@ -1,6 +1,6 @@
 //! The heavy symmetrical top.
 
-use flexframe::frames_rk4::Observation;
+use flexframe::dynamics::Observation;
 use nalgebra::Vector3;
 
 use crate::examples::{build, rows, scene};

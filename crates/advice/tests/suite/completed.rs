@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use advice::{Advice, AdviceError, Findings, Row, StressField, StressSource, advise, stress, stress_row};
+use dynamics::{BodyField, Effect, FieldLoad, History, Initial, SharedLoad};
 use faer::Mat;
-use frames_rk4::{BodyField, Effect, FieldLoad, History, Initial, SharedLoad};
 use nalgebra::Vector3;
 
 use crate::plate::{plate, spinning};

@@ -1,7 +1,7 @@
 //! Estimated influences against the real ones: an effect that is called negligible must be.
 
 use advice::{Case, advise};
-use frames_rk4::{Drive, DrivenMotion, DrivenSpeed, Effect, EffectMap, History, Initial, Observation};
+use dynamics::{Drive, DrivenMotion, DrivenSpeed, Effect, EffectMap, History, Initial, Observation};
 
 use crate::plate::{CORNER, clamped, plate, run, spinning};
 
@@ -58,7 +58,7 @@ fn compare(name: &str, case: &Case) {
     assert!(advice.spin >= 0.99 * spin, "{name}: {} {spin}", advice.spin);
 }
 
-fn pulse(size: f64) -> [frames_rk4::SharedLoad; 1] {
+fn pulse(size: f64) -> [dynamics::SharedLoad; 1] {
     [plate().force(CORNER, [0.0, 0.0, size], History::HalfSine { start: 0.0, duration: 0.02 })]
 }
 

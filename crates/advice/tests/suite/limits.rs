@@ -1,7 +1,7 @@
 //! Models that are known to be wrong.
 
 use advice::{Refusal, limits};
-use frames_rk4::{Effect, EffectMap};
+use dynamics::{Effect, EffectMap};
 
 use crate::plate::{plate, spinning};
 

@@ -3,12 +3,12 @@
 use std::sync::{Arc, OnceLock};
 
 use advice::Case;
-use fem_tet10::{
-    GeometricTerms, Material, Materials, Mesh, PointMass, assemble, read_msh, reduced_geometric_stiffness,
-};
-use frames_rk4::{
+use dynamics::{
     EffectMap, History, Initial, Method, Observation, Physics, PointForce, PointShapes, Rows, Setup, SharedLoad,
     Simulation, StepControl,
+};
+use fem_tet10::{
+    GeometricTerms, Material, Materials, Mesh, PointMass, assemble, read_msh, reduced_geometric_stiffness,
 };
 use modal::{BodyPoint, Modes, ReducedBody, RigidMotion, Solver, Support, centrifugal_fields};
 use nalgebra::Vector3;

@@ -1,7 +1,7 @@
 //! What happened against what was assumed.
 
 use advice::{Backbone, Broken, Case, Detuning, Refusal, Review, advise};
-use frames_rk4::{Effect, EffectMap, History, Initial, Method, Physics, Reached, Rows, Setup, Simulation, StepControl};
+use dynamics::{Effect, EffectMap, History, Initial, Method, Physics, Reached, Rows, Setup, Simulation, StepControl};
 use nalgebra::Vector3;
 
 use crate::plate::{CORNER, clamped, plate, run, spinning};
@@ -13,7 +13,7 @@ fn what_was_assumed_holds_and_what_was_not_is_named_with_its_time() {
     let loads = [plate().force(CORNER, [0.0, 0.0, 1.0], History::HalfSine { start: 0.1, duration: 0.02 })];
     let pushed = plate().case(&zeta, &loads, &calm, 0.3);
     let rows = run(&pushed, EffectMap::all());
-    let review = |effects, case, advice: &advice::Advice, rows: &[frames_rk4::Observation]| {
+    let review = |effects, case, advice: &advice::Advice, rows: &[dynamics::Observation]| {
         let mut review = Review::new(case, effects, advice);
         rows.iter().for_each(|row| review.observe(row).unwrap());
         review.broken().to_vec()

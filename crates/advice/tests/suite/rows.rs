@@ -1,7 +1,7 @@
 //! Rows whose numbers are known.
 
 use advice::{AdviceError, Case, StaticCompliance, advise, screen};
-use frames_rk4::{Effect, EffectMap, History, Initial, Pattern, SharedLoad};
+use dynamics::{Effect, EffectMap, History, Initial, Pattern, SharedLoad};
 use nalgebra::Vector3;
 
 use crate::plate::{CORNER, plate, run, spinning};
@@ -184,7 +184,7 @@ fn flexibility_is_what_the_modes_add_to_the_rigid_acceleration() {
         let case = plate().case(&zeta, &loads, &initial, duration);
         let Pattern { columns, vector, .. } = loads[0].pattern().unwrap();
         let rigid: f64 = columns[..6].iter().map(|column| column.dot(&vector).powi(2)).sum::<f64>().sqrt();
-        let size = |row: &frames_rk4::Observation| row.modal_acceleration.iter().map(|a| a * a).sum::<f64>().sqrt();
+        let size = |row: &dynamics::Observation| row.modal_acceleration.iter().map(|a| a * a).sum::<f64>().sqrt();
         let real = run(&case, EffectMap::all()).iter().map(size).fold(0.0, f64::max) / rigid;
         let row = advise(&case, 1e-3).unwrap();
         let row = &row.effects[Effect::Flexibility];

@@ -1,7 +1,7 @@
 //! What an effect really does: the scene run with it switched.
 
 use advice::Subject;
-use frames_rk4::{Effect, EffectMap, Observation, Rows, StepControl};
+use dynamics::{Effect, EffectMap, Observation, Rows, StepControl};
 use nalgebra::{Matrix3, Vector3};
 use scene::{Choice, Flexible, Large, Model, ModelBuilder, Scene};
 use serde::Serialize;

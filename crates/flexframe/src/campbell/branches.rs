@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use frames_rk4::{EigenError, SpinMode, SteadySpin};
+use dynamics::{EigenError, SpinMode, SteadySpin};
 use serde::Serialize;
 
 /// |⟨a, b⟩|² of two shapes that are taken for the same without a closer look. Above ½ only one can be.

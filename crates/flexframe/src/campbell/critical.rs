@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use frames_rk4::{EigenError, SteadySpin};
+use dynamics::{EigenError, SteadySpin};
 use serde::Serialize;
 
 use super::branches::Branches;

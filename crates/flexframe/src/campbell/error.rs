@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
+use dynamics::EigenError;
 use figures::FigureError;
-use frames_rk4::EigenError;
 use scene::BuildError;
 
 use crate::write_error::WriteError;

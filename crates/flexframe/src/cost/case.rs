@@ -1,6 +1,6 @@
 //! A scene with its model, ready to be run in any way.
 
-use frames_rk4::{Method, Rows, SetupError, Simulation, StepControl};
+use dynamics::{Method, Rows, SetupError, Simulation, StepControl};
 use scene::{Model, Scene, StartError};
 
 use super::run::Scales;

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::time::Instant;
 
-use frames_rk4::{Method, StepControl};
+use dynamics::{Method, StepControl};
 use serde::Serialize;
 
 use super::case::PreparedScene;

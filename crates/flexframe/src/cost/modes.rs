@@ -1,6 +1,6 @@
 //! Modes as an axis of their own: what keeping fewer or more of them changes.
 
-use frames_rk4::{Method, StepControl};
+use dynamics::{Method, StepControl};
 use scene::{Model, Scene};
 use serde::Serialize;
 

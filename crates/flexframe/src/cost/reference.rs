@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use frames_rk4::{Method, StepControl};
+use dynamics::{Method, StepControl};
 use serde::Serialize;
 
 use super::case::PreparedScene;

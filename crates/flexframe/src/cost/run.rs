@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use frames_rk4::{Observation, PointMotion, Reached, Simulation, Stats};
+use dynamics::{Observation, PointMotion, Reached, Simulation, Stats};
 use nalgebra::Vector3;
 use scene::Model;
 use serde::Serialize;

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use frames_rk4::StepControl;
+use dynamics::StepControl;
 use serde::Serialize;
 
 /// Step or tolerance, as in the scene.

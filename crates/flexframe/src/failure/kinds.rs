@@ -2,9 +2,9 @@
 
 use advice::AdviceError;
 use body_file::BodyFileError;
+use dynamics::{EigenError, LoadedError, SetupError};
 use fem_tet10::{AssemblyError, MeshError};
 use figures::FigureError;
-use frames_rk4::{EigenError, LoadedError, SetupError};
 use mesh_import::ImportError;
 use modal::ModalError;
 use report::ReportError;

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use frames_rk4::RotationShapes;
+use dynamics::RotationShapes;
 use results::Metadata;
 use scene::{BuildProgress, Model, Scene};
 

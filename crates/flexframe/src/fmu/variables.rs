@@ -1,6 +1,6 @@
 //! The variables of an FMU: inputs, and the columns of a results file as outputs.
 
-use frames_rk4::{DrivenMotion, Effect};
+use dynamics::{DrivenMotion, Effect};
 use percent_encoding::{AsciiSet, CONTROLS, utf8_percent_encode};
 use results::{Column, Metadata, Values};
 use scene::{Load, Model, Scene};

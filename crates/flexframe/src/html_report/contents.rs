@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use frames_rk4::Manifold;
+use dynamics::Manifold;
 use modal::{ReducedBody, SecondOrderShapes};
 use nalgebra::Vector3;
 use report::{

@@ -3,8 +3,8 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
+use dynamics::SharedLoad;
 use figures::{ChartGrid, FigureError, LineChart, Reference, Scale, Series, Stroke};
-use frames_rk4::SharedLoad;
 use results::Results;
 use scene::{Model, Scene};
 

@@ -2,7 +2,7 @@
 
 use std::any::Any;
 
-use frames_rk4::{LoadFrame, PointForce, SharedLoad};
+use dynamics::{LoadFrame, PointForce, SharedLoad};
 use nalgebra::Vector3;
 use results::Results;
 use rigid_kin::{Attitude, RigidBody, RigidState, Wrench};

@@ -1,6 +1,6 @@
 //! How well what exact motion conserves is conserved.
 
-use frames_rk4::Observation;
+use dynamics::Observation;
 use nalgebra::Vector3;
 use serde::Serialize;
 

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use advice::Refusal;
-use frames_rk4::{CheckpointError, StepError};
+use dynamics::{CheckpointError, StepError};
 use results::FileError;
 use scene::{BuildError, SceneError, StartError};
 

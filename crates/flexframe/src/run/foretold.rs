@@ -4,7 +4,7 @@ use std::fmt;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-use frames_rk4::{Reached, Simulation};
+use dynamics::{Reached, Simulation};
 use memory::Bytes;
 use results::{Metadata, bytes_per_row};
 use scene::{Rows, Scene, StepControl};

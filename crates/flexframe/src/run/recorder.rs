@@ -3,7 +3,7 @@
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 
-use frames_rk4::{Initial, Observation, Reached, Simulation, Stats, StepError};
+use dynamics::{Initial, Observation, Reached, Simulation, Stats, StepError};
 use nalgebra::Vector3;
 use results::{Results, Writer};
 use rigid_kin::Attitude;

@@ -1,7 +1,7 @@
 //! What is watched of a motion beside its rows: whether the assumptions of its model hold, and what should stay as it is.
 
 use advice::{Refusal, Review, StepEstimate};
-use frames_rk4::{EffectMap, Initial, Moment, Observation, Simulation};
+use dynamics::{EffectMap, Initial, Moment, Observation, Simulation};
 use scene::{BuildError, Load, Model, Scene};
 
 use super::balances::{Balances, Conserved, Monitor};

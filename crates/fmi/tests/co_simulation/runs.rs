@@ -3,8 +3,8 @@
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex};
 
+use flexframe::dynamics::{LoadFn, Rows, Setup, SharedLoad, Simulation};
 use flexframe::fmu::{FmuModel, Source};
-use flexframe::frames_rk4::{LoadFn, Rows, Setup, SharedLoad, Simulation};
 use flexframe::nalgebra::Vector3;
 use flexframe::scene::Scene;
 use flexframe_fmi::c_interface::{fmi2EnterInitializationMode, fmi2ExitInitializationMode};

@@ -1,6 +1,6 @@
 //! Energy over a long run with all that stresses a body, and large modes.
 
-use frames_rk4::Observation;
+use dynamics::Observation;
 use nonlinear::{bodies, cases};
 use scene::{Choice, Effect, Flexible, Model, Scene, StepControl};
 

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use frames_rk4::Observation;
+use dynamics::Observation;
 use nonlinear::cases;
 use scene::{Choice, Effect, Large, Load, Model, Scene};
 

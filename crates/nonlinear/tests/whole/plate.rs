@@ -1,6 +1,6 @@
 //! The plate of the paper, with its masses, on its own mesh.
 
-use frames_rk4::Method;
+use dynamics::Method;
 use nonlinear::{Solid, cases};
 use scene::{Body, Choice, Effect, Large, Materials, Model, Scene};
 

@@ -3,8 +3,8 @@
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
+use dynamics::{Drive, Effect};
 use fem_tet10::{Materials, Mesh};
-use frames_rk4::{Drive, Effect};
 use matrix_import::MatrixFiles;
 use mesh_import::Imported;
 use modal::Support;

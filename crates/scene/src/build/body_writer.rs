@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use body_file::{BodyFile, BodyFileError, Declared, Hash, Kind, Number, Writer};
+use dynamics::Manifold;
 use faer::sparse::SparseColMatRef;
 use faer::{Mat, MatRef};
 use fem_tet10::{Materials, Mesh};
-use frames_rk4::Manifold;
 use modal::{Modes, SecondOrderShapes};
 use whole_file::TemporaryFolder;
 

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use frames_rk4::Effect;
+use dynamics::Effect;
 use modal::Modes;
 
 use super::assembly::{Assembled, AssembledMesh, Assembly};

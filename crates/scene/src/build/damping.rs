@@ -1,6 +1,6 @@
 //! The damping of a scene.
 
-use frames_rk4::Effect;
+use dynamics::Effect;
 use modal::ReducedBody;
 
 use crate::effects::Choice;

@@ -1,6 +1,6 @@
 //! Second stage: what the scene leaves open is decided.
 
-use frames_rk4::{Effect, EffectMap};
+use dynamics::{Effect, EffectMap};
 
 use super::physics;
 use super::survey::Survey;

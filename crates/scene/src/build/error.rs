@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use advice::{AdviceError, Refusal};
 use body_file::BodyFileError;
+use dynamics::{LoadedError, SetupError};
 use fem_tet10::{AssemblyError, MeshError};
-use frames_rk4::{LoadedError, SetupError};
 use mesh_import::ImportError;
 use modal::ModalError;
 use nalgebra::Vector3;

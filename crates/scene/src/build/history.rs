@@ -1,6 +1,6 @@
 //! Histories of a scene as functions of time.
 
-use frames_rk4::{Expression, SetupError, Table};
+use dynamics::{Expression, SetupError, Table};
 
 use super::error::BuildError;
 use crate::document::join;
@@ -8,7 +8,7 @@ use crate::history::{Formula, History, TablePoints};
 use crate::scene::Scene;
 
 /// A history; `key` is its place in the scene.
-pub(super) fn history(scene: &Scene, key: &str, history: &History) -> Result<frames_rk4::History, BuildError> {
+pub(super) fn history(scene: &Scene, key: &str, history: &History) -> Result<dynamics::History, BuildError> {
     let refused = |error: SetupError| -> BuildError {
         if let SetupError::HistoryNotFinite { time, found } = error {
             let found = format!("a factor of {found} at time {time:.9}");
@@ -25,7 +25,7 @@ pub(super) fn history(scene: &Scene, key: &str, history: &History) -> Result<fra
     let made = if let History::Product { factors } = history {
         let factors = factors.iter().enumerate();
         let made = factors.map(|(i, factor)| self::history(scene, &format!("{key}.factors[{i}]"), factor));
-        frames_rk4::History::Product { factors: made.collect::<Result<_, _>>()? }
+        dynamics::History::Product { factors: made.collect::<Result<_, _>>()? }
     } else {
         let table = |TablePoints { points, .. }: &TablePoints| {
             let (times, values) = points.iter().map(|[t, v]| (*t, *v)).unzip();

@@ -1,6 +1,6 @@
 //! The state that a scene begins with.
 
-use frames_rk4::Initial;
+use dynamics::Initial;
 use rigid_kin::Attitude;
 
 use crate::scene::Scene;

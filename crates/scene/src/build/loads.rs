@@ -2,12 +2,12 @@
 
 use std::sync::Arc;
 
-use faer::Mat;
-use fem_tet10::{Location, MeanRotation, Mesh};
-use frames_rk4::{
+use dynamics::{
     BodyField, Effect, FieldLoad, LoadFrame, PointForce, PointMoment, PointShapes, RotationShapes, SecondOrder,
     SharedLoad,
 };
+use faer::Mat;
+use fem_tet10::{Location, MeanRotation, Mesh};
 use modal::{BodyPoint, Modes, ReducedBody};
 use nalgebra::Vector3;
 use rigid_kin::Attitude;
@@ -29,7 +29,7 @@ pub(super) struct MeshLoad {
     /// What it is, for the reader.
     name: String,
     action: Action,
-    pub history: frames_rk4::History,
+    pub history: dynamics::History,
     /// Whether it keeps its direction in the body or in the material.
     pub follows: bool,
     /// How the material that its direction turns with is turned by the nodes.

@@ -2,9 +2,9 @@
 
 use std::cell::OnceCell;
 
+use dynamics::Manifold;
 use faer::{Mat, MatRef};
 use fem_tet10::GeometricTerms;
-use frames_rk4::Manifold;
 use modal::{Modes, SecondOrderShapes, StaticAccuracy};
 
 use super::backbones::Derivatives;

@@ -1,8 +1,8 @@
 //! The finite-element model of a scene.
 
+use dynamics::Drive;
 use faer::Mat;
 use fem_tet10::Mesh;
-use frames_rk4::Drive;
 use modal::{Modes, Support};
 
 use super::loads::MeshLoad;

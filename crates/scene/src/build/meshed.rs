@@ -4,9 +4,9 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use advice::{buckling, limits, unsteady};
+use dynamics::{Effect, LoadedError, Physics, PointShapes};
 use faer::Mat;
 use fem_tet10::{Location, Mesh};
-use frames_rk4::{Effect, LoadedError, Physics, PointShapes};
 use modal::{BodyPoint, Modes, ReducedBody};
 use nalgebra::Vector3;
 

@@ -1,7 +1,7 @@
 //! A body and its loads in the coordinates of some modes.
 
 use advice::Case;
-use frames_rk4::Initial;
+use dynamics::Initial;
 use modal::{Modes, ReducedBody};
 use nalgebra::Vector3;
 

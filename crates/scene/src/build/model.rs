@@ -3,12 +3,12 @@
 use std::sync::Arc;
 
 use advice::{Advice, Backbone, Case, Refusal, StepEstimate};
-use faer::Mat;
-use fem_tet10::Mesh;
-use frames_rk4::{
+use dynamics::{
     ConservativeBody, History, Initial, LoadFrame, LoadedError, LoadedMode, Manifold, Physics, PointShapes, Rows,
     Setup, SharedLoad, Simulation, StepControl,
 };
+use faer::Mat;
+use fem_tet10::Mesh;
 use modal::{Modes, ReducedBody};
 use nalgebra::Vector3;
 
@@ -204,7 +204,7 @@ impl Model {
     pub fn start_with(
         &self,
         scene: &Scene,
-        method: frames_rk4::Method,
+        method: dynamics::Method,
         control: StepControl,
         rows: Rows,
     ) -> Result<Simulation, StartError> {

@@ -1,7 +1,7 @@
 //! Which effects a scene gets.
 
 use advice::Advice;
-use frames_rk4::{Drive, Effect, EffectMap, Method};
+use dynamics::{Drive, Effect, EffectMap, Method};
 use modal::{ReducedBody, RigidMotion};
 
 use super::loads::MeshLoad;
@@ -28,7 +28,7 @@ pub(super) fn may_stress(scene: &Scene) -> bool {
 /// Whether a load stays as it is, seen from the body.
 pub(super) fn is_steady(scene: &Scene, motion: RigidMotion, drive: Option<&Drive>, load: &MeshLoad) -> bool {
     let turns = turning(scene, motion, drive) != Turning::Not;
-    matches!(load.history, frames_rk4::History::Constant) && (load.follows || !turns)
+    matches!(load.history, dynamics::History::Constant) && (load.follows || !turns)
 }
 
 /// Whether static shapes are to be added to the `flexible` modes that there are.

@@ -1,7 +1,7 @@
 //! How the points of the output are turned by the modes, for moments on them.
 
+use dynamics::{Manifold, RotationShapes};
 use faer::Mat;
-use frames_rk4::{Manifold, RotationShapes};
 use nalgebra::Vector3;
 
 use super::error::{BuildError, refuse};

@@ -1,6 +1,6 @@
 //! The points that a scene asks for, and those that are chosen where it names none.
 
-use frames_rk4::PointShapes;
+use dynamics::PointShapes;
 use nalgebra::Vector3;
 
 use super::error::BuildError;

@@ -1,7 +1,7 @@
 //! Third stage: the body that has what was decided.
 
 use advice::{Advice, Backbone, Findings, advise};
-use frames_rk4::Effect;
+use dynamics::Effect;
 use modal::Modes;
 
 use super::backbones::Backbones;

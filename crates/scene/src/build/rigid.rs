@@ -1,8 +1,8 @@
 //! A rigid body without a mesh.
 
 use advice::{Case, advise};
+use dynamics::{Effect, Physics, PointShapes};
 use faer::Mat;
-use frames_rk4::{Effect, Physics, PointShapes};
 use modal::{BodyPoint, ReducedBody, Support};
 use nalgebra::{Matrix3, Vector3};
 

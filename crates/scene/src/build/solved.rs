@@ -4,12 +4,12 @@ use std::cell::{Cell, OnceCell, RefCell};
 use std::path::{Path, PathBuf};
 
 use body_file::{BodyFileError, Digest, Hash};
+use dynamics::DrivenMotion;
 use faer::{ColRef, Mat, MatRef};
 use fem_tet10::{
     AssemblyError, GeometricTerms, StressRecovery, StressSites, extended_geometric_stiffness,
     geometric_stiffness_product, second_order_energies, second_order_forces,
 };
-use frames_rk4::DrivenMotion;
 use modal::{
     ModalError, Modes, ReducedBody, SecondOrderShapes, Solver, StaticAccuracy, Support, acceleration_fields,
     centrifugal_fields, mass_left_out, turning_field,

@@ -1,9 +1,9 @@
 //! What loads and a drive stress, and what that makes of the stiffness.
 
 use advice::{Row, StressField, StressSource, stress, stress_row};
+use dynamics::Effect;
 use faer::{Mat, MatRef};
 use fem_tet10::GeometricTerms;
-use frames_rk4::Effect;
 use modal::Modes;
 
 use super::directed::Directed;

@@ -8,8 +8,8 @@
 //! The forces f_j are the loads, in every direction that they may come to have in the body, the centrifugal force of the spin
 //! and the Euler force of its change. The inertia of the modes' own motion and the Coriolis force are not among them.
 
+use dynamics::{DrivenMotion, History, Observation};
 use faer::{Mat, MatRef};
-use frames_rk4::{DrivenMotion, History, Observation};
 use modal::{Modes, ReducedBody};
 use nalgebra::Vector3;
 

@@ -9,9 +9,9 @@
 //! Piola–Kirchhoff stress, complete to second order in the large modes; as long as strains are small, it is the true stress
 //! in axes that turn with the material.
 
+use dynamics::{Manifold, Observation};
 use faer::Mat;
 use fem_tet10::{StressSites, von_mises};
-use frames_rk4::{Manifold, Observation};
 use modal::{Modes, SecondOrderShapes};
 use nalgebra::Vector3;
 

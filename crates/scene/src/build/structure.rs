@@ -1,8 +1,8 @@
 //! What is asked of the finite-element model of a body.
 
+use dynamics::DrivenMotion;
 use faer::{Mat, MatRef};
 use fem_tet10::{GeometricTerms, StressSites};
-use frames_rk4::DrivenMotion;
 use modal::{Modes, ReducedBody, SecondOrderShapes, StaticAccuracy};
 use nalgebra::Vector3;
 

@@ -2,8 +2,8 @@
 
 use std::collections::HashSet;
 
+use dynamics::{Drive, DrivenMotion, DrivenSpeed};
 use fem_tet10::Mesh;
-use frames_rk4::{Drive, DrivenMotion, DrivenSpeed};
 use modal::{RigidMotion, Support};
 use nalgebra::Vector3;
 

@@ -1,7 +1,7 @@
 //! The reactions of several supports, each for itself.
 
+use dynamics::{EffectMap, Manifold, Observation, SupportReactions};
 use faer::Mat;
-use frames_rk4::{EffectMap, Manifold, Observation, SupportReactions};
 use modal::{Modes, StaticAccuracy};
 use nalgebra::Vector3;
 

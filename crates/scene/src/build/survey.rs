@@ -1,7 +1,7 @@
 //! First stage: what is known of a body with all the modes that were searched for.
 
 use advice::{Advice, Case, advise, screen};
-use frames_rk4::Effect;
+use dynamics::Effect;
 use modal::Modes;
 
 use super::backbones::{Backbones, backbones};

@@ -1,6 +1,6 @@
 //! Whether and how the body of a scene can turn.
 
-use frames_rk4::{Drive, DrivenMotion, Effect};
+use dynamics::{Drive, DrivenMotion, Effect};
 use modal::RigidMotion;
 use nalgebra::Vector3;
 

@@ -1,6 +1,6 @@
 //! The rules on `[effects]`: what is asked for must be there, and what is there by force cannot be switched off.
 
-use frames_rk4::{Effect, Method};
+use dynamics::{Effect, Method};
 
 use super::Check;
 use crate::constraint::Constraint;

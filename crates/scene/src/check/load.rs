@@ -1,6 +1,6 @@
 //! The rules on `[[loads]]`.
 
-use frames_rk4::LoadFrame;
+use dynamics::LoadFrame;
 
 use super::Check;
 use crate::constraint::Constraint;

@@ -1,6 +1,6 @@
 //! The rules on `[modes]`.
 
-use frames_rk4::MOST_LARGE;
+use dynamics::MOST_LARGE;
 
 use super::Check;
 use crate::effects::Choice;

@@ -1,6 +1,6 @@
 //! The rules on `[time]` and `[output]`.
 
-use frames_rk4::{Method, Rows, StepControl};
+use dynamics::{Method, Rows, StepControl};
 
 use super::Check;
 use crate::document::join;

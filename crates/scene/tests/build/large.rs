@@ -59,7 +59,7 @@ fn the_advice_says_what_linear_strain_gets_wrong_of_each_mode() {
     assert!((error.frequency / -0.00799 - 1.0).abs() < 0.02, "{error:?}");
     let phase = 0.00799 * 0.25 * model.body.circular_frequencies[0];
     assert!((error.phase / phase - 1.0).abs() < 0.02 && (0.017..0.021).contains(&error.deflection), "{error:?}");
-    let row = &model.advice.effects[frames_rk4::Effect::LargeDeflection];
+    let row = &model.advice.effects[dynamics::Effect::LargeDeflection];
     assert!(
         row.on && row.why.contains("Mode 1 bends the body by at most 1.") && row.why.contains("too high"),
         "{row:?}"

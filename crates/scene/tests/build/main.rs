@@ -25,7 +25,7 @@ mod work;
 
 use std::path::Path;
 
-use frames_rk4::{Observation, PointMotion};
+use dynamics::{Observation, PointMotion};
 use nalgebra::Vector3;
 use scene::{Body, BuildError, BuildProgress, Material, Materials, Model, Scene};
 

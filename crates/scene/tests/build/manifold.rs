@@ -2,7 +2,7 @@
 //! `nonlinear/tests/whole/elastica.rs`.)
 
 use advice::FourthOrder;
-use frames_rk4::Observation;
+use dynamics::Observation;
 use scene::{Model, Scene};
 
 use crate::{build, observations, parse};

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use advice::Refusal;
-use frames_rk4::{ConservativeBody, Effect};
+use dynamics::{ConservativeBody, Effect};
 
 use crate::{BENDING, BREADTH, BuildProgress, CLAMPED, LENGTH, Model, Scene, YOUNG, bar, build};
 

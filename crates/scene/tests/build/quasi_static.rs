@@ -1,6 +1,6 @@
 //! Steps under step control where most of the body follows its loads: they are as long as the answer allows.
 
-use frames_rk4::{Observation, Reached, Rows, StepControl};
+use dynamics::{Observation, Reached, Rows, StepControl};
 use scene::{Model, Scene};
 
 use crate::{CLAMPED, bar, build, parse};

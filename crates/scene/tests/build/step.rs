@@ -1,6 +1,6 @@
 //! What the steps are estimated to get wrong, against what they do.
 
-use frames_rk4::{Effect, Observation, Reached, Rows, StepControl};
+use dynamics::{Effect, Observation, Reached, Rows, StepControl};
 use scene::{Choice, Model, Scene};
 
 pub(super) fn example(name: &str) -> Scene {

@@ -244,7 +244,7 @@ fn a_pressure_all_round_gives_neither_a_force_nor_a_moment() {
         // What a pressure on the long sides alone gives in that time.
         let impulse = size * LENGTH * BREADTH * duration;
         let rows = observations(&scene, &model);
-        let largest = |of: &dyn Fn(&frames_rk4::Observation) -> f64| rows.iter().map(of).fold(0.0, f64::max);
+        let largest = |of: &dyn Fn(&dynamics::Observation) -> f64| rows.iter().map(of).fold(0.0, f64::max);
         let linear = largest(&|row| row.linear_momentum_global.norm()) / impulse;
         let angular = largest(&|row| row.angular_momentum_global.norm()) / (impulse * LENGTH);
         println!("{linear:e} {angular:e}, bent by {}", model.deflection(&rows[0].modal_displacement));

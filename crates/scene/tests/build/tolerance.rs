@@ -1,6 +1,6 @@
 //! What step control keeps within its tolerance.
 
-use frames_rk4::{Effect, Observation, Rows, StepControl};
+use dynamics::{Effect, Observation, Rows, StepControl};
 use scene::{Choice, Model, Scene};
 
 use super::step::example;
@@ -28,7 +28,7 @@ fn errors(model: &Model, scene: &Scene, tolerance: f64, reference: f64) -> [f64;
     };
     let acceleration = |difference: bool| {
         largest(&|a, b| {
-            let of = |(a, b): (&frames_rk4::PointMotion, &frames_rk4::PointMotion)| {
+            let of = |(a, b): (&dynamics::PointMotion, &dynamics::PointMotion)| {
                 if difference { (a.acceleration - b.acceleration).norm() } else { b.acceleration.norm() }
             };
             a.points.iter().zip(&b.points).map(of).fold(0.0, f64::max)

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
+use dynamics::Effect;
 use fem_tet10::{Material, Materials, Matrices, Mesh, assemble, read_msh};
-use frames_rk4::Effect;
 use scene::Cache;
 
 use super::files::{abaqus, matrix_market, table};

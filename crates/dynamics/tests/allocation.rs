@@ -1,0 +1,82 @@
+//! A step allocates nothing.
+
+#[allow(dead_code)] // shared with the other test programs, which use all of it
+mod common;
+
+use allocation_counter::measure;
+use dynamics::{Expression, History, Initial, Method, Physics, Reached, Rows, Setup, Simulation, StepControl, Table};
+use nalgebra::Vector3;
+
+fn spinning() -> Initial {
+    Initial { omega: Vector3::new(4.0, -6.0, 7.0), ..Initial::at_rest(10) }
+}
+
+#[test]
+fn a_step_of_the_paper_s_scheme_allocates_nothing() {
+    let ring = common::ring();
+    let load = ring.half_sine([-100.0, 0.0, 0.0], [1.0, 2.0, 3.0], 1.0);
+    let mut scheme = ring.scheme(0.05, vec![load], &spinning(), 5e-5);
+    assert_eq!(measure(|| common::advance(&mut scheme, 1000)).count_total, 0);
+    // The counter counts: a copy of the state has lists.
+    assert!(measure(|| drop(scheme.state().clone())).count_total > 0);
+}
+
+/// A run of the ring under a load, with a point that is observed.
+fn simulation(method: Method, control: StepControl, end: f64) -> Simulation {
+    let ring = common::ring();
+    Simulation::new(&Setup {
+        physics: &Physics::default(),
+        body: &ring.body,
+        damping_ratios: &[0.0; 10],
+        loads: &[ring.half_sine([-100.0, 0.0, 0.0], [10.0, 20.0, 30.0], end)],
+        reference_points: ring.reference_points_body(),
+        initial: &spinning(),
+        method,
+        control,
+        end,
+        rows: Rows::EverySteps(10),
+        points: &[ring.point([0.0, -80.0, 20.0])],
+    })
+    .unwrap()
+}
+
+/// Allocations of 1000 steps with a row after each ten, after `warm` such rows.
+fn allocations(mut simulation: Simulation, warm: usize) -> u64 {
+    let mut out = simulation.observation().unwrap();
+    let mut rows = |count| {
+        for _ in 0..count {
+            assert_eq!(simulation.advance(u64::MAX).unwrap(), Reached::Row);
+            simulation.observe(&mut out).unwrap();
+        }
+    };
+    rows(warm);
+    measure(|| rows(100)).count_total
+}
+
+#[test]
+fn steps_and_rows_of_a_run_allocate_nothing_once_the_step_is_known() {
+    for method in Method::ALL {
+        assert_eq!(allocations(simulation(method, StepControl::Fixed(5e-5), 1.0), 1), 0, "{method:?}");
+    }
+    for method in [Method::EXPONENTIAL, Method::RKMK4] {
+        assert_eq!(allocations(simulation(method, StepControl::Tolerance(1e-6), 1.0), 200), 0, "{method:?}");
+    }
+}
+
+#[test]
+fn histories_allocate_nothing() {
+    let text = "min(exp(-t^2), 2)*max(sin(2*pi*t), cos(t), 0.5)*abs(t)^0.3 + hypot(atan2(t, 2), sqrt(t))";
+    let rows: Vec<f64> = (0..1000).map(f64::from).collect();
+    let history = History::Product {
+        factors: vec![
+            History::Sweep { from: 1.0, to: 9.0, start: 0.0, duration: 10.0 },
+            History::Table(Table::new(rows.clone(), rows.iter().map(|t| t.sin()).collect()).unwrap()),
+            History::Expression(Expression::new(text, vec![3.0]).unwrap()),
+            History::Ramp { start: 1.0, duration: 1.0 },
+        ],
+    };
+    let mut sum = 0.0;
+    let memory = measure(|| sum = (0..1000).map(|k| 0.01 * f64::from(k)).map(|t| history.at(t, t + 0.005)).sum());
+    assert_eq!(memory.count_total, 0);
+    assert!(sum.is_finite() && sum != 0.0);
+}
