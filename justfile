@@ -79,7 +79,7 @@ nonlinear:
 
 # Steps a second of every scheme on one core, and what each effect costs per step and in set-up.
 bench:
-    cargo bench --quiet --package frames-rk4 --bench steps
+    cargo bench --quiet --package dynamics --bench steps
     cargo bench --quiet --bench effects
 
 # docs/performance.md: against SciPy, SLEPc, CalculiX and Exudyn (`quick`: twenty minutes, `full`: hours, with all peers to their ends; parts: `modes`, `size`, `loop`, `page`).

@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use dynamics::{Method, Observation, Rows, StepControl};
 use flexframe::cost::{CostReport, CostSettings, LadderRun, Line, Measured, Outcome, Setting, price_list};
-use scene::{Model, Scene};
+use scene::{METHODS, Model, Scene};
 
 const TARGET: f64 = 1e-4;
 
@@ -56,7 +56,7 @@ fn runs(line: &Line) -> Vec<(f64, &Measured)> {
 
 #[test]
 fn every_method_is_in_the_list_with_its_order() {
-    for method in Method::ALL {
+    for method in METHODS {
         let line = line(method, false);
         assert_eq!(line.order, method.order);
         let order = line.measured_order.unwrap_or_else(|| panic!("no order of {}", line.name()));
@@ -65,7 +65,7 @@ fn every_method_is_in_the_list_with_its_order() {
             assert_eq!(run.evaluations, run.steps * u64::from(method.evaluations_per_step));
         }
     }
-    let controlled = Method::ALL.into_iter().filter(|method| method.estimates_error);
+    let controlled = METHODS.into_iter().filter(|method| method.estimates_error);
     assert_eq!(controlled.map(|method| line(method, true).rows.len()).filter(|rows| *rows > 2).count(), 2);
 }
 

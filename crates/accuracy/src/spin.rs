@@ -1,6 +1,7 @@
 //! The spin that the paper's scheme makes or loses in steady rotation.
 
-use flexframe::dynamics::{Method, Rows, StepControl};
+use flexframe::dynamics::{Rows, StepControl};
+use flexframe::frames_rk4;
 use flexframe::scene::{Assembly, BuildError, Flexible, Scene};
 
 /// Steps of the runs.
@@ -36,10 +37,10 @@ pub(super) fn spin_rates(scene: &Scene) -> Result<Vec<SpinRow>, BuildError> {
             Some((spins.last()? / spins.first()?).ln() / end)
         };
         let finest = end / STEPS.into_iter().fold(1, u64::max) as f64;
-        let Some(rate_of_limit) = rate(Method::PAPER_RKMK4, finest) else { continue };
+        let Some(rate_of_limit) = rate(frames_rk4::LIMIT, finest) else { continue };
         rows.extend(STEPS.iter().filter_map(|steps| {
             let step = end / *steps as f64;
-            Some(SpinRow { flexible, step, rate: rate(Method::PAPER, step)?, rate_of_limit })
+            Some(SpinRow { flexible, step, rate: rate(frames_rk4::PAPER, step)?, rate_of_limit })
         }));
     }
     Ok(rows)

@@ -25,7 +25,7 @@ fn main() {
     print!("{:<28}", "flexible modes");
     MODES.iter().for_each(|flexible| print!("{flexible:>17}"));
     println!();
-    for method in Method::ALL {
+    for method in common::METHODS {
         let control = StepControl::Fixed(STEP);
         print!("{:<28}", format!("{}, {}", method.formulation, method.scheme));
         for body in &bodies {
@@ -35,7 +35,7 @@ fn main() {
         println!();
     }
     println!("\nunder step control (tolerance 1e-6)");
-    for method in Method::ALL.into_iter().filter(|method| method.estimates_error) {
+    for method in common::METHODS.into_iter().filter(|method| method.estimates_error) {
         print!("{:<28}", format!("{}, {}", method.formulation, method.scheme));
         for body in &bodies {
             let (rate, evaluations) = measure(body, method, StepControl::Tolerance(1e-6));

@@ -39,7 +39,7 @@
 //! and another act on ξ, which is of third order.
 //!
 //! With large deflection the equations are those of the extended shapes, with coordinates ξ(q) and their slopes D on a
-//! curved manifold ([`Manifold`](crate::manifold::Manifold)). The constants are those of the coordinates z by which
+//! curved manifold ([`Manifold`](crate::conservative::manifold::Manifold)). The constants are those of the coordinates z by which
 //! ξ = E z, the modes and the products of the large ones; D is E ∂z/∂q:
 //!
 //! ```text
@@ -57,6 +57,7 @@ mod energy;
 mod evaluation;
 mod inertia_forces;
 mod load_scale;
+pub(crate) mod manifold;
 mod observation;
 mod rates;
 mod start;

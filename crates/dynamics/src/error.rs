@@ -144,10 +144,12 @@ pub enum SetupError {
         /// Its rigid motions.
         motion: Box<modal::RigidMotion>,
     },
-    /// Something that the formulation of the paper has not got.
-    #[error("the formulation paper has no {what}; take the conservative one")]
-    NotInPaper {
-        /// What.
+    /// Physics that the formulation does not have.
+    #[error("the formulation {formulation} has no {what}; take the conservative one")]
+    NotInFormulation {
+        /// The formulation.
+        formulation: &'static str,
+        /// The physics.
         what: &'static str,
     },
     /// The reference points lie on a line.

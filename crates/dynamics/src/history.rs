@@ -1,6 +1,7 @@
 //! How loads go with time.
 
 pub(crate) mod expression;
+pub(crate) mod formula_steps;
 mod scan;
 mod table;
 
@@ -220,7 +221,7 @@ impl History {
 
     /// Longest step that sees the factor as it is in a stretch of time around `branch_time` that has no corner: a sixteenth
     /// of a period of what swings, so that Simpson's rule errs by 1e-5 of it. Straight lines are seen by any step; for
-    /// expressions see [`FormulaSteps`](crate::formula_steps::FormulaSteps).
+    /// expressions see [`FormulaSteps`](crate::history::formula_steps::FormulaSteps).
     pub(crate) fn longest_step(&self, branch_time: f64) -> f64 {
         let of_period = |period: f64| period / 16.0;
         match self {

@@ -9,6 +9,7 @@ mod field;
 mod force;
 mod moment;
 mod scaled;
+pub(crate) mod signal;
 
 use std::any::Any;
 use std::fmt;
@@ -16,10 +17,10 @@ use std::sync::Arc;
 
 use nalgebra::{Matrix3, Vector3};
 
+use crate::body::second_order::SecondOrder;
+use crate::body::shapes::{PointShapes, RotationShapes};
 use crate::error::SetupError;
 use crate::history::History;
-use crate::motion::{PointShapes, RotationShapes};
-use crate::second_order::SecondOrder;
 
 pub use body_field::BodyField;
 pub use closure::LoadFn;
@@ -134,6 +135,59 @@ pub struct Kinematics<'a> {
     pub(crate) unit: bool,
 }
 
+/// A motion as displacements from an inertial frame, rigid ones included.
+#[derive(Debug, Clone, Copy)]
+pub struct InertialMotion<'a> {
+    /// Time.
+    pub time: f64,
+    /// The time at which the branches of piecewise laws are chosen.
+    pub branch_time: f64,
+    /// Takes global components to those of the frame.
+    pub body_from_global: &'a Matrix3<f64>,
+    /// Where the frame's origin is, global components.
+    pub frame_origin_global: Vector3<f64>,
+    /// Position of the body's origin, global components.
+    pub origin_global: Vector3<f64>,
+    /// Velocity of the body's origin, global components.
+    pub origin_velocity_global: Vector3<f64>,
+    /// Angular velocity, body components.
+    pub omega_body: Vector3<f64>,
+    /// Displacements of all modes, rigid and flexible (6+nf).
+    pub modal_displacement: &'a [f64],
+    /// Velocities of all modes (6+nf).
+    pub modal_velocity: &'a [f64],
+}
+
+impl<'a> InertialMotion<'a> {
+    fn coordinates(&self) -> Coordinates<'a> {
+        let Self { modal_displacement: displacement, modal_velocity: velocity, .. } = *self;
+        Coordinates { first: 0, displacement, velocity, on_manifold: None }
+    }
+
+    /// The motion as loads see it.
+    pub fn kinematics(&self) -> Kinematics<'a> {
+        let Self { time, branch_time, body_from_global, frame_origin_global, .. } = *self;
+        let Self { origin_global, origin_velocity_global, omega_body, .. } = *self;
+        Kinematics {
+            time,
+            branch_time,
+            body_from_global,
+            origin_global,
+            origin_velocity_global,
+            omega_body,
+            frame_origin_global,
+            coordinates: self.coordinates(),
+            unit: false,
+        }
+    }
+
+    /// Room for what loads do to this motion, each multiplied by `weight`: moments are about the point `center_body` in the
+    /// frame, and modal forces are added to `modal_force` (6+nf).
+    pub fn applied(&self, center_body: Vector3<f64>, weight: f64, modal_force: &'a mut [f64]) -> Applied<'a> {
+        Applied { weight, ..Applied::new(self.coordinates(), center_body, modal_force) }
+    }
+}
+
 /// Modal coordinates, of all modes or of the flexible ones alone.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Coordinates<'a> {
@@ -227,11 +281,11 @@ pub struct Applied<'a> {
     /// What everything added is multiplied by.
     pub(crate) weight: f64,
     /// Force, body components.
-    pub(crate) force_body: Vector3<f64>,
+    pub force_body: Vector3<f64>,
     /// Moment, body components.
-    pub(crate) moment_body: Vector3<f64>,
+    pub moment_body: Vector3<f64>,
     /// Power of the modal forces on the modal velocities.
-    pub(crate) modal_power: f64,
+    pub modal_power: f64,
     /// Ψᵀf is added here, of the modes of `coordinates`.
     modal_force: &'a mut [f64],
     /// Forces on q itself, on a manifold.

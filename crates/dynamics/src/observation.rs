@@ -1,15 +1,22 @@
 //! What is known of the motion at one time, whichever scheme made it.
 
+pub(crate) mod energies;
+pub(crate) mod moment;
+pub(crate) mod observer;
+pub(crate) mod observers;
+pub(crate) mod reaction;
+pub(crate) mod support_reactions;
+pub(crate) mod work;
+
 use nalgebra::Vector3;
 use rigid_kin::Attitude;
 
-use crate::four::all_finite;
-use crate::reaction::Reaction;
-use crate::work::Work;
+use crate::matrix::four::all_finite;
+use crate::observation::reaction::Reaction;
+use crate::observation::work::Work;
 
 /// Motion of a point, global components.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-#[non_exhaustive]
 pub struct PointMotion {
     /// Displacement from where the point was in the undeformed body at the beginning.
     pub displacement: Vector3<f64>,

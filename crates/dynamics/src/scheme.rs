@@ -1,15 +1,25 @@
 //! What steps a body: the trait of all schemes.
 
+pub(crate) mod abilities;
+pub(crate) mod builder;
+pub(crate) mod conservative_motion;
+pub(crate) mod error_size;
+pub(crate) mod exponential;
+pub(crate) mod methods;
+pub(crate) mod mode_limit;
+pub(crate) mod phi;
+pub(crate) mod setup;
+
 use std::any::Any;
 use std::fmt;
 
-use crate::checkpoint::CheckpointError;
-use crate::energies::Energies;
+use crate::body::motion_state::MotionState;
+use crate::body::shapes::PointShapes;
 use crate::error::{SetupError, StepError};
-use crate::moment::Moment;
-use crate::motion::PointShapes;
 use crate::observation::Observation;
-use crate::state::MotionState;
+use crate::observation::energies::Energies;
+use crate::observation::moment::Moment;
+use crate::simulation::checkpoint::CheckpointError;
 
 /// Estimated errors under step control, relative to the motion.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,27 +1,36 @@
 //! A run: a body, a method, the steps that lead through it, and the times at which it is observed.
 
+pub(crate) mod account;
+pub(crate) mod allowance;
+pub mod checkpoint;
+pub(crate) mod events;
+pub(crate) mod fingerprint;
+pub(crate) mod plan;
+
 use std::sync::{Arc, Mutex};
 
 use serde::{Deserialize, Serialize};
 
-use crate::account::EnergyAccount;
-use crate::allowance::Allowance;
-use crate::checkpoint::{CheckpointError, counts, decode, encode, equal_room, expect, from_words, to_words};
+use crate::body::motion_state::MotionState;
+use crate::body::shapes::PointShapes;
 use crate::error::{SetupError, StepError};
-use crate::events::{Event, Events, LastStep};
-use crate::fingerprint::Fingerprint;
-use crate::formula_steps::FormulaSteps;
 use crate::history::History;
+use crate::history::formula_steps::FormulaSteps;
 use crate::load::SharedLoad;
-use crate::moment::Moment;
-use crate::motion::PointShapes;
 use crate::observation::Observation;
-use crate::observer::{Observer, StepEnd};
-use crate::observers::Observers;
-use crate::plan::{EqualSteps, HalvedSteps, Plan, Progress, Rows, StepControl};
+use crate::observation::moment::Moment;
+use crate::observation::observer::{Observer, StepEnd};
+use crate::observation::observers::Observers;
+use crate::scheme::setup::{Beginning, Setup};
 use crate::scheme::{ErrorEstimate, Scheme};
-use crate::setup::{Beginning, Setup};
-use crate::state::MotionState;
+use crate::simulation::account::EnergyAccount;
+use crate::simulation::allowance::Allowance;
+use crate::simulation::checkpoint::{
+    CheckpointError, counts, decode, encode, equal_room, expect, from_words, to_words,
+};
+use crate::simulation::events::{Event, Events, LastStep};
+use crate::simulation::fingerprint::Fingerprint;
+use crate::simulation::plan::{EqualSteps, HalvedSteps, Plan, Progress, Rows, StepControl};
 
 /// What a run has cost.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -122,7 +122,7 @@ pub enum AdviseProgress {
 /// # Errors
 /// [`RunError`] of the scene as it is. A run with an effect switched that fails is a row that says so.
 pub fn advise(scene: &Scene, verify: bool, mut progress: impl FnMut(AdviseProgress)) -> Result<AdviseReport, RunError> {
-    let of_paper = scene.time.method.is_of_paper();
+    let of_paper = !scene.time.method.abilities.switches_effects;
     let mut scene = scene.clone().without_rows();
     if of_paper {
         scene.time.method = Method::EXPONENTIAL;

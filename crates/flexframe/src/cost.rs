@@ -19,6 +19,7 @@ mod settings;
 mod short;
 mod table;
 
+use scene::METHODS;
 use std::path::Path;
 
 use advice::Subject;
@@ -86,7 +87,7 @@ pub fn price_list(
     drop(assembly);
     let case = PreparedScene::new(scene, &model);
 
-    let ladders: Vec<(Method, bool)> = Method::ALL
+    let ladders: Vec<(Method, bool)> = METHODS
         .into_iter()
         .flat_map(|method| [(method, false), (method, true)])
         .filter(|(method, controlled)| !controlled || method.estimates_error)
@@ -103,7 +104,7 @@ pub fn price_list(
         .map_err(|(steps, failure)| CostError::Reference { scene: scene.path.clone(), steps, failure })?;
     step(1);
     // The paper's formulation has a limit of its own, to which its schemes converge.
-    let (paper_limit, paper_limit_failure) = match converge(&case, Method::PAPER_RKMK4, settings.budget(5), 0.0) {
+    let (paper_limit, paper_limit_failure) = match converge(&case, frames_rk4::LIMIT, settings.budget(5), 0.0) {
         Ok(limit) => (Some(limit), None),
         Err((steps, failure)) => (None, Some(format!("in {steps} steps: {failure}"))),
     };

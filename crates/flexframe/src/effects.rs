@@ -7,7 +7,7 @@ use scene::{Load, Model, Scene};
 /// The effects and static shapes that can be on or off in a run of the conservative form, and whether they are; none for
 /// the paper's formulation, which has its own.
 pub(crate) fn computed(scene: &Scene, model: &Model) -> Vec<(&'static str, bool)> {
-    if scene.time.method.is_of_paper() {
+    if !scene.time.method.abilities.switches_effects {
         return Vec::new();
     }
     let subjects = model.advice.rows().map(|(subject, _)| subject);

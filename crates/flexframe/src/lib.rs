@@ -18,7 +18,7 @@
 #![forbid(unsafe_code)]
 #![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable))]
 
-pub use {advice, dynamics, fem_tet10, figures, modal, results, rigid_kin, scene};
+pub use {advice, dynamics, fem_tet10, figures, frames_rk4, modal, results, rigid_kin, scene};
 pub use {faer, nalgebra};
 
 pub mod advise;

@@ -74,7 +74,7 @@ pub(crate) fn doubts(scene: &Scene, model: &Model) -> Vec<String> {
 fn without_elements(scene: &Scene, model: &Model) -> impl Iterator<Item = String> {
     let missing = |effect: Effect| {
         let row = &model.advice.effects[effect];
-        let is_open = scene.effects.choices[effect] == Choice::Auto && !scene.time.method.is_of_paper();
+        let is_open = scene.effects.choices[effect] == Choice::Auto && scene.time.method.abilities.switches_effects;
         (is_open && row.on).then(|| {
             format!(
                 "{} may change the answer by up to {:.1e} (a bound), and is left out: the elements of a body of matrices are not \

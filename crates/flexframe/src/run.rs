@@ -194,7 +194,7 @@ fn parts(scene: &Scene, model: &Model) -> impl Iterator<Item = &'static str> {
     let drive = model.physics.drive.as_ref().map(|drive| drive.motion);
     let turns = matches!(drive, Some(DrivenMotion::Turn { .. }));
     let slides = matches!(drive, Some(DrivenMotion::Slide { .. }));
-    let is_held = !motion.is_free() && !scene.time.method.is_of_paper();
+    let is_held = !motion.is_free() && scene.time.method.abilities.reactions;
     [
         (part::CONSTRAINT, true),
         (part::HINGE, turns || motion.rotations().len() == 1),

@@ -53,7 +53,7 @@ impl Scene {
         check.effects(&effects, &modes, &initial, constraint.as_ref(), &loads)?;
         check.effects_of_elements(&effects, &modes, &body)?;
         let time = check.time(&time)?;
-        check.effects_of_paper(&effects, time.method)?;
+        check.fixed_effects(&effects, time.method)?;
         let output = check.output(output, &time, &body)?;
 
         Ok(Self {

@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
-use dynamics::Method;
 use fem_tet10::{Material, PointMass};
 use serde::de::value::SeqAccessDeserializer;
 use serde::de::{DeserializeSeed, EnumAccess, Error, SeqAccess, VariantAccess, Visitor};
@@ -12,6 +11,7 @@ use serde::{Deserialize, Deserializer};
 use crate::effects::{Choice, Effects, auto};
 use crate::history::DrivenSpeed;
 use crate::load::Load;
+use crate::methods::{formulation_names, scheme_names};
 use crate::modes::Rayleigh;
 use crate::scene::{Frame, Initial, Units};
 
@@ -211,13 +211,13 @@ pub(crate) struct Scheme(pub &'static str);
 
 impl<'de> Deserialize<'de> for Formulation {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        one_of_names(deserializer, Method::formulation_names()).map(Self)
+        one_of_names(deserializer, formulation_names()).map(Self)
     }
 }
 
 impl<'de> Deserialize<'de> for Scheme {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        one_of_names(deserializer, Method::scheme_names()).map(Self)
+        one_of_names(deserializer, scheme_names()).map(Self)
     }
 }
 

@@ -6,7 +6,7 @@ use dynamics::Method;
 use modal::ReducedBody;
 
 /// The schemes whose bounds are written down, in the order of [`HardCase::expected`].
-pub const BOUNDED: [Method; 4] = [Method::EXPONENTIAL, Method::RKMK4, Method::PAPER, Method::PAPER_RKMK4];
+pub const BOUNDED: [Method; 4] = [Method::EXPONENTIAL, Method::RKMK4, frames_rk4::PAPER, frames_rk4::LIMIT];
 
 /// How long the runs of a case are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -21,7 +21,7 @@ impl Extent {
     /// The number for this extent. The paper's formulation always goes as far as the study does: it often stops there
     /// only.
     pub fn pick(self, method: Method, test: u32, study: u32) -> f64 {
-        let always = method.is_of_paper();
+        let always = !method.abilities.keeps_energy;
         f64::from(if self == Self::Study || always { study } else { test })
     }
 }

@@ -14,15 +14,7 @@ pub mod structure;
 pub mod time;
 pub mod trial;
 
-use dynamics::Method;
-
 pub use case::{BOUNDED, BodyCheck, Expected, Extent, HardCase, Outcome};
-
-/// All schemes, in the order of the table's columns. One without bounds is run and shown without being held to any.
-pub fn schemes() -> Vec<Method> {
-    let others = Method::ALL.into_iter().filter(|method| !BOUNDED.contains(method));
-    BOUNDED.into_iter().chain(others).collect()
-}
 
 /// The cases with their headings.
 pub fn sections() -> [(&'static str, Vec<HardCase>); 4] {

@@ -18,12 +18,12 @@
 use nalgebra::{Matrix3, Vector3};
 use pulp::Simd;
 
-use crate::column_major::dot;
 use crate::conservative::body::{ConservativeBody, Translation};
 use crate::conservative::evaluation::Evaluation;
 use crate::conservative::state::{get, part};
 use crate::error::RateError;
-use crate::side_by_side::{Lists, add_combined, combine};
+use crate::matrix::column_major::dot;
+use crate::matrix::side_by_side::{Lists, add_combined, combine};
 
 impl ConservativeBody {
     /// Turns `e.acceleration` from the whole of p' into the q̈ that there would be without ω'.

@@ -2,14 +2,14 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::four::{Group, Padded};
+use crate::body::center_of_mass::CenterOfMass;
+use crate::body::physics::Drive;
+use crate::conservative::manifold::Manifold;
 use crate::load::SharedLoad;
-use crate::manifold::Manifold;
-use crate::motion::CenterOfMass;
-use crate::physics::Drive;
-use crate::reaction::Held;
-use crate::side_by_side::Lists;
-use crate::stack::Stack;
+use crate::matrix::four::{Group, Padded};
+use crate::matrix::side_by_side::Lists;
+use crate::matrix::stack::Stack;
+use crate::observation::reaction::Held;
 
 /// How the origin moves.
 #[derive(Debug, Clone, Copy, PartialEq)]

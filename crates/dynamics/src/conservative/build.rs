@@ -4,21 +4,21 @@ use faer::Mat;
 use modal::ReducedBody;
 use nalgebra::{Matrix3, Vector3};
 
-use crate::column_major::columns;
+use crate::body::center_of_mass::CenterOfMass;
+use crate::body::effect::{Effect, EffectMap};
+use crate::body::physics::{Drive, DrivenMotion, Physics};
+use crate::body::spin_stiffness::SpinStiffness;
 use crate::conservative::body::{ConservativeBody, Translation};
 use crate::conservative::coordinates::{InCoordinates, pair_weights};
-use crate::effect::{Effect, EffectMap};
+use crate::conservative::manifold::Manifold;
 use crate::error::SetupError;
-use crate::four::Padded;
 use crate::load::SharedLoad;
-use crate::manifold::Manifold;
-use crate::motion::CenterOfMass;
-use crate::own_coupling::own_coupling;
-use crate::physics::{Drive, DrivenMotion, Physics};
-use crate::reaction::Held;
-use crate::side_by_side::side_by_side;
-use crate::spin_stiffness::SpinStiffness;
-use crate::stack::Stack;
+use crate::matrix::column_major::columns;
+use crate::matrix::four::Padded;
+use crate::matrix::side_by_side::side_by_side;
+use crate::matrix::stack::Stack;
+use crate::observation::reaction::Held;
+use crate::vibration::own_coupling::own_coupling;
 
 impl ConservativeBody {
     /// A body with one damping ratio for each flexible mode, and loads.
@@ -32,8 +32,8 @@ impl ConservativeBody {
         loads: Vec<SharedLoad>,
         physics: &Physics,
     ) -> Result<Self, SetupError> {
-        crate::model::check_motion(body)?;
-        crate::model::check_damping(damping_ratios, body.flexible())?;
+        crate::body::model::check_motion(body)?;
+        crate::body::model::check_damping(damping_ratios, body.flexible())?;
         let Physics { effects, drive, drive_stiffness, large_deflection } = physics;
         let (modes, manifold) = (body, large_deflection.as_ref());
         let body = manifold.map_or(modes, Manifold::body);

@@ -4,8 +4,8 @@ use faer::Mat;
 use modal::ReducedBody;
 use nalgebra::Vector3;
 
-use crate::manifold::Manifold;
-use crate::spin_stiffness::SpinStiffness;
+use crate::body::spin_stiffness::SpinStiffness;
+use crate::conservative::manifold::Manifold;
 
 /// The body whose shapes ξ counts, and what leads from z to ξ.
 pub(crate) struct InCoordinates<'a> {

@@ -3,14 +3,14 @@
 use nalgebra::{Matrix3, Vector3};
 use pulp::Simd;
 
-use crate::column_major::{dot, multiply};
 use crate::conservative::body::ConservativeBody;
 use crate::conservative::evaluation::Evaluation;
 use crate::error::RateError;
-use crate::four::Group;
-use crate::side_by_side::{Lists, dots, locked_dots, own_products};
-use crate::stack::Places;
-use crate::symmetric;
+use crate::matrix::column_major::{dot, multiply};
+use crate::matrix::four::Group;
+use crate::matrix::side_by_side::{Lists, dots, locked_dots, own_products};
+use crate::matrix::stack::Places;
+use crate::matrix::symmetric;
 
 impl ConservativeBody {
     /// z, and there S, c_ij + N_ij z, K q and the locked inertia; of a locked body G_i p and Sᵀp as well.

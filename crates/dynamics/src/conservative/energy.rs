@@ -2,11 +2,11 @@
 
 use nalgebra::Vector3;
 
-use crate::column_major::{dot, weighted_squares};
 use crate::conservative::body::{ConservativeBody, Translation};
 use crate::conservative::evaluation::Evaluation;
 use crate::conservative::state::{ConservativeState, Slow, get, part};
-use crate::energies::Energies;
+use crate::matrix::column_major::{dot, weighted_squares};
+use crate::observation::energies::Energies;
 
 impl ConservativeBody {
     /// The energies of a motion whose rates are in `e`; none of a driven body, to which a jump of its drive gives energy

@@ -3,9 +3,9 @@
 use nalgebra::{Matrix3, Vector3};
 
 use crate::conservative::body::ConservativeBody;
+use crate::conservative::manifold::{Manifold, ManifoldPoint};
 use crate::conservative::state::Slow;
-use crate::four::{Group, Padded, WIDTH};
-use crate::manifold::{Manifold, ManifoldPoint};
+use crate::matrix::four::{Group, Padded, WIDTH};
 
 /// Where the rates are asked for, the rates without the linear part of the modes, and what was found on the way to them.
 #[derive(Debug, Clone)]

@@ -6,9 +6,9 @@ use pulp::Simd;
 
 use crate::conservative::body::ConservativeBody;
 use crate::conservative::evaluation::Evaluation;
-use crate::four::{Padded, WIDTH};
-use crate::side_by_side::{Lists, add_combined, combine};
-use crate::stack::Places;
+use crate::matrix::four::{Padded, WIDTH};
+use crate::matrix::side_by_side::{Lists, add_combined, combine};
+use crate::matrix::stack::Places;
 
 impl ConservativeBody {
     /// Adds Σ ω_iω_j (c_ij + N_ij z) − Σ ω_i G_i ż, which of a locked body has p for ż, to p' or, on a manifold, puts it

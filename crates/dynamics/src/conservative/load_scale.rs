@@ -3,10 +3,10 @@
 use nalgebra::{Matrix3, Vector3};
 
 use crate::conservative::body::{ConservativeBody, Translation, along};
-use crate::error_size::Sizes;
 use crate::history::History;
 use crate::load::{Applied, Coordinates, Kinematics, Load, SharedLoad};
-use crate::own_coupling::{LoadCoupling, largest_alike};
+use crate::scheme::error_size::Sizes;
+use crate::vibration::own_coupling::{LoadCoupling, largest_alike};
 
 impl ConservativeBody {
     /// Sizes of the motions that the loads, one by one, would cause from rest until `end`: the scale of a motion that begins

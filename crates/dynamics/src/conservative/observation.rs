@@ -4,14 +4,14 @@ use nalgebra::Vector3;
 use pulp::{Arch, Simd, WithSimd};
 use rigid_kin::Attitude;
 
+use crate::body::shapes::PointShapes;
 use crate::conservative::body::{ConservativeBody, Translation};
 use crate::conservative::evaluation::Evaluation;
 use crate::conservative::state::{ConservativeState, get, part};
 use crate::error::RateError;
-use crate::motion::PointShapes;
+use crate::observation::reaction::HeldMotion;
+use crate::observation::work::Work;
 use crate::observation::{Observation, PointMotion};
-use crate::reaction::HeldMotion;
-use crate::work::Work;
 
 /// The rates of a motion made accelerations, in the widest vectors that the processor has.
 struct Accelerate<'a> {

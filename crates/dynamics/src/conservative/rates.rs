@@ -4,12 +4,12 @@ use nalgebra::{Matrix3, Vector3};
 use pulp::{Arch, Simd, WithSimd};
 use rigid_kin::{f_inverse, transformation_matrix};
 
-use crate::column_major::dot;
 use crate::conservative::body::{ConservativeBody, Translation, along};
 use crate::conservative::evaluation::Evaluation;
 use crate::conservative::state::{ConservativeState, Slow, get, part, set};
 use crate::error::{RateError, StepError};
 use crate::load::{Applied, Coordinates, Kinematics};
+use crate::matrix::column_major::dot;
 
 /// Rates of a [`ConservativeState`].
 #[derive(Debug, Clone, PartialEq)]

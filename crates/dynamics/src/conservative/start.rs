@@ -2,14 +2,14 @@
 
 use nalgebra::Vector3;
 
+use crate::body::initial::Initial;
+use crate::body::motion_state::MotionState;
 use crate::conservative::body::{ConservativeBody, Translation, along};
 use crate::conservative::evaluation::Evaluation;
 use crate::conservative::state::{ConservativeState, Slow, get, part, set};
 use crate::error::{RateError, SetupError};
-use crate::four::Padded;
-use crate::initial::Initial;
-use crate::side_by_side::combine;
-use crate::state::MotionState;
+use crate::matrix::four::Padded;
+use crate::matrix::side_by_side::combine;
 
 impl ConservativeBody {
     /// The state at the beginning: π = J ω + Sᵀ q̇, p = q̇ + S ω. Parts of the velocities that the body has not got are

@@ -4,8 +4,8 @@ use pulp::Simd;
 
 use crate::conservative::body::ConservativeBody;
 use crate::conservative::evaluation::Evaluation;
-use crate::four::Four;
-use crate::side_by_side::combine;
+use crate::matrix::four::Four;
+use crate::matrix::side_by_side::combine;
 
 impl ConservativeBody {
     /// On a manifold, puts L⁻¹ (p − b v) into the place of q̇.

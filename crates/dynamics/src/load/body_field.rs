@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::second_order::SecondOrder;
+use crate::body::second_order::SecondOrder;
 
 /// Forces f_i on nodes, body components, in modal coordinates.
 #[derive(Debug, Clone)]

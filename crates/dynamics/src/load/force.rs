@@ -3,10 +3,10 @@
 use nalgebra::Vector3;
 
 use super::{Applied, Kinematics, Load, LoadFrame, Pattern, check_vector};
+use crate::body::second_order::SecondOrder;
+use crate::body::shapes::{PointShapes, RotationShapes};
 use crate::error::SetupError;
 use crate::history::History;
-use crate::motion::{PointShapes, RotationShapes};
-use crate::second_order::SecondOrder;
 
 /// A force at a point. A load of one direction that is spread over the body, such as a traction or gravity, is its
 /// resultant at the point that moves as the weighted mean of where it acts.

@@ -3,10 +3,10 @@
 use nalgebra::Vector3;
 
 use super::{Applied, Kinematics, Load, LoadFrame, Pattern, check_vector};
+use crate::body::second_order::SecondOrder;
+use crate::body::shapes::RotationShapes;
 use crate::error::SetupError;
 use crate::history::History;
-use crate::motion::RotationShapes;
-use crate::second_order::SecondOrder;
 
 /// A moment.
 #[derive(Debug, Clone)]

@@ -3,7 +3,7 @@
 use super::{Applied, Kinematics, Load, Pattern, SharedLoad};
 use crate::error::SetupError;
 use crate::history::History;
-use crate::signal::Signal;
+use crate::load::signal::Signal;
 
 /// A load times a factor that a program sets between steps, beside its own history.
 #[derive(Debug, Clone)]

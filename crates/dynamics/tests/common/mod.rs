@@ -2,12 +2,13 @@
 
 use std::sync::{Arc, OnceLock};
 
-use dynamics::{
-    History, Initial, ModalModel, PaperScheme, PointForce, PointShapes, Scheme, SharedLoad, State, StepError,
-};
+use dynamics::{History, Initial, Method, PointForce, PointShapes, SharedLoad};
 use fem_tet10::{Material, Materials, Matrices, Mesh, PointMass, assemble, read_msh};
 use modal::{BodyPoint, Modes, ReducedBody, Solver, Support};
 use nalgebra::Vector3;
+
+/// All schemes.
+pub const METHODS: [Method; 4] = [frames_rk4::PAPER, frames_rk4::LIMIT, Method::RKMK4, Method::EXPONENTIAL];
 
 /// A body from its mesh to its modes.
 pub struct Specimen {
@@ -93,13 +94,6 @@ impl Specimen {
         dead_force(self.point(at), force_global.into(), History::HalfSine { start, duration })
     }
 
-    pub fn scheme(&self, damping_ratio: f64, loads: Vec<SharedLoad>, initial: &Initial, step: f64) -> Stepped {
-        let ratios = vec![damping_ratio; self.body.flexible()];
-        let model = ModalModel::new(&self.body, &ratios, loads).unwrap();
-        let scheme = PaperScheme::new(&self.body, model, self.reference_points_body(), initial).unwrap();
-        Stepped { scheme, step, done: 0 }
-    }
-
     /// No motion but a spin.
     pub fn spinning(&self, omega: Vector3<f64>) -> Initial {
         Initial { omega, ..Initial::at_rest(self.body.flexible()) }
@@ -109,31 +103,4 @@ impl Specimen {
 /// A dead force.
 pub fn dead_force(point: PointShapes, force: Vector3<f64>, history: History) -> SharedLoad {
     Arc::new(PointForce::dead(point, force, history))
-}
-
-/// The paper's scheme in equal steps.
-#[derive(Debug, Clone)]
-pub struct Stepped {
-    pub scheme: PaperScheme,
-    pub step: f64,
-    pub done: u64,
-}
-
-impl Stepped {
-    pub fn step(&mut self) -> Result<&State, StepError> {
-        self.scheme.step(self.step, (self.done + 1) as f64 * self.step)?;
-        self.done += 1;
-        Ok(self.scheme.state())
-    }
-
-    pub fn state(&self) -> &State {
-        self.scheme.state()
-    }
-}
-
-/// Makes `steps` steps.
-pub fn advance(scheme: &mut Stepped, steps: usize) {
-    for _ in 0..steps {
-        scheme.step().unwrap();
-    }
 }

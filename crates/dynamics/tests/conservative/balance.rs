@@ -75,14 +75,14 @@ fn balances_close_with_loads_and_damping() {
 #[test]
 fn the_limit_of_the_paper_s_scheme_does_not_close_its_balances() {
     let (run, impulse) = loaded();
-    let limit = [2e-4, 1e-4, 5e-5].map(|step| gaps(&run, &impulse, Method::PAPER_RKMK4, step));
+    let limit = [2e-4, 1e-4, 5e-5].map(|step| gaps(&run, &impulse, frames_rk4::LIMIT, step));
     // Energy 7.5e-7, 3.7e-7, 3.7e-7; angular momentum 1.7e-4 at each step. The linear momentum is right.
     let (before, last) = (limit[1], limit[2]);
     assert!((before[0] / last[0] - 1.0).abs() < 0.1 && (before[2] / last[2] - 1.0).abs() < 1e-3, "{limit:?}");
     assert!(last[2] > 1e-4 && last[1] < 1e-9, "{limit:?}");
     // The paper's own: 1.6e-2, 8.0e-3, 4.0e-3 of the work.
     let steps = [2e-4, 1e-4, 5e-5];
-    let paper = steps.map(|step| gaps(&run, &impulse, Method::PAPER, step));
+    let paper = steps.map(|step| gaps(&run, &impulse, frames_rk4::PAPER, step));
     assert!((fitted_order(steps, paper.map(|gap| gap[0])) - 1.0).abs() < 0.1, "{paper:?}");
 }
 
@@ -139,7 +139,7 @@ fn a_deformed_body_that_spins_as_a_whole_is_not_damped() {
         assert!(relative(&row.modal_displacement, q.as_slice()) < 1e-12);
     }
     // In the limit of the paper's scheme damping acts on inertial velocities, and six turns cost 2.1e-4 of the spin.
-    let limit = run.end(Method::PAPER_RKMK4, 5e-6);
+    let limit = run.end(frames_rk4::LIMIT, 5e-6);
     let lost = 1.0 - limit.omega_body.norm() / spin;
     assert!(lost > 1e-4, "{lost:e}");
 }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use dynamics::{CheckpointError, LoadFn, Method, Observation, Reached, Rows, SharedLoad, Simulation, StepControl};
+use dynamics::{CheckpointError, LoadFn, Observation, Reached, Rows, SharedLoad, Simulation, StepControl};
 use modal::ReducedBody;
 use nalgebra::Vector3;
 
@@ -39,8 +39,8 @@ fn every_method_goes_on_bit_for_bit() {
     let fixed = StepControl::Fixed(1e-5);
     let controlled = StepControl::Tolerance(1e-7);
     for (method, control) in [
-        (Method::PAPER, fixed),
-        (Method::PAPER_RKMK4, fixed),
+        (frames_rk4::PAPER, fixed),
+        (frames_rk4::LIMIT, fixed),
         (RKMK4, fixed),
         (EXPONENTIAL, fixed),
         (RKMK4, controlled),
@@ -101,7 +101,7 @@ fn a_checkpoint_of_another_run_is_refused_and_the_error_names_what_differs() {
     assert_eq!(changed(&|run| run.damping_ratio = 0.021), "the damping");
     assert_eq!(changed(&|run| run.initial.omega.x = 3.1), "the start");
     assert_eq!(changed(&|run| run.end = 0.04), "the scheme or its steps");
-    assert_eq!(refused(&original, Method::PAPER), "the scheme or its steps");
+    assert_eq!(refused(&original, frames_rk4::PAPER), "the scheme or its steps");
     // The last bit of one number of the body.
     let mut constants = (*plate.body).clone();
     let entry = &mut constants.gyroscopic[1][(3, 7)];

@@ -3,7 +3,7 @@
 use dynamics::{Expression, History, Initial, Method, Observation, Reached, Rows, StepControl};
 use nalgebra::Vector3;
 
-use crate::common::{Specimen, dead_force, plate};
+use crate::common::{METHODS, Specimen, dead_force, plate};
 use crate::run::{EXPONENTIAL, Error, RKMK4, Run, relative_3};
 
 /// Tumbling at 10 rad/s with vibration, under a pulse that begins and ends between the rows.
@@ -117,8 +117,8 @@ fn steps_end_at_rows_and_at_corners_and_at_nothing_beyond_them() {
         (RKMK4, StepControl::Tolerance(1e-5)),
         (EXPONENTIAL, StepControl::Fixed(3e-3)),
         (RKMK4, StepControl::Fixed(1.1e-4)),
-        (Method::PAPER_RKMK4, StepControl::Fixed(1.1e-4)),
-        (Method::PAPER, StepControl::Fixed(1.1e-4)),
+        (frames_rk4::LIMIT, StepControl::Fixed(1.1e-4)),
+        (frames_rk4::PAPER, StepControl::Fixed(1.1e-4)),
     ] {
         let ends = ends(&run, method, control, Rows::Interval(0.07));
         let rows: Vec<f64> = ends.iter().filter(|end| end.1).map(|end| end.0).collect();
@@ -161,7 +161,7 @@ fn after_a_corner_the_steps_grow_back_to_the_interval() {
 #[test]
 fn fixed_steps_cost_four_evaluations_each() {
     let run = tumbling(plate());
-    for method in Method::ALL {
+    for method in METHODS {
         let mut simulation = run.start(method, StepControl::Fixed(1e-4), Rows::Interval(0.1));
         assert_eq!(simulation.by_ref().count(), 6);
         let stats = simulation.stats();

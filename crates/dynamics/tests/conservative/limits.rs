@@ -8,7 +8,7 @@ use modal::{BodyPoint, ReducedBody, RigidMotion};
 use nalgebra::{Matrix3, Vector3};
 
 use crate::common::dead_force;
-use crate::common::{Specimen, plate};
+use crate::common::{METHODS, Specimen, plate};
 use crate::run::{EXPONENTIAL, RKMK4, Run};
 
 fn spinning(plate: &Specimen, spin: f64) -> Run<'_> {
@@ -23,7 +23,7 @@ fn refusal(run: &Run, method: Method, control: StepControl) -> SetupError {
 fn a_step_beyond_the_limit_of_the_highest_mode() {
     let run = spinning(plate(), 1.0);
     let most = 8.0_f64.sqrt() / plate().body.circular_frequencies[9];
-    for method in [RKMK4, Method::PAPER_RKMK4, Method::PAPER] {
+    for method in [RKMK4, frames_rk4::LIMIT, frames_rk4::PAPER] {
         assert!(method.is_limited_by_modes());
         assert!(run.try_start(method, StepControl::Fixed(0.999 * most), Rows::Interval(0.1)).is_ok());
         let error = refusal(&run, method, StepControl::Fixed(1.001 * most));
@@ -47,7 +47,7 @@ fn a_step_beyond_the_limit_of_the_spin() {
 #[test]
 fn a_tolerance_for_a_scheme_without_an_estimate() {
     let run = spinning(plate(), 1.0);
-    for method in [Method::PAPER_RKMK4, Method::PAPER] {
+    for method in [frames_rk4::LIMIT, frames_rk4::PAPER] {
         assert!(!method.estimates_error);
         let error = refusal(&run, method, StepControl::Tolerance(1e-6));
         let expected = SetupError::NoErrorEstimate { formulation: method.formulation, scheme: method.scheme };
@@ -59,7 +59,7 @@ fn a_tolerance_for_a_scheme_without_an_estimate() {
 fn numbers_out_of_range() {
     let run = spinning(plate(), 1.0);
     for value in [0.0, -1e-4, f64::NAN, f64::INFINITY] {
-        for method in Method::ALL {
+        for method in METHODS {
             let error = refusal(&run, method, StepControl::Fixed(value));
             assert!(matches!(error, SetupError::Value { what: "the step", .. }), "{method:?}: {error}");
         }
@@ -73,7 +73,7 @@ fn numbers_out_of_range() {
     let rows = run.try_start(EXPONENTIAL, StepControl::Fixed(1e-4), Rows::EverySteps(0));
     assert!(matches!(rows, Err(SetupError::Value { found: 0.0, .. })));
     let nan = Run { initial: Initial { velocity: Vector3::new(f64::NAN, 0.0, 0.0), ..run.initial.clone() }, ..run };
-    for method in Method::ALL {
+    for method in METHODS {
         assert!(matches!(refusal(&nan, method, StepControl::Fixed(1e-4)), SetupError::Value { .. }));
     }
 }
@@ -88,7 +88,7 @@ fn a_pulse_shorter_than_the_step_is_not_missed() {
     let run = Run { end: 0.01, initial: Initial::at_rest(10), ..run };
     let impulse = 1000.0 * duration * 2.0 / std::f64::consts::PI;
     // Measured: 8.3e-6; of the paper's scheme 1.3e-2, by the trapezoidal rule.
-    for (method, bound) in [(EXPONENTIAL, 1e-5), (RKMK4, 1e-5), (Method::PAPER_RKMK4, 1e-5), (Method::PAPER, 0.02)] {
+    for (method, bound) in [(EXPONENTIAL, 1e-5), (RKMK4, 1e-5), (frames_rk4::LIMIT, 1e-5), (frames_rk4::PAPER, 0.02)] {
         let last = run.end(method, 2e-4);
         let error = (last.linear_momentum_global.y / impulse - 1.0).abs();
         assert!(error < bound, "{method:?}: {error:e}");
@@ -112,7 +112,7 @@ fn the_paper_s_scheme_stops_when_its_attitude_is_lost() {
         initial,
         ..spinning(plate(), 1.0)
     };
-    let mut simulation = run.start(Method::PAPER, StepControl::Fixed(1e-3), Rows::Interval(0.01));
+    let mut simulation = run.start(frames_rk4::PAPER, StepControl::Fixed(1e-3), Rows::Interval(0.01));
     let error = simulation.by_ref().find_map(Result::err).unwrap();
     // The spin fades at the relative rate ω²Δt/2 = 5 of the paper's scheme: after a time t, the turn is behind by
     // 100 (t − ln(1 + 5t)/5) or so: 1.05 where the account has 1.07.
@@ -120,7 +120,7 @@ fn the_paper_s_scheme_stops_when_its_attitude_is_lost() {
     let behind = 100.0 * (time - (5.0 * time).ln_1p() / 5.0);
     assert!((angle / behind - 1.0).abs() < 0.1 && simulation.next().is_none(), "{error}");
     // The limit of the same scheme keeps its spin.
-    assert!(run.start(Method::PAPER_RKMK4, StepControl::Fixed(1e-3), Rows::Interval(0.01)).all(|row| row.is_ok()));
+    assert!(run.start(frames_rk4::LIMIT, StepControl::Fixed(1e-3), Rows::Interval(0.01)).all(|row| row.is_ok()));
 }
 
 /// A spin of 400 rad/s across a bending direction whose frequency is 154 rad/s, in steps far too long.

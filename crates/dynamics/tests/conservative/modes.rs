@@ -47,7 +47,7 @@ fn ten_modes_move_as_forty() {
         let best = first_coordinate(&of_forty, EXPONENTIAL, 1e-4);
         let step_error = difference(&best, &first_coordinate(&of_forty, EXPONENTIAL, 5e-5));
         let truncation = difference(&first_coordinate(&of_ten, EXPONENTIAL, 1e-4), &best);
-        let limit = difference(&first_coordinate(&of_ten, Method::PAPER_RKMK4, 1e-4), &best);
+        let limit = difference(&first_coordinate(&of_ten, frames_rk4::LIMIT, 1e-4), &best);
         assert!(step_error < 0.1 * truncation, "{step_error:e} of {truncation:e}");
         assert!(truncation < most, "{truncation:e}");
         assert!(limit > limit_is_off, "{limit:e}");

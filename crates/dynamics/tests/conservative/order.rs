@@ -70,16 +70,16 @@ fn a_load_that_ends_between_the_steps_costs_no_order() {
 fn the_limit_of_the_paper_s_scheme_is_met_with_fourth_order_and_by_the_paper_s_scheme_with_first() {
     let plate = plate().truncated(4);
     let run = tumbling(&plate);
-    let limit = run.end(Method::PAPER_RKMK4, 1.25e-5);
+    let limit = run.end(frames_rk4::LIMIT, 1.25e-5);
     let steps = [8e-4, 4e-4, 2e-4, 1e-4];
 
-    let (attitude, modal, errors) = fitted(&run, Method::PAPER_RKMK4, steps, &limit);
+    let (attitude, modal, errors) = fitted(&run, frames_rk4::LIMIT, steps, &limit);
     // Attitude 4.8e-8, 2.0e-9, 9.5e-11, 4.9e-12 rad: order 4.4, since an error of fifth order outweighs that of fourth.
     // Modal displacements 3.8e-2, 2.2e-3, 1.3e-4, 8.2e-6: order 4.06.
     assert!((modal - 4.0).abs() < 0.2, "{modal} of {errors:?}");
     assert!(attitude > 3.8, "{attitude} of {errors:?}");
 
-    let (attitude, _, errors) = fitted(&run, Method::PAPER, steps, &limit);
+    let (attitude, _, errors) = fitted(&run, frames_rk4::PAPER, steps, &limit);
     // Attitude 5.3e-3, 2.6e-3, 1.3e-3, 6.6e-4 rad: order 0.997. Modal displacements 3.8e-2, 2.9e-3, 8.7e-4, 4.3e-4:
     // damping by RK4 first, then order 1.03.
     assert!((attitude - 1.0).abs() < 0.1, "{attitude} of {errors:?}");

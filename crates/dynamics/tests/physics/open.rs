@@ -271,7 +271,7 @@ fn a_load_sees_the_origin_where_and_as_fast_as_it_is_with_every_scheme() {
     let body = body(RigidMotion::free(), &OMEGA);
     let shapes = BodyPoint { position_body: Vector3::zeros(), shapes: Mat::zeros(3, OMEGA.len()) };
     let origin = PointShapes::new(&body, &shapes);
-    for method in Method::ALL {
+    for method in [frames_rk4::PAPER, frames_rk4::LIMIT, Method::RKMK4, Method::EXPONENTIAL] {
         let seen = Arc::new(Mutex::new(Vec::new()));
         let (speeds, place) = (Arc::clone(&seen), origin.clone());
         let law = move |motion: &Kinematics, applied: &mut Applied| {

@@ -152,7 +152,7 @@ pub(super) struct Judge<'a> {
 impl Judge<'_> {
     /// The limit to which a method converges with short steps.
     fn limit(&self, method: Method) -> Option<&Reference> {
-        if method.is_of_paper() { self.paper_limit } else { Some(self.reference) }
+        if method.abilities.keeps_energy { Some(self.reference) } else { self.paper_limit }
     }
 
     /// Runs the motion once for its errors, warming up, and then again and again for the time.

@@ -272,7 +272,7 @@ fn balances(results: &Results, quantities: &Quantities<'_>) -> Option<Vec<Balanc
 
 /// The paper's formulation has its own effects.
 fn effects(scene: &Scene, model: &Model) -> Vec<Effect> {
-    if scene.time.method.is_of_paper() {
+    if !scene.time.method.abilities.switches_effects {
         return Vec::new();
     }
     let effect = |(subject, row): (advice::Subject, &advice::Row)| Effect {

@@ -125,7 +125,7 @@ impl<'a> Watch<'a> {
 
     /// Whether the steps are known to be right though they are too long for the sum of work and dissipation.
     fn is_right_unsummed(&self, longest_step: f64) -> bool {
-        if self.scene.time.method.is_of_paper() {
+        if !self.scene.time.method.abilities.keeps_energy {
             // The equations of the paper do not keep the energy in any steps.
             return false;
         }

@@ -43,7 +43,7 @@ pub(super) fn reduce(
     let loads = loads::on_mesh(scene, mesh, freedoms, &Arc::new(solved.unit_weight()?))?;
     let model = MeshModel { scene, mesh, freedoms, solver: solved, support, loads, drive: drive.clone() };
 
-    if scene.time.method.is_of_paper() && assembled.checks.is_some_and(|checks| !checks.is_scalar_mass) {
+    if !scene.time.method.abilities.any_mass && assembled.checks.is_some_and(|checks| !checks.is_scalar_mass) {
         let found = "a scheme of the paper's formulation, which knows no rotations of nodes, for a mass that is no scalar for each node";
         let cure = "set `formulation = \"conservative\"`";
         return Err(scene.refuse("time", found, "the conservative form", cure).into());

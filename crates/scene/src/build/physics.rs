@@ -22,7 +22,7 @@ pub(super) fn may_spin(scene: &Scene, motion: RigidMotion, drive: Option<&Drive>
 pub(super) fn may_stress(scene: &Scene) -> bool {
     scene.body.has_elements()
         && scene.effects.choices[Effect::GeometricStiffening] != Choice::Off
-        && !scene.time.method.is_of_paper()
+        && scene.time.method.abilities.geometric_stiffening
 }
 
 /// Whether a load stays as it is, seen from the body.
@@ -44,7 +44,7 @@ pub(super) fn static_correction(scene: &Scene, flexible: usize) -> Choice {
 /// The effects of the motion of a body of which `keep` modes are kept: what the scene leaves open is as advised.
 pub(super) fn effects(scene: &Scene, advice: &Advice, body: &ReducedBody, keep: usize) -> EffectMap<bool> {
     // The paper's formulation has the effects that it has; gravity is a load like others.
-    let in_any_case = |effect: Effect| scene.time.method.is_of_paper() && effect != Effect::Gravity;
+    let in_any_case = |effect: Effect| !scene.time.method.abilities.switches_effects && effect != Effect::Gravity;
     let has_weight = !body.motion.is_free() && bears_weight(scene, body.mass);
     let mut effects = EffectMap::from_fn(|effect| match scene.effects.choices[effect] {
         Choice::On => true,
@@ -76,7 +76,7 @@ pub(super) fn large_modes(scene: &Scene, advice: &Advice, keep: usize) -> Vec<us
     match (scene.effects.choices[Effect::LargeDeflection], &scene.modes.large) {
         (Choice::Off, _) => Vec::new(),
         _ if !scene.body.has_elements() => Vec::new(),
-        (Choice::Auto, _) if scene.time.method.is_of_paper() => Vec::new(),
+        (Choice::Auto, _) if !scene.time.method.abilities.large_deflection => Vec::new(),
         (_, Some(Large::Count(count))) => first(*count),
         (_, Some(Large::List(list))) => list.iter().map(|mode| mode - 1).filter(|k| *k < keep).collect(),
         (Choice::On, None) => first(DEFAULT_LARGE),

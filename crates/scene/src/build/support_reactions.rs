@@ -98,6 +98,6 @@ fn several(scene: &Scene) -> Option<&[crate::constraint::HeldDirections]> {
         Some(Constraint::Support { parts }) if parts.len() > 1 => Some(parts),
         _ => None,
     }
-    .filter(|_| scene.output.support_reactions && !scene.time.method.is_of_paper())
+    .filter(|_| scene.output.support_reactions && scene.time.method.abilities.reactions)
     .map(Vec::as_slice)
 }

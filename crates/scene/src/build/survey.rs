@@ -78,7 +78,7 @@ fn may_stiffen(model: &MeshModel<'_>, modal: &ModalModel) -> Result<bool, BuildE
         Choice::On => true,
         Choice::Off => false,
         Choice::Auto => {
-            !scene.time.method.is_of_paper()
+            scene.time.method.abilities.geometric_stiffening
                 && physics::may_spin(scene, support.motion, model.drive.as_ref())
                 && screen(&modal.case(model), scene.effects.tolerance)?.on
         }

@@ -74,9 +74,9 @@ impl Check<'_> {
         ))
     }
 
-    /// The effects of the paper's formulation are fixed.
-    pub fn effects_of_paper(&self, effects: &Effects, method: Method) -> Result<(), SceneError> {
-        if !method.is_of_paper() {
+    /// A formulation may have effects that are fixed.
+    pub fn fixed_effects(&self, effects: &Effects, method: Method) -> Result<(), SceneError> {
+        if method.abilities.switches_effects {
             return Ok(());
         }
         let paper = "the paper's formulation";

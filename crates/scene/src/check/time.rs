@@ -5,6 +5,7 @@ use dynamics::{Method, Rows, StepControl};
 use super::Check;
 use crate::document::join;
 use crate::error::SceneError;
+use crate::methods::{METHODS, method_named};
 use crate::scene::{Body, Output, Time};
 use crate::section::{Formulation, OutputSection, Scheme, TimeSection};
 use crate::shorten::shorten;
@@ -53,13 +54,16 @@ impl Check<'_> {
     fn method(&self, formulation: Option<Formulation>, scheme: Option<Scheme>) -> Result<Method, SceneError> {
         let of_formulation = formulation.map(|Formulation(name)| name);
         let Some(Scheme(name)) = scheme else {
-            return Ok(if of_formulation == Some("paper") { Method::PAPER } else { Method::EXPONENTIAL });
+            return Ok(if of_formulation == Some(frames_rk4::PAPER.formulation) {
+                frames_rk4::PAPER
+            } else {
+                Method::EXPONENTIAL
+            });
         };
-        Method::named(of_formulation, name).ok_or_else(|| {
+        method_named(of_formulation, name).ok_or_else(|| {
             let of_formulation = of_formulation.unwrap_or_default();
             let others = |fits: &dyn Fn(&Method) -> bool, of: fn(&Method) -> &'static str| {
-                let names: Vec<String> =
-                    Method::ALL.iter().filter(|m| fits(m)).map(|m| format!("`{}`", of(m))).collect();
+                let names: Vec<String> = METHODS.iter().filter(|m| fits(m)).map(|m| format!("`{}`", of(m))).collect();
                 names.join(" or ")
             };
             let schemes = others(&|method| method.formulation == of_formulation, |method| method.scheme);

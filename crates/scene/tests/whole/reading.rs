@@ -93,10 +93,10 @@ fn formulation_and_scheme_name_a_method() {
         ("formulation = 'conservative'\nscheme = 'exponential'", Method::EXPONENTIAL),
         ("scheme = 'rkmk4'", Method::RKMK4),
         ("formulation = 'conservative'\nscheme = 'rkmk4'", Method::RKMK4),
-        ("scheme = 'paper'", Method::PAPER),
-        ("formulation = 'paper'", Method::PAPER),
-        ("formulation = 'paper'\nscheme = 'paper'", Method::PAPER),
-        ("formulation = 'paper'\nscheme = 'rkmk4'", Method::PAPER_RKMK4),
+        ("scheme = 'paper'", frames_rk4::PAPER),
+        ("formulation = 'paper'", frames_rk4::PAPER),
+        ("formulation = 'paper'\nscheme = 'paper'", frames_rk4::PAPER),
+        ("formulation = 'paper'\nscheme = 'rkmk4'", frames_rk4::LIMIT),
     ] {
         let scene = Scene::parse(&least(keys), "a.toml").unwrap_or_else(|error| panic!("{keys}: {error}"));
         assert_eq!(scene.time.method, method, "{keys}");

@@ -1,0 +1,54 @@
+//! How a motion begins.
+
+use nalgebra::Vector3;
+use rigid_kin::Attitude;
+
+use crate::error::SetupError;
+
+/// State at the beginning.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Initial {
+    /// Attitude of the body frame.
+    pub attitude: Attitude,
+    /// Velocity of the frame's origin (the centre of mass), global components.
+    pub velocity: Vector3<f64>,
+    /// Angular velocity of the body frame, body components.
+    pub omega: Vector3<f64>,
+    /// Flexible modal displacements (nf).
+    pub modal_displacement: Vec<f64>,
+    /// Rates of the flexible modal displacements as seen from the body frame (nf).
+    pub modal_velocity: Vec<f64>,
+}
+
+impl Initial {
+    /// At rest and undeformed.
+    pub fn at_rest(flexible: usize) -> Self {
+        Self {
+            attitude: Attitude::identity(),
+            velocity: Vector3::zeros(),
+            omega: Vector3::zeros(),
+            modal_displacement: vec![0.0; flexible],
+            modal_velocity: vec![0.0; flexible],
+        }
+    }
+
+    /// Refuses lists of the wrong length and numbers that are not finite.
+    ///
+    /// # Errors
+    /// [`SetupError`].
+    pub fn check(&self, flexible: usize) -> Result<(), SetupError> {
+        for (what, list) in [
+            ("the list of initial modal displacements", &self.modal_displacement),
+            ("the list of initial modal velocities", &self.modal_velocity),
+        ] {
+            if list.len() != flexible {
+                return Err(SetupError::Length { what, expected: flexible, found: list.len() });
+            }
+        }
+        let numbers = self.velocity.iter().chain(self.omega.iter()).chain(&self.modal_displacement);
+        match numbers.chain(&self.modal_velocity).copied().find(|x| !x.is_finite()) {
+            Some(found) => Err(SetupError::Value { what: "an initial value", found, expected: "a finite number" }),
+            None => Ok(()),
+        }
+    }
+}

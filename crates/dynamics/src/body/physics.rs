@@ -1,0 +1,119 @@
+//! What of the physics a motion is to have.
+
+use faer::Mat;
+use nalgebra::Vector3;
+use serde::Deserialize;
+
+use crate::body::effect::EffectMap;
+use crate::conservative::manifold::Manifold;
+use crate::error::SetupError;
+use crate::history::{Expression, History, Table, finite};
+use crate::load::signal::Signal;
+
+/// A motion that something forces on the held part of a body. The body's own modes are those of the part held still
+/// ([`modal::RigidMotion::clamp`]).
+#[derive(Debug, Clone)]
+pub struct Drive {
+    /// How it moves.
+    pub motion: DrivenMotion,
+    /// How fast.
+    pub speed: DrivenSpeed,
+    /// A speed that a program adds from outside. It must not jump; its rate may.
+    pub added: Option<Signal>,
+}
+
+/// A speed over time: the amplitude times the history. As data, tables and expressions have other types `T` and `E` than
+/// those that can be evaluated, as in [`History`].
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DrivenSpeed<T = Table, E = Expression> {
+    /// Angular velocity, rad/time, or velocity, length/time, where the history is 1.
+    pub amplitude: f64,
+    /// Factor on the amplitude over time.
+    pub history: History<T, E>,
+}
+
+/// How a driven part moves.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum DrivenMotion {
+    /// Turning about an axis through the body's origin.
+    Turn {
+        /// Unit vector, the same in body and global axes.
+        axis: Vector3<f64>,
+    },
+    /// Sliding along a direction.
+    Slide {
+        /// Unit vector.
+        direction: Vector3<f64>,
+    },
+}
+
+impl DrivenSpeed {
+    /// Its value at a time, by the branch that holds at `branch_time`.
+    pub(crate) fn at(&self, time: f64, branch_time: f64) -> f64 {
+        self.amplitude * self.history.at(time, branch_time)
+    }
+
+    /// Its rate.
+    pub(crate) fn rate(&self, time: f64, branch_time: f64) -> f64 {
+        self.amplitude * self.history.rate(time, branch_time)
+    }
+
+    /// The amplitude times the largest factor up to a time.
+    pub(crate) fn largest(&self, end: f64) -> f64 {
+        self.amplitude * self.history.largest(end)
+    }
+}
+
+impl Drive {
+    /// Speed at a time, by the branch that holds at `branch_time`.
+    pub(crate) fn speed_at(&self, time: f64, branch_time: f64) -> f64 {
+        self.speed.at(time, branch_time) + self.added.as_ref().map_or(0.0, |added| added.at(time))
+    }
+
+    /// Its rate.
+    pub(crate) fn acceleration_at(&self, time: f64, branch_time: f64) -> f64 {
+        self.speed.rate(time, branch_time) + self.added.as_ref().map_or(0.0, Signal::rate)
+    }
+
+    /// Refuses numbers that are not finite, and a direction that is no unit vector.
+    pub(crate) fn check(&self) -> Result<(), SetupError> {
+        let DrivenSpeed { amplitude, history } = &self.speed;
+        history.check()?;
+        let (DrivenMotion::Turn { axis: unit } | DrivenMotion::Slide { direction: unit }) = self.motion;
+        check_unit("the length of a drive's direction", &unit)?;
+        finite("the speed of a drive", *amplitude)
+    }
+}
+
+/// Refuses a direction that is no unit vector.
+pub(crate) fn check_unit(what: &'static str, direction: &Vector3<f64>) -> Result<(), SetupError> {
+    let found = direction.norm();
+    if (found - 1.0).abs() > 1e-9 || found.is_nan() {
+        return Err(SetupError::Value { what, found, expected: "1" });
+    }
+    Ok(())
+}
+
+/// What a motion in the conservative form is to have beside modes, damping and loads.
+#[derive(Debug, Clone)]
+pub struct Physics {
+    /// Which effects are computed; all by default. Flexibility, damping and gravity are the matter of the body, its
+    /// damping ratios and its loads: what these do not hold is not computed.
+    pub effects: EffectMap<bool>,
+    /// What drives the held part.
+    pub drive: Option<Drive>,
+    /// Geometric stiffness Ψ_fᵀ K Ψ_f (nf×nf, symmetric) of the static answer to the forces `M (1⊗e)` of a unit
+    /// acceleration of a driven slide along e, or `M (I⊗[a×]) X` of a driven turn about a.
+    pub drive_stiffness: Option<Mat<f64>>,
+    /// The manifold of large modes. Points, loads and `drive_stiffness` are then in its extended shapes; of the stiffness that
+    /// of the modes counts.
+    pub large_deflection: Option<Manifold>,
+}
+
+impl Default for Physics {
+    /// All effects; nothing drives or stresses the body.
+    fn default() -> Self {
+        Self { effects: EffectMap::all(), drive: None, drive_stiffness: None, large_deflection: None }
+    }
+}

@@ -1,0 +1,133 @@
+//! A place of the body with what the modes do there.
+
+use faer::MatRef;
+use modal::{BodyPoint, ReducedBody};
+use nalgebra::Vector3;
+
+use crate::body::components::{Components, ComponentsFrom};
+use crate::body::second_order::SecondOrder;
+
+/// A point with its rows of all mode shapes, rigid and flexible.
+#[derive(Debug, Clone)]
+pub struct PointShapes {
+    position_body: Vector3<f64>,
+    /// Column k is the displacement of the point in mode k (6+nf columns).
+    columns: Vec<Vector3<f64>>,
+    /// The same by components, a list of all modes each.
+    components: Components,
+    second_order: Option<SecondOrder>,
+}
+
+impl PointShapes {
+    /// The rows of a point's shapes in the modes of `body`.
+    pub fn new(body: &ReducedBody, point: &BodyPoint) -> Self {
+        let rigid = body.rigid_shapes(&point.position_body);
+        let columns = (0..6)
+            .map(|k| rigid.column(k).into())
+            .chain(point.shapes.col_iter().map(|c| Vector3::new(c[0], c[1], c[2])))
+            .collect();
+        Self::of_columns(point.position_body, columns)
+    }
+
+    fn of_columns(position_body: Vector3<f64>, columns: Vec<Vector3<f64>>) -> Self {
+        Self { position_body, components: Components::new(&columns), columns, second_order: None }
+    }
+
+    /// The point with its displacement to second order: a load on it then stiffens the body.
+    #[must_use]
+    pub fn with_second_order(self, second_order: SecondOrder) -> Self {
+        Self { second_order: Some(second_order), ..self }
+    }
+
+    /// The displacement of second order, if it is known.
+    pub(crate) fn second_order(&self) -> Option<&SecondOrder> {
+        self.second_order.as_ref()
+    }
+
+    /// X: undeformed position from the body's origin, body axes.
+    pub fn position_body(&self) -> Vector3<f64> {
+        self.position_body
+    }
+
+    /// Number of flexible modes.
+    pub(crate) fn flexible(&self) -> usize {
+        self.columns.len() - 6
+    }
+
+    /// The point with the rows of the first `flexible` flexible modes only.
+    pub fn truncated(&self, flexible: usize) -> Self {
+        let kept = self.columns.len().min(6 + flexible);
+        let second_order = self.second_order.as_ref().map(|second_order| second_order.truncated(flexible));
+        Self { second_order, ..Self::of_columns(self.position_body, self.columns[..kept].to_vec()) }
+    }
+
+    /// Modal expansion at the point, (28): Σ_k Ψ_k c_k.
+    pub fn expand(&self, coordinates: &[f64]) -> Vector3<f64> {
+        self.components.from(0).sum(coordinates)
+    }
+
+    /// Φ q of the flexible modes: displacement of the point in the body frame.
+    pub fn deformation(&self, flexible: &[f64]) -> Vector3<f64> {
+        self.components.from(6).sum(flexible)
+    }
+
+    /// [`Self::deformation`] of three lists at once: each shape is read once.
+    pub(crate) fn deformations(&self, flexible: [&[f64]; 3]) -> [Vector3<f64>; 3] {
+        self.components.from(6).sums(flexible)
+    }
+
+    /// The components of all shapes from mode `first` on, the rigid ones counted.
+    pub(crate) fn components(&self, first: usize) -> ComponentsFrom<'_> {
+        self.components.from(first)
+    }
+
+    /// Columns of all modes, rigid and flexible (6+nf).
+    pub fn columns(&self) -> &[Vector3<f64>] {
+        &self.columns
+    }
+}
+
+/// A place of the body with the small rotations that all modes, rigid and flexible, give it.
+#[derive(Debug, Clone)]
+pub struct RotationShapes {
+    /// Column k is the rotation vector of the place in mode k (6+nf columns).
+    columns: Vec<Vector3<f64>>,
+    second_order: Option<SecondOrder>,
+}
+
+impl RotationShapes {
+    /// `flexible` has the rotation vectors of the flexible modes (3×nf).
+    pub fn new(body: &ReducedBody, flexible: MatRef<'_, f64>) -> Self {
+        let rigid = (0..3).map(|_| Vector3::zeros()).chain((0..3).map(|i| body.rotation_basis.column(i).into()));
+        let columns = rigid.chain(flexible.col_iter().map(|c| Vector3::new(c[0], c[1], c[2]))).collect();
+        Self { columns, second_order: None }
+    }
+
+    /// The place with its rotation to second order: a moment on it then stiffens the body.
+    #[must_use]
+    pub fn with_second_order(self, second_order: SecondOrder) -> Self {
+        Self { second_order: Some(second_order), ..self }
+    }
+
+    /// The rotation of second order, if it is known.
+    pub(crate) fn second_order(&self) -> Option<&SecondOrder> {
+        self.second_order.as_ref()
+    }
+
+    /// Number of flexible modes.
+    pub(crate) fn flexible(&self) -> usize {
+        self.columns.len() - 6
+    }
+
+    /// The place with the first `flexible` flexible modes only.
+    pub fn truncated(&self, flexible: usize) -> Self {
+        let kept = self.columns.len().min(6 + flexible);
+        let second_order = self.second_order.as_ref().map(|second_order| second_order.truncated(flexible));
+        Self { columns: self.columns[..kept].to_vec(), second_order }
+    }
+
+    /// Columns of all modes, rigid and flexible (6+nf).
+    pub fn columns(&self) -> &[Vector3<f64>] {
+        &self.columns
+    }
+}

@@ -1,0 +1,67 @@
+//! What watches a run, without owning its loop.
+
+use crate::body::shapes::PointShapes;
+use crate::error::StepError;
+use crate::observation::Observation;
+use crate::scheme::Scheme;
+
+/// Watches a run step by step. A closure of `&Observation` is one, too.
+pub trait Observer: Send {
+    /// Sees the end of a step.
+    ///
+    /// # Errors
+    /// One ends [`Simulation::advance`](crate::Simulation::advance) there.
+    fn step(&mut self, now: &mut StepEnd<'_>) -> Result<(), StepError>;
+
+    /// Sees the state whose motion [`Simulation::observe`](crate::Simulation::observe) is asked for, as at each row.
+    ///
+    /// # Errors
+    /// One is returned from there.
+    fn observed(&mut self, now: &mut StepEnd<'_>) -> Result<(), StepError> {
+        let _ = now;
+        Ok(())
+    }
+}
+
+impl<F: FnMut(&Observation) + Send> Observer for F {
+    fn step(&mut self, now: &mut StepEnd<'_>) -> Result<(), StepError> {
+        self(now.observation()?);
+        Ok(())
+    }
+}
+
+/// The end of a step, as an [`Observer`] sees it.
+#[derive(Debug)]
+pub struct StepEnd<'a> {
+    pub(crate) scheme: &'a mut dyn Scheme,
+    pub(crate) points: &'a [PointShapes],
+    /// Length of the longest step so far; 0 before the first.
+    pub(crate) longest_step: f64,
+    pub(crate) observation: &'a mut Observation,
+    /// Whether `observation` is that of the state.
+    pub(crate) is_observed: bool,
+}
+
+impl StepEnd<'_> {
+    /// What steps the body: what it knows without another evaluation of the rates.
+    pub fn scheme(&self) -> &dyn Scheme {
+        self.scheme
+    }
+
+    /// Length of the longest step so far; 0 before the first.
+    pub fn longest_step(&self) -> f64 {
+        self.longest_step
+    }
+
+    /// The motion, which is found at the first call: the rates are evaluated for it.
+    ///
+    /// # Errors
+    /// [`StepError`] where the motion cannot be observed.
+    pub fn observation(&mut self) -> Result<&Observation, StepError> {
+        if !self.is_observed {
+            self.scheme.observe(self.points, self.observation)?;
+            self.is_observed = true;
+        }
+        Ok(self.observation)
+    }
+}

@@ -1,0 +1,203 @@
+//! What a run begins with: the body and what acts on it, the method, and how long its steps are.
+
+use std::fmt;
+
+use modal::ReducedBody;
+use nalgebra::Vector3;
+
+use crate::body::initial::Initial;
+use crate::body::model::check_model;
+use crate::body::physics::{DrivenMotion, Physics};
+use crate::body::shapes::PointShapes;
+use crate::conservative::ConservativeBody;
+use crate::error::SetupError;
+use crate::history::{History, positive};
+use crate::load::SharedLoad;
+use crate::scheme::Scheme;
+use crate::scheme::abilities::Abilities;
+use crate::scheme::mode_limit::check_step_of_modes;
+use crate::simulation::account;
+use crate::simulation::plan::{Rows, StepControl};
+
+/// Everything that a run needs.
+#[derive(Debug, Clone)]
+pub struct Setup<'a> {
+    /// The body.
+    pub body: &'a ReducedBody,
+    /// One damping ratio for each flexible mode.
+    pub damping_ratios: &'a [f64],
+    /// The loads.
+    pub loads: &'a [SharedLoad],
+    /// Effects, drives and stress.
+    pub physics: &'a Physics,
+    /// R, P, Q of the paper's scheme, from the body's origin, body axes.
+    pub reference_points: [Vector3<f64>; 3],
+    /// How it begins.
+    pub initial: &'a Initial,
+    /// How it is stepped.
+    pub method: Method,
+    /// How long the steps are.
+    pub control: StepControl,
+    /// When it ends.
+    pub end: f64,
+    /// When it is observed.
+    pub rows: Rows,
+    /// Points whose motion is observed.
+    pub points: &'a [PointShapes],
+}
+
+/// What limits the step of a scheme.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum StepLimit {
+    /// The fastest mode, at about 2.83/ω_max.
+    Modes,
+    /// The spin: the largest angle in rad that the body may turn through in a step.
+    Turn(f64),
+}
+
+/// A scheme that a scene can name.
+///
+/// One of your own is a constant of this type: a [`Setup`] takes it like those of this crate.
+#[derive(Clone, Copy)]
+pub struct Method {
+    /// The name of its formulation: "paper" or "conservative".
+    pub formulation: &'static str,
+    /// Its name.
+    pub scheme: &'static str,
+    /// Order of convergence.
+    pub order: u32,
+    /// Evaluations of the rates that a step takes.
+    pub evaluations_per_step: u32,
+    /// What limits its step.
+    pub limit: StepLimit,
+    /// Whether it estimates the error of a step.
+    pub estimates_error: bool,
+    /// What its formulation can do.
+    pub abilities: Abilities,
+    /// Begins a motion.
+    pub begin: fn(&Setup) -> Result<Beginning, SetupError>,
+}
+
+/// A motion that begins.
+#[derive(Debug)]
+pub struct Beginning {
+    /// The state and what steps it.
+    pub scheme: Box<dyn Scheme>,
+    /// Scale of the energy that the loads may give the body: [`Setup::energy_of_loads`].
+    pub energy_of_loads: f64,
+}
+
+impl Setup<'_> {
+    /// Refuses what the method cannot do.
+    pub(crate) fn check(&self) -> Result<(), SetupError> {
+        self.check_abilities()?;
+        match self.control {
+            StepControl::Fixed(step) => self.check_step(step),
+            StepControl::Tolerance(_) if self.method.estimates_error => Ok(()),
+            StepControl::Tolerance(_) => {
+                let Method { formulation, scheme, .. } = self.method;
+                Err(SetupError::NoErrorEstimate { formulation, scheme })
+            }
+        }
+    }
+
+    /// Refuses physics that the formulation does not have.
+    fn check_abilities(&self) -> Result<(), SetupError> {
+        let Method { formulation, abilities, .. } = self.method;
+        let asked_for = [
+            (self.physics.drive.is_some(), abilities.drives, "driven motion"),
+            (self.physics.large_deflection.is_some(), abilities.large_deflection, "large deflection"),
+        ];
+        match asked_for.into_iter().find(|(is_there, is_able, _)| *is_there && !is_able) {
+            Some((_, _, what)) => Err(SetupError::NotInFormulation { formulation, what }),
+            None => Ok(()),
+        }
+    }
+
+    /// Refuses times and tolerances that are not positive.
+    pub(crate) fn check_times(&self) -> Result<(), SetupError> {
+        positive("the end", self.end)?;
+        match self.control {
+            StepControl::Fixed(step) => positive("the step", step)?,
+            StepControl::Tolerance(tolerance) => positive("the tolerance", tolerance)?,
+        }
+        match self.rows {
+            Rows::EverySteps(0) => {
+                let (what, expected) = ("the number of steps for a row", "1 or more");
+                Err(SetupError::Value { what, found: 0.0, expected })
+            }
+            Rows::EverySteps(_) => Ok(()),
+            Rows::Interval(interval) => positive("the interval of the rows", interval),
+        }
+    }
+
+    /// Refuses a step beyond the limit of the method: that of the fastest mode, or that of the spin.
+    fn check_step(&self, step: f64) -> Result<(), SetupError> {
+        check_model(self.body, self.damping_ratios, self.loads)?;
+        let StepLimit::Turn(longest_turn) = self.method.limit else {
+            return check_step_of_modes(&self.body.circular_frequencies, self.damping_ratios, step);
+        };
+        positive("the step", step)?;
+        let driven = self.physics.drive.as_ref().map_or(0.0, |drive| match drive.motion {
+            DrivenMotion::Turn { .. } => drive.speed.largest(self.end).abs(),
+            DrivenMotion::Slide { .. } => 0.0,
+        });
+        let spin = self.initial.omega.norm().max(driven);
+        let limit = longest_turn / spin;
+        if step <= limit { Ok(()) } else { Err(SetupError::StepBeyondSpin { step, limit, spin }) }
+    }
+
+    /// Scale of the energy that the loads may give the body, where it is needed: where steps do not resolve the fastest
+    /// mode, and for formulas, which may rise from nothing within a step.
+    ///
+    /// # Errors
+    /// [`SetupError`] where the body has no conservative form.
+    pub fn energy_of_loads(&self) -> Result<f64, SetupError> {
+        if self.method.is_limited_by_modes() && !self.has_formula() {
+            return Ok(0.0);
+        }
+        let body = ConservativeBody::new(self.body, self.damping_ratios, self.loads.to_vec(), self.physics)?;
+        Ok(self.energy_of_loads_on(&body))
+    }
+
+    /// The same, of the body of this set-up.
+    pub(crate) fn energy_of_loads_on(&self, body: &ConservativeBody) -> f64 {
+        if self.may_miss_work(body.fastest_rate()) { body.sizes_of_loads(self.end).energy } else { 0.0 }
+    }
+
+    /// Whether steps may be blind to work of the loads: they do not resolve a mode of this rate, the largest of ω_k and
+    /// 2 ζ_k ω_k, or a formula rises from nothing within one.
+    pub(crate) fn may_miss_work(&self, fastest_rate: f64) -> bool {
+        let is_resolved = match self.control {
+            StepControl::Fixed(step) => account::is_resolved(fastest_rate, step),
+            StepControl::Tolerance(_) => false,
+        };
+        !is_resolved || self.has_formula()
+    }
+
+    fn has_formula(&self) -> bool {
+        self.loads.iter().filter_map(|load| load.history()).any(History::has_formula)
+    }
+}
+
+impl Method {
+    /// Whether its step is limited by the fastest mode; otherwise by the spin.
+    pub fn is_limited_by_modes(&self) -> bool {
+        self.limit == StepLimit::Modes
+    }
+}
+
+impl PartialEq for Method {
+    fn eq(&self, other: &Self) -> bool {
+        (self.formulation, self.scheme) == (other.formulation, other.scheme)
+    }
+}
+
+impl Eq for Method {}
+
+impl fmt::Debug for Method {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} {}", self.formulation, self.scheme)
+    }
+}
