@@ -1,7 +1,7 @@
 //! Figures: line charts, deformed bodies and animations, as SVG, PDF, PNG and GIF.
 //!
 //! * [`LineChart`], [`ChartGrid`], [`ShapeGrid`] and [`Animation`] draw figures and write their files.
-//! * [`facets`] and [`sharp_edges`] turn the surface of a mesh into what the figures draw.
+//! * [`facets()`] and [`sharp_edges`] turn the surface of a mesh into what the figures draw.
 //!
 //! The crate knows plain data only: no mesh, no mode, no results file.
 

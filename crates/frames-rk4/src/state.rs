@@ -27,7 +27,8 @@ pub struct State {
     pub modal_acceleration: Vec<f64>,
     /// Angular velocity of the dummy rigid body by g, Eq. (36), body components.
     pub omega_body: Vector3<f64>,
-    /// Its angular acceleration by h, Eq. (37), body components. See [`rigid_kin::ReferencePoints`] for its limits.
+    /// Its angular acceleration by h, Eq. (37), body components. See [`dynamics::rigid_kin::ReferencePoints`] for its
+    /// limits.
     pub alpha_body: Vector3<f64>,
 }
 
