@@ -27,6 +27,15 @@ lint:
 circles:
     .ci/circles
 
+# Links, pages, paths and functions that the documentation names are there.
+pages:
+    .ci/pages
+
+# The documentation as a book with a search: target/book/index.html.
+book:
+    test -x .tools/bin/mdbook || cargo install --quiet --locked --no-default-features --features search --root .tools mdbook@0.5.4
+    .tools/bin/mdbook build docs
+
 # Everything once with the oldest Rust that is promised (`rust-version` in Cargo.toml).
 msrv:
     #!/usr/bin/env bash
@@ -58,31 +67,31 @@ mesh:
 # The moving picture of the README; its motion has to be within the range of the model.
 picture: build
     if {{flexframe}} run examples/thrown_plate.toml -o out/picture --overwrite | grep '^  warning'; then exit 1; fi
-    {{flexframe}} animate examples/thrown_plate.toml -o docs/thrown_plate.gif --frames 80 --overwrite
+    {{flexframe}} animate examples/thrown_plate.toml -o docs/start/thrown_plate.gif --frames 80 --overwrite
 
-# What accuracy costs: docs/accuracy.md and its diagrams from real runs of three scenes (some minutes).
+# What accuracy costs: docs/evidence/accuracy.md and its diagrams from real runs of three scenes (some minutes).
 accuracy:
-    cargo run --release --quiet --package accuracy -- docs/accuracy.md examples/accuracy/{pulse,tumbling,spin}.toml --overwrite
+    cargo run --release --quiet --package accuracy -- docs/evidence/accuracy.md examples/accuracy/{pulse,tumbling,spin}.toml --overwrite
 
-# What hard cases come to with every scheme: docs/stability.md; then kills of many runs (some minutes). Fails where a
+# What hard cases come to with every scheme: docs/evidence/stability.md; then kills of many runs (some minutes). Fails where a
 # bound is broken or a row is lost.
 stability:
-    cargo run --release --quiet --package stability -- docs/stability.md --overwrite
+    cargo run --release --quiet --package stability -- docs/evidence/stability.md --overwrite
     FLEXFRAME_KILLS=200 cargo test --release --quiet --package results --test killed
     FLEXFRAME_KILLS=40 cargo test --release --quiet --test faults
 
-# Large deflection and stress against a nonlinear finite-element body, and the curves of docs/nonlinear.md (some minutes).
+# Large deflection and stress against a nonlinear finite-element body, and the curves of docs/evidence/nonlinear.md (some minutes).
 nonlinear:
     cargo test --release --quiet --package nonlinear -- --include-ignored --nocapture
-    mkdir -p docs/nonlinear
-    cargo run --release --quiet --package nonlinear -- docs/nonlinear --overwrite
+    mkdir -p docs/evidence/nonlinear
+    cargo run --release --quiet --package nonlinear -- docs/evidence/nonlinear --overwrite
 
 # Steps a second of every scheme on one core, and what each effect costs per step and in set-up.
 bench:
     cargo bench --quiet --package dynamics --bench steps
     cargo bench --quiet --bench effects
 
-# docs/performance.md: against SciPy, SLEPc, CalculiX and Exudyn (`quick`: twenty minutes, `full`: hours, with all peers to their ends; parts: `modes`, `size`, `loop`, `page`).
+# docs/evidence/performance.md: against SciPy, SLEPc, CalculiX and Exudyn (`quick`: twenty minutes, `full`: hours, with all peers to their ends; parts: `modes`, `size`, `loop`, `page`).
 performance *what: build
     .tools/performance/bin/python benches/performance/performance.py {{what}}
 

@@ -30,7 +30,7 @@ use crate::{output, threads};
 
 /// Flexible-body dynamics: the motion of elastic bodies that fly, tumble and spin while they vibrate.
 ///
-/// A scene (a TOML file, see docs/scene.md) names a gmsh mesh of second-order tetrahedra, its material, the modes to
+/// A scene (a TOML file, see docs/reference/scene.md) names a gmsh mesh of second-order tetrahedra, its material, the modes to
 /// keep, the loads, and the time. Start with `flexframe run examples/plate.toml`.
 #[derive(Debug, Parser)]
 #[command(name = "flexframe", version, max_term_width = 100, after_long_help = exit_codes(), after_help = "--help says more, exit codes too.")]
@@ -97,7 +97,7 @@ enum Command {
         #[arg(long)]
         json: bool,
     },
-    /// Reduce a scene's body and write it to a file (docs/body.md) that scenes name as `file` in [body].
+    /// Reduce a scene's body and write it to a file (docs/reference/body.md) that scenes name as `file` in [body].
     Reduce {
         #[command(flatten)]
         scene: SceneArgs,
@@ -115,7 +115,7 @@ enum Command {
         #[arg(long)]
         stress: bool,
     },
-    /// Pack a scene as an FMU (FMI 2.0 for co-simulation), for Simulink, OpenModelica, Dymola, FMPy (docs/fmu.md).
+    /// Pack a scene as an FMU (FMI 2.0 for co-simulation), for Simulink, OpenModelica, Dymola, FMPy (docs/reference/fmu.md).
     ///
     /// Inputs are forces and moments at the points of the output, factors on the loads and the acceleration of a drive;
     /// outputs are the columns of a results file.
@@ -264,7 +264,7 @@ enum Command {
         #[command(flatten)]
         files: FileArgs,
     },
-    /// Run a scene with many values of its keys, and write a table of parameters and results (docs/cli.md).
+    /// Run a scene with many values of its keys, and write a table of parameters and results (docs/reference/cli.md).
     ///
     /// A row that fails is marked with its words, and the others go on. Run again, it does the rows that are not done.
     Sweep {
@@ -602,7 +602,7 @@ fn command(cli: Cli, json_errors: bool, cache: &Cache) -> Result<(), Box<dyn Fai
             output::list(&[output])
         }
         Command::Sweep { sweep: file, output, shard, merge, slurm, files: FileArgs { overwrite }, large, json } => {
-            GivenFile::expect(&file, &[GivenFile::Sweep], "the file of a sweep (docs/cli.md)")?;
+            GivenFile::expect(&file, &[GivenFile::Sweep], "the file of a sweep (docs/reference/cli.md)")?;
             output::require_file("--output", output.as_deref())?;
             let output = output.unwrap_or_else(|| {
                 Path::new("out").join(file.file_stem().unwrap_or("sweep".as_ref())).with_extension("h5")

@@ -74,7 +74,7 @@ fn assigned(text: &str, set: &[(String, Value)]) -> Result<String, CliError> {
         option: "--set",
         found: format!("`{key}`, {found}"),
         expected,
-        cure: "name the key as messages about the scene do; docs/scene.md lists them".to_owned(),
+        cure: "name the key as messages about the scene do; docs/reference/scene.md lists them".to_owned(),
     })
 }
 

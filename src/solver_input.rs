@@ -10,7 +10,7 @@ use crate::cli_error::CliError;
 
 #[derive(Debug, Args)]
 pub struct SolverInput {
-    /// Who finds modes and static answers; slepc is SLEPc under mpirun, for bodies beyond one machine (docs/cluster.md).
+    /// Who finds modes and static answers; slepc is SLEPc under mpirun, for bodies beyond one machine (docs/reference/cluster.md).
     ///
     /// What the cache has is taken from there, whoever has computed it; --no-cache computes it anew.
     #[arg(long, value_name = "SOLVER", value_enum)]
@@ -72,6 +72,7 @@ fn refused(option: &'static str, found: &str, expected: &str) -> CliError {
         option,
         found: found.to_owned(),
         expected: expected.to_owned(),
-        cure: "`--solver slepc --ranks N` finds the modes here; docs/cluster.md shows how a cluster does".to_owned(),
+        cure: "`--solver slepc --ranks N` finds the modes here; docs/reference/cluster.md shows how a cluster does"
+            .to_owned(),
     }
 }

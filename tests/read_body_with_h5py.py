@@ -1,4 +1,4 @@
-"""Runs the examples of docs/body.md, and checks what they say.
+"""Runs the examples of docs/reference/body.md, and checks what they say.
 
 Arguments: a body file and a results file; the same of a scene with large deflection and stress, and an export of it by
 --vtkhdf --volume.
@@ -11,7 +11,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-page = (Path(__file__).parents[1] / "docs/body.md").read_text()
+page = (Path(__file__).parents[1] / "docs/reference/body.md").read_text()
 first, second = re.findall(r"```python\n(.*?)```", page, re.S)
 first = first.replace("ring.body.h5", sys.argv[1]).replace("out/ring/ring.h5", sys.argv[2])
 names = {}

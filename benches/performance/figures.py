@@ -1,4 +1,4 @@
-"""The figures of docs/performance.md."""
+"""The figures of docs/evidence/performance.md."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""What docs/performance.md shows of the loop over time."""
+"""What docs/evidence/performance.md shows of the loop over time."""
 
 from statistics import median
 

@@ -1,4 +1,4 @@
-"""What docs/performance.md shows of the modes."""
+"""What docs/evidence/performance.md shows of the modes."""
 
 import modes
 import summary

@@ -1,4 +1,4 @@
-"""Writes docs/performance.md and its figures from the raw results."""
+"""Writes docs/evidence/performance.md and its figures from the raw results."""
 
 import json
 import sys
@@ -16,7 +16,7 @@ from markdown import number, table
 from measure import HERE
 from store import FOLDER
 
-PAGE = Path("docs/performance.md")
+PAGE = Path("docs/evidence/performance.md")
 
 
 def write():
@@ -60,7 +60,7 @@ def write():
         "end": f"{loop.END:g}",
         "errors": loop_tables.error_table(of_loop, speeds),
     }
-    PAGE.write_text(Template((HERE / "page.md").read_text()).substitute(words))
+    PAGE.write_text(Template((HERE / "page.template").read_text()).substitute(words))
     print(PAGE, *sorted(folder.glob("*.svg")), sep="\n")
 
 

@@ -1,4 +1,4 @@
-"""Measures flexframe against other programs and writes docs/performance.md with its figures.
+"""Measures flexframe against other programs and writes docs/evidence/performance.md with its figures.
 
 Usage: performance.py [quick|full] [modes] [size] [loop] [page]
 

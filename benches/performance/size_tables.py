@@ -1,4 +1,4 @@
-"""What docs/performance.md shows of cost against size."""
+"""What docs/evidence/performance.md shows of cost against size."""
 
 import modes
 import summary

@@ -19,7 +19,7 @@ figures = Path(os.environ.get("FLEXFRAME_FIGURES", "."))
 # %% [markdown]
 # ## A scene
 #
-# A scene says everything about a run. It is a file, or a dict with the same sections and keys (docs/scene.md). Paths in a
+# A scene says everything about a run. It is a file, or a dict with the same sections and keys (docs/reference/scene.md). Paths in a
 # dict are relative to `base`. This one is a plate of aluminium, 1000 x 50 x 10 mm, free in space. It turns slowly, and its
 # first modes vibrate.
 
@@ -72,7 +72,7 @@ fig.savefig(figures / "mode_shapes.png", dpi=120)
 # %% [markdown]
 # ## A run
 #
-# `run` goes to the end and gives arrays by the names of the results file (docs/results.md). `columns` knows the unit and the
+# `run` goes to the end and gives arrays by the names of the results file (docs/reference/results.md). `columns` knows the unit and the
 # axes of each. (`flexframe.run(scene, folder)` writes the file, too.)
 
 # %%

@@ -164,8 +164,8 @@ fn the_page_on_results_has_the_table_of_columns() {
         };
         table += &format!("| `{path}` | {shape} | {unit} | {frame} | {description} |\n");
     }
-    let page = std::fs::read_to_string(root().join("docs/results.md")).unwrap();
-    assert!(page.contains(&(table.clone() + "\n")), "docs/results.md is to have this table:\n{table}");
+    let page = std::fs::read_to_string(root().join("docs/reference/results.md")).unwrap();
+    assert!(page.contains(&(table.clone() + "\n")), "docs/reference/results.md is to have this table:\n{table}");
 }
 
 #[test]

@@ -250,7 +250,7 @@ fn threads_that_cannot_be_are_refused_in_words() {
 #[test]
 fn the_exit_codes_are_documented() {
     let help = String::from_utf8(flexframe(&["--help"]).output().unwrap().stdout).unwrap();
-    let page = std::fs::read_to_string(root().join("docs/cli.md")).unwrap();
+    let page = std::fs::read_to_string(root().join("docs/reference/cli.md")).unwrap();
     for kind in Kind::ALL {
         let (code, meaning) = (kind.exit_code(), kind.meaning());
         assert!(help.contains(&format!("{code:>3}  {meaning}")), "{help}");

@@ -1,4 +1,4 @@
-//! `docs/accuracy.md`: the price lists of several scenes as a page.
+//! `docs/evidence/accuracy.md`: the price lists of several scenes as a page.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};

@@ -19,11 +19,11 @@ fn the_page_has_its_tables_and_its_pictures() {
     let (docs, lists) = (folder.path().join("docs"), folder.path().join("lists"));
     std::fs::create_dir(&docs).unwrap();
     accuracy_page(&[scene], &docs.join("accuracy.md"), &lists, Duration::from_millis(100), false).unwrap();
-    let page = std::fs::read_to_string(folder.path().join("docs/accuracy.md")).unwrap();
+    let page = std::fs::read_to_string(docs.join("accuracy.md")).unwrap();
     for words in ["# What accuracy costs", "## Ring", "**The paper's scheme.**", "What the modes cost", "ω²Δt/2"] {
         assert!(page.contains(words), "{words} in {page}");
     }
-    assert!(folder.path().join("docs/accuracy/ring.svg").exists());
+    assert!(docs.join("accuracy/ring.svg").exists());
     // Every table has as many cells in each row as in its head.
     for table in page.split("\n\n").filter(|block| block.starts_with('|')) {
         let cells: Vec<usize> = table.lines().map(|row| row.matches('|').count()).collect();

@@ -9,7 +9,7 @@
 //!
 //! μ is the squared slope of the manifold, |∂u/∂q|² beyond 1: about the square of the largest angle by which the body is
 //! bent. Where the first orders left out are of a size e beside the linear ones, the next are of a size e μ. The factor is that
-//! of the elastica: see `docs/nonlinear.md`.
+//! of the elastica: see `docs/evidence/nonlinear.md`.
 
 use dynamics::Manifold;
 

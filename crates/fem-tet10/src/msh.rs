@@ -32,7 +32,7 @@ const FACTOR: usize = 4;
 const REMESH: &str = "mesh with -order 2 (or `Mesh.ElementOrder = 2;`), or set raise_order = true in [body] of the scene for \
                       straight edges with nodes in their middle";
 const TETRAHEDRA_ONLY: &str = "mesh with tetrahedra (gmsh: no Recombine, no Transfinite Volume with Recombine) and -order 2, or give mass and stiffness of \
-     any elements in place of the mesh: `matrices` in [body] (docs/matrices.md)";
+     any elements in place of the mesh: `matrices` in [body] (docs/reference/matrices.md)";
 
 /// Reads a MSH 4.1 file and checks the mesh.
 ///

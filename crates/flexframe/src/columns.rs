@@ -1,7 +1,7 @@
 //! The columns of a results file of `flexframe run`.
 //!
 //! To add a quantity, compute it in [`Observation`](dynamics::Observation) or in [`Row`] and give it a line here. Writing, reading, the check that numbers are
-//! finite, and the attributes in the file follow from the line; a test says what to put into `docs/results.md`.
+//! finite, and the attributes in the file follow from the line; a test says what to put into `docs/reference/results.md`.
 
 use results::Column;
 use results::Values::{Modal, Number, PointNumbers, Points, Quaternion, Supports, Vector};

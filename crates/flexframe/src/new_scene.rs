@@ -147,7 +147,7 @@ fn text(read: &mut Imported, settings: &ImportSettings, mesh_path: &Path) -> Res
         text,
         r#"# A first scene of a mesh of {nodes} nodes and {elements} elements. It runs as it is:
 #     flexframe run THIS_FILE
-# Every key is described in docs/scene.md; `flexframe advise` says which effects the scene calls for.
+# Every key is described in docs/reference/scene.md; `flexframe advise` says which effects the scene calls for.
 title = {title}
 # A mesh has no units; {guessed_by} like {length_in_words}. Nothing is converted: these are labels, and all numbers
 # of the scene are in these units (forces in {force}, stresses in {stress}).

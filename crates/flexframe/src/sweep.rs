@@ -317,7 +317,7 @@ fn run_row(
         Results::open(run::results_path(scene, folder.path()), &COLUMNS).map_err(|error| error.to_string())?;
     let value = |asked: &Asked| {
         let column = asked.column();
-        let table = results.table(column).ok_or_else(|| format!("the results have no column {column}: docs/results.md lists them, and those of points are points/NAME/displacement and so on"))?;
+        let table = results.table(column).ok_or_else(|| format!("the results have no column {column}: docs/reference/results.md lists them, and those of points are points/NAME/displacement and so on"))?;
         let row = match asked {
             Asked::Final(_) => table.rows().checked_sub(1).and_then(|last| table.row(last)).map(<[f64]>::to_vec),
             Asked::Peak(_) => (0..table.width())

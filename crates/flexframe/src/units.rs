@@ -190,10 +190,10 @@ mod tests {
         }
     }
 
-    /// Each row of docs/units.md, to its four digits.
+    /// Each row of docs/reference/units.md, to its four digits.
     #[test]
     fn the_table_of_units_is_right() {
-        let table = include_str!("../../../docs/units.md");
+        let table = include_str!("../../../docs/reference/units.md");
         let rows: Vec<Vec<&str>> = (table.lines().skip_while(|line| !line.starts_with("|---")).skip(1))
             .take_while(|line| line.starts_with('|'))
             .map(|line| line.trim_matches('|').split('|').map(str::trim).collect())

@@ -48,7 +48,7 @@ const HELD: f64 = 1e30;
 
 const FORMS: &str = "a first line `%%MatrixMarket matrix coordinate real symmetric` (or `general`), or lines `row column value` \
                      (CalculiX), or lines `node, dof, node, dof, value` (Abaqus)";
-const EXPORT: &str = "write the file as docs/matrices.md says, from CalculiX, Abaqus or Python";
+const EXPORT: &str = "write the file as docs/reference/matrices.md says, from CalculiX, Abaqus or Python";
 
 /// Calls `take` with each entry of the file, in its order, until it breaks off; returns how the file is written.
 pub(crate) fn each_entry(

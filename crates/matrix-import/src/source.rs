@@ -113,7 +113,7 @@ impl<'a> Source<'a> {
             None,
             format!("a file that cannot be read: {cause}"),
             "a file that is there, its path relative to the folder of the scene file",
-            "correct the path, or write the file: docs/matrices.md says how, from CalculiX, Abaqus and Python",
+            "correct the path, or write the file: docs/reference/matrices.md says how, from CalculiX, Abaqus and Python",
         )
     }
 }

@@ -166,7 +166,8 @@ const SURFACE: &str = "a surface of triangles, which encloses a volume but has n
 const SURFACE_CURE: &str = "give the part as STEP, which gmsh meshes, or fill the surface with tetrahedra in gmsh: Merge \"SURFACE.stl\"; \
                             Surface Loop(1) = {1}; Volume(1) = {1};";
 const UNKNOWN: &str = "no mesh or geometry of a format that is read here";
-const UNKNOWN_CURE: &str = "save it as .msh, .inp, .bdf, .med, .vtu, .unv or .step; docs/meshes.md has all formats";
+const UNKNOWN_CURE: &str =
+    "save it as .msh, .inp, .bdf, .med, .vtu, .unv or .step; docs/reference/meshes.md has all formats";
 
 /// A smaller scaled Jacobian is what gmsh's optimisation takes for bad (Mesh.HighOrderThresholdMin).
 const BADLY_CURVED: f64 = 0.1;

@@ -84,7 +84,7 @@ def main(source, target, raise_order):
         raise Refused(
             f"it has elements that are no tetrahedra: {each}",
             "mesh with ten-node tetrahedra (C3D10, tetra10), or give mass and stiffness of any elements in place of the mesh: "
-            "`matrices` in [body], which CalculiX, Abaqus and others write (docs/matrices.md)",
+            "`matrices` in [body], which CalculiX, Abaqus and others write (docs/reference/matrices.md)",
         )
     if not any(kind == "tetra10" for kind, _, _ in blocks):
         found = ", ".join(f"{count} {kind}" for kind, count in others.items()) or "no elements at all"

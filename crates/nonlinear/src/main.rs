@@ -1,4 +1,4 @@
-//! The curves of docs/nonlinear.md: flexframe against the nonlinear body.
+//! The curves of docs/evidence/nonlinear.md: flexframe against the nonlinear body.
 //!
 //! `nonlinear DIRECTORY [--overwrite]` writes them there as SVG.
 

@@ -182,7 +182,7 @@ impl Body {
         self.of_nodes(py, |meshed| meshed.modes.rigid.shapes.as_ref())
     }
 
-    /// Constants of the reduced body, by the names in docs/body.md: "mass" is a number, the others are read-only arrays
+    /// Constants of the reduced body, by the names in docs/reference/body.md: "mass" is a number, the others are read-only arrays
     /// with the shapes given there. Those without an index of their own are views.
     #[getter]
     fn constants<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {

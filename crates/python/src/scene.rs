@@ -90,7 +90,7 @@ impl Scene {
             assigned.push((key, value));
         }
         let refused = |AssignError { key, found, expected }| {
-            let cure = "name the key as messages about the scene do; docs/scene.md lists them";
+            let cure = "name the key as messages about the scene do; docs/reference/scene.md lists them";
             wrong_input(py, &format!("`{key}`"), &found, &expected, cure)
         };
         let text = assign(&self.0.source, &assigned).map_err(refused)?;

@@ -1,4 +1,4 @@
-"""What Python may do wrong, and what is said: docs/python.md has the table. Nothing is left half-written."""
+"""What Python may do wrong, and what is said: docs/reference/python.md has the table. Nothing is left half-written."""
 
 import json
 

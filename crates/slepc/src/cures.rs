@@ -26,10 +26,8 @@ const CURES: [(&str, &str); 6] = [
 
 /// What to do about a failure with these words.
 pub(crate) fn cure(said: &str) -> &'static str {
-    CURES
-        .iter()
-        .find(|(words, _)| said.contains(words))
-        .map_or("see what it said; options for PETSc and MUMPS go into PETSC_OPTIONS (docs/cluster.md)", |(_, cure)| {
-            cure
-        })
+    CURES.iter().find(|(words, _)| said.contains(words)).map_or(
+        "see what it said; options for PETSc and MUMPS go into PETSC_OPTIONS (docs/reference/cluster.md)",
+        |(_, cure)| cure,
+    )
 }

@@ -88,7 +88,7 @@ pub(crate) fn drive(
         }),
         Err(error) => Err(SlepcError::Refused {
             found: format!("`{words}`: {error}"),
-            cure: "see what the system lacks; docs/cluster.md says how to run the driver by hand".to_owned(),
+            cure: "see what the system lacks; docs/reference/cluster.md says how to run the driver by hand".to_owned(),
         }),
     }
 }

@@ -1,6 +1,6 @@
 //! Hard cases: why they are hard, what every scheme makes of them, and the bound that a test holds it to.
 //!
-//! A [`HardCase`] is run by the tests at [`Extent::Test`] and by the study, which writes `docs/stability.md`, at
+//! A [`HardCase`] is run by the tests at [`Extent::Test`] and by the study, which writes `docs/evidence/stability.md`, at
 //! [`Extent::Study`]: the same bounds, longer runs.
 #![forbid(unsafe_code)]
 

@@ -1,4 +1,4 @@
-//! `docs/stability.md`.
+//! `docs/evidence/stability.md`.
 
 use std::fmt::Write;
 use std::time::Instant;

@@ -9,7 +9,7 @@ use crate::outputs::OutputError;
 use crate::write_error::WriteError;
 
 /// What to do about the file of a sweep.
-pub(crate) const SWEEP_CURE: &str = "correct it: docs/cli.md, \"Sweeps\", has an example with all its keys";
+pub(crate) const SWEEP_CURE: &str = "correct it: docs/reference/cli.md, \"Sweeps\", has an example with all its keys";
 
 /// A sweep that could not be made. What fails in a row of it is in its table.
 #[derive(Debug, thiserror::Error)]

@@ -126,7 +126,7 @@ class Body:
         """Rigid modes, zero where the body has less (6 x n x 3, or 6 with the rotations of the nodes; view)."""
     @property
     def constants(self) -> dict[str, Any]:
-        """Constants of the reduced body, by the names in docs/body.md: "mass" is a number, the others are read-only arrays with the
+        """Constants of the reduced body, by the names in docs/reference/body.md: "mass" is a number, the others are read-only arrays with the
         shapes given there. Those without an index of their own are views."""
     @property
     def points(self) -> dict[str, NDArray[np.float64]]:

@@ -19,7 +19,7 @@ pub(super) fn history(scene: &Scene, key: &str, history: &History) -> Result<dyn
             let found = format!("a formula in which {problem} (character {position})");
             return scene.refuse(&join(key, "formula"), found, "a formula in the time t", cure).into();
         }
-        let cure = "correct it; docs/scene.md has the rules of each kind of history";
+        let cure = "correct it; docs/reference/scene.md has the rules of each kind of history";
         scene.refuse(key, error.to_string(), "a history that can be evaluated", cure).into()
     };
     let made = if let History::Product { factors } = history {

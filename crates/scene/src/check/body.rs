@@ -74,7 +74,12 @@ impl Check<'_> {
         }
         let file = |key: &str, name: &str| -> Result<PathBuf, SceneError> {
             let key = join("body.matrices", key);
-            self.require(!name.is_empty() && !name.contains('\0'), &key, "the name of a file", "see docs/matrices.md")?;
+            self.require(
+                !name.is_empty() && !name.contains('\0'),
+                &key,
+                "the name of a file",
+                "see docs/reference/matrices.md",
+            )?;
             Ok(self.document.folder().join(name))
         };
         Ok(MatrixFiles {
