@@ -9,7 +9,7 @@
 //! Ω²/ω² = (1 + 2 (c₄/(16 ω²) − 5 c₃²/(48 ω⁴)) a²) / (1 + ½ m a²)
 //! ```
 //!
-//! to second order in the amplitude a: c₄ and m by harmonic balance, c₃ by Lindstedt's series.
+//! Eqs. (G2)–(G4) of `docs/method/stiffening.md`, to second order in the amplitude a: c₄ and m by harmonic balance, c₃ by Lindstedt's series.
 
 /// The frequency of a mode over its amplitude. [`advise`](crate::advise) and [`Review`](crate::Review) tell by it what
 /// linear strain leaves out.

@@ -1,4 +1,5 @@
 //! The conservative form: a body in its mean-axis frame, with momenta for its state.
+//! Eqs. (C1)–(C7) of `docs/method/conservative.md`, and Eqs. (H1)–(H2) of `docs/method/constraints.md`:
 //!
 //! ```text
 //! x = r + Aᵀ (X + Ψ_f q)

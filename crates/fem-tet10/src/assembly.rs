@@ -104,7 +104,7 @@ impl Matrices {
     }
 }
 
-/// Assembles K and M.
+/// Assembles K and M, Eqs. (M2), (M3) of `docs/method/modes.md`.
 ///
 /// While it works it holds, besides the matrices, about 1.2 kB for each straight element and 4.1 kB for each curved one.
 ///

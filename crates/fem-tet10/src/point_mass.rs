@@ -9,7 +9,7 @@ use crate::mesh::Mesh;
 /// So many nodes carry one mass at most. k nodes couple each to each, with 9k² entries in the pattern: 54 MB for 500.
 const MOST_CARRIERS: usize = 500;
 
-/// A mass at a point of the body.
+/// A mass at a point of the body, Eq. (M4) of `docs/method/modes.md`.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Deserialize, serde::Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct PointMass {

@@ -27,7 +27,7 @@ pub(crate) fn barycentric([xi, eta, zeta]: [f64; 3]) -> [f64; 4] {
     [1.0 - xi - eta - zeta, xi, eta, zeta]
 }
 
-/// Values of the ten shape functions at the reference point (ξ, η, ζ).
+/// Values of the ten shape functions at the reference point (ξ, η, ζ), Eq. (M1) of `docs/method/modes.md`.
 pub fn shape_functions(at: [f64; 3]) -> [f64; 10] {
     let l = barycentric(at);
     let mut n = [0.0; 10];

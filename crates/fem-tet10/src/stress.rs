@@ -64,7 +64,7 @@ impl<'a> StressRecovery<'a> {
     }
 
     /// The stress (6m×k, force per area, row `6·site + component`) at the m sites for each of the displacement fields
-    /// (N×k, length, row `3·node + axis`): linear in them.
+    /// (N×k, length, row `3·node + axis`): linear in them, Eq. (S1) of `docs/method/stress.md`.
     ///
     /// Exact for stresses that are linear in space, on straight elements.
     ///

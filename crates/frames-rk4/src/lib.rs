@@ -10,7 +10,7 @@
 //! is integrated in the inertial frame that coincides with the body now; the rigid part of the displacement goes to
 //! the frame; everything else is turned into the frame that the rigid part has reached and projected back onto the
 //! modes. The turn followed by the projection is `Σ R_ab E_ab` on the modal coordinates, so a step costs the same on
-//! any mesh. See `docs/method/method.md` for each equation beside its function.
+//! any mesh. See `docs/method/paper.md` for each equation beside its function.
 //!
 //! | paper | here |
 //! |---|---|

@@ -1,4 +1,4 @@
-//! The paper's physics at fourth order: one consistent frame per step, Runge–Kutta–Munthe-Kaas.
+//! The paper's physics at fourth order: one consistent frame per step, Runge–Kutta–Munthe-Kaas. Eq. (P2) of `docs/method/paper.md`.
 //!
 //! All components of the state turn with the frame, whose rotation vector θ starts each step at zero:
 //!

@@ -1,4 +1,4 @@
-//! The turn T followed by the inverse modal expansion, Eqs. (30), (31), in modal space.
+//! The turn T followed by the inverse modal expansion, Eqs. (30), (31), in modal space, Eq. (P1) of `docs/method/paper.md`.
 
 use dynamics::modal::ReducedBody;
 use dynamics::nalgebra::Matrix3;

@@ -1,7 +1,7 @@
 //! The paper's scheme, Eqs. (36) to (40), in modal space.
 //!
 //! It does what the paper says, its properties included (first order; spin that grows or fades at the relative rate
-//! ω²Δt/2; stable to Δt·ω_max = 2.83). Two things the paper leaves open are settled as `docs/method/method.md` tells:
+//! ω²Δt/2; stable to Δt·ω_max = 2.83). Two things the paper leaves open are settled as `docs/method/paper.md` tells:
 //! each step's rotation vector starts at zero, since (22) is singular after one turn, and a stage takes the loads'
 //! components in the stage's own frame.
 

@@ -30,7 +30,7 @@ const DEPENDENT: f64 = 1e-7;
 
 impl Solver<'_> {
     /// The lowest θ of `K_σ v = θ K v` in the space that the support allows, or 0 where there is none below: the loads
-    /// that make K_σ are −θ times those at which the body buckles. To 1e-4 of itself where it is below −0.1.
+    /// that make K_σ are −θ times those at which the body buckles. To 1e-4 of itself where it is below −0.1. Eq. (M12) of `docs/method/modes.md`.
     ///
     /// `product` gives `K_σ V` (N×k) for V (N×k). `start` (N×k) are displacements to begin with, such as vibration modes.
     ///

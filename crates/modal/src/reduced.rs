@@ -1,5 +1,7 @@
 //! The reduced body: every constant that the motion needs, none of them of the mesh's size.
 //!
+//! Eqs. (M7)–(M10) of `docs/method/modes.md`.
+//!
 //! With `X` the node positions from the origin (the centre of mass of a free body), `Ψ = [Ψ_R, Ψ_f]` the rigid and
 //! flexible shapes, and `(I⊗A)` a 3×3 matrix A acting on each node's vector (the definitions of any other mass than a scalar
 //! for each pair of nodes are those of [`ReducedBody::new`]):
@@ -80,7 +82,7 @@ pub struct Constants {
     /// b_i (3 vectors of nf).
     pub rotation_first: [Vec<f64>; 3],
     /// Ψ_fᵀ K_ij Ψ_f for ij = 11, 22, 33, 23, 13, 12 (6 matrices of nf×nf): K_ij is the stress stiffness matrix of the
-    /// static answer to the centrifugal field of ω_iω_j. `None` where it has not been asked for.
+    /// static response to the centrifugal field of ω_iω_j, Eq. (G1) of `docs/method/stiffening.md`. `None` if it was not asked for.
     pub stress_stiffness: Option<[Mat<f64>; 6]>,
 }
 

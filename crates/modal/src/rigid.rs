@@ -15,7 +15,7 @@ use crate::tall;
 /// ‖K r‖ relative to ‖D r‖, D the diagonal of K, that rounding in the assembly of K may leave.
 const FREE: f64 = 1e-9;
 
-/// Rigid modes, M-orthonormal, and the rigid body that they belong to. All in mesh axes.
+/// Rigid modes, M-orthonormal, Eq. (M6) of `docs/method/modes.md`, and the rigid body that they belong to. All in mesh axes.
 ///
 /// There is a column for each of the three translations and rotations, zero for a motion that the body does not have.
 /// The first three are translations `T[:,i]`, the others rotations `B[:,i] × X` with X measured from the origin. So the

@@ -128,7 +128,7 @@ pub(crate) enum Inverse<'a> {
     Cycles(&'a Levels),
 }
 
-/// A body, what holds it, and (from the first question on) what its answers come from: the factor of K + sM, or multigrid cycles.
+/// Modes of a body, Eq. (M5) of `docs/method/modes.md`: the body, what holds it, and (from the first question on) what its answers come from: the factor of K + sM, or multigrid cycles.
 pub struct Solver<'a> {
     pub(crate) stiffness: StiffnessMatrix<'a>,
     pub(crate) positions: &'a [[f64; 3]],

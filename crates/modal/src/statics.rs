@@ -120,7 +120,7 @@ impl Solver<'_> {
     }
 
     /// The modes, with shapes appended that make them span the static `answers` (N×k, see
-    /// [`static_response`](Self::static_response)): a few modes then give the right static displacement.
+    /// [`static_response`](Self::static_response)): a few modes then give the right static displacement, Eq. (M11) of `docs/method/modes.md`.
     ///
     /// What the answers have beside the rigid modes and `modes` is made into Rayleigh–Ritz vectors of (K, M), together
     /// with the static shapes that `modes` has already; answers that add less than 1e-8 of themselves add nothing.

@@ -19,7 +19,7 @@ use crate::conservative::manifold::Manifold;
 use crate::load::{Applied, Coordinates, Kinematics, SharedLoad};
 use crate::observation::Observation;
 
-/// The constants that the reactions of supports need.
+/// The constants that the reactions of supports need, Eq. (H3) of `docs/method/constraints.md`.
 #[derive(Debug, Clone)]
 pub struct SupportReactions(Arc<Constants>);
 

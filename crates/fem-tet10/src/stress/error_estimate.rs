@@ -35,7 +35,7 @@ impl std::iter::Sum for StressError {
 
 impl StressRecovery<'_> {
     /// The estimate for each element: of a displacement field (N, length) and its
-    /// [`nodal_stress`](Self::nodal_stress) (6m, force per area). That of the body is their sum.
+    /// [`nodal_stress`](Self::nodal_stress) (6m, force per area), Eq. (S3) of `docs/method/stress.md`. That of the body is their sum.
     ///
     /// # Errors
     /// Lists of another length, or with an entry that is not finite.

@@ -1,5 +1,5 @@
-//! What the modes leave out of the stress: the static answer to what acts on the body, less what the modes and static
-//! shapes of the motion have of it.
+//! The stress that the modes leave out: of the static response to what acts on the body, less what the modes and static
+//! shapes of the motion have of it. Eq. (S4) of `docs/method/stress.md`:
 //!
 //! ```text
 //! u_j = K⁻¹ f_j (inertia relief)        r_j = u_j − Σ_k φ_k (φ_kᵀ K u_j)/λ_k        σ_left = Σ_j a_j σ(r_j)

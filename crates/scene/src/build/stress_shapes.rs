@@ -23,7 +23,7 @@ use super::structure::Structure;
 use crate::scene::Output;
 
 /// The stress of a body in its coordinates ([`BodyStress::coordinates`]), force per area, body axes, in the order of
-/// [`fem_tet10::COMPONENTS`].
+/// [`fem_tet10::COMPONENTS`]: Eq. (S2) of `docs/method/stress.md`.
 #[derive(Debug)]
 pub struct BodyStress {
     manifold: Option<Manifold>,
