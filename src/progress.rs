@@ -68,7 +68,7 @@ impl Bar {
             BuildProgress::Modes(Progress::Lanczos { converged, requested }) => {
                 self.show("finding modes", Some((converged as u64, requested as u64)));
             }
-            BuildProgress::Statics => self.show("static answers", None),
+            BuildProgress::Statics => self.show("static responses", None),
         }
     }
 

@@ -10,7 +10,7 @@ use crate::cli_error::CliError;
 
 #[derive(Debug, Args)]
 pub struct SolverInput {
-    /// Who finds modes and static answers; slepc is SLEPc under mpirun, for bodies beyond one machine (docs/reference/cluster.md).
+    /// Who finds modes and static responses; slepc is SLEPc under mpirun, for bodies beyond one machine (docs/reference/cluster.md).
     ///
     /// What the cache has is taken from there, whoever has computed it; --no-cache computes it anew.
     #[arg(long, value_name = "SOLVER", value_enum)]

@@ -1,4 +1,4 @@
-//! Modes and static answers by SLEPc on two ranks, against those of this program, and what a user is told where that does not
+//! Modes and static responses by SLEPc on two ranks, against those of this program, and what a user is told where that does not
 //! work. Needs SLEPc and MPI (`./dev test` sees to it).
 
 use std::fs;
@@ -231,11 +231,11 @@ fn static_answers_of_a_run_come_back_from_the_folder_too() {
             break said;
         }
         assert!(jobs < 4 && said.code == Some(6) && said.error.contains("sbatch job.sh"), "{}", said.error);
-        assert_eq!(jobs > 0, said.error.contains("static answers: the scene asks"), "{}", said.error);
+        assert_eq!(jobs > 0, said.error.contains("static responses: the scene asks"), "{}", said.error);
         case.do_job();
         jobs += 1;
     };
-    assert!(jobs > 1, "no static answers were asked for");
+    assert!(jobs > 1, "no static responses were asked for");
     let found = frequencies(&done);
     assert_eq!(found.len(), expected.len());
     for (found, expected) in found.iter().zip(&expected) {

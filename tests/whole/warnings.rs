@@ -102,7 +102,7 @@ fn of_a_stretch_that_the_modes_do_not_hold() {
     let [warning] = &report.warnings[..] else { panic!("{:?}", report.warnings) };
     assert!(
         warning.contains("left out")
-            && warning.contains("static answer to the spin")
+            && warning.contains("static response to the spin")
             && warning.contains("static_correction = true"),
         "{warning}"
     );

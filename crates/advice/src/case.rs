@@ -29,7 +29,7 @@ pub struct Case<'a> {
     pub peaks: &'a [f64],
     /// Of each load. Empty where not known.
     pub static_compliances: &'a [StaticCompliance],
-    /// `√(uᵀMu − Σ(Φ_kᵀMu)²)` of the static answer u to the centrifugal field of each pair of spins, in the order of
+    /// `√(uᵀMu − Σ(Φ_kᵀMu)²)` of the static response u to the centrifugal field of each pair of spins, in the order of
     /// [`ReducedBody::PAIRS`]: what the modes leave out of it (6). Empty where not known.
     pub centrifugal_remainders: &'a [f64],
     /// How the frequency of each of the first modes goes with its amplitude, where that is known.
@@ -38,7 +38,7 @@ pub struct Case<'a> {
     pub manifold: Option<&'a Manifold>,
 }
 
-/// The work f·u of a load where its history is 1 and of its whole static answer u (`modal::Solver::static_response`).
+/// The work f·u of a load where its history is 1 and of its whole static response u (`modal::Solver::static_response`).
 #[derive(Debug, Clone, PartialEq)]
 pub struct StaticCompliance {
     /// In the first attitude.

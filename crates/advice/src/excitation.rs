@@ -95,7 +95,7 @@ impl Source {
         case.loads.iter().zip(courses).enumerate().map(of).collect()
     }
 
-    /// Largest part of a static answer that the first `keep` modes, of frequencies `omega`, leave out where the load acts.
+    /// Largest part of a static response that the first `keep` modes, of frequencies `omega`, leave out where the load acts.
     /// Of the answers in other directions than the first it counts as far as the body may turn.
     pub(crate) fn left_out(&self, whole: &StaticCompliance, omega: &[f64], keep: usize) -> f64 {
         let part = |whole: f64, modal: &dyn Fn(usize) -> f64| -> f64 {

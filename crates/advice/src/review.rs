@@ -72,14 +72,14 @@ pub enum Broken {
     },
     /// The modes do not carry what the spin does to the body.
     #[error(
-        "at time {time:.6} the modes left out {:.1} % of the static answer to the spin, and the answer lacks it, \
+        "at time {time:.6} the modes left out {:.1} % of the static response to the spin, and the answer lacks it, \
          {influence:.1e} of the deformation: take static_correction = true with the scheme exponential, or more modes",
         100.0 * .left_out
     )]
     Stretch {
         /// When most was missing.
         time: f64,
-        /// Part of the static answer that the modes left out.
+        /// Part of the static response that the modes left out.
         left_out: f64,
         /// Part of the whole deformation that was missing.
         influence: f64,
@@ -277,7 +277,7 @@ pub struct Review<'a> {
     fastest: (f64, Vector3<f64>),
     /// The last |ω| whose limit was looked up, and its direction.
     looked_up: (f64, Vector3<f64>),
-    /// The most that the modes left out of the static answer to the spin, when, and the part of it.
+    /// The most that the modes left out of the static response to the spin, when, and the part of it.
     left_out: (f64, f64, f64),
     /// Lowest natural frequency, rad per time. The centrifugal force takes at most Ω² from the stiffness of a mode, so
     /// that below it nothing can be lost.

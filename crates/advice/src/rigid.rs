@@ -48,7 +48,7 @@ pub(crate) fn gravity(case: &Case, sources: &[Source], response: &Response) -> E
     };
     let moved = share(sum(true, &|s| s.translation), start.max(largest(&|s| s.translation)));
     let turned = share(sum(true, &|s| s.rotation), spin.max(largest(&|s| s.rotation)));
-    // Gravity that begins with the run swings the modes to twice its static answer, and what it adds goes on from there.
+    // Gravity that begins with the run swings the modes to twice its static response, and what it adds goes on from there.
     let bent = relative(4.0 * norm(&response.of_gravity), response.scale);
     let value = moved.max(turned);
     let why = format!(

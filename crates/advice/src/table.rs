@@ -36,7 +36,7 @@ pub struct Advice {
     pub deflection: f64,
     /// Its certain part: that of loads on a body that neither spins nor is stiffened by them.
     pub certain_deflection: f64,
-    /// Influence of what the modes leave out of the static answer to the spin, bounded above; at most 1.
+    /// Influence of what the modes leave out of the static response to the spin, bounded above; at most 1.
     pub stretch: f64,
     /// The tolerance.
     pub tolerance: f64,
@@ -63,7 +63,7 @@ impl Advice {
 
 /// How far the stiffening that [`screen`] allows for is above the bending of a bar whose mass is at its ends (π²/8).
 const SCREEN: f64 = 10.0;
-/// How far what the modes leave out of a static answer may count above its share in the work of the load.
+/// How far what the modes leave out of a static response may count above its share in the work of the load.
 const SWING: f64 = 4.0;
 /// The same of the centrifugal field, with what the Euler force of a spin that changes adds.
 const SPUN: f64 = 10.0;
@@ -277,7 +277,7 @@ fn stiffening(case: &Case, spin: &Spin, response: &Response, stiffness: Option<&
     Estimate { value, influence, why }
 }
 
-/// Influence of what the modes leave out of the static answer to the spin; by [`left_out_at_most`] where it is not known.
+/// Influence of what the modes leave out of the static response to the spin; by [`left_out_at_most`] where it is not known.
 fn stretch(case: &Case, spin: &Spin, response: &Response) -> f64 {
     if spin.largest == 0.0 || case.body.flexible() == 0 {
         return 0.0;
@@ -295,7 +295,7 @@ fn stretch(case: &Case, spin: &Spin, response: &Response) -> f64 {
     relative(left, response.scale + left)
 }
 
-/// Part of the static answer to a spin that the modes hold, and how much they leave out: √(uᵀMu) of the answer u.
+/// Part of the static response to a spin that the modes hold, and how much they leave out: √(uᵀMu) of the answer u.
 /// `squares` are ω_iω_j.
 pub(crate) fn held(case: &Case, squares: &Matrix3<f64>) -> (f64, f64) {
     let left = left_out(case, squares);
@@ -308,7 +308,7 @@ pub(crate) fn held(case: &Case, squares: &Matrix3<f64>) -> (f64, f64) {
     (if left > 0.0 { carried / carried.hypot(left) } else { 1.0 }, left)
 }
 
-/// What the modes leave out of the static answer to the spin, at most; see [`held`].
+/// What the modes leave out of the static response to the spin, at most; see [`held`].
 pub(crate) fn left_out(case: &Case, squares: &Matrix3<f64>) -> f64 {
     times_of_pairs(squares).zip(case.centrifugal_remainders).map(|(times, r)| times.abs() * r).sum()
 }
@@ -318,7 +318,7 @@ fn times_of_pairs(squares: &Matrix3<f64>) -> impl Iterator<Item = f64> {
     ReducedBody::PAIRS.into_iter().map(|(i, j)| if i == j { squares[(i, i)] } else { 2.0 * squares[(i, j)] })
 }
 
-/// Bounds of what the modes leave out of the static answers to the centrifugal fields, as
+/// Bounds of what the modes leave out of the static responses to the centrifugal fields, as
 /// [`Case::centrifugal_remainders`]: the field −A_ij x has the norm tr(A S A), S = ∫ x xᵀ dm = ½ tr J − J, the modes
 /// have Σc_k² of it, and what is left meets frequencies above theirs.
 fn left_out_at_most(body: &ReducedBody) -> [f64; 6] {
@@ -343,20 +343,20 @@ fn static_correction(case: &Case, spin: &Spin, sources: &[Source], keep: usize, 
     };
     let value = sources.iter().enumerate().map(left).fold(0.0, f64::max);
     let known = case.static_compliances.len() == sources.len();
-    // What is left out may swing about its static answer, and is measured over the whole body.
+    // What is left out may swing about its static response, and is measured over the whole body.
     let influence = relative(SWING * value, 1.0).max(stretch);
     let why = if influence == 0.0 {
-        "The modes carry the whole static answer.".into()
+        "The modes carry the whole static response.".into()
     } else if stretch > value && case.centrifugal_remainders.is_empty() && known {
         format!(
-            "What the modes leave out of the static answer to the spin may come to {stretch:.1e} of the deformation."
+            "What the modes leave out of the static response to the spin may come to {stretch:.1e} of the deformation."
         )
     } else if !case.centrifugal_remainders.is_empty() && stretch > if known { value } else { 0.0 } {
         let squares = spin.directions * (spin.largest * spin.largest);
         let held = held(case, &squares).0;
         let left_out = 100.0 * (1.0 - held * held).max(0.0).sqrt();
         format!(
-            "The modes leave out {left_out:.1} % of the static answer to the spin, which may come to {stretch:.1e} of the deformation."
+            "The modes leave out {left_out:.1} % of the static response to the spin, which may come to {stretch:.1e} of the deformation."
         )
     } else if known {
         format!(
@@ -364,7 +364,7 @@ fn static_correction(case: &Case, spin: &Spin, sources: &[Source], keep: usize, 
             100.0 * value
         )
     } else {
-        "The whole static answer to the loads is not known.".into()
+        "The whole static response to the loads is not known.".into()
     };
     Estimate { value, influence, why }
 }

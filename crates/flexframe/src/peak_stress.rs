@@ -25,7 +25,7 @@ pub struct PeakStress {
     pub at: [f64; 3],
     /// The physical groups that it is in.
     pub groups: Vec<String>,
-    /// The von Mises stress that the modes leave out there and then, of the static answer to what acts on the body.
+    /// The von Mises stress that the modes leave out there and then, of the static response to what acts on the body.
     #[serde(serialize_with = "json::number")]
     pub left_out: f64,
     /// The largest one then, anywhere in the body.

@@ -5,7 +5,7 @@
 //! ```
 //!
 //! In a few vibration modes the lowest θ is not low enough: they do not hold the shape in which a body buckles. Here it
-//! comes from the whole mesh, by block Lanczos for K⁻¹K_σ in the K-product, with the static answers of
+//! comes from the whole mesh, by block Lanczos for K⁻¹K_σ in the K-product, with the static responses of
 //! [`Solver::static_response`]: it rises to the lowest θ of the mesh from within, and the iteration ends where it stays.
 
 use faer::{Accum, Mat, MatRef};
@@ -25,7 +25,7 @@ const MOST_BLOCKS: usize = 10;
 const SETTLED: f64 = 1e-5;
 /// A lowest θ above this after the second block is far from −1, and is not looked for any further.
 const FAR: f64 = -0.1;
-/// What a vector adds to the basis must be more than this part of it.
+/// Smallest part of a vector beside the basis with which it is added.
 const DEPENDENT: f64 = 1e-7;
 
 impl Solver<'_> {
@@ -35,7 +35,7 @@ impl Solver<'_> {
     /// `product` gives `K_σ V` (N×k) for V (N×k). `start` (N×k) are displacements to begin with, such as vibration modes.
     ///
     /// # Errors
-    /// [`ModalError::Size`] for displacements of another body, what `product` returns, and of the static answers
+    /// [`ModalError::Size`] for displacements of another body, what `product` returns, and of the static responses
     /// [`Solver::static_response`].
     pub fn lowest_buckling_ratio<E: From<ModalError>>(
         &self,

@@ -28,7 +28,7 @@ const NONE: u32 = u32::MAX;
 /// A pivot that is not positive: its place in the order of the factor.
 pub(crate) struct NotPositive(pub usize);
 
-/// What is to be factored, and its pattern.
+/// A matrix to factor, and its pattern.
 pub(crate) struct Problem<'a> {
     pub supernodes: &'a Supernodes,
     pub subtrees: &'a Subtrees,
@@ -36,7 +36,7 @@ pub(crate) struct Problem<'a> {
     pub matrix: &'a ShiftedMatrix<'a>,
 }
 
-/// Bytes that [`Problem::factor`] takes as scratch on so many threads, without what products of dense matrices take.
+/// Bytes that [`Problem::factor`] takes as scratch on `threads` threads, without what products of dense matrices take.
 pub(crate) fn scratch_bytes(supernodes: &Supernodes, threads: usize) -> usize {
     let widest = (0..supernodes.count()).map(|s| supernodes.width(s)).max().unwrap_or(0);
     4 * (supernodes.unknowns() + 3 * supernodes.count()) * (threads + 1) + 8 * widest * (STRIP * threads + widest)
@@ -145,7 +145,7 @@ impl Problem<'_> {
     }
 }
 
-/// What a supernode gives to others, from one of the rows below it on.
+/// The contribution of a supernode to later ones, from one of the rows below it on.
 #[derive(Clone, Copy)]
 struct Given {
     by: usize,
@@ -223,7 +223,7 @@ impl Work {
     }
 }
 
-/// Scratch of a dense factorisation of so many rows.
+/// Scratch of a dense factorisation, and its number of rows.
 struct Dense(MemBuffer, usize);
 
 impl Dense {

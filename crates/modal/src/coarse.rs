@@ -1,7 +1,7 @@
 //! The problem on the corners of second-order elements.
 //!
 //! Between two corners the displacement is linear, and the node in the middle of their edge has the mean of theirs, u = P u_c.
-//! That is the space of linear elements on the same corners: with an eighth of the unknowns. `K_c = PᵀKP`, `M_c = PᵀMP`.
+//! This is the space of linear elements on the same corners: with an eighth of the unknowns. `K_c = PᵀKP`, `M_c = PᵀMP`.
 
 use faer::{Mat, MatRef};
 use rayon::prelude::*;
@@ -53,7 +53,7 @@ impl Corners {
         self.nodes.len()
     }
 
-    /// Whether so many vectors over corners can be told from each other.
+    /// True if this number of vectors over corners can be told from each other.
     pub(crate) fn are_enough_for(&self, vectors: usize) -> bool {
         2 * vectors <= 3 * self.count()
     }
@@ -63,7 +63,7 @@ impl Corners {
         self.ends.len()
     }
 
-    /// What a node takes of its corners, each with its weight.
+    /// The corners of a node, each with its weight.
     #[inline(always)]
     fn weights(&self, node: usize) -> impl Iterator<Item = (usize, f64)> {
         let [a, b] = self.ends[node];
@@ -71,7 +71,7 @@ impl Corners {
         std::iter::once((a as usize, weight)).chain((a != b).then_some((b as usize, weight)))
     }
 
-    /// Y = P·X, where a node has so many numbers.
+    /// Y = P·X, where a node has `of_node` numbers.
     pub(crate) fn prolong(&self, of_node: usize, x: &[f32], y: &mut [f32]) {
         let at = |corner: &u32| &x[of_node * *corner as usize..][..of_node];
         y.par_chunks_exact_mut(of_node).zip(&self.ends).with_min_len(PER_TASK).for_each(|(y, [a, b])| {

@@ -1,4 +1,4 @@
-//! What K and M have in common as sparse symmetric matrices.
+//! The interface that K and M share as sparse symmetric matrices.
 
 use faer::ColRef;
 use rayon::prelude::*;
@@ -23,7 +23,7 @@ pub(crate) trait Columns: Sync {
         (0..self.ncols()).into_par_iter().map(of_row).collect()
     }
 
-    /// What rounding of the entries may come to in φᵀAφ: ε |φ|ᵀ|A||φ|.
+    /// Bound of the rounding error in φᵀAφ from that of the entries: ε |φ|ᵀ|A||φ|.
     fn rounding(&self, shape: ColRef<'_, f64>) -> f64 {
         let products = self.absolute_product(shape);
         f64::EPSILON * products.iter().zip(shape.iter()).map(|(product, u)| product * u.abs()).sum::<f64>()

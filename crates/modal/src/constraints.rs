@@ -20,12 +20,12 @@ use crate::support::{RigidMotion, Support};
 /// A motion that moves the held nodes by less than this, relative to the size of the body, does not move them.
 pub(crate) const NEGLIGIBLE: f64 = 1e-7;
 
-/// What the held degrees of freedom may do.
+/// The constraints of the held degrees of freedom.
 #[derive(Clone)]
 pub(crate) struct Constraints {
     /// Held degrees of freedom, in the order of the rows of `motions`.
     rows: Vec<usize>,
-    /// Whether each degree of freedom is held.
+    /// True for each degree of freedom that is held.
     held: Vec<bool>,
     /// The displacements of the held rows that the support allows (as many rows × k, orthonormal).
     motions: Mat<f64>,
@@ -101,12 +101,12 @@ impl Constraints {
         self.motions.ncols()
     }
 
-    /// Whether nothing is held.
+    /// True if nothing is held.
     pub(crate) fn is_empty(&self) -> bool {
         self.rows.is_empty()
     }
 
-    /// Whether a degree of freedom is held.
+    /// True if a degree of freedom is held.
     pub(crate) fn holds(&self, row: usize) -> bool {
         self.held[row]
     }

@@ -23,7 +23,7 @@ use crate::tall;
 
 /// √(rᵀBr/λ) of a pair that is accepted: its λ errs by the square.
 const TOLERANCE: f64 = 1e-9;
-/// Of the lowest modes of a slender body, whose λ is far below the largest of the mesh, rounding leaves more than [`TOLERANCE`]. A
+/// In the lowest modes of a slender body, whose λ is far below the largest of the mesh, rounding leaves more than [`TOLERANCE`]. A
 /// pair as near as this that comes no nearer in a step has come to that. Twice its residual is then enough for all pairs: the
 /// others need not be better than the worst.
 const NEAR: f64 = 1e-7;
@@ -37,7 +37,7 @@ const MAX_ROUNDS: usize = 4;
 /// Steps at the most. It takes 14 to 20 of one material on compact elements, 30 to 40 of a core of plastic in a shell of steel or
 /// of elements five times as long as thick.
 const MOST_STEPS: usize = 48;
-/// Steps after which it is seen whether so many are enough.
+/// Steps after which the convergence is judged.
 const FIRST_STEPS: usize = 8;
 /// Steps that the basis has room for after a restart.
 const STEPS_IN_ROOM: usize = 5;
@@ -45,7 +45,7 @@ const STEPS_IN_ROOM: usize = 5;
 const ROWS: usize = 4096;
 
 /// The `count` pairs with the lowest λ that are M-orthogonal to `rigid`, from the vectors of `start` on, or none where they are
-/// not found in so many steps.
+/// not found in this number of steps.
 ///
 /// `report` is called after each step with how far it has come, as a number of pairs.
 pub(crate) fn lowest_pairs(
@@ -193,7 +193,7 @@ impl<'a> Search<'a> {
         self.columns.subcols(self.rigid, self.size)
     }
 
-    /// The place of so many vectors that come next.
+    /// The place of the next `count` vectors.
     fn next(&mut self, count: usize) -> MatMut<'_, f64> {
         self.columns.as_mut().subcols_mut(self.rigid + self.size, count)
     }
@@ -301,7 +301,7 @@ fn combine(x: MatMut<'_, f64>, h: MatRef<'_, f64>) {
     });
 }
 
-/// What makes a block with this Gram matrix orthonormal, without what is rounding in it.
+/// Transformation that makes a block with this Gram matrix orthonormal, without its part of rounding.
 fn orthonormal(gram: &Mat<f64>) -> Result<Svqb, ModalError> {
     Svqb::new(gram, &norms(gram), LEFT * LEFT, |value, _| value > DEPENDENT * DEPENDENT)
 }

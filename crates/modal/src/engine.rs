@@ -1,4 +1,4 @@
-//! What solves the large problems of a body outside of this program, where the factor of K + sM does not fit into it.
+//! Solvers outside of this program for the large problems of a body, where the factor of K + sM does not fit into it.
 
 use std::time::Duration;
 
@@ -8,7 +8,7 @@ use crate::error::EngineError;
 use crate::held_problem::HeldProblem;
 use crate::progress::Progress;
 
-/// What finds eigenpairs and static answers in the place of the factor of K + sM here.
+/// A solver that finds eigenpairs and static responses in the place of the factor of K + sM here.
 ///
 /// Vectors and forces have a row for each unknown of the [`HeldProblem`].
 pub trait Engine: Send + Sync {
@@ -40,11 +40,11 @@ pub struct Eigenpairs {
     pub vectors: Mat<f64>,
     /// ‖(K + sM)⁻¹Mφ − μφ‖_M / μ of each, with the engine's own factor.
     pub residuals: Vec<f64>,
-    /// What it has done.
+    /// Its work.
     pub stats: EngineStats,
 }
 
-/// What an engine has done.
+/// The work of an engine.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EngineStats {
     /// Where the eigenvalues were counted, (rad/time)².
@@ -69,7 +69,7 @@ pub struct EngineStats {
     pub count_time: Duration,
 }
 
-/// Static answers from an engine.
+/// Static responses from an engine.
 #[derive(Debug, Clone)]
 pub struct StaticAnswers {
     /// Displacements (unknowns × forces).

@@ -5,7 +5,7 @@ use std::error::Error;
 /// Why an engine failed, in its own words.
 pub type EngineError = Box<dyn Error + Send + Sync>;
 
-/// What can be wrong with the matrices, or with what is asked of them.
+/// Faults of the matrices, or of a request.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ModalError {
@@ -14,7 +14,7 @@ pub enum ModalError {
         "{what} has {found} rows or columns; expected {expected}, three for each of the nodes (or six, with rotations)"
     )]
     Size {
-        /// Which matrix: "stiffness", "mass", "forces", "static answers", …
+        /// Which matrix: "stiffness", "mass", "forces", "static responses", …
         what: &'static str,
         /// Degrees of freedom of all nodes.
         expected: usize,
@@ -26,7 +26,7 @@ pub enum ModalError {
     NotFinite {
         /// "stiffness", "mass", "positions", …
         what: &'static str,
-        /// What the index counts: "column", "node", "axis" or "entry".
+        /// The thing that is counted: "column", "node", "axis" or "entry".
         place: &'static str,
         /// Its number.
         index: usize,
@@ -70,7 +70,7 @@ pub enum ModalError {
         what: &'static str,
         /// Relative to m, or to m times the size of the body.
         relative: f64,
-        /// What rounding explains.
+        /// Largest value that rounding explains.
         limit: f64,
     },
     /// A motion would have a negative kinetic energy.
@@ -216,7 +216,7 @@ pub enum ModalError {
         motion: &'static str,
         /// ‖K r‖ against ‖D r‖, D the diagonal of K.
         relative: f64,
-        /// What rounding explains.
+        /// Largest value that rounding explains.
         limit: f64,
     },
     /// More modes asked for than there are.
@@ -314,9 +314,9 @@ pub enum ModalError {
         /// Residual asked for.
         tolerance: f64,
     },
-    /// A static answer that is not one.
+    /// A static response that is not one.
     #[error(
-        "the static answer to force {column} has a residual of {residual:.3e} after {iterations} iterations (wanted {tolerance:e}): is a part of the body all but loose?"
+        "the static response to force {column} has a residual of {residual:.3e} after {iterations} iterations (wanted {tolerance:e}): is a part of the body all but loose?"
     )]
     StaticNotConverged {
         /// Column of the forces.
@@ -331,14 +331,14 @@ pub enum ModalError {
     /// An engine failed.
     #[error(transparent)]
     Engine(EngineError),
-    /// What an engine gave is not what it was asked for.
+    /// The answers of an engine do not fit the request.
     #[error(
         "the answers of the engine are not those of this body: found {found}, expected {expected}; have it compute them again"
     )]
     WrongAnswers {
-        /// What they are.
+        /// Their description.
         found: String,
-        /// What they should be.
+        /// The description of right ones.
         expected: String,
     },
     /// A projected mass or stiffness matrix without a Cholesky factor.

@@ -25,7 +25,7 @@ pub(crate) fn passes(width: usize) -> [Passes; 3] {
     [(0..of_most).step_by(COLUMNS), (of_most..of_nodes).step_by(NODE), (of_nodes..width).step_by(1)]
 }
 
-/// Entries of the own rows of a supernode of so many columns.
+/// Entries of the own rows of a supernode of `width` columns.
 #[inline(always)]
 pub(crate) fn of_own_rows(width: usize) -> usize {
     let of = |passes: Passes, columns: usize| passes.map(|first| columns * (width - first)).sum::<usize>();

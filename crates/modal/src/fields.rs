@@ -10,7 +10,7 @@ use crate::reduced::ReducedBody;
 use crate::rigid_fields::rigid_fields;
 use crate::turned::turned;
 
-/// What is counted.
+/// Name of the positions in messages.
 const POSITIONS: &str = "positions";
 
 /// f_ij (N×6, pairs as in [`ReducedBody::PAIRS`]): `−M (I⊗sym([e_i×][e_j×])) X`, X from `origin`, mesh axes. With a mass that

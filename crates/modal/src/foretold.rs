@@ -22,7 +22,7 @@ const RIGID: usize = 6;
 /// Blocks of vectors beside the basis: the new one, products with M of it and of two more, a packed one and scratch of the
 /// solver.
 const BLOCKS: usize = 6;
-/// What faer's products of matrices take as scratch where the processor does not tell the size of its caches.
+/// Scratch of faer's products of matrices where the processor does not tell the size of its caches.
 const CACHE: usize = 32 << 20;
 
 /// Factors of fewer multiplications take less than about a second: their time is not foretold.
@@ -32,7 +32,7 @@ const TRIAL: usize = 768;
 /// A sparse factor is made at this part of the speed of that dense one.
 const SPARSE_SPEED: f64 = 0.6;
 
-/// What the numeric factorisation is going to take, by the symbolic one.
+/// Memory and time of the numeric factorisation, by the symbolic one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Forecast {
     /// Entries of the factor.
@@ -41,7 +41,7 @@ pub struct Forecast {
     pub multiplications: f64,
     /// Bytes that are held at the most until the modes are found, with K and M.
     pub peak_bytes: usize,
-    /// Whether it is that of the problem on the corners of the elements, which multigrid cycles use.
+    /// True for the problem on the corners of the elements, which multigrid cycles use.
     pub on_corners: bool,
     /// Time of the factorisation, by a trial on this machine; only where it may come to a second and more.
     pub time: Option<Duration>,
@@ -76,7 +76,7 @@ pub(crate) struct Foretold {
     matrices: usize,
     /// A mass matrix over nodes; none of a general one.
     nodal_mass: Option<usize>,
-    /// What a search keeps in the order of a factor with supernodes: the mass matrix and the rigid modes.
+    /// Bytes of the mass matrix and of the rigid modes in the order of a factor with supernodes, which a search keeps.
     in_order: usize,
     /// Entries of the pattern that the factor's is found by.
     pattern: usize,
@@ -89,7 +89,7 @@ pub(crate) struct Foretold {
 }
 
 impl Foretold {
-    /// K and M take so many bytes.
+    /// Sizes of K and M, which take `matrices` bytes.
     pub(crate) fn new(stiffness: StiffnessMatrix<'_>, mass: &MassMatrix<'_>, matrices: usize, rigid: usize) -> Self {
         let (unknowns, entries) = (stiffness.ncols(), stiffness.entries());
         let matrices = matrices + WORD * rigid * unknowns;
@@ -104,7 +104,7 @@ impl Foretold {
         Self { unknowns, entries, matrices, nodal_mass, in_order: 0, pattern, factor: 0, shifted: 0, scratch: 0 }
     }
 
-    /// With the factor, of which the numeric factorisation takes so many bytes of scratch.
+    /// With the factor, of which the numeric factorisation takes `scratch` bytes beside it.
     pub(crate) fn with_factor(mut self, symbolic: &Symbolic, scratch: usize) -> Self {
         let pattern = match symbolic {
             Symbolic::Simplicial(simplicial) => {
@@ -121,12 +121,12 @@ impl Foretold {
         self
     }
 
-    /// The most that is held here where an engine has the factor and the search, of so many shapes.
+    /// The most that is held here where an engine has the factor and the search, for `shapes` shapes.
     pub(crate) fn peak_beside_engine(&self, shapes: usize) -> usize {
         self.matrices + self.of_ritz(shapes).max(self.of_reduction(shapes))
     }
 
-    /// What orders K + sM, and what finds the pattern of its factor.
+    /// Bytes for the ordering of K + sM and the pattern of its factor.
     pub(crate) fn of_ordering(&self) -> usize {
         // The graph grows by doubling.
         let graph = crate::ordering::ordering_bytes(self.unknowns / 3, self.entries / 9) + 2 * 4 * self.entries / 9;
@@ -138,24 +138,24 @@ impl Foretold {
         self.factor + (self.shifted + self.scratch).max(search)
     }
 
-    /// The search for modes with a basis of so many vectors, beside the factor, the `shapes` that come of it at its end, and, in
-    /// the order of the factor, the mass matrix and the rigid modes. Static answers have no shapes here, and no such order.
+    /// The search for modes with a basis of `vectors` vectors, beside the factor, the `shapes` that come of it at its end, and, in
+    /// the order of the factor, the mass matrix and the rigid modes. Static responses have no shapes here, and no such order.
     fn of_basis(&self, vectors: usize, block: usize, shapes: usize) -> usize {
         let in_order = if shapes > 0 { self.in_order } else { 0 };
         of_vectors(self.unknowns, vectors + RIGID + BLOCKS * block + shapes) + in_order
     }
 
-    /// Rayleigh–Ritz for so many shapes: them, their products with K and M, and a packed block.
+    /// Rayleigh–Ritz for `shapes` shapes: them, their products with K and M, and a packed block.
     fn of_ritz(&self, shapes: usize) -> usize {
         of_vectors(self.unknowns, 3 * shapes + WIDTH)
     }
 
-    /// The search for so many modes with a basis of `size` vectors, and their reduction.
+    /// The search for `shapes` modes with a basis of `size` vectors, and their reduction.
     pub(crate) fn of_search(&self, size: usize, block: usize, shapes: usize) -> usize {
         self.of_basis(size, block, shapes).max(self.of_ritz(shapes)).max(self.of_reduction(shapes))
     }
 
-    /// The reduction to so many shapes: they and the rigid modes, and what is held beside them.
+    /// The reduction to `shapes` shapes: they and the rigid modes, and what is held beside them.
     fn of_reduction(&self, shapes: usize) -> usize {
         let (beside, sums) = match self.nodal_mass {
             Some(_) => (nodal_vectors(shapes), products_bytes(self.unknowns / 3, shapes)),
@@ -164,13 +164,13 @@ impl Foretold {
         of_vectors(self.unknowns, shapes + RIGID + beside) + sums
     }
 
-    /// The most that is held at a time where the `search` for modes takes so many bytes beside the factor.
+    /// The most that is held at a time where the `search` for modes takes that number of bytes beside the factor.
     pub(crate) fn peak(&self, search: usize) -> usize {
         self.matrices + self.of_ordering().max(self.shifted + self.factor + self.scratch).max(self.factor + search)
     }
 }
 
-/// Bytes of so many vectors.
+/// Bytes of `vectors` vectors.
 pub(crate) fn of_vectors(unknowns: usize, vectors: usize) -> usize {
     WORD.saturating_mul(unknowns).saturating_mul(vectors)
 }

@@ -15,7 +15,7 @@ use crate::support::{RigidMotion, Support, Twist};
 const ROUNDING: f64 = 1e-12;
 
 impl Support {
-    /// Of a body with nodes at `positions` that is held in single degrees of freedom, `(node, 0..6)`: translations along
+    /// Support of a body with nodes at `positions` that is held in single degrees of freedom, `(node, 0..6)`: translations along
     /// the axes of the mesh, then rotations about them. The rigid motions that are left come from the geometry.
     ///
     /// ```

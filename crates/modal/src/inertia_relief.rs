@@ -9,7 +9,7 @@ use crate::tall;
 /// strains nothing: the rest is rounding.
 const BALANCED: f64 = 1e-11;
 
-/// What balances forces on a body.
+/// The balance of forces on a body by its rigid motion.
 pub(crate) struct InertiaRelief<'a> {
     solver: &'a Solver<'a>,
     /// M R, as far as the support lets it act.
@@ -23,7 +23,7 @@ impl<'a> InertiaRelief<'a> {
         Self { solver, m_rigid }
     }
 
-    /// What of forces strains the body.
+    /// The part of forces that strains the body.
     pub(crate) fn straining(&self, applied: MatRef<'_, f64>) -> Mat<f64> {
         let mut forces = applied.to_owned();
         self.balance(&mut forces);

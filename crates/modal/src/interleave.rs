@@ -1,4 +1,4 @@
-//! Puts a factor, as it was made, into the order in which a substitution reads it ([`factor_layout`](crate::factor_layout)).
+//! Sorts a factor, as it was made, into the order in which a substitution reads it ([`factor_layout`](crate::factor_layout)).
 
 use rayon::prelude::*;
 
@@ -6,7 +6,7 @@ use crate::factor_layout::{of_own_rows, write_strips};
 use crate::subtrees::Subtrees;
 use crate::supernodes::Supernodes;
 
-/// Puts the rows below all supernodes, which stand column by column, into the order in which they are read: by strips.
+/// Sorts the rows below all supernodes, which stand column by column, into the order in which they are read: by strips.
 pub(crate) fn interleave(supernodes: &Supernodes, subtrees: &Subtrees, values: &mut [f64]) {
     let supernode = |s: usize, values: &mut [f64], scratch: &mut Vec<f64>| {
         let width = supernodes.width(s);

@@ -197,13 +197,13 @@ struct Basis<'a> {
     packed: Vec<Packed>,
 }
 
-/// What a new block looks like in the basis: `W = V·coefficients + Q·coupling`.
+/// A new block in terms of the basis: `W = V·coefficients + Q·coupling`.
 struct Extension {
     coefficients: Mat<f64>,
     coupling: Mat<f64>,
     /// Columns of Q that were new.
     columns: usize,
-    /// Whether Q is M-orthonormal: not where little but rounding was left of W.
+    /// True if Q is M-orthonormal: not where little but rounding was left of W.
     is_orthonormal: bool,
 }
 
@@ -304,7 +304,7 @@ impl<'a> Basis<'a> {
     }
 }
 
-/// Whether a round took out of columns of these lengths no more than rounding.
+/// True if a round took out of columns of these lengths no more than rounding.
 fn is_settled(taken_out: &Mat<f64>, norms: &[f64]) -> bool {
     norms.iter().enumerate().all(|(j, norm)| taken_out.col(j).norm_l2() <= SETTLED * norm)
 }

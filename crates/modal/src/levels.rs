@@ -36,7 +36,7 @@ impl Levels {
     }
 }
 
-/// What the search for so many modes takes beside the levels, bytes.
+/// Bytes of the search for `modes` modes, beside the levels.
 pub(crate) fn modes_beside(modes: usize, corners: &Corners) -> usize {
     // The rigid modes twice: in the basis, and in the order of the levels.
     let vectors = 2 * FIXED + davidson::room(modes) + davidson::beside(modes);

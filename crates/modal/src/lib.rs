@@ -1,4 +1,4 @@
-//! Vibration modes and static answers of a body, free or held, from its sparse matrices, and the reduced body made
+//! Vibration modes and static responses of a body, free or held, from its sparse matrices, and the reduced body made
 //! from them.
 //!
 //! ```text

@@ -1,4 +1,4 @@
-//! The bodies whose modes and static answers come by cycles, and the levels for them.
+//! The bodies whose modes and static responses come by cycles, and the levels for them.
 //!
 //! The factor of a thin body has few entries for each unknown; that of a bulky one, and of a very large thin one, has so many
 //! that the cycles take less time and memory.
@@ -29,9 +29,9 @@ use crate::support::Support;
 /// Multiplications in the factor of K + sM, for each unknown and mode, from which on it takes longer than the cycles: of
 /// blocks, with 80 000 unknowns and twenty modes.
 const LONG: f64 = 1.2e4;
-/// Cycles for fewer modes than this take nearly as long as for so many.
+/// Cycles for fewer modes than this take nearly as long as for this number.
 const FEW: usize = 16;
-/// What a cycle leaves of the strain energy of an error at the most: 0.5 on elements five times as long as thick; on those ten
+/// Largest part of the strain energy of an error that a cycle may leave: 0.5 on elements five times as long as thick; on those ten
 /// times as long, 0.8, the search does not end. It does not tell the steps of a search: 12 of a ring with 0.5, 33 of flat elements
 /// with 0.4.
 const LEFT_BY_CYCLE: f64 = 0.75;
@@ -39,7 +39,7 @@ const LEFT_BY_CYCLE: f64 = 0.75;
 const TRIAL_CYCLES: usize = 4;
 
 impl Solver<'_> {
-    /// The levels, should cycles for so many modes be better than the factor of K + sM. None for bodies whose factor is soon made,
+    /// The levels, should cycles for `modes` modes be better than the factor of K + sM. None for bodies whose factor is soon made,
     /// bodies that something holds, flat elements.
     pub(crate) fn levels_for(
         &self,

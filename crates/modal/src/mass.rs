@@ -17,7 +17,7 @@ const ISOTROPY: f64 = 1e-12;
 
 /// The scalar mass matrix over nodes, of which the mass matrix is three copies, one for each axis.
 ///
-/// That is what solid elements and point masses give; it is a ninth of the stored entries of M.
+/// Solid elements and point masses give such a mass; it is a ninth of the stored entries of M.
 #[derive(Debug, Clone)]
 pub struct NodalMass<'a> {
     start: Cow<'a, [usize]>,
@@ -46,7 +46,7 @@ impl<'a> NodalMass<'a> {
         Ok(Self { start: start.into(), nodes: nodes.into(), values: values.into() })
     }
 
-    /// Of lists that fit together.
+    /// The mass of lists that are known to fit together.
     pub(crate) fn of_checked_nodes(start: &'a [usize], nodes: &'a [u32], values: &'a [f64]) -> Self {
         Self { start: start.into(), nodes: nodes.into(), values: values.into() }
     }
@@ -142,7 +142,7 @@ impl<'a> NodalMass<'a> {
             .map(|(row, column, value)| Triplet::new(row, column, value))
     }
 
-    /// Whether a node has a mass at all.
+    /// True if a node has a mass at all.
     pub(crate) fn is_massive(&self, node: usize) -> bool {
         self.values[self.start[node]..self.start[node + 1]].iter().any(|value| *value != 0.0)
     }

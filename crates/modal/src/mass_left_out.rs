@@ -1,4 +1,4 @@
-//! What the large rotation of a body leaves out of its mass.
+//! The part of the mass that the large rotation of a body leaves out.
 
 use faer::Mat;
 
@@ -8,7 +8,7 @@ use crate::solve::Modes;
 use crate::tall::inner;
 use crate::turned::turned;
 
-/// What [`crate::ReducedBody::new`] leaves out of the mass because it does not commute with rotations, relative to the modal
+/// The part of the mass that [`crate::ReducedBody::new`] leaves out because it does not commute with rotations, relative to the modal
 /// mass, which is 1: the largest entry of the symmetric parts of `Ψᵀ M (I⊗[e_i×]) Ψ` and of
 /// `Eᵀ [M, I⊗[e_i×]] Ψ/√m`, E the unit translations. Zero of a scalar mass for each pair of nodes.
 pub fn mass_left_out(mass: &MassMatrix<'_>, modes: &Modes) -> f64 {

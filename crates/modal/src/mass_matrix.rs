@@ -40,7 +40,7 @@ impl<'a> MassMatrix<'a> {
         Self::of_freedoms(mass, nodes, freedoms("mass", mass.ncols(), nodes)?)
     }
 
-    /// The same with so many degrees of freedom of a node.
+    /// The same with a given number of degrees of freedom of a node.
     pub(crate) fn of_freedoms(
         mass: SparseColMatRef<'a, usize, f64>,
         nodes: usize,
@@ -102,7 +102,7 @@ impl<'a> MassMatrix<'a> {
         }
     }
 
-    /// Whether a degree of freedom has a mass at all.
+    /// True if a degree of freedom has a mass at all.
     pub(crate) fn is_massive(&self, row: usize) -> bool {
         match self {
             Self::Nodal(mass) => mass.is_massive(row / 3),

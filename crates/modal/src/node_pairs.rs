@@ -64,7 +64,7 @@ impl<'a> NodePairs<'a> {
         (start, nodes)
     }
 
-    /// The diagonal and what is below it of the same over degrees of freedom, so many of them `alike` in each node.
+    /// The diagonal and what is below it of the same over degrees of freedom, `alike` of them in each node.
     pub fn lower(&self, alike: usize) -> SymbolicSparseColMat<usize> {
         let size = alike * self.count();
         let entries = alike * alike * (self.nodes.len() + self.count()) / 2;

@@ -14,7 +14,7 @@ use crate::error::ModalError;
 use crate::node_pairs::NodePairs;
 use crate::symmetry::check_symmetric;
 
-/// What METIS allocates at most, bytes: its own weights, and the coarser graphs.
+/// Most bytes that METIS allocates for a node: its own weights, and the coarser graphs.
 const ORDERING_PER_NODE: usize = 128;
 const ORDERING_PER_NEIGHBOUR: usize = 24;
 
@@ -23,7 +23,7 @@ const ORDERING_PER_NEIGHBOUR: usize = 24;
 pub(crate) struct NodeOrder(Vec<idx_t>);
 
 impl NodeOrder {
-    /// The order of their degrees of freedom, so many of them `alike` in each node.
+    /// The order of their degrees of freedom, `alike` of them in each node.
     pub(crate) fn perm(&self, alike: usize) -> Perm<usize> {
         let mut place = vec![0; self.0.len()];
         for (new, old) in self.0.iter().enumerate() {
@@ -246,7 +246,7 @@ fn dissect(
     if status == metis_sys::rstatus_et_METIS_OK { Ok(()) } else { Err(ModalError::Ordering { status }) }
 }
 
-/// What METIS allocates at most for a graph, bytes.
+/// Most bytes that METIS allocates for a graph.
 pub(crate) fn ordering_bytes(nodes: usize, neighbours: usize) -> usize {
     ORDERING_PER_NODE * nodes + ORDERING_PER_NEIGHBOUR * neighbours
 }

@@ -1,4 +1,4 @@
-//! Modes and static answers that an engine has found: checked, and brought into the form of those that are found here.
+//! Modes and static responses that an engine has found: checked, and brought into the form of those that are found here.
 
 use std::time::Instant;
 
@@ -16,13 +16,13 @@ use crate::statics::ACCEPTED;
 
 /// Largest residual ‖(K + sM)⁻¹Mφ − μφ‖_M that an engine may say of a pair, relative to 1/s, the largest μ that there can be.
 const RESIDUAL: f64 = 1e-8;
-/// Largest ‖Kφ − λMφ‖ of a pair, or ‖f − Ku‖ of a static answer, relative to ‖Kφ‖ or ‖f‖, beside what rounding leaves.
+/// Largest ‖Kφ − λMφ‖ of a pair, or ‖f − Ku‖ of a static response, relative to ‖Kφ‖ or ‖f‖, beside what rounding leaves.
 const UNBALANCED: f64 = 1e-4;
-/// What rounding leaves of a product Kφ, as so many times ε ‖|K||φ|‖.
+/// Rounding error of a product Kφ, in units of ε ‖|K||φ|‖.
 const ROUNDINGS: f64 = 10.0;
 /// Largest difference of an eigenvalue that an engine says and the Rayleigh quotient of its vector.
 const SAME: f64 = 1e-8;
-/// An engine knows its μ to so many times ε/s.
+/// Error of the μ of an engine, in units of ε/s.
 const ROUNDED: f64 = 100.0;
 
 impl Solver<'_> {
@@ -98,7 +98,7 @@ impl Solver<'_> {
         Ok(Modes { rigid, eigenvalues, shapes, residuals, force_residuals, stats }.truncated(flexible))
     }
 
-    /// What rounding leaves of the product Kφ with each shape, relative to it.
+    /// Rounding error of the product Kφ with each shape, relative to it.
     fn rounding_of_products(&self, shapes: &Mat<f64>) -> Vec<f64> {
         let k = self.stiffness;
         let products = k.product(shapes.as_ref());
@@ -110,13 +110,13 @@ impl Solver<'_> {
         (0..shapes.ncols()).map(of_shape).collect()
     }
 
-    /// The static answers that an engine finds.
+    /// The static responses that an engine finds.
     pub(crate) fn static_response_by(
         &self,
         engine: &dyn Engine,
         forces: MatRef<'_, f64>,
     ) -> Result<Mat<f64>, ModalError> {
-        memory::check("static answers", of_vectors(forces.nrows(), 6 * forces.ncols()))?;
+        memory::check("static responses", of_vectors(forces.nrows(), 6 * forces.ncols()))?;
         let relief = InertiaRelief::new(self);
         let straining = relief.straining(forces);
         let problem = self.held_problem()?;
@@ -139,7 +139,7 @@ impl Solver<'_> {
         for (k, force) in straining.col_iter().enumerate() {
             let (relative, allowed) = (rest.col(k).norm_l2() / force.norm_l2(), UNBALANCED + rounding[k]);
             expect(force.norm_l2() == 0.0 || relative <= allowed, || {
-                let found = format!("a static answer {} with forces unbalanced by {relative:.1e}", k + 1);
+                let found = format!("a static response {} with forces unbalanced by {relative:.1e}", k + 1);
                 (found, format!("{allowed:.1e} or less"))
             })?;
         }

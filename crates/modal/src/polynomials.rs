@@ -45,7 +45,7 @@ pub(crate) struct Polynomials {
 }
 
 impl Polynomials {
-    /// Of matrices over the nodes at `positions`; the monomials are those of the positions from `origin`. `fields` are linear.
+    /// The sums for matrices over the nodes at `positions`; the monomials are those of the positions from `origin`. `fields` are linear.
     pub fn new(
         stiffness: &NodalStiffness<'_>,
         mass: &NodalMass<'_>,
@@ -82,7 +82,7 @@ impl Polynomials {
         }
     }
 
-    /// Whether K is finite and its own transpose, as far as sums over all of its entries tell.
+    /// True if K is finite and its own transpose, as far as sums over all of its entries tell.
     pub fn is_symmetric(&self) -> bool {
         self.asymmetry <= ASYMMETRY
     }
@@ -156,7 +156,7 @@ fn random(place: u64) -> f64 {
     ((bits ^ (bits >> 31)) >> 11) as f64 / (1u64 << 52) as f64 - 1.0
 }
 
-/// What a pass over some nodes adds up.
+/// Sums of a pass over some nodes.
 struct Sums {
     /// Axis of the row, axis of the column, then the monomials.
     stiffness: [[[Monomials; ALL]; 3]; 3],

@@ -17,11 +17,11 @@ pub enum Progress {
         /// Asked for.
         requested: usize,
     },
-    /// What an [`Engine`](crate::Engine) does.
+    /// A phase of an [`Engine`](crate::Engine).
     Engine(EnginePhase),
 }
 
-/// What an [`Engine`](crate::Engine) does. Its search for modes is [`Progress::Lanczos`].
+/// A phase of an [`Engine`](crate::Engine). Its search for modes is [`Progress::Lanczos`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum EnginePhase {
     /// K and M are written for it.

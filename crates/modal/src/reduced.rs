@@ -118,7 +118,7 @@ impl ReducedBody {
 
     /// Reduces the body with mass matrix `mass` and nodes `positions` to its `modes`.
     ///
-    /// What a large rotation uses of M, where M is constant in body axes:
+    /// The part of M that a large rotation uses, where M is constant in body axes:
     ///
     /// * A scalar mass for each pair of nodes ([`crate::NodalMass`]) commutes with rotations: every constant is exact.
     /// * Any other M, with three or six degrees of freedom a node: J₀, b_i and t_i are exact. The deformed body takes the

@@ -9,7 +9,7 @@ pub(crate) const NODES: usize = 512;
 /// Such pieces of a task, whose products are added up one after the other.
 pub(crate) const PIECES: usize = 16;
 
-/// Vectors that a reduction to so many flexible shapes holds where the mass is one over nodes: X and 1, products of all columns with
+/// Vectors that a reduction to `flexible` shapes holds where the mass is one over nodes: X and 1, products of all columns with
 /// M, and a packed block.
 pub(crate) fn nodal_vectors(flexible: usize) -> usize {
     6 + flexible + 2 * GEOMETRY + WIDTH
@@ -21,7 +21,7 @@ pub(crate) fn general_vectors(flexible: usize) -> usize {
     10 * flexible + 36 + WIDTH
 }
 
-/// Bytes of the products of so many flexible shapes while they are added up.
+/// Bytes of the products of `flexible` shapes while they are added up.
 pub(crate) fn products_bytes(nodes: usize, flexible: usize) -> usize {
     let columns = 6 + flexible + GEOMETRY;
     // Each of six products once for each task, their sum, and the transposes.

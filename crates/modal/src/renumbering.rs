@@ -37,7 +37,7 @@ impl Renumbering {
         Self { nodes, places }
     }
 
-    /// What each node has, in this order.
+    /// Values of the nodes, in this order.
     pub(crate) fn sorted<T: Copy>(&self, of_nodes: &[T]) -> Vec<T> {
         self.nodes.iter().map(|node| of_nodes[*node as usize]).collect()
     }
@@ -52,7 +52,7 @@ impl Renumbering {
         rows_at(&self.nodes, x)
     }
 
-    /// Puts rows in this order back into that of the nodes.
+    /// Sorts rows in this order back into that of the nodes.
     pub(crate) fn restore(&self, x: &mut Mat<f64>) {
         let mut column = vec![0.0; x.nrows()];
         for x in x.col_iter_mut() {

@@ -18,7 +18,7 @@ use crate::input::{check_finite_columns, check_rows};
 use crate::solve::{Modes, Solver};
 use crate::tall;
 
-/// What a static answer adds to the modes must be more than this part of it: less is rounding.
+/// Smallest part of a static response beside the modes with which it is added: less is rounding.
 const DEPENDENT: f64 = 1e-6;
 
 /// The shapes that follow large modes, and what the strain energy has of third and fourth order.

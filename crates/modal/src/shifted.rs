@@ -27,12 +27,12 @@ use crate::stiffness::StiffnessMatrix;
 use crate::symbolic::{Supernodal, Symbolic, failed};
 use crate::{cholesky, substitution, tall};
 
-/// What the memory is for.
+/// Purpose of the memory, in messages.
 const FACTOR: &str = "the factor of K + sM and the search for modes";
 
 /// The factor of K + sM.
 pub(crate) struct Shifted {
-    /// What the held degrees of freedom may do.
+    /// The constraints of the held degrees of freedom.
     pub constraints: Constraints,
     /// The shift s.
     pub shift: f64,
@@ -215,7 +215,7 @@ impl Shifted {
 pub(crate) struct Inverted<'a> {
     factor: &'a Shifted,
     is_in_own_order: bool,
-    /// What the held degrees of freedom may do.
+    /// The constraints of the held degrees of freedom.
     pub constraints: Cow<'a, Constraints>,
     extensions: Cow<'a, Mat<f64>>,
 }
@@ -304,7 +304,7 @@ mod tests {
     use crate::lanczos::random_block;
     use crate::support::{RigidMotion, Support};
 
-    /// Of a block on a hinge, which gives the held rows an unknown of their own.
+    /// A block on a hinge: the held rows have an unknown of their own.
     #[test]
     fn answers_in_the_factor_s_own_order_are_those_of_the_nodes() {
         let block = Block::new([6, 5, 4]);

@@ -113,7 +113,7 @@ impl<'a> ShiftedMatrix<'a> {
     }
 }
 
-/// Whether K has an entry wherever M has one.
+/// True if K has an entry wherever M has one.
 fn covers(stiffness: &StiffnessMatrix<'_>, mass: &MassMatrix<'_>) -> bool {
     let covers = |column: usize| {
         let mut rows = Vec::new();

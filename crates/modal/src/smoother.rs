@@ -31,13 +31,13 @@ const LINE: usize = 16;
 const DEGREE: usize = 3;
 /// They damp what is between this part of the largest eigenvalue of D⁻¹K and itself; the corners have what is below.
 const RANGE: f64 = 10.0;
-/// The largest eigenvalue is less than this times what the power method finds in so many steps.
+/// The largest eigenvalue is less than this times what the power method finds in [`POWER_STEPS`] steps.
 const SAFETY: f64 = 1.1;
 const POWER_STEPS: usize = 10;
 
 type Block = [[f32; 3]; 3];
 
-/// What smooths.
+/// The smoother of all nodes.
 pub(crate) struct Smoother {
     start: Vec<usize>,
     nodes: Vec<u32>,
@@ -45,7 +45,7 @@ pub(crate) struct Smoother {
     blocks: Vec<Block>,
     /// D⁻¹, node by node.
     inverse_diagonal: Vec<Block>,
-    /// What K is measured in.
+    /// The unit in which K is measured.
     pub unit: f64,
     /// α and β of each step of a smoothing.
     factors: [[f32; 2]; DEGREE],
@@ -98,7 +98,7 @@ pub(crate) struct Smoothing<'a> {
 }
 
 impl<'a> Smoothing<'a> {
-    /// Of rows of so many numbers at the most.
+    /// Scratch for rows of at most `width` numbers.
     pub(crate) fn new(smoother: &'a Smoother, width: usize) -> Self {
         let zeros = || vec![0.0; 3 * smoother.pairs().count() * width];
         Self { smoother, width, r: zeros(), x: zeros(), d: zeros(), next: zeros() }
@@ -227,7 +227,7 @@ struct Step<'a, const V: usize> {
     blocks: &'a [Block],
     inverse: &'a [Block],
     first: usize,
-    /// Whether d is taken in; it is zero otherwise.
+    /// True if d is added; it is zero otherwise.
     takes_in: bool,
     /// α and β, should there be a next d.
     factors: Option<[f32; 2]>,

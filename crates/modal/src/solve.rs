@@ -56,7 +56,7 @@ pub struct Modes {
     /// ‖Kφ − λMφ‖ / ‖Kφ‖ for each natural mode, without the reactions of a support. Rounding in K leaves up to 1e-6 of
     /// this in the lowest modes of fine meshes.
     pub force_residuals: Vec<f64>,
-    /// What was done, and where the time went.
+    /// Counts of the work, and its times.
     pub stats: SolveStats,
 }
 
@@ -88,7 +88,7 @@ pub struct SolveStats {
     pub lanczos_time: Duration,
     /// Rayleigh–Ritz, residuals and signs.
     pub ritz_time: Duration,
-    /// What the engine has done that found the modes; `None` where they were found here.
+    /// Work of the engine that found the modes; `None` if they were found here.
     pub engine: Option<EngineStats>,
 }
 
@@ -119,7 +119,7 @@ impl Modes {
     }
 }
 
-/// What the answers of a body come from.
+/// The inverse that modes and static responses come from.
 #[derive(Clone, Copy)]
 pub(crate) enum Inverse<'a> {
     /// The factor of K + sM.
@@ -128,7 +128,8 @@ pub(crate) enum Inverse<'a> {
     Cycles(&'a Levels),
 }
 
-/// Modes of a body, Eq. (M5) of `docs/method/modes.md`: the body, what holds it, and (from the first question on) what its answers come from: the factor of K + sM, or multigrid cycles.
+/// Modes of a body, Eq. (M5) of `docs/method/modes.md`: the body, its support, and from the first question on the inverse that
+/// modes and static responses come from: the factor of K + sM, or multigrid cycles.
 pub struct Solver<'a> {
     pub(crate) stiffness: StiffnessMatrix<'a>,
     pub(crate) positions: &'a [[f64; 3]],
@@ -140,10 +141,10 @@ pub struct Solver<'a> {
     factor: OnceLock<Shifted>,
     pub(crate) levels: OnceLock<Levels>,
     shift: OnceLock<f64>,
-    /// What tells the shift, of matrices over nodes.
+    /// Polynomial fields that tell the shift, for matrices over nodes.
     polynomials: Option<Polynomials>,
     pub(crate) engine: Option<Box<dyn Engine>>,
-    /// Of second-order elements: the nodes at the ends of the edge that each node is in the middle of.
+    /// Nodes at the ends of the edge that each node is in the middle of, for second-order elements.
     pub(crate) edge_ends: Option<Vec<[u32; 2]>>,
     preparation_time: Duration,
 }
@@ -199,7 +200,7 @@ impl<'a> Solver<'a> {
         Self::of_checked(started, stiffness, mass, 0, positions, support)
     }
 
-    /// Of matrices of the right sizes, a general K checked; so many bytes are kept of them besides.
+    /// The solver of matrices of the right sizes, a general K checked; `of_given` bytes are kept of them besides.
     fn of_checked(
         started: Instant,
         stiffness: StiffnessMatrix<'a>,
@@ -249,14 +250,14 @@ impl<'a> Solver<'a> {
         })
     }
 
-    /// The same with an engine, which finds modes and static answers in the place of the factor of K + sM here.
+    /// The same with an engine, which finds modes and static responses in the place of the factor of K + sM here.
     #[must_use]
     pub fn with_engine(self, engine: Box<dyn Engine>) -> Self {
         Self { engine: Some(engine), ..self }
     }
 
     /// The same of second-order elements: for each node the two nodes at the ends of the edge that it is in the middle of, and
-    /// twice itself for a corner. Modes and static answers of a body whose factor of K + sM takes long are then found without it,
+    /// twice itself for a corner. Modes and static responses of a body whose factor of K + sM takes long are then found without it,
     /// where that is faster.
     ///
     /// # Errors
@@ -359,13 +360,14 @@ impl<'a> Solver<'a> {
         Ok(Modes { rigid, eigenvalues, shapes, residuals, force_residuals, stats })
     }
 
-    /// What answers come from, as far as it is made: the factor where cycles were no help.
+    /// The inverse, as far as it is made: the factor where cycles were no help.
     fn made(&self) -> Option<Inverse<'_>> {
         let levels = || self.levels.get().map(Inverse::Cycles);
         self.factor.get().map(Inverse::Factor).or_else(levels)
     }
 
-    /// What static answers come from, made at the first call: beside so many modes, where there is memory for the `search` that follows.
+    /// The inverse for static responses, made at the first call: beside `modes` modes, where there is memory for the
+    /// `search` that follows.
     pub(crate) fn inverse(
         &self,
         modes: usize,
@@ -454,7 +456,7 @@ impl<'a> Solver<'a> {
         (free + self.constraints.motion_count()).saturating_sub(self.rigid.motion.count())
     }
 
-    /// Bytes that are held at the most where an engine finds so many modes.
+    /// Bytes that are held at the most where an engine finds `modes` modes.
     pub(crate) fn peak_beside_engine(&self, modes: usize) -> usize {
         self.foretold().peak_beside_engine(modes)
     }

@@ -20,7 +20,7 @@ use crate::tall;
 /// Directions of the Gram matrix below this are taken for dependent.
 const DEPENDENT: f64 = 1e-10;
 
-/// Of a body that is held, the shift is this part of the estimate for the free body: a clamp at one end lowers the first
+/// The shift of a held body is this part of the estimate for the free body: a clamp at one end lowers the first
 /// eigenvalue of a bar to (3.516/22.37)² = 0.025 of the free one's, a support elsewhere to less of a change. A shift far
 /// above the eigenvalues costs iterations, one below them nothing.
 const HELD: f64 = 0.02;

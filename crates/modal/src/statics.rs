@@ -1,4 +1,4 @@
-//! Static answers, by conjugate gradients on K in the space that the support allows.
+//! Static responses, by conjugate gradients on K in the space that the support allows.
 //!
 //! ```text
 //! K u = f − M R Rᵀ f,   Rᵀ M u = 0
@@ -32,10 +32,10 @@ const MAX_ITERATIONS: usize = 300;
 const MAX_ITERATIONS_BY_CYCLES: usize = 100;
 /// Forces answered together at the most: the factor is read once for all of them.
 const BLOCK: usize = 16;
-/// What a static answer adds to the modes must be more than this part of it.
+/// Smallest part of a static response beside the modes with which it is added.
 const DEPENDENT: f64 = 1e-8;
 
-/// How well static answers are to balance their forces.
+/// How well static responses are to balance their forces.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StaticAccuracy {
     /// To rounding.
@@ -57,7 +57,7 @@ impl StaticAccuracy {
 }
 
 impl Solver<'_> {
-    /// Static answers u (N×k) to the forces f (N×k), relative to the rigid motion that f causes: M-orthogonal to the
+    /// Static responses u (N×k) to the forces f (N×k), relative to the rigid motion that f causes: M-orthogonal to the
     /// rigid modes. Zero for a force that gives every part of the body the same rigid acceleration.
     ///
     /// # Errors
@@ -85,7 +85,7 @@ impl Solver<'_> {
         if let Some(engine) = &self.engine {
             return self.static_response_by(engine.as_ref(), forces);
         }
-        memory::check("static answers", of_vectors(expected, modes.natural() + forces.ncols() + 10 * BLOCK))?;
+        memory::check("static responses", of_vectors(expected, modes.natural() + forces.ncols() + 10 * BLOCK))?;
         let search = |memory: &Foretold| memory.of_search(FIXED, BLOCK, 0);
         let inverse = self.inverse(modes.natural(), search, &mut |_| ())?;
         let answers = self.static_response_with(inverse, modes, forces, accuracy);
@@ -122,7 +122,7 @@ impl Solver<'_> {
     /// The modes, with shapes appended that make them span the static `answers` (N×k, see
     /// [`static_response`](Self::static_response)): a few modes then give the right static displacement, Eq. (M11) of `docs/method/modes.md`.
     ///
-    /// What the answers have beside the rigid modes and `modes` is made into Rayleigh–Ritz vectors of (K, M), together
+    /// The part of the responses beside the rigid modes and `modes` is made into Rayleigh–Ritz vectors of (K, M), together
     /// with the static shapes that `modes` has already; answers that add less than 1e-8 of themselves add nothing.
     ///
     /// # Errors
@@ -142,12 +142,12 @@ impl Solver<'_> {
         Ok(modes)
     }
 
-    /// What `answers` (N×k) have beside the rigid modes and `modes`, M-orthonormal; without those that add less than
+    /// The part of `answers` (N×k) beside the rigid modes and `modes`, M-orthonormal; without those that add less than
     /// `least` of themselves.
     pub(crate) fn beside(&self, modes: &Modes, answers: MatRef<'_, f64>, least: f64) -> Result<Mat<f64>, ModalError> {
         let expected = modes.shapes.nrows();
-        check_rows("static answers", answers.nrows(), expected)?;
-        check_finite_columns("static answers", answers)?;
+        check_rows("static responses", answers.nrows(), expected)?;
+        check_finite_columns("static responses", answers)?;
         memory::check("static shapes", of_vectors(expected, modes.shapes.ncols() + 4 * answers.ncols()))?;
         let mut rests = answers.to_owned();
         let mut m_rests = self.mass.product(answers);
@@ -194,7 +194,7 @@ fn orthonormalize(vectors: [&mut Mat<f64>; 2], wholes: &[f64], least: f64) -> us
     count
 }
 
-/// What the iterations share.
+/// The data that the iterations share.
 struct Statics<'a> {
     solver: &'a Solver<'a>,
     preconditioner: Preconditioner<'a>,
@@ -307,7 +307,7 @@ impl<'a> Statics<'a> {
         (tall::product(natural, parts.as_ref()), left, squared)
     }
 
-    /// What stands for (K + sM)⁻¹ of forces.
+    /// Approximates (K + sM)⁻¹ of forces.
     fn precondition(&mut self, forces: &Mat<f64>, displacements: &mut Mat<f64>) {
         displacements.copy_from(forces);
         self.preconditioner.apply(displacements);
@@ -342,13 +342,13 @@ enum End {
     Iterations,
 }
 
-/// What stands for (K + sM)⁻¹, and gives the norm of what is left of forces.
+/// Approximation of (K + sM)⁻¹, which also gives the norm of the rest of forces.
 enum Preconditioner<'a> {
     Factor {
         factor: &'a Shifted,
         scratch: SolveScratch,
     },
-    /// Of a body that nothing holds.
+    /// Cycles for a body that nothing holds.
     Cycles {
         levels: &'a Levels,
         multigrid: Box<Multigrid<'a>>,

@@ -43,7 +43,7 @@ impl<'a> NodalStiffness<'a> {
         Ok(Self { pairs, values })
     }
 
-    /// Of lists that fit together.
+    /// The stiffness of lists that are known to fit together.
     pub(crate) fn of_checked(start: &'a [usize], nodes: &'a [u32], values: &'a [f64]) -> Self {
         Self { pairs: NodePairs { start, nodes }, values }
     }

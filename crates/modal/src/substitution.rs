@@ -36,12 +36,12 @@ pub(crate) struct Scratch {
 /// Scratch of a part.
 #[derive(Default)]
 struct OfPart {
-    /// What the part adds to the rows of the top.
+    /// Contribution of the part to the rows of the top.
     outside: Vec<f64>,
     below: Vec<f64>,
 }
 
-/// How many numbers [`solve`] takes as scratch for so many rows and columns.
+/// Length of the scratch of [`solve`] for `rows` rows and `columns` columns.
 pub(crate) fn scratch(rows: usize, columns: usize) -> usize {
     2 * rows * columns.next_multiple_of(STEP).min(MOST)
 }

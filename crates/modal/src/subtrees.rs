@@ -22,7 +22,7 @@ pub(crate) struct Subtrees {
 }
 
 impl Subtrees {
-    /// Whether there is work for more than one thread.
+    /// True if there is work for more than one thread.
     pub(crate) fn is_parted(&self) -> bool {
         !self.top.is_empty()
     }

@@ -14,7 +14,7 @@ pub(crate) struct Supernode<'a> {
     pattern: &'a [u32],
     /// The numbers of the own rows.
     own: &'a [f64],
-    /// Those of the rows below, by strips.
+    /// The numbers of the rows below, by strips.
     below: &'a [f64],
 }
 

@@ -19,7 +19,7 @@ pub(crate) struct Supernodes {
 }
 
 impl Supernodes {
-    /// Takes the pattern of a factor, each column and row of it for so many that are coupled alike.
+    /// Takes the pattern of a factor, each column and row of which stands for `alike` degrees of freedom that are coupled alike.
     pub(crate) fn new<I: Index>(symbolic: &SymbolicSupernodalCholesky<I>, alike: usize) -> Self {
         let count = symbolic.n_supernodes();
         let (mut columns, mut starts, mut entries) = (vec![0], vec![0], vec![0]);
@@ -83,7 +83,7 @@ impl Supernodes {
         self.entries_of(&(s..s + 1))
     }
 
-    /// Those of some supernodes, one after another.
+    /// Range of the numbers of some supernodes, one after another.
     #[inline(always)]
     pub(crate) fn entries_of(&self, supernodes: &Range<usize>) -> Range<usize> {
         self.entries[supernodes.start]..self.entries[supernodes.end]

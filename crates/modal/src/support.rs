@@ -1,4 +1,4 @@
-//! What holds a body, and the rigid motions that it has left.
+//! Supports of a body, and the rigid motions that they leave.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -10,7 +10,7 @@ const UNIT: f64 = 1e-9;
 
 /// The rigid motions of a body that what holds it leaves free, mesh axes.
 ///
-/// What moves a body is read off this: the directions that it may translate along, the axes that it may turn about, and
+/// It tells the directions that the body may translate along, the axes that it may turn about, and
 /// the point that stays where it is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RigidMotion {
@@ -83,19 +83,19 @@ pub struct Support {
 }
 
 impl Support {
-    /// Of a body that nothing holds.
+    /// The support of a free body.
     pub fn free() -> Self {
         Self::new(RigidMotion::free(), Vec::new())
     }
 
-    /// Of a body whose nodes of these indices move as the `motion` takes them along.
+    /// The support of nodes with these indices, which move as the `motion` takes them along.
     pub fn new(motion: RigidMotion, nodes: Vec<u32>) -> Self {
         Self { motion, nodes, freedoms: Vec::new() }
     }
 }
 
 impl RigidMotion {
-    /// Of a body that nothing holds: three translations and three rotations.
+    /// The motion of a free body: three translations and three rotations.
     pub const fn free() -> Self {
         Self { translations: Directions::ALL, rotations: Directions::ALL, fixed_point: None, others: Twists::NONE }
     }
@@ -173,7 +173,7 @@ impl RigidMotion {
         self.translations.count + self.rotations.count + self.others.count
     }
 
-    /// Whether nothing holds the body.
+    /// True if nothing holds the body.
     pub fn is_free(&self) -> bool {
         self.translations.count + self.rotations.count == 6
     }
@@ -249,7 +249,7 @@ impl RigidMotion {
         unturned.chain(turned).chain(self.others().iter().map(|twist| twist.rotation)).collect()
     }
 
-    /// What a message calls the motion of column `mode` of the six rigid shapes.
+    /// Name of column `mode` of the six rigid shapes in messages.
     pub(crate) fn name(&self, mode: usize) -> &'static str {
         match (self.translations(), self.rotations()) {
             _ if self.others.count > 0 => "motion that the support leaves",

@@ -16,11 +16,11 @@ use crate::supernodes::Supernodes;
 
 /// Degrees of freedom of a node where all of them are coupled alike.
 const ALIKE: usize = 3;
-/// Supernodes of so many nodes become one with the next where at most this part of their entries would be zero: faer's
+/// Supernodes of at most this number of nodes become one with the next where at most this part of their entries would be zero: faer's
 /// numbers, which are of degrees of freedom.
 const OF_NODES: [(usize, f64); 4] = [(1, 1.0), (5, 0.8), (16, 0.1), (usize::MAX, 0.05)];
 
-/// What is known of a factor before its numbers.
+/// A factor before its numbers.
 pub(crate) enum Symbolic {
     /// By supernodes.
     Supernodal(Supernodal),
@@ -90,7 +90,7 @@ impl Symbolic {
         }
     }
 
-    /// Whether there is work for more than one thread.
+    /// True if there is work for more than one thread.
     pub(crate) fn is_parted(&self) -> bool {
         matches!(self, Self::Supernodal(Supernodal { subtrees, .. }) if subtrees.is_parted())
     }
@@ -106,7 +106,7 @@ fn factor(
     symbolic.map_err(|reason| failed(pattern.ncols(), reason))
 }
 
-/// What faer refuses of a matrix with so many rows.
+/// The error for what faer refuses of a matrix with `size` rows.
 pub(crate) fn failed(size: usize, reason: FaerError) -> ModalError {
     match reason {
         FaerError::OutOfMemory => {

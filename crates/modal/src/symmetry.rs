@@ -1,4 +1,4 @@
-//! Whether both triangles of a sparse matrix are stored, and alike.
+//! Check that both triangles of a sparse matrix are stored, and alike.
 
 use crate::error::ModalError;
 
@@ -116,7 +116,7 @@ pub(crate) fn check_symmetric_blocks(
 struct Columns<'a>([&'a [[f64; 3]]; 3]);
 
 impl<'a> Columns<'a> {
-    /// Of the pairs from `start` to `end`.
+    /// The cursor over the pairs from `start` to `end`.
     #[inline(always)]
     fn new(values: &'a [f64], start: usize, end: usize) -> Self {
         let (x, rest) = values[9 * start..9 * end].as_chunks().0.split_at(end - start);

@@ -2,7 +2,7 @@
 //!
 //! * [`Solid`]: a total Lagrangian St. Venant–Kirchhoff body of second-order tetrahedra.
 //! * [`Motion`]: its motion by the energy–momentum midpoint rule of Simo and Tarnow.
-//! * [`Solid::at_rest`], [`Solid::held_in_modes`]: its static answers.
+//! * [`Solid::at_rest`], [`Solid::held_in_modes`]: its static responses.
 //! * [`Solid::pressure`]: a pressure that follows its surface, exactly.
 //! * [`mean_axes()`]: the frame of the linear modes in its motion.
 //! * [`bodies`], [`cases`]: bodies, and what is compared on them.

@@ -1,4 +1,4 @@
-//! Static answers of a solid.
+//! Static responses of a solid.
 
 use nalgebra::{DMatrix, DVector};
 

@@ -98,7 +98,7 @@ def test_runs_of_one_body_search_no_modes_again(tmp_path, monkeypatch):
         flexframe.Simulation(body, scene=scene.with_values(values)).run()
         now = files()
         assert kept.items() <= now.items()
-        # The rigid and flexible modes are ten fields over the nodes, the static answers to loads and spin nine.
+        # The rigid and flexible modes are ten fields over the nodes, the static responses to loads and spin nine.
         assert all(path.stat().st_size < 10 * 24 * len(body.positions) for path in now.keys() - kept.keys())
 
 

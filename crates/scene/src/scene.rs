@@ -51,7 +51,7 @@ pub struct Scene {
     pub source: String,
     /// Where the answers of the finite-element model are kept from run to run; nowhere, until the program says so.
     pub cache: Cache,
-    /// What finds modes and static answers in the place of this program; `None`, until the program says so. It is no part of
+    /// What finds modes and static responses in the place of this program; `None`, until the program says so. It is no part of
     /// what is asked of a body: its answers are the same within rounding.
     pub solver: Option<Slepc>,
 }

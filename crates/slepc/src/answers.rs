@@ -79,14 +79,14 @@ pub(crate) fn eigenpairs(
     Ok(Eigenpairs { eigenvalues: found.eigenvalues, vectors, residuals: found.residuals, stats })
 }
 
-/// The static answers to the forces with this name in a folder, of the matrices with this digest and so many rows.
+/// The static responses to the forces with this name in a folder, of the matrices with this digest and so many rows.
 pub(crate) fn static_answers(
     folder: &Path,
     name: &str,
     digest: &str,
     unknowns: usize,
 ) -> Result<StaticAnswers, SlepcError> {
-    let asked = " (static answers: the scene asks for these, too, and their forces are written there now)";
+    let asked = " (static responses: the scene asks for these, too, and their forces are written there now)";
     let found: Statics = finished(folder, &format!("statics-{name}.json"), asked)?;
     if found.digest != digest || found.unknowns != unknowns {
         return Err(SlepcError::OtherMatrices { folder: folder.to_owned() });

@@ -1,4 +1,4 @@
-"""Eigenpairs of K x = lambda M x, or static answers K u = f, by SLEPc, PETSc and MUMPS on any number of MPI ranks.
+"""Eigenpairs of K x = lambda M x, or static responses K u = f, by SLEPc, PETSc and MUMPS on any number of MPI ranks.
 
     mpirun -n RANKS python3 driver.py
 
@@ -7,7 +7,7 @@ flexframe wrote this file and those beside it, and reads what it leaves there:
     problem.json         sizes, the number of modes, the shift s, the tolerance, and the digest of K and M
     K.petsc M.petsc      the matrices of the body as its supports leave it (PETSc's binary form, as all .petsc files)
     rigid.petsc          its rigid motions, M-orthonormal, which K does not resist
-    forces-NAME.petsc    forces to which static answers are asked for, with their number in forces-NAME.json; any number of these
+    forces-NAME.petsc    forces to which static responses are asked for, with their number in forces-NAME.json; any number of these
 
     modes.petsc          the eigenvectors, and modes.json, which is there once they are complete
     statics-NAME.petsc   the displacements, and statics-NAME.json
@@ -37,7 +37,7 @@ SPARE = 4
 GAP = 1e-6
 # Searches, each beside what the ones before have found.
 SEARCHES = 4
-# Iterations of a static answer, and its residual in the norm of (K + sM)^-1, relative to that of the force.
+# Iterations of a static response, and its residual in the norm of (K + sM)^-1, relative to that of the force.
 ITERATIONS = 300
 STATIC_TOLERANCE = 1e-13
 
@@ -302,7 +302,7 @@ class Driver:
         width, place = max((values[i] - values[i - 1], i) for i in range(wanted, len(values)))
         return values[place] - 0.5 * width, place if width > GAP * abs(values[place]) else None
 
-    # Static answers
+    # Static responses
 
     def statics(self):
         """K u = f by conjugate gradients, the factor of K + sM before them. A force does no work on a rigid motion."""

@@ -29,7 +29,7 @@ impl Slepc {
         Self(Way::Run { ranks, stop })
     }
 
-    /// Takes what the driver has left in a folder of [`write_folder`](crate::write_folder). Forces to which static answers are asked
+    /// Takes what the driver has left in a folder of [`write_folder`](crate::write_folder). Forces to which static responses are asked
     /// for are written there, for the driver to answer when it is run again.
     pub fn read(folder: impl Into<PathBuf>) -> Self {
         Self(Way::Read { folder: folder.into() })

@@ -85,7 +85,7 @@ pub(crate) fn write_problem(
     write(folder, "problem.json", |file| Ok(serde_json::to_writer_pretty(file, &problem)?))
 }
 
-/// Writes forces to which static answers are asked for. Returns their name, which follows from them.
+/// Writes forces to which static responses are asked for. Returns their name, which follows from them.
 pub(crate) fn write_forces(forces: MatRef<'_, f64>, folder: &Path) -> Result<String, SlepcError> {
     let hash = hashed(io::sink(), |file| write_vectors(forces, file));
     let name = hash.map_err(SlepcError::io(folder, "write forces into it"))?.to_hex()[..NAME].to_owned();

@@ -32,7 +32,7 @@ fn what_a_scene_has_not_got_is_not_computed() {
     assert!(of_full.body.stress_stiffness.is_some());
     assert!(of_full.damping_ratios().iter().all(|ratio| *ratio == 0.01));
 
-    // No modes, no factor, no static answers.
+    // No modes, no factor, no static responses.
     assert_eq!((of_rigid.body.flexible(), matrix_entries(of_rigid)), (0, 0));
     let stats_of_modes = of_rigid.meshed.as_ref().unwrap().modes.stats;
     assert_eq!((stats_of_modes.factor_entries, stats_of_modes.block_solves), (0, 0));

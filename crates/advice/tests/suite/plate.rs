@@ -19,7 +19,7 @@ pub struct Plate {
     pub body: ReducedBody,
     pub peaks: Vec<f64>,
     pub length: f64,
-    /// Static answer to a unit force along z at the corner, in its own direction.
+    /// Static response to a unit force along z at the corner, in its own direction.
     pub corner_compliance: f64,
 }
 

@@ -212,5 +212,5 @@ fn no_spin_is_written_as_zero() {
     let text = spin.to_string();
     assert!(text.contains("the spin was 3.200e-5, above the 1.100e-6"), "{text}");
     let stretch = Broken::Stretch { time: 0.5, left_out: 0.031, influence: 2e-3 };
-    assert!(stretch.to_string().contains("left out 3.1 % of the static answer"), "{stretch}");
+    assert!(stretch.to_string().contains("left out 3.1 % of the static response"), "{stretch}");
 }

@@ -29,7 +29,7 @@ fn with_entry(body: &Body, entry: usize, change: impl Fn(f64) -> f64) -> Result<
 fn they_give_the_same_modes_from_the_same_shift() {
     let body = small();
     let corner = body.positions[0];
-    // The nodes that share so many coordinates with the first.
+    // The nodes that share this number of coordinates with the first.
     let sharing = |axes: &[usize]| -> Vec<u32> {
         (0..).zip(&body.positions).filter(|(_, x)| axes.iter().all(|a| x[*a] == corner[*a])).map(|(i, _)| i).collect()
     };

@@ -1,4 +1,4 @@
-//! Modes and static answers from an engine: here the dense solution of the problem that it is given.
+//! Modes and static responses from an engine: here the dense solution of the problem that it is given.
 
 use faer::linalg::solvers::Solve;
 use faer::{Mat, MatRef, Side};
@@ -148,6 +148,6 @@ fn wrong_answers_are_refused() {
         assert!(error.contains(says), "{says} is not in: {error}");
     };
     refused(|answers| answers.residuals[0] = 1e-3, "a residual of 1.000e-3");
-    refused(|answers| answers.displacements[(5, 0)] *= 1.1, "a static answer 1 with forces unbalanced");
+    refused(|answers| answers.displacements[(5, 0)] *= 1.1, "a static response 1 with forces unbalanced");
     refused(|answers| answers.displacements.truncate(5, 1), "displacements of (5, 1)");
 }

@@ -1,4 +1,4 @@
-//! Bodies from matrices of one's own: six degrees of freedom a node, and masses that are not a scalar for each pair of nodes.
+//! Bodies from matrices of other programs: six degrees of freedom a node, and masses that are not a scalar for each pair of nodes.
 
 use faer::sparse::{SparseColMat, Triplet};
 use modal::{

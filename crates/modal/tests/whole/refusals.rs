@@ -1,4 +1,4 @@
-//! What is refused, and in what words.
+//! Refusals, and their words.
 
 use faer::Mat;
 use faer::sparse::{SparseColMat, SparseColMatRef, Triplet};
@@ -207,7 +207,7 @@ fn no_flexible_modes_are_an_answer_too() {
     assert_eq!((modes.eigenvalues.len(), modes.shapes.ncols(), modes.rigid.shapes.ncols()), (0, 0, 6));
 }
 
-/// What a support of the small block is refused for.
+/// The refusal of a support of the small block.
 fn with_support(motion: RigidMotion, nodes: &[u32]) -> Option<ModalError> {
     let Body { positions, matrices } = small();
     let support = Support::new(motion, nodes.to_vec());

@@ -1,4 +1,4 @@
-//! Static answers.
+//! Static responses.
 
 use faer::Mat;
 use fem_tet10::{Material, Materials, second_order_forces};
@@ -184,7 +184,7 @@ fn forces_of_another_size_or_without_a_number_are_refused() {
     assert!(matches!(error, ModalError::NotFinite { what: "forces", index: 1, .. }), "{error}");
     let modes = solver.modes(1, |_| ()).unwrap();
     let error = solver.with_static_shapes(modes, forces.as_ref()).unwrap_err();
-    assert!(matches!(error, ModalError::NotFinite { what: "static answers", index: 1, .. }), "{error}");
+    assert!(matches!(error, ModalError::NotFinite { what: "static responses", index: 1, .. }), "{error}");
 }
 
 /// Answers for shapes end where the steps so far promise enough. Where a step gains less, they go on.

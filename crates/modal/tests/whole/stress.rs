@@ -11,7 +11,7 @@ use crate::beam::order;
 use crate::bodies::{Body, STEEL, block_mesh};
 use meshes::{Point, disc, holed, hollow_sphere};
 
-/// A static answer and its stress.
+/// A static response and its stress.
 struct Answer {
     mesh: Mesh,
     material: Material,
@@ -182,7 +182,7 @@ fn spinning_disc(n: usize) -> Answer {
     spinning(disc(10.0, 1.0, n, 1.max(n / 3)), STEEL, &[2])
 }
 
-/// Of a thin disc, with the terms of its thickness: right but near the rim.
+/// Stress of a thin disc, with the terms of its thickness: right but near the rim.
 fn disc_truth([x, y, z]: Point) -> [f64; 6] {
     let (nu, load, r2) = (STEEL.poisson_ratio, STEEL.density * SPIN * SPIN, x * x + y * y);
     let c2 = 0.25;

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use nonlinear::{Motion, NodalState, Solid, bodies, cases};
 
-/// The centrifugal field of a body that is pinned at a corner bends it, and its static answer stretches it besides. With static
+/// The centrifugal field of a body that is pinned at a corner bends it, and its static response stretches it besides. With static
 /// shapes, stiffening about that answer coupled bending to stretching, and the rod was far too soft.
 #[test]
 fn a_rod_that_is_pinned_at_a_corner_swings_as_the_whole_mesh_does() {

@@ -15,7 +15,7 @@ pub(super) struct Backbones {
     pub derivatives: Derivatives,
 }
 
-/// The forces of second order of some natural modes with themselves, and the static answers to them (3n each).
+/// The forces of second order of some natural modes with themselves, and the static responses to them (3n each).
 pub(super) struct Derivatives {
     /// Which modes, numbered from 0.
     modes: Vec<usize>,
@@ -36,7 +36,7 @@ impl Derivatives {
 }
 
 /// The backbones of the natural modes that linear strain may get wrong by the bounds of `advice`; none of others, and none
-/// at all where the static answers cannot be found.
+/// at all where the static responses cannot be found.
 ///
 /// The static modal derivative `Θ = −K⁻¹ g` is made M-orthogonal to its mode φ, so that the modal coordinate stays what
 /// it is: with c = φᵀMΘ, its inertia is ΘᵀMΘ − c², its energy −g·Θ − ω²c².

@@ -14,7 +14,7 @@ pub(super) struct Decision {
     pub keep: usize,
     /// Whether static shapes are added to them.
     pub has_static_shapes: bool,
-    /// What the modes leave out of the static answers to the spin (6), where static shapes for it are missing.
+    /// What the modes leave out of the static responses to the spin (6), where static shapes for it are missing.
     pub lacks: Option<Vec<f64>>,
     pub effects: EffectMap<bool>,
     /// Which of the modes that are kept are large, numbered from 0.

@@ -41,7 +41,7 @@ struct LargeShapes {
 
 impl LargeDeflection {
     /// Of some `large` ones of the modes, of which some `derivatives` are known. `spin` is the stress
-    /// stiffness by the static answers to the spin.
+    /// stiffness by the static responses to the spin.
     pub fn new(
         model: &MeshModel<'_>,
         modes: &Modes,
@@ -169,7 +169,7 @@ fn refuse_drawn_in(model: &MeshModel<'_>, follower: usize, [j, k]: [usize; 2], o
     model.scene.refuse("modes.large", found, "modes that bend or twist the body", cure).into()
 }
 
-/// Forces of second order of pairs of large modes, and the static answers to them; those that are known are not computed.
+/// Forces of second order of pairs of large modes, and the static responses to them; those that are known are not computed.
 fn second_order_forces(
     model: &MeshModel<'_>,
     modes: &Modes,

@@ -9,7 +9,7 @@ use super::loads::MeshLoad;
 use super::structure::Structure;
 use crate::scene::Scene;
 
-/// The finite-element model of a scene: what modes, static answers and the reduced body are made from.
+/// The finite-element model of a scene: what modes, static responses and the reduced body are made from.
 pub(super) struct MeshModel<'a> {
     pub scene: &'a Scene,
     pub mesh: &'a Mesh,

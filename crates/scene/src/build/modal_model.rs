@@ -60,7 +60,7 @@ impl ModalModel {
         Ok(Self { loads: loads(model, body.unwrap_or(&self.body), modes, stress)?, ..self })
     }
 
-    /// The run of the scene as [`advice`] sees it, where nothing is known of static answers and backbones.
+    /// The run of the scene as [`advice`] sees it, where nothing is known of static responses and backbones.
     pub fn case<'a>(&'a self, model: &'a MeshModel<'_>) -> Case<'a> {
         Case {
             body: &self.body,

@@ -71,7 +71,7 @@ pub struct Model {
     /// The damping that the scene does not switch off, where it does not call for it, too (nf).
     pub(super) all_damping_ratios: Vec<f64>,
     pub(super) size: Size,
-    /// What the modes leave out of the static answers to the spin (6), where that is to be watched.
+    /// What the modes leave out of the static responses to the spin (6), where that is to be watched.
     pub(super) left_out: Vec<f64>,
     /// Of the modes that may bend the body far.
     pub(super) backbones: Vec<Option<Backbone>>,

@@ -15,7 +15,7 @@ pub enum BuildProgress {
     Assembly,
     /// The modes are being searched.
     Modes(modal::Progress),
-    /// Static answers to loads and to the centrifugal field are being computed.
+    /// Static responses to loads and to the centrifugal field are being computed.
     Statics,
 }
 
@@ -28,7 +28,7 @@ pub struct BuildTimes {
     pub assembly: Duration,
     /// Finding the modes.
     pub modes: Duration,
-    /// Static answers and the stress stiffness of the centrifugal field and of steady loads.
+    /// Static responses and the stress stiffness of the centrifugal field and of steady loads.
     pub statics: Duration,
     /// Making the reduced body and its points.
     pub reduction: Duration,

@@ -307,7 +307,7 @@ impl Structure for Solved<'_> {
     fn static_answers(&self, modes: &Modes, forces: &StaticForces) -> Result<Mat<f64>, BuildError> {
         let StaticForces { of_loads, spin, drive, origin } = forces;
         let question = || {
-            let question = with_natural(self.about_the_held_body("static answers"), modes);
+            let question = with_natural(self.about_the_held_body("static responses"), modes);
             with_matrix(question, of_loads.as_ref()).text(&format!("{spin} {drive:?} {origin:?}"))
         };
         self.ask_fields(question, forces.count(), || {

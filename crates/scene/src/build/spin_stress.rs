@@ -1,9 +1,9 @@
 //! The stiffness in the modes by the stress of the spin.
 //!
-//! Where the static answer to the spin bends the body, as about a pin beside the axis of a bar, its initial displacement
+//! Where the static response to the spin bends the body, as about a pin beside the axis of a bar, its initial displacement
 //! couples bending to stretching. The stretching modes then relieve the bending ones by an energy of second order in that
 //! answer. In the exact nonlinear body terms of fourth order balance it, and here they are missing. Where the initial
-//! displacement couples modes strongly whose frequencies are far apart, so that one follows the other as a static answer
+//! displacement couples modes strongly whose frequencies are far apart, so that one follows the other as a static response
 //! does, only the initial stress is taken: what is left out there but for this relief is of second order in the answer, too.
 
 use faer::Mat;
@@ -16,7 +16,7 @@ const APART: f64 = 4.0;
 /// between the bending and the stretching of one that is pinned at a corner up to 60.
 const STRONG: f64 = 0.01;
 
-/// The stiffness by the static answers to the spin, of each pair of axes as in [`ReducedBody::PAIRS`].
+/// The stiffness by the static responses to the spin, of each pair of axes as in [`ReducedBody::PAIRS`].
 pub(super) struct SpinStress {
     /// By all terms.
     all: [Mat<f64>; 6],

@@ -1,4 +1,4 @@
-//! Static answers of the whole mesh.
+//! Static responses of the whole mesh.
 
 use std::ops::Range;
 
@@ -15,7 +15,7 @@ use super::spin_stress::SpinStress;
 use super::structure::StaticForces;
 use super::{physics, turning};
 
-/// Which static answers are asked for.
+/// Which static responses are asked for.
 #[derive(Clone, Copy)]
 pub(super) struct Asked {
     /// To each load.
@@ -32,7 +32,7 @@ impl Asked {
     }
 }
 
-/// Static answers (3n each), side by side; none that are not asked for.
+/// Static responses (3n each), side by side; none that are not asked for.
 pub(super) struct Statics {
     pub of_loads: Option<OfLoads>,
     pub of_spin: Option<OfSpin>,
@@ -57,7 +57,7 @@ pub(super) struct OfSpin {
 }
 
 impl Statics {
-    /// All static answers that are asked for, from one block of forces.
+    /// All static responses that are asked for, from one block of forces.
     pub fn new(model: &MeshModel<'_>, modes: &Modes, origin: &Vector3<f64>, asked: Asked) -> Result<Self, BuildError> {
         if !asked.any() {
             return Ok(Self { of_loads: None, of_spin: None, of_drive: None });
@@ -145,12 +145,12 @@ impl Statics {
         sum
     }
 
-    /// The work of each load on its static answers; none where it is not known.
+    /// The work of each load on its static responses; none where it is not known.
     pub fn compliances(&self) -> &[StaticCompliance] {
         self.of_loads.as_ref().map_or(&[], |of_loads| &of_loads.compliances)
     }
 
-    /// What the modes leave out of the static answers to the spin (6); none where it is not known.
+    /// What the modes leave out of the static responses to the spin (6); none where it is not known.
     pub fn remainders(&self) -> &[f64] {
         self.of_spin.as_ref().map_or(&[], |of_spin| &of_spin.remainders)
     }

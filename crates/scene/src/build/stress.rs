@@ -24,7 +24,7 @@ pub(super) const DRIVE: GeometricTerms = GeometricTerms::InitialStress;
 /// Stiffness in the modes (nf × nf) by the stress of what acts on a body, where it matters.
 #[derive(Default)]
 pub(super) struct Stress {
-    /// Of each load, in the direction of each of its static answers; empty where it is left out.
+    /// Of each load, in the direction of each of its static responses; empty where it is left out.
     pub of_loads: Vec<Vec<Directed>>,
     /// Of a unit acceleration of the drive.
     pub of_drive: Option<Mat<f64>>,
@@ -35,7 +35,7 @@ pub(super) struct Stress {
 }
 
 impl Stress {
-    /// By the static answers to the loads and to the drive.
+    /// By the static responses to the loads and to the drive.
     pub fn new(model: &MeshModel<'_>, statics: &Statics, modes: &Modes, body: &ModalModel) -> Result<Self, BuildError> {
         if !physics::may_stress(model.scene) || modes.shapes.ncols() == 0 {
             return Ok(Self::default());
@@ -112,7 +112,7 @@ impl Stress {
     }
 }
 
-/// The stiffness by each static answer to a load whose history is `largest` at most: the initial stress, and the initial
+/// The stiffness by each static response to a load whose history is `largest` at most: the initial stress, and the initial
 /// displacement where it is small.
 fn of_load(
     model: &MeshModel<'_>,

@@ -19,7 +19,7 @@ use super::site_stress::SiteStress;
 use super::statics::{Asked, Statics};
 use super::structure::StaticForces;
 
-/// The stress that the modes leave out of each static answer, and how much of each there is at a time.
+/// The stress that the modes leave out of each static response, and how much of each there is at a time.
 #[derive(Debug)]
 pub(super) struct LeftOut {
     pub stress: SiteStress,

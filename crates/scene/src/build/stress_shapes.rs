@@ -47,7 +47,7 @@ pub struct StressPeak {
     pub von_mises: f64,
     /// The node.
     pub node: u32,
-    /// The von Mises stress, there, of what the modes leave out of the static answer to the loads and the spin.
+    /// The von Mises stress, there, of what the modes leave out of the static response to the loads and the spin.
     pub left_out: f64,
     /// Its largest one anywhere.
     pub most_left_out: f64,

@@ -25,7 +25,7 @@ pub(super) trait Structure {
     /// K times fields (3n×k).
     fn stiffness_product(&self, fields: MatRef<'_, f64>) -> Result<Mat<f64>, BuildError>;
 
-    /// Static answers to forces (3n×k), from the natural ones of the modes on.
+    /// Static responses to forces (3n×k), from the natural ones of the modes on.
     fn static_response(
         &self,
         modes: &Modes,
@@ -33,14 +33,14 @@ pub(super) trait Structure {
         accuracy: StaticAccuracy,
     ) -> Result<Mat<f64>, BuildError>;
 
-    /// Static answers to the forces of loads (3n×k), to the centrifugal field of each pair of spins, and to the inertia of a
+    /// Static responses to the forces of loads (3n×k), to the centrifugal field of each pair of spins, and to the inertia of a
     /// driven motion, side by side, from the natural ones of the modes on.
     fn static_answers(&self, modes: &Modes, forces: &StaticForces) -> Result<Mat<f64>, BuildError>;
 
-    /// The modes, with shapes appended that make them span static answers (3n×k).
+    /// The modes, with shapes appended that make them span static responses (3n×k).
     fn with_static_shapes(&self, modes: Modes, answers: MatRef<'_, f64>) -> Result<Modes, BuildError>;
 
-    /// The shapes that follow large modes, by the forces of second order and the static answers to them.
+    /// The shapes that follow large modes, by the forces of second order and the static responses to them.
     fn second_order_shapes(
         &self,
         modes: Modes,
@@ -52,7 +52,7 @@ pub(super) trait Structure {
     /// The body in the coordinates of its modes.
     fn reduced_body(&self, modes: &Modes) -> Result<ReducedBody, BuildError>;
 
-    /// What each of the static answers (6) has beside the modes: √(uᵀMu − Σ(Φ_kᵀMu)²).
+    /// What each of the static responses (6) has beside the modes: √(uᵀMu − Σ(Φ_kᵀMu)²).
     fn remainders(&self, modes: &Modes, answers: MatRef<'_, f64>) -> Result<Vec<f64>, BuildError>;
 
     /// Stiffness in the modes (nf×nf) by the stress of each displacement field (3n×k). `known` are those in the first of the
@@ -81,11 +81,11 @@ pub(super) trait Structure {
     /// The stress of second order (6m×p) of pairs of fields (3n×k).
     fn second_order_nodal_stress(&self, fields: MatRef<'_, f64>, pairs: &[[usize; 2]]) -> Result<Mat<f64>, BuildError>;
 
-    /// The lowest buckling ratio by the stress of a static answer (3n×1), from the modes on.
+    /// The lowest buckling ratio by the stress of a static response (3n×1), from the modes on.
     fn lowest_buckling_ratio(&self, answer: MatRef<'_, f64>, modes: &Modes) -> Result<f64, BuildError>;
 }
 
-/// Forces that static answers are asked for.
+/// Forces that static responses are asked for.
 pub(super) struct StaticForces {
     /// Of the loads (3n×k).
     pub of_loads: Mat<f64>,

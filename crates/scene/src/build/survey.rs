@@ -85,7 +85,7 @@ fn may_stiffen(model: &MeshModel<'_>, modal: &ModalModel) -> Result<bool, BuildE
     })
 }
 
-/// Whether the modes may leave out something of the static answer to the spin that matters, and what is to be computed:
+/// Whether the modes may leave out something of the static response to the spin that matters, and what is to be computed:
 /// for static shapes, or to tell that they are missing.
 fn may_stretch(model: &MeshModel<'_>, modal: &ModalModel) -> Result<bool, BuildError> {
     let &MeshModel { scene, support, .. } = model;

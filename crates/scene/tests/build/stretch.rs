@@ -72,5 +72,5 @@ fn who_leaves_them_out_is_told_by_the_table_alone() {
     let scene = spinning("flexible = 6\nstatic_correction = false", "geometric_stiffening = false", "step = 1e-4");
     let (shapes, found, broken, why) = stretched(&scene);
     assert!(shapes == 0 && found.abs() < 1e-2 && broken.is_empty(), "{shapes} {found} {broken:?}");
-    assert!(why.contains("leave out of the static answer to the spin"), "{why}");
+    assert!(why.contains("leave out of the static response to the spin"), "{why}");
 }

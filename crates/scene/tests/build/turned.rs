@@ -33,7 +33,7 @@ struct Motion {
 }
 
 /// The bar, critically damped, has turned slowly by an angle under a dead force: how far the deformation is off the
-/// static answer at the loaded point, along the force.
+/// static response at the loaded point, along the force.
 fn off(motion: &Motion, angle: f64, modes: &str) -> f64 {
     let Motion { scene, support, at, force } = motion;
     let rest = format!(

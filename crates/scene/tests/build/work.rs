@@ -21,7 +21,7 @@ fn four_large_modes_and_the_stress_of_the_spin_take_so_much() {
     assert_eq!(plain.element_passes, 0);
     let spin = "geometric_stiffening = true\ndeformed_inertia = true\nrefuse = false";
     let large = work("flexible = 10\nlarge = [1, 2, 3, 4]", &format!("{spin}\nlarge_deflection = true"));
-    // The spin has its static answers in both. Ten pairs of modes take three solutions each (a plate takes two). Of the
+    // The spin has its static responses in both. Ten pairs of modes take three solutions each (a plate takes two). Of the
     // elements: the stiffness of the spin in the modes, then in the static shapes, each by all terms and by the initial
     // stress; that of the large modes by the initial stress; the forces and the energies of the pairs.
     println!("{plain:?}, {large:?}");
