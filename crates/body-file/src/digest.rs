@@ -19,17 +19,17 @@ const BLOCK: usize = 4 << 20;
 pub struct Hash([u8; 32]);
 
 impl Hash {
-    /// Of some numbers.
+    /// The hash of some numbers.
     pub fn of<T: NoUninit>(values: &[T]) -> Self {
         let mut hasher = blake3::Hasher::new();
         update(&mut hasher, bytemuck::cast_slice(values));
         Self(*hasher.finalize().as_bytes())
     }
 
-    /// Of the bytes of a file.
+    /// The hash of the bytes of a file.
     ///
     /// # Errors
-    /// Those of the system.
+    /// Errors of the system.
     pub fn of_file(path: &Path) -> io::Result<Self> {
         HashedReader::new(File::open(path)?).finish()
     }
@@ -72,7 +72,7 @@ impl<R: Read> HashedReader<R> {
     /// Reads what is left. Returns the hash of all.
     ///
     /// # Errors
-    /// Those of the reader.
+    /// Errors of the reader.
     pub fn finish(mut self) -> io::Result<Hash> {
         let mut block = vec![0; BLOCK];
         while self.read(&mut block)? > 0 {}
@@ -93,7 +93,7 @@ impl<R: Read> Read for HashedReader<R> {
 pub struct Digest(blake3::Hasher);
 
 impl Digest {
-    /// Of nothing yet.
+    /// The digest of nothing yet.
     pub fn new() -> Self {
         Self::default()
     }

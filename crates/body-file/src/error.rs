@@ -1,11 +1,11 @@
-//! What can go wrong with a body file.
+//! Errors of a body file.
 
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// What helps where the file is not as it was written.
+/// Help where the file is not as it was written.
 const CURE: &str = "take an unchanged copy, or make it again: flexframe reduce SCENE -o FILE";
-/// What helps where the system refuses.
+/// Help where the system refuses.
 const SYSTEM_CURE: &str = "check its name, its folder and the room on its disk";
 
 /// An error of the writer or the reader.
@@ -17,7 +17,7 @@ pub enum BodyFileError {
     Hdf5 {
         /// The file.
         path: PathBuf,
-        /// What was being done.
+        /// The operation.
         action: String,
         /// The library's own message; as text, so that a program that only reads needs no HDF5.
         words: String,
@@ -27,7 +27,7 @@ pub enum BodyFileError {
     System {
         /// The file.
         path: PathBuf,
-        /// What was being done.
+        /// The operation.
         action: &'static str,
         /// Why.
         source: io::Error,
@@ -81,7 +81,7 @@ pub enum BodyFileError {
     Damaged {
         /// The file.
         path: PathBuf,
-        /// What was found, and what was expected.
+        /// The content that was found, and the one that was expected.
         what: String,
     },
     /// A dataset that is not there.
@@ -99,7 +99,7 @@ pub enum BodyFileError {
         path: PathBuf,
         /// The path of the dataset.
         dataset: String,
-        /// What differs.
+        /// The difference.
         what: &'static str,
     },
 }

@@ -31,7 +31,7 @@ const HEAD: u64 = 72;
 /// The longest description that is read, in bytes.
 const LONGEST: u64 = 64 << 20;
 
-/// What a file has, and where.
+/// The datasets of a file, and their places.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Description {

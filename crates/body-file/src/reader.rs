@@ -50,7 +50,7 @@ impl BodyFile {
         self.description.datasets.keys().map(String::as_str)
     }
 
-    /// Whether it has a dataset.
+    /// True if it has a dataset.
     pub fn has(&self, dataset: &str) -> bool {
         self.description.datasets.contains_key(dataset)
     }

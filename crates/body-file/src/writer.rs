@@ -116,7 +116,7 @@ impl Writer {
         Ok(())
     }
 
-    /// Puts the file into its place, where an older one is replaced; `durable` waits until it is safe on the disk.
+    /// Moves the file into its place, where an older one is replaced; `durable` waits until it is safe on the disk.
     ///
     /// # Errors
     /// [`BodyFileError::Declared`] where a dataset has not been written, [`BodyFileError::System`].

@@ -19,7 +19,7 @@ use crate::mesh::Mesh;
 use crate::point_mass::PointMass;
 use crate::vectorized::vectorized;
 
-/// What the memory is for.
+/// Purpose of the memory, in messages.
 const MATRICES: &str = "the mass and stiffness matrices";
 
 /// Stiffness and mass matrices (N×N, N = 3n), both triangles stored: a 3×3 block of K and a scalar of M for each pair of

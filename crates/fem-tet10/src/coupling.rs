@@ -52,7 +52,7 @@ impl Incidence {
 #[derive(Debug, Clone)]
 pub(crate) struct Coupling {
     pub start: Vec<usize>,
-    /// Of each node, in rising order.
+    /// The nodes that each node is coupled to, in rising order.
     pub nodes: Vec<u32>,
 }
 

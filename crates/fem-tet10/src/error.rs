@@ -1,4 +1,4 @@
-//! What can be wrong with a mesh or a model, said with the file, the tag and the cure.
+//! Errors of a mesh or a model, with the file, the tag and help.
 
 use std::fmt;
 
@@ -59,9 +59,9 @@ pub enum MeshError {
         place: FilePosition,
         /// The section of the file, such as `$Nodes`.
         section: String,
-        /// What the format asks for.
+        /// The text or number that the format asks for.
         expected: String,
-        /// What stands there.
+        /// The text or number that stands there.
         found: String,
     },
     /// The head of a section says that its blocks hold more or fewer than they do.
@@ -77,9 +77,9 @@ pub enum MeshError {
         section: String,
         /// "nodes" or "elements".
         what: &'static str,
-        /// What the head says.
+        /// The number in the head.
         claimed: u64,
-        /// What the blocks hold.
+        /// The number in the blocks.
         found: usize,
     },
     /// A required section is not there.
@@ -99,9 +99,9 @@ pub enum MeshError {
         source_name: String,
         /// Tag of the first such element.
         element: u64,
-        /// What it is.
+        /// Its kind.
         found: String,
-        /// What to do.
+        /// Help for the user.
         cure: &'static str,
     },
     /// The file has no volume elements.
@@ -273,7 +273,7 @@ pub enum MeshError {
         source_name: String,
         /// The name.
         group: String,
-        /// What has it: "point", "curve", "surface", "volume".
+        /// The kinds of entities that have it: "point", "curve", "surface", "volume".
         kinds: Vec<&'static str>,
     },
     /// An element is turned inside out, or has no volume.
@@ -289,7 +289,7 @@ pub enum MeshError {
         what: &'static str,
         /// Smallest determinant of the Jacobian over nodes and integration points.
         jacobian: f64,
-        /// That of a regular tetrahedron with the same longest edge.
+        /// The determinant of a regular tetrahedron with the same longest edge.
         expected: f64,
     },
     /// Nodes that belong to no tetrahedron.
@@ -484,7 +484,7 @@ pub enum AssemblyError {
         /// Distance of the nearest node of all.
         distance: f64,
     },
-    /// So many nodes near a point that a mass spread over them would fill the matrices.
+    /// More nodes near a point than can carry a spread mass: they would fill the matrices.
     #[error(
         "{source_name}: {count} nodes lie within {radius} of {at:?}, but a point mass is spread over {limit} at most, as each of them is coupled to all the others; use a smaller spread"
     )]
@@ -543,7 +543,7 @@ pub enum AssemblyError {
         row: usize,
         /// Column, counted from 0.
         column: usize,
-        /// What stands there.
+        /// The number that stands there.
         found: f64,
     },
 }

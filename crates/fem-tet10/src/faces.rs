@@ -23,7 +23,7 @@ pub(crate) struct Face {
     pub tag: u64,
     /// As in [`FACES`], seen from outside of the first tetrahedron that has the face.
     pub nodes: [u32; 6],
-    /// Whether a second tetrahedron has it.
+    /// True if a second tetrahedron has it.
     pub inner: bool,
 }
 

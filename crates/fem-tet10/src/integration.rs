@@ -93,7 +93,7 @@ impl IntegrationPoint {
     }
 }
 
-/// Whether all mid-edge nodes lie in the middle of their edges.
+/// True if all mid-edge nodes lie in the middle of their edges.
 pub(crate) fn is_straight(positions: &[[f64; 3]; 10]) -> bool {
     EDGES.into_iter().enumerate().all(|(edge, [a, b])| {
         let (a, b) = (Vector3::from(positions[a]), Vector3::from(positions[b]));
@@ -123,7 +123,7 @@ pub(crate) struct BadJacobian {
     pub what: &'static str,
     /// The smallest determinant.
     pub jacobian: f64,
-    /// That of a regular tetrahedron of its size.
+    /// The determinant of a regular tetrahedron of its size.
     pub expected: f64,
 }
 

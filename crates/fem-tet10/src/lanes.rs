@@ -13,7 +13,7 @@ use crate::mesh::Mesh;
 /// Elements in a group.
 pub(crate) const LANES: usize = 4;
 
-/// The groups are cut into so many parts, whatever the number of threads, and what is summed over the elements is summed over
+/// Number of parts that the groups are cut into, whatever the number of threads, and what is summed over the elements is summed over
 /// the parts in their order.
 pub(crate) const PARTS: usize = 64;
 
@@ -111,7 +111,7 @@ impl Tensors {
         stress
     }
 
-    /// Of a symmetric matrix the three on the diagonal, then the three others times `factor`.
+    /// The upper triangle of a symmetric matrix: the three on the diagonal, then the three others times `factor`.
     #[inline(always)]
     pub fn upper(&self, factor: f64) -> [Lanes; 6] {
         let mut upper = [self.0[0][0], self.0[1][1], self.0[2][2], self.0[0][1], self.0[1][2], self.0[2][0]];
@@ -121,7 +121,7 @@ impl Tensors {
         upper
     }
 
-    /// Of a gradient ∇u: it, and C:ε(u).
+    /// A gradient ∇u and C:ε(u).
     #[inline(always)]
     pub fn with_stress(self, lame: &Lame) -> [Self; 2] {
         [self, self.strain().stress(lame)]

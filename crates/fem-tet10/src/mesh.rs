@@ -9,7 +9,7 @@ use crate::parts::{MeshParts, NodeGroup, SurfaceGroup};
 use crate::shape::EDGES;
 use crate::tags::{index_nodes, resolve_tags};
 
-/// What is grouped, by its dimension.
+/// Names of the entities in groups, by dimension.
 pub(crate) const KINDS: [&str; 4] = ["point", "curve", "surface", "volume"];
 
 /// A mesh of ten-node tetrahedra in one piece, every node in use and every element the right way round; or only the nodes of a
@@ -138,7 +138,7 @@ impl Mesh {
         })
     }
 
-    /// Whether it has elements.
+    /// True if it has elements.
     pub fn has_elements(&self) -> bool {
         !self.elements.is_empty()
     }
@@ -170,7 +170,7 @@ impl Mesh {
         }
     }
 
-    /// What the mesh is called in messages: its file.
+    /// Name of the mesh in messages: its file.
     pub fn source(&self) -> &str {
         &self.source
     }

@@ -3,7 +3,7 @@
 /// The raw parts of a mesh, from a file or from a program; [`Mesh::new`](crate::Mesh::new) checks them.
 #[derive(Debug, Clone, Default)]
 pub struct MeshParts {
-    /// What to call the mesh in messages: the file's path.
+    /// Name of the mesh in messages: the file's path.
     pub source: String,
     /// Tags of the nodes, in the file's numbering.
     pub node_tags: Vec<u64>,

@@ -6,7 +6,7 @@ use crate::error::AssemblyError;
 use crate::locate::Location;
 use crate::mesh::Mesh;
 
-/// So many nodes carry one mass at most. k nodes couple each to each, with 9k² entries in the pattern: 54 MB for 500.
+/// Most nodes that carry one mass. k nodes couple each to each, with 9k² entries in the pattern: 54 MB for 500.
 const MOST_CARRIERS: usize = 500;
 
 /// A mass at a point of the body, Eq. (M4) of `docs/method/modes.md`.

@@ -1,4 +1,4 @@
-//! What a St. Venant–Kirchhoff body adds to the linear one: the strain of second order, its forces and its energy.
+//! Terms of a St. Venant–Kirchhoff body beyond the linear one: the strain of second order, its forces and its energy.
 //!
 //! ```text
 //! E = ε(u) + ½ ε₂(u,u)        ε(a) = sym ∇a        ε₂(a,b) = sym(∇aᵀ ∇b)        W = ½ ∫ E : C : E dV

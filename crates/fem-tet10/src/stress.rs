@@ -35,11 +35,11 @@ pub const COMPONENTS: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (1,
 /// Displacement fields, or pairs of them, that are recovered at once.
 const BLOCK: usize = 8;
 
-/// What makes nodal stress of displacements on a mesh.
+/// Recovery of nodal stress from displacements on a mesh.
 #[derive(Debug)]
 pub struct StressRecovery<'a> {
     mesh: &'a Mesh,
-    /// Of each element.
+    /// The material of each element.
     materials: Vec<Material>,
     sites: StressSites,
     incidence: Incidence,
@@ -47,7 +47,7 @@ pub struct StressRecovery<'a> {
 }
 
 impl<'a> StressRecovery<'a> {
-    /// Of a body.
+    /// The recovery for a body.
     ///
     /// # Errors
     /// Materials that do not fit the mesh.

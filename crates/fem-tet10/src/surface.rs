@@ -49,11 +49,11 @@ impl Mesh {
         Ok(self.integrate(surface, |x, slopes| -tangent(x, slopes, 0).cross(&tangent(x, slopes, 1))))
     }
 
-    /// What the displacements `displacement` (3n, length, row `3·node + axis`) add to the forces of
+    /// Forces that the displacements `displacement` (3n, length, row `3·node + axis`) add to those of
     /// [`surface_pressure`](Self::surface_pressure), to first order, because the pressure turns and grows with the surface:
     /// nodes, ascending, and forces (area). It is linear in the displacements.
     ///
-    /// Exact on curved faces too: what a pressure all round a body adds has neither a resultant nor, with the forces that
+    /// Exact on curved faces too: the forces that a pressure all round a body adds have neither a resultant nor, with the forces that
     /// the displacements move, a moment.
     ///
     /// # Errors
@@ -133,7 +133,7 @@ impl Mesh {
     }
 }
 
-/// What can be integrated.
+/// A quantity that can be integrated.
 trait Summand: Default + AddAssign + Mul<f64, Output = Self> + Copy {}
 
 impl<T: Default + AddAssign + Mul<f64, Output = T> + Copy> Summand for T {}

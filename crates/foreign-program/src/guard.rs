@@ -1,4 +1,4 @@
-//! What ends a program: when it is to end, and when this program has ended, whatever has ended it.
+//! A guard that ends a program: when it is to end, and when this program has ended, whatever has ended it.
 
 use std::io::Write;
 use std::os::unix::process::CommandExt;

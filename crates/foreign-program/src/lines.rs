@@ -1,4 +1,4 @@
-//! What a program says, line by line.
+//! Output of a program, line by line.
 
 use std::io::{self, Read};
 use std::sync::mpsc::SyncSender;

@@ -11,7 +11,7 @@ use rustix::fs::OFlags;
 /// Opens an ordinary file for reading.
 ///
 /// # Errors
-/// Those of the system, and anything else than a file: a folder, a pipe, a device.
+/// Errors of the system, and anything else than a file: a folder, a pipe, a device.
 pub fn open_ordinary(path: &Path) -> io::Result<File> {
     // Without waiting for somebody to write into a pipe, which another may have put there since it was looked at.
     let flags = i32::try_from(OFlags::NONBLOCK.bits()).unwrap_or_default();

@@ -13,18 +13,18 @@ use crate::guard::MARK;
 use crate::lines::{Stream, listen};
 use crate::running::Running;
 
-/// Whether to stop, and what the limits say, is looked at so often.
+/// Time between two looks at the limits and at the wish to stop.
 const LOOK: Duration = Duration::from_millis(50);
 /// Between two looks at whether a program that says nothing more has ended.
 const SHORT_LOOK: Duration = Duration::from_millis(2);
 /// Between two looks at the bytes in its folder.
 const MEASURE: Duration = Duration::from_millis(500);
-/// What it has said before it ended arrives within this.
+/// Time within which the last lines arrive that it has said before it ended.
 const LAST_WORDS: Duration = Duration::from_secs(2);
 /// Lines that wait to be heard.
 const WAITING: usize = 1000;
 
-/// What a program may take.
+/// Limits of a program.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Limits {
     /// Time; any if not given.

@@ -14,7 +14,7 @@ use crate::guard::Guard;
 #[derive(Debug)]
 pub(crate) struct Running {
     child: Child,
-    /// Of the program and of its group; none once it is reaped.
+    /// The id of the program and of its group; none once it is reaped.
     id: Option<Pid>,
     guard: Guard,
 }
@@ -36,7 +36,7 @@ impl Running {
         &mut self.child
     }
 
-    /// Whether it has ended. It stays what its group is named after.
+    /// True if it has ended. It stays the name of its group.
     pub(crate) fn has_ended(&self) -> Result<bool, ProgramError> {
         let Some(id) = self.id else { return Ok(true) };
         let options = WaitIdOptions::EXITED | WaitIdOptions::NOHANG | WaitIdOptions::NOWAIT;

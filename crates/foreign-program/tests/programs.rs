@@ -20,7 +20,7 @@ fn shell(folder: &Path, script: &str, limits: Limits) -> (Result<ExitStatus, Pro
 
 const UNLIMITED: Limits = Limits { time: None, bytes: None };
 
-/// Whether a process is there, and is no zombie.
+/// True if a process is there, and is no zombie.
 fn is_alive(pid: &str) -> bool {
     let status = fs::read_to_string(format!("/proc/{pid}/stat")).unwrap_or_default();
     status.rsplit(") ").next().is_some_and(|rest| !rest.is_empty() && !rest.starts_with('Z'))
@@ -112,7 +112,7 @@ fn a_line_without_an_end_takes_limited_memory() {
     assert_eq!(said.iter().map(|(_, line)| line.len()).max(), Some(1 << 20));
 }
 
-/// What this program does where the environment variable names a folder: it starts another one, and waits for it.
+/// The part of this program where the environment variable names a folder: it starts another one, and waits for it.
 const PART: &str = "FOREIGN_PROGRAM_TEST";
 
 #[test]

@@ -42,18 +42,18 @@ pub(crate) struct Order {
     pub nodes: Vec<u32>,
     /// For each row of the file, that of the body.
     pub to: Vec<usize>,
-    /// Whether nodes are there several times.
+    /// True if nodes are there several times.
     pub is_expanded: bool,
 }
 
 impl Order {
-    /// Of rows in the order of the nodes.
+    /// The order of rows that follow the nodes.
     pub fn of_nodes(count: usize, freedoms: usize) -> Self {
         let nodes = (0..count as u32).collect();
         Self { freedoms, nodes, to: (0..count * freedoms).collect(), is_expanded: false }
     }
 
-    /// Of rows that say their nodes. `source` is the file that says it.
+    /// The order of rows that say their nodes. `source` is the file that says it.
     pub fn of_rows(source: &Source<'_>, rows: &[Index], nodes: &NodeFile) -> Result<Self, MatrixError> {
         let labelled = rows.iter().map(|row| match row {
             Index::Of { node, dof } => (*node, *dof),

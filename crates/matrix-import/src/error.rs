@@ -42,11 +42,11 @@ pub enum MatrixError {
         path: PathBuf,
         /// Line in it, from 1, where one line is at fault.
         line: Option<usize>,
-        /// What was found.
+        /// The value found.
         found: String,
-        /// What was expected.
+        /// The value expected.
         expected: String,
-        /// What to do.
+        /// Help for the user.
         cure: String,
     },
     /// There is not enough memory.

@@ -19,7 +19,7 @@ use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 use crate::error::MatrixError;
 use crate::source::Source;
 
-/// What is added to K, relative to the mean of its diagonal, so that it can be factored.
+/// Shift of K, relative to the mean of its diagonal, so that it can be factored.
 const SHIFT: f64 = 1e-11;
 /// Iterations at the most. Each shrinks what does not belong to the null space by the shift over the lowest eigenvalue of K.
 const MOST: usize = 60;

@@ -54,9 +54,9 @@ pub struct BodyMatrices {
     pub mass: SparseColMat<usize, f64>,
     /// Largest difference of the triangles of K or M, relative to the diagonal; `None` where the files have one triangle.
     pub asymmetry: Option<f64>,
-    /// Of all bytes that were read, and of how: what the matrices follow from.
+    /// Hash of all bytes that were read, and of how: the matrices follow from them.
     pub hash: Hash,
-    /// What is to be known of them, in sentences.
+    /// Notes about them, in sentences.
     pub notes: Vec<String>,
 }
 

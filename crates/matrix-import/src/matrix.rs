@@ -156,7 +156,7 @@ fn not_symmetric(source: &Source<'_>, form: Form, rows: &Rows, entry: Entry, mir
     )
 }
 
-/// What the file calls the row with a place.
+/// Name of the row with a place in the file.
 fn name(form: Form, rows: &Rows, place: u32) -> Index {
     match form {
         Form::Labelled => rows.list[place as usize],

@@ -103,7 +103,7 @@ fn position(source: &Source<'_>, line: usize, text: &str, fields: [&str; 3]) -> 
     }
 }
 
-/// What an .inp file is in the midst of.
+/// The block that the reader of an .inp file is in.
 enum Block {
     Nodes(Option<String>),
     Set { name: String, generate: bool },

@@ -18,7 +18,7 @@ const LONGEST_LINE: u64 = 1 << 20;
 pub(crate) struct Source<'a> {
     pub which: Which,
     pub path: &'a Path,
-    /// Of the bytes that were read.
+    /// Hash of the bytes that were read.
     hash: OnceCell<Hash>,
 }
 
@@ -118,7 +118,7 @@ impl<'a> Source<'a> {
     }
 }
 
-/// Whether further lines are wanted.
+/// The wish for further lines.
 #[derive(PartialEq, Eq)]
 pub(crate) enum Next {
     Go,

@@ -1,4 +1,4 @@
-//! What is left, from Linux's own accounts.
+//! Memory that is left, from Linux's own accounts.
 
 use std::fmt;
 use std::fs::read_to_string;
@@ -9,15 +9,15 @@ use crate::Bytes;
 /// The memory that is left, and who says so.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Left {
-    /// Of the machine: free, or free for the asking, with what there is of swap.
+    /// Bytes of the machine: free, or free for the asking, with the swap that there is.
     Machine(usize),
-    /// Of the control group that the process is in, such as a container or a job of a batch system.
+    /// Bytes of the control group that the process is in, such as a container or a job of a batch system.
     Group(usize),
-    /// Of the address space that the process may have (`ulimit -v`).
+    /// The address space that the process may have (`ulimit -v`).
     AddressSpace {
         /// The limit, bytes.
         limit: usize,
-        /// What of it is taken, bytes.
+        /// Bytes of it that are taken.
         taken: usize,
     },
     /// The allocator refused, and nobody says why.
@@ -31,7 +31,7 @@ impl Left {
         [machine, of_group().map(Self::Group)].into_iter().flatten().min_by_key(|left| left.bytes())
     }
 
-    /// Of the address space.
+    /// The rest of the address space.
     pub(crate) fn of_process() -> Self {
         let limit = read_to_string("/proc/self/limits").ok().and_then(|text| address_space(&text));
         let taken = read_to_string("/proc/self/status").ok().and_then(|text| kilobytes(&text, "VmSize:"));

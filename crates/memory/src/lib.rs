@@ -1,4 +1,4 @@
-//! Whether there is enough memory, asked before it is taken.
+//! Check that there is enough memory, before it is taken.
 //!
 //! An allocation that fails ends a Rust program by SIGABRT, and a machine without memory left ends it by SIGKILL. So
 //! what needs much asks first with [`check`], or takes its array from [`zeros`], and has an error to give.
@@ -25,11 +25,11 @@ const SMALL: usize = 1 << 20;
     Bytes(*wanted)
 )]
 pub struct OutOfMemory {
-    /// What it is for, such as "the factor of K + sM".
+    /// Its purpose, such as "the factor of K + sM".
     pub what: &'static str,
     /// Bytes wanted.
     pub wanted: usize,
-    /// What is left, and by what limit.
+    /// The memory that is left, and by what limit.
     pub left: Left,
 }
 

@@ -20,7 +20,7 @@ pub(crate) struct ReadFile {
     pub(crate) path: PathBuf,
     /// The name of its copy in a private folder.
     pub(crate) name: String,
-    /// What the copy has; none where there is no file.
+    /// Content of the copy; none where there is no file.
     pub(crate) bytes: Option<Vec<u8>>,
 }
 
@@ -44,7 +44,7 @@ impl Copies {
         self.0.first().map_or(Path::new(""), |(_, copy)| copy)
     }
 
-    /// What a program says of the copies, as if it said it of the files.
+    /// The words of a program about the copies, as if they were about the files.
     pub(crate) fn translated(&self, said: &str) -> String {
         // The last first: their names are the longest.
         self.0.iter().rev().fold(said.to_owned(), |said, (file, copy)| {

@@ -23,7 +23,7 @@ pub(crate) fn deck(path: &Path) -> Result<Vec<ReadFile>, ImportError> {
 #[derive(Default)]
 struct DeckReader {
     files: Vec<ReadFile>,
-    /// Those that are being read: each includes the next.
+    /// Files that are being read: each includes the next.
     around: Vec<PathBuf>,
 }
 

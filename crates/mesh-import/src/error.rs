@@ -17,13 +17,13 @@ pub enum ImportError {
     NoReader {
         /// The mesh file.
         source_name: String,
-        /// What reads it, in words.
+        /// The reader, in words.
         reader: &'static str,
         /// The program.
         program: String,
         /// Why it cannot be started.
         cause: io::Error,
-        /// What to do.
+        /// Help for the user.
         cure: &'static str,
     },
     /// The mesh is not what it should be.
@@ -31,9 +31,9 @@ pub enum ImportError {
     Refused {
         /// The mesh file.
         source_name: String,
-        /// What is wrong with it.
+        /// The fault.
         found: String,
-        /// What to do.
+        /// Help for the user.
         cure: String,
     },
     /// A program that reads this format has failed.
@@ -47,7 +47,7 @@ pub enum ImportError {
         status: String,
         /// The last that it said.
         said: String,
-        /// What to do.
+        /// Help for the user.
         cure: &'static str,
     },
     /// A program that reads this format took too much, and was ended.
@@ -57,9 +57,9 @@ pub enum ImportError {
         source_name: String,
         /// The program.
         program: String,
-        /// Of what.
+        /// The limit.
         cause: ProgramError,
-        /// What to do.
+        /// Help for the user.
         cure: &'static str,
     },
     /// A file could not be read, or a temporary one not be written.

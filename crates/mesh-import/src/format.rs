@@ -20,7 +20,7 @@ pub(crate) struct Format {
 }
 
 impl Format {
-    /// Whether a file of this format may begin with these bytes.
+    /// True if a file of this format may begin with these bytes.
     pub(crate) fn may_be(&self, head: &[u8]) -> bool {
         (self.begins)(head)
     }
@@ -58,7 +58,7 @@ fn is_msh(head: &[u8]) -> bool {
     [&b"$MeshFormat"[..], b"$Comments", b"$NOD"].contains(&line.trim_ascii_end())
 }
 
-/// What follows a byte order mark and spaces.
+/// The text after a byte order mark and spaces.
 fn text(head: &[u8]) -> &[u8] {
     head.strip_prefix("\u{feff}".as_bytes()).unwrap_or(head).trim_ascii_start()
 }

@@ -19,7 +19,7 @@ use crate::format::ending;
 const LARGEST: u64 = 256 << 20;
 /// gmsh reads a line in parts of 8192 bytes, and jumps to the beginning of a part. Longer lines are broken.
 const LONGEST_LINE: usize = 8000;
-/// Lines are broken at the first place after so many bytes.
+/// Bytes after which a line is broken, at the first place.
 const LONG_LINE: usize = 4000;
 
 /// Words that are refused, and why.
@@ -47,7 +47,7 @@ const NAMES: &str = "which can make the name of any command";
 
 const CURE: &str = "read the file; if you trust whoever wrote it, let gmsh do all that it says: --trust-geometry";
 
-/// What includes a file, whose name must be a text.
+/// Commands that include a file, whose name must be a text.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Includes {
     /// A program, whatever its name.
@@ -227,7 +227,7 @@ fn without_comments(bytes: &[u8]) -> Result<Vec<u8>, (usize, &'static str)> {
     Ok(text)
 }
 
-/// What is refused in a text, and where.
+/// The command that is refused in a text, and its place.
 fn forbidden(text: &[u8]) -> Option<(usize, String)> {
     let word = |(word, why): &(&str, &str)| {
         let at = places(text, word).next()?;

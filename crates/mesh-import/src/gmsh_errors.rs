@@ -1,4 +1,4 @@
-//! What gmsh, and Open CASCADE in it, say is wrong.
+//! Errors of gmsh, and of Open CASCADE in it.
 
 /// The error that gmsh reports in a line; none in the words of other programs. At its end gmsh only counts its errors.
 pub(crate) fn error_in(line: &str) -> Option<String> {

@@ -27,7 +27,7 @@ pub fn files_of_mesh(path: &Path) -> Vec<PathBuf> {
     files
 }
 
-/// What is there of the names in a text.
+/// Files that are there of the names in a text.
 fn named_in(path: &Path) -> Vec<PathBuf> {
     // The words of lines that name files; in a program any line may.
     let words: &[&str] = match ending(path).as_str() {

@@ -37,7 +37,7 @@ pub struct MeshFile {
     held: Held,
 }
 
-/// What another program is given, or what flexframe reads itself.
+/// The files for another program, or the bytes that flexframe reads itself.
 #[derive(Debug)]
 enum Held {
     /// Contents, the first file first.
@@ -69,7 +69,8 @@ impl MeshFile {
         Ok(Self { path: path.to_owned(), settings: *settings, reader, held })
     }
 
-    /// What the mesh follows from: all bytes that were read, and how. `None` where another program reads what it likes.
+    /// Hash of all that the mesh follows from: all bytes that were read, and how. `None` where another program reads what it
+    /// likes.
     pub fn hash(&self) -> Option<Hash> {
         let Held::Files(files) = &self.held else { return None };
         if let (Reader::Own, [ReadFile { bytes: Some(bytes), .. }]) = (self.reader, &files[..]) {
@@ -172,7 +173,7 @@ const UNKNOWN_CURE: &str =
 /// A smaller scaled Jacobian is what gmsh's optimisation takes for bad (Mesh.HighOrderThresholdMin).
 const BADLY_CURVED: f64 = 0.1;
 
-/// Whether the edges of elements on curved surfaces run through their other faces, or nearly so.
+/// True if the edges of elements on curved surfaces run through their other faces, or nearly so.
 fn is_badly_curved(mesh: &Result<Mesh, ImportError>) -> bool {
     match mesh {
         Ok(mesh) => mesh.least_scaled_jacobian() < BADLY_CURVED,

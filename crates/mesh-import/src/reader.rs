@@ -42,12 +42,12 @@ pub fn reader_of(path: &Path, settings: &ImportSettings) -> Reader {
     }
 }
 
-/// Whether a file has the name of a surface of triangles.
+/// True if a file has the name of a surface of triangles.
 pub(crate) fn is_surface(path: &Path) -> bool {
     ["stl", "obj", "ply", "off"].contains(&ending(path).as_str())
 }
 
-/// Whether a MSH file is of version 1, 2 or 4.0.
+/// True if a MSH file is of version 1, 2 or 4.0.
 fn is_older_msh(path: &Path) -> bool {
     // What does not begin as a MSH file is refused by who reads it.
     let Ok((head, _)) = opened(path) else { return false };
@@ -59,12 +59,12 @@ fn is_older_msh(path: &Path) -> bool {
     }
 }
 
-/// Whether a file is a program for gmsh.
+/// True if a file is a program for gmsh.
 pub(crate) fn is_program(path: &Path) -> bool {
     ["geo", "geo_unrolled"].contains(&ending(path).as_str())
 }
 
-/// Whether a file has its data in others beside it.
+/// True if a file has its data in others beside it.
 pub(crate) fn names_others(path: &Path, bytes: &[u8]) -> bool {
     let text = || String::from_utf8_lossy(bytes).to_lowercase();
     ["xdmf", "xmf"].contains(&ending(path).as_str())

@@ -33,7 +33,7 @@ const GMSH_CURE: &str = "install gmsh (Debian: apt install gmsh; or pip install 
 const PYTHON_CURE: &str = "install Python 3 with meshio (pip install meshio h5py), name that Python in FLEXFRAME_PYTHON, or \
                            write the mesh as MSH 4.1";
 
-/// What the program says in one line of JSON.
+/// The answer of the program in one line of JSON.
 #[derive(Deserialize)]
 #[serde(untagged)]
 enum Answer {
@@ -46,11 +46,11 @@ pub(crate) struct Job<'a> {
     /// Its name in messages.
     pub(crate) source: &'a Path,
     pub(crate) settings: &'a ImportSettings,
-    /// What the program is given.
+    /// The copies that the program is given.
     pub(crate) copies: &'a Copies,
-    /// What it is to write, in a private folder, as MSH 4.1.
+    /// The MSH 4.1 file that it is to write, in a private folder.
     pub(crate) target: &'a Path,
-    /// Whether the file is a program that may do what it likes.
+    /// True if the file is a program that may do what it likes.
     pub(crate) is_free: bool,
 }
 
@@ -76,7 +76,7 @@ pub(crate) fn meshio(job: &Job<'_>) -> Result<(Vec<String>, Vec<DeckMaterial>), 
     }
 }
 
-/// What gmsh does on the way from a file to MSH 4.1.
+/// Work of gmsh on the way from a file to MSH 4.1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum GmshTask {
     /// Nothing: the file is a mesh.
@@ -141,7 +141,7 @@ fn with_fixed_addresses(folder: &Path) -> ForeignProgram {
     ForeignProgram::new("setarch".as_ref(), folder).arg("-R")
 }
 
-/// Whether the system has that, and allows it.
+/// True if the system has that, and allows it.
 fn has_fixed_addresses() -> bool {
     // Where it cannot be started, its private folder is removed.
     let Ok(folder) = TemporaryFolder::new() else { return false };
@@ -149,7 +149,7 @@ fn has_fixed_addresses() -> bool {
     nothing.run(LIMITS, || false, |_, _| ()).is_ok_and(|status| status.success())
 }
 
-/// What a program has said, and how it has ended.
+/// The output of a program, and how it has ended.
 struct Said {
     status: ExitStatus,
     /// The first error of gmsh on standard output, where Open CASCADE says more of it, and on standard error.

@@ -5,9 +5,9 @@
 pub struct ImportSettings {
     /// The largest size of an element where geometry is meshed, in the units of the file; the reader's choice if not given.
     pub mesh_size: Option<f64>,
-    /// Whether straight edges of first-order elements get a node in their middle.
+    /// True if straight edges of first-order elements get a node in their middle.
     pub raise_order: bool,
-    /// Whether gmsh does all that geometry says. A `.geo` file is a program, which may run others; without this, one with such
+    /// True if gmsh does all that geometry says. A `.geo` file is a program, which may run others; without this, one with such
     /// commands is refused. No scene file can set it.
     pub trust_geometry: bool,
 }

@@ -76,7 +76,7 @@ impl Formats {
     }
 }
 
-/// Whether this process reads with meshlane.
+/// True if this process reads with meshlane.
 fn with_meshlane() -> bool {
     std::env::var_os(MESHLANE).is_some_and(|python| std::env::var_os(PYTHON) == Some(python))
 }

@@ -1,4 +1,4 @@
-//! What a mesh is known by and what it is made of are the same bytes, whatever becomes of the files. Needs gmsh, and numpy in the
+//! A mesh is made of the same bytes as it is known by, whatever becomes of the files. Needs gmsh, and numpy in the
 //! Python that `FLEXFRAME_PYTHON` names (`./dev test` sees to both).
 
 use std::fs;

@@ -53,7 +53,7 @@ pub enum TorqueFreeError {
          velocity are of sensible size"
     )]
     EllipticIntegral {
-        /// What the library of elliptic integrals said.
+        /// Message of the library of elliptic integrals.
         reason: &'static str,
     },
 }
@@ -91,7 +91,7 @@ pub struct TorqueFreeMotion {
     turning: Option<Turning>,
 }
 
-/// What is needed when the angular velocity is not constant; axes in the order a, b, c.
+/// Constants of a motion whose angular velocity is not constant; axes in the order a, b, c.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Turning {
     regime: Regime,
@@ -322,7 +322,7 @@ mod tests {
         (attitude_error, omega_error)
     }
 
-    /// What is constant in any free motion: angular momentum in the global frame, and energy.
+    /// Constants of any free motion: angular momentum in the global frame, and energy.
     fn departure(inertia: &Inertia, motion: &TorqueFreeMotion, time: f64) -> f64 {
         let momentum = |s: &TorqueFreeState| s.attitude.to_global(&(inertia.matrix() * s.omega_body));
         let energy = |s: &TorqueFreeState| s.omega_body.dot(&(inertia.matrix() * s.omega_body));

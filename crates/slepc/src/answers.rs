@@ -1,4 +1,4 @@
-//! What a driver leaves.
+//! Answers that a driver leaves.
 
 use std::collections::BTreeMap;
 use std::io::{Read, Seek, SeekFrom};
@@ -44,7 +44,7 @@ struct Statics {
     residuals: Vec<f64>,
 }
 
-/// The eigenpairs in a folder, of the matrices with this digest and so many rows, and as many as are asked for.
+/// The eigenpairs in a folder, of the matrices with this digest and number of rows, as many as are asked for.
 pub(crate) fn eigenpairs(
     folder: &Path,
     digest: &str,
@@ -79,7 +79,7 @@ pub(crate) fn eigenpairs(
     Ok(Eigenpairs { eigenvalues: found.eigenvalues, vectors, residuals: found.residuals, stats })
 }
 
-/// The static responses to the forces with this name in a folder, of the matrices with this digest and so many rows.
+/// The static responses to the forces with this name in a folder, of the matrices with this digest and number of rows.
 pub(crate) fn static_answers(
     folder: &Path,
     name: &str,
@@ -96,7 +96,7 @@ pub(crate) fn static_answers(
     Ok(StaticAnswers { displacements, iterations: found.iterations, residuals: found.residuals })
 }
 
-/// What the driver leaves last; `what` says what it is.
+/// The file that the driver leaves last; `what` says what it is.
 fn finished<T: DeserializeOwned>(folder: &Path, name: &str, what: &'static str) -> Result<T, SlepcError> {
     let path = folder.join(name);
     if folder.is_dir() && !path.exists() {

@@ -61,7 +61,7 @@ pub(crate) fn write_vectors(vectors: MatRef<'_, f64>, file: &mut impl Write) -> 
     Ok(())
 }
 
-/// Reads so many vectors of so many rows.
+/// Reads a number of vectors with a number of rows each.
 pub(crate) fn read_vectors(path: &Path, rows: usize, count: usize) -> Result<Mat<f64>, SlepcError> {
     let file = open_ordinary(path).map_err(SlepcError::io(path, "open it"))?;
     let damaged = |what: String| SlepcError::Damaged { path: path.to_owned(), what };

@@ -1,4 +1,4 @@
-//! What to do about a driver that failed, by what it and mpirun said.
+//! Help about a driver that failed, by its words and those of mpirun.
 
 /// How to install all that is needed.
 pub(crate) const INSTALL: &str = "install SLEPc for Python and MPI: apt-get install python3-slepc4py python3-petsc4py openmpi-bin \
@@ -24,7 +24,7 @@ const CURES: [(&str, &str); 6] = [
     ),
 ];
 
-/// What to do about a failure with these words.
+/// Help about a failure with these words.
 pub(crate) fn cure(said: &str) -> &'static str {
     CURES.iter().find(|(words, _)| said.contains(words)).map_or(
         "see what it said; options for PETSc and MUMPS go into PETSC_OPTIONS (docs/reference/cluster.md)",

@@ -24,7 +24,7 @@ enum Way {
 }
 
 impl Slepc {
-    /// Runs the driver on so many ranks, in a temporary folder (below TMPDIR); `stop` stops it.
+    /// Runs the driver on `ranks` ranks, in a temporary folder (below TMPDIR); `stop` stops it.
     pub fn run(ranks: usize, stop: Stop) -> Self {
         Self(Way::Run { ranks, stop })
     }

@@ -10,9 +10,9 @@ pub enum SlepcError {
     /// A program that is needed is not there, or cannot be used.
     #[error("--solver slepc: {found}\n = {cure}")]
     NotInstalled {
-        /// What is missing.
+        /// The missing part.
         found: String,
-        /// What to do.
+        /// Help for the user.
         cure: String,
     },
     /// The driver refuses, in words.
@@ -20,25 +20,25 @@ pub enum SlepcError {
     Refused {
         /// Why.
         found: String,
-        /// What to do.
+        /// Help for the user.
         cure: String,
     },
     /// The driver did not come to its end.
     #[error("--solver slepc: `{command}` failed ({status}); it said last:\n{said}\n = {cure}")]
     Failed {
-        /// What was run.
+        /// The command.
         command: String,
         /// Exit status or signal.
         status: String,
         /// The last lines that it said.
         said: String,
-        /// What to do.
+        /// Help for the user.
         cure: String,
     },
     /// A signal has stopped it.
     #[error("stopped; the processes of `{command}` are ended, and their files removed")]
     Stopped {
-        /// What was run.
+        /// The command.
         command: String,
     },
     /// A file cannot be read or written.
@@ -46,7 +46,7 @@ pub enum SlepcError {
     Io {
         /// The file.
         path: PathBuf,
-        /// What could not be done.
+        /// The operation that failed.
         action: &'static str,
         /// Why.
         source: io::Error,
@@ -63,7 +63,7 @@ pub enum SlepcError {
         folder: PathBuf,
         /// The file that the driver leaves last.
         name: String,
-        /// What it has, if that is not plain.
+        /// Its content, if that is not plain.
         what: &'static str,
         /// The last line that it said.
         said: Option<String>,
@@ -93,7 +93,7 @@ pub enum SlepcError {
     Damaged {
         /// The file.
         path: PathBuf,
-        /// What is wrong with it.
+        /// The fault.
         what: String,
     },
 }

@@ -22,13 +22,13 @@ pub(crate) const LOG: &str = "driver.log";
 /// ‖(K + sM)⁻¹Mφ − μφ‖_M / μ of a pair that the driver accepts: that of the search in this program.
 const TOLERANCE: f64 = 1e-10;
 
-/// What a folder has at first.
+/// Files of a new folder.
 const WRITTEN: [&str; 7] = ["problem.json", "K.petsc", "M.petsc", "rigid.petsc", DRIVER_FILE, "job.sh", "README.txt"];
 
 /// Digits of the names of forces.
 const NAME: usize = 16;
 
-/// What `problem.json` has of the matrices.
+/// The part of `problem.json` about the matrices.
 #[derive(Deserialize)]
 struct Digest {
     digest: String,
@@ -37,12 +37,12 @@ struct Digest {
 /// `problem.json`.
 #[derive(Serialize)]
 struct Problem<'a> {
-    /// Of K and M.
+    /// Digest of K and M.
     digest: &'a str,
     unknowns: usize,
-    /// That are asked for.
+    /// Number of modes asked for.
     modes: usize,
-    /// That there are.
+    /// Number of modes that there are.
     available: usize,
     /// Rigid motions.
     rigid: usize,
@@ -61,7 +61,7 @@ pub(crate) fn write_matrices(problem: &HeldProblem<'_>, folder: &Path) -> Result
     Ok(digest)
 }
 
-/// Writes what the driver is asked for: so many modes, of the matrices with this digest. Those that were asked for before are
+/// Writes the question for the driver: a number of modes, of the matrices with this digest. Those that were asked for before are
 /// removed.
 pub(crate) fn write_problem(
     problem: &HeldProblem<'_>,
@@ -121,7 +121,7 @@ pub fn files_of_folder(folder: &Path) -> Vec<PathBuf> {
     files
 }
 
-/// Leaves in a folder all that finds `modes` modes elsewhere: K and M, the driver, a script for Slurm with so many ranks, and what
+/// Leaves in a folder all that finds `modes` modes elsewhere: K and M, the driver, a script for Slurm with `ranks` ranks, and what
 /// to do. `scene` is the scene file. Returns the files.
 ///
 /// # Errors

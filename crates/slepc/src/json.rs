@@ -10,7 +10,7 @@ use crate::error::SlepcError;
 /// Bytes that a file of the driver may have: some numbers for each mode.
 const MOST: u64 = 64 << 20;
 
-/// What a file has.
+/// Content of a file.
 pub(crate) fn json<T: DeserializeOwned>(path: &Path) -> Result<T, SlepcError> {
     let text = read_at_most(path, MOST).map_err(SlepcError::io(path, "read it"))?;
     serde_json::from_slice(&text)

@@ -32,15 +32,15 @@ enum Said {
     Converged { converged: usize, of: usize },
 }
 
-/// What comes from the processes.
+/// A line of output of the processes.
 enum Line {
-    /// Of the driver.
+    /// A message of the driver.
     Said(Said),
-    /// Of mpirun, Python, PETSc.
+    /// A line of mpirun, Python or PETSc.
     Other(String),
 }
 
-/// Runs the driver of a folder on so many ranks.
+/// Runs the driver of a folder on `ranks` ranks.
 pub(crate) fn drive(
     folder: &Path,
     ranks: usize,

@@ -1,4 +1,4 @@
-//! What stops the driver.
+//! Signals that stop the driver.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};

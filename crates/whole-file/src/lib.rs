@@ -29,7 +29,7 @@ pub use temporary::{TemporaryFile, TemporaryFolder, remove_temporaries};
 /// Writes `bytes` to `path`, whole or not at all.
 ///
 /// # Errors
-/// Those of the system. The file that was there before is then still there.
+/// Errors of the system. The file that was there before is then still there.
 pub fn write_whole(path: impl AsRef<Path>, bytes: impl AsRef<[u8]>) -> io::Result<()> {
     let mut file = WholeFile::create(path)?;
     file.write_all(bytes.as_ref())?;
@@ -49,7 +49,7 @@ impl WholeFile {
     /// Begins to write the file at `path`.
     ///
     /// # Errors
-    /// Those of the system, also where the file that is there may not be written.
+    /// Errors of the system, also where the file that is there may not be written.
     pub fn create(path: impl AsRef<Path>) -> io::Result<Self> {
         let path = path.as_ref();
         let (path, permissions) = match OpenOptions::new().write(true).open(path) {
@@ -70,10 +70,10 @@ impl WholeFile {
         Ok(Self { file: BufWriter::new(file), place: Some((temporary, path)) })
     }
 
-    /// Puts the file into its place, once it is safe on the disk.
+    /// Moves the file into its place, once it is safe on the disk.
     ///
     /// # Errors
-    /// Those of the system. The file that was there before is then still there.
+    /// Errors of the system. The file that was there before is then still there.
     pub fn finish(mut self) -> io::Result<()> {
         self.file.flush()?;
         if let Some((temporary, path)) = self.place {

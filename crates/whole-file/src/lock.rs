@@ -20,7 +20,7 @@ impl FileLock {
     /// Locks the file at `path`, which need not be there; `None` where another program has it locked.
     ///
     /// # Errors
-    /// Those of the system.
+    /// Errors of the system.
     pub fn of(path: &Path) -> io::Result<Option<Self>> {
         let mut name = std::ffi::OsString::from(PREFIX);
         name.push(path.file_name().unwrap_or_default());

@@ -13,9 +13,9 @@ pub enum OutputError {
     /// The command reads it.
     #[error("{}: this file is read by the command, as {}: it is never written over\n = give the output another name", path.display(), input.display())]
     IsInput {
-        /// What was to be written.
+        /// The file that was to be written.
         path: PathBuf,
-        /// What is read, as it was named.
+        /// The file that is read, as it was named.
         input: PathBuf,
     },
     /// It is there.
@@ -26,7 +26,7 @@ pub enum OutputError {
     },
 }
 
-/// What a command may write.
+/// The files that a command may write.
 #[derive(Debug, Clone)]
 pub struct Outputs {
     inputs: Vec<PathBuf>,
@@ -34,7 +34,7 @@ pub struct Outputs {
 }
 
 impl Outputs {
-    /// Of a command that reads these files; `overwrite` lets it replace others that are there.
+    /// The outputs of a command that reads these files; `overwrite` lets it replace others that are there.
     pub fn new(inputs: Vec<PathBuf>, overwrite: bool) -> Self {
         Self { inputs, overwrite }
     }

@@ -18,7 +18,7 @@ pub(crate) const PREFIX: &str = ".flexframe-";
 /// A thread that makes a file has so long to come to its end.
 const PATIENCE: Duration = Duration::from_secs(1);
 
-/// What is there now.
+/// Files and folders that are there now.
 static THERE: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
 fn there() -> MutexGuard<'static, Vec<PathBuf>> {
@@ -82,7 +82,7 @@ impl TemporaryFile {
     /// `.flexframe-`, six letters and `suffix`.
     ///
     /// # Errors
-    /// Those of the system.
+    /// Errors of the system.
     pub fn beside(path: &Path, suffix: &str) -> io::Result<(File, Self)> {
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
         let mut builder = Builder::new();
@@ -95,10 +95,10 @@ impl TemporaryFile {
         Ok((file, Self(Some(path))))
     }
 
-    /// Puts the file into a place, where it stays. What was there before is replaced, or else, unless `replace`, in the way.
+    /// Moves the file into a place, where it stays. A file that was there is replaced, or else, unless `replace`, in the way.
     ///
     /// # Errors
-    /// Those of the system; the file is removed then.
+    /// Errors of the system; the file is removed then.
     pub fn put(mut self, place: &Path, replace: bool) -> io::Result<()> {
         let mut there = there();
         let Some(path) = self.0.take() else { return Ok(()) };
@@ -140,7 +140,7 @@ impl TemporaryFolder {
     /// Makes a folder in that of temporary files (`TMPDIR`). Its name is `flexframe-`, six letters.
     ///
     /// # Errors
-    /// Those of the system.
+    /// Errors of the system.
     pub fn new() -> io::Result<Self> {
         Self::inside(&std::env::temp_dir())
     }
@@ -148,7 +148,7 @@ impl TemporaryFolder {
     /// Makes a folder in another one.
     ///
     /// # Errors
-    /// Those of the system.
+    /// Errors of the system.
     pub fn inside(folder: &Path) -> io::Result<Self> {
         // Programs that work in another folder are told of it, too.
         let folder = std::path::absolute(folder)?;

@@ -4,13 +4,13 @@ use std::str::FromStr;
 
 use crate::error::{FilePosition, MeshError};
 
-/// So many bytes of a file are quoted in a message at most; no name of a section is longer.
+/// Most bytes of a file that a message quotes; no name of a section is longer.
 const LONGEST_QUOTE: usize = 40;
 
-/// What some editors put in front of a text in UTF-8.
+/// The mark that some editors put in front of a text in UTF-8.
 const BYTE_ORDER_MARK: &[u8] = "\u{feff}".as_bytes();
 
-/// What the head of a section says that its blocks hold.
+/// The totals that the head of a section gives for its blocks.
 pub(super) struct Total {
     /// "nodes" or "elements".
     what: &'static str,

@@ -1,4 +1,4 @@
-//! What the mesh gets wrong: the recovered stress against that of the elements (Zienkiewicz and Zhu 1987).
+//! Error of the mesh: the recovered stress against that of the elements (Zienkiewicz and Zhu 1987).
 
 use faer::{ColRef, MatRef};
 use nalgebra::Matrix3;

@@ -1,4 +1,4 @@
-//! What a stress is in any axes.
+//! Invariants of a stress.
 
 use nalgebra::{Matrix3, SymmetricEigen};
 

@@ -17,7 +17,7 @@ pub struct StressSites {
     nodes: Vec<u32>,
     /// First site of each node, and the end.
     starts: Vec<usize>,
-    /// Of the ten nodes of each element.
+    /// The sites of the ten nodes of each element.
     of_elements: Vec<[u32; 10]>,
 }
 
@@ -47,7 +47,7 @@ impl StressSites {
         self.nodes.len()
     }
 
-    /// Whether there are none; a mesh always has some.
+    /// True if there are none; a mesh always has some.
     pub fn is_empty(&self) -> bool {
         self.nodes.is_empty()
     }

@@ -1,4 +1,4 @@
-//! What a user of the crate sees, on meshes that gmsh wrote. One program, so that it is linked once.
+//! The public interface, on meshes that gmsh wrote. One program, so that it is linked once.
 
 mod ball;
 mod curved;

@@ -137,7 +137,7 @@ fn a_missing_section_is_named() {
     assert_says(&message, &["there is no $Nodes section"]);
 }
 
-/// Puts a word that is no number at the end of each line in turn: the line is told, or the one where it is noticed.
+/// Inserts a word that is no number at the end of each line in turn: the line is told, or the one where it is noticed.
 #[test]
 fn the_line_of_an_error_is_right() {
     let whole = text("cube.msh");
