@@ -30,7 +30,7 @@ pub(crate) const LARGE: f64 = 0.01;
 pub const DETUNED: f64 = 0.25;
 
 impl Backbone {
-    /// Of a mode with the circular frequency ω and the coefficients m, c₃ and c₄.
+    /// The backbone of a mode with the circular frequency ω and the coefficients m, c₃ and c₄.
     pub fn new(omega: f64, inertia: f64, cubic: f64, quartic: f64) -> Self {
         let square = omega * omega;
         Self { inertia, cubic: cubic / square, quartic: quartic / square }

@@ -1,4 +1,4 @@
-//! What is known before a run.
+//! Data of a run that are known before it.
 
 use dynamics::{Drive, History, Initial, Manifold, SharedLoad};
 use modal::ReducedBody;
@@ -15,9 +15,9 @@ pub struct Case<'a> {
     pub damping_ratios: &'a [f64],
     /// The loads.
     pub loads: &'a [SharedLoad],
-    /// Whether each load is gravity. Empty where none is, or where the share of gravity is of no interest.
+    /// True for each load that is gravity. Empty where none is, or where the share of gravity is of no interest.
     pub is_gravity: &'a [bool],
-    /// What drives the held part.
+    /// The drive of the held part.
     pub drive: Option<&'a Drive>,
     /// How it begins (nf modal coordinates).
     pub initial: &'a Initial,
@@ -27,7 +27,7 @@ pub struct Case<'a> {
     pub length: f64,
     /// Largest displacement of a node in each mode (nf).
     pub peaks: &'a [f64],
-    /// Of each load. Empty where not known.
+    /// Compliance for each load. Empty where not known.
     pub static_compliances: &'a [StaticCompliance],
     /// `√(uᵀMu − Σ(Φ_kᵀMu)²)` of the static response u to the centrifugal field of each pair of spins, in the order of
     /// [`ReducedBody::PAIRS`]: what the modes leave out of it (6). Empty where not known.
@@ -43,7 +43,7 @@ pub struct Case<'a> {
 pub struct StaticCompliance {
     /// In the first attitude.
     pub at_start: f64,
-    /// Of other forces or moments that a dead load may become as the body turns, each in body axes with its work.
+    /// Other forces or moments that a dead load may become as the body turns, each in body axes with its work.
     pub turned: Vec<(Vector3<f64>, f64)>,
 }
 
@@ -66,9 +66,9 @@ pub enum AdviceError {
     Value {
         /// Which number.
         what: &'static str,
-        /// What it is.
+        /// The number found.
         found: f64,
-        /// What it should be.
+        /// The range expected.
         expected: &'static str,
     },
     /// An eigenvalue problem without an answer.

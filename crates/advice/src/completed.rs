@@ -5,14 +5,14 @@ use dynamics::Effect;
 use crate::row::Row;
 use crate::table::Advice;
 
-/// What is found out about the body that a run is made with.
+/// Findings about the body that a run is made with.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Findings {
     /// [`Advice::deflection`] of that body: static shapes carry some of it, too.
     pub deflection: f64,
     /// The row of [`crate::stress_row`], where loads or a drive stress the body.
     pub stress: Option<Row>,
-    /// Whether the body has no static shapes for what the spin stretches.
+    /// True if the body has no static shapes for the stretch by the spin.
     pub lacks_stretch: bool,
 }
 

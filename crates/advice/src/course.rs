@@ -12,7 +12,7 @@ pub(crate) struct Course {
     /// max |∫₀ᵗ h|
     pub net_integral: f64,
     pub largest: f64,
-    /// Whether the straight lines follow it.
+    /// True if the straight lines follow it.
     resolved: bool,
 }
 
@@ -32,7 +32,7 @@ const MOST_IN_ALL: usize = 1 << 22;
 const CLOSE: f64 = 1e-3;
 
 impl Course {
-    /// The course of one history `among` so many that cost more than closed forms do.
+    /// The course of one history, `among` others that cost more than closed forms do.
     pub(crate) fn new(history: &History, end: f64, among: usize) -> Self {
         let mut stops: Vec<f64> = history.corners().into_iter().filter(|t| *t > 0.0 && *t < end).collect();
         stops.push(end);

@@ -1,4 +1,4 @@
-//! What a subject amounts to, and whether it is on.
+//! Estimates: the influence of a subject, and the choice of it.
 
 use crate::row::Row;
 

@@ -1,4 +1,4 @@
-//! What acts on the rigid motions and on each mode, in modal coordinates: with mass-normalised shapes, forces and motions
+//! Excitation of the rigid motions and of each mode, in modal coordinates: with mass-normalised shapes, forces and motions
 //! of all of them are on one scale.
 
 use dynamics::{DrivenMotion, History, LoadFrame, Pattern, SharedLoad};
@@ -19,7 +19,7 @@ pub(crate) struct Source {
     /// Displacement of each mode where the load acts (nf).
     shapes: Vec<Vector3<f64>>,
     pub course: Course,
-    /// Whether its direction turns in the body as the body turns, and the angle that may turn it.
+    /// True if its direction turns in the body as the body turns, by `turn` at the most.
     pub dead: bool,
     turn: f64,
     pub gravity: bool,
@@ -41,7 +41,7 @@ pub(crate) struct Spin {
     pub directions: Matrix3<f64>,
     /// Largest angle turned.
     pub turn: f64,
-    /// Whether ω is steady.
+    /// True if ω is steady.
     pub steady: bool,
 }
 
@@ -50,7 +50,8 @@ pub(crate) struct Spin {
 const ROUNDING: f64 = 1e-10;
 
 impl Source {
-    /// Of a load on the body of `case` that may turn by `turn` rad. A load that is no pattern of forces times a history
+    /// The source of a load on the body of `case` that may turn by `turn` rad. A load that is no pattern of forces times a
+    /// history
     /// counts for nothing: what it will do is not known before the run.
     fn new(load: &SharedLoad, course: &Course, turn: f64, gravity: bool, case: &Case) -> Self {
         let nothing = || {
@@ -86,7 +87,7 @@ impl Source {
         }
     }
 
-    /// Of all loads of a case, whose courses are `courses`, on a body that may turn by `turn` rad.
+    /// The sources of all loads of a case, whose courses are `courses`, on a body that may turn by `turn` rad.
     fn all(case: &Case, courses: &[Course], turn: f64) -> Vec<Self> {
         let of = |(i, (load, course))| {
             let gravity = case.is_gravity.get(i).is_some_and(|is_gravity| *is_gravity);
@@ -96,7 +97,7 @@ impl Source {
     }
 
     /// Largest part of a static response that the first `keep` modes, of frequencies `omega`, leave out where the load acts.
-    /// Of the answers in other directions than the first it counts as far as the body may turn.
+    /// Responses in other directions than the first count as far as the body may turn.
     pub(crate) fn left_out(&self, whole: &StaticCompliance, omega: &[f64], keep: usize) -> f64 {
         let part = |whole: f64, modal: &dyn Fn(usize) -> f64| -> f64 {
             let carried: f64 = (0..keep).map(|k| (modal(k) / omega[k]).powi(2)).sum();
@@ -214,7 +215,7 @@ impl Spin {
     }
 }
 
-/// What a small deformation may add to the spin of a body that tumbles freely.
+/// Largest factor by which a small deformation raises the spin of a body that tumbles freely.
 const DEFORMED: f64 = 1.05;
 
 /// Largest |ω| of a free rigid body that begins at `omega`: its squares x_i along the principal axes keep Σ J_i x_i and

@@ -29,12 +29,13 @@ pub struct FourthOrder<'a> {
 }
 
 impl<'a> FourthOrder<'a> {
-    /// Of a body with these modes.
+    /// The estimate for a body with these modes.
     pub fn new(manifold: &'a Manifold, circular_frequencies: &'a [f64]) -> Self {
         Self { manifold, circular_frequencies, xi: vec![0.0; manifold.body().flexible()] }
     }
 
-    /// What is left out of the forces on the large modes, relative, about; infinite where the strain energy is negative,
+    /// Relative error of the forces on the large modes by the orders left out, about; infinite where the strain energy is
+    /// negative,
     /// which no body has. `q` are all modal coordinates.
     pub fn error(&mut self, q: &[f64]) -> f64 {
         let Self { manifold, circular_frequencies: omega, xi } = self;

@@ -33,7 +33,7 @@ pub enum Refusal {
         spin: f64,
         /// The speed that it must stay below.
         critical: f64,
-        /// Whether the stiffening was taken into account.
+        /// True if the stiffening was taken into account.
         stiffening: bool,
     },
     /// The centrifugal force softens the body, and nothing stiffens it.
@@ -99,7 +99,7 @@ pub enum Refusal {
     BeyondFourthOrder {
         /// Their deflection over the length.
         deflection: f64,
-        /// What is left out of the forces on them, relative, about; infinite where the strain energy is negative.
+        /// Relative error of the forces on them by the orders left out, about; infinite where the strain energy is negative.
         error: f64,
     },
     /// A mode swings so far that its frequency is not that of linear strain.
@@ -117,7 +117,7 @@ pub enum Refusal {
     },
 }
 
-/// What a motion of fourth order leaves out, in words.
+/// The part that a motion of fourth order leaves out, in words.
 pub(crate) struct LeftOut(pub f64);
 
 impl fmt::Display for LeftOut {

@@ -67,7 +67,7 @@ pub enum Broken {
         time: f64,
         /// The deflection of the large modes over the length, then.
         deflection: f64,
-        /// What is left out of the forces on them, relative, about.
+        /// Relative error of the forces on them by the orders left out, about.
         error: f64,
     },
     /// The modes do not carry what the spin does to the body.
@@ -94,7 +94,7 @@ pub enum Broken {
     },
 }
 
-/// What linear strain makes of a mode that swings far, by its own [`Backbone`](crate::Backbone) without spin.
+/// Detuning of a mode that swings far: the error of linear strain, by its own [`Backbone`](crate::Backbone) without spin.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Detuning {
     /// Number of the mode, the first flexible one is 1.
@@ -162,7 +162,7 @@ impl Passed {
     }
 }
 
-/// What some modes have done so far, side by side: the number of the mode over [`SIDE_BY_SIDE`] says which.
+/// Largest swings of some modes so far, side by side: the number of the mode over [`SIDE_BY_SIDE`] says which.
 #[derive(Debug, Clone, Copy, Default)]
 struct Swings {
     /// 1/ω, and ω.
@@ -216,11 +216,11 @@ struct Look<'s> {
     v: &'s [f64],
 }
 
-/// What a look has found.
+/// Findings of a look.
 struct LookedAt {
     /// Deflection, that of large modes, and the square of the modes' reach, summed side by side.
     sums: [[f64; SIDE_BY_SIDE]; 3],
-    /// Whether a mode has gone too far.
+    /// True if a mode has gone too far.
     beyond: bool,
 }
 
@@ -284,7 +284,7 @@ pub struct Review<'a> {
     lowest: f64,
     /// Largest √(qᵀq).
     deformation: f64,
-    /// Of large modes, with the largest error, when it was, and their deflection over the length then.
+    /// Order of large modes, with the largest error, its time, and their deflection over the length then.
     order: Option<(FourthOrder<'a>, [f64; 3])>,
     /// Largest deflection over the length by modes that are not large, and when it was that, but for a hundredth.
     bent: f64,
@@ -295,7 +295,7 @@ pub struct Review<'a> {
     stop: Option<(f64, Refusal)>,
 }
 
-/// What rounding and the change of inertia by a small deformation may add to a bound.
+/// Factor on a bound for rounding and for the change of inertia by a small deformation.
 const MARGIN: f64 = 1.01;
 /// Deflection over length, or angle turned, that is rounding.
 const ROUNDING: f64 = 1e-10;
@@ -306,7 +306,7 @@ const SHIFTED: f64 = 0.01;
 const OUT_OF_PHASE: f64 = 0.02;
 
 impl<'a> Review<'a> {
-    /// Of a run with these effects that `advice` was given on. The case has the modes that are simulated.
+    /// The review of a run with these effects that `advice` was given on. The case has the modes that are simulated.
     pub fn new(case: Case<'a>, effects: EffectMap<bool>, advice: &Advice) -> Self {
         let most = |k: usize| match case.backbones.get(k) {
             Some(Some(backbone)) => backbone.largest_amplitude(),
@@ -458,7 +458,7 @@ impl<'a> Review<'a> {
         self.order.as_ref().map(|(_, [error, ..])| *error)
     }
 
-    /// What has broken so far: each assumption once, with the first time and the worst.
+    /// Assumptions that have broken so far: each once, with the first time and the worst value.
     pub fn broken(&self) -> Vec<Broken> {
         let (time, limit_of_bending) = (self.bent_at.time, self.stop);
         let modes = self.detunings();
@@ -512,12 +512,12 @@ impl<'a> Review<'a> {
         case.backbones.iter().enumerate().filter_map(of).collect()
     }
 
-    /// Whether an effect of turning and bending was left out, for which the estimates had to hold.
+    /// True if an effect of turning and bending was left out, for which the estimates had to hold.
     fn something_is_off(&self) -> bool {
         self.turns() && !OF_TURNING.into_iter().all(|effect| self.effects[effect])
     }
 
-    /// Whether the body can turn: if not, nothing of turning is left out, whatever is off.
+    /// True if the body can turn: if not, nothing of turning is left out, whatever is off.
     fn turns(&self) -> bool {
         let is_turned = |drive: &dynamics::Drive| matches!(drive.motion, dynamics::DrivenMotion::Turn { .. });
         self.case.drive.is_some_and(is_turned)
@@ -530,7 +530,7 @@ impl<'a> Review<'a> {
         off.map(Effect::name).collect::<Vec<_>>().join(" = true, ")
     }
 
-    /// Whether a limit has broken, or was looked up for about this spin: it costs an eigenvalue problem.
+    /// True if a limit has broken, or was looked up for about this spin: it costs an eigenvalue problem.
     fn is_known(&self, omega_body: &Vector3<f64>, speed: f64) -> bool {
         let (fastest, axis) = &self.looked_up;
         self.limit.is_some() || speed < 1.02 * fastest && omega_body.dot(axis).abs() > 0.999 * speed

@@ -1,10 +1,10 @@
-//! What a row of the table says.
+//! Rows of the table.
 
 use dynamics::Effect;
 
 use crate::strain_error::StrainError;
 
-/// What a row of the table is about.
+/// The subject of a row of the table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Subject {
     /// An effect.
@@ -49,14 +49,14 @@ impl Subject {
     }
 }
 
-/// What a subject means for a run.
+/// The influence of a subject on a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Row {
     /// The number of [`Subject::formula`].
     pub value: f64,
     /// Relative influence on the answer, bounded above; at most 1.
     pub influence: f64,
-    /// Whether that reaches the tolerance ([`Subject::Deflection`]: whether the deflection reaches 10 % of the length).
+    /// True if that reaches the tolerance ([`Subject::Deflection`]: if the deflection reaches 10 % of the length).
     pub on: bool,
     /// One sentence.
     pub why: String,
@@ -71,11 +71,11 @@ pub struct Worth {
     pub displacement: f64,
     /// Its share in the deformation, bounded above; at most 1.
     pub share: f64,
-    /// Whether that reaches the tolerance.
+    /// True if that reaches the tolerance.
     pub worth_keeping: bool,
     /// Influence on the answer of what linear strain may get wrong of it at most, as far as that is known without its
     /// [`Backbone`](crate::Backbone); at most 1.
     pub strain_bound: f64,
-    /// What linear strain gets wrong of it, where its backbone is known.
+    /// Error of linear strain, where its backbone is known.
     pub strain: Option<StrainError>,
 }

@@ -1,4 +1,4 @@
-//! What the stress of loads that stay as they are makes of the frequencies.
+//! Change of frequencies by the stress of loads that stay as they are.
 
 use faer::MatRef;
 

@@ -1,4 +1,4 @@
-//! What the length of the steps gets wrong: the run itself, or its beginning, in these steps against far shorter ones.
+//! Error of the length of the steps: the run itself, or its beginning, in these steps against far shorter ones.
 //!
 //! Turning couples the modes, and this coupling is what a step gets wrong that follows each mode by itself exactly. No
 //! formula in the step, the spin and the frequencies tells how wrong, and the balance of energy does not either: a mode
@@ -9,9 +9,9 @@ use dynamics::{Observation, Reached, Rows, Setup, SetupError, Simulation, StepCo
 use crate::relative::relative;
 use crate::row::Row;
 
-/// What the comparison may cost, in products of the modal matrices: some tenths of a second.
+/// Most products of the modal matrices that the comparison may cost: some tenths of a second.
 const PRODUCTS: f64 = 6e8;
-/// What an evaluation of the rates costs beside these, in as many products.
+/// Cost of an evaluation of the rates beside these, in as many products.
 const BESIDE: f64 = 300.0;
 /// Largest step of the comparison times ω_max: where both sides are blind to a mode, they agree on a wrong motion.
 const RESOLVED: f64 = 1.5;
@@ -85,7 +85,7 @@ impl StepEstimate {
         swinging.max_by(|a, b| a.1.error.total_cmp(&b.1.error)).map(|(k, mode)| (k + 1, mode.error))
     }
 
-    /// What is estimated, as a sentence; modes whose share is below `share` are not named.
+    /// The estimate as a sentence; modes whose share is below `share` are not named.
     pub fn in_words(&self, share: f64) -> String {
         let Self { step, attitude, position, failure, seen, .. } = self;
         if let Some(failure) = failure {
@@ -196,7 +196,7 @@ impl Comparison {
         }
     }
 
-    /// Follows both until the end, for so many `samples`, or for so many evaluations of the rates.
+    /// Follows both until the end, for a number of `samples`, or for a number of evaluations of the rates.
     fn follow(
         &mut self,
         mut a: Simulation,

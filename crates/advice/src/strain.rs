@@ -1,4 +1,4 @@
-//! What linear strain gets wrong of each mode, at the amplitude that is expected of it.
+//! Error of linear strain in each mode, at the amplitude that is expected of it.
 //!
 //! With the mode's [`Backbone`] that is known; without it, it is that of a slender bar or arch: a free bar bent by u at its
 //! ends has its frequency lower by about 20 (u/L)², and the force that holds an L in another shape differs by about u/L.
@@ -24,9 +24,9 @@ const BELIEVED: f64 = 0.3;
 /// The modes that `large_deflection = "auto"` makes large, numbered from 0, ascending.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct LargeModes {
-    /// Those that it takes.
+    /// Modes that it takes.
     pub taken: Vec<usize>,
-    /// Those that it would take if there could be more than [`MOST_LARGE`].
+    /// Modes that it would take if there could be more than [`MOST_LARGE`].
     pub left_out: Vec<usize>,
 }
 
@@ -45,7 +45,7 @@ pub(crate) fn screen(case: &Case, response: &Response, k: usize, amplitude: f64)
     relative((shift * (omega[k] * response.memory[k]).max(1.0)).max(OF_ARCH * deflection), 1.0)
 }
 
-/// What linear strain gets wrong of mode `k` by its backbone.
+/// Error of linear strain in mode `k` by its backbone.
 pub(crate) fn by_backbone(
     case: &Case,
     response: &Response,

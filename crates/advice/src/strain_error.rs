@@ -1,6 +1,6 @@
-//! What linear strain gets wrong of a mode: numbers.
+//! Error of linear strain in a mode: numbers.
 
-/// What linear strain gets wrong of a mode.
+/// Error of linear strain in a mode.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StrainError {
     /// The expected amplitude: largest displacement of a node, over the length of the body.

@@ -1,4 +1,4 @@
-//! What the stress of loads and of a drive makes of the frequencies.
+//! Change of frequencies by the stress of loads and of a drive.
 
 use faer::MatRef;
 
@@ -9,15 +9,15 @@ use crate::row::Row;
 /// A field of forces that stresses the body.
 #[derive(Debug, Clone, Copy)]
 pub struct StressField<'a> {
-    /// What it is, for the reader: "gravity along (0, 0, -1)".
+    /// Name for the reader: "gravity along (0, 0, -1)".
     pub name: &'a str,
-    /// What it follows.
+    /// The function of time that it follows.
     pub source: StressSource,
     /// Its stiffness in the modes (nf × nf) where the history of the load, or the acceleration of the drive, is 1.
     pub stiffness: MatRef<'a, f64>,
 }
 
-/// What a field of forces follows over time.
+/// The function of time that a field of forces follows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StressSource {
     /// The history of a load of the case, numbered from 0.
@@ -26,7 +26,7 @@ pub enum StressSource {
     Drive,
 }
 
-/// What the stress of a field does.
+/// Influence of the stress of a field.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StressInfluence {
     /// Largest |K_kl|/(ω_k ω_l) over the run.
@@ -36,7 +36,7 @@ pub struct StressInfluence {
     pub influence: f64,
 }
 
-/// What each field does without which the run would be made.
+/// Influence of each field, without which the run would be made.
 ///
 /// # Errors
 /// [`AdviceError`]: lists of the wrong length and numbers out of range.

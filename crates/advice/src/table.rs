@@ -15,7 +15,7 @@ use crate::row::{Row, Subject, Worth};
 use crate::strain::{self, LargeModes};
 use crate::{rigid, tensor};
 
-/// What to expect of a run.
+/// Advice on a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Advice {
     /// The row of each effect.
@@ -24,11 +24,11 @@ pub struct Advice {
     pub static_correction: Row,
     /// The row of [`Subject::Deflection`].
     pub large_deflection: Row,
-    /// What each mode is worth (nf).
+    /// Worth of each mode (nf).
     pub modes: Vec<Worth>,
     /// How many of the modes to keep: those after them have shares that sum to less than the tolerance.
     pub keep: usize,
-    /// Whether the last mode there was to choose from is still worth keeping: then more should be computed.
+    /// True if the last mode there was to choose from is still worth keeping: then more should be computed.
     pub more_modes: bool,
     /// Largest |ω| that the estimates allow for.
     pub spin: f64,
@@ -308,7 +308,7 @@ pub(crate) fn held(case: &Case, squares: &Matrix3<f64>) -> (f64, f64) {
     (if left > 0.0 { carried / carried.hypot(left) } else { 1.0 }, left)
 }
 
-/// What the modes leave out of the static response to the spin, at most; see [`held`].
+/// The part of the static response to the spin that the modes leave out, at most; see [`held`].
 pub(crate) fn left_out(case: &Case, squares: &Matrix3<f64>) -> f64 {
     times_of_pairs(squares).zip(case.centrifugal_remainders).map(|(times, r)| times.abs() * r).sum()
 }

@@ -13,7 +13,7 @@ use crate::mesh::Mesh;
 /// Elements in a group.
 pub(crate) const LANES: usize = 4;
 
-/// Number of parts that the groups are cut into, whatever the number of threads, and what is summed over the elements is summed over
+/// Number of parts that the groups are cut into, for any number of threads: sums over the elements are taken over
 /// the parts in their order.
 pub(crate) const PARTS: usize = 64;
 

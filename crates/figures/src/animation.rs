@@ -38,7 +38,7 @@ pub struct Frame {
     pub points: Vec<[f64; 3]>,
     /// A value per point, shown as colour.
     pub values: Vec<f64>,
-    /// What is written in the frame, for instance "t = 0.120 s".
+    /// Text in the frame, for instance "t = 0.120 s".
     pub caption: String,
 }
 
@@ -47,7 +47,7 @@ pub struct Frame {
 pub struct Animation<'a> {
     /// Title in every frame; may be empty.
     pub title: String,
-    /// What the colours mean, with its unit.
+    /// Name of the coloured quantity, with its unit.
     pub value_label: String,
     /// The surface, by indices of points.
     pub triangles: &'a [[u32; 3]],
@@ -59,7 +59,7 @@ pub struct Animation<'a> {
     pub frame_milliseconds: u32,
     /// From where the body is seen.
     pub view: View,
-    /// Whether a grid is drawn in a plane of constant z below the body.
+    /// True if a grid is drawn in a plane of constant z below the body.
     pub ground: bool,
     /// Index of a point whose path so far is drawn.
     pub traced_point: Option<usize>,
@@ -117,7 +117,7 @@ impl Animation<'_> {
         Ok(())
     }
 
-    /// What stays the same in all frames.
+    /// The parts that stay the same in all frames.
     fn stage(&self) -> Stage {
         let ground = if self.ground { self.ground_lines() } else { Vec::new() };
         let points = self.frames.iter().flat_map(|frame| &frame.points);

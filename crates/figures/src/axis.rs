@@ -32,7 +32,7 @@ pub(crate) struct Axis {
     ticks: Vec<f64>,
     /// Ticks without a label.
     minor: Vec<f64>,
-    /// What all labels are multiplied by and counted from, "×10⁻³" or "+ 0.00935".
+    /// Factor and offset of all labels, "×10⁻³" or "+ 0.00935".
     pub(crate) note: String,
 }
 
@@ -133,7 +133,7 @@ impl Ranged for Axis {
 }
 
 impl ValueFormatter<f64> for Axis {
-    /// What a tick at a shown value says.
+    /// Label of a tick at a shown value.
     fn format_ext(&self, shown: &f64) -> String {
         if self.is_log {
             return format!("10{}", superscript(shown.round() as i32));

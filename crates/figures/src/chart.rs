@@ -27,10 +27,10 @@ pub(crate) const Y_MARGIN: f64 = 0.05;
 /// mode shapes.
 const NOISE: f64 = 1e-7;
 
-/// What the values of a chart are small beside, where they would be zero but for the numerics.
+/// The quantity beside which the values of a chart are small, where they would be zero but for the numerics.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reference {
-    /// What it is: "the peak of α₂".
+    /// Its name: "the peak of α₂".
     pub name: String,
     /// Its size, in the unit of the y axis. If that is zero, it is as if there were none.
     pub value: f64,
@@ -43,9 +43,9 @@ pub struct Reference {
 pub struct LineChart {
     /// Title; may be empty.
     pub title: String,
-    /// What x is, with its unit: "Time (s)".
+    /// Name of x, with its unit: "Time (s)".
     pub x_label: String,
-    /// What y is, with its unit: "ω₂ (rad/s)".
+    /// Name of y, with its unit: "ω₂ (rad/s)".
     pub y_label: String,
     /// Scale of the x axis.
     pub x_scale: Scale,
@@ -53,7 +53,7 @@ pub struct LineChart {
     pub y_scale: Scale,
     /// The lines.
     pub series: Vec<Series>,
-    /// What the values are small beside. A line below the title says how small; below 1e-7 of it they are called
+    /// The quantity beside which the values are small. A line below the title says how small; below 1e-7 of it they are called
     /// numerical noise, and a linear y axis reaches as far as the reference does.
     pub reference: Option<Reference>,
 }
@@ -178,7 +178,7 @@ impl Figure for LineChart {
     }
 }
 
-/// What cannot be drawn over axes of these scales, x and y.
+/// Refuses series that cannot be drawn over axes of these scales, x and y.
 pub(crate) fn check_series(title: &str, series: &[Series], scales: [Scale; 2]) -> Result<(), FigureError> {
     if series.iter().all(|series| series.points.is_empty()) {
         return Err(FigureError::Empty { figure: title.to_owned(), what: "point" });
@@ -207,7 +207,7 @@ pub(crate) struct Noise<'a> {
 }
 
 impl<'a> Noise<'a> {
-    /// Of all points; `None` without a reference.
+    /// Noise of all points; `None` without a reference.
     pub(crate) fn of(reference: Option<&'a Reference>, series: &[Series]) -> Option<Self> {
         let largest = series.iter().flat_map(|series| &series.points).map(|point| point.1.abs()).fold(0.0, f64::max);
         Some(Self { reference: reference.filter(|reference| reference.value > 0.0)?, largest })
@@ -217,7 +217,7 @@ impl<'a> Noise<'a> {
         self.largest <= NOISE * self.reference.value
     }
 
-    /// What the y axis has to hold besides the points, so that noise is not enlarged to fill it.
+    /// Values that the y axis has to hold besides the points, so that noise is not enlarged to fill it.
     pub(crate) fn values(&self) -> impl Iterator<Item = f64> {
         let value = self.reference.value;
         [-value, value].into_iter().filter(|_| self.is_noise())

@@ -23,15 +23,15 @@ const HEAD: u32 = 90;
 pub struct ChartGrid {
     /// Title; may be empty.
     pub title: String,
-    /// What x is, with its unit: "Time (s)".
+    /// Name of x, with its unit: "Time (s)".
     pub x_label: String,
-    /// What y is, with its unit.
+    /// Name of y, with its unit.
     pub y_label: String,
     /// The lines, row by row; their labels are the titles of the panels.
     pub series: Vec<Series>,
     /// Panels in a row.
     pub columns: usize,
-    /// What the values are small beside; see [`LineChart::reference`](crate::LineChart::reference).
+    /// The quantity beside which the values are small; see [`LineChart::reference`](crate::LineChart::reference).
     pub reference: Option<Reference>,
 }
 

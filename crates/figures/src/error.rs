@@ -1,4 +1,4 @@
-//! What can go wrong with a figure.
+//! Errors of a figure.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -28,7 +28,7 @@ pub enum FigureError {
     Empty {
         /// Title of the figure.
         figure: String,
-        /// What is missing.
+        /// The missing part.
         what: &'static str,
     },
     /// A NaN or an infinity in the data.
@@ -73,7 +73,7 @@ pub enum FigureError {
     NoSuchPoint {
         /// Title of the figure.
         figure: String,
-        /// What names it.
+        /// The list that names it.
         what: &'static str,
         /// The index, from 0.
         index: usize,
@@ -97,7 +97,7 @@ impl FigureError {
     }
 }
 
-/// What plotters cannot draw.
+/// An error of plotters.
 impl<E: std::error::Error + Send + Sync> From<DrawingAreaErrorKind<E>> for FigureError {
     fn from(error: DrawingAreaErrorKind<E>) -> Self {
         Self::Draw { reason: error.to_string() }

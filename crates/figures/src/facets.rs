@@ -1,4 +1,4 @@
-//! What is seen of a surface as areas and lines, for documents that hold vectors.
+//! Visible areas and lines of a surface, for documents that hold vectors.
 
 use nalgebra::Vector2;
 use plotters::prelude::*;
@@ -13,7 +13,7 @@ use crate::view::Seen;
 pub(crate) const MOST: usize = 20_000;
 /// In pixels: how far an area reaches below the next one, so that no seam is seen between them.
 const OVERLAP: f64 = 0.4;
-/// A corner moves no further than so many times that.
+/// A corner moves no further than this times that.
 const SHARPEST: f64 = 4.0;
 /// Areas are painted from the farthest to the nearest. A surface where this shows more than such a part of it wrongly, as
 /// where long areas pass through each other, is no set of areas.
@@ -26,7 +26,7 @@ pub(crate) struct Facets {
 }
 
 impl Facets {
-    /// What is seen of a surface that has been drawn on the canvas; `None` where painting would show it wrongly.
+    /// Visible facets of a surface that has been drawn on the canvas; `None` where painting would show it wrongly.
     pub(crate) fn of(
         canvas: &Canvas,
         triangles: &[[u32; 3]],
@@ -55,7 +55,7 @@ impl Facets {
         Some(Self { areas, lines: Vec::new() })
     }
 
-    /// Adds the parts of a line, so many units wide, that no surface hides.
+    /// Adds the parts of a line, with its width in units, that no surface hides.
     pub(crate) fn line(&mut self, canvas: &Canvas, from: &Seen, to: &Seen, width: f64, colour: RGBColor) {
         let style = colour.stroke_width(width.round().max(1.0) as u32);
         self.lines.extend(canvas.unhidden(from, to, width).into_iter().map(|ends| (ends.map(|p| rounded(&p)), style)));

@@ -12,7 +12,7 @@ use crate::view::View;
 // Lengths in pixels.
 const BAR: [f64; 2] = [240.0, 10.0];
 const ARM: f64 = 13.0;
-/// Of a letter from the end of its arm.
+/// Distance of a letter from the end of its arm.
 const LETTER: f64 = 7.0;
 /// Height of the key: the bar with its labels, or the axes.
 pub(crate) const HEIGHT: f64 = BAR[1] + 2.6 * LABEL_EM + 8.0;

@@ -1,4 +1,4 @@
-//! What is drawn of a line: the parts within the axes, and no more points than can be seen.
+//! The path of a line: the parts within the axes, and no more points than can be seen.
 
 /// A point in shown values of both axes.
 pub(crate) type Point = (f64, f64);
@@ -37,7 +37,7 @@ fn cut(line: &[Point], inside: &dyn Fn(&Point) -> f64) -> Vec<Vec<Point>> {
     parts
 }
 
-/// What can be seen of a long line that runs to the right, if it is `column` wide: each column keeps its first, lowest,
+/// The visible points of a long line that runs to the right, if it is `column` wide: each column keeps its first, lowest,
 /// highest and last point, so that peaks survive. Other lines stay as they are.
 pub(crate) fn thinned(line: Vec<Point>, column: f64) -> Vec<Point> {
     if line.len() <= MANY_POINTS || !line.is_sorted_by(|a, b| a.0 <= b.0) {

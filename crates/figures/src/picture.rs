@@ -23,7 +23,7 @@ pub(crate) const FINE: u32 = 4;
 /// A picture or a part of one, in units.
 pub(crate) type Area<DB> = DrawingArea<DB, Shift>;
 
-/// What can be drawn.
+/// A figure that can be drawn.
 pub(crate) trait Figure {
     /// Width and height in pixels.
     fn size(&self) -> [u32; 2];
@@ -32,19 +32,19 @@ pub(crate) trait Figure {
     fn draw<DB: DrawingBackend>(&self, area: &Area<DB>, unit: Unit) -> Result<(), FigureError>;
 }
 
-/// What turns pixels into the units that plotters counts in.
+/// Conversion of pixels into the units that plotters counts in.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Unit {
     per_pixel: u32,
-    /// Whether lines and areas stay what they are, as in a document, and do not become dots.
+    /// True if lines and areas stay lines and areas, as in a document, and do not become dots.
     pub(crate) is_vector: bool,
 }
 
 impl Unit {
-    /// Of an SVG or a PDF.
+    /// Unit of an SVG or a PDF.
     pub(crate) const DOCUMENT: Self = Self { per_pixel: FINE, is_vector: true };
 
-    /// Of a bitmap with so many units per pixel.
+    /// Unit of a bitmap with `per_pixel` units per pixel.
     pub(crate) fn of_bitmap(per_pixel: u32) -> Self {
         Self { per_pixel, is_vector: false }
     }

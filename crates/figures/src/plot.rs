@@ -30,9 +30,9 @@ const COLUMNS: f64 = 1440.0;
 pub(crate) struct Plot<'a> {
     pub(crate) x: Axis,
     pub(crate) y: Axis,
-    /// What is written above the middle; may be empty.
+    /// Title above the middle; may be empty.
     pub(crate) title: &'a str,
-    /// What is written at the two axes; may be empty.
+    /// Labels of the two axes; may be empty.
     pub(crate) x_label: &'a str,
     pub(crate) y_label: &'a str,
     pub(crate) series: &'a [Series],
@@ -159,7 +159,7 @@ pub(crate) fn text_width<DB: DrawingBackend>(area: &Area<DB>, text: &str, unit: 
     Ok(area.estimate_text_size(text, &unit.text(TICK_EM, HPos::Left, VPos::Center))?.0 as i32)
 }
 
-/// Whether a shown value lies on an axis, up to rounding.
+/// True if a shown value lies on an axis, up to rounding.
 fn is_within(value: f64, (low, high): (f64, f64)) -> bool {
     let rounding = 1e-9 * (high - low);
     (low - rounding..=high + rounding).contains(&value)

@@ -223,7 +223,7 @@ fn each_dot(corners: &Corners, [width, height]: [usize; 2], mut call: impl FnMut
     }
 }
 
-/// What is wrong with a surface before it is drawn.
+/// Refuses a surface whose indices do not fit, before it is drawn.
 pub(crate) fn check_indices<const N: usize>(
     figure: &str,
     what: &'static str,

@@ -53,7 +53,7 @@ pub struct Series {
 }
 
 impl Series {
-    /// Whether it is one of the lines that show data.
+    /// True if it is one of the lines that show data.
     pub(crate) fn is_line(&self) -> bool {
         matches!(self.stroke, Stroke::Solid | Stroke::Dashed)
     }
@@ -67,7 +67,7 @@ pub(crate) struct Pen {
 }
 
 impl Pen {
-    /// Of the series with this index.
+    /// Style of the series with this index.
     pub(crate) fn new(stroke: Stroke, i: usize, unit: Unit) -> Self {
         let (colour, width) = match stroke {
             Stroke::Solid => (COLOURS[i % COLOURS.len()], SOLID_WIDTH),

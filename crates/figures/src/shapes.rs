@@ -25,7 +25,7 @@ const UNDEFORMED: RGBColor = RGBColor(150, 150, 150);
 /// One body of a [`ShapeGrid`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Panel {
-    /// What it shows, for instance "Mode 1: 24.53 Hz".
+    /// Title, for instance "Mode 1: 24.53 Hz".
     pub title: String,
     /// Places of the points in the deformed body.
     pub points: Vec<[f64; 3]>,
@@ -38,7 +38,7 @@ pub struct Panel {
 pub struct ShapeGrid<'a> {
     /// Title of the figure; may be empty.
     pub title: String,
-    /// What the colours mean, with its unit.
+    /// Name of the coloured quantity, with its unit.
     pub value_label: String,
     /// The surface, by indices of points; see [`facets()`](crate::facets()).
     pub triangles: &'a [[u32; 3]],
@@ -89,7 +89,7 @@ impl ShapeGrid<'_> {
         self.panels.len().div_ceil(self.columns)
     }
 
-    /// What is seen of each panel with the undeformed body.
+    /// Visible window of each panel with the undeformed body.
     fn windows(&self) -> Vec<Window> {
         let around =
             |panel: &Panel| Window::around(panel.points.iter().chain(self.undeformed).map(|p| self.view.see(p)));

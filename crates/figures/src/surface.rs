@@ -97,7 +97,7 @@ mod tests {
         assert!((length - 4.0 * (10.0 + 4.0 + 3.0)).abs() < 1e-10, "{length}");
     }
 
-    /// The wall of a tube of so many faces around and two along, with its two open ends.
+    /// The wall of a tube with a number of faces around and two along, with its two open ends.
     fn tube(around: usize, is_curved: bool) -> (Vec<[f64; 3]>, Vec<[u32; 6]>) {
         let (rings, seats) = (5, 2 * around);
         let step = std::f64::consts::TAU / seats as f64;

@@ -3,7 +3,7 @@
 //! Every function catches panics, so that none crosses the boundary: the instance is then broken, and says so. Names and
 //! types are those of the standard's header files.
 //!
-//! What C has to keep to, as the standard has it: a component is what [`fmi2Instantiate`] has returned and
+//! Rules that C has to keep to, as the standard has it: a component is what [`fmi2Instantiate`] has returned and
 //! [`fmi2FreeInstance`] has not taken, and one thread at a time uses it; pointers are null, or point to as many entries as
 //! the count beside them says; texts end with a zero. This is what the `SAFETY` comments go by.
 #![allow(unsafe_code, non_camel_case_types, non_snake_case, non_upper_case_globals)]
@@ -35,7 +35,7 @@ pub type fmi2Boolean = c_int;
 pub type fmi2StatusKind = c_int;
 /// The time up to which all is computed.
 pub const fmi2LastSuccessfulTime: fmi2StatusKind = 2;
-/// Whether the FMU wants to end the simulation.
+/// Asks whether the FMU wants to end the simulation.
 pub const fmi2Terminated: fmi2StatusKind = 3;
 
 /// `fmi2CoSimulation` of `fmi2Type`.
@@ -46,7 +46,7 @@ pub type fmi2Component = *mut c_void;
 /// A saved state.
 pub type fmi2FMUstate = *mut c_void;
 
-/// Of the importing program.
+/// Logger of the importing program.
 pub type fmi2CallbackLogger =
     unsafe extern "C" fn(*mut c_void, *const c_char, fmi2Status, *const c_char, *const c_char, ...);
 
@@ -103,7 +103,7 @@ fn words_of(panic: &(dyn Any + Send)) -> String {
     text.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_else(|| "a panic without words".to_owned())
 }
 
-/// What one thread hands to another, and waits until that is done with it.
+/// A value that one thread hands to another, and waits until that is done with it.
 struct Handed<T>(T);
 
 // SAFETY: only `in_pool` makes one, whose thread waits: one thread at a time uses what is in it.

@@ -1,4 +1,4 @@
-//! What goes wrong in an FMU, in the words that its logger gets.
+//! Errors in an FMU, in the words that its logger gets.
 
 use flexframe::advice::AdviceError;
 use flexframe::dynamics::{CheckpointError, StepError};

@@ -48,11 +48,11 @@ pub struct Motion {
     simulation: Simulation,
     /// One for each input variable, in their order.
     inputs: Vec<Channel>,
-    /// Whether an input has been set since the last step.
+    /// True if an input has been set since the last step.
     changed: bool,
     row: Row,
     numbers: Vec<f64>,
-    /// Whether `numbers` are those of the state and the inputs as they are.
+    /// True if `numbers` are those of the state and the inputs as they are.
     known: bool,
     /// Warnings that the logger has had.
     told: Vec<std::mem::Discriminant<flexframe::advice::Broken>>,
@@ -65,7 +65,7 @@ struct Channel {
     signal: Signal,
 }
 
-/// What a state of an FMU has in it.
+/// Contents of a state of an FMU.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct State {
     checkpoint: Vec<u64>,
@@ -195,7 +195,7 @@ impl Motion {
         Ok(reviewed.with_dependent_mut(|_, review| review.observe(row))?)
     }
 
-    /// What of the model may be wrong, each only once.
+    /// Doubts about the model, each only once.
     pub fn warnings(&mut self) -> Vec<String> {
         let Some(reviewed) = &self.reviewed else { return Vec::new() };
         let broken = reviewed.with_dependent(|_, review| review.broken());

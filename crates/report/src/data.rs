@@ -66,7 +66,7 @@ struct StressData<'a> {
     unit: &'a str,
     /// Greatest von Mises stress over all rows.
     peak: f64,
-    /// Of the shapes, then of the products.
+    /// Stresses of the shapes, then of the products.
     shapes: Vec<Numbers>,
     products: &'a [[usize; 2]],
 }
@@ -108,7 +108,7 @@ struct BalanceData<'a> {
 }
 
 impl<'a> Data<'a> {
-    /// Of a report that has been checked.
+    /// Data of a report that has been checked.
     pub(crate) fn new(report: &'a Report) -> Self {
         let rows = report.motion.times.len();
         let thinning = Thinning::new(rows, history_points(report));

@@ -1,4 +1,4 @@
-//! What can be wrong with a report.
+//! Errors of a report.
 
 use std::io;
 use std::path::PathBuf;
@@ -10,7 +10,7 @@ pub enum ReportError {
     /// There is nothing to show.
     #[error("the report has no {what}; give it at least one")]
     Empty {
-        /// What is missing.
+        /// The missing part.
         what: String,
     },
     /// Lists that belong together differ in length.

@@ -8,7 +8,7 @@ use crate::check::check;
 use crate::data::Data;
 use crate::{Report, ReportError};
 
-/// What `just report-page` builds from `web/src`.
+/// The page that `just report-page` builds from `web/src`.
 const PAGE: &str = include_str!("../web/page.html");
 
 /// Where the data stand in the page.
@@ -33,7 +33,7 @@ pub fn html(report: &Report) -> Result<String, ReportError> {
 /// Writes the page to `path`, whole or not at all.
 ///
 /// # Errors
-/// Those of [`html`], and those of the system.
+/// Errors of [`html`], and of the system.
 pub fn write(report: &Report, path: &Path) -> Result<(), ReportError> {
     write_whole(path, html(report)?).map_err(|source| ReportError::Write { path: path.to_owned(), source })
 }

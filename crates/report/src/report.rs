@@ -1,4 +1,4 @@
-//! What a page shows.
+//! Contents of a page.
 
 /// Everything that a page shows, as plain data. The caller chooses the units and names them.
 #[derive(Debug, Clone, PartialEq)]
@@ -7,7 +7,7 @@ pub struct Report {
     pub title: String,
     /// Name and version of the program that made the run.
     pub program: String,
-    /// Whether the run reached its end.
+    /// State of the run: complete or not.
     pub state: RunState,
     /// Names of units.
     pub units: Units,
@@ -33,7 +33,7 @@ pub struct Report {
     pub warnings: Vec<String>,
 }
 
-/// Whether the run reached its end.
+/// State of the run: complete or not.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum RunState {
     /// It did.
@@ -45,20 +45,20 @@ pub enum RunState {
 /// Names of units, as they stand after a number.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Units {
-    /// Of lengths, such as mm.
+    /// Unit of lengths, such as mm.
     pub length: String,
-    /// Of times, such as s.
+    /// Unit of times, such as s.
     pub time: String,
-    /// Of natural frequencies, such as Hz.
+    /// Unit of natural frequencies, such as Hz.
     pub frequency: String,
 }
 
 /// A line of the summary.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Fact {
-    /// What it is about.
+    /// Its name.
     pub label: String,
-    /// What there is to say.
+    /// Its text.
     pub value: String,
 }
 
@@ -78,13 +78,13 @@ pub struct Surface {
 pub struct Shape {
     /// Name, such as "mode 3" or "static shape of load 1".
     pub name: String,
-    /// What kind of shape it is.
+    /// Kind of the shape.
     pub kind: ShapeKind,
     /// Displacement of each vertex of the surface where the coordinate is 1, body axes. Without a surface it is empty.
     pub displacement: Vec<[f32; 3]>,
 }
 
-/// What kind of shape it is.
+/// Kind of a shape.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ShapeKind {
     /// A vibration mode.
@@ -128,7 +128,7 @@ pub struct Motion {
 /// A quantity over the rows of the motion.
 #[derive(Debug, Clone, PartialEq)]
 pub struct History {
-    /// What it belongs to, such as "point P1". Histories of a group are shown together.
+    /// The group it belongs to, such as "point P1". Histories of a group are shown together.
     pub group: String,
     /// Name, such as "displacement (global)".
     pub name: String,
@@ -162,7 +162,7 @@ pub struct Balance {
     pub least_range: f64,
     /// The terms.
     pub terms: Vec<Component>,
-    /// What is left over: zero in exact motion. More than one for a vector.
+    /// The imbalance: zero in exact motion. More than one for a vector.
     pub errors: Vec<Component>,
 }
 

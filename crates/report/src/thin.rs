@@ -16,7 +16,7 @@ pub(crate) struct Thinning {
 }
 
 impl Thinning {
-    /// For courses of so many rows; `None` where they are short enough.
+    /// For courses with a number of rows; `None` where they are short enough.
     pub(crate) fn new(rows: usize, most: usize) -> Option<Self> {
         let ranges = most / 2;
         (rows > most && ranges > 0).then(|| Self { starts: (0..=ranges).map(|i| i * rows / ranges).collect() })

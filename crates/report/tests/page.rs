@@ -8,7 +8,7 @@ use report::{
 };
 use serde_json::Value;
 
-/// A flat strip of so many vertices, on which every shape is a wave.
+/// A flat strip of vertices, on which every shape is a wave.
 fn strip(vertices: usize, modes: usize, rows: usize, components: usize) -> Report {
     let wave = |k: usize, i: usize| ((k + 1) as f64 * i as f64 / vertices as f64).sin() as f32;
     let shape = |k: usize| Shape {

@@ -12,7 +12,7 @@ pub(crate) struct Block {
 }
 
 impl Block {
-    /// With room for so many rows.
+    /// A block with room for a number of rows.
     pub(crate) fn new(widths: Vec<usize>, rows: usize) -> Self {
         let numbers = rows * widths.iter().sum::<usize>();
         Self { widths, values: Vec::with_capacity(numbers), by_columns: vec![0.0; numbers] }

@@ -16,7 +16,7 @@ pub(crate) struct Checkpoint {
     pub rows: usize,
     /// [`Sums::total`] of these.
     pub sum_of_rows: u32,
-    /// Of the run.
+    /// State of the run.
     pub state: Vec<u64>,
 }
 
@@ -66,12 +66,12 @@ impl Sums {
         }
     }
 
-    /// That of each column.
+    /// Check sum of each column.
     pub(crate) fn of_columns(&self) -> &[Hasher] {
         &self.0
     }
 
-    /// Of all columns.
+    /// Check sum of all columns.
     pub(crate) fn total(&self) -> u32 {
         let mut total = Hasher::new();
         self.0.iter().for_each(|hasher| total.update(&hasher.clone().finalize().to_le_bytes()));

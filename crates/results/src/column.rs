@@ -17,7 +17,7 @@ pub struct Column<R> {
     pub description: &'static str,
     /// How a row gives its values.
     pub values: Values<R>,
-    /// What a run must have for its file to have the column, one of [`Metadata::parts`]; all files have it if `None`.
+    /// Part that a run must have for its file to have the column, one of [`Metadata::parts`]; all files have it if `None`.
     pub part: Option<&'static str>,
 }
 
@@ -36,7 +36,7 @@ pub enum Values<R> {
     Points(fn(&R, usize) -> Option<[f64; 3]>),
     /// T×S×3: a vector of each of S supports; `None` for a number beyond the last.
     Supports(fn(&R, usize) -> Option<[f64; 3]>),
-    /// T×P×n: so many numbers of each point; one has the shape T×P.
+    /// T×P×n: n numbers of each point; one has the shape T×P.
     PointNumbers(usize, fn(&R, usize) -> Option<&[f64]>),
 }
 
@@ -87,7 +87,7 @@ impl<R> Column<R> {
         }
     }
 
-    /// Whether the files of a run with this metadata have it.
+    /// True if the files of a run with this metadata have it.
     pub fn is_in(&self, metadata: &Metadata) -> bool {
         self.part.is_none_or(|part| metadata.parts.iter().any(|has| has == part))
     }
@@ -132,7 +132,7 @@ impl<R> Column<R> {
         }
     }
 
-    /// What a message or a reader calls the value at `index` of a row.
+    /// Name of the value at `index` of a row, for messages and readers.
     pub(crate) fn quantity(&self, metadata: &Metadata, index: usize) -> String {
         let point = index.checked_div(self.per_point()).and_then(|point| self.places(metadata).get(point));
         point.map_or_else(|| self.path.to_owned(), |name| of_point(self.path, name))
@@ -147,7 +147,7 @@ impl<R> Column<R> {
         }
     }
 
-    /// Whether a row has values of more points or supports than there are.
+    /// True if a row has values of more points or supports than there are.
     pub(crate) fn has_more(&self, row: &R, metadata: &Metadata) -> bool {
         let point = self.places(metadata).len();
         match self.values {
@@ -158,7 +158,7 @@ impl<R> Column<R> {
     }
 }
 
-/// What the history of one point is called: "points/P1/velocity" in the dataset "points/velocity".
+/// Name of the history of one point: "points/P1/velocity" in the dataset "points/velocity".
 pub(crate) fn of_point(path: &str, name: &str) -> String {
     match path.rsplit_once('/') {
         Some((group, quantity)) => format!("{group}/{name}/{quantity}"),

@@ -1,4 +1,4 @@
-//! What a results file holds and where, in a form that is read without HDF5.
+//! Contents of a results file and their places, in a form that is read without HDF5.
 
 use crate::{FileError, Metadata};
 use serde::{Deserialize, Serialize};
@@ -15,7 +15,7 @@ pub(crate) struct Description {
     pub checkpoint_words: Option<usize>,
     /// First byte of each history, in the order of the columns, and of the checkpoints; 0 where there is nothing.
     pub starts: Vec<u64>,
-    /// Of the run.
+    /// Metadata of the run.
     pub metadata: Metadata,
 }
 

@@ -1,4 +1,4 @@
-//! What can go wrong with a results file.
+//! Errors of a results file.
 
 use std::fs::OpenOptions;
 use std::io::{self, Write};
@@ -13,7 +13,7 @@ pub enum FileError {
     Hdf5 {
         /// The results file.
         path: PathBuf,
-        /// What was being done, for instance "create dataset modal/displacement".
+        /// The operation, for instance "create dataset modal/displacement".
         action: String,
         /// The library's own message.
         source: hdf5::Error,
@@ -23,11 +23,11 @@ pub enum FileError {
     System {
         /// The results file.
         path: PathBuf,
-        /// What was being done.
+        /// The operation.
         action: String,
         /// The system's own message.
         reason: String,
-        /// What helps.
+        /// Help for the user.
         cure: &'static str,
     },
     /// Another process has the file open for writing.
@@ -146,7 +146,7 @@ pub enum FileError {
     Link {
         /// The link.
         path: PathBuf,
-        /// What it names.
+        /// Its target.
         target: PathBuf,
     },
     /// A file is where a results file or an export would go.
@@ -184,7 +184,7 @@ pub enum FileError {
     Damaged {
         /// The file.
         path: PathBuf,
-        /// What was found, and what was expected.
+        /// The content found, and the one expected.
         what: String,
     },
 }
@@ -221,7 +221,7 @@ impl FileError {
         }
     }
 
-    /// What helps, where the system has refused something.
+    /// Help, where the system has refused something.
     pub fn cure(&self) -> Option<&'static str> {
         match self {
             Self::System { cure, .. } => Some(cure),
@@ -229,7 +229,7 @@ impl FileError {
         }
     }
 
-    /// What [`Result::map_err`] takes. Where the operating system has refused something, it says so in the library's
+    /// Conversion for [`Result::map_err`]. Where the operating system has refused something, it says so in the library's
     /// message.
     pub(crate) fn hdf5(path: &Path, action: impl Into<String>) -> impl FnOnce(hdf5::Error) -> Self {
         let (path, action) = (path.to_path_buf(), action.into());

@@ -1,4 +1,4 @@
-//! What a results file says about the run as a whole.
+//! Metadata of a results file: the run as a whole.
 
 use crate::FileError;
 use crate::error::check_length;
@@ -53,7 +53,7 @@ pub struct Metadata {
     pub scheme: String,
     /// Length of its steps, where they have one.
     pub step: Option<f64>,
-    /// What the estimated relative errors of all steps may sum to, where that sets their lengths.
+    /// Bound of the sum of the estimated relative errors of all steps, where that sets their lengths.
     pub tolerance: Option<f64>,
     /// Version of the program that made the run.
     pub program_version: String,
@@ -68,16 +68,16 @@ pub struct Metadata {
     pub point_names: Vec<String>,
     /// Where they are in the undeformed body, in the mesh's coordinates.
     pub point_positions: Vec<[f64; 3]>,
-    /// What else the run has, so that its file has the columns that ask for it ([`Column::part`](crate::Column::part)).
+    /// Further parts of the run, so that its file has the columns that ask for them ([`Column::part`](crate::Column::part)).
     pub parts: Vec<String>,
     /// Names of the supports whose reactions are stored, where there are several, in the order of a row's supports.
     pub support_names: Vec<String>,
-    /// What should be known of the run, each a sentence or more: see [`Writer::warn`](crate::Writer::warn).
+    /// Warnings of the run, each a sentence or more: see [`Writer::warn`](crate::Writer::warn).
     pub warnings: Vec<String>,
 }
 
 impl BodyProperties {
-    /// Whether each coordinate is that of a natural mode or of a static shape, in words.
+    /// Kind of each coordinate, in words: of a natural mode or of a static shape.
     pub fn kinds(&self) -> impl ExactSizeIterator<Item = &'static str> {
         let count = self.frequencies.len();
         let natural = count.saturating_sub(self.static_shapes);

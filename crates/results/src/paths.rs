@@ -106,7 +106,7 @@ impl ResultsPaths {
         })
     }
 
-    /// Puts a file into the place of the unfinished one, which is the caller's own.
+    /// Moves a file into the place of the unfinished one, which is the caller's own.
     pub(crate) fn exchange_part(&self, file: TemporaryFile) -> Result<(), FileError> {
         file.put(&self.part, true).map_err(|error| FileError::system(&self.part, "create the file", &error))
     }
@@ -141,12 +141,12 @@ fn refuse_link(path: &Path) -> Result<(), FileError> {
     }
 }
 
-/// Whether another process writes the file: it has it locked.
+/// True if another process writes the file: it has it locked.
 pub(crate) fn is_busy(path: &Path) -> bool {
     path.is_file() && File::open(path).is_ok_and(|file| Locked::new(file, File::try_lock).is_none())
 }
 
-/// Whether something claims to be a file of ours. A pipe is not opened, which might never end.
+/// True if something claims to be a file of ours. A pipe is not opened, which might never end.
 fn is_ours(path: &Path) -> bool {
     path.is_file() && seal::is_claimed(path)
 }

@@ -12,9 +12,9 @@ use std::path::Path;
 /// A results file in memory; rows are output times.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Results {
-    /// What the file says of the run as a whole; the points in the order in which they were given.
+    /// Metadata of the run as a whole; the points in the order in which they were given.
     pub metadata: Metadata,
-    /// Whether the run came to its end.
+    /// True if the run came to its end.
     pub complete: bool,
     rows: usize,
     /// By path.
@@ -74,7 +74,7 @@ impl Results {
         Ok(Self::read_with_checkpoint(&Store::open(path, columns)?, path, columns)?.0)
     }
 
-    /// What a file says of its run, without a look at its rows.
+    /// Metadata of a file, without a look at its rows.
     ///
     /// # Errors
     /// [`FileError::NoSeal`], [`FileError::Damaged`] and [`FileError::System`], as [`Results::open`].
@@ -169,7 +169,7 @@ impl Results {
         (0..self.rows).flat_map(|i| tables.iter().filter_map(move |table| table.row(i)).flatten().copied()).collect()
     }
 
-    /// Whether row `i` is this one, to the last bit of every column.
+    /// True if row `i` is this one, to the last bit of every column.
     pub fn is_row<R>(&self, i: usize, columns: &'static [Column<R>], row: &R) -> bool {
         let mut values = Vec::new();
         let is = |path: &str, values: &[f64]| self.table(path).and_then(|table| table.row(i)) == Some(values);

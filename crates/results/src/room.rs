@@ -1,6 +1,6 @@
 //! How much a results file has room for.
 
-/// What a store is to hold.
+/// Sizes that a store is made for.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Room {
     /// Rows.

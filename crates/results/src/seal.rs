@@ -40,7 +40,7 @@ const LONGEST: u64 = 64 << 20;
 /// Bytes that are read at a time.
 const BLOCK: usize = 1 << 14;
 
-/// Size of the user block, of those that HDF5 allows, for a description of so many bytes.
+/// Size of the user block, of those that HDF5 allows, for a description of that many bytes.
 pub(crate) fn room(description: u64) -> u64 {
     (HEAD + description).next_power_of_two().max(512)
 }
@@ -49,7 +49,7 @@ pub(crate) fn room(description: u64) -> u64 {
 #[derive(Debug)]
 pub(crate) struct Apart<'s> {
     pub range: Range<u64>,
-    /// That of the bytes, where it is known; without it they are left out.
+    /// Check sum of the bytes, where it is known; without it they are left out.
     pub sum: Option<&'s crc32fast::Hasher>,
 }
 
@@ -112,7 +112,7 @@ fn head(mut file: &File, path: &Path) -> Result<(u64, u64, u64), FileError> {
     }
 }
 
-/// Whether a file claims to be one of ours, of any version.
+/// True if a file claims to be one of ours, of any version.
 pub(crate) fn is_claimed(path: &Path) -> bool {
     let mut magic = [0; ANY_VERSION];
     File::open(path).and_then(|mut file| file.read_exact(&mut magic)).is_ok() && MAGIC.starts_with(&magic)

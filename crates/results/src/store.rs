@@ -137,12 +137,12 @@ impl Store {
         seal::put(&self.file, path, self.description.to_json().as_bytes(), &apart)
     }
 
-    /// What the file says of the run.
+    /// Metadata of the file.
     pub(crate) fn metadata(&self) -> &Metadata {
         &self.description.metadata
     }
 
-    /// Whether the run came to its end.
+    /// True if the run came to its end.
     pub(crate) fn is_complete(&self) -> bool {
         self.description.checkpoint_words.is_none()
     }
@@ -270,7 +270,7 @@ fn reserve(_: &File) -> io::Result<()> {
     Ok(())
 }
 
-/// Those that are not empty, in the order of the file.
+/// Ranges that are not empty, in the order of the file.
 fn in_order<'s>(ranges: impl Iterator<Item = Apart<'s>>) -> Vec<Apart<'s>> {
     let mut ranges: Vec<_> = ranges.filter(|apart| !apart.range.is_empty()).collect();
     ranges.sort_unstable_by_key(|apart| apart.range.start);

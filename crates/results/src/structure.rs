@@ -11,7 +11,7 @@ use hdf5::types::VarLenUnicode;
 use ndarray::{ArrayView2, ArrayViewD, aview0, aview1};
 use std::path::Path;
 
-/// Makes the file at `place` (called `path` in messages), which begins with so many bytes that HDF5 leaves alone, and
+/// Makes the file at `place` (called `path` in messages), which begins with a number of bytes that HDF5 leaves alone, and
 /// closes it. Gives the first byte of each history, in the order of the columns, and of the checkpoints; 0 where
 /// there is nothing.
 pub(crate) fn make<R>(

@@ -7,7 +7,7 @@ pub struct Grid {
     pub points: Vec<[f64; 3]>,
     /// Points of the cells, one cell after another, in VTK's order.
     pub connectivity: Vec<u32>,
-    /// What the cells are.
+    /// Kind of the cells.
     pub cells: CellKind,
 }
 
@@ -48,7 +48,7 @@ impl Grid {
 /// A quantity at the points.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Field {
-    /// What ParaView calls it.
+    /// Name in ParaView.
     pub name: String,
     /// Numbers of each point: 1 of a scalar, 3 of a vector, 6 of a symmetric tensor (xx, yy, zz, xy, yz, zx).
     pub components: usize,

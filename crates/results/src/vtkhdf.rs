@@ -81,7 +81,7 @@ impl VtkHdf {
         written.map_err(FileError::hdf5(&self.path, format!("write step {step}")))
     }
 
-    /// Puts the file into its place, once it is safe on the disk.
+    /// Moves the file into its place, once it is safe on the disk.
     ///
     /// # Errors
     /// [`FileError::Exists`], [`FileError::System`] and [`FileError::Hdf5`].
@@ -101,7 +101,7 @@ pub(crate) fn temporary(path: &Path, overwrite: bool) -> Result<TemporaryFile, F
     Ok(made.map_err(|error| FileError::system(path, "create the file", &error))?.1)
 }
 
-/// Puts a file that is complete into its place.
+/// Moves a file that is complete into its place.
 pub(crate) fn put(place: TemporaryFile, path: &Path, overwrite: bool) -> Result<(), FileError> {
     let failed = |error| FileError::system(path, "write the file", &error);
     std::fs::File::open(&place).and_then(|file| file.sync_all()).map_err(failed)?;

@@ -20,20 +20,20 @@ const ROWS_PER_WRITE: usize = 512;
 /// they are written.
 const NUMBERS_PER_WRITE: usize = 1 << 18;
 
-/// What the kill of a process can lose.
+/// Longest stretch of a run that the kill of a process can lose.
 const FLUSH_INTERVAL: Duration = Duration::from_secs(1);
 
 /// Room that is made at once for a run whose rows are expected to need more, in numbers (64 MiB).
 const FIRST_ROOM: usize = 8 << 20;
 
-/// What a [`Writer`] should know of the run before it begins.
+/// Sizes and choices that a [`Writer`] needs before the run begins.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Expected {
     /// Rows, where they are known: the room for them is made at once. More are no error.
     pub rows: usize,
     /// Words of each checkpoint.
     pub checkpoint: usize,
-    /// Whether what is there may be replaced: a results file or another, and an unfinished run of the same name.
+    /// True if files that are there may be replaced: a results file or another, and an unfinished run of the same name.
     pub overwrite: bool,
 }
 
@@ -55,7 +55,7 @@ pub struct Writer<R: 'static> {
     /// The rows that have not been written.
     waiting: Block,
     rows_per_write: usize,
-    /// Of the rows that have been written.
+    /// Sums of the rows that have been written.
     sums: Sums,
     rows_written: usize,
     rows_buffered: usize,
@@ -125,7 +125,7 @@ impl<R> Writer<R> {
         })
     }
 
-    /// Whether [`Writer::create`] would begin, for those who have long work to do before.
+    /// Checks that [`Writer::create`] would begin, for those who have long work to do before.
     ///
     /// # Errors
     /// [`FileError::Busy`], [`FileError::Unfinished`], [`FileError::Exists`], [`FileError::NotResults`], [`FileError::Link`], and
@@ -240,7 +240,7 @@ impl<R> Writer<R> {
         Ok(())
     }
 
-    /// Whether the last flush is about a second ago.
+    /// True if the last flush is about a second ago.
     pub fn flush_is_due(&self) -> bool {
         self.last_flush.elapsed() >= FLUSH_INTERVAL
     }
@@ -266,7 +266,7 @@ impl<R> Writer<R> {
         Ok(())
     }
 
-    /// What should be known of the run, for [`Writer::finish`] to store; an unfinished file has none.
+    /// Keeps warnings of the run for [`Writer::finish`] to store; an unfinished file has none.
     pub fn warn(&mut self, warnings: Vec<String>) {
         self.metadata.warnings = warnings;
     }
@@ -336,7 +336,7 @@ fn waiting<R>(present: &[(&Column<R>, usize)], rows: usize) -> Block {
     Block::new(present.iter().map(|(_, width)| *width).collect(), rows)
 }
 
-/// Whether all are finite numbers.
+/// True if all are finite numbers.
 fn are_finite(values: &[f64]) -> bool {
     let (groups, rest) = values.as_chunks::<4>();
     let mut zeros = [0.0; 4];

@@ -41,7 +41,7 @@ fn left_out(bytes: &[u8]) -> Vec<Range<usize>> {
     sealed::left_out(&sealed::read(bytes), bytes.len())
 }
 
-/// What the reader says of a file, and the most memory that it held meanwhile.
+/// Result of the reader for a file, and the most memory that it held meanwhile.
 fn read(path: &Path) -> (Result<Results, FileError>, usize) {
     let mut outcome = None;
     let memory = allocation_counter::measure(|| outcome = Some(Results::open(path, &COLUMNS)));

@@ -388,7 +388,7 @@ fn of_runs_that_begin_at_once_each_has_the_file_to_itself() {
     assert!(done >= 20 && done + busy == 80, "{done} {busy}");
 }
 
-/// What h5py builds numpy arrays and `str` from: IEEE doubles, and strings of variable length in UTF-8.
+/// Types from which h5py builds numpy arrays and `str`: IEEE doubles, and strings of variable length in UTF-8.
 #[test]
 fn names_types_and_shapes_are_those_of_the_contract() {
     let (_folder, path) = folder();
@@ -497,7 +497,7 @@ fn hdf5_finds_the_numbers_that_were_written() {
     }
 }
 
-/// What is behind a link may be any file.
+/// A link may lead to any file.
 #[cfg(unix)]
 #[test]
 fn nothing_is_written_through_a_link_or_in_its_place() {

@@ -116,7 +116,7 @@ fn numbers_are_taken_from_the_file_itself_and_written_there() {
     }
 }
 
-/// What the reader and the writer say of a description, and the most memory that the reader held.
+/// Results of the reader and the writer for a description, and the most memory that the reader held.
 fn described(part: &[u8], place: &Path, json: &str) -> (Result<Results, FileError>, usize) {
     let mut bytes = part.to_vec();
     sealed::describe(&mut bytes, json);

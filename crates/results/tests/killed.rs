@@ -1,4 +1,4 @@
-//! What survives when a run is killed; and pipes.
+//! Rows that survive when a run is killed; and pipes.
 //!
 //! In a process apart from the other tests, and one after another: a child inherits the files that its parent has open,
 //! with HDF5's locks.

@@ -1,4 +1,4 @@
-//! What only the body that a run is made with tells.
+//! Advice that only the body of a run can give.
 
 use std::sync::Arc;
 
@@ -11,7 +11,7 @@ use crate::plate::{plate, spinning};
 
 const TOLERANCE: f64 = 1e-3;
 
-/// Of the plate that spins about y at `speed`.
+/// Advice on the plate that spins about y at `speed`.
 fn spun(speed: f64) -> Advice {
     advise(&plate().case(&[0.0; 10], &[], &spinning([0.0, speed, 0.0]), 0.5), TOLERANCE).unwrap()
 }
@@ -87,7 +87,7 @@ fn stressed(ratio: f64, zeta: f64, history: History) -> Row {
     stress_row(&[field], &found, TOLERANCE).unwrap()
 }
 
-/// Of one mode: |K|/ω² is twice the shift of its frequency, which adds up for as long as it rings.
+/// A single mode: |K|/ω² is twice the shift of its frequency, which adds up for as long as it rings.
 #[test]
 fn the_stress_of_a_load_counts_as_the_phase_it_shifts() {
     let ratio = 1e-6;

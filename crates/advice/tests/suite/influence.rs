@@ -5,7 +5,7 @@ use dynamics::{Drive, DrivenMotion, DrivenSpeed, Effect, EffectMap, History, Ini
 
 use crate::plate::{CORNER, clamped, plate, run, spinning};
 
-/// What two runs may differ by where nothing differs.
+/// Largest difference of two runs where nothing differs.
 const ROUNDING: f64 = 1e-11;
 
 /// Largest relative difference of two motions: of the modal displacements, and of the attitude against the angle turned

@@ -1,4 +1,4 @@
-//! What happened against what was assumed.
+//! Motions against assumptions.
 
 use advice::{Backbone, Broken, Case, Detuning, Refusal, Review, advise};
 use dynamics::{Effect, EffectMap, History, Initial, Method, Physics, Reached, Rows, Setup, Simulation, StepControl};
@@ -96,7 +96,7 @@ fn what_the_modes_leave_out_of_the_spin_is_weighed_by_the_spin_that_there_is() {
     assert_eq!(broken([0.0, 0.0, 2.0], 3e-6, on.without(Effect::DeformedInertia)), []);
 }
 
-/// What is watched at every step of a run in steps of `step`, with rows at multiples of `interval`.
+/// Assumptions that break when every step of a run in steps of `step` is watched, with rows at multiples of `interval`.
 fn watched(case: &Case, effects: EffectMap<bool>, step: f64, interval: f64) -> Vec<Broken> {
     let mut simulation = Simulation::new(&Setup {
         body: case.body,

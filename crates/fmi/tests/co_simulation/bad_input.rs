@@ -1,4 +1,4 @@
-//! What an importing program may do wrong: each is refused in words, and the FMU stays as it was.
+//! Mistakes of an importing program: each is refused in words, and the FMU stays as it was.
 
 use std::fs;
 

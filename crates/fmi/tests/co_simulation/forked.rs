@@ -16,7 +16,7 @@ unsafe extern "C" {
 const WNOHANG: c_int = 1;
 const SIGKILL: c_int = 9;
 
-/// What a forked process comes to; none where it does not come to an end.
+/// Result of a forked process; none where it does not come to an end.
 fn in_a_fork(work: impl FnOnce() -> bool) -> Option<bool> {
     // SAFETY: the forked process has this thread alone. It works by what it has itself made, and ends without running anything
     // that the test program wants to be run at its end.

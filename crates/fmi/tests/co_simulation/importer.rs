@@ -132,7 +132,7 @@ impl Drop for Instance {
 pub type Done = Result<(), String>;
 
 impl Instance {
-    /// What the logger has heard since the last call.
+    /// Messages that the logger has heard since the last call.
     pub fn words(&mut self) -> Vec<(c_int, String)> {
         // SAFETY: the list of this instance.
         std::mem::take(unsafe { &mut *self.said })
@@ -222,7 +222,7 @@ impl Instance {
         // SAFETY: a state and a place for a number.
         assert_eq!(unsafe { fmi2SerializedFMUstateSize(self.component, state, &mut size) }, fmi2OK);
         let mut bytes = vec![0; size];
-        // SAFETY: a state, and room for so many bytes.
+        // SAFETY: a state, and room for that number of bytes.
         assert_eq!(unsafe { fmi2SerializeFMUstate(self.component, state, bytes.as_mut_ptr(), size) }, fmi2OK);
         // SAFETY: the same, with too little room.
         assert_eq!(unsafe { fmi2SerializeFMUstate(self.component, state, bytes.as_mut_ptr(), size - 1) }, fmi2Error);
@@ -232,7 +232,7 @@ impl Instance {
 
     pub fn deserialized(&mut self, bytes: &[u8]) -> Result<fmi2FMUstate, String> {
         let mut state = ptr::null_mut();
-        // SAFETY: so many bytes, and a place for a state.
+        // SAFETY: the bytes and their number, and a place for a state.
         let status = unsafe { fmi2DeSerializeFMUstate(self.component, bytes.as_ptr(), bytes.len(), &mut state) };
         self.done(status).map(|()| state)
     }

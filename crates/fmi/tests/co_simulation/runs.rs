@@ -214,7 +214,7 @@ fn two_instances_know_nothing_of_each_other() {
     assert!(other.get(&references).unwrap() != one.get(&references).unwrap());
 }
 
-/// What `modelDescription.xml` says to follow the inputs at once does so, and nothing else.
+/// Outputs that `modelDescription.xml` says to follow the inputs at once do so, and nothing else.
 #[test]
 fn outputs_depend_on_inputs_as_described() {
     let mut found = [false; 2];
