@@ -9,9 +9,9 @@ use toml_edit::{DocumentMut, Item, Key, Table};
 pub struct AssignError {
     /// The path of keys.
     pub key: String,
-    /// What is wrong with it.
+    /// The fault.
     pub found: String,
-    /// What it should be.
+    /// A right value or place.
     pub expected: String,
 }
 
@@ -66,7 +66,7 @@ fn set(root: &mut Item, path: &str, value: &Value) -> Result<(), (String, String
     Ok(())
 }
 
-/// What is said if the value with the key `name` has no such place: what was found, and what was expected.
+/// The fault if the value with the key `name` has no such place: the value found, and the one expected.
 fn refusal(item: &Item, name: &str, step: &Step) -> (String, String) {
     let entries = match item {
         Item::ArrayOfTables(list) => Some(list.len()),

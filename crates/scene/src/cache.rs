@@ -37,12 +37,12 @@ struct Inner {
     read: AtomicUsize,
     computed: AtomicUsize,
     assembled: AtomicUsize,
-    /// Whether nothing can be written.
+    /// True if nothing can be written.
     is_closed: AtomicBool,
-    /// Of what those made by [`Cache::elsewhere`] say, too.
+    /// Warnings, also of the caches made by [`Cache::elsewhere`].
     warnings: Arc<Mutex<Vec<String>>>,
     trusts_geometry: AtomicBool,
-    /// Whether a thread computes.
+    /// True if a thread computes.
     computing: Mutex<bool>,
     computed_all: Condvar,
 }
@@ -50,7 +50,7 @@ struct Inner {
 /// [`Writer::create`].
 type CreateFile = fn(&Path, BTreeMap<String, String>, &[Declared]) -> Result<Writer, BodyFileError>;
 
-/// What a cache was good for.
+/// Counts of the use of a cache.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct CacheNotes {
     /// Answers that were read.
@@ -59,7 +59,7 @@ pub struct CacheNotes {
     pub computed: usize,
     /// How often matrices were assembled.
     pub assembled: usize,
-    /// What could not be read or written, and what else the user should know of how files were read.
+    /// Warnings: files that could not be read or written, and other faults of reading that the user should know.
     pub warnings: Vec<String>,
 }
 
@@ -69,7 +69,7 @@ impl Cache {
         Self::default()
     }
 
-    /// In a folder, which is made if it does not exist, with so many bytes at most.
+    /// A cache in a folder, which is made if it does not exist, with a limit of its bytes.
     pub fn new(folder: impl Into<PathBuf>, limit: u64) -> Self {
         let create: CreateFile = |path, texts, datasets| Writer::create(path, texts, datasets);
         Self(Arc::new(Inner { folder: Some(folder.into()), limit, create: Some(create), ..Inner::default() }))
@@ -105,7 +105,7 @@ impl Cache {
         self.0.trusts_geometry.store(true, Ordering::Relaxed);
     }
 
-    /// Whether it may.
+    /// True if gmsh may do all that geometry says.
     pub fn trusts_geometry(&self) -> bool {
         self.0.trusts_geometry.load(Ordering::Relaxed)
     }
@@ -130,12 +130,12 @@ impl Cache {
         self.0.folder.as_deref()
     }
 
-    /// What makes its files; none where nothing is kept.
+    /// Function that makes its files; none where nothing is kept.
     pub(crate) fn create(&self) -> Option<CreateFile> {
         self.0.create
     }
 
-    /// What it was good for up to now.
+    /// Counts of its use up to now.
     pub fn notes(&self) -> CacheNotes {
         CacheNotes {
             read: self.0.read.load(Ordering::Relaxed),
@@ -254,7 +254,7 @@ fn list(folder: &Path) -> Vec<(SystemTime, u64, PathBuf)> {
     files
 }
 
-/// The folders in a folder whose names are so many hexadecimal digits.
+/// The folders in a folder whose names are a given number of hexadecimal digits.
 fn hashed(folder: &Path, digits: usize) -> Vec<PathBuf> {
     let is_hash = |name: &str| name.len() == digits && name.bytes().all(|byte| byte.is_ascii_hexdigit());
     entries(folder)

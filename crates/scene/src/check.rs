@@ -62,7 +62,7 @@ impl Check<'_> {
         SceneError::MissingKey { at: self.document.place(&join(table, key)).into(), key: key.to_owned() }
     }
 
-    /// Whether the file has a value with this key path.
+    /// True if the file has a value with this key path.
     fn has(&self, key: &str) -> bool {
         self.document.nearest(key).path == key
     }

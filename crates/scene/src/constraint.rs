@@ -1,11 +1,11 @@
-//! What holds or drives the body.
+//! Constraints and drives of the body.
 
 use nalgebra::Vector3;
 
 use crate::history::DrivenSpeed;
 use crate::unit_vector::unit;
 
-/// What holds the body, chosen by the key `kind` of the `[[constraints]]` entry.
+/// A constraint of the body, chosen by the key `kind` of the `[[constraints]]` entry.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Constraint {
     /// `kind = "pin"`: a point is held; the body turns about it.
@@ -29,14 +29,14 @@ pub enum Constraint {
     },
     /// `kind = "clamp"`: a part of the body is held; no rigid motion is left.
     Clamp {
-        /// What is held.
+        /// The held part.
         region: Region,
     },
     /// `kind = "slider"`: a part of the body moves along a direction, without turning.
     Slider {
         /// Unit vector, mesh axes.
         direction: [f64; 3],
-        /// What slides; `None` for a rigid body only.
+        /// The sliding part; `None` for a rigid body only.
         region: Option<Region>,
         /// The velocity along the direction, length per time; `None` leaves the body to slide freely.
         motion: Option<DrivenSpeed>,
@@ -52,9 +52,9 @@ pub enum Constraint {
 /// A part of the body that is held in some directions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HeldDirections {
-    /// What is held.
+    /// The held part.
     pub region: Region,
-    /// Whether along x, y and z of the mesh; at least one.
+    /// True for each held direction along x, y and z of the mesh; at least one.
     pub directions: [bool; 3],
 }
 

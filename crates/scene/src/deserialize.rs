@@ -360,7 +360,7 @@ mod tests {
         _list: Vec<bool>,
     }
 
-    /// What this file does not word itself comes from serde, and still has its place.
+    /// A fault that this file does not word itself comes from serde, and still has its place.
     #[test]
     fn a_fault_worded_by_serde_has_its_place() {
         let document = Document::parse("list = [\n  true,\n  3,\n]", Path::new("a.toml")).unwrap();

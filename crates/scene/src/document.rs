@@ -20,7 +20,7 @@ pub(crate) struct Document<'t> {
 pub(crate) struct NotToml {
     /// Where; its key is empty.
     pub at: Box<Place>,
-    /// What the TOML parser said.
+    /// Message of the TOML parser.
     pub message: String,
 }
 

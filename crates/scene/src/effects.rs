@@ -6,7 +6,7 @@ use dynamics::{Effect, EffectMap};
 use serde::de::{Error, MapAccess, Unexpected, Visitor};
 use serde::{Deserialize, Deserializer};
 
-/// Whether something is done: `true`, `false` or `"auto"`.
+/// A choice: `true`, `false` or `"auto"`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Choice {
     /// `true`.
@@ -25,7 +25,7 @@ pub struct Effects {
     pub choices: EffectMap<Choice>,
     /// Relative influence on the answer, between 0 and 1, below which `"auto"` leaves an effect out; default 1e-3.
     pub tolerance: f64,
-    /// Whether a model that is known to be wrong is refused, which is the default.
+    /// True if a model that is known to be wrong is refused, which is the default.
     pub refuse: bool,
 }
 

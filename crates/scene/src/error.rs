@@ -23,9 +23,9 @@ pub enum SceneError {
     Unreadable {
         /// The scene file.
         path: PathBuf,
-        /// What the system said.
+        /// Error of the system.
         cause: io::Error,
-        /// What to do about it.
+        /// Help for the user.
         cure: &'static str,
     },
     /// The file is longer than a scene can be.
@@ -46,7 +46,7 @@ pub enum SceneError {
         path: PathBuf,
         /// Line of the first byte that is not UTF-8, from 1.
         line: usize,
-        /// That byte.
+        /// The byte.
         byte: u8,
     },
     /// The text is not TOML.
@@ -54,7 +54,7 @@ pub enum SceneError {
     Syntax {
         /// Where; its key is empty.
         at: Box<Place>,
-        /// What the TOML parser said.
+        /// Message of the TOML parser.
         message: String,
     },
     /// A key that does not exist, most often misspelt.
@@ -90,11 +90,11 @@ pub enum SceneError {
     Invalid {
         /// Where.
         at: Box<Place>,
-        /// What was found.
+        /// The value found.
         found: String,
-        /// What was expected.
+        /// The value expected.
         expected: String,
-        /// What to do about it.
+        /// Help for the user.
         cure: String,
     },
 }
@@ -132,7 +132,7 @@ impl SceneError {
         }
     }
 
-    /// What stands there, where something does.
+    /// The value that stands there, if any.
     pub fn found(&self) -> Option<String> {
         match self {
             Self::Unreadable { .. } | Self::TooLarge { .. } | Self::Syntax { .. } | Self::MissingKey { .. } => None,
@@ -142,7 +142,7 @@ impl SceneError {
         }
     }
 
-    /// What should stand there, where that is known.
+    /// The value that should stand there, where it is known.
     pub fn expected(&self) -> Option<String> {
         match self {
             Self::Unreadable { .. } => None,
@@ -157,7 +157,7 @@ impl SceneError {
         }
     }
 
-    /// What to do about it.
+    /// Help for the user.
     pub fn cure(&self) -> Option<String> {
         match self {
             Self::Unreadable { cure, .. } => Some((*cure).to_owned()),

@@ -11,7 +11,7 @@ pub struct Modes {
     pub flexible: Flexible,
     /// Damping of the flexible modes; default none. Rigid modes are never damped.
     pub damping: Damping,
-    /// Whether the residual shapes of the loads and of the centrifugal field stand beside the modes.
+    /// The choice to add static shapes of the loads and of the centrifugal field to the modes.
     pub static_correction: Choice,
     /// Which modes may bend the body far.
     pub large: Option<Large>,
@@ -20,7 +20,7 @@ pub struct Modes {
 /// Which modes may bend the body far.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Large {
-    /// The first so many, 1 to 8.
+    /// The number of first modes, 1 to 8.
     Count(usize),
     /// These, numbered from 1, ascending, 1 to 8 of them.
     List(Vec<usize>),

@@ -1,4 +1,4 @@
-//! What a body file was made of, as a text in the file.
+//! Origin of a body file, as a text in the file.
 
 use std::collections::BTreeMap;
 
@@ -6,10 +6,10 @@ use body_file::{BodyFile, BodyFileError};
 use fem_tet10::{Material, Materials, PointMass};
 use serde::{Deserialize, Serialize};
 
-/// What the file calls this text.
+/// Name of this text in the file.
 pub(crate) const ORIGIN: &str = "origin";
 
-/// What a body file was made of.
+/// Origin of a body file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Origin {
@@ -25,12 +25,12 @@ pub(crate) struct Origin {
     pub point_masses: Vec<PointMass>,
     /// How many modes were searched for.
     pub modes: usize,
-    /// What holds the body.
+    /// The support.
     pub support: String,
 }
 
 impl Origin {
-    /// That of a file.
+    /// The origin of a file.
     ///
     /// # Errors
     /// [`BodyFileError::Damaged`] where it has none.

@@ -19,7 +19,7 @@ pub struct Place {
     pub key: String,
     /// The line, or the piece of a very long one around the column; `None` if it is not to be shown.
     excerpt: Option<String>,
-    /// What is meant, in characters of the excerpt.
+    /// The marked part, in characters of the excerpt.
     mark: Range<usize>,
 }
 

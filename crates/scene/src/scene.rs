@@ -1,4 +1,4 @@
-//! What a scene says, as plain data.
+//! A scene, as plain data.
 //!
 //! All quantities are in one consistent set of units of the user's choice (mm, Mg, s, N, MPa or
 //! m, kg, s, N, Pa, …); nothing is converted. Positions are in the axes of the mesh, which are
@@ -23,7 +23,7 @@ use crate::modes::Modes;
 /// A scene that obeys every rule which needs no mesh: all numbers are finite and in range.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
-    /// What the run is about, for headings.
+    /// Title of the run, for headings.
     pub title: String,
     /// Labels of the units, for axes and tables.
     pub units: Units,
@@ -37,13 +37,13 @@ pub struct Scene {
     pub frame: Option<Frame>,
     /// The state at t = 0.
     pub initial: Initial,
-    /// What holds the body; `None` is a free one.
+    /// The constraint of the body; `None` is a free one.
     pub constraint: Option<Constraint>,
     /// Any number of loads, in the order of the file.
     pub loads: Vec<Load>,
     /// How far and how to step.
     pub time: Time,
-    /// What is written out.
+    /// The choice of outputs.
     pub output: Output,
     /// The scene file, as it was named to [`Scene::read`] or [`Scene::parse`].
     pub path: PathBuf,
@@ -51,7 +51,7 @@ pub struct Scene {
     pub source: String,
     /// Where the answers of the finite-element model are kept from run to run; nowhere, until the program says so.
     pub cache: Cache,
-    /// What finds modes and static responses in the place of this program; `None`, until the program says so. It is no part of
+    /// Solver of modes and static responses in the place of this program; `None`, until the program says so. It is no part of
     /// what is asked of a body: its answers are the same within rounding.
     pub solver: Option<Slepc>,
 }
@@ -81,7 +81,7 @@ pub enum Body {
 }
 
 impl Body {
-    /// Whether its elements are known, and with them stress and what follows from it.
+    /// True if its elements are known, and with them stress and its consequences.
     pub fn has_elements(&self) -> bool {
         matches!(self, Self::Meshed(_))
     }
@@ -94,7 +94,7 @@ pub struct MeshedBody {
     pub mesh: PathBuf,
     /// How it is read where it is no MSH 4.1: keys `mesh_size` and `raise_order`.
     pub import: ImportSettings,
-    /// What the elements are made of: key `material` for the whole mesh, or `materials` by the name of the physical group.
+    /// Materials of the elements: key `material` for the whole mesh, or `materials` by the name of the physical group.
     pub materials: Materials,
     /// Masses added at points; default none.
     pub point_masses: Vec<PointMass>,
@@ -152,16 +152,16 @@ pub struct Initial {
 pub struct Time {
     /// Time > 0 at the end of the run, which starts at 0.
     pub end: f64,
-    /// What sets the length of a step: key `step`, 1e-12 end ≤ step ≤ end, or `tolerance`, above 0 and below 1.
+    /// Control of the length of a step: key `step`, 1e-12 end ≤ step ≤ end, or `tolerance`, above 0 and below 1.
     pub control: StepControl,
     /// The equations of motion and the way from one step to the next: keys `formulation` and `scheme`.
     pub method: Method,
 }
 
-/// What is written out.
+/// The choice of outputs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Output {
-    /// When a state is written, besides the first and the last: key `every`, after so many steps, or `interval`, at the
+    /// When a state is written, besides the first and the last: key `every`, after that number of steps, or `interval`, at the
     /// multiples of this time. By default after each step, or after as many as give 5000 rows; with a tolerance, at each 500th
     /// of the end.
     pub rows: Rows,
@@ -169,17 +169,17 @@ pub struct Output {
     /// A name is not empty, `.` or `..` and has no `/` and no control character, since it names
     /// a group of the results file.
     pub points: BTreeMap<String, [f64; 3]>,
-    /// Whether the stress at the points is written, too; default no.
+    /// True if the stress at the points is written, too; default no.
     pub stress: bool,
-    /// Whether the largest von Mises stress of the whole body among the rows is looked for; default no.
+    /// True if the largest von Mises stress of the whole body among the rows is looked for; default no.
     pub peak_stress: bool,
-    /// Whether the stress of all nodes is wanted, in each coordinate: for exports, pages and body files. No key of the
+    /// True if the stress of all nodes is wanted, in each coordinate: for exports, pages and body files. No key of the
     /// scene file; [`Scene::with_stress_field`] sets it.
     pub stress_field: bool,
-    /// Whether each of several supports gets reactions of its own. No key of the scene file; [`Scene::without_rows`] clears it.
+    /// True if each of several supports gets reactions of its own. No key of the scene file; [`Scene::without_rows`] clears it.
     pub support_reactions: bool,
-    /// Whether it is to be known how the frequencies of modes that bend the body far go with their amplitudes, which takes static
-    /// answers. No key of the scene file; who computes no motion clears it.
+    /// True if the change of frequency with amplitude of modes that bend the body far is to be known, which takes static
+    /// responses. No key of the scene file; who computes no motion clears it.
     pub backbones: bool,
 }
 
@@ -222,12 +222,12 @@ impl Scene {
     }
 }
 
-/// What unknown forces may call for, and what they call for where there are modes.
+/// Effects that unknown forces may call for, of any body and of one with modes.
 const OF_ANY_BODY: [Effect; 3] = [Effect::Translation, Effect::Rotation, Effect::Gravity];
 const OF_MODES: [Effect; 3] = [Effect::Damping, Effect::DeformedInertia, Effect::Coriolis];
 
 impl Output {
-    /// Whether anything of the stress is wanted.
+    /// True if anything of the stress is wanted.
     pub fn any_stress(&self) -> bool {
         self.stress || self.peak_stress || self.stress_field
     }

@@ -151,7 +151,7 @@ impl<'de> Deserialize<'de> for NumberOrList {
     }
 }
 
-/// What holds the body, as the file gives it.
+/// A constraint of the body, as the file gives it.
 #[derive(Deserialize)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub(crate) enum ConstraintSection {

@@ -1,4 +1,4 @@
-//! What a value of the file must look like, and what to do if it looks different.
+//! Shapes that values of the file must have, and help if they have others.
 
 use std::fmt;
 
@@ -9,7 +9,7 @@ use crate::error::SceneError;
 use crate::example::example;
 use crate::shorten::shorten;
 
-/// What a value must look like.
+/// A shape that a value must have.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Shape {
     Number,
@@ -17,7 +17,7 @@ pub(crate) enum Shape {
     Count,
     Text,
     List,
-    /// A list of so many numbers.
+    /// A list with this number of numbers.
     Vector(usize),
     Table,
 }

@@ -84,7 +84,7 @@ pub(super) fn modes(kept: &Kept<'_>, rows: usize, motion: RigidMotion) -> Result
     })
 }
 
-/// What follows the first `before` shapes.
+/// Answer with the shapes after the first `before`.
 pub(super) fn of_added_shapes(modes: &Modes, before: usize) -> Answer {
     let added = modes.shapes.ncols() - before;
     Answer::default()

@@ -1,4 +1,4 @@
-//! What all models of a body share, whatever effects and modes they have: its mesh and its matrices.
+//! The base that all models of a body share, whatever effects and modes they have: its mesh and its matrices.
 
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;
@@ -29,7 +29,7 @@ pub(super) enum Assembled {
     Rigid(RigidBody),
 }
 
-/// What the matrices of a body are made of.
+/// Source of the matrices of a body.
 pub(super) enum MadeOf {
     Elements(MeshedBody),
     Files(MatrixFiles),
@@ -40,11 +40,11 @@ pub(super) struct AssembledMesh {
     pub scene: Scene,
     pub body: MadeOf,
     pub mesh: Arc<Mesh>,
-    /// What of the mesh file was left out.
+    /// Notes about the parts of the mesh file that were left out.
     pub mesh_notes: Vec<String>,
-    /// Those that are needed: where answers are known, none are.
+    /// The matrices, where they are needed: where answers are known, none are.
     matrices: OnceLock<(FeMatrices, Duration)>,
-    /// Of matrices from another program.
+    /// Checks of matrices from another program.
     pub checks: Option<MatrixChecks>,
     pub support: Support,
     pub drive: Option<Drive>,
@@ -151,7 +151,7 @@ impl AssembledMesh {
         self.checks.map_or(3, |checks| checks.freedoms)
     }
 
-    /// What the elements are made of.
+    /// Materials of the elements.
     pub fn materials(&self) -> Result<&Materials, BuildError> {
         match &self.body {
             MadeOf::Elements(body) => Ok(&body.materials),

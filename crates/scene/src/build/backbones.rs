@@ -7,11 +7,11 @@ use modal::{ModalError, Modes, StaticAccuracy};
 use super::error::BuildError;
 use super::mesh_model::{MeshModel, shapes_of};
 
-/// What is known of the modes that may bend the body far.
+/// Backbones of the modes that may bend the body far.
 pub(super) struct Backbones {
-    /// Of each natural mode that linear strain may get wrong by the bounds of the advice.
+    /// The backbone of each natural mode that linear strain may get wrong by the bounds of the advice.
     pub of_modes: Vec<Option<Backbone>>,
-    /// What they were made of.
+    /// The static derivatives that they were made of.
     pub derivatives: Derivatives,
 }
 

@@ -345,7 +345,7 @@ impl Named<'_> {
         }
     }
 
-    /// What makes the coordinates of all shapes from those of the modes: see [`Manifold`].
+    /// Adds the terms by which the coordinates of all shapes follow from those of the modes: see [`Manifold`].
     fn add_large_deflection(&mut self, manifold: &Manifold, following: MatRef<'_, f64>) {
         let (mass, length) = (self.scene.units.mass.clone(), self.scene.units.length.clone());
         let large = manifold.large();

@@ -33,7 +33,7 @@ struct MeshedBuilder<'a> {
 }
 
 impl Assembly {
-    /// What makes models of it.
+    /// The builder of models of it.
     ///
     /// # Errors
     /// [`BuildError`]: what the modal analysis refuses in the matrices and the support.
@@ -60,7 +60,7 @@ impl<'a> ModelBuilder<'a> {
         }
     }
 
-    /// Writes the problem of the modes that a scene asks for into a folder, to be solved elsewhere by SLEPc on so many ranks
+    /// Writes the problem of the modes that a scene asks for into a folder, to be solved elsewhere by SLEPc on a number of ranks
     /// ([`slepc::write_folder`]). Returns the files.
     ///
     /// # Errors
@@ -76,7 +76,7 @@ impl<'a> ModelBuilder<'a> {
         }
     }
 
-    /// What of the mesh's size was done up to now; none without a mesh.
+    /// Work of the mesh's size that was done up to now; none without a mesh.
     pub fn work(&self) -> BuildWork {
         self.solved().map_or_else(BuildWork::default, Solved::work)
     }

@@ -8,13 +8,13 @@ use crate::effects::Choice;
 use crate::modes::Flexible;
 use crate::scene::Scene;
 
-/// What a body is to have.
+/// The parts that a body is to have.
 pub(super) struct Decision {
     /// How many of the modes are kept.
     pub keep: usize,
-    /// Whether static shapes are added to them.
+    /// True if static shapes are added to them.
     pub has_static_shapes: bool,
-    /// What the modes leave out of the static responses to the spin (6), where static shapes for it are missing.
+    /// Remainder of the static responses to the spin beside the modes (6), where static shapes for it are missing.
     pub lacks: Option<Vec<f64>>,
     pub effects: EffectMap<bool>,
     /// Which of the modes that are kept are large, numbered from 0.

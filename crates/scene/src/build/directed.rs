@@ -9,6 +9,6 @@ use nalgebra::Vector3;
 pub(super) struct Directed {
     pub vector: Vector3<f64>,
     pub stiffness: Mat<f64>,
-    /// What of the stiffness is there.
+    /// Terms that the stiffness has.
     pub terms: GeometricTerms,
 }

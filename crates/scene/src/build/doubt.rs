@@ -1,4 +1,4 @@
-//! What is doubtful of a scene beside its mesh, before anything expensive is computed: mostly slips of units.
+//! Doubts about a scene and its mesh, before anything expensive is computed: mostly slips of units.
 
 use std::fmt;
 
@@ -50,7 +50,7 @@ impl fmt::Display for Doubt {
     }
 }
 
-/// What is doubtful of a scene with this mesh.
+/// Doubts about a scene with this mesh.
 pub fn doubts(scene: &Scene, mesh: &Mesh) -> Vec<Doubt> {
     let Body::Meshed(body) = &scene.body else { return Vec::new() };
     if !mesh.has_elements() {

@@ -153,7 +153,7 @@ pub(super) fn too_many_modes(scene: &Scene, error: ModalError) -> BuildError {
     }
 }
 
-/// What the modal analysis says knows no file.
+/// Adds the scene file to errors of the modal analysis, which know no file.
 pub(super) fn modal(scene: &Scene) -> impl Fn(ModalError) -> BuildError {
     |source| BuildError::Modal { scene: scene.path.clone(), source }
 }

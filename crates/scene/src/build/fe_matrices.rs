@@ -27,7 +27,7 @@ impl FeMatrices {
         }
     }
 
-    /// What answers questions of modes and statics.
+    /// The solver of modes and statics.
     pub fn solver<'a>(&'a self, positions: &'a [[f64; 3]], support: &Support) -> Result<Solver<'a>, ModalError> {
         match self {
             Self::Assembled(matrices) => {

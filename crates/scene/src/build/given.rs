@@ -12,14 +12,14 @@ use crate::scene::Scene;
 /// The nodes and the matrices of a body, and what was found when they were checked.
 pub(super) struct Given {
     pub nodes: Mesh,
-    /// Of what was read of the files.
+    /// Hash of the bytes that were read of the files.
     pub hash: Hash,
     pub notes: Vec<String>,
     pub matrices: FeMatrices,
     pub checks: MatrixChecks,
 }
 
-/// What the matrices of another program are found to be.
+/// Findings about the matrices of another program.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MatrixChecks {
     /// Degrees of freedom of a node: 3, or 6 with its rotations.
@@ -28,9 +28,9 @@ pub struct MatrixChecks {
     pub asymmetry: Option<f64>,
     /// How much K resists the rigid motion that it resists most: ‖K r‖/‖D r‖, D its diagonal.
     pub rigid_stiffness: f64,
-    /// Whether M is a scalar for each pair of nodes, as that of solid elements and point masses.
+    /// True if M is a scalar for each pair of nodes, as that of solid elements and point masses.
     pub is_scalar_mass: bool,
-    /// What the large rotation leaves out of M, relative to the modal mass ([`modal::mass_left_out`]).
+    /// The part of M that the large rotation leaves out, relative to the modal mass ([`modal::mass_left_out`]).
     pub left_out: f64,
 }
 
@@ -71,7 +71,7 @@ fn refuse_file(scene: &Scene, error: MatrixError) -> BuildError {
     }
 }
 
-/// What is wrong with matrices that could be read, at the key of the one at fault.
+/// Error for matrices that could be read, at the key of the one at fault.
 pub(super) fn refuse_matrix(scene: &Scene, files: &MatrixFiles, nodes: &Mesh, error: ModalError) -> BuildError {
     let name = |index: usize| nodes.node_tags().get(index).copied().unwrap_or_default();
     let (mass, stiffness) = (files.mass.display(), files.stiffness.display());

@@ -26,11 +26,11 @@ const PARALLEL: f64 = 1e-12;
 
 /// A load on the nodes of the mesh.
 pub(super) struct MeshLoad {
-    /// What it is, for the reader.
+    /// Name for the reader.
     name: String,
     action: Action,
     pub history: dynamics::History,
-    /// Whether it keeps its direction in the body or in the material.
+    /// True if it keeps its direction in the body or in the material.
     pub follows: bool,
     /// How the material that its direction turns with is turned by the nodes.
     turning: Option<Rotation>,
@@ -39,7 +39,7 @@ pub(super) struct MeshLoad {
     /// Attitude of the body at the beginning.
     attitude: Attitude,
     is_gravity: bool,
-    /// Whether it is the acceleration of the base, which stresses the body as that of a drive does.
+    /// True if it is the acceleration of the base, which stresses the body as that of a drive does.
     pub is_base_acceleration: bool,
 }
 
@@ -76,7 +76,7 @@ enum Action {
     Field { nodes: Vec<u32>, forces: Vec<Vector3<f64>>, group: String, pressure: f64 },
 }
 
-/// What a unit acceleration of the whole body takes.
+/// Forces of a unit acceleration of the whole body.
 pub(super) struct UnitWeight {
     /// Forces on the unknowns, for an acceleration along each axis (N×3). In general they act on rotations, too.
     pub forces: Mat<f64>,
@@ -103,9 +103,9 @@ enum Rotation {
     OfNode(u32),
 }
 
-/// What a pressure on a surface becomes as the surface moves in each mode.
+/// Change of a pressure on a surface as the surface moves in each mode.
 pub(super) struct FollowerChange {
-    /// Of the resultant and of the moment about the origin of the body (nf).
+    /// Change of the resultant and of the moment about the origin of the body (nf).
     pub force: Vec<Vector3<f64>>,
     pub moment: Vec<Vector3<f64>>,
     /// Ψᵀ ∂f/∂q (nf × nf).
@@ -236,7 +236,7 @@ fn acting(scene: &Scene) -> impl Iterator<Item = (usize, &Load)> {
     scene.loads.iter().enumerate().filter(move |(_, load)| with_gravity || !is_gravity(load))
 }
 
-/// What a load is, for the reader.
+/// Name of a load for the reader.
 fn name(i: usize, load: &Load) -> String {
     let kind = match load {
         Load::Force(_) => "the force",
@@ -404,7 +404,7 @@ impl MeshLoad {
         }
     }
 
-    /// What a pressure becomes as its surface moves; none of other loads.
+    /// Change of a pressure as its surface moves; none of other loads.
     pub(super) fn follower_change(
         &self,
         scene: &Scene,

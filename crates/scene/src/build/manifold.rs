@@ -40,7 +40,7 @@ struct LargeShapes {
 }
 
 impl LargeDeflection {
-    /// Of some `large` ones of the modes, of which some `derivatives` are known. `spin` is the stress
+    /// The manifold of some `large` modes, of which some `derivatives` are known. `spin` is the stress
     /// stiffness by the static responses to the spin.
     pub fn new(
         model: &MeshModel<'_>,

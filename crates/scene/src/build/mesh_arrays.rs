@@ -14,7 +14,7 @@ const NOTES: &str = "mesh_notes";
 /// The text with the materials that the mesh file gives to groups; a body file has none, but what was made of them.
 const MATERIALS: &str = "mesh_materials";
 
-/// What has no numbers.
+/// The part of a mesh that has no numbers.
 #[derive(Serialize, Deserialize)]
 struct Groups {
     /// Names of the groups of volumes.
@@ -37,7 +37,7 @@ pub(super) struct MeshArrays {
     tetrahedra: Vec<u32>,
     tetrahedron_tags: Vec<u64>,
     regions: Vec<u32>,
-    /// Of all groups, one after the other.
+    /// Triangles of all groups, one after the other.
     triangles: Vec<u32>,
     triangle_tags: Vec<u64>,
     /// Where each group ends.

@@ -17,7 +17,7 @@ pub(super) struct MeshModel<'a> {
     pub freedoms: usize,
     pub solver: &'a dyn Structure,
     pub support: &'a Support,
-    /// Those that may act.
+    /// Loads that may act.
     pub loads: Vec<MeshLoad>,
     pub drive: Option<Drive>,
 }

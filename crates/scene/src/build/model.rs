@@ -28,9 +28,9 @@ const SMALL: f64 = 1e-3;
 pub struct Meshed {
     /// The mesh.
     pub mesh: Arc<Mesh>,
-    /// What of the mesh file was left out, in sentences.
+    /// Notes about the parts of the mesh file that were left out, in sentences.
     pub mesh_notes: Vec<String>,
-    /// What the matrices were found to be, of a body of matrices from another program.
+    /// Checks of the matrices, of a body of matrices from another program.
     pub checks: Option<MatrixChecks>,
     /// Bytes that the mass and stiffness matrices took.
     pub matrix_bytes: usize,
@@ -48,7 +48,7 @@ pub struct Model {
     pub meshed: Option<Meshed>,
     /// The reduced body.
     pub body: ReducedBody,
-    /// What of the physics is computed.
+    /// The part of the physics that is computed.
     pub physics: Physics,
     /// The points whose motion is written out, by name.
     pub points: Vec<(String, PointShapes)>,
@@ -62,7 +62,7 @@ pub struct Model {
     pub times: BuildTimes,
     /// Its stress, where the scene asks for it.
     pub stress: Option<BodyStress>,
-    /// What each of several supports does to it.
+    /// Reactions of several supports.
     pub supports: Option<SupportRows>,
     pub(super) loads: Vec<SharedLoad>,
     pub(super) damping_ratios: Vec<f64>,
@@ -71,9 +71,9 @@ pub struct Model {
     /// The damping that the scene does not switch off, where it does not call for it, too (nf).
     pub(super) all_damping_ratios: Vec<f64>,
     pub(super) size: Size,
-    /// What the modes leave out of the static responses to the spin (6), where that is to be watched.
+    /// Remainder of the static responses to the spin beside the modes (6), where that is to be watched.
     pub(super) left_out: Vec<f64>,
-    /// Of the modes that may bend the body far.
+    /// Backbones of the modes that may bend the body far.
     pub(super) backbones: Vec<Option<Backbone>>,
 }
 
@@ -102,7 +102,7 @@ impl Model {
         &self.loads
     }
 
-    /// What acts in the run of its scene where forces are added that the estimates do not know: the physics, the loads and the
+    /// The parts of the run of its scene where forces are added that the estimates do not know: the physics, the loads and the
     /// damping ratio of each flexible mode. The effects are those of [`Scene::for_unknown_forces`].
     pub fn under_unknown_forces(&self, scene: &Scene) -> (Physics, Vec<SharedLoad>, Vec<f64>) {
         let mut physics = self.physics.clone();
@@ -112,7 +112,7 @@ impl Model {
         (physics, self.all_loads.clone(), self.all_damping_ratios.clone())
     }
 
-    /// Whether the stress of loads or of a drive stiffens the body.
+    /// True if the stress of loads or of a drive stiffens the body.
     pub fn is_stressed(&self) -> bool {
         self.physics.drive_stiffness.is_some() || self.loads.iter().any(|load| load.matrix_entries() > 0)
     }
@@ -217,7 +217,7 @@ impl Model {
         Ok(Simulation::new(&setup)?)
     }
 
-    /// What the length of the steps gets wrong, estimated; nothing under step control.
+    /// Estimated error of the length of the steps; nothing under step control.
     ///
     /// # Errors
     /// As [`Model::start`].
@@ -225,7 +225,8 @@ impl Model {
         Ok(advice::step_estimate(&self.setup(scene, &self.initial(scene)))?)
     }
 
-    /// What [`Simulation::new`] needs for the run of a scene, without its points. Loads, steps or anything else may be
+    /// The setup that [`Simulation::new`] needs for the run of a scene, without its points. Loads, steps or anything else
+    /// may be
     /// replaced.
     pub fn setup<'a>(&'a self, scene: &Scene, initial: &'a Initial) -> Setup<'a> {
         Setup {

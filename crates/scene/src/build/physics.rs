@@ -12,26 +12,26 @@ use crate::load::Load;
 use crate::modes::Large;
 use crate::scene::Scene;
 
-/// Whether anything may set the body spinning.
+/// True if anything may set the body spinning.
 pub(super) fn may_spin(scene: &Scene, motion: RigidMotion, drive: Option<&Drive>) -> bool {
     let set_off = drive.is_some() || scene.initial.angular_velocity != [0.0; 3] || !scene.loads.is_empty();
     turning(scene, motion, drive) != Turning::Not && set_off
 }
 
-/// Whether the stress of loads and drives may stiffen the body.
+/// True if the stress of loads and drives may stiffen the body.
 pub(super) fn may_stress(scene: &Scene) -> bool {
     scene.body.has_elements()
         && scene.effects.choices[Effect::GeometricStiffening] != Choice::Off
         && scene.time.method.abilities.geometric_stiffening
 }
 
-/// Whether a load stays as it is, seen from the body.
+/// True if a load stays as it is, seen from the body.
 pub(super) fn is_steady(scene: &Scene, motion: RigidMotion, drive: Option<&Drive>, load: &MeshLoad) -> bool {
     let turns = turning(scene, motion, drive) != Turning::Not;
     matches!(load.history, dynamics::History::Constant) && (load.follows || !turns)
 }
 
-/// Whether static shapes are to be added to the `flexible` modes that there are.
+/// The choice to add static shapes to the `flexible` modes that there are.
 pub(super) fn static_correction(scene: &Scene, flexible: usize) -> Choice {
     match scene.modes.static_correction {
         _ if flexible == 0 => Choice::Off,
@@ -57,7 +57,8 @@ pub(super) fn effects(scene: &Scene, advice: &Advice, body: &ReducedBody, keep: 
     effects
 }
 
-/// Whether what holds a body bears its weight, however little that moves it: it is no less than `tolerance` of each force.
+/// True if the constraint bears the weight of the body, however little that moves it: it is no less than `tolerance` of each
+/// force.
 fn bears_weight(scene: &Scene, mass: f64) -> bool {
     let largest = |of: fn(&Load) -> Option<f64>| scene.loads.iter().filter_map(of).map(f64::abs).reduce(f64::max);
     let force = largest(|load| if let Load::Force(force) = load { Some(force.amplitude) } else { None });

@@ -34,7 +34,7 @@ pub struct BuildTimes {
     pub reduction: Duration,
 }
 
-/// What of the mesh's size was done.
+/// Work of the mesh's size.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct BuildWork {
     /// Blocks of columns that the factor of K + sM was used for.

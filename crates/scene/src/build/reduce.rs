@@ -15,7 +15,7 @@ use super::stress::Stress;
 use super::structure::Structure;
 use super::survey::Survey;
 
-/// What is said of effects that may matter but need elements.
+/// Sentence about effects that may matter but need elements.
 const WITHOUT_ELEMENTS: &str =
     "By a bound it may matter; it cannot be computed, since the elements of a body of matrices are not known.";
 
@@ -23,7 +23,7 @@ const WITHOUT_ELEMENTS: &str =
 pub(super) struct Reduction {
     pub modes: Modes,
     pub modal: ModalModel,
-    /// Of the modes that are kept.
+    /// Backbones of the modes that are kept.
     pub backbones: Vec<Option<Backbone>>,
     pub stress: Stress,
     /// The manifold of the large modes, if any are.

@@ -40,7 +40,7 @@ pub(super) struct Solved<'a> {
 }
 
 impl<'a> Solved<'a> {
-    /// What can be refused is refused at once where no answers are kept.
+    /// Errors of the matrices come at once where no answers are kept.
     pub fn new(assembled: &'a AssembledMesh) -> Result<Self, BuildError> {
         let solved = Self {
             assembled,
@@ -60,7 +60,8 @@ impl<'a> Solved<'a> {
         self.ask_count(|| self.about_the_body("matrix bytes"), || Ok(self.matrices()?.bytes()))
     }
 
-    /// What the matrices were found to be, of a body of matrices from another program, with what the motion in these modes
+    /// Checks of the matrices, of a body of matrices from another program, with the part of the mass that the motion in
+    /// these modes
     /// leaves out of the mass.
     pub fn checks(&self, modes: &Modes) -> Result<Option<MatrixChecks>, BuildError> {
         let Some(checks) = self.assembled.checks else { return Ok(None) };
@@ -77,7 +78,7 @@ impl<'a> Solved<'a> {
         self.ask_count(|| self.about_the_held_body("number of modes"), || Ok(self.solver()?.available()))
     }
 
-    /// Writes the problem of so many modes into a folder, to be solved elsewhere on so many ranks. Returns the files.
+    /// Writes the problem of a number of modes into a folder, to be solved elsewhere on a number of ranks. Returns the files.
     pub fn write_problem(&self, modes: usize, folder: &Path, ranks: usize) -> Result<Vec<PathBuf>, BuildError> {
         let (scene, solver) = (&self.assembled.scene, self.solver()?);
         let available = solver.available();
@@ -89,7 +90,7 @@ impl<'a> Solved<'a> {
             .map_err(|source| modal(scene)(ModalError::Engine(source.into())))
     }
 
-    /// What of the mesh's size was done up to now.
+    /// Work of the mesh's size that was done up to now.
     pub fn work(&self) -> BuildWork {
         let [blocks, columns] = self.solver.get().map_or([0; 2], Solver::solved);
         BuildWork { blocks, columns, element_passes: self.element_passes.get() }
@@ -122,7 +123,7 @@ impl<'a> Solved<'a> {
         Ok(self.solver.get_or_init(|| solver))
     }
 
-    /// What the modal analysis refuses, in words of the files where the matrices come from files.
+    /// Error of the modal analysis, in words of the files where the matrices come from files.
     fn refuse(&self, error: ModalError) -> BuildError {
         let AssembledMesh { scene, body, mesh, .. } = self.assembled;
         match body {
@@ -139,7 +140,7 @@ impl<'a> Solved<'a> {
         Ok(self.recovery.get_or_init(|| recovery))
     }
 
-    /// What is known of a question, which is written out only where something is kept.
+    /// Answer to a question, which is written out only where something is kept.
     fn ask<T>(
         &self,
         question: impl FnOnce() -> Digest,
@@ -222,7 +223,7 @@ impl<'a> Solved<'a> {
         Err(self.assembled.scene.refuse("body.file", found, expected, cure).into())
     }
 
-    /// What holds the body. Written out, numbers are what they are to the last bit.
+    /// Text of the support. Its numbers are exact to the last bit.
     pub fn support_text(&self) -> String {
         let Support { motion, nodes, freedoms } = &self.assembled.support;
         format!("{motion:?} {freedoms:?} {}", Hash::of(nodes))
@@ -483,7 +484,7 @@ impl Structure for Solved<'_> {
     }
 }
 
-/// What the search for the buckling load may meet.
+/// Errors in the search for the buckling load.
 #[derive(Debug, thiserror::Error)]
 enum BucklingError {
     #[error(transparent)]

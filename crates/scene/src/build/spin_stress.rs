@@ -60,7 +60,7 @@ impl SpinStress {
         Mat::from_fn(all.nrows(), all.ncols(), entry)
     }
 
-    /// Whether all terms are taken between all modes.
+    /// True if all terms are taken between all modes.
     pub fn is_by_all_terms(&self) -> bool {
         self.only_initial.col_iter().all(|column| !column.iter().any(|only| *only))
     }

@@ -52,7 +52,7 @@ pub(super) struct OfLoads {
 /// The answers to the centrifugal field of each pair of spins (3n × 6).
 pub(super) struct OfSpin {
     pub answers: Mat<f64>,
-    /// What the modes leave out of each (6).
+    /// Remainder of each beside the modes (6).
     pub remainders: Vec<f64>,
 }
 
@@ -110,7 +110,7 @@ impl Statics {
         })
     }
 
-    /// Whether there are any.
+    /// True if there are any.
     pub fn any(&self) -> bool {
         self.of_loads.is_some() || self.of_spin.is_some() || self.of_drive.is_some()
     }
@@ -150,7 +150,7 @@ impl Statics {
         self.of_loads.as_ref().map_or(&[], |of_loads| &of_loads.compliances)
     }
 
-    /// What the modes leave out of the static responses to the spin (6); none where it is not known.
+    /// Remainder of the static responses to the spin beside the modes (6); none where it is not known.
     pub fn remainders(&self) -> &[f64] {
         self.of_spin.as_ref().map_or(&[], |of_spin| &of_spin.remainders)
     }

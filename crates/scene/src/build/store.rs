@@ -28,7 +28,7 @@ pub(super) struct Store {
     mesh: Hash,
     /// The start of all questions about the body.
     body: Digest,
-    /// What was asked, for who writes a body file.
+    /// Questions that were asked, for who writes a body file.
     asked: Mutex<BTreeSet<Hash>>,
 }
 
@@ -162,7 +162,7 @@ impl Store {
         });
     }
 
-    /// What a file of the cache has; none where there is no file, or one that is no good.
+    /// Content of a file of the cache; none where there is no file, or a damaged one.
     fn read<T>(&self, place: &Path, read: impl Fn(&BodyFile) -> Result<T, BodyFileError>) -> Option<T> {
         match BodyFile::open(place).and_then(|file| read(&file)) {
             Ok(found) => {
@@ -172,7 +172,7 @@ impl Store {
             }
             Err(BodyFileError::System { source, .. }) if source.kind() == std::io::ErrorKind::NotFound => None,
             Err(error) => {
-                self.cache.warn(format!("an answer in the cache is no good and is computed again: {error}"));
+                self.cache.warn(format!("cache entry damaged; recomputing: {error}"));
                 None
             }
         }
@@ -197,7 +197,7 @@ impl Store {
     }
 }
 
-/// Whether a file has the answer to a question, or a part of it.
+/// True if a file has the answer to a question, or a part of it.
 fn has(file: &BodyFile, question: &Hash) -> bool {
     let group = group(question);
     file.datasets().any(|dataset| dataset.strip_prefix(&group).is_some_and(|rest| rest.starts_with('/')))

@@ -1,4 +1,4 @@
-//! What loads and a drive stress, and what that makes of the stiffness.
+//! Stress of loads and of a drive, and the stiffness by it.
 
 use advice::{Row, StressField, StressSource, stress, stress_row};
 use dynamics::Effect;
@@ -18,17 +18,17 @@ use crate::effects::Choice;
 /// initial displacement are wrong there: see [`fem_tet10::reduced_geometric_stiffness`]. They are taken where none of them
 /// exceeds this part of √(λ_k λ_l): what they get wrong is of the size of its square.
 const SMALL: f64 = 0.03;
-/// What the stress of a drive has, and of a base that is accelerated alike.
+/// Terms of the stress of a drive, and of a base that is accelerated alike.
 pub(super) const DRIVE: GeometricTerms = GeometricTerms::InitialStress;
 
 /// Stiffness in the modes (nf × nf) by the stress of what acts on a body, where it matters.
 #[derive(Default)]
 pub(super) struct Stress {
-    /// Of each load, in the direction of each of its static responses; empty where it is left out.
+    /// Stiffness of each load, in the direction of each of its static responses; empty where it is left out.
     pub of_loads: Vec<Vec<Directed>>,
-    /// Of a unit acceleration of the drive.
+    /// Stiffness of a unit acceleration of the drive.
     pub of_drive: Option<Mat<f64>>,
-    /// What the advice says of the one that matters most.
+    /// The advice on the one that matters most.
     pub row: Option<Row>,
     /// The steady dead loads over those at which the body buckles; 0 where they do not make it buckle.
     pub buckling_ratio: f64,
@@ -106,7 +106,7 @@ impl Stress {
         Ok(self)
     }
 
-    /// Whether there is any.
+    /// True if there is any.
     pub fn any(&self) -> bool {
         self.of_drive.is_some() || self.of_loads.iter().any(|directed| !directed.is_empty())
     }

@@ -23,7 +23,7 @@ use super::structure::StaticForces;
 #[derive(Debug)]
 pub(super) struct LeftOut {
     pub stress: SiteStress,
-    /// Of the first columns of `stress`; those of the spin and of its change follow.
+    /// Parts of the first columns of `stress`; those of the spin and of its change follow.
     loads: Vec<LoadPart>,
 }
 
@@ -100,7 +100,7 @@ impl LeftOut {
     }
 }
 
-/// What the answers have beside the modes; `forces` are K times the answers.
+/// Remainder of the responses beside the modes; `forces` are K times the responses.
 fn rest(modes: &Modes, answers: MatRef<'_, f64>, forces: MatRef<'_, f64>) -> Mat<f64> {
     let mut parts = modes.shapes.transpose() * forces;
     for (k, eigenvalue) in modes.eigenvalues.iter().enumerate() {

@@ -54,7 +54,7 @@ pub struct StressPeak {
 }
 
 impl BodyStress {
-    /// What the scene asks for; nothing if it does not. `large` are the manifold of the large modes and its extended shapes.
+    /// The stress that the scene asks for, if any. `large` are the manifold of the large modes and its extended shapes.
     pub(super) fn new(
         model: &MeshModel<'_>,
         modes: &Modes,

@@ -1,4 +1,4 @@
-//! What is asked of the finite-element model of a body.
+//! Questions to the finite-element model of a body.
 
 use dynamics::DrivenMotion;
 use faer::{Mat, MatRef};
@@ -16,7 +16,7 @@ pub(super) trait Structure {
     /// The rigid and the `flexible` lowest other modes.
     fn modes(&self, flexible: usize, progress: &mut dyn FnMut(BuildProgress)) -> Result<Modes, BuildError>;
 
-    /// What a unit acceleration of the whole body takes.
+    /// Forces of a unit acceleration of the whole body.
     fn unit_weight(&self) -> Result<UnitWeight, BuildError>;
 
     /// M times fields (3n×k).
@@ -52,7 +52,7 @@ pub(super) trait Structure {
     /// The body in the coordinates of its modes.
     fn reduced_body(&self, modes: &Modes) -> Result<ReducedBody, BuildError>;
 
-    /// What each of the static responses (6) has beside the modes: √(uᵀMu − Σ(Φ_kᵀMu)²).
+    /// Remainder of each of the static responses (6) beside the modes: √(uᵀMu − Σ(Φ_kᵀMu)²).
     fn remainders(&self, modes: &Modes, answers: MatRef<'_, f64>) -> Result<Vec<f64>, BuildError>;
 
     /// Stiffness in the modes (nf×nf) by the stress of each displacement field (3n×k). `known` are those in the first of the
@@ -87,9 +87,9 @@ pub(super) trait Structure {
 
 /// Forces that static responses are asked for.
 pub(super) struct StaticForces {
-    /// Of the loads (3n×k).
+    /// Forces of the loads (3n×k).
     pub of_loads: Mat<f64>,
-    /// Whether the centrifugal fields of the pairs of spins follow.
+    /// True if the centrifugal fields of the pairs of spins follow.
     pub spin: bool,
     /// The driven motion whose inertia comes last.
     pub drive: Option<DrivenMotion>,

@@ -1,4 +1,4 @@
-//! What holds the body of a scene: nodes of its mesh, the rigid motions left, and what drives it.
+//! Support of the body of a scene: nodes of its mesh, the rigid motions left, and the drive.
 
 use std::collections::HashSet;
 

@@ -11,11 +11,11 @@ use super::support::held_parts;
 use crate::constraint::Constraint;
 use crate::scene::Scene;
 
-/// What each of several supports does to the body: a force, and a moment about the mean of the nodes that it holds.
+/// Reactions of several supports: for each a force on the body, and a moment about the mean of the nodes that it holds.
 #[derive(Debug, Clone)]
 pub struct SupportRows {
     names: Vec<String>,
-    /// Which component of which support each motion is: 0 to 2 of the force, 3 to 5 of the moment.
+    /// Support and component of each motion: 0 to 2 of the force, 3 to 5 of the moment.
     components: Vec<(usize, usize)>,
     reactions: SupportReactions,
 }

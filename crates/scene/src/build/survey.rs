@@ -14,12 +14,12 @@ use super::spin_stress::SpinStress;
 use super::statics::{Asked, Statics};
 use crate::effects::Choice;
 
-/// What is known of a body with all the modes that were searched for. What cannot matter has not been computed.
+/// Properties of a body with all the modes that were searched for. Those that cannot matter are not computed.
 pub(super) struct Survey {
     pub modes: Modes,
     /// With the stress stiffness of the spin where it may matter.
     pub modal: ModalModel,
-    /// That stiffness.
+    /// The stress stiffness of the spin.
     pub spin: Option<SpinStress>,
     pub statics: Statics,
     pub backbones: Backbones,
@@ -67,7 +67,7 @@ impl Survey {
     }
 }
 
-/// Whether the stress of the spin may matter, and is to be computed.
+/// True if the stress of the spin may matter, and is to be computed.
 fn may_stiffen(model: &MeshModel<'_>, modal: &ModalModel) -> Result<bool, BuildError> {
     let &MeshModel { scene, support, .. } = model;
     let has_none = modal.body.flexible() == 0 || !scene.body.has_elements();
@@ -85,7 +85,7 @@ fn may_stiffen(model: &MeshModel<'_>, modal: &ModalModel) -> Result<bool, BuildE
     })
 }
 
-/// Whether the modes may leave out something of the static response to the spin that matters, and what is to be computed:
+/// True if the modes may leave out something of the static response to the spin that matters, which is to be computed:
 /// for static shapes, or to tell that they are missing.
 fn may_stretch(model: &MeshModel<'_>, modal: &ModalModel) -> Result<bool, BuildError> {
     let &MeshModel { scene, support, .. } = model;

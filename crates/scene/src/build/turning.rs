@@ -1,4 +1,4 @@
-//! Whether and how the body of a scene can turn.
+//! Rotations that the body of a scene can make.
 
 use dynamics::{Drive, DrivenMotion, Effect};
 use modal::RigidMotion;

@@ -264,7 +264,7 @@ impl Check<'_> {
     }
 
     fn point_masses(&self, masses: &[PointMass]) -> Result<(), SceneError> {
-        let cure = "mesh so many masses as a part of the body, with a material of their density";
+        let cure = "mesh that many masses as a part of the body, with a material of their density";
         self.not_too_many("body.point_masses", masses.len(), cure)?;
         for (i, point_mass) in masses.iter().enumerate() {
             let key = format!("body.point_masses[{i}]");
@@ -285,7 +285,7 @@ impl Check<'_> {
     }
 }
 
-/// What speaks against the tensor as one of inertia.
+/// Reason why the tensor is none of inertia.
 fn not_an_inertia(tensor: &Matrix3<f64>) -> Option<String> {
     let size = tensor.amax();
     if !(size > 0.0 && tensor.iter().all(|entry| entry.is_finite())) {

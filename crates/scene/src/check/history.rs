@@ -11,10 +11,10 @@ use crate::ordinary_file::open_ordinary;
 use crate::place::Place;
 use crate::shorten::shorten;
 
-/// What a table holds.
+/// Content of a table.
 const PAIRS: &str = "pairs of time and factor";
 
-/// What to do about times that are too close.
+/// Help about times that are too close.
 const APART: &str = "move the times apart, or make the run shorter; for a jump use `kind = \"step\"`";
 
 impl Check<'_> {

@@ -84,7 +84,7 @@ impl Check<'_> {
     }
 }
 
-/// What a constraint leaves of a velocity.
+/// The part of a velocity that a constraint leaves.
 enum Left {
     All,
     Along([f64; 3]),

@@ -124,7 +124,7 @@ impl Check<'_> {
                 return Err(self.document.place("output.interval").refuse(
                     "both `every` and `interval`",
                     "at most one of them",
-                    "keep `every` for a row after so many steps, or `interval` for rows at its multiples",
+                    "keep `every` for a row after that number of steps, or `interval` for rows at its multiples",
                 ));
             }
             (Some(_), None, StepControl::Tolerance(_)) => {

@@ -1,4 +1,4 @@
-//! What `"auto"` keeps.
+//! Modes that `"auto"` keeps.
 
 use nalgebra::Vector3;
 

@@ -12,7 +12,7 @@ use super::cache::{FORCE, built};
 const MATERIAL: &str = "material = { young_modulus = 70e3, poisson_ratio = 0.3, density = 2.7e-9 }";
 const MASS: &str = "point_masses = [{ at = [200.0, 0.0, 0.0], mass = 1e-6 }]";
 
-/// A scene in a folder of its own, with this body and so many modes.
+/// A scene in a folder of its own, with this body and number of modes.
 fn scene(folder: &Path, body: &str, modes: &str, rest: &str) -> Scene {
     Scene::parse(&text(body, modes, rest), folder.join("scene.toml")).unwrap_or_else(|error| panic!("{error}"))
 }

@@ -1,4 +1,4 @@
-//! What is kept from run to run gives the same body, to the last bit, and nothing else is taken for it.
+//! Answers that are kept from run to run give the same body, to the last bit, and nothing else is taken for them.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -154,7 +154,7 @@ fn damaged_answers_are_computed_again_and_made_anew() {
         assert!(built(&with_cache(&scene, &cache)).0 == direct);
         let notes = cache.notes();
         assert_eq!((notes.read, notes.warnings.len()), (0, all.len()), "{notes:?}");
-        assert!(notes.warnings[0].contains("is no good and is computed again"), "{notes:?}");
+        assert!(notes.warnings[0].contains("cache entry damaged; recomputing"), "{notes:?}");
         let cache = Cache::new(folder.path(), LIMIT);
         assert_eq!(built(&with_cache(&scene, &cache)).1, 0);
     }

@@ -93,7 +93,7 @@ fn build(scene: &Scene) -> Model {
     Model::build(scene, |_| ()).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// What a scene is refused with.
+/// Error with which a scene is refused.
 fn refusal(scene: &Scene) -> BuildError {
     match Model::build(scene, |_| ()) {
         Ok(_) => panic!("it was built"),

@@ -96,7 +96,7 @@ fn the_frequency_of_the_plate_falls_with_its_amplitude() {
     }
 }
 
-/// What is left out beyond fourth order in some modal displacements, about.
+/// Error beyond fourth order in some modal displacements, about.
 fn left_out_of(model: &Model, first: &[f64]) -> f64 {
     let mut q = vec![0.0; model.body.flexible()];
     q[..first.len()].copy_from_slice(first);

@@ -1,4 +1,4 @@
-//! What is off is not computed.
+//! Effects that are off are not computed.
 
 use std::time::Duration;
 

@@ -1,4 +1,4 @@
-//! What the steps are estimated to get wrong, against what they do.
+//! Estimated errors of the steps, against true ones.
 
 use dynamics::{Effect, Observation, Reached, Rows, StepControl};
 use scene::{Choice, Model, Scene};
@@ -107,7 +107,7 @@ fn of_a_ring_that_spins_and_is_struck_and_of_a_rigid_pendulum() {
     check(&mut example("pendulum"), &[1e-1, 2e-2, 5e-3], 1e-4, 3.0);
 }
 
-/// Of a long run only the beginning is compared.
+/// Long runs: only the beginning is compared.
 #[test]
 fn of_a_run_too_long_to_be_made_three_times() {
     let mut scene = example("accuracy/spin");

@@ -1,4 +1,4 @@
-//! What stresses a body stiffens it: frequencies under loads against closed forms and against each other.
+//! Stress stiffens a body: frequencies under loads against closed forms and against each other.
 
 use advice::Refusal;
 use nalgebra::DMatrix;

@@ -1,4 +1,4 @@
-//! What a steady spin stretches: a free bar about its middle, whose lowest modes bend and hold nothing of it.
+//! Stretch by a steady spin: a free bar about its middle, whose lowest modes bend and hold nothing of it.
 
 use advice::{Broken, Review};
 

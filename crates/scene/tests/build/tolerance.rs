@@ -1,4 +1,4 @@
-//! What step control keeps within its tolerance.
+//! Quantities that step control keeps within its tolerance.
 
 use dynamics::{Effect, Observation, Rows, StepControl};
 use scene::{Choice, Model, Scene};
@@ -43,7 +43,7 @@ fn errors(model: &Model, scene: &Scene, tolerance: f64, reference: f64) -> [f64;
     found
 }
 
-/// Of attitude and modal coordinates; accelerations of points, where many modes meet, may be off by `points` times the
+/// Check of attitude and modal coordinates; accelerations of points, where many modes meet, may be off by `points` times the
 /// tolerance.
 fn check(scene: &Scene, tolerances: &[f64], reference: f64, points: f64) {
     let model = Model::build(scene, |_| ()).unwrap();

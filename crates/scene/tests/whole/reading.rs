@@ -1,4 +1,4 @@
-//! What the files say is what the scene holds; what cannot be read says why.
+//! Files are read into what the scene holds; those that cannot be read say why.
 
 use std::path::Path;
 

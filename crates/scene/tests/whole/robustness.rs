@@ -7,7 +7,7 @@ use scene::Scene;
 
 const EXAMPLE: &str = include_str!("../../src/example.toml");
 
-/// What a text has cost, and what came of it.
+/// Cost of reading a text, and its result.
 struct Read {
     answer: Result<Scene, String>,
     /// Most bytes held meanwhile.
@@ -76,7 +76,7 @@ fn damaged_scenes() {
     assert!(worst < 64 << 10, "{worst} bytes more than 50 for a byte of the text");
 }
 
-/// A text with so many of something, for each thing that there may be many of, and what it is refused with ("" if it is
+/// A text with a number of something, for each thing that there may be many of, and what it is refused with ("" if it is
 /// not).
 fn large_scenes(n: usize) -> Vec<(&'static str, String, &'static str)> {
     let repeated = |line: &dyn Fn(usize) -> String| (0..n).map(line).collect::<String>();

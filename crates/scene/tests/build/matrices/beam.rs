@@ -106,7 +106,7 @@ fn gravity_acts_at_the_centre_of_mass_of_a_mass_beside_its_node() {
     close(last.velocity_global.norm(), 9810.0 * 0.5, 1e-9);
 }
 
-/// What the large rotation leaves out of a consistent mass goes with the square of the length of the elements.
+/// The part of a consistent mass that the large rotation leaves out goes with the square of the length of the elements.
 #[test]
 fn what_is_left_out_of_the_mass_is_told() {
     let left_out = |elements: usize| {

@@ -1,4 +1,5 @@
-//! What CalculiX writes with `*FREQUENCY, SOLVER=MATRIXSTORAGE`, against its own frequencies. Needs `ccx` (`./dev test` sees to it).
+//! Matrices of CalculiX with `*FREQUENCY, SOLVER=MATRIXSTORAGE`, against its own frequencies. Needs `ccx` (`./dev test` sees
+//! to it).
 
 use std::collections::HashMap;
 use std::fmt::Write;
@@ -46,7 +47,7 @@ impl Model3 {
     }
 }
 
-/// A block of C3D20 in so many elements along each axis, or a plate of S8 without the last axis.
+/// A block of C3D20 with numbers of elements along each axis, or a plate of S8 without the last axis.
 fn grid(count: [usize; 3], is_shell: bool, place: impl Fn([f64; 3]) -> [f64; 3]) -> Model3 {
     let mut model = Model3::default();
     let mut known: HashMap<[usize; 3], usize> = HashMap::new();
@@ -215,7 +216,8 @@ fn tumbling(files: &Files, body: &str) -> Scene {
     )
 }
 
-/// What differs is the discretization: the frequencies of the two meshes agree to 4e-3 (the first to 1e-4), the elastic displacement
+/// Only the discretization differs: the frequencies of the two meshes agree to 4e-3 (the first to 1e-4), the elastic
+/// displacement
 /// of an end in 0.1 s to 3e-3 of its largest, and the attitude after a turn of a radian to 1e-6 rad.
 #[test]
 fn the_hexahedral_plate_tumbles_as_the_tetrahedral_one() {

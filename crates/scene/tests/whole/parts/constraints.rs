@@ -1,4 +1,4 @@
-//! What holds or drives the body.
+//! Constraints and drives of the body.
 
 use scene::{Constraint, DrivenSpeed, HeldDirections, HingeLine, History, Region, Scene};
 

@@ -1,4 +1,4 @@
-//! What acts on the body.
+//! Loads of the body.
 
 use scene::{BaseAcceleration, Force, Gravity, History, Load, LoadFrame, Moment, Pressure, Scene, Traction};
 

@@ -1,4 +1,4 @@
-//! What each part of the scene file says is what the scene holds, or is refused.
+//! Each part of the scene file is what the scene holds, or is refused.
 
 use crate::common;
 mod constraints;
