@@ -23,23 +23,31 @@ const GIVEN: usize = 3;
 const MOST_BLOCKS: usize = 10;
 /// Relative change of θ at which it counts as found.
 const SETTLED: f64 = 1e-5;
-/// A lowest θ above this after the second block is far from −1, and is not looked for any further.
-const FAR: f64 = -0.1;
 /// Smallest part of a vector beside the basis with which it is added.
 const DEPENDENT: f64 = 1e-7;
 
+/// How well the lowest buckling ratio is to be known.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum BucklingAccuracy {
+    /// From two blocks: it shows whether loads are far from those at which the body buckles.
+    Estimate,
+    /// To 1e-4 of itself.
+    Full,
+}
+
 impl Solver<'_> {
     /// The lowest θ of `K_σ v = θ K v` in the space that the support allows, or 0 where there is none below: the loads
-    /// that make K_σ are −θ times those at which the body buckles. To 1e-4 of itself where it is below −0.1. Eq. (M12) of `docs/method/modes.md`.
+    /// that make K_σ are −θ times those at which the body buckles. Eq. (M12) of `docs/method/modes.md`.
     ///
     /// `product` gives `K_σ V` (N×k) for V (N×k). `start` (N×k) are displacements to begin with, such as vibration modes.
     ///
     /// # Errors
-    /// [`ModalError::Size`] for displacements of another body, what `product` returns, and of the static responses
+    /// [`ModalError::Size`] for displacements of another body, what `product` returns, and the errors of
     /// [`Solver::static_response`].
     pub fn lowest_buckling_ratio<E: From<ModalError>>(
         &self,
         start: MatRef<'_, f64>,
+        accuracy: BucklingAccuracy,
         mut product: impl FnMut(MatRef<'_, f64>) -> Result<Mat<f64>, E>,
     ) -> Result<f64, E> {
         let size = self.rigid.shapes.nrows();
@@ -65,7 +73,7 @@ impl Solver<'_> {
                 Mat::from_fn(reduced.nrows(), reduced.ncols(), |i, j| 0.5 * (reduced[(i, j)] + reduced[(j, i)]));
             let (values, _) = symmetric_eigen(&symmetric)?;
             let before = std::mem::replace(&mut lowest, values.iter().copied().fold(0.0, f64::min));
-            if round > 0 && (lowest > FAR || (before - lowest) <= SETTLED * -lowest) {
+            if round > 0 && (accuracy == BucklingAccuracy::Estimate || (before - lowest) <= SETTLED * -lowest) {
                 break;
             }
             block = self.static_response(of_added.as_ref())?;

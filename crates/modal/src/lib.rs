@@ -85,6 +85,7 @@ mod symmetry;
 mod tall;
 mod turned;
 
+pub use buckling::BucklingAccuracy;
 pub use engine::{Eigenpairs, Engine, EngineStats, StaticAnswers};
 pub use error::{EngineError, ModalError};
 pub use fields::{acceleration_fields, centrifugal_fields, turning_field};

@@ -28,7 +28,10 @@ const PARALLEL: f64 = 1e-12;
 pub(super) struct MeshLoad {
     /// Name for the reader.
     name: String,
+    /// Of an amplitude of 1 or −1.
     action: Action,
+    /// Size of the amplitude.
+    size: f64,
     pub history: dynamics::History,
     /// True if it keeps its direction in the body or in the material.
     pub follows: bool,
@@ -69,7 +72,7 @@ enum Action {
     /// A force at the weighted mean of nodes; the weights sum to one.
     Force { nodes: Vec<u32>, weights: Vec<f64>, force: Vector3<f64> },
     /// A force on every mass: M times an acceleration of the whole body.
-    Weight { unit: Arc<UnitWeight>, force: Vector3<f64> },
+    Weight { weight: Arc<UnitWeight>, force: Vector3<f64> },
     /// A couple on the rotation of the material at its place.
     Moment { patch: Rotation, moment: Vector3<f64> },
     /// Forces on nodes that are fixed in the body.
@@ -124,20 +127,18 @@ pub(super) fn on_mesh(
         .map(|(i, load)| {
             let key = |name: &str| format!("loads[{i}].{name}");
             let surface = |error| refuse_mesh(scene, &key("group"), &error);
-            let spread = |weights: Vec<f64>, nodes: Vec<u32>, of_unit: Vector3<f64>| {
+            let amplitude = amplitude(load);
+            let unit = direction(load) * amplitude.signum();
+            let spread = |weights: Vec<f64>, nodes: Vec<u32>| {
                 let total: f64 = weights.iter().sum();
                 let weights = weights.into_iter().map(|w| w / total).collect();
-                Action::Force { nodes, weights, force: of_unit * total }
+                Action::Force { nodes, weights, force: unit * total }
             };
             let action = match load {
                 Load::Force(load) => {
                     let Location { nodes, weights } =
                         mesh.locate(load.at).map_err(|error| refuse(scene, &key("at"), error))?;
-                    Action::Force {
-                        nodes: nodes.to_vec(),
-                        weights: weights.to_vec(),
-                        force: Vector3::from(load.direction) * load.amplitude,
-                    }
+                    Action::Force { nodes: nodes.to_vec(), weights: weights.to_vec(), force: unit }
                 }
                 Load::Moment(load) => Action::Moment {
                     patch: match load.radius {
@@ -147,19 +148,20 @@ pub(super) fn on_mesh(
                             Rotation::Mean(mean.map_err(|error| refuse(scene, &key("radius"), error))?)
                         }
                     },
-                    moment: Vector3::from(load.direction) * load.amplitude,
+                    moment: unit,
                 },
                 Load::Traction(load) => {
                     let (nodes, weights) = mesh.surface_weights(&load.group).map_err(surface)?;
-                    spread(weights, nodes, Vector3::from(load.direction) * load.amplitude)
+                    spread(weights, nodes)
                 }
                 Load::Pressure(load) => {
                     let (nodes, forces) = mesh.surface_pressure(&load.group).map_err(surface)?;
-                    let forces = forces.into_iter().map(|f| f * load.amplitude).collect();
-                    Action::Field { nodes, forces, group: load.group.clone(), pressure: load.amplitude }
+                    let pressure = amplitude.signum();
+                    let forces = forces.into_iter().map(|f| f * pressure).collect();
+                    Action::Field { nodes, forces, group: load.group.clone(), pressure }
                 }
                 Load::Gravity(_) | Load::BaseAcceleration(_) => {
-                    Action::Weight { unit: weight.clone(), force: acceleration(load) * weight.mass }
+                    Action::Weight { weight: weight.clone(), force: unit * weight.mass }
                 }
             };
             let history = history(scene, &key("history"), of(load))?;
@@ -175,6 +177,7 @@ pub(super) fn on_mesh(
             Ok(MeshLoad {
                 name,
                 action,
+                size: amplitude.abs(),
                 history,
                 follows,
                 turning,
@@ -211,7 +214,7 @@ pub(super) fn on_rigid(scene: &Scene, body: &ReducedBody) -> Result<BodyLoads, B
                     history,
                 }),
                 Load::Gravity(_) | Load::BaseAcceleration(_) => {
-                    let weight = acceleration(load) * body.mass;
+                    let weight = direction(load) * (amplitude(load) * body.mass);
                     Arc::new(PointForce::dead(at(body.center_of_mass.into()), weight, history))
                 }
                 Load::Pressure(_) | Load::Traction(_) => {
@@ -264,12 +267,26 @@ fn of(load: &Load) -> &crate::history::History {
     }
 }
 
-/// The acceleration that pulls at every mass: gravity, or against that of the base.
-fn acceleration(load: &Load) -> Vector3<f64> {
+fn amplitude(load: &Load) -> f64 {
     match load {
-        Load::Gravity(load) => Vector3::from(load.direction) * load.amplitude,
-        Load::BaseAcceleration(load) => -Vector3::from(load.direction) * load.amplitude,
-        _ => Vector3::zeros(),
+        Load::Force(load) => load.amplitude,
+        Load::Moment(load) => load.amplitude,
+        Load::Pressure(load) => load.amplitude,
+        Load::Traction(load) => load.amplitude,
+        Load::Gravity(load) => load.amplitude,
+        Load::BaseAcceleration(load) => load.amplitude,
+    }
+}
+
+/// Where it acts along, as a unit vector; zero of a pressure. Every mass is pulled against the acceleration of the base.
+fn direction(load: &Load) -> Vector3<f64> {
+    match load {
+        Load::Force(load) => load.direction.into(),
+        Load::Moment(load) => load.direction.into(),
+        Load::Traction(load) => load.direction.into(),
+        Load::Gravity(load) => load.direction.into(),
+        Load::BaseAcceleration(load) => -Vector3::from(load.direction),
+        Load::Pressure(_) => Vector3::zeros(),
     }
 }
 
@@ -318,8 +335,13 @@ impl MeshLoad {
         }
     }
 
-    /// The force or moment in the first attitude, body axes, where the history is 1; none of a field.
-    pub(super) fn vector(&self) -> Option<Vector3<f64>> {
+    /// Size of the amplitude, which multiplies what is said of a unit.
+    pub(super) fn size(&self) -> f64 {
+        self.size
+    }
+
+    /// The force or moment in the first attitude, body axes, where the history is 1 and the amplitude 1 or −1; none of a field.
+    pub(super) fn unit(&self) -> Option<Vector3<f64>> {
         match &self.action {
             Action::Force { force: vector, .. }
             | Action::Weight { force: vector, .. }
@@ -330,11 +352,11 @@ impl MeshLoad {
         }
     }
 
-    /// Forces or moments of the same size, in body axes, whose combinations are all that a dead load may become as the
-    /// body turns; none where it keeps its direction in the body.
+    /// Forces or moments of the same size, in body axes, whose combinations are all that a dead load of an amplitude of 1 may
+    /// become as the body turns; none where it keeps its direction in the body.
     pub(super) fn turned(&self, turning: Turning) -> Vec<Vector3<f64>> {
-        let turns = !self.follows || self.turning.is_some();
-        let Some(vector) = self.vector().filter(|v| turns && v.norm() > 0.0) else { return Vec::new() };
+        let turns = (!self.follows || self.turning.is_some()) && self.size > 0.0;
+        let Some(vector) = self.unit().filter(|v| turns && v.norm() > 0.0) else { return Vec::new() };
         let size = vector.norm();
         let turning = if self.turning.is_some() { Turning::Freely } else { turning };
         match turning {
@@ -356,23 +378,23 @@ impl MeshLoad {
         }
     }
 
-    /// The force or moment, global axes, of a load that keeps its direction there; none of one that does so in the body.
-    pub(super) fn dead_vector(&self) -> Option<Vector3<f64>> {
-        self.vector().filter(|_| !self.follows).map(|vector| self.attitude.to_global(&vector))
+    /// The same in global axes, of a load that keeps its direction there; none of one that does so in the body.
+    pub(super) fn dead_unit(&self) -> Option<Vector3<f64>> {
+        self.unit().filter(|_| !self.follows).map(|unit| self.attitude.to_global(&unit))
     }
 
     /// The parts of the load in its first attitude along `turned`, relative to them: one whole part without any.
     pub(super) fn parts(&self, turned: &[Vector3<f64>]) -> Vec<f64> {
-        match self.vector() {
-            Some(vector) if !turned.is_empty() => turned.iter().map(|t| t.dot(&vector) / t.norm_squared()).collect(),
+        match self.unit() {
+            Some(unit) if !turned.is_empty() => turned.iter().map(|t| t.dot(&unit) / t.norm_squared()).collect(),
             _ => vec![1.0],
         }
     }
 
-    /// The forces on the nodes of the undeformed body in its first attitude, where the history is 1 (3n); with `vector`,
-    /// of that force or moment in place of the load's own.
-    pub(super) fn add_nodal_forces(&self, vector: Option<Vector3<f64>>, mut forces: faer::ColMut<'_, f64>) {
-        let vector = vector.or(self.vector()).unwrap_or_default();
+    /// The forces on the nodes of the undeformed body in its first attitude, where the history is 1 and the amplitude 1 or −1
+    /// (3n); with `vector`, of that force or moment in place of the load's own.
+    pub(super) fn add_unit_nodal_forces(&self, vector: Option<Vector3<f64>>, mut forces: faer::ColMut<'_, f64>) {
+        let vector = vector.or(self.unit()).unwrap_or_default();
         let mut add = |node: u32, force: &Vector3<f64>| {
             for axis in 0..3 {
                 forces[self.freedoms * node as usize + axis] += force[axis];
@@ -382,11 +404,11 @@ impl MeshLoad {
             Action::Force { nodes, weights, .. } => {
                 nodes.iter().zip(weights).for_each(|(node, w)| add(*node, &(vector * *w)));
             }
-            Action::Weight { unit, .. } => {
+            Action::Weight { weight, .. } => {
                 for axis in 0..3 {
-                    let acceleration = vector[axis] / unit.mass;
-                    for row in 0..unit.forces.nrows() {
-                        forces[row] += acceleration * unit.forces[(row, axis)];
+                    let acceleration = vector[axis] / weight.mass;
+                    for row in 0..weight.forces.nrows() {
+                        forces[row] += acceleration * weight.forces[(row, axis)];
                     }
                 }
             }
@@ -424,10 +446,10 @@ impl MeshLoad {
                 .surface_pressure_change(group, modes.shapes.col(k))
                 .map_err(|error| refuse_mesh(scene, "loads", &error))?;
             for ((node, force), added) in nodes.iter().zip(forces).zip(&changes) {
-                let added = added * *pressure;
+                let added = added * (*pressure * self.size);
                 let position = Vector3::from(mesh.positions()[*node as usize]) - body.origin;
                 change.force[k] += added;
-                change.moment[k] += self.shape(modes, *node, k).cross(force) + position.cross(&added);
+                change.moment[k] += self.shape(modes, *node, k).cross(&(force * self.size)) + position.cross(&added);
                 for a in 0..nf {
                     change.load_stiffness[(a, k)] += self.shape(modes, *node, a).dot(&added);
                 }
@@ -473,24 +495,24 @@ impl MeshLoad {
         Ok(match &self.action {
             Action::Force { nodes, weights, force } => {
                 let point = BodyPoint::new(modes, mesh.positions(), nodes, weights).map_err(modal(scene))?;
-                at(&point, *force)?
+                at(&point, force * self.size)?
             }
-            Action::Weight { unit, force } => at(&unit.point(body, modes), *force)?,
+            Action::Weight { weight, force } => at(&weight.point(body, modes), force * self.size)?,
             Action::Moment { patch, moment } => {
                 let rotation = self.rotations(patch, body, modes);
                 let rotation = match second_order()? {
                     Some(second_order) => rotation.with_second_order(second_order),
                     None => rotation,
                 };
-                Arc::new(PointMoment { rotation, moment: *moment, frame, history })
+                Arc::new(PointMoment { rotation, moment: moment * self.size, frame, history })
             }
             Action::Field { nodes, forces, .. } => {
                 let position = |node: u32| Vector3::from(mesh.positions()[node as usize]) - body.origin;
-                let acting = || nodes.iter().copied().zip(forces);
-                let force_body: Vector3<f64> = forces.iter().sum();
-                let moment_body: Vector3<f64> = acting().map(|(node, f)| position(node).cross(f)).sum();
+                let acting = || nodes.iter().copied().zip(forces.iter().map(|force| force * self.size));
+                let force_body: Vector3<f64> = acting().map(|(_, f)| f).sum();
+                let moment_body: Vector3<f64> = acting().map(|(node, f)| position(node).cross(&f)).sum();
                 let rigid = [body.translation_basis.tr_mul(&force_body), body.rotation_basis.tr_mul(&moment_body)];
-                let flexible = (0..nf).map(|k| acting().map(|(node, f)| self.shape(modes, node, k).dot(f)).sum());
+                let flexible = (0..nf).map(|k| acting().map(|(node, f)| self.shape(modes, node, k).dot(&f)).sum());
                 let modal = rigid.iter().flat_map(|v| v.iter().copied()).chain(flexible).collect();
                 let change = self.follower_change(scene, mesh, body, modes)?;
                 let load_stiffness = change.as_ref().filter(|_| has_load_stiffness).map_or(Vec::new(), |change| {

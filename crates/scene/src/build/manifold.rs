@@ -3,7 +3,7 @@
 use std::cell::OnceCell;
 
 use dynamics::Manifold;
-use faer::{Mat, MatRef};
+use faer::{Mat, MatRef, Scale};
 use fem_tet10::GeometricTerms;
 use modal::{Modes, SecondOrderShapes, StaticAccuracy};
 
@@ -67,7 +67,7 @@ impl LargeDeflection {
             energies[a * pairs.len() + b] = energy;
             energies[b * pairs.len() + a] = energy;
         }
-        let [forces, answers] = second_order_forces(model, modes, large, &pairs, derivatives)?;
+        let [forces, responses] = second_order_forces(model, modes, large, &pairs, derivatives)?;
         let squares: Vec<f64> = large.iter().map(|k| modes.eigenvalues[*k]).collect();
         if let Some((follower, pair)) = drawn_in(of_large.as_ref(), &squares, forces.as_ref(), &energies) {
             let others: Vec<usize> = large.iter().copied().filter(|k| *k != large[follower]).collect();
@@ -78,10 +78,10 @@ impl LargeDeflection {
         }
         let momenta = solver.mass_product(of_large.as_ref())?;
         let by_all_terms = stiffness_by_pairs(modes, large, &pairs, forces.as_ref());
-        let shapes = solver.second_order_shapes(modes.clone(), large, forces.as_ref(), answers.as_ref())?;
+        let shapes = solver.second_order_shapes(modes.clone(), large, forces.as_ref(), responses.as_ref())?;
         let large = LargeShapes { shapes, momenta, by_all_terms, by_initial_stress: OnceCell::new() };
         let extended = match (&statics.of_spin, spin) {
-            (Some(OfSpin { answers, .. }), Some(spin)) => {
+            (Some(OfSpin { responses, .. }), Some(spin)) => {
                 let all = large.stiffness(model, modes, GeometricTerms::All)?;
                 let of_large = if spin.is_by_all_terms() {
                     all.to_vec()
@@ -90,7 +90,7 @@ impl LargeDeflection {
                     all.iter().zip(initial).map(|(all, initial)| spin.settled(all, initial)).collect()
                 };
                 let k = spin.stiffness();
-                Some(std::array::from_fn(|pair| large.extended(answers.subcols(pair, 1), &k[pair], &of_large)))
+                Some(std::array::from_fn(|pair| large.extended(responses.subcols(pair, 1), &k[pair], &of_large)))
             }
             _ => None,
         };
@@ -118,19 +118,19 @@ impl LargeDeflection {
         statics: &Statics,
         mut stress: Stress,
     ) -> Result<Stress, BuildError> {
-        let extended = |answer: MatRef<'_, f64>, k: &Mat<f64>, terms| -> Result<Mat<f64>, BuildError> {
-            Ok(self.large.extended(answer, k, self.large.stiffness(model, modes, terms)?))
+        let extended = |response: MatRef<'_, f64>, k: &Mat<f64>, terms| -> Result<Mat<f64>, BuildError> {
+            Ok(self.large.extended(response, k, self.large.stiffness(model, modes, terms)?))
         };
         if let Some(of_loads) = &statics.of_loads {
             for (i, directed) in stress.of_loads.iter_mut().enumerate() {
+                let responses = of_loads.of_unit(i) * Scale(model.loads[i].size());
                 for (j, directed) in directed.iter_mut().enumerate() {
-                    let answer = of_loads.answers_to(i).subcols(j, 1);
-                    directed.stiffness = extended(answer, &directed.stiffness, directed.terms)?;
+                    directed.stiffness = extended(responses.subcols(j, 1), &directed.stiffness, directed.terms)?;
                 }
             }
         }
-        if let (Some(answer), Some(k)) = (&statics.of_drive, stress.of_drive.take()) {
-            stress.of_drive = Some(extended(answer.as_ref(), &k, DRIVE)?);
+        if let (Some(response), Some(k)) = (&statics.of_drive, stress.of_drive.take()) {
+            stress.of_drive = Some(extended(response.as_ref(), &k, DRIVE)?);
         }
         Ok(stress)
     }
@@ -181,11 +181,11 @@ fn second_order_forces(
     let known = |[j, k]: [usize; 2]| derivatives.of_mode(large[j]).filter(|_| j == k);
     let missing: Vec<[usize; 2]> = pairs.iter().copied().filter(|pair| known(*pair).is_none()).collect();
     let forces = model.solver.second_order_forces(of_large.as_ref(), &missing)?;
-    let answers = model.solver.static_response(modes, forces.as_ref(), StaticAccuracy::Shapes)?;
+    let responses = model.solver.static_response(modes, forces.as_ref(), StaticAccuracy::Shapes)?;
     let mut found = [(); 2].map(|()| Mat::zeros(of_large.nrows(), pairs.len()));
-    let mut computed = forces.col_iter().zip(answers.col_iter());
+    let mut computed = forces.col_iter().zip(responses.col_iter());
     for (column, pair) in pairs.iter().enumerate() {
-        let known = known(*pair).or_else(|| computed.next().map(|(force, answer)| [force, answer]));
+        let known = known(*pair).or_else(|| computed.next().map(|(force, response)| [force, response]));
         for (all, one) in found.iter_mut().zip(known.into_iter().flatten()) {
             all.col_mut(column).copy_from(one);
         }
@@ -230,12 +230,12 @@ impl LargeShapes {
         }
     }
 
-    /// The geometric stiffness `k` (nf × nf) of a static `answer` (3n × 1) in the extended shapes. Between two large modes
-    /// it is zero, since the manifold has it. Between a large mode and another it is without that of the answer's parts along
+    /// The geometric stiffness `k` (nf × nf) of a static `response` (3n × 1) in the extended shapes. Between two large modes
+    /// it is zero, since the manifold has it. Between a large mode and another it is without that of the response's parts along
     /// the large modes, which are coordinates that move, with the same terms.
-    fn extended(&self, answer: MatRef<'_, f64>, k: &Mat<f64>, of_large: &[Mat<f64>]) -> Mat<f64> {
+    fn extended(&self, response: MatRef<'_, f64>, k: &Mat<f64>, of_large: &[Mat<f64>]) -> Mat<f64> {
         let SecondOrderShapes { modes, large, dynamic, .. } = &self.shapes;
-        let along: Vec<f64> = self.momenta.col_iter().map(|momentum| momentum.transpose() * answer.col(0)).collect();
+        let along: Vec<f64> = self.momenta.col_iter().map(|momentum| momentum.transpose() * response.col(0)).collect();
         let extended = modes.shapes.ncols();
         Mat::from_fn(extended, extended, |a, b| {
             if a >= *dynamic || b >= *dynamic {

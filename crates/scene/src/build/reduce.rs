@@ -88,5 +88,5 @@ fn basis(solver: &dyn Structure, modes: &Modes, statics: &Statics, decision: &De
     if !decision.has_static_shapes {
         return Ok(kept);
     }
-    statics.answers().try_fold(kept, |modes, answers| solver.with_static_shapes(modes, answers.as_ref()))
+    statics.responses().try_fold(kept, |modes, responses| solver.with_static_shapes(modes, responses.as_ref()))
 }

@@ -11,8 +11,8 @@ use fem_tet10::{
     geometric_stiffness_product, second_order_energies, second_order_forces,
 };
 use modal::{
-    ModalError, Modes, ReducedBody, SecondOrderShapes, Solver, StaticAccuracy, Support, acceleration_fields,
-    centrifugal_fields, mass_left_out, turning_field,
+    BucklingAccuracy, ModalError, Modes, ReducedBody, SecondOrderShapes, Solver, StaticAccuracy, Support,
+    acceleration_fields, centrifugal_fields, mass_left_out, turning_field,
 };
 use slepc::write_folder;
 
@@ -305,7 +305,7 @@ impl Structure for Solved<'_> {
         })
     }
 
-    fn static_answers(&self, modes: &Modes, forces: &StaticForces) -> Result<Mat<f64>, BuildError> {
+    fn static_responses(&self, modes: &Modes, forces: &StaticForces) -> Result<Mat<f64>, BuildError> {
         let StaticForces { of_loads, spin, drive, origin } = forces;
         let question = || {
             let question = with_natural(self.about_the_held_body("static responses"), modes);
@@ -338,16 +338,16 @@ impl Structure for Solved<'_> {
         })
     }
 
-    fn with_static_shapes(&self, modes: Modes, answers: MatRef<'_, f64>) -> Result<Modes, BuildError> {
+    fn with_static_shapes(&self, modes: Modes, responses: MatRef<'_, f64>) -> Result<Modes, BuildError> {
         let natural = modes.natural();
         let question = || {
             let question = with_modes(self.about_the_held_body("static shapes"), &modes).text(&natural.to_string());
-            with_matrix(question, answers)
+            with_matrix(question, responses)
         };
         self.ask(
             question,
             |kept| answers::with_added_shapes(kept, modes.clone(), natural),
-            || self.solver()?.with_static_shapes(modes.clone(), answers).map_err(modal(&self.assembled.scene)),
+            || self.solver()?.with_static_shapes(modes.clone(), responses).map_err(modal(&self.assembled.scene)),
             |modes| answers::of_added_shapes(modes, natural),
         )
     }
@@ -357,7 +357,7 @@ impl Structure for Solved<'_> {
         modes: Modes,
         large: &[usize],
         forces: MatRef<'_, f64>,
-        answers: MatRef<'_, f64>,
+        responses: MatRef<'_, f64>,
     ) -> Result<SecondOrderShapes, BuildError> {
         let question = || {
             let question = with_modes(self.about_the_held_body("shapes of second order"), &modes);
@@ -367,7 +367,7 @@ impl Structure for Solved<'_> {
             question,
             |kept| answers::second_order_shapes(kept, modes.clone(), large),
             || {
-                let shapes = self.solver()?.second_order_shapes(modes.clone(), large, forces, answers);
+                let shapes = self.solver()?.second_order_shapes(modes.clone(), large, forces, responses);
                 shapes.map_err(modal(&self.assembled.scene))
             },
             answers::of_second_order_shapes,
@@ -386,15 +386,15 @@ impl Structure for Solved<'_> {
         )
     }
 
-    fn remainders(&self, modes: &Modes, answers: MatRef<'_, f64>) -> Result<Vec<f64>, BuildError> {
-        let question = || with_matrix(with_modes(self.about_the_body("remainders"), modes), answers);
-        self.ask_list(question, answers.ncols(), || {
-            let momenta = self.solver()?.mass().product(answers);
+    fn remainders(&self, modes: &Modes, responses: MatRef<'_, f64>) -> Result<Vec<f64>, BuildError> {
+        let question = || with_matrix(with_modes(self.about_the_body("remainders"), modes), responses);
+        self.ask_list(question, responses.ncols(), || {
+            let momenta = self.solver()?.mass().product(responses);
             let of = |(u, mu): (ColRef<'_, f64>, ColRef<'_, f64>)| {
                 let carried: f64 = modes.shapes.as_ref().col_iter().map(|shape| (shape.transpose() * mu).powi(2)).sum();
                 (u.transpose() * mu - carried).max(0.0).sqrt()
             };
-            Ok(answers.col_iter().zip(momenta.as_ref().col_iter()).map(of).collect())
+            Ok(responses.col_iter().zip(momenta.as_ref().col_iter()).map(of).collect())
         })
     }
 
@@ -465,16 +465,24 @@ impl Structure for Solved<'_> {
         self.ask_stress(question, pairs.len(), |recovery| recovery.second_order_nodal_stress(fields, pairs))
     }
 
-    fn lowest_buckling_ratio(&self, answer: MatRef<'_, f64>, modes: &Modes) -> Result<f64, BuildError> {
+    fn lowest_buckling_ratio(
+        &self,
+        response: MatRef<'_, f64>,
+        modes: &Modes,
+        accuracy: BucklingAccuracy,
+    ) -> Result<f64, BuildError> {
         let shapes = modes.shapes.as_ref();
-        let question = || with_matrix(with_matrix(self.about_the_held_body("buckling"), answer), shapes);
+        let question = || {
+            let question = self.about_the_held_body("buckling").text(&format!("{accuracy:?}"));
+            with_matrix(with_matrix(question, response), shapes)
+        };
         let found = self.ask_list(question, 1, || {
             let materials = self.assembled.materials()?;
             let product = |fields: MatRef<'_, f64>| -> Result<Mat<f64>, BucklingError> {
                 self.pass_elements();
-                Ok(geometric_stiffness_product(&self.assembled.mesh, materials, answer, fields)?)
+                Ok(geometric_stiffness_product(&self.assembled.mesh, materials, response, fields)?)
             };
-            match self.solver()?.lowest_buckling_ratio(shapes, product) {
+            match self.solver()?.lowest_buckling_ratio(shapes, accuracy, product) {
                 Ok(lowest) => Ok(vec![lowest]),
                 Err(BucklingError::Modal(error)) => Err(modal(&self.assembled.scene)(error)),
                 Err(BucklingError::Assembly(error)) => Err(error.into()),

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use advice::StaticCompliance;
-use faer::{Col, Mat, MatRef};
+use faer::{Col, Mat, MatRef, Scale};
 use fem_tet10::GeometricTerms;
 use modal::Modes;
 use nalgebra::Vector3;
@@ -40,18 +40,21 @@ pub(super) struct Statics {
     pub of_drive: Option<Mat<f64>>,
 }
 
-/// The answers to the loads in every direction that they may come to have in the body.
+/// The responses to the loads in every direction that they may come to have in the body.
 pub(super) struct OfLoads {
-    pub answers: Mat<f64>,
-    /// The work of each load on its answers.
+    /// To amplitudes of 1 or −1: loads that differ in the size of their amplitudes have the same.
+    responses: Mat<f64>,
+    /// The work of each load on its responses.
     pub compliances: Vec<StaticCompliance>,
-    /// For each load, its columns and [`MeshLoad::turned`].
-    columns: Vec<(Range<usize>, Vec<Vector3<f64>>)>,
+    columns: Vec<Columns>,
 }
 
-/// The answers to the centrifugal field of each pair of spins (3n × 6).
+/// The columns of a load in [`OfLoads`], and [`MeshLoad::turned`].
+type Columns = (Range<usize>, Vec<Vector3<f64>>);
+
+/// The responses to the centrifugal field of each pair of spins (3n × 6).
 pub(super) struct OfSpin {
-    pub answers: Mat<f64>,
+    pub responses: Mat<f64>,
     /// Remainder of each beside the modes (6).
     pub remainders: Vec<f64>,
 }
@@ -83,26 +86,27 @@ impl Statics {
         let count = forces.count();
         memory::check("the forces of the loads", 8 * unknowns * count).map_err(|source| modal(scene)(source.into()))?;
         forces.of_loads = Mat::zeros(unknowns, of_loads);
-        for (load, (range, turned)) in loads.iter().zip(&columns) {
+        // A load without an amplitude has no response.
+        for (load, (range, turned)) in loads.iter().zip(&columns).filter(|(load, _)| load.size() > 0.0) {
             for column in range.clone() {
                 let forces = forces.of_loads.as_mut().col_mut(column);
-                load.add_nodal_forces(turned.get(column - range.start).copied(), forces);
+                load.add_unit_nodal_forces(turned.get(column - range.start).copied(), forces);
             }
         }
-        let answers = solver.static_answers(modes, &forces)?;
+        let responses = solver.static_responses(modes, &forces)?;
         let (driven, of_drive) = (usize::from(forces.drive.is_some()), count - usize::from(forces.drive.is_some()));
         let spins = of_drive - of_loads;
-        let to = |first: usize, count: usize| answers.subcols(first, count).to_owned();
+        let to = |first: usize, count: usize| responses.subcols(first, count).to_owned();
         Ok(Self {
             of_loads: asked.loads.then(|| OfLoads {
-                answers: to(0, of_loads),
-                compliances: compliances(loads, &columns, forces.of_loads.as_ref(), answers.as_ref()),
+                compliances: compliances(loads, &columns, forces.of_loads.as_ref(), responses.as_ref()),
+                responses: to(0, of_loads),
                 columns,
             }),
             of_spin: match asked.spin {
                 true => Some(OfSpin {
-                    remainders: solver.remainders(modes, answers.subcols(of_loads, spins))?,
-                    answers: to(of_loads, spins),
+                    remainders: solver.remainders(modes, responses.subcols(of_loads, spins))?,
+                    responses: to(of_loads, spins),
                 }),
                 false => None,
             },
@@ -115,7 +119,7 @@ impl Statics {
         self.of_loads.is_some() || self.of_spin.is_some() || self.of_drive.is_some()
     }
 
-    /// K_ij of each pair of spins in the modes; none where the answers to the spin are not known. `known` are those in the
+    /// K_ij of each pair of spins in the modes; none where the responses to the spin are not known. `known` are those in the
     /// first of the modes, by all terms and by the initial stress.
     pub fn stress_stiffness(
         &self,
@@ -124,25 +128,30 @@ impl Statics {
         known: &[Vec<Mat<f64>>; 2],
     ) -> Result<Option<SpinStress>, BuildError> {
         let Some(of_spin) = &self.of_spin else { return Ok(None) };
-        let by = |terms, known| model.solver.stress_stiffness(of_spin.answers.as_ref(), modes, terms, known);
+        let by = |terms, known| model.solver.stress_stiffness(of_spin.responses.as_ref(), modes, terms, known);
         let all = by(GeometricTerms::All, &known[0])?.try_into().ok();
         let initial = by(GeometricTerms::InitialStress, &known[1])?.try_into().ok();
         Ok(all.zip(initial).map(|(all, initial)| SpinStress::new([all, initial], &modes.eigenvalues)))
     }
 
-    /// The answer to all dead loads together that stay as they are, seen from the body (3n × 1).
-    pub fn to_steady_loads(&self, model: &MeshModel<'_>) -> Option<Mat<f64>> {
+    /// The response to all dead loads together that stay as they are, seen from the body (3n × 1), over the amplitude's size of
+    /// the first, and this size.
+    pub fn to_steady_loads(&self, model: &MeshModel<'_>) -> Option<(Mat<f64>, f64)> {
         let of_loads = self.of_loads.as_ref()?;
         let is_steady = |load: &MeshLoad| {
             !load.follows && physics::is_steady(model.scene, model.support.motion, model.drive.as_ref(), load)
         };
-        let mut sum: Option<Mat<f64>> = None;
-        for (i, _) in model.loads.iter().enumerate().filter(|(_, load)| is_steady(load)) {
-            // A dead load on a body that does not turn has one answer.
-            let answer = of_loads.answers_to(i).subcols(0, 1);
-            sum = Some(sum.map_or_else(|| answer.to_owned(), |sum| sum + answer));
+        let mut found: Option<(Mat<f64>, f64)> = None;
+        let acts = |load: &MeshLoad| is_steady(load) && load.size() > 0.0;
+        for (i, load) in model.loads.iter().enumerate().filter(|(_, load)| acts(load)) {
+            // A dead load on a body that does not turn has one response.
+            let response = of_loads.of_unit(i).subcols(0, 1);
+            found = Some(match found {
+                Some((sum, size)) => (sum + response * Scale(load.size() / size), size),
+                None => (response.to_owned(), load.size()),
+            });
         }
-        sum
+        found
     }
 
     /// The work of each load on its static responses; none where it is not known.
@@ -155,46 +164,49 @@ impl Statics {
         self.of_spin.as_ref().map_or(&[], |of_spin| &of_spin.remainders)
     }
 
-    /// All answers that static shapes are made of.
-    pub fn answers(&self) -> impl Iterator<Item = &Mat<f64>> {
-        let of_loads = self.of_loads.iter().map(|of_loads| &of_loads.answers);
-        of_loads.chain(self.of_spin.iter().map(|of_spin| &of_spin.answers)).chain(&self.of_drive)
+    /// All responses that static shapes are made of, of whatever size.
+    pub fn responses(&self) -> impl Iterator<Item = &Mat<f64>> {
+        let of_loads = self.of_loads.iter().map(|of_loads| &of_loads.responses);
+        of_loads.chain(self.of_spin.iter().map(|of_spin| &of_spin.responses)).chain(&self.of_drive)
     }
 }
 
 impl OfLoads {
-    /// The answers to a load, in each of its directions.
-    pub fn answers_to(&self, load: usize) -> MatRef<'_, f64> {
+    /// The responses to a load of an amplitude of 1 or −1, in each of its directions.
+    pub fn of_unit(&self, load: usize) -> MatRef<'_, f64> {
         let (range, _) = &self.columns[load];
-        self.answers.subcols(range.start, range.len())
+        self.responses.subcols(range.start, range.len())
     }
 
-    /// The forces or moments that a load's answers are combined of as the body turns, see [`MeshLoad::turned`].
+    /// The forces or moments that a load is combined of as the body turns, see [`MeshLoad::turned`].
     pub fn turned(&self, load: usize) -> &[Vector3<f64>] {
         &self.columns[load].1
     }
 
-    /// The forces or moments that these are the answers to, body axes.
+    /// The forces or moments that these are the responses to, body axes.
     pub fn vectors(&self, i: usize, load: &MeshLoad) -> Vec<Vector3<f64>> {
         let (_, turned) = &self.columns[i];
-        if turned.is_empty() { vec![load.vector().unwrap_or_default()] } else { turned.clone() }
+        if turned.is_empty() { vec![load.unit().unwrap_or_default()] } else { turned.clone() }
     }
 }
 
-/// The work of each load on its answers; the columns of the loads come first in `forces` and `answers`.
+/// The work of each load on its responses. The columns of the loads, of amplitudes of 1 or −1, come first in `forces` and
+/// `responses`.
 fn compliances(
     loads: &[MeshLoad],
-    columns: &[(Range<usize>, Vec<Vector3<f64>>)],
+    columns: &[Columns],
     forces: MatRef<'_, f64>,
-    answers: MatRef<'_, f64>,
+    responses: MatRef<'_, f64>,
 ) -> Vec<StaticCompliance> {
-    let of = |(load, (range, turned)): (&MeshLoad, &(Range<usize>, Vec<Vector3<f64>>))| {
-        let (of, to) = (forces.subcols(range.start, range.len()), answers.subcols(range.start, range.len()));
+    let of = |(load, (range, turned)): (&MeshLoad, &Columns)| {
+        let (of, to) = (forces.subcols(range.start, range.len()), responses.subcols(range.start, range.len()));
         let parts = Col::from_iter(load.parts(turned));
+        let size = load.size();
         let work = |i: usize| of.col(i).transpose() * to.col(i);
+        let along = |(i, unit): (usize, &Vector3<f64>)| (unit * size, size * size * work(i));
         StaticCompliance {
-            at_start: (of * &parts).transpose() * (to * &parts),
-            turned: turned.iter().enumerate().map(|(i, vector)| (*vector, work(i))).collect(),
+            at_start: size * size * ((of * &parts).transpose() * (to * &parts)),
+            turned: turned.iter().enumerate().map(along).collect(),
         }
     };
     loads.iter().zip(columns).map(of).collect()

@@ -2,9 +2,9 @@
 
 use advice::{Row, StressField, StressSource, stress, stress_row};
 use dynamics::Effect;
-use faer::{Mat, MatRef};
+use faer::{Mat, MatRef, Scale};
 use fem_tet10::GeometricTerms;
-use modal::Modes;
+use modal::{BucklingAccuracy, Modes};
 
 use super::directed::Directed;
 use super::error::BuildError;
@@ -20,6 +20,8 @@ use crate::effects::Choice;
 const SMALL: f64 = 0.03;
 /// Terms of the stress of a drive, and of a base that is accelerated alike.
 pub(super) const DRIVE: GeometricTerms = GeometricTerms::InitialStress;
+/// Loads of which less than this part is at which the body buckles are far from it: an estimate will do.
+const FAR: f64 = 0.1;
 
 /// Stiffness in the modes (nf × nf) by the stress of what acts on a body, where it matters.
 #[derive(Default)]
@@ -44,19 +46,20 @@ impl Stress {
         let (mut names, mut shown) = (Vec::new(), Vec::new());
         if let Some(of_loads) = &statics.of_loads {
             for (i, load) in model.loads.iter().enumerate() {
-                let answers = of_loads.answers_to(i);
+                let (response, size) = (of_loads.of_unit(i), load.size());
                 // Gravity stresses no body that falls.
-                if answers.norm_max() == 0.0 {
+                if response.norm_max() == 0.0 {
                     found.of_loads.push(Vec::new());
                     continue;
                 }
-                let (stiffness, terms) = if load.is_base_acceleration {
-                    (model.solver.stress_stiffness(answers, modes, DRIVE, &[])?, DRIVE)
+                let (of_unit, terms) = if load.is_base_acceleration {
+                    (model.solver.stress_stiffness(response, modes, DRIVE, &[])?, DRIVE)
                 } else {
-                    of_load(model, answers, modes, load.history.largest(model.scene.time.end))?
+                    of_load(model, response, modes, size * load.history.largest(model.scene.time.end))?
                 };
                 let mut directed = Vec::new();
-                for (vector, stiffness) in of_loads.vectors(i, load).into_iter().zip(stiffness) {
+                for (unit, of_unit) in of_loads.vectors(i, load).into_iter().zip(of_unit) {
+                    let (vector, stiffness) = (unit * size, of_unit * Scale(size));
                     names.push((StressSource::Load(i), load.name_along(&vector)));
                     // A pressure that follows its surface has a stiffness of its own.
                     shown.push(match load.follower_change(model.scene, model.mesh, &body.body, modes)? {
@@ -68,9 +71,9 @@ impl Stress {
                 found.of_loads.push(directed);
             }
         }
-        if let Some(answer) = &statics.of_drive {
+        if let Some(response) = &statics.of_drive {
             names.push((StressSource::Drive, "the acceleration of the drive".to_owned()));
-            found.of_drive = model.solver.stress_stiffness(answer.as_ref(), modes, DRIVE, &[])?.pop();
+            found.of_drive = model.solver.stress_stiffness(response.as_ref(), modes, DRIVE, &[])?.pop();
             shown.extend(found.of_drive.clone());
         }
         found.decided(model, body, &names, &shown)
@@ -112,16 +115,16 @@ impl Stress {
     }
 }
 
-/// The stiffness by each static response to a load whose history is `largest` at most: the initial stress, and the initial
-/// displacement where it is small.
+/// The stiffness by each static response to a load of amplitude 1 that is `largest` at most: the initial stress, and the
+/// initial displacement where it is small.
 fn of_load(
     model: &MeshModel<'_>,
-    answers: MatRef<'_, f64>,
+    responses: MatRef<'_, f64>,
     modes: &Modes,
     largest: f64,
 ) -> Result<(Vec<Mat<f64>>, GeometricTerms), BuildError> {
-    let all = model.solver.stress_stiffness(answers, modes, GeometricTerms::All, &[])?;
-    let stress = model.solver.stress_stiffness(answers, modes, GeometricTerms::InitialStress, &[])?;
+    let all = model.solver.stress_stiffness(responses, modes, GeometricTerms::All, &[])?;
+    let stress = model.solver.stress_stiffness(responses, modes, GeometricTerms::InitialStress, &[])?;
     let is_small = all.iter().zip(&stress).all(|(all, stress)| {
         (0..all.ncols()).all(|l| {
             (0..=l).all(|k| {
@@ -136,8 +139,13 @@ fn of_load(
 /// The steady dead loads over those at which the body buckles, on the whole mesh: the modes that are kept do not hold the
 /// shape in which it does.
 fn buckling_ratio(model: &MeshModel<'_>, statics: &Statics, modes: &Modes) -> Result<f64, BuildError> {
-    let Some(answer) = statics.to_steady_loads(model).filter(|answer| answer.norm_max() > 0.0) else {
+    let Some((response, size)) = statics.to_steady_loads(model).filter(|(response, _)| response.norm_max() > 0.0)
+    else {
         return Ok(0.0);
     };
-    Ok(-model.solver.lowest_buckling_ratio(answer.as_ref(), modes)?)
+    let ratio = |accuracy| -> Result<f64, BuildError> {
+        Ok(-size * model.solver.lowest_buckling_ratio(response.as_ref(), modes, accuracy)?)
+    };
+    let estimate = ratio(BucklingAccuracy::Estimate)?;
+    if estimate < FAR { Ok(estimate) } else { ratio(BucklingAccuracy::Full) }
 }

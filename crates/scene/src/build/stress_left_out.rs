@@ -31,7 +31,10 @@ pub(super) struct LeftOut {
 #[derive(Debug)]
 struct LoadPart {
     history: History,
-    /// The load in global axes, and what stands for one unit of it in the body; none of a load whose direction there stays.
+    /// Size of the amplitude.
+    size: f64,
+    /// The load of an amplitude of 1 or −1 in global axes, and what stands for it in the body; none of a load whose direction
+    /// there stays.
     turning: Option<[Vector3<f64>; 2]>,
 }
 
@@ -52,18 +55,16 @@ impl LeftOut {
                 if load.is_gravity() && !has_gravity {
                     continue;
                 }
-                columns.push(of_loads.answers_to(i).to_owned());
-                let history = || load.history.clone();
+                columns.push(of_loads.of_unit(i).to_owned());
+                let part = |turning| LoadPart { history: load.history.clone(), size: load.size(), turning };
                 let turned = of_loads.turned(i);
-                match load.dead_vector().filter(|_| !turned.is_empty()) {
-                    Some(vector) => loads.extend(
-                        turned.iter().map(|unit| LoadPart { history: history(), turning: Some([vector, *unit]) }),
-                    ),
-                    None => loads.push(LoadPart { history: history(), turning: None }),
+                match load.dead_unit().filter(|_| !turned.is_empty()) {
+                    Some(unit) => loads.extend(turned.iter().map(|turned| part(Some([unit, *turned])))),
+                    None => loads.push(part(None)),
                 }
             }
         }
-        columns.extend(statics.of_spin.map(|of_spin| of_spin.answers));
+        columns.extend(statics.of_spin.map(|of_spin| of_spin.responses));
         for axis in [Vector3::x(), Vector3::y(), Vector3::z()] {
             let forces = StaticForces {
                 of_loads: Mat::zeros(modes.shapes.nrows(), 0),
@@ -71,13 +72,13 @@ impl LeftOut {
                 drive: Some(DrivenMotion::Turn { axis }),
                 origin: *origin,
             };
-            columns.push(solver.static_answers(modes, &forces)?);
+            columns.push(solver.static_responses(modes, &forces)?);
         }
         let mut stress = Mat::zeros(6 * solver.stress_sites()?.len(), columns.iter().map(Mat::ncols).sum());
         let mut first = 0;
-        for answers in columns {
-            let momenta = solver.stiffness_product(answers.as_ref())?;
-            let rest = rest(modes, answers.as_ref(), momenta.as_ref());
+        for responses in columns {
+            let momenta = solver.stiffness_product(responses.as_ref())?;
+            let rest = rest(modes, responses.as_ref(), momenta.as_ref());
             stress.subcols_mut(first, rest.ncols()).copy_from(solver.nodal_stress(rest.as_ref())?);
             first += rest.ncols();
         }
@@ -90,8 +91,8 @@ impl LeftOut {
             let factor = part.history.at(now.time, now.time);
             let direction = part
                 .turning
-                .map_or(1.0, |[vector, unit]| unit.dot(&now.attitude.to_body(&vector)) / unit.norm_squared());
-            factor * direction
+                .map_or(1.0, |[unit, turned]| turned.dot(&now.attitude.to_body(&unit)) / turned.norm_squared());
+            part.size * factor * direction
         };
         let omega = &now.omega_body;
         let of_pair = |(i, j): (usize, usize)| if i == j { 1.0 } else { 2.0 } * omega[i] * omega[j];
@@ -101,10 +102,10 @@ impl LeftOut {
 }
 
 /// Remainder of the responses beside the modes; `forces` are K times the responses.
-fn rest(modes: &Modes, answers: MatRef<'_, f64>, forces: MatRef<'_, f64>) -> Mat<f64> {
+fn rest(modes: &Modes, responses: MatRef<'_, f64>, forces: MatRef<'_, f64>) -> Mat<f64> {
     let mut parts = modes.shapes.transpose() * forces;
     for (k, eigenvalue) in modes.eigenvalues.iter().enumerate() {
         parts.row_mut(k).iter_mut().for_each(|part| *part /= eigenvalue);
     }
-    answers - &modes.shapes * parts
+    responses - &modes.shapes * parts
 }

@@ -3,7 +3,7 @@
 use dynamics::DrivenMotion;
 use faer::{Mat, MatRef};
 use fem_tet10::{GeometricTerms, StressSites};
-use modal::{Modes, ReducedBody, SecondOrderShapes, StaticAccuracy};
+use modal::{BucklingAccuracy, Modes, ReducedBody, SecondOrderShapes, StaticAccuracy};
 use nalgebra::Vector3;
 
 use super::error::BuildError;
@@ -35,10 +35,10 @@ pub(super) trait Structure {
 
     /// Static responses to the forces of loads (3n×k), to the centrifugal field of each pair of spins, and to the inertia of a
     /// driven motion, side by side, from the natural ones of the modes on.
-    fn static_answers(&self, modes: &Modes, forces: &StaticForces) -> Result<Mat<f64>, BuildError>;
+    fn static_responses(&self, modes: &Modes, forces: &StaticForces) -> Result<Mat<f64>, BuildError>;
 
     /// The modes, with shapes appended that make them span static responses (3n×k).
-    fn with_static_shapes(&self, modes: Modes, answers: MatRef<'_, f64>) -> Result<Modes, BuildError>;
+    fn with_static_shapes(&self, modes: Modes, responses: MatRef<'_, f64>) -> Result<Modes, BuildError>;
 
     /// The shapes that follow large modes, by the forces of second order and the static responses to them.
     fn second_order_shapes(
@@ -46,14 +46,14 @@ pub(super) trait Structure {
         modes: Modes,
         large: &[usize],
         forces: MatRef<'_, f64>,
-        answers: MatRef<'_, f64>,
+        responses: MatRef<'_, f64>,
     ) -> Result<SecondOrderShapes, BuildError>;
 
     /// The body in the coordinates of its modes.
     fn reduced_body(&self, modes: &Modes) -> Result<ReducedBody, BuildError>;
 
     /// Remainder of each of the static responses (6) beside the modes: √(uᵀMu − Σ(Φ_kᵀMu)²).
-    fn remainders(&self, modes: &Modes, answers: MatRef<'_, f64>) -> Result<Vec<f64>, BuildError>;
+    fn remainders(&self, modes: &Modes, responses: MatRef<'_, f64>) -> Result<Vec<f64>, BuildError>;
 
     /// Stiffness in the modes (nf×nf) by the stress of each displacement field (3n×k). `known` are those in the first of the
     /// modes, one for each field, or none.
@@ -82,7 +82,12 @@ pub(super) trait Structure {
     fn second_order_nodal_stress(&self, fields: MatRef<'_, f64>, pairs: &[[usize; 2]]) -> Result<Mat<f64>, BuildError>;
 
     /// The lowest buckling ratio by the stress of a static response (3n×1), from the modes on.
-    fn lowest_buckling_ratio(&self, answer: MatRef<'_, f64>, modes: &Modes) -> Result<f64, BuildError>;
+    fn lowest_buckling_ratio(
+        &self,
+        response: MatRef<'_, f64>,
+        modes: &Modes,
+        accuracy: BucklingAccuracy,
+    ) -> Result<f64, BuildError>;
 }
 
 /// Forces that static responses are asked for.
