@@ -1,4 +1,4 @@
-//! What each effect costs, per step and in set-up: the plate of `examples/effects` with forty modes, each effect taken
+//! Cost of each effect, per step and in set-up: the plate of `examples/effects` with forty modes, each effect taken
 //! off in turn.
 //!
 //! The last rows are the plate with ten modes, and with four of them large.

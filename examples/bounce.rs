@@ -10,7 +10,7 @@ use flexframe::dynamics::{Crossing, Event, History, PointForce, PointShapes, Rea
 use flexframe::modal::{BodyPoint, ReducedBody, RigidMotion};
 use flexframe::nalgebra::{Matrix3, Vector3};
 
-/// What the example has to show.
+/// Result of the example.
 pub struct Answer {
     /// Time of the impact, and √(2h/g).
     pub impact: [f64; 2],

@@ -12,7 +12,7 @@ use flexframe::dynamics::{
 use flexframe::nalgebra::Vector3;
 use flexframe::scene::{Model, Scene};
 
-/// What the example has to show.
+/// Result of the example.
 pub struct Answer {
     /// Strain energy at the end over that of the same run without the controller.
     pub strain_energy_left: f64,

@@ -1,4 +1,4 @@
-//! The rates of the conservative form in an integrator of one's own: Störmer–Verlet is not at hand for a turning body, so
+//! The rates of the conservative form in an integrator outside the library: Störmer–Verlet is not at hand for a turning body, so
 //! here is the plain midpoint rule, against the library's exponential scheme.
 //!
 //! The midpoint rule is of second order: with half the step the difference falls to a quarter.

@@ -1,4 +1,4 @@
-//! A beam from matrices of one's own, with six degrees of freedom a node: its frequencies, and how it tumbles.
+//! A beam from its own matrices, with six degrees of freedom a node: its frequencies, and how it tumbles.
 //!
 //! Two-node Euler–Bernoulli elements with consistent mass. A beam of length L that nothing holds bends at
 //! ω_k = (β_k/L)² √(EI/ρA), cos β cosh β = 1, and energy and momentum of its free motion stay what they are.
@@ -25,7 +25,7 @@ const ELEMENTS: usize = 16;
 
 type Sparse = SparseColMat<usize, f64>;
 
-/// What the example has to show.
+/// Result of the example.
 pub struct Answer {
     /// Frequencies of the first four bending modes over those of beam theory.
     pub frequencies: [f64; 4],

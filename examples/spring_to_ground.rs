@@ -11,7 +11,7 @@ use flexframe::nalgebra::{Matrix3, Vector3};
 
 const MASS: f64 = 2.0;
 
-/// What the example has to show.
+/// Result of the example.
 pub struct Answer {
     /// Deflection of the spring after one period over that at the start.
     pub after_a_period: f64,

@@ -247,7 +247,7 @@ enum Command {
         /// Last time.
         #[arg(long, value_name = "TIME", value_parser = finite, allow_hyphen_values = true)]
         to: Option<f64>,
-        /// One row of so many.
+        /// Write every N-th row.
         #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..))]
         every: u64,
         #[command(flatten)]
@@ -660,7 +660,7 @@ fn exit_codes() -> String {
     format!("Exit codes:\n    0  done{codes}")
 }
 
-/// What export and report take.
+/// Kind of file that export and report take.
 const RESULTS: &str = "a results file of `flexframe run`";
 
 /// A number of modes.

@@ -1,4 +1,4 @@
-//! What goes wrong in the program itself, outside of the library.
+//! Errors of the program itself, outside of the library.
 
 use std::io;
 

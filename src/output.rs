@@ -1,4 +1,4 @@
-//! What goes to standard output and standard error, either of which may be full or closed.
+//! Standard output and standard error, either of which may be full or closed.
 
 use std::fmt::Display;
 use std::io::{self, ErrorKind, Write};
@@ -20,7 +20,7 @@ pub fn print<R: Serialize + Display>(report: &R, json: bool) -> Result<(), Box<d
 /// Stands for standard output, where a file is written that is text.
 const STANDARD_OUTPUT: &str = "-";
 
-/// Whether a file is to go to standard output.
+/// True if a file is to go to standard output.
 pub fn is_standard(file: &Path) -> bool {
     file == Path::new(STANDARD_OUTPUT)
 }
@@ -67,20 +67,13 @@ pub fn warn(warning: Option<&str>) -> Result<(), Box<dyn Failure>> {
     Ok(warning.map_or(Ok(()), |warning| line(&format!("  warning  {warning}")))?)
 }
 
-/// Tells on standard error what the cache was good for.
+/// Writes the use of the cache to standard error.
 pub fn notes(notes: &CacheNotes) {
-    let &CacheNotes { read, computed, assembled, .. } = notes;
-    let used = match (read, computed, assembled) {
-        (0, ..) => None,
-        (_, 0, _) => {
-            Some("the body was reduced before: all that it needs was read from its file or the cache".to_owned())
-        }
-        (_, _, 0) => {
-            Some(format!("of the body, {read} parts were read from its file or the cache, {computed} were computed"))
-        }
-        _ => {
-            Some(format!("of the body, {read} parts were read from its file or the cache, {computed} were solved for"))
-        }
+    let &CacheNotes { read, computed, .. } = notes;
+    let used = match (read, computed) {
+        (0, _) => None,
+        (_, 0) => Some("reduced body: all parts were read from its file or the cache".to_owned()),
+        _ => Some(format!("reduced body: {read} parts were read from its file or the cache, {computed} were computed")),
     };
     for text in used.iter().chain(notes.warnings.iter()) {
         // Where it cannot be written, nothing is lost but words.
@@ -92,7 +85,7 @@ fn line(line: &str) -> Result<(), CliError> {
     written(writeln!(io::stdout(), "{line}"))
 }
 
-/// What became of a write to standard output. A reader such as `head` that has had enough is no error.
+/// Result of a write to standard output. A reader such as `head` that has had enough is no error.
 pub fn written(result: io::Result<()>) -> Result<(), CliError> {
     match result.and_then(|()| io::stdout().flush()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(CliError::Output(error)),

@@ -26,9 +26,9 @@ pub struct Bar {
     started: Instant,
     phase: String,
     bar: ProgressBar,
-    /// Whether the bar has been given to the terminal, if there is one.
+    /// True if the bar has been given to the terminal, if there is one.
     is_given: bool,
-    /// Whether nothing but errors goes to standard error.
+    /// True if nothing but errors goes to standard error.
     is_silent: bool,
     /// Where there is no terminal: lines, and the time from the start at which the next one is due.
     next_line: Option<Duration>,

@@ -11,7 +11,7 @@ use toml::Value;
 
 use crate::cli_error::CliError;
 
-/// What stands for standard input.
+/// Name of standard input.
 const STANDARD_INPUT: &str = "-";
 /// Its name in messages and in names of output; paths in its scene are relative to the folder that the user is in.
 const NAME: &str = "stdin";

@@ -1,4 +1,4 @@
-//! What ctrl-C, and a request to terminate, do.
+//! Signals: ctrl-C, and a request to terminate.
 //!
 //! Before the motion begins there is nothing to lose, and a signal ends the program at once, with the programs that it has
 //! started and its temporary files; the processes of SLEPc are ended before. Then the first stops the run at its next row, and another that comes half a
@@ -25,7 +25,7 @@ const ONE_REQUEST: Duration = Duration::from_millis(500);
 
 /// Listens to signals.
 pub struct Signals {
-    /// Whether a motion is being computed that can be resumed.
+    /// True if a motion is being computed that can be resumed.
     in_motion: Arc<AtomicBool>,
     /// Asks the motion to stop.
     stop: Arc<AtomicBool>,
@@ -60,12 +60,12 @@ impl Signals {
         Ok(ours)
     }
 
-    /// What stops a run.
+    /// The flag that stops a run.
     pub fn stop(&self) -> Arc<AtomicBool> {
         self.stop.clone()
     }
 
-    /// What stops SLEPc.
+    /// The stop of SLEPc.
     pub fn slepc(&self) -> &Stop {
         &self.slepc
     }
@@ -86,7 +86,7 @@ struct Request {
     first: Option<Instant>,
 }
 
-/// What a signal brings about.
+/// Effect of a signal.
 #[derive(Debug, PartialEq, Eq)]
 enum Answer {
     /// The run is to stop at its next row, or SLEPc.
@@ -95,7 +95,7 @@ enum Answer {
     Wait,
     /// The program ends at once.
     End {
-        /// Whether a signal before has already been answered: there is nothing to say that is not known.
+        /// True if a signal before has already been answered: there is nothing to say that is not known.
         told: bool,
     },
 }

@@ -12,7 +12,7 @@ use crate::cli_error::CliError;
 pub struct SolverInput {
     /// Who finds modes and static responses; slepc is SLEPc under mpirun, for bodies beyond one machine (docs/reference/cluster.md).
     ///
-    /// What the cache has is taken from there, whoever has computed it; --no-cache computes it anew.
+    /// Answers in the cache are taken from there, whoever has computed them; --no-cache computes them anew.
     #[arg(long, value_name = "SOLVER", value_enum)]
     solver: Option<Solver>,
     /// With slepc: number of processes, `mpirun -n N`.

@@ -8,7 +8,7 @@ pub const MOST: u16 = 256;
 /// Bytes of a thread's stack.
 const STACK: usize = 2 << 20;
 
-/// Starts them: so many, or as many as RAYON_NUM_THREADS says, or one for each core. Left to itself, the library starts
+/// Starts them: the number given, or as many as RAYON_NUM_THREADS says, or one for each core. Left to itself, the library starts
 /// them at their first use, and panics where it cannot.
 pub fn start(count: Option<u16>) -> Result<(), CliError> {
     let count = match count {

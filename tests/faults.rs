@@ -1,4 +1,4 @@
-//! What becomes of a run that is killed, stopped, crowded out or refused.
+//! Runs that are killed, stopped, crowded out or refused.
 //!
 //! `FLEXFRAME_KILLS` sets the number of kills.
 
@@ -84,12 +84,12 @@ fn succeed(command: Command) {
     assert!(output.status.success(), "{}", message(&output));
 }
 
-/// What is said on standard error by a command that is to fail with bad input.
+/// Standard error of a command that is to fail with bad input.
 fn failure(command: Command) -> String {
     failure_with(3, command)
 }
 
-/// What is said on standard error by a command that is to fail because of a file.
+/// Standard error of a command that is to fail because of a file.
 fn io_failure(command: Command) -> String {
     failure_with(6, command)
 }

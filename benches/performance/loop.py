@@ -114,7 +114,7 @@ def our_ladder(store, modes, program):
 
 
 def their_ladder(store, modes, scheme, body, seconds):
-    """As long as a run takes no more than so many seconds."""
+    """As long as a run takes no more than this number of seconds."""
     k, took = FIRST[scheme], 0.0
     while 2 * took <= seconds and k <= 17:
         took = store.once(

@@ -19,8 +19,8 @@ class Effort:
     """How much is measured."""
 
     runs: int  # of each program
-    once: float  # a program that takes longer than so many seconds is run only once
-    patience: float  # a peer that takes longer than so many seconds is stopped and left out
+    once: float  # a program that takes longer than this number of seconds is run only once
+    patience: float  # a peer that takes longer than this number of seconds is stopped and left out
     loop_seconds: float  # the longest run of Exudyn
 
 

@@ -55,7 +55,7 @@ fn the_cache_is_used_by_itself_and_the_results_are_the_same_to_the_last_byte() {
     let (first, notes) = results("first", &[]);
     assert_eq!(notes, "");
     let (second, notes) = results("second", &[]);
-    assert!(notes.contains("all that it needs was read from its file or the cache"), "{notes}");
+    assert!(notes.contains("all parts were read from its file or the cache"), "{notes}");
     assert!(direct == first && first == second);
     // Modes are asked for in another way, but the mesh is the same; the answers are kept, too.
     let (_, notes) = succeeds(cache, &["modes", &scene]);
@@ -89,7 +89,7 @@ fn a_body_file_gives_back_the_field_and_the_kinetic_energy_of_a_run() {
     fs::write(&scene, text).unwrap();
     let out = folder.path().join("out");
     let (_, notes) = succeeds("", &["run", &scene, "-o", out.to_str().unwrap()]);
-    assert!(notes.contains("all that it needs was read from its file or the cache"), "{notes}");
+    assert!(notes.contains("all parts were read from its file or the cache"), "{notes}");
 
     let run = hdf5::File::open(out.join("ring.h5")).unwrap();
     let indices = |name: &str| body.dataset(name).unwrap().read_raw::<u64>().unwrap();
@@ -137,7 +137,7 @@ fn a_body_file_gives_back_the_field_and_the_kinetic_energy_of_a_run() {
     assert!((moved - told).norm() < 1e-12 * (x.norm() + moved.norm()), "{moved} {told}");
 }
 
-/// What a geometry includes is known, unless it is free to do what it likes: no body file is made of that. (Needs gmsh.)
+/// Files that a geometry includes are known, unless it is free to do what it likes: no body file is made of that. (Needs gmsh.)
 #[test]
 fn a_mesh_that_takes_in_others_unknown_is_refused_with_the_cure() {
     let folder = tempfile::tempdir().unwrap();

@@ -39,7 +39,7 @@ fn unit() -> f64 {
     (YOUNG * SIDE.powi(2) / 12.0 / (DENSITY * LENGTH.powi(4))).sqrt()
 }
 
-/// The bar of `examples/rotating_bar.toml` with so many modes and a section `[effects]`, spinning at η = 0, 1, …, 12.
+/// The bar of `examples/rotating_bar.toml` with a number of modes and a section `[effects]`, spinning at η = 0, 1, …, 12.
 fn spinning_bar(modes: usize, effects: &str) -> Value {
     let folder = tempfile::tempdir().unwrap();
     let text = std::fs::read_to_string(root().join("examples/rotating_bar.toml")).unwrap();

@@ -1,4 +1,4 @@
-//! What the program has started, and its temporary files, when it ends.
+//! Programs that the program has started, and its temporary files, when it ends.
 
 use std::fs;
 use std::os::unix::fs::PermissionsExt;

@@ -17,7 +17,7 @@ fn flexframe(library: &str, arguments: &[&str]) -> Output {
     command.args(arguments).current_dir(root()).env("FLEXFRAME_FMU_LIBRARY", library).output().unwrap()
 }
 
-/// What passes for the library: its version, and a name that it exports.
+/// Bytes that pass for the library: its version, and a name that it exports.
 fn library_bytes() -> String {
     format!("{} fmi2DoStep", marker())
 }

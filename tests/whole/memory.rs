@@ -1,4 +1,4 @@
-//! What becomes of a command that has little memory.
+//! Commands that have little memory.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -7,7 +7,7 @@ fn example(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("examples").join(name).canonicalize().unwrap()
 }
 
-/// Runs the program in an address space of so many kB: exit code and standard error.
+/// Runs the program in an address space of a given number of kB: exit code and standard error.
 fn limited(kilobytes: usize, arguments: &[&str]) -> (Option<i32>, String) {
     let mut command = Command::new("sh");
     command.args(["-c", &format!("ulimit -v {kilobytes}; exec \"$@\""), "sh", env!("CARGO_BIN_EXE_flexframe")]);

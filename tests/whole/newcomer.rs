@@ -78,7 +78,7 @@ impl Desk {
         (said, told)
     }
 
-    /// What a command that is refused says, with this exit code.
+    /// Checks the words of a command that is refused, with this exit code.
     #[track_caller]
     fn refused(&self, code: i32, arguments: &[&str], words: &[&str]) {
         let output = self.output(arguments);

@@ -43,7 +43,7 @@ struct Case {
     arguments: &'static [&'static str],
     writes: &'static [&'static str],
     reads: &'static [&'static str],
-    /// Whether it is done to its end when it may replace what is there.
+    /// True if it is done to its end when it may replace what is there.
     to_the_end: bool,
 }
 
@@ -158,14 +158,14 @@ impl Desk {
         assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
     }
 
-    /// That the command fails and says so.
+    /// Checks that the command fails and says so.
     fn refused(&self, arguments: &[&str], words: &str) {
         let output = self.flexframe(arguments);
         let text = String::from_utf8_lossy(&output.stderr);
         assert!(!output.status.success() && text.contains(words), "{arguments:?}: {text}");
     }
 
-    /// That the folder of outputs has this file alone, as it was.
+    /// Checks that the folder of outputs has this file alone, as it was.
     fn only(&self, name: &str, bytes: &[u8], arguments: &[&str]) {
         let names: Vec<_> = fs::read_dir(self.at("o")).unwrap().map(|entry| entry.unwrap().path()).collect();
         if name.starts_with("o/") {

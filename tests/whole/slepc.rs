@@ -62,7 +62,7 @@ struct Case {
     folder: TempDir,
 }
 
-/// What the program has said, and how it ended.
+/// Output of the program, and how it ended.
 struct Said {
     code: Option<i32>,
     out: String,
@@ -103,7 +103,7 @@ impl Case {
         self.command(env!("CARGO_BIN_EXE_flexframe"), &arguments)
     }
 
-    /// What Slurm does with the folder.
+    /// Does Slurm's work with the folder.
     fn do_job(&self) {
         let mut job = self.command("bash", &["job.sh"]);
         job.current_dir(self.path("out put"));

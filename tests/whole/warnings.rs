@@ -269,7 +269,8 @@ fn the_surface_moves_as_the_points_do() {
     assert!(drawn.x < alone.x - 0.1 * alone.norm(), "{drawn} {alone}");
 }
 
-/// What of a mesh of another format was left out is a warning of all that is made of it: when it is read, when it comes from
+/// Parts of a mesh of another format that are left out are a warning of all that is made of it: when it is read, when it
+/// comes from
 /// the cache, and when it comes from a body file. (Needs gmsh, and meshio in the Python that `FLEXFRAME_PYTHON` names.)
 #[test]
 fn of_a_mesh_that_was_not_read_whole() {

@@ -16,7 +16,7 @@ use crate::run::RunError;
 pub use verify::Real;
 pub(crate) use verify::settled;
 
-/// What `flexframe advise` says.
+/// Report of `flexframe advise`.
 #[derive(Debug, Clone, Serialize)]
 pub struct AdviseReport {
     /// Title of the scene.
@@ -25,38 +25,38 @@ pub struct AdviseReport {
     pub frequency_unit: String,
     /// Relative influence from which an effect is on.
     pub tolerance: f64,
-    /// Whether the scene's scheme is one of the paper's formulation, whose effects are fixed.
+    /// True if the scene's scheme is one of the paper's formulation, whose effects are fixed.
     pub of_paper: bool,
     /// A row for each effect.
     pub rows: Vec<EffectRow>,
-    /// What each natural mode is worth.
+    /// Worth of each natural mode.
     pub modes: Vec<ModeRow>,
     /// How many of the modes to keep, the lowest first: the shares of those after them sum to less than the tolerance. More
     /// than are worth it each, where others come before them or add up.
     pub keep: usize,
-    /// Whether the last mode is still worth keeping, so that more may be.
+    /// True if the last mode is still worth keeping, so that more may be.
     pub more_modes: bool,
     /// Why the model is known to be wrong, if it is.
     pub refusal: Option<String>,
 }
 
-/// What is to be said of an effect, or of what else a run goes by.
+/// Advice on an effect, or on another subject of a run.
 #[derive(Debug, Clone, Serialize)]
 pub struct EffectRow {
-    /// What it is about; as JSON its name.
+    /// Its subject; as JSON its name.
     #[serde(rename = "effect", serialize_with = "name")]
     pub subject: Subject,
     /// The number that governs it.
     pub formula: &'static str,
-    /// That number in this scene; infinite where there is nothing to compare with.
+    /// The number in this scene; infinite where there is nothing to compare with.
     #[serde(serialize_with = "json::number")]
     pub value: f64,
     /// Estimated relative influence on the answer, an upper bound.
     #[serde(serialize_with = "json::number")]
     pub influence: f64,
-    /// Whether that reaches the tolerance; of deflection, foreshortening and step whether they may matter.
+    /// True if that reaches the tolerance; of deflection, foreshortening and step if they may matter.
     pub advised: bool,
-    /// Whether a run of the scene has it; `None` where there is nothing to switch.
+    /// True if a run of the scene has it; `None` where there is nothing to switch.
     pub on: Option<bool>,
     /// Why.
     pub why: String,
@@ -68,7 +68,7 @@ fn name<S: Serializer>(subject: &Subject, serializer: S) -> Result<S::Ok, S::Err
     serializer.serialize_str(subject.name())
 }
 
-/// What a mode is worth.
+/// Worth of a mode.
 #[derive(Debug, Clone, Copy, Serialize)]
 pub struct ModeRow {
     /// Cycles per time.
@@ -76,18 +76,18 @@ pub struct ModeRow {
     /// Estimated largest share in the deformation, an upper bound.
     #[serde(serialize_with = "json::number")]
     pub share: f64,
-    /// Whether that reaches the tolerance.
+    /// True if that reaches the tolerance.
     pub worth_keeping: bool,
-    /// What linear strain gets wrong of it, where that may matter.
+    /// Error of linear strain, where that may matter.
     pub linear_strain: Option<LinearStrainRow>,
-    /// Whether a run of the scene has it among the large modes.
+    /// True if a run of the scene has it among the large modes.
     pub large: bool,
 }
 
-/// What linear strain gets wrong of a mode at the amplitude that is expected at most.
+/// Error of linear strain in a mode at the amplitude that is expected at most.
 #[derive(Debug, Clone, Copy, Serialize)]
 pub struct LinearStrainRow {
-    /// That amplitude: largest displacement over the length of the body.
+    /// The amplitude: largest displacement over the length of the body.
     pub deflection: f64,
     /// Change of the frequency that it leaves out, relative.
     pub frequency_shift: f64,
@@ -173,7 +173,7 @@ pub fn advise(scene: &Scene, verify: bool, mut progress: impl FnMut(AdviseProgre
     Ok(report)
 }
 
-/// What the steps get wrong; a step that no run can start with gets everything wrong.
+/// Error of the steps; that of a step that no run can start with is infinite.
 fn step_row(scene: &Scene, model: &Model) -> Row {
     let tolerance = scene.effects.tolerance;
     match model.step_estimate(scene) {

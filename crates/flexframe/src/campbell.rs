@@ -66,14 +66,14 @@ impl Speeds {
     }
 }
 
-/// What a diagram is asked for.
+/// Settings of a diagram.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CampbellSettings {
     /// Direction of the spin, axes of the mesh; any length but zero.
     pub axis: [f64; 3],
     /// The spin speeds.
     pub speeds: Speeds,
-    /// Engine orders: loads that come by so many times a turn.
+    /// Engine orders: numbers of times a turn that loads come by.
     pub orders: Vec<f64>,
 }
 

@@ -8,7 +8,7 @@ use results::Values::{Modal, Number, PointNumbers, Points, Quaternion, Supports,
 
 use crate::row::Row;
 
-/// What runs have whose files have more columns: see [`results::Metadata::parts`].
+/// Parts of runs whose files have more columns: see [`results::Metadata::parts`].
 pub mod part {
     /// Something holds the body.
     pub const CONSTRAINT: &str = "constraint";

@@ -14,12 +14,12 @@ pub(crate) fn computed(scene: &Scene, model: &Model) -> Vec<(&'static str, bool)
     subjects.filter_map(|subject| Some((subject.name(), is_on(scene, model, subject)?))).collect()
 }
 
-/// Whether a scene can switch what a row is about.
+/// True if a scene can switch the subject of a row.
 pub(crate) fn is_switch(subject: Subject) -> bool {
     matches!(subject, Subject::Effect(_) | Subject::StaticCorrection)
 }
 
-/// Whether a model has what a row is about; `None` where that cannot be switched, or the scene has nothing that it could
+/// True if a model has the subject of a row; `None` where that cannot be switched, or the scene has nothing that it could
 /// act on.
 pub(crate) fn is_on(scene: &Scene, model: &Model, subject: Subject) -> Option<bool> {
     let flexible = model.body.flexible();

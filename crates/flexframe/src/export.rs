@@ -15,11 +15,11 @@ pub use motion::Motion;
 pub use paraview::{export_modes, export_vtkhdf, export_vtu};
 pub use rows::ExportRows;
 
-/// What an export has written.
+/// Files of an export.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Exported {
     /// The files.
     pub files: Vec<PathBuf>,
-    /// What should be known of them: that the run is unfinished.
+    /// Warning about them: that the run is unfinished.
     pub warning: Option<String>,
 }

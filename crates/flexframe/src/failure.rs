@@ -1,4 +1,4 @@
-//! What ends a command in failure: its kind, its exit code, and what is known of the fault.
+//! Failure of a command: its kind, its exit code, and the details of the fault.
 
 mod kinds;
 
@@ -43,7 +43,7 @@ impl Kind {
         }
     }
 
-    /// What it stands for, in a few words.
+    /// Meaning in a few words.
     pub fn meaning(self) -> &'static str {
         match self {
             Self::Usage => "wrong arguments",
@@ -56,7 +56,7 @@ impl Kind {
     }
 }
 
-/// What is known of a fault beside its message. What is not known is left out of the JSON.
+/// Details of a fault beside its message. Those that are not known are left out of the JSON.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
 pub struct Details {
     /// The file that is at fault, or could not be read or written.
@@ -68,13 +68,13 @@ pub struct Details {
     /// Path of keys in the scene, such as `loads[0].history.duration`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub key: Option<String>,
-    /// What stands there.
+    /// The value that stands there.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub found: Option<String>,
-    /// What should stand there.
+    /// The value that should stand there.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub expected: Option<String>,
-    /// What to do about it.
+    /// Help for the user.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cure: Option<String>,
 }
@@ -91,7 +91,7 @@ pub trait Failure: Error {
     /// Its class.
     fn kind(&self) -> Kind;
 
-    /// What is known of the fault.
+    /// Details of the fault.
     fn details(&self) -> Details {
         Details::default()
     }
@@ -114,12 +114,12 @@ pub struct FailureReport {
 }
 
 impl FailureReport {
-    /// Of a class, with a message.
+    /// A failure of a kind, with a message.
     pub fn new(kind: Kind, message: impl Into<String>, details: Details) -> Self {
         Self { kind, exit_code: kind.exit_code(), message: message.into(), details }
     }
 
-    /// Of an error.
+    /// The failure of an error.
     pub fn of(failure: &dyn Failure) -> Self {
         Self::new(failure.kind(), failure.to_string(), failure.details())
     }

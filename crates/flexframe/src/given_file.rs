@@ -9,7 +9,7 @@ use mesh_import::{ImportSettings, Reader, reader_of};
 /// Bytes of a text in which it is looked for what it is: as many as a scene may have.
 const LONGEST_SCENE: u64 = 1 << 20;
 
-/// What a file is, as far as commands take it.
+/// Kind of a file, as far as commands take it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum GivenFile {
     /// A scene.
@@ -34,14 +34,14 @@ pub enum GivenFile {
 pub struct OtherFile {
     /// The file.
     pub path: PathBuf,
-    /// What it is.
+    /// Its kind.
     pub found: GivenFile,
-    /// What the command takes.
+    /// The kind that the command takes.
     pub expected: &'static str,
 }
 
 impl GivenFile {
-    /// Of a file; `None` where it cannot be read, or does not say what it is.
+    /// The kind of a file; `None` where it cannot be read, or does not say what it is.
     pub fn of(path: &Path) -> Option<Self> {
         // What is no ordinary file can be read only once.
         let file = Some(path).filter(|path| path.is_file()).and_then(|path| File::open(path).ok())?;
@@ -73,7 +73,7 @@ impl GivenFile {
         }
     }
 
-    /// What it is, in words.
+    /// Its name in words.
     pub fn in_words(self) -> &'static str {
         match self {
             Self::Scene => "a scene",

@@ -17,7 +17,7 @@ pub enum HtmlReportError {
     /// The results file cannot be read, or its body not be made again.
     #[error(transparent)]
     Reopen(#[from] ReopenError),
-    /// What is computed now is not what was computed then, to the last bit: the shapes may be others.
+    /// A result of now differs from that of then: the shapes may be others.
     #[error(
         "{}: {what} is no longer what it was when the run began (a changed mesh or table, another version of flexframe, or another machine), so that its shapes may be others: run the scene again",
         results.display()
@@ -25,7 +25,7 @@ pub enum HtmlReportError {
     Changed {
         /// The results file.
         results: PathBuf,
-        /// What has changed.
+        /// The changed part.
         what: &'static str,
     },
     /// The page cannot be written.

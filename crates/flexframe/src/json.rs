@@ -1,4 +1,4 @@
-//! What JSON has no form for: numbers that are not finite, and names of files that are not UTF-8.
+//! Values that JSON has no form for: numbers that are not finite, and names of files that are not UTF-8.
 //!
 //! serde_json would write `null` for the former, which stands for "there is none", and fail at the latter.
 

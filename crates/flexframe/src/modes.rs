@@ -10,7 +10,7 @@ use serde::Serialize;
 use crate::plausible;
 use crate::report::{BodyReport, MeshReport, Times, size_and_mass};
 
-/// What `flexframe modes` says.
+/// Report of `flexframe modes`.
 #[derive(Debug, Clone, Serialize)]
 pub struct ModesReport {
     /// Title of the scene.
@@ -23,7 +23,7 @@ pub struct ModesReport {
     pub mesh: Option<MeshReport>,
     /// Mass properties and modes.
     pub body: BodyReport,
-    /// What of the mesh file was left out, and values that no material has.
+    /// Parts of the mesh file that were left out, and values that no material has.
     pub warnings: Vec<String>,
     /// Where the time went, seconds.
     pub times: Times,
@@ -77,7 +77,7 @@ pub fn modes(scene: &Scene, progress: impl FnMut(BuildProgress)) -> Result<(Mode
     Ok((model, report))
 }
 
-/// Writes the modes that a scene asks for as a problem for SLEPc on so many ranks. Returns the files.
+/// Writes the modes that a scene asks for as a problem for SLEPc on a number of ranks. Returns the files.
 ///
 /// # Errors
 /// [`BuildError`].

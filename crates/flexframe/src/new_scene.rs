@@ -228,7 +228,7 @@ end = {end:?}
 struct GivenMaterials {
     /// By group.
     materials: BTreeMap<String, Material>,
-    /// Those in the file.
+    /// Names in the file.
     names: Vec<String>,
 }
 

@@ -1,4 +1,4 @@
-//! What the commands read, so that they do not write over it ([`whole_file::Outputs`]).
+//! Files that the commands read, so that they do not write over them ([`whole_file::Outputs`]).
 
 use std::path::Path;
 
@@ -9,7 +9,7 @@ pub use whole_file::{OutputError, Outputs};
 
 use crate::reopened::scene_in;
 
-/// What a command may write that reads a scene.
+/// Files that a command may write that reads a scene.
 pub fn outputs_of_scene(scene: &Scene, overwrite: bool) -> Outputs {
     Outputs::new(scene.files(), overwrite)
 }

@@ -23,7 +23,7 @@ use rigid_plate::WATCHED_POINT;
 
 pub use error::PaperError;
 
-/// What `flexframe paper` says at its end.
+/// Report of `flexframe paper`.
 #[derive(Debug, Clone, Serialize)]
 pub struct PaperReport {
     /// The run itself.

@@ -1,5 +1,5 @@
-//! What is doubtful of a scene: values that can be computed with, but that no material has, mostly a slip of units; and what
-//! of its mesh file was left out.
+//! Doubts about a scene: values that can be computed with, but that no material has, mostly a slip of units; and parts
+//! of its mesh file that were left out.
 //!
 //! None of it is refused: labels of units are shown, not used, and a scene whose numbers fit each other is computed rightly
 //! whatever its labels say.
@@ -26,7 +26,7 @@ const GRAVITY: f64 = 9.80665;
 const DECIMAL_GRAVITIES: [f64; 3] = [9.81, 981.0, 9810.0];
 const IMPERIAL_GRAVITIES: [f64; 2] = [386.09, 32.174];
 
-/// What is doubtful of a scene by itself, in sentences: materials and gravity. They are only judged where the labels of all
+/// Doubts about a scene by itself, in sentences: materials and gravity. They are only judged where the labels of all
 /// units are known.
 pub fn doubts_of_scene(scene: &Scene) -> Vec<String> {
     let mut doubts = Vec::new();
@@ -43,7 +43,7 @@ pub fn doubts_of_scene(scene: &Scene) -> Vec<String> {
     doubts
 }
 
-/// What is doubtful of a scene, its mesh and its modes, in sentences.
+/// Doubts about a scene, its mesh and its modes, in sentences.
 pub(crate) fn doubts(scene: &Scene, model: &Model) -> Vec<String> {
     let mut doubts = doubts_of_scene(scene);
     if let Body::Matrices(files) = &scene.body {
@@ -70,7 +70,7 @@ pub(crate) fn doubts(scene: &Scene, model: &Model) -> Vec<String> {
     doubts
 }
 
-/// What a motion of a body of matrices may lack.
+/// Parts of a motion that a body of matrices may lack.
 fn without_elements(scene: &Scene, model: &Model) -> impl Iterator<Item = String> {
     let missing = |effect: Effect| {
         let row = &model.advice.effects[effect];
@@ -113,7 +113,7 @@ const UNITS_OF_STRESS: [(&str, f64); 5] =
     [("Pa", 1.0), ("MPa", 1e6), ("GPa", 1e9), ("psi", 6894.757), ("ksi", 6.894757e6)];
 const UNITS_OF_DENSITY: [(&str, f64); 4] = [("kg/m³", 1.0), ("g/cm³", 1e3), ("Mg/mm³", 1e12), ("lb/in³", 27_679.9)];
 
-/// What is doubtful of the speed of sound of a material.
+/// Doubt about the speed of sound of a material.
 fn of_sound(material: &Material, of: &str, labels: &UnitLabels<'_>) -> Option<String> {
     let &Material { young_modulus, density, .. } = material;
     let (pascals, kilograms) = (labels.in_si([-1, 1, -2])?, labels.in_si([-3, 1, 0])?);
@@ -146,7 +146,7 @@ fn of_sound(material: &Material, of: &str, labels: &UnitLabels<'_>) -> Option<St
     ))
 }
 
-/// What is doubtful of gravity, or of an acceleration of the base: the number of standard gravity in other units than those of
+/// Doubt about gravity, or about an acceleration of the base: the number of standard gravity in other units than those of
 /// the scene.
 fn of_acceleration(load: usize, acts: &Load, units: &Units) -> Option<String> {
     let (name, amplitude) = match acts {

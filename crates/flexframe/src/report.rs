@@ -1,4 +1,4 @@
-//! What a command has to say when it is done, for people and for scripts.
+//! Reports of commands, for people and for scripts.
 
 use std::fmt::{self, Write};
 use std::time::Duration;
@@ -96,7 +96,7 @@ pub struct MeshReport {
     pub elements: usize,
     /// Degrees of freedom.
     pub unknowns: usize,
-    /// What the matrices of another program were found to be.
+    /// Findings about the matrices of another program.
     pub matrices: Option<MatricesReport>,
     /// Extent along the axes of the mesh.
     pub size: [f64; 3],
@@ -106,16 +106,16 @@ pub struct MeshReport {
     pub factor_entries: usize,
     /// Bytes that the model takes while it is made, at the most at a time: matrices, factor, basis and scratch.
     pub peak_bytes: usize,
-    /// What SLEPc has done, where it found the modes.
+    /// Work of SLEPc, where it found the modes.
     pub engine: Option<EngineReport>,
 }
 
-/// What SLEPc has done.
+/// Work of SLEPc.
 #[derive(Debug, Clone, Serialize)]
 pub struct EngineReport {
     /// Its version.
     pub slepc: String,
-    /// That of PETSc.
+    /// Version of PETSc.
     pub petsc: String,
     /// Processes.
     pub ranks: usize,
@@ -127,7 +127,7 @@ pub struct EngineReport {
     pub counted: usize,
 }
 
-/// What the matrices of another program were found to be.
+/// Findings about the matrices of another program.
 #[derive(Debug, Clone, Serialize)]
 pub struct MatricesReport {
     /// Degrees of freedom of a node: 3, or 6 with its rotations.
@@ -136,9 +136,9 @@ pub struct MatricesReport {
     pub asymmetry: Option<f64>,
     /// How much K resists a rigid motion, relative to its diagonal, at the most of the six.
     pub rigid_stiffness: f64,
-    /// Whether the mass is a scalar for each pair of nodes: then the large rotation leaves out nothing of it.
+    /// True if the mass is a scalar for each pair of nodes: then the large rotation leaves out nothing of it.
     pub is_scalar_mass: bool,
-    /// What the large rotation leaves out of the mass, relative to the modal mass.
+    /// The part of the mass that the large rotation leaves out, relative to the modal mass.
     pub left_out: f64,
 }
 
@@ -155,7 +155,7 @@ pub struct BodyReport {
     pub rigid_modes: usize,
     /// Natural frequencies of the flexible modes, cycles per time; after them those of static shapes, which are none.
     pub natural_frequencies: Vec<f64>,
-    /// Whether each of these is of a "natural mode" or a "static shape".
+    /// Kind of each of these: "natural mode" or "static shape".
     pub kinds: Vec<&'static str>,
     /// Damping ratios.
     pub damping_ratios: Vec<f64>,
@@ -166,7 +166,7 @@ pub struct BodyReport {
 }
 
 impl MeshReport {
-    /// Of a model; `None` for a rigid body without a mesh.
+    /// The report of a model; `None` for a rigid body without a mesh.
     pub fn new(model: &Model) -> Option<Self> {
         let Meshed { mesh, modes, matrix_bytes, checks, .. } = model.meshed.as_ref()?;
         Some(Self {
@@ -286,7 +286,7 @@ impl BodyReport {
         format!("{modes} from {first:.4} to {last:.4} {frequency_unit}{shapes}")
     }
 
-    /// Of a model.
+    /// The report of a model.
     pub fn new(model: &Model) -> Self {
         let body = &model.body;
         let arm = body.center_of_mass - body.origin;
@@ -306,7 +306,7 @@ impl BodyReport {
     }
 }
 
-/// What a coordinate of the body is that is no natural mode.
+/// Kind of a coordinate of the body that is no natural mode.
 const STATIC_SHAPE: &str = "static shape";
 
 fn kinds(model: &Model) -> Vec<&'static str> {

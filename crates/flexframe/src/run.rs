@@ -149,7 +149,7 @@ pub fn results_path(scene: &Scene, folder: &Path) -> PathBuf {
     folder.join(name)
 }
 
-/// What the results file of a run says about it.
+/// Metadata of a run in its results file.
 pub fn metadata(scene: &Scene, model: &Model) -> Metadata {
     let body = BodyReport::new(model);
     let method = scene.time.method;
@@ -188,7 +188,7 @@ pub fn metadata(scene: &Scene, model: &Model) -> Metadata {
     }
 }
 
-/// What the run has so that its file has further columns. In the formulation of the paper there are no reactions.
+/// Parts of a run whose file has further columns. In the formulation of the paper there are no reactions.
 fn parts(scene: &Scene, model: &Model) -> impl Iterator<Item = &'static str> {
     let motion = &model.body.motion;
     let drive = model.physics.drive.as_ref().map(|drive| drive.motion);

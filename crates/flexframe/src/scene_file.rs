@@ -4,10 +4,10 @@ use std::path::{Path, PathBuf};
 
 use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, percent_decode_str, percent_encode};
 
-/// What a path that is no UTF-8 begins with; another one begins with the root of the file system.
+/// Beginning of a path that is no UTF-8; another one begins with the root of the file system.
 const URL: &str = "file://";
 
-/// What such a path keeps as it is.
+/// Characters that such a path keeps as they are.
 const ENCODED: &AsciiSet = &NON_ALPHANUMERIC.remove(b'/').remove(b'.').remove(b'-').remove(b'_').remove(b'~');
 
 /// The path from the root of the file system, with neither `..` nor links in the name of its folder: one file is at one

@@ -47,7 +47,7 @@ pub enum SweepProgress {
     Rows {
         /// So many.
         done: u64,
-        /// Of so many.
+        /// Number of all.
         total: u64,
     },
 }
@@ -67,7 +67,7 @@ pub struct SweepSettings {
     pub shard: Option<Shard>,
 }
 
-/// What `flexframe sweep` says at its end.
+/// Report of `flexframe sweep`.
 #[derive(Debug, Clone, Serialize)]
 pub struct SweepReport {
     /// Title of the scene.
@@ -87,7 +87,7 @@ pub struct SweepReport {
     pub stale: usize,
     /// Why rows have no results, by their number from 0.
     pub failures: BTreeMap<usize, String>,
-    /// What should be known of rows that are done, by their number.
+    /// Warnings of rows that are done, by their number.
     pub warnings: BTreeMap<usize, Vec<String>>,
     /// How often matrices were assembled and factored.
     pub reductions: usize,
@@ -107,7 +107,7 @@ impl SweepReport {
         }
     }
 
-    /// Of a table of the whole sweep, of which so many rows were done before.
+    /// The report of a table of the whole sweep, of which `kept` rows were done before.
     fn of(plan: Plan, output: &Path, table: &Table, kept: usize) -> Self {
         let [done, _] = table.counts();
         Self {
@@ -250,7 +250,7 @@ pub fn merge(path: &Path, output: &Path, count: usize, overwrite: bool) -> Resul
 /// Why rows fail whose files did not stay what they were.
 const CHANGED: &str = "a file of the body was changed while the sweep ran\n = run it again";
 
-/// What a sweep may not write over: all that it reads.
+/// Files that a sweep may not write over: all that it reads.
 fn outputs(plan: &Plan, sweep: &Path, overwrite: bool) -> Outputs {
     // Rows with the same body and histories have the same files.
     let same = |scene: &Scene| format!("{:?} {:?} {:?}", scene.body, scene.loads, scene.constraint);

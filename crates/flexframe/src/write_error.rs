@@ -20,7 +20,7 @@ impl WriteError {
     }
 }
 
-/// What to do where the system does not let a file or a folder be written.
+/// Help where the system does not let a file or a folder be written.
 pub(crate) fn cure_of_writing(source: &io::Error) -> &'static str {
     match source.kind() {
         io::ErrorKind::NotFound => "make the folder that it is to be in, or correct its path",

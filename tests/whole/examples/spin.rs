@@ -39,7 +39,7 @@ fn first_mode(name: &str) -> (f64, f64) {
     (square, off / largest)
 }
 
-/// What is said before a run.
+/// Refusal before a run.
 fn refusal(name: &str) -> Option<Refusal> {
     let mut scene = scene(name);
     scene.effects.refuse = true;

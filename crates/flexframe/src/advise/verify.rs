@@ -1,4 +1,4 @@
-//! What an effect really does: the scene run with it switched.
+//! Real influence of an effect: the scene run with it switched.
 
 use advice::Subject;
 use dynamics::{Effect, EffectMap, Observation, Rows, StepControl};
@@ -15,12 +15,12 @@ const COMPARED: f64 = 500.0;
 
 /// An attitude that turns by less, rad, does not turn: what rounding may do.
 const LEAST_TURN: f64 = 1e-6;
-/// What the rounding of an attitude comes to, rad.
+/// Rounding error of an attitude, rad.
 const ROUNDING: f64 = 1e-14;
 
 const FLEXIBILITY: Subject = Subject::Effect(Effect::Flexibility);
 
-/// What switching an effect does.
+/// Result of switching an effect.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Real {

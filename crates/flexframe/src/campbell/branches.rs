@@ -27,7 +27,7 @@ pub struct Branch {
 }
 
 impl Branch {
-    /// What a table or a picture calls it.
+    /// Label in a table or a picture.
     pub(super) fn label(&self) -> String {
         match self.kind {
             "static shape" => format!("static {}", self.mode),
@@ -69,7 +69,7 @@ impl Branches {
         continued(spin, &self.modes[above], self.speeds[above], speed, HALVINGS)
     }
 
-    /// The lines of the diagram; the last ones are those of so many static shapes, which are stiff.
+    /// The lines of the diagram; the last ones are those of static shapes, which are stiff.
     pub fn lines(&self, static_shapes: usize) -> Vec<Branch> {
         let natural = self.modes[0].len().saturating_sub(static_shapes);
         let of = |k: usize, value: fn(&SpinMode) -> f64| self.modes.iter().map(|here| value(&here[k])).collect();
@@ -102,7 +102,7 @@ fn continued(
     continued(spin, &halfway, middle, to, halvings - 1)
 }
 
-/// Puts the vibrations `next` where those of `modes` are that they are most alike, and says how alike the worst pair is.
+/// Sorts the vibrations `next` to those of `modes` that they are most alike, and says how alike the worst pair is.
 fn matched(modes: &[SpinMode], next: Vec<SpinMode>) -> (Vec<SpinMode>, f64) {
     let mut pairs: Vec<(f64, usize, usize)> = Vec::with_capacity(modes.len() * next.len());
     for (i, a) in modes.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! What a diagram says.
+//! Report of a diagram.
 
 use std::path::PathBuf;
 

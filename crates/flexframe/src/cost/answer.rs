@@ -27,9 +27,9 @@ pub struct Answer {
     /// The smallest error that is known of.
     #[serde(serialize_with = "json::number")]
     pub smallest_error: f64,
-    /// Whether the scene's `every` has to give way to an `interval`.
+    /// True if the scene's `every` has to give way to an `interval`.
     pub needs_interval: bool,
-    /// What the modes left out change, if that is more than the target.
+    /// Change by the modes left out, if that is more than the target.
     pub modes: Option<String>,
     /// The settings whose runs were stopped because they take longer than the patience, and how far they came.
     pub out_of_patience: Vec<String>,

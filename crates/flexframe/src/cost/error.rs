@@ -35,7 +35,7 @@ pub enum CostError {
     /// A file cannot be written.
     #[error(transparent)]
     Write(#[from] WriteError),
-    /// What is there may not be replaced.
+    /// A file that is there may not be replaced.
     #[error(transparent)]
     Output(#[from] OutputError),
 }

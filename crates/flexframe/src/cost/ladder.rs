@@ -18,7 +18,7 @@ use crate::run::RunFailure;
 const RANKED_ABOVE: f64 = 3.0;
 /// Fraction of a limit of the modes at which the ladder begins.
 const BELOW_LIMIT: f64 = 0.9;
-/// The ladders begin with so many steps at least.
+/// Least number of steps with which the ladders begin.
 const FEWEST_STEPS: f64 = 10.0;
 /// Tolerances are 10^−k for these k.
 const TOLERANCES: std::ops::RangeInclusive<i32> = 3..=10;
@@ -38,7 +38,7 @@ pub struct Line {
     pub formulation: &'static str,
     /// Scheme, as in the scene.
     pub scheme: &'static str,
-    /// Whether tolerances are given instead of steps.
+    /// True if tolerances are given instead of steps.
     pub controlled: bool,
     /// The order that the scheme has.
     pub order: u32,
@@ -55,17 +55,17 @@ pub struct Line {
 /// A run of a ladder.
 #[derive(Debug, Clone, Serialize)]
 pub struct LadderRun {
-    /// What was asked for.
+    /// The setting asked for.
     pub setting: Setting,
-    /// Whether the scene asks for it itself.
+    /// True if the scene asks for it itself.
     pub of_scene: bool,
-    /// Whether no other run is both closer and faster.
+    /// True if no other run is both closer and faster.
     pub on_front: bool,
-    /// What came of it.
+    /// Its outcome.
     pub outcome: Outcome,
 }
 
-/// What came of a run.
+/// Outcome of a run.
 #[derive(Debug, Clone, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Outcome {
@@ -98,7 +98,7 @@ pub struct Measured {
     /// The largest of the errors against the reference, or, if that is larger, three times the reference's own error.
     #[serde(serialize_with = "json::number")]
     pub error: f64,
-    /// Whether the error is so small that the reference cannot tell it.
+    /// True if the error is so small that the reference cannot tell it.
     pub at_reference: bool,
     /// Errors against the reference.
     pub errors: Errors,
@@ -200,7 +200,7 @@ impl Judge<'_> {
         })
     }
 
-    /// Whether shorter steps cannot bring a run closer to the reference, as far as can be told: the reference cannot
+    /// True if shorter steps cannot bring a run closer to the reference, as far as can be told: the reference cannot
     /// tell, or the error is that of the formulation, or of rounding.
     fn is_at_the_end(&self, method: Method, before: Option<&Measured>, now: &Measured) -> bool {
         let own = self.limit(method).map_or(0.0, |limit| RANKED_ABOVE * limit.error.largest());
@@ -275,7 +275,7 @@ impl LadderRun {
 }
 
 impl Line {
-    /// Puts a row where its step belongs.
+    /// Inserts a row where its step belongs.
     pub(super) fn insert(&mut self, row: LadderRun) {
         let place = self.rows.partition_point(|other| other.setting.value() > row.setting.value());
         self.rows.insert(place, row);
@@ -315,7 +315,7 @@ fn tidy(value: f64) -> f64 {
     if (tidy / value - 1.0).abs() < 1e-14 { tidy } else { value }
 }
 
-/// Whether two settings differ by rounding only.
+/// True if two settings differ by rounding only.
 fn is_same(a: Setting, b: Setting) -> bool {
     std::mem::discriminant(&a) == std::mem::discriminant(&b) && (a.value() / b.value() - 1.0).abs() < 1e-9
 }

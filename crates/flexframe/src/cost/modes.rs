@@ -24,7 +24,7 @@ pub struct ModesRow {
     /// Difference to the motion with the most modes; modal coordinates over the modes that both have. None for the most
     /// modes themselves.
     pub errors: Option<Errors>,
-    /// What the steps leave of error in these motions.
+    /// Error of the steps in these motions.
     #[serde(serialize_with = "json::number")]
     pub step_error: f64,
     /// Time of a step of the exponential scheme, seconds.

@@ -23,7 +23,7 @@ pub(super) struct Reference {
     pub error: Errors,
 }
 
-/// What the errors are measured against.
+/// The reference of the errors.
 #[derive(Debug, Clone, Serialize)]
 pub struct ReferenceReport {
     /// Length of a step.
@@ -36,7 +36,7 @@ pub struct ReferenceReport {
     pub errors: Option<Errors>,
 }
 
-/// What may be spent on a reference.
+/// Limit of the time of a reference.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Budget {
     /// For all runs together.

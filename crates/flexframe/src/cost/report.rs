@@ -1,4 +1,4 @@
-//! What a price list says.
+//! Report of a price list.
 
 use std::path::PathBuf;
 
@@ -33,7 +33,7 @@ pub struct CostReport {
     pub end: f64,
     /// Points whose velocity and acceleration are compared.
     pub points: usize,
-    /// What all errors are measured against.
+    /// The reference of all errors.
     pub reference: ReferenceReport,
     /// The limit of the paper's formulation for short steps; its errors are those to the reference.
     pub paper_limit: Option<ReferenceReport>,

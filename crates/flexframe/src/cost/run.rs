@@ -102,7 +102,7 @@ impl Timing {
     /// takes longer than the patience is the last, and does not count.
     ///
     /// # Errors
-    /// That of the first run.
+    /// The error of the first run.
     pub(super) fn of(simulation: &Simulation, at_least: Duration, patience: Duration) -> Result<Self, RunFailure> {
         let mut timing = Self { shortest: Duration::MAX, longest: Duration::ZERO, repeats: 0 };
         let mut sum = Duration::ZERO;
@@ -161,7 +161,7 @@ pub(super) struct Scales {
 }
 
 impl Scales {
-    /// What a body of this size and mass could as well not do at all.
+    /// Scales below which a motion of a body of this size and mass is none.
     pub(super) fn of_body(model: &Model, end: f64) -> Self {
         let size = match &model.meshed {
             Some(meshed) => meshed.mesh.diagonal(),

@@ -1,13 +1,14 @@
-//! What a price list is asked for.
+//! Settings of a price list.
 
 use std::time::Duration;
 
 use super::reference::Budget;
 
-/// What a price list is asked for.
+/// Settings of a price list.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CostSettings {
-    /// What a run may take: it is stopped when this is used up, and the ladders end before runs that would take longer. All
+    /// Limit of the time of a run: it is stopped when this is used up, and the ladders end before runs that would take
+    /// longer. All
     /// runs of the reference together may take twenty times as long.
     pub patience: Duration,
     /// The ladders end before runs with more steps than this; the reference may have four times as many.

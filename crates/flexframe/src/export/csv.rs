@@ -62,7 +62,7 @@ struct Table {
     results: Results,
     parts: Vec<Part>,
     rows: Vec<usize>,
-    /// That the run is unfinished.
+    /// Warning that the run is unfinished.
     warning: Option<String>,
 }
 

@@ -17,7 +17,7 @@ pub enum ExportError {
     /// A table cannot be written.
     #[error(transparent)]
     Write(#[from] WriteError),
-    /// What is there may not be replaced.
+    /// A file that is there may not be replaced.
     #[error(transparent)]
     Output(#[from] OutputError),
     /// The results file cannot be read, or its body not be made again.
@@ -75,9 +75,9 @@ pub enum ExportError {
     NoColumn {
         /// The results file.
         path: PathBuf,
-        /// What was asked for.
+        /// The column asked for.
         found: String,
-        /// What there is.
+        /// The columns that there are.
         columns: Vec<String>,
     },
 }

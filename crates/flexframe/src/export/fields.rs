@@ -18,7 +18,7 @@ pub(super) const FIELDS: [PointField; 3] = [
     PointField { name: "von_mises_stress", components: 1, values: |placed| &placed.von_mises },
 ];
 
-/// What a file says of them.
+/// Description of the fields in a file.
 pub(super) fn described() -> Vec<Field> {
     FIELDS.iter().map(|field| Field { name: field.name.to_owned(), components: field.components }).collect()
 }

@@ -6,16 +6,16 @@ use results::Results;
 
 use super::error::ExportError;
 
-/// Every so many of the rows from one time to another.
+/// Every N-th row from one time to another.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ExportRows {
     /// First time; that of the first row if not given.
     pub from: Option<f64>,
     /// Last time; that of the last row if not given.
     pub to: Option<f64>,
-    /// One row of so many, the first among them.
+    /// N: every N-th row is written, from the first on.
     pub every: usize,
-    /// Whether a file that is there is replaced.
+    /// True if a file that is there is replaced.
     pub overwrite: bool,
 }
 
@@ -43,7 +43,7 @@ impl ExportRows {
         Ok(chosen)
     }
 
-    /// What should be known of an export of these results.
+    /// Warning about an export of these results.
     pub(super) fn warning(results: &Results) -> Option<String> {
         let last = results.numbers("time").and_then(|times| times.last()).copied().unwrap_or_default();
         (!results.complete).then(|| format!("the run is unfinished: its rows end at time {last}"))

@@ -53,7 +53,7 @@ pub enum FmuError {
     Library {
         /// Where it was looked for.
         path: PathBuf,
-        /// What is there.
+        /// The content that is there.
         found: String,
     },
     /// The text of the scene could not be changed to what the FMU holds.

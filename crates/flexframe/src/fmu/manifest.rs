@@ -1,4 +1,4 @@
-//! What is in the resources of an FMU, so that what is missing or damaged is found.
+//! List of the resources of an FMU, so that missing and damaged ones are found.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -14,7 +14,7 @@ pub const MANIFEST: &str = "manifest.json";
 /// The list of the resources of an FMU.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Manifest {
-    /// What `modelDescription.xml` calls the FMU, in braces.
+    /// Identifier of the FMU in `modelDescription.xml`, in braces.
     pub guid: String,
     /// The version of flexframe that has packed it.
     pub program_version: String,
@@ -23,7 +23,7 @@ pub struct Manifest {
 }
 
 impl Manifest {
-    /// Of the files in a folder; `names` are relative to it.
+    /// The list of the files in a folder; `names` are relative to it.
     pub(super) fn of(folder: &Path, names: &[String]) -> Result<Self, FmuError> {
         let mut files = BTreeMap::new();
         let program_version = env!("CARGO_PKG_VERSION").to_owned();

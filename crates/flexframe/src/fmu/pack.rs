@@ -28,13 +28,13 @@ pub struct FmuSettings {
     pub library: Option<PathBuf>,
 }
 
-/// What `flexframe fmu` says.
+/// Report of `flexframe fmu`.
 #[derive(Debug, Clone, Serialize)]
 pub struct FmuReport {
     /// The FMU.
     #[serde(serialize_with = "json::path")]
     pub fmu: PathBuf,
-    /// What its `modelDescription.xml` calls it.
+    /// Its identifier in `modelDescription.xml`.
     pub guid: String,
     /// Names of the inputs.
     pub inputs: Vec<String>,

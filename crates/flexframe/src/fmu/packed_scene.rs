@@ -19,7 +19,7 @@ pub(super) struct PackedScene {
 }
 
 impl PackedScene {
-    /// Of a scene in a folder; a body with a mesh becomes that of the [`BODY`].
+    /// The packed form of a scene in a folder; a body with a mesh becomes that of the [`BODY`].
     pub fn new(text: &str, folder: &Path, is_rigid: bool) -> Result<Self, FmuError> {
         let mut scene: Table = toml::from_str(text).map_err(|error| FmuError::Text(error.to_string()))?;
         if !is_rigid {

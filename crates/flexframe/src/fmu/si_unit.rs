@@ -14,7 +14,8 @@ pub(super) struct Powers {
 }
 
 impl Powers {
-    /// Of a unit such as "mass/(length time^2)", as in [`COLUMNS`](crate::columns::COLUMNS); none where a power is no whole
+    /// The powers of a unit such as "mass/(length time^2)", as in [`COLUMNS`](crate::columns::COLUMNS); none where a power
+    /// is no whole
     /// number, which FMI has no base units for.
     pub fn of(unit: &str) -> Option<Self> {
         let mut powers = Self::default();
@@ -56,7 +57,7 @@ impl Powers {
         }
     }
 
-    /// What one of it is in SI; none where the labels are no decimal units of SI.
+    /// Size of the unit in SI; none where the labels are no decimal units of SI.
     pub fn factor(&self, units: &Units) -> Option<f64> {
         let powers = [self.length, self.mass, self.time];
         if powers == [0; 3] {

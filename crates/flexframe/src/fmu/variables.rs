@@ -8,25 +8,25 @@ use scene::{Load, Model, Scene};
 use crate::columns::COLUMNS;
 use crate::row::Row;
 
-/// What a variable is.
+/// Source of a variable.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Source {
     /// The time.
     Time,
-    /// What the importing program sets.
+    /// A number that the importing program sets.
     Input(Input),
     /// A number of the row of a results file.
     Row {
         /// Its place in the row.
         place: usize,
-        /// Whether it follows the inputs at once, as accelerations do.
+        /// True if it follows the inputs at once, as accelerations do.
         is_direct: bool,
-        /// Whether it is an output; otherwise it can be looked at, but is not for wiring.
+        /// True if it is an output; otherwise it can be looked at, but is not for wiring.
         is_output: bool,
     },
 }
 
-/// What the importing program sets. Each is held from one communication point to the next.
+/// A number that the importing program sets. Each is held from one communication point to the next.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Input {
     /// The factor on a load of the scene, by its number among those that act.
@@ -40,7 +40,7 @@ pub enum Input {
 }
 
 impl Input {
-    /// What it is until it is set.
+    /// Its value until it is set.
     pub fn start(self) -> f64 {
         if matches!(self, Self::Factor(_)) { 1.0 } else { 0.0 }
     }
@@ -51,17 +51,17 @@ impl Input {
 pub struct Variable {
     /// Its name by the rules of the naming convention "structured"; indices count from 1.
     pub name: String,
-    /// What it is, for people.
+    /// Its description, for people.
     pub description: String,
     /// Unit in the words length, mass, time and rad.
     pub unit: &'static str,
-    /// What it is.
+    /// Its source.
     pub source: Source,
 }
 
 /// Forces of the body at the moment follow the inputs at once.
 const DIRECT: [&str; 4] = ["angular_acceleration", "acceleration", "rigid_acceleration", "drive/"];
-/// What is for looking at, not for wiring.
+/// Columns for looking at, not for wiring.
 const LOCAL: [&str; 3] = ["modal/", "energy/", "momentum/"];
 
 /// All variables of a model: the time, the inputs, then the columns of a results file.
@@ -145,7 +145,7 @@ fn of_column(column: &Column<Row>, metadata: &Metadata, index: usize, place: usi
     Variable { name, description, unit, source: Source::Row { place, is_direct, is_output } }
 }
 
-/// What a name in quotes may not have in it.
+/// Characters that a name in quotes may not have in it.
 const ENCODED: &AsciiSet = &CONTROLS.add(b'\'').add(b'"').add(b'\\').add(b'`').add(b'%');
 
 /// A name of the user's as FMI allows it: as it is where it is an identifier, otherwise in quotes, with what may not stand

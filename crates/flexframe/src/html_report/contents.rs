@@ -1,4 +1,4 @@
-//! What the page of a run shows.
+//! Contents of the page of a run.
 
 use std::path::Path;
 
@@ -21,7 +21,7 @@ use crate::row::Row;
 use crate::surface;
 use crate::units::UnitLabels;
 
-/// A body without elements is drawn by so many of its nodes at the most.
+/// Most nodes by which a body without elements is drawn.
 const MOST_NODES: usize = 20_000;
 
 /// All of it; `None` where the file has not got the columns that it needs.

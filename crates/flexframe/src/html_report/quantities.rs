@@ -113,7 +113,8 @@ impl<'a> Quantities<'a> {
         values.fold(0.0, |greatest, value| greatest.max(value.abs()))
     }
 
-    /// What the body gives that moves by its own length in its fastest mode. Energies are squares of what is rounded: their
+    /// Size of a quantity for a body that moves by its own length in its fastest mode. Energies are squares of what is
+    /// rounded: their
     /// rounding is that of the greatest alone.
     fn of_body(&self, dimension: Dimension) -> f64 {
         let [mass, length, omega] = self.body;

@@ -61,7 +61,7 @@ pub enum RunError {
         part: PathBuf,
         /// The time that was reached.
         time: f64,
-        /// Whether another results file is there that it may replace.
+        /// True if another results file is there that it may replace.
         replaces: bool,
     },
     /// The scene in an unfinished file is invalid.
@@ -75,7 +75,7 @@ pub enum RunError {
         /// Why.
         source: CheckpointError,
     },
-    /// What is computed now is not what was computed then, to the last bit.
+    /// A result of now differs from that of then.
     #[error(
         "{}: {what} is no longer what it was when the run began (a changed mesh or table, another version of flexframe, or another machine); a run is continued only if it stays the same bit for bit: run the scene again with --overwrite",
         part.display()
@@ -83,7 +83,7 @@ pub enum RunError {
     Changed {
         /// The unfinished file.
         part: PathBuf,
-        /// What has changed.
+        /// The changed part.
         what: &'static str,
     },
     /// The results would go where a file is that the run reads.
@@ -98,7 +98,7 @@ pub enum RunError {
     Large {
         /// The scene file.
         scene: PathBuf,
-        /// What it would come to.
+        /// Its estimate.
         foretold: Foretold,
     },
     /// The output folder cannot be made.

@@ -1,4 +1,4 @@
-//! What a run will come to, told before it begins.
+//! Rows, bytes and time of a run, estimated before it begins.
 
 use std::fmt;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -15,13 +15,13 @@ use crate::columns::COLUMNS;
 /// A larger file is only written for who has asked for it.
 pub(super) const LARGE: u64 = 1_000_000_000;
 
-/// Steps that are tried take so many seconds at the most, or so small a part of the motion.
+/// Most seconds that trial steps take, and the part of the motion that they cover.
 const TRIAL: f64 = 0.05;
 const TRIAL_PART: f64 = 0.05;
 /// Steps between two looks at the clock.
 const STEPS_PER_LOOK: u64 = 16;
 
-/// What a run will come to.
+/// Estimate of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Foretold {
     /// Rows, but for those at corners of loads.
@@ -33,7 +33,7 @@ pub struct Foretold {
 }
 
 impl Foretold {
-    /// Of the rows of a scene, without a look at its steps.
+    /// Estimate of the rows of a scene, without a look at its steps.
     pub(super) fn of_rows(scene: &Scene, metadata: &Metadata) -> Self {
         let rows = rows(scene);
         Self { rows, bytes: rows.saturating_mul(bytes_per_row(&COLUMNS, metadata)), seconds: None }

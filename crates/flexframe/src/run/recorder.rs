@@ -193,7 +193,7 @@ impl<'a> Recorder<'a> {
         RunError::Step { results: self.writer.unfinished().to_path_buf(), source }
     }
 
-    /// What there is to know of the time that `simulation` has reached.
+    /// Observes the motion at the time that `simulation` has reached.
     fn observe(&mut self, simulation: &mut Simulation) -> Result<(), RunError> {
         simulation.observe(&mut self.row.motion).map_err(|source| self.failed(source))?;
         self.row.complete(self.model);

@@ -1,4 +1,4 @@
-//! What `flexframe run` says at its end.
+//! Report of `flexframe run`.
 
 use std::f64::consts::{PI, TAU};
 use std::fmt;
@@ -15,7 +15,7 @@ use crate::peak_stress::PeakStress;
 use crate::report::{BodyReport, MeshReport, Times, quantity, size_and_mass};
 use crate::units::UnitLabels;
 
-/// What `flexframe run` says at its end.
+/// Report of `flexframe run`.
 #[derive(Debug, Clone, Serialize)]
 pub struct RunReport {
     /// Title of the scene.
@@ -27,7 +27,7 @@ pub struct RunReport {
     pub results: PathBuf,
     /// Rows in it.
     pub rows: u64,
-    /// What was foretold of it.
+    /// The estimate before it.
     pub foretold: Foretold,
     /// Formulation.
     pub formulation: String,
@@ -67,7 +67,7 @@ pub struct RunReport {
     pub final_energy: f64,
     /// How far the balances are from closed.
     pub balances: Balances,
-    /// Whether the balance of energy is open though the motion is right: modes faster than the steps follow themselves
+    /// True if the balance of energy is open though the motion is right: modes faster than the steps follow themselves
     /// exactly, but the work on them and their dissipation are summed by the stages.
     pub right_unsummed: bool,
     /// The effects of this body and whether each was computed; none of the paper's formulation, which has its own.

@@ -14,7 +14,7 @@ pub enum RunProgress {
     Build(BuildProgress),
     /// The model is there, and the motion begins. A new run has written no file yet.
     Built,
-    /// What the run will come to. Nothing is written yet.
+    /// The estimate of the run. Nothing is written yet.
     Foretold(Foretold),
     /// Part of the time that has been passed, 0 to 1.
     Motion(f64),

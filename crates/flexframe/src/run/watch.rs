@@ -1,4 +1,4 @@
-//! What is watched of a motion beside its rows: whether the assumptions of its model hold, and what should stay as it is.
+//! Watch of a motion beside its rows: the assumptions of its model, and the quantities that should stay as they are.
 
 use advice::{Refusal, Review, StepEstimate};
 use dynamics::{EffectMap, Initial, Moment, Observation, Simulation};
@@ -25,11 +25,11 @@ pub struct Watch<'a> {
     review: Review<'a>,
     monitor: Monitor,
     turn: Turn,
-    /// What fixed steps are expected to get wrong.
+    /// Expected error of fixed steps.
     step: Option<StepEstimate>,
 }
 
-/// What there is to say of a motion when it has come to its end.
+/// Findings about a motion that has come to its end.
 #[derive(Debug, Clone)]
 pub struct Watched {
     /// How far the balances are from closed.
@@ -45,7 +45,7 @@ pub struct Watched {
 }
 
 impl<'a> Watch<'a> {
-    /// Of the motion of a scene that begins with `initial` and is computed with these effects.
+    /// The watch of the motion of a scene that begins with `initial` and is computed with these effects.
     ///
     /// # Errors
     /// [`RunError::Setup`].
@@ -99,7 +99,7 @@ impl<'a> Watch<'a> {
         self.review.stop().filter(|_| self.scene.effects.refuse)
     }
 
-    /// What there is to say when `simulation` has come to its end.
+    /// Findings when `simulation` has come to its end.
     pub fn finish(&mut self, simulation: &Simulation) -> Watched {
         let Self { scene, model, .. } = *self;
         self.monitor.exchanged(simulation.exchanged());
@@ -123,7 +123,7 @@ impl<'a> Watch<'a> {
         }
     }
 
-    /// Whether the steps are known to be right though they are too long for the sum of work and dissipation.
+    /// True if the steps are known to be right though they are too long for the sum of work and dissipation.
     fn is_right_unsummed(&self, longest_step: f64) -> bool {
         if !self.scene.time.method.abilities.keeps_energy {
             // The equations of the paper do not keep the energy in any steps.

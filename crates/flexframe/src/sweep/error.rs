@@ -8,7 +8,7 @@ use scene::{BuildError, SceneError};
 use crate::outputs::OutputError;
 use crate::write_error::WriteError;
 
-/// What to do about the file of a sweep.
+/// Help about the file of a sweep.
 pub(crate) const SWEEP_CURE: &str = "correct it: docs/reference/cli.md, \"Sweeps\", has an example with all its keys";
 
 /// A sweep that could not be made. What fails in a row of it is in its table.
@@ -29,9 +29,9 @@ pub enum SweepError {
         path: PathBuf,
         /// The key in it.
         key: String,
-        /// What stands there.
+        /// The value that stands there.
         found: String,
-        /// What should stand there.
+        /// The value that should stand there.
         expected: String,
     },
     /// The file of the sweep is not TOML, or has another form.
@@ -39,7 +39,7 @@ pub enum SweepError {
     Form {
         /// The file.
         path: PathBuf,
-        /// What the parser said, with the place.
+        /// Message of the parser, with the place.
         message: String,
     },
     /// The scene cannot be read, or no row of the sweep is a scene.
@@ -53,7 +53,7 @@ pub enum SweepError {
     /// The body cannot be made.
     #[error(transparent)]
     Build(#[from] BuildError),
-    /// What is there is not the table of this sweep.
+    /// A file that is there is not the table of this sweep.
     #[error(
         "{}: what is there is not the table of this sweep ({what}); move it away, choose another file with -o, or replace it \
          with --overwrite",
@@ -62,7 +62,7 @@ pub enum SweepError {
     OtherTable {
         /// The file.
         path: PathBuf,
-        /// What it is.
+        /// Its kind.
         what: String,
     },
     /// The table would go where a file is that the sweep reads.

@@ -1,4 +1,4 @@
-//! What a sweep is: a scene, its parameters, and what is asked of each run.
+//! Plan of a sweep: a scene, its parameters, and the results of each run.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -35,13 +35,13 @@ enum Combine {
     Zip,
 }
 
-/// What is asked of a run.
+/// A result of a run.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum Asked {
     /// The last row of a column of the results, such as `points/tip/displacement`.
     Final(String),
-    /// Of each number of a column, the value of largest size over the rows, with its sign.
+    /// The value of largest size over the rows, with its sign, of each number of a column.
     Peak(String),
 }
 
@@ -75,7 +75,7 @@ pub(super) struct Plan {
     pub results: BTreeMap<String, Asked>,
     /// The scene of each row, or why it is none.
     pub rows: Vec<Result<Scene, String>>,
-    /// What each row follows from: its scene and the bytes of all files that are read for it.
+    /// Hash for each row: of its scene and of the bytes of all files that are read for it.
     pub identities: Vec<u64>,
 }
 
@@ -165,13 +165,13 @@ impl Plan {
         Ok(Self { title: scene.title, identity, parameters, results: file.results, rows, identities })
     }
 
-    /// Whether the files of the body of a row are no longer what they were when the sweep was read.
+    /// True if the files of the body of a row have changed since the sweep was read.
     pub fn has_changed(&self, row: usize) -> bool {
         self.rows[row].as_ref().is_ok_and(|scene| identity(scene, &contents(&scene.body)) != self.identities[row])
     }
 }
 
-/// What each row follows from.
+/// Hash for each row.
 fn identities(rows: &[Result<Scene, String>]) -> Vec<u64> {
     // The files of each body are read once.
     let mut bodies: BTreeMap<String, Hash> = BTreeMap::new();
@@ -193,7 +193,7 @@ fn identity(scene: &Scene, body: &Hash) -> u64 {
     u64::from_str_radix(&digits[..16], 16).unwrap_or(0)
 }
 
-/// What the files of a body hold.
+/// Hash of the files of a body.
 fn contents(body: &Body) -> Hash {
     let files = body.files();
     let digest = files.iter().fold(Digest::new(), |digest, path| {
@@ -249,7 +249,7 @@ fn grid(lists: &[(String, Vec<Value>)]) -> Option<Vec<(String, Vec<Value>)>> {
 mod tests {
     use super::*;
 
-    /// What a geometry includes, and a table: each changes what the rows are.
+    /// Files that a geometry includes, and a table: each changes what the rows are.
     #[test]
     fn a_row_follows_from_every_file_that_is_read_for_it() {
         let folder = tempfile::tempdir().unwrap();

@@ -23,7 +23,7 @@ impl Shard {
         (1..=count).map(move |number| Self { number, count })
     }
 
-    /// Whether a row, numbered from 0, is of this part.
+    /// True if a row, numbered from 0, is of this part.
     pub fn has(self, row: usize) -> bool {
         row % self.count + 1 == self.number
     }

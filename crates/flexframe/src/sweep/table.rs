@@ -10,7 +10,7 @@ use toml::Value;
 use super::error::SweepError;
 use super::plan::{Asked, Plan};
 
-/// What has become of a row, by the numbers in the file.
+/// State of a row, by the numbers in the file.
 const OPEN: u32 = 0;
 const DONE: u32 = 1;
 const FAILED: u32 = 2;
@@ -18,7 +18,7 @@ const FAILED: u32 = 2;
 /// The dataset of what rows follow from.
 const ROW_IDENTITY: &str = "row_identity";
 
-/// What has become of a row.
+/// State of a row.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum RowState {
     /// It has not been run.
@@ -34,7 +34,7 @@ pub(super) enum RowState {
 pub(super) struct Done {
     /// The numbers of each result, in the order of the plan.
     pub results: Vec<Vec<f64>>,
-    /// What should be known of its run.
+    /// Warnings of its run.
     pub warnings: Vec<String>,
 }
 
@@ -209,7 +209,7 @@ fn by_row<T: DeserializeOwned>(file: &BodyFile, attribute: &str) -> BTreeMap<usi
     file.attribute(attribute).and_then(|text| serde_json::from_str(text).ok()).unwrap_or_default()
 }
 
-/// What the table belongs to.
+/// Identity of the sweep that the table belongs to.
 fn identity(plan: &Plan) -> String {
     Digest::new().text(env!("CARGO_PKG_VERSION")).text(&plan.identity).finish().to_string()
 }
