@@ -69,11 +69,11 @@ picture: build
     if {{flexframe}} run examples/thrown_plate.toml -o out/picture --overwrite | grep '^  warning'; then exit 1; fi
     {{flexframe}} animate examples/thrown_plate.toml -o docs/start/thrown_plate.gif --frames 80 --overwrite
 
-# What accuracy costs: docs/evidence/accuracy.md and its diagrams from real runs of three scenes (some minutes).
+# The price of accuracy: docs/evidence/accuracy.md and its diagrams from real runs of three scenes (some minutes).
 accuracy:
     cargo run --release --quiet --package accuracy -- docs/evidence/accuracy.md examples/accuracy/{pulse,tumbling,spin}.toml --overwrite
 
-# What hard cases come to with every scheme: docs/evidence/stability.md; then kills of many runs (some minutes). Fails where a
+# Hard cases with every scheme: docs/evidence/stability.md; then kills of many runs (some minutes). Fails where a
 # bound is broken or a row is lost.
 stability:
     cargo run --release --quiet --package stability -- docs/evidence/stability.md --overwrite

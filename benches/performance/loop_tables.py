@@ -1,4 +1,4 @@
-"""What docs/evidence/performance.md shows of the loop over time."""
+"""Tables of docs/evidence/performance.md about the loop over time."""
 
 from statistics import median
 

@@ -20,7 +20,7 @@ PYTHON_OF_SLEPC = ".tools/performance-slepc/bin/python"
 
 
 class Run:
-    """What a process took. `output` is None where it was stopped after `patience` seconds."""
+    """Time and memory of a process. `output` is None where it was stopped after `patience` seconds."""
 
     def __init__(self, command, patience=None, threads=1, folder=None, **environment):
         command = [str(word) for word in command]
@@ -90,7 +90,7 @@ def debian_slepc():
 
 
 def machine():
-    """What was measured on."""
+    """The machine of the measurement."""
     memory = next(line for line in Path("/proc/meminfo").read_text().splitlines() if line.startswith("MemTotal"))
     return {
         "processor": of_processor("model name") or platform.machine(),
@@ -108,7 +108,7 @@ def debian():
 
 
 def versions():
-    """Of the peers, by name."""
+    """Versions of the peers, by name."""
     packages = [line.split()[0].split("==") for line in (HERE / "requirements.txt").read_text().splitlines()]
     of_debian = {
         "SLEPc": "libslepc-real3.18",

@@ -39,7 +39,7 @@ def measure(store, effort):
 
 
 def programs(case, frequency, ordering, patience):
-    """What runs each program on a case and returns its record."""
+    """Functions that run each program on a case and return its record."""
     peers = HERE / "peers"
     told = [case.scene, MODES, frequency]
     slepc = [PYTHON_OF_SLEPC, peers / "slepc_modes.py", *told]

@@ -1,4 +1,4 @@
-"""What docs/evidence/performance.md shows of the modes."""
+"""Tables of docs/evidence/performance.md about the modes."""
 
 import modes
 import summary

@@ -115,7 +115,7 @@ def short(cases, speeds):
 
 
 def lost(cases, results, speeds):
-    """What flexframe is not better in, in words."""
+    """Cases in which flexframe is not better, in words."""
     words = []
     for name, programs in cases.items():
         for peer in modes.PEERS:

@@ -1,4 +1,4 @@
-"""What docs/evidence/performance.md shows of cost against size."""
+"""Tables of docs/evidence/performance.md about cost against size."""
 
 import modes
 import summary

@@ -11,13 +11,13 @@ def of(values):
 
 
 def ratios(theirs, ours):
-    """Of the runs of the same turn: median, least, largest."""
+    """Median, least and largest of the runs of the same turn."""
     pairs = [a / b for a, b in zip(theirs, ours)]
     return median(pairs), min(pairs), max(pairs)
 
 
 def slope(points):
-    """Of the straight line through log y over log x (least squares)."""
+    """Slope of the straight line through log y over log x (least squares)."""
     logs = [(math.log(x), math.log(y)) for x, y in points]
     x, y = (sum(values) / len(logs) for values in zip(*logs))
     return sum((a - x) * (b - y) for a, b in logs) / sum((a - x) ** 2 for a, _ in logs)

@@ -216,7 +216,7 @@ fn write_row(out: &mut String, line: &Line, row: &LadderRun) -> std::fmt::Result
     }
 }
 
-/// What the paper's scheme gives for its money.
+/// The price and the worth of the paper's scheme, in words.
 fn paper_in_words(report: &CostReport) -> String {
     let is_paper = |line: &&Line| line.scheme == "paper";
     let paper: Vec<Line> = report.lines.iter().filter(is_paper).cloned().collect();

@@ -7,7 +7,7 @@ use flexframe::scene::{Assembly, BuildError, Flexible, Scene};
 /// Steps of the runs.
 const STEPS: [u64; 4] = [1000, 2000, 5000, 10_000];
 
-/// What a run of the paper's scheme does to the spin.
+/// Change of the spin by a run of the paper's scheme.
 pub(super) struct SpinRow {
     pub flexible: usize,
     pub step: f64,

@@ -35,7 +35,7 @@ class Refused(Exception):
 
 
 class File:
-    """What is read of a file: nodes, blocks of elements of one kind, and names."""
+    """The parts of a file that are read: nodes, blocks of elements of one kind, and names."""
 
     def __init__(self, np, points, cells):
         self.points = np.asarray(points, dtype=float)
@@ -159,7 +159,7 @@ def with_meshio(np, source, target, notes):
 
 
 def prepared(source, target):
-    """What meshio can read of the file: it wants heads that gmsh leaves out."""
+    """The file as meshio can read it: it wants heads that gmsh leaves out."""
     ending = Path(source).suffix.lower()
     if ending in NASTRAN:
         text = Path(source).read_text(encoding="utf-8", errors="replace")
@@ -173,7 +173,7 @@ def prepared(source, target):
 
 
 def nastran_materials(text, notes):
-    """What MAT1 gives to the elements of each PSOLID, whose numbers are the names of groups."""
+    """Materials by MAT1 of the elements of each PSOLID, whose numbers are the names of groups."""
     isotropic, others, of_property, mass_of_weight = {}, {}, {}, 1.0
     for card, fields in nastran_cards(text):
         try:

@@ -9,7 +9,7 @@ use crate::error::NonlinearError;
 /// The material of the soft bodies, SI.
 pub const SOFT: Material = Material { young_modulus: 1e7, poisson_ratio: 0.3, density: 1000.0 };
 
-/// Of the slender column, without Poisson's ratio: the clamp of a beam does not hinder it.
+/// Material of the slender column, without Poisson's ratio: the clamp of a beam does not hinder it.
 pub const COLUMN: Material = Material { young_modulus: 7e7, poisson_ratio: 0.0, density: 1000.0 };
 
 /// E I of the column, whose length is 1 and whose breadth is 0.025.
@@ -23,7 +23,7 @@ pub fn mesh_path(name: &str) -> PathBuf {
 /// A mesh by its name.
 ///
 /// # Errors
-/// What the file is refused with.
+/// Errors of the file.
 pub fn mesh(name: &str) -> Result<Mesh, NonlinearError> {
     Ok(read_msh(mesh_path(name))?)
 }

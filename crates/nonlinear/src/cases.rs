@@ -1,4 +1,4 @@
-//! What is compared: runs of flexframe and of the nonlinear body on the same mesh.
+//! Comparisons: runs of flexframe and of the nonlinear body on the same mesh.
 
 use std::path::Path;
 
@@ -16,7 +16,7 @@ use crate::solid::Solid;
 /// A scene of a mesh of this crate in SI, read and built.
 ///
 /// # Errors
-/// What the scene is refused with.
+/// Errors of the scene.
 pub fn built(mesh: &str, material: Material, rest: &str) -> Result<(Scene, Model), NonlinearError> {
     let Material { young_modulus, poisson_ratio, density } = material;
     let text = format!(
@@ -34,7 +34,7 @@ pub fn built(mesh: &str, material: Material, rest: &str) -> Result<(Scene, Model
 /// All rows of a run.
 ///
 /// # Errors
-/// What stops it.
+/// Errors that stop it.
 pub fn rows(scene: &Scene, model: &Model) -> Result<Vec<Observation>, NonlinearError> {
     let failed = |error: &dyn std::error::Error| NonlinearError::Scene(error.to_string());
     let run = model.start(scene).map_err(|error| failed(&error))?;
@@ -96,7 +96,7 @@ const L_MODES: &str = "[modes]\nflexible = 8\n";
 /// The free L in eight undamped modes.
 ///
 /// # Errors
-/// What the scene is refused with.
+/// Errors of the scene.
 pub fn the_l(rest: &str) -> Result<(Scene, Model), NonlinearError> {
     built("l", crate::bodies::SOFT, &format!("{L_MODES}{rest}"))
 }
@@ -105,7 +105,7 @@ pub fn the_l(rest: &str) -> Result<(Scene, Model), NonlinearError> {
 /// of a part of its frequency: of the nonlinear body, and of flexframe with `rest` in its scene.
 ///
 /// # Errors
-/// What stops a run.
+/// Errors that stop a run.
 pub fn spinning_l(part: f64, periods: f64, rests: &[&str]) -> Result<(f64, Vec<Course>), NonlinearError> {
     let (_, model) = the_l("static_correction = false\n[time]\nend = 1e-3\nstep = 1e-3")?;
     let first = in_plane(&model)[0];
@@ -161,7 +161,7 @@ pub fn cycles(course: &Course, omega: f64, step: Option<f64>) -> f64 {
 /// body.
 ///
 /// # Errors
-/// What is not found.
+/// A solution that is not found.
 pub fn static_energy(solid: &Solid, model: &Model, mode: usize, q: f64) -> Result<f64, NonlinearError> {
     let mut shapes = vec![shape(model, mode)];
     if let Some(meshed) = &model.meshed {
@@ -178,7 +178,7 @@ pub fn static_energy(solid: &Solid, model: &Model, mode: usize, q: f64) -> Resul
 /// its own frame, of the nonlinear body and of flexframe with each of `rests` in its scene.
 ///
 /// # Errors
-/// What stops a run.
+/// Errors that stop a run.
 pub fn pendulum(young_modulus: f64, end: f64, steps: usize, rests: &[&str]) -> Result<Vec<Course>, NonlinearError> {
     let material = crate::bodies::soft(young_modulus);
     let solid = Solid::new(crate::bodies::mesh("rod")?, material, |x| x.x.abs() < 1e-9 && x.z.abs() < 1e-9)?;
@@ -236,7 +236,7 @@ fn turned_back(solid: &Solid, u: &[f64], node: usize) -> Vector3<f64> {
 /// pressure acts at once and takes the body along.
 ///
 /// # Errors
-/// What stops a run.
+/// Errors that stop a run.
 pub fn pressed(
     mesh: &str,
     young_modulus: f64,

@@ -1,4 +1,4 @@
-//! What may go wrong.
+//! Errors of the nonlinear body.
 
 /// Why the body is not found or does not move.
 #[derive(Debug)]
@@ -11,7 +11,7 @@ pub enum NonlinearError {
     Iterations {
         /// Time, or the part of the load.
         at: f64,
-        /// What is left of the forces, relative.
+        /// Rest of the forces, relative.
         residual: f64,
     },
     /// A scene that flexframe refuses.

@@ -12,7 +12,7 @@ use crate::solid::{Factor, Solid};
 
 /// Most iterations in a step.
 const MOST: usize = 40;
-/// What is left of the forces, relative to the largest of their kinds.
+/// Rest of the forces that is accepted, relative to the largest of their kinds.
 const TOLERANCE: f64 = 1e-11;
 /// The tangent is made anew where an iteration leaves more than this of the last one.
 const SLOW: f64 = 0.2;

@@ -24,7 +24,7 @@ pub struct Solid {
     mesh: Mesh,
     lame: (f64, f64),
     matrices: Matrices,
-    /// Of each element.
+    /// The integration points of each element.
     points: Vec<Vec<Point>>,
     /// For each element, where the block of two of its nodes begins in the columns of the second (100·3).
     places: Vec<Vec<[usize; 3]>>,
@@ -34,10 +34,10 @@ pub struct Solid {
 }
 
 impl Solid {
-    /// Of a mesh whose `held` nodes do not move.
+    /// The solid of a mesh whose `held` nodes do not move.
     ///
     /// # Errors
-    /// What the material and the matrices are refused with.
+    /// Errors of the material and of the matrices.
     pub fn new(mesh: Mesh, material: Material, held: impl Fn(Vector3<f64>) -> bool) -> Result<Self, NonlinearError> {
         Self::with_masses(mesh, material, &[], held)
     }
@@ -98,7 +98,7 @@ impl Solid {
         self.held.len()
     }
 
-    /// Whether a degree of freedom is held.
+    /// True if a degree of freedom is held.
     pub fn is_held(&self, freedom: usize) -> bool {
         self.held[freedom]
     }

@@ -10,7 +10,7 @@ use crate::solid::Solid;
 const MOST: usize = 300;
 /// Iterations of a subspace that begins near the answer.
 const SUBSPACE: usize = 20;
-/// What is left of the forces or of the displacements, relative.
+/// Rest of the forces or of the displacements that is accepted, relative.
 const TOLERANCE: f64 = 1e-11;
 
 impl Solid {

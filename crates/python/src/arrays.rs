@@ -9,7 +9,7 @@ use numpy::ndarray::{ArrayView, ArrayView2, ArrayView3, Dimension, ShapeBuilder}
 use numpy::{Element, PyArray, PyArrayMethods};
 use pyo3::prelude::*;
 
-/// What an array that looks into a model has as its base: a share of the model.
+/// The base of an array that looks into a model: a share of the model.
 #[pyclass(frozen, module = "flexframe._flexframe")]
 struct Memory(Arc<Model>);
 

@@ -22,18 +22,18 @@ use crate::scene::Scene;
 
 /// The body of a scene: its mesh is read, its modes are found, and it is reduced.
 ///
-/// What is computed of a mesh is kept in the user's cache, as by the program: the same body is there at once the next
+/// Results of a mesh are kept in the user's cache, as by the program: the same body is there at once the next
 /// time, also in another process. So a body that is pickled is its scene, and is made again from the cache where it is
 /// unpickled.
 ///
 /// Ctrl-C raises KeyboardInterrupt at once; a factorization that is under way goes on in its thread until it is done.
-/// What is said to be a view is memory of the body: read-only, not copied, and valid as long as the array is (it keeps
+/// A view is memory of the body: read-only, not copied, and valid as long as the array is (it keeps
 /// the body). nf is the number of flexible modes plus that of the static shapes, which come after them.
 #[pyclass(frozen, module = "flexframe")]
 pub(crate) struct Body {
     scene: Py<Scene>,
     model: Arc<Model>,
-    /// What other scenes of the same body share with it.
+    /// The assembly that other scenes of the same body share with it.
     assembly: Arc<Assembly>,
 }
 
@@ -143,7 +143,7 @@ impl Body {
         view(py, &self.model, |model| ArrayView1::from(model.damping_ratios()))
     }
 
-    /// Whether each is a "natural mode" or a "static shape".
+    /// Kind of each: "natural mode" or "static shape".
     #[getter]
     fn kinds(&self) -> Vec<&'static str> {
         BodyReport::new(&self.model).kinds

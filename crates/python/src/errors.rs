@@ -27,7 +27,7 @@ pub(crate) fn exception_of(py: Python<'_>, kind: Kind, message: &str, details: &
     made(py, class, message, details).unwrap_or_else(|error| error)
 }
 
-/// What was given to a function is not what it takes: what, what was found, what was expected, and the cure.
+/// Error for an argument of a function that is not of its kind: its name, the value found, the one expected, and help.
 pub(crate) fn wrong_input(py: Python<'_>, what: &str, found: &str, expected: &str, cure: &str) -> PyErr {
     let message = format!("{what}: found {found}, expected {expected}\n = {cure}");
     let text = |text: &str| Some(text.to_owned());

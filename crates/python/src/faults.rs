@@ -1,4 +1,4 @@
-//! What a function of Python raises while a step is taken, kept until the step has come back.
+//! Exceptions of Python functions while a step is taken, kept until the step has come back.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -15,7 +15,7 @@ impl Faults {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
     }
 
-    /// Whether there is one: then no function needs to be asked any more.
+    /// True if there is one: then no function needs to be asked any more.
     pub(crate) fn any(&self) -> bool {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).is_some()
     }

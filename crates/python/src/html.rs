@@ -1,4 +1,4 @@
-//! What notebooks show: headings and tables.
+//! Output for notebooks: headings and tables.
 
 /// A text as it stands between tags.
 pub(crate) fn escaped(text: &str) -> String {

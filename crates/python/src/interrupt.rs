@@ -15,14 +15,14 @@ use crate::threads::in_pool;
 
 /// Time between two looks at signals.
 const LOOK: Duration = Duration::from_millis(50);
-/// That of the first thread of a program.
+/// Stack of the first thread of a program.
 const STACK: usize = 8 << 20;
 
 /// Says to work in another thread that nobody waits for it any longer.
 #[derive(Clone, Default)]
 pub(crate) struct Stop(Arc<AtomicBool>);
 
-/// What ends a thread that was stopped.
+/// The end of a thread that was stopped.
 struct Stopped;
 
 impl Stop {

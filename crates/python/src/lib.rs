@@ -1,6 +1,6 @@
 //! The Python package flexframe: its compiled part, the module `flexframe._flexframe`.
 //!
-//! What Python sees is in `python/flexframe`; the types of everything here are in `_flexframe.pyi` there. One file per idea:
+//! The package is in `python/flexframe`; the types of everything here are in `_flexframe.pyi` there. One file per idea:
 //! `dict` makes the text of a scene from a dict;
 //! `scene`, `body` and `simulation` are the classes of these names;
 //! `load`, `motion` and `faults` let Python functions act on a body;

@@ -100,7 +100,7 @@ impl Law {
 #[pyclass(frozen, module = "flexframe")]
 pub(crate) struct Force {
     point: String,
-    /// Whether the law gives body components, of a force that turns with the body frame.
+    /// True if the law gives body components, of a force that turns with the body frame.
     follows: bool,
     law: Law,
 }

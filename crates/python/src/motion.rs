@@ -23,7 +23,7 @@ pub(crate) fn point_number(py: Python<'_>, points: &Points, name: &str) -> PyRes
     })
 }
 
-/// What a law sees: the motion of the body at one time. Arrays are copies.
+/// The motion of the body at one time, as a law sees it. Arrays are copies.
 #[pyclass(frozen, module = "flexframe")]
 pub(crate) struct Motion {
     /// Time.

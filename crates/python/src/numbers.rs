@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 
 use crate::errors::wrong_input;
 
-/// So many finite numbers from a list, a tuple or an array of them. `what` they are is said where they are not.
+/// A number of finite numbers from a list, a tuple or an array of them. `what` they are is said where they are not.
 pub(crate) fn numbers(value: &Bound<'_, PyAny>, count: usize, what: &str) -> PyResult<Vec<f64>> {
     let py = value.py();
     let refuse = |found: &str| {

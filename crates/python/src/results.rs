@@ -1,4 +1,4 @@
-//! What the class Results, written in Python, is made from.
+//! Data of the class Results, which is written in Python.
 
 use std::path::PathBuf;
 

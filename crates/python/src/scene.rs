@@ -14,7 +14,7 @@ use crate::errors::{exception, wrong_input};
 use crate::html::{escaped, heading};
 use crate::threads::detached;
 
-/// What a dict is called where it gets no name.
+/// Name of a dict that gets none.
 const NAME: &str = "scene";
 
 /// A scene: what a scene file says about a run, read and checked.
@@ -97,7 +97,7 @@ impl Scene {
         Self::parsed(py, &text, self.0.path.clone(), self.0.cache.clone())
     }
 
-    /// What the run is about.
+    /// The title of the run.
     #[getter]
     fn title(&self) -> &str {
         &self.0.title

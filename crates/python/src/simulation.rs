@@ -41,7 +41,7 @@ pub(crate) struct Reached {
     /// Time.
     #[pyo3(get)]
     time: f64,
-    /// That of the time.
+    /// Unit of the time.
     unit: String,
 }
 
@@ -81,9 +81,9 @@ pub(crate) struct Simulation {
 
 struct Running {
     simulation: dynamics::Simulation,
-    /// Whether the row at the start has been given, or a step been tried.
+    /// True if the row at the start has been given, or a step been tried.
     begun: bool,
-    /// Whether the state has been set since the last try of a step, and no run has given its row.
+    /// True if the state has been set since the last try of a step, and no run has given its row.
     is_set: bool,
     row: Observation,
 }
@@ -136,7 +136,7 @@ impl Simulation {
         }
     }
 
-    /// What a law or an event has raised, or else the error of the step.
+    /// The exception of a law or an event, or else the error of the step.
     fn or_fault<T>(&self, py: Python<'_>, result: Result<T, StepError>) -> PyResult<T> {
         match self.faults.take() {
             Some(fault) => Err(fault),
@@ -305,13 +305,13 @@ impl Simulation {
         Ok(self.running()?.simulation.end())
     }
 
-    /// Whether there is nothing more to come, neither a step nor a row.
+    /// True if there is nothing more to come, neither a step nor a row.
     #[getter]
     fn done(&self) -> PyResult<bool> {
         Ok(self.running()?.simulation.is_over())
     }
 
-    /// What it has cost: "steps", "rejected_steps", "evaluations".
+    /// Counts of its work: "steps", "rejected_steps", "evaluations".
     #[getter]
     fn stats<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let stats = self.running()?.simulation.stats();

@@ -1,4 +1,4 @@
-"""What the tests share: scenes of the project, and its program to compare with."""
+"""Fixtures of the tests: scenes of the project, and its program to compare with."""
 
 import os
 import subprocess

@@ -1,4 +1,4 @@
-"""What Python may do wrong, and what is said: docs/reference/python.md has the table. Nothing is left half-written."""
+"""Mistakes of Python programs, and their messages: docs/reference/python.md has the table. Nothing is left half-written."""
 
 import json
 

@@ -13,7 +13,7 @@ STUBS = ast.parse((Path(_flexframe.__file__).parent / "_flexframe.pyi").read_tex
 
 
 def described():
-    """What has a text in the stubs, with this text."""
+    """Names that have a text in the stubs, with this text."""
     for node in STUBS.body:
         if isinstance(node, ast.ClassDef):
             yield node.name, ast.get_docstring(node)

@@ -20,7 +20,7 @@ LONG = {{"time.end": 1e6, "output": {{"interval": 1e3, "points": {{"corner": [0.
 
 
 def interrupted(program, folder):
-    """What a program of Python prints that gets a Ctrl-C when it has printed "go"."""
+    """Output of a program of Python that gets a Ctrl-C when it has printed "go"."""
     script = HEAD + textwrap.dedent(program)
     child = subprocess.Popen([sys.executable, "-u", "-c", script], cwd=folder, stdout=subprocess.PIPE,
                              stderr=subprocess.PIPE, text=True)

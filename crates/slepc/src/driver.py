@@ -12,7 +12,7 @@ flexframe wrote this file and those beside it, and reads what it leaves there:
     modes.petsc          the eigenvectors, and modes.json, which is there once they are complete
     statics-NAME.petsc   the displacements, and statics-NAME.json
 
-What is answered already is not computed again.
+Answers that are there already are not computed again.
 Every rank must see the folder. Options for PETSc and MUMPS are taken from the environment variable PETSC_OPTIONS.
 """
 

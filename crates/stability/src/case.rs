@@ -35,7 +35,7 @@ pub enum Outcome {
     Refused(String),
 }
 
-/// What is asked of a scheme.
+/// Bound of an outcome.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Expected {
     /// The error or drift is not above this.
@@ -45,7 +45,7 @@ pub enum Expected {
 }
 
 impl Expected {
-    /// Whether the outcome is what is asked for.
+    /// True if the outcome is within the bound.
     pub fn holds(&self, outcome: &Outcome) -> bool {
         match (self, outcome) {
             (Self::Within(bound), Outcome::Ran(error)) => error <= bound,
@@ -64,14 +64,14 @@ impl fmt::Display for Expected {
     }
 }
 
-/// What is measured of the body itself, before it moves.
+/// A figure of the body itself, before it moves.
 #[derive(Debug, Clone, Copy)]
 pub struct BodyCheck {
-    /// What the figure is.
+    /// Name of the figure.
     pub what: &'static str,
     /// Finds it.
     pub figure: fn() -> Result<f64, String>,
-    /// What is asked of it.
+    /// Its bound.
     pub expected: Expected,
 }
 
@@ -89,18 +89,18 @@ pub struct HardCase {
     pub name: &'static str,
     /// Why it is hard.
     pub why: &'static str,
-    /// What is measured of the body.
+    /// Figure of the body.
     pub body: Option<BodyCheck>,
-    /// What is measured of the motion.
+    /// Name of the figure of the motion.
     pub measure: &'static str,
     /// Runs it.
     pub run: fn(Method, Extent) -> Outcome,
-    /// What is asked of each of [`BOUNDED`].
+    /// Bound of each of [`BOUNDED`].
     pub expected: [Expected; 4],
 }
 
 impl HardCase {
-    /// What is asked of a scheme, where anything is.
+    /// Bound of a scheme, if any.
     pub fn expected_of(&self, method: Method) -> Option<&Expected> {
         let place = BOUNDED.iter().position(|bounded| *bounded == method)?;
         self.expected.get(place)

@@ -12,7 +12,7 @@ use crate::structure::tumble;
 use crate::{BodyCheck, Expected, Extent, HardCase, Outcome};
 
 const DRIFT: &str = "drift of energy and angular momentum";
-/// Of the tumbling of any well-made body.
+/// Bounds of the tumbling of any well-made body.
 const TUMBLING: [Expected; 4] = [Within(1e-8), Within(1e-5), Within(0.1), Within(0.1)];
 
 /// The cases.

@@ -49,7 +49,7 @@ pub fn numbered(mut parts: MeshParts) -> MeshParts {
     parts
 }
 
-/// Those elements of a box of `cells` that are in cells which `keep` wants, with their nodes.
+/// The elements of a box of `cells` that are in cells which `keep` wants, with their nodes.
 pub fn cells_of(size: [f64; 3], cells: [usize; 3], keep: impl Fn([usize; 3]) -> bool) -> MeshParts {
     let mut parts = box_mesh(size, cells);
     let place = |cell: usize| [cell % cells[0], cell / cells[0] % cells[1], cell / (cells[0] * cells[1])];

@@ -12,7 +12,7 @@ use crate::case::on;
 use crate::trial::{Trial, worse};
 use crate::{BodyCheck, HardCase, Outcome};
 
-/// Of a step beyond the limit of a mode.
+/// Refusal of a step beyond the limit of a mode.
 const MODES: &str = "beyond the stability limit";
 const DRIFT: &str = "drift of energy and angular momentum";
 

@@ -18,7 +18,7 @@ use crate::case::on;
 use crate::trial::{Trial, worse};
 use crate::{HardCase, Outcome};
 
-/// Of a step beyond the limit of a mode.
+/// Refusal of a step beyond the limit of a mode.
 const MODES: &str = "beyond the stability limit";
 
 /// The cases.

@@ -82,7 +82,7 @@ fn fourth_order(alpha: f64) -> f64 {
     w.sum()
 }
 
-/// What large modes get wrong of a dead force is what any strain energy of fourth order does.
+/// The error of large modes under a dead force is that of any strain energy of fourth order.
 #[test]
 fn an_energy_of_fourth_order_leaves_a_part_of_the_elastica() {
     for (alpha, expected) in [(0.31, 0.02), (0.59, 0.20), (0.9, 0.83)] {

@@ -78,7 +78,7 @@ fn the_plate_keeps_its_energy_for_ten_seconds_in_short_steps() {
     }
 }
 
-/// What rings of that plate is its eighth mode, which stretches: without it, and without the spin, there is little to keep.
+/// The eighth mode of that plate rings, which stretches: without it, and without the spin, there is little to keep.
 #[test]
 fn the_plate_keeps_its_energy_far_better_without_the_mode_that_stretches() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/spinning_plate.toml");

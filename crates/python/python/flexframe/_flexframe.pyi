@@ -55,7 +55,7 @@ class Scene:
         """The scene with other values of some keys: `{"time.end": 0.5, "loads[0].amplitude": 20.0}`, as with `--set`."""
     @property
     def title(self) -> str:
-        """What the run is about."""
+        """The title of the run."""
     @property
     def text(self) -> str:
         """The text of the scene, TOML."""
@@ -73,11 +73,11 @@ class Scene:
 class Body:
     """The body of a scene: its mesh is read, its modes are found, and it is reduced.
 
-    What is computed of a mesh is kept in the user's cache, as by the program: the same body is there at once the next time, also in
+    Results of a mesh are kept in the user's cache, as by the program: the same body is there at once the next time, also in
     another process. So a body that is pickled is its scene, and is made again from the cache where it is unpickled.
 
-    Ctrl-C raises KeyboardInterrupt at once; a factorization that is under way goes on in its thread until it is done. What
-    is said to be a view is memory of the body: read-only, not copied, and valid as long as the array is (it keeps the body).
+    Ctrl-C raises KeyboardInterrupt at once; a factorization that is under way goes on in its thread until it is done. A
+    view is memory of the body: read-only, not copied, and valid as long as the array is (it keeps the body).
     nf is the number of flexible modes plus that of the static shapes, which come after them.
     """
 
@@ -107,7 +107,7 @@ class Body:
         the scene: see Results."""
     @property
     def kinds(self) -> list[str]:
-        """Whether each is a "natural mode" or a "static shape"."""
+        """Kind of each: "natural mode" or "static shape"."""
     @property
     def positions(self) -> NDArray[np.float64]:
         """Nodes of the mesh (n x 3; view); none of a rigid body."""
@@ -137,7 +137,7 @@ class Body:
 
 @final
 class Motion:
-    """What a law sees: the motion of the body at one time. Arrays are copies."""
+    """The motion of the body at one time, as a law sees it. Arrays are copies."""
 
     @property
     def time(self) -> float:
@@ -256,10 +256,10 @@ class Simulation:
         """Time at the end."""
     @property
     def done(self) -> bool:
-        """Whether there is nothing more to come, neither a step nor a row."""
+        """True if there is nothing more to come, neither a step nor a row."""
     @property
     def stats(self) -> dict[str, int]:
-        """What it has cost: "steps", "rejected_steps", "evaluations"."""
+        """Counts of its work: "steps", "rejected_steps", "evaluations"."""
     def run(self) -> Results:
         """Goes on to the end, and gives the rows from here; events are passed, and listed. Where it fails, the rows before are
         in the attribute `results` of the exception."""

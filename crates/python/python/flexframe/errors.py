@@ -9,7 +9,7 @@ if TYPE_CHECKING:
 
 
 class Error(Exception):
-    """What flexframe raises. What is known of the fault beside the message is in attributes, which are None where it is not."""
+    """An error of flexframe. Details of the fault beside the message are in attributes, which are None where they are not known."""
 
     file: str | None
     """The file that is at fault, or could not be read or written."""
@@ -18,11 +18,11 @@ class Error(Exception):
     key: str | None
     """Path of keys in the scene, such as `loads[0].history.duration`, or the argument at fault."""
     found: str | None
-    """What stands there."""
+    """The value that stands there."""
     expected: str | None
-    """What should stand there."""
+    """The value that should stand there."""
     cure: str | None
-    """What to do about it."""
+    """Help for the user."""
     results: Results | None
     """The rows before the fault, of a run in memory."""
 

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class Column(NamedTuple):
-    """What a column of the results is."""
+    """A column of the results."""
 
     path: str
     """Its name, such as "energy/work"."""
@@ -62,7 +62,7 @@ class Results(Mapping[str, NDArray[np.float64]]):
     damping_ratios: NDArray[np.float64]
     """The damping ratio of each of these in the run; zero where damping is left out."""
     kinds: list[str]
-    """Whether each of these is of a "natural mode" or a "static shape"."""
+    """Kind of each of these: "natural mode" or "static shape"."""
     points: list[str]
     """Names of the points."""
     point_positions: NDArray[np.float64]
@@ -70,13 +70,13 @@ class Results(Mapping[str, NDArray[np.float64]]):
     supports: list[str]
     """Names of the supports with reactions of their own."""
     complete: bool
-    """Whether the run came to its end."""
+    """True if the run came to its end."""
     warnings: list[str]
-    """What should be known of the run, such as assumptions that did not hold."""
+    """Warnings of the run, such as assumptions that did not hold."""
     events: list[tuple[str, float]]
     """The events that a run in memory has passed, and when."""
     columns: dict[str, Column]
-    """What each column is, by its path."""
+    """The columns, by their paths."""
 
     def __init__(self, data: dict[str, Any]) -> None:
         self._arrays: dict[str, NDArray[np.float64]] = {}
@@ -135,7 +135,7 @@ class Results(Mapping[str, NDArray[np.float64]]):
         return self.supports if "support" in dimensions else []
 
     def _labels(self, dimension: str, size: int) -> list[Any]:
-        """What stands for each entry along a dimension; modes are numbered from 1."""
+        """Label of each entry along a dimension; modes are numbered from 1."""
         if dimension == "point":
             return self.points
         if dimension == "support":
