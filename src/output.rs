@@ -51,7 +51,7 @@ pub fn doubts(doubts: impl IntoIterator<Item = impl Display>) {
     }
 }
 
-/// Tells on standard error what a run will come to.
+/// Writes the estimate of a run to standard error.
 pub fn foretell(foretold: &Foretold) {
     // Where it cannot be written, nothing is lost but words.
     let _ = writeln!(io::stderr(), "run: {foretold}");

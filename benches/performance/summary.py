@@ -11,7 +11,7 @@ def of(values):
 
 
 def ratios(theirs, ours):
-    """Median, least and largest of the runs of the same turn."""
+    """Ratios of runs of the same turn: median, least and largest."""
     pairs = [a / b for a, b in zip(theirs, ours)]
     return median(pairs), min(pairs), max(pairs)
 

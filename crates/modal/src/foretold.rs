@@ -1,4 +1,4 @@
-//! The memory and the time that a solution takes, foretold by the symbolic factorisation before the numeric one.
+//! Memory and time of a solution, estimated by the symbolic factorisation before the numeric one.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -25,7 +25,7 @@ const BLOCKS: usize = 6;
 /// Scratch of faer's products of matrices where the processor does not tell the size of its caches.
 const CACHE: usize = 32 << 20;
 
-/// Factors of fewer multiplications take less than about a second: their time is not foretold.
+/// Factors of fewer multiplications take less than about a second: their time is not estimated.
 const SHORT: f64 = 5e9;
 /// Rows of the dense matrix whose factorisation tells how fast this machine is.
 const TRIAL: usize = 768;
