@@ -148,8 +148,8 @@ enum Command {
     },
     /// Say which effects a scene calls for, and why.
     ///
-    /// A table shows what linear strain gets wrong of each mode that may bend the body far: frequency, phase and static
-    /// force at its expected amplitude, and whether it is among the large modes.
+    /// A table shows the error of linear strain in each mode that may bend the body far: frequency, phase and static
+    /// force at its expected amplitude; and the modes that are among the large ones.
     Advise {
         #[command(flatten)]
         scene: SceneArgs,
@@ -226,7 +226,7 @@ enum Command {
         /// Table of the columns, with units in the heads: a file that ends in .csv, a folder, or - for standard output.
         #[arg(long, value_name = "FILE|DIR", group = "what")]
         csv: Option<PathBuf>,
-        /// Columns of the table, or what their paths begin with, such as energy,points/P1 [default: all].
+        /// Columns of the table, or beginnings of their paths, such as energy,points/P1 [default: all].
         #[arg(long, value_name = "PATH,…", value_delimiter = ',', requires = "csv")]
         columns: Vec<String>,
         /// The moving body for ParaView 5.12 and later: one file with the mesh and a step for each row.
@@ -266,7 +266,7 @@ enum Command {
     },
     /// Run a scene with many values of its keys, and write a table of parameters and results (docs/reference/cli.md).
     ///
-    /// A row that fails is marked with its words, and the others go on. Run again, it does the rows that are not done.
+    /// A row that fails is marked with its error, and the others go on. Run again, it does the rows that are not done.
     Sweep {
         /// The file of the sweep: a scene, parameters and results.
         #[arg(value_name = "SWEEP")]
@@ -320,7 +320,7 @@ enum Command {
         /// Time of the last frame [default: the end of the scene or of the results].
         #[arg(long, value_name = "TIME", value_parser = finite, allow_hyphen_values = true)]
         to: Option<f64>,
-        /// From where the body is seen: from x, y or z, or by the angles of the viewer in degrees, about z from x and above
+        /// Viewpoint: x, y or z, or the angles of the viewer in degrees, about z from x and above
         /// the xy plane [default: -60,25].
         #[arg(long, value_name = "AXIS|ANGLE,ANGLE", value_parser = view, allow_hyphen_values = true)]
         view: Option<View>,
@@ -341,7 +341,7 @@ struct SceneArgs {
 
 #[derive(Debug, Args)]
 struct FileArgs {
-    /// Replace what is there, once the new file is complete; of a run, an unfinished one at once. A file that the command reads
+    /// Replace files that are there, once the new one is complete; of a run, an unfinished one at once. A file that the command reads
     /// is never replaced.
     #[arg(long)]
     overwrite: bool,

@@ -10,7 +10,7 @@ use crate::cli_error::CliError;
 
 #[derive(Debug, Args)]
 pub struct SolverInput {
-    /// Who finds modes and static responses; slepc is SLEPc under mpirun, for bodies beyond one machine (docs/reference/cluster.md).
+    /// Solver of modes and static responses; slepc is SLEPc under mpirun, for bodies beyond one machine (docs/reference/cluster.md).
     ///
     /// Answers in the cache are taken from there, whoever has computed them; --no-cache computes them anew.
     #[arg(long, value_name = "SOLVER", value_enum)]

@@ -56,7 +56,7 @@ fn a_scene_comes_from_standard_input() {
 #[test]
 fn a_key_that_leads_nowhere_is_a_wrong_argument_and_a_wrong_value_a_wrong_scene() {
     for (set, code, words) in [
-        ("title.end=1", 2, "`end` in what is a text"),
+        ("title.end=1", 2, "`end` in a value that is a text"),
         ("time.end", 2, "expected KEY=VALUE"),
         ("time.end=-1", 3, "`time.end`"),
         ("time.edn=1", 3, "did you mean `end`"),

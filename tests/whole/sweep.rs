@@ -264,7 +264,7 @@ fn what_a_sweep_cannot_be_is_refused() {
     );
     refused("[parameters]\n\"loads[3].amplitude\" = [1.0]", &["entry 3 of `loads`", "one from 0 to 0"]);
     refused("[parameters]\n\"effects[0]\" = [1.0]", &["`effects`, which is not there", "a list"]);
-    refused("[parameters]\n\"time.step.x\" = [1.0]", &["`x` in what is a number"]);
+    refused("[parameters]\n\"time.step.x\" = [1.0]", &["`x` in a value that is a number"]);
     refused("[parameters]\n\"time.step\" = []", &["parameters.\"time.step\"", "a list such as"]);
     refused("[parameters]\ntime.step = [1e-5]", &["a key with dots is written in quotes"]);
     refused("[parameters]\n\"time.step\" = { from = 1, to = 2, count = 0 }", &["count = 0", "a range such as"]);

@@ -76,7 +76,7 @@ pub enum BodyFileError {
         /// The file.
         path: PathBuf,
     },
-    /// A file that is not what was written.
+    /// A file that has been changed or damaged.
     #[error("{}: the body file is damaged, or another program has changed it: {what}; {CURE}", path.display())]
     Damaged {
         /// The file.

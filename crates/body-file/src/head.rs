@@ -115,7 +115,7 @@ impl Description {
         let mut json = vec![0; described as usize];
         file.read_exact(&mut json).map_err(BodyFileError::system(path, "read the file"))?;
         if hash(&head[..40], &json).as_bytes() != &head[40..] {
-            return Err(damaged("its head is not what was written".into()));
+            return Err(damaged("its head has been changed".into()));
         }
         let description: Self = serde_json::from_slice(&json)
             .map_err(|error| damaged(format!("its head cannot be read from byte {} on", error.column())))?;

@@ -92,7 +92,7 @@ impl BodyFile {
                 .map_err(BodyFileError::system(&self.path, "read the file"))?;
         }
         if Hash::of(&values).to_string() != place.hash {
-            return Err(damaged(format!("its dataset {dataset} is not what was written")));
+            return Err(damaged(format!("its dataset {dataset} has been changed")));
         }
         Ok(Array { shape: place.shape.clone(), values })
     }

@@ -110,7 +110,7 @@ fn every_changed_bit_is_found() {
     for at in start..start + needle.len() {
         let file = flipped(at, (at % 8) as u8).unwrap();
         let error = file.read::<f64>("modes/shapes").unwrap_err();
-        assert!(error.to_string().contains("dataset modes/shapes is not what was written"), "{error}");
+        assert!(error.to_string().contains("dataset modes/shapes has been changed"), "{error}");
         assert!(file.read::<f64>("mass").is_ok());
     }
 }

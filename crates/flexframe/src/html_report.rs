@@ -19,7 +19,7 @@ pub enum HtmlReportError {
     Reopen(#[from] ReopenError),
     /// A result of now differs from that of then: the shapes may be others.
     #[error(
-        "{}: {what} is no longer what it was when the run began (a changed mesh or table, another version of flexframe, or another machine), so that its shapes may be others: run the scene again",
+        "{}: {what} has changed since the run began (a changed mesh or table, another version of flexframe, or another machine), so that its shapes may be others: run the scene again",
         results.display()
     )]
     Changed {

@@ -50,7 +50,7 @@ pub enum FileError {
     },
     /// Something else is where the results would go.
     #[error(
-        "{path}: what is there is not a results file of flexframe; choose another folder, move it away, or replace it with --overwrite (a folder never)",
+        "{path}: the file there is not a results file of flexframe; choose another folder, move it away, or replace it with --overwrite (a folder never)",
         path = .path.display()
     )]
     NotResults {
@@ -175,7 +175,7 @@ pub enum FileError {
         /// The file.
         path: PathBuf,
     },
-    /// A results file that is not what was written.
+    /// A results file that has been changed or damaged.
     #[error(
         "{path}: the file is damaged, or another program has changed it: {what}; take an unchanged copy, or run its scene \
          again with --overwrite",

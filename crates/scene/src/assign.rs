@@ -73,7 +73,7 @@ fn refusal(item: &Item, name: &str, step: &Step) -> (String, String) {
         other => other.as_array().map(toml_edit::Array::len),
     };
     match (step, entries) {
-        (Step::Key(key), _) => (format!("`{key}` in what is {}", kind(item)), "a key of a table".to_owned()),
+        (Step::Key(key), _) => (format!("`{key}` in a value that is {}", kind(item)), "a key of a table".to_owned()),
         (Step::Entry(index), Some(length)) => {
             let expected = match length.checked_sub(1) {
                 Some(last) => format!("one from 0 to {last}"),
@@ -189,11 +189,11 @@ mod tests {
             ("points.'a", "a path of keys"),
             ("points.a b", "a path of keys"),
             ("points.'a'b", "a path of keys"),
-            ("title.end", "`end` in what is a text, expected a key of a table"),
+            ("title.end", "`end` in a value that is a text, expected a key of a table"),
             ("time[0]", "`time`, which is a table, expected a list"),
             ("points[0]", "`points`, which is not there, expected a list"),
             ("loads[2].at", "entry 2 of `loads`, expected one from 0 to 1"),
-            ("loads.at", "`at` in what is a list"),
+            ("loads.at", "`at` in a value that is a list"),
         ] {
             let refusal = one(path, 1).unwrap_err();
             assert!(refusal.contains(words), "{path}: {refusal}");

@@ -25,7 +25,7 @@ pub enum ExportError {
     Reopen(#[from] ReopenError),
     /// The body that the scene gives now is another.
     #[error(
-        "{}: the body is no longer what it was when the run was made (a changed mesh, another version of flexframe, or \
+        "{}: the body has changed since the run was made (a changed mesh, another version of flexframe, or \
          another machine), so that its shapes do not belong to the modal coordinates; run the scene again",
         path.display()
     )]
@@ -68,7 +68,7 @@ pub enum ExportError {
     },
     /// A column that is not in the file.
     #[error(
-        "{}: there is no column \"{found}\"\n = name some of these, or what their paths begin with: {}",
+        "{}: there is no column \"{found}\"\n = name some of these, or beginnings of their paths: {}",
         path.display(),
         columns.join(", ")
     )]

@@ -77,7 +77,7 @@ pub enum RunError {
     },
     /// A result of now differs from that of then.
     #[error(
-        "{}: {what} is no longer what it was when the run began (a changed mesh or table, another version of flexframe, or another machine); a run is continued only if it stays the same bit for bit: run the scene again with --overwrite",
+        "{}: {what} has changed since the run began (a changed mesh or table, another version of flexframe, or another machine); a run is continued only if it stays the same bit for bit: run the scene again with --overwrite",
         part.display()
     )]
     Changed {

@@ -55,7 +55,7 @@ pub enum SweepError {
     Build(#[from] BuildError),
     /// A file that is there is not the table of this sweep.
     #[error(
-        "{}: what is there is not the table of this sweep ({what}); move it away, choose another file with -o, or replace it \
+        "{}: the file there is not the table of this sweep ({what}); move it away, choose another file with -o, or replace it \
          with --overwrite",
         path.display()
     )]

@@ -26,7 +26,7 @@ impl Check<'_> {
         let method = self.method(formulation, scheme)?;
         let expected = "exactly one of them";
         let cure = "give `step`, the length of a step, e.g. `step = 1e-4`, or `tolerance`, \
-                    what the estimated relative errors of all steps may sum to, e.g. `tolerance = 1e-6`";
+                    a bound of the sum of the estimated relative errors of all steps, e.g. `tolerance = 1e-6`";
         let control = match (step, tolerance) {
             (Some(_), Some(_)) => {
                 return Err(self.document.place("time.tolerance").refuse(
@@ -81,7 +81,7 @@ impl Check<'_> {
                 tolerance > 0.0 && tolerance < 1.0,
                 "time.tolerance",
                 "a number between 0 and 1, both excluded",
-                "give what the estimated relative errors of all steps may sum to, e.g. `tolerance = 1e-6`",
+                "give a bound of the sum of the estimated relative errors of all steps, e.g. `tolerance = 1e-6`",
             );
         }
         Err(self.document.place("time.tolerance").refuse(

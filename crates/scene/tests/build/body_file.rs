@@ -293,7 +293,7 @@ fn a_body_file_of_another_version_or_with_a_part_missing_is_refused() {
     damaged[at] ^= 1;
     fs::write(&path, damaged).unwrap();
     let error = Model::build(&scene, |_| ()).unwrap_err().to_string();
-    assert!(error.contains("is not what was written"), "{error}");
+    assert!(error.contains("has been changed"), "{error}");
 }
 
 #[test]
