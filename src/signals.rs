@@ -1,4 +1,4 @@
-//! Signals: ctrl-C, and a request to terminate.
+//! Signals: ctrl-C, a request to terminate, and the end of the terminal.
 //!
 //! Before the motion begins there is nothing to lose, and a signal ends the program at once, with the programs that it has
 //! started and its temporary files; the processes of SLEPc are ended before. Then the first stops the run at its next row, and another that comes half a
@@ -6,6 +6,7 @@
 //! request, only milliseconds apart.
 
 use std::io;
+use std::mem::MaybeUninit;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
@@ -13,7 +14,7 @@ use std::time::{Duration, Instant};
 
 use flexframe::failure::{Details, FailureReport, Kind};
 use flexframe::run::RunProgress;
-use signal_hook::consts::{SIGINT, SIGTERM};
+use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 use signal_hook::{iterator, low_level};
 use slepc::Stop;
 use whole_file::remove_temporaries;
@@ -39,6 +40,10 @@ impl Signals {
         let ours = Self { in_motion: Arc::default(), stop: Arc::default(), slepc: Stop::default() };
         let (in_motion, stop, slepc) = (ours.in_motion.clone(), ours.stop.clone(), ours.slepc.clone());
         let mut signals = iterator::Signals::new([SIGINT, SIGTERM])?;
+        // `nohup` has it ignored.
+        if !is_ignored(SIGHUP) {
+            signals.add_signal(SIGHUP)?;
+        }
         thread::Builder::new().name("signals".to_owned()).spawn(move || {
             let mut request = Request::default();
             for _ in signals.forever() {
@@ -77,6 +82,16 @@ impl Signals {
             RunProgress::Motion(1.0) => self.in_motion.store(false, Ordering::SeqCst),
             _ => {}
         }
+    }
+}
+
+/// Whether who started the program has a signal ignored.
+fn is_ignored(signal: i32) -> bool {
+    let mut action = MaybeUninit::<libc::sigaction>::zeroed();
+    // SAFETY: without a new action it only writes the one there is, of which all bits zero are a value, too.
+    unsafe {
+        libc::sigaction(signal, std::ptr::null(), action.as_mut_ptr());
+        action.assume_init().sa_sigaction == libc::SIG_IGN
     }
 }
 

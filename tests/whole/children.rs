@@ -49,6 +49,12 @@ impl Case {
         fs::read_dir(self.path("temporary")).unwrap().next().is_none()
     }
 
+    /// Files that are not whole yet.
+    fn unfinished(&self) -> usize {
+        let entries = fs::read_dir(self.folder.path()).unwrap().flatten();
+        entries.filter(|entry| entry.file_name().to_string_lossy().starts_with(".flexframe-")).count()
+    }
+
     /// Processes whose command line names the folder of the case.
     fn processes(&self) -> Vec<String> {
         let folder = self.path("temporary").display().to_string();
@@ -82,7 +88,7 @@ const BOX: &str = "SetFactory(\"OpenCASCADE\");\nBox(1) = {0, 0, 0, 1, 0.1, 0.1}
 
 #[test]
 fn gmsh_and_its_files_end_with_the_program() {
-    for name in ["TERM", "INT", "KILL"] {
+    for name in ["TERM", "INT", "HUP", "KILL"] {
         let case = Case::new();
         case.write("bar.geo", &format!("{BOX}Sleep 600;\n"));
         case.scene("bar.toml", "bar.geo");
@@ -107,16 +113,12 @@ fn temporary_files_are_removed_by_a_signal() {
     let sweep = "scene = \"bar.toml\"\n[parameters]\n\"time.end\" = { from = 10, to = 20, count = 4 }\n[results]\n\
                  strain = { peak = \"energy/strain\" }\n";
     case.write("sweep.toml", sweep);
-    let beside = || {
-        let entries = fs::read_dir(case.folder.path()).unwrap().flatten();
-        entries.filter(|entry| entry.file_name().to_string_lossy().starts_with(".flexframe-")).count()
-    };
-    for name in ["TERM", "INT"] {
+    for name in ["TERM", "INT", "HUP"] {
         let child = case.command(&["animate", "bar.toml", "-o", "bar.gif", "--frames", "2000"]).spawn().unwrap();
-        until("the animation does not begin", || beside() > 0);
+        until("the animation does not begin", || case.unfinished() > 0);
         signal(&child, name);
         let output = child.wait_with_output().unwrap();
-        assert_eq!((output.status.code(), beside()), (Some(130), 0), "{}", said(&output));
+        assert_eq!((output.status.code(), case.unfinished()), (Some(130), 0), "{}", said(&output));
         assert!(!case.path("bar.gif").exists());
         let child = case.command(&["sweep", "sweep.toml", "--no-cache"]).spawn().unwrap();
         until("the sweep does not begin", || !case.is_clean());
@@ -124,6 +126,22 @@ fn temporary_files_are_removed_by_a_signal() {
         let output = child.wait_with_output().unwrap();
         assert!(output.status.code() == Some(130) && case.is_clean(), "{}", said(&output));
     }
+}
+
+#[test]
+fn under_nohup_the_end_of_the_terminal_changes_nothing() {
+    let case = Case::new();
+    case.scene("bar.toml", Path::new(env!("CARGO_MANIFEST_DIR")).join("meshes/slender_bar.msh").to_str().unwrap());
+    let mut command = Command::new("nohup");
+    let inner = case.command(&["animate", "bar.toml", "-o", "bar.gif", "--frames", "200"]);
+    command.arg(inner.get_program()).args(inner.get_args()).current_dir(case.folder.path());
+    command.envs(inner.get_envs().filter_map(|(name, value)| Some((name, value?))));
+    let child = command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    until("it does not begin", || case.unfinished() > 0 || case.path("bar.gif").exists());
+    signal(&child, "HUP");
+    let output = child.wait_with_output().unwrap();
+    assert!(output.status.success(), "{}", said(&output));
+    assert!(case.path("bar.gif").exists());
 }
 
 /// Every command that may come to have a mesh read.

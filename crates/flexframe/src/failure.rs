@@ -51,7 +51,7 @@ impl Kind {
             Self::Refused => "refused model: its answers would be wrong, or it has none",
             Self::Run => "failed run: the computation did not come to its end",
             Self::Io => "input or output: the system refused a file, standard output or a thread",
-            Self::Stopped => "stopped by a signal (ctrl-C, SIGTERM)",
+            Self::Stopped => "stopped by a signal (ctrl-C, SIGTERM, SIGHUP)",
         }
     }
 }
