@@ -389,7 +389,11 @@ fn what_is_wrong_is_said_with_file_line_key_and_cure() {
     let cases: [(&str, &str, &[&str]); 6] = [
         ("tolerance = 1e-6", "stepp = 2e-5", &["scene.toml:26", "stepp", "did you mean `step`"]),
         ("tolerance = 1e-6", "step = -2e-5", &["scene.toml:26", "time.step", "-2e-5"]),
-        ("tolerance = 1e-6", "scheme = \"rkmk4\"\nstep = 1e-3", &["stability limit", "mode"]),
+        (
+            "tolerance = 1e-6",
+            "scheme = \"rkmk4\"\nstep = 1e-3",
+            &["scene.toml:27", "time.step", "stability limit", "mode", "at most"],
+        ),
         ("at = [0.0, 100.0, 10.0]", "at = [0.0, 150.0, 10.0]", &["loads[0].at", "not on the body", "50."]),
         ("flexible = 6", "flexible = 100000", &["modes.flexible", "at most 6105"]),
         ("poisson_ratio = 0.3", "poisson_ratio = 0.5", &["body.material.poisson_ratio", "0.5"]),

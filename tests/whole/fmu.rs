@@ -101,8 +101,8 @@ fn what_cannot_be_packed_leaves_the_old_file() {
     // A step in which the body turns by 10 rad. It is found in the packed scene; the message names the one that was given.
     let spun = ["--set", "time.step=1.0", "--set", "initial.angular_velocity=[0.0, 0.0, 10.0]"];
     let failure = refused(&library, &[&["fmu", scene, "-o", &old][..], &spun].concat(), 4);
-    assert_eq!(failure["file"], scene);
-    assert!(failure["message"].as_str().unwrap().contains("examples/pendulum.toml: a step of"), "{failure}");
+    assert_eq!((&failure["file"], &failure["key"]), (&scene.into(), &"time.step".into()));
+    assert!(failure["message"].as_str().unwrap().starts_with("examples/pendulum.toml:"), "{failure}");
     let failure = refused(&library, &["fmu", scene, "-o", &place("nowhere/top.fmu")], 6);
     assert!(failure["message"].as_str().unwrap().contains("cannot be written"), "{failure}");
     assert_eq!(fs::read(old).unwrap(), b"old");

@@ -21,7 +21,7 @@ pub enum FmuError {
     #[error(transparent)]
     Build(#[from] BuildError),
     /// The motion cannot start.
-    #[error("{}: {source}", scene.display())]
+    #[error("{}", source.in_scene(scene))]
     Start {
         /// The scene file.
         scene: PathBuf,

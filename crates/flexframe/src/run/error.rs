@@ -18,7 +18,7 @@ pub enum RunError {
     #[error(transparent)]
     Build(#[from] BuildError),
     /// The motion cannot start.
-    #[error("{scene}: {source}")]
+    #[error("{}", source.in_scene(scene))]
     Setup {
         /// The scene file.
         scene: PathBuf,

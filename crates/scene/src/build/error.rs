@@ -1,6 +1,6 @@
 //! Why a scene cannot be built or started, each reason at its place in the scene file.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use advice::{AdviceError, Refusal};
 use body_file::BodyFileError;
@@ -11,6 +11,7 @@ use modal::ModalError;
 use nalgebra::Vector3;
 
 use crate::error::SceneError;
+use crate::place::Place;
 use crate::scene::Scene;
 use crate::shorten::shorten;
 use crate::suggest::one_of;
@@ -65,9 +66,52 @@ pub enum StartError {
     /// The integrator refuses it.
     #[error(transparent)]
     Setup(#[from] SetupError),
+    /// The step that the scene names is beyond the limit of the method.
+    #[error("{}", at.show(&format!("found {found}, expected {expected}"), cure))]
+    Step {
+        /// Where it is named.
+        at: Box<Place>,
+        /// The step, and why it is refused.
+        found: String,
+        /// The limit.
+        expected: String,
+        /// What to do about it.
+        cure: &'static str,
+    },
     /// The model is known to be wrong.
     #[error(transparent)]
     Refused(#[from] Refusal),
+}
+
+impl StartError {
+    /// The message, which begins with the scene file.
+    pub fn in_scene(&self, path: &Path) -> String {
+        match self {
+            Self::Step { .. } => self.to_string(),
+            Self::Setup(_) | Self::Refused(_) => format!("{}: {self}", path.display()),
+        }
+    }
+
+    /// At the key of the scene, where it is the step.
+    pub(super) fn at_key(self, scene: &Scene) -> Self {
+        let (step, limit, why, cure) = match &self {
+            Self::Setup(SetupError::StepBeyondLimit { step, limit, mode, frequency }) => (
+                step,
+                limit,
+                format!("the stability limit that flexible mode {mode} ({frequency:.6} cycles per time) sets for RK4"),
+                "take a smaller step or fewer modes",
+            ),
+            Self::Setup(SetupError::StepBeyondSpin { step, limit, spin }) => (
+                step,
+                limit,
+                format!("what this scheme follows of a spin of {spin:.6} rad per time"),
+                "take a smaller step",
+            ),
+            _ => return self,
+        };
+        let (found, expected) = (format!("a step of {step:e}, beyond {why}"), format!("at most {limit:.4e}"));
+        Self::Step { at: scene.place("time.step").into(), found, expected, cure }
+    }
 }
 
 /// An assembly error at its place in the scene file.

@@ -194,7 +194,8 @@ impl Model {
     /// # Errors
     /// [`StartError`], e.g. a step beyond the stability limit.
     pub fn start(&self, scene: &Scene) -> Result<Simulation, StartError> {
-        self.start_with(scene, scene.time.method, scene.time.control, scene.output.rows)
+        let started = self.start_with(scene, scene.time.method, scene.time.control, scene.output.rows);
+        started.map_err(|error| error.at_key(scene))
     }
 
     /// The motion of a scene by another method, in other steps or with other rows than its own.
