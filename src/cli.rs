@@ -14,7 +14,7 @@ use flexframe::failure::{Details, Failure, FailureReport, Kind};
 use flexframe::figures::{self, View};
 use flexframe::fmu::{self, FmuSettings};
 use flexframe::given_file::GivenFile;
-use flexframe::outputs::{outputs_of_results, outputs_of_scene};
+use flexframe::outputs::{OutputError, Written, outputs_of_results, outputs_of_scene};
 use flexframe::run::{RunProgress, RunSettings};
 use flexframe::sweep::{Shard, SweepSettings};
 use flexframe::{advise, html_report, mode_shapes, modes, new_scene, paper, plausible, run, sweep};
@@ -70,7 +70,7 @@ enum Command {
     },
     /// Run a scene and write its motion to an HDF5 file.
     ///
-    /// The first ctrl-C (or SIGTERM) stops the run at its next row, and `flexframe resume` continues it. A second one, at
+    /// The first ctrl-C (or SIGTERM or SIGHUP) stops the run at its next row, and `flexframe resume` continues it. A second one, at
     /// least half a second later, ends the program at once.
     Run {
         #[command(flatten)]
@@ -426,7 +426,7 @@ fn command(cli: Cli, json_errors: bool, cache: &Cache) -> Result<(), Box<dyn Fai
                 return write_only(&scene, &to, files.overwrite, bar);
             }
             let settings = RunSettings { large, ..settings(&signals, files.overwrite, cache) };
-            let (_, report) = run::run(&scene, &folder(&scene, output), &settings, |p| {
+            let (_, report) = run::run(&scene, &folder(&scene, output)?, &settings, |p| {
                 signals.heard(p);
                 bar.run(p);
             })?;
@@ -448,7 +448,7 @@ fn command(cli: Cli, json_errors: bool, cache: &Cache) -> Result<(), Box<dyn Fai
             if let Some(to) = solver.take(&mut scene, signals.slepc())? {
                 return write_only(&scene, &to, files.overwrite, bar);
             }
-            outputs_of_scene(&scene, files.overwrite).claim(&[&output])?;
+            outputs_of_scene(&scene, files.overwrite).claim_as(&Written::BODY, &output)?;
             let report = modes::reduce(&scene, &output, matrices, stress, |p| bar.build(p))?;
             drop(bar);
             output::print(&report, json)?;
@@ -461,7 +461,7 @@ fn command(cli: Cli, json_errors: bool, cache: &Cache) -> Result<(), Box<dyn Fai
                 output::doubts(plausible::doubts_of_scene(&scene));
             }
             let outputs = outputs_of_scene(&scene, files.overwrite);
-            outputs.and_input(&fmu::library_path(library.as_deref())).claim(&[&output])?;
+            outputs.and_input(&fmu::library_path(library.as_deref())).claim_as(&Written::FMU, &output)?;
             let report = fmu::pack(&scene, &output, &FmuSettings { library }, |p| bar.build(p))?;
             drop(bar);
             output::print(&report, json)
@@ -475,6 +475,7 @@ fn command(cli: Cli, json_errors: bool, cache: &Cache) -> Result<(), Box<dyn Fai
             if let Some(to) = solver.take(&mut scene, signals.slepc())? {
                 return write_only(&scene, &to, files.overwrite, bar);
             }
+            output.iter().try_for_each(|folder| Written::FOLDER.check(folder)).map_err(OutputError::from)?;
             let picture = output.as_ref().map(|folder| folder.join("modes"));
             if let Some(picture) = &picture {
                 modes::require_surface(&scene)?;
@@ -517,7 +518,7 @@ fn command(cli: Cli, json_errors: bool, cache: &Cache) -> Result<(), Box<dyn Fai
                 scene.modes.flexible = Flexible::Count(count);
             }
             let settings = CampbellSettings { axis, speeds, orders };
-            let folder = folder(&scene, output);
+            let folder = folder(&scene, output)?;
             outputs_of_scene(&scene, files.overwrite).claim(&campbell::files(&folder))?;
             let report = campbell::campbell(&scene, &folder, &settings, |p| bar.campbell(p))
                 .map_err(|error| of_option(error, flexible))?;
@@ -528,7 +529,7 @@ fn command(cli: Cli, json_errors: bool, cache: &Cache) -> Result<(), Box<dyn Fai
             output::require_file("--output", output.as_deref())?;
             let scene = read(scene)?;
             let settings = settings(&signals, files.overwrite, cache);
-            let folder = folder(&scene, output);
+            let folder = folder(&scene, output)?;
             outputs_of_scene(&scene, files.overwrite).claim(&paper::files(&folder))?;
             let report = paper::reproduce(&scene, &folder, &settings, |p| {
                 signals.heard(p);
@@ -541,7 +542,7 @@ fn command(cli: Cli, json_errors: bool, cache: &Cache) -> Result<(), Box<dyn Fai
             output::require_file("--output", output.as_deref())?;
             let scene = read(scene)?;
             let settings = CostSettings { target, ..CostSettings::with_patience(patience) };
-            let folder = folder(&scene, output);
+            let folder = folder(&scene, output)?;
             outputs_of_scene(&scene, files.overwrite).claim(&cost::files(&folder))?;
             let report = cost::price_list(&scene, &folder, settings, |p| bar.cost(p))?;
             drop(bar);
@@ -596,7 +597,7 @@ fn command(cli: Cli, json_errors: bool, cache: &Cache) -> Result<(), Box<dyn Fai
                 return Ok(output::text(&page)?);
             }
             let output = output.unwrap_or_else(|| file.with_extension("html"));
-            outputs_of_results(&file, files.overwrite).claim(&[&output])?;
+            outputs_of_results(&file, files.overwrite).claim_as(&Written::PAGE, &output)?;
             html_report::write(&file, &output, cache, |p| bar.build(p))?;
             drop(bar);
             output::list(&[output])
@@ -647,6 +648,7 @@ fn command(cli: Cli, json_errors: bool, cache: &Cache) -> Result<(), Box<dyn Fai
 
 /// Writes the modes that a scene asks for as a problem for SLEPc.
 fn write_only(scene: &Scene, to: &WriteOnly, overwrite: bool, mut bar: Bar) -> Result<(), Box<dyn Failure>> {
+    Written::FOLDER.check(&to.folder).map_err(OutputError::from)?;
     outputs_of_scene(scene, overwrite).claim(&files_of_folder(&to.folder))?;
     let files = modes::write_problem(scene, &to.folder, to.ranks, |p| bar.build(p))?;
     drop(bar);
@@ -757,6 +759,9 @@ fn of_option(error: CampbellError, flexible: Option<usize>) -> Box<dyn Failure> 
 }
 
 /// The folder asked for, or one named after the scene.
-fn folder(scene: &Scene, output: Option<PathBuf>) -> PathBuf {
-    output.unwrap_or_else(|| Path::new("out").join(scene.path.file_stem().unwrap_or("scene".as_ref())))
+fn folder(scene: &Scene, output: Option<PathBuf>) -> Result<PathBuf, OutputError> {
+    if let Some(folder) = &output {
+        Written::FOLDER.check(folder)?;
+    }
+    Ok(output.unwrap_or_else(|| Path::new("out").join(scene.path.file_stem().unwrap_or("scene".as_ref()))))
 }

@@ -255,6 +255,38 @@ fn what_is_there_is_replaced_only_when_asked() {
     desk.refused(&["export", "bar.h5", "--vtkhdf", "o/x", "--modes", "o/../o/x"], "is there already");
 }
 
+/// A scene, a table, a picture: no command gives what it writes the name of something else.
+#[test]
+fn a_name_of_another_kind_of_file_is_refused() {
+    let desk = Desk::new();
+    let axis = ["--axis", "z", "--speeds", "0:10:2"];
+    for (arguments, name, kind) in [
+        (&["reduce", "bar.toml", "-o"][..], "o/x.toml", "a body file"),
+        (&["reduce", "bar.toml", "-o"], "o/x.csv", "a body file"),
+        (&["fmu", "bar.toml", "--library", "lib.so", "-o"], "o/x.h5", "an FMU"),
+        (&["new", "bar.msh", "-o"], "o/x.msh", "a scene"),
+        (&["report", "bar.h5", "-o"], "o/x.pdf", "a web page"),
+        (&["sweep", "sweep.toml", "-o"], "o/x.csv", "the table of a sweep"),
+        (&["sweep", "sweep.toml", "--merge", "2", "-o"], "o/x.toml", "the table of a sweep"),
+        (&["export", "bar.h5", "--vtkhdf"], "o/x.vtu", "a VTKHDF file"),
+        (&["export", "bar.h5", "--modes"], "o/x.csv", "a VTKHDF file"),
+        (&["export", "bar.h5", "--vtu"], "o/x.vtu", "a folder"),
+        (&["export", "bar.h5", "--csv"], "o/x.h5", "a folder"),
+        (&["run", "bar.toml", "-o"], "o/x.h5", "a folder"),
+        (&["modes", "bar.toml", "-o"], "o/x.png", "a folder"),
+        (&[&["campbell", "bar.toml"][..], &axis, &["-o"]].concat()[..], "o/x.csv", "a folder"),
+        (&["cost", "bar.toml", "-o"], "o/x.csv", "a folder"),
+        (&["paper", "bar.toml", "-o"], "o/x.html", "a folder"),
+    ] {
+        for overwrite in [&["--overwrite"][..], &[]] {
+            let arguments = [arguments, &[name], overwrite].concat();
+            desk.refused(&arguments, &format!("{name}: found the name of "));
+            desk.refused(&arguments, &format!("expected that of {kind}\n = give it a name "));
+        }
+        assert!(!desk.at(name).exists(), "{name}");
+    }
+}
+
 /// A folder in which someone has files of his own with names that are nearly those of the driver.
 #[test]
 fn a_problem_for_another_machine_leaves_the_files_of_others() {

@@ -8,7 +8,7 @@ use fem_tet10::{AssemblyError, Material, Materials, centroid_lumped_inertia};
 use mesh_import::{ImportError, ImportSettings, Imported, MeshFile};
 use whole_file::write_whole;
 
-use crate::outputs::{OutputError, outputs_of_mesh};
+use crate::outputs::{OutputError, Written, outputs_of_mesh};
 use crate::scene_file::from_root;
 use crate::units::UnitLabels;
 use crate::write_error::WriteError;
@@ -76,7 +76,7 @@ pub fn new_scene(
     // Before a file is refused that has the name of the scene.
     let file = MeshFile::read(mesh, settings)?;
     let path = scene.map_or_else(|| mesh.with_extension("toml"), Path::to_owned);
-    outputs_of_mesh(mesh, overwrite).claim(&[&path])?;
+    outputs_of_mesh(mesh, overwrite).claim_as(&Written::SCENE, &path)?;
     let mut read = file.mesh()?;
     read.notes.extend(file.remark());
     let text = text(&mut read, settings, &from_folder_of(&path, mesh))?;

@@ -5,7 +5,7 @@ use std::path::Path;
 use mesh_import::files_of_mesh;
 use results::Results;
 use scene::Scene;
-pub use whole_file::{OutputError, Outputs};
+pub use whole_file::{OutputError, Outputs, Written};
 
 use crate::reopened::scene_in;
 

@@ -17,6 +17,7 @@
 mod lock;
 mod outputs;
 mod temporary;
+mod written;
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, Write};
@@ -25,6 +26,7 @@ use std::path::{Path, PathBuf};
 pub use lock::FileLock;
 pub use outputs::{OutputError, Outputs};
 pub use temporary::{TemporaryFile, TemporaryFolder, remove_temporaries};
+pub use written::{OtherEnding, Written};
 
 /// Writes `bytes` to `path`, whole or not at all.
 ///

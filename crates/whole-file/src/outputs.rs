@@ -7,6 +7,8 @@ use std::path::{Path, PathBuf};
 
 use same_file::is_same_file;
 
+use crate::written::{OtherEnding, Written};
+
 /// A file that is not written, since something would be lost.
 #[derive(Debug, thiserror::Error)]
 pub enum OutputError {
@@ -18,6 +20,9 @@ pub enum OutputError {
         /// The file that is read, as it was named.
         input: PathBuf,
     },
+    /// Its name is that of another kind of file.
+    #[error(transparent)]
+    OtherEnding(#[from] OtherEnding),
     /// It is there.
     #[error("{}: this file is there already\n = choose another name or folder, or replace it with --overwrite", path.display())]
     Exists {
@@ -59,6 +64,16 @@ impl Outputs {
             }
         }
         Ok(())
+    }
+
+    /// The same of one file of a kind, whose name may not be that of another.
+    ///
+    /// # Errors
+    /// [`OutputError`].
+    pub fn claim_as(&self, written: &Written, path: &Path) -> Result<(), OutputError> {
+        self.spare(path)?;
+        written.check(path)?;
+        self.claim(&[path])
     }
 
     /// Refuses a file that is read, by whatever path or link.

@@ -10,7 +10,7 @@ use super::Exported;
 use super::error::ExportError;
 use super::rows::ExportRows;
 use crate::columns::COLUMNS;
-use crate::outputs::outputs_of_results;
+use crate::outputs::{OutputError, Written, outputs_of_results};
 use crate::write_error::WriteError;
 
 /// A history in the table, and the heads of its values.
@@ -31,7 +31,10 @@ pub fn export_csv(file: &Path, to: &Path, columns: &[String], rows: &ExportRows)
     let table = Table::new(file, columns, rows)?;
     let (path, folder) = match to.extension() {
         Some(extension) if extension.eq_ignore_ascii_case("csv") => (to.to_owned(), None),
-        _ => (to.join(Path::new(file.file_name().unwrap_or("results".as_ref())).with_extension("csv")), Some(to)),
+        _ => {
+            Written::FOLDER.check(to).map_err(OutputError::from)?;
+            (to.join(Path::new(file.file_name().unwrap_or("results".as_ref())).with_extension("csv")), Some(to))
+        }
     };
     outputs_of_results(file, rows.overwrite).claim(&[&path])?;
     if let Some(folder) = folder {

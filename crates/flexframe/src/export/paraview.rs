@@ -11,7 +11,7 @@ use super::fields::{FIELDS, described};
 use super::motion::{Motion, Placed};
 use super::rows::ExportRows;
 use crate::modes::frequency_unit;
-use crate::outputs::outputs_of_results;
+use crate::outputs::{OutputError, Written, outputs_of_results};
 use crate::write_error::WriteError;
 
 impl Motion {
@@ -36,7 +36,7 @@ pub fn export_vtkhdf(
     mut progress: impl FnMut(f64),
 ) -> Result<Exported, ExportError> {
     let (chosen, times) = motion.chosen(file, rows)?;
-    outputs_of_results(file, rows.overwrite).claim(&[to])?;
+    outputs_of_results(file, rows.overwrite).claim_as(&Written::VTKHDF, to)?;
     let out = VtkHdf::create(to, &motion.grid, Some(&times), &described(), rows.overwrite)?;
     let mut placed = Placed::default();
     for (step, row) in chosen.iter().enumerate() {
@@ -61,6 +61,7 @@ pub fn export_vtu(
     mut progress: impl FnMut(f64),
 ) -> Result<Exported, ExportError> {
     let (chosen, times) = motion.chosen(file, rows)?;
+    Written::FOLDER.check(folder).map_err(OutputError::from)?;
     let stem = file.file_stem().unwrap_or("results".as_ref()).to_string_lossy().into_owned();
     let list = folder.join(format!("{stem}.pvd"));
     let name = |step: usize| format!("{stem}_{step:06}.vtu");
@@ -104,7 +105,7 @@ pub fn export_modes(file: &Path, motion: &Motion, to: &Path, rows: &ExportRows) 
     let shapes: Vec<Field> = names.map(|name| Field { name, components: 3 }).collect();
     let stress = |shape: &Field| Field { name: format!("stress of {}", shape.name), components: 6 };
     let fields: Vec<Field> = shapes.iter().cloned().chain(shapes.iter().map(stress)).collect();
-    outputs_of_results(file, rows.overwrite).claim(&[to])?;
+    outputs_of_results(file, rows.overwrite).claim_as(&Written::VTKHDF, to)?;
     let out = VtkHdf::create(to, &motion.grid, None, &fields, rows.overwrite)?;
     for (k, shape) in modes.shapes.col_iter().enumerate() {
         let mut values = vec![0.0; 3 * motion.grid.points.len()];
