@@ -85,7 +85,7 @@ impl Signals {
     }
 }
 
-/// Whether who started the program has a signal ignored.
+/// True if a signal was ignored when the program began.
 fn is_ignored(signal: i32) -> bool {
     let mut action = MaybeUninit::<libc::sigaction>::zeroed();
     // SAFETY: without a new action it only writes the one there is, of which all bits zero are a value, too.

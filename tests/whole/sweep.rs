@@ -160,7 +160,10 @@ fn shards_of_a_sweep_merge_into_the_table_of_the_whole() {
     let case = Case::new("[parameters]\n\"time.step\" = [1e-5, 2e-5, 1.0, 4e-5, 5e-5]");
     let whole = case.run(false).unwrap();
     let table = case.table("results/tip");
-    fs::remove_file(case.path("sweep.h5")).unwrap();
+    let csv = fs::read(case.path("sweep.csv")).unwrap();
+    for name in ["sweep.h5", "sweep.csv"] {
+        fs::remove_file(case.path(name)).unwrap();
+    }
 
     let shard = |text: &str| Some(text.parse::<Shard>().unwrap());
     let first = case.run_shard(false, shard("1/3")).unwrap();
@@ -181,6 +184,8 @@ fn shards_of_a_sweep_merge_into_the_table_of_the_whole() {
     assert_eq!(report.failures, whole.failures);
     let bits = |values: &[f64]| values.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
     assert_eq!(bits(&case.table("results/tip")), bits(&table));
+    assert_eq!(fs::read(case.path("sweep.csv")).unwrap(), csv);
+    assert!(!case.path("sweep.1-of-3.csv").exists());
     assert_eq!(case.run_shard(false, shard("1/3")).unwrap().kept, 2);
     // Rows of another mesh are not mixed with rows of this one.
     let mesh = case.path("bar.msh");
@@ -201,10 +206,90 @@ fn shards_of_a_sweep_merge_into_the_table_of_the_whole() {
     fs::write(&mesh, original).unwrap();
     // Shards of another sweep are not taken.
     case.write("[parameters]\n\"time.step\" = [1e-5]");
-    fs::remove_file(case.path("sweep.h5")).unwrap();
+    for name in ["sweep.h5", "sweep.csv"] {
+        fs::remove_file(case.path(name)).unwrap();
+    }
     let error = merged(3).unwrap_err().to_string();
     assert!(error.contains("sweep.1-of-3.h5") && error.contains("it is of another sweep"), "{error}");
     assert!(!case.path("sweep.h5").exists());
+}
+
+#[test]
+fn a_table_is_written_as_csv_and_shown() {
+    let case = Case::new("[parameters]\n\"loads[0].amplitude\" = [1.0, 2.5, \"much\"]\n\"title\" = [\"a, b\"]");
+    let report = case.run(false).unwrap();
+    assert_eq!((report.done, report.failures.len()), (2, 1), "{:?}", report.failures);
+    let csv = fs::read_to_string(case.path("sweep.csv")).unwrap();
+    let lines: Vec<&str> = csv.lines().collect();
+    assert_eq!(lines[0], "row,status,loads[0].amplitude,title,strain,tip x,tip y,tip z,failure");
+    let (strain, tip) = (case.table("results/strain"), case.table("results/tip"));
+    for row in 0..2 {
+        let numbers: Vec<String> =
+            strain[row..=row].iter().chain(&tip[3 * row..3 * row + 3]).map(|x| format!("{x:?}")).collect();
+        let expected = format!("{row},done,{},\"a, b\",{},", ["1.0", "2.5"][row], numbers.join(","));
+        assert_eq!(lines[1 + row], expected);
+    }
+    assert!(
+        lines[3].starts_with("2,failed,much,\"a, b\",,,,,\"") && lines[3].contains("`loads[0].amplitude`"),
+        "{csv}"
+    );
+    assert_eq!(lines.len(), 4);
+    let text = report.to_string();
+    let shown: Vec<Vec<&str>> = text.lines().map(|line| line.split_whitespace().collect()).collect();
+    assert!(
+        shown.iter().any(
+            |line| line[..] == ["row", "loads[0].amplitude", "title", "strain", "tip", "x", "tip", "y", "tip", "z"]
+        ),
+        "{text}"
+    );
+    assert!(shown.iter().any(|line| line.starts_with(&["1", "2.5"]) && line.len() == 8), "{text}");
+    assert!(shown.iter().any(|line| line.starts_with(&["2", "\"much\""]) && line.ends_with(&["failed"; 4])), "{text}");
+    // It goes on with the table, and nothing else is replaced.
+    assert_eq!(case.run(false).unwrap().kept, 2);
+    assert_eq!(fs::read_to_string(case.path("sweep.csv")).unwrap(), csv);
+    fs::write(case.path("sweep.csv"), "mine").unwrap();
+    let error = case.run(false).unwrap_err();
+    assert!(error.contains("sweep.csv: the sweep writes its numbers here, too"), "{error}");
+    assert_eq!(fs::read(case.path("sweep.csv")).unwrap(), b"mine");
+    case.run(true).unwrap();
+    assert_eq!(fs::read_to_string(case.path("sweep.csv")).unwrap(), csv);
+}
+
+/// E four times as large doubles every frequency. A run would not end.
+#[test]
+fn frequencies_are_swept_without_a_run() {
+    let parameters = "[parameters]\n\"body.material.young_modulus\" = [70e3, 280e3]\n\"time.end\" = [1e3]";
+    let case = Case::new(parameters);
+    fs::write(
+        case.path("sweep.toml"),
+        format!("scene = \"blade.toml\"\n{parameters}\n[results]\nf = \"frequencies\"\n"),
+    )
+    .unwrap();
+    let report = case.run(false).unwrap();
+    assert_eq!((report.done, report.reductions), (2, 2), "{:?}", report.failures);
+    let found = case.table("results/f");
+    let scene = Scene::parse(SCENE, case.path("blade.toml")).unwrap();
+    let (_, modes) = flexframe::modes::modes(&scene, |_| ()).unwrap();
+    assert_eq!(found[..4], modes.body.natural_frequencies);
+    for k in 0..4 {
+        assert!((found[4 + k] / found[k] - 2.0).abs() < 1e-6, "{found:?}");
+    }
+    let csv = fs::read_to_string(case.path("sweep.csv")).unwrap();
+    assert!(csv.starts_with("row,status,body.material.young_modulus,time.end,f 1,f 2,f 3,f 4,failure\n"), "{csv}");
+    // With a result of a run beside them, they are the same.
+    let both = "scene = \"blade.toml\"\n[parameters]\n\"time.step\" = [1e-5, 2e-5]\n[results]\nf = \"frequencies\"\n\
+                strain = { peak = \"energy/strain\" }\n";
+    fs::write(case.path("sweep.toml"), both).unwrap();
+    let report = case.run(true).unwrap();
+    assert_eq!((report.done, report.reductions), (2, 1), "{:?}", report.failures);
+    assert_eq!(case.table("results/f"), [&found[..4], &found[..4]].concat());
+    assert!(case.table("results/strain").iter().all(|strain| *strain > 0.0));
+    // A body without modes has none.
+    let none = both.replace("\"time.step\" = [1e-5, 2e-5]", "\"modes.flexible\" = [0, 4]");
+    fs::write(case.path("sweep.toml"), none).unwrap();
+    let report = case.run(true).unwrap();
+    assert!(report.failures[&0].contains("which has no natural frequencies"), "{:?}", report.failures);
+    assert_eq!(report.done, 1);
 }
 
 #[test]

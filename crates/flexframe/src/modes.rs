@@ -65,16 +65,21 @@ pub fn reduce(
 /// # Errors
 /// [`BuildError`].
 pub fn modes(scene: &Scene, progress: impl FnMut(BuildProgress)) -> Result<(Model, ModesReport), BuildError> {
-    // The modes as they are, whatever a motion of the scene would call for.
+    let scene = unloaded(scene);
+    let model = Model::build(&scene, progress)?;
+    let report = ModesReport::new(&scene, &model);
+    Ok((model, report))
+}
+
+/// A scene with its modes as they are, whatever its motion would call for.
+pub(crate) fn unloaded(scene: &Scene) -> Scene {
     let mut scene = scene.clone().without_rows();
     scene.output.backbones = false;
     scene.modes.flexible = Flexible::Count(scene.modes.flexible.most());
     scene.modes.static_correction = Choice::Off;
     scene.effects.choices[Effect::Damping] = Choice::On;
     scene.effects.choices[Effect::GeometricStiffening] = Choice::Off;
-    let model = Model::build(&scene, progress)?;
-    let report = ModesReport::new(&scene, &model);
-    Ok((model, report))
+    scene
 }
 
 /// Writes the modes that a scene asks for as a problem for SLEPc on a number of ranks. Returns the files.

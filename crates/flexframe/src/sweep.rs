@@ -7,6 +7,7 @@ mod error;
 mod plan;
 mod shard;
 mod table;
+mod text;
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -15,18 +16,21 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError, mpsc};
 use std::time::{Duration, Instant};
 
-use results::Results;
+use body_file::Hash;
+use results::{ColumnTable, Results};
 use scene::{Assembly, BuildProgress, Cache, Model, ModelBuilder, Scene};
 use serde::Serialize;
 use whole_file::{FileLock, TemporaryFolder};
 
 use crate::columns::COLUMNS;
 use crate::json;
-use crate::outputs::Outputs;
+use crate::outputs::{OutputError, Outputs, Written};
 use crate::run::{self, RunSettings};
 use crate::write_error::WriteError;
+use crate::{modes, plausible};
 use plan::{Asked, Plan};
 use table::{Done, RowState, Table};
+use text::{Shown, write_csv};
 
 pub(crate) use error::SWEEP_CURE;
 pub use error::SweepError;
@@ -91,6 +95,12 @@ pub struct SweepReport {
     pub warnings: BTreeMap<usize, Vec<String>>,
     /// How often matrices were assembled and factored.
     pub reductions: usize,
+    /// The same numbers as CSV; none of a shard.
+    #[serde(serialize_with = "json::optional_path")]
+    pub csv: Option<PathBuf>,
+    /// Some rows for people.
+    #[serde(skip)]
+    shown: Shown,
 }
 
 impl SweepReport {
@@ -108,9 +118,11 @@ impl SweepReport {
     }
 
     /// The report of a table of the whole sweep, of which `kept` rows were done before.
-    fn of(plan: Plan, output: &Path, table: &Table, kept: usize) -> Self {
+    fn of(plan: Plan, output: &Path, csv: Option<PathBuf>, table: &Table, kept: usize) -> Self {
         let [done, _] = table.counts();
         Self {
+            csv,
+            shown: Shown::new(&plan, table),
             title: plan.title,
             output: output.to_owned(),
             rows: table.rows.len(),
@@ -146,13 +158,19 @@ pub fn sweep(
     let plan = Plan::read(path, &cache)?;
     let of_shard = settings.shard.map(|shard| shard.table(output));
     let output = of_shard.as_deref().unwrap_or(output);
-    outputs(&plan, path, settings.overwrite).spare(output)?;
+    let csv = settings.shard.is_none().then(|| output.with_extension("csv"));
+    let outputs = outputs(&plan, path, settings.overwrite);
+    csv.iter().map(PathBuf::as_path).chain([output]).try_for_each(|file| outputs.spare(file))?;
+    Written::SWEEP.check(output).map_err(OutputError::from)?;
     if let Some(folder) = output.parent().filter(|folder| !folder.as_os_str().is_empty()) {
         std::fs::create_dir_all(folder).map_err(WriteError::of(folder))?;
     }
     let _alone = lock(output)?;
     let is_mine = |row: usize| settings.shard.is_none_or(|shard| shard.has(row));
     let mut table = Table::open(output, &plan, settings.overwrite)?;
+    if let Some(csv) = csv.as_deref() {
+        claim_csv(csv, &table, settings.overwrite)?;
+    }
     let [kept, _] = table.counts();
     let mine = (0..plan.rows.len()).filter(|row| is_mine(*row)).count();
     let mut groups: BTreeMap<String, Vec<usize>> = BTreeMap::new();
@@ -202,8 +220,8 @@ pub fn sweep(
             rows.iter().for_each(|row| table.rows[*row] = RowState::Failed(CHANGED.to_owned()));
         }
     }
-    table.write(output, &plan, true)?;
-    let report = SweepReport::of(plan, output, &table, kept);
+    finish(&mut table, &plan, output, csv.as_deref())?;
+    let report = SweepReport::of(plan, output, csv, &table, kept);
     Ok(SweepReport { rows: mine, reductions: cache.notes().assembled, ..report })
 }
 
@@ -215,10 +233,14 @@ pub fn sweep(
 pub fn merge(path: &Path, output: &Path, count: usize, overwrite: bool) -> Result<SweepReport, SweepError> {
     let plan = Plan::read(path, &Cache::none())?;
     let shards = Shard::all(count).map(|shard| shard.table(output));
-    shards.fold(outputs(&plan, path, overwrite), |outputs, shard| outputs.and_input(&shard)).spare(output)?;
+    let csv = output.with_extension("csv");
+    let outputs = shards.fold(outputs(&plan, path, overwrite), |outputs, shard| outputs.and_input(&shard));
+    [output, &csv].into_iter().try_for_each(|file| outputs.spare(file))?;
+    Written::SWEEP.check(output).map_err(OutputError::from)?;
     let _alone = lock(output)?;
     // Rows that the table has already stay, and one of another sweep is not lost.
     let mut table = Table::open(output, &plan, overwrite)?;
+    claim_csv(&csv, &table, overwrite)?;
     let [kept, _] = table.counts();
     let mut unfinished = Vec::new();
     let mut has_tables = false;
@@ -243,8 +265,26 @@ pub fn merge(path: &Path, output: &Path, count: usize, overwrite: bool) -> Resul
         let first = Shard::all(count).next().map(|shard| shard.table(output)).unwrap_or_default();
         return Err(SweepError::NoShard { first, count });
     }
-    table.write(output, &plan, true)?;
-    Ok(SweepReport { unfinished, ..SweepReport::of(plan, output, &table, kept) })
+    finish(&mut table, &plan, output, Some(&csv))?;
+    Ok(SweepReport { unfinished, ..SweepReport::of(plan, output, Some(csv), &table, kept) })
+}
+
+/// Refuses to replace a CSV file that was not written with the table.
+fn claim_csv(csv: &Path, table: &Table, overwrite: bool) -> Result<(), SweepError> {
+    let is_ours = || Hash::of_file(csv).is_ok_and(|hash| hash.to_string() == table.csv);
+    if overwrite || !csv.exists() || is_ours() {
+        return Ok(());
+    }
+    Err(SweepError::OtherCsv { path: csv.to_owned() })
+}
+
+/// Writes the table for the last time, and its numbers as CSV.
+fn finish(table: &mut Table, plan: &Plan, output: &Path, csv: Option<&Path>) -> Result<(), SweepError> {
+    if let Some(csv) = csv {
+        write_csv(csv, plan, table).map_err(WriteError::of(csv))?;
+        table.csv = Hash::of_file(csv).map_err(WriteError::of(csv))?.to_string();
+    }
+    table.write(output, plan, true)
 }
 
 /// Why rows fail whose files did not stay what they were.
@@ -306,28 +346,55 @@ fn run_row(
     folder: &Path,
     settings: &RunSettings,
 ) -> Result<Done, String> {
-    let model: Model = {
+    let build = |scene: &Scene| -> Result<Model, String> {
         let mut builder = builder.lock().unwrap_or_else(PoisonError::into_inner);
-        builder.build(scene, |_| ()).map_err(|error| error.to_string())?
+        builder.build(scene, |_| ()).map_err(|error| error.to_string())
     };
+    let [asks_run, asks_frequencies] = plan.asks();
+    let mut done = Done { results: Vec::new(), warnings: Vec::new() };
+    let mut frequencies = Vec::new();
+    if asks_frequencies {
+        let scene = modes::unloaded(scene);
+        let model = build(&scene)?;
+        modes::require_flexible(&scene, &model).map_err(|error| error.to_string())?;
+        frequencies = model.natural_frequencies();
+        done.warnings = plausible::doubts(&scene, &model);
+    }
     let folder = TemporaryFolder::inside(folder).map_err(|error| error.to_string())?;
-    let run = run::run_model(scene, &model, folder.path(), settings, |_| ());
-    let warnings = run.map_err(|error| error.without_files())?.warnings;
-    let results =
-        Results::open(run::results_path(scene, folder.path()), &COLUMNS).map_err(|error| error.to_string())?;
-    let value = |asked: &Asked| {
-        let column = asked.column();
-        let table = results.table(column).ok_or_else(|| format!("the results have no column {column}: docs/reference/results.md lists them, and those of points are points/NAME/displacement and so on"))?;
-        let row = match asked {
-            Asked::Final(_) => table.rows().checked_sub(1).and_then(|last| table.row(last)).map(<[f64]>::to_vec),
-            Asked::Peak(_) => (0..table.width())
-                .map(|k| table.column(k)?.max_by(|a, b| a.abs().total_cmp(&b.abs())))
-                .collect::<Option<Vec<f64>>>(),
-        };
-        row.ok_or_else(|| format!("the column {column} has no rows"))
+    let mut results = None;
+    if asks_run {
+        let run = run::run_model(scene, &build(scene)?, folder.path(), settings, |_| ());
+        done.warnings = run.map_err(|error| error.without_files())?.warnings;
+        let path = run::results_path(scene, folder.path());
+        results = Some(Results::open(path, &COLUMNS).map_err(|error| error.to_string())?);
+    }
+    let value = |asked: &Asked| match (asked, &results) {
+        (Asked::Final(column), Some(results)) => column_of(results, column, |table| {
+            table.rows().checked_sub(1).and_then(|last| table.row(last)).map(<[f64]>::to_vec)
+        }),
+        (Asked::Peak(column), Some(results)) => column_of(results, column, |table| {
+            let largest = |k: usize| table.column(k)?.max_by(|a, b| a.abs().total_cmp(&b.abs()));
+            (0..table.width()).map(largest).collect()
+        }),
+        _ => Ok(frequencies.clone()),
     };
-    let results = plan.results.values().map(value).collect::<Result<_, _>>()?;
-    Ok(Done { results, warnings })
+    done.results = plan.results.values().map(value).collect::<Result<_, String>>()?;
+    Ok(done)
+}
+
+/// Numbers of a column of the results.
+fn column_of(
+    results: &Results,
+    column: &str,
+    numbers: impl FnOnce(&ColumnTable) -> Option<Vec<f64>>,
+) -> Result<Vec<f64>, String> {
+    let table = results.table(column).ok_or_else(|| {
+        format!(
+            "the results have no column {column}: docs/reference/results.md lists them, and those of points are \
+             points/NAME/displacement and so on"
+        )
+    })?;
+    numbers(table).ok_or_else(|| format!("the column {column} has no rows"))
 }
 
 impl fmt::Display for SweepReport {
@@ -358,6 +425,10 @@ impl fmt::Display for SweepReport {
         if self.reductions > 0 {
             writeln!(f, "  body     matrices assembled and factored {} time(s)", self.reductions)?;
         }
-        write!(f, "  wrote    {}", self.output.display())
+        if self.done > 0 {
+            write!(f, "\n{}\n", self.shown)?;
+        }
+        write!(f, "  wrote    {}", self.output.display())?;
+        self.csv.iter().try_for_each(|csv| write!(f, " {}", csv.display()))
     }
 }

@@ -89,7 +89,7 @@ impl Failure for FmuError {
         match self {
             Self::Scene(error) => error.details(),
             Self::Build(error) => error.details(),
-            Self::Start { scene, .. } => Details::of_file(scene),
+            Self::Start { scene, source } => Details { file: Details::of_file(scene).file, ..source.details() },
             Self::Body(error) => Details::of_file(error.path()),
             Self::Write(error) => error.details(),
             Self::Library { path, .. }
@@ -269,6 +269,20 @@ impl Failure for StartError {
             _ => Kind::Refused,
         }
     }
+
+    fn details(&self) -> Details {
+        match self {
+            Self::Step { at, found, expected, cure } => Details {
+                line: Some(at.line),
+                key: Some(at.key.clone()),
+                found: Some(found.clone()),
+                expected: Some(expected.clone()),
+                cure: Some((*cure).to_owned()),
+                ..Details::of_file(&at.file)
+            },
+            _ => Details::default(),
+        }
+    }
 }
 
 impl Failure for RunFailure {
@@ -301,7 +315,8 @@ impl Failure for RunError {
     fn details(&self) -> Details {
         match self {
             Self::Build(error) => error.details(),
-            Self::Setup { scene, .. } | Self::Verify { scene, .. } => Details::of_file(scene),
+            Self::Setup { scene, source } => Details { file: Details::of_file(scene).file, ..source.details() },
+            Self::Verify { scene, .. } => Details::of_file(scene),
             Self::Step { results, .. } | Self::Refused { results, .. } => Details::of_file(results),
             Self::File(error) => error.details(),
             Self::Stopped { part, .. } | Self::Restore { part, .. } | Self::Changed { part, .. } => {
@@ -497,7 +512,7 @@ impl Failure for WriteError {
 impl Failure for OutputError {
     fn kind(&self) -> Kind {
         match self {
-            Self::IsInput { .. } => Kind::Usage,
+            Self::IsInput { .. } | Self::OtherEnding(_) => Kind::Usage,
             Self::Exists { .. } => Kind::Io,
         }
     }
@@ -505,6 +520,10 @@ impl Failure for OutputError {
     fn details(&self) -> Details {
         match self {
             Self::IsInput { path, .. } | Self::Exists { path } => Details::of_file(path),
+            Self::OtherEnding(error) => {
+                let (found, expected) = (Some(error.found.to_owned()), Some(error.expected.to_owned()));
+                Details { found, expected, ..Details::of_file(&error.path) }
+            }
         }
     }
 }
@@ -623,6 +642,7 @@ impl Failure for SweepError {
             | Self::Table(_)
             | Self::OtherTable { .. }
             | Self::OtherFiles { .. }
+            | Self::OtherCsv { .. }
             | Self::Busy { .. }
             | Self::NoShard { .. } => Kind::Io,
             Self::Output(error) => error.kind(),
@@ -639,6 +659,7 @@ impl Failure for SweepError {
             | Self::Form { path, .. }
             | Self::OtherTable { path, .. }
             | Self::OtherFiles { path, .. }
+            | Self::OtherCsv { path }
             | Self::Busy { path }
             | Self::AllFailed { path, .. }
             | Self::NoShard { first: path, .. } => Details::of_file(path),

@@ -68,6 +68,16 @@ pub enum SweepError {
     /// The table would go where a file is that the sweep reads.
     #[error(transparent)]
     Output(#[from] OutputError),
+    /// A file is where the CSV file would go, which the sweep has not written.
+    #[error(
+        "{}: the sweep writes its numbers here, too, and has not written what is there\n = move it away, choose another name for \
+         the table with -o, or replace both with --overwrite",
+        path.display()
+    )]
+    OtherCsv {
+        /// The file.
+        path: PathBuf,
+    },
     /// Another sweep writes the table.
     #[error("{}: another sweep is writing this table\n = wait for its end, or choose another file with -o", path.display())]
     Busy {

@@ -43,15 +43,8 @@ pub(super) enum Asked {
     Final(String),
     /// The value of largest size over the rows, with its sign, of each number of a column.
     Peak(String),
-}
-
-impl Asked {
-    /// The path of the column.
-    pub fn column(&self) -> &str {
-        match self {
-            Self::Final(column) | Self::Peak(column) => column,
-        }
-    }
+    /// The natural frequencies of the body, cycles per time, as `flexframe modes` has them. They take no run.
+    Frequencies,
 }
 
 /// A range of numbers.
@@ -105,7 +98,7 @@ impl Plan {
             return Err(invalid(
                 "results",
                 "nothing".into(),
-                "what to keep of each run, such as tip = { final = \"position\" }",
+                "what to keep of each row, such as tip = { final = \"position\" } or f = \"frequencies\"",
             ));
         }
         let lists: Vec<(String, Vec<Value>)> = file
@@ -163,6 +156,13 @@ impl Plan {
         let identity = format!("{of_sweep}\n{}", scene.source);
         let identities = identities(&rows);
         Ok(Self { title: scene.title, identity, parameters, results: file.results, rows, identities })
+    }
+
+    /// True if something is asked of a run, and if the frequencies are asked for.
+    pub fn asks(&self) -> [bool; 2] {
+        let is_asked =
+            |frequencies: bool| self.results.values().any(|asked| (*asked == Asked::Frequencies) == frequencies);
+        [is_asked(false), is_asked(true)]
     }
 
     /// True if the files of the body of a row have changed since the sweep was read.

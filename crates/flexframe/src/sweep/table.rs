@@ -43,13 +43,16 @@ pub(super) struct Table {
     pub rows: Vec<RowState>,
     /// How many rows of the file were computed from files that have changed since; they are open again.
     pub stale: usize,
+    /// The hash of the CSV file that was written with it; empty without one.
+    pub csv: String,
 }
 
 impl Table {
     /// The table in a file, or an empty one where there is none. Rows that failed are open again.
     pub fn open(path: &Path, plan: &Plan, overwrite: bool) -> Result<Self, SweepError> {
         let found = if overwrite { None } else { Self::read(path, plan)? };
-        let mut table = found.unwrap_or_else(|| Self { rows: vec![RowState::Open; plan.rows.len()], stale: 0 });
+        let mut table =
+            found.unwrap_or_else(|| Self { rows: vec![RowState::Open; plan.rows.len()], stale: 0, csv: String::new() });
         for row in table.rows.iter_mut().filter(|row| matches!(row, RowState::Failed(_))) {
             *row = RowState::Open;
         }
@@ -104,7 +107,17 @@ impl Table {
                 *row = RowState::Failed(words.clone());
             }
         }
-        Ok(Some(Self { rows, stale }))
+        let csv = file.attribute("csv").map_or_else(String::new, str::to_owned);
+        Ok(Some(Self { rows, stale, csv }))
+    }
+
+    /// How many numbers a result has, by its number in the plan; none where no row is done.
+    pub fn width(&self, result: usize) -> Option<usize> {
+        let of_row = |row: &RowState| match row {
+            RowState::Done(done) => Some(done.results[result].len()),
+            RowState::Open | RowState::Failed(_) => None,
+        };
+        self.rows.iter().filter_map(of_row).max()
     }
 
     /// How many rows are done, and how many failed.
@@ -164,15 +177,12 @@ impl Table {
             }
         }
         for (i, (name, asked)) in plan.results.iter().enumerate() {
-            let done = |row: &RowState| match row {
-                RowState::Done(done) => Some(done.results[i].len()),
-                _ => None,
-            };
-            let Some(width) = self.rows.iter().filter_map(done).max() else { continue };
+            let Some(width) = self.width(i) else { continue };
             let path = format!("results/{name}");
             let words = match asked {
                 Asked::Final(column) => format!("{column} at the end; NaN where there is none"),
                 Asked::Peak(column) => format!("value of largest size of {column} over time; NaN where there is none"),
+                Asked::Frequencies => "natural frequencies, cycles per time; NaN where there is none".to_owned(),
             };
             datasets.push(declared(path.clone(), Kind::F64, &[count, width], words));
             let mut numbers = vec![f64::NAN; count * width];
@@ -193,6 +203,7 @@ impl Table {
             ("parameters".to_owned(), json(serde_json::to_string(&parameters))),
             ("failures".to_owned(), json(serde_json::to_string(&self.failures()))),
             ("warnings".to_owned(), json(serde_json::to_string(&self.warnings()))),
+            ("csv".to_owned(), self.csv.clone()),
         ]);
         let mut writer = Writer::create(path, texts, &datasets)?;
         writer.write("status", &status)?;
