@@ -28,11 +28,11 @@ const ENDINGS: [(&[&str], &str); 12] = [
     }
 )]
 pub struct OtherEnding {
-    /// What was to be written.
+    /// The output.
     pub path: PathBuf,
-    /// What has such a name.
+    /// The kind of file that has such a name.
     pub found: &'static str,
-    /// What would be written.
+    /// The kind that would be written.
     pub expected: &'static str,
     /// How its name ends; none of a folder.
     pub ending: Option<&'static str>,

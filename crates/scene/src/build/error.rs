@@ -75,7 +75,7 @@ pub enum StartError {
         found: String,
         /// The limit.
         expected: String,
-        /// What to do about it.
+        /// The cure.
         cure: &'static str,
     },
     /// The model is known to be wrong.
