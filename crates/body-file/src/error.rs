@@ -29,7 +29,7 @@ pub enum BodyFileError {
         path: PathBuf,
         /// The operation.
         action: &'static str,
-        /// Why.
+        /// The reason.
         source: io::Error,
     },
     /// The name of the folder is not text in UTF-8, which HDF5 wants.

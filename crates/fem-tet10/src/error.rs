@@ -37,7 +37,7 @@ pub enum MeshError {
     Io {
         /// The mesh.
         source_name: String,
-        /// Why.
+        /// The reason.
         source: std::io::Error,
     },
     /// The file is not a MSH file of version 4.1.

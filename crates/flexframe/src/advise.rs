@@ -58,7 +58,7 @@ pub struct EffectRow {
     pub advised: bool,
     /// True if a run of the scene has it; `None` where there is nothing to switch.
     pub on: Option<bool>,
-    /// Why.
+    /// The reason.
     pub why: String,
     /// The influence found by running the scene with the effect switched.
     pub real: Option<Real>,

@@ -51,7 +51,7 @@ pub enum AnimationError {
     Step {
         /// The scene file.
         scene: PathBuf,
-        /// Why.
+        /// The reason.
         source: StepError,
     },
     /// There is nothing to draw.

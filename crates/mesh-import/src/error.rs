@@ -69,7 +69,7 @@ pub enum ImportError {
     Io {
         /// The file.
         source_name: String,
-        /// Why.
+        /// The reason.
         cause: io::Error,
     },
 }

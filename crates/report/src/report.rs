@@ -175,7 +175,7 @@ pub struct Effect {
     pub state: String,
     /// The number that decides, in words; may be empty.
     pub measure: String,
-    /// Why.
+    /// The reason.
     pub reason: String,
 }
 

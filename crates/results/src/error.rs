@@ -152,7 +152,7 @@ pub enum FileError {
     /// A file is where a results file or an export would go.
     #[error("{path}: this file is there already; choose another name or folder, or replace it with --overwrite", path = .path.display())]
     Exists {
-        /// It.
+        /// The file.
         path: PathBuf,
     },
     /// The name of the folder is not text in UTF-8, which HDF5 wants.

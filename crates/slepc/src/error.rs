@@ -18,7 +18,7 @@ pub enum SlepcError {
     /// The driver refuses, in words.
     #[error("--solver slepc: {found}\n = {cure}")]
     Refused {
-        /// Why.
+        /// The reason.
         found: String,
         /// Help for the user.
         cure: String,
@@ -48,7 +48,7 @@ pub enum SlepcError {
         path: PathBuf,
         /// The operation that failed.
         action: &'static str,
-        /// Why.
+        /// The reason.
         source: io::Error,
     },
     /// The driver has not left its answers yet.

@@ -26,7 +26,7 @@ pub enum OutputError {
     /// It is there.
     #[error("{}: this file is there already\n = choose another name or folder, or replace it with --overwrite", path.display())]
     Exists {
-        /// It.
+        /// The file.
         path: PathBuf,
     },
 }

@@ -22,7 +22,7 @@ pub enum CampbellError {
     Eigen {
         /// The scene file.
         scene: PathBuf,
-        /// Why.
+        /// The reason.
         source: EigenError,
     },
     /// The axis has no direction.

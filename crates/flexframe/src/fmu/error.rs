@@ -25,7 +25,7 @@ pub enum FmuError {
     Start {
         /// The scene file.
         scene: PathBuf,
-        /// Why.
+        /// The reason.
         source: Box<StartError>,
     },
     /// The body file that was named cannot be read.
@@ -34,7 +34,7 @@ pub enum FmuError {
     /// A body file that does not say which scene it was made of.
     #[error("{}: no scene is in this file; make it again: flexframe reduce SCENE -o FILE", path.display())]
     NoScene {
-        /// It.
+        /// The file.
         path: PathBuf,
     },
     /// There are no binaries of FMUs for this machine.
@@ -64,23 +64,23 @@ pub enum FmuError {
     /// A file cannot be read.
     #[error("{}: cannot be read: {source}\n = check its name and its permissions", path.display())]
     Unreadable {
-        /// It.
+        /// The file.
         path: PathBuf,
-        /// Why.
+        /// The reason.
         source: io::Error,
     },
     /// A resource is not where the FMU was unpacked to.
     #[error("{}: a resource of the FMU cannot be read: {source}; unpack the whole FMU again, or pack it again: flexframe fmu", path.display())]
     Missing {
-        /// It.
+        /// The file.
         path: PathBuf,
-        /// Why.
+        /// The reason.
         source: io::Error,
     },
     /// A resource is not what was packed.
     #[error("{}: this resource of the FMU has been changed or damaged; unpack the FMU again, or pack it again: flexframe fmu", path.display())]
     Damaged {
-        /// It.
+        /// The file.
         path: PathBuf,
     },
     /// Packed by another version.

@@ -50,7 +50,7 @@ pub enum PaperError {
     Report {
         /// The report.
         path: PathBuf,
-        /// Why.
+        /// The reason.
         source: std::io::Error,
     },
 }

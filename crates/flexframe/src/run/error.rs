@@ -22,7 +22,7 @@ pub enum RunError {
     Setup {
         /// The scene file.
         scene: PathBuf,
-        /// Why.
+        /// The reason.
         source: Box<StartError>,
     },
     /// A step failed. The states before it are in the unfinished file.
@@ -30,7 +30,7 @@ pub enum RunError {
     Step {
         /// The unfinished file.
         results: PathBuf,
-        /// Why.
+        /// The reason.
         source: StepError,
     },
     /// The motion has come where the model is known to be wrong. The states before it are in the unfinished file.
@@ -40,7 +40,7 @@ pub enum RunError {
         results: PathBuf,
         /// When it was so for the first time.
         time: f64,
-        /// Why.
+        /// The reason.
         refusal: Refusal,
     },
     /// The results file cannot be written.
@@ -51,7 +51,7 @@ pub enum RunError {
     Verify {
         /// The scene file.
         scene: PathBuf,
-        /// Why.
+        /// The reason.
         failure: Box<RunFailure>,
     },
     /// The run was asked to stop. The states up to there are in the unfinished file.
@@ -72,7 +72,7 @@ pub enum RunError {
     Restore {
         /// The unfinished file.
         part: PathBuf,
-        /// Why.
+        /// The reason.
         source: CheckpointError,
     },
     /// A result of now differs from that of then.
@@ -106,7 +106,7 @@ pub enum RunError {
     Folder {
         /// The folder.
         folder: PathBuf,
-        /// Why.
+        /// The reason.
         source: std::io::Error,
     },
 }

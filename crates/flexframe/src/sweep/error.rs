@@ -19,7 +19,7 @@ pub enum SweepError {
     Unreadable {
         /// The file.
         path: PathBuf,
-        /// Why.
+        /// The reason.
         source: std::io::Error,
     },
     /// The file of the sweep says something that cannot be right.
@@ -47,7 +47,7 @@ pub enum SweepError {
     Scene {
         /// The parameters of the first row, if it is not the scene itself.
         key: Option<String>,
-        /// Why.
+        /// The reason.
         source: SceneError,
     },
     /// The body cannot be made.

@@ -37,7 +37,7 @@ pub enum BuildError {
     Modal {
         /// The scene file.
         scene: PathBuf,
-        /// Why.
+        /// The reason.
         source: ModalError,
     },
     /// A body file cannot be read or written.
@@ -54,7 +54,7 @@ pub enum BuildError {
     Loaded {
         /// The scene file.
         scene: PathBuf,
-        /// Why.
+        /// The reason.
         source: Box<LoadedError>,
     },
 }

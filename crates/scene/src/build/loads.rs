@@ -28,7 +28,7 @@ const PARALLEL: f64 = 1e-12;
 pub(super) struct MeshLoad {
     /// Name for the reader.
     name: String,
-    /// Of an amplitude of 1 or −1.
+    /// Action of an amplitude of 1 or −1.
     action: Action,
     /// Size of the amplitude.
     size: f64,
