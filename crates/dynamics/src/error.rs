@@ -252,9 +252,10 @@ pub enum StepError {
     },
 }
 
-/// Why rates cannot be evaluated, before it is known in which step.
+/// Rates that cannot be evaluated, before it is known in which step.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum RateError {
+#[non_exhaustive]
+pub enum RateError {
     /// The rotation vector left the domain of f⁻¹.
     Turn(rigid_kin::BeyondFullTurn),
     /// The inertia of the deformed body has no inverse.
@@ -263,7 +264,7 @@ pub(crate) enum RateError {
 
 impl RateError {
     /// The error of the step that began at `time`.
-    pub(crate) fn in_step(self, time: f64, step: f64) -> StepError {
+    pub fn in_step(self, time: f64, step: f64) -> StepError {
         match self {
             Self::Turn(rigid_kin::BeyondFullTurn { angle }) if angle.is_finite() => {
                 StepError::TurnTooLarge { time, step, angle }

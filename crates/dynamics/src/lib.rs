@@ -11,13 +11,16 @@
 
 mod body;
 mod conservative;
+mod equations;
 mod error;
 mod history;
 mod load;
 mod matrix;
+mod motion;
 mod observation;
 mod scheme;
 mod simulation;
+mod state;
 mod vibration;
 
 pub use body::center_of_mass::CenterOfMass;
@@ -29,14 +32,18 @@ pub use body::physics::{Drive, DrivenMotion, DrivenSpeed, Physics};
 pub use body::second_order::SecondOrder;
 pub use body::shapes::{PointShapes, RotationShapes};
 pub use conservative::manifold::{MOST_LARGE, Manifold};
-pub use conservative::{ConservativeBody, ConservativeRates, ConservativeState};
-pub use error::{SetupError, StepError};
+pub use conservative::{ConservativeBody, Evaluation as ConservativeEvaluation};
+pub use equations::error_norm::{ErrorNorm, PlainNorm, Sizes, StepDone};
+pub use equations::{Equations, Evaluation, Glance, Oscillators};
+pub use error::{RateError, SetupError, StepError};
 pub use history::{Expression, History, Table};
 pub use load::signal::Signal;
 pub use load::{
     Applied, BodyField, FieldLoad, InertialMotion, Kinematics, Load, LoadFn, LoadFrame, Pattern, PointForce,
     PointMoment, ScaledLoad, SharedLoad,
 };
+pub use motion::beginning::Beginning;
+pub use motion::{ErrorEstimate, Motion};
 pub use observation::energies::Energies;
 pub use observation::moment::Moment;
 pub use observation::observer::{Observer, StepEnd};
@@ -45,15 +52,18 @@ pub use observation::support_reactions::SupportReactions;
 pub use observation::work::Work;
 pub use observation::{Observation, PointMotion};
 pub use scheme::abilities::Abilities;
-pub use scheme::builder::SimulationBuilder;
-pub use scheme::conservative_motion::ConservativeMotion;
-pub use scheme::setup::{Beginning, Method, Setup, StepLimit};
-pub use scheme::{ErrorEstimate, Scheme};
+pub use scheme::exponential::Exponential;
+pub use scheme::method::{Method, StepLimit};
+pub use scheme::runge_kutta::{Classical, RungeKutta, Tableau};
+pub use scheme::{Scheme, Step};
+pub use simulation::builder::SimulationBuilder;
 pub use simulation::checkpoint;
 pub use simulation::checkpoint::{CheckpointError, decode, encode};
 pub use simulation::events::{Crossing, Event};
 pub use simulation::plan::{Rows, StepControl};
+pub use simulation::setup::Setup;
 pub use simulation::{Reached, Simulation, Stats};
+pub use state::{Layout, Rotation, State, attitude_at, vector_at};
 pub use vibration::loaded::{LoadedError, LoadedMode};
 pub use vibration::steady_spin::{EigenError, SpinMode, SteadySpin};
 

@@ -1,136 +1,90 @@
-//! What steps a body: the trait of all schemes.
+//! Schemes: how one step goes through equations.
 
 pub(crate) mod abilities;
-pub(crate) mod builder;
-pub(crate) mod conservative_motion;
-pub(crate) mod error_size;
 pub(crate) mod exponential;
-pub(crate) mod methods;
+pub(crate) mod method;
 pub(crate) mod mode_limit;
 pub(crate) mod phi;
-pub(crate) mod setup;
+pub(crate) mod runge_kutta;
 
-use std::any::Any;
 use std::fmt;
 
-use crate::body::motion_state::MotionState;
-use crate::body::shapes::PointShapes;
-use crate::error::{SetupError, StepError};
-use crate::observation::Observation;
-use crate::observation::energies::Energies;
-use crate::observation::moment::Moment;
-use crate::simulation::checkpoint::CheckpointError;
+use crate::equations::Equations;
+use crate::error::StepError;
+use crate::state::State;
 
-/// Estimated errors under step control, relative to the motion.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ErrorEstimate {
-    /// Error of the step that was tried.
-    pub step: f64,
-    /// Error to be expected of a step twice as long.
-    pub doubled: f64,
+/// A time integration of equations, one step at a time.
+///
+/// ```
+/// use dynamics::{Equations, Evaluation, Scheme, Step, StepError};
+///
+/// /// The explicit midpoint rule; the room is made by `equations.evaluation()`.
+/// #[derive(Debug, Clone)]
+/// struct Midpoint<E: Equations>(E::Evaluation);
+///
+/// impl<E: Equations> Scheme<E> for Midpoint<E> {
+///     const ORDER: u32 = 2;
+///
+///     fn step(&mut self, step: &mut Step<'_, E>, next: &mut [f64]) -> Result<(), StepError> {
+///         let h = step.length;
+///         step.add_to(0.5 * h, step.first.rates(), self.0.place_mut());
+///         step.evaluate(step.from.time + 0.5 * h, &mut self.0)?;
+///         step.add_to(h, self.0.rates(), next);
+///         Ok(())
+///     }
+/// }
+/// ```
+pub trait Scheme<E: Equations>: fmt::Debug + Clone + Send + Sync + 'static {
+    /// Order of convergence.
+    const ORDER: u32;
+
+    /// True if it integrates the linear part of the equations exactly: rates then come to it without that part.
+    const LINEAR_PART_IS_EXACT: bool = false;
+
+    /// Finds the list at the end of a step; attitudes stay as they are, their rotation vectors turn them afterwards.
+    ///
+    /// # Errors
+    /// [`StepError`], as from [`Step::evaluate`].
+    fn step(&mut self, step: &mut Step<'_, E>, next: &mut [f64]) -> Result<(), StepError>;
 }
 
-/// A body in motion: a formulation of its equations with a time integration of them.
-///
-/// [`Simulation`](crate::Simulation) decides where steps end and asks for them one by one. Between steps a scheme holds
-/// one state.
-pub trait Scheme: fmt::Debug + Send + Sync + Any {
-    /// Time of the state.
-    fn time(&self) -> f64;
+/// A step that a scheme is to do.
+#[derive(Debug)]
+pub struct Step<'a, E: Equations> {
+    /// The equations.
+    pub equations: &'a E,
+    /// The state at its start.
+    pub from: &'a State,
+    /// The rates there.
+    pub first: &'a E::Evaluation,
+    /// Its length h.
+    pub length: f64,
+    pub(crate) frame: E::Frame,
+    pub(crate) linear_part: bool,
+    pub(crate) evaluations: &'a mut u64,
+}
 
-    /// Does one step of length `h` that ends at time `end` (= time + h but for rounding).
+impl<E: Equations> Step<'_, E> {
+    /// Finds the rates at the place of `e` and a time in the step.
     ///
     /// # Errors
-    /// [`StepError`]; the state stays that before the step.
-    fn step(&mut self, h: f64, end: f64) -> Result<(), StepError>;
-
-    /// Tries to go on by `h` to `end`, and does so where its estimate of the error is at most `tolerance`. Returns the
-    /// estimate, and that of a step twice as long.
-    ///
-    /// # Errors
-    /// [`StepError`] where even the try fails; the state stays. A scheme without an estimate always fails.
-    fn controlled_step(&mut self, h: f64, end: f64, tolerance: f64) -> Result<ErrorEstimate, StepError> {
-        let _ = (h, end, tolerance);
-        Err(StepError::NoErrorEstimate { time: self.time() })
-    }
-
-    /// A load or a drive may jump at the time of the state.
-    ///
-    /// # Errors
-    /// [`StepError`].
-    fn pass_corner(&mut self) -> Result<(), StepError> {
+    /// [`StepError`] where there are none.
+    pub fn evaluate(&mut self, time: f64, e: &mut E::Evaluation) -> Result<(), StepError> {
+        *self.evaluations += 1;
+        // Laws with branches keep those of the middle of the step.
+        let times = [time, self.from.time + 0.5 * self.length];
+        let refuse = |error: crate::RateError| error.in_step(self.from.time, self.length);
+        self.equations.rates(times, &self.frame, e).map_err(refuse)?;
+        if self.linear_part {
+            self.equations.add_linear(e);
+        }
         Ok(())
     }
 
-    /// What acts has been changed from outside between two steps: rates that were found before no longer hold.
-    fn loads_have_changed(&mut self) {}
-
-    /// Takes up the energy scale of the loads up to `end` as they are now, and returns it. Asked for after a change of the
-    /// loads, where steps may be blind to their work.
-    fn raise_energy_of_loads(&mut self, end: f64) -> f64 {
-        let _ = end;
-        0.0
-    }
-
-    /// Fills `out` with the motion at the state, and that of `points`.
-    ///
-    /// # Errors
-    /// [`StepError`].
-    fn observe(&mut self, points: &[PointShapes], out: &mut Observation) -> Result<(), StepError>;
-
-    /// The state, in quantities that every formulation has.
-    ///
-    /// # Errors
-    /// [`StepError`] where the velocities cannot be found from the momenta.
-    fn state(&self) -> Result<MotionState, StepError>;
-
-    /// Goes on from another state.
-    ///
-    /// # Errors
-    /// [`SetupError`] for lists of the wrong length and numbers that are not finite.
-    fn set_state(&mut self, state: &MotionState) -> Result<(), SetupError>;
-
-    /// Takes over the state of another scheme of the same type and body, without allocating. Does nothing for another
-    /// type.
-    fn copy_state(&mut self, from: &dyn Scheme);
-
-    /// The motion where its rates were last found.
-    fn moment(&self) -> Moment<'_>;
-
-    /// Energies where they were last found; `None` where they say nothing, as under a drive.
-    fn energies(&self) -> Option<Energies>;
-
-    /// Work of the loads and energy that damping has taken, since the beginning.
-    fn work_and_dissipation(&self) -> [f64; 2];
-
-    /// Largest of ω_k and 2 ζ_k ω_k.
-    fn fastest_rate(&self) -> f64;
-
-    /// Evaluations of the rates so far.
-    fn evaluations(&self) -> u64;
-
-    /// Number of flexible modes.
-    fn flexible(&self) -> usize;
-
-    /// All that a run needs to go on bit for bit, as bytes: [`encode`](crate::encode) makes them. They are equally many
-    /// for all states of a run.
-    ///
-    /// # Errors
-    /// [`CheckpointError::Encoding`].
-    fn save(&self) -> Result<Vec<u8>, CheckpointError>;
-
-    /// Goes on from what was saved, after checking its sizes and numbers.
-    ///
-    /// # Errors
-    /// [`CheckpointError`] for bytes that are not those of such a state.
-    fn restore(&mut self, saved: &[u8]) -> Result<(), CheckpointError>;
-
-    /// A copy.
-    fn boxed_clone(&self) -> Box<dyn Scheme>;
-}
-
-impl Clone for Box<dyn Scheme> {
-    fn clone(&self) -> Self {
-        (**self).boxed_clone()
+    /// out = from + factor · rates
+    pub fn add_to(&self, factor: f64, rates: &[f64], out: &mut [f64]) {
+        for ((out, from), rate) in out.iter_mut().zip(&self.from.values).zip(rates) {
+            *out = from + factor * rate;
+        }
     }
 }

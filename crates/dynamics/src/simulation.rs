@@ -2,10 +2,12 @@
 
 pub(crate) mod account;
 pub(crate) mod allowance;
+pub(crate) mod builder;
 pub mod checkpoint;
 pub(crate) mod events;
 pub(crate) mod fingerprint;
 pub(crate) mod plan;
+pub(crate) mod setup;
 
 use std::sync::{Arc, Mutex};
 
@@ -17,12 +19,12 @@ use crate::error::{SetupError, StepError};
 use crate::history::History;
 use crate::history::formula_steps::FormulaSteps;
 use crate::load::SharedLoad;
+use crate::motion::beginning::Beginning;
+use crate::motion::{ErrorEstimate, Motion};
 use crate::observation::Observation;
 use crate::observation::moment::Moment;
 use crate::observation::observer::{Observer, StepEnd};
 use crate::observation::observers::Observers;
-use crate::scheme::setup::{Beginning, Setup};
-use crate::scheme::{ErrorEstimate, Scheme};
 use crate::simulation::account::EnergyAccount;
 use crate::simulation::allowance::Allowance;
 use crate::simulation::checkpoint::{
@@ -31,6 +33,7 @@ use crate::simulation::checkpoint::{
 use crate::simulation::events::{Event, Events, LastStep};
 use crate::simulation::fingerprint::Fingerprint;
 use crate::simulation::plan::{EqualSteps, HalvedSteps, Plan, Progress, Rows, StepControl};
+use crate::simulation::setup::Setup;
 
 /// What a run has cost.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -68,7 +71,7 @@ pub enum Reached {
 #[derive(Debug, Clone)]
 pub struct Simulation {
     fingerprint: Fingerprint,
-    scheme: Box<dyn Scheme>,
+    motion: Box<dyn Motion>,
     loads: Vec<SharedLoad>,
     /// Of the drive.
     drive: Option<History>,
@@ -137,7 +140,7 @@ impl Walk {
 /// What a checkpoint keeps of a run.
 #[derive(Serialize, Deserialize)]
 struct Saved {
-    scheme: Vec<u8>,
+    motion: Vec<u8>,
     plan: Progress,
     walk: Walk,
     #[serde(with = "postcard::fixint::le")]
@@ -162,21 +165,12 @@ impl Simulation {
     /// tolerance for a method without an error estimate.
     pub fn new(setup: &Setup) -> Result<Self, SetupError> {
         setup.check()?;
-        let Beginning { scheme, energy_of_loads } = (setup.method.begin)(setup)?;
+        let Beginning { motion, energy_of_loads } = (setup.method.begin)(setup)?;
         setup.check_times()?;
-        Self::begin(scheme, energy_of_loads, setup)
+        Self::begin(motion, energy_of_loads, setup)
     }
 
-    /// Begins a run by a scheme of one's own; the method of the setup is left aside.
-    ///
-    /// # Errors
-    /// [`SetupError`]: numbers out of range.
-    pub fn with_scheme(scheme: Box<dyn Scheme>, setup: &Setup) -> Result<Self, SetupError> {
-        setup.check_times()?;
-        Self::begin(scheme, setup.energy_of_loads()?, setup)
-    }
-
-    fn begin(scheme: Box<dyn Scheme>, energy_of_loads: f64, setup: &Setup) -> Result<Self, SetupError> {
+    fn begin(motion: Box<dyn Motion>, energy_of_loads: f64, setup: &Setup) -> Result<Self, SetupError> {
         let (step, walk) = match setup.control {
             StepControl::Fixed(step) => (Some(step), Walk::Equal { step, steps: None }),
             StepControl::Tolerance(tolerance) => (
@@ -190,12 +184,12 @@ impl Simulation {
         let formula_steps = FormulaSteps::new(&histories, setup.end, step)?;
         let of_loads = setup.loads.iter().flat_map(|load| load.corners());
         let corners = of_loads.chain(drive.iter().flat_map(History::corners)).chain(formula_steps.stops());
-        let looked_at = Observation::new(scheme.flexible(), setup.points.len());
-        let account = EnergyAccount::new(scheme.energies(), energy_of_loads);
+        let looked_at = Observation::new(motion.flexible(), setup.points.len());
+        let account = EnergyAccount::new(motion.energies(), energy_of_loads);
         Ok(Self {
             fingerprint: Fingerprint::of(setup),
-            may_miss_work: setup.may_miss_work(scheme.fastest_rate()),
-            scheme,
+            may_miss_work: setup.may_miss_work(motion.fastest_rate()),
+            motion,
             events: Events::default(),
             last_step: None,
             looked_at,
@@ -219,7 +213,7 @@ impl Simulation {
 
     /// Time that has been reached.
     pub fn time(&self) -> f64 {
-        self.scheme.time()
+        self.motion.time()
     }
 
     /// The state that has been reached.
@@ -227,7 +221,7 @@ impl Simulation {
     /// # Errors
     /// [`StepError`] where the inertia of the deformed body is singular.
     pub fn state(&self) -> Result<MotionState, StepError> {
-        self.scheme.state()
+        self.motion.state()
     }
 
     /// Goes on from another state, at its time. Work, impulses and balances are counted from there.
@@ -236,19 +230,13 @@ impl Simulation {
     /// [`SetupError`] for lists of the wrong length and numbers that are not finite.
     pub fn set_state(&mut self, state: &MotionState) -> Result<(), SetupError> {
         let stays = self.plan.are_same(state.time, self.time());
-        self.scheme.set_state(state)?;
+        self.motion.set_state(state)?;
         self.row_due &= stays;
         let account = &mut self.observers.energy;
-        *account = EnergyAccount::new(self.scheme.energies(), account.of_loads());
+        *account = EnergyAccount::new(self.motion.energies(), account.of_loads());
         self.events.forget();
         self.go_on_from_here();
         Ok(())
-    }
-
-    /// What steps the body. A [`ConservativeMotion`](crate::ConservativeMotion) can be had from it by
-    /// `(simulation.scheme() as &dyn Any).downcast_ref()`.
-    pub fn scheme(&self) -> &dyn Scheme {
-        &*self.scheme
     }
 
     /// Ends a step at this time and stops there with [`Reached::Stop`], once; an event or an error there comes in its place.
@@ -261,9 +249,9 @@ impl Simulation {
     /// Call this after a [`Signal`](crate::Signal), or anything that a load of one's own reads, was changed since the last
     /// step: the next step then starts from the loads as they are, and has its full order. It allocates.
     pub fn loads_have_changed(&mut self) {
-        self.scheme.loads_have_changed();
+        self.motion.loads_have_changed();
         if self.may_miss_work {
-            self.observers.energy.raise_of_loads(self.scheme.raise_energy_of_loads(self.end));
+            self.observers.energy.raise_of_loads(self.motion.raise_energy_of_loads(self.end));
         }
         self.events.forget();
     }
@@ -274,7 +262,7 @@ impl Simulation {
     /// # Errors
     /// [`StepError`] where the motion cannot be observed, and where the event's function gives no finite number.
     pub fn add_event(&mut self, event: Event) -> Result<usize, StepError> {
-        self.scheme.observe(&self.points, &mut self.looked_at)?;
+        self.motion.observe(&self.points, &mut self.looked_at)?;
         let number = self.events.add(event, &self.looked_at)?;
         self.keep_last_step();
         Ok(number)
@@ -293,7 +281,7 @@ impl Simulation {
     /// Keeps the start of each step from now on, for [`Self::interpolate`].
     pub fn keep_last_step(&mut self) {
         if self.last_step.is_none() {
-            self.last_step = Some(LastStep::new(&*self.scheme, self.points.len()));
+            self.last_step = Some(LastStep::new(&*self.motion, self.points.len()));
         }
     }
 
@@ -306,7 +294,7 @@ impl Simulation {
         let now = self.time();
         let [from, to] = self.last_step.as_ref().map_or([now, now], LastStep::span);
         if time == now {
-            return self.scheme.observe(&self.points, out);
+            return self.motion.observe(&self.points, out);
         }
         match &mut self.last_step {
             Some(step) if (from..=to.min(now)).contains(&time) => {
@@ -319,7 +307,7 @@ impl Simulation {
 
     /// The steps to come start at the time that has been reached, wherever the plan was.
     fn go_on_from_here(&mut self) {
-        self.plan.go_to(self.scheme.time());
+        self.plan.go_to(self.motion.time());
         match &mut self.walk {
             Walk::Equal { steps, .. } => *steps = None,
             Walk::Halved { steps, .. } => *steps = None,
@@ -330,9 +318,9 @@ impl Simulation {
     /// Goes back to the first event in a step, and shows the step's end, which may be there, to the observers.
     fn look_at_step(&mut self) -> Result<Option<usize>, StepError> {
         let passed = self.go_to_event()?;
-        let Self { scheme, events, looked_at, points, observers, stats, .. } = self;
+        let Self { motion, events, looked_at, points, observers, stats, .. } = self;
         observers.step(&mut StepEnd {
-            scheme: &mut **scheme,
+            motion: &mut **motion,
             points,
             longest_step: stats.longest,
             observation: looked_at,
@@ -343,15 +331,15 @@ impl Simulation {
 
     /// Finds the first event in a step, and goes back there. Where there are events, the motion is then observed.
     fn go_to_event(&mut self) -> Result<Option<usize>, StepError> {
-        let Self { scheme, events, last_step, looked_at, points, plan, .. } = self;
+        let Self { motion, events, last_step, looked_at, points, plan, .. } = self;
         let Some(step) = last_step.as_mut().filter(|_| !events.is_empty()) else { return Ok(None) };
-        scheme.observe(points, looked_at)?;
+        motion.observe(points, looked_at)?;
         let Some(passed) = events.first_passed(step, looked_at, points, plan.same())? else { return Ok(None) };
         // At the end the motion is there already, and beyond the corner that may be there.
         if !passed.at_end {
-            scheme.copy_state(step.probe());
+            motion.copy_state(step.probe());
             self.go_on_from_here();
-            self.scheme.observe(&self.points, &mut self.looked_at)?;
+            self.motion.observe(&self.points, &mut self.looked_at)?;
         }
         Ok(Some(passed.number))
     }
@@ -376,7 +364,7 @@ impl Simulation {
     /// # Errors
     /// As [`Self::observe`].
     pub fn observation(&mut self) -> Result<Observation, StepError> {
-        let mut out = Observation::new(self.scheme.flexible(), self.points.len());
+        let mut out = Observation::new(self.motion.flexible(), self.points.len());
         self.observe(&mut out)?;
         Ok(out)
     }
@@ -387,12 +375,12 @@ impl Simulation {
     /// [`StepError`] where the inertia of the deformed body is singular, and where the energy is not finite, or is not
     /// what the start, the loads and the damping account for.
     pub fn observe(&mut self, out: &mut Observation) -> Result<(), StepError> {
-        self.scheme.observe(&self.points, out)?;
+        self.motion.observe(&self.points, out)?;
         if !out.is_finite() {
             return Err(StepError::NotFinite { time: out.time, what: "a quantity of the motion" });
         }
         self.observers.observed(&mut StepEnd {
-            scheme: &mut *self.scheme,
+            motion: &mut *self.motion,
             points: &self.points,
             longest_step: self.stats.longest,
             observation: out,
@@ -412,7 +400,7 @@ impl Simulation {
     pub fn checkpoint(&self) -> Result<Vec<u64>, CheckpointError> {
         let Stats { accepted, rejected, shortest, longest, .. } = self.stats;
         let saved = Saved {
-            scheme: self.scheme.save()?,
+            motion: self.motion.save()?,
             plan: self.plan.progress(),
             walk: self.walk.clone(),
             steps_since_row: self.steps_since_row,
@@ -443,7 +431,7 @@ impl Simulation {
         expect("the length of a step", shortest > 0.0 && longest >= 0.0)?;
         saved.account.check_saved()?;
         self.walk.check_saved(&saved.walk)?;
-        self.scheme.restore(&saved.scheme)?;
+        self.motion.restore(&saved.motion)?;
         self.plan.set_progress(&saved.plan)?;
         self.stats = Stats { accepted, rejected, shortest, longest, ..self.stats };
         (self.walk, self.observers.energy, self.steps_since_row) = (saved.walk, saved.account, steps_since_row);
@@ -453,7 +441,7 @@ impl Simulation {
 
     /// What the run has cost so far.
     pub fn stats(&self) -> Stats {
-        Stats { evaluations: self.scheme.evaluations(), ..self.stats }
+        Stats { evaluations: self.motion.evaluations(), ..self.stats }
     }
 
     /// Goes on to the next row, event or stop, or as far as `most_steps` tries lead. Where a row falls on an event or the stop
@@ -477,7 +465,7 @@ impl Simulation {
             return Ok(Reached::Row);
         }
         if self.events.is_stale() {
-            self.scheme.observe(&self.points, &mut self.looked_at)?;
+            self.motion.observe(&self.points, &mut self.looked_at)?;
             self.events.reset(&self.looked_at)?;
         }
         for _ in 0..most_steps {
@@ -487,10 +475,10 @@ impl Simulation {
                     if !self.try_step(h, end)? {
                         continue;
                     }
-                    watch(&self.scheme.moment());
+                    watch(&self.motion.moment());
                     if self.corner_ahead && self.segment_is_done() {
                         self.corner_ahead = false;
-                        self.scheme.pass_corner()?;
+                        self.motion.pass_corner()?;
                     }
                     // Under step control, steps are tried in pairs.
                     let (count, length) = if self.is_controlled() { (2, 0.5 * h) } else { (1, h) };
@@ -573,12 +561,12 @@ impl Simulation {
         let time = self.time();
         let halved = self.is_controlled();
         if let Some(step) = &mut self.last_step {
-            step.begin(&*self.scheme, end, halved);
+            step.begin(&*self.motion, end, halved);
         }
         match &mut self.walk {
             Walk::Halved { tolerance, allowance, longest_try, steps: Some((steps, _)) } => {
                 let allowed = allowance.of_step(*tolerance, h / self.end);
-                let estimate = match self.scheme.controlled_step(h, end, allowed) {
+                let estimate = match self.motion.controlled_step(h, end, allowed) {
                     Ok(estimate) => estimate,
                     Err(error @ StepError::NoErrorEstimate { .. }) => return Err(error),
                     // A step so long that it cannot even be tried.
@@ -600,7 +588,7 @@ impl Simulation {
                     Err(StepError::Tolerance { time, step: h, tolerance: *tolerance })
                 }
             }
-            _ => self.scheme.step(h, end).map(|()| true),
+            _ => self.motion.step(h, end).map(|()| true),
         }
     }
 }

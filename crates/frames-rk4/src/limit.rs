@@ -193,7 +193,7 @@ pub const LIMIT: Method = Method {
     begin: |setup| {
         let model = ModalModel::new(setup.body, setup.damping_ratios, setup.loads.to_vec())?;
         let scheme = PaperLimit::new(setup.body, model, setup.initial)?;
-        Ok(Beginning { scheme: Box::new(scheme), energy_of_loads: setup.energy_of_loads()? })
+        Ok(Beginning { motion: Box::new(scheme), energy_of_loads: setup.energy_of_loads()? })
     },
 };
 

@@ -230,7 +230,7 @@ pub const PAPER: Method = Method {
     begin: |setup| {
         let model = ModalModel::new(setup.body, setup.damping_ratios, setup.loads.to_vec())?;
         let scheme = PaperScheme::new(setup.body, model, setup.reference_points, setup.initial)?;
-        Ok(Beginning { scheme: Box::new(scheme), energy_of_loads: setup.energy_of_loads()? })
+        Ok(Beginning { motion: Box::new(scheme), energy_of_loads: setup.energy_of_loads()? })
     },
 };
 

@@ -6,7 +6,7 @@ use std::fmt;
 use dynamics::checkpoint::{CheckpointError, counts, decode, encode, finite};
 use dynamics::modal::ReducedBody;
 use dynamics::rigid_kin::BeyondFullTurn;
-use dynamics::{Energies, Initial, Moment, MotionState, Observation, PointShapes, Scheme, SetupError, StepError, Work};
+use dynamics::{Energies, Initial, Moment, Motion, MotionState, Observation, PointShapes, SetupError, StepError, Work};
 use serde::{Deserialize, Serialize};
 
 use crate::attitude_account::AttitudeAccount;
@@ -110,7 +110,7 @@ impl<S: FrameSteps> TravellingFrame<S> {
     }
 }
 
-impl<S: FrameSteps> Scheme for TravellingFrame<S> {
+impl<S: FrameSteps> Motion for TravellingFrame<S> {
     fn time(&self) -> f64 {
         self.body.state.time
     }
@@ -153,7 +153,7 @@ impl<S: FrameSteps> Scheme for TravellingFrame<S> {
         Ok(())
     }
 
-    fn copy_state(&mut self, from: &dyn Scheme) {
+    fn copy_state(&mut self, from: &dyn Motion) {
         let Some(from) = (from as &dyn Any).downcast_ref::<Self>() else { return };
         self.body.state.copy_from(&from.body.state);
         self.body.work = from.body.work;
@@ -214,7 +214,7 @@ impl<S: FrameSteps> Scheme for TravellingFrame<S> {
         Ok(())
     }
 
-    fn boxed_clone(&self) -> Box<dyn Scheme> {
+    fn boxed_clone(&self) -> Box<dyn Motion> {
         Box::new(self.clone())
     }
 }

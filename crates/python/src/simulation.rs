@@ -511,7 +511,7 @@ struct EndAtFault(Faults);
 impl dynamics::Observer for EndAtFault {
     fn step(&mut self, now: &mut dynamics::StepEnd<'_>) -> Result<(), StepError> {
         match self.0.any() {
-            true => Err(StepError::NotFinite { time: now.scheme().time(), what: "a law" }),
+            true => Err(StepError::NotFinite { time: now.motion().time(), what: "a law" }),
             false => Ok(()),
         }
     }

@@ -72,6 +72,11 @@ impl Attitude {
         }
     }
 
+    /// From what [`Self::wxyz`] gave, bit for bit and unchecked: numbers of another kind stay wrong.
+    pub fn from_wxyz_unchecked([w, x, y, z]: [f64; 4]) -> Self {
+        Self { body_to_global: UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z)) }
+    }
+
     /// From the matrix A of (18), which takes global to body components.
     ///
     /// # Errors

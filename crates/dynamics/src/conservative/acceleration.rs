@@ -69,7 +69,7 @@ impl ConservativeBody {
         } else if self.axes.is_empty() {
             Vector3::zeros()
         } else {
-            let mut right = get(&e.slow, part::PI) - self.inertia_rate(simd, e) * e.spin;
+            let mut right = get(e.rates.slow(), part::PI) - self.inertia_rate(simd, e) * e.spin;
             if self.manifold.is_some() {
                 for (i, s) in e.s.iter().enumerate() {
                     right[i] -= dot(s, &e.acceleration);
@@ -88,7 +88,7 @@ impl ConservativeBody {
     #[inline(always)]
     fn locked_spin_rate<S: Simd>(&self, simd: S, e: &Evaluation) -> Result<Vector3<f64>, RateError> {
         let of_momenta = Lists { first: self.lists() - self.g_count, ..self.s_lists(&e.products) };
-        let right = get(&e.slow, part::PI) - self.inertia_rate(simd, e) * e.spin
+        let right = get(e.rates.slow(), part::PI) - self.inertia_rate(simd, e) * e.spin
             + self.axis_products(simd, of_momenta, e.modal_velocity.groups())
             - self.s_products(simd, &e.products, e.acceleration.groups());
         self.solve_locked(e, &right)
@@ -143,7 +143,7 @@ impl ConservativeBody {
     ) {
         let speed = e.driven_speed;
         for (k, rate) in e.acceleration.iter_mut().enumerate() {
-            *rate = e.momentum[k] + self.linear_rate(k, e.q[k], e.p[k]);
+            *rate = e.rates.p()[k] + self.linear_rate(k, e.at.q()[k], e.at.p()[k]);
         }
         self.without_spin_rate(simd, acceleration, e);
         if self.turn_driven {

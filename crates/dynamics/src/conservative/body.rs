@@ -1,15 +1,18 @@
 //! A body with its loads, as the conservative form has it.
 
 use nalgebra::{Matrix3, Vector3};
+use rigid_kin::Attitude;
 
 use crate::body::center_of_mass::CenterOfMass;
 use crate::body::physics::Drive;
 use crate::conservative::manifold::Manifold;
+use crate::conservative::state::BodyList;
 use crate::load::SharedLoad;
 use crate::matrix::four::{Group, Padded};
 use crate::matrix::side_by_side::Lists;
 use crate::matrix::stack::Stack;
 use crate::observation::reaction::Held;
+use crate::state::{Layout, State};
 
 /// How the origin moves.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,6 +30,9 @@ pub(super) enum Translation {
 /// A body with its loads in the conservative form.
 #[derive(Debug, Clone)]
 pub struct ConservativeBody {
+    pub(super) layout: Layout,
+    /// Attitude at the beginning: displacements of points are counted from there.
+    pub(super) initial_attitude: Attitude,
     pub(super) mass: f64,
     pub(super) origin: Vector3<f64>,
     pub(super) center: CenterOfMass,
@@ -97,15 +103,21 @@ impl ConservativeBody {
         self.manifold.as_ref().map_or(self.flexible(), |manifold| manifold.body().flexible())
     }
 
+    /// Begins in this attitude.
+    #[must_use]
+    pub fn beginning_at(self, initial_attitude: Attitude) -> Self {
+        Self { initial_attitude, ..self }
+    }
+
+    /// The numbers of a state.
+    #[inline(always)]
+    pub(crate) fn list<'s>(&self, state: &'s State) -> BodyList<&'s [f64]> {
+        BodyList { values: &state.values, flexible: self.flexible() }
+    }
+
     /// The loads.
     pub fn loads(&self) -> &[SharedLoad] {
         &self.loads
-    }
-
-    /// Whether what acts on the body does the same at a time by the branches that hold at two branch times, whenever it is
-    /// asked.
-    pub(crate) fn acts_alike(&self, time: f64, branch_times: [f64; 2]) -> bool {
-        self.drive.is_none() && self.loads.iter().all(|load| load.is_same(time, branch_times))
     }
 
     /// Numbers in the matrices that an evaluation reads: what an effect that is off does not cost.

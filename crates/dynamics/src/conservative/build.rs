@@ -3,6 +3,7 @@
 use faer::Mat;
 use modal::ReducedBody;
 use nalgebra::{Matrix3, Vector3};
+use rigid_kin::Attitude;
 
 use crate::body::center_of_mass::CenterOfMass;
 use crate::body::effect::{Effect, EffectMap};
@@ -11,6 +12,7 @@ use crate::body::spin_stiffness::SpinStiffness;
 use crate::conservative::body::{ConservativeBody, Translation};
 use crate::conservative::coordinates::{InCoordinates, pair_weights};
 use crate::conservative::manifold::Manifold;
+use crate::conservative::state;
 use crate::error::SetupError;
 use crate::load::SharedLoad;
 use crate::matrix::column_major::columns;
@@ -82,6 +84,8 @@ impl ConservativeBody {
         let undeformed: Vec<Vec<f64>> = axes[..s_count].iter().map(of_axis).chain(of_pairs).collect();
         let rates = modes.circular_frequencies.iter().chain(&damping);
         Ok(Self {
+            layout: state::layout(&axes, modes.flexible()),
+            initial_attitude: Attitude::identity(),
             mass: body.mass,
             origin: body.origin,
             center: CenterOfMass::new(body),

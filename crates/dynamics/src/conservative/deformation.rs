@@ -17,19 +17,20 @@ impl ConservativeBody {
     #[inline(always)]
     pub(super) fn deform<S: Simd>(&self, simd: S, e: &mut Evaluation) {
         if let Some(manifold) = &self.manifold {
-            manifold.go(&e.q, &mut e.place, &mut e.coordinates);
+            manifold.go(e.at.q(), &mut e.place, &mut e.coordinates);
         }
         if !self.drive_stiffness.is_empty() {
-            multiply(&self.drive_stiffness, e.q.len(), &e.q, &mut e.drive_stress);
+            multiply(&self.drive_stiffness, self.flexible(), e.at.q(), &mut e.drive_stress);
         }
-        let Evaluation { products, coordinates, q, p, .. } = e;
+        let Evaluation { products, coordinates, at, .. } = e;
         if products.is_empty() {
             return;
         }
-        let z = if self.manifold.is_some() { coordinates.groups() } else { q.groups() };
+        let [q, p] = at.groups();
+        let z = if self.manifold.is_some() { coordinates.groups() } else { q };
         let width = self.lists();
         if self.locked {
-            let both = [z, p.groups()];
+            let both = [z, p];
             self.matrices.multiply_two(simd, both, &self.undeformed, products);
             if self.pairs.len() == 1 {
                 let ([s], [pair]) = locked_dots::<S, 1, 1, 2, 3>(simd, products, &self.undeformed, both);

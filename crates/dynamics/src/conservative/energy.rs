@@ -4,28 +4,29 @@ use nalgebra::Vector3;
 
 use crate::conservative::body::{ConservativeBody, Translation};
 use crate::conservative::evaluation::Evaluation;
-use crate::conservative::state::{ConservativeState, Slow, get, part};
+use crate::conservative::state::{get, part};
 use crate::matrix::column_major::{dot, weighted_squares};
 use crate::observation::energies::Energies;
+use crate::state::State;
 
 impl ConservativeBody {
     /// The energies of a motion whose rates are in `e`; none of a driven body, to which a jump of its drive gives energy
     /// at an instant.
-    pub(crate) fn energies_of(&self, time: f64, slow: &Slow, e: &Evaluation) -> Option<Energies> {
+    pub(super) fn energies_at(&self, time: f64, e: &Evaluation) -> Option<Energies> {
         if self.drive.is_some() {
             return None;
         }
-        let internal =
-            0.5 * (get(slow, part::PI).dot(&e.spin) + dot(&e.p, &e.modal_velocity)) + self.strain_energy(&e.q);
+        let (slow, q, p) = (e.at.slow(), e.at.q(), e.at.p());
+        let internal = 0.5 * (get(slow, part::PI).dot(&e.spin) + dot(p, &e.modal_velocity)) + self.strain_energy(q);
         let translation = 0.5 * get(slow, part::MOMENTUM).norm_squared() / self.mass;
         let (work, dissipation) = (slow[part::WORK], slow[part::DISSIPATION]);
         Some(Energies { time, internal, translation, work, dissipation })
     }
 
     /// Energy of rotation, vibration and strain of a state whose rates are in `e`: all but that of the origin's motion.
-    pub(crate) fn internal_energy(&self, state: &ConservativeState, e: &Evaluation) -> f64 {
+    pub(crate) fn internal_energy(&self, state: &State, e: &Evaluation) -> f64 {
         let (kinetic, strain) = self.energies(state, e);
-        kinetic + strain - 0.5 * get(&state.slow, part::MOMENTUM).norm_squared() / self.mass
+        kinetic + strain - 0.5 * get(self.list(state).slow(), part::MOMENTUM).norm_squared() / self.mass
     }
 
     /// ½ P²/m + ½ π·J0⁻¹π
@@ -40,21 +41,21 @@ impl ConservativeBody {
     }
 
     /// Energies of a state whose rates are in `e`: (kinetic, strain).
-    pub(super) fn energies(&self, state: &ConservativeState, e: &Evaluation) -> (f64, f64) {
-        let q = &state.modal_displacement;
+    pub(super) fn energies(&self, state: &State, e: &Evaluation) -> (f64, f64) {
+        let state = self.list(state);
         let moving = match (&self.drive, self.translation) {
             (Some(_), Translation::Driven(direction)) => {
-                e.driven_momentum * state.attitude.to_global(&direction).dot(&get(&e.slow, part::POSITION))
+                e.driven_momentum * state.attitude().to_global(&direction).dot(&get(e.rates.slow(), part::POSITION))
             }
             (Some(_), _) => e.driven_momentum * e.spin[0],
             (None, _) => {
-                get(&state.slow, part::MOMENTUM).norm_squared() / self.mass + get(&state.slow, part::PI).dot(&e.spin)
+                get(state.slow(), part::MOMENTUM).norm_squared() / self.mass + get(state.slow(), part::PI).dot(&e.spin)
             }
         };
         // What of the driven momentum is not in p.
         let stressed = e.driven_speed * dot(&e.drive_stress, &e.modal_velocity);
-        let kinetic = 0.5 * (moving + dot(&state.modal_momentum, &e.modal_velocity) - stressed);
-        (kinetic, self.strain_energy(q))
+        let kinetic = 0.5 * (moving + dot(state.p(), &e.modal_velocity) - stressed);
+        (kinetic, self.strain_energy(state.q()))
     }
 
     /// ½ qᵀΛq + V_n
@@ -65,10 +66,5 @@ impl ConservativeBody {
     /// Lowest ω_k; infinite without modes.
     pub(crate) fn lowest_frequency(&self) -> f64 {
         self.circular_frequencies.iter().copied().fold(f64::INFINITY, f64::min)
-    }
-
-    /// Largest of ω_k and 2 ζ_k ω_k.
-    pub(crate) fn fastest_rate(&self) -> f64 {
-        self.fastest_rate
     }
 }

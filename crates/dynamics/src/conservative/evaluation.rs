@@ -4,68 +4,64 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::conservative::body::ConservativeBody;
 use crate::conservative::manifold::{Manifold, ManifoldPoint};
-use crate::conservative::state::Slow;
+use crate::conservative::state::BodyList;
 use crate::matrix::four::{Group, Padded, WIDTH};
 
 /// Where the rates are asked for, the rates without the linear part of the modes, and what was found on the way to them.
 #[derive(Debug, Clone)]
-pub(crate) struct Evaluation {
-    /// q and p (nf).
-    pub q: Padded,
-    pub p: Padded,
-    pub slow: Slow,
-    /// q' − p = −S ω (nf).
-    pub displacement: Padded,
-    /// p' + Λq + D p (nf).
-    pub momentum: Padded,
+pub struct Evaluation {
+    /// The place: its attitude is that at the start of the step.
+    pub(crate) at: BodyList<Vec<f64>>,
+    /// The rates, of q' − p = −S ω and p' + Λq + D p in place of q' and p'.
+    pub(crate) rates: BodyList<Vec<f64>>,
     /// S_i, c_ij + N_ij z, and G_i ż or, of a locked body, G_i p: side by side.
-    pub products: Vec<Group>,
+    pub(crate) products: Vec<Group>,
     /// G_i ż of a locked body, side by side: for its accelerations only.
-    pub coupling_rate: Vec<Group>,
+    pub(crate) coupling_rate: Vec<Group>,
     /// q̇ (nf).
-    pub modal_velocity: Padded,
+    pub(crate) modal_velocity: Padded,
     /// On a manifold, z and ż: else they are q and q̇.
     pub(super) coordinates: Padded,
     pub(super) velocity: Padded,
     /// On a manifold, ξ, ν and ν' in the extended shapes, and forces there and on z.
-    pub in_shapes: [Vec<f64>; 3],
+    pub(crate) in_shapes: [Vec<f64>; 3],
     pub(super) force_in_shapes: Vec<f64>,
     pub(super) force: Padded,
     /// Momenta of the products in z.
-    pub momenta_of_products: Vec<f64>,
+    pub(crate) momenta_of_products: Vec<f64>,
     /// The place on the manifold. There, with the Cholesky factor M = L Lᵀ, are S and L⁻¹S (a list for each axis), and b of a
     /// driven translation.
-    pub place: ManifoldPoint,
-    pub s: Vec<Padded>,
-    pub forward_s: Vec<Padded>,
-    pub modal_sliding: Vec<f64>,
+    pub(crate) place: ManifoldPoint,
+    pub(crate) s: Vec<Padded>,
+    pub(crate) forward_s: Vec<Padded>,
+    pub(crate) modal_sliding: Vec<f64>,
     /// q̈ and what it is made of.
-    pub acceleration: Padded,
-    pub change: Padded,
+    pub(crate) acceleration: Padded,
+    pub(crate) change: Padded,
     /// What z̈ has without q̈, on a manifold.
-    pub curvature: Padded,
+    pub(crate) curvature: Padded,
     /// K q of the stiffness of what is driven (nf).
-    pub drive_stress: Vec<f64>,
+    pub(crate) drive_stress: Vec<f64>,
     /// Angular velocity, one component for each axis.
-    pub spin: Vector3<f64>,
-    pub omega_body: Vector3<f64>,
+    pub(crate) spin: Vector3<f64>,
+    pub(crate) omega_body: Vector3<f64>,
     /// Angular velocity or velocity of what is driven; zero without a drive.
-    pub driven_speed: f64,
+    pub(crate) driven_speed: f64,
     /// π of a driven turn or the P of a driven slide, along its axis.
-    pub driven_momentum: f64,
+    pub(crate) driven_momentum: f64,
     /// Torque or force of the drive.
-    pub drive_effort: f64,
+    pub(crate) drive_effort: f64,
     /// Resultants of the loads about the origin, body components.
-    pub load_force: Vector3<f64>,
-    pub load_moment: Vector3<f64>,
+    pub(crate) load_force: Vector3<f64>,
+    pub(crate) load_moment: Vector3<f64>,
     /// J − SᵀS.
-    pub locked_inertia: Matrix3<f64>,
+    pub(crate) locked_inertia: Matrix3<f64>,
     /// Sᵀp of a locked body.
     pub(super) s_by_momentum: Vector3<f64>,
 }
 
 impl ConservativeBody {
-    pub(crate) fn evaluation(&self) -> Evaluation {
+    pub(super) fn room(&self) -> Evaluation {
         let (modes, nf) = (self.flexible(), self.coordinates());
         let lists = Padded::zeros;
         let on_manifold = |n: usize| if self.manifold.is_some() { n } else { 0 };
@@ -79,11 +75,8 @@ impl ConservativeBody {
             products[..undeformed.len()].copy_from_slice(undeformed);
         }
         Evaluation {
-            q: lists(modes),
-            p: lists(modes),
-            slow: Slow::zeros(),
-            displacement: lists(modes),
-            momentum: lists(modes),
+            at: BodyList { values: self.layout.zeros(), flexible: modes },
+            rates: BodyList { values: vec![0.0; self.layout.len()], flexible: modes },
             products,
             coupling_rate: groups(if self.locked { self.g_count } else { 0 }, nf),
             modal_velocity: lists(modes),

@@ -38,7 +38,8 @@ impl ConservativeBody {
         if self.manifold.is_some() {
             combine(simd, lists, factors, e.force.groups_mut());
         } else {
-            add_combined(simd, lists, factors, e.momentum.groups_mut());
+            let [_, momentum] = e.rates.groups_mut();
+            add_combined(simd, lists, factors, momentum);
         }
     }
 
@@ -58,10 +59,12 @@ impl ConservativeBody {
     #[inline(always)]
     pub(super) fn project_forces(&self, speed: f64, e: &mut Evaluation) {
         let Some(manifold) = &self.manifold else { return };
-        manifold.add_projection(&e.place, &e.force, &mut e.momentum);
+        let [_, momentum] = e.rates.modes_mut();
+        manifold.add_projection(&e.place, &e.force, momentum);
         self.find_momenta_of_products(speed, e);
-        manifold.add_projected_rate(&e.place, &e.momenta_of_products, &mut e.momentum);
-        manifold.subtract_force(&e.place, &e.coordinates, &mut e.momentum);
+        let [_, momentum] = e.rates.modes_mut();
+        manifold.add_projected_rate(&e.place, &e.momenta_of_products, momentum);
+        manifold.subtract_force(&e.place, &e.coordinates, momentum);
     }
 
     /// μ of the products.

@@ -3,9 +3,9 @@
 use nalgebra::{Matrix3, Vector3};
 
 use crate::conservative::body::{ConservativeBody, Translation, along};
+use crate::equations::error_norm::Sizes;
 use crate::history::History;
 use crate::load::{Applied, Coordinates, Kinematics, Load, SharedLoad};
-use crate::scheme::error_size::Sizes;
 use crate::vibration::own_coupling::{LoadCoupling, largest_alike};
 
 impl ConservativeBody {
@@ -15,7 +15,7 @@ impl ConservativeBody {
     /// * Energy: by their impulse within the longest period that of the rigid body, by their largest force that of the modes.
     /// * Displacement: of each mode what its largest force holds, or its impulse throws, whichever is less.
     /// * Acceleration: that of the largest force.
-    pub(crate) fn sizes_of_loads(&self, end: f64) -> Sizes {
+    pub(super) fn largest_by_loads(&self, end: f64) -> Sizes {
         let lowest = self.circular_frequencies.iter().copied().reduce(f64::min);
         let period = lowest.map_or(end, |omega| (std::f64::consts::TAU / omega).min(end));
         let mut sizes = Sizes { energy: self.energy_of_drive(end), ..Sizes::default() };

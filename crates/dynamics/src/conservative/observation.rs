@@ -2,16 +2,16 @@
 
 use nalgebra::Vector3;
 use pulp::{Arch, Simd, WithSimd};
-use rigid_kin::Attitude;
 
 use crate::body::shapes::PointShapes;
 use crate::conservative::body::{ConservativeBody, Translation};
 use crate::conservative::evaluation::Evaluation;
-use crate::conservative::state::{ConservativeState, get, part};
+use crate::conservative::state::{get, part};
 use crate::error::RateError;
 use crate::observation::reaction::HeldMotion;
 use crate::observation::work::Work;
 use crate::observation::{Observation, PointMotion};
+use crate::state::State;
 
 /// The rates of a motion made accelerations, in the widest vectors that the processor has.
 struct Accelerate<'a> {
@@ -31,10 +31,9 @@ impl WithSimd for Accelerate<'_> {
 
 impl ConservativeBody {
     /// Reads the motion off a state whose rates are in `e`, and leaves these as they are.
-    pub(crate) fn observe(
+    pub(super) fn read_motion(
         &self,
-        state: &ConservativeState,
-        initial_attitude: &Attitude,
+        state: &State,
         points: &[PointShapes],
         e: &mut Evaluation,
         out: &mut Observation,
@@ -43,21 +42,23 @@ impl ConservativeBody {
         let driven_acceleration =
             self.drive.as_ref().map_or(0.0, |drive| drive.acceleration_at(state.time, state.time));
         for (k, rate) in e.acceleration.iter_mut().enumerate() {
-            *rate = e.momentum[k] + self.linear_rate(k, e.q[k], e.p[k]);
+            *rate = e.rates.p()[k] + self.linear_rate(k, e.at.q()[k], e.at.p()[k]);
         }
         let spin_rate = Arch::new().dispatch(Accelerate { body: self, driven_acceleration, e })?;
         out.modal_acceleration.copy_from_slice(&e.acceleration);
         let alpha = self.axis_columns * spin_rate;
         let omega = e.omega_body;
 
-        let global = |v_body: Vector3<f64>| state.attitude.to_global(&v_body);
-        let velocity_of_origin = get(&e.slow, part::POSITION);
+        let list = self.list(state);
+        let (time, attitude) = (state.time, list.attitude());
+        let global = |v_body: Vector3<f64>| attitude.to_global(&v_body);
+        let velocity_of_origin = get(e.rates.slow(), part::POSITION);
         let acceleration_of_origin = match self.translation {
             Translation::None => Vector3::zeros(),
-            Translation::Free | Translation::Along(_) => get(&e.slow, part::MOMENTUM) / self.mass,
+            Translation::Free | Translation::Along(_) => get(e.rates.slow(), part::MOMENTUM) / self.mass,
             Translation::Driven(direction) => global(direction) * driven_acceleration,
         };
-        let position = get(&state.slow, part::POSITION);
+        let position = get(list.slow(), part::POSITION);
         self.extend_acceleration(e);
         self.find_in_shapes(e);
         if let Some(manifold) = &self.manifold {
@@ -66,27 +67,27 @@ impl ConservativeBody {
         let e = &*e;
         let shapes = match &self.manifold {
             Some(_) => e.in_shapes.each_ref().map(Vec::as_slice),
-            None => [&*e.q, &*e.modal_velocity, &*e.change],
+            None => [e.at.q(), &*e.modal_velocity, &*e.change],
         };
         let center = self.center.position_body(shapes[0]);
-        out.time = state.time;
-        out.attitude = state.attitude;
+        out.time = time;
+        out.attitude = attitude;
         out.origin_global = position;
         out.origin_acceleration_global = acceleration_of_origin;
         out.position_global = position + global(center);
         out.velocity_global = velocity_of_origin + global(omega.cross(&center) + self.center.deformation(shapes[1]));
         out.omega_body = omega;
         out.alpha_body = alpha;
-        out.modal_displacement.copy_from_slice(&e.q);
+        out.modal_displacement.copy_from_slice(e.at.q());
         out.modal_velocity.copy_from_slice(&e.modal_velocity);
         out.kinetic_energy = kinetic;
         out.strain_energy = strain;
         self.observe_momenta(state, e, out);
         let moved = position - self.origin;
-        let acceleration_body = state.attitude.to_body(&acceleration_of_origin);
+        let acceleration_body = attitude.to_body(&acceleration_of_origin);
         self.observe_reaction(state, shapes, [&alpha, &acceleration_body], e, out);
-        let to_global = state.attitude.global_to_body().transpose();
-        let to_initial = initial_attitude.global_to_body().transpose();
+        let to_global = attitude.global_to_body().transpose();
+        let to_initial = self.initial_attitude.global_to_body().transpose();
         out.points.clear();
         out.points.extend(points.iter().map(|point| {
             let x = point.position_body();
@@ -110,13 +111,14 @@ impl ConservativeBody {
     /// of the origin, are body components.
     fn observe_reaction(
         &self,
-        state: &ConservativeState,
+        state: &State,
         shapes: [&[f64]; 3],
         [alpha, acceleration_of_origin]: [&Vector3<f64>; 2],
         e: &Evaluation,
         out: &mut Observation,
     ) {
         let Some(held) = &self.held else { return };
+        let state = self.list(state);
         let [displacement, velocity, shape_acceleration] = shapes;
         let (omega, center) = (e.omega_body, self.center.position_body(displacement));
         let [center_rate, center_change] = [velocity, shape_acceleration].map(|of| self.center.deformation(of));
@@ -134,7 +136,7 @@ impl ConservativeBody {
             displacement,
             velocity,
             shape_acceleration,
-            modal_displacement: &state.modal_displacement,
+            modal_displacement: state.q(),
             modal_velocity: &e.modal_velocity,
         });
         let reaction = &mut out.reaction;
@@ -152,36 +154,38 @@ impl ConservativeBody {
             reaction.drive_power = e.drive_effort * e.driven_speed;
         }
         if self.axes.len() == 1 {
-            reaction.turned = state.turned;
+            reaction.turned = state.hinge_angle();
             reaction.turning = e.spin[0];
         }
         if let Translation::Along(direction) | Translation::Driven(direction) = self.translation {
-            let direction = state.attitude.to_global(&direction);
-            reaction.slid = direction.dot(&(get(&state.slow, part::POSITION) - self.origin));
-            reaction.sliding = direction.dot(&get(&e.slow, part::POSITION));
+            let direction = state.attitude().to_global(&direction);
+            reaction.slid = direction.dot(&(get(state.slow(), part::POSITION) - self.origin));
+            reaction.sliding = direction.dot(&get(e.rates.slow(), part::POSITION));
         }
     }
 
     /// Momenta and what has been done to them. What holds or drives a body gives it whatever its momenta need, so there
     /// only the motions that it has left are balanced.
-    fn observe_momenta(&self, state: &ConservativeState, e: &Evaluation, out: &mut Observation) {
+    fn observe_momenta(&self, state: &State, e: &Evaluation, out: &mut Observation) {
         let along_axes = |components: Vector3<f64>| -> Vector3<f64> {
             self.axes.iter().zip(components.iter()).map(|(axis, c)| axis * *c).sum()
         };
+        let list = self.list(state);
+        let slow = list.slow();
         out.work = Work {
-            work: state.slow[part::WORK],
-            dissipation: state.slow[part::DISSIPATION],
-            impulse_global: get(&state.slow, part::IMPULSE),
-            angular_impulse_global: get(&state.slow, part::ANGULAR_IMPULSE),
+            work: slow[part::WORK],
+            dissipation: slow[part::DISSIPATION],
+            impulse_global: get(slow, part::IMPULSE),
+            angular_impulse_global: get(slow, part::ANGULAR_IMPULSE),
         };
         if self.turn_driven {
             out.angular_momentum_global = along_axes(Vector3::new(e.driven_momentum, 0.0, 0.0));
             out.work.angular_impulse_global = out.angular_momentum_global;
         } else {
-            out.angular_momentum_global = state.attitude.to_global(&along_axes(get(&state.slow, part::PI)));
+            out.angular_momentum_global = list.attitude().to_global(&along_axes(get(slow, part::PI)));
         }
         match self.translation {
-            Translation::Free => out.linear_momentum_global = get(&state.slow, part::MOMENTUM),
+            Translation::Free => out.linear_momentum_global = get(slow, part::MOMENTUM),
             _ => {
                 out.linear_momentum_global = out.velocity_global * self.mass;
                 out.work.impulse_global = out.linear_momentum_global;

@@ -6,34 +6,17 @@ use rigid_kin::{f_inverse, transformation_matrix};
 
 use crate::conservative::body::{ConservativeBody, Translation, along};
 use crate::conservative::evaluation::Evaluation;
-use crate::conservative::state::{ConservativeState, Slow, get, part, set};
-use crate::error::{RateError, StepError};
+use crate::conservative::state::{Slow, get, part, set};
+use crate::error::RateError;
 use crate::load::{Applied, Coordinates, Kinematics};
 use crate::matrix::column_major::dot;
-
-/// Rates of a [`ConservativeState`].
-#[derive(Debug, Clone, PartialEq)]
-pub struct ConservativeRates {
-    /// Angular velocity of the body frame, body components: the attitude turns with it.
-    pub omega_body: Vector3<f64>,
-    /// Rate of the position of the origin, global components.
-    pub velocity_global: Vector3<f64>,
-    /// Rate of the linear momentum, global components.
-    pub force_global: Vector3<f64>,
-    /// Rate of the angular momentum π, one component for each axis that the body turns about.
-    pub moment_body: Vector3<f64>,
-    /// q̇ (nf).
-    pub modal_velocity: Vec<f64>,
-    /// p' (nf).
-    pub modal_force: Vec<f64>,
-}
+use crate::state::State;
 
 /// The rates of a state, in the widest vectors that the processor has.
 struct Rates<'a> {
     body: &'a ConservativeBody,
     times: [f64; 2],
     first_attitude: &'a Matrix3<f64>,
-    slow: &'a Slow,
     e: &'a mut Evaluation,
 }
 
@@ -42,52 +25,27 @@ impl WithSimd for Rates<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
-        let Self { body, times, first_attitude, slow, e } = self;
-        body.find_rates(simd, times, first_attitude, slow, e)
+        let Self { body, times, first_attitude, e } = self;
+        body.find_rates(simd, times, first_attitude, e)
     }
 }
 
 impl ConservativeBody {
-    /// Rates of a state, for an integrator of one's own. Laws with branches are taken as they are at `branch_time`.
-    ///
-    /// # Errors
-    /// [`StepError`] where the inertia of the deformed body is singular.
-    pub fn rates(&self, state: &ConservativeState, branch_time: f64) -> Result<ConservativeRates, StepError> {
-        let mut e = self.evaluation();
-        self.evaluate_at(state, branch_time, &mut e).map_err(|error| error.in_step(state.time, 0.0))?;
-        self.add_linear(&mut e);
-        Ok(ConservativeRates {
-            omega_body: e.omega_body,
-            velocity_global: get(&e.slow, part::POSITION),
-            force_global: get(&e.slow, part::MOMENTUM),
-            moment_body: get(&e.slow, part::PI),
-            modal_velocity: e.displacement.to_vec(),
-            modal_force: e.momentum.to_vec(),
-        })
-    }
-
-    /// All rates at time `t` and the q and p of `e`, with the rotation vector counted from the attitude of which this is the
-    /// transformation matrix. Loads and drives follow the branches of their histories that hold at `branch_time`.
+    /// All rates, without the linear part of the modes, at the place of `e` and the time and branch time `times`; the
+    /// attitude at the start of the step has this transformation matrix.
     pub(crate) fn evaluate(
         &self,
         times: [f64; 2],
         first_attitude: &Matrix3<f64>,
-        slow: &Slow,
         e: &mut Evaluation,
     ) -> Result<(), RateError> {
-        Arch::new().dispatch(Rates { body: self, times, first_attitude, slow, e })
+        Arch::new().dispatch(Rates { body: self, times, first_attitude, e })
     }
 
-    /// All rates of a state.
-    pub(crate) fn evaluate_at(
-        &self,
-        state: &ConservativeState,
-        branch_time: f64,
-        e: &mut Evaluation,
-    ) -> Result<(), RateError> {
-        e.q.copy_from_slice(&state.modal_displacement);
-        e.p.copy_from_slice(&state.modal_momentum);
-        self.evaluate([state.time, branch_time], &state.attitude.global_to_body(), &state.slow, e)
+    /// The same at a state.
+    pub(crate) fn evaluate_at(&self, state: &State, branch_time: f64, e: &mut Evaluation) -> Result<(), RateError> {
+        e.at.values.copy_from_slice(&state.values);
+        self.evaluate([state.time, branch_time], &self.list(state).attitude().global_to_body(), e)
     }
 
     #[inline(always)]
@@ -96,9 +54,9 @@ impl ConservativeBody {
         simd: S,
         [t, branch_time]: [f64; 2],
         first_attitude: &Matrix3<f64>,
-        slow: &Slow,
         e: &mut Evaluation,
     ) -> Result<(), RateError> {
+        let slow = &{ *e.at.slow() };
         self.deform(simd, e);
         let (mut speed, mut driven_acceleration) = (0.0, 0.0);
         if let Some(drive) = &self.drive {
@@ -118,7 +76,8 @@ impl ConservativeBody {
             } else if self.locked {
                 right -= e.s_by_momentum;
             } else {
-                right -= self.s_products(simd, &e.products, e.p.groups());
+                let [_, p] = e.at.groups();
+                right -= self.s_products(simd, &e.products, p);
             }
             e.spin = self.solve_locked(e, &right)?;
         }
@@ -145,9 +104,10 @@ impl ConservativeBody {
                 if turning { transformation_matrix(&theta) * first_attitude } else { *first_attitude };
             self.find_in_shapes(e);
             let omega_body = e.omega_body;
-            let Evaluation { q, modal_velocity, in_shapes: [xi, nu, _], force_in_shapes, momentum, .. } = &mut *e;
+            let Evaluation { at, rates, modal_velocity, in_shapes: [xi, nu, _], force_in_shapes, .. } = &mut *e;
+            let (q, [_, momentum]) = (at.q(), rates.modes_mut());
             let (coordinates, mut applied);
-            let (first, on_manifold) = (6, Some([&**q, &**modal_velocity]));
+            let (first, on_manifold) = (6, Some([q, &**modal_velocity]));
             if self.manifold.is_some() {
                 force_in_shapes.fill(0.0);
                 coordinates = Coordinates { first, displacement: xi, velocity: nu, on_manifold };
@@ -181,7 +141,8 @@ impl ConservativeBody {
             }
         }
         self.project_forces(speed, e);
-        e.momentum.iter_mut().zip(&e.drive_stress).for_each(|(rate, k_q)| *rate += driven_acceleration * k_q);
+        let [_, momentum] = e.rates.modes_mut();
+        momentum.iter_mut().zip(&e.drive_stress).for_each(|(rate, k_q)| *rate += driven_acceleration * k_q);
         let force_rate = match self.translation {
             Translation::Free => force,
             Translation::Along(direction) => along(&first_attitude.tr_mul(&direction), &force),
@@ -193,22 +154,26 @@ impl ConservativeBody {
             power += e.drive_effort * speed;
             pi_rate = Vector3::zeros();
         }
-        set(&mut e.slow, part::THETA, &theta_rate);
-        set(&mut e.slow, part::POSITION, &velocity);
-        set(&mut e.slow, part::MOMENTUM, &force_rate);
-        set(&mut e.slow, part::PI, &pi_rate);
-        e.slow[part::WORK] = power;
-        e.slow[part::DISSIPATION] = dissipation;
-        set(&mut e.slow, part::ANGULAR_IMPULSE, &angular_impulse);
-        set(&mut e.slow, part::IMPULSE, &force_rate);
+        let mut rates: Slow = [0.0; 20];
+        set(&mut rates, part::THETA, &theta_rate);
+        set(&mut rates, part::POSITION, &velocity);
+        set(&mut rates, part::MOMENTUM, &force_rate);
+        set(&mut rates, part::PI, &pi_rate);
+        rates[part::WORK] = power;
+        rates[part::DISSIPATION] = dissipation;
+        set(&mut rates, part::ANGULAR_IMPULSE, &angular_impulse);
+        set(&mut rates, part::IMPULSE, &force_rate);
+        e.rates.set_slow(&rates);
         Ok(())
     }
 
     /// Adds the linear part of the modes to an evaluation: q' += p, p' −= Λq + Dp.
-    pub(crate) fn add_linear(&self, e: &mut Evaluation) {
-        for k in 0..e.q.len() {
-            e.displacement[k] += e.p[k];
-            e.momentum[k] += self.linear_rate(k, e.q[k], e.p[k]);
+    pub(super) fn add_oscillators(&self, e: &mut Evaluation) {
+        let Evaluation { at, rates, .. } = e;
+        let ([q_rate, p_rate], q, p) = (rates.modes_mut(), at.q(), at.p());
+        for k in 0..q.len() {
+            q_rate[k] += p[k];
+            p_rate[k] += self.linear_rate(k, q[k], p[k]);
         }
     }
 

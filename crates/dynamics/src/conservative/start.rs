@@ -6,10 +6,11 @@ use crate::body::initial::Initial;
 use crate::body::motion_state::MotionState;
 use crate::conservative::body::{ConservativeBody, Translation, along};
 use crate::conservative::evaluation::Evaluation;
-use crate::conservative::state::{ConservativeState, Slow, get, part, set};
+use crate::conservative::state::{BodyList, Slow, get, part, set};
 use crate::error::{RateError, SetupError};
 use crate::matrix::four::Padded;
 use crate::matrix::side_by_side::combine;
+use crate::state::State;
 
 impl ConservativeBody {
     /// The state at the beginning: π = J ω + Sᵀ q̇, p = q̇ + S ω. Parts of the velocities that the body has not got are
@@ -17,10 +18,11 @@ impl ConservativeBody {
     ///
     /// # Errors
     /// [`SetupError`] for lists of the wrong length and numbers that are not finite.
-    pub fn start(&self, initial: &Initial) -> Result<ConservativeState, SetupError> {
+    pub fn start(&self, initial: &Initial) -> Result<State, SetupError> {
         initial.check(self.flexible())?;
-        let mut e = self.evaluation();
-        e.q.copy_from_slice(&initial.modal_displacement);
+        let mut e = self.room();
+        let [q, _] = e.at.modes_mut();
+        q.copy_from_slice(&initial.modal_displacement);
         let scalar = pulp::Scalar::new();
         self.deform(scalar, &mut e);
         let speed = self.drive.as_ref().map_or(0.0, |drive| drive.speed_at(0.0, 0.0));
@@ -54,7 +56,7 @@ impl ConservativeBody {
             None => mu,
         };
         let pi = Vector3::from_fn(|k, _| if k < self.axes.len() { pi[k] } else { 0.0 });
-        let mut slow = Slow::zeros();
+        let mut slow: Slow = [0.0; 20];
         set(&mut slow, part::POSITION, &self.origin);
         let velocity = match self.translation {
             Translation::Free => initial.velocity,
@@ -63,33 +65,31 @@ impl ConservativeBody {
         };
         set(&mut slow, part::MOMENTUM, &(velocity * self.mass));
         set(&mut slow, part::PI, &pi);
-        Ok(ConservativeState {
-            time: 0.0,
-            attitude: initial.attitude,
-            slow,
-            turned: 0.0,
-            modal_displacement: initial.modal_displacement.clone(),
-            modal_momentum: momentum,
-        })
+        let mut list = BodyList { values: self.layout.zeros(), flexible: self.flexible() };
+        list.set_attitude(initial.attitude);
+        list.set_slow(&slow);
+        list.set_modes(&initial.modal_displacement, &momentum);
+        Ok(State { time: 0.0, values: list.values })
     }
 
     /// A state in quantities that every formulation has.
-    pub(crate) fn motion_state(&self, state: &ConservativeState) -> Result<MotionState, RateError> {
-        let mut e = self.evaluation();
+    pub(super) fn motion_of(&self, state: &State) -> Result<MotionState, RateError> {
+        let mut e = self.room();
         self.evaluate_at(state, state.time, &mut e)?;
+        let list = self.list(state);
         Ok(MotionState {
             time: state.time,
-            attitude: state.attitude,
-            origin_global: state.origin_global(),
-            velocity_global: get(&e.slow, part::POSITION),
+            attitude: list.attitude(),
+            origin_global: get(list.slow(), part::POSITION),
+            velocity_global: get(e.rates.slow(), part::POSITION),
             omega_body: e.omega_body,
-            modal_displacement: state.modal_displacement.clone(),
+            modal_displacement: list.q().to_vec(),
             modal_velocity: e.modal_velocity.to_vec(),
         })
     }
 
     /// The momenta of a motion. Work and impulses are counted from it anew.
-    pub(crate) fn state_of(&self, motion: &MotionState) -> Result<ConservativeState, SetupError> {
+    pub(super) fn state_from(&self, motion: &MotionState) -> Result<State, SetupError> {
         motion.check(self.flexible())?;
         let initial = Initial {
             attitude: motion.attitude,
@@ -100,7 +100,10 @@ impl ConservativeBody {
         };
         let mut state = self.start(&initial)?;
         state.time = motion.time;
-        state.set_origin_global(&motion.origin_global);
+        let mut list = BodyList { values: &mut state.values[..], flexible: self.flexible() };
+        let mut slow = *list.slow();
+        set(&mut slow, part::POSITION, &motion.origin_global);
+        list.set_slow(&slow);
         Ok(state)
     }
 
@@ -114,24 +117,27 @@ impl ConservativeBody {
 
     /// Takes a state past a jump of the speed of the drive at its time. The drive does its impulse times the mean of the
     /// speeds.
-    pub(crate) fn pass_jump(&self, state: &mut ConservativeState, e: &mut Evaluation) -> Result<(), RateError> {
+    pub(super) fn pass_jump(&self, state: &mut State, e: &mut Evaluation) -> Result<(), RateError> {
         if self.drive.is_none() {
             return Ok(());
         }
         // The corner itself is where it is but for rounding.
         let aside = 1e-12 * state.time.abs();
-        let on_side =
-            |state: &ConservativeState, branch_time: f64, e: &mut Evaluation| -> Result<[f64; 2], RateError> {
-                self.evaluate_at(state, branch_time, e)?;
-                Ok([e.driven_speed, e.driven_momentum])
-            };
+        let on_side = |state: &State, branch_time: f64, e: &mut Evaluation| -> Result<[f64; 2], RateError> {
+            self.evaluate_at(state, branch_time, e)?;
+            Ok([e.driven_speed, e.driven_momentum])
+        };
         let [after, _] = on_side(state, state.time + aside, e)?;
         let [before, held] = on_side(state, state.time - aside, e)?;
         let jump = after - before;
-        let push = state.modal_momentum.iter_mut().zip(&e.drive_stress);
-        push.for_each(|(p, k_q)| *p += jump * k_q);
+        let mut list = BodyList { values: &mut state.values[..], flexible: self.flexible() };
+        let [_, p] = list.modes_mut();
+        p.iter_mut().zip(&e.drive_stress).for_each(|(p, k_q)| *p += jump * k_q);
         let [_, given] = on_side(state, state.time + aside, e)?;
-        state.slow[part::WORK] += 0.5 * (before + after) * (given - held);
+        let mut list = BodyList { values: &mut state.values[..], flexible: self.flexible() };
+        let mut slow = *list.slow();
+        slow[part::WORK] += 0.5 * (before + after) * (given - held);
+        list.set_slow(&slow);
         Ok(())
     }
 }

@@ -1,12 +1,13 @@
-//! The state of the conservative form.
+//! The numbers of a body in the conservative form, in a list of a state, of a place or of rates.
 
-use nalgebra::{SVector, Vector3};
+use nalgebra::Vector3;
 use rigid_kin::Attitude;
 
-use crate::error::SetupError;
+use crate::matrix::four::{Group, WIDTH};
+use crate::state::{Layout, Rotation, attitude_at};
 
-/// What moves slowly, beside the modes: see [`part`].
-pub(crate) type Slow = SVector<f64, 20>;
+/// Numbers beside the attitude and the modes: see [`part`].
+pub(crate) type Slow = [f64; 20];
 
 /// First entries of the parts of [`Slow`].
 pub(crate) mod part {
@@ -14,9 +15,10 @@ pub(crate) mod part {
     pub const THETA: usize = 0;
     /// Position of the origin, global.
     pub const POSITION: usize = 3;
-    /// Linear momentum P of the motion of the origin, global.
+    /// Linear momentum P of the motion of the origin, global: of a free body, that of the body.
     pub const MOMENTUM: usize = 6;
-    /// Angular momentum π about the origin, one component for each axis of rotation.
+    /// Angular momentum π about the origin, one component for each axis of rotation: the three body axes, or the axis of a
+    /// hinge first.
     pub const PI: usize = 9;
     /// Work of the loads, and of what drives the body.
     pub const WORK: usize = 12;
@@ -29,85 +31,116 @@ pub(crate) mod part {
 }
 
 pub(crate) fn get(slow: &Slow, first: usize) -> Vector3<f64> {
-    slow.fixed_rows::<3>(first).into()
+    Vector3::new(slow[first], slow[first + 1], slow[first + 2])
 }
 
 pub(crate) fn set(slow: &mut Slow, first: usize, value: &Vector3<f64>) {
-    slow.fixed_rows_mut::<3>(first).copy_from(value);
+    slow[first..first + 3].copy_from_slice(value.as_slice());
 }
 
-/// State at a time.
-#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct ConservativeState {
-    /// Time.
-    pub time: f64,
+const ATTITUDE: usize = 0;
+const ANGLE: usize = WIDTH;
+const SLOW: usize = 2 * WIDTH;
+const MODES: usize = SLOW + 20;
+
+/// The layout of a body with these axes of rotation.
+pub(super) fn layout(axes: &[Vector3<f64>], flexible: usize) -> Layout {
+    let mut layout = Layout::default();
+    let attitude = layout.add("the attitude", 4);
+    let angle = layout.add("the hinge angle", 1);
+    let slow = layout.add("a momentum, the position or the work", 20);
+    let q = layout.add("a modal coordinate", flexible);
+    layout.add("a modal coordinate", flexible);
+    debug_assert_eq!([attitude, angle, slow, q], [ATTITUDE, ANGLE, SLOW, MODES]);
+    let angle = match axes {
+        [axis] => Some((angle, *axis)),
+        _ => None,
+    };
+    layout.rotate(Rotation { attitude, vector: slow + part::THETA, angle });
+    layout
+}
+
+/// First places of q and p.
+pub(super) fn first_modes(flexible: usize) -> [usize; 2] {
+    [MODES, MODES + flexible.next_multiple_of(WIDTH)]
+}
+
+/// The list of a body: [w, x, y, z] of the attitude, the hinge angle, [`Slow`], q and p.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct BodyList<V> {
+    pub values: V,
+    pub flexible: usize,
+}
+
+impl<V: AsRef<[f64]>> BodyList<V> {
     /// Attitude of the body frame.
-    pub attitude: Attitude,
-    pub(crate) slow: Slow,
+    pub fn attitude(&self) -> Attitude {
+        attitude_at(self.values.as_ref(), ATTITUDE)
+    }
+
     /// Angle about the axis of a hinge since the beginning, rad.
-    pub(crate) turned: f64,
+    pub fn hinge_angle(&self) -> f64 {
+        self.values.as_ref()[ANGLE]
+    }
+
+    #[inline(always)]
+    pub fn slow(&self) -> &Slow {
+        // The length of the list is that of its layout.
+        self.values.as_ref()[SLOW..].first_chunk().unwrap_or(&[0.0; 20])
+    }
+
     /// Modal displacements q (nf).
-    pub modal_displacement: Vec<f64>,
-    /// Modal momenta p = q̇ + S ω (nf).
-    pub modal_momentum: Vec<f64>,
+    #[inline(always)]
+    pub fn q(&self) -> &[f64] {
+        &self.values.as_ref()[MODES..MODES + self.flexible]
+    }
+
+    /// Modal momenta p (nf).
+    #[inline(always)]
+    pub fn p(&self) -> &[f64] {
+        let first = MODES + self.flexible.next_multiple_of(WIDTH);
+        &self.values.as_ref()[first..first + self.flexible]
+    }
+
+    /// q and p in groups.
+    #[inline(always)]
+    pub fn groups(&self) -> [&[Group]; 2] {
+        let (groups, _) = self.values.as_ref()[MODES..].as_chunks();
+        let (q, p) = groups.split_at(self.flexible.div_ceil(WIDTH));
+        [q, p]
+    }
 }
 
-impl ConservativeState {
-    /// Takes over another state of the same body, without allocating.
-    pub(crate) fn copy_from(&mut self, other: &Self) {
-        self.time = other.time;
-        self.attitude = other.attitude;
-        self.slow = other.slow;
-        self.turned = other.turned;
-        self.modal_displacement.copy_from_slice(&other.modal_displacement);
-        self.modal_momentum.copy_from_slice(&other.modal_momentum);
+impl<V: AsMut<[f64]>> BodyList<V> {
+    pub fn set_attitude(&mut self, attitude: Attitude) {
+        self.values.as_mut()[ATTITUDE..ATTITUDE + 4].copy_from_slice(&attitude.wxyz());
     }
 
-    /// Position of the body's origin, global components.
-    pub fn origin_global(&self) -> Vector3<f64> {
-        get(&self.slow, part::POSITION)
+    /// Changes the numbers beside the attitude and the modes.
+    #[inline(always)]
+    pub fn set_slow(&mut self, slow: &Slow) {
+        self.values.as_mut()[SLOW..MODES].copy_from_slice(slow);
     }
 
-    /// Linear momentum of the motion of the origin, global components: of a free body, that of the body.
-    pub fn linear_momentum_global(&self) -> Vector3<f64> {
-        get(&self.slow, part::MOMENTUM)
+    /// q and p (nf).
+    pub fn set_modes(&mut self, q: &[f64], p: &[f64]) {
+        let [own_q, own_p] = self.modes_mut();
+        own_q.copy_from_slice(q);
+        own_p.copy_from_slice(p);
     }
 
-    /// Angular momentum π about the origin, one component for each axis that the body turns about: the three body axes,
-    /// or the axis of a hinge first.
-    pub fn angular_momentum_body(&self) -> Vector3<f64> {
-        get(&self.slow, part::PI)
+    /// q and p (nf).
+    #[inline(always)]
+    pub fn modes_mut(&mut self) -> [&mut [f64]; 2] {
+        let (q, p) = self.values.as_mut()[MODES..].split_at_mut(self.flexible.next_multiple_of(WIDTH));
+        [&mut q[..self.flexible], &mut p[..self.flexible]]
     }
 
-    /// Puts the origin to another place, global components.
-    pub fn set_origin_global(&mut self, origin: &Vector3<f64>) {
-        set(&mut self.slow, part::POSITION, origin);
-    }
-
-    /// Gives it another linear momentum, global components.
-    pub fn set_linear_momentum_global(&mut self, momentum: &Vector3<f64>) {
-        set(&mut self.slow, part::MOMENTUM, momentum);
-    }
-
-    /// Gives it another angular momentum, in the axes of [`Self::angular_momentum_body`].
-    pub fn set_angular_momentum_body(&mut self, momentum: &Vector3<f64>) {
-        set(&mut self.slow, part::PI, momentum);
-    }
-
-    /// Refuses lists of the wrong length and numbers that are not finite.
-    pub(crate) fn check(&self, flexible: usize) -> Result<(), SetupError> {
-        for (what, list) in [
-            ("the list of modal displacements", &self.modal_displacement),
-            ("the list of modal momenta", &self.modal_momentum),
-        ] {
-            if list.len() != flexible {
-                return Err(SetupError::Length { what, expected: flexible, found: list.len() });
-            }
-        }
-        let numbers = [&self.time, &self.turned].into_iter().chain(&self.slow).chain(&self.modal_displacement);
-        match numbers.chain(&self.modal_momentum).copied().find(|x| !x.is_finite()) {
-            Some(found) => Err(SetupError::Value { what: "a value of the state", found, expected: "a finite number" }),
-            None => Ok(()),
-        }
+    /// q and p in groups. What is written after the end has to be zero.
+    #[inline(always)]
+    pub fn groups_mut(&mut self) -> [&mut [Group]; 2] {
+        let (groups, _) = self.values.as_mut()[MODES..].as_chunks_mut();
+        let (q, p) = groups.split_at_mut(self.flexible.div_ceil(WIDTH));
+        [q, p]
     }
 }

@@ -4,7 +4,7 @@ use pulp::Simd;
 
 use crate::conservative::body::ConservativeBody;
 use crate::conservative::evaluation::Evaluation;
-use crate::matrix::four::Four;
+use crate::matrix::four::{Four, WIDTH};
 use crate::matrix::side_by_side::combine;
 
 impl ConservativeBody {
@@ -12,7 +12,7 @@ impl ConservativeBody {
     #[inline(always)]
     pub(super) fn start_velocities(&self, speed: f64, e: &mut Evaluation) {
         let Some(manifold) = &self.manifold else { return };
-        e.modal_velocity.copy_from_slice(&e.p);
+        e.modal_velocity.copy_from_slice(e.at.p());
         if !self.sliding.is_empty() {
             e.modal_sliding.fill(0.0);
             manifold.add_projection(&e.place, &self.sliding, &mut e.modal_sliding);
@@ -34,12 +34,12 @@ impl ConservativeBody {
                 };
             }
             let factors = -e.spin;
-            let displacement = e.displacement.groups_mut();
+            let [displacement, _] = e.rates.groups_mut();
             combine(simd, self.s_lists(&e.products), &factors.as_slice()[..self.s_count], displacement);
-            e.displacement.iter_mut().zip(&self.sliding).for_each(|(rate, b)| *rate -= b * speed);
-            for ((v, p), rate) in
-                e.modal_velocity.groups_mut().iter_mut().zip(e.p.groups()).zip(e.displacement.groups())
-            {
+            let [displacement, _] = e.rates.modes_mut();
+            displacement.iter_mut().zip(&self.sliding).for_each(|(rate, b)| *rate -= b * speed);
+            let ([_, p], [displacement, _]) = (e.at.groups(), e.rates.groups());
+            for ((v, p), rate) in e.modal_velocity.groups_mut().iter_mut().zip(p).zip(displacement) {
                 Four::load(simd, p).add(simd, Four::load(simd, rate)).store(v);
             }
             return self.damp(simd, e);
@@ -52,7 +52,8 @@ impl ConservativeBody {
             }
         }
         manifold.substitute_back(&e.place, &mut e.modal_velocity);
-        for ((rate, p), v) in e.displacement.groups_mut().iter_mut().zip(e.p.groups()).zip(e.modal_velocity.groups()) {
+        let ([_, p], [displacement, _]) = (e.at.groups(), e.rates.groups_mut());
+        for ((rate, p), v) in displacement.iter_mut().zip(p).zip(e.modal_velocity.groups()) {
             Four::load(simd, v).sub(simd, Four::load(simd, p)).store(rate);
         }
         manifold.go_along(&e.modal_velocity, &mut e.place, &mut e.velocity);
@@ -67,11 +68,12 @@ impl ConservativeBody {
         for (factor, w) in factors.iter_mut().zip(e.spin.iter()) {
             *factor = Four::splat(simd, -w);
         }
-        let Evaluation { products, p, displacement, modal_velocity, momentum, .. } = e;
+        let Evaluation { products, at, rates, modal_velocity, .. } = e;
         let mut lists = self.s_lists(products).rows();
-        let rates = displacement.groups_mut().iter_mut().zip(modal_velocity.groups_mut());
-        let given = p.groups().iter().zip(self.damping.groups());
-        for (((rate, v), momentum), (p, damping)) in rates.zip(momentum.groups_mut()).zip(given) {
+        let ([_, p], [displacement, momentum]) = (at.groups(), rates.groups_mut());
+        let rates = displacement.iter_mut().zip(modal_velocity.groups_mut());
+        let given = p.iter().zip(self.damping.groups());
+        for (((rate, v), momentum), (p, damping)) in rates.zip(momentum).zip(given) {
             let mut sum = zero;
             if let Some(row) = lists.next().and_then(|row| row.first_chunk::<M>()) {
                 for k in 0..M {
@@ -90,14 +92,15 @@ impl ConservativeBody {
     /// p' = −D (q̇ − p): the rest of −D q̇ is in the linear part. Returns q̇ᵀD q̇.
     #[inline(always)]
     fn damp<S: Simd>(&self, simd: S, e: &mut Evaluation) -> f64 {
-        let Evaluation { momentum, displacement, modal_velocity, .. } = e;
+        let Evaluation { rates, modal_velocity, .. } = e;
+        let [displacement, momentum] = rates.groups_mut();
         if !self.damped {
-            momentum.fill(0.0);
+            momentum.fill([0.0; WIDTH]);
             return 0.0;
         }
         let (zero, mut dissipation) = (Four::splat(simd, 0.0), Four::splat(simd, 0.0));
-        let rates = displacement.groups().iter().zip(modal_velocity.groups());
-        for ((momentum, (rate, v)), damping) in momentum.groups_mut().iter_mut().zip(rates).zip(self.damping.groups()) {
+        let rates = displacement.iter().zip(modal_velocity.groups());
+        for ((momentum, (rate, v)), damping) in momentum.iter_mut().zip(rates).zip(self.damping.groups()) {
             let [damping, v] = [damping, v].map(|group| Four::load(simd, group));
             let of_rate = damping.mul(simd, Four::load(simd, rate));
             zero.sub(simd, of_rate).store(momentum);

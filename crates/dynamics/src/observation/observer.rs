@@ -2,8 +2,8 @@
 
 use crate::body::shapes::PointShapes;
 use crate::error::StepError;
+use crate::motion::Motion;
 use crate::observation::Observation;
-use crate::scheme::Scheme;
 
 /// Watches a run step by step. A closure of `&Observation` is one, too.
 pub trait Observer: Send {
@@ -33,7 +33,7 @@ impl<F: FnMut(&Observation) + Send> Observer for F {
 /// The end of a step, as an [`Observer`] sees it.
 #[derive(Debug)]
 pub struct StepEnd<'a> {
-    pub(crate) scheme: &'a mut dyn Scheme,
+    pub(crate) motion: &'a mut dyn Motion,
     pub(crate) points: &'a [PointShapes],
     /// Length of the longest step so far; 0 before the first.
     pub(crate) longest_step: f64,
@@ -44,8 +44,8 @@ pub struct StepEnd<'a> {
 
 impl StepEnd<'_> {
     /// What steps the body: what it knows without another evaluation of the rates.
-    pub fn scheme(&self) -> &dyn Scheme {
-        self.scheme
+    pub fn motion(&self) -> &dyn Motion {
+        self.motion
     }
 
     /// Length of the longest step so far; 0 before the first.
@@ -59,7 +59,7 @@ impl StepEnd<'_> {
     /// [`StepError`] where the motion cannot be observed.
     pub fn observation(&mut self) -> Result<&Observation, StepError> {
         if !self.is_observed {
-            self.scheme.observe(self.points, self.observation)?;
+            self.motion.observe(self.points, self.observation)?;
             self.is_observed = true;
         }
         Ok(self.observation)

@@ -10,8 +10,85 @@
 use nalgebra::Matrix2;
 use pulp::{Arch, Simd, WithSimd};
 
+use crate::equations::{Evaluation, Oscillators};
+use crate::error::StepError;
 use crate::matrix::four::{Four, Group, WIDTH};
 use crate::scheme::phi::{Phis, oscillator_phis};
+use crate::scheme::{Scheme, Step};
+
+/// Krogstad's ETD-RK4: the oscillators exactly, the rest by four stages; order 4, no limit from the oscillators.
+#[derive(Debug, Clone)]
+pub struct Exponential<E: Oscillators> {
+    /// The stages after the first.
+    stages: [E::Evaluation; 3],
+    blocks: BlockStore,
+}
+
+impl<E: Oscillators> Exponential<E> {
+    /// Room for its stages.
+    pub fn new(equations: &E) -> Self {
+        Self { stages: std::array::from_fn(|_| equations.evaluation()), blocks: BlockStore::default() }
+    }
+}
+
+impl<E: Oscillators> Scheme<E> for Exponential<E> {
+    const ORDER: u32 = 4;
+    const LINEAR_PART_IS_EXACT: bool = true;
+
+    fn step(&mut self, step: &mut Step<'_, E>, next: &mut [f64]) -> Result<(), StepError> {
+        let Self { stages: [second, third, fourth], blocks } = self;
+        let Step { equations, from, first, length: h, .. } = *step;
+        let first_modes = equations.first_modes();
+        let others = ..first_modes[0];
+        let groups = |list| groups_of(list, first_modes);
+        let block = blocks.get(equations.circular_frequencies(), equations.damping_ratios(), h);
+        let (start, of_first) = (groups(&from.values), groups(first.rates()));
+
+        add(&from.values[others], 0.5 * h, &first.rates()[others], &mut second.place_mut()[others]);
+        let out = groups_of_mut(second.place_mut(), first_modes);
+        sum_of_blocks([(&block.half, start), (&block.a21, of_first)], out);
+        step.evaluate(from.time + 0.5 * h, second)?;
+
+        add(&from.values[others], 0.5 * h, &second.rates()[others], &mut third.place_mut()[others]);
+        let out = groups_of_mut(third.place_mut(), first_modes);
+        let of_second = groups(second.rates());
+        sum_of_blocks([(&block.half, start), (&block.a31, of_first), (&block.a32, of_second)], out);
+        step.evaluate(from.time + 0.5 * h, third)?;
+
+        add(&from.values[others], h, &third.rates()[others], &mut fourth.place_mut()[others]);
+        let out = groups_of_mut(fourth.place_mut(), first_modes);
+        let of_third = groups(third.rates());
+        sum_of_blocks([(&block.full, start), (&block.a41, of_first), (&block.a43, of_third)], out);
+        step.evaluate(from.time + h, fourth)?;
+
+        let rates = [first.rates(), second.rates(), third.rates(), fourth.rates()];
+        let [k1, k2, k3, k4] = rates.map(|rates| &rates[others]);
+        for (i, (next, from)) in next[others].iter_mut().zip(&from.values).enumerate() {
+            *next = from + (k1[i] + (k2[i] + k3[i]) * 2.0 + k4[i]) * (h / 6.0);
+        }
+        let [n1, n2, n3, n4] = rates.map(groups);
+        let terms = [(&block.full, start), (&block.b1, n1), (&block.b2, n2), (&block.b2, n3), (&block.b4, n4)];
+        sum_of_blocks(terms, groups_of_mut(next, first_modes));
+        Ok(())
+    }
+}
+
+/// q and p of a list, in groups.
+fn groups_of(list: &[f64], [q, p]: [usize; 2]) -> Pairs<'_> {
+    [list[q..p].as_chunks().0, list[p..].as_chunks().0]
+}
+
+fn groups_of_mut(list: &mut [f64], [first_q, first_p]: [usize; 2]) -> [&mut [Group]; 2] {
+    let (q, p) = list.split_at_mut(first_p);
+    [q[first_q..].as_chunks_mut().0, p.as_chunks_mut().0]
+}
+
+/// out = x + c·y
+fn add(x: &[f64], c: f64, y: &[f64], out: &mut [f64]) {
+    for ((out, x), y) in out.iter_mut().zip(x).zip(y) {
+        *out = x + y * c;
+    }
+}
 
 /// A 2×2 block for each mode: what (q, p) of the mode give q and p. For each four modes, what q gives q, p gives q, q gives
 /// p and p gives p.

@@ -115,15 +115,15 @@ impl EnergyAccount {
 
 impl Observer for EnergyAccount {
     fn step(&mut self, now: &mut StepEnd<'_>) -> Result<(), StepError> {
-        self.exchange(now.scheme().work_and_dissipation());
+        self.exchange(now.motion().work_and_dissipation());
         self.observed(now)
     }
 
     /// Checks the energy where the scheme last found it: of the conservative form that is the start of the last step or
     /// the last observation, since it takes an evaluation of the rates.
     fn observed(&mut self, now: &mut StepEnd<'_>) -> Result<(), StepError> {
-        match now.scheme().energies() {
-            Some(energies) => self.check(&energies, now.scheme().fastest_rate(), now.longest_step()),
+        match now.motion().energies() {
+            Some(energies) => self.check(&energies, now.motion().fastest_rate(), now.longest_step()),
             None => Ok(()),
         }
     }

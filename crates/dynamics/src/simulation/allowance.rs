@@ -6,7 +6,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::scheme::ErrorEstimate;
+use crate::motion::ErrorEstimate;
 use crate::simulation::checkpoint::{CheckpointError, counts, finite};
 
 /// Tries in vain at one place after which the motion is taken to jump there.

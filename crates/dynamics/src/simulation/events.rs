@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use crate::body::shapes::PointShapes;
 use crate::error::StepError;
+use crate::motion::Motion;
 use crate::observation::Observation;
-use crate::scheme::Scheme;
 
 /// Which way an event function passes through zero.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -71,9 +71,9 @@ impl fmt::Debug for Event {
 #[derive(Debug, Clone)]
 pub(crate) struct LastStep {
     /// The scheme at the start of the step.
-    before: Box<dyn Scheme>,
+    before: Box<dyn Motion>,
     /// Where times inside the step are tried.
-    probe: Box<dyn Scheme>,
+    probe: Box<dyn Motion>,
     observation: Observation,
     /// Time at its end, to the last bit that of the scheme there.
     end: f64,
@@ -82,15 +82,15 @@ pub(crate) struct LastStep {
 }
 
 impl LastStep {
-    pub(crate) fn new(scheme: &dyn Scheme, points: usize) -> Self {
-        let observation = Observation::new(scheme.flexible(), points);
-        let (before, probe) = (scheme.boxed_clone(), scheme.boxed_clone());
-        Self { before, probe, observation, end: scheme.time(), halved: false }
+    pub(crate) fn new(motion: &dyn Motion, points: usize) -> Self {
+        let observation = Observation::new(motion.flexible(), points);
+        let (before, probe) = (motion.boxed_clone(), motion.boxed_clone());
+        Self { before, probe, observation, end: motion.time(), halved: false }
     }
 
     /// Keeps the state before a step that ends at a time.
-    pub(crate) fn begin(&mut self, scheme: &dyn Scheme, end: f64, halved: bool) {
-        self.before.copy_state(scheme);
+    pub(crate) fn begin(&mut self, motion: &dyn Motion, end: f64, halved: bool) {
+        self.before.copy_state(motion);
         self.end = end;
         self.halved = halved;
     }
@@ -119,7 +119,7 @@ impl LastStep {
     }
 
     /// The scheme at the time that was looked at last.
-    pub(crate) fn probe(&self) -> &dyn Scheme {
+    pub(crate) fn probe(&self) -> &dyn Motion {
         &*self.probe
     }
 }

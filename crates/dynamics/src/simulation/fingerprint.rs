@@ -5,8 +5,8 @@ use std::fmt::{self, Write};
 use crc32fast::Hasher;
 use serde::{Deserialize, Serialize};
 
-use crate::scheme::setup::Setup;
 use crate::simulation::checkpoint::CheckpointError;
+use crate::simulation::setup::Setup;
 
 /// Parts of a set-up before its loads.
 const PARTS: [&str; 5] = ["the body", "the damping", "an effect or the drive", "the start", "the scheme or its steps"];

@@ -20,7 +20,9 @@ use faer::{Mat, c64};
 
 use crate::body::initial::Initial;
 use crate::conservative::ConservativeBody;
+use crate::equations::{Equations, Evaluation, Oscillators};
 use crate::error::StepError;
+use crate::state::State;
 use crate::vibration::steady_spin::EigenError;
 
 /// A part of the frequency that growth must exceed to be more than rounding.
@@ -114,7 +116,8 @@ impl ConservativeBody {
     /// p' of the body that is at rest with some modal displacements.
     fn forces_at_rest(&self, initial: &Initial, modal_displacement: Vec<f64>) -> Result<Vec<f64>, LoadedError> {
         let at = Initial { attitude: initial.attitude, modal_displacement, ..Initial::at_rest(self.flexible()) };
-        Ok(self.rates(&self.start(&at)?, 0.0)?.modal_force)
+        let [_, force] = self.mode_rates(&self.start(&at)?)?;
+        Ok(force)
     }
 
     /// M⁻¹ (nf×nf) at some modal displacements: the modal velocities of unit momenta.
@@ -127,14 +130,26 @@ impl ConservativeBody {
         };
         let mut state = self.start(&at)?;
         let mut inverse = Mat::zeros(nf, nf);
+        let [_, first_p] = self.first_modes();
         for k in 0..nf {
-            state.modal_momentum.fill(0.0);
-            state.modal_momentum[k] = 1.0;
-            for (i, velocity) in self.rates(&state, 0.0)?.modal_velocity.into_iter().enumerate() {
+            state.values[first_p..first_p + nf].fill(0.0);
+            state.values[first_p + k] = 1.0;
+            let [velocity, _] = self.mode_rates(&state)?;
+            for (i, velocity) in velocity.into_iter().enumerate() {
                 inverse[(i, k)] = velocity;
             }
         }
         Ok(inverse)
+    }
+
+    /// q' and p' at a state at the beginning.
+    fn mode_rates(&self, state: &State) -> Result<[Vec<f64>; 2], StepError> {
+        let mut e = self.evaluation();
+        e.place_mut().copy_from_slice(&state.values);
+        self.rates([state.time; 2], &self.frame(state), &mut e).map_err(|error| error.in_step(state.time, 0.0))?;
+        self.add_linear(&mut e);
+        let rates = e.rates();
+        Ok(self.first_modes().map(|first| rates[first..first + self.flexible()].to_vec()))
     }
 
     /// The vibrations about the rest under the loads, slowest first. `amplitudes` (nf) are small modal displacements.

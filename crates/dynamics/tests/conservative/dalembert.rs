@@ -5,7 +5,7 @@
 //! displacement, nor in that of a mode, where strain and damping oppose: no inertia, momentum or constant of the
 //! reduced body enters.
 
-use dynamics::{ConservativeBody, Initial, Observation, Physics, Rows, SharedLoad, StepControl};
+use dynamics::{ConservativeBody, Initial, Observation, Oscillators, Physics, Rows, SharedLoad, StepControl};
 use faer::sparse::SparseColMatRef;
 use nalgebra::Vector3;
 
@@ -142,7 +142,8 @@ fn modal_momenta_are_projections_of_the_velocities() {
     let velocity: Vec<Vector3<f64>> =
         (0..x.len()).map(|n| start().velocity + start().omega.cross(&(x[n] + u[n])) + v[n]).collect();
     let expected = projected(ring, &times(ring.matrices.mass(), &velocity));
-    let error = relative(&state.modal_momentum, &expected);
+    let [_, first] = body.first_modes();
+    let error = relative(&state.values[first..first + 10], &expected);
     assert!(error < 1e-13, "{error:e}"); // 1.8e-15
 }
 

@@ -156,7 +156,7 @@ struct FailsOnce {
 
 impl Observer for FailsOnce {
     fn step(&mut self, now: &mut StepEnd<'_>) -> Result<(), StepError> {
-        let time = now.scheme().time();
+        let time = now.motion().time();
         if time < self.at || std::mem::replace(&mut self.failed, true) {
             return Ok(());
         }

@@ -4,7 +4,7 @@
 #[path = "../../../dynamics/tests/common/mod.rs"]
 mod specimen;
 
-use dynamics::{Initial, Scheme, SharedLoad, StepError};
+use dynamics::{Initial, Motion, SharedLoad, StepError};
 use frames_rk4::{ModalModel, PaperScheme, State};
 
 pub use specimen::*;

@@ -1,6 +1,6 @@
 //! The paper's scheme converges with first order to the limit equation, which is solved here on its own.
 
-use dynamics::{Initial, Scheme, SharedLoad};
+use dynamics::{Initial, Motion, SharedLoad};
 use frames_rk4::{ModalModel, PaperLimit};
 use nalgebra::{DVector, Matrix3, Vector3};
 

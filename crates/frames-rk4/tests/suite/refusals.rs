@@ -1,6 +1,6 @@
 //! What cannot start or go on is refused with what was found, and the state before it is kept.
 
-use dynamics::{Initial, Physics, Rows, Scheme, Setup, SetupError, Simulation, StepControl, StepError};
+use dynamics::{Initial, Motion, Physics, Rows, Setup, SetupError, Simulation, StepControl, StepError};
 use frames_rk4::{ModalModel, PaperScheme};
 use nalgebra::Vector3;
 

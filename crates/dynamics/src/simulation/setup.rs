@@ -1,6 +1,4 @@
-//! What a run begins with: the body and what acts on it, the method, and how long its steps are.
-
-use std::fmt;
+//! Everything that a run begins with: the body and what acts on it, the method, and how long its steps are.
 
 use modal::ReducedBody;
 use nalgebra::Vector3;
@@ -10,11 +8,11 @@ use crate::body::model::check_model;
 use crate::body::physics::{DrivenMotion, Physics};
 use crate::body::shapes::PointShapes;
 use crate::conservative::ConservativeBody;
+use crate::equations::Equations;
 use crate::error::SetupError;
 use crate::history::{History, positive};
 use crate::load::SharedLoad;
-use crate::scheme::Scheme;
-use crate::scheme::abilities::Abilities;
+use crate::scheme::method::{Method, StepLimit};
 use crate::scheme::mode_limit::check_step_of_modes;
 use crate::simulation::account;
 use crate::simulation::plan::{Rows, StepControl};
@@ -44,48 +42,6 @@ pub struct Setup<'a> {
     pub rows: Rows,
     /// Points whose motion is observed.
     pub points: &'a [PointShapes],
-}
-
-/// What limits the step of a scheme.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
-pub enum StepLimit {
-    /// The fastest mode, at about 2.83/ω_max.
-    Modes,
-    /// The spin: the largest angle in rad that the body may turn through in a step.
-    Turn(f64),
-}
-
-/// A scheme that a scene can name.
-///
-/// One of your own is a constant of this type: a [`Setup`] takes it like those of this crate.
-#[derive(Clone, Copy)]
-pub struct Method {
-    /// The name of its formulation: "paper" or "conservative".
-    pub formulation: &'static str,
-    /// Its name.
-    pub scheme: &'static str,
-    /// Order of convergence.
-    pub order: u32,
-    /// Evaluations of the rates that a step takes.
-    pub evaluations_per_step: u32,
-    /// What limits its step.
-    pub limit: StepLimit,
-    /// Whether it estimates the error of a step.
-    pub estimates_error: bool,
-    /// What its formulation can do.
-    pub abilities: Abilities,
-    /// Begins a motion.
-    pub begin: fn(&Setup) -> Result<Beginning, SetupError>,
-}
-
-/// A motion that begins.
-#[derive(Debug)]
-pub struct Beginning {
-    /// The state and what steps it.
-    pub scheme: Box<dyn Scheme>,
-    /// Scale of the energy that the loads may give the body: [`Setup::energy_of_loads`].
-    pub energy_of_loads: f64,
 }
 
 impl Setup<'_> {
@@ -158,12 +114,8 @@ impl Setup<'_> {
             return Ok(0.0);
         }
         let body = ConservativeBody::new(self.body, self.damping_ratios, self.loads.to_vec(), self.physics)?;
-        Ok(self.energy_of_loads_on(&body))
-    }
-
-    /// The same, of the body of this set-up.
-    pub(crate) fn energy_of_loads_on(&self, body: &ConservativeBody) -> f64 {
-        if self.may_miss_work(body.fastest_rate()) { body.sizes_of_loads(self.end).energy } else { 0.0 }
+        let is_needed = self.may_miss_work(body.fastest_rate());
+        Ok(if is_needed { body.sizes_of_loads(self.end).energy } else { 0.0 })
     }
 
     /// Whether steps may be blind to work of the loads: they do not resolve a mode of this rate, the largest of ω_k and
@@ -178,26 +130,5 @@ impl Setup<'_> {
 
     fn has_formula(&self) -> bool {
         self.loads.iter().filter_map(|load| load.history()).any(History::has_formula)
-    }
-}
-
-impl Method {
-    /// Whether its step is limited by the fastest mode; otherwise by the spin.
-    pub fn is_limited_by_modes(&self) -> bool {
-        self.limit == StepLimit::Modes
-    }
-}
-
-impl PartialEq for Method {
-    fn eq(&self, other: &Self) -> bool {
-        (self.formulation, self.scheme) == (other.formulation, other.scheme)
-    }
-}
-
-impl Eq for Method {}
-
-impl fmt::Debug for Method {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} {}", self.formulation, self.scheme)
     }
 }

@@ -10,9 +10,10 @@ use crate::body::physics::Physics;
 use crate::body::shapes::PointShapes;
 use crate::error::SetupError;
 use crate::load::{Load, SharedLoad};
-use crate::scheme::setup::{Method, Setup};
+use crate::scheme::method::Method;
 use crate::simulation::Simulation;
 use crate::simulation::plan::{Rows, StepControl};
+use crate::simulation::setup::Setup;
 
 /// Puts a run together; what is not named is as [`Simulation::builder`] says.
 ///

@@ -1,0 +1,150 @@
+//! Equations of motion: what a scheme integrates.
+
+pub(crate) mod error_norm;
+
+use std::fmt;
+use std::sync::Arc;
+
+use nalgebra::Vector3;
+
+use crate::body::motion_state::MotionState;
+use crate::body::shapes::PointShapes;
+use crate::equations::error_norm::{ErrorNorm, PlainNorm, Sizes};
+use crate::error::{RateError, SetupError};
+use crate::observation::Observation;
+use crate::observation::energies::Energies;
+use crate::state::{Layout, State};
+
+/// Equations of motion `y' = L y + N(t, y)` on one flat list of numbers, some of which are attitudes.
+///
+/// A step counts the turn of each attitude by a rotation vector, which starts at zero: [`Layout::turn`]. L may be zero; a
+/// scheme that integrates it exactly asks for [`Oscillators`].
+pub trait Equations: fmt::Debug + Clone + Send + Sync + 'static {
+    /// Room for the rates at a place, and for what is found on the way to them.
+    type Evaluation: Evaluation;
+
+    /// Constants that all evaluations of a step share.
+    type Frame: fmt::Debug + Copy;
+
+    /// The order of the numbers.
+    fn layout(&self) -> &Layout;
+
+    /// Room for one evaluation.
+    fn evaluation(&self) -> Self::Evaluation;
+
+    /// The constants of a step from a state.
+    fn frame(&self, from: &State) -> Self::Frame;
+
+    /// Finds N at the place of `e` and the time `times[0]`, in a step with this frame. Laws with branches are taken as they
+    /// are at the time `times[1]`.
+    ///
+    /// # Errors
+    /// [`RateError`].
+    fn rates(&self, times: [f64; 2], frame: &Self::Frame, e: &mut Self::Evaluation) -> Result<(), RateError>;
+
+    /// Adds L y to the rates.
+    fn add_linear(&self, e: &mut Self::Evaluation) {
+        let _ = e;
+    }
+
+    /// Fills `out` with the motion at a state, and that of `points`; `e` has N there.
+    ///
+    /// # Errors
+    /// [`RateError`].
+    fn observe(
+        &self,
+        state: &State,
+        e: &mut Self::Evaluation,
+        points: &[PointShapes],
+        out: &mut Observation,
+    ) -> Result<(), RateError>;
+
+    /// The motion at the place of an evaluation, as far as it is known without more work.
+    fn glance<'e>(&self, e: &'e Self::Evaluation) -> Glance<'e>;
+
+    /// Energies at the place of an evaluation and this time; `None` where they say nothing, as under a drive.
+    fn energies(&self, time: f64, e: &Self::Evaluation) -> Option<Energies>;
+
+    /// Work of the loads and energy that damping has taken, since the beginning.
+    fn work_and_dissipation(&self, state: &State) -> [f64; 2];
+
+    /// A state in quantities that every formulation has.
+    ///
+    /// # Errors
+    /// [`RateError`] where the velocities cannot be found.
+    fn motion_state(&self, state: &State) -> Result<MotionState, RateError>;
+
+    /// The state of a motion; work and impulses are counted from it anew.
+    ///
+    /// # Errors
+    /// [`SetupError`] for lists of the wrong length and numbers that are not finite.
+    fn state_of(&self, motion: &MotionState) -> Result<State, SetupError>;
+
+    /// Takes a state past a discontinuity of what acts at its time; `e` is room.
+    ///
+    /// # Errors
+    /// [`RateError`].
+    fn pass_discontinuity(&self, state: &mut State, e: &mut Self::Evaluation) -> Result<(), RateError> {
+        let _ = (state, e);
+        Ok(())
+    }
+
+    /// True if what acts does the same at a time by the branches that hold at either of two branch times.
+    fn acts_alike(&self, time: f64, branch_times: [f64; 2]) -> bool;
+
+    /// Number of flexible modes.
+    fn flexible(&self) -> usize;
+
+    /// Largest of ω_k and 2 ζ_k ω_k.
+    fn fastest_rate(&self) -> f64;
+
+    /// Sizes of the motions that the loads would cause from rest until `end`.
+    fn sizes_of_loads(&self, end: f64) -> Sizes {
+        let _ = end;
+        Sizes::default()
+    }
+
+    /// The measure of the errors of steps in a run until `end`.
+    fn error_norm(&self, end: f64) -> Arc<dyn ErrorNorm<Self>> {
+        let _ = end;
+        Arc::new(PlainNorm)
+    }
+}
+
+/// The rates at a place.
+pub trait Evaluation: fmt::Debug + Clone + Send + Sync {
+    /// The place, a list as in a [`State`], with attitudes as at the start of the step.
+    fn place(&self) -> &[f64];
+
+    /// The place.
+    fn place_mut(&mut self) -> &mut [f64];
+
+    /// The rates, in the same order; those of attitudes are zero.
+    fn rates(&self) -> &[f64];
+
+    /// The rates.
+    fn rates_mut(&mut self) -> &mut [f64];
+}
+
+/// Equations whose linear part is that of damped oscillators: `q' = p + …, p' = −ω² q − 2 ζ ω p + …`.
+pub trait Oscillators: Equations {
+    /// ω_k.
+    fn circular_frequencies(&self) -> &[f64];
+
+    /// ζ_k.
+    fn damping_ratios(&self) -> &[f64];
+
+    /// First places of the q_k and of the p_k in the list; each begins at a multiple of four, and they are the last parts.
+    fn first_modes(&self) -> [usize; 2];
+}
+
+/// The motion at a place, as far as its evaluation knows it.
+#[derive(Debug, Clone, Copy)]
+pub struct Glance<'a> {
+    /// Angular velocity of the body frame, body components.
+    pub omega_body: Vector3<f64>,
+    /// Flexible modal displacements (nf).
+    pub modal_displacement: &'a [f64],
+    /// Flexible modal velocities (nf).
+    pub modal_velocity: &'a [f64],
+}
