@@ -29,9 +29,10 @@ fn an_event_is_found_to_the_accuracy_of_the_scheme_and_a_new_state_goes_on() {
 }
 
 #[test]
-fn the_rates_serve_an_integrator_of_one_s_own() {
-    let [coarse, fine] = own_integrator::run().unwrap();
-    println!("{coarse:e} {fine:e}");
+fn an_own_scheme_has_its_order_and_takes_step_control() {
+    let [coarse, fine, controlled] = own_integrator::run().unwrap();
+    println!("{coarse:e} {fine:e} {controlled:e}");
+    assert!(controlled < 1e-6, "{controlled:e}");
     assert!(fine < 1e-3 && (coarse / fine - 4.0).abs() < 0.4, "{coarse:e} {fine:e}");
 }
 

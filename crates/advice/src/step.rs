@@ -143,7 +143,7 @@ pub fn step_estimate(setup: &Setup) -> Result<Option<StepEstimate>, SetupError> 
     let finer = halvings.exp2();
     let modes = omega.len() as f64;
     let of_evaluation = 9.0 * modes * modes + BESIDE;
-    let cost = f64::from(setup.method.evaluations_per_step) * of_evaluation;
+    let cost = f64::from(setup.method.method().evaluations_per_step) * of_evaluation;
     let steps = setup.end / step;
     let compared = (PRODUCTS / (cost * (1.0 + finer))).max(FEWEST).min(steps);
     let each = (compared / SAMPLES).ceil();
@@ -235,7 +235,7 @@ impl Comparison {
     fn estimate(self, setup: &Setup, step: f64, finer: f64, failure: Option<StepError>) -> StepEstimate {
         let body = setup.body;
         // The finer steps err, too.
-        let order = f64::from(setup.method.order);
+        let order = f64::from(setup.method.method().order);
         let short = 1.0 / (1.0 - finer.powf(-order));
         let count = self.times.len();
         let seen = self.times.last().copied().unwrap_or(0.0);
@@ -275,7 +275,7 @@ impl Comparison {
             attitude: until(setup.end, &|i| self.attitude[i]),
             position: if self.way <= still { 0.0 } else { until(setup.end, &|i| self.position[i]) / self.way },
             modes: (0..nf).map(mode).collect(),
-            value: step * if setup.method.is_limited_by_modes() { highest } else { self.spin },
+            value: step * if setup.method.method().is_limited_by_modes() { highest } else { self.spin },
             failure,
         }
     }

@@ -53,7 +53,7 @@ pub use observation::work::Work;
 pub use observation::{Observation, PointMotion};
 pub use scheme::abilities::Abilities;
 pub use scheme::exponential::Exponential;
-pub use scheme::method::{Method, StepLimit};
+pub use scheme::method::{Begin, Method, StepLimit};
 pub use scheme::runge_kutta::{Classical, RungeKutta, Tableau};
 pub use scheme::{Scheme, Step};
 pub use simulation::builder::SimulationBuilder;

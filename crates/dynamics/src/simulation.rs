@@ -165,7 +165,7 @@ impl Simulation {
     /// tolerance for a method without an error estimate.
     pub fn new(setup: &Setup) -> Result<Self, SetupError> {
         setup.check()?;
-        let Beginning { motion, energy_of_loads } = (setup.method.begin)(setup)?;
+        let Beginning { motion, energy_of_loads } = setup.method.begin(setup)?;
         setup.check_times()?;
         Self::begin(motion, energy_of_loads, setup)
     }

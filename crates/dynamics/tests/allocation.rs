@@ -5,6 +5,7 @@ mod common;
 
 use allocation_counter::measure;
 use dynamics::{Expression, History, Initial, Method, Physics, Reached, Rows, Setup, Simulation, StepControl, Table};
+use frames_rk4::Paper;
 use nalgebra::Vector3;
 
 fn spinning() -> Initial {
@@ -19,9 +20,8 @@ fn simulation(method: Method, control: StepControl, end: f64) -> Simulation {
         body: &ring.body,
         damping_ratios: &[0.0; 10],
         loads: &[ring.half_sine([-100.0, 0.0, 0.0], [10.0, 20.0, 30.0], end)],
-        reference_points: ring.reference_points_body(),
         initial: &spinning(),
-        method,
+        method: Paper { reference_points: ring.reference_points_body() }.or(&method),
         control,
         end,
         rows: Rows::EverySteps(10),

@@ -40,7 +40,7 @@ pub use limit::{LIMIT, PaperLimit};
 pub use modal_rotation::ModalRotation;
 pub use model::ModalModel;
 pub use state::State;
-pub use synthesis::{PAPER, PaperScheme};
+pub use synthesis::{PAPER, Paper, PaperScheme};
 pub use travelling_frame::TravellingFrame;
 
 /// Crates whose types are in the interface.

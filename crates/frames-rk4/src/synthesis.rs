@@ -8,7 +8,7 @@
 use dynamics::modal::ReducedBody;
 use dynamics::nalgebra::{Matrix3, Vector3};
 use dynamics::rigid_kin::{BeyondFullTurn, ReferencePoints, f_inverse, relative_velocity_rate, transformation_matrix};
-use dynamics::{Abilities, Beginning, Initial, Method, SetupError, StepError, StepLimit, Work};
+use dynamics::{Abilities, Begin, Beginning, Initial, Method, Setup, SetupError, StepError, StepLimit, Work};
 
 use crate::modal_rotation::ModalRotation;
 use crate::model::{LinearMotion, ModalModel};
@@ -218,7 +218,7 @@ impl FrameSteps for PaperSteps {
     }
 }
 
-/// The paper's scheme, literally.
+/// The paper's scheme, literally, with reference points at the origin and at unit distances along x and y; see [`Paper`].
 pub const PAPER: Method = Method {
     formulation: FORMULATION,
     scheme: "paper",
@@ -227,12 +227,34 @@ pub const PAPER: Method = Method {
     limit: StepLimit::Modes,
     estimates_error: false,
     abilities: Abilities::NONE,
-    begin: |setup| {
-        let model = ModalModel::new(setup.body, setup.damping_ratios, setup.loads.to_vec())?;
-        let scheme = PaperScheme::new(setup.body, model, setup.reference_points, setup.initial)?;
-        Ok(Beginning { motion: Box::new(scheme), energy_of_loads: setup.energy_of_loads()? })
-    },
+    begin: |setup| Paper { reference_points: [Vector3::zeros(), Vector3::x(), Vector3::y()] }.begin(setup),
 };
+
+/// [`PAPER`] with other reference points.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Paper {
+    /// R, P, Q from the body's origin, body axes; not on a line.
+    pub reference_points: [Vector3<f64>; 3],
+}
+
+impl Paper {
+    /// This for [`PAPER`], and any other method as it is.
+    pub fn or<'a>(&'a self, method: &'a Method) -> &'a dyn Begin {
+        if *method == PAPER { self } else { method }
+    }
+}
+
+impl Begin for Paper {
+    fn method(&self) -> Method {
+        PAPER
+    }
+
+    fn begin(&self, setup: &Setup) -> Result<Beginning, SetupError> {
+        let model = ModalModel::new(setup.body, setup.damping_ratios, setup.loads.to_vec())?;
+        let scheme = PaperScheme::new(setup.body, model, self.reference_points, setup.initial)?;
+        Ok(Beginning { motion: Box::new(scheme), energy_of_loads: setup.energy_of_loads()? })
+    }
+}
 
 impl ReferenceKinematics {
     /// Velocities (or accelerations) of P and Q relative to R in the rigid modes: `(B y) × arm`.

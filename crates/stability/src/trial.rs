@@ -1,6 +1,7 @@
 //! A run of a case, and its largest error.
 
 use dynamics::{Initial, Method, Observation, Physics, PointShapes, Rows, Setup, SharedLoad, Simulation, StepControl};
+use frames_rk4::Paper;
 use modal::ReducedBody;
 use nalgebra::Vector3;
 use rigid_kin::{Attitude, Inertia, TorqueFreeMotion};
@@ -48,14 +49,14 @@ impl<'a> Trial<'a> {
 
     /// The observations, the first one included, one after the other; the largest of their errors.
     pub fn largest(&self, method: Method, mut error: impl FnMut(&Observation, &Observation) -> f64) -> Outcome {
+        let paper = Paper { reference_points: self.reference_points };
         let setup = Setup {
             body: self.body,
             damping_ratios: &self.damping_ratios,
             loads: &self.loads,
             physics: &Physics::default(),
-            reference_points: self.reference_points,
             initial: &self.initial,
-            method,
+            method: paper.or(&method),
             control: StepControl::Fixed(self.step),
             end: self.end,
             rows: Rows::Interval(self.end / f64::from(self.rows)),

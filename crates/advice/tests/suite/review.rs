@@ -2,7 +2,6 @@
 
 use advice::{Backbone, Broken, Case, Detuning, Refusal, Review, advise};
 use dynamics::{Effect, EffectMap, History, Initial, Method, Physics, Reached, Rows, Setup, Simulation, StepControl};
-use nalgebra::Vector3;
 
 use crate::plate::{CORNER, clamped, plate, run, spinning};
 
@@ -103,9 +102,8 @@ fn watched(case: &Case, effects: EffectMap<bool>, step: f64, interval: f64) -> V
         damping_ratios: case.damping_ratios,
         loads: case.loads,
         physics: &Physics { effects, ..Physics::default() },
-        reference_points: [Vector3::x(), Vector3::y(), Vector3::z()],
         initial: case.initial,
-        method: Method::EXPONENTIAL,
+        method: &Method::EXPONENTIAL,
         control: StepControl::Fixed(step),
         end: case.end,
         rows: Rows::Interval(interval),

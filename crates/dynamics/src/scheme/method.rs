@@ -17,7 +17,19 @@ pub enum StepLimit {
     Turn(f64),
 }
 
-/// A scheme that a scene can name.
+/// What a [`Setup`] begins a motion with: a [`Method`], or one with data of its own.
+pub trait Begin: fmt::Debug + Send + Sync {
+    /// Its name and what it can do.
+    fn method(&self) -> Method;
+
+    /// Begins a motion.
+    ///
+    /// # Errors
+    /// [`SetupError`].
+    fn begin(&self, setup: &Setup) -> Result<Beginning, SetupError>;
+}
+
+/// A formulation with a scheme that a scene can name.
 ///
 /// One of your own is a constant of this type: a [`Setup`] takes it like those of this crate.
 #[derive(Clone, Copy)]
@@ -38,6 +50,16 @@ pub struct Method {
     pub abilities: Abilities,
     /// Begins a motion.
     pub begin: fn(&Setup) -> Result<Beginning, SetupError>,
+}
+
+impl Begin for Method {
+    fn method(&self) -> Method {
+        *self
+    }
+
+    fn begin(&self, setup: &Setup) -> Result<Beginning, SetupError> {
+        (self.begin)(setup)
+    }
 }
 
 impl Method {

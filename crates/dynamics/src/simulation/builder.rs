@@ -3,14 +3,13 @@
 use std::sync::Arc;
 
 use modal::ReducedBody;
-use nalgebra::Vector3;
 
 use crate::body::initial::Initial;
 use crate::body::physics::Physics;
 use crate::body::shapes::PointShapes;
 use crate::error::SetupError;
 use crate::load::{Load, SharedLoad};
-use crate::scheme::method::Method;
+use crate::scheme::method::{Begin, Method};
 use crate::simulation::Simulation;
 use crate::simulation::plan::{Rows, StepControl};
 use crate::simulation::setup::Setup;
@@ -35,9 +34,8 @@ pub struct SimulationBuilder<'a> {
     damping_ratios: Vec<f64>,
     loads: Vec<SharedLoad>,
     physics: Physics,
-    reference_points: [Vector3<f64>; 3],
     initial: Initial,
-    method: Method,
+    method: Arc<dyn Begin>,
     control: StepControl,
     end: f64,
     rows: Rows,
@@ -46,17 +44,15 @@ pub struct SimulationBuilder<'a> {
 
 impl Simulation {
     /// A run of a body from time 0 to `end`: undamped, without loads, with all effects, at rest at the start, by the
-    /// exponential scheme, with a row after every step and no points. R, P, Q are the origin and unit vectors along x
-    /// and y.
+    /// exponential scheme, with a row after every step and no points.
     pub fn builder(body: &ReducedBody, control: StepControl, end: f64) -> SimulationBuilder<'_> {
         SimulationBuilder {
             body,
             damping_ratios: vec![0.0; body.flexible()],
             loads: Vec::new(),
             physics: Physics::default(),
-            reference_points: [Vector3::zeros(), Vector3::x(), Vector3::y()],
             initial: Initial::at_rest(body.flexible()),
-            method: Method::EXPONENTIAL,
+            method: Arc::new(Method::EXPONENTIAL),
             control,
             end,
             rows: Rows::EverySteps(1),
@@ -100,13 +96,6 @@ impl SimulationBuilder<'_> {
         self
     }
 
-    /// R, P, Q of the paper's scheme, from the body's origin, body axes.
-    #[must_use]
-    pub fn reference_points(mut self, points: [Vector3<f64>; 3]) -> Self {
-        self.reference_points = points;
-        self
-    }
-
     /// The motion at time 0.
     #[must_use]
     pub fn initial(mut self, initial: Initial) -> Self {
@@ -114,10 +103,10 @@ impl SimulationBuilder<'_> {
         self
     }
 
-    /// The scheme.
+    /// The formulation and its scheme.
     #[must_use]
-    pub fn method(mut self, method: Method) -> Self {
-        self.method = method;
+    pub fn method(mut self, method: impl Begin + 'static) -> Self {
+        self.method = Arc::new(method);
         self
     }
 
@@ -140,27 +129,14 @@ impl SimulationBuilder<'_> {
     /// # Errors
     /// As [`Simulation::new`].
     pub fn build(&self) -> Result<Simulation, SetupError> {
-        let Self {
-            body,
-            damping_ratios,
-            loads,
-            physics,
-            reference_points,
-            initial,
-            method,
-            control,
-            end,
-            rows,
-            points,
-        } = self;
+        let Self { body, damping_ratios, loads, physics, initial, method, control, end, rows, points } = self;
         Simulation::new(&Setup {
             body,
             damping_ratios,
             loads,
             physics,
-            reference_points: *reference_points,
             initial,
-            method: *method,
+            method: &**method,
             control: *control,
             end: *end,
             rows: *rows,

@@ -18,10 +18,9 @@ pub(crate) struct Fingerprint(Vec<[u8; 4]>);
 
 impl Fingerprint {
     pub(crate) fn of(setup: &Setup) -> Self {
-        let Setup { body, damping_ratios, loads, physics, reference_points, initial, .. } = setup;
+        let Setup { body, damping_ratios, loads, physics, initial, .. } = setup;
         let steps = (setup.method, setup.control, setup.end, setup.rows);
-        let parts: [&dyn fmt::Debug; PARTS.len()] =
-            [body, damping_ratios, physics, &(initial, reference_points), &steps];
+        let parts: [&dyn fmt::Debug; PARTS.len()] = [body, damping_ratios, physics, initial, &steps];
         let loads = loads.iter().map(|load| load as &dyn fmt::Debug);
         Self(parts.into_iter().chain(loads).map(check_sum).collect())
     }

@@ -1,7 +1,6 @@
 //! Everything that a run begins with: the body and what acts on it, the method, and how long its steps are.
 
 use modal::ReducedBody;
-use nalgebra::Vector3;
 
 use crate::body::initial::Initial;
 use crate::body::model::check_model;
@@ -12,7 +11,7 @@ use crate::equations::Equations;
 use crate::error::SetupError;
 use crate::history::{History, positive};
 use crate::load::SharedLoad;
-use crate::scheme::method::{Method, StepLimit};
+use crate::scheme::method::{Begin, Method, StepLimit};
 use crate::scheme::mode_limit::check_step_of_modes;
 use crate::simulation::account;
 use crate::simulation::plan::{Rows, StepControl};
@@ -28,12 +27,10 @@ pub struct Setup<'a> {
     pub loads: &'a [SharedLoad],
     /// Effects, drives and stress.
     pub physics: &'a Physics,
-    /// R, P, Q of the paper's scheme, from the body's origin, body axes.
-    pub reference_points: [Vector3<f64>; 3],
     /// How it begins.
     pub initial: &'a Initial,
     /// How it is stepped.
-    pub method: Method,
+    pub method: &'a dyn Begin,
     /// How long the steps are.
     pub control: StepControl,
     /// When it ends.
@@ -50,9 +47,9 @@ impl Setup<'_> {
         self.check_abilities()?;
         match self.control {
             StepControl::Fixed(step) => self.check_step(step),
-            StepControl::Tolerance(_) if self.method.estimates_error => Ok(()),
+            StepControl::Tolerance(_) if self.method.method().estimates_error => Ok(()),
             StepControl::Tolerance(_) => {
-                let Method { formulation, scheme, .. } = self.method;
+                let Method { formulation, scheme, .. } = self.method.method();
                 Err(SetupError::NoErrorEstimate { formulation, scheme })
             }
         }
@@ -60,7 +57,7 @@ impl Setup<'_> {
 
     /// Refuses physics that the formulation does not have.
     fn check_abilities(&self) -> Result<(), SetupError> {
-        let Method { formulation, abilities, .. } = self.method;
+        let Method { formulation, abilities, .. } = self.method.method();
         let asked_for = [
             (self.physics.drive.is_some(), abilities.drives, "driven motion"),
             (self.physics.large_deflection.is_some(), abilities.large_deflection, "large deflection"),
@@ -91,7 +88,7 @@ impl Setup<'_> {
     /// Refuses a step beyond the limit of the method: that of the fastest mode, or that of the spin.
     fn check_step(&self, step: f64) -> Result<(), SetupError> {
         check_model(self.body, self.damping_ratios, self.loads)?;
-        let StepLimit::Turn(longest_turn) = self.method.limit else {
+        let StepLimit::Turn(longest_turn) = self.method.method().limit else {
             return check_step_of_modes(&self.body.circular_frequencies, self.damping_ratios, step);
         };
         positive("the step", step)?;
@@ -110,7 +107,7 @@ impl Setup<'_> {
     /// # Errors
     /// [`SetupError`] where the body has no conservative form.
     pub fn energy_of_loads(&self) -> Result<f64, SetupError> {
-        if self.method.is_limited_by_modes() && !self.has_formula() {
+        if self.method.method().is_limited_by_modes() && !self.has_formula() {
             return Ok(0.0);
         }
         let body = ConservativeBody::new(self.body, self.damping_ratios, self.loads.to_vec(), self.physics)?;

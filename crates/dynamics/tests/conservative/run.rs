@@ -3,6 +3,7 @@
 use dynamics::{
     Initial, Method, Observation, Physics, PointShapes, Rows, Setup, SetupError, SharedLoad, Simulation, StepControl,
 };
+use frames_rk4::Paper;
 use modal::ReducedBody;
 use nalgebra::Vector3;
 
@@ -41,9 +42,8 @@ impl<'a> Run<'a> {
             body: self.body,
             damping_ratios: &vec![self.damping_ratio; self.body.flexible()],
             loads: &self.loads,
-            reference_points: self.reference_points,
             initial: &self.initial,
-            method,
+            method: Paper { reference_points: self.reference_points }.or(&method),
             control,
             end: self.end,
             rows,

@@ -1,7 +1,7 @@
 //! What cannot start or go on is refused with what was found, and the state before it is kept.
 
 use dynamics::{Initial, Motion, Physics, Rows, Setup, SetupError, Simulation, StepControl, StepError};
-use frames_rk4::{ModalModel, PaperScheme};
+use frames_rk4::{ModalModel, Paper, PaperScheme};
 use nalgebra::Vector3;
 
 use crate::common::Synthesis as _;
@@ -21,9 +21,8 @@ fn run(initial: &Initial, step: f64) -> Result<Simulation, SetupError> {
         damping_ratios: &[0.0; 10],
         loads: &[],
         physics: &Physics::default(),
-        reference_points: ring().reference_points_body(),
         initial,
-        method: frames_rk4::PAPER,
+        method: &Paper { reference_points: ring().reference_points_body() },
         control: StepControl::Fixed(step),
         end: 1.0,
         rows: Rows::EverySteps(1),

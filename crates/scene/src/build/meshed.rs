@@ -1,5 +1,6 @@
 //! A body with a mesh: its modes, and the effects that its scene calls for.
 
+use frames_rk4::Paper;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -83,7 +84,7 @@ pub(super) fn reduce(
     let mut model = Model {
         physics: Physics { effects, drive: model.drive, drive_stiffness: stress.of_drive, large_deflection },
         points,
-        reference_points,
+        paper: Paper { reference_points },
         advice,
         refusal: None,
         times,

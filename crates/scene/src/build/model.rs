@@ -9,8 +9,8 @@ use dynamics::{
 };
 use faer::Mat;
 use fem_tet10::Mesh;
+use frames_rk4::Paper;
 use modal::{Modes, ReducedBody};
-use nalgebra::Vector3;
 
 use super::error::StartError;
 use super::given::MatrixChecks;
@@ -52,8 +52,8 @@ pub struct Model {
     pub physics: Physics,
     /// The points whose motion is written out, by name.
     pub points: Vec<(String, PointShapes)>,
-    /// R, P, Q from the origin of the body, body axes.
-    pub reference_points: [Vector3<f64>; 3],
+    /// The paper's scheme with the scene's reference points.
+    pub paper: Paper,
     /// Which effects the scene calls for, and why.
     pub advice: Advice,
     /// Why the model is known to be wrong, if it is: it does not start unless the scene says `refuse = false`.
@@ -214,6 +214,7 @@ impl Model {
         }
         let points: Vec<PointShapes> = self.points.iter().map(|(_, point)| point.clone()).collect();
         let initial = self.initial(scene);
+        let method = self.paper.or(&method);
         let setup = Setup { method, control, rows, points: &points, ..self.setup(scene, &initial) };
         Ok(Simulation::new(&setup)?)
     }
@@ -229,15 +230,14 @@ impl Model {
     /// The setup that [`Simulation::new`] needs for the run of a scene, without its points. Loads, steps or anything else
     /// may be
     /// replaced.
-    pub fn setup<'a>(&'a self, scene: &Scene, initial: &'a Initial) -> Setup<'a> {
+    pub fn setup<'a>(&'a self, scene: &'a Scene, initial: &'a Initial) -> Setup<'a> {
         Setup {
             body: &self.body,
             damping_ratios: &self.damping_ratios,
             loads: &self.loads,
             physics: &self.physics,
-            reference_points: self.reference_points,
             initial,
-            method: scene.time.method,
+            method: self.paper.or(&scene.time.method),
             control: scene.time.control,
             end: scene.time.end,
             rows: scene.output.rows,

@@ -3,6 +3,7 @@
 use advice::{Case, advise};
 use dynamics::{Effect, Physics, PointShapes};
 use faer::Mat;
+use frames_rk4::Paper;
 use modal::{BodyPoint, ReducedBody, Support};
 use nalgebra::{Matrix3, Vector3};
 
@@ -60,7 +61,7 @@ pub(super) fn build(scene: &Scene, rigid: &RigidBody) -> Result<Model, BuildErro
         loads: loads.acting(effects[Effect::Gravity]),
         physics: Physics { effects, drive, ..Physics::default() },
         points,
-        reference_points,
+        paper: Paper { reference_points },
         advice,
         refusal: None,
         times: BuildTimes::default(),

@@ -25,7 +25,14 @@ pub fn built(scene: &Scene) -> (String, usize) {
     let text = format!(
         "{:?}",
         (
-            (&model.body, &model.physics, &model.points, model.reference_points, model.loads(), model.backbones()),
+            (
+                &model.body,
+                &model.physics,
+                &model.points,
+                model.paper.reference_points,
+                model.loads(),
+                model.backbones()
+            ),
             (model.damping_ratios(), &model.advice, model.refusal, &meshed.mesh, meshed.matrix_bytes),
             (&modes.eigenvalues, &modes.shapes, &modes.rigid, &modes.residuals, &modes.force_residuals),
             observations(scene, &model),
