@@ -1,6 +1,6 @@
 //! Equations of motion: what a scheme integrates.
 
-pub(crate) mod error_norm;
+pub(crate) mod sizes;
 
 use std::fmt;
 use std::sync::Arc;
@@ -9,7 +9,7 @@ use nalgebra::Vector3;
 
 use crate::body::motion_state::MotionState;
 use crate::body::shapes::PointShapes;
-use crate::equations::error_norm::{ErrorNorm, PlainNorm, Sizes};
+use crate::equations::sizes::Sizes;
 use crate::error::{RateError, SetupError};
 use crate::observation::Observation;
 use crate::observation::energies::Energies;
@@ -147,4 +147,54 @@ pub struct Glance<'a> {
     pub modal_displacement: &'a [f64],
     /// Flexible modal velocities (nf).
     pub modal_velocity: &'a [f64],
+}
+
+/// A measure of the errors of steps in one run, so that the errors of all steps add up to that at the end.
+pub trait ErrorNorm<E: Equations>: fmt::Debug + Send + Sync {
+    /// Sizes of the motion at a state, where `e` has the rates.
+    fn motion(&self, equations: &E, state: &State, e: &E::Evaluation) -> Sizes;
+
+    /// Sizes of the difference of two states at the end of a `step`, of which the first was reached by halves of it. An error
+    /// of first order in time counts `gain` times, since all are divided by it.
+    fn difference(&self, equations: &E, states: [&State; 2], step: f64, gain: f64) -> Sizes;
+
+    /// Sizes of an error of a step that steps of half its length do not show.
+    fn unseen(&self, equations: &E, step: f64, end: &StepDone<'_, E>) -> Sizes {
+        let _ = (equations, step, end);
+        Sizes::default()
+    }
+
+    /// Lowest ω_k; infinite without modes.
+    fn lowest_frequency(&self, equations: &E) -> f64 {
+        let _ = equations;
+        f64::INFINITY
+    }
+}
+
+/// The end of a step, and the rates some time before it.
+#[derive(Debug)]
+pub struct StepDone<'a, E: Equations> {
+    /// The state at the end.
+    pub state: &'a State,
+    /// The rates there, without the linear part.
+    pub e: &'a E::Evaluation,
+    /// Rates before.
+    pub before: &'a E::Evaluation,
+    /// Time between the two.
+    pub since: f64,
+}
+
+/// The root of the sum of all squares.
+#[derive(Debug, Clone, Copy)]
+pub struct PlainNorm;
+
+impl<E: Equations> ErrorNorm<E> for PlainNorm {
+    fn motion(&self, _: &E, state: &State, _: &E::Evaluation) -> Sizes {
+        Sizes { displacement: state.values.iter().map(|x| x * x).sum(), ..Sizes::default() }
+    }
+
+    fn difference(&self, _: &E, [a, b]: [&State; 2], _: f64, _: f64) -> Sizes {
+        let squares = a.values.iter().zip(&b.values).map(|(a, b)| (a - b) * (a - b));
+        Sizes { displacement: squares.sum(), ..Sizes::default() }
+    }
 }

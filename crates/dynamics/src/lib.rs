@@ -1,11 +1,12 @@
 //! The motion of a flexible body that has been reduced to modes.
 //!
-//! Begin with [`Simulation::builder`]. The conservative form in the mean-axis frame ([`ConservativeMotion`]) is the default:
-//! momenta are its state, so energy and angular momentum are constants of the motion for any number of modes. Its equations
-//! are those of [`ConservativeBody`], and stand at the head of `conservative.rs`.
+//! Begin with [`Simulation::builder`]. The conservative form in the mean-axis frame ([`ConservativeBody`]) is the default: momenta
+//! are its state, so energy and angular momentum are constants of the motion for any number of modes. Its equations stand at the
+//! head of `conservative.rs`.
 //!
-//! Other formulations come from outside: a [`Method`] names one, says what it can do ([`Abilities`]) and begins its
-//! [`Scheme`]. The crate `frames-rk4`, the paper's synthesis of travelling frames, is the example.
+//! [`Equations`] say what a [`State`] is and what its rates are, a [`Scheme`] how a step uses them; both can come from outside, and
+//! a [`Method`] names them together. What is no scheme of rates is a [`Motion`] of its own: the crate `frames-rk4`, the paper's
+//! synthesis of travelling frames, is the example.
 #![forbid(unsafe_code)]
 #![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable))]
 
@@ -33,8 +34,8 @@ pub use body::second_order::SecondOrder;
 pub use body::shapes::{PointShapes, RotationShapes};
 pub use conservative::manifold::{MOST_LARGE, Manifold};
 pub use conservative::{ConservativeBody, Evaluation as ConservativeEvaluation};
-pub use equations::error_norm::{ErrorNorm, PlainNorm, Sizes, StepDone};
-pub use equations::{Equations, Evaluation, Glance, Oscillators};
+pub use equations::sizes::Sizes;
+pub use equations::{Equations, ErrorNorm, Evaluation, Glance, Oscillators, PlainNorm, StepDone};
 pub use error::{RateError, SetupError, StepError};
 pub use history::{Expression, History, Table};
 pub use load::signal::Signal;
@@ -42,7 +43,6 @@ pub use load::{
     Applied, BodyField, FieldLoad, InertialMotion, Kinematics, Load, LoadFn, LoadFrame, Pattern, PointForce,
     PointMoment, ScaledLoad, SharedLoad,
 };
-pub use motion::beginning::Beginning;
 pub use motion::{ErrorEstimate, Motion};
 pub use observation::energies::Energies;
 pub use observation::moment::Moment;
@@ -53,7 +53,6 @@ pub use observation::work::Work;
 pub use observation::{Observation, PointMotion};
 pub use scheme::abilities::Abilities;
 pub use scheme::exponential::Exponential;
-pub use scheme::method::{Begin, Method, StepLimit};
 pub use scheme::runge_kutta::{Classical, RungeKutta, Tableau};
 pub use scheme::{Scheme, Step};
 pub use simulation::builder::SimulationBuilder;
@@ -61,7 +60,7 @@ pub use simulation::checkpoint;
 pub use simulation::checkpoint::{CheckpointError, decode, encode};
 pub use simulation::events::{Crossing, Event};
 pub use simulation::plan::{Rows, StepControl};
-pub use simulation::setup::Setup;
+pub use simulation::setup::{Begin, Beginning, Method, Setup, StepLimit};
 pub use simulation::{Reached, Simulation, Stats};
 pub use state::{Layout, Rotation, State, attitude_at, vector_at};
 pub use vibration::loaded::{LoadedError, LoadedMode};

@@ -2,7 +2,6 @@
 
 pub(crate) mod abilities;
 pub(crate) mod exponential;
-pub(crate) mod method;
 pub(crate) mod mode_limit;
 pub(crate) mod phi;
 pub(crate) mod runge_kutta;

@@ -19,7 +19,6 @@ use crate::error::{SetupError, StepError};
 use crate::history::History;
 use crate::history::formula_steps::FormulaSteps;
 use crate::load::SharedLoad;
-use crate::motion::beginning::Beginning;
 use crate::motion::{ErrorEstimate, Motion};
 use crate::observation::Observation;
 use crate::observation::moment::Moment;
@@ -33,7 +32,7 @@ use crate::simulation::checkpoint::{
 use crate::simulation::events::{Event, Events, LastStep};
 use crate::simulation::fingerprint::Fingerprint;
 use crate::simulation::plan::{EqualSteps, HalvedSteps, Plan, Progress, Rows, StepControl};
-use crate::simulation::setup::Setup;
+use crate::simulation::setup::{Beginning, Setup};
 
 /// What a run has cost.
 #[derive(Debug, Clone, Copy, PartialEq)]

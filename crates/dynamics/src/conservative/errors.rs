@@ -5,7 +5,8 @@
 //! let a small vibration be wrong altogether; displacements alone would let high modes be, which make accelerations.
 
 use crate::conservative::{ConservativeBody, Evaluation, get, part};
-use crate::equations::error_norm::{ErrorNorm, Sizes, StepDone};
+use crate::equations::sizes::Sizes;
+use crate::equations::{ErrorNorm, StepDone};
 use crate::state::State;
 use crate::vibration::own_coupling::LoadCoupling;
 

@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use crate::conservative::body::{ConservativeBody, Translation, along};
-use crate::equations::error_norm::Sizes;
+use crate::equations::sizes::Sizes;
 use crate::history::History;
 use crate::load::{Applied, Coordinates, Kinematics, Load, SharedLoad};
 use crate::vibration::own_coupling::{LoadCoupling, largest_alike};

@@ -2,13 +2,11 @@
 
 use crate::conservative::ConservativeBody;
 use crate::error::SetupError;
-use crate::motion::beginning::Beginning;
 use crate::scheme::Scheme;
 use crate::scheme::abilities::Abilities;
 use crate::scheme::exponential::Exponential;
-use crate::scheme::method::{Method, StepLimit};
 use crate::scheme::runge_kutta::{Classical, RungeKutta};
-use crate::simulation::setup::Setup;
+use crate::simulation::setup::{Beginning, Method, Setup, StepLimit};
 
 impl Method {
     /// The conservative form by classical Runge–Kutta on the rotation vector of the step (Munthe-Kaas), stable to 2.83/ω_max.

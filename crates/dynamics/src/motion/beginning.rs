@@ -1,21 +1,11 @@
 //! A motion that begins.
 
 use crate::equations::Equations;
-use crate::motion::Motion;
 use crate::motion::stepper::Stepper;
 use crate::scheme::Scheme;
 use crate::simulation::plan::StepControl;
-use crate::simulation::setup::Setup;
+use crate::simulation::setup::{Beginning, Setup};
 use crate::state::State;
-
-/// A motion that begins.
-#[derive(Debug)]
-pub struct Beginning {
-    /// The state and what steps it.
-    pub motion: Box<dyn Motion>,
-    /// Scale of the energy that the loads may give the body: [`Setup::energy_of_loads`].
-    pub energy_of_loads: f64,
-}
 
 impl Beginning {
     /// The motion of equations by a scheme, from a state.

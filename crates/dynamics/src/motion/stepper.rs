@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::body::motion_state::MotionState;
 use crate::body::shapes::PointShapes;
-use crate::equations::error_norm::{ErrorNorm, PlainNorm, Sizes, StepDone};
-use crate::equations::{Equations, Evaluation, Glance};
+use crate::equations::sizes::Sizes;
+use crate::equations::{Equations, ErrorNorm, Evaluation, Glance, PlainNorm, StepDone};
 use crate::error::{RateError, SetupError, StepError};
 use crate::motion::{ErrorEstimate, Motion};
 use crate::observation::Observation;

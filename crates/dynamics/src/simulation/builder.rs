@@ -9,10 +9,9 @@ use crate::body::physics::Physics;
 use crate::body::shapes::PointShapes;
 use crate::error::SetupError;
 use crate::load::{Load, SharedLoad};
-use crate::scheme::method::{Begin, Method};
 use crate::simulation::Simulation;
 use crate::simulation::plan::{Rows, StepControl};
-use crate::simulation::setup::Setup;
+use crate::simulation::setup::{Begin, Method, Setup};
 
 /// Puts a run together; what is not named is as [`Simulation::builder`] says.
 ///
