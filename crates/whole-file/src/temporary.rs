@@ -61,10 +61,20 @@ pub fn remove_temporaries() -> NoTemporaries {
             Err(TryLockError::WouldBlock) => return NoTemporaries { _alone: None },
         }
     };
-    for path in there.drain(..) {
-        let _ = if path.is_dir() { fs::remove_dir_all(&path) } else { fs::remove_file(&path) };
-    }
+    there.drain(..).for_each(|path| remove(&path));
     NoTemporaries { _alone: Some(there) }
+}
+
+/// Removes a file, or a folder with all that is in it. A thread may put something into a folder, or make it again, meanwhile.
+fn remove(path: &Path) {
+    let started = Instant::now();
+    loop {
+        let _ = if path.is_dir() { fs::remove_dir_all(path) } else { fs::remove_file(path) };
+        if path.symlink_metadata().is_err() || started.elapsed() > PATIENCE {
+            return;
+        }
+        sleep(Duration::from_millis(5));
+    }
 }
 
 /// While this is there, no temporary file is made.
@@ -205,5 +215,26 @@ mod tests {
         drop((file, inner));
         assert!(!file_path.exists() && !inner_path.exists() && place.is_file());
         assert!(there().iter().all(|path| !path.starts_with(folder.path())));
+    }
+
+    #[test]
+    fn a_folder_is_removed_that_a_thread_still_writes_to() {
+        let outer = tempfile::tempdir().unwrap();
+        let folder = outer.path().join("folder");
+        fs::create_dir(&folder).unwrap();
+        std::thread::scope(|scope| {
+            scope.spawn(|| {
+                let started = Instant::now();
+                for i in 0.. {
+                    let is_made = fs::create_dir(folder.join(i.to_string())).is_ok();
+                    if !is_made || started.elapsed() > Duration::from_millis(50) {
+                        break;
+                    }
+                }
+            });
+            while fs::read_dir(&folder).unwrap().count() == 0 {}
+            remove(&folder);
+        });
+        assert!(!folder.exists());
     }
 }
