@@ -104,8 +104,9 @@ pub struct MeshReport {
     pub matrix_bytes: usize,
     /// Entries of the factor of K + sM.
     pub factor_entries: usize,
-    /// Bytes that the model takes while it is made, at the most at a time: matrices, factor, basis and scratch.
-    pub peak_bytes: usize,
+    /// Bytes that the model takes while it is made, at the most at a time: matrices, factor, basis and scratch. None where its
+    /// modes were known from before.
+    pub peak_bytes: Option<usize>,
     /// Work of SLEPc, where it found the modes.
     pub engine: Option<EngineReport>,
 }
@@ -178,7 +179,7 @@ impl MeshReport {
             size: mesh.size(),
             matrix_bytes: *matrix_bytes,
             factor_entries: modes.stats.factor_entries,
-            peak_bytes: with_kept(modes.stats.peak_bytes),
+            peak_bytes: Some(modes.stats.peak_bytes).filter(|bytes| *bytes > 0).map(with_kept),
             engine: modes.stats.engine.map(EngineReport::from),
         })
     }
@@ -253,18 +254,15 @@ fn with_kept(bytes: usize) -> usize {
 
 impl fmt::Display for MeshReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(
-            f,
-            "{}, {} unknowns (memory {}: matrices {}",
-            self.in_words(),
-            self.unknowns,
-            Bytes(self.peak_bytes),
-            Bytes(self.matrix_bytes)
-        )?;
-        match self.factor_entries {
-            0 => write!(f, " of it)"),
-            entries => write!(f, ", factor {} of it)", Bytes(8 * entries)),
+        write!(f, "{}, {} unknowns (", self.in_words(), self.unknowns)?;
+        if let Some(bytes) = self.peak_bytes {
+            write!(f, "memory {}: ", Bytes(bytes))?;
         }
+        write!(f, "matrices {}", Bytes(self.matrix_bytes))?;
+        if self.factor_entries > 0 {
+            write!(f, ", factor {}", Bytes(8 * self.factor_entries))?;
+        }
+        f.write_str(if self.peak_bytes.is_some() { " of it)" } else { ")" })
     }
 }
 

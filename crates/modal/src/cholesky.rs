@@ -16,6 +16,7 @@ use faer::{Accum, MatMut, MatRef, Par, Spec};
 use rayon::prelude::*;
 
 use crate::factor_layout::{of_own_rows, write_own_rows};
+use crate::row_chunks::row_chunks_mut;
 use crate::shifted_matrix::ShiftedMatrix;
 use crate::subtrees::Subtrees;
 use crate::supernodes::Supernodes;
@@ -123,7 +124,7 @@ impl Problem<'_> {
             if alone || rows.nrows() <= STRIP {
                 before.subtract(rows, first, sums);
             } else {
-                rows.par_row_chunks_mut(STRIP).enumerate().for_each_init(Sums::default, |sums, (strip, rows)| {
+                row_chunks_mut(rows, STRIP).enumerate().for_each_init(Sums::default, |sums, (strip, rows)| {
                     before.subtract(rows, first + STRIP * strip, sums);
                 });
             }
@@ -138,7 +139,7 @@ impl Problem<'_> {
         if alone || below.nrows() <= STRIP {
             solve(below);
         } else {
-            below.par_row_chunks_mut(STRIP).for_each(solve);
+            row_chunks_mut(below, STRIP).for_each(solve);
         }
         write_own_rows(width, own, packed);
         Ok(())

@@ -17,6 +17,7 @@ use crate::lanczos::LanczosPairs;
 use crate::mass_matrix::MassMatrix;
 use crate::multigrid::Multigrid;
 use crate::products::{Packed, WIDTH};
+use crate::row_chunks::{row_chunks, row_chunks_mut};
 use crate::stiffness::StiffnessMatrix;
 use crate::svqb::{Svqb, norms};
 use crate::tall;
@@ -294,7 +295,7 @@ fn grown(projected: &Mat<f64>, new: &Mat<f64>) -> Mat<f64> {
 
 /// X·H in the first columns of X.
 fn combine(x: MatMut<'_, f64>, h: MatRef<'_, f64>) {
-    x.par_row_chunks_mut(ROWS).for_each(|x| {
+    row_chunks_mut(x, ROWS).for_each(|x| {
         let mut combined = Mat::zeros(x.nrows(), h.ncols());
         matmul(combined.as_mut(), Accum::Replace, x.rb(), h, 1.0, Par::Seq);
         x.subcols_mut(0, h.ncols()).copy_from(combined);
@@ -315,14 +316,14 @@ fn inner(a: MatRef<'_, f64>, b: MatRef<'_, f64>) -> Mat<f64> {
         matmul(c.as_mut(), Accum::Replace, a.transpose(), b, 1.0, Par::Seq);
         c
     };
-    let parts: Vec<Mat<f64>> = a.par_row_chunks(ROWS).zip(b.par_row_chunks(ROWS)).map(of_rows).collect();
+    let parts: Vec<Mat<f64>> = row_chunks(a, ROWS).zip(row_chunks(b, ROWS)).map(of_rows).collect();
     parts.into_iter().fold(zero(), |sum, part| sum + part)
 }
 
 /// Y = A·H, or Y += `factor`·A·H.
 fn multiply(y: MatMut<'_, f64>, beta: Accum, a: MatRef<'_, f64>, h: MatRef<'_, f64>, factor: f64) {
     let of_rows = |(y, a): (MatMut<'_, f64>, MatRef<'_, f64>)| matmul(y, beta, a, h, factor, Par::Seq);
-    y.par_row_chunks_mut(ROWS).zip(a.par_row_chunks(ROWS)).for_each(of_rows);
+    row_chunks_mut(y, ROWS).zip(row_chunks(a, ROWS)).for_each(of_rows);
 }
 
 /// A·H.

@@ -65,6 +65,7 @@ mod rigid;
 mod rigid_body;
 mod rigid_fields;
 mod ritz;
+mod row_chunks;
 mod second_order;
 mod shifted;
 mod shifted_matrix;

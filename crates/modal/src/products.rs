@@ -10,6 +10,7 @@ use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
 use crate::packed_rows::{add_multiple, prefetch};
+use crate::row_chunks::row_chunks_mut;
 
 /// Vectors handled in one pass over the matrix.
 pub(crate) const WIDTH: usize = 8;
@@ -175,7 +176,7 @@ fn blocked(x: MatRef<'_, f64>, mut y: MatMut<'_, f64>, packed: &mut Vec<Packed>,
             }
         });
         let y = y.rb_mut().subcols_mut(first, width);
-        y.par_row_chunks_mut(3 * NODES_PER_TASK).enumerate().for_each(|(task, y)| {
+        row_chunks_mut(y, 3 * NODES_PER_TASK).enumerate().for_each(|(task, y)| {
             arch.dispatch(SomeRows { matrix, first: NODES_PER_TASK * task, packed, y });
         });
     }

@@ -9,6 +9,7 @@ use crate::dense::{symmetric_eigen, whitening};
 use crate::error::ModalError;
 use crate::foretold::of_vectors;
 use crate::mass_matrix::MassMatrix;
+use crate::row_chunks::row_chunks_mut;
 use crate::stiffness::StiffnessMatrix;
 use crate::tall;
 
@@ -62,7 +63,7 @@ pub(crate) fn rayleigh_ritz(
         shapes.copy_from(&rotated);
         lengths.into_iter().zip(forces.col_iter()).map(|(length, rest)| [length, rest.norm_l2()]).collect()
     };
-    let parts: Vec<_> = shapes.par_row_chunks_mut(ROWS).enumerate().map(of_part).collect();
+    let parts: Vec<_> = row_chunks_mut(shapes.as_mut(), ROWS).enumerate().map(of_part).collect();
     let length = |k: usize, i: usize| parts.iter().fold(0.0, |length: f64, part| length.hypot(part[k][i]));
     let force_residuals = (0..eigenvalues.len()).map(|k| length(k, 1) / length(k, 0)).collect();
     fix_signs(&mut shapes);

@@ -16,6 +16,7 @@ use rayon::prelude::*;
 use crate::node_pairs::NodePairs;
 use crate::packed_rows::prefetch;
 use crate::products::NODES_PER_TASK;
+use crate::row_chunks::row_chunks_mut;
 use crate::stiffness::NodalStiffness;
 
 /// Numbers that rows are made of.
@@ -363,7 +364,7 @@ pub(crate) fn pack(columns: MatRef<'_, f64>, factors: [f64; MOST_COLUMNS], rows:
 /// And the sums of blocks of rows back.
 pub(crate) fn unpack<const K: usize>(blocks: [&[f32]; K], factors: [f64; MOST_COLUMNS], columns: MatMut<'_, f64>) {
     let width = columns.ncols().next_multiple_of(LANES);
-    columns.par_row_chunks_mut(3 * NODES_PER_TASK).enumerate().for_each(|(task, columns)| {
+    row_chunks_mut(columns, 3 * NODES_PER_TASK).enumerate().for_each(|(task, columns)| {
         let blocks = blocks.map(|rows| &rows[3 * NODES_PER_TASK * task * width..]);
         for (c, (column, factor)) in columns.col_iter_mut().zip(factors).enumerate() {
             for (row, value) in column.iter_mut().enumerate() {

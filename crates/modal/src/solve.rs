@@ -70,7 +70,8 @@ pub struct SolveStats {
     /// Entries of the factor of K + sM, or of that on the corners of the elements where `cycles` are not zero; zero where an
     /// engine had it.
     pub factor_entries: usize,
-    /// Bytes that are held here at the most, from K and M to the reduced body, foretold from the sizes of all that is large.
+    /// Bytes that are held here at the most, from K and M to the reduced body, foretold from the sizes of all that is large and
+    /// the number of threads; zero where the modes were known.
     pub peak_bytes: usize,
     /// Solutions with a block of vectors.
     pub block_solves: usize,

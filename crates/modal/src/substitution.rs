@@ -11,6 +11,7 @@ use faer::reborrow::{Reborrow, ReborrowMut};
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
+use crate::row_chunks::row_chunks_mut;
 use crate::subtrees::Subtrees;
 use crate::supernode::Supernode;
 use crate::supernodes::Supernodes;
@@ -83,7 +84,7 @@ pub(crate) fn solve(
             _ => factor.solve::<MOST>(scratch),
         }
         let rows = &scratch.rows;
-        x.rb_mut().par_row_chunks_mut(ROWS).enumerate().for_each(|(task, x)| {
+        row_chunks_mut(x.rb_mut(), ROWS).enumerate().for_each(|(task, x)| {
             for (x, row) in x.row_iter_mut().zip(ROWS * task..) {
                 x.iter_mut().zip(&rows[width * new(row)..]).for_each(|(to, from)| *to = *from);
             }

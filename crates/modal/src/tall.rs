@@ -12,6 +12,8 @@ use faer::{Accum, Mat, MatMut, MatRef};
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
+use crate::row_chunks::{row_chunks, row_chunks_mut};
+
 /// Rows that one task computes.
 const ROWS: usize = 4096;
 /// Rows that stay in the processor's first cache.
@@ -30,8 +32,7 @@ pub(crate) fn inner(a: MatRef<'_, f64>, b: MatRef<'_, f64>) -> Mat<f64> {
 pub(crate) fn inner_of_blocks(a: &[MatRef<'_, f64>], b: MatRef<'_, f64>) -> Mat<f64> {
     let arch = Arch::new();
     let zero = || Mat::zeros(a.iter().map(|a| a.ncols()).sum(), b.ncols());
-    let parts: Vec<Mat<f64>> = b
-        .par_row_chunks(ROWS)
+    let parts: Vec<Mat<f64>> = row_chunks(b, ROWS)
         .enumerate()
         .map(|(task, b)| {
             let (a, b) = (rows(a, ROWS * task, b.nrows()), columns(b));
@@ -62,7 +63,7 @@ pub(crate) fn multiply_blocks(
         let entry = |k: usize, c: usize| if c < width { factor * h[(k, first + c)] } else { 0.0 };
         let rows_of_h: Vec<[f64; WIDTH]> = (0..h.nrows()).map(|k| std::array::from_fn(|c| entry(k, c))).collect();
         let block = y.as_mut().subcols_mut(first, width);
-        block.par_row_chunks_mut(ROWS).enumerate().for_each(|(task, mut y)| {
+        row_chunks_mut(block, ROWS).enumerate().for_each(|(task, mut y)| {
             let a = rows(a, ROWS * task, y.nrows());
             for start in (0..y.nrows()).step_by(STRIP) {
                 let rows = STRIP.min(y.nrows() - start);

@@ -44,8 +44,7 @@ pub(super) fn of_modes(modes: &Modes) -> Answer {
         .with_numbers("shift", &[1], vec![stats.shift])
         .with_counts(
             "counts",
-            &[stats.unknowns, stats.factor_entries, stats.peak_bytes, stats.block_solves, stats.basis_size]
-                .map(|count| count as u64),
+            &[stats.unknowns, stats.factor_entries, stats.block_solves, stats.basis_size].map(|count| count as u64),
         )
 }
 
@@ -54,8 +53,7 @@ pub(super) fn modes(kept: &Kept<'_>, rows: usize, motion: RigidMotion) -> Result
     let matrix = |name| Ok::<_, BodyFileError>(Matrix3::from_column_slice(&kept.array::<9>(name)?));
     let eigenvalues = kept.list("eigenvalues", None)?;
     let flexible = eigenvalues.len();
-    let [unknowns, factor_entries, peak_bytes, block_solves, basis_size] =
-        kept.counts("counts")?.map(|count| count as usize);
+    let [unknowns, factor_entries, block_solves, basis_size] = kept.counts("counts")?.map(|count| count as usize);
     Ok(Modes {
         rigid: RigidModes {
             motion,
@@ -71,12 +69,11 @@ pub(super) fn modes(kept: &Kept<'_>, rows: usize, motion: RigidMotion) -> Result
         residuals: kept.list("residuals", Some(flexible))?,
         force_residuals: kept.list("force_residuals", Some(flexible))?,
         eigenvalues,
-        // No time was spent on it.
+        // No time was spent on it, and no memory, which goes with the number of threads.
         stats: SolveStats {
             shift: kept.array::<1>("shift")?[0],
             unknowns,
             factor_entries,
-            peak_bytes,
             block_solves,
             basis_size,
             ..SolveStats::default()
