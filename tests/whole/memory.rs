@@ -16,9 +16,9 @@ fn limited(kilobytes: usize, arguments: &[&str]) -> (Option<i32>, String) {
     (output.status.code(), String::from_utf8_lossy(&output.stderr).into_owned())
 }
 
-/// Megabytes of address space that products of dense matrices reserve on these threads and the main one.
+/// Megabytes of address space that products of dense matrices reserve on these threads.
 fn reserve(threads: usize) -> usize {
-    modal::reserve_of_dense_products(threads + 1) / 1_000_000
+    modal::reserve_of_dense_products(threads) / 1_000_000
 }
 
 #[test]
