@@ -11,7 +11,7 @@
 //! energy = P²/2m + ½ π·ω + ½ p·q̇ + ½ q·Λq
 //! ```
 //!
-//! Of a body that turns freely and whose inertia follows its deformation, S and the G_i leave J and q̇ for the locked
+//! For a body that turns freely and whose inertia follows its deformation, S and the G_i leave J and q̇ for the locked
 //! inertia and p: q̇ = p − S ω need not be known for its forces, and one pass through the matrices gives all that a state
 //! is asked for.
 //!

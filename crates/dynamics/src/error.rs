@@ -55,9 +55,9 @@ pub enum SetupError {
         text: Box<str>,
         /// Where, in characters from 1.
         position: usize,
-        /// What is wrong there.
+        /// The fault.
         problem: Box<str>,
-        /// What to write there.
+        /// Help: text to write there.
         cure: Box<str>,
     },
     /// An expression that is too long.
@@ -183,7 +183,7 @@ pub enum StepError {
         time: f64,
         /// Its energy, without that of the motion of the origin.
         energy: f64,
-        /// What it should be.
+        /// Expected value.
         accounted: f64,
         /// Longest step so far.
         step: f64,
@@ -237,7 +237,7 @@ pub enum StepError {
     EventFunction {
         /// Time of the motion that it was asked about.
         time: f64,
-        /// What it gives.
+        /// Value that it gives.
         found: f64,
     },
     /// A NaN or an overflow.

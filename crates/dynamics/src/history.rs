@@ -147,7 +147,7 @@ impl History {
         }
     }
 
-    /// Whether the factor at a time is the same, bit for bit, by the branches that hold at two branch times.
+    /// True if the factor at a time is the same, bit for bit, by the branches that hold at two branch times.
     pub(crate) fn is_same(&self, time: f64, branch_times: [f64; 2]) -> bool {
         let [a, b] = branch_times;
         matches!(self, Self::Constant) || a == b || self.at(time, a).to_bits() == self.at(time, b).to_bits()
@@ -210,7 +210,7 @@ impl History {
         }
     }
 
-    /// Whether there is a formula in it.
+    /// True if it has a formula.
     pub(crate) fn has_formula(&self) -> bool {
         match self {
             Self::Expression(_) => true,
@@ -279,7 +279,7 @@ impl History {
     }
 }
 
-/// Whether a time is in the closed interval.
+/// True if a time is in the closed interval.
 fn within(start: f64, duration: f64, time: f64) -> bool {
     (start..=start + duration).contains(&time)
 }

@@ -1,4 +1,4 @@
-//! What acts on the body.
+//! Loads on the body.
 //!
 //! A load is anything that implements [`Load`]. The built-in ones are [`PointForce`], [`PointMoment`] and [`FieldLoad`],
 //! each in a file of its own; [`LoadFn`] makes one from a closure.
@@ -60,7 +60,7 @@ pub trait Load: fmt::Debug + Send + Sync + Any {
         None
     }
 
-    /// Whether it does the same to the same motion at a time by the branches that hold at two branch times, whenever it is
+    /// True if it does the same to the same motion at a time by the branches that hold at two branch times, whenever it is
     /// asked: what has been found with one then holds with the other. Not so what something outside sets between steps.
     fn is_same(&self, time: f64, branch_times: [f64; 2]) -> bool {
         let _ = (time, branch_times);
@@ -107,7 +107,7 @@ pub struct Pattern {
     pub vector: Vector3<f64>,
     /// The axes that it is fixed in.
     pub frame: LoadFrame,
-    /// Whether the vector acts at one place. A field has one number for each mode instead, along x.
+    /// True if the vector acts at one place. A field has one number for each mode instead, along x.
     pub local: bool,
 }
 
@@ -131,7 +131,7 @@ pub struct Kinematics<'a> {
     /// the body's.
     pub(crate) frame_origin_global: Vector3<f64>,
     pub(crate) coordinates: Coordinates<'a>,
-    /// Whether histories are taken as 1.
+    /// True if histories are taken as 1.
     pub(crate) unit: bool,
 }
 
@@ -278,7 +278,7 @@ pub struct Applied<'a> {
     coordinates: Coordinates<'a>,
     /// The point that moments are about, from the body's origin.
     center_body: Vector3<f64>,
-    /// What everything added is multiplied by.
+    /// Factor on everything that is added.
     pub(crate) weight: f64,
     /// Force, body components.
     pub force_body: Vector3<f64>,

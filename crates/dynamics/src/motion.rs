@@ -55,7 +55,7 @@ pub trait Motion: fmt::Debug + Send + Sync + Any {
         Ok(())
     }
 
-    /// What acts has been changed from outside between two steps: rates that were found before no longer hold.
+    /// Tells that the loads have been changed from outside between two steps: rates that were found before no longer hold.
     fn loads_have_changed(&mut self) {}
 
     /// Takes up the energy scale of the loads up to `end` as they are now, and returns it. Asked for after a change of the

@@ -1,4 +1,4 @@
-//! What is known of the motion at one time, whichever scheme made it.
+//! The motion at one time, whichever scheme made it.
 
 pub(crate) mod energies;
 pub(crate) mod moment;
@@ -62,13 +62,13 @@ pub struct Observation {
     pub kinetic_energy: f64,
     /// Strain energy.
     pub strain_energy: f64,
-    /// What loads and damping have done since the beginning.
+    /// Work of loads and dissipation since the beginning.
     pub work: Work,
     /// Linear momentum, global components.
     pub linear_momentum_global: Vector3<f64>,
     /// Angular momentum about the centre of mass, or the fixed point of a body that is held, global components.
     pub angular_momentum_global: Vector3<f64>,
-    /// What holds the body does to it.
+    /// Reaction of the constraints on the body.
     pub reaction: Reaction,
     /// Motion of the points, in the order in which they were asked for.
     pub points: Vec<PointMotion>,
@@ -100,7 +100,7 @@ impl Observation {
         }
     }
 
-    /// Whether all quantities are finite numbers.
+    /// True if all quantities are finite numbers.
     pub fn is_finite(&self) -> bool {
         // All fields by name, so that none that is added is forgotten.
         let Self {
@@ -139,7 +139,7 @@ impl Observation {
             let elastic = 0.0 * elastic_displacement_body + 0.0 * elastic_displacement_global;
             (0.0 * displacement + 0.0 * velocity + 0.0 * acceleration + 0.0 * rigid_acceleration + elastic).sum()
         };
-        // Nought times a number is nought, but of infinity and NaN.
+        // 0·x = 0 only for finite x.
         let [w, x, y, z] = attitude.wxyz();
         let numbers = [*time, *kinetic_energy, *strain_energy, *work, *dissipation, w, x, y, z];
         let noughts = numbers.into_iter().chain(reaction.numbers().copied()).map(|number| 0.0 * number).sum::<f64>()

@@ -34,7 +34,7 @@ use crate::simulation::fingerprint::Fingerprint;
 use crate::simulation::plan::{EqualSteps, HalvedSteps, Plan, Progress, Rows, StepControl};
 use crate::simulation::setup::{Beginning, Setup};
 
-/// What a run has cost.
+/// Cost of a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Stats {
@@ -72,7 +72,7 @@ pub struct Simulation {
     fingerprint: Fingerprint,
     motion: Box<dyn Motion>,
     loads: Vec<SharedLoad>,
-    /// Of the drive.
+    /// History of the drive.
     drive: Option<History>,
     formula_steps: FormulaSteps,
     plan: Plan,
@@ -80,15 +80,15 @@ pub struct Simulation {
     rows: Rows,
     end: f64,
     steps_since_row: u64,
-    /// Whether the motion is to be observed where it is, after the event or the stop there.
+    /// True if a row falls on the event or the stop that has been reached.
     row_due: bool,
-    /// Whether the segment ends at a corner that has not been passed.
+    /// True if the segment ends at a discontinuity that has not been passed.
     corner_ahead: bool,
     points: Vec<PointShapes>,
     stats: Stats,
-    /// Whether the iterator has nothing more to give: it has failed.
+    /// True if the iterator has failed: it gives nothing more.
     failed: bool,
-    /// Whether a step has been tried, or the row at the start been given.
+    /// True if a step has been tried, or the row at the start been given.
     begun: bool,
     events: Events,
     /// Kept where events or times between steps are asked for.
@@ -96,7 +96,7 @@ pub struct Simulation {
     /// Where events look at the motion.
     looked_at: Observation,
     observers: Observers,
-    /// Whether steps may be blind to work of the loads, whose energy scale is then known.
+    /// True if steps may be blind to work of the loads, whose energy scale is then known.
     may_miss_work: bool,
 }
 
@@ -136,7 +136,7 @@ impl Walk {
     }
 }
 
-/// What a checkpoint keeps of a run.
+/// State of a run in a checkpoint.
 #[derive(Serialize, Deserialize)]
 struct Saved {
     motion: Vec<u8>,
@@ -343,12 +343,12 @@ impl Simulation {
         Ok(Some(passed.number))
     }
 
-    /// Whether a row falls on the event or the stop that has been reached, and comes next.
+    /// True if a row falls on the event or the stop that has been reached, and comes next.
     pub fn row_is_due(&self) -> bool {
         self.row_due
     }
 
-    /// Whether there is nothing more to come, neither a step nor a row.
+    /// True if neither a step nor a row is to come.
     pub fn is_over(&self) -> bool {
         !self.row_due && self.plan.is_over(self.time())
     }
@@ -438,7 +438,7 @@ impl Simulation {
         Ok(self)
     }
 
-    /// What the run has cost so far.
+    /// Cost of the run so far.
     pub fn stats(&self) -> Stats {
         Stats { evaluations: self.motion.evaluations(), ..self.stats }
     }

@@ -1,4 +1,4 @@
-//! Whether the attitude can still be the right one.
+//! Account of the attitude: it is lost where it turns by what no load has caused.
 //!
 //! The start and the loads account for the angular momentum. A scheme that does not keep it turns the body by the spin
 //! that belongs to the difference, step after step. These turns add up to how far the attitude is off: in global axes, as

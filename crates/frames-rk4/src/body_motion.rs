@@ -1,4 +1,4 @@
-//! What the state says about the body: its motion as a whole, and that of its points.
+//! The motion of the body at a state, as a whole and of its points.
 
 use dynamics::faer::Mat;
 use dynamics::modal::{ReducedBody, RigidMotion};
@@ -50,7 +50,7 @@ impl BodyMotion {
         })
     }
 
-    /// Of a body that begins in this attitude: displacements of points are counted from there.
+    /// Begins in this attitude: displacements of points are counted from there.
     #[must_use]
     pub fn beginning_at(self, initial_attitude: Attitude) -> Self {
         Self { initial_attitude, ..self }

@@ -25,9 +25,9 @@ pub type PaperScheme = TravellingFrame<PaperSteps>;
 pub struct PaperSteps {
     rotation: ModalRotation,
     kinematics: ReferenceKinematics,
-    /// Of the loads and the damping at the state.
+    /// Power of the loads and the damping at the state.
     power: Work,
-    /// Whether a load may jump where the state is, so that its accelerations are to be found again.
+    /// True if a load may jump where the state is, so that its accelerations are to be found again.
     at_corner: bool,
     scratch: Scratch,
 }
@@ -57,7 +57,7 @@ struct Increment {
 struct Scratch {
     stage: Increment,
     total: Increment,
-    /// What T is applied to.
+    /// Argument of T.
     unrotated: Vec<f64>,
     next_displacement: Vec<f64>,
     next_velocity: Vec<f64>,

@@ -47,7 +47,7 @@ pub trait FrameSteps: fmt::Debug + Clone + Send + Sync + 'static {
     /// A load may jump at the time of the state.
     fn pass_corner(&mut self) {}
 
-    /// What it carries from step to step.
+    /// Quantities that it carries from step to step.
     fn carried(&self) -> Carried {
         Carried::default()
     }
@@ -56,16 +56,16 @@ pub trait FrameSteps: fmt::Debug + Clone + Send + Sync + 'static {
     fn carry_on(&mut self, _carried: Carried) {}
 }
 
-/// What steps may carry from one to the next.
+/// Quantities that steps may carry from one to the next.
 #[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
 pub struct Carried {
     /// Power of the loads at the state.
     pub(crate) power: Work,
-    /// Whether a load may jump at the state.
+    /// True if a load may jump at the state.
     pub(crate) at_corner: bool,
 }
 
-/// What a checkpoint keeps.
+/// State in a checkpoint.
 #[derive(Serialize, Deserialize)]
 struct Saved {
     state: State,

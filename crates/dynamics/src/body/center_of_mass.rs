@@ -20,7 +20,7 @@ impl CenterOfMass {
         Self { undeformed_body: body.center_of_mass - body.origin, columns }
     }
 
-    /// What flexible modal coordinates, or their rates, add.
+    /// Part of flexible modal coordinates, or of their rates.
     pub fn deformation(&self, flexible: &[f64]) -> Vector3<f64> {
         self.columns.iter().zip(flexible).map(|(column, q)| column * *q).sum()
     }

@@ -15,7 +15,7 @@ impl Components {
         Self(std::array::from_fn(|i| columns[..moving].iter().map(|column| column[i]).collect()))
     }
 
-    /// Those of the modes from `first` on.
+    /// Components of the modes from `first` on.
     pub fn from(&self, first: usize) -> ComponentsFrom<'_> {
         let Self(all) = self;
         ComponentsFrom(all.each_ref().map(|list| list.get(first..).unwrap_or_default()))

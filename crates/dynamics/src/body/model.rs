@@ -1,4 +1,4 @@
-//! What every formulation asks of a body and its loads.
+//! Requirements of every formulation on a body and its loads.
 
 use modal::ReducedBody;
 

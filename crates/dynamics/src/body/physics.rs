@@ -1,4 +1,4 @@
-//! What of the physics a motion is to have.
+//! The physics that a motion is to have.
 
 use faer::Mat;
 use nalgebra::Vector3;
@@ -95,13 +95,13 @@ pub(crate) fn check_unit(what: &'static str, direction: &Vector3<f64>) -> Result
     Ok(())
 }
 
-/// What a motion in the conservative form is to have beside modes, damping and loads.
+/// Physics of a motion in the conservative form beside modes, damping and loads.
 #[derive(Debug, Clone)]
 pub struct Physics {
     /// Which effects are computed; all by default. Flexibility, damping and gravity are the matter of the body, its
     /// damping ratios and its loads: what these do not hold is not computed.
     pub effects: EffectMap<bool>,
-    /// What drives the held part.
+    /// Drive of the held part.
     pub drive: Option<Drive>,
     /// Geometric stiffness Ψ_fᵀ K Ψ_f (nf×nf, symmetric) of the static answer to the forces `M (1⊗e)` of a unit
     /// acceleration of a driven slide along e, or `M (I⊗[a×]) X` of a driven turn about a.

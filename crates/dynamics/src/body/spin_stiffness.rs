@@ -6,10 +6,10 @@ use crate::conservative::manifold::Manifold;
 
 /// The K_ij of [`ReducedBody::PAIRS`](modal::ReducedBody::PAIRS) of a body.
 pub(crate) struct SpinStiffness {
-    /// What acts on the coordinates of the shapes (nf × nf): all, but on a manifold the parts between a large mode and
+    /// Stiffness on the coordinates of the shapes (nf × nf): all, but on a manifold the parts between a large mode and
     /// another.
     pub on_shapes: [Mat<f64>; 6],
-    /// What acts on the modal coordinates themselves: on a manifold, the parts between modes that are not large.
+    /// Stiffness on the modal coordinates themselves: on a manifold, the parts between modes that are not large.
     pub on_modes: Option<[Mat<f64>; 6]>,
 }
 

@@ -9,7 +9,7 @@
 //!
 //! D is 1, and Ḋ is zero, but on a manifold. Of what is driven v or ω is given.
 //!
-//! Of a locked body the rate of `𝕁 ω = π − Sᵀp` gives ω' from what its forces were found with. The G_i are skew:
+//! For a locked body, the rate of `𝕁 ω = π − Sᵀp` gives ω' from what its forces were found with. The G_i are skew:
 //!
 //! ```text
 //! 𝕁 ω' = π' − 𝕁' ω + (G_i p)·q̇ − Sᵀp',      𝕁' = 2 (c_ij + N̂_ij q)·q̇

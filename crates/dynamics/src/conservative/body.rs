@@ -41,7 +41,7 @@ pub struct ConservativeBody {
     pub(crate) axes: Vec<Vector3<f64>>,
     /// They as columns; zeros for those that are missing.
     pub(super) axis_columns: Matrix3<f64>,
-    /// Whether the turning is driven.
+    /// True if the turning is driven.
     pub(super) turn_driven: bool,
     pub(super) drive: Option<Drive>,
     /// J₀ in the axes of rotation; 1 on the diagonal of axes that are missing.
@@ -61,7 +61,7 @@ pub struct ConservativeBody {
     pub(super) damped: bool,
     /// ij of the terms of the inertia that follow the deformation; empty where none does.
     pub(super) pairs: Vec<(usize, usize)>,
-    /// Whether the equations are those of the locked inertia, which only momenta enter: of a body that turns freely, with
+    /// True if the equations are those of the locked inertia, which only momenta enter: for a body that turns freely, with
     /// Coriolis terms, inertia that follows its deformation, and no large modes.
     pub(super) locked: bool,
     /// S and c_ij + N_ij q of the undeformed body, side by side: b_i of driven axes or zeros, then the c_ij of `pairs`.
@@ -81,9 +81,9 @@ pub struct ConservativeBody {
     /// K of a unit acceleration of what is driven in the modes, column by column, or empty.
     pub(super) drive_stiffness: Vec<f64>,
     pub(super) loads: Vec<SharedLoad>,
-    /// Of a body with large modes.
+    /// Manifold of a body with large modes.
     pub(crate) manifold: Option<Manifold>,
-    /// Of a body that something holds.
+    /// Constants of a body that something holds.
     pub(super) held: Option<Held>,
 }
 

@@ -145,7 +145,7 @@ fn check_lengths(
     }
 }
 
-/// What drives a body, which must be clamped.
+/// Drive of a body, which must be clamped.
 fn driven_motion(drive: &Drive, body: &ReducedBody) -> Result<DrivenMotion, SetupError> {
     drive.check()?;
     if body.motion.count() > 0 {

@@ -1,4 +1,4 @@
-//! What follows from the deformation: S, the inertia, and the spin that a momentum stands for.
+//! Quantities of the deformed body: S, the inertia, and the spin that a momentum stands for.
 
 use nalgebra::{Matrix3, Vector3};
 use pulp::Simd;

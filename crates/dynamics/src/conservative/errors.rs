@@ -47,14 +47,14 @@ pub(super) struct ErrorSize {
 }
 
 impl ErrorSize {
-    /// Of a run until `end`.
+    /// Measure for a run until `end`.
     pub(super) fn new(body: &ConservativeBody, end: f64) -> Self {
         let modes = body.circular_frequencies.iter().zip(&body.damping_ratios);
         let memory = modes.map(|(omega, zeta)| FORGOTTEN / (omega * zeta.min(zeta.recip()) * end)).collect();
         Self { memory, load_coupling: body.load_coupling(), end }
     }
 
-    /// What an error that a `step` makes in a mode counts: only errors that the mode remembers add up.
+    /// Weight of an error that a `step` makes in a mode: only errors that the mode remembers add up.
     fn weight(&self, mode: usize, step: f64) -> f64 {
         self.memory[mode].max(step / self.end).min(1.0)
     }

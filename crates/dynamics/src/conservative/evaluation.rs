@@ -38,7 +38,7 @@ pub struct Evaluation {
     /// q̈ and what it is made of.
     pub(crate) acceleration: Padded,
     pub(crate) change: Padded,
-    /// What z̈ has without q̈, on a manifold.
+    /// Part of z̈ without q̈, on a manifold.
     pub(crate) curvature: Padded,
     /// K q of the stiffness of what is driven (nf).
     pub(crate) drive_stress: Vec<f64>,

@@ -94,7 +94,7 @@ impl ConservativeBody {
     }
 }
 
-/// What ω_iω_j and ω_jω_i come to together in a sum over all pairs.
+/// Sum of ω_iω_j and ω_jω_i in a sum over all pairs.
 fn spin_product(spin: &Vector3<f64>, (i, j): (usize, usize)) -> f64 {
     let product = spin[i] * spin[j];
     if i == j { product } else { 2.0 * product }

@@ -75,9 +75,9 @@ struct Constants {
     negative_mass: BlockedMatrix,
     /// T_jk of the modes by large modes k: large modes j within modes, then modes within large modes j.
     slopes: BlockedMatrix,
-    /// What M leaves to the large modes beyond 1, by products (entries i ≥ j × pairs).
+    /// M − 1 of the large modes, by products (entries i ≥ j × pairs).
     locked: BlockedMatrix,
-    /// Of ∂V_n/∂q by products: ½ Σ g_ijk q_j q_k, then the ½ Σ w_ijkl q_k q_l for i ≥ j.
+    /// ∂V_n/∂q by products: ½ Σ g_ijk q_j q_k, then the ½ Σ w_ijkl q_k q_l for i ≥ j.
     forces: BlockedMatrix,
 }
 
@@ -203,7 +203,7 @@ impl Manifold {
         &self.0.large
     }
 
-    /// What a unit of q_j q_k adds to ξ, for each pair of large modes as in [`SecondOrderShapes::pairs`]: T', pair by pair.
+    /// ξ of a unit of q_j q_k, for each pair of large modes as in [`SecondOrderShapes::pairs`]: T', pair by pair.
     pub fn of_products(&self) -> &[f64] {
         &self.0.shapes
     }

@@ -107,7 +107,7 @@ impl ConservativeBody {
         Ok(())
     }
 
-    /// What holds the body does to it, at ξ, ν and ν' of the shapes. `e` has all rates; the accelerations, of the turning and
+    /// Reaction of the constraints, at ξ, ν and ν' of the shapes. `e` has all rates; the accelerations, of the turning and
     /// of the origin, are body components.
     fn observe_reaction(
         &self,

@@ -52,7 +52,7 @@ struct Stretch {
 }
 
 impl FormulaSteps {
-    /// Those of the formulas among `histories`, for a run until `end` in steps of `step`, or under step control.
+    /// Steps of the formulas among `histories`, for a run until `end` in steps of `step`, or under step control.
     ///
     /// # Errors
     /// [`SetupError::FormulaTooFast`].
@@ -170,7 +170,7 @@ fn is_same(a: f64, b: f64) -> bool {
 struct Rules {
     /// Difference of Simpson's and Gauss's.
     difference: f64,
-    /// Of the magnitude.
+    /// Integral of the magnitude.
     magnitude: f64,
 }
 

@@ -1,4 +1,4 @@
-//! What is found by walking along a history: its size, its spectrum, and where it is no number.
+//! A walk along a history: its size, its spectrum, and where it is no number.
 
 use std::f64::consts::TAU;
 
@@ -127,7 +127,7 @@ impl History {
         ((16.0 * length * self.fastest(end)).ceil().max(1.0) * refinement).min(share).max(1.0)
     }
 
-    /// Whether a walk would miss its cycles: it might step from one zero to another.
+    /// True if a walk would miss its cycles: it might step from one zero to another.
     fn is_too_fast(&self, end: f64) -> bool {
         16.0 * end * self.fastest(end) > self.most_panels()
     }
@@ -146,7 +146,7 @@ impl History {
         MOST_PANELS / self.cost()
     }
 
-    /// What a value counts against a budget of values: 1 for what has a closed form. A formula's goes with the square of
+    /// Count of a value against a budget of values: 1 for what has a closed form. A formula's goes with the square of
     /// its length, for the time that a value takes and for the number of values that it is worth waiting for; those of
     /// factors are added.
     pub fn cost(&self) -> f64 {
@@ -173,7 +173,7 @@ impl History {
     }
 }
 
-/// Whether a change is within a bound. One that is no number does not go away by refinement.
+/// True if a change is within a bound. One that is no number does not go away by refinement.
 fn settled(change: f64, bound: f64) -> bool {
     change.is_nan() || change <= bound
 }
@@ -197,7 +197,7 @@ fn moments(theta: f64) -> [f64; 3] {
 mod tests {
     use crate::history::{Expression, History, expression};
 
-    /// What no walk resolves: noise, in as many terms as there is room for.
+    /// A law that no walk resolves: noise, in as many terms as there is room for.
     fn noise(bytes: usize) -> History {
         let mut text = "fract(9e5*sin(7e4*t))".to_owned();
         while text.len() + 28 < bytes {

@@ -13,9 +13,9 @@ pub struct BodyField {
     pub moment_body: Vector3<f64>,
     /// Ψᵀ f, rigid and flexible modes (6+nf).
     pub modal: Vec<f64>,
-    /// What each flexible mode adds to the resultant: that of a pressure that turns with its surface (nf, or none).
+    /// Part of each flexible mode in the resultant: of a pressure that turns with its surface (nf, or none).
     pub force_change: Vec<Vector3<f64>>,
-    /// What each flexible mode adds to the moment, Σ Φ_k,i × f_i + X_i × ∂f_i/∂q_k (nf).
+    /// Part of each flexible mode in the moment, Σ Φ_k,i × f_i + X_i × ∂f_i/∂q_k (nf).
     pub moment_change: Vec<Vector3<f64>>,
     /// L = Ψᵀ ∂f/∂q of a field that follows the deformation, column by column (nf×nf, or none).
     pub load_stiffness: Vec<f64>,

@@ -99,7 +99,7 @@ impl<F: FnMut(usize, &[f64])> WithSimd for Product<'_, F> {
     }
 }
 
-/// What the rows of a block come to, in N vectors.
+/// Sums of the rows of a block, in N vectors.
 struct Rows<S: Simd, const N: usize>([S::f64s; N]);
 
 impl<S: Simd, const N: usize> Rows<S, N> {

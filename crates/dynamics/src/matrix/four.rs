@@ -113,7 +113,7 @@ impl Padded {
         &self.groups
     }
 
-    /// What is written after the end has to be zero.
+    /// Numbers after the end have to be zero.
     pub(crate) fn groups_mut(&mut self) -> &mut [Group] {
         &mut self.groups
     }
@@ -135,13 +135,13 @@ impl DerefMut for Padded {
     }
 }
 
-/// Whether all are finite numbers.
+/// True if all are finite numbers.
 pub(crate) fn all_finite(list: &[f64]) -> bool {
     let (groups, rest) = list.as_chunks::<8>();
     let mut zeros = [0.0; 8];
     for group in groups {
         for (zero, x) in zeros.iter_mut().zip(group) {
-            // Zero, but of infinity and NaN.
+            // 0·x = 0 only for finite x.
             *zero += x * 0.0;
         }
     }

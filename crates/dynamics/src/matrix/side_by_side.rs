@@ -34,7 +34,7 @@ impl<'a> Lists<'a> {
     }
 }
 
-/// Of each four rows, the lists that count and those after them. The standard library's chunks would divide.
+/// The lists of each four rows that count, and those after them. The standard library's chunks would divide.
 pub(crate) struct Rows<'a>(Lists<'a>);
 
 impl<'a> Iterator for Rows<'a> {
@@ -71,7 +71,7 @@ pub(crate) fn dots<S: Simd, const M: usize>(simd: S, lists: Lists<'_>, x: &[Grou
     totals(sums)
 }
 
-/// Of lists in rows of W, the sums that a locked body asks for: the first A by y, and the P after them, each with a list of
+/// Sums that a locked body asks for, of lists in rows of W: the first A by y, and the P after them, each with a list of
 /// `start` besides, by x. The rows of `start` have L lists, and those that count begin at A, too.
 #[inline(always)]
 pub(crate) fn locked_dots<S: Simd, const A: usize, const P: usize, const L: usize, const W: usize>(

@@ -51,7 +51,7 @@ struct Saved {
     #[serde(with = "equal_room")]
     energies: Option<Energies>,
     first_known: bool,
-    /// Of `first`.
+    /// Rates of `first`.
     rates: Vec<f64>,
     #[serde(with = "postcard::fixint::le")]
     evaluations: u64,

@@ -1,4 +1,4 @@
-//! What a run can be watched by at every step, for nothing.
+//! The motion at every step, as far as it costs nothing.
 
 use nalgebra::Vector3;
 

@@ -1,4 +1,4 @@
-//! What watches a run, without owning its loop.
+//! Observers of a run, which do not own its loop.
 
 use crate::body::shapes::PointShapes;
 use crate::error::StepError;
@@ -38,12 +38,12 @@ pub struct StepEnd<'a> {
     /// Length of the longest step so far; 0 before the first.
     pub(crate) longest_step: f64,
     pub(crate) observation: &'a mut Observation,
-    /// Whether `observation` is that of the state.
+    /// True if `observation` is that of the state.
     pub(crate) is_observed: bool,
 }
 
 impl StepEnd<'_> {
-    /// What steps the body: what it knows without another evaluation of the rates.
+    /// The motion: quantities that it knows without another evaluation of the rates.
     pub fn motion(&self) -> &dyn Motion {
         self.motion
     }

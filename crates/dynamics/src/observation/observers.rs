@@ -7,7 +7,7 @@ use crate::error::StepError;
 use crate::observation::observer::{Observer, StepEnd};
 use crate::simulation::account::EnergyAccount;
 
-/// Those of a run. Its copies have the same ones, but for the account of the energy, of which each has its own.
+/// Observers of a run. Its copies have the same ones, but for the account of the energy, of which each has its own.
 #[derive(Clone)]
 pub(crate) struct Observers {
     pub energy: EnergyAccount,

@@ -1,4 +1,4 @@
-//! What holds a body does to it: force and moment, by d'Alembert's principle.
+//! Reaction of the constraints on a body: force and moment, by d'Alembert's principle.
 //!
 //! ```text
 //! F = m a_c − Σ F_k
@@ -20,7 +20,7 @@ use crate::body::spin_stiffness::SpinStiffness;
 use crate::matrix::column_major::{columns, dot, multiply};
 use crate::matrix::symmetric;
 
-/// What holds a body does to it, and where the motion that it leaves has come to. Zero of a free body, and of one that moves
+/// Reaction of the constraints on a body, and place in the motion that they leave. Zero of a free body, and of one that moves
 /// by the formulation of the paper.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 #[non_exhaustive]
@@ -88,7 +88,7 @@ pub(crate) struct HeldMotion<'a> {
 }
 
 impl Held {
-    /// Of a body in its shapes, stiffened by the stress of its spin; `None` of a free one.
+    /// Constants of a body in its shapes, stiffened by the stress of its spin; `None` of a free one.
     pub(crate) fn new(
         body: &ReducedBody,
         stiffness: Option<&SpinStiffness>,

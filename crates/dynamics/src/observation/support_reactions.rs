@@ -1,4 +1,4 @@
-//! What each of several supports does to a body, by the principle of virtual work.
+//! Reactions of each of several supports, by the principle of virtual work.
 //!
 //! ```text
 //! R_c = ψ_cᵀ (M a − f),   a = a_o + α×x + ω×(ω×x) + 2ω×(Ψ ν) + Ψ ν',   x = X + Ψ ξ
@@ -46,7 +46,7 @@ struct SupportMotion {
 }
 
 impl SupportReactions {
-    /// Of `body`, whose first `shapes` shapes are those of the motion and whose others are motions of the supports. The loads
+    /// Reactions on `body`, whose first `shapes` shapes are those of the motion and whose others are motions of the supports. The loads
     /// are in its modes; with large modes there is their manifold.
     pub fn new(
         body: &ReducedBody,
@@ -112,7 +112,7 @@ impl SupportReactions {
         motions.iter().zip(forces).map(|(motion, force)| along(motion) - force).collect()
     }
 
-    /// What the loads do along each motion.
+    /// Work of the loads along each motion.
     fn load_forces(&self, now: &Observation, xi: &[f64], nu: &[f64]) -> Vec<f64> {
         let Constants { shapes, motions, loads, manifold, .. } = &*self.0;
         let all = |of_shapes: &[f64]| {

@@ -1,4 +1,4 @@
-//! What loads and damping have done so far: the other side of the balances of energy and angular momentum.
+//! Work of the loads and dissipation so far: the other side of the balances of energy and angular momentum.
 
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};

@@ -1,4 +1,4 @@
-//! What a formulation of the equations of motion can do.
+//! Abilities of a formulation of the equations of motion.
 
 /// The parts of the physics that a formulation has. What a scene asks for and a formulation lacks is refused.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,4 +1,4 @@
-//! Whether the energy that a motion has is the one that it should have.
+//! Account of the energy: a motion must have what its start, its loads and its damping leave it.
 //!
 //! The start, the work of the loads and the dissipation account for the energy of every state. A scheme whose steps are
 //! too long breaks this long before a number overflows. The account is an observer that every run has: it needs no
@@ -46,7 +46,7 @@ const SUMMED: f64 = 1e-4;
 /// Rounding in the energy of the origin's motion.
 const ROUNDING: f64 = 1e-9;
 
-/// Whether steps are short enough for the stages to see work and dissipation; the `rate` is the largest of ω_k and
+/// True if steps are short enough for the stages to see work and dissipation; the `rate` is the largest of ω_k and
 /// 2 ζ_k ω_k.
 pub(crate) fn is_resolved(rate: f64, step: f64) -> bool {
     rate * step <= RESOLVED

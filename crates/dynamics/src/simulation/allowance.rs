@@ -48,7 +48,7 @@ impl Allowance {
         }
     }
 
-    /// Whether a step twice as long may be tried next. Twice as much is allowed to it, half of which is kept in hand.
+    /// True if a step twice as long may be tried next. Twice as much is allowed to it, half of which is kept in hand.
     pub(crate) fn may_double(estimate: &ErrorEstimate, allowed: f64) -> bool {
         estimate.doubled <= allowed.max(ROUNDING)
     }

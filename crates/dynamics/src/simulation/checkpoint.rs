@@ -17,7 +17,7 @@ pub enum CheckpointError {
         "the checkpoint is that of another run: {what} has changed since; put back what was changed, or run the scene again from its beginning"
     )]
     Changed {
-        /// What differs.
+        /// The part that differs.
         what: String,
     },
     /// The bytes are too few, too many, or hold no state.
@@ -31,7 +31,7 @@ pub enum CheckpointError {
         "the checkpoint does not hold a state of this run: {what} is out of its range; run the scene again from its beginning"
     )]
     Value {
-        /// What it stands for.
+        /// Meaning of the value.
         what: &'static str,
     },
 }
@@ -109,7 +109,7 @@ pub mod equal_room {
     /// Writes whether there is a value, and it or a default.
     ///
     /// # Errors
-    /// Those of the serializer.
+    /// Errors of the serializer.
     pub fn serialize<T, S>(value: &Option<T>, serializer: S) -> Result<S::Ok, S::Error>
     where
         T: Serialize + Default + Copy,
@@ -121,7 +121,7 @@ pub mod equal_room {
     /// Reads it.
     ///
     /// # Errors
-    /// Those of the deserializer.
+    /// Errors of the deserializer.
     pub fn deserialize<'de, T, D>(deserializer: D) -> Result<Option<T>, D::Error>
     where
         T: Deserialize<'de>,

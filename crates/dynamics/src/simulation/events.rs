@@ -38,7 +38,7 @@ impl Event {
         Self { name: name.into(), crossing, function: Arc::new(function) }
     }
 
-    /// What its function says of a motion.
+    /// Value of its function at a motion.
     fn value(&self, now: &Observation) -> Result<f64, StepError> {
         let value = (self.function)(now);
         if value.is_finite() { Ok(value) } else { Err(StepError::EventFunction { time: now.time, found: value }) }
@@ -49,7 +49,7 @@ impl Event {
         &self.name
     }
 
-    /// Whether the function has passed through zero between these values.
+    /// True if the function has passed through zero between these values.
     fn is_passed(&self, before: f64, after: f64) -> bool {
         let rising = before < 0.0 && after >= 0.0;
         let falling = before > 0.0 && after <= 0.0;
@@ -77,7 +77,7 @@ pub(crate) struct LastStep {
     observation: Observation,
     /// Time at its end, to the last bit that of the scheme there.
     end: f64,
-    /// Whether it was taken in two halves, as under step control.
+    /// True if it was taken in two halves, as under step control.
     halved: bool,
 }
 
@@ -128,7 +128,7 @@ impl LastStep {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Passed {
     pub number: usize,
-    /// Whether it is at the end of the step but for rounding; if not, the probe of the step is there.
+    /// True if it is at the end of the step but for rounding; if not, the probe of the step is there.
     pub at_end: bool,
 }
 
@@ -138,7 +138,7 @@ pub(crate) struct Events {
     list: Vec<Event>,
     values: Vec<f64>,
     after: Vec<f64>,
-    /// Whether the values are those of another state.
+    /// True if the values are those of another state.
     stale: bool,
 }
 
@@ -162,7 +162,7 @@ impl Events {
         self.list.get(number)
     }
 
-    /// Whether the values are to be found again, after a change of the state.
+    /// True if the values are to be found again, after a change of the state.
     pub(crate) fn is_stale(&self) -> bool {
         self.stale && !self.list.is_empty()
     }

@@ -1,4 +1,4 @@
-//! What a run is of: so that a checkpoint of another one is not taken up.
+//! Check sums of a set-up, so that a checkpoint of another run is not taken up.
 
 use std::fmt::{self, Write};
 

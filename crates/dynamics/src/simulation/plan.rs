@@ -30,9 +30,9 @@ pub(crate) struct Segment {
     /// `end − start`; segments that are equally long but for rounding have the very same length, so that what belongs
     /// to a step's length need not be computed again.
     pub length: f64,
-    /// Whether the end is an output time.
+    /// True if the end is an output time.
     pub row: bool,
-    /// Whether the end is a corner.
+    /// True if the end is a discontinuity.
     pub corner: bool,
 }
 
@@ -104,17 +104,17 @@ impl Plan {
         self.stop = time;
     }
 
-    /// Whether a time is the stop time, or beyond it.
+    /// True if a time is the stop time, or beyond it.
     pub(crate) fn is_at_stop(&self, time: f64) -> bool {
         self.stop.is_some_and(|stop| stop <= time + self.same())
     }
 
-    /// Whether two times are one but for rounding.
+    /// True if two times are one but for rounding.
     pub(crate) fn are_same(&self, a: f64, b: f64) -> bool {
         (a - b).abs() <= self.same()
     }
 
-    /// Whether a time is the end, or beyond it.
+    /// True if a time is the end, or beyond it.
     pub(crate) fn is_over(&self, time: f64) -> bool {
         time >= self.end - self.same()
     }
@@ -195,7 +195,7 @@ impl EqualSteps {
         expect("the number of steps done", self.done <= self.count)
     }
 
-    /// Whether all steps have been handed out.
+    /// True if all steps have been handed out.
     pub(crate) fn is_done(&self) -> bool {
         self.done == self.count
     }
@@ -219,7 +219,7 @@ pub(crate) struct HalvedSteps {
     segment: Segment,
     /// Steps are `length / 2^level` long.
     level: u32,
-    /// That of the longest allowed.
+    /// Level of the longest step allowed.
     lowest_level: u32,
     /// Steps of this length that have been done.
     #[serde(with = "postcard::fixint::le")]
@@ -257,7 +257,7 @@ impl HalvedSteps {
         Some((h, end))
     }
 
-    /// Length of the steps of the moment.
+    /// Length of the present steps.
     pub(crate) fn length(&self) -> f64 {
         self.segment.length / (1u64 << self.level) as f64
     }

@@ -44,7 +44,7 @@ pub struct Setup<'a> {
     pub points: &'a [PointShapes],
 }
 
-/// What limits the step of a scheme.
+/// Limit of the step of a scheme.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum StepLimit {
@@ -54,7 +54,7 @@ pub enum StepLimit {
     Turn(f64),
 }
 
-/// What a [`Setup`] begins a motion with: a [`Method`], or one with data of its own.
+/// Beginning of a motion for a [`Setup`]: a [`Method`], or one with data of its own.
 pub trait Begin: fmt::Debug + Send + Sync {
     /// Its name and what it can do.
     fn method(&self) -> Method;
@@ -79,11 +79,11 @@ pub struct Method {
     pub order: u32,
     /// Evaluations of the rates that a step takes.
     pub evaluations_per_step: u32,
-    /// What limits its step.
+    /// Limit of its step.
     pub limit: StepLimit,
-    /// Whether it estimates the error of a step.
+    /// True if it estimates the error of a step.
     pub estimates_error: bool,
-    /// What its formulation can do.
+    /// Abilities of its formulation.
     pub abilities: Abilities,
     /// Begins a motion.
     pub begin: fn(&Setup) -> Result<Beginning, SetupError>,
@@ -172,7 +172,7 @@ impl Setup<'_> {
         Ok(if is_needed { body.sizes_of_loads(self.end).energy } else { 0.0 })
     }
 
-    /// Whether steps may be blind to work of the loads: they do not resolve a mode of this rate, the largest of ω_k and
+    /// True if steps may be blind to work of the loads: they do not resolve a mode of this rate, the largest of ω_k and
     /// 2 ζ_k ω_k, or a formula rises from nothing within one.
     pub(crate) fn may_miss_work(&self, fastest_rate: f64) -> bool {
         let is_resolved = match self.control {
@@ -198,7 +198,7 @@ impl Begin for Method {
 }
 
 impl Method {
-    /// Whether its step is limited by the fastest mode; otherwise by the spin.
+    /// True if its step is limited by the fastest mode; otherwise by the spin.
     pub fn is_limited_by_modes(&self) -> bool {
         self.limit == StepLimit::Modes
     }

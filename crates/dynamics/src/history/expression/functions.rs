@@ -21,11 +21,11 @@ pub(super) struct Binary {
     pub piece: Option<fn(f64, f64) -> i64>,
 }
 
-/// What a name with parentheses stands for.
+/// Function of a name with parentheses.
 pub(super) enum Function {
     Unary(Unary),
     Binary(Binary),
-    /// Of one number or more: of the first two, of that and the third, and so on.
+    /// Function of one number or more: of the first two, of that and the third, and so on.
     Repeated(Binary),
 }
 
@@ -128,7 +128,7 @@ fn toward(x: f64, y: f64) -> [f64; 2] {
     if length == 0.0 { [0.0; 2] } else { [x / length, y / length] }
 }
 
-/// Of the angle of (x, y), by y and by x.
+/// Derivatives of the angle of (x, y), by y and by x.
 fn turning(y: f64, x: f64) -> [f64; 2] {
     let length = x.hypot(y);
     [x / length / length, -y / length / length]

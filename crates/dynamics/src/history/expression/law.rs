@@ -39,7 +39,7 @@ impl Law {
 
     /// The value at a time and d/dt of it, by the chain rule. Allocates nothing.
     ///
-    /// What does not move moves nothing, even where the outer derivative is infinite: of `sqrt(max(0, t - 1))` the rate
+    /// A constant argument gives a constant, even where the outer derivative is infinite: of `sqrt(max(0, t - 1))` the rate
     /// is 0 before t = 1.
     pub fn value_and_rate(&self, time: f64) -> (f64, f64) {
         let times = |derivative: f64, rate: f64| if rate == 0.0 { 0.0 } else { derivative * rate };
@@ -58,7 +58,7 @@ impl Law {
         }
     }
 
-    /// Whether the law has kinks or jumps.
+    /// True if the law has kinks or jumps.
     pub fn has_pieces(&self) -> bool {
         match self {
             Self::Number(_) | Self::Time => false,

@@ -215,7 +215,7 @@ impl<'a> Reader<'a> {
         self.at += rest.find(|c| !belongs(c)).unwrap_or(rest.len());
     }
 
-    /// What is said of the next character where it cannot stand.
+    /// Message about the next character where it cannot stand.
     fn unexpected(&mut self) -> Refusal {
         let next = self.next();
         if next == Some('*') && self.text[..self.at].ends_with('*') {
@@ -242,7 +242,7 @@ fn refusal(byte: usize, problem: impl Into<Box<str>>, cure: impl Into<Box<str>>)
     Refusal { byte, problem: problem.into(), cure: cure.into() }
 }
 
-/// What to write in place of a name that is not known; it may be that of a module.
+/// Help for a name that is not known; it may be that of a module.
 fn unknown_name(name: &str, is_module: bool) -> String {
     let small = name.to_lowercase();
     let same =
