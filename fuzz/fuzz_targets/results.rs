@@ -19,8 +19,8 @@ static FILES: LazyLock<(tempfile::TempDir, PathBuf, PathBuf, Vec<u8>)> = LazyLoc
 });
 
 fn open(path: &PathBuf) {
-    match Results::open(path, &COLUMNS) {
-        Ok(results) => assert_eq!(results.numbers("time").map(<[f64]>::len), Some(results.rows())),
+    match Results::open_with_shapes(path, &COLUMNS) {
+        Ok((results, _)) => assert_eq!(results.numbers("time").map(<[f64]>::len), Some(results.rows())),
         Err(error) => assert!(!error.to_string().is_empty()),
     }
 }
@@ -40,6 +40,9 @@ fuzz_target!(|bytes: &[u8]| {
     drop(file);
     open(part);
     if let Err(error) = Writer::resume(part, &COLUMNS, false) {
-        assert!(matches!(error, FileError::NoSeal { .. } | FileError::Damaged { .. }), "{error}");
+        assert!(
+            matches!(error, FileError::NoSeal { .. } | FileError::OtherVersion { .. } | FileError::Damaged { .. }),
+            "{error}"
+        );
     }
 });

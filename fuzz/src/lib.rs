@@ -37,8 +37,10 @@ pub fn write_results(path: &Path, modes: usize, points: usize, rows: u32, finish
         step: Some(1e-3),
         tolerance: None,
         program_version: "0".into(),
+        end: 1.0,
         scene_text: "title = \"a seed\"".into(),
         scene_file: "fuzz.toml".into(),
+        input_files: Vec::new(),
         body: BodyProperties {
             mass: 1.0,
             center_of_mass: [0.0; 3],
@@ -47,14 +49,18 @@ pub fn write_results(path: &Path, modes: usize, points: usize, rows: u32, finish
             damping_ratios: vec![0.0; modes],
             origin: [0.0; 3],
             static_shapes: 0,
+            rotation_axes: Vec::new(),
+            translation_axes: Vec::new(),
+            mesh: None,
         },
         point_names: (0..points).map(|i| format!("P{i}")).collect(),
         point_positions: vec![[0.0; 3]; points],
         parts: Vec::new(),
         support_names: Vec::new(),
+        effects: Vec::new(),
         warnings: Vec::new(),
     };
-    let mut writer = Writer::create(path, &metadata, &COLUMNS, Expected { overwrite: true, ..Expected::default() })?;
+    let mut writer = Writer::create(path, &metadata, None, &COLUMNS, Expected { overwrite: true, ..Expected::default() })?;
     let row = Row { modes: vec![0.5; modes], points };
     (0..rows).try_for_each(|_| writer.push(&row))?;
     if finish { writer.finish() } else { Ok(()) }

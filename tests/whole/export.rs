@@ -233,7 +233,7 @@ fn what_cannot_be_exported_is_refused_and_an_unfinished_run_is_marked() {
     let part = unfinished(at("cut.h5"));
     let model = Model::build(&scene, |_| ()).unwrap();
     let mut writer =
-        results::Writer::create(at("cut.h5"), &results.metadata, &COLUMNS, results::Expected::default()).unwrap();
+        results::Writer::create(at("cut.h5"), &results.metadata, None, &COLUMNS, results::Expected::default()).unwrap();
     model
         .start(&scene)
         .unwrap()

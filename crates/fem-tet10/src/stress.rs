@@ -42,6 +42,8 @@ pub struct StressRecovery<'a> {
     /// The material of each element.
     materials: Vec<Material>,
     sites: StressSites,
+    /// The sites that have rows in the stresses.
+    recovered: Vec<u32>,
     incidence: Incidence,
     rules: Rules,
 }
@@ -55,7 +57,24 @@ impl<'a> StressRecovery<'a> {
         let materials = materials.of_elements(mesh)?;
         let incidence = Incidence::new(mesh);
         let sites = StressSites::new(mesh, &materials, &incidence);
-        Ok(Self { mesh, materials, sites, incidence, rules: Rules::new() })
+        let recovered = (0..sites.len() as u32).collect();
+        Ok(Self { mesh, materials, sites, recovered, incidence, rules: Rules::new() })
+    }
+
+    /// The same recovery at the sites of some nodes alone, in the order of the nodes: its stresses have rows for these, with
+    /// the same numbers.
+    ///
+    /// # Panics
+    /// Where there is no such node.
+    #[must_use]
+    pub fn at_nodes(mut self, nodes: &[u32]) -> Self {
+        self.recovered = nodes.iter().flat_map(|node| self.sites.of_node(*node)).map(|site| site as u32).collect();
+        self
+    }
+
+    /// The node of each site that has rows in the stresses.
+    pub fn nodes(&self) -> impl ExactSizeIterator<Item = u32> + '_ {
+        self.recovered.iter().map(|site| self.sites.nodes()[*site as usize])
     }
 
     /// Where the stresses are: each node, once for each material around it.
@@ -108,7 +127,7 @@ impl<'a> StressRecovery<'a> {
         columns: usize,
         block: impl Fn(usize, usize) -> Result<Vec<f64>, AssemblyError>,
     ) -> Result<Mat<f64>, AssemblyError> {
-        let rows = 6 * self.sites.len();
+        let rows = 6 * self.recovered.len();
         memory::check("the stress at the nodes", (8 * rows).saturating_mul(columns + BLOCK))?;
         let mut nodal = Mat::zeros(rows, columns);
         for first in (0..columns).step_by(BLOCK) {
@@ -132,11 +151,11 @@ impl<'a> StressRecovery<'a> {
         stresses: impl Fn(&[Matrix3<f64>], &Material, &mut Vec<Matrix3<f64>>) + Sync,
     ) -> Result<Vec<f64>, AssemblyError> {
         let at_nodes = NODES.map(shape_gradients);
-        let mut nodal = memory::zeros("the stress at the nodes", 6 * count * self.sites.len())?;
-        nodal.par_chunks_mut(6 * count).enumerate().for_each(|(site, mean)| {
+        let mut nodal = memory::zeros("the stress at the nodes", 6 * count * self.recovered.len())?;
+        nodal.par_chunks_mut(6 * count).zip(&self.recovered).for_each(|(mean, site)| {
             let (mut gradients, mut tensors) = (Vec::with_capacity(fields.ncols()), Vec::with_capacity(count));
             let mut volume = 0.0;
-            for (e, place) in self.elements_at(site) {
+            for (e, place) in self.elements_at(*site as usize) {
                 let relative = relative_displacements(fields, &self.mesh.elements()[e]);
                 // A point of integration with the volume that the element would have if it were as there throughout.
                 let point = IntegrationPoint::new(&self.mesh.element_positions(e), &at_nodes[place], 1.0);

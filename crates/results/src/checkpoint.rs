@@ -88,20 +88,26 @@ pub(crate) fn little_endian<T: bytemuck::NoUninit + ToLittleEndian>(values: &[T]
     }
 }
 
-/// A number of eight bytes.
+/// A number of four or eight bytes.
 pub(crate) trait ToLittleEndian {
     /// The lowest byte first.
-    fn bytes(&self) -> [u8; 8];
+    fn bytes(&self) -> impl IntoIterator<Item = u8>;
 }
 
 impl ToLittleEndian for f64 {
-    fn bytes(&self) -> [u8; 8] {
+    fn bytes(&self) -> impl IntoIterator<Item = u8> {
         self.to_le_bytes()
     }
 }
 
 impl ToLittleEndian for u64 {
-    fn bytes(&self) -> [u8; 8] {
+    fn bytes(&self) -> impl IntoIterator<Item = u8> {
+        self.to_le_bytes()
+    }
+}
+
+impl ToLittleEndian for u32 {
+    fn bytes(&self) -> impl IntoIterator<Item = u8> {
         self.to_le_bytes()
     }
 }

@@ -60,18 +60,7 @@ impl<R> Column<R> {
 
     /// The unit in the labels of a run.
     pub fn unit(&self, units: &Units) -> String {
-        let is_no_letter = |c: char| !c.is_ascii_lowercase();
-        let replaced = self.unit.split_inclusive(is_no_letter).map(|piece| {
-            let word = piece.trim_end_matches(is_no_letter);
-            let label = match word {
-                "length" => &units.length,
-                "mass" => &units.mass,
-                "time" => &units.time,
-                other => other,
-            };
-            label.to_owned() + &piece[word.len()..]
-        });
-        replaced.collect()
+        units.in_labels(self.unit)
     }
 
     /// Shape of a row's values: that of the dataset is T, the number of rows, and then this.

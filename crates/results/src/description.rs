@@ -1,5 +1,6 @@
 //! Contents of a results file and their places, in a form that is read without HDF5.
 
+use crate::shapes::stored::StoredArray;
 use crate::{FileError, Metadata};
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
@@ -15,8 +16,21 @@ pub(crate) struct Description {
     pub checkpoint_words: Option<usize>,
     /// First byte of each history, in the order of the columns, and of the checkpoints; 0 where there is nothing.
     pub starts: Vec<u64>,
+    /// The shapes of the body; none of a body that has none, or where they are elsewhere.
+    pub arrays: Vec<StoredArray>,
     /// Metadata of the run.
     pub metadata: Metadata,
+}
+
+/// Bytes of the numbers of a file.
+#[derive(Debug)]
+pub(crate) struct Ranges {
+    /// Of each history, in the order of the columns.
+    pub histories: Vec<Range<u64>>,
+    /// Of the two places for a checkpoint.
+    pub checkpoints: Range<u64>,
+    /// Of each array.
+    pub arrays: Vec<Range<u64>>,
 }
 
 impl Description {
@@ -33,23 +47,23 @@ impl Description {
         })
     }
 
-    /// The bytes of each history, and of the checkpoints, from the values per row of the histories. `None` if they are
-    /// not all within `free`, each in a place of its own.
-    pub(crate) fn ranges(&self, widths: impl Iterator<Item = usize>, free: Range<u64>) -> Option<Vec<Range<u64>>> {
+    /// The bytes of each history and of the checkpoints, from the values per row of the histories, and those of the arrays.
+    /// `None` if they are not all within `free`, each in a place of its own.
+    pub(crate) fn ranges(&self, widths: impl Iterator<Item = usize>, free: Range<u64>) -> Option<Ranges> {
         let size = |numbers: usize, each: usize| Some((numbers.checked_mul(each)?.checked_mul(8)?) as u64);
         let sizes = widths.map(|width| size(self.rows, width));
         let sizes = sizes.chain(self.checkpoint_words.map(|words| size(2, words)));
         let mut starts = self.starts.iter();
-        let ranges: Vec<Range<u64>> = sizes
-            .map(|size| {
-                let start = *starts.next()?;
-                Some(start..start.checked_add(size?)?)
-            })
-            .collect::<Option<_>>()?;
-        let mut sorted: Vec<&Range<u64>> = ranges.iter().filter(|range| !range.is_empty()).collect();
+        let range = |start: u64, size: u64| Some(start..start.checked_add(size)?);
+        let mut histories: Vec<_> = sizes.map(|size| range(*starts.next()?, size?)).collect::<Option<_>>()?;
+        let arrays: Vec<_> =
+            self.arrays.iter().map(|array| range(array.start, array.bytes()?)).collect::<Option<_>>()?;
+        let mut sorted: Vec<&Range<u64>> = histories.iter().chain(&arrays).filter(|range| !range.is_empty()).collect();
         sorted.sort_unstable_by_key(|range| range.start);
         let apart = sorted.windows(2).all(|pair| pair[0].end <= pair[1].start);
         let within = sorted.iter().all(|range| free.start <= range.start && range.end <= free.end);
-        (apart && within && starts.next().is_none()).then_some(ranges)
+        let fit = apart && within && starts.next().is_none();
+        let checkpoints = self.checkpoint_words.and_then(|_| histories.pop()).unwrap_or_default();
+        fit.then_some(Ranges { histories, checkpoints, arrays })
     }
 }

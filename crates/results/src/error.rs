@@ -175,6 +175,20 @@ pub enum FileError {
         /// The file.
         path: PathBuf,
     },
+    /// A file of another version of the format.
+    #[error(
+        "{path}: this is a results file of version {found}, and this program reads version {expected}, in which a file carries the \
+         shapes of its body; run its scene again with --overwrite",
+        path = .path.display()
+    )]
+    OtherVersion {
+        /// The file.
+        path: PathBuf,
+        /// Its version.
+        found: String,
+        /// The version that is read.
+        expected: &'static str,
+    },
     /// A results file that has been changed or damaged.
     #[error(
         "{path}: the file is damaged, or another program has changed it: {what}; take an unchanged copy, or run its scene \
@@ -214,6 +228,7 @@ impl FileError {
             | Self::WrongLength { path, .. }
             | Self::NotFinite { path, .. }
             | Self::NoSeal { path, .. }
+            | Self::OtherVersion { path, .. }
             | Self::Damaged { path, .. }
             | Self::ConstantNotFinite { path, .. }
             | Self::Link { path, .. }

@@ -6,8 +6,10 @@
 //!
 //! A file with T rows has one dataset for each column, but for those that ask for a part that the run has not got. All
 //! points are in one dataset of T×P×3, and `points/names` and `points/position` (P×3) say which they are. It has
-//! `body/mass`, `center_of_mass` (3), `inertia` (3×3), `origin` (3), `frequencies`, `damping_ratios` and `kinds` (nf)
-//! besides. Every dataset has the attributes `unit`, `frame` and `description`. The root has `title`, `scene` (the scene
+//! `body/mass`, `center_of_mass` (3), `inertia` (3×3), `origin` (3), `frequencies`, `damping_ratios` and `kinds` (nf),
+//! `rotation_axes` and `translation_axes` (…×3) besides, and the [`Shapes`] of the body, which is what is drawn of it: with
+//! these and the rows, all that comes after a run needs this one file.
+//! Every dataset has the attributes `unit`, `frame` and `description`. The root has `title`, `scene` (the scene
 //! file's text), `scene_file` (where it was), `formulation`, `scheme`, `step` or `tolerance`, `program_version`,
 //! `units_length`, `units_mass`, `units_time` and `complete`: 1, or 0 in an unfinished file.
 //!
@@ -34,6 +36,7 @@ mod paths;
 mod reader;
 mod room;
 mod seal;
+mod shapes;
 mod store;
 mod structure;
 mod vtk;
@@ -46,8 +49,9 @@ extern crate self as results; // for what the tests share
 
 pub use column::{Column, Values, present};
 pub use error::FileError;
-pub use metadata::{BodyProperties, Metadata, Units};
+pub use metadata::{BodyProperties, EffectProperties, MeshProperties, Metadata, Units};
 pub use reader::{ColumnTable, Results};
+pub use shapes::{Shapes, StressShapes};
 pub use vtk::{CellKind, Field, Grid};
 pub use vtkhdf::VtkHdf;
 pub use vtu::{write_pvd, write_vtu};

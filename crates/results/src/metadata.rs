@@ -18,6 +18,24 @@ pub struct Units {
     pub time: String,
 }
 
+impl Units {
+    /// A unit such as "mass length/time", in these labels in place of the three words.
+    pub(crate) fn in_labels(&self, unit: &str) -> String {
+        let is_no_letter = |c: char| !c.is_ascii_lowercase();
+        let replaced = unit.split_inclusive(is_no_letter).map(|piece| {
+            let word = piece.trim_end_matches(is_no_letter);
+            let label = match word {
+                "length" => &self.length,
+                "mass" => &self.mass,
+                "time" => &self.time,
+                other => other,
+            };
+            label.to_owned() + &piece[word.len()..]
+        });
+        replaced.collect()
+    }
+}
+
 /// Rigid-body and modal properties of the body, in its undeformed state.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -37,6 +55,43 @@ pub struct BodyProperties {
     pub damping_ratios: Vec<f64>,
     /// How many static shapes there are.
     pub static_shapes: usize,
+    /// Unit vectors, body axes, about which the support lets the body turn: three, one or none.
+    pub rotation_axes: Vec<[f64; 3]>,
+    /// Unit vectors, body axes, along which the support lets the origin move: three, one or none.
+    pub translation_axes: Vec<[f64; 3]>,
+    /// The finite-element model; `None` for a rigid body without one.
+    pub mesh: Option<MeshProperties>,
+}
+
+/// Size of a finite-element model, and the file that has all of it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MeshProperties {
+    /// Nodes.
+    pub nodes: usize,
+    /// Elements; 0 where they are not known.
+    pub elements: usize,
+    /// Extent along the axes of the mesh.
+    pub size: [f64; 3],
+    /// The body file with the shapes on all nodes, for what the results file does not carry: a path, written as
+    /// [`Metadata::scene_file`], or a name, of a file beside the results file.
+    pub body_file: String,
+    /// Hash of the shapes on all nodes, in hexadecimal digits: the body file has the same ones.
+    pub shapes_hash: String,
+}
+
+/// An effect of the motion, in words: whether the run has it, and why.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct EffectProperties {
+    /// Its name.
+    pub name: String,
+    /// "on", "off", or "–" where it cannot act.
+    pub state: String,
+    /// How large it is, as a formula and its value.
+    pub measure: String,
+    /// A sentence that says why.
+    pub reason: String,
 }
 
 /// Everything in a results file that does not change with time.
@@ -57,11 +112,15 @@ pub struct Metadata {
     pub tolerance: Option<f64>,
     /// Version of the program that made the run.
     pub program_version: String,
-    /// The scene file, word for word.
+    /// Time at which the run is to end.
+    pub end: f64,
+    /// The scene file, word for word, for people: nothing that comes after the run reads it.
     pub scene_text: String,
     /// Where the scene file was, so that the files that it names can be found again; empty if nowhere. A path, or one that is
     /// no UTF-8 as a `file:` URL.
     pub scene_file: String,
+    /// The files that the run read, the scene among them, written alike.
+    pub input_files: Vec<String>,
     /// The body.
     pub body: BodyProperties,
     /// Names of the points whose motion is stored, in the order of a row's points.
@@ -72,6 +131,8 @@ pub struct Metadata {
     pub parts: Vec<String>,
     /// Names of the supports whose reactions are stored, where there are several, in the order of a row's supports.
     pub support_names: Vec<String>,
+    /// Effects of the motion.
+    pub effects: Vec<EffectProperties>,
     /// Warnings of the run, each a sentence or more: see [`Writer::warn`](crate::Writer::warn).
     pub warnings: Vec<String>,
 }
@@ -89,8 +150,18 @@ impl Metadata {
     /// Refuses what a file cannot hold; `path` is named in messages.
     pub(crate) fn check(&self, path: &Path) -> Result<(), FileError> {
         self.check_names(path)?;
-        let BodyProperties { mass, center_of_mass, inertia, origin, frequencies, damping_ratios, static_shapes } =
-            &self.body;
+        let BodyProperties {
+            mass,
+            center_of_mass,
+            inertia,
+            origin,
+            frequencies,
+            damping_ratios,
+            static_shapes,
+            rotation_axes,
+            translation_axes,
+            mesh,
+        } = &self.body;
         for (quantity, expected, found) in [
             ("body/damping_ratios", frequencies.len(), damping_ratios.len()),
             ("body/kinds", frequencies.len(), frequencies.len().max(*static_shapes)),
@@ -106,6 +177,10 @@ impl Metadata {
             ("points/position", self.point_positions.as_flattened()),
             ("body/frequencies", frequencies),
             ("body/damping_ratios", damping_ratios),
+            ("body/rotation_axes", rotation_axes.as_flattened()),
+            ("body/translation_axes", translation_axes.as_flattened()),
+            ("body/mesh/size", mesh.as_ref().map_or(&[], |mesh| &mesh.size)),
+            ("end", &[self.end]),
             ("step", self.step.as_slice()),
             ("tolerance", self.tolerance.as_slice()),
         ] {

@@ -4,7 +4,7 @@ use crate::checkpoint::{Checkpoint, Sums};
 use crate::column::{of_point, present};
 use crate::description::Description;
 use crate::store::Store;
-use crate::{Column, FileError, Metadata, seal};
+use crate::{Column, FileError, Metadata, Shapes, seal};
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::path::Path;
@@ -66,12 +66,25 @@ impl Results {
     /// dataset has.
     ///
     /// # Errors
-    /// [`FileError::NoSeal`] and [`FileError::Damaged`] if it is not what a [`Writer`](crate::Writer) wrote, or those of
+    /// [`FileError::NoSeal`], [`FileError::OtherVersion`] and [`FileError::Damaged`] if it is not what a [`Writer`](crate::Writer) wrote, or those of
     /// [`Writer::create`](crate::Writer::create) for its metadata; [`FileError::Busy`] if another process writes it;
     /// [`FileError::System`] if it cannot be read.
     pub fn open<R>(path: impl AsRef<Path>, columns: &'static [Column<R>]) -> Result<Self, FileError> {
         let path = path.as_ref();
         Ok(Self::read_with_checkpoint(&Store::open(path, columns)?, path, columns)?.0)
+    }
+
+    /// The same, with the shapes of the body, if the file carries them.
+    ///
+    /// # Errors
+    /// As [`Results::open`].
+    pub fn open_with_shapes<R>(
+        path: impl AsRef<Path>,
+        columns: &'static [Column<R>],
+    ) -> Result<(Self, Option<Shapes>), FileError> {
+        let path = path.as_ref();
+        let store = Store::open(path, columns)?;
+        Ok((Self::read_with_checkpoint(&store, path, columns)?.0, store.read_shapes(path)?))
     }
 
     /// Metadata of a file, without a look at its rows.

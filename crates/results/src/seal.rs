@@ -10,11 +10,11 @@
 //!
 //! | bytes | what, integers in 64 bits, the lowest byte first |
 //! |---|---|
-//! | 0–24 | `flexframe results, v. 4` and a line feed |
+//! | 0–24 | `flexframe results, v. 5` and a line feed |
 //! | 24–32 | CRC-32 of all bytes after it that are not left out |
 //! | 32–40 | bytes of the file |
 //! | 40–48 | bytes of the description |
-//! | 48– | the description as JSON: `rows`, `checkpoint_words`, `starts` (first byte of each history and of the checkpoints, 0 where there is nothing), `metadata` |
+//! | 48– | the description as JSON: `rows`, `checkpoint_words`, `starts` (first byte of each history and of the checkpoints, 0 where there is nothing), `arrays` (shapes of the body: `path`, `shape`, `start`), `metadata` |
 
 use crate::FileError;
 use std::fs::File;
@@ -23,7 +23,10 @@ use std::iter::once;
 use std::ops::Range;
 use std::path::Path;
 
-const MAGIC: &[u8; 24] = b"flexframe results, v. 4\n";
+const MAGIC: &[u8; 24] = b"flexframe results, v. 5\n";
+
+/// The version in it.
+pub(crate) const VERSION: &str = "5";
 
 /// Bytes of the magic text that are those of every version.
 const ANY_VERSION: usize = 21;
@@ -108,8 +111,19 @@ fn head(mut file: &File, path: &Path) -> Result<(u64, u64, u64), FileError> {
         (Err(error), _) if error.kind() != io::ErrorKind::UnexpectedEof => {
             Err(FileError::system(path, "read the file", &error))
         }
-        _ => Err(FileError::NoSeal { path: path.to_path_buf() }),
+        _ => Err(match other_version(&head) {
+            Some(found) => FileError::OtherVersion { path: path.to_path_buf(), found, expected: VERSION },
+            None => FileError::NoSeal { path: path.to_path_buf() },
+        }),
     }
+}
+
+/// The version that a head claims, where it is another one.
+fn other_version(head: &[u8]) -> Option<String> {
+    let claimed = head.get(ANY_VERSION..MAGIC.len()).filter(|_| head.starts_with(&MAGIC[..ANY_VERSION]))?;
+    let version = std::str::from_utf8(claimed).ok()?.trim();
+    let is_number = !version.is_empty() && version.bytes().all(|byte| byte.is_ascii_digit());
+    (is_number && version != VERSION).then(|| version.to_owned())
 }
 
 /// True if a file claims to be one of ours, of any version.

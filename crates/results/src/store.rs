@@ -2,10 +2,12 @@
 
 use crate::checkpoint::{Sums, little_endian};
 use crate::column::present;
-use crate::description::Description;
+use crate::description::{Description, Ranges};
 use crate::lock::Locked;
 use crate::room::Room;
 use crate::seal::Apart;
+use crate::shapes::Shapes;
+use crate::shapes::stored::{Datasets, StoredArray};
 use crate::{Column, FileError, Metadata, seal, structure};
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{self, Read, Seek, SeekFrom, Write};
@@ -28,6 +30,15 @@ pub(crate) struct Store {
     columns: Vec<(Range<u64>, usize)>,
     /// Bytes of the two places for a checkpoint.
     checkpoints: Range<u64>,
+    /// Bytes of the arrays.
+    arrays: Vec<Range<u64>>,
+}
+
+/// Where the shapes of a new file come from.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum ShapeSource<'a> {
+    Given(Option<&'a Shapes>),
+    File(&'a Store),
 }
 
 impl Store {
@@ -36,6 +47,7 @@ impl Store {
         place: &Path,
         path: &Path,
         metadata: &Metadata,
+        shapes: ShapeSource<'_>,
         columns: &'static [Column<R>],
         room: Room,
     ) -> Result<Self, FileError> {
@@ -45,12 +57,16 @@ impl Store {
             rows: room.rows,
             checkpoint_words: room.checkpoint_words,
             starts,
+            arrays: shapes.arrays(),
             metadata: metadata.clone(),
         };
         // No other places take more digits.
         let user_block = seal::room(description.to_json().len() as u64);
-        description.starts = structure::make(place, path, metadata, columns, room, user_block)
-            .map_err(|error| error.with_reason_from_system(place))?;
+        let [starts, of_arrays] =
+            structure::make(place, path, metadata, &description.arrays, columns, room, user_block)
+                .map_err(|error| error.with_reason_from_system(place))?;
+        description.starts = starts;
+        description.arrays.iter_mut().zip(of_arrays).for_each(|(array, start)| array.start = start);
         let file = OpenOptions::new().read(true).write(true).open(place);
         let file = file.map_err(|error| FileError::system(path, "open the file for writing", &error))?;
         let file = locked(file, path, File::try_lock)?;
@@ -58,7 +74,9 @@ impl Store {
             reserve(&file).map_err(|error| FileError::system(path, "make room for the rows", &error))?;
         }
         let described = description.to_json().len();
-        Self::new(file, path, columns, description, described)
+        let store = Self::new(file, path, columns, description, described)?;
+        store.put(shapes).map_err(|error| FileError::system(path, "write the shapes of the body", &error))?;
+        Ok(store)
     }
 
     /// Opens a sealed file for reading.
@@ -107,13 +125,12 @@ impl Store {
         let widths: Vec<usize> =
             present(columns, &description.metadata).map(|column| column.width(&description.metadata)).collect();
         let ranges = description.ranges(widths.iter().copied(), seal::HEAD + described as u64..length);
-        let Some(mut ranges) = ranges else {
+        let Some(Ranges { histories, checkpoints, arrays }) = ranges else {
             let what = "its histories are not within it, each in a place of its own".into();
             return Err(FileError::Damaged { path: path.to_path_buf(), what });
         };
-        let checkpoints = description.checkpoint_words.and_then(|_| ranges.pop()).unwrap_or_default();
-        let columns = ranges.into_iter().zip(widths).collect();
-        Ok(Self { file, description, columns, checkpoints })
+        let columns = histories.into_iter().zip(widths).collect();
+        Ok(Self { file, description, columns, checkpoints, arrays })
     }
 
     /// The bytes that change when the file has been sealed, in order: those of the numbers of an unfinished file.
@@ -220,6 +237,45 @@ impl Store {
             .map_err(|error| FileError::system(path, "write the checkpoint", &error))
     }
 
+    /// The shapes of the body, if the file has them.
+    pub(crate) fn read_shapes(&self, path: &Path) -> Result<Option<Shapes>, FileError> {
+        if self.description.arrays.is_empty() {
+            return Ok(None);
+        }
+        let read =
+            Shapes::read(self).map_err(|error| FileError::system(path, "read the shapes of the body", &error))?;
+        let Some(shapes) = read else {
+            let what = "its shapes of the body are not whole".into();
+            return Err(FileError::Damaged { path: path.to_path_buf(), what });
+        };
+        shapes.check(path)?;
+        Ok(Some(shapes))
+    }
+
+    /// Writes the shapes to their places.
+    fn put(&self, shapes: ShapeSource<'_>) -> io::Result<()> {
+        match shapes {
+            ShapeSource::Given(None) => Ok(()),
+            ShapeSource::Given(Some(shapes)) => {
+                for ((_, _, lists), range) in shapes.stored().into_iter().zip(&self.arrays) {
+                    let mut start = range.start;
+                    for bytes in lists.bytes() {
+                        self.write_at(start, &bytes)?;
+                        start += bytes.len() as u64;
+                    }
+                }
+                Ok(())
+            }
+            ShapeSource::File(other) => (self.arrays.iter().zip(&other.arrays))
+                .try_for_each(|(to, from)| self.copy(to.start, other, from.start, from.end - from.start)),
+        }
+    }
+
+    /// The array of a path, and its bytes.
+    fn array(&self, path: &str) -> Option<(&StoredArray, &Range<u64>)> {
+        self.description.arrays.iter().zip(&self.arrays).find(|(array, _)| array.path == path)
+    }
+
     fn write_at(&self, start: u64, bytes: &[u8]) -> io::Result<()> {
         let mut file = &*self.file;
         file.seek(SeekFrom::Start(start))?;
@@ -227,19 +283,28 @@ impl Store {
     }
 
     fn read_words<T>(&self, bytes: &Range<u64>, from_bits: impl Fn(u64) -> T) -> io::Result<Vec<T>> {
+        self.read_numbers(bytes, |word| from_bits(u64::from_le_bytes(word)))
+    }
+
+    /// Numbers of N bytes each.
+    fn read_numbers<const N: usize, T>(
+        &self,
+        bytes: &Range<u64>,
+        from_bytes: impl Fn([u8; N]) -> T,
+    ) -> io::Result<Vec<T>> {
         let mut file = &*self.file;
         let mut rest = (bytes.end - bytes.start) as usize;
-        let mut words = Vec::new();
-        words.try_reserve_exact(rest / NUMBER).map_err(|_| io::ErrorKind::OutOfMemory)?;
+        let mut numbers = Vec::new();
+        numbers.try_reserve_exact(rest / N).map_err(|_| io::ErrorKind::OutOfMemory)?;
         file.seek(SeekFrom::Start(bytes.start))?;
         let mut block = [0; BLOCK];
         while rest > 0 {
             let part = &mut block[..rest.min(BLOCK)];
             file.read_exact(part)?;
-            words.extend(part.as_chunks().0.iter().map(|word| from_bits(u64::from_le_bytes(*word))));
+            numbers.extend(part.as_chunks().0.iter().map(|bytes| from_bytes(*bytes)));
             rest -= part.len();
         }
-        Ok(words)
+        Ok(numbers)
     }
 
     fn copy(&self, to: u64, other: &Self, from: u64, bytes: u64) -> io::Result<()> {
@@ -250,6 +315,44 @@ impl Store {
             copied if copied == bytes => Ok(()),
             _ => Err(io::ErrorKind::UnexpectedEof.into()),
         }
+    }
+}
+
+impl ShapeSource<'_> {
+    /// The arrays that they are in a file, at no place yet: no place takes more digits.
+    fn arrays(&self) -> Vec<StoredArray> {
+        let array = |path: &str, shape| StoredArray { path: path.to_owned(), shape, start: u64::MAX };
+        match self {
+            Self::Given(shapes) => shapes
+                .map_or_else(Vec::new, |shapes| shapes.stored())
+                .into_iter()
+                .map(|(path, shape, _)| array(path, shape))
+                .collect(),
+            Self::File(store) => {
+                store.description.arrays.iter().map(|found| array(&found.path, found.shape.clone())).collect()
+            }
+        }
+    }
+}
+
+impl Datasets for Store {
+    fn shape(&self, path: &str) -> Option<&[usize]> {
+        self.array(path).map(|(array, _)| &*array.shape)
+    }
+
+    fn whole(&self, path: &str) -> io::Result<Vec<u32>> {
+        self.array(path).map_or_else(|| Ok(Vec::new()), |(_, bytes)| self.read_numbers(bytes, u32::from_le_bytes))
+    }
+
+    fn numbers(&self, path: &str) -> io::Result<Vec<Vec<f64>>> {
+        let Some((array, bytes)) = self.array(path) else { return Ok(Vec::new()) };
+        let lists = array.shape.first().copied().unwrap_or_default() as u64;
+        let each = (bytes.end - bytes.start).checked_div(lists).unwrap_or_default();
+        let list = |i: u64| {
+            let start = bytes.start + i * each;
+            self.read_words(&(start..start + each), f64::from_bits)
+        };
+        (0..lists).map(list).collect()
     }
 }
 

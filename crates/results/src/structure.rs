@@ -4,7 +4,8 @@
 
 use crate::column::present;
 use crate::room::Room;
-use crate::{Column, FileError, Metadata, Units};
+use crate::shapes::stored::{ShapeDataset, StoredArray};
+use crate::{Column, FileError, MeshProperties, Metadata, Units, seal};
 use hdf5::dataset::Layout;
 use hdf5::plist::dataset_create::{AllocTime, FillTime};
 use hdf5::types::VarLenUnicode;
@@ -12,16 +13,17 @@ use ndarray::{ArrayView2, ArrayViewD, aview0, aview1};
 use std::path::Path;
 
 /// Makes the file at `place` (called `path` in messages), which begins with a number of bytes that HDF5 leaves alone, and
-/// closes it. Gives the first byte of each history, in the order of the columns, and of the checkpoints; 0 where
-/// there is nothing.
+/// closes it. Gives the first byte of each history, in the order of the columns, and of the checkpoints, and that of each
+/// array; 0 where there is nothing.
 pub(crate) fn make<R>(
     place: &Path,
     path: &Path,
     metadata: &Metadata,
+    arrays: &[StoredArray],
     columns: &'static [Column<R>],
     room: Room,
     user_block: u64,
-) -> Result<Vec<u64>, FileError> {
+) -> Result<[Vec<u64>; 2], FileError> {
     let mut builder = hdf5::File::with_options();
     // Without times of creation, so that equal runs give equal files; the seal goes into the user block.
     builder.with_fcpl(|plist| plist.obj_track_times(false).userblock(user_block));
@@ -42,8 +44,15 @@ pub(crate) fn make<R>(
             "names of the supports, in the order of the other data sets",
         )?;
     }
+    let inputs = metadata.input_files.iter().map(String::as_str);
+    write_texts(path, &file, "input_files", inputs, "files that the run read, where they were")?;
+    write_effects(path, &file, metadata)?;
     let warnings = metadata.warnings.iter().map(String::as_str);
     write_texts(path, &file, "warnings", warnings, "what should be known of the run; empty in an unfinished file")?;
+    let arrays = (arrays.iter())
+        .filter_map(|array| Some((array, array.dataset()?)))
+        .map(|(array, dataset)| create_array(path, &file, array, dataset, &metadata.units))
+        .collect::<Result<Vec<_>, _>>()?;
     let mut datasets = present(columns, metadata)
         .enumerate()
         .map(|(i, column)| create_history(path, &file, column, metadata, room, i == 0))
@@ -60,8 +69,9 @@ pub(crate) fn make<R>(
         datasets.push(checkpoint);
     }
     // An empty dataset has no place.
-    let starts = datasets.iter().map(|dataset| dataset.offset().unwrap_or(0)).collect();
-    drop(datasets);
+    let starts = |datasets: &[hdf5::Dataset]| datasets.iter().map(|dataset| dataset.offset().unwrap_or(0)).collect();
+    let starts = [starts(&datasets), starts(&arrays)];
+    drop((datasets, arrays));
     // HDF5 gives back what room it has left over when it closes the file: from then on its structure stays.
     file.close().map_err(FileError::hdf5(path, "write the file"))?;
     Ok(starts)
@@ -91,6 +101,34 @@ fn create_history<R>(
     Ok(dataset)
 }
 
+/// Room for one of the arrays of the shapes.
+fn create_array(
+    path: &Path,
+    file: &hdf5::File,
+    StoredArray { shape, .. }: &StoredArray,
+    ShapeDataset { path: name, is_whole, unit, frame, description }: &ShapeDataset,
+    units: &Units,
+) -> Result<hdf5::Dataset, FileError> {
+    let builder = if *is_whole { file.new_dataset::<u32>() } else { file.new_dataset::<f64>() };
+    let builder = builder.layout(Layout::Contiguous).alloc_time(Some(AllocTime::Early)).fill_time(FillTime::Never);
+    let dataset = builder.obj_track_times(false).shape(shape.as_slice()).create(*name);
+    let dataset = dataset.map_err(FileError::hdf5(path, format!("make room for {name}")))?;
+    describe(path, &dataset, &units.in_labels(unit), frame, description)?;
+    Ok(dataset)
+}
+
+/// The effects of the motion, a list for each of their texts.
+fn write_effects(path: &Path, file: &hdf5::File, metadata: &Metadata) -> Result<(), FileError> {
+    let effects = || metadata.effects.iter();
+    write_texts(path, file, "effects/name", effects().map(|effect| &*effect.name), "name of each effect")?;
+    let states = effects().map(|effect| &*effect.state);
+    write_texts(path, file, "effects/state", states, "on or off in the run; – of one that cannot act")?;
+    let measures = effects().map(|effect| &*effect.measure);
+    write_texts(path, file, "effects/measure", measures, "size of each effect, a formula and its value")?;
+    let reasons = effects().map(|effect| &*effect.reason);
+    write_texts(path, file, "effects/reason", reasons, "reason of each state")
+}
+
 /// Names and places of the points.
 fn write_points(path: &Path, file: &hdf5::File, metadata: &Metadata) -> Result<(), FileError> {
     let names = metadata.point_names.iter().map(String::as_str);
@@ -103,6 +141,7 @@ fn write_points(path: &Path, file: &hdf5::File, metadata: &Metadata) -> Result<(
 fn write_root_attributes(path: &Path, file: &hdf5::File, metadata: &Metadata, complete: bool) -> Result<(), FileError> {
     let texts = [
         ("title", &metadata.title),
+        ("format_version", &seal::VERSION.to_owned()),
         ("scene", &metadata.scene_text),
         ("scene_file", &metadata.scene_file),
         ("formulation", &metadata.formulation),
@@ -115,7 +154,7 @@ fn write_root_attributes(path: &Path, file: &hdf5::File, metadata: &Metadata, co
     for (name, text) in texts {
         write_text(path, file, name, text)?;
     }
-    for (name, number) in [("step", metadata.step), ("tolerance", metadata.tolerance)] {
+    for (name, number) in [("step", metadata.step), ("tolerance", metadata.tolerance), ("end", Some(metadata.end))] {
         let Some(number) = number else { continue };
         file.new_attr::<f64>()
             .create(name)
@@ -134,6 +173,8 @@ fn write_body(path: &Path, file: &hdf5::File, metadata: &Metadata) -> Result<(),
     let frequency_unit = if time == "s" { "Hz".into() } else { format!("1/{time}") };
     let inertia_unit = format!("{mass} {length}^2");
     let inertia = ArrayView2::from(&body.inertia);
+    let [rotation_axes, translation_axes] =
+        [&body.rotation_axes, &body.translation_axes].map(|axes| ArrayView2::from(axes.as_slice()).into_dyn());
     for (name, values, unit, frame, description) in [
         ("mass", aview0(&body.mass).into_dyn(), mass.as_str(), "none", "total mass"),
         ("center_of_mass", aview1(&body.center_of_mass).into_dyn(), length, "mesh", "centre of mass"),
@@ -159,6 +200,20 @@ fn write_body(path: &Path, file: &hdf5::File, metadata: &Metadata) -> Result<(),
             "none",
             "damping ratios of the flexible modes and static shapes",
         ),
+        (
+            "rotation_axes",
+            rotation_axes,
+            "1",
+            "body",
+            "unit vectors about which the support lets the body turn: three of a free body or a pin, one of a hinge, none",
+        ),
+        (
+            "translation_axes",
+            translation_axes,
+            "1",
+            "body",
+            "unit vectors along which the support lets the origin move: three of a free body, one of a slider, none",
+        ),
     ] {
         write_constant(path, file, &format!("body/{name}"), values, [unit, frame, description])?;
     }
@@ -168,7 +223,28 @@ fn write_body(path: &Path, file: &hdf5::File, metadata: &Metadata) -> Result<(),
         "body/kinds",
         body.kinds(),
         "whether each coordinate is of a natural mode or a static shape",
-    )
+    )?;
+    match &body.mesh {
+        Some(mesh) => write_mesh(path, file, mesh, length),
+        None => Ok(()),
+    }
+}
+
+/// Size of the finite-element model, and where all of it is.
+fn write_mesh(path: &Path, file: &hdf5::File, mesh: &MeshProperties, length: &str) -> Result<(), FileError> {
+    let MeshProperties { nodes, elements, size, body_file, shapes_hash } = mesh;
+    let size = aview1(size).into_dyn();
+    write_constant(path, file, "body/mesh/size", size, [length, "mesh", "extent of the whole mesh along its axes"])?;
+    let group = file.group("body").map_err(FileError::hdf5(path, "write body"))?;
+    for (name, count) in [("mesh_nodes", nodes), ("mesh_elements", elements)] {
+        group
+            .new_attr::<i64>()
+            .create(name)
+            .and_then(|attribute| attribute.write_scalar(&(*count as i64)))
+            .map_err(FileError::hdf5(path, format!("write the attribute {name}")))?;
+    }
+    write_text(path, &group, "body_file", body_file)?;
+    write_text(path, &group, "shapes_hash", shapes_hash)
 }
 
 /// A data set of numbers, with its unit, frame and description.

@@ -7,8 +7,8 @@ use crate::error::check_length;
 use crate::paths::ResultsPaths;
 use crate::reader::Results;
 use crate::room::Room;
-use crate::store::Store;
-use crate::{Column, FileError, Metadata, Values};
+use crate::store::{ShapeSource, Store};
+use crate::{Column, FileError, Metadata, Shapes, Values};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 use whole_file::TemporaryFile;
@@ -82,7 +82,7 @@ pub struct Resumed<R: 'static> {
 }
 
 impl<R> Writer<R> {
-    /// Begins the results file `path` with the metadata and empty histories.
+    /// Begins the results file `path` with the metadata, the shapes of the body, if it is to carry them, and empty histories.
     ///
     /// # Errors
     /// [`FileError::PlaceName`] for a name that is empty, contains "/" or NUL or occurs twice, [`FileError::WrongLength`] if there are not as many damping ratios as frequencies,
@@ -92,11 +92,15 @@ impl<R> Writer<R> {
     pub fn create(
         path: impl AsRef<Path>,
         metadata: &Metadata,
+        shapes: Option<&Shapes>,
         columns: &'static [Column<R>],
         expected: Expected,
     ) -> Result<Self, FileError> {
         let place = ResultsPaths::of(path.as_ref());
         metadata.check(&place.path)?;
+        if let Some(shapes) = shapes {
+            shapes.check(&place.path)?;
+        }
         place.check(expected.overwrite)?;
 
         let present = with_widths(columns, metadata);
@@ -105,7 +109,7 @@ impl<R> Writer<R> {
         let rows = expected.rows.min(FIRST_ROOM / numbers_per_row.max(1)).max(rows_per_write);
         let checkpoint = vec![0; checkpoint::FRAME + expected.checkpoint];
         let room = Room { rows, checkpoint_words: Some(checkpoint.len()) };
-        let (file, store) = make_room(&place, metadata, columns, room)?;
+        let (file, store) = make_room(&place, metadata, ShapeSource::Given(shapes), columns, room)?;
         place.put_part(file, expected.overwrite)?;
         Ok(Self {
             place,
@@ -280,7 +284,7 @@ impl<R> Writer<R> {
         let room = Room { rows: self.rows_written, checkpoint_words: None };
         let file = self.place.temporary()?;
         let path = &self.place.path;
-        let store = Store::create(&file, path, &self.metadata, self.columns, room)?;
+        let store = Store::create(&file, path, &self.metadata, ShapeSource::File(&self.store), self.columns, room)?;
         store.copy_rows(path, &self.store, self.rows_written)?;
         store.seal(path, Some(&self.sums))?;
         drop(store);
@@ -311,7 +315,7 @@ impl<R> Writer<R> {
         let part = &self.place.part;
         let rows = rows.max(2 * self.store.rows());
         let room = Room { rows, checkpoint_words: Some(self.checkpoint.len()) };
-        let (file, store) = make_room(&self.place, &self.metadata, self.columns, room)?;
+        let (file, store) = make_room(&self.place, &self.metadata, ShapeSource::File(&self.store), self.columns, room)?;
         store.copy_rows(part, &self.store, self.rows_written)?;
         store.write_checkpoint(part, (self.serial % 2) as usize, &self.checkpoint)?;
         self.place.exchange_part(file)?;
@@ -357,11 +361,12 @@ fn rows_per_write(numbers_per_row: usize) -> usize {
 fn make_room<R>(
     place: &ResultsPaths,
     metadata: &Metadata,
+    shapes: ShapeSource<'_>,
     columns: &'static [Column<R>],
     room: Room,
 ) -> Result<(TemporaryFile, Store), FileError> {
     let file = place.temporary()?;
-    let store = Store::create(&file, &place.part, metadata, columns, room)?;
+    let store = Store::create(&file, &place.part, metadata, shapes, columns, room)?;
     store.seal(&place.part, None)?;
     Ok((file, store))
 }

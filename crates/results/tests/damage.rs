@@ -5,7 +5,7 @@ mod rows;
 mod sealed;
 
 use results::*;
-use rows::{COLUMNS, Resumed, Row, Writer, assert_rows, folder, metadata};
+use rows::{COLUMNS, Resumed, Row, Writer, assert_rows, folder, metadata, shapes};
 use std::fs::OpenOptions;
 use std::ops::Range;
 use std::os::unix::fs::FileExt;
@@ -22,7 +22,7 @@ fn files(path: &Path) -> [Vec<u8>; 2] {
     let metadata = Metadata { scene_text: "title = \"ω₂\"".into(), ..metadata(2, &["P1"]) };
     let begin = || {
         let expected = Expected { checkpoint: 4, overwrite: true, ..Expected::default() };
-        let mut writer = Writer::create(path, &metadata, &COLUMNS, expected).unwrap();
+        let mut writer = Writer::create(path, &metadata, Some(&shapes(2)), &COLUMNS, expected).unwrap();
         (0..ROWS).for_each(|i| writer.push(&Row::new(i, 2, 1)).unwrap());
         writer.flush(&[1, 2, 3, 4]).unwrap();
         writer
@@ -52,7 +52,10 @@ fn read(path: &Path) -> (Result<Results, FileError>, usize) {
 fn refuse(path: &Path, what: std::fmt::Arguments) {
     let (outcome, memory) = read(path);
     let Err(error) = outcome else { panic!("{what}: accepted") };
-    assert!(matches!(error, FileError::NoSeal { .. } | FileError::Damaged { .. }), "{what}: {error}");
+    assert!(
+        matches!(error, FileError::NoSeal { .. } | FileError::OtherVersion { .. } | FileError::Damaged { .. }),
+        "{what}: {error}"
+    );
     assert!(error.to_string().len() < 500, "{error}");
     let bytes = std::fs::metadata(path).unwrap().len() as usize;
     assert!(memory < 2000 + bytes, "{what}: {memory} bytes of memory for {bytes}");

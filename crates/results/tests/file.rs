@@ -4,12 +4,12 @@ mod rows;
 
 use hdf5::types::{FloatSize, IntSize, TypeDescriptor, VarLenUnicode};
 use results::*;
-use rows::{COLUMNS, Resumed, Row, Writer, assert_rows, folder, metadata};
+use rows::{COLUMNS, Resumed, Row, Writer, assert_rows, folder, metadata, shapes};
 use std::path::Path;
 
 fn write(path: &Path, rows: usize, metadata: &Metadata) -> Writer {
     let expected = Expected { overwrite: true, ..Expected::default() };
-    let mut writer = Writer::create(path, metadata, &COLUMNS, expected).unwrap();
+    let mut writer = Writer::create(path, metadata, None, &COLUMNS, expected).unwrap();
     for i in 0..rows {
         writer.push(&Row::new(i, metadata.body.frequencies.len(), metadata.point_names.len())).unwrap();
     }
@@ -101,7 +101,7 @@ fn rows_that_could_not_be_written_wait_for_another_try() {
     let (folder, path) = folder();
     let place = path.parent().unwrap().to_owned();
     let away = folder.path().with_extension("away");
-    let mut writer = Writer::create(&path, &metadata(2, &["P1"]), &COLUMNS, Expected::default()).unwrap();
+    let mut writer = Writer::create(&path, &metadata(2, &["P1"]), None, &COLUMNS, Expected::default()).unwrap();
     let rows = 2000;
     let mut refused = 0;
     for i in 0..rows {
@@ -159,38 +159,42 @@ fn wrong_lengths_and_names_are_refused() {
     assert_rows(&Results::open(&path, &COLUMNS).unwrap(), 2);
 
     for names in [[""].as_slice(), &["a/b"], &["a\0"], &["a", "a"]] {
-        let error = Writer::create(&path, &metadata(1, names), &COLUMNS, Expected::default()).unwrap_err();
+        let error = Writer::create(&path, &metadata(1, names), None, &COLUMNS, Expected::default()).unwrap_err();
         assert!(matches!(error, FileError::PlaceName { .. }), "{names:?}: {error}");
     }
     let mut unequal = metadata(2, &[]);
     unequal.body.damping_ratios.pop();
     assert!(matches!(
-        Writer::create(&path, &unequal, &COLUMNS, Expected::default()),
+        Writer::create(&path, &unequal, None, &COLUMNS, Expected::default()),
         Err(FileError::WrongLength { expected: 2, found: 1, .. })
     ));
     let mut shapes = metadata(2, &[]);
     shapes.body.static_shapes = 3;
     assert!(matches!(
-        Writer::create(&path, &shapes, &COLUMNS, Expected::default()),
+        Writer::create(&path, &shapes, None, &COLUMNS, Expected::default()),
         Err(FileError::WrongLength { expected: 2, found: 3, .. })
     ));
     let mut nowhere = metadata(2, &["P1"]);
     nowhere.point_positions.clear();
     assert!(matches!(
-        Writer::create(&path, &nowhere, &COLUMNS, Expected::default()),
+        Writer::create(&path, &nowhere, None, &COLUMNS, Expected::default()),
         Err(FileError::WrongLength { expected: 1, found: 0, .. })
     ));
     let mut nul = metadata(2, &[]);
     nul.scene_text = "a\0b".into();
     let fresh = path.with_file_name("fresh.h5");
-    assert!(matches!(Writer::create(&fresh, &nul, &COLUMNS, Expected::default()), Err(FileError::NulInText { .. })));
+    assert!(matches!(
+        Writer::create(&fresh, &nul, None, &COLUMNS, Expected::default()),
+        Err(FileError::NulInText { .. })
+    ));
 }
 
 #[test]
 fn errors_name_the_file_and_what_is_wrong_with_it() {
     let (folder, path) = folder();
     let nowhere = folder.path().join("no such folder").join("run.h5");
-    let error = Writer::create(&nowhere, &metadata(0, &[]), &COLUMNS, Expected::default()).unwrap_err().to_string();
+    let error =
+        Writer::create(&nowhere, &metadata(0, &[]), None, &COLUMNS, Expected::default()).unwrap_err().to_string();
     assert!(error.contains("no such folder") && error.contains("create the file"), "{error}");
     let error = Results::open(&nowhere, &COLUMNS).unwrap_err().to_string();
     assert!(error.contains("no such folder") && error.contains("open the file"), "{error}");
@@ -218,7 +222,7 @@ fn an_unfinished_file_has_the_rows_that_are_whole_in_every_column() {
 fn room_for_rows_to_come_costs_no_memory_when_it_is_read() {
     let (_folder, path) = folder();
     let expected = Expected { rows: 100_000, ..Expected::default() };
-    let mut writer = Writer::create(&path, &metadata(3, &["P"]), &COLUMNS, expected).unwrap();
+    let mut writer = Writer::create(&path, &metadata(3, &["P"]), None, &COLUMNS, expected).unwrap();
     (0..700).for_each(|i| writer.push(&Row::new(i, 3, 1)).unwrap());
     drop(writer);
     let part = unfinished(&path);
@@ -239,7 +243,7 @@ fn a_finished_file_is_the_same_byte_for_byte_whatever_way_led_to_it() {
     let mut files = Vec::new();
     let overwrite = Expected { overwrite: true, ..Expected::default() };
     for expected in [overwrite, Expected { rows: 3000, checkpoint: 5, ..overwrite }] {
-        let mut writer = Writer::create(&path, &metadata, &COLUMNS, expected).unwrap();
+        let mut writer = Writer::create(&path, &metadata, None, &COLUMNS, expected).unwrap();
         push(&mut writer, 0..2000);
         writer.finish().unwrap();
         assert!(!unfinished(&path).exists());
@@ -247,7 +251,7 @@ fn a_finished_file_is_the_same_byte_for_byte_whatever_way_led_to_it() {
         // The clock of HDF5 files has a second's resolution.
         std::thread::sleep(std::time::Duration::from_millis(1100));
     }
-    let mut writer = Writer::create(&path, &metadata, &COLUMNS, Expected { checkpoint: 2, ..overwrite }).unwrap();
+    let mut writer = Writer::create(&path, &metadata, None, &COLUMNS, Expected { checkpoint: 2, ..overwrite }).unwrap();
     push(&mut writer, 0..700);
     writer.flush(&[7, 8]).unwrap();
     push(&mut writer, 700..1500);
@@ -267,7 +271,7 @@ fn of_two_checkpoints_the_last_whole_one_counts() {
     let (_folder, path) = folder();
     let metadata = metadata(1, &[]);
     let expected = Expected { checkpoint: 3, ..Expected::default() };
-    let mut writer = Writer::create(&path, &metadata, &COLUMNS, expected).unwrap();
+    let mut writer = Writer::create(&path, &metadata, None, &COLUMNS, expected).unwrap();
     for i in 0..40 {
         writer.push(&Row::new(i, 1, 0)).unwrap();
         if i % 10 == 9 {
@@ -301,7 +305,8 @@ fn of_two_checkpoints_the_last_whole_one_counts() {
 fn nothing_is_overwritten_that_a_user_would_miss() {
     let (folder, path) = folder();
     let metadata = metadata(1, &[]);
-    let create = |overwrite| Writer::create(&path, &metadata, &COLUMNS, Expected { overwrite, ..Expected::default() });
+    let create =
+        |overwrite| Writer::create(&path, &metadata, None, &COLUMNS, Expected { overwrite, ..Expected::default() });
     assert!(matches!(Writer::resume(&path, &COLUMNS, false), Err(FileError::NothingToResume { .. })));
     write(&path, 5, &metadata).finish().unwrap();
     assert!(matches!(Writer::resume(&path, &COLUMNS, false), Err(FileError::Complete { .. })));
@@ -367,7 +372,7 @@ fn of_runs_that_begin_at_once_each_has_the_file_to_itself() {
         let outcomes: Vec<Result<(), FileError>> = std::thread::scope(|scope| {
             let run = || {
                 let expected = Expected { overwrite: true, ..Expected::default() };
-                let mut writer = Writer::create(&path, &metadata, &COLUMNS, expected)?;
+                let mut writer = Writer::create(&path, &metadata, None, &COLUMNS, expected)?;
                 (0..5).for_each(|i| writer.push(&Row::new(i, 1, 0)).unwrap());
                 writer.finish()
             };
@@ -388,6 +393,76 @@ fn of_runs_that_begin_at_once_each_has_the_file_to_itself() {
     assert!(done >= 20 && done + busy == 80, "{done} {busy}");
 }
 
+/// Of a file that is finished, one that is not, one that has grown, and one that was resumed; HDF5 finds the same numbers.
+#[test]
+fn the_shapes_of_the_body_come_back_bit_for_bit() {
+    let (_folder, path) = folder();
+    let (metadata, shapes) = (metadata(2, &["P1"]), shapes(2));
+    let expected = Expected { checkpoint: 1, ..Expected::default() };
+    let mut writer = Writer::create(&path, &metadata, Some(&shapes), &COLUMNS, expected).unwrap();
+    let read = |path: &Path| Results::open_with_shapes(path, &COLUMNS).unwrap().1.unwrap();
+    let part = unfinished(&path);
+    // More than there is room for at first.
+    (0..1300).for_each(|i| writer.push(&Row::new(i, 2, 1)).unwrap());
+    writer.flush(&[7]).unwrap();
+    drop(writer);
+    assert_eq!(read(&part), shapes);
+    Writer::resume(&path, &COLUMNS, false).unwrap().writer.finish().unwrap();
+    assert_eq!(read(&path), shapes);
+    assert_rows(&Results::open(&path, &COLUMNS).unwrap(), 1300);
+
+    let file = hdf5::File::open(&path).unwrap();
+    let numbers = |name: &str, shape: &[usize]| {
+        let dataset = file.dataset(name).unwrap();
+        assert_eq!(dataset.shape(), shape, "{name}");
+        dataset.read_raw::<f64>().unwrap()
+    };
+    let whole = |name: &str| file.dataset(name).unwrap().read_raw::<u32>().unwrap();
+    let stress = shapes.stress.as_ref().unwrap();
+    assert_eq!(whole("body/mesh/nodes"), shapes.nodes);
+    assert_eq!(whole("body/mesh/surface_triangles"), shapes.faces.as_flattened());
+    assert_eq!(whole("body/large_deflection/pairs"), [0, 0]);
+    assert_eq!(whole("body/stress/nodes"), stress.nodes);
+    assert_eq!(numbers("body/mesh/positions", &[3, 3]), shapes.positions.as_flattened());
+    assert_eq!(numbers("body/shapes", &[3, 3, 3]), shapes.displacements.concat().as_flattened());
+    assert_eq!(numbers("body/large_deflection/products", &[1, 3]), shapes.products.concat());
+    assert_eq!(numbers("body/stress/shapes", &[3, 4, 6]), stress.shapes[..3].concat().as_flattened());
+    assert_eq!(numbers("body/stress/products", &[1, 4, 6]), stress.shapes[3].as_flattened());
+    let unit: VarLenUnicode = file.dataset("body/shapes").unwrap().attr("unit").unwrap().read_scalar().unwrap();
+    assert_eq!(unit.as_str(), "1/Mg^(1/2)");
+
+    // Without large deflection and without elements.
+    let plain = Shapes { faces: Vec::new(), pairs: Vec::new(), products: Vec::new(), stress: None, ..shapes.clone() };
+    let other = path.with_file_name("plain.h5");
+    Writer::create(&other, &metadata, Some(&plain), &COLUMNS, expected).unwrap().finish().unwrap();
+    assert_eq!(read(&other), plain);
+    let unlike = Shapes { nodes: vec![1, 2], ..shapes };
+    let refused = Writer::create(path.with_file_name("un.h5"), &metadata, Some(&unlike), &COLUMNS, expected);
+    assert!(matches!(refused, Err(FileError::WrongLength { .. })));
+}
+
+#[test]
+fn a_file_of_another_version_is_refused_with_its_version_and_the_help() {
+    let (_folder, path) = folder();
+    write(&path, 3, &metadata(1, &[])).finish().unwrap();
+    let mut bytes = std::fs::read(&path).unwrap();
+    assert_eq!(bytes[..24], *b"flexframe results, v. 5\n");
+    for (digit, words) in [(b'4', "a results file of version 4"), (b'9', "a results file of version 9")] {
+        bytes[22] = digit;
+        std::fs::write(&path, &bytes).unwrap();
+        let error = Results::open(&path, &COLUMNS).unwrap_err();
+        assert!(matches!(error, FileError::OtherVersion { .. }));
+        let text = error.to_string();
+        assert!(
+            text.contains(words) && text.contains("reads version 5") && text.contains("run its scene again"),
+            "{text}"
+        );
+    }
+    bytes[22] = b'x';
+    std::fs::write(&path, &bytes).unwrap();
+    assert!(matches!(Results::open(&path, &COLUMNS), Err(FileError::NoSeal { .. })));
+}
+
 /// Types from which h5py builds numpy arrays and `str`: IEEE doubles, and strings of variable length in UTF-8.
 #[test]
 fn names_types_and_shapes_are_those_of_the_contract() {
@@ -398,7 +473,10 @@ fn names_types_and_shapes_are_those_of_the_contract() {
     let of_columns = COLUMNS
         .iter()
         .map(|column| (column.path.to_owned(), [5].into_iter().chain(column.row_shape(&metadata)).collect::<Vec<_>>()));
-    let of_body: [(&str, &[usize]); 7] = [
+    let of_body: [(&str, &[usize]); 10] = [
+        ("body/rotation_axes", &[1, 3]),
+        ("body/translation_axes", &[0, 3]),
+        ("body/mesh/size", &[3]),
         ("body/origin", &[3]),
         ("points/position", &[2, 3]),
         ("body/mass", &[]),
@@ -410,7 +488,7 @@ fn names_types_and_shapes_are_those_of_the_contract() {
     let shapes: Vec<_> = of_columns.chain(of_body.map(|(name, shape)| (name.to_owned(), shape.to_vec()))).collect();
     assert_eq!(
         (shapes.len(), &shapes[1], &shapes[6]),
-        (29, &("attitude".into(), vec![5, 4]), &("modal/displacement".into(), vec![5, 4]))
+        (32, &("attitude".into(), vec![5, 4]), &("modal/displacement".into(), vec![5, 4]))
     );
     assert_eq!(shapes[17], ("points/displacement".into(), vec![5, 2, 3]));
     let texts = |name: &str| -> Vec<String> {
@@ -418,6 +496,8 @@ fn names_types_and_shapes_are_those_of_the_contract() {
         dataset.read_raw::<VarLenUnicode>().unwrap().iter().map(ToString::to_string).collect()
     };
     assert_eq!(texts("points/names"), ["P1", "P2"]);
+    assert_eq!(texts("input_files"), metadata.input_files);
+    assert_eq!(texts("effects/reason"), ["It is slow."]);
     assert_eq!(texts("body/kinds"), ["natural mode", "natural mode", "static shape", "static shape"]);
     for (name, shape) in shapes {
         let dataset = file.dataset(&name).unwrap();
@@ -438,6 +518,7 @@ fn names_types_and_shapes_are_those_of_the_contract() {
         "title",
         "scene",
         "scene_file",
+        "format_version",
     ];
     for name in texts {
         let attribute = file.attr(name).unwrap();
@@ -455,7 +536,7 @@ fn hdf5_finds_the_numbers_that_were_written() {
     let (_folder, path) = folder();
     let metadata = metadata(3, &["P10", "P2"]);
     let mut writer =
-        Writer::create(&path, &metadata, &COLUMNS, Expected { checkpoint: 2, ..Expected::default() }).unwrap();
+        Writer::create(&path, &metadata, None, &COLUMNS, Expected { checkpoint: 2, ..Expected::default() }).unwrap();
     (0..700).for_each(|i| writer.push(&Row::new(i, 3, 2)).unwrap());
     writer.flush(&[7, 8]).unwrap();
     let part = unfinished(&path);
@@ -519,7 +600,7 @@ fn nothing_is_written_through_a_link_or_in_its_place() {
             for overwrite in [false, true] {
                 refused(Writer::check(&path, overwrite), &link);
                 let expected = Expected { overwrite, ..Expected::default() };
-                refused(Writer::create(&path, &metadata, &COLUMNS, expected).map(drop), &link);
+                refused(Writer::create(&path, &metadata, None, &COLUMNS, expected).map(drop), &link);
             }
             if link != path {
                 refused(Writer::resume(&path, &COLUMNS, false).map(drop), &link);
@@ -557,7 +638,7 @@ fn constants_are_finite() {
     let (_folder, path) = folder();
     let mut vast = metadata(2, &[]);
     vast.body.inertia[1][2] = f64::INFINITY;
-    let error = Writer::create(&path, &vast, &COLUMNS, Expected::default()).unwrap_err().to_string();
+    let error = Writer::create(&path, &vast, None, &COLUMNS, Expected::default()).unwrap_err().to_string();
     assert!(error.contains("body/inertia is inf"), "{error}");
 }
 

@@ -8,7 +8,7 @@ mod sealed;
 
 use hdf5::dataset::Layout;
 use results::*;
-use rows::{COLUMNS, Resumed, Row, Writer, assert_rows, folder, metadata};
+use rows::{COLUMNS, Resumed, Row, Writer, assert_rows, folder, metadata, shapes};
 use serde_json::{Value, json};
 use std::path::Path;
 
@@ -21,9 +21,14 @@ fn push(writer: &mut Writer, rows: std::ops::Range<usize>) {
 /// An unfinished file, as bytes, and the finished one that it becomes with as many rows again.
 fn files(path: &Path) -> [Vec<u8>; 2] {
     let metadata = Metadata { scene_text: "title = \"ω₂\"".into(), ..metadata(2, &["P1"]) };
-    let mut writer =
-        Writer::create(path, &metadata, &COLUMNS, Expected { checkpoint: 4, overwrite: true, ..Expected::default() })
-            .unwrap();
+    let mut writer = Writer::create(
+        path,
+        &metadata,
+        Some(&shapes(2)),
+        &COLUMNS,
+        Expected { checkpoint: 4, overwrite: true, ..Expected::default() },
+    )
+    .unwrap();
     push(&mut writer, 0..ROWS);
     writer.flush(&[1, 2, 3, 4]).unwrap();
     let part = std::fs::read(writer.unfinished()).unwrap();

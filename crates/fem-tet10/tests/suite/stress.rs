@@ -97,6 +97,37 @@ fn a_node_between_two_materials_has_the_stress_of_each() {
 }
 
 #[test]
+fn the_stress_at_some_nodes_is_that_of_these_nodes_among_all() {
+    let mesh = data_mesh("two_materials.msh");
+    let soft = Material { young_modulus: 1e3, poisson_ratio: 0.3, density: 1.0 };
+    let stiff = Material { young_modulus: 7e3, ..soft };
+    let materials = Materials::ByGroup(mesh.groups().iter().cloned().zip([soft, stiff]).collect());
+    let fields = columns(&[field(&mesh, |[x, y, z]| [x * y, z * z, x]), field(&mesh, |[x, _, z]| [z, x * x, x * z])]);
+    let recovery = StressRecovery::new(&mesh, &materials).unwrap();
+    let all = [
+        recovery.nodal_stress(fields.as_ref()).unwrap(),
+        recovery.second_order_nodal_stress(fields.as_ref(), &[[0, 1]]).unwrap(),
+    ];
+    // Every third, backwards; some lie between the materials.
+    let nodes: Vec<u32> = (0..mesh.positions().len() as u32).rev().step_by(3).collect();
+    let sites: Vec<usize> = nodes.iter().flat_map(|node| recovery.sites().of_node(*node)).collect();
+    assert!(sites.len() > nodes.len());
+    let of_nodes: Vec<u32> = sites.iter().map(|site| recovery.sites().nodes()[*site]).collect();
+    let some = recovery.at_nodes(&nodes);
+    assert_eq!(some.nodes().collect::<Vec<_>>(), of_nodes);
+    let found = [
+        some.nodal_stress(fields.as_ref()).unwrap(),
+        some.second_order_nodal_stress(fields.as_ref(), &[[0, 1]]).unwrap(),
+    ];
+    for (found, all) in found.iter().zip(&all) {
+        assert_eq!(found.nrows(), 6 * sites.len());
+        for (i, site) in sites.iter().enumerate() {
+            (0..found.ncols()).for_each(|k| assert_eq!(at(found, i, k), at(all, *site, k)));
+        }
+    }
+}
+
+#[test]
 fn the_estimate_is_zero_for_a_stress_that_the_elements_have_and_not_for_another() {
     let mesh = workspace_mesh("plate.msh");
     let recovery = StressRecovery::new(&mesh, &aluminium()).unwrap();

@@ -13,8 +13,10 @@ pub fn metadata(modes: usize, point_names: &[&str]) -> Metadata {
         step: Some(1e-4),
         tolerance: None,
         program_version: "0.1.0".into(),
+        end: 0.5,
         scene_text: "title = \"ω₂\"\n".repeat(10_000), // more than an attribute of fixed length can hold
         scene_file: "platten/frei.toml".into(),
+        input_files: vec!["platten/frei.toml".into(), "netz ω.msh".into()],
         body: BodyProperties {
             mass: 0.00935,
             center_of_mass: [0.1, -0.2, 0.3],
@@ -23,12 +25,44 @@ pub fn metadata(modes: usize, point_names: &[&str]) -> Metadata {
             frequencies: (0..modes).map(|k| 24.5 + 60.0 * k as f64).collect(),
             damping_ratios: vec![0.05; modes],
             static_shapes: modes / 2,
+            rotation_axes: vec![[0.0, 0.0, 1.0]],
+            translation_axes: Vec::new(),
+            mesh: Some(MeshProperties {
+                nodes: 393,
+                elements: 40,
+                size: [1000.0, 50.0, 10.0],
+                body_file: "frei.body.h5".into(),
+                shapes_hash: "0123".into(),
+            }),
         },
         point_names: point_names.iter().map(|name| name.to_string()).collect(),
         point_positions: (0..point_names.len()).map(|p| [p as f64, 2.0, -3.0]).collect(),
         parts: Vec::new(),
         support_names: Vec::new(),
+        effects: vec![EffectProperties {
+            name: "coriolis".into(),
+            state: "off".into(),
+            measure: "2 ω/ω₁ = 1e-5".into(),
+            reason: "It is slow.".into(),
+        }],
         warnings: Vec::new(),
+    }
+}
+
+/// Three nodes on one face, with the shapes of so many coordinates; one of them is large and has a shape that follows.
+pub fn shapes(modes: usize) -> Shapes {
+    let value = |i: usize, k: usize| (i + 10 * k) as f64 - 0.125;
+    Shapes {
+        nodes: vec![0, 7, 3],
+        positions: vec![[0.0; 3], [1.0, 0.5, 0.0], [0.0, 2.0, -3.0]],
+        faces: vec![[0, 1, 2, 2, 1, 0]],
+        displacements: (0..=modes).map(|k| (0..3).map(|i| [value(i, k), -1.0, 0.5]).collect()).collect(),
+        pairs: vec![[0, 0]],
+        products: vec![(0..=modes).map(|k| value(5, k)).collect()],
+        stress: Some(StressShapes {
+            nodes: vec![0, 1, 1, 2],
+            shapes: (0..modes + 2).map(|k| (0..4).map(|i| [value(i, k); 6]).collect()).collect(),
+        }),
     }
 }
 

@@ -1,0 +1,207 @@
+//! The shapes of a body as the datasets of a file.
+
+use super::{Shapes, StressShapes};
+use crate::checkpoint::little_endian;
+use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
+use std::io;
+
+/// A kind of dataset, of which a file has one or none.
+#[derive(Debug)]
+pub(crate) struct ShapeDataset {
+    /// Path of the dataset.
+    pub path: &'static str,
+    /// True of integers of 32 bits, false of floating-point numbers of 64.
+    pub is_whole: bool,
+    /// Unit, as that of a column.
+    pub unit: &'static str,
+    /// Frame of the components.
+    pub frame: &'static str,
+    /// A sentence for people.
+    pub description: &'static str,
+}
+
+const NODES: &str = "body/mesh/nodes";
+const POSITIONS: &str = "body/mesh/positions";
+const FACES: &str = "body/mesh/surface_triangles";
+const SHAPES: &str = "body/shapes";
+const PAIRS: &str = "body/large_deflection/pairs";
+const PRODUCTS: &str = "body/large_deflection/products";
+const STRESS_NODES: &str = "body/stress/nodes";
+const STRESS_SHAPES: &str = "body/stress/shapes";
+const STRESS_PRODUCTS: &str = "body/stress/products";
+
+/// All of them.
+pub(crate) const DATASETS: [ShapeDataset; 9] = [
+    whole(NODES, "number of each node of the surface in the mesh, from 0"),
+    numbers(POSITIONS, "length", "mesh", "position of each node of the surface in the undeformed body"),
+    whole(FACES, "nodes of each face, by their places in nodes, seen from outside: corners, then mid-edges 01 12 20"),
+    numbers(
+        SHAPES,
+        "1/mass^(1/2)",
+        "body",
+        "displacement of each node in a unit of each coordinate: flexible modes, static shapes, shapes that follow large modes",
+    ),
+    whole(PAIRS, "coordinates j <= k of the large modes, from 0"),
+    numbers(
+        PRODUCTS,
+        "1/(length mass^(1/2))",
+        "none",
+        "amount that a unit of q_j q_k of each pair adds to each coordinate of shapes",
+    ),
+    whole(STRESS_NODES, "node of each stress, by its place in nodes; one between materials is there for each"),
+    numbers(
+        STRESS_SHAPES,
+        "mass^(1/2)/(length^2 time^2)",
+        "body",
+        "stress in a unit of each coordinate of shapes: xx, yy, zz, xy, yz, zx",
+    ),
+    numbers(
+        STRESS_PRODUCTS,
+        "1/(length^3 time^2)",
+        "body",
+        "stress in a unit of q_j q_k of each of large_deflection/pairs: xx, yy, zz, xy, yz, zx",
+    ),
+];
+
+const fn whole(path: &'static str, description: &'static str) -> ShapeDataset {
+    ShapeDataset { path, is_whole: true, unit: "1", frame: "none", description }
+}
+
+const fn numbers(
+    path: &'static str,
+    unit: &'static str,
+    frame: &'static str,
+    description: &'static str,
+) -> ShapeDataset {
+    ShapeDataset { path, is_whole: false, unit, frame, description }
+}
+
+/// A dataset of shapes in a file.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct StoredArray {
+    /// Path of one of [`DATASETS`].
+    pub path: String,
+    pub shape: Vec<usize>,
+    /// First byte in the file, 0 where it is empty.
+    pub start: u64,
+}
+
+impl StoredArray {
+    /// Its kind; `None` if there is none of this path.
+    pub(crate) fn dataset(&self) -> Option<&'static ShapeDataset> {
+        DATASETS.iter().find(|dataset| dataset.path == self.path)
+    }
+
+    /// Bytes of its numbers; `None` if they cannot be counted, and for lists without numbers.
+    pub(crate) fn bytes(&self) -> Option<u64> {
+        if self.shape.contains(&0) && self.shape.first() != Some(&0) {
+            return None;
+        }
+        let each = if self.dataset()?.is_whole { size_of::<u32>() } else { size_of::<f64>() };
+        self.shape.iter().try_fold(each, |bytes, length| bytes.checked_mul(*length)).map(|bytes| bytes as u64)
+    }
+}
+
+/// Numbers of a dataset, list by list.
+#[derive(Debug)]
+pub(crate) enum Lists<'a> {
+    Whole(&'a [u32]),
+    Numbers(Vec<&'a [f64]>),
+}
+
+impl Lists<'_> {
+    /// The numbers as they are in a file.
+    pub(crate) fn bytes(&self) -> impl Iterator<Item = Cow<'_, [u8]>> {
+        let (whole, numbers) = match self {
+            Self::Whole(list) => (Some(little_endian(list)), &[][..]),
+            Self::Numbers(lists) => (None, &lists[..]),
+        };
+        whole.into_iter().chain(numbers.iter().map(|list| little_endian(list)))
+    }
+}
+
+/// A reader of the datasets of a file: the numbers of one, list by list, each with as many numbers as its shape after the
+/// first index says.
+pub(crate) trait Datasets {
+    /// The shape of a dataset; `None` if the file does not have it.
+    fn shape(&self, path: &str) -> Option<&[usize]>;
+    /// The lists of a dataset of integers, as one.
+    fn whole(&self, path: &str) -> io::Result<Vec<u32>>;
+    /// The lists of a dataset of numbers.
+    fn numbers(&self, path: &str) -> io::Result<Vec<Vec<f64>>>;
+}
+
+impl Shapes {
+    /// The datasets: their kinds, their shapes and their numbers.
+    pub(crate) fn stored(&self) -> Vec<(&'static str, Vec<usize>, Lists<'_>)> {
+        let Self { nodes, positions, faces, displacements, pairs, products, stress } = self;
+        let (n, c, p) = (nodes.len(), displacements.len(), pairs.len());
+        let mut stored = vec![
+            (NODES, vec![n], Lists::Whole(nodes)),
+            (POSITIONS, vec![n, 3], Lists::Numbers(vec![positions.as_flattened()])),
+            (FACES, vec![faces.len(), 6], Lists::Whole(faces.as_flattened())),
+            (SHAPES, vec![c, n, 3], Lists::Numbers(flat(displacements))),
+        ];
+        if p > 0 {
+            stored.push((PAIRS, vec![p, 2], Lists::Whole(pairs.as_flattened())));
+            stored.push((PRODUCTS, vec![p, c], Lists::Numbers(products.iter().map(Vec::as_slice).collect())));
+        }
+        if let Some(StressShapes { nodes, shapes }) = stress {
+            let s = nodes.len();
+            let (of_shapes, of_products) = shapes.split_at(c.min(shapes.len()));
+            stored.push((STRESS_NODES, vec![s], Lists::Whole(nodes)));
+            stored.push((STRESS_SHAPES, vec![c, s, 6], Lists::Numbers(flat(of_shapes))));
+            if p > 0 {
+                stored.push((STRESS_PRODUCTS, vec![p, s, 6], Lists::Numbers(flat(of_products))));
+            }
+        }
+        stored
+    }
+
+    /// The shapes in a file; `None` where one of the datasets lacks, or has a shape that none of its kind has.
+    pub(crate) fn read(file: &impl Datasets) -> io::Result<Option<Self>> {
+        let last = |path: &str, last: &[usize]| file.shape(path).is_some_and(|shape| shape.ends_with(last));
+        let lists = |path: &str, rank: usize| file.shape(path).is_some_and(|shape| shape.len() == rank);
+        let has_large = file.shape(PAIRS).is_some();
+        let has_stress = file.shape(STRESS_NODES).is_some();
+        let fits = lists(NODES, 1)
+            && (lists(POSITIONS, 2) && last(POSITIONS, &[3]))
+            && (lists(FACES, 2) && last(FACES, &[6]))
+            && (lists(SHAPES, 3) && last(SHAPES, &[3]))
+            && (!has_large || (lists(PAIRS, 2) && last(PAIRS, &[2]) && lists(PRODUCTS, 2)))
+            && (!has_stress || (lists(STRESS_NODES, 1) && lists(STRESS_SHAPES, 3) && last(STRESS_SHAPES, &[6])))
+            && (!(has_stress && has_large) || (lists(STRESS_PRODUCTS, 3) && last(STRESS_PRODUCTS, &[6])));
+        if !fits {
+            return Ok(None);
+        }
+        let mut shapes = Self {
+            nodes: file.whole(NODES)?,
+            positions: file.numbers(POSITIONS)?.concat().as_chunks().0.to_vec(),
+            faces: file.whole(FACES)?.as_chunks().0.to_vec(),
+            displacements: vectors(file.numbers(SHAPES)?),
+            ..Self::default()
+        };
+        if has_large {
+            shapes.pairs = file.whole(PAIRS)?.as_chunks().0.to_vec();
+            shapes.products = file.numbers(PRODUCTS)?;
+        }
+        if has_stress {
+            let mut of_shapes = vectors(file.numbers(STRESS_SHAPES)?);
+            if has_large {
+                of_shapes.extend(vectors(file.numbers(STRESS_PRODUCTS)?));
+            }
+            shapes.stress = Some(StressShapes { nodes: file.whole(STRESS_NODES)?, shapes: of_shapes });
+        }
+        Ok(Some(shapes))
+    }
+}
+
+fn flat<const N: usize>(lists: &[Vec<[f64; N]>]) -> Vec<&[f64]> {
+    lists.iter().map(|list| list.as_flattened()).collect()
+}
+
+fn vectors<const N: usize>(lists: Vec<Vec<f64>>) -> Vec<Vec<[f64; N]>> {
+    lists.into_iter().map(|list| list.as_chunks().0.to_vec()).collect()
+}
