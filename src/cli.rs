@@ -375,7 +375,7 @@ pub fn main() -> ExitCode {
 }
 
 fn settings(signals: &Signals, overwrite: bool, cache: &Cache) -> RunSettings {
-    RunSettings { overwrite, large: false, stop: signals.stop(), cache: cache.clone() }
+    RunSettings { overwrite, large: false, rows_alone: false, stop: signals.stop(), cache: cache.clone() }
 }
 
 fn execute(cli: Cli, json: bool) -> Result<(), Box<dyn Failure>> {
@@ -570,7 +570,7 @@ fn command(cli: Cli, json_errors: bool, cache: &Cache) -> Result<(), Box<dyn Fai
                 done.push(export::export_csv(&file, &csv, &columns, &rows)?);
             }
             if vtkhdf.is_some() || vtu.is_some() || modes.is_some() {
-                let motion = Motion::open(&file, volume, cache, |p| bar.build(p))?;
+                let motion = Motion::open(&file, volume)?;
                 let mut moved = |part: f64| bar.run(RunProgress::Motion(part));
                 if let Some(vtkhdf) = vtkhdf {
                     done.push(export::export_vtkhdf(&file, &motion, &vtkhdf, &rows, &mut moved)?);
@@ -592,13 +592,13 @@ fn command(cli: Cli, json_errors: bool, cache: &Cache) -> Result<(), Box<dyn Fai
         Command::Report { file, output, files } => {
             GivenFile::expect(&file, &[GivenFile::Results], RESULTS)?;
             if output.as_deref().is_some_and(output::is_standard) {
-                let page = html_report::page(&file, cache, |p| bar.build(p))?;
+                let page = html_report::page(&file)?;
                 drop(bar);
                 return Ok(output::text(&page)?);
             }
             let output = output.unwrap_or_else(|| file.with_extension("html"));
             outputs_of_results(&file, files.overwrite).claim_as(&Written::PAGE, &output)?;
-            html_report::write(&file, &output, cache, |p| bar.build(p))?;
+            html_report::write(&file, &output)?;
             drop(bar);
             output::list(&[output])
         }
@@ -631,7 +631,7 @@ fn command(cli: Cli, json_errors: bool, cache: &Cache) -> Result<(), Box<dyn Fai
             let warning = match scene.results()? {
                 Some(file) => {
                     outputs_of_results(file, files.overwrite).claim(&[&output])?;
-                    animate_results(file, &output, settings, cache, |p| bar.run(p))?
+                    animate_results(file, &output, settings, |p| bar.run(p))?
                 }
                 None => {
                     let scene = read(scene)?.without_rows();

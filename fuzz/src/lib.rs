@@ -58,6 +58,7 @@ pub fn write_results(path: &Path, modes: usize, points: usize, rows: u32, finish
         parts: Vec::new(),
         support_names: Vec::new(),
         effects: Vec::new(),
+        refusal: None,
         warnings: Vec::new(),
     };
     let mut writer = Writer::create(path, &metadata, None, &COLUMNS, Expected { overwrite: true, ..Expected::default() })?;

@@ -1,6 +1,7 @@
 //! Hashes of contents: BLAKE3, of which no two contents are known to have the same, not even on purpose, and which is as fast
 //! as the memory.
 
+use std::borrow::Cow;
 use std::fmt;
 use std::fs::File;
 use std::io::{self, Read};
@@ -23,6 +24,13 @@ impl Hash {
     pub fn of<T: NoUninit>(values: &[T]) -> Self {
         let mut hasher = blake3::Hasher::new();
         update(&mut hasher, bytemuck::cast_slice(values));
+        Self(*hasher.finalize().as_bytes())
+    }
+
+    /// The hash of some lists of numbers, which is that of one list with all of them.
+    pub fn of_lists<'a, T: NoUninit>(lists: impl IntoIterator<Item = Cow<'a, [T]>>) -> Self {
+        let mut hasher = blake3::Hasher::new();
+        lists.into_iter().for_each(|list| update(&mut hasher, bytemuck::cast_slice(&list)));
         Self(*hasher.finalize().as_bytes())
     }
 

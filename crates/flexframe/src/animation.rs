@@ -6,14 +6,15 @@ use std::path::{Path, PathBuf};
 use dynamics::{Observation, Reached, Simulation, StepError};
 use figures::{Animation, FigureError, Frame, View};
 use nalgebra::Vector3;
+use results::Units;
 use rigid_kin::Attitude;
-use scene::{BuildError, Cache, Meshed, Model, Scene};
+use scene::{BuildError, Model, Scene};
 
+use crate::drawn::{Drawn, Part};
 use crate::export::ExportError;
 use crate::modes::require_surface;
-use crate::reopened::Reopened;
 use crate::report::quantity;
-use crate::run::{RunError, RunProgress, metadata};
+use crate::run::{self, RunError, RunProgress};
 use crate::surface::Surface;
 
 /// An animation has no more frames.
@@ -106,8 +107,10 @@ pub fn animate(
         model.start(scene).map_err(|source| RunError::Setup { scene: scene.path.clone(), source: Box::new(source) })?;
     simulation.keep_last_step();
     let last = settings.frames.clamp(2, MOST_FRAMES) - 1;
-    let mut picture = Picture::new(scene, &model, settings, (to - from) / last as f64)
-        .ok_or_else(|| AnimationError::NoMesh { scene: scene.path.clone() })?;
+    let surface = Surface::of_model(&model).ok_or_else(|| AnimationError::NoMesh { scene: scene.path.clone() })?;
+    let units = run::units(scene);
+    let body = PictureBody { title: &scene.title, units: &units, origin: model.body.origin, surface };
+    let mut picture = Picture::new(body, settings, (to - from) / last as f64);
     for frame in 0..=last {
         let part = frame as f64 / last as f64;
         let due = from * (1.0 - part) + to * part;
@@ -120,7 +123,7 @@ pub fn animate(
 }
 
 /// Draws the rows of a results file, finished or not, as [`animate`] draws a scene. Each frame is a row: there are as many
-/// as asked for, or as there are rows. The mesh is looked for where it was.
+/// as asked for, or as there are rows.
 ///
 /// # Errors
 /// [`AnimationError`].
@@ -128,15 +131,13 @@ pub fn animate_results(
     file: &Path,
     path: &Path,
     settings: AnimationSettings,
-    cache: &Cache,
     mut progress: impl FnMut(RunProgress),
 ) -> Result<Option<String>, AnimationError> {
     require_gif(path)?;
-    let Reopened { results, scene, model } =
-        Reopened::open(file, cache, |p| progress(RunProgress::Build(p))).map_err(ExportError::from)?;
-    require_surface(&scene).map_err(|error| RunError::from(BuildError::from(error)))?;
-    if metadata(&scene, &model).body != results.metadata.body {
-        return Err(ExportError::Changed { path: file.to_owned() }.into());
+    let Drawn { results, shapes, .. } = Drawn::open(file, Part::Surface).map_err(ExportError::from)?;
+    let shapes = shapes.ok_or_else(|| ExportError::NoMesh { path: file.to_owned() })?;
+    if shapes.faces.is_empty() {
+        return Err(ExportError::NoElements { path: file.to_owned() }.into());
     }
     let times = results.numbers("time").unwrap_or_default();
     let [from, to] = settings.times(times.last().copied().unwrap_or_default())?;
@@ -149,8 +150,10 @@ pub fn animate_results(
     }
     let chosen: Vec<usize> = (0..=last).map(|frame| rows[(frame * (rows.len() - 1) + last / 2) / last]).collect();
     let interval = chosen.windows(2).map(|pair| times[pair[1]] - times[pair[0]]).fold(0.0, f64::max);
-    let mut picture = Picture::new(&scene, &model, settings, interval)
-        .ok_or_else(|| AnimationError::NoMesh { scene: scene.path.clone() })?;
+    let run = &results.metadata;
+    let (origin, surface) = (run.body.origin.into(), Surface::new(shapes));
+    let body = PictureBody { title: &run.title, units: &run.units, origin, surface };
+    let mut picture = Picture::new(body, settings, interval);
     for (frame, row) in chosen.into_iter().enumerate() {
         let history = |path: &str| results.table(path).and_then(|table| table.row(row)).unwrap_or_default();
         let vector = |path: &str| Vector3::from_iterator(history(path).iter().copied().chain([0.0; 3]));
@@ -184,10 +187,7 @@ impl AnimationSettings {
 
 /// A moving picture in the making.
 struct Picture<'a> {
-    scene: &'a Scene,
-    model: &'a Model,
-    meshed: &'a Meshed,
-    surface: Surface,
+    body: PictureBody<'a>,
     settings: AnimationSettings,
     /// Longest time from frame to frame.
     interval: f64,
@@ -196,12 +196,19 @@ struct Picture<'a> {
     fastest: f64,
 }
 
+/// The body in a moving picture.
+struct PictureBody<'a> {
+    title: &'a str,
+    units: &'a Units,
+    /// Origin of the body frame, mesh axes.
+    origin: Vector3<f64>,
+    surface: Surface,
+}
+
 impl<'a> Picture<'a> {
-    /// Without frames; `None` of a body without a mesh.
-    fn new(scene: &'a Scene, model: &'a Model, settings: AnimationSettings, interval: f64) -> Option<Self> {
-        let meshed = model.meshed.as_ref()?;
-        let surface = Surface::new(&meshed.mesh);
-        Some(Self { scene, model, meshed, surface, settings, interval, frames: Vec::new(), fastest: 0.0 })
+    /// A picture without frames.
+    fn new(body: PictureBody<'a>, settings: AnimationSettings, interval: f64) -> Self {
+        Self { body, settings, interval, frames: Vec::new(), fastest: 0.0 }
     }
 
     fn add(
@@ -213,26 +220,27 @@ impl<'a> Picture<'a> {
         omega_body: &Vector3<f64>,
     ) {
         self.fastest = self.fastest.max(omega_body.norm());
-        let u = self.surface.displacements(self.meshed, &self.model.coordinates(modal_displacement));
+        let PictureBody { units, origin, surface, .. } = &self.body;
+        let u = surface.displacements(&surface.shapes.coordinates(modal_displacement));
         let drawn: Vec<Vector3<f64>> = u.iter().map(|u| u * self.settings.magnification).collect();
         let decimals = decimals(self.interval);
         self.frames.push(Frame {
-            points: self.surface.placed(self.model, origin_global, attitude, &drawn),
+            points: surface.placed(origin, origin_global, attitude, &drawn),
             values: u.iter().map(Vector3::norm).collect(),
-            caption: format!("t = {time:.decimals$} {}", self.scene.units.time),
+            caption: format!("t = {time:.decimals$} {}", units.time),
         });
     }
 
     /// Writes it. Returns a warning where the frames are too few to show the spin.
     fn save(self, path: &Path) -> Result<Option<String>, AnimationError> {
-        let Self { scene, surface, settings, interval, frames, fastest, .. } = self;
+        let Self { body: PictureBody { title, units, surface, .. }, settings, interval, frames, fastest } = self;
         let factor = match settings.magnification {
             1.0 => String::new(),
             factor => format!(" (drawn {factor} times as large)"),
         };
         Animation {
-            title: scene.title.clone(),
-            value_label: format!("displacement by deformation, {}{factor}", scene.units.length),
+            title: title.to_owned(),
+            value_label: format!("displacement by deformation, {}{factor}", units.length),
             triangles: &surface.triangles,
             edges: &surface.edges,
             frames: &frames,
@@ -242,7 +250,7 @@ impl<'a> Picture<'a> {
             traced_point: None,
         }
         .save_gif(path)?;
-        Ok(aliased(interval, frames.len() as u64 - 1, fastest, &scene.units.time))
+        Ok(aliased(interval, frames.len() as u64 - 1, fastest, &units.time))
     }
 }
 

@@ -2,7 +2,10 @@
 
 use advice::Subject;
 use dynamics::{DrivenMotion, Effect};
+use results::EffectProperties;
 use scene::{Load, Model, Scene};
+
+use crate::report::quantity;
 
 /// The effects and static shapes that can be on or off in a run of the conservative form, and whether they are; none for
 /// the paper's formulation, which has its own.
@@ -12,6 +15,25 @@ pub(crate) fn computed(scene: &Scene, model: &Model) -> Vec<(&'static str, bool)
     }
     let subjects = model.advice.rows().map(|(subject, _)| subject);
     subjects.filter_map(|subject| Some((subject.name(), is_on(scene, model, subject)?))).collect()
+}
+
+/// All effects of the conservative form in words, as a page about the run shows them; none for the paper's formulation.
+pub(crate) fn described(scene: &Scene, model: &Model) -> Vec<EffectProperties> {
+    if !scene.time.method.abilities.switches_effects {
+        return Vec::new();
+    }
+    let effect = |(subject, row): (Subject, &advice::Row)| EffectProperties {
+        name: subject.name().replace('_', " "),
+        state: match is_on(scene, model, subject) {
+            Some(true) => "on",
+            Some(false) => "off",
+            None => "–",
+        }
+        .to_owned(),
+        measure: format!("{} = {}", subject.formula(), quantity(row.value)),
+        reason: row.why.clone(),
+    };
+    model.advice.rows().map(effect).collect()
 }
 
 /// True if a scene can switch the subject of a row.

@@ -6,64 +6,43 @@ mod quantities;
 use std::path::{Path, PathBuf};
 
 use report::{Report, ReportError};
-use scene::{BuildProgress, Cache};
 
-use crate::reopened::{ReopenError, Reopened};
-use crate::run;
+use crate::drawn::{Drawn, DrawnError, Part};
 
 /// A page that could not be made.
 #[derive(Debug, thiserror::Error)]
 pub enum HtmlReportError {
-    /// The results file cannot be read, or its body not be made again.
+    /// The results file, or the shapes of its body, cannot be read.
     #[error(transparent)]
-    Reopen(#[from] ReopenError),
-    /// A result of now differs from that of then: the shapes may be others.
-    #[error(
-        "{}: {what} has changed since the run began (a changed mesh or table, another version of flexframe, or another machine), so that its shapes may be others: run the scene again",
-        results.display()
-    )]
-    Changed {
+    Drawn(#[from] DrawnError),
+    /// A results file that lacks a column of every run.
+    #[error("{}: the results lack the columns of a run; run its scene again with --overwrite", results.display())]
+    NoColumns {
         /// The results file.
         results: PathBuf,
-        /// The changed part.
-        what: &'static str,
     },
     /// The page cannot be written.
     #[error(transparent)]
     Page(#[from] ReportError),
 }
 
-/// Reads a results file, finished or not, and writes a page about it to `path`. The shapes come from the scene in the
-/// file, whose mesh is looked for where it was.
+/// Reads a results file, finished or not, and writes a page about it to `path`.
 ///
 /// # Errors
 /// [`HtmlReportError`].
-pub fn write(
-    file: &Path,
-    path: &Path,
-    cache: &Cache,
-    progress: impl FnMut(BuildProgress),
-) -> Result<(), HtmlReportError> {
-    Ok(report::write(&contents_of(file, cache, progress)?, path)?)
+pub fn write(file: &Path, path: &Path) -> Result<(), HtmlReportError> {
+    Ok(report::write(&contents_of(file)?, path)?)
 }
 
 /// The same page as a text.
 ///
 /// # Errors
 /// [`HtmlReportError`].
-pub fn page(file: &Path, cache: &Cache, progress: impl FnMut(BuildProgress)) -> Result<String, HtmlReportError> {
-    Ok(report::html(&contents_of(file, cache, progress)?)?)
+pub fn page(file: &Path) -> Result<String, HtmlReportError> {
+    Ok(report::html(&contents_of(file)?)?)
 }
 
-fn contents_of(file: &Path, cache: &Cache, progress: impl FnMut(BuildProgress)) -> Result<Report, HtmlReportError> {
-    let Reopened { results, scene, model } = Reopened::open(file, cache, progress)?;
-    let changed = |what| HtmlReportError::Changed { results: file.to_owned(), what };
-    let now = run::metadata(&scene, &model);
-    if now.program_version != results.metadata.program_version {
-        return Err(changed("the version of flexframe"));
-    }
-    if now.body != results.metadata.body {
-        return Err(changed("the body"));
-    }
-    contents::contents(file, &results, &scene, &model).ok_or_else(|| changed("the set of columns"))
+fn contents_of(file: &Path) -> Result<Report, HtmlReportError> {
+    let Drawn { results, shapes, .. } = Drawn::open(file, Part::Surface)?;
+    contents::contents(file, &results, shapes).ok_or_else(|| HtmlReportError::NoColumns { results: file.to_owned() })
 }

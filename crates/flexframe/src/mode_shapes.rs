@@ -6,6 +6,7 @@ use figures::{FigureError, Panel, ShapeGrid, View};
 use nalgebra::Vector3;
 use scene::{Meshed, Model, Scene, SceneError};
 
+use crate::drawn::shapes_of;
 use crate::modes::{frequency_unit, require_flexible, require_surface};
 use crate::surface::Surface;
 
@@ -33,7 +34,7 @@ pub fn draw(scene: &Scene, model: &Model, stem: &Path) -> Result<[PathBuf; 3], S
     require_surface(scene)?;
     let meshed = require_flexible(scene, model)?;
     let Meshed { mesh, modes, .. } = meshed;
-    let surface = Surface::new(mesh);
+    let surface = Surface::new(shapes_of(meshed, model.physics.large_deflection.as_ref()));
     let unit = frequency_unit(&scene.units.time);
     let panels = modes
         .natural_frequencies()
@@ -43,13 +44,14 @@ pub fn draw(scene: &Scene, model: &Model, stem: &Path) -> Result<[PathBuf; 3], S
         .map(|(k, frequency)| {
             let mut q = vec![0.0; k + 1];
             q[k] = 1.0;
-            let shape = surface.displacements(meshed, &q);
+            let shape = surface.displacements(&q);
             let largest = shape.iter().map(Vector3::norm).fold(0.0, f64::max);
             let scale = DRAWN * mesh.diagonal() / largest;
             Panel {
                 title: format!("Mode {}: {frequency:.4} {unit}", k + 1),
                 points: surface
-                    .points
+                    .shapes
+                    .positions
                     .iter()
                     .zip(&shape)
                     .map(|(x, u)| (Vector3::from(*x) + u * scale).into())
@@ -63,7 +65,7 @@ pub fn draw(scene: &Scene, model: &Model, stem: &Path) -> Result<[PathBuf; 3], S
         value_label: "displacement / largest of the mode".to_owned(),
         triangles: &surface.triangles,
         edges: &surface.edges,
-        undeformed: &surface.points,
+        undeformed: &surface.shapes.positions,
         panels,
         columns: 2,
         view: View::default(),

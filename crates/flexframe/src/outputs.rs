@@ -7,7 +7,8 @@ use results::Results;
 use scene::Scene;
 pub use whole_file::{OutputError, Outputs, Written};
 
-use crate::reopened::scene_in;
+use crate::drawn::body_files;
+use crate::scene_file;
 
 /// Files that a command may write that reads a scene.
 pub fn outputs_of_scene(scene: &Scene, overwrite: bool) -> Outputs {
@@ -19,9 +20,12 @@ pub fn outputs_of_mesh(mesh: &Path, overwrite: bool) -> Outputs {
     Outputs::new(files_of_mesh(mesh), overwrite)
 }
 
-/// The same of one that reads a results file, and what the scene in it names.
+/// The same of one that reads a results file; it spares the body file, and what the run read.
 pub fn outputs_of_results(file: &Path, overwrite: bool) -> Outputs {
-    let scene = Results::metadata_of(file).ok().and_then(|metadata| scene_in(&metadata).ok());
-    let of_scene = scene.map_or_else(Vec::new, |scene| scene.files());
-    Outputs::new(of_scene, overwrite).and_input(file)
+    let mut inputs = Vec::new();
+    if let Ok(metadata) = Results::metadata_of(file) {
+        inputs.extend(metadata.input_files.iter().map(|text| scene_file::to_path(text)));
+        inputs.extend(metadata.body.mesh.iter().flat_map(|mesh| body_files(file, mesh)));
+    }
+    Outputs::new(inputs, overwrite).and_input(file)
 }

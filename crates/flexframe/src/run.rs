@@ -13,8 +13,8 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use dynamics::{DrivenMotion, Simulation};
-use results::{BodyProperties, Expected, Metadata, Resumed, Units, Writer, unfinished};
-use scene::{Model, Scene, StepControl};
+use results::{BodyProperties, Expected, Metadata, Results, Resumed, Units, Writer, unfinished};
+use scene::{BuildError, Cache, Model, Scene, SceneError, StepControl};
 
 pub use balances::Balances;
 pub(crate) use balances::Monitor;
@@ -25,8 +25,9 @@ pub use settings::{RunProgress, RunSettings};
 pub use watch::{Watch, Watched};
 
 use crate::columns::{COLUMNS, part};
+use crate::drawn::{mesh_properties, stored_shapes};
+use crate::effects;
 use crate::outputs::outputs_of_scene;
-use crate::reopened::scene_of;
 use crate::report::BodyReport;
 use crate::row::Row;
 use crate::scene_file;
@@ -73,7 +74,7 @@ pub fn run_model(
     let started = Instant::now();
     let mut simulation = start(scene, model)?;
     let checkpoint = simulation.checkpoint().map_err(|source| RunError::Restore { part: path.clone(), source })?.len();
-    let metadata = metadata(scene, model);
+    let metadata = metadata_of_file(scene, model);
     let foretold = Foretold::of_rows(scene, &metadata);
     if foretold.bytes > LARGE && !settings.large {
         return Err(RunError::Large { scene: scene.path.clone(), foretold });
@@ -81,8 +82,10 @@ pub fn run_model(
     let foretold = foretold.with_seconds(&simulation, &settings.stop);
     progress(RunProgress::Foretold(foretold));
     let rows = usize::try_from(foretold.rows).unwrap_or(usize::MAX);
-    let writer =
-        Writer::create(&path, &metadata, &COLUMNS, Expected { rows, checkpoint, overwrite: settings.overwrite })?;
+    let shapes = if settings.rows_alone { None } else { stored_shapes(scene, model).map_err(BuildError::from)? };
+    let expected = Expected { rows, checkpoint, overwrite: settings.overwrite };
+    let writer = Writer::create(&path, &metadata, shapes.as_ref(), &COLUMNS, expected)?;
+    drop(shapes);
     progress(RunProgress::Motion(0.0));
     let initial = model.initial(scene);
     let mut recorder = Recorder::new(scene, model, &initial, writer, foretold)?;
@@ -92,7 +95,7 @@ pub fn run_model(
 
 /// Goes on with a run that was cut off, from the last checkpoint in its unfinished file (which may be given by the name
 /// of the results file, too): the finished file is the same as if the run had not been cut off, bit for bit. The scene
-/// is that of the file; its mesh and tables are looked for where they were.
+/// is that of the file, read once more: a run needs its loads; its mesh and tables are looked for where they were.
 ///
 /// # Errors
 /// [`RunError`].
@@ -111,7 +114,7 @@ pub fn resume(
     let started = Instant::now();
     let mut simulation = start(&scene, &model)?;
     let changed = |what| RunError::Changed { part: part.clone(), what };
-    let now = metadata(&scene, &model);
+    let now = metadata_of_file(&scene, &model);
     if now.program_version != results.metadata.program_version {
         return Err(changed("the version of flexframe"));
     }
@@ -138,6 +141,12 @@ pub fn resume(
     Ok((scene, model, report))
 }
 
+/// The scene of a run that is to go on.
+fn scene_of(results: &Results, cache: &Cache) -> Result<Scene, SceneError> {
+    let Metadata { scene_text, scene_file, .. } = &results.metadata;
+    Ok(Scene { cache: cache.clone(), ..Scene::parse(scene_text, scene_file::to_path(scene_file))? })
+}
+
 fn start(scene: &Scene, model: &Model) -> Result<Simulation, RunError> {
     model.start(scene).map_err(|source| RunError::Setup { scene: scene.path.clone(), source: Box::new(source) })
 }
@@ -149,7 +158,17 @@ pub fn results_path(scene: &Scene, folder: &Path) -> PathBuf {
     folder.join(name)
 }
 
-/// Metadata of a run in its results file.
+/// The metadata in the results file of a run.
+fn metadata_of_file(scene: &Scene, model: &Model) -> Metadata {
+    let metadata = metadata(scene, model);
+    Metadata {
+        input_files: scene.files().iter().map(|file| scene_file::to_text(file)).collect(),
+        body: BodyProperties { mesh: mesh_properties(scene, model), ..metadata.body },
+        ..metadata
+    }
+}
+
+/// The metadata of a run without what only a file has: the files that it read, and the size of its mesh.
 pub fn metadata(scene: &Scene, model: &Model) -> Metadata {
     let body = BodyReport::new(model);
     let method = scene.time.method;
@@ -159,18 +178,16 @@ pub fn metadata(scene: &Scene, model: &Model) -> Metadata {
     };
     Metadata {
         title: scene.title.clone(),
-        units: Units {
-            length: scene.units.length.clone(),
-            mass: scene.units.mass.clone(),
-            time: scene.units.time.clone(),
-        },
+        units: units(scene),
         formulation: method.formulation.to_owned(),
         scheme: method.scheme.to_owned(),
         step,
         tolerance,
         program_version: env!("CARGO_PKG_VERSION").to_owned(),
+        end: scene.time.end,
         scene_text: scene.source.clone(),
         scene_file: scene_file::to_text(&scene.path),
+        input_files: Vec::new(),
         body: BodyProperties {
             mass: body.mass,
             center_of_mass: body.center_of_mass,
@@ -179,13 +196,24 @@ pub fn metadata(scene: &Scene, model: &Model) -> Metadata {
             static_shapes: model.static_shapes(),
             frequencies: body.natural_frequencies,
             damping_ratios: body.damping_ratios,
+            rotation_axes: model.body.motion.rotations().iter().map(|axis| (*axis).into()).collect(),
+            translation_axes: model.body.motion.translations().iter().map(|axis| (*axis).into()).collect(),
+            mesh: None,
         },
         point_names: model.points.iter().map(|(name, _)| name.clone()).collect(),
         point_positions: model.points.iter().map(|(_, p)| (model.body.origin + p.position_body()).into()).collect(),
         parts: parts(scene, model).map(str::to_owned).collect(),
         support_names: model.supports.as_ref().map_or(Vec::new(), |supports| supports.names().to_vec()),
+        effects: effects::described(scene, model),
+        refusal: model.refusal.map(|refusal| refusal.to_string()),
         warnings: Vec::new(),
     }
+}
+
+/// The labels of a scene's units.
+pub(crate) fn units(scene: &Scene) -> Units {
+    let scene::Units { length, mass, time } = scene.units.clone();
+    Units { length, mass, time }
 }
 
 /// Parts of a run whose file has further columns. In the formulation of the paper there are no reactions.

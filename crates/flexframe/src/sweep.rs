@@ -205,7 +205,7 @@ pub fn sweep(
             all_failed(CHANGED);
             continue;
         }
-        let of_run = RunSettings { large: settings.large, ..RunSettings::default() };
+        let of_run = RunSettings { large: settings.large, rows_alone: true, ..RunSettings::default() };
         run_rows(&plan, rows, &builder, temporary.path(), (settings.threads, &of_run), |row, outcome| {
             table.rows[row] = outcome;
             let [done, failed] = table.counts();

@@ -55,7 +55,7 @@ fn followed<'py>(
 ) -> PyResult<Bound<'py, PyAny>> {
     let stop = Stop::default();
     let in_motion = Arc::new(AtomicBool::new(false));
-    let settings = RunSettings { overwrite, large, stop: stop.flag(), cache: cache.clone() };
+    let settings = RunSettings { overwrite, large, rows_alone: false, stop: stop.flag(), cache: cache.clone() };
     let (told, moves) = (stop.clone(), in_motion.clone());
     let run = move || {
         work(&settings, &mut |progress| match progress {

@@ -75,6 +75,11 @@ impl Shapes {
         28 * n as u64 + 24 * self.faces.len() as u64 + 8 * numbers(c, n, 3) + 8 * numbers(p, c + 1, 1) + stress
     }
 
+    /// True if its lists fit together and its numbers are finite.
+    pub fn fits(&self) -> bool {
+        self.check(Path::new("")).is_ok()
+    }
+
     fn products_of<'a>(&'a self, q: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
         let coordinate = |k: u32| q.get(k as usize).copied().unwrap_or_default();
         self.pairs.iter().map(move |[j, k]| coordinate(*j) * coordinate(*k))

@@ -154,6 +154,9 @@ fn write_root_attributes(path: &Path, file: &hdf5::File, metadata: &Metadata, co
     for (name, text) in texts {
         write_text(path, file, name, text)?;
     }
+    if let Some(refusal) = &metadata.refusal {
+        write_text(path, file, "refusal", refusal)?;
+    }
     for (name, number) in [("step", metadata.step), ("tolerance", metadata.tolerance), ("end", Some(metadata.end))] {
         let Some(number) = number else { continue };
         file.new_attr::<f64>()

@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use results::FileError;
 
+use crate::drawn::DrawnError;
 use crate::outputs::OutputError;
-use crate::reopened::ReopenError;
 use crate::write_error::WriteError;
 
 /// An export that could not be made. Nothing has been written, unless it is of many files.
@@ -20,19 +20,9 @@ pub enum ExportError {
     /// A file that is there may not be replaced.
     #[error(transparent)]
     Output(#[from] OutputError),
-    /// The results file cannot be read, or its body not be made again.
+    /// The shapes of the body cannot be read.
     #[error(transparent)]
-    Reopen(#[from] ReopenError),
-    /// The body that the scene gives now is another.
-    #[error(
-        "{}: the body has changed since the run was made (a changed mesh, another version of flexframe, or \
-         another machine), so that its shapes do not belong to the modal coordinates; run the scene again",
-        path.display()
-    )]
-    Changed {
-        /// The results file.
-        path: PathBuf,
-    },
+    Drawn(#[from] DrawnError),
     /// There is no mesh to show.
     #[error("{}: a rigid body without a mesh has no surface to export; give it a mesh and `flexible = 0`", path.display())]
     NoMesh {

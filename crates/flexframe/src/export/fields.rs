@@ -1,6 +1,6 @@
 //! The fields that an export for ParaView has: to add one, give it a line in [`FIELDS`].
 
-use results::Field;
+use results::{Field, Shapes};
 
 use super::motion::Placed;
 
@@ -8,17 +8,22 @@ use super::motion::Placed;
 pub(super) struct PointField {
     name: &'static str,
     components: usize,
+    /// True if only a body whose stress is known has it.
+    is_stress: bool,
     pub values: fn(&Placed) -> &[f64],
 }
 
 /// All of them. The mesh stays where the scene has it; warped by the first it is where the body is.
-pub(super) const FIELDS: [PointField; 3] = [
-    PointField { name: "displacement", components: 3, values: |placed| &placed.displacement },
-    PointField { name: "elastic_displacement", components: 3, values: |placed| &placed.elastic },
-    PointField { name: "von_mises_stress", components: 1, values: |placed| &placed.von_mises },
+const FIELDS: [PointField; 3] = [
+    PointField { name: "displacement", components: 3, is_stress: false, values: |placed| &placed.displacement },
+    PointField { name: "elastic_displacement", components: 3, is_stress: false, values: |placed| &placed.elastic },
+    PointField { name: "von_mises_stress", components: 1, is_stress: true, values: |placed| &placed.von_mises },
 ];
 
-/// Description of the fields in a file.
-pub(super) fn described() -> Vec<Field> {
-    FIELDS.iter().map(|field| Field { name: field.name.to_owned(), components: field.components }).collect()
+/// Those of a body with these shapes, and the words of a file about them.
+pub(super) fn fields(shapes: &Shapes) -> (Vec<&'static PointField>, Vec<Field>) {
+    let fields: Vec<_> = FIELDS.iter().filter(|field| !field.is_stress || shapes.stress.is_some()).collect();
+    let described = fields.iter().map(|field| Field { name: field.name.to_owned(), components: field.components });
+    let described = described.collect();
+    (fields, described)
 }

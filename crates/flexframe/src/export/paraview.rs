@@ -3,11 +3,10 @@
 use std::path::Path;
 
 use results::{Field, VtkHdf, write_pvd, write_vtu};
-use scene::Meshed;
 
 use super::Exported;
 use super::error::ExportError;
-use super::fields::{FIELDS, described};
+use super::fields::fields;
 use super::motion::{Motion, Placed};
 use super::rows::ExportRows;
 use crate::modes::frequency_unit;
@@ -37,15 +36,16 @@ pub fn export_vtkhdf(
 ) -> Result<Exported, ExportError> {
     let (chosen, times) = motion.chosen(file, rows)?;
     outputs_of_results(file, rows.overwrite).claim_as(&Written::VTKHDF, to)?;
-    let out = VtkHdf::create(to, &motion.grid, Some(&times), &described(), rows.overwrite)?;
+    let (fields, described) = fields(&motion.shapes);
+    let out = VtkHdf::create(to, &motion.grid, Some(&times), &described, rows.overwrite)?;
     let mut placed = Placed::default();
     for (step, row) in chosen.iter().enumerate() {
         motion.place(*row, &mut placed);
-        FIELDS.iter().enumerate().try_for_each(|(i, field)| out.write(step, i, (field.values)(&placed)))?;
+        fields.iter().enumerate().try_for_each(|(i, field)| out.write(step, i, (field.values)(&placed)))?;
         progress((step + 1) as f64 / chosen.len() as f64);
     }
     out.finish()?;
-    Ok(Exported { files: vec![to.to_owned()], warning: ExportRows::warning(&motion.results) })
+    Ok(Exported { files: vec![to.to_owned()], warning: motion.warning() })
 }
 
 /// Writes a folder with a VTU file for each row and a PVD file, which lists them and is written last: for ParaView before
@@ -69,20 +69,20 @@ pub fn export_vtu(
         (0..chosen.len()).map(|step| folder.join(name(step))).chain(std::iter::once(list.clone())).collect();
     outputs_of_results(file, rows.overwrite).claim(&all)?;
     std::fs::create_dir_all(folder).map_err(WriteError::of(folder))?;
-    let described = described();
+    let (fields, described) = fields(&motion.shapes);
     let mut placed = Placed::default();
     let mut files = Vec::new();
     for (step, (row, time)) in chosen.iter().zip(times).enumerate() {
         motion.place(*row, &mut placed);
-        let fields: Vec<(&Field, &[f64])> =
-            described.iter().zip(&FIELDS).map(|(described, field)| (described, (field.values)(&placed))).collect();
+        let values: Vec<(&Field, &[f64])> =
+            described.iter().zip(&fields).map(|(described, field)| (described, (field.values)(&placed))).collect();
         let name = name(step);
-        write_vtu(folder.join(&name), &motion.grid, &fields, rows.overwrite)?;
+        write_vtu(folder.join(&name), &motion.grid, &values, rows.overwrite)?;
         files.push((time, name));
         progress((step + 1) as f64 / chosen.len() as f64);
     }
     write_pvd(&list, &files, rows.overwrite)?;
-    Ok(Exported { files: vec![list], warning: ExportRows::warning(&motion.results) })
+    Ok(Exported { files: vec![list], warning: motion.warning() })
 }
 
 /// Writes a VTKHDF file with the shape of each mode, and of each static shape, as a field of its own, mass-normalised, and
@@ -92,10 +92,10 @@ pub fn export_vtu(
 /// [`ExportError`]; nothing has been written then.
 pub fn export_modes(file: &Path, motion: &Motion, to: &Path, rows: &ExportRows) -> Result<Exported, ExportError> {
     let body = &motion.results.metadata.body;
-    let Some(Meshed { modes, .. }) = motion.model.meshed.as_ref().filter(|_| !body.frequencies.is_empty()) else {
+    if body.frequencies.is_empty() {
         return Err(ExportError::NoModes { path: file.to_owned() });
-    };
-    let unit = frequency_unit(&motion.scene.units.time);
+    }
+    let unit = frequency_unit(&motion.results.metadata.units.time);
     let digits = body.frequencies.len().to_string().len();
     let name = |(k, (kind, frequency)): (usize, (&str, &f64))| match kind {
         "natural mode" => format!("mode {:0digits$}: {frequency:.4} {}", k + 1, unit.replace('/', " per ")),
@@ -103,16 +103,18 @@ pub fn export_modes(file: &Path, motion: &Motion, to: &Path, rows: &ExportRows) 
     };
     let names = body.kinds().zip(&body.frequencies).enumerate().map(name);
     let shapes: Vec<Field> = names.map(|name| Field { name, components: 3 }).collect();
-    let stress = |shape: &Field| Field { name: format!("stress of {}", shape.name), components: 6 };
-    let fields: Vec<Field> = shapes.iter().cloned().chain(shapes.iter().map(stress)).collect();
+    let stress = motion.shapes.stress.as_ref();
+    let of_stress = |shape: &Field| Field { name: format!("stress of {}", shape.name), components: 6 };
+    let fields: Vec<Field> =
+        shapes.iter().cloned().chain(stress.iter().flat_map(|_| shapes.iter().map(of_stress))).collect();
     outputs_of_results(file, rows.overwrite).claim_as(&Written::VTKHDF, to)?;
     let out = VtkHdf::create(to, &motion.grid, None, &fields, rows.overwrite)?;
-    for (k, shape) in modes.shapes.col_iter().enumerate() {
-        let mut values = vec![0.0; 3 * motion.grid.points.len()];
-        motion.add_shape(shape, 1.0, &mut values);
-        out.write(0, k, &values)?;
-        out.write(0, shapes.len() + k, &motion.stress_of(k))?;
+    for (k, shape) in motion.shapes.displacements.iter().take(shapes.len()).enumerate() {
+        out.write(0, k, shape.as_flattened())?;
+        if let Some(stress) = stress {
+            out.write(0, shapes.len() + k, &motion.stress_of(stress, k))?;
+        }
     }
     out.finish()?;
-    Ok(Exported { files: vec![to.to_owned()], warning: None })
+    Ok(Exported { files: vec![to.to_owned()], warning: motion.without_stress.clone() })
 }

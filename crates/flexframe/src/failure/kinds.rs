@@ -16,6 +16,7 @@ use super::{Details, Failure, Kind};
 use crate::animation::AnimationError;
 use crate::campbell::CampbellError;
 use crate::cost::CostError;
+use crate::drawn::DrawnError;
 use crate::export::ExportError;
 use crate::fmu::FmuError;
 use crate::given_file::OtherFile;
@@ -24,7 +25,6 @@ use crate::mode_shapes::ShapesError;
 use crate::new_scene::NewSceneError;
 use crate::outputs::OutputError;
 use crate::paper::PaperError;
-use crate::reopened::ReopenError;
 use crate::run::{RunError, RunFailure};
 use crate::sweep::{SWEEP_CURE, SweepError};
 use crate::write_error::WriteError;
@@ -419,20 +419,21 @@ impl Failure for AnimationError {
     }
 }
 
-impl Failure for ReopenError {
+impl Failure for DrawnError {
     fn kind(&self) -> Kind {
         match self {
             Self::File(error) => error.kind(),
-            Self::Scene(error) => error.kind(),
-            Self::Build(error) => error.kind(),
+            Self::BodyFile(BodyFileError::System { .. }) => Kind::Io,
+            Self::BodyFile(_) | Self::NoBodyFile { .. } | Self::OtherBody { .. } => Kind::Input,
         }
     }
 
     fn details(&self) -> Details {
         match self {
             Self::File(error) => error.details(),
-            Self::Scene(error) => error.details(),
-            Self::Build(error) => error.details(),
+            Self::BodyFile(error) => Details::of_file(error.path()),
+            Self::NoBodyFile { results, .. } => Details::of_file(results),
+            Self::OtherBody { body_file, .. } => Details::of_file(body_file),
         }
     }
 }
@@ -443,8 +444,8 @@ impl Failure for ExportError {
             Self::File(error) => error.kind(),
             Self::Write(error) => error.kind(),
             Self::Output(error) => error.kind(),
-            Self::Reopen(error) => error.kind(),
-            Self::Changed { .. } | Self::NoMesh { .. } | Self::NoElements { .. } | Self::NoModes { .. } => Kind::Input,
+            Self::Drawn(error) => error.kind(),
+            Self::NoMesh { .. } | Self::NoElements { .. } | Self::NoModes { .. } => Kind::Input,
             Self::NoRows { .. } | Self::NoColumn { .. } => Kind::Usage,
         }
     }
@@ -454,9 +455,8 @@ impl Failure for ExportError {
             Self::File(error) => error.details(),
             Self::Write(error) => error.details(),
             Self::Output(error) => error.details(),
-            Self::Reopen(error) => error.details(),
-            Self::Changed { path }
-            | Self::NoMesh { path }
+            Self::Drawn(error) => error.details(),
+            Self::NoMesh { path }
             | Self::NoElements { path }
             | Self::NoModes { path }
             | Self::NoRows { path, .. }
@@ -484,16 +484,16 @@ impl Failure for ReportError {
 impl Failure for HtmlReportError {
     fn kind(&self) -> Kind {
         match self {
-            Self::Reopen(error) => error.kind(),
-            Self::Changed { .. } => Kind::Input,
+            Self::Drawn(error) => error.kind(),
+            Self::NoColumns { .. } => Kind::Input,
             Self::Page(error) => error.kind(),
         }
     }
 
     fn details(&self) -> Details {
         match self {
-            Self::Reopen(error) => error.details(),
-            Self::Changed { results, .. } => Details::of_file(results),
+            Self::Drawn(error) => error.details(),
+            Self::NoColumns { results } => Details::of_file(results),
             Self::Page(error) => error.details(),
         }
     }

@@ -2,55 +2,48 @@
 
 use std::path::Path;
 
-use dynamics::Manifold;
-use modal::{ReducedBody, SecondOrderShapes};
+use fem_tet10::von_mises;
 use nalgebra::Vector3;
 use report::{
     Balance, Component, Effect, Fact, History, Motion, Report, RunState, SceneText, Shape, ShapeKind, StressField,
     Surface, Units,
 };
-use results::{Column, Results, Values};
-use scene::{Meshed, Model, Scene};
+use results::{BodyProperties, Column, EffectProperties, MeshProperties, Results, Shapes, StressShapes, Values};
 
 use crate::columns::COLUMNS;
-use crate::effects::is_on;
 use crate::html_report::quantities::Quantities;
 use crate::modes::frequency_unit;
-use crate::report::{BodyReport, MeshReport, quantity};
+use crate::report::quantity;
 use crate::row::Row;
+use crate::scene_file;
 use crate::surface;
 use crate::units::UnitLabels;
 
-/// Most nodes by which a body without elements is drawn.
-const MOST_NODES: usize = 20_000;
-
 /// All of it; `None` where the file has not got the columns that it needs.
-pub(super) fn contents(file: &Path, results: &Results, scene: &Scene, model: &Model) -> Option<Report> {
-    let body = BodyReport::new(model);
-    let surface = model.meshed.as_ref().map(|Meshed { mesh, .. }| match mesh.has_elements() {
-        true => surface::Surface::new(mesh),
-        false => surface::Surface::of_nodes(mesh, MOST_NODES),
-    });
-    let units = &results.metadata.units;
-    let quantities = Quantities::new(results, model);
+pub(super) fn contents(file: &Path, results: &Results, shapes: Option<Shapes>) -> Option<Report> {
+    let run = &results.metadata;
+    let (body, units) = (&run.body, &run.units);
+    let surface = shapes.map(surface::Surface::new);
+    let quantities = Quantities::new(results);
+    let scene_file = scene_file::to_path(&run.scene_file);
     Some(Report {
-        title: results.metadata.title.clone(),
-        program: format!("flexframe {}", results.metadata.program_version),
-        state: state(file, results, scene)?,
+        title: run.title.clone(),
+        program: format!("flexframe {}", run.program_version),
+        state: state(file, results)?,
         units: Units { length: units.length.clone(), time: units.time.clone(), frequency: frequency_unit(&units.time) },
-        facts: facts(results, model, &body)?,
-        surface: surface.as_ref().map(|surface| reference(surface, model)),
-        shapes: shapes(surface.as_ref(), model, &body),
-        stress: surface.as_ref().and_then(|surface| stress(surface, results, scene, model)),
-        motion: motion(results, model)?,
-        histories: in_order().flat_map(|column| histories(column, results, &body, &quantities)).collect(),
+        facts: facts(results)?,
+        surface: surface.as_ref().map(|surface| reference(surface, body)),
+        shapes: surface.as_ref().map_or_else(Vec::new, |surface| described(&surface.shapes, body)),
+        stress: surface.as_ref().and_then(|surface| stress(&surface.shapes, results)),
+        motion: motion(results, surface.as_ref().map(|surface| &surface.shapes))?,
+        histories: in_order().flat_map(|column| histories(column, results, &quantities)).collect(),
         balances: balances(results, &quantities)?,
-        effects: effects(scene, model),
+        effects: effects(results),
         scene: SceneText {
-            file: scene.path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
-            text: results.metadata.scene_text.clone(),
+            file: scene_file.file_name().unwrap_or_default().to_string_lossy().into_owned(),
+            text: run.scene_text.clone(),
         },
-        warnings: warnings(results, model),
+        warnings: warnings(results),
     })
 }
 
@@ -65,13 +58,13 @@ fn in_order() -> impl Iterator<Item = &'static Column<Row>> {
     columns.into_iter()
 }
 
-fn state(file: &Path, results: &Results, scene: &Scene) -> Option<RunState> {
+fn state(file: &Path, results: &Results) -> Option<RunState> {
     if results.complete {
         return Some(RunState::Complete);
     }
     let reached = results.numbers("time")?.last().copied().unwrap_or_default();
     let time = &results.metadata.units.time;
-    let (reached, end) = (quantity(reached), quantity(scene.time.end));
+    let (reached, end) = (quantity(reached), quantity(results.metadata.end));
     let words = format!(
         "This run has not come to its end: its rows reach {reached} {time} of {end} {time}. Continue it with: flexframe \
          resume {}",
@@ -80,16 +73,21 @@ fn state(file: &Path, results: &Results, scene: &Scene) -> Option<RunState> {
     Some(RunState::Unfinished(words))
 }
 
-fn facts(results: &Results, model: &Model, body: &BodyReport) -> Option<Vec<Fact>> {
+fn facts(results: &Results) -> Option<Vec<Fact>> {
     let units = &results.metadata.units;
+    let body = &results.metadata.body;
     let fact = |label: &str, value: String| Fact { label: label.to_owned(), value };
     let mut facts = vec![fact("Mass", format!("{} {}", quantity(body.mass), units.mass))];
-    if let Some(mesh) = MeshReport::new(model) {
-        facts.push(fact("Mesh", mesh.in_words()));
+    match &body.mesh {
+        Some(MeshProperties { nodes, elements: 0, .. }) => {
+            facts.push(fact("Mesh", format!("{nodes} nodes, matrices of another program")));
+        }
+        Some(MeshProperties { nodes, elements, .. }) => {
+            facts.push(fact("Mesh", format!("{nodes} nodes, {elements} elements")));
+        }
+        None => {}
     }
-    let fixed = body.static_shapes();
-    let modes = body.natural_frequencies.len() - fixed;
-    facts.push(match (modes, fixed) {
+    facts.push(match (natural_modes(body), body.static_shapes) {
         (0, 0) => fact("Shapes", "rigid body".to_owned()),
         (modes, 0) => fact("Shapes", format!("{modes} modes")),
         (modes, fixed) => fact("Shapes", format!("{modes} modes, {fixed} static")),
@@ -100,64 +98,74 @@ fn facts(results: &Results, model: &Model, body: &BodyReport) -> Option<Vec<Fact
     Some(facts)
 }
 
-fn reference(surface: &surface::Surface, model: &Model) -> Surface {
-    let from_origin = |x: &[f64; 3]| (Vector3::from(*x) - model.body.origin).map(|x| x as f32).into();
+/// Number of natural modes, which come before the static shapes.
+fn natural_modes(body: &BodyProperties) -> usize {
+    body.frequencies.len().saturating_sub(body.static_shapes)
+}
+
+fn reference(surface: &surface::Surface, body: &BodyProperties) -> Surface {
+    let from_origin = |x: &[f64; 3]| (Vector3::from(*x) - Vector3::from(body.origin)).map(|x| x as f32).into();
     Surface {
-        vertices: surface.points.iter().map(from_origin).collect(),
+        vertices: surface.shapes.positions.iter().map(from_origin).collect(),
         triangles: surface.triangles.clone(),
         edges: surface.edges.clone(),
     }
 }
 
-fn shapes(surface: Option<&surface::Surface>, model: &Model, body: &BodyReport) -> Vec<Shape> {
-    let modes = body.natural_frequencies.len() - body.static_shapes();
-    let shape = |k: usize| {
-        let mut q = vec![0.0; k + 1];
-        q[k] = 1.0;
-        let displaced = surface.zip(model.meshed.as_ref()).map(|(surface, meshed)| surface.displacements(meshed, &q));
+/// The shapes with their names.
+fn described(shapes: &Shapes, body: &BodyProperties) -> Vec<Shape> {
+    let (modes, flexible) = (natural_modes(body), body.frequencies.len());
+    let shape = |(k, displacement): (usize, &Vec<[f64; 3]>)| {
         let (name, kind) = if k < modes {
-            let (frequency, damping_ratio) = (body.natural_frequencies[k], body.damping_ratios[k]);
+            let (frequency, damping_ratio) = (body.frequencies[k], body.damping_ratios[k]);
             (format!("mode {}", k + 1), ShapeKind::Natural { frequency, damping_ratio })
-        } else if k < model.body.flexible() {
+        } else if k < flexible {
             (format!("static shape {}", k + 1), ShapeKind::Static)
         } else {
-            (format!("shape {} of second order", k + 1 - model.body.flexible()), ShapeKind::SecondOrder)
+            (format!("shape {} of second order", k + 1 - flexible), ShapeKind::SecondOrder)
         };
-        let displacement = displaced.unwrap_or_default().iter().map(|u| u.map(|x| x as f32).into()).collect();
-        Shape { name, kind, displacement }
+        Shape { name, kind, displacement: displacement.iter().map(|u| u.map(|x| x as f32)).collect() }
     };
-    (0..extended(model).flexible()).map(shape).collect()
+    shapes.displacements.iter().enumerate().map(shape).collect()
 }
 
-/// The stress of each shape, and of each product of two large modes.
-fn stress(surface: &surface::Surface, results: &Results, scene: &Scene, model: &Model) -> Option<StressField> {
-    let (body, large) = (model.stress.as_ref()?, model.large_modes());
-    let shapes = extended(model).flexible();
-    if shapes == 0 {
-        return None;
-    }
+/// The stress of each shape, and of each product of two large modes; at a node between materials, of the one whose von Mises
+/// stress is largest in all rows.
+fn stress(shapes: &Shapes, results: &Results) -> Option<StressField> {
+    let stress = shapes.stress.as_ref().filter(|_| !shapes.displacements.is_empty())?;
     let modal = results.table("modal/displacement")?;
-    let rows: Option<Vec<_>> = (0..results.rows()).map(|row| Some(body.coordinates(modal.row(row)?))).collect();
-    let rows = rows?;
-    let of_nodes: Vec<&[[f64; 6]]> =
-        surface.nodes.iter().filter_map(|node| body.of_most_stressed_material(*node, &rows)).collect();
-    let pairs = SecondOrderShapes::pairs(large.len());
-    let shape = |k: usize| of_nodes.iter().map(|shapes| shapes[k].map(|s| s as f32)).collect::<Vec<_>>();
+    let rows: Vec<_> = (0..results.rows()).filter_map(|row| Some(shapes.stress_coordinates(modal.row(row)?))).collect();
+    let sites = most_stressed(stress, &rows);
+    let results::Units { length, mass, time } = &results.metadata.units;
     Some(StressField {
-        unit: UnitLabels::from(&scene.units).stress(),
-        shapes: (0..shapes + pairs.len()).map(shape).collect(),
-        products: pairs.iter().map(|pair| pair.map(|i| large[i])).collect(),
+        unit: UnitLabels { length, mass, time }.stress(),
+        shapes: stress.shapes.iter().map(|shape| sites.iter().map(|i| shape[*i].map(|s| s as f32)).collect()).collect(),
+        products: shapes.pairs.iter().map(|pair| pair.map(|k| k as usize)).collect(),
     })
 }
 
-/// The body in all shapes that are drawn: with those that follow large modes.
-fn extended(model: &Model) -> &ReducedBody {
-    model.physics.large_deflection.as_ref().map_or(&model.body, Manifold::body)
+/// The most stressed of the materials at each node, by its place in the list of stresses.
+fn most_stressed(stress: &StressShapes, rows: &[Vec<f64>]) -> Vec<usize> {
+    let at = |site: usize, coordinates: &[f64]| {
+        let mut sum = [0.0; 6];
+        for (shape, coordinate) in stress.shapes.iter().zip(coordinates) {
+            sum.iter_mut().zip(&shape[site]).for_each(|(sum, s)| *sum += s * coordinate);
+        }
+        von_mises(&sum)
+    };
+    let largest = |site: usize| rows.iter().map(|coordinates| at(site, coordinates)).fold(0.0, f64::max);
+    let places: Vec<usize> = (0..stress.nodes.len()).collect();
+    let of_node = |sites: &[usize]| match sites {
+        [only] => Some(*only),
+        several => several.iter().copied().max_by(|a, b| largest(*a).total_cmp(&largest(*b))),
+    };
+    places.chunk_by(|a, b| stress.nodes[*a] == stress.nodes[*b]).filter_map(of_node).collect()
 }
 
-fn motion(results: &Results, model: &Model) -> Option<Motion> {
+fn motion(results: &Results, shapes: Option<&Shapes>) -> Option<Motion> {
     let modal = results.table("modal/displacement")?;
-    let coordinates: Option<Vec<_>> = (0..results.rows()).map(|row| Some(model.coordinates(modal.row(row)?))).collect();
+    let of_row = |q: &[f64]| shapes.map_or_else(|| q.to_vec(), |shapes| shapes.coordinates(q));
+    let coordinates: Option<Vec<_>> = (0..results.rows()).map(|row| Some(of_row(modal.row(row)?))).collect();
     Some(Motion {
         times: results.numbers("time")?.to_vec(),
         origins: results.vectors::<3>("origin")?.to_vec(),
@@ -167,14 +175,14 @@ fn motion(results: &Results, model: &Model) -> Option<Motion> {
 }
 
 /// A column as histories: one, or one for each point. The time is none.
-fn histories(column: &Column<Row>, results: &Results, body: &BodyReport, quantities: &Quantities<'_>) -> Vec<History> {
+fn histories(column: &Column<Row>, results: &Results, quantities: &Quantities<'_>) -> Vec<History> {
     let (unit, least_range) = (quantities.unit(column), quantities.least_range(column));
     let frame = if column.frame == "none" { String::new() } else { format!(" ({})", column.frame) };
     let history = |group: String, name: &str, path: &str| {
         let table = results.table(path)?;
         let components = (0..table.width())
             .map(|k| Component {
-                name: component_name(column, k, table.width(), body),
+                name: component_name(column, k, table.width(), &results.metadata.body),
                 values: table.column(k).into_iter().flatten().collect(),
             })
             .collect::<Vec<_>>();
@@ -202,10 +210,10 @@ fn histories(column: &Column<Row>, results: &Results, body: &BodyReport, quantit
     }
 }
 
-fn component_name(column: &Column<Row>, k: usize, width: usize, body: &BodyReport) -> String {
+fn component_name(column: &Column<Row>, k: usize, width: usize, body: &BodyProperties) -> String {
     match column.values {
         Values::Modal(_) => {
-            let modes = width - body.static_shapes().min(width);
+            let modes = width - body.static_shapes.min(width);
             if k < modes { format!("{}", k + 1) } else { format!("static {}", k + 1) }
         }
         Values::Quaternion(_) => ["w", "x", "y", "z"][k].to_owned(),
@@ -270,28 +278,17 @@ fn balances(results: &Results, quantities: &Quantities<'_>) -> Option<Vec<Balanc
     ])
 }
 
-/// The paper's formulation has its own effects.
-fn effects(scene: &Scene, model: &Model) -> Vec<Effect> {
-    if !scene.time.method.abilities.switches_effects {
-        return Vec::new();
-    }
-    let effect = |(subject, row): (advice::Subject, &advice::Row)| Effect {
-        name: subject.name().replace('_', " "),
-        state: match is_on(scene, model, subject) {
-            Some(true) => "on",
-            Some(false) => "off",
-            None => "–",
-        }
-        .to_owned(),
-        measure: format!("{} = {}", subject.formula(), quantity(row.value)),
-        reason: row.why.clone(),
+fn effects(results: &Results) -> Vec<Effect> {
+    let effect = |effect: &EffectProperties| {
+        let EffectProperties { name, state, measure, reason } = effect.clone();
+        Effect { name, state, measure, reason }
     };
-    model.advice.rows().map(effect).collect()
+    results.metadata.effects.iter().map(effect).collect()
 }
 
 /// Why the model is known to be wrong, and those of the run.
-fn warnings(results: &Results, model: &Model) -> Vec<String> {
-    let refusal = model.refusal.as_ref().map(ToString::to_string);
+fn warnings(results: &Results) -> Vec<String> {
+    let refusal = &results.metadata.refusal;
     let of_run = results.metadata.warnings.iter().filter(|warning| Some(*warning) != refusal.as_ref()).cloned();
     refusal.iter().cloned().chain(of_run).collect()
 }

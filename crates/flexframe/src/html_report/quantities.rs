@@ -3,7 +3,6 @@
 use std::f64::consts::TAU;
 
 use results::{Column, Results};
-use scene::Model;
 
 use crate::columns::COLUMNS;
 use crate::row::Row;
@@ -62,10 +61,13 @@ pub(super) struct Quantities<'a> {
 }
 
 impl<'a> Quantities<'a> {
-    pub(super) fn new(results: &'a Results, model: &Model) -> Self {
-        let length = model.meshed.as_ref().map_or(0.0, |meshed| meshed.mesh.diagonal());
-        let fastest = model.natural_frequencies().into_iter().take(model.body.natural_modes).fold(0.0, f64::max);
-        Self { results, body: [model.body.mass, length, TAU * fastest] }
+    pub(super) fn new(results: &'a Results) -> Self {
+        let body = &results.metadata.body;
+        let diagonal = |size: &[f64; 3]| size.iter().map(|edge| edge * edge).sum::<f64>().sqrt();
+        let length = body.mesh.as_ref().map_or(0.0, |mesh| diagonal(&mesh.size));
+        let natural = body.frequencies.len().saturating_sub(body.static_shapes);
+        let fastest = body.frequencies.iter().copied().take(natural).fold(0.0, f64::max);
+        Self { results, body: [body.mass, length, TAU * fastest] }
     }
 
     /// The unit of a column: MPa in place of Mg/(mm s²). Empty for plain numbers.

@@ -16,6 +16,7 @@ use super::report::RunReport;
 use super::settings::{RunProgress, RunSettings};
 use super::watch::{Watch, Watched};
 use crate::columns::COLUMNS;
+use crate::drawn::not_stored;
 use crate::effects;
 use crate::peak_stress::Largest;
 use crate::report::{BodyReport, MeshReport, Times};
@@ -132,8 +133,9 @@ impl<'a> Recorder<'a> {
         let time = started.elapsed();
         let stats = simulation.stats();
         let method = self.scene.time.method;
-        let Watched { balances, right_unsummed, left_out, turned, warnings } = self.watch.finish(&simulation);
+        let Watched { balances, right_unsummed, left_out, turned, mut warnings } = self.watch.finish(&simulation);
         let Self { scene, model, .. } = self;
+        warnings.extend(not_stored(scene, model));
         let last = &self.row;
         let mut report = RunReport {
             title: scene.title.clone(),

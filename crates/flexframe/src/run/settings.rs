@@ -27,6 +27,8 @@ pub struct RunSettings {
     pub overwrite: bool,
     /// Allows a results file of more than 1 GB.
     pub large: bool,
+    /// Leaves the shapes of the body out of the results file, for who reads its rows and throws it away.
+    pub rows_alone: bool,
     /// Set from elsewhere, stops the run at its next row, or before where that is some thousand steps away.
     pub stop: Arc<AtomicBool>,
     /// Where a run that is resumed finds what was computed of its mesh before; a scene that is run knows its own.

@@ -45,6 +45,7 @@ pub fn metadata(modes: usize, point_names: &[&str]) -> Metadata {
             measure: "2 ω/ω₁ = 1e-5".into(),
             reason: "It is slow.".into(),
         }],
+        refusal: None,
         warnings: Vec::new(),
     }
 }

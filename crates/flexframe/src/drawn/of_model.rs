@@ -1,0 +1,109 @@
+//! The shapes of a model that is at hand.
+
+use dynamics::Manifold;
+use faer::Mat;
+use fem_tet10::{AssemblyError, Mesh, StressRecovery};
+use modal::SecondOrderShapes;
+use results::{Shapes, StressShapes};
+use scene::{Body, Meshed, Model, Scene};
+
+/// A body without elements is drawn by so many of its nodes at the most.
+const MAX_NODES: usize = 20_000;
+
+/// The shapes on the surface, with their stress; of a body without elements, on its nodes. `None` for a rigid body without a
+/// mesh.
+///
+/// # Errors
+/// [`AssemblyError`] where the stress cannot be computed, for want of memory.
+pub(crate) fn surface_shapes_of(scene: &Scene, model: &Model) -> Result<Option<Shapes>, AssemblyError> {
+    let Some(meshed) = &model.meshed else { return Ok(None) };
+    let manifold = model.physics.large_deflection.as_ref();
+    let mut shapes = shapes_of(meshed, manifold);
+    if let Body::Meshed(body) = &scene.body {
+        let recovery = StressRecovery::new(&meshed.mesh, &body.materials)?.at_nodes(&shapes.nodes);
+        shapes.stress = Some(stress(&recovery, meshed, manifold, &shapes.nodes)?);
+    }
+    Ok(Some(shapes))
+}
+
+/// The same without the stress.
+pub(crate) fn shapes_of(meshed: &Meshed, manifold: Option<&Manifold>) -> Shapes {
+    let mesh = &meshed.mesh;
+    let (nodes, faces) = if mesh.has_elements() { surface(mesh) } else { (spread_nodes(mesh), Vec::new()) };
+    // Nodes of matrices from elsewhere may have rotations, too.
+    let dofs = meshed.modes.shapes.nrows() / mesh.positions().len().max(1);
+    let at_nodes = |shape: faer::ColRef<'_, f64>| -> Vec<[f64; 3]> {
+        nodes.iter().map(|node| [0, 1, 2].map(|axis| shape[dofs * *node as usize + axis])).collect()
+    };
+    let (large, pairs) = large_modes(manifold);
+    let all = meshed.modes.shapes.col_iter().chain(meshed.following.col_iter());
+    let displacements: Vec<_> = all.map(at_nodes).collect();
+    let products = manifold.map_or(&[][..], Manifold::of_products).chunks_exact(displacements.len().max(1));
+    Shapes {
+        positions: nodes.iter().map(|node| mesh.positions()[*node as usize]).collect(),
+        faces,
+        products: products.map(<[f64]>::to_vec).collect(),
+        pairs: pairs.iter().map(|pair| pair.map(|k| large[k] as u32)).collect(),
+        displacements,
+        stress: None,
+        nodes,
+    }
+}
+
+/// The nodes of the surface, ascending, and its faces by their places among these.
+pub(super) fn surface(mesh: &Mesh) -> (Vec<u32>, Vec<[u32; 6]>) {
+    let on_mesh = mesh.outer_faces();
+    let mut nodes: Vec<u32> = on_mesh.iter().flatten().copied().collect();
+    nodes.sort_unstable();
+    nodes.dedup();
+    let place = |node: u32| nodes.partition_point(|n| *n < node) as u32;
+    let faces = on_mesh.iter().map(|face| face.map(place)).collect();
+    (nodes, faces)
+}
+
+/// As many nodes as are drawn, evenly among all.
+fn spread_nodes(mesh: &Mesh) -> Vec<u32> {
+    let count = mesh.positions().len();
+    let kept = count.min(MAX_NODES);
+    (0..kept).map(|i| (i * count / kept) as u32).collect()
+}
+
+/// The large modes, numbered from 0, and pairs of them, numbered among these.
+fn large_modes(manifold: Option<&Manifold>) -> (&[usize], Vec<[usize; 2]>) {
+    let large = manifold.map_or(&[][..], Manifold::large);
+    (large, SecondOrderShapes::pairs(large.len()))
+}
+
+/// The stress in each coordinate, and in the product of each pair: Eq. (S2) of `docs/method/stress.md`.
+fn stress(
+    recovery: &StressRecovery<'_>,
+    meshed: &Meshed,
+    manifold: Option<&Manifold>,
+    nodes: &[u32],
+) -> Result<StressShapes, AssemblyError> {
+    let linear = |shapes: faer::MatRef<'_, f64>| Ok::<_, AssemblyError>(lists(&recovery.nodal_stress(shapes)?));
+    let mut shapes = linear(meshed.modes.shapes.as_ref())?;
+    shapes.extend(linear(meshed.following.as_ref())?);
+    let (large, pairs) = large_modes(manifold);
+    let of_large = Mat::from_fn(meshed.modes.shapes.nrows(), large.len(), |i, j| meshed.modes.shapes[(i, large[j])]);
+    let second = if pairs.is_empty() {
+        Vec::new()
+    } else {
+        lists(&recovery.second_order_nodal_stress(of_large.as_ref(), &pairs)?)
+    };
+    for (mut product, [j, k]) in second.into_iter().zip(pairs) {
+        // A product of two modes stands for both orders of its pair.
+        let factor = if j == k { 1.0 } else { 2.0 };
+        product.as_flattened_mut().iter_mut().for_each(|s| *s *= factor);
+        shapes.push(product);
+    }
+    let place = |node: u32| nodes.partition_point(|n| *n < node) as u32;
+    Ok(StressShapes { nodes: recovery.nodes().map(place).collect(), shapes })
+}
+
+/// The columns of a nodal stress (6s×…).
+fn lists(nodal: &Mat<f64>) -> Vec<Vec<[f64; 6]>> {
+    let sites = nodal.nrows() / 6;
+    let of_column = |k: usize| (0..sites).map(|site| [0, 1, 2, 3, 4, 5].map(|c| nodal[(6 * site + c, k)])).collect();
+    (0..nodal.ncols()).map(of_column).collect()
+}
