@@ -149,6 +149,7 @@ fmu-test: build
 # Read exports with VTK's own readers, and compare them with the modes (Python packages, 150 MB).
 paraview: build
     {{flexframe}} run examples/ring.toml -o out/paraview --overwrite
+    {{flexframe}} reduce examples/ring.toml --stress -o out/paraview/ring.body.h5 --overwrite
     python3 -m venv --upgrade-deps .tools/paraview >/dev/null
     .tools/paraview/bin/pip install -q h5py vtk
     for cells in "" --volume; do \

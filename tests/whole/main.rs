@@ -2,6 +2,7 @@
 //! test of each file.
 
 mod advise;
+mod alone;
 mod body;
 mod campbell;
 mod children;

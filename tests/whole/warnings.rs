@@ -253,19 +253,23 @@ fn far_beyond_it_the_run_stops_and_its_file_can_be_read() {
 fn the_surface_moves_as_the_points_do() {
     let scene = clamped("large = 1\n", 0.2, 0.0);
     let model = Model::build(&scene, |_| ()).unwrap();
-    let meshed = model.meshed.as_ref().unwrap();
-    let surface = Surface::new(&meshed.mesh);
-    let tip = surface.points.iter().position(|x| (x[0] - 200.0).hypot(x[1] - 5.0).hypot(x[2] - 5.0) < 1e-9).unwrap();
+    let surface = Surface::of_model(&model).unwrap();
+    let tip = surface
+        .shapes
+        .positions
+        .iter()
+        .position(|x| (x[0] - 200.0).hypot(x[1] - 5.0).hypot(x[2] - 5.0) < 1e-9)
+        .unwrap();
     let mut simulation = model.start_with(&scene, scene.time.method, scene.time.control, Rows::EverySteps(1)).unwrap();
     let now = simulation.observation().unwrap();
-    let drawn = surface.displacements(meshed, &model.coordinates(&now.modal_displacement))[tip];
+    let drawn = surface.displacements(&model.coordinates(&now.modal_displacement))[tip];
     assert!(
         (drawn - now.points[0].displacement).norm() < 1e-9 * drawn.norm(),
         "{drawn} {}",
         now.points[0].displacement
     );
     // It is drawn in by more than a tenth of what it bends by, which the mode alone does not show.
-    let alone = surface.displacements(meshed, &now.modal_displacement)[tip];
+    let alone = surface.displacements(&now.modal_displacement)[tip];
     assert!(drawn.x < alone.x - 0.1 * alone.norm(), "{drawn} {alone}");
 }
 

@@ -81,9 +81,10 @@ fn stress(
     manifold: Option<&Manifold>,
     nodes: &[u32],
 ) -> Result<StressShapes, AssemblyError> {
-    let linear = |shapes: faer::MatRef<'_, f64>| Ok::<_, AssemblyError>(lists(&recovery.nodal_stress(shapes)?));
-    let mut shapes = linear(meshed.modes.shapes.as_ref())?;
-    shapes.extend(linear(meshed.following.as_ref())?);
+    let mut shapes = lists(&recovery.nodal_stress(meshed.modes.shapes.as_ref())?);
+    if meshed.following.ncols() > 0 {
+        shapes.extend(lists(&recovery.nodal_stress(meshed.following.as_ref())?));
+    }
     let (large, pairs) = large_modes(manifold);
     let of_large = Mat::from_fn(meshed.modes.shapes.nrows(), large.len(), |i, j| meshed.modes.shapes[(i, large[j])]);
     let second = if pairs.is_empty() {
