@@ -238,7 +238,7 @@ enum Command {
         /// Shapes of the modes and static shapes, a field each, in one VTKHDF file.
         #[arg(long, value_name = "FILE", group = "what")]
         modes: Option<PathBuf>,
-        /// The whole volume (quadratic tetrahedra) instead of the surface (triangles).
+        /// The whole volume (quadratic tetrahedra) instead of the surface (triangles), from the body file beside the results file.
         #[arg(long)]
         volume: bool,
         /// First time.
@@ -301,7 +301,7 @@ enum Command {
     },
     /// Draw a scene or a results file as an animated GIF.
     ///
-    /// A scene is run for it; of a results file (.h5) each frame is a row, and the mesh is looked for where it was. Colours are the displacement by deformation, from 0 to the largest of the frames that are shown. A warning says
+    /// A scene is run for it; of a results file (.h5) each frame is a row, and no mesh is needed. Colours are the displacement by deformation, from 0 to the largest of the frames that are shown. A warning says
     /// where the frames are too few to show how the body turns.
     Animate {
         #[command(flatten)]

@@ -23,6 +23,19 @@ for name, dataset in names["body"]["modes"].items():
 
 names = {"np": np, "body": h5py.File(sys.argv[3]), "run": h5py.File(sys.argv[4])}
 exec(second, names)
+# The results file has the same shapes and stresses, on its surface.
+run, body, nodes = names["run"]["body"], names["body"], names["run"]["body/mesh/nodes"][:]
+assert 0 < len(nodes) <= len(body["mesh/positions"])
+assert np.array_equal(run["mesh/positions"], body["mesh/positions"][:][nodes])
+assert np.array_equal(nodes[run["mesh/surface_triangles"][:]], body["mesh/surface_triangles"])
+shapes = np.concatenate([body[name] for name in names["names"]])
+assert np.array_equal(run["shapes"], shapes[:, nodes])
+sites = np.flatnonzero(np.isin(body["stress/nodes"], nodes))
+assert np.array_equal(nodes[run["stress/nodes"][:]], body["stress/nodes"][:][sites])
+for name in ("stress/shapes", "stress/products"):
+    assert np.array_equal(run[name], body[name][:][:, sites]), name
+for name in ("pairs", "products"):
+    assert np.array_equal(run["large_deflection"][name], body["large_deflection"][name]), name
 exported = h5py.File(sys.argv[5])["VTKHDF"]
 points = exported["Points"][:]
 assert np.array_equal(points, names["body"]["mesh/positions"][:])

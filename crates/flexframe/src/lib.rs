@@ -26,7 +26,7 @@ pub mod animation;
 pub mod campbell;
 pub mod columns;
 pub mod cost;
-mod drawn;
+pub mod drawn;
 mod effects;
 pub mod export;
 pub mod failure;

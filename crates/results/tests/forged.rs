@@ -161,6 +161,12 @@ fn a_description_that_does_not_fit_the_file_is_refused() {
         set("/starts/0", json!(8.5)),
         set("/starts", json!([])),
         set("/starts", Value::from([sound["starts"].as_array().unwrap().as_slice(), &[json!(0)]].concat())),
+        set("/arrays/0/start", json!(start(2))),
+        set("/arrays/3/start", json!(length - 8)),
+        set("/arrays/0/path", json!("body/elsewhere")),
+        set("/arrays/3/shape", json!([vast, 3, 3])),
+        set("/arrays/3/shape", json!([vast, 0, 3])),
+        set("/arrays/3/shape", json!([1_u64 << 61, 1_u64 << 61, 3])),
         set("/rows", json!(513)),
         set("/rows", json!(vast)),
         set("/rows", json!(vast / 8)),
@@ -198,6 +204,28 @@ fn a_description_that_does_not_fit_the_file_is_refused() {
         // An empty name takes 24 bytes for three; a list that grows is held twice for a moment.
         assert!(memory < 40 * json.len().max(part.len() / 10), "{memory} bytes for {}: {shown}", json.len());
         assert!(Writer::resume(&place, &COLUMNS, true).is_err(), "{shown}");
+    }
+    // Arrays that are within the file, but no shapes.
+    let arrays = sound["arrays"].as_array().unwrap();
+    assert_eq!(arrays.len(), 9);
+    let shapes_of = |arrays: &[Value]| {
+        let mut forged = sound.clone();
+        forged["arrays"] = Value::from(arrays);
+        drop(described(&part, &place, &forged.to_string()).0.unwrap());
+        Results::open_with_shapes(&place, &COLUMNS).map(|(_, shapes)| shapes)
+    };
+    assert_eq!(shapes_of(arrays).unwrap(), Some(shapes(2)));
+    for lacks in [0, 1, 2, 3, 5, 7, 8] {
+        let some: Vec<Value> = arrays.iter().enumerate().filter(|(i, _)| *i != lacks).map(|(_, a)| a.clone()).collect();
+        let error = shapes_of(&some).unwrap_err();
+        assert!(matches!(error, FileError::Damaged { .. }), "{lacks}: {error}");
+    }
+    for (array, shape) in [(0, json!([2])), (2, json!([6])), (3, json!([1, 3, 3])), (5, json!([1, 2])), (6, json!([3]))]
+    {
+        let mut forged = arrays.clone();
+        forged[array]["shape"] = shape;
+        let error = shapes_of(&forged).unwrap_err();
+        assert!(matches!(error, FileError::Damaged { .. } | FileError::WrongLength { .. }), "{array}: {error}");
     }
     // Text that is no UTF-8.
     let at = sealed::description(&part).start + sound.to_string().find("platten").unwrap();

@@ -51,6 +51,15 @@ with h5py.File(sys.argv[1], "r") as file:
     lengths = [name for name in ("step", "tolerance") if name in file.attrs]
     assert len(lengths) == 1 and file.attrs[lengths[0]] > 0, lengths
     assert file.attrs["complete"] == 1
+    assert file.attrs["format_version"] == "5"
+    if "body/shapes" in file:
+        nodes, faces = file["body/mesh/nodes"].shape[0], file["body/mesh/surface_triangles"][:]
+        coordinates = file["body/shapes"].shape[0]
+        assert coordinates >= modes and faces.shape[1] == 6 and faces.max() == nodes - 1
+        assert file["body/mesh/positions"].shape == (nodes, 3)
+        assert file["body/shapes"].shape == (coordinates, nodes, 3)
+        assert file["body/stress/shapes"].shape == (coordinates, len(file["body/stress/nodes"]), 6)
+        assert np.isfinite(file["body/shapes"]).all() and np.isfinite(file["body/stress/shapes"]).all()
     energy = {name: file[f"energy/{name}"][:] for name in ("kinetic", "strain", "work", "dissipation", "balance")}
     balance = energy["kinetic"] + energy["strain"] - energy["work"] + energy["dissipation"]
     assert np.allclose(energy["balance"], balance, rtol=1e-12, atol=1e-12 * np.abs(balance).max())

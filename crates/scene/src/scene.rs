@@ -173,8 +173,8 @@ pub struct Output {
     pub stress: bool,
     /// True if the largest von Mises stress of the whole body among the rows is looked for; default no.
     pub peak_stress: bool,
-    /// True if the stress of all nodes is wanted, in each coordinate: for exports, pages and body files. No key of the
-    /// scene file; [`Scene::with_stress_field`] sets it.
+    /// True if the stress of all nodes is wanted, in each coordinate: for body files. No key of the scene file;
+    /// [`Scene::with_stress_field`] sets it.
     pub stress_field: bool,
     /// True if each of several supports gets reactions of its own. No key of the scene file; [`Scene::without_rows`] clears it.
     pub support_reactions: bool,

@@ -106,22 +106,6 @@ impl BodyStress {
         Some(StressPeak { von_mises: peak, node, left_out: left_out.stress.at(site, &missing), most_left_out })
     }
 
-    /// The stress of a unit of each coordinate at a node; where materials meet, of the one whose von Mises stress is largest in
-    /// these rows of [`coordinates`](Self::coordinates). None without [`Output::stress_field`].
-    ///
-    /// # Panics
-    /// Where there is no such node.
-    pub fn of_most_stressed_material(&self, node: u32, rows: &[Vec<f64>]) -> Option<&[[f64; 6]]> {
-        let materials: Vec<&[[f64; 6]]> = self.at_node(node).collect();
-        if let [only] = materials[..] {
-            return Some(only);
-        }
-        let largest = |shapes: &[[f64; 6]]| {
-            rows.iter().map(|coordinates| von_mises(&combined(shapes, coordinates))).fold(0.0, f64::max)
-        };
-        materials.into_iter().max_by(|a, b| largest(a).total_cmp(&largest(b)))
-    }
-
     /// The nodes that stress is known at (m), once for each material there, and the stress of a unit of each coordinate, one
     /// after the other (each m × 6); none without [`Output::stress_field`].
     pub(super) fn field(&self) -> Option<(&[u32], Vec<Vec<f64>>)> {
