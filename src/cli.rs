@@ -391,11 +391,14 @@ fn execute(cli: Cli, json: bool) -> Result<(), Box<dyn Failure>> {
 }
 
 fn command(cli: Cli, json_errors: bool, cache: &Cache) -> Result<(), Box<dyn Failure>> {
+    let tell_doubts = |scene: &Scene| {
+        if !json_errors {
+            output::doubts(plausible::doubts_of_scene(scene));
+        }
+    };
     let read = |input: SceneInput| -> Result<Scene, Box<dyn Failure>> {
         let scene = input.read(cache)?;
-        if !json_errors {
-            output::doubts(plausible::doubts_of_scene(&scene));
-        }
+        tell_doubts(&scene);
         Ok(scene)
     };
     let signals = Signals::listen(json_errors).map_err(CliError::Signals)?;
@@ -421,12 +424,19 @@ fn command(cli: Cli, json_errors: bool, cache: &Cache) -> Result<(), Box<dyn Fai
         }
         Command::Run { scene: SceneArgs { scene, json }, output, files, large, solver } => {
             output::require_file("--output", output.as_deref())?;
-            let mut scene = read(scene)?;
-            if let Some(to) = solver.take(&mut scene, signals.slepc())? {
-                return write_only(&scene, &to, files.overwrite, bar);
+            let mut scenes = scene.read_bodies(cache)?;
+            scenes.iter().for_each(tell_doubts);
+            match &mut scenes[..] {
+                [scene] => {
+                    if let Some(to) = solver.take(scene, signals.slepc())? {
+                        return write_only(scene, &to, files.overwrite, bar);
+                    }
+                }
+                several => solver.refuse_several(several.len())?,
             }
+            let folder = folder(&scenes[0], output)?;
             let settings = RunSettings { large, ..settings(&signals, files.overwrite, cache) };
-            let (_, report) = run::run(&scene, &folder(&scene, output)?, &settings, |p| {
+            let report = run::run_bodies(&scenes, &folder, &settings, |p| {
                 signals.heard(p);
                 bar.run(p);
             })?;

@@ -6,7 +6,7 @@ use clap::Args;
 use flexframe::failure::Failure;
 use flexframe::fmu::scene_of_body;
 use flexframe::given_file::GivenFile;
-use scene::{AssignError, Cache, Scene, assign, text_from, text_of};
+use scene::{AssignError, Cache, Scene, System, assign, text_from, text_of};
 use toml::Value;
 
 use crate::cli_error::CliError;
@@ -26,6 +26,9 @@ pub struct SceneInput {
     /// The value is written as in the scene file; what is not TOML is taken as text, so that quotes may be left out.
     #[arg(long, value_name = "KEY=VALUE", value_parser = assignment)]
     set: Vec<(String, Value)>,
+    /// The body to look at, of a scene of several.
+    #[arg(long, value_name = "NAME")]
+    body: Option<String>,
 }
 
 impl SceneInput {
@@ -54,8 +57,25 @@ impl SceneInput {
         }
     }
 
-    /// Reads the scene, sets the values, and checks it.
+    /// Reads the scene of one body, sets the values, and checks it.
     pub fn read(self, cache: &Cache) -> Result<Scene, Box<dyn Failure>> {
+        let body = self.body.clone();
+        let (text, path) = self.text()?;
+        Ok(Scene { cache: cache.clone(), ..Scene::parse_body(&text, path, body.as_deref())? })
+    }
+
+    /// Reads the scenes of all bodies, or of the one that was named.
+    pub fn read_bodies(self, cache: &Cache) -> Result<Vec<Scene>, Box<dyn Failure>> {
+        if self.body.is_some() {
+            return Ok(vec![self.read(cache)?]);
+        }
+        let (text, path) = self.text()?;
+        let System { bodies } = System::parse(&text, path)?;
+        Ok(bodies.into_iter().map(|scene| Scene { cache: cache.clone(), ..scene }).collect())
+    }
+
+    /// The text with the values set, and where it comes from.
+    fn text(self) -> Result<(String, PathBuf), Box<dyn Failure>> {
         let (text, path) = if self.scene == Path::new(STANDARD_INPUT) {
             let path = PathBuf::from(NAME);
             (text_from(std::io::stdin().lock(), &path)?, path)
@@ -63,8 +83,7 @@ impl SceneInput {
             GivenFile::expect(&self.scene, &[GivenFile::Scene], "a scene file")?;
             (text_of(&self.scene)?, self.scene)
         };
-        let text = assigned(&text, &self.set)?;
-        Ok(Scene { cache: cache.clone(), ..Scene::parse(&text, path)? })
+        Ok((assigned(&text, &self.set)?, path))
     }
 }
 

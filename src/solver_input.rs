@@ -43,6 +43,19 @@ pub struct WriteOnly {
 }
 
 impl SolverInput {
+    /// Refuses SLEPc for several bodies at once, whose files would be in each other's way.
+    pub fn refuse_several(&self, bodies: usize) -> Result<(), CliError> {
+        match self.solver {
+            Some(Solver::Slepc) => Err(CliError::Option {
+                option: "--solver",
+                found: format!("slepc for {bodies} bodies"),
+                expected: "a scene of one body, or one body of it".to_owned(),
+                cure: "name the body: --body NAME".to_owned(),
+            }),
+            _ => Ok(()),
+        }
+    }
+
     /// Gives the scene its solver, or says what is to be written instead; `stop` stops the solver.
     pub fn take(self, scene: &mut Scene, stop: &Stop) -> Result<Option<WriteOnly>, CliError> {
         let ranks = self.ranks.map(|ranks| ranks as usize);

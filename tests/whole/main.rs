@@ -3,6 +3,7 @@
 
 mod advise;
 mod alone;
+mod bodies;
 mod body;
 mod campbell;
 mod children;

@@ -1,6 +1,7 @@
 //! `flexframe run`: a scene from its mesh to its results file.
 
 mod balances;
+mod bodies;
 mod error;
 mod foretold;
 mod recorder;
@@ -18,6 +19,7 @@ use scene::{BuildError, Cache, Model, Scene, SceneError, StepControl};
 
 pub use balances::Balances;
 pub(crate) use balances::Monitor;
+pub use bodies::BodyRuns;
 pub use error::{RunError, RunFailure};
 pub use foretold::Foretold;
 pub use report::RunReport;
@@ -46,17 +48,38 @@ pub fn run(
     settings: &RunSettings,
     mut progress: impl FnMut(RunProgress),
 ) -> Result<(Model, RunReport), RunError> {
-    let path = results_path(scene, folder);
-    let outputs = outputs_of_scene(scene, settings.overwrite);
-    outputs.spare(&path)?;
-    outputs.spare(&unfinished(&path))?;
-    std::fs::create_dir_all(folder).map_err(|source| RunError::Folder { folder: folder.to_owned(), source })?;
-    Writer::<Row>::check(&path, settings.overwrite)?;
+    check(scene, folder, settings)?;
     let model = Model::build(scene, |p| progress(RunProgress::Build(p)))?;
     // Who is to stop may do so here, before there is an unfinished file: the last phase of the build may have been long.
     progress(RunProgress::Built);
     let report = run_model(scene, &model, folder, settings, progress)?;
     Ok((model, report))
+}
+
+/// Runs all bodies of a scene, each to a results file of its own: nothing acts between them, so each moves as it would alone, in
+/// steps of its own. All files are checked before the first run.
+///
+/// # Errors
+/// [`RunError`]. Files of the bodies before the one that fails stay.
+pub fn run_bodies(
+    scenes: &[Scene],
+    folder: &Path,
+    settings: &RunSettings,
+    mut progress: impl FnMut(RunProgress),
+) -> Result<BodyRuns, RunError> {
+    scenes.iter().try_for_each(|scene| check(scene, folder, settings))?;
+    let of_body = |scene: &Scene| Ok((scene.name.clone(), run(scene, folder, settings, &mut progress)?.1));
+    Ok(BodyRuns(scenes.iter().map(of_body).collect::<Result<_, RunError>>()?))
+}
+
+/// Refuses a run that could not write its files.
+fn check(scene: &Scene, folder: &Path, settings: &RunSettings) -> Result<(), RunError> {
+    let path = results_path(scene, folder);
+    let outputs = outputs_of_scene(scene, settings.overwrite);
+    outputs.spare(&path)?;
+    outputs.spare(&unfinished(&path))?;
+    std::fs::create_dir_all(folder).map_err(|source| RunError::Folder { folder: folder.to_owned(), source })?;
+    Ok(Writer::<Row>::check(&path, settings.overwrite)?)
 }
 
 /// The same of a model that is there already.
@@ -151,9 +174,13 @@ fn start(scene: &Scene, model: &Model) -> Result<Simulation, RunError> {
     model.start(scene).map_err(|source| RunError::Setup { scene: scene.path.clone(), source: Box::new(source) })
 }
 
-/// The results file of a scene in a folder.
+/// The results file of a scene in a folder: `plate.h5` of `plate.toml`, and `pair.left.h5` of the body `left` in `pair.toml`.
 pub fn results_path(scene: &Scene, folder: &Path) -> PathBuf {
     let mut name = scene.path.file_stem().unwrap_or("results".as_ref()).to_owned();
+    if let Some(body) = &scene.name {
+        name.push(".");
+        name.push(body);
+    }
     name.push(".h5");
     folder.join(name)
 }

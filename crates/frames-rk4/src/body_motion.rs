@@ -5,7 +5,7 @@ use dynamics::modal::{ReducedBody, RigidMotion};
 use dynamics::nalgebra::{Matrix3, Vector3};
 use dynamics::rigid_kin::{Attitude, Inertia, InertiaError, euler_angular_acceleration};
 use dynamics::{
-    CenterOfMass, Energies, MotionState, Observation, PointMotion, PointShapes, SetupError, StepError, Work,
+    CenterOfMass, Energies, Initial, MotionState, Observation, PointMotion, PointShapes, SetupError, StepError, Work,
 };
 
 use crate::attitude_account::AttitudeAccount;
@@ -50,10 +50,11 @@ impl BodyMotion {
         })
     }
 
-    /// Begins in this attitude: displacements of points are counted from there.
+    /// Begins in the attitude and at the position of a motion: displacements of points are counted from there.
     #[must_use]
-    pub fn beginning_at(self, initial_attitude: Attitude) -> Self {
-        Self { initial_attitude, ..self }
+    pub fn beginning_at(self, initial: &Initial) -> Self {
+        let origin = initial.origin.unwrap_or(self.origin);
+        Self { initial_attitude: initial.attitude, origin, ..self }
     }
 
     /// Displacement or velocity of the origin: `T y[..3]`.

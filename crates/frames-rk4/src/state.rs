@@ -39,7 +39,7 @@ impl State {
         Ok(Self {
             time: 0.0,
             attitude: initial.attitude,
-            origin_global: body.origin,
+            origin_global: initial.origin.unwrap_or(body.origin),
             modal_acceleration: vec![0.0; modal_velocity.len()],
             modal_displacement,
             modal_velocity,

@@ -96,7 +96,7 @@ impl<S: FrameSteps> TravellingFrame<S> {
         steps: S,
     ) -> Result<Self, SetupError> {
         model.check_body(body)?;
-        let motion = BodyMotion::new(body)?.beginning_at(initial.attitude);
+        let motion = BodyMotion::new(body)?.beginning_at(initial);
         let body = FrameMotion { model, motion, state: State::begin(body, initial)?, work: Work::default() };
         let attitude_account = AttitudeAccount::default();
         let mut frame = Self { body, steps, steps_done: 0, attitude_account, longest_step: 0.0 };

@@ -22,7 +22,7 @@ const NAME: &str = "scene";
 /// From the path of a scene file; or from a dict with the sections and keys of one, such as `{"title": "Bar", "units":
 /// {...}, "body": {"mesh": "bar.msh", ...}, ...}`. Its lists may be arrays of numpy. Paths in a dict are relative to
 /// `base` (default: the current folder); `name` stands for it in messages and names its results file (default:
-/// "scene"). With `trust_geometry`, gmsh may do all that a `.geo` file says which the scene names; otherwise one that
+/// "scene"). `body` is the name of a body in a scene of several. With `trust_geometry`, gmsh may do all that a `.geo` file says which the scene names; otherwise one that
 /// runs other programs or writes files is refused.
 ///
 /// A scene can be pickled and copied. The files that it names are read where it is unpickled.
@@ -37,9 +37,9 @@ impl Scene {
         &self.0
     }
 
-    fn parsed(py: Python<'_>, text: &str, path: PathBuf, cache: Cache) -> PyResult<Self> {
+    fn parsed(py: Python<'_>, text: &str, path: PathBuf, body: Option<&str>, cache: Cache) -> PyResult<Self> {
         // Tables of histories are read, too.
-        let scene = detached(py, || flexframe::scene::Scene::parse(text, path))?;
+        let scene = detached(py, || flexframe::scene::Scene::parse_body(text, path, body))?;
         let scene = scene.map_err(|error| exception(py, &error))?;
         Ok(Self(Arc::new(flexframe::scene::Scene { cache, ..scene })))
     }
@@ -48,11 +48,12 @@ impl Scene {
 #[pymethods]
 impl Scene {
     #[new]
-    #[pyo3(signature = (source, *, base=None, name=None, trust_geometry=false))]
+    #[pyo3(signature = (source, *, base=None, name=None, body=None, trust_geometry=false))]
     fn new(
         source: &Bound<'_, PyAny>,
         base: Option<PathBuf>,
         name: Option<String>,
+        body: Option<&str>,
         trust_geometry: bool,
     ) -> PyResult<Self> {
         let py = source.py();
@@ -60,7 +61,7 @@ impl Scene {
         if let Ok(dict) = source.cast::<PyDict>() {
             let name = name.as_deref().unwrap_or(NAME);
             let text = to_text(dict, name)?;
-            return Self::parsed(py, &text, base.unwrap_or_default().join(name), cache);
+            return Self::parsed(py, &text, base.unwrap_or_default().join(name), body, cache);
         }
         let Ok(path) = source.extract::<PathBuf>() else {
             let found = source.get_type().name()?;
@@ -72,7 +73,7 @@ impl Scene {
             return Err(PyTypeError::new_err(message));
         }
         let text = py.detach(|| flexframe::scene::text_of(&path)).map_err(|error| exception(py, &error))?;
-        Self::parsed(py, &text, path, cache)
+        Self::parsed(py, &text, path, body, cache)
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
@@ -94,7 +95,7 @@ impl Scene {
             wrong_input(py, &format!("`{key}`"), &found, &expected, cure)
         };
         let text = assign(&self.0.source, &assigned).map_err(refused)?;
-        Self::parsed(py, &text, self.0.path.clone(), self.0.cache.clone())
+        Self::parsed(py, &text, self.0.path.clone(), None, self.0.cache.clone())
     }
 
     /// The title of the run.
@@ -141,7 +142,7 @@ impl Scene {
 /// The scene that was pickled.
 #[pyfunction(name = "_scene")]
 pub(crate) fn unpickled(py: Python<'_>, text: &str, path: PathBuf, trust_geometry: bool) -> PyResult<Scene> {
-    Scene::parsed(py, text, path, cache(py, trust_geometry)?)
+    Scene::parsed(py, text, path, None, cache(py, trust_geometry)?)
 }
 
 /// The labels of the units.

@@ -1,6 +1,7 @@
 """Scenes from files and dicts."""
 
 import json
+import pickle
 import shutil
 from pathlib import Path
 
@@ -83,3 +84,15 @@ def test_geometry_that_runs_programs_is_refused_unless_it_is_trusted(tmp_path):
     with pytest.warns(UserWarning, match="gmsh is free to do all"):
         body = flexframe.Body(scene.with_values({"title": "Trusted"}))
     assert evidence.exists() and body.mass == pytest.approx(3000.0 * 7.85e-9)
+
+
+def test_one_body_of_a_scene_of_several():
+    pair = EXAMPLES / "pair.toml"
+    ring, block = (flexframe.Scene(pair, body=body) for body in ("ring", "block"))
+    assert "[body]" in ring.text and "rim" in ring.text and "rim" not in block.text
+    assert pickle.loads(pickle.dumps(block)).text == block.text
+    assert (ring.units, ring.end) == (block.units, block.end)
+    with pytest.raises(flexframe.InputError, match="name one of them: ring, block"):
+        flexframe.Scene(pair)
+    with pytest.raises(flexframe.InputError, match="no body `wheel`"):
+        flexframe.Scene(pair, body="wheel")

@@ -8,11 +8,22 @@ use toml::de::{DeString, DeTable, DeValue};
 
 use crate::place::Place;
 
+/// The table of the bodies of a scene of several.
+pub(crate) const BODIES: &str = "bodies";
+
+/// Tables of a scene that belong to its body, beside `body` itself.
+pub(crate) const OF_A_BODY: [&str; 6] = ["modes", "effects", "frame", "initial", "constraints", "loads"];
+
+/// Keys of `output` that belong to a body.
+pub(crate) const OUTPUT_OF_A_BODY: [&str; 3] = ["points", "stress", "peak_stress"];
+
 /// A parsed TOML text.
 pub(crate) struct Document<'t> {
     path: &'t Path,
     text: &'t str,
     root: Spanned<DeValue<'t>>,
+    /// The body that it is seen from, of a scene of several.
+    body: Option<String>,
 }
 
 /// A text that is not TOML.
@@ -43,13 +54,74 @@ impl<'t> Document<'t> {
                 // What the root lacks is missed at the end of the text.
                 let end = text.trim_end().len();
                 let root = Spanned::new(end..end, DeValue::Table(table.into_inner()));
-                Ok(Self { path, text, root })
+                Ok(Self { path, text, root, body: None })
             }
             Err(error) => {
                 let at = Place::new(path, text, error.span().unwrap_or(0..0), String::new());
                 Err(NotToml { at: Box::new(at), message: error.message().to_owned() })
             }
         }
+    }
+
+    /// Names of the bodies of a scene of several, in the order of the text; `None` of a scene of one.
+    pub fn bodies(&self) -> Option<Vec<Node<'_>>> {
+        let bodies = self.root().children().find(|child| child.name() == BODIES)?;
+        Some(bodies.children().collect())
+    }
+
+    /// The document as the scene of one of several bodies: `bodies.NAME` in place of `body`, and what else belongs to a body
+    /// where it is in a scene of one. Places stay those of the text.
+    pub fn of_body(&self, name: &str) -> Self {
+        let (mut root, mut body, mut output) = (DeTable::new(), DeTable::new(), DeTable::new());
+        let table_of = |of: &Spanned<DeValue<'t>>, key: &str| -> Option<Spanned<DeValue<'t>>> {
+            of.get_ref().as_table().and_then(|table| table.get(key)).cloned()
+        };
+        let own = table_of(&self.root, BODIES).and_then(|bodies| table_of(&bodies, name));
+        let at = own.as_ref().map_or_else(|| self.root.span(), Spanned::span);
+        for (key, value) in entries(Some(self.root.clone())) {
+            match &**key.get_ref() {
+                BODIES => {}
+                "output" => output.extend(entries(Some(value))),
+                _ => _ = root.insert(key, value),
+            }
+        }
+        for (key, value) in entries(own) {
+            let to = match &**key.get_ref() {
+                name if OF_A_BODY.contains(&name) => &mut root,
+                name if OUTPUT_OF_A_BODY.contains(&name) => &mut output,
+                _ => &mut body,
+            };
+            to.insert(key, value);
+        }
+        for (key, table) in [("body", body), ("output", output)] {
+            root.insert(Spanned::new(at.clone(), key.into()), Spanned::new(at.clone(), DeValue::Table(table)));
+        }
+        let root = Spanned::new(self.root.span(), DeValue::Table(root));
+        Self { path: self.path, text: self.text, root, body: Some(name.to_owned()) }
+    }
+
+    /// A key path as it is in the file.
+    fn in_file(&self, path: String) -> String {
+        let Some(name) = &self.body else { return path };
+        let body = join(BODIES, name);
+        let first = |path: &str| path.split(['.', '[']).next().unwrap_or_default().to_owned();
+        if let Some(rest) = path.strip_prefix("body").filter(|_| first(&path) == "body") {
+            return format!("{body}{rest}");
+        }
+        if let Some(rest) = path.strip_prefix("output.").filter(|rest| OUTPUT_OF_A_BODY.contains(&&*first(rest))) {
+            return format!("{body}.{rest}");
+        }
+        if OF_A_BODY.contains(&&*first(&path)) { format!("{body}.{path}") } else { path }
+    }
+
+    /// The scene file.
+    pub fn path(&self) -> &'t Path {
+        self.path
+    }
+
+    /// The text.
+    pub fn text(&self) -> &'t str {
+        self.text
     }
 
     /// The folder of the scene file, which the paths in it are relative to.
@@ -73,7 +145,7 @@ impl<'t> Document<'t> {
 
     /// The place of the value with the given key path, or of what is around it.
     pub fn place(&self, path: &str) -> Place {
-        Place::new(self.path, self.text, self.nearest(path).value.span(), path.to_owned())
+        Place::new(self.path, self.text, self.nearest(path).value.span(), self.in_file(path.to_owned()))
     }
 
     /// The text in `range`; empty if it is not a range of this text.
@@ -143,8 +215,19 @@ impl<'d> Node<'d> {
     }
 
     fn place_of(&self, span: Range<usize>, path: String) -> Place {
-        Place::new(self.document.path, self.document.text, span, path)
+        Place::new(self.document.path, self.document.text, span, self.document.in_file(path))
     }
+}
+
+/// The entries of a table; none of another value.
+fn entries<'t>(
+    table: Option<Spanned<DeValue<'t>>>,
+) -> impl Iterator<Item = (Spanned<DeString<'t>>, Spanned<DeValue<'t>>)> {
+    let table = match table.map(Spanned::into_inner) {
+        Some(DeValue::Table(table)) => Some(table),
+        _ => None,
+    };
+    table.into_iter().flatten()
 }
 
 /// An entry of the list at `path`.

@@ -3,9 +3,10 @@
 use std::io::{self, Read};
 use std::path::Path;
 
+use crate::alone::alone;
 use crate::cache::Cache;
 use crate::check::Check;
-use crate::document::Document;
+use crate::document::{BODIES, Document, Node};
 use crate::error::SceneError;
 use crate::ordinary_file::open_ordinary;
 use crate::place::Place;
@@ -27,21 +28,56 @@ impl Scene {
         Self::parse(&text_of(path)?, path)
     }
 
-    /// Checks the text of a scene file. `path` is where the text comes from: it is named in
+    /// Checks the text of a scene file of one body. `path` is where the text comes from: it is named in
     /// messages, and the mesh and the tables of histories are relative to its folder. Of the
     /// files that it names, the tables are read, up to 16 MiB in all; the mesh is not.
     ///
     /// # Errors
-    /// [`SceneError`] if the text is longer than 1 MiB, is not TOML, or breaks a rule of the scene file.
+    /// [`SceneError`] if the text is longer than 1 MiB, is not TOML, breaks a rule of the scene file, or has several bodies.
     pub fn parse(text: &str, path: impl AsRef<Path>) -> Result<Self, SceneError> {
+        Self::parse_body(text, path, None)
+    }
+
+    /// The same, of the body with a name among several.
+    ///
+    /// # Errors
+    /// As [`Scene::parse`]; also if there is no body of that name.
+    pub fn parse_body(text: &str, path: impl AsRef<Path>, name: Option<&str>) -> Result<Self, SceneError> {
         let path = path.as_ref();
         refuse_long(text.len(), path)?;
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let document = Document::parse(text, path)?;
-        let Sections { title, units, body, modes, effects, frame, initial, constraints, mut loads, time, output } =
-            crate::deserialize::from_document(&document)?;
+        let bodies = document.bodies();
+        let names: Vec<&str> = bodies.iter().flatten().map(Node::name).collect();
+        let refuse = |found: String, expected: &str, cure: String| {
+            let key = if bodies.is_some() { BODIES } else { "body" };
+            Err(document.place(key).refuse(found, expected, cure))
+        };
+        match name {
+            None if bodies.is_none() => Self::of_document(&document, None),
+            None => {
+                let cure = format!("name one of them: {}", names.join(", "));
+                refuse(format!("a scene of {} bodies", names.len()), "one body", cure)
+            }
+            Some(name) if names.contains(&name) => Self::of_document(&document.of_body(name), Some(name)),
+            Some(name) if bodies.is_none() => refuse(
+                "a single body, which has no name".to_owned(),
+                &format!("a body `{name}`"),
+                "leave the name out".into(),
+            ),
+            Some(name) => {
+                let cure = format!("name one of those that are there: {}", names.join(", "));
+                refuse(format!("no body `{name}`"), "the name of a body", cure)
+            }
+        }
+    }
 
-        let check = Check::new(&document, time.end);
+    /// Checks the scene of a document.
+    pub(crate) fn of_document(document: &Document<'_>, name: Option<&str>) -> Result<Self, SceneError> {
+        let Sections { title, units, body, modes, effects, frame, initial, constraints, mut loads, time, output } =
+            crate::deserialize::from_document(document)?;
+
+        let check = Check::new(document, time.end);
         check.label("title", &title)?;
         check.units(&units)?;
         let body = check.body(body)?;
@@ -57,6 +93,7 @@ impl Scene {
         let output = check.output(output, &time, &body)?;
 
         Ok(Self {
+            name: name.map(str::to_owned),
             title,
             units,
             body,
@@ -68,8 +105,9 @@ impl Scene {
             loads,
             time,
             output,
-            path: path.to_owned(),
-            source: text.to_owned(),
+            path: document.path().to_owned(),
+            source: name.map_or_else(|| document.text().to_owned(), |name| alone(document.text(), name)),
+            whole_file: name.map(|_| document.text().to_owned()),
             cache: Cache::none(),
             solver: None,
         })
@@ -80,9 +118,13 @@ impl Scene {
     /// letters, digits, `-` and `_` in quotes); where the file lacks the key, the place of what
     /// would be around it.
     pub fn place(&self, key: &str) -> Place {
-        match Document::parse(&self.source, &self.path) {
-            Ok(document) => document.place(key),
-            Err(_) => Place::new(&self.path, &self.source, 0..0, key.to_owned()),
+        let text = self.whole_file.as_ref().unwrap_or(&self.source);
+        match Document::parse(text, &self.path) {
+            Ok(document) => match &self.name {
+                Some(name) => document.of_body(name).place(key),
+                None => document.place(key),
+            },
+            Err(_) => Place::new(&self.path, text, 0..0, key.to_owned()),
         }
     }
 
@@ -127,7 +169,7 @@ pub fn text_from(reader: impl Read, path: &Path) -> Result<String, SceneError> {
     })
 }
 
-fn refuse_long(bytes: usize, path: &Path) -> Result<(), SceneError> {
+pub(crate) fn refuse_long(bytes: usize, path: &Path) -> Result<(), SceneError> {
     if bytes as u64 <= LONGEST {
         return Ok(());
     }

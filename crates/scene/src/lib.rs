@@ -32,6 +32,7 @@
 #![forbid(unsafe_code)]
 #![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable))]
 
+mod alone;
 mod assign;
 mod build;
 mod cache;
@@ -56,6 +57,7 @@ mod section;
 mod shape;
 mod shorten;
 mod suggest;
+mod system;
 mod unit_vector;
 
 pub use assign::{AssignError, assign};
@@ -79,3 +81,4 @@ pub use methods::{METHODS, method_named};
 pub use modes::{Damping, Flexible, Large, Modes, Rayleigh};
 pub use place::Place;
 pub use scene::{Body, Frame, Initial, MeshedBody, Output, RigidBody, Scene, Time, Units};
+pub use system::System;

@@ -23,6 +23,8 @@ use crate::modes::Modes;
 /// A scene that obeys every rule which needs no mesh: all numbers are finite and in range.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
+    /// Name of its body in a scene of several; `None` where there is one.
+    pub name: Option<String>,
     /// Title of the run, for headings.
     pub title: String,
     /// Labels of the units, for axes and tables.
@@ -47,8 +49,10 @@ pub struct Scene {
     pub output: Output,
     /// The scene file, as it was named to [`Scene::read`] or [`Scene::parse`].
     pub path: PathBuf,
-    /// The text of the scene file, for the results file and for the places of later errors.
+    /// The text of the scene, for the results file: of a body of several, that of a scene of it alone.
     pub source: String,
+    /// The text of the scene file, for the places of later errors, where it is another.
+    pub whole_file: Option<String>,
     /// Where the answers of the finite-element model are kept from run to run; nowhere, until the program says so.
     pub cache: Cache,
     /// Solver of modes and static responses in the place of this program; `None`, until the program says so. It is no part of
@@ -136,6 +140,9 @@ pub struct Initial {
     /// Attitude as a quaternion [w, x, y, z] that takes body components to global ones; its length is made one. `None`
     /// has the body axes along the global ones.
     pub attitude: Option<[f64; 4]>,
+    /// Place of the origin of the mesh axes, length, global. `None` leaves the body where its mesh is, turned about its centre
+    /// of mass or the point that is held.
+    pub position: Option<[f64; 3]>,
     /// Velocity of the centre of mass, length per time, global.
     pub velocity: [f64; 3],
     /// Angular velocity, radians per time, body axes.

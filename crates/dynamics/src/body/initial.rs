@@ -10,6 +10,8 @@ use crate::error::SetupError;
 pub struct Initial {
     /// Attitude of the body frame.
     pub attitude: Attitude,
+    /// Position of the body's origin, global components; `None` is where the mesh has it.
+    pub origin: Option<Vector3<f64>>,
     /// Velocity of the frame's origin (the centre of mass), global components.
     pub velocity: Vector3<f64>,
     /// Angular velocity of the body frame, body components.
@@ -25,6 +27,7 @@ impl Initial {
     pub fn at_rest(flexible: usize) -> Self {
         Self {
             attitude: Attitude::identity(),
+            origin: None,
             velocity: Vector3::zeros(),
             omega: Vector3::zeros(),
             modal_displacement: vec![0.0; flexible],
@@ -45,7 +48,13 @@ impl Initial {
                 return Err(SetupError::Length { what, expected: flexible, found: list.len() });
             }
         }
-        let numbers = self.velocity.iter().chain(self.omega.iter()).chain(&self.modal_displacement);
+        let numbers = self
+            .origin
+            .iter()
+            .flat_map(|origin| origin.iter())
+            .chain(&self.velocity)
+            .chain(self.omega.iter())
+            .chain(&self.modal_displacement);
         match numbers.chain(&self.modal_velocity).copied().find(|x| !x.is_finite()) {
             Some(found) => Err(SetupError::Value { what: "an initial value", found, expected: "a finite number" }),
             None => Ok(()),

@@ -4,6 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 use rigid_kin::Attitude;
 
 use crate::body::center_of_mass::CenterOfMass;
+use crate::body::initial::Initial;
 use crate::body::physics::Drive;
 use crate::conservative::manifold::Manifold;
 use crate::conservative::state::BodyList;
@@ -34,6 +35,7 @@ pub struct ConservativeBody {
     /// Attitude at the beginning: displacements of points are counted from there.
     pub(super) initial_attitude: Attitude,
     pub(super) mass: f64,
+    /// Position of the origin at the beginning, global.
     pub(super) origin: Vector3<f64>,
     pub(super) center: CenterOfMass,
     pub(super) translation: Translation,
@@ -103,10 +105,11 @@ impl ConservativeBody {
         self.manifold.as_ref().map_or(self.flexible(), |manifold| manifold.body().flexible())
     }
 
-    /// Begins in this attitude.
+    /// Begins in the attitude and at the position of a motion.
     #[must_use]
-    pub fn beginning_at(self, initial_attitude: Attitude) -> Self {
-        Self { initial_attitude, ..self }
+    pub fn beginning_at(self, initial: &Initial) -> Self {
+        let origin = initial.origin.unwrap_or(self.origin);
+        Self { initial_attitude: initial.attitude, origin, ..self }
     }
 
     /// The numbers of a state.

@@ -46,7 +46,7 @@ impl Beginning {
         scheme: impl FnOnce(&ConservativeBody) -> S,
     ) -> Result<Self, SetupError> {
         let body = ConservativeBody::new(setup.body, setup.damping_ratios, setup.loads.to_vec(), setup.physics)?;
-        let body = body.beginning_at(setup.initial.attitude);
+        let body = body.beginning_at(setup.initial);
         let (scheme, start) = (scheme(&body), body.start(setup.initial)?);
         Ok(Self::new(setup, body, scheme, start))
     }

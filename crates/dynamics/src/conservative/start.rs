@@ -57,7 +57,7 @@ impl ConservativeBody {
         };
         let pi = Vector3::from_fn(|k, _| if k < self.axes.len() { pi[k] } else { 0.0 });
         let mut slow: Slow = [0.0; 20];
-        set(&mut slow, part::POSITION, &self.origin);
+        set(&mut slow, part::POSITION, &initial.origin.unwrap_or(self.origin));
         let velocity = match self.translation {
             Translation::Free => initial.velocity,
             Translation::Along(direction) => along(&initial.attitude.to_global(&direction), &initial.velocity),
@@ -93,6 +93,7 @@ impl ConservativeBody {
         motion.check(self.flexible())?;
         let initial = Initial {
             attitude: motion.attitude,
+            origin: Some(motion.origin_global),
             velocity: motion.velocity_global,
             omega: motion.omega_body,
             modal_displacement: motion.modal_displacement.clone(),
@@ -100,10 +101,6 @@ impl ConservativeBody {
         };
         let mut state = self.start(&initial)?;
         state.time = motion.time;
-        let mut list = BodyList { values: &mut state.values[..], flexible: self.flexible() };
-        let mut slow = *list.slow();
-        set(&mut slow, part::POSITION, &motion.origin_global);
-        list.set_slow(&slow);
         Ok(state)
     }
 

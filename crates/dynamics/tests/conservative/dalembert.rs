@@ -19,6 +19,7 @@ fn start() -> Initial {
     let list = |seed: f64, size: f64| (0..10).map(|k| size * (seed + f64::from(k * k)).sin()).collect::<Vec<f64>>();
     Initial {
         attitude: rigid_kin::Attitude::identity(),
+        origin: None,
         velocity: Vector3::new(300.0, -200.0, 500.0),
         omega: Vector3::new(40.0, -60.0, 70.0),
         modal_displacement: list(1.0, 0.02),

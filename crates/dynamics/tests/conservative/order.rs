@@ -10,6 +10,7 @@ use crate::run::{EXPONENTIAL, Error, RKMK4, Run, fitted_order};
 fn tumbling(plate: &Specimen) -> Run<'_> {
     let initial = Initial {
         attitude: rigid_kin::Attitude::identity(),
+        origin: None,
         velocity: Vector3::zeros(),
         omega: Vector3::new(5.0, 5.0, 7.0),
         modal_displacement: vec![0.1, 0.02, 0.02, 0.01],

@@ -58,6 +58,7 @@ impl Held {
         let list = |seed: f64, size: f64| (0..FLEXIBLE).map(|k| size * (seed + (k * k) as f64).sin()).collect();
         let initial = Initial {
             attitude: rigid_kin::Attitude::identity(),
+            origin: None,
             velocity: 300.0 * axis(),
             omega: match self.body.motion.rotations() {
                 [one] => one * 70.0,

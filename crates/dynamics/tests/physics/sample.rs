@@ -76,6 +76,7 @@ pub fn point(body: &ReducedBody, at: [f64; 3]) -> PointShapes {
 pub fn start(flexible: usize) -> Initial {
     Initial {
         attitude: rigid_kin::Attitude::identity(),
+        origin: None,
         velocity: Vector3::new(0.3, -0.2, 0.5),
         omega: Vector3::new(1.0, -0.6, 0.8),
         modal_displacement: (0..flexible).map(|k| 0.2 * noise(700 + k)).collect(),

@@ -11,6 +11,7 @@ use crate::common::{Specimen, advance, plate, ring};
 fn tumbling() -> Initial {
     Initial {
         attitude: rigid_kin::Attitude::identity(),
+        origin: None,
         velocity: Vector3::new(300.0, -100.0, 50.0),
         omega: Vector3::new(4.0, -6.0, 7.0),
         modal_displacement: vec![0.005; 10],

@@ -14,6 +14,7 @@ fn the_initial_state_is_the_projected_velocity_field() {
     let ring = ring();
     let initial = Initial {
         attitude: rigid_kin::Attitude::identity(),
+        origin: None,
         velocity: Vector3::new(300.0, -100.0, 50.0),
         omega: Vector3::new(4.0, -6.0, 7.0),
         modal_displacement: (0..10).map(|k| 0.02 - 0.003 * f64::from(k)).collect(),

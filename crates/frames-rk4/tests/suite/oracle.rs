@@ -16,6 +16,7 @@ fn start(specimen: &Specimen) -> Initial {
     let nf = specimen.body.flexible();
     Initial {
         attitude: rigid_kin::Attitude::identity(),
+        origin: None,
         velocity: Vector3::new(300.0, -100.0, 50.0),
         omega: Vector3::new(4.0, -6.0, 7.0),
         modal_displacement: (0..nf).map(|k| 0.01 / (1.0 + k as f64)).collect(),

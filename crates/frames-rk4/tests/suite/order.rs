@@ -14,6 +14,7 @@ const END: f64 = 0.2;
 fn start() -> Initial {
     Initial {
         attitude: rigid_kin::Attitude::identity(),
+        origin: None,
         velocity: Vector3::zeros(),
         omega: Vector3::new(5.0, 5.0, 7.0),
         modal_displacement: vec![0.1, 0.02, 0.02, 0.01],

@@ -36,7 +36,7 @@ class Scene:
     From the path of a scene file; or from a dict with the sections and keys of one, such as
     `{"title": "Bar", "units": {...}, "body": {"mesh": "bar.msh", ...}, ...}`. Its lists may be arrays of numpy. Paths in a
     dict are relative to `base` (default: the current folder); `name` stands for it in messages and names its results file
-    (default: "scene"). With `trust_geometry`, gmsh may do all that a `.geo` file says which the scene names; otherwise one that
+    (default: "scene"). `body` is the name of a body in a scene of several. With `trust_geometry`, gmsh may do all that a `.geo` file says which the scene names; otherwise one that
     runs other programs or writes files is refused.
 
     A scene can be pickled and copied. The files that it names are read where it is unpickled.
@@ -48,6 +48,7 @@ class Scene:
         *,
         base: _Path | None = None,
         name: str | None = None,
+        body: str | None = None,
         trust_geometry: bool = False,
     ) -> Scene: ...
     def __reduce__(self) -> tuple[Any, ...]: ...

@@ -37,7 +37,7 @@ impl ModalModel {
             loads,
             size: Size { length: mesh.diagonal(), peaks: modes.shapes.as_ref().col_iter().map(peak).collect() },
             damping_ratios: damping_ratios(scene, &body),
-            initial: initial(scene, body.flexible()),
+            initial: initial(scene, &body),
             body,
         })
     }

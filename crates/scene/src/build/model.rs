@@ -167,7 +167,7 @@ impl Model {
 
     /// The state that a scene begins with, its lists padded with zeros.
     pub fn initial(&self, scene: &Scene) -> Initial {
-        initial(scene, self.body.flexible())
+        initial(scene, &self.body)
     }
 
     /// The run as [`advice`] sees it, which begins with `initial`.

@@ -35,7 +35,7 @@ pub(super) fn build(scene: &Scene, rigid: &RigidBody) -> Result<Model, BuildErro
     let loads = loads::on_rigid(scene, &body)?;
     // The radius of gyration stands for the size.
     let size = Size { length: (rigid.inertia_trace() / rigid.mass).sqrt(), peaks: Vec::new() };
-    let initial = initial(scene, 0);
+    let initial = initial(scene, &body);
     let advice = advise(
         &Case {
             body: &body,

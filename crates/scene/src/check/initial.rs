@@ -23,7 +23,9 @@ impl Check<'_> {
         ] {
             self.not_more_than_modes(key, list.len(), modes.flexible)?;
         }
+        let position = initial.position.unwrap_or_default();
         for (key, list) in [
+            ("initial.position", &position[..]),
             ("initial.velocity", &initial.velocity[..]),
             ("initial.angular_velocity", &initial.angular_velocity),
             ("initial.modal_displacement", &initial.modal_displacement),

@@ -7,4 +7,5 @@ mod parts;
 mod reading;
 mod refusals;
 mod robustness;
+mod systems;
 mod tables;
