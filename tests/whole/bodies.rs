@@ -44,6 +44,8 @@ fn each_body_of_a_pair_moves_as_it_would_alone_to_the_last_bit() {
     let summary: serde_json::Value =
         serde_json::from_str(&done(folder, &["run", scene, "-o", "both", "--json"])).unwrap();
     for body in ["ring", "block"] {
+        // From where it was placed.
+        assert!(summary[body]["moved"][2].as_f64().unwrap().abs() < 1.0, "{summary}");
         assert!(summary[body]["steps"].as_u64().unwrap() > 10, "{summary}");
         let both = folder.join(format!("both/pair.{body}.h5"));
         // Alone: by its name, and from the scene that its results carry.

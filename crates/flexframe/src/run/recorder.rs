@@ -39,6 +39,8 @@ pub(super) struct Recorder<'a> {
     peak_strain_energy: f64,
     peak_stress: Option<Largest>,
     first_attitude: Attitude,
+    /// Centre of mass of the undeformed body at the start, global.
+    first_center: Vector3<f64>,
     foretold: Foretold,
 }
 
@@ -50,6 +52,8 @@ impl<'a> Recorder<'a> {
         writer: Writer<Row>,
         foretold: Foretold,
     ) -> Result<Self, RunError> {
+        let (origin, center) = (model.body.origin, model.body.center_of_mass);
+        let first_center = initial.origin.unwrap_or(origin) + initial.attitude.to_global(&(center - origin));
         Ok(Self {
             scene,
             model,
@@ -60,6 +64,7 @@ impl<'a> Recorder<'a> {
             peak_strain_energy: 0.0,
             peak_stress: None,
             first_attitude: initial.attitude,
+            first_center,
             foretold,
         })
     }
@@ -157,7 +162,7 @@ impl<'a> Recorder<'a> {
             body: BodyReport::new(model),
             turned: if model.body.motion.rotations().len() == 1 { last.reaction.turned } else { turned },
             turned_from_start: self.first_attitude.angle_to(&last.attitude),
-            moved: (last.position_global - model.body.center_of_mass).into(),
+            moved: (last.position_global - self.first_center).into(),
             peak_strain_energy: self.peak_strain_energy,
             peak_stress: self.peak_stress.as_ref().and_then(|peak| peak.report(scene, model)),
             final_energy: last.energy(),
