@@ -148,7 +148,7 @@ impl Cache {
     /// The folder of a mesh, by the hash of its file; made if it does not exist.
     pub(crate) fn of_mesh(&self, mesh: &Hash) -> Option<PathBuf> {
         let folder = self.folder()?.join(program(self.0.program.as_deref())).join(mesh.to_string());
-        match fs::create_dir_all(&folder) {
+        match whole_file::make_folder(&folder) {
             Ok(()) => Some(folder),
             Err(error) => {
                 self.close(&error.to_string());

@@ -25,7 +25,7 @@ use std::path::{Path, PathBuf};
 
 pub use lock::FileLock;
 pub use outputs::{OutputError, Outputs};
-pub use temporary::{TemporaryFile, TemporaryFolder, remove_temporaries};
+pub use temporary::{TemporaryFile, TemporaryFolder, make_folder, remove_temporaries};
 pub use written::{OtherEnding, Written};
 
 /// Writes `bytes` to `path`, whole or not at all.

@@ -77,6 +77,15 @@ fn remove(path: &Path) {
     }
 }
 
+/// Makes a folder, with those that it is in, unless the program is about to end: one in a temporary folder would bring that back.
+///
+/// # Errors
+/// Errors of the system.
+pub fn make_folder(path: &Path) -> io::Result<()> {
+    let _not_at_the_end = there();
+    fs::create_dir_all(path)
+}
+
 /// While this is there, no temporary file is made.
 #[derive(Debug)]
 pub struct NoTemporaries {
@@ -215,6 +224,21 @@ mod tests {
         drop((file, inner));
         assert!(!file_path.exists() && !inner_path.exists() && place.is_file());
         assert!(there().iter().all(|path| !path.starts_with(folder.path())));
+    }
+
+    #[test]
+    fn a_thread_brings_no_removed_folder_back() {
+        let outer = tempfile::tempdir().unwrap();
+        let inner = outer.path().join("folder/cache");
+        let ended = remove_temporaries();
+        std::thread::scope(|scope| {
+            let maker = scope.spawn(|| make_folder(&inner));
+            sleep(Duration::from_millis(50));
+            assert!(!inner.exists());
+            drop(ended);
+            maker.join().unwrap().unwrap();
+        });
+        assert!(inner.exists());
     }
 
     #[test]
