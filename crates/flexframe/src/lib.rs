@@ -43,6 +43,7 @@ pub mod paper;
 pub mod peak_stress;
 pub mod plausible;
 pub mod report;
+mod results_path;
 pub mod row;
 pub mod run;
 mod scene_file;

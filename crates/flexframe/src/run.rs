@@ -10,7 +10,7 @@ mod settings;
 mod turn;
 mod watch;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Instant;
 
 use dynamics::{DrivenMotion, Simulation};
@@ -31,6 +31,7 @@ use crate::drawn::{mesh_properties, stored_shapes};
 use crate::effects;
 use crate::outputs::outputs_of_scene;
 use crate::report::BodyReport;
+pub use crate::results_path::results_path;
 use crate::row::Row;
 use crate::scene_file;
 use foretold::LARGE;
@@ -172,17 +173,6 @@ fn scene_of(results: &Results, cache: &Cache) -> Result<Scene, SceneError> {
 
 fn start(scene: &Scene, model: &Model) -> Result<Simulation, RunError> {
     model.start(scene).map_err(|source| RunError::Setup { scene: scene.path.clone(), source: Box::new(source) })
-}
-
-/// The results file of a scene in a folder: `plate.h5` of `plate.toml`, and `pair.left.h5` of the body `left` in `pair.toml`.
-pub fn results_path(scene: &Scene, folder: &Path) -> PathBuf {
-    let mut name = scene.path.file_stem().unwrap_or("results".as_ref()).to_owned();
-    if let Some(body) = &scene.name {
-        name.push(".");
-        name.push(body);
-    }
-    name.push(".h5");
-    folder.join(name)
 }
 
 /// The metadata in the results file of a run.

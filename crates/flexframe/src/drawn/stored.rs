@@ -9,6 +9,7 @@ use scene::{Body, Model, Scene};
 
 use super::hash;
 use super::of_model::{surface, surface_shapes_of};
+use crate::results_path::results_path;
 use crate::scene_file;
 
 /// Shapes of more bytes stay in the body file.
@@ -57,7 +58,7 @@ pub(crate) fn not_stored(scene: &Scene, model: &Model) -> Option<String> {
 fn body_file(scene: &Scene, given: Option<&Path>) -> String {
     match given {
         Some(file) => scene_file::to_text(file),
-        None => format!("{}.body.h5", scene.path.file_stem().unwrap_or("results".as_ref()).to_string_lossy()),
+        None => results_path(scene, Path::new("")).with_extension("body.h5").to_string_lossy().into_owned(),
     }
 }
 

@@ -26,7 +26,7 @@ const STEPS_PER_LOOK: u64 = 16;
 pub struct Foretold {
     /// Rows, but for those at corners of loads.
     pub rows: u64,
-    /// Bytes of their numbers, which are nearly all of the results file.
+    /// Bytes of their numbers; the shapes of the body come on top.
     pub bytes: u64,
     /// Seconds of computing, about, by how long some first steps take; `None` where it was not tried, or these came to nothing.
     pub seconds: Option<f64>,
