@@ -1,30 +1,56 @@
-//! The text of one body of a scene of several, as a scene of its own.
+//! The texts of the bodies of a scene of several, each as a scene of its own.
+
+use std::sync::Arc;
 
 use toml_edit::{DocumentMut, Item, Table};
 
 use crate::document::{BODIES, OF_A_BODY, OUTPUT_OF_A_BODY};
 
-/// The scene of the body `name` alone; a text without that body stays as it is.
-pub(crate) fn alone(text: &str, name: &str) -> String {
-    let Ok(mut document) = text.parse::<DocumentMut>() else { return text.to_owned() };
-    let root = document.as_table_mut();
-    let bodies = root.remove(BODIES).and_then(|bodies| bodies.into_table().ok());
-    let Some(own) = bodies.and_then(|mut bodies| bodies.remove(name)?.into_table().ok()) else {
-        return text.to_owned();
-    };
-    let output = root.remove("output").and_then(|output| output.into_table().ok());
-    let (mut body, mut output) = (Table::new(), output.unwrap_or_default());
-    for (key, item) in own {
-        let to = match &*key {
-            key if OF_A_BODY.contains(&key) => &mut *root,
-            key if OUTPUT_OF_A_BODY.contains(&key) => &mut output,
-            _ => &mut body,
-        };
-        to.insert(&key, item);
+/// The text of a scene of several bodies, in parts.
+pub(crate) struct BodyTexts {
+    whole: Arc<str>,
+    /// All but the bodies.
+    shared: DocumentMut,
+    bodies: Table,
+}
+
+/// The text of a body.
+pub(crate) struct BodyText<'a> {
+    /// Its name.
+    pub name: &'a str,
+    /// The scene of it alone.
+    pub alone: String,
+    /// The scene of all.
+    pub whole: Arc<str>,
+}
+
+impl BodyTexts {
+    /// The parts of a text; one that is no TOML has none.
+    pub fn new(text: &str) -> Self {
+        let mut shared = text.parse::<DocumentMut>().unwrap_or_default();
+        let bodies = shared.as_table_mut().remove(BODIES).and_then(|bodies| bodies.into_table().ok());
+        Self { whole: text.into(), shared, bodies: bodies.unwrap_or_default() }
     }
-    root.insert("body", Item::Table(body));
-    if !output.is_empty() {
-        root.insert("output", Item::Table(output));
+
+    /// The text of one of them.
+    pub fn of<'a>(&self, name: &'a str) -> BodyText<'a> {
+        let mut document = self.shared.clone();
+        let root = document.as_table_mut();
+        let own = self.bodies.get(name).cloned().and_then(|own| own.into_table().ok()).unwrap_or_default();
+        let output = root.remove("output").and_then(|output| output.into_table().ok());
+        let (mut body, mut output) = (Table::new(), output.unwrap_or_default());
+        for (key, item) in own {
+            let to = match &*key {
+                key if OF_A_BODY.contains(&key) => &mut *root,
+                key if OUTPUT_OF_A_BODY.contains(&key) => &mut output,
+                _ => &mut body,
+            };
+            to.insert(&key, item);
+        }
+        root.insert("body", Item::Table(body));
+        if !output.is_empty() {
+            root.insert("output", Item::Table(output));
+        }
+        BodyText { name, alone: document.to_string(), whole: self.whole.clone() }
     }
-    document.to_string()
 }

@@ -73,16 +73,16 @@ impl<'t> Document<'t> {
     /// where it is in a scene of one. Places stay those of the text.
     pub fn of_body(&self, name: &str) -> Self {
         let (mut root, mut body, mut output) = (DeTable::new(), DeTable::new(), DeTable::new());
-        let table_of = |of: &Spanned<DeValue<'t>>, key: &str| -> Option<Spanned<DeValue<'t>>> {
-            of.get_ref().as_table().and_then(|table| table.get(key)).cloned()
-        };
-        let own = table_of(&self.root, BODIES).and_then(|bodies| table_of(&bodies, name));
-        let at = own.as_ref().map_or_else(|| self.root.span(), Spanned::span);
-        for (key, value) in entries(Some(self.root.clone())) {
+        // Only its own part is copied: there may be many bodies.
+        let shared = self.root.get_ref().as_table();
+        let bodies = shared.and_then(|shared| shared.get(BODIES)?.get_ref().as_table());
+        let own = bodies.and_then(|bodies| bodies.get(name));
+        let at = own.map_or_else(|| self.root.span(), Spanned::span);
+        for (key, value) in shared.into_iter().flatten() {
             match &**key.get_ref() {
                 BODIES => {}
                 "output" => output.extend(entries(Some(value))),
-                _ => _ = root.insert(key, value),
+                _ => _ = root.insert(key.clone(), value.clone()),
             }
         }
         for (key, value) in entries(own) {
@@ -219,15 +219,12 @@ impl<'d> Node<'d> {
     }
 }
 
-/// The entries of a table; none of another value.
+/// Copies of the entries of a table; none of another value.
 fn entries<'t>(
-    table: Option<Spanned<DeValue<'t>>>,
+    table: Option<&Spanned<DeValue<'t>>>,
 ) -> impl Iterator<Item = (Spanned<DeString<'t>>, Spanned<DeValue<'t>>)> {
-    let table = match table.map(Spanned::into_inner) {
-        Some(DeValue::Table(table)) => Some(table),
-        _ => None,
-    };
-    table.into_iter().flatten()
+    let table = table.and_then(|table| table.get_ref().as_table());
+    table.into_iter().flatten().map(|(key, value)| (key.clone(), value.clone()))
 }
 
 /// An entry of the list at `path`.

@@ -3,7 +3,7 @@
 use std::io::{self, Read};
 use std::path::Path;
 
-use crate::alone::alone;
+use crate::alone::{BodyText, BodyTexts};
 use crate::cache::Cache;
 use crate::check::Check;
 use crate::document::{BODIES, Document, Node};
@@ -59,7 +59,9 @@ impl Scene {
                 let cure = format!("name one of them: {}", names.join(", "));
                 refuse(format!("a scene of {} bodies", names.len()), "one body", cure)
             }
-            Some(name) if names.contains(&name) => Self::of_document(&document.of_body(name), Some(name)),
+            Some(name) if names.contains(&name) => {
+                Self::of_document(&document.of_body(name), Some(BodyTexts::new(text).of(name)))
+            }
             Some(name) if bodies.is_none() => refuse(
                 "a single body, which has no name".to_owned(),
                 &format!("a body `{name}`"),
@@ -72,8 +74,8 @@ impl Scene {
         }
     }
 
-    /// Checks the scene of a document.
-    pub(crate) fn of_document(document: &Document<'_>, name: Option<&str>) -> Result<Self, SceneError> {
+    /// Checks the scene of a document, which may be that of a body of several.
+    pub(crate) fn of_document(document: &Document<'_>, body_text: Option<BodyText<'_>>) -> Result<Self, SceneError> {
         let Sections { title, units, body, modes, effects, frame, initial, constraints, mut loads, time, output } =
             crate::deserialize::from_document(document)?;
 
@@ -93,7 +95,7 @@ impl Scene {
         let output = check.output(output, &time, &body)?;
 
         Ok(Self {
-            name: name.map(str::to_owned),
+            name: body_text.as_ref().map(|text| text.name.to_owned()),
             title,
             units,
             body,
@@ -106,8 +108,8 @@ impl Scene {
             time,
             output,
             path: document.path().to_owned(),
-            source: name.map_or_else(|| document.text().to_owned(), |name| alone(document.text(), name)),
-            whole_file: name.map(|_| document.text().to_owned()),
+            whole_file: body_text.as_ref().map(|text| text.whole.clone()),
+            source: body_text.map_or_else(|| document.text().to_owned(), |text| text.alone),
             cache: Cache::none(),
             solver: None,
         })
@@ -118,7 +120,7 @@ impl Scene {
     /// letters, digits, `-` and `_` in quotes); where the file lacks the key, the place of what
     /// would be around it.
     pub fn place(&self, key: &str) -> Place {
-        let text = self.whole_file.as_ref().unwrap_or(&self.source);
+        let text = self.whole_file.as_deref().unwrap_or(&self.source);
         match Document::parse(text, &self.path) {
             Ok(document) => match &self.name {
                 Some(name) => document.of_body(name).place(key),

@@ -6,6 +6,7 @@
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use dynamics::{Effect, Method, Rows, StepControl};
 use fem_tet10::{Materials, PointMass};
@@ -52,7 +53,7 @@ pub struct Scene {
     /// The text of the scene, for the results file: of a body of several, that of a scene of it alone.
     pub source: String,
     /// The text of the scene file, for the places of later errors, where it is another.
-    pub whole_file: Option<String>,
+    pub whole_file: Option<Arc<str>>,
     /// Where the answers of the finite-element model are kept from run to run; nowhere, until the program says so.
     pub cache: Cache,
     /// Solver of modes and static responses in the place of this program; `None`, until the program says so. It is no part of

@@ -2,10 +2,14 @@
 
 use std::path::Path;
 
+use crate::alone::BodyTexts;
 use crate::document::{BODIES, Document, Node, OF_A_BODY, OUTPUT_OF_A_BODY};
 use crate::error::SceneError;
 use crate::file::{refuse_long, text_of};
 use crate::scene::Scene;
+
+/// Bodies of a scene at the most.
+const MOST_BODIES: usize = 1000;
 
 /// Keys at the root of a scene of several bodies.
 const SHARED: [&str; 5] = ["title", "units", BODIES, "time", "output"];
@@ -45,9 +49,15 @@ impl System {
             let cure = "give each body a table, e.g. `[bodies.left]` with `mesh` and `material`";
             return Err(document.place(BODIES).refuse("no body", "one table for each body", cure));
         }
+        if bodies.len() > MOST_BODIES {
+            let found = format!("{} bodies", bodies.len());
+            let cure = "make several scenes of them: nothing acts between the bodies";
+            return Err(document.place(BODIES).refuse(found, format!("at most {MOST_BODIES}"), cure));
+        }
+        let texts = BodyTexts::new(text);
         let scene = |body: &Node<'_>| {
             check_name(body)?;
-            Scene::of_document(&document.of_body(body.name()), Some(body.name()))
+            Scene::of_document(&document.of_body(body.name()), Some(texts.of(body.name())))
         };
         Ok(Self { bodies: bodies.iter().map(scene).collect::<Result<_, _>>()? })
     }
