@@ -640,12 +640,12 @@ fn command(cli: Cli, json_errors: bool, cache: &Cache) -> Result<(), Box<dyn Fai
             let settings = AnimationSettings { frames, magnification: magnify, from, to, view };
             let warning = match scene.results()? {
                 Some(file) => {
-                    outputs_of_results(file, files.overwrite).claim(&[&output])?;
+                    outputs_of_results(file, files.overwrite).claim_as(&Written::ANIMATION, &output)?;
                     animate_results(file, &output, settings, |p| bar.run(p))?
                 }
                 None => {
                     let scene = read(scene)?.without_rows();
-                    outputs_of_scene(&scene, files.overwrite).claim(&[&output])?;
+                    outputs_of_scene(&scene, files.overwrite).claim_as(&Written::ANIMATION, &output)?;
                     animate(&scene, &output, settings, |p| bar.run(p))?
                 }
             };

@@ -165,12 +165,17 @@ impl Desk {
         assert!(!output.status.success() && text.contains(words), "{arguments:?}: {text}");
     }
 
-    /// Checks that the folder of outputs has this file alone, as it was.
-    fn only(&self, name: &str, bytes: &[u8], arguments: &[&str]) {
+    /// Checks that this is all that is in the folder of outputs.
+    fn alone(&self, name: &str, arguments: &[&str]) {
         let names: Vec<_> = fs::read_dir(self.at("o")).unwrap().map(|entry| entry.unwrap().path()).collect();
         if name.starts_with("o/") {
             assert_eq!(names, [self.at(name)], "{arguments:?}");
         }
+    }
+
+    /// Checks that it is, and as it was.
+    fn only(&self, name: &str, bytes: &[u8], arguments: &[&str]) {
+        self.alone(name, arguments);
         assert!(fs::read(self.at(name)).unwrap() == bytes, "{arguments:?}: {name}");
     }
 }
@@ -253,6 +258,74 @@ fn what_is_there_is_replaced_only_when_asked() {
         }
     }
     desk.refused(&["export", "bar.h5", "--vtkhdf", "o/x", "--modes", "o/../o/x"], "is there already");
+}
+
+/// A folder, or a link that leads nowhere, where a file is to go: nothing is written before the command sees it.
+#[test]
+fn what_is_no_file_is_refused_before_the_work() {
+    let desk = Desk::new();
+    for Case { arguments, writes, .. } in CASES.iter().filter(|case| case.to_the_end && case.arguments[0] != "run") {
+        for output in *writes {
+            let place = desk.at(output);
+            for overwrite in [&[][..], &["--overwrite"]] {
+                let arguments = [arguments, overwrite].concat();
+                fs::create_dir(&place).unwrap();
+                desk.refused(&arguments, "a folder of this name is there");
+                desk.alone(output, &arguments);
+                fs::remove_dir(&place).unwrap();
+                std::os::unix::fs::symlink("gone/file", &place).unwrap();
+                desk.refused(&arguments, "this symbolic link leads nowhere");
+                desk.alone(output, &arguments);
+                fs::remove_file(&place).unwrap();
+            }
+        }
+    }
+    for arguments in [
+        &["reduce", "bar.toml", "-o", "gone/x.h5"][..],
+        &["animate", "bar.toml", "-o", "gone/x.gif"],
+        &["animate", "bar.h5", "-o", "gone/x.gif"],
+        &["export", "bar.h5", "--csv", "gone/x.csv"],
+        &["export", "bar.h5", "--modes", "gone/x.vtkhdf"],
+        &["report", "bar.h5", "-o", "gone/x.html"],
+        &["new", "bar.msh", "-o", "gone/x.toml"],
+    ] {
+        desk.refused(arguments, "there is no folder gone to write it in");
+    }
+}
+
+/// A link to a file stays, and the file gets the new bytes, whatever writes it.
+#[test]
+fn a_link_to_an_output_stays() {
+    let desk = Desk::new();
+    for (arguments, name) in [
+        (&["reduce", "bar.toml", "-o"][..], "link.h5"),
+        (&["sweep", "sweep.toml", "-o"], "table.h5"),
+        (&["export", "bar.h5", "--vtkhdf"], "link.vtkhdf"),
+        (&["export", "bar.h5", "--csv"], "link.csv"),
+        (&["report", "bar.h5", "-o"], "link.html"),
+    ] {
+        fs::write(desk.at("o/file"), "mine").unwrap();
+        std::os::unix::fs::symlink("o/file", desk.at(name)).unwrap();
+        desk.done(&[arguments, &[name, "--overwrite"]].concat());
+        assert!(desk.at(name).is_symlink() && fs::read(desk.at("o/file")).unwrap() != b"mine", "{arguments:?}");
+    }
+}
+
+/// A pipe that nobody writes into, and a device without an end.
+#[test]
+fn what_never_ends_is_not_read() {
+    let desk = Desk::new();
+    let made = Command::new("mkfifo").arg(desk.at("pipe")).status().unwrap();
+    assert!(made.success());
+    for input in ["pipe", "/dev/zero"] {
+        desk.refused(&["sweep", input], "not an ordinary file but a device or a pipe");
+        desk.refused(
+            &["fmu", "bar.toml", "-o", "o/b.fmu", "--library", input],
+            "not an ordinary file but a device or a pipe",
+        );
+    }
+    fs::write(desk.at("latin.toml"), b"scene = \"\xe9\"").unwrap();
+    desk.refused(&["sweep", "latin.toml"], "this is not text in UTF-8 (byte 10)");
 }
 
 /// A scene, a table, a picture: no command gives what it writes the name of something else.

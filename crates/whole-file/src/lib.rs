@@ -19,7 +19,7 @@ mod outputs;
 mod temporary;
 mod written;
 
-use std::fs::{self, File, OpenOptions};
+use std::fs::{File, OpenOptions};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
@@ -54,22 +54,22 @@ impl WholeFile {
     /// Errors of the system, also where the file that is there may not be written.
     pub fn create(path: impl AsRef<Path>) -> io::Result<Self> {
         let path = path.as_ref();
-        let (path, permissions) = match OpenOptions::new().write(true).open(path) {
+        let permissions = match OpenOptions::new().write(true).open(path) {
             Ok(old) => {
                 let old_is = old.metadata()?;
                 if !old_is.is_file() {
                     return Ok(Self { file: BufWriter::new(old), place: None });
                 }
-                (fs::canonicalize(path)?, Some(old_is.permissions()))
+                Some(old_is.permissions())
             }
-            Err(error) if error.kind() == io::ErrorKind::NotFound && !path.is_symlink() => (path.to_owned(), None),
+            Err(error) if error.kind() == io::ErrorKind::NotFound && !path.is_symlink() => None,
             Err(error) => return Err(error),
         };
-        let (file, temporary) = TemporaryFile::beside(&path, "")?;
+        let (file, temporary) = TemporaryFile::beside(path, "")?;
         if let Some(permissions) = permissions {
             file.set_permissions(permissions)?;
         }
-        Ok(Self { file: BufWriter::new(file), place: Some((temporary, path)) })
+        Ok(Self { file: BufWriter::new(file), place: Some((temporary, path.to_owned())) })
     }
 
     /// Moves the file into its place, once it is safe on the disk.
@@ -98,6 +98,8 @@ impl Write for WholeFile {
 
 #[cfg(test)]
 mod tests {
+    use std::fs;
+
     use super::*;
 
     fn files(folder: &Path) -> Vec<String> {
@@ -154,6 +156,11 @@ mod tests {
         write_whole(place("link"), "new").unwrap();
         assert!(place("link").is_symlink() && fs::read(place("page")).unwrap() == b"new");
         assert_eq!(mode(&place("page")), 0o640);
+        // A file that is put into its place otherwise, such as one of HDF5.
+        TemporaryFile::beside(&place("link"), "").unwrap().1.put(&place("link"), true).unwrap();
+        assert!(place("link").is_symlink() && fs::read(place("page")).unwrap() == b"");
+        assert!(TemporaryFile::beside(Path::new("/dev/null"), "").is_err());
+        fs::set_permissions(place("page"), PermissionsExt::from_mode(0o640)).unwrap();
         symlink("nothing", place("dangling")).unwrap();
         assert_eq!(write_whole(place("dangling"), "new").unwrap_err().kind(), io::ErrorKind::NotFound);
         write_whole("/dev/null", "new").unwrap();

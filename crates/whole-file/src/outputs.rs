@@ -29,6 +29,34 @@ pub enum OutputError {
         /// The file.
         path: PathBuf,
     },
+    /// A folder has its name.
+    #[error("{}: a folder of this name is there\n = name a file in it, or choose another name", path.display())]
+    Folder {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// It is a link to a file that is not there.
+    #[error("{}: this symbolic link leads nowhere\n = remove it, or choose another name", path.display())]
+    LostLink {
+        /// The link.
+        path: PathBuf,
+    },
+    /// It is a device or a pipe, and its bytes cannot be written one after another.
+    #[error("{}: found a device or a pipe, expected {expected}\n = name a file: its bytes are not written from the first to the last", path.display())]
+    Device {
+        /// The device.
+        path: PathBuf,
+        /// The kind of file.
+        expected: &'static str,
+    },
+    /// The folder that it is to be in is not there.
+    #[error("{}: there is no folder {} to write it in\n = make the folder, or correct its path", path.display(), folder.display())]
+    NoFolder {
+        /// The file.
+        path: PathBuf,
+        /// The folder.
+        folder: PathBuf,
+    },
 }
 
 /// The files that a command may write.
@@ -51,14 +79,20 @@ impl Outputs {
         self
     }
 
-    /// Refuses files of which one is read, or is there without the leave to replace it. What is no file, such as /dev/null or a
-    /// folder, is left to who writes.
+    /// Refuses files of which one is read, is there without the leave to replace it, or cannot be written: a folder, a link that
+    /// leads nowhere. A device, such as /dev/null, may be written.
     ///
     /// # Errors
     /// [`OutputError`].
     pub fn claim(&self, files: &[impl AsRef<Path>]) -> Result<(), OutputError> {
         for path in files.iter().map(AsRef::as_ref) {
             self.spare(path)?;
+            if path.is_dir() {
+                return Err(OutputError::Folder { path: path.to_owned() });
+            }
+            if path.is_symlink() && !path.exists() {
+                return Err(OutputError::LostLink { path: path.to_owned() });
+            }
             if !self.overwrite && path.is_file() {
                 return Err(OutputError::Exists { path: path.to_owned() });
             }
@@ -66,14 +100,21 @@ impl Outputs {
         Ok(())
     }
 
-    /// The same of one file of a kind, whose name may not be that of another.
+    /// The same of one file of a kind, whose name may not be that of another, in a folder that is there.
     ///
     /// # Errors
     /// [`OutputError`].
     pub fn claim_as(&self, written: &Written, path: &Path) -> Result<(), OutputError> {
         self.spare(path)?;
         written.check(path)?;
-        self.claim(&[path])
+        self.claim(&[path])?;
+        if written.in_any_order && path.exists() && !path.is_file() {
+            return Err(OutputError::Device { path: path.to_owned(), expected: written.what });
+        }
+        match path.parent().filter(|folder| !folder.as_os_str().is_empty() && !folder.is_dir()) {
+            Some(folder) => Err(OutputError::NoFolder { path: path.to_owned(), folder: folder.to_owned() }),
+            None => Ok(()),
+        }
     }
 
     /// Refuses a file that is read, by whatever path or link.
@@ -110,6 +151,12 @@ mod tests {
             std::os::unix::fs::symlink("input", at("soft")).unwrap();
             assert!(matches!(outputs(true).claim(&[at("soft")]), Err(OutputError::IsInput { .. })));
             outputs(false).claim(&["/dev/null"]).unwrap();
+            outputs(false).claim_as(&Written::PAGE, Path::new("/dev/null")).unwrap();
+            for overwrite in [false, true] {
+                let device = outputs(overwrite).claim_as(&Written::BODY, Path::new("/dev/null"));
+                assert!(matches!(device, Err(OutputError::Device { .. })));
+            }
+            std::os::unix::fs::symlink("gone", at("lost")).unwrap();
         }
         for name in ["input", "hard", "folder/../input"] {
             for overwrite in [false, true] {
@@ -117,9 +164,18 @@ mod tests {
                 assert!(matches!(refused, Err(OutputError::IsInput { input, .. }) if input == at("input")), "{name}");
             }
         }
-        outputs(true).claim(&[at("other"), at("new"), at("folder")]).unwrap();
+        outputs(true).claim(&[at("other"), at("new")]).unwrap();
         outputs(false).claim(&[at("new"), at("nowhere")]).unwrap();
         assert!(matches!(outputs(false).claim(&[at("other")]), Err(OutputError::Exists { .. })));
+        for overwrite in [false, true] {
+            let folder = outputs(overwrite).claim(&[at("new"), at("folder")]);
+            assert!(matches!(folder, Err(OutputError::Folder { .. })));
+            let nowhere = outputs(overwrite).claim_as(&Written::BODY, &at("nowhere/new"));
+            assert!(matches!(nowhere, Err(OutputError::NoFolder { folder, .. }) if folder == at("nowhere")));
+            outputs(overwrite).claim_as(&Written::BODY, &at("folder/new")).unwrap();
+            #[cfg(unix)]
+            assert!(matches!(outputs(overwrite).claim(&[at("lost")]), Err(OutputError::LostLink { .. })));
+        }
         let also = outputs(true).and_input(&at("other"));
         assert!(matches!(also.spare(&at("other")), Err(OutputError::IsInput { .. })));
     }

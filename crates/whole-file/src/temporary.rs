@@ -98,11 +98,15 @@ pub struct TemporaryFile(Option<TempPath>);
 
 impl TemporaryFile {
     /// Makes a file in the folder of `path`, whose place it is to take, with the permissions of any new file. Its name is
-    /// `.flexframe-`, six letters and `suffix`.
+    /// `.flexframe-`, six letters and `suffix`. Where `path` is a symbolic link, the folder is that of the file it leads to.
     ///
     /// # Errors
-    /// Errors of the system.
+    /// Errors of the system; a folder, a device or a pipe that has this name.
     pub fn beside(path: &Path, suffix: &str) -> io::Result<(File, Self)> {
+        let path = followed(path)?;
+        if path.exists() && !path.is_file() {
+            return Err(io::Error::other("this is no file, and nothing is put in its place"));
+        }
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
         let mut builder = Builder::new();
         builder.prefix(PREFIX).suffix(suffix);
@@ -114,11 +118,13 @@ impl TemporaryFile {
         Ok((file, Self(Some(path))))
     }
 
-    /// Moves the file into a place, where it stays. A file that was there is replaced, or else, unless `replace`, in the way.
+    /// Moves the file into a place, where it stays. A file that was there is replaced, or else, unless `replace`, in the way; a
+    /// symbolic link stays, and the file that it leads to is replaced.
     ///
     /// # Errors
     /// Errors of the system; the file is removed then.
     pub fn put(mut self, place: &Path, replace: bool) -> io::Result<()> {
+        let place = if replace { followed(place)? } else { place.to_owned() };
         let mut there = there();
         let Some(path) = self.0.take() else { return Ok(()) };
         strike(&path, &mut there);
@@ -191,6 +197,11 @@ impl Drop for TemporaryFolder {
             unlist(&path);
         }
     }
+}
+
+/// The file that a symbolic link leads to; any other path as it is.
+fn followed(path: &Path) -> io::Result<PathBuf> {
+    if path.is_symlink() { fs::canonicalize(path) } else { Ok(path.to_owned()) }
 }
 
 /// An error without the path of the temporary file, which tells the reader nothing.

@@ -41,25 +41,32 @@ pub struct OtherEnding {
 /// A kind of output. A name may end otherwise, but not as that of another kind.
 #[derive(Debug, Clone, Copy)]
 pub struct Written {
-    what: &'static str,
+    pub(crate) what: &'static str,
     endings: &'static [&'static str],
+    /// True where its bytes are not written from the first to the last: not into a pipe.
+    pub(crate) in_any_order: bool,
 }
 
 impl Written {
     /// A folder.
-    pub const FOLDER: Self = Self { what: "a folder", endings: &[] };
+    pub const FOLDER: Self = Self { what: "a folder", endings: &[], in_any_order: false };
     /// A scene.
-    pub const SCENE: Self = Self { what: "a scene", endings: &["toml"] };
+    pub const SCENE: Self = Self { what: "a scene", endings: &["toml"], in_any_order: false };
     /// A body file.
-    pub const BODY: Self = Self { what: "a body file", endings: &["h5", "hdf5"] };
+    pub const BODY: Self = Self { what: "a body file", endings: &["h5", "hdf5"], in_any_order: true };
     /// The table of a sweep.
-    pub const SWEEP: Self = Self { what: "the table of a sweep", endings: &["h5", "hdf5"] };
+    pub const SWEEP: Self = Self { what: "the table of a sweep", endings: &["h5", "hdf5"], in_any_order: true };
     /// An FMU.
-    pub const FMU: Self = Self { what: "an FMU", endings: &["fmu"] };
+    pub const FMU: Self = Self { what: "an FMU", endings: &["fmu"], in_any_order: false };
     /// A report.
-    pub const PAGE: Self = Self { what: "a web page", endings: &["html", "htm"] };
+    pub const PAGE: Self = Self { what: "a web page", endings: &["html", "htm"], in_any_order: false };
+    /// A table of numbers.
+    pub const TABLE: Self = Self { what: "a table of text", endings: &["csv"], in_any_order: false };
+    /// An animation.
+    pub const ANIMATION: Self = Self { what: "an animation", endings: &["gif"], in_any_order: false };
     /// A file for ParaView.
-    pub const VTKHDF: Self = Self { what: "a VTKHDF file", endings: &["vtkhdf", "h5", "hdf5", "hdf"] };
+    pub const VTKHDF: Self =
+        Self { what: "a VTKHDF file", endings: &["vtkhdf", "h5", "hdf5", "hdf"], in_any_order: true };
 
     /// Refuses a name that ends as that of another kind. A folder that is there may have any.
     ///

@@ -36,9 +36,13 @@ pub fn export_csv(file: &Path, to: &Path, columns: &[String], rows: &ExportRows)
             (to.join(Path::new(file.file_name().unwrap_or("results".as_ref())).with_extension("csv")), Some(to))
         }
     };
-    outputs_of_results(file, rows.overwrite).claim(&[&path])?;
-    if let Some(folder) = folder {
-        std::fs::create_dir_all(folder).map_err(WriteError::of(folder))?;
+    let outputs = outputs_of_results(file, rows.overwrite);
+    match folder {
+        Some(folder) => {
+            outputs.claim(&[&path])?;
+            std::fs::create_dir_all(folder).map_err(WriteError::of(folder))?;
+        }
+        None => outputs.claim_as(&Written::TABLE, &path)?,
     }
     let write = || {
         let mut out = WholeFile::create(&path)?;

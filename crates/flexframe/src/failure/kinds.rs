@@ -513,13 +513,22 @@ impl Failure for OutputError {
     fn kind(&self) -> Kind {
         match self {
             Self::IsInput { .. } | Self::OtherEnding(_) => Kind::Usage,
-            Self::Exists { .. } => Kind::Io,
+            Self::Exists { .. }
+            | Self::Folder { .. }
+            | Self::LostLink { .. }
+            | Self::Device { .. }
+            | Self::NoFolder { .. } => Kind::Io,
         }
     }
 
     fn details(&self) -> Details {
         match self {
-            Self::IsInput { path, .. } | Self::Exists { path } => Details::of_file(path),
+            Self::IsInput { path, .. }
+            | Self::Exists { path }
+            | Self::Folder { path }
+            | Self::LostLink { path }
+            | Self::Device { path, .. }
+            | Self::NoFolder { path, .. } => Details::of_file(path),
             Self::OtherEnding(error) => {
                 let (found, expected) = (Some(error.found.to_owned()), Some(error.expected.to_owned()));
                 Details { found, expected, ..Details::of_file(&error.path) }

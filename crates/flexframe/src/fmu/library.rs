@@ -3,6 +3,8 @@
 use std::env::consts::{ARCH, DLL_PREFIX, DLL_SUFFIX, OS};
 use std::path::{Path, PathBuf};
 
+use foreign_program::read_at_most;
+
 use super::error::{FmuError, LIBRARY_VARIABLE};
 
 /// Bytes that tell which version the library is of. The program has them in it, too: what the library alone has is the name
@@ -23,6 +25,9 @@ pub fn library_path(asked: Option<&Path>) -> PathBuf {
     })
 }
 
+/// More bytes than any library has, also with debugging information.
+const LARGEST: u64 = 1 << 30;
+
 /// The library, and the folder and the ending that it gets in an FMU.
 pub(super) struct Library {
     pub bytes: Vec<u8>,
@@ -41,8 +46,8 @@ impl Library {
         };
         let path = library_path(asked);
         let refuse = |found: String| FmuError::Library { path: path.clone(), found };
-        let bytes =
-            std::fs::read(&path).map_err(|error| refuse(format!("the library for FMUs cannot be read ({error})")))?;
+        let bytes = read_at_most(&path, LARGEST)
+            .map_err(|error| refuse(format!("the library for FMUs cannot be read ({error})")))?;
         let has = |text: &str| bytes.windows(text.len()).any(|bytes| bytes == text.as_bytes());
         // Put together here, so that the program does not have the name in it.
         let exported = "fmi2-DoStep".replace('-', "");

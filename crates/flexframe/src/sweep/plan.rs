@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use body_file::{Digest, Hash};
+use foreign_program::read_at_most;
 use scene::{AssignError, Body, Cache, Scene, SceneError, assign};
 use serde::Deserialize;
 use toml::{Table, Value};
@@ -12,6 +13,8 @@ use super::error::SweepError;
 
 /// More rows than these are a mistake.
 const MOST_ROWS: usize = 1_000_000;
+/// The largest file of a sweep, in bytes: as many as the tables of a scene.
+const LONGEST: u64 = 16 << 20;
 
 /// The file of a sweep.
 #[derive(Debug, Deserialize)]
@@ -74,10 +77,12 @@ pub(super) struct Plan {
 
 impl Plan {
     pub fn read(path: &Path, cache: &Cache) -> Result<Self, SweepError> {
-        let text = |path: &Path| {
-            std::fs::read_to_string(path).map_err(|source| SweepError::Unreadable { path: path.to_owned(), source })
-        };
-        let of_sweep = text(path)?;
+        let bytes =
+            read_at_most(path, LONGEST).map_err(|source| SweepError::Unreadable { path: path.to_owned(), source })?;
+        let of_sweep = String::from_utf8(bytes).map_err(|error| SweepError::Form {
+            path: path.to_owned(),
+            message: format!("this is not text in UTF-8 (byte {})", error.utf8_error().valid_up_to() + 1),
+        })?;
         let form = |error: toml::de::Error| SweepError::Form { path: path.to_owned(), message: error.to_string() };
         let file: File = toml::from_str(&of_sweep).map_err(form)?;
         let scene_path = path.parent().unwrap_or(Path::new("")).join(&file.scene);

@@ -361,7 +361,8 @@ impl Structure for Solved<'_> {
     ) -> Result<SecondOrderShapes, BuildError> {
         let question = || {
             let question = with_modes(self.about_the_held_body("shapes of second order"), &modes);
-            with_matrix(question.text(&format!("{large:?}")), forces)
+            // The last bits of the responses depend on those that were computed with them.
+            with_matrix(with_matrix(question.text(&format!("{large:?}")), forces), responses)
         };
         self.ask(
             question,
@@ -408,7 +409,8 @@ impl Structure for Solved<'_> {
         let shapes = modes.shapes.as_ref();
         let question = || {
             let question = with_matrix(self.about_the_body("stress stiffness"), displacements);
-            with_matrix(question, shapes).text(&format!("{terms:?}"))
+            let question = with_matrix(question, shapes).text(&format!("{terms:?}"));
+            known.iter().fold(question, |question, known| with_matrix(question, known.as_ref()))
         };
         self.ask(
             question,

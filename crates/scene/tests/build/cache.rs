@@ -125,6 +125,26 @@ fn only_what_is_the_same_is_read() {
     assert_eq!(assembled(&heavier), 1);
 }
 
+/// The load says which parts of an answer are known from before, and in which company the others are computed: their last bits.
+#[test]
+fn answers_of_another_size_of_a_load_are_the_same_to_the_last_bit() {
+    let pin = "[[constraints]]\nkind = \"pin\"\nat = [0.0, 0.0, 0.0]\nradius = 6.0\n";
+    let scenes = ["1e-6", "200.0", "1e3"].map(|amplitude| {
+        let force = FORCE.replace("200.0\nhistory", &format!("{amplitude}\nhistory"));
+        let effects = "[effects]\nlarge_deflection = true\nrefuse = false\n";
+        bar("flexible = 2\nlarge = 2\nstatic_correction = false", &format!("{pin}{force}{effects}"), TIME)
+    });
+    let direct = scenes.each_ref().map(|scene| built(scene).0);
+    for (first, scene) in scenes.iter().enumerate() {
+        let folder = tempfile::tempdir().unwrap();
+        let cache = Cache::new(folder.path(), LIMIT);
+        built(&with_cache(scene, &cache));
+        for (next, (scene, direct)) in scenes.iter().zip(&direct).enumerate() {
+            assert!(built(&with_cache(scene, &cache)).0 == *direct, "{next} after {first}");
+        }
+    }
+}
+
 #[test]
 fn another_mesh_under_the_same_name_is_another_body() {
     let folder = tempfile::tempdir().unwrap();
