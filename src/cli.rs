@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use std::time::Duration;
 
 use clap::{Args, CommandFactory, Parser, Subcommand};
-use flexframe::animation::{AnimationSettings, MOST_FRAMES, animate, animate_results};
+use flexframe::animation::{AnimationSettings, MAX_FRAMES, animate, animate_results};
 use flexframe::campbell::{self, CampbellError, CampbellSettings, Speeds};
 use flexframe::cost::{self, CostSettings};
 use flexframe::export::{self, ExportRows, Exported, Motion};
@@ -312,7 +312,7 @@ enum Command {
         #[command(flatten)]
         files: FileArgs,
         /// Number of frames.
-        #[arg(long, default_value_t = 60, value_parser = clap::value_parser!(u64).range(2..=MOST_FRAMES))]
+        #[arg(long, default_value_t = 60, value_parser = clap::value_parser!(u64).range(2..=MAX_FRAMES))]
         frames: u64,
         /// Time of the first frame [default: 0].
         #[arg(long, value_name = "TIME", value_parser = finite, allow_hyphen_values = true)]
@@ -759,10 +759,10 @@ fn speeds(text: &str) -> Result<Speeds, String> {
 /// The refusal of a number of modes, at the option where that has replaced what the scene says.
 fn of_option(error: CampbellError, flexible: Option<usize>) -> Box<dyn Failure> {
     match (error, flexible) {
-        (CampbellError::Build(BuildError::Scene(SceneError::Invalid { at, found, expected, cure })), Some(_))
+        (CampbellError::Build(BuildError::Scene(SceneError::Invalid { at, found, expected, help })), Some(_))
             if at.key == "modes.flexible" =>
         {
-            CliError::Option { option: "--flexible", found, expected, cure }.into()
+            CliError::Option { option: "--flexible", found, expected, help }.into()
         }
         (error, _) => error.into(),
     }

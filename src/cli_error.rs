@@ -8,8 +8,8 @@ use flexframe::failure::{Details, Failure, Kind};
 #[derive(Debug, thiserror::Error)]
 pub enum CliError {
     /// An option has replaced what the scene says, and is refused.
-    #[error("{option}: found {found}, expected {expected}\n = {cure}")]
-    Option { option: &'static str, found: String, expected: String, cure: String },
+    #[error("{option}: found {found}, expected {expected}\n = {help}")]
+    Option { option: &'static str, found: String, expected: String, help: String },
     /// RAYON_NUM_THREADS is not a number of threads.
     #[error(
         "the environment variable RAYON_NUM_THREADS: found \"{found}\", expected a number from 1 to {most}\n = \
@@ -47,11 +47,11 @@ impl Failure for CliError {
 
     fn details(&self) -> Details {
         match self {
-            Self::Option { option, found, expected, cure } => Details {
+            Self::Option { option, found, expected, help } => Details {
                 key: Some((*option).to_owned()),
                 found: Some(found.clone()),
                 expected: Some(expected.clone()),
-                cure: Some(cure.clone()),
+                help: Some(help.clone()),
                 ..Details::default()
             },
             Self::ThreadsVariable { found, most } => Details {

@@ -5,7 +5,7 @@ use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use flexframe::failure::{Failure, FailureReport};
-use flexframe::run::Foretold;
+use flexframe::run::Estimate;
 use scene::CacheNotes;
 use serde::Serialize;
 
@@ -32,7 +32,7 @@ pub fn require_file(option: &'static str, file: Option<&Path>) -> Result<(), Cli
             option,
             found: "-, which stands for standard output".to_owned(),
             expected: "the name of a file or folder: only texts can go to standard output".to_owned(),
-            cure: "name it (./- is a file of that name)".to_owned(),
+            help: "name it (./- is a file of that name)".to_owned(),
         }),
         _ => Ok(()),
     }
@@ -52,9 +52,9 @@ pub fn doubts(doubts: impl IntoIterator<Item = impl Display>) {
 }
 
 /// Writes the estimate of a run to standard error.
-pub fn foretell(foretold: &Foretold) {
+pub fn show_estimate(estimate: &Estimate) {
     // Where it cannot be written, nothing is lost but words.
-    let _ = writeln!(io::stderr(), "run: {foretold}");
+    let _ = writeln!(io::stderr(), "run: {estimate}");
 }
 
 /// Prints the names of files.

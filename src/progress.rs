@@ -76,8 +76,8 @@ impl Bar {
         match progress {
             RunProgress::Build(progress) => self.build(progress),
             RunProgress::Built => {}
-            RunProgress::Foretold(foretold) if !self.is_silent => self.bar.suspend(|| output::foretell(&foretold)),
-            RunProgress::Foretold(_) => {}
+            RunProgress::Estimate(estimate) if !self.is_silent => self.bar.suspend(|| output::show_estimate(&estimate)),
+            RunProgress::Estimate(_) => {}
             RunProgress::Motion(part) => self.show("stepping", Some(((10_000.0 * part) as u64, 10_000))),
         }
     }

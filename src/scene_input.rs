@@ -51,7 +51,7 @@ impl SceneInput {
                 option: "--set",
                 found: "a results file, whose motion has been computed".to_owned(),
                 expected: "a scene".to_owned(),
-                cure: "leave --set out, or give the scene file".to_owned(),
+                help: "leave --set out, or give the scene file".to_owned(),
             }),
             _ => Ok(None),
         }
@@ -93,7 +93,7 @@ fn assigned(text: &str, set: &[(String, Value)]) -> Result<String, CliError> {
         option: "--set",
         found: format!("`{key}`, {found}"),
         expected,
-        cure: "name the key as messages about the scene do; docs/reference/scene.md lists them".to_owned(),
+        help: "name the key as messages about the scene do; docs/reference/scene.md lists them".to_owned(),
     })
 }
 

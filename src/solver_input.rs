@@ -50,7 +50,7 @@ impl SolverInput {
                 option: "--solver",
                 found: format!("slepc for {bodies} bodies"),
                 expected: "a scene of one body, or one body of it".to_owned(),
-                cure: "name the body: --body NAME".to_owned(),
+                help: "name the body: --body NAME".to_owned(),
             }),
             _ => Ok(()),
         }
@@ -85,7 +85,7 @@ fn refused(option: &'static str, found: &str, expected: &str) -> CliError {
         option,
         found: found.to_owned(),
         expected: expected.to_owned(),
-        cure: "`--solver slepc --ranks N` finds the modes here; docs/reference/cluster.md shows how a cluster does"
+        help: "`--solver slepc --ranks N` finds the modes here; docs/reference/cluster.md shows how a cluster does"
             .to_owned(),
     }
 }

@@ -59,7 +59,7 @@ def modes(cases, file):
 
 
 def size(sizes, cases, file):
-    """Time, and memory foretold and taken, against unknowns; the peers where they ran."""
+    """Time, and memory estimated and taken, against unknowns; the peers where they ran."""
     figure, (left, right) = plot.subplots(1, 2, figsize=(9, 3.8), layout="constrained")
     for (shape, by_size), colour in zip(sizes.items(), ["#0b5fa5", "#d9822b"]):
         unknowns = [runs[0]["mesh"]["unknowns"] for runs in by_size]
@@ -69,9 +69,9 @@ def size(sizes, cases, file):
         left.plot(unknowns, middle, "o-", color=colour, label=f"{shape}, slope {slope:.2f}")
         left.vlines(unknowns, [min(values) for values in times], [max(values) for values in times], color=colour)
         taken = [summary.of(run["memory"] for run in runs)[0] / 1e9 for runs in by_size]
-        foretold = [runs[0]["mesh"]["peak_bytes"] / 1e9 for runs in by_size]
+        estimated = [runs[0]["mesh"]["peak_bytes"] / 1e9 for runs in by_size]
         right.plot(unknowns, taken, "o-", color=colour, label=f"{shape}, taken")
-        right.plot(unknowns, foretold, "x:", color=colour, label=f"{shape}, foretold")
+        right.plot(unknowns, estimated, "x:", color=colour, label=f"{shape}, estimated")
         for program, marker in ((the_modes.SCIPY, "^"), (the_modes.SLEPC, "s")):
             of_shape = [programs for name, programs in cases.items() if name.startswith(shape)]
             of_shape = [programs for programs in of_shape if not the_modes.was_stopped(programs[program][0])]

@@ -1,4 +1,4 @@
-"""Cost of `flexframe modes` against size, from thin to bulky: time by phase, memory foretold and taken."""
+"""Cost of `flexframe modes` against size, from thin to bulky: time by phase, memory estimated and taken."""
 
 from cases import Case
 from modes import ours

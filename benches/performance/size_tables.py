@@ -38,9 +38,9 @@ def size_table(sizes):
         "factor, 10⁶ entries",
         "time, s",
         "processor, s",
-        "foretold, MB",
+        "estimated, MB",
         "taken, MB",
-        "foretold ÷ taken − 1",
+        "estimated ÷ taken − 1",
     ]
     return table(head, rows)
 

@@ -170,7 +170,7 @@ try:
     scene.with_values({"time.stpe": 1e-4})
 except flexframe.InputError as error:
     print(error)
-    print("key:", error.key, "| cure:", error.cure)
+    print("key:", error.key, "| help:", error.help)
 
 # %% [markdown]
 # ## Tables

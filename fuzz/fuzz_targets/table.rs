@@ -28,7 +28,7 @@ fuzz_target!(|bytes: &[u8]| {
             let History::Table(table) = &force.history else { panic!("not a table") };
             let (times, values) = table.points.iter().map(|[time, value]| (*time, *value)).unzip();
             let table = dynamics::Table::new(times, values).expect("what a scene takes is a table");
-            assert!(table.corners().windows(2).all(|pair| pair[0] < pair[1]));
+            assert!(table.discontinuities().windows(2).all(|pair| pair[0] < pair[1]));
         }
         Err(error) => assert!(!error.to_string().is_empty()),
     }

@@ -45,8 +45,8 @@ fn the_cache_is_used_by_itself_and_the_results_are_the_same_to_the_last_byte() {
     let results = |name: &str, more: &[&str]| {
         let out = folder.path().join(name);
         let (_, notes) = succeeds(cache, &[&["run", &scene, "-o", out.to_str().unwrap()], more].concat());
-        let (foretold, notes) = notes.split_once('\n').unwrap();
-        assert!(foretold.starts_with("run: 21 rows, "), "{foretold}");
+        let (estimate, notes) = notes.split_once('\n').unwrap();
+        assert!(estimate.starts_with("run: 21 rows, "), "{estimate}");
         (fs::read(out.join("ring.h5")).unwrap(), notes.to_owned())
     };
     let (direct, notes) = results("direct", &["--no-cache"]);
@@ -139,7 +139,7 @@ fn a_body_file_gives_back_the_field_and_the_kinetic_energy_of_a_run() {
 
 /// Files that a geometry includes are known, unless it is free to do what it likes: no body file is made of that. (Needs gmsh.)
 #[test]
-fn a_mesh_that_takes_in_others_unknown_is_refused_with_the_cure() {
+fn a_mesh_that_takes_in_others_unknown_is_refused_with_the_help() {
     let folder = tempfile::tempdir().unwrap();
     fs::copy(root().join("meshes/ring.geo"), folder.path().join("ring.geo")).unwrap();
     let outer = folder.path().join("outer.geo");

@@ -373,7 +373,7 @@ fn a_refusal_is_where_the_fault_is() {
 }
 
 #[test]
-fn what_is_wrong_is_said_with_file_line_key_and_cure() {
+fn what_is_wrong_is_said_with_file_line_key_and_help() {
     let folder = tempfile::tempdir().unwrap();
     let text = std::fs::read_to_string(root().join("examples/ring.toml")).unwrap();
     let refused = |from: &str, to: &str| -> String {

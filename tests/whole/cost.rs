@@ -24,9 +24,9 @@ fn scene(time: &str) -> Scene {
 }
 
 /// Bounded by steps, not by time, so that the rows are the same on any machine, however busy.
-fn settings(most_steps: u64, target: f64) -> CostSettings {
+fn settings(max_steps: u64, target: f64) -> CostSettings {
     let timed_for = Duration::from_millis(1);
-    CostSettings { patience: Duration::from_secs(600), most_steps, timed_for, target: Some(target) }
+    CostSettings { patience: Duration::from_secs(600), max_steps, timed_for, target: Some(target) }
 }
 
 /// The list with a target, and the CSV file, made once.

@@ -105,21 +105,21 @@ fn a_fault_of_a_scene_is_named_by_file_line_and_key() {
     assert_eq!(object["file"], scene);
     assert_eq!((&object["line"], &object["key"]), (&26.into(), &"time.step".into()));
     assert_says(&object["found"], &["-2e-5"]);
-    assert!(object["expected"].is_string() && object["cure"].is_string(), "{object}");
+    assert!(object["expected"].is_string() && object["help"].is_string(), "{object}");
 
     let scene = ring.scene(&[("tolerance = 1e-6", "stepp = 2e-5")]);
     let object = failure(Kind::Input, &["advise", &scene, "--json"]);
     assert_eq!(object["found"], "stepp");
-    assert_says(&object["cure"], &["rename it to `step`"]);
+    assert_says(&object["help"], &["rename it to `step`"]);
     assert_says(&object["expected"], &["`step`"]);
 
     let scene = ring.scene(&[("end = 0.2\n", "")]);
     let object = failure(Kind::Input, &["cost", &scene, "--json"]);
-    assert_says(&object["cure"], &["add it"]);
+    assert_says(&object["help"], &["add it"]);
 
     let scene = ring.scene(&[("[time]", "[time")]);
     let object = failure(Kind::Input, &["modes", &scene, "--json"]);
-    assert!(object["line"].is_u64() && object["cure"].is_string(), "{object}");
+    assert!(object["line"].is_u64() && object["help"].is_string(), "{object}");
 }
 
 #[test]

@@ -97,7 +97,7 @@ fn what_cannot_be_packed_leaves_the_old_file() {
     assert_eq!(failure["key"], "modes.flexible");
     let failure = refused("", &["fmu", "examples/boom.toml", "-o", &old], 3);
     assert_eq!(failure["key"], "body.matrices");
-    assert!(failure["cure"].as_str().unwrap().contains("a mesh"), "{failure}");
+    assert!(failure["help"].as_str().unwrap().contains("a mesh"), "{failure}");
     // A step in which the body turns by 10 rad. It is found in the packed scene; the message names the one that was given.
     let spun = ["--set", "time.step=1.0", "--set", "initial.angular_velocity=[0.0, 0.0, 10.0]"];
     let failure = refused(&library, &[&["fmu", scene, "-o", &old][..], &spun].concat(), 4);

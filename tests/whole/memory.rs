@@ -57,7 +57,7 @@ fn little_memory_ends_in_words() {
 #[test]
 fn a_factor_that_does_not_fit_is_refused_before_it_is_made_with_numbers() {
     let scene = example("plate.toml");
-    let mut foretold = 0;
+    let mut estimate = 0;
     // Which phase meets the limit goes with the size of the program and of what the allocator keeps.
     for own in (155..275).step_by(15) {
         let megabytes = own + reserve(1);
@@ -65,8 +65,8 @@ fn a_factor_that_does_not_fit_is_refused_before_it_is_made_with_numbers() {
         let (code, words) = limited(1000 * megabytes, &arguments);
         assert!(code != Some(0) && words.contains("not enough memory"), "{megabytes} MB: {code:?}: {words}");
         let parts = ["not enough memory for", "wanted", "ulimit -v", "coarser mesh", "fewer modes"];
-        foretold += u32::from(parts.iter().all(|part| words.contains(part)));
+        estimate += u32::from(parts.iter().all(|part| words.contains(part)));
     }
-    println!("{foretold} of 8 with numbers");
-    assert!(foretold >= 4, "{foretold}");
+    println!("{estimate} of 8 with numbers");
+    assert!(estimate >= 4, "{estimate}");
 }

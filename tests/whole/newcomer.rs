@@ -121,7 +121,7 @@ fn a_file_of_another_kind_is_recognized_with_the_command_that_takes_it() {
     let object: Value = serde_json::from_slice(&told).unwrap();
     assert_eq!(object["kind"], "input");
     assert_eq!(object["expected"], "a scene file");
-    assert!(object["cure"].as_str().unwrap().contains("flexframe new bar.msh"), "{object}");
+    assert!(object["help"].as_str().unwrap().contains("flexframe new bar.msh"), "{object}");
     // A scene that names a file of another kind as its mesh.
     desk.file("part.xyz", "1 2 3\n");
     for (mesh, words) in

@@ -26,9 +26,9 @@ fn the_memory_that_is_printed_is_used() {
         scene.modes.flexible = Flexible::Count(count.parse().unwrap());
         let before = status("VmRSS:");
         let (_, report) = modes(&scene, |_| {}).unwrap();
-        let (used, foretold) = (status("VmHWM:") - before, report.mesh.unwrap().peak_bytes.unwrap() as f64);
-        println!("{asked}: {:.0} MB used, {:.0} MB foretold", 1e-6 * used, 1e-6 * foretold);
-        assert!((0.8..1.2).contains(&(foretold / used)), "{asked}: {foretold:e} foretold, {used:e} used");
+        let (used, estimate) = (status("VmHWM:") - before, report.mesh.unwrap().peak_bytes.unwrap() as f64);
+        println!("{asked}: {:.0} MB used, {:.0} MB estimate", 1e-6 * used, 1e-6 * estimate);
+        assert!((0.8..1.2).contains(&(estimate / used)), "{asked}: {estimate:e} estimate, {used:e} used");
         return;
     }
     let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples").canonicalize().unwrap();

@@ -37,7 +37,7 @@ fn the_bearing_of_a_pendulum_gives_what_the_closed_form_has() {
     let (_, rows) = rows_of(&scene);
     let (mass, arm, inertia, gravity, start) = (3.0, 0.5, 1.0, 9.81, 2.0_f64);
     for now in &rows {
-        let theta = start - now.reaction.turned;
+        let theta = start - now.reaction.hinge_angle;
         let square = 2.0 * mass * gravity * arm / inertia * (theta.cos() - start.cos());
         let along = mass * (arm * square + gravity * theta.cos());
         let across = mass * gravity * theta.sin() * (1.0 - mass * arm * arm / inertia);
@@ -65,7 +65,10 @@ fn seventy_two_turns_are_seventy_two_turns() {
     );
     let (_, rows) = rows(&(ROD.to_owned() + &spin));
     for now in &rows {
-        assert!((now.reaction.turned - speed * now.time).abs() < 1e-9 && (now.reaction.turning - speed).abs() < 1e-9);
+        assert!(
+            (now.reaction.hinge_angle - speed * now.time).abs() < 1e-9
+                && (now.reaction.hinge_rate - speed).abs() < 1e-9
+        );
         // The bearing holds the rod on its circle.
         assert!((now.reaction.force_body.x / (-3.0 * 0.5 * speed * speed) - 1.0).abs() < 1e-12);
     }
@@ -112,7 +115,7 @@ fn the_hinge_of_a_spinning_bar_holds_it_on_its_circle() {
         let found = now.reaction;
         assert!((found.force_body.x / -expected - 1.0).abs() < 1e-5, "{found:?} {expected}");
         assert!(found.moment_body.norm() < 1e-3 * 4.0 * expected, "{found:?}");
-        assert!((found.turned - 0.5 * now.time).abs() < 1e-4);
+        assert!((found.hinge_angle - 0.5 * now.time).abs() < 1e-4);
     }
 }
 
@@ -124,8 +127,8 @@ fn the_drive_of_a_spin_up_does_the_work_that_the_beam_has() {
     let (_, rows) = rows_of(&scene);
     let last = rows.last().unwrap();
     // 6·15/2 rad in the rise, and 6 rad a second after it: more than nine turns.
-    assert!((last.reaction.turned - (45.0 + 12.0)).abs() < 1e-8, "{:?}", last.reaction);
-    assert!((last.reaction.turning - 6.0).abs() < 1e-12);
+    assert!((last.reaction.hinge_angle - (45.0 + 12.0)).abs() < 1e-8, "{:?}", last.reaction);
+    assert!((last.reaction.hinge_rate - 6.0).abs() < 1e-12);
     let work: f64 = rows
         .windows(2)
         .map(|pair| 0.5 * (pair[1].time - pair[0].time) * (pair[0].reaction.drive_power + pair[1].reaction.drive_power))

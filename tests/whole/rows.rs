@@ -1,4 +1,4 @@
-//! How much a run writes: as many rows as a person would choose, foretold, and no room in proportion to the time.
+//! How much a run writes: as many rows as a person would choose, estimate, and no room in proportion to the time.
 
 use std::fs;
 use std::path::Path;
@@ -6,7 +6,7 @@ use std::process::{Command, Output};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use flexframe::run::{Foretold, RunError, RunProgress, RunSettings, run};
+use flexframe::run::{Estimate, RunError, RunProgress, RunSettings, run};
 use flexframe::scene::Scene;
 
 /// A rigid body that spins.
@@ -21,25 +21,25 @@ fn scene(time: &str) -> Scene {
     Scene::parse(&format!("{SCENE}{time}"), "top.toml").unwrap()
 }
 
-/// Runs a scene. Returns what was foretold, what became of it, and the bytes of its file.
-fn done(time: &str, folder: &Path) -> (Foretold, Result<u64, RunError>, u64) {
-    let mut foretold = None;
+/// Runs a scene. Returns what was estimate, what became of it, and the bytes of its file.
+fn done(time: &str, folder: &Path) -> (Estimate, Result<u64, RunError>, u64) {
+    let mut estimate = None;
     let settings = RunSettings { overwrite: true, ..RunSettings::default() };
     let done = run(&scene(time), folder, &settings, |progress| {
-        if let RunProgress::Foretold(told) = progress {
-            foretold = Some(told);
+        if let RunProgress::Estimate(told) = progress {
+            estimate = Some(told);
         }
     });
     let rows = done.map(|(_, report)| {
-        assert_eq!(Some(report.foretold), foretold);
+        assert_eq!(Some(report.estimate), estimate);
         report.rows
     });
     let bytes = fs::metadata(folder.join("top.h5")).map_or(0, |file| file.len());
-    (foretold.unwrap(), rows, bytes)
+    (estimate.unwrap(), rows, bytes)
 }
 
 #[test]
-fn a_long_run_has_some_thousand_rows_and_what_is_foretold_is_written() {
+fn a_long_run_has_some_thousand_rows_and_what_is_estimated_is_written() {
     let folder = tempfile::tempdir().unwrap();
     for (time, expected) in [
         ("time = { end = 20.0, step = 1.0 }", 21),
@@ -50,11 +50,11 @@ fn a_long_run_has_some_thousand_rows_and_what_is_foretold_is_written() {
         ("time = { end = 7000.0, step = 1.0 }\noutput = { every = 1 }", 7001),
         ("time = { end = 1000.0, tolerance = 1e-3 }\noutput = { interval = 0.25 }", 4001),
     ] {
-        let (foretold, rows, bytes) = done(time, folder.path());
-        assert_eq!((foretold.rows, rows.unwrap()), (expected, expected), "{time}");
+        let (estimate, rows, bytes) = done(time, folder.path());
+        assert_eq!((estimate.rows, rows.unwrap()), (expected, expected), "{time}");
         // The rest is the scene, names and units.
-        assert!(foretold.bytes <= bytes && bytes <= foretold.bytes + 200_000, "{time}: {foretold:?}, {bytes}");
-        assert!(foretold.seconds.is_some_and(|seconds| seconds.is_finite() && seconds > 0.0), "{foretold:?}");
+        assert!(estimate.bytes <= bytes && bytes <= estimate.bytes + 200_000, "{time}: {estimate:?}, {bytes}");
+        assert!(estimate.seconds.is_some_and(|seconds| seconds.is_finite() && seconds > 0.0), "{estimate:?}");
     }
 }
 
@@ -64,7 +64,7 @@ fn more_than_a_gigabyte_is_refused_unless_it_is_asked_for() {
     let time = "time = { end = 1e6, step = 0.1 }\noutput = { every = 1 }";
     let Err(error) = run(&scene(time), folder.path(), &RunSettings::default(), |_| ()) else { panic!() };
     let text = error.to_string();
-    assert!(matches!(error, RunError::Large { foretold: Foretold { rows: 10_000_001, .. }, .. }), "{text}");
+    assert!(matches!(error, RunError::Large { estimate: Estimate { rows: 10_000_001, .. }, .. }), "{text}");
     assert!(text.contains("10000001 rows, ") && text.contains(" GB") && text.contains("--large"), "{text}");
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
     // Asked for, it takes room as it goes on, not for all rows at once.
@@ -116,8 +116,8 @@ fn the_terminal_and_the_summary_say_what_a_run_will_come_to() {
     assert!(told.contains("run: 21 rows, 1 MB, less than a second\n"), "{told}");
     let output = flexframe(&["--json"]);
     let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
-    assert_eq!((output.stderr.len(), &report["foretold"]["rows"]), (0, &21.into()), "{report}");
-    assert!(report["foretold"]["bytes"].is_u64() && report["foretold"]["seconds"].is_number(), "{report}");
+    assert_eq!((output.stderr.len(), &report["estimate"]["rows"]), (0, &21.into()), "{report}");
+    assert!(report["estimate"]["bytes"].is_u64() && report["estimate"]["seconds"].is_number(), "{report}");
     let large = flexframe(&["--set", "time.end=1e7", "--set", "output.every=1", "--json"]);
     let failure: serde_json::Value = serde_json::from_slice(&large.stderr).unwrap();
     assert_eq!((large.status.code(), &failure["key"]), (Some(4), &"output.interval".into()), "{failure}");

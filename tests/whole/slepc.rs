@@ -244,7 +244,7 @@ fn static_answers_of_a_run_come_back_from_the_folder_too() {
 }
 
 #[test]
-fn what_is_missing_is_named_with_the_cure() {
+fn what_is_missing_is_named_with_the_help() {
     let case = Case::new();
     let install = "apt-get install python3-slepc4py python3-petsc4py openmpi-bin";
     let mut command = case.modes(&SLEPC);

@@ -16,7 +16,7 @@ pub(crate) struct Course {
     resolved: bool,
 }
 
-/// Samples at equal distances between two corners.
+/// Samples at equal distances between two discontinuities.
 #[derive(Debug, Clone)]
 struct Piece {
     step: f64,
@@ -27,20 +27,20 @@ struct Piece {
 const FEWEST: usize = 64;
 const MOST: usize = 1 << 15;
 /// Most intervals in all pieces, but for one in each.
-const MOST_IN_ALL: usize = 1 << 22;
+const MAX_IN_ALL: usize = 1 << 22;
 /// Distance of the lines from the history, of its largest value.
 const CLOSE: f64 = 1e-3;
 
 impl Course {
     /// The course of one history, `among` others that cost more than closed forms do.
     pub(crate) fn new(history: &History, end: f64, among: usize) -> Self {
-        let mut stops: Vec<f64> = history.corners().into_iter().filter(|t| *t > 0.0 && *t < end).collect();
+        let mut stops: Vec<f64> = history.discontinuities().into_iter().filter(|t| *t > 0.0 && *t < end).collect();
         stops.push(end);
         stops.sort_by(f64::total_cmp);
         let largest = history.largest(end);
         // What a value costs is in the number of samples as its square root: the walks for the size have the other part.
         let share = history.cost().sqrt() * among.max(1) as f64;
-        let most = ((MOST_IN_ALL / stops.len()).clamp(1, MOST) as f64 / share).max(1.0) as usize;
+        let most = ((MAX_IN_ALL / stops.len()).clamp(1, MOST) as f64 / share).max(1.0) as usize;
         let mut start = 0.0;
         let mut resolved = true;
         let mut pieces = Vec::with_capacity(stops.len());
@@ -237,16 +237,16 @@ mod tests {
     }
 
     #[test]
-    fn very_many_corners_do_not_make_very_many_samples() {
-        for corners in [3000, 300_000] {
-            let times: Vec<f64> = (0..corners).map(f64::from).collect();
-            let values = (0..corners).map(|k| f64::from(k % 2)).collect();
+    fn very_many_discontinuities_do_not_make_very_many_samples() {
+        for discontinuities in [3000, 300_000] {
+            let times: Vec<f64> = (0..discontinuities).map(f64::from).collect();
+            let values = (0..discontinuities).map(|k| f64::from(k % 2)).collect();
             let table = dynamics::Table::new(times, values).unwrap();
-            let course = Course::new(&History::Table(table), f64::from(corners), 1);
+            let course = Course::new(&History::Table(table), f64::from(discontinuities), 1);
             let samples: usize = course.pieces.iter().map(|piece| piece.samples.len()).sum();
             // The straight lines of a table are followed by however few. Measured: 195 000 and 4 200 000.
-            assert!(course.resolved && samples < MOST_IN_ALL + 2 * course.pieces.len(), "{samples}");
-            assert!((course.magnitude_integral / (0.5 * f64::from(corners)) - 1.0).abs() < 1e-3);
+            assert!(course.resolved && samples < MAX_IN_ALL + 2 * course.pieces.len(), "{samples}");
+            assert!((course.magnitude_integral / (0.5 * f64::from(discontinuities)) - 1.0).abs() < 1e-3);
         }
     }
 

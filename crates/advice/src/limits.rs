@@ -18,7 +18,7 @@ pub(crate) const LINEAR: f64 = 0.1;
 /// refused: there, a third of the lowest stiffness across the spin is gone.
 pub const SOFTENED: f64 = 0.577;
 
-/// Why a model is refused.
+/// Reason to refuse a model.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Refusal {

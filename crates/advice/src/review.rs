@@ -448,7 +448,7 @@ impl<'a> Review<'a> {
         Ok(())
     }
 
-    /// Why the run should not go on, and since when: the body bends further than linear strain can have any meaning.
+    /// Reason to end the run, and its time: the body bends further than linear strain can have any meaning.
     pub fn stop(&self) -> Option<(f64, Refusal)> {
         self.stop
     }

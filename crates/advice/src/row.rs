@@ -11,7 +11,7 @@ pub enum Subject {
     Effect(Effect),
     /// Static shapes beside the modes.
     StaticCorrection,
-    /// Large deflection, which no setting cures: "on" from 10 % of the length, and a warning.
+    /// Large deflection, which no setting helps: "on" from 10 % of the length, and a warning.
     Deflection,
     /// The error of the step: "on" warns.
     Step,

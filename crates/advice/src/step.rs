@@ -51,7 +51,7 @@ pub struct StepEstimate {
     pub modes: Vec<ModeError>,
     /// The step times the rate that sets its length: ω_max, or the spin.
     pub value: f64,
-    /// Why the run fails in these steps, where it does.
+    /// Reason of the failure in these steps, if there is one.
     pub failure: Option<StepError>,
 }
 
@@ -160,8 +160,8 @@ pub fn step_estimate(setup: &Setup) -> Result<Option<StepEstimate>, SetupError> 
     };
     let mut comparison = Comparison::new(setup);
     // Loads may ask for steps far shorter than those of the run.
-    let most_evaluations = (OVERRUN * PRODUCTS.max(FEWEST * (1.0 + finer) * cost) / of_evaluation) as u64;
-    let failure = comparison.follow(begin(step)?, begin(step / finer)?, samples, most_evaluations).err();
+    let max_evaluations = (OVERRUN * PRODUCTS.max(FEWEST * (1.0 + finer) * cost) / of_evaluation) as u64;
+    let failure = comparison.follow(begin(step)?, begin(step / finer)?, samples, max_evaluations).err();
     if comparison.times.is_empty() && failure.is_none() {
         return Ok(None);
     }
@@ -202,13 +202,13 @@ impl Comparison {
         mut a: Simulation,
         mut b: Simulation,
         samples: usize,
-        most_evaluations: u64,
+        max_evaluations: u64,
     ) -> Result<(), StepError> {
         let (mut of_a, mut of_b) = (a.observation()?, b.observation()?);
         let start = of_a.position_global;
-        while self.times.len() < samples && next_row(&mut a, &mut of_a, most_evaluations)? {
+        while self.times.len() < samples && next_row(&mut a, &mut of_a, max_evaluations)? {
             // That the shorter steps fail says nothing about those of the run.
-            if !next_row(&mut b, &mut of_b, most_evaluations).unwrap_or(false) {
+            if !next_row(&mut b, &mut of_b, max_evaluations).unwrap_or(false) {
                 break;
             }
             self.add(&of_a, &of_b);
@@ -282,8 +282,8 @@ impl Comparison {
 }
 
 /// Goes on to the next row; `false` at the end, and where all evaluations have been made.
-fn next_row(simulation: &mut Simulation, out: &mut Observation, most_evaluations: u64) -> Result<bool, StepError> {
-    while simulation.stats().evaluations < most_evaluations {
+fn next_row(simulation: &mut Simulation, out: &mut Observation, max_evaluations: u64) -> Result<bool, StepError> {
+    while simulation.stats().evaluations < max_evaluations {
         match simulation.advance(STEPS_AT_ONCE)? {
             Reached::Row => {
                 simulation.observe(out)?;

@@ -3,7 +3,7 @@
 //! With the mode's [`Backbone`] that is known; without it, it is that of a slender bar or arch: a free bar bent by u at its
 //! ends has its frequency lower by about 20 (u/L)², and the force that holds an L in another shape differs by about u/L.
 
-use dynamics::MOST_LARGE;
+use dynamics::MAX_LARGE;
 
 use crate::backbone::Backbone;
 use crate::case::Case;
@@ -26,7 +26,7 @@ const BELIEVED: f64 = 0.3;
 pub struct LargeModes {
     /// Modes that it takes.
     pub taken: Vec<usize>,
-    /// Modes that it would take if there could be more than [`MOST_LARGE`].
+    /// Modes that it would take if there could be more than [`MAX_LARGE`].
     pub left_out: Vec<usize>,
 }
 
@@ -75,7 +75,7 @@ pub(crate) fn large_modes(modes: &[Worth], keep: usize, tolerance: f64) -> Large
     let mut wanted: Vec<usize> = (0..modes.len().min(keep)).filter(|k| influence(k) >= tolerance).collect();
     // The sort is stable: of equals, the lower modes first.
     wanted.sort_by(|a, b| influence(b).total_cmp(&influence(a)));
-    let mut left_out = wanted.split_off(wanted.len().min(MOST_LARGE));
+    let mut left_out = wanted.split_off(wanted.len().min(MAX_LARGE));
     wanted.sort_unstable();
     left_out.sort_unstable();
     LargeModes { taken: wanted, left_out }
@@ -112,7 +112,7 @@ pub(crate) fn large_deflection(modes: &[Worth], large: &LargeModes, deflection: 
     }
     if !large.left_out.is_empty() {
         why += &format!(
-            " Modes {} would be large, too, but {MOST_LARGE} are the most that can be.",
+            " Modes {} would be large, too, but {MAX_LARGE} are the most that can be.",
             numbers(&large.left_out)
         );
     }

@@ -55,7 +55,7 @@ impl Advice {
         strain::large_modes(&self.modes, keep, self.tolerance)
     }
 
-    /// Why the model is known to be wrong by what the loads do to it, if it is.
+    /// Error of the model that the loads make known, if there is one.
     pub fn refusal(&self) -> Option<Refusal> {
         deflected(self.certain_deflection)
     }

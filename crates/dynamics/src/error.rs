@@ -1,4 +1,4 @@
-//! Why a motion cannot start, or cannot go on.
+//! Errors of a motion that cannot start, or cannot go on.
 
 /// A motion that cannot start.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -49,7 +49,7 @@ pub enum SetupError {
         previous: f64,
     },
     /// A text that is not an expression in t.
-    #[error("the expression \"{text}\" at character {position}: {problem}; {cure}")]
+    #[error("the expression \"{text}\" at character {position}: {problem}; {help}")]
     Expression {
         /// The expression.
         text: Box<str>,
@@ -58,7 +58,7 @@ pub enum SetupError {
         /// The fault.
         problem: Box<str>,
         /// Help: text to write there.
-        cure: Box<str>,
+        help: Box<str>,
     },
     /// An expression that is too long.
     #[error(
@@ -82,7 +82,7 @@ pub enum SetupError {
     },
     /// A formula that changes within the shortest steps that are tried.
     #[error(
-        "the expression \"{text}\" changes too fast: even steps of {shortest:.3e}, a thousandth of {step:e}, do not see it as it is; write it as a sine or a sweep, name the times between which it changes so fast as corners, or take a smaller step"
+        "the expression \"{text}\" changes too fast: even steps of {shortest:.3e}, a thousandth of {step:e}, do not see it as it is; write it as a sine or a sweep, name the times between which it changes so fast as discontinuities, or take a smaller step"
     )]
     FormulaTooFast {
         /// The expression.

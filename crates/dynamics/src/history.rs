@@ -112,7 +112,7 @@ impl<T, E> History<T, E> {
 impl History {
     /// The factor at a time, by the branch that holds at `branch_time`.
     ///
-    /// Between two corners a history follows one smooth law. A step lies between corners and its stages at both of its
+    /// Between two discontinuities a history follows one smooth law. A step lies between discontinuities and its stages at both of its
     /// ends: with `branch_time` its middle, both see the law of the step, and not what is left or right of a jump there.
     /// Allocates nothing. An expression may give NaN or infinity; [`Self::check_over`] finds that beforehand.
     pub fn at(&self, time: f64, branch_time: f64) -> f64 {
@@ -191,7 +191,7 @@ impl History {
     /// Times at which the factor or one of its rates jumps, rising. A step must not reach across one.
     ///
     /// An expression has those that were named with it.
-    pub fn corners(&self) -> Vec<f64> {
+    pub fn discontinuities(&self) -> Vec<f64> {
         match self {
             Self::Constant => vec![],
             Self::Step { at: start } | Self::Sine { start, duration: None, .. } => vec![*start],
@@ -199,13 +199,13 @@ impl History {
             | Self::HalfSine { start, duration }
             | Self::Sine { start, duration: Some(duration), .. }
             | Self::Sweep { start, duration, .. } => vec![*start, start + duration],
-            Self::Table(table) => table.corners().to_vec(),
-            Self::Expression(expression) => expression.corners().to_vec(),
+            Self::Table(table) => table.discontinuities().to_vec(),
+            Self::Expression(expression) => expression.discontinuities().to_vec(),
             Self::Product { factors } => {
-                let mut corners: Vec<f64> = factors.iter().flat_map(Self::corners).collect();
-                corners.sort_by(f64::total_cmp);
-                corners.dedup();
-                corners
+                let mut discontinuities: Vec<f64> = factors.iter().flat_map(Self::discontinuities).collect();
+                discontinuities.sort_by(f64::total_cmp);
+                discontinuities.dedup();
+                discontinuities
             }
         }
     }
@@ -219,7 +219,7 @@ impl History {
         }
     }
 
-    /// Longest step that sees the factor as it is in a stretch of time around `branch_time` that has no corner: a sixteenth
+    /// Longest step that sees the factor as it is in a stretch of time around `branch_time` that has no discontinuity: a sixteenth
     /// of a period of what swings, so that Simpson's rule errs by 1e-5 of it. Straight lines are seen by any step; for
     /// expressions see [`FormulaSteps`](crate::history::formula_steps::FormulaSteps).
     pub(crate) fn longest_step(&self, branch_time: f64) -> f64 {

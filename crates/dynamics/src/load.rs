@@ -40,11 +40,11 @@ pub trait Load: fmt::Debug + Send + Sync + Any {
     fn apply(&self, motion: &Kinematics, applied: &mut Applied);
 
     /// Times at which the load or one of its rates jumps, rising. Steps end there.
-    fn corners(&self) -> Vec<f64> {
-        self.history().map_or_else(Vec::new, History::corners)
+    fn discontinuities(&self) -> Vec<f64> {
+        self.history().map_or_else(Vec::new, History::discontinuities)
     }
 
-    /// Longest step that sees the load as it is, in the stretch between two corners that has `branch_time` inside.
+    /// Longest step that sees the load as it is, in the stretch between two discontinuities that has `branch_time` inside.
     fn longest_step(&self, branch_time: f64) -> f64 {
         self.history().map_or(f64::INFINITY, |history| history.longest_step(branch_time))
     }

@@ -51,7 +51,7 @@ pub trait Motion: fmt::Debug + Send + Sync + Any {
     ///
     /// # Errors
     /// [`StepError`].
-    fn pass_corner(&mut self) -> Result<(), StepError> {
+    fn pass_discontinuity(&mut self) -> Result<(), StepError> {
         Ok(())
     }
 

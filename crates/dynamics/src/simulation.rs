@@ -83,7 +83,7 @@ pub struct Simulation {
     /// True if a row falls on the event or the stop that has been reached.
     row_due: bool,
     /// True if the segment ends at a discontinuity that has not been passed.
-    corner_ahead: bool,
+    discontinuity_ahead: bool,
     points: Vec<PointShapes>,
     stats: Stats,
     /// True if the iterator has failed: it gives nothing more.
@@ -145,7 +145,7 @@ struct Saved {
     #[serde(with = "postcard::fixint::le")]
     steps_since_row: u64,
     row_due: bool,
-    corner_ahead: bool,
+    discontinuity_ahead: bool,
     begun: bool,
     account: EnergyAccount,
     #[serde(with = "postcard::fixint::le")]
@@ -181,8 +181,9 @@ impl Simulation {
         let of_loads = setup.loads.iter().filter_map(|load| load.history());
         let histories: Vec<History> = of_loads.chain(&drive).cloned().collect();
         let formula_steps = FormulaSteps::new(&histories, setup.end, step)?;
-        let of_loads = setup.loads.iter().flat_map(|load| load.corners());
-        let corners = of_loads.chain(drive.iter().flat_map(History::corners)).chain(formula_steps.stops());
+        let of_loads = setup.loads.iter().flat_map(|load| load.discontinuities());
+        let discontinuities =
+            of_loads.chain(drive.iter().flat_map(History::discontinuities)).chain(formula_steps.stops());
         let looked_at = Observation::new(motion.flexible(), setup.points.len());
         let account = EnergyAccount::new(motion.energies(), energy_of_loads);
         Ok(Self {
@@ -193,7 +194,7 @@ impl Simulation {
             last_step: None,
             looked_at,
             observers: Observers::new(account),
-            plan: Plan::new(setup.end, corners, setup.rows),
+            plan: Plan::new(setup.end, discontinuities, setup.rows),
             loads: setup.loads.to_vec(),
             drive,
             formula_steps,
@@ -202,7 +203,7 @@ impl Simulation {
             end: setup.end,
             steps_since_row: 0,
             row_due: false,
-            corner_ahead: false,
+            discontinuity_ahead: false,
             points: setup.points.to_vec(),
             stats: Stats { accepted: 0, rejected: 0, evaluations: 0, shortest: f64::INFINITY, longest: 0.0 },
             failed: false,
@@ -311,7 +312,7 @@ impl Simulation {
             Walk::Equal { steps, .. } => *steps = None,
             Walk::Halved { steps, .. } => *steps = None,
         }
-        self.corner_ahead = false;
+        self.discontinuity_ahead = false;
     }
 
     /// Goes back to the first event in a step, and shows the step's end, which may be there, to the observers.
@@ -334,7 +335,7 @@ impl Simulation {
         let Some(step) = last_step.as_mut().filter(|_| !events.is_empty()) else { return Ok(None) };
         motion.observe(points, looked_at)?;
         let Some(passed) = events.first_passed(step, looked_at, points, plan.same())? else { return Ok(None) };
-        // At the end the motion is there already, and beyond the corner that may be there.
+        // At the end the motion is there already, and beyond the discontinuity that may be there.
         if !passed.at_end {
             motion.copy_state(step.probe());
             self.go_on_from_here();
@@ -404,7 +405,7 @@ impl Simulation {
             walk: self.walk.clone(),
             steps_since_row: self.steps_since_row,
             row_due: self.row_due,
-            corner_ahead: self.corner_ahead,
+            discontinuity_ahead: self.discontinuity_ahead,
             begun: self.begun,
             account: self.observers.energy,
             accepted,
@@ -420,7 +421,7 @@ impl Simulation {
     ///
     /// # Errors
     /// [`CheckpointError`] for a checkpoint of another run, with what differs: the body, the damping, a load, ... Of a load
-    /// from a closure only its name, corners and longest step are compared, and of a scheme of one's own what it checks.
+    /// from a closure only its name, discontinuities and longest step are compared, and of a scheme of one's own what it checks.
     pub fn restored(mut self, checkpoint: &[u64]) -> Result<Self, CheckpointError> {
         let (fingerprint, saved): (Fingerprint, Vec<u8>) = from_words(checkpoint)?;
         self.fingerprint.check(&fingerprint)?;
@@ -434,7 +435,7 @@ impl Simulation {
         self.plan.set_progress(&saved.plan)?;
         self.stats = Stats { accepted, rejected, shortest, longest, ..self.stats };
         (self.walk, self.observers.energy, self.steps_since_row) = (saved.walk, saved.account, steps_since_row);
-        (self.row_due, self.corner_ahead, self.begun) = (saved.row_due, saved.corner_ahead, saved.begun);
+        (self.row_due, self.discontinuity_ahead, self.begun) = (saved.row_due, saved.discontinuity_ahead, saved.begun);
         Ok(self)
     }
 
@@ -443,22 +444,22 @@ impl Simulation {
         Stats { evaluations: self.motion.evaluations(), ..self.stats }
     }
 
-    /// Goes on to the next row, event or stop, or as far as `most_steps` tries lead. Where a row falls on an event or the stop
+    /// Goes on to the next row, event or stop, or as far as `max_steps` tries lead. Where a row falls on an event or the stop
     /// time, it comes next, without a step. Allocates nothing once each length of step has
     /// occurred.
     ///
     /// # Errors
     /// [`StepError`]; the motion stays where it was before the step that failed, or at the end of the step where its energy was
     /// found wrong, or the function of an event or an observer failed. A row that is due there comes next.
-    pub fn advance(&mut self, most_steps: u64) -> Result<Reached, StepError> {
-        self.advance_watched(most_steps, |_| ())
+    pub fn advance(&mut self, max_steps: u64) -> Result<Reached, StepError> {
+        self.advance_watched(max_steps, |_| ())
     }
 
     /// As [`Self::advance`]; `watch` sees the motion once for each step that is taken, rows or not.
     ///
     /// # Errors
     /// As [`Self::advance`].
-    pub fn advance_watched(&mut self, most_steps: u64, mut watch: impl FnMut(&Moment)) -> Result<Reached, StepError> {
+    pub fn advance_watched(&mut self, max_steps: u64, mut watch: impl FnMut(&Moment)) -> Result<Reached, StepError> {
         self.begun = true;
         if std::mem::take(&mut self.row_due) {
             return Ok(Reached::Row);
@@ -467,7 +468,7 @@ impl Simulation {
             self.motion.observe(&self.points, &mut self.looked_at)?;
             self.events.reset(&self.looked_at)?;
         }
-        for _ in 0..most_steps {
+        for _ in 0..max_steps {
             match self.next_step() {
                 None => return Ok(Reached::End),
                 Some((h, end, row_at_end)) => {
@@ -475,9 +476,9 @@ impl Simulation {
                         continue;
                     }
                     watch(&self.motion.moment());
-                    if self.corner_ahead && self.segment_is_done() {
-                        self.corner_ahead = false;
-                        self.motion.pass_corner()?;
+                    if self.discontinuity_ahead && self.segment_is_done() {
+                        self.discontinuity_ahead = false;
+                        self.motion.pass_discontinuity()?;
                     }
                     // Under step control, steps are tried in pairs.
                     let (count, length) = if self.is_controlled() { (2, 0.5 * h) } else { (1, h) };
@@ -526,7 +527,7 @@ impl Simulation {
                 return next;
             }
             let segment = self.plan.next_segment()?;
-            self.corner_ahead = segment.corner;
+            self.discontinuity_ahead = segment.discontinuity;
             // Step control does not see what swings within a step either, where all its stages fall on like phases.
             let branch_time = segment.start + 0.5 * segment.length;
             let of_loads = self.loads.iter().map(|load| load.longest_step(branch_time));

@@ -93,7 +93,7 @@ pub enum MeshError {
         section: &'static str,
     },
     /// Volume elements of another kind than tet10.
-    #[error("{source_name}: element {element} is {found}, not a ten-node tetrahedron; {cure}")]
+    #[error("{source_name}: element {element} is {found}, not a ten-node tetrahedron; {help}")]
     ElementType {
         /// The mesh.
         source_name: String,
@@ -102,7 +102,7 @@ pub enum MeshError {
         /// Its kind.
         found: String,
         /// Help for the user.
-        cure: &'static str,
+        help: &'static str,
     },
     /// The file has no volume elements.
     #[error(

@@ -157,7 +157,7 @@ fn elements(
         let nodes = NODES_OF_TYPE.get(kind as usize).copied();
         if (dimension == 3 && kind != TET10 || nodes.is_none()) && count > 0 {
             let element = source.size("an element's tag")?;
-            let (found, cure) = match kind {
+            let (found, help) = match kind {
                 TET4 => ("a four-node tetrahedron".to_owned(), REMESH),
                 29..=31 => (format!("a tetrahedron of order {}", kind - 26), REMESH),
                 5 | 12 | 17 | 92..=98 => (format!("a hexahedron (gmsh's element type {kind})"), TETRAHEDRA_ONLY),
@@ -165,7 +165,7 @@ fn elements(
                 7 | 14 | 19 => (format!("a pyramid (gmsh's element type {kind})"), TETRAHEDRA_ONLY),
                 _ => (format!("of gmsh's element type {kind}"), TETRAHEDRA_ONLY),
             };
-            return Err(MeshError::ElementType { source_name: parts.source.clone(), element, found, cure });
+            return Err(MeshError::ElementType { source_name: parts.source.clone(), element, found, help });
         }
         if kind != TET10 {
             let mut block =

@@ -7,7 +7,7 @@ use crate::locate::Location;
 use crate::mesh::Mesh;
 
 /// Most nodes that carry one mass. k nodes couple each to each, with 9k² entries in the pattern: 54 MB for 500.
-const MOST_CARRIERS: usize = 500;
+const MAX_CARRIERS: usize = 500;
 
 /// A mass at a point of the body, Eq. (M4) of `docs/method/modes.md`.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Deserialize, serde::Serialize)]
@@ -51,13 +51,13 @@ fn spread(mesh: &Mesh, at: [f64; 3], radius: f64) -> Result<Location, AssemblyEr
         .map(|(node, x)| (node, Vector3::from(*x) - Vector3::from(at)))
         .filter(|(_, offset)| offset.norm() <= radius)
         .collect();
-    if near.len() > MOST_CARRIERS {
+    if near.len() > MAX_CARRIERS {
         return Err(AssemblyError::SpreadTooWide {
             source_name: mesh.source().to_owned(),
             at,
             radius,
             count: near.len(),
-            limit: MOST_CARRIERS,
+            limit: MAX_CARRIERS,
         });
     }
     // Offsets in units of the farthest, so that the fit is well scaled in any unit of length, whatever the radius.

@@ -86,14 +86,14 @@ impl FigureError {
     /// With what helps against the error.
     pub(crate) fn system(path: &Path, error: &io::Error) -> Self {
         use io::ErrorKind::*;
-        let cure = match error.kind() {
+        let help = match error.kind() {
             StorageFull | QuotaExceeded | FileTooLarge => "make room there",
             PermissionDenied | ReadOnlyFilesystem => "choose a folder that you may write to",
             NotFound | NotADirectory => "make its folder, or check the name",
             IsADirectory => "this is a folder; name a file in it",
             _ => "check the file and its disk",
         };
-        Self::Write { path: path.to_path_buf(), reason: format!("{error}; {cure}") }
+        Self::Write { path: path.to_path_buf(), reason: format!("{error}; {help}") }
     }
 }
 

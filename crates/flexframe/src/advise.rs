@@ -36,7 +36,7 @@ pub struct AdviseReport {
     pub keep: usize,
     /// True if the last mode is still worth keeping, so that more may be.
     pub more_modes: bool,
-    /// Why the model is known to be wrong, if it is.
+    /// Known error of the model, if there is one.
     pub refusal: Option<String>,
 }
 

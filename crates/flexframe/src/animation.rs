@@ -18,12 +18,12 @@ use crate::run::{self, RunError, RunProgress};
 use crate::surface::Surface;
 
 /// An animation has no more frames.
-pub const MOST_FRAMES: u64 = 10_000;
+pub const MAX_FRAMES: u64 = 10_000;
 
 /// How the picture is made.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AnimationSettings {
-    /// Number of frames, first and last state among them (two to [`MOST_FRAMES`]).
+    /// Number of frames, first and last state among them (two to [`MAX_FRAMES`]).
     pub frames: u64,
     /// Factor on the deformation that is drawn.
     pub magnification: f64,
@@ -106,7 +106,7 @@ pub fn animate(
     let mut simulation =
         model.start(scene).map_err(|source| RunError::Setup { scene: scene.path.clone(), source: Box::new(source) })?;
     simulation.keep_last_step();
-    let last = settings.frames.clamp(2, MOST_FRAMES) - 1;
+    let last = settings.frames.clamp(2, MAX_FRAMES) - 1;
     let surface = Surface::of_model(&model).ok_or_else(|| AnimationError::NoMesh { scene: scene.path.clone() })?;
     let units = run::units(scene);
     let body = PictureBody { title: &scene.title, units: &units, origin: model.body.origin, surface };
@@ -143,7 +143,7 @@ pub fn animate_results(
     let [from, to] = settings.times(times.last().copied().unwrap_or_default())?;
     let slack = 1e-9 * to;
     let rows: Vec<usize> = (0..times.len()).filter(|row| (from - slack..=to + slack).contains(&times[*row])).collect();
-    let last = rows.len().min(settings.frames.clamp(2, MOST_FRAMES) as usize).saturating_sub(1);
+    let last = rows.len().min(settings.frames.clamp(2, MAX_FRAMES) as usize).saturating_sub(1);
     if last == 0 {
         let times = [times.first(), times.last()].map(|time| time.copied().unwrap_or_default());
         return Err(ExportError::NoRows { path: file.to_owned(), times }.into());
@@ -278,15 +278,15 @@ fn aliased(interval: f64, intervals: u64, fastest: f64, time_unit: &str) -> Opti
         return None;
     }
     let enough = (intervals as f64 * angle / FRAC_PI_2).ceil() + 1.0;
-    let cure = if enough <= MOST_FRAMES as f64 {
+    let help = if enough <= MAX_FRAMES as f64 {
         format!("--frames {enough:.0} shows it, or less of the time with --from and --to")
     } else {
-        let time = (MOST_FRAMES - 1) as f64 * FRAC_PI_2 / fastest;
-        format!("show {} {time_unit} or less with --from, --to and --frames {MOST_FRAMES}", quantity(time))
+        let time = (MAX_FRAMES - 1) as f64 * FRAC_PI_2 / fastest;
+        format!("show {} {time_unit} or less with --from, --to and --frames {MAX_FRAMES}", quantity(time))
     };
     Some(format!(
         "the body turns by up to {:.2} turns from frame to frame, so that its spin looks slower than it is, or backwards: \
-         {cure}",
+         {help}",
         angle / TAU
     ))
 }

@@ -28,7 +28,7 @@ pub use report::{CampbellReport, SpinEffects};
 use crate::modes::{frequency_unit, require_flexible};
 use crate::report::MeshReport;
 use branches::Branches;
-use error::MOST_SPEEDS;
+use error::MAX_SPEEDS;
 
 /// How far a diagram has come.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -58,7 +58,7 @@ pub struct Speeds {
 impl Speeds {
     fn values(&self) -> Result<Vec<f64>, CampbellError> {
         let &Self { start, end, count } = self;
-        if !(start >= 0.0 && end > start && end.is_finite() && (2..=MOST_SPEEDS).contains(&count)) {
+        if !(start >= 0.0 && end > start && end.is_finite() && (2..=MAX_SPEEDS).contains(&count)) {
             return Err(CampbellError::Speeds { start, end, count });
         }
         let last = (count - 1) as f64;

@@ -194,17 +194,17 @@ pub static COLUMNS: [Column<Row>; 40] = [
         "rad",
         "none",
         "angle that the body has turned by about the hinge since t = 0; it grows beyond a turn",
-        Number(|now: &Row| now.reaction.turned),
+        Number(|now: &Row| now.reaction.hinge_angle),
     )
     .only_with(part::HINGE),
-    Column::new("hinge/speed", "rad/time", "none", "rate of hinge/angle", Number(|now: &Row| now.reaction.turning))
+    Column::new("hinge/speed", "rad/time", "none", "rate of hinge/angle", Number(|now: &Row| now.reaction.hinge_rate))
         .only_with(part::HINGE),
     Column::new(
         "slider/position",
         "length",
         "none",
         "distance that the body has moved by along the slider since t = 0",
-        Number(|now: &Row| now.reaction.slid),
+        Number(|now: &Row| now.reaction.slider_position),
     )
     .only_with(part::SLIDER),
     Column::new(
@@ -212,7 +212,7 @@ pub static COLUMNS: [Column<Row>; 40] = [
         "length/time",
         "none",
         "rate of slider/position",
-        Number(|now: &Row| now.reaction.sliding),
+        Number(|now: &Row| now.reaction.slider_velocity),
     )
     .only_with(part::SLIDER),
     Column::new(

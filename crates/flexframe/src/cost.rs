@@ -44,7 +44,7 @@ pub use crate::run::RunFailure;
 use crate::advise::settled;
 use answer::refine;
 use case::PreparedScene;
-use ladder::{Judge, climb};
+use ladder::{Evaluator, refine_line};
 use reference::{Reference, converge};
 
 /// How far a price list has come.
@@ -109,15 +109,15 @@ pub fn price_list(
         Err((steps, failure)) => (None, Some(format!("in {steps} steps: {failure}"))),
     };
     step(1);
-    let judge = Judge { reference: &reference, paper_limit: paper_limit.as_ref(), settings };
+    let evaluator = Evaluator { reference: &reference, paper_limit: paper_limit.as_ref(), settings };
     let own = own_setting(scene);
     let mut lines = Vec::new();
     for (method, controlled) in ladders {
-        lines.push(climb(&case, &judge, method, controlled, own));
+        lines.push(refine_line(&case, &evaluator, method, controlled, own));
         step(1);
     }
     if let Some(target) = settings.target {
-        refine(&case, &judge, &mut lines, target);
+        refine(&case, &evaluator, &mut lines, target);
     }
     ladder::mark_front(&mut lines);
     let (modes, modes_failure) = match modes::compare(&settled, &with_modes, &settings) {

@@ -8,7 +8,7 @@ use std::path::Path;
 
 use serde::Serialize;
 
-/// Why a command failed, in the classes that a script tells apart. Each has an exit code of its own.
+/// Failures of commands, in the classes that a script tells apart. Each has an exit code of its own.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Kind {
@@ -76,7 +76,7 @@ pub struct Details {
     pub expected: Option<String>,
     /// Help for the user.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub cure: Option<String>,
+    pub help: Option<String>,
 }
 
 impl Details {

@@ -13,7 +13,7 @@ use crate::surface::Surface;
 /// Largest displacement drawn, as a fraction of the body's size.
 const DRAWN: f64 = 0.08;
 /// More modes than this do not fit a page.
-const MOST_PANELS: usize = 20;
+const MAX_PANELS: usize = 20;
 
 /// Mode shapes that could not be drawn.
 #[derive(Debug, thiserror::Error)]
@@ -39,7 +39,7 @@ pub fn draw(scene: &Scene, model: &Model, stem: &Path) -> Result<[PathBuf; 3], S
     let panels = modes
         .natural_frequencies()
         .iter()
-        .take(MOST_PANELS)
+        .take(MAX_PANELS)
         .enumerate()
         .map(|(k, frequency)| {
             let mut q = vec![0.0; k + 1];

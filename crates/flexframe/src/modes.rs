@@ -103,7 +103,7 @@ pub(crate) fn require_flexible<'a>(scene: &Scene, model: &'a Model) -> Result<&'
     if let Some(meshed) = model.meshed.as_ref().filter(|_| model.body.flexible() > 0) {
         return Ok(meshed);
     }
-    let (key, cure) = match scene.body {
+    let (key, help) = match scene.body {
         Body::Rigid(_) => ("body.rigid", "give the body a mesh, and `flexible` in [modes]"),
         Body::Meshed(_) | Body::Matrices(_) if scene.effects.choices[Effect::Flexibility] == Choice::Off => {
             ("effects.flexibility", "remove it, so that the body deforms")
@@ -111,7 +111,7 @@ pub(crate) fn require_flexible<'a>(scene: &Scene, model: &'a Model) -> Result<&'
         Body::Meshed(_) | Body::Matrices(_) => ("modes.flexible", "keep flexible modes"),
     };
     let found = "a body without flexible modes, which has no natural frequencies";
-    Err(scene.refuse(key, found, "one flexible mode or more", cure))
+    Err(scene.refuse(key, found, "one flexible mode or more", help))
 }
 
 /// Refuses to draw a body whose surface is not known.

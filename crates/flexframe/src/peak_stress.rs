@@ -30,7 +30,7 @@ pub struct PeakStress {
     pub left_out: f64,
     /// The largest one then, anywhere in the body.
     #[serde(serialize_with = "json::number")]
-    pub most_left_out: f64,
+    pub max_left_out: f64,
     /// The error of the mesh, in the norm of the energy of the whole body, relative to the stress then; not known with large
     /// deflection.
     #[serde(serialize_with = "json::optional")]
@@ -57,7 +57,7 @@ impl Largest {
     /// With its place and what the mesh makes of it.
     pub(crate) fn report(&self, scene: &Scene, model: &Model) -> Option<PeakStress> {
         let meshed = model.meshed.as_ref()?;
-        let StressPeak { von_mises, node, left_out, most_left_out } = self.peak;
+        let StressPeak { von_mises, node, left_out, max_left_out } = self.peak;
         let mesh = &meshed.mesh;
         Some(PeakStress {
             von_mises,
@@ -66,7 +66,7 @@ impl Largest {
             at: mesh.positions()[node as usize],
             groups: mesh.groups_of_node(node).into_iter().map(str::to_owned).collect(),
             left_out,
-            most_left_out,
+            max_left_out,
             mesh_error: if model.physics.large_deflection.is_some() { None } else { self.mesh_error(scene, meshed) },
         })
     }
@@ -97,7 +97,7 @@ impl PeakStress {
             quantity(self.von_mises),
             quantity(self.time),
             self.left_out,
-            self.most_left_out
+            self.max_left_out
         )
     }
 }
@@ -115,7 +115,7 @@ mod tests {
             at: [0.0, 5.0, 10.0],
             groups: vec!["root".to_owned()],
             left_out: 0.125,
-            most_left_out: 0.25,
+            max_left_out: 0.25,
             mesh_error: Some(0.03),
         };
         let words = stress.in_words(&UnitLabels { length: "mm", mass: "Mg", time: "s" });

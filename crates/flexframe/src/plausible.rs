@@ -136,9 +136,9 @@ fn of_sound(material: &Material, of: &str, labels: &UnitLabels<'_>) -> Option<St
             format!("if {density:?} is in {name}, write density = {:.4e}", density * unit / kilograms)
         })
     };
-    let cure = modulus.or_else(other).unwrap_or_else(|| "check both against the units of the scene".to_owned());
+    let help = modulus.or_else(other).unwrap_or_else(|| "check both against the units of the scene".to_owned());
     Some(format!(
-        "body: Young's modulus and density{of} give a speed of sound √(E/ρ) of {speed:.3e} m/s, where {} from {least} to {most:e}: {cure} \
+        "body: Young's modulus and density{of} give a speed of sound √(E/ρ) of {speed:.3e} m/s, where {} from {least} to {most:e}: {help} \
          (steel: young_modulus = {:.4e}, density = {:.4e})",
         if rho > DENSE { "materials of this density have one" } else { "materials have one" },
         2.1e11 / pascals,

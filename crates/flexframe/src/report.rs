@@ -132,7 +132,7 @@ pub struct EngineReport {
 #[derive(Debug, Clone, Serialize)]
 pub struct MatricesReport {
     /// Degrees of freedom of a node: 3, or 6 with its rotations.
-    pub freedoms: usize,
+    pub dofs: usize,
     /// Largest difference of the triangles, relative to the diagonal; none where the files have one triangle.
     pub asymmetry: Option<f64>,
     /// How much K resists a rigid motion, relative to its diagonal, at the most of the six.
@@ -174,7 +174,7 @@ impl MeshReport {
             file: mesh.source().to_owned(),
             nodes: mesh.positions().len(),
             elements: mesh.elements().len(),
-            unknowns: checks.map_or(3, |checks| checks.freedoms) * mesh.positions().len(),
+            unknowns: checks.map_or(3, |checks| checks.dofs) * mesh.positions().len(),
             matrices: checks.map(MatricesReport::from),
             size: mesh.size(),
             matrix_bytes: *matrix_bytes,
@@ -206,8 +206,8 @@ impl fmt::Display for EngineReport {
 
 impl From<MatrixChecks> for MatricesReport {
     fn from(checks: MatrixChecks) -> Self {
-        let MatrixChecks { freedoms, asymmetry, rigid_stiffness, is_scalar_mass, left_out } = checks;
-        Self { freedoms, asymmetry, rigid_stiffness, is_scalar_mass, left_out }
+        let MatrixChecks { dofs, asymmetry, rigid_stiffness, is_scalar_mass, left_out } = checks;
+        Self { dofs, asymmetry, rigid_stiffness, is_scalar_mass, left_out }
     }
 }
 
@@ -223,7 +223,7 @@ impl MeshReport {
 
 impl fmt::Display for MatricesReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} degrees of freedom a node, ", self.freedoms)?;
+        write!(f, "{} degrees of freedom a node, ", self.dofs)?;
         match self.asymmetry {
             Some(asymmetry) => write!(f, "symmetric to {asymmetry:.0e}, ")?,
             None => write!(f, "symmetric as written, ")?,

@@ -3,7 +3,7 @@
 mod balances;
 mod bodies;
 mod error;
-mod foretold;
+mod estimate;
 mod recorder;
 mod report;
 mod settings;
@@ -21,7 +21,7 @@ pub use balances::Balances;
 pub(crate) use balances::Monitor;
 pub use bodies::BodyRuns;
 pub use error::{RunError, RunFailure};
-pub use foretold::Foretold;
+pub use estimate::Estimate;
 pub use report::RunReport;
 pub use settings::{RunProgress, RunSettings};
 pub use watch::{Watch, Watched};
@@ -34,7 +34,7 @@ use crate::report::BodyReport;
 pub use crate::results_path::results_path;
 use crate::row::Row;
 use crate::scene_file;
-use foretold::LARGE;
+use estimate::LARGE;
 use recorder::Recorder;
 
 /// Runs a scene and writes its results to `<folder>/<name of the scene file>.h5`; until the end they are in an
@@ -99,20 +99,20 @@ pub fn run_model(
     let mut simulation = start(scene, model)?;
     let checkpoint = simulation.checkpoint().map_err(|source| RunError::Restore { part: path.clone(), source })?.len();
     let metadata = metadata_of_file(scene, model);
-    let foretold = Foretold::of_rows(scene, &metadata);
-    if foretold.bytes > LARGE && !settings.large {
-        return Err(RunError::Large { scene: scene.path.clone(), foretold });
+    let estimate = Estimate::of_rows(scene, &metadata);
+    if estimate.bytes > LARGE && !settings.large {
+        return Err(RunError::Large { scene: scene.path.clone(), estimate });
     }
-    let foretold = foretold.with_seconds(&simulation, &settings.stop);
-    progress(RunProgress::Foretold(foretold));
-    let rows = usize::try_from(foretold.rows).unwrap_or(usize::MAX);
+    let estimate = estimate.with_seconds(&simulation, &settings.stop);
+    progress(RunProgress::Estimate(estimate));
+    let rows = usize::try_from(estimate.rows).unwrap_or(usize::MAX);
     let shapes = if settings.rows_alone { None } else { stored_shapes(scene, model).map_err(BuildError::from)? };
     let expected = Expected { rows, checkpoint, overwrite: settings.overwrite };
     let writer = Writer::create(&path, &metadata, shapes.as_ref(), &COLUMNS, expected)?;
     drop(shapes);
     progress(RunProgress::Motion(0.0));
     let initial = model.initial(scene);
-    let mut recorder = Recorder::new(scene, model, &initial, writer, foretold)?;
+    let mut recorder = Recorder::new(scene, model, &initial, writer, estimate)?;
     recorder.begin(&mut simulation)?;
     recorder.follow(simulation, started, settings, progress)
 }
@@ -132,7 +132,7 @@ pub fn resume(
     let part = writer.unfinished().to_path_buf();
     let scene = scene_of(&results, &settings.cache)?;
     outputs_of_scene(&scene, settings.overwrite).spare(writer.path())?;
-    let foretold = Foretold::of_rows(&scene, &results.metadata);
+    let estimate = Estimate::of_rows(&scene, &results.metadata);
     let model = Model::build(&scene, |p| progress(RunProgress::Build(p)))?;
     progress(RunProgress::Built);
     let started = Instant::now();
@@ -152,12 +152,12 @@ pub fn resume(
         Some(checkpoint) => {
             simulation =
                 simulation.restored(&checkpoint).map_err(|source| RunError::Restore { part: part.clone(), source })?;
-            let mut recorder = Recorder::new(&scene, &model, &initial, writer, foretold)?;
+            let mut recorder = Recorder::new(&scene, &model, &initial, writer, estimate)?;
             recorder.take_up(&mut simulation, &results)?;
             recorder.follow(simulation, started, settings, progress)?
         }
         None => {
-            let mut recorder = Recorder::new(&scene, &model, &initial, writer, foretold)?;
+            let mut recorder = Recorder::new(&scene, &model, &initial, writer, estimate)?;
             recorder.begin(&mut simulation)?;
             recorder.follow(simulation, started, settings, progress)?
         }

@@ -89,7 +89,7 @@ pub struct SweepReport {
     pub kept: usize,
     /// Rows that were computed before from files that have changed since, and were open again.
     pub stale: usize,
-    /// Why rows have no results, by their number from 0.
+    /// Errors of the rows without results, by their number from 0.
     pub failures: BTreeMap<usize, String>,
     /// Warnings of rows that are done, by their number.
     pub warnings: BTreeMap<usize, Vec<String>>,
@@ -287,7 +287,7 @@ fn finish(table: &mut Table, plan: &Plan, output: &Path, csv: Option<&Path>) -> 
     table.write(output, plan, true)
 }
 
-/// Why rows fail whose files did not stay what they were.
+/// Error of a row whose files changed.
 const CHANGED: &str = "a file of the body was changed while the sweep ran\n = run it again";
 
 /// Files that a sweep may not write over: all that it reads.

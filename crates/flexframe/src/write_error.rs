@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 /// A file or folder that the system does not let be written.
 #[derive(Debug, thiserror::Error)]
-#[error("{}: cannot be written: {source}\n = {}", path.display(), cure_of_writing(source))]
+#[error("{}: cannot be written: {source}\n = {}", path.display(), help_of_writing(source))]
 pub struct WriteError {
     /// The file.
     pub path: PathBuf,
@@ -21,7 +21,7 @@ impl WriteError {
 }
 
 /// Help where the system does not let a file or a folder be written.
-pub(crate) fn cure_of_writing(source: &io::Error) -> &'static str {
+pub(crate) fn help_of_writing(source: &io::Error) -> &'static str {
     match source.kind() {
         io::ErrorKind::NotFound => "make the folder that it is to be in, or correct its path",
         io::ErrorKind::AlreadyExists | io::ErrorKind::NotADirectory => {

@@ -89,7 +89,7 @@ pub enum Error {
     Lost,
 }
 
-/// Why a motion cannot go on.
+/// Errors of a motion that cannot go on.
 #[derive(Debug, thiserror::Error)]
 pub enum Failure {
     #[error(transparent)]

@@ -1,4 +1,4 @@
-//! Why a program gave no result.
+//! Errors of a program that gave no result.
 
 use std::io;
 use std::time::Duration;

@@ -28,7 +28,7 @@ pub struct PaperSteps {
     /// Power of the loads and the damping at the state.
     power: Work,
     /// True if a load may jump where the state is, so that its accelerations are to be found again.
-    at_corner: bool,
+    at_discontinuity: bool,
     scratch: Scratch,
 }
 
@@ -92,7 +92,7 @@ impl PaperScheme {
             rotation: ModalRotation::new(body),
             kinematics,
             power: Work::default(),
-            at_corner: true,
+            at_discontinuity: true,
             scratch: Scratch {
                 stage: increment(),
                 total: increment(),
@@ -111,9 +111,9 @@ impl FrameSteps for PaperSteps {
     fn step(&mut self, body: &mut FrameMotion, h: f64, end: f64) -> Result<(), StepError> {
         let time = body.state.time;
         let branch_time = time + 0.5 * h;
-        if self.at_corner {
+        if self.at_discontinuity {
             self.complete_state(body, branch_time);
-            self.at_corner = false;
+            self.at_discontinuity = false;
         }
         let Self { rotation, kinematics, scratch, .. } = self;
         let FrameMotion { model, motion, state, work } = body;
@@ -205,16 +205,16 @@ impl FrameSteps for PaperSteps {
         state.alpha_body = kinematics.points.angular_acceleration(&v_p, &v_q, &a_p, &a_q, &state.omega_body);
     }
 
-    fn pass_corner(&mut self) {
-        self.at_corner = true;
+    fn pass_discontinuity(&mut self) {
+        self.at_discontinuity = true;
     }
 
     fn carried(&self) -> Carried {
-        Carried { power: self.power, at_corner: self.at_corner }
+        Carried { power: self.power, at_discontinuity: self.at_discontinuity }
     }
 
     fn carry_on(&mut self, carried: Carried) {
-        (self.power, self.at_corner) = (carried.power, carried.at_corner);
+        (self.power, self.at_discontinuity) = (carried.power, carried.at_discontinuity);
     }
 }
 

@@ -45,7 +45,7 @@ pub trait FrameSteps: fmt::Debug + Clone + Send + Sync + 'static {
     fn complete_state(&mut self, body: &mut FrameMotion, branch_time: f64);
 
     /// A load may jump at the time of the state.
-    fn pass_corner(&mut self) {}
+    fn pass_discontinuity(&mut self) {}
 
     /// Quantities that it carries from step to step.
     fn carried(&self) -> Carried {
@@ -62,7 +62,7 @@ pub struct Carried {
     /// Power of the loads at the state.
     pub(crate) power: Work,
     /// True if a load may jump at the state.
-    pub(crate) at_corner: bool,
+    pub(crate) at_discontinuity: bool,
 }
 
 /// State in a checkpoint.
@@ -126,13 +126,13 @@ impl<S: FrameSteps> Motion for TravellingFrame<S> {
         Ok(())
     }
 
-    fn pass_corner(&mut self) -> Result<(), StepError> {
-        self.steps.pass_corner();
+    fn pass_discontinuity(&mut self) -> Result<(), StepError> {
+        self.steps.pass_discontinuity();
         Ok(())
     }
 
     fn loads_have_changed(&mut self) {
-        self.steps.pass_corner();
+        self.steps.pass_discontinuity();
     }
 
     fn observe(&mut self, points: &[PointShapes], out: &mut Observation) -> Result<(), StepError> {
@@ -148,7 +148,7 @@ impl<S: FrameSteps> Motion for TravellingFrame<S> {
     fn set_state(&mut self, state: &MotionState) -> Result<(), SetupError> {
         self.body.motion.set_state(state, &mut self.body.state)?;
         self.steps.complete_state(&mut self.body, state.time);
-        self.steps.pass_corner();
+        self.steps.pass_discontinuity();
         self.attitude_account = AttitudeAccount::default();
         Ok(())
     }

@@ -24,8 +24,8 @@ pub(crate) fn read_dofs(source: &Source<'_>) -> Result<Vec<Index>, MatrixError> 
             Some((node, dof @ 1..=6)) => rows.push(Index::Of { node, dof }),
             Some((_, _)) => {
                 let expected = "a degree of freedom from 1 to 6: translations, then rotations";
-                let cure = "write the matrices of a mechanical model, without temperatures";
-                return Err(source.refuse(Some(line), shown(text), expected, cure));
+                let help = "write the matrices of a mechanical model, without temperatures";
+                return Err(source.refuse(Some(line), shown(text), expected, help));
             }
             None => return Err(source.refuse(Some(line), shown(text), "`node.dof` or `node, dof`", CURE)),
         }
@@ -37,7 +37,7 @@ pub(crate) fn read_dofs(source: &Source<'_>) -> Result<Vec<Index>, MatrixError> 
 /// Where the rows of a matrix go.
 pub(crate) struct Order {
     /// Degrees of freedom of a node: 3 or 6.
-    pub freedoms: usize,
+    pub dofs: usize,
     /// For each node of the body, its index in the file of nodes; one may be there several times.
     pub nodes: Vec<u32>,
     /// For each row of the file, that of the body.
@@ -48,9 +48,9 @@ pub(crate) struct Order {
 
 impl Order {
     /// The order of rows that follow the nodes.
-    pub fn of_nodes(count: usize, freedoms: usize) -> Self {
+    pub fn of_nodes(count: usize, dofs: usize) -> Self {
         let nodes = (0..count as u32).collect();
-        Self { freedoms, nodes, to: (0..count * freedoms).collect(), is_expanded: false }
+        Self { dofs, nodes, to: (0..count * dofs).collect(), is_expanded: false }
     }
 
     /// The order of rows that say their nodes. `source` is the file that says it.
@@ -59,7 +59,7 @@ impl Order {
             Index::Of { node, dof } => (*node, *dof),
             Index::Number(number) => (u64::from(*number), 0),
         });
-        let freedoms = if labelled.clone().any(|(_, dof)| dof > 3) { 6 } else { 3 };
+        let dofs = if labelled.clone().any(|(_, dof)| dof > 3) { 6 } else { 3 };
         // The last place of each node, and a bit for each of its degrees of freedom that has been met.
         let mut order: Vec<u32> = Vec::new();
         let mut is_expanded = false;
@@ -67,10 +67,10 @@ impl Order {
         let mut to = vec![0; rows.len()];
         for (row, (label, dof)) in labelled.enumerate() {
             let Some(node) = nodes.index_of(label) else {
-                let cure = "add the node to the file of nodes; a label that the model has not stands for an internal node or a \
+                let help = "add the node to the file of nodes; a label that the model has not stands for an internal node or a \
                             multiplier: leave out of the model what makes it (hybrid elements, connectors, rigid bodies)";
                 let found = format!("a degree of freedom of node {label}");
-                return Err(source.refuse(None, found, "nodes that the file of nodes has", cure));
+                return Err(source.refuse(None, found, "nodes that the file of nodes has", help));
             };
             let at = node as usize;
             let bit = 1_u8 << (dof - 1);
@@ -80,23 +80,23 @@ impl Order {
                     *place
                 }
                 slot => {
-                    let is_whole = slot.is_none_or(|(_, seen)| seen.count_ones() as usize == freedoms);
+                    let is_whole = slot.is_none_or(|(_, seen)| seen.count_ones() as usize == dofs);
                     is_expanded |= slot.is_some();
                     if !is_whole {
-                        return Err(incomplete(source, label, slot.map_or(0, |(_, seen)| seen), freedoms));
+                        return Err(incomplete(source, label, slot.map_or(0, |(_, seen)| seen), dofs));
                     }
                     order.push(node);
                     *slot = Some((order.len() - 1, bit));
                     order.len() - 1
                 }
             };
-            to[row] = freedoms * place + usize::from(dof - 1);
+            to[row] = dofs * place + usize::from(dof - 1);
         }
         for (node, slot) in open.iter().enumerate() {
             if let Some((_, seen)) = slot
-                && seen.count_ones() as usize != freedoms
+                && seen.count_ones() as usize != dofs
             {
-                return Err(incomplete(source, nodes.labels[node], *seen, freedoms));
+                return Err(incomplete(source, nodes.labels[node], *seen, dofs));
             }
         }
         if !is_expanded {
@@ -105,19 +105,19 @@ impl Order {
             sorted.sort_unstable_by_key(|place| order[*place]);
             let mut moved = vec![0; order.len()];
             sorted.iter().enumerate().for_each(|(new, old)| moved[*old] = new);
-            to.iter_mut().for_each(|row| *row = freedoms * moved[*row / freedoms] + *row % freedoms);
+            to.iter_mut().for_each(|row| *row = dofs * moved[*row / dofs] + *row % dofs);
             order.sort_unstable();
         }
-        Ok(Self { freedoms, nodes: order, to, is_expanded })
+        Ok(Self { dofs, nodes: order, to, is_expanded })
     }
 }
 
-fn incomplete(source: &Source<'_>, label: u64, seen: u8, freedoms: usize) -> MatrixError {
+fn incomplete(source: &Source<'_>, label: u64, seen: u8, dofs: usize) -> MatrixError {
     let listed: Vec<String> = (0..6).filter(|bit| seen & (1 << bit) != 0).map(|bit| (bit + 1).to_string()).collect();
     source.refuse(
         None,
         format!("node {label} with the degree(s) of freedom {} only", listed.join(", ")),
-        format!("{freedoms} for each node: nothing held, nothing eliminated"),
+        format!("{dofs} for each node: nothing held, nothing eliminated"),
         "write the matrices without *BOUNDARY, *EQUATION, *MPC and rigid bodies, and hold the body by [[constraints]] in the scene; \
          solids (3 a node) and beams or shells (6) in one model are not read",
     )

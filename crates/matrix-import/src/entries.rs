@@ -123,7 +123,7 @@ fn first_line(source: &Source<'_>, line: usize, text: &str) -> Result<First, Mat
     if text.starts_with("**") {
         return Ok(First::Comment);
     }
-    let refuse = |cure: &str| Err(source.refuse(Some(line), shown(text), FORMS, cure));
+    let refuse = |help: &str| Err(source.refuse(Some(line), shown(text), FORMS, help));
     if text.starts_with('%') {
         let words: Vec<String> = text.split_whitespace().map(str::to_lowercase).collect();
         let words: Vec<&str> = words.iter().map(String::as_str).collect();
@@ -168,14 +168,14 @@ fn size_line(source: &Source<'_>, line: usize, text: &str) -> Result<(usize, usi
 
 fn entry(source: &Source<'_>, form: Form, line: usize, text: &str) -> Result<Written, MatrixError> {
     let fields = fields(text);
-    let refuse = |expected: &str, cure: &str| source.refuse(Some(line), shown(text), expected, cure);
+    let refuse = |expected: &str, help: &str| source.refuse(Some(line), shown(text), expected, help);
     let value = |text: &str| {
         let value = number(text).ok_or_else(|| refuse("an entry whose last field is a number", EXPORT))?;
         if value.is_finite() {
             return Ok(value);
         }
-        let cure = "find the element that gives it: one without volume or thickness, or a material without a value";
-        Err(refuse("a finite number", cure))
+        let help = "find the element that gives it: one without volume or thickness, or a material without a value";
+        Err(refuse("a finite number", help))
     };
     let (row, column, value) = match (form, &fields[..]) {
         (Form::MatrixMarket { .. } | Form::Triplets, [row, column, last]) => {
@@ -203,21 +203,21 @@ fn entry(source: &Source<'_>, form: Form, line: usize, text: &str) -> Result<Wri
     if let Form::MatrixMarket { symmetric, size } = form {
         let outside = |index: Index| matches!(index, Index::Number(number) if number as usize > size);
         if outside(row) || outside(column) {
-            let cure = "count rows and columns from 1, or correct the line with the size";
-            return Err(refuse(&format!("a row and a column up to {size}, as the line with the size says"), cure));
+            let help = "count rows and columns from 1, or correct the line with the size";
+            return Err(refuse(&format!("a row and a column up to {size}, as the line with the size says"), help));
         }
         if let (true, Index::Number(i), Index::Number(j)) = (symmetric, row, column)
             && i < j
         {
-            let cure = "write the lower triangle, or `general` in the first line and both triangles";
-            return Err(refuse("an entry on or below the diagonal of a `symmetric` matrix", cure));
+            let help = "write the lower triangle, or `general` in the first line and both triangles";
+            return Err(refuse("an entry on or below the diagonal of a `symmetric` matrix", help));
         }
     }
     if source.which == Which::Stiffness && row == column && value >= HELD {
-        let cure = "remove *BOUNDARY from the model that writes the matrices, and hold the body by [[constraints]] in the scene";
+        let help = "remove *BOUNDARY from the model that writes the matrices, and hold the body by [[constraints]] in the scene";
         return Err(refuse(
             "the stiffness of a body that nothing holds: Abaqus writes 1e36 where *BOUNDARY holds it",
-            cure,
+            help,
         ));
     }
     Ok(Written { line, row, column, value })

@@ -1,4 +1,4 @@
-//! Why matrices cannot be read.
+//! Errors of matrices that cannot be read.
 
 use std::path::{Path, PathBuf};
 
@@ -34,7 +34,7 @@ impl Which {
 #[non_exhaustive]
 pub enum MatrixError {
     /// A file is not what it should be.
-    #[error("{}: found {found}, expected {expected}\n = {cure}", place(path, *line))]
+    #[error("{}: found {found}, expected {expected}\n = {help}", place(path, *line))]
     Refused {
         /// Which file.
         which: Which,
@@ -47,7 +47,7 @@ pub enum MatrixError {
         /// The value expected.
         expected: String,
         /// Help for the user.
-        cure: String,
+        help: String,
     },
     /// There is not enough memory.
     #[error(transparent)]

@@ -44,9 +44,9 @@ pub(crate) fn positions(
     // Measured from their mean in units of their size.
     let mean = used.iter().map(|node| Vector3::from(positions[*node])).sum::<Vector3<f64>>() / used.len() as f64;
     let size = used.iter().map(|node| (Vector3::from(positions[*node]) - mean).norm()).fold(0.0, f64::max);
-    let refuse = |found: String, cure: &str| {
+    let refuse = |found: String, help: &str| {
         let expected = "the six rigid motions of a shell whose nodes these are";
-        source.refuse(None, found, expected, cure)
+        source.refuse(None, found, expected, help)
     };
     let at = |node: usize| (Vector3::from(positions[node]) - mean) / size;
     let second: Matrix3<f64> = used.iter().map(|node| at(*node) * at(*node).transpose()).sum();

@@ -47,8 +47,8 @@ pub struct BodyMatrices {
     /// Indices of nodes by the names of their groups.
     pub groups: BTreeMap<String, Vec<u32>>,
     /// Degrees of freedom of a node: 3 translations, or 3 translations and 3 rotations.
-    pub freedoms: usize,
-    /// K (N×N, N = 3n or 6n), both triangles: degree of freedom `freedoms·node + dof`, dof from 0.
+    pub dofs: usize,
+    /// K (N×N, N = 3n or 6n), both triangles: degree of freedom `dofs·node + dof`, dof from 0.
     pub stiffness: SparseColMat<usize, f64>,
     /// M, likewise.
     pub mass: SparseColMat<usize, f64>,
@@ -126,7 +126,7 @@ impl MatrixFiles {
         let given: Vec<[f64; 3]> = order.nodes.iter().map(|node| nodes.positions[*node as usize]).collect();
         let mut notes = Vec::new();
         let (labels, positions) = if order.is_expanded {
-            if order.freedoms == 6 {
+            if order.dofs == 6 {
                 return Err(stiffness_source.refuse(
                     None,
                     "a degree of freedom a second time",
@@ -162,8 +162,8 @@ impl MatrixFiles {
         let groups = nodes.groups.iter().map(|(name, group)| (name.clone(), members(group))).collect();
         let sources = [&mass_source, &stiffness_source, &nodes_source].into_iter().chain(&dofs_source);
         let hash = sources.fold(Digest::new(), |digest, source| source.identify(digest)).finish();
-        let freedoms = order.freedoms;
-        Ok(BodyMatrices { labels, positions, groups, freedoms, stiffness, mass, asymmetry, hash, notes })
+        let dofs = order.dofs;
+        Ok(BodyMatrices { labels, positions, groups, dofs, stiffness, mass, asymmetry, hash, notes })
     }
 
     /// Rows in the order of the nodes, 3 or 6 each.
@@ -179,9 +179,9 @@ impl MatrixFiles {
             ));
         }
         let size = mass.size.max(stiffness.size);
-        for freedoms in [3, 6] {
-            if size == freedoms * count {
-                return Ok(Order::of_nodes(count, freedoms));
+        for dofs in [3, 6] {
+            if size == dofs * count {
+                return Ok(Order::of_nodes(count, dofs));
             }
         }
         let (source, _) = if mass.size == size { matrices[0] } else { matrices[1] };
@@ -189,7 +189,7 @@ impl MatrixFiles {
             path.extension()
                 .is_some_and(|ending| ending.eq_ignore_ascii_case("mas") || ending.eq_ignore_ascii_case("sti"))
         });
-        let cure = if is_calculix {
+        let help = if is_calculix {
             "name the .dof file that CalculiX writes beside the matrices: `dofs = \"JOB.dof\"`"
         } else {
             "give the nodes of the matrices in their order, or say which row is which by `dofs`: a file with a line `node, dof` for each \
@@ -199,7 +199,7 @@ impl MatrixFiles {
             None,
             format!("{size} rows for {count} nodes"),
             format!("{} or {}: three degrees of freedom a node, or six with its rotations", 3 * count, 6 * count),
-            cure,
+            help,
         ))
     }
 }

@@ -37,8 +37,8 @@ impl Symmetric {
         let form = each_entry(source, |_, Written { line, row, column, value }| {
             if let Some(number) = [row, column].into_iter().find_map(|index| beyond(index, most)) {
                 let expected = format!("rows and columns up to {most}: six for each node, or as many as `dofs` lists");
-                let cure = "give all nodes of the matrices, and the list of rows that was written with them";
-                return Err(source.refuse(Some(line), format!("row or column {number}"), expected, cure));
+                let help = "give all nodes of the matrices, and the list of rows that was written with them";
+                return Err(source.refuse(Some(line), format!("row or column {number}"), expected, help));
             }
             let mut place = |index| match index {
                 Index::Number(number) => {

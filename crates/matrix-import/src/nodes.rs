@@ -202,8 +202,8 @@ fn members(
     generate: bool,
 ) -> Result<Vec<u32>, MatrixError> {
     let refuse = || {
-        let cure = "list labels of nodes, or names of sets that come before; remove the set if nothing needs it";
-        source.refuse(Some(line), shown(&listed.join(", ")), "nodes and sets of this file", cure)
+        let help = "list labels of nodes, or names of sets that come before; remove the set if nothing needs it";
+        source.refuse(Some(line), shown(&listed.join(", ")), "nodes and sets of this file", help)
     };
     if generate {
         let numbers: Option<Vec<u64>> = listed.iter().map(|text| text.parse().ok()).collect();

@@ -40,10 +40,10 @@ impl<'a> Source<'a> {
         line: Option<usize>,
         found: impl Into<String>,
         expected: impl Into<String>,
-        cure: impl Into<String>,
+        help: impl Into<String>,
     ) -> MatrixError {
         let (which, path) = (self.which, self.path.to_owned());
-        MatrixError::Refused { which, path, line, found: found.into(), expected: expected.into(), cure: cure.into() }
+        MatrixError::Refused { which, path, line, found: found.into(), expected: expected.into(), help: help.into() }
     }
 
     /// Bytes of the file.
@@ -86,8 +86,8 @@ impl<'a> Source<'a> {
                 ));
             }
             let Ok(line) = std::str::from_utf8(&bytes) else {
-                let cure = "export it as text; a binary file (.sim, .npz, .mat) is not read";
-                return Err(self.refuse(Some(number), "bytes that are no text", "a text with numbers", cure));
+                let help = "export it as text; a binary file (.sim, .npz, .mat) is not read";
+                return Err(self.refuse(Some(number), "bytes that are no text", "a text with numbers", help));
             };
             let line = line.trim();
             if !line.is_empty() && read(number, line)? == Next::Stop {

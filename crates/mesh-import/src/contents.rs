@@ -11,7 +11,7 @@ use crate::error::ImportError;
 use crate::format::{HEAD, ending, format_of};
 
 /// Files that one may include, together.
-pub(crate) const MOST_FILES: usize = 1000;
+pub(crate) const MAX_FILES: usize = 1000;
 
 /// A file as it was read.
 #[derive(Debug)]
@@ -80,7 +80,7 @@ pub(crate) fn opened(path: &Path) -> Result<(Vec<u8>, File), ImportError> {
         Some(format) => Err(ImportError::Refused {
             source_name,
             found: format!("found a file that does not begin as .{ending} files do, expected {}", format.expected),
-            cure: "check the file, and the ending of its name".to_owned(),
+            help: "check the file, and the ending of its name".to_owned(),
         }),
         None => Ok((head, file)),
     }

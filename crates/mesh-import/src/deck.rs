@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use foreign_program::open_ordinary;
 
-use crate::contents::{MOST_FILES, ReadFile, contents};
+use crate::contents::{MAX_FILES, ReadFile, contents};
 use crate::error::ImportError;
 
 /// The keyword of the copies, which no deck has: the program that reads them takes nothing else in.
@@ -55,10 +55,10 @@ impl DeckReader {
 
     /// Reads a file that the `line` of another includes. Returns the name of its copy.
     fn included(&mut self, of: &Path, line: usize, name: Option<String>) -> Result<String, ImportError> {
-        let refused = |found: String, cure: &str| ImportError::Refused {
+        let refused = |found: String, help: &str| ImportError::Refused {
             source_name: of.display().to_string(),
             found: format!("line {line}: {found}"),
-            cure: cure.to_owned(),
+            help: help.to_owned(),
         };
         let Some(name) = name else { return Err(refused("*INCLUDE without the name of a file".to_owned(), CURE)) };
         let path = of.parent().unwrap_or(Path::new("")).join(name);
@@ -68,8 +68,8 @@ impl DeckReader {
         if let Some(known) = self.files.iter().find(|file| file.path == path) {
             return Ok(known.name.clone());
         }
-        if self.files.len() >= MOST_FILES {
-            return Err(refused(format!("more than {MOST_FILES} files that include each other"), CURE));
+        if self.files.len() >= MAX_FILES {
+            return Err(refused(format!("more than {MAX_FILES} files that include each other"), CURE));
         }
         let cannot = |cause| refused(format!("*INCLUDE of {}, which cannot be read: {cause}", path.display()), CURE);
         let mut bytes = Vec::new();

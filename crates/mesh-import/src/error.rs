@@ -1,4 +1,4 @@
-//! Why a mesh cannot be imported.
+//! Errors of a mesh that cannot be imported.
 
 use std::io;
 
@@ -13,7 +13,7 @@ pub enum ImportError {
     #[error(transparent)]
     Mesh(#[from] MeshError),
     /// A program that reads this format is not there.
-    #[error("{source_name}: it is read through {reader}, but `{program}` cannot be started: {cause}\n = {cure}")]
+    #[error("{source_name}: it is read through {reader}, but `{program}` cannot be started: {cause}\n = {help}")]
     NoReader {
         /// The mesh file.
         source_name: String,
@@ -21,23 +21,23 @@ pub enum ImportError {
         reader: &'static str,
         /// The program.
         program: String,
-        /// Why it cannot be started.
+        /// Reason of the failed start.
         cause: io::Error,
         /// Help for the user.
-        cure: &'static str,
+        help: &'static str,
     },
     /// The mesh is not what it should be.
-    #[error("{source_name}: {found}\n = {cure}")]
+    #[error("{source_name}: {found}\n = {help}")]
     Refused {
         /// The mesh file.
         source_name: String,
         /// The fault.
         found: String,
         /// Help for the user.
-        cure: String,
+        help: String,
     },
     /// A program that reads this format has failed.
-    #[error("{source_name}: `{program}` cannot read it ({status}): {said}\n = {cure}")]
+    #[error("{source_name}: `{program}` cannot read it ({status}): {said}\n = {help}")]
     Failed {
         /// The mesh file.
         source_name: String,
@@ -48,10 +48,10 @@ pub enum ImportError {
         /// The last that it said.
         said: String,
         /// Help for the user.
-        cure: &'static str,
+        help: &'static str,
     },
     /// A program that reads this format took too much, and was ended.
-    #[error("{source_name}: `{program}` cannot read it: {cause}\n = {cure}")]
+    #[error("{source_name}: `{program}` cannot read it: {cause}\n = {help}")]
     TooMuch {
         /// The mesh file.
         source_name: String,
@@ -60,7 +60,7 @@ pub enum ImportError {
         /// The limit.
         cause: ProgramError,
         /// Help for the user.
-        cure: &'static str,
+        help: &'static str,
     },
     /// A file could not be read, or a temporary one not be written.
     #[error(

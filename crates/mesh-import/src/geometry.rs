@@ -11,7 +11,7 @@ use std::path::Path;
 
 use foreign_program::read_at_most;
 
-use crate::contents::{MOST_FILES, ReadFile, contents};
+use crate::contents::{MAX_FILES, ReadFile, contents};
 use crate::error::ImportError;
 use crate::format::ending;
 
@@ -97,8 +97,8 @@ impl GeometryReader {
     /// A file that is to be read. Returns its number, and the name of its copy.
     fn begin(&mut self, path: &Path, ending: &str) -> Result<(usize, String), ImportError> {
         let number = self.files.len();
-        if number >= MOST_FILES {
-            return Err(refused(path, None, &format!("more than {MOST_FILES} files that include each other")));
+        if number >= MAX_FILES {
+            return Err(refused(path, None, &format!("more than {MAX_FILES} files that include each other")));
         }
         let name = format!("{number}.{ending}");
         self.files.push(ReadFile { path: path.to_owned(), name: name.clone(), bytes: None });
@@ -180,7 +180,7 @@ fn refused(path: &Path, line: Option<usize>, found: &str) -> ImportError {
     ImportError::Refused {
         source_name: path.display().to_string(),
         found: format!("{at}found {found}; expected geometry alone, since a .geo file is a program"),
-        cure: CURE.to_owned(),
+        help: CURE.to_owned(),
     }
 }
 

@@ -9,7 +9,7 @@ use foreign_program::open_ordinary;
 use crate::format::ending;
 
 /// Files that are looked for at the most.
-const MOST_FILES: usize = 1000;
+const MAX_FILES: usize = 1000;
 
 /// A file and all that it names, and what these name: whatever is there under the name that stands in quotes, after an equals
 /// sign or in a tag. More may be named than is read.
@@ -19,7 +19,7 @@ pub fn files_of_mesh(path: &Path) -> Vec<PathBuf> {
     while let Some(file) = files.get(next).cloned() {
         next += 1;
         for named in named_in(&file) {
-            if files.len() < MOST_FILES && !files.contains(&named) {
+            if files.len() < MAX_FILES && !files.contains(&named) {
                 files.push(named);
             }
         }

@@ -119,10 +119,10 @@ impl MeshFile {
 
     fn own(&self) -> Result<Mesh, ImportError> {
         let path = &self.path;
-        let refused = |found: &str, cure: &str| ImportError::Refused {
+        let refused = |found: &str, help: &str| ImportError::Refused {
             source_name: path.display().to_string(),
             found: found.to_owned(),
-            cure: cure.to_owned(),
+            help: help.to_owned(),
         };
         let bytes = match &self.held {
             Held::Files(files) => files.first().and_then(|file| file.bytes.as_deref()),

@@ -38,7 +38,7 @@ const PYTHON_CURE: &str = "install Python 3 with meshio (pip install meshio h5py
 #[serde(untagged)]
 enum Answer {
     Done { notes: Vec<String>, materials: Vec<DeckMaterial> },
-    Refused { error: String, cure: String },
+    Refused { error: String, help: String },
 }
 
 /// A mesh file that another program is to read.
@@ -68,9 +68,9 @@ pub(crate) fn meshio(job: &Job<'_>) -> Result<(Vec<String>, Vec<DeckMaterial>), 
     let said = Said::by(command, source, &python, ("meshio", PYTHON_CURE))?;
     match said.last(Stream::Output).and_then(|line| serde_json::from_str(line).ok()) {
         Some(Answer::Done { notes, materials }) if said.status.success() => Ok((notes, materials)),
-        Some(Answer::Refused { error, cure }) => {
+        Some(Answer::Refused { error, help }) => {
             let source_name = source.display().to_string();
-            Err(ImportError::Refused { source_name, found: copies.translated(&error), cure })
+            Err(ImportError::Refused { source_name, found: copies.translated(&error), help })
         }
         _ => Err(said.failed(source, &python, copies, "check the file, or write the mesh as MSH 4.1")),
     }
@@ -124,13 +124,13 @@ pub(crate) fn gmsh(job: &Job<'_>, task: GmshTask) -> Result<(), ImportError> {
     command = command.args(["-v", "2", "-format", "msh41", "-o"]).arg(target);
     let said = Said::by(command, source, &gmsh, ("gmsh", GMSH_CURE))?;
     if !said.status.success() || !target.is_file() {
-        let cure = match task {
+        let help = match task {
             GmshTask::Convert => "open it in gmsh, and see what is wrong with it",
             GmshTask::Mesh | GmshTask::MeshAndOptimize => {
                 "try a smaller mesh_size, or open it in gmsh, and see what is wrong with it"
             }
         };
-        return Err(said.failed(source, &gmsh, copies, cure));
+        return Err(said.failed(source, &gmsh, copies, help));
     }
     Ok(())
 }
@@ -163,7 +163,7 @@ impl Said {
         command: ForeignProgram,
         source: &Path,
         program: &OsStr,
-        (reader, cure): (&'static str, &'static str),
+        (reader, help): (&'static str, &'static str),
     ) -> Result<Self, ImportError> {
         let mut lines = VecDeque::new();
         let mut first_errors = [None, None];
@@ -181,8 +181,8 @@ impl Said {
         let [source_name, program] = [source.as_os_str(), program].map(|name| name.to_string_lossy().into_owned());
         match command.run(LIMITS, || false, hear) {
             Ok(status) => Ok(Self { status, first_errors, lines }),
-            Err(ProgramError::Start(cause)) => Err(ImportError::NoReader { source_name, reader, program, cause, cure }),
-            Err(cause) => Err(ImportError::TooMuch { source_name, program, cause, cure: TOO_MUCH }),
+            Err(ProgramError::Start(cause)) => Err(ImportError::NoReader { source_name, reader, program, cause, help }),
+            Err(cause) => Err(ImportError::TooMuch { source_name, program, cause, help: TOO_MUCH }),
         }
     }
 
@@ -191,7 +191,7 @@ impl Said {
         self.lines.iter().rev().find(|(of, _)| *of == stream).map(|(_, line)| line.as_str())
     }
 
-    fn failed(&self, source: &Path, program: &OsStr, copies: &Copies, cure: &'static str) -> ImportError {
+    fn failed(&self, source: &Path, program: &OsStr, copies: &Copies, help: &'static str) -> ImportError {
         let last = || self.last(Stream::Error).or_else(|| self.last(Stream::Output));
         let said =
             self.first_errors.iter().flatten().next().map(String::as_str).or_else(last).unwrap_or("it says nothing");
@@ -200,7 +200,7 @@ impl Said {
             program: program.to_string_lossy().into_owned(),
             status: self.status.to_string(),
             said: copies.translated(said),
-            cure,
+            help,
         }
     }
 }

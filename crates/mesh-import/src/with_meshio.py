@@ -4,7 +4,7 @@ Abaqus and CalculiX files are read here: meshio puts element sets on wrong eleme
 *NODE blocks, and has no surfaces.
 
 Arguments: the mesh file, the MSH file to write, and "raise" if first-order tetrahedra are to get mid-edge nodes.
-Prints a line of JSON: what was left out ("notes") and the materials of sets ("materials"), or what is wrong ("error", with "cure").
+Prints a line of JSON: what was left out ("notes") and the materials of sets ("materials"), or what is wrong ("error", with "help").
 """
 
 import contextlib
@@ -29,9 +29,9 @@ CURE = "install it (pip install meshio h5py), or name a Python that has it in FL
 
 
 class Refused(Exception):
-    def __init__(self, error, cure):
+    def __init__(self, error, help):
         super().__init__(error)
-        self.cure = cure
+        self.help = help
 
 
 class File:
@@ -128,7 +128,7 @@ def with_meshio(np, source, target, notes):
         except ImportError:
             raise Refused(f"{sys.executable} has neither meshio nor meshlane", CURE)
     said = io.StringIO()
-    cure = "check the file, or write it as VTU, .inp or MSH 4.1"
+    help = "check the file, or write it as VTU, .inp or MSH 4.1"
     try:
         # meshio prints its reasons.
         with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
@@ -138,7 +138,7 @@ def with_meshio(np, source, target, notes):
     except (SystemExit, Exception) as error:
         reason = f"{type(error).__name__}: {error}" if not isinstance(error, SystemExit) else ""
         words = " ".join([*said.getvalue().split(), *reason.split()])
-        raise Refused(f"meshio cannot read it: {words}", cure)
+        raise Refused(f"meshio cannot read it: {words}", help)
     file = File(np, mesh.points, [(block.type, block.data) for block in mesh.cells])
     count = len(mesh.cells)
     for name, rows in mesh.cell_sets.items():
@@ -585,4 +585,4 @@ def write(np, target, points, blocks, groups, surfaces, point_sets):
 try:
     print(json.dumps(main(sys.argv[1], sys.argv[2], "raise" in sys.argv[3:])))
 except Refused as refused:
-    print(json.dumps({"error": str(refused), "cure": refused.cure}))
+    print(json.dumps({"error": str(refused), "help": refused.help}))

@@ -232,7 +232,7 @@ fn by_position(mesh: &Mesh, element: usize, nodes: &[&str]) -> [u64; 4] {
 }
 
 #[test]
-fn what_cannot_be_read_is_said_with_its_cure() {
+fn what_cannot_be_read_is_said_with_its_help() {
     let formats = formats();
     fs::write(formats.path("empty.inp"), "*HEADING\n").unwrap();
     fs::write(formats.path("text.vtu"), "a diary\n").unwrap();

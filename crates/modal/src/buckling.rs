@@ -20,7 +20,7 @@ use crate::tall;
 /// Most vectors of the first block that are given.
 const GIVEN: usize = 3;
 /// Blocks of the basis, at most.
-const MOST_BLOCKS: usize = 10;
+const MAX_BLOCKS: usize = 10;
 /// Relative change of θ at which it counts as found.
 const SETTLED: f64 = 1e-5;
 /// Smallest part of a vector beside the basis with which it is added.
@@ -59,7 +59,7 @@ impl Solver<'_> {
         let mut block = Mat::from_fn(size, given + 1, |i, j| if j < given { start[(i, j)] } else { random[(i, 0)] });
         let (mut basis, mut forces) = (Mat::<f64>::zeros(size, 0), Mat::<f64>::zeros(size, 0));
         let mut lowest = 0.0;
-        for round in 0..MOST_BLOCKS {
+        for round in 0..MAX_BLOCKS {
             let added = self.stiffness_orthonormal(basis.as_ref(), &block);
             if added.ncols() == 0 {
                 break;

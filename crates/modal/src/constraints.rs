@@ -32,22 +32,20 @@ pub(crate) struct Constraints {
 }
 
 impl Constraints {
-    /// `freedoms` is the number of degrees of freedom of a node, 3 or 6.
+    /// `dofs` is the number of degrees of freedom of a node, 3 or 6.
     ///
     /// # Errors
     /// [`ModalError::HeldNode`], [`ModalError::HeldFreedom`], [`ModalError::Underheld`], and what
     /// [`RigidMotion::check`] refuses.
-    pub(crate) fn new(support: &Support, positions: &[[f64; 3]], freedoms: usize) -> Result<Self, ModalError> {
+    pub(crate) fn new(support: &Support, positions: &[[f64; 3]], dofs: usize) -> Result<Self, ModalError> {
         support.motion.check()?;
-        check_held(&support.nodes, &support.freedoms, positions.len(), freedoms)?;
-        let of_nodes = support.nodes.iter().flat_map(|node| (0..freedoms).map(move |freedom| (*node, freedom)));
-        let mut rows: Vec<usize> = of_nodes
-            .chain(support.freedoms.iter().copied())
-            .map(|(node, freedom)| freedoms * node as usize + freedom)
-            .collect();
+        check_held(&support.nodes, &support.dofs, positions.len(), dofs)?;
+        let of_nodes = support.nodes.iter().flat_map(|node| (0..dofs).map(move |dof| (*node, dof)));
+        let mut rows: Vec<usize> =
+            of_nodes.chain(support.dofs.iter().copied()).map(|(node, dof)| dofs * node as usize + dof).collect();
         rows.sort_unstable();
         rows.dedup();
-        let mut held_nodes: Vec<usize> = rows.iter().map(|row| row / freedoms).collect();
+        let mut held_nodes: Vec<usize> = rows.iter().map(|row| row / dofs).collect();
         held_nodes.dedup();
 
         let (center, radius) = extent(positions);
@@ -59,11 +57,11 @@ impl Constraints {
                 .map(|node| motion.displacements(&Vector3::from(positions[*node]), &center, radius))
                 .collect();
             DMatrix::from_fn(rows.len(), motion.count(), |i, j| {
-                let (node, freedom) = (rows[i] / freedoms, rows[i] % freedoms);
-                if freedom >= 3 {
-                    return turns[j][freedom - 3] * radius;
+                let (node, dof) = (rows[i] / dofs, rows[i] % dofs);
+                if dof >= 3 {
+                    return turns[j][dof - 3] * radius;
                 }
-                held_nodes.binary_search(&node).map_or(0.0, |place| moved[place][j][freedom])
+                held_nodes.binary_search(&node).map_or(0.0, |place| moved[place][j][dof])
             })
         };
         let limit = NEGLIGIBLE * (held_nodes.len() as f64).sqrt();
@@ -74,15 +72,15 @@ impl Constraints {
         if left > expected {
             return Err(ModalError::Underheld { held: held_nodes.len(), left, expected });
         }
-        if freedoms == 6 {
+        if dofs == 6 {
             for (i, mut row) in allowed.row_iter_mut().enumerate() {
-                if rows[i] % freedoms >= 3 {
+                if rows[i] % dofs >= 3 {
                     row /= radius;
                 }
             }
             allowed = range(allowed, 0.0);
         }
-        let mut held = vec![false; freedoms * positions.len()];
+        let mut held = vec![false; dofs * positions.len()];
         rows.iter().for_each(|row| held[*row] = true);
         Ok(Self { rows, held, motions: Mat::from_fn(allowed.nrows(), allowed.ncols(), |i, j| allowed[(i, j)]) })
     }

@@ -12,9 +12,9 @@ use rayon::prelude::*;
 
 use crate::dense::symmetric_eigen;
 use crate::error::ModalError;
-use crate::foretold::{of_vectors, reserve_of_dense_products};
 use crate::lanczos::LanczosPairs;
 use crate::mass_matrix::MassMatrix;
+use crate::memory_estimate::{of_vectors, reserve_of_dense_products};
 use crate::multigrid::Multigrid;
 use crate::products::{Packed, WIDTH};
 use crate::row_chunks::{row_chunks, row_chunks_mut};
@@ -37,7 +37,7 @@ const DEPENDENT: f64 = 1e-7;
 const MAX_ROUNDS: usize = 4;
 /// Steps at the most. It takes 14 to 20 of one material on compact elements, 30 to 40 of a core of plastic in a shell of steel or
 /// of elements five times as long as thick.
-const MOST_STEPS: usize = 48;
+const MAX_STEPS: usize = 48;
 /// Steps after which the convergence is judged.
 const FIRST_STEPS: usize = 8;
 /// Steps that the basis has room for after a restart.
@@ -69,7 +69,7 @@ pub(crate) fn lowest_pairs(
     let mut before: Mat<f64> = Mat::zeros(0, 0);
     let mut residuals = vec![f64::INFINITY; count];
     let mut tolerance = TOLERANCE;
-    for step in 1..=MOST_STEPS {
+    for step in 1..=MAX_STEPS {
         let (mut eigenvalues, mut coefficients) = symmetric_eigen(&search.projected)?;
         if eigenvalues.len() < count {
             return Ok(None);
@@ -109,7 +109,7 @@ pub(crate) fn lowest_pairs(
             let vectors = product(search.basis(), coefficients.subcols(0, count));
             return Ok(Some(LanczosPairs { vectors, residuals, block_solves: step, basis_size }));
         }
-        if step >= FIRST_STEPS && found * (MOST_STEPS as f64) < (count * step) as f64 {
+        if step >= FIRST_STEPS && found * (MAX_STEPS as f64) < (count * step) as f64 {
             return Ok(None);
         }
         let still: Vec<usize> = (0..open.len()).filter(|k| residuals[open[*k]] > tolerance).collect();

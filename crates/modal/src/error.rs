@@ -1,8 +1,8 @@
-//! Why modes could not be found.
+//! Errors of the search for modes.
 
 use std::error::Error;
 
-/// Why an engine failed, in its own words.
+/// Failure of an engine, in its own words.
 pub type EngineError = Box<dyn Error + Send + Sync>;
 
 /// Faults of the matrices, or of a request.
@@ -76,7 +76,7 @@ pub enum ModalError {
     /// A motion would have a negative kinetic energy.
     #[error(
         "the mass matrix is not positive semi-definite{}: some motion would have a negative kinetic energy; is a sign or an element wrong?",
-        place.map(|[node, freedom]| format!(", as degree of freedom {freedom} of node {node} (both counted from 0) shows: its diagonal entry is not positive though others of its row are there")).unwrap_or_default()
+        place.map(|[node, dof]| format!(", as degree of freedom {dof} of node {node} (both counted from 0) shows: its diagonal entry is not positive though others of its row are there")).unwrap_or_default()
     )]
     IndefiniteMass {
         /// Node and degree of freedom whose diagonal entry shows it; `None` where only the whole matrix does.
@@ -94,13 +94,13 @@ pub enum ModalError {
     },
     /// A degree of freedom that nothing resists.
     #[error(
-        "degree of freedom {freedom} of node {node} (both counted from 0) has neither stiffness nor mass; hold it, or give it some"
+        "degree of freedom {dof} of node {node} (both counted from 0) has neither stiffness nor mass; hold it, or give it some"
     )]
     Loose {
         /// Index of the node.
         node: usize,
         /// Degree of freedom of the node.
-        freedom: usize,
+        dof: usize,
     },
     /// The body has no mass, or none to resist a rotation.
     #[error(
@@ -184,14 +184,14 @@ pub enum ModalError {
     },
     /// A held degree of freedom that a node has not got.
     #[error(
-        "the support holds degree of freedom {freedom} of node {node} (both counted from 0); a node has {count}: translations along x, y and z{}",
+        "the support holds degree of freedom {dof} of node {node} (both counted from 0); a node has {count}: translations along x, y and z{}",
         if *count == 6 { ", then rotations about them" } else { "" }
     )]
     HeldFreedom {
         /// Index of the node.
         node: u32,
         /// Degree of freedom.
-        freedom: usize,
+        dof: usize,
         /// Degrees of freedom of a node.
         count: usize,
     },

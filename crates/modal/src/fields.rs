@@ -29,7 +29,7 @@ pub fn centrifugal_fields(
 ) -> Result<Mat<f64>, ModalError> {
     check_rows(POSITIONS, positions.len(), mass.nodes())?;
     if let MassMatrix::General(general) = mass {
-        let fields = rigid_fields(positions, origin, general.freedoms);
+        let fields = rigid_fields(positions, origin, general.dofs);
         let momenta = mass.product(fields.subcols(3, 3));
         let forces: [Mat<f64>; 3] = std::array::from_fn(|axis| turned(momenta.as_ref(), axis));
         return Ok(Mat::from_fn(momenta.nrows(), ReducedBody::PAIRS.len(), |row, pair| {
@@ -73,6 +73,6 @@ pub fn turning_field(
     axis: &Vector3<f64>,
 ) -> Result<Mat<f64>, ModalError> {
     check_rows(POSITIONS, positions.len(), mass.nodes())?;
-    let rotations = rigid_fields(positions, origin, mass.freedoms()).subcols(3, 3).to_owned();
+    let rotations = rigid_fields(positions, origin, mass.dofs()).subcols(3, 3).to_owned();
     Ok(mass.product((rotations * Mat::from_fn(3, 1, |i, _| axis[i])).as_ref()))
 }

@@ -9,8 +9,8 @@ use faer::{Mat, MatRef};
 use crate::columns::Columns;
 use crate::constraints::Constraints;
 use crate::error::ModalError;
-use crate::foretold::of_vectors;
 use crate::mass_matrix::MassMatrix;
+use crate::memory_estimate::of_vectors;
 use crate::rigid::RigidModes;
 use crate::stiffness::StiffnessMatrix;
 
@@ -93,7 +93,7 @@ impl<'a> HeldMatrix<'a> {
         let free = constraints.free_rows();
         let unknowns = free.len() + motions.ncols();
         let mut row_of = vec![unknowns; forces.nrows()];
-        free.iter().enumerate().for_each(|(row, freedom)| row_of[*freedom] = row);
+        free.iter().enumerate().for_each(|(row, dof)| row_of[*dof] = row);
         let corner = motions.transpose() * &forces;
         Self { matrix, free, row_of, forces, corner }
     }
@@ -113,19 +113,19 @@ impl<'a> HeldMatrix<'a> {
             }
         };
         match self.free.get(row) {
-            Some(freedom) => {
+            Some(dof) => {
                 // A column of a symmetric matrix is its row.
-                self.matrix.for_each_in_column(*freedom, |other, value| {
+                self.matrix.for_each_in_column(*dof, |other, value| {
                     if self.row_of[other] < free {
                         not_zero(self.row_of[other], value);
                     }
                 });
-                (0..motions).for_each(|motion| not_zero(free + motion, self.forces[(*freedom, motion)]));
+                (0..motions).for_each(|motion| not_zero(free + motion, self.forces[(*dof, motion)]));
             }
             None if row >= self.size() => {}
             None => {
                 let motion = row - free;
-                self.free.iter().enumerate().for_each(|(at, freedom)| not_zero(at, self.forces[(*freedom, motion)]));
+                self.free.iter().enumerate().for_each(|(at, dof)| not_zero(at, self.forces[(*dof, motion)]));
                 (0..motions).for_each(|other| not_zero(free + other, self.corner[(motion, other)]));
             }
         }

@@ -38,19 +38,19 @@ pub(crate) fn check_finite_positions(positions: &[[f64; 3]]) -> Result<(), Modal
 }
 
 /// Refuses held nodes, and degrees of freedom (pairs of a node and its degree of freedom), that are not there: of `count`
-/// nodes with `freedoms_of_node` each.
+/// nodes with `dofs_of_node` each.
 pub(crate) fn check_held(
     nodes: &[u32],
-    freedoms: &[(u32, usize)],
+    dofs: &[(u32, usize)],
     count: usize,
-    freedoms_of_node: usize,
+    dofs_of_node: usize,
 ) -> Result<(), ModalError> {
-    let mut held = nodes.iter().copied().chain(freedoms.iter().map(|(node, _)| *node));
+    let mut held = nodes.iter().copied().chain(dofs.iter().map(|(node, _)| *node));
     if let Some(node) = held.find(|node| *node as usize >= count) {
         return Err(ModalError::HeldNode { node, count });
     }
-    if let Some(&(node, freedom)) = freedoms.iter().find(|(_, freedom)| *freedom >= freedoms_of_node) {
-        return Err(ModalError::HeldFreedom { node, freedom, count: freedoms_of_node });
+    if let Some(&(node, dof)) = dofs.iter().find(|(_, dof)| *dof >= dofs_of_node) {
+        return Err(ModalError::HeldFreedom { node, dof, count: dofs_of_node });
     }
     Ok(())
 }

@@ -9,8 +9,8 @@ use faer::{Accum, Mat, MatRef};
 
 use crate::dense::symmetric_eigen;
 use crate::error::ModalError;
-use crate::foretold::of_vectors;
 use crate::mass_matrix::MassMatrix;
+use crate::memory_estimate::of_vectors;
 use crate::products::Packed;
 use crate::shifted::{Inverted, Shifted, SolveScratch};
 use crate::svqb::{Svqb, norms};

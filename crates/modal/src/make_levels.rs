@@ -12,10 +12,10 @@ use crate::columns::Columns;
 use crate::constraints::Constraints;
 use crate::davidson;
 use crate::error::ModalError;
-use crate::foretold::{Forecast, Foretold, of_vectors};
 use crate::lanczos::{FIXED, random_block};
 use crate::levels::{Levels, modes_beside};
 use crate::mass_matrix::MassMatrix;
+use crate::memory_estimate::{Forecast, MemoryEstimate, of_vectors};
 use crate::multigrid::Multigrid;
 use crate::products::WIDTH;
 use crate::progress::Progress;
@@ -90,7 +90,7 @@ impl Solver<'_> {
         let mass = MassMatrix::Nodal(coarse.mass());
         let held =
             2 * self.matrix_bytes + smoother.bytes() + coarse.bytes() + of_vectors(self.stiffness.ncols(), FIXED);
-        let memory = Foretold::new(stiffness, &mass, held, FIXED);
+        let memory = MemoryEstimate::new(stiffness, &mass, held, FIXED);
         let on_corners = Ordered::new(stiffness, &mass, self.shift()?, &constraints, &memory)?;
         let beside = modes_beside(modes, &corners);
         let factor = Shifted::factor(

@@ -28,7 +28,7 @@ pub enum MassMatrix<'a> {
 pub struct GeneralMass<'a> {
     pub(crate) matrix: SparseColMatRef<'a, usize, f64>,
     /// Degrees of freedom of a node: 3 or 6.
-    pub(crate) freedoms: usize,
+    pub(crate) dofs: usize,
 }
 
 impl<'a> MassMatrix<'a> {
@@ -37,17 +37,17 @@ impl<'a> MassMatrix<'a> {
     /// # Errors
     /// [`ModalError::Size`], [`ModalError::NotFinite`], [`ModalError::NotSymmetric`].
     pub fn new(mass: SparseColMatRef<'a, usize, f64>, nodes: usize) -> Result<Self, ModalError> {
-        Self::of_freedoms(mass, nodes, freedoms("mass", mass.ncols(), nodes)?)
+        Self::of_dofs(mass, nodes, dofs("mass", mass.ncols(), nodes)?)
     }
 
     /// The same with a given number of degrees of freedom of a node.
-    pub(crate) fn of_freedoms(
+    pub(crate) fn of_dofs(
         mass: SparseColMatRef<'a, usize, f64>,
         nodes: usize,
-        freedoms: usize,
+        dofs: usize,
     ) -> Result<Self, ModalError> {
-        check_matrix("mass", mass, freedoms * nodes)?;
-        if freedoms == 3 {
+        check_matrix("mass", mass, dofs * nodes)?;
+        if dofs == 3 {
             match NodalMass::of_checked(mass) {
                 Err(ModalError::AnisotropicMass { .. }) => {}
                 nodal => return nodal.map(Self::Nodal),
@@ -55,7 +55,7 @@ impl<'a> MassMatrix<'a> {
         }
         let (rows, values) = (mass.symbolic().row_idx(), mass.val());
         check_symmetric("mass", 1, mass.symbolic().col_ptr(), |entry| rows[entry], |entry| values[entry])?;
-        Ok(Self::General(GeneralMass { matrix: mass, freedoms }))
+        Ok(Self::General(GeneralMass { matrix: mass, dofs }))
     }
 
     /// Number of nodes n.
@@ -67,10 +67,10 @@ impl<'a> MassMatrix<'a> {
     }
 
     /// Degrees of freedom of a node: 3 or 6.
-    pub fn freedoms(&self) -> usize {
+    pub fn dofs(&self) -> usize {
         match self {
             Self::Nodal(_) => 3,
-            Self::General(mass) => mass.freedoms,
+            Self::General(mass) => mass.dofs,
         }
     }
 
@@ -96,7 +96,7 @@ impl<'a> MassMatrix<'a> {
             Self::Nodal(mass) => mass.row_sums(),
             Self::General(mass) => {
                 let forces = self.product(mass.translations().as_ref());
-                let of_node = |node: usize| (0..3).map(|axis| forces[(mass.freedoms * node + axis, axis)]).sum::<f64>();
+                let of_node = |node: usize| (0..3).map(|axis| forces[(mass.dofs * node + axis, axis)]).sum::<f64>();
                 (0..mass.nodes()).map(|node| of_node(node) / 3.0).collect()
             }
         }
@@ -162,25 +162,25 @@ impl Columns for MassMatrix<'_> {
 impl GeneralMass<'_> {
     /// Number of nodes n.
     pub(crate) fn nodes(&self) -> usize {
-        self.matrix.ncols() / self.freedoms
+        self.matrix.ncols() / self.dofs
     }
 
     /// A unit translation along each axis (N×3).
     pub(crate) fn translations(&self) -> Mat<f64> {
-        Mat::from_fn(self.matrix.ncols(), 3, |i, axis| f64::from(i % self.freedoms == axis))
+        Mat::from_fn(self.matrix.ncols(), 3, |i, axis| f64::from(i % self.dofs == axis))
     }
 
     pub(crate) fn check_semidefinite(&self) -> Result<(), ModalError> {
         let entries = || self.matrix.triplet_iter().map(|entry| Triplet::new(entry.row, entry.col, *entry.val));
-        check_semidefinite(entries, self.matrix.ncols(), self.freedoms)
+        check_semidefinite(entries, self.matrix.ncols(), self.dofs)
     }
 }
 
-/// Refuses a symmetric matrix of this size that is not positive semi-definite; a node has `freedoms` rows of it.
+/// Refuses a symmetric matrix of this size that is not positive semi-definite; a node has `dofs` rows of it.
 fn check_semidefinite<I: Iterator<Item = Triplet<usize, usize, f64>>>(
     matrix: impl Fn() -> I,
     size: usize,
-    freedoms: usize,
+    dofs: usize,
 ) -> Result<(), ModalError> {
     let mut diagonal = vec![0.0; size];
     let mut count = 0;
@@ -195,7 +195,7 @@ fn check_semidefinite<I: Iterator<Item = Triplet<usize, usize, f64>>>(
     for entry in matrix().filter(|entry| entry.val != 0.0) {
         if !(diagonal[entry.row] > 0.0 && diagonal[entry.col] > 0.0) {
             let row = if diagonal[entry.row] > 0.0 { entry.col } else { entry.row };
-            return Err(ModalError::IndefiniteMass { place: Some([row / freedoms, row % freedoms]) });
+            return Err(ModalError::IndefiniteMass { place: Some([row / dofs, row % dofs]) });
         }
         let scale = (diagonal[entry.row] * diagonal[entry.col]).sqrt();
         entries.push(Triplet::new(entry.row, entry.col, entry.val / scale));
@@ -214,7 +214,7 @@ fn check_semidefinite<I: Iterator<Item = Triplet<usize, usize, f64>>>(
 }
 
 /// Degrees of freedom of a node, 3 or 6, from the number of rows of a matrix.
-pub(crate) fn freedoms(what: &'static str, found: usize, nodes: usize) -> Result<usize, ModalError> {
+pub(crate) fn dofs(what: &'static str, found: usize, nodes: usize) -> Result<usize, ModalError> {
     match found {
         _ if found == 0 => Err(ModalError::Size { what, expected: 3 * nodes, found }),
         _ if found == 6 * nodes => Ok(6),

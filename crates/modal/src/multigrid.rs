@@ -15,7 +15,7 @@ use faer::{Mat, MatMut};
 use crate::coarse::Corners;
 use crate::error::ModalError;
 use crate::shifted::{Shifted, SolveScratch};
-use crate::smoother::{MOST_COLUMNS, Smoother, Smoothing, pack, unpack};
+use crate::smoother::{MAX_COLUMNS, Smoother, Smoothing, pack, unpack};
 
 /// The cycle.
 pub(crate) struct Multigrid<'a> {
@@ -34,25 +34,25 @@ impl<'a> Multigrid<'a> {
         memory::check("the multigrid cycle", Self::bytes(corners))?;
         let unknowns = 3 * corners.count();
         Ok(Self {
-            smoothing: Smoothing::new(smoother, MOST_COLUMNS),
+            smoothing: Smoothing::new(smoother, MAX_COLUMNS),
             corners,
             factor,
-            rows: vec![0.0; unknowns * MOST_COLUMNS],
-            columns: Mat::zeros(unknowns, MOST_COLUMNS),
-            solve: factor.solve_scratch(MOST_COLUMNS)?,
+            rows: vec![0.0; unknowns * MAX_COLUMNS],
+            columns: Mat::zeros(unknowns, MAX_COLUMNS),
+            solve: factor.solve_scratch(MAX_COLUMNS)?,
         })
     }
 
     /// Memory held, bytes.
     pub(crate) fn bytes(corners: &Corners) -> usize {
         Smoothing::bytes(corners.nodes_in_all())
-            + 3 * corners.count() * MOST_COLUMNS * (size_of::<f32>() + size_of::<f64>())
+            + 3 * corners.count() * MAX_COLUMNS * (size_of::<f32>() + size_of::<f64>())
     }
 
     /// Replaces forces (3n×k) by displacements.
     pub(crate) fn apply(&mut self, mut forces: MatMut<'_, f64>) {
-        for first in (0..forces.ncols()).step_by(MOST_COLUMNS) {
-            let count = MOST_COLUMNS.min(forces.ncols() - first);
+        for first in (0..forces.ncols()).step_by(MAX_COLUMNS) {
+            let count = MAX_COLUMNS.min(forces.ncols() - first);
             let mut columns = forces.as_mut().subcols_mut(first, count);
             let units = self.smoothing.begin(columns.as_ref());
             self.smoothing.smooth(false);
@@ -69,9 +69,9 @@ impl<'a> Multigrid<'a> {
         let rows = &mut rows[..3 * corners.count() * *width];
         let mut columns = columns.as_mut().subcols_mut(0, count);
         corners.restrict(3 * *width, r, rows);
-        unpack([&*rows], [1.0; MOST_COLUMNS], columns.as_mut());
+        unpack([&*rows], [1.0; MAX_COLUMNS], columns.as_mut());
         factor.solve_in_place(columns.as_mut(), solve);
-        pack(columns.as_ref(), [smoother.unit; MOST_COLUMNS], rows);
+        pack(columns.as_ref(), [smoother.unit; MAX_COLUMNS], rows);
         corners.prolong(3 * *width, rows, d);
     }
 }

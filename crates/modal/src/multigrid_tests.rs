@@ -7,9 +7,9 @@ use crate::coarse::CoarseMatrices;
 use crate::coarse::tests::Block;
 use crate::constraints::Constraints;
 use crate::error::ModalError;
-use crate::foretold::Foretold;
 use crate::lanczos::random_block;
 use crate::mass_matrix::MassMatrix;
+use crate::memory_estimate::MemoryEstimate;
 use crate::multigrid::Multigrid;
 use crate::rigid_fields::rigid_fields;
 use crate::shifted::{Ordered, Shifted};
@@ -53,7 +53,7 @@ impl Levels {
         let stiffness = StiffnessMatrix::Nodal(self.coarse.stiffness());
         let mass = MassMatrix::Nodal(self.coarse.mass());
         let constraints = Constraints::new(&Support::free(), &self.block.corner_positions(), 3).unwrap();
-        let memory = Foretold::new(stiffness, &mass, 0, 0);
+        let memory = MemoryEstimate::new(stiffness, &mass, 0, 0);
         let ordered = Ordered::new(stiffness, &mass, self.shift, &constraints, &memory).unwrap();
         Shifted::factor(ordered, &constraints, memory, |_| 0, |_| ()).unwrap()
     }

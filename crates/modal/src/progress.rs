@@ -1,6 +1,6 @@
 //! How far a solution has come.
 
-use crate::foretold::Forecast;
+use crate::memory_estimate::Forecast;
 
 /// How far a solution has come.
 #[derive(Debug, Clone, Copy, PartialEq)]

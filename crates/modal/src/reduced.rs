@@ -150,8 +150,8 @@ impl ReducedBody {
         let rigid = &modes.rigid;
         let n = positions.len();
         let nf = modes.shapes.ncols();
-        check_size("the rows of the mode shapes", modes.shapes.nrows(), mass.freedoms() * n)?;
-        check_size("the rows of the rigid mode shapes", rigid.shapes.nrows(), mass.freedoms() * n)?;
+        check_size("the rows of the mode shapes", modes.shapes.nrows(), mass.dofs() * n)?;
+        check_size("the rows of the rigid mode shapes", rigid.shapes.nrows(), mass.dofs() * n)?;
         check_size("the list of eigenvalues", modes.eigenvalues.len(), nf)?;
         let Products {
             rotation_products,
@@ -275,8 +275,8 @@ impl BodyPoint {
     pub fn new(modes: &Modes, positions: &[[f64; 3]], nodes: &[u32], weights: &[f64]) -> Result<Self, ModalError> {
         let count = positions.len();
         check_size("the list of weights", weights.len(), nodes.len())?;
-        let freedoms = if modes.shapes.nrows() == 6 * count { 6 } else { 3 };
-        check_size("the rows of the mode shapes", modes.shapes.nrows(), freedoms * count)?;
+        let dofs = if modes.shapes.nrows() == 6 * count { 6 } else { 3 };
+        check_size("the rows of the mode shapes", modes.shapes.nrows(), dofs * count)?;
         check_finite_entries("weight", weights.iter().copied())?;
         let sum = weights.iter().sum::<f64>();
         if (sum - 1.0).abs() > WEIGHTS {
@@ -291,7 +291,7 @@ impl BodyPoint {
         Ok(Self {
             position_body: position - modes.rigid.origin,
             shapes: Mat::from_fn(3, shapes.ncols(), |axis, k| {
-                carried().map(|(node, w)| shapes[(freedoms * node + axis, k)] * w).sum()
+                carried().map(|(node, w)| shapes[(dofs * node + axis, k)] * w).sum()
             }),
         })
     }

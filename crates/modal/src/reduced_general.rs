@@ -16,9 +16,9 @@ use faer::{Mat, MatRef};
 use nalgebra::Vector3;
 
 use crate::error::ModalError;
-use crate::foretold::of_vectors;
 use crate::inertia_products::{Products, set_translations};
 use crate::mass_matrix::GeneralMass;
+use crate::memory_estimate::of_vectors;
 use crate::pairs::PAIRS;
 use crate::products::symmetric_product;
 use crate::reduction_parts::general_vectors;
@@ -42,7 +42,7 @@ pub(crate) fn general_products(
     let all = Mat::from_fn(size, 6 + nf, |i, k| if k < 6 { rigid.shapes[(i, k)] } else { modes.shapes[(i, k - 6)] });
     let momenta = symmetric_product(matrix, all.as_ref());
     let flexible_momenta = momenta.subcols(6, nf);
-    let fields = rigid_fields(positions, &rigid.origin, mass.freedoms);
+    let fields = rigid_fields(positions, &rigid.origin, mass.dofs);
     let field_momenta = symmetric_product(matrix, fields.as_ref());
     let turned: [Mat<f64>; 3] = std::array::from_fn(|axis| turned(modes.shapes.as_ref(), axis));
     let turned_momenta = turned.each_ref().map(|shapes| symmetric_product(matrix, shapes.as_ref()));
@@ -64,7 +64,7 @@ pub(crate) fn general_products(
     let offset = |node: usize| Vector3::from(positions[node]) - rigid.origin;
     let position_products = std::array::from_fn(|a| {
         std::array::from_fn(|b| {
-            let of_node = |node: usize, k: usize| momenta[(mass.freedoms * node + a, k)] * offset(node)[b];
+            let of_node = |node: usize, k: usize| momenta[(mass.dofs * node + a, k)] * offset(node)[b];
             (0..6 + nf).map(|k| (0..positions.len()).map(|node| of_node(node, k)).sum()).collect()
         })
     });

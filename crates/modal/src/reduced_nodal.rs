@@ -5,9 +5,9 @@ use nalgebra::Vector3;
 use rayon::prelude::*;
 
 use crate::error::ModalError;
-use crate::foretold::of_vectors;
 use crate::inertia_products::{Products, set_translations};
 use crate::mass::NodalMass;
+use crate::memory_estimate::of_vectors;
 use crate::pairs::PAIRS;
 use crate::reduction_parts::{GEOMETRY, NODES, PIECES, nodal_vectors, products_bytes};
 use crate::solve::Modes;

@@ -88,14 +88,14 @@ impl RigidModes {
             MassMatrix::General(mass) => General::new(mass, positions, &(first + arm)).inertia(),
         };
         let (translation_basis, rotation_basis) = motion.bases(total, &inertia)?;
-        let freedoms = mass.freedoms();
+        let dofs = mass.dofs();
         let shapes = if motion.others().is_empty() {
-            Mat::from_fn(freedoms * positions.len(), 6, |i, mode| {
-                let (node, freedom) = (i / freedoms, i % freedoms);
-                match (mode.checked_sub(3), freedom.checked_sub(3)) {
-                    (None, None) => translation_basis[(freedom, mode)],
+            Mat::from_fn(dofs * positions.len(), 6, |i, mode| {
+                let (node, dof) = (i / dofs, i % dofs);
+                match (mode.checked_sub(3), dof.checked_sub(3)) {
+                    (None, None) => translation_basis[(dof, mode)],
                     (None, Some(_)) => 0.0,
-                    (Some(axis), None) => rotation_basis.column(axis).cross(&offset(node))[freedom],
+                    (Some(axis), None) => rotation_basis.column(axis).cross(&offset(node))[dof],
                     (Some(axis), Some(about)) => rotation_basis[(about, axis)],
                 }
             })
@@ -156,7 +156,7 @@ fn orthonormal_motions(
     origin: &Vector3<f64>,
 ) -> Result<Mat<f64>, ModalError> {
     let motions = motion.others();
-    let fields = rigid_fields(positions, origin, mass.freedoms());
+    let fields = rigid_fields(positions, origin, mass.dofs());
     let coefficients =
         Mat::from_fn(6, motions.len(), |i, k| if i < 3 { motions[k].velocity[i] } else { motions[k].rotation[i - 3] });
     let fields = tall::product(fields.as_ref(), coefficients.as_ref());

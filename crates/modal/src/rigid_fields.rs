@@ -12,17 +12,17 @@ use crate::tall;
 const RIGID_BODY: f64 = 1e-9;
 
 /// The unit translations `[e_i; 0]` and rotations `[e_i × X; e_i]` (N×6), X from `origin`.
-pub(crate) fn rigid_fields(positions: &[[f64; 3]], origin: &Vector3<f64>, freedoms: usize) -> Mat<f64> {
-    let mut fields = Mat::zeros(freedoms * positions.len(), 6);
+pub(crate) fn rigid_fields(positions: &[[f64; 3]], origin: &Vector3<f64>, dofs: usize) -> Mat<f64> {
+    let mut fields = Mat::zeros(dofs * positions.len(), 6);
     for (node, position) in positions.iter().enumerate() {
         let turned = (Vector3::from(*position) - origin).cross_matrix().transpose();
         for axis in 0..3 {
-            fields[(freedoms * node + axis, axis)] = 1.0;
+            fields[(dofs * node + axis, axis)] = 1.0;
             for i in 0..3 {
-                fields[(freedoms * node + i, 3 + axis)] = turned[(i, axis)];
+                fields[(dofs * node + i, 3 + axis)] = turned[(i, axis)];
             }
-            if freedoms == 6 {
-                fields[(freedoms * node + 3 + axis, 3 + axis)] = 1.0;
+            if dofs == 6 {
+                fields[(dofs * node + 3 + axis, 3 + axis)] = 1.0;
             }
         }
     }
@@ -39,7 +39,7 @@ pub(crate) struct General {
 
 impl General {
     pub(crate) fn new(mass: &GeneralMass<'_>, positions: &[[f64; 3]], origin: &Vector3<f64>) -> Self {
-        let fields = rigid_fields(positions, origin, mass.freedoms);
+        let fields = rigid_fields(positions, origin, mass.dofs);
         let product = crate::products::symmetric_product(mass.matrix, fields.as_ref());
         let all = tall::inner(fields.as_ref(), product.as_ref());
         let part = |row: usize, column: usize| {

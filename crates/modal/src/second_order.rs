@@ -13,8 +13,8 @@ use faer::linalg::solvers::Solve;
 use faer::{Mat, MatRef, Side};
 
 use crate::error::ModalError;
-use crate::foretold::of_vectors;
 use crate::input::{check_finite_columns, check_rows};
+use crate::memory_estimate::of_vectors;
 use crate::solve::{Modes, Solver};
 use crate::tall;
 

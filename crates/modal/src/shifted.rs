@@ -18,9 +18,9 @@ use crate::cholesky::NotPositive;
 use crate::constraints::Constraints;
 use crate::dense::whitening;
 use crate::error::ModalError;
-use crate::foretold::{Forecast, Foretold, reserve_of_dense_products};
 use crate::interleave::interleave;
 use crate::mass_matrix::MassMatrix;
+use crate::memory_estimate::{Forecast, MemoryEstimate, reserve_of_dense_products};
 use crate::renumbering::Renumbering;
 use crate::shifted_matrix::ShiftedMatrix;
 use crate::stiffness::StiffnessMatrix;
@@ -43,7 +43,7 @@ pub(crate) struct Shifted {
     /// Blocks and columns that were solved for.
     solved: [AtomicUsize; 2],
     /// The memory that it takes.
-    pub memory: Foretold,
+    pub memory: MemoryEstimate,
     /// Time that it took to choose the shift.
     pub estimate_time: Duration,
     /// Time of the ordering and the symbolic factorisation.
@@ -66,7 +66,7 @@ impl<'a> Ordered<'a> {
         mass: &'a MassMatrix<'a>,
         shift: f64,
         constraints: &'a Constraints,
-        memory: &Foretold,
+        memory: &MemoryEstimate,
     ) -> Result<Self, ModalError> {
         let started = Instant::now();
         memory::check("ordering K + sM", memory.of_ordering())?;
@@ -98,8 +98,8 @@ impl Shifted {
     pub(crate) fn factor(
         ordered: Ordered<'_>,
         constraints: &Constraints,
-        memory: Foretold,
-        search: impl Fn(&Foretold) -> usize,
+        memory: MemoryEstimate,
+        search: impl Fn(&MemoryEstimate) -> usize,
         progress: impl FnOnce(Forecast),
     ) -> Result<Self, ModalError> {
         let Ordered { matrix, symbolic, time: ordering_time } = ordered;
@@ -312,7 +312,7 @@ mod tests {
         let held = (0..).zip(block.mesh.positions()).filter(|(_, x)| x[2] < 1e-9).map(|(node, _)| node).collect();
         let hinge = Support::new(RigidMotion::hinge(Vector3::zeros(), Vector3::x()), held);
         let constraints = Constraints::new(&hinge, block.mesh.positions(), 3).unwrap();
-        let memory = Foretold::new(stiffness, &mass, 0, 6);
+        let memory = MemoryEstimate::new(stiffness, &mass, 0, 6);
         let ordered = Ordered::new(stiffness, &mass, 1e8, &constraints, &memory).unwrap();
         let factor = Shifted::factor(ordered, &constraints, memory, |_| 0, |_| ()).unwrap();
         let (order, in_own_order) = factor.in_own_order().expect("a factor with supernodes");

@@ -22,7 +22,7 @@ use crate::stiffness::NodalStiffness;
 /// Numbers that rows are made of.
 const LANES: usize = 8;
 /// Columns handled in one pass over the matrix: the sums of a node take nine of the processor's sixteen vectors.
-pub(crate) const MOST_COLUMNS: usize = 3 * LANES;
+pub(crate) const MAX_COLUMNS: usize = 3 * LANES;
 /// Neighbours of a node whose rows are asked for ahead of their use.
 const AHEAD: usize = 6;
 /// Numbers that are fetched together.
@@ -107,17 +107,17 @@ impl<'a> Smoothing<'a> {
 
     /// Memory held, bytes.
     pub(crate) fn bytes(nodes: usize) -> usize {
-        4 * 3 * MOST_COLUMNS * size_of::<f32>() * nodes
+        4 * 3 * MAX_COLUMNS * size_of::<f32>() * nodes
     }
 
     /// Takes columns of forces for r, each divided by the number that is returned for it; x is zero.
-    pub(crate) fn begin(&mut self, forces: MatRef<'_, f64>) -> [f64; MOST_COLUMNS] {
+    pub(crate) fn begin(&mut self, forces: MatRef<'_, f64>) -> [f64; MAX_COLUMNS] {
         self.width = forces.ncols().next_multiple_of(LANES);
         let largest = |column: usize| match forces.col(column).norm_max() {
             0.0 => 1.0,
             largest => largest,
         };
-        let units: [f64; MOST_COLUMNS] = std::array::from_fn(|c| if c < forces.ncols() { largest(c) } else { 1.0 });
+        let units: [f64; MAX_COLUMNS] = std::array::from_fn(|c| if c < forces.ncols() { largest(c) } else { 1.0 });
         let used = self.used();
         pack(forces, units.map(|unit| 1.0 / unit), &mut self.r[..used]);
         self.x[..used].par_chunks_mut(3 * NODES_PER_TASK * self.width).for_each(|x| x.fill(0.0));
@@ -137,7 +137,7 @@ impl<'a> Smoothing<'a> {
     }
 
     /// x + d for forces that were divided by `units`.
-    pub(crate) fn end(&self, units: [f64; MOST_COLUMNS], displacements: MatMut<'_, f64>) {
+    pub(crate) fn end(&self, units: [f64; MAX_COLUMNS], displacements: MatMut<'_, f64>) {
         let used = self.used();
         unpack([&self.x[..used], &self.d[..used]], units.map(|unit| unit / self.smoother.unit), displacements);
     }
@@ -349,7 +349,7 @@ fn chebyshev(largest: f64) -> [[f32; 2]; DEGREE] {
 }
 
 /// Columns, each times its factor, to rows; zeros in the place of those that are missing.
-pub(crate) fn pack(columns: MatRef<'_, f64>, factors: [f64; MOST_COLUMNS], rows: &mut [f32]) {
+pub(crate) fn pack(columns: MatRef<'_, f64>, factors: [f64; MAX_COLUMNS], rows: &mut [f32]) {
     let width = columns.ncols().next_multiple_of(LANES);
     rows.par_chunks_mut(3 * NODES_PER_TASK * width).enumerate().for_each(|(task, rows)| {
         let columns = columns.subrows(3 * NODES_PER_TASK * task, rows.len() / width);
@@ -362,7 +362,7 @@ pub(crate) fn pack(columns: MatRef<'_, f64>, factors: [f64; MOST_COLUMNS], rows:
 }
 
 /// And the sums of blocks of rows back.
-pub(crate) fn unpack<const K: usize>(blocks: [&[f32]; K], factors: [f64; MOST_COLUMNS], columns: MatMut<'_, f64>) {
+pub(crate) fn unpack<const K: usize>(blocks: [&[f32]; K], factors: [f64; MAX_COLUMNS], columns: MatMut<'_, f64>) {
     let width = columns.ncols().next_multiple_of(LANES);
     row_chunks_mut(columns, 3 * NODES_PER_TASK).enumerate().for_each(|(task, columns)| {
         let blocks = blocks.map(|rows| &rows[3 * NODES_PER_TASK * task * width..]);
@@ -405,7 +405,7 @@ mod tests {
         let stiffness = NodalStiffness::of_checked(&start, &coupled, &values);
         let k = Mat::from_fn(3 * nodes, 3 * nodes, |i, j| if (i / 3).abs_diff(j / 3) <= 3 { entry(i, j) } else { 0.0 });
         let smoother = Smoother::new(stiffness).unwrap();
-        let mut smoother = Smoothing::new(&smoother, MOST_COLUMNS);
+        let mut smoother = Smoothing::new(&smoother, MAX_COLUMNS);
         for columns in [1, 8, 13, 24] {
             let forces = Mat::from_fn(3 * nodes, columns, |i, j| 1e6 * ((i * 3 + j * 11) as f64).sin());
             let units = smoother.begin(forces.as_ref());

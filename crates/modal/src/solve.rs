@@ -10,13 +10,13 @@ use crate::columns::Columns;
 use crate::constraints::Constraints;
 use crate::engine::{Engine, EngineStats};
 use crate::error::ModalError;
-use crate::foretold::Foretold;
 use crate::held_problem::HeldProblem;
 use crate::input::{check_edge_ends, check_finite_positions, check_matrix, check_rows};
 use crate::lanczos::{BLOCK, FIXED, largest_pairs, room};
 use crate::levels::Levels;
 use crate::mass::NodalMass;
-use crate::mass_matrix::{MassMatrix, freedoms};
+use crate::mass_matrix::{MassMatrix, dofs};
+use crate::memory_estimate::MemoryEstimate;
 use crate::polynomials::Polynomials;
 use crate::progress::Progress;
 use crate::rigid::RigidModes;
@@ -70,7 +70,7 @@ pub struct SolveStats {
     /// Entries of the factor of K + sM, or of that on the corners of the elements where `cycles` are not zero; zero where an
     /// engine had it.
     pub factor_entries: usize,
-    /// Bytes that are held here at the most, from K and M to the reduced body, foretold from the sizes of all that is large and
+    /// Bytes that are held here at the most, from K and M to the reduced body, estimated from the sizes of all that is large and
     /// the number of threads; zero where the modes were known.
     pub peak_bytes: usize,
     /// Solutions with a block of vectors.
@@ -168,14 +168,14 @@ impl<'a> Solver<'a> {
         support: &Support,
     ) -> Result<Self, ModalError> {
         let started = Instant::now();
-        let freedoms = freedoms("stiffness", stiffness.ncols(), positions.len())?;
-        check_matrix("stiffness", stiffness, freedoms * positions.len())?;
+        let dofs = dofs("stiffness", stiffness.ncols(), positions.len())?;
+        check_matrix("stiffness", stiffness, dofs * positions.len())?;
         check_finite_positions(positions)?;
         let (rows, values) = (stiffness.symbolic().row_idx(), stiffness.val());
         check_symmetric("stiffness", 1, stiffness.symbolic().col_ptr(), |entry| rows[entry], |entry| values[entry])?;
         let stiffness = StiffnessMatrix::General(stiffness);
         let given = mass;
-        let mass = MassMatrix::of_freedoms(mass, positions.len(), freedoms)?;
+        let mass = MassMatrix::of_dofs(mass, positions.len(), dofs)?;
         let of_given = match &mass {
             MassMatrix::Nodal(_) => 16 * given.row_idx().len() + 8 * given.ncols(),
             MassMatrix::General(_) => 0,
@@ -214,7 +214,7 @@ impl<'a> Solver<'a> {
         if let MassMatrix::General(mass) = &mass {
             mass.check_semidefinite()?;
         }
-        let constraints = Constraints::new(support, positions, mass.freedoms())?;
+        let constraints = Constraints::new(support, positions, mass.dofs())?;
         let rigid = RigidModes::new(&mass, positions, support.motion)?;
         let polynomials = match (&stiffness, &mass, rigid.fields()) {
             (StiffnessMatrix::Nodal(k), MassMatrix::Nodal(m), Some(fields)) => {
@@ -298,7 +298,7 @@ impl<'a> Solver<'a> {
                 force_residuals: none(),
                 stats: SolveStats {
                     unknowns,
-                    peak_bytes: self.foretold().peak(0),
+                    peak_bytes: self.memory_estimate().peak(0),
                     preparation_time: self.preparation_time,
                     ..SolveStats::default()
                 },
@@ -308,7 +308,7 @@ impl<'a> Solver<'a> {
             return self.modes_by(engine.as_ref(), flexible, &mut progress);
         }
         let basis = FIXED + room(flexible, available);
-        let search = |memory: &Foretold| memory.of_search(basis, BLOCK, flexible);
+        let search = |memory: &MemoryEstimate| memory.of_search(basis, BLOCK, flexible);
         let mut tried = Duration::ZERO;
         let factor = match self.made() {
             Some(Inverse::Factor(factor)) => factor,
@@ -372,7 +372,7 @@ impl<'a> Solver<'a> {
     pub(crate) fn inverse(
         &self,
         modes: usize,
-        search: impl Fn(&Foretold) -> usize,
+        search: impl Fn(&MemoryEstimate) -> usize,
         progress: &mut dyn FnMut(Progress),
     ) -> Result<Inverse<'_>, ModalError> {
         if let Some(made) = self.made() {
@@ -388,7 +388,7 @@ impl<'a> Solver<'a> {
     /// The factor, of a body of any kind.
     pub(crate) fn factor(
         &self,
-        search: impl Fn(&Foretold) -> usize,
+        search: impl Fn(&MemoryEstimate) -> usize,
         progress: &mut dyn FnMut(Progress),
     ) -> Result<&Shifted, ModalError> {
         let (ordered, estimate_time) = self.ordered(progress)?;
@@ -401,7 +401,7 @@ impl<'a> Solver<'a> {
         let started = Instant::now();
         let shift = self.shift()?;
         let estimate_time = started.elapsed();
-        let ordered = Ordered::new(self.stiffness, &self.mass, shift, &self.constraints, &self.foretold())?;
+        let ordered = Ordered::new(self.stiffness, &self.mass, shift, &self.constraints, &self.memory_estimate())?;
         Ok((ordered, estimate_time))
     }
 
@@ -410,10 +410,10 @@ impl<'a> Solver<'a> {
         &self,
         ordered: Ordered<'_>,
         estimate_time: Duration,
-        search: impl Fn(&Foretold) -> usize,
+        search: impl Fn(&MemoryEstimate) -> usize,
         progress: &mut dyn FnMut(Progress),
     ) -> Result<&Shifted, ModalError> {
-        let mut factor = Shifted::factor(ordered, &self.constraints, self.foretold(), search, |forecast| {
+        let mut factor = Shifted::factor(ordered, &self.constraints, self.memory_estimate(), search, |forecast| {
             progress(Progress::Factorizing(forecast));
         })?;
         factor.estimate_time = estimate_time;
@@ -459,12 +459,12 @@ impl<'a> Solver<'a> {
 
     /// Bytes that are held at the most where an engine finds `modes` modes.
     pub(crate) fn peak_beside_engine(&self, modes: usize) -> usize {
-        self.foretold().peak_beside_engine(modes)
+        self.memory_estimate().peak_beside_engine(modes)
     }
 
     /// The memory that the matrices take, and what follows from their sizes.
-    pub(crate) fn foretold(&self) -> Foretold {
-        Foretold::new(self.stiffness, &self.mass, self.matrix_bytes, FIXED)
+    pub(crate) fn memory_estimate(&self) -> MemoryEstimate {
+        MemoryEstimate::new(self.stiffness, &self.mass, self.matrix_bytes, FIXED)
     }
 
     /// Time of the checks.
@@ -486,8 +486,8 @@ impl<'a> Solver<'a> {
         if eigenvalues[0] < -ROUNDING * self.stiffness.rounding(shapes.col(0)) {
             return Err(ModalError::NegativeStiffness { eigenvalue: eigenvalues[0], shift });
         }
-        let (positions, rigid, freedoms) = (self.positions, self.rigid.motion.count(), self.mass.freedoms());
-        let squared = |node: usize| (0..3).map(|axis| shapes[(freedoms * node + axis, 0)].powi(2)).sum::<f64>();
+        let (positions, rigid, dofs) = (self.positions, self.rigid.motion.count(), self.mass.dofs());
+        let squared = |node: usize| (0..3).map(|axis| shapes[(dofs * node + axis, 0)].powi(2)).sum::<f64>();
         let node = (0..positions.len()).max_by(|a, b| squared(*a).total_cmp(&squared(*b))).unwrap_or(0);
         Err(ModalError::Mechanism { rigid, count, eigenvalue: eigenvalues[0], shift, node, position: positions[node] })
     }
@@ -520,7 +520,7 @@ fn check_loose(
         !resists && !mass.is_massive(*row) && !constraints.holds(*row)
     };
     match (0..stiffness.ncols()).find(is_loose) {
-        Some(row) => Err(ModalError::Loose { node: row / mass.freedoms(), freedom: row % mass.freedoms() }),
+        Some(row) => Err(ModalError::Loose { node: row / mass.dofs(), dof: row % mass.dofs() }),
         None => Ok(()),
     }
 }

@@ -49,7 +49,7 @@ fn orthonormal_motions(
     positions: &[[f64; 3]],
     center: &Vector3<f64>,
 ) -> Result<Mat<f64>, ModalError> {
-    let fields = rigid_fields(positions, center, mass.freedoms());
+    let fields = rigid_fields(positions, center, mass.dofs());
     let gram = tall::inner(fields.as_ref(), mass.product(fields.as_ref()).as_ref());
     Ok(tall::product(fields.as_ref(), independent(&gram)?.as_ref()))
 }
@@ -73,7 +73,7 @@ fn eigenvalue_estimate(
     center: &Vector3<f64>,
     rigid: &Mat<f64>,
 ) -> Result<f64, ModalError> {
-    let fields = polynomial_fields(positions, center, mass.freedoms());
+    let fields = polynomial_fields(positions, center, mass.dofs());
     let k_fields = stiffness.product(fields.as_ref());
     let m_fields = mass.product(fields.as_ref());
     let stiffness = tall::inner(fields.as_ref(), k_fields.as_ref());
@@ -113,17 +113,17 @@ fn lowest(stiffness: &Mat<f64>, gram: Mat<f64>, coupling: &Mat<f64>) -> Result<f
 const FIELDS: usize = 24;
 
 /// The linear fields `x_a e_b + x_b e_a` and the quadratic ones `x_a x_b e_c`; rotations are half the curl (N×24).
-fn polynomial_fields(positions: &[[f64; 3]], center: &Vector3<f64>, freedoms: usize) -> Mat<f64> {
-    let mut fields = Mat::zeros(freedoms * positions.len(), FIELDS);
+fn polynomial_fields(positions: &[[f64; 3]], center: &Vector3<f64>, dofs: usize) -> Mat<f64> {
+    let mut fields = Mat::zeros(dofs * positions.len(), FIELDS);
     for (node, position) in positions.iter().enumerate() {
         let x = Vector3::from(*position) - center;
         for (pair, (a, b)) in PAIRS.into_iter().enumerate() {
-            fields[(freedoms * node + a, pair)] += x[b];
-            fields[(freedoms * node + b, pair)] += x[a];
+            fields[(dofs * node + a, pair)] += x[b];
+            fields[(dofs * node + b, pair)] += x[a];
             for axis in 0..3 {
                 let field = 6 + 3 * pair + axis;
-                fields[(freedoms * node + axis, field)] = x[a] * x[b];
-                if freedoms == 6 {
+                fields[(dofs * node + axis, field)] = x[a] * x[b];
+                if dofs == 6 {
                     // The curl of f e is ∇f × e.
                     let gradient = Vector3::ith(a, x[b]) + Vector3::ith(b, x[a]);
                     let rotation = 0.5 * gradient.cross(&Vector3::ith(axis, 1.0));

@@ -12,11 +12,11 @@ use faer::reborrow::{Reborrow, ReborrowMut};
 use faer::{Accum, ColMut, ColRef, Mat, MatRef, Scale, unzip, zip};
 
 use crate::error::ModalError;
-use crate::foretold::{Foretold, of_vectors};
 use crate::inertia_relief::InertiaRelief;
 use crate::input::{check_finite_columns, check_rows};
 use crate::lanczos::FIXED;
 use crate::levels::Levels;
+use crate::memory_estimate::{MemoryEstimate, of_vectors};
 use crate::multigrid::Multigrid;
 use crate::products::Packed;
 use crate::ritz::{RitzPairs, rayleigh_ritz};
@@ -86,7 +86,7 @@ impl Solver<'_> {
             return self.static_response_by(engine.as_ref(), forces);
         }
         memory::check("static responses", of_vectors(expected, modes.natural() + forces.ncols() + 10 * BLOCK))?;
-        let search = |memory: &Foretold| memory.of_search(FIXED, BLOCK, 0);
+        let search = |memory: &MemoryEstimate| memory.of_search(FIXED, BLOCK, 0);
         let inverse = self.inverse(modes.natural(), search, &mut |_| ())?;
         let answers = self.static_response_with(inverse, modes, forces, accuracy);
         match (inverse, &answers) {
@@ -331,7 +331,7 @@ impl<'a> Statics<'a> {
     }
 }
 
-/// Why an iteration has ended.
+/// Reason of the end of an iteration.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum End {
     /// By the residuals that it carries along, all answers are as good as was asked.

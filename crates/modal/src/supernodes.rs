@@ -134,17 +134,16 @@ mod tests {
             expanded(entry.row).flat_map(move |i| expanded(entry.col).map(move |j| Triplet::new(i, j, *entry.val)))
         });
         let size = 3 * nodes.ncols();
-        let freedoms = SparseColMat::try_new_from_triplets(size, size, &entries.collect::<Vec<_>>()).unwrap();
+        let dofs = SparseColMat::try_new_from_triplets(size, size, &entries.collect::<Vec<_>>()).unwrap();
         let of_nodes = supernodal(&nodes);
         let order = of_nodes.perm().unwrap().arrays().0.iter().flat_map(|node| expanded(*node)).collect::<Vec<_>>();
         // The same order for both.
         let mut place = vec![0; size];
         order.iter().enumerate().for_each(|(new, old)| place[*old] = new);
-        let moved: Vec<_> = freedoms.triplet_iter().map(|e| Triplet::new(place[e.row], place[e.col], *e.val)).collect();
+        let moved: Vec<_> = dofs.triplet_iter().map(|e| Triplet::new(place[e.row], place[e.col], *e.val)).collect();
         let moved = SparseColMat::try_new_from_triplets(size, size, &moved).unwrap();
-        let of_freedoms = supernodal_in_order(&moved);
-        let (SymbolicCholeskyRaw::Supernodal(a), SymbolicCholeskyRaw::Supernodal(b)) =
-            (of_nodes.raw(), of_freedoms.raw())
+        let of_dofs = supernodal_in_order(&moved);
+        let (SymbolicCholeskyRaw::Supernodal(a), SymbolicCholeskyRaw::Supernodal(b)) = (of_nodes.raw(), of_dofs.raw())
         else {
             panic!()
         };

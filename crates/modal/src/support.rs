@@ -79,7 +79,7 @@ pub struct Support {
     pub nodes: Vec<u32>,
     /// Single degrees of freedom that are held, as pairs of a node and 0 to 2 for its translation along x, y or z, 3 to 5
     /// for its rotation.
-    pub freedoms: Vec<(u32, usize)>,
+    pub dofs: Vec<(u32, usize)>,
 }
 
 impl Support {
@@ -90,7 +90,7 @@ impl Support {
 
     /// The support of nodes with these indices, which move as the `motion` takes them along.
     pub fn new(motion: RigidMotion, nodes: Vec<u32>) -> Self {
-        Self { motion, nodes, freedoms: Vec::new() }
+        Self { motion, nodes, dofs: Vec::new() }
     }
 }
 
@@ -151,7 +151,7 @@ impl RigidMotion {
         Self { others, ..Self::clamp(origin) }
     }
 
-    /// A basis of the motions that [`Support::of_freedoms`] left, as velocities of [`Self::fixed_point`] and angular
+    /// A basis of the motions that [`Support::of_dofs`] left, as velocities of [`Self::fixed_point`] and angular
     /// velocities, where they are not those of a free, pinned, hinged, sliding or clamped body: e.g. two translations and a
     /// rotation in a plane. Empty otherwise. Such a body has modes; the equations of large motion are not there for it.
     pub fn others(&self) -> &[Twist] {

@@ -182,11 +182,11 @@ pub fn static_energy(solid: &Solid, model: &Model, mode: usize, q: f64) -> Resul
 pub fn pendulum(young_modulus: f64, end: f64, steps: usize, rests: &[&str]) -> Result<Vec<Course>, NonlinearError> {
     let material = crate::bodies::soft(young_modulus);
     let solid = Solid::new(crate::bodies::mesh("rod")?, material, |x| x.x.abs() < 1e-9 && x.z.abs() < 1e-9)?;
-    let down: Vec<f64> = (0..solid.freedoms()).map(|k| if k % 3 == 2 { -9.81 } else { 0.0 }).collect();
+    let down: Vec<f64> = (0..solid.dofs()).map(|k| if k % 3 == 2 { -9.81 } else { 0.0 }).collect();
     let weight = solid.momentum(&down);
     let tip = solid.mesh().positions().iter().position(|x| (Vector3::from(*x) - Vector3::x()).norm() < 1e-9);
     let tip = tip.ok_or(NonlinearError::Mesh("the rod has no node at its tip".to_owned()))?;
-    let rest = vec![0.0; solid.freedoms()];
+    let rest = vec![0.0; solid.dofs()];
     let start = NodalState { time: 0.0, u: rest.clone(), v: rest };
     let mut motion = Motion::new(&solid, start, end / steps as f64, |_, _| weight.clone());
     let mut course = Course { times: vec![0.0], values: vec![0.0] };
@@ -269,7 +269,7 @@ pub fn pressed(
     let omega = free.body.circular_frequencies[0];
     let at_rest = match shift {
         Some(shift) => solid.at_rest(1, shift * omega * omega, force)?,
-        None => vec![0.0; solid.freedoms()],
+        None => vec![0.0; solid.dofs()],
     };
     let phi = shape(&free, 0);
     let momentum = solid.momentum(&phi);

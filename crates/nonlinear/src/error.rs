@@ -1,6 +1,6 @@
 //! Errors of the nonlinear body.
 
-/// Why the body is not found or does not move.
+/// Errors of a body that is not found or does not move.
 #[derive(Debug)]
 pub enum NonlinearError {
     /// A mesh, a material or a group that is refused.

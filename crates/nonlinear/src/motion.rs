@@ -99,8 +99,8 @@ impl<'a, F: Fn(f64, &[f64]) -> Vec<f64>> Motion<'a, F> {
 
 /// Zero where degrees of freedom are held.
 pub(crate) fn clear(solid: &Solid, forces: &mut [f64]) {
-    for (freedom, force) in forces.iter_mut().enumerate() {
-        if solid.is_held(freedom) {
+    for (dof, force) in forces.iter_mut().enumerate() {
+        if solid.is_held(dof) {
             *force = 0.0;
         }
     }

@@ -94,13 +94,13 @@ impl Solid {
     }
 
     /// Number of degrees of freedom, those that are held among them.
-    pub fn freedoms(&self) -> usize {
+    pub fn dofs(&self) -> usize {
         self.held.len()
     }
 
     /// True if a degree of freedom is held.
-    pub fn is_held(&self, freedom: usize) -> bool {
-        self.held[freedom]
+    pub fn is_held(&self, dof: usize) -> bool {
+        self.held[dof]
     }
 
     /// M v.

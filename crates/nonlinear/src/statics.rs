@@ -25,7 +25,7 @@ impl Solid {
         shift: f64,
         forces: impl Fn(&[f64]) -> Vec<f64>,
     ) -> Result<Vec<f64>, NonlinearError> {
-        let mut u = vec![0.0; self.freedoms()];
+        let mut u = vec![0.0; self.dofs()];
         for step in 1..=steps {
             let part = step as f64 / steps as f64;
             let mut last = f64::INFINITY;
@@ -109,7 +109,7 @@ impl Solid {
         steps: usize,
     ) -> Result<Vec<f64>, NonlinearError> {
         let momenta: Vec<Vec<f64>> = shapes.iter().map(|shape| self.momentum(shape)).collect();
-        let mut u = vec![0.0; self.freedoms()];
+        let mut u = vec![0.0; self.dofs()];
         for step in 1..=steps {
             let part = step as f64 / steps as f64;
             let amounts: Vec<f64> = amounts.iter().map(|amount| part * amount).collect();

@@ -50,8 +50,8 @@ impl Body {
     pub(crate) fn of_scene(&self, py: Python<'_>, scene: Py<Scene>) -> PyResult<Self> {
         if Assembly::made_of(scene.get().scene()) != Assembly::made_of(self.scene_of()) {
             let expected = "one with the same [body], constraints and modes.flexible";
-            let cure = "make another body: Simulation(Body(scene))";
-            return Err(wrong_input(py, "scene", "a scene of another body", expected, cure));
+            let help = "make another body: Simulation(Body(scene))";
+            return Err(wrong_input(py, "scene", "a scene of another body", expected, help));
         }
         let (assembly, of_thread) = (self.assembly.clone(), scene.get().scene().clone());
         let build = move |told: &mut dyn FnMut(BuildProgress)| assembly.builder()?.build(&of_thread, told);
@@ -61,8 +61,8 @@ impl Body {
 
     fn meshed(&self, py: Python<'_>) -> PyResult<&Meshed> {
         self.model.meshed.as_ref().ok_or_else(|| {
-            let cure = "ask for what needs a mesh of a body that has one";
-            wrong_input(py, "body", "a rigid body", "a body with a mesh", cure)
+            let help = "ask for what needs a mesh of a body that has one";
+            wrong_input(py, "body", "a rigid body", "a body with a mesh", help)
         })
     }
 

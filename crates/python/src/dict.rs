@@ -23,9 +23,9 @@ pub(crate) fn to_toml(value: &Bound<'_, PyAny>, name: &str, key: &str) -> PyResu
 
 fn within(value: &Bound<'_, PyAny>, name: &str, key: &str, depth: usize) -> PyResult<Value> {
     let py = value.py();
-    let refuse = |found: &str, expected: &str, cure: &str| {
+    let refuse = |found: &str, expected: &str, help: &str| {
         let place = if key.is_empty() { name.to_owned() } else { format!("{name}: `{key}`") };
-        wrong_input(py, &place, found, expected, cure)
+        wrong_input(py, &place, found, expected, help)
     };
     if depth > DEEPEST {
         let expected = format!("at most {DEEPEST}");

@@ -28,28 +28,28 @@ pub(crate) fn exception_of(py: Python<'_>, kind: Kind, message: &str, details: &
 }
 
 /// Error for an argument of a function that is not of its kind: its name, the value found, the one expected, and help.
-pub(crate) fn wrong_input(py: Python<'_>, what: &str, found: &str, expected: &str, cure: &str) -> PyErr {
-    let message = format!("{what}: found {found}, expected {expected}\n = {cure}");
+pub(crate) fn wrong_input(py: Python<'_>, what: &str, found: &str, expected: &str, help: &str) -> PyErr {
+    let message = format!("{what}: found {found}, expected {expected}\n = {help}");
     let text = |text: &str| Some(text.to_owned());
     let details = Details {
         key: text(what),
         found: text(found),
         expected: text(expected),
-        cure: text(cure),
+        help: text(help),
         ..Details::default()
     };
     exception_of(py, Kind::Input, &message, &details)
 }
 
 fn made(py: Python<'_>, class: &str, message: &str, details: &Details) -> PyResult<PyErr> {
-    let Details { file, line, key, found, expected, cure } = details;
+    let Details { file, line, key, found, expected, help } = details;
     let known = PyDict::new(py);
     known.set_item("file", file)?;
     known.set_item("line", line)?;
     known.set_item("key", key)?;
     known.set_item("found", found)?;
     known.set_item("expected", expected)?;
-    known.set_item("cure", cure)?;
+    known.set_item("help", help)?;
     let error = py.import(MODULE)?.getattr(class)?.call((message,), Some(&known))?;
     Ok(PyErr::from_value(error))
 }

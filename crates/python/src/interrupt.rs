@@ -74,7 +74,7 @@ pub(crate) fn interruptible<T: Send + 'static>(
     }
 }
 
-/// Why a thread has ended without a result.
+/// Reason of a thread that has ended without a result.
 fn ended(raised: Option<PyErr>, joined: Result<(), Box<dyn Any + Send>>) -> PyErr {
     match joined {
         Err(panic) if !panic.is::<Stopped>() => resume_unwind(panic),

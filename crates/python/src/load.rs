@@ -28,7 +28,7 @@ pub(crate) fn listed(loads: Option<Bound<'_, PyAny>>) -> PyResult<Vec<Bound<'_, 
 struct Law {
     function: Py<PyAny>,
     name: String,
-    corners: Vec<f64>,
+    discontinuities: Vec<f64>,
     longest_step: Option<f64>,
 }
 
@@ -36,7 +36,7 @@ impl Law {
     fn new(
         function: &Bound<'_, PyAny>,
         name: Option<String>,
-        corners: Vec<f64>,
+        discontinuities: Vec<f64>,
         longest_step: Option<f64>,
     ) -> PyResult<Self> {
         let py = function.py();
@@ -44,19 +44,19 @@ impl Law {
             let found = function.get_type().name()?;
             return Err(PyTypeError::new_err(format!("a law is a function of the motion; found {found}")));
         }
-        if let Some(corner) = corners.iter().find(|corner| !corner.is_finite()) {
-            let cure = "name the times at which the law or its rate jumps";
-            return Err(wrong_input(py, "corners", &corner.to_string(), "finite times", cure));
+        if let Some(discontinuity) = discontinuities.iter().find(|discontinuity| !discontinuity.is_finite()) {
+            let help = "name the times at which the law or its rate jumps";
+            return Err(wrong_input(py, "discontinuities", &discontinuity.to_string(), "finite times", help));
         }
         if let Some(step) = longest_step.filter(|step| !(*step > 0.0 && step.is_finite())) {
-            let cure = "name the longest step that sees the law as it is";
-            return Err(wrong_input(py, "longest_step", &step.to_string(), "a positive number", cure));
+            let help = "name the longest step that sees the law as it is";
+            return Err(wrong_input(py, "longest_step", &step.to_string(), "a positive number", help));
         }
         let name = match name {
             Some(name) => name,
             None => function.getattr("__name__").and_then(|name| name.extract()).unwrap_or_else(|_| "law".to_owned()),
         };
-        Ok(Self { function: function.clone().unbind(), name, corners, longest_step })
+        Ok(Self { function: function.clone().unbind(), name, discontinuities, longest_step })
     }
 
     /// The load whose law is `act`: it applies what the function gives, or keeps what it raises.
@@ -84,7 +84,7 @@ impl Law {
                 }
             }
         };
-        let load = LoadFn::new(self.name.clone(), law).with_corners(self.corners.clone());
+        let load = LoadFn::new(self.name.clone(), law).with_discontinuities(self.discontinuities.clone());
         match self.longest_step {
             Some(step) => Arc::new(load.with_longest_step(step)),
             None => Arc::new(load),
@@ -95,7 +95,7 @@ impl Law {
 /// A force at a point of the scene, by a law: a function of the motion that returns three components.
 ///
 /// They are global, or in body axes with `frame="body"`. The law is evaluated several times a step, and must depend on
-/// nothing but the motion. `corners` are times at which it or its rate jumps, so that steps end there; `longest_step`
+/// nothing but the motion. `discontinuities` are times at which it or its rate jumps, so that steps end there; `longest_step`
 /// is the longest step that sees it as it is.
 #[pyclass(frozen, module = "flexframe")]
 pub(crate) struct Force {
@@ -108,24 +108,24 @@ pub(crate) struct Force {
 #[pymethods]
 impl Force {
     #[new]
-    #[pyo3(signature = (point, law, *, frame="global", name=None, corners=Vec::new(), longest_step=None))]
+    #[pyo3(signature = (point, law, *, frame="global", name=None, discontinuities=Vec::new(), longest_step=None))]
     fn new(
         point: String,
         law: &Bound<'_, PyAny>,
         frame: &str,
         name: Option<String>,
-        corners: Vec<f64>,
+        discontinuities: Vec<f64>,
         longest_step: Option<f64>,
     ) -> PyResult<Self> {
         let follows = match frame {
             "global" => false,
             "body" => true,
             other => {
-                let (found, cure) = (format!("`{other}`"), "name the axes of the components that the law gives");
-                return Err(wrong_input(law.py(), "frame", &found, "`global` or `body`", cure));
+                let (found, help) = (format!("`{other}`"), "name the axes of the components that the law gives");
+                return Err(wrong_input(law.py(), "frame", &found, "`global` or `body`", help));
             }
         };
-        Ok(Self { point, follows, law: Law::new(law, name, corners, longest_step)? })
+        Ok(Self { point, follows, law: Law::new(law, name, discontinuities, longest_step)? })
     }
 
     fn __repr__(&self) -> String {
@@ -142,14 +142,14 @@ pub(crate) struct ModalForce {
 #[pymethods]
 impl ModalForce {
     #[new]
-    #[pyo3(signature = (law, *, name=None, corners=Vec::new(), longest_step=None))]
+    #[pyo3(signature = (law, *, name=None, discontinuities=Vec::new(), longest_step=None))]
     fn new(
         law: &Bound<'_, PyAny>,
         name: Option<String>,
-        corners: Vec<f64>,
+        discontinuities: Vec<f64>,
         longest_step: Option<f64>,
     ) -> PyResult<Self> {
-        Ok(Self { law: Law::new(law, name, corners, longest_step)? })
+        Ok(Self { law: Law::new(law, name, discontinuities, longest_step)? })
     }
 
     fn __repr__(&self) -> String {
@@ -178,8 +178,8 @@ impl Force {
 impl ModalForce {
     fn load(&self, py: Python<'_>, points: &Points, flexible: usize, faults: &Faults) -> PyResult<SharedLoad> {
         if flexible == 0 {
-            let cure = "take a Force at a point, or a body with modes";
-            return Err(wrong_input(py, "ModalForce", "a rigid body", "a body with flexible modes", cure));
+            let help = "take a Force at a point, or a body with modes";
+            return Err(wrong_input(py, "ModalForce", "a rigid body", "a body with flexible modes", help));
         }
         let seen = points.clone();
         let what = format!("the modal forces of the law `{}`", self.law.name);

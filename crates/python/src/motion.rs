@@ -18,8 +18,8 @@ pub(crate) fn point_number(py: Python<'_>, points: &Points, name: &str) -> PyRes
     points.iter().position(|(known, _)| known == name).ok_or_else(|| {
         let names: Vec<String> = points.iter().map(|(name, _)| format!("`{name}`")).collect();
         let known = if names.is_empty() { "none, since the scene names none".to_owned() } else { names.join(", ") };
-        let cure = "name the point under [output.points] of the scene";
-        wrong_input(py, "point", &format!("`{name}`"), &format!("a point of the scene ({known})"), cure)
+        let help = "name the point under [output.points] of the scene";
+        wrong_input(py, "point", &format!("`{name}`"), &format!("a point of the scene ({known})"), help)
     })
 }
 
@@ -64,8 +64,8 @@ impl Motion {
             (Some(name), _) => point_number(py, &self.points, name)?,
             (None, Some(point)) => point,
             (None, None) => {
-                let cure = "name a point under [output.points] of the scene";
-                return Err(wrong_input(py, "point", "no name", "the name of a point, for this law is at none", cure));
+                let help = "name a point under [output.points] of the scene";
+                return Err(wrong_input(py, "point", "no name", "the name of a point, for this law is at none", help));
             }
         };
         Ok(PyArray1::from_slice(py, self.of_points[point][which].as_slice()))

@@ -66,7 +66,7 @@ fn followed<'py>(
                 moves.store(true, Ordering::Relaxed);
                 told.check();
             }
-            RunProgress::Foretold(_) | RunProgress::Motion(_) => {}
+            RunProgress::Estimate(_) | RunProgress::Motion(_) => {}
         })
     };
     // The motion stops by itself at its next row, and its rows are kept.

@@ -91,8 +91,8 @@ impl Scene {
             assigned.push((key, value));
         }
         let refused = |AssignError { key, found, expected }| {
-            let cure = "name the key as messages about the scene do; docs/reference/scene.md lists them";
-            wrong_input(py, &format!("`{key}`"), &found, &expected, cure)
+            let help = "name the key as messages about the scene do; docs/reference/scene.md lists them";
+            wrong_input(py, &format!("`{key}`"), &found, &expected, help)
         };
         let text = assign(&self.0.source, &assigned).map_err(refused)?;
         Self::parsed(py, &text, self.0.path.clone(), None, self.0.cache.clone())

@@ -107,10 +107,10 @@ impl Simulation {
         &self,
         py: Python<'_>,
         running: &mut Running,
-        most_steps: u64,
+        max_steps: u64,
         mut watch: Option<&mut Watch<'_>>,
     ) -> PyResult<dynamics::Reached> {
-        let mut left = most_steps;
+        let mut left = max_steps;
         loop {
             // Before the steps: what they come to is then returned in any case, and no row or event is lost.
             py.check_signals()?;
@@ -369,8 +369,8 @@ impl Simulation {
         // The run knows no time between that it could stop at.
         if !(time - now > SAME * end && time <= end) {
             let expected = format!("a time after {now}, up to the end at {end}");
-            let cure = "name a time within the run; a later end is `time.end` of the scene";
-            return Err(wrong_input(py, "time", &time.to_string(), &expected, cure));
+            let help = "name a time within the run; a later end is `time.end` of the scene";
+            return Err(wrong_input(py, "time", &time.to_string(), &expected, help));
         }
         running.simulation.set_stop_time(Some(time));
         let reached = loop {
@@ -429,9 +429,9 @@ impl Simulation {
         let state = changed(now, state)?;
         let end = running.simulation.end();
         if !(0.0..=end).contains(&state.time) {
-            let cure = "take a scene with a later `time.end`";
+            let help = "take a scene with a later `time.end`";
             let expected = format!("a time from 0 to the end at {end}");
-            return Err(wrong_input(py, "state[\"time\"]", &state.time.to_string(), &expected, cure));
+            return Err(wrong_input(py, "state[\"time\"]", &state.time.to_string(), &expected, help));
         }
         let simulation = &mut running.simulation;
         let set = detached(py, || simulation.set_state(&state))?;
@@ -497,8 +497,8 @@ impl Simulation {
 fn value_of_event(function: &Bound<'_, PyAny>, name: &str, row: Row) -> PyResult<f64> {
     let value = function.call1((row,))?;
     let refuse = |found: &str| {
-        let cure = "return a function of the row that passes through zero";
-        wrong_input(function.py(), &format!("the event `{name}`"), found, "a finite number", cure)
+        let help = "return a function of the row that passes through zero";
+        wrong_input(function.py(), &format!("the event `{name}`"), found, "a finite number", help)
     };
     let number: f64 = value.extract().map_err(|_| refuse(&described(&value)))?;
     if number.is_finite() { Ok(number) } else { Err(refuse(&number.to_string())) }

@@ -44,8 +44,8 @@ pub(crate) fn changed(now: MotionState, values: &Bound<'_, PyDict>) -> PyResult<
             "modal_velocity" => state.modal_velocity = numbers(&value, flexible, &what)?,
             _ => {
                 let expected = format!("one of {}", KEYS.join(", "));
-                let cure = "change the dict that state() gives, or give some of its keys";
-                return Err(wrong_input(py, "state", &format!("the key {key:?}"), &expected, cure));
+                let help = "change the dict that state() gives, or give some of its keys";
+                return Err(wrong_input(py, "state", &format!("the key {key:?}"), &expected, help));
             }
         }
     }
@@ -65,7 +65,7 @@ fn attitude(value: &Bound<'_, PyAny>, now: &Attitude, what: &str) -> PyResult<At
     }
     let wxyz = [wxyz[0], wxyz[1], wxyz[2], wxyz[3]];
     Attitude::from_wxyz(wxyz).map_err(|error| {
-        let cure = "give the quaternion (w, x, y, z) that takes body components to global ones";
-        wrong_input(value.py(), what, &error.to_string(), "a quaternion that is not zero", cure)
+        let help = "give the quaternion (w, x, y, z) that takes body components to global ones";
+        wrong_input(value.py(), what, &error.to_string(), "a quaternion that is not zero", help)
     })
 }

@@ -163,8 +163,8 @@ def test_load_arguments(rigid, ring):
         flexframe.Force("corner", [1.0, 0.0, 0.0])
     with pytest.raises(InputError, match="frame: found `world`, expected `global` or `body`"):
         flexframe.Force("corner", zero, frame="world")
-    with pytest.raises(InputError, match="corners: found NaN"):
-        flexframe.Force("corner", zero, corners=[float("nan")])
+    with pytest.raises(InputError, match="discontinuities: found NaN"):
+        flexframe.Force("corner", zero, discontinuities=[float("nan")])
     with pytest.raises(InputError, match="longest_step: found 0, expected a positive number"):
         flexframe.Force("corner", zero, longest_step=0.0)
     with pytest.raises(InputError, match="point: found `nose`, expected a point of the scene"):

@@ -67,7 +67,7 @@ def test_a_law_at_a_point_is_the_load_of_a_scene(ring):
     force = 200.0 * np.array([0.0, -1.0, 0.5]) / np.linalg.norm([0.0, -1.0, 0.5])
     half_sine = lambda motion: force * (np.sin(np.pi * motion.time / 0.002) if motion.time < 0.002 else 0.0)
     bare = flexframe.Body(flexframe.Scene({**RING, "loads": []}, base=EXAMPLES))
-    by_law = flexframe.Simulation(bare, [flexframe.Force("struck", half_sine, corners=[0.002])]).run()
+    by_law = flexframe.Simulation(bare, [flexframe.Force("struck", half_sine, discontinuities=[0.002])]).run()
     by_scene = flexframe.Simulation(ring).run()
     for path in ("position", "attitude", "modal/displacement", "energy/work", "points/velocity"):
         scale = np.abs(by_scene[path]).max()
@@ -135,7 +135,7 @@ def test_a_mode_that_a_law_has_struck_decays_as_its_damping_says():
         force = np.sin(np.pi * motion.time / duration) if motion.time < duration else 0.0
         return [force, 0.0, 0.0, 0.0]
 
-    results = flexframe.Simulation(body, [flexframe.ModalForce(strike, corners=[duration])]).run()
+    results = flexframe.Simulation(body, [flexframe.ModalForce(strike, discontinuities=[duration])]).run()
     assert np.array_equal(results.damping_ratios, np.full(4, zeta))
     free = results["time"] > 1.05 * duration
     t = results["time"][free] - results["time"][free][0]

@@ -44,7 +44,7 @@ def test_a_scene_of_another_body_is_refused(ring):
     ]}):
         with pytest.raises(flexframe.InputError, match="a scene of another body") as raised:
             flexframe.Simulation(ring, scene=ring.scene.with_values(values))
-        assert "Simulation(Body(scene))" in raised.value.cure
+        assert "Simulation(Body(scene))" in raised.value.help
     with pytest.raises(flexframe.InputError, match="another body"):
         flexframe.Simulation(ring, scene=flexframe.Scene(RIGID))
 

@@ -84,7 +84,7 @@ def test_arrays_that_are_no_mesh_are_refused(tmp_path):
     ]:
         with pytest.raises(flexframe.InputError, match=words) as raised:
             flexframe.write_mesh(file, arguments[0], arguments[1], **arguments[2])
-        assert raised.value.key == named and raised.value.cure
+        assert raised.value.key == named and raised.value.help
     with pytest.raises(flexframe.FileError):
         flexframe.write_mesh(tmp_path / "none" / "bar.msh", nodes, elements)
     assert list(tmp_path.iterdir()) == []

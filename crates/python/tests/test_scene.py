@@ -57,7 +57,7 @@ def test_messages_and_what_is_known_are_those_of_the_program(program, tmp_path):
         flexframe.Scene(path)
     error = raised.value
     assert str(error) == told["message"]
-    for name in ("file", "line", "key", "found", "expected", "cure"):
+    for name in ("file", "line", "key", "found", "expected", "help"):
         assert getattr(error, name) == told.get(name), name
     assert isinstance(error, flexframe.Error) and isinstance(error, ValueError)
 

@@ -4,7 +4,7 @@ use crate::ReportError;
 use crate::report::{Component, Motion, Report, Surface};
 
 /// Shapes that a page can draw: layers of a texture that every graphics processor has.
-const MOST_SHAPES: usize = 256;
+const MAX_SHAPES: usize = 256;
 
 /// How far the norm of an attitude may be from 1.
 const UNIT_TOLERANCE: f64 = 1e-6;
@@ -15,8 +15,8 @@ const UNIT_TOLERANCE: f64 = 1e-6;
 /// The first thing that is wrong.
 pub(crate) fn check(report: &Report) -> Result<(), ReportError> {
     check_motion(&report.motion, report.shapes.len())?;
-    if report.shapes.len() > MOST_SHAPES {
-        return Err(ReportError::TooManyShapes { found: report.shapes.len(), most: MOST_SHAPES });
+    if report.shapes.len() > MAX_SHAPES {
+        return Err(ReportError::TooManyShapes { found: report.shapes.len(), most: MAX_SHAPES });
     }
     if let Some(surface) = &report.surface {
         check_surface(surface)?;
@@ -89,8 +89,8 @@ fn check_shapes(report: &Report) -> Result<(), ReportError> {
     }
     if let Some(stress) = &report.stress {
         length("stresses of shapes and products", stress.shapes.len(), report.shapes.len() + stress.products.len())?;
-        if stress.shapes.len() > MOST_SHAPES {
-            return Err(ReportError::TooManyShapes { found: stress.shapes.len(), most: MOST_SHAPES });
+        if stress.shapes.len() > MAX_SHAPES {
+            return Err(ReportError::TooManyShapes { found: stress.shapes.len(), most: MAX_SHAPES });
         }
         if let Some(coordinate) = stress.products.as_flattened().iter().find(|k| **k >= report.shapes.len()) {
             return Err(ReportError::NoSuchShape { coordinate: *coordinate, count: report.shapes.len() });

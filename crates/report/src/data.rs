@@ -18,7 +18,7 @@ const HISTORY_POINTS: (usize, usize) = (500, 4000);
 pub(crate) struct Data<'a> {
     title: &'a str,
     program: &'a str,
-    /// Why the run is not complete.
+    /// Reason of an incomplete run.
     unfinished: Option<&'a str>,
     units: Units<'a>,
     facts: Vec<[&'a str; 2]>,

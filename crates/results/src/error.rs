@@ -19,7 +19,7 @@ pub enum FileError {
         source: hdf5::Error,
     },
     /// The operating system refused an operation.
-    #[error("{path}: cannot {action}: {reason}; {cure}", path = .path.display())]
+    #[error("{path}: cannot {action}: {reason}; {help}", path = .path.display())]
     System {
         /// The results file.
         path: PathBuf,
@@ -28,7 +28,7 @@ pub enum FileError {
         /// The system's own message.
         reason: String,
         /// Help for the user.
-        cure: &'static str,
+        help: &'static str,
     },
     /// Another process has the file open for writing.
     #[error(
@@ -87,7 +87,7 @@ pub enum FileError {
         kind: &'static str,
         /// The name as given.
         name: String,
-        /// Why it is refused.
+        /// Reason of the refusal.
         reason: &'static str,
     },
     /// A text holds a NUL character, at which HDF5 strings end.
@@ -237,9 +237,9 @@ impl FileError {
     }
 
     /// Help, where the system has refused something.
-    pub fn cure(&self) -> Option<&'static str> {
+    pub fn help(&self) -> Option<&'static str> {
         match self {
-            Self::System { cure, .. } => Some(cure),
+            Self::System { help, .. } => Some(help),
             _ => None,
         }
     }
@@ -279,7 +279,7 @@ impl FileError {
     /// With what helps against the error.
     pub(crate) fn system(path: &Path, action: impl Into<String>, error: &io::Error) -> Self {
         use io::ErrorKind::*;
-        let cure = match error.kind() {
+        let help = match error.kind() {
             StorageFull | QuotaExceeded | FileTooLarge => {
                 "make room there; an unfinished run can then be taken up again with `flexframe resume`"
             }
@@ -292,6 +292,6 @@ impl FileError {
         let reason = error.to_string();
         // The name of a temporary file says nothing.
         let reason = reason.split(" at path ").next().unwrap_or_default().to_owned();
-        Self::System { path: path.to_path_buf(), action: action.into(), reason, cure }
+        Self::System { path: path.to_path_buf(), action: action.into(), reason, help }
     }
 }

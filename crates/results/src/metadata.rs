@@ -133,7 +133,7 @@ pub struct Metadata {
     pub support_names: Vec<String>,
     /// Effects of the motion.
     pub effects: Vec<EffectProperties>,
-    /// Why the model is known to be wrong from the beginning, of a run that was wanted all the same.
+    /// Known error of the model at the beginning, in a run that was wanted all the same.
     pub refusal: Option<String>,
     /// Warnings of the run, each a sentence or more: see [`Writer::warn`](crate::Writer::warn).
     pub warnings: Vec<String>,

@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-/// Why a matrix is not the inertia tensor of a body.
+/// Errors of a matrix that is not the inertia tensor of a body.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum InertiaError {

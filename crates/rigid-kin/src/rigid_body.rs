@@ -7,7 +7,7 @@ use crate::inertia::{Inertia, InertiaError};
 use crate::reference_points::euler_angular_acceleration;
 use crate::rotation::{BeyondFullTurn, f_inverse};
 
-/// Why numbers make no rigid body.
+/// Errors of numbers that make no rigid body.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RigidBodyError {
@@ -22,7 +22,7 @@ pub enum RigidBodyError {
     Inertia(#[from] InertiaError),
 }
 
-/// Why a step could not be made.
+/// Errors of a step.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RigidStepError {

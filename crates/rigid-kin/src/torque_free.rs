@@ -28,7 +28,7 @@ use crate::attitude::Attitude;
 use crate::elliptic::jacobi;
 use crate::inertia::Inertia;
 
-/// Why a free motion, or its state at a time, cannot be given.
+/// Errors of a free motion, or of its state at a time.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TorqueFreeError {

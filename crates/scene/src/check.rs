@@ -23,7 +23,7 @@ use crate::unit_vector::unit;
 const LEAST_SINE: f64 = 1e-6;
 
 /// The most entries of a list of which each takes memory and work as the mesh does.
-const MOST_ENTRIES: usize = 1000;
+const MAX_ENTRIES: usize = 1000;
 
 /// The most that is read from the table files of a scene, in bytes (16 MiB).
 const LONGEST_TABLES: u64 = 16 << 20;
@@ -45,16 +45,16 @@ impl<'d> Check<'d> {
 
 impl Check<'_> {
     /// Refuses the value with the key path `key`, as it is written, unless `rule` holds.
-    fn require(&self, rule: bool, key: &str, expected: &str, cure: &str) -> Result<(), SceneError> {
+    fn require(&self, rule: bool, key: &str, expected: &str, help: &str) -> Result<(), SceneError> {
         if rule {
             return Ok(());
         }
         let node = self.document.nearest(key);
-        Err(node.place().refuse(shorten(node.written()), expected, cure))
+        Err(node.place().refuse(shorten(node.written()), expected, help))
     }
 
-    fn positive(&self, key: &str, value: f64, cure: &str) -> Result<(), SceneError> {
-        self.require(value > 0.0, key, "a number greater than 0", cure)
+    fn positive(&self, key: &str, value: f64, help: &str) -> Result<(), SceneError> {
+        self.require(value > 0.0, key, "a number greater than 0", help)
     }
 
     /// The refusal of a required key that is absent, as serde would give it.
@@ -68,31 +68,31 @@ impl Check<'_> {
     }
 
     /// Refuses the values at `table` if more than one of `keys` is there.
-    fn at_most_one(&self, table: &str, keys: &[&str], cure: &str) -> Result<(), SceneError> {
+    fn at_most_one(&self, table: &str, keys: &[&str], help: &str) -> Result<(), SceneError> {
         let mut found = keys.iter().filter(|key| self.has(&join(table, key)));
         match (found.next(), found.next()) {
             (Some(first), Some(second)) => Err(self.document.place(&join(table, second)).refuse(
                 format!("both `{first}` and `{second}`"),
                 "at most one of them",
-                cure,
+                help,
             )),
             _ => Ok(()),
         }
     }
 
     /// Refuses a list that would take too much with a large mesh.
-    fn not_too_many(&self, key: &str, entries: usize, cure: &str) -> Result<(), SceneError> {
-        if entries <= MOST_ENTRIES {
+    fn not_too_many(&self, key: &str, entries: usize, help: &str) -> Result<(), SceneError> {
+        if entries <= MAX_ENTRIES {
             return Ok(());
         }
-        let expected = format!("at most {MOST_ENTRIES}");
-        Err(self.document.place(key).refuse(format!("{entries} entries"), expected, cure))
+        let expected = format!("at most {MAX_ENTRIES}");
+        Err(self.document.place(key).refuse(format!("{entries} entries"), expected, help))
     }
 
     /// Makes a vector a unit one.
-    fn normalise(&self, key: &str, vector: &mut [f64; 3], cure: &str) -> Result<(), SceneError> {
+    fn normalise(&self, key: &str, vector: &mut [f64; 3], help: &str) -> Result<(), SceneError> {
         let unit = unit(&Vector3::from(*vector));
-        self.require(unit.is_some(), key, "a vector that is not zero", cure)?;
+        self.require(unit.is_some(), key, "a vector that is not zero", help)?;
         *vector = unit.unwrap_or_default().into();
         Ok(())
     }
@@ -133,14 +133,14 @@ impl Check<'_> {
     pub fn frame(&self, frame: Option<&Frame>) -> Result<(), SceneError> {
         let Some(frame) = frame else { return Ok(()) };
         let [r, p, q] = [frame.r, frame.p, frame.q].map(Vector3::from);
-        let cure = "choose three points of the body that span a triangle, \
+        let help = "choose three points of the body that span a triangle, \
                     or remove [frame] to have them chosen";
         for (key, one, other, same) in
             [("frame.P", "R", "P", r == p), ("frame.Q", "R", "Q", r == q), ("frame.Q", "P", "Q", p == q)]
         {
             if same {
                 let found = format!("the same point for {one} and {other}");
-                return Err(self.document.place(key).refuse(found, "three different points", cure));
+                return Err(self.document.place(key).refuse(found, "three different points", help));
             }
         }
         let sine = least_sine(&r, &p, &q);
@@ -150,7 +150,7 @@ impl Check<'_> {
         Err(self.document.place("frame").refuse(
             format!("R, P, Q on one line (the smallest sine of an angle is {sine:.1e})"),
             format!("a triangle with no sine below {LEAST_SINE:e}"),
-            cure,
+            help,
         ))
     }
 }

@@ -1,4 +1,4 @@
-//! Why a scene is refused, and how that is shown.
+//! Errors of a scene, and their display.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -13,20 +13,20 @@ const TOO_LARGE_CURE: &str = "name a scene file; the mesh goes into a file of it
                               long table of a history, named by `file`";
 const NOT_UTF8_CURE: &str = "save it with encoding UTF-8";
 
-/// Why a scene is refused. The message gives the place, what was found, what was expected and
-/// the cure, with the line and a caret under it.
+/// Refusal of a scene. The message gives the place, what was found, what was expected and
+/// the help, with the line and a caret under it.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum SceneError {
     /// The file is not there or cannot be read.
-    #[error("{}: the scene file cannot be read: {cause}\n = {cure}", .path.display())]
+    #[error("{}: the scene file cannot be read: {cause}\n = {help}", .path.display())]
     Unreadable {
         /// The scene file.
         path: PathBuf,
         /// Error of the system.
         cause: io::Error,
         /// Help for the user.
-        cure: &'static str,
+        help: &'static str,
     },
     /// The file is longer than a scene can be.
     #[error("{}: the scene file is longer than {limit} bytes\n = {TOO_LARGE_CURE}", .path.display())]
@@ -50,7 +50,7 @@ pub enum SceneError {
         byte: u8,
     },
     /// The text is not TOML.
-    #[error("{}", .at.show(&format!("this is not TOML: {message}"), syntax_cure(.message)))]
+    #[error("{}", .at.show(&format!("this is not TOML: {message}"), syntax_help(.message)))]
     Syntax {
         /// Where; its key is empty.
         at: Box<Place>,
@@ -86,7 +86,7 @@ pub enum SceneError {
         key: String,
     },
     /// A value of the wrong type or out of range, or values that contradict each other.
-    #[error("{}", .at.show(&format!("found {found}, expected {expected}"), cure))]
+    #[error("{}", .at.show(&format!("found {found}, expected {expected}"), help))]
     Invalid {
         /// Where.
         at: Box<Place>,
@@ -95,7 +95,7 @@ pub enum SceneError {
         /// The value expected.
         expected: String,
         /// Help for the user.
-        cure: String,
+        help: String,
     },
 }
 
@@ -158,26 +158,26 @@ impl SceneError {
     }
 
     /// Help for the user.
-    pub fn cure(&self) -> Option<String> {
+    pub fn help(&self) -> Option<String> {
         match self {
-            Self::Unreadable { cure, .. } => Some((*cure).to_owned()),
+            Self::Unreadable { help, .. } => Some((*help).to_owned()),
             Self::TooLarge { .. } => Some(TOO_LARGE_CURE.to_owned()),
             Self::NotUtf8 { .. } => Some(NOT_UTF8_CURE.to_owned()),
-            Self::Syntax { message, .. } => Some(syntax_cure(message).to_owned()),
+            Self::Syntax { message, .. } => Some(syntax_help(message).to_owned()),
             Self::UnknownKey { key: found, known, .. } | Self::UnknownName { found, known, .. } => {
-                Some(unknown_cure(found, known))
+                Some(unknown_help(found, known))
             }
-            Self::MissingKey { at, .. } => Some(missing_cure(at)),
-            Self::Invalid { cure, .. } => Some(cure.clone()),
+            Self::MissingKey { at, .. } => Some(missing_help(at)),
+            Self::Invalid { help, .. } => Some(help.clone()),
         }
     }
 }
 
 impl Place {
     /// The refusal of the value at this place.
-    pub fn refuse(self, found: impl Into<String>, expected: impl Into<String>, cure: impl Into<String>) -> SceneError {
-        let (found, expected, cure) = (found.into(), expected.into(), cure.into());
-        SceneError::Invalid { at: self.into(), found, expected, cure }
+    pub fn refuse(self, found: impl Into<String>, expected: impl Into<String>, help: impl Into<String>) -> SceneError {
+        let (found, expected, help) = (found.into(), expected.into(), help.into());
+        SceneError::Invalid { at: self.into(), found, expected, help }
     }
 }
 
@@ -190,10 +190,10 @@ impl From<NotToml> for SceneError {
 fn show_unknown(at: &Place, what: &str, found: &str, known: &[&str]) -> String {
     let shown = shorten(found);
     let question = nearest(found, known).map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
-    at.show(&format!("unknown {what} `{shown}`{question}"), &unknown_cure(found, known))
+    at.show(&format!("unknown {what} `{shown}`{question}"), &unknown_help(found, known))
 }
 
-fn unknown_cure(found: &str, known: &[&str]) -> String {
+fn unknown_help(found: &str, known: &[&str]) -> String {
     match nearest(found, known) {
         Some(near) => format!("rename it to `{near}` (possible here: {})", list(known)),
         None if known.contains(&"expression") => format!(
@@ -205,17 +205,17 @@ fn unknown_cure(found: &str, known: &[&str]) -> String {
 }
 
 fn show_missing(at: &Place, key: &str) -> String {
-    at.show(&format!("`{key}` is missing"), &missing_cure(at))
+    at.show(&format!("`{key}` is missing"), &missing_help(at))
 }
 
-fn missing_cure(at: &Place) -> String {
+fn missing_help(at: &Place) -> String {
     match example(&at.key) {
         Some(example) => format!("add it, for example:\n{example}"),
         None => "add it".to_owned(),
     }
 }
 
-fn syntax_cure(message: &str) -> &'static str {
+fn syntax_help(message: &str) -> &'static str {
     match message {
         "duplicate key" => "keep one of the two",
         _ => "correct it; a line is `key = value` or `[section]`, and text stands in quotes",

@@ -49,15 +49,15 @@ impl Scene {
         let document = Document::parse(text, path)?;
         let bodies = document.bodies();
         let names: Vec<&str> = bodies.iter().flatten().map(Node::name).collect();
-        let refuse = |found: String, expected: &str, cure: String| {
+        let refuse = |found: String, expected: &str, help: String| {
             let key = if bodies.is_some() { BODIES } else { "body" };
-            Err(document.place(key).refuse(found, expected, cure))
+            Err(document.place(key).refuse(found, expected, help))
         };
         match name {
             None if bodies.is_none() => Self::of_document(&document, None),
             None => {
-                let cure = format!("name one of them: {}", names.join(", "));
-                refuse(format!("a scene of {} bodies", names.len()), "one body", cure)
+                let help = format!("name one of them: {}", names.join(", "));
+                refuse(format!("a scene of {} bodies", names.len()), "one body", help)
             }
             Some(name) if names.contains(&name) => {
                 Self::of_document(&document.of_body(name), Some(BodyTexts::new(text).of(name)))
@@ -68,8 +68,8 @@ impl Scene {
                 "leave the name out".into(),
             ),
             Some(name) => {
-                let cure = format!("name one of those that are there: {}", names.join(", "));
-                refuse(format!("no body `{name}`"), "the name of a body", cure)
+                let help = format!("name one of those that are there: {}", names.join(", "));
+                refuse(format!("no body `{name}`"), "the name of a body", help)
             }
         }
     }
@@ -132,15 +132,15 @@ impl Scene {
 
     /// The refusal of the value with the key path `key`, for rules that need more than the file,
     /// e.g. a point too far from the mesh. Its message is
-    /// `file:line:column: key: found …, expected …`, the line, and the cure.
+    /// `file:line:column: key: found …, expected …`, the line, and the help.
     pub fn refuse(
         &self,
         key: &str,
         found: impl Into<String>,
         expected: impl Into<String>,
-        cure: impl Into<String>,
+        help: impl Into<String>,
     ) -> SceneError {
-        self.place(key).refuse(found, expected, cure)
+        self.place(key).refuse(found, expected, help)
     }
 }
 
@@ -179,11 +179,11 @@ pub(crate) fn refuse_long(bytes: usize, path: &Path) -> Result<(), SceneError> {
 }
 
 fn unreadable(path: &Path, cause: io::Error) -> SceneError {
-    let cure = match cause.kind() {
+    let help = match cause.kind() {
         io::ErrorKind::NotFound => "check its name; it is relative to the folder you are in",
         io::ErrorKind::PermissionDenied => "get permission to read it",
         io::ErrorKind::IsADirectory => "this is a folder; name the scene file in it",
         _ => "check that it is an ordinary file",
     };
-    SceneError::Unreadable { path: path.to_owned(), cause, cure }
+    SceneError::Unreadable { path: path.to_owned(), cause, help }
 }

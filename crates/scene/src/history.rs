@@ -29,6 +29,6 @@ pub struct Formula {
     /// As it is written; not empty, and not looked at any further here.
     pub formula: String,
     /// Rising times at which the formula or its rates jump; default none.
-    #[serde(default)]
-    pub corners: Vec<f64>,
+    #[serde(default, alias = "corners")] // scenes of version 0.1 say "corners"
+    pub discontinuities: Vec<f64>,
 }

@@ -54,15 +54,15 @@ impl Place {
         Self { file: file.to_owned(), line, column: 1, key, excerpt: None, mark: 0..0 }
     }
 
-    /// The place, the headline, the line with what is meant underlined, and the cure.
-    pub(crate) fn show(&self, headline: &str, cure: &str) -> String {
+    /// The place, the headline, the line with what is meant underlined, and the help.
+    pub(crate) fn show(&self, headline: &str, help: &str) -> String {
         let line = self.line.to_string();
         let gutter = " ".repeat(line.len());
-        let Some(excerpt) = &self.excerpt else { return format!("{self}: {headline}\n{gutter} = {cure}") };
+        let Some(excerpt) = &self.excerpt else { return format!("{self}: {headline}\n{gutter} = {help}") };
         let indent = " ".repeat(self.mark.start);
         let carets = "^".repeat(self.mark.len());
-        let cure = cure.replace('\n', &format!("\n{gutter}   "));
-        format!("{self}: {headline}\n{gutter} |\n{line} | {excerpt}\n{gutter} | {indent}{carets}\n{gutter} = {cure}",)
+        let help = help.replace('\n', &format!("\n{gutter}   "));
+        format!("{self}: {headline}\n{gutter} |\n{line} | {excerpt}\n{gutter} | {indent}{carets}\n{gutter} = {help}",)
     }
 }
 

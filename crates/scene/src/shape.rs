@@ -38,24 +38,24 @@ impl fmt::Display for Shape {
 /// The refusal of a value that does not have the shape.
 pub(crate) fn wrong_shape(node: &Node, expected: Shape) -> SceneError {
     let found = node.value.get_ref();
-    let cure = match (expected, found) {
+    let help = match (expected, found) {
         (Shape::Number, DeValue::String(text)) if text.parse::<f64>().is_ok() => "remove the quotes".to_owned(),
         (Shape::Count, DeValue::String(text)) if text.parse::<u64>().is_ok() => "remove the quotes".to_owned(),
         (Shape::Text, DeValue::Integer(_) | DeValue::Float(_) | DeValue::Boolean(_)) => "put it in quotes".to_owned(),
         _ => like_the_example(node, &expected.to_string()),
     };
-    node.place().refuse(describe(node), expected.to_string(), cure)
+    node.place().refuse(describe(node), expected.to_string(), help)
 }
 
 /// The refusal of a value that has none of the types `expected`.
 pub(crate) fn wrong_type(node: &Node, expected: &str) -> SceneError {
-    let cure = match node.value.get_ref() {
+    let help = match node.value.get_ref() {
         DeValue::String(text) if text.parse::<f64>().is_ok() || text.parse::<bool>().is_ok() => {
             "remove the quotes".to_owned()
         }
         _ => like_the_example(node, expected),
     };
-    node.place().refuse(describe(node), expected, cure)
+    node.place().refuse(describe(node), expected, help)
 }
 
 fn like_the_example(node: &Node, expected: &str) -> String {

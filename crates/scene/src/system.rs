@@ -9,7 +9,7 @@ use crate::file::{refuse_long, text_of};
 use crate::scene::Scene;
 
 /// Bodies of a scene at the most.
-const MOST_BODIES: usize = 1000;
+const MAX_BODIES: usize = 1000;
 
 /// Keys at the root of a scene of several bodies.
 const SHARED: [&str; 5] = ["title", "units", BODIES, "time", "output"];
@@ -46,13 +46,13 @@ impl System {
         };
         document.root().children().try_for_each(|child| check_shared(&child))?;
         if bodies.is_empty() {
-            let cure = "give each body a table, e.g. `[bodies.left]` with `mesh` and `material`";
-            return Err(document.place(BODIES).refuse("no body", "one table for each body", cure));
+            let help = "give each body a table, e.g. `[bodies.left]` with `mesh` and `material`";
+            return Err(document.place(BODIES).refuse("no body", "one table for each body", help));
         }
-        if bodies.len() > MOST_BODIES {
+        if bodies.len() > MAX_BODIES {
             let found = format!("{} bodies", bodies.len());
-            let cure = "make several scenes of them: nothing acts between the bodies";
-            return Err(document.place(BODIES).refuse(found, format!("at most {MOST_BODIES}"), cure));
+            let help = "make several scenes of them: nothing acts between the bodies";
+            return Err(document.place(BODIES).refuse(found, format!("at most {MAX_BODIES}"), help));
         }
         let texts = BodyTexts::new(text);
         let scene = |body: &Node<'_>| {
@@ -72,14 +72,14 @@ impl System {
 fn check_shared(child: &Node<'_>) -> Result<(), SceneError> {
     let name = child.name();
     if name == "body" || OF_A_BODY.contains(&name) {
-        let cure = match name {
+        let help = match name {
             "body" => "give the body a name among the others, e.g. `[bodies.hub]`".to_owned(),
             _ => format!("write it into the table of a body, e.g. `[bodies.hub.{name}]`"),
         };
         return Err(child.place_of_key().refuse(
             format!("both `{name}` and `{BODIES}`"),
             "what belongs to a body in its table",
-            cure,
+            help,
         ));
     }
     let of_a_body = |output: &Node<'_>| OUTPUT_OF_A_BODY.contains(&output.name());

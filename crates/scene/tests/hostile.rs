@@ -25,7 +25,7 @@ fn scenes() -> Vec<String> {
         "{ kind = \"sine\", frequency = 300.0, phase = 0.5, start = 0.0001, duration = 0.005 }",
         "{ kind = \"sweep\", from = 100.0, to = 500.0, start = 0.0, duration = 0.01 }",
         "{ kind = \"table\", points = [[0.0, 1.0], [0.002, -1.0], [0.004, 2.0]] }",
-        "{ kind = \"expression\", formula = \"sin(2*pi*t/3.0)+exp(t*2.0)\", corners = [0.002] }",
+        "{ kind = \"expression\", formula = \"sin(2*pi*t/3.0)+exp(t*2.0)\", discontinuities = [0.002] }",
         "{ kind = \"product\", factors = [{ kind = \"sine\", frequency = 200.0 }, \
          { kind = \"table\", points = [[0.0, 1.0], [0.003, 2.0]] }] }",
     ];

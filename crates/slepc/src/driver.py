@@ -43,9 +43,9 @@ STATIC_TOLERANCE = 1e-13
 
 
 class Refused(Exception):
-    def __init__(self, found, cure, is_missing=False):
+    def __init__(self, found, help, is_missing=False):
         super().__init__(found)
-        self.cure = cure
+        self.help = help
         self.is_missing = is_missing
 
 
@@ -371,7 +371,7 @@ def main():
         if driver.asked_statics:
             driver.statics()
     except Refused as refused:
-        say(error=str(refused), cure=refused.cure, is_missing=refused.is_missing)
+        say(error=str(refused), help=refused.help, is_missing=refused.is_missing)
     except BaseException:
         traceback.print_exc()
     else:

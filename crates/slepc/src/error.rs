@@ -1,30 +1,30 @@
-//! Why SLEPc gave no answer.
+//! Errors of SLEPc.
 
 use std::io;
 use std::path::PathBuf;
 
-/// Why SLEPc gave no answer.
+/// Errors of SLEPc.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum SlepcError {
     /// A program that is needed is not there, or cannot be used.
-    #[error("--solver slepc: {found}\n = {cure}")]
+    #[error("--solver slepc: {found}\n = {help}")]
     NotInstalled {
         /// The missing part.
         found: String,
         /// Help for the user.
-        cure: String,
+        help: String,
     },
     /// The driver refuses, in words.
-    #[error("--solver slepc: {found}\n = {cure}")]
+    #[error("--solver slepc: {found}\n = {help}")]
     Refused {
         /// The reason.
         found: String,
         /// Help for the user.
-        cure: String,
+        help: String,
     },
     /// The driver did not come to its end.
-    #[error("--solver slepc: `{command}` failed ({status}); it said last:\n{said}\n = {cure}")]
+    #[error("--solver slepc: `{command}` failed ({status}); it said last:\n{said}\n = {help}")]
     Failed {
         /// The command.
         command: String,
@@ -33,7 +33,7 @@ pub enum SlepcError {
         /// The last lines that it said.
         said: String,
         /// Help for the user.
-        cure: String,
+        help: String,
     },
     /// A signal has stopped it.
     #[error("stopped; the processes of `{command}` are ended, and their files removed")]

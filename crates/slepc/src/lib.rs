@@ -4,10 +4,10 @@
 
 mod answers;
 mod binary;
-mod cures;
 mod engine;
 mod error;
 mod folder;
+mod help;
 mod json;
 mod run;
 mod stop;

@@ -8,9 +8,9 @@ use foreign_program::{ForeignProgram, Limits, ProgramError, named};
 use modal::{EnginePhase, Progress};
 use serde::Deserialize;
 
-use crate::cures::{INSTALL, cure};
 use crate::error::SlepcError;
 use crate::folder::DRIVER_FILE;
+use crate::help::{INSTALL, help};
 use crate::stop::Stop;
 
 /// Names mpirun, where it is not `mpirun`.
@@ -27,7 +27,7 @@ const LONGEST: usize = 2000;
 #[derive(Deserialize)]
 #[serde(untagged)]
 enum Said {
-    Refused { error: String, cure: String, is_missing: bool },
+    Refused { error: String, help: String, is_missing: bool },
     Phase { phase: String },
     Converged { converged: usize, of: usize },
 }
@@ -59,7 +59,7 @@ pub(crate) fn drive(
 
     let (mut last, mut refusal) = (VecDeque::new(), None);
     let mut take = |line| match line {
-        Line::Said(Said::Refused { error, cure, is_missing }) => refusal = Some((error, cure, is_missing)),
+        Line::Said(Said::Refused { error, help, is_missing }) => refusal = Some((error, help, is_missing)),
         Line::Said(Said::Phase { phase }) => match phase.as_str() {
             "factor" => progress(Progress::Engine(EnginePhase::Factorizing)),
             "count" => progress(Progress::Engine(EnginePhase::Counting)),
@@ -84,11 +84,11 @@ pub(crate) fn drive(
         Err(ProgramError::Stopped) => Err(SlepcError::Stopped { command: words }),
         Err(ProgramError::Start(cause)) => Err(SlepcError::NotInstalled {
             found: format!("`{}` cannot be started: {cause}", mpirun.to_string_lossy()),
-            cure: INSTALL.to_owned(),
+            help: INSTALL.to_owned(),
         }),
         Err(error) => Err(SlepcError::Refused {
             found: format!("`{words}`: {error}"),
-            cure: "see what the system lacks; docs/reference/cluster.md says how to run the driver by hand".to_owned(),
+            help: "see what the system lacks; docs/reference/cluster.md says how to run the driver by hand".to_owned(),
         }),
     }
 }
@@ -103,15 +103,15 @@ fn outcome(
     match refusal {
         // The signal may have come to mpirun, too.
         _ if stop.is_asked() => Err(SlepcError::Stopped { command }),
-        Some((found, cure, true)) => Err(SlepcError::NotInstalled { found, cure }),
-        Some((found, cure, false)) => Err(SlepcError::Refused { found, cure }),
+        Some((found, help, true)) => Err(SlepcError::NotInstalled { found, help }),
+        Some((found, help, false)) => Err(SlepcError::Refused { found, help }),
         None if status.success() => Ok(()),
         None => {
             let status = in_words(status);
-            let cure = cure(&format!("{status}\n{}", last.join("\n"))).to_owned();
+            let help = help(&format!("{status}\n{}", last.join("\n"))).to_owned();
             let shown = &last[last.len().saturating_sub(SHOWN)..];
             let said = if shown.is_empty() { "nothing".to_owned() } else { shown.join("\n") };
-            Err(SlepcError::Failed { command, status, said, cure })
+            Err(SlepcError::Failed { command, status, said, help })
         }
     }
 }
@@ -145,7 +145,7 @@ mod tests {
 
     #[test]
     fn lines_that_mpirun_has_joined_are_taken_apart() {
-        let refused = r#"{"error": "none {here}", "cure": "install it", "is_missing": true}"#;
+        let refused = r#"{"error": "none {here}", "help": "install it", "is_missing": true}"#;
         let shown = |text: &str| -> Vec<String> {
             let name = |line| match line {
                 Line::Said(Said::Refused { error, .. }) => format!("refused: {error}"),

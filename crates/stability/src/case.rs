@@ -87,7 +87,7 @@ impl BodyCheck {
 pub struct HardCase {
     /// Its name.
     pub name: &'static str,
-    /// Why it is hard.
+    /// Reason of the difficulty.
     pub why: &'static str,
     /// Figure of the body.
     pub body: Option<BodyCheck>,

@@ -14,7 +14,7 @@ pub fn page(extent: Extent, mut progress: impl FnMut(&str)) -> (String, Vec<Stri
          In brackets: the bound that a test asserts (the tests of `crates/stability` run the same cases, the longest \
          of them shortened; of a refusal they check the message). Errors and drifts are the largest of the whole run. \
          Nothing ends in NaN. A run that has gone wrong is stopped by an account of the energy: where the start, the \
-         loads and the damping do not account for half of it, the run ends with the time, the energy and a cure. The \
+         loads and the damping do not account for half of it, the run ends with the time, the energy and a help. The \
          formulation of the paper does not keep the angular momentum, and so loses the attitude before the energy: its \
          runs keep an account of the rotation caused by spurious angular momentum, and end where it reaches 1 rad. A \
          body that is refused before it moves is refused by every scheme, with the same message.\n",

@@ -83,8 +83,8 @@ pub fn cases() -> Vec<HardCase> {
             expected: [Within(1e-4), Within(1e-4), Within(5e-2), Within(1e-4)],
         },
         HardCase {
-            name: "a spike of 2e-6 s in a formula, its place named by corners, in steps of 5e-3 s",
-            why: "a formula does not tell where it changes; its law between two corners is sampled before the run",
+            name: "a spike of 2e-6 s in a formula, its place named by discontinuities, in steps of 5e-3 s",
+            why: "a formula does not tell where it changes; its law between two discontinuities is sampled before the run",
             body: None,
             measure: "modal coordinate against the closed form, relative to its peak",
             run: |method, _| {
@@ -114,7 +114,7 @@ pub fn cases() -> Vec<HardCase> {
             expected: [Within(1e-3), Within(1e-3), Within(5e-2), Within(1e-3)],
         },
         HardCase {
-            name: "a formula that jumps within a step where no corner is named",
+            name: "a formula that jumps within a step where no discontinuity is named",
             why: "a step across a jump is of first order",
             body: None,
             measure: "modal coordinate against the closed form, relative to its peak",

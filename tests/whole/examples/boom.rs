@@ -40,5 +40,5 @@ fn has_the_frequencies_of_a_beam_with_a_mass_at_its_end() {
         assert!(off.abs() < 1e-4, "{k}: {} against {}", found[k], expected[k / 2]);
     }
     let checks = model.meshed.as_ref().and_then(|meshed| meshed.checks).unwrap();
-    assert!(checks.freedoms == 6 && !checks.is_scalar_mass && checks.left_out < 0.01, "{checks:?}");
+    assert!(checks.dofs == 6 && !checks.is_scalar_mass && checks.left_out < 0.01, "{checks:?}");
 }

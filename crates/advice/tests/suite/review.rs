@@ -48,7 +48,7 @@ fn a_deflection_above_a_tenth_and_a_spin_at_the_limit_are_named() {
 }
 
 #[test]
-fn rounding_is_no_deflection_and_the_cure_names_what_is_off() {
+fn rounding_is_no_deflection_and_the_help_names_what_is_off() {
     let zeta = [0.0; 10];
     let still = Initial::at_rest(10);
     let case = plate().case(&zeta, &[], &still, 1e-3);

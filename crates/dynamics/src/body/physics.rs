@@ -103,7 +103,7 @@ pub struct Physics {
     pub effects: EffectMap<bool>,
     /// Drive of the held part.
     pub drive: Option<Drive>,
-    /// Geometric stiffness Ψ_fᵀ K Ψ_f (nf×nf, symmetric) of the static answer to the forces `M (1⊗e)` of a unit
+    /// Geometric stiffness Ψ_fᵀ K Ψ_f (nf×nf, symmetric) of the static response to the forces `M (1⊗e)` of a unit
     /// acceleration of a driven slide along e, or `M (I⊗[a×]) X` of a driven turn about a.
     pub drive_stiffness: Option<Mat<f64>>,
     /// The manifold of large modes. Points, loads and `drive_stiffness` are then in its extended shapes; of the stiffness that

@@ -4,7 +4,7 @@
 //! u = Ψ q + u₂        u₂ = −½ Σ_d d (qᵀ K_d q)        ∂u₂/∂q = −Σ_d d (K_d q)ᵀ
 //! ```
 //!
-//! d are directions in body axes, and K_d the geometric stiffness of the static answer to a unit load in that direction.
+//! d are directions in body axes, and K_d the geometric stiffness of the static response to a unit load in that direction.
 //! By reciprocity that is the displacement of second order at the load, in that direction: a load that does its work on u
 //! stiffens the body by its own stress, and energy and momentum stay closed.
 

@@ -29,10 +29,10 @@ use crate::matrix::blocked_matrix::BlockedMatrix;
 use crate::matrix::column_major::{add_product, columns, dot};
 
 /// Most modes that may be large.
-pub const MOST_LARGE: usize = 8;
+pub const MAX_LARGE: usize = 8;
 
 /// Most products of them.
-const MOST_PAIRS: usize = MOST_LARGE * (MOST_LARGE + 1) / 2;
+const MAX_PAIRS: usize = MAX_LARGE * (MAX_LARGE + 1) / 2;
 
 /// A call of a function for as many large modes as there are: their number is known to the compiler in it.
 macro_rules! by_count {
@@ -45,7 +45,7 @@ macro_rules! by_count {
             5 => $name::<5>($($argument),*),
             6 => $name::<6>($($argument),*),
             7 => $name::<7>($($argument),*),
-            _ => $name::<MOST_LARGE>($($argument),*),
+            _ => $name::<MAX_LARGE>($($argument),*),
         }
     };
 }
@@ -85,8 +85,8 @@ struct Constants {
 #[derive(Debug, Clone, Default)]
 pub(crate) struct ManifoldPoint {
     /// The large ones of q and q̇.
-    displacement: [f64; MOST_LARGE],
-    rate: [f64; MOST_LARGE],
+    displacement: [f64; MAX_LARGE],
+    rate: [f64; MAX_LARGE],
     /// T q of the modes: large modes within modes, then modes within large modes.
     slopes: Vec<f64>,
     /// Cholesky factor of what M leaves to the large modes: entries i ≥ j, row by row, with the reciprocals of the diagonal.
@@ -98,7 +98,7 @@ impl Manifold {
     /// large modes, for each pair of pairs (i ≤ j, k ≤ l) as in [`SecondOrderShapes::pairs`], row by row.
     ///
     /// # Errors
-    /// [`SetupError`] for more large modes than [`MOST_LARGE`], sizes that do not fit together, and numbers that are not
+    /// [`SetupError`] for more large modes than [`MAX_LARGE`], sizes that do not fit together, and numbers that are not
     /// finite.
     pub fn new(body: ReducedBody, shapes: &SecondOrderShapes, energies: &[f64]) -> Result<Self, SetupError> {
         let SecondOrderShapes { dynamic, large, slopes, cubic, relief, .. } = shapes;
@@ -112,7 +112,7 @@ impl Manifold {
                 return Err(SetupError::Length { what, expected, found });
             }
         }
-        if count == 0 || count > MOST_LARGE {
+        if count == 0 || count > MAX_LARGE {
             let expected = "1 to 8";
             return Err(SetupError::Value { what: "the number of large modes", found: count as f64, expected });
         }
@@ -263,7 +263,7 @@ impl Manifold {
         let Constants { large, modes, .. } = &*self.0;
         let (of_modes, products) = out.split_at_mut(*modes);
         of_modes.copy_from_slice(x);
-        let mut of_large = [0.0; MOST_LARGE];
+        let mut of_large = [0.0; MAX_LARGE];
         large_of(large, x, &mut of_large);
         for ((products, q), j) in rows_mut(products, &place.displacement[..large.len()]).zip(0..) {
             let x = &of_large[j..];
@@ -309,7 +309,7 @@ impl Manifold {
         self.add_products(&place.rate, momenta, out);
     }
 
-    fn add_products(&self, x: &[f64; MOST_LARGE], of_products: &[f64], out: &mut [f64]) {
+    fn add_products(&self, x: &[f64; MAX_LARGE], of_products: &[f64], out: &mut [f64]) {
         let large = &self.0.large;
         let sums = by_count!(large.len(), sums_of_products(x, of_products));
         for (mode, sum) in large.iter().zip(sums) {
@@ -361,9 +361,9 @@ impl Manifold {
     /// V_n: the strain energy beyond ½ qᵀΛq.
     pub fn energy(&self, q: &[f64]) -> f64 {
         let Constants { large, pairs, .. } = &*self.0;
-        let mut x = [0.0; MOST_LARGE];
+        let mut x = [0.0; MAX_LARGE];
         large_of(large, q, &mut x);
-        let mut products = [0.0; MOST_PAIRS];
+        let mut products = [0.0; MAX_PAIRS];
         products.iter_mut().zip(pairs).for_each(|(product, [j, k])| *product = x[*j] * x[*k]);
         let [cubic, quartic] = self.forces(&x, &products[..pairs.len()]);
         // Of third and of fourth degree.
@@ -371,13 +371,13 @@ impl Manifold {
     }
 
     /// ∂V_n/∂q of third and of fourth order, by the large modes and their products.
-    fn forces(&self, x: &[f64; MOST_LARGE], products: &[f64]) -> [[f64; MOST_LARGE]; 2] {
+    fn forces(&self, x: &[f64; MAX_LARGE], products: &[f64]) -> [[f64; MAX_LARGE]; 2] {
         let count = self.0.large.len();
-        let mut rows = [0.0; MOST_LARGE + MOST_PAIRS];
+        let mut rows = [0.0; MAX_LARGE + MAX_PAIRS];
         let rows = &mut rows[..count + products.len()];
         self.0.forces.multiply(products, rows);
         let (of_third, of_fourth) = rows.split_at(count);
-        let mut cubic = [0.0; MOST_LARGE];
+        let mut cubic = [0.0; MAX_LARGE];
         cubic[..count].copy_from_slice(of_third);
         [cubic, by_count!(count, symmetric_product(of_fourth, x))]
     }
@@ -399,7 +399,7 @@ fn rows_mut<'a>(products: &'a mut [f64], x: &'a [f64]) -> impl Iterator<Item = (
 }
 
 /// The products j ≤ k of large modes.
-fn find_products<const C: usize>(x: &[f64; MOST_LARGE], products: &mut [f64]) {
+fn find_products<const C: usize>(x: &[f64; MAX_LARGE], products: &mut [f64]) {
     let products = &mut products[..C * (C + 1) / 2];
     let mut a = 0;
     for j in 0..C {
@@ -411,9 +411,9 @@ fn find_products<const C: usize>(x: &[f64; MOST_LARGE], products: &mut [f64]) {
 }
 
 /// Bᵀ y of a number for each product.
-fn sums_of_products<const C: usize>(x: &[f64; MOST_LARGE], of_products: &[f64]) -> [f64; MOST_LARGE] {
+fn sums_of_products<const C: usize>(x: &[f64; MAX_LARGE], of_products: &[f64]) -> [f64; MAX_LARGE] {
     let y = &of_products[..C * (C + 1) / 2];
-    let (mut sums, mut a) = ([0.0; MOST_LARGE], 0);
+    let (mut sums, mut a) = ([0.0; MAX_LARGE], 0);
     for j in 0..C {
         for k in j..C {
             sums[j] += y[a] * x[k];
@@ -458,9 +458,9 @@ fn forward<const C: usize>(large: &[usize], slopes: &[f64], factor: &[f64], y: &
 }
 
 /// L⁻ᵀ y along the large modes, of the factor of what M leaves to them.
-fn backward<const C: usize>(large: &[usize], factor: &[f64], y: &[f64]) -> [f64; MOST_LARGE] {
+fn backward<const C: usize>(large: &[usize], factor: &[f64], y: &[f64]) -> [f64; MAX_LARGE] {
     let factor = &factor[..C * (C + 1) / 2];
-    let mut x = [0.0; MOST_LARGE];
+    let mut x = [0.0; MAX_LARGE];
     for i in (0..C).rev() {
         let mut rest = y[large[i]];
         for k in i + 1..C {
@@ -472,9 +472,9 @@ fn backward<const C: usize>(large: &[usize], factor: &[f64], y: &[f64]) -> [f64;
 }
 
 /// A x, of a symmetric matrix by its entries i ≥ j, row by row.
-fn symmetric_product<const C: usize>(entries: &[f64], x: &[f64; MOST_LARGE]) -> [f64; MOST_LARGE] {
+fn symmetric_product<const C: usize>(entries: &[f64], x: &[f64; MAX_LARGE]) -> [f64; MAX_LARGE] {
     let entries = &entries[..C * (C + 1) / 2];
-    let mut product = [0.0; MOST_LARGE];
+    let mut product = [0.0; MAX_LARGE];
     for i in 0..C {
         for j in 0..i {
             product[i] += entries[entry(i, j)] * x[j];
@@ -486,7 +486,7 @@ fn symmetric_product<const C: usize>(entries: &[f64], x: &[f64; MOST_LARGE]) -> 
 }
 
 /// The large ones of q, then zeros.
-fn large_of(large: &[usize], q: &[f64], x: &mut [f64; MOST_LARGE]) {
+fn large_of(large: &[usize], q: &[f64], x: &mut [f64; MAX_LARGE]) {
     x.iter_mut().zip(large).for_each(|(x, k)| *x = q[*k]);
 }
 

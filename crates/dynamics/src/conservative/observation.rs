@@ -154,13 +154,13 @@ impl ConservativeBody {
             reaction.drive_power = e.drive_effort * e.driven_speed;
         }
         if self.axes.len() == 1 {
-            reaction.turned = state.hinge_angle();
-            reaction.turning = e.spin[0];
+            reaction.hinge_angle = state.hinge_angle();
+            reaction.hinge_rate = e.spin[0];
         }
         if let Translation::Along(direction) | Translation::Driven(direction) = self.translation {
             let direction = state.attitude().to_global(&direction);
-            reaction.slid = direction.dot(&(get(state.slow(), part::POSITION) - self.origin));
-            reaction.sliding = direction.dot(&get(e.rates.slow(), part::POSITION));
+            reaction.slider_position = direction.dot(&(get(state.slow(), part::POSITION) - self.origin));
+            reaction.slider_velocity = direction.dot(&get(e.rates.slow(), part::POSITION));
         }
     }
 

@@ -118,7 +118,7 @@ impl ConservativeBody {
         if self.drive.is_none() {
             return Ok(());
         }
-        // The corner itself is where it is but for rounding.
+        // The discontinuity itself is where it is but for rounding.
         let aside = 1e-12 * state.time.abs();
         let on_side = |state: &State, branch_time: f64, e: &mut Evaluation| -> Result<[f64; 2], RateError> {
             self.evaluate_at(state, branch_time, e)?;

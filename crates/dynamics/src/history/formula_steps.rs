@@ -2,7 +2,7 @@
 //!
 //! Schemes of fourth order integrate a load by Simpson's rule, once for each step. Where that is not the integral by
 //! Gauss's rule, whose nodes no period divides alike, steps are halved until it is. What is narrower than the gaps
-//! between the samples, a quarter of a step, is seen only where corners name its place.
+//! between the samples, a quarter of a step, is seen only where discontinuities name its place.
 //!
 //! Step control does not see either what swings so that all stages of a step fall on like phases. It has no step to begin
 //! with: the run is looked at in [`CELLS`] cells, and those over which the rules agree are joined again.
@@ -12,7 +12,7 @@ use crate::history::{Expression, History};
 
 /// Error of Simpson's rule, in parts of the integral of the formula's magnitude: a ninth of a period gives this.
 const ACCURACY: f64 = 1e-4;
-/// The same, where steps are halved no further: at a jump that no corner names.
+/// The same, where steps are halved no further: at a jump that no discontinuity names.
 const LEFT_OVER: f64 = 1e-3;
 /// So often is a step halved at most.
 const HALVINGS: u32 = 10;
@@ -93,10 +93,10 @@ fn collect<'a>(history: &'a History, out: &mut Vec<&'a Expression>) {
     }
 }
 
-/// Times between which the formula has no corner.
+/// Times between which the formula has no discontinuity.
 fn stops(expression: &Expression, end: f64) -> Vec<f64> {
-    let corners = expression.corners().iter().copied().filter(|t| *t > 0.0 && *t < end);
-    [0.0].into_iter().chain(corners).chain([end]).collect()
+    let discontinuities = expression.discontinuities().iter().copied().filter(|t| *t > 0.0 && *t < end);
+    [0.0].into_iter().chain(discontinuities).chain([end]).collect()
 }
 
 /// Cells of one length between two times.
@@ -106,11 +106,11 @@ fn cells(from: f64, to: f64, count: f64) -> impl Iterator<Item = [f64; 2]> {
 
 fn of_fixed_steps(expression: &Expression, end: f64, step: f64, budget: f64) -> Result<Vec<Stretch>, SetupError> {
     let stops = stops(expression, end);
-    let most_cells = budget / VALUES_OF_CELL;
+    let max_cells = budget / VALUES_OF_CELL;
     let walk = || {
         stops.windows(2).flat_map(|pair| {
             let length = pair[1] - pair[0];
-            let count = (length / step).ceil().min(most_cells * length / end).ceil().max(1.0);
+            let count = (length / step).ceil().min(max_cells * length / end).ceil().max(1.0);
             cells(pair[0], pair[1], count)
         })
     };
@@ -135,12 +135,12 @@ fn of_fixed_steps(expression: &Expression, end: f64, step: f64, budget: f64) -> 
 
 fn of_step_control(expression: &Expression, end: f64, budget: f64) -> Result<Vec<Stretch>, SetupError> {
     let stops = stops(expression, end);
-    let most_cells = CELLS.min(budget / VALUES_OF_CELL).max(1.0);
+    let max_cells = CELLS.min(budget / VALUES_OF_CELL).max(1.0);
     let between = |pair: &[f64]| -> Vec<[f64; 2]> {
-        let count = (most_cells * (pair[1] - pair[0]) / end).ceil() as u64;
+        let count = (max_cells * (pair[1] - pair[0]) / end).ceil() as u64;
         cells(pair[0], pair[1], count.next_power_of_two() as f64).collect()
     };
-    let mut search = Search::new(expression, stops.windows(2).flat_map(between), end, end / most_cells, budget);
+    let mut search = Search::new(expression, stops.windows(2).flat_map(between), end, end / max_cells, budget);
     let mut found: Vec<Stretch> = Vec::new();
     for pair in stops.windows(2) {
         let cells = between(pair);
@@ -272,8 +272,13 @@ impl<'a> Search<'a> {
 mod tests {
     use super::*;
 
-    fn steps(text: &str, corners: &[f64], end: f64, step: impl Into<Option<f64>>) -> Result<FormulaSteps, SetupError> {
-        let expression = Expression::new(text, corners.to_vec()).unwrap();
+    fn steps(
+        text: &str,
+        discontinuities: &[f64],
+        end: f64,
+        step: impl Into<Option<f64>>,
+    ) -> Result<FormulaSteps, SetupError> {
+        let expression = Expression::new(text, discontinuities.to_vec()).unwrap();
         FormulaSteps::new(
             &[History::Product { factors: vec![History::Constant, History::Expression(expression)] }],
             end,
@@ -304,7 +309,7 @@ mod tests {
         );
         assert_eq!(found.longest_step(0.3), f64::INFINITY);
         assert!(found.longest_step(0.5) < 1e-4, "{}", found.longest_step(0.5));
-        // A spike between the samples of a step is seen where corners tell of it.
+        // A spike between the samples of a step is seen where discontinuities tell of it.
         let text = "exp(-((t - 0.4996)/1e-6)^2)";
         assert_eq!(steps(text, &[], 1.0, 1e-3).unwrap().stops().count(), 0);
         let found = steps(text, &[0.499_59, 0.499_61], 1.0, 1e-3).unwrap();
@@ -320,7 +325,7 @@ mod tests {
 
     #[test]
     fn under_step_control_steps_are_as_long_as_the_formula_allows() {
-        let controlled = |text: &str, corners: &[f64]| steps(text, corners, 1.0, None).unwrap();
+        let controlled = |text: &str, discontinuities: &[f64]| steps(text, discontinuities, 1.0, None).unwrap();
         for omega in [10.0, 1e4] {
             let period = std::f64::consts::TAU / omega;
             let found = controlled(&format!("sin({omega}*t)"), &[]).longest_step(0.3);
@@ -338,7 +343,7 @@ mod tests {
     fn a_formula_that_no_step_follows_is_refused() {
         let error = steps("sin(1e9*t)", &[], 1.0, 1e-2).unwrap_err();
         let message = error.to_string();
-        assert!(message.contains("sin(1e9*t)") && message.contains("corners"), "{message}");
+        assert!(message.contains("sin(1e9*t)") && message.contains("discontinuities"), "{message}");
     }
 
     #[test]

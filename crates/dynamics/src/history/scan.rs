@@ -8,13 +8,13 @@ use super::History;
 use crate::error::SetupError;
 
 /// Values that a walk may ask for at its panels, where one costs 1 ([`History::cost`]).
-const MOST_PANELS: f64 = 1e6;
+const MAX_PANELS: f64 = 1e6;
 /// Bytes of a formula whose value costs 1, and the least and the most that one may cost.
 const CHEAP: f64 = 16.0;
 const LEAST_COST: f64 = 4.0;
-const MOST_COST: f64 = 400.0;
+const MAX_COST: f64 = 400.0;
 
-/// A short stretch between two corners.
+/// A short stretch between two discontinuities.
 #[derive(Debug, Clone, Copy)]
 struct Panel {
     middle: f64,
@@ -86,25 +86,26 @@ impl History {
     /// A quantity found by walks with finer and finer panels, until two agree.
     fn refined<S: Copy + Default>(&self, end: f64, add: impl Fn(&mut S, Panel), agree: impl Fn(S, S) -> bool) -> S {
         let mut coarse = self.walk(end, 1.0, &add);
-        let panels = |refinement: f64| self.panels(end, end, refinement) + self.corners().len() as f64 * refinement;
+        let panels =
+            |refinement: f64| self.panels(end, end, refinement) + self.discontinuities().len() as f64 * refinement;
         let mut refinement = 2.0;
         loop {
             let fine = self.walk(end, refinement, &add);
-            if agree(coarse, fine) || panels(2.0 * refinement) > self.most_panels() {
+            if agree(coarse, fine) || panels(2.0 * refinement) > self.max_panels() {
                 return fine;
             }
             (coarse, refinement) = (fine, 2.0 * refinement);
         }
     }
 
-    /// Visits panels that cover 0 to the end and reach across no corner.
+    /// Visits panels that cover 0 to the end and reach across no discontinuity.
     fn walk<S: Default>(&self, end: f64, refinement: f64, add: impl Fn(&mut S, Panel)) -> S {
         let mut result = S::default();
         if !(end > 0.0 && end.is_finite()) {
             return result;
         }
-        let corners = self.corners();
-        let stops = corners.iter().copied().filter(|t| *t > 0.0 && *t < end).chain([end]);
+        let discontinuities = self.discontinuities();
+        let stops = discontinuities.iter().copied().filter(|t| *t > 0.0 && *t < end).chain([end]);
         let mut start = 0.0;
         for stop in stops {
             let panels = self.panels(stop - start, end, refinement) as usize;
@@ -123,13 +124,13 @@ impl History {
 
     /// Number of panels for a stretch: sixteen a cycle, times a refinement, but not more than its share of the most.
     fn panels(&self, length: f64, end: f64, refinement: f64) -> f64 {
-        let share = (self.most_panels() * (length / end)).ceil();
+        let share = (self.max_panels() * (length / end)).ceil();
         ((16.0 * length * self.fastest(end)).ceil().max(1.0) * refinement).min(share).max(1.0)
     }
 
     /// True if a walk would miss its cycles: it might step from one zero to another.
     fn is_too_fast(&self, end: f64) -> bool {
-        16.0 * end * self.fastest(end) > self.most_panels()
+        16.0 * end * self.fastest(end) > self.max_panels()
     }
 
     /// Nothing that the magnitude of the factor exceeds.
@@ -142,8 +143,8 @@ impl History {
     }
 
     /// Panels a walk may have, but for one in each stretch.
-    fn most_panels(&self) -> f64 {
-        MOST_PANELS / self.cost()
+    fn max_panels(&self) -> f64 {
+        MAX_PANELS / self.cost()
     }
 
     /// Count of a value against a budget of values: 1 for what has a closed form. A formula's goes with the square of
@@ -152,14 +153,14 @@ impl History {
     pub fn cost(&self) -> f64 {
         match self {
             Self::Expression(expression) => {
-                (expression.text().len() as f64 / CHEAP).powi(2).clamp(LEAST_COST, MOST_COST)
+                (expression.text().len() as f64 / CHEAP).powi(2).clamp(LEAST_COST, MAX_COST)
             }
             Self::Product { factors } => factors.iter().map(Self::cost).sum(),
             _ => 1.0,
         }
     }
 
-    /// Highest frequency that the factor has by itself between corners. An expression does not tell its own: it is
+    /// Highest frequency that the factor has by itself between discontinuities. An expression does not tell its own: it is
     /// taken to have less than a thousand cycles in all, a long one less, and the refinement sees to the rest.
     fn fastest(&self, end: f64) -> f64 {
         match self {
@@ -167,7 +168,7 @@ impl History {
             Self::HalfSine { duration, .. } => 0.5 / duration,
             Self::Sine { frequency, .. } => *frequency,
             Self::Sweep { from, to, .. } => from.max(*to),
-            Self::Expression(_) => 1e3_f64.min(self.most_panels() / 64.0) / end,
+            Self::Expression(_) => 1e3_f64.min(self.max_panels() / 64.0) / end,
             Self::Product { factors } => factors.iter().map(|factor| factor.fastest(end)).sum(),
         }
     }

@@ -8,7 +8,7 @@ use crate::error::SetupError;
 pub struct Table {
     times: Vec<f64>,
     values: Vec<f64>,
-    corners: Vec<f64>,
+    discontinuities: Vec<f64>,
 }
 
 impl Table {
@@ -35,13 +35,13 @@ impl Table {
             let what = "the list of times of a table";
             return Err(SetupError::NotRising { what, row: k + 2, found: times[k + 1], previous: times[k] });
         }
-        let corners = corners(&times, &values);
-        Ok(Self { times, values, corners })
+        let discontinuities = discontinuities(&times, &values);
+        Ok(Self { times, values, discontinuities })
     }
 
     /// Times where the slope changes by more than the rounding of the rows.
-    pub fn corners(&self) -> &[f64] {
-        &self.corners
+    pub fn discontinuities(&self) -> &[f64] {
+        &self.discontinuities
     }
 
     /// The value at a time, by the line that holds at `branch_time`.
@@ -59,9 +59,9 @@ impl Table {
     fn line(&self, time: f64, branch_time: f64) -> (usize, f64) {
         // Rows that lie on one line but for rounding are a smooth stretch, which a step may cross: within it the rows
         // next to the time count, and not those next to `branch_time`.
-        let next = self.corners.partition_point(|corner| *corner <= branch_time);
-        let from = if next == 0 { f64::NEG_INFINITY } else { self.corners[next - 1] };
-        let to = self.corners.get(next).copied().unwrap_or(f64::INFINITY);
+        let next = self.discontinuities.partition_point(|discontinuity| *discontinuity <= branch_time);
+        let from = if next == 0 { f64::NEG_INFINITY } else { self.discontinuities[next - 1] };
+        let to = self.discontinuities.get(next).copied().unwrap_or(f64::INFINITY);
         let within = if (from..=to).contains(&time) { time } else { branch_time };
         // Row after the time; at the ends of the stretch the one that belongs to its inner side.
         let row = if within >= to {
@@ -85,16 +85,16 @@ fn slope(t: &[f64], v: &[f64]) -> (f64, f64) {
     (slope, f64::EPSILON * (v[0].abs() + v[1].abs() + slope.abs() * (t[0].abs() + t[1].abs())) / dt)
 }
 
-fn corners(times: &[f64], values: &[f64]) -> Vec<f64> {
+fn discontinuities(times: &[f64], values: &[f64]) -> Vec<f64> {
     const FLAT: (f64, f64) = (0.0, 0.0);
     let lines = times.windows(2).zip(values.windows(2)).map(|(t, v)| slope(t, v));
-    let mut corners = Vec::new();
+    let mut discontinuities = Vec::new();
     let mut before = FLAT;
     for (time, after) in times.iter().zip(lines.chain([FLAT])) {
         if (after.0 - before.0).abs() > before.1 + after.1 {
-            corners.push(*time);
+            discontinuities.push(*time);
         }
         before = after;
     }
-    corners
+    discontinuities
 }

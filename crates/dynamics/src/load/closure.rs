@@ -20,7 +20,7 @@ use super::{Applied, Kinematics, Load};
 /// ```
 pub struct LoadFn<F> {
     name: String,
-    corners: Vec<f64>,
+    discontinuities: Vec<f64>,
     longest_step: f64,
     law: F,
 }
@@ -31,14 +31,14 @@ where
 {
     /// A load with a name for messages, and its law.
     pub fn new(name: impl Into<String>, law: F) -> Self {
-        Self { name: name.into(), corners: Vec::new(), longest_step: f64::INFINITY, law }
+        Self { name: name.into(), discontinuities: Vec::new(), longest_step: f64::INFINITY, law }
     }
 
     /// Names the times at which the law or one of its rates jumps, so that steps end there.
     #[must_use]
-    pub fn with_corners(mut self, corners: Vec<f64>) -> Self {
-        self.corners = corners;
-        self.corners.sort_by(f64::total_cmp);
+    pub fn with_discontinuities(mut self, discontinuities: Vec<f64>) -> Self {
+        self.discontinuities = discontinuities;
+        self.discontinuities.sort_by(f64::total_cmp);
         self
     }
 
@@ -58,8 +58,8 @@ where
         (self.law)(motion, applied);
     }
 
-    fn corners(&self) -> Vec<f64> {
-        self.corners.clone()
+    fn discontinuities(&self) -> Vec<f64> {
+        self.discontinuities.clone()
     }
 
     fn longest_step(&self, _branch_time: f64) -> f64 {
@@ -69,10 +69,10 @@ where
 
 impl<F> fmt::Debug for LoadFn<F> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { name, corners, longest_step, .. } = self;
+        let Self { name, discontinuities, longest_step, .. } = self;
         f.debug_struct("LoadFn")
             .field("name", name)
-            .field("corners", corners)
+            .field("discontinuities", discontinuities)
             .field("longest_step", longest_step)
             .finish_non_exhaustive()
     }

@@ -26,8 +26,8 @@ impl Load for ScaledLoad {
         applied.weight = weight;
     }
 
-    fn corners(&self) -> Vec<f64> {
-        self.load.corners()
+    fn discontinuities(&self) -> Vec<f64> {
+        self.load.discontinuities()
     }
 
     fn longest_step(&self, branch_time: f64) -> f64 {

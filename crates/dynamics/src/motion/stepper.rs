@@ -75,7 +75,7 @@ impl<E: Equations, S: Scheme<E>> Motion for Stepper<E, S> {
     }
 
     /// The rates at the end of the last step are not those of the next one's beginning.
-    fn pass_corner(&mut self) -> Result<(), StepError> {
+    fn pass_discontinuity(&mut self) -> Result<(), StepError> {
         self.forget_first();
         let Self { equations, state, ahead, .. } = self;
         let time = state.time;

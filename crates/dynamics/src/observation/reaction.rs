@@ -34,20 +34,29 @@ pub struct Reaction {
     /// Its power.
     pub drive_power: f64,
     /// Angle that a hinged body has turned by since the beginning, rad; it grows beyond a turn.
-    pub turned: f64,
+    pub hinge_angle: f64,
     /// Its rate.
-    pub turning: f64,
+    pub hinge_rate: f64,
     /// Distance that a sliding body has moved by since the beginning.
-    pub slid: f64,
+    pub slider_position: f64,
     /// Its rate.
-    pub sliding: f64,
+    pub slider_velocity: f64,
 }
 
 impl Reaction {
     /// All its numbers.
     pub(crate) fn numbers(&self) -> impl Iterator<Item = &f64> {
-        let Self { force_body, moment_body, drive, drive_power, turned, turning, slid, sliding } = self;
-        let scalars = [drive, drive_power, turned, turning, slid, sliding];
+        let Self {
+            force_body,
+            moment_body,
+            drive,
+            drive_power,
+            hinge_angle,
+            hinge_rate,
+            slider_position,
+            slider_velocity,
+        } = self;
+        let scalars = [drive, drive_power, hinge_angle, hinge_rate, slider_position, slider_velocity];
         force_body.iter().chain(moment_body).chain(scalars)
     }
 }

@@ -143,7 +143,7 @@ pub(crate) struct Events {
 }
 
 /// Halvings of a step are enough of these to reach rounding, and the secants come sooner.
-const MOST_TRIES: usize = 100;
+const MAX_TRIES: usize = 100;
 
 impl Events {
     pub(crate) fn is_empty(&self) -> bool {
@@ -237,7 +237,7 @@ fn locate(
         return Ok(from);
     }
     let mut stayed = 0;
-    for _ in 0..MOST_TRIES {
+    for _ in 0..MAX_TRIES {
         let spacing = 2.0 * f64::EPSILON * to.abs().max(to - from);
         if to - from <= spacing || after == 0.0 {
             break;

@@ -12,7 +12,7 @@ use crate::simulation::setup::Setup;
 const PARTS: [&str; 5] = ["the body", "the damping", "an effect or the drive", "the start", "the scheme or its steps"];
 
 /// A check sum (CRC-32) of each part of a set-up, its loads last: of what [`fmt::Debug`] prints, which of a built-in load
-/// is its data, and of a [`LoadFn`](crate::LoadFn) its name, corners and longest step.
+/// is its data, and of a [`LoadFn`](crate::LoadFn) its name, discontinuities and longest step.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Fingerprint(Vec<[u8; 4]>);
 

@@ -1,4 +1,4 @@
-//! Which steps lead through a run: they end exactly at output times and at the corners of load histories.
+//! Which steps lead through a run: they end exactly at output times and at the discontinuities of load histories.
 
 use serde::{Deserialize, Serialize};
 
@@ -22,7 +22,7 @@ pub enum Rows {
     Interval(f64),
 }
 
-/// A stretch of time without a corner or an output time inside.
+/// A stretch of time without a discontinuity or an output time inside.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Segment {
     pub start: f64,
@@ -33,7 +33,7 @@ pub(crate) struct Segment {
     /// True if the end is an output time.
     pub row: bool,
     /// True if the end is a discontinuity.
-    pub corner: bool,
+    pub discontinuity: bool,
 }
 
 impl Segment {
@@ -47,8 +47,8 @@ impl Segment {
 #[derive(Debug, Clone)]
 pub(crate) struct Plan {
     end: f64,
-    /// Corners within the run, sorted, and how many of them have been passed.
-    corners: Vec<f64>,
+    /// Discontinuities within the run, sorted, and how many of them have been passed.
+    discontinuities: Vec<f64>,
     passed: usize,
     interval: Option<f64>,
     /// Output times passed.
@@ -69,14 +69,14 @@ pub(crate) struct Progress {
 }
 
 impl Plan {
-    pub(crate) fn new(end: f64, corners: impl Iterator<Item = f64>, rows: Rows) -> Self {
-        let mut corners: Vec<f64> = corners.filter(|t| *t > 0.0 && *t < end).collect();
-        corners.sort_by(f64::total_cmp);
+    pub(crate) fn new(end: f64, discontinuities: impl Iterator<Item = f64>, rows: Rows) -> Self {
+        let mut discontinuities: Vec<f64> = discontinuities.filter(|t| *t > 0.0 && *t < end).collect();
+        discontinuities.sort_by(f64::total_cmp);
         let interval = match rows {
             Rows::Interval(interval) => Some(interval),
             Rows::EverySteps(_) => None,
         };
-        Self { end, corners, passed: 0, interval, outputs: 0, reached: 0.0, last_length: 0.0, stop: None }
+        Self { end, discontinuities, passed: 0, interval, outputs: 0, reached: 0.0, last_length: 0.0, stop: None }
     }
 
     /// How far it has come.
@@ -89,14 +89,14 @@ impl Plan {
         let Progress { outputs, reached, last_length } = *progress;
         counts(&[outputs])?;
         finite("the end of the segment", [&reached, &last_length])?;
-        self.passed = self.corners_passed(reached);
+        self.passed = self.discontinuities_passed(reached);
         (self.outputs, self.reached, self.last_length) = (outputs, reached, last_length);
         Ok(())
     }
 
-    fn corners_passed(&self, time: f64) -> usize {
+    fn discontinuities_passed(&self, time: f64) -> usize {
         let same = self.same();
-        self.corners.partition_point(|corner| *corner <= time + same)
+        self.discontinuities.partition_point(|discontinuity| *discontinuity <= time + same)
     }
 
     /// Sets or takes back a time to stop at.
@@ -123,7 +123,7 @@ impl Plan {
     pub(crate) fn go_to(&mut self, time: f64) {
         let same = self.same();
         self.reached = time;
-        self.passed = self.corners_passed(time);
+        self.passed = self.discontinuities_passed(time);
         self.outputs = self.interval.map_or(0, |interval| ((time + same) / interval).floor().max(0.0) as u64);
     }
 
@@ -139,11 +139,11 @@ impl Plan {
             return None;
         }
         let output = self.interval.map_or(f64::INFINITY, |interval| (self.outputs + 1) as f64 * interval);
-        while self.corners.get(self.passed).is_some_and(|corner| *corner <= self.reached + same) {
+        while self.discontinuities.get(self.passed).is_some_and(|discontinuity| *discontinuity <= self.reached + same) {
             self.passed += 1;
         }
-        let corner = self.corners.get(self.passed).copied().unwrap_or(f64::INFINITY);
-        let mut stop = corner.min(output).min(self.end);
+        let discontinuity = self.discontinuities.get(self.passed).copied().unwrap_or(f64::INFINITY);
+        let mut stop = discontinuity.min(output).min(self.end);
         let row = (output - stop).abs() <= same || (self.end - stop).abs() <= same;
         if (output - stop).abs() <= same {
             self.outputs += 1;
@@ -164,7 +164,13 @@ impl Plan {
             length = self.last_length;
         }
         self.last_length = length;
-        let segment = Segment { start: self.reached, end: stop, length, row, corner: (corner - stop).abs() <= same };
+        let segment = Segment {
+            start: self.reached,
+            end: stop,
+            length,
+            row,
+            discontinuity: (discontinuity - stop).abs() <= same,
+        };
         self.reached = stop;
         Some(segment)
     }
@@ -289,7 +295,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn segments_end_at_corners_and_output_times_and_equal_ones_have_equal_lengths() {
+    fn segments_end_at_discontinuities_and_output_times_and_equal_ones_have_equal_lengths() {
         let mut plan = Plan::new(0.5, [0.02013, 0.0, 0.1, 0.7].into_iter(), Rows::Interval(0.1));
         let mut ends = Vec::new();
         let mut lengths = Vec::new();
@@ -303,7 +309,7 @@ mod tests {
 
     #[test]
     fn a_step_that_divides_the_end_is_kept_and_another_is_shortened() {
-        let whole = Segment { start: 0.0, end: 0.5, length: 0.5, row: true, corner: false };
+        let whole = Segment { start: 0.0, end: 0.5, length: 0.5, row: true, discontinuity: false };
         for (step, count) in [(1e-4, 5000), (0.3, 2), (0.5, 1), (2.0, 1), (0.1, 5)] {
             let mut steps = EqualSteps::new(whole, step);
             let mut taken = Vec::new();
@@ -318,7 +324,7 @@ mod tests {
 
     #[test]
     fn halved_steps_land_on_the_end_whatever_is_accepted_and_rejected() {
-        let segment = Segment { start: 1.0, end: 1.3, length: 1.3 - 1.0, row: true, corner: false };
+        let segment = Segment { start: 1.0, end: 1.3, length: 1.3 - 1.0, row: true, discontinuity: false };
         let mut steps = HalvedSteps::new(segment, 0.11, f64::INFINITY);
         let mut time = 1.0;
         let mut tries = 0;
@@ -339,7 +345,7 @@ mod tests {
     #[test]
     fn steps_cannot_shrink_for_ever() {
         let mut steps = HalvedSteps::new(
-            Segment { start: 0.0, end: 1.0, length: 1.0, row: true, corner: false },
+            Segment { start: 0.0, end: 1.0, length: 1.0, row: true, discontinuity: false },
             1.0,
             f64::INFINITY,
         );

@@ -42,7 +42,7 @@ pub struct LoadedMode {
     pub growth: f64,
 }
 
-/// Why the vibrations of a loaded body are not known.
+/// Errors of the vibrations of a loaded body.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum LoadedError {
     /// The rates cannot be evaluated.

@@ -28,7 +28,7 @@ fn rows(simulation: &mut Simulation, most: usize) -> (Vec<Observation>, Vec<u64>
 fn run() -> Run<'static> {
     let plate = plate();
     let initial = plate.spinning(Vector3::new(3.0, -2.0, 5.0));
-    // A pulse with a corner inside the run, between two rows.
+    // A pulse with a discontinuity inside the run, between two rows.
     let loads = vec![plate.half_sine([-500.0, 0.0, 10.0], [20.0, 10.0, 30.0], 0.0123)];
     let points = vec![plate.point([500.0, 0.0, 10.0])];
     Run { damping_ratio: 0.02, loads, points, ..Run::free(plate, initial, 0.03) }

@@ -108,10 +108,10 @@ fn ends(run: &Run, method: Method, control: StepControl, rows: Rows) -> Vec<(f64
 }
 
 #[test]
-fn steps_end_at_rows_and_at_corners_and_at_nothing_beyond_them() {
+fn steps_end_at_rows_and_at_discontinuities_and_at_nothing_beyond_them() {
     let run = tumbling(plate());
     let multiples: Vec<f64> = (1..=7).map(|n| f64::from(n) * 0.07).chain([0.5]).collect();
-    let corners = [0.031_41, 0.031_41 + 0.073_217];
+    let discontinuities = [0.031_41, 0.031_41 + 0.073_217];
     for (method, control) in [
         (EXPONENTIAL, StepControl::Tolerance(1e-6)),
         (RKMK4, StepControl::Tolerance(1e-5)),
@@ -123,8 +123,8 @@ fn steps_end_at_rows_and_at_corners_and_at_nothing_beyond_them() {
         let ends = ends(&run, method, control, Rows::Interval(0.07));
         let rows: Vec<f64> = ends.iter().filter(|end| end.1).map(|end| end.0).collect();
         assert_eq!(rows, multiples, "{method:?}");
-        for corner in corners {
-            assert!(ends.iter().any(|end| end.0 == corner), "{method:?} {corner}");
+        for discontinuity in discontinuities {
+            assert!(ends.iter().any(|end| end.0 == discontinuity), "{method:?} {discontinuity}");
         }
         let lengths = ends.windows(2).map(|pair| pair[1].0 - pair[0].0);
         if let StepControl::Fixed(step) = control {
@@ -133,15 +133,18 @@ fn steps_end_at_rows_and_at_corners_and_at_nothing_beyond_them() {
             let least = (0.5 / step).ceil() as usize;
             assert!((least..least + 10).contains(&ends.len()), "{method:?}: {}", ends.len());
         }
-        // With a row after so many steps, the corners are met all the same.
+        // With a row after so many steps, the discontinuities are met all the same.
         let free: Vec<f64> =
             self::ends(&run, method, control, Rows::EverySteps(1000)).iter().map(|end| end.0).collect();
-        assert!(corners.iter().all(|corner| free.contains(corner)) && free.last() == Some(&0.5), "{method:?}");
+        assert!(
+            discontinuities.iter().all(|discontinuity| free.contains(discontinuity)) && free.last() == Some(&0.5),
+            "{method:?}"
+        );
     }
 }
 
 #[test]
-fn after_a_corner_the_steps_grow_back_to_the_interval() {
+fn after_a_discontinuity_the_steps_grow_back_to_the_interval() {
     let plate = plate();
     let load = plate.pulse([-500.0, 0.0, 10.0], [1.0, 0.0, 1.0], 0.005_3, 1e-3);
     let run = Run { damping_ratio: 0.05, loads: vec![load], ..Run::free(plate, Initial::at_rest(10), 0.2) };
@@ -166,7 +169,7 @@ fn fixed_steps_cost_four_evaluations_each() {
         assert_eq!(simulation.by_ref().count(), 6);
         let stats = simulation.stats();
         assert_eq!(stats.evaluations, u64::from(method.evaluations_per_step) * stats.accepted);
-        // The two corners cost a step each.
+        // The two discontinuities cost a step each.
         assert_eq!((stats.accepted, stats.rejected), (5002, 0));
         assert!(stats.longest <= 1e-4 * (1.0 + 1e-9) && stats.shortest > 0.9e-4, "{stats:?}");
     }

@@ -136,10 +136,10 @@ fn a_hinge_gives_no_moment_about_its_axis() {
     let now = held(RigidMotion::hinge(POINT, axis())).check(None);
     let found = now.reaction;
     assert!(found.moment_body.dot(&axis()).abs() < 1e-9 * found.moment_body.norm(), "{found:?}");
-    assert!((found.turning - now.omega_body.dot(&axis())).abs() < 1e-12 * found.turning.abs());
+    assert!((found.hinge_rate - now.omega_body.dot(&axis())).abs() < 1e-12 * found.hinge_rate.abs());
     // Below half a turn it is that of the attitude.
-    assert!((found.turned - now.attitude.angle_to(&rigid_kin::Attitude::identity())).abs() < 1e-12, "{found:?}");
-    assert_eq!([found.drive, found.drive_power, found.slid, found.sliding], [0.0; 4]);
+    assert!((found.hinge_angle - now.attitude.angle_to(&rigid_kin::Attitude::identity())).abs() < 1e-12, "{found:?}");
+    assert_eq!([found.drive, found.drive_power, found.slider_position, found.slider_velocity], [0.0; 4]);
 }
 
 #[test]
@@ -150,14 +150,17 @@ fn a_slider_gives_no_force_along_its_direction() {
     assert!(found.force_body.dot(&axis()).abs() < 1e-9 * found.force_body.norm(), "{found:?}");
     let moved = axis().dot(&now.origin_global);
     let start = axis().dot(&slider.body.origin);
-    assert!((found.slid - (moved - start)).abs() < 1e-12 && found.slid > 0.1, "{found:?}");
-    assert!((found.sliding - axis().dot(&now.points[0].velocity)).abs() < 1e-9 * found.sliding.abs(), "{found:?}");
+    assert!((found.slider_position - (moved - start)).abs() < 1e-12 && found.slider_position > 0.1, "{found:?}");
+    assert!(
+        (found.slider_velocity - axis().dot(&now.points[0].velocity)).abs() < 1e-9 * found.slider_velocity.abs(),
+        "{found:?}"
+    );
 }
 
 #[test]
 fn a_clamp_gives_what_the_particles_need() {
     let now = held(RigidMotion::clamp(POINT)).check(None);
-    assert_eq!([now.reaction.turned, now.reaction.slid], [0.0; 2]);
+    assert_eq!([now.reaction.hinge_angle, now.reaction.slider_position], [0.0; 2]);
 }
 
 #[test]
@@ -168,8 +171,10 @@ fn a_drive_gives_what_is_along_its_axis() {
         let now = held(RigidMotion::clamp(POINT)).check(Some(drive));
         let found = now.reaction;
         let (along, [way, speed]) = match motion {
-            DrivenMotion::Turn { .. } => (found.moment_body.dot(&axis()), [found.turned, found.turning]),
-            DrivenMotion::Slide { .. } => (found.force_body.dot(&axis()), [found.slid, found.sliding]),
+            DrivenMotion::Turn { .. } => (found.moment_body.dot(&axis()), [found.hinge_angle, found.hinge_rate]),
+            DrivenMotion::Slide { .. } => {
+                (found.force_body.dot(&axis()), [found.slider_position, found.slider_velocity])
+            }
         };
         assert!((found.drive - along).abs() < 1e-12 * found.drive.abs(), "{found:?}");
         assert!((found.drive_power - found.drive * 45.0).abs() < 1e-9 * found.drive_power.abs(), "{found:?}");

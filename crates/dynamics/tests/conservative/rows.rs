@@ -35,7 +35,7 @@ fn by_signal(signal: &Signal) -> SharedLoad {
 
 #[test]
 fn rows_leave_every_bit_of_a_run_as_it_is() {
-    // Corners that fall on ends of steps, and between them.
+    // Discontinuities that fall on ends of steps, and between them.
     let table = Table::new(vec![0.0, 0.002, 0.00501, 0.008], vec![0.5, 0.5, -1.0, 0.3]).unwrap();
     let formula = Expression::new("cos(300*t) + sign(t - 0.004)", vec![0.004]).unwrap();
     let signal = Signal::held(0.0);

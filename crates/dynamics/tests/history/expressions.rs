@@ -52,7 +52,7 @@ fn formulas_mean_what_they_mean_in_mathematics() {
             let (found, expected) = (at(&history, t), law(t));
             assert!((found - expected).abs() <= 4e-15 * expected.abs().max(1.0), "{text} at {t}: {found} {expected}");
         }
-        assert!(history.corners().is_empty());
+        assert!(history.discontinuities().is_empty());
     }
 }
 
@@ -64,14 +64,14 @@ fn the_sign_of_zero_is_one_whatever_its_sign() {
 }
 
 #[test]
-fn corners_that_are_named_split_the_law() {
+fn discontinuities_that_are_named_split_the_law() {
     let saw = Expression::new("10*t - floor(10*t)", vec![0.3, 0.2, 0.1, 0.2]).unwrap();
-    assert_eq!((saw.text(), saw.corners()), ("10*t - floor(10*t)", &[0.1, 0.2, 0.3][..]));
+    assert_eq!((saw.text(), saw.discontinuities()), ("10*t - floor(10*t)", &[0.1, 0.2, 0.3][..]));
     let saw = History::Expression(saw);
-    assert_eq!(saw.corners(), [0.1, 0.2, 0.3]);
-    for corner in saw.corners() {
-        let [before, after] = sides(&saw, corner);
-        assert!((before - 1.0).abs() < 1e-14 && after.abs() < 1e-14, "{corner}: {before} {after}");
+    assert_eq!(saw.discontinuities(), [0.1, 0.2, 0.3]);
+    for discontinuity in saw.discontinuities() {
+        let [before, after] = sides(&saw, discontinuity);
+        assert!((before - 1.0).abs() < 1e-14 && after.abs() < 1e-14, "{discontinuity}: {before} {after}");
     }
     assert!((saw.at(0.15, 0.15) - 0.5).abs() < 1e-15);
 }
@@ -146,7 +146,7 @@ fn the_rate_of_a_fast_formula_is_as_exact() {
 }
 
 #[test]
-fn at_a_kink_without_a_corner_the_rate_is_the_mean_of_both_sides() {
+fn at_a_kink_without_a_discontinuity_the_rate_is_the_mean_of_both_sides() {
     let cases = [("abs(t - 1)", 0.0), ("min(t, 1)", 0.5), ("max(3 t, t + 2)", 2.0), ("hypot(t - 1, 0)", 0.0)];
     for (text, mean) in cases {
         assert_eq!(formula(text).rate(1.0, 1.0), mean, "{text}");

@@ -1,4 +1,4 @@
-//! Each kind against its formula, and its law on both sides of its corners.
+//! Each kind against its formula, and its law on both sides of its discontinuities.
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_6, TAU};
 
@@ -7,9 +7,9 @@ use dynamics::{Expression, History};
 use crate::{at, formula, sides, table};
 
 #[test]
-fn a_constant_is_one_and_has_no_corner() {
+fn a_constant_is_one_and_has_no_discontinuity() {
     assert_eq!([-1e9, 0.0, 1e9].map(|t| at(&History::Constant, t)), [1.0; 3]);
-    assert!(History::Constant.corners().is_empty());
+    assert!(History::Constant.discontinuities().is_empty());
 }
 
 #[test]
@@ -17,7 +17,7 @@ fn a_step_is_seen_from_its_side() {
     let step = History::Step { at: 2.0 };
     assert_eq!((at(&step, 1.999), at(&step, 2.001)), (0.0, 1.0));
     assert_eq!(sides(&step, 2.0), [0.0, 1.0]);
-    assert_eq!(step.corners(), [2.0]);
+    assert_eq!(step.discontinuities(), [2.0]);
 }
 
 #[test]
@@ -25,7 +25,7 @@ fn a_ramp_rises_straight_and_stays() {
     let ramp = History::Ramp { start: 1.0, duration: 4.0 };
     assert_eq!([0.5, 2.0, 4.0, 5.5].map(|t| at(&ramp, t)), [0.0, 0.25, 0.75, 1.0]);
     assert_eq!((sides(&ramp, 1.0), sides(&ramp, 5.0)), ([0.0; 2], [1.0; 2]));
-    assert_eq!(ramp.corners(), [1.0, 5.0]);
+    assert_eq!(ramp.discontinuities(), [1.0, 5.0]);
 }
 
 #[test]
@@ -35,7 +35,7 @@ fn a_half_sine_rises_falls_and_ends() {
     assert!((at(&pulse, 1.25) - 1.0).abs() < 1e-15);
     assert!((at(&pulse, 1.125) - 0.5_f64.sqrt()).abs() < 1e-15);
     assert!(at(&pulse, 1.5).abs() < 1e-15);
-    assert_eq!(pulse.corners(), [1.0, 1.5]);
+    assert_eq!(pulse.discontinuities(), [1.0, 1.5]);
 }
 
 #[test]
@@ -45,13 +45,13 @@ fn a_sine_begins_with_its_phase_and_ends_with_its_duration() {
         assert_eq!(at(&sine(None), t), (TAU * 3.0 * (t - 0.5) + FRAC_PI_6).sin());
     }
     assert_eq!(sides(&sine(None), 0.5), [0.0, FRAC_PI_6.sin()]);
-    assert_eq!(sine(None).corners(), [0.5]);
+    assert_eq!(sine(None).discontinuities(), [0.5]);
     // 3.25 cycles: it ends at sin(π/2 + π/6).
     let burst = sine(Some(3.25 / 3.0));
     let end = 0.5 + 3.25 / 3.0;
     let [before, after] = sides(&burst, end);
     assert!((before - (FRAC_PI_2 + FRAC_PI_6).sin()).abs() < 1e-14 && after == 0.0, "{before} {after}");
-    assert_eq!(burst.corners(), [0.5, end]);
+    assert_eq!(burst.discontinuities(), [0.5, end]);
 }
 
 /// The frequency is the rate of the phase, from h = sin φ and h' = φ' cos φ where cos φ is not small.
@@ -74,12 +74,12 @@ fn a_sweep_goes_straight_from_one_frequency_to_the_other() {
         assert!(seen > 2000 && largest < 1e-7, "{seen} {largest:e}");
         // 11 and 10 times 5 cycles on the average: whole ones.
         assert!(sides(&sweep, 6.0)[0].abs() < 1e-12);
-        assert_eq!((at(&sweep, 0.9), at(&sweep, 6.1), sweep.corners()), (0.0, 0.0, vec![1.0, 6.0]));
+        assert_eq!((at(&sweep, 0.9), at(&sweep, 6.1), sweep.discontinuities()), (0.0, 0.0, vec![1.0, 6.0]));
     }
 }
 
 #[test]
-fn a_product_is_that_of_its_factors_with_all_their_corners() {
+fn a_product_is_that_of_its_factors_with_all_their_discontinuities() {
     let factors = vec![
         History::Step { at: 2.0 },
         History::Ramp { start: 0.0, duration: 4.0 },
@@ -87,17 +87,17 @@ fn a_product_is_that_of_its_factors_with_all_their_corners() {
         formula("exp(-t)"),
     ];
     let product = History::Product { factors: factors.clone() };
-    assert_eq!(product.corners(), [0.0, 1.0, 2.0, 3.0, 4.0]);
+    assert_eq!(product.discontinuities(), [0.0, 1.0, 2.0, 3.0, 4.0]);
     for t in [0.5, 1.5, 2.5, 3.5, 4.5] {
         assert_eq!(at(&product, t), factors.iter().map(|factor| at(factor, t)).product::<f64>());
     }
     assert_eq!(sides(&product, 2.0), [0.0, 0.5 * 3.0 * (-2.0_f64).exp()]);
     // Products nest.
     let nested = History::Product { factors: vec![product, History::Step { at: 0.5 }] };
-    assert_eq!(nested.corners(), [0.0, 0.5, 1.0, 2.0, 3.0, 4.0]);
+    assert_eq!(nested.discontinuities(), [0.0, 0.5, 1.0, 2.0, 3.0, 4.0]);
 }
 
-/// Each rate against a difference of values, and at a corner on either side.
+/// Each rate against a difference of values, and at a discontinuity on either side.
 #[test]
 fn rates_are_those_of_the_values() {
     let sine = History::Sine { frequency: 3.0, phase: 0.4, start: 0.1, duration: Some(2.0) };
@@ -127,9 +127,9 @@ fn rates_are_those_of_the_values() {
     }
 }
 
-/// A formula's rate at its corner and just beside it looks only to the side of `inside`.
+/// A formula's rate at its discontinuity and just beside it looks only to the side of `inside`.
 #[test]
-fn the_rate_of_a_formula_does_not_look_across_its_corner() {
+fn the_rate_of_a_formula_does_not_look_across_its_discontinuity() {
     let kinked = History::Expression(Expression::new("abs(sin(t - 1))", vec![1.0]).unwrap());
     for (inside, sign) in [(0.9, -1.0), (1.1, 1.0)] {
         for offset in [0.0, 1e-9, 1e-5] {

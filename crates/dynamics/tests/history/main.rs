@@ -1,4 +1,4 @@
-//! Histories of loads: each kind against its formula, at corners, and its spectrum against closed forms.
+//! Histories of loads: each kind against its formula, at discontinuities, and its spectrum against closed forms.
 
 mod expressions;
 mod kinds;

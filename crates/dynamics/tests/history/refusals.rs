@@ -106,8 +106,8 @@ fn formulas_that_are_none_with_the_place() {
     ];
     for (text, place, what) in cases {
         match Expression::new(text, vec![]) {
-            Err(SetupError::Expression { text: found, position, problem, cure }) => {
-                let said = format!("{problem}; {cure}");
+            Err(SetupError::Expression { text: found, position, problem, help }) => {
+                let said = format!("{problem}; {help}");
                 assert!(&*found == text && position == place && said.contains(what), "{text}: {position} {said}");
             }
             other => panic!("{text}: {other:?}"),

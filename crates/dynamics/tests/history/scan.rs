@@ -39,7 +39,7 @@ fn magnitudes_integrate_to_their_closed_forms() {
 }
 
 #[test]
-fn the_largest_magnitude_is_found_between_corners() {
+fn the_largest_magnitude_is_found_between_discontinuities() {
     let cases = [
         (History::Constant, 1.0, 1.0),
         (History::Step { at: 2.0 }, 1.0, 0.0),

@@ -1,9 +1,9 @@
-//! Tables: lines between rows, corners where the slope changes.
+//! Tables: lines between rows, discontinuities where the slope changes.
 
 use crate::{at, sides, table};
 
-fn corners_of(times: &[f64], values: &[f64]) -> Vec<f64> {
-    table(times, values).corners()
+fn discontinuities_of(times: &[f64], values: &[f64]) -> Vec<f64> {
+    table(times, values).discontinuities()
 }
 
 #[test]
@@ -15,34 +15,34 @@ fn a_table_goes_straight_between_rows_and_holds_its_ends() {
     for (t, value) in [(1.0, 3.0), (2.0, -1.0), (4.0, 0.0)] {
         assert_eq!(sides(&history, t), [value; 2], "{t}");
     }
-    assert_eq!(history.corners(), [1.0, 2.0, 4.0]);
+    assert_eq!(history.discontinuities(), [1.0, 2.0, 4.0]);
 }
 
 #[test]
-fn corners_are_where_the_slope_changes() {
-    assert_eq!(corners_of(&[0.0, 1.0, 2.0, 3.0], &[5.0; 4]), []);
-    assert_eq!(corners_of(&[0.0, 1.0, 3.0], &[0.0, 2.0, 6.0]), [0.0, 3.0]);
-    assert_eq!(corners_of(&[0.0, 1.0, 2.0, 3.0], &[1.0, 1.0, 2.0, 2.0]), [1.0, 2.0]);
+fn discontinuities_are_where_the_slope_changes() {
+    assert_eq!(discontinuities_of(&[0.0, 1.0, 2.0, 3.0], &[5.0; 4]), []);
+    assert_eq!(discontinuities_of(&[0.0, 1.0, 3.0], &[0.0, 2.0, 6.0]), [0.0, 3.0]);
+    assert_eq!(discontinuities_of(&[0.0, 1.0, 2.0, 3.0], &[1.0, 1.0, 2.0, 2.0]), [1.0, 2.0]);
     // A kink of 1e-9 of the slope is none of rounding.
-    assert_eq!(corners_of(&[0.0, 1.0, 2.0], &[0.0, 1.0, 2.0 + 1e-9]), [0.0, 1.0, 2.0]);
+    assert_eq!(discontinuities_of(&[0.0, 1.0, 2.0], &[0.0, 1.0, 2.0 + 1e-9]), [0.0, 1.0, 2.0]);
 }
 
 /// Ten thousand rows of one line, rounded: a step may go from the first to the last.
 #[test]
-fn rounded_rows_of_a_line_have_no_corners_between() {
+fn rounded_rows_of_a_line_have_no_discontinuities_between() {
     let times: Vec<f64> = (0..10_000).map(|k| 0.3 + f64::from(k) * 0.1).collect();
     let values: Vec<f64> = times.iter().map(|t| 7.3 * t - 1e3 / 3.0).collect();
     let history = table(&times, &values);
     let (first, last) = (times[0], times[9999]);
-    assert_eq!(history.corners(), [first, last]);
+    assert_eq!(history.discontinuities(), [first, last]);
     for t in [first, 17.77, 500.123, last] {
         let value = history.at(t, 500.0);
         assert!((value - (7.3 * t - 1e3 / 3.0)).abs() < 1e-11, "{t} {value}");
     }
-    // One row moved by a millionth is a corner with its neighbours.
+    // One row moved by a millionth is a discontinuity with its neighbours.
     let mut moved = values;
     moved[5000] += 1e-6;
-    assert_eq!(table(&times, &moved).corners(), [first, times[4999], times[5000], times[5001], last]);
+    assert_eq!(table(&times, &moved).discontinuities(), [first, times[4999], times[5000], times[5001], last]);
 }
 
 #[test]
@@ -57,7 +57,7 @@ fn ten_thousand_rows_of_a_sine_are_found_by_the_rows_beside() {
     }
     // Interpolation errs by (5e-3)²/8 = 3.1e-6.
     assert!(worst < 3.2e-6, "{worst:e}");
-    assert!(history.corners().len() > 9_990, "{}", history.corners().len());
+    assert!(history.discontinuities().len() > 9_990, "{}", history.discontinuities().len());
 }
 
 /// What lies on the two sides of a step's ends does not matter, whatever the stage.

@@ -1,4 +1,4 @@
-//! Events and stops at the ends of steps, beside corners, rows and each other, and functions of events that fail.
+//! Events and stops at the ends of steps, beside discontinuities, rows and each other, and functions of events that fail.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
@@ -40,7 +40,7 @@ fn assert_reached(found: &[(Reached, f64)], expected: &[(Reached, f64)]) {
 }
 
 #[test]
-fn a_corner_that_an_event_falls_on_is_passed() {
+fn a_discontinuity_that_an_event_falls_on_is_passed() {
     let turned = body(RigidMotion::clamp(Vector3::zeros()), &[5.0, 8.0, 13.0]);
     let mut run = Run::new(&turned, 1.0);
     run.physics.drive = Some(Drive {

@@ -290,23 +290,23 @@ fn a_load_sees_the_origin_where_and_as_fast_as_it_is_with_every_scheme() {
     }
 }
 
-/// A closure says nothing of its jumps. With the jumps as corners the motion is right to rounding of the tolerance.
+/// A closure says nothing of its jumps. With the jumps as discontinuities the motion is right to rounding of the tolerance.
 #[test]
 fn jumps_that_a_closure_does_not_name_are_passed_within_the_tolerance() {
     let body = body(RigidMotion::free(), &OMEGA);
     let mut run = Run::new(&body, 4.0);
     let place = point(&body, [0.3, -0.2, 0.4]);
-    let corners = vec![0.7, 1.3, 2.9];
+    let discontinuities = vec![0.7, 1.3, 2.9];
     let load = |named: bool| -> SharedLoad {
         let place = place.clone();
-        let jumps = corners.clone();
+        let jumps = discontinuities.clone();
         let law = move |motion: &Kinematics, applied: &mut Applied| {
             let time = if named { motion.branch_time } else { motion.time };
             let sign = if jumps.iter().filter(|jump| time >= **jump).count() % 2 == 0 { 1.0 } else { -1.0 };
             applied.force(&place, &(Vector3::new(2.0, -1.0, 0.5) * sign));
         };
         let load = LoadFn::new("switch", law);
-        Arc::new(if named { load.with_corners(corners.clone()) } else { load })
+        Arc::new(if named { load.with_discontinuities(discontinuities.clone()) } else { load })
     };
     let mut end = |named: bool, control: StepControl| {
         run.loads = vec![load(named)];
@@ -319,7 +319,7 @@ fn jumps_that_a_closure_does_not_name_are_passed_within_the_tolerance() {
         let (found, steps) = end(false, StepControl::Tolerance(tolerance));
         let (_, named) = end(true, StepControl::Tolerance(tolerance));
         let error = largest(&found.modal_displacement, &truth.modal_displacement);
-        println!("{tolerance:e}: {steps} steps, {named} with corners, {error:e}");
+        println!("{tolerance:e}: {steps} steps, {named} with discontinuities, {error:e}");
         assert!(error < 2.0 * tolerance && steps < named + 600, "{tolerance:e}: {steps} {named} {error:e}");
     }
 }

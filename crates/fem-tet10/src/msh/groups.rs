@@ -11,7 +11,7 @@ use crate::parts::{MeshParts, NodeGroup, SurfaceGroup};
 
 /// Entries of groups for a byte of the file, at most: a small file that has much in many groups would fill the memory.
 /// Numbers of four digits may be in twenty groups at once.
-const MOST_ENTRIES: usize = 4;
+const MAX_ENTRIES: usize = 4;
 
 /// The physical groups of a file.
 #[derive(Default)]
@@ -106,7 +106,7 @@ impl PhysicalGroups {
         let numbers = |block: &Block| 1 + block.tags.len() + block.nodes.len();
         let entries = blocks.iter().fold(0, |sum: usize, b| sum.saturating_add(groups(b).saturating_mul(numbers(b))));
         if let (true, Some(most)) =
-            (entries > length.saturating_mul(MOST_ENTRIES), blocks.iter().max_by_key(|block| groups(block)))
+            (entries > length.saturating_mul(MAX_ENTRIES), blocks.iter().max_by_key(|block| groups(block)))
         {
             return Err(MeshError::TooManyGroups {
                 source_name: parts.source.clone(),

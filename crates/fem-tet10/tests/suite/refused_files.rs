@@ -25,7 +25,7 @@ fn assert_says(message: &str, parts: &[&str]) {
 }
 
 #[test]
-fn other_elements_are_named_with_the_cure() {
+fn other_elements_are_named_with_the_help() {
     let cases: [(&str, &[&str]); 4] = [
         ("cube_order_1.msh", &["element 1 is a four-node tetrahedron", "mesh with -order 2"]),
         ("cube_order_3.msh", &["element 1 is a tetrahedron of order 3", "mesh with -order 2"]),
@@ -44,7 +44,7 @@ fn other_elements_are_named_with_the_cure() {
 }
 
 #[test]
-fn other_versions_are_named_with_the_cure() {
+fn other_versions_are_named_with_the_help() {
     let error = read_msh(data("cube_msh22.msh")).unwrap_err();
     assert!(matches!(error, MeshError::Version { .. }), "{error:?}");
     assert_says(&error.to_string(), &["cube_msh22.msh", "version 2.2", "-save -format msh41", "-order 2"]);

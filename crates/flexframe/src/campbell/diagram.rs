@@ -10,7 +10,7 @@ use super::report::CampbellReport;
 /// Colours that a chart has before they begin again.
 const COLOURS: usize = 7;
 /// More branches than this cannot be told apart.
-const MOST_BRANCHES: usize = 2 * COLOURS;
+const MAX_BRANCHES: usize = 2 * COLOURS;
 /// The diagram reaches this far above the highest order,
 const ABOVE_ORDERS: f64 = 1.15;
 /// but at most so far above the highest branch.
@@ -23,7 +23,7 @@ pub(super) fn draw(report: &CampbellReport, orders: &[f64], stem: &Path) -> Resu
     let top = top(report, highest_order * end / TAU);
     let mut series: Vec<Series> = Vec::new();
     for branch in report.branches.iter().filter(|branch| branch.frequency.iter().any(|f| *f <= top)) {
-        if series.len() == MOST_BRANCHES {
+        if series.len() == MAX_BRANCHES {
             break;
         }
         let points = report.speeds.iter().copied().zip(branch.frequency.iter().copied()).collect();

@@ -1,4 +1,4 @@
-//! Why a diagram cannot be made.
+//! Errors of a diagram.
 
 use std::path::PathBuf;
 
@@ -9,7 +9,7 @@ use scene::BuildError;
 use crate::write_error::WriteError;
 
 /// Each speed takes an eigenvalue problem, and a row of a table.
-pub(super) const MOST_SPEEDS: usize = 10_000;
+pub(super) const MAX_SPEEDS: usize = 10_000;
 
 /// A diagram that could not be made.
 #[derive(Debug, thiserror::Error)]
@@ -34,7 +34,7 @@ pub enum CampbellError {
     /// The speeds are no range.
     #[error(
         "speeds {start}:{end}:{count}: expected start:end:count, radians per time, with 0 ≤ start < end and a count of 2 \
-         to {MOST_SPEEDS}, e.g. 0:200:50"
+         to {MAX_SPEEDS}, e.g. 0:200:50"
     )]
     Speeds {
         /// The lowest.

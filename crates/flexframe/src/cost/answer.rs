@@ -6,14 +6,14 @@ use scene::{Rows, Scene};
 use serde::Serialize;
 
 use super::case::PreparedScene;
-use super::ladder::{Judge, LadderRun, Line, Outcome, settings_between};
+use super::ladder::{Evaluator, LadderRun, Line, Outcome, settings_between};
 use super::modes::ModesRow;
 use super::setting::Setting;
 use super::short::{duration, setting};
 use crate::json;
 
-/// A rung between two others cannot be faster than the finer of them by more than this.
-const MOST_GAIN: f64 = 2.7;
+/// A setting between two others cannot be faster than the finer of them by more than this.
+const MAX_GAIN: f64 = 2.7;
 
 /// The cheapest way to a target.
 #[derive(Debug, Clone, Serialize)]
@@ -35,12 +35,12 @@ pub struct Answer {
     pub out_of_patience: Vec<String>,
 }
 
-/// Looks between the rungs for cheaper settings that still reach the target, and adds them to the lines.
-pub(super) fn refine(case: &PreparedScene<'_>, judge: &Judge<'_>, lines: &mut [Line], target: f64) {
+/// Looks between the settings for cheaper ones that still reach the target, and adds them to the lines.
+pub(super) fn refine(case: &PreparedScene<'_>, evaluator: &Evaluator<'_>, lines: &mut [Line], target: f64) {
     let fastest = lines.iter().filter_map(|line| Some(first_reaching(line, target)?.1)).fold(f64::INFINITY, f64::min);
     for line in lines {
         let Some((reaches, seconds)) = first_reaching(line, target) else { continue };
-        if reaches == 0 || seconds > MOST_GAIN * fastest {
+        if reaches == 0 || seconds > MAX_GAIN * fastest {
             continue;
         }
         let (coarse, fine) = (line.rows[reaches - 1].setting, line.rows[reaches].setting);
@@ -48,7 +48,7 @@ pub(super) fn refine(case: &PreparedScene<'_>, judge: &Judge<'_>, lines: &mut [L
         while !between.is_empty() {
             let finer = between.split_off(between.len() / 2);
             let control = finer[0];
-            let row = LadderRun::new(control, judge.measure(case, line.method, control), false);
+            let row = LadderRun::new(control, evaluator.measure(case, line.method, control), false);
             let good = row.measured().is_some_and(|measured| measured.error <= target);
             line.insert(row);
             if !good {

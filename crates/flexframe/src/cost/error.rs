@@ -1,4 +1,4 @@
-//! Why a price list cannot be made.
+//! Errors of a price list.
 
 use std::path::PathBuf;
 
@@ -26,7 +26,7 @@ pub enum CostError {
         scene: PathBuf,
         /// Steps of the last try.
         steps: u64,
-        /// Why it failed.
+        /// Reason of the failure.
         failure: RunFailure,
     },
     /// The diagram cannot be drawn.

@@ -143,13 +143,13 @@ impl LadderRun {
 }
 
 /// Measures runs.
-pub(super) struct Judge<'a> {
+pub(super) struct Evaluator<'a> {
     pub reference: &'a Reference,
     pub paper_limit: Option<&'a Reference>,
     pub settings: CostSettings,
 }
 
-impl Judge<'_> {
+impl Evaluator<'_> {
     /// The limit to which a method converges with short steps.
     fn limit(&self, method: Method) -> Option<&Reference> {
         if method.abilities.keeps_energy { Some(self.reference) } else { self.paper_limit }
@@ -212,9 +212,9 @@ impl Judge<'_> {
 
 /// Runs a method with shorter and shorter steps (or smaller tolerances), until that no longer helps, or a run would
 /// take longer than the patience. `own` is what the scene asks for.
-pub(super) fn climb(
+pub(super) fn refine_line(
     case: &PreparedScene<'_>,
-    judge: &Judge<'_>,
+    evaluator: &Evaluator<'_>,
     method: Method,
     controlled: bool,
     own: (Method, StepControl),
@@ -228,29 +228,31 @@ pub(super) fn climb(
         rows: Vec::new(),
         method,
     };
-    // The last run, and its work in terms of the first rung.
+    // The last run, and its work relative to the first setting.
     let mut before: Option<(f64, Measured)> = None;
-    for (control, work) in rungs(case, method, controlled) {
+    for (control, work) in refinements(case, method, controlled) {
         if let Some((work_before, run)) = &before {
             let more = work / work_before;
             let (seconds, steps) = (more * run.seconds, more * run.steps as f64);
-            if seconds > judge.settings.patience.as_secs_f64() || steps > judge.settings.most_steps as f64 * 1.001 {
+            if seconds > evaluator.settings.patience.as_secs_f64()
+                || steps > evaluator.settings.max_steps as f64 * 1.001
+            {
                 break;
             }
         }
         let of_scene = own.0 == method && is_same(own.1.into(), control.into());
         let started = Instant::now();
-        let row = LadderRun::new(control, judge.measure(case, method, control), of_scene);
+        let row = LadderRun::new(control, evaluator.measure(case, method, control), of_scene);
         let measured = row.measured().cloned();
         line.rows.push(row);
         let Some(measured) = measured else {
             // A run that fails on its way does so at every step where its formulation is at fault.
-            if 2 * started.elapsed() > judge.settings.patience {
+            if 2 * started.elapsed() > evaluator.settings.patience {
                 break;
             }
             continue;
         };
-        let ends = judge.is_at_the_end(method, before.as_ref().map(|(_, run)| run), &measured);
+        let ends = evaluator.is_at_the_end(method, before.as_ref().map(|(_, run)| run), &measured);
         before = Some((work, measured));
         if ends {
             break;
@@ -259,10 +261,10 @@ pub(super) fn climb(
     let (own_method, own_control) = own;
     let is_ours = own_method == method && controlled == matches!(own_control, StepControl::Tolerance(_));
     if is_ours && !line.rows.iter().any(|row| row.of_scene) {
-        let outcome = judge.measure(case, method, own_control);
+        let outcome = evaluator.measure(case, method, own_control);
         line.insert(LadderRun::new(own_control, outcome, true));
     }
-    if !controlled && let Some(limit) = judge.limit(method) {
+    if !controlled && let Some(limit) = evaluator.limit(method) {
         line.measured_order = slowest_order(&line.rows, &limit.error);
     }
     line
@@ -292,8 +294,8 @@ impl Line {
     }
 }
 
-/// The rungs of a ladder, and the work of each relative to the first.
-fn rungs(case: &PreparedScene<'_>, method: Method, controlled: bool) -> Vec<(StepControl, f64)> {
+/// The settings of a line, coarsest first, and the work of each relative to the first.
+fn refinements(case: &PreparedScene<'_>, method: Method, controlled: bool) -> Vec<(StepControl, f64)> {
     if controlled {
         // The estimate goes with the fourth power of the step.
         return TOLERANCES
@@ -338,7 +340,7 @@ fn is_one_two_five(count: u64) -> bool {
     matches!(leading, 1 | 2 | 5)
 }
 
-/// The settings between a rung and a finer one, coarsest first.
+/// The settings between one and a finer one, coarsest first.
 pub(super) fn settings_between(case: &PreparedScene<'_>, coarse: Setting, fine: Setting) -> Vec<StepControl> {
     match (coarse, fine) {
         (Setting::Step(coarse), Setting::Step(fine)) => step_counts()

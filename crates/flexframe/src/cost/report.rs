@@ -37,13 +37,13 @@ pub struct CostReport {
     pub reference: ReferenceReport,
     /// The limit of the paper's formulation for short steps; its errors are those to the reference.
     pub paper_limit: Option<ReferenceReport>,
-    /// Why it was not found.
+    /// Reason of its absence.
     pub paper_limit_failure: Option<String>,
     /// The ladders.
     pub lines: Vec<Line>,
     /// The same motion with fewer and with more modes, fewest first; empty where they could not be compared.
     pub modes: Vec<ModesRow>,
-    /// Why they could not be compared.
+    /// Reason of the missing comparison.
     pub modes_failure: Option<String>,
     /// The answer to the target.
     pub answer: Option<Answer>,

@@ -12,7 +12,7 @@ pub struct CostSettings {
     /// runs of the reference together may take twenty times as long.
     pub patience: Duration,
     /// The ladders end before runs with more steps than this; the reference may have four times as many.
-    pub most_steps: u64,
+    pub max_steps: u64,
     /// Each run is repeated until it has been timed for so long.
     pub timed_for: Duration,
     /// An error for which the cheapest setting is wanted.
@@ -28,11 +28,11 @@ impl Default for CostSettings {
 impl CostSettings {
     /// Each run timed for a tenth of the patience.
     pub fn with_patience(patience: Duration) -> Self {
-        Self { patience, most_steps: 1_000_000, timed_for: patience / 10, target: None }
+        Self { patience, max_steps: 1_000_000, timed_for: patience / 10, target: None }
     }
 
     /// Time and steps that a reference may take.
     pub(super) fn budget(&self, patience: u32) -> Budget {
-        Budget { time: self.patience.saturating_mul(patience), steps: 4 * self.most_steps }
+        Budget { time: self.patience.saturating_mul(patience), steps: 4 * self.max_steps }
     }
 }

@@ -1,4 +1,4 @@
-//! Why nothing was exported.
+//! Errors of an export.
 
 use std::path::PathBuf;
 

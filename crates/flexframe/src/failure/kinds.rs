@@ -43,7 +43,7 @@ impl Failure for SceneError {
             key: self.place().map(|place| place.key.clone()).filter(|key| !key.is_empty()),
             found: self.found(),
             expected: self.expected(),
-            cure: self.cure(),
+            help: self.help(),
             ..Details::of_file(self.file())
         }
     }
@@ -154,11 +154,11 @@ impl Failure for SlepcError {
 
     fn details(&self) -> Details {
         match self {
-            Self::NotInstalled { found, cure } | Self::Refused { found, cure } => {
-                Details { found: Some(found.clone()), cure: Some(cure.clone()), ..Details::default() }
+            Self::NotInstalled { found, help } | Self::Refused { found, help } => {
+                Details { found: Some(found.clone()), help: Some(help.clone()), ..Details::default() }
             }
-            Self::Failed { status, cure, .. } => {
-                Details { found: Some(status.clone()), cure: Some(cure.clone()), ..Details::default() }
+            Self::Failed { status, help, .. } => {
+                Details { found: Some(status.clone()), help: Some(help.clone()), ..Details::default() }
             }
             Self::Io { path, .. } | Self::Damaged { path, .. } => Details::of_file(path),
             Self::NotFinished { folder, .. } | Self::OtherMatrices { folder } | Self::FewModes { folder, .. } => {
@@ -272,12 +272,12 @@ impl Failure for StartError {
 
     fn details(&self) -> Details {
         match self {
-            Self::Step { at, found, expected, cure } => Details {
+            Self::Step { at, found, expected, help } => Details {
                 line: Some(at.line),
                 key: Some(at.key.clone()),
                 found: Some(found.clone()),
                 expected: Some(expected.clone()),
-                cure: Some((*cure).to_owned()),
+                help: Some((*help).to_owned()),
                 ..Details::of_file(&at.file)
             },
             _ => Details::default(),
@@ -325,11 +325,11 @@ impl Failure for RunError {
             Self::Scene(error) => error.details(),
             Self::Folder { folder, .. } => Details::of_file(folder),
             Self::Output(error) => error.details(),
-            Self::Large { scene, foretold } => Details {
+            Self::Large { scene, estimate } => Details {
                 key: Some("output.interval".to_owned()),
-                found: Some(foretold.to_string()),
+                found: Some(estimate.to_string()),
                 expected: Some("1 GB at the most".to_owned()),
-                cure: Some("name fewer rows in [output], or allow it with --large".to_owned()),
+                help: Some("name fewer rows in [output], or allow it with --large".to_owned()),
                 ..Details::of_file(scene)
             },
         }
@@ -354,7 +354,7 @@ impl Failure for FileError {
     }
 
     fn details(&self) -> Details {
-        Details { cure: self.cure().map(str::to_owned), ..Details::of_file(self.path()) }
+        Details { help: self.help().map(str::to_owned), ..Details::of_file(self.path()) }
     }
 }
 
@@ -637,7 +637,7 @@ impl Failure for OtherFile {
         Details {
             found: Some(self.found.in_words().to_owned()),
             expected: Some(self.expected.to_owned()),
-            cure: Some(self.found.taken_by(&self.path)),
+            help: Some(self.found.taken_by(&self.path)),
             ..Details::of_file(&self.path)
         }
     }
@@ -676,7 +676,7 @@ impl Failure for SweepError {
                 key: Some(key.clone()),
                 found: Some(found.clone()),
                 expected: Some(expected.clone()),
-                cure: Some(SWEEP_CURE.to_owned()),
+                help: Some(SWEEP_CURE.to_owned()),
                 ..Details::of_file(path)
             },
             Self::Scene { source, .. } => source.details(),

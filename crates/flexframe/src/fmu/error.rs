@@ -1,4 +1,4 @@
-//! Why an FMU cannot be packed or opened.
+//! Errors of an FMU that cannot be packed or opened.
 
 use std::io;
 use std::path::PathBuf;

@@ -106,10 +106,10 @@ pub fn pack(
     }
     let library = Library::find(settings.library.as_deref())?;
     if !matches!(scene.modes.flexible, Flexible::Count(_)) {
-        let cure = "give the number of modes to keep; `flexframe modes` shows their frequencies";
+        let help = "give the number of modes to keep; `flexframe modes` shows their frequencies";
         let found = "\"auto\", which goes by the loads of the scene";
         return Err(scene
-            .refuse("modes.flexible", found, "a number, since nobody knows the forces from outside", cure)
+            .refuse("modes.flexible", found, "a number, since nobody knows the forces from outside", help)
             .into());
     }
     let is_rigid = matches!(scene.body, Body::Rigid(_));

@@ -286,7 +286,7 @@ fn effects(results: &Results) -> Vec<Effect> {
     results.metadata.effects.iter().map(effect).collect()
 }
 
-/// Why the model is known to be wrong, and those of the run.
+/// Known errors of the model, and warnings of the run.
 fn warnings(results: &Results) -> Vec<String> {
     let refusal = &results.metadata.refusal;
     let of_run = results.metadata.warnings.iter().filter(|warning| Some(*warning) != refusal.as_ref()).cloned();

@@ -1,4 +1,4 @@
-//! Why a reproduction cannot be made.
+//! Errors of a reproduction.
 
 use std::path::PathBuf;
 
@@ -8,7 +8,7 @@ use scene::BuildError;
 
 use crate::mode_shapes::ShapesError;
 use crate::run::RunError;
-use crate::write_error::cure_of_writing;
+use crate::write_error::help_of_writing;
 
 /// A reproduction that could not be made.
 #[derive(Debug, thiserror::Error)]
@@ -46,7 +46,7 @@ pub enum PaperError {
         scene: PathBuf,
     },
     /// The report cannot be written.
-    #[error("{}: cannot write the report: {source}\n = {}", path.display(), cure_of_writing(source))]
+    #[error("{}: cannot write the report: {source}\n = {}", path.display(), help_of_writing(source))]
     Report {
         /// The report.
         path: PathBuf,

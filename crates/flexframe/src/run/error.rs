@@ -1,4 +1,4 @@
-//! Why a run could not be done.
+//! Errors of a run.
 
 use std::path::PathBuf;
 
@@ -7,9 +7,9 @@ use dynamics::{CheckpointError, StepError};
 use results::FileError;
 use scene::{BuildError, SceneError, StartError};
 
-use super::foretold::Foretold;
+use super::estimate::Estimate;
 use crate::outputs::OutputError;
-use crate::write_error::cure_of_writing;
+use crate::write_error::help_of_writing;
 
 /// A run that could not be done.
 #[derive(Debug, thiserror::Error)]
@@ -93,16 +93,16 @@ pub enum RunError {
     #[error(
         "{}: the run would write {} rows, {}\n = name fewer rows in [output], such as `interval = …`, or leave `every` and \
          `interval` out; if you want a file of more than 1 GB, allow it with --large",
-        scene.display(), foretold.rows, memory::Bytes(usize::try_from(foretold.bytes).unwrap_or(usize::MAX))
+        scene.display(), estimate.rows, memory::Bytes(usize::try_from(estimate.bytes).unwrap_or(usize::MAX))
     )]
     Large {
         /// The scene file.
         scene: PathBuf,
         /// Its estimate.
-        foretold: Foretold,
+        estimate: Estimate,
     },
     /// The output folder cannot be made.
-    #[error("{}: cannot make the output folder: {source}\n = {}", folder.display(), cure_of_writing(source))]
+    #[error("{}: cannot make the output folder: {source}\n = {}", folder.display(), help_of_writing(source))]
     Folder {
         /// The folder.
         folder: PathBuf,
@@ -122,7 +122,7 @@ impl RunError {
     }
 }
 
-/// Why a run did not come to its end.
+/// Reason of a run that did not come to its end.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum RunFailure {
     /// It could not start.

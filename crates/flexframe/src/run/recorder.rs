@@ -11,7 +11,7 @@ use scene::{Model, Scene, StepControl};
 
 use super::balances::Conserved;
 use super::error::RunError;
-use super::foretold::Foretold;
+use super::estimate::Estimate;
 use super::report::RunReport;
 use super::settings::{RunProgress, RunSettings};
 use super::watch::{Watch, Watched};
@@ -41,7 +41,7 @@ pub(super) struct Recorder<'a> {
     first_attitude: Attitude,
     /// Centre of mass of the undeformed body at the start, global.
     first_center: Vector3<f64>,
-    foretold: Foretold,
+    estimate: Estimate,
 }
 
 impl<'a> Recorder<'a> {
@@ -50,7 +50,7 @@ impl<'a> Recorder<'a> {
         model: &'a Model,
         initial: &'a Initial,
         writer: Writer<Row>,
-        foretold: Foretold,
+        estimate: Estimate,
     ) -> Result<Self, RunError> {
         let (origin, center) = (model.body.origin, model.body.center_of_mass);
         let first_center = initial.origin.unwrap_or(origin) + initial.attitude.to_global(&(center - origin));
@@ -65,7 +65,7 @@ impl<'a> Recorder<'a> {
             peak_stress: None,
             first_attitude: initial.attitude,
             first_center,
-            foretold,
+            estimate,
         })
     }
 
@@ -146,7 +146,7 @@ impl<'a> Recorder<'a> {
             title: scene.title.clone(),
             units: [&scene.units.length, &scene.units.mass, &scene.units.time].map(Clone::clone),
             rows: self.rows,
-            foretold: self.foretold,
+            estimate: self.estimate,
             formulation: method.formulation.to_owned(),
             scheme: method.scheme.to_owned(),
             tolerance: match scene.time.control {
@@ -160,7 +160,7 @@ impl<'a> Recorder<'a> {
             steps_per_second: (stats.accepted - before) as f64 / time.as_secs_f64(),
             mesh: MeshReport::new(model),
             body: BodyReport::new(model),
-            turned: if model.body.motion.rotations().len() == 1 { last.reaction.turned } else { turned },
+            turned: if model.body.motion.rotations().len() == 1 { last.reaction.hinge_angle } else { turned },
             turned_from_start: self.first_attitude.angle_to(&last.attitude),
             moved: (last.position_global - self.first_center).into(),
             peak_strain_energy: self.peak_strain_energy,

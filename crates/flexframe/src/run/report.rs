@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use serde::Serialize;
 
 use super::balances::Balances;
-use super::foretold::Foretold;
+use super::estimate::Estimate;
 use crate::effects;
 use crate::json;
 use crate::modes::frequency_unit;
@@ -28,7 +28,7 @@ pub struct RunReport {
     /// Rows in it.
     pub rows: u64,
     /// The estimate before it.
-    pub foretold: Foretold,
+    pub estimate: Estimate,
     /// Formulation.
     pub formulation: String,
     /// Scheme.

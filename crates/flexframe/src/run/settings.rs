@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicBool;
 
 use scene::{BuildProgress, Cache};
 
-use super::foretold::Foretold;
+use super::estimate::Estimate;
 
 /// How far a run has come.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -15,7 +15,7 @@ pub enum RunProgress {
     /// The model is there, and the motion begins. A new run has written no file yet.
     Built,
     /// The estimate of the run. Nothing is written yet.
-    Foretold(Foretold),
+    Estimate(Estimate),
     /// Part of the time that has been passed, 0 to 1.
     Motion(f64),
 }

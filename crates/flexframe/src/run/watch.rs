@@ -93,7 +93,7 @@ impl<'a> Watch<'a> {
         Ok(())
     }
 
-    /// Why the motion is not to go on, and since when: the review has found that the model is wrong. Nothing where the scene
+    /// Reason to end the motion, and its time: the review has found that the model is wrong. Nothing where the scene
     /// wants to go on all the same.
     pub fn refusal(&self) -> Option<(f64, Refusal)> {
         self.review.stop().filter(|_| self.scene.effects.refuse)
@@ -151,13 +151,13 @@ fn pointed_moments(scene: &Scene) -> Option<String> {
 }
 
 fn open_balance(open: f64, flexible: usize) -> String {
-    let (work, cure) = match flexible {
+    let (work, help) = match flexible {
         0 => ("the work of the loads", "shorter steps"),
         _ => ("the work on modes that are faster than the step", "shorter steps, or fewer modes,"),
     };
     format!(
         "the energy balance is open by {open:.1e} of the energy that there was or that came and went: {work} is summed \
-         too coarsely, or the motion itself is; take {cure} until it does not matter to the answer"
+         too coarsely, or the motion itself is; take {help} until it does not matter to the answer"
     )
 }
 

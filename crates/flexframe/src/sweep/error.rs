@@ -1,4 +1,4 @@
-//! Why a sweep cannot be made.
+//! Errors of a sweep.
 
 use std::path::PathBuf;
 
@@ -103,7 +103,7 @@ pub enum SweepError {
         path: PathBuf,
         /// The first of them.
         row: usize,
-        /// Why it failed.
+        /// Reason of the failure.
         words: String,
     },
     /// There is nothing to merge.

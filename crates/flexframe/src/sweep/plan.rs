@@ -12,7 +12,7 @@ use toml::{Table, Value};
 use super::error::SweepError;
 
 /// More rows than these are a mistake.
-const MOST_ROWS: usize = 1_000_000;
+const MAX_ROWS: usize = 1_000_000;
 /// The largest file of a sweep, in bytes: as many as the tables of a scene.
 const LONGEST: u64 = 16 << 20;
 
@@ -87,7 +87,7 @@ impl Plan {
         let file: File = toml::from_str(&of_sweep).map_err(form)?;
         let scene_path = path.parent().unwrap_or(Path::new("")).join(&file.scene);
         let of_scene = |error: SceneError| match error {
-            SceneError::Unreadable { path, cause, .. } => SceneError::Unreadable { path, cause, cure: SCENE_CURE },
+            SceneError::Unreadable { path, cause, .. } => SceneError::Unreadable { path, cause, help: SCENE_CURE },
             other => other,
         };
         let scene =
@@ -131,9 +131,8 @@ impl Plan {
                 }
                 lists
             }
-            Combine::Grid => grid(&lists).ok_or_else(|| {
-                invalid("parameters", format!("a grid of more than {MOST_ROWS} rows"), "fewer values")
-            })?,
+            Combine::Grid => grid(&lists)
+                .ok_or_else(|| invalid("parameters", format!("a grid of more than {MAX_ROWS} rows"), "fewer values"))?,
         };
         let count = parameters[0].1.len();
         let mut rows = Vec::with_capacity(count);
@@ -224,7 +223,7 @@ fn values(value: Value) -> Result<Vec<Value>, (String, &'static str)> {
     match value {
         Value::Array(list) if !list.is_empty() => Ok(list),
         Value::Table(table) => match table.try_into() {
-            Ok(Range { from, to, count }) if (1..=MOST_ROWS).contains(&count) && from.is_finite() && to.is_finite() => {
+            Ok(Range { from, to, count }) if (1..=MAX_ROWS).contains(&count) && from.is_finite() && to.is_finite() => {
                 let step = |i: usize| if count == 1 { 0.0 } else { i as f64 / (count - 1) as f64 };
                 // The last is what was written, to the last bit.
                 let at = |i: usize| if i + 1 == count && count > 1 { to } else { from + (to - from) * step(i) };
@@ -239,7 +238,7 @@ fn values(value: Value) -> Result<Vec<Value>, (String, &'static str)> {
 /// Each list as long as the grid; the last parameter changes first.
 fn grid(lists: &[(String, Vec<Value>)]) -> Option<Vec<(String, Vec<Value>)>> {
     let rows = lists.iter().try_fold(1usize, |rows, (_, values)| rows.checked_mul(values.len()))?;
-    if rows > MOST_ROWS {
+    if rows > MAX_ROWS {
         return None;
     }
     let mut each = rows;

@@ -25,7 +25,7 @@ pub(super) enum RowState {
     Open,
     /// It came to its end.
     Done(Done),
-    /// Why there are none.
+    /// Reason of their absence.
     Failed(String),
 }
 

@@ -276,10 +276,10 @@ fn a_rotation_that_nothing_resists_is_named() {
     let model = beam.model();
     let clamp = Support::new(RigidMotion::clamp(model.positions[0].into()), vec![0]);
     let error = model.solver(&clamp).err().unwrap();
-    assert!(matches!(error, ModalError::Loose { node: 1, freedom: 3 }), "{error}");
+    assert!(matches!(error, ModalError::Loose { node: 1, dof: 3 }), "{error}");
     // Held by themselves they are out of the way.
-    let freedoms: Vec<(u32, usize)> = (0..6).map(|f| (0, f)).chain((1..13).map(|node| (node, 3))).collect();
-    let support = Support::of_freedoms(&model.positions, &freedoms).unwrap();
+    let dofs: Vec<(u32, usize)> = (0..6).map(|f| (0, f)).chain((1..13).map(|node| (node, 3))).collect();
+    let support = Support::of_dofs(&model.positions, &dofs).unwrap();
     let found = model.modes(&support, 2).eigenvalues[0].sqrt();
     assert!((found / bending(&beam, 1.875_104_068_711_961) - 1.0).abs() < 1e-6, "{found}");
 }

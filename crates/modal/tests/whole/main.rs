@@ -10,7 +10,7 @@ mod fields;
 mod general_mass;
 mod held;
 mod held_bars;
-mod held_freedoms;
+mod held_dofs;
 mod invariance;
 mod oracles;
 mod plate;

@@ -5,7 +5,7 @@ use modal::{Modes, Progress, Support};
 use crate::bodies::{block, mesh_file};
 
 #[test]
-fn the_factorisation_is_foretold_once_and_rightly() {
+fn the_factorisation_is_estimated_once_and_rightly() {
     let body = block([40.0, 6.0, 6.0], [6, 2, 2]);
     let solver = body.held(&Support::free());
     let mut told = Vec::new();

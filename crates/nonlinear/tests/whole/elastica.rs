@@ -209,7 +209,7 @@ fn the_modes_of_a_bent_column_are_those_of_the_whole_mesh_about_its_rest() {
     let solid = Solid::new(bodies::mesh("column").unwrap(), COLUMN, |x| x.x < 1e-9).unwrap();
     let tip = |x: &[f64; 3]| (x[0] - 1.0).abs() < 1e-9 && x[1].abs() < 1e-9 && x[2].abs() < 1e-9;
     let tip = solid.mesh().positions().iter().position(tip).unwrap();
-    let mut load = vec![0.0; solid.freedoms()];
+    let mut load = vec![0.0; solid.dofs()];
     load[3 * tip + 2] = force;
     let rest = solid.at_rest(6, 0.0, |_| load.clone()).unwrap();
     let shapes: Vec<Vec<f64>> = (0..8).map(|k| cases::shape(&model, k)).collect();

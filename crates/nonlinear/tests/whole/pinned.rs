@@ -18,7 +18,7 @@ fn a_rod_that_is_pinned_at_a_corner_swings_as_the_whole_mesh_does() {
     let solid = Solid::new(mesh, material, |x| (x - corner).norm() < 1e-9).unwrap();
     let weight = solid.momentum(&gravity.as_slice().repeat(positions.len()));
     let v: Vec<f64> = positions.iter().flat_map(|x| <[f64; 3]>::from(omega.cross(&(x - corner)))).collect();
-    let start = NodalState { time: 0.0, u: vec![0.0; solid.freedoms()], v };
+    let start = NodalState { time: 0.0, u: vec![0.0; solid.dofs()], v };
     let mut motion = Motion::new(&solid, start, end / f64::from(steps), |_, _| weight.clone());
     let mut expected = vec![Vector3::zeros()];
     for _ in 0..steps {

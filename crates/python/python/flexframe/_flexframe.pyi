@@ -171,7 +171,7 @@ class Force:
     """A force at a point of the scene, by a law: a function of the motion that returns three components.
 
     They are global, or in body axes with `frame="body"`. The law is evaluated several times a step, and must depend on
-    nothing but the motion. `corners` are times at which it or its rate jumps, so that steps end there; `longest_step` is
+    nothing but the motion. `discontinuities` are times at which it or its rate jumps, so that steps end there; `longest_step` is
     the longest step that sees it as it is.
     """
 
@@ -182,7 +182,7 @@ class Force:
         *,
         frame: Literal["global", "body"] = "global",
         name: str | None = None,
-        corners: Sequence[float] = ...,
+        discontinuities: Sequence[float] = ...,
         longest_step: float | None = None,
     ) -> Force: ...
 
@@ -195,7 +195,7 @@ class ModalForce:
         law: Callable[[Motion], ArrayLike],
         *,
         name: str | None = None,
-        corners: Sequence[float] = ...,
+        discontinuities: Sequence[float] = ...,
         longest_step: float | None = None,
     ) -> ModalForce: ...
 

@@ -21,7 +21,7 @@ class Error(Exception):
     """The value that stands there."""
     expected: str | None
     """The value that should stand there."""
-    cure: str | None
+    help: str | None
     """Help for the user."""
     results: Results | None
     """The rows before the fault, of a run in memory."""
@@ -35,11 +35,11 @@ class Error(Exception):
         key: str | None = None,
         found: str | None = None,
         expected: str | None = None,
-        cure: str | None = None,
+        help: str | None = None,
     ) -> None:
         super().__init__(message)
         self.file, self.line, self.key = file, line, key
-        self.found, self.expected, self.cure = found, expected, cure
+        self.found, self.expected, self.help = found, expected, help
         self.results = None
 
 

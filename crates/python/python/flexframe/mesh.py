@@ -59,9 +59,9 @@ def write_mesh(
     _replace(Path(file), overwrite, lambda out: _write(out, nodes, elements, regions, triangles))
 
 
-def _wrong(key: str, found: str, expected: str, cure: str) -> InputError:
+def _wrong(key: str, found: str, expected: str, help: str) -> InputError:
     return InputError(
-        f"{key}: found {found}, expected {expected}\n = {cure}", key=key, found=found, expected=expected, cure=cure
+        f"{key}: found {found}, expected {expected}\n = {help}", key=key, found=found, expected=expected, help=help
     )
 
 
@@ -109,8 +109,8 @@ def _triangles(
         edges = [(min(triangle[a], triangle[b]), max(triangle[a], triangle[b])) for a, b in _EDGES[3]]
         unknown = [edge for edge in edges if edge not in on_edges]
         if unknown:
-            cure = "name three corners of one element"
-            raise _wrong(key, f"an edge from {unknown[0][0]} to {unknown[0][1]}", "edges of the elements", cure)
+            help = "name three corners of one element"
+            raise _wrong(key, f"an edge from {unknown[0][0]} to {unknown[0][1]}", "edges of the elements", help)
         middles.append([on_edges[edge] for edge in edges])
     return np.hstack([triangles, np.array(middles, dtype=np.int64)])
 
@@ -124,8 +124,8 @@ def _regions(groups: Mapping[str, ArrayLike], count: int) -> dict[str | None, ND
         members = np.unique(_indices(key, np.reshape(list_of, (-1, 1)), (1,), count, "element").ravel())
         twice = members[taken[members] != None]  # noqa: E711 - entry by entry
         if twice.size:
-            cure = "put each element into one group: it has one material"
-            raise _wrong(key, f"element {twice[0]}, which is in {taken[twice[0]]!r}", "elements of no other group", cure)
+            help = "put each element into one group: it has one material"
+            raise _wrong(key, f"element {twice[0]}, which is in {taken[twice[0]]!r}", "elements of no other group", help)
         taken[members] = name
         regions[name] = members
     rest = np.flatnonzero(taken == None)  # noqa: E711 - entry by entry

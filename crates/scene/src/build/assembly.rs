@@ -125,7 +125,7 @@ impl Assembly {
         let Given { nodes, hash, notes: mesh_notes, matrices, checks } = given;
         let mesh = Arc::new(nodes);
         let store = Store::of_matrices(scene, hash);
-        let (support, drive) = support(scene, Some((&mesh, checks.freedoms)))?;
+        let (support, drive) = support(scene, Some((&mesh, checks.dofs)))?;
         let (scene, body, checks) = (scene.clone(), MadeOf::Files(files.clone()), Some(checks));
         let matrices = OnceLock::from((matrices, Duration::ZERO));
         let assembled = AssembledMesh { scene, body, mesh, mesh_notes, matrices, checks, support, drive, store, times };
@@ -147,8 +147,8 @@ impl AssembledMesh {
     }
 
     /// Degrees of freedom of a node.
-    pub fn freedoms(&self) -> usize {
-        self.checks.map_or(3, |checks| checks.freedoms)
+    pub fn dofs(&self) -> usize {
+        self.checks.map_or(3, |checks| checks.dofs)
     }
 
     /// Materials of the elements.

@@ -65,12 +65,12 @@ impl Model {
         let body = match &scene.body {
             Body::Meshed(body) => body,
             Body::Rigid(_) => {
-                let cure = "run the scene as it is: a rigid body is reduced already";
-                return Err(scene.refuse("body.rigid", "a rigid body", "a body with a mesh", cure).into());
+                let help = "run the scene as it is: a rigid body is reduced already";
+                return Err(scene.refuse("body.rigid", "a rigid body", "a body with a mesh", help).into());
             }
             Body::Matrices(_) => {
-                let cure = "run the scene as it is: the cache keeps what is computed of the matrices, so that later runs are quick";
-                return Err(scene.refuse("body.matrices", "a body of matrices", "a body with a mesh", cure).into());
+                let help = "run the scene as it is: the cache keeps what is computed of the matrices, so that later runs are quick";
+                return Err(scene.refuse("body.matrices", "a body of matrices", "a body with a mesh", help).into());
             }
         };
         // The answers come by way of a cache, from which nothing is removed in the meantime.
@@ -126,7 +126,7 @@ impl Model {
     }
 }
 
-/// Why no answers about the body can be kept in a `folder`, of which the file is made.
+/// Error of a `folder` that cannot keep answers about the body, of which the file is made.
 fn without_store(scene: &Scene, folder: &Path) -> BuildError {
     if scene.cache.is_closed() {
         let what = scene.cache.notes().warnings.join("; ");
@@ -134,8 +134,8 @@ fn without_store(scene: &Scene, folder: &Path) -> BuildError {
     }
     let found =
         "a mesh file that names others which cannot be known before: what the body is made of cannot be told later";
-    let cure = "write it as one MSH 4.1 file first: gmsh -3 -order 2 -format msh41 BODY.geo -o BODY.msh";
-    scene.refuse("body.mesh", found, "a mesh in one file", cure).into()
+    let help = "write it as one MSH 4.1 file first: gmsh -3 -order 2 -format msh41 BODY.geo -o BODY.msh";
+    scene.refuse("body.mesh", found, "a mesh in one file", help).into()
 }
 
 fn origin(body: &MeshedBody, mesh_hash: &Hash, modes: usize, support: String) -> Origin {

@@ -69,8 +69,8 @@ impl<'a> ModelBuilder<'a> {
         match (self.solved(), requested(scene)) {
             (Some(solved), modes @ 1..) => solved.write_problem(modes, folder, ranks),
             (None, _) => {
-                let cure = "run the scene as it is: a rigid body has no modes";
-                Err(scene.refuse("body.rigid", "a rigid body", "a body with a mesh, or with matrices", cure).into())
+                let help = "run the scene as it is: a rigid body has no modes";
+                Err(scene.refuse("body.rigid", "a rigid body", "a body with a mesh, or with matrices", help).into())
             }
             (_, 0) => Err(scene.refuse("modes.flexible", "no modes", "one or more", "ask for modes").into()),
         }

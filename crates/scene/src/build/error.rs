@@ -1,4 +1,4 @@
-//! Why a scene cannot be built or started, each reason at its place in the scene file.
+//! Errors of a scene that cannot be built or started, each at its place in the scene file.
 
 use std::path::{Path, PathBuf};
 
@@ -67,7 +67,7 @@ pub enum StartError {
     #[error(transparent)]
     Setup(#[from] SetupError),
     /// The step that the scene names is beyond the limit of the method.
-    #[error("{}", at.show(&format!("found {found}, expected {expected}"), cure))]
+    #[error("{}", at.show(&format!("found {found}, expected {expected}"), help))]
     Step {
         /// Where it is named.
         at: Box<Place>,
@@ -75,8 +75,8 @@ pub enum StartError {
         found: String,
         /// The limit.
         expected: String,
-        /// The cure.
-        cure: &'static str,
+        /// The help.
+        help: &'static str,
     },
     /// The model is known to be wrong.
     #[error(transparent)]
@@ -94,7 +94,7 @@ impl StartError {
 
     /// At the key of the scene, where it is the step.
     pub(super) fn at_key(self, scene: &Scene) -> Self {
-        let (step, limit, why, cure) = match &self {
+        let (step, limit, why, help) = match &self {
             Self::Setup(SetupError::StepBeyondLimit { step, limit, mode, frequency }) => (
                 step,
                 limit,
@@ -110,7 +110,7 @@ impl StartError {
             _ => return self,
         };
         let (found, expected) = (format!("a step of {step:e}, beyond {why}"), format!("at most {limit:.4e}"));
-        Self::Step { at: scene.place("time.step").into(), found, expected, cure }
+        Self::Step { at: scene.place("time.step").into(), found, expected, help }
     }
 }
 
@@ -162,13 +162,13 @@ pub(super) fn refuse(scene: &Scene, key: &str, error: AssemblyError) -> SceneErr
 /// A mesh error, such as a group that is not there, at its place in the scene file.
 pub(super) fn refuse_mesh(scene: &Scene, key: &str, error: &MeshError) -> BuildError {
     if let MeshError::NoGroup { kind, group, present, .. } = error {
-        let (what, cure) = if scene.body.has_elements() {
+        let (what, help) = if scene.body.has_elements() {
             ("mesh", "use one of these, or name it in the geometry and mesh again")
         } else {
             ("body", "use one of these, or add it to the groups in the table of nodes (*NSET in an .inp file)")
         };
         let found = format!("the physical {kind} \"{}\", which the {what} has not", shorten(group));
-        return scene.refuse(key, found, one_of(present), cure).into();
+        return scene.refuse(key, found, one_of(present), help).into();
     }
     scene
         .refuse(key, error.to_string(), "something that the mesh has", "name it in the geometry, and mesh again")

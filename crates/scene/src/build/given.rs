@@ -23,7 +23,7 @@ pub(super) struct Given {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MatrixChecks {
     /// Degrees of freedom of a node: 3, or 6 with its rotations.
-    pub freedoms: usize,
+    pub dofs: usize,
     /// Largest difference of the triangles of K or M, relative to the diagonal; `None` where the files have one triangle.
     pub asymmetry: Option<f64>,
     /// How much K resists the rigid motion that it resists most: ‖K r‖/‖D r‖, D its diagonal.
@@ -37,7 +37,7 @@ pub struct MatrixChecks {
 impl Given {
     /// Reads the files and checks what a free body must have, whatever holds it in the scene.
     pub fn read(scene: &Scene, files: &MatrixFiles) -> Result<Self, BuildError> {
-        let BodyMatrices { labels, positions, groups, freedoms, stiffness, mass, asymmetry, hash, notes } =
+        let BodyMatrices { labels, positions, groups, dofs, stiffness, mass, asymmetry, hash, notes } =
             files.read().map_err(|error| refuse_file(scene, error))?;
         let of_group = |(name, nodes): (String, Vec<u32>)| NodeGroup {
             name,
@@ -53,7 +53,7 @@ impl Given {
         as_mass.check_semidefinite().map_err(refuse)?;
         let rigid = RigidModes::new(&as_mass, nodes.positions(), RigidMotion::free()).map_err(refuse)?;
         let rigid_stiffness = rigid.check_free(stiffness.as_ref()).map_err(refuse)?;
-        let checks = MatrixChecks { freedoms, asymmetry, rigid_stiffness, is_scalar_mass, left_out: 0.0 };
+        let checks = MatrixChecks { dofs, asymmetry, rigid_stiffness, is_scalar_mass, left_out: 0.0 };
         Ok(Self { nodes, hash, notes, matrices: FeMatrices::Given { stiffness, mass }, checks })
     }
 }
@@ -61,10 +61,10 @@ impl Given {
 /// A file that cannot be used, at its key.
 fn refuse_file(scene: &Scene, error: MatrixError) -> BuildError {
     match error {
-        MatrixError::Refused { which, path, line, found, expected, cure } => {
+        MatrixError::Refused { which, path, line, found, expected, help } => {
             let line = line.map_or_else(String::new, |line| format!(":{line}"));
             let found = format!("{found} in {}{line}", path.display());
-            scene.refuse(&format!("body.matrices.{}", which.name()), found, expected, cure).into()
+            scene.refuse(&format!("body.matrices.{}", which.name()), found, expected, help).into()
         }
         MatrixError::Memory(error) => modal(scene)(error.into()),
         other => refused(scene, Which::Stiffness, other.to_string(), "matrices that can be read", "write them again"),
@@ -85,23 +85,23 @@ pub(super) fn refuse_matrix(scene: &Scene, files: &MatrixFiles, nodes: &Mesh, er
              scene; or the nodes are not where the matrices have them: give all digits, in the axes and the order of the matrices",
         ),
         ModalError::IndefiniteMass { place } => {
-            let place = place.map_or_else(String::new, |[node, freedom]| {
-                format!(", as degree of freedom {} of node {} shows", freedom + 1, name(node))
+            let place = place.map_or_else(String::new, |[node, dof]| {
+                format!(", as degree of freedom {} of node {} shows", dof + 1, name(node))
             });
             let found = format!(
                 "a mass that is not positive definite in {mass}: some motion has a negative kinetic energy{place}"
             );
-            let cure = "look for a negative density, an element that is turned inside out, or the stiffness in place of the mass";
-            refused(scene, Which::Mass, found, "a mass that gives every motion a positive kinetic energy", cure)
+            let help = "look for a negative density, an element that is turned inside out, or the stiffness in place of the mass";
+            refused(scene, Which::Mass, found, "a mass that gives every motion a positive kinetic energy", help)
         }
         ModalError::NoInertia { mass: total, inertia } => {
             let found = format!(
                 "a body with mass {total:.3e} and moments of inertia {:.3e}, {:.3e}, {:.3e} in {mass}",
                 inertia[0], inertia[1], inertia[2]
             );
-            let cure =
+            let help =
                 "look for a density that is missing, or nodes in another unit of length or order than the matrices";
-            refused(scene, Which::Mass, found, "a mass and moments of inertia that are positive", cure)
+            refused(scene, Which::Mass, found, "a mass and moments of inertia that are positive", help)
         }
         ModalError::NoRigidBodyMass { what, relative, limit } => refused(
             scene,
@@ -110,10 +110,10 @@ pub(super) fn refuse_matrix(scene: &Scene, files: &MatrixFiles, nodes: &Mesh, er
             &format!("the same mass along every axis (to {limit:.0e})"),
             "write the mass of the whole model without *BOUNDARY and surrounding fluid; a mass along one axis only cannot move freely",
         ),
-        ModalError::Loose { node, freedom } => refused(
+        ModalError::Loose { node, dof } => refused(
             scene,
             Which::Stiffness,
-            format!("neither stiffness nor mass at degree of freedom {} of node {}", freedom + 1, name(node)),
+            format!("neither stiffness nor mass at degree of freedom {} of node {}", dof + 1, name(node)),
             "stiffness or mass at every degree of freedom",
             "leave the node out of the model, or give the element a stiffness against this motion (the drilling of shells)",
         ),
@@ -147,6 +147,6 @@ pub(super) fn refuse_matrix(scene: &Scene, files: &MatrixFiles, nodes: &Mesh, er
     }
 }
 
-fn refused(scene: &Scene, which: Which, found: String, expected: &str, cure: &str) -> BuildError {
-    scene.refuse(&format!("body.matrices.{}", which.name()), found, expected, cure).into()
+fn refused(scene: &Scene, which: Which, found: String, expected: &str, help: &str) -> BuildError {
+    scene.refuse(&format!("body.matrices.{}", which.name()), found, expected, help).into()
 }

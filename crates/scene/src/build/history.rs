@@ -12,15 +12,15 @@ pub(super) fn history(scene: &Scene, key: &str, history: &History) -> Result<dyn
     let refused = |error: SetupError| -> BuildError {
         if let SetupError::HistoryNotFinite { time, found } = error {
             let found = format!("a factor of {found} at time {time:.9}");
-            let cure = "write it so that it has a value at all times, e.g. without a division by zero";
-            return scene.refuse(key, found, "finite numbers through the whole run", cure).into();
+            let help = "write it so that it has a value at all times, e.g. without a division by zero";
+            return scene.refuse(key, found, "finite numbers through the whole run", help).into();
         }
-        if let SetupError::Expression { position, problem, cure, .. } = error {
+        if let SetupError::Expression { position, problem, help, .. } = error {
             let found = format!("a formula in which {problem} (character {position})");
-            return scene.refuse(&join(key, "formula"), found, "a formula in the time t", cure).into();
+            return scene.refuse(&join(key, "formula"), found, "a formula in the time t", help).into();
         }
-        let cure = "correct it; docs/reference/scene.md has the rules of each kind of history";
-        scene.refuse(key, error.to_string(), "a history that can be evaluated", cure).into()
+        let help = "correct it; docs/reference/scene.md has the rules of each kind of history";
+        scene.refuse(key, error.to_string(), "a history that can be evaluated", help).into()
     };
     let made = if let History::Product { factors } = history {
         let factors = factors.iter().enumerate();
@@ -31,8 +31,8 @@ pub(super) fn history(scene: &Scene, key: &str, history: &History) -> Result<dyn
             let (times, values) = points.iter().map(|[t, v]| (*t, *v)).unzip();
             Table::new(times, values)
         };
-        let expression = |Formula { formula, corners }: &Formula| {
-            Ok(Expression::new(formula, corners.clone())?.with_discontinuities_until(scene.time.end))
+        let expression = |Formula { formula, discontinuities }: &Formula| {
+            Ok(Expression::new(formula, discontinuities.clone())?.with_discontinuities_until(scene.time.end))
         };
         history.try_map(&table, &expression).map_err(refused)?
     };

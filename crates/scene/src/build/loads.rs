@@ -38,7 +38,7 @@ pub(super) struct MeshLoad {
     /// How the material that its direction turns with is turned by the nodes.
     turning: Option<Rotation>,
     /// Degrees of freedom of a node.
-    freedoms: usize,
+    dofs: usize,
     /// Attitude of the body at the beginning.
     attitude: Attitude,
     is_gravity: bool,
@@ -119,7 +119,7 @@ pub(super) struct FollowerChange {
 pub(super) fn on_mesh(
     scene: &Scene,
     mesh: &Mesh,
-    freedoms: usize,
+    dofs: usize,
     weight: &Arc<UnitWeight>,
 ) -> Result<Vec<MeshLoad>, BuildError> {
     let attitude = first_attitude(scene);
@@ -142,7 +142,7 @@ pub(super) fn on_mesh(
                 }
                 Load::Moment(load) => Action::Moment {
                     patch: match load.radius {
-                        None => rotation_at(scene, mesh, freedoms, &key("at"), load.at)?,
+                        None => rotation_at(scene, mesh, dofs, &key("at"), load.at)?,
                         radius => {
                             let mean = mesh.mean_rotation(load.at, radius);
                             Rotation::Mean(mean.map_err(|error| refuse(scene, &key("radius"), error))?)
@@ -168,7 +168,7 @@ pub(super) fn on_mesh(
             let name = name(i, load);
             let turning = match load {
                 Load::Force(load) if load.frame == LoadFrame::Material => {
-                    Some(rotation_at(scene, mesh, freedoms, &key("frame"), load.at)?)
+                    Some(rotation_at(scene, mesh, dofs, &key("frame"), load.at)?)
                 }
                 _ => None,
             };
@@ -181,7 +181,7 @@ pub(super) fn on_mesh(
                 history,
                 follows,
                 turning,
-                freedoms,
+                dofs,
                 attitude,
                 is_gravity,
                 is_base_acceleration,
@@ -301,12 +301,12 @@ fn follows(load: &Load) -> bool {
 }
 
 /// The rotation of the material at a point: of the node there where nodes have rotations, otherwise of the elements around it.
-fn rotation_at(scene: &Scene, mesh: &Mesh, freedoms: usize, key: &str, at: [f64; 3]) -> Result<Rotation, BuildError> {
+fn rotation_at(scene: &Scene, mesh: &Mesh, dofs: usize, key: &str, at: [f64; 3]) -> Result<Rotation, BuildError> {
     if mesh.has_elements() {
         return Ok(Rotation::Mean(mesh.mean_rotation(at, None).map_err(|error| refuse(scene, key, error))?));
     }
     let Location { nodes, .. } = mesh.locate(at).map_err(|error| refuse(scene, key, error))?;
-    if freedoms == 6 {
+    if dofs == 6 {
         return Ok(Rotation::OfNode(nodes[0]));
     }
     Err(scene
@@ -397,7 +397,7 @@ impl MeshLoad {
         let vector = vector.or(self.unit()).unwrap_or_default();
         let mut add = |node: u32, force: &Vector3<f64>| {
             for axis in 0..3 {
-                forces[self.freedoms * node as usize + axis] += force[axis];
+                forces[self.dofs * node as usize + axis] += force[axis];
             }
         };
         match &self.action {
@@ -414,7 +414,7 @@ impl MeshLoad {
             }
             Action::Moment { patch: Rotation::OfNode(node), .. } => {
                 for axis in 0..3 {
-                    forces[self.freedoms * *node as usize + 3 + axis] += vector[axis];
+                    forces[self.dofs * *node as usize + 3 + axis] += vector[axis];
                 }
             }
             Action::Moment { patch: Rotation::Mean(patch), .. } => {
@@ -547,7 +547,7 @@ impl MeshLoad {
                     of.map(|(node, a)| a * self.shape(modes, *node, k)).sum()
                 }
                 Rotation::OfNode(node) => {
-                    Vector3::from_fn(|axis, _| modes.shapes[(self.freedoms * *node as usize + 3 + axis, k)])
+                    Vector3::from_fn(|axis, _| modes.shapes[(self.dofs * *node as usize + 3 + axis, k)])
                 }
             }
         };
@@ -557,6 +557,6 @@ impl MeshLoad {
 
     /// Displacement of a node in a flexible mode.
     fn shape(&self, modes: &Modes, node: u32, k: usize) -> Vector3<f64> {
-        Vector3::from_fn(|axis, _| modes.shapes[(self.freedoms * node as usize + axis, k)])
+        Vector3::from_fn(|axis, _| modes.shapes[(self.dofs * node as usize + axis, k)])
     }
 }

@@ -165,8 +165,8 @@ fn refuse_drawn_in(model: &MeshModel<'_>, follower: usize, [j, k]: [usize; 2], o
     let by = if j == k { format!("mode {} bends", j + 1) } else { format!("modes {} and {} bend", j + 1, k + 1) };
     let others: Vec<String> = others.iter().map(|mode| (mode + 1).to_string()).collect();
     let found = format!("mode {}, which is drawn in where {by} the body, and follows by itself", follower + 1);
-    let cure = format!("leave it out: `large = [{}]`", others.join(", "));
-    model.scene.refuse("modes.large", found, "modes that bend or twist the body", cure).into()
+    let help = format!("leave it out: `large = [{}]`", others.join(", "));
+    model.scene.refuse("modes.large", found, "modes that bend or twist the body", help).into()
 }
 
 /// Forces of second order of pairs of large modes, and the static responses to them; those that are known are not computed.

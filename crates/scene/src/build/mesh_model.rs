@@ -14,7 +14,7 @@ pub(super) struct MeshModel<'a> {
     pub scene: &'a Scene,
     pub mesh: &'a Mesh,
     /// Degrees of freedom of a node: 3, or 6 with its rotations.
-    pub freedoms: usize,
+    pub dofs: usize,
     pub solver: &'a dyn Structure,
     pub support: &'a Support,
     /// Loads that may act.

@@ -40,14 +40,14 @@ pub(super) fn reduce(
     progress: &mut dyn FnMut(BuildProgress),
 ) -> Result<Model, BuildError> {
     let AssembledMesh { mesh, support, drive, .. } = assembled;
-    let freedoms = assembled.freedoms();
-    let loads = loads::on_mesh(scene, mesh, freedoms, &Arc::new(solved.unit_weight()?))?;
-    let model = MeshModel { scene, mesh, freedoms, solver: solved, support, loads, drive: drive.clone() };
+    let dofs = assembled.dofs();
+    let loads = loads::on_mesh(scene, mesh, dofs, &Arc::new(solved.unit_weight()?))?;
+    let model = MeshModel { scene, mesh, dofs, solver: solved, support, loads, drive: drive.clone() };
 
     if !scene.time.method.abilities.any_mass && assembled.checks.is_some_and(|checks| !checks.is_scalar_mass) {
         let found = "a scheme of the paper's formulation, which knows no rotations of nodes, for a mass that is no scalar for each node";
-        let cure = "set `formulation = \"conservative\"`";
-        return Err(scene.refuse("time", found, "the conservative form", cure).into());
+        let help = "set `formulation = \"conservative\"`";
+        return Err(scene.refuse("time", found, "the conservative form", help).into());
     }
 
     let on_all_modes = timed(&mut times.reduction, || ModalModel::new(&model, &modes))?;

@@ -30,8 +30,8 @@ impl ModalModel {
         let body = model.solver.reduced_body(modes)?;
         let loads = loads(model, &body, modes, &[])?;
         let peak = |shape: faer::ColRef<'_, f64>| {
-            let at = |node: usize| Vector3::from_fn(|axis, _| shape[model.freedoms * node + axis]).norm();
-            (0..shape.nrows() / model.freedoms).map(at).fold(0.0, f64::max)
+            let at = |node: usize| Vector3::from_fn(|axis, _| shape[model.dofs * node + axis]).norm();
+            (0..shape.nrows() / model.dofs).map(at).fold(0.0, f64::max)
         };
         Ok(Self {
             loads,

@@ -56,7 +56,7 @@ pub struct Model {
     pub paper: Paper,
     /// Which effects the scene calls for, and why.
     pub advice: Advice,
-    /// Why the model is known to be wrong, if it is: it does not start unless the scene says `refuse = false`.
+    /// Known error of the model, if there is one: it does not start unless the scene says `refuse = false`.
     pub refusal: Option<Refusal>,
     /// Where the time went.
     pub times: BuildTimes,

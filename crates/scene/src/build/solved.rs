@@ -209,7 +209,7 @@ impl<'a> Solved<'a> {
     fn refuse_other_body(&self, flexible: usize) -> Result<(), BuildError> {
         let Some(file) = self.assembled.store.as_ref().and_then(Store::given) else { return Ok(()) };
         let origin = Origin::read(file)?;
-        let cure = "give the scene what the file was made for, or make the file again: flexframe reduce SCENE -o FILE, from a \
+        let help = "give the scene what the file was made for, or make the file again: flexframe reduce SCENE -o FILE, from a \
                     scene without `file`";
         let support = self.support_text();
         let (found, expected) = if origin.support != support {
@@ -220,13 +220,13 @@ impl<'a> Solved<'a> {
         } else {
             (format!("a body file with {} modes", origin.modes), format!("one with {flexible}, as [modes] asks"))
         };
-        Err(self.assembled.scene.refuse("body.file", found, expected, cure).into())
+        Err(self.assembled.scene.refuse("body.file", found, expected, help).into())
     }
 
     /// Text of the support. Its numbers are exact to the last bit.
     pub fn support_text(&self) -> String {
-        let Support { motion, nodes, freedoms } = &self.assembled.support;
-        format!("{motion:?} {freedoms:?} {}", Hash::of(nodes))
+        let Support { motion, nodes, dofs } = &self.assembled.support;
+        format!("{motion:?} {dofs:?} {}", Hash::of(nodes))
     }
 
     /// A question about the body whatever holds it.
@@ -240,7 +240,7 @@ impl<'a> Solved<'a> {
     }
 
     fn rows(&self) -> usize {
-        self.assembled.freedoms() * self.assembled.mesh.positions().len()
+        self.assembled.dofs() * self.assembled.mesh.positions().len()
     }
 }
 
@@ -269,8 +269,8 @@ impl Structure for Solved<'_> {
         if let MadeOf::Files(_) = self.assembled.body {
             let fields = || Ok(acceleration_fields(self.solver()?.mass()));
             let forces = self.ask_fields(|| self.about_the_body("unit weight"), 3, fields)?;
-            let freedoms = self.assembled.freedoms();
-            let mass = (0..count).map(|node| forces[(freedoms * node, 0)]).sum();
+            let dofs = self.assembled.dofs();
+            let mass = (0..count).map(|node| forces[(dofs * node, 0)]).sum();
             return Ok(UnitWeight { forces, mass });
         }
         // Elements have a scalar mass for each pair of nodes, and one number for each node is kept.

@@ -76,7 +76,7 @@ impl Statics {
             columns.push((of_loads..of_loads + count, turned));
             of_loads += count;
         }
-        let unknowns = model.freedoms * mesh.positions().len();
+        let unknowns = model.dofs * mesh.positions().len();
         let mut forces = StaticForces {
             of_loads: Mat::zeros(0, of_loads),
             spin: asked.spin,

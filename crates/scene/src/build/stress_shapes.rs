@@ -50,7 +50,7 @@ pub struct StressPeak {
     /// The von Mises stress, there, of what the modes leave out of the static response to the loads and the spin.
     pub left_out: f64,
     /// Its largest one anywhere.
-    pub most_left_out: f64,
+    pub max_left_out: f64,
 }
 
 impl BodyStress {
@@ -101,9 +101,9 @@ impl BodyStress {
         let coordinates = self.coordinates(&now.modal_displacement);
         let (site, peak) = shapes.largest(&coordinates)?;
         let missing = left_out.amplitudes(now);
-        let most_left_out = left_out.stress.largest(&missing).map_or(0.0, |(_, largest)| largest);
+        let max_left_out = left_out.stress.largest(&missing).map_or(0.0, |(_, largest)| largest);
         let node = sites.nodes()[site];
-        Some(StressPeak { von_mises: peak, node, left_out: left_out.stress.at(site, &missing), most_left_out })
+        Some(StressPeak { von_mises: peak, node, left_out: left_out.stress.at(site, &missing), max_left_out })
     }
 
     /// The nodes that stress is known at (m), once for each material there, and the stress of a unit of each coordinate, one

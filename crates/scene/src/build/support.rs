@@ -29,7 +29,7 @@ pub(super) fn support(scene: &Scene, mesh: Option<(&Mesh, usize)>) -> Result<(Su
         return Ok((held_directions(scene, mesh, parts)?, None));
     }
     let nodes = match mesh {
-        Some((mesh, freedoms)) => held_nodes(scene, mesh, constraint, freedoms)?,
+        Some((mesh, dofs)) => held_nodes(scene, mesh, constraint, dofs)?,
         None => Vec::new(),
     };
     let mesh = mesh.map(|(mesh, _)| mesh);
@@ -64,8 +64,8 @@ pub(super) fn support(scene: &Scene, mesh: Option<(&Mesh, usize)>) -> Result<(Su
 
 /// The support that holds parts of the mesh in some directions.
 fn held_directions(scene: &Scene, mesh: &Mesh, parts: &[HeldDirections]) -> Result<Support, BuildError> {
-    let freedoms = held_parts(scene, mesh, parts)?.concat();
-    let support = Support::of_freedoms(mesh.positions(), &freedoms).map_err(modal(scene))?;
+    let dofs = held_parts(scene, mesh, parts)?.concat();
+    let support = Support::of_dofs(mesh.positions(), &dofs).map_err(modal(scene))?;
     let motion = &support.motion;
     // Where another motion is left, there is no run.
     if motion.others().is_empty() {
@@ -89,8 +89,8 @@ pub(super) fn held_parts(
     for (i, HeldDirections { region, directions }) in parts.iter().enumerate() {
         let nodes = region_nodes(scene, mesh, region, &format!("constraints[{i}]"), 1)?;
         let directions = || (0..3).filter(|axis| directions[*axis]);
-        let freedoms = nodes.iter().flat_map(|node| directions().map(move |axis| (*node, axis)));
-        of_parts.push(freedoms.filter(|freedom| held.insert(*freedom)).collect());
+        let dofs = nodes.iter().flat_map(|node| directions().map(move |axis| (*node, axis)));
+        of_parts.push(dofs.filter(|dof| held.insert(*dof)).collect());
     }
     Ok(of_parts)
 }
@@ -119,9 +119,9 @@ fn require_left(
     Err(scene.refuse(key, format!("{value:?}"), expected, "give what is left of it, or change [[constraints]]").into())
 }
 
-fn held_nodes(scene: &Scene, mesh: &Mesh, constraint: &Constraint, freedoms: usize) -> Result<Vec<u32>, BuildError> {
+fn held_nodes(scene: &Scene, mesh: &Mesh, constraint: &Constraint, dofs: usize) -> Result<Vec<u32>, BuildError> {
     // A node with rotations holds the body by itself.
-    let (fewest, fewest_on_axis) = if freedoms == 6 { (1, 1) } else { (FEWEST, 2) };
+    let (fewest, fewest_on_axis) = if dofs == 6 { (1, 1) } else { (FEWEST, 2) };
     let tolerance = ON * mesh.diagonal();
     let nearest = |key: &str, at: [f64; 3]| -> Result<u32, BuildError> {
         let (node, distance) = mesh.nearest_node(at);

@@ -35,17 +35,17 @@ impl SupportRows {
         let (size, shapes) = (modes.shapes.nrows(), modes.shapes.ncols());
         let mut components = Vec::new();
         let mut columns: Vec<Vec<(usize, f64)>> = Vec::new();
-        for (support, freedoms) in parts.iter().enumerate() {
+        for (support, dofs) in parts.iter().enumerate() {
             let position = |node: u32| Vector3::from(mesh.positions()[node as usize]);
-            let mut nodes: Vec<u32> = freedoms.iter().map(|(node, _)| *node).collect();
+            let mut nodes: Vec<u32> = dofs.iter().map(|(node, _)| *node).collect();
             nodes.dedup();
             let center = nodes.iter().map(|node| position(*node)).sum::<Vector3<f64>>() / nodes.len().max(1) as f64;
             for component in 0..6 {
                 let axis = Vector3::from_fn(|i, _| f64::from(u8::from(i == component % 3)));
                 let moved = |node: u32| if component < 3 { axis } else { axis.cross(&(position(node) - center)) };
-                let column: Vec<(usize, f64)> = freedoms
+                let column: Vec<(usize, f64)> = dofs
                     .iter()
-                    .map(|(node, direction)| (model.freedoms * *node as usize + direction, moved(*node)[*direction]))
+                    .map(|(node, direction)| (model.dofs * *node as usize + direction, moved(*node)[*direction]))
                     .filter(|(_, moved)| *moved != 0.0)
                     .collect();
                 if !column.is_empty() {

@@ -57,7 +57,7 @@ impl Check<'_> {
     /// Matrices say all of a body but its shape.
     fn matrices(&self, section: &MatricesSection) -> Result<MatrixFiles, SceneError> {
         let others = ["mesh", "file", "mesh_size", "raise_order", "material", "materials", "rigid"];
-        for (key, cure) in
+        for (key, help) in
             others.map(|key| (key, "keep `matrices`, or the other and what belongs to it")).into_iter().chain([(
                 "point_masses",
                 "put the masses into the mass matrix: in CalculiX and Abaqus by elements of type MASS",
@@ -68,7 +68,7 @@ impl Check<'_> {
                 return Err(self.document.place(&join("body", key)).refuse(
                     found,
                     "matrices, which stand for all of the body",
-                    cure,
+                    help,
                 ));
             }
         }
@@ -170,8 +170,8 @@ impl Check<'_> {
 
     fn rigid(&self, section: &RigidSection) -> Result<RigidBody, SceneError> {
         let &RigidSection { mass, center_of_mass, inertia, about } = section;
-        let cure = "give the mass of the body in your unit of mass";
-        self.positive("body.rigid.mass", mass, cure)?;
+        let help = "give the mass of the body in your unit of mass";
+        self.positive("body.rigid.mass", mass, help)?;
         let key = "body.rigid.inertia";
         let given = Matrix3::from_fn(|i, j| inertia[i][j]);
         let asymmetry = (given - given.transpose()).amax();
@@ -264,8 +264,8 @@ impl Check<'_> {
     }
 
     fn point_masses(&self, masses: &[PointMass]) -> Result<(), SceneError> {
-        let cure = "mesh that many masses as a part of the body, with a material of their density";
-        self.not_too_many("body.point_masses", masses.len(), cure)?;
+        let help = "mesh that many masses as a part of the body, with a material of their density";
+        self.not_too_many("body.point_masses", masses.len(), help)?;
         for (i, point_mass) in masses.iter().enumerate() {
             let key = format!("body.point_masses[{i}]");
             self.positive(

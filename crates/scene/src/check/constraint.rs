@@ -102,8 +102,8 @@ impl Check<'_> {
             }
             ConstraintSection::Slider { mut direction, at, radius, r#box, group, motion } => {
                 self.at_with_radius(key)?;
-                let cure = "give the direction to slide along; its length does not matter";
-                self.normalise(&join(key, "direction"), &mut direction, cure)?;
+                let help = "give the direction to slide along; its length does not matter";
+                self.normalise(&join(key, "direction"), &mut direction, help)?;
                 let region = self.region(key, RegionKeys { at, radius, r#box, group }, body)?;
                 if region.is_none() && !matches!(body, Body::Rigid(_)) {
                     return Err(self.no_region(key));
@@ -124,12 +124,12 @@ impl Check<'_> {
 
     /// The axes of the mesh that are named.
     fn directions(&self, key: &str, names: &[String]) -> Result<[bool; 3], SceneError> {
-        let (expected, cure) = ("one to three of \"x\", \"y\" and \"z\"", "e.g. `directions = [\"z\"]`");
-        self.require(!names.is_empty(), key, expected, cure)?;
+        let (expected, help) = ("one to three of \"x\", \"y\" and \"z\"", "e.g. `directions = [\"z\"]`");
+        self.require(!names.is_empty(), key, expected, help)?;
         let mut directions = [false; 3];
         for (i, name) in names.iter().enumerate() {
             let axis = ["x", "y", "z"].iter().position(|axis| axis == name);
-            self.require(axis.is_some_and(|axis| !directions[axis]), &format!("{key}[{i}]"), expected, cure)?;
+            self.require(axis.is_some_and(|axis| !directions[axis]), &format!("{key}[{i}]"), expected, help)?;
             axis.into_iter().for_each(|axis| directions[axis] = true);
         }
         Ok(directions)
@@ -143,17 +143,17 @@ impl Check<'_> {
         axis: Option<[f64; 3]>,
         points: Option<[[f64; 3]; 2]>,
     ) -> Result<HingeLine, SceneError> {
-        let cure = "give a point and the direction of the line, `at` and `axis`, or two points of it, `points`";
+        let help = "give a point and the direction of the line, `at` and `axis`, or two points of it, `points`";
         let Some(points) = points else {
             return match (at, axis) {
                 (Some(at), Some(mut direction)) => {
-                    let cure = "give the direction of the line; its length does not matter";
-                    self.normalise(&join(key, "axis"), &mut direction, cure)?;
+                    let help = "give the direction of the line; its length does not matter";
+                    self.normalise(&join(key, "axis"), &mut direction, help)?;
                     Ok(HingeLine::Axis { at, direction })
                 }
                 (None, None) => {
                     let found = "neither `at` and `axis` nor `points`";
-                    Err(self.document.place(key).refuse(found, "the line of the hinge", cure))
+                    Err(self.document.place(key).refuse(found, "the line of the hinge", help))
                 }
                 (Some(_), None) => Err(self.missing(key, "axis")),
                 (None, Some(_)) => Err(self.missing(key, "at")),
@@ -162,20 +162,20 @@ impl Check<'_> {
         for name in ["at", "axis"] {
             if self.has(&join(key, name)) {
                 let found = format!("both `{name}` and `points`");
-                return Err(self.document.place(&join(key, name)).refuse(found, "the line of the hinge once", cure));
+                return Err(self.document.place(&join(key, name)).refuse(found, "the line of the hinge once", help));
             }
         }
         let line = HingeLine::Points(points);
         if line.direction() == [0.0; 3] {
             let place = self.document.place(&join(key, "points"));
-            return Err(place.refuse("the same point twice", "two different points of the line", cure));
+            return Err(place.refuse("the same point twice", "two different points of the line", help));
         }
         Ok(line)
     }
 
     fn region(&self, key: &str, keys: RegionKeys, body: &Body) -> Result<Option<Region>, SceneError> {
-        let cure = "keep one way to say which nodes are meant";
-        self.at_most_one(key, &["radius", "box", "group"], cure)?;
+        let help = "keep one way to say which nodes are meant";
+        self.at_most_one(key, &["radius", "box", "group"], help)?;
         let (name, region) = match keys {
             RegionKeys { r#box: Some([low, high]), .. } => {
                 let ordered = low.iter().zip(&high).all(|(low, high)| low <= high);
@@ -209,8 +209,8 @@ impl Check<'_> {
         if !self.has(&at) || self.has(&join(key, "radius")) {
             return Ok(());
         }
-        let cure = "add `radius` for the nodes within a ball around the point, or remove `at`";
-        Err(self.document.place(&at).refuse("`at` without `radius`", "both of them, or neither", cure))
+        let help = "add `radius` for the nodes within a ball around the point, or remove `at`";
+        Err(self.document.place(&at).refuse("`at` without `radius`", "both of them, or neither", help))
     }
 
     fn radius(&self, key: &str, radius: f64) -> Result<(), SceneError> {

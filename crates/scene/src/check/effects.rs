@@ -39,9 +39,9 @@ impl Check<'_> {
             Some(Constraint::Clamp { .. }) => (false, false),
         };
         let held = "a constraint that leaves none";
-        let cure = "change [[constraints]]";
-        self.not_on(effects, Effect::Translation, !can_translate, held, cure)?;
-        self.not_on(effects, Effect::Rotation, !can_turn, held, cure)?;
+        let help = "change [[constraints]]";
+        self.not_on(effects, Effect::Translation, !can_translate, held, help)?;
+        self.not_on(effects, Effect::Rotation, !can_turn, held, help)?;
 
         let turned = matches!(constraint, Some(Constraint::Hinge { motion: Some(_), .. }));
         let driven = matches!(constraint, Some(Constraint::Slider { motion: Some(_), .. }));
@@ -61,16 +61,16 @@ impl Check<'_> {
     pub fn effects_of_elements(&self, effects: &Effects, modes: &Modes, body: &Body) -> Result<(), SceneError> {
         let Body::Matrices(_) = body else { return Ok(()) };
         let found = "a body of matrices, whose elements are not known";
-        let cure = "give the body a mesh and a material";
-        self.not_on(effects, Effect::GeometricStiffening, true, found, cure)?;
-        self.not_on(effects, Effect::LargeDeflection, true, found, cure)?;
+        let help = "give the body a mesh and a material";
+        self.not_on(effects, Effect::GeometricStiffening, true, found, help)?;
+        self.not_on(effects, Effect::LargeDeflection, true, found, help)?;
         if modes.large.is_none() {
             return Ok(());
         }
         Err(self.document.place("modes.large").refuse(
             format!("large modes of {found}"),
             "modes that are small",
-            format!("remove it, or {cure}"),
+            format!("remove it, or {help}"),
         ))
     }
 
@@ -80,9 +80,9 @@ impl Check<'_> {
             return Ok(());
         }
         let paper = "the paper's formulation";
-        let cure = "set `formulation = \"conservative\"`";
-        self.not_on(effects, Effect::GeometricStiffening, true, paper, cure)?;
-        self.not_on(effects, Effect::LargeDeflection, true, paper, cure)?;
+        let help = "set `formulation = \"conservative\"`";
+        self.not_on(effects, Effect::GeometricStiffening, true, paper, help)?;
+        self.not_on(effects, Effect::LargeDeflection, true, paper, help)?;
         [Effect::DeformedInertia, Effect::Coriolis, Effect::Translation, Effect::Rotation]
             .into_iter()
             .try_for_each(|effect| self.not_off(effects, effect, true, paper))
@@ -91,11 +91,11 @@ impl Check<'_> {
     /// The effects that need a body that deforms.
     fn of_deformation(&self, effects: &Effects, modes: &Modes, initial: &Initial) -> Result<(), SceneError> {
         let no_modes = modes.flexible == Flexible::Count(0);
-        let (found, cure) = match no_modes {
+        let (found, help) = match no_modes {
             true => ("no flexible modes", "keep flexible modes of a body with a mesh"),
             false => ("`flexibility = false`", "set `flexibility = \"auto\"`"),
         };
-        self.not_on(effects, Effect::Flexibility, no_modes, found, cure)?;
+        self.not_on(effects, Effect::Flexibility, no_modes, found, help)?;
         let is_rigid = no_modes || effects.choices[Effect::Flexibility] == Choice::Off;
         for effect in [
             Effect::Damping,
@@ -104,7 +104,7 @@ impl Check<'_> {
             Effect::GeometricStiffening,
             Effect::LargeDeflection,
         ] {
-            self.not_on(effects, effect, is_rigid, found, cure)?;
+            self.not_on(effects, effect, is_rigid, found, help)?;
         }
         let is_deformed =
             [&initial.modal_displacement, &initial.modal_velocity].into_iter().flatten().any(|&q| q != 0.0);
@@ -118,7 +118,7 @@ impl Check<'_> {
         effect: Effect,
         nothing: bool,
         found: &str,
-        cure: &str,
+        help: &str,
     ) -> Result<(), SceneError> {
         if effects.choices[effect] != Choice::On || !nothing {
             return Ok(());
@@ -127,7 +127,7 @@ impl Check<'_> {
         Err(self.document.place(&join("effects", name)).refuse(
             format!("`{name} = true` with {found}"),
             "`false` or `\"auto\"`",
-            format!("set `{name} = \"auto\"`, or {cure}"),
+            format!("set `{name} = \"auto\"`, or {help}"),
         ))
     }
 

@@ -29,8 +29,8 @@ impl Check<'_> {
                 self.duration(key, *duration, "give the length of the pulse in time, e.g. `duration = 0.02`")
             }
             History::Sine { frequency, duration, .. } => {
-                let cure = "give the frequency in cycles per time, e.g. `frequency = 50.0`";
-                self.positive(&join(key, "frequency"), *frequency, cure)?;
+                let help = "give the frequency in cycles per time, e.g. `frequency = 50.0`";
+                self.positive(&join(key, "frequency"), *frequency, help)?;
                 match *duration {
                     Some(duration) => {
                         self.duration(key, duration, "give the length of the sine in time, or remove `duration`")
@@ -40,36 +40,36 @@ impl Check<'_> {
             }
             History::Sweep { from, to, duration, .. } => {
                 for (name, frequency) in [("from", *from), ("to", *to)] {
-                    let cure = "give the frequency in cycles per time, e.g. `from = 10.0, to = 100.0`";
-                    self.require(frequency >= 0.0, &join(key, name), "a number of 0 or more", cure)?;
+                    let help = "give the frequency in cycles per time, e.g. `from = 10.0, to = 100.0`";
+                    self.require(frequency >= 0.0, &join(key, name), "a number of 0 or more", help)?;
                 }
                 self.duration(key, *duration, "give the length of the sweep in time, e.g. `duration = 2.0`")
             }
             History::Table(table) => self.table(key, table),
-            History::Expression(Formula { formula, corners }) => {
+            History::Expression(Formula { formula, discontinuities }) => {
                 self.require(
                     !formula.trim().is_empty(),
                     &join(key, "formula"),
                     "a formula in the time t",
                     "give the factor as a formula, e.g. `formula = \"sin(2*pi*t)\"`",
                 )?;
-                let key = join(key, "corners");
-                self.rising(&key, corners, |i| format!("[{i}]"), "times")?;
-                self.apart(&key, corners, |i| format!("[{i}]"))
+                let key = join(key, "discontinuities");
+                self.rising(&key, discontinuities, |i| format!("[{i}]"), "times")?;
+                self.apart(&key, discontinuities, |i| format!("[{i}]"))
             }
             History::Product { factors } => {
                 let key = join(key, "factors");
-                let cure = "list the histories to multiply, e.g. `factors = [{ kind = \"sine\", frequency = 50.0 }, \
+                let help = "list the histories to multiply, e.g. `factors = [{ kind = \"sine\", frequency = 50.0 }, \
                             { kind = \"ramp\", duration = 0.1 }]`";
-                self.require(!factors.is_empty(), &key, "at least one history", cure)?;
+                self.require(!factors.is_empty(), &key, "at least one history", help)?;
                 factors.iter_mut().enumerate().try_for_each(|(i, factor)| self.history(&format!("{key}[{i}]"), factor))
             }
         }
     }
 
-    fn duration(&self, key: &str, duration: f64, cure: &str) -> Result<(), SceneError> {
+    fn duration(&self, key: &str, duration: f64, help: &str) -> Result<(), SceneError> {
         let key = join(key, "duration");
-        self.positive(&key, duration, cure)?;
+        self.positive(&key, duration, help)?;
         self.not_lost(&key, duration, "duration")
     }
 
@@ -90,8 +90,8 @@ impl Check<'_> {
     }
 
     fn table(&self, key: &str, table: &mut TablePoints) -> Result<(), SceneError> {
-        let cure = "keep `points` for a table in the scene, or `file` for one in a CSV file";
-        self.at_most_one(key, &["points", "file"], cure)?;
+        let help = "keep `points` for a table in the scene, or `file` for one in a CSV file";
+        self.at_most_one(key, &["points", "file"], help)?;
         if let Some(file) = &mut table.file {
             let key = join(key, "file");
             *file = self.document.folder().join(&file);
@@ -106,8 +106,8 @@ impl Check<'_> {
                 "give the table, e.g. `points = [[0.0, 0.0], [0.1, 1.0]]`, or a CSV file, e.g. `file = \"pulse.csv\"`",
             ));
         }
-        let cure = "give times and factors, e.g. `points = [[0.0, 0.0], [0.1, 1.0]]`";
-        self.require(table.points.len() >= 2, &key, &format!("at least two {PAIRS}"), cure)?;
+        let help = "give times and factors, e.g. `points = [[0.0, 0.0], [0.1, 1.0]]`";
+        self.require(table.points.len() >= 2, &key, &format!("at least two {PAIRS}"), help)?;
         let times: Vec<f64> = table.points.iter().map(|[time, _]| *time).collect();
         self.rising(&key, &times, |i| format!("[{i}][0]"), "times")?;
         self.apart(&key, &times, |i| format!("[{i}][0]"))
@@ -151,8 +151,8 @@ impl Check<'_> {
             if line.is_empty() || line.starts_with('#') {
                 continue;
             }
-            let refuse = |found: String, expected: &str, cure: &str| {
-                Err(Place::unseen(path, number, key.to_owned()).refuse(found, expected, cure))
+            let refuse = |found: String, expected: &str, help: &str| {
+                Err(Place::unseen(path, number, key.to_owned()).refuse(found, expected, help))
             };
             let numbers: Vec<Option<f64>> = line.split(',').map(|field| field.trim().parse().ok()).collect();
             let names_columns = is_first && numbers.iter().all(Option::is_none);

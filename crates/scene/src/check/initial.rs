@@ -33,15 +33,15 @@ impl Check<'_> {
         ] {
             if let Some(i) = list.iter().position(|value| value.abs() > LARGEST) {
                 let expected = format!("a number of at most {LARGEST:e}, whose square is still a number");
-                let cure = "give what the body can have, in the units of the scene";
-                self.require(false, &format!("{key}[{i}]"), &expected, cure)?;
+                let help = "give what the body can have, in the units of the scene";
+                self.require(false, &format!("{key}[{i}]"), &expected, help)?;
             }
         }
         if let Some(wxyz) = initial.attitude {
             let expected = "a quaternion [w, x, y, z] of finite numbers that are not all zero";
-            let cure = "[1, 0, 0, 0] has the body axes along the global ones; a turn by the angle a about the unit vector n \
+            let help = "[1, 0, 0, 0] has the body axes along the global ones; a turn by the angle a about the unit vector n \
                         is [cos(a/2), n sin(a/2)]";
-            self.require(Attitude::from_wxyz(wxyz).is_ok(), "initial.attitude", expected, cure)?;
+            self.require(Attitude::from_wxyz(wxyz).is_ok(), "initial.attitude", expected, help)?;
         }
         let attitude = initial.attitude.and_then(|wxyz| Attitude::from_wxyz(wxyz).ok());
         let to_global = |direction: &[f64; 3]| -> [f64; 3] {
@@ -73,8 +73,8 @@ impl Check<'_> {
         match left {
             Left::All => Ok(()),
             Left::Nothing(reason) => {
-                let cure = format!("remove it: {reason}");
-                self.require(value == Vector3::zeros(), key, "0 with this constraint", &cure)
+                let help = format!("remove it: {reason}");
+                self.require(value == Vector3::zeros(), key, "0 with this constraint", &help)
             }
             Left::Along(direction) => {
                 let across = value.cross(&Vector3::from(direction)).norm();

@@ -12,8 +12,8 @@ use crate::scene::Body;
 impl Check<'_> {
     /// Checks the loads, normalises their directions and reads their tables.
     pub fn loads(&self, loads: &mut [Load], body: &Body, constraint: Option<&Constraint>) -> Result<(), SceneError> {
-        let cure = "put forces that go together into one traction or pressure on a physical surface";
-        self.not_too_many("loads", loads.len(), cure)?;
+        let help = "put forces that go together into one traction or pressure on a physical surface";
+        self.not_too_many("loads", loads.len(), help)?;
         for (i, load) in loads.iter_mut().enumerate() {
             let key = format!("loads[{i}]");
             if let Load::Pressure(_) | Load::Traction(_) = load {
@@ -54,8 +54,8 @@ impl Check<'_> {
             Load::Moment(moment) => {
                 if let Some(radius) = moment.radius {
                     let key = join(key, "radius");
-                    let cure = "give the radius of the ball whose nodes take the moment, or remove `radius`";
-                    self.positive(&key, radius, cure)?;
+                    let help = "give the radius of the ball whose nodes take the moment, or remove `radius`";
+                    self.positive(&key, radius, help)?;
                     self.needs_mesh(&key, body)?;
                 }
                 (Some(&mut moment.direction), None, &mut moment.history)
@@ -66,8 +66,8 @@ impl Check<'_> {
             Load::BaseAcceleration(base) => (Some(&mut base.direction), None, &mut base.history),
         };
         if let Some(direction) = direction {
-            let cure = "give the direction of the load; its length does not matter";
-            self.normalise(&join(key, "direction"), direction, cure)?;
+            let help = "give the direction of the load; its length does not matter";
+            self.normalise(&join(key, "direction"), direction, help)?;
         }
         if let Some(group) = group {
             self.group(&join(key, "group"), group)?;
@@ -76,8 +76,8 @@ impl Check<'_> {
     }
 
     pub(super) fn group(&self, key: &str, group: &str) -> Result<(), SceneError> {
-        let cure = "give the name of a physical group of the mesh";
-        self.require(!group.is_empty(), key, "a name that is not empty", cure)
+        let help = "give the name of a physical group of the mesh";
+        self.require(!group.is_empty(), key, "a name that is not empty", help)
     }
 
     /// Refuses a key that speaks of nodes, on a body without a mesh.

@@ -1,6 +1,6 @@
 //! The rules on `[modes]`.
 
-use dynamics::MOST_LARGE;
+use dynamics::MAX_LARGE;
 
 use super::Check;
 use crate::effects::Choice;
@@ -48,7 +48,7 @@ impl Check<'_> {
     }
 
     fn large(&self, large: Option<CountOrList>, flexible: usize) -> Result<Option<Large>, SceneError> {
-        let most = MOST_LARGE.min(flexible);
+        let most = MAX_LARGE.min(flexible);
         let refuse = |found: String| {
             self.document.place("modes.large").refuse(
                 found,
@@ -103,17 +103,17 @@ impl Check<'_> {
         rayleigh: Option<Rayleigh>,
         flexible: Flexible,
     ) -> Result<Damping, SceneError> {
-        let cure = "keep one way to say how the modes are damped";
-        self.at_most_one("modes", &["damping_ratio", "damping_table", "rayleigh"], cure)?;
+        let help = "keep one way to say how the modes are damped";
+        self.at_most_one("modes", &["damping_ratio", "damping_table", "rayleigh"], help)?;
         if let Some(points) = table {
             self.damping_table("modes.damping_table", &points)?;
             return Ok(Damping::Table(points));
         }
         if let Some(rayleigh) = rayleigh {
             for (key, factor) in [("modes.rayleigh.alpha", rayleigh.alpha), ("modes.rayleigh.beta", rayleigh.beta)] {
-                let cure = "give the factor of the mass (alpha) or stiffness (beta) in C = αM + βK; \
+                let help = "give the factor of the mass (alpha) or stiffness (beta) in C = αM + βK; \
                             a negative one could feed energy in";
-                self.require(factor >= 0.0, key, "a number of 0 or more", cure)?;
+                self.require(factor >= 0.0, key, "a number of 0 or more", help)?;
             }
             return Ok(Damping::Rayleigh(rayleigh));
         }
@@ -125,8 +125,8 @@ impl Check<'_> {
                 Ok(Damping::Uniform(ratio))
             }
             Some(NumberOrList::List(ratios)) => {
-                let cure = "give a ratio for each mode, the lowest first; the last holds for the rest";
-                self.require(!ratios.is_empty(), key, "at least one damping ratio", cure)?;
+                let help = "give a ratio for each mode, the lowest first; the last holds for the rest";
+                self.require(!ratios.is_empty(), key, "at least one damping ratio", help)?;
                 for (i, &ratio) in ratios.iter().enumerate() {
                     self.damping_ratio(&format!("{key}[{i}]"), ratio)?;
                 }
@@ -146,11 +146,11 @@ impl Check<'_> {
     }
 
     fn damping_table(&self, key: &str, points: &[[f64; 2]]) -> Result<(), SceneError> {
-        let cure = "give pairs of frequency and damping ratio, e.g. `damping_table = [[10, 0.02], [100, 0.05]]`";
-        self.require(!points.is_empty(), key, "at least one pair of frequency and damping ratio", cure)?;
+        let help = "give pairs of frequency and damping ratio, e.g. `damping_table = [[10, 0.02], [100, 0.05]]`";
+        self.require(!points.is_empty(), key, "at least one pair of frequency and damping ratio", help)?;
         for (i, &[frequency, ratio]) in points.iter().enumerate() {
-            let cure = "give the frequency in cycles per time";
-            self.require(frequency >= 0.0, &format!("{key}[{i}][0]"), "a number of 0 or more", cure)?;
+            let help = "give the frequency in cycles per time";
+            self.require(frequency >= 0.0, &format!("{key}[{i}][0]"), "a number of 0 or more", help)?;
             self.damping_ratio(&format!("{key}[{i}][1]"), ratio)?;
         }
         let frequencies: Vec<f64> = points.iter().map(|[frequency, _]| *frequency).collect();

@@ -13,7 +13,7 @@ use crate::shorten::shorten;
 /// Intervals between rows where the scene gives a tolerance and names no rows.
 const DEFAULT_ROWS: f64 = 500.0;
 /// Most intervals between rows where it gives a step and names no rows: a row after every step, or after as many as it takes.
-const MOST_DEFAULT_ROWS: f64 = 5000.0;
+const MAX_DEFAULT_ROWS: f64 = 5000.0;
 
 /// Shortest step, interval, duration and distance of times, over the end of the run: times closer than a tenth of this are one to the stepper.
 const LEAST_PART: f64 = 1e-12;
@@ -21,22 +21,22 @@ const LEAST_PART: f64 = 1e-12;
 impl Check<'_> {
     pub fn time(&self, section: &TimeSection) -> Result<Time, SceneError> {
         let &TimeSection { end, step, tolerance, formulation, scheme } = section;
-        let cure = "the run starts at 0 and makes at least one step, e.g. `end = 0.5`";
-        self.positive("time.end", end, cure)?;
+        let help = "the run starts at 0 and makes at least one step, e.g. `end = 0.5`";
+        self.positive("time.end", end, help)?;
         let method = self.method(formulation, scheme)?;
         let expected = "exactly one of them";
-        let cure = "give `step`, the length of a step, e.g. `step = 1e-4`, or `tolerance`, \
+        let help = "give `step`, the length of a step, e.g. `step = 1e-4`, or `tolerance`, \
                     a bound of the sum of the estimated relative errors of all steps, e.g. `tolerance = 1e-6`";
         let control = match (step, tolerance) {
             (Some(_), Some(_)) => {
                 return Err(self.document.place("time.tolerance").refuse(
                     "both `step` and `tolerance`",
                     expected,
-                    cure,
+                    help,
                 ));
             }
             (None, None) => {
-                return Err(self.document.place("time.step").refuse("neither `step` nor `tolerance`", expected, cure));
+                return Err(self.document.place("time.step").refuse("neither `step` nor `tolerance`", expected, help));
             }
             (Some(step), None) => {
                 self.positive("time.step", step, "give the length of a time step, e.g. `step = 1e-4`")?;
@@ -144,18 +144,18 @@ impl Check<'_> {
                 Rows::EverySteps(every)
             }
             (None, Some(interval), _) => {
-                let cure = "give the time between two rows, e.g. `interval = 1e-3`";
-                self.positive("output.interval", interval, cure)?;
+                let help = "give the time between two rows, e.g. `interval = 1e-3`";
+                self.positive("output.interval", interval, help)?;
                 self.part_of_the_run("output.interval", interval, time.end, "interval")?;
                 Rows::Interval(interval)
             }
             (None, None, StepControl::Fixed(step)) => {
-                Rows::EverySteps((time.end / step / MOST_DEFAULT_ROWS * (1.0 - 1e-12)).ceil() as u64)
+                Rows::EverySteps((time.end / step / MAX_DEFAULT_ROWS * (1.0 - 1e-12)).ceil() as u64)
             }
             (None, None, StepControl::Tolerance(_)) => Rows::Interval(time.end / DEFAULT_ROWS),
         };
-        let cure = "keep the points that you look at";
-        self.not_too_many("output.points", points.len(), cure)?;
+        let help = "keep the points that you look at";
+        self.not_too_many("output.points", points.len(), help)?;
         for name in points.keys() {
             let names_a_group = !matches!(name.as_str(), "" | "." | "..");
             if !names_a_group || name.contains(|c: char| c == '/' || c.is_control()) {

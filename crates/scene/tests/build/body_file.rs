@@ -94,7 +94,7 @@ fn the_stress_from_a_body_file_is_the_same_to_the_last_bit_and_not_recovered_aga
             let of_row = |now: dynamics::Observation| {
                 let peak = stress.peak(&now).unwrap();
                 let at_points: Vec<_> = stress.at_points(&now.modal_displacement).flatten().collect();
-                ([peak.von_mises, peak.left_out, peak.most_left_out].map(f64::to_bits), peak.node, at_points)
+                ([peak.von_mises, peak.left_out, peak.max_left_out].map(f64::to_bits), peak.node, at_points)
             };
             model.start(scene).unwrap().map(|now| of_row(now.unwrap())).collect::<Vec<_>>()
         };

@@ -13,7 +13,7 @@ fn follows(history: &str, formula: impl Fn(f64) -> f64) {
         "[[loads]]\nkind = \"force\"\nat = [1.0, 2.0, 3.0]\ndirection = [0.0, 1.0, 0.0]\namplitude = 6.0\n\
          history = {history}"
     );
-    // Rows never fall on a corner: those are at whole hundredths.
+    // Rows never fall on a discontinuity: those are at whole hundredths.
     let scene = rigid(&rest, &format!("end = {END}\nstep = 0.0037"));
     let model = crate::build(&scene);
     let rows = observations(&scene, &model);

@@ -59,7 +59,7 @@ fn each_kind_leaves_its_rigid_motions() {
 }
 
 #[test]
-fn a_part_of_the_body_that_is_not_there_is_refused_with_a_cure() {
+fn a_part_of_the_body_that_is_not_there_is_refused_with_a_help() {
     for (constraint, words) in [
         ("kind = \"pin\"\nat = [0.0, 0.0, 1.0]", "constraints[0].at"),
         ("kind = \"pin\"\nat = [0.0, 0.0, 0.0]\nradius = 0.1", "constraints[0].radius"),

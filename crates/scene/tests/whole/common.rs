@@ -37,7 +37,7 @@ pub fn refused(from: &str, to: &str, mark: &str, key: &str, words: &[&str]) {
     let caret_line = message.lines().nth(3).unwrap();
     let caret = caret_line.find('^').unwrap() - caret_line.find('|').unwrap() - 1;
     assert_eq!(caret, column, "{message}");
-    assert!(message.contains("\n   = ") || message.contains("\n  = "), "no cure in {message}");
+    assert!(message.contains("\n   = ") || message.contains("\n  = "), "no help in {message}");
     for word in words {
         assert!(message.contains(word), "no {word:?} in {message}");
     }

@@ -1,4 +1,4 @@
-//! Every refusal names file, line, column and key, says what was found and expected, and the cure.
+//! Every refusal names file, line, column and key, says what was found and expected, and the help.
 
 use crate::common::{EXAMPLE, refusal, refused};
 use scene::{Scene, SceneError};
@@ -27,9 +27,9 @@ fn misspelt_keys() {
         ("duration", "durration", "durration", "loads[0].history.durration", "duration", "`start`"),
         ("every", "evry", "evry", "output.evry", "every", "`every`, `interval`, `points`"),
     ] {
-        let cure = format!("rename it to `{near}`");
+        let help = format!("rename it to `{near}`");
         let meant = format!("did you mean `{near}`?");
-        refused(from, to, mark, key, &["unknown key", &meant, &cure, others]);
+        refused(from, to, mark, key, &["unknown key", &meant, &help, others]);
     }
 }
 
@@ -75,8 +75,8 @@ fn misspelt_names() {
         ),
     ] {
         let meant = format!("did you mean `{near}`?");
-        let cure = format!("rename it to `{near}` (possible here: {known}");
-        refused(from, to, mark, key, &["unknown value", &meant, &cure]);
+        let help = format!("rename it to `{near}` (possible here: {known}");
+        refused(from, to, mark, key, &["unknown value", &meant, &help]);
     }
     let words = ["unknown value `rk45`\n", "possible here: `paper`, `rkmk4`"];
     refused("\"exponential\"", "\"rk45\"", "\"rk45\"", "time.scheme", &words);
@@ -150,8 +150,8 @@ fn neither_or_both_materials() {
 
 #[test]
 fn neither_or_both_of_step_and_tolerance() {
-    let cures = ["expected exactly one of them", "e.g. `step = 1e-4`", "e.g. `tolerance = 1e-6`"];
-    let words = |found| [&[found], &cures[..]].concat();
+    let helps = ["expected exactly one of them", "e.g. `step = 1e-4`", "e.g. `tolerance = 1e-6`"];
+    let words = |found| [&[found], &helps[..]].concat();
     refused("step = 1e-4", "", "[time]", "time.step", &words("found neither `step` nor `tolerance`"));
     let both = "step = 1e-4\ntolerance = 1e-7";
     refused("step = 1e-4", both, "1e-7", "time.tolerance", &words("found both `step` and `tolerance`"));
@@ -232,7 +232,7 @@ fn rows_after_steps_or_at_times() {
 
 #[test]
 fn wrong_types() {
-    for (from, to, mark, key, found, expected, cure) in [
+    for (from, to, mark, key, found, expected, help) in [
         (
             "step = 1e-4",
             "step = '1e-4'",
@@ -470,7 +470,7 @@ fn wrong_types() {
         ),
     ] {
         let headline = format!("found {found}, expected {expected}");
-        refused(from, to, mark, key, &[&headline, cure]);
+        refused(from, to, mark, key, &[&headline, help]);
     }
 }
 
@@ -486,8 +486,8 @@ fn numbers_that_are_not_finite() {
             ("mass = 0.001", "mass", "body.point_masses[0].mass"),
         ] {
             let headline = format!("found the number {bad}, expected a finite number");
-            let cure = format!("write it like this: `{from}`");
-            refused(from, &format!("{name} = {bad}"), bad, key, &[&headline, &cure]);
+            let help = format!("write it like this: `{from}`");
+            refused(from, &format!("{name} = {bad}"), bad, key, &[&headline, &help]);
         }
         let list = format!("modal_displacement = [0, {bad}]");
         refused("modal_displacement = []", &list, bad, "initial.modal_displacement[1]", &[bad]);
@@ -499,7 +499,7 @@ fn numbers_that_are_not_finite() {
 #[test]
 fn numbers_out_of_range() {
     let positive = "expected a number greater than 0";
-    for (from, to, key, expected, cure) in [
+    for (from, to, key, expected, help) in [
         ("young_modulus = 70000.0", "0", "body.material.young_modulus", positive, "force per area"),
         ("young_modulus = 70000.0", "-7e4", "body.material.young_modulus", positive, "N/mm²"),
         ("density = 2.7e-9", "0.0", "body.material.density", positive, "mass per volume"),
@@ -536,7 +536,7 @@ fn numbers_out_of_range() {
         let (text, error) = refusal(from, &to_line);
         let value_starts = text.find(&to_line).unwrap() + name.len() + 3;
         let found = format!("found {to}, expected ");
-        refused(from, &to_line, &text[value_starts..], key, &[&found, expected, cure]);
+        refused(from, &to_line, &text[value_starts..], key, &[&found, expected, help]);
         assert!(matches!(error, SceneError::Invalid { .. }));
     }
     let spread = "mass = 0.001, spread = 0.0";

@@ -19,11 +19,11 @@ use super::law::Law;
 /// overflow, which ends the program.
 const DEEPEST: usize = 100;
 
-/// Why a text is no formula, at which byte, and what to write there.
+/// Error of a text that is no formula: its byte, the problem, and help.
 pub(super) struct Refusal {
     pub byte: usize,
     pub problem: Box<str>,
-    pub cure: Box<str>,
+    pub help: Box<str>,
 }
 
 /// The formula of a text.
@@ -80,8 +80,8 @@ impl<'a> Reader<'a> {
         let negative = self.signs();
         let exponent = self.atom()?;
         if self.next() == Some('^') {
-            let cure = "put parentheses: (a^b)^c or a^(b^c)";
-            return Err(refusal(self.at, "a power of a power is read in two ways", cure));
+            let help = "put parentheses: (a^b)^c or a^(b^c)";
+            return Err(refusal(self.at, "a power of a power is read in two ways", help));
         }
         let exponent = if negative { Law::unary(&NEGATIVE, exponent) } else { exponent };
         Ok(Law::binary(&POWER, base, exponent))
@@ -163,8 +163,8 @@ impl<'a> Reader<'a> {
         self.close()?;
         let found = arguments.len();
         let takes = |expected: &str| {
-            let cure = format!("give `{name}` {expected}, with commas between several");
-            Err(refusal(start, format!("`{name}` takes {expected}, found {found}"), cure))
+            let help = format!("give `{name}` {expected}, with commas between several");
+            Err(refusal(start, format!("`{name}` takes {expected}, found {found}"), help))
         };
         let mut arguments = arguments.into_iter();
         match (function, arguments.next(), arguments.next(), arguments.next()) {
@@ -221,7 +221,7 @@ impl<'a> Reader<'a> {
         if next == Some('*') && self.text[..self.at].ends_with('*') {
             return refusal(self.at - 1, "`**` is not an operator", "write a power with ^, as in t^2");
         }
-        let (problem, cure) = match next {
+        let (problem, help) = match next {
             None if self.depth > 0 => ("it ends too early: `)` is missing".to_owned(), "close each `(`"),
             None => ("it ends too early".to_owned(), "complete it, e.g. sin(2*pi*50*t)"),
             Some(',') => (
@@ -234,12 +234,12 @@ impl<'a> Reader<'a> {
             }
             Some(c) => (format!("`{}` is not known", c.escape_debug()), unknown_character(c)),
         };
-        refusal(self.at, problem, cure)
+        refusal(self.at, problem, help)
     }
 }
 
-fn refusal(byte: usize, problem: impl Into<Box<str>>, cure: impl Into<Box<str>>) -> Refusal {
-    Refusal { byte, problem: problem.into(), cure: cure.into() }
+fn refusal(byte: usize, problem: impl Into<Box<str>>, help: impl Into<Box<str>>) -> Refusal {
+    Refusal { byte, problem: problem.into(), help: help.into() }
 }
 
 /// Help for a name that is not known; it may be that of a module.

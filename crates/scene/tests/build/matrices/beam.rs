@@ -114,7 +114,7 @@ fn what_is_left_out_of_the_mass_is_told() {
         let scene = files.scene(MARKET, "flexible = 4", "", "end = 1.0\nstep = 1e-3");
         let model = build(&scene);
         let checks = model.meshed.as_ref().and_then(|meshed| meshed.checks).unwrap();
-        assert!(!checks.is_scalar_mass && checks.freedoms == 6, "{checks:?}");
+        assert!(!checks.is_scalar_mass && checks.dofs == 6, "{checks:?}");
         checks.left_out
     };
     let (coarse, fine) = (left_out(8), left_out(16));

@@ -251,7 +251,7 @@ fn the_hexahedral_plate_tumbles_as_the_tetrahedral_one() {
 }
 
 #[test]
-fn held_degrees_of_freedom_are_refused_with_the_cure() {
+fn held_degrees_of_freedom_are_refused_with_the_help() {
     let plate = grid([4, 1, 1], false, plate);
     for (held, says) in
         [("1, 1, 2", "node 1 with the degree(s) of freedom 3 only"), ("1, 1, 3\n2, 1, 3", "a body that is not free")]

@@ -55,7 +55,7 @@ fn compare(files: &Files, body: &str, rest: &str) {
     }
     assert!(moved > 1e-2, "{moved}");
     let checks = of_matrices.meshed.as_ref().and_then(|meshed| meshed.checks).unwrap();
-    assert!(checks.is_scalar_mass && checks.freedoms == 3 && checks.left_out == 0.0, "{checks:?}");
+    assert!(checks.is_scalar_mass && checks.dofs == 3 && checks.left_out == 0.0, "{checks:?}");
     assert!(checks.rigid_stiffness < 1e-12, "{checks:?}");
 }
 

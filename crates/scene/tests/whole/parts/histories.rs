@@ -40,11 +40,11 @@ fn every_kind() {
         ),
         (
             "kind = 'expression', formula = 'sin(2*pi*t)'",
-            History::Expression(Formula { formula: "sin(2*pi*t)".to_owned(), corners: vec![] }),
+            History::Expression(Formula { formula: "sin(2*pi*t)".to_owned(), discontinuities: vec![] }),
         ),
         (
-            "kind = 'expression', formula = 'abs(t - 1)', corners = [1, 2]",
-            History::Expression(Formula { formula: "abs(t - 1)".to_owned(), corners: vec![1.0, 2.0] }),
+            "kind = 'expression', formula = 'abs(t - 1)', discontinuities = [1, 2]",
+            History::Expression(Formula { formula: "abs(t - 1)".to_owned(), discontinuities: vec![1.0, 2.0] }),
         ),
         (
             "kind = 'product', factors = ['constant', { kind = 'product', factors = [{ kind = 'step', at = 1 }] }]",
@@ -91,7 +91,12 @@ fn what_is_no_history() {
         ("kind = 'table', points = [], file = 'a.csv'", "'a.csv'", "file", "found both `points` and `file`"),
         ("kind = 'expression', formula = ' '", "' '", "formula", "expected a formula in the time t"),
         ("kind = 'expression'", "{ kind = 'expr", "formula", "formula = \"sin(2*pi*t)\""),
-        ("kind = 'expression', formula = 't', corners = [2, 1]", "1] }", "corners[1]", "found 1.0 after 2.0"),
+        (
+            "kind = 'expression', formula = 't', discontinuities = [2, 1]",
+            "1] }",
+            "discontinuities[1]",
+            "found 1.0 after 2.0",
+        ),
         (
             "kind = 'ramp', duration = 4e-13",
             "4e-13",
@@ -107,9 +112,9 @@ fn what_is_no_history() {
             "found 0.1000000000004 after 0.1, expected times whose distance is not lost in rounding",
         ),
         (
-            "kind = 'expression', formula = 't', corners = [1e-3, 1.0000000004e-3]",
+            "kind = 'expression', formula = 't', discontinuities = [1e-3, 1.0000000004e-3]",
             "1.0000000004e-3] }",
-            "corners[1]",
+            "discontinuities[1]",
             "for a jump use",
         ),
         ("kind = 'product', factors = []", "[] }", "factors", "found [], expected at least one history"),

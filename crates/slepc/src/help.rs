@@ -6,7 +6,7 @@ pub(crate) const INSTALL: &str = "install SLEPc for Python and MPI: apt-get inst
                                   FLEXFRAME_MPI_PYTHON name mpirun and Python where they have other names";
 
 /// Words of a failure, and what to do about it.
-const CURES: [(&str, &str); 6] = [
+const HELP: [(&str, &str); 6] = [
     (
         "enough slots",
         "ask for as many ranks as there are cores at most, or set OMPI_MCA_rmaps_base_oversubscribe=1, which lets several share a core",
@@ -25,9 +25,9 @@ const CURES: [(&str, &str); 6] = [
 ];
 
 /// Help about a failure with these words.
-pub(crate) fn cure(said: &str) -> &'static str {
-    CURES.iter().find(|(words, _)| said.contains(words)).map_or(
+pub(crate) fn help(said: &str) -> &'static str {
+    HELP.iter().find(|(words, _)| said.contains(words)).map_or(
         "see what it said; options for PETSc and MUMPS go into PETSC_OPTIONS (docs/reference/cluster.md)",
-        |(_, cure)| cure,
+        |(_, help)| help,
     )
 }

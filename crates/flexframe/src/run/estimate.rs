@@ -23,7 +23,7 @@ const STEPS_PER_LOOK: u64 = 16;
 
 /// Estimate of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Foretold {
+pub struct Estimate {
     /// Rows, but for those at corners of loads.
     pub rows: u64,
     /// Bytes of their numbers; the shapes of the body come on top.
@@ -32,7 +32,7 @@ pub struct Foretold {
     pub seconds: Option<f64>,
 }
 
-impl Foretold {
+impl Estimate {
     /// Estimate of the rows of a scene, without a look at its steps.
     pub(super) fn of_rows(scene: &Scene, metadata: &Metadata) -> Self {
         let rows = rows(scene);
@@ -73,7 +73,7 @@ fn seconds(mut simulation: Simulation, stop: &AtomicBool) -> Option<f64> {
     }
 }
 
-impl fmt::Display for Foretold {
+impl fmt::Display for Estimate {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { rows, bytes, seconds } = *self;
         write!(f, "{rows} rows, {}", Bytes(usize::try_from(bytes).unwrap_or(usize::MAX)))?;
@@ -92,7 +92,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_foretold_is_told_in_units_that_people_use() {
+    fn what_is_estimated_is_told_in_units_that_people_use() {
         for (bytes, seconds, text) in [
             (1_500_000, Some(0.2), "7 rows, 2 MB, less than a second"),
             (2_000_000_000, Some(75.4), "7 rows, 2.0 GB, about 75 s"),
@@ -100,7 +100,7 @@ mod tests {
             (1, Some(72_000.0), "7 rows, 1 MB, about 20 h"),
             (1, None, "7 rows, 1 MB"),
         ] {
-            assert_eq!(Foretold { rows: 7, bytes, seconds }.to_string(), text);
+            assert_eq!(Estimate { rows: 7, bytes, seconds }.to_string(), text);
         }
     }
 }

@@ -10,8 +10,8 @@ use crate::oracles::dense_eigenvalues_of;
 use crate::supports::{body, nodes};
 
 /// The motion that these degrees of freedom leave of the block, counted from 0.
-fn left(freedoms: &[(u32, usize)]) -> RigidMotion {
-    Support::of_freedoms(&body().positions, freedoms).unwrap().motion
+fn left(dofs: &[(u32, usize)]) -> RigidMotion {
+    Support::of_dofs(&body().positions, dofs).unwrap().motion
 }
 
 /// Nodes at corners of the block.
@@ -49,15 +49,15 @@ fn what_is_left_is_a_pin_a_hinge_a_slider_a_clamp_or_neither() {
     assert!((along_y.rotations()[0] - Vector3::y()).norm() < 1e-12, "{along_y:?}");
 
     // A plane: two translations and a rotation; a table and a wall; a cylinder.
-    for (freedoms, words, translations) in [
+    for (dofs, words, translations) in [
         (plane.clone(), "2 translations and 1 rotation", 2),
         ([&plane[..], &[(a, 1)]].concat(), "1 translation and 1 rotation", 1),
         (vec![(a, 1), (a, 2), (b, 1), (b, 2)], "1 translation and 1 rotation", 1),
         (vec![(a, 0)], "2 translations and 3 rotations", 2),
         (vec![(a, 0), (a, 1)], "1 translation and 3 rotations", 1),
     ] {
-        let motion = left(&freedoms);
-        assert_eq!(motion.to_string(), words, "{freedoms:?}");
+        let motion = left(&dofs);
+        assert_eq!(motion.to_string(), words, "{dofs:?}");
         let unturned = motion.others().iter().filter(|twist| twist.rotation == Vector3::zeros());
         assert_eq!((unturned.count(), motion.is_free()), (translations, false));
         assert!(motion.translations().is_empty() && motion.rotations().is_empty());
@@ -71,7 +71,7 @@ fn motions_left_move_none_of_what_is_held() {
     let positions = &body().positions;
     let odd = [(0, 0), (11, 1), (23, 2), (37, 0), (52, 1)];
     for count in 0..=odd.len() {
-        let motion = Support::of_freedoms(positions, &odd[..count]).unwrap().motion;
+        let motion = Support::of_dofs(positions, &odd[..count]).unwrap().motion;
         assert_eq!(motion.count(), 6 - count, "{motion}");
         let point = motion.fixed_point().unwrap_or_default();
         for twist in motion.others() {
@@ -82,7 +82,7 @@ fn motions_left_move_none_of_what_is_held() {
             }
         }
     }
-    let screw = Support::of_freedoms(positions, &odd).unwrap().motion;
+    let screw = Support::of_dofs(positions, &odd).unwrap().motion;
     let [twist] = screw.others() else { panic!("{screw:?}") };
     assert!(twist.velocity.dot(&twist.rotation).abs() > 1e-6);
 }
@@ -101,10 +101,10 @@ fn modes_are_those_of_the_rows_that_are_free() {
         vec![(0, 0), (11, 1), (23, 2), (37, 0), (52, 1)],
         all_of(a).to_vec(),
     ];
-    for freedoms in cases {
-        let support = Support::of_freedoms(&body.positions, &freedoms).unwrap();
+    for dofs in cases {
+        let support = Support::of_dofs(&body.positions, &dofs).unwrap();
         let modes = body.held(&support).modes(8, |_| ()).unwrap();
-        let held: Vec<usize> = freedoms.iter().map(|(node, axis)| 3 * *node as usize + axis).collect();
+        let held: Vec<usize> = dofs.iter().map(|(node, axis)| 3 * *node as usize + axis).collect();
         let free: Vec<usize> = (0..3 * body.positions.len()).filter(|row| !held.contains(row)).collect();
         let reduced = |matrix: faer::sparse::SparseColMatRef<'_, usize, f64>| {
             faer::Mat::from_fn(free.len(), free.len(), |i, j| matrix.get(free[i], free[j]).copied().unwrap_or(0.0))
@@ -133,8 +133,8 @@ fn a_beam_on_a_pin_and_a_roller_bends_in_half_waves() {
     let beam = Beam { turn: Matrix3::identity(), ..Beam::default() };
     let model = beam.model();
     let end = model.positions.len() as u32 - 1;
-    let freedoms = [(0, 0), (0, 1), (0, 2), (0, 3), (end, 1), (end, 2)];
-    let support = Support::of_freedoms(&model.positions, &freedoms).unwrap();
+    let dofs = [(0, 0), (0, 1), (0, 2), (0, 3), (end, 1), (end, 2)];
+    let support = Support::of_dofs(&model.positions, &dofs).unwrap();
     assert_eq!(support.motion.count(), 0);
     let modes = model.modes(&support, 6);
     for (k, lambda) in modes.eigenvalues.iter().enumerate() {
@@ -150,21 +150,21 @@ fn one_node_with_rotations_clamps_pins_or_hinges_a_beam() {
     let beam = Beam { turn: Matrix3::identity(), ..Beam::default() };
     let model = beam.model();
     let point = Vector3::from(model.positions[0]);
-    let by_freedoms = |freedoms: &[usize]| {
-        let pairs: Vec<(u32, usize)> = freedoms.iter().map(|freedom| (0, *freedom)).collect();
-        model.modes(&Support::of_freedoms(&model.positions, &pairs).unwrap(), 4)
+    let by_dofs = |dofs: &[usize]| {
+        let pairs: Vec<(u32, usize)> = dofs.iter().map(|dof| (0, *dof)).collect();
+        model.modes(&Support::of_dofs(&model.positions, &pairs).unwrap(), 4)
     };
     let cases = [
         (RigidMotion::clamp(point), vec![0, 1, 2, 3, 4, 5], 1.875_104_068_711_961),
         (RigidMotion::pin(point), vec![0, 1, 2], 3.926_602_312_047_919),
         (RigidMotion::hinge(point, Vector3::z()), vec![0, 1, 2, 3, 4], 1.875_104_068_711_961),
     ];
-    for (motion, freedoms, root) in cases {
+    for (motion, dofs, root) in cases {
         let by_node = model.modes(&Support::new(motion, vec![0]), 4);
-        let by_freedoms = by_freedoms(&freedoms);
-        let found = by_freedoms.rigid.motion;
+        let by_dofs = by_dofs(&dofs);
+        let found = by_dofs.rigid.motion;
         assert_eq!((found.count(), found.others().len()), (motion.count(), 0), "{found:?}");
-        for (a, b) in by_node.eigenvalues.iter().zip(&by_freedoms.eigenvalues) {
+        for (a, b) in by_node.eigenvalues.iter().zip(&by_dofs.eigenvalues) {
             assert!((a / b - 1.0).abs() < 1e-9, "{motion:?}: {a} {b}");
         }
         let expected = (root / beam.length).powi(2) * (beam.stiffness[2] / beam.mass[0]).sqrt();
@@ -176,14 +176,14 @@ fn one_node_with_rotations_clamps_pins_or_hinges_a_beam() {
 #[test]
 fn degrees_of_freedom_that_are_not_there_are_refused() {
     let positions = &body().positions;
-    let error = Support::of_freedoms(positions, &[(1000, 0)]).unwrap_err();
+    let error = Support::of_dofs(positions, &[(1000, 0)]).unwrap_err();
     assert!(matches!(error, ModalError::HeldNode { node: 1000, .. }), "{error}");
-    let error = Support::of_freedoms(positions, &[(1, 6)]).unwrap_err();
-    assert!(matches!(error, ModalError::HeldFreedom { node: 1, freedom: 6, count: 6 }), "{error}");
+    let error = Support::of_dofs(positions, &[(1, 6)]).unwrap_err();
+    assert!(matches!(error, ModalError::HeldFreedom { node: 1, dof: 6, count: 6 }), "{error}");
     // A rotation of a node that has none.
-    let support = Support::of_freedoms(positions, &[(1, 4)]).unwrap();
+    let support = Support::of_dofs(positions, &[(1, 4)]).unwrap();
     let body = body();
     let error = modal::Solver::new(body.matrices.stiffness(), body.matrices.mass(), positions, &support).err().unwrap();
-    assert!(matches!(error, ModalError::HeldFreedom { node: 1, freedom: 4, count: 3 }), "{error}");
+    assert!(matches!(error, ModalError::HeldFreedom { node: 1, dof: 4, count: 3 }), "{error}");
     assert!(error.to_string().contains("translations along x, y and z"));
 }

@@ -74,7 +74,7 @@ fn speed(threads: usize) -> Option<f64> {
 
 /// Sizes of K and M, and what follows from them.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Foretold {
+pub(crate) struct MemoryEstimate {
     unknowns: usize,
     entries: usize,
     /// K, M, rigid modes.
@@ -93,7 +93,7 @@ pub(crate) struct Foretold {
     scratch: usize,
 }
 
-impl Foretold {
+impl MemoryEstimate {
     /// Sizes of K and M, which take `matrices` bytes.
     pub(crate) fn new(stiffness: StiffnessMatrix<'_>, mass: &MassMatrix<'_>, matrices: usize, rigid: usize) -> Self {
         let (unknowns, entries) = (stiffness.ncols(), stiffness.entries());

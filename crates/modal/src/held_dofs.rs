@@ -23,34 +23,34 @@ impl Support {
     ///
     /// // A beam along x, held at both ends as on a pin and a roller.
     /// let positions = [[0.0; 3], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0]];
-    /// let support = Support::of_freedoms(&positions, &[(0, 0), (0, 1), (0, 2), (0, 3), (2, 1), (2, 2)])?;
+    /// let support = Support::of_dofs(&positions, &[(0, 0), (0, 1), (0, 2), (0, 3), (2, 1), (2, 2)])?;
     /// assert_eq!(support.motion.count(), 0);
     /// # Ok::<(), modal::ModalError>(())
     /// ```
     ///
     /// # Errors
     /// [`ModalError::HeldNode`], [`ModalError::HeldFreedom`], [`ModalError::NotFinite`].
-    pub fn of_freedoms(positions: &[[f64; 3]], freedoms: &[(u32, usize)]) -> Result<Self, ModalError> {
-        Ok(Self { motion: motion_left(positions, freedoms)?, nodes: Vec::new(), freedoms: freedoms.to_vec() })
+    pub fn of_dofs(positions: &[[f64; 3]], dofs: &[(u32, usize)]) -> Result<Self, ModalError> {
+        Ok(Self { motion: motion_left(positions, dofs)?, nodes: Vec::new(), dofs: dofs.to_vec() })
     }
 }
 
-/// The motion that holding `freedoms` (pairs of a node and a degree of freedom, 0 to 5) leaves a body.
+/// The motion that holding `dofs` (pairs of a node and a degree of freedom, 0 to 5) leaves a body.
 ///
 /// # Errors
 /// [`ModalError::HeldNode`], [`ModalError::HeldFreedom`], [`ModalError::NotFinite`].
-fn motion_left(positions: &[[f64; 3]], freedoms: &[(u32, usize)]) -> Result<RigidMotion, ModalError> {
-    check_held(&[], freedoms, positions.len(), 6)?;
+fn motion_left(positions: &[[f64; 3]], dofs: &[(u32, usize)]) -> Result<RigidMotion, ModalError> {
+    check_held(&[], dofs, positions.len(), 6)?;
     check_finite_positions(positions)?;
     let at = |node: u32| Vector3::from(positions[node as usize]);
     let (_, length) = extent(positions);
-    let origin = freedoms.iter().map(|(node, _)| at(*node)).sum::<Vector3<f64>>() / freedoms.len().max(1) as f64;
+    let origin = dofs.iter().map(|(node, _)| at(*node)).sum::<Vector3<f64>>() / dofs.len().max(1) as f64;
 
     // Rows of at least six equations for v and length·ω.
-    let mut equations = DMatrix::zeros(freedoms.len().max(6), 6);
-    for (row, (node, freedom)) in freedoms.iter().enumerate() {
-        let direction = Vector3::ith(freedom % 3, 1.0);
-        if *freedom < 3 {
+    let mut equations = DMatrix::zeros(dofs.len().max(6), 6);
+    for (row, (node, dof)) in dofs.iter().enumerate() {
+        let direction = Vector3::ith(dof % 3, 1.0);
+        if *dof < 3 {
             let turned = (at(*node) - origin).cross(&direction) / length;
             equations.fixed_view_mut::<1, 3>(row, 0).tr_copy_from(&direction);
             equations.fixed_view_mut::<1, 3>(row, 3).tr_copy_from(&turned);
@@ -58,7 +58,7 @@ fn motion_left(positions: &[[f64; 3]], freedoms: &[(u32, usize)]) -> Result<Rigi
             equations.fixed_view_mut::<1, 3>(row, 3).tr_copy_from(&direction);
         }
     }
-    let limit = NEGLIGIBLE * (freedoms.len().max(1) as f64).sqrt();
+    let limit = NEGLIGIBLE * (dofs.len().max(1) as f64).sqrt();
     let motions = null_space(&equations, limit);
     let velocities = motions.rows(0, 3).into_owned();
     let turns = motions.rows(3, 3).into_owned();
